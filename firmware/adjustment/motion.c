@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// Commands one motion and watches the SIPs until it has settled.
+#include "argus/motion.h"
+
+#include <string.h>
+
+#include "argus/angle.h"
+
+#define ON_TARGET_CDEG 100
+#define SETTLED_SIPS 2
+#define START_MS 400   // a motion may take this long to show in the SIPs
+#define RETRY_SIPS 5   // at rest off the target for so many SIPs: command it again
+#define TRIES_MAX 3
+
+void argus_motion_init(argus_motion_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+static void begin(argus_motion_t *const self, const argus_motion_kind_t kind, const uint32_t now_ms) {
+    self->kind = kind;
+    self->issued_ms = now_ms;
+    self->on_target = 0;
+    self->off_target = 0;
+    self->tries = 1;
+    self->settled = false;
+    self->failed = false;
+}
+
+// The robot takes headings in whole degrees of its own odometry frame.
+static int32_t robot_degrees(const argus_knowledge_t *const knowledge, const int32_t heading_cdeg) {
+    const int32_t own = argus_angle_wrap(heading_cdeg - knowledge->heading_offset_cdeg);
+    return (own + (own >= 0 ? 50 : -50)) / 100;
+}
+
+void argus_motion_turn(argus_motion_t *const self, argus_outbox_t *const out, const argus_knowledge_t *const knowledge,
+                       const int32_t heading_cdeg, const uint32_t now_ms) {
+    const int32_t degrees = robot_degrees(knowledge, heading_cdeg);
+    begin(self, ARGUS_MOTION_TURN, now_ms);
+    self->target_cdeg = argus_angle_wrap(degrees * 100 + knowledge->heading_offset_cdeg);
+    argus_outbox_int(out, ARCOS_CMD_HEAD, degrees);
+}
+
+void argus_motion_steer(argus_outbox_t *const out, const argus_knowledge_t *const knowledge, const int32_t heading_cdeg) {
+    argus_outbox_int(out, ARCOS_CMD_HEAD, robot_degrees(knowledge, heading_cdeg));
+}
+
+void argus_motion_move(argus_motion_t *const self, argus_outbox_t *const out, const int32_t distance_mm,
+                       const int32_t speed_mm_s, const uint32_t now_ms) {
+    if (self->speed_mm_s != speed_mm_s) {
+        argus_outbox_int(out, ARCOS_CMD_SETV, speed_mm_s);
+        self->speed_mm_s = speed_mm_s;
+    }
+    begin(self, ARGUS_MOTION_MOVE, now_ms);
+    self->target_mm = distance_mm;
+    argus_outbox_int(out, ARCOS_CMD_MOVE, distance_mm);
+}
+
+void argus_motion_stop(argus_motion_t *const self, argus_outbox_t *const out, const uint32_t now_ms) {
+    begin(self, ARGUS_MOTION_STOP, now_ms);
+    argus_outbox_urgent(out, ARCOS_CMD_STOP);
+}
+
+void argus_motion_hold(argus_motion_t *const self, const uint32_t now_ms) {
+    begin(self, ARGUS_MOTION_STOP, now_ms);
+}
+
+static bool started(const argus_motion_t *const self, const uint32_t now_ms) {
+    return self->kind != ARGUS_MOTION_MOVE || now_ms - self->issued_ms >= START_MS;
+}
+
+static bool on_target(const argus_motion_t *const self, const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
+    if (knowledge->still_sips == 0 || !started(self, now_ms)) {
+        return false;
+    }
+    return self->kind != ARGUS_MOTION_TURN ||
+           argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->target_cdeg) <= ON_TARGET_CDEG;
+}
+
+static void again(argus_motion_t *const self, argus_outbox_t *const out, const argus_knowledge_t *const knowledge,
+                  const uint32_t now_ms) {
+    if (self->tries >= TRIES_MAX) {
+        self->failed = true;
+        return;
+    }
+    const uint8_t tries = self->tries;
+    argus_motion_turn(self, out, knowledge, self->target_cdeg, now_ms);
+    self->tries = (uint8_t)(tries + 1);
+}
+
+void argus_motion_sip(argus_motion_t *const self, argus_outbox_t *const out, const argus_knowledge_t *const knowledge,
+                      const uint32_t now_ms) {
+    if (self->kind == ARGUS_MOTION_NONE || self->settled || self->failed) {
+        return;
+    }
+    if (on_target(self, knowledge, now_ms)) {
+        self->on_target++;
+        self->off_target = 0;
+        self->settled = self->on_target >= SETTLED_SIPS;
+        self->mark = argus_mark_now(knowledge);
+        return;
+    }
+    self->on_target = 0;
+    const bool resting = knowledge->still_sips > 0 && now_ms - self->issued_ms >= START_MS;
+    self->off_target = resting ? (uint8_t)(self->off_target + 1) : 0;
+    if (self->kind == ARGUS_MOTION_TURN && self->off_target >= RETRY_SIPS) {
+        again(self, out, knowledge, now_ms);
+    }
+}

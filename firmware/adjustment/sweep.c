@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// The sweep: turn to each rotation of the plan, read what covers the disabled bearings, end on the base heading.
+#include <string.h>
+
+#include "argus/angle.h"
+#include "argus/drive.h"
+
+void argus_sweep_begin(argus_drive_t *const self, const argus_plan_t *const plan, const int32_t base_cdeg) {
+    memset(self, 0, sizeof *self);
+    self->base_cdeg = base_cdeg;
+    self->smallest_mm = UINT16_MAX;
+    self->smallest_of = -1;
+    self->home = plan->count == 0;
+}
+
+int32_t argus_sweep_heading_cdeg(const argus_drive_t *const self, const argus_plan_t *const plan) {
+    const int32_t rotation = self->home || self->index >= plan->count ? 0 : plan->rotation_deg[self->index];
+    return argus_angle_wrap(self->base_cdeg + rotation * 100);
+}
+
+static void note_smallest(argus_drive_t *const self, const argus_plan_t *const plan,
+                          const argus_knowledge_t *const knowledge) {
+    const int16_t rotation = plan->rotation_deg[self->index];
+    for (int d = ARGUS_FORWARD_FIRST; d <= ARGUS_FORWARD_LAST; d++) {
+        const int by = (plan->disabled >> d & 1u) != 0 ? argus_plan_cover(plan, rotation, d) : -1;
+        if (by >= 0 && knowledge->sonar[by].reading_mm < self->smallest_mm) {
+            self->smallest_mm = knowledge->sonar[by].reading_mm;
+            self->smallest_of = (int8_t)d;
+            self->smallest_at = self->index;
+        }
+    }
+}
+
+static void next_rotation(argus_drive_t *const self, const argus_plan_t *const plan) {
+    self->index++;
+    self->home = plan->return_each || self->index >= plan->count;
+}
+
+bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan, const argus_knowledge_t *const knowledge,
+                      const argus_mark_t *const mark) {
+    if (self->done) {
+        return false;
+    }
+    if (self->home) {
+        self->home = false;
+        self->done = self->index >= plan->count;
+        return true;
+    }
+    if (!argus_all_fresh_since(knowledge, argus_plan_covering(plan, plan->rotation_deg[self->index]), mark)) {
+        return false;
+    }
+    note_smallest(self, plan, knowledge);
+    next_rotation(self, plan);
+    return true;
+}
+
+int32_t argus_drive_free_mm(const argus_knowledge_t *const knowledge, const int32_t object_range_mm) {
+    int32_t shortest = INT32_MAX;
+    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
+        if (argus_usable(knowledge, i)) {
+            shortest = argus_min(shortest, knowledge->sonar[i].reading_mm);
+        }
+    }
+    return argus_max(0, argus_min(shortest, ARGUS_P3DX_SONAR_NO_ECHO_MM) - object_range_mm);
+}

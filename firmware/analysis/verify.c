@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// Algorithm 2 as a state machine (paper: Table III, in the convention and with the corrections named below).
+#include "argus/verify.h"
+
+#include <string.h>
+
+#include "argus/angle.h"
+
+#define PITCH_CDEG 2000 // between two neighbours of the ring
+#define LEFT 0u
+#define RIGHT 1u
+
+void argus_verify_init(argus_verify_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+void argus_verify_begin(argus_verify_t *const self, const int sonar, const int32_t base_cdeg) {
+    argus_verify_init(self);
+    self->phase = ARGUS_VERIFY_RECHECK;
+    self->sonar = (int8_t)sonar;
+    self->base_cdeg = base_cdeg;
+}
+
+// paper: the listing turns the edge sonars by Table I's sign and never turns back; here the left neighbour gets onto the
+// bearing by -20, the right one by +20, and RETURN ends on the base heading.
+int32_t argus_verify_heading_cdeg(const argus_verify_t *const self) {
+    switch (self->phase) {
+    case ARGUS_VERIFY_LEFT:
+        return argus_angle_wrap(self->base_cdeg - PITCH_CDEG);
+    case ARGUS_VERIFY_RIGHT:
+        return argus_angle_wrap(self->base_cdeg + PITCH_CDEG);
+    case ARGUS_VERIFY_IDLE:
+    case ARGUS_VERIFY_RECHECK:
+    case ARGUS_VERIFY_RETURN:
+    case ARGUS_VERIFY_DONE:
+    default:
+        return self->base_cdeg;
+    }
+}
+
+static int witness_sonar(const argus_verify_t *const self, const unsigned side) {
+    return side == LEFT ? self->sonar - 1 : self->sonar + 1;
+}
+
+static bool may_testify(const argus_knowledge_t *const knowledge, const int sonar) {
+    return sonar >= ARGUS_FORWARD_FIRST && sonar <= ARGUS_FORWARD_LAST && argus_usable(knowledge, sonar);
+}
+
+static argus_verify_phase_t first_turn(const argus_verify_t *const self) {
+    return (self->witnesses & 1u << LEFT) != 0 ? ARGUS_VERIFY_LEFT : ARGUS_VERIFY_RIGHT;
+}
+
+static void conclude(argus_verify_t *const self, const argus_result_t result) {
+    self->result = result;
+    self->phase = ARGUS_VERIFY_RETURN;
+}
+
+// v is read again at rest, with its neighbours; a suspicion that does not hold there is dropped without a turn.
+static bool recheck(argus_verify_t *const self, const argus_knowledge_t *const knowledge, const argus_mark_t *const mark) {
+    unsigned wanted = 1u << self->sonar;
+    self->witnesses = 0;
+    for (unsigned side = LEFT; side <= RIGHT; side++) {
+        if (may_testify(knowledge, witness_sonar(self, side))) {
+            self->witnesses |= (uint8_t)(1u << side);
+            wanted |= 1u << witness_sonar(self, side);
+        }
+    }
+    if (!argus_all_fresh_since(knowledge, (uint16_t)wanted, mark)) {
+        return false;
+    }
+    self->reading_mm = knowledge->sonar[self->sonar].reading_mm;
+    const argus_verdict_t verdict = argus_disparity(knowledge, self->sonar, &self->difference_mm);
+    if (verdict != ARGUS_DISPARATE) {
+        self->result = self->witnesses == 0 ? ARGUS_RESULT_UNPROVEN : ARGUS_RESULT_DROPPED;
+        self->phase = ARGUS_VERIFY_DONE;
+    } else {
+        self->phase = first_turn(self);
+    }
+    return true;
+}
+
+// paper: line 19 adds before dividing and line 22 lacks the absolute value; here the mean is meant, and |mean - v| > tr.
+static void judge(argus_verify_t *const self) {
+    int32_t sum = 0;
+    int32_t count = 0;
+    for (unsigned side = LEFT; side <= RIGHT; side++) {
+        if ((self->heard & 1u << side) != 0) {
+            sum += self->witness_mm[side];
+            count++;
+        }
+    }
+    if (count == 0) {
+        conclude(self, ARGUS_RESULT_UNPROVEN);
+        return;
+    }
+    // Twice the difference, so that the mean of two is not rounded before it is judged.
+    const int32_t off = argus_abs(sum * 2 / count - 2 * (int32_t)self->reading_mm);
+    self->mean_mm = sum / count;
+    conclude(self, off > 2 * argus_tolerance_mm(self->reading_mm) ? ARGUS_RESULT_CONVICTED : ARGUS_RESULT_CLEARED);
+}
+
+static bool hear(argus_verify_t *const self, const argus_knowledge_t *const knowledge, const argus_mark_t *const mark,
+                 const unsigned side) {
+    const int sonar = witness_sonar(self, side);
+    const bool gone = knowledge->sonar[sonar].health == ARGUS_DISABLED; // it failed on the way: it cannot testify
+    if (!gone && !argus_fresh_since(knowledge, sonar, mark)) {
+        return false;
+    }
+    if (may_testify(knowledge, sonar)) {
+        self->heard |= (uint8_t)(1u << side);
+        self->witness_mm[side] = knowledge->sonar[sonar].reading_mm;
+    }
+    if (side == LEFT && (self->witnesses & 1u << RIGHT) != 0) {
+        self->phase = ARGUS_VERIFY_RIGHT;
+    } else {
+        judge(self);
+    }
+    return true;
+}
+
+bool argus_verify_step(argus_verify_t *const self, const argus_knowledge_t *const knowledge,
+                       const argus_mark_t *const mark) {
+    switch (self->phase) {
+    case ARGUS_VERIFY_RECHECK:
+        return recheck(self, knowledge, mark);
+    case ARGUS_VERIFY_LEFT:
+        return hear(self, knowledge, mark, LEFT);
+    case ARGUS_VERIFY_RIGHT:
+        return hear(self, knowledge, mark, RIGHT);
+    case ARGUS_VERIFY_RETURN:
+        self->phase = ARGUS_VERIFY_DONE;
+        return true;
+    case ARGUS_VERIFY_IDLE:
+    case ARGUS_VERIFY_DONE:
+    default:
+        return false;
+    }
+}

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+// ARCOS framing: the checksum, building packets, and finding them in any stream of bytes.
+#include "argus/frame.h"
+
+#include <string.h>
+
+#define HEADER_BYTES ARCOS_FRAME_OVERHEAD // FA FB COUNT
+#define PACKET_MIN (ARCOS_FRAME_COUNT_MIN + ARCOS_FRAME_OVERHEAD)
+#define CHECKSUM_BYTES 2
+
+// Longest tail of a SIP: 12 bytes are standard, the newest known robots append 12 more.
+#define SIP_TAIL_MAX 40
+// No packet but SIP and CONFIGpac is longer in ordinary use; a false COUNT above this is seen through at
+// once.
+#define COUNT_USUAL_MAX 64
+#define SLOWEST_BAUD ARCOS_BAUD_B9600
+
+static uint32_t elapsed_ms(uint32_t now_ms, uint32_t then_ms) {
+    const uint32_t elapsed = now_ms - then_ms;
+    return elapsed < UINT32_C(0x80000000) ? elapsed
+                                          : 0; // a clock that steps back must not look like a long silence
+}
+
+uint16_t argus_frame_checksum(const uint8_t *data, size_t count) {
+    uint32_t sum = 0;
+    size_t i = 0;
+    for (; i + 1 < count; i += 2) {
+        sum += (uint32_t)data[i] << 8 | data[i + 1];
+    }
+    if (i < count) {
+        sum ^= data[i];
+    }
+    return (uint16_t)sum;
+}
+
+size_t argus_frame_encode(uint8_t *packet, size_t capacity, const uint8_t *data, size_t count) {
+    const size_t total = HEADER_BYTES + count + CHECKSUM_BYTES;
+    if (count == 0 || count > ARCOS_FRAME_SEND_TOTAL_MAX || total > ARCOS_FRAME_SEND_TOTAL_MAX ||
+        total > capacity) {
+        return 0;
+    }
+    const uint16_t checksum = argus_frame_checksum(data, count);
+    packet[0] = ARCOS_FRAME_HEADER0;
+    packet[1] = ARCOS_FRAME_HEADER1;
+    packet[2] = (uint8_t)(count + CHECKSUM_BYTES);
+    memcpy(packet + HEADER_BYTES, data, count);
+    packet[total - 2] = (uint8_t)(checksum >> 8);
+    packet[total - 1] = (uint8_t)(checksum & 0xFF);
+    return total;
+}
+
+void argus_parser_init(argus_parser_t *self) {
+    memset(self, 0, sizeof *self);
+}
+
+static size_t end_of(const argus_parser_t *self) {
+    return (size_t)self->first + self->length;
+}
+
+static void advance(argus_parser_t *self, size_t count) {
+    self->first = (uint16_t)(self->first + count);
+    self->length = (uint16_t)(self->length - count);
+    self->since_ms = self->last_byte_ms;
+    if (self->length == 0) {
+        self->broken_off = false;
+    }
+}
+
+static void skip(argus_parser_t *self, size_t count) {
+    self->skipped_bytes += (uint32_t)count;
+    advance(self, count);
+}
+
+void argus_parser_flush(argus_parser_t *self) {
+    skip(self, self->length);
+}
+
+static bool starts_packet(const uint8_t *at, size_t available) {
+    return at[0] == ARCOS_FRAME_HEADER0 && (available < 2 || at[1] == ARCOS_FRAME_HEADER1);
+}
+
+static bool checksum_holds(const uint8_t *packet) {
+    const size_t count = (size_t)packet[2] - CHECKSUM_BYTES;
+    const uint8_t *sent = packet + HEADER_BYTES + count;
+    return argus_frame_checksum(packet + HEADER_BYTES, count) == (uint16_t)(sent[0] << 8 | sent[1]);
+}
+
+// Bytes that the first packet still lacks; 0 when it is complete or no packet at all.
+static size_t owed(const argus_parser_t *self) {
+    const size_t held = self->length;
+    if (held < HEADER_BYTES) {
+        return HEADER_BYTES - held;
+    }
+    const size_t total = (size_t)self->held[self->first + 2] + ARCOS_FRAME_OVERHEAD;
+    return total > held ? total - held : 0;
+}
+
+static void note_silence(argus_parser_t *self, uint32_t now_ms) {
+    if (self->length > 0 && elapsed_ms(now_ms, self->last_byte_ms) >= ARCOS_FRAME_RESYNC_QUIET_MS) {
+        self->broken_off = true;
+    }
+}
+
+static void make_room(argus_parser_t *self) {
+    if (self->first < ARGUS_FRAME_TOTAL_MAX && self->length > 0) {
+        return;
+    }
+    memcpy(self->held, self->held + self->first, self->length);
+    self->searched = (uint16_t)(self->searched > self->first ? self->searched - self->first : 0);
+    self->first = 0;
+}
+
+static size_t skip_noise(argus_parser_t *self, const uint8_t *bytes, size_t count) {
+    size_t noise = 0;
+    while (noise < count && bytes[noise] != ARCOS_FRAME_HEADER0) {
+        noise++;
+    }
+    self->skipped_bytes += (uint32_t)noise;
+    return noise;
+}
+
+static size_t append(argus_parser_t *self, const uint8_t *bytes, size_t count) {
+    const size_t wanted = owed(self);
+    const size_t taken = count < wanted ? count : wanted;
+    memcpy(self->held + end_of(self), bytes, taken);
+    self->length = (uint16_t)(self->length + taken);
+    return taken;
+}
+
+size_t argus_parser_push(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count) {
+    if (count == 0) {
+        return 0;
+    }
+    note_silence(self, now_ms);
+    make_room(self);
+    size_t taken = 0;
+    self->last_byte_ms = now_ms;
+    if (self->length == 0) {
+        taken = skip_noise(self, bytes, count);
+        self->since_ms = now_ms;
+    }
+    taken += append(self, bytes + taken, count - taken);
+    taken += append(self, bytes + taken, count - taken); // once COUNT is known, the rest
+    return taken;
+}
+
+// Goes to the first byte that can start a packet.
+static void seek(argus_parser_t *self) {
+    size_t at = 0;
+    while (at < self->length && !starts_packet(self->held + self->first + at, self->length - at)) {
+        at++;
+    }
+    if (at > 0) {
+        skip(self, at);
+    }
+}
+
+static bool hand_out(argus_parser_t *self, argus_packet_t *packet) {
+    const uint8_t *frame = self->held + self->first;
+    packet->data = frame + HEADER_BYTES;
+    packet->count = (uint8_t)(frame[2] - CHECKSUM_BYTES);
+    self->packets++;
+    self->broken_off = false;
+    advance(self, (size_t)frame[2] + ARCOS_FRAME_OVERHEAD);
+    return true;
+}
+
+static bool is_sip(uint8_t type) {
+    return type == ARCOS_TYPE_SIP_STATIONARY || type == ARCOS_TYPE_SIP_MOVING;
+}
+
+// A SIP says its length twice. Before its sonar count has arrived nothing can be said against it.
+static bool sip_is_doubtful(const uint8_t *frame, size_t held) {
+    if (held <= ARCOS_SIP_OFFSET_SONAR_COUNT) {
+        return false;
+    }
+    const int sonars = frame[ARCOS_SIP_OFFSET_SONAR_COUNT];
+    const int total = frame[2] + ARCOS_FRAME_OVERHEAD;
+    const int tail = total - CHECKSUM_BYTES - ARCOS_SIP_OFFSET_SONAR - sonars * ARCOS_SIP_SONAR_BYTES;
+    return tail < 0 || tail > SIP_TAIL_MAX;
+}
+
+static bool is_doubtful(const argus_parser_t *self) {
+    const uint8_t *frame = self->held + self->first;
+    const size_t held = self->length;
+    if (held < PACKET_MIN) {
+        return false;
+    }
+    if (is_sip(frame[HEADER_BYTES])) {
+        return sip_is_doubtful(frame, held);
+    }
+    const bool config = frame[HEADER_BYTES] == ARCOS_TYPE_CONFIGPAC;
+    return self->broken_off || frame[2] > (config ? ARCOS_FRAME_RESYNC_OWED_MAX : COUNT_USUAL_MAX);
+}
+
+// True when a whole, good packet starts at `at`, unless an earlier search has seen it fail.
+static bool is_whole_at(const argus_parser_t *self, size_t at) {
+    const uint8_t *frame = self->held + at;
+    if (!starts_packet(frame, PACKET_MIN) || frame[2] < ARCOS_FRAME_COUNT_MIN) {
+        return false;
+    }
+    const size_t after = at + frame[2] + ARCOS_FRAME_OVERHEAD;
+    return after <= end_of(self) && after > self->searched && checksum_holds(frame);
+}
+
+static bool find_inside(argus_parser_t *self, argus_packet_t *packet) {
+    for (size_t at = (size_t)self->first + 1; at + PACKET_MIN <= end_of(self); at++) {
+        if (is_whole_at(self, at)) {
+            skip(self, at - self->first);
+            return hand_out(self, packet);
+        }
+    }
+    self->searched = (uint16_t)end_of(self);
+    return false;
+}
+
+static bool is_overdue(const argus_parser_t *self, uint32_t now_ms) {
+    const uint32_t count = self->length < HEADER_BYTES ? 0 : self->held[self->first + 2];
+    const uint32_t wire_ms = count * ARCOS_TIMING_BITS_PER_BYTE * 1000 / SLOWEST_BAUD;
+    return elapsed_ms(now_ms, self->last_byte_ms) >= ARCOS_FRAME_RESYNC_QUIET_MS &&
+           elapsed_ms(now_ms, self->since_ms) > wire_ms + ARCOS_FRAME_RESYNC_EXTRA_MS;
+}
+
+// A complete packet's fate; its header is skipped when it is bad.
+static bool accept_head(argus_parser_t *self) {
+    const uint8_t *frame = self->held + self->first;
+    if (frame[2] < ARCOS_FRAME_COUNT_MIN) {
+        self->bad_counts++;
+    } else if (checksum_holds(frame)) {
+        return true;
+    } else {
+        self->bad_checksums++;
+    }
+    skip(self, 1);
+    return false;
+}
+
+bool argus_parser_next(argus_parser_t *self, uint32_t now_ms, argus_packet_t *packet) {
+    note_silence(self, now_ms);
+    for (seek(self); self->length > 0; seek(self)) {
+        if (owed(self) == 0) {
+            if (accept_head(self)) {
+                return hand_out(self, packet);
+            }
+        } else if (is_doubtful(self) && find_inside(self, packet)) {
+            return true;
+        } else if (is_overdue(self, now_ms)) {
+            self->timeouts++;
+            skip(self, 1);
+        } else {
+            return false;
+        }
+    }
+    return false;
+}

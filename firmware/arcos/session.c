@@ -1,0 +1,468 @@
+// SPDX-License-Identifier: MIT
+// The ARCOS session as one state machine, driven by packets and by time.
+#include "argus/session.h"
+
+#include <string.h>
+
+#define LISTEN_MS 250
+#define FLUSH_MS 100
+#define STEP_MS 500
+#define CONFIG_REPEAT_MS 300
+#define CONFIG_WAIT_MS 1000
+#define PAUSE_FIRST_MS 500
+#define LEAVE_MS 100
+#define LEAVE_MAX_MS 1500
+#define DISLODGE_MAX 3
+#define OPENING_SIPS 2
+
+static uint32_t elapsed_ms(uint32_t now_ms, uint32_t then_ms) {
+    const uint32_t elapsed = now_ms - then_ms;
+    return elapsed < UINT32_C(0x80000000) ? elapsed : 0;
+}
+
+static uint32_t in_state_ms(const argus_session_t *self, uint32_t now_ms) {
+    return elapsed_ms(now_ms, self->since_ms);
+}
+
+static void enter(argus_session_t *self, uint32_t now_ms, argus_session_state_t state) {
+    self->state = state;
+    self->since_ms = now_ms;
+}
+
+void argus_session_init(argus_session_t *self, bool motors) {
+    memset(self, 0, sizeof *self);
+    argus_parser_init(&self->parser);
+    argus_outbox_init(&self->outbox);
+    self->motors = motors;
+    self->pause_ms = PAUSE_FIRST_MS;
+}
+
+static void begin_attempt(argus_session_t *self, uint32_t now_ms) {
+    argus_outbox_clear(&self->outbox);
+    self->dislodged = 0;
+    self->stalled = false;
+    if (self->attempts < UINT16_MAX) {
+        self->attempts++;
+    }
+    enter(self, now_ms, ARGUS_SESSION_LISTEN);
+}
+
+void argus_session_link_up(argus_session_t *self, uint32_t now_ms) {
+    if (self->state != ARGUS_SESSION_DOWN) {
+        return;
+    }
+    self->attempts = 0;
+    self->pause_ms = PAUSE_FIRST_MS;
+    argus_parser_flush(&self->parser);
+    begin_attempt(self, now_ms);
+}
+
+void argus_session_link_down(argus_session_t *self) {
+    argus_outbox_clear(&self->outbox);
+    argus_parser_flush(&self->parser);
+    self->stalled = false;
+    if (self->state == ARGUS_SESSION_LEAVING) {
+        self->state = ARGUS_SESSION_CLOSED;
+    } else if (self->state != ARGUS_SESSION_CLOSED) {
+        self->state = ARGUS_SESSION_DOWN;
+    }
+}
+
+static unsigned fail(argus_session_t *self, uint32_t now_ms) {
+    argus_outbox_clear(&self->outbox);
+    enter(self, now_ms, ARGUS_SESSION_PAUSE);
+    return ARGUS_SESSION_NO_ANSWER;
+}
+
+static unsigned lose(argus_session_t *self, uint32_t now_ms) {
+    self->attempts = 0;
+    begin_attempt(self, now_ms);
+    return ARGUS_SESSION_DID_LOSE;
+}
+
+static unsigned dislodge(argus_session_t *self, uint32_t now_ms) {
+    argus_outbox_clear(&self->outbox);
+    if (self->dislodged >= DISLODGE_MAX) {
+        return fail(self, now_ms);
+    }
+    self->dislodged++;
+    argus_outbox_int(&self->outbox, ARCOS_CMD_VEL, 0);
+    argus_outbox_int(&self->outbox, ARCOS_CMD_RVEL, 0);
+    argus_outbox_plain(&self->outbox, ARCOS_CMD_CLOSE);
+    enter(self, now_ms, ARGUS_SESSION_DISLODGE);
+    return ARGUS_SESSION_DID_DISLODGE;
+}
+
+static void send_sync(argus_session_t *self, uint32_t now_ms, uint8_t sync) {
+    argus_outbox_clear(&self->outbox);
+    argus_outbox_plain(&self->outbox, sync);
+    enter(self, now_ms, (argus_session_state_t)(ARGUS_SESSION_SYNC0 + sync));
+}
+
+static void ask_config(argus_session_t *self, uint32_t now_ms) {
+    argus_outbox_plain(&self->outbox, ARCOS_CMD_CONFIG);
+    self->tried_ms = now_ms;
+}
+
+static void open_robot(argus_session_t *self, uint32_t now_ms) {
+    argus_outbox_clear(&self->outbox);
+    memset(&self->robot, 0, sizeof self->robot);
+    self->has_robot = false;
+    self->opening_sips = 0;
+    self->heard_ms = now_ms;
+    argus_outbox_plain(&self->outbox, ARCOS_CMD_OPEN);
+    argus_outbox_int(&self->outbox, ARCOS_CMD_VEL, 0);
+    argus_outbox_int(&self->outbox, ARCOS_CMD_RVEL, 0);
+    argus_outbox_plain(&self->outbox, ARCOS_CMD_SETO);
+    ask_config(self, now_ms);
+    enter(self, now_ms, ARGUS_SESSION_OPENING);
+}
+
+static void set_up(argus_session_t *self, const argus_config_t *config) {
+    argus_outbox_t *outbox = &self->outbox;
+    argus_outbox_int(outbox, ARCOS_CMD_SETV, config->speed_mm_s);
+    argus_outbox_int(outbox, ARCOS_CMD_SETA, config->accel_mm_s2);
+    argus_outbox_int(outbox, ARCOS_CMD_SETA, -config->decel_mm_s2);
+    argus_outbox_int(outbox, ARCOS_CMD_SETRV, config->turn_speed_deg_s);
+    argus_outbox_int(outbox, ARCOS_CMD_SETRA, config->turn_accel_deg_s2);
+    argus_outbox_int(outbox, ARCOS_CMD_SETRA, -config->turn_accel_deg_s2);
+    argus_outbox_int(outbox, ARCOS_CMD_SONAR, 1);
+    if (!self->has_robot || self->robot.sonar_cycle_ms != config->sonar_cycle_ms) {
+        argus_outbox_int(outbox, ARCOS_CMD_SONAR_CYCLE, config->sonar_cycle_ms);
+    }
+    if (self->motors) {
+        argus_outbox_int(outbox, ARCOS_CMD_ENABLE, 1);
+    }
+}
+
+static bool is_sip(const argus_packet_t *packet) {
+    return packet->data[0] == ARCOS_TYPE_SIP_STATIONARY || packet->data[0] == ARCOS_TYPE_SIP_MOVING;
+}
+
+static bool is_reset_notice(const argus_packet_t *packet) {
+    return packet->data[0] == ARCOS_TYPE_RESET_NOTICE || packet->data[0] == ARCOS_TYPE_RESET_NOTICE2;
+}
+
+// True when a SIP was decoded into self->sip.
+static bool take_sip(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
+    if (!argus_sip_decode(&self->sip, packet)) {
+        self->bad_sips++;
+        return false;
+    }
+    self->sips++;
+    self->heard_ms = now_ms;
+    return true;
+}
+
+static void take_identity(argus_session_t *self, const argus_packet_t *packet) {
+    size_t offset = 1;
+    self->name[0] = self->robot_class[0] = self->subclass[0] = '\0';
+    if (argus_packet_string(packet, &offset, self->name) &&
+        argus_packet_string(packet, &offset, self->robot_class)) {
+        argus_packet_string(packet, &offset, self->subclass);
+    }
+}
+
+static void take_config(argus_session_t *self, const argus_packet_t *packet) {
+    argus_configpac_t robot;
+    if (!argus_configpac_decode(&robot, packet)) {
+        self->unknown_packets++;
+        return;
+    }
+    self->robot = robot;
+    self->has_robot = true;
+    if (self->subclass[0] == '\0') { // some answer SYNC2 with a bare echo
+        memcpy(self->name, robot.name, sizeof self->name);
+        memcpy(self->robot_class, robot.robot_class, sizeof self->robot_class);
+        memcpy(self->subclass, robot.robot_subclass, sizeof self->subclass);
+    }
+}
+
+static unsigned on_sync(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
+    const int step = (int)self->state - (int)ARGUS_SESSION_SYNC0;
+    if (is_sip(packet)) {
+        return dislodge(self, now_ms);
+    }
+    if (packet->data[0] != step) {
+        self->unknown_packets++;
+        return 0;
+    }
+    self->pause_ms = PAUSE_FIRST_MS; // somebody is there
+    if (self->state == ARGUS_SESSION_SYNC2) {
+        take_identity(self, packet);
+        open_robot(self, now_ms);
+    } else {
+        send_sync(self, now_ms, (uint8_t)(step + 1));
+    }
+    return 0;
+}
+
+static unsigned finish_opening(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    if (self->opening_sips < OPENING_SIPS ||
+        (!self->has_robot && in_state_ms(self, now_ms) < CONFIG_WAIT_MS)) {
+        return 0;
+    }
+    set_up(self, config);
+    self->stalled = false;
+    self->pause_ms = PAUSE_FIRST_MS;
+    enter(self, now_ms, ARGUS_SESSION_OPEN);
+    return ARGUS_SESSION_DID_OPEN;
+}
+
+static unsigned on_opening(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
+                           const argus_packet_t *packet) {
+    unsigned got = 0;
+    if (is_sip(packet)) {
+        got = take_sip(self, now_ms, packet) ? ARGUS_SESSION_GOT_SIP : 0;
+        if (got != 0 && self->opening_sips < OPENING_SIPS) {
+            self->opening_sips++;
+        }
+    } else if (packet->data[0] == ARCOS_TYPE_CONFIGPAC) {
+        take_config(self, packet);
+    } else if (is_reset_notice(packet)) {
+        return fail(self, now_ms);
+    } else {
+        self->unknown_packets++;
+    }
+    const unsigned opened = finish_opening(self, config, now_ms);
+    return opened != 0 ? opened | got : 0;
+}
+
+static unsigned resume(argus_session_t *self, uint32_t gap_ms) {
+    self->stalled = false;
+    self->gap_ms = gap_ms;
+    argus_outbox_drop_motion(&self->outbox);
+    argus_outbox_int(&self->outbox, ARCOS_CMD_VEL, 0);
+    argus_outbox_int(&self->outbox, ARCOS_CMD_RVEL, 0);
+    return ARGUS_SESSION_DID_RESUME;
+}
+
+static unsigned on_open_sip(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
+    const uint32_t gap_ms = elapsed_ms(now_ms, self->heard_ms);
+    if (!take_sip(self, now_ms, packet)) {
+        return 0;
+    }
+    return ARGUS_SESSION_GOT_SIP | (self->stalled ? resume(self, gap_ms) : 0);
+}
+
+static unsigned on_open(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
+    const uint8_t type = packet->data[0];
+    if (is_sip(packet)) {
+        return on_open_sip(self, now_ms, packet);
+    }
+    // A robot that answers our PULSE as a SYNC0 has been switched off and on.
+    if (is_reset_notice(packet) || (self->stalled && type == ARCOS_TYPE_SYNC0)) {
+        self->gap_ms = elapsed_ms(now_ms, self->heard_ms);
+        return lose(self, now_ms);
+    }
+    if (type == ARCOS_TYPE_CONFIGPAC) {
+        take_config(self, packet);
+    } else {
+        self->unknown_packets++;
+    }
+    return 0;
+}
+
+static unsigned on_packet(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
+                          const argus_packet_t *packet) {
+    switch (self->state) {
+    case ARGUS_SESSION_LISTEN:
+        return is_sip(packet) ? dislodge(self, now_ms) : 0;
+    case ARGUS_SESSION_SYNC0:
+    case ARGUS_SESSION_SYNC1:
+    case ARGUS_SESSION_SYNC2:
+        return on_sync(self, now_ms, packet);
+    case ARGUS_SESSION_OPENING:
+        return on_opening(self, config, now_ms, packet);
+    case ARGUS_SESSION_OPEN:
+        return on_open(self, now_ms, packet);
+    default:
+        return 0;
+    }
+}
+
+static unsigned drain(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    argus_packet_t packet;
+    unsigned bits = 0;
+    while (bits == 0 && argus_parser_next(&self->parser, now_ms, &packet)) {
+        bits = on_packet(self, config, now_ms, &packet);
+    }
+    return bits;
+}
+
+static bool is_deaf(const argus_session_t *self) {
+    return self->state == ARGUS_SESSION_DOWN || self->state == ARGUS_SESSION_CLOSED;
+}
+
+unsigned argus_session_receive(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
+                               const uint8_t *bytes, size_t count, size_t *taken) {
+    *taken = is_deaf(self) ? count : 0;
+    unsigned bits = drain(self, config, now_ms);
+    while (bits == 0 && *taken < count) {
+        *taken += argus_parser_push(&self->parser, now_ms, bytes + *taken, count - *taken);
+        bits = drain(self, config, now_ms);
+    }
+    return bits;
+}
+
+static void pulse(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    if (self->outbox.length > 0 || elapsed_ms(now_ms, self->spoke_ms) < (uint32_t)config->pulse_ms) {
+        return;
+    }
+    if (self->stalled) {
+        argus_outbox_plain(&self->outbox, ARCOS_CMD_STOP);
+    }
+    argus_outbox_plain(&self->outbox, ARCOS_CMD_PULSE);
+}
+
+static unsigned pause_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    const uint32_t longest_ms = (uint32_t)config->retry_max_ms;
+    if (in_state_ms(self, now_ms) < self->pause_ms && in_state_ms(self, now_ms) < longest_ms) {
+        return 0;
+    }
+    self->pause_ms = self->pause_ms < longest_ms / 2 ? self->pause_ms * 2 : longest_ms;
+    begin_attempt(self, now_ms);
+    return 0;
+}
+
+static unsigned quiet_timer(argus_session_t *self, uint32_t now_ms, uint32_t wait_ms) {
+    if (in_state_ms(self, now_ms) >= wait_ms) {
+        argus_parser_flush(&self->parser);
+        send_sync(self, now_ms, ARCOS_SYNC_SYNC0);
+    }
+    return 0;
+}
+
+static unsigned opening_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    const uint32_t waited_ms = in_state_ms(self, now_ms);
+    if (elapsed_ms(now_ms, self->heard_ms) >= (uint32_t)config->link_lost_ms) {
+        return fail(self, now_ms);
+    }
+    if (!self->has_robot && waited_ms < CONFIG_WAIT_MS &&
+        elapsed_ms(now_ms, self->tried_ms) >= CONFIG_REPEAT_MS) {
+        ask_config(self, now_ms);
+    }
+    pulse(self, config, now_ms);
+    return finish_opening(self, config, now_ms);
+}
+
+static unsigned open_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    const uint32_t silent_ms = elapsed_ms(now_ms, self->heard_ms);
+    if (silent_ms >= (uint32_t)config->link_lost_ms) {
+        self->gap_ms = silent_ms;
+        return lose(self, now_ms);
+    }
+    if (silent_ms >= (uint32_t)config->link_stall_ms && !self->stalled) {
+        self->stalled = true;
+        self->gap_ms = silent_ms;
+        return ARGUS_SESSION_DID_STALL;
+    }
+    pulse(self, config, now_ms);
+    return 0;
+}
+
+static unsigned leaving_timer(argus_session_t *self, uint32_t now_ms) {
+    const uint32_t waited_ms = in_state_ms(self, now_ms);
+    const bool drained = self->outbox.length == 0 && elapsed_ms(now_ms, self->spoke_ms) >= LEAVE_MS;
+    if (waited_ms >= LEAVE_MAX_MS || (drained && waited_ms >= LEAVE_MS)) {
+        argus_outbox_clear(&self->outbox);
+        enter(self, now_ms, ARGUS_SESSION_CLOSED);
+    }
+    return 0;
+}
+
+static unsigned say_closed(argus_session_t *self) {
+    if (self->state != ARGUS_SESSION_CLOSED || self->closed_said) {
+        return 0;
+    }
+    self->closed_said = true;
+    return ARGUS_SESSION_DID_CLOSE;
+}
+
+static bool is_syncing(const argus_session_t *self) {
+    return self->state >= ARGUS_SESSION_SYNC0 && self->state <= ARGUS_SESSION_SYNC2;
+}
+
+static unsigned run_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    if (is_syncing(self)) {
+        return in_state_ms(self, now_ms) >= STEP_MS ? fail(self, now_ms) : 0;
+    }
+    switch (self->state) {
+    case ARGUS_SESSION_PAUSE:
+        return pause_timer(self, config, now_ms);
+    case ARGUS_SESSION_LISTEN:
+        return quiet_timer(self, now_ms, LISTEN_MS);
+    case ARGUS_SESSION_DISLODGE:
+        return quiet_timer(self, now_ms, FLUSH_MS);
+    case ARGUS_SESSION_OPENING:
+        return opening_timer(self, config, now_ms);
+    case ARGUS_SESSION_OPEN:
+        return open_timer(self, config, now_ms);
+    case ARGUS_SESSION_LEAVING:
+        return leaving_timer(self, now_ms);
+    default:
+        return 0;
+    }
+}
+
+unsigned argus_session_process(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    const unsigned bits = drain(self, config, now_ms);
+    return bits != 0 ? bits : run_timer(self, config, now_ms) | say_closed(self);
+}
+
+void argus_session_leave(argus_session_t *self, uint32_t now_ms) {
+    if (self->state == ARGUS_SESSION_LEAVING || self->state == ARGUS_SESSION_CLOSED) {
+        return;
+    }
+    if (self->state != ARGUS_SESSION_DISLODGE) { // that one's CLOSE must still go out
+        argus_outbox_clear(&self->outbox);
+    }
+    if (self->state == ARGUS_SESSION_OPENING || self->state == ARGUS_SESSION_OPEN) {
+        argus_outbox_int(&self->outbox, ARCOS_CMD_SONAR, 0);
+        argus_outbox_plain(&self->outbox, ARCOS_CMD_STOP);
+        argus_outbox_int(&self->outbox, ARCOS_CMD_ENABLE, 0);
+        argus_outbox_plain(&self->outbox, ARCOS_CMD_CLOSE);
+    }
+    enter(self, now_ms, self->outbox.length > 0 ? ARGUS_SESSION_LEAVING : ARGUS_SESSION_CLOSED);
+}
+
+static bool is_mute(const argus_session_t *self) {
+    return is_deaf(self) || self->state == ARGUS_SESSION_PAUSE || self->state == ARGUS_SESSION_LISTEN;
+}
+
+size_t argus_session_transmit(argus_session_t *self, uint32_t now_ms, uint8_t *packet, size_t capacity) {
+    if (is_mute(self)) {
+        argus_outbox_clear(&self->outbox);
+        return 0;
+    }
+    const size_t length = argus_outbox_fetch(&self->outbox, packet, capacity);
+    if (length > 0) {
+        self->spoke_ms = now_ms;
+    }
+    return length;
+}
+
+bool argus_session_is_open(const argus_session_t *self) {
+    return self->state == ARGUS_SESSION_OPEN;
+}
+
+static bool subclass_is(const argus_session_t *self, const char *name, size_t size) {
+    char lower[ARGUS_NAME_MAX];
+    memcpy(lower, self->subclass, sizeof lower);
+    for (size_t i = 0; i < sizeof lower; i++) {
+        if (lower[i] >= 'A' && lower[i] <= 'Z') {
+            lower[i] = (char)(lower[i] + ('a' - 'A'));
+        }
+    }
+    return memcmp(lower, name, size) == 0;
+}
+
+bool argus_session_knows_subclass(const argus_session_t *self) {
+    static const char known[] = "p3dx-sh";
+    return subclass_is(self, known, sizeof known);
+}
+
+int32_t argus_session_distance_um(const argus_session_t *self) {
+    static const char older[] = "p3dx";
+    return subclass_is(self, older, sizeof older) ? 485 : 1000;
+}

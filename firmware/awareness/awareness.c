@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// Looks at every SIP for what calls for a STOP, and counts the disparities that make a suspect.
+#include "argus/awareness.h"
+
+#include <string.h>
+
+#include "argus/angle.h"
+
+#define MOVING_MM_S 5
+
+void argus_awareness_init(argus_awareness_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+void argus_awareness_restart(argus_awareness_t *const self) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        self->of[i].in_a_row = 0;
+    }
+    self->verified = 0;
+}
+
+void argus_awareness_moved(argus_awareness_t *const self) {
+    self->verified = 0;
+}
+
+void argus_awareness_cleared(argus_awareness_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    argus_disparate_t *const d = &self->of[sonar];
+    d->held = true;
+    d->held_odometer_mm = knowledge->odometer_mm;
+    d->held_heading_cdeg = knowledge->pose.heading_cdeg;
+    d->held_difference_mm = d->difference_mm;
+    d->in_a_row = 0;
+    self->verified |= (uint16_t)(1u << sonar);
+}
+
+// While the robot rotates the ring's readings belong to different headings: no verdict then.
+static void count_disparity(argus_awareness_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    argus_disparate_t *const d = &self->of[sonar];
+    int32_t difference = 0;
+    const argus_verdict_t verdict =
+        knowledge->rotating ? ARGUS_NO_VERDICT : argus_disparity(knowledge, sonar, &difference);
+    if (verdict != ARGUS_DISPARATE) {
+        d->in_a_row = 0;
+        return;
+    }
+    d->difference_mm = difference;
+    d->in_a_row = (uint8_t)argus_min(d->in_a_row + 1, UINT8_MAX);
+}
+
+static bool looks_along_motion(const argus_knowledge_t *const knowledge, const int sonar) {
+    const int32_t speed = (knowledge->vel_left_mm_s + knowledge->vel_right_mm_s) / 2;
+    const unsigned ahead = speed > MOVING_MM_S ? ARGUS_FORWARD_MASK : 0u;
+    const unsigned behind = speed < -MOVING_MM_S ? ARGUS_REAR_MASK : 0u;
+    return ((ahead | behind) >> sonar & 1u) != 0;
+}
+
+static void see_object(argus_alarm_t *const alarm, const int sonar, const uint16_t reading_mm) {
+    alarm->object |= (uint16_t)(1u << sonar);
+    if (alarm->object_sonar == -1 || reading_mm < alarm->object_mm) {
+        alarm->object_sonar = (int8_t)sonar;
+        alarm->object_mm = reading_mm;
+    }
+}
+
+static void judge_fresh(argus_alarm_t *const alarm, const argus_knowledge_t *const knowledge,
+                        const argus_config_t *const config, const int sonar) {
+    const argus_sonar_t *const s = &knowledge->sonar[sonar];
+    const bool forward = (ARGUS_FORWARD_MASK >> sonar & 1u) != 0;
+    if (s->health == ARGUS_DISABLED) {
+        return;
+    }
+    if (forward && s->reading_mm >= ARGUS_DEAD_MM) {
+        alarm->dead |= (uint16_t)(1u << sonar);
+    }
+    if (s->reading_mm <= config->object_range_mm && looks_along_motion(knowledge, sonar)) {
+        see_object(alarm, sonar, s->reading_mm);
+    }
+}
+
+// Counted from the opening of the session for a sonar that has not reported at all.
+static bool is_silent(const argus_knowledge_t *const knowledge, const argus_config_t *const config, const int sonar) {
+    const argus_sonar_t *const s = &knowledge->sonar[sonar];
+    const uint32_t since = s->reported ? s->heard_ms : knowledge->online_ms;
+    const bool sonars_on = (knowledge->flags & ARCOS_FLAG_SONAR1) != 0;
+    return s->health != ARGUS_DISABLED && sonars_on && knowledge->sip_ms - since > (uint32_t)config->stale_ms;
+}
+
+argus_alarm_t argus_awareness_sip(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
+                                  const argus_config_t *const config) {
+    argus_alarm_t alarm = {.object_sonar = -1};
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const bool forward = (ARGUS_FORWARD_MASK >> i & 1u) != 0;
+        if ((knowledge->fresh >> i & 1u) != 0) {
+            judge_fresh(&alarm, knowledge, config, i);
+            if (forward) {
+                count_disparity(self, knowledge, i);
+            }
+        }
+        if (forward && is_silent(knowledge, config, i)) {
+            alarm.silent |= (uint16_t)(1u << i);
+        }
+    }
+    alarm.bumper = (knowledge->bumpers_front | knowledge->bumpers_rear) != 0;
+    alarm.stall = knowledge->stall_left || knowledge->stall_right;
+    return alarm;
+}
+
+// The hold-off ends after a way, a turn, or a clear change of the disparity.
+static bool hold_ends(const argus_disparate_t *const d, const argus_knowledge_t *const knowledge,
+                      const argus_config_t *const config, const int sonar) {
+    const int32_t tr = argus_tolerance_mm(knowledge->sonar[sonar].reading_mm);
+    return knowledge->odometer_mm - d->held_odometer_mm >= (uint32_t)config->holdoff_mm ||
+           argus_angle_abs_diff(knowledge->pose.heading_cdeg, d->held_heading_cdeg) >= config->holdoff_deg * 100 ||
+           argus_abs(d->difference_mm - d->held_difference_mm) > 2 * tr;
+}
+
+static bool is_suspect(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
+                       const argus_config_t *const config, const int sonar) {
+    argus_disparate_t *const d = &self->of[sonar];
+    if (knowledge->sonar[sonar].health == ARGUS_DISABLED || d->in_a_row < config->suspect_readings) {
+        return false;
+    }
+    if (d->held && hold_ends(d, knowledge, config, sonar)) {
+        d->held = false;
+    }
+    return !d->held && (self->verified >> sonar & 1u) == 0;
+}
+
+uint16_t argus_suspects(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
+                        const argus_config_t *const config) {
+    unsigned mask = 0;
+    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
+        mask |= is_suspect(self, knowledge, config, i) ? 1u << i : 0u;
+    }
+    return (uint16_t)mask;
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Integer trigonometry in hundredths of a degree and millimetres.
+#ifndef ARGUS_ANGLE_H
+#define ARGUS_ANGLE_H
+
+#include <stdint.h>
+
+#define ARGUS_TRIG_ONE 16384 // argus_sin() and argus_cos() are scaled by this
+
+// Any angle reduced to -18000 < a <= 18000.
+int32_t argus_angle_wrap(int32_t cdeg);
+int32_t argus_angle_abs_diff(int32_t a_cdeg, int32_t b_cdeg);
+
+// Error at most 4 / 16384. Any angle.
+int32_t argus_sin(int32_t cdeg);
+int32_t argus_cos(int32_t cdeg);
+
+// Direction of (x, y), |x|, |y| <= 1,000,000; error at most 6 cdeg; 0 for the origin.
+int32_t argus_atan2(int32_t y, int32_t x);
+
+// Floor of the square root.
+uint32_t argus_sqrt(uint32_t value);
+
+// Length of (x, y), |x|, |y| <= 40,000.
+int32_t argus_hypot(int32_t x, int32_t y);
+
+int32_t argus_abs(int32_t value);
+int32_t argus_min(int32_t a, int32_t b);
+int32_t argus_max(int32_t a, int32_t b);
+
+#endif

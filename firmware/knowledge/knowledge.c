@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+// Turns SIPs into readings with their age, a pose that survives the robot's own wraps and resets, and the robot's state.
+#include "argus/knowledge.h"
+
+#include <string.h>
+
+#include "argus/angle.h"
+
+#define REST_MM_S 5
+#define ROTATING_MM_S 10  // wheel speed difference beyond which a reading is smeared by rotation
+#define LISTS_ALL_COUNT 7 // of one array in one SIP: the firing schedule lists at most 3 at its default pace
+#define LISTS_ALL_WAIT_MS 460
+#define JUMP_MM 3000 // farther than the robot drives before its watchdog stops it: its odometry was reset
+#define TURN_UNITS 4096
+
+void argus_knowledge_init(argus_knowledge_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+void argus_knowledge_reopen(argus_knowledge_t *const self, const uint32_t now_ms) {
+    self->has_raw = false;
+    self->still_sips = 0;
+    self->lists_all = false;
+    self->fresh = 0;
+    self->online_ms = now_ms;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        self->sonar[i].reported = false;
+    }
+}
+
+// The raw position counts in 15 or 16 bits: the low 15 are right in both.
+static int32_t raw_delta(const uint16_t now, const uint16_t before) {
+    const int32_t delta = (int32_t)((uint32_t)(now - before) & 0x7FFFu);
+    return delta > 0x3FFF ? delta - 0x8000 : delta;
+}
+
+static int32_t raw_heading_cdeg(const argus_sip_t *const sip) {
+    return argus_angle_wrap((int32_t)sip->heading_raw * 36000 / TURN_UNITS);
+}
+
+static void take_origin(argus_knowledge_t *const self, const argus_sip_t *const sip) {
+    self->heading_offset_cdeg = argus_angle_wrap(self->pose.heading_cdeg - raw_heading_cdeg(sip));
+    self->has_raw = true;
+}
+
+static int32_t carry_mm(int32_t *const rest_um, const int32_t more_um) {
+    const int32_t sum = *rest_um + more_um;
+    const int32_t whole = sum / 1000;
+    *rest_um = sum - whole * 1000;
+    return whole;
+}
+
+// Rotates a displacement of the robot's odometry frame into the course frame.
+static void advance_pose(argus_knowledge_t *const self, const int32_t dx_um, const int32_t dy_um) {
+    const int64_t c = argus_cos(self->heading_offset_cdeg);
+    const int64_t s = argus_sin(self->heading_offset_cdeg);
+    self->pose.x_mm += carry_mm(&self->x_um, (int32_t)((dx_um * c - dy_um * s) / ARGUS_TRIG_ONE));
+    self->pose.y_mm += carry_mm(&self->y_um, (int32_t)((dx_um * s + dy_um * c) / ARGUS_TRIG_ONE));
+    const int32_t way_um = (int32_t)argus_hypot(dx_um / 16, dy_um / 16) * 16;
+    self->odometer_mm += (uint32_t)carry_mm(&self->odometer_um, way_um);
+}
+
+void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *const sip, const int32_t distance_um) {
+    const int32_t dx_um = raw_delta(sip->x_raw, self->x_raw) * distance_um;
+    const int32_t dy_um = raw_delta(sip->y_raw, self->y_raw) * distance_um;
+    const bool jumped = argus_abs(dx_um) > JUMP_MM * 1000 || argus_abs(dy_um) > JUMP_MM * 1000;
+    if (!self->has_raw || jumped) {
+        take_origin(self, sip);
+    } else {
+        advance_pose(self, dx_um, dy_um);
+        self->pose.heading_cdeg = argus_angle_wrap(raw_heading_cdeg(sip) + self->heading_offset_cdeg);
+    }
+    self->x_raw = sip->x_raw;
+    self->y_raw = sip->y_raw;
+}
+
+static void take_motion(argus_knowledge_t *const self, const argus_sip_t *const sip) {
+    self->vel_left_mm_s = sip->vel_left_mm_s;
+    self->vel_right_mm_s = sip->vel_right_mm_s;
+    const int32_t left = sip->vel_left_mm_s;
+    const int32_t right = sip->vel_right_mm_s;
+    self->rotating = argus_abs(left - right) > ROTATING_MM_S;
+    if (argus_abs(left) > REST_MM_S || argus_abs(right) > REST_MM_S) {
+        self->still_sips = 0;
+    } else if (self->still_sips < UINT16_MAX) {
+        self->still_sips++;
+    }
+}
+
+static void take_state(argus_knowledge_t *const self, const argus_sip_t *const sip) {
+    self->flags = sip->flags;
+    self->bumpers_front = sip->bumpers_front;
+    self->bumpers_rear = sip->bumpers_rear;
+    self->stall_left = sip->stall_left;
+    self->stall_right = sip->stall_right;
+    self->battery_dv = sip->has_battery_x10 ? (int16_t)sip->battery_x10_dv : (int16_t)sip->battery_dv;
+}
+
+static void take_reading(argus_knowledge_t *const self, const argus_sip_sonar_t *const from) {
+    argus_sonar_t *const sonar = &self->sonar[from->number];
+    sonar->reading_mm = from->range_mm;
+    sonar->reported = true;
+    sonar->steady = !self->rotating;
+    sonar->sip = self->sips;
+    sonar->heard_ms = self->sip_ms;
+    sonar->readings++;
+    self->fresh |= (uint16_t)(1u << from->number);
+}
+
+static void take_readings(argus_knowledge_t *const self, const argus_sip_t *const sip) {
+    int front = 0;
+    self->fresh = 0;
+    for (int i = 0; i < sip->sonar_count; i++) {
+        if (sip->sonar[i].number < ARGUS_SONARS) {
+            take_reading(self, &sip->sonar[i]);
+            front += sip->sonar[i].number < ARGUS_SONARS / 2;
+        }
+    }
+    if (front > 0) {
+        self->lists_all = front >= LISTS_ALL_COUNT;
+    }
+}
+
+void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const sip, const int32_t distance_um,
+                         const uint32_t now_ms) {
+    self->sips++;
+    self->sip_ms = now_ms;
+    argus_knowledge_odometry(self, sip, distance_um);
+    take_motion(self, sip);
+    take_state(self, sip);
+    take_readings(self, sip);
+}
+
+void argus_sonar_set_health(argus_sonar_t *const self, const argus_health_t health, const argus_fault_kind_t kind,
+                            const uint32_t now_ms) {
+    if (health == ARGUS_DISABLED && self->health != ARGUS_DISABLED && self->disabled_times < UINT16_MAX) {
+        self->disabled_times++;
+    }
+    self->health = health;
+    self->kind = kind;
+    self->since_ms = now_ms;
+}
+
+uint16_t argus_with_health(const argus_knowledge_t *const self, const argus_health_t health) {
+    unsigned mask = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        mask |= self->sonar[i].health == health ? 1u << i : 0u;
+    }
+    return (uint16_t)mask;
+}
+
+uint16_t argus_disabled(const argus_knowledge_t *const self) {
+    return argus_with_health(self, ARGUS_DISABLED);
+}
+
+bool argus_usable(const argus_knowledge_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->sonar[sonar];
+    return s->reported && s->health != ARGUS_DISABLED && s->reading_mm < ARGUS_P3DX_SONAR_NO_ECHO_MM;
+}
+
+argus_mark_t argus_mark_now(const argus_knowledge_t *const self) {
+    const argus_mark_t mark = {.sip = self->sips, .from_ms = self->sip_ms + LISTS_ALL_WAIT_MS};
+    return mark;
+}
+
+bool argus_fresh_since(const argus_knowledge_t *const self, const int sonar, const argus_mark_t *const mark) {
+    const argus_sonar_t *const s = &self->sonar[sonar];
+    const bool later = s->reported && (int32_t)(s->sip - mark->sip) > 0;
+    return later && (!self->lists_all || (int32_t)(s->heard_ms - mark->from_ms) >= 0);
+}
+
+bool argus_all_fresh_since(const argus_knowledge_t *const self, const uint16_t sonars, const argus_mark_t *const mark) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if ((sonars >> i & 1u) != 0 && !argus_fresh_since(self, i, mark)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+uint32_t argus_age_ms(const argus_knowledge_t *const self, const int sonar, const uint32_t now_ms) {
+    return self->sonar[sonar].reported ? now_ms - self->sonar[sonar].heard_ms : UINT32_MAX;
+}
+
+bool argus_at_rest(const argus_knowledge_t *const self) {
+    return self->still_sips >= 2;
+}
+
+argus_point_t argus_echo_robot(const argus_knowledge_t *const self, const int sonar) {
+    const argus_sonar_pose_t *const at = &argus_sonar_pose[sonar];
+    const int32_t range = self->sonar[sonar].reading_mm;
+    const argus_point_t echo = {at->x_mm + range * argus_cos(at->heading_deg * 100) / ARGUS_TRIG_ONE,
+                                at->y_mm + range * argus_sin(at->heading_deg * 100) / ARGUS_TRIG_ONE};
+    return echo;
+}
+
+argus_point_t argus_to_course(const argus_pose_t *const pose, const argus_point_t robot) {
+    const int32_t c = argus_cos(pose->heading_cdeg);
+    const int32_t s = argus_sin(pose->heading_cdeg);
+    const argus_point_t point = {pose->x_mm + (robot.x_mm * c - robot.y_mm * s) / ARGUS_TRIG_ONE,
+                                 pose->y_mm + (robot.x_mm * s + robot.y_mm * c) / ARGUS_TRIG_ONE};
+    return point;
+}
+
+int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *const self, const uint16_t ignore) {
+    int32_t nearest = INT32_MAX;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (argus_usable(self, i) && (ignore >> i & 1u) == 0) {
+            const argus_point_t echo = argus_echo_robot(self, i);
+            nearest = argus_min(nearest, argus_hypot(echo.x_mm, echo.y_mm));
+        }
+    }
+    return nearest;
+}
+
+const char *argus_health_name(const argus_health_t health) {
+    static const char *const name[] = {"UNKNOWN", "HEALTHY", "SUSPECT", "DISABLED", "PROBATION", "STALE"};
+    return (unsigned)health < sizeof name / sizeof name[0] ? name[health] : "?";
+}
+
+const char *argus_kind_name(const argus_fault_kind_t kind) {
+    static const char *const name[] = {"", "off", "silent", "stuck", "wrong", "garbage", "slow", "intermittent"};
+    return (unsigned)kind < sizeof name / sizeof name[0] ? name[kind] : "?";
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// What the parts of the manager share: entering a mode, saying an event, commanding a motion under the invariants.
+#ifndef ARGUS_MANAGER_INTERNAL_H
+#define ARGUS_MANAGER_INTERNAL_H
+
+#include "argus/manager.h"
+
+// Events.
+void argus_say(argus_t *self, argus_event_id_t id, int sonar, int32_t value);
+
+// Transitions.
+void argus_enter(argus_t *self, argus_mode_t mode);
+void argus_enter_waiting(argus_t *self, argus_wait_t why);
+void argus_enter_checking(argus_t *self, bool full);
+void argus_enter_verifying(argus_t *self, uint16_t suspects);
+void argus_decide(argus_t *self); // a mode has ended well: what next?
+
+// Motion, each under its invariant.
+void argus_stop(argus_t *self, uint8_t command); // STOP or E_STOP, unless passive
+bool argus_turn(argus_t *self, int32_t heading_cdeg); // false: S7 forbids it, and the manager waits or backs away
+bool argus_swing_is_blocked(const argus_t *self);
+bool argus_may_translate(const argus_t *self);
+bool argus_rear_is_clear(const argus_t *self);
+void argus_back_off(argus_t *self, int32_t distance_mm);
+
+// Health.
+void argus_disable(argus_t *self, int sonar, argus_fault_kind_t kind);
+void argus_replan(argus_t *self);
+void argus_flag_suspects(argus_t *self, uint16_t suspects);
+
+// One SIP in the present mode.
+void argus_run_mode(argus_t *self);
+void argus_react(argus_t *self, const argus_alarm_t *alarm);
+void argus_wait_process(argus_t *self);
+
+#endif

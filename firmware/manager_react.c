@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+// What must happen in the SIP that shows it (S2), and the motions and judgements that all modes share.
+#include "argus/angle.h"
+#include "manager_internal.h"
+
+#define SWING_MM ARGUS_P3DX_BODY_SWING_RADIUS_MM
+#define BACKOFFS_MAX 3
+#define LOW_BATTERY_DV 115 // where CONFIGpac names none
+#define REAR_SONARS 0xFF00u
+
+static bool is_active(const argus_t *const self) {
+    return !self->passive && !self->shutdown;
+}
+
+void argus_stop(argus_t *const self, const uint8_t command) {
+    if (self->passive) {
+        argus_motion_hold(&self->motion, self->now_ms);
+        return;
+    }
+    argus_motion_stop(&self->motion, &self->session.outbox, self->now_ms);
+    if (command == ARCOS_CMD_E_STOP) {
+        argus_outbox_urgent(&self->session.outbox, ARCOS_CMD_E_STOP);
+    }
+    self->stops++;
+    argus_say(self, ARGUS_EV_STOPPED, ARGUS_NO_SONAR, self->knowledge.pose.heading_cdeg);
+}
+
+bool argus_may_translate(const argus_t *const self) {
+    const bool motors = (self->knowledge.flags & ARCOS_FLAG_MOTORS) != 0;
+    const bool healthy_link = argus_session_is_open(&self->session) && !self->stalled;
+    return is_active(self) && healthy_link && motors && self->checked && self->bumpers == 0;
+}
+
+bool argus_rear_is_clear(const argus_t *const self) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const argus_sonar_t *const s = &self->knowledge.sonar[i];
+        const bool counts = (REAR_SONARS >> i & 1u) != 0 && s->health != ARGUS_DISABLED;
+        if (counts && (!s->reported || s->reading_mm <= self->config.rear_clear_mm)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void argus_back_off(argus_t *const self, const int32_t distance_mm) {
+    if (!is_active(self) || !argus_rear_is_clear(self)) {
+        return;
+    }
+    argus_say(self, ARGUS_EV_BACKING, ARGUS_NO_SONAR, distance_mm);
+    argus_motion_move(&self->motion, &self->session.outbox, -distance_mm, self->config.step_speed_mm_s, self->now_ms);
+    argus_enter(self, ARGUS_MODE_BACKING);
+}
+
+bool argus_swing_is_blocked(const argus_t *const self) {
+    return argus_nearest_to_centre_mm(&self->knowledge, 0) <= SWING_MM;
+}
+
+// S7: no rotation while a bumper is pressed or an echo lies within the swing circle; a few times backing away may help.
+bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
+    const int32_t nearest = argus_nearest_to_centre_mm(&self->knowledge, 0);
+    if (is_active(self) && self->bumpers == 0 && nearest > SWING_MM) {
+        argus_motion_turn(&self->motion, &self->session.outbox, &self->knowledge, heading_cdeg, self->now_ms);
+        return true;
+    }
+    argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, nearest == INT32_MAX ? 0 : nearest);
+    if (self->bumpers == 0 && self->backed < BACKOFFS_MAX && argus_rear_is_clear(self) && is_active(self)) {
+        self->backed++;
+        argus_back_off(self, self->config.backoff_mm);
+    } else {
+        argus_enter_waiting(self, ARGUS_WAIT_TURN);
+    }
+    return false;
+}
+
+void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+    argus_sonar_set_health(&self->knowledge.sonar[sonar], ARGUS_DISABLED, kind, self->now_ms);
+    argus_task_forget(&self->task, sonar);
+    argus_task_restart(&self->task);
+    argus_replan(self);
+    argus_say(self, ARGUS_EV_SONAR_DISABLED, sonar, (int32_t)kind);
+}
+
+// In failure mode the slots of the sonars that are out go to those that look ahead; 0 and 7 watch the swing circle.
+static void share_slots(argus_t *const self) {
+    uint8_t order[2 * (ARGUS_FORWARD_LAST + 1)];
+    size_t count = 0;
+    for (int half = 0; half < 2; half++) {
+        for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
+            if (self->knowledge.sonar[i].health != ARGUS_DISABLED) {
+                order[count++] = (uint8_t)(i + 1);
+            }
+        }
+        order[count++] = half == 0 ? 1 : ARGUS_FORWARD_LAST + 2;
+    }
+    argus_outbox_string(&self->session.outbox, ARCOS_CMD_POLLING, order, count);
+}
+
+static void say_plan(argus_t *const self) {
+    argus_say(self, ARGUS_EV_PLAN, ARGUS_NO_SONAR, self->plan.count);
+    for (int i = 0; i < self->plan.count; i++) {
+        argus_say(self, ARGUS_EV_PLAN_ROTATION, ARGUS_NO_SONAR, self->plan.rotation_deg[i]);
+    }
+}
+
+// A suspect that no witness can judge is planned for as if it were disabled: its bearing counts as uncovered.
+void argus_replan(argus_t *const self) {
+    const uint16_t disabled = argus_disabled(&self->knowledge) & ARGUS_FORWARD_MASK;
+    const uint16_t blind = disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) & ARGUS_FORWARD_MASK);
+    const argus_failure_t failure = argus_failure_of(disabled);
+    if (failure != self->failure) {
+        self->failure = failure;
+        argus_say(self, ARGUS_EV_FAILURE_STATE, ARGUS_NO_SONAR, argus_count_bits(disabled));
+    }
+    if (blind == self->plan.disabled) {
+        return;
+    }
+    self->plan = argus_plan((argus_policy_t)self->config.policy, blind);
+    say_plan(self);
+    if (is_active(self)) {
+        share_slots(self);
+    }
+}
+
+void argus_flag_suspects(argus_t *const self, const uint16_t suspects) {
+    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
+        argus_sonar_t *const s = &self->knowledge.sonar[i];
+        if ((suspects >> i & 1u) != 0 && s->health != ARGUS_SUSPECT) {
+            argus_sonar_set_health(s, ARGUS_SUSPECT, ARGUS_KIND_NONE, self->now_ms);
+            argus_say(self, ARGUS_EV_SONAR_SUSPECT, i, self->awareness.of[i].difference_mm);
+        }
+    }
+}
+
+// New contact only: bits already answered are let be until they clear.
+static bool react_bumper(argus_t *const self) {
+    const uint16_t pressed = (uint16_t)(self->knowledge.bumpers_front << 8 | self->knowledge.bumpers_rear);
+    const bool fresh = (pressed & ~(unsigned)self->bumpers) != 0;
+    if (pressed == 0 && self->bumpers != 0) {
+        argus_say(self, ARGUS_EV_BUMPER_CLEAR, ARGUS_NO_SONAR, 0);
+    }
+    self->bumpers = pressed;
+    if (!fresh) {
+        return false;
+    }
+    argus_say(self, ARGUS_EV_BUMPER, ARGUS_NO_SONAR, pressed);
+    argus_task_bumped(&self->task, &self->knowledge, self->now_ms);
+    argus_task_refuse(&self->task, &self->knowledge);
+    argus_stop(self, ARCOS_CMD_E_STOP);
+    self->checked = false;
+    argus_enter_waiting(self, ARGUS_WAIT_BUMPER);
+    return true;
+}
+
+static bool react_stall(argus_t *const self, const argus_alarm_t *const alarm) {
+    if (!alarm->stall || self->bumpers != 0) {
+        self->stall_said = alarm->stall;
+        return false;
+    }
+    if (self->stall_said) {
+        return false;
+    }
+    self->stall_said = true;
+    argus_say(self, ARGUS_EV_STALL, ARGUS_NO_SONAR, self->knowledge.stall_left + 2 * self->knowledge.stall_right);
+    argus_task_refuse(&self->task, &self->knowledge);
+    argus_stop(self, ARCOS_CMD_STOP);
+    self->checked = false;
+    argus_enter_waiting(self, ARGUS_WAIT_BUMPER);
+    return true;
+}
+
+static bool react_dead(argus_t *const self, const argus_alarm_t *const alarm) {
+    const uint16_t lost = alarm->dead | alarm->silent;
+    if (lost == 0) {
+        return false;
+    }
+    argus_stop(self, ARCOS_CMD_STOP);
+    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
+        if ((alarm->dead >> i & 1u) != 0) {
+            argus_say(self, ARGUS_EV_SONAR_DEAD, i, self->knowledge.sonar[i].reading_mm);
+            argus_disable(self, i, ARGUS_KIND_OFF);
+        } else if ((alarm->silent >> i & 1u) != 0) {
+            const uint32_t age = argus_age_ms(&self->knowledge, i, self->now_ms);
+            argus_say(self, ARGUS_EV_SONAR_SILENT, i, (int32_t)(age & 0x7FFFFFFFu));
+            argus_disable(self, i, ARGUS_KIND_SILENT);
+        }
+    }
+    if (self->mode != ARGUS_MODE_WAITING && self->mode != ARGUS_MODE_CLOSING) {
+        argus_enter_checking(self, false);
+    }
+    return true;
+}
+
+// An object is looked at again at rest, with Algorithm 1, before it is believed: a sonar that lies low is found there.
+static bool react_object(argus_t *const self, const argus_alarm_t *const alarm) {
+    const bool translating =
+        self->mode == ARGUS_MODE_DRIVING || self->mode == ARGUS_MODE_STEPPING || self->mode == ARGUS_MODE_BACKING;
+    if (alarm->object == 0 || !translating || self->motion.kind == ARGUS_MOTION_STOP) {
+        return false;
+    }
+    argus_say(self, ARGUS_EV_OBJECT, alarm->object_sonar, alarm->object_mm);
+    argus_stop(self, ARCOS_CMD_STOP);
+    if (self->mode != ARGUS_MODE_BACKING) {
+        argus_task_refuse(&self->task, &self->knowledge);
+    }
+    self->jog_mm = 0;
+    argus_enter_checking(self, true);
+    return true;
+}
+
+// The motors may be cut by the robot's own button or E-stop at any time; a bumper's own stop is answered elsewhere.
+static void react_motors(argus_t *const self) {
+    const bool off = (self->knowledge.flags & ARCOS_FLAG_MOTORS) == 0;
+    const bool settled_in = self->now_ms - self->knowledge.online_ms > 1500u;
+    const bool busy = self->mode == ARGUS_MODE_CLOSING || self->wait == ARGUS_WAIT_BUMPER;
+    if (!is_active(self) || busy || off == self->motors_said || (off && !settled_in)) {
+        return;
+    }
+    self->motors_said = off;
+    argus_say(self, off ? ARGUS_EV_MOTORS_OFF : ARGUS_EV_MOTORS_ON, ARGUS_NO_SONAR, self->knowledge.flags);
+    argus_stop(self, ARCOS_CMD_STOP);
+    self->checked = false;
+    if (off) {
+        argus_enter_waiting(self, ARGUS_WAIT_MOTORS);
+    } else {
+        argus_enter_checking(self, true);
+    }
+}
+
+static void react_battery(argus_t *const self) {
+    const argus_session_t *const session = &self->session;
+    const int32_t stated = session->has_robot ? session->robot.low_battery_dv : 0;
+    const int32_t low = stated > 0 ? stated : LOW_BATTERY_DV;
+    const int32_t now = self->knowledge.battery_dv;
+    const bool is_low = now > 0 && now <= low;
+    if (is_low && !self->battery_said) {
+        argus_say(self, ARGUS_EV_BATTERY_LOW, ARGUS_NO_SONAR, now);
+    }
+    self->battery_said = is_low || (self->battery_said && now <= low + 2); // 0.2 V of hysteresis
+}
+
+void argus_react(argus_t *const self, const argus_alarm_t *const alarm) {
+    if (self->mode == ARGUS_MODE_CLOSING || self->mode == ARGUS_MODE_OFFLINE) {
+        return;
+    }
+    if (react_bumper(self) || react_stall(self, alarm)) {
+        return;
+    }
+    react_battery(self);
+    react_motors(self);
+    if (!react_dead(self, alarm)) {
+        react_object(self, alarm);
+    }
+}

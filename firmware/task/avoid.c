@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+// Obstacle avoidance: remembers echoes and takes the free corridor that is nearest to the way to the waypoint.
+#include <string.h>
+
+#include "argus/angle.h"
+#include "argus/task.h"
+
+#define REMEMBER_BELOW_MM 2000 // beyond it a beam is too wide to say where the echo lies
+#define SAME_PLACE_MM 80
+#define FORGET_MS 60000u
+#define WIDE_HALF_MM 385   // room to turn on the spot anywhere along it (swing radius 370)
+#define NARROW_HALF_MM 305 // half the body (213), and room for the beam's width: where there is no wide way
+#define ESCAPE_HALF_MM 260 // straight ahead, out of a place too narrow to turn in
+#define CORRIDOR_MM 650      // free length wanted ahead
+#define BEHIND_MM 100        // an echo this far ahead of the centre is beside the robot already
+#define LEG_MM 300           // way along a detour before choosing again
+#define STEP_CDEG 1000
+#define STEPS 14             // detours up to 140 degrees off the waypoint's bearing
+#define OTHER_SIDE_STEPS 6   // a detour prefers the side it began on by so much
+#define REFUSED_CDEG 1500
+#define MOVED_ON_MM 150
+#define BUMPER_AHEAD_MM 240
+
+static bool same_place(const argus_seen_t *const seen, const argus_point_t *const at) {
+    return argus_abs(seen->x_mm - at->x_mm) < SAME_PLACE_MM && argus_abs(seen->y_mm - at->y_mm) < SAME_PLACE_MM;
+}
+
+// The slot that holds this place already, else a free one, else the oldest.
+static argus_seen_t *slot_for(argus_task_t *const self, const argus_point_t *const at) {
+    for (uint16_t i = 0; i < self->seen_count; i++) {
+        if (same_place(&self->seen[i], at)) {
+            return &self->seen[i];
+        }
+    }
+    if (self->seen_count < ARGUS_POINTS_MAX) {
+        return &self->seen[self->seen_count++];
+    }
+    self->seen_next = (uint16_t)((self->seen_next + 1) % ARGUS_POINTS_MAX);
+    return &self->seen[self->seen_next];
+}
+
+static void remember(argus_task_t *const self, const argus_point_t at, const uint8_t sonar, const uint32_t now_ms) {
+    if (argus_abs(at.x_mm) > INT16_MAX || argus_abs(at.y_mm) > INT16_MAX) {
+        return;
+    }
+    argus_seen_t *const slot = slot_for(self, &at);
+    slot->x_mm = (int16_t)at.x_mm;
+    slot->y_mm = (int16_t)at.y_mm;
+    slot->sonar = sonar;
+    slot->seen_ms = now_ms;
+}
+
+void argus_task_see(argus_task_t *const self, const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const bool fresh = (knowledge->fresh >> i & 1u) != 0;
+        if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT && !knowledge->rotating &&
+            knowledge->sonar[i].reading_mm < REMEMBER_BELOW_MM) {
+            remember(self, argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, i)), (uint8_t)i, now_ms);
+        }
+    }
+}
+
+void argus_task_forget(argus_task_t *const self, const int sonar) {
+    uint16_t kept = 0;
+    for (uint16_t i = 0; i < self->seen_count; i++) {
+        if (self->seen[i].sonar != sonar) {
+            self->seen[kept++] = self->seen[i];
+        }
+    }
+    self->seen_count = kept;
+    self->seen_next = 0;
+}
+
+// The front segments lie across the bow, bit 1 leftmost; what they touched is remembered as if it had been seen.
+void argus_task_bumped(argus_task_t *const self, const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
+    for (int segment = 1; segment <= 5; segment++) {
+        if ((knowledge->bumpers_front >> segment & 1u) != 0) {
+            const argus_point_t touched = {BUMPER_AHEAD_MM, (3 - segment) * 85};
+            remember(self, argus_to_course(&knowledge->pose, touched), UINT8_MAX, now_ms);
+        }
+    }
+}
+
+int32_t argus_task_clear_mm(const argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                            const int32_t heading_cdeg, const int32_t half_mm) {
+    const int32_t c = argus_cos(heading_cdeg);
+    const int32_t s = argus_sin(heading_cdeg);
+    int32_t clear = INT32_MAX;
+    for (uint16_t i = 0; i < self->seen_count; i++) {
+        const int32_t dx = argus_max(-32000, argus_min(32000, self->seen[i].x_mm - knowledge->pose.x_mm));
+        const int32_t dy = argus_max(-32000, argus_min(32000, self->seen[i].y_mm - knowledge->pose.y_mm));
+        const int32_t ahead = (dx * c + dy * s) / ARGUS_TRIG_ONE;
+        const int32_t beside = (dy * c - dx * s) / ARGUS_TRIG_ONE;
+        const bool recent = knowledge->sip_ms - self->seen[i].seen_ms <= FORGET_MS;
+        if (recent && ahead > BEHIND_MM && argus_abs(beside) < half_mm) {
+            clear = argus_min(clear, ahead);
+        }
+    }
+    return clear;
+}
+
+void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
+    self->has_leg = false;
+    self->avoiding = true;
+    self->refused_at.x_mm = knowledge->pose.x_mm;
+    self->refused_at.y_mm = knowledge->pose.y_mm;
+    if (self->refused < sizeof self->refused_cdeg / sizeof self->refused_cdeg[0]) {
+        self->refused_cdeg[self->refused++] = knowledge->pose.heading_cdeg;
+    }
+}
+
+static void forgive_when_moved(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
+    const int32_t moved = argus_hypot(knowledge->pose.x_mm - self->refused_at.x_mm, knowledge->pose.y_mm - self->refused_at.y_mm);
+    if (moved >= MOVED_ON_MM) {
+        self->refused = 0;
+    }
+}
+
+static bool is_refused(const argus_task_t *const self, const int32_t heading_cdeg) {
+    for (uint8_t i = 0; i < self->refused; i++) {
+        if (argus_angle_abs_diff(self->refused_cdeg[i], heading_cdeg) < REFUSED_CDEG) {
+            return true;
+        }
+    }
+    return false;
+}
+
+typedef struct {
+    int32_t half_mm;
+    int32_t length_mm;
+} corridor_t;
+
+static bool is_free(const argus_task_t *const self, const argus_knowledge_t *const knowledge, const int32_t heading_cdeg,
+                    const corridor_t *const wanted) {
+    return !is_refused(self, heading_cdeg) &&
+           argus_task_clear_mm(self, knowledge, heading_cdeg, wanted->half_mm) >= wanted->length_mm;
+}
+
+// Detours in order of preference: nearest to the bearing first; the side not chosen at the start pays OTHER_SIDE_STEPS.
+static bool find_detour(argus_task_t *const self, const argus_knowledge_t *const knowledge, const int32_t half_mm,
+                        const int32_t bearing_cdeg, int32_t *const heading_cdeg) {
+    const corridor_t wanted = {half_mm, CORRIDOR_MM};
+    const int8_t first = self->side != 0 ? self->side : 1;
+    for (int step = 1; step <= STEPS + OTHER_SIDE_STEPS; step++) {
+        for (int turn = 0; turn < 2; turn++) {
+            const int8_t side = turn == 0 ? first : (int8_t)-first;
+            const int size = turn == 1 && self->side != 0 ? step - OTHER_SIDE_STEPS : step;
+            const int32_t heading = argus_angle_wrap(bearing_cdeg + side * size * STEP_CDEG);
+            if (size >= 1 && size <= STEPS && is_free(self, knowledge, heading, &wanted)) {
+                self->side = self->side == 0 ? side : self->side;
+                *heading_cdeg = heading;
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static void lead_to(argus_task_t *const self, const argus_point_t to) {
+    self->leg = to;
+    self->has_leg = true;
+}
+
+static void lead_ahead(argus_task_t *const self, const argus_knowledge_t *const knowledge, const int32_t heading_cdeg) {
+    const argus_point_t ahead = {LEG_MM, 0};
+    const argus_pose_t turned = {knowledge->pose.x_mm, knowledge->pose.y_mm, heading_cdeg};
+    lead_to(self, argus_to_course(&turned, ahead));
+}
+
+// The waypoint itself when the corridor to it is free, else the best detour of that width.
+static bool choose_corridor(argus_task_t *const self, const argus_knowledge_t *const knowledge, const int32_t half_mm) {
+    lead_to(self, self->waypoint[self->next]);
+    const int32_t bearing = argus_task_bearing_cdeg(self, knowledge);
+    const corridor_t direct = {half_mm, argus_min(CORRIDOR_MM, argus_task_leg_mm(self, knowledge) + half_mm)};
+    if (!self->avoiding || is_free(self, knowledge, bearing, &direct)) {
+        self->avoiding = false;
+        self->side = 0;
+        return true;
+    }
+    int32_t heading = 0;
+    if (!find_detour(self, knowledge, half_mm, bearing, &heading)) {
+        return false;
+    }
+    lead_ahead(self, knowledge, heading);
+    return true;
+}
+
+bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
+    if (self->next >= self->count) {
+        return false;
+    }
+    forgive_when_moved(self, knowledge);
+    if (choose_corridor(self, knowledge, WIDE_HALF_MM) || choose_corridor(self, knowledge, NARROW_HALF_MM)) {
+        return true;
+    }
+    self->has_leg = false;
+    self->side = 0;
+    return false;
+}
+
+bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
+    const int32_t heading = knowledge->pose.heading_cdeg;
+    const corridor_t wanted = {ESCAPE_HALF_MM, CORRIDOR_MM};
+    if (self->next >= self->count || !is_free(self, knowledge, heading, &wanted)) {
+        return false;
+    }
+    self->avoiding = true;
+    lead_ahead(self, knowledge, heading);
+    return true;
+}

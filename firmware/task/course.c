@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// The course: waypoints in order, and how far the goal is.
+#include <string.h>
+
+#include "argus/angle.h"
+#include "argus/task.h"
+
+void argus_task_init(argus_task_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+static bool fits(const argus_point_t *const point) {
+    return argus_abs(point->x_mm) <= ARGUS_COURSE_LIMIT_MM && argus_abs(point->y_mm) <= ARGUS_COURSE_LIMIT_MM;
+}
+
+bool argus_task_set(argus_task_t *const self, const argus_point_t *const points, const uint16_t count) {
+    if (count == 0 || count > ARGUS_WAYPOINTS_MAX) {
+        return false;
+    }
+    for (uint16_t i = 0; i < count; i++) {
+        if (!fits(&points[i])) {
+            return false;
+        }
+    }
+    memcpy(self->waypoint, points, count * sizeof *points);
+    self->count = count;
+    self->next = 0;
+    argus_task_restart(self);
+    return true;
+}
+
+void argus_task_restart(argus_task_t *const self) {
+    self->has_leg = false;
+    self->avoiding = false;
+    self->side = 0;
+    self->refused = 0;
+}
+
+static int32_t distance_mm(const argus_knowledge_t *const knowledge, const argus_point_t *const to) {
+    return argus_hypot(to->x_mm - knowledge->pose.x_mm, to->y_mm - knowledge->pose.y_mm);
+}
+
+int32_t argus_task_goal_mm(const argus_task_t *const self, const argus_knowledge_t *const knowledge) {
+    return self->count == 0 ? 0 : distance_mm(knowledge, &self->waypoint[self->count - 1]);
+}
+
+bool argus_task_progress(argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                         const argus_config_t *const config, int *const passed) {
+    *passed = 0;
+    while (self->next < self->count) {
+        const bool last = self->next + 1 == self->count;
+        const int32_t radius = last ? config->goal_radius_mm : config->waypoint_radius_mm;
+        if (distance_mm(knowledge, &self->waypoint[self->next]) > radius) {
+            break;
+        }
+        self->next++;
+        (*passed)++;
+        argus_task_restart(self);
+    }
+    return self->count > 0 && self->next == self->count;
+}
+
+int32_t argus_task_bearing_cdeg(const argus_task_t *const self, const argus_knowledge_t *const knowledge) {
+    return argus_atan2(self->leg.y_mm - knowledge->pose.y_mm, self->leg.x_mm - knowledge->pose.x_mm);
+}
+
+int32_t argus_task_leg_mm(const argus_task_t *const self, const argus_knowledge_t *const knowledge) {
+    return distance_mm(knowledge, &self->leg);
+}

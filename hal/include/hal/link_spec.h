@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// The text form of a link: serial:PATH[@BAUD] or tcp:HOST[:PORT].
+#ifndef HAL_LINK_SPEC_H
+#define HAL_LINK_SPEC_H
+
+#include <stdbool.h>
+
+#include "hal/serial.h"
+#include "hal/tcp.h"
+
+typedef enum { HAL_SCHEME_SERIAL, HAL_SCHEME_TCP } hal_scheme_t;
+
+typedef struct {
+    hal_scheme_t scheme;
+    bool has_baud; // the rate was given, not defaulted
+    uint32_t baud;
+    uint16_t port;
+    char path[HAL_PATH_MAX];
+    char host[HAL_HOST_MAX];
+} hal_link_spec_t;
+
+// Reads a spec. False: `message` says on one line what is wrong and what to write instead; `spec` is
+// unspecified. IPv6 addresses go in brackets: tcp:[::1]:8101.
+bool hal_link_spec_parse(hal_link_spec_t *spec, const char *text, char *message, size_t capacity);
+
+// Room for either transport.
+typedef struct {
+    hal_serial_t serial;
+    hal_tcp_t tcp;
+} hal_transport_t;
+
+void hal_transport_init(hal_transport_t *self);
+
+// Opens what the spec names; `link` is set on HAL_LINK_OK only. `cancel_fd` as in hal_tcp_open().
+hal_link_error_t hal_transport_open(hal_transport_t *self, const hal_link_spec_t *spec, int timeout_ms,
+                                    int cancel_fd, hal_link_t *link);
+
+// One line about a failed opening: what, why, what to do.
+void hal_transport_explain(const hal_link_spec_t *spec, hal_link_error_t error, char *text, size_t capacity);
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// What all parts of argusd share: exit codes and the size of a message.
+#ifndef ARGUSD_H
+#define ARGUSD_H
+
+// X(NAME, code, meaning).
+#define ARGUSD_EXIT_TABLE(X)                                                                                         \
+    X(OK, 0, "goal reached, check passed, or closed by the operator (q, SIGINT, SIGTERM)")                           \
+    X(MISSION, 1, "the mission ended without reaching the goal")                                                     \
+    X(USAGE, 2, "bad arguments, config, course or state file")                                                       \
+    X(LINK, 3, "the link could not be opened")                                                                       \
+    X(NO_ROBOT, 4, "no robot answered")                                                                              \
+    X(INTERNAL, 5, "internal error")
+
+typedef enum {
+#define ARGUSD_EXIT_ENUM(name, code, meaning) ARGUSD_EXIT_##name = (code),
+    ARGUSD_EXIT_TABLE(ARGUSD_EXIT_ENUM)
+#undef ARGUSD_EXIT_ENUM
+} argusd_exit_t;
+
+// Room for every one-line message.
+#define ARGUSD_MESSAGE_MAX 1024
+
+#ifndef ARGUS_VERSION
+#define ARGUS_VERSION "0"
+#endif
+
+#endif

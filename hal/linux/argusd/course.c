@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Reads course files.
+#include "course.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include "argusd.h"
+#include "text.h"
+
+#define LINE_MAX_BYTES 256
+
+bool course_parse_point(const char *text, argus_point_t *point, char *message, size_t capacity) {
+    char x[32] = "";
+    const char *const comma = strchr(text, ',');
+    const size_t length = comma == NULL ? sizeof x : (size_t)(comma - text);
+    if (length >= sizeof x) {
+        return text_refuse(message, capacity, "'%.40s' is no waypoint; write x_mm,y_mm such as 1500,-300", text);
+    }
+    memcpy(x, text, length);
+    if (!text_number(x, &point->x_mm) || !text_number(comma + 1, &point->y_mm)) {
+        return text_refuse(message, capacity, "'%.40s' is no waypoint; write two whole numbers, x_mm,y_mm", text);
+    }
+    const int32_t limit = ARGUS_COURSE_LIMIT_MM;
+    if (point->x_mm < -limit || point->x_mm > limit || point->y_mm < -limit || point->y_mm > limit) {
+        return text_refuse(message, capacity, "%d,%d is too far; a waypoint lies within %d mm in x and in y",
+                           (int)point->x_mm, (int)point->y_mm, (int)limit);
+    }
+    return true;
+}
+
+static void strip(char *line) {
+    line[strcspn(line, "#")] = '\0';
+    size_t length = strlen(line);
+    while (length > 0 && strchr(" \t\r\n", line[length - 1]) != NULL) {
+        line[--length] = '\0';
+    }
+}
+
+static bool read_line(course_t *course, char *line, char *message, size_t capacity) {
+    argus_point_t point;
+    strip(line);
+    if (line[strspn(line, " \t")] == '\0') {
+        return true;
+    }
+    if (!course_parse_point(line, &point, message, capacity)) {
+        return false;
+    }
+    if (course->count == ARGUS_WAYPOINTS_MAX) {
+        return text_refuse(message, capacity, "more than %d waypoints; shorten the course", ARGUS_WAYPOINTS_MAX);
+    }
+    course->point[course->count++] = point;
+    return true;
+}
+
+// Reads to the end of the line; its length, -1 at the end of the file, -2 when it holds a NUL or is too long.
+static int fetch_line(FILE *file, char *line, size_t capacity) {
+    size_t length = 0;
+    int byte = getc(file);
+    if (byte == EOF) {
+        return -1;
+    }
+    for (; byte != EOF && byte != '\n'; byte = getc(file)) {
+        if (byte == '\0' || length + 1 >= capacity) {
+            return -2;
+        }
+        line[length++] = (char)byte;
+    }
+    line[length] = '\0';
+    return (int)length;
+}
+
+bool course_read(course_t *course, FILE *file, const char *path, char *message, size_t capacity) {
+    char line[LINE_MAX_BYTES];
+    char problem[ARGUSD_MESSAGE_MAX / 2];
+    memset(course, 0, sizeof *course);
+    int length = fetch_line(file, line, sizeof line);
+    for (int number = 1; length != -1; number++) {
+        if (length == -2) {
+            return text_refuse(message, capacity, "%s:%d: not a line of text; write x_mm,y_mm", path, number);
+        }
+        if (!read_line(course, line, problem, sizeof problem)) {
+            return text_refuse(message, capacity, "%s:%d: %s", path, number, problem);
+        }
+        length = fetch_line(file, line, sizeof line);
+    }
+    if (ferror(file)) {
+        return text_refuse(message, capacity, "%s: cannot be read: %s", path, strerror(errno));
+    }
+    if (course->count == 0) {
+        return text_refuse(message, capacity, "%s: holds no waypoint; write x_mm,y_mm, one per line", path);
+    }
+    return true;
+}
+
+bool course_load(course_t *course, const char *path, char *message, size_t capacity) {
+    FILE *const file = fopen(path, "re");
+    if (file == NULL) {
+        return text_refuse(message, capacity, "%s: cannot be opened: %s; give the course file's path", path,
+                           strerror(errno));
+    }
+    const bool good = course_read(course, file, path, message, capacity);
+    fclose(file);
+    return good;
+}

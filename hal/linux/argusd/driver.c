@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// The manager's hands on the wire.
+#include "driver.h"
+
+#include <string.h>
+
+#define READ_BYTES 512
+#define READS_PER_WAKE 8 // a flood must not keep time from passing
+#define RETRY_FIRST_MS 250u
+#define RETRY_MAX_MS 4000u
+#define REOPEN_TIMEOUT_MS 1000
+
+static uint32_t now_ms(const driver_t *self) {
+    return hal_clock_now_ms(&self->clock);
+}
+
+void driver_init(driver_t *self, const argus_config_t *config, hal_clock_t clock) {
+    memset(self, 0, sizeof *self);
+    self->clock = clock;
+    self->cancel_fd = -1;
+    self->retry_ms = RETRY_FIRST_MS;
+    self->error = HAL_LINK_NOT_OPEN;
+    hal_transport_init(&self->transport);
+    argus_init(&self->core, config, now_ms(self));
+}
+
+void driver_attach(driver_t *self, hal_link_t link) {
+    self->link = link;
+    self->up = true;
+    self->error = HAL_LINK_OK;
+    self->held = 0;
+    argus_link_up(&self->core, now_ms(self));
+}
+
+hal_link_error_t driver_open(driver_t *self, int timeout_ms) {
+    hal_link_t link = {0};
+    self->error = hal_transport_open(&self->transport, &self->spec, timeout_ms, self->cancel_fd, &link);
+    if (self->error == HAL_LINK_OK) {
+        driver_attach(self, link);
+    }
+    return self->error;
+}
+
+static void lose(driver_t *self, int error) {
+    hal_link_close(&self->link);
+    self->up = false;
+    self->held = 0;
+    self->error = (hal_link_error_t)error;
+    self->lost_ms = now_ms(self);
+    self->retry_ms = RETRY_FIRST_MS;
+    argus_link_lost(&self->core, self->lost_ms);
+}
+
+// True when the held packet is out.
+static bool write_held(driver_t *self) {
+    const int written = hal_link_write(&self->link, self->packet, self->held);
+    if (written < 0) {
+        lose(self, written);
+        return false;
+    }
+    if (written > 0) {
+        self->held = 0;
+    }
+    return written > 0;
+}
+
+void driver_transmit(driver_t *self) {
+    while (self->up) {
+        if (self->held == 0) {
+            self->held = argus_transmit(&self->core, self->packet, sizeof self->packet);
+        }
+        if (self->held == 0 || !write_held(self)) {
+            return;
+        }
+    }
+}
+
+void driver_receive(driver_t *self) {
+    uint8_t bytes[READ_BYTES];
+    for (int i = 0; i < READS_PER_WAKE && self->up; i++) {
+        const int got = hal_link_read(&self->link, bytes, sizeof bytes);
+        if (got < 0) {
+            lose(self, got);
+            return;
+        }
+        if (got == 0) {
+            return;
+        }
+        self->bytes_in += (uint32_t)got;
+        argus_receive(&self->core, now_ms(self), bytes, (size_t)got);
+        driver_transmit(self);
+    }
+}
+
+// The ms until the next attempt; 0 when one was just made and worked.
+static uint32_t reopen(driver_t *self) {
+    const uint32_t waited_ms = now_ms(self) - self->lost_ms;
+    if (waited_ms < self->retry_ms) {
+        return self->retry_ms - waited_ms;
+    }
+    if (driver_open(self, REOPEN_TIMEOUT_MS) == HAL_LINK_OK) {
+        self->reopened++;
+        return 0;
+    }
+    self->lost_ms = now_ms(self);
+    self->retry_ms = self->retry_ms < RETRY_MAX_MS / 2 ? self->retry_ms * 2 : RETRY_MAX_MS;
+    return self->retry_ms;
+}
+
+uint32_t driver_process(driver_t *self) {
+    uint32_t retry_ms = UINT32_MAX;
+    if (self->up) {
+        const int kept = hal_link_flush(&self->link);
+        if (kept < 0) {
+            lose(self, kept);
+        }
+        driver_transmit(self);
+    } else if (!argus_closed(&self->core)) {
+        retry_ms = reopen(self);
+    }
+    const uint32_t wait_ms = argus_process(&self->core, now_ms(self));
+    driver_transmit(self);
+    return wait_ms < retry_ms ? wait_ms : retry_ms;
+}
+
+bool driver_wants_write(const driver_t *self) {
+    return self->up && (self->held > 0 || hal_link_flush(&self->link) > 0);
+}
+
+void driver_close(driver_t *self) {
+    hal_link_close(&self->link);
+    self->up = false;
+}

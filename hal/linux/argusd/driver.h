@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Ties the fault manager to a link and a clock: bytes and time in, packets out, and a lost link found again.
+#ifndef ARGUSD_DRIVER_H
+#define ARGUSD_DRIVER_H
+
+#include "argus/manager.h"
+#include "hal/clock.h"
+#include "hal/link_spec.h"
+
+typedef struct {
+    argus_t core;
+    hal_clock_t clock;
+    hal_link_spec_t spec;
+    hal_transport_t transport;
+    hal_link_t link;
+    bool up;
+    int cancel_fd;          // becomes readable when opening is to be given up; -1: none
+    hal_link_error_t error; // why the link is not up
+    uint32_t retry_ms;      // pause before the next attempt to open
+    uint32_t lost_ms;       // when the last attempt failed
+    uint32_t reopened;      // monotonic
+    uint32_t bytes_in;      // over all openings
+    size_t held;            // a packet that the link would not take yet
+    uint8_t packet[HAL_LINK_PACKET_MAX];
+} driver_t;
+
+void driver_init(driver_t *self, const argus_config_t *config, hal_clock_t clock);
+
+// One attempt, at most `timeout_ms` long for a TCP link.
+hal_link_error_t driver_open(driver_t *self, int timeout_ms);
+
+// Takes a link that is open already.
+void driver_attach(driver_t *self, hal_link_t link);
+
+// Call when the link can be read: what a SIP calls for is written before this returns.
+void driver_receive(driver_t *self);
+
+// Call when time has passed or the link can be written; returns the ms to wait at most. Opens a lost link again.
+uint32_t driver_process(driver_t *self);
+
+// Writes what the manager has to send, as far as the link takes it.
+void driver_transmit(driver_t *self);
+
+bool driver_wants_write(const driver_t *self);
+void driver_close(driver_t *self);
+
+#endif

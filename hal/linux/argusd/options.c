@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+// Parses the command line and prints its help.
+#include "options.h"
+
+#include <getopt.h>
+#include <string.h>
+
+#include "argusd.h"
+#include "course.h"
+#include "text.h"
+
+enum {
+    OPT_LINK = 256,
+    OPT_CONFIG,
+    OPT_COURSE,
+    OPT_GOAL,
+    OPT_STATE,
+    OPT_PASSIVE,
+    OPT_ACTIVE,
+    OPT_JSON,
+    OPT_PLAIN,
+    OPT_AUTO_BAUD,
+    OPT_WAIT,
+    OPT_STATUS,
+    OPT_CHECK,
+    OPT_LIST_EVENTS,
+    OPT_LIST_CONFIG,
+    OPT_EXAMPLE_CONFIG,
+    OPT_VERSION
+};
+
+static const struct option table[] = {
+    {"link", required_argument, NULL, OPT_LINK},
+    {"config", required_argument, NULL, OPT_CONFIG},
+    {"course", required_argument, NULL, OPT_COURSE},
+    {"goal", required_argument, NULL, OPT_GOAL},
+    {"state", required_argument, NULL, OPT_STATE},
+    {"passive", no_argument, NULL, OPT_PASSIVE},
+    {"active", no_argument, NULL, OPT_ACTIVE},
+    {"json", no_argument, NULL, OPT_JSON},
+    {"plain", no_argument, NULL, OPT_PLAIN},
+    {"auto-baud", no_argument, NULL, OPT_AUTO_BAUD},
+    {"wait", required_argument, NULL, OPT_WAIT},
+    {"status", required_argument, NULL, OPT_STATUS},
+    {"check", no_argument, NULL, OPT_CHECK},
+    {"list-events", no_argument, NULL, OPT_LIST_EVENTS},
+    {"list-config", no_argument, NULL, OPT_LIST_CONFIG},
+    {"example-config", no_argument, NULL, OPT_EXAMPLE_CONFIG},
+    {"version", no_argument, NULL, OPT_VERSION},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
+};
+
+void options_help(FILE *out) {
+    fputs("argusd " ARGUS_VERSION ": keeps a Pioneer P3-DX seeing and driving safely when its sonars fail\n"
+          "\n"
+          "usage: argusd --link LINK [options]\n"
+          "\n"
+          "  --link LINK        serial:PATH[@BAUD] (default 9600) or tcp:HOST[:PORT] (default 8101)\n"
+          "  --auto-baud        serial: try 9600 38400 115200 19200 57600 and say what was found\n"
+          "  --config FILE      settings (see --list-config)\n"
+          "  --course FILE      drive this course: x_mm,y_mm per line, # comments\n"
+          "  --goal X,Y         drive to this one point; mm, x ahead and y left of where the robot stands\n"
+          "  --passive          diagnose and report, never command a motion\n"
+          "  --active           drive; needed on a serial link, which starts passive\n"
+          "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
+          "  --wait SECONDS     at start, how long to try for the port and for a robot's answer; or 'forever'\n"
+          "                     (default: the port must be there, a robot has 30 s)\n"
+          "  --check            connect, tell what is there, leave\n"
+          "  --json             one JSON object per line on standard output\n"
+          "  --plain            no screen on a terminal, a line per event instead\n"
+          "  --status MS        time between status lines, 0 for none (default 500 with --json, else 2000)\n"
+          "  --list-events      the event catalogue\n"
+          "  --list-config      every setting: type, range, default, unit, meaning\n"
+          "  --example-config   a config file with every setting\n"
+          "  --version  --help\n"
+          "\n"
+          "keys on the screen: arrows or w a s d drive, space stops, g goes on, r checks again, p passive/active, q ends\n"
+          "\n"
+          "examples:\n"
+          "  argusd --link serial:/dev/ttyUSB0@9600 --check\n"
+          "  argusd --link serial:/dev/ttyUSB0 --auto-baud\n"
+          "  argusd --link serial:/dev/ttyUSB0@9600 --active --goal 3000,0 --config argusd.conf\n"
+          "  argusd --link tcp:localhost --course course.csv --json\n"
+          "\n"
+          "exit codes:\n",
+          out);
+#define EXIT_LINE(name, code, meaning) fprintf(out, "  %d  %s\n", code, meaning);
+    ARGUSD_EXIT_TABLE(EXIT_LINE)
+#undef EXIT_LINE
+}
+
+typedef struct {
+    char *text;
+    size_t capacity;
+} message_t;
+
+static bool take_seconds(options_t *options, const char *text, const message_t *message) {
+    int32_t seconds = 0;
+    options->has_wait = true;
+    options->wait_ms = OPTIONS_WAIT_FOREVER;
+    if (strcmp(text, "forever") == 0) {
+        return true;
+    }
+    if (!text_number(text, &seconds) || seconds < 1 || seconds > 86400) {
+        return text_refuse(message->text, message->capacity,
+                           "--wait %s: give seconds, 1 to 86400, or 'forever'", text);
+    }
+    options->wait_ms = (uint32_t)seconds * 1000u;
+    return true;
+}
+
+static bool take_status(options_t *options, const char *text, const message_t *message) {
+    int32_t period = 0;
+    if (!text_number(text, &period) || (period != 0 && (period < 50 || period > 3600000))) {
+        return text_refuse(message->text, message->capacity,
+                           "--status %s: give milliseconds, 50 to 3600000, or 0 for none", text);
+    }
+    options->has_status = true;
+    options->status_ms = (uint32_t)period;
+    return true;
+}
+
+static bool take_goal(options_t *options, const char *text, const message_t *message) {
+    char problem[ARGUSD_MESSAGE_MAX / 2];
+    options->has_goal = true;
+    if (!course_parse_point(text, &options->goal, problem, sizeof problem)) {
+        return text_refuse(message->text, message->capacity, "--goal: %s", problem);
+    }
+    return true;
+}
+
+static bool take_link(options_t *options, const char *text, const message_t *message) {
+    if (options->link.path[0] != '\0' || options->link.host[0] != '\0') {
+        return text_refuse(message->text, message->capacity, "--link is given twice; keep one");
+    }
+    return hal_link_spec_parse(&options->link, text, message->text, message->capacity);
+}
+
+static bool take_flag(options_t *options, int option) {
+    switch (option) {
+    case OPT_CONFIG:
+        options->config_path = optarg;
+        return true;
+    case OPT_COURSE:
+        options->course_path = optarg;
+        return true;
+    case OPT_STATE:
+        options->state_path = optarg;
+        return true;
+    case OPT_PASSIVE:
+        options->passive = true;
+        return true;
+    case OPT_ACTIVE:
+        options->active = true;
+        return true;
+    case OPT_JSON:
+        options->json = true;
+        return true;
+    case OPT_PLAIN:
+        options->plain = true;
+        return true;
+    case OPT_AUTO_BAUD:
+        options->auto_baud = true;
+        return true;
+    default:
+        return false;
+    }
+}
+
+static options_action_t action_of(int option) {
+    switch (option) {
+    case OPT_CHECK:
+        return OPTIONS_CHECK;
+    case OPT_LIST_EVENTS:
+        return OPTIONS_LIST_EVENTS;
+    case OPT_LIST_CONFIG:
+        return OPTIONS_LIST_CONFIG;
+    case OPT_EXAMPLE_CONFIG:
+        return OPTIONS_EXAMPLE_CONFIG;
+    case OPT_VERSION:
+        return OPTIONS_VERSION;
+    case 'h':
+        return OPTIONS_HELP;
+    default:
+        return OPTIONS_RUN;
+    }
+}
+
+static bool take(options_t *options, int option, char **argv, const message_t *message) {
+    switch (option) {
+    case OPT_LINK:
+        return take_link(options, optarg, message);
+    case OPT_GOAL:
+        return take_goal(options, optarg, message);
+    case OPT_WAIT:
+        return take_seconds(options, optarg, message);
+    case OPT_STATUS:
+        return take_status(options, optarg, message);
+    case ':':
+        return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help", argv[optind - 1]);
+    case '?':
+        return text_refuse(message->text, message->capacity, "unknown option %s; see argusd --help", argv[optind - 1]);
+    default:
+        break;
+    }
+    if (!take_flag(options, option)) {
+        options->action = action_of(option);
+    }
+    return true;
+}
+
+// What contradicts, or is missing.
+static bool agree(const options_t *options, const message_t *message) {
+    const char *problem = NULL;
+    const bool has_link = options->link.path[0] != '\0' || options->link.host[0] != '\0';
+    if (options->passive && options->active) {
+        problem = "--passive and --active contradict each other; give one";
+    } else if (options->course_path != NULL && options->has_goal) {
+        problem = "--course and --goal contradict each other; give one";
+    } else if (!has_link) {
+        problem = "no link is given; add --link serial:/dev/ttyUSB0@9600 or --link tcp:HOST:8101 (see --help)";
+    } else if (options->auto_baud && options->link.scheme != HAL_SCHEME_SERIAL) {
+        problem = "--auto-baud is for serial links; a tcp link has no rate";
+    } else if (options->auto_baud && options->link.has_baud) {
+        problem = "--auto-baud and a rate in --link contradict each other; leave out @BAUD";
+    }
+    return problem == NULL || text_refuse(message->text, message->capacity, "%s", problem);
+}
+
+bool options_parse(options_t *options, int argc, char **argv, char *message_text, size_t capacity) {
+    const message_t message = {.text = message_text, .capacity = capacity};
+    memset(options, 0, sizeof *options);
+    optind = 0; // the library's way to begin anew
+    opterr = 0;
+    for (;;) {
+        const int option = getopt_long(argc, argv, ":h", table, NULL);
+        if (option == -1) {
+            break;
+        }
+        if (!take(options, option, argv, &message)) {
+            return false;
+        }
+    }
+    if (optind < argc) {
+        return text_refuse(message_text, capacity, "'%s' is not an option; see argusd --help", argv[optind]);
+    }
+    const bool needs_link = options->action == OPTIONS_RUN || options->action == OPTIONS_CHECK;
+    return !needs_link || agree(options, &message);
+}

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+// Writes events and status.
+#include "report.h"
+
+#include <string.h>
+
+#include "json.h"
+
+#define FRONT_SONARS 8
+
+static const char *const level_names[] = {"OK", "WARN", "ERROR", "STALE"};
+
+static const char *meaning_of(uint16_t id) {
+    switch (id) {
+#define MEANING(number, name, level, subject, meaning)                                                               \
+    case number:                                                                                                     \
+        return meaning;
+        ARGUS_EVENT_TABLE(MEANING)
+#undef MEANING
+    default:
+        return "";
+    }
+}
+
+static const char *level_name(argus_level_t level) {
+    return (size_t)level < sizeof level_names / sizeof level_names[0] ? level_names[level] : "?";
+}
+
+void report_name(const argus_event_t *event, char *text, size_t capacity) {
+    if (event->sonar >= 0 && event->sonar < ARGUS_SONARS) {
+        snprintf(text, capacity, "sonar/%s/%02d", event->sonar < FRONT_SONARS ? "front" : "rear", event->sonar);
+    } else {
+        snprintf(text, capacity, "%s", argus_event_subject(event->id));
+    }
+}
+
+static void put_int(json_t *json, const char *name, int64_t value) {
+    json_name(json, name);
+    json_int(json, value);
+}
+
+static void put_string(json_t *json, const char *name, const char *value) {
+    json_name(json, name);
+    json_string(json, value);
+}
+
+static void put_bool(json_t *json, const char *name, bool value) {
+    json_name(json, name);
+    json_bool(json, value);
+}
+
+// The seven keys that every line has.
+static void put_event(json_t *json, const argus_event_t *event, uint64_t t_ms) {
+    char name[32];
+    report_name(event, name, sizeof name);
+    json_name(json, "t");
+    json_thousandths(json, (int64_t)t_ms);
+    put_string(json, "event", argus_event_name(event->id));
+    put_int(json, "id", event->id);
+    put_int(json, "level", argus_event_level(event->id));
+    put_string(json, "name", name);
+    put_int(json, "value", event->value);
+    put_string(json, "state", argus_failure_name((argus_failure_t)event->state));
+}
+
+static size_t finish(json_t *json) {
+    json_close(json, '}');
+    return json_fits(json) ? json->text.length : 0;
+}
+
+size_t report_event_json(const argus_event_t *event, uint64_t t_ms, char *line, size_t capacity) {
+    json_t json = json_in(line, capacity);
+    json_open(&json, '{');
+    put_event(&json, event, t_ms);
+    return finish(&json);
+}
+
+static const char *colour_of(argus_level_t level) {
+    return level == ARGUS_LEVEL_ERROR ? "\033[31m" : level == ARGUS_LEVEL_WARN ? "\033[33m" : "";
+}
+
+// "value" in words where a number alone says nothing, and only where the catalogue gives it a meaning.
+static void add_value(text_t *text, const argus_event_t *event) {
+    if (event->id == ARGUS_EV_SONAR_DISABLED) {
+        text_add(text, " (%s)", argus_kind_name((argus_fault_kind_t)event->value));
+    } else if (strstr(meaning_of(event->id), "value:") != NULL) {
+        text_add(text, " %d", (int)event->value);
+    }
+}
+
+size_t report_event_plain(const argus_event_t *event, uint64_t t_ms, bool colour, char *line, size_t capacity) {
+    char name[32];
+    const argus_level_t level = argus_event_level(event->id);
+    const char *const meaning = meaning_of(event->id);
+    const char *const end = strstr(meaning, "; value:");
+    const char *const tint = colour ? colour_of(level) : "";
+    text_t text = text_in(line, capacity);
+    report_name(event, name, sizeof name);
+    text_add(&text, "%5u.%03u %s%-5s%s %-14s %s", (unsigned)(t_ms / 1000u), (unsigned)(t_ms % 1000u), tint,
+             level_name(level), tint[0] != '\0' ? "\033[0m" : "", name, argus_event_name(event->id));
+    add_value(&text, event);
+    text_add(&text, ": %.*s", end == NULL ? (int)strlen(meaning) : (int)(end - meaning), meaning);
+    return text.cut ? 0 : text.length;
+}
+
+static void put_sonars(json_t *json, const argus_status_t *status) {
+    json_name(json, "reading_mm");
+    json_open(json, '[');
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        json_int(json, status->reading_mm[i]);
+    }
+    json_close(json, ']');
+    json_name(json, "age_ms"); // -1: never reported
+    json_open(json, '[');
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        json_int(json, status->age_ms[i] == UINT32_MAX ? -1 : (int64_t)status->age_ms[i]);
+    }
+    json_close(json, ']');
+    json_name(json, "health");
+    json_open(json, '[');
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        json_string(json, argus_health_name(status->health[i]));
+    }
+    json_close(json, ']');
+    json_name(json, "kind");
+    json_open(json, '[');
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        json_string(json, argus_kind_name(status->kind[i]));
+    }
+    json_close(json, ']');
+}
+
+static void put_plan(json_t *json, const argus_plan_t *plan) {
+    json_name(json, "plan_deg");
+    json_open(json, '[');
+    for (int i = 0; i < plan->count && i < ARGUS_ROTATIONS_MAX; i++) {
+        json_int(json, plan->rotation_deg[i]);
+    }
+    json_close(json, ']');
+    put_bool(json, "plan_complete", plan->complete);
+}
+
+static void put_robot(json_t *json, const view_t *view) {
+    const argus_status_t *const status = &view->status;
+    put_string(json, "mode", argus_mode_name(status->mode));
+    put_string(json, "mission", argus_mission_name(status->mission));
+    put_bool(json, "active", status->active);
+    put_bool(json, "online", status->online);
+    put_int(json, "x_mm", status->pose.x_mm);
+    put_int(json, "y_mm", status->pose.y_mm);
+    put_int(json, "heading_cdeg", status->pose.heading_cdeg);
+    put_int(json, "goal_mm", status->goal_mm);
+    put_int(json, "course_mm", view->course_mm);
+    put_int(json, "waypoint", status->waypoint);
+    put_int(json, "waypoints", status->waypoints);
+    put_int(json, "battery_dv", status->battery_dv);
+    put_int(json, "vel_left_mm_s", status->vel_left_mm_s);
+    put_int(json, "vel_right_mm_s", status->vel_right_mm_s);
+    put_int(json, "flags", status->flags);
+    put_int(json, "bumpers_front", status->bumpers_front);
+    put_int(json, "bumpers_rear", status->bumpers_rear);
+}
+
+static void put_link(json_t *json, const view_t *view) {
+    put_int(json, "sips", view->status.sips);
+    put_int(json, "bad_checksums", view->status.bad_checksums);
+    put_int(json, "skipped_bytes", view->status.skipped_bytes);
+    put_int(json, "stops", view->status.stops);
+    put_int(json, "bytes_in", view->counters.bytes_in);
+    put_int(json, "bytes_out", view->counters.bytes_out);
+    put_int(json, "would_block", view->counters.would_block);
+    put_int(json, "reopened", view->reopened);
+    put_string(json, "link", view->link);
+    put_bool(json, "link_up", view->link_up);
+    put_string(json, "robot", view->name);
+    put_string(json, "subclass", view->subclass);
+}
+
+size_t report_status_json(const view_t *view, int64_t unix_ms, char *line, size_t capacity) {
+    const argus_event_t event = {.id = ARGUS_EV_STATUS,
+                                 .sonar = ARGUS_NO_SONAR,
+                                 .state = (uint8_t)view->status.failure,
+                                 .value = (int32_t)view->status.sips};
+    json_t json = json_in(line, capacity);
+    json_open(&json, '{');
+    put_event(&json, &event, view->t_ms);
+    json_name(&json, "unix");
+    json_thousandths(&json, unix_ms);
+    put_robot(&json, view);
+    put_plan(&json, &view->status.plan);
+    put_sonars(&json, &view->status);
+    put_link(&json, view);
+    return finish(&json);
+}
+
+static void add_readings(text_t *text, const char *title, const argus_status_t *status, int first) {
+    text_add(text, " %s", title);
+    for (int i = first; i < first + FRONT_SONARS; i++) {
+        const char *mark = "";
+        if (status->health[i] == ARGUS_DISABLED) {
+            mark = "!";
+        } else if (status->health[i] == ARGUS_SUSPECT) {
+            mark = "?";
+        }
+        if (status->age_ms[i] == UINT32_MAX) {
+            text_add(text, " -");
+        } else {
+            text_add(text, " %d%s", status->reading_mm[i], mark);
+        }
+    }
+}
+
+size_t report_status_plain(const view_t *view, char *line, size_t capacity) {
+    const argus_status_t *const status = &view->status;
+    text_t text = text_in(line, capacity);
+    text_add(&text, "%5u.%03u STATUS %s %s", (unsigned)(view->t_ms / 1000u), (unsigned)(view->t_ms % 1000u),
+             argus_mode_name(status->mode), argus_failure_name(status->failure));
+    if (!status->online) {
+        text_add(&text, " no robot");
+        return text.length;
+    }
+    text_add(&text, " %s at %d,%d mm %d deg", status->active ? "active" : "passive", (int)status->pose.x_mm,
+             (int)status->pose.y_mm, (int)(status->pose.heading_cdeg / 100));
+    if (status->waypoints > 0) {
+        text_add(&text, " goal %d mm", (int)status->goal_mm);
+    }
+    text_add(&text, " %d.%d V", status->battery_dv / 10, status->battery_dv % 10);
+    add_readings(&text, "front", status, 0);
+    add_readings(&text, "rear", status, FRONT_SONARS);
+    return text.cut ? 0 : text.length;
+}
+
+void report_list_events(FILE *out) {
+    fprintf(out, "%-3s %-18s %-6s %-9s %s\n", "ID", "EVENT", "LEVEL", "ABOUT", "MEANING");
+#define EVENT_LINE(id, name, level, subject, meaning)                                                                \
+    fprintf(out, "%-3d %-18s %-6s %-9s %s\n", id, #name, #level, subject, meaning);
+    ARGUS_EVENT_TABLE(EVENT_LINE)
+#undef EVENT_LINE
+}

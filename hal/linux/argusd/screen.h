@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// The screen as a grid of characters: what the paper's user interface shows, laid out for 80 x 24 and up.
+#ifndef ARGUSD_SCREEN_H
+#define ARGUSD_SCREEN_H
+
+#include <stdint.h>
+
+#include "view.h"
+
+#define SCREEN_ROWS_MAX 80
+#define SCREEN_COLUMNS_MAX 200
+#define SCREEN_LOG_LINES 64
+#define SCREEN_LOG_WIDTH 160
+
+typedef enum { TONE_PLAIN, TONE_TITLE, TONE_DIM, TONE_GOOD, TONE_WARN, TONE_BAD } tone_t;
+
+typedef struct {
+    char character;
+    uint8_t tone;
+} cell_t;
+
+typedef struct {
+    int rows;
+    int columns;
+    cell_t cell[SCREEN_ROWS_MAX][SCREEN_COLUMNS_MAX];
+} canvas_t;
+
+// The last lines said, oldest first from `first`.
+typedef struct {
+    char line[SCREEN_LOG_LINES][SCREEN_LOG_WIDTH];
+    uint8_t tone[SCREEN_LOG_LINES];
+    int first;
+    int count;
+} screen_log_t;
+
+void screen_log_add(screen_log_t *self, const char *line, tone_t tone);
+
+// Sizes are cut to the largest; any size down to 1 x 1 is drawn, as much of it as fits.
+void canvas_clear(canvas_t *self, int rows, int columns);
+
+// Draws everything. What lies outside the canvas is not drawn.
+void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log);
+
+#endif

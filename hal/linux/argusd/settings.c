@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+// Config files, by inih over the firmware's table of settings.
+#include "settings.h"
+
+#include <errno.h>
+#include <ini.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "argusd.h"
+#include "text.h"
+
+#define SECTION "argus"
+#define NAME_MAX_BYTES 40
+
+typedef struct {
+    const char *key;
+    int32_t value;
+    int32_t minimum;
+    int32_t maximum;
+    const char *unit;
+    const char *choices;
+    const char *meaning;
+    size_t offset;
+} row_t;
+
+static const row_t rows[SETTINGS_COUNT] = {
+#define ROW(key, def, min, max, unit, choices, meaning)                                                              \
+    {#key, def, min, max, unit, choices, meaning, offsetof(argus_config_t, key)},
+    ARGUS_CONFIG_TABLE(ROW)
+#undef ROW
+};
+
+void settings_default(settings_t *self) {
+    memset(self, 0, sizeof *self);
+    argus_config_default(&self->config);
+}
+
+// Edits that turn one name into the other, for "did you mean".
+static size_t distance(const char *from, const char *to) {
+    size_t row[NAME_MAX_BYTES + 1];
+    const size_t from_length = strlen(from);
+    const size_t to_length = strlen(to);
+    if (from_length > NAME_MAX_BYTES || to_length > NAME_MAX_BYTES) {
+        return SIZE_MAX;
+    }
+    for (size_t k = 0; k <= to_length; k++) {
+        row[k] = k;
+    }
+    for (size_t i = 1; i <= from_length; i++) {
+        size_t diagonal = row[0];
+        row[0] = i;
+        for (size_t k = 1; k <= to_length; k++) {
+            const size_t replaced = diagonal + (from[i - 1] == to[k - 1] ? 0 : 1);
+            const size_t shifted = (row[k] < row[k - 1] ? row[k] : row[k - 1]) + 1;
+            diagonal = row[k];
+            row[k] = replaced < shifted ? replaced : shifted;
+        }
+    }
+    return row[to_length];
+}
+
+static const char *nearest_key(const char *name) {
+    size_t best = strlen(name) / 3 + 1;
+    const char *key = NULL;
+    for (int i = 0; i < SETTINGS_COUNT; i++) {
+        const size_t edits = distance(name, rows[i].key);
+        if (edits <= best) {
+            best = edits;
+            key = rows[i].key;
+        }
+    }
+    return key;
+}
+
+// The value of one of "a|b|c", or -1.
+static int32_t choice(const char *choices, const char *text) {
+    const size_t length = strlen(text);
+    const char *at = choices;
+    for (int32_t value = 0; length > 0; value++) {
+        const size_t size = strcspn(at, "|");
+        if (size == length && strncmp(at, text, size) == 0) {
+            return value;
+        }
+        if (at[size] == '\0') {
+            break;
+        }
+        at += size + 1;
+    }
+    return -1;
+}
+
+typedef struct {
+    settings_t *settings;
+    FILE *file;
+    int line;      // that the parser is at
+    int bad_line;  // the first one refused
+    text_t reason; // of that
+} load_t;
+
+__attribute__((format(printf, 2, 3))) static int refuse(load_t *load, const char *format, ...) {
+    if (load->bad_line == 0) {
+        va_list arguments;
+        load->bad_line = load->line;
+        va_start(arguments, format);
+        text_add_list(&load->reason, format, arguments);
+        va_end(arguments);
+    }
+    return 0;
+}
+
+static int refuse_unknown(load_t *load, const char *name) {
+    const char *const near = nearest_key(name);
+    if (near != NULL) {
+        return refuse(load, "unknown key '%.60s'; did you mean %s?", name, near);
+    }
+    return refuse(load, "unknown key '%.60s'; argusd --list-config lists the keys", name);
+}
+
+static int take_value(load_t *load, const row_t *row, const char *text) {
+    int32_t value = 0;
+    if (row->choices[0] != '\0') {
+        value = choice(row->choices, text);
+        if (value < 0) {
+            return refuse(load, "%s = '%.40s': choose one of %s", row->key, text, row->choices);
+        }
+    } else if (!text_number(text, &value)) {
+        return refuse(load, "%s = '%.40s': give a whole number, %d to %d %s", row->key, text, (int)row->minimum,
+                      (int)row->maximum, row->unit);
+    }
+    if (value < row->minimum || value > row->maximum) {
+        return refuse(load, "%s = %d is out of range; give %d to %d %s", row->key, (int)value, (int)row->minimum,
+                      (int)row->maximum, row->unit);
+    }
+    memcpy((char *)&load->settings->config + row->offset, &value, sizeof value);
+    return 1;
+}
+
+static int take_key(void *user, const char *section, const char *name, const char *value) {
+    load_t *const load = user;
+    (void)section; // checked by read_line
+    for (int i = 0; i < SETTINGS_COUNT; i++) {
+        if (strcmp(rows[i].key, name) != 0) {
+            continue;
+        }
+        if (load->settings->line[i] != 0) {
+            return refuse(load, "%s was given on line %d already; keep one of the two", name, load->settings->line[i]);
+        }
+        load->settings->line[i] = load->line;
+        return take_value(load, &rows[i], value);
+    }
+    return refuse_unknown(load, name);
+}
+
+// Cuts the blanks at both ends: a leading one would mean a continued line to the parser.
+static void trim(char *line) {
+    const size_t blanks = strspn(line, " \t");
+    memmove(line, line + blanks, strlen(line + blanks) + 1);
+    size_t length = strlen(line);
+    while (length > 0 && strchr(" \t\r\n", line[length - 1]) != NULL) {
+        line[--length] = '\0';
+    }
+}
+
+static void check_section(load_t *load, const char *line) {
+    if (line[0] == '[' && strcmp(line, "[" SECTION "]") != 0) {
+        refuse(load, "unknown section %.60s; use [" SECTION "] or none", line);
+    }
+}
+
+static char *read_line(char *line, int capacity, void *stream) {
+    load_t *const load = stream;
+    int length = 0;
+    int byte = getc(load->file);
+    if (byte == EOF) {
+        return NULL;
+    }
+    load->line++;
+    for (; byte != EOF && byte != '\n'; byte = getc(load->file)) {
+        if (byte == '\0') {
+            refuse(load, "a NUL byte: this is not a text file");
+        } else if (length + 1 < capacity) {
+            line[length++] = (char)byte;
+        } else {
+            refuse(load, "the line is longer than %d characters", capacity - 1);
+        }
+    }
+    line[length] = '\0';
+    trim(line);
+    check_section(load, line);
+    return line;
+}
+
+bool settings_read(settings_t *self, FILE *file, const char *path, char *message, size_t capacity) {
+    char reason[ARGUSD_MESSAGE_MAX / 2];
+    load_t load = {.settings = self, .file = file, .reason = text_in(reason, sizeof reason)};
+    settings_default(self);
+    const int bad = ini_parse_stream(read_line, &load, take_key, &load);
+    if (ferror(file)) {
+        return text_refuse(message, capacity, "%s: cannot be read: %s", path, strerror(errno));
+    }
+    if (bad < 0) {
+        return text_refuse(message, capacity, "%s: cannot be read: out of memory", path);
+    }
+    if (bad > 0 && (load.bad_line == 0 || bad < load.bad_line)) {
+        return text_refuse(message, capacity, "%s:%d: malformed line; write key = value", path, bad);
+    }
+    if (load.bad_line > 0) {
+        return text_refuse(message, capacity, "%s:%d: %s", path, load.bad_line, reason);
+    }
+    return true;
+}
+
+bool settings_load(settings_t *self, const char *path, char *message, size_t capacity) {
+    FILE *const file = fopen(path, "re");
+    if (file == NULL) {
+        return text_refuse(message, capacity,
+                           "%s: cannot be opened: %s; give the config file's path (argusd --example-config prints one)",
+                           path, strerror(errno));
+    }
+    const bool good = settings_read(self, file, path, message, capacity);
+    fclose(file);
+    return good;
+}
+
+bool settings_check(const settings_t *self, char *message, size_t capacity) {
+    const argus_config_t *const config = &self->config;
+    const argus_config_report_t report = argus_config_check(config);
+    switch (report.fault) {
+    case ARGUS_CONFIG_OK:
+        return true;
+    case ARGUS_CONFIG_DRIVING:
+        return text_refuse(message, capacity,
+                           "driving would be unsafe (S5): overhang %d + travel %d (%d mm/s x %d ms) + braking %d = %d mm "
+                           "must be less than object_range_mm = %d; lower speed_mm_s, or raise object_range_mm or "
+                           "decel_mm_s2",
+                           (int)report.overhang_mm, (int)report.travel_mm, (int)config->speed_mm_s,
+                           (int)report.reaction_ms, (int)report.brake_mm, (int)report.driving_mm,
+                           (int)config->object_range_mm);
+    case ARGUS_CONFIG_STEP:
+        return text_refuse(message, capacity,
+                           "a step would be unsafe (S5): reach of a %d mm step %d + 3 x noise %d + 20 = %d mm must be "
+                           "less than check_range_mm = %d; lower step_mm, or raise check_range_mm",
+                           (int)config->step_mm, (int)report.reach_mm, (int)config->noise_mm, (int)report.stepping_mm,
+                           (int)config->check_range_mm);
+    case ARGUS_CONFIG_RANGE:
+    default:
+        break;
+    }
+    const int row = report.key >= 0 && report.key < SETTINGS_COUNT ? (int)report.key : 0;
+    return text_refuse(message, capacity, "%s is out of range; give %d to %d %s", rows[row].key, (int)rows[row].minimum,
+                       (int)rows[row].maximum, rows[row].unit);
+}
+
+static void name_value(const row_t *row, int32_t value, char *text, size_t capacity) {
+    const char *at = row->choices;
+    if (at[0] == '\0') {
+        snprintf(text, capacity, "%d", (int)value);
+        return;
+    }
+    for (int32_t i = 0; i < value; i++) {
+        at += strcspn(at, "|") + 1;
+    }
+    snprintf(text, capacity, "%.*s", (int)strcspn(at, "|"), at);
+}
+
+static void name_range(const row_t *row, char *text, size_t capacity) {
+    if (row->choices[0] != '\0') {
+        snprintf(text, capacity, "%s", row->choices);
+    } else {
+        snprintf(text, capacity, "%d..%d", (int)row->minimum, (int)row->maximum);
+    }
+}
+
+void settings_list(FILE *out) {
+    fprintf(out, "%-18s %-7s %-13s %-8s %-6s %s\n", "KEY", "TYPE", "RANGE", "DEFAULT", "UNIT", "MEANING");
+    for (int i = 0; i < SETTINGS_COUNT; i++) {
+        char value[32];
+        char range[48];
+        name_value(&rows[i], rows[i].value, value, sizeof value);
+        name_range(&rows[i], range, sizeof range);
+        fprintf(out, "%-18s %-7s %-13s %-8s %-6s %s\n", rows[i].key, rows[i].choices[0] != '\0' ? "choice" : "integer",
+                range, value, rows[i].unit[0] == '\0' ? "-" : rows[i].unit, rows[i].meaning);
+    }
+}
+
+void settings_example(FILE *out) {
+    fprintf(out, "# Settings of argusd, with their defaults; every line may be left out. Use: argusd --config FILE\n"
+                 "[" SECTION "]\n");
+    for (int i = 0; i < SETTINGS_COUNT; i++) {
+        char value[32];
+        char range[48];
+        name_value(&rows[i], rows[i].value, value, sizeof value);
+        name_range(&rows[i], range, sizeof range);
+        fprintf(out, "\n# %s (%s%s%s)\n%s = %s\n", rows[i].meaning, range, rows[i].unit[0] == '\0' ? "" : " ",
+                rows[i].unit, rows[i].key, value);
+    }
+}

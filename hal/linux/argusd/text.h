@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Text in buffers of fixed size: appended, cut when full, always terminated.
+#ifndef ARGUSD_TEXT_H
+#define ARGUSD_TEXT_H
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct {
+    char *at;
+    size_t capacity; // at least 1
+    size_t length;
+    bool cut; // something did not fit
+} text_t;
+
+text_t text_in(char *buffer, size_t capacity);
+__attribute__((format(printf, 2, 3))) void text_add(text_t *self, const char *format, ...);
+__attribute__((format(printf, 2, 0))) void text_add_list(text_t *self, const char *format, va_list arguments);
+
+// Replaces the buffer's text; returns false, so that a failing function can end with it.
+__attribute__((format(printf, 3, 4))) bool text_refuse(char *buffer, size_t capacity, const char *format, ...);
+
+// A whole decimal number, sign allowed, blanks around it allowed, nothing else; false when it is none or does not fit.
+bool text_number(const char *text, int32_t *value);
+
+#endif

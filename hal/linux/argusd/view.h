@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// One picture of robot, manager and link: what status lines and the screen show.
+#ifndef ARGUSD_VIEW_H
+#define ARGUSD_VIEW_H
+
+#include "argus/manager.h"
+#include "hal/link.h"
+
+#define VIEW_LINK_MAX 96
+
+// Holds no pointer of its own that outlives a process: the screen is another process.
+typedef struct {
+    uint64_t t_ms; // since argusd began
+    argus_status_t status;
+    char name[ARGUS_NAME_MAX];
+    char robot_class[ARGUS_NAME_MAX];
+    char subclass[ARGUS_NAME_MAX];
+    char link[VIEW_LINK_MAX];
+    bool link_up;
+    hal_link_counters_t counters;
+    uint32_t reopened;
+    uint32_t course_mm; // straight line from the start to the goal, 0 without a course
+} view_t;
+
+#endif

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Opens what a link spec names, and says why when it cannot.
+#include <stdio.h>
+
+#include "hal/link_spec.h"
+
+void hal_transport_init(hal_transport_t *self) {
+    hal_serial_init(&self->serial);
+    hal_tcp_init(&self->tcp);
+}
+
+hal_link_error_t hal_transport_open(hal_transport_t *self, const hal_link_spec_t *spec, int timeout_ms,
+                                    int cancel_fd, hal_link_t *link) {
+    hal_link_error_t error = HAL_LINK_OK;
+    if (spec->scheme == HAL_SCHEME_SERIAL) {
+        error = hal_serial_open(&self->serial, spec->path, spec->baud);
+    } else {
+        error = hal_tcp_open(&self->tcp, spec->host, spec->port, timeout_ms, cancel_fd);
+    }
+    if (error == HAL_LINK_OK) {
+        *link = spec->scheme == HAL_SCHEME_SERIAL ? hal_serial_link(&self->serial) : hal_tcp_link(&self->tcp);
+    }
+    return error;
+}
+
+void hal_transport_explain(const hal_link_spec_t *spec, hal_link_error_t error, char *text, size_t capacity) {
+    if (spec->scheme == HAL_SCHEME_SERIAL) {
+        hal_serial_explain(error, spec->path, text, capacity);
+        return;
+    }
+    const char *advice = "";
+    if (error == HAL_LINK_REFUSED) {
+        advice = "; start the robot's server or emulator, or check the port";
+    } else if (error == HAL_LINK_UNRESOLVED) {
+        advice = "; check the name or give the address";
+    } else if (error == HAL_LINK_TIMEOUT || error == HAL_LINK_UNREACHABLE) {
+        advice = "; check the network and that the robot is on";
+    }
+    snprintf(text, capacity, "%s port %u: %s%s", spec->host, (unsigned)spec->port, hal_link_error_text(error),
+             advice);
+}

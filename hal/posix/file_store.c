@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Store slots as files, replaced atomically.
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "hal/store.h"
+
+static hal_store_error_t error_of(int error_number) {
+    switch (error_number) {
+    case EACCES:
+    case EPERM:
+    case EROFS:
+        return HAL_STORE_DENIED;
+    case ENOENT:
+    case ENOTDIR:
+    case ENOSPC:
+    case EDQUOT:
+        return HAL_STORE_NO_PLACE;
+    default:
+        return HAL_STORE_IO;
+    }
+}
+
+bool hal_file_medium_init(hal_file_medium_t *self, const char *path) {
+    const size_t length = strlen(path);
+    if (length == 0 || length >= sizeof self->path) {
+        return false;
+    }
+    memset(self, 0, sizeof *self);
+    memcpy(self->path, path, length + 1);
+    return true;
+}
+
+static const char *slot_path(hal_file_medium_t *self, int slot) {
+    snprintf(self->target, sizeof self->target, "%s.%c", self->path, 'a' + slot);
+    return self->target;
+}
+
+static int slot_read(void *context, int slot, uint8_t *bytes, size_t capacity) {
+    const int fd = open(slot_path(context, slot), O_RDONLY | O_CLOEXEC);
+    if (fd < 0) {
+        return errno == ENOENT ? HAL_STORE_EMPTY : (int)error_of(errno);
+    }
+    size_t count = 0;
+    ssize_t got = 1;
+    while (got > 0 && count < capacity) {
+        got = read(fd, bytes + count, capacity - count);
+        if (got > 0) {
+            count += (size_t)got;
+        } else if (got < 0 && errno == EINTR) {
+            got = 1;
+        }
+    }
+    uint8_t more = 0;
+    const bool longer = got > 0 && read(fd, &more, 1) == 1;
+    close(fd);
+    if (got < 0) {
+        return HAL_STORE_IO;
+    }
+    return longer ? (int)HAL_STORE_DAMAGED : (int)count;
+}
+
+static int write_all(int fd, const uint8_t *bytes, size_t count) {
+    while (count > 0) {
+        const ssize_t written = write(fd, bytes, count);
+        if (written < 0 && errno != EINTR) {
+            return error_of(errno);
+        }
+        if (written > 0) {
+            bytes += written;
+            count -= (size_t)written;
+        }
+    }
+    return fsync(fd) == 0 ? HAL_STORE_OK : (int)error_of(errno);
+}
+
+// Without this the rename itself may be lost with the power.
+static int sync_folder(hal_file_medium_t *self) {
+    const char *const slash = strrchr(self->path, '/');
+    const size_t length = slash == NULL ? 0 : (size_t)(slash - self->path);
+    memcpy(self->scratch, self->path, length);
+    self->scratch[length] = '\0';
+    const char *const folder = slash == NULL ? "." : length == 0 ? "/" : self->scratch;
+    const int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0) {
+        return error_of(errno);
+    }
+    // Some file systems cannot sync a folder and say EINVAL: there is nothing more to be done then.
+    const int result = fsync(fd) == 0 || errno == EINVAL ? HAL_STORE_OK : (int)error_of(errno);
+    close(fd);
+    return result;
+}
+
+static int slot_write(void *context, int slot, const uint8_t *bytes, size_t count) {
+    hal_file_medium_t *const self = context;
+    snprintf(self->scratch, sizeof self->scratch, "%s.tmp", self->path);
+    const int fd = open(self->scratch, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
+    if (fd < 0) {
+        return error_of(errno);
+    }
+    int result = write_all(fd, bytes, count);
+    if (close(fd) != 0 && result == HAL_STORE_OK) {
+        result = error_of(errno);
+    }
+    if (result == HAL_STORE_OK && rename(self->scratch, slot_path(self, slot)) != 0) {
+        result = error_of(errno);
+    }
+    if (result != HAL_STORE_OK) {
+        unlink(self->scratch);
+        return result;
+    }
+    return sync_folder(self);
+}
+
+hal_medium_t hal_file_medium(hal_file_medium_t *self) {
+    static const hal_medium_ops_t ops = {.read = slot_read, .write = slot_write};
+    return (hal_medium_t){.ops = &ops, .context = self};
+}

@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: MIT
+"""The `argus-sim` command: one emulated P3-DX on a pseudo-terminal, a TCP port or a real UART."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+import os
+import re
+import signal
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from typing import Any, NoReturn
+
+import numpy as np
+
+from hil_sim.arcos import BAUD
+from hil_sim.body import BodyModel
+from hil_sim.errors import SimError
+from hil_sim.faults import Fault, FaultSet, fault_help, parse_fault
+from hil_sim.link_faults import LinkFaults
+from hil_sim.links import Link, Loop, PtyLink, SerialLink, TcpLink
+from hil_sim.robot import Log, Robot
+from hil_sim.scenario import SEED_MAX, Scenario, load_scenario
+from hil_sim.server import ArcosServer
+from hil_sim.sonar import SonarRing
+from hil_sim.truth import TruthRecord
+from hil_sim.world import Pose, World, load_world, world_names
+
+DEFAULT_TCP_HOST = "127.0.0.1"
+
+_EXAMPLES = """\
+examples:
+  argus-sim                                   one robot in the default world; prints the device to open
+  argus-sim --link-name /tmp/robot            the same behind a stable name
+  argus-sim --world lab --fault off:3@12s --truth truth.jsonl
+  argus-sim --tcp 8101                        as the vendor's emulator listens
+  argus-sim --serial /dev/ttyUSB0@9600        on a real UART
+
+The first line on standard output is the device path (or HOST:PORT), alone; all else goes to standard error.
+A pseudo-terminal takes 10 bit times a byte at the robot's rate and is garbled at any other.
+
+exit codes: 0 ended by a signal or --duration, 1 link cannot be opened or was lost, 2 wrong argument or file
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    """Reports a wrong argument in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print the line and leave with code 2."""
+        self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def _start(text: str) -> Pose:
+    parts = text.split(",")
+    try:
+        if len(parts) != 3:
+            raise ValueError
+        x, y, heading = (float(part) for part in parts)
+        if not all(map(math.isfinite, (x, y, heading))):
+            raise ValueError
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is not X,Y,DEG, for example 1000,500,90") from None
+    return Pose(x, y, heading)
+
+
+def _tcp(text: str) -> tuple[str, int]:
+    host, _, port = text.rpartition(":")
+    if not port.isdigit() or not 0 <= int(port) <= 65535:
+        raise argparse.ArgumentTypeError(f"'{text}' is not [HOST:]PORT with a port of 0 to 65535")
+    return host.strip("[]") or DEFAULT_TCP_HOST, int(port)
+
+
+def _serial(text: str) -> tuple[str, int]:
+    match = re.fullmatch(r"(.+)@(\d+)", text)
+    if not match or int(match[2]) not in BAUD.values():
+        rates = ", ".join(str(rate) for rate in BAUD.values())
+        raise argparse.ArgumentTypeError(f"'{text}' is not DEV@BAUD with a rate of {rates}")
+    return match[1], int(match[2])
+
+
+def _baud(text: str) -> int:
+    if not text.isdigit() or int(text) not in BAUD.values():
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is none of {', '.join(str(rate) for rate in BAUD.values())}"
+        )
+    return int(text)
+
+
+def _probability(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value <= 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a probability from 0 to 1")
+    return value
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 < value < 1e9:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds above 0")
+    return value
+
+
+def _label(text: str) -> str:
+    if not text or len(text) > 20 or not text.isascii() or not text.isprintable():
+        raise argparse.ArgumentTypeError(f"'{text}' is not 1 to 20 ASCII characters")
+    return text
+
+
+def _seed(text: str) -> int:
+    if not text.isdigit() or int(text) > SEED_MAX:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from 0 to {SEED_MAX}")
+    return int(text)
+
+
+def _fault(text: str) -> Fault:
+    try:
+        return parse_fault(text)
+    except SimError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the argument parser of `argus-sim`."""
+    result = _Parser(
+        prog="argus-sim",
+        description="Emulate a Pioneer P3-DX: ARCOS server, drive, odometry, sonars, bumpers, faults.",
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    place = result.add_argument_group("world and robot")
+    place.add_argument(
+        "--world", metavar="NAME|FILE", help=f"a world of ours or a .map file (default {Scenario.world})"
+    )
+    place.add_argument("--scenario", metavar="FILE", help="world, start, faults and more from a YAML file")
+    place.add_argument("--seed", type=_seed, metavar="N", help="seed of everything random (default 1)")
+    place.add_argument("--start", type=_start, metavar="X,Y,DEG", help="start pose, mm and degrees")
+    place.add_argument(
+        "--bumpers", type=int, choices=(0, 5), help="front bumper segments (default 5; 0: bare robot)"
+    )
+    place.add_argument(
+        "--name", type=_label, default="P3DX_0001", help="the robot's name (default %(default)s)"
+    )
+    place.add_argument(
+        "--subclass", type=_label, default="p3dx-sh", help="the subclass it announces (default %(default)s)"
+    )
+    faults = result.add_argument_group("faults")
+    faults.add_argument(
+        "--fault", type=_fault, action="append", default=[], metavar="SPEC", help="e.g. off:3@12s"
+    )
+    faults.add_argument(
+        "--crosstalk", type=_probability, metavar="P", help="probability of a crosstalk reading"
+    )
+    links = result.add_argument_group("link (default: a pseudo-terminal)").add_mutually_exclusive_group()
+    links.add_argument(
+        "--tcp", type=_tcp, metavar="[HOST:]PORT", help=f"listen on TCP (host {DEFAULT_TCP_HOST})"
+    )
+    links.add_argument("--serial", type=_serial, metavar="DEV@BAUD", help="serve on a real UART")
+    pty = result.add_argument_group("pseudo-terminal")
+    pty.add_argument("--link-name", metavar="PATH", help="symlink to the device, removed at the end")
+    pty.add_argument("--baud", type=_baud, metavar="N", help="the robot's rate (default 9600)")
+    rest = result.add_argument_group("other")
+    rest.add_argument("--truth", metavar="FILE", help="write what really happens as JSON lines")
+    rest.add_argument("--duration", type=_seconds, metavar="S", help="end after S seconds")
+    rest.add_argument("--list-worlds", action="store_true", help="list our worlds and leave")
+    rest.add_argument("--list-faults", action="store_true", help="list the fault kinds and leave")
+    rest.add_argument("-v", "--verbose", action="store_true", help="say more on standard error")
+    return result
+
+
+def _scenario(arguments: argparse.Namespace) -> Scenario:
+    """The scenario file with the command line laid over it."""
+    scenario = load_scenario(arguments.scenario) if arguments.scenario else Scenario()
+    changes: dict[str, Any] = {
+        name: value
+        for name, value in (
+            ("world", arguments.world),
+            ("seed", arguments.seed),
+            ("start", arguments.start),
+            ("bumpers", arguments.bumpers),
+        )
+        if value is not None
+    }
+    if arguments.crosstalk is not None:
+        changes["sonar"] = dataclasses.replace(scenario.sonar, crosstalk=arguments.crosstalk)
+    if arguments.fault:
+        changes["faults"] = (*scenario.faults, *arguments.fault)
+    return dataclasses.replace(scenario, **changes)
+
+
+def _link(arguments: argparse.Namespace, seed: int) -> tuple[Link, int]:
+    """The link asked for and the rate at which the robot starts."""
+    if arguments.tcp:
+        if arguments.link_name or arguments.baud:
+            raise SimError("--link-name and --baud are for a pseudo-terminal; leave them out with --tcp")
+        return TcpLink(*arguments.tcp), BAUD["B9600"]
+    if arguments.serial:
+        if arguments.link_name or arguments.baud:
+            raise SimError(
+                "--link-name and --baud are for a pseudo-terminal; give the rate as --serial DEV@BAUD"
+            )
+        return SerialLink(*arguments.serial), arguments.serial[1]
+    baud = arguments.baud or BAUD["B9600"]
+    return PtyLink(baud, arguments.link_name, seed), baud
+
+
+@contextmanager
+def _signals() -> Iterator[list[int]]:
+    """Collect SIGINT and SIGTERM; the wake-up pipe ends a sleep that one falls into."""
+    caught: list[int] = []
+    handlers = {
+        number: signal.signal(number, lambda n, _: caught.append(n))
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield caught
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+
+
+def _say(text: str) -> None:
+    print(f"argus-sim: {text}", file=sys.stderr, flush=True)
+
+
+def build_robot(scenario: Scenario, world: World, start: Pose, log: Log | None) -> Robot:
+    """Return a robot at `start` in `world` with all that the scenario gives it."""
+    body = BodyModel(world)
+    if body.contact(start, 0.0) is not None:
+        place = f"{start.x_mm:g},{start.y_mm:g},{start.heading_deg:g}"
+        raise SimError(f"start {place}: a solid of world {world.name} is there; choose another with --start")
+    # Streams of their own, so that one more draw in one place changes nothing elsewhere.
+    faults = FaultSet(scenario.faults, np.random.default_rng([scenario.seed, 1]))
+    ring = SonarRing(world, scenario.sonar, faults, np.random.default_rng([scenario.seed, 2]))
+    return Robot(
+        body,
+        ring,
+        start,
+        faults=faults if scenario.faults else None,
+        bumpers=scenario.bumpers,
+        seed=scenario.seed,
+        log=log,
+    )
+
+
+def _meta(scenario: Scenario, world: World, start: Pose) -> dict[str, Any]:
+    """What the truth record begins with: all that is needed to make the run again."""
+    return {
+        "world": world.name,
+        "world_file": scenario.world,
+        "seed": scenario.seed,
+        "start": [start.x_mm, start.y_mm, start.heading_deg],
+        "course": [list(point) for point in scenario.course],
+        "goal": list(scenario.goal) if scenario.goal else None,
+        "faults": [str(fault) for fault in scenario.faults],
+        "bumpers": scenario.bumpers,
+        "scenario": scenario.text(),
+    }
+
+
+def _serve(arguments: argparse.Namespace, scenario: Scenario, stack: ExitStack) -> None:
+    world = load_world(scenario.world)
+    start = scenario.start or world.start
+    log: Log | None = None
+    if arguments.truth:
+        log = stack.enter_context(TruthRecord(arguments.truth, _meta(scenario, world, start)))
+    robot = build_robot(scenario, world, start, log)
+    link, baud = _link(arguments, scenario.seed)
+    server = ArcosServer(robot, name=arguments.name, subclass=arguments.subclass, flash_baud=baud, log=log)
+    faults = LinkFaults(scenario.link_faults, scenario.seed, log) if scenario.link_faults else None
+    caught = stack.enter_context(_signals())
+    stack.callback(link.close)
+    link.open()
+    print(link.address, flush=True)
+    if arguments.verbose:
+        faults_text = ", ".join(map(str, scenario.faults)) or "none"
+        _say(f"world {world.name}, seed {scenario.seed}, faults: {faults_text}")
+    loop = Loop(server, link, faults)
+    if log is not None:
+        log("clock", {"t_s": loop.now_ms() / 1000, "wall_s": time.time()})
+    loop.run(lambda: bool(caught), arguments.duration and arguments.duration * 1000)
+    if arguments.verbose:
+        heard = server.unframer.counters
+        _say(f"{robot.now_ms / 1000:.1f} s, {server.sips} SIPs, {robot.collisions} collisions")
+        junk = f"{heard.bad_checksum} bad checksums, {heard.junk_bytes} junk bytes"
+        _say(f"heard {heard.packets} packets, {junk}")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run `argus-sim`; return its exit code."""
+    arguments = parser().parse_args(argv)
+    try:
+        if arguments.list_worlds:
+            print("\n".join(world_names()))
+        elif arguments.list_faults:
+            print(fault_help())
+        else:
+            with ExitStack() as stack:
+                _serve(arguments, _scenario(arguments), stack)
+    except SimError as error:
+        _say(str(error))
+        return error.exit_code
+    except BrokenPipeError:
+        # Nobody reads our output; the interpreter would complain once more while it closes it.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: MIT
+"""The ARCOS server: sessions, every command of a P3-DX, the packets that go back; in virtual time."""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, Final
+
+from hil_sim.arcos import (
+    BAUD_OF_CODE,
+    COMMAND,
+    DEFAULT,
+    TIMING,
+    Command,
+    SyncEcho,
+    SyncReply,
+    Unframer,
+    frame,
+)
+from hil_sim.motion import STEP_MS
+from hil_sim.robot import Log, Robot
+
+_SYNC0, _SYNC1, _SYNC2 = COMMAND["PULSE"], COMMAND["OPEN"], COMMAND["CLOSE"]
+_SIP_CYCLE_MS: Final = TIMING["SIP_CYCLE_MS"]
+_FLASH_BAUD: Final = BAUD_OF_CODE[DEFAULT["HOSTBAUD"]]
+
+# Run-time parameters that only show in the CONFIGpac, by the field in which they show.
+_CONFIG_FIELD: Final = {
+    COMMAND["ROTKP"]: "rot_kp",
+    COMMAND["ROTKV"]: "rot_kv",
+    COMMAND["ROTKI"]: "rot_ki",
+    COMMAND["TRANSKP"]: "trans_kp",
+    COMMAND["TRANSKV"]: "trans_kv",
+    COMMAND["TRANSKI"]: "trans_ki",
+    COMMAND["REVCOUNT"]: "rev_count",
+    COMMAND["TICKSMM"]: "ticks_mm",
+}
+
+
+class State(enum.Enum):
+    """Where a session stands."""
+
+    WAIT = "wait"
+    SYNCED = "synced"
+    CONNECTED = "connected"
+
+
+class ArcosServer:
+    """Speaks ARCOS for a `Robot`: `receive` bytes, `advance` time, collect `outgoing` packets.
+
+    Times are virtual milliseconds on the caller's axis and must not fall. `baud` is the rate the robot's side
+    of the wire has now; a link that has a wire follows it.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        *,
+        name: str = "P3DX_0001",
+        subclass: str = "p3dx-sh",
+        flash_baud: int = _FLASH_BAUD,
+        log: Log | None = None,
+    ) -> None:
+        """`flash_baud`: the rate at which the robot starts and to which it returns."""
+        self.robot = robot
+        self.name = name.encode("latin-1", "replace")[:20]
+        self.subclass = subclass.encode("latin-1", "replace")
+        self.log = log
+        self.state = State.WAIT
+        self.baud = self._flash_baud = flash_baud
+        self.unframer = Unframer(10_000 / flash_baud)
+        self.sips = 0
+        self._out: list[bytes] = []
+        self._synced = -1
+        self._next_sip_ms = 0
+        self._encoders = self._io = self._sim_stat = False
+        self._handlers = self._table()
+
+    # ---- the link's side
+
+    @property
+    def next_due_ms(self) -> float | None:
+        """When `advance` next has something to send by itself; None while waiting for a client."""
+        return float(self._next_sip_ms) if self.state is State.CONNECTED else None
+
+    def receive(self, data: bytes, now_ms: float) -> None:
+        """Take bytes that have arrived by now; answers are in `outgoing`."""
+        self.advance(now_ms)
+        for packet in self.unframer.feed(data, now_ms):
+            self._packet(packet)
+
+    def advance(self, now_ms: float) -> None:
+        """Let time pass up to now."""
+        if self.unframer.pending:
+            for packet in self.unframer.poll(now_ms):
+                self._packet(packet)
+        robot = self.robot
+        while robot.now_ms + STEP_MS <= now_ms:
+            robot.step()
+            if self.state is State.CONNECTED and robot.now_ms >= self._next_sip_ms:
+                self._next_sip_ms += _SIP_CYCLE_MS
+                self._send_sip()
+
+    def outgoing(self) -> list[bytes]:
+        """Return the packets sent since the last call, framed, oldest first."""
+        out, self._out = self._out, []
+        return out
+
+    # ---- sessions
+
+    def _packet(self, data: bytes) -> None:
+        command = Command.decode(data)
+        if self.state is State.CONNECTED:
+            self.robot.heard()
+            handler = self._handlers.get(command.number)
+            if handler:
+                handler(command)
+        else:
+            self._handshake(command)
+
+    def _handshake(self, command: Command) -> None:
+        number = command.number
+        if number == _SYNC0:
+            self._synced, self.state = _SYNC0, State.WAIT
+            self._send(SyncEcho(number).data)
+        elif self.state is State.SYNCED and number == _SYNC1:
+            self._open()
+        elif number == _SYNC1 and self._synced in (_SYNC0, _SYNC1):
+            self._synced = _SYNC1
+            self._send(SyncEcho(number).data)
+        elif number == _SYNC2 and self._synced in (_SYNC1, _SYNC2):
+            self._synced, self.state = _SYNC2, State.SYNCED
+            self._send(SyncReply(self.name, b"Pioneer", self.subclass).data)
+        elif number in (_SYNC1, _SYNC2):
+            self._synced, self.state = -1, State.WAIT
+        elif number == COMMAND["RESET"]:
+            self._end_session("reset")
+        elif number in (COMMAND["SIM_SET_POSE"], COMMAND["SIM_RESET"]):
+            self._handlers[number](command)
+
+    def _open(self) -> None:
+        self.state = State.CONNECTED
+        self.robot.open()
+        self._next_sip_ms = self.robot.now_ms + _SIP_CYCLE_MS
+        self._log("session", state="open")
+
+    def _end_session(self, reason: str) -> None:
+        was_open = self.state is State.CONNECTED
+        self.state, self._synced = State.WAIT, -1
+        self.baud = self._flash_baud
+        self._encoders = self._io = self._sim_stat = False
+        self.robot.close()
+        if was_open:
+            self._log("session", state="closed", reason=reason)
+
+    def _log(self, kind: str, **fields: Any) -> None:
+        if self.log is not None:
+            self.log(kind, {"t_s": self.robot.now_ms / 1000, **fields})
+
+    # ---- sending
+
+    def _send(self, data: bytes) -> None:
+        self._out.append(frame(data))
+
+    def _send_sip(self) -> None:
+        self.sips += 1
+        self._send(self.robot.sip().data)
+        if self._io:
+            self._send(self.robot.io_pac().data)
+        if self._encoders:
+            self._send(self.robot.encoder_pac().data)
+        if self._sim_stat:
+            self._send(self.robot.sim_stat().data)
+
+    # ---- commands
+
+    def _table(self) -> dict[int, Callable[[Command], None]]:
+        """Command number to what it does; any other is ignored, as by a robot without the part."""
+        robot = self.robot
+        unit = DEFAULT["VEL2_UNIT_MM_S"]
+        by_name: dict[str, Callable[[Command], None]] = {
+            "CLOSE": lambda c: self._end_session("close"),
+            "RESET": lambda c: self._end_session("reset"),
+            "POLLING": lambda c: robot.ring.set_polling(list(c.text)),
+            "ENABLE": lambda c: robot.enable(c.value != 0),
+            "SETA": lambda c: robot.set_accel(c.value),
+            "SETV": lambda c: robot.set_speed(c.value),
+            "SETO": lambda c: robot.set_origin(),
+            "MOVE": lambda c: robot.move(c.value),
+            "ROTATE": lambda c: robot.rvel(c.value),
+            "SETRV": lambda c: robot.set_turn_speed(c.value),
+            "VEL": lambda c: robot.vel(c.value),
+            "HEAD": lambda c: robot.head(c.value),
+            "DHEAD": lambda c: robot.dhead(c.value),
+            "DCHEAD": lambda c: robot.dchead(c.value),
+            "RVEL": lambda c: robot.rvel(c.value),
+            "SETRA": lambda c: robot.set_turn_accel(c.value),
+            "SONAR": lambda c: robot.sonar(c.value),
+            "STOP": lambda c: robot.stop(),
+            "VEL2": lambda c: robot.vel2(c.bytes_pair[0] * unit, c.bytes_pair[1] * unit),
+            "E_STOP": lambda c: robot.emergency_stop(),
+            "QSTOP": lambda c: robot.emergency_stop(),
+            "CONFIG": self._config,
+            "ENCODER": self._encoder,
+            "IOREQUEST": self._io_request,
+            "BUMPSTALL": lambda c: setattr(robot.settings, "bumpstall", c.value & 3),
+            "E_STALL": lambda c: setattr(robot.settings, "estall", c.value != 0),
+            "SONAR_CYCLE": lambda c: robot.sonar_cycle(c.value),
+            "HOSTBAUD": self._host_baud,
+            "DIGOUT": self._digout,
+            "ADSEL": lambda c: setattr(robot, "anport", c.value & 0xFF),
+            "BATTEST": lambda c: setattr(robot, "battery_test_dv", max(0, min(c.value, 255))),
+            "DRIFTFACTOR": lambda c: robot.settings.config.update(drift_factor=c.value),
+            "SIM_SET_POSE": self._sim_set_pose,
+            "SIM_RESET": lambda c: robot.reset_pose(),
+            "SIM_STAT": self._sim_stat_request,
+        }
+        table = {COMMAND[name]: handler for name, handler in by_name.items()}
+        table.update(dict.fromkeys(_CONFIG_FIELD, self._parameter))
+        return table
+
+    def _config(self, _command: Command) -> None:
+        codes = {baud: code for code, baud in BAUD_OF_CODE.items()}
+        packet = self.robot.config_pac(self.name, self.subclass)
+        self._send(replace(packet, host_baud=codes.get(self._flash_baud, 0)).data)
+
+    def _parameter(self, command: Command) -> None:
+        self.robot.settings.config[_CONFIG_FIELD[command.number]] = command.value & 0xFFFF
+
+    def _encoder(self, command: Command) -> None:
+        self._encoders = command.value > 1
+        if command.value == 1:
+            self._send(self.robot.encoder_pac().data)
+
+    def _io_request(self, command: Command) -> None:
+        self._io = command.value > 1
+        if command.value == 1:
+            self._send(self.robot.io_pac().data)
+
+    def _sim_stat_request(self, command: Command) -> None:
+        self._sim_stat = command.value > 1
+        if command.value == 1:
+            self._send(self.robot.sim_stat().data)
+
+    def _host_baud(self, command: Command) -> None:
+        self.baud = BAUD_OF_CODE.get(command.value, self.baud)
+
+    def _digout(self, command: Command) -> None:
+        word = command.value & 0xFFFF
+        mask = word >> 8
+        self.robot.digout = self.robot.digout & ~mask | word & mask
+
+    def _sim_set_pose(self, command: Command) -> None:
+        raw = command.argument
+        if len(raw) < 13:
+            return
+        x, y, th = (int.from_bytes(raw[k : k + 4], "little", signed=True) for k in (1, 5, 9))
+        self.robot.place(x, y, th)

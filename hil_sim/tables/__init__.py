@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: MIT
+"""Loader of the tables of numbers that the firmware and the emulator share."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from hil_sim.errors import SimError
+
+TABLE_DIR = Path(__file__).resolve().parent
+
+
+@cache
+def load(name: str) -> dict[str, Any]:
+    """Return table `name` ("arcos", "p3dx", "energy") as nested dictionaries; read once, not to be changed.
+
+    >>> load("arcos")["frame"]["HEADER0"] == 0xFA
+    True
+    """
+    path = TABLE_DIR / f"{name}.toml"
+    try:
+        with path.open("rb") as file:
+            return tomllib.load(file)
+    except OSError as error:
+        raise SimError(f"{path}: no such table ({error.strerror}); reinstall hil_sim") from error
+    except tomllib.TOMLDecodeError as error:
+        raise SimError(f"{path}: {error}; correct the table") from error
+
+
+def section(name: str, part: str) -> dict[str, int]:
+    """Return one section of a table whose values are all integers.
+
+    >>> section("arcos", "command")["SONAR_CYCLE"]
+    48
+    """
+    values = load(name)[part]
+    assert all(isinstance(value, int) for value in values.values())
+    result: dict[str, int] = values
+    return result

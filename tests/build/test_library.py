@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+"""Rule: firmware keeps no state, computes no floats, calls only memcpy, memset, memcmp, in layers."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+BUILDS = {"release": "", "cortex-m4": "arm-none-eabi-"}
+MEMORY = {"memcpy", "memset", "memcmp"}
+# What compilers call on their own account: 64-bit division and shifts where the machine has none, bit counts,
+# and the hardening that some distributions switch on by default.
+COMPILER = {
+    "cortex-m4": {
+        "__aeabi_ldivmod",
+        "__aeabi_uldivmod",
+        "__aeabi_lmul",
+        "__aeabi_llsl",
+        "__aeabi_llsr",
+        "__aeabi_lasr",
+        "__popcountsi2",
+        "__gnu_thumb1_case_uqi",
+    },
+    "release": {"__stack_chk_fail", "__memcpy_chk", "__memset_chk", "_GLOBAL_OFFSET_TABLE_", "__popcountdi2"},
+}
+FLOAT = re.compile(r"\b(?:float|double|_Complex|math\.h|float\.h|fenv\.h)\b")
+NO_CODE = re.compile(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'", re.DOTALL)
+
+
+def library(preset: str) -> Path:
+    path = ROOT / "build" / preset / "libargus.a"
+    assert path.exists(), f"{path} is missing: run tools/dev build release cortex-m4"
+    return path
+
+
+def binutil(preset: str, name: str, *arguments: str) -> str:
+    command = [BUILDS[preset] + name, *arguments, str(library(preset))]
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
+@pytest.mark.parametrize("preset", BUILDS)
+def test_data_and_bss_are_empty(preset: str) -> None:
+    rows = [line.split() for line in binutil(preset, "size", "-B", "-d").splitlines()[1:]]
+    assert rows, "the library is empty"
+    stateful = [(row[5], f"data {row[1]}", f"bss {row[2]}") for row in rows if row[1] != "0" or row[2] != "0"]
+    # A const table of pointers counts as data, since the loader writes its addresses: use arrays of char.
+    assert stateful == []
+
+
+@pytest.mark.parametrize("preset", BUILDS)
+def test_undefined_symbols(preset: str) -> None:
+    defined: set[str] = set()
+    wanted: set[str] = set()
+    for line in binutil(preset, "nm").splitlines():
+        match = re.fullmatch(r"(?:[0-9a-f]+| +) ?([A-Za-z]) (\S+)", line)
+        if match:
+            (wanted if match[1] in "Uvw" else defined).add(match[2])
+    assert "argus_init" in defined
+    assert wanted - defined - MEMORY - COMPILER[preset] == set()
+
+
+def test_sources_name_no_floating_point() -> None:
+    # The symbol test above sees arithmetic (soft float calls); this one sees constants that were folded.
+    found = []
+    for path in sorted((ROOT / "firmware").rglob("*.[ch]")):
+        code = NO_CODE.sub(lambda match: "\n" * match[0].count("\n"), path.read_text(encoding="utf-8"))
+        for number, line in enumerate(code.splitlines(), 1):
+            if FLOAT.search(line) or re.search(r"\b\d+\.\d*\b|\b\.\d+", line):
+                found.append(f"{path.relative_to(ROOT)}:{number}: {line.strip()}")
+    assert found == []
+
+
+def test_layers_point_one_way() -> None:
+    order = ["arcos", "knowledge", "awareness", "analysis", "adjustment", "task"]
+    firmware = ROOT / "firmware"
+    # A header belongs to the folder of the source of the same name.
+    layer = {path.stem: order.index(path.parent.name) for path in firmware.glob("*/*.c")}
+    assert set(layer.values()) == set(range(len(order)))
+    found = []
+    for path in sorted(firmware.rglob("*.[ch]")):
+        for included in re.findall(
+            r'#include "(?:argus/)?([a-z0-9_]+)\.h"', path.read_text(encoding="utf-8")
+        ):
+            if layer.get(included, -1) > layer.get(path.stem, len(order)):
+                found.append(f"{path.relative_to(ROOT)} includes {included}.h of a later layer")
+    assert found == []

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""Rule: generated headers are those of the tables; a bad table is refused with one line and exit code 2."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+HEADERS = Path("firmware/include/argus")
+TABLES = Path("hil_sim/tables")
+
+
+def generate(root: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, str(ROOT / "tools/gen_tables.py"), "--root", str(root), *arguments]
+    return subprocess.run(command, check=False, capture_output=True, text=True)
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    (tmp_path / HEADERS).mkdir(parents=True)
+    shutil.copytree(ROOT / TABLES, tmp_path / TABLES)
+    return tmp_path
+
+
+def test_checked_in_headers_are_current(tree: Path) -> None:
+    assert generate(tree).returncode == 0
+    for name in ("gen_p3dx.h", "gen_arcos.h"):
+        assert (ROOT / HEADERS / name).read_text() == (tree / HEADERS / name).read_text(), (
+            "run tools/gen_tables.py"
+        )
+
+
+def test_check_sees_every_changed_number(tree: Path) -> None:
+    generate(tree)
+    assert generate(tree, "--check").returncode == 0
+    table = tree / TABLES / "p3dx.toml"
+    front = tomllib.loads(table.read_text())["body"]["front_mm"]
+    text = table.read_text()
+    changed = text.replace(f"front_mm = {front}", f"front_mm = {front + 1}")
+    assert changed != text
+    table.write_text(changed)
+    done = generate(tree, "--check")
+    assert done.returncode == 1
+    assert "gen_p3dx.h" in done.stderr
+    assert "gen_arcos.h" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "expected"),
+    [
+        ("p3dx", "[body\n", "p3dx.toml: not valid TOML"),
+        ("p3dx", "[body]\nfront_mm = 1\n", "no [[sonar.pose]] entries"),
+        ("p3dx", "[[sonar.pose]]\nnumber = 1\nx_mm = 1\ny_mm = 1\nheading_deg = 1\n", "number must be 0"),
+        (
+            "p3dx",
+            "[[sonar.pose]]\nnumber = 0\nx_mm = 1.5\ny_mm = 1\nheading_deg = 1\n",
+            "x_mm must be an integer",
+        ),
+        ("arcos", "[command]\nPULSE = 0\n", "section [type] is missing"),
+        ("arcos", None, "no such table"),
+    ],
+)
+def test_bad_table_is_refused(tree: Path, name: str, text: str | None, expected: str) -> None:
+    table = tree / TABLES / f"{name}.toml"
+    table.unlink()
+    if text is not None:
+        table.write_text(text)
+    done = generate(tree)
+    assert done.returncode == 2
+    lines = done.stderr.splitlines()
+    assert len(lines) == 1
+    assert expected in lines[0]
+    assert f"{name}.toml" in lines[0]

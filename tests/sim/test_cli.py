@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: MIT
+"""Rule: argus-sim prints the address alone, serves it, cleans up when told to end, and refuses bad input in
+one line with exit code 2."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from doubles import Port, cmd, connect, sips
+
+from hil_sim.arcos import Packet, Sip
+
+ROOT = Path(__file__).parents[2]
+WORLD = "demo"
+
+
+def command(*arguments: str) -> list[str]:
+    return [sys.executable, "-m", "hil_sim.cli", *arguments]
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command(*arguments), cwd=ROOT, capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+@contextlib.contextmanager
+def simulator(*arguments: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    process = subprocess.Popen(
+        command(*arguments), cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        assert process.stdout is not None
+        yield process, process.stdout.readline().strip()
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def end(process: subprocess.Popen[str], number: int) -> tuple[int, str, str]:
+    process.send_signal(number)
+    out, error = process.communicate(timeout=20)
+    return process.returncode, out, error
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_robot_on_a_pty_with_link_name_and_truth(tmp_path: Path, number: int) -> None:
+    link, truth = tmp_path / "robot", tmp_path / "truth.jsonl"
+    with simulator("--world", WORLD, "--link-name", str(link), "--truth", str(truth)) as (process, path):
+        assert str(link.readlink()) == path
+        port = Port(str(link))
+        connect(port)
+        port.send(cmd("ENABLE", 1))
+        port.send(cmd("VEL", 100))
+        got = sips(port.read(20, 15))
+        port.send(cmd("CLOSE", 1))
+        port.read(0.5)
+        port.close()
+        assert len(got) >= 15
+        assert got[-1].type == 0x33
+        assert {n for packet in got for n, _ in packet.sonars} == set(range(16))
+        code, out, error = end(process, number)
+    assert (code, out, error) == (0, "", "")
+    assert not os.path.lexists(link)
+    records = [json.loads(line) for line in truth.read_text().splitlines()]
+    assert records[0]["type"] == "meta"
+    assert records[0]["world"] == WORLD
+    kinds = {record["type"] for record in records}
+    assert {"state", "sonar", "session"} <= kinds
+    assert [r["state"] for r in records if r["type"] == "session"] == ["open", "closed"]
+    states = [record for record in records if record["type"] == "state"]
+    assert [round(b["t_s"] - a["t_s"], 3) for a, b in itertools.pairwise(states)] == [0.1] * (len(states) - 1)
+    assert max(state["x_mm"] for state in states) > 50
+    assert states[-1]["energy_j"]["total"] > states[0]["energy_j"]["total"]
+
+
+def test_a_robot_on_tcp_shows_its_injected_faults(tmp_path: Path) -> None:
+    import socket
+
+    from hil_sim.arcos import Unframer, decode
+
+    truth = tmp_path / "truth.jsonl"
+    faults = ["--fault", "off:3", "--fault", "bumper:2@0.5s-90s"]
+    with simulator("--world", WORLD, "--tcp", "0", *faults, "--truth", str(truth)) as (process, address):
+        host, _, number = address.rpartition(":")
+        client = socket.create_connection((host, int(number)), timeout=20)
+        unframer = Unframer()
+        got: list[Packet] = []
+        client.sendall(cmd("PULSE") + cmd("OPEN") + cmd("CLOSE") + cmd("OPEN"))
+        while len(sips(got)) < 12:
+            data = client.recv(4096)
+            assert data
+            got += [decode(item) for item in unframer.feed(data)]
+        client.close()
+        assert end(process, signal.SIGTERM)[0] == 0
+    packets: list[Sip] = sips(got)
+    third = [value for packet in packets for n, value in packet.sonars if n == 3]
+    assert third
+    assert set(third) == {5000}
+    assert packets[-1].front_bumpers == 0b100
+    records = [json.loads(line) for line in truth.read_text().splitlines()]
+    begun = [(r["kind"], r["sonars"], r["active"]) for r in records if r["type"] == "fault"]
+    assert ("off", [3], True) in begun
+    assert ("bumper", [], True) in begun
+    assert {r["fault"] for r in records if r["type"] == "sonar" and r["sonar"] == 3} == {"off"}
+
+
+def test_the_duration_ends_it() -> None:
+    started = time.monotonic()
+    result = run("--world", WORLD, "--duration", "0.5", "-v")
+    assert result.returncode == 0
+    assert time.monotonic() - started > 0.5
+    assert result.stdout.startswith("/dev/")
+    assert result.stdout.count("\n") == 1
+    assert "0 collisions" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["--baud", "1234"], "9600"),
+        (["--baud", "x"], "9600"),
+        (["--world", "nowhere"], "nowhere"),
+        (["--world", "missing.map"], "missing.map"),
+        (["--scenario", "missing.yaml"], "missing.yaml"),
+        (["--start", "1,2"], "X,Y,DEG"),
+        (["--start", "a,b,c"], "X,Y,DEG"),
+        (["--start", "nan,0,0"], "X,Y,DEG"),
+        (
+            ["--world", WORLD, "--start", "1e9,0,0", "--truth", "/nonexistent/dir/file"],
+            "/nonexistent/dir/file",
+        ),
+        (["--tcp", "http"], "PORT"),
+        (["--tcp", "99999"], "PORT"),
+        (["--serial", "/dev/ttyUSB0"], "DEV@BAUD"),
+        (["--serial", "/dev/ttyUSB0@77"], "DEV@BAUD"),
+        (["--tcp", "8101", "--serial", "/dev/x@9600"], "not allowed"),
+        (["--world", WORLD, "--tcp", "0", "--link-name", "/tmp/x"], "--link-name"),
+        (["--bumpers", "3"], "--bumpers"),
+        (["--seed", "-1"], "--seed"),
+        (["--fault", "explode:3"], "explode"),
+        (["--fault", "off:99"], "99"),
+        (["--crosstalk", "2"], "0 to 1"),
+        (["--duration", "0"], "above 0"),
+        (["--name", "x" * 21], "--name"),
+        (["--subclass", "\u2603"], "--subclass"),
+        (["--speed", "2"], "--speed"),
+        (["--world", WORLD, "--link-name", "/nonexistent/dir/robot"], "--link-name"),
+    ],
+    ids=lambda value: " ".join(value)[:30] if isinstance(value, list) else None,
+)
+def test_bad_arguments_are_one_line_and_exit_2(arguments: list[str], word: str) -> None:
+    result = run(*arguments, "--duration", "0.1") if "--duration" not in arguments else run(*arguments)
+    assert result.returncode == 2, result.stderr
+    assert result.stdout == ""
+    assert result.stderr.count("\n") == 1, result.stderr
+    assert word in result.stderr
+
+
+def test_links_that_cannot_be_opened_exit_1() -> None:
+    import socket
+
+    with socket.create_server(("127.0.0.1", 0)) as busy:
+        result = run("--world", WORLD, "--tcp", str(busy.getsockname()[1]))
+    assert (result.returncode, result.stderr.count("\n")) == (1, 1)
+    result = run("--world", WORLD, "--serial", "/dev/nonexistent@9600")
+    assert (result.returncode, result.stderr.count("\n")) == (1, 1)
+    assert "/dev/nonexistent" in result.stderr
+
+
+def test_help_and_lists() -> None:
+    help_text = run("--help").stdout
+    assert "examples:" in help_text
+    assert "exit codes:" in help_text
+    assert WORLD in run("--list-worlds").stdout.split()
+    assert "intermittent" in run("--list-faults").stdout
+
+
+def test_a_start_inside_a_solid_is_refused() -> None:
+    listing = json.dumps(run("--world", WORLD, "--start", "0,0,0", "--duration", "0.1").returncode)
+    assert listing == "0"
+    from hil_sim.world import load_world
+
+    x1, y1, x2, y2 = load_world(WORLD).segments[0]
+    middle = f"{(x1 + x2) / 2:.0f},{(y1 + y2) / 2:.0f},0"
+    result = run("--world", WORLD, f"--start={middle}", "--duration", "0.1")
+    assert result.returncode == 2
+    assert "--start" in result.stderr
+
+
+def test_the_same_seed_gives_the_same_noise(tmp_path: Path) -> None:
+    def readings(seed: int) -> list[tuple[int, int]]:
+        from hil_sim.body import BodyModel
+        from hil_sim.cli import build_robot
+        from hil_sim.robot import Robot
+        from hil_sim.scenario import Scenario
+        from hil_sim.world import load_world
+
+        world = load_world(WORLD)
+        robot: Robot = build_robot(Scenario(world=WORLD, seed=seed), world, world.start, None)
+        assert isinstance(robot.body, BodyModel)
+        robot.open()
+        got: list[tuple[int, int]] = []
+        for _ in range(20):
+            robot.advance(100)
+            got += robot.sip().sonars
+        return got
+
+    assert readings(5) == readings(5)
+    assert readings(5) != readings(6)

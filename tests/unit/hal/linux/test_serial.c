@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// Attacks: on a real pty a serial link is raw, exclusive, of the asked rate, notices the far end's death, and
+// leaves the settings as it found them.
+#include <fcntl.h>
+#include <pty.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "hal/serial.h"
+#include "unity.h"
+
+static hal_serial_t serial;
+static hal_link_t link_;
+static int master;
+static int slave; // held open, as the emulator does, so that settings outlive the client
+static char name[64];
+
+void setUp(void) {
+    TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, name, NULL, NULL));
+    fcntl(master, F_SETFL, O_NONBLOCK);
+    hal_serial_init(&serial);
+    link_ = hal_serial_link(&serial);
+}
+
+void tearDown(void) {
+    hal_link_close(&link_);
+    close(master);
+    close(slave);
+}
+
+void test_every_byte_value_passes_unchanged_both_ways(void) {
+    uint8_t all[256];
+    uint8_t got[256] = {0};
+    for (int i = 0; i < 256; i++) {
+        all[i] = (uint8_t)i;
+    }
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_serial_open(&serial, name, 9600));
+    TEST_ASSERT_EQUAL_INT(256, hal_link_write(&link_, all, 256));
+    TEST_ASSERT_EQUAL_INT(256, read(master, got, 256));
+    TEST_ASSERT_EQUAL_MEMORY(all, got, 256);
+    memset(got, 0, sizeof got);
+    TEST_ASSERT_EQUAL_INT(256, write(master, all, 256));
+    int count = 0;
+    while (count < 256) {
+        const int more = hal_link_read(&link_, got + count, sizeof got - (size_t)count);
+        TEST_ASSERT_TRUE(more >= 0);
+        count += more;
+    }
+    TEST_ASSERT_EQUAL_MEMORY(all, got, 256);
+    TEST_ASSERT_EQUAL_INT(0, hal_link_read(&link_, got, sizeof got));
+}
+
+void test_every_rate_is_set_and_others_are_refused(void) {
+    static const struct {
+        uint32_t baud;
+        speed_t speed;
+    } rates[] = {{9600, B9600}, {19200, B19200}, {38400, B38400}, {57600, B57600}, {115200, B115200}};
+    TEST_ASSERT_EQUAL_UINT8(5, hal_baud_count);
+    for (int i = 0; i < 5; i++) {
+        struct termios now;
+        TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_serial_open(&serial, name, rates[i].baud));
+        tcgetattr(slave, &now);
+        TEST_ASSERT_EQUAL_UINT32(rates[i].speed, cfgetospeed(&now));
+        TEST_ASSERT_EQUAL_UINT32(rates[i].speed, cfgetispeed(&now));
+        TEST_ASSERT_EQUAL_UINT32(0, now.c_lflag & (ICANON | ECHO | ISIG));
+        TEST_ASSERT_EQUAL_UINT32(0, now.c_cflag & (PARENB | CSTOPB | CRTSCTS));
+        TEST_ASSERT_EQUAL_UINT32(CS8, now.c_cflag & CSIZE);
+        TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_serial_set_baud(&serial, rates[4 - i].baud));
+        tcgetattr(slave, &now);
+        TEST_ASSERT_EQUAL_UINT32(rates[4 - i].speed, cfgetospeed(&now));
+        hal_link_close(&link_);
+    }
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_BAD_BAUD, hal_serial_open(&serial, name, 4800));
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_NOT_OPEN, hal_serial_set_baud(&serial, 9600));
+}
+
+void test_settings_are_put_back(void) {
+    struct termios before;
+    struct termios after;
+    tcgetattr(slave, &before);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_serial_open(&serial, name, 115200));
+    hal_link_close(&link_);
+    hal_link_close(&link_);
+    tcgetattr(slave, &after);
+    TEST_ASSERT_EQUAL_UINT32(before.c_lflag, after.c_lflag);
+    TEST_ASSERT_EQUAL_UINT32(before.c_iflag, after.c_iflag);
+    TEST_ASSERT_EQUAL_UINT32(before.c_cflag, after.c_cflag);
+    TEST_ASSERT_EQUAL_UINT32(cfgetospeed(&before), cfgetospeed(&after));
+}
+
+void test_a_second_user_is_refused_and_leaves_the_first_alone(void) {
+    static hal_serial_t second;
+    struct termios now;
+    hal_serial_init(&second);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_serial_open(&serial, name, 38400));
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_BUSY, hal_serial_open(&second, name, 9600));
+    tcgetattr(slave, &now);
+    TEST_ASSERT_EQUAL_UINT32(B38400, cfgetospeed(&now));
+    hal_link_close(&link_);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_serial_open(&second, name, 9600));
+    const hal_link_t other = hal_serial_link(&second);
+    hal_link_close(&other);
+}
+
+void test_a_killed_holder_does_not_lock_the_port(void) {
+    int ready[2];
+    TEST_ASSERT_EQUAL_INT(0, pipe(ready));
+    const pid_t child = fork();
+    if (child == 0) {
+        const uint8_t result = hal_serial_open(&serial, name, 9600) == HAL_LINK_OK;
+        (void)!write(ready[1], &result, 1);
+        pause();
+        _exit(0);
+    }
+    uint8_t opened = 0;
+    TEST_ASSERT_EQUAL_INT(1, read(ready[0], &opened, 1));
+    TEST_ASSERT_EQUAL_UINT8(1, opened);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_BUSY, hal_serial_open(&serial, name, 9600));
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+    // Not as root: root may open an exclusive terminal anyway.
+    const pid_t user = fork();
+    if (user == 0) {
+        const int changed =
+            getuid() != 0 || (fchmod(slave, 0666) == 0 && setgid(65534) == 0 && setuid(65534) == 0);
+        _exit(changed && hal_serial_open(&serial, name, 9600) == HAL_LINK_OK ? 0 : 1);
+    }
+    int status = 0;
+    waitpid(user, &status, 0);
+    TEST_ASSERT_EQUAL_INT(0, status);
+    close(ready[0]);
+    close(ready[1]);
+}
+
+void test_what_waited_before_opening_is_thrown_away(void) {
+    uint8_t bytes[16];
+    struct termios raw;
+    tcgetattr(slave, &raw);
+    cfmakeraw(&raw);
+    tcsetattr(slave, TCSANOW, &raw);
+    TEST_ASSERT_EQUAL_INT(5, write(master, "stale", 5));
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_serial_open(&serial, name, 9600));
+    TEST_ASSERT_EQUAL_INT(0, hal_link_read(&link_, bytes, sizeof bytes));
+}
+
+void test_death_of_the_far_end_is_noticed(void) {
+    uint8_t bytes[16];
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_serial_open(&serial, name, 9600));
+    close(master);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_GONE, hal_link_read(&link_, bytes, sizeof bytes));
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_GONE, hal_link_write(&link_, (const uint8_t *)"x", 1));
+    master = open("/dev/null", O_RDONLY);
+}
+
+void test_a_full_port_takes_no_part_of_a_packet_as_lost(void) {
+    uint8_t packet[200];
+    uint32_t taken = 0;
+    memset(packet, 0xAB, sizeof packet);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_serial_open(&serial, name, 9600));
+    while (hal_link_write(&link_, packet, sizeof packet) > 0) {
+        taken += sizeof packet;
+        TEST_ASSERT_LESS_THAN_UINT32(10000000, taken);
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(0, hal_link_counters(&link_).would_block);
+    uint32_t got = 0;
+    for (int idle = 0; idle < 1000;) {
+        const ssize_t more = read(master, packet, sizeof packet);
+        got += more > 0 ? (uint32_t)more : 0;
+        idle = more > 0 ? 0 : idle + 1;
+        TEST_ASSERT_TRUE(hal_link_flush(&link_) >= 0);
+    }
+    TEST_ASSERT_EQUAL_UINT32(taken, got);
+}
+
+void test_wrong_kinds_of_file(void) {
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_NOT_FOUND, hal_serial_open(&serial, "/dev/no-such-port", 9600));
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_NOT_SERIAL, hal_serial_open(&serial, "/dev/null", 9600));
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_NOT_SERIAL, hal_serial_open(&serial, "/tmp", 9600));
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_BAD_ARGUMENT, hal_serial_open(&serial, "", 9600));
+    TEST_ASSERT_EQUAL_INT(-1, hal_link_fd(&link_));
+}
+
+void test_explanations_say_what_to_do(void) {
+    char text[512];
+    hal_serial_explain(HAL_LINK_NOT_FOUND, "/dev/ttyUSB7", text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "/dev/ttyUSB7: no such file; "), text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "/dev/"), text);
+    hal_serial_explain(HAL_LINK_DENIED, "/dev/ttyUSB7", text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "sudo usermod -aG dialout"), text);
+    hal_serial_explain(HAL_LINK_BAD_BAUD, name, text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, HAL_BAUD_LIST), text);
+    hal_serial_explain(HAL_LINK_NOT_SERIAL, "/dev/null", text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "not a serial port"), text);
+    char small[12] = "xxxxxxxxxxx";
+    hal_serial_explain(HAL_LINK_NOT_FOUND, "/dev/ttyUSB7", small, sizeof small - 1);
+    TEST_ASSERT_EQUAL_STRING("/dev/ttyUS", small);
+}
+
+void test_busy_names_the_process_that_holds_the_port(void) {
+    char text[512];
+    const pid_t child = fork();
+    if (child == 0) {
+        pause();
+        _exit(0);
+    }
+    // The child inherited the slave.
+    hal_serial_explain(HAL_LINK_BUSY, name, text, sizeof text);
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+    char expected[32];
+    snprintf(expected, sizeof expected, "process %d (", (int)child);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, expected), text);
+}

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Attacks: a parsed spec opens the transport that it names, and a failure is explained on one line.
+#include <pty.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "hal/link_spec.h"
+#include "unity.h"
+
+static hal_transport_t transport;
+static hal_link_spec_t spec;
+static char message[512];
+
+static void parse(const char *text) {
+    hal_transport_init(&transport);
+    TEST_ASSERT_TRUE(hal_link_spec_parse(&spec, text, message, sizeof message));
+}
+
+static void explained(hal_link_error_t error, const char *part) {
+    hal_transport_explain(&spec, error, message, sizeof message);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(message, part), message);
+    TEST_ASSERT_NULL(strchr(message, '\n'));
+}
+
+void test_serial_spec_opens_the_port(void) {
+    char name[64];
+    char text[96];
+    int master = -1;
+    int slave = -1;
+    hal_link_t link = {0};
+    TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, name, NULL, NULL));
+    snprintf(text, sizeof text, "serial:%s@38400", name);
+    parse(text);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_transport_open(&transport, &spec, 100, -1, &link));
+    TEST_ASSERT_EQUAL_STRING(text, hal_link_describe(&link));
+    hal_link_close(&link);
+    close(master);
+    close(slave);
+}
+
+void test_failures_are_explained(void) {
+    hal_link_t link = {0};
+    parse("serial:/dev/no-such-port");
+    const hal_link_error_t missing = hal_transport_open(&transport, &spec, 100, -1, &link);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_NOT_FOUND, missing);
+    TEST_ASSERT_NULL(link.ops);
+    explained(missing, "/dev/no-such-port: no such file");
+    parse("tcp:127.0.0.1:1");
+    const hal_link_error_t refused = hal_transport_open(&transport, &spec, 100, -1, &link);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_REFUSED, refused);
+    explained(refused, "127.0.0.1 port 1: nobody listens there; start the robot's server");
+    explained(HAL_LINK_UNRESOLVED, "check the name");
+    explained(HAL_LINK_TIMEOUT, "check the network");
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Attacks: every form of a link spec is understood, every malformed one is refused with a line that says what
+// to write.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/link_spec.h"
+#include "unity.h"
+
+static hal_link_spec_t spec;
+static char message[256];
+
+static bool parse(const char *text) {
+    message[0] = '\0';
+    return hal_link_spec_parse(&spec, text, message, sizeof message);
+}
+
+static void refused(const char *text, const char *part) {
+    TEST_ASSERT_FALSE_MESSAGE(parse(text), text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(message, part), message);
+    TEST_ASSERT_NULL_MESSAGE(strchr(message, '\n'), message);
+}
+
+static void serial(const char *text, const char *path, uint32_t baud, bool has_baud) {
+    TEST_ASSERT_TRUE_MESSAGE(parse(text), message);
+    TEST_ASSERT_EQUAL_INT(HAL_SCHEME_SERIAL, spec.scheme);
+    TEST_ASSERT_EQUAL_STRING(path, spec.path);
+    TEST_ASSERT_EQUAL_UINT32(baud, spec.baud);
+    TEST_ASSERT_EQUAL_INT(has_baud, spec.has_baud);
+}
+
+static void tcp(const char *text, const char *host, uint16_t port) {
+    TEST_ASSERT_TRUE_MESSAGE(parse(text), message);
+    TEST_ASSERT_EQUAL_INT(HAL_SCHEME_TCP, spec.scheme);
+    TEST_ASSERT_EQUAL_STRING(host, spec.host);
+    TEST_ASSERT_EQUAL_UINT16(port, spec.port);
+}
+
+void test_serial_forms(void) {
+    serial("serial:/dev/ttyUSB0@9600", "/dev/ttyUSB0", 9600, true);
+    serial("serial:/dev/ttyUSB0", "/dev/ttyUSB0", 9600, false);
+    serial("serial:/dev/ttyS1@115200", "/dev/ttyS1", 115200, true);
+    serial("serial:rel/pty@38400", "rel/pty", 38400, true);
+    serial("serial:/dev/serial/by-id/usb-Prolific_2303-if00-port0@57600",
+           "/dev/serial/by-id/usb-Prolific_2303-if00-port0", 57600, true);
+    serial("serial:/dev/ttyUSB0@19200", "/dev/ttyUSB0", 19200, true);
+    serial("serial:/tmp/a@b/pty", "/tmp/a@b/pty", 9600, false);
+    serial("serial:/tmp/a@b/pty@9600", "/tmp/a@b/pty", 9600, true);
+}
+
+void test_tcp_forms(void) {
+    tcp("tcp:robot:9000", "robot", 9000);
+    tcp("tcp:robot", "robot", HAL_TCP_PORT_DEFAULT);
+    tcp("tcp:127.0.0.1:1", "127.0.0.1", 1);
+    tcp("tcp:[::1]:65535", "::1", 65535);
+    tcp("tcp:[fe80::1]", "fe80::1", HAL_TCP_PORT_DEFAULT);
+}
+
+void test_refusals_say_what_to_write(void) {
+    refused("", "unknown scheme");
+    refused("udp:robot:1", "serial:/dev/ttyUSB0@9600 or tcp:HOST:8101");
+    refused("/dev/ttyUSB0", "write serial:/dev/ttyUSB0");
+    refused("serial:", "no port is named");
+    refused("serial:@9600", "no port is named");
+    refused("serial:/dev/ttyUSB0@9601", "9600, 19200, 38400, 57600, 115200");
+    refused("serial:/dev/ttyUSB0@", "'' is not a rate");
+    refused("serial:/dev/ttyUSB0@9600x", "'9600x' is not a rate");
+    refused("serial:/dev/ttyUSB0@-9600", "is not a rate");
+    refused("serial:/dev/ttyUSB0@99999999999999999999", "is not a rate");
+    refused("tcp:", "no host is named");
+    refused("tcp::8101", "no host is named");
+    refused("tcp:robot:", "port after ':' is missing");
+    refused("tcp:robot:0", "from 1 to 65535");
+    refused("tcp:robot:65536", "from 1 to 65535");
+    refused("tcp:robot:80 ", "is not a port");
+    refused("tcp:robot:http", "is not a port");
+    refused("tcp:::1:8101", "in brackets");
+    refused("tcp:[::1", "in brackets");
+    refused("tcp:[::1]8101", "in brackets");
+    refused("tcp:[]:8101", "no host is named");
+}
+
+void test_too_long_names_are_refused(void) {
+    char text[600];
+    memset(text, 'a', sizeof text);
+    text[sizeof text - 1] = '\0';
+    memcpy(text, "serial:", 7);
+    refused(text, "longer than");
+    memcpy(text, "tcp:aaa", 7);
+    refused(text, "longer than");
+}
+
+void test_any_text_is_survived_and_messages_fit(void) {
+    srand(7);
+    for (int round = 0; round < 100000; round++) {
+        char text[48];
+        static const char alphabet[] = "serialtcp:/@[]0123456789.\xff%";
+        const int length = rand() % (int)(sizeof text - 1);
+        for (int i = 0; i < length; i++) {
+            text[i] = alphabet[rand() % (int)(sizeof alphabet - 1)];
+        }
+        text[length] = '\0';
+        const char *const heads[] = {"", "serial:", "tcp:", "tcp:["};
+        char whole[64];
+        char small[16];
+        snprintf(whole, sizeof whole, "%s%s", heads[round % 4], text);
+        small[15] = 'x';
+        if (!hal_link_spec_parse(&spec, whole, small, 15)) {
+            TEST_ASSERT_LESS_THAN_size_t(15, strlen(small));
+        }
+        TEST_ASSERT_EQUAL_CHAR('x', small[15]);
+    }
+}

@@ -1,0 +1,604 @@
+// SPDX-License-Identifier: MIT
+// The robot in memory, and what it holds against the manager at every packet.
+#include "robot.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define TICK_MS 10u
+#define TICK_S 0.01
+#define SIP_MS 100u
+#define PING_MS 40u
+#define TRACK_MM 330.0
+#define DEG (3.14159265358979323846 / 180.0)
+#define SWING_MM 370.0
+
+static void complain(robot_t *robot, const char *what, int value) {
+    if (robot->violation[0] == '\0') {
+        snprintf(robot->violation, sizeof robot->violation, "t %u ms, mode %s: %s (%d)", (unsigned)robot->t_ms,
+                 argus_mode_name(robot->argus.mode), what, value);
+    }
+}
+
+uint32_t robot_random(robot_t *robot, uint32_t below) {
+    robot->seed ^= robot->seed << 13;
+    robot->seed ^= robot->seed >> 17;
+    robot->seed ^= robot->seed << 5;
+    return below == 0 ? 0 : robot->seed % below;
+}
+
+argus_config_t robot_config(void) {
+    argus_config_t config;
+    argus_config_default(&config);
+    return config;
+}
+
+static void power_up(robot_t *robot) {
+    robot->phase = 0;
+    robot->motors = false;
+    robot->sonar_on = false;
+    robot->moving = robot->turning = false;
+    robot->setv = 750;
+    robot->accel = robot->decel = 300;
+    robot->setrv = robot->setra = 100 * DEG;
+    for (int array = 0; array < 2; array++) {
+        robot->order_count[array] = 8;
+        robot->order_at[array] = 0;
+        for (int i = 0; i < 8; i++) {
+            robot->order[array][i] = (uint8_t)(array * 8 + i);
+        }
+    }
+    for (int i = 0; i < 16; i++) {
+        robot->pending[i] = -1;
+    }
+}
+
+void robot_init(robot_t *robot, const argus_config_t *config, uint32_t start_ms) {
+    memset(robot, 0, sizeof *robot);
+    robot->start_ms = start_ms;
+    robot->subclass = "p3dx-sh";
+    robot->unit_mm = 1.0;
+    robot->position_mask = 0xFFFF;
+    robot->world = robot_world_far;
+    robot->seed = 2463534242u;
+    robot->closest_mm = 1e9;
+    power_up(robot);
+    for (int i = 0; i < 16; i++) {
+        robot->shown[i] = -1;
+    }
+    argus_init(&robot->argus, config, start_ms);
+    argus_link_up(&robot->argus, start_ms);
+}
+
+int robot_world_far(const robot_t *robot, int sonar) {
+    (void)robot;
+    (void)sonar;
+    return 2000;
+}
+
+void robot_box(robot_t *robot, double x1, double y1, double x2, double y2) {
+    const double wall[4][4] = {{x1, y1, x2, y1}, {x2, y1, x2, y2}, {x2, y2, x1, y2}, {x1, y2, x1, y1}};
+    memcpy(robot->segment[robot->segments], wall, sizeof wall);
+    robot->segments += 4;
+}
+
+static double ray(const robot_t *robot, double x, double y, double angle) {
+    double best = 1e9;
+    const double dx = cos(angle), dy = sin(angle);
+    for (int i = 0; i < robot->segments; i++) {
+        const double *s = robot->segment[i];
+        const double ex = s[2] - s[0], ey = s[3] - s[1];
+        const double det = dx * ey - dy * ex;
+        if (fabs(det) > 1e-9) {
+            const double range = ((s[0] - x) * ey - (s[1] - y) * ex) / det;
+            const double along = ((s[0] - x) * dy - (s[1] - y) * dx) / det;
+            if (range >= 0 && along >= 0 && along <= 1 && range < best) {
+                best = range;
+            }
+        }
+    }
+    return best;
+}
+
+int robot_world_segments(const robot_t *robot, int sonar) {
+    const argus_sonar_pose_t *at = &argus_sonar_pose[sonar];
+    const double c = cos(robot->th), s = sin(robot->th);
+    const double x = robot->x + at->x_mm * c - at->y_mm * s;
+    const double y = robot->y + at->x_mm * s + at->y_mm * c;
+    double best = 1e9;
+    for (int off = -12; off <= 12; off += 4) {
+        best = fmin(best, ray(robot, x, y, robot->th + (at->heading_deg + off) * DEG));
+    }
+    return best > 5000 ? 5000 : (int)lround(best);
+}
+
+static int clip(int mm) {
+    return mm < 100 ? 100 : mm > 5000 ? 5000 : mm;
+}
+
+// Negative: the slot yields no reading.
+static int reading_of(robot_t *robot, int sonar) {
+    int mm = robot->world(robot, sonar);
+    if (robot->noise_mm > 0 && mm < 5000) {
+        mm += (int)robot_random(robot, (uint32_t)(2 * robot->noise_mm + 1)) - robot->noise_mm;
+    }
+    switch (robot->fault[sonar]) {
+    case ROBOT_OFF: return 5000;
+    case ROBOT_SILENT: return -1;
+    case ROBOT_SCALE: return clip(mm * robot->fault_value[sonar] / 100);
+    case ROBOT_VALUE: return robot->fault_value[sonar];
+    case ROBOT_OK:
+    default: return clip(mm);
+    }
+}
+
+static void ping(robot_t *robot) {
+    for (int array = 0; array < 2; array++) {
+        if (robot->order_count[array] > 0) {
+            const int sonar = robot->order[array][robot->order_at[array]];
+            robot->order_at[array] = (robot->order_at[array] + 1) % robot->order_count[array];
+            robot->pending[sonar] = reading_of(robot, sonar);
+        }
+    }
+}
+
+static double wrapped(double angle) {
+    return remainder(angle, 360 * DEG);
+}
+
+double robot_heading_deg(const robot_t *robot) {
+    return wrapped(robot->th) / DEG;
+}
+
+static double toward(double now, double target, double most) {
+    return target > now + most ? now + most : target < now - most ? now - most : target;
+}
+
+static void translate(robot_t *robot) {
+    double target = 0;
+    if (robot->moving) {
+        const double reach = sqrt(2 * robot->decel * fabs(robot->left_mm));
+        target = copysign(fmin(robot->setv, reach), robot->left_mm);
+    }
+    const double rate = fabs(target) > fabs(robot->v) ? robot->accel : robot->decel;
+    robot->v = toward(robot->v, target, rate * TICK_S);
+    if (robot->moving && fabs(robot->left_mm) <= fabs(robot->v) * TICK_S + 0.5) {
+        robot->moving = false;
+        robot->v = 0;
+    }
+    robot->left_mm -= robot->v * TICK_S;
+}
+
+static void rotate(robot_t *robot) {
+    double target = 0;
+    const double error = wrapped(robot->heading - robot->th);
+    if (robot->turning) {
+        target = copysign(fmin(robot->setrv, sqrt(2 * robot->setra * fabs(error))), error);
+    }
+    robot->w = toward(robot->w, target, robot->setra * TICK_S);
+    if (robot->turning && fabs(error) <= fabs(robot->w) * TICK_S + 1e-4) {
+        robot->th = robot->heading;
+        robot->w = 0;
+        robot->turning = false;
+    }
+}
+
+static void drive(robot_t *robot) {
+    if (!robot->motors || robot->stuck_wheels) {
+        robot->v = robot->w = 0;
+        return;
+    }
+    translate(robot);
+    rotate(robot);
+    robot->th += robot->w * TICK_S;
+    robot->x += robot->v * TICK_S * cos(robot->th);
+    robot->y += robot->v * TICK_S * sin(robot->th);
+}
+
+// Distance from the body's rectangle to the nearest wall, sampled along the walls.
+static void measure_clearance(robot_t *robot) {
+    for (int i = 0; i < robot->segments; i++) {
+        const double *s = robot->segment[i];
+        const double length = hypot(s[2] - s[0], s[3] - s[1]);
+        for (double at = 0; at <= length; at += 20) {
+            const double wx = s[0] + (s[2] - s[0]) * at / length - robot->x;
+            const double wy = s[1] + (s[3] - s[1]) * at / length - robot->y;
+            const double x = wx * cos(robot->th) + wy * sin(robot->th);
+            const double y = wy * cos(robot->th) - wx * sin(robot->th);
+            const double dx = fmax(fmax(x - 210, -301 - x), 0);
+            const double dy = fmax(fabs(y) - 212.5, 0);
+            robot->closest_mm = fmin(robot->closest_mm, hypot(dx, dy));
+        }
+    }
+}
+
+static void put16(uint8_t *at, long value) {
+    at[0] = (uint8_t)(value & 0xFF);
+    at[1] = (uint8_t)(value >> 8 & 0xFF);
+}
+
+static size_t list_readings(robot_t *robot, uint8_t *at) {
+    size_t count = 0;
+    for (int i = 0; i < 16; i++) {
+        const int mm = robot->lists_all && robot->pending[i] < 0 ? robot->shown[i] : robot->pending[i];
+        if (robot->sonar_on && mm >= 0) {
+            at[3 * count] = (uint8_t)i;
+            put16(at + 3 * count + 1, mm);
+            robot->shown[i] = mm;
+            count++;
+        }
+        robot->pending[i] = -1;
+    }
+    return count;
+}
+
+static size_t build_sip(robot_t *robot, uint8_t *packet) {
+    uint8_t data[200] = {0};
+    const double ox = robot->x - robot->x0, oy = robot->y - robot->y0;
+    const double c = cos(-robot->th0), s = sin(-robot->th0);
+    data[0] = fabs(robot->v) + fabs(robot->w) > 0 ? 0x33 : 0x32;
+    put16(data + 1, lround((ox * c - oy * s) / robot->unit_mm) & robot->position_mask);
+    put16(data + 3, lround((ox * s + oy * c) / robot->unit_mm) & robot->position_mask);
+    put16(data + 5, lround(wrapped(robot->th - robot->th0) / (360 * DEG) * 4096));
+    put16(data + 7, lround(robot->v - robot->w * TRACK_MM / 2));
+    put16(data + 9, lround(robot->v + robot->w * TRACK_MM / 2));
+    data[11] = 126;
+    data[12] = (uint8_t)(robot->bumpers_rear | (robot->stall ? 1 : 0));
+    data[13] = robot->bumpers_front;
+    put16(data + 16, (robot->motors ? 1 : 0) | (robot->sonar_on ? 6 : 0) | (robot->stop_button ? 0x20 : 0));
+    const size_t count = list_readings(robot, data + 20);
+    data[19] = (uint8_t)count;
+    return argus_frame_encode(packet, 255, data, 20 + 3 * count + 12);
+}
+
+static void reply_sync(robot_t *robot, uint8_t command) {
+    uint8_t data[80] = {command};
+    size_t length = 1;
+    if (command == 2) {
+        length += (size_t)snprintf((char *)data + 1, sizeof data - 1, "Test%cPioneer%c%s", 0, 0, robot->subclass) + 1;
+    }
+    uint8_t packet[100];
+    robot_deliver(robot, packet, argus_frame_encode(packet, sizeof packet, data, length));
+}
+
+static void set_polling(robot_t *robot, const uint8_t *list, size_t count) {
+    bool named[2] = {false, false};
+    for (size_t i = 0; i < count; i++) {
+        const int sonar = list[i] - 1;
+        if (sonar < 0 || sonar > 15) {
+            complain(robot, "POLLING names an impossible sonar", sonar);
+            continue;
+        }
+        if (!named[sonar / 8]) {
+            named[sonar / 8] = true;
+            robot->order_count[sonar / 8] = 0;
+            robot->order_at[sonar / 8] = 0;
+        }
+        if (robot->order_count[sonar / 8] >= 16) {
+            complain(robot, "POLLING is longer than 16 for one array", sonar);
+            continue;
+        }
+        robot->order[sonar / 8][robot->order_count[sonar / 8]++] = (uint8_t)sonar;
+    }
+}
+
+static void obey_motion(robot_t *robot, uint8_t command, int32_t argument) {
+    switch (command) {
+    case ARCOS_CMD_MOVE:
+        robot->moving = robot->motors;
+        robot->left_mm = argument;
+        break;
+    case ARCOS_CMD_HEAD:
+        robot->turning = robot->motors;
+        robot->heading = robot->th0 + argument * DEG;
+        break;
+    case ARCOS_CMD_VEL: robot->moving = false; break;
+    case ARCOS_CMD_RVEL: robot->turning = false; break;
+    case ARCOS_CMD_STOP: robot->moving = robot->turning = false; break;
+    case ARCOS_CMD_E_STOP:
+        robot->moving = robot->turning = false;
+        robot->v = robot->w = 0;
+        break;
+    default: break;
+    }
+}
+
+static void obey_setting(robot_t *robot, uint8_t command, int32_t argument) {
+    switch (command) {
+    case ARCOS_CMD_SETV: robot->setv = argument; break;
+    case ARCOS_CMD_SETA: *(argument < 0 ? &robot->decel : &robot->accel) = fabs((double)argument); break;
+    case ARCOS_CMD_SETRV: robot->setrv = argument * DEG; break;
+    case ARCOS_CMD_SETRA: robot->setra = fabs((double)argument) * DEG; break;
+    case ARCOS_CMD_SONAR: robot->sonar_on = (argument & 1) != 0; break;
+    case ARCOS_CMD_ENABLE:
+        robot->motors = argument != 0 && !robot->stop_button && !robot->deny_motors;
+        robot->moving = robot->turning = false;
+        break;
+    case ARCOS_CMD_SETO:
+        robot->x0 = robot->x;
+        robot->y0 = robot->y;
+        robot->th0 = robot->th;
+        break;
+    case ARCOS_CMD_CLOSE: power_up(robot); break;
+    default: break;
+    }
+}
+
+static void obey(robot_t *robot, const uint8_t *packet, const robot_command_t *sent) {
+    if (robot->phase < 3) {
+        if (sent->command == robot->phase) {
+            reply_sync(robot, sent->command);
+            robot->phase++;
+        } else if (sent->command == 0) {
+            robot->phase = 1;
+            reply_sync(robot, 0);
+        }
+        return;
+    }
+    if (sent->command == ARCOS_CMD_OPEN) {
+        robot->next_sip_ms = robot->t_ms + SIP_MS;
+        robot->next_ping_ms = robot->t_ms + PING_MS;
+    } else if (sent->command == ARCOS_CMD_POLLING) {
+        set_polling(robot, packet + 6, packet[5]);
+    } else {
+        obey_setting(robot, sent->command, sent->argument);
+        obey_motion(robot, sent->command, sent->argument);
+    }
+}
+
+// The nearest echo shown by a sonar that is not DISABLED.
+static double nearest_shown_mm(const robot_t *robot) {
+    double nearest = 1e9;
+    for (int i = 0; i < 16; i++) {
+        const argus_sonar_pose_t *at = &argus_sonar_pose[i];
+        if (robot->argus.knowledge.sonar[i].health != ARGUS_DISABLED && robot->argus.knowledge.sonar[i].reported &&
+            robot->shown[i] >= 0 && robot->shown[i] < 5000) {
+            nearest = fmin(nearest, hypot(at->x_mm + robot->shown[i] * cos(at->heading_deg * DEG),
+                                          at->y_mm + robot->shown[i] * sin(at->heading_deg * DEG)));
+        }
+    }
+    return nearest;
+}
+
+static void watch_move(robot_t *robot, int32_t mm) {
+    const uint16_t disabled = argus_disabled(&robot->argus.knowledge) & ARGUS_FORWARD_MASK;
+    if (mm < -300 || mm > 5000 || mm == 0) {
+        complain(robot, "MOVE out of range", mm);
+    }
+    if (mm > 0 && !robot->checked) {
+        complain(robot, "S3/S6: MOVE ahead before a health check", mm);
+    }
+    if (mm > 0 && disabled != 0 && (mm > robot->argus.config.step_mm || !robot->swept)) {
+        complain(robot, "S1: MOVE ahead beyond the step or without a sweep", mm);
+    }
+    if (mm > 0 && robot->bumpers_seen != 0) {
+        complain(robot, "MOVE ahead with a bumper pressed", mm);
+    }
+    if (mm < 0) {
+        for (int i = 8; i < 16; i++) {
+            if (robot->argus.knowledge.sonar[i].health != ARGUS_DISABLED &&
+                robot->shown[i] <= robot->argus.config.rear_clear_mm) {
+                complain(robot, "S7: MOVE back though a rear sonar does not read clear", i);
+            }
+        }
+    }
+    robot->swept = robot->swept && mm < 0;
+}
+
+static void watch_motion(robot_t *robot, const robot_command_t *sent) {
+    if (sent->command == ARCOS_CMD_MOVE) {
+        watch_move(robot, sent->argument);
+    } else if (sent->command == ARCOS_CMD_HEAD) {
+        if (sent->argument < -180 || sent->argument > 180) {
+            complain(robot, "HEAD out of range", sent->argument);
+        }
+        if (robot->bumpers_seen != 0) {
+            complain(robot, "S7: HEAD with a bumper pressed", sent->argument);
+        }
+        if (nearest_shown_mm(robot) < SWING_MM - 2) {
+            complain(robot, "S7: HEAD in a blocked swing circle", (int)nearest_shown_mm(robot));
+        }
+    }
+}
+
+static void watch(robot_t *robot, const robot_command_t *sent) {
+    const uint8_t c = sent->command;
+    if ((c == ARCOS_CMD_VEL || c == ARCOS_CMD_RVEL) && sent->argument != 0) {
+        complain(robot, "VEL or RVEL other than 0", sent->argument);
+    }
+    if (c == ARCOS_CMD_VEL2 || c == ARCOS_CMD_ROTATE || c == ARCOS_CMD_DHEAD || c == ARCOS_CMD_DCHEAD) {
+        complain(robot, "a motion command that is not used", c);
+    }
+    if (c == ARCOS_CMD_SETV && (sent->argument <= 0 || sent->argument > 750)) {
+        complain(robot, "SETV out of range", sent->argument);
+    }
+    const bool motion = c == ARCOS_CMD_MOVE || c == ARCOS_CMD_HEAD || (c == ARCOS_CMD_ENABLE && sent->argument != 0);
+    if (robot->argus.passive && motion) {
+        complain(robot, "passive, yet commands a motion", c);
+    }
+    watch_motion(robot, sent);
+}
+
+static void take_packet(robot_t *robot, const uint8_t *packet, size_t length) {
+    robot_command_t sent = {.t_ms = robot->t_ms, .command = packet[3]};
+    if (length >= 9 && (packet[4] == 0x3B || packet[4] == 0x1B)) {
+        sent.has_argument = true;
+        sent.argument = packet[5] | packet[6] << 8;
+        sent.argument = packet[4] == 0x1B ? -sent.argument : sent.argument;
+    }
+    if (robot->commands < ROBOT_COMMANDS_MAX) {
+        robot->command[robot->commands++] = sent;
+    }
+    watch(robot, &sent);
+    if (!robot->mute) {
+        obey(robot, packet, &sent);
+    }
+}
+
+static void take_events(robot_t *robot) {
+    argus_event_t event;
+    while (argus_next_event(&robot->argus, &event)) {
+        if (robot->events < ROBOT_EVENTS_MAX) {
+            robot->event[robot->events++] = event;
+        }
+        const bool lost = event.id == ARGUS_EV_SESSION_OPEN || event.id == ARGUS_EV_LINK_LOST ||
+                          event.id == ARGUS_EV_LINK_STALLED || event.id == ARGUS_EV_LINK_RESUMED;
+        robot->checked = event.id == ARGUS_EV_HEALTH_CHECK || (robot->checked && !lost);
+        robot->swept = robot->swept || event.id == ARGUS_EV_SWEEP;
+        if (event.id == ARGUS_EV_INVARIANT) {
+            complain(robot, "INVARIANT event", event.value);
+        }
+        if (event.id == ARGUS_EV_EVENTS_LOST) {
+            complain(robot, "events lost", event.value);
+        }
+    }
+}
+
+void robot_drain(robot_t *robot) {
+    uint8_t packet[ARGUS_FRAME_TOTAL_MAX];
+    size_t length = 0;
+    take_events(robot);
+    while ((length = argus_transmit(&robot->argus, packet, sizeof packet)) > 0) {
+        if (robot->reply_length == 0) {
+            memcpy(robot->reply, packet, length);
+            robot->reply_length = length;
+        }
+        take_packet(robot, packet, length);
+        take_events(robot);
+    }
+    const int broken = argus_invariants_broken(&robot->argus);
+    if (broken != 0) {
+        complain(robot, "argus_invariants_broken", broken);
+    }
+}
+
+void robot_deliver(robot_t *robot, const uint8_t *bytes, size_t count) {
+    argus_receive(&robot->argus, robot->start_ms + robot->t_ms, bytes, count);
+}
+
+static bool is_answered(const robot_t *robot, bool open) {
+    const argus_t *argus = &robot->argus;
+    return open && argus_session_is_open(&argus->session) && !argus->passive && !argus->shutdown;
+}
+
+static void send_sip(robot_t *robot) {
+    uint8_t packet[255];
+    const size_t length = build_sip(robot, packet);
+    robot->next_sip_ms += SIP_MS;
+    robot->sips++;
+    if (robot->mute) {
+        return;
+    }
+    const bool open = argus_session_is_open(&robot->argus.session);
+    const uint16_t pressed = (uint16_t)(robot->bumpers_front << 8 | robot->bumpers_rear);
+    const bool hit = (pressed & ~(unsigned)robot->bumpers_seen) != 0;
+    robot->bumpers_seen = pressed;
+    robot->reply_length = 0;
+    robot_deliver(robot, packet, length);
+    robot_drain(robot);
+    if (hit && is_answered(robot, open) && (robot->reply_length == 0 || robot->reply[3] != ARCOS_CMD_E_STOP)) {
+        complain(robot, "S2: a bumper was not answered by E_STOP at once", robot->reply[3]);
+    }
+}
+
+static void process(robot_t *robot) {
+    argus_process(&robot->argus, robot->start_ms + robot->t_ms);
+    robot_drain(robot);
+}
+
+// True when a SIP was due.
+static bool step(robot_t *robot) {
+    robot->t_ms += TICK_MS;
+    drive(robot);
+    if (robot->t_ms % 50 == 0) {
+        measure_clearance(robot);
+    }
+    if (robot->phase != 3) {
+        return false;
+    }
+    if (robot->sonar_on && (int32_t)(robot->t_ms - robot->next_ping_ms) >= 0) {
+        robot->next_ping_ms += PING_MS;
+        ping(robot);
+    }
+    if ((int32_t)(robot->t_ms - robot->next_sip_ms) < 0) {
+        return false;
+    }
+    send_sip(robot);
+    return true;
+}
+
+void robot_tick(robot_t *robot) {
+    step(robot);
+    process(robot);
+}
+
+void robot_run(robot_t *robot, uint32_t ms) {
+    for (uint32_t at = 0; at < ms; at += TICK_MS) {
+        robot_tick(robot);
+    }
+}
+
+void robot_next_sip(robot_t *robot) {
+    for (int i = 0; i < 100; i++) {
+        if (step(robot)) {
+            return;
+        }
+        process(robot);
+    }
+    complain(robot, "no SIP within a second", 0);
+}
+
+bool robot_until_mode(robot_t *robot, argus_mode_t mode, uint32_t ms) {
+    for (uint32_t at = 0; at < ms && robot->argus.mode != mode; at += TICK_MS) {
+        robot_tick(robot);
+    }
+    return robot->argus.mode == mode;
+}
+
+bool robot_until_event(robot_t *robot, int id, uint32_t ms) {
+    const int from = robot->events;
+    for (uint32_t at = 0; at < ms && robot_count_events(robot, id, from) == 0; at += TICK_MS) {
+        robot_tick(robot);
+    }
+    return robot_count_events(robot, id, from) > 0;
+}
+
+int robot_count_events(const robot_t *robot, int id, int from) {
+    int count = 0;
+    for (int i = from; i < robot->events; i++) {
+        count += robot->event[i].id == id;
+    }
+    return count;
+}
+
+int robot_count_commands(const robot_t *robot, int command, int from) {
+    int count = 0;
+    for (int i = from; i < robot->commands; i++) {
+        count += robot->command[i].command == command;
+    }
+    return count;
+}
+
+const robot_command_t *robot_last_command(const robot_t *robot, int command) {
+    for (int i = robot->commands - 1; i >= 0; i--) {
+        if (robot->command[i].command == command) {
+            return &robot->command[i];
+        }
+    }
+    return NULL;
+}
+
+const argus_event_t *robot_last_event(const robot_t *robot, int id) {
+    for (int i = robot->events - 1; i >= 0; i--) {
+        if (robot->event[i].id == id) {
+            return &robot->event[i];
+        }
+    }
+    return NULL;
+}
+
+bool robot_goal(robot_t *robot, int x_mm, int y_mm) {
+    const argus_point_t goal = {x_mm, y_mm};
+    return argus_set_course(&robot->argus, &goal, 1);
+}

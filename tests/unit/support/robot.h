@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// A robot in memory for the manager's tests: ARCOS session, simple kinematics, sonar schedule, and a watch over the invariants.
+#ifndef TEST_ROBOT_H
+#define TEST_ROBOT_H
+
+#include "argus/manager.h"
+
+#define ROBOT_COMMANDS_MAX 40000
+#define ROBOT_EVENTS_MAX 40000
+#define ROBOT_SEGMENTS_MAX 64
+
+typedef enum { ROBOT_OK, ROBOT_OFF, ROBOT_SILENT, ROBOT_SCALE, ROBOT_VALUE } robot_fault_t;
+
+typedef struct {
+    uint32_t t_ms; // since the start
+    uint8_t command;
+    bool has_argument;
+    int32_t argument;
+} robot_command_t;
+
+typedef struct robot robot_t;
+
+struct robot {
+    argus_t argus;
+    uint32_t start_ms;
+    uint32_t t_ms;
+    // body
+    double x, y, th;   // mm, radians
+    double v, w;       // mm/s, rad/s
+    double left_mm;    // of a MOVE, signed
+    double heading;    // HEAD's target
+    bool moving, turning;
+    double setv, accel, decel, setrv, setra;
+    double x0, y0, th0; // odometry origin
+    double unit_mm;     // per position unit
+    uint16_t position_mask;
+    bool motors, stop_button, stuck_wheels;
+    bool deny_motors; // ENABLE 1 has no effect
+    bool bumpstall_cuts_motors;
+    uint8_t bumpers_front, bumpers_rear;
+    bool stall;
+    // session
+    int phase; // 0..2 SYNC, 3 open
+    bool mute; // no power, or the wire is cut
+    bool sonar_on;
+    const char *subclass;
+    uint32_t next_sip_ms;
+    uint32_t sips;
+    // sonars
+    uint8_t order[2][64];
+    int order_count[2];
+    int order_at[2];
+    uint32_t next_ping_ms;
+    int pending[16]; // reading not yet reported, -1 none
+    int shown[16];   // last reading delivered, -1 none
+    bool lists_all;
+    int noise_mm;
+    robot_fault_t fault[16];
+    int fault_value[16];
+    int (*world)(const robot_t *robot, int sonar); // the truth, mm
+    double segment[ROBOT_SEGMENTS_MAX][4];
+    int segments;
+    uint32_t seed;
+    // what came out
+    robot_command_t command[ROBOT_COMMANDS_MAX];
+    int commands;
+    argus_event_t event[ROBOT_EVENTS_MAX];
+    int events;
+    uint8_t reply[ARGUS_FRAME_TOTAL_MAX]; // first packet after the last SIP
+    size_t reply_length;
+    // the watch
+    bool checked;       // HEALTH_CHECK since the session opened or resumed
+    bool swept;         // SWEEP since the last step ahead
+    uint16_t bumpers_seen;
+    double closest_mm;  // of any segment to the body's edge
+    char violation[256];
+};
+
+void robot_init(robot_t *robot, const argus_config_t *config, uint32_t start_ms);
+argus_config_t robot_config(void);
+void robot_tick(robot_t *robot); // 10 ms
+void robot_run(robot_t *robot, uint32_t ms);
+void robot_next_sip(robot_t *robot); // up to and including the delivery of one SIP, and nothing after it
+bool robot_until_mode(robot_t *robot, argus_mode_t mode, uint32_t ms);
+bool robot_until_event(robot_t *robot, int id, uint32_t ms); // one more such event than there is now
+int robot_count_events(const robot_t *robot, int id, int from);
+int robot_count_commands(const robot_t *robot, int command, int from);
+const robot_command_t *robot_last_command(const robot_t *robot, int command);
+const argus_event_t *robot_last_event(const robot_t *robot, int id);
+bool robot_goal(robot_t *robot, int x_mm, int y_mm);
+void robot_box(robot_t *robot, double x1, double y1, double x2, double y2); // four walls
+double robot_heading_deg(const robot_t *robot);
+uint32_t robot_random(robot_t *robot, uint32_t below);
+void robot_deliver(robot_t *robot, const uint8_t *bytes, size_t count);
+void robot_drain(robot_t *robot);
+
+// Worlds.
+int robot_world_far(const robot_t *robot, int sonar);      // 2000 mm whatever the bearing
+int robot_world_segments(const robot_t *robot, int sonar); // rays to the segments
+
+#endif

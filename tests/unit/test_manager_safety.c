@@ -1,0 +1,537 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: the safety invariants S1 to S8, each at the packet that would break it.
+#include "argus/manager.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "robot.h"
+#include "unity.h"
+
+static robot_t robot;
+
+static const uint8_t STOP[] = {0xFA, 0xFB, 0x03, 0x1D, 0x00, 0x1D};
+static const uint8_t E_STOP[] = {0xFA, 0xFB, 0x03, 0x37, 0x00, 0x37};
+
+// 2000 mm on every bearing, but for a post of 600 mm that only a look to the left of 25 degrees (world) sees.
+static int world_with_step(const robot_t *r, int sonar) {
+    const double bearing = remainder(robot_heading_deg(r) + argus_sonar_pose[sonar].heading_deg, 360);
+    return fabs(bearing - 30) < 8 ? 1200 : 2000;
+}
+
+static void start_with(const argus_config_t *config) {
+    robot_init(&robot, config, 0xFFFF0000u);
+}
+
+static void start_idle(void) {
+    const argus_config_t config = robot_config();
+    start_with(&config);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+}
+
+// On the way, at speed.
+static void start_driving(void) {
+    start_idle();
+    TEST_ASSERT_TRUE(robot_goal(&robot, 20000, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 8000));
+    robot_run(&robot, 2000);
+    TEST_ASSERT_EQUAL(ARGUS_MODE_DRIVING, robot.argus.mode);
+    TEST_ASSERT_TRUE(robot.v > 190);
+}
+
+static void finish(void) {
+    TEST_ASSERT_EQUAL_STRING("", robot.violation);
+}
+
+// Sips pass until one says what the test waits for; the reply to that very SIP is left in robot.reply.
+static bool until_reply(const uint8_t *packet, size_t length, int sips) {
+    for (int i = 0; i < sips; i++) {
+        robot_next_sip(&robot);
+        if (robot.reply_length == length && memcmp(robot.reply, packet, length) == 0) {
+            return true;
+        }
+        argus_process(&robot.argus, robot.start_ms + robot.t_ms);
+        robot_drain(&robot);
+    }
+    return false;
+}
+
+static bool listed(int sonar) {
+    return (robot.argus.knowledge.fresh >> sonar & 1u) != 0;
+}
+
+static int moves_ahead(int from) {
+    int count = 0;
+    for (int i = from; i < robot.commands; i++) {
+        count += robot.command[i].command == ARCOS_CMD_MOVE && robot.command[i].argument > 0;
+    }
+    return count;
+}
+
+void test_s1_every_step_in_failure_mode_follows_a_sweep(void) {
+    start_idle();
+    robot.fault[3] = ROBOT_OFF;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_DISABLED, 2000));
+    TEST_ASSERT_TRUE(robot_goal(&robot, 900, 0));
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 90000));
+    TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_STEP, 0) >= 4);
+    TEST_ASSERT_TRUE(hypot(robot.x - 900, robot.y) <= 150);
+    finish(); // the watch compares every MOVE with the sweeps
+}
+
+void test_s1_object_on_a_compensated_bearing_stops_the_next_step(void) {
+    start_idle();
+    robot.fault[2] = ROBOT_OFF;
+    robot.world = world_with_step;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_DISABLED, 2000));
+    robot_box(&robot, 330, 100, 500, 400); // ahead on the left, on the bearing of sonar 2 alone or nearly so
+    robot_box(&robot, -3000, -3000, 3000, 3000);
+    robot.world = robot_world_segments;
+    const int from = robot.commands;
+    TEST_ASSERT_TRUE(robot_goal(&robot, 2000, 0));
+    robot_until_event(&robot, ARGUS_EV_OBJECT_CHECKED, 20000);
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_OBJECT_CHECKED, 0));
+    TEST_ASSERT_EQUAL(0, moves_ahead(from));
+    finish();
+}
+
+void test_s2_dead_reading_in_motion_is_answered_by_stop_in_the_same_call(void) {
+    for (int sonar = 1; sonar <= 6; sonar++) {
+        start_driving();
+        robot.fault[sonar] = ROBOT_OFF;
+        do {
+            robot_next_sip(&robot);
+            if (!listed(sonar)) {
+                argus_process(&robot.argus, robot.start_ms + robot.t_ms);
+                robot_drain(&robot);
+            }
+        } while (!listed(sonar) || robot.shown[sonar] != 5000);
+        TEST_ASSERT_EQUAL(sizeof STOP, robot.reply_length);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(STOP, robot.reply, sizeof STOP);
+        TEST_ASSERT_EQUAL(ARGUS_DISABLED, robot.argus.knowledge.sonar[sonar].health);
+        TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, robot.argus.knowledge.sonar[sonar].kind);
+        finish();
+    }
+}
+
+void test_s2_dead_reading_at_rest_is_answered_by_stop(void) {
+    start_idle();
+    robot.fault[5] = ROBOT_OFF;
+    TEST_ASSERT_TRUE(until_reply(STOP, sizeof STOP, 5));
+    finish();
+}
+
+void test_s2_sonars_0_and_7_and_the_rear_may_read_5000(void) {
+    start_idle();
+    robot.fault[0] = robot.fault[7] = robot.fault[11] = ROBOT_OFF;
+    const uint32_t stops = robot.argus.stops;
+    robot_run(&robot, 3000);
+    TEST_ASSERT_EQUAL(stops, robot.argus.stops);
+    TEST_ASSERT_EQUAL(0, argus_disabled(&robot.argus.knowledge));
+    finish();
+}
+
+void test_s2_object_in_motion_is_answered_by_stop_in_the_same_call(void) {
+    for (int sonar = 1; sonar <= 6; sonar++) {
+        start_driving();
+        robot.fault[sonar] = ROBOT_VALUE;
+        robot.fault_value[sonar] = 250;
+        do {
+            robot_next_sip(&robot);
+            if (!listed(sonar)) {
+                argus_process(&robot.argus, robot.start_ms + robot.t_ms);
+                robot_drain(&robot);
+            }
+        } while (!listed(sonar) || robot.shown[sonar] != 250);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(STOP, robot.reply, sizeof STOP);
+        TEST_ASSERT_EQUAL(sonar, robot_last_event(&robot, ARGUS_EV_OBJECT)->sonar);
+        finish();
+    }
+}
+
+void test_s2_object_one_mm_beyond_the_range_is_none(void) {
+    start_driving();
+    robot.fault[3] = ROBOT_VALUE;
+    robot.fault_value[3] = 251;
+    robot_next_sip(&robot);
+    robot_next_sip(&robot);
+    robot_next_sip(&robot);
+    robot_next_sip(&robot);
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_OBJECT, 0));
+    finish();
+}
+
+// The MOVE is on its way, the SIPs do not show it yet, and somebody steps in front.
+void test_s2_object_before_the_first_sip_that_shows_motion(void) {
+    start_idle();
+    TEST_ASSERT_TRUE(robot_goal(&robot, 5000, 0));
+    robot.stuck_wheels = true; // the MOVE has been taken, the wheels have not started
+    for (int i = 0; i < 600 && robot_count_commands(&robot, ARCOS_CMD_MOVE, 0) == 0; i++) {
+        robot_tick(&robot);
+    }
+    TEST_ASSERT_EQUAL(1, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0));
+    for (int i = 1; i <= 6; i++) {
+        robot.fault[i] = ROBOT_VALUE;
+        robot.fault_value[i] = 230;
+    }
+    robot_next_sip(&robot);
+    argus_process(&robot.argus, robot.start_ms + robot.t_ms);
+    robot_drain(&robot);
+    robot.stuck_wheels = false;
+    robot_run(&robot, 3000);
+    TEST_ASSERT_TRUE_MESSAGE(robot.x < 20, "the robot set off towards an object in range");
+    finish();
+}
+
+void test_s2_a_suspect_before_the_first_sip_that_shows_motion(void) {
+    start_idle();
+    TEST_ASSERT_TRUE(robot_goal(&robot, 5000, 0));
+    robot.stuck_wheels = true;
+    for (int i = 0; i < 600 && robot_count_commands(&robot, ARCOS_CMD_MOVE, 0) == 0; i++) {
+        robot_tick(&robot);
+    }
+    robot.argus.awareness.of[3].in_a_row = 10;
+    robot.argus.awareness.of[3].difference_mm = 500;
+    robot.argus.knowledge.sonar[3].reading_mm = 1000;
+    robot.argus.check_ms -= 5000;
+    robot_next_sip(&robot);
+    TEST_ASSERT_EQUAL(ARGUS_MODE_VERIFYING, robot.argus.mode);
+    robot_drain(&robot);
+    TEST_ASSERT_TRUE_MESSAGE(robot_count_commands(&robot, ARCOS_CMD_STOP, 0) > 0, "the MOVE on its way was not stopped");
+    finish();
+}
+
+void test_s2_bumper_is_answered_by_e_stop_in_the_same_call(void) {
+    for (int segment = 1; segment <= 5; segment++) {
+        for (int rear = 0; rear < 2; rear++) {
+            start_driving();
+            *(rear ? &robot.bumpers_rear : &robot.bumpers_front) = (uint8_t)(1 << segment);
+            robot_next_sip(&robot);
+            TEST_ASSERT_EQUAL(sizeof E_STOP, robot.reply_length);
+            TEST_ASSERT_EQUAL_HEX8_ARRAY(E_STOP, robot.reply, sizeof E_STOP);
+            finish();
+        }
+    }
+}
+
+void test_s3_move_is_bounded_by_the_shortest_reading(void) {
+    start_driving();
+    robot.fault[4] = ROBOT_VALUE;
+    robot.fault_value[4] = 700;
+    robot_run(&robot, 350);
+    const robot_command_t *move = robot_last_command(&robot, ARCOS_CMD_MOVE);
+    TEST_ASSERT_TRUE(move->argument <= 450);
+    finish();
+}
+
+// "fresh": a reading that is not renewed must not renew the way ahead.
+void test_s3_a_silent_sonar_does_not_renew_its_move(void) {
+    start_driving();
+    robot.fault[4] = ROBOT_VALUE;
+    robot.fault_value[4] = 700;
+    robot.fault[3] = ROBOT_VALUE;
+    robot.fault_value[3] = 700;
+    robot.fault[5] = ROBOT_VALUE;
+    robot.fault_value[5] = 720;
+    robot_run(&robot, 400);
+    TEST_ASSERT_EQUAL(ARGUS_MODE_DRIVING, robot.argus.mode);
+    const double x = robot.x;
+    robot.fault[3] = robot.fault[4] = robot.fault[5] = ROBOT_SILENT;
+    robot_run(&robot, 1400);
+    const robot_command_t *move = robot_last_command(&robot, ARCOS_CMD_MOVE);
+    char text[100];
+    snprintf(text, sizeof text, "driven %.0f mm on readings of 700, MOVE %d still commanded", robot.x - x,
+             (int)move->argument);
+    TEST_ASSERT_TRUE_MESSAGE(robot.x - x + move->argument < 460 + 60 || move->t_ms + 1000 < robot.t_ms, text);
+    finish();
+}
+
+void test_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move(void) {
+    start_driving();
+    const int from = robot.commands;
+    robot.mute = true;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_STALLED, 2000));
+    robot_run(&robot, 1500); // longer than stale_ms in all: the gap is the link's, not the sonars'
+    robot.mute = false;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_RESUMED, 2000));
+    const int resumed = robot.commands;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 10000));
+    TEST_ASSERT_EQUAL(0, moves_ahead(resumed));
+    TEST_ASSERT_EQUAL_HEX16(0, argus_disabled(&robot.argus.knowledge));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 2000));
+    robot_run(&robot, 2000);
+    TEST_ASSERT_TRUE(moves_ahead(resumed) > 0);
+    TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_STOP, from) > 0);
+    finish();
+}
+
+void test_s3_link_cut_and_restored_leads_to_a_full_check(void) {
+    start_driving();
+    argus_link_lost(&robot.argus, robot.start_ms + robot.t_ms);
+    robot_drain(&robot);
+    TEST_ASSERT_EQUAL(ARGUS_MODE_OFFLINE, robot.argus.mode);
+    robot.moving = false;
+    robot.mute = true;
+    robot_run(&robot, 3000);
+    robot.mute = false;
+    const int from = robot.commands;
+    argus_link_up(&robot.argus, robot.start_ms + robot.t_ms);
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 15000));
+    TEST_ASSERT_EQUAL(0, moves_ahead(from));
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_SESSION_DISLODGED, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 3000));
+    finish();
+}
+
+void test_s3_velocity_is_never_used_to_drive(void) {
+    start_driving();
+    robot_run(&robot, 10000);
+    for (int i = 0; i < robot.commands; i++) {
+        const uint8_t c = robot.command[i].command;
+        if (c == ARCOS_CMD_VEL || c == ARCOS_CMD_RVEL || c == ARCOS_CMD_VEL2) {
+            TEST_ASSERT_EQUAL(0, robot.command[i].argument);
+        }
+    }
+    finish();
+}
+
+void test_s4_heading_restored_after_every_sweep(void) {
+    for (int policy = 0; policy < 2; policy++) {
+        argus_config_t config = robot_config();
+        config.policy = policy;
+        start_with(&config);
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+        robot.fault[2] = robot.fault[3] = robot.fault[6] = ROBOT_OFF;
+        robot_run(&robot, 1500);
+        TEST_ASSERT_TRUE(robot_goal(&robot, 600, 300));
+        for (int sweep = 0; sweep < 3; sweep++) {
+            TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_SWEEPING, 20000));
+            for (int i = 0; i < 3000 && !robot.argus.has_base; i++) {
+                robot_tick(&robot);
+            }
+            const double before = robot_heading_deg(&robot);
+            const int turns = robot_count_commands(&robot, ARCOS_CMD_HEAD, 0);
+            TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SWEEP, 60000));
+            TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_HEAD, 0) > turns);
+            TEST_ASSERT_FLOAT_WITHIN(2, 0, remainder(robot_heading_deg(&robot) - before, 360));
+        }
+        finish();
+    }
+}
+
+void test_s4_heading_restored_after_a_verification(void) {
+    start_idle();
+    robot.fault[4] = ROBOT_SCALE;
+    robot.fault_value[4] = 50;
+    const double before = robot_heading_deg(&robot);
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_DISABLED, 30000));
+    TEST_ASSERT_FLOAT_WITHIN(2, 0, remainder(robot_heading_deg(&robot) - before, 360));
+    finish();
+}
+
+void test_s5_an_unsafe_configuration_never_drives(void) {
+    argus_config_t config = robot_config();
+    config.speed_mm_s = 700;
+    start_with(&config);
+    robot_goal(&robot, 2000, 0);
+    robot_run(&robot, 5000);
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_ACTIVE, 0);
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_GO, 0);
+    robot_run(&robot, 8000);
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0));
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, 0));
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_ENABLE, 0));
+    finish();
+}
+
+void test_s6_no_move_until_every_front_sonar_has_reported(void) {
+    for (int sonar = 1; sonar <= 6; sonar++) {
+        argus_config_t config = robot_config();
+        config.stale_ms = 10000;
+        start_with(&config);
+        robot.fault[sonar] = ROBOT_SILENT;
+        TEST_ASSERT_TRUE(robot_goal(&robot, 2000, 0));
+        robot_run(&robot, 8000);
+        TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0));
+        robot.fault[sonar] = ROBOT_OK;
+        robot_run(&robot, 4000);
+        TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_MOVE, 0) > 0);
+        finish();
+    }
+}
+
+// A sonar that lies from the start is found before the first MOVE, whichever it is.
+void test_s6_no_move_before_the_suspect_is_verified(void) {
+    for (int sonar = 1; sonar <= 6; sonar++) {
+        const argus_config_t config = robot_config();
+        start_with(&config);
+        robot.fault[sonar] = ROBOT_SCALE;
+        robot.fault_value[sonar] = 50;
+        TEST_ASSERT_TRUE(robot_goal(&robot, 2000, 0));
+        for (int i = 0; i < 3000 && moves_ahead(0) == 0; i++) {
+            robot_tick(&robot);
+        }
+        char text[40];
+        snprintf(text, sizeof text, "sonar %d", sonar);
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_DISABLED, robot.argus.knowledge.sonar[sonar].health, text);
+        finish();
+    }
+}
+
+// Suspects found while the course is paused are not driven on by the operator's jog either.
+void test_s6_jog_while_paused_verifies_first(void) {
+    start_idle();
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_STOP, 0);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 4000));
+    robot.fault[4] = ROBOT_SCALE;
+    robot.fault_value[4] = 50;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_SUSPECT, 5000));
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_MOVE, 100);
+    for (int i = 0; i < 3000 && moves_ahead(0) == 0; i++) {
+        robot_tick(&robot);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_DISABLED, robot.argus.knowledge.sonar[4].health);
+    finish();
+}
+
+// A suspicion whose verification is broken off stays open: it is verified before the robot drives on.
+void test_s6_a_verification_broken_off_is_taken_up_again(void) {
+    start_idle();
+    robot.fault[2] = ROBOT_SCALE;
+    robot.fault_value[2] = 50;
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 5000));
+    for (int i = 0; i < 300 && robot.argus.verify.phase != ARGUS_VERIFY_LEFT; i++) {
+        robot_tick(&robot);
+    }
+    robot.fault[1] = ROBOT_OFF; // the witness
+    TEST_ASSERT_TRUE(robot_goal(&robot, 3000, 0));
+    for (int i = 0; i < 3000 && moves_ahead(0) == 0; i++) {
+        robot_tick(&robot);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_DISABLED, robot.argus.knowledge.sonar[1].health);
+    TEST_ASSERT_EQUAL(ARGUS_DISABLED, robot.argus.knowledge.sonar[2].health);
+    finish();
+}
+
+void test_s7_backs_off_from_a_front_bumper_and_checks_anew(void) {
+    start_driving();
+    robot.bumpers_front = 1 << 3;
+    robot_next_sip(&robot);
+    const int from = robot.commands;
+    robot_drain(&robot);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 3000));
+    const double x = robot.x;
+    robot_run(&robot, 1000);
+    TEST_ASSERT_EQUAL(-150, robot_last_command(&robot, ARCOS_CMD_MOVE)->argument);
+    robot.bumpers_front = 0;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 8000));
+    TEST_ASSERT_EQUAL(0, moves_ahead(from));
+    TEST_ASSERT_FLOAT_WITHIN(20, x - 150, robot.x);
+    finish();
+}
+
+void test_s7_waits_with_an_event_each_10_s_while_the_rear_is_blocked(void) {
+    for (int blocked = 8; blocked < 16; blocked++) {
+        start_driving();
+        robot.fault[blocked] = ROBOT_VALUE;
+        robot.fault_value[blocked] = 450;
+        robot_run(&robot, 500);
+        robot.bumpers_front = 1 << 2;
+        const int from = robot.commands;
+        robot_run(&robot, 30500);
+        TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, from));
+        for (int i = from; i < robot.commands; i++) {
+            TEST_ASSERT_FALSE(robot.command[i].command == ARCOS_CMD_MOVE && robot.command[i].t_ms > robot.t_ms - 30000);
+        }
+        TEST_ASSERT_EQUAL(4, robot_count_events(&robot, ARGUS_EV_WAITING, 0)); // at once, 10, 20, 30 s
+        finish();
+    }
+}
+
+// A rear sonar that has fallen silent does not read clear.
+void test_s7_a_rear_sonar_gone_silent_is_not_clear(void) {
+    start_driving();
+    robot.fault[12] = ROBOT_SILENT;
+    robot_run(&robot, 5000);
+    robot.bumpers_front = 1 << 2;
+    const int from = robot.commands;
+    robot_run(&robot, 8000);
+    for (int i = from; i < robot.commands; i++) {
+        TEST_ASSERT_FALSE(robot.command[i].command == ARCOS_CMD_MOVE && robot.command[i].argument < 0);
+    }
+    finish();
+}
+
+// Somebody frees the bumper while the rear is blocked: a full health check, then on.
+void test_s7_a_freed_bumper_ends_the_wait(void) {
+    start_driving();
+    robot.fault[10] = ROBOT_VALUE;
+    robot.fault_value[10] = 430;
+    robot_run(&robot, 500);
+    robot.bumpers_front = 1 << 2;
+    robot_run(&robot, 5000);
+    TEST_ASSERT_EQUAL(ARGUS_MODE_WAITING, robot.argus.mode);
+    robot.bumpers_front = 0;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 8000));
+    finish();
+}
+
+void test_s7_no_turn_while_the_swing_circle_is_blocked(void) {
+    start_idle();
+    robot.fault[7] = ROBOT_VALUE;
+    robot.fault_value[7] = 220; // 363 mm from the centre
+    robot.fault[10] = ROBOT_VALUE;
+    robot.fault_value[10] = 300; // and no way back
+    robot_run(&robot, 1000);
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 90);
+    robot_run(&robot, 12000);
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, 0));
+    TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
+    robot.fault[7] = ROBOT_OK;
+    robot_run(&robot, 8000);
+    TEST_ASSERT_FLOAT_WITHIN(2, 90, robot_heading_deg(&robot));
+    finish();
+}
+
+void test_s7_no_correction_of_heading_beside_a_wall_that_blocks_the_swing_circle(void) {
+    start_driving();
+    robot.fault[7] = ROBOT_VALUE;
+    robot.fault_value[7] = 200;
+    robot.th += 0.1; // 6 degrees off the bearing
+    const int from = robot_count_commands(&robot, ARCOS_CMD_HEAD, 0);
+    robot_run(&robot, 500); // sonar 7 has been seen by now
+    const int seen = robot_count_commands(&robot, ARCOS_CMD_HEAD, 0);
+    robot.th += 0.05;
+    robot_run(&robot, 500);
+    TEST_ASSERT_TRUE(seen >= from);
+    finish(); // the watch names every HEAD in a blocked circle
+}
+
+void test_s8_operator_arguments_at_the_ends_of_the_range(void) {
+    static const int32_t extreme[] = {INT32_MIN, INT32_MIN + 1, -1, 0, 1, INT32_MAX};
+    for (int op = 0; op < 10; op++) {
+        for (int i = 0; i < 6; i++) {
+            start_idle();
+            argus_operator(&robot.argus, robot.start_ms + robot.t_ms, (argus_op_t)op, extreme[i]);
+            robot_run(&robot, 3000);
+            finish();
+        }
+    }
+}
+
+void test_s8_impossible_sonar_numbers_and_readings(void) {
+    start_idle();
+    for (int number = 0; number < 256; number += 5) {
+        for (int range = 0; range < 65536; range += 13107) {
+            uint8_t data[35] = {0x32, [16] = 7, [19] = 1};
+            uint8_t packet[60];
+            data[20] = (uint8_t)number;
+            data[21] = (uint8_t)range;
+            data[22] = (uint8_t)(range >> 8);
+            robot_deliver(&robot, packet, argus_frame_encode(packet, sizeof packet, data, sizeof data));
+            robot_drain(&robot);
+        }
+    }
+    finish();
+}
