@@ -8,6 +8,7 @@
 #include "argus/record.h"
 #include "manager_internal.h"
 
+#define AWAY_CDEG 500
 #define SHUTDOWN_REST_MS 1500u
 #define IDLE_POLL_MS 50u
 #define BUSY_POLL_MS 10u
@@ -44,7 +45,7 @@ bool argus_set_course(argus_t *const self, const argus_point_t *const points, co
     self->mission = ARGUS_MISSION_RUNNING;
     self->arriving = false;
     argus_say(self, ARGUS_EV_MISSION_START, ARGUS_NO_SONAR, count);
-    if (self->mode == ARGUS_MODE_IDLE) {
+    if (self->mode == ARGUS_MODE_IDLE || self->wait == ARGUS_WAIT_CATASTROPHIC) {
         argus_enter_checking(self, true);
     }
     return true;
@@ -61,6 +62,7 @@ static void go_offline(argus_t *const self) {
     self->checked = false;
     self->stalled = false;
     self->has_base = false;
+    self->jog_mm = 0;
     argus_motion_init(&self->motion);
     argus_say(self, ARGUS_EV_LINK_LOST, ARGUS_NO_SONAR, (int32_t)(silence_ms & 0x7FFFFFFFu));
     argus_enter(self, self->shutdown ? ARGUS_MODE_CLOSED : ARGUS_MODE_OFFLINE);
@@ -91,6 +93,7 @@ static void on_stall(argus_t *const self) {
     self->checked = false;
     argus_say(self, ARGUS_EV_LINK_STALLED, ARGUS_NO_SONAR, self->config.link_stall_ms);
     argus_stop(self, ARCOS_CMD_STOP);
+    argus_enter_checking(self, true);
 }
 
 static void on_resume(argus_t *const self) {
@@ -107,6 +110,7 @@ static void on_sip(argus_t *const self) {
         return;
     }
     argus_knowledge_sip(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
+    self->awareness.away = self->has_base && argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, self->base_cdeg) > AWAY_CDEG;
     const argus_alarm_t alarm = argus_awareness_sip(&self->awareness, &self->knowledge, &self->config);
     argus_task_see(&self->task, &self->knowledge, self->now_ms);
     argus_react(self, &alarm);
@@ -267,6 +271,11 @@ static void jog(argus_t *const self, const int32_t distance_mm) {
     if (self->mode != ARGUS_MODE_IDLE || !argus_may_translate(self) || distance_mm == 0) {
         return;
     }
+    if (argus_open_suspects(self) != 0) { // S6: verified first
+        self->jog_mm = argus_max(0, argus_min(distance_mm, self->config.step_mm));
+        argus_enter_checking(self, true);
+        return;
+    }
     if (distance_mm < 0) {
         argus_back_off(self, -argus_max(distance_mm, -self->config.backoff_mm));
         return;
@@ -280,6 +289,7 @@ static void jog_turn(argus_t *const self, const int32_t degrees) {
     if (self->mode == ARGUS_MODE_IDLE && !self->passive) {
         self->base_cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + degrees % 360 * 100);
         self->has_base = true;
+        argus_awareness_moved(&self->awareness);
         argus_enter_checking(self, false);
     }
 }
@@ -314,8 +324,10 @@ void argus_shutdown(argus_t *const self, const uint32_t now_ms) {
         return;
     }
     self->shutdown = true;
-    if (!argus_session_is_open(&self->session)) {
-        argus_enter(self, ARGUS_MODE_CLOSED);
+    if (!argus_session_is_open(&self->session)) { // one that is only being opened is closed again
+        argus_session_leave(&self->session, now_ms);
+        const bool leaving = self->session.state == ARGUS_SESSION_LEAVING;
+        argus_enter(self, leaving ? ARGUS_MODE_CLOSING : ARGUS_MODE_CLOSED);
         return;
     }
     argus_stop(self, ARCOS_CMD_STOP);

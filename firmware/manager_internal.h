@@ -17,6 +17,8 @@ void argus_decide(argus_t *self); // a mode has ended well: what next?
 
 // Motion, each under its invariant.
 void argus_stop(argus_t *self, uint8_t command); // STOP or E_STOP, unless passive
+void argus_halt(argus_t *self);                  // STOP, unless the robot stands and no motion is on its way
+bool argus_may_turn(const argus_t *self);        // S7
 bool argus_turn(argus_t *self, int32_t heading_cdeg); // false: S7 forbids it, and the manager waits or backs away
 bool argus_swing_is_blocked(const argus_t *self);
 bool argus_may_translate(const argus_t *self);
@@ -26,6 +28,7 @@ void argus_back_off(argus_t *self, int32_t distance_mm);
 // Health.
 void argus_disable(argus_t *self, int sonar, argus_fault_kind_t kind);
 void argus_replan(argus_t *self);
+uint16_t argus_open_suspects(const argus_t *self);
 void argus_flag_suspects(argus_t *self, uint16_t suspects);
 
 // One SIP in the present mode.

@@ -40,10 +40,13 @@ void argus_enter_checking(argus_t *const self, const bool full) {
     if (self->mode == ARGUS_MODE_CLOSING || self->mode == ARGUS_MODE_CLOSED) {
         return;
     }
-    self->rounds = full ? (uint8_t)self->config.suspect_readings : 1;
+    self->rounds = full || !self->checked ? (uint8_t)self->config.suspect_readings : 1;
     self->arriving = false;
     self->marked = false;
-    if (!self->motion.settled && (self->motion.kind != ARGUS_MOTION_STOP || self->motion.failed)) {
+    const bool turning = self->motion.kind == ARGUS_MOTION_TURN && !self->motion.failed;
+    if ((self->motion.kind == ARGUS_MOTION_MOVE || turning) && !self->motion.settled) {
+        argus_stop(self, ARCOS_CMD_STOP);
+    } else if (!self->motion.settled && (self->motion.kind != ARGUS_MOTION_STOP || self->motion.failed)) {
         argus_motion_hold(&self->motion, self->now_ms);
     }
     argus_enter(self, ARGUS_MODE_CHECKING);
@@ -51,9 +54,8 @@ void argus_enter_checking(argus_t *const self, const bool full) {
 
 void argus_enter_verifying(argus_t *const self, const uint16_t suspects) {
     argus_flag_suspects(self, suspects);
-    if (!argus_at_rest(&self->knowledge)) {
-        argus_stop(self, ARCOS_CMD_STOP);
-    } else if (!self->motion.settled) {
+    argus_halt(self);
+    if (!self->motion.settled && self->motion.kind != ARGUS_MOTION_STOP) {
         argus_motion_hold(&self->motion, self->now_ms);
     }
     argus_enter(self, ARGUS_MODE_VERIFYING);
@@ -98,8 +100,14 @@ static void declare_healthy(argus_t *const self) {
     }
 }
 
+// Suspects not verified in this place: also those whose verification was broken off, or could not be begun.
+uint16_t argus_open_suspects(const argus_t *const self) {
+    return (uint16_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) & ~(unsigned)self->awareness.verified);
+}
+
 static void finish_check(argus_t *const self) {
-    const uint16_t suspects = argus_suspects(&self->awareness, &self->knowledge, &self->config);
+    const uint16_t found = argus_suspects(&self->awareness, &self->knowledge, &self->config);
+    const uint16_t suspects = (uint16_t)(found | argus_open_suspects(self));
     self->check_ms = self->now_ms;
     if (suspects != 0 && !self->passive) {
         argus_enter_verifying(self, suspects);
@@ -144,7 +152,7 @@ static void apply_verdict(argus_t *const self) {
     switch (self->verify.result) {
     case ARGUS_RESULT_CONVICTED: argus_disable(self, sonar, ARGUS_KIND_WRONG); break;
     case ARGUS_RESULT_CLEARED:
-        argus_awareness_cleared(&self->awareness, &self->knowledge, sonar);
+        argus_awareness_cleared(&self->awareness, &self->knowledge, sonar, self->verify.difference_mm);
         argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
         argus_say(self, ARGUS_EV_SONAR_CLEARED, sonar, self->verify.mean_mm);
         break;
@@ -171,9 +179,8 @@ static void say_witnesses(argus_t *const self) {
     }
 }
 
-// Suspects not yet verified in this place; a DISABLED one is none.
 static int next_suspect(const argus_t *const self) {
-    const unsigned open = argus_with_health(&self->knowledge, ARGUS_SUSPECT) & ~(unsigned)self->awareness.verified;
+    const unsigned open = argus_open_suspects(self);
     for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
         if ((open >> i & 1u) != 0) {
             return i;
@@ -292,9 +299,7 @@ static bool has_way(argus_t *const self) {
         return true;
     }
     if (!argus_task_choose(&self->task, &self->knowledge)) {
-        if (!argus_at_rest(&self->knowledge)) {
-            argus_stop(self, ARCOS_CMD_STOP);
-        }
+        argus_halt(self);
         argus_enter_waiting(self, ARGUS_WAIT_WAY);
         return false;
     }
@@ -364,9 +369,7 @@ static bool make_progress(argus_t *const self) {
 
 static void blocked_ahead(argus_t *const self, const argus_event_id_t event, const int sonar, const int32_t reading_mm) {
     argus_say(self, event, sonar, reading_mm);
-    if (!argus_at_rest(&self->knowledge)) {
-        argus_stop(self, ARCOS_CMD_STOP);
-    }
+    argus_halt(self);
     self->jog_mm = 0;
     argus_task_refuse(&self->task, &self->knowledge);
     argus_enter_checking(self, true);
@@ -384,7 +387,7 @@ static int nearest_forward(const argus_knowledge_t *const knowledge) {
 }
 
 static void steer(argus_t *const self, const int32_t left_mm) {
-    if (off_bearing(self) > STEER_CDEG && left_mm > STEER_LEG_MM) {
+    if (off_bearing(self) > STEER_CDEG && left_mm > STEER_LEG_MM && argus_may_turn(self)) {
         argus_motion_steer(&self->session.outbox, &self->knowledge, bearing(self));
     }
 }
@@ -414,10 +417,14 @@ static void drive_on(argus_t *const self) {
     if (!sees_ahead(self)) {
         return; // the MOVE at work ends by itself
     }
-    if (free_mm == 0) {
-        const int sonar = nearest_forward(&self->knowledge);
-        blocked_ahead(self, ARGUS_EV_OBJECT, sonar, sonar < 0 ? 0 : self->knowledge.sonar[sonar].reading_mm);
+    const int sonar = nearest_forward(&self->knowledge);
+    const int32_t nearest_mm = sonar < 0 ? 0 : self->knowledge.sonar[sonar].reading_mm;
+    if (nearest_mm <= self->config.object_range_mm) {
+        blocked_ahead(self, ARGUS_EV_OBJECT, sonar, nearest_mm);
         return;
+    }
+    if (free_mm == 0) {
+        return; // a fresh reading will tell
     }
     argus_motion_move(&self->motion, &self->session.outbox, argus_min(left_mm, free_mm), self->config.speed_mm_s,
                       self->now_ms);
@@ -556,6 +563,8 @@ static void leave_bumper(argus_t *const self) {
     const bool button = (self->knowledge.flags & ARCOS_FLAG_ESTOP) != 0;
     if (!motors && !button) {
         argus_outbox_int(&self->session.outbox, ARCOS_CMD_ENABLE, 1);
+    } else if (motors && self->bumpers == 0 && !argus_rear_is_clear(self)) {
+        argus_enter_checking(self, true); // freed, or a stall: no need to back away
     } else if (motors && argus_at_rest(&self->knowledge)) {
         argus_back_off(self, self->config.backoff_mm);
     }
@@ -577,6 +586,7 @@ static void leave_waiting(argus_t *const self) {
         break;
     case ARGUS_WAIT_TURN:
     case ARGUS_WAIT_WAY:
+        argus_task_forgive(&self->task);
         argus_enter_checking(self, true);
         break;
     case ARGUS_WAIT_NONE:

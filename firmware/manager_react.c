@@ -13,6 +13,7 @@ static bool is_active(const argus_t *const self) {
 }
 
 void argus_stop(argus_t *const self, const uint8_t command) {
+    self->jog_mm = 0; // what an operator asked for is not taken up again by itself
     if (self->passive) {
         argus_motion_hold(&self->motion, self->now_ms);
         return;
@@ -25,6 +26,14 @@ void argus_stop(argus_t *const self, const uint8_t command) {
     argus_say(self, ARGUS_EV_STOPPED, ARGUS_NO_SONAR, self->knowledge.pose.heading_cdeg);
 }
 
+// A motion may be on its way though the SIPs do not show it yet.
+void argus_halt(argus_t *const self) {
+    const bool commanded = self->motion.kind == ARGUS_MOTION_MOVE || self->motion.kind == ARGUS_MOTION_TURN;
+    if (!argus_at_rest(&self->knowledge) || (commanded && !self->motion.settled)) {
+        argus_stop(self, ARCOS_CMD_STOP);
+    }
+}
+
 bool argus_may_translate(const argus_t *const self) {
     const bool motors = (self->knowledge.flags & ARCOS_FLAG_MOTORS) != 0;
     const bool healthy_link = argus_session_is_open(&self->session) && !self->stalled;
@@ -35,7 +44,8 @@ bool argus_rear_is_clear(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
         const bool counts = (REAR_SONARS >> i & 1u) != 0 && s->health != ARGUS_DISABLED;
-        if (counts && (!s->reported || s->reading_mm <= self->config.rear_clear_mm)) {
+        const bool heard = argus_age_ms(&self->knowledge, i, self->now_ms) <= (uint32_t)self->config.stale_ms;
+        if (counts && (!heard || s->reading_mm <= self->config.rear_clear_mm)) {
             return false;
         }
     }
@@ -55,10 +65,15 @@ bool argus_swing_is_blocked(const argus_t *const self) {
     return argus_nearest_to_centre_mm(&self->knowledge, 0) <= SWING_MM;
 }
 
-// S7: no rotation while a bumper is pressed or an echo lies within the swing circle; a few times backing away may help.
+// S7: no rotation while a bumper is pressed or an echo lies within the swing circle.
+bool argus_may_turn(const argus_t *const self) {
+    return is_active(self) && self->bumpers == 0 && argus_nearest_to_centre_mm(&self->knowledge, 0) > SWING_MM;
+}
+
+// Where it may not turn, a few times backing away may help.
 bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
     const int32_t nearest = argus_nearest_to_centre_mm(&self->knowledge, 0);
-    if (is_active(self) && self->bumpers == 0 && nearest > SWING_MM) {
+    if (argus_may_turn(self)) {
         argus_motion_turn(&self->motion, &self->session.outbox, &self->knowledge, heading_cdeg, self->now_ms);
         return true;
     }
@@ -226,6 +241,22 @@ static void react_motors(argus_t *const self) {
     }
 }
 
+// The others (0, 7, the rear array) are not judged, but one that yields nothing any more must not be relied on.
+static void watch_others(argus_t *const self) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        argus_sonar_t *const s = &self->knowledge.sonar[i];
+        const bool other = (ARGUS_FORWARD_MASK >> i & 1u) == 0;
+        const uint32_t silent_ms = argus_silent_ms(&self->knowledge, i);
+        const bool stale = silent_ms > (uint32_t)self->config.stale_ms;
+        if (other && s->health == ARGUS_HEALTHY && stale) {
+            argus_sonar_set_health(s, ARGUS_STALE, ARGUS_KIND_NONE, self->now_ms);
+            argus_say(self, ARGUS_EV_SONAR_STALE, i, (int32_t)(silent_ms & 0x7FFFFFFFu));
+        } else if (other && s->health == ARGUS_STALE && !stale) {
+            argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
+        }
+    }
+}
+
 static void react_battery(argus_t *const self) {
     const argus_session_t *const session = &self->session;
     const int32_t stated = session->has_robot ? session->robot.low_battery_dv : 0;
@@ -245,6 +276,7 @@ void argus_react(argus_t *const self, const argus_alarm_t *const alarm) {
     if (react_bumper(self) || react_stall(self, alarm)) {
         return;
     }
+    watch_others(self);
     react_battery(self);
     react_motors(self);
     if (!react_dead(self, alarm)) {

@@ -288,7 +288,7 @@ def _serve(arguments: argparse.Namespace, scenario: Scenario, stack: ExitStack) 
         _say(f"world {world.name}, seed {scenario.seed}, faults: {faults_text}")
     loop = Loop(server, link, faults)
     if log is not None:
-        log("clock", {"t_s": loop.now_ms() / 1000, "wall_s": time.time()})
+        log("clock", {"t_s": loop.now_ms() / 1000, "unix_s": time.time()})
     loop.run(lambda: bool(caught), arguments.duration and arguments.duration * 1000)
     if arguments.verbose:
         heard = server.unframer.counters

@@ -60,7 +60,6 @@ void argus_session_link_up(argus_session_t *self, uint32_t now_ms) {
 void argus_session_link_down(argus_session_t *self) {
     argus_outbox_clear(&self->outbox);
     argus_parser_flush(&self->parser);
-    self->stalled = false;
     if (self->state == ARGUS_SESSION_LEAVING) {
         self->state = ARGUS_SESSION_CLOSED;
     } else if (self->state != ARGUS_SESSION_CLOSED) {
@@ -237,18 +236,27 @@ static unsigned resume(argus_session_t *self, uint32_t gap_ms) {
     return ARGUS_SESSION_DID_RESUME;
 }
 
-static unsigned on_open_sip(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
+// A gap may also end before any timer saw it: when it was our own host that stood still.
+static unsigned on_open_sip(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
+                            const argus_packet_t *packet) {
     const uint32_t gap_ms = elapsed_ms(now_ms, self->heard_ms);
     if (!take_sip(self, now_ms, packet)) {
         return 0;
     }
-    return ARGUS_SESSION_GOT_SIP | (self->stalled ? resume(self, gap_ms) : 0);
+    if (self->stalled) {
+        return ARGUS_SESSION_GOT_SIP | resume(self, gap_ms);
+    }
+    if (gap_ms >= (uint32_t)config->link_stall_ms) {
+        return ARGUS_SESSION_GOT_SIP | ARGUS_SESSION_DID_STALL | resume(self, gap_ms);
+    }
+    return ARGUS_SESSION_GOT_SIP;
 }
 
-static unsigned on_open(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
+static unsigned on_open(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
+                        const argus_packet_t *packet) {
     const uint8_t type = packet->data[0];
     if (is_sip(packet)) {
-        return on_open_sip(self, now_ms, packet);
+        return on_open_sip(self, config, now_ms, packet);
     }
     // A robot that answers our PULSE as a SYNC0 has been switched off and on.
     if (is_reset_notice(packet) || (self->stalled && type == ARCOS_TYPE_SYNC0)) {
@@ -263,11 +271,17 @@ static unsigned on_open(argus_session_t *self, uint32_t now_ms, const argus_pack
     return 0;
 }
 
+// The old session's SIP still tells where the robot has got to.
+static unsigned on_old_session(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
+    const unsigned got = take_sip(self, now_ms, packet) ? ARGUS_SESSION_GOT_SIP : 0;
+    return dislodge(self, now_ms) | got;
+}
+
 static unsigned on_packet(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
                           const argus_packet_t *packet) {
     switch (self->state) {
     case ARGUS_SESSION_LISTEN:
-        return is_sip(packet) ? dislodge(self, now_ms) : 0;
+        return is_sip(packet) ? on_old_session(self, now_ms, packet) : 0;
     case ARGUS_SESSION_SYNC0:
     case ARGUS_SESSION_SYNC1:
     case ARGUS_SESSION_SYNC2:
@@ -275,7 +289,7 @@ static unsigned on_packet(argus_session_t *self, const argus_config_t *config, u
     case ARGUS_SESSION_OPENING:
         return on_opening(self, config, now_ms, packet);
     case ARGUS_SESSION_OPEN:
-        return on_open(self, now_ms, packet);
+        return on_open(self, config, now_ms, packet);
     default:
         return 0;
     }

@@ -23,18 +23,23 @@ void argus_awareness_moved(argus_awareness_t *const self) {
     self->verified = 0;
 }
 
-void argus_awareness_cleared(argus_awareness_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+void argus_awareness_cleared(argus_awareness_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                             const int32_t difference_mm) {
     argus_disparate_t *const d = &self->of[sonar];
     d->held = true;
     d->held_odometer_mm = knowledge->odometer_mm;
     d->held_heading_cdeg = knowledge->pose.heading_cdeg;
-    d->held_difference_mm = d->difference_mm;
+    d->held_difference_mm = difference_mm;
     d->in_a_row = 0;
     self->verified |= (uint16_t)(1u << sonar);
 }
 
-// While the robot rotates the ring's readings belong to different headings: no verdict then.
+// While the robot rotates the ring's readings belong to different headings: no verdict then. What it sees while it is turned
+// away counts neither for nor against.
 static void count_disparity(argus_awareness_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    if (self->away) {
+        return;
+    }
     argus_disparate_t *const d = &self->of[sonar];
     int32_t difference = 0;
     const argus_verdict_t verdict =
@@ -77,12 +82,9 @@ static void judge_fresh(argus_alarm_t *const alarm, const argus_knowledge_t *con
     }
 }
 
-// Counted from the opening of the session for a sonar that has not reported at all.
 static bool is_silent(const argus_knowledge_t *const knowledge, const argus_config_t *const config, const int sonar) {
-    const argus_sonar_t *const s = &knowledge->sonar[sonar];
-    const uint32_t since = s->reported ? s->heard_ms : knowledge->online_ms;
-    const bool sonars_on = (knowledge->flags & ARCOS_FLAG_SONAR1) != 0;
-    return s->health != ARGUS_DISABLED && sonars_on && knowledge->sip_ms - since > (uint32_t)config->stale_ms;
+    return knowledge->sonar[sonar].health != ARGUS_DISABLED &&
+           argus_silent_ms(knowledge, sonar) > (uint32_t)config->stale_ms;
 }
 
 argus_alarm_t argus_awareness_sip(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
@@ -105,13 +107,17 @@ argus_alarm_t argus_awareness_sip(argus_awareness_t *const self, const argus_kno
     return alarm;
 }
 
+static bool has_changed(const argus_disparate_t *const d, const argus_knowledge_t *const knowledge, const int sonar) {
+    const int32_t tr = argus_tolerance_mm(knowledge->sonar[sonar].reading_mm);
+    return argus_abs(d->difference_mm - d->held_difference_mm) > 2 * tr;
+}
+
 // The hold-off ends after a way, a turn, or a clear change of the disparity.
 static bool hold_ends(const argus_disparate_t *const d, const argus_knowledge_t *const knowledge,
                       const argus_config_t *const config, const int sonar) {
-    const int32_t tr = argus_tolerance_mm(knowledge->sonar[sonar].reading_mm);
     return knowledge->odometer_mm - d->held_odometer_mm >= (uint32_t)config->holdoff_mm ||
            argus_angle_abs_diff(knowledge->pose.heading_cdeg, d->held_heading_cdeg) >= config->holdoff_deg * 100 ||
-           argus_abs(d->difference_mm - d->held_difference_mm) > 2 * tr;
+           has_changed(d, knowledge, sonar);
 }
 
 static bool is_suspect(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
@@ -122,6 +128,9 @@ static bool is_suspect(argus_awareness_t *const self, const argus_knowledge_t *c
     }
     if (d->held && hold_ends(d, knowledge, config, sonar)) {
         d->held = false;
+        if (has_changed(d, knowledge, sonar)) { // another case, also in the same place
+            self->verified &= (uint16_t)~(1u << sonar);
+        }
     }
     return !d->held && (self->verified >> sonar & 1u) == 0;
 }

@@ -3,13 +3,13 @@
 #include "argus/angle.h"
 #include "argus/awareness.h"
 
-// tr = (a1 + a2) (1 / cos 20 - 1), in millionths.
+// tr = (a1 + a2) (1 / cos 20 - 1), in thousandths of a millionth: millionths round some readings wrongly.
 #define FACE_MM 167
-#define EXCESS_PPM 64178
+#define EXCESS_PPB 64177772
 
 int32_t argus_tolerance_mm(const int32_t reading_mm) {
-    const int64_t scaled = (int64_t)(reading_mm + FACE_MM) * EXCESS_PPM;
-    return (int32_t)((scaled + 500000) / 1000000);
+    const int64_t scaled = (int64_t)(reading_mm + FACE_MM) * EXCESS_PPB;
+    return (int32_t)((scaled + 500000000) / 1000000000);
 }
 
 // A neighbour that may be compared with: one of 1..6 that is usable; else -1.

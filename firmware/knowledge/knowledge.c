@@ -12,6 +12,7 @@
 #define LISTS_ALL_WAIT_MS 460
 #define JUMP_MM 3000 // farther than the robot drives before its watchdog stops it: its odometry was reset
 #define TURN_UNITS 4096
+#define GAP_MS 500 // without a SIP for longer, it was the link that was silent, not the sonars
 
 void argus_knowledge_init(argus_knowledge_t *const self) {
     memset(self, 0, sizeof *self);
@@ -103,6 +104,7 @@ static void take_reading(argus_knowledge_t *const self, const argus_sip_sonar_t 
     sonar->steady = !self->rotating;
     sonar->sip = self->sips;
     sonar->heard_ms = self->sip_ms;
+    sonar->odometer_mm = self->odometer_mm;
     sonar->readings++;
     self->fresh |= (uint16_t)(1u << from->number);
 }
@@ -123,6 +125,9 @@ static void take_readings(argus_knowledge_t *const self, const argus_sip_t *cons
 
 void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const sip, const int32_t distance_um,
                          const uint32_t now_ms) {
+    if (self->sips > 0 && now_ms - self->sip_ms > GAP_MS) {
+        self->online_ms = now_ms;
+    }
     self->sips++;
     self->sip_ms = now_ms;
     argus_knowledge_odometry(self, sip, distance_um);
@@ -176,6 +181,13 @@ bool argus_all_fresh_since(const argus_knowledge_t *const self, const uint16_t s
         }
     }
     return true;
+}
+
+uint32_t argus_silent_ms(const argus_knowledge_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->sonar[sonar];
+    const uint32_t since_online = self->sip_ms - self->online_ms;
+    const uint32_t since_heard = self->sip_ms - s->heard_ms;
+    return s->reported && since_heard < since_online ? since_heard : since_online;
 }
 
 uint32_t argus_age_ms(const argus_knowledge_t *const self, const int sonar, const uint32_t now_ms) {

@@ -109,6 +109,10 @@ void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const 
     }
 }
 
+void argus_task_forgive(argus_task_t *const self) {
+    self->refused = 0;
+}
+
 static void forgive_when_moved(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
     const int32_t moved = argus_hypot(knowledge->pose.x_mm - self->refused_at.x_mm, knowledge->pose.y_mm - self->refused_at.y_mm);
     if (moved >= MOVED_ON_MM) {

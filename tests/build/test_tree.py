@@ -12,9 +12,7 @@ FOLDERS = ("firmware", "hal", "hil_sim", "tests", "tools", "cmake", ".ci", ".git
 SOURCES = {".c", ".h", ".py", ".cmake", ".toml", ".yaml", ".yml", ".sh"}
 BINARY = {".png", ".gz", ".bin", ".log", ".pyc"}
 # Split, so that this file does not hold what it looks for.
-PLACES = re.compile(
-    "|".join(["/" + "work/", "/" + "home/[a-z]", "/" + "root/", r"\.\./" + "shared", "/tmp/" + r"[a-z]"])
-)
+PLACES = re.compile("|".join(["/" + "work/", "/" + "home/[a-z]", "/" + "root/", r"\.\./" + "shared"]))
 REGISTRIES = re.compile("|".join(["pypi" + r"\.org", "python" + "hosted", "npm" + "js", "crates" + r"\.io"]))
 
 

@@ -4,12 +4,15 @@ costs no intact packet and invents none."""
 
 from __future__ import annotations
 
+import doctest
 import json
 import random
 from pathlib import Path
 
 import pytest
 
+import hil_sim.arcos
+import hil_sim.tables
 from hil_sim.arcos import (
     COMMAND,
     Command,
@@ -274,3 +277,10 @@ def test_checksum_of_odd_and_even_data() -> None:
     assert checksum(b"\x55") == 0x55
     assert checksum(b"\xff\xff\x00\x01") == 0
     assert checksum(b"\x01\x02\x03") == 0x0101
+
+
+def test_the_examples_in_the_docstrings_hold() -> None:
+    for module in (hil_sim.arcos, hil_sim.tables):
+        result = doctest.testmod(module)
+        assert result.attempted >= 2
+        assert result.failed == 0

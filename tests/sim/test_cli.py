@@ -9,6 +9,7 @@ import itertools
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -18,7 +19,10 @@ from pathlib import Path
 import pytest
 from doubles import Port, cmd, connect, sips
 
-from hil_sim.arcos import Packet, Sip
+from hil_sim.arcos import Packet, Sip, Unframer, decode
+from hil_sim.cli import build_robot, main
+from hil_sim.scenario import Scenario
+from hil_sim.world import load_world
 
 ROOT = Path(__file__).parents[2]
 WORLD = "demo"
@@ -45,6 +49,14 @@ def simulator(*arguments: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
     finally:
         process.kill()
         process.communicate()
+
+
+def code_of(arguments: list[str]) -> int:
+    """Run argus-sim in this process; return its exit code."""
+    try:
+        return main(arguments)
+    except SystemExit as error:
+        return int(error.code or 0)
 
 
 def end(process: subprocess.Popen[str], number: int) -> tuple[int, str, str]:
@@ -85,10 +97,6 @@ def test_a_robot_on_a_pty_with_link_name_and_truth(tmp_path: Path, number: int) 
 
 
 def test_a_robot_on_tcp_shows_its_injected_faults(tmp_path: Path) -> None:
-    import socket
-
-    from hil_sim.arcos import Unframer, decode
-
     truth = tmp_path / "truth.jsonl"
     faults = ["--fault", "off:3", "--fault", "bumper:2@0.5s-90s"]
     with simulator("--world", WORLD, "--tcp", "0", *faults, "--truth", str(truth)) as (process, address):
@@ -159,23 +167,26 @@ def test_the_duration_ends_it() -> None:
     ],
     ids=lambda value: " ".join(value)[:30] if isinstance(value, list) else None,
 )
-def test_bad_arguments_are_one_line_and_exit_2(arguments: list[str], word: str) -> None:
-    result = run(*arguments, "--duration", "0.1") if "--duration" not in arguments else run(*arguments)
-    assert result.returncode == 2, result.stderr
-    assert result.stdout == ""
-    assert result.stderr.count("\n") == 1, result.stderr
-    assert word in result.stderr
+def test_bad_arguments_are_one_line_and_exit_2(
+    arguments: list[str], word: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if "--duration" not in arguments:
+        arguments = [*arguments, "--duration", "0.1"]
+    assert code_of(arguments) == 2
+    out, error = capsys.readouterr()
+    assert out == ""
+    assert error.count("\n") == 1, error
+    assert word in error
 
 
-def test_links_that_cannot_be_opened_exit_1() -> None:
-    import socket
-
+def test_links_that_cannot_be_opened_exit_1(capsys: pytest.CaptureFixture[str]) -> None:
     with socket.create_server(("127.0.0.1", 0)) as busy:
-        result = run("--world", WORLD, "--tcp", str(busy.getsockname()[1]))
-    assert (result.returncode, result.stderr.count("\n")) == (1, 1)
-    result = run("--world", WORLD, "--serial", "/dev/nonexistent@9600")
-    assert (result.returncode, result.stderr.count("\n")) == (1, 1)
-    assert "/dev/nonexistent" in result.stderr
+        assert code_of(["--world", WORLD, "--tcp", str(busy.getsockname()[1])]) == 1
+    assert code_of(["--world", WORLD, "--serial", "/dev/nonexistent@9600"]) == 1
+    out, error = capsys.readouterr()
+    assert out == ""
+    assert error.count("\n") == 2
+    assert "/dev/nonexistent" in error
 
 
 def test_help_and_lists() -> None:
@@ -186,29 +197,17 @@ def test_help_and_lists() -> None:
     assert "intermittent" in run("--list-faults").stdout
 
 
-def test_a_start_inside_a_solid_is_refused() -> None:
-    listing = json.dumps(run("--world", WORLD, "--start", "0,0,0", "--duration", "0.1").returncode)
-    assert listing == "0"
-    from hil_sim.world import load_world
-
+def test_a_start_inside_a_solid_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     x1, y1, x2, y2 = load_world(WORLD).segments[0]
-    middle = f"{(x1 + x2) / 2:.0f},{(y1 + y2) / 2:.0f},0"
-    result = run("--world", WORLD, f"--start={middle}", "--duration", "0.1")
-    assert result.returncode == 2
-    assert "--start" in result.stderr
+    middle = f"--start={(x1 + x2) / 2:.0f},{(y1 + y2) / 2:.0f},0"
+    assert code_of(["--world", WORLD, middle, "--duration", "0.1"]) == 2
+    assert "--start" in capsys.readouterr().err
 
 
 def test_the_same_seed_gives_the_same_noise(tmp_path: Path) -> None:
     def readings(seed: int) -> list[tuple[int, int]]:
-        from hil_sim.body import BodyModel
-        from hil_sim.cli import build_robot
-        from hil_sim.robot import Robot
-        from hil_sim.scenario import Scenario
-        from hil_sim.world import load_world
-
         world = load_world(WORLD)
-        robot: Robot = build_robot(Scenario(world=WORLD, seed=seed), world, world.start, None)
-        assert isinstance(robot.body, BodyModel)
+        robot = build_robot(Scenario(world=WORLD, seed=seed), world, world.start, None)
         robot.open()
         got: list[tuple[int, int]] = []
         for _ in range(20):

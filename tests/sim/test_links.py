@@ -21,7 +21,7 @@ from hil_sim.arcos import Packet, Unframer, decode
 from hil_sim.errors import LinkError, SimError
 from hil_sim.faults import LinkFault
 from hil_sim.link_faults import LinkFaults
-from hil_sim.links import Link, Loop, PtyLink, TcpLink, Wire
+from hil_sim.links import Link, Loop, PtyLink, SerialLink, TcpLink, Wire
 from hil_sim.server import ArcosServer, State
 
 
@@ -363,3 +363,25 @@ def test_a_cut_link_passes_nothing_and_comes_back() -> None:
     assert any(at < 1500 for at in seen)
     assert any(at > 2500 for at in seen)
     assert not [at for at in seen if 1700 < at < 2500]
+
+
+def test_a_serial_port_is_served_and_follows_hostbaud() -> None:
+    master, slave = os.openpty()
+    path = os.ttyname(slave)
+    link, server = SerialLink(path, 9600), new_server()
+    try:
+        with served(link, server):
+            port = Port.__new__(Port)
+            port.fd, port.unframer = master, Unframer()
+            connect(port)
+            assert len(sips(port.read(5, 3))) >= 3
+            assert termios.tcgetattr(slave)[5] == termios.B9600
+            port.send(cmd("HOSTBAUD", 4))
+            port.read(0.3)
+            assert termios.tcgetattr(slave)[5] == termios.B115200
+            port.send(cmd("CLOSE"))
+            port.read(0.3)
+            assert termios.tcgetattr(slave)[5] == termios.B9600
+    finally:
+        os.close(slave)
+        os.close(master)

@@ -27,6 +27,8 @@ void test_the_defaults_are_those_of_the_table_and_pass(void) {
     TEST_ASSERT_EQUAL(-1, report.key);
     TEST_ASSERT_EQUAL(44, report.overhang_mm);
     TEST_ASSERT_EQUAL(487, report.reaction_ms); // 8 x 40 + 100 + 64 bytes at 9600 baud
+    TEST_ASSERT_EQUAL(97, report.travel_mm);
+    TEST_ASSERT_EQUAL(66, report.brake_mm);
     TEST_ASSERT_EQUAL(report.driving_mm, report.overhang_mm + report.travel_mm + report.brake_mm);
     TEST_ASSERT_EQUAL(report.stepping_mm, report.reach_mm + 3 * config.noise_mm + 20);
 }
@@ -86,6 +88,10 @@ void test_driving_is_refused_exactly_when_the_inequality_fails(void) {
         snprintf(message, sizeof message, "case %d: slack %.4f mm", i, slack);
         if (fabs(slack) > 0.01) {
             TEST_ASSERT_EQUAL_MESSAGE(slack < 0, driving_refused(), message);
+        }
+        if (fabs(slack - round(slack)) > 0.01) {
+            const int32_t wanted = (int32_t)floor(driving_exactly());
+            TEST_ASSERT_EQUAL_MESSAGE(wanted, argus_config_check(&config).driving_mm, message);
         }
         refused += slack < 0;
     }

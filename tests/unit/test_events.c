@@ -37,6 +37,7 @@ void test_first_in_first_out_round_the_ring(void) {
 
 void test_an_overflow_drops_the_newest_and_counts(void) {
     argus_event_t out;
+    memset(&events, 0xA5, sizeof events);
     argus_events_init(&events);
     for (int32_t i = 0; i < ARGUS_EVENT_QUEUE + 9; i++) {
         argus_events_push(&events, event_of(i));

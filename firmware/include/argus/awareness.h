@@ -45,6 +45,7 @@ typedef struct {
 
 typedef struct {
     argus_disparate_t of[ARGUS_SONARS];
+    bool away;         // turned away to look: what is read there is no verdict on the sonars' own bearings
     uint16_t verified; // sonars verified since the robot last drove: not again in this place
 } argus_awareness_t;
 
@@ -56,8 +57,8 @@ argus_alarm_t argus_awareness_sip(argus_awareness_t *self, const argus_knowledge
 // Sonars that Algorithm 1 now calls suspects: suspect_readings in a row, not held off, not verified in this place.
 uint16_t argus_suspects(argus_awareness_t *self, const argus_knowledge_t *knowledge, const argus_config_t *config);
 
-// Algorithm 2 cleared the sonar: hold off. / The robot stands somewhere new. / The readings begin anew.
-void argus_awareness_cleared(argus_awareness_t *self, const argus_knowledge_t *knowledge, int sonar);
+// Algorithm 2 cleared the sonar, whose disparity at rest was `difference_mm`: hold off. / The robot stands somewhere new. / The readings begin anew.
+void argus_awareness_cleared(argus_awareness_t *self, const argus_knowledge_t *knowledge, int sonar, int32_t difference_mm);
 void argus_awareness_moved(argus_awareness_t *self);
 void argus_awareness_restart(argus_awareness_t *self);
 

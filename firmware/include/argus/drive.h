@@ -24,7 +24,8 @@ int32_t argus_sweep_heading_cdeg(const argus_drive_t *self, const argus_plan_t *
 bool argus_sweep_step(argus_drive_t *self, const argus_plan_t *plan, const argus_knowledge_t *knowledge,
                       const argus_mark_t *mark);
 
-// The longest MOVE that normal driving may ask for now: shortest fresh front reading - object range, never negative.
+// The longest MOVE that normal driving may ask for now: shortest front reading, less the way driven since it was
+// taken, - object range; never negative.
 int32_t argus_drive_free_mm(const argus_knowledge_t *knowledge, int32_t object_range_mm);
 
 #endif

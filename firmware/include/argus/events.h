@@ -41,6 +41,7 @@ typedef enum { ARGUS_LEVEL_OK = 0, ARGUS_LEVEL_WARN = 1, ARGUS_LEVEL_ERROR = 2, 
     X(41, PLAN, WARN, "plan", "rotations that cover the disabled bearings; value: how many")                             \
     X(42, PLAN_ROTATION, OK, "plan", "one rotation of the plan; value: degrees, CCW positive")                           \
     X(43, HEALTH_CHECK, OK, "health", "all front sonars have reported and no suspect is open; value: disabled")          \
+    X(44, SONAR_STALE, STALE, "sonar", "a sonar outside 1..6 yields no reading; value: ms without one")                  \
     X(50, OBJECT, WARN, "object", "a healthy sonar sees an object in range: STOP sent; value: the reading in mm")        \
     X(51, OBJECT_CHECKED, WARN, "object", "a check in failure mode finds an object; value: the reading in mm")           \
     X(52, AVOIDING, OK, "task", "goes round an obstacle; value: heading chosen, degrees")                                \

@@ -63,6 +63,7 @@ typedef struct {
     bool steady;            // taken while the robot did not rotate
     uint32_t sip;           // index of the SIP that listed it last
     uint32_t heard_ms;      // time of that SIP
+    uint32_t odometer_mm;   // way driven by then
     uint32_t readings;      // monotonic
     argus_health_t health;
     argus_fault_kind_t kind;
@@ -104,7 +105,7 @@ typedef struct {
     uint32_t sips;
     uint32_t sip_ms;             // time of the last SIP
     uint16_t fresh;              // sonars listed in the last SIP
-    uint32_t online_ms;          // when this session's SIPs began
+    uint32_t online_ms;          // when SIPs began to come, or came again after a gap
 } argus_knowledge_t;
 
 void argus_knowledge_init(argus_knowledge_t *self);
@@ -130,6 +131,7 @@ bool argus_fresh_since(const argus_knowledge_t *self, int sonar, const argus_mar
 bool argus_all_fresh_since(const argus_knowledge_t *self, uint16_t sonars, const argus_mark_t *mark);
 
 uint32_t argus_age_ms(const argus_knowledge_t *self, int sonar, uint32_t now_ms); // UINT32_MAX: never reported
+uint32_t argus_silent_ms(const argus_knowledge_t *self, int sonar); // how long it has missed its slots, as of the last SIP
 bool argus_at_rest(const argus_knowledge_t *self);                                // two consecutive SIPs within 5 mm/s
 
 // Where the echo of a sonar lies, robot frame and course frame, beam axis taken.

@@ -54,6 +54,9 @@ int32_t argus_task_clear_mm(const argus_task_t *self, const argus_knowledge_t *k
 // An object stopped the robot on its present heading: that heading is refused until the robot has moved on.
 void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge);
 
+// After waiting in one place: every heading may be tried again.
+void argus_task_forgive(argus_task_t *self);
+
 // Chooses the next leg: the waypoint itself when the way is free, else the nearest free heading. False: no way.
 bool argus_task_choose(argus_task_t *self, const argus_knowledge_t *knowledge);
 

@@ -4,12 +4,12 @@
 #define ARGUSD_H
 
 // X(NAME, code, meaning).
-#define ARGUSD_EXIT_TABLE(X)                                                                                         \
-    X(OK, 0, "goal reached, check passed, or closed by the operator (q, SIGINT, SIGTERM)")                           \
-    X(MISSION, 1, "the mission ended without reaching the goal")                                                     \
-    X(USAGE, 2, "bad arguments, config, course or state file")                                                       \
-    X(LINK, 3, "the link could not be opened")                                                                       \
-    X(NO_ROBOT, 4, "no robot answered")                                                                              \
+#define ARGUSD_EXIT_TABLE(X)                                                               \
+    X(OK, 0, "goal reached, check passed, or closed by the operator (q, SIGINT, SIGTERM)") \
+    X(MISSION, 1, "the mission ended without reaching the goal")                           \
+    X(USAGE, 2, "bad arguments, config, course or state file")                             \
+    X(LINK, 3, "the link could not be opened")                                             \
+    X(NO_ROBOT, 4, "no robot answered")                                                    \
     X(INTERNAL, 5, "internal error")
 
 typedef enum {

@@ -15,11 +15,13 @@ bool course_parse_point(const char *text, argus_point_t *point, char *message, s
     const char *const comma = strchr(text, ',');
     const size_t length = comma == NULL ? sizeof x : (size_t)(comma - text);
     if (length >= sizeof x) {
-        return text_refuse(message, capacity, "'%.40s' is no waypoint; write x_mm,y_mm such as 1500,-300", text);
+        return text_refuse(message, capacity, "'%.40s' is no waypoint; write x_mm,y_mm such as 1500,-300",
+                           text);
     }
     memcpy(x, text, length);
     if (!text_number(x, &point->x_mm) || !text_number(comma + 1, &point->y_mm)) {
-        return text_refuse(message, capacity, "'%.40s' is no waypoint; write two whole numbers, x_mm,y_mm", text);
+        return text_refuse(message, capacity, "'%.40s' is no waypoint; write two whole numbers, x_mm,y_mm",
+                           text);
     }
     const int32_t limit = ARGUS_COURSE_LIMIT_MM;
     if (point->x_mm < -limit || point->x_mm > limit || point->y_mm < -limit || point->y_mm > limit) {
@@ -47,7 +49,8 @@ static bool read_line(course_t *course, char *line, char *message, size_t capaci
         return false;
     }
     if (course->count == ARGUS_WAYPOINTS_MAX) {
-        return text_refuse(message, capacity, "more than %d waypoints; shorten the course", ARGUS_WAYPOINTS_MAX);
+        return text_refuse(message, capacity, "more than %d waypoints; shorten the course",
+                           ARGUS_WAYPOINTS_MAX);
     }
     course->point[course->count++] = point;
     return true;

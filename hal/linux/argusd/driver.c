@@ -14,13 +14,15 @@ static uint32_t now_ms(const driver_t *self) {
     return hal_clock_now_ms(&self->clock);
 }
 
-void driver_init(driver_t *self, const argus_config_t *config, hal_clock_t clock) {
+void driver_init(driver_t *self, const argus_config_t *config, hal_clock_t clock, const hal_link_spec_t *spec,
+                 hal_transport_t *transport) {
     memset(self, 0, sizeof *self);
     self->clock = clock;
+    self->spec = *spec;
+    self->transport = transport;
     self->cancel_fd = -1;
     self->retry_ms = RETRY_FIRST_MS;
     self->error = HAL_LINK_NOT_OPEN;
-    hal_transport_init(&self->transport);
     argus_init(&self->core, config, now_ms(self));
 }
 
@@ -34,7 +36,7 @@ void driver_attach(driver_t *self, hal_link_t link) {
 
 hal_link_error_t driver_open(driver_t *self, int timeout_ms) {
     hal_link_t link = {0};
-    self->error = hal_transport_open(&self->transport, &self->spec, timeout_ms, self->cancel_fd, &link);
+    self->error = hal_transport_open(self->transport, &self->spec, timeout_ms, self->cancel_fd, &link);
     if (self->error == HAL_LINK_OK) {
         driver_attach(self, link);
     }
@@ -115,7 +117,7 @@ uint32_t driver_process(driver_t *self) {
             lose(self, kept);
         }
         driver_transmit(self);
-    } else if (!argus_closed(&self->core)) {
+    } else if (self->transport != NULL && !argus_closed(&self->core)) {
         retry_ms = reopen(self);
     }
     const uint32_t wait_ms = argus_process(&self->core, now_ms(self));

@@ -11,7 +11,7 @@ typedef struct {
     argus_t core;
     hal_clock_t clock;
     hal_link_spec_t spec;
-    hal_transport_t transport;
+    hal_transport_t *transport; // NULL: a link lost is not opened again
     hal_link_t link;
     bool up;
     int cancel_fd;          // becomes readable when opening is to be given up; -1: none
@@ -24,7 +24,9 @@ typedef struct {
     uint8_t packet[HAL_LINK_PACKET_MAX];
 } driver_t;
 
-void driver_init(driver_t *self, const argus_config_t *config, hal_clock_t clock);
+// `transport` stays the caller's, initialised, open or not.
+void driver_init(driver_t *self, const argus_config_t *config, hal_clock_t clock, const hal_link_spec_t *spec,
+                 hal_transport_t *transport);
 
 // One attempt, at most `timeout_ms` long for a TCP link.
 hal_link_error_t driver_open(driver_t *self, int timeout_ms);
@@ -35,7 +37,8 @@ void driver_attach(driver_t *self, hal_link_t link);
 // Call when the link can be read: what a SIP calls for is written before this returns.
 void driver_receive(driver_t *self);
 
-// Call when time has passed or the link can be written; returns the ms to wait at most. Opens a lost link again.
+// Call when time has passed or the link can be written; returns the ms to wait at most. Opens a lost link
+// again.
 uint32_t driver_process(driver_t *self);
 
 // Writes what the manager has to send, as far as the link takes it.

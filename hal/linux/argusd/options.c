@@ -52,39 +52,41 @@ static const struct option table[] = {
 };
 
 void options_help(FILE *out) {
-    fputs("argusd " ARGUS_VERSION ": keeps a Pioneer P3-DX seeing and driving safely when its sonars fail\n"
-          "\n"
-          "usage: argusd --link LINK [options]\n"
-          "\n"
-          "  --link LINK        serial:PATH[@BAUD] (default 9600) or tcp:HOST[:PORT] (default 8101)\n"
-          "  --auto-baud        serial: try 9600 38400 115200 19200 57600 and say what was found\n"
-          "  --config FILE      settings (see --list-config)\n"
-          "  --course FILE      drive this course: x_mm,y_mm per line, # comments\n"
-          "  --goal X,Y         drive to this one point; mm, x ahead and y left of where the robot stands\n"
-          "  --passive          diagnose and report, never command a motion\n"
-          "  --active           drive; needed on a serial link, which starts passive\n"
-          "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
-          "  --wait SECONDS     at start, how long to try for the port and for a robot's answer; or 'forever'\n"
-          "                     (default: the port must be there, a robot has 30 s)\n"
-          "  --check            connect, tell what is there, leave\n"
-          "  --json             one JSON object per line on standard output\n"
-          "  --plain            no screen on a terminal, a line per event instead\n"
-          "  --status MS        time between status lines, 0 for none (default 500 with --json, else 2000)\n"
-          "  --list-events      the event catalogue\n"
-          "  --list-config      every setting: type, range, default, unit, meaning\n"
-          "  --example-config   a config file with every setting\n"
-          "  --version  --help\n"
-          "\n"
-          "keys on the screen: arrows or w a s d drive, space stops, g goes on, r checks again, p passive/active, q ends\n"
-          "\n"
-          "examples:\n"
-          "  argusd --link serial:/dev/ttyUSB0@9600 --check\n"
-          "  argusd --link serial:/dev/ttyUSB0 --auto-baud\n"
-          "  argusd --link serial:/dev/ttyUSB0@9600 --active --goal 3000,0 --config argusd.conf\n"
-          "  argusd --link tcp:localhost --course course.csv --json\n"
-          "\n"
-          "exit codes:\n",
-          out);
+    fputs(
+        "argusd " ARGUS_VERSION ": keeps a Pioneer P3-DX seeing and driving safely when its sonars fail\n"
+        "\n"
+        "usage: argusd --link LINK [options]\n"
+        "\n"
+        "  --link LINK        serial:PATH[@BAUD] (default 9600) or tcp:HOST[:PORT] (default 8101)\n"
+        "  --auto-baud        serial: try 9600 38400 115200 19200 57600 and say what was found\n"
+        "  --config FILE      settings (see --list-config)\n"
+        "  --course FILE      drive this course: x_mm,y_mm per line, # comments\n"
+        "  --goal X,Y         drive to this one point; mm, x ahead and y left of where the robot stands\n"
+        "  --passive          diagnose and report, never command a motion\n"
+        "  --active           drive; needed on a serial link, which starts passive\n"
+        "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
+        "  --wait SECONDS     at start, how long to try for the port and for a robot's answer; or 'forever'\n"
+        "                     (default: the port must be there, a robot has 30 s)\n"
+        "  --check            connect, tell what is there, leave\n"
+        "  --json             one JSON object per line on standard output\n"
+        "  --plain            no screen on a terminal, a line per event instead\n"
+        "  --status MS        time between status lines, 0 for none (default 500 with --json, else 2000)\n"
+        "  --list-events      the event catalogue\n"
+        "  --list-config      every setting: type, range, default, unit, meaning\n"
+        "  --example-config   a config file with every setting\n"
+        "  --version  --help\n"
+        "\n"
+        "keys on the screen: arrows or w a s d drive, space stops, g goes on, r checks again, p "
+        "passive/active, q ends\n"
+        "\n"
+        "examples:\n"
+        "  argusd --link serial:/dev/ttyUSB0@9600 --check\n"
+        "  argusd --link serial:/dev/ttyUSB0 --auto-baud\n"
+        "  argusd --link serial:/dev/ttyUSB0@9600 --active --goal 3000,0 --config argusd.conf\n"
+        "  argusd --link tcp:localhost --course course.csv --json\n"
+        "\n"
+        "exit codes:\n",
+        out);
 #define EXIT_LINE(name, code, meaning) fprintf(out, "  %d  %s\n", code, meaning);
     ARGUSD_EXIT_TABLE(EXIT_LINE)
 #undef EXIT_LINE
@@ -198,9 +200,11 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
     case OPT_STATUS:
         return take_status(options, optarg, message);
     case ':':
-        return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help", argv[optind - 1]);
+        return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help",
+                           argv[optind - 1]);
     case '?':
-        return text_refuse(message->text, message->capacity, "unknown option %s; see argusd --help", argv[optind - 1]);
+        return text_refuse(message->text, message->capacity, "unknown option %s; see argusd --help",
+                           argv[optind - 1]);
     default:
         break;
     }
@@ -219,7 +223,8 @@ static bool agree(const options_t *options, const message_t *message) {
     } else if (options->course_path != NULL && options->has_goal) {
         problem = "--course and --goal contradict each other; give one";
     } else if (!has_link) {
-        problem = "no link is given; add --link serial:/dev/ttyUSB0@9600 or --link tcp:HOST:8101 (see --help)";
+        problem =
+            "no link is given; add --link serial:/dev/ttyUSB0@9600 or --link tcp:HOST:8101 (see --help)";
     } else if (options->auto_baud && options->link.scheme != HAL_SCHEME_SERIAL) {
         problem = "--auto-baud is for serial links; a tcp link has no rate";
     } else if (options->auto_baud && options->link.has_baud) {

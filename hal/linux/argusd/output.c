@@ -12,8 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// O_NONBLOCK on the descriptor that we were given would hit everybody who shares it, a shell for one; a second opening
-// of the same pipe or terminal has flags of its own.
+// O_NONBLOCK on the descriptor that we were given would hit everybody who shares it, a shell for one; a
+// second opening of the same pipe or terminal has flags of its own.
 static void open_own(output_t *self, int fd) {
     char path[32];
     snprintf(path, sizeof path, "/proc/self/fd/%d", fd);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lines to a reader that may be slow or gone: nothing here ever waits; what does not fit is dropped whole and counted.
+// Lines to a reader that may be slow or gone: nothing here ever waits; what does not fit is dropped whole and
+// counted.
 #ifndef ARGUSD_OUTPUT_H
 #define ARGUSD_OUTPUT_H
 
@@ -11,10 +12,10 @@
 
 typedef struct {
     int fd;
-    bool own;       // fd is our own opening, non-blocking without touching what others share
+    bool own; // fd is our own opening, non-blocking without touching what others share
     bool is_socket;
-    bool is_file;   // never makes anyone wait
-    bool broken;    // the reader is gone
+    bool is_file;     // never makes anyone wait
+    bool broken;      // the reader is gone
     uint32_t dropped; // lines, monotonic
     size_t used;
     char backlog[OUTPUT_BACKLOG];

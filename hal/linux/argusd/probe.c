@@ -19,13 +19,15 @@ static void hear(probe_t *probe, argus_parser_t *parser, uint32_t now_ms, const 
         taken += argus_parser_push(parser, now_ms, bytes + taken, count - taken);
         while (argus_parser_next(parser, now_ms, &packet)) {
             probe->baud = baud;
-            probe->reporting = packet.data[0] == ARCOS_TYPE_SIP_STATIONARY || packet.data[0] == ARCOS_TYPE_SIP_MOVING;
+            probe->reporting =
+                packet.data[0] == ARCOS_TYPE_SIP_STATIONARY || packet.data[0] == ARCOS_TYPE_SIP_MOVING;
         }
     } while (taken < count);
 }
 
 // Listens until a packet came, time is up, or somebody gave up.
-static void listen_for(probe_t *probe, hal_serial_t *port, const hal_clock_t *clock, int cancel_fd, uint32_t ms) {
+static void listen_for(probe_t *probe, hal_serial_t *port, const hal_clock_t *clock, int cancel_fd,
+                       uint32_t ms) {
     argus_parser_t parser;
     const hal_link_t link = hal_serial_link(port);
     const uint32_t start_ms = hal_clock_now_ms(clock);
@@ -33,7 +35,8 @@ static void listen_for(probe_t *probe, hal_serial_t *port, const hal_clock_t *cl
     argus_parser_init(&parser);
     while (probe->baud == 0 && !probe->cancelled && probe->error == HAL_LINK_OK && now_ms - start_ms < ms) {
         uint8_t bytes[256];
-        struct pollfd wait[2] = {{.fd = hal_link_fd(&link), .events = POLLIN}, {.fd = cancel_fd, .events = POLLIN}};
+        struct pollfd wait[2] = {{.fd = hal_link_fd(&link), .events = POLLIN},
+                                 {.fd = cancel_fd, .events = POLLIN}};
         poll(wait, 2, (int)(ms - (now_ms - start_ms)));
         probe->cancelled = wait[1].revents != 0;
         now_ms = hal_clock_now_ms(clock);

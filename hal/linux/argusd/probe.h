@@ -7,15 +7,15 @@
 #include "hal/serial.h"
 
 typedef struct {
-    uint32_t baud;     // found, or 0
-    bool reporting;    // an old session was still sending SIPs
+    uint32_t baud;  // found, or 0
+    bool reporting; // an old session was still sending SIPs
     bool cancelled;
     hal_link_error_t error;
-    uint32_t bytes;    // heard over all rates
+    uint32_t bytes; // heard over all rates
 } probe_t;
 
-// Tries each rate of an open port: listens, then asks with SYNC0. At most about 1 s a rate; gives up when `cancel_fd`
-// becomes readable. A robot that is found is left at SYNC, which the next SYNC0 starts anew.
+// Tries each rate of an open port: listens, then asks with SYNC0. At most about 1 s a rate; gives up when
+// `cancel_fd` becomes readable. A robot that is found is left at SYNC, which the next SYNC0 starts anew.
 probe_t probe_baud(hal_serial_t *port, const hal_clock_t *clock, int cancel_fd);
 
 #endif

@@ -12,8 +12,8 @@ static const char *const level_names[] = {"OK", "WARN", "ERROR", "STALE"};
 
 static const char *meaning_of(uint16_t id) {
     switch (id) {
-#define MEANING(number, name, level, subject, meaning)                                                               \
-    case number:                                                                                                     \
+#define MEANING(number, name, level, subject, meaning) \
+    case number:                                       \
         return meaning;
         ARGUS_EVENT_TABLE(MEANING)
 #undef MEANING
@@ -28,7 +28,8 @@ static const char *level_name(argus_level_t level) {
 
 void report_name(const argus_event_t *event, char *text, size_t capacity) {
     if (event->sonar >= 0 && event->sonar < ARGUS_SONARS) {
-        snprintf(text, capacity, "sonar/%s/%02d", event->sonar < FRONT_SONARS ? "front" : "rear", event->sonar);
+        snprintf(text, capacity, "sonar/%s/%02d", event->sonar < FRONT_SONARS ? "front" : "rear",
+                 event->sonar);
     } else {
         snprintf(text, capacity, "%s", argus_event_subject(event->id));
     }
@@ -88,7 +89,8 @@ static void add_value(text_t *text, const argus_event_t *event) {
     }
 }
 
-size_t report_event_plain(const argus_event_t *event, uint64_t t_ms, bool colour, char *line, size_t capacity) {
+size_t report_event_plain(const argus_event_t *event, uint64_t t_ms, bool colour, char *line,
+                          size_t capacity) {
     char name[32];
     const argus_level_t level = argus_event_level(event->id);
     const char *const meaning = meaning_of(event->id);
@@ -232,7 +234,7 @@ size_t report_status_plain(const view_t *view, char *line, size_t capacity) {
 
 void report_list_events(FILE *out) {
     fprintf(out, "%-3s %-18s %-6s %-9s %s\n", "ID", "EVENT", "LEVEL", "ABOUT", "MEANING");
-#define EVENT_LINE(id, name, level, subject, meaning)                                                                \
+#define EVENT_LINE(id, name, level, subject, meaning) \
     fprintf(out, "%-3d %-18s %-6s %-9s %s\n", id, #name, #level, subject, meaning);
     ARGUS_EVENT_TABLE(EVENT_LINE)
 #undef EVENT_LINE

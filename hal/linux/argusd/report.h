@@ -13,9 +13,11 @@
 // ROS-like: "sonar/front/03", "sonar/rear/11", or the event's subject.
 void report_name(const argus_event_t *event, char *text, size_t capacity);
 
-// Each writes one line without its newline and returns its length, 0 when it does not fit. `t_ms`: since argusd began.
+// Each writes one line without its newline and returns its length, 0 when it does not fit. `t_ms`: since
+// argusd began.
 size_t report_event_json(const argus_event_t *event, uint64_t t_ms, char *line, size_t capacity);
-size_t report_event_plain(const argus_event_t *event, uint64_t t_ms, bool colour, char *line, size_t capacity);
+size_t report_event_plain(const argus_event_t *event, uint64_t t_ms, bool colour, char *line,
+                          size_t capacity);
 size_t report_status_json(const view_t *view, int64_t unix_ms, char *line, size_t capacity);
 size_t report_status_plain(const view_t *view, char *line, size_t capacity);
 

@@ -92,7 +92,8 @@ static void draw_title(canvas_t *canvas, const view_t *view) {
     for (int column = 0; column < canvas->columns; column++) {
         put(canvas, 0, column, TONE_TITLE, ' ');
     }
-    write_at(canvas, 0, 1, TONE_TITLE, "argus  %.40s  %.16s", view->link, view->name[0] != '\0' ? view->name : "no robot");
+    write_at(canvas, 0, 1, TONE_TITLE, "argus  %.40s  %.16s", view->link,
+             view->name[0] != '\0' ? view->name : "no robot");
     char right[40];
     snprintf(right, sizeof right, " %s %s %2d.%d V ", status->online ? "online" : "OFFLINE",
              status->active ? "ACTIVE" : "PASSIVE", status->battery_dv / 10, status->battery_dv % 10);
@@ -109,8 +110,9 @@ static void draw_progress(canvas_t *canvas, const view_t *view, int row, int col
     for (int i = 0; i < cells; i++) {
         bar[i + 1] = (uint64_t)done * (uint64_t)cells > (uint64_t)i * whole ? '#' : '-';
     }
-    write_at(canvas, row, column, TONE_PLAIN, "goal %u.%02u m %s %u %%  waypoint %u of %u", (unsigned)(left / 1000),
-             (unsigned)(left % 1000 / 10), bar, (unsigned)((uint64_t)done * 100u / whole),
+    write_at(canvas, row, column, TONE_PLAIN, "goal %u.%02u m %s %u %%  waypoint %u of %u",
+             (unsigned)(left / 1000), (unsigned)(left % 1000 / 10), bar,
+             (unsigned)((uint64_t)done * 100u / whole),
              (unsigned)(status->waypoint < status->waypoints ? status->waypoint + 1 : status->waypoints),
              (unsigned)status->waypoints);
 }
@@ -215,12 +217,13 @@ static void draw_numbers(canvas_t *canvas, const view_t *view, int row, int colu
     write_at(canvas, row + 1, column, TONE_PLAIN, "at %d, %d mm, %d deg   %d/%d mm/s", (int)status->pose.x_mm,
              (int)status->pose.y_mm, (int)(status->pose.heading_cdeg / 100), status->vel_left_mm_s,
              status->vel_right_mm_s);
-    write_at(canvas, row + 2, column, status->bumpers_front != 0 || status->bumpers_rear != 0 ? TONE_BAD : TONE_PLAIN,
+    write_at(canvas, row + 2, column,
+             status->bumpers_front != 0 || status->bumpers_rear != 0 ? TONE_BAD : TONE_PLAIN,
              "motors %s  bumpers %02x/%02x  stops %u", motors ? "on" : "off", status->bumpers_front,
              status->bumpers_rear, (unsigned)status->stops);
-    write_at(canvas, row + 3, column, view->link_up ? TONE_PLAIN : TONE_BAD, "link %s  SIPs %u  bad %u  junk %u",
-             view->link_up ? "up" : "DOWN", (unsigned)status->sips, (unsigned)status->bad_checksums,
-             (unsigned)status->skipped_bytes);
+    write_at(canvas, row + 3, column, view->link_up ? TONE_PLAIN : TONE_BAD,
+             "link %s  SIPs %u  bad %u  junk %u", view->link_up ? "up" : "DOWN", (unsigned)status->sips,
+             (unsigned)status->bad_checksums, (unsigned)status->skipped_bytes);
 }
 
 static void draw_log(canvas_t *canvas, const screen_log_t *log, int top, int bottom) {

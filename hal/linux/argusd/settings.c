@@ -25,7 +25,7 @@ typedef struct {
 } row_t;
 
 static const row_t rows[SETTINGS_COUNT] = {
-#define ROW(key, def, min, max, unit, choices, meaning)                                                              \
+#define ROW(key, def, min, max, unit, choices, meaning) \
     {#key, def, min, max, unit, choices, meaning, offsetof(argus_config_t, key)},
     ARGUS_CONFIG_TABLE(ROW)
 #undef ROW
@@ -125,12 +125,12 @@ static int take_value(load_t *load, const row_t *row, const char *text) {
             return refuse(load, "%s = '%.40s': choose one of %s", row->key, text, row->choices);
         }
     } else if (!text_number(text, &value)) {
-        return refuse(load, "%s = '%.40s': give a whole number, %d to %d %s", row->key, text, (int)row->minimum,
-                      (int)row->maximum, row->unit);
+        return refuse(load, "%s = '%.40s': give a whole number, %d to %d %s", row->key, text,
+                      (int)row->minimum, (int)row->maximum, row->unit);
     }
     if (value < row->minimum || value > row->maximum) {
-        return refuse(load, "%s = %d is out of range; give %d to %d %s", row->key, (int)value, (int)row->minimum,
-                      (int)row->maximum, row->unit);
+        return refuse(load, "%s = %d is out of range; give %d to %d %s", row->key, (int)value,
+                      (int)row->minimum, (int)row->maximum, row->unit);
     }
     memcpy((char *)&load->settings->config + row->offset, &value, sizeof value);
     return 1;
@@ -144,7 +144,8 @@ static int take_key(void *user, const char *section, const char *name, const cha
             continue;
         }
         if (load->settings->line[i] != 0) {
-            return refuse(load, "%s was given on line %d already; keep one of the two", name, load->settings->line[i]);
+            return refuse(load, "%s was given on line %d already; keep one of the two", name,
+                          load->settings->line[i]);
         }
         load->settings->line[i] = load->line;
         return take_value(load, &rows[i], value);
@@ -214,9 +215,10 @@ bool settings_read(settings_t *self, FILE *file, const char *path, char *message
 bool settings_load(settings_t *self, const char *path, char *message, size_t capacity) {
     FILE *const file = fopen(path, "re");
     if (file == NULL) {
-        return text_refuse(message, capacity,
-                           "%s: cannot be opened: %s; give the config file's path (argusd --example-config prints one)",
-                           path, strerror(errno));
+        return text_refuse(
+            message, capacity,
+            "%s: cannot be opened: %s; give the config file's path (argusd --example-config prints one)",
+            path, strerror(errno));
     }
     const bool good = settings_read(self, file, path, message, capacity);
     fclose(file);
@@ -230,26 +232,27 @@ bool settings_check(const settings_t *self, char *message, size_t capacity) {
     case ARGUS_CONFIG_OK:
         return true;
     case ARGUS_CONFIG_DRIVING:
-        return text_refuse(message, capacity,
-                           "driving would be unsafe (S5): overhang %d + travel %d (%d mm/s x %d ms) + braking %d = %d mm "
-                           "must be less than object_range_mm = %d; lower speed_mm_s, or raise object_range_mm or "
-                           "decel_mm_s2",
-                           (int)report.overhang_mm, (int)report.travel_mm, (int)config->speed_mm_s,
-                           (int)report.reaction_ms, (int)report.brake_mm, (int)report.driving_mm,
-                           (int)config->object_range_mm);
+        return text_refuse(
+            message, capacity,
+            "driving would be unsafe (S5): overhang %d + travel %d (%d mm/s x %d ms) + braking %d = %d mm "
+            "must be less than object_range_mm = %d; lower speed_mm_s, or raise object_range_mm or "
+            "decel_mm_s2",
+            (int)report.overhang_mm, (int)report.travel_mm, (int)config->speed_mm_s, (int)report.reaction_ms,
+            (int)report.brake_mm, (int)report.driving_mm, (int)config->object_range_mm);
     case ARGUS_CONFIG_STEP:
-        return text_refuse(message, capacity,
-                           "a step would be unsafe (S5): reach of a %d mm step %d + 3 x noise %d + 20 = %d mm must be "
-                           "less than check_range_mm = %d; lower step_mm, or raise check_range_mm",
-                           (int)config->step_mm, (int)report.reach_mm, (int)config->noise_mm, (int)report.stepping_mm,
-                           (int)config->check_range_mm);
+        return text_refuse(
+            message, capacity,
+            "a step would be unsafe (S5): reach of a %d mm step %d + 3 x noise %d + 20 = %d mm must be "
+            "less than check_range_mm = %d; lower step_mm, or raise check_range_mm",
+            (int)config->step_mm, (int)report.reach_mm, (int)config->noise_mm, (int)report.stepping_mm,
+            (int)config->check_range_mm);
     case ARGUS_CONFIG_RANGE:
     default:
         break;
     }
     const int row = report.key >= 0 && report.key < SETTINGS_COUNT ? (int)report.key : 0;
-    return text_refuse(message, capacity, "%s is out of range; give %d to %d %s", rows[row].key, (int)rows[row].minimum,
-                       (int)rows[row].maximum, rows[row].unit);
+    return text_refuse(message, capacity, "%s is out of range; give %d to %d %s", rows[row].key,
+                       (int)rows[row].minimum, (int)rows[row].maximum, rows[row].unit);
 }
 
 static void name_value(const row_t *row, int32_t value, char *text, size_t capacity) {
@@ -279,14 +282,17 @@ void settings_list(FILE *out) {
         char range[48];
         name_value(&rows[i], rows[i].value, value, sizeof value);
         name_range(&rows[i], range, sizeof range);
-        fprintf(out, "%-18s %-7s %-13s %-8s %-6s %s\n", rows[i].key, rows[i].choices[0] != '\0' ? "choice" : "integer",
-                range, value, rows[i].unit[0] == '\0' ? "-" : rows[i].unit, rows[i].meaning);
+        fprintf(out, "%-18s %-7s %-13s %-8s %-6s %s\n", rows[i].key,
+                rows[i].choices[0] != '\0' ? "choice" : "integer", range, value,
+                rows[i].unit[0] == '\0' ? "-" : rows[i].unit, rows[i].meaning);
     }
 }
 
 void settings_example(FILE *out) {
-    fprintf(out, "# Settings of argusd, with their defaults; every line may be left out. Use: argusd --config FILE\n"
-                 "[" SECTION "]\n");
+    fprintf(
+        out,
+        "# Settings of argusd, with their defaults; every line may be left out. Use: argusd --config FILE\n"
+        "[" SECTION "]\n");
     for (int i = 0; i < SETTINGS_COUNT; i++) {
         char value[32];
         char range[48];

@@ -14,12 +14,13 @@ bool state_open(state_t *self, const char *path, argus_t *core, char *message, s
                            HAL_STORE_PATH_MAX - 1);
     }
     hal_store_init(&self->store, hal_file_medium(&self->files));
-    const hal_store_error_t found = hal_store_load(&self->store, self->record, sizeof self->record, &self->length);
+    const hal_store_error_t found =
+        hal_store_load(&self->store, self->record, sizeof self->record, &self->length);
     if (found == HAL_STORE_DAMAGED) {
         text_refuse(message, capacity, "%s.a and %s.b are damaged: the history begins anew", path, path);
     } else if (found != HAL_STORE_OK && found != HAL_STORE_EMPTY) {
-        return text_refuse(message, capacity, "--state %s: %s; give a file in a folder that can be written", path,
-                           hal_store_error_text(found));
+        return text_refuse(message, capacity, "--state %s: %s; give a file in a folder that can be written",
+                           path, hal_store_error_text(found));
     } else if (self->store.damaged[0] || self->store.damaged[1]) {
         text_refuse(message, capacity, "%s.%c is damaged: the other copy is used", path,
                     self->store.damaged[0] ? 'a' : 'b');

@@ -14,8 +14,8 @@ typedef struct {
     uint8_t record[HAL_STORE_RECORD_MAX];
 } state_t;
 
-// Loads the record into the manager. False: the place cannot be used, `message` says why. True with a message that is not
-// empty: something was damaged and what could be used was.
+// Loads the record into the manager. False: the place cannot be used, `message` says why. True with a message
+// that is not empty: something was damaged and what could be used was.
 bool state_open(state_t *self, const char *path, argus_t *core, char *message, size_t capacity);
 
 // Saves when the record has changed. It waits for the disk: call it at rest. False: `message` says why.

@@ -20,9 +20,11 @@ __attribute__((format(printf, 2, 3))) void text_add(text_t *self, const char *fo
 __attribute__((format(printf, 2, 0))) void text_add_list(text_t *self, const char *format, va_list arguments);
 
 // Replaces the buffer's text; returns false, so that a failing function can end with it.
-__attribute__((format(printf, 3, 4))) bool text_refuse(char *buffer, size_t capacity, const char *format, ...);
+__attribute__((format(printf, 3, 4))) bool text_refuse(char *buffer, size_t capacity, const char *format,
+                                                       ...);
 
-// A whole decimal number, sign allowed, blanks around it allowed, nothing else; false when it is none or does not fit.
+// A whole decimal number, sign allowed, blanks around it allowed, nothing else; false when it is none or does
+// not fit.
 bool text_number(const char *text, int32_t *value);
 
 #endif

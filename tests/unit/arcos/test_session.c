@@ -695,6 +695,30 @@ void test_a_lost_link_is_said_and_the_robot_found_again(void) {
     TEST_ASSERT_EQUAL(2, count_of(ARGUS_SESSION_DID_OPEN));
 }
 
+void test_another_packet_during_a_stall_is_no_reset(void) {
+    const uint8_t iopac[] = {ARCOS_TYPE_IOPAC, 0, 0, 0};
+    connect();
+    robot.sip_due_ms = time_ms + 1500;
+    run_until(time_ms + 1000);
+    TEST_ASSERT_EQUAL(1, count_of(ARGUS_SESSION_DID_STALL));
+    robot_says(iopac, sizeof iopac);
+    run_until(time_ms + 1000);
+    TEST_ASSERT_EQUAL(0, count_of(ARGUS_SESSION_DID_LOSE));
+    TEST_ASSERT_EQUAL(1, count_of(ARGUS_SESSION_DID_RESUME));
+}
+
+void test_what_the_last_robot_said_of_itself_is_forgotten(void) {
+    connect();
+    TEST_ASSERT_TRUE(session.has_robot);
+    argus_session_link_down(&session);
+    robot.state = WAIT;
+    robot.config = NULL;
+    argus_session_link_up(&session, now());
+    TEST_ASSERT_TRUE(run_until_seen(ARGUS_SESSION_DID_OPEN, time_ms + 5000));
+    TEST_ASSERT_FALSE(session.has_robot);
+    TEST_ASSERT_EQUAL(0, session.robot.sonar_cycle_ms);
+}
+
 void test_a_robot_switched_off_and_on_is_noticed_by_its_echo(void) {
     connect();
     run_until(2000);
@@ -741,7 +765,9 @@ void test_the_transport_can_go_and_come_at_any_moment(void) {
         setUp();
         argus_session_link_up(&session, now());
         run_until(cut_ms);
+        receive((const uint8_t[]){0xFA, 0xFB, 20}, 3); // the cut goes through a packet
         argus_session_link_down(&session);
+        TEST_ASSERT_EQUAL(0, session.parser.length);
         robot.out_count = 0;
         const size_t before = robot.logged;
         run_until(cut_ms + 500);
@@ -785,6 +811,19 @@ void test_leaving_is_in_order_and_said_once(void) {
     argus_session_link_up(&session, now());
     run_until(time_ms + 3000);
     TEST_ASSERT_EQUAL(from + 4, robot.logged);
+}
+
+void test_leaving_waits_for_the_last_byte_on_the_wire(void) {
+    connect();
+    argus_session_leave(&session, now());
+    for (int i = 0; i < 50; i++) { // the link takes nothing for half a second
+        time_ms += 10;
+        note(argus_session_process(&session, &config, now()));
+    }
+    const uint32_t sent_ms = time_ms;
+    TEST_ASSERT_TRUE(run_until_seen(ARGUS_SESSION_DID_CLOSE, time_ms + 1000));
+    TEST_ASSERT_GREATER_OR_EQUAL(sent_ms + 100, time_of(ARGUS_SESSION_DID_CLOSE));
+    TEST_ASSERT_EQUAL(ARCOS_CMD_CLOSE, robot.log[robot.logged - 1].command);
 }
 
 void test_leaving_ends_from_any_moment_and_leaves_no_session_behind(void) {

@@ -25,8 +25,8 @@ extern const size_t captures_count;
 
 // Appends one packet.
 void captures_add(captures_t *stream, const uint8_t *packet, size_t total);
-// Appends the bytes that ARGUS_TEST_DATA/captures/`name`.jsonl recorded in `direction` ("r2c", "c2r") and returns
-// where they begin; ends the program with a message when the file cannot be read.
+// Appends the bytes that ARGUS_TEST_DATA/captures/`name`.jsonl recorded in `direction` ("r2c", "c2r") and
+// returns where they begin; ends the program with a message when the file cannot be read.
 size_t captures_load_bytes(captures_t *stream, const char *name, const char *direction);
 // The same and finds the packets; ends the program with a message when they do not frame cleanly.
 void captures_load(captures_t *stream, const char *name, const char *direction);

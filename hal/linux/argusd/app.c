@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+// argusd's start: arguments, files, the link; then the loop.
+#include "app.h"
+
+#include <poll.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "argusd.h"
+#include "check.h"
+#include "course.h"
+#include "loop.h"
+#include "options.h"
+#include "probe.h"
+#include "report.h"
+#include "settings.h"
+#include "signals.h"
+#include "text.h"
+
+#define OPEN_TIMEOUT_MS 5000
+#define OPEN_RETRY_MS 250
+#define ANSWER_MS 30000u
+#define CHECK_ANSWER_MS 10000u
+
+// Static, not allocated: argusd never asks for memory.
+static options_t options;
+static settings_t settings;
+static course_t course;
+static hal_transport_t transport;
+static loop_t loop;
+static char message[ARGUSD_MESSAGE_MAX];
+
+static argusd_exit_t complain(argusd_exit_t code) {
+    fprintf(stderr, "argusd: %s\n", message);
+    return code;
+}
+
+static argusd_exit_t print_list(options_action_t action) {
+    switch (action) {
+    case OPTIONS_VERSION:
+        printf("argusd %s\n", ARGUS_VERSION);
+        break;
+    case OPTIONS_LIST_EVENTS:
+        report_list_events(stdout);
+        break;
+    case OPTIONS_LIST_CONFIG:
+        settings_list(stdout);
+        break;
+    case OPTIONS_EXAMPLE_CONFIG:
+        settings_example(stdout);
+        break;
+    default:
+        options_help(stdout);
+        break;
+    }
+    return fflush(stdout) == 0 ? ARGUSD_EXIT_OK : ARGUSD_EXIT_INTERNAL;
+}
+
+// The rate of the wire: of the link, else of the config file, else the default. They must not contradict each
+// other.
+static bool settle_baud(void) {
+    int32_t *const baud = &settings.config.baud;
+    const int line = settings.line[SETTINGS_baud];
+    if (options.link.scheme == HAL_SCHEME_TCP) {
+        *baud = line != 0 ? *baud : 0;
+        return true;
+    }
+    if (line != 0 && !hal_baud_is_known((uint32_t)*baud)) {
+        return text_refuse(message, sizeof message,
+                           "%s:%d: baud = %d: the rates of a serial link are " HAL_BAUD_LIST,
+                           options.config_path, line, (int)*baud);
+    }
+    if (line != 0 && options.link.has_baud && options.link.baud != (uint32_t)*baud) {
+        return text_refuse(message, sizeof message, "%s:%d: baud = %d, but --link says @%u; leave one out",
+                           options.config_path, line, (int)*baud, (unsigned)options.link.baud);
+    }
+    if (line != 0) {
+        options.link.baud = (uint32_t)*baud;
+    }
+    *baud = (int32_t)options.link.baud;
+    return true;
+}
+
+// NULL, or why the manager starts passive although nobody asked for that.
+static const char *settle_activity(void) {
+    int32_t *const active = &settings.config.active;
+    if (options.passive || options.action == OPTIONS_CHECK) {
+        *active = 0;
+    } else if (options.active) {
+        *active = 1;
+    } else if (options.link.scheme == HAL_SCHEME_SERIAL) {
+        *active = 0;
+        return "passive, since a real robot may be at the end of a serial link: it reports and commands no "
+               "motion; give "
+               "--active to let it drive";
+    }
+    return NULL;
+}
+
+static bool load_files(void) {
+    settings_default(&settings);
+    if (options.config_path != NULL &&
+        !settings_load(&settings, options.config_path, message, sizeof message)) {
+        return false;
+    }
+    if (!settle_baud()) {
+        return false;
+    }
+    char problem[ARGUSD_MESSAGE_MAX / 2];
+    if (!settings_check(&settings, problem, sizeof problem)) {
+        return text_refuse(message, sizeof message, "%s: %s",
+                           options.config_path != NULL ? options.config_path : "config", problem);
+    }
+    if (options.course_path != NULL) {
+        return course_load(&course, options.course_path, message, sizeof message);
+    }
+    if (options.has_goal) {
+        course.point[0] = options.goal;
+        course.count = 1;
+    }
+    return true;
+}
+
+static bool is_worth_waiting_for(hal_link_error_t error) {
+    switch (error) {
+    case HAL_LINK_NOT_FOUND:
+    case HAL_LINK_GONE:
+    case HAL_LINK_BUSY:
+    case HAL_LINK_REFUSED:
+    case HAL_LINK_UNREACHABLE:
+    case HAL_LINK_TIMEOUT:
+    case HAL_LINK_UNRESOLVED:
+        return true;
+    default:
+        return false;
+    }
+}
+
+static bool is_time_left(const hal_clock_t *clock, uint32_t start_ms) {
+    if (!options.has_wait || signals_ends() > 0) {
+        return false;
+    }
+    return options.wait_ms == OPTIONS_WAIT_FOREVER || hal_clock_now_ms(clock) - start_ms < options.wait_ms;
+}
+
+static void pause_for(int ms) {
+    struct pollfd wait = {.fd = signals_fd(), .events = POLLIN};
+    poll(&wait, 1, ms);
+}
+
+static hal_link_error_t open_link(const hal_clock_t *clock, hal_link_t *link) {
+    const uint32_t start_ms = hal_clock_now_ms(clock);
+    for (;;) {
+        const hal_link_error_t error =
+            hal_transport_open(&transport, &options.link, OPEN_TIMEOUT_MS, signals_fd(), link);
+        if (!is_worth_waiting_for(error) || !is_time_left(clock, start_ms)) {
+            return error;
+        }
+        pause_for(OPEN_RETRY_MS);
+    }
+}
+
+static argusd_exit_t find_baud(const hal_clock_t *clock) {
+    const uint32_t start_ms = hal_clock_now_ms(clock);
+    probe_t probe;
+    do {
+        probe = probe_baud(&transport.serial, clock, signals_fd());
+    } while (probe.baud == 0 && probe.error == HAL_LINK_OK && !probe.cancelled &&
+             is_time_left(clock, start_ms));
+    if (probe.baud != 0) {
+        fprintf(stderr, "argusd: auto-baud: a robot %s at %u bit/s\n",
+                probe.reporting ? "is still reporting to an earlier client" : "answers",
+                (unsigned)probe.baud);
+        options.link.baud = probe.baud;
+        settings.config.baud = (int32_t)probe.baud;
+        return ARGUSD_EXIT_OK;
+    }
+    if (probe.error != HAL_LINK_OK) {
+        hal_transport_explain(&options.link, probe.error, message, sizeof message);
+        return ARGUSD_EXIT_LINK;
+    }
+    text_refuse(
+        message, sizeof message, "%s: no robot answered at any of " HAL_BAUD_LIST "; %u bytes were heard; %s",
+        options.link.path, (unsigned)probe.bytes,
+        probe.bytes == 0 ? "is the robot on and connected?" : "the line is noisy or this is no robot");
+    return ARGUSD_EXIT_NO_ROBOT;
+}
+
+static argusd_exit_t connect_robot(const hal_clock_t *clock, hal_link_t *link) {
+    hal_transport_init(&transport);
+    const hal_link_error_t error = open_link(clock, link);
+    if (signals_ends() > 0) {
+        text_refuse(message, sizeof message, "ended before the link was open");
+        return ARGUSD_EXIT_OK;
+    }
+    if (error != HAL_LINK_OK) {
+        hal_transport_explain(&options.link, error, message, sizeof message);
+        return ARGUSD_EXIT_LINK;
+    }
+    const argusd_exit_t found = options.auto_baud ? find_baud(clock) : ARGUSD_EXIT_OK;
+    if (found != ARGUSD_EXIT_OK) {
+        hal_link_close(link);
+    }
+    return found;
+}
+
+static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
+    const uint32_t wait_ms = options.has_wait ? options.wait_ms : CHECK_ANSWER_MS;
+    driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
+    driver_attach(&loop.driver, link);
+    message[0] = '\0';
+    const argusd_exit_t code =
+        check_run(&loop.driver, wait_ms, signals_fd(), options.json, stdout, message, sizeof message);
+    return code == ARGUSD_EXIT_OK ? code : complain(code);
+}
+
+static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *notice) {
+    const loop_options_t wishes = {
+        .json = options.json,
+        .plain = options.plain,
+        .status_ms = options.has_status ? options.status_ms
+                     : options.json     ? 500u
+                                        : 2000u,
+        .answer_ms = options.has_wait ? options.wait_ms : ANSWER_MS,
+        .notice = notice,
+    };
+    driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
+    if (options.state_path != NULL) {
+        if (!state_open(&loop.state, options.state_path, &loop.driver.core, message, sizeof message)) {
+            hal_link_close(&link);
+            return complain(ARGUSD_EXIT_USAGE);
+        }
+        if (message[0] != '\0') {
+            complain(ARGUSD_EXIT_OK);
+        }
+    }
+    if (course.count > 0 && !argus_set_course(&loop.driver.core, course.point, course.count)) {
+        hal_link_close(&link);
+        text_refuse(message, sizeof message, "the course does not fit the fault manager");
+        return complain(ARGUSD_EXIT_INTERNAL);
+    }
+    driver_attach(&loop.driver, link);
+    return loop_run(&loop, &wishes);
+}
+
+static argusd_exit_t run(int argc, char **argv) {
+    const hal_clock_t clock = hal_clock_monotonic();
+    hal_link_t link = {0};
+    if (!options_parse(&options, argc, argv, message, sizeof message)) {
+        return complain(ARGUSD_EXIT_USAGE);
+    }
+    if (options.action != OPTIONS_RUN && options.action != OPTIONS_CHECK) {
+        return print_list(options.action);
+    }
+    if (!load_files()) {
+        return complain(ARGUSD_EXIT_USAGE);
+    }
+    const char *const notice = settle_activity();
+    if (!signals_open()) {
+        text_refuse(message, sizeof message, "no pipe or signal handler could be had from the system");
+        return complain(ARGUSD_EXIT_INTERNAL);
+    }
+    message[0] = '\0';
+    const argusd_exit_t connected = connect_robot(&clock, &link);
+    if (connected != ARGUSD_EXIT_OK || message[0] != '\0') {
+        return complain(connected);
+    }
+    return options.action == OPTIONS_CHECK ? run_check(link, clock) : run_loop(link, clock, notice);
+}
+
+int app_main(int argc, char **argv) {
+    return (int)run(argc, argv);
+}

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+// Looks at a robot without moving it.
+#include "check.h"
+
+#include <poll.h>
+#include <string.h>
+
+#include "json.h"
+
+#define LOOK_MS 3000u // long enough for every transducer to fire several times
+#define LEAVE_MS 4000u
+
+void check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *text, size_t capacity) {
+    const argus_parser_t *const parser = &driver->core.session.parser;
+    const bool serial = driver->spec.scheme == HAL_SCHEME_SERIAL;
+    text_t line = text_in(text, capacity);
+    text_add(&line, "%s: no robot answered in %u s: ", hal_link_describe(&driver->link),
+             (unsigned)(waited_ms / 1000u));
+    if (driver->bytes_in == 0) {
+        text_add(&line, "nothing was received; is the robot on and connected?%s",
+                 serial ? " At another rate it is silent too: try --auto-baud" : "");
+    } else if (parser->packets == 0) {
+        text_add(&line, "%u bytes of garbage were received, no packet among them; %s",
+                 (unsigned)driver->bytes_in,
+                 serial ? "the rate is wrong or it is no robot: try --auto-baud"
+                        : "this is no ARCOS server: check the port");
+    } else {
+        text_add(&line,
+                 "%u packets and %u bad checksums were received, but no session opened; another client may "
+                 "hold the "
+                 "robot, or the line is noisy or looped back",
+                 (unsigned)parser->packets, (unsigned)parser->bad_checksums);
+    }
+}
+
+// One turn of the loop; false when somebody gave up.
+static bool turn(driver_t *driver, int cancel_fd, uint32_t most_ms) {
+    argus_event_t event;
+    uint32_t wait_ms = driver_process(driver);
+    wait_ms = wait_ms < most_ms ? wait_ms : most_ms;
+    struct pollfd wait[2] = {{.fd = hal_link_fd(&driver->link), .events = POLLIN},
+                             {.fd = cancel_fd, .events = POLLIN}};
+    if (driver_wants_write(driver)) {
+        wait[0].events |= POLLOUT;
+    }
+    poll(wait, 2, (int)wait_ms);
+    driver_receive(driver);
+    while (argus_next_event(&driver->core, &event)) {
+    }
+    return wait[1].revents == 0;
+}
+
+static int sonars_seen(const argus_status_t *status) {
+    int seen = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        seen += status->age_ms[i] != UINT32_MAX;
+    }
+    return seen;
+}
+
+static void put_seen(FILE *out, const argus_status_t *status, bool wanted) {
+    int count = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if ((status->age_ms[i] != UINT32_MAX) == wanted) {
+            fprintf(out, " %d", i);
+            count++;
+        }
+    }
+    fprintf(out, count == 0 ? " none\n" : "\n");
+}
+
+static void tell_plain(const driver_t *driver, const argus_status_t *status, FILE *out) {
+    const argus_session_t *const session = &driver->core.session;
+    fprintf(out, "port      %s\n", hal_link_describe(&driver->link));
+    if (driver->spec.scheme == HAL_SCHEME_SERIAL) {
+        fprintf(out, "rate      %u bit/s\n", (unsigned)driver->spec.baud);
+    }
+    fprintf(out, "robot     name '%s', class '%s', subclass '%s'%s\n", status->robot_name,
+            status->robot_class, status->robot_subclass,
+            argus_session_knows_subclass(session) ? "" : " (not a P3-DX that is known)");
+    if (session->has_robot) {
+        fprintf(out, "firmware  version '%s', serial number '%s', watchdog %u ms, sonar cycle %u ms\n",
+                session->robot.version, session->robot.serial, (unsigned)session->robot.watchdog_ms,
+                (unsigned)session->robot.sonar_cycle_ms);
+    }
+    fprintf(out, "battery   %d.%d V\n", status->battery_dv / 10, status->battery_dv % 10);
+    fprintf(out, "sonars    %d of %d seen:", sonars_seen(status), ARGUS_SONARS);
+    put_seen(out, status, true);
+    fprintf(out, "silent   ");
+    put_seen(out, status, false);
+    fprintf(out, "readings ");
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        fprintf(out, " %d", status->reading_mm[i]);
+    }
+    fprintf(out, " mm\ntraffic   %u SIPs, %u bad checksums, %u stray bytes\n", (unsigned)status->sips,
+            (unsigned)status->bad_checksums, (unsigned)status->skipped_bytes);
+}
+
+static void tell_json(const driver_t *driver, const argus_status_t *status, FILE *out) {
+    char line[2048];
+    json_t json = json_in(line, sizeof line);
+    json_open(&json, '{');
+    json_name(&json, "port");
+    json_string(&json, hal_link_describe(&driver->link));
+    json_name(&json, "baud"); // 0: no rate, as over TCP
+    json_int(&json, driver->spec.scheme == HAL_SCHEME_SERIAL ? (int64_t)driver->spec.baud : 0);
+    json_name(&json, "name");
+    json_string(&json, status->robot_name);
+    json_name(&json, "class");
+    json_string(&json, status->robot_class);
+    json_name(&json, "subclass");
+    json_string(&json, status->robot_subclass);
+    json_name(&json, "version");
+    json_string(&json, driver->core.session.robot.version);
+    json_name(&json, "battery_dv");
+    json_int(&json, status->battery_dv);
+    json_name(&json, "sonars");
+    json_open(&json, '[');
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (status->age_ms[i] != UINT32_MAX) {
+            json_int(&json, i);
+        }
+    }
+    json_close(&json, ']');
+    json_name(&json, "sips");
+    json_int(&json, status->sips);
+    json_name(&json, "bad_checksums");
+    json_int(&json, status->bad_checksums);
+    json_name(&json, "skipped_bytes");
+    json_int(&json, status->skipped_bytes);
+    json_close(&json, '}');
+    fprintf(out, "%s\n", line);
+}
+
+static void leave(driver_t *driver) {
+    const uint32_t start_ms = hal_clock_now_ms(&driver->clock);
+    argus_shutdown(&driver->core, start_ms);
+    while (driver->up && hal_clock_now_ms(&driver->clock) - start_ms < LEAVE_MS) {
+        if (argus_closed(&driver->core) && driver->held == 0) {
+            break;
+        }
+        turn(driver, -1, 100);
+    }
+    driver_close(driver);
+}
+
+argusd_exit_t check_run(driver_t *driver, uint32_t wait_ms, int cancel_fd, bool json, FILE *out,
+                        char *message, size_t capacity) {
+    const uint32_t start_ms = hal_clock_now_ms(&driver->clock);
+    uint32_t met_ms = 0;
+    bool met = false;
+    bool going_on = true;
+    while (going_on) {
+        going_on = turn(driver, cancel_fd, 100);
+        const uint32_t now_ms = hal_clock_now_ms(&driver->clock);
+        if (!met && argus_session_is_open(&driver->core.session)) {
+            met = true;
+            met_ms = now_ms;
+        }
+        going_on = going_on && (met ? now_ms - met_ms < LOOK_MS : now_ms - start_ms < wait_ms);
+    }
+    if (met) {
+        argus_status_t status;
+        argus_status(&driver->core, &status);
+        json ? tell_json(driver, &status, out) : tell_plain(driver, &status, out);
+    } else {
+        check_explain_silence(driver, hal_clock_now_ms(&driver->clock) - start_ms, message, capacity);
+    }
+    leave(driver);
+    return met ? ARGUSD_EXIT_OK : ARGUSD_EXIT_NO_ROBOT;
+}

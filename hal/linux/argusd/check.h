@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// argusd --check: connect, look, tell, leave.
+#ifndef ARGUSD_CHECK_H
+#define ARGUSD_CHECK_H
+
+#include <stdio.h>
+
+#include "argusd.h"
+#include "driver.h"
+
+// Why no robot answered, on one line: silence, garbage, or packets that lead nowhere.
+void check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *text, size_t capacity);
+
+// The driver's link is open and it is passive. Writes the findings to `out`, or the reason for none to
+// `message`.
+argusd_exit_t check_run(driver_t *driver, uint32_t wait_ms, int cancel_fd, bool json, FILE *out,
+                        char *message, size_t capacity);
+
+#endif

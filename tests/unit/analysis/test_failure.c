@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: the failure state of every fault map (paper: Fig. 6), whatever the other sonars do.
+#include "argus/failure.h"
+
+#include "unity.h"
+
+void test_all_64_maps(void) {
+    for (unsigned map = 0; map < 64; map++) {
+        int count = 0;
+        for (unsigned bit = 0; bit < 6; bit++) {
+            count += map >> bit & 1u;
+        }
+        const argus_failure_t wanted = count == 0   ? ARGUS_IS_NORMAL
+                                       : count <= 2 ? ARGUS_IS_MINOR
+                                       : count <= 5 ? ARGUS_IS_MAJOR
+                                                    : ARGUS_IS_CATASTROPHIC;
+        TEST_ASSERT_EQUAL(wanted, argus_failure_of((uint16_t)(map << 1)));
+        TEST_ASSERT_EQUAL(wanted, argus_failure_of((uint16_t)(map << 1 | 0xFF81u))); // 0, 7 and the rear do not count
+        TEST_ASSERT_EQUAL(count, argus_count_bits((uint16_t)(map << 1)));
+    }
+}
+
+void test_names(void) {
+    TEST_ASSERT_EQUAL_STRING("IsNormal", argus_failure_name(ARGUS_IS_NORMAL));
+    TEST_ASSERT_EQUAL_STRING("IsMinor", argus_failure_name(ARGUS_IS_MINOR));
+    TEST_ASSERT_EQUAL_STRING("IsMajor", argus_failure_name(ARGUS_IS_MAJOR));
+    TEST_ASSERT_EQUAL_STRING("IsCatastrophic", argus_failure_name(ARGUS_IS_CATASTROPHIC));
+    TEST_ASSERT_EQUAL_STRING("?", argus_failure_name((argus_failure_t)4));
+}

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: the pose survives the robot's wraps, units and resets; a reading is fresh only if listed after the mark.
+#include "argus/knowledge.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "argus/angle.h"
+#include "unity.h"
+
+static argus_knowledge_t k;
+static argus_sip_t sip;
+static uint32_t now_ms;
+
+void setUp(void) {
+    argus_knowledge_init(&k);
+    memset(&sip, 0, sizeof sip);
+    now_ms = 0xFFFFFF00u;
+}
+
+static void take(int32_t distance_um) {
+    now_ms += 100;
+    argus_knowledge_sip(&k, &sip, distance_um, now_ms);
+}
+
+static void list(int sonar, int mm) {
+    sip.sonar[sip.sonar_count].number = (uint8_t)sonar;
+    sip.sonar[sip.sonar_count].range_mm = (uint16_t)mm;
+    sip.sonar_count++;
+}
+
+static void drive_through_wraps(uint16_t mask, int32_t distance_um, int direction) {
+    setUp();
+    const double unit_mm = distance_um / 1000.0;
+    for (int i = 0; i <= 3000; i++) { // 3000 x 60 units: more than two turns of 16 bits
+        sip.x_raw = (uint16_t)(i * 60 * direction) & mask;
+        sip.y_raw = (uint16_t)(-i * 20 * direction) & mask;
+        take(distance_um);
+    }
+    TEST_ASSERT_INT32_WITHIN(5, (int32_t)lround(180000 * unit_mm * direction), k.pose.x_mm);
+    TEST_ASSERT_INT32_WITHIN(5, (int32_t)lround(-60000 * unit_mm * direction), k.pose.y_mm);
+    const double way = hypot(180000, 60000) * unit_mm;
+    TEST_ASSERT_INT32_WITHIN((int32_t)(way * 0.02), (int32_t)way, (int32_t)k.odometer_mm);
+}
+
+void test_pose_through_15_and_16_bit_wraps_in_both_units(void) {
+    for (int direction = -1; direction <= 1; direction += 2) {
+        drive_through_wraps(0xFFFF, 1000, direction);
+        drive_through_wraps(0x7FFF, 1000, direction);
+        drive_through_wraps(0xFFFF, 485, direction);
+        drive_through_wraps(0x7FFF, 485, direction);
+    }
+}
+
+void test_a_first_position_other_than_zero_is_no_way_driven(void) {
+    sip.x_raw = 12345;
+    sip.y_raw = 23456;
+    sip.heading_raw = 1024;
+    take(1000);
+    TEST_ASSERT_EQUAL(0, k.pose.x_mm);
+    TEST_ASSERT_EQUAL(0, k.pose.y_mm);
+    TEST_ASSERT_EQUAL(0, k.pose.heading_cdeg);
+    TEST_ASSERT_EQUAL(0, k.odometer_mm);
+}
+
+void test_headings(void) {
+    take(1000);
+    for (int raw = -2047; raw <= 2048; raw++) {
+        sip.heading_raw = (int16_t)raw;
+        take(1000);
+        TEST_ASSERT_INT32_WITHIN(1, argus_angle_wrap((int32_t)lround(raw * 36000.0 / 4096)), k.pose.heading_cdeg);
+    }
+}
+
+void test_odometry_set_to_zero_leaves_the_pose_alone(void) {
+    take(1000);
+    for (int i = 1; i <= 100; i++) {
+        sip.x_raw = (uint16_t)(i * 50);
+        take(1000);
+    }
+    sip.heading_raw = 1024; // 90 degrees
+    take(1000);
+    TEST_ASSERT_EQUAL(5000, k.pose.x_mm);
+    sip.x_raw = sip.y_raw = 0;
+    sip.heading_raw = 0;
+    take(1000);
+    TEST_ASSERT_EQUAL(5000, k.pose.x_mm);
+    TEST_ASSERT_EQUAL(9000, k.pose.heading_cdeg);
+    sip.x_raw = 100; // ahead in the new frame is left in the course's
+    take(1000);
+    TEST_ASSERT_INT32_WITHIN(1, 5000, k.pose.x_mm);
+    TEST_ASSERT_INT32_WITHIN(1, 100, k.pose.y_mm);
+}
+
+void test_a_new_session_goes_on_from_where_the_robot_was(void) {
+    take(1000);
+    sip.x_raw = 700;
+    sip.heading_raw = -512;
+    take(1000);
+    argus_knowledge_reopen(&k, now_ms);
+    sip.x_raw = 0; // nearer than a jump: only the reopening tells
+    sip.heading_raw = 0;
+    take(1000);
+    TEST_ASSERT_EQUAL(700, k.pose.x_mm);
+    TEST_ASSERT_EQUAL(-4500, k.pose.heading_cdeg);
+}
+
+void test_reopening_makes_every_sonar_report_anew(void) {
+    list(3, 1000);
+    take(1000);
+    TEST_ASSERT_TRUE(k.sonar[3].reported);
+    argus_knowledge_reopen(&k, now_ms);
+    TEST_ASSERT_FALSE(k.sonar[3].reported);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, argus_age_ms(&k, 3, now_ms));
+}
+
+void test_fresh_only_when_listed_after_the_mark(void) {
+    list(3, 1000);
+    take(1000);
+    const argus_mark_t mark = argus_mark_now(&k);
+    TEST_ASSERT_FALSE(argus_fresh_since(&k, 3, &mark)); // in the SIP of the mark itself
+    sip.sonar_count = 0;
+    take(1000);
+    TEST_ASSERT_FALSE(argus_fresh_since(&k, 3, &mark));
+    list(3, 1000);
+    take(1000);
+    TEST_ASSERT_TRUE(argus_fresh_since(&k, 3, &mark));
+    TEST_ASSERT_FALSE(argus_all_fresh_since(&k, 0x18, &mark));
+    list(4, 1000);
+    take(1000);
+    TEST_ASSERT_TRUE(argus_all_fresh_since(&k, 0x18, &mark));
+}
+
+// A SIP of such a server may list pings up to 140 ms old; all have fired anew after another 320 ms.
+void test_servers_that_list_every_sonar_get_460_ms_more(void) {
+    for (int i = 0; i < 16; i++) {
+        list(i, 1000);
+    }
+    take(1000);
+    TEST_ASSERT_TRUE(k.lists_all);
+    const argus_mark_t mark = argus_mark_now(&k);
+    const uint32_t from = now_ms;
+    for (int i = 0; i < 10; i++) {
+        take(1000);
+        TEST_ASSERT_EQUAL(now_ms - from >= 460, argus_fresh_since(&k, 3, &mark));
+    }
+}
+
+void test_the_firing_schedule_is_no_listing_of_all(void) {
+    list(0, 1), list(3, 1), list(5, 1), list(8, 1), list(9, 1), list(10, 1);
+    take(1000);
+    TEST_ASSERT_FALSE(k.lists_all);
+}
+
+void test_rest_takes_two_sips_within_5_mm_s(void) {
+    sip.vel_left_mm_s = 5;
+    sip.vel_right_mm_s = -5;
+    take(1000);
+    TEST_ASSERT_FALSE(argus_at_rest(&k));
+    take(1000);
+    TEST_ASSERT_TRUE(argus_at_rest(&k));
+    sip.vel_right_mm_s = -6;
+    take(1000);
+    TEST_ASSERT_FALSE(argus_at_rest(&k));
+}
+
+void test_usable_readings(void) {
+    TEST_ASSERT_FALSE(argus_usable(&k, 2));
+    list(2, 4999);
+    take(1000);
+    TEST_ASSERT_TRUE(argus_usable(&k, 2));
+    sip.sonar[0].range_mm = 5000;
+    take(1000);
+    TEST_ASSERT_FALSE(argus_usable(&k, 2));
+    sip.sonar[0].range_mm = 800;
+    take(1000);
+    argus_sonar_set_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_WRONG, now_ms);
+    TEST_ASSERT_FALSE(argus_usable(&k, 2));
+    TEST_ASSERT_EQUAL_HEX16(4, argus_disabled(&k));
+    TEST_ASSERT_EQUAL(1, k.sonar[2].disabled_times);
+}
+
+void test_sonar_numbers_beyond_the_ring_are_passed_over(void) {
+    list(16, 1), list(31, 1), list(255, 1), list(7, 321);
+    take(1000);
+    TEST_ASSERT_EQUAL_HEX16(0x80, k.fresh);
+    TEST_ASSERT_EQUAL(321, k.sonar[7].reading_mm);
+}
+
+void test_where_an_echo_lies(void) {
+    for (int i = 0; i < 16; i++) {
+        list(i, 1000);
+    }
+    take(1000);
+    for (int i = 0; i < 16; i++) {
+        const double a = argus_sonar_pose[i].heading_deg * 3.14159265358979 / 180;
+        const argus_point_t echo = argus_echo_robot(&k, i);
+        TEST_ASSERT_INT32_WITHIN(2, (int32_t)lround(argus_sonar_pose[i].x_mm + 1000 * cos(a)), echo.x_mm);
+        TEST_ASSERT_INT32_WITHIN(2, (int32_t)lround(argus_sonar_pose[i].y_mm + 1000 * sin(a)), echo.y_mm);
+    }
+    const argus_pose_t pose = {100, 200, 9000};
+    const argus_point_t ahead = {1000, 10};
+    TEST_ASSERT_EQUAL(90, argus_to_course(&pose, ahead).x_mm);
+    TEST_ASSERT_EQUAL(1200, argus_to_course(&pose, ahead).y_mm);
+}
+
+void test_nearest_echo_leaves_out_the_disabled_and_the_ignored(void) {
+    list(3, 300), list(4, 400), list(5, 500);
+    take(1000);
+    const int32_t all = argus_nearest_to_centre_mm(&k, 0);
+    const int32_t without = argus_nearest_to_centre_mm(&k, 1u << 3);
+    argus_sonar_set_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
+    TEST_ASSERT_INT32_WITHIN(3, 468, all);
+    TEST_ASSERT_INT32_WITHIN(3, 568, without);
+    TEST_ASSERT_EQUAL(without, argus_nearest_to_centre_mm(&k, 0));
+    argus_knowledge_init(&k);
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_nearest_to_centre_mm(&k, 0));
+}
