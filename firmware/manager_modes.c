@@ -319,6 +319,14 @@ static int32_t off_bearing(const argus_t *const self) {
     return argus_angle_abs_diff(bearing(self), self->knowledge.pose.heading_cdeg);
 }
 
+// Where there is no room to turn, a leg straight ahead may lead out.
+static void turn_to_bearing(argus_t *const self) {
+    const bool narrow = argus_swing_is_blocked(self) && self->jog_mm == 0;
+    if (!narrow || !argus_task_escape(&self->task, &self->knowledge)) {
+        argus_turn(self, bearing(self));
+    }
+}
+
 // Turns to the leg's bearing at rest. True when the robot looks along it.
 static bool aim(argus_t *const self) {
     if (self->aimed) {
@@ -335,10 +343,7 @@ static bool aim(argus_t *const self) {
         return false;
     }
     if (off_bearing(self) > AIMED_CDEG) {
-        const bool narrow = argus_swing_is_blocked(self) && self->jog_mm == 0;
-        if (!narrow || !argus_task_escape(&self->task, &self->knowledge)) {
-            argus_turn(self, bearing(self));
-        }
+        turn_to_bearing(self);
         return false;
     }
     self->aimed = argus_all_fresh_since(&self->knowledge, wanted_sonars(self), &self->motion.mark);
@@ -612,19 +617,28 @@ void argus_wait_process(argus_t *const self) {
     argus_say(self, self->wait == ARGUS_WAIT_WAY ? ARGUS_EV_NO_WAY : ARGUS_EV_WAITING, ARGUS_NO_SONAR, (int32_t)waited_s);
 }
 
-void argus_run_mode(argus_t *const self) {
-    switch (self->mode) {
+static bool run_travel(argus_t *const self) {
+    switch ((int)self->mode) {
+    case ARGUS_MODE_DRIVING: run_driving(self); return true;
+    case ARGUS_MODE_SWEEPING: run_sweeping(self); return true;
+    case ARGUS_MODE_STEPPING: run_stepping(self); return true;
+    case ARGUS_MODE_BACKING: run_backing(self); return true;
+    default: return false;
+    }
+}
+
+static void run_rest(argus_t *const self) {
+    switch ((int)self->mode) {
     case ARGUS_MODE_CHECKING: run_checking(self); break;
     case ARGUS_MODE_VERIFYING: run_verifying(self); break;
     case ARGUS_MODE_IDLE: run_idle(self); break;
-    case ARGUS_MODE_DRIVING: run_driving(self); break;
-    case ARGUS_MODE_SWEEPING: run_sweeping(self); break;
-    case ARGUS_MODE_STEPPING: run_stepping(self); break;
-    case ARGUS_MODE_BACKING: run_backing(self); break;
     case ARGUS_MODE_WAITING: run_waiting(self); break;
-    case ARGUS_MODE_OFFLINE:
-    case ARGUS_MODE_CLOSING:
-    case ARGUS_MODE_CLOSED:
-    default: break;
+    default: break; // no session, or leaving it
+    }
+}
+
+void argus_run_mode(argus_t *const self) {
+    if (!run_travel(self)) {
+        run_rest(self);
     }
 }

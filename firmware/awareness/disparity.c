@@ -3,13 +3,14 @@
 #include "argus/angle.h"
 #include "argus/awareness.h"
 
-// tr = (a1 + a2) (1 / cos 20 - 1), in thousandths of a millionth: millionths round some readings wrongly.
+// tr = (a1 + a2) (1 / cos 20 - 1). With fewer digits some readings round to the wrong side.
 #define FACE_MM 167
-#define EXCESS_PPB 64177772
+#define EXCESS INT64_C(641777725) // of EXCESS_ONE
+#define EXCESS_ONE INT64_C(10000000000)
 
 int32_t argus_tolerance_mm(const int32_t reading_mm) {
-    const int64_t scaled = (int64_t)(reading_mm + FACE_MM) * EXCESS_PPB;
-    return (int32_t)((scaled + 500000000) / 1000000000);
+    const int64_t scaled = (int64_t)(reading_mm + FACE_MM) * EXCESS;
+    return (int32_t)((scaled + EXCESS_ONE / 2) / EXCESS_ONE);
 }
 
 // A neighbour that may be compared with: one of 1..6 that is usable; else -1.

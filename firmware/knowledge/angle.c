@@ -79,7 +79,7 @@ int32_t argus_atan2(const int32_t y, const int32_t x) {
     }
     const int32_t ax = argus_abs(x);
     const int32_t ay = argus_abs(y);
-    const int32_t scale = argus_max(1, 500000000 / argus_max(ax, ay));
+    const int32_t scale = 500000000 / argus_max(argus_max(ax, ay), 1);
     const int32_t first = y == 0 ? 0 : (cordic_mdeg(ax * scale, ay * scale) + 5) / 10;
     const int32_t upper = x < 0 ? HALF - first : first;
     return argus_angle_wrap(y < 0 ? -upper : upper);

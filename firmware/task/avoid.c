@@ -140,22 +140,27 @@ static bool is_free(const argus_task_t *const self, const argus_knowledge_t *con
            argus_task_clear_mm(self, knowledge, heading_cdeg, wanted->half_mm) >= wanted->length_mm;
 }
 
-// Detours in order of preference: nearest to the bearing first; the side not chosen at the start pays OTHER_SIDE_STEPS.
+// The side on which the detour began costs nothing, the other one OTHER_SIDE_STEPS. Size of the `step`th try on a side,
+// outside 1..STEPS when there is none.
+static int detour_size(const argus_task_t *const self, const int step, const int8_t side) {
+    const bool other = self->side != 0 && side != self->side;
+    return other ? step - OTHER_SIDE_STEPS : step;
+}
+
+// Nearest to the bearing first.
 static bool find_detour(argus_task_t *const self, const argus_knowledge_t *const knowledge, const int32_t half_mm,
                         const int32_t bearing_cdeg, int32_t *const heading_cdeg) {
     const corridor_t wanted = {half_mm, CORRIDOR_MM};
-    const int8_t first = self->side != 0 ? self->side : 1;
-    for (int step = 1; step <= STEPS + OTHER_SIDE_STEPS; step++) {
-        for (int turn = 0; turn < 2; turn++) {
-            const int8_t side = turn == 0 ? first : (int8_t)-first;
-            const int size = turn == 1 && self->side != 0 ? step - OTHER_SIDE_STEPS : step;
-            const int32_t heading = argus_angle_wrap(bearing_cdeg + side * size * STEP_CDEG);
-            if (size >= 1 && size <= STEPS && is_free(self, knowledge, heading, &wanted)) {
-                self->side = self->side == 0 ? side : self->side;
-                *heading_cdeg = heading;
-                return true;
-            }
+    int8_t side = self->side != 0 ? self->side : 1;
+    for (int i = 2; i < 2 * (STEPS + OTHER_SIDE_STEPS + 1); i++) {
+        const int size = detour_size(self, i / 2, side);
+        const int32_t heading = argus_angle_wrap(bearing_cdeg + side * size * STEP_CDEG);
+        if (size >= 1 && size <= STEPS && is_free(self, knowledge, heading, &wanted)) {
+            self->side = self->side == 0 ? side : self->side;
+            *heading_cdeg = heading;
+            return true;
         }
+        side = (int8_t)-side;
     }
     return false;
 }

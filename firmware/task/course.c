@@ -9,8 +9,12 @@ void argus_task_init(argus_task_t *const self) {
     memset(self, 0, sizeof *self);
 }
 
+static bool within(const int32_t mm) {
+    return mm >= -ARGUS_COURSE_LIMIT_MM && mm <= ARGUS_COURSE_LIMIT_MM;
+}
+
 static bool fits(const argus_point_t *const point) {
-    return argus_abs(point->x_mm) <= ARGUS_COURSE_LIMIT_MM && argus_abs(point->y_mm) <= ARGUS_COURSE_LIMIT_MM;
+    return within(point->x_mm) && within(point->y_mm);
 }
 
 bool argus_task_set(argus_task_t *const self, const argus_point_t *const points, const uint16_t count) {

@@ -29,7 +29,7 @@ static void read3(int left, int own, int right) {
 }
 
 void test_tolerance_of_every_reading(void) {
-    for (int a1 = 0; a1 <= 5000; a1++) {
+    for (int a1 = 0; a1 <= 65535; a1++) {
         const double exact = (a1 + 167) * (1 / cos(20 * 3.14159265358979323846 / 180) - 1);
         char text[30];
         snprintf(text, sizeof text, "tr(%d)", a1);

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: settled means two SIPs in a row at rest (a turn: within 1 degree), and readings of later SIPs only.
+#include "argus/motion.h"
+
+#include <string.h>
+
+#include "unity.h"
+
+static argus_motion_t m;
+static argus_outbox_t out;
+static argus_knowledge_t k;
+static argus_sip_t sip;
+static uint32_t now_ms;
+
+void setUp(void) {
+    argus_motion_init(&m);
+    argus_outbox_init(&out);
+    argus_knowledge_init(&k);
+    memset(&sip, 0, sizeof sip);
+    now_ms = 0xFFFFFF00u;
+    argus_knowledge_sip(&k, &sip, 1000, now_ms);
+}
+
+static void take(int heading_raw, int speed) {
+    now_ms += 100;
+    sip.heading_raw = (int16_t)heading_raw;
+    sip.vel_left_mm_s = (int16_t)speed;
+    sip.vel_right_mm_s = (int16_t)-speed;
+    argus_knowledge_sip(&k, &sip, 1000, now_ms);
+    argus_motion_sip(&m, &out, &k, now_ms);
+}
+
+static int32_t next(uint8_t command) {
+    uint8_t packet[ARGUS_FRAME_TOTAL_MAX];
+    TEST_ASSERT_TRUE(argus_outbox_fetch(&out, packet, sizeof packet) > 0);
+    TEST_ASSERT_EQUAL(command, packet[3]);
+    const int32_t value = packet[5] | packet[6] << 8;
+    return packet[4] == 0x1B ? -value : value;
+}
+
+void test_a_turn_settles_after_two_sips_at_rest_on_target(void) {
+    argus_motion_turn(&m, &out, &k, 2000, now_ms);
+    TEST_ASSERT_EQUAL(20, next(ARCOS_CMD_HEAD));
+    take(100, 50);
+    take(228, 6); // 20.04 degrees, but not at rest
+    TEST_ASSERT_FALSE(m.settled);
+    take(228, 5);
+    TEST_ASSERT_FALSE(m.settled);
+    take(228, 6);
+    take(228, 0);
+    TEST_ASSERT_FALSE(m.settled);
+    take(228, 0);
+    TEST_ASSERT_TRUE(m.settled);
+    TEST_ASSERT_EQUAL(k.sips, m.mark.sip);
+}
+
+void test_a_turn_beside_its_target_is_not_settled(void) {
+    argus_motion_turn(&m, &out, &k, 2000, now_ms);
+    take(214, 0); // 18.8 degrees
+    take(214, 0);
+    take(214, 0);
+    TEST_ASSERT_FALSE(m.settled);
+    take(217, 0); // 19.07
+    take(217, 0);
+    TEST_ASSERT_TRUE(m.settled);
+}
+
+void test_a_turn_that_does_not_come_about_is_repeated_three_times_and_fails(void) {
+    argus_motion_turn(&m, &out, &k, 9000, now_ms);
+    int heads = 0;
+    for (int i = 0; i < 100; i++) {
+        uint8_t packet[32];
+        while (argus_outbox_fetch(&out, packet, sizeof packet) > 0) {
+            heads += packet[3] == ARCOS_CMD_HEAD;
+        }
+        take(0, 0);
+    }
+    TEST_ASSERT_TRUE(m.failed);
+    TEST_ASSERT_FALSE(m.settled);
+    TEST_ASSERT_EQUAL(3, heads);
+}
+
+void test_headings_go_out_in_whole_degrees_of_the_robots_own_frame(void) {
+    k.heading_offset_cdeg = 1234;
+    for (int32_t heading = -18000; heading <= 18000; heading += 77) {
+        argus_motion_turn(&m, &out, &k, heading, now_ms);
+        const int32_t degrees = next(ARCOS_CMD_HEAD);
+        TEST_ASSERT_TRUE(degrees >= -180 && degrees <= 180);
+        const int32_t off = ((degrees * 100 + 1234 - heading) % 36000 + 54000) % 36000 - 18000;
+        TEST_ASSERT_INT32_WITHIN(50, 0, off);
+        TEST_ASSERT_INT32_WITHIN(50, 0, ((m.target_cdeg - heading) % 36000 + 54000) % 36000 - 18000);
+    }
+}
+
+void test_a_move_is_given_time_to_begin(void) {
+    argus_motion_move(&m, &out, 150, 100, now_ms);
+    take(0, 0);
+    take(0, 0);
+    take(0, 0);
+    TEST_ASSERT_FALSE(m.settled);
+    take(0, 50);
+    take(0, 50);
+    take(0, 50);
+    TEST_ASSERT_FALSE(m.settled);
+    take(0, 0);
+    take(0, 0);
+    TEST_ASSERT_TRUE(m.settled);
+}
+
+void test_the_speed_goes_before_the_move_when_it_differs(void) {
+    argus_motion_move(&m, &out, 150, 100, now_ms);
+    TEST_ASSERT_EQUAL(100, next(ARCOS_CMD_SETV));
+    TEST_ASSERT_EQUAL(150, next(ARCOS_CMD_MOVE));
+    argus_motion_move(&m, &out, -90, 100, now_ms);
+    TEST_ASSERT_EQUAL(-90, next(ARCOS_CMD_MOVE));
+    argus_motion_move(&m, &out, 90, 200, now_ms);
+    TEST_ASSERT_EQUAL(200, next(ARCOS_CMD_SETV));
+    TEST_ASSERT_EQUAL(90, next(ARCOS_CMD_MOVE));
+}
+
+void test_a_stop_overtakes_and_drops_motions(void) {
+    argus_motion_move(&m, &out, 1000, 200, now_ms);
+    argus_motion_stop(&m, &out, now_ms);
+    uint8_t packet[32];
+    TEST_ASSERT_EQUAL(6, argus_outbox_fetch(&out, packet, sizeof packet));
+    TEST_ASSERT_EQUAL(ARCOS_CMD_STOP, packet[3]);
+    while (argus_outbox_fetch(&out, packet, sizeof packet) > 0) {
+        TEST_ASSERT_TRUE(packet[3] != ARCOS_CMD_MOVE);
+    }
+    take(0, 100);
+    take(0, 0);
+    TEST_ASSERT_FALSE(m.settled);
+    take(0, 0);
+    TEST_ASSERT_TRUE(m.settled);
+}
+
+void test_a_hold_commands_nothing(void) {
+    argus_motion_hold(&m, now_ms);
+    take(0, 0);
+    take(0, 0);
+    TEST_ASSERT_TRUE(m.settled);
+    TEST_ASSERT_EQUAL(0, out.length);
+}

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: what one SIP shows (dead, silent, object, bumper), when a sonar becomes a suspect, and the hold-off.
+#include "argus/awareness.h"
+
+#include <string.h>
+
+#include "unity.h"
+
+static argus_knowledge_t k;
+static argus_awareness_t a;
+static argus_config_t config;
+static argus_sip_t sip;
+static uint32_t now_ms;
+static int reading[16];
+
+void setUp(void) {
+    argus_knowledge_init(&k);
+    argus_awareness_init(&a);
+    argus_config_default(&config);
+    memset(&sip, 0, sizeof sip);
+    sip.flags = 7;
+    now_ms = 0xFFFFFE00u;
+    argus_knowledge_reopen(&k, now_ms);
+    for (int i = 0; i < 16; i++) {
+        reading[i] = 1000;
+    }
+}
+
+static argus_alarm_t take(unsigned listed) {
+    now_ms += 100;
+    sip.sonar_count = 0;
+    for (int i = 0; i < 16; i++) {
+        if ((listed >> i & 1u) != 0) {
+            sip.sonar[sip.sonar_count].number = (uint8_t)i;
+            sip.sonar[sip.sonar_count].range_mm = (uint16_t)reading[i];
+            sip.sonar_count++;
+        }
+    }
+    argus_knowledge_sip(&k, &sip, 1000, now_ms);
+    return argus_awareness_sip(&a, &k, &config);
+}
+
+static uint16_t suspects(void) {
+    return argus_suspects(&a, &k, &config);
+}
+
+static void drive_mm(int mm) {
+    sip.x_raw = (uint16_t)(sip.x_raw + mm);
+}
+
+void test_dead_on_the_six_only(void) {
+    for (int i = 0; i < 16; i++) {
+        reading[i] = 5000;
+    }
+    TEST_ASSERT_EQUAL_HEX16(0x7E, take(0xFFFF).dead);
+    TEST_ASSERT_EQUAL_HEX16(0, take(0).dead); // not listed: nothing new
+    TEST_ASSERT_EQUAL_HEX16(0x08, take(0x08).dead);
+    argus_sonar_set_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
+    TEST_ASSERT_EQUAL_HEX16(0x76, take(0xFFFF).dead);
+    reading[2] = 65535;
+    TEST_ASSERT_EQUAL_HEX16(0x04, take(0x04).dead);
+    reading[2] = 4999;
+    TEST_ASSERT_EQUAL_HEX16(0, take(0x04).dead);
+}
+
+void test_objects_along_the_motion(void) {
+    for (int i = 0; i < 16; i++) {
+        reading[i] = 250 - i;
+    }
+    TEST_ASSERT_EQUAL_HEX16(0, take(0xFFFF).object); // at rest
+    sip.vel_left_mm_s = sip.vel_right_mm_s = 100;
+    TEST_ASSERT_EQUAL_HEX16(0x7E, take(0xFFFF).object);
+    TEST_ASSERT_EQUAL(6, take(0xFFFF).object_sonar);
+    TEST_ASSERT_EQUAL(244, take(0xFFFF).object_mm);
+    sip.vel_left_mm_s = sip.vel_right_mm_s = -100;
+    TEST_ASSERT_EQUAL_HEX16(0x7E00, take(0xFFFF).object);
+    sip.vel_left_mm_s = 100; // on the spot
+    TEST_ASSERT_EQUAL_HEX16(0, take(0xFFFF).object);
+    sip.vel_right_mm_s = 100;
+    argus_sonar_set_health(&k.sonar[6], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
+    TEST_ASSERT_EQUAL(5, take(0xFFFF).object_sonar);
+    for (int i = 0; i < 16; i++) {
+        reading[i] = 251;
+    }
+    TEST_ASSERT_EQUAL_HEX16(0, take(0xFFFF).object);
+}
+
+void test_bumpers_and_stalls(void) {
+    TEST_ASSERT_FALSE(take(0).bumper);
+    sip.bumpers_rear = 2;
+    TEST_ASSERT_TRUE(take(0).bumper);
+    sip.bumpers_rear = 0;
+    sip.bumpers_front = 32;
+    TEST_ASSERT_TRUE(take(0).bumper);
+    sip.stall_right = true;
+    TEST_ASSERT_TRUE(take(0).stall);
+}
+
+void test_a_slot_without_readings_is_silent_after_stale_ms(void) {
+    take(0xFFFF);
+    for (int i = 1; i <= 30; i++) {
+        const unsigned listed = 0xFFFFu & ~(1u << 4);
+        TEST_ASSERT_EQUAL_HEX16(i * 100 > config.stale_ms ? 1u << 4 : 0, take(listed).silent);
+    }
+}
+
+void test_a_sonar_that_never_reported_is_silent_after_stale_ms(void) {
+    argus_knowledge_reopen(&k, now_ms);
+    for (int i = 1; i <= 30; i++) {
+        TEST_ASSERT_EQUAL_HEX16(i * 100 > config.stale_ms ? 1u << 2 : 0, take(0xFFFBu).silent);
+    }
+}
+
+void test_a_gap_of_the_link_makes_no_sonar_silent(void) {
+    take(0xFFFF);
+    now_ms += 3000;
+    TEST_ASSERT_EQUAL_HEX16(0, take(0).silent);
+    for (int i = 1; i <= 14; i++) {
+        TEST_ASSERT_EQUAL_HEX16(0, take(0).silent);
+    }
+    TEST_ASSERT_EQUAL_HEX16(0x7E, take(0).silent | take(0).silent);
+}
+
+void test_a_suspect_takes_three_fresh_readings_of_its_own(void) {
+    take(0xFFFF);
+    reading[3] = 500;
+    take(0x08);
+    take(0x14); // its neighbours report: no reading of its own
+    take(0x14);
+    TEST_ASSERT_EQUAL_HEX16(0, suspects());
+    take(0x08);
+    TEST_ASSERT_EQUAL_HEX16(0, suspects());
+    take(0x08);
+    TEST_ASSERT_EQUAL_HEX16(0x08, suspects());
+}
+
+void test_one_reading_that_agrees_begins_the_count_anew(void) {
+    take(0xFFFF);
+    for (int round = 0; round < 3; round++) {
+        reading[3] = 500;
+        take(0x08);
+        take(0x08);
+        reading[3] = 1000;
+        take(0x08);
+        TEST_ASSERT_EQUAL_HEX16(0, suspects());
+    }
+}
+
+void test_readings_while_rotating_do_not_count(void) {
+    take(0xFFFF);
+    reading[3] = 500;
+    sip.vel_left_mm_s = -60;
+    sip.vel_right_mm_s = 60;
+    for (int i = 0; i < 5; i++) {
+        take(0x08);
+    }
+    TEST_ASSERT_EQUAL_HEX16(0, suspects());
+}
+
+static void make_suspect(void) {
+    reading[3] = 500;
+    for (int i = 0; i < config.suspect_readings; i++) {
+        take(0x08);
+    }
+    TEST_ASSERT_EQUAL_HEX16(0x08, suspects());
+}
+
+void test_a_cleared_sonar_is_held_off_for_a_metre(void) {
+    take(0xFFFF);
+    make_suspect();
+    argus_awareness_cleared(&a, &k, 3, a.of[3].difference_mm);
+    for (int mm = 0; mm < 950; mm += 50) {
+        drive_mm(50);
+        take(0x08);
+        argus_awareness_moved(&a);
+        TEST_ASSERT_EQUAL_HEX16(0, suspects());
+    }
+    drive_mm(100);
+    take(0x08);
+    TEST_ASSERT_EQUAL_HEX16(0x08, suspects());
+}
+
+void test_a_cleared_sonar_is_held_off_for_30_degrees(void) {
+    take(0xFFFF);
+    make_suspect();
+    argus_awareness_cleared(&a, &k, 3, a.of[3].difference_mm);
+    argus_awareness_moved(&a);
+    sip.heading_raw = 330; // 29.0 degrees
+    for (int i = 0; i < 5; i++) {
+        take(0x08);
+    }
+    TEST_ASSERT_EQUAL_HEX16(0, suspects());
+    sip.heading_raw = 345; // 30.3
+    take(0x08);
+    TEST_ASSERT_EQUAL_HEX16(0x08, suspects());
+}
+
+void test_a_cleared_sonar_whose_disparity_changes_by_more_than_2_tr(void) {
+    take(0xFFFF);
+    make_suspect(); // disparity 500
+    argus_awareness_cleared(&a, &k, 3, a.of[3].difference_mm);
+    reading[3] = 500 - 2 * argus_tolerance_mm(400); // tr(424) = 38, tr(400) = 36: a change of 72
+    for (int i = 0; i < 4; i++) {
+        take(0x08);
+    }
+    TEST_ASSERT_EQUAL_HEX16(0, suspects());
+    reading[3] = 400; // a change of 100 > 72
+    for (int i = 0; i < 4; i++) {
+        take(0x08);
+    }
+    TEST_ASSERT_EQUAL_HEX16(0x08, suspects()); // also in the place where it was cleared
+}
+
+void test_1_0_0_is_the_bare_paper(void) {
+    config.suspect_readings = 1;
+    config.holdoff_mm = 0;
+    config.holdoff_deg = 0;
+    take(0xFFFF);
+    make_suspect(); // after one reading
+    argus_awareness_cleared(&a, &k, 3, a.of[3].difference_mm);
+    take(0x08);
+    TEST_ASSERT_EQUAL_HEX16(0, suspects()); // else it would be verified in this place for ever
+    argus_awareness_moved(&a);
+    take(0x08);
+    TEST_ASSERT_EQUAL_HEX16(0x08, suspects());
+}
+
+void test_a_disabled_sonar_is_no_suspect(void) {
+    take(0xFFFF);
+    make_suspect();
+    argus_sonar_set_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_WRONG, now_ms);
+    TEST_ASSERT_EQUAL_HEX16(0, suspects());
+}
+
+void test_restart_forgets_the_counts(void) {
+    take(0xFFFF);
+    make_suspect();
+    argus_awareness_restart(&a);
+    TEST_ASSERT_EQUAL_HEX16(0, suspects());
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: the way round: what is remembered, which heading is free, which side is kept, when there is none.
+#include "argus/task.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "argus/angle.h"
+#include "unity.h"
+
+static argus_task_t t;
+static argus_knowledge_t k;
+
+void setUp(void) {
+    argus_task_init(&t);
+    argus_knowledge_init(&k);
+    k.sip_ms = 100000;
+    const argus_point_t goal = {5000, 0};
+    TEST_ASSERT_TRUE(argus_task_set(&t, &goal, 1));
+}
+
+static void see(int sonar, int mm) {
+    k.sonar[sonar].reported = true;
+    k.sonar[sonar].reading_mm = (uint16_t)mm;
+    k.fresh = (uint16_t)(1u << sonar);
+    argus_task_see(&t, &k, k.sip_ms);
+}
+
+static void place(int x, int y) {
+    t.seen[t.seen_count].x_mm = (int16_t)x;
+    t.seen[t.seen_count].y_mm = (int16_t)y;
+    t.seen[t.seen_count].seen_ms = k.sip_ms;
+    t.seen_count++;
+}
+
+static int32_t heading_chosen(void) {
+    return argus_task_bearing_cdeg(&t, &k);
+}
+
+void test_echoes_are_remembered_where_they_lie(void) {
+    k.pose.heading_cdeg = 9000;
+    see(3, 1000); // mounted at +10 degrees
+    TEST_ASSERT_EQUAL(1, t.seen_count);
+    TEST_ASSERT_INT32_WITHIN(5, -200, t.seen[0].x_mm);
+    TEST_ASSERT_INT32_WITHIN(5, 1151, t.seen[0].y_mm);
+}
+
+void test_what_is_not_remembered(void) {
+    see(3, 2000);
+    see(3, 5000);
+    argus_sonar_set_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+    see(4, 500);
+    argus_sonar_set_health(&k.sonar[5], ARGUS_SUSPECT, ARGUS_KIND_NONE, 0);
+    see(5, 500);
+    k.rotating = true;
+    see(2, 500);
+    TEST_ASSERT_EQUAL(0, t.seen_count);
+}
+
+void test_a_convicted_sonars_echoes_are_forgotten(void) {
+    see(3, 500);
+    see(6, 900);
+    see(2, 1300);
+    argus_task_forget(&t, 6);
+    TEST_ASSERT_EQUAL(2, t.seen_count);
+    for (int i = 0; i < t.seen_count; i++) {
+        TEST_ASSERT_TRUE(t.seen[i].sonar != 6);
+    }
+}
+
+void test_memory_is_bounded_and_drops_the_oldest(void) {
+    for (int i = 0; i < 3 * ARGUS_POINTS_MAX; i++) {
+        k.pose.x_mm = i * 100;
+        see(3, 500);
+        TEST_ASSERT_TRUE(t.seen_count <= ARGUS_POINTS_MAX);
+        TEST_ASSERT_TRUE(t.seen_next < ARGUS_POINTS_MAX);
+    }
+    int newest = 0;
+    for (int i = 0; i < t.seen_count; i++) {
+        newest += t.seen[i].x_mm >= (3 * ARGUS_POINTS_MAX - 20) * 100;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(newest >= 20, "the newest echoes are not all there");
+}
+
+void test_far_from_the_start_nothing_overflows(void) {
+    k.pose.x_mm = 2000000;
+    k.pose.y_mm = -2000000;
+    see(3, 500);
+    TEST_ASSERT_EQUAL(0, t.seen_count);
+    argus_task_clear_mm(&t, &k, 0);
+    argus_task_choose(&t, &k);
+}
+
+void test_free_length_of_a_corridor(void) {
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_task_clear_mm(&t, &k, 0));
+    place(1000, 100);
+    TEST_ASSERT_INT32_WITHIN(2, 1000, argus_task_clear_mm(&t, &k, 0));
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_task_clear_mm(&t, &k, 9000));
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_task_clear_mm(&t, &k, 18000));
+    place(700, -500); // beside the corridor
+    TEST_ASSERT_INT32_WITHIN(2, 1000, argus_task_clear_mm(&t, &k, 0));
+    k.sip_ms += 60001; // long ago
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_task_clear_mm(&t, &k, 0));
+}
+
+void test_the_straight_way_until_something_stops_it(void) {
+    place(600, 0);
+    TEST_ASSERT_TRUE(argus_task_choose(&t, &k));
+    TEST_ASSERT_EQUAL(0, heading_chosen());
+}
+
+void test_a_refused_heading_is_not_taken_again_here(void) {
+    argus_task_refuse(&t, &k);
+    TEST_ASSERT_TRUE(argus_task_choose(&t, &k));
+    TEST_ASSERT_TRUE(argus_angle_abs_diff(heading_chosen(), 0) >= 1500);
+    k.pose.x_mm += 200; // moved on
+    argus_task_restart(&t);
+    TEST_ASSERT_TRUE(argus_task_choose(&t, &k));
+    TEST_ASSERT_TRUE(argus_angle_abs_diff(heading_chosen(), 0) < 100);
+}
+
+void test_the_detour_leads_past_the_obstacle(void) {
+    for (int y = -300; y <= 100; y += 100) {
+        place(450, y);
+    }
+    argus_task_refuse(&t, &k);
+    TEST_ASSERT_TRUE(argus_task_choose(&t, &k));
+    TEST_ASSERT_TRUE(t.avoiding);
+    TEST_ASSERT_TRUE(heading_chosen() > 0); // the left side is nearer
+    TEST_ASSERT_TRUE(argus_task_clear_mm(&t, &k, heading_chosen()) >= 600);
+}
+
+void test_no_way_when_every_heading_is_blocked(void) {
+    for (int a = 0; a < 36000; a += 1000) {
+        place(450 * argus_cos(a) / ARGUS_TRIG_ONE, 450 * argus_sin(a) / ARGUS_TRIG_ONE);
+    }
+    argus_task_refuse(&t, &k);
+    TEST_ASSERT_FALSE(argus_task_choose(&t, &k));
+    TEST_ASSERT_FALSE(t.has_leg);
+}
+
+void test_a_bumper_hit_is_remembered_ahead(void) {
+    k.bumpers_front = 1 << 3;
+    argus_task_bumped(&t, &k, k.sip_ms);
+    TEST_ASSERT_EQUAL(1, t.seen_count);
+    TEST_ASSERT_TRUE(t.seen[0].x_mm > 200 && abs(t.seen[0].y_mm) < 20);
+    setUp();
+    k.bumpers_front = 1 << 1; // leftmost
+    argus_task_bumped(&t, &k, k.sip_ms);
+    TEST_ASSERT_TRUE(t.seen[0].y_mm > 100);
+}
+
+void test_many_refusals_are_survived(void) {
+    for (int i = 0; i < 100; i++) {
+        k.pose.heading_cdeg = argus_angle_wrap(i * 997);
+        argus_task_refuse(&t, &k);
+        argus_task_choose(&t, &k);
+    }
+}
