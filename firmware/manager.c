@@ -85,6 +85,9 @@ static void on_open(argus_t *const self) {
     self->motors_said = false;
     self->stalled = false;
     self->has_base = false;
+    if (self->plan.disabled != 0) {
+        argus_share_slots(self); // the robot begins each session with its own order
+    }
     argus_enter_checking(self, true);
 }
 
@@ -241,6 +244,9 @@ static void go_active(argus_t *const self) {
     self->motors_said = false;
     argus_say(self, ARGUS_EV_ACTIVE, ARGUS_NO_SONAR, 0);
     enable_motors(self);
+    if (self->plan.disabled != 0) {
+        argus_share_slots(self);
+    }
     if (argus_session_is_open(&self->session)) {
         argus_enter_checking(self, true);
     }
@@ -248,6 +254,8 @@ static void go_active(argus_t *const self) {
 
 static void pause(argus_t *const self) {
     self->paused = true;
+    self->stay = true;
+    self->has_base = false;
     self->jog_mm = 0;
     argus_stop(self, ARCOS_CMD_STOP);
     if (argus_session_is_open(&self->session)) {
@@ -300,6 +308,7 @@ void argus_operator(argus_t *const self, const uint32_t now_ms, const argus_op_t
         return;
     }
     argus_say(self, ARGUS_EV_OPERATOR, ARGUS_NO_SONAR, (int32_t)op);
+    self->stay = false;
     switch (op) {
     case ARGUS_OP_STOP: pause(self); break;
     case ARGUS_OP_GO: resume(self); break;

@@ -28,6 +28,7 @@ void argus_back_off(argus_t *self, int32_t distance_mm);
 // Health.
 void argus_disable(argus_t *self, int sonar, argus_fault_kind_t kind);
 void argus_replan(argus_t *self);
+void argus_share_slots(argus_t *self); // POLLING for the present plan; again in each new session
 uint16_t argus_open_suspects(const argus_t *self);
 void argus_flag_suspects(argus_t *self, uint16_t suspects);
 

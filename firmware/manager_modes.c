@@ -35,6 +35,19 @@ void argus_enter_waiting(argus_t *const self, const argus_wait_t why) {
     argus_enter(self, ARGUS_MODE_WAITING);
 }
 
+// Whatever is under way must not go on beside a check.
+static void come_to_rest(argus_t *const self) {
+    const bool under_way = self->motion.kind == ARGUS_MOTION_MOVE || self->motion.kind == ARGUS_MOTION_TURN;
+    if (self->motion.settled) {
+        return;
+    }
+    if (under_way && !self->motion.failed) {
+        argus_stop(self, ARCOS_CMD_STOP);
+    } else if (self->motion.kind != ARGUS_MOTION_STOP || self->motion.failed) {
+        argus_motion_hold(&self->motion, self->now_ms);
+    }
+}
+
 // At rest on the base heading; `full`: as many rounds of readings as Algorithm 1 wants for a suspect.
 void argus_enter_checking(argus_t *const self, const bool full) {
     if (self->mode == ARGUS_MODE_CLOSING || self->mode == ARGUS_MODE_CLOSED) {
@@ -43,12 +56,7 @@ void argus_enter_checking(argus_t *const self, const bool full) {
     self->rounds = full || !self->checked ? (uint8_t)self->config.suspect_readings : 1;
     self->arriving = false;
     self->marked = false;
-    const bool turning = self->motion.kind == ARGUS_MOTION_TURN && !self->motion.failed;
-    if ((self->motion.kind == ARGUS_MOTION_MOVE || turning) && !self->motion.settled) {
-        argus_stop(self, ARCOS_CMD_STOP);
-    } else if (!self->motion.settled && (self->motion.kind != ARGUS_MOTION_STOP || self->motion.failed)) {
-        argus_motion_hold(&self->motion, self->now_ms);
-    }
+    come_to_rest(self);
     argus_enter(self, ARGUS_MODE_CHECKING);
 }
 
@@ -109,7 +117,7 @@ static void finish_check(argus_t *const self) {
     const uint16_t found = argus_suspects(&self->awareness, &self->knowledge, &self->config);
     const uint16_t suspects = (uint16_t)(found | argus_open_suspects(self));
     self->check_ms = self->now_ms;
-    if (suspects != 0 && !self->passive) {
+    if (suspects != 0 && !self->passive && !self->stay) {
         argus_enter_verifying(self, suspects);
         return;
     }

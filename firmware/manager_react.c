@@ -96,7 +96,10 @@ void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_
 }
 
 // In failure mode the slots of the sonars that are out go to those that look ahead; 0 and 7 watch the swing circle.
-static void share_slots(argus_t *const self) {
+void argus_share_slots(argus_t *const self) {
+    if (!is_active(self) || !argus_session_is_open(&self->session)) {
+        return;
+    }
     uint8_t order[2 * (ARGUS_FORWARD_LAST + 1)];
     size_t count = 0;
     for (int half = 0; half < 2; half++) {
@@ -117,10 +120,11 @@ static void say_plan(argus_t *const self) {
     }
 }
 
-// A suspect that no witness can judge is planned for as if it were disabled: its bearing counts as uncovered.
+// A suspect that no witness could judge is planned for as if it were disabled: its bearing counts as uncovered. One that is
+// still to be verified is not: nothing moves ahead before it is.
 void argus_replan(argus_t *const self) {
     const uint16_t disabled = argus_disabled(&self->knowledge) & ARGUS_FORWARD_MASK;
-    const uint16_t blind = disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) & ARGUS_FORWARD_MASK);
+    const uint16_t blind = disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->awareness.verified);
     const argus_failure_t failure = argus_failure_of(disabled);
     if (failure != self->failure) {
         self->failure = failure;
@@ -131,9 +135,7 @@ void argus_replan(argus_t *const self) {
     }
     self->plan = argus_plan((argus_policy_t)self->config.policy, blind);
     say_plan(self);
-    if (is_active(self)) {
-        share_slots(self);
-    }
+    argus_share_slots(self);
 }
 
 void argus_flag_suspects(argus_t *const self, const uint16_t suspects) {

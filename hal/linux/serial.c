@@ -165,6 +165,15 @@ hal_link_error_t hal_serial_set_baud(hal_serial_t *self, uint32_t baud) {
     return HAL_LINK_OK;
 }
 
+bool hal_serial_moved(const hal_serial_t *self) {
+    struct stat opened;
+    struct stat named;
+    if (self->port.fd < 0 || fstat(self->port.fd, &opened) != 0 || stat(self->path, &named) != 0) {
+        return false;
+    }
+    return opened.st_rdev != named.st_rdev;
+}
+
 static int serial_read(void *context, uint8_t *bytes, size_t capacity) {
     hal_serial_t *const self = context;
     const int got = hal_fd_link_read(&self->port, bytes, capacity);

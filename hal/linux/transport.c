@@ -23,6 +23,10 @@ hal_link_error_t hal_transport_open(hal_transport_t *self, const hal_link_spec_t
     return error;
 }
 
+bool hal_transport_moved(const hal_transport_t *self, const hal_link_spec_t *spec) {
+    return spec->scheme == HAL_SCHEME_SERIAL && hal_serial_moved(&self->serial);
+}
+
 void hal_transport_explain(const hal_link_spec_t *spec, hal_link_error_t error, char *text, size_t capacity) {
     if (spec->scheme == HAL_SCHEME_SERIAL) {
         hal_serial_explain(error, spec->path, text, capacity);

@@ -12,41 +12,39 @@ void hal_fd_link_init(hal_fd_link_t *self) {
 }
 
 hal_link_error_t hal_link_error_of(int error_number) {
-    switch (error_number) {
-    case ENOENT:
-    case ENOTDIR:
-        return HAL_LINK_NOT_FOUND;
-    case EACCES:
-    case EPERM:
-        return HAL_LINK_DENIED;
-    case EBUSY:
-    case EWOULDBLOCK:
-        return HAL_LINK_BUSY;
-    case ENOTTY:
-    case EISDIR:
-    case EINVAL:
-        return HAL_LINK_NOT_SERIAL;
-    case EIO:
-    case ENXIO:
-    case ENODEV:
-        return HAL_LINK_GONE;
-    case EPIPE:
-    case ECONNRESET:
-    case ECONNABORTED:
-        return HAL_LINK_CLOSED;
-    case ECONNREFUSED:
-        return HAL_LINK_REFUSED;
-    case ENETUNREACH:
-    case EHOSTUNREACH:
-    case ENETDOWN:
-    case EADDRNOTAVAIL:
-    case EAFNOSUPPORT:
-        return HAL_LINK_UNREACHABLE;
-    case ETIMEDOUT:
-        return HAL_LINK_TIMEOUT;
-    default:
-        return HAL_LINK_IO;
+    static const struct {
+        int number;
+        hal_link_error_t error;
+    } table[] = {
+        {ENOENT, HAL_LINK_NOT_FOUND},
+        {ENOTDIR, HAL_LINK_NOT_FOUND},
+        {EACCES, HAL_LINK_DENIED},
+        {EPERM, HAL_LINK_DENIED},
+        {EBUSY, HAL_LINK_BUSY},
+        {EWOULDBLOCK, HAL_LINK_BUSY},
+        {ENOTTY, HAL_LINK_NOT_SERIAL},
+        {EISDIR, HAL_LINK_NOT_SERIAL},
+        {EINVAL, HAL_LINK_NOT_SERIAL},
+        {EIO, HAL_LINK_GONE},
+        {ENXIO, HAL_LINK_GONE},
+        {ENODEV, HAL_LINK_GONE},
+        {EPIPE, HAL_LINK_CLOSED},
+        {ECONNRESET, HAL_LINK_CLOSED},
+        {ECONNABORTED, HAL_LINK_CLOSED},
+        {ECONNREFUSED, HAL_LINK_REFUSED},
+        {ENETUNREACH, HAL_LINK_UNREACHABLE},
+        {EHOSTUNREACH, HAL_LINK_UNREACHABLE},
+        {ENETDOWN, HAL_LINK_UNREACHABLE},
+        {EADDRNOTAVAIL, HAL_LINK_UNREACHABLE},
+        {EAFNOSUPPORT, HAL_LINK_UNREACHABLE},
+        {ETIMEDOUT, HAL_LINK_TIMEOUT},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        if (table[i].number == error_number) {
+            return table[i].error;
+        }
     }
+    return HAL_LINK_IO;
 }
 
 static int not_now(int error_number) {

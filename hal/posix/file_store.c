@@ -4,7 +4,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <sys/types.h>
 #include <unistd.h>
 
 #include "hal/store.h"
@@ -40,25 +40,31 @@ static const char *slot_path(hal_file_medium_t *self, int slot) {
     return self->target;
 }
 
+// Reads up to the end or the capacity; bytes read, or -1.
+static ssize_t read_all(int fd, uint8_t *bytes, size_t capacity) {
+    size_t count = 0;
+    ssize_t got = 1;
+    while (got != 0 && count < capacity) {
+        got = read(fd, bytes + count, capacity - count);
+        if (got > 0) {
+            count += (size_t)got;
+        } else if (got < 0 && errno != EINTR) {
+            return -1;
+        }
+    }
+    return (ssize_t)count;
+}
+
 static int slot_read(void *context, int slot, uint8_t *bytes, size_t capacity) {
     const int fd = open(slot_path(context, slot), O_RDONLY | O_CLOEXEC);
     if (fd < 0) {
         return errno == ENOENT ? HAL_STORE_EMPTY : (int)error_of(errno);
     }
-    size_t count = 0;
-    ssize_t got = 1;
-    while (got > 0 && count < capacity) {
-        got = read(fd, bytes + count, capacity - count);
-        if (got > 0) {
-            count += (size_t)got;
-        } else if (got < 0 && errno == EINTR) {
-            got = 1;
-        }
-    }
     uint8_t more = 0;
-    const bool longer = got > 0 && read(fd, &more, 1) == 1;
+    const ssize_t count = read_all(fd, bytes, capacity);
+    const bool longer = count == (ssize_t)capacity && read_all(fd, &more, 1) == 1;
     close(fd);
-    if (got < 0) {
+    if (count < 0) {
         return HAL_STORE_IO;
     }
     return longer ? (int)HAL_STORE_DAMAGED : (int)count;

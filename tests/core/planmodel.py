@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Algorithm 3 and the least number of stops, worked out over every fault map from their description in words."""
+"""Algorithm 3 and the least number of stops, worked out from their description in words."""
 
 from __future__ import annotations
 
@@ -45,13 +45,11 @@ def fault_maps() -> list[frozenset[int]]:
 def covered_by(rotation: int, disabled: frozenset[int]) -> dict[int, int]:
     """Which enabled sonar looks where each disabled one looked, after the rotation: disabled -> cover."""
     angle = bearings()
-    return {
-        d: e for d in disabled for e in FORWARD if e not in disabled and angle[e] + rotation == angle[d]
-    }
+    return {d: e for d in disabled for e in FORWARD if e not in disabled and angle[e] + rotation == angle[d]}
 
 
 def candidates(disabled: frozenset[int]) -> list[int]:
-    """Every turn that brings one enabled sonar onto one disabled bearing, nearest to 0 first, negative first."""
+    """Every turn of one enabled sonar onto one disabled bearing, nearest to 0 first, negative first."""
     angle = bearings()
     turns = {angle[d] - angle[e] for d in disabled for e in FORWARD if e not in disabled}
     return sorted(turns, key=lambda r: (abs(r), r))

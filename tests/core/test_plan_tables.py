@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rule: over all 62 fault maps the planners give the lists, not only the sums, that the paper's words give."""
+"""Rule: over all 62 fault maps the planners give the lists, not only the sums, of the paper's words."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+
 from tests.core import planmodel
 from tests.core.planmodel import Plan
 
@@ -63,10 +64,9 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> Table:
     folder = tmp_path_factory.mktemp("plan")
     (folder / "main.c").write_text(PROGRAM, encoding="utf-8")
     firmware = ROOT / "firmware"
-    sources = [str(firmware / name) for name in SOURCES]
+    sources = [firmware / name for name in SOURCES]
     subprocess.run(
-        ["gcc", "-std=c11", "-I", str(firmware / "include"), "-o", str(folder / "plan"), str(folder / "main.c")]
-        + sources,
+        ["gcc", "-std=c11", "-I", firmware / "include", "-o", folder / "plan", folder / "main.c", *sources],
         check=True,
     )
     text = subprocess.run([str(folder / "plan")], check=True, stdout=subprocess.PIPE, text=True).stdout

@@ -11,7 +11,7 @@ from harness import ARGUSD, SIM, Bench
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    config.addinivalue_line("markers", "long: takes more than 40 s; started first")
+    config.addinivalue_line("markers", "long: takes more than 30 s; started first")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

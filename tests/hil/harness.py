@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The test bench: argus-sim and argusd as real processes on a real pty, what both say, and a wire tap between them."""
+"""The test bench: argus-sim and argusd as processes on a pty, what both say, and a tap on the wire."""
 
 from __future__ import annotations
 
@@ -164,7 +164,7 @@ class Sim:
 
 def is_at_rest(state: Record) -> bool:
     """The robot of a state record stands."""
-    return abs(state["v_mm_s"]) <= REST_MM_S and abs(state["w_deg_s"]) <= REST_DEG_S
+    return bool(abs(state["v_mm_s"]) <= REST_MM_S and abs(state["w_deg_s"]) <= REST_DEG_S)
 
 
 def is_translating(state: Record) -> bool:
@@ -178,7 +178,7 @@ def way_mm(a: Record, b: Record) -> float:
 
 
 class Argusd:
-    """A running argusd and the events that it wrote, each with the wall clock at which it was read (`unix`)."""
+    """A running argusd and the events that it wrote, each with a wall clock (`unix`)."""
 
     def __init__(self, arguments: Sequence[str]) -> None:
         self.command = [str(ARGUSD), *arguments]
@@ -222,9 +222,10 @@ class Argusd:
         return known[-1] if known else {}
 
     def wait(self, *names: str, timeout_s: float = PATIENCE_S, after_t: float = -1.0, **want: Any) -> Record:
-        """Wait for an event later than `after_t` (argusd's clock)."""
+        """Wait for an event not earlier than `after_t` (argusd's clock)."""
+
         def probe() -> Record | None:
-            found = [e for e in self.named(*names, **want) if e.get("t", 0.0) > after_t]
+            found = [e for e in self.named(*names, **want) if e.get("t", 0.0) >= after_t]
             if not found and self.process.poll() is not None and not any(t.is_alive() for t in self._threads):
                 raise HilFailure(
                     f"argusd ended with {self.process.returncode} while waiting for {names} {want or ''}: "
@@ -285,7 +286,7 @@ _COMMAND_NAME: Final = {number: name for name, number in COMMAND.items() if not 
 
 
 class Tap:
-    """A cable between argusd and argus-sim that can be listened to and cut: a pty of its own, pumped to the robot's."""
+    """A cable to argus-sim that can be listened to and cut: a pty of its own, pumped to the robot's."""
 
     def __init__(self, device: str) -> None:
         self.heard: list[Heard] = []
@@ -346,10 +347,11 @@ class Bench:
     notes: list[str] = field(default_factory=list)
 
     def sim(
-        self, world: str, *faults: str, seed: int = 1, link: Sequence[str] | None = None, crosstalk: float = 0.0,
+        self, world: str, *faults: str, seed: int = 1, link: Sequence[str] | None = None,
+        crosstalk: float = 0.0,
         extra: Sequence[str] = (),
     ) -> Sim:  # fmt: skip
-        """Start an emulator with the faults given; its link is a pty behind `self.port` unless told otherwise."""
+        """Start an emulator with the faults given, on a pty behind `self.port` unless told otherwise."""
         n = len(self.sims)
         arguments = ["--world", world, "--seed", str(seed), "--crosstalk", str(crosstalk)]
         for fault in faults:
@@ -365,7 +367,11 @@ class Bench:
         return self.path / "robot"
 
     def argusd(
-        self, *arguments: str, link: str | None = None, config: dict[str, Any] | None = None, active: bool = True
+        self,
+        *arguments: str,
+        link: str | None = None,
+        config: dict[str, Any] | None = None,
+        active: bool = True,
     ) -> Argusd:
         """Start argusd on the emulator's pty, active unless told otherwise."""
         words = ["--link", link or f"serial:{self.port}@{BAUD}", "--json", *arguments]
@@ -394,8 +400,8 @@ class Bench:
     def dump(self) -> str:
         """How to make the failure again, and what happened last."""
         lines = [f"files: {self.path}", *self.notes]
-        for program in (*self.sims, *self.daemons):
-            lines.append("run: " + shlex.join(program.command))
+        commands = [sim.command for sim in self.sims] + [daemon.command for daemon in self.daemons]
+        lines += ["run: " + shlex.join(command) for command in commands]
         for sim in self.sims:
             with contextlib.suppress(Exception):
                 sim.read()
@@ -425,7 +431,7 @@ def _sim_lines(sim: Sim) -> Iterator[str]:
 
 
 def _daemon_lines(daemon: Argusd) -> Iterator[str]:
-    yield f"argusd: exit {daemon.process.poll()}, mode {daemon.status.get('mode')}, wait {daemon.status.get('wait')}"
+    yield f"argusd: exit {daemon.process.poll()}, mode {daemon.status.get('mode')}"
     first = daemon.events[0]["unix"] if daemon.events else 0.0
     for e in [e for e in daemon.events if e["event"] != "STATUS"][-40:]:
         yield (
@@ -437,7 +443,9 @@ def _daemon_lines(daemon: Argusd) -> Iterator[str]:
 
 def run_argusd(*arguments: str, timeout_s: float = 60.0) -> subprocess.CompletedProcess[str]:
     """Run argusd to its end."""
-    return subprocess.run([str(ARGUSD), *arguments], capture_output=True, text=True, timeout=timeout_s, check=False)
+    return subprocess.run(
+        [str(ARGUSD), *arguments], capture_output=True, text=True, timeout=timeout_s, check=False
+    )
 
 
 def run_python(*arguments: str, timeout_s: float) -> subprocess.CompletedProcess[str]:

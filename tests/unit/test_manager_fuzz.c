@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: whatever the robot, its sonars, the link and the operator do, no invariant breaks (S1 to S8).
+// Rule under attack: whatever the robot, its sonars, the link and the operator do, no invariant breaks (S1 to
+// S8).
 #include "argus/manager.h"
 
 #include <stdio.h>
@@ -34,17 +35,21 @@ static void begin(uint32_t seed) {
     const argus_config_t config = random_config(seed);
     robot_init(&robot, &config, seed * 2654435761u);
     robot.seed = seed * 2246822519u + 1u;
-    robot.world = robot_world_segments;
     robot.noise_mm = (int)robot_random(&robot, 12);
     robot.lists_all = chance(8);
     robot.deny_motors = chance(20);
+    robot.e_stop_cuts_motors = chance(3);
     robot.position_mask = chance(2) ? 0xFFFF : 0x7FFF;
     if (chance(4)) {
         robot.subclass = "p3dx";
         robot.unit_mm = 0.485;
     }
-    robot_box(&robot, -1200, -1500, 3500, 1500);
-    if (chance(2)) {
+    const bool far = chance(2); // nothing near, nothing disparate: the robot drives
+    robot.world = far ? robot_world_far : robot_world_segments;
+    if (!far) {
+        robot_box(&robot, -1200, -1500, 3500, 1500);
+    }
+    if (!far && chance(2)) {
         robot_box(&robot, 1200, -250, 1500, 250);
     }
     robot_goal(&robot, 500 + (int)robot_random(&robot, 2500), (int)robot_random(&robot, 1600) - 800);
@@ -54,8 +59,9 @@ static void random_fault(void) {
     const int sonar = (int)robot_random(&robot, 16);
     static const int scale[] = {20, 50, 80, 130};
     robot.fault[sonar] = (robot_fault_t)robot_random(&robot, 5);
-    robot.fault_value[sonar] = robot.fault[sonar] == ROBOT_SCALE ? scale[robot_random(&robot, 4)]
-                                                                 : (int)robot_random(&robot, chance(9) ? 65536 : 5001);
+    robot.fault_value[sonar] = robot.fault[sonar] == ROBOT_SCALE
+                                   ? scale[robot_random(&robot, 4)]
+                                   : (int)robot_random(&robot, chance(9) ? 65536 : 5001);
 }
 
 static void random_contact(void) {
@@ -66,7 +72,9 @@ static void random_contact(void) {
 
 static void random_link(void) {
     switch (robot_random(&robot, 6)) {
-    case 0: robot.mute = true; break;
+    case 0:
+        robot.mute = true;
+        break;
     case 1:
         argus_link_lost(&robot.argus, robot.start_ms + robot.t_ms);
         robot_drain(&robot);
@@ -101,16 +109,32 @@ static void random_motors(void) {
     robot.stuck_wheels = chance(6);
 }
 
+// Mean seconds between two disturbances of a kind; what presses, cuts or blocks is let go again soon.
+static uint32_t every(uint32_t seconds) {
+    return chance(seconds * 100);
+}
+
 static void disturb(void) {
-    if (chance(1500)) random_fault();
-    if (chance(600)) random_contact();
-    if (chance(900)) random_link();
-    if (chance(700)) random_noise();
-    if (chance(1500)) random_operator();
-    if (chance(1500)) random_motors();
-    if (chance(400)) random_contact();
-    if (chance(300)) robot.bumpers_front = robot.bumpers_rear = 0;
-    if (chance(300)) robot.stop_button = robot.stuck_wheels = false;
+    if (every(25))
+        random_fault();
+    if (every(15))
+        random_contact();
+    if (every(20))
+        random_link();
+    if (every(8))
+        random_noise();
+    if (every(20))
+        random_operator();
+    if (every(30))
+        random_motors();
+    if (every(3))
+        robot.bumpers_front = robot.bumpers_rear = 0;
+    if (every(3))
+        robot.stall = robot.stop_button = robot.stuck_wheels = false;
+    if (robot.mute && every(2))
+        robot.mute = false;
+    if (every(5))
+        argus_link_up(&robot.argus, robot.start_ms + robot.t_ms);
 }
 
 static void fuzz(uint32_t seed) {

@@ -96,6 +96,24 @@ void test_s1_object_on_a_compensated_bearing_stops_the_next_step(void) {
     finish();
 }
 
+void test_s1_object_on_a_healthy_bearing_stops_the_next_step(void) {
+    for (int mm = 350; mm <= 351; mm++) {
+        start_idle();
+        robot.fault[2] = ROBOT_OFF;
+        for (int i = 3; i <= 6; i++) {
+            robot.fault[i] = ROBOT_VALUE;
+            robot.fault_value[i] = mm;
+        }
+        robot_run(&robot, 2000);
+        TEST_ASSERT_EQUAL_HEX16(1u << 2, argus_disabled(&robot.argus.knowledge));
+        TEST_ASSERT_TRUE(robot_goal(&robot, 2000, 0));
+        TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SWEEP, 20000));
+        robot_run(&robot, 1000);
+        TEST_ASSERT_EQUAL(mm == 350 ? 0 : 1, moves_ahead(0));
+        finish();
+    }
+}
+
 void test_s2_dead_reading_in_motion_is_answered_by_stop_in_the_same_call(void) {
     for (int sonar = 1; sonar <= 6; sonar++) {
         start_driving();
@@ -202,7 +220,8 @@ void test_s2_a_suspect_before_the_first_sip_that_shows_motion(void) {
 
 // GO and ACTIVE begin a health check: what was under way must not go on beside it.
 void test_s2_a_check_asked_for_in_motion_stops_the_robot(void) {
-    static const argus_op_t ops[] = {ARGUS_OP_GO, ARGUS_OP_ACTIVE, ARGUS_OP_RECHECK, ARGUS_OP_STOP, ARGUS_OP_PASSIVE};
+    static const argus_op_t ops[] = {ARGUS_OP_GO, ARGUS_OP_ACTIVE, ARGUS_OP_RECHECK, ARGUS_OP_STOP,
+                                     ARGUS_OP_PASSIVE};
     for (int i = 0; i < 5; i++) {
         start_driving();
         const int from = robot.commands;
@@ -271,6 +290,7 @@ void test_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move(void) {
     const int from = robot.commands;
     robot.mute = true;
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_STALLED, 2000));
+    TEST_ASSERT_FALSE(argus_invariants_broken(&robot.argus) != 0 || robot.argus.checked);
     robot_run(&robot, 1500); // longer than stale_ms in all: the gap is the link's, not the sonars'
     robot.mute = false;
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_RESUMED, 2000));
@@ -285,11 +305,28 @@ void test_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move(void) {
     finish();
 }
 
+// A sonar that dies in the middle of it does not cut the full check short.
+void test_s3_the_check_after_a_stall_stays_a_full_one(void) {
+    start_driving();
+    robot.mute = true;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_STALLED, 2000));
+    robot.mute = false;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_RESUMED, 2000));
+    robot_run(&robot, 700);
+    robot.fault[4] = ROBOT_OFF;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_DEAD, 2000));
+    const uint32_t from = robot.argus.knowledge.sonar[2].readings;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 5000));
+    TEST_ASSERT_TRUE(robot.argus.knowledge.sonar[2].readings - from >= 3);
+    finish();
+}
+
 void test_s3_link_cut_and_restored_leads_to_a_full_check(void) {
     start_driving();
     argus_link_lost(&robot.argus, robot.start_ms + robot.t_ms);
     robot_drain(&robot);
     TEST_ASSERT_EQUAL(ARGUS_MODE_OFFLINE, robot.argus.mode);
+    TEST_ASSERT_FALSE(robot.argus.checked);
     robot.moving = false;
     robot.mute = true;
     robot_run(&robot, 3000);
@@ -450,6 +487,22 @@ void test_s7_backs_off_from_a_front_bumper_and_checks_anew(void) {
     finish();
 }
 
+// E_STOP may cut the motors: they are switched on again to back away, but never against the robot's own
+// button.
+void test_s7_motors_cut_by_the_stop_are_enabled_to_back_away(void) {
+    for (int button = 0; button < 2; button++) {
+        start_driving();
+        robot.e_stop_cuts_motors = true;
+        robot.stop_button = button == 1;
+        robot.bumpers_front = 1 << 3;
+        const int from = robot.commands;
+        robot_run(&robot, 4000);
+        TEST_ASSERT_EQUAL(button == 0, robot_count_commands(&robot, ARCOS_CMD_ENABLE, from) > 0);
+        TEST_ASSERT_EQUAL(button == 0, robot_count_commands(&robot, ARCOS_CMD_MOVE, from) > 0);
+        finish();
+    }
+}
+
 void test_s7_waits_with_an_event_each_10_s_while_the_rear_is_blocked(void) {
     for (int blocked = 8; blocked < 16; blocked++) {
         start_driving();
@@ -461,7 +514,8 @@ void test_s7_waits_with_an_event_each_10_s_while_the_rear_is_blocked(void) {
         robot_run(&robot, 30500);
         TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, from));
         for (int i = from; i < robot.commands; i++) {
-            TEST_ASSERT_FALSE(robot.command[i].command == ARCOS_CMD_MOVE && robot.command[i].t_ms > robot.t_ms - 30000);
+            TEST_ASSERT_FALSE(robot.command[i].command == ARCOS_CMD_MOVE &&
+                              robot.command[i].t_ms > robot.t_ms - 30000);
         }
         TEST_ASSERT_EQUAL(4, robot_count_events(&robot, ARGUS_EV_WAITING, 0)); // at once, 10, 20, 30 s
         finish();
@@ -510,6 +564,32 @@ void test_s7_no_turn_while_the_swing_circle_is_blocked(void) {
     robot.fault[7] = ROBOT_OK;
     robot_run(&robot, 8000);
     TEST_ASSERT_FLOAT_WITHIN(2, 90, robot_heading_deg(&robot));
+    finish();
+}
+
+// Hit while turned away to look: it may neither go on with the turn nor turn home.
+void test_s7_no_turn_home_while_a_bumper_is_pressed(void) {
+    start_idle();
+    robot.fault[3] = ROBOT_SCALE;
+    robot.fault_value[3] = 50;
+    robot.fault[10] = ROBOT_VALUE;
+    robot.fault_value[10] = 430; // no way back
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 5000));
+    for (int i = 0; i < 500 && fabs(robot_heading_deg(&robot)) < 15; i++) {
+        robot_tick(&robot);
+    }
+    robot.bumpers_front = 1 << 5;
+    robot_next_sip(&robot);
+    const int from = robot.commands;
+    robot_run(&robot, 8000);
+    robot.mute = true; // a stall of the link brings about a check, which turns home first
+    robot_run(&robot, 1000);
+    robot.mute = false;
+    robot_run(&robot, 8000);
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, from));
+    robot.bumpers_front = 0;
+    robot_run(&robot, 20000);
+    TEST_ASSERT_EQUAL(ARGUS_DISABLED, robot.argus.knowledge.sonar[3].health);
     finish();
 }
 

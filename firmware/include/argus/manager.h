@@ -125,6 +125,7 @@ typedef struct {
     bool locked;            // the configuration is unsafe: never active
     bool passive;
     bool paused;
+    bool stay;              // after the operator's STOP: no turn either, until another order
     bool checked;           // a full health check has passed since the session opened or resumed (S3, S6)
     bool motors_said;
     bool battery_said;

@@ -35,6 +35,9 @@ void hal_transport_init(hal_transport_t *self);
 hal_link_error_t hal_transport_open(hal_transport_t *self, const hal_link_spec_t *spec, int timeout_ms,
                                     int cancel_fd, hal_link_t *link);
 
+// True when opening the spec again would lead to another device.
+bool hal_transport_moved(const hal_transport_t *self, const hal_link_spec_t *spec);
+
 // One line about a failed opening: what, why, what to do.
 void hal_transport_explain(const hal_link_spec_t *spec, hal_link_error_t error, char *text, size_t capacity);
 

@@ -40,6 +40,10 @@ hal_link_error_t hal_serial_open(hal_serial_t *self, const char *path, uint32_t 
 // Changes the rate of an open port; what was waiting in either direction is thrown away.
 hal_link_error_t hal_serial_set_baud(hal_serial_t *self, uint32_t baud);
 
+// True when the path now leads to another device than the one that is open: a name whose adapter came back
+// elsewhere.
+bool hal_serial_moved(const hal_serial_t *self);
+
 hal_link_t hal_serial_link(hal_serial_t *self);
 
 // What to do about an error of hal_serial_open(), on one line: which ports there are, which group is missing,

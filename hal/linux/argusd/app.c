@@ -214,6 +214,17 @@ static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     return code == ARGUSD_EXIT_OK ? code : complain(code);
 }
 
+// Saves once at the start: a place that cannot be written is better known now than after the mission.
+static bool open_state(void) {
+    if (!state_open(&loop.state, options.state_path, &loop.driver.core, message, sizeof message)) {
+        return false;
+    }
+    if (message[0] != '\0') {
+        complain(ARGUSD_EXIT_OK);
+    }
+    return state_save(&loop.state, &loop.driver.core, message, sizeof message);
+}
+
 static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *notice) {
     const loop_options_t wishes = {
         .json = options.json,
@@ -225,14 +236,9 @@ static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *no
         .notice = notice,
     };
     driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
-    if (options.state_path != NULL) {
-        if (!state_open(&loop.state, options.state_path, &loop.driver.core, message, sizeof message)) {
-            hal_link_close(&link);
-            return complain(ARGUSD_EXIT_USAGE);
-        }
-        if (message[0] != '\0') {
-            complain(ARGUSD_EXIT_OK);
-        }
+    if (options.state_path != NULL && !open_state()) {
+        hal_link_close(&link);
+        return complain(ARGUSD_EXIT_USAGE);
     }
     if (course.count > 0 && !argus_set_course(&loop.driver.core, course.point, course.count)) {
         hal_link_close(&link);

@@ -9,6 +9,7 @@
 #define RETRY_FIRST_MS 250u
 #define RETRY_MAX_MS 4000u
 #define REOPEN_TIMEOUT_MS 1000
+#define LOOK_MS 1000u
 
 static uint32_t now_ms(const driver_t *self) {
     return hal_clock_now_ms(&self->clock);
@@ -109,6 +110,18 @@ static uint32_t reopen(driver_t *self) {
     return self->retry_ms;
 }
 
+// While no robot answers: a stable name may have moved to the adapter that the robot is at now.
+static void look_where_it_leads(driver_t *self) {
+    const uint32_t passed_ms = now_ms(self) - self->looked_ms;
+    if (self->transport == NULL || passed_ms < LOOK_MS || argus_session_is_open(&self->core.session)) {
+        return;
+    }
+    self->looked_ms = now_ms(self);
+    if (hal_transport_moved(self->transport, &self->spec)) {
+        lose(self, HAL_LINK_GONE);
+    }
+}
+
 uint32_t driver_process(driver_t *self) {
     uint32_t retry_ms = UINT32_MAX;
     if (self->up) {
@@ -117,6 +130,7 @@ uint32_t driver_process(driver_t *self) {
             lose(self, kept);
         }
         driver_transmit(self);
+        look_where_it_leads(self);
     } else if (self->transport != NULL && !argus_closed(&self->core)) {
         retry_ms = reopen(self);
     }

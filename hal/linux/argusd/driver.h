@@ -18,6 +18,7 @@ typedef struct {
     hal_link_error_t error; // why the link is not up
     uint32_t retry_ms;      // pause before the next attempt to open
     uint32_t lost_ms;       // when the last attempt failed
+    uint32_t looked_ms;     // last look at where the link's name leads
     uint32_t reopened;      // monotonic
     uint32_t bytes_in;      // over all openings
     size_t held;            // a packet that the link would not take yet

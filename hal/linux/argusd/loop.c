@@ -164,21 +164,23 @@ static void quit(loop_t *self) {
     end(self, code_of_mission(self));
 }
 
-static void obey(loop_t *self, tui_key_t key) {
+// Whoever watched can no longer stop it by hand.
+static void lose_screen(loop_t *self) {
+    tui_stop(&self->tui);
+    notice(self, "the screen is gone: stopping");
+    end(self, ARGUSD_EXIT_INTERNAL);
+}
+
+static void jog(loop_t *self, tui_key_t key) {
     const argus_config_t *const config = &self->driver.core.config;
+    const bool turns = key == TUI_LEFT || key == TUI_RIGHT;
+    const int32_t move_mm = key == TUI_AHEAD ? config->step_mm : -config->backoff_mm;
+    const int32_t turn_deg = key == TUI_LEFT ? TURN_DEG : -TURN_DEG;
+    operate(self, turns ? ARGUS_OP_TURN : ARGUS_OP_MOVE, turns ? turn_deg : move_mm);
+}
+
+static void obey(loop_t *self, tui_key_t key) {
     switch (key) {
-    case TUI_AHEAD:
-        operate(self, ARGUS_OP_MOVE, config->step_mm);
-        break;
-    case TUI_BACK:
-        operate(self, ARGUS_OP_MOVE, -config->backoff_mm);
-        break;
-    case TUI_LEFT:
-        operate(self, ARGUS_OP_TURN, TURN_DEG);
-        break;
-    case TUI_RIGHT:
-        operate(self, ARGUS_OP_TURN, -TURN_DEG);
-        break;
     case TUI_STOP:
         operate(self, ARGUS_OP_STOP, 0);
         break;
@@ -194,13 +196,13 @@ static void obey(loop_t *self, tui_key_t key) {
     case TUI_QUIT:
         quit(self);
         break;
-    case TUI_GONE: // whoever watched can no longer stop it by hand
-        tui_stop(&self->tui);
-        notice(self, "the screen is gone: stopping");
-        end(self, ARGUSD_EXIT_INTERNAL);
+    case TUI_GONE:
+        lose_screen(self);
         break;
     case TUI_NONE:
+        break;
     default:
+        jog(self, key);
         break;
     }
 }

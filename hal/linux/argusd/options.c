@@ -216,21 +216,27 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
 
 // What contradicts, or is missing.
 static bool agree(const options_t *options, const message_t *message) {
-    const char *problem = NULL;
     const bool has_link = options->link.path[0] != '\0' || options->link.host[0] != '\0';
-    if (options->passive && options->active) {
-        problem = "--passive and --active contradict each other; give one";
-    } else if (options->course_path != NULL && options->has_goal) {
-        problem = "--course and --goal contradict each other; give one";
-    } else if (!has_link) {
-        problem =
-            "no link is given; add --link serial:/dev/ttyUSB0@9600 or --link tcp:HOST:8101 (see --help)";
-    } else if (options->auto_baud && options->link.scheme != HAL_SCHEME_SERIAL) {
-        problem = "--auto-baud is for serial links; a tcp link has no rate";
-    } else if (options->auto_baud && options->link.has_baud) {
-        problem = "--auto-baud and a rate in --link contradict each other; leave out @BAUD";
+    const bool serial = options->link.scheme == HAL_SCHEME_SERIAL;
+    const struct {
+        bool wrong;
+        const char *problem;
+    } rules[] = {
+        {options->passive && options->active, "--passive and --active contradict each other; give one"},
+        {options->course_path != NULL && options->has_goal,
+         "--course and --goal contradict each other; give one"},
+        {!has_link,
+         "no link is given; add --link serial:/dev/ttyUSB0@9600 or --link tcp:HOST:8101 (see --help)"},
+        {options->auto_baud && !serial, "--auto-baud is for serial links; a tcp link has no rate"},
+        {options->auto_baud && options->link.has_baud,
+         "--auto-baud and a rate in --link contradict each other; leave out @BAUD"},
+    };
+    for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
+        if (rules[i].wrong) {
+            return text_refuse(message->text, message->capacity, "%s", rules[i].problem);
+        }
     }
-    return problem == NULL || text_refuse(message->text, message->capacity, "%s", problem);
+    return true;
 }
 
 bool options_parse(options_t *options, int argc, char **argv, char *message_text, size_t capacity) {

@@ -2,34 +2,24 @@
 // The key table.
 #include "tui_key.h"
 
+#include <stddef.h>
+
 #define CTRL_C 3
 
 tui_key_t tui_meaning(int key) {
-    switch (key) {
-    case TUI_KEY_UP:
-    case 'w':
-        return TUI_AHEAD;
-    case TUI_KEY_DOWN:
-    case 's':
-        return TUI_BACK;
-    case TUI_KEY_LEFT:
-    case 'a':
-        return TUI_LEFT;
-    case TUI_KEY_RIGHT:
-    case 'd':
-        return TUI_RIGHT;
-    case ' ':
-        return TUI_STOP;
-    case 'g':
-        return TUI_GO;
-    case 'r':
-        return TUI_RECHECK;
-    case 'p':
-        return TUI_PASSIVE;
-    case 'q':
-    case CTRL_C: // the terminal is raw: this arrives as a key
-        return TUI_QUIT;
-    default:
-        return TUI_NONE;
+    static const struct {
+        int key;
+        tui_key_t meaning;
+    } table[] = {
+        {TUI_KEY_UP, TUI_AHEAD},  {'w', TUI_AHEAD},   {TUI_KEY_DOWN, TUI_BACK},   {'s', TUI_BACK},
+        {TUI_KEY_LEFT, TUI_LEFT}, {'a', TUI_LEFT},    {TUI_KEY_RIGHT, TUI_RIGHT}, {'d', TUI_RIGHT},
+        {' ', TUI_STOP},          {'g', TUI_GO},      {'r', TUI_RECHECK},         {'p', TUI_PASSIVE},
+        {'q', TUI_QUIT},          {CTRL_C, TUI_QUIT}, // the terminal is raw: this arrives as a key
+    };
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        if (table[i].key == key) {
+            return table[i].meaning;
+        }
     }
+    return TUI_NONE;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: settled means two SIPs in a row at rest (a turn: within 1 degree), and readings of later SIPs only.
+// Rule under attack: settled means two SIPs in a row at rest (a turn: within 1 degree), and readings of later
+// SIPs only.
 #include "argus/motion.h"
 
 #include <string.h>

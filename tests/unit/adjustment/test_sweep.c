@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: a sweep reads every bearing of the plan after the turn has settled, keeps the smallest, ends at home.
+// Rule under attack: a sweep reads every bearing of the plan after the turn has settled, keeps the smallest,
+// ends at home.
 #include "argus/drive.h"
 
 #include <string.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: what one SIP shows (dead, silent, object, bumper), when a sonar becomes a suspect, and the hold-off.
+// Rule under attack: what one SIP shows (dead, silent, object, bumper), when a sonar becomes a suspect, and
+// the hold-off.
 #include "argus/awareness.h"
 
 #include <string.h>
@@ -83,6 +84,8 @@ void test_objects_along_the_motion(void) {
         reading[i] = 251;
     }
     TEST_ASSERT_EQUAL_HEX16(0, take(0xFFFF).object);
+    reading[2] = 250;
+    TEST_ASSERT_EQUAL_HEX16(0x04, take(0xFFFF).object);
 }
 
 void test_bumpers_and_stalls(void) {

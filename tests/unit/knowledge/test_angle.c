@@ -48,7 +48,8 @@ void test_sine_and_cosine(void) {
 static void check_atan2(int32_t y, int32_t x) {
     const double exact = atan2(y, x) * 18000 / PI;
     const double error = remainder(argus_atan2(y, x) - exact, 36000);
-    snprintf(text, sizeof text, "atan2(%d, %d) = %d, exact %.2f", (int)y, (int)x, (int)argus_atan2(y, x), exact);
+    snprintf(text, sizeof text, "atan2(%d, %d) = %d, exact %.2f", (int)y, (int)x, (int)argus_atan2(y, x),
+             exact);
     TEST_ASSERT_TRUE_MESSAGE(fabs(error) <= 6, text);
     TEST_ASSERT_TRUE_MESSAGE(argus_atan2(y, x) > -18000 && argus_atan2(y, x) <= 18000, text);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: the ring of the firmware is the P3-DX's: angles, neighbours 20 degrees apart, left and right alike.
+// Rule under attack: the ring of the firmware is the P3-DX's: angles, neighbours 20 degrees apart, left and
+// right alike.
 #include "argus/knowledge.h"
 
 #include <math.h>
@@ -7,7 +8,8 @@
 #include "unity.h"
 
 void test_angles_of_the_ring(void) {
-    static const int16_t angle[] = {90, 50, 30, 10, -10, -30, -50, -90, -90, -130, -150, -170, 170, 150, 130, 90};
+    static const int16_t angle[] = {90,  50,   30,   10,   -10, -30, -50, -90,
+                                    -90, -130, -150, -170, 170, 150, 130, 90};
     for (int i = 0; i < ARGUS_SONARS; i++) {
         TEST_ASSERT_EQUAL(angle[i], argus_sonar_pose[i].heading_deg);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: the pose survives the robot's wraps, units and resets; a reading is fresh only if listed after the mark.
+// Rule under attack: the pose survives the robot's wraps, units and resets; a reading is fresh only if listed
+// after the mark.
 #include "argus/knowledge.h"
 
 #include <math.h>
@@ -68,7 +69,8 @@ void test_headings(void) {
     for (int raw = -2047; raw <= 2048; raw++) {
         sip.heading_raw = (int16_t)raw;
         take(1000);
-        TEST_ASSERT_INT32_WITHIN(1, argus_angle_wrap((int32_t)lround(raw * 36000.0 / 4096)), k.pose.heading_cdeg);
+        TEST_ASSERT_INT32_WITHIN(1, argus_angle_wrap((int32_t)lround(raw * 36000.0 / 4096)),
+                                 k.pose.heading_cdeg);
     }
 }
 

@@ -16,8 +16,8 @@
 
 static void complain(robot_t *robot, const char *what, int value) {
     if (robot->violation[0] == '\0') {
-        snprintf(robot->violation, sizeof robot->violation, "t %u ms, mode %s: %s (%d)", (unsigned)robot->t_ms,
-                 argus_mode_name(robot->argus.mode), what, value);
+        snprintf(robot->violation, sizeof robot->violation, "t %u ms, mode %s: %s (%d)",
+                 (unsigned)robot->t_ms, argus_mode_name(robot->argus.mode), what, value);
     }
 }
 
@@ -124,12 +124,17 @@ static int reading_of(robot_t *robot, int sonar) {
         mm += (int)robot_random(robot, (uint32_t)(2 * robot->noise_mm + 1)) - robot->noise_mm;
     }
     switch (robot->fault[sonar]) {
-    case ROBOT_OFF: return 5000;
-    case ROBOT_SILENT: return -1;
-    case ROBOT_SCALE: return clip(mm * robot->fault_value[sonar] / 100);
-    case ROBOT_VALUE: return robot->fault_value[sonar];
+    case ROBOT_OFF:
+        return 5000;
+    case ROBOT_SILENT:
+        return -1;
+    case ROBOT_SCALE:
+        return clip(mm * robot->fault_value[sonar] / 100);
+    case ROBOT_VALUE:
+        return robot->fault_value[sonar];
     case ROBOT_OK:
-    default: return clip(mm);
+    default:
+        return clip(mm);
     }
 }
 
@@ -256,7 +261,9 @@ static void reply_sync(robot_t *robot, uint8_t command) {
     uint8_t data[80] = {command};
     size_t length = 1;
     if (command == 2) {
-        length += (size_t)snprintf((char *)data + 1, sizeof data - 1, "Test%cPioneer%c%s", 0, 0, robot->subclass) + 1;
+        length +=
+            (size_t)snprintf((char *)data + 1, sizeof data - 1, "Test%cPioneer%c%s", 0, 0, robot->subclass) +
+            1;
     }
     uint8_t packet[100];
     robot_deliver(robot, packet, argus_frame_encode(packet, sizeof packet, data, length));
@@ -293,24 +300,42 @@ static void obey_motion(robot_t *robot, uint8_t command, int32_t argument) {
         robot->turning = robot->motors;
         robot->heading = robot->th0 + argument * DEG;
         break;
-    case ARCOS_CMD_VEL: robot->moving = false; break;
-    case ARCOS_CMD_RVEL: robot->turning = false; break;
-    case ARCOS_CMD_STOP: robot->moving = robot->turning = false; break;
+    case ARCOS_CMD_VEL:
+        robot->moving = false;
+        break;
+    case ARCOS_CMD_RVEL:
+        robot->turning = false;
+        break;
+    case ARCOS_CMD_STOP:
+        robot->moving = robot->turning = false;
+        break;
     case ARCOS_CMD_E_STOP:
         robot->moving = robot->turning = false;
         robot->v = robot->w = 0;
+        robot->motors = robot->motors && !robot->e_stop_cuts_motors;
         break;
-    default: break;
+    default:
+        break;
     }
 }
 
 static void obey_setting(robot_t *robot, uint8_t command, int32_t argument) {
     switch (command) {
-    case ARCOS_CMD_SETV: robot->setv = argument; break;
-    case ARCOS_CMD_SETA: *(argument < 0 ? &robot->decel : &robot->accel) = fabs((double)argument); break;
-    case ARCOS_CMD_SETRV: robot->setrv = argument * DEG; break;
-    case ARCOS_CMD_SETRA: robot->setra = fabs((double)argument) * DEG; break;
-    case ARCOS_CMD_SONAR: robot->sonar_on = (argument & 1) != 0; break;
+    case ARCOS_CMD_SETV:
+        robot->setv = argument;
+        break;
+    case ARCOS_CMD_SETA:
+        *(argument < 0 ? &robot->decel : &robot->accel) = fabs((double)argument);
+        break;
+    case ARCOS_CMD_SETRV:
+        robot->setrv = argument * DEG;
+        break;
+    case ARCOS_CMD_SETRA:
+        robot->setra = fabs((double)argument) * DEG;
+        break;
+    case ARCOS_CMD_SONAR:
+        robot->sonar_on = (argument & 1) != 0;
+        break;
     case ARCOS_CMD_ENABLE:
         robot->motors = argument != 0 && !robot->stop_button && !robot->deny_motors;
         robot->moving = robot->turning = false;
@@ -320,8 +345,11 @@ static void obey_setting(robot_t *robot, uint8_t command, int32_t argument) {
         robot->y0 = robot->y;
         robot->th0 = robot->th;
         break;
-    case ARCOS_CMD_CLOSE: power_up(robot); break;
-    default: break;
+    case ARCOS_CMD_CLOSE:
+        power_up(robot);
+        break;
+    default:
+        break;
     }
 }
 
@@ -352,8 +380,8 @@ static double nearest_shown_mm(const robot_t *robot) {
     double nearest = 1e9;
     for (int i = 0; i < 16; i++) {
         const argus_sonar_pose_t *at = &argus_sonar_pose[i];
-        if (robot->argus.knowledge.sonar[i].health != ARGUS_DISABLED && robot->argus.knowledge.sonar[i].reported &&
-            robot->shown[i] >= 0 && robot->shown[i] < 5000) {
+        if (robot->argus.knowledge.sonar[i].health != ARGUS_DISABLED &&
+            robot->argus.knowledge.sonar[i].reported && robot->shown[i] >= 0 && robot->shown[i] < 5000) {
             nearest = fmin(nearest, hypot(at->x_mm + robot->shown[i] * cos(at->heading_deg * DEG),
                                           at->y_mm + robot->shown[i] * sin(at->heading_deg * DEG)));
         }
@@ -413,7 +441,8 @@ static void watch(robot_t *robot, const robot_command_t *sent) {
     if (c == ARCOS_CMD_SETV && (sent->argument <= 0 || sent->argument > 750)) {
         complain(robot, "SETV out of range", sent->argument);
     }
-    const bool motion = c == ARCOS_CMD_MOVE || c == ARCOS_CMD_HEAD || (c == ARCOS_CMD_ENABLE && sent->argument != 0);
+    const bool motion =
+        c == ARCOS_CMD_MOVE || c == ARCOS_CMD_HEAD || (c == ARCOS_CMD_ENABLE && sent->argument != 0);
     if (robot->argus.passive && motion) {
         complain(robot, "passive, yet commands a motion", c);
     }
@@ -497,7 +526,8 @@ static void send_sip(robot_t *robot) {
     robot->reply_length = 0;
     robot_deliver(robot, packet, length);
     robot_drain(robot);
-    if (hit && is_answered(robot, open) && (robot->reply_length == 0 || robot->reply[3] != ARCOS_CMD_E_STOP)) {
+    if (hit && is_answered(robot, open) &&
+        (robot->reply_length == 0 || robot->reply[3] != ARCOS_CMD_E_STOP)) {
         complain(robot, "S2: a bumper was not answered by E_STOP at once", robot->reply[3]);
     }
 }

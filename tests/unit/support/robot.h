@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A robot in memory for the manager's tests: ARCOS session, simple kinematics, sonar schedule, and a watch over the invariants.
+// A robot in memory for the manager's tests: ARCOS session, simple kinematics, sonar schedule, and a watch
+// over the invariants.
 #ifndef TEST_ROBOT_H
 #define TEST_ROBOT_H
 
@@ -25,10 +26,10 @@ struct robot {
     uint32_t start_ms;
     uint32_t t_ms;
     // body
-    double x, y, th;   // mm, radians
-    double v, w;       // mm/s, rad/s
-    double left_mm;    // of a MOVE, signed
-    double heading;    // HEAD's target
+    double x, y, th; // mm, radians
+    double v, w;     // mm/s, rad/s
+    double left_mm;  // of a MOVE, signed
+    double heading;  // HEAD's target
     bool moving, turning;
     double setv, accel, decel, setrv, setra;
     double x0, y0, th0; // odometry origin
@@ -36,7 +37,7 @@ struct robot {
     uint16_t position_mask;
     bool motors, stop_button, stuck_wheels;
     bool deny_motors; // ENABLE 1 has no effect
-    bool bumpstall_cuts_motors;
+    bool e_stop_cuts_motors;
     uint8_t bumpers_front, bumpers_rear;
     bool stall;
     // session
@@ -69,10 +70,10 @@ struct robot {
     uint8_t reply[ARGUS_FRAME_TOTAL_MAX]; // first packet after the last SIP
     size_t reply_length;
     // the watch
-    bool checked;       // HEALTH_CHECK since the session opened or resumed
-    bool swept;         // SWEEP since the last step ahead
+    bool checked; // HEALTH_CHECK since the session opened or resumed
+    bool swept;   // SWEEP since the last step ahead
     uint16_t bumpers_seen;
-    double closest_mm;  // of any segment to the body's edge
+    double closest_mm; // of any segment to the body's edge
     char violation[256];
 };
 

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: MIT
+// Attacks: a STOP is on the wire when the call that read the SIP returns; nothing is lost when the link is
+// full; a lost link is said, opened again and never driven on blindly.
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <pty.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "driver.h"
+#include "hal/fake_clock.h"
+#include "hal/fake_link.h"
+#include "unity.h"
+#include "wire_robot.h"
+
+static driver_t driver;
+static hal_fake_clock_t time_;
+static hal_fake_link_t fake;
+static hal_clock_t clock_;
+static hal_link_spec_t spec;
+static hal_transport_t transport;
+static robot_t robot;
+
+void setUp(void) {
+    argus_config_t config;
+    argus_config_default(&config);
+    time_ = (hal_fake_clock_t){.now_ms = UINT32_MAX - 5000}; // the clock wraps in every test
+    clock_ = hal_fake_clock(&time_);
+    hal_fake_link_init(&fake, 1, &clock_);
+    memset(&spec, 0, sizeof spec);
+    hal_transport_init(&transport);
+    driver_init(&driver, &config, clock_, &spec, NULL);
+    robot_init(&robot);
+}
+
+static void exchange(void) {
+    uint8_t bytes[512];
+    const size_t count = hal_fake_link_take(&fake, bytes, sizeof bytes);
+    robot_take(&robot, time_.now_ms, bytes, count);
+    hal_fake_link_put(&fake, robot.out, robot.used);
+    robot.used = 0;
+}
+
+// Lets `ms` pass in steps of 10, a SIP each 100.
+static void run(uint32_t ms) {
+    for (uint32_t passed = 0; passed < ms; passed += 10) {
+        time_.now_ms += 10;
+        if (passed % 100 == 0) {
+            robot_sip(&robot);
+        }
+        exchange();
+        driver_receive(&driver);
+        driver_process(&driver);
+        exchange();
+    }
+}
+
+static bool said(uint16_t id) {
+    argus_event_t event;
+    bool found = false;
+    while (argus_next_event(&driver.core, &event)) {
+        found = found || event.id == id;
+    }
+    return found;
+}
+
+static void drive(void) {
+    static const argus_point_t goal = {3000, 0};
+    TEST_ASSERT_TRUE(argus_set_course(&driver.core, &goal, 1));
+    driver_attach(&driver, hal_fake_link(&fake));
+    run(4000);
+    TEST_ASSERT_TRUE(robot.open);
+    TEST_ASSERT_EQUAL_INT(ARGUS_MODE_DRIVING, driver.core.mode);
+    TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_MOVE]);
+}
+
+void test_stop_leaves_in_the_wake_up_that_reads_the_sip(void) {
+    drive();
+    const uint32_t stops = robot.commands[ARCOS_CMD_STOP];
+    for (int i = 0; i < 16; i++) {
+        robot.reading_mm[i] = 5000;
+    }
+    robot.next = 1;
+    robot_sip(&robot);
+    exchange();
+    driver_receive(&driver); // no process call, no time passes
+    exchange();
+    TEST_ASSERT_EQUAL_UINT32(stops + 1, robot.commands[ARCOS_CMD_STOP]);
+    TEST_ASSERT_TRUE(said(ARGUS_EV_SONAR_DEAD));
+}
+
+void test_a_full_link_delays_and_loses_nothing(void) {
+    fake.would_block_permille = 700;
+    drive();
+    TEST_ASSERT_GREATER_THAN_UINT32(0, hal_link_counters(&driver.link).would_block);
+    TEST_ASSERT_EQUAL_UINT32(0, robot.parser.bad_checksums);
+    TEST_ASSERT_EQUAL_UINT32(0, robot.parser.skipped_bytes);
+}
+
+void test_a_held_packet_asks_for_the_link_to_be_polled(void) {
+    driver_attach(&driver, hal_fake_link(&fake));
+    run(200);
+    TEST_ASSERT_FALSE(driver_wants_write(&driver));
+    fake.would_block_permille = 1000;
+    time_.now_ms += 300;
+    driver_process(&driver);
+    TEST_ASSERT_TRUE(driver_wants_write(&driver));
+    fake.would_block_permille = 0;
+    driver_process(&driver);
+    TEST_ASSERT_FALSE(driver_wants_write(&driver));
+    exchange();
+    TEST_ASSERT_EQUAL_UINT32(1, robot.commands[ARCOS_SYNC_SYNC0]);
+}
+
+void test_short_reads_and_a_noisy_wire_are_survived(void) {
+    fake.read_max = 1;
+    drive();
+    fake.read_max = 0;
+    fake.from_robot = (hal_fake_faults_t){.drop_permille = 5, .corrupt_permille = 5};
+    for (int i = 0; i < 100; i++) {
+        run(100);
+        TEST_ASSERT_EQUAL_INT(0, argus_invariants_broken(&driver.core));
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(0, driver.core.session.parser.bad_checksums);
+}
+
+void test_an_error_of_the_link_is_said_and_stops_the_use_of_it(void) {
+    drive();
+    fake.fail_read_at = fake.reads + 1;
+    driver_receive(&driver);
+    TEST_ASSERT_FALSE(driver.up);
+    TEST_ASSERT_TRUE(fake.closed);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_GONE, driver.error);
+    TEST_ASSERT_TRUE(said(ARGUS_EV_LINK_LOST));
+    const uint32_t writes = fake.writes;
+    for (int i = 0; i < 100; i++) {
+        time_.now_ms += 100;
+        driver_process(&driver);
+        driver_receive(&driver);
+    }
+    TEST_ASSERT_EQUAL_UINT32(writes, fake.writes);
+    TEST_ASSERT_EQUAL_UINT32(0, driver.reopened);
+}
+
+void test_an_error_while_writing_is_a_lost_link_too(void) {
+    drive();
+    fake.fail_write_at = fake.writes + 1;
+    run(1000);
+    TEST_ASSERT_FALSE(driver.up);
+    TEST_ASSERT_TRUE(said(ARGUS_EV_LINK_LOST));
+}
+
+void test_no_translation_after_reconnecting_before_a_full_check(void) {
+    drive();
+    fake.fail_read_at = fake.reads + 1;
+    driver_receive(&driver);
+    const uint32_t moves = robot.commands[ARCOS_CMD_MOVE];
+    hal_fake_link_init(&fake, 2, &clock_);
+    robot_init(&robot);
+    driver_attach(&driver, hal_fake_link(&fake));
+    TEST_ASSERT_FALSE(driver.core.checked);
+    for (int i = 0; i < 100 && !driver.core.checked; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0, robot.commands[ARCOS_CMD_MOVE] + robot.commands[ARCOS_CMD_VEL2]);
+        run(50);
+    }
+    TEST_ASSERT_TRUE(driver.core.checked);
+    run(2000);
+    TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_MOVE]);
+    TEST_ASSERT_GREATER_THAN_UINT32(0, moves);
+}
+
+void test_shutdown_closes_in_order(void) {
+    drive();
+    argus_shutdown(&driver.core, time_.now_ms);
+    driver_transmit(&driver);
+    run(3000);
+    TEST_ASSERT_TRUE(argus_closed(&driver.core));
+    TEST_ASSERT_FALSE(robot.open);
+    TEST_ASSERT_EQUAL_UINT8(ARCOS_CMD_CLOSE, robot.last[0]);
+    TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_STOP]);
+}
+
+static uint16_t listen_here(int *server) {
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    socklen_t size = sizeof address;
+    *server = socket(AF_INET, SOCK_STREAM, 0);
+    TEST_ASSERT_EQUAL_INT(0, bind(*server, (struct sockaddr *)&address, size));
+    TEST_ASSERT_EQUAL_INT(0, listen(*server, 4));
+    getsockname(*server, (struct sockaddr *)&address, &size);
+    return ntohs(address.sin_port);
+}
+
+void test_a_tcp_link_that_closes_is_opened_again_with_pauses(void) {
+    int server = -1;
+    argus_config_t config;
+    argus_config_default(&config);
+    spec = (hal_link_spec_t){.scheme = HAL_SCHEME_TCP, .port = listen_here(&server), .host = "127.0.0.1"};
+    driver_init(&driver, &config, clock_, &spec, &transport);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 1000));
+    close(accept(server, NULL, NULL));
+    while (driver.up) {
+        driver_receive(&driver);
+    }
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_CLOSED, driver.error);
+    close(server);
+    uint32_t attempts = 0;
+    for (int i = 0; i < 1000; i++) { // 10 s without a server: pauses of 250, 500, 1000, 2000, 4000 ms
+        const uint32_t before_ms = driver.lost_ms;
+        time_.now_ms += 10;
+        driver_process(&driver);
+        attempts += driver.lost_ms != before_ms;
+        TEST_ASSERT_FALSE(driver.up);
+    }
+    TEST_ASSERT_EQUAL_UINT32(5, attempts);
+    driver.spec.port = listen_here(&server);
+    time_.now_ms += 4000;
+    driver_process(&driver);
+    TEST_ASSERT_TRUE(driver.up);
+    TEST_ASSERT_EQUAL_UINT32(1, driver.reopened);
+    driver_close(&driver);
+    close(server);
+}
+
+void test_a_name_that_leads_elsewhere_is_followed_while_no_robot_answers(void) {
+    char folder[] = "/tmp/argus-driver-XXXXXX";
+    char device[2][64];
+    int master[2];
+    int slave[2];
+    argus_config_t config;
+    argus_config_default(&config);
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    spec = (hal_link_spec_t){.scheme = HAL_SCHEME_SERIAL, .baud = 9600};
+    snprintf(spec.path, sizeof spec.path, "%s/port", folder);
+    for (int i = 0; i < 2; i++) {
+        TEST_ASSERT_EQUAL_INT(0, openpty(&master[i], &slave[i], device[i], NULL, NULL));
+        fcntl(master[i], F_SETFL, O_NONBLOCK);
+    }
+    TEST_ASSERT_EQUAL_INT(0, symlink(device[0], spec.path));
+    driver_init(&driver, &config, clock_, &spec, &transport);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 0));
+    unlink(spec.path);
+    TEST_ASSERT_EQUAL_INT(0, symlink(device[1], spec.path));
+    for (int i = 0; i < 300; i++) {
+        time_.now_ms += 10;
+        driver_process(&driver);
+    }
+    uint8_t bytes[64];
+    TEST_ASSERT_EQUAL_UINT32(1, driver.reopened);
+    TEST_ASSERT_GREATER_THAN_INT(0, read(master[1], bytes, sizeof bytes));
+    driver_close(&driver);
+    for (int i = 0; i < 2; i++) {
+        close(master[i]);
+        close(slave[i]);
+    }
+    unlink(spec.path);
+    rmdir(folder);
+}

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// Attacks: every option does what the help says, and every bad or contradictory command line gives one line
+// of advice.
+#include <stdio.h>
+#include <string.h>
+
+#include "argusd.h"
+#include "options.h"
+#include "unity.h"
+
+#define ARGUMENTS_MAX 24
+
+static options_t options;
+static char message[512];
+
+// `line`: arguments, separated by single blanks.
+static bool parse(const char *line) {
+    static char copy[512];
+    static char program[] = "argusd";
+    char *argv[ARGUMENTS_MAX] = {program};
+    int argc = 1;
+    snprintf(copy, sizeof copy, "%s", line);
+    for (char *word = strtok(copy, " "); word != NULL && argc < ARGUMENTS_MAX - 1; word = strtok(NULL, " ")) {
+        argv[argc++] = word;
+    }
+    message[0] = '\0';
+    return options_parse(&options, argc, argv, message, sizeof message);
+}
+
+static void refused(const char *line, const char *part) {
+    TEST_ASSERT_FALSE_MESSAGE(parse(line), line);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(message, part), message);
+    TEST_ASSERT_NULL(strchr(message, '\n'));
+}
+
+void test_everything_at_once(void) {
+    TEST_ASSERT_TRUE_MESSAGE(
+        parse("--link tcp:h:1 --config c --course d --state s --active --json --wait 5 --status 0"), message);
+    TEST_ASSERT_EQUAL_INT(OPTIONS_RUN, options.action);
+    TEST_ASSERT_EQUAL_STRING("h", options.link.host);
+    TEST_ASSERT_EQUAL_STRING("c", options.config_path);
+    TEST_ASSERT_EQUAL_STRING("d", options.course_path);
+    TEST_ASSERT_EQUAL_STRING("s", options.state_path);
+    TEST_ASSERT_TRUE(options.active && options.json && options.has_wait && options.has_status);
+    TEST_ASSERT_FALSE(options.passive || options.plain || options.auto_baud || options.has_goal);
+    TEST_ASSERT_EQUAL_UINT32(5000, options.wait_ms);
+    TEST_ASSERT_EQUAL_UINT32(0, options.status_ms);
+}
+
+void test_single_options(void) {
+    TEST_ASSERT_TRUE(
+        parse("--link=serial:/dev/x --auto-baud --goal -100,200 --passive --plain --wait forever"));
+    TEST_ASSERT_TRUE(options.auto_baud && options.has_goal && options.passive && options.plain);
+    TEST_ASSERT_EQUAL_INT32(-100, options.goal.x_mm);
+    TEST_ASSERT_EQUAL_INT32(200, options.goal.y_mm);
+    TEST_ASSERT_EQUAL_UINT32(OPTIONS_WAIT_FOREVER, options.wait_ms);
+    TEST_ASSERT_TRUE(parse("--check --link tcp:h"));
+    TEST_ASSERT_EQUAL_INT(OPTIONS_CHECK, options.action);
+}
+
+void test_lists_need_no_link(void) {
+    static const struct {
+        const char *line;
+        options_action_t action;
+    } cases[] = {{"--help", OPTIONS_HELP},
+                 {"-h", OPTIONS_HELP},
+                 {"--version", OPTIONS_VERSION},
+                 {"--list-events", OPTIONS_LIST_EVENTS},
+                 {"--list-config", OPTIONS_LIST_CONFIG},
+                 {"--example-config", OPTIONS_EXAMPLE_CONFIG}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(parse(cases[i].line), message);
+        TEST_ASSERT_EQUAL_INT(cases[i].action, options.action);
+    }
+}
+
+void test_refusals(void) {
+    refused("", "no link is given; add --link");
+    refused("--check", "no link is given");
+    refused("--link", "--link needs a value");
+    refused("--link foo", "unknown scheme");
+    refused("--link tcp:a --link tcp:b", "given twice");
+    refused("--link tcp:a --frob", "unknown option --frob");
+    refused("--link tcp:a -z", "unknown option");
+    refused("--link tcp:a extra", "'extra' is not an option");
+    refused("--link tcp:a --goal 1", "--goal: '1' is no waypoint");
+    refused("--link tcp:a --goal 1,99999", "too far");
+    refused("--link tcp:a --goal 1,1 --course c", "contradict");
+    refused("--link tcp:a --active --passive", "contradict");
+    refused("--link tcp:a --auto-baud", "for serial links");
+    refused("--link serial:/dev/x@9600 --auto-baud", "leave out @BAUD");
+    refused("--link tcp:a --wait 0", "1 to 86400");
+    refused("--link tcp:a --wait soon", "or 'forever'");
+    refused("--link tcp:a --status 49", "50 to 3600000");
+    refused("--link tcp:a --status x", "50 to 3600000");
+}
+
+void test_help_names_every_option_and_exit_code(void) {
+    static char text[8192];
+    static const char *const options_[] = {"--link",        "--auto-baud",      "--config",  "--course",
+                                           "--goal",        "--passive",        "--active",  "--state",
+                                           "--wait",        "--check",          "--json",    "--plain",
+                                           "--status",      "--help",           "--version", "--list-events",
+                                           "--list-config", "--example-config", "examples:"};
+    FILE *const file = tmpfile();
+    options_help(file);
+    rewind(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    for (size_t i = 0; i < sizeof options_ / sizeof options_[0]; i++) {
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, options_[i]), options_[i]);
+    }
+#define NAMED(name, code, meaning) TEST_ASSERT_NOT_NULL(strstr(text, meaning));
+    ARGUSD_EXIT_TABLE(NAMED)
+#undef NAMED
+}

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// Attacks: the screen shows what it must at 80 x 24, draws at any size with any contents, and keys mean what
+// it says.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "screen.h"
+#include "tui_key.h"
+#include "unity.h"
+
+static canvas_t canvas;
+static view_t view;
+static screen_log_t log_;
+
+static void row_text(int row, char *text) {
+    for (int column = 0; column < canvas.columns; column++) {
+        text[column] = canvas.cell[row][column].character;
+    }
+    text[canvas.columns] = '\0';
+}
+
+static int find(const char *part) {
+    char text[SCREEN_COLUMNS_MAX + 1];
+    for (int row = 0; row < canvas.rows; row++) {
+        row_text(row, text);
+        if (strstr(text, part) != NULL) {
+            return row;
+        }
+    }
+    return -1;
+}
+
+void setUp(void) {
+    memset(&view, 0, sizeof view);
+    memset(&log_, 0, sizeof log_);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        view.status.reading_mm[i] = (int16_t)(1000 + i);
+        view.status.health[i] = ARGUS_HEALTHY;
+    }
+    strcpy(view.link, "serial:/dev/ttyUSB0@9600");
+    strcpy(view.name, "P3DX_0001");
+    view.status.online = true;
+    view.status.battery_dv = 127;
+}
+
+static void draw(int rows, int columns) {
+    canvas_clear(&canvas, rows, columns);
+    screen_draw(&canvas, &view, &log_);
+}
+
+void test_all_that_matters_is_there_at_80_by_24(void) {
+    view.status.health[3] = ARGUS_DISABLED;
+    view.status.kind[3] = ARGUS_KIND_OFF;
+    view.status.reading_mm[3] = 5000;
+    view.status.health[6] = ARGUS_SUSPECT;
+    view.status.failure = ARGUS_IS_MINOR;
+    view.status.plan =
+        (argus_plan_t){.disabled = 1u << 3, .count = 1, .rotation_deg = {-20}, .complete = true};
+    view.status.mode = ARGUS_MODE_SWEEPING;
+    view.status.mission = ARGUS_MISSION_RUNNING;
+    view.status.waypoints = 2;
+    view.status.goal_mm = 1500;
+    view.course_mm = 3000;
+    screen_log_add(&log_, "the last event", TONE_BAD);
+    draw(24, 80);
+    static const char *const parts[] = {"serial:/dev/ttyUSB0@9600",
+                                        "P3DX_0001",
+                                        "12.7 V",
+                                        "PASSIVE",
+                                        "SWEEPING",
+                                        "IsMinor",
+                                        "mission running",
+                                        "goal 1.50 m",
+                                        "50 %",
+                                        " 3  +10 5000 !off",
+                                        " 6  -50 1006 SUSPECT",
+                                        "15  +90 1015 HEALTHY",
+                                        "plan (deg): -20, covers all",
+                                        "the last event",
+                                        "q quit",
+                                        "link DOWN"};
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        TEST_ASSERT_NOT_EQUAL_MESSAGE(-1, find(parts[i]), parts[i]);
+    }
+    TEST_ASSERT_EQUAL_INT(23, find("q quit"));
+}
+
+void test_the_newest_lines_are_shown(void) {
+    char line[32];
+    for (int i = 0; i < 3 * SCREEN_LOG_LINES; i++) {
+        snprintf(line, sizeof line, "line <%d>", i);
+        screen_log_add(&log_, line, TONE_PLAIN);
+    }
+    draw(24, 80);
+    TEST_ASSERT_EQUAL_INT(22, find("line <191>"));
+    TEST_ASSERT_EQUAL_INT(17, find("line <186>"));
+    TEST_ASSERT_EQUAL_INT(-1, find("line <185>"));
+}
+
+// A sonar's echo lies on its side of the robot, and farther echoes farther out.
+void test_the_ring_has_the_right_sense(void) {
+    static const struct {
+        int sonar;
+        int row; // sign relative to the centre
+        int column;
+    } cases[] = {{0, 0, -1}, {7, 0, 1}, {3, -1, -1}, {4, -1, 1}, {11, 1, 1}, {12, 1, -1}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        for (int k = 0; k < ARGUS_SONARS; k++) {
+            view.status.age_ms[k] = k == cases[i].sonar ? 0 : UINT32_MAX;
+        }
+        view.status.reading_mm[cases[i].sonar] = 2000;
+        draw(24, 80);
+        int row = -1;
+        int column = -1;
+        for (int r = 3; r < 16; r++) {
+            for (int c = 0; c < 34; c++) {
+                const char digit = "0123456789ABCDEF"[cases[i].sonar];
+                if (canvas.cell[r][c].character == digit) {
+                    row = r - 9;
+                    column = c - 17;
+                }
+            }
+        }
+        TEST_ASSERT_TRUE_MESSAGE((row > 0) - (row < 0) == cases[i].row, "row");
+        TEST_ASSERT_TRUE_MESSAGE((column > 0) - (column < 0) == cases[i].column, "column");
+    }
+}
+
+void test_any_size_and_any_contents_are_drawn(void) {
+    srand(13);
+    for (int round = 0; round < 20000; round++) {
+        unsigned char *const bytes = (unsigned char *)&view;
+        for (size_t i = 0; i < sizeof view; i++) {
+            bytes[i] = (unsigned char)rand();
+        }
+        // What the manager guarantees: enumerations, flags and strings are what they claim to be.
+        argus_status_t *const status = &view.status;
+        status->online = status->active = view.link_up = status->plan.complete = (round & 1) != 0;
+        status->plan.return_each = false;
+        status->mode = ARGUS_MODE_CLOSED;
+        status->mission = ARGUS_MISSION_FAILED;
+        status->failure = ARGUS_IS_CATASTROPHIC;
+        for (int i = 0; i < ARGUS_SONARS; i++) {
+            status->health[i] = (argus_health_t)(rand() % 6);
+            status->kind[i] = (argus_fault_kind_t)(rand() % 8);
+        }
+        view.name[ARGUS_NAME_MAX - 1] = view.link[VIEW_LINK_MAX - 1] = '\0';
+        draw(rand() % 100, rand() % 250);
+        for (int row = 0; row < canvas.rows; row++) {
+            for (int column = 0; column < canvas.columns; column++) {
+                TEST_ASSERT_TRUE(canvas.cell[row][column].character >= ' ' &&
+                                 canvas.cell[row][column].character <= '~');
+            }
+        }
+    }
+}
+
+void test_keys(void) {
+    TEST_ASSERT_EQUAL_INT(TUI_AHEAD, tui_meaning('w'));
+    TEST_ASSERT_EQUAL_INT(TUI_AHEAD, tui_meaning(TUI_KEY_UP));
+    TEST_ASSERT_EQUAL_INT(TUI_BACK, tui_meaning('s'));
+    TEST_ASSERT_EQUAL_INT(TUI_LEFT, tui_meaning('a'));
+    TEST_ASSERT_EQUAL_INT(TUI_RIGHT, tui_meaning(TUI_KEY_RIGHT));
+    TEST_ASSERT_EQUAL_INT(TUI_STOP, tui_meaning(' '));
+    TEST_ASSERT_EQUAL_INT(TUI_GO, tui_meaning('g'));
+    TEST_ASSERT_EQUAL_INT(TUI_RECHECK, tui_meaning('r'));
+    TEST_ASSERT_EQUAL_INT(TUI_PASSIVE, tui_meaning('p'));
+    TEST_ASSERT_EQUAL_INT(TUI_QUIT, tui_meaning('q'));
+    TEST_ASSERT_EQUAL_INT(TUI_QUIT, tui_meaning(3));
+    TEST_ASSERT_EQUAL_INT(TUI_NONE, tui_meaning('x'));
+    TEST_ASSERT_EQUAL_INT(TUI_NONE, tui_meaning(-1));
+}
