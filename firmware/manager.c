@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The health-check loop: bytes to SIPs to knowledge to awareness, then the present mode; and what an operator asks.
+// The health-check loop: bytes to SIPs to knowledge to awareness, then the present mode; and what an operator
+// asks.
 #include "argus/manager.h"
 
 #include <string.h>
@@ -113,7 +114,8 @@ static void on_sip(argus_t *const self) {
         return;
     }
     argus_knowledge_sip(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
-    self->awareness.away = self->has_base && argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, self->base_cdeg) > AWAY_CDEG;
+    self->awareness.away = self->has_base && argus_angle_abs_diff(self->knowledge.pose.heading_cdeg,
+                                                                  self->base_cdeg) > AWAY_CDEG;
     const argus_alarm_t alarm = argus_awareness_sip(&self->awareness, &self->knowledge, &self->config);
     argus_task_see(&self->task, &self->knowledge, self->now_ms);
     argus_react(self, &alarm);
@@ -153,7 +155,8 @@ static void handle(argus_t *const self, const unsigned bits) {
     }
 }
 
-void argus_receive(argus_t *const self, const uint32_t now_ms, const uint8_t *const bytes, const size_t count) {
+void argus_receive(argus_t *const self, const uint32_t now_ms, const uint8_t *const bytes,
+                   const size_t count) {
     self->now_ms = now_ms;
     size_t done = 0;
     for (;;) { // one packet may be complete without taking a byte more
@@ -214,7 +217,8 @@ bool argus_next_event(argus_t *const self, argus_event_t *const event) {
     if (events->lost == events->lost_said) {
         return false;
     }
-    argus_say(self, ARGUS_EV_EVENTS_LOST, ARGUS_NO_SONAR, (int32_t)((events->lost - events->lost_said) & 0x7FFFFFFFu));
+    argus_say(self, ARGUS_EV_EVENTS_LOST, ARGUS_NO_SONAR,
+              (int32_t)((events->lost - events->lost_said) & 0x7FFFFFFFu));
     events->lost_said = events->lost;
     return argus_events_pop(events, event);
 }
@@ -310,8 +314,12 @@ void argus_operator(argus_t *const self, const uint32_t now_ms, const argus_op_t
     argus_say(self, ARGUS_EV_OPERATOR, ARGUS_NO_SONAR, (int32_t)op);
     self->stay = false;
     switch (op) {
-    case ARGUS_OP_STOP: pause(self); break;
-    case ARGUS_OP_GO: resume(self); break;
+    case ARGUS_OP_STOP:
+        pause(self);
+        break;
+    case ARGUS_OP_GO:
+        resume(self);
+        break;
     case ARGUS_OP_RECHECK:
         if (argus_session_is_open(&self->session)) {
             argus_awareness_init(&self->awareness);
@@ -319,11 +327,20 @@ void argus_operator(argus_t *const self, const uint32_t now_ms, const argus_op_t
             argus_enter_checking(self, true);
         }
         break;
-    case ARGUS_OP_MOVE: jog(self, argument); break;
-    case ARGUS_OP_TURN: jog_turn(self, argument); break;
-    case ARGUS_OP_PASSIVE: go_passive(self); break;
-    case ARGUS_OP_ACTIVE: go_active(self); break;
-    default: break;
+    case ARGUS_OP_MOVE:
+        jog(self, argument);
+        break;
+    case ARGUS_OP_TURN:
+        jog_turn(self, argument);
+        break;
+    case ARGUS_OP_PASSIVE:
+        go_passive(self);
+        break;
+    case ARGUS_OP_ACTIVE:
+        go_active(self);
+        break;
+    default:
+        break;
     }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the parts of the manager share: entering a mode, saying an event, commanding a motion under the invariants.
+// What the parts of the manager share: entering a mode, saying an event, commanding a motion under the
+// invariants.
 #ifndef ARGUS_MANAGER_INTERNAL_H
 #define ARGUS_MANAGER_INTERNAL_H
 
@@ -19,7 +20,8 @@ void argus_decide(argus_t *self); // a mode has ended well: what next?
 void argus_stop(argus_t *self, uint8_t command); // STOP or E_STOP, unless passive
 void argus_halt(argus_t *self);                  // STOP, unless the robot stands and no motion is on its way
 bool argus_may_turn(const argus_t *self);        // S7
-bool argus_turn(argus_t *self, int32_t heading_cdeg); // false: S7 forbids it, and the manager waits or backs away
+bool argus_turn(argus_t *self,
+                int32_t heading_cdeg); // false: S7 forbids it, and the manager waits or backs away
 bool argus_swing_is_blocked(const argus_t *self);
 bool argus_may_translate(const argus_t *self);
 bool argus_rear_is_clear(const argus_t *self);
@@ -30,9 +32,18 @@ void argus_disable(argus_t *self, int sonar, argus_fault_kind_t kind);
 void argus_replan(argus_t *self);
 void argus_share_slots(argus_t *self); // POLLING for the present plan; again in each new session
 uint16_t argus_open_suspects(const argus_t *self);
+void argus_take_base(argus_t *self);               // the present heading becomes the one to return to
+uint16_t argus_wanted_sonars(const argus_t *self); // those of 1..6 that are not DISABLED
+bool argus_health_check(argus_t *self); // the periodic one beside the main task; true when it took over
 void argus_flag_suspects(argus_t *self, uint16_t suspects);
 
 // One SIP in the present mode.
+void argus_run_checking(argus_t *self);
+void argus_run_verifying(argus_t *self);
+void argus_run_driving(argus_t *self);
+void argus_run_sweeping(argus_t *self);
+void argus_run_stepping(argus_t *self);
+void argus_run_backing(argus_t *self);
 void argus_run_mode(argus_t *self);
 void argus_react(argus_t *self, const argus_alarm_t *alarm);
 void argus_wait_process(argus_t *self);

@@ -57,7 +57,8 @@ void argus_back_off(argus_t *const self, const int32_t distance_mm) {
         return;
     }
     argus_say(self, ARGUS_EV_BACKING, ARGUS_NO_SONAR, distance_mm);
-    argus_motion_move(&self->motion, &self->session.outbox, -distance_mm, self->config.step_speed_mm_s, self->now_ms);
+    argus_motion_move(&self->motion, &self->session.outbox, -distance_mm, self->config.step_speed_mm_s,
+                      self->now_ms);
     argus_enter(self, ARGUS_MODE_BACKING);
 }
 
@@ -67,7 +68,8 @@ bool argus_swing_is_blocked(const argus_t *const self) {
 
 // S7: no rotation while a bumper is pressed or an echo lies within the swing circle.
 bool argus_may_turn(const argus_t *const self) {
-    return is_active(self) && self->bumpers == 0 && argus_nearest_to_centre_mm(&self->knowledge, 0) > SWING_MM;
+    return is_active(self) && self->bumpers == 0 &&
+           argus_nearest_to_centre_mm(&self->knowledge, 0) > SWING_MM;
 }
 
 // Where it may not turn, a few times backing away may help.
@@ -95,7 +97,8 @@ void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_
     argus_say(self, ARGUS_EV_SONAR_DISABLED, sonar, (int32_t)kind);
 }
 
-// In failure mode the slots of the sonars that are out go to those that look ahead; 0 and 7 watch the swing circle.
+// In failure mode the slots of the sonars that are out go to those that look ahead; 0 and 7 watch the swing
+// circle.
 void argus_share_slots(argus_t *const self) {
     if (!is_active(self) || !argus_session_is_open(&self->session)) {
         return;
@@ -120,11 +123,12 @@ static void say_plan(argus_t *const self) {
     }
 }
 
-// A suspect that no witness could judge is planned for as if it were disabled: its bearing counts as uncovered. One that is
-// still to be verified is not: nothing moves ahead before it is.
+// A suspect that no witness could judge is planned for as if it were disabled: its bearing counts as
+// uncovered. One that is still to be verified is not: nothing moves ahead before it is.
 void argus_replan(argus_t *const self) {
     const uint16_t disabled = argus_disabled(&self->knowledge) & ARGUS_FORWARD_MASK;
-    const uint16_t blind = disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->awareness.verified);
+    const uint16_t blind =
+        disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->awareness.verified);
     const argus_failure_t failure = argus_failure_of(disabled);
     if (failure != self->failure) {
         self->failure = failure;
@@ -177,7 +181,8 @@ static bool react_stall(argus_t *const self, const argus_alarm_t *const alarm) {
         return false;
     }
     self->stall_said = true;
-    argus_say(self, ARGUS_EV_STALL, ARGUS_NO_SONAR, self->knowledge.stall_left + 2 * self->knowledge.stall_right);
+    argus_say(self, ARGUS_EV_STALL, ARGUS_NO_SONAR,
+              self->knowledge.stall_left + 2 * self->knowledge.stall_right);
     argus_task_refuse(&self->task, &self->knowledge);
     argus_stop(self, ARCOS_CMD_STOP);
     self->checked = false;
@@ -207,10 +212,11 @@ static bool react_dead(argus_t *const self, const argus_alarm_t *const alarm) {
     return true;
 }
 
-// An object is looked at again at rest, with Algorithm 1, before it is believed: a sonar that lies low is found there.
+// An object is looked at again at rest, with Algorithm 1, before it is believed: a sonar that lies low is
+// found there.
 static bool react_object(argus_t *const self, const argus_alarm_t *const alarm) {
-    const bool translating =
-        self->mode == ARGUS_MODE_DRIVING || self->mode == ARGUS_MODE_STEPPING || self->mode == ARGUS_MODE_BACKING;
+    const bool translating = self->mode == ARGUS_MODE_DRIVING || self->mode == ARGUS_MODE_STEPPING ||
+                             self->mode == ARGUS_MODE_BACKING;
     if (alarm->object == 0 || !translating || self->motion.kind == ARGUS_MOTION_STOP) {
         return false;
     }
@@ -224,7 +230,8 @@ static bool react_object(argus_t *const self, const argus_alarm_t *const alarm) 
     return true;
 }
 
-// The motors may be cut by the robot's own button or E-stop at any time; a bumper's own stop is answered elsewhere.
+// The motors may be cut by the robot's own button or E-stop at any time; a bumper's own stop is answered
+// elsewhere.
 static void react_motors(argus_t *const self) {
     const bool off = (self->knowledge.flags & ARCOS_FLAG_MOTORS) == 0;
     const bool settled_in = self->now_ms - self->knowledge.online_ms > 1500u;
@@ -243,7 +250,8 @@ static void react_motors(argus_t *const self) {
     }
 }
 
-// The others (0, 7, the rear array) are not judged, but one that yields nothing any more must not be relied on.
+// The others (0, 7, the rear array) are not judged, but one that yields nothing any more must not be relied
+// on.
 static void watch_others(argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         argus_sonar_t *const s = &self->knowledge.sonar[i];

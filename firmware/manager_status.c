@@ -48,7 +48,8 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
 
 static bool queues_hold(const argus_t *const self) {
     return self->events.count <= ARGUS_EVENT_QUEUE && self->events.head < ARGUS_EVENT_QUEUE &&
-           self->session.outbox.length <= ARGUS_OUTBOX_BYTES && self->session.parser.length <= ARGUS_FRAME_TOTAL_MAX;
+           self->session.outbox.length <= ARGUS_OUTBOX_BYTES &&
+           self->session.parser.length <= ARGUS_FRAME_TOTAL_MAX;
 }
 
 static bool task_holds(const argus_t *const self) {
@@ -57,7 +58,8 @@ static bool task_holds(const argus_t *const self) {
 }
 
 static bool plan_holds(const argus_t *const self) {
-    return self->plan.count <= ARGUS_ROTATIONS_MAX && (self->plan.disabled & ~(unsigned)ARGUS_FORWARD_MASK) == 0;
+    return self->plan.count <= ARGUS_ROTATIONS_MAX &&
+           (self->plan.disabled & ~(unsigned)ARGUS_FORWARD_MASK) == 0;
 }
 
 // S1 and S6: nothing translates before a full check; normal driving only while no bearing is blind.
@@ -82,7 +84,8 @@ static bool health_holds(const argus_t *const self) {
 }
 
 int argus_invariants_broken(const argus_t *const self) {
-    const bool holds[] = {queues_hold(self), task_holds(self), plan_holds(self), driving_holds(self), health_holds(self)};
+    const bool holds[] = {queues_hold(self), task_holds(self), plan_holds(self), driving_holds(self),
+                          health_holds(self)};
     for (int i = 0; i < (int)(sizeof holds / sizeof holds[0]); i++) {
         if (!holds[i]) {
             return i + 1;

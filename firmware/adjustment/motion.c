@@ -8,8 +8,8 @@
 
 #define ON_TARGET_CDEG 100
 #define SETTLED_SIPS 2
-#define START_MS 400   // a motion may take this long to show in the SIPs
-#define RETRY_SIPS 5   // at rest off the target for so many SIPs: command it again
+#define START_MS 400 // a motion may take this long to show in the SIPs
+#define RETRY_SIPS 5 // at rest off the target for so many SIPs: command it again
 #define TRIES_MAX 3
 
 void argus_motion_init(argus_motion_t *const self) {
@@ -32,15 +32,17 @@ static int32_t robot_degrees(const argus_knowledge_t *const knowledge, const int
     return (own + (own >= 0 ? 50 : -50)) / 100;
 }
 
-void argus_motion_turn(argus_motion_t *const self, argus_outbox_t *const out, const argus_knowledge_t *const knowledge,
-                       const int32_t heading_cdeg, const uint32_t now_ms) {
+void argus_motion_turn(argus_motion_t *const self, argus_outbox_t *const out,
+                       const argus_knowledge_t *const knowledge, const int32_t heading_cdeg,
+                       const uint32_t now_ms) {
     const int32_t degrees = robot_degrees(knowledge, heading_cdeg);
     begin(self, ARGUS_MOTION_TURN, now_ms);
     self->target_cdeg = argus_angle_wrap(degrees * 100 + knowledge->heading_offset_cdeg);
     argus_outbox_int(out, ARCOS_CMD_HEAD, degrees);
 }
 
-void argus_motion_steer(argus_outbox_t *const out, const argus_knowledge_t *const knowledge, const int32_t heading_cdeg) {
+void argus_motion_steer(argus_outbox_t *const out, const argus_knowledge_t *const knowledge,
+                        const int32_t heading_cdeg) {
     argus_outbox_int(out, ARCOS_CMD_HEAD, robot_degrees(knowledge, heading_cdeg));
 }
 
@@ -68,7 +70,8 @@ static bool started(const argus_motion_t *const self, const uint32_t now_ms) {
     return self->kind != ARGUS_MOTION_MOVE || now_ms - self->issued_ms >= START_MS;
 }
 
-static bool on_target(const argus_motion_t *const self, const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
+static bool on_target(const argus_motion_t *const self, const argus_knowledge_t *const knowledge,
+                      const uint32_t now_ms) {
     if (knowledge->still_sips == 0 || !started(self, now_ms)) {
         return false;
     }
@@ -76,8 +79,8 @@ static bool on_target(const argus_motion_t *const self, const argus_knowledge_t 
            argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->target_cdeg) <= ON_TARGET_CDEG;
 }
 
-static void again(argus_motion_t *const self, argus_outbox_t *const out, const argus_knowledge_t *const knowledge,
-                  const uint32_t now_ms) {
+static void again(argus_motion_t *const self, argus_outbox_t *const out,
+                  const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
     if (self->tries >= TRIES_MAX) {
         self->failed = true;
         return;
@@ -87,8 +90,8 @@ static void again(argus_motion_t *const self, argus_outbox_t *const out, const a
     self->tries = (uint8_t)(tries + 1);
 }
 
-void argus_motion_sip(argus_motion_t *const self, argus_outbox_t *const out, const argus_knowledge_t *const knowledge,
-                      const uint32_t now_ms) {
+void argus_motion_sip(argus_motion_t *const self, argus_outbox_t *const out,
+                      const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
     if (self->kind == ARGUS_MOTION_NONE || self->settled || self->failed) {
         return;
     }

@@ -18,7 +18,8 @@ static int16_t shift_deg(const unsigned index) {
     return (int16_t)((index & 1u) == 0 ? -size : size);
 }
 
-// Which disabled sonars' bearings the healthy ones see after a rotation: sonar e looks where e - r / 20 is mounted.
+// Which disabled sonars' bearings the healthy ones see after a rotation: sonar e looks where e - r / 20 is
+// mounted.
 static unsigned sees(const unsigned disabled, const int16_t rotation_deg) {
     const unsigned healthy = ~disabled & FORWARD_MASK;
     const int shift = rotation_deg / PITCH_DEG;
@@ -87,8 +88,8 @@ static choice_t measure(const unsigned set) {
     return choice;
 }
 
-// Of two sets of equal size, the list that sorted ascending comes first is the one that holds the lowest rotation in which
-// they differ.
+// Of two sets of equal size, the list that sorted ascending comes first is the one that holds the lowest
+// rotation in which they differ.
 static bool sorts_before(const unsigned a, const unsigned b) {
     const unsigned differ = a ^ b;
     for (int i = SHIFTS - 2; i >= 0; i -= 2) { // negative rotations, lowest first

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The sweep: turn to each rotation of the plan, read what covers the disabled bearings, end on the base heading.
+// The sweep: turn to each rotation of the plan, read what covers the disabled bearings, end on the base
+// heading.
 #include <string.h>
 
 #include "argus/angle.h"
@@ -36,8 +37,8 @@ static void next_rotation(argus_drive_t *const self, const argus_plan_t *const p
     self->home = plan->return_each || self->index >= plan->count;
 }
 
-bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan, const argus_knowledge_t *const knowledge,
-                      const argus_mark_t *const mark) {
+bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan,
+                      const argus_knowledge_t *const knowledge, const argus_mark_t *const mark) {
     if (self->done) {
         return false;
     }

@@ -13,8 +13,9 @@ int argus_count_bits(const uint16_t mask) {
 }
 
 argus_failure_t argus_failure_of(const uint16_t disabled) {
-    static const argus_failure_t by_count[] = {ARGUS_IS_NORMAL, ARGUS_IS_MINOR, ARGUS_IS_MINOR,       ARGUS_IS_MAJOR,
-                                               ARGUS_IS_MAJOR,  ARGUS_IS_MAJOR, ARGUS_IS_CATASTROPHIC};
+    static const argus_failure_t by_count[] = {ARGUS_IS_NORMAL,      ARGUS_IS_MINOR, ARGUS_IS_MINOR,
+                                               ARGUS_IS_MAJOR,       ARGUS_IS_MAJOR, ARGUS_IS_MAJOR,
+                                               ARGUS_IS_CATASTROPHIC};
     return by_count[argus_count_bits((uint16_t)(disabled & FORWARD_MASK))];
 }
 

@@ -21,8 +21,8 @@ void argus_verify_begin(argus_verify_t *const self, const int sonar, const int32
     self->base_cdeg = base_cdeg;
 }
 
-// paper: the listing turns the edge sonars by Table I's sign and never turns back; here the left neighbour gets onto the
-// bearing by -20, the right one by +20, and RETURN ends on the base heading.
+// paper: the listing turns the edge sonars by Table I's sign and never turns back; here the left neighbour
+// gets onto the bearing by -20, the right one by +20, and RETURN ends on the base heading.
 int32_t argus_verify_heading_cdeg(const argus_verify_t *const self) {
     switch (self->phase) {
     case ARGUS_VERIFY_LEFT:
@@ -55,8 +55,10 @@ static void conclude(argus_verify_t *const self, const argus_result_t result) {
     self->phase = ARGUS_VERIFY_RETURN;
 }
 
-// v is read again at rest, with its neighbours; a suspicion that does not hold there is dropped without a turn.
-static bool recheck(argus_verify_t *const self, const argus_knowledge_t *const knowledge, const argus_mark_t *const mark) {
+// v is read again at rest, with its neighbours; a suspicion that does not hold there is dropped without a
+// turn.
+static bool recheck(argus_verify_t *const self, const argus_knowledge_t *const knowledge,
+                    const argus_mark_t *const mark) {
     unsigned wanted = 1u << self->sonar;
     self->witnesses = 0;
     for (unsigned side = LEFT; side <= RIGHT; side++) {
@@ -79,7 +81,8 @@ static bool recheck(argus_verify_t *const self, const argus_knowledge_t *const k
     return true;
 }
 
-// paper: line 19 adds before dividing and line 22 lacks the absolute value; here the mean is meant, and |mean - v| > tr.
+// paper: line 19 adds before dividing and line 22 lacks the absolute value; here the mean is meant, and |mean
+// - v| > tr.
 static void judge(argus_verify_t *const self) {
     int32_t sum = 0;
     int32_t count = 0;
@@ -96,13 +99,15 @@ static void judge(argus_verify_t *const self) {
     // Twice the difference, so that the mean of two is not rounded before it is judged.
     const int32_t off = argus_abs(sum * 2 / count - 2 * (int32_t)self->reading_mm);
     self->mean_mm = sum / count;
-    conclude(self, off > 2 * argus_tolerance_mm(self->reading_mm) ? ARGUS_RESULT_CONVICTED : ARGUS_RESULT_CLEARED);
+    conclude(self,
+             off > 2 * argus_tolerance_mm(self->reading_mm) ? ARGUS_RESULT_CONVICTED : ARGUS_RESULT_CLEARED);
 }
 
-static bool hear(argus_verify_t *const self, const argus_knowledge_t *const knowledge, const argus_mark_t *const mark,
-                 const unsigned side) {
+static bool hear(argus_verify_t *const self, const argus_knowledge_t *const knowledge,
+                 const argus_mark_t *const mark, const unsigned side) {
     const int sonar = witness_sonar(self, side);
-    const bool gone = knowledge->sonar[sonar].health == ARGUS_DISABLED; // it failed on the way: it cannot testify
+    const bool gone =
+        knowledge->sonar[sonar].health == ARGUS_DISABLED; // it failed on the way: it cannot testify
     if (!gone && !argus_fresh_since(knowledge, sonar, mark)) {
         return false;
     }

@@ -7,6 +7,7 @@
 #include "argus/angle.h"
 
 #define MOVING_MM_S 5
+#define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
 
 void argus_awareness_init(argus_awareness_t *const self) {
     memset(self, 0, sizeof *self);
@@ -23,8 +24,8 @@ void argus_awareness_moved(argus_awareness_t *const self) {
     self->verified = 0;
 }
 
-void argus_awareness_cleared(argus_awareness_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
-                             const int32_t difference_mm) {
+void argus_awareness_cleared(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
+                             const int sonar, const int32_t difference_mm) {
     argus_disparate_t *const d = &self->of[sonar];
     d->held = true;
     d->held_odometer_mm = knowledge->odometer_mm;
@@ -34,13 +35,16 @@ void argus_awareness_cleared(argus_awareness_t *const self, const argus_knowledg
     self->verified |= (uint16_t)(1u << sonar);
 }
 
-// While the robot rotates the ring's readings belong to different headings: no verdict then. What it sees while it is turned
-// away counts neither for nor against.
-static void count_disparity(argus_awareness_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
-    if (self->away) {
+// While the robot rotates the ring's readings belong to different headings: no verdict then. What it sees
+// while it is turned away counts neither for nor against.
+static void count_disparity(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
+                            const int sonar) {
+    argus_disparate_t *const d = &self->of[sonar];
+    const bool repeated = knowledge->lists_all && knowledge->sip_ms - d->counted_ms < REFRESH_MS;
+    if (self->away || repeated) {
         return;
     }
-    argus_disparate_t *const d = &self->of[sonar];
+    d->counted_ms = knowledge->sip_ms;
     int32_t difference = 0;
     const argus_verdict_t verdict =
         knowledge->rotating ? ARGUS_NO_VERDICT : argus_disparity(knowledge, sonar, &difference);
@@ -82,7 +86,8 @@ static void judge_fresh(argus_alarm_t *const alarm, const argus_knowledge_t *con
     }
 }
 
-static bool is_silent(const argus_knowledge_t *const knowledge, const argus_config_t *const config, const int sonar) {
+static bool is_silent(const argus_knowledge_t *const knowledge, const argus_config_t *const config,
+                      const int sonar) {
     return knowledge->sonar[sonar].health != ARGUS_DISABLED &&
            argus_silent_ms(knowledge, sonar) > (uint32_t)config->stale_ms;
 }
@@ -107,7 +112,8 @@ argus_alarm_t argus_awareness_sip(argus_awareness_t *const self, const argus_kno
     return alarm;
 }
 
-static bool has_changed(const argus_disparate_t *const d, const argus_knowledge_t *const knowledge, const int sonar) {
+static bool has_changed(const argus_disparate_t *const d, const argus_knowledge_t *const knowledge,
+                        const int sonar) {
     const int32_t tr = argus_tolerance_mm(knowledge->sonar[sonar].reading_mm);
     return argus_abs(d->difference_mm - d->held_difference_mm) > 2 * tr;
 }
@@ -116,7 +122,8 @@ static bool has_changed(const argus_disparate_t *const d, const argus_knowledge_
 static bool hold_ends(const argus_disparate_t *const d, const argus_knowledge_t *const knowledge,
                       const argus_config_t *const config, const int sonar) {
     return knowledge->odometer_mm - d->held_odometer_mm >= (uint32_t)config->holdoff_mm ||
-           argus_angle_abs_diff(knowledge->pose.heading_cdeg, d->held_heading_cdeg) >= config->holdoff_deg * 100 ||
+           argus_angle_abs_diff(knowledge->pose.heading_cdeg, d->held_heading_cdeg) >=
+               config->holdoff_deg * 100 ||
            has_changed(d, knowledge, sonar);
 }
 

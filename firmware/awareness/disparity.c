@@ -23,7 +23,8 @@ static int32_t reading(const argus_knowledge_t *const knowledge, const int sonar
     return knowledge->sonar[sonar].reading_mm;
 }
 
-argus_verdict_t argus_disparity(const argus_knowledge_t *const knowledge, const int sonar, int32_t *const difference_mm) {
+argus_verdict_t argus_disparity(const argus_knowledge_t *const knowledge, const int sonar,
+                                int32_t *const difference_mm) {
     const int left = neighbour(knowledge, sonar - 1);
     const int right = neighbour(knowledge, sonar + 1);
     *difference_mm = 0;

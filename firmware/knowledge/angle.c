@@ -7,9 +7,9 @@
 #define FULL 36000
 
 static const int16_t sine[91] = {
-    0, 286, 572, 857, 1143, 1428, 1713, 1997, 2280, 2563, 2845, 3126, 3406,
-    3686, 3964, 4240, 4516, 4790, 5063, 5334, 5604, 5872, 6138, 6402, 6664, 6924,
-    7182, 7438, 7692, 7943, 8192, 8438, 8682, 8923, 9162, 9397, 9630, 9860, 10087,
+    0,     286,   572,   857,   1143,  1428,  1713,  1997,  2280,  2563,  2845,  3126,  3406,
+    3686,  3964,  4240,  4516,  4790,  5063,  5334,  5604,  5872,  6138,  6402,  6664,  6924,
+    7182,  7438,  7692,  7943,  8192,  8438,  8682,  8923,  9162,  9397,  9630,  9860,  10087,
     10311, 10531, 10749, 10963, 11174, 11381, 11585, 11786, 11982, 12176, 12365, 12551, 12733,
     12911, 13085, 13255, 13421, 13583, 13741, 13894, 14044, 14189, 14330, 14466, 14598, 14726,
     14849, 14968, 15082, 15191, 15296, 15396, 15491, 15582, 15668, 15749, 15826, 15897, 15964,
@@ -58,9 +58,11 @@ int32_t argus_cos(const int32_t cdeg) {
     return argus_sin(argus_angle_wrap(cdeg) + QUARTER);
 }
 
-// Direction in thousandths of a degree for x > 0, by CORDIC; the vector is scaled up so that small ones keep their angle.
+// Direction in thousandths of a degree for x > 0, by CORDIC; the vector is scaled up so that small ones keep
+// their angle.
 static int32_t cordic_mdeg(int32_t x, int32_t y) {
-    static const int32_t step_mdeg[] = {45000, 26565, 14036, 7125, 3576, 1790, 895, 448, 224, 112, 56, 28, 14, 7};
+    static const int32_t step_mdeg[] = {45000, 26565, 14036, 7125, 3576, 1790, 895,
+                                        448,   224,   112,   56,   28,   14,   7};
     int32_t angle = 0;
     for (unsigned i = 0; i < sizeof step_mdeg / sizeof step_mdeg[0]; i++) {
         const int32_t part = 1 << i;

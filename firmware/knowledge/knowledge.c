@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Turns SIPs into readings with their age, a pose that survives the robot's own wraps and resets, and the robot's state.
+// Turns SIPs into readings with their age, a pose that survives the robot's own wraps and resets, and the
+// robot's state.
 #include "argus/knowledge.h"
 
 #include <string.h>
@@ -61,7 +62,8 @@ static void advance_pose(argus_knowledge_t *const self, const int32_t dx_um, con
     self->odometer_mm += (uint32_t)carry_mm(&self->odometer_um, way_um);
 }
 
-void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *const sip, const int32_t distance_um) {
+void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *const sip,
+                              const int32_t distance_um) {
     const int32_t dx_um = raw_delta(sip->x_raw, self->x_raw) * distance_um;
     const int32_t dy_um = raw_delta(sip->y_raw, self->y_raw) * distance_um;
     const bool jumped = argus_abs(dx_um) > JUMP_MM * 1000 || argus_abs(dy_um) > JUMP_MM * 1000;
@@ -123,8 +125,8 @@ static void take_readings(argus_knowledge_t *const self, const argus_sip_t *cons
     }
 }
 
-void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const sip, const int32_t distance_um,
-                         const uint32_t now_ms) {
+void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const sip,
+                         const int32_t distance_um, const uint32_t now_ms) {
     if (self->sips > 0 && now_ms - self->sip_ms > GAP_MS) {
         self->online_ms = now_ms;
     }
@@ -136,8 +138,8 @@ void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const
     take_readings(self, sip);
 }
 
-void argus_sonar_set_health(argus_sonar_t *const self, const argus_health_t health, const argus_fault_kind_t kind,
-                            const uint32_t now_ms) {
+void argus_sonar_set_health(argus_sonar_t *const self, const argus_health_t health,
+                            const argus_fault_kind_t kind, const uint32_t now_ms) {
     if (health == ARGUS_DISABLED && self->health != ARGUS_DISABLED && self->disabled_times < UINT16_MAX) {
         self->disabled_times++;
     }
@@ -174,7 +176,8 @@ bool argus_fresh_since(const argus_knowledge_t *const self, const int sonar, con
     return later && (!self->lists_all || (int32_t)(s->heard_ms - mark->from_ms) >= 0);
 }
 
-bool argus_all_fresh_since(const argus_knowledge_t *const self, const uint16_t sonars, const argus_mark_t *const mark) {
+bool argus_all_fresh_since(const argus_knowledge_t *const self, const uint16_t sonars,
+                           const argus_mark_t *const mark) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if ((sonars >> i & 1u) != 0 && !argus_fresh_since(self, i, mark)) {
             return false;
@@ -231,6 +234,7 @@ const char *argus_health_name(const argus_health_t health) {
 }
 
 const char *argus_kind_name(const argus_fault_kind_t kind) {
-    static const char *const name[] = {"", "off", "silent", "stuck", "wrong", "garbage", "slow", "intermittent"};
+    static const char *const name[] = {"",      "off",     "silent", "stuck",
+                                       "wrong", "garbage", "slow",   "intermittent"};
     return (unsigned)kind < sizeof name / sizeof name[0] ? name[kind] : "?";
 }

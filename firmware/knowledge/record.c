@@ -5,7 +5,7 @@
 #include "argus/record.h"
 
 #define VERSION 1
-#define HEAD_BYTES 6 // "ARGR", version, sonars
+#define HEAD_BYTES 6  // "ARGR", version, sonars
 #define SONAR_BYTES 4 // health, kind, disabled_times lo hi
 #define CHECK_BYTES 2
 #define RECORD_BYTES (HEAD_BYTES + ARGUS_SONARS * SONAR_BYTES + CHECK_BYTES)
@@ -24,7 +24,8 @@ static uint16_t crc16(const uint8_t *const data, const size_t count) {
     return (uint16_t)crc;
 }
 
-size_t argus_record_encode(const argus_knowledge_t *const knowledge, uint8_t *const out, const size_t capacity) {
+size_t argus_record_encode(const argus_knowledge_t *const knowledge, uint8_t *const out,
+                           const size_t capacity) {
     if (capacity < RECORD_BYTES) {
         return 0;
     }

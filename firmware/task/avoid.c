@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Obstacle avoidance: remembers echoes and takes the free corridor that is nearest to the way to the waypoint.
+// Obstacle avoidance: remembers echoes and takes the free corridor that is nearest to the way to the
+// waypoint.
 #include <string.h>
 
 #include "argus/angle.h"
@@ -11,18 +12,19 @@
 #define WIDE_HALF_MM 385   // room to turn on the spot anywhere along it (swing radius 370)
 #define NARROW_HALF_MM 305 // half the body (213), and room for the beam's width: where there is no wide way
 #define ESCAPE_HALF_MM 260 // straight ahead, out of a place too narrow to turn in
-#define CORRIDOR_MM 650      // free length wanted ahead
-#define BEHIND_MM 100        // an echo this far ahead of the centre is beside the robot already
-#define LEG_MM 300           // way along a detour before choosing again
+#define CORRIDOR_MM 650    // free length wanted ahead
+#define BEHIND_MM 100      // an echo this far ahead of the centre is beside the robot already
+#define LEG_MM 300         // way along a detour before choosing again
 #define STEP_CDEG 1000
-#define STEPS 14             // detours up to 140 degrees off the waypoint's bearing
-#define OTHER_SIDE_STEPS 6   // a detour prefers the side it began on by so much
+#define STEPS 14           // detours up to 140 degrees off the waypoint's bearing
+#define OTHER_SIDE_STEPS 6 // a detour prefers the side it began on by so much
 #define REFUSED_CDEG 1500
 #define MOVED_ON_MM 150
 #define BUMPER_AHEAD_MM 240
 
 static bool same_place(const argus_seen_t *const seen, const argus_point_t *const at) {
-    return argus_abs(seen->x_mm - at->x_mm) < SAME_PLACE_MM && argus_abs(seen->y_mm - at->y_mm) < SAME_PLACE_MM;
+    return argus_abs(seen->x_mm - at->x_mm) < SAME_PLACE_MM &&
+           argus_abs(seen->y_mm - at->y_mm) < SAME_PLACE_MM;
 }
 
 // The slot that holds this place already, else a free one, else the oldest.
@@ -39,7 +41,8 @@ static argus_seen_t *slot_for(argus_task_t *const self, const argus_point_t *con
     return &self->seen[self->seen_next];
 }
 
-static void remember(argus_task_t *const self, const argus_point_t at, const uint8_t sonar, const uint32_t now_ms) {
+static void remember(argus_task_t *const self, const argus_point_t at, const uint8_t sonar,
+                     const uint32_t now_ms) {
     if (argus_abs(at.x_mm) > INT16_MAX || argus_abs(at.y_mm) > INT16_MAX) {
         return;
     }
@@ -50,12 +53,14 @@ static void remember(argus_task_t *const self, const argus_point_t at, const uin
     slot->seen_ms = now_ms;
 }
 
-void argus_task_see(argus_task_t *const self, const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
+void argus_task_see(argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                    const uint32_t now_ms) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const bool fresh = (knowledge->fresh >> i & 1u) != 0;
-        if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT && !knowledge->rotating &&
-            knowledge->sonar[i].reading_mm < REMEMBER_BELOW_MM) {
-            remember(self, argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, i)), (uint8_t)i, now_ms);
+        if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT &&
+            !knowledge->rotating && knowledge->sonar[i].reading_mm < REMEMBER_BELOW_MM) {
+            remember(self, argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, i)), (uint8_t)i,
+                     now_ms);
         }
     }
 }
@@ -71,8 +76,10 @@ void argus_task_forget(argus_task_t *const self, const int sonar) {
     self->seen_next = 0;
 }
 
-// The front segments lie across the bow, bit 1 leftmost; what they touched is remembered as if it had been seen.
-void argus_task_bumped(argus_task_t *const self, const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
+// The front segments lie across the bow, bit 1 leftmost; what they touched is remembered as if it had been
+// seen.
+void argus_task_bumped(argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                       const uint32_t now_ms) {
     for (int segment = 1; segment <= 5; segment++) {
         if ((knowledge->bumpers_front >> segment & 1u) != 0) {
             const argus_point_t touched = {BUMPER_AHEAD_MM, (3 - segment) * 85};
@@ -114,7 +121,8 @@ void argus_task_forgive(argus_task_t *const self) {
 }
 
 static void forgive_when_moved(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
-    const int32_t moved = argus_hypot(knowledge->pose.x_mm - self->refused_at.x_mm, knowledge->pose.y_mm - self->refused_at.y_mm);
+    const int32_t moved = argus_hypot(knowledge->pose.x_mm - self->refused_at.x_mm,
+                                      knowledge->pose.y_mm - self->refused_at.y_mm);
     if (moved >= MOVED_ON_MM) {
         self->refused = 0;
     }
@@ -134,22 +142,22 @@ typedef struct {
     int32_t length_mm;
 } corridor_t;
 
-static bool is_free(const argus_task_t *const self, const argus_knowledge_t *const knowledge, const int32_t heading_cdeg,
-                    const corridor_t *const wanted) {
+static bool is_free(const argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                    const int32_t heading_cdeg, const corridor_t *const wanted) {
     return !is_refused(self, heading_cdeg) &&
            argus_task_clear_mm(self, knowledge, heading_cdeg, wanted->half_mm) >= wanted->length_mm;
 }
 
-// The side on which the detour began costs nothing, the other one OTHER_SIDE_STEPS. Size of the `step`th try on a side,
-// outside 1..STEPS when there is none.
+// The side on which the detour began costs nothing, the other one OTHER_SIDE_STEPS. Size of the `step`th try
+// on a side, outside 1..STEPS when there is none.
 static int detour_size(const argus_task_t *const self, const int step, const int8_t side) {
     const bool other = self->side != 0 && side != self->side;
     return other ? step - OTHER_SIDE_STEPS : step;
 }
 
 // Nearest to the bearing first.
-static bool find_detour(argus_task_t *const self, const argus_knowledge_t *const knowledge, const int32_t half_mm,
-                        const int32_t bearing_cdeg, int32_t *const heading_cdeg) {
+static bool find_detour(argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                        const int32_t half_mm, const int32_t bearing_cdeg, int32_t *const heading_cdeg) {
     const corridor_t wanted = {half_mm, CORRIDOR_MM};
     int8_t side = self->side != 0 ? self->side : 1;
     for (int i = 2; i < 2 * (STEPS + OTHER_SIDE_STEPS + 1); i++) {
@@ -170,14 +178,16 @@ static void lead_to(argus_task_t *const self, const argus_point_t to) {
     self->has_leg = true;
 }
 
-static void lead_ahead(argus_task_t *const self, const argus_knowledge_t *const knowledge, const int32_t heading_cdeg) {
+static void lead_ahead(argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                       const int32_t heading_cdeg) {
     const argus_point_t ahead = {LEG_MM, 0};
     const argus_pose_t turned = {knowledge->pose.x_mm, knowledge->pose.y_mm, heading_cdeg};
     lead_to(self, argus_to_course(&turned, ahead));
 }
 
 // The waypoint itself when the corridor to it is free, else the best detour of that width.
-static bool choose_corridor(argus_task_t *const self, const argus_knowledge_t *const knowledge, const int32_t half_mm) {
+static bool choose_corridor(argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                            const int32_t half_mm) {
     lead_to(self, self->waypoint[self->next]);
     const int32_t bearing = argus_task_bearing_cdeg(self, knowledge);
     const corridor_t direct = {half_mm, argus_min(CORRIDOR_MM, argus_task_leg_mm(self, knowledge) + half_mm)};

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rule: where the paper's rules misfire (smooth walls, 1 % crosstalk) they do so as documented, and hit nothing."""
+"""Rule: where the rules of the paper misfire (smooth walls, 1 % crosstalk) it is as documented, and nothing is hit."""
 
 from __future__ import annotations
 

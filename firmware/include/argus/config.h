@@ -7,35 +7,40 @@
 #include <stdint.h>
 
 // X(key, default, minimum, maximum, unit, choices, meaning). `choices` names the values 0, 1, ... of a
-// setting that is picked by name ("" for a number). A front end builds its parser and its help from this table.
-#define ARGUS_CONFIG_TABLE(X)                                                                                        \
-    X(profile, 0, 0, 0, "", "paper", "rule set of the diagnosis")                                                    \
-    X(policy, 0, 0, 1, "", "paper|fewest", "planner of the compensating rotations")                                  \
-    X(active, 1, 0, 1, "", "off|on", "off: diagnose and report, never command a motion")                             \
-    X(health_check_ms, 1000, 100, 10000, "ms", "", "period of the health check beside the main task")                \
-    X(suspect_readings, 3, 1, 50, "", "", "consecutive disparate fresh readings before a sonar is verified")         \
-    X(holdoff_mm, 1000, 0, 20000, "mm", "", "a cleared sonar is not verified again before this distance")            \
-    X(holdoff_deg, 30, 0, 180, "deg", "", "... or before this change of heading")                                    \
-    X(stale_ms, 1500, 700, 10000, "ms", "", "a sonar that yields no reading for this long is silent")                \
-    X(object_range_mm, 250, 150, 1000, "mm", "", "while driving, a reading at or below this is an object: STOP")     \
-    X(check_range_mm, 350, 200, 1500, "mm", "", "in failure mode, a reading at or below this stops the next step")   \
-    X(step_mm, 200, 50, 200, "mm", "", "length of one step in failure mode")                                         \
-    X(step_speed_mm_s, 100, 30, 300, "mm/s", "", "speed of a step")                                                  \
-    X(speed_mm_s, 200, 30, 750, "mm/s", "", "speed of normal driving")                                               \
-    X(accel_mm_s2, 300, 50, 2000, "mm/s2", "", "acceleration asked of the robot")                                    \
-    X(decel_mm_s2, 300, 50, 2000, "mm/s2", "", "deceleration asked of the robot")                                    \
-    X(turn_speed_deg_s, 60, 10, 100, "deg/s", "", "speed of a turn")                                                 \
-    X(turn_accel_deg_s2, 200, 20, 300, "deg/s2", "", "angular acceleration asked of the robot")                      \
-    X(noise_mm, 5, 0, 100, "mm", "", "standard deviation of a sonar reading, for the S5 margin")                     \
-    X(backoff_mm, 150, 50, 300, "mm", "", "how far to back away from a pressed bumper")                              \
-    X(rear_clear_mm, 450, 200, 2000, "mm", "", "every rear sonar must read more than this to back away")             \
-    X(waypoint_radius_mm, 100, 20, 500, "mm", "", "a waypoint this near counts as passed")                           \
-    X(goal_radius_mm, 60, 20, 140, "mm", "", "the goal counts as reached this near")                                 \
-    X(sonar_cycle_ms, 40, 20, 120, "ms", "", "time between two pings of one array")                                  \
-    X(baud, 9600, 0, 115200, "bit/s", "", "rate of the wire, for its share of the reaction time (0: none, TCP)")     \
-    X(pulse_ms, 500, 100, 1500, "ms", "", "longest silence towards the robot before a PULSE is sent")                \
-    X(link_stall_ms, 600, 200, 5000, "ms", "", "no SIP for this long: stand, and check all sonars before driving on") \
-    X(link_lost_ms, 4000, 1000, 60000, "ms", "", "no SIP for this long: start the session again")                    \
+// setting that is picked by name ("" for a number). A front end builds its parser and its help from this
+// table.
+#define ARGUS_CONFIG_TABLE(X)                                                                                \
+    X(profile, 0, 0, 0, "", "paper", "rule set of the diagnosis")                                            \
+    X(policy, 0, 0, 1, "", "paper|fewest", "planner of the compensating rotations")                          \
+    X(active, 1, 0, 1, "", "off|on", "off: diagnose and report, never command a motion")                     \
+    X(health_check_ms, 1000, 100, 10000, "ms", "", "period of the health check beside the main task")        \
+    X(suspect_readings, 3, 1, 50, "", "", "consecutive disparate fresh readings before a sonar is verified") \
+    X(holdoff_mm, 1000, 0, 20000, "mm", "", "a cleared sonar is not verified again before this distance")    \
+    X(holdoff_deg, 30, 0, 180, "deg", "", "... or before this change of heading")                            \
+    X(stale_ms, 1500, 700, 10000, "ms", "", "a sonar that yields no reading for this long is silent")        \
+    X(object_range_mm, 250, 150, 1000, "mm", "",                                                             \
+      "while driving, a reading at or below this is an object: STOP")                                        \
+    X(check_range_mm, 350, 200, 1500, "mm", "",                                                              \
+      "in failure mode, a reading at or below this stops the next step")                                     \
+    X(step_mm, 200, 50, 200, "mm", "", "length of one step in failure mode")                                 \
+    X(step_speed_mm_s, 100, 30, 300, "mm/s", "", "speed of a step")                                          \
+    X(speed_mm_s, 200, 30, 750, "mm/s", "", "speed of normal driving")                                       \
+    X(accel_mm_s2, 300, 50, 2000, "mm/s2", "", "acceleration asked of the robot")                            \
+    X(decel_mm_s2, 300, 50, 2000, "mm/s2", "", "deceleration asked of the robot")                            \
+    X(turn_speed_deg_s, 60, 10, 100, "deg/s", "", "speed of a turn")                                         \
+    X(turn_accel_deg_s2, 200, 20, 300, "deg/s2", "", "angular acceleration asked of the robot")              \
+    X(noise_mm, 5, 0, 100, "mm", "", "standard deviation of a sonar reading, for the S5 margin")             \
+    X(backoff_mm, 150, 50, 300, "mm", "", "how far to back away from a pressed bumper")                      \
+    X(rear_clear_mm, 450, 200, 2000, "mm", "", "every rear sonar must read more than this to back away")     \
+    X(waypoint_radius_mm, 100, 20, 500, "mm", "", "a waypoint this near counts as passed")                   \
+    X(goal_radius_mm, 60, 20, 140, "mm", "", "the goal counts as reached this near")                         \
+    X(sonar_cycle_ms, 40, 20, 120, "ms", "", "time between two pings of one array")                          \
+    X(baud, 9600, 0, 115200, "bit/s", "",                                                                    \
+      "rate of the wire, for its share of the reaction time (0: none, TCP)")                                 \
+    X(pulse_ms, 500, 100, 1500, "ms", "", "longest silence towards the robot before a PULSE is sent")        \
+    X(link_stall_ms, 600, 200, 5000, "ms", "",                                                               \
+      "no SIP for this long: stand, and check all sonars before driving on")                                 \
+    X(link_lost_ms, 4000, 1000, 60000, "ms", "", "no SIP for this long: start the session again")            \
     X(retry_max_ms, 8000, 500, 60000, "ms", "", "longest pause between two attempts to reach the robot")
 
 typedef struct {
@@ -72,7 +77,8 @@ void argus_config_default(argus_config_t *config);
 // Ranges first, then the two S5 inequalities. Cost: a few thousand integer operations, once at start.
 argus_config_report_t argus_config_check(const argus_config_t *config);
 
-// Largest reading, in mm, that a front sonar gives of a point which the body sweeps when it moves `step_mm` ahead.
+// Largest reading, in mm, that a front sonar gives of a point which the body sweeps when it moves `step_mm`
+// ahead.
 int32_t argus_config_reach_mm(int32_t step_mm);
 
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Knowledge (the K of MAPE-K): sonar geometry, readings and their age, the health of every sonar, where the robot is.
+// Knowledge (the K of MAPE-K): sonar geometry, readings and their age, the health of every sonar, where the
+// robot is.
 #ifndef ARGUS_KNOWLEDGE_H
 #define ARGUS_KNOWLEDGE_H
 
@@ -60,21 +61,21 @@ extern const argus_sonar_pose_t argus_sonar_pose[ARGUS_SONARS];
 typedef struct {
     uint16_t reading_mm;
     bool reported;
-    bool steady;            // taken while the robot did not rotate
-    uint32_t sip;           // index of the SIP that listed it last
-    uint32_t heard_ms;      // time of that SIP
-    uint32_t odometer_mm;   // way driven by then
-    uint32_t readings;      // monotonic
+    bool steady;          // taken while the robot did not rotate
+    uint32_t sip;         // index of the SIP that listed it last
+    uint32_t heard_ms;    // time of that SIP
+    uint32_t odometer_mm; // way driven by then
+    uint32_t readings;    // monotonic
     argus_health_t health;
     argus_fault_kind_t kind;
-    uint32_t since_ms;      // entry into `health`
-    uint16_t disabled_times; // this mission
+    uint32_t since_ms;        // entry into `health`
+    uint16_t disabled_times;  // this mission
     uint16_t disabled_before; // earlier missions, from the record
     argus_fault_kind_t kind_before;
 } argus_sonar_t;
 
-// A moment after which readings count: those listed in later SIPs, and no earlier than `from_ms` where a server lists every
-// sonar in every SIP.
+// A moment after which readings count: those listed in later SIPs, and no earlier than `from_ms` where a
+// server lists every sonar in every SIP.
 typedef struct {
     uint32_t sip;
     uint32_t from_ms;
@@ -86,7 +87,7 @@ typedef struct {
     int32_t heading_offset_cdeg; // pose heading - the robot's own
     int32_t x_um;                // remainders of the pose, below a mm
     int32_t y_um;
-    uint32_t odometer_mm;        // way driven, monotonic
+    uint32_t odometer_mm; // way driven, monotonic
     int32_t odometer_um;
     uint16_t x_raw;
     uint16_t y_raw;
@@ -94,32 +95,35 @@ typedef struct {
     int16_t vel_left_mm_s;
     int16_t vel_right_mm_s;
     bool rotating;
-    uint16_t still_sips;         // consecutive SIPs at rest
+    uint16_t still_sips; // consecutive SIPs at rest
     uint16_t flags;
     uint8_t bumpers_front;
     uint8_t bumpers_rear;
     bool stall_left;
     bool stall_right;
     int16_t battery_dv;
-    bool lists_all;              // the server lists every sonar in every SIP
+    bool lists_all; // the server lists every sonar in every SIP
     uint32_t sips;
-    uint32_t sip_ms;             // time of the last SIP
-    uint16_t fresh;              // sonars listed in the last SIP
-    uint32_t online_ms;          // when SIPs began to come, or came again after a gap
+    uint32_t sip_ms;    // time of the last SIP
+    uint16_t fresh;     // sonars listed in the last SIP
+    uint32_t online_ms; // when SIPs began to come, or came again after a gap
 } argus_knowledge_t;
 
 void argus_knowledge_init(argus_knowledge_t *self);
 
-// A session opened: the robot's odometry starts anew, our pose goes on from where it was; every sonar must report anew.
+// A session opened: the robot's odometry starts anew, our pose goes on from where it was; every sonar must
+// report anew.
 void argus_knowledge_reopen(argus_knowledge_t *self, uint32_t now_ms);
 
 // One SIP. `distance_um`: thousandths of a mm per position unit.
-void argus_knowledge_sip(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um, uint32_t now_ms);
+void argus_knowledge_sip(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um,
+                         uint32_t now_ms);
 
 // Only the odometry of a SIP (a session that is about to be closed).
 void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um);
 
-void argus_sonar_set_health(argus_sonar_t *self, argus_health_t health, argus_fault_kind_t kind, uint32_t now_ms);
+void argus_sonar_set_health(argus_sonar_t *self, argus_health_t health, argus_fault_kind_t kind,
+                            uint32_t now_ms);
 
 // Bit masks over sonar numbers.
 uint16_t argus_disabled(const argus_knowledge_t *self);
@@ -130,9 +134,11 @@ argus_mark_t argus_mark_now(const argus_knowledge_t *self);
 bool argus_fresh_since(const argus_knowledge_t *self, int sonar, const argus_mark_t *mark);
 bool argus_all_fresh_since(const argus_knowledge_t *self, uint16_t sonars, const argus_mark_t *mark);
 
-uint32_t argus_age_ms(const argus_knowledge_t *self, int sonar, uint32_t now_ms); // UINT32_MAX: never reported
-uint32_t argus_silent_ms(const argus_knowledge_t *self, int sonar); // how long it has missed its slots, as of the last SIP
-bool argus_at_rest(const argus_knowledge_t *self);                                // two consecutive SIPs within 5 mm/s
+uint32_t argus_age_ms(const argus_knowledge_t *self, int sonar,
+                      uint32_t now_ms); // UINT32_MAX: never reported
+uint32_t argus_silent_ms(const argus_knowledge_t *self,
+                         int sonar);               // how long it has missed its slots, as of the last SIP
+bool argus_at_rest(const argus_knowledge_t *self); // two consecutive SIPs within 5 mm/s
 
 // Where the echo of a sonar lies, robot frame and course frame, beam axis taken.
 argus_point_t argus_echo_robot(const argus_knowledge_t *self, int sonar);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The whole fault manager: bytes and time go in, packets and events come out.
 //
-// Not thread-safe: one thread (or one interrupt level) owns an argus_t. The caller owns the memory; nothing is
-// allocated, no clock is read, no I/O is done. Times are milliseconds of any free-running counter, uint32_t, and may wrap.
+// Not thread-safe: one thread (or one interrupt level) owns an argus_t. The caller owns the memory; nothing
+// is allocated, no clock is read, no I/O is done. Times are milliseconds of any free-running counter,
+// uint32_t, and may wrap.
 //
-// A port does, for ever: read bytes -> argus_receive() -> argus_transmit() until 0 -> argus_next_event() until false ->
-// argus_process() -> argus_transmit() until 0 -> wait for bytes, at most as long as argus_process() said.
+// A port does, for ever: read bytes -> argus_receive() -> argus_transmit() until 0 -> argus_next_event()
+// until false -> argus_process() -> argus_transmit() until 0 -> wait for bytes, at most as long as
+// argus_process() said.
 #ifndef ARGUS_MANAGER_H
 #define ARGUS_MANAGER_H
 
@@ -22,20 +24,25 @@
 
 // What the manager is doing. Order is not severity.
 typedef enum {
-    ARGUS_MODE_OFFLINE,     // no session with a robot
-    ARGUS_MODE_CHECKING,    // at rest: every sonar of 1..6 must report before anything moves (S6)
-    ARGUS_MODE_VERIFYING,   // Algorithm 2 turns neighbours onto a suspect's bearing
-    ARGUS_MODE_IDLE,        // healthy enough, nothing to do
-    ARGUS_MODE_DRIVING,     // normal driving
-    ARGUS_MODE_SWEEPING,    // failure mode, at rest: turns through the plan's rotations
-    ARGUS_MODE_STEPPING,    // failure mode: one step ahead
-    ARGUS_MODE_BACKING,     // backs away from a pressed bumper or a blocked swing circle
-    ARGUS_MODE_WAITING,     // cannot go on by itself: bumper, motors off, no way, catastrophic
-    ARGUS_MODE_CLOSING,     // shutdown: stopping, then closing the session
-    ARGUS_MODE_CLOSED       // over
+    ARGUS_MODE_OFFLINE,   // no session with a robot
+    ARGUS_MODE_CHECKING,  // at rest: every sonar of 1..6 must report before anything moves (S6)
+    ARGUS_MODE_VERIFYING, // Algorithm 2 turns neighbours onto a suspect's bearing
+    ARGUS_MODE_IDLE,      // healthy enough, nothing to do
+    ARGUS_MODE_DRIVING,   // normal driving
+    ARGUS_MODE_SWEEPING,  // failure mode, at rest: turns through the plan's rotations
+    ARGUS_MODE_STEPPING,  // failure mode: one step ahead
+    ARGUS_MODE_BACKING,   // backs away from a pressed bumper or a blocked swing circle
+    ARGUS_MODE_WAITING,   // cannot go on by itself: bumper, motors off, no way, catastrophic
+    ARGUS_MODE_CLOSING,   // shutdown: stopping, then closing the session
+    ARGUS_MODE_CLOSED     // over
 } argus_mode_t;
 
-typedef enum { ARGUS_MISSION_NONE, ARGUS_MISSION_RUNNING, ARGUS_MISSION_REACHED, ARGUS_MISSION_FAILED } argus_mission_t;
+typedef enum {
+    ARGUS_MISSION_NONE,
+    ARGUS_MISSION_RUNNING,
+    ARGUS_MISSION_REACHED,
+    ARGUS_MISSION_FAILED
+} argus_mission_t;
 
 // What an operator may ask. The argument is mm for MOVE, degrees for TURN, else ignored.
 typedef enum {
@@ -55,12 +62,12 @@ typedef struct {
     argus_failure_t failure;
     argus_plan_t plan;
     argus_pose_t pose;
-    int32_t goal_mm;     // straight-line distance to the last waypoint, 0 without a course
-    uint16_t waypoint;   // next waypoint, from 0
+    int32_t goal_mm;   // straight-line distance to the last waypoint, 0 without a course
+    uint16_t waypoint; // next waypoint, from 0
     uint16_t waypoints;
-    bool active;         // false: passive
-    bool online;         // SIPs are coming
-    int16_t battery_dv;  // decivolts
+    bool active;        // false: passive
+    bool online;        // SIPs are coming
+    int16_t battery_dv; // decivolts
     int16_t vel_left_mm_s;
     int16_t vel_right_mm_s;
     uint16_t flags;
@@ -70,7 +77,7 @@ typedef struct {
     uint32_t age_ms[ARGUS_SONARS];    // UINT32_MAX: never reported
     argus_health_t health[ARGUS_SONARS];
     argus_fault_kind_t kind[ARGUS_SONARS];
-    uint32_t sips;          // monotonic counters
+    uint32_t sips; // monotonic counters
     uint32_t bad_checksums;
     uint32_t skipped_bytes;
     uint32_t stops;
@@ -109,24 +116,24 @@ typedef struct {
     uint32_t check_ms;      // last health check while driving
     argus_wait_t wait_last; // what it waited for last, since it drove
     uint32_t wait_since_ms;
-    uint32_t waited_s;      // waiting time said so far
-    uint32_t tried_ms;      // last attempt to get out of WAITING
-    uint32_t stops;         // STOP and E_STOP sent, monotonic
-    argus_mark_t mark;      // CHECKING: readings after this count
+    uint32_t waited_s; // waiting time said so far
+    uint32_t tried_ms; // last attempt to get out of WAITING
+    uint32_t stops;    // STOP and E_STOP sent, monotonic
+    argus_mark_t mark; // CHECKING: readings after this count
     bool marked;
-    uint8_t rounds;         // CHECKING: rounds of fresh readings still wanted
-    int32_t base_cdeg;      // heading to return to after verification and sweeps (S4)
-    int32_t jog_mm;         // the operator's step, 0: the course decides
-    uint16_t bumpers;       // bumper bits answered already, front << 8 | rear
-    uint8_t backed;         // back-offs in this place
+    uint8_t rounds;    // CHECKING: rounds of fresh readings still wanted
+    int32_t base_cdeg; // heading to return to after verification and sweeps (S4)
+    int32_t jog_mm;    // the operator's step, 0: the course decides
+    uint16_t bumpers;  // bumper bits answered already, front << 8 | rear
+    uint8_t backed;    // back-offs in this place
     bool has_base;
-    bool aimed;             // DRIVING: the leg's bearing was turned to
-    bool arriving;          // at the goal, stopping
-    bool locked;            // the configuration is unsafe: never active
+    bool aimed;    // DRIVING: the leg's bearing was turned to
+    bool arriving; // at the goal, stopping
+    bool locked;   // the configuration is unsafe: never active
     bool passive;
     bool paused;
-    bool stay;              // after the operator's STOP: no turn either, until another order
-    bool checked;           // a full health check has passed since the session opened or resumed (S3, S6)
+    bool stay;    // after the operator's STOP: no turn either, until another order
+    bool checked; // a full health check has passed since the session opened or resumed (S3, S6)
     bool motors_said;
     bool battery_said;
     bool stalled;
@@ -135,24 +142,28 @@ typedef struct {
     uint8_t invariant_said;
 } argus_t;
 
-// Starts from nothing: no robot, every sonar UNKNOWN, no course. `config` must have passed argus_config_check();
-// otherwise the manager starts passive and stays so. Call once, then argus_link_up() when the transport is open.
+// Starts from nothing: no robot, every sonar UNKNOWN, no course. `config` must have passed
+// argus_config_check(); otherwise the manager starts passive and stays so. Call once, then argus_link_up()
+// when the transport is open.
 void argus_init(argus_t *self, const argus_config_t *config, uint32_t now_ms);
 
-// The course: 1..ARGUS_WAYPOINTS_MAX points in the frame of the robot's odometry at connection (x ahead, y left, mm,
-// each |v| <= 30000). False, and nothing changed, when it does not fit. Driving starts by itself when active and checked.
+// The course: 1..ARGUS_WAYPOINTS_MAX points in the frame of the robot's odometry at connection (x ahead, y
+// left, mm, each |v| <= 30000). False, and nothing changed, when it does not fit. Driving starts by itself
+// when active and checked.
 bool argus_set_course(argus_t *self, const argus_point_t *points, uint16_t count);
 
 void argus_link_up(argus_t *self, uint32_t now_ms);
 void argus_link_lost(argus_t *self, uint32_t now_ms);
 
-// Takes any number of received bytes. A STOP that they call for is ready in argus_transmit() when this returns.
+// Takes any number of received bytes. A STOP that they call for is ready in argus_transmit() when this
+// returns.
 void argus_receive(argus_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count);
 
 // Does what time alone makes due; returns the ms (1..100) after which it wants to be called again.
 uint32_t argus_process(argus_t *self, uint32_t now_ms);
 
-// Next packet to write, whole, at most ARCOS_FRAME_SEND_TOTAL_MAX bytes; 0 when there is none. A buffer too small: 0.
+// Next packet to write, whole, at most ARCOS_FRAME_SEND_TOTAL_MAX bytes; 0 when there is none. A buffer too
+// small: 0.
 size_t argus_transmit(argus_t *self, uint8_t *buffer, size_t capacity);
 
 bool argus_next_event(argus_t *self, argus_event_t *event);
@@ -165,12 +176,13 @@ bool argus_closed(const argus_t *self);
 
 void argus_status(const argus_t *self, argus_status_t *status);
 
-// The persistent record: health and history of every sonar (SPEC.md). save returns its length, 0 if it does not fit.
-// load takes a record as history; a damaged or foreign one is said by an event and ignored.
+// The persistent record: health and history of every sonar (SPEC.md). save returns its length, 0 if it does
+// not fit. load takes a record as history; a damaged or foreign one is said by an event and ignored.
 size_t argus_record_save(const argus_t *self, uint8_t *buffer, size_t capacity);
 bool argus_record_load(argus_t *self, const uint8_t *record, size_t length);
 
-// 0 when every internal invariant holds, else the number of the first that does not. For supervisors, tests, fuzzers.
+// 0 when every internal invariant holds, else the number of the first that does not. For supervisors, tests,
+// fuzzers.
 int argus_invariants_broken(const argus_t *self);
 
 const char *argus_mode_name(argus_mode_t mode);

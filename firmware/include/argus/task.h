@@ -24,10 +24,10 @@ typedef struct {
     uint16_t next;
     argus_seen_t seen[ARGUS_POINTS_MAX];
     uint16_t seen_count;
-    uint16_t seen_next;     // oldest, once full
+    uint16_t seen_next; // oldest, once full
     bool avoiding;
-    int8_t side;            // +1 left, -1 right, 0 none chosen yet
-    argus_point_t leg;      // where the robot now heads for
+    int8_t side;       // +1 left, -1 right, 0 none chosen yet
+    argus_point_t leg; // where the robot now heads for
     bool has_leg;
     int32_t refused_cdeg[8]; // headings found blocked in this place
     uint8_t refused;
@@ -37,19 +37,23 @@ typedef struct {
 void argus_task_init(argus_task_t *self);
 bool argus_task_set(argus_task_t *self, const argus_point_t *points, uint16_t count);
 
-// Remembers the fresh echoes of sonars not DISABLED; forgets those of a sonar; marks a place that a bumper hit.
+// Remembers the fresh echoes of sonars not DISABLED; forgets those of a sonar; marks a place that a bumper
+// hit.
 void argus_task_see(argus_task_t *self, const argus_knowledge_t *knowledge, uint32_t now_ms);
 void argus_task_forget(argus_task_t *self, int sonar);
 void argus_task_bumped(argus_task_t *self, const argus_knowledge_t *knowledge, uint32_t now_ms);
 
-// Passes every waypoint that is near enough; true when the goal itself is reached. `passed` counts waypoints passed now.
-bool argus_task_progress(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_config_t *config, int *passed);
+// Passes every waypoint that is near enough; true when the goal itself is reached. `passed` counts waypoints
+// passed now.
+bool argus_task_progress(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_config_t *config,
+                         int *passed);
 
 int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *knowledge);
 
-// Length of the corridor of 2 x half_mm that is free of remembered echoes along a heading; INT32_MAX without any.
-int32_t argus_task_clear_mm(const argus_task_t *self, const argus_knowledge_t *knowledge, int32_t heading_cdeg,
-                            int32_t half_mm);
+// Length of the corridor of 2 x half_mm that is free of remembered echoes along a heading; INT32_MAX without
+// any.
+int32_t argus_task_clear_mm(const argus_task_t *self, const argus_knowledge_t *knowledge,
+                            int32_t heading_cdeg, int32_t half_mm);
 
 // An object stopped the robot on its present heading: that heading is refused until the robot has moved on.
 void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge);
@@ -57,10 +61,12 @@ void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge);
 // After waiting in one place: every heading may be tried again.
 void argus_task_forgive(argus_task_t *self);
 
-// Chooses the next leg: the waypoint itself when the way is free, else the nearest free heading. False: no way.
+// Chooses the next leg: the waypoint itself when the way is free, else the nearest free heading. False: no
+// way.
 bool argus_task_choose(argus_task_t *self, const argus_knowledge_t *knowledge);
 
-// Where the robot cannot turn: a leg straight ahead, if the corridor there is free. False: no way that way either.
+// Where the robot cannot turn: a leg straight ahead, if the corridor there is free. False: no way that way
+// either.
 bool argus_task_escape(argus_task_t *self, const argus_knowledge_t *knowledge);
 
 // The course was left (operator, reconnect): the next leg is chosen anew.

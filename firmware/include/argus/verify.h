@@ -16,22 +16,22 @@ typedef enum {
 
 typedef enum {
     ARGUS_RESULT_NONE,
-    ARGUS_RESULT_DROPPED,  // no longer disparate at rest
-    ARGUS_RESULT_CLEARED,  // |mean of the witnesses - v| <= tr
+    ARGUS_RESULT_DROPPED, // no longer disparate at rest
+    ARGUS_RESULT_CLEARED, // |mean of the witnesses - v| <= tr
     ARGUS_RESULT_CONVICTED,
-    ARGUS_RESULT_UNPROVEN  // no usable witness
+    ARGUS_RESULT_UNPROVEN // no usable witness
 } argus_result_t;
 
-// A state machine that never blocks: it says which heading it wants, is told when the robot has settled there, and waits
-// for a reading fired after that.
+// A state machine that never blocks: it says which heading it wants, is told when the robot has settled
+// there, and waits for a reading fired after that.
 typedef struct {
     argus_verify_phase_t phase;
     int8_t sonar;
-    uint8_t witnesses;         // usable neighbours: bit 0 left, bit 1 right
-    uint8_t heard;             // witnesses that gave a usable reading
+    uint8_t witnesses; // usable neighbours: bit 0 left, bit 1 right
+    uint8_t heard;     // witnesses that gave a usable reading
     int32_t base_cdeg;
-    uint16_t reading_mm;       // v
-    uint16_t witness_mm[2];    // A, B
+    uint16_t reading_mm;    // v
+    uint16_t witness_mm[2]; // A, B
     int32_t difference_mm;
     int32_t mean_mm;
     argus_result_t result;
