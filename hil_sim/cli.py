@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import logging
 import math
 import os
 import re
@@ -13,6 +14,7 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
@@ -22,15 +24,19 @@ from hil_sim.body import BodyModel
 from hil_sim.errors import SimError
 from hil_sim.faults import Fault, FaultSet, fault_help, parse_fault
 from hil_sim.link_faults import LinkFaults
-from hil_sim.links import Link, Loop, PtyLink, SerialLink, TcpLink
+from hil_sim.links import Fleet, Link, Loop, PtyLink, SerialLink, TcpLink
+from hil_sim.mobilesim import NAME as MOBILESIM_NAME
+from hil_sim.mobilesim import MobileSimServer
 from hil_sim.robot import Log, Robot
 from hil_sim.scenario import SEED_MAX, Scenario, load_scenario
-from hil_sim.server import ArcosServer
+from hil_sim.server import SIP_CYCLE_MS, ArcosServer
 from hil_sim.sonar import SonarRing
 from hil_sim.truth import TruthRecord
 from hil_sim.world import Pose, World, load_world, world_names
 
 DEFAULT_TCP_HOST = "127.0.0.1"
+DEFAULT_NAME = "P3DX_0001"
+ROBOTS_MAX = 64
 
 _EXAMPLES = """\
 examples:
@@ -39,8 +45,11 @@ examples:
   argus-sim --world lab --fault off:3@12s --truth truth.jsonl
   argus-sim --tcp 8101                        as the vendor's emulator listens
   argus-sim --serial /dev/ttyUSB0@9600        on a real UART
+  argus-sim --robots 3 --tcp 8101             three robots, on ports 8101 to 8103
+  argus-sim --tcp 8101 --quirks mobilesim     with the answers of the vendor's emulator
 
-The first line on standard output is the device path (or HOST:PORT), alone; all else goes to standard error.
+The first line on standard output is the device path (or HOST:PORT), alone; with --robots one line for each.
+All else goes to standard error.
 A pseudo-terminal takes 10 bit times a byte at the robot's rate and is garbled at any other.
 
 exit codes: 0 ended by a signal or --duration, 1 link cannot be opened or was lost, 2 wrong argument or file
@@ -123,6 +132,18 @@ def _seed(text: str) -> int:
     return int(text)
 
 
+def _robots(text: str) -> int:
+    if not text.isdigit() or not 1 <= int(text) <= ROBOTS_MAX:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of robots from 1 to {ROBOTS_MAX}")
+    return int(text)
+
+
+def _sip_cycle(text: str) -> int:
+    if not text.isdigit() or not 20 <= int(text) <= 250 or int(text) % 10:
+        raise argparse.ArgumentTypeError(f"'{text}' is not 20 to 250 ms in steps of 10")
+    return int(text)
+
+
 def _fault(text: str) -> Fault:
     try:
         return parse_fault(text)
@@ -150,11 +171,25 @@ def parser() -> argparse.ArgumentParser:
         "--bumpers", type=int, choices=(0, 5), help="front bumper segments (default 5; 0: bare robot)"
     )
     place.add_argument(
-        "--name", type=_label, default="P3DX_0001", help="the robot's name (default %(default)s)"
+        "--rear-bumpers", type=int, choices=(0, 5), default=0, help="rear bumper segments (default 0)"
     )
+    place.add_argument("--name", type=_label, help=f"the robot's name (default {DEFAULT_NAME})")
     place.add_argument(
         "--subclass", type=_label, default="p3dx-sh", help="the subclass it announces (default %(default)s)"
     )
+    place.add_argument(
+        "--robots", type=_robots, default=1, metavar="N", help="serve N robots, each in a world of its own"
+    )
+    place.add_argument(
+        "--quirks",
+        choices=("p3dx", "mobilesim"),
+        default="p3dx",
+        help="whose habits: the robot's (default) or the vendor emulator's",
+    )
+    place.add_argument(
+        "--sip-cycle", type=_sip_cycle, default=SIP_CYCLE_MS, metavar="MS", help="between SIPs (default 100)"
+    )
+    place.add_argument("--aux-loopback", action="store_true", help="a loop-back plug on each AUX port")
     faults = result.add_argument_group("faults")
     faults.add_argument(
         "--fault", type=_fault, action="append", default=[], metavar="SPEC", help="e.g. off:3@12s"
@@ -175,7 +210,9 @@ def parser() -> argparse.ArgumentParser:
     rest.add_argument("--duration", type=_seconds, metavar="S", help="end after S seconds")
     rest.add_argument("--list-worlds", action="store_true", help="list our worlds and leave")
     rest.add_argument("--list-faults", action="store_true", help="list the fault kinds and leave")
-    rest.add_argument("-v", "--verbose", action="store_true", help="say more on standard error")
+    rest.add_argument(
+        "-v", "--verbose", action="count", default=0, help="say more on standard error; -vv: every command"
+    )
     return result
 
 
@@ -199,20 +236,47 @@ def _scenario(arguments: argparse.Namespace) -> Scenario:
     return dataclasses.replace(scenario, **changes)
 
 
-def _link(arguments: argparse.Namespace, seed: int) -> tuple[Link, int]:
-    """The link asked for and the rate at which the robot starts."""
+def _link(arguments: argparse.Namespace, index: int, seed: int) -> tuple[Link, int]:
+    """The link asked for, of the robot with this index, and the rate at which the robot starts."""
     if arguments.tcp:
         if arguments.link_name or arguments.baud:
             raise SimError("--link-name and --baud are for a pseudo-terminal; leave them out with --tcp")
-        return TcpLink(*arguments.tcp), BAUD["B9600"]
+        host, port = arguments.tcp
+        if port + index > 65535:
+            raise SimError(f"--tcp {port}: no port left for robot {index + 1}; begin lower")
+        return TcpLink(host, port + index if port else 0, deaf=_is_mobilesim(arguments)), BAUD["B9600"]
     if arguments.serial:
         if arguments.link_name or arguments.baud:
             raise SimError(
                 "--link-name and --baud are for a pseudo-terminal; give the rate as --serial DEV@BAUD"
             )
+        if arguments.robots > 1:
+            raise SimError(f"--robots {arguments.robots}: one UART serves one robot; use --tcp or ptys")
         return SerialLink(*arguments.serial), arguments.serial[1]
     baud = arguments.baud or BAUD["B9600"]
-    return PtyLink(baud, arguments.link_name, seed), baud
+    name = str(_numbered(Path(arguments.link_name), index)) if arguments.link_name else None
+    return PtyLink(baud, name, seed), baud
+
+
+def _is_mobilesim(arguments: argparse.Namespace) -> bool:
+    return bool(arguments.quirks == "mobilesim")
+
+
+def _numbered(path: Path, index: int) -> Path:
+    """The file of the robot with this index: PATH, PATH-2, PATH-3, before the suffix."""
+    return path.with_name(f"{path.stem}-{index + 1}{path.suffix}") if index else path
+
+
+def _robot_name(arguments: argparse.Namespace, index: int) -> str:
+    """The name of the robot with this index; a number at its end counts up."""
+    default = MOBILESIM_NAME if _is_mobilesim(arguments) else DEFAULT_NAME
+    name: str = arguments.name or default
+    if not index:
+        return name
+    stem = name.rstrip("0123456789")
+    digits = name[len(stem) :]
+    number = f"{int(digits) + index:0{len(digits)}d}" if digits else f"_{index + 1}"
+    return stem[: 20 - len(number)] + number
 
 
 @contextmanager
@@ -234,7 +298,9 @@ def _say(text: str) -> None:
     print(f"argus-sim: {text}", file=sys.stderr, flush=True)
 
 
-def build_robot(scenario: Scenario, world: World, start: Pose, log: Log | None) -> Robot:
+def build_robot(
+    scenario: Scenario, world: World, start: Pose, log: Log | None, rear_bumpers: int = 0
+) -> Robot:
     """Return a robot at `start` in `world` with all that the scenario gives it."""
     body = BodyModel(world)
     if body.contact(start, 0.0) is not None:
@@ -249,6 +315,7 @@ def build_robot(scenario: Scenario, world: World, start: Pose, log: Log | None) 
         start,
         faults=faults if scenario.faults else None,
         bumpers=scenario.bumpers,
+        rear_bumpers=rear_bumpers,
         seed=scenario.seed,
         log=log,
     )
@@ -269,32 +336,69 @@ def _meta(scenario: Scenario, world: World, start: Pose) -> dict[str, Any]:
     }
 
 
-def _serve(arguments: argparse.Namespace, scenario: Scenario, stack: ExitStack) -> None:
-    world = load_world(scenario.world)
+def _loop(
+    arguments: argparse.Namespace, scenario: Scenario, world: World, index: int, stack: ExitStack
+) -> Loop:
+    """One robot on its link, ready for a client."""
     start = scenario.start or world.start
     log: Log | None = None
     if arguments.truth:
-        log = stack.enter_context(TruthRecord(arguments.truth, _meta(scenario, world, start)))
-    robot = build_robot(scenario, world, start, log)
-    link, baud = _link(arguments, scenario.seed)
-    server = ArcosServer(robot, name=arguments.name, subclass=arguments.subclass, flash_baud=baud, log=log)
+        truth = _numbered(Path(arguments.truth), index)
+        log = stack.enter_context(TruthRecord(truth, _meta(scenario, world, start)))
+    robot = build_robot(scenario, world, start, log, arguments.rear_bumpers)
+    link, baud = _link(arguments, index, scenario.seed)
+    kind = MobileSimServer if _is_mobilesim(arguments) else ArcosServer
+    server = kind(
+        robot,
+        name=_robot_name(arguments, index),
+        subclass=arguments.subclass,
+        flash_baud=baud,
+        sip_cycle_ms=arguments.sip_cycle,
+        aux_loopback=arguments.aux_loopback,
+        log=log,
+    )
     faults = LinkFaults(scenario.link_faults, scenario.seed, log) if scenario.link_faults else None
-    caught = stack.enter_context(_signals())
     stack.callback(link.close)
     link.open()
-    print(link.address, flush=True)
+    return Loop(server, link, faults)
+
+
+def _serve(arguments: argparse.Namespace, scenario: Scenario, stack: ExitStack) -> None:
+    if arguments.verbose > 1:
+        logging.basicConfig(format="argus-sim: %(message)s", stream=sys.stderr)
+        logging.getLogger("argus.sim").setLevel(logging.DEBUG)
+    world = load_world(scenario.world)
+    caught = stack.enter_context(_signals())
+    loops = [
+        _loop(
+            arguments,
+            dataclasses.replace(scenario, seed=(scenario.seed + k) % (SEED_MAX + 1)),
+            world,
+            k,
+            stack,
+        )
+        for k in range(arguments.robots)
+    ]
+    for loop in loops:
+        print(loop.link.address, flush=True)
     if arguments.verbose:
         faults_text = ", ".join(map(str, scenario.faults)) or "none"
         _say(f"world {world.name}, seed {scenario.seed}, faults: {faults_text}")
-    loop = Loop(server, link, faults)
-    if log is not None:
-        log("clock", {"t_s": loop.now_ms() / 1000, "unix_s": time.time()})
-    loop.run(lambda: bool(caught), arguments.duration and arguments.duration * 1000)
+    for loop in loops:
+        if loop.server.log is not None:
+            loop.server.log("clock", {"t_s": loop.now_ms() / 1000, "unix_s": time.time()})
+    runner = loops[0] if len(loops) == 1 else Fleet(loops)
+    runner.run(lambda: bool(caught), arguments.duration and arguments.duration * 1000)
     if arguments.verbose:
-        heard = server.unframer.counters
-        _say(f"{robot.now_ms / 1000:.1f} s, {server.sips} SIPs, {robot.collisions} collisions")
-        junk = f"{heard.bad_checksum} bad checksums, {heard.junk_bytes} junk bytes"
-        _say(f"heard {heard.packets} packets, {junk}")
+        for loop in loops:
+            _report(loop.server)
+
+
+def _report(server: ArcosServer) -> None:
+    robot, heard = server.robot, server.unframer.counters
+    _say(f"{robot.now_ms / 1000:.1f} s, {server.sips} SIPs, {robot.collisions} collisions")
+    junk = f"{heard.bad_checksum} bad checksums, {heard.junk_bytes} junk bytes"
+    _say(f"heard {heard.packets} packets, {junk}")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -15,7 +15,7 @@ import termios
 import time
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -120,6 +120,13 @@ class Link(ABC):
     def due_ms(self) -> float | None:
         """When the link next needs a call though nothing arrives."""
         return None
+
+    def take_lost(self) -> bool:
+        """Tell once that the connection to the client was lost; a wire cannot."""
+        return False
+
+    def hang_up(self) -> None:  # noqa: B027 (only a connection can be closed)
+        """Close the connection to the client, not the link."""
 
     @abstractmethod
     def readers(self) -> list[Any]:
@@ -323,9 +330,11 @@ _TIOCGEXCL: Final = 0x80045440
 
 
 class TcpLink(Link):
-    """A TCP port, one client at a time; the robot's session outlives a client that drops, as a wire would."""
+    """A TCP port, one client at a time: a second one is turned away, or finds nobody listening (`deaf`)."""
 
-    def __init__(self, host: str, port: int) -> None:
+    def __init__(self, host: str, port: int, deaf: bool = False) -> None:
+        self._deaf = deaf
+        self._lost = False
         self._host = host
         self._port = port
         self._listener: socket.socket | None = None
@@ -334,6 +343,9 @@ class TcpLink(Link):
 
     def open(self) -> None:
         """Listen."""
+        self._listen()
+
+    def _listen(self) -> None:
         try:
             family = socket.getaddrinfo(self._host, self._port, type=socket.SOCK_STREAM)[0][0]
             listener = socket.create_server((self._host, self._port), family=family, backlog=1)
@@ -352,6 +364,8 @@ class TcpLink(Link):
         return f"{self._host}:{self._port}"
 
     def _accept(self) -> None:
+        if self._listener is None:
+            self._listen()
         assert self._listener is not None
         try:
             client, _ = self._listener.accept()
@@ -364,11 +378,24 @@ class TcpLink(Link):
         client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._client = client
         self._pending.clear()
+        if self._deaf:
+            self._listener.close()
+            self._listener = None
 
     def _drop_client(self) -> None:
         if self._client is not None:
             self._client.close()
             self._client = None
+            self._lost = True
+
+    def take_lost(self) -> bool:
+        """Tell once that the connection to the client was lost."""
+        lost, self._lost = self._lost, False
+        return lost
+
+    def hang_up(self) -> None:
+        """Close the connection to the client."""
+        self._drop_client()
 
     def receive(self, now_ms: float) -> Iterable[bytes]:  # noqa: ARG002 (Link's shape)
         """Yield what has arrived."""
@@ -383,7 +410,8 @@ class TcpLink(Link):
                 self._drop_client()
                 break
             yield data
-        self._accept()
+        if self._client is None or self._listener is not None:
+            self._accept()
 
     def send(self, packet: bytes, now_ms: float) -> None:  # noqa: ARG002 (Link's shape)
         """Send, or drop if nobody is connected."""
@@ -518,6 +546,8 @@ class Loop:
             faults.update(now)
         for data in link.receive(now):
             self._hear(data, now)
+        if link.take_lost():
+            server.client_gone()
         if faults is not None:
             for data in faults.pop(now, "to_robot"):
                 self._to_server(data, now)
@@ -532,6 +562,8 @@ class Loop:
             for packet in faults.pop(now, "to_client"):
                 link.send(packet, now)
         link.transmit(now)
+        if server.take_hang_up():
+            link.hang_up()
         return self._rest_ms(now)
 
     def _hear(self, data: bytes, now: float) -> None:
@@ -559,3 +591,34 @@ class Loop:
         """Serve until `stop()` or for `duration_ms` of robot time."""
         while not stop() and (duration_ms is None or self._last_ms < duration_ms):
             self.link.wait(self.turn())
+
+
+class Fleet:
+    """Serves several robots, each on its own link, in one thread."""
+
+    def __init__(self, loops: Sequence[Loop], clock_ms: Callable[[], float] = _now_ms) -> None:
+        self.loops = list(loops)
+        self._clock_ms = clock_ms
+        self._due_ms = [0.0] * len(self.loops)
+
+    def turn(self) -> float:
+        """Do what is due; return how long all may then sleep, in ms."""
+        for k, loop in enumerate(self.loops):
+            now = self._clock_ms()
+            if self._due_ms[k] <= now:
+                self._due_ms[k] = now + loop.turn()
+        return min(self._due_ms) - self._clock_ms()
+
+    def wait(self, timeout_ms: float) -> None:
+        """Sleep until input or the timeout; who has input is due."""
+        owner = {reader: k for k, loop in enumerate(self.loops) for reader in loop.link.readers()}
+        with contextlib.suppress(InterruptedError):
+            ready, _, _ = select.select(list(owner), [], [], max(0.0, timeout_ms) / 1000)
+            for reader in ready:
+                self._due_ms[owner[reader]] = 0.0
+
+    def run(self, stop: Callable[[], bool], duration_ms: float | None = None) -> None:
+        """Serve until `stop()` or for `duration_ms`."""
+        start_ms = self._clock_ms()
+        while not stop() and (duration_ms is None or self._clock_ms() - start_ms < duration_ms):
+            self.wait(self.turn())

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final, Protocol
 
 from hil_sim.arcos import (
+    BUMPSTALL,
     DEFAULT,
     FLAG,
     MOTION,
@@ -40,7 +41,7 @@ _TRACK_MM: Final[float] = MOTION["track_mm"]
 _SWING_MM: Final[float] = load("p3dx")["body"]["swing_radius_mm"]
 _WATCHDOG_MS: Final = TIMING["WATCHDOG_MS"]
 _TOUCH_RELEASE_MM: Final = 5.0
-_FRONT_MASK: Final = SIP["BUMPER_MASK"]
+_BUMPER_MASK: Final = SIP["BUMPER_MASK"]
 
 Log = Callable[[str, dict[str, Any]], None]
 """Receives one truth record: its type and its fields, `t_s` included."""
@@ -107,6 +108,9 @@ class Ring(Protocol):
     def advance(self, now_ms: float, pose_at: Callable[[float], Pose]) -> Sequence[SonarReading]:
         """Fire what is due up to now; return the readings completed."""
 
+    def fire_all(self, now_ms: float, pose: Pose) -> Sequence[SonarReading]:
+        """Return a reading of every sonar of the enabled arrays, without noise."""
+
 
 class Faults(Protocol):
     """What the robot asks of the injected faults."""
@@ -139,6 +143,7 @@ class Settings:
     rdecel: float = float(MOTION["rotdecel_deg_s2"])
     bumpstall: int = DEFAULT["BUMPSTALL"]
     estall: bool = True
+    joydrive: bool = False
     config: dict[str, int] = field(default_factory=dict)
 
 
@@ -153,6 +158,7 @@ class Robot:
         *,
         faults: Faults | None = None,
         bumpers: int = 5,
+        rear_bumpers: int = 0,
         seed: int = 0,
         odometry_error: OdometryError | None = None,
         dynamic: bool = False,
@@ -164,6 +170,7 @@ class Robot:
         self.faults = faults
         self.start = start
         self.bumpers = bumpers
+        self.rear_segments = rear_bumpers
         self.dynamic = dynamic
         self.log = log
         error = odometry_error or OdometryError()
@@ -185,6 +192,9 @@ class Robot:
         self.settings = Settings()
         self.motors = False
         self.connected = False
+        self.watchdog_stops = True
+        self.fires_in_turn = True
+        self.unit_mm = 1.0
         self.estop_pressed = False
         self.estalled = False
         self.last_heard_ms = 0
@@ -350,8 +360,12 @@ class Robot:
 
     def set_origin(self) -> None:
         """SETO: odometry becomes (0, 0, 0) here."""
-        self._head_set -= self.odo_th
-        self.odo_x = self.odo_y = self.odo_th = 0.0
+        self.set_odometry(0.0, 0.0, 0.0)
+
+    def set_odometry(self, x_mm: float, y_mm: float, heading_deg: float) -> None:
+        """Let odometry say that the robot is there; a turn that is under way goes on."""
+        self._head_set += heading_deg - self.odo_th
+        self.odo_x, self.odo_y, self.odo_th = x_mm, y_mm, heading_deg
 
     def sonar(self, argument: int) -> None:
         """SONAR: bit 0 on or off, bits 1 to 3 the array, 0 for all; a P3-DX has arrays 1 and 2."""
@@ -391,7 +405,8 @@ class Robot:
     @property
     def watchdog_expired(self) -> bool:
         """No packet for so long that the robot stops by itself."""
-        return self.connected and self.now_ms - self.last_heard_ms > _WATCHDOG_MS
+        quiet_ms = self.now_ms - self.last_heard_ms
+        return self.connected and self.watchdog_stops and quiet_ms > _WATCHDOG_MS
 
     @property
     def sonar_on(self) -> bool:
@@ -401,7 +416,12 @@ class Robot:
     @property
     def front_bumpers(self) -> int:
         """Front bumper bits as in the SIP."""
-        return (self.contact_front | self.fault_bumpers) & _FRONT_MASK if self.bumpers else 0
+        return (self.contact_front | self.fault_bumpers) & _BUMPER_MASK if self.bumpers else 0
+
+    @property
+    def rear_bumpers(self) -> int:
+        """Rear bumper bits as in the SIP."""
+        return self.contact_rear & _BUMPER_MASK if self.rear_segments else 0
 
     @property
     def wants_motion(self) -> bool:
@@ -459,7 +479,8 @@ class Robot:
         self.energy.idle_s += STEP_S
         if self.sonar_on:
             self.energy.sonar_s += STEP_S
-            self._hear_sonars()
+            if self.fires_in_turn:
+                self._hear(self.ring.advance(self.now_ms, self.pose_at))
         if self.log is not None:
             self._log_step(self.log)
 
@@ -506,7 +527,9 @@ class Robot:
         if self.now_ms < self._relax_until_ms:
             return True
         ahead = self._move_left if self._move_mode else self._v_set
-        hit = bool(self.settings.bumpstall & 1 and ahead > 0 and self.front_bumpers)
+        front = self.settings.bumpstall & BUMPSTALL["FRONT"] and ahead > 0 and self.front_bumpers
+        rear = self.settings.bumpstall & BUMPSTALL["REAR"] and ahead < 0 and self.rear_bumpers
+        hit = bool(front or rear)
         self._set_stall(hit, hit)
         return hit
 
@@ -626,8 +649,13 @@ class Robot:
             for change in changes:
                 self.log("fault", {"t_s": self.now_ms / 1000, **_fault_fields(change)})
 
-    def _hear_sonars(self) -> None:
-        readings = self.ring.advance(self.now_ms, self.pose_at)
+    def fire_all(self) -> None:
+        """Let every sonar fire now, as no real array does; the next SIP has all their readings."""
+        if self.sonar_on:
+            self._readings.clear()
+            self._hear(self.ring.fire_all(self.now_ms, self.pose))
+
+    def _hear(self, readings: Sequence[SonarReading]) -> None:
         if not readings:
             return
         self._readings += readings
@@ -677,13 +705,13 @@ class Robot:
         readings = tuple((reading.number, reading.range_mm) for reading in self._readings)
         packet = Sip(
             type=TYPE["SIP_MOVING"] if moving else TYPE["SIP_STATIONARY"],
-            x=round(self.odo_x) & 0xFFFF,
-            y=round(self.odo_y) & 0xFFFF,
+            x=round(self.odo_x / self.unit_mm) & 0xFFFF,
+            y=round(self.odo_y / self.unit_mm) & 0xFFFF,
             th=_angle_units(self.odo_th),
             left_vel=left,
             right_vel=right,
             battery=min(battery_dv, 255),
-            stall_left=int(self._stall_seen_left or self._stall_left),
+            stall_left=self.rear_bumpers | int(self._stall_seen_left or self._stall_left),
             stall_right=self.front_bumpers | int(self._stall_seen_right or self._stall_right),
             flags=self._flags(),
             sonars=readings,
@@ -712,6 +740,7 @@ class Robot:
             subtype=subclass,
             name=name,
             front_bumps=self.bumpers,
+            rear_bumps=self.rear_segments,
             trans_vel_max=int(now.v_max),
             rot_vel_max=int(now.rv_max),
             trans_acc=int(now.accel),
@@ -730,9 +759,9 @@ class Robot:
 
     def io_pac(self) -> IoPac:
         """The IOpac due now; bumper inputs are pulled up, so a pressed segment reads 0."""
-        front = ~self.front_bumpers & 0xFF
+        front, rear = ~self.front_bumpers & 0xFF, ~self.rear_bumpers & 0xFF
         battery = min(1023, round(self.battery_v / 20 * 1023))
-        return IoPac(bytes((0xFF, front, 0xFF, 0xFF)), bytes((self.digout,)), (0,) * 8 + (battery,))
+        return IoPac(bytes((0xFF, front, rear, 0xFF)), bytes((self.digout,)), (0,) * 8 + (battery,))
 
     def sim_stat(self) -> SimStat:
         """The simulator's report of the true pose."""

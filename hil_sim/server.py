@@ -4,27 +4,38 @@
 from __future__ import annotations
 
 import enum
+import logging
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from hil_sim.arcos import (
     BAUD_OF_CODE,
     COMMAND,
     DEFAULT,
+    SIP,
     TIMING,
+    TYPE,
     Command,
+    Sip,
     SyncEcho,
     SyncReply,
     Unframer,
     frame,
 )
+from hil_sim.commands import WHY_IGNORED, describe
 from hil_sim.motion import STEP_MS
 from hil_sim.robot import Log, Robot
 
 _SYNC0, _SYNC1, _SYNC2 = COMMAND["PULSE"], COMMAND["OPEN"], COMMAND["CLOSE"]
-_SIP_CYCLE_MS: Final = TIMING["SIP_CYCLE_MS"]
+SIP_CYCLE_MS: Final = TIMING["SIP_CYCLE_MS"]
 _FLASH_BAUD: Final = BAUD_OF_CODE[DEFAULT["HOSTBAUD"]]
+
+_LOG: Final = logging.getLogger("argus.sim")
+_AUX_MAX: Final = 200
+_JOYSTICK_REST: Final = bytes(2) + 3 * (512).to_bytes(2, "little")
+"""JOYSTICKpac of a port with nothing plugged in: no button, both axes and the throttle in the middle."""
+_OLD_SUBCLASS: Final = b"p3dx"
 
 # Run-time parameters that only show in the CONFIGpac, by the field in which they show.
 _CONFIG_FIELD: Final = {
@@ -37,6 +48,21 @@ _CONFIG_FIELD: Final = {
     COMMAND["REVCOUNT"]: "rev_count",
     COMMAND["TICKSMM"]: "ticks_mm",
 }
+_AUX_BAUD_FIELD: Final = {
+    COMMAND["AUX1BAUD"]: "aux1_baud",
+    COMMAND["AUX2BAUD"]: "aux2_baud",
+    COMMAND["AUX3BAUD"]: "aux3_baud",
+}
+
+
+@dataclass
+class AuxPort:
+    """One auxiliary serial port: bytes wait here until a client has asked for as many."""
+
+    packet_type: int
+    loops_back: bool = False
+    held: bytearray = field(default_factory=bytearray)
+    wanted: int = 0
 
 
 class State(enum.Enum):
@@ -61,21 +87,34 @@ class ArcosServer:
         name: str = "P3DX_0001",
         subclass: str = "p3dx-sh",
         flash_baud: int = _FLASH_BAUD,
+        sip_cycle_ms: int = SIP_CYCLE_MS,
+        aux_loopback: bool = False,
         log: Log | None = None,
     ) -> None:
-        """`flash_baud`: the rate at which the robot starts and to which it returns."""
+        """`flash_baud`: the rate at which the robot starts and to which it returns.
+
+        `sip_cycle_ms`: a multiple of 10. `aux_loopback`: a plug on each AUX port sends back what goes out.
+        """
         self.robot = robot
         self.name = name.encode("latin-1", "replace")[:20]
         self.subclass = subclass.encode("latin-1", "replace")
         self.log = log
         self.state = State.WAIT
         self.baud = self._flash_baud = flash_baud
-        self.unframer = Unframer(10_000 / flash_baud)
+        self.unframer = Unframer()
         self.sips = 0
         self._out: list[bytes] = []
         self._synced = -1
-        self._next_sip_ms = 0
-        self._encoders = self._io = self._sim_stat = False
+        self._next_sip_ms = 0.0
+        self.sip_cycle_ms = sip_cycle_ms
+        robot.unit_mm = SIP["OLD_UNIT_UM"] / 1000 if self.subclass == _OLD_SUBCLASS else 1.0
+        self.hangs_up = False
+        self._encoders = self._io = self._sim_stat = self._joystick = False
+        self._aux = {
+            1: AuxPort(TYPE["SERAUXPAC"], aux_loopback),
+            2: AuxPort(TYPE["SERAUX2PAC"], aux_loopback),
+            3: AuxPort(TYPE["SERAUX3PAC"], aux_loopback),
+        }
         self._handlers = self._table()
 
     # ---- the link's side
@@ -83,7 +122,7 @@ class ArcosServer:
     @property
     def next_due_ms(self) -> float | None:
         """When `advance` next has something to send by itself; None while waiting for a client."""
-        return float(self._next_sip_ms) if self.state is State.CONNECTED else None
+        return self._next_sip_ms if self.state is State.CONNECTED else None
 
     def receive(self, data: bytes, now_ms: float) -> None:
         """Take bytes that have arrived by now; answers are in `outgoing`."""
@@ -100,7 +139,7 @@ class ArcosServer:
         while robot.now_ms + STEP_MS <= now_ms:
             robot.step()
             if self.state is State.CONNECTED and robot.now_ms >= self._next_sip_ms:
-                self._next_sip_ms += _SIP_CYCLE_MS
+                self._next_sip_ms += self.sip_cycle_ms
                 self._send_sip()
 
     def outgoing(self) -> list[bytes]:
@@ -108,17 +147,32 @@ class ArcosServer:
         out, self._out = self._out, []
         return out
 
+    def take_hang_up(self) -> bool:
+        """Tell once whether the connection is to be closed from this side; a robot on a wire never does."""
+        wanted, self.hangs_up = self.hangs_up, False
+        return wanted
+
+    def client_gone(self) -> None:
+        """The link lost its client: a wire does not tell, so the session goes on."""
+
     # ---- sessions
 
     def _packet(self, data: bytes) -> None:
         command = Command.decode(data)
         if self.state is State.CONNECTED:
             self.robot.heard()
-            handler = self._handlers.get(command.number)
-            if handler:
-                handler(command)
+            self._obey(command)
         else:
             self._handshake(command)
+
+    def _obey(self, command: Command) -> None:
+        handler = self._handlers.get(command.number)
+        if _LOG.isEnabledFor(logging.DEBUG):
+            why = "" if handler else f": ignored, {WHY_IGNORED.get(command.number, 'no such command')}"
+            name, t_s = self.name.decode("latin-1"), self.robot.now_ms / 1000
+            _LOG.debug("%s %.3f s: %s%s", name, t_s, describe(command), why)
+        if handler:
+            handler(command)
 
     def _handshake(self, command: Command) -> None:
         number = command.number
@@ -143,14 +197,17 @@ class ArcosServer:
     def _open(self) -> None:
         self.state = State.CONNECTED
         self.robot.open()
-        self._next_sip_ms = self.robot.now_ms + _SIP_CYCLE_MS
+        self._next_sip_ms = float(self.robot.now_ms + self.sip_cycle_ms)
         self._log("session", state="open")
 
     def _end_session(self, reason: str) -> None:
         was_open = self.state is State.CONNECTED
         self.state, self._synced = State.WAIT, -1
         self.baud = self._flash_baud
-        self._encoders = self._io = self._sim_stat = False
+        self._encoders = self._io = self._sim_stat = self._joystick = False
+        for port in self._aux.values():
+            port.held.clear()
+            port.wanted = 0
         self.robot.close()
         if was_open:
             self._log("session", state="closed", reason=reason)
@@ -166,13 +223,21 @@ class ArcosServer:
 
     def _send_sip(self) -> None:
         self.sips += 1
-        self._send(self.robot.sip().data)
+        if self._joystick:
+            self._send_joystick()
+        self._send(self._sip().data)
         if self._io:
             self._send(self.robot.io_pac().data)
         if self._encoders:
             self._send(self.robot.encoder_pac().data)
         if self._sim_stat:
             self._send(self.robot.sim_stat().data)
+
+    def _sip(self) -> Sip:
+        return self.robot.sip()
+
+    def _send_joystick(self) -> None:
+        self._send(bytes((TYPE["JOYSTICKPAC"],)) + _JOYSTICK_REST)
 
     # ---- commands
 
@@ -181,6 +246,8 @@ class ArcosServer:
         robot = self.robot
         unit = DEFAULT["VEL2_UNIT_MM_S"]
         by_name: dict[str, Callable[[Command], None]] = {
+            "PULSE": lambda c: None,
+            "OPEN": lambda c: None,
             "CLOSE": lambda c: self._end_session("close"),
             "RESET": lambda c: self._end_session("reset"),
             "POLLING": lambda c: robot.ring.set_polling(list(c.text)),
@@ -205,6 +272,14 @@ class ArcosServer:
             "CONFIG": self._config,
             "ENCODER": self._encoder,
             "IOREQUEST": self._io_request,
+            "JOYREQUEST": self._joystick_request,
+            "JOYDRIVE": lambda c: setattr(robot.settings, "joydrive", c.value != 0),
+            "TTY2": lambda c: self._aux_out(1, c.text),
+            "TTY3": lambda c: self._aux_out(2, c.text),
+            "TTY4": lambda c: self._aux_out(3, c.text),
+            "GETAUX": lambda c: self._aux_request(1, c.value),
+            "GETAUX2": lambda c: self._aux_request(2, c.value),
+            "GETAUX3": lambda c: self._aux_request(3, c.value),
             "BUMPSTALL": lambda c: setattr(robot.settings, "bumpstall", c.value & 3),
             "E_STALL": lambda c: setattr(robot.settings, "estall", c.value != 0),
             "SONAR_CYCLE": lambda c: robot.sonar_cycle(c.value),
@@ -219,12 +294,14 @@ class ArcosServer:
         }
         table = {COMMAND[name]: handler for name, handler in by_name.items()}
         table.update(dict.fromkeys(_CONFIG_FIELD, self._parameter))
+        table.update(dict.fromkeys(_AUX_BAUD_FIELD, self._aux_baud))
         return table
 
     def _config(self, _command: Command) -> None:
         codes = {baud: code for code, baud in BAUD_OF_CODE.items()}
         packet = self.robot.config_pac(self.name, self.subclass)
-        self._send(replace(packet, host_baud=codes.get(self._flash_baud, 0)).data)
+        baud = codes.get(self._flash_baud, 0)
+        self._send(replace(packet, host_baud=baud, sip_cycle_ms=self.sip_cycle_ms).data)
 
     def _parameter(self, command: Command) -> None:
         self.robot.settings.config[_CONFIG_FIELD[command.number]] = command.value & 0xFFFF
@@ -238,6 +315,37 @@ class ArcosServer:
         self._io = command.value > 1
         if command.value == 1:
             self._send(self.robot.io_pac().data)
+
+    def _joystick_request(self, command: Command) -> None:
+        self._joystick = command.value > 1
+        if command.value == 1:
+            self._send_joystick()
+
+    def aux_receive(self, port: int, data: bytes) -> None:
+        """Bytes come in at AUX port 1, 2 or 3, from what is plugged in there."""
+        aux = self._aux[port]
+        aux.held = (aux.held + data)[-_AUX_MAX:]
+        if aux.wanted and len(aux.held) >= aux.wanted:
+            self._send(bytes((aux.packet_type,)) + aux.held[: aux.wanted])
+            del aux.held[: aux.wanted]
+            aux.wanted = 0
+
+    def _aux_out(self, port: int, data: bytes) -> None:
+        if self._aux[port].loops_back:
+            self.aux_receive(port, data)
+
+    def _aux_request(self, port: int, count: int) -> None:
+        aux = self._aux[port]
+        if 1 <= count <= _AUX_MAX:
+            aux.wanted = count
+            self.aux_receive(port, b"")
+        elif count == 0:
+            aux.held.clear()
+            aux.wanted = 0
+
+    def _aux_baud(self, command: Command) -> None:
+        if command.value in BAUD_OF_CODE:
+            self.robot.settings.config[_AUX_BAUD_FIELD[command.number]] = command.value
 
     def _sim_stat_request(self, command: Command) -> None:
         self._sim_stat = command.value > 1

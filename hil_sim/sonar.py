@@ -347,6 +347,28 @@ class SonarRing:
             ready.sort(key=lambda reading: reading.t_ms)
         return ready
 
+    def fire_all(self, now_ms: float, pose: Pose) -> list[Reading]:
+        """Return a reading of every sonar of the enabled arrays, without noise and crosstalk, faults applied.
+
+        This is what emulators that know no schedule do; the firing order and its clock are left alone.
+        """
+        readings = []
+        for array in range(FITTED_ARRAYS):
+            if self._enabled[array]:
+                for number in self._default(array).order:
+                    readings += self._fire_one(number, now_ms, pose)
+        return readings
+
+    def _fire_one(self, number: int, now_ms: float, pose: Pose) -> list[Reading]:
+        true_mm = self.true_range(number, pose)
+        value: int | None = true_mm
+        kind = None
+        if self.faults is not None:
+            value, kind = self.faults.apply(
+                number, now_ms, true_mm, lambda angle_deg: self._measure(number, pose, angle_deg)
+            )
+        return [] if value is None else [Reading(now_ms, number, value, true_mm, kind)]
+
     def _restart(self, arrays: Iterable[int]) -> None:
         for array in arrays:
             self._arrays[array].next_ms = None

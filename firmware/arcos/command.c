@@ -139,6 +139,10 @@ void argus_outbox_urgent(argus_outbox_t *self, uint8_t command) {
     store(self, 0, packet, total);
 }
 
+int argus_outbox_first(const argus_outbox_t *self) {
+    return self->length > 0 ? byte_at(self, COMMAND_OFFSET) : -1;
+}
+
 size_t argus_outbox_fetch(argus_outbox_t *self, uint8_t *packet, size_t capacity) {
     const size_t total = self->length > 0 ? packet_total(self, 0) : 0;
     if (total == 0 || total > capacity) {

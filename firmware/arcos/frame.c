@@ -8,11 +8,6 @@
 #define PACKET_MIN (ARCOS_FRAME_COUNT_MIN + ARCOS_FRAME_OVERHEAD)
 #define CHECKSUM_BYTES 2
 
-// Longest tail of a SIP: 12 bytes are standard, the newest known robots append 12 more.
-#define SIP_TAIL_MAX 40
-// No packet but SIP and CONFIGpac is longer in ordinary use; a false COUNT above this is seen through at
-// once.
-#define COUNT_USUAL_MAX 64
 #define SLOWEST_BAUD ARCOS_BAUD_B9600
 
 static uint32_t elapsed_ms(uint32_t now_ms, uint32_t then_ms) {
@@ -177,7 +172,7 @@ static bool sip_is_doubtful(const uint8_t *frame, size_t held) {
     const int sonars = frame[ARCOS_SIP_OFFSET_SONAR_COUNT];
     const int total = frame[2] + ARCOS_FRAME_OVERHEAD;
     const int tail = total - CHECKSUM_BYTES - ARCOS_SIP_OFFSET_SONAR - sonars * ARCOS_SIP_SONAR_BYTES;
-    return tail < 0 || tail > SIP_TAIL_MAX;
+    return tail < 0 || tail > ARCOS_FRAME_RESYNC_SIP_TAIL_MAX;
 }
 
 static bool is_doubtful(const argus_parser_t *self) {
@@ -190,7 +185,8 @@ static bool is_doubtful(const argus_parser_t *self) {
         return sip_is_doubtful(frame, held);
     }
     const bool config = frame[HEADER_BYTES] == ARCOS_TYPE_CONFIGPAC;
-    return self->broken_off || frame[2] > (config ? ARCOS_FRAME_RESYNC_OWED_MAX : COUNT_USUAL_MAX);
+    const int longest = config ? ARCOS_FRAME_RESYNC_CONFIG_COUNT_MAX : ARCOS_FRAME_RESYNC_OTHER_COUNT_MAX;
+    return self->broken_off || frame[2] > longest;
 }
 
 // True when a whole, good packet starts at `at`, unless an earlier search has seen it fail.

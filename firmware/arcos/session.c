@@ -108,6 +108,7 @@ static void open_robot(argus_session_t *self, uint32_t now_ms) {
     memset(&self->robot, 0, sizeof self->robot);
     self->has_robot = false;
     self->opening_sips = 0;
+    self->zeros_due = 0;
     self->heard_ms = now_ms;
     argus_outbox_plain(&self->outbox, ARCOS_CMD_OPEN);
     argus_outbox_int(&self->outbox, ARCOS_CMD_VEL, 0);
@@ -230,9 +231,8 @@ static unsigned on_opening(argus_session_t *self, const argus_config_t *config, 
 static unsigned resume(argus_session_t *self, uint32_t gap_ms) {
     self->stalled = false;
     self->gap_ms = gap_ms;
+    self->zeros_due = 2;
     argus_outbox_drop_motion(&self->outbox);
-    argus_outbox_int(&self->outbox, ARCOS_CMD_VEL, 0);
-    argus_outbox_int(&self->outbox, ARCOS_CMD_RVEL, 0);
     return ARGUS_SESSION_DID_RESUME;
 }
 
@@ -444,12 +444,27 @@ static bool is_mute(const argus_session_t *self) {
     return is_deaf(self) || self->state == ARGUS_SESSION_PAUSE || self->state == ARGUS_SESSION_LISTEN;
 }
 
+// VEL 0 and RVEL 0 after a gap. They are not in the outbox, because STOP would overtake or drop them there.
+static size_t fetch_zero(argus_session_t *self, uint8_t *packet, size_t capacity) {
+    if (self->zeros_due == 0 || self->state != ARGUS_SESSION_OPEN ||
+        argus_outbox_first(&self->outbox) == ARCOS_CMD_E_STOP) {
+        return 0;
+    }
+    const uint8_t command = self->zeros_due == 2 ? ARCOS_CMD_VEL : ARCOS_CMD_RVEL;
+    const size_t length = argus_command_int(packet, capacity, command, 0);
+    self->zeros_due = (uint8_t)(self->zeros_due - (length > 0 ? 1 : 0));
+    return length;
+}
+
 size_t argus_session_transmit(argus_session_t *self, uint32_t now_ms, uint8_t *packet, size_t capacity) {
     if (is_mute(self)) {
         argus_outbox_clear(&self->outbox);
         return 0;
     }
-    const size_t length = argus_outbox_fetch(&self->outbox, packet, capacity);
+    size_t length = fetch_zero(self, packet, capacity);
+    if (length == 0) {
+        length = argus_outbox_fetch(&self->outbox, packet, capacity);
+    }
     if (length > 0) {
         self->spoke_ms = now_ms;
     }

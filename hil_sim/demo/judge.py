@@ -172,14 +172,18 @@ def clock_offset_s(truth: Sequence[Record], events: Sequence[Record]) -> float:
     thousands of lines that delay is a few ms, and the difference of the two minima is the offset. Without wall
     times: argusd's SESSION_OPEN is taken to be simultaneous with the emulator's, right to about 0.2 s.
     """
-    wall_truth = [record["wall_s"] - record["t_s"] for record in truth if "wall_s" in record and "t_s" in record]
+    wall_truth = [
+        record["wall_s"] - record["t_s"] for record in truth if "wall_s" in record and "t_s" in record
+    ]
     wall_events = [event["wall_s"] - event_s(event) for event in events if "wall_s" in event]
     if wall_truth and wall_events:
         return float(min(wall_events) - min(wall_truth))
     opened_truth = [record["t_s"] for record in of_type(truth, "session") if record.get("state") == "open"]
     opened_events = [event_s(event) for event in events if event.get("event") == "SESSION_OPEN"]
     if not opened_truth or not opened_events:
-        raise SimError("the two clocks cannot be joined: no wall times and no opened session in the recording")
+        raise SimError(
+            "the two clocks cannot be joined: no wall times and no opened session in the recording"
+        )
     return float(opened_truth[0]) - opened_events[0]
 
 
@@ -305,7 +309,9 @@ def _rule_goal(drive: _Drive, task: Task) -> Rule:
 
 def _rule_rest(drive: _Drive) -> Rule:
     last = drive.states[-1]
-    moving = [state for state in drive.states if state["t_s"] > last["t_s"] - _REST_S and not is_at_rest(state)]
+    moving = [
+        state for state in drive.states if state["t_s"] > last["t_s"] - _REST_S and not is_at_rest(state)
+    ]
     detail = f"{last['v_mm_s']:.0f} mm/s and {last['w_deg_s']:.0f} deg/s at the end"
     return Rule("at rest", not moving, detail)
 
@@ -363,7 +369,9 @@ def _rule_after(findings: Sequence[Finding]) -> Rule:
         for one in findings
         if one.diagnosed is not None and (one.injected is None or one.diagnosed.t_s < one.injected.t_s)
     ]
-    return Rule("each after its injection", not early, "; ".join(early) or "no diagnosis came before its fault")
+    return Rule(
+        "each after its injection", not early, "; ".join(early) or "no diagnosis came before its fault"
+    )
 
 
 def _rule_healthy(false: Sequence[tuple[float, int, str]]) -> Rule:
@@ -372,7 +380,11 @@ def _rule_healthy(false: Sequence[tuple[float, int, str]]) -> Rule:
 
 
 def _rule_whole(drive: _Drive) -> Rule:
-    bad = [f"{event['event']} {event.get('value')}" for name in ("INVARIANT", "EVENTS_LOST") for _, event in drive.named(name)]
+    bad = [
+        f"{event['event']} {event.get('value')}"
+        for name in ("INVARIANT", "EVENTS_LOST")
+        for _, event in drive.named(name)
+    ]
     return Rule("argusd is consistent", not bad, "; ".join(bad) or "no broken invariant, no lost event")
 
 
@@ -382,7 +394,10 @@ def _rule_whole(drive: _Drive) -> Rule:
 def energy_j(start: Record, end: Record, idle_factor: float = 1.0) -> float:
     """Energy drawn between two truth states with the idle power scaled; constants from the energy table."""
     power = load("energy")["power"]
-    account = {key: end["energy_j"][key] - start["energy_j"][key] for key in ("idle_s", "sonar_s", "wheel_m", "accel_j")}
+    account = {
+        key: end["energy_j"][key] - start["energy_j"][key]
+        for key in ("idle_s", "sonar_s", "wheel_m", "accel_j")
+    }
     total = account["idle_s"] * power["idle_w"] * idle_factor + account["sonar_s"] * power["sonar_w"]
     return float(total + account["wheel_m"] * power["wheel_j_per_m"] + account["accel_j"])
 

@@ -29,14 +29,16 @@ _INK, _GREY, _PALE, _FLOOR = "#222222", "#8a8a8a", "#d5d5d5", "#fafafa"
 _SIZE_IN: Final = (16.0, 10.0)
 _DPI: Final = 100
 _FRONT: Final = range(1, 7)
+_MARGIN_MM: Final = 1500.0
+"""Room for words to the right of the map."""
 _STANDS_MM_S: Final = 5.0
 _P3DX: Final = load("p3dx")
 _POSE: Final = {int(pose["number"]): pose for pose in _P3DX["sonar"]["pose"]}
 _NO_ECHO_MM: Final = float(_P3DX["sonar"]["no_echo_mm"])
 _FAULT_WORDS: Final = {
-    "off": "goes dead: it reads 5000 from here on",
-    "wrong": "lies from here on: it reads half the truth",
-    "silent": "falls silent: no reading from here on",
+    "off": "goes dead:\nit reads 5000 from here on",
+    "wrong": "lies from here on:\nit reads half the truth",
+    "silent": "falls silent:\nno reading from here on",
 }
 
 
@@ -97,7 +99,16 @@ def _draw_world(axes: Axes, world: World) -> None:
     for points in outlines:
         room = _area(points) > 0.5 * (x2 - x1) * (y2 - y1)
         face, hatch = (_FLOOR, None) if room else ("#e4e4e4", "////")
-        axes.add_patch(Polygon(points, facecolor=face, edgecolor=_GREY if hatch else _INK, hatch=hatch, lw=0, zorder=0 if room else 1))
+        axes.add_patch(
+            Polygon(
+                points,
+                facecolor=face,
+                edgecolor=_GREY if hatch else _INK,
+                hatch=hatch,
+                lw=0,
+                zorder=0 if room else 1,
+            )
+        )
     lines = [((a, b), (c, d)) for a, b, c, d in world.segments]
     axes.add_collection(LineCollection(lines, colors=_INK, linewidths=2.2, capstyle="round", zorder=2))
 
@@ -116,7 +127,9 @@ def _place(x_mm: float, y_mm: float, heading_deg: float, at: tuple[float, float]
     return x_mm + at[0] * c - at[1] * s, y_mm + at[0] * s + at[1] * c
 
 
-def _draw_robot(axes: Axes, x_mm: float, y_mm: float, heading_deg: float, colour: str, fill: float = 0.12) -> None:
+def _draw_robot(
+    axes: Axes, x_mm: float, y_mm: float, heading_deg: float, colour: str, fill: float = 0.12
+) -> None:
     points = _body(x_mm, y_mm, heading_deg)
     axes.add_patch(Polygon(points, facecolor=colour, alpha=fill, lw=0, zorder=3))
     axes.add_patch(Polygon(points, facecolor="none", edgecolor=colour, lw=1.2, zorder=5))
@@ -154,7 +167,11 @@ def _draw_hits(axes: Axes, drive: Drive) -> None:
 
 def _failure_since_s(drive: Drive) -> float:
     """When the first plan was made: from then on the robot drives in steps."""
-    planned = [plan.t_s for plan in drive.verdict.journey.plans if plan.rotations_deg] if drive.verdict.journey else []
+    planned = (
+        [plan.t_s for plan in drive.verdict.journey.plans if plan.rotations_deg]
+        if drive.verdict.journey
+        else []
+    )
     return min(planned, default=math.inf)
 
 
@@ -165,8 +182,22 @@ def _draw_path(axes: Axes, drive: Drive) -> None:
         (_BLUE, [s for s in states if s["t_s"] <= since + 0.15]),
         (_ORANGE, [s for s in states if s["t_s"] > since]),
     ):
-        axes.plot([s["x_mm"] for s in part], [s["y_mm"] for s in part], color="white", lw=6, zorder=6, solid_capstyle="round")
-        axes.plot([s["x_mm"] for s in part], [s["y_mm"] for s in part], color=colour, lw=3.4, zorder=6.1, solid_capstyle="round")
+        axes.plot(
+            [s["x_mm"] for s in part],
+            [s["y_mm"] for s in part],
+            color="white",
+            lw=6,
+            zorder=6,
+            solid_capstyle="round",
+        )
+        axes.plot(
+            [s["x_mm"] for s in part],
+            [s["y_mm"] for s in part],
+            color=colour,
+            lw=3.4,
+            zorder=6.1,
+            solid_capstyle="round",
+        )
 
 
 def standstills(states: Sequence[Record]) -> Iterator[list[Record]]:
@@ -191,7 +222,9 @@ def _draw_stops(axes: Axes, drive: Drive) -> None:
             base = last["heading_deg"]
             off = [math.remainder(state["heading_deg"] - base, 360) for state in run]
             low, high = min(off), max(off)
-            axes.add_patch(Wedge((x, y), 260, base + low, base + high, facecolor=_ORANGE, alpha=0.16, lw=0, zorder=4))
+            axes.add_patch(
+                Wedge((x, y), 260, base + low, base + high, facecolor=_ORANGE, alpha=0.16, lw=0, zorder=4)
+            )
             for edge in {round(low), 0, round(high)}:
                 tip = _place(x, y, base + edge, (260, 0))
                 axes.plot([x, tip[0]], [y, tip[1]], color=_ORANGE, lw=0.8, alpha=0.9, zorder=4.1)
@@ -229,9 +262,13 @@ class _Callouts:
     def __init__(self, axes: Axes, drive: Drive) -> None:
         self.axes = axes
         x1, y1, x2, y2 = drive.world.bounds
-        self.limits = (x1 + 60, y1 + 60, x2 - 60, y2 - 60)
+        self.limits = (x1 + 60, y1 + 60, x2 + _MARGIN_MM, y2 - 60)
         states = drive.states()[::3]
         self.busy = [(s["x_mm"], s["y_mm"], 3.0) for s in states]
+        for finding in drive.verdict.findings:
+            if finding.injected is not None:
+                at = finding.injected
+                self.busy += [(x, y, 40.0) for x, y in _body(at.x_mm, at.y_mm, at.heading_deg)]
         self.busy += [(x, y, 0.25) for _, x, y, _ in list(hits(drive))[::2]]
         for ax, ay, bx, by in drive.world.segments:
             n = max(2, int(math.hypot(bx - ax, by - ay) / 80))
@@ -241,18 +278,24 @@ class _Callouts:
     def _cost(self, box: tuple[float, float, float, float], anchor: tuple[float, float]) -> float:
         x1, y1, x2, y2 = box
         pad = 45.0
-        cost = sum(weight for x, y, weight in self.busy if x1 - pad < x < x2 + pad and y1 - pad < y < y2 + pad)
-        cost += sum(500 for a1, b1, a2, b2 in self.taken if x1 < a2 + 50 and x2 > a1 - 50 and y1 < b2 + 50 and y2 > b1 - 50)
+        cost = sum(
+            weight for x, y, weight in self.busy if x1 - pad < x < x2 + pad and y1 - pad < y < y2 + pad
+        )
+        cost += sum(
+            500
+            for a1, b1, a2, b2 in self.taken
+            if x1 < a2 + 50 and x2 > a1 - 50 and y1 < b2 + 50 and y2 > b1 - 50
+        )
         low_x, low_y, high_x, high_y = self.limits
         cost += 1000 * (x1 < low_x or y1 < low_y or x2 > high_x or y2 > high_y)
-        return cost + math.hypot((x1 + x2) / 2 - anchor[0], (y1 + y2) / 2 - anchor[1]) / 60
+        return cost + math.hypot((x1 + x2) / 2 - anchor[0], (y1 + y2) / 2 - anchor[1]) / 150
 
     def put(self, x: float, y: float, text: str, colour: str, bold_head: bool = True) -> None:
         """Write a box that points at (x, y)."""
         lines = text.split("\n")
-        width, height = 62 * max(len(line) for line in lines) * 0.92 + 60, 112 * len(lines) + 70
+        width, height = 42 * max(len(line) for line in lines) + 90, 88 * len(lines) + 80
         places = []
-        for radius in (400, 550, 700, 900, 1150, 1450, 1800):
+        for radius in (400, 550, 700, 900, 1150, 1450, 1800, 2200, 2600, 3000):
             for k in range(24):
                 angle = 2 * math.pi * k / 24
                 cx = x + (radius + width / 3) * math.cos(angle)
@@ -294,8 +337,9 @@ def _fault_text(one: Finding, start_s: float) -> str:
     if one.diagnosed is None:
         lines[-1] += ", never found"
     else:
-        latency = "" if one.latency_s is None else f", {one.latency_s:.1f} s after its first false reading"
-        lines.append(f"found at {one.diagnosed.t_s - start_s:.1f} s{latency}")
+        lines.append(f"found at {one.diagnosed.t_s - start_s:.1f} s")
+        if one.latency_s is not None:
+            lines[-1] += f", {one.latency_s:.1f} s after\nits first false reading"
     return "\n".join(lines)
 
 
@@ -307,7 +351,9 @@ def _draw_faults(axes: Axes, drive: Drive, callouts: _Callouts) -> None:
         _draw_robot(axes, at.x_mm, at.y_mm, at.heading_deg, _RED, 0.1)
         _draw_beam(axes, one)
         if one.diagnosed is not None:
-            axes.plot(one.diagnosed.x_mm, one.diagnosed.y_mm, "D", ms=8.5, mfc=_SKY, mec=_INK, mew=1.1, zorder=9)
+            axes.plot(
+                one.diagnosed.x_mm, one.diagnosed.y_mm, "D", ms=8.5, mfc=_SKY, mec=_INK, mew=1.1, zorder=9
+            )
         axes.plot(at.x_mm, at.y_mm, "v", ms=11, mfc=_RED, mec=_INK, mew=1.1, zorder=9.1)
         callouts.put(at.x_mm, at.y_mm, _fault_text(one, drive.start_s), _RED)
 
@@ -324,7 +370,9 @@ def _draw_ends(axes: Axes, drive: Drive, callouts: _Callouts) -> None:
         callouts.put(state["x_mm"], state["y_mm"], text, _INK)
     for record in of_type(drive.truth, "collision"):
         axes.plot(record["x_mm"], record["y_mm"], "X", ms=17, mfc=_RED, mec=_INK, zorder=11)
-        callouts.put(record["x_mm"], record["y_mm"], f"Collision at {record['t_s'] - drive.start_s:.1f} s", _RED)
+        callouts.put(
+            record["x_mm"], record["y_mm"], f"Collision at {record['t_s'] - drive.start_s:.1f} s", _RED
+        )
 
 
 def _draw_false(axes: Axes, drive: Drive, callouts: _Callouts) -> None:
@@ -349,7 +397,7 @@ def _draw_map(axes: Axes, drive: Drive) -> None:
     _draw_ends(axes, drive, callouts)
     _draw_scale(axes, drive.world)
     x1, y1, x2, y2 = drive.world.bounds
-    axes.set_xlim(x1 - 60, x2 + 60)
+    axes.set_xlim(x1 - 60, x2 + _MARGIN_MM + 60)
     axes.set_ylim(y1 - 260, y2 + 60)
     axes.set_aspect("equal", anchor="NW")
     axes.axis("off")
@@ -362,18 +410,27 @@ def _legend(axes: Axes, drive: Drive) -> None:
     false = any(fault for _, _, _, fault in hits(drive))
     entries: list[Any] = [
         Line2D([], [], color=_BLUE, lw=3.4, label="normal driving"),
-        Line2D([], [], color=_ORANGE, lw=3.4, label="failure mode: look, then one step"),
+        Line2D([], [], color=_ORANGE, lw=3.4, label="failure mode: look, then step"),
         Line2D([], [], color=_GREY, lw=1.1, ls=(0, (2, 3)), marker="+", label="course given"),
         dot("o", "white", _INK, 6, "stop"),
-        Patch(facecolor=_ORANGE, alpha=0.3, label="sweep: healthy sonars turned over the blind bearings"),
-        dot("v", _RED, _INK, 10, "a fault comes (shaded: the beam that fails)"),
+        Patch(facecolor=_ORANGE, alpha=0.3, label="sweep over the blind bearings"),
+        dot("v", _RED, _INK, 10, "a fault comes (shaded: its beam)"),
         dot("D", _SKY, _INK, 8, "Argus has found it"),
-        dot(".", _GREEN, _GREEN, 7, "echo reported by a healthy front sonar"),
+        dot(".", _GREEN, _GREEN, 7, "echo, healthy front sonar"),
     ]
     if false:
-        entries.append(dot("x", _PURPLE, _PURPLE, 6, "false echo of the lying sonar"))
+        entries.append(dot("x", _PURPLE, _PURPLE, 6, "false echo, lying sonar"))
     axes.axis("off")
-    axes.legend(handles=entries, loc="upper left", ncols=3, fontsize=10.5, frameon=False, columnspacing=1.6, handlelength=2.0, borderaxespad=0)
+    axes.legend(
+        handles=entries,
+        loc="upper left",
+        ncols=3,
+        fontsize=10,
+        frameon=False,
+        columnspacing=1.4,
+        handlelength=2.0,
+        borderaxespad=0,
+    )
 
 
 # ---- the ring and the time line ----------------------------------------------------------------------------
@@ -390,15 +447,31 @@ def _draw_ring(axes: Axes, drive: Drive) -> None:
         bad = kinds.get(number)
         reach = 430 if number in _FRONT else 240
         colour = _RED if bad else (_GREEN if number in _FRONT else _PALE)
-        axes.add_patch(Wedge((x, y), reach, heading - 9, heading + 9, facecolor=colour, alpha=0.75 if bad else 0.4, lw=0))
-        tx, ty = x + (reach + 75) * math.cos(math.radians(heading)), y + (reach + 75) * math.sin(math.radians(heading))
+        axes.add_patch(
+            Wedge((x, y), reach, heading - 9, heading + 9, facecolor=colour, alpha=0.75 if bad else 0.4, lw=0)
+        )
+        tx, ty = (
+            x + (reach + 75) * math.cos(math.radians(heading)),
+            y + (reach + 75) * math.sin(math.radians(heading)),
+        )
         weight = "bold" if bad else "normal"
-        axes.text(tx, ty, str(number), ha="center", va="center", fontsize=10.5, fontweight=weight, color=_RED if bad else _INK)
+        axes.text(
+            tx,
+            ty,
+            str(number),
+            ha="center",
+            va="center",
+            fontsize=10.5,
+            fontweight=weight,
+            color=_RED if bad else _INK,
+        )
         if bad:
             wx, wy = x + 225 * math.cos(math.radians(heading)), y + 225 * math.sin(math.radians(heading))
             axes.plot(wx, wy, "x", ms=9, mew=2.6, color="white")
     axes.text(0, -30, "P3-DX", ha="center", va="center", fontsize=10, color=_INK)
-    verdicts = ", ".join(f"sonar {number}: {kind}" for number, kind in sorted(kinds.items())) or "no sonar disabled"
+    verdicts = (
+        ", ".join(f"sonar {number}: {kind}" for number, kind in sorted(kinds.items())) or "no sonar disabled"
+    )
     axes.set_title(f"What Argus knows at the end\n{verdicts}", fontsize=12, loc="left", color=_INK)
     axes.set_xlim(-760, 760)
     axes.set_ylim(-640, 760)
@@ -423,7 +496,13 @@ def _robot_spans(drive: Drive) -> Iterator[tuple[float, float, str]]:
     """What the robot did: from, to, one of drive, turn, stand."""
     since, now = drive.start_s, ""
     for state in drive.states():
-        doing = "drive" if abs(state["v_mm_s"]) > _STANDS_MM_S else "turn" if abs(state["w_deg_s"]) > 1 else "stand"
+        doing = (
+            "drive"
+            if abs(state["v_mm_s"]) > _STANDS_MM_S
+            else "turn"
+            if abs(state["w_deg_s"]) > 1
+            else "stand"
+        )
         if doing != now:
             if now:
                 yield since, state["t_s"], now
@@ -432,23 +511,54 @@ def _robot_spans(drive: Drive) -> Iterator[tuple[float, float, str]]:
         yield since, drive.end_s, now
 
 
-def _bar(axes: Axes, row: float, spans: Sequence[tuple[float, float, str]], start_s: float, looks: dict[str, tuple[str, str]]) -> None:
+def _bar(
+    axes: Axes,
+    row: float,
+    spans: Sequence[tuple[float, float, str]],
+    start_s: float,
+    looks: dict[str, tuple[str, str]],
+) -> None:
     for since, until, word in spans:
         colour, hatch = looks[word]
-        axes.barh(row, until - since, left=since - start_s, height=0.62, color=colour, hatch=hatch, edgecolor="white", lw=0)
+        axes.barh(
+            row,
+            until - since,
+            left=since - start_s,
+            height=0.62,
+            color=colour,
+            hatch=hatch,
+            edgecolor="white",
+            lw=0,
+        )
 
 
 def _draw_time(axes: Axes, drive: Drive) -> None:
-    looks = {"unknown": ("#eeeeee", ""), "healthy": ("#8fd3bd", ""), "suspect": (_ORANGE, ""), "disabled": (_RED, "///")}
+    looks = {
+        "unknown": ("#eeeeee", ""),
+        "healthy": ("#8fd3bd", ""),
+        "suspect": (_ORANGE, ""),
+        "disabled": (_RED, "///"),
+    }
     doing = {"drive": (_BLUE, ""), "turn": (_SKY, ""), "stand": ("#e6e6e6", "")}
     for number in _FRONT:
         _bar(axes, number, health_spans(drive, number), drive.start_s, looks)
     _bar(axes, 7.25, list(_robot_spans(drive)), drive.start_s, doing)
     for one in drive.verdict.findings:
         if one.injected:
-            axes.plot(one.injected.t_s - drive.start_s, one.fault.sonar - 0.52, "v", ms=8, mfc=_RED, mec=_INK, clip_on=False, zorder=5)
+            axes.plot(
+                one.injected.t_s - drive.start_s,
+                one.fault.sonar - 0.52,
+                "v",
+                ms=8,
+                mfc=_RED,
+                mec=_INK,
+                clip_on=False,
+                zorder=5,
+            )
         if one.diagnosed:
-            axes.plot(one.diagnosed.t_s - drive.start_s, one.fault.sonar, "D", ms=6.5, mfc=_SKY, mec=_INK, zorder=5)
+            axes.plot(
+                one.diagnosed.t_s - drive.start_s, one.fault.sonar, "D", ms=6.5, mfc=_SKY, mec=_INK, zorder=5
+            )
     axes.set_yticks([*_FRONT, 7.25], [*(f"sonar {number}" for number in _FRONT), "robot"], fontsize=10.5)
     axes.set_ylim(7.75, 0.2)
     axes.set_xlim(0, drive.end_s - drive.start_s)
@@ -459,8 +569,20 @@ def _draw_time(axes: Axes, drive: Drive) -> None:
         axes.spines[side].set_visible(False)
     words = [("healthy", looks["healthy"]), ("suspect", looks["suspect"]), ("disabled", looks["disabled"])]
     words += [("drives", doing["drive"]), ("turns", doing["turn"]), ("stands", doing["stand"])]
-    handles = [Patch(facecolor=colour, hatch=hatch, edgecolor="white", label=word) for word, (colour, hatch) in words]
-    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.02, -0.14), ncols=6, fontsize=9.5, frameon=False, handlelength=1.2, columnspacing=1.0, handletextpad=0.5)
+    handles = [
+        Patch(facecolor=colour, hatch=hatch, edgecolor="white", label=word) for word, (colour, hatch) in words
+    ]
+    axes.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(-0.02, -0.14),
+        ncols=6,
+        fontsize=9.5,
+        frameon=False,
+        handlelength=1.2,
+        columnspacing=1.0,
+        handletextpad=0.5,
+    )
 
 
 # ---- the whole ---------------------------------------------------------------------------------------------
@@ -492,13 +614,24 @@ def draw(drive: Drive, path: Path) -> None:
     with mpl.rc_context({"font.family": "DejaVu Sans", "hatch.linewidth": 0.7, "hatch.color": "#b5b5b5"}):
         figure = Figure(figsize=_SIZE_IN, dpi=_DPI, facecolor="white")
         FigureCanvasAgg(figure)
-        grid = figure.add_gridspec(2, 2, left=0.02, right=0.985, top=0.885, bottom=0.075, width_ratios=(1.72, 1), height_ratios=(1.12, 1), wspace=0.1, hspace=0.2)
-        _draw_map(figure.add_axes((0.02, 0.155, 0.60, 0.735)), drive)
+        grid = figure.add_gridspec(
+            2,
+            2,
+            left=0.02,
+            right=0.985,
+            top=0.83,
+            bottom=0.115,
+            width_ratios=(1.72, 1),
+            height_ratios=(1.1, 1),
+            wspace=0.1,
+            hspace=0.22,
+        )
+        _draw_map(figure.add_axes((0.02, 0.15, 0.60, 0.715)), drive)
         _legend(figure.add_axes((0.025, 0.015, 0.60, 0.12)), drive)
         _draw_ring(figure.add_subplot(grid[0, 1]), drive)
         _draw_time(figure.add_subplot(grid[1, 1]), drive)
         headline, colour = _headline(drive)
-        figure.text(0.025, 0.952, drive.title, fontsize=18, fontweight="bold", color=_INK)
-        figure.text(0.025, 0.915, headline, fontsize=13, fontweight="bold", color=colour)
-        figure.text(0.985, 0.915, _figures(drive), fontsize=11.5, color=_INK, ha="right")
+        figure.text(0.025, 0.955, drive.title, fontsize=18, fontweight="bold", color=_INK)
+        figure.text(0.025, 0.92, headline, fontsize=13, fontweight="bold", color=colour)
+        figure.text(0.025, 0.885, _figures(drive), fontsize=11.5, color=_INK)
         figure.savefig(path, dpi=_DPI, metadata={"Software": None})

@@ -21,7 +21,10 @@ def _at(moment: Moment | None, start_s: float) -> str:
 
 def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return ["  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+    return [
+        "  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
 
 
 def _finding_row(one: Finding, start_s: float) -> list[str]:
@@ -30,7 +33,16 @@ def _finding_row(one: Finding, start_s: float) -> list[str]:
     left = _NEVER if one.way_left_mm is None else f"{one.way_left_mm / 1000:.2f} m"
     found = one.diagnosed_kind or "not found"
     fault = one.fault
-    return [str(fault.sonar), fault.kind, _at(one.injected, start_s), first, found, _at(one.diagnosed, start_s), latency, left]
+    return [
+        str(fault.sonar),
+        fault.kind,
+        _at(one.injected, start_s),
+        first,
+        found,
+        _at(one.diagnosed, start_s),
+        latency,
+        left,
+    ]
 
 
 def _findings(verdict: Verdict, start_s: float) -> list[str]:
@@ -46,7 +58,10 @@ def _degrees(rotations: Sequence[int]) -> str:
 
 
 def _plan_lines(journey: Journey) -> list[str]:
-    plans = [f"{_degrees(plan.rotations_deg)} deg from {plan.t_s - journey.start_s:.1f} s" for plan in journey.plans]
+    plans = [
+        f"{_degrees(plan.rotations_deg)} deg from {plan.t_s - journey.start_s:.1f} s"
+        for plan in journey.plans
+    ]
     return ["; then ".join(plans) or "none needed"]
 
 
@@ -59,7 +74,10 @@ def _journey(journey: Journey) -> list[str]:
     rows = [
         ["time", f"{journey.time_s:.1f} s of robot time, from the opened session to the goal"],
         ["way", f"{journey.way_mm / 1000:.2f} m"],
-        ["stops", f"{journey.standstills} standstills, of them {journey.stop_commands} by a STOP that argusd sent"],
+        [
+            "stops",
+            f"{journey.standstills} standstills, of them {journey.stop_commands} by a STOP that argusd sent",
+        ],
         ["rotations planned", *_plan_lines(journey)],
         ["rotations made", f"{journey.turns} turns, {journey.turned_deg:.0f} deg in all"],
         ["failure mode", f"{journey.sweeps} sweeps, {journey.steps} steps"],

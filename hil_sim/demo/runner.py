@@ -117,7 +117,9 @@ class Child:
                     process_group=0,
                 )
         except OSError as error:
-            raise CannotStart(f"{name}: {words[0]}: {error.strerror}; build it with tools/dev build release") from None
+            raise CannotStart(
+                f"{name}: {words[0]}: {error.strerror}; build it with tools/dev build release"
+            ) from None
 
     @property
     def output(self) -> IO[bytes]:
@@ -201,20 +203,27 @@ class Run:
             record = _parse(line, "argus-sim") | {"wall_s": time.monotonic()}
             recording.truth.append(record)
             recording.robot_s = max(recording.robot_s, float(record.get("t_s", 0.0)))
-            if record.get("type") == "session" and record.get("state") == "open" and recording.opened_s is None:
+            if (
+                record.get("type") == "session"
+                and record.get("state") == "open"
+                and recording.opened_s is None
+            ):
                 recording.opened_s = float(record["t_s"])
 
     def _has_ended(self, started: float, goal_seen: float | None) -> bool:
         recording = self.recording
         for child in self.children:
             if child.process.poll() is not None:
-                recording.ended = child.why_ended()
+                arrived = child.name == "argusd" and child.process.returncode == 0 and goal_seen is not None
+                recording.ended = "goal reached" if arrived else child.why_ended()
         now = time.monotonic()
         if not recording.ended:
             if goal_seen is not None and now - goal_seen > _AFTER_GOAL_S and self._stands():
                 recording.ended = "goal reached"
             elif recording.opened_s is None and now - started > _SESSION_WITHIN_S:
-                raise CannotStart(f"argusd opened no session within {_SESSION_WITHIN_S:.0f} s; see {self.setup.out}")
+                raise CannotStart(
+                    f"argusd opened no session within {_SESSION_WITHIN_S:.0f} s; see {self.setup.out}"
+                )
             elif recording.journey_s > self.setup.timeout_s:
                 recording.ended = f"no goal within {self.setup.timeout_s:.0f} s of robot time"
         return bool(recording.ended)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rule: where the rules of the paper misfire (smooth walls, 1 % crosstalk) it is as documented, and nothing is hit."""
+"""Rule: smooth walls and 1 % crosstalk make the rules of the paper misfire as documented; nothing is hit."""
 
 from __future__ import annotations
 

@@ -90,6 +90,11 @@ class FakeRing:
             self._next_ms += self.cycle_ms
         return out
 
+    def fire_all(self, now_ms: float, pose: Pose) -> list[FakeReading]:
+        """Fire everything at once."""
+        numbers = [number for number in range(16) if self.enabled[number // 8]]
+        return [FakeReading(now_ms, number, 1000 + number, 1000 + number) for number in numbers]
+
 
 @dataclass
 class FakeFaults:

@@ -251,7 +251,7 @@ def test_damage_costs_no_intact_packet_and_invents_none(damage: str) -> None:
 def test_a_false_length_delays_by_the_quiet_time_only() -> None:
     packet = frame(Sip(sonars=((1, 2),)).data)
     unframer = Unframer()
-    assert unframer.feed(b"\xfa\xfb\x70" + packet, 0) == []
+    assert unframer.feed(b"\xfa\xfb\x40" + packet, 0) == []
     assert unframer.poll(29) == []
     assert unframer.poll(31) == [packet[3:-2]]
     assert unframer.counters.rescued == 1

@@ -38,6 +38,8 @@ bool argus_outbox_string(argus_outbox_t *self, uint8_t command, const uint8_t *t
 // Drops the motion commands and an older `command` that wait, then puts `command` (STOP or E_STOP, nothing
 // else) first.
 void argus_outbox_urgent(argus_outbox_t *self, uint8_t command);
+// Command number of the next packet, or -1.
+int argus_outbox_first(const argus_outbox_t *self);
 // Next whole packet; 0 when empty or `capacity` is too small for it.
 size_t argus_outbox_fetch(argus_outbox_t *self, uint8_t *packet, size_t capacity);
 

@@ -30,7 +30,7 @@ enum {
     ARGUS_SESSION_DID_LOSE =
         1 << 2, // no SIP for link_lost_ms, or the robot was reset: starts again by itself
     ARGUS_SESSION_DID_STALL = 1 << 3,  // no SIP for link_stall_ms
-    ARGUS_SESSION_DID_RESUME = 1 << 4, // a SIP after a stall: VEL 0 and RVEL 0 are already queued
+    ARGUS_SESSION_DID_RESUME = 1 << 4, // a SIP after a stall: VEL 0 and RVEL 0 go out before all but E_STOP
     ARGUS_SESSION_NO_ANSWER = 1 << 5,  // one attempt failed
     ARGUS_SESSION_DID_DISLODGE = 1 << 6,
     ARGUS_SESSION_DID_CLOSE = 1 << 7
@@ -58,6 +58,7 @@ typedef struct {
     uint16_t attempts;    // since the link came up or the last session ended, this one included
     uint8_t dislodged;    // old sessions closed in this attempt
     uint8_t opening_sips; // since OPEN
+    uint8_t zeros_due;    // 2: VEL 0 and RVEL 0 are to be sent, 1: RVEL 0
     uint32_t sips;        // monotonic counters
     uint32_t unknown_packets;
     uint32_t bad_sips; // right checksum, wrong inside

@@ -239,7 +239,7 @@ static size_t list_readings(robot_t *robot, uint8_t *at) {
 }
 
 static size_t build_sip(robot_t *robot, uint8_t *packet) {
-    uint8_t data[200] = {0};
+    uint8_t data[ROBOT_SIP_MAX] = {0};
     const double ox = robot->x - robot->x0, oy = robot->y - robot->y0;
     const double c = cos(-robot->th0), s = sin(-robot->th0);
     data[0] = fabs(robot->v) + fabs(robot->w) > 0 ? 0x33 : 0x32;
@@ -254,7 +254,14 @@ static size_t build_sip(robot_t *robot, uint8_t *packet) {
     put16(data + 16, (robot->motors ? 1 : 0) | (robot->sonar_on ? 6 : 0) | (robot->stop_button ? 0x20 : 0));
     const size_t count = list_readings(robot, data + 20);
     data[19] = (uint8_t)count;
-    return argus_frame_encode(packet, 255, data, 20 + 3 * count + 12);
+    const size_t standard = 20 + 3 * count + 12;
+    const size_t length = robot->alter_sip != NULL ? robot->alter_sip(data, standard) : standard;
+    return argus_frame_encode(packet, 255, data, length);
+}
+
+void robot_say(robot_t *robot, const uint8_t *data, size_t count) {
+    uint8_t packet[ARCOS_FRAME_SEND_TOTAL_MAX];
+    robot_deliver(robot, packet, argus_frame_encode(packet, sizeof packet, data, count));
 }
 
 static void reply_sync(robot_t *robot, uint8_t command) {
@@ -265,8 +272,7 @@ static void reply_sync(robot_t *robot, uint8_t command) {
             (size_t)snprintf((char *)data + 1, sizeof data - 1, "Test%cPioneer%c%s", 0, 0, robot->subclass) +
             1;
     }
-    uint8_t packet[100];
-    robot_deliver(robot, packet, argus_frame_encode(packet, sizeof packet, data, length));
+    robot_say(robot, data, length);
 }
 
 static void set_polling(robot_t *robot, const uint8_t *list, size_t count) {
@@ -364,7 +370,12 @@ static void obey(robot_t *robot, const uint8_t *packet, const robot_command_t *s
         }
         return;
     }
-    if (sent->command == ARCOS_CMD_OPEN) {
+    if (robot->ignores[sent->command]) {
+        return;
+    }
+    if (sent->command == ARCOS_CMD_CONFIG && robot->config != NULL) {
+        robot_say(robot, robot->config, robot->config_count);
+    } else if (sent->command == ARCOS_CMD_OPEN) {
         robot->next_sip_ms = robot->t_ms + SIP_MS;
         robot->next_ping_ms = robot->t_ms + PING_MS;
     } else if (sent->command == ARCOS_CMD_POLLING) {
@@ -503,6 +514,13 @@ void robot_drain(robot_t *robot) {
 }
 
 void robot_deliver(robot_t *robot, const uint8_t *bytes, size_t count) {
+    if (robot->host_asleep) {
+        if (robot->late_count + count <= sizeof robot->late) {
+            memcpy(robot->late + robot->late_count, bytes, count);
+            robot->late_count += count;
+        }
+        return;
+    }
     argus_receive(&robot->argus, robot->start_ms + robot->t_ms, bytes, count);
 }
 
@@ -524,7 +542,13 @@ static void send_sip(robot_t *robot) {
     const bool hit = (pressed & ~(unsigned)robot->bumpers_seen) != 0;
     robot->bumpers_seen = pressed;
     robot->reply_length = 0;
+    if (robot->before_sip != NULL) {
+        robot->before_sip(robot);
+    }
     robot_deliver(robot, packet, length);
+    if (robot->host_asleep) {
+        return;
+    }
     robot_drain(robot);
     if (hit && is_answered(robot, open) &&
         (robot->reply_length == 0 || robot->reply[3] != ARCOS_CMD_E_STOP)) {
@@ -560,7 +584,16 @@ static bool step(robot_t *robot) {
 
 void robot_tick(robot_t *robot) {
     step(robot);
-    process(robot);
+    if (!robot->host_asleep) {
+        process(robot);
+    }
+}
+
+void robot_wake(robot_t *robot) {
+    robot->host_asleep = false;
+    robot_deliver(robot, robot->late, robot->late_count);
+    robot->late_count = 0;
+    robot_drain(robot);
 }
 
 void robot_run(robot_t *robot, uint32_t ms) {

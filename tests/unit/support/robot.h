@@ -9,6 +9,8 @@
 #define ROBOT_COMMANDS_MAX 40000
 #define ROBOT_EVENTS_MAX 40000
 #define ROBOT_SEGMENTS_MAX 64
+#define ROBOT_SIP_MAX 195
+#define ROBOT_LATE_MAX 8192
 
 typedef enum { ROBOT_OK, ROBOT_OFF, ROBOT_SILENT, ROBOT_SCALE, ROBOT_VALUE } robot_fault_t;
 
@@ -41,8 +43,17 @@ struct robot {
     uint8_t bumpers_front, bumpers_rear;
     bool stall;
     // session
-    int phase; // 0..2 SYNC, 3 open
-    bool mute; // no power, or the wire is cut
+    int phase;             // 0..2 SYNC, 3 open
+    bool mute;             // no power, or the wire is cut
+    bool ignores[256];     // commands that have no effect
+    const uint8_t *config; // data of its CONFIGpac, NULL: it does not answer CONFIG
+    size_t config_count;
+    void (*before_sip)(robot_t *robot); // delivers other packets
+    size_t (*alter_sip)(uint8_t *data,
+                        size_t count); // other data, up to ROBOT_SIP_MAX, instead of the standard
+    bool host_asleep;                  // what it says waits in `late` for robot_wake()
+    uint8_t late[ROBOT_LATE_MAX];
+    size_t late_count;
     bool sonar_on;
     const char *subclass;
     uint32_t next_sip_ms;
@@ -94,6 +105,8 @@ double robot_heading_deg(const robot_t *robot);
 uint32_t robot_random(robot_t *robot, uint32_t below);
 void robot_deliver(robot_t *robot, const uint8_t *bytes, size_t count);
 void robot_drain(robot_t *robot);
+void robot_say(robot_t *robot, const uint8_t *data, size_t count); // one packet
+void robot_wake(robot_t *robot); // the host reads in one go what came while it was asleep
 
 // Worlds.
 int robot_world_far(const robot_t *robot, int sonar);      // 2000 mm whatever the bearing

@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: MIT
+"""The demonstration: the emulator on a pty, argusd on it, a judged drive, a report and a picture."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import os
+import re
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from hil_sim.demo import picture, report
+from hil_sim.demo.judge import Injected, Task, Verdict, clock_offset_s, judge
+from hil_sim.demo.live import view
+from hil_sim.demo.runner import Recording, Run, Setup
+from hil_sim.errors import SimError
+from hil_sim.faults import parse_fault
+from hil_sim.scenario import Scenario, load_scenario
+from hil_sim.world import World, load_world
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENARIOS = Path(__file__).resolve().parents[1] / "scenarios"
+WORLDS = ("demo", "smooth")
+FIRST_FAULT_MM, NEXT_FAULT_MM = 600, 800
+TIMEOUT_S = 180.0
+
+_EXAMPLES = """\
+examples:
+  tools/dev demo                            sonar 3 goes dead, later sonar 6 reads half the truth
+  tools/dev demo --seed 7 --fail off:2,wrong:4
+  tools/dev demo --policy fewest --out /tmp/drive
+  tools/dev demo --no-live --json > drive.json
+
+exit codes: 0 goal reached, nothing hit, diagnosis equals injection; 1 the judge says no; 2 wrong arguments or files;
+3 something could not be started; 130 interrupted
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        """Print one line and leave with code 2."""
+        self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def _faults(text: str) -> tuple[Injected, ...]:
+    """`off:A,wrong:B`: one or two faults of different sonars of 1..6."""
+    faults = []
+    for part in text.split(","):
+        match = re.fullmatch(r"(off|wrong):([1-6])", part.strip())
+        if match is None:
+            raise argparse.ArgumentTypeError(f"'{part}' is not off:N or wrong:N with a sonar N of 1 to 6")
+        faults.append(Injected(match[1], int(match[2])))
+    if len(faults) > 2 or len({fault.sonar for fault in faults}) < len(faults):
+        raise argparse.ArgumentTypeError(
+            f"'{text}': at most two faults, of different sonars, for example off:3,wrong:6"
+        )
+    return tuple(faults)
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the argument parser of the demonstration."""
+    result = _Parser(
+        prog="tools/dev demo",
+        description=__doc__,
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    default = (Injected("off", 3), Injected("wrong", 6))
+    result.add_argument(
+        "--seed", type=int, default=1, metavar="N", help="seed of everything random (default 1)"
+    )
+    result.add_argument(
+        "--fail",
+        type=_faults,
+        default=default,
+        metavar="off:A,wrong:B",
+        help="faults, in the order in which they come",
+    )
+    result.add_argument(
+        "--policy", choices=("paper", "fewest"), default="paper", help="planner (default paper)"
+    )
+    result.add_argument(
+        "--world", choices=WORLDS, default="demo", help="smooth: smooth walls and 1 %% crosstalk"
+    )
+    result.add_argument(
+        "--out", type=Path, default=Path("build/demo"), metavar="DIR", help="records and picture"
+    )
+    result.add_argument(
+        "--argusd", type=Path, default=ROOT / "build/release/argusd", metavar="FILE", help="the program"
+    )
+    result.add_argument(
+        "--timeout", type=float, default=TIMEOUT_S, metavar="S", help="longest drive (default %(default).0f)"
+    )
+    result.add_argument("--no-live", action="store_true", help="lines instead of a screen, on a terminal too")
+    result.add_argument(
+        "--json", action="store_true", help="the verdict as JSON on standard output, nothing else there"
+    )
+    return result
+
+
+def _scenario(arguments: argparse.Namespace) -> Scenario:
+    """The world's scenario with the faults and the seed asked for."""
+    texts = []
+    for number, fault in enumerate(arguments.fail):
+        at = FIRST_FAULT_MM + number * NEXT_FAULT_MM
+        texts.append(
+            f"{fault.kind}:{fault.sonar}@travelled>{at}" + (":scale=0.5" if fault.kind == "wrong" else "")
+        )
+    scenario = load_scenario(SCENARIOS / f"{arguments.world}.yaml")
+    return dataclasses.replace(
+        scenario, seed=arguments.seed, faults=tuple(parse_fault(text) for text in texts)
+    )
+
+
+def _goal(scenario: Scenario, world: World) -> tuple[float, float]:
+    """The goal in world axes; a course is driven from the start pose, whose heading is 0 in these worlds."""
+    start = scenario.start or world.start
+    if start.x_mm or start.y_mm or start.heading_deg:
+        raise SimError(
+            f"scenario {scenario.world}: the course is in the robot's frame, so the start must be 0, 0, 0"
+        )
+    return scenario.course[-1]
+
+
+def _prepare(arguments: argparse.Namespace, scenario: Scenario) -> Setup:
+    out: Path = arguments.out
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        (out / "course.csv").write_text(
+            "# x_mm,y_mm\n" + "".join(f"{x:.0f},{y:.0f}\n" for x, y in scenario.course), encoding="utf-8"
+        )
+        (out / "argusd.conf").write_text(f"profile = paper\npolicy = {arguments.policy}\n", encoding="utf-8")
+        (out / "truth.jsonl").unlink(missing_ok=True)
+    except OSError as error:
+        raise SimError(f"{out}: {error.strerror}; name a folder that can be written with --out") from None
+    scenario.save(out / "scenario.yaml")
+    return Setup(
+        out=out,
+        argusd=arguments.argusd,
+        sim_arguments=("--scenario", str(out / "scenario.yaml")),
+        course=out / "course.csv",
+        config=out / "argusd.conf",
+        timeout_s=arguments.timeout,
+    )
+
+
+def _drive(arguments: argparse.Namespace, setup: Setup) -> Recording:
+    shown = view(not arguments.no_live and not arguments.json)
+    run = Run(setup, (lambda recording: None) if arguments.json else shown.show)
+    try:
+        return run()
+    finally:
+        shown.close()
+        for note in run.notes:
+            print(f"demo: {note}", file=sys.stderr)
+
+
+def _title(arguments: argparse.Namespace) -> str:
+    faults = ", then ".join(f"sonar {fault.sonar} {fault.kind}" for fault in arguments.fail)
+    return f"Argus, one drive: {faults}   (world {arguments.world}, seed {arguments.seed}, policy {arguments.policy})"
+
+
+def _conclude(
+    arguments: argparse.Namespace, scenario: Scenario, recording: Recording, verdict: Verdict
+) -> None:
+    path = arguments.out / "demo.png"
+    picture.draw(
+        picture.Drive(
+            world=load_world(scenario.world),
+            course_mm=scenario.course,
+            truth=recording.truth,
+            events=recording.events,
+            verdict=verdict,
+            offset_s=clock_offset_s(recording.truth, recording.events),
+            title=_title(arguments),
+        ),
+        path,
+    )
+    (arguments.out / "report.json").write_text(
+        json.dumps(verdict.as_record(), indent=1) + "\n", encoding="utf-8"
+    )
+    if arguments.json:
+        print(json.dumps(verdict.as_record() | {"ended": recording.ended, "picture": str(path)}))
+        return
+    colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ
+    print(f"\n{report.text(verdict, colour=colour)}\n")
+    print(f"how it ended: {recording.ended}")
+    print(f"picture: {path}   records: {arguments.out}/truth.jsonl, events.jsonl, report.json")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the demonstration; return its exit code."""
+    arguments = parser().parse_args(argv)
+    try:
+        scenario = _scenario(arguments)
+        task = Task(_goal(scenario, load_world(scenario.world)), arguments.fail)
+        setup = _prepare(arguments, scenario)
+        if not arguments.json:
+            print(f"demo: the drive takes about two minutes; records in {arguments.out}", flush=True)
+        recording = _drive(arguments, setup)
+        ended = time.monotonic()
+        verdict = judge(recording.truth, recording.events, task)
+        _conclude(arguments, scenario, recording, verdict)
+        if not arguments.json:
+            print(f"report and picture took {time.monotonic() - ended:.1f} s")
+        return 0 if verdict.passed else 1
+    except SimError as error:
+        print(f"demo: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        print("demo: interrupted; the robot was stopped and both programs have ended", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
