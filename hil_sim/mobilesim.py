@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The vendor emulator's habits, `--quirks mobilesim`: what MobileSim answers where a P3-DX answers otherwise."""
+"""The vendor emulator's habits, `--quirks mobilesim`: what it answers where a P3-DX answers otherwise."""
 
 from __future__ import annotations
 
@@ -49,8 +49,8 @@ _CONFIG_ZERO: Final = (
 class MobileSimServer(ArcosServer):
     """Speaks ARCOS as MobileSim does.
 
-    A session begins at SYNC2 in whatever order the SYNCs come, with all sonars on; SIPs begin at OPEN and hold
-    all 16 readings; the watchdog only warns; CLOSE, RESET and a lost connection end session and connection.
+    A session begins at SYNC2 in whatever order the SYNCs come, with all sonars on; SIPs begin at OPEN and
+    hold all 16 readings; the watchdog only warns; CLOSE, RESET and a lost connection end session and connection.
     """
 
     def __init__(self, robot: Robot, **options: Any) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Measures the emulator: jitter of the SIPs of ten robots served by one process, and the processor time they take."""
+"""Measures the emulator: SIP jitter and processor time of ten robots served by one process."""
 
 from __future__ import annotations
 
@@ -89,8 +89,9 @@ def _report(robots: int, seconds: float, world: str) -> None:
     print(f"{robots} robots on one core, {seconds:g} s, world {world}, load {os.getloadavg()[0]:.2f}")
     print(f"  SIPs of the slowest robot {100 * short:6.1f} % of real time")
     print(f"  processor                 {100 * busy:6.1f} % of the core")
-    print(f"  SIP jitter  p50 {late[len(late) // 2]:.2f} ms, p99 {late[len(late) * 99 // 100]:.2f} ms", end="")
-    print(f", max {late[-1]:.2f} ms; gaps {min(gaps):.1f} to {max(gaps):.1f} ms")
+    p50, p99 = late[len(late) // 2], late[len(late) * 99 // 100]
+    print(f"  SIP jitter                p50 {p50:.2f} ms, p99 {p99:.2f} ms, max {late[-1]:.2f} ms")
+    print(f"  SIP to SIP                {min(gaps):.1f} to {max(gaps):.1f} ms")
 
 
 def main() -> None:

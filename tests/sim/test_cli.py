@@ -19,7 +19,7 @@ from pathlib import Path
 import pytest
 from doubles import Port, cmd, connect, sips
 
-from hil_sim.arcos import Packet, Sip, Unframer, decode
+from hil_sim.arcos import ConfigPac, Packet, Sip, Unframer, decode
 from hil_sim.cli import build_robot, main
 from hil_sim.scenario import Scenario
 from hil_sim.world import load_world
@@ -217,3 +217,86 @@ def test_the_same_seed_gives_the_same_noise(tmp_path: Path) -> None:
 
     assert readings(5) == readings(5)
     assert readings(5) != readings(6)
+
+
+def test_several_robots_each_on_its_own_pty_with_its_own_name_and_seed(tmp_path: Path) -> None:
+    link, truth = tmp_path / "robot", tmp_path / "truth.jsonl"
+    arguments = (
+        "--world",
+        WORLD,
+        "--robots",
+        "3",
+        "--link-name",
+        str(link),
+        "--truth",
+        str(truth),
+        "--seed",
+        "7",
+    )
+    with simulator(*arguments) as (process, first):
+        assert process.stdout is not None
+        paths = [first] + [process.stdout.readline().strip() for _ in range(2)]
+        links = [tmp_path / name for name in ("robot", "robot-2", "robot-3")]
+        assert [str(item.readlink()) for item in links] == paths
+        ports = [Port(path) for path in paths]
+        names = []
+        for port in ports:
+            connect(port)
+            port.send(cmd("CONFIG"))
+            names += [packet.name for packet in port.read(2, 8) if isinstance(packet, ConfigPac)]
+        for port in ports:
+            port.close()
+        assert names == [b"P3DX_0001", b"P3DX_0002", b"P3DX_0003"]
+        code, _, error = end(process, signal.SIGTERM)
+        assert (code, error) == (0, "")
+    seeds = [
+        json.loads((tmp_path / f"truth{k}.jsonl").read_text().splitlines()[0])["seed"]
+        for k in ("", "-2", "-3")
+    ]
+    assert seeds == [7, 8, 9]
+    assert not link.is_symlink()
+
+
+def test_several_robots_on_consecutive_ports() -> None:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        base = min(probe.getsockname()[1], 65000)
+    with simulator("--world", WORLD, "--robots", "2", "--tcp", str(base)) as (process, first):
+        if not first:
+            pytest.skip("a port was taken by somebody else meanwhile")
+        assert process.stdout is not None
+        second = process.stdout.readline().strip()
+        assert [first, second] == [f"127.0.0.1:{base}", f"127.0.0.1:{base + 1}"]
+        for address in (first, second):
+            host, _, port = address.rpartition(":")
+            with socket.create_connection((host, int(port)), 10) as client:
+                client.sendall(cmd("PULSE"))
+                assert client.recv(64) == cmd("PULSE")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["--robots", "0"], "from 1 to 64"),
+        (["--robots", "2", "--serial", "/dev/null@9600"], "one UART serves one robot"),
+        (["--robots", "3", "--tcp", "65534"], "no port left for robot 3"),
+        (["--sip-cycle", "15"], "steps of 10"),
+        (["--quirks", "nonsense"], "invalid choice"),
+    ],
+)
+def test_wrong_arguments_of_several_robots(arguments: list[str], expected: str) -> None:
+    done = run(*arguments)
+    assert done.returncode == 2
+    assert expected in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_commands_are_told_at_vv() -> None:
+    with simulator("--world", WORLD, "-vv") as (process, path):
+        port = Port(path)
+        connect(port)
+        port.send(cmd("BATTERYINFO", 1))
+        port.read(5, 3)
+        port.close()
+        _, _, error = end(process, signal.SIGTERM)
+    assert "BATTERYINFO (62) 1: ignored, no battery controller" in error
