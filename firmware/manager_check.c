@@ -12,15 +12,19 @@ void argus_take_base(argus_t *const self) {
     }
 }
 
+void argus_give_up_turn(argus_t *const self) {
+    argus_say(self, ARGUS_EV_TURN_FAILED, ARGUS_NO_SONAR,
+              argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, self->motion.target_cdeg) / 100);
+    argus_enter_waiting(self, ARGUS_WAIT_MOTORS);
+}
+
 // True when the robot stands on the base heading; else it is on its way there, or S7 forbids.
 static bool is_home(argus_t *const self) {
     if (self->passive) {
         return true;
     }
     if (self->motion.failed) {
-        argus_say(self, ARGUS_EV_TURN_FAILED, ARGUS_NO_SONAR,
-                  argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, self->motion.target_cdeg) / 100);
-        argus_enter_waiting(self, ARGUS_WAIT_MOTORS);
+        argus_give_up_turn(self);
         return false;
     }
     if (!self->motion.settled) {

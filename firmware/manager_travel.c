@@ -8,6 +8,7 @@
 #define STEER_CDEG 200   // while driving, corrected beyond this
 #define STEER_LEG_MM 250 // ... and only this far from the leg's end
 #define LEG_DONE_MM 60
+#define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
 
 // A leg to drive; false when every heading is blocked and the manager waits.
 static bool has_way(argus_t *const self) {
@@ -50,7 +51,7 @@ static bool aim(argus_t *const self) {
         return true;
     }
     if (self->motion.failed) {
-        argus_enter_waiting(self, ARGUS_WAIT_MOTORS);
+        argus_give_up_turn(self);
         return false;
     }
     if (!argus_at_rest(&self->knowledge) || !self->motion.settled) {
@@ -134,6 +135,13 @@ static bool sees_ahead(const argus_t *const self) {
     return true;
 }
 
+static bool is_heeded(argus_t *const self) {
+    if (self->knowledge.still_sips == 0 || self->motion.kind != ARGUS_MOTION_MOVE) {
+        self->heeded_ms = self->now_ms;
+    }
+    return self->now_ms - self->heeded_ms < UNHEEDED_MS;
+}
+
 // S3: a MOVE that ends where it should without us, renewed on each SIP.
 static void drive_on(argus_t *const self) {
     const int32_t left_mm =
@@ -150,6 +158,11 @@ static void drive_on(argus_t *const self) {
     }
     if (free_mm == 0) {
         return; // a fresh reading will tell
+    }
+    if (!is_heeded(self)) {
+        argus_halt(self);
+        argus_enter_waiting(self, ARGUS_WAIT_MOTORS);
+        return;
     }
     argus_motion_move(&self->motion, &self->session.outbox, argus_min(left_mm, free_mm),
                       self->config.speed_mm_s, self->now_ms);

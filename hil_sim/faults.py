@@ -159,7 +159,7 @@ def fault_help() -> str:
         [
             "KIND:TARGET[@FROM[-TO]][:NAME=VALUE...]   a fault of sonars; TARGET 0 to 15, 3+6, front, rear or all",
             "bumper:SEGMENT@FROM[-TO]                  front bumper segment 1 (left) to 5, 0.5 s unless TO is given",
-            "link-KIND[@FROM[-TO]][:NAME=VALUE...]     a fault of the link, times only; dir=both, to_client or to_robot",
+            "link-KIND[@FROM[-TO]][:NAME=VALUE...]     a fault of the link, times only; dir=both, to_client, to_robot",
             "",
             "FROM and TO are times (12s) or places: x>2000, x<0, y>500, y<500, travelled>1500 (mm, true pose).",
             "Without FROM a fault is there from the beginning; without TO it stays. A place once passed counts as",

@@ -23,7 +23,9 @@ BUMPERS: Final = (0, 5)
 
 @dataclass(frozen=True)
 class Scenario:
-    """One run of the emulator. start: None takes the world's. course: waypoints in world axes, mm; the goal is the last.
+    """One run of the emulator.
+
+    start: None takes the world's. course: waypoints in world axes, mm; the goal is the last.
 
     faults: sonar faults, bumper hits and link faults, in the order written.
     """

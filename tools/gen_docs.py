@@ -58,7 +58,9 @@ def filled(text: str) -> str:
 def main() -> int:
     """Write SPEC.md, or with --check compare it."""
     parser = argparse.ArgumentParser(description=__doc__, epilog="example: tools/gen_docs.py --check")
-    parser.add_argument("--check", action="store_true", help="change nothing; exit 1 when SPEC.md is out of date")
+    parser.add_argument(
+        "--check", action="store_true", help="change nothing; exit 1 when SPEC.md is out of date"
+    )
     arguments = parser.parse_args()
     path = ROOT / "SPEC.md"
     old = path.read_text(encoding="utf-8")

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The main job: Argus drives the emulated robot round a box while its sonars fail, and a judge compares with the truth."""
+"""The main job: Argus drives the emulated robot round a box while sonars fail; a judge compares with the truth."""

@@ -6,28 +6,31 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
+import math
 import os
 import re
+import signal
 import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from types import FrameType
 from typing import NoReturn
 
 from hil_sim.demo import picture, report
 from hil_sim.demo.judge import Injected, Task, Verdict, clock_offset_s, judge
 from hil_sim.demo.live import view
-from hil_sim.demo.runner import Recording, Run, Setup
+from hil_sim.demo.runner import ENDING, Recording, Run, Setup
 from hil_sim.errors import SimError
 from hil_sim.faults import parse_fault
-from hil_sim.scenario import Scenario, load_scenario
+from hil_sim.scenario import SEED_MAX, Scenario, load_scenario
 from hil_sim.world import World, load_world
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENARIOS = Path(__file__).resolve().parents[1] / "scenarios"
 WORLDS = ("demo", "smooth")
 FIRST_FAULT_MM, NEXT_FAULT_MM = 600, 800
-TIMEOUT_S = 180.0
+TIMEOUT_S, LONGEST_S = 180.0, 3600.0
 
 _EXAMPLES = """\
 examples:
@@ -37,8 +40,16 @@ examples:
   tools/dev demo --no-live --json > drive.json
 
 exit codes: 0 goal reached, nothing hit, diagnosis equals injection; 1 the judge says no; 2 wrong arguments or files;
-3 something could not be started; 130 interrupted
+3 something could not be started; 129, 130, 143 ended by SIGHUP, Ctrl-C, SIGTERM; 141 nobody reads the output
 """
+
+
+class _Ended(BaseException):
+    """A signal asks for the end; not an `Exception`, so that nothing on the way out takes it for an error."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
 
 
 class _Parser(argparse.ArgumentParser):
@@ -62,6 +73,24 @@ def _faults(text: str) -> tuple[Injected, ...]:
     return tuple(faults)
 
 
+def _seed(text: str) -> int:
+    if not re.fullmatch(r"\d{1,19}", text) or int(text) > SEED_MAX:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from 0 to {SEED_MAX}")
+    return int(text)
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0 < value <= LONGEST_S:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is not a number of seconds above 0, up to {LONGEST_S:.0f}"
+        )
+    return value
+
+
 def parser() -> argparse.ArgumentParser:
     """Return the argument parser of the demonstration."""
     result = _Parser(
@@ -73,7 +102,7 @@ def parser() -> argparse.ArgumentParser:
     )
     default = (Injected("off", 3), Injected("wrong", 6))
     result.add_argument(
-        "--seed", type=int, default=1, metavar="N", help="seed of everything random (default 1)"
+        "--seed", type=_seed, default=1, metavar="N", help="seed of everything random (default 1)"
     )
     result.add_argument(
         "--fail",
@@ -95,7 +124,11 @@ def parser() -> argparse.ArgumentParser:
         "--argusd", type=Path, default=ROOT / "build/release/argusd", metavar="FILE", help="the program"
     )
     result.add_argument(
-        "--timeout", type=float, default=TIMEOUT_S, metavar="S", help="longest drive (default %(default).0f)"
+        "--timeout",
+        type=_seconds,
+        default=TIMEOUT_S,
+        metavar="S",
+        help="longest drive (default %(default).0f)",
     )
     result.add_argument("--no-live", action="store_true", help="lines instead of a screen, on a terminal too")
     result.add_argument(
@@ -194,31 +227,52 @@ def _conclude(
     print(f"picture: {path}   records: {arguments.out}/truth.jsonl, events.jsonl, report.json")
 
 
+def _ended(number: int, _frame: FrameType | None) -> NoReturn:
+    raise _Ended(number)
+
+
+def _demonstrate(arguments: argparse.Namespace) -> int:
+    scenario = _scenario(arguments)
+    task = Task(_goal(scenario, load_world(scenario.world)), arguments.fail)
+    setup = _prepare(arguments, scenario)
+    if not arguments.json:
+        print(f"demo: the drive takes about two minutes; records in {arguments.out}", flush=True)
+    recording = _drive(arguments, setup)
+    ended = time.monotonic()
+    verdict = judge(recording.truth, recording.events, task)
+    _conclude(arguments, scenario, recording, verdict)
+    if not arguments.json:
+        print(f"report and picture took {time.monotonic() - ended:.1f} s")
+    sys.stdout.flush()
+    return 0 if verdict.passed else 1
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the demonstration; return its exit code."""
     arguments = parser().parse_args(argv)
+    # Without this a SIGTERM would leave argusd driving. What was ignored (nohup) stays ignored.
+    before = {number: signal.getsignal(number) for number in ENDING}
+    for number, handler in before.items():
+        if handler is not signal.SIG_IGN:
+            signal.signal(number, _ended)
     try:
-        scenario = _scenario(arguments)
-        task = Task(_goal(scenario, load_world(scenario.world)), arguments.fail)
-        setup = _prepare(arguments, scenario)
-        if not arguments.json:
-            print(f"demo: the drive takes about two minutes; records in {arguments.out}", flush=True)
-        recording = _drive(arguments, setup)
-        ended = time.monotonic()
-        verdict = judge(recording.truth, recording.events, task)
-        _conclude(arguments, scenario, recording, verdict)
-        if not arguments.json:
-            print(f"report and picture took {time.monotonic() - ended:.1f} s")
-        return 0 if verdict.passed else 1
+        return _demonstrate(arguments)
     except SimError as error:
         print(f"demo: {error}", file=sys.stderr)
         return error.exit_code
-    except KeyboardInterrupt:
+    except (_Ended, KeyboardInterrupt) as error:
         print("demo: interrupted; the robot was stopped and both programs have ended", file=sys.stderr)
-        return 130
+        return 128 + (error.number if isinstance(error, _Ended) else signal.SIGINT)
     except BrokenPipeError:
+        # Nobody reads our output; the interpreter would complain once more while it closes it.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
+        return 128 + signal.SIGPIPE
+    except OSError as error:
+        print(f"demo: {error.filename}: {error.strerror}; name another folder with --out", file=sys.stderr)
+        return 2
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 if __name__ == "__main__":

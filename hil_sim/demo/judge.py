@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from itertools import pairwise
 from typing import Any, Final
 
 from hil_sim.errors import SimError
@@ -198,7 +199,7 @@ class _Drive:
         opened = [record["t_s"] for record in of_type(truth, "session") if record.get("state") == "open"]
         self.start_s = float(opened[0]) if opened else 0.0
         self.way_mm = [0.0]
-        for before, after in zip(self.states, self.states[1:], strict=False):
+        for before, after in pairwise(self.states):
             step = math.hypot(after["x_mm"] - before["x_mm"], after["y_mm"] - before["y_mm"])
             self.way_mm.append(self.way_mm[-1] + step)
 
@@ -229,7 +230,7 @@ class _Drive:
 
 def is_at_rest(state: Record) -> bool:
     """The true robot stands, as far as a truth record shows it."""
-    return abs(state["v_mm_s"]) <= _REST_MM_S and abs(state["w_deg_s"]) <= _REST_DEG_S
+    return bool(abs(state["v_mm_s"]) <= _REST_MM_S and abs(state["w_deg_s"]) <= _REST_DEG_S)
 
 
 def _onset(drive: _Drive, fault: Injected) -> Record | None:
@@ -415,7 +416,7 @@ def _plans(drive: _Drive) -> tuple[Plan, ...]:
 
 def _rises(flags: Sequence[bool]) -> int:
     """How often a flag goes from false to true."""
-    return sum(after and not before for before, after in zip(flags, flags[1:], strict=False))
+    return sum(after and not before for before, after in pairwise(flags))
 
 
 def _journey(drive: _Drive) -> Journey | None:
@@ -425,7 +426,7 @@ def _journey(drive: _Drive) -> Journey | None:
     closest = min(states, key=lambda state: state["clearance_mm"])
     turned = sum(
         abs(math.remainder(after["heading_deg"] - before["heading_deg"], 360))
-        for before, after in zip(states, states[1:], strict=False)
+        for before, after in pairwise(states)
     )
     first, last = drive.index(states[0]["t_s"]), drive.index(states[-1]["t_s"])
     return Journey(

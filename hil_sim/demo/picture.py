@@ -160,9 +160,20 @@ def _draw_hits(axes: Axes, drive: Drive) -> None:
     good = [(x, y) for _, x, y, fault in hits(drive) if not fault]
     bad = [(x, y) for _, x, y, fault in hits(drive) if fault]
     if good:
-        axes.scatter(*zip(*good, strict=True), s=5, color=_GREEN, alpha=0.35, lw=0, zorder=2.5)
+        axes.scatter(
+            [x for x, _ in good], [y for _, y in good], s=5, color=_GREEN, alpha=0.35, lw=0, zorder=2.5
+        )
     if bad:
-        axes.scatter(*zip(*bad, strict=True), s=16, color=_PURPLE, marker="x", lw=0.9, alpha=0.75, zorder=2.6)
+        axes.scatter(
+            [x for x, _ in bad],
+            [y for _, y in bad],
+            s=16,
+            color=_PURPLE,
+            marker="x",
+            lw=0.9,
+            alpha=0.75,
+            zorder=2.6,
+        )
 
 
 def _failure_since_s(drive: Drive) -> float:
@@ -238,10 +249,9 @@ def _outlined(axes: Axes, x: float, y: float, text: str, **options: Any) -> None
 
 def _draw_course(axes: Axes, drive: Drive) -> None:
     states = drive.states()
-    start = (states[0]["x_mm"], states[0]["y_mm"])
-    points = [start, *drive.course_mm]
+    points = [*((state["x_mm"], state["y_mm"]) for state in states[:1]), *drive.course_mm]
     axes.plot([x for x, _ in points], [y for _, y in points], color=_GREY, lw=1.1, ls=(0, (2, 3)), zorder=3)
-    for x, y in points[1:-1]:
+    for x, y in drive.course_mm[:-1]:
         axes.plot(x, y, "+", color=_GREY, ms=9, mew=1.4, zorder=3)
     gx, gy = points[-1]
     axes.plot(gx, gy, marker="*", ms=21, mfc="white", mec=_INK, mew=1.3, zorder=6.5)
@@ -360,7 +370,7 @@ def _draw_faults(axes: Axes, drive: Drive, callouts: _Callouts) -> None:
 
 def _draw_ends(axes: Axes, drive: Drive, callouts: _Callouts) -> None:
     states = drive.states()
-    for state, word in ((states[0], "Start"), (states[-1], "Goal")):
+    for state, word in zip(states[:1] + states[-1:], ("Start", "Goal"), strict=False):
         _draw_robot(axes, state["x_mm"], state["y_mm"], state["heading_deg"], _INK, 0.08)
         text = word
         if word == "Goal":
@@ -379,7 +389,9 @@ def _draw_false(axes: Axes, drive: Drive, callouts: _Callouts) -> None:
     """Healthy sonars that were disabled: the drive failed there, and the reader should see where."""
     states = drive.states()
     for t_s, sonar, kind in drive.verdict.false_disables:
-        state = min(states, key=lambda s: abs(s["t_s"] - t_s))
+        state = min(states, key=lambda s: abs(s["t_s"] - t_s), default=None)
+        if state is None:
+            return
         axes.plot(state["x_mm"], state["y_mm"], "D", ms=8.5, mfc="white", mec=_RED, mew=2, zorder=9)
         text = f"Sonar {sonar} is healthy, yet\ndisabled as {kind} at {t_s - drive.start_s:.1f} s"
         callouts.put(state["x_mm"], state["y_mm"], text, _RED)

@@ -69,8 +69,9 @@ def _journey(journey: Journey) -> list[str]:
     energy = "; ".join(f"{joule:.0f} J at {name}" for name, joule in journey.energy_j.items())
     closest = _NEVER
     if journey.closest is not None and journey.closest_mm is not None:
-        where = f"x {journey.closest.x_mm:.0f} y {journey.closest.y_mm:.0f} mm"
-        closest = f"{journey.closest_mm:.0f} mm between body and solid, at {_at(journey.closest, journey.start_s)}, {where}"
+        at = journey.closest
+        where = f"at {_at(at, journey.start_s)}, x {at.x_mm:.0f} y {at.y_mm:.0f} mm"
+        closest = f"{journey.closest_mm:.0f} mm between body and solid, {where}"
     rows = [
         ["time", f"{journey.time_s:.1f} s of robot time, from the opened session to the goal"],
         ["way", f"{journey.way_mm / 1000:.2f} m"],

@@ -25,6 +25,8 @@ _DEVICE_WITHIN_S: Final = 20.0
 _SESSION_WITHIN_S: Final = 25.0
 _AFTER_GOAL_S: Final = 1.0
 _CLOSE_WITHIN_S: Final = 6.0
+ENDING: Final = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+"""The signals that end a drive before its time; the children, in groups of their own, never get them."""
 
 
 class CannotStart(SimError):
@@ -161,8 +163,15 @@ class Run:
 
     def _start_sim(self) -> str:
         program = Path(sys.executable).with_name("argus-sim")
-        arguments = [program, "--baud", str(BAUD), "--truth", self.setup.out / "truth.jsonl"]
-        sim = Child("argus-sim", [*arguments, *self.setup.sim_arguments], self.setup.out / "argus-sim.log")
+        arguments: list[str | Path] = [
+            program,
+            "--baud",
+            str(BAUD),
+            "--truth",
+            self.setup.out / "truth.jsonl",
+        ]
+        arguments += self.setup.sim_arguments
+        sim = Child("argus-sim", arguments, self.setup.out / "argus-sim.log")
         self.children.append(sim)
         os.set_blocking(sim.output.fileno(), False)
         lines, until = Lines(sim.output.fileno()), time.monotonic() + _DEVICE_WITHIN_S
@@ -177,9 +186,15 @@ class Run:
 
     def _start_argusd(self, device: str) -> Child:
         setup = self.setup
-        link = ["--link", f"serial:{device}@{BAUD}", "--active", "--json"]
-        files = ["--course", setup.course, "--config", setup.config]
-        argusd = Child("argusd", [setup.argusd, *link, *files], setup.out / "argusd.log")
+        arguments: list[str | Path] = [
+            setup.argusd,
+            "--link",
+            f"serial:{device}@{BAUD}",
+            "--active",
+            "--json",
+        ]
+        arguments += ["--course", setup.course, "--config", setup.config]
+        argusd = Child("argusd", arguments, setup.out / "argusd.log")
         self.children.append(argusd)
         os.set_blocking(argusd.output.fileno(), False)
         self._selector.register(argusd.output, selectors.EVENT_READ)
@@ -216,6 +231,8 @@ class Run:
             if child.process.poll() is not None:
                 arrived = child.name == "argusd" and child.process.returncode == 0 and goal_seen is not None
                 recording.ended = "goal reached" if arrived else child.why_ended()
+                if recording.opened_s is None:
+                    raise CannotStart(child.why_ended())
         now = time.monotonic()
         if not recording.ended:
             if goal_seen is not None and now - goal_seen > _AFTER_GOAL_S and self._stands():
@@ -263,8 +280,17 @@ class Run:
         return self.recording
 
     def close(self) -> None:
-        """End argusd first, so that it stops the robot and closes its session, then the emulator."""
-        for child in reversed(self.children):
-            if not child.end():
-                self.notes.append(f"{child.name} did not end within {_CLOSE_WITHIN_S:.0f} s and was killed")
-        self.children.clear()
+        """End argusd first, so that it stops the robot and closes its session, then the emulator.
+
+        An impatient second Ctrl-C would leave one behind, so signals count for nothing until this is over: 2 x 6 s at most.
+        """
+        before = {number: signal.signal(number, signal.SIG_IGN) for number in ENDING}
+        try:
+            for child in reversed(self.children):
+                if not child.end():
+                    late = f"did not end within {_CLOSE_WITHIN_S:.0f} s and was killed"
+                    self.notes.append(f"{child.name} {late}")
+            self.children.clear()
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Prints how long it takes from the read of a SIP with a dead reading to the write of STOP, through a real pty.
+// Prints how long it takes from the read of a SIP with a dead reading to the write of STOP, through a real
+// pty.
 #define _GNU_SOURCE // ptys
 #include <fcntl.h>
 #include <math.h>
@@ -120,7 +121,8 @@ int main(void) {
         us[i] = once(master, slave, sip, length);
     }
     qsort(us, TIMES, sizeof us[0], compare_us);
-    printf("SIP read to STOP written, pty    median %6.1f  p99 %6.1f  max %6.1f us (%d times, SIP of %zu bytes)\n",
+    printf("SIP read to STOP written, pty    median %6.1f  p99 %6.1f  max %6.1f us (%d times, SIP of %zu "
+           "bytes)\n",
            us[TIMES / 2], us[TIMES * 99 / 100], us[TIMES - 1], TIMES, length);
     return 0;
 }

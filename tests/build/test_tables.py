@@ -77,3 +77,9 @@ def test_bad_table_is_refused(tree: Path, name: str, text: str | None, expected:
     assert len(lines) == 1
     assert expected in lines[0]
     assert f"{name}.toml" in lines[0]
+
+
+def test_tables_of_spec_are_those_of_the_headers() -> None:
+    command = [sys.executable, str(ROOT / "tools/gen_docs.py"), "--check"]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

@@ -116,10 +116,11 @@ typedef struct {
     uint32_t check_ms;      // last health check while driving
     argus_wait_t wait_last; // what it waited for last, since it drove
     uint32_t wait_since_ms;
-    uint32_t waited_s; // waiting time said so far
-    uint32_t tried_ms; // last attempt to get out of WAITING
-    uint32_t stops;    // STOP and E_STOP sent, monotonic
-    argus_mark_t mark; // CHECKING: readings after this count
+    uint32_t waited_s;  // waiting time said so far
+    uint32_t tried_ms;  // last attempt to get out of WAITING
+    uint32_t heeded_ms; // DRIVING: since then the robot has stood, one MOVE after the other
+    uint32_t stops;     // STOP and E_STOP sent, monotonic
+    argus_mark_t mark;  // CHECKING: readings after this count
     bool marked;
     uint8_t rounds;    // CHECKING: rounds of fresh readings still wanted
     int32_t base_cdeg; // heading to return to after verification and sweeps (S4)

@@ -42,6 +42,16 @@ void json_thousandths(json_t *self, int64_t value) {
     text_add(&self->text, "%s%" PRIu64 ".%03" PRIu64, value < 0 ? "-" : "", size / 1000u, size % 1000u);
 }
 
+// Whether the bytes from the third on are continuations.
+static bool continues(const unsigned char *at, size_t length) {
+    for (size_t k = 2; k < length; k++) {
+        if ((at[k] & 0xC0) != 0x80) {
+            return false;
+        }
+    }
+    return true;
+}
+
 // Length of the UTF-8 character at `at`, 0 when there is none: stray, cut, overlong, surrogate or beyond
 // U+10FFFF.
 static size_t utf8_length(const unsigned char *at) {
@@ -63,12 +73,7 @@ static size_t utf8_length(const unsigned char *at) {
             return 0;
         }
         const size_t length = at[0] < 0xE0 ? 2 : at[0] < 0xF0 ? 3 : 4;
-        for (size_t k = 2; k < length; k++) {
-            if ((at[k] & 0xC0) != 0x80) {
-                return 0;
-            }
-        }
-        return length;
+        return continues(at, length) ? length : 0;
     }
     return 0;
 }

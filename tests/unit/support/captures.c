@@ -66,13 +66,12 @@ static void frame(captures_t *stream, const char *path, size_t from) {
     }
 }
 
-size_t captures_load_bytes(captures_t *stream, const char *name, const char *direction) {
+typedef void (*take_line_t)(void *context, const char *line, const char *hex);
+
+static void read_lines(const char *name, take_line_t take, void *context) {
     static char line[4096];
     char path[512];
-    char mark[32];
-    const size_t from = stream->length;
     snprintf(path, sizeof path, "%s/captures/%s.jsonl", ARGUS_TEST_DATA, name);
-    snprintf(mark, sizeof mark, "\"dir\": \"%s\"", direction);
     FILE *file = fopen(path, "r");
     if (file == NULL) {
         give_up(path, "cannot be read");
@@ -82,13 +81,52 @@ size_t captures_load_bytes(captures_t *stream, const char *name, const char *dir
         if (strchr(line, '\n') == NULL) {
             give_up(path, "line too long, raise the buffer");
         }
-        if (hex != NULL && strstr(line, mark) != NULL) {
-            stream->length +=
-                captures_hex(hex + 8, stream->bytes + stream->length, CAPTURES_BYTES_MAX - stream->length);
+        if (hex != NULL) {
+            take(context, line, hex + 8);
         }
     }
     fclose(file);
+}
+
+typedef struct {
+    captures_t *stream;
+    char mark[32];
+} one_way_t;
+
+static void take_bytes(void *context, const char *line, const char *hex) {
+    const one_way_t *wanted = context;
+    captures_t *stream = wanted->stream;
+    if (strstr(line, wanted->mark) != NULL) {
+        stream->length +=
+            captures_hex(hex, stream->bytes + stream->length, CAPTURES_BYTES_MAX - stream->length);
+    }
+}
+
+size_t captures_load_bytes(captures_t *stream, const char *name, const char *direction) {
+    one_way_t wanted = {stream, ""};
+    const size_t from = stream->length;
+    snprintf(wanted.mark, sizeof wanted.mark, "\"dir\": \"%s\"", direction);
+    read_lines(name, take_bytes, &wanted);
     return from;
+}
+
+static void take_chunk(void *context, const char *line, const char *hex) {
+    captures_tape_t *tape = context;
+    const char *time = strstr(line, "\"t\": ");
+    if (time == NULL || tape->chunks >= CAPTURES_CHUNKS_MAX) {
+        give_up(line, "has no time, or raise CAPTURES_CHUNKS_MAX");
+    }
+    captures_chunk_t *chunk = &tape->chunk[tape->chunks++];
+    chunk->t_ms = (uint32_t)(strtod(time + 5, NULL) * 1000);
+    chunk->from_robot = strstr(line, "\"dir\": \"r2c\"") != NULL;
+    chunk->at = tape->length;
+    chunk->count = captures_hex(hex, tape->bytes + tape->length, CAPTURES_BYTES_MAX - tape->length);
+    tape->length += chunk->count;
+}
+
+void captures_load_tape(captures_tape_t *tape, const char *name) {
+    memset(tape, 0, sizeof *tape);
+    read_lines(name, take_chunk, tape);
 }
 
 void captures_load(captures_t *stream, const char *name, const char *direction) {

@@ -33,6 +33,22 @@ void captures_load(captures_t *stream, const char *name, const char *direction);
 // Every SIP of every capture, in order.
 void captures_load_sips(captures_t *stream);
 
+// A recording with its times: chunks of `bytes` as they were received.
+#define CAPTURES_CHUNKS_MAX 2500
+typedef struct {
+    uint32_t t_ms;
+    bool from_robot;
+    size_t at;
+    size_t count;
+} captures_chunk_t;
+typedef struct {
+    uint8_t bytes[CAPTURES_BYTES_MAX];
+    size_t length;
+    captures_chunk_t chunk[CAPTURES_CHUNKS_MAX];
+    size_t chunks;
+} captures_tape_t;
+void captures_load_tape(captures_tape_t *tape, const char *name);
+
 // "FA FB 03 ..." to bytes; returns how many.
 size_t captures_hex(const char *text, uint8_t *out, size_t capacity);
 
