@@ -13,7 +13,9 @@ endif()
 add_library(argus_hal STATIC ${hal_sources})
 target_include_directories(argus_hal PUBLIC ${PROJECT_SOURCE_DIR}/hal/include)
 target_compile_options(argus_hal PRIVATE ${ARGUS_STRICT})
-target_link_libraries(argus_hal PUBLIC argus PRIVATE argus_flags)
+set(THREADS_PREFER_PTHREAD_FLAG ON)
+find_package(Threads REQUIRED)
+target_link_libraries(argus_hal PUBLIC argus Threads::Threads PRIVATE argus_flags)
 # gnu11: the POSIX declarations are visible without a feature macro in every file.
 set_target_properties(argus_hal PROPERTIES C_EXTENSIONS ON)
 

@@ -165,20 +165,27 @@ def of_type(truth: Sequence[Record], kind: str) -> list[Record]:
     return [record for record in truth if record.get("type") == kind]
 
 
+def _least(records: Sequence[Record], wall: str, own: str) -> float | None:
+    """The smallest (wall clock - own clock) of a stream: that of the line that waited least."""
+    return min(
+        (float(one[wall]) - float(one[own]) for one in records if wall in one and own in one), default=None
+    )
+
+
 def clock_offset_s(truth: Sequence[Record], events: Sequence[Record]) -> float:
     """What to add to argusd's time to get robot time.
 
     Best: the reader of both streams noted the wall clock beside each line (`wall_s`). A line can only be read after
     it was written, so in each stream the smallest (wall - own time) is the one read with the least delay; with
-    thousands of lines that delay is a few ms, and the difference of the two minima is the offset. Without wall
-    times: argusd's SESSION_OPEN is taken to be simultaneous with the emulator's, right to about 0.2 s.
+    thousands of lines that delay is a few ms, and the difference of the two minima is the offset. Without them, the
+    calendar time that both programs write themselves does as well, unless somebody set the clock (`unix_s` in the
+    emulator's clock record, `unix` in argusd's status). Last: argusd's SESSION_OPEN is taken to be simultaneous with
+    the emulator's; it is up to 0.3 s later, so a diagnosis may then seem to come before its fault.
     """
-    wall_truth = [
-        record["wall_s"] - record["t_s"] for record in truth if "wall_s" in record and "t_s" in record
-    ]
-    wall_events = [event["wall_s"] - event_s(event) for event in events if "wall_s" in event]
-    if wall_truth and wall_events:
-        return float(min(wall_events) - min(wall_truth))
+    for wall_truth, wall_events in (("wall_s", "wall_s"), ("unix_s", "unix")):
+        of_truth, of_events = _least(truth, wall_truth, "t_s"), _least(events, wall_events, "t")
+        if of_truth is not None and of_events is not None:
+            return of_events - of_truth
     opened_truth = [record["t_s"] for record in of_type(truth, "session") if record.get("state") == "open"]
     opened_events = [event_s(event) for event in events if event.get("event") == "SESSION_OPEN"]
     if not opened_truth or not opened_events:

@@ -573,7 +573,7 @@ def _draw_time(axes: Axes, drive: Drive) -> None:
             )
     axes.set_yticks([*_FRONT, 7.25], [*(f"sonar {number}" for number in _FRONT), "robot"], fontsize=10.5)
     axes.set_ylim(7.75, 0.2)
-    axes.set_xlim(0, drive.end_s - drive.start_s)
+    axes.set_xlim(0, max(drive.end_s - drive.start_s, 1.0))
     axes.set_xlabel("seconds since the session opened", fontsize=10.5)
     axes.set_title("What Argus held of each sonar, when", fontsize=12, loc="left", color=_INK)
     axes.tick_params(axis="y", length=0)
@@ -621,6 +621,15 @@ def _headline(drive: Drive) -> tuple[str, str]:
     return f"Failed: {failed}", _RED
 
 
+def _write_line(figure: Figure, y: float, words: str, fontsize: float, **options: Any) -> None:
+    """One line across the picture, in smaller letters when it would not fit."""
+    text = figure.text(0.025, y, words, fontsize=fontsize, **options)
+    room = 0.95 * figure.bbox.width
+    wide = text.get_window_extent().width
+    if wide > room:
+        text.set_fontsize(fontsize * room / wide)
+
+
 def draw(drive: Drive, path: Path) -> None:
     """Write the picture as a PNG file."""
     with mpl.rc_context({"font.family": "DejaVu Sans", "hatch.linewidth": 0.7, "hatch.color": "#b5b5b5"}):
@@ -643,7 +652,7 @@ def draw(drive: Drive, path: Path) -> None:
         _draw_ring(figure.add_subplot(grid[0, 1]), drive)
         _draw_time(figure.add_subplot(grid[1, 1]), drive)
         headline, colour = _headline(drive)
-        figure.text(0.025, 0.955, drive.title, fontsize=18, fontweight="bold", color=_INK)
-        figure.text(0.025, 0.92, headline, fontsize=13, fontweight="bold", color=colour)
-        figure.text(0.025, 0.885, _figures(drive), fontsize=11.5, color=_INK)
+        _write_line(figure, 0.955, drive.title, fontsize=18, fontweight="bold", color=_INK)
+        _write_line(figure, 0.92, headline, fontsize=13, fontweight="bold", color=colour)
+        _write_line(figure, 0.885, _figures(drive), fontsize=11.5, color=_INK)
         figure.savefig(path, dpi=_DPI, metadata={"Software": None})

@@ -252,7 +252,7 @@ class Run:
     def _drive(self, argusd: Child) -> None:
         with (
             (self.setup.out / "truth.jsonl").open("rb") as truth_file,
-            (self.setup.out / "events.jsonl").open("w", encoding="utf-8") as keep,
+            (self.setup.out / "events.jsonl").open("w", encoding="utf-8", buffering=1) as keep,
         ):
             events, truth = Lines(argusd.output.fileno()), Lines(truth_file.fileno())
             started, goal_seen = time.monotonic(), None
@@ -282,7 +282,7 @@ class Run:
     def close(self) -> None:
         """End argusd first, so that it stops the robot and closes its session, then the emulator.
 
-        An impatient second Ctrl-C would leave one behind, so signals count for nothing until this is over: 2 x 6 s at most.
+        An impatient second Ctrl-C would leave one behind, so signals are ignored until then: 2 x 6 s at most.
         """
         before = {number: signal.signal(number, signal.SIG_IGN) for number in ENDING}
         try:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Rule: the firmware and hil_sim.arcos take the same packets out of the same bytes at the same moment, and
-read the same fields from them, whatever the bytes and however they arrive; what they build is the same too."""
+"""Rule: the firmware and hil_sim.arcos take the same packets out of the same bytes at the same moment, read the
+same fields from them, whatever the bytes and however they arrive, and build the same bytes."""
 
 from __future__ import annotations
 
@@ -310,7 +310,7 @@ class Stream:
             packet = rng.choice(seeds) if rng.random() < 0.6 else random_packet(rng)
             parts.append(rng.choice(MUTATIONS)(rng, packet))
         data = b"".join(parts)
-        longest = rng.choice((1, 7, 40, 300, 300, 3000))
+        longest = rng.choice((1, 7, 40, 40, 40, 300, 300, 300, 300, 300, 3000, 3000))
         pauses = rng.choice((PAUSES_MS, (0, 1), (10, 31)))
         ends: list[int] = []
         times_ms: list[int] = []

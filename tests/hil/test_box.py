@@ -6,10 +6,17 @@ from __future__ import annotations
 import pytest
 from harness import Bench, is_translating
 from rules import OFF, assert_only, assert_reached
-from worlds import hall_with_box
+from worlds import hall, hall_with_box
+
+from hil_sim.tables import load
 
 BOX_X_MM = 800.0
 GOAL_MM = 1700
+WALL_MM = 1100
+CHECK_RANGE_MM = 350
+STEP_MM = 200
+NOISE_MM = 20
+SONAR_FACE_MM: int = load("p3dx")["body"]["sonar_face_mm"]
 
 
 @pytest.mark.parametrize("sonar", range(1, 7))
@@ -41,3 +48,18 @@ def test_with_the_two_foremost_sonars_dead(bench: Bench, sonar: int) -> None:
     moves = [s for s in sim.of("state") if is_translating(s)]
     assert all(s["t_s"] > sim.robot_time(argusd.unix(first_sweep)) - 0.1 for s in moves)
     assert argusd.named("PLAN_ROTATION")
+
+
+def test_a_wall_that_only_the_sweep_sees_stops_the_next_step(bench: Bench) -> None:
+    """The goal lies so near a wall that the last step before it may not be made."""
+    sim = bench.sim(bench.world(**hall(length_mm=WALL_MM)), "off:3+4@0s")
+    argusd = bench.argusd("--goal", f"{WALL_MM - 300:.0f},0")
+    checked = argusd.wait("OBJECT_CHECKED", timeout_s=60)
+    assert checked["value"] <= CHECK_RANGE_MM
+    sim.wait("what it does next", lambda s: s["t_s"] > sim.robot_time(argusd.unix(checked)) + 5)
+    farthest_mm = max(s["x_mm"] for s in sim.of("state"))
+    assert farthest_mm <= WALL_MM - SONAR_FACE_MM - CHECK_RANGE_MM + STEP_MM + NOISE_MM, (
+        "stepped although it saw"
+    )
+    sim.assert_no_collision()
+    assert_only(argusd, (3, OFF), (4, OFF))

@@ -14,6 +14,7 @@ import pytest
 import hil_sim.arcos
 import hil_sim.tables
 from hil_sim.arcos import (
+    ARGUMENT,
     COMMAND,
     Command,
     ConfigPac,
@@ -124,21 +125,48 @@ def test_arguments_cut_short_read_as_zero() -> None:
     assert Command(3, b"\x2b").text == b""
 
 
+# Packets from the client and from the robot in each recording, as its README says.
+RECORDED = {
+    "a_idle": (54, 216), "c_commands": (253, 941), "d_ram": (65, 238), "m_p3dx": (6, 32),
+    "m_powerbot": (6, 32), "m_seekur": (6, 32), "p10_badck": (7, 25),
+}  # fmt: skip
+
+
+def rebuilt(command: Command) -> Command:
+    """The command made anew out of what was read from it."""
+    nul = command.argument[2:].endswith(b"\0") and len(command.argument) == len(command.text) + 3
+    if not command.argument:
+        return Command.none(command.number)
+    if command.argument[0] == ARGUMENT["STRING"]:
+        return Command.string(command.number, command.text, nul=nul)
+    if len(command.argument) == 3:
+        return Command.integer(command.number, command.value)
+    return command  # a simulator command: raw bytes
+
+
 @pytest.mark.parametrize("path", CAPTURES, ids=lambda p: p.stem)
-def test_recorded_sessions_round_trip(path: Path) -> None:
+def test_every_recorded_packet_decodes_and_encodes_to_the_same_bytes(path: Path) -> None:
     unframers = {"c2r": Unframer(), "r2c": Unframer()}
-    packets = 0
+    raw = {"c2r": b"", "r2c": b""}
+    again = {"c2r": b"", "r2c": b""}
+    packets = {"c2r": 0, "r2c": 0}
     for line in path.read_text().splitlines():
         record = json.loads(line)
-        if record["dir"] == "ev":
+        way = record["dir"]
+        if way == "ev":
             continue
-        for data in unframers[record["dir"]].feed(bytes.fromhex(record["hex"]), record["t"] * 1000):
-            packet = decode(data) if record["dir"] == "r2c" else Command.decode(data)
+        raw[way] += bytes.fromhex(record["hex"])
+        for data in unframers[way].feed(bytes.fromhex(record["hex"]), record["t"] * 1000):
+            packets[way] += 1
+            packet = decode(data) if way == "r2c" else rebuilt(Command.decode(data))
+            assert not isinstance(packet, OtherPacket), f"{path.name} at t={record['t']}: {data.hex()}"
             assert packet.data == data, f"{path.name} at t={record['t']}"
-            packets += 1
-    assert packets > 30
-    counters = unframers["c2r"].counters
-    assert counters.bad_checksum == (1 if path.stem == "p10_badck" else 0)
+            again[way] += frame(packet.data)
+    assert (packets["c2r"], packets["r2c"]) == RECORDED[path.stem]
+    damaged = path.stem == "p10_badck"
+    assert again["r2c"] == raw["r2c"]
+    assert (again["c2r"] == raw["c2r"]) is not damaged
+    assert unframers["c2r"].counters.bad_checksum == (1 if damaged else 0)
     assert unframers["r2c"].counters.junk_bytes == 0
 
 

@@ -223,6 +223,22 @@ void test_every_scripted_robot_is_diagnosed_and_driven(void) {
     }
 }
 
+void test_a_configpac_before_open_does_no_harm(void) {
+    for (int when = 0; when < 4; when++) {
+        start();
+        robot.config = config_whole;
+        robot.config_count = sizeof config_whole - 1;
+        robot.config_before_sync2 = when % 2 == 0;
+        robot.config_after_sync2 = when % 2 == 1;
+        robot.ignores[ARCOS_CMD_CONFIG] = when < 2;
+        TEST_ASSERT_TRUE(robot_goal(&robot, 400, 0));
+        TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 60000));
+        TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_SESSION_OPEN, 0));
+        TEST_ASSERT_EQUAL(when != 0, robot.argus.session.has_robot);
+        finish("CONFIGpac early");
+    }
+}
+
 void test_a_robot_without_sonars_is_never_driven(void) {
     start();
     robot.alter_sip = with_no_sonars;

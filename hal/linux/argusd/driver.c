@@ -54,6 +54,12 @@ static void lose(driver_t *self, int error) {
     argus_link_lost(&self->core, self->lost_ms);
 }
 
+static void show(const driver_t *self, bool from_robot, const uint8_t *bytes, size_t count) {
+    if (self->tap.see != NULL) {
+        self->tap.see(self->tap.context, from_robot, bytes, count);
+    }
+}
+
 // True when the held packet is out.
 static bool write_held(driver_t *self) {
     const int written = hal_link_write(&self->link, self->packet, self->held);
@@ -62,6 +68,7 @@ static bool write_held(driver_t *self) {
         return false;
     }
     if (written > 0) {
+        show(self, false, self->packet, self->held);
         self->held = 0;
     }
     return written > 0;
@@ -92,6 +99,7 @@ void driver_receive(driver_t *self) {
         self->bytes_in += (uint32_t)got;
         argus_receive(&self->core, now_ms(self), bytes, (size_t)got);
         driver_transmit(self);
+        show(self, true, bytes, (size_t)got); // after what they call for
     }
 }
 

@@ -7,12 +7,19 @@
 #include "hal/clock.h"
 #include "hal/link_spec.h"
 
+// Sees all bytes that pass, from the robot or to it. Must not wait.
+typedef struct {
+    void (*see)(void *context, bool from_robot, const uint8_t *bytes, size_t count); // NULL: nobody looks
+    void *context;
+} driver_tap_t;
+
 typedef struct {
     argus_t core;
     hal_clock_t clock;
     hal_link_spec_t spec;
     hal_transport_t *transport; // NULL: a link lost is not opened again
     hal_link_t link;
+    driver_tap_t tap;
     bool up;
     int cancel_fd;          // becomes readable when opening is to be given up; -1: none
     hal_link_error_t error; // why the link is not up

@@ -108,6 +108,17 @@ static int fetch(void) {
     return argus_outbox_fetch(&outbox, packet, sizeof packet) > 0 ? packet[3] : -1;
 }
 
+void test_the_first_command_can_be_asked_for(void) {
+    argus_outbox_init(&outbox);
+    TEST_ASSERT_EQUAL(-1, argus_outbox_first(&outbox));
+    argus_outbox_int(&outbox, ARCOS_CMD_SETV, 1);
+    argus_outbox_plain(&outbox, ARCOS_CMD_PULSE);
+    TEST_ASSERT_EQUAL(ARCOS_CMD_SETV, argus_outbox_first(&outbox));
+    argus_outbox_urgent(&outbox, ARCOS_CMD_E_STOP);
+    TEST_ASSERT_EQUAL(ARCOS_CMD_E_STOP, argus_outbox_first(&outbox));
+    TEST_ASSERT_EQUAL(ARCOS_CMD_E_STOP, fetch());
+}
+
 void test_packets_leave_whole_and_in_order_round_the_ring(void) {
     uint32_t fetched = 0;
     argus_outbox_init(&outbox);

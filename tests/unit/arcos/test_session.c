@@ -677,6 +677,80 @@ void test_what_moves_and_waits_during_a_stall_is_dropped_on_resuming(void) {
     TEST_ASSERT_EQUAL(0, logged(ARCOS_CMD_MOVE));
 }
 
+// Our own host stood still: the SIPs of 3 s come in one read, and no timer has seen the gap.
+void test_a_gap_that_no_timer_saw_is_said_with_its_end(void) {
+    uint8_t bytes[2000];
+    size_t count = 0;
+    size_t taken = 0;
+    connect();
+    const uint32_t heard_ms = time_of(ARGUS_SESSION_GOT_SIP);
+    argus_outbox_int(&session.outbox, ARCOS_CMD_MOVE, 500);
+    for (uint8_t i = 1; i <= 30; i++) {
+        uint8_t data[32];
+        count += argus_frame_encode(bytes + count, sizeof bytes - count, data, sip_data(data, i));
+    }
+    time_ms = heard_ms + 3000;
+    TEST_ASSERT_EQUAL_HEX(ARGUS_SESSION_GOT_SIP | ARGUS_SESSION_DID_STALL | ARGUS_SESSION_DID_RESUME,
+                          argus_session_receive(&session, &config, now(), bytes, count, &taken));
+    TEST_ASSERT_EQUAL(3000, session.gap_ms);
+    argus_outbox_urgent(&session.outbox, ARCOS_CMD_STOP); // must not overtake
+    receive(bytes + taken, count - taken);
+    TEST_ASSERT_EQUAL(30, session.sip.x_raw);
+    TEST_ASSERT_EQUAL(0, count_of(ARGUS_SESSION_DID_STALL)); // none in the other 29
+    const size_t from = robot.logged;
+    client_turn();
+    const entry_t wanted[] = {{ARCOS_CMD_VEL, 0, 0}, {ARCOS_CMD_RVEL, 0, 0}, {ARCOS_CMD_STOP, 0, 0}};
+    assert_log(from, wanted, 3);
+    TEST_ASSERT_EQUAL(0, logged(ARCOS_CMD_MOVE));
+}
+
+void test_e_stop_alone_overtakes_the_zeros_after_a_gap(void) {
+    uint8_t data[32];
+    uint8_t packet[60];
+    connect();
+    const size_t total = argus_frame_encode(packet, sizeof packet, data, sip_data(data, 1));
+    robot.mute = true;
+    run_until(time_ms + 1000);
+    receive(packet, total);
+    argus_outbox_urgent(&session.outbox, ARCOS_CMD_STOP);
+    argus_outbox_urgent(&session.outbox, ARCOS_CMD_E_STOP);
+    const size_t from = robot.logged;
+    client_turn();
+    const entry_t wanted[] = {
+        {ARCOS_CMD_E_STOP, 0, 0}, {ARCOS_CMD_VEL, 0, 0}, {ARCOS_CMD_RVEL, 0, 0}, {ARCOS_CMD_STOP, 0, 0}};
+    assert_log(from, wanted, 4);
+}
+
+void test_the_zeros_of_a_gap_do_not_outlive_the_session(void) {
+    uint8_t data[32];
+    uint8_t packet[60];
+    connect();
+    const size_t total = argus_frame_encode(packet, sizeof packet, data, sip_data(data, 1));
+    robot.mute = true;
+    run_until(time_ms + 1000);
+    receive(packet, total);
+    argus_session_link_down(&session);
+    robot.mute = false;
+    robot.state = WAIT;
+    robot.out_count = 0;
+    argus_session_link_up(&session, now());
+    const size_t from = robot.logged;
+    TEST_ASSERT_TRUE(run_until_seen(ARGUS_SESSION_DID_OPEN, time_ms + 5000));
+    turn();
+    assert_log(from, greeting, GREETING);
+    assert_log(from + GREETING, set_up, SET_UP);
+}
+
+// What listening hears of an old session is reported, so that the pose catches up.
+void test_the_sip_of_an_old_session_is_reported(void) {
+    robot.state = OPENED;
+    argus_session_link_up(&session, now());
+    TEST_ASSERT_TRUE(run_until_seen(ARGUS_SESSION_DID_DISLODGE, 1000));
+    TEST_ASSERT_EQUAL(1, count_of(ARGUS_SESSION_GOT_SIP));
+    TEST_ASSERT_EQUAL(time_of(ARGUS_SESSION_DID_DISLODGE), time_of(ARGUS_SESSION_GOT_SIP));
+    TEST_ASSERT_EQUAL(robot.sips, session.sip.x_raw);
+}
+
 void test_a_lost_link_is_said_and_the_robot_found_again(void) {
     connect();
     run_until(2000);

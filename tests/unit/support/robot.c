@@ -272,7 +272,13 @@ static void reply_sync(robot_t *robot, uint8_t command) {
             (size_t)snprintf((char *)data + 1, sizeof data - 1, "Test%cPioneer%c%s", 0, 0, robot->subclass) +
             1;
     }
+    if (command == 2 && robot->config_before_sync2) {
+        robot_say(robot, robot->config, robot->config_count);
+    }
     robot_say(robot, data, length);
+    if (command == 2 && robot->config_after_sync2) {
+        robot_say(robot, robot->config, robot->config_count);
+    }
 }
 
 static void set_polling(robot_t *robot, const uint8_t *list, size_t count) {

@@ -48,7 +48,8 @@ struct robot {
     bool ignores[256];     // commands that have no effect
     const uint8_t *config; // data of its CONFIGpac, NULL: it does not answer CONFIG
     size_t config_count;
-    void (*before_sip)(robot_t *robot); // delivers other packets
+    bool config_before_sync2, config_after_sync2; // sends it unasked round its answer to SYNC2
+    void (*before_sip)(robot_t *robot);           // delivers other packets
     size_t (*alter_sip)(uint8_t *data,
                         size_t count); // other data, up to ROBOT_SIP_MAX, instead of the standard
     bool host_asleep;                  // what it says waits in `late` for robot_wake()

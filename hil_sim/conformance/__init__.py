@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Black-box checks of an ARCOS server, robot or emulator: `argus-conformance`."""

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: MIT
+"""The one type that all log formats are read into and written from, and what a format has to offer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from io import BufferedReader
+from typing import BinaryIO, Final, Literal, NamedTuple, Protocol
+
+Direction = Literal["r2c", "c2r"]
+ROBOT_TO_CLIENT: Final[Direction] = "r2c"
+CLIENT_TO_ROBOT: Final[Direction] = "c2r"
+
+
+class LogError(Exception):
+    """A log that cannot be read, or an argument that cannot be obeyed: one line for the user, exit code 2."""
+
+
+class Chunk(NamedTuple):
+    """Bytes that went over the link together; a packet may span chunks and a chunk may hold several packets.
+
+    `t` is in seconds, of any clock that the whole log shares, or None where the format keeps no time.
+    `offset` counts the bytes of this direction before `data`; for a raw capture that is the place in the file.
+    """
+
+    t: float | None
+    dir: Direction
+    data: bytes
+    offset: int
+
+
+class Damage(NamedTuple):
+    """A part of the file itself that could not be read; `place` says where, as "line 7" or "byte 1234"."""
+
+    place: str
+    what: str
+
+
+@dataclass
+class ReadOptions:
+    """What the user said about a log and a format may need to know."""
+
+    direction: Direction | None = None
+    port: int | None = None
+    name: str = "-"
+
+
+class Reader(Protocol):
+    """Iterates the chunks of one log, in order, without ever holding the whole of it.
+
+    What it had to skip it appends to `damage` before it yields the next chunk; it raises LogError only when
+    nothing can be read at all.
+    """
+
+    damage: list[Damage]
+
+    def __iter__(self) -> Iterator[Chunk]: ...
+
+
+class Writer(Protocol):
+    """Writes chunks in one format; `close` finishes the file but leaves the stream open."""
+
+    def write(self, chunk: Chunk) -> None:
+        """Append one chunk."""
+
+    def close(self) -> None:
+        """Write what the format wants at its end."""
+
+
+@dataclass(frozen=True)
+class Format:
+    """One log format: how it is called, recognised, read and written.
+
+    `sniff` sees the first bytes of the file (up to 64 KiB, already unzipped) and says whether they are of
+    this format. `reader` gets a stream whose reads wait for more when the log is followed.
+    """
+
+    name: str
+    help: str
+    sniff: Callable[[bytes], bool]
+    reader: Callable[[BufferedReader, ReadOptions], Reader]
+    writer: Callable[[BinaryIO, ReadOptions], Writer] | None = None
+    suffixes: tuple[str, ...] = ()
+
+
+@dataclass
+class Offsets:
+    """Counts the bytes of each direction, for readers that see one chunk after the other."""
+
+    at: dict[Direction, int] = field(default_factory=lambda: {ROBOT_TO_CLIENT: 0, CLIENT_TO_ROBOT: 0})
+
+    def chunk(self, t: float | None, direction: Direction, data: bytes) -> Chunk:
+        """Return a chunk that follows those before it."""
+        offset = self.at[direction]
+        self.at[direction] = offset + len(data)
+        return Chunk(t, direction, data, offset)
+
+
+def copy(chunks: Iterable[Chunk], writer: Writer) -> int:
+    """Write all chunks and close the writer; return how many there were."""
+    count = 0
+    for chunk in chunks:
+        writer.write(chunk)
+        count += 1
+    writer.close()
+    return count
