@@ -136,7 +136,7 @@ static bool sees_ahead(const argus_t *const self) {
 }
 
 static bool is_heeded(argus_t *const self) {
-    if (self->knowledge.still_sips == 0 || self->motion.kind != ARGUS_MOTION_MOVE) {
+    if (self->knowledge.still_sips == 0 || self->motion.kind != ARGUS_MOTION_MOVE || self->motion.settled) {
         self->heeded_ms = self->now_ms;
     }
     return self->now_ms - self->heeded_ms < UNHEEDED_MS;

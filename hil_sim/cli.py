@@ -27,6 +27,7 @@ from hil_sim.link_faults import LinkFaults
 from hil_sim.links import Fleet, Link, Loop, PtyLink, SerialLink, TcpLink
 from hil_sim.mobilesim import NAME as MOBILESIM_NAME
 from hil_sim.mobilesim import MobileSimServer
+from hil_sim.record import MAX_BYTES, Recorder
 from hil_sim.robot import Log, Robot
 from hil_sim.scenario import SEED_MAX, Scenario, load_scenario
 from hil_sim.server import SIP_CYCLE_MS, ArcosServer
@@ -43,6 +44,7 @@ examples:
   argus-sim                                   one robot in the default world; prints the device to open
   argus-sim --link-name /tmp/robot            the same behind a stable name
   argus-sim --world lab --fault off:3@12s --truth truth.jsonl
+  argus-sim --record drive.rec                what passes on the link, for argus-log
   argus-sim --tcp 8101                        as the vendor's emulator listens
   argus-sim --serial /dev/ttyUSB0@9600        on a real UART
   argus-sim --robots 3 --tcp 8101             three robots, on ports 8101 to 8103
@@ -151,6 +153,16 @@ def _fault(text: str) -> Fault:
         raise argparse.ArgumentTypeError(str(error)) from None
 
 
+def _megabytes(text: str) -> int:
+    try:
+        megabytes = int(text)
+    except ValueError:
+        megabytes = 0
+    if not 1 <= megabytes <= 100_000:
+        raise argparse.ArgumentTypeError(f"{text}: give megabytes, 1 to 100000")
+    return megabytes * 1_000_000
+
+
 def parser() -> argparse.ArgumentParser:
     """Return the argument parser of `argus-sim`."""
     result = _Parser(
@@ -207,6 +219,14 @@ def parser() -> argparse.ArgumentParser:
     pty.add_argument("--baud", type=_baud, metavar="N", help="the robot's rate (default 9600)")
     rest = result.add_argument_group("other")
     rest.add_argument("--truth", metavar="FILE", help="write what really happens as JSON lines")
+    rest.add_argument("--record", metavar="FILE", help="append all bytes of the link with their times")
+    rest.add_argument(
+        "--record-max",
+        type=_megabytes,
+        metavar="MB",
+        default=MAX_BYTES,
+        help="size at which FILE becomes FILE.1 and so on to FILE.4 (default 64)",
+    )
     rest.add_argument("--duration", type=_seconds, metavar="S", help="end after S seconds")
     rest.add_argument("--list-worlds", action="store_true", help="list our worlds and leave")
     rest.add_argument("--list-faults", action="store_true", help="list the fault kinds and leave")
@@ -360,12 +380,17 @@ def _loop(
     faults = LinkFaults(scenario.link_faults, scenario.seed, log) if scenario.link_faults else None
     stack.callback(link.close)
     link.open()
-    return Loop(server, link, faults)
+    recorder = None
+    if arguments.record:
+        record = _numbered(Path(arguments.record), index)
+        recorder = Recorder(record, f"argus-sim {link.address}", _say, arguments.record_max)
+        stack.callback(recorder.close)
+    return Loop(server, link, faults, recorder=recorder)
 
 
 def _serve(arguments: argparse.Namespace, scenario: Scenario, stack: ExitStack) -> None:
+    logging.basicConfig(format="argus-sim: %(message)s", stream=sys.stderr)
     if arguments.verbose > 1:
-        logging.basicConfig(format="argus-sim: %(message)s", stream=sys.stderr)
         logging.getLogger("argus.sim").setLevel(logging.DEBUG)
     world = load_world(scenario.world)
     caught = stack.enter_context(_signals())

@@ -6,13 +6,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any, Final, NoReturn, TypeVar
 
 import yaml
 
 from hil_sim.errors import SimError
 
 T = TypeVar("T")
+
+MAX_VALUES: Final = 200_000
+"""Values of one document: some kilobytes of aliases can otherwise stand for more than any memory holds."""
 
 
 class Item:
@@ -58,8 +61,8 @@ class Item:
     def number(self, low: float = -1e6, high: float = 1e6) -> float:
         """Return a number within the range given, which must be finite."""
         value = self.value
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-            self.fail(f"expected a number from {low:g} to {high:g}, not '{value}'")
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not _is_finite(value):
+            self.fail(f"expected a number from {low:g} to {high:g}, not '{_shown(value)}'")
         if not low <= value <= high:
             self.fail(f"{value:g} is outside {low:g} to {high:g}")
         return float(value)
@@ -68,13 +71,13 @@ class Item:
         """Return a whole number within the range given."""
         value = self.value
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-            self.fail(f"expected a whole number from {low} to {high}, not '{value}'")
+            self.fail(f"expected a whole number from {low} to {high}, not '{_shown(value)}'")
         return value
 
     def flag(self) -> bool:
         """Return true or false."""
         if not isinstance(self.value, bool):
-            self.fail(f"expected true or false, not '{self.value}'")
+            self.fail(f"expected true or false, not '{_shown(self.value)}'")
         return self.value
 
     def numbers(self, *lengths: int) -> list[float]:
@@ -94,7 +97,28 @@ class Item:
             self.fail(str(error))
 
 
-def _item(path: str, node: yaml.Node, line: int | None = None) -> Item:
+def _is_finite(value: float) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
+
+
+def _shown(value: Any) -> str:
+    """What stands there, short enough for a message."""
+    if isinstance(value, (dict, list)):
+        return "a mapping" if isinstance(value, dict) else "a list"
+    try:
+        text = str(value)
+    except ValueError:
+        return "a number of thousands of digits"
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _item(path: str, node: yaml.Node, count: list[int], line: int | None = None) -> Item:
+    count[0] += 1
+    if count[0] > MAX_VALUES:
+        Item(path, node.start_mark.line + 1, None).fail(f"more than {MAX_VALUES} values; use fewer aliases or parts")
     here = node.start_mark.line + 1 if line is None else line
     if isinstance(node, yaml.MappingNode):
         values: dict[str, Item] = {}
@@ -104,17 +128,18 @@ def _item(path: str, node: yaml.Node, line: int | None = None) -> Item:
                 Item(path, at, None).fail("a key must be a word")
             if key.value in values:
                 Item(path, at, None).fail(f"key '{key.value}' is given twice; keep one")
-            values[key.value] = _item(path, value, at if isinstance(value, yaml.ScalarNode) else None)
+            values[key.value] = _item(path, value, count, at if isinstance(value, yaml.ScalarNode) else None)
         return Item(path, here, values)
     if isinstance(node, yaml.SequenceNode):
-        return Item(path, here, [_item(path, value) for value in node.value])
+        return Item(path, here, [_item(path, value, count) for value in node.value])
     return Item(path, here, _scalar(node))
 
 
 def _scalar(node: yaml.Node) -> Any:
     try:
-        return yaml.safe_load(yaml.serialize(node))
-    except (yaml.YAMLError, ValueError):
+        return yaml.constructor.SafeConstructor().construct_object(node)
+    except (yaml.YAMLError, ValueError, LookupError, AttributeError, OverflowError):
+        # Not what its tag promises (`!!bool perhaps`): the text, which the reader of the value then refuses.
         return str(node.value)
 
 
@@ -126,6 +151,8 @@ def read_text(path: str | Path) -> str:
         raise SimError(f"{path}: cannot be read ({error.strerror}); check the name") from None
     except UnicodeDecodeError as error:
         raise SimError(f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8") from None
+    except ValueError:
+        raise SimError(f"{path}: no file can have this name; check it") from None
 
 
 def read_document(path: str | Path) -> Item:
@@ -136,11 +163,11 @@ def read_document(path: str | Path) -> Item:
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
         raise SimError(f"{path}:{line}: not valid YAML: {error.problem}; correct the line") from None
-    except (yaml.YAMLError, RecursionError) as error:
+    except (yaml.YAMLError, RecursionError, ValueError, OverflowError) as error:
         raise SimError(f"{path}:1: not valid YAML: {str(error).splitlines()[0]}") from None
     if node is None:
         raise SimError(f"{path}:1: the file is empty; see docs for its keys")
     try:
-        return _item(str(path), node)
+        return _item(str(path), node, [0])
     except RecursionError:
         raise SimError(f"{path}:1: nested too deeply or into itself; write it out flat") from None

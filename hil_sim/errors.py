@@ -9,6 +9,11 @@ class SimError(Exception):
 
     exit_code = 2
 
+    def __str__(self) -> str:
+        """Return the line; what cannot be printed, for example a line break in a wrong name, is escaped."""
+        text = super().__str__()
+        return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
 
 class LinkError(SimError):
     """A device or socket that cannot be opened or was lost for good."""

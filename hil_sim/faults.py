@@ -37,6 +37,8 @@ BUMPER_SEGMENTS: Final[int] = load("p3dx")["body"]["bumper_segments"]
 SONARS: Final = len(SONAR_POSES)
 _TARGETS: Final = {"front": range(PER_ARRAY), "rear": range(PER_ARRAY, SONARS), "all": range(SONARS)}
 _SLOW_MAX: Final = 100
+_FAR: Final = 1e7
+"""Seconds or mm: no run gets there, so a bound beyond it is a slip."""
 
 
 @dataclass(frozen=True)
@@ -183,20 +185,23 @@ def parse_fault(text: str) -> Fault:
     kind = match["kind"] if match else ""
     if match is None or kind not in _PARAMETERS:
         raise SimError(f"fault '{text}': expected KIND:TARGET@FROM with KIND one of {', '.join(_PARAMETERS)}")
-    values = _parameters(text, kind, match["rest"])
+    target, rest = match["target"], match["rest"]
+    if kind.startswith("link-") and target and "=" in target and match["when"] is None:
+        target, rest = None, f":{target}{rest}"
+    values = _parameters(text, kind, rest)
     if kind.startswith("link-"):
-        if match["target"]:
+        if target:
             raise SimError(f"fault '{text}': a link fault has no target; write {kind}@FROM-TO")
         return _link_fault(text, kind, match["when"], values)
-    if not match["target"]:
+    if not target:
         raise SimError(f"fault '{text}': which one? write {kind}:3 for number 3")
     if kind == "bumper":
-        return _bumper(text, match["target"], match["when"])
+        return _bumper(text, target, match["when"])
     start, end = _bounds(text, match["when"])
     numbers = {name: value for name, value in values.items() if not isinstance(value, str)}
     if kind == "wrong" and not values:
         raise SimError(f"fault '{text}': wrong in what way? add :scale=0.5, :offset=-200 or :angle=20")
-    return SonarFault(text.strip(), kind, _sonars(text, match["target"]), start, end, **numbers)  # type: ignore[arg-type]
+    return SonarFault(text.strip(), kind, _sonars(text, target), start, end, **numbers)  # type: ignore[arg-type]
 
 
 def _parameters(text: str, kind: str, rest: str) -> dict[str, float | str]:
@@ -257,9 +262,9 @@ def _bounds(text: str, when: str | None) -> tuple[When | None, When | None]:
 
 
 def _bound(text: str, part: str) -> When:
-    if match := _TIME.fullmatch(part):
+    if (match := _TIME.fullmatch(part)) and float(match[1]) <= _FAR:
         return When("t", 1, float(match[1]) * 1000)
-    if match := _PLACE.fullmatch(part):
+    if (match := _PLACE.fullmatch(part)) and abs(float(match[3])) <= _FAR:
         return When(match[1], 1 if match[2] == ">" else -1, float(match[3]))
     raise SimError(
         f"fault '{text}': '{part}' is no time or place; write 12s, x>2000, y<-300 or travelled>1500"
@@ -382,6 +387,11 @@ class FaultSet:
         echoes = self._echoes.get(number)
         if echoes is not None:
             echoes.append(true_measured_mm)
+        for state in self._states:
+            # Also while another fault hides it: the reading at onset is what counts.
+            if state.fault.kind == "stuck" and state.on and number in state.fault.sonars:
+                value = state.fault.value
+                state.held.setdefault(number, true_measured_mm if value is None else value)
         for state in reversed(self._states):
             if state.on and number in state.fault.sonars:
                 return self._report(state, number, true_measured_mm, remeasure), state.fault.kind
@@ -396,7 +406,7 @@ class FaultSet:
         if fault.kind == "silent":
             return None
         if fault.kind == "stuck":
-            return state.held.setdefault(number, measured if fault.value is None else fault.value)
+            return state.held[number]
         if fault.kind == "garbage":
             return int(self._rng.integers(MIN_MM, NO_ECHO_MM + 1))
         if fault.kind == "slow":

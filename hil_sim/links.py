@@ -22,6 +22,7 @@ from typing import Any, Final
 from hil_sim.arcos import TIMING
 from hil_sim.errors import LinkError, SimError
 from hil_sim.link_faults import LinkFaults
+from hil_sim.record import Kind, Recorder
 from hil_sim.server import ArcosServer
 
 _BITS: Final = TIMING["BITS_PER_BYTE"]
@@ -31,7 +32,8 @@ _BACKLOG_MS: Final = 200.0
 """A packet that would wait longer than this for the wire is not sent, as by a robot out of buffers."""
 _RX_LIMIT: Final = 4096
 _TX_LIMIT: Final = 65536
-_IDLE_MS: Final = 50.0
+IDLE_MS: Final = 20.0
+"""Time passes for a robot at least this often, so that several in one thread do not all do it when a SIP is due."""
 _GAP_MS: Final = 500.0
 """A longer silence of the clock (the process was suspended) is taken out of the robot's time."""
 
@@ -394,8 +396,10 @@ class TcpLink(Link):
         return lost
 
     def hang_up(self) -> None:
-        """Close the connection to the client."""
+        """Close the connection to the client; the next one may come at once."""
         self._drop_client()
+        if self._listener is None:
+            self._listen()
 
     def receive(self, now_ms: float) -> Iterable[bytes]:  # noqa: ARG002 (Link's shape)
         """Yield what has arrived."""
@@ -517,10 +521,13 @@ class Loop:
         link: Link,
         faults: LinkFaults | None = None,
         clock_ms: Callable[[], float] = _now_ms,
+        recorder: Recorder | None = None,
     ) -> None:
+        """`recorder`: gets what is on the link, so after the faults towards the client, before the others."""
         self.server = server
         self.link = link
         self.faults = faults
+        self.recorder = recorder
         self._clock_ms = clock_ms
         self._origin_ms = clock_ms() - server.robot.now_ms
         self._last_ms = float(server.robot.now_ms)
@@ -545,6 +552,8 @@ class Loop:
         if faults is not None:
             faults.update(now)
         for data in link.receive(now):
+            if self.recorder is not None:
+                self.recorder.note(Kind.TO_ROBOT, data)
             self._hear(data, now)
         if link.take_lost():
             server.client_gone()
@@ -555,16 +564,21 @@ class Loop:
         self._follow_baud()
         for packet in server.outgoing():
             if faults is None:
-                link.send(packet, now)
+                self._send(packet, now)
             else:
                 faults.push(packet, now, "to_client")
         if faults is not None:
             for packet in faults.pop(now, "to_client"):
-                link.send(packet, now)
+                self._send(packet, now)
         link.transmit(now)
         if server.take_hang_up():
             link.hang_up()
         return self._rest_ms(now)
+
+    def _send(self, packet: bytes, now: float) -> None:
+        self.link.send(packet, now)
+        if self.recorder is not None:
+            self.recorder.note(Kind.FROM_ROBOT, packet)
 
     def _hear(self, data: bytes, now: float) -> None:
         if self.faults is None:
@@ -582,7 +596,7 @@ class Loop:
             self.link.set_baud(self._baud)
 
     def _rest_ms(self, now: float) -> float:
-        times = [now + _IDLE_MS, self.server.next_due_ms, self.link.due_ms()]
+        times = [now + IDLE_MS, self.server.next_due_ms, self.link.due_ms()]
         if self.faults is not None:
             times.append(self.faults.due_ms())
         return max(0.0, min(t for t in times if t is not None) - now)

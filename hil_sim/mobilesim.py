@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from dataclasses import replace
 from typing import Any, Final
 
-from hil_sim.arcos import COMMAND, FLAG, SIP, TYPE, Command, SyncReply
+from hil_sim.arcos import COMMAND, FLAG, SIP, TIMING, TYPE, Command, SyncReply
 from hil_sim.arcos import Sip as SipPacket
 from hil_sim.robot import Robot
 from hil_sim.server import ArcosServer, State
 
 NAME: Final = "MobileSim"
+_LOG: Final = logging.getLogger("argus.sim")
 _CEILING: Final = 9999
 _ALL_ARRAYS: Final = FLAG["SONAR1"] | FLAG["SONAR2"] | FLAG["SONAR3"] | FLAG["SONAR4"]
 _TEMPERATURE_NONE: Final = -127
@@ -58,6 +60,17 @@ class MobileSimServer(ArcosServer):
         robot.watchdog_stops = False
         robot.fires_in_turn = False
         robot.motors = True
+        robot.bumpers = robot.rear_segments = 0
+        self._warned = False
+
+    def advance(self, now_ms: float) -> None:
+        """Let time pass up to now; a silent client is warned of, once, and nothing else."""
+        super().advance(now_ms)
+        quiet_ms = self.robot.now_ms - self.robot.last_heard_ms
+        overdue = self.state is State.CONNECTED and quiet_ms > TIMING["WATCHDOG_MS"]
+        if overdue and not self._warned:
+            _LOG.warning("%s: no command for %d ms; the robot goes on", self.name.decode("latin-1"), quiet_ms)
+        self._warned = overdue
 
     def client_gone(self) -> None:
         """The connection is the session."""

@@ -100,7 +100,7 @@ def load_scenario(path: str | Path) -> Scenario:
     scenario file first.
     """
     file = Path(path)
-    if file.suffix == "" and not file.exists():
+    if file.suffix == "" and not _exists(file):
         file = SCENARIO_DIR / f"{path}.yaml"
     top = read_document(file)
     keys = top.mapping(_KEYS)
@@ -111,9 +111,16 @@ def load_scenario(path: str | Path) -> Scenario:
         values[name] = _READERS[name](item)
     if "world" in values:
         beside = file.parent / values["world"]
-        if beside.suffix in (".yaml", ".yml", ".map") and beside.exists():
+        if beside.suffix in (".yaml", ".yml", ".map") and _exists(beside):
             values["world"] = str(beside)
     return Scenario(**values)
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
 
 
 def scenario_names() -> list[str]:

@@ -176,12 +176,13 @@ class EchoModel:
             cosine = np.abs(1.0 / (inverse[index, first] * patch.length[first]))
             degrees = np.degrees(np.arccos(np.minimum(cosine, 1.0)))
             loss = patch.mirror[first] * degrees**2 - 20 * np.log10(cosine)
-        if far is not None:
-            count = len(tip_db)
-            reached = nearest[-count:] >= far[2] - 1.0
-            nearest[-count:] = np.where(reached, far[2], nearest[-count:])
-            loss[-count:] = np.where(reached, np.fmin(loss[-count:], tip_db), loss[-count:])
-        loss = loss + beam_db + self.params.air_db_m / 1000 * nearest
+            if far is not None:
+                count = len(tip_db)
+                reached = nearest[-count:] >= far[2] - 1.0
+                nearest[-count:] = np.where(reached, far[2], nearest[-count:])
+                loss[-count:] = np.where(reached, np.fmin(loss[-count:], tip_db), loss[-count:])
+            # NaN where nothing was hit and the air takes nothing: not heard either.
+            loss = loss + beam_db + self.params.air_db_m / 1000 * nearest
         heard = nearest[loss <= self.params.margin_db]
         if heard.size == 0:
             return NO_ECHO_MM

@@ -23,6 +23,8 @@ POINT_MM: Final = 20.0
 """Side of the solid that stands for one DATA point of a map, and the grid onto which such points are thinned."""
 MAP_ROUGHNESS: Final = 0.5
 MAX_SEGMENTS: Final = 200_000
+_SHORTEST_MM: Final = 1e-3
+"""Two points nearer than this are one."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ class _Builder:
         """Add the segments between consecutive points."""
         ends = points[1:] + points[:1] if closed else points[1:]
         for (x1, y1), (x2, y2) in zip(points, ends, strict=False):
-            if (x1, y1) != (x2, y2):
+            if math.hypot(x2 - x1, y2 - y1) > _SHORTEST_MM:
                 self.rows.append((x1, y1, x2, y2))
                 self.rough.append(roughness)
 
@@ -121,6 +123,8 @@ def load_yaml(path: str | Path) -> World:
     start = _pose(keys["start"]) if "start" in keys else Pose(0.0, 0.0, 0.0)
     goals = {name: _pose(item) for name, item in keys["goals"].named().items()} if "goals" in keys else {}
     about = keys["about"].text() if "about" in keys else ""
+    if len(build.rows) > MAX_SEGMENTS:
+        top.fail(f"more than {MAX_SEGMENTS} solids; leave some out")
     world = build.world(Path(path).stem, start=start, goals=goals, about=about)
     _check_start(world, keys.get("start", top))
     return world
@@ -154,6 +158,8 @@ def _add_wall(build: _Builder, item: Item, rough: float) -> None:
     points = [(x, y) for x, y in (point.numbers(2) for point in keys["points"].items())]
     if len(points) < 2:
         keys["points"].fail("a wall needs two points or more")
+    if len(set(points)) == 1:
+        keys["points"].fail("all points of the wall are the same; correct them")
     build.line(points, _rough(keys, rough), "closed" in keys and keys["closed"].flag())
 
 
@@ -162,8 +168,8 @@ def _add_box(build: _Builder, item: Item, rough: float) -> None:
     _need(item, keys, "centre", "size")
     cx, cy = keys["centre"].numbers(2)
     width, depth = keys["size"].numbers(2)
-    if width <= 0 or depth <= 0:
-        keys["size"].fail("both sides of a box must be above 0")
+    if width < 1 or depth < 1:
+        keys["size"].fail("both sides of a box must be 1 mm or more")
     turn = math.radians(keys["turn"].number(-360, 360)) if "turn" in keys else 0.0
     corners = [
         (-width / 2, -depth / 2),
@@ -194,6 +200,8 @@ def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
 
 _HEADERS = ("2D-Map", "2D-Map-Ex", "2D-Map-Ex2")
 _CAIRN = re.compile(r'(\S+)\s+(\S+)\s+(\S+)\s+(\S+)\s+"[^"]*"\s+\S+\s+"([^"]*)"\s*(.*)$')
+_SECTION = re.compile(r"(?:(?P<sensor>\S+)_)?(?P<what>LINES|DATA)")
+_COUNT = re.compile(r"(?P<what>\w*Num(?:Lines|Points)):(?P<count>.*)")
 _AREAS = ("ForbiddenLine", "ForbiddenArea", "Sim.BoxObstacle")
 
 
@@ -208,6 +216,8 @@ class _MapReader:
         self.start: Pose | None = None
         self.goals: dict[str, Pose] = {}
         self.forbidden: list[tuple[float, float, float, float]] = []
+        self.announced: dict[str, tuple[int, int]] = {}
+        self.counted: dict[str, int] = {}
 
     def fail(self, what: str) -> NoReturn:
         """Refuse the current line."""
@@ -229,32 +239,51 @@ class _MapReader:
         self.number = 1
         if not lines or lines[0].strip().lstrip("\ufeff") not in _HEADERS:
             self.fail("not an ARIA map: the first line must be 2D-Map, 2D-Map-Ex or 2D-Map-Ex2")
-        section = ""
+        section = what = ""
         for self.number, raw in enumerate(lines[1:], 2):
             line = raw.strip()
             word = line.split()[0] if line else ""
-            if word in ("LINES", "DATA"):
-                section = word
-            elif section == "DATA" and word:
-                self.take_point(line)
-            elif section == "LINES" and word:
-                x1, y1, x2, y2 = self.values(line, 4, "a line")
-                self.build.line([(x1, y1), (x2, y2)], MAP_ROUGHNESS)
+            if match := _SECTION.fullmatch(line):
+                section = match["what"]
+                what = (match["sensor"] or "") + ("NumLines" if section == "LINES" else "NumPoints")
+            elif section and word:
+                self.counted[what] = self.counted.get(what, 0) + 1
+                self.take_entry(section, line)
+            elif match := _COUNT.match(line):
+                self.take_count(match["what"], match["count"].strip())
             elif word == "Cairn:":
                 self.take_cairn(line[len("Cairn:") :].strip())
             elif word and ":" not in line:
                 self.fail(f"'{line[:40]}' is neither a header line nor LINES or DATA; correct or remove it")
             self.check_size()
+        self.check_counts()
         self.add_points()
         return self.finish()
+
+    def take_count(self, what: str, count: str) -> None:
+        """Note how many entries the header announces."""
+        if not re.fullmatch("[0-9]{1,9}", count):
+            self.fail(f"{what} needs a whole number, not '{count[:60]}'; correct or remove the line")
+        self.announced[what] = (int(count), self.number)
+
+    def check_counts(self) -> None:
+        """Refuse a file that was cut short; more than announced is common after editing by hand, and harmless."""
+        for what, (count, self.number) in self.announced.items():
+            if self.counted.get(what, 0) < count:
+                found = self.counted.get(what, 0)
+                self.fail(f"{what} announces {count}, {found} follow: cut short? restore the file or correct the count")
 
     def check_size(self) -> None:
         """Refuse a map too large to be simulated before it fills the memory."""
         if len(self.build.rows) + 2 * len(self.points) > MAX_SEGMENTS:
             self.fail(f"more than {MAX_SEGMENTS} solids; use a map with lines, or fewer DATA points")
 
-    def take_point(self, line: str) -> None:
-        """Note a DATA point on a grid of POINT_MM."""
+    def take_entry(self, section: str, line: str) -> None:
+        """Add a line, or note a DATA point on a grid of POINT_MM."""
+        if section == "LINES":
+            x1, y1, x2, y2 = self.values(line, 4, "a line")
+            self.build.line([(x1, y1), (x2, y2)], MAP_ROUGHNESS)
+            return
         x, y = self.values(line, 2, "a DATA point")
         self.points.add((round(x / POINT_MM), round(y / POINT_MM)))
 

@@ -17,11 +17,14 @@ static uint32_t elapsed_ms(uint32_t now_ms, uint32_t then_ms) {
 }
 
 uint16_t argus_frame_checksum(const uint8_t *data, size_t count) {
-    uint32_t sum = 0;
+    uint32_t high = 0; // two sums cost less than putting each pair together
+    uint32_t low = 0;
     size_t i = 0;
     for (; i + 1 < count; i += 2) {
-        sum += (uint32_t)data[i] << 8 | data[i + 1];
+        high += data[i];
+        low += data[i + 1];
     }
+    uint32_t sum = (high << 8) + low;
     if (i < count) {
         sum ^= data[i];
     }

@@ -20,24 +20,36 @@ from hil_sim.arcos import COMMAND, TYPE, Command, Unframer, frame
 SIP_MS = 100.0
 
 
-def _send(client: socket.socket, name: str, value: int | None = None) -> None:
+def _open(address: str, stack: ExitStack) -> int:
+    """Open a client's side of a link; return its descriptor."""
+    if address.startswith("/"):
+        client = os.open(address, os.O_RDWR | os.O_NOCTTY)
+        stack.callback(os.close, client)
+        return client
+    host, _, port = address.rpartition(":")
+    connection = stack.enter_context(socket.create_connection((host, int(port))))
+    connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return connection.fileno()
+
+
+def _send(client: int, name: str, value: int | None = None) -> None:
     number = COMMAND[name]
-    client.sendall(frame((Command(number) if value is None else Command.integer(number, value)).data))
+    os.write(client, frame((Command(number) if value is None else Command.integer(number, value)).data))
 
 
-def _handshake(client: socket.socket) -> None:
+def _handshake(client: int) -> None:
     for name in ("PULSE", "OPEN", "CLOSE"):
         _send(client, name)
-        if not select.select([client], [], [], 10)[0] or not client.recv(4096):
+        if not select.select([client], [], [], 10)[0] or not os.read(client, 4096):
             raise SystemExit("emulator: no answer to the handshake")
     for name, value in (("OPEN", 1), ("ENABLE", 1), ("VEL", 100), ("RVEL", 10)):
         _send(client, name, value)
 
 
-def _arrivals(clients: Sequence[socket.socket], seconds: float) -> list[list[float]]:
+def _arrivals(clients: Sequence[int], seconds: float) -> list[list[float]]:
     """When each client got each SIP, in ms."""
     unframers = {client: Unframer() for client in clients}
-    times: dict[socket.socket, list[float]] = {client: [] for client in clients}
+    times: dict[int, list[float]] = {client: [] for client in clients}
     end, pulse = time.monotonic() + seconds, 0.0
     while (now := time.monotonic()) < end:
         if now >= pulse:
@@ -45,7 +57,7 @@ def _arrivals(clients: Sequence[socket.socket], seconds: float) -> list[list[flo
             for client in clients:
                 _send(client, "PULSE")
         for client in select.select(clients, [], [], 0.05)[0]:
-            data, now_ms = client.recv(4096), time.monotonic() * 1000
+            data, now_ms = os.read(client, 4096), time.monotonic() * 1000
             for packet in unframers[client].feed(data, now_ms):
                 if TYPE["SIP_FIRST"] <= packet[0] <= TYPE["SIP_LAST"]:
                     times[client].append(now_ms)
@@ -58,21 +70,18 @@ def _cpu_s(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def _report(robots: int, seconds: float, world: str) -> None:
-    command = [sys.executable, "-m", "hil_sim.cli", "--robots", str(robots), "--tcp", "0", "--world", world]
+def _report(robots: int, seconds: float, world: str, pty: bool) -> None:
+    link = ["--baud", "115200"] if pty else ["--tcp", "0"]
+    command = [sys.executable, "-m", "hil_sim.cli", "--robots", str(robots), "--world", world, *link]
     core = min(os.sched_getaffinity(0))
     with ExitStack() as stack:
         process = stack.enter_context(subprocess.Popen(command, stdout=subprocess.PIPE, text=True))
         stack.callback(process.terminate)
         os.sched_setaffinity(process.pid, {core})
         assert process.stdout is not None
-        clients = []
-        for _ in range(robots):
-            host, _, port = process.stdout.readline().strip().rpartition(":")
-            client = stack.enter_context(socket.create_connection((host, int(port))))
-            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        clients = [_open(process.stdout.readline().strip(), stack) for _ in range(robots)]
+        for client in clients:
             _handshake(client)
-            clients.append(client)
         _arrivals(clients, 2.0)
         before = _cpu_s(process.pid)
         arrivals = _arrivals(clients, seconds)
@@ -86,7 +95,8 @@ def _report(robots: int, seconds: float, world: str) -> None:
         late += [abs(p - base) for p in phase]
     late.sort()
     short = min(len(times) for times in arrivals) / (seconds * 1000 / SIP_MS)
-    print(f"{robots} robots on one core, {seconds:g} s, world {world}, load {os.getloadavg()[0]:.2f}")
+    where = f"{'ptys' if pty else 'TCP'}, one core"
+    print(f"{robots} robots on {where}, {seconds:g} s, world {world}, load {os.getloadavg()[0]:.2f}")
     print(f"  SIPs of the slowest robot {100 * short:6.1f} % of real time")
     print(f"  processor                 {100 * busy:6.1f} % of the core")
     p50, p99 = late[len(late) // 2], late[len(late) * 99 // 100]
@@ -101,7 +111,8 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--world", default="lab")
     arguments = parser.parse_args()
-    _report(arguments.robots, arguments.seconds, arguments.world)
+    for pty in (False, True):
+        _report(arguments.robots, arguments.seconds, arguments.world, pty)
 
 
 if __name__ == "__main__":

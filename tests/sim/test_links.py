@@ -21,7 +21,7 @@ from hil_sim.arcos import Packet, Unframer, decode
 from hil_sim.errors import LinkError, SimError
 from hil_sim.faults import LinkFault
 from hil_sim.link_faults import LinkFaults
-from hil_sim.links import Link, Loop, PtyLink, SerialLink, TcpLink, Wire
+from hil_sim.links import IDLE_MS, Link, Loop, PtyLink, SerialLink, TcpLink, Wire
 from hil_sim.server import ArcosServer, State
 
 
@@ -188,11 +188,13 @@ def test_the_loop_sleeps_no_longer_than_the_next_sip() -> None:
     clock = [0.0]
     link, server = NoLink(), new_server()
     loop = Loop(server, link, clock_ms=lambda: clock[0])
-    assert loop.turn() == 50
+    assert loop.turn() == IDLE_MS
     link.inbox = [cmd("PULSE"), cmd("OPEN"), cmd("CLOSE"), cmd("OPEN", 1)]
     loop.turn()
-    clock[0] = 77
-    assert loop.turn() == pytest.approx(23)
+    clock[0] = 50
+    assert loop.turn() == IDLE_MS
+    clock[0] = 93
+    assert loop.turn() == pytest.approx(7)
 
 
 # ---- real devices

@@ -116,10 +116,11 @@ def test_motors_are_on_until_the_first_session_has_ended() -> None:
     assert not server.robot.motors
 
 
-def test_type_is_always_stationary_and_the_watchdog_does_not_stop() -> None:
+def test_type_is_always_stationary_and_the_watchdog_only_warns(caplog: pytest.LogCaptureFixture) -> None:
     session, server = connected()
     session.send(cmd("VEL", 200))
     packets = sips(session.run(6000, keep_alive=False))
+    assert len(caplog.records) == 1
     assert {packet.type for packet in packets} == {0x32}
     assert server.robot.v == 200
 

@@ -316,6 +316,18 @@ void test_move_ignored_is_not_repeated_without_end(void) {
     finish("MOVE ignored");
 }
 
+// What it stands for after a MOVE that has ended is no disobedience.
+void test_a_move_that_ended_long_ago_is_no_disobedience(void) {
+    start_idle();
+    argus_operator(&robot.argus, now(), ARGUS_OP_MOVE, 100);
+    robot_run(&robot, 20000);
+    TEST_ASSERT_TRUE(robot.x > 80);
+    TEST_ASSERT_TRUE(robot_goal(&robot, 1000, 0));
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 20000));
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_WAITING, 0));
+    finish("jog, then course");
+}
+
 // ------------------------------------------------------------------------------------------------ buttons
 
 void test_e_stop_pressed_and_released(void) {

@@ -204,14 +204,30 @@ static argusd_exit_t connect_robot(const hal_clock_t *clock, hal_link_t *link) {
     return found;
 }
 
+static bool open_tape(void) {
+    const bool tcp = options.link.scheme == HAL_SCHEME_TCP;
+    if (options.record_path == NULL) {
+        return true;
+    }
+    return tape_open(&loop.tape, options.record_path, tcp ? options.link.host : options.link.path,
+                     options.record_max_bytes, message, sizeof message);
+}
+
 static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     const uint32_t wait_ms = options.has_wait ? options.wait_ms : CHECK_ANSWER_MS;
     driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
+    loop.driver.tap = tape_tap(&loop.tape);
     driver_attach(&loop.driver, link);
     message[0] = '\0';
     const argusd_exit_t code =
         check_run(&loop.driver, wait_ms, signals_fd(), options.json, stdout, message, sizeof message);
-    return code == ARGUSD_EXIT_OK ? code : complain(code);
+    if (code != ARGUSD_EXIT_OK) {
+        complain(code);
+    }
+    if (tape_close(&loop.tape, message, sizeof message)) {
+        complain(code);
+    }
+    return code;
 }
 
 // Saves once at the start: a place that cannot be written is better known now than after the mission.
@@ -245,6 +261,7 @@ static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *no
         text_refuse(message, sizeof message, "the course does not fit the fault manager");
         return complain(ARGUSD_EXIT_INTERNAL);
     }
+    loop.driver.tap = tape_tap(&loop.tape);
     driver_attach(&loop.driver, link);
     return loop_run(&loop, &wishes);
 }
@@ -270,6 +287,10 @@ static argusd_exit_t run(int argc, char **argv) {
     const argusd_exit_t connected = connect_robot(&clock, &link);
     if (connected != ARGUSD_EXIT_OK || message[0] != '\0') {
         return complain(connected);
+    }
+    if (!open_tape()) {
+        hal_link_close(&link);
+        return complain(ARGUSD_EXIT_USAGE);
     }
     return options.action == OPTIONS_CHECK ? run_check(link, clock) : run_loop(link, clock, notice);
 }

@@ -97,9 +97,9 @@ void driver_receive(driver_t *self) {
             return;
         }
         self->bytes_in += (uint32_t)got;
+        show(self, true, bytes, (size_t)got);
         argus_receive(&self->core, now_ms(self), bytes, (size_t)got);
         driver_transmit(self);
-        show(self, true, bytes, (size_t)got); // after what they call for
     }
 }
 

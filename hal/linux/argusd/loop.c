@@ -253,6 +253,20 @@ static void save(loop_t *self, bool now) {
     }
 }
 
+static void watch_tape(loop_t *self) {
+    char text[ARGUSD_MESSAGE_MAX];
+    if (tape_problem(&self->tape, text, sizeof text)) {
+        notice(self, text);
+    }
+}
+
+static void close_tape(loop_t *self) {
+    char text[ARGUSD_MESSAGE_MAX];
+    if (tape_close(&self->tape, text, sizeof text)) {
+        notice(self, text);
+    }
+}
+
 static bool is_over(loop_t *self) {
     if (!self->ending) {
         return false;
@@ -361,6 +375,7 @@ argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
         say_status(self);
         show(self);
         save(self, false);
+        watch_tape(self);
         if (is_over(self)) {
             break;
         }
@@ -371,6 +386,7 @@ argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
     driver_close(&self->driver);
     tui_stop(&self->tui);
     save(self, true);
+    close_tape(self);
     drain(self);
     return self->code;
 }

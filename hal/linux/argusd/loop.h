@@ -7,6 +7,7 @@
 #include "driver.h"
 #include "output.h"
 #include "state.h"
+#include "tape.h"
 #include "tui.h"
 #include "view.h"
 
@@ -22,6 +23,7 @@ typedef struct {
     loop_options_t options;
     driver_t driver;
     state_t state;
+    tape_t tape;
     output_t out;
     output_t err;
     tui_t tui;

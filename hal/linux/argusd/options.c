@@ -15,6 +15,8 @@ enum {
     OPT_COURSE,
     OPT_GOAL,
     OPT_STATE,
+    OPT_RECORD,
+    OPT_RECORD_MAX,
     OPT_PASSIVE,
     OPT_ACTIVE,
     OPT_JSON,
@@ -35,6 +37,8 @@ static const struct option table[] = {
     {"course", required_argument, NULL, OPT_COURSE},
     {"goal", required_argument, NULL, OPT_GOAL},
     {"state", required_argument, NULL, OPT_STATE},
+    {"record", required_argument, NULL, OPT_RECORD},
+    {"record-max", required_argument, NULL, OPT_RECORD_MAX},
     {"passive", no_argument, NULL, OPT_PASSIVE},
     {"active", no_argument, NULL, OPT_ACTIVE},
     {"json", no_argument, NULL, OPT_JSON},
@@ -65,6 +69,8 @@ void options_help(FILE *out) {
         "  --passive          diagnose and report, never command a motion\n"
         "  --active           drive; needed on a serial link, which starts passive\n"
         "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
+        "  --record FILE      append all bytes of the link, both directions, with their times (see argus-log)\n"
+        "  --record-max MB    size at which FILE becomes FILE.1 and so on to FILE.4 (default 64)\n"
         "  --wait SECONDS     at start, how long to try for the port and for a robot's answer; or 'forever'\n"
         "                     (default: the port must be there, a robot has 30 s)\n"
         "  --check            connect, tell what is there, leave\n"
@@ -123,6 +129,16 @@ static bool take_status(options_t *options, const char *text, const message_t *m
     return true;
 }
 
+static bool take_record_max(options_t *options, const char *text, const message_t *message) {
+    int32_t megabytes = 0;
+    if (!text_number(text, &megabytes) || megabytes < 1 || megabytes > 100000) {
+        return text_refuse(message->text, message->capacity, "--record-max %s: give megabytes, 1 to 100000",
+                           text);
+    }
+    options->record_max_bytes = (uint64_t)megabytes * 1000000u;
+    return true;
+}
+
 static bool take_goal(options_t *options, const char *text, const message_t *message) {
     char problem[ARGUSD_MESSAGE_MAX / 2];
     options->has_goal = true;
@@ -149,6 +165,9 @@ static bool take_flag(options_t *options, int option) {
         return true;
     case OPT_STATE:
         options->state_path = optarg;
+        return true;
+    case OPT_RECORD:
+        options->record_path = optarg;
         return true;
     case OPT_PASSIVE:
         options->passive = true;
@@ -199,6 +218,8 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
         return take_seconds(options, optarg, message);
     case OPT_STATUS:
         return take_status(options, optarg, message);
+    case OPT_RECORD_MAX:
+        return take_record_max(options, optarg, message);
     case ':':
         return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help",
                            argv[optind - 1]);
@@ -227,6 +248,8 @@ static bool agree(const options_t *options, const message_t *message) {
          "--course and --goal contradict each other; give one"},
         {!has_link,
          "no link is given; add --link serial:/dev/ttyUSB0@9600 or --link tcp:HOST:8101 (see --help)"},
+        {options->record_max_bytes > 0 && options->record_path == NULL,
+         "--record-max is for --record FILE; add it"},
         {options->auto_baud && !serial, "--auto-baud is for serial links; a tcp link has no rate"},
         {options->auto_baud && options->link.has_baud,
          "--auto-baud and a rate in --link contradict each other; leave out @BAUD"},

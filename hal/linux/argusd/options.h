@@ -28,6 +28,8 @@ typedef struct {
     const char *config_path; // NULL: not given, like the paths below
     const char *course_path;
     const char *state_path;
+    const char *record_path;
+    uint64_t record_max_bytes; // 0: not given
     argus_point_t goal;
     bool has_goal;
     bool passive;

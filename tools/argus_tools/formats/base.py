@@ -43,6 +43,7 @@ class ReadOptions:
 
     direction: Direction | None = None
     port: int | None = None
+    robot: int | None = None
     name: str = "-"
 
 

@@ -54,6 +54,10 @@ void test_single_options(void) {
     TEST_ASSERT_EQUAL_INT32(-100, options.goal.x_mm);
     TEST_ASSERT_EQUAL_INT32(200, options.goal.y_mm);
     TEST_ASSERT_EQUAL_UINT32(OPTIONS_WAIT_FOREVER, options.wait_ms);
+    TEST_ASSERT_EQUAL_PTR(NULL, options.record_path);
+    TEST_ASSERT_TRUE(parse("--link tcp:h --record r --record-max 5"));
+    TEST_ASSERT_EQUAL_STRING("r", options.record_path);
+    TEST_ASSERT_EQUAL_UINT64(5000000, options.record_max_bytes);
     TEST_ASSERT_TRUE(parse("--check --link tcp:h"));
     TEST_ASSERT_EQUAL_INT(OPTIONS_CHECK, options.action);
 }
@@ -93,6 +97,9 @@ void test_refusals(void) {
     refused("--link tcp:a --wait soon", "or 'forever'");
     refused("--link tcp:a --status 49", "50 to 3600000");
     refused("--link tcp:a --status x", "50 to 3600000");
+    refused("--link tcp:a --record r --record-max 0", "1 to 100000");
+    refused("--link tcp:a --record r --record-max 100001", "1 to 100000");
+    refused("--link tcp:a --record-max 3", "--record-max is for --record");
 }
 
 void test_help_names_every_option_and_exit_code(void) {

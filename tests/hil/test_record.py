@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""Rule: --record holds what was on the wire, to the second before the program was killed; a disk that refuses is
+said once and the drive goes on."""
+
+from __future__ import annotations
+
+import resource
+import time
+from pathlib import Path
+
+from harness import Bench
+from rules import assert_reached
+from worlds import hall
+
+from argus_tools.formats.base import Chunk, ReadOptions
+from argus_tools.formats.record import FORMAT
+from hil_sim.arcos import Unframer
+
+GOAL_MM = 900
+
+
+def read(path: Path) -> list[Chunk]:
+    with path.open("rb") as stream:
+        reader = FORMAT.reader(stream, ReadOptions(name=str(path)))
+        chunks = list(reader)
+    assert reader.damage == []
+    return chunks
+
+
+def stream(chunks: list[Chunk], direction: str) -> bytes:
+    return b"".join(chunk.data for chunk in chunks if chunk.dir == direction)
+
+
+def test_both_ends_record_the_same_wire(bench: Bench) -> None:
+    files = [bench.path / "argusd.rec", bench.path / "sim.rec"]
+    sim = bench.sim(bench.world(**hall()), extra=["--record", str(files[1])])
+    argusd = bench.argusd("--goal", f"{GOAL_MM},0", "--record", str(files[0]))
+    argusd.wait("GOAL_REACHED", timeout_s=60)
+    assert argusd.wait_exit() == 0
+    assert_reached(sim, GOAL_MM)
+    sim.process.terminate()
+    sim.process.wait(10)
+    ours, theirs = map(read, files)
+    assert stream(ours, "c2r") == stream(theirs, "c2r")
+    heard = Unframer()
+    heard.feed(stream(ours, "r2c"), 0.0)
+    assert heard.counters.packets > 50
+    assert stream(ours, "r2c") in stream(theirs, "r2c")
+    times = [chunk.t for chunk in ours if chunk.t is not None]
+    assert len(times) == len(ours)
+    assert times == sorted(times)
+    assert abs(times[-1] - time.time()) < 120
+
+
+def test_a_killed_argusd_leaves_all_but_the_last_second(bench: Bench) -> None:
+    file = bench.path / "argusd.rec"
+    bench.sim(bench.world(**hall()))
+    argusd = bench.argusd("--record", str(file), active=False)
+    argusd.wait("HEALTH_CHECK")
+    time.sleep(1.5)
+    killed = time.time()
+    argusd.process.kill()
+    argusd.process.wait()
+    chunks = read(file)
+    assert chunks[-1].t is not None
+    assert killed - 1.0 < chunks[-1].t < killed + 0.1
+
+
+def test_a_disk_that_refuses_does_not_stop_the_drive(bench: Bench) -> None:
+    file = bench.path / "argusd.rec"
+    sim = bench.sim(bench.world(**hall()))
+    argusd = bench.argusd("--goal", f"{GOAL_MM},0", "--record", str(file))
+    resource.prlimit(argusd.process.pid, resource.RLIMIT_FSIZE, (1500, 1500))
+    argusd.wait("GOAL_REACHED", timeout_s=60)
+    assert argusd.wait_exit() == 0
+    assert_reached(sim, GOAL_MM)
+    assert file.stat().st_size <= 1500
+    said = argusd.errors()
+    assert said.count("File too large; going on without") == 1, said
+    assert "bytes are missing" in said

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: MIT
+"""Recordings made by argusd --record and argus-sim --record (SPEC.md, Recording)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from io import BufferedReader
+from typing import BinaryIO, Final
+
+from argus_tools.formats.base import (
+    CLIENT_TO_ROBOT,
+    ROBOT_TO_CLIENT,
+    Chunk,
+    Damage,
+    Direction,
+    Format,
+    LogError,
+    Offsets,
+    ReadOptions,
+)
+from hil_sim.record import (
+    CLOCK_US,
+    MAGIC,
+    PAYLOAD_MAX,
+    VERSION,
+    Decoder,
+    Kind,
+    Record,
+    Timeline,
+    encode,
+    encode_clock,
+    encode_start,
+    is_recording,
+)
+
+_PIECE: Final = 65536
+_DIRECTION: Final[dict[int, Direction]] = {
+    Kind.FROM_ROBOT: ROBOT_TO_CLIENT,
+    Kind.TO_ROBOT: CLIENT_TO_ROBOT,
+}
+_KIND: Final = {direction: kind for kind, direction in _DIRECTION.items()}
+
+
+class RecordReader:
+    """Reads a recording; `t` is in seconds since 1970."""
+
+    def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
+        self.damage: list[Damage] = []
+        self._stream = stream
+        self._name = options.name
+        self._decoder = Decoder()
+        self._timeline = Timeline()
+        self._offsets = Offsets()
+
+    def __iter__(self) -> Iterator[Chunk]:
+        while data := self._stream.read1(_PIECE):
+            yield from self._chunks(self._decoder.feed(data))
+        yield from self._chunks(self._decoder.finish())
+        self._tell_gaps()
+
+    def _chunks(self, records: Iterator[Record]) -> Iterator[Chunk]:
+        for record in records:
+            t = self._timeline.at(record)
+            self._tell_gaps()
+            if direction := _DIRECTION.get(record.kind):
+                yield self._offsets.chunk(t, direction, record.payload)
+            elif record.kind == Kind.LOST:
+                lost = int.from_bytes(record.payload, "little")
+                what = f"the recorder's disk was full: {lost} bytes of the link are missing"
+                self.damage.append(Damage(f"byte {record.place}", what))
+            elif record.kind == Kind.HEADER:
+                self._check_version(record)
+
+    def _check_version(self, record: Record) -> None:
+        version = record.payload[len(MAGIC) : len(MAGIC) + 1]
+        if version and version[0] != VERSION:
+            raise LogError(
+                f"{self._name}: byte {record.place}: a recording of version {version[0]}; "
+                f"this program reads version {VERSION}, take a newer one"
+            )
+
+    def _tell_gaps(self) -> None:
+        for gap in self._decoder.gaps:
+            what = "cut off here" if gap.at_end else "no record"
+            self.damage.append(Damage(f"byte {gap.place}", f"{what}, {gap.length} bytes skipped"))
+        self._decoder.gaps.clear()
+
+
+class RecordWriter:
+    """Writes a recording whose two clocks are both `t`; what has no time is at 0."""
+
+    def __init__(self, stream: BinaryIO, _options: ReadOptions) -> None:
+        self._stream = stream
+        self._clock_us: int | None = None
+
+    def write(self, chunk: Chunk) -> None:
+        """Append one chunk."""
+        us = round((chunk.t or 0.0) * 1e6)
+        if self._clock_us is None:
+            self._stream.write(encode_start("argus-log", us, us))
+            self._clock_us = us
+        if not 0 <= us - self._clock_us < CLOCK_US:
+            self._stream.write(encode_clock(us, us))
+            self._clock_us = us
+        for at in range(0, len(chunk.data), PAYLOAD_MAX):
+            self._stream.write(encode(_KIND[chunk.dir], us, chunk.data[at : at + PAYLOAD_MAX]))
+
+    def close(self) -> None:
+        """A recording has no end of its own; an empty one still has a beginning."""
+        if self._clock_us is None:
+            self._stream.write(encode_start("argus-log", 0, 0))
+
+
+FORMAT: Final = Format(
+    name="record",
+    help="recording by argusd --record or argus-sim --record",
+    sniff=is_recording,
+    reader=RecordReader,
+    writer=RecordWriter,
+    suffixes=(".rec", ".argus"),
+)

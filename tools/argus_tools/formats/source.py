@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: MIT
+"""Where a log's bytes come from: a file or standard input, gzip or not, complete or still growing."""
+
+from __future__ import annotations
+
+import io
+import os
+import stat
+import sys
+import time
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Final
+
+from argus_tools.formats.base import Damage, LogError
+
+if TYPE_CHECKING:
+    from _typeshed import WriteableBuffer
+
+HEAD_BYTES: Final = 1 << 16
+BLOCK_BYTES: Final = 1 << 17
+FOLLOW_PAUSE_S: Final = 0.05
+# Enough of a pipe to tell the formats apart, without keeping a live one waiting.
+PIPE_HEAD_BYTES: Final = 24
+_GZIP_MAGIC: Final = b"\x1f\x8b\x08"
+_GZIP_WBITS: Final = 31
+
+
+class Source(io.RawIOBase):
+    """The unzipped bytes of one log; with `follow` its end is waited at, until `stop` says otherwise."""
+
+    def __init__(
+        self,
+        path: str,
+        follow: bool = False,
+        stop: Callable[[], bool] = lambda: False,
+        on_progress: Callable[[int], None] = lambda _: None,
+    ) -> None:
+        self.name = path
+        self.damage: list[Damage] = []
+        self.consumed = 0
+        self._follow = follow
+        self._stop = stop
+        self._on_progress = on_progress
+        self._file = _open(path)
+        status = os.fstat(self._file.fileno())
+        self.is_regular = stat.S_ISREG(status.st_mode)
+        self.total = status.st_size if self.is_regular else 0
+        self._unzip: zlib._Decompress | None = None
+        self._zipped = b""
+        self._ready = b""
+        self._given_up = False
+        self._read_head()
+
+    def _read_head(self) -> None:
+        first = self._raw(3)
+        while first and len(first) < 3 and (more := self._raw(3 - len(first))):
+            first += more
+        if first == _GZIP_MAGIC:
+            self._unzip = zlib.decompressobj(_GZIP_WBITS)
+            self._zipped = first
+        else:
+            self._ready = first
+        wanted = HEAD_BYTES if self.is_regular and not self._follow else PIPE_HEAD_BYTES
+        while len(self._ready) < wanted and (more := self._next()):
+            self._ready += more
+        self.head = self._ready
+
+    def readable(self) -> bool:
+        """A source is for reading only."""
+        return True
+
+    def readinto(self, buffer: WriteableBuffer, /) -> int:
+        """Fill the buffer with what there is; 0 at the end."""
+        if not self._ready:
+            self._ready = self._next()
+        view = memoryview(buffer).cast("B")
+        taken = self._ready[: len(view)]
+        view[: len(taken)] = taken
+        self._ready = self._ready[len(taken) :]
+        return len(taken)
+
+    def close(self) -> None:
+        """Close the file, but never standard input."""
+        if not self.closed and self._file is not sys.stdin.buffer:
+            self._file.close()
+        super().close()
+
+    def _raw(self, size: int) -> bytes:
+        while True:
+            try:
+                data = os.read(self._file.fileno(), size)
+            except OSError as error:
+                raise LogError(f"{self.name}: cannot be read: {error.strerror}") from error
+            if data or not self._follow or self._stop():
+                break
+            time.sleep(FOLLOW_PAUSE_S)
+        self.consumed += len(data)
+        self._on_progress(self.consumed)
+        return data
+
+    def _give_up(self, what: str) -> None:
+        self.damage.append(Damage(f"byte {self.consumed}", what))
+        self._given_up = True
+
+    def _next(self) -> bytes:
+        if self._given_up:
+            return b""
+        if self._unzip is None:
+            return self._raw(BLOCK_BYTES)
+        while True:
+            zipped, self._zipped = self._zipped or self._raw(BLOCK_BYTES), b""
+            if not zipped:
+                if not self._unzip.eof:
+                    self._give_up("the gzip file ends in the middle")
+                return b""
+            if self._unzip.eof:
+                if not zipped.strip(b"\0"):
+                    continue
+                self._unzip = zlib.decompressobj(_GZIP_WBITS)
+            try:
+                data = self._unzip.decompress(zipped, BLOCK_BYTES)
+            except zlib.error as error:
+                self._give_up(f"the gzip file is damaged ({error})")
+                return b""
+            self._zipped = self._unzip.unconsumed_tail or self._unzip.unused_data
+            if data:
+                return data
+
+
+def _open(path: str) -> IO[bytes]:
+    if path == "-":
+        return sys.stdin.buffer
+    try:
+        if Path(path).is_dir():
+            raise LogError(f"{path}: is a directory; give a log file")
+        return Path(path).open("rb", buffering=0)
+    except OSError as error:
+        raise LogError(f"{path}: cannot be opened: {error.strerror}") from error

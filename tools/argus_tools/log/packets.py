@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: MIT
+"""From the chunks of a log to its packets, each with its place and name, and what stands between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from struct import Struct
+from typing import Final, NamedTuple
+
+from argus_tools.formats.base import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT, Chunk, Direction
+from hil_sim.arcos import COMMAND, FRAME, TYPE, Unframer, checksum
+
+HEADER: Final = bytes((FRAME["HEADER0"], FRAME["HEADER1"]))
+JUNK: Final = "JUNK"
+SYNC_NAMES: Final = ("SYNC0", "SYNC1", "SYNC2")
+SESSION_NAMES: Final = ("PULSE", "OPEN", "CLOSE")
+SIP_TYPES: Final = range(TYPE["SIP_FIRST"], TYPE["SIP_LAST"] + 1)
+_OVERHEAD: Final = FRAME["OVERHEAD"]
+_COUNT_MIN: Final = FRAME["COUNT_MIN"]
+_WORDS: Final = tuple(Struct(f">{words}H").unpack_from for words in range(128))
+# Junk is reported in parts of this size, so that no amount of it is held in memory.
+_GAP_MAX: Final = 1 << 16
+# This many PULSEs or SYNC0s in a row, and nothing else, are not waited behind any longer.
+_UNDECIDED_MAX: Final = 16
+# SIPs that may still come after a CLOSE before it is taken as not obeyed.
+_SIPS_AFTER_CLOSE: Final = 5
+
+COMMAND_NAMES: Final = tuple(
+    {number: name for name, number in COMMAND.items() if not name.endswith(("_FIRST", "_LAST"))}.get(
+        number, f"CMD_{number}"
+    )
+    for number in range(256)
+)
+_NAMED_TYPES: Final = {
+    **{TYPE[name]: name for name in (*SYNC_NAMES, "CONFIGPAC", "ENCODERPAC", "IOPAC", "GYROPAC", "PLAYLIST", "SIMSTAT")},
+    **{TYPE[name]: "SERAUXPAC" for name in ("SERAUXPAC", "SERAUX2PAC", "SERAUX3PAC")},
+    **dict.fromkeys(SIP_TYPES, "SIP"),
+}
+TYPE_NAMES: Final = tuple(_NAMED_TYPES.get(number, f"TYPE_{number}") for number in range(256))
+
+
+class Row(NamedTuple):
+    """One packet, or a stretch of bytes that is none (`ok` false).
+
+    `data` is the packet's data part, from its command or type byte on; of damage, all its bytes.
+    `error` says what is wrong with it.
+    """
+
+    t: float | None
+    offset: int
+    dir: Direction
+    type: str
+    ok: bool
+    data: bytes
+    error: str = ""
+
+    @property
+    def wire(self) -> bytes:
+        """The bytes as they were sent."""
+        if not self.ok:
+            return self.data
+        return HEADER + bytes((len(self.data) + 2,)) + self.data + checksum(self.data).to_bytes(2, "big")
+
+
+def packet_name(direction: Direction, number: int) -> str:
+    """Return what a packet is called once the session is open."""
+    if direction == ROBOT_TO_CLIENT:
+        return TYPE_NAMES[number]
+    return SESSION_NAMES[number] if number < len(SESSION_NAMES) else COMMAND_NAMES[number]
+
+
+class _Tracer(Unframer):
+    """An Unframer that also knows where its packets began."""
+
+    def __init__(self, offset: int) -> None:
+        super().__init__()
+        self._base = offset
+        self.starts: list[int] = []
+
+    @property
+    def owed(self) -> int:
+        """Bytes that the packet at the front lacks."""
+        return self._owed()
+
+    def _take(self) -> bytes:
+        self.starts.append(self._base + self.counters.junk_bytes)
+        data = super()._take()
+        self._base += len(data) + 2 + _OVERHEAD
+        return data
+
+
+class Scanner:
+    """Finds the packets in one direction, exactly those that the robot's and Argus' own parsers find.
+
+    Whole packets that follow each other are taken at once; from the first byte that is something else until the
+    next such packet the bytes go through the Unframer.
+    """
+
+    def __init__(self, direction: Direction) -> None:
+        self.direction = direction
+        self._names = tuple(packet_name(direction, number) for number in range(256))
+        self._tracer: _Tracer | None = None
+        self._gap = bytearray()
+        self._gap_at = 0
+
+    def feed(self, chunk: Chunk) -> list[Row]:
+        """Take the next bytes; return what they complete."""
+        rows: list[Row] = []
+        t, direction, buffer, offset = chunk
+        at, size = 0, len(buffer)
+        names = self._names
+        new = tuple.__new__
+        while at < size:
+            if self._tracer is not None:
+                at = self._recover(rows, chunk, at)
+                continue
+            # Written out, as most packets of most logs pass here.
+            while size - at >= 6 and buffer[at] == 0xFA and buffer[at + 1] == 0xFB:
+                count = buffer[at + 2]
+                end = at + count + 3
+                if end > size or count < 3:
+                    break
+                words = count >> 1
+                total = sum(_WORDS[words](buffer, at + 3))
+                if count & 1:
+                    # The odd byte and the checksum's high byte made up the last word.
+                    last = buffer[end - 3]
+                    sent = buffer[end - 2] << 8 | buffer[end - 1]
+                    good = (total - (last << 8 | sent >> 8)) & 0xFFFF ^ last == sent
+                else:
+                    sent = buffer[end - 2] << 8 | buffer[end - 1]
+                    good = (total - sent) & 0xFFFF == sent
+                if not good:
+                    break
+                data = buffer[at + 3 : end - 2]
+                rows.append(new(Row, (t, offset + at, direction, names[data[0]], True, data, "")))
+                at = end
+            if at < size:
+                self._tracer = _Tracer(offset + at)
+                self._gap_at = offset + at
+        return rows
+
+    def finish(self) -> list[Row]:
+        """Return what is left when no byte will follow."""
+        rows: list[Row] = []
+        if self._tracer is not None:
+            self._collect(rows, None, self._tracer.poll(1e12))
+            self._flush(rows, None, len(self._gap))
+            self._tracer = None
+        return rows
+
+    def _recover(self, rows: list[Row], chunk: Chunk, at: int) -> int:
+        tracer = self._tracer
+        assert tracer is not None
+        if tracer.pending:
+            piece = chunk.data[at : at + tracer.owed]
+        else:
+            start = chunk.data.find(HEADER[0], at)
+            piece = chunk.data[at : len(chunk.data) if start < 0 else start + 3]
+        self._gap += piece
+        self._collect(rows, chunk.t, tracer.feed(piece))
+        if not tracer.pending and not self._gap:
+            self._tracer = None
+        elif len(self._gap) >= _GAP_MAX:
+            self._flush(rows, chunk.t, len(self._gap) - tracer.pending)
+        return at + len(piece)
+
+    def _collect(self, rows: list[Row], t: float | None, packets: list[bytes]) -> None:
+        tracer = self._tracer
+        assert tracer is not None
+        for data, start in zip(packets, tracer.starts, strict=True):
+            self._flush(rows, t, start - self._gap_at)
+            rows.append(Row(t, start, self.direction, self._names[data[0]], True, data))
+            size = len(data) + 2 + _OVERHEAD
+            del self._gap[:size]
+            self._gap_at += size
+        tracer.starts.clear()
+
+    def _flush(self, rows: list[Row], t: float | None, size: int) -> None:
+        """Report the first bytes of the gap as damage."""
+        gap = bytes(self._gap[:size])
+        at = 0
+        while at < len(gap):
+            end = self._damage_end(gap, at)
+            name, error = self._explain(gap[at:end])
+            rows.append(Row(t, self._gap_at + at, self.direction, name, False, gap[at:end], error))
+            at = end
+        del self._gap[:size]
+        self._gap_at += size
+
+    @staticmethod
+    def _damage_end(gap: bytes, at: int) -> int:
+        following = gap.find(HEADER, at + 1)
+        end = len(gap) if following < 0 else following
+        if gap.startswith(HEADER, at) and at + 2 < len(gap) and gap[at + 2] >= _COUNT_MIN:
+            end = min(end, at + gap[at + 2] + _OVERHEAD)
+        return end
+
+    def _explain(self, part: bytes) -> tuple[str, str]:
+        if not part.startswith(HEADER):
+            return JUNK, f"{len(part)} bytes that belong to no packet"
+        if len(part) < 4:
+            return JUNK, f"a header and {len(part) - 2} bytes of a packet"
+        name = self._names[part[3]]
+        total = part[2] + _OVERHEAD
+        if part[2] < _COUNT_MIN:
+            return name, f"COUNT is {part[2]}, below {_COUNT_MIN}"
+        if len(part) < total:
+            return name, f"{len(part)} of {total} bytes"
+        computed = checksum(part[3:-2])
+        return name, f"checksum is {int.from_bytes(part[-2:], 'big'):04x}, not {computed:04x}"
+
+
+class Session:
+    """Tells SYNC0, SYNC1, SYNC2 from PULSE, OPEN, CLOSE, which have the same numbers.
+
+    Where the packets so far leave it open, as for a first 0, the packet waits for the next one that settles it.
+    """
+
+    def __init__(self) -> None:
+        self._state = "unknown"  # or "waiting", "synced" (SYNC2 seen), "open"
+        self._undecided: list[Row] = []
+        self._sips_waiting = 0
+
+    def take(self, row: Row) -> list[Row]:
+        """Return the rows that are settled now, in their order."""
+        if not row.ok:
+            if self._undecided:
+                self._undecided.append(row)
+                return []
+            return [row]
+        number = row.data[0]
+        if row.dir == ROBOT_TO_CLIENT:
+            return self._from_robot(row, number)
+        return self._from_client(row, number)
+
+    def finish(self) -> list[Row]:
+        """Return what still waits: never answered, so SYNCs, unless the session was known to be open."""
+        return self._settle(self._state != "open")
+
+    def _from_robot(self, row: Row, number: int) -> list[Row]:
+        if number < len(SYNC_NAMES):
+            rows = self._settle(True)
+            self._state = "synced" if number == TYPE["SYNC2"] else "waiting"
+            return [*rows, row]
+        if self._undecided:
+            rows = self._settle(False)
+        else:
+            rows = []
+        if self._state == "unknown":
+            self._state = "open"
+        elif self._state == "waiting" and number in SIP_TYPES:
+            self._sips_waiting += 1
+            if self._sips_waiting > _SIPS_AFTER_CLOSE:
+                self._state = "open"
+        rows.append(row)
+        return rows
+
+    def _from_client(self, row: Row, number: int) -> list[Row]:
+        if number >= len(SYNC_NAMES):
+            rows = self._settle(False)
+            if self._state == "unknown":
+                self._state = "open"
+            rows.append(row)
+            return rows
+        if self._state == "synced" and number == COMMAND["OPEN"]:
+            self._state = "open"
+            return [row]
+        if self._state in ("waiting", "synced"):
+            return [self._sync(row, number)]
+        last = next((r.data[0] for r in reversed(self._undecided) if r.ok), None)
+        if last is not None and number == last + 1:
+            return [*self._settle(True), self._sync(row, number)]
+        rows = []
+        if last is not None and number != last:
+            rows = self._settle(last == TYPE["SYNC2"] and number == COMMAND["OPEN"])
+            if self._state != "open":
+                return rows + self._from_client(row, number)
+        if number != TYPE["SYNC0"] and self._state == "open" and last is None:
+            return rows + [self._close(row, number)]
+        self._undecided.append(row)
+        if len(self._undecided) > _UNDECIDED_MAX:
+            rows += self._settle(self._state != "open")
+        return rows
+
+    def _close(self, row: Row, number: int) -> Row:
+        if number == COMMAND["CLOSE"]:
+            self._state, self._sips_waiting = "waiting", 0
+        return row
+
+    def _sync(self, row: Row, number: int) -> Row:
+        self._state, self._sips_waiting = ("synced" if number == TYPE["SYNC2"] else "waiting"), 0
+        return row._replace(type=SYNC_NAMES[number])
+
+    def _settle(self, is_sync: bool) -> list[Row]:
+        rows, self._undecided = self._undecided, []
+        if not rows:
+            return rows
+        named = []
+        for row in rows:
+            if not row.ok:
+                named.append(row)
+            elif is_sync:
+                named.append(self._sync(row, row.data[0]))
+            else:
+                self._state = "open"
+                named.append(self._close(row, row.data[0]))
+        return named
+
+
+def packets(chunks: Iterable[Chunk]) -> Iterator[Row]:
+    """Yield the packets of a log in their order, named, and the damage between them as rows with `ok` false."""
+    scanners: dict[Direction, Scanner] = {name: Scanner(name) for name in (ROBOT_TO_CLIENT, CLIENT_TO_ROBOT)}
+    session = Session()
+    for chunk in chunks:
+        for row in scanners[chunk.dir].feed(chunk):
+            yield from session.take(row)
+    for scanner in scanners.values():
+        for row in scanner.finish():
+            yield from session.take(row)
+    yield from session.finish()
