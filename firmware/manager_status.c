@@ -95,12 +95,12 @@ int argus_invariants_broken(const argus_t *const self) {
 }
 
 const char *argus_mode_name(const argus_mode_t mode) {
-    static const char *const name[] = {"OFFLINE",  "CHECKING", "VERIFYING", "IDLE",    "DRIVING", "SWEEPING",
-                                       "STEPPING", "BACKING",  "WAITING",   "CLOSING", "CLOSED"};
+    static const char name[][16] = {"OFFLINE",  "CHECKING", "VERIFYING", "IDLE",    "DRIVING", "SWEEPING",
+                                    "STEPPING", "BACKING",  "WAITING",   "CLOSING", "CLOSED"};
     return (unsigned)mode < sizeof name / sizeof name[0] ? name[mode] : "?";
 }
 
 const char *argus_mission_name(const argus_mission_t mission) {
-    static const char *const name[] = {"none", "running", "reached", "failed"};
+    static const char name[][16] = {"none", "running", "reached", "failed"};
     return (unsigned)mission < sizeof name / sizeof name[0] ? name[mission] : "?";
 }

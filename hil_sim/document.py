@@ -37,7 +37,7 @@ class Item:
             self.fail(f"expected a mapping with the keys {', '.join(names)}")
         for key, item in self.value.items():
             if key not in names:
-                item.fail(f"unknown key '{key}'; known here: {', '.join(names)}")
+                item.fail(f"unknown key '{_shown(key)}'; known here: {', '.join(names)}")
         return dict(self.value)
 
     def named(self) -> dict[str, Item]:
@@ -118,7 +118,9 @@ def _shown(value: Any) -> str:
 def _item(path: str, node: yaml.Node, count: list[int], line: int | None = None) -> Item:
     count[0] += 1
     if count[0] > MAX_VALUES:
-        Item(path, node.start_mark.line + 1, None).fail(f"more than {MAX_VALUES} values; use fewer aliases or parts")
+        Item(path, node.start_mark.line + 1, None).fail(
+            f"more than {MAX_VALUES} values; use fewer aliases or parts"
+        )
     here = node.start_mark.line + 1 if line is None else line
     if isinstance(node, yaml.MappingNode):
         values: dict[str, Item] = {}
@@ -127,7 +129,7 @@ def _item(path: str, node: yaml.Node, count: list[int], line: int | None = None)
             if not isinstance(key, yaml.ScalarNode):
                 Item(path, at, None).fail("a key must be a word")
             if key.value in values:
-                Item(path, at, None).fail(f"key '{key.value}' is given twice; keep one")
+                Item(path, at, None).fail(f"key '{_shown(key.value)}' is given twice; keep one")
             values[key.value] = _item(path, value, count, at if isinstance(value, yaml.ScalarNode) else None)
         return Item(path, here, values)
     if isinstance(node, yaml.SequenceNode):

@@ -268,10 +268,13 @@ class _MapReader:
 
     def check_counts(self) -> None:
         """Refuse a file that was cut short; more than announced is common after editing by hand, and harmless."""
-        for what, (count, self.number) in self.announced.items():
-            if self.counted.get(what, 0) < count:
-                found = self.counted.get(what, 0)
-                self.fail(f"{what} announces {count}, {found} follow: cut short? restore the file or correct the count")
+        for what, (count, line) in self.announced.items():
+            found = self.counted.get(what, 0)
+            if found < count:
+                self.number = line
+                self.fail(
+                    f"{what} announces {count} but {found} follow; restore the file or correct the count"
+                )
 
     def check_size(self) -> None:
         """Refuse a map too large to be simulated before it fills the memory."""

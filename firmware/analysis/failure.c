@@ -20,6 +20,6 @@ argus_failure_t argus_failure_of(const uint16_t disabled) {
 }
 
 const char *argus_failure_name(const argus_failure_t failure) {
-    static const char *const name[] = {"IsNormal", "IsMinor", "IsMajor", "IsCatastrophic"};
+    static const char name[][16] = {"IsNormal", "IsMinor", "IsMajor", "IsCatastrophic"};
     return (unsigned)failure < sizeof name / sizeof name[0] ? name[failure] : "?";
 }

@@ -39,7 +39,8 @@ hal_recorder_ops_t hal_recorder_ops(void) {
     return (hal_recorder_ops_t){.write = write, .sync = fdatasync, .now = system_now};
 }
 
-// records ----------------------------------------------------------------------------------------------------
+// records
+// ----------------------------------------------------------------------------------------------------
 
 static void put_le(uint8_t *at, uint64_t value, size_t bytes) {
     for (size_t i = 0; i < bytes; i++) {
@@ -74,12 +75,12 @@ static size_t make_start(const hal_recorder_t *self, uint8_t *out) {
     memcpy(payload, magic, MAGIC_BYTES);
     payload[MAGIC_BYTES] = HAL_RECORD_VERSION;
     memcpy(payload + MAGIC_BYTES + 1, self->source, length);
-    const size_t header =
-        make_record(out, HAL_RECORD_HEADER, now.mono_us, payload, MAGIC_BYTES + 1 + length);
+    const size_t header = make_record(out, HAL_RECORD_HEADER, now.mono_us, payload, MAGIC_BYTES + 1 + length);
     return header + make_clock(out + header, now);
 }
 
-// the caller's side ------------------------------------------------------------------------------------------
+// the caller's side
+// ------------------------------------------------------------------------------------------
 
 static void ring_copy_in(hal_recorder_t *self, uint32_t head, const uint8_t *bytes, size_t count) {
     const size_t at = head & RING_MASK;
@@ -107,8 +108,7 @@ static bool say_lost(hal_recorder_t *self, int64_t mono_us) {
         return true;
     }
     put_le(payload, self->unsaid, sizeof payload);
-    if (!ring_put(self, record,
-                  make_record(record, HAL_RECORD_LOST, mono_us, payload, sizeof payload))) {
+    if (!ring_put(self, record, make_record(record, HAL_RECORD_LOST, mono_us, payload, sizeof payload))) {
         return false;
     }
     self->unsaid = 0;
@@ -146,7 +146,8 @@ void hal_recorder_note(hal_recorder_t *self, hal_record_kind_t kind, const uint8
     }
 }
 
-// the disk's side --------------------------------------------------------------------------------------------
+// the disk's side
+// --------------------------------------------------------------------------------------------
 
 static void sync_folder(const char *path) {
     char folder[HAL_RECORDER_PATH_MAX];
@@ -346,7 +347,8 @@ bool hal_recorder_pump(hal_recorder_t *self) {
     return problem == 0;
 }
 
-// life -------------------------------------------------------------------------------------------------------
+// life
+// -------------------------------------------------------------------------------------------------------
 
 int hal_recorder_open(hal_recorder_t *self, const char *path, const char *source, uint64_t max_bytes,
                       hal_recorder_ops_t ops) {

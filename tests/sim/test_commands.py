@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+import doctest
 import logging
 import math
 from collections.abc import Callable
+from types import ModuleType
 from typing import Any
 
 import pytest
 from doubles import FakeRing, Session, cmd, make_robot, sips
 
+from hil_sim import commands
 from hil_sim.arcos import (
     BAUD_OF_CODE,
     COMMAND,
@@ -27,6 +30,7 @@ from hil_sim.arcos import (
     frame,
 )
 from hil_sim.commands import IGNORED, IGNORED_RANGES, NAME, WHY_IGNORED
+from hil_sim.conformance import checks, client
 from hil_sim.server import ArcosServer, State
 
 FORMS = {
@@ -374,3 +378,10 @@ def test_the_old_subclass_counts_in_its_own_unit() -> None:
     session.connect()
     session.send(cmd("MOVE", 485))
     assert sips(session.run(4000))[-1].x == 1000
+
+
+@pytest.mark.parametrize("module", [commands, checks, client], ids=lambda module: module.__name__)
+def test_examples_in_the_docs_are_true(module: ModuleType) -> None:
+    result = doctest.testmod(module)
+    assert result.attempted > 0
+    assert result.failed == 0

@@ -33,18 +33,18 @@ bool tape_open(tape_t *self, const char *path, const char *link, uint64_t max_by
     snprintf(source, sizeof source, "argusd %s %s", ARGUS_VERSION, link);
     self->on = false;
     self->said = false;
-    int problem = hal_recorder_open(&self->recorder, path, source,
-                                    max_bytes > 0 ? max_bytes : TAPE_MAX_BYTES, hal_recorder_ops());
+    int problem = hal_recorder_open(&self->recorder, path, source, max_bytes > 0 ? max_bytes : TAPE_MAX_BYTES,
+                                    hal_recorder_ops());
     if (problem == 0) {
         problem = hal_recorder_start(&self->recorder);
     }
     if (problem != 0) {
         const char *const known = advice(problem);
         hal_recorder_close(&self->recorder);
-        return known != NULL
-                   ? text_refuse(message, capacity, "--record %s: %s", path, known)
-                   : text_refuse(message, capacity, "--record %s: %s; give a file in a folder that can be written",
-                                 path, strerror(problem));
+        return known != NULL ? text_refuse(message, capacity, "--record %s: %s", path, known)
+                             : text_refuse(message, capacity,
+                                           "--record %s: %s; give a file in a folder that can be written",
+                                           path, strerror(problem));
     }
     self->on = true;
     return true;
@@ -52,7 +52,8 @@ bool tape_open(tape_t *self, const char *path, const char *link, uint64_t max_by
 
 static void see(void *context, bool from_robot, const uint8_t *bytes, size_t count) {
     tape_t *const self = context;
-    hal_recorder_note(&self->recorder, from_robot ? HAL_RECORD_FROM_ROBOT : HAL_RECORD_TO_ROBOT, bytes, count);
+    hal_recorder_note(&self->recorder, from_robot ? HAL_RECORD_FROM_ROBOT : HAL_RECORD_TO_ROBOT, bytes,
+                      count);
 }
 
 driver_tap_t tape_tap(tape_t *self) {
@@ -80,7 +81,8 @@ bool tape_close(tape_t *self, char *message, size_t capacity) {
     if (self->recorder.lost == 0 && held == 0 && self->recorder.block_used == 0) {
         return false;
     }
-    text_refuse(message, capacity, "--record %s: the disk did not take everything, %" PRIu64 " bytes are missing",
+    text_refuse(message, capacity,
+                "--record %s: the disk did not take everything, %" PRIu64 " bytes are missing",
                 self->recorder.path, self->recorder.lost + held + self->recorder.block_used);
     return true;
 }

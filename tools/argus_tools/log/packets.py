@@ -235,8 +235,12 @@ class Session:
         return self._from_client(row, number)
 
     def finish(self) -> list[Row]:
-        """Return what still waits: never answered, so SYNCs, unless the session was known to be open."""
-        return self._settle(self._state != "open")
+        """Return what still waits: 0 that was never answered is SYNC0, unless the session was open."""
+        return self._settle(self._is_unanswered())
+
+    def _is_unanswered(self) -> bool:
+        first = next((row.data[0] for row in self._undecided if row.ok), None)
+        return self._state != "open" and first == TYPE["SYNC0"]
 
     def _from_robot(self, row: Row, number: int) -> list[Row]:
         if number < len(SYNC_NAMES):
@@ -274,13 +278,12 @@ class Session:
         rows = []
         if last is not None and number != last:
             rows = self._settle(last == TYPE["SYNC2"] and number == COMMAND["OPEN"])
-            if self._state != "open":
-                return rows + self._from_client(row, number)
+            return rows + self._from_client(row, number)
         if number != TYPE["SYNC0"] and self._state == "open" and last is None:
-            return rows + [self._close(row, number)]
+            return [self._close(row, number)]
         self._undecided.append(row)
         if len(self._undecided) > _UNDECIDED_MAX:
-            rows += self._settle(self._state != "open")
+            rows += self._settle(self._is_unanswered())
         return rows
 
     def _close(self, row: Row, number: int) -> Row:

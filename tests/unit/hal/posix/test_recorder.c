@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Attacks: whatever is cut off, the rest stays readable; a full or stuck disk holds nobody up and its losses are
-// counted to the byte; files are parted between records; nobody else's file is touched.
+// Attacks: whatever is cut off, the rest stays readable; a full or stuck disk holds nobody up and its losses
+// are counted to the byte; files are parted between records; nobody else's file is touched.
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>

@@ -104,11 +104,11 @@ void test_refusals(void) {
 
 void test_help_names_every_option_and_exit_code(void) {
     static char text[8192];
-    static const char *const options_[] = {"--link",        "--auto-baud",      "--config",  "--course",
-                                           "--goal",        "--passive",        "--active",  "--state",
-                                           "--wait",        "--check",          "--json",    "--plain",
-                                           "--status",      "--help",           "--version", "--list-events",
-                                           "--list-config", "--example-config", "examples:"};
+    static const char *const options_[] = {
+        "--link",   "--auto-baud",  "--config",  "--course",      "--goal",        "--passive",
+        "--active", "--state",      "--wait",    "--check",       "--json",        "--plain",
+        "--status", "--help",       "--version", "--list-events", "--list-config", "--example-config",
+        "--record", "--record-max", "examples:"};
     FILE *const file = tmpfile();
     options_help(file);
     rewind(file);

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""The `argus-log` command: finds the subcommands' modules and turns what goes wrong into one line."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from typing import Final, Protocol
+
+from argus_tools.formats import LogError, formats
+from argus_tools.log.common import EXIT_CODES, EXIT_READ, EXIT_UNUSABLE, Parser
+from hil_sim.errors import SimError
+
+# Each module has SUMMARY, EXAMPLES, add_arguments(parser) and run(args) -> exit code.
+COMMANDS: Final = ("decode", "stats", "faults", "plot", "convert", "replay", "diff")
+
+_EPILOG = """\
+examples:
+  argus-log decode capture.bin                what a terminal program saved, packet by packet
+  argus-log decode --json --follow live.rec   one JSON object per packet, as it comes
+  argus-log stats drive.pcapng                counts, rates, gaps, and each sonar's record
+  argus-log plot drive.rec -o drive.png       the readings of each sonar over time
+
+formats:
+{formats}
+Each may be gzipped. {codes}
+"""
+
+
+class Command(Protocol):
+    """What a subcommand's module offers."""
+
+    SUMMARY: str
+    EXAMPLES: str
+
+    def add_arguments(self, parser: argparse.ArgumentParser) -> None:
+        """Declare the subcommand's arguments."""
+
+    def run(self, args: argparse.Namespace) -> int:
+        """Do it; return the exit code."""
+
+
+def _parser() -> argparse.ArgumentParser:
+    known = "".join(f"  {name:<9}{format_.help}\n" for name, format_ in formats().items())
+    parser = Parser(
+        prog="argus-log",
+        description="Decodes, checks, converts, draws and replays logs of a robot's serial, TCP or CAN link.",
+        epilog=_EPILOG.format(formats=known, codes=EXIT_CODES),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    subparsers = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=Parser)
+    for name in COMMANDS:
+        try:
+            command: Command = importlib.import_module(f"argus_tools.log.{name}")  # type: ignore[assignment]
+        except ModuleNotFoundError as error:
+            if error.name != f"argus_tools.log.{name}":
+                raise
+            continue
+        subparser = subparsers.add_parser(
+            name,
+            help=command.SUMMARY,
+            description=command.SUMMARY[0].upper() + command.SUMMARY[1:] + ".",
+            epilog=f"examples:\n{command.EXAMPLES}\n{EXIT_CODES}\n",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        command.add_arguments(subparser)
+        subparser.set_defaults(run=command.run)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; return the exit code."""
+    args = _parser().parse_args(argv)
+    try:
+        code: int = args.run(args)
+        sys.stdout.flush()
+        return code
+    except (LogError, SimError) as error:
+        print(f"argus-log: {error}", file=sys.stderr)
+        return EXIT_UNUSABLE
+    except BrokenPipeError:
+        # The reader has seen enough; Python must not try to write the rest at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_READ
+    except KeyboardInterrupt:
+        return EXIT_READ
+    except OSError as error:
+        print(f"argus-log: {error.filename or 'output'}: {error.strerror}", file=sys.stderr)
+        return EXIT_UNUSABLE
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: MIT
+"""What the subcommands of `argus-log` share: opening a log, its packets, complaints, progress and the exit code."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any, Final, NoReturn
+
+from argus_tools.formats import Chunk, Log, LogError, ReadOptions, formats
+from argus_tools.formats.base import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT
+from argus_tools.log.packets import Row, packets
+
+EXIT_READ, EXIT_DAMAGE, EXIT_UNUSABLE = 0, 1, 2
+EXIT_CODES: Final = "exit codes: 0 read, 1 damage found (with --strict), 2 nothing usable, or a wrong argument"
+DIRECTIONS: Final = (ROBOT_TO_CLIENT, CLIENT_TO_ROBOT)
+# A file in which so much comes before the first packet is no log.
+HOPELESS_BYTES: Final = 16 << 20
+HOPELESS_ROWS: Final = 20_000
+PROGRESS_BYTES: Final = 8 << 20
+
+
+class Parser(argparse.ArgumentParser):
+    """Reports a wrong argument in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print the line and leave with code 2."""
+        self.exit(EXIT_UNUSABLE, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def whole(low: int, high: int) -> Callable[[str], int]:
+    """Return an argument type: an integer from `low` to `high`."""
+
+    def parse(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = low - 1
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"'{text}' is not a number from {low} to {high}")
+        return value
+
+    return parse
+
+
+def seconds(text: str) -> tuple[bool, float]:
+    """Parse a time: seconds as the log counts them, or +SECONDS after its beginning.
+
+    >>> seconds("+2.5")
+    (True, 2.5)
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"'{text}' is no time: seconds, or +SECONDS after the log's beginning")
+    return text.startswith("+"), value
+
+
+def sonar_numbers(text: str) -> list[int]:
+    """Parse sonar numbers: "3", "0,7", "0-7".
+
+    >>> sonar_numbers("0-2,7")
+    [0, 1, 2, 7]
+    """
+    found: list[int] = []
+    try:
+        for part in text.split(","):
+            first, _, last = part.partition("-")
+            found += range(int(first), int(last or first) + 1)
+    except ValueError:
+        found = []
+    if not found or min(found) < 0 or max(found) > 255:
+        raise argparse.ArgumentTypeError(f"'{text}' is no list of sonars; for example 3 or 0,7 or 0-7")
+    return found
+
+
+def add_log_arguments(parser: argparse.ArgumentParser, follow: bool = False) -> None:
+    """Add the arguments that say which log is read, and how."""
+    parser.add_argument("log", metavar="LOG", help="the file, gzip or not; - is standard input")
+    names = list(formats())
+    parser.add_argument("--format", choices=names, help="its format (default: seen from the contents)")
+    parser.add_argument("--dir", choices=DIRECTIONS, help="read this direction only; of a .bin: what it is")
+    parser.add_argument("--port", type=whole(1, 65535), help="the robot's TCP port in a capture (default: found)")
+    parser.add_argument("--robot", type=whole(0, 7), help="the robot's number in a candump (default: the first)")
+    parser.add_argument("--strict", action="store_true", help="exit with 1 if anything in the log is damaged")
+    if follow:
+        parser.add_argument("--follow", action="store_true", help="wait for more at the end, until Ctrl-C")
+
+
+class Input:
+    """An opened log as the arguments ask for it; iterate `rows` once, then ask for `exit_code`."""
+
+    def __init__(self, args: argparse.Namespace, path: str | None = None) -> None:
+        self.path = path or args.log
+        self.damaged = 0
+        self._strict = bool(getattr(args, "strict", False))
+        self._told = 0
+        self._dir = getattr(args, "dir", None)
+        options = ReadOptions(direction=self._dir, port=args.port, robot=args.robot)
+        self._progress = _Progress(self.path)
+        self.log = Log(
+            self.path,
+            args.format,
+            options,
+            follow=getattr(args, "follow", False),
+            on_progress=self._progress.update,
+        )
+        self._progress.total = self.log.source.total
+
+    def chunks(self) -> Iterator[Chunk]:
+        """Yield the log's chunks, and tell on standard error what cannot be read."""
+        try:
+            for chunk in self.log:
+                if self._told != len(self.log.damage):
+                    self._tell()
+                yield chunk
+            self._tell()
+        finally:
+            self._progress.close()
+
+    def rows(self) -> Iterator[Row]:
+        """Yield the packets and the damage; a log without any packet raises LogError."""
+        waiting: list[Row] = []
+        size = 0
+        rows = packets(self.chunks())
+        for row in rows:
+            if row.ok:
+                break
+            waiting.append(row)
+            size += len(row.data)
+            if size > HOPELESS_BYTES or len(waiting) > HOPELESS_ROWS:
+                raise LogError(f"{self.path}: no ARCOS packet in the first {size} bytes: not a log of a robot's link")
+        else:
+            self._complain_empty(size)
+        for early in waiting:
+            self.damaged += 1
+            yield early
+        yield row
+        for row in rows:
+            if not row[4]:
+                self.damaged += 1
+            yield row
+
+    def selected(self) -> Iterator[Row]:
+        """Yield the rows of the direction asked for."""
+        if self._dir is None or self.log.format.name == "bin":
+            return self.rows()
+        return (row for row in self.rows() if row.dir == self._dir)
+
+    @property
+    def exit_code(self) -> int:
+        """0, or 1 if damage was met and --strict is given."""
+        return EXIT_DAMAGE if self._strict and (self.damaged or self.log.damage) else EXIT_READ
+
+    def _complain_empty(self, size: int) -> NoReturn:
+        what = f"read as {self.log.format.name}"
+        if size:
+            raise LogError(f"{self.path}: no ARCOS packet in {size} bytes ({what}): not a log, or --format is needed")
+        raise LogError(f"{self.path}: holds no bytes of a robot's link ({what}); is --format or --port needed?")
+
+    def _tell(self) -> None:
+        damage = self.log.damage
+        for place, what in damage[self._told :]:
+            print(f"argus-log: {self.path}: {place}: {what}", file=sys.stderr)
+        self._told = len(damage)
+
+
+class _Progress:
+    """A bar on standard error for a long file, when it is a terminal and the output is not."""
+
+    def __init__(self, path: str) -> None:
+        self.total = 0
+        self._path = path
+        self._bar: Any = None
+        self._wanted = sys.stderr.isatty() and not sys.stdout.isatty() and path != "-"
+
+    def update(self, consumed: int) -> None:
+        """Show how much of the file was read."""
+        if not self._wanted or self.total < PROGRESS_BYTES:
+            return
+        if self._bar is None:
+            from rich.console import Console
+            from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TimeRemainingColumn
+
+            columns = (TextColumn("{task.description}"), BarColumn(), DownloadColumn(), TimeRemainingColumn())
+            self._bar = Progress(*columns, console=Console(stderr=True), transient=True)
+            self._bar.add_task(os.path.basename(self._path), total=self.total)  # noqa: PTH119
+            self._bar.start()
+        self._bar.update(self._bar.task_ids[0], completed=consumed)
+
+    def close(self) -> None:
+        """Take the bar away."""
+        if self._bar is not None:
+            self._bar.stop()
+            self._bar = None
+        self._wanted = False
+
+
+class Times:
+    """Time filter of rows; times with a plus count from the first packet that has one."""
+
+    def __init__(self, start: tuple[bool, float] | None, end: tuple[bool, float] | None) -> None:
+        self._bounds = (start, end)
+        self._first: float | None = None
+        self.is_open = start is None and end is None
+
+    def __call__(self, t: float | None, path: str = "the log") -> bool:
+        """Whether a packet of this time is inside."""
+        if self.is_open:
+            return True
+        if t is None:
+            raise LogError(f"{path}: keeps no times, so --from and --to cannot be used")
+        if self._first is None:
+            self._first = t
+        start, end = (
+            None if bound is None else bound[1] + (self._first if bound[0] else 0.0) for bound in self._bounds
+        )
+        return (start is None or t >= start) and (end is None or t <= end)
+
+
+def add_time_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add --from and --to."""
+    hint = "seconds as in the log, or +SECONDS after its beginning"
+    parser.add_argument("--from", dest="start", metavar="T", type=seconds, help=f"leave out what is before; {hint}")
+    parser.add_argument("--to", dest="end", metavar="T", type=seconds, help="leave out what is behind; as --from")
+
+
+def use_colour() -> bool:
+    """Whether standard output is a terminal that wants colour."""
+    return sys.stdout.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
+
+
+def show_table(rows: Iterable[Iterable[Any]], right: frozenset[int] = frozenset()) -> str:
+    """Return rows of cells as aligned lines; columns in `right` are aligned to the right."""
+    cells = [["" if cell is None else str(cell) for cell in row] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    return "\n".join(
+        "  ".join(
+            cell.rjust(width) if at in right else cell.ljust(width)
+            for at, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in cells
+    )
+
+
+@contextmanager
+def binary_output(path: str) -> Iterator[Any]:
+    """Open a file to be written, or standard output for "-"; gzip if its name ends so."""
+    if path == "-":
+        yield sys.stdout.buffer
+        sys.stdout.buffer.flush()
+        return
+    import gzip
+
+    try:
+        with gzip.open(path, "wb") if path.endswith(".gz") else open(path, "wb") as file:  # noqa: PTH123
+            yield file
+    except OSError as error:
+        raise LogError(f"{path}: cannot be written: {error.strerror}") from error

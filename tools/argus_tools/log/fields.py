@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: MIT
+"""The fields of a packet in units for people: the contract of `argus-log decode --json`."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from struct import Struct
+from typing import Any, Final, NamedTuple
+
+from argus_tools.formats.base import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT
+from argus_tools.log.packets import Row
+from hil_sim.arcos import (
+    ARGUMENT,
+    COMMAND,
+    FLAG,
+    SIP,
+    TYPE,
+    Command,
+    ConfigPac,
+    GyroPac,
+    IoPac,
+    OtherPacket,
+    PacketError,
+    Sip,
+    SyncReply,
+    decode,
+)
+
+_TURN: Final = SIP["TURN"]
+_SPAN: Final = 1 << SIP["POSITION_BITS"]
+_HALF: Final = _SPAN >> 1
+DEFAULT_SUBCLASS: Final = "p3dx-sh"
+# Position units in mm; a subclass that is not here has those of p3dx-sh.
+UNIT_MM: Final = {DEFAULT_SUBCLASS: 1.0, "p3dx": SIP["OLD_UNIT_UM"] / 1000}
+# After SETO a SIP this near to the origin is one that the robot sent after it obeyed.
+_ORIGIN_UNITS: Final = 200
+_PAIRS: Final = (COMMAND["VEL2"], COMMAND["DIGOUT"], COMMAND["PTUPOS"])
+_INTEGERS: Final = (ARGUMENT["POSITIVE"], ARGUMENT["NEGATIVE"])
+_HEAD: Final = 20  # data bytes of a SIP before its readings
+_PORTS: Final = {TYPE["SERAUXPAC"]: 1, TYPE["SERAUX2PAC"]: 2, TYPE["SERAUX3PAC"]: 3}
+_TEMPLATES_MAX: Final = 4096
+_TAIL: Final = tuple(name for name, _ in Sip._TAIL)
+
+HEADINGS: Final = tuple(
+    (turn if turn <= _TURN // 2 else turn - _TURN) * 360 / _TURN for turn in range(_TURN)
+)
+_BOOL: Final = ("false", "true")
+_HEADING_TEXT: Final = tuple(map(repr, HEADINGS))
+_TENTHS: Final = tuple(repr(value / 10) for value in range(256))
+
+
+def _text(value: bytes | None) -> str | None:
+    return None if value is None else value.decode("latin-1")
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, bytes):
+        return value.decode("latin-1")
+    return [_plain(item) for item in value] if isinstance(value, tuple) else value
+
+
+class _Layout(NamedTuple):
+    """How SIPs with one list of sonar numbers and one length are read and printed."""
+
+    unpack: Any
+    count: int
+    has_battery_x10: bool
+    text: str
+
+
+class Decoder:
+    """Reads the rows of one log, in their order.
+
+    `track` must see every row, printed or not: the position is unwrapped from SIP to SIP, and its unit is that
+    of the subclass which the robot named.
+    """
+
+    def __init__(self, subclass: str | None = None) -> None:
+        self._asked = subclass
+        self._unit = 1.0
+        self._is_mm = True
+        self._x = self._y = 0
+        self._origin_due = False
+        self._layouts: dict[tuple[bytes, int], _Layout | None] = {}
+        self.subclass = DEFAULT_SUBCLASS
+        self._learn(subclass)
+
+    @property
+    def x_mm(self) -> float:
+        """Unwrapped x of the last SIP."""
+        return self._x if self._is_mm else round(self._x * self._unit, 3)
+
+    @property
+    def y_mm(self) -> float:
+        """Unwrapped y of the last SIP."""
+        return self._y if self._is_mm else round(self._y * self._unit, 3)
+
+    def _learn(self, subclass: str | None) -> None:
+        if subclass:
+            self.subclass = subclass.lower()
+            self._unit = UNIT_MM.get(self.subclass, 1.0)
+            self._is_mm = self._unit == 1.0
+
+    def track(self, row: Row) -> None:
+        """Take note of what the row changes for those behind it."""
+        if not row[4]:
+            return
+        data = row[5]
+        if row[3] == "SIP":
+            if len(data) >= _HEAD:
+                raw_x, raw_y = data[1] | data[2] << 8, data[3] | data[4] << 8
+                x, y = self._x, self._y
+                if self._origin_due and self._is_origin(raw_x) and self._is_origin(raw_y):
+                    self._origin_due = False
+                    x = y = 0
+                self._x = x + ((raw_x - x + _HALF) & (_SPAN - 1)) - _HALF
+                self._y = y + ((raw_y - y + _HALF) & (_SPAN - 1)) - _HALF
+        elif row.type == "SETO":
+            self._origin_due = True
+        elif row.dir == ROBOT_TO_CLIENT and row.type in ("SYNC2", "CONFIGPAC"):
+            if row.type == "SYNC2":
+                self._x = self._y = 0
+            if self._asked is None:
+                self._learn(_subclass_of(data))
+
+    @staticmethod
+    def _is_origin(raw: int) -> bool:
+        return (raw + _ORIGIN_UNITS) & (_SPAN - 1) <= 2 * _ORIGIN_UNITS
+
+    def fields(self, row: Row) -> dict[str, Any]:
+        """Return the row as the JSON contract has it; a packet that contradicts itself comes with ok false."""
+        found: dict[str, Any] = {"t": row.t, "offset": row.offset, "dir": row.dir, "type": row.type, "ok": row.ok}
+        if not row.ok:
+            return {**found, "bytes": len(row.data), "error": row.error, "hex": row.data[:256].hex()}
+        if row.dir == CLIENT_TO_ROBOT:
+            return found | _command_fields(Command.decode(row.data))
+        try:
+            packet = decode(row.data)
+        except PacketError as error:
+            return {**found, "ok": False, "bytes": len(row.wire), "error": str(error), "hex": row.wire.hex()}
+        if isinstance(packet, Sip):
+            return found | self._sip_fields(packet)
+        return found | _packet_fields(packet)
+
+    def _sip_fields(self, sip: Sip) -> dict[str, Any]:
+        tenths = sip.battery if sip.battery_x10 is None else sip.battery_x10
+        found = {
+            "x_mm": self.x_mm,
+            "y_mm": self.y_mm,
+            "heading_deg": HEADINGS[sip.th & (_TURN - 1)],
+            "vel_left_mm_s": sip.left_vel,
+            "vel_right_mm_s": sip.right_vel,
+            "battery_v": tenths / 10,
+            "stall_left": sip.left_stalled,
+            "stall_right": sip.right_stalled,
+            "bumpers_front": sip.front_bumpers,
+            "bumpers_rear": sip.rear_bumpers,
+            "moving": sip.type == TYPE["SIP_MOVING"],
+            "motors": bool(sip.flags & FLAG["MOTORS"]),
+            "flags": sip.flags,
+            "compass": sip.compass,
+            "sonar": {str(number): range_mm for number, range_mm in sip.sonars},
+        }
+        tail = {name: getattr(sip, name) for name in _TAIL}
+        found |= {name: value for name, value in tail.items() if value is not None}
+        return found | ({"rest": sip.rest.hex()} if sip.rest else {})
+
+    def json(self, row: Row) -> str:
+        """Return `fields` as one line of JSON."""
+        t, offset, direction, kind, ok, data, _ = row
+        if kind == "SIP" and ok and len(data) >= _HEAD:
+            key = (data[_HEAD : _HEAD + 3 * data[19] : 3], len(data))
+            layout = self._layouts[key] if key in self._layouts else self._layout(key, data)
+            if layout is not None:
+                v = layout.unpack(data)
+                kind_number, _, _, th, left, right, battery, rear, front, _, flags, compass = v[:12]
+                tenths = v[12 + layout.count + 5] if layout.has_battery_x10 else battery
+                return layout.text % (
+                    "null" if t is None else repr(t),
+                    offset,
+                    self._x if self._is_mm else self.x_mm,
+                    self._y if self._is_mm else self.y_mm,
+                    _HEADING_TEXT[th & 4095],
+                    left,
+                    right,
+                    _TENTHS[tenths] if tenths < 256 else repr(tenths / 10),
+                    _BOOL[rear & 1],
+                    _BOOL[front & 1],
+                    front & 0xFE,
+                    rear & 0xFE,
+                    _BOOL[kind_number == 0x33],
+                    _BOOL[flags & 1],
+                    flags,
+                    compass,
+                    *v[12:],
+                )
+        return json.dumps(self.fields(row))
+
+    def _layout(self, key: tuple[bytes, int], data: bytes) -> _Layout | None:
+        """Prepare for SIPs like this one; None for those that are read the long way."""
+        if len(self._layouts) >= _TEMPLATES_MAX:
+            return None
+        self._layouts[key] = layout = _make_layout(key[0], data)
+        return layout
+
+
+def _make_layout(numbers: bytes, data: bytes) -> _Layout | None:
+    count = data[19]
+    left = len(data) - _HEAD - 3 * count
+    if left < 0 or len(set(numbers)) < count:
+        return None
+    names, form = [], "<BHHhhhBBBhHBx" + "xH" * count
+    for name, code in Sip._TAIL:
+        size = Struct("<" + code).size
+        if size > left:
+            break
+        names.append(name)
+        form += code
+        left -= size
+    if left:
+        return None
+    sonar = ", ".join(f'"{number}": %d' for number in numbers)
+    tail = "".join(f', "{name}": %d' for name in names)
+    text = (
+        '{"t": %s, "offset": %d, "dir": "r2c", "type": "SIP", "ok": true, "x_mm": %s, "y_mm": %s, '
+        '"heading_deg": %s, "vel_left_mm_s": %d, "vel_right_mm_s": %d, "battery_v": %s, "stall_left": %s, '
+        '"stall_right": %s, "bumpers_front": %d, "bumpers_rear": %d, "moving": %s, "motors": %s, "flags": %d, '
+        '"compass": %d, "sonar": {' + sonar + "}" + tail + "}"
+    )
+    return _Layout(Struct(form).unpack, count, "battery_x10" in names, text)
+
+
+def _subclass_of(data: bytes) -> str | None:
+    try:
+        packet = decode(data)
+    except PacketError:
+        return None
+    if isinstance(packet, SyncReply):
+        return _text(packet.subclass)
+    return _text(packet.subtype) if isinstance(packet, ConfigPac) else None
+
+
+def _command_fields(command: Command) -> dict[str, Any]:
+    argument = command.argument
+    if not argument:
+        return {"arg": None}
+    if argument[0] == ARGUMENT["STRING"]:
+        return {"arg": _text(command.text), "hex": argument.hex()}
+    if argument[0] not in _INTEGERS or len(argument) > 3:
+        return {"arg": None, "hex": argument.hex()}
+    found: dict[str, Any] = {"arg": command.value}
+    if command.number in _PAIRS:
+        found["high"], found["low"] = command.bytes_pair
+    return found
+
+
+def _packet_fields(packet: Any) -> dict[str, Any]:
+    if isinstance(packet, OtherPacket):
+        port = _PORTS.get(packet.type)
+        name = next((n for n, number in TYPE.items() if number == packet.type and "_" not in n), None)
+        found: dict[str, Any] = {"name": name} if name and port is None else {}
+        if port:
+            found |= {"port": port, "text": _text(packet.body)}
+        return found | {"hex": packet.body.hex()}
+    found = {field.name: getattr(packet, field.name) for field in dataclasses.fields(packet)}
+    if isinstance(packet, IoPac):
+        found["digital_in"], found["digital_out"] = list(packet.digital_in), list(packet.digital_out)
+    elif isinstance(packet, GyroPac):
+        found["samples"] = [list(sample) for sample in packet.samples]
+    found.pop("number", None)
+    rest = found.pop("rest", b"")
+    found = {name: _plain(value) for name, value in found.items() if value is not None}
+    return found | ({"rest": rest.hex()} if rest else {})
+
+

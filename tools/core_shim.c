@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// What a program that cannot read C headers needs of them: sizes, names, and fields by number.
+#include <stddef.h>
+#include <string.h>
+
+#include "argus/manager.h"
+
+size_t argus_shim_core_size(void);
+size_t argus_shim_config_size(void);
+const char *argus_shim_config_key(uint32_t row);
+const char *argus_shim_config_choices(uint32_t row);
+int32_t argus_shim_config_get(const argus_config_t *config, uint32_t row);
+void argus_shim_config_set(argus_config_t *config, uint32_t row, int32_t value);
+int32_t argus_shim_config_check(const argus_config_t *config, int32_t *row);
+bool argus_shim_is_open(const argus_t *core);
+bool argus_shim_event(argus_t *core, int32_t *fields);
+const char *argus_shim_event_field(uint32_t field);
+const char *argus_shim_event_meaning(uint16_t id);
+const char *argus_shim_status_field(uint32_t field);
+const char *argus_shim_sonar_field(uint32_t field);
+void argus_shim_status(const argus_t *core, int64_t *fields, int64_t *sonars);
+
+size_t argus_shim_core_size(void) {
+    return sizeof(argus_t);
+}
+
+size_t argus_shim_config_size(void) {
+    return sizeof(argus_config_t);
+}
+
+// Settings, by their row in the table; NULL or 0 beyond its end.
+
+typedef struct {
+    const char *key;
+    const char *choices;
+    size_t offset;
+} row_t;
+
+static const row_t rows[] = {
+#define ROW(key, def, min, max, unit, choices, meaning) {#key, choices, offsetof(argus_config_t, key)},
+    ARGUS_CONFIG_TABLE(ROW)
+#undef ROW
+};
+
+#define ROWS (sizeof rows / sizeof rows[0])
+
+const char *argus_shim_config_key(uint32_t row) {
+    return row < ROWS ? rows[row].key : NULL;
+}
+
+const char *argus_shim_config_choices(uint32_t row) {
+    return row < ROWS ? rows[row].choices : NULL;
+}
+
+int32_t argus_shim_config_get(const argus_config_t *config, uint32_t row) {
+    int32_t value = 0;
+    if (row < ROWS) {
+        memcpy(&value, (const char *)config + rows[row].offset, sizeof value);
+    }
+    return value;
+}
+
+void argus_shim_config_set(argus_config_t *config, uint32_t row, int32_t value) {
+    if (row < ROWS) {
+        memcpy((char *)config + rows[row].offset, &value, sizeof value);
+    }
+}
+
+// argus_config_fault_t; `*row` is the setting out of its range, or -1.
+int32_t argus_shim_config_check(const argus_config_t *config, int32_t *row) {
+    const argus_config_report_t report = argus_config_check(config);
+    *row = report.key;
+    return (int32_t)report.fault;
+}
+
+bool argus_shim_is_open(const argus_t *core) {
+    return argus_session_is_open(&core->session);
+}
+
+// Fields, by number; the names end with NULL.
+
+#define EVENT_TABLE(X) X(t_ms) X(id) X(sonar) X(state) X(value)
+
+static const char *const event_names[] = {
+#define NAME(field) #field,
+    EVENT_TABLE(NAME)
+#undef NAME
+};
+
+const char *argus_shim_event_field(uint32_t field) {
+    return field < sizeof event_names / sizeof event_names[0] ? event_names[field] : NULL;
+}
+
+bool argus_shim_event(argus_t *core, int32_t *fields) {
+    argus_event_t event;
+    if (!argus_next_event(core, &event)) {
+        return false;
+    }
+    size_t at = 0;
+#define PUT(field) fields[at++] = (int32_t)event.field;
+    EVENT_TABLE(PUT)
+#undef PUT
+    return true;
+}
+
+const char *argus_shim_event_meaning(uint16_t id) {
+    switch (id) {
+#define MEANING(number, name, level, subject, meaning) \
+    case number:                                       \
+        return meaning;
+        ARGUS_EVENT_TABLE(MEANING)
+#undef MEANING
+    default:
+        return "";
+    }
+}
+
+#define STATUS_TABLE(X) \
+    X(mode)             \
+    X(failure)          \
+    X(online)           \
+    X(battery_dv)       \
+    X(flags)            \
+    X(bumpers_front)    \
+    X(bumpers_rear)     \
+    X(sips)             \
+    X(bad_checksums)    \
+    X(skipped_bytes)
+#define SONAR_TABLE(X) X(reading_mm) X(age_ms) X(health) X(kind)
+
+static const char *const status_names[] = {
+#define NAME(field) #field,
+    STATUS_TABLE(NAME)
+#undef NAME
+};
+
+static const char *const sonar_names[] = {
+#define NAME(field) #field,
+    SONAR_TABLE(NAME)
+#undef NAME
+};
+
+const char *argus_shim_status_field(uint32_t field) {
+    return field < sizeof status_names / sizeof status_names[0] ? status_names[field] : NULL;
+}
+
+const char *argus_shim_sonar_field(uint32_t field) {
+    return field < sizeof sonar_names / sizeof sonar_names[0] ? sonar_names[field] : NULL;
+}
+
+// `sonars` gets its fields for sonar 0, then for sonar 1, ...
+void argus_shim_status(const argus_t *core, int64_t *fields, int64_t *sonars) {
+    argus_status_t status;
+    size_t at = 0;
+    argus_status(core, &status);
+#define PUT(field) fields[at++] = (int64_t)status.field;
+    STATUS_TABLE(PUT)
+#undef PUT
+    at = 0;
+    for (size_t k = 0; k < ARGUS_SONARS; k++) {
+#define PUT(field) sonars[at++] = (int64_t)status.field[k];
+        SONAR_TABLE(PUT)
+#undef PUT
+    }
+}
