@@ -81,8 +81,12 @@ def encode_start(source: str, mono_us: int, wall_us: int) -> bytes:
 
 
 def is_recording(head: bytes) -> bool:
-    """Tell whether a file that begins with `head` is a recording."""
-    return head[:2] == SYNC and head[_HEAD.size : _HEAD.size + len(MAGIC)] == MAGIC
+    """Tell whether a file that begins with `head` is a recording.
+
+    A power cut may have left zeros at its beginning, or torn its first header, behind which comes another.
+    """
+    head = head.lstrip(b"\0")
+    return head.startswith(SYNC[:1]) and MAGIC in head[: 2 * (_HEAD.size + len(MAGIC))]
 
 
 class Decoder:
@@ -248,7 +252,8 @@ class Recorder:
             raise SimError(f"--record {self._path}: it is no regular file; name another")
         head = os.pread(fd, _HEAD.size + len(MAGIC), 0)
         begin = SYNC + bytes((Kind.HEADER,))
-        if not begin.startswith(head[:3]) or not MAGIC.startswith(head[_HEAD.size :]):
+        is_ours = begin.startswith(head[:3]) and MAGIC.startswith(head[_HEAD.size :])
+        if head.strip(b"\0") and not is_ours:
             raise SimError(f"--record {self._path}: it exists and is no recording; name another file")
         try:
             fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -162,7 +162,16 @@ static void sync_folder(const char *path) {
     }
 }
 
-// An empty file, a recording, or one that was cut off within its first record.
+static bool is_zero(const uint8_t *bytes, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if (bytes[i] != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// An empty file, a recording, or what a power cut left of one: cut off within its first record, or zeros.
 static bool is_ours(int fd, uint64_t size) {
     uint8_t found[HEAD_BYTES + MAGIC_BYTES];
     const uint8_t sync[3] = {SYNC_FIRST, SYNC_SECOND, HAL_RECORD_HEADER};
@@ -172,8 +181,8 @@ static bool is_ours(int fd, uint64_t size) {
         return false;
     }
     const size_t tail = count > HEAD_BYTES ? count - HEAD_BYTES : 0;
-    return memcmp(found, sync, count < sizeof sync ? count : sizeof sync) == 0 &&
-           memcmp(found + HEAD_BYTES, magic, tail) == 0;
+    return is_zero(found, count) || (memcmp(found, sync, count < sizeof sync ? count : sizeof sync) == 0 &&
+                                     memcmp(found + HEAD_BYTES, magic, tail) == 0);
 }
 
 static int check_file(int fd, uint64_t *size) {
@@ -219,8 +228,8 @@ static void close_file(hal_recorder_t *self) {
 
 // FILE.3 becomes FILE.4, ..., FILE becomes FILE.1.
 static int shift_files(const hal_recorder_t *self) {
-    char from[HAL_RECORDER_PATH_MAX + 8];
-    char into[HAL_RECORDER_PATH_MAX + 8];
+    char from[HAL_RECORDER_PATH_MAX + 16];
+    char into[HAL_RECORDER_PATH_MAX + 16];
     for (int i = HAL_RECORDER_KEPT - 1; i > 0; i--) {
         snprintf(from, sizeof from, "%s.%d", self->path, i);
         snprintf(into, sizeof into, "%s.%d", self->path, i + 1);

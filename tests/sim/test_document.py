@@ -4,6 +4,7 @@ exception, never a hang."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 from hil_sim.document import MAX_VALUES, Item, read_document, read_text
 from hil_sim.errors import SimError
 
-READERS = {
+READERS: dict[str, Callable[[Item], object]] = {
     "mapping": lambda item: item.mapping(("a", "b")),
     "named": Item.named,
     "items": Item.items,
@@ -162,12 +163,13 @@ def test_nothing_in_a_document_is_run(tmp_path: Path) -> None:
 
 def test_every_value_knows_its_line(tmp_path: Path) -> None:
     path = tmp_path / "lines.yaml"
-    path.write_text("# one\na: 1\nb:\n  - x\n  - [1,\n     2]\nc: {d: 3}\n")
-    top = read_document(path).mapping("abc")
+    path.write_text("# one\na: 1\nb:\n  - x\n  - [1,\n     2]\nc: {d: 3}\nd:\n  5\n")
+    top = read_document(path).mapping("abcd")
     assert top["a"].line == 2
     assert [item.line for item in top["b"].items()] == [4, 5]
     assert [item.line for item in top["b"].items()[1].items()] == [5, 6]
     assert top["c"].named()["d"].line == 7
+    assert top["d"].line == 8, "a scalar is told by its key"
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,19 @@ from pathlib import Path
 
 import pytest
 
+from hil_sim.cli import main
 from hil_sim.errors import SimError
-from hil_sim.record import Decoder, Kind, Record, Recorder, Timeline, encode, encode_clock, encode_start
+from hil_sim.record import (
+    Decoder,
+    Kind,
+    Record,
+    Recorder,
+    Timeline,
+    encode,
+    encode_clock,
+    encode_start,
+    is_recording,
+)
 
 WALL = 1_700_000_000_000_000
 
@@ -72,6 +83,8 @@ def test_cut_at_every_byte_and_gone_on_with() -> None:
         records, _ = decode(data[:cut] + after, 37)
         assert len(records) == sum(end <= cut for end in ends[1:]) + 3, cut
         assert records[-1].payload == b"more"
+        assert is_recording(data[:cut] + after), cut
+        assert is_recording(bytes(cut) + after), cut
 
 
 def test_a_flipped_byte_costs_one_record() -> None:
@@ -191,7 +204,29 @@ def test_what_is_no_recording_is_not_touched(tmp_path: Path) -> None:
         Recorder(tmp_path / "no" / "folder", "test", print)
     with pytest.raises(SimError, match="no regular file"):
         Recorder("/dev/null", "test", print)
+    zeros = tmp_path / "zeros"
+    zeros.write_bytes(bytes(50))
+    Recorder(zeros, "test", print).close()
+    assert len(decode(zeros.read_bytes())[0]) == 2
     recorder = Recorder(tmp_path / "a", "test", print)
     with pytest.raises(SimError, match="another program records there"):
         Recorder(tmp_path / "a", "test", print)
     recorder.close()
+
+
+def test_wrong_arguments_of_the_emulator(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    letter = tmp_path / "letter"
+    letter.write_text("dear mother")
+    assert main(["--tcp", "0", "--record", str(letter), "--duration", "0.1"]) == 2
+    assert "exists and is no recording" in capsys.readouterr().err
+    with pytest.raises(SystemExit, match="2"):
+        main(["--record", "a", "--record-max", "0"])
+    assert "give megabytes, 1 to 100000" in capsys.readouterr().err
+
+
+def test_one_file_for_each_robot(tmp_path: Path) -> None:
+    assert (
+        main(["--tcp", "0", "--robots", "2", "--record", str(tmp_path / "a.rec"), "--duration", "0.1"]) == 0
+    )
+    for name in ("a.rec", "a-2.rec"):
+        assert payloads(tmp_path / name) == []

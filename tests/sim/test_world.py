@@ -234,7 +234,7 @@ LINES
 DATA
 0 4000
 3 4001
-4000 0
+4019 19
 Extra_LINES
 -3000 3000 5000 3000
 """
@@ -265,7 +265,7 @@ def test_a_map_gives_back_the_numbers_written_into_it(tmp_path: Path, header: st
     assert len(world.segments) == 4 + 3 + 2 * 2
     assert world.roughness.tolist() == [MAP_ROUGHNESS] * 7 + [1.0] * 4
     centres = {tuple(p) for p in ((world.segments[7:, :2] + world.segments[7:, 2:]) / 2).tolist()}
-    assert centres == {(0.0, 4000.0), (4000.0, 0.0)}
+    assert centres == {(0.0, 4000.0), (4020.0, 20.0)}
     assert world.forbidden[0].tolist() == [-100, -200, 300, 400]
     # Turned by 90 degrees about the origin: x to y, y to -x.
     area = world.forbidden[1:]

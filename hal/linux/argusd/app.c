@@ -213,6 +213,12 @@ static bool open_tape(void) {
                      options.record_max_bytes, message, sizeof message);
 }
 
+// For when nothing was recorded yet, so nothing can be missing.
+static void drop_tape(void) {
+    char unused[ARGUSD_MESSAGE_MAX];
+    tape_close(&loop.tape, unused, sizeof unused);
+}
+
 static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     const uint32_t wait_ms = options.has_wait ? options.wait_ms : CHECK_ANSWER_MS;
     driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
@@ -254,10 +260,12 @@ static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *no
     driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
     if (options.state_path != NULL && !open_state()) {
         hal_link_close(&link);
+        drop_tape();
         return complain(ARGUSD_EXIT_USAGE);
     }
     if (course.count > 0 && !argus_set_course(&loop.driver.core, course.point, course.count)) {
         hal_link_close(&link);
+        drop_tape();
         text_refuse(message, sizeof message, "the course does not fit the fault manager");
         return complain(ARGUSD_EXIT_INTERNAL);
     }
@@ -283,14 +291,14 @@ static argusd_exit_t run(int argc, char **argv) {
         text_refuse(message, sizeof message, "no pipe or signal handler could be had from the system");
         return complain(ARGUSD_EXIT_INTERNAL);
     }
+    if (!open_tape()) {
+        return complain(ARGUSD_EXIT_USAGE);
+    }
     message[0] = '\0';
     const argusd_exit_t connected = connect_robot(&clock, &link);
     if (connected != ARGUSD_EXIT_OK || message[0] != '\0') {
+        drop_tape();
         return complain(connected);
-    }
-    if (!open_tape()) {
-        hal_link_close(&link);
-        return complain(ARGUSD_EXIT_USAGE);
     }
     return options.action == OPTIONS_CHECK ? run_check(link, clock) : run_loop(link, clock, notice);
 }

@@ -6,9 +6,9 @@ from __future__ import annotations
 import io
 
 import pytest
-
 from argus_tools.formats.base import Chunk, Damage, LogError, ReadOptions, copy
 from argus_tools.formats.record import FORMAT, RecordReader
+
 from hil_sim.record import MAGIC, Kind, encode, encode_clock, encode_start
 
 CHUNKS = [
@@ -27,7 +27,7 @@ def written(chunks: list[Chunk]) -> bytes:
 
 
 def reader(data: bytes) -> RecordReader:
-    return RecordReader(io.BufferedReader(io.BytesIO(data)), ReadOptions(name="x.rec"))  # type: ignore[arg-type]
+    return RecordReader(io.BufferedReader(io.BytesIO(data)), ReadOptions(name="x.rec"))
 
 
 def test_round_trip() -> None:

@@ -61,13 +61,18 @@ class Log:
         if not self.source.head:
             raise LogError(f"{path}: is empty")
         self.format = formats()[format_name] if format_name else find_format(self.source.head)
-        stream = BufferedReader(self.source, BLOCK_BYTES)
+        stream: BufferedReader = BufferedReader(self.source, BLOCK_BYTES)
         self._reader = self.format.reader(stream, self.options)
 
     @property
     def damage(self) -> list[Damage]:
         """What was skipped so far, of the file and in it."""
         return self.source.damage + self._reader.damage
+
+    @property
+    def damage_count(self) -> int:
+        """How many entries `damage` has."""
+        return len(self.source.damage) + len(self._reader.damage)
 
     def __iter__(self) -> Iterator[Chunk]:
         return iter(self._reader)

@@ -8,10 +8,11 @@ from collections.abc import Iterator
 from io import BufferedReader
 from typing import Any, BinaryIO, Final
 
-from argus_tools.formats.base import Chunk, Damage, Format, Offsets, ReadOptions
+from argus_tools.formats.base import Chunk, Damage, Direction, Format, Offsets, ReadOptions
 
 LINE_MAX: Final = 1 << 20
 _DIRECTIONS: Final = ("r2c", "c2r")
+_DIRS: Final[dict[bytes, Direction]] = {b"r2c": "r2c", b"c2r": "c2r"}
 
 
 def _sniff(head: bytes) -> bool:
@@ -33,7 +34,7 @@ def _what_is_wrong(record: Any) -> str:
 class JsonlReader:
     """Reads JSON lines; a line that is none is damage and the next one is read."""
 
-    def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
+    def __init__(self, stream: BufferedReader, _options: ReadOptions) -> None:
         self.damage: list[Damage] = []
         self._stream = stream
 
@@ -54,6 +55,21 @@ class JsonlReader:
         offsets = Offsets()
         at = offsets.at
         for number, line in self._lines():
+            # As we write it ourselves; anything else is read as JSON.
+            part = line.split(b'"')
+            if len(part) == 11 and part[1] == b"t" and part[3] == b"dir" and part[7] == b"hex" and part[10] == b"}\n" and part[5] in _DIRS:
+                try:
+                    t = float(part[2][2:-2])
+                    data = bytes.fromhex(part[9].decode())
+                except ValueError:
+                    pass
+                else:
+                    if abs(t) < 1e12:
+                        direction = _DIRS[part[5]]
+                        offset = at[direction]
+                        at[direction] = offset + len(data)
+                        yield Chunk(t, direction, data, offset)
+                        continue
             try:
                 record, _ = parse(line.decode().lstrip("\ufeff \t\r"))
             except (ValueError, RecursionError):
@@ -81,7 +97,7 @@ class JsonlReader:
 class JsonlWriter:
     """Writes one line for each chunk."""
 
-    def __init__(self, stream: BinaryIO, options: ReadOptions) -> None:
+    def __init__(self, stream: BinaryIO, _options: ReadOptions) -> None:
         self._stream = stream
 
     def write(self, chunk: Chunk) -> None:

@@ -43,7 +43,8 @@ class Command(Protocol):
         """Do it; return the exit code."""
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(chosen: str | None) -> argparse.ArgumentParser:
+    """Return the parser; with a known subcommand chosen, the others' modules are not loaded."""
     known = "".join(f"  {name:<9}{format_.help}\n" for name, format_ in formats().items())
     parser = Parser(
         prog="argus-log",
@@ -52,13 +53,8 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=Parser)
-    for name in COMMANDS:
-        try:
-            command: Command = importlib.import_module(f"argus_tools.log.{name}")  # type: ignore[assignment]
-        except ModuleNotFoundError as error:
-            if error.name != f"argus_tools.log.{name}":
-                raise
-            continue
+    for name in [chosen] if chosen in COMMANDS else COMMANDS:
+        command: Command = importlib.import_module(f"argus_tools.log.{name}")
         subparser = subparsers.add_parser(
             name,
             help=command.SUMMARY,
@@ -73,7 +69,8 @@ def _parser() -> argparse.ArgumentParser:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
-    args = _parser().parse_args(argv)
+    given = list(sys.argv[1:] if argv is None else argv)
+    args = _parser(given[0] if given else None).parse_args(given)
     try:
         code: int = args.run(args)
         sys.stdout.flush()

@@ -9,6 +9,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, Final, NoReturn
 
 from argus_tools.formats import Chunk, Log, LogError, ReadOptions, formats
@@ -16,7 +17,9 @@ from argus_tools.formats.base import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT
 from argus_tools.log.packets import Row, packets
 
 EXIT_READ, EXIT_DAMAGE, EXIT_UNUSABLE = 0, 1, 2
-EXIT_CODES: Final = "exit codes: 0 read, 1 damage found (with --strict), 2 nothing usable, or a wrong argument"
+EXIT_CODES: Final = (
+    "exit codes: 0 read, 1 damage found (with --strict), 2 nothing usable, or a wrong argument"
+)
 DIRECTIONS: Final = (ROBOT_TO_CLIENT, CLIENT_TO_ROBOT)
 # A file in which so much comes before the first packet is no log.
 HOPELESS_BYTES: Final = 16 << 20
@@ -58,7 +61,9 @@ def seconds(text: str) -> tuple[bool, float]:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"'{text}' is no time: seconds, or +SECONDS after the log's beginning")
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is no time: seconds, or +SECONDS after the log's beginning"
+        )
     return text.startswith("+"), value
 
 
@@ -86,8 +91,12 @@ def add_log_arguments(parser: argparse.ArgumentParser, follow: bool = False) -> 
     names = list(formats())
     parser.add_argument("--format", choices=names, help="its format (default: seen from the contents)")
     parser.add_argument("--dir", choices=DIRECTIONS, help="read this direction only; of a .bin: what it is")
-    parser.add_argument("--port", type=whole(1, 65535), help="the robot's TCP port in a capture (default: found)")
-    parser.add_argument("--robot", type=whole(0, 7), help="the robot's number in a candump (default: the first)")
+    parser.add_argument(
+        "--port", type=whole(1, 65535), help="the robot's TCP port in a capture (default: found)"
+    )
+    parser.add_argument(
+        "--robot", type=whole(0, 7), help="the robot's number in a candump (default: the first)"
+    )
     parser.add_argument("--strict", action="store_true", help="exit with 1 if anything in the log is damaged")
     if follow:
         parser.add_argument("--follow", action="store_true", help="wait for more at the end, until Ctrl-C")
@@ -117,7 +126,7 @@ class Input:
         """Yield the log's chunks, and tell on standard error what cannot be read."""
         try:
             for chunk in self.log:
-                if self._told != len(self.log.damage):
+                if self.log.damage_count != self._told:
                     self._tell()
                 yield chunk
             self._tell()
@@ -135,7 +144,9 @@ class Input:
             waiting.append(row)
             size += len(row.data)
             if size > HOPELESS_BYTES or len(waiting) > HOPELESS_ROWS:
-                raise LogError(f"{self.path}: no ARCOS packet in the first {size} bytes: not a log of a robot's link")
+                raise LogError(
+                    f"{self.path}: no ARCOS packet in the first {size} bytes: not a log of a robot's link"
+                )
         else:
             self._complain_empty(size)
         for early in waiting:
@@ -161,8 +172,12 @@ class Input:
     def _complain_empty(self, size: int) -> NoReturn:
         what = f"read as {self.log.format.name}"
         if size:
-            raise LogError(f"{self.path}: no ARCOS packet in {size} bytes ({what}): not a log, or --format is needed")
-        raise LogError(f"{self.path}: holds no bytes of a robot's link ({what}); is --format or --port needed?")
+            raise LogError(
+                f"{self.path}: no ARCOS packet in {size} bytes ({what}): not a log, or --format is needed"
+            )
+        raise LogError(
+            f"{self.path}: holds no bytes of a robot's link ({what}); is --format or --port needed?"
+        )
 
     def _tell(self) -> None:
         damage = self.log.damage
@@ -227,8 +242,12 @@ class Times:
 def add_time_arguments(parser: argparse.ArgumentParser) -> None:
     """Add --from and --to."""
     hint = "seconds as in the log, or +SECONDS after its beginning"
-    parser.add_argument("--from", dest="start", metavar="T", type=seconds, help=f"leave out what is before; {hint}")
-    parser.add_argument("--to", dest="end", metavar="T", type=seconds, help="leave out what is behind; as --from")
+    parser.add_argument(
+        "--from", dest="start", metavar="T", type=seconds, help=f"leave out what is before; {hint}"
+    )
+    parser.add_argument(
+        "--to", dest="end", metavar="T", type=seconds, help="leave out what is behind; as --from"
+    )
 
 
 def use_colour() -> bool:
@@ -261,5 +280,11 @@ def binary_output(path: str) -> Iterator[Any]:
     try:
         with gzip.open(path, "wb") if path.endswith(".gz") else open(path, "wb") as file:  # noqa: PTH123
             yield file
+    except BrokenPipeError:
+        raise
     except OSError as error:
         raise LogError(f"{path}: cannot be written: {error.strerror}") from error
+    except LogError:
+        # Half a file would look like a whole one.
+        Path(path).unlink(missing_ok=True)
+        raise

@@ -30,9 +30,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_log_arguments(parser)
     writable = [name for name, format_ in formats().items() if format_.writer]
-    parser.add_argument("output", metavar="OUTPUT", help="the file to write; its ending says the format; - is stdout")
+    parser.add_argument(
+        "output", metavar="OUTPUT", help="the file to write; its ending says the format; - is stdout"
+    )
     parser.add_argument("--to-format", choices=[*writable, *TABLES], help="the format to write")
-    parser.add_argument("--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)")
+    parser.add_argument(
+        "--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)"
+    )
     add_time_arguments(parser)
 
 
@@ -42,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
     source = Input(args)
     if args.output != "-" and args.log != "-" and _is_same_file(args.log, args.output):
         raise LogError(f"{args.output}: is the log itself; give another name")
-    rows = _clocked(source)
+    rows = clocked(source)
     times = Times(args.start, args.end)
     decoder = Decoder(args.subclass)
     kept = _kept(rows, times, decoder, args.log)
@@ -83,9 +87,9 @@ def _is_same_file(one: str, other: str) -> bool:
     return Path(other).exists() and Path(one).exists() and Path(one).samefile(other)
 
 
-def _clocked(source: Input) -> Iterator[Row]:
-    """Yield the rows; those of a log without times get one SIP cycle for each SIP."""
-    told = False
+def clocked(source: Input, quiet: bool = False) -> Iterator[Row]:
+    """Yield the rows; those of a log without times get one SIP cycle for each SIP, which is said unless `quiet`."""
+    told = quiet
     sips = 0
     for row in source.selected():
         if row.t is not None:

@@ -58,7 +58,9 @@ def _types(text: str) -> list[str]:
     names = [name.strip().upper() for name in text.split(",")]
     for name in names:
         if name not in known:
-            raise argparse.ArgumentTypeError(f"'{name}' is no packet type; for example SIP, CONFIGPAC, VEL, CMD_99")
+            raise argparse.ArgumentTypeError(
+                f"'{name}' is no packet type; for example SIP, CONFIGPAC, VEL, CMD_99"
+            )
     return names
 
 
@@ -70,7 +72,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     output.add_argument("--csv", action="store_true", help="comma-separated values with a header line")
     parser.add_argument("--type", type=_types, metavar="NAME,...", help="these packets only, as SIP,VEL")
     parser.add_argument("--sonar", type=sonar_numbers, metavar="N,...", help="SIPs with these sonars only")
-    parser.add_argument("--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)")
+    parser.add_argument(
+        "--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)"
+    )
     add_time_arguments(parser)
 
 
@@ -86,11 +90,12 @@ def run(args: argparse.Namespace) -> int:
     else:
         line_of = _printer(args, decoder.fields)
     rows = source.selected()
+    lines: Iterator[str]
     if args.type or args.sonar or args.start or args.end:
         rows = _filtered(args, rows, decoder)
         lines = (line_of(row) for row in rows)
     else:
-        lines = _lines(rows, decoder, line_of)
+        lines = decoder.json_lines(rows) if args.json else _lines(rows, decoder, line_of)
     header = _csv_line(CSV_COLUMNS) if args.csv else "" if args.json else _HEADER
     _write(header, lines, args.follow)
     return source.exit_code
@@ -218,11 +223,10 @@ def _sip(fields: dict[str, Any]) -> str:
     names = {"motors": "motors", "moving": "moving", "stall_left": "STALL-L", "stall_right": "STALL-R"}
     words += [word for name, word in names.items() if fields[name]]
     words += [
-        f"BUMPER-{side}:" + ",".join(str(bit) for bit in range(1, 8) if fields[f"bumpers_{side.lower()}"] >> bit & 1)
+        f"BUMPER-{side}:"
+        + ",".join(str(bit) for bit in range(1, 8) if fields[f"bumpers_{side.lower()}"] >> bit & 1)
         for side in ("FRONT", "REAR")
         if fields[f"bumpers_{side.lower()}"]
     ]
     sonar = " ".join(f"{number}:{mm}" for number, mm in fields["sonar"].items())
     return "  ".join(words) + (f"  | {sonar}" if sonar else "")
-
-

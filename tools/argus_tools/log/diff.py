@@ -64,7 +64,9 @@ def _meeting(ours: list[Row], theirs: list[Row]) -> tuple[int, int]:
     return best
 
 
-def differences(ours: Iterator[Row], theirs: Iterator[Row], tolerance: float | None = None) -> Iterator[Difference]:
+def differences(
+    ours: Iterator[Row], theirs: Iterator[Row], tolerance: float | None = None
+) -> Iterator[Difference]:
     """Yield the differences of two sequences of packets, in their order."""
     left, right = _Side(ours), _Side(theirs)
     while True:
@@ -85,12 +87,10 @@ def differences(ours: Iterator[Row], theirs: Iterator[Row], tolerance: float | N
         for row in b[common:skip_b]:
             yield Difference(None, row)
         del a[:skip_a], b[:skip_b]
-    while row := next(iter(left.fill(1)), None):
-        yield Difference(row, None)
-        del left.ahead[0]
-    while row := next(iter(right.fill(1)), None):
-        yield Difference(None, row)
-        del right.ahead[0]
+    while a := left.fill(1):
+        yield Difference(a.pop(0), None)
+    while b := right.fill(1):
+        yield Difference(None, b.pop(0))
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -98,8 +98,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_log_arguments(parser)
     parser.add_argument("other", metavar="OTHER", help="the log to compare with")
     parser.add_argument("--tolerance", type=float, metavar="S", help="compare times, too, to so many seconds")
-    parser.add_argument("--limit", type=int, default=0, metavar="N", help="stop after N differences (default: all)")
-    parser.epilog = (parser.epilog or "").replace("0 read, 1 damage found (with --strict)", "0 equal, 1 they differ")
+    parser.add_argument(
+        "--limit", type=int, default=0, metavar="N", help="stop after N differences (default: all)"
+    )
+    parser.epilog = (parser.epilog or "").replace(
+        "0 read, 1 damage found (with --strict)", "0 equal, 1 they differ"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

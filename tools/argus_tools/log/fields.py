@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from collections.abc import Iterable, Iterator
 from struct import Struct
 from typing import Any, Final, NamedTuple
 
@@ -39,15 +40,14 @@ _PAIRS: Final = (COMMAND["VEL2"], COMMAND["DIGOUT"], COMMAND["PTUPOS"])
 _INTEGERS: Final = (ARGUMENT["POSITIVE"], ARGUMENT["NEGATIVE"])
 _HEAD: Final = 20  # data bytes of a SIP before its readings
 _PORTS: Final = {TYPE["SERAUXPAC"]: 1, TYPE["SERAUX2PAC"]: 2, TYPE["SERAUX3PAC"]: 3}
-_TEMPLATES_MAX: Final = 4096
+_CACHE_MAX: Final = 4096
 _TAIL: Final = tuple(name for name, _ in Sip._TAIL)
 
-HEADINGS: Final = tuple(
-    (turn if turn <= _TURN // 2 else turn - _TURN) * 360 / _TURN for turn in range(_TURN)
-)
-_BOOL: Final = ("false", "true")
+HEADINGS: Final = tuple((turn if turn <= _TURN // 2 else turn - _TURN) * 360 / _TURN for turn in range(_TURN))
 _HEADING_TEXT: Final = tuple(map(repr, HEADINGS))
-_TENTHS: Final = tuple(repr(value / 10) for value in range(256))
+_STATE: Final = (
+    "battery_v", "stall_left", "stall_right", "bumpers_front", "bumpers_rear", "moving", "motors", "flags", "compass",
+)  # fmt: skip
 
 
 def _text(value: bytes | None) -> str | None:
@@ -64,8 +64,7 @@ class _Layout(NamedTuple):
     """How SIPs with one list of sonar numbers and one length are read and printed."""
 
     unpack: Any
-    count: int
-    has_battery_x10: bool
+    tail_at: int
     text: str
 
 
@@ -83,6 +82,7 @@ class Decoder:
         self._x = self._y = 0
         self._origin_due = False
         self._layouts: dict[tuple[bytes, int], _Layout | None] = {}
+        self._states: dict[bytes, tuple[str, str]] = {}
         self.subclass = DEFAULT_SUBCLASS
         self._learn(subclass)
 
@@ -130,7 +130,13 @@ class Decoder:
 
     def fields(self, row: Row) -> dict[str, Any]:
         """Return the row as the JSON contract has it; a packet that contradicts itself comes with ok false."""
-        found: dict[str, Any] = {"t": row.t, "offset": row.offset, "dir": row.dir, "type": row.type, "ok": row.ok}
+        found: dict[str, Any] = {
+            "t": row.t,
+            "offset": row.offset,
+            "dir": row.dir,
+            "type": row.type,
+            "ok": row.ok,
+        }
         if not row.ok:
             return {**found, "bytes": len(row.data), "error": row.error, "hex": row.data[:256].hex()}
         if row.dir == CLIENT_TO_ROBOT:
@@ -168,67 +174,71 @@ class Decoder:
 
     def json(self, row: Row) -> str:
         """Return `fields` as one line of JSON."""
-        t, offset, direction, kind, ok, data, _ = row
-        if kind == "SIP" and ok and len(data) >= _HEAD:
-            key = (data[_HEAD : _HEAD + 3 * data[19] : 3], len(data))
-            layout = self._layouts[key] if key in self._layouts else self._layout(key, data)
+        data = row[5]
+        if row[3] == "SIP" and row[4] and len(data) >= _HEAD:
+            layout = self._layout(data)
             if layout is not None:
-                v = layout.unpack(data)
-                kind_number, _, _, th, left, right, battery, rear, front, _, flags, compass = v[:12]
-                tenths = v[12 + layout.count + 5] if layout.has_battery_x10 else battery
+                t = row[0]
+                th, left, right, *ranges = layout.unpack(data)
+                state, tail = self._state(data, layout)
                 return layout.text % (
                     "null" if t is None else repr(t),
-                    offset,
+                    row[1],
                     self._x if self._is_mm else self.x_mm,
                     self._y if self._is_mm else self.y_mm,
                     _HEADING_TEXT[th & 4095],
                     left,
                     right,
-                    _TENTHS[tenths] if tenths < 256 else repr(tenths / 10),
-                    _BOOL[rear & 1],
-                    _BOOL[front & 1],
-                    front & 0xFE,
-                    rear & 0xFE,
-                    _BOOL[kind_number == 0x33],
-                    _BOOL[flags & 1],
-                    flags,
-                    compass,
-                    *v[12:],
+                    state,
+                    *ranges,
+                    tail,
                 )
         return json.dumps(self.fields(row))
 
-    def _layout(self, key: tuple[bytes, int], data: bytes) -> _Layout | None:
-        """Prepare for SIPs like this one; None for those that are read the long way."""
-        if len(self._layouts) >= _TEMPLATES_MAX:
-            return None
-        self._layouts[key] = layout = _make_layout(key[0], data)
+    def json_lines(self, rows: Iterable[Row]) -> Iterator[str]:
+        """Track the rows and yield the JSON of each."""
+        track, line_of = self.track, self.json
+        for row in rows:
+            track(row)
+            yield line_of(row)
+
+    def _layout(self, data: bytes) -> _Layout | None:
+        """Return how SIPs like this one are printed; None for those that are read the long way."""
+        key = (data[_HEAD : _HEAD + 3 * data[19] : 3], len(data))
+        try:
+            return self._layouts[key]
+        except KeyError:
+            layout = _make_layout(key[0], data)
+        if len(self._layouts) < _CACHE_MAX:
+            self._layouts[key] = layout
         return layout
+
+    def _state(self, data: bytes, layout: _Layout) -> tuple[str, str]:
+        """Return the text of what seldom changes from SIP to SIP: the state before the readings and the tail."""
+        key = data[:1] + data[11:19] + data[layout.tail_at :]
+        found = self._states.get(key)
+        if found is None:
+            fields = self._sip_fields(Sip.decode(data))
+            state = json.dumps({name: fields[name] for name in _STATE})[1:-1]
+            tail = json.dumps({name: fields[name] for name in _TAIL if name in fields})[1:-1]
+            found = state, ", " + tail if tail else ""
+            if len(self._states) >= _CACHE_MAX:
+                self._states.clear()
+            self._states[key] = found
+        return found
 
 
 def _make_layout(numbers: bytes, data: bytes) -> _Layout | None:
     count = data[19]
     left = len(data) - _HEAD - 3 * count
-    if left < 0 or len(set(numbers)) < count:
-        return None
-    names, form = [], "<BHHhhhBBBhHBx" + "xH" * count
-    for name, code in Sip._TAIL:
-        size = Struct("<" + code).size
-        if size > left:
-            break
-        names.append(name)
-        form += code
-        left -= size
-    if left:
+    if left < 0 or len(set(numbers)) < count or Sip.decode(data).rest:
         return None
     sonar = ", ".join(f'"{number}": %d' for number in numbers)
-    tail = "".join(f', "{name}": %d' for name in names)
     text = (
         '{"t": %s, "offset": %d, "dir": "r2c", "type": "SIP", "ok": true, "x_mm": %s, "y_mm": %s, '
-        '"heading_deg": %s, "vel_left_mm_s": %d, "vel_right_mm_s": %d, "battery_v": %s, "stall_left": %s, '
-        '"stall_right": %s, "bumpers_front": %d, "bumpers_rear": %d, "moving": %s, "motors": %s, "flags": %d, '
-        '"compass": %d, "sonar": {' + sonar + "}" + tail + "}"
+        '"heading_deg": %s, "vel_left_mm_s": %d, "vel_right_mm_s": %d, %s, "sonar": {' + sonar + "}%s}"
     )
-    return _Layout(Struct(form).unpack, count, "battery_x10" in names, text)
+    return _Layout(Struct("<5xhhh9x" + "xH" * count).unpack_from, _HEAD + 3 * count, text)
 
 
 def _subclass_of(data: bytes) -> str | None:
@@ -272,5 +282,3 @@ def _packet_fields(packet: Any) -> dict[str, Any]:
     rest = found.pop("rest", b"")
     found = {name: _plain(value) for name, value in found.items() if value is not None}
     return found | ({"rest": rest.hex()} if rest else {})
-
-

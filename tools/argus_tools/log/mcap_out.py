@@ -30,7 +30,10 @@ _TIME: Final = {
     "properties": {"sec": {"type": "integer", "minimum": 0}, "nsec": {"type": "integer", "minimum": 0}},
 }
 _VECTOR: Final = {"type": "object", "properties": {"x": _NUMBER, "y": _NUMBER, "z": _NUMBER}}
-_QUATERNION: Final = {"type": "object", "properties": {"x": _NUMBER, "y": _NUMBER, "z": _NUMBER, "w": _NUMBER}}
+_QUATERNION: Final = {
+    "type": "object",
+    "properties": {"x": _NUMBER, "y": _NUMBER, "z": _NUMBER, "w": _NUMBER},
+}
 _POSE: Final = {"type": "object", "properties": {"position": _VECTOR, "orientation": _QUATERNION}}
 
 
@@ -124,7 +127,7 @@ class _Output:
 
     def close(self) -> None:
         """Write the summary."""
-        self._writer.finish()
+        self._writer.finish()  # type: ignore[no-untyped-call]
 
 
 def _put_sip(output: _Output, t_ns: int, fields: dict[str, Any]) -> None:
@@ -163,10 +166,14 @@ def write_mcap(stream: Any, first: Row, rows: Iterator[Row], decoder: Decoder) -
         if fields["ok"] and row.type == "SIP":
             _put_sip(output, t_ns, fields)
             continue
-        detail = {name: value for name, value in fields.items() if name not in ("t", "offset", "dir", "type", "ok")}
+        detail = {
+            name: value for name, value in fields.items() if name not in ("t", "offset", "dir", "type", "ok")
+        }
         level = _INFO if fields["ok"] else _ERROR
         words = f"{row.type} damaged: {row.error}" if not fields["ok"] else f"{row.type} {json.dumps(detail)}"
         place = {"file": row.dir, "line": row.offset}
-        output.put("/events", "foxglove.Log", t_ns, {"level": level, "message": words, "name": row.dir, **place})
+        output.put(
+            "/events", "foxglove.Log", t_ns, {"level": level, "message": words, "name": row.dir, **place}
+        )
     output.close()
     return count

@@ -125,7 +125,7 @@ class Stats:
 
     types: dict[tuple[str, str], Spacing] = field(default_factory=dict)
     damage: dict[str, dict[str, int]] = field(default_factory=dict)
-    bytes: dict[str, int] = field(default_factory=dict)
+    sizes: dict[str, int] = field(default_factory=dict)
     sonars: dict[int, SonarRecord] = field(default_factory=dict)
     gaps: list[tuple[float, float]] = field(default_factory=list)
     all: Spacing = field(default_factory=Spacing)
@@ -134,7 +134,7 @@ class Stats:
     def add(self, row: Row) -> None:
         """Count one row."""
         size = len(row.data) + (5 if row.ok else 0)
-        self.bytes[row.dir] = self.bytes.get(row.dir, 0) + size
+        self.sizes[row.dir] = self.sizes.get(row.dir, 0) + size
         if not row.ok:
             found = self.damage.setdefault(row.dir, {"packets": 0, "bad_checksum": 0, "bytes": 0})
             found["packets"] += row.type != JUNK
@@ -169,13 +169,17 @@ class Stats:
             "packets": self.all.count,
             "start": first,
             "duration_s": None if first is None or last is None else round(last - first, 6),
-            "bytes": self.bytes,
+            "bytes": self.sizes,
             "types": [
                 {"dir": direction, "type": name, **spacing.summary()}
                 for (direction, name), spacing in sorted(self.types.items())
             ],
             "damage": self.damage,
-            "sip_gaps": {"count": self.gaps_total, "over_s": GAP_S, "first": [list(gap) for gap in self.gaps[:20]]},
+            "sip_gaps": {
+                "count": self.gaps_total,
+                "over_s": GAP_S,
+                "first": [list(gap) for gap in self.gaps[:20]],
+            },
             "sonar": {str(number): self.sonars[number].summary() for number in sorted(self.sonars)},
         }
 
@@ -213,8 +217,8 @@ def _text(summary: dict[str, Any]) -> str:
     duration = summary["duration_s"]
     span = "no times" if duration is None else f"{duration:.3f} s from t = {summary['start']:.3f}"
     parts = [f"{summary['file']} ({summary['format']}): {summary['packets']} packets, {span}"]
-    head = ("dir", "type", "packets", "per s", "mean s", "jitter s", "longest s", "at")
-    rows = [
+    head: tuple[str, ...] = ("dir", "type", "packets", "per s", "mean s", "jitter s", "longest s", "at")
+    rows: list[tuple[Any, ...]] = [
         (
             kind["dir"], kind["type"], kind["count"], _cell(kind["rate_hz"], 2), _cell(kind["mean_s"]),
             _cell(kind["jitter_s"], 4), _cell(kind["longest_s"]), _cell(kind["longest_at"]),

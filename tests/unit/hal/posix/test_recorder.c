@@ -128,7 +128,7 @@ static void hear(told_t *told, const uint8_t *bytes, size_t total, int64_t *cloc
             told->widest_us = (int64_t)le(payload, 8) - *clock_us;
         }
         *clock_us = (int64_t)le(payload, 8);
-        TEST_ASSERT_EQUAL_INT64(*clock_us + 1700000000000000, (int64_t)le(payload + 8, 8));
+        TEST_ASSERT_TRUE(*clock_us + 1700000000000000 == (int64_t)le(payload + 8, 8));
         break;
     case HAL_RECORD_LOST:
         told->lost += le(payload, 4);
@@ -183,7 +183,7 @@ void test_all_is_there(void) {
     TEST_ASSERT_EQUAL_size_t(4000, told.data);
     TEST_ASSERT_EQUAL_UINT32(100, told.next);
     TEST_ASSERT_TRUE(told.in_order);
-    TEST_ASSERT_LESS_OR_EQUAL_INT64(1050000, told.widest_us);
+    TEST_ASSERT_LESS_OR_EQUAL_INT32(1050000, (int32_t)told.widest_us);
     TEST_ASSERT_GREATER_THAN_size_t(4, told.clocks);
 }
 
@@ -228,18 +228,18 @@ void test_a_full_disk_loses_counted_bytes_and_is_said(void) {
     TEST_ASSERT_EQUAL_INT(ENOSPC, atomic_load(&recorder.problem));
     note(20010, 5);
     TEST_ASSERT_FALSE(hal_recorder_pump(&recorder));
-    TEST_ASSERT_GREATER_THAN_UINT64(100000, recorder.lost);
+    TEST_ASSERT_GREATER_THAN_UINT32(100000, (uint32_t)recorder.lost);
     disk_left = SIZE_MAX;
     TEST_ASSERT_TRUE(hal_recorder_pump(&recorder));
     TEST_ASSERT_EQUAL_INT(0, atomic_load(&recorder.problem));
     note(20015, 5);
-    const uint64_t lost = recorder.lost;
+    const uint32_t lost = (uint32_t)recorder.lost;
     hal_recorder_close(&recorder);
     load(0);
     const told_t told = listen_to(content_size);
     TEST_ASSERT_EQUAL_size_t(0, told.junk);
-    TEST_ASSERT_EQUAL_UINT64(lost, told.lost);
-    TEST_ASSERT_EQUAL_UINT64(20020 * 40, told.data + told.lost);
+    TEST_ASSERT_EQUAL_UINT32(lost, (uint32_t)told.lost);
+    TEST_ASSERT_EQUAL_UINT32(20020 * 40, (uint32_t)(told.data + told.lost));
     TEST_ASSERT_EQUAL_UINT32(20020, told.next);
 }
 
@@ -310,6 +310,21 @@ void test_the_disk_is_synced_twice_a_second(void) {
     TEST_ASSERT_LESS_OR_EQUAL_INT(11, syncs);
 }
 
+// File systems may keep the length of a file and not yet what was in it.
+void test_zeros_that_a_power_cut_left_are_gone_on_with(void) {
+    static const uint8_t zeros[100];
+    const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    TEST_ASSERT_EQUAL_INT(sizeof zeros, (int)write(fd, zeros, sizeof zeros));
+    close(fd);
+    open_recorder(1000000);
+    note(0, 5);
+    hal_recorder_close(&recorder);
+    load(0);
+    const told_t told = listen_to(content_size);
+    TEST_ASSERT_EQUAL_size_t(sizeof zeros, told.junk);
+    TEST_ASSERT_EQUAL_UINT32(5, told.next);
+}
+
 static int open_on(const char *text) {
     const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     TEST_ASSERT_EQUAL_INT((int)strlen(text), (int)write(fd, text, strlen(text)));
@@ -355,11 +370,11 @@ void test_a_stuck_disk_holds_nobody_up(void) {
     open_recorder(100000000);
     TEST_ASSERT_EQUAL_INT(0, hal_recorder_start(&recorder));
     note(0, 20000);
-    TEST_ASSERT_GREATER_THAN_UINT64(0, recorder.lost);
+    TEST_ASSERT_GREATER_THAN_UINT32(0, (uint32_t)recorder.lost);
     pthread_mutex_unlock(&stuck);
     hal_recorder_close(&recorder);
     load(0);
     const told_t told = listen_to(content_size);
     TEST_ASSERT_EQUAL_size_t(0, told.junk);
-    TEST_ASSERT_EQUAL_UINT64(20000 * 40, told.data + recorder.lost);
+    TEST_ASSERT_EQUAL_UINT32(20000 * 40, (uint32_t)(told.data + recorder.lost));
 }

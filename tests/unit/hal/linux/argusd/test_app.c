@@ -141,6 +141,7 @@ void test_bad_arguments_and_files(void) {
     refused("", 2, "no link is given");
     refused("--link tcp:localhost --config /no/such/file", 2, "/no/such/file: cannot be opened");
     refused("--link tcp:localhost --course /no/such/file", 2, "/no/such/file: cannot be opened");
+    refused("--link tcp:localhost --record /no/such/file", 2, "--record /no/such/file: No such file");
     refused_config("speed_mm_s = 1\n", "tcp:localhost", ":1: speed_mm_s = 1 is out of range");
     refused_config("speed_mm_s = 500\n", "tcp:localhost", "driving would be unsafe (S5): overhang 44");
     refused_config("\nbaud = 38400\n", "serial:/dev/x@9600", ":2: baud = 38400, but --link says @9600");

@@ -4,16 +4,19 @@ said once and the drive goes on."""
 
 from __future__ import annotations
 
+import json
 import resource
 import time
 from pathlib import Path
 
-from harness import Bench
+import pytest
+from argus_tools.formats.base import Chunk, ReadOptions
+from argus_tools.formats.record import FORMAT
+from argus_tools.log.cli import main
+from harness import Bench, Record
 from rules import assert_reached
 from worlds import hall
 
-from argus_tools.formats.base import Chunk, ReadOptions
-from argus_tools.formats.record import FORMAT
 from hil_sim.arcos import Unframer
 
 GOAL_MM = 900
@@ -78,3 +81,22 @@ def test_a_disk_that_refuses_does_not_stop_the_drive(bench: Bench) -> None:
     said = "\n".join(argusd.errors)
     assert said.count("File too large; going on without") == 1, said
     assert "bytes are missing" in said
+
+
+def test_the_log_alone_tells_what_argusd_told(bench: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+    """The live manager judges from the same bytes; only what came before its session was open differs."""
+    file = bench.path / "argusd.rec"
+    bench.sim(bench.world(**hall()), "off:3@6s", "silent:12@6s")
+    argusd = bench.argusd("--record", str(file), active=False)
+    argusd.wait("SONAR_DISABLED", name="sonar/front/03")
+    time.sleep(3)
+    argusd.end()
+    assert main(["faults", "--json", str(file)]) == 0
+    events = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    wanted = ("SONAR_DEAD", "SONAR_DISABLED", "SONAR_STALE", "FAILURE_STATE", "PLAN", "PLAN_ROTATION")
+
+    def told(events: list[Record]) -> list[tuple[object, ...]]:
+        return [(e["event"], e["name"], e["value"]) for e in events if e["event"] in wanted]
+
+    assert told(events) == told(argusd.events)
+    assert ("SONAR_DISABLED", "sonar/front/03", 1) in told(events)

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: MIT
+"""stats, convert, diff and plot say what is in a log, whatever its format, and leave nothing out silently."""
+
+from __future__ import annotations
+
+import json
+import struct
+import xml.etree.ElementTree
+from pathlib import Path
+
+import pytest
+from logs import CAPTURES, capture_bytes, command, decode, jsonl, run, sip
+from mcap.reader import make_reader
+
+from argus_tools.log.plot import POINTS_MAX, Series
+from argus_tools.log.spans import Happening, Span, spans
+from hil_sim.tables import load
+
+RAM = CAPTURES / "d_ram.jsonl"
+
+
+def stats(path: Path, *arguments: str) -> dict[str, object]:
+    done = run("stats", "--json", path, *arguments)
+    assert done.returncode == 0
+    return json.loads(done.stdout)
+
+
+def test_stats_count_what_the_readme_counts() -> None:
+    found = stats(RAM)
+    count = {"c2r": 0, "r2c": 0}
+    for kind in found["types"]:
+        count[kind["dir"]] += kind["count"]
+    assert count == {"c2r": 65, "r2c": 238}
+    assert found["bytes"] == {d: len(capture_bytes(RAM, d)) for d in ("c2r", "r2c")}
+    assert found["damage"] == {}
+
+
+def test_stats_of_damage() -> None:
+    found = stats(CAPTURES / "p10_badck.jsonl")
+    assert found["damage"] == {"c2r": {"packets": 1, "bad_checksum": 1, "bytes": 21}}
+
+
+def test_stats_of_a_sonar_and_of_gaps(tmp_path: Path) -> None:
+    path = tmp_path / "a.jsonl"
+    times = [0.0, 0.1, 0.2, 0.3, 1.3, 1.4]
+    readings = [1000, 5000, 1400, 5000, 400, 5000]
+    path.write_bytes(jsonl((t, "r2c", sip(sonars=((3, mm),))) for t, mm in zip(times, readings, strict=True)))
+    found = stats(path)
+    assert found["sip_gaps"]["first"] == [[0.3, pytest.approx(1.0)]]
+    sonar = found["sonar"]["3"]
+    assert (sonar["readings"], sonar["dropout_share"], sonar["min_mm"], sonar["max_mm"]) == (6, 0.5, 400, 1400)
+    assert sonar["refresh_s"] == pytest.approx(0.28)
+    assert sonar["histogram_mm"]["counts"][:3] == [1, 0, 2]
+    kind = next(k for k in found["types"] if k["type"] == "SIP")
+    assert (kind["longest_s"], kind["longest_at"]) == (pytest.approx(1.0), 0.3)
+
+
+def test_stats_in_words_name_every_sonar() -> None:
+    text = run("stats", RAM).stdout.decode()
+    assert "SIP" in text
+    assert all(f"\n{number:>5} " in text for number in range(16))
+
+
+@pytest.mark.parametrize("ending", ["jsonl", "log", "pcap", "pcapng", "rec", "jsonl.gz"])
+def test_convert_keeps_every_packet(tmp_path: Path, ending: str) -> None:
+    made = tmp_path / f"log.{ending}"
+    assert run("convert", CAPTURES / "p10_badck.jsonl", made).returncode == 0
+    assert run("diff", CAPTURES / "p10_badck.jsonl", made).returncode == 0
+    assert run("diff", made, RAM).returncode == 1
+
+
+def test_convert_to_bin_gives_the_bytes(tmp_path: Path) -> None:
+    made = tmp_path / "robot.bin"
+    assert run("convert", RAM, made).returncode == 2
+    assert not made.exists()
+    assert run("convert", RAM, made, "--dir", "r2c").returncode == 0
+    assert made.read_bytes() == capture_bytes(RAM, "r2c")
+    sent, got = decode(RAM, "--dir", "r2c"), decode(made)
+    assert [{**row, "t": None} for row in sent] == got
+
+
+def test_convert_refuses_what_it_cannot_do(tmp_path: Path) -> None:
+    copy = tmp_path / "a.jsonl"
+    copy.write_bytes(RAM.read_bytes())
+    for arguments in ([copy, copy], [copy, tmp_path / "a.xyz"], [copy, tmp_path / "no" / "a.csv"]):
+        done = run("convert", *arguments)
+        assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
+    assert copy.read_bytes() == RAM.read_bytes()
+
+
+def test_mcap_has_poses_validity_odometry_and_events(tmp_path: Path) -> None:
+    made = tmp_path / "a.mcap"
+    assert run("convert", RAM, made).returncode == 0
+    poses = {pose["number"]: pose for pose in load("p3dx")["sonar"]["pose"]}
+    sips = decode(RAM, "--type", "SIP")
+    with made.open("rb") as file:
+        reader = make_reader(file)
+        schemas = {schema.name: json.loads(schema.data) for schema in reader.get_summary().schemas.values()}
+        assert {"argus.SonarRange", "foxglove.PoseInFrame", "foxglove.Log"} <= set(schemas)
+        messages = [(s.name, c.topic, m.log_time, json.loads(m.data)) for s, c, m in reader.iter_messages()]
+    for name, _, _, message in messages:
+        assert set(message) <= set(schemas[name]["properties"])
+    ranges = [(at, message) for _, topic, at, message in messages if topic == "/sonar/03"]
+    assert [message["range_mm"] for _, message in ranges] == [row["sonar"]["3"] for row in sips]
+    assert [at for at, _ in ranges] == [round(row["t"] * 1e9) for row in sips]
+    for _, message in ranges:
+        assert message["valid"] == (100 <= message["range_mm"] < 5000)
+        assert message["pose"]["position"]["x"] == poses[3]["x_mm"] / 1000
+        assert message["field_of_view_rad"] == pytest.approx(0.5236, abs=1e-4)
+    assert sum(topic == "/odometry" for _, topic, _, _ in messages) == len(sips)
+    assert sum(topic == "/events" for _, topic, _, _ in messages) == 303 - len(sips)
+
+
+def test_diff_names_the_field_that_differs(tmp_path: Path) -> None:
+    one, two = tmp_path / "one.jsonl", tmp_path / "two.jsonl"
+    same = [(float(n), "r2c", sip(x=n)) for n in range(9)]
+    one.write_bytes(jsonl([*same, (9.0, "r2c", sip(x=9, sonars=((3, 700),))), (10.0, "c2r", command("STOP"))]))
+    two.write_bytes(jsonl([*same[:4], *same[5:], (9.0, "r2c", sip(x=9, sonars=((3, 710),)))]))
+    lines = run("diff", one, two).stdout.decode().splitlines()
+    assert len(lines) == 4
+    assert lines[0].startswith("- ")
+    assert "x      4" in lines[0]
+    assert "sonar 3: 700 -> 710" in lines[1]
+    assert "STOP" in lines[2]
+
+
+def test_spans_from_events() -> None:
+    said = [(1.0, "SONAR_SUSPECT"), (2.0, "SONAR_VERIFYING"), (3.0, "SONAR_DISABLED"), (7.0, "SONAR_HEALTHY")]
+    found = spans([Happening(t, event, 3) for t, event in said] + [Happening(8.0, "SONAR_DEAD", 4)], 9.0)
+    assert found == [Span(3, "suspect", 1.0, 3.0), Span(3, "dead", 3.0, 7.0), Span(4, "dead", 8.0, 9.0)]
+
+
+def test_a_long_series_keeps_its_extremes() -> None:
+    series = Series()
+    for n in range(5 * POINTS_MAX):
+        series.add(float(n), 100.0 if n == 77_777 else 5000.0 if n == 140_001 else 2000.0 + n % 7)
+    assert len(series.t) <= 2 * POINTS_MAX
+    assert series.t == sorted(series.t)
+    assert (min(series.value), max(series.value)) == (100.0, 5000.0)
+
+
+@pytest.mark.parametrize("view", ["ranges", "path", "ring"])
+@pytest.mark.parametrize("ending", ["png", "svg"])
+def test_pictures_are_drawn(tmp_path: Path, view: str, ending: str) -> None:
+    made = tmp_path / f"a.{ending}"
+    done = run("plot", RAM, "-o", made, "--view", view)
+    assert done.returncode == 0, done.stderr
+    data = made.read_bytes()
+    if ending == "svg":
+        assert xml.etree.ElementTree.fromstring(data).tag.endswith("svg")
+    else:
+        width, height = struct.unpack(">II", data[16:24])
+        assert data.startswith(b"\x89PNG")
+        assert min(width, height) > 500
+
+
+def test_pictures_that_cannot_be_drawn(tmp_path: Path) -> None:
+    for arguments in (["-o", "a.gif"], ["-o", tmp_path / "a.png", "--sonar", "40"], ["-o", tmp_path / "n" / "a.png"]):
+        done = run("plot", RAM, "--no-faults", *arguments)
+        assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
+
+
+def test_each_command_has_help_with_examples() -> None:
+    for name in ("decode", "stats", "plot", "convert", "diff"):
+        text = run(name, "--help").stdout.decode()
+        assert "examples:" in text
+        assert "exit codes:" in text

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: MIT
+"""The fault manager itself, the C core, for Python: what argusd runs, called through libargus.so."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+from argus_tools.formats.base import LogError
+
+LIBRARY_VARIABLE: Final = "ARGUS_CORE"
+_ROOT: Final = Path(__file__).resolve().parents[2]
+_PLACES: Final = (
+    *(_ROOT / "build" / preset / "libargus.so" for preset in ("release", "debug")),
+    Path("/usr/local/lib/libargus.so"),
+    Path("/usr/lib/libargus.so"),
+)
+_SONARS: Final = 16
+_PACKET_MAX: Final = 256
+_NO_SONAR: Final = -1
+_LEVELS: Final = ("OK", "WARN", "ERROR", "STALE")
+_FIRST_REAR: Final = 8
+
+_FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
+    "argus_config_default": (None, (ctypes.c_void_p,)),
+    "argus_init": (None, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32)),
+    "argus_link_up": (None, (ctypes.c_void_p, ctypes.c_uint32)),
+    "argus_link_lost": (None, (ctypes.c_void_p, ctypes.c_uint32)),
+    "argus_receive": (None, (ctypes.c_void_p, ctypes.c_uint32, ctypes.c_char_p, ctypes.c_size_t)),
+    "argus_process": (ctypes.c_uint32, (ctypes.c_void_p, ctypes.c_uint32)),
+    "argus_transmit": (ctypes.c_size_t, (ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t)),
+    "argus_event_name": (ctypes.c_char_p, (ctypes.c_uint16,)),
+    "argus_event_subject": (ctypes.c_char_p, (ctypes.c_uint16,)),
+    "argus_event_level": (ctypes.c_int, (ctypes.c_uint16,)),
+    "argus_failure_name": (ctypes.c_char_p, (ctypes.c_int,)),
+    "argus_health_name": (ctypes.c_char_p, (ctypes.c_int,)),
+    "argus_kind_name": (ctypes.c_char_p, (ctypes.c_int,)),
+    "argus_mode_name": (ctypes.c_char_p, (ctypes.c_int,)),
+    "argus_shim_core_size": (ctypes.c_size_t, ()),
+    "argus_shim_config_size": (ctypes.c_size_t, ()),
+    "argus_shim_config_key": (ctypes.c_char_p, (ctypes.c_uint32,)),
+    "argus_shim_config_choices": (ctypes.c_char_p, (ctypes.c_uint32,)),
+    "argus_shim_config_get": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_uint32)),
+    "argus_shim_config_set": (None, (ctypes.c_void_p, ctypes.c_uint32, ctypes.c_int32)),
+    "argus_shim_config_check": (ctypes.c_int32, (ctypes.c_void_p, ctypes.POINTER(ctypes.c_int32))),
+    "argus_shim_is_open": (ctypes.c_bool, (ctypes.c_void_p,)),
+    "argus_shim_event": (ctypes.c_bool, (ctypes.c_void_p, ctypes.POINTER(ctypes.c_int32))),
+    "argus_shim_event_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
+    "argus_shim_event_meaning": (ctypes.c_char_p, (ctypes.c_uint16,)),
+    "argus_shim_status_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
+    "argus_shim_sonar_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
+    "argus_shim_status": (
+        None,
+        (ctypes.c_void_p, ctypes.POINTER(ctypes.c_int64), ctypes.POINTER(ctypes.c_int64)),
+    ),
+}
+
+
+def _load() -> ctypes.CDLL:
+    given = os.environ.get(LIBRARY_VARIABLE)
+    places = (Path(given),) if given else _PLACES
+    path = next((place for place in places if place.exists()), None)
+    if path is None:
+        where = f"{LIBRARY_VARIABLE}={given} does not exist" if given else "libargus.so is not built"
+        raise LogError(f"{where}: run tools/dev build release, or set {LIBRARY_VARIABLE} to the library")
+    try:
+        library = ctypes.CDLL(str(path))
+        for name, (result, arguments) in _FUNCTIONS.items():
+            function = getattr(library, name)
+            function.restype, function.argtypes = result, arguments
+    except (OSError, AttributeError) as error:
+        raise LogError(f"{path}: is not this version's libargus.so ({error}); build it again") from error
+    return library
+
+
+@cache
+def library() -> ctypes.CDLL:
+    """Return libargus.so: of ARGUS_CORE, else of the build folder, else as installed; LogError without one."""
+    return _load()
+
+
+def _names(function: Any) -> tuple[str, ...]:
+    found: list[str] = []
+    while name := function(len(found)):
+        found.append(name.decode())
+    return tuple(found)
+
+
+@cache
+def settings() -> dict[str, tuple[int, int, tuple[str, ...]]]:
+    """Return the settings: row, default and the names of its choices (none: a number) by key.
+
+    >>> settings()["active"][1:]
+    (1, ('off', 'on'))
+    """
+    core = library()
+    config = ctypes.create_string_buffer(core.argus_shim_config_size())
+    core.argus_config_default(config)
+    return {
+        key: (
+            row,
+            core.argus_shim_config_get(config, row),
+            tuple(filter(None, core.argus_shim_config_choices(row).decode().split("|"))),
+        )
+        for row, key in enumerate(_names(core.argus_shim_config_key))
+    }
+
+
+def setting_value(key: str, text: str) -> int:
+    """Return the number that stands for `text` in a setting; LogError says what is allowed."""
+    if key not in settings():
+        raise LogError(f"{key}: no such setting; argusd --list-config lists them")
+    choices = settings()[key][2]
+    if choices:
+        if text not in choices:
+            raise LogError(f"{key} = {text}: give {' or '.join(choices)}")
+        return choices.index(text)
+    try:
+        return int(text)
+    except ValueError as error:
+        raise LogError(f"{key} = {text}: give a whole number") from error
+
+
+class Event(NamedTuple):
+    """One thing that the manager said."""
+
+    t_ms: int
+    id: int
+    sonar: int | None
+    state: str
+    value: int
+
+    @property
+    def event(self) -> str:
+        """Its name in the catalogue."""
+        return _text(library().argus_event_name(self.id))
+
+    @property
+    def level(self) -> int:
+        """0 OK, 1 WARN, 2 ERROR, 3 STALE."""
+        return int(library().argus_event_level(self.id))
+
+    @property
+    def level_name(self) -> str:
+        """The level in words."""
+        return _LEVELS[self.level]
+
+    @property
+    def name(self) -> str:
+        """What it is about, as sonar/front/03."""
+        if self.sonar is None:
+            return _text(library().argus_event_subject(self.id))
+        return f"sonar/{'rear' if self.sonar >= _FIRST_REAR else 'front'}/{self.sonar:02d}"
+
+    @property
+    def meaning(self) -> str:
+        """What it means, in words."""
+        return _text(library().argus_shim_event_meaning(self.id))
+
+    @property
+    def has_value(self) -> bool:
+        """Whether the catalogue gives the value a meaning."""
+        return "value:" in self.meaning
+
+
+def kind_name(kind: int) -> str:
+    """Return the name of a fault kind.
+
+    >>> kind_name(1)
+    'off'
+    """
+    return _text(library().argus_kind_name(kind))
+
+
+def _text(value: bytes) -> str:
+    return value.decode("utf-8", "replace")
+
+
+class Core:
+    """One fault manager in memory of its own. Times are ms of any clock; their low 32 bits count."""
+
+    def __init__(self, now_ms: int, given: Mapping[str, int] | None = None) -> None:
+        self._library = library()
+        self._core = ctypes.create_string_buffer(self._library.argus_shim_core_size())
+        self._packet = ctypes.create_string_buffer(_PACKET_MAX)
+        self._event_names = _names(self._library.argus_shim_event_field)
+        self._event = (ctypes.c_int32 * len(self._event_names))()
+        config = ctypes.create_string_buffer(self._library.argus_shim_config_size())
+        self._library.argus_config_default(config)
+        for key, value in (given or {}).items():
+            self._library.argus_shim_config_set(config, settings()[key][0], value)
+        self._check(config)
+        self._library.argus_init(self._core, config, now_ms & 0xFFFFFFFF)
+
+    def _check(self, config: Any) -> None:
+        row = ctypes.c_int32()
+        if self._library.argus_shim_config_check(config, ctypes.byref(row)):
+            keys = [key for key, (at, _, _) in settings().items() if at == row.value]
+            what = f"{keys[0]} is out of its range" if keys else "driving would be unsafe (S5)"
+            raise LogError(f"the settings do not hold: {what}; see argusd --list-config")
+
+    def link_up(self, now_ms: int) -> None:
+        """The transport is open."""
+        self._library.argus_link_up(self._core, now_ms & 0xFFFFFFFF)
+
+    def receive(self, now_ms: int, data: bytes) -> None:
+        """Take bytes from the robot."""
+        self._library.argus_receive(self._core, now_ms & 0xFFFFFFFF, data, len(data))
+
+    def process(self, now_ms: int) -> int:
+        """Do what time makes due; return the ms after which it wants to be called again."""
+        return int(self._library.argus_process(self._core, now_ms & 0xFFFFFFFF))
+
+    def transmit(self) -> list[bytes]:
+        """Return the packets to be written now."""
+        packets = []
+        while size := self._library.argus_transmit(self._core, self._packet, _PACKET_MAX):
+            packets.append(self._packet.raw[:size])
+        return packets
+
+    def events(self) -> Iterator[Event]:
+        """Yield what was said since the last call."""
+        while self._library.argus_shim_event(self._core, self._event):
+            fields = dict(zip(self._event_names, self._event, strict=True))
+            yield Event(
+                fields["t_ms"] & 0xFFFFFFFF,
+                fields["id"],
+                None if fields["sonar"] == _NO_SONAR else fields["sonar"],
+                _text(self._library.argus_failure_name(fields["state"])),
+                fields["value"],
+            )
+
+    @property
+    def is_open(self) -> bool:
+        """Whether there is a session with a robot."""
+        return bool(self._library.argus_shim_is_open(self._core))
+
+    def status(self) -> dict[str, Any]:
+        """Return what is known, names for the enumerations, and lists with one entry per sonar."""
+        names = _names(self._library.argus_shim_status_field)
+        per_sonar = _names(self._library.argus_shim_sonar_field)
+        fields = (ctypes.c_int64 * len(names))()
+        sonars = (ctypes.c_int64 * (len(per_sonar) * _SONARS))()
+        self._library.argus_shim_status(self._core, fields, sonars)
+        found: dict[str, Any] = dict(zip(names, fields, strict=True))
+        found |= {name: sonars[at :: len(per_sonar)] for at, name in enumerate(per_sonar)}
+        found["mode"] = _text(self._library.argus_mode_name(found["mode"]))
+        found["failure"] = _text(self._library.argus_failure_name(found["failure"]))
+        found["health"] = [_text(self._library.argus_health_name(value)) for value in found["health"]]
+        found["kind"] = [kind_name(value) for value in found["kind"]]
+        return found

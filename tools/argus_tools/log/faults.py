@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: MIT
+"""`argus-log faults`: what the fault manager would have said from a log alone, by the C core that argusd runs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any, Final, NamedTuple
+
+from argus_tools.core import Core, Event, kind_name, setting_value
+from argus_tools.formats.base import ROBOT_TO_CLIENT, LogError
+from argus_tools.log.common import Input, add_log_arguments, show_table, use_colour
+from argus_tools.log.packets import Row
+from hil_sim.arcos import COMMAND, TIMING, Command, Sip, SyncEcho, SyncReply, Unframer, frame
+
+SUMMARY: Final = "tell what the fault manager would have said from a log alone"
+EXAMPLES: Final = """\
+  argus-log faults capture.bin                 events, then the state of each sonar
+  argus-log faults --json drive.rec            one JSON object per event, as argusd --json writes them
+  argus-log faults drive.rec --set suspect_readings=5 --set stale_ms=3000
+
+The manager only listens: it cannot turn the robot, so a suspect that only a turn could judge stays a suspect.
+A log without times is taken as one SIP each 100 ms.
+"""
+_STEP_MS: Final = 10
+_OPENING_MS: Final = 10_000
+_SIP_MS: Final = TIMING["SIP_CYCLE_MS"]
+# SIPs that were on their way when the client closed the session.
+_SIPS_AFTER_CLOSE: Final = 5
+_TINT: Final = {"ERROR": "\033[31m", "WARN": "\033[33m"}
+_PLAIN: Final = "\033[0m"
+_DISABLED: Final = "SONAR_DISABLED"
+_STATUS: Final = {"event": "STATUS", "id": 91, "level": 0, "name": "status"}
+_SIP_BYTES: Final = 20  # up to its sonar count
+_UNSEEN: Final = 0xFFFFFFFF
+
+
+class Said(NamedTuple):
+    """One event, with the log's time (None if it keeps none) and the place of the packet that brought it."""
+
+    t: float | None
+    offset: int
+    event: Event
+
+
+class Listener:
+    """Feeds a log into passive managers: a new one for each session that the log holds.
+
+    A manager opens its session by itself, with a robot that is made up before the first SIP: it gives the
+    answers that the log has not, or gave to another client, and SIPs without readings.
+    """
+
+    def __init__(self, given: Mapping[str, int], subclass: str | None = None) -> None:
+        self.core: Core | None = None
+        self._given = {**given, "active": 0}
+        name = (subclass or "p3dx-sh").encode("latin-1", "replace")
+        self._identity = SyncReply(b"", b"Pioneer", name)
+        self._is_told = subclass is not None
+        self._clock_ms = 0
+        self._start_ms = 0
+        self._origin_ms = 0
+        self._now_ms = 0
+        self._held_off = 0
+        self._last: Core | None = None
+
+    def take(self, row: Row) -> Iterator[Said]:
+        """Take the next packet or damage of the log."""
+        if row.dir != ROBOT_TO_CLIENT:
+            if row.type == "CLOSE" and self.core is not None:
+                self._leave()
+            return
+        is_sip = row.ok and row.type == "SIP" and len(row.data) >= _SIP_BYTES
+        if row.t is not None:
+            self._clock_ms = max(self._clock_ms, round(row.t * 1000))
+        elif is_sip:
+            self._clock_ms += _SIP_MS
+        if row.ok and row.type == "SYNC2":
+            self._meet(row.data)
+        if self.core is None and is_sip:
+            self._held_off -= 1
+            if self._held_off < 0:
+                yield from self._open(row)
+        if self.core is not None:
+            yield from self._feed(self.core, row)
+
+    @property
+    def status(self) -> dict[str, Any] | None:
+        """What the last manager knows; None when the log held no session."""
+        return None if self._last is None else self._last.status()
+
+    def _leave(self) -> None:
+        self.core = None
+        self._held_off = _SIPS_AFTER_CLOSE
+
+    def _meet(self, data: bytes) -> None:
+        reply = SyncReply.decode(data)
+        if reply.subclass and not self._is_told:
+            self._identity = reply
+
+    def _open(self, row: Row) -> Iterator[Said]:
+        """Bring a new manager to where it has a session and nothing was read yet."""
+        core = Core(0, self._given)
+        robot = _Opening(self._identity, row.data)
+        core.link_up(0)
+        now_ms = 0
+        while not core.is_open:
+            now_ms += _STEP_MS
+            if now_ms > _OPENING_MS:
+                raise LogError("the fault manager does not open a session with this log")
+            core.process(now_ms)
+            for packet in core.transmit():
+                for answer in robot.answers(packet):
+                    core.receive(now_ms, answer)
+            for sip in robot.due(now_ms):
+                core.receive(now_ms, sip)
+        core.transmit()
+        self.core = self._last = core
+        self._now_ms = now_ms
+        self._start_ms = self._clock_ms
+        self._origin_ms = self._clock_ms - now_ms - _SIP_MS
+        yield from self._said(core, row)
+
+    def _feed(self, core: Core, row: Row) -> Iterator[Said]:
+        until_ms = max(self._clock_ms - self._origin_ms, self._now_ms)
+        while self._now_ms < until_ms and core.is_open:
+            self._now_ms = min(self._now_ms + max(1, core.process(self._now_ms)), until_ms)
+            core.transmit()
+            yield from self._said(core, row)
+        core.receive(self._now_ms, row.wire)
+        core.process(self._now_ms)
+        core.transmit()
+        yield from self._said(core, row)
+        if not core.is_open:
+            self.core = None
+
+    def _said(self, core: Core, row: Row) -> Iterator[Said]:
+        for event in core.events():
+            behind_ms = (self._now_ms - event.t_ms) & 0xFFFFFFFF
+            at_ms = self._origin_ms + self._now_ms - (behind_ms if behind_ms < 1 << 31 else 0)
+            # What was said while the session was made up belongs to where the log begins.
+            t = None if row.t is None else max(at_ms, self._start_ms) / 1000
+            yield Said(t, row.offset, event)
+
+
+class _Opening:
+    """The robot that is made up to open a session with."""
+
+    def __init__(self, identity: SyncReply, sip: bytes) -> None:
+        self._identity = identity
+        self._sip = frame(replace(Sip.decode(sip), sonars=()).data)
+        self._unframer = Unframer()
+        self._is_synced = False
+        self._is_open = False
+
+    def answers(self, packet: bytes) -> Iterator[bytes]:
+        """Yield what the robot says to a packet of the manager."""
+        for data in self._unframer.feed(packet):
+            number = Command.decode(data).number
+            if self._is_open:
+                continue
+            if self._is_synced and number == COMMAND["OPEN"]:
+                self._is_open = True
+            elif number == COMMAND["CLOSE"]:
+                self._is_synced = True
+                yield frame(self._identity.data)
+            else:
+                yield frame(SyncEcho(number).data)
+
+    def due(self, now_ms: int) -> list[bytes]:
+        """Return the SIPs that are due."""
+        return [self._sip] if self._is_open and now_ms % _SIP_MS == 0 else []
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_log_arguments(parser, follow=True)
+    parser.add_argument("--json", action="store_true", help="one JSON object per line, as argusd --json")
+    parser.add_argument("--profile", default="paper", metavar="NAME", help="rule set (default: paper)")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="a setting, see argusd --list-config"
+    )
+    parser.add_argument(
+        "--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)"
+    )
+
+
+def _given(args: argparse.Namespace) -> dict[str, int]:
+    words = [f"profile={args.profile}", *args.set]
+    given = {}
+    for word in words:
+        key, separator, value = word.partition("=")
+        if not separator:
+            raise LogError(f"--set {word}: write KEY=VALUE")
+        given[key.strip()] = setting_value(key.strip(), value.strip())
+    if "active" in given:
+        raise LogError("--set active: a manager that reads a log is passive")
+    return given
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print what the manager says; return the exit code."""
+    listener = Listener(_given(args), args.subclass)
+    source = Input(args)
+    colour = use_colour()
+    t: float | None = None
+    for row in source.rows():
+        t = row.t
+        for said in listener.take(row):
+            print(_json(said) if args.json else _line(said, colour), flush=args.follow)
+    status = listener.status
+    if status is None:
+        raise LogError(f"{args.log}: holds no SIP from the robot, so there is nothing to judge")
+    print(json.dumps({"t": t, **_STATUS, **status}) if args.json else _table(status, colour))
+    return source.exit_code
+
+
+def _json(said: Said) -> str:
+    event = said.event
+    fields = {
+        "t": said.t,
+        "event": event.event,
+        "id": event.id,
+        "level": event.level,
+        "name": event.name,
+        "value": event.value,
+        "state": event.state,
+        "offset": said.offset,
+    }
+    return json.dumps(fields)
+
+
+def _line(said: Said, colour: bool) -> str:
+    event = said.event
+    when = f"byte {said.offset}" if said.t is None else f"{said.t:.3f}"
+    tint = _TINT.get(event.level_name, "") if colour else ""
+    meaning, _, _ = event.meaning.partition("; value:")
+    value = ""
+    if event.event == _DISABLED:
+        value = f" ({kind_name(event.value)})"
+    elif event.has_value:
+        value = f" {event.value}"
+    level = f"{tint}{event.level_name:<5}{_PLAIN if tint else ''}"
+    return f"{when:>14} {level} {event.name:<14} {event.event}{value}: {meaning}"
+
+
+def _table(status: dict[str, Any], colour: bool) -> str:
+    rows = [("sonar", "health", "fault", "last mm")]
+    for number, health in enumerate(status["health"]):
+        kind = status["kind"][number]
+        seen = status["age_ms"][number] != _UNSEEN
+        rows.append(
+            (
+                str(number),
+                health,
+                kind,
+                str(status["reading_mm"][number]) if seen else "-",
+            )
+        )
+    counts = f"{status['sips']} SIPs, {status['bad_checksums']} bad checksums, {status['skipped_bytes']} bytes skipped"
+    lines = show_table(rows, frozenset((0, 3))).splitlines()
+    if colour:
+        bad = {at + 1 for at, health in enumerate(status["health"]) if health == "DISABLED"}
+        lines = [f"{_TINT['ERROR']}{line}{_PLAIN}" if at in bad else line for at, line in enumerate(lines)]
+    return "\n".join(("", *lines, "", f"{status['failure']}; {counts}"))

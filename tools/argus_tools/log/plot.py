@@ -1,0 +1,357 @@
+# SPDX-License-Identifier: MIT
+"""`argus-log plot`: pictures of a log: readings over time, the path driven, the sonar ring at one moment."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from argus_tools.formats import LogError
+from argus_tools.log.common import Input, Times, add_log_arguments, add_time_arguments, seconds, sonar_numbers
+from argus_tools.log.convert import clocked
+from argus_tools.log.fields import Decoder
+from argus_tools.log.spans import DEAD, SUSPECT, find_spans
+from hil_sim.tables import load
+
+SUMMARY: Final = "draw readings over time, the path, or the sonar ring at one moment, as PNG or SVG"
+EXAMPLES: Final = """\
+  argus-log plot drive.rec -o drive.png                        each sonar over time; dead and suspect spans shaded
+  argus-log plot drive.rec -o front.svg --sonar 0-7 --from +20 --to +40
+  argus-log plot drive.rec -o path.png --view path
+  argus-log plot drive.rec -o ring.png --view ring --at +31.5
+"""
+_SONAR: Final[dict[str, Any]] = load("p3dx")["sonar"]
+_BODY: Final[dict[str, int]] = load("p3dx")["body"]
+POSES: Final = {pose["number"]: pose for pose in _SONAR["pose"]}
+NO_ECHO_MM: Final[int] = _SONAR["no_echo_mm"]
+# More points than this are not told apart in a picture.
+POINTS_MAX: Final = 1 << 15
+_INK, _LINE, _GRID = "#222222", "#1f5fa8", "#dddddd"
+_COLOUR: Final = {DEAD: "#d62728", SUSPECT: "#f2a900"}
+_LABEL: Final = {DEAD: "dead: off, silent or disabled", SUSPECT: "suspect"}
+_STYLE: Final[Any] = {
+    "svg.hashsalt": "argus",
+    "font.size": 9,
+    "axes.edgecolor": "#888888",
+    "axes.linewidth": 0.6,
+}
+# A reading this much older than the moment shown is drawn pale.
+FRESH_S: Final = 0.5
+
+
+@dataclass
+class Series:
+    """Values over time that never take more than a fixed amount of memory; extremes survive."""
+
+    t: list[float] = field(default_factory=list)
+    value: list[float] = field(default_factory=list)
+
+    def add(self, t: float, value: float) -> None:
+        """Append one value."""
+        self.t.append(t)
+        self.value.append(value)
+        if len(self.t) >= 2 * POINTS_MAX:
+            self._thin()
+
+    def _thin(self) -> None:
+        """Keep the smallest and the largest of each four values."""
+        values = np.array(self.value).reshape(-1, 4)
+        at = np.sort(np.stack([values.argmin(axis=1), values.argmax(axis=1)], axis=1), axis=1)
+        index = (at + 4 * np.arange(len(values))[:, None]).ravel()
+        self.t = np.array(self.t)[index].tolist()
+        self.value = np.array(self.value)[index].tolist()
+
+
+@dataclass
+class Drive:
+    """What a log says of a drive, as far as pictures need it."""
+
+    sonars: dict[int, Series] = field(default_factory=dict)
+    path: list[tuple[float, float, float, float]] = field(default_factory=list)
+    start: float = math.inf
+    end: float = -math.inf
+    _skip: int = 1
+    _seen: int = 0
+
+    def add(self, t: float, fields: dict[str, Any]) -> None:
+        """Take one SIP."""
+        self.start, self.end = min(self.start, t), max(self.end, t)
+        for number, range_mm in fields["sonar"].items():
+            self.sonars.setdefault(int(number), Series()).add(t, range_mm)
+        if self._seen % self._skip == 0:
+            self.path.append((t, fields["x_mm"], fields["y_mm"], fields["heading_deg"]))
+            if len(self.path) >= 2 * POINTS_MAX:
+                self.path = self.path[::2]
+                self._skip *= 2
+        self._seen += 1
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_log_arguments(parser)
+    parser.add_argument("-o", "--output", required=True, metavar="FILE", help="the picture: .png or .svg")
+    parser.add_argument("--view", choices=("ranges", "path", "ring"), default="ranges", help="what is drawn")
+    parser.add_argument(
+        "--at", type=seconds, metavar="T", help="moment of the ring (default: the end); as --from"
+    )
+    parser.add_argument("--sonar", type=sonar_numbers, metavar="N,...", help="these sonars only")
+    parser.add_argument(
+        "--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)"
+    )
+    parser.add_argument(
+        "--no-faults", action="store_true", help="shade nothing: do not run the fault manager"
+    )
+    add_time_arguments(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Draw the picture; return the exit code."""
+    if Path(args.output).suffix.lower() not in (".png", ".svg"):
+        raise LogError(f"{args.output}: a picture ends in .png or .svg")
+    source = Input(args)
+    if args.view == "ring":
+        figure = _ring(args, source)
+    else:
+        drive = _read(args, source)
+        figure = _path(drive) if args.view == "path" else _ranges(args, drive)
+    with rc_context(_STYLE):
+        metadata = {"Date": None} if args.output.lower().endswith(".svg") else {"Software": None}
+        figure.savefig(args.output, dpi=110, metadata=metadata)
+    return source.exit_code
+
+
+def _read(args: argparse.Namespace, source: Input) -> Drive:
+    times = Times(args.start, args.end)
+    decoder = Decoder(args.subclass)
+    drive = Drive()
+    for row in clocked(source):
+        decoder.track(row)
+        if times(row.t, args.log) and row.type == "SIP" and row.ok and row.t is not None:
+            fields = decoder.fields(row)
+            if fields["ok"]:
+                drive.add(row.t, fields)
+    if not drive.path:
+        raise LogError(f"{args.log}: has no SIP to draw (in the time asked for)")
+    return drive
+
+
+def _figure(width: float, height: float) -> Figure:
+    return Figure(figsize=(width, height), facecolor="white", layout="constrained")
+
+
+# ---- readings over time
+
+
+def _ranges(args: argparse.Namespace, drive: Drive) -> Figure:
+    numbers = [n for n in sorted(drive.sonars) if not args.sonar or n in args.sonar]
+    if not numbers:
+        raise LogError(f"{args.log}: has no reading of the sonars asked for")
+    spans, note = ([], "not asked for") if args.no_faults else find_spans(args)
+    if note and not args.no_faults:
+        print(f"argus-log: no span is shaded: {note}", file=sys.stderr)
+    columns = 1 if len(numbers) <= 4 else 2
+    rows = math.ceil(len(numbers) / columns)
+    # The time axis begins at 0, as clocks that count from 1970 have too many digits for one.
+    zero = drive.start
+    with rc_context(_STYLE):
+        figure = _figure(12 if columns == 2 else 9, 1.2 + 1.15 * rows)
+        grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        for at, number in enumerate(numbers):
+            axes = grid[at % rows][at // rows]
+            _one_sonar(axes, number, drive.sonars[number], zero)
+            for span in spans:
+                if span.sonar == number and span.end >= drive.start and span.start <= drive.end:
+                    left, right = max(span.start, drive.start), min(span.end, drive.end)
+                    axes.axvspan(left - zero, right - zero, color=_COLOUR[span.kind], alpha=0.28, linewidth=0)
+        for axes in list(grid.T.flat)[len(numbers) :]:
+            axes.set_visible(False)
+        for column in range(columns):
+            shown = [grid[row][column] for row in range(rows) if grid[row][column].get_visible()]
+            shown[-1].set_xlabel(f"s since t = {zero:.3f}" if zero else "s")
+            shown[-1].tick_params(labelbottom=True)
+        handles: list[Any] = [
+            Line2D([], [], color=_LINE, linewidth=1, label="reading, mm"),
+            Line2D(
+                [],
+                [],
+                color=_INK,
+                linestyle="none",
+                marker="|",
+                markersize=5,
+                label=f"no echo ({NO_ECHO_MM})",
+            ),
+        ]
+        if not note:
+            handles += [Patch(color=_COLOUR[kind], alpha=0.4, label=_LABEL[kind]) for kind in (DEAD, SUSPECT)]
+        title = f"{Path(args.log).name}: sonar readings over time" + (" (not judged)" if note else "")
+        figure.suptitle(title, fontsize=11, color=_INK)
+        figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
+    return figure
+
+
+def _one_sonar(axes: Any, number: int, series: Series, zero: float) -> None:
+    t = np.array(series.t) - zero
+    value = np.array(series.value)
+    echo = np.where(value < NO_ECHO_MM, value, np.nan)
+    axes.plot(t, echo, color=_LINE, linewidth=0.9, marker=".", markersize=1.8, markeredgewidth=0)
+    none = t[value >= NO_ECHO_MM]
+    axes.plot(none, np.full(len(none), NO_ECHO_MM), color=_INK, linestyle="none", marker="|", markersize=4,
+              markeredgewidth=0.6)  # fmt: skip
+    pose = POSES.get(number)
+    axes.set_ylabel(f"{number}" + (f"\n{pose['heading_deg']:+d}°" if pose else ""), rotation=0, labelpad=5, va="center",
+                    ha="right")  # fmt: skip
+    axes.set_ylim(0, NO_ECHO_MM * 1.06)
+    axes.set_yticks([0, 2500, NO_ECHO_MM])
+    axes.grid(color=_GRID, linewidth=0.5)
+    axes.set_axisbelow(True)
+
+
+# ---- the path
+
+
+def _path(drive: Drive) -> Figure:
+    t, x, y, heading = (np.array(column) for column in zip(*drive.path, strict=True))
+    with rc_context(_STYLE):
+        figure = _figure(8, 7)
+        axes = figure.subplots()
+        axes.plot(x, y, color=_LINE, linewidth=1.4, zorder=2)
+        moved = np.hypot(np.diff(x, prepend=x[0]), np.diff(y, prepend=y[0])).cumsum()
+        if moved[-1] > 0:
+            at = np.searchsorted(moved, np.linspace(0, moved[-1], 12)[1:-1])
+            turn = np.radians(heading[at])
+            axes.quiver(x[at], y[at], np.cos(turn), np.sin(turn), color=_LINE, angles="xy", scale=28, width=0.005,
+                        pivot="mid", zorder=3)  # fmt: skip
+            for index in at[::3]:
+                label = f"{t[index] - t[0]:.0f} s"
+                axes.annotate(
+                    label, (x[index], y[index]), (6, 6), textcoords="offset points", color=_INK, fontsize=8
+                )
+        axes.plot(
+            x[0], y[0], marker="o", color="#2ca02c", markersize=9, linestyle="none", label="start", zorder=4
+        )
+        axes.plot(
+            x[-1],
+            y[-1],
+            marker="s",
+            color=_COLOUR[DEAD],
+            markersize=8,
+            linestyle="none",
+            label="end",
+            zorder=4,
+        )
+        axes.set_aspect("equal", adjustable="box")
+        middle_x, middle_y = (x.min() + x.max()) / 2, (y.min() + y.max()) / 2
+        half = max(np.ptp(x), np.ptp(y), 800.0) * 0.58
+        axes.set_xlim(middle_x - half, middle_x + half)
+        axes.set_ylim(middle_y - half, middle_y + half)
+        axes.set_xlabel("x, mm (odometry)")
+        axes.set_ylabel("y, mm")
+        axes.grid(color=_GRID, linewidth=0.5)
+        axes.set_axisbelow(True)
+        axes.legend(frameon=False)
+        axes.set_title(f"path: {moved[-1] / 1000:.2f} m in {t[-1] - t[0]:.1f} s", fontsize=11, color=_INK)
+    return figure
+
+
+# ---- the ring
+
+
+def _ring(args: argparse.Namespace, source: Input) -> Figure:
+    last: dict[int, tuple[float, int]] = {}
+    first = moment = shown_t = None
+    for row in clocked(source):
+        if row.type != "SIP" or not row.ok or row.t is None:
+            continue
+        first = row.t if first is None else first
+        if args.at is not None:
+            moment = args.at[1] + (first if args.at[0] else 0.0)
+            if row.t > moment:
+                break
+        data = row.data
+        shown_t = row.t
+        for at in range(20, min(20 + 3 * data[19], len(data) - 2) if len(data) > 19 else 0, 3):
+            last[data[at]] = (row.t, data[at + 1] | data[at + 2] << 8)
+    if shown_t is None or first is None:
+        raise LogError(f"{args.log}: has no SIP at or before the moment asked for")
+    moment = shown_t if moment is None else min(moment, shown_t)
+    return _draw_ring(Path(args.log).name, moment, moment - first, last)
+
+
+def _draw_ring(name: str, moment: float, since: float, last: dict[int, tuple[float, int]]) -> Figure:
+    half = math.radians(_SONAR["cone_deg"]) / 2
+    with rc_context(_STYLE):
+        figure = _figure(8, 8.2)
+        axes: Any = figure.add_subplot(projection="polar")
+        axes.set_theta_zero_location("N")
+        for number, (t, range_mm) in sorted(last.items()):
+            if number not in POSES:
+                continue
+            pose = POSES[number]
+            turn, width = _wedge(number, half * 0.62)
+            stand = math.hypot(pose["x_mm"], pose["y_mm"])
+            is_echo = range_mm < NO_ECHO_MM
+            alpha = 0.55 if moment - t <= FRESH_S else 0.2
+            colour = _LINE if is_echo else _COLOUR[DEAD]
+            axes.bar(turn, range_mm, width=2 * width, bottom=stand, color=colour,
+                     alpha=alpha if is_echo else alpha * 0.35, linewidth=0)  # fmt: skip
+            edge = stand + range_mm
+            arc = np.linspace(turn - width, turn + width, 9)
+            axes.plot(arc, np.full(9, edge), color=colour, linewidth=2.2, alpha=min(1.0, alpha + 0.4))
+            text = f"{number}: {range_mm}" if is_echo else f"{number}: no echo"
+            axes.text(
+                turn,
+                min(edge + 330 + 180 * abs(math.sin(turn)), NO_ECHO_MM + 550),
+                text,
+                ha="center",
+                va="center",
+                fontsize=8,
+                color=_INK,
+            )
+        _draw_body(axes)
+        axes.set_ylim(0, NO_ECHO_MM + 1100)
+        axes.set_yticks(
+            range(1000, NO_ECHO_MM + 1, 1000), [f"{metres} m" for metres in range(1, 6)], color="#888888"
+        )
+        axes.set_rlabel_position(180)
+        axes.set_thetagrids(range(0, 360, 30), [f"{a if a <= 180 else a - 360}°" for a in range(0, 360, 30)])
+        axes.grid(color=_GRID, linewidth=0.6)
+        axes.set_axisbelow(True)
+        shown = f"t = {moment:.3f} s" + (f" (+{since:.1f} s)" if abs(since - moment) > 0.05 else "")
+        axes.set_title(f"{name}: the sonar ring at {shown}; up is ahead", fontsize=11, color=_INK, pad=18)
+        handles = [
+            Patch(color=_LINE, alpha=0.6, label="echo"),
+            Patch(color=_COLOUR[DEAD], alpha=0.3, label="no echo"),
+            Patch(color=_LINE, alpha=0.2, label=f"older than {FRESH_S} s"),
+        ]
+        figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
+    return figure
+
+
+def _wedge(number: int, half: float) -> tuple[float, float]:
+    """Return the middle and the half width to draw; two sonars that look the same way share the width."""
+    pose = POSES[number]
+    turn = math.radians(pose["heading_deg"])
+    twin = next(
+        (p for n, p in POSES.items() if n != number and p["heading_deg"] == pose["heading_deg"]), None
+    )
+    if twin is None:
+        return turn, half
+    is_ahead = pose["x_mm"] > twin["x_mm"]
+    return turn - math.copysign(half / 2, turn) * (1 if is_ahead else -1), half / 2
+
+
+def _draw_body(axes: Any) -> None:
+    front, rear, side = _BODY["front_mm"], -_BODY["rear_mm"], _BODY["width_mm"] / 2
+    corners = np.array([(front, side), (front, -side), (rear, -side), (rear, side), (front, side)])
+    turn = np.arctan2(corners[:, 1], corners[:, 0])
+    axes.fill(turn, np.hypot(corners[:, 0], corners[:, 1]), color="#555555", zorder=5)
