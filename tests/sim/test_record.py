@@ -8,6 +8,7 @@ import errno
 import itertools
 import os
 import random
+import re
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,12 @@ import pytest
 from hil_sim.cli import main
 from hil_sim.errors import SimError
 from hil_sim.record import (
+    KEPT,
+    MAGIC,
+    MAX_BYTES,
+    PAYLOAD_MAX,
+    SYNC,
+    VERSION,
     Decoder,
     Kind,
     Record,
@@ -48,6 +55,23 @@ def test_the_bytes_of_a_record() -> None:
     assert (
         encode(Kind.TO_ROBOT, (1 << 32) + 0x01020304, b"\xfa\xfb").hex() == "a5c302020004030201fafb8c831c39"
     )
+
+
+def test_spec_quotes_the_kinds_and_the_limits() -> None:
+    text = (Path(__file__).resolve().parents[2] / "SPEC.md").read_text(encoding="utf-8")
+    section = text.split("\n## Recording\n")[1].split("\n## ")[0]
+    rows = re.findall(r"^\| (\d+) \| ([A-Z_]+) \|", section, re.M)
+    assert {name: int(number) for number, name in rows} == {kind.name: kind.value for kind in Kind}
+    assert f"at most {PAYLOAD_MAX}" in section
+    assert f"sync `{SYNC.hex(' ').upper()}`" in section
+    assert f"`{MAGIC.decode()}`, version {VERSION}," in section
+    assert f"{MAX_BYTES // 1_000_000} MB" in section
+    assert f"FILE.{KEPT} is the last" in section
+    header = (Path(__file__).resolve().parents[2] / "hal/include/hal/recorder.h").read_text(encoding="utf-8")
+    for kind in Kind:
+        assert f"HAL_RECORD_{kind.name} = {kind.value}" in header
+    assert f"#define HAL_RECORD_VERSION {VERSION}\n" in header
+    assert f"#define HAL_RECORDER_KEPT {KEPT} " in header
 
 
 def test_records_come_back_in_pieces_of_any_size() -> None:

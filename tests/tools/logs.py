@@ -21,7 +21,9 @@ def run(*arguments: str | Path, stdin: bytes | None = None) -> subprocess.Comple
     """Run argus-log; any traceback fails the test."""
     environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'tools'}", "COLUMNS": "120"}
     command = [sys.executable, "-m", "argus_tools.log.cli", *map(str, arguments)]
-    done = subprocess.run(command, input=stdin, capture_output=True, env=environment, timeout=120, check=False)
+    done = subprocess.run(
+        command, input=stdin, capture_output=True, env=environment, timeout=120, check=False
+    )
     assert b"Traceback" not in done.stderr, done.stderr.decode()
     return done
 
@@ -54,5 +56,6 @@ def command(name: str, value: int | None = None) -> bytes:
 def jsonl(records: Iterable[tuple[float | None, str, bytes]]) -> bytes:
     """Return (t, dir, bytes) as JSON lines."""
     return b"".join(
-        json.dumps({"t": t, "dir": direction, "hex": data.hex()}).encode() + b"\n" for t, direction, data in records
+        json.dumps({"t": t, "dir": direction, "hex": data.hex()}).encode() + b"\n"
+        for t, direction, data in records
     )

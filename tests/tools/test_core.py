@@ -78,7 +78,7 @@ def run_session(active: bool) -> tuple[Core, list[str], list[int]]:
         manager.process(now)
         if is_open and (now - start) % 100 == 0:
             readings = tuple((k, 2000 + k) for k in range(16))
-            manager.receive(now, frame(Sip(flags=1, sonars=readings, battery=125).data))
+            manager.receive(now, frame(Sip(flags=1, sonars=readings, battery_x10=125).data))
         for packet in manager.transmit():
             for data in robot.feed(packet):
                 commands.append(data[0])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every format gives back the bytes and times written to it, is recognised, and survives damage with a word about it."""
+"""Every format gives back the bytes and times written to it, is recognised, and tells of damage."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ import struct
 from pathlib import Path
 
 import pytest
-from logs import CAPTURES, capture_bytes, sip
-
 from argus_tools.formats import Chunk, LogError, ReadOptions, formats, open_log
 from argus_tools.formats.tcp import SEGMENT_BYTES, Connection, Streams, parse
+from logs import CAPTURES, capture_bytes, sip
 
 FILES = sorted(path.stem for path in CAPTURES.glob("*.jsonl"))
 BOTH_WAYS = sorted(set(formats()) - {"bin"})
@@ -46,7 +45,10 @@ def test_both_directions_come_back(tmp_path: Path, name: str, capture: str) -> N
     for direction in ("r2c", "c2r"):
         assert joined(back, direction) == capture_bytes(CAPTURES / f"{capture}.jsonl", direction)
     assert [chunk.t for chunk in back] == pytest.approx([chunk.t for chunk in chunks], abs=2e-6)
-    assert all(chunk.offset == sum(len(c.data) for c in back[:n] if c.dir == chunk.dir) for n, chunk in enumerate(back))
+    assert all(
+        chunk.offset == sum(len(c.data) for c in back[:n] if c.dir == chunk.dir)
+        for n, chunk in enumerate(back)
+    )
 
 
 @pytest.mark.parametrize("direction", ["r2c", "c2r"])
@@ -101,12 +103,14 @@ def test_random_damage_is_no_crash(tmp_path: Path, name: str, seed: int) -> None
         log = open_log(str(tmp_path / "log"), name)
         assert all(isinstance(chunk.data, bytes) for chunk in log)
     except LogError as error:
-        assert "\n" not in str(error)
+        lines = str(error).splitlines()
+        if len(lines) != 1:
+            raise
 
 
 @pytest.mark.parametrize("name", BOTH_WAYS)
 def test_long_chunks_are_split_and_come_back(tmp_path: Path, name: str) -> None:
-    data = random.Random(1).randbytes(10_000)
+    data = sip() + random.Random(1).randbytes(10_000)
     back, damage = read(tmp_path / "log", written(name, [Chunk(0.0, "c2r", data, 0)]), format_name=name)
     assert (joined(back, "c2r"), damage) == (data, [])
 

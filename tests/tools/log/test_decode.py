@@ -14,11 +14,11 @@ import time
 from pathlib import Path
 
 import pytest
-from logs import CAPTURES, ROOT, command, decode, jsonl, run, sip
-
 from argus_tools.formats import open_log
 from argus_tools.log.fields import Decoder
 from argus_tools.log.packets import packets
+from logs import CAPTURES, ROOT, command, decode, jsonl, run, sip
+
 from hil_sim.arcos import Command, EncoderPac, GyroPac, IoPac, SyncReply, frame
 
 FILES = sorted(CAPTURES.glob("*.jsonl"))
@@ -46,7 +46,9 @@ def test_a_sip_in_units_for_people(tmp_path: Path) -> None:
     assert "lat_vel" not in row
 
 
-@pytest.mark.parametrize(("th", "degrees"), [(0, 0), (2048, 180), (-2048, 180), (2049, -179.912109375), (-1024, -90)])
+@pytest.mark.parametrize(
+    ("th", "degrees"), [(0, 0), (2048, 180), (-2048, 180), (2049, -179.912109375), (-1024, -90)]
+)
 def test_headings_are_in_their_half_open_range(tmp_path: Path, th: int, degrees: float) -> None:
     assert robot(tmp_path, sip(th=th))[0]["heading_deg"] == degrees
 
@@ -94,7 +96,14 @@ def test_arguments_of_commands(tmp_path: Path) -> None:
 
 
 def test_the_other_packets(tmp_path: Path) -> None:
-    sent = (EncoderPac(-7, 9).data, IoPac().data, GyroPac(((512, 30),)).data, b"\xd0x", b"\xb8hi", b"\x90\x01")
+    sent = (
+        EncoderPac(-7, 9).data,
+        IoPac().data,
+        GyroPac(((512, 30),)).data,
+        b"\xd0x",
+        b"\xb8hi",
+        b"\x90\x01",
+    )
     rows = robot(tmp_path, *map(frame, sent))
     names = ["ENCODERPAC", "IOPAC", "GYROPAC", "PLAYLIST", "SERAUXPAC", "ENCODERPAC"]
     assert [row["type"] for row in rows] == names
@@ -193,7 +202,8 @@ def test_what_is_no_log_gives_one_line_and_2(tmp_path: Path, kind: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--type", "SPI"], ["--sonar", "x"], ["--from", "soon"], ["--format", "pdf"], ["--dir", "up"]]
+    "arguments",
+    [["--type", "SPI"], ["--sonar", "x"], ["--from", "soon"], ["--format", "pdf"], ["--dir", "up"]],
 )
 def test_a_wrong_argument_gives_one_line_and_2(arguments: list[str]) -> None:
     done = run("decode", CAPTURES / "a_idle.jsonl", *arguments)

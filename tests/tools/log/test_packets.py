@@ -3,14 +3,15 @@
 
 from __future__ import annotations
 
+import itertools
 import random
 import re
 
 import pytest
-from logs import CAPTURES, capture_bytes, command, sip
-
 from argus_tools.formats import Chunk, open_log
 from argus_tools.log.packets import Row, packets
+from logs import CAPTURES, capture_bytes, command, sip
+
 from hil_sim.arcos import Sip, Unframer, frame
 
 FILES = sorted(path.stem for path in CAPTURES.glob("*.jsonl"))
@@ -20,7 +21,7 @@ def scan(data: bytes, pieces: int = 1, seed: int = 0) -> list[Row]:
     """Scan bytes from a robot that come in so many pieces."""
     cuts = sorted(random.Random(seed).randrange(len(data) + 1) for _ in range(pieces - 1))
     edges = [0, *cuts, len(data)]
-    chunks = [Chunk(None, "r2c", data[a:b], a) for a, b in zip(edges, edges[1:], strict=False)]
+    chunks = [Chunk(None, "r2c", data[a:b], a) for a, b in itertools.pairwise(edges)]
     return list(packets(chunks))
 
 
@@ -55,7 +56,9 @@ def test_rows_give_back_the_bytes_of_the_capture(name: str, direction: str) -> N
 
 
 def test_only_one_capture_is_damaged() -> None:
-    damaged = {name for name in FILES if any(not r.ok for r in packets(open_log(str(CAPTURES / f"{name}.jsonl"))))}
+    damaged = {
+        name for name in FILES if any(not r.ok for r in packets(open_log(str(CAPTURES / f"{name}.jsonl"))))
+    }
     assert damaged == {"p10_badck"}
 
 
@@ -75,7 +78,9 @@ def stream(count: int, seed: int) -> list[bytes]:
 
 DAMAGE = {
     "any byte flipped": lambda rng, p: bytes(
-        b ^ (rng.randrange(1, 256) if i == at else 0) for at in [rng.randrange(len(p))] for i, b in enumerate(p)
+        b ^ (rng.randrange(1, 256) if i == at else 0)
+        for at in [rng.randrange(len(p))]
+        for i, b in enumerate(p)
     ),
     "a byte deleted": lambda rng, p: (lambda at: p[:at] + p[at + 1 :])(rng.randrange(len(p))),
     "stray FA before": lambda rng, p: b"\xfa" + p,
@@ -176,7 +181,16 @@ def test_syncs_become_pulse_open_close_when_the_handshake_ends() -> None:
     rest = [("c2r", command(name)) for name in ("OPEN", "PULSE", "VEL", "PULSE", "CLOSE")]
     again = [*shake, ("c2r", command("OPEN")), ("c2r", command("PULSE")), ("c2r", command("STOP"))]
     expected = ["SYNC0", "SYNC1", "SYNC2", "OPEN"]
-    assert names(*shake, *rest, *again) == [*expected, "PULSE", "VEL", "PULSE", "CLOSE", *expected, "PULSE", "STOP"]
+    assert names(*shake, *rest, *again) == [
+        *expected,
+        "PULSE",
+        "VEL",
+        "PULSE",
+        "CLOSE",
+        *expected,
+        "PULSE",
+        "STOP",
+    ]
 
 
 @pytest.mark.parametrize("first", ["PULSE", "OPEN", "CLOSE"])

@@ -9,11 +9,11 @@ import xml.etree.ElementTree
 from pathlib import Path
 
 import pytest
+from argus_tools.log.plot import POINTS_MAX, Series
+from argus_tools.log.spans import Happening, Span, spans
 from logs import CAPTURES, capture_bytes, command, decode, jsonl, run, sip
 from mcap.reader import make_reader
 
-from argus_tools.log.plot import POINTS_MAX, Series
-from argus_tools.log.spans import Happening, Span, spans
 from hil_sim.tables import load
 
 RAM = CAPTURES / "d_ram.jsonl"
@@ -48,7 +48,12 @@ def test_stats_of_a_sonar_and_of_gaps(tmp_path: Path) -> None:
     found = stats(path)
     assert found["sip_gaps"]["first"] == [[0.3, pytest.approx(1.0)]]
     sonar = found["sonar"]["3"]
-    assert (sonar["readings"], sonar["dropout_share"], sonar["min_mm"], sonar["max_mm"]) == (6, 0.5, 400, 1400)
+    assert (sonar["readings"], sonar["dropout_share"], sonar["min_mm"], sonar["max_mm"]) == (
+        6,
+        0.5,
+        400,
+        1400,
+    )
     assert sonar["refresh_s"] == pytest.approx(0.28)
     assert sonar["histogram_mm"]["counts"][:3] == [1, 0, 2]
     kind = next(k for k in found["types"] if k["type"] == "SIP")
@@ -114,7 +119,9 @@ def test_mcap_has_poses_validity_odometry_and_events(tmp_path: Path) -> None:
 def test_diff_names_the_field_that_differs(tmp_path: Path) -> None:
     one, two = tmp_path / "one.jsonl", tmp_path / "two.jsonl"
     same = [(float(n), "r2c", sip(x=n)) for n in range(9)]
-    one.write_bytes(jsonl([*same, (9.0, "r2c", sip(x=9, sonars=((3, 700),))), (10.0, "c2r", command("STOP"))]))
+    one.write_bytes(
+        jsonl([*same, (9.0, "r2c", sip(x=9, sonars=((3, 700),))), (10.0, "c2r", command("STOP"))])
+    )
     two.write_bytes(jsonl([*same[:4], *same[5:], (9.0, "r2c", sip(x=9, sonars=((3, 710),)))]))
     lines = run("diff", one, two).stdout.decode().splitlines()
     assert len(lines) == 4
@@ -155,7 +162,11 @@ def test_pictures_are_drawn(tmp_path: Path, view: str, ending: str) -> None:
 
 
 def test_pictures_that_cannot_be_drawn(tmp_path: Path) -> None:
-    for arguments in (["-o", "a.gif"], ["-o", tmp_path / "a.png", "--sonar", "40"], ["-o", tmp_path / "n" / "a.png"]):
+    for arguments in (
+        ["-o", "a.gif"],
+        ["-o", tmp_path / "a.png", "--sonar", "40"],
+        ["-o", tmp_path / "n" / "a.png"],
+    ):
         done = run("plot", RAM, "--no-faults", *arguments)
         assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
 

@@ -57,7 +57,14 @@ class JsonlReader:
         for number, line in self._lines():
             # As we write it ourselves; anything else is read as JSON.
             part = line.split(b'"')
-            if len(part) == 11 and part[1] == b"t" and part[3] == b"dir" and part[7] == b"hex" and part[10] == b"}\n" and part[5] in _DIRS:
+            if (
+                len(part) == 11
+                and part[1] == b"t"
+                and part[3] == b"dir"
+                and part[7] == b"hex"
+                and part[10] == b"}\n"
+                and part[5] in _DIRS
+            ):
                 try:
                     t = float(part[2][2:-2])
                     data = bytes.fromhex(part[9].decode())

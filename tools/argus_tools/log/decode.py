@@ -110,10 +110,12 @@ def _lines(rows: Iterator[Row], decoder: Decoder, line_of: Callable[[Row], str])
 
 def _write(header: str, lines: Iterator[str], at_once: bool) -> None:
     write = sys.stdout.write
-    first = next(lines, None)
-    held = [line for line in (header, first) if line]
+    held: list[str] = []
     try:
         for line in lines:
+            if header:
+                held.append(header)
+                header = ""
             held.append(line)
             if at_once or len(held) >= FLUSH_ROWS:
                 write("\n".join(held) + "\n")

@@ -41,6 +41,7 @@ _INTEGERS: Final = (ARGUMENT["POSITIVE"], ARGUMENT["NEGATIVE"])
 _HEAD: Final = 20  # data bytes of a SIP before its readings
 _PORTS: Final = {TYPE["SERAUXPAC"]: 1, TYPE["SERAUX2PAC"]: 2, TYPE["SERAUX3PAC"]: 3}
 _CACHE_MAX: Final = 4096
+_NOWHERE: Final = '{"t": null, "offset": 0, '
 _TAIL: Final = tuple(name for name, _ in Sip._TAIL)
 
 HEADINGS: Final = tuple((turn if turn <= _TURN // 2 else turn - _TURN) * 360 / _TURN for turn in range(_TURN))
@@ -80,21 +81,16 @@ class Decoder:
         self._unit = 1.0
         self._is_mm = True
         self._x = self._y = 0
+        self._raw = b""
         self._origin_due = False
+        # Of the last SIP, unwrapped.
+        self.x_mm: float = 0
+        self.y_mm: float = 0
         self._layouts: dict[tuple[bytes, int], _Layout | None] = {}
         self._states: dict[bytes, tuple[str, str]] = {}
+        self._bodies: dict[tuple[str, str, bytes], str] = {}
         self.subclass = DEFAULT_SUBCLASS
         self._learn(subclass)
-
-    @property
-    def x_mm(self) -> float:
-        """Unwrapped x of the last SIP."""
-        return self._x if self._is_mm else round(self._x * self._unit, 3)
-
-    @property
-    def y_mm(self) -> float:
-        """Unwrapped y of the last SIP."""
-        return self._y if self._is_mm else round(self._y * self._unit, 3)
 
     def _learn(self, subclass: str | None) -> None:
         if subclass:
@@ -108,7 +104,9 @@ class Decoder:
             return
         data = row[5]
         if row[3] == "SIP":
-            if len(data) >= _HEAD:
+            raw = data[1:5]
+            if len(data) >= _HEAD and (raw != self._raw or self._origin_due):
+                self._raw = raw
                 raw_x, raw_y = data[1] | data[2] << 8, data[3] | data[4] << 8
                 x, y = self._x, self._y
                 if self._origin_due and self._is_origin(raw_x) and self._is_origin(raw_y):
@@ -116,11 +114,14 @@ class Decoder:
                     x = y = 0
                 self._x = x + ((raw_x - x + _HALF) & (_SPAN - 1)) - _HALF
                 self._y = y + ((raw_y - y + _HALF) & (_SPAN - 1)) - _HALF
+                self.x_mm = self._x if self._is_mm else round(self._x * self._unit, 3)
+                self.y_mm = self._y if self._is_mm else round(self._y * self._unit, 3)
         elif row.type == "SETO":
             self._origin_due = True
         elif row.dir == ROBOT_TO_CLIENT and row.type in ("SYNC2", "CONFIGPAC"):
             if row.type == "SYNC2":
                 self._x = self._y = 0
+            self._raw = b""
             if self._asked is None:
                 self._learn(_subclass_of(data))
 
@@ -184,8 +185,8 @@ class Decoder:
                 return layout.text % (
                     "null" if t is None else repr(t),
                     row[1],
-                    self._x if self._is_mm else self.x_mm,
-                    self._y if self._is_mm else self.y_mm,
+                    self.x_mm,
+                    self.y_mm,
                     _HEADING_TEXT[th & 4095],
                     left,
                     right,
@@ -193,6 +194,17 @@ class Decoder:
                     *ranges,
                     tail,
                 )
+        elif row[4]:
+            key = (row[2], row[3], data)
+            body = self._bodies.get(key)
+            if body is None:
+                # All but t and offset follows from the packet alone, and most commands repeat.
+                body = json.dumps(self.fields(row._replace(t=None, offset=0))).removeprefix(_NOWHERE)
+                if len(self._bodies) >= _CACHE_MAX:
+                    self._bodies.clear()
+                self._bodies[key] = body
+            t = row[0]
+            return f'{{"t": {"null" if t is None else repr(t)}, "offset": {row[1]}, {body}'
         return json.dumps(self.fields(row))
 
     def json_lines(self, rows: Iterable[Row]) -> Iterator[str]:
