@@ -24,8 +24,10 @@ static int master = -1;
 static int slave = -1;
 static char name[64];
 static robot_t robot;
+static int await_command = ARCOS_CMD_PULSE; // SIGTERM waits until the robot has got one of these, too
 
 void setUp(void) {
+    await_command = ARCOS_CMD_PULSE;
     TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, name, NULL, NULL));
     fcntl(master, F_SETFL, O_NONBLOCK);
     robot_init(&robot);
@@ -106,7 +108,8 @@ static int run(const char *line, bool present, const char *signal_at) {
         ended = waitpid(child, &status, WNOHANG) == child;
         gather(ends[0][0], out, sizeof out, &used[0]);
         gather(ends[1][0], err, sizeof err, &used[1]);
-        if (signal_at != NULL && strstr(out, signal_at) != NULL) {
+        const bool got = await_command == ARCOS_CMD_PULSE || robot.commands[await_command] > 0;
+        if (signal_at != NULL && strstr(out, signal_at) != NULL && got) {
             kill(child, SIGTERM);
             signal_at = NULL;
         }
@@ -198,6 +201,7 @@ void test_a_serial_link_starts_passive_and_says_why_and_sigterm_closes_in_order(
 void test_active_drives(void) {
     char line[256];
     snprintf(line, sizeof line, "--link serial:%s --active --goal 1000,0 --plain --status 50", name);
+    await_command = ARCOS_CMD_MOVE;
     TEST_ASSERT_EQUAL_INT(0, run(line, true, "STATUS DRIVING"));
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_MOVE]);
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_STOP]);
