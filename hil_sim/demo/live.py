@@ -181,4 +181,5 @@ def _sonar_cells(status: Record, sonar: int) -> Sequence[Text]:
 def view(live: bool) -> View:
     """The screen where standard output is a terminal and it is wanted, else lines."""
     console = Console()
-    return Screen(console) if live and console.is_terminal else Lines()
+    able = console.is_terminal and not console.is_dumb_terminal
+    return Screen(console) if live and able else Lines()

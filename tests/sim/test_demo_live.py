@@ -18,6 +18,12 @@ from hil_sim.demo.runner import Recording
 QUIET = {"STATUS", "SONAR_HEALTHY", "STOPPED", "SONAR_WITNESS", "PLAN_ROTATION"}
 
 
+@pytest.fixture(autouse=True)
+def capable_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever terminal the tests themselves run on."""
+    monkeypatch.setenv("TERM", "xterm-256color")
+
+
 def watched(shown: live.View, chunks: int) -> Recording:
     """Feed a whole drive in equal parts of time; show after each, twice, as a busy loop would."""
     truth, events = made_up()

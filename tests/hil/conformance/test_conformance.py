@@ -8,7 +8,7 @@ import contextlib
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -76,15 +76,22 @@ def robots(*arguments: str) -> Iterator[list[str]]:
         process.stdout.close() if process.stdout else None
 
 
-def results_of(kind: str, addresses: list[str]) -> dict[str, Result]:
-    """All checks, each robot its share, at the same time."""
+def results_of(kind: str, addresses: list[str], expected: Set[str] = frozenset()) -> dict[str, Result]:
+    """All checks, each robot its share, at the same time; what fails is asked once more, alone.
+
+    On a busy host a wire that falls behind loses a SIP, as a real one would, and a check that counts firings sees it.
+    """
 
     def share(item: tuple[str, tuple[str, ...]]) -> list[Result]:
         return run(parse_target(f"{kind}:{item[0]}"), selected(item[1]), motion=True)
 
     with ThreadPoolExecutor(len(SHARES)) as pool:
         shares = list(pool.map(share, zip(addresses, SHARES, strict=True)))
-    return {result.check: result for results in shares for result in results}
+    results = {result.check: result for found in shares for result in found}
+    target = parse_target(f"{kind}:{addresses[0]}")
+    for title in sorted(of(results, FAIL).keys() - expected):
+        results |= {again.check: again for again in run(target, selected((title,)), motion=True)}
+    return results
 
 
 def of(results: dict[str, Result], verdict: str) -> dict[str, str]:
@@ -113,7 +120,7 @@ def test_our_emulator_on_tcp() -> None:
 
 def test_the_vendor_emulators_habits() -> None:
     with robots("--tcp", "0", "--quirks", "mobilesim") as addresses:
-        results = results_of("tcp", addresses)
+        results = results_of("tcp", addresses, VENDOR_FAILS)
     fails = of(results, FAIL)
     assert set(fails) == VENDOR_FAILS, {
         name: fails[name] for name in set(fails) ^ VENDOR_FAILS if name in fails
