@@ -7,9 +7,11 @@ import io
 import random
 import struct
 from pathlib import Path
+from typing import Any
 
 import pytest
 from argus_tools.formats import Chunk, LogError, ReadOptions, formats, open_log
+from argus_tools.formats.base import Damage
 from argus_tools.formats.tcp import SEGMENT_BYTES, Connection, Streams, parse
 from logs import CAPTURES, capture_bytes, sip
 
@@ -17,16 +19,18 @@ FILES = sorted(path.stem for path in CAPTURES.glob("*.jsonl"))
 BOTH_WAYS = sorted(set(formats()) - {"bin"})
 
 
-def written(name: str, chunks: list[Chunk], **options: object) -> bytes:
+def written(name: str, chunks: list[Chunk], **options: Any) -> bytes:
     stream = io.BytesIO()
-    writer = formats()[name].writer(stream, ReadOptions(**options))
+    make = formats()[name].writer
+    assert make is not None
+    writer = make(stream, ReadOptions(**options))
     for chunk in chunks:
         writer.write(chunk)
     writer.close()
     return stream.getvalue()
 
 
-def read(path: Path, data: bytes, **options: object) -> tuple[list[Chunk], list[object]]:
+def read(path: Path, data: bytes, **options: Any) -> tuple[list[Chunk], list[Damage]]:
     path.write_bytes(data)
     log = open_log(str(path), **options)
     return list(log), log.damage
@@ -142,7 +146,7 @@ def frames() -> list[bytes]:
     return made
 
 
-def followed(captured: list[bytes], **options: object) -> tuple[bytes, list[object]]:
+def followed(captured: list[bytes], **options: Any) -> tuple[bytes, list[Damage]]:
     streams = Streams(ReadOptions(**options), [])
     chunks: list[Chunk] = []
     for number, frame in enumerate(captured):

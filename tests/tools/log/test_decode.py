@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 
 import pytest
-from argus_tools.formats import open_log
+from argus_tools.formats import Chunk, open_log
 from argus_tools.log.fields import Decoder
 from argus_tools.log.packets import packets
 from logs import CAPTURES, ROOT, command, decode, jsonl, run, sip
@@ -133,9 +133,7 @@ def test_both_ways_on_random_sips(seed: int) -> None:
         assert decoder.json(row) == json.dumps(decoder.fields(row))
 
 
-def open_chunk(data: bytes) -> object:
-    from argus_tools.formats import Chunk
-
+def open_chunk(data: bytes) -> Chunk:
     return Chunk(0.5, "r2c", data, 0)
 
 

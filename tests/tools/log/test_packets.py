@@ -6,9 +6,11 @@ from __future__ import annotations
 import itertools
 import random
 import re
+from collections.abc import Callable
 
 import pytest
 from argus_tools.formats import Chunk, open_log
+from argus_tools.formats.base import Direction
 from argus_tools.log.packets import Row, packets
 from logs import CAPTURES, capture_bytes, command, sip
 
@@ -25,7 +27,10 @@ def scan(data: bytes, pieces: int = 1, seed: int = 0) -> list[Row]:
     return list(packets(chunks))
 
 
-def names(*sent: tuple[str, bytes]) -> list[str]:
+Sent = tuple[Direction, bytes]
+
+
+def names(*sent: Sent) -> list[str]:
     return [row.type for row in packets(Chunk(None, direction, data, 0) for direction, data in sent)]
 
 
@@ -76,7 +81,7 @@ def stream(count: int, seed: int) -> list[bytes]:
     ]
 
 
-DAMAGE = {
+DAMAGE: dict[str, Callable[[random.Random, bytes], bytes]] = {
     "any byte flipped": lambda rng, p: bytes(
         b ^ (rng.randrange(1, 256) if i == at else 0)
         for at in [rng.randrange(len(p))]
@@ -177,9 +182,14 @@ def test_much_junk_is_reported_in_parts() -> None:
 
 
 def test_syncs_become_pulse_open_close_when_the_handshake_ends() -> None:
-    shake = [("c2r", command(f"SYNC{n}")) for n in range(3)]
-    rest = [("c2r", command(name)) for name in ("OPEN", "PULSE", "VEL", "PULSE", "CLOSE")]
-    again = [*shake, ("c2r", command("OPEN")), ("c2r", command("PULSE")), ("c2r", command("STOP"))]
+    shake: list[Sent] = [("c2r", command(f"SYNC{n}")) for n in range(3)]
+    rest: list[Sent] = [("c2r", command(name)) for name in ("OPEN", "PULSE", "VEL", "PULSE", "CLOSE")]
+    again: list[Sent] = [
+        *shake,
+        ("c2r", command("OPEN")),
+        ("c2r", command("PULSE")),
+        ("c2r", command("STOP")),
+    ]
     expected = ["SYNC0", "SYNC1", "SYNC2", "OPEN"]
     assert names(*shake, *rest, *again) == [
         *expected,
@@ -201,12 +211,18 @@ def test_a_log_that_starts_mid_session_is_open(first: str) -> None:
 
 
 def test_answers_settle_a_handshake_that_begins_in_an_open_log() -> None:
-    sent = [("r2c", sip()), ("c2r", command("SYNC0")), ("r2c", command("SYNC0")), ("c2r", command("SYNC1"))]
+    sent: list[Sent] = [
+        ("r2c", sip()),
+        ("c2r", command("SYNC0")),
+        ("r2c", command("SYNC0")),
+        ("c2r", command("SYNC1")),
+    ]
     assert names(*sent) == ["SIP", "SYNC0", "SYNC0", "SYNC1"]
 
 
 def test_a_robot_that_never_answers_is_knocked_at_with_sync0() -> None:
-    assert names(*[("c2r", command("SYNC0"))] * 40) == ["SYNC0"] * 40
+    knock: Sent = ("c2r", command("SYNC0"))
+    assert names(*[knock] * 40) == ["SYNC0"] * 40
 
 
 def test_unknown_numbers_have_numbered_names() -> None:

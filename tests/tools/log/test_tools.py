@@ -7,6 +7,7 @@ import json
 import struct
 import xml.etree.ElementTree
 from pathlib import Path
+from typing import Any
 
 import pytest
 from argus_tools.log.plot import POINTS_MAX, Series
@@ -19,10 +20,11 @@ from hil_sim.tables import load
 RAM = CAPTURES / "d_ram.jsonl"
 
 
-def stats(path: Path, *arguments: str) -> dict[str, object]:
+def stats(path: Path, *arguments: str) -> dict[str, Any]:
     done = run("stats", "--json", path, *arguments)
     assert done.returncode == 0
-    return json.loads(done.stdout)
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
 
 
 def test_stats_count_what_the_readme_counts() -> None:
@@ -100,9 +102,13 @@ def test_mcap_has_poses_validity_odometry_and_events(tmp_path: Path) -> None:
     sips = decode(RAM, "--type", "SIP")
     with made.open("rb") as file:
         reader = make_reader(file)
-        schemas = {schema.name: json.loads(schema.data) for schema in reader.get_summary().schemas.values()}
+        summary = reader.get_summary()
+        assert summary is not None
+        schemas = {schema.name: json.loads(schema.data) for schema in summary.schemas.values()}
         assert {"argus.SonarRange", "foxglove.PoseInFrame", "foxglove.Log"} <= set(schemas)
-        messages = [(s.name, c.topic, m.log_time, json.loads(m.data)) for s, c, m in reader.iter_messages()]
+        messages = [
+            (s.name, c.topic, m.log_time, json.loads(m.data)) for s, c, m in reader.iter_messages() if s
+        ]
     for name, _, _, message in messages:
         assert set(message) <= set(schemas[name]["properties"])
     ranges = [(at, message) for _, topic, at, message in messages if topic == "/sonar/03"]
