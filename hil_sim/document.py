@@ -17,6 +17,9 @@ T = TypeVar("T")
 MAX_VALUES: Final = 200_000
 """Values of one document: some kilobytes of aliases can otherwise stand for more than any memory holds."""
 
+_PROBLEM_MAX = 200
+"""Characters of the parser's own words, which may quote the file at any length."""
+
 
 class Item:
     """One value of a document: a mapping, a list or a scalar, with the line it stands on."""
@@ -164,7 +167,9 @@ def read_document(path: str | Path) -> Item:
         node = yaml.compose(text, Loader=yaml.SafeLoader)
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
-        raise SimError(f"{path}:{line}: not valid YAML: {error.problem}; correct the line") from None
+        said = str(error.problem)
+        problem = said if len(said) <= _PROBLEM_MAX else said[:_PROBLEM_MAX] + "..."
+        raise SimError(f"{path}:{line}: not valid YAML: {problem}; correct the line") from None
     except (yaml.YAMLError, RecursionError, ValueError, OverflowError) as error:
         raise SimError(f"{path}:1: not valid YAML: {str(error).splitlines()[0]}") from None
     if node is None:

@@ -121,6 +121,7 @@ yamlish = st.lists(
 @example('a: "\\ud800"')
 @example("a: &x [*x]")
 @example("[" * 3000)
+@example("*x" + "f" * 6000)
 @example("? [a]\n: 1")
 @given(yamlish | st.text())
 def test_any_text_gives_values_or_one_line(file: Path, text: str) -> None:
