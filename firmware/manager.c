@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "argus/angle.h"
-#include "argus/record.h"
 #include "manager_internal.h"
 
 #define AWAY_CDEG 500
@@ -33,6 +32,8 @@ void argus_init(argus_t *const self, const argus_config_t *const config, const u
     argus_knowledge_init(&self->knowledge);
     argus_awareness_init(&self->awareness);
     argus_verify_init(&self->verify);
+    argus_evidence_init(&self->evidence);
+    argus_inquiry_init(&self->inquiry);
     argus_motion_init(&self->motion);
     argus_task_init(&self->task);
     argus_events_init(&self->events);
@@ -82,6 +83,7 @@ static void on_open(argus_t *const self) {
     }
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
     argus_awareness_restart(&self->awareness);
+    argus_evidence_restart(&self->evidence);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it
     self->motors_said = false;
     self->stalled = false;
@@ -89,6 +91,7 @@ static void on_open(argus_t *const self) {
     if (self->plan.disabled != 0) {
         argus_share_slots(self); // the robot begins each session with its own order
     }
+    argus_meet_robot(self);
     argus_enter_checking(self, true);
 }
 
@@ -104,6 +107,7 @@ static void on_resume(argus_t *const self) {
     self->stalled = false;
     argus_say(self, ARGUS_EV_LINK_RESUMED, ARGUS_NO_SONAR, (int32_t)self->session.gap_ms);
     argus_awareness_restart(&self->awareness);
+    argus_evidence_restart(&self->evidence);
     argus_enter_checking(self, true);
 }
 
@@ -117,8 +121,13 @@ static void on_sip(argus_t *const self) {
     self->awareness.away = self->has_base && argus_angle_abs_diff(self->knowledge.pose.heading_cdeg,
                                                                   self->base_cdeg) > AWAY_CDEG;
     const argus_alarm_t alarm = argus_awareness_sip(&self->awareness, &self->knowledge, &self->config);
+    if (argus_judges(self)) {
+        argus_evidence_sip(&self->evidence, &self->knowledge);
+    }
     argus_task_see(&self->task, &self->knowledge, self->now_ms);
     argus_react(self, &alarm);
+    argus_judge(self);
+    argus_foretell(self);
     argus_motion_sip(&self->motion, &self->session.outbox, &self->knowledge, self->now_ms);
     argus_run_mode(self);
 }
@@ -306,9 +315,21 @@ static void jog_turn(argus_t *const self, const int32_t degrees) {
     }
 }
 
+static void recheck(argus_t *const self) {
+    if (argus_session_is_open(&self->session)) {
+        argus_awareness_init(&self->awareness);
+        argus_stop(self, ARCOS_CMD_STOP);
+        argus_enter_checking(self, true);
+    }
+}
+
 void argus_operator(argus_t *const self, const uint32_t now_ms, const argus_op_t op, const int32_t argument) {
     self->now_ms = now_ms;
     if (self->shutdown) {
+        return;
+    }
+    if (op >= ARGUS_OP_RETEST) {
+        argus_serve(self, op, argument);
         return;
     }
     argus_say(self, ARGUS_EV_OPERATOR, ARGUS_NO_SONAR, (int32_t)op);
@@ -321,11 +342,7 @@ void argus_operator(argus_t *const self, const uint32_t now_ms, const argus_op_t
         resume(self);
         break;
     case ARGUS_OP_RECHECK:
-        if (argus_session_is_open(&self->session)) {
-            argus_awareness_init(&self->awareness);
-            argus_stop(self, ARCOS_CMD_STOP);
-            argus_enter_checking(self, true);
-        }
+        recheck(self);
         break;
     case ARGUS_OP_MOVE:
         jog(self, argument);
@@ -362,16 +379,4 @@ void argus_shutdown(argus_t *const self, const uint32_t now_ms) {
 
 bool argus_closed(const argus_t *const self) {
     return self->mode == ARGUS_MODE_CLOSED;
-}
-
-size_t argus_record_save(const argus_t *const self, uint8_t *const buffer, const size_t capacity) {
-    return argus_record_encode(&self->knowledge, buffer, capacity);
-}
-
-bool argus_record_load(argus_t *const self, const uint8_t *const record, const size_t length) {
-    const argus_record_fault_t fault = argus_record_decode(&self->knowledge, record, length);
-    if (fault != ARGUS_RECORD_OK) {
-        argus_say(self, ARGUS_EV_RECORD_IGNORED, ARGUS_NO_SONAR, (int32_t)fault);
-    }
-    return fault == ARGUS_RECORD_OK;
 }

@@ -54,11 +54,16 @@ uint16_t argus_open_suspects(const argus_t *const self) {
                       ~(unsigned)self->awareness.verified);
 }
 
+static uint16_t find_suspects(argus_t *const self) {
+    return argus_judges(self) ? (uint16_t)(argus_worth_a_look(self) | argus_open_suspects(self))
+                              : argus_suspects(&self->awareness, &self->knowledge, &self->config);
+}
+
 static void finish_check(argus_t *const self) {
-    const uint16_t found = argus_suspects(&self->awareness, &self->knowledge, &self->config);
-    const uint16_t suspects = (uint16_t)(found | argus_open_suspects(self));
+    const uint16_t suspects = (uint16_t)(find_suspects(self) | argus_open_suspects(self));
+    const bool routine = argus_judges(self) && argus_routine_is_due(self);
     self->check_ms = self->now_ms;
-    if (suspects != 0 && !self->passive && !self->stay) {
+    if ((suspects != 0 || routine) && !self->passive && !self->stay) {
         argus_enter_verifying(self, suspects);
         return;
     }
@@ -66,13 +71,12 @@ static void finish_check(argus_t *const self) {
     declare_healthy(self);
     argus_replan(self);
     self->checked = true;
-    argus_say(self, ARGUS_EV_HEALTH_CHECK, ARGUS_NO_SONAR,
-              argus_count_bits(argus_disabled(&self->knowledge)));
+    argus_say(self, ARGUS_EV_HEALTH_CHECK, ARGUS_NO_SONAR, argus_count_bits(argus_out(&self->knowledge)));
     argus_decide(self);
 }
 
 uint16_t argus_wanted_sonars(const argus_t *const self) {
-    return (uint16_t)(ARGUS_FORWARD_MASK & ~(unsigned)argus_disabled(&self->knowledge));
+    return (uint16_t)(ARGUS_FORWARD_MASK & ~(unsigned)argus_out(&self->knowledge));
 }
 
 void argus_run_checking(argus_t *const self) {
@@ -154,6 +158,10 @@ static void begin_next_suspect(argus_t *const self) {
 }
 
 void argus_run_verifying(argus_t *const self) {
+    if (argus_judges(self)) {
+        argus_run_inquiry(self);
+        return;
+    }
     if (self->verify.phase == ARGUS_VERIFY_IDLE) {
         if (is_home(self)) {
             begin_next_suspect(self);
@@ -177,7 +185,7 @@ void argus_run_verifying(argus_t *const self) {
 }
 
 static bool check_is_due(const argus_t *const self) {
-    return self->now_ms - self->check_ms >= (uint32_t)self->config.health_check_ms;
+    return argus_judges(self) || self->now_ms - self->check_ms >= (uint32_t)self->config.health_check_ms;
 }
 
 // Who may not turn cannot verify: there a suspicion lasts as long as the disparity.
@@ -197,11 +205,12 @@ bool argus_health_check(argus_t *const self) {
         return false;
     }
     self->check_ms = self->now_ms;
-    const uint16_t suspects = argus_suspects(&self->awareness, &self->knowledge, &self->config);
-    if (self->passive) {
+    const uint16_t suspects = find_suspects(self);
+    const bool routine = argus_judges(self) && self->mode == ARGUS_MODE_DRIVING && argus_routine_is_due(self);
+    if (self->passive && !argus_judges(self)) {
         drop_suspicions(self);
     }
-    if (suspects == 0) {
+    if (suspects == 0 && !routine) {
         return false;
     }
     if (self->passive || self->paused) {

@@ -38,6 +38,21 @@ uint16_t argus_wanted_sonars(const argus_t *self); // those of 1..6 that are not
 bool argus_health_check(argus_t *self); // the periodic one beside the main task; true when it took over
 void argus_flag_suspects(argus_t *self, uint16_t suspects);
 
+// Profile argus.
+bool argus_judges(const argus_t *self);
+void argus_judge(argus_t *self); // each SIP: convictions, names, rehabilitation
+uint16_t argus_worth_a_look(argus_t *self);
+bool argus_routine_is_due(const argus_t *self);
+void argus_run_inquiry(argus_t *self);
+void argus_foretell(argus_t *self); // each SIP: a sonar that gets worse
+
+// Across missions.
+void argus_meet_robot(argus_t *self); // a session is open: is it the robot of the record?
+
+// What an operator asks of one sonar (RETEST and what follows it); refused without an event when it cannot be
+// done.
+void argus_serve(argus_t *self, argus_op_t op, int32_t sonar);
+
 // One SIP in the present mode.
 void argus_run_checking(argus_t *self);
 void argus_run_verifying(argus_t *self);

@@ -14,6 +14,7 @@ void argus_enter(argus_t *const self, const argus_mode_t mode) {
     }
     if (mode != ARGUS_MODE_VERIFYING) {
         argus_verify_init(&self->verify);
+        argus_inquiry_init(&self->inquiry);
     }
 }
 

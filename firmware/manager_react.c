@@ -43,8 +43,10 @@ bool argus_may_translate(const argus_t *const self) {
 bool argus_rear_is_clear(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
-        const bool counts = (REAR_SONARS >> i & 1u) != 0 && s->health != ARGUS_DISABLED;
-        const bool heard = argus_age_ms(&self->knowledge, i, self->now_ms) <= (uint32_t)self->config.stale_ms;
+        const bool counts = (REAR_SONARS >> i & 1u) != 0;
+        const bool heard =
+            argus_age_ms(&self->knowledge, i, self->now_ms) <= (uint32_t)self->config.stale_ms &&
+            !argus_is_out(&self->knowledge, i); // nobody looks there in its place
         if (counts && (!heard || s->reading_mm <= self->config.rear_clear_mm)) {
             return false;
         }
@@ -107,11 +109,16 @@ void argus_share_slots(argus_t *const self) {
     size_t count = 0;
     for (int half = 0; half < 2; half++) {
         for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-            if (self->knowledge.sonar[i].health != ARGUS_DISABLED) {
+            if (!argus_is_out(&self->knowledge, i)) {
                 order[count++] = (uint8_t)(i + 1);
             }
         }
         order[count++] = half == 0 ? 1 : ARGUS_FORWARD_LAST + 2;
+    }
+    for (int i = ARGUS_FORWARD_FIRST; argus_judges(self) && i <= ARGUS_FORWARD_LAST; i++) {
+        if (argus_is_out(&self->knowledge, i)) { // its own slot, to show that it does well again
+            order[count++] = (uint8_t)(i + 1);
+        }
     }
     argus_outbox_string(&self->session.outbox, ARCOS_CMD_POLLING, order, count);
 }
@@ -126,9 +133,9 @@ static void say_plan(argus_t *const self) {
 // A suspect that no witness could judge is planned for as if it were disabled: its bearing counts as
 // uncovered. One that is still to be verified is not: nothing moves ahead before it is.
 void argus_replan(argus_t *const self) {
-    const uint16_t disabled = argus_disabled(&self->knowledge) & ARGUS_FORWARD_MASK;
-    const uint16_t blind =
-        disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->awareness.verified);
+    const uint16_t disabled = argus_out(&self->knowledge) & ARGUS_FORWARD_MASK;
+    const uint16_t blind = disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
+                                       self->awareness.verified & ARGUS_FORWARD_MASK);
     const argus_failure_t failure = argus_failure_of(disabled);
     if (failure != self->failure) {
         self->failure = failure;
@@ -143,7 +150,7 @@ void argus_replan(argus_t *const self) {
 }
 
 void argus_flag_suspects(argus_t *const self, const uint16_t suspects) {
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
         argus_sonar_t *const s = &self->knowledge.sonar[i];
         if ((suspects >> i & 1u) != 0 && s->health != ARGUS_SUSPECT) {
             argus_sonar_set_health(s, ARGUS_SUSPECT, ARGUS_KIND_NONE, self->now_ms);
@@ -221,6 +228,7 @@ static bool react_object(argus_t *const self, const argus_alarm_t *const alarm) 
         return false;
     }
     argus_say(self, ARGUS_EV_OBJECT, alarm->object_sonar, alarm->object_mm);
+    self->evidence.jumped |= alarm->object; // looked at before it is believed
     argus_stop(self, ARCOS_CMD_STOP);
     if (self->mode != ARGUS_MODE_BACKING) {
         argus_task_refuse(&self->task, &self->knowledge);
@@ -286,7 +294,9 @@ void argus_react(argus_t *const self, const argus_alarm_t *const alarm) {
     if (react_bumper(self) || react_stall(self, alarm)) {
         return;
     }
-    watch_others(self);
+    if (!argus_judges(self)) {
+        watch_others(self);
+    }
     react_battery(self);
     react_motors(self);
     if (!react_dead(self, alarm)) {

@@ -76,11 +76,14 @@ static bool driving_holds(const argus_t *const self) {
 static bool health_holds(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
-        if (s->health > ARGUS_STALE || (s->health == ARGUS_DISABLED) != (s->kind != ARGUS_KIND_NONE)) {
+        const bool whole =
+            s->health == ARGUS_HEALTHY || s->health == ARGUS_UNKNOWN || s->health == ARGUS_STALE;
+        if (s->health > ARGUS_STALE || (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
+            (whole && s->kind != ARGUS_KIND_NONE)) {
             return false;
         }
     }
-    return argus_failure_of(argus_disabled(&self->knowledge)) == self->failure;
+    return argus_failure_of(argus_out(&self->knowledge)) == self->failure;
 }
 
 int argus_invariants_broken(const argus_t *const self) {

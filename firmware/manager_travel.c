@@ -103,7 +103,7 @@ static void blocked_ahead(argus_t *const self, const argus_event_id_t event, con
 static int nearest_forward(const argus_knowledge_t *const knowledge) {
     int nearest = -1;
     for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        if (argus_usable(knowledge, i) &&
+        if (knowledge->sonar[i].reported && !argus_is_out(knowledge, i) &&
             (nearest < 0 || knowledge->sonar[i].reading_mm < knowledge->sonar[nearest].reading_mm)) {
             nearest = i;
         }
@@ -118,7 +118,11 @@ static void steer(argus_t *const self, const int32_t left_mm) {
 }
 
 static void moved_on(argus_t *const self) {
-    argus_awareness_moved(&self->awareness);
+    if (argus_judges(self)) { // a suspect that could not be cleared is covered for like one that is out
+        self->awareness.verified &= argus_with_health(&self->knowledge, ARGUS_SUSPECT);
+    } else {
+        argus_awareness_moved(&self->awareness);
+    }
     self->backed = 0;
     self->wait_last = ARGUS_WAIT_NONE;
 }
@@ -127,7 +131,7 @@ static void moved_on(argus_t *const self) {
 static bool sees_ahead(const argus_t *const self) {
     const uint32_t limit_ms = 2u * 8u * (uint32_t)self->config.sonar_cycle_ms + 100u;
     for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        const bool counts = self->knowledge.sonar[i].health != ARGUS_DISABLED;
+        const bool counts = !argus_is_out(&self->knowledge, i);
         if (counts && argus_age_ms(&self->knowledge, i, self->now_ms) > limit_ms) {
             return false;
         }
@@ -226,6 +230,8 @@ static void judge_sweep(argus_t *const self) {
         blocked_ahead(self, ARGUS_EV_OBJECT_CHECKED, self->drive.smallest_of, self->drive.smallest_mm);
     } else if (direct_mm <= self->config.check_range_mm) {
         blocked_ahead(self, ARGUS_EV_OBJECT, direct, direct_mm);
+    } else if (argus_open_suspects(self) != 0) { // S6: one that an operator wants looked at again
+        argus_enter_checking(self, false);
     } else {
         step_ahead(self);
     }

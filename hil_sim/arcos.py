@@ -10,6 +10,7 @@
 
 from __future__ import annotations
 
+import operator
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -439,12 +440,31 @@ class Sip:
         ("charge_percent", "b"),
     )
 
+    @classmethod
+    def of(cls, values: dict[str, Any]) -> Self:
+        """Return the packet with these fields, the rest as by default; several times faster than a call."""
+        packet = object.__new__(cls)
+        vars(packet).update(_SIP_DEFAULTS)
+        vars(packet).update(values)
+        return packet
+
     @property
     def data(self) -> bytes:
         """The data part of the packet."""
-        head = self._HEAD.pack(*(getattr(self, name) for name in self._FIXED), len(self.sonars))
-        sonars = b"".join(struct.pack("<BH", number, range_mm) for number, range_mm in self.sonars)
-        return head + sonars + _pack_tail(self._TAIL, self) + self.rest
+        fields = vars(self)
+        head = self._HEAD.pack(*_sip_head(fields), len(self.sonars))
+        flat = [value for pair in self.sonars for value in pair]
+        sonars = struct.pack("<" + "BH" * len(self.sonars), *flat)
+        return head + sonars + self._tail(fields) + self.rest
+
+    def _tail(self, fields: dict[str, Any]) -> bytes:
+        if self.lat_vel is None:
+            # What a robot sends, in one go; anything else, and anything wrong, field by field.
+            try:
+                return _SIP_TAIL.pack(*_sip_tail(fields))
+            except struct.error:
+                pass
+        return _pack_tail(self._TAIL, self)
 
     @classmethod
     def decode(cls, data: bytes) -> Self:
@@ -480,6 +500,13 @@ class Sip:
     def rear_bumpers(self) -> int:
         """Bits 1 to 7: rear segments from the right."""
         return self.stall_left & SIP["BUMPER_MASK"]
+
+
+_SIP_DEFAULTS: Final = dict(vars(Sip()))
+_SIP_USUAL: Final = [(name, code) for name, code in Sip._TAIL if _SIP_DEFAULTS[name] is not None]
+_SIP_TAIL: Final = struct.Struct("<" + "".join(code for _, code in _SIP_USUAL))
+_sip_head = operator.itemgetter(*Sip._FIXED)
+_sip_tail = operator.itemgetter(*(name for name, _ in _SIP_USUAL))
 
 
 @dataclass(frozen=True)

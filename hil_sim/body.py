@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Protocol, TypeAlias
 
 from hil_sim.tables import section
 from hil_sim.world import Pose, World
@@ -20,7 +20,11 @@ _BUMPER_DEPTH_MM: Final = 60.0
 _CELL_MM: Final = 500.0
 _SEARCH_MM: Final = 3000.0
 """Clearances beyond this are reported as this: nobody needs them, and it bounds the search."""
-_REACH_MM: Final = math.hypot(REAR_MM, HALF_MM)
+REACH_MM: Final = math.hypot(REAR_MM, HALF_MM)
+"""From the centre of rotation to the furthest corner."""
+
+Segment: TypeAlias = tuple[float, float, float, float]
+"""x1, y1, x2, y2 in mm."""
 
 
 @dataclass(frozen=True)
@@ -36,10 +40,18 @@ class Contact:
     rear_segments: int
 
 
-class BodyModel:
-    """The body's contact with the solids of one world."""
+class Moving(Protocol):
+    """What the body asks of solids that move by themselves."""
 
-    def __init__(self, world: World) -> None:
+    def near(self, pose: Pose, within_mm: float) -> list[Segment]:
+        """Return at least the segments within a distance of the centre, as they are now."""
+
+
+class BodyModel:
+    """The body's contact with the solids of one world, and with what moves in it."""
+
+    def __init__(self, world: World, moving: Moving | None = None) -> None:
+        self._moving = moving
         self._solids = [(float(a), float(b), float(c), float(d)) for a, b, c, d in world.segments]
         self._cells: dict[tuple[int, int], list[tuple[float, float, float, float]]] = {}
         self._last: tuple[float, float, float] | None = None
@@ -47,27 +59,33 @@ class BodyModel:
 
     def contact(self, pose: Pose, now_ms: float) -> Contact | None:  # noqa: ARG002 - for solids that move
         """Return the contact at `pose`, or None when the body is free. Cost: 1 us while it cannot have arrived."""
-        if self._last is not None and self._travel(pose, self._last) < self._last_clearance:
-            return None
-        pieces = []
-        for segment in self._near(pose):
-            piece = _clip(*_to_body(pose, segment))
-            if piece is not None:
-                pieces.append(piece)
+        pieces = self._still_pieces(pose)
+        if self._moving is not None:
+            pieces += _pieces(pose, self._moving.near(pose, REACH_MM))
         if not pieces:
-            self._remember(pose, self._measure(pose))
             return None
         front_x = max(max(piece[0], piece[2]) for piece in pieces)
         front = sum(1 << k for k in _pressed(pieces, 1.0, FRONT_MM - _BUMPER_DEPTH_MM))
         rear = sum(1 << k for k in _pressed(pieces, -1.0, REAR_MM - _BUMPER_DEPTH_MM))
         return Contact(front_x > 0 if not front and not rear else front != 0, front, rear)
 
+    def _still_pieces(self, pose: Pose) -> list[Segment]:
+        if self._last is not None and self._travel(pose, self._last) < self._last_clearance:
+            return []
+        pieces = _pieces(pose, self._near(pose))
+        if not pieces:
+            self._remember(pose, self._measure(pose, self._near(pose)))
+        return pieces
+
     def clearance_mm(self, pose: Pose) -> float:
         """Return the distance from the body to the nearest solid, 0 when they meet, at most 3000."""
         key = (pose.x_mm, pose.y_mm, pose.heading_deg)
         if key != self._last:
-            self._remember(pose, self._measure(pose))
-        return self._last_clearance
+            self._remember(pose, self._measure(pose, self._near(pose)))
+        if self._moving is None:
+            return self._last_clearance
+        reach = self._last_clearance + REACH_MM
+        return min(self._last_clearance, self._measure(pose, self._moving.near(pose, reach)))
 
     def _remember(self, pose: Pose, clearance: float) -> None:
         self._last = (pose.x_mm, pose.y_mm, pose.heading_deg)
@@ -77,30 +95,39 @@ class BodyModel:
     def _travel(pose: Pose, last: tuple[float, float, float]) -> float:
         """The most that any point of the body can have moved since `last`."""
         turn = abs((pose.heading_deg - last[2] + 180) % 360 - 180)
-        return math.hypot(pose.x_mm - last[0], pose.y_mm - last[1]) + math.radians(turn) * _REACH_MM
+        return math.hypot(pose.x_mm - last[0], pose.y_mm - last[1]) + math.radians(turn) * REACH_MM
 
     def _near(self, pose: Pose) -> list[tuple[float, float, float, float]]:
         """Solids within the search distance of the pose's grid cell."""
         cell = (math.floor(pose.x_mm / _CELL_MM), math.floor(pose.y_mm / _CELL_MM))
         if cell not in self._cells:
             x, y = (cell[0] + 0.5) * _CELL_MM, (cell[1] + 0.5) * _CELL_MM
-            limit = _SEARCH_MM + _REACH_MM + _CELL_MM
+            limit = _SEARCH_MM + REACH_MM + _CELL_MM
             self._cells[cell] = [s for s in self._solids if _point_distance(x, y, *s) <= limit]
         return self._cells[cell]
 
-    def _measure(self, pose: Pose) -> float:
+    @staticmethod
+    def _measure(pose: Pose, segments: list[Segment]) -> float:
         best = _SEARCH_MM
-        for segment in self._near(pose):
-            # The rectangle lies within _REACH_MM of the centre: most solids are too far to improve on `best`.
-            if _point_distance(pose.x_mm, pose.y_mm, *segment) - _REACH_MM < best:
-                best = min(best, _rectangle_distance(*_to_body(pose, segment)))
+        for segment in segments:
+            # The rectangle lies within REACH_MM of the centre: most solids are too far to improve on `best`.
+            if _point_distance(pose.x_mm, pose.y_mm, *segment) - REACH_MM < best:
+                best = min(best, body_distance(pose, segment))
         return best
 
 
-_Segment = tuple[float, float, float, float]
+def body_distance(pose: Pose, segment: Segment) -> float:
+    """Return the distance from the body at `pose` to a segment, 0 when they meet."""
+    return _rectangle_distance(*_to_body(pose, segment))
 
 
-def _to_body(pose: Pose, segment: _Segment) -> _Segment:
+def _pieces(pose: Pose, segments: list[Segment]) -> list[Segment]:
+    """What of the segments is inside the body, in its frame."""
+    clipped = (_clip(*_to_body(pose, segment)) for segment in segments)
+    return [piece for piece in clipped if piece is not None]
+
+
+def _to_body(pose: Pose, segment: Segment) -> Segment:
     heading = math.radians(pose.heading_deg)
     c, s = math.cos(heading), math.sin(heading)
     x1, y1 = segment[0] - pose.x_mm, segment[1] - pose.y_mm
@@ -108,7 +135,7 @@ def _to_body(pose: Pose, segment: _Segment) -> _Segment:
     return x1 * c + y1 * s, y1 * c - x1 * s, x2 * c + y2 * s, y2 * c - x2 * s
 
 
-def _clip(x1: float, y1: float, x2: float, y2: float) -> _Segment | None:
+def _clip(x1: float, y1: float, x2: float, y2: float) -> Segment | None:
     """The part of a segment, in the body's frame, that lies inside the body (Liang and Barsky's method)."""
     dx, dy = x2 - x1, y2 - y1
     low, high = 0.0, 1.0
@@ -125,7 +152,7 @@ def _clip(x1: float, y1: float, x2: float, y2: float) -> _Segment | None:
     return x1 + low * dx, y1 + low * dy, x1 + high * dx, y1 + high * dy
 
 
-def _pressed(pieces: list[_Segment], side: float, limit: float) -> set[int]:
+def _pressed(pieces: list[Segment], side: float, limit: float) -> set[int]:
     """Bumper segments, 1 leftmost, that the pieces reach at the front (side 1) or the rear (side -1)."""
     pressed: set[int] = set()
     for x1, y1, x2, y2 in pieces:

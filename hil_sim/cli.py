@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The `argus-sim` command: one emulated P3-DX on a pseudo-terminal, a TCP port or a real UART."""
+"""The `argus-sim` command: one emulated P3-DX on a pseudo-terminal, a TCP port, a real UART or a CAN bus."""
 
 from __future__ import annotations
 
@@ -21,12 +21,14 @@ import numpy as np
 
 from hil_sim.arcos import BAUD
 from hil_sim.body import BodyModel
+from hil_sim.can_spec import CanSpec, parse_spec
 from hil_sim.errors import SimError
 from hil_sim.faults import Fault, FaultSet, fault_help, parse_fault
 from hil_sim.link_faults import LinkFaults
 from hil_sim.links import Fleet, Link, Loop, PtyLink, SerialLink, TcpLink
 from hil_sim.mobilesim import NAME as MOBILESIM_NAME
 from hil_sim.mobilesim import MobileSimServer
+from hil_sim.moving import moving_solids
 from hil_sim.record import MAX_BYTES, Recorder
 from hil_sim.robot import Log, Robot
 from hil_sim.scenario import SEED_MAX, Scenario, load_scenario
@@ -47,11 +49,13 @@ examples:
   argus-sim --record drive.rec                what passes on the link, for argus-log
   argus-sim --tcp 8101                        as the vendor's emulator listens
   argus-sim --serial /dev/ttyUSB0@9600        on a real UART
+  argus-sim --can can0                        on a CAN bus, each ARCOS packet an ISO-TP message (docs/can.md)
   argus-sim --robots 3 --tcp 8101             three robots, on ports 8101 to 8103
   argus-sim --tcp 8101 --quirks mobilesim     with the answers of the vendor's emulator
+  argus-sim bench diagnosis --help            how well faults are diagnosed, over many missions without a link
 
-The first line on standard output is the device path (or HOST:PORT), alone; with --robots one line for each.
-All else goes to standard error.
+The first line on standard output is the device path, HOST:PORT, or what argusd takes after can:, alone; with
+--robots one line for each. All else goes to standard error.
 A pseudo-terminal takes 10 bit times a byte at the robot's rate and is garbled at any other.
 
 exit codes: 0 ended by a signal or --duration, 1 link cannot be opened or was lost, 2 wrong argument or file
@@ -92,6 +96,13 @@ def _serial(text: str) -> tuple[str, int]:
         rates = ", ".join(str(rate) for rate in BAUD.values())
         raise argparse.ArgumentTypeError(f"'{text}' is not DEV@BAUD with a rate of {rates}")
     return match[1], int(match[2])
+
+
+def _can(text: str) -> CanSpec:
+    try:
+        return parse_spec(text)
+    except SimError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def _baud(text: str) -> int:
@@ -214,6 +225,12 @@ def parser() -> argparse.ArgumentParser:
         "--tcp", type=_tcp, metavar="[HOST:]PORT", help=f"listen on TCP (host {DEFAULT_TCP_HOST})"
     )
     links.add_argument("--serial", type=_serial, metavar="DEV@BAUD", help="serve on a real UART")
+    links.add_argument(
+        "--can",
+        type=_can,
+        metavar="IFACE[,KEY=N...]",
+        help="serve on a CAN bus, see docs/can.md",
+    )
     pty = result.add_argument_group("pseudo-terminal")
     pty.add_argument("--link-name", metavar="PATH", help="symlink to the device, removed at the end")
     pty.add_argument("--baud", type=_baud, metavar="N", help="the robot's rate (default 9600)")
@@ -273,6 +290,12 @@ def _link(arguments: argparse.Namespace, index: int, seed: int) -> tuple[Link, i
         if arguments.robots > 1:
             raise SimError(f"--robots {arguments.robots}: one UART serves one robot; use --tcp or ptys")
         return SerialLink(*arguments.serial), arguments.serial[1]
+    if arguments.can:
+        if arguments.link_name or arguments.baud:
+            raise SimError("--link-name and --baud are for a pseudo-terminal; leave them out with --can")
+        from hil_sim.links_can import CanLink
+
+        return CanLink(arguments.can.of_robot(index)), BAUD["B9600"]
     baud = arguments.baud or BAUD["B9600"]
     name = str(_numbered(Path(arguments.link_name), index)) if arguments.link_name else None
     return PtyLink(baud, name, seed), baud
@@ -322,13 +345,14 @@ def build_robot(
     scenario: Scenario, world: World, start: Pose, log: Log | None, rear_bumpers: int = 0
 ) -> Robot:
     """Return a robot at `start` in `world` with all that the scenario gives it."""
-    body = BodyModel(world)
+    moving = moving_solids((*world.movers, *scenario.movers))
+    body = BodyModel(world, moving)
     if body.contact(start, 0.0) is not None:
         place = f"{start.x_mm:g},{start.y_mm:g},{start.heading_deg:g}"
         raise SimError(f"start {place}: a solid of world {world.name} is there; choose another with --start")
     # Streams of their own, so that one more draw in one place changes nothing elsewhere.
     faults = FaultSet(scenario.faults, np.random.default_rng([scenario.seed, 1]))
-    ring = SonarRing(world, scenario.sonar, faults, np.random.default_rng([scenario.seed, 2]))
+    ring = SonarRing(world, scenario.sonar, faults, np.random.default_rng([scenario.seed, 2]), moving=moving)
     return Robot(
         body,
         ring,
@@ -337,6 +361,7 @@ def build_robot(
         bumpers=scenario.bumpers,
         rear_bumpers=rear_bumpers,
         seed=scenario.seed,
+        moving=moving,
         log=log,
     )
 
@@ -416,19 +441,26 @@ def _serve(arguments: argparse.Namespace, scenario: Scenario, stack: ExitStack) 
     runner.run(lambda: bool(caught), arguments.duration and arguments.duration * 1000)
     if arguments.verbose:
         for loop in loops:
-            _report(loop.server)
+            _report(loop.server, loop.link)
 
 
-def _report(server: ArcosServer) -> None:
+def _report(server: ArcosServer, link: Link) -> None:
     robot, heard = server.robot, server.unframer.counters
     _say(f"{robot.now_ms / 1000:.1f} s, {server.sips} SIPs, {robot.collisions} collisions")
     junk = f"{heard.bad_checksum} bad checksums, {heard.junk_bytes} junk bytes"
     _say(f"heard {heard.packets} packets, {junk}")
+    if summary := link.summary():
+        _say(summary)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run `argus-sim`; return its exit code."""
-    arguments = parser().parse_args(argv)
+    words = list(sys.argv[1:] if argv is None else argv)
+    if words[:1] == ["bench"]:
+        from hil_sim.bench.cli import main as bench
+
+        return bench(words[1:])
+    arguments = parser().parse_args(words)
     try:
         if arguments.list_worlds:
             print("\n".join(world_names()))

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import re
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -24,7 +24,7 @@ SONAR_KINDS: Final = {
     "wrong": "scale=FACTOR, then offset=MM; or angle=DEG: the range seen along its axis + angle",
     "garbage": "uniform from 100 to 5000",
     "slow": "reports the echo of n=COUNT firings ago (default 5)",
-    "intermittent": "each reading is 5000 with probability p=P (default 0.5)",
+    "intermittent": "each reading is 5000 with probability p=P (default 0.5); beyond=MM: farther echoes only",
 }
 LINK_KINDS: Final = {
     "link-drop": "loses packets with probability p=P (default 1)",
@@ -56,6 +56,18 @@ class When:
 
 
 @dataclass(frozen=True)
+class Ramp:
+    """How long a fault grows: `variable` is t (`length` in ms) or travelled (mm)."""
+
+    variable: str
+    length: float
+
+    def grown(self, since: float, here: float) -> float:
+        """Return the part of the fault that is there, 0 to 1."""
+        return min(1.0, max(0.0, (here - since) / self.length))
+
+
+@dataclass(frozen=True)
 class Fault:
     """Anything that can be injected; `text` is what it was written as."""
 
@@ -79,6 +91,8 @@ class SonarFault(Fault):
     angle: float | None = None
     n: int = 5
     p: float = 0.5
+    beyond: int | None = None
+    ramp: Ramp | None = None
 
 
 @dataclass(frozen=True)
@@ -132,10 +146,10 @@ _PARAMETERS: Final = {
     "off": (),
     "silent": (),
     "stuck": ("value",),
-    "wrong": ("scale", "offset", "angle"),
+    "wrong": ("scale", "offset", "angle", "ramp"),
     "garbage": (),
     "slow": ("n",),
-    "intermittent": ("p",),
+    "intermittent": ("p", "beyond", "ramp"),
     "bumper": (),
     "link-drop": ("p", "dir"),
     "link-corrupt": ("p", "dir"),
@@ -149,9 +163,10 @@ _LIMITS: Final = {
     "angle": (-180.0, 180.0),
     "n": (1, _SLOW_MAX),
     "p": (0.0, 1.0),
+    "beyond": (MIN_MM, NO_ECHO_MM),
     "ms": (0.0, 60_000.0),
 }
-_WHOLE: Final = ("value", "n")
+_WHOLE: Final = ("value", "n", "beyond")
 
 
 def fault_help() -> str:
@@ -169,8 +184,11 @@ def fault_help() -> str:
             "",
             *kinds,
             "",
+            "wrong and intermittent grow from nothing (beyond: from 5000) within ramp=60s or ramp=20000 mm of way.",
+            "",
             "examples: off:3@12s   wrong:6@x>2000:scale=0.5   stuck:2@10s-20s:value=400   silent:rear@travelled>1500",
             "          intermittent:front@5s:p=0.3   bumper:3@8s-9s   link-corrupt@3s-9s:p=0.2:dir=to_client",
+            "          wrong:3@20s:offset=-400:ramp=30000   intermittent:2:p=1:beyond=2000:ramp=300s",
         ]
     )
 
@@ -199,14 +217,14 @@ def parse_fault(text: str) -> Fault:
         return _bumper(text, target, match["when"])
     start, end = _bounds(text, match["when"])
     numbers = {name: value for name, value in values.items() if not isinstance(value, str)}
-    if kind == "wrong" and not values:
+    if kind == "wrong" and not values.keys() - {"ramp"}:
         raise SimError(f"fault '{text}': wrong in what way? add :scale=0.5, :offset=-200 or :angle=20")
     return SonarFault(text.strip(), kind, _sonars(text, target), start, end, **numbers)  # type: ignore[arg-type]
 
 
-def _parameters(text: str, kind: str, rest: str) -> dict[str, float | str]:
+def _parameters(text: str, kind: str, rest: str) -> dict[str, float | str | Ramp]:
     known = _PARAMETERS[kind]
-    values: dict[str, float | str] = {}
+    values: dict[str, float | str | Ramp] = {}
     for part in rest.split(":")[1:]:
         name, equals, value = part.partition("=")
         if not equals or name not in known:
@@ -214,8 +232,23 @@ def _parameters(text: str, kind: str, rest: str) -> dict[str, float | str]:
             raise SimError(f"fault '{text}': '{part}' is no parameter of {kind}; it takes {offer}")
         if name in values:
             raise SimError(f"fault '{text}': {name} is given twice; keep one")
-        values[name] = _direction(text, value) if name == "dir" else _value(text, name, value)
+        if name == "dir":
+            values[name] = _direction(text, value)
+        elif name == "ramp":
+            values[name] = _ramp(text, value)
+        else:
+            values[name] = _value(text, name, value)
     return values
+
+
+def _ramp(text: str, value: str) -> Ramp:
+    time = _TIME.fullmatch(value)
+    number = time[1] if time else value if re.fullmatch(r"\d+(\.\d+)?", value) else "0"
+    if not 0 < float(number) <= _FAR:
+        raise SimError(
+            f"fault '{text}': ramp must be a time such as 60s or mm of way such as 20000, not '{value}'"
+        )
+    return Ramp("t", float(number) * 1000) if time else Ramp("travelled", float(number))
 
 
 def _direction(text: str, value: str) -> str:
@@ -287,7 +320,9 @@ def _bumper(text: str, target: str, when: str | None) -> BumperHit:
     return BumperHit(text.strip(), int(target), start, start + 500 if end is None else end)
 
 
-def _link_fault(text: str, kind: str, when: str | None, values: dict[str, float | str]) -> LinkFault:
+def _link_fault(
+    text: str, kind: str, when: str | None, values: Mapping[str, float | str | Ramp]
+) -> LinkFault:
     start, end = _times(text, when)
     if kind == "link-delay" and "ms" not in values:
         raise SimError(f"fault '{text}': how long? add :ms=250")
@@ -296,10 +331,16 @@ def _link_fault(text: str, kind: str, when: str | None, values: dict[str, float 
         kind.removeprefix("link-"),
         start,
         end,
-        probability=float(values.get("p", 1.0)),
-        delay_ms=float(values.get("ms", 0.0)),
+        probability=_number(values, "p", 1.0),
+        delay_ms=_number(values, "ms", 0.0),
         direction=str(values.get("dir", "both")),
     )
+
+
+def _number(values: Mapping[str, float | str | Ramp], name: str, default: float) -> float:
+    value = values.get(name, default)
+    assert isinstance(value, (int, float))
+    return value
 
 
 # ---- execution --------------------------------------------------------------------------------------------------
@@ -314,6 +355,16 @@ class _State:
         self.ended = False
         self.told = False
         self.held: dict[int, int] = {}
+        self.since: float | None = None
+        self.part = 1.0 if fault.ramp is None else 0.0
+
+    def grow(self, now_ms: float, travelled_mm: float) -> None:
+        """Let a fault with a ramp grow, from where it began."""
+        ramp = self.fault.ramp
+        if ramp is not None and self.on:
+            here = now_ms if ramp.variable == "t" else travelled_mm
+            self.since = here if self.since is None else self.since
+            self.part = ramp.grown(self.since, here)
 
     @property
     def on(self) -> bool:
@@ -329,6 +380,8 @@ class FaultSet:
         self._states = [_State(fault) for fault in self.faults if isinstance(fault, SonarFault)]
         self._hits = [fault for fault in self.faults if isinstance(fault, BumperHit)]
         self._pressed = [False] * len(self._hits)
+        self._afflicted = {number for state in self._states for number in state.fault.sonars}
+        self._waiting = list(self._states)
         self._slowest = {
             number: max(state.fault.n for state in self._states if number in state.fault.sonars)
             for number in {
@@ -347,7 +400,9 @@ class FaultSet:
     def update(self, now_ms: float, pose: Pose, travelled_mm: float) -> list[FaultChange]:
         """Begin and end faults; return what changed. Call it before the ring fires."""
         changes: list[FaultChange] = []
-        for state in self._states:
+        if not self._waiting and not self._hits:
+            return changes
+        for state in self._waiting:
             if state.ended:
                 continue
             fault = state.fault
@@ -356,12 +411,20 @@ class FaultSet:
                 state.started = fault.start.met(now_ms, pose, travelled_mm)
             if state.started and fault.end is not None:
                 state.ended = fault.end.met(now_ms, pose, travelled_mm)
+            state.grow(now_ms, travelled_mm)
             if state.on != state.told:
                 state.told = state.on
                 changes += [
                     FaultChange(now_ms, fault.kind, state.on, fault.text, sonar=number)
                     for number in fault.sonars
                 ]
+        if changes:
+            # What has ended, or is on for good, does not change any more.
+            self._waiting = [
+                s
+                for s in self._waiting
+                if not s.ended and (not s.on or s.fault.end is not None or s.part < 1.0)
+            ]
         for k, hit in enumerate(self._hits):
             pressed = hit.start_ms <= now_ms < hit.end_ms
             if pressed != self._pressed[k]:
@@ -384,6 +447,8 @@ class FaultSet:
         `remeasure(angle_deg)` gives what it would have measured with its axis turned.
         """
         del now_ms  # `update` has decided what is on
+        if number not in self._afflicted:
+            return true_measured_mm, None
         echoes = self._echoes.get(number)
         if echoes is not None:
             echoes.append(true_measured_mm)
@@ -413,9 +478,19 @@ class FaultSet:
             echoes = self._echoes[number]
             return echoes[max(0, len(echoes) - 1 - fault.n)]
         if fault.kind == "intermittent":
-            return NO_ECHO_MM if self._rng.random() < fault.p else measured
-        base = measured if fault.angle is None else remeasure(fault.angle)
-        return int(min(NO_ECHO_MM, max(MIN_MM, round(base * fault.scale + fault.offset))))
+            return self._drop(state, measured)
+        base = measured if fault.angle is None else remeasure(fault.angle * state.part)
+        scale = 1.0 + (fault.scale - 1.0) * state.part
+        return int(min(NO_ECHO_MM, max(MIN_MM, round(base * scale + fault.offset * state.part))))
+
+    def _drop(self, state: _State, measured: int) -> int:
+        fault = state.fault
+        if fault.beyond is None:
+            lost = self._rng.random() < fault.p * state.part
+        else:
+            hears_to = NO_ECHO_MM + (fault.beyond - NO_ECHO_MM) * state.part
+            lost = self._rng.random() < fault.p and measured > hears_to
+        return NO_ECHO_MM if lost else measured
 
     def bumper(self, now_ms: float) -> int:
         """Return the front bumper bits that hits press now: bit 1 leftmost to bit 5 rightmost."""

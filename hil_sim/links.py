@@ -28,7 +28,7 @@ from hil_sim.server import ArcosServer
 _BITS: Final = TIMING["BITS_PER_BYTE"]
 _GRAIN_MS: Final = 4.0
 """Bytes on a wire are handed over at least this often, and at the end of what is being sent."""
-_BACKLOG_MS: Final = 200.0
+BACKLOG_MS: Final = 200.0
 """A packet that would wait longer than this for the wire is not sent, as by a robot out of buffers."""
 _RX_LIMIT: Final = 4096
 _TX_LIMIT: Final = 65536
@@ -129,6 +129,10 @@ class Link(ABC):
 
     def hang_up(self) -> None:  # noqa: B027 (only a connection can be closed)
         """Close the connection to the client, not the link."""
+
+    def summary(self) -> str:
+        """What went wrong, for a report; empty on a link that cannot tell."""
+        return ""
 
     @abstractmethod
     def readers(self) -> list[Any]:
@@ -278,7 +282,7 @@ class PtyLink(Link):
 
     def send(self, packet: bytes, now_ms: float) -> None:
         """Put a packet on the wire."""
-        if self._tx.backlog_ms > _BACKLOG_MS:
+        if self._tx.backlog_ms > BACKLOG_MS:
             self.lost_packets += 1
             return
         self._tx.push(packet, now_ms)

@@ -31,6 +31,7 @@ _HEAD: Final = struct.Struct("<2sBHI")
 _BODY: Final = struct.Struct("<BHI")
 _CLOCK: Final = struct.Struct("<qq")
 _CRC_BYTES: Final = 4
+_SHORTEST: Final = _HEAD.size + _CRC_BYTES
 _SYNC_S: Final = 0.5
 _RESTART_US: Final = 10_000_000
 """A monotonic clock that falls by more than this is another one: the machine was started again."""
@@ -44,6 +45,10 @@ class Kind(IntEnum):
     TO_ROBOT = 2
     CLOCK = 3
     LOST = 4
+
+
+# As plain numbers, which compare faster.
+_LINK_KINDS: Final = (int(Kind.FROM_ROBOT), int(Kind.TO_ROBOT))
 
 
 class Record(NamedTuple):
@@ -115,7 +120,26 @@ class Decoder:
     def _scan(self, data: bytes, *, final: bool) -> Iterator[Record]:
         held = self._held + data
         at = 0
-        while at < len(held):
+        size = len(held)
+        new, unpack = tuple.__new__, _HEAD.unpack_from
+        while at < size:
+            # Written out, as most of most files is whole records.
+            while size - at >= _SHORTEST:
+                sync, kind, length, time_us = unpack(held, at)
+                end = at + length + _SHORTEST
+                if sync != SYNC or length > PAYLOAD_MAX or end > size:
+                    break
+                payload_end = end - _CRC_BYTES
+                crc = zlib.crc32(held[at + 2 : payload_end])
+                if held[payload_end:end] != crc.to_bytes(_CRC_BYTES, "little"):
+                    break
+                if self._skipped:
+                    self._close_gap(self._place + at)
+                payload = held[at + _HEAD.size : payload_end]
+                yield new(Record, (kind, time_us, payload, self._place + at))
+                at = end
+            if at >= size:
+                break
             end = _end_of(held, at)
             if end > len(held) and not final:
                 break
@@ -157,9 +181,12 @@ class Timeline:
 
     def at(self, record: Record) -> float | None:
         """Return when this record was made; None as long as no clock was read."""
-        if record.kind == Kind.HEADER:
+        kind = record.kind
+        if kind in _LINK_KINDS:
+            pass
+        elif kind == Kind.HEADER:
             self._mono_us = self._anchor_us = None
-        elif record.kind == Kind.CLOCK and len(record.payload) == _CLOCK.size:
+        elif kind == Kind.CLOCK and len(record.payload) == _CLOCK.size:
             mono_us, wall_us = _CLOCK.unpack(record.payload)
             if self._anchor_us is None or (self._mono_us or 0) - mono_us > _RESTART_US:
                 self._anchor_us = wall_us - mono_us

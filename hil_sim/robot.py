@@ -42,6 +42,8 @@ _SWING_MM: Final[float] = load("p3dx")["body"]["swing_radius_mm"]
 _WATCHDOG_MS: Final = TIMING["WATCHDOG_MS"]
 _TOUCH_RELEASE_MM: Final = 5.0
 _BUMPER_MASK: Final = SIP["BUMPER_MASK"]
+_STALLS_FRONT: Final = BUMPSTALL["FRONT"]
+_STALLS_REAR: Final = BUMPSTALL["REAR"]
 
 Log = Callable[[str, dict[str, Any]], None]
 """Receives one truth record: its type and its fields, `t_s` included."""
@@ -67,6 +69,17 @@ class Body(Protocol):
 
     def clearance_mm(self, pose: Pose) -> float:
         """Return the distance from the body to the nearest solid."""
+
+
+class Moving(Protocol):
+    """What the robot asks of solids that move by themselves."""
+
+    def step(self, robot: Pose) -> None:
+        """Let a sub-step pass; the robot's true pose is given for those that wait for it."""
+
+    @property
+    def fastest_mm_s(self) -> float:
+        """No point of any of them is faster."""
 
 
 class SonarReading(Protocol):
@@ -162,16 +175,21 @@ class Robot:
         seed: int = 0,
         odometry_error: OdometryError | None = None,
         dynamic: bool = False,
+        moving: Moving | None = None,
         log: Log | None = None,
     ) -> None:
-        """`dynamic`: solids may move by themselves, so contact is looked for at rest too."""
+        """`dynamic`: solids may move by themselves, so contact is looked for at rest too; `moving` are such."""
         self.body = body
         self.ring = ring
         self.faults = faults
         self.start = start
         self.bumpers = bumpers
         self.rear_segments = rear_bumpers
-        self.dynamic = dynamic
+        self.dynamic = dynamic or moving is not None
+        self.moving = moving
+        # While the nearest solid cannot have arrived nobody needs to look; of `dynamic` alone nothing is known.
+        self._knows_free = moving is not None or not dynamic
+        self._closing_mm = moving.fastest_mm_s * STEP_S if moving is not None else 0.0
         self.log = log
         error = odometry_error or OdometryError()
         rng = random.Random(f"odometry {seed}")
@@ -181,6 +199,8 @@ class Robot:
 
         self.now_ms = 0
         self._debt_ms = 0.0
+        self._pose = start
+        self._pose_th = start.heading_deg
         self.x = start.x_mm
         self.y = start.y_mm
         self.th = start.heading_deg
@@ -400,7 +420,11 @@ class Robot:
     @property
     def pose(self) -> Pose:
         """The true pose; heading in (-180, 180]."""
-        return Pose(self.x, self.y, _wrapped(self.th))
+        pose = self._pose
+        if pose.x_mm != self.x or pose.y_mm != self.y or self._pose_th != self.th:
+            self._pose = pose = Pose(self.x, self.y, _wrapped(self.th))
+            self._pose_th = self.th
+        return pose
 
     @property
     def watchdog_expired(self) -> bool:
@@ -446,6 +470,8 @@ class Robot:
 
     def pose_at(self, t_ms: float) -> Pose:
         """The true pose at a recent time (up to 0.6 s ago), between sub-steps on a straight line."""
+        if t_ms == self.now_ms:
+            return self.pose
         back = min(max(self.now_ms - t_ms, 0.0) / STEP_MS, len(self._history) - 1.0)
         k = int(back)
         x, y, th = self._history[-1 - k]
@@ -467,6 +493,9 @@ class Robot:
     def step(self) -> None:
         """Let one sub-step pass."""
         self.now_ms += STEP_MS
+        if self.moving is not None:
+            self.moving.step(self.pose)
+            self._free_mm -= self._closing_mm
         if self.v or self.w or self.wants_motion:
             self._drive()
         elif self._stall_left or self._stall_right:
@@ -479,8 +508,8 @@ class Robot:
         self.energy.idle_s += STEP_S
         if self.sonar_on:
             self.energy.sonar_s += STEP_S
-            if self.fires_in_turn:
-                self._hear(self.ring.advance(self.now_ms, self.pose_at))
+            if self.fires_in_turn and (readings := self.ring.advance(self.now_ms, self.pose_at)):
+                self._hear(readings)
         if self.log is not None:
             self._log_step(self.log)
 
@@ -527,10 +556,11 @@ class Robot:
         if self.now_ms < self._relax_until_ms:
             return True
         ahead = self._move_left if self._move_mode else self._v_set
-        front = self.settings.bumpstall & BUMPSTALL["FRONT"] and ahead > 0 and self.front_bumpers
-        rear = self.settings.bumpstall & BUMPSTALL["REAR"] and ahead < 0 and self.rear_bumpers
+        front = ahead > 0 and self.front_bumpers and self.settings.bumpstall & _STALLS_FRONT
+        rear = ahead < 0 and self.rear_bumpers and self.settings.bumpstall & _STALLS_REAR
         hit = bool(front or rear)
-        self._set_stall(hit, hit)
+        if hit or self._stall_left or self._stall_right:
+            self._set_stall(hit, hit)
         return hit
 
     def _set_stall(self, left: bool, right: bool) -> None:
@@ -556,7 +586,7 @@ class Robot:
             self.travelled_mm += abs(true_ds) * part
         if part == 1:
             self._blocked_ms = 0
-            if self._free_mm <= 0 and (self._touching or not self.dynamic):
+            if self._free_mm <= 0 and (self._touching or self._knows_free):
                 self._measure_clearance()
         else:
             self._block()
@@ -570,6 +600,8 @@ class Robot:
         if here is not None:
             # Already inside a solid (placed there, or it moved in): only the way out is open.
             self._touch(here)
+            if self.moving is not None and not self._touching:
+                self._collide()
             self._touching = True
             inward = (ds > 0 and here.front_segments) or (ds < 0 and here.rear_segments)
             return 0.0 if inward else 1.0
@@ -625,21 +657,21 @@ class Robot:
 
     def _measure_clearance(self) -> None:
         clearance = self.body.clearance_mm(self.pose)
-        self._free_mm = 0.0 if self.dynamic else clearance
+        self._free_mm = clearance if self._knows_free else 0.0
         if self._touching and clearance > _TOUCH_RELEASE_MM:
             self._touching = False
             self.contact_front = self.contact_rear = 0
 
     def _look_for_contact(self) -> None:
         """A solid that moves by itself may meet a robot that does not."""
-        if self.v or self.w or self.now_ms % 50:
+        if self.v or self.w or self.now_ms % 50 or (self.moving is not None and self._free_mm > 0):
             return
         contact = self.body.contact(self.pose, self.now_ms)
         if contact is not None:
             self._touch(contact)
             if not self._touching:
                 self._collide(moved_in=True)
-        elif self._touching:
+        elif self._touching or self.moving is not None:
             self._measure_clearance()
 
     def _update_faults(self, faults: Faults) -> None:
@@ -656,8 +688,6 @@ class Robot:
             self._hear(self.ring.fire_all(self.now_ms, self.pose))
 
     def _hear(self, readings: Sequence[SonarReading]) -> None:
-        if not readings:
-            return
         self._readings += readings
         if self.log is not None:
             for reading in readings:
@@ -703,22 +733,24 @@ class Robot:
         moving = abs(left) >= 1 or abs(right) >= 1 or self.wants_motion
         battery_dv = round(self.battery_v * 10)
         readings = tuple((reading.number, reading.range_mm) for reading in self._readings)
-        packet = Sip(
-            type=TYPE["SIP_MOVING"] if moving else TYPE["SIP_STATIONARY"],
-            x=round(self.odo_x / self.unit_mm) & 0xFFFF,
-            y=round(self.odo_y / self.unit_mm) & 0xFFFF,
-            th=_angle_units(self.odo_th),
-            left_vel=left,
-            right_vel=right,
-            battery=min(battery_dv, 255),
-            stall_left=self.rear_bumpers | int(self._stall_seen_left or self._stall_left),
-            stall_right=self.front_bumpers | int(self._stall_seen_right or self._stall_right),
-            flags=self._flags(),
-            sonars=readings,
-            anport=self.anport,
-            digout=self.digout,
-            battery_x10=battery_dv,
-            rotvel=round(self.w * 10),
+        packet = Sip.of(
+            {
+                "type": TYPE["SIP_MOVING"] if moving else TYPE["SIP_STATIONARY"],
+                "x": round(self.odo_x / self.unit_mm) & 0xFFFF,
+                "y": round(self.odo_y / self.unit_mm) & 0xFFFF,
+                "th": _angle_units(self.odo_th),
+                "left_vel": left,
+                "right_vel": right,
+                "battery": min(battery_dv, 255),
+                "stall_left": self.rear_bumpers | int(self._stall_seen_left or self._stall_left),
+                "stall_right": self.front_bumpers | int(self._stall_seen_right or self._stall_right),
+                "flags": self._flags(),
+                "sonars": readings,
+                "anport": self.anport,
+                "digout": self.digout,
+                "battery_x10": battery_dv,
+                "rotvel": round(self.w * 10),
+            }
         )
         self._readings.clear()
         self._stall_seen_left = self._stall_seen_right = False

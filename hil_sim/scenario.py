@@ -13,6 +13,8 @@ import yaml
 from hil_sim.document import Item, read_document
 from hil_sim.errors import SimError
 from hil_sim.faults import Fault, LinkFault, parse_fault
+from hil_sim.movers import Door, Mover, Person, read_doors, read_people
+from hil_sim.movers import plain as movers_plain
 from hil_sim.sonar import SonarParams
 from hil_sim.world import Pose
 
@@ -27,7 +29,7 @@ class Scenario:
 
     start: None takes the world's. course: waypoints in world axes, mm; the goal is the last.
 
-    faults: sonar faults, bumper hits and link faults, in the order written.
+    faults: sonar faults, bumper hits and link faults, in the order written. people, doors: besides the world's own.
     """
 
     world: str = "lab"
@@ -39,6 +41,13 @@ class Scenario:
     faults: tuple[Fault, ...] = ()
     bumpers: int = 5
     about: str = ""
+    people: tuple[Person, ...] = ()
+    doors: tuple[Door, ...] = ()
+
+    @property
+    def movers(self) -> tuple[Mover, ...]:
+        """All that moves besides the robot and what the world has."""
+        return (*self.people, *self.doors)
 
     @property
     def link_faults(self) -> tuple[LinkFault, ...]:
@@ -75,6 +84,9 @@ class Scenario:
             plain["faults"] = [fault.text for fault in self.faults]
         if self.bumpers != BUMPERS[-1]:
             plain["bumpers"] = self.bumpers
+        for name, movers in (("people", self.people), ("doors", self.doors)):
+            if movers:
+                plain[name] = [movers_plain(mover) for mover in movers]
         return yaml.safe_dump(plain, sort_keys=False, default_flow_style=None, width=100)
 
 
@@ -170,4 +182,6 @@ _READERS: Final = {
     "sonar": _sonar,
     "faults": lambda item: tuple(fault.convert(parse_fault) for fault in item.items()),
     "bumpers": _bumpers,
+    "people": read_people,
+    "doors": read_doors,
 }

@@ -6,10 +6,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Protocol, SupportsIndex
+from typing import Any, Final, NamedTuple, Protocol, SupportsIndex
 
 import numpy as np
 
+from hil_sim import kernel
+from hil_sim.moving import MovingSolids
 from hil_sim.tables import load
 from hil_sim.world import Floats, Pose, World
 
@@ -60,8 +62,7 @@ class SonarParams:
     tip_db: float = 18.0
 
 
-@dataclass(frozen=True)
-class Reading:
+class Reading(NamedTuple):
     """One ping's result. `t_ms`: when its echo, or its time-out, was in.
 
     true_mm: what the model gives without noise, crosstalk and fault. fault: the fault kind that changed it.
@@ -72,6 +73,13 @@ class Reading:
     range_mm: int
     true_mm: int
     fault: str | None
+
+
+class PingWatch(Protocol):
+    """Is told of every ping that a fault may have changed: what it would have read, and what it reports."""
+
+    def __call__(self, t_ms: float, number: int, true_mm: int, heard_mm: int, value: int | None) -> None:
+        """`heard_mm`: with noise and crosstalk, without the fault; `value` None: a silent slot."""
 
 
 class SonarFaults(Protocol):
@@ -93,13 +101,26 @@ class _Patch:
         self.ax, self.ay = segments[:, 0].copy(), segments[:, 1].copy()
         self.ex, self.ey = segments[:, 2] - self.ax, segments[:, 3] - self.ay
         self.length = np.hypot(self.ex, self.ey)
-        self.edge_perp = np.stack((self.ey, -self.ex))
         rough = roughness if params.specular else np.ones_like(roughness)
         self.mirror = params.mirror_db_deg2 * (1 - rough) ** 2
         self.corner_x, self.corner_y = corners[:, 0].copy(), corners[:, 1].copy()
         self.inverse = corners[:, 2:6].copy()
         self.retro = corners[:, 6].copy()
-        self.empty = len(segments) == 0
+        self._for_c: kernel.Patch | None = None
+
+    @property
+    def for_c(self) -> kernel.Patch:
+        """The same for the kernel."""
+        if self._for_c is None:
+            self._for_c = kernel.Patch(vars(self))
+        return self._for_c
+
+    def joined(self, other: _Patch) -> _Patch:
+        """Return both as one, this one first."""
+        both = object.__new__(_Patch)
+        for name in kernel.PATCH_ARRAYS:
+            setattr(both, name, np.concatenate((getattr(self, name), getattr(other, name))))
+        return both
 
 
 def _corners(segments: Floats) -> Floats:
@@ -127,10 +148,56 @@ def _corners(segments: Floats) -> Floats:
     return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
-class EchoModel:
-    """Ranges that a transducer reads in a world: the nearest echo within its cone that is loud enough."""
+class MovingEchoes:
+    """The solids in motion of one run, as a patch that follows them."""
 
-    def __init__(self, world: World, params: SonarParams) -> None:
+    def __init__(self, moving: MovingSolids, params: SonarParams) -> None:
+        self._moving = moving
+        self._moment = -1
+        corners = [_corners(actor.shape) for actor in moving.actors]
+        self._owner = moving.owner
+        counts = [len(rows) for rows in corners]
+        self._corner_owner = np.repeat(np.arange(len(counts), dtype=np.int32), counts)
+        self._shape = _Patch(moving.shape, moving.roughness, np.concatenate(corners), params)
+        self._patch = _Patch(moving.shape, moving.roughness, np.concatenate(corners), params)
+        self._placer: kernel.Placer | None = None
+        # A corner that sends sound back would have to turn with its owner; people and doors have none.
+        assert not self._shape.retro.any()
+
+    def patch(self, in_c: bool) -> _Patch:
+        """Return the solids as they are now: always the same arrays."""
+        if self._moment != self._moving.moment:
+            self._moment = self._moving.moment
+            self._moving.place()
+            if not in_c:
+                self._place()
+            else:
+                if self._placer is None:
+                    arrays = self._owner, self._corner_owner, self._moving.places
+                    self._placer = kernel.Placer(self._patch.for_c, self._shape.for_c, *arrays)
+                self._placer.place()
+        return self._patch
+
+    def _place(self) -> None:
+        here, shape = self._patch, self._shape
+        places = self._moving.places
+        x, y, c, s = places[self._owner].T
+        here.ax[:] = x + shape.ax * c - shape.ay * s
+        here.ay[:] = y + shape.ax * s + shape.ay * c
+        here.ex[:] = shape.ex * c - shape.ey * s
+        here.ey[:] = shape.ex * s + shape.ey * c
+        x, y, c, s = places[self._corner_owner].T
+        here.corner_x[:] = x + shape.corner_x * c - shape.corner_y * s
+        here.corner_y[:] = y + shape.corner_x * s + shape.corner_y * c
+
+
+class EchoModel:
+    """Ranges that a transducer reads in a world: the nearest echo within its cone that is loud enough.
+
+    Computed in C when the library is there, else here with numpy; to the same mm.
+    """
+
+    def __init__(self, world: World, params: SonarParams, *, in_c: bool = True) -> None:
         self.params = params
         self._segments = world.segments
         self._roughness = world.roughness
@@ -142,14 +209,60 @@ class EchoModel:
         self._ray_cos, self._ray_sin = np.cos(np.radians(offsets)), np.sin(np.radians(offsets))
         self._ray_db = params.edge_db * (offsets / half) ** 2
         self._cos_half = math.cos(math.radians(half))
+        self._kernel = self._new_kernel() if in_c and kernel.library() is not None else None
 
-    def range_mm(self, x_mm: float, y_mm: float, heading_deg: float) -> int:
+    def _new_kernel(self) -> kernel.Kernel:
+        numbers = vars(self.params) | {
+            "cos_half": self._cos_half,
+            "air_db_mm": self.params.air_db_m / 1000,
+            "min_mm": MIN_MM,
+            "no_echo_mm": NO_ECHO_MM,
+            "cell_mm": _CELL_MM,
+            "touch": _TOUCH,
+        }
+        mount = np.array([(p.x_mm, p.y_mm, p.heading_deg) for p in SONAR_POSES])
+        # From the axis outwards: what is heard there mostly settles what the rays further out could add.
+        order = np.argsort(self._ray_db, kind="stable")
+        rays = {f"ray_{name}": getattr(self, f"_ray_{name}")[order] for name in ("cos", "sin", "db")}
+        return kernel.Kernel(numbers, rays | {"mount": mount})
+
+    def ping_mm(
+        self, number: int, pose: Pose, angle_deg: float = 0.0, moving: MovingEchoes | None = None
+    ) -> int:
+        """Return what sonar 0 to 15 of a robot at `pose` reads, its axis turned by `angle_deg`."""
+        if self._kernel is not None:
+            patch = moving.patch(True).for_c if moving is not None else None
+            value = self._kernel.ping_mm(number, pose.x_mm, pose.y_mm, pose.heading_deg, angle_deg, patch)
+            if value >= 0:
+                return value
+        mount = SONAR_POSES[number]
+        heading = math.radians(pose.heading_deg)
+        c, s = math.cos(heading), math.sin(heading)
+        x = pose.x_mm + mount.x_mm * c - mount.y_mm * s
+        y = pose.y_mm + mount.x_mm * s + mount.y_mm * c
+        return self.range_mm(x, y, pose.heading_deg + mount.heading_deg + angle_deg, moving)
+
+    def range_mm(
+        self, x_mm: float, y_mm: float, heading_deg: float, moving: MovingEchoes | None = None
+    ) -> int:
         """Return the range from a transducer at this place, 100 to 5000; 5000 when nothing is heard.
 
-        Cost: about 80 us in a world of some 30 segments.
+        Cost: about 1 us in C, 80 us with numpy, in a world of some 30 segments.
         """
-        patch = self._patch(x_mm, y_mm)
-        if patch.empty:
+        if self._kernel is None:
+            patch = self._patch(x_mm, y_mm)
+            if moving is not None:
+                patch = patch.joined(moving.patch(False))
+            return self._range_numpy(patch, x_mm, y_mm, heading_deg)
+        others = moving.patch(True).for_c if moving is not None else None
+        value = self._kernel.range_mm(x_mm, y_mm, heading_deg, others)
+        if value == kernel.UNKNOWN_CELL:
+            self._patch(x_mm, y_mm)
+            value = self._kernel.range_mm(x_mm, y_mm, heading_deg, others)
+        return value
+
+    def _range_numpy(self, patch: _Patch, x_mm: float, y_mm: float, heading_deg: float) -> int:
+        if len(patch.ax) == 0:
             return NO_ECHO_MM
         heading = math.radians(heading_deg)
         c, s = math.cos(heading), math.sin(heading)
@@ -161,10 +274,11 @@ class EchoModel:
             dir_x, dir_y = np.concatenate((dir_x, far[0])), np.concatenate((dir_y, far[1]))
             beam_db = np.concatenate((beam_db, far[3]))
         wx, wy = patch.ax - x_mm, patch.ay - y_mm
-        rays = np.stack((dir_x, dir_y), axis=1)
+        across, up = dir_x[:, None], dir_y[:, None]
         with np.errstate(divide="ignore", invalid="ignore"):
-            inverse = 1.0 / (rays @ patch.edge_perp)
-            where = (rays @ np.stack((-wy, wx))) * inverse
+            # Products one by one, not as a matrix: their rounding is then the same on every machine, and in C.
+            inverse = 1.0 / (across * patch.ey - up * patch.ex)
+            where = (up * wx - across * wy) * inverse
             ranges = (wx * patch.ey - wy * patch.ex) * inverse
             # Written so that a ray along a segment (NaN) misses it.
             hit = (where >= -_TOUCH) & (where <= 1 + _TOUCH) & (ranges > 0)
@@ -222,6 +336,8 @@ class EchoModel:
             away = np.hypot(self._corners[:, 0] - centre_x, self._corners[:, 1] - centre_y) <= limit
             patch = _Patch(self._segments[near], self._roughness[near], self._corners[away], self.params)
             self._patches[cell] = patch
+            if self._kernel is not None:
+                self._kernel.add(cell, patch.for_c)
         return patch
 
 
@@ -237,14 +353,16 @@ def _distances(segments: Floats, x: float, y: float) -> Floats:
 
 
 class _Switches(list[bool]):
-    """Which arrays fire; remembers which were switched off, since that restarts their clock."""
+    """Which arrays fire; remembers that they were set, and which were switched off: that restarts their clock."""
 
     def __init__(self, values: Iterable[bool]) -> None:
         super().__init__(values)
+        self.touched = True
         self.cut: set[int] = set()
 
     def __setitem__(self, key: SupportsIndex | slice, value: Any) -> None:
         super().__setitem__(key, value)
+        self.touched = True
         self.cut |= {array for array, on in enumerate(self) if not on}
 
 
@@ -255,6 +373,15 @@ class _Array:
     order: list[int]
     place: int = 0
     next_ms: float | None = None
+
+
+def _next_ms(state: _Array) -> float:
+    assert state.next_ms is not None
+    return state.next_ms
+
+
+def _completion_ms(reading: Reading) -> float:
+    return reading.t_ms
 
 
 class SonarRing:
@@ -269,18 +396,33 @@ class SonarRing:
         params: SonarParams | None = None,
         faults: SonarFaults | None = None,
         rng: np.random.Generator | None = None,
+        *,
+        echoes: EchoModel | None = None,
+        moving: MovingSolids | None = None,
     ) -> None:
+        """`echoes`: a model of the same world and parameters, to share what it has worked out.
+
+        `moving`: what else is in the way; whoever owns it lets it move.
+        """
         self.params = params or SonarParams()
-        self.echoes = EchoModel(world, self.params)
+        self.echoes = echoes if echoes is not None else EchoModel(world, self.params)
         self.faults = faults
+        self.watch: PingWatch | None = None
         self.cycle_ms = CYCLE_MS
-        self._rng = rng if rng is not None else np.random.default_rng(0)
+        rng = rng if rng is not None else np.random.default_rng(0)
+        self._normal: Callable[[], float] = rng.standard_normal
+        self._random: Callable[[], float] = rng.random
         self._enabled = _Switches([True] * FITTED_ARRAYS + [False] * (ARRAYS - FITTED_ARRAYS))
         self._arrays = [self._default(array) for array in range(FITTED_ARRAYS)]
         self._quiet = False
         self._last_ms: float | None = None
         self._pending: list[Reading] = []
-        self._known: dict[int, tuple[Pose, int]] = {}
+        self._live: list[_Array] = []
+        self._fire_ms = -math.inf
+        self._ready_ms = math.inf
+        self._moving = moving
+        self._moving_echoes = MovingEchoes(moving, self.params) if moving is not None else None
+        self._known: dict[int, tuple[Pose, int, int]] = {}
 
     @property
     def enabled(self) -> list[bool]:
@@ -323,30 +465,44 @@ class SonarRing:
         `pose_at(t)` gives the true pose at a time since the last call. A pause of more than a second is not made
         up for: firing resumes now.
         """
-        if self._last_ms is not None and now_ms - self._last_ms > _RESUME_MS:
+        last_ms, self._last_ms = self._last_ms, now_ms
+        if last_ms is not None and now_ms - last_ms > _RESUME_MS:
             self._restart(range(FITTED_ARRAYS))
-        self._last_ms = now_ms
-        self._restart(array for array in self._enabled.cut if array < FITTED_ARRAYS)
-        self._enabled.cut.clear()
-        while True:
-            due = None
-            for array, state in enumerate(self._arrays):
-                if not self._enabled[array]:
-                    continue
-                if state.next_ms is None:
-                    state.next_ms = now_ms
-                if state.next_ms <= now_ms and (due is None or state.next_ms < due[0]):
-                    due = (state.next_ms, state)
-            if due is None:
-                break
-            self._fire(due[1], due[0], pose_at)
-        if not self._pending:
+        if self._enabled.touched:
+            self._take_switches()
+        if now_ms >= self._fire_ms:
+            self._fire_due(now_ms, pose_at)
+        if now_ms < self._ready_ms:
             return []
         ready = [reading for reading in self._pending if reading.t_ms <= now_ms]
-        if ready:
-            self._pending = [reading for reading in self._pending if reading.t_ms > now_ms]
-            ready.sort(key=lambda reading: reading.t_ms)
+        self._wait_for([reading for reading in self._pending if reading.t_ms > now_ms])
+        ready.sort(key=_completion_ms)
         return ready
+
+    def _take_switches(self) -> None:
+        """Note which arrays fire from now on."""
+        self._restart(array for array in self._enabled.cut if array < FITTED_ARRAYS)
+        self._enabled.cut.clear()
+        self._enabled.touched = False
+        self._live = [state for array, state in enumerate(self._arrays) if self._enabled[array]]
+        self._fire_ms = -math.inf
+
+    def _wait_for(self, pending: list[Reading]) -> None:
+        self._pending = pending
+        self._ready_ms = min(map(_completion_ms, pending), default=math.inf)
+
+    def _fire_due(self, now_ms: float, pose_at: Callable[[float], Pose]) -> None:
+        live = self._live
+        for state in live:
+            if state.next_ms is None:
+                state.next_ms = now_ms
+        while live:
+            first = min(live, key=_next_ms)
+            self._fire_ms = _next_ms(first)
+            if self._fire_ms > now_ms:
+                return
+            self._fire(first, self._fire_ms, pose_at)
+        self._fire_ms = math.inf
 
     def fire_all(self, now_ms: float, pose: Pose) -> list[Reading]:
         """Return a reading of every sonar of the enabled arrays, without noise and crosstalk, faults applied.
@@ -374,7 +530,8 @@ class SonarRing:
         for array in arrays:
             self._arrays[array].next_ms = None
             low = array * PER_ARRAY
-            self._pending = [r for r in self._pending if not low <= r.number < low + PER_ARRAY]
+            self._wait_for([r for r in self._pending if not low <= r.number < low + PER_ARRAY])
+        self._fire_ms = -math.inf
 
     def _fire(self, state: _Array, t_ms: float, pose_at: Callable[[float], Pose]) -> None:
         state.next_ms = t_ms + self.cycle_ms
@@ -385,45 +542,47 @@ class SonarRing:
         pose = pose_at(t_ms)
         true_mm = self.true_range(number, pose)
         # Drawn for every ping, so that a fault or a world changes no later draw.
-        noise, chance, where = self._rng.standard_normal(), self._rng.random(), self._rng.random()
-        heard = self._heard(true_mm, float(noise), float(chance), float(where))
+        noise, chance, where = self._normal(), self._random(), self._random()
+        heard = self._heard(true_mm, noise, chance, where)
         value: int | None = heard
         kind = None
         if self.faults is not None:
 
             def remeasure(angle_deg: float) -> int:
                 turned = self._measure(number, pose, angle_deg)
-                return self._heard(turned, float(noise), float(chance), float(where))
+                return self._heard(turned, noise, chance, where)
 
             value, kind = self.faults.apply(number, t_ms, heard, remeasure)
+            if kind is not None and self.watch is not None:
+                self.watch(t_ms, number, true_mm, heard, value)
         if value is not None:
-            flight_ms = min(2 * value / SOUND_MM_MS, self.cycle_ms)
-            self._pending.append(Reading(t_ms + flight_ms, number, value, true_mm, kind))
+            ready_ms = t_ms + min(2 * value / SOUND_MM_MS, self.cycle_ms)
+            self._pending.append(Reading(ready_ms, number, value, true_mm, kind))
+            if ready_ms < self._ready_ms:
+                self._ready_ms = ready_ms
 
     def true_range(self, number: int, pose: Pose) -> int:
         """Return what sonar 0 to 15 reads at a pose without noise, crosstalk and faults."""
+        moment = self._moving.moment if self._moving is not None else 0
         known = self._known.get(number)
-        if known is not None and known[0] == pose:
-            return known[1]
+        if known is not None and known[1] == moment and (known[0] is pose or known[0] == pose):
+            return known[2]
         value = self._measure(number, pose, 0.0)
-        self._known[number] = (pose, value)
+        self._known[number] = (pose, moment, value)
         return value
 
     def _measure(self, number: int, pose: Pose, angle_deg: float) -> int:
-        mount = SONAR_POSES[number]
-        heading = math.radians(pose.heading_deg)
-        c, s = math.cos(heading), math.sin(heading)
-        x = pose.x_mm + mount.x_mm * c - mount.y_mm * s
-        y = pose.y_mm + mount.x_mm * s + mount.y_mm * c
-        return self.echoes.range_mm(x, y, pose.heading_deg + mount.heading_deg + angle_deg)
+        return self.echoes.ping_mm(number, pose, angle_deg, self._moving_echoes)
 
     def _heard(self, true_mm: int, noise: float, chance: float, where: float) -> int:
         """Add what a real ping adds: noise, another sonar's ping, and an echo that comes after the next firing."""
+        params = self.params
         value = float(true_mm)
         if value < NO_ECHO_MM:
-            value += noise * (self.params.noise_mm + self.params.noise_part * value)
-        if chance < self.params.crosstalk:
+            value += noise * (params.noise_mm + params.noise_part * value)
+        if chance < params.crosstalk:
             value = MIN_MM + where * (value - MIN_MM)
         if 2 * value / SOUND_MM_MS > self.cycle_ms:
             value = NO_ECHO_MM
-        return int(min(NO_ECHO_MM, max(MIN_MM, round(value))))
+        whole = round(value)
+        return MIN_MM if whole < MIN_MM else min(whole, NO_ECHO_MM)

@@ -7,13 +7,14 @@ import math
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final, NoReturn
+from typing import Final, NamedTuple, NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
 from hil_sim.document import Item, read_document, read_text
 from hil_sim.errors import SimError
+from hil_sim.movers import Mover, read_doors, read_people
 
 Floats = npt.NDArray[np.float64]
 
@@ -27,8 +28,7 @@ _SHORTEST_MM: Final = 1e-3
 """Two points nearer than this are one."""
 
 
-@dataclass(frozen=True)
-class Pose:
+class Pose(NamedTuple):
     """A place and a heading: mm, degrees counter-clockwise from the world's x axis."""
 
     x_mm: float
@@ -36,21 +36,26 @@ class Pose:
     heading_deg: float
 
 
+ORIGIN: Final = Pose(0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True, eq=False)
 class World:
-    """What stands still around the robot.
+    """What is around the robot.
 
     segments: N x 4, x1 y1 x2 y2 in mm. roughness: N, 0 smooth (mirrors sound) to 1 rough (scatters it back).
     goals: places by name. forbidden: N x 4, lines that a map asks a planner to keep away from; not solid.
+    movers: people and doors, which are not among the segments.
     """
 
     name: str
     segments: Floats
     roughness: Floats
-    start: Pose = Pose(0.0, 0.0, 0.0)
+    start: Pose = ORIGIN
     goals: dict[str, Pose] = field(default_factory=dict)
     about: str = ""
     forbidden: Floats = field(default_factory=lambda: np.zeros((0, 4)))
+    movers: tuple[Mover, ...] = ()
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -105,7 +110,7 @@ def load_world(name_or_path: str) -> World:
 
 # ---- our own format (docs/worlds.md) --------------------------------------------------------------------------
 
-_TOP = ("about", "start", "goals", "roughness", "walls", "boxes", "posts")
+_TOP = ("about", "start", "goals", "roughness", "walls", "boxes", "posts", "people", "doors")
 
 
 def load_yaml(path: str | Path) -> World:
@@ -125,15 +130,18 @@ def load_yaml(path: str | Path) -> World:
     about = keys["about"].text() if "about" in keys else ""
     if len(build.rows) > MAX_SEGMENTS:
         top.fail(f"more than {MAX_SEGMENTS} solids; leave some out")
-    world = build.world(Path(path).stem, start=start, goals=goals, about=about)
+    people = read_people(keys["people"]) if "people" in keys else ()
+    doors = read_doors(keys["doors"]) if "doors" in keys else ()
+    world = build.world(Path(path).stem, start=start, goals=goals, about=about, movers=(*people, *doors))
     _check_start(world, keys.get("start", top))
     return world
 
 
 def _check_start(world: World, where: Item) -> None:
     from hil_sim.body import BodyModel
+    from hil_sim.moving import moving_solids
 
-    if BodyModel(world).contact(world.start, 0.0) is not None:
+    if BodyModel(world, moving_solids(world.movers)).contact(world.start, 0.0) is not None:
         where.fail("the robot would start inside a solid; move the start or the solid")
 
 

@@ -19,6 +19,8 @@ const char *argus_shim_event_meaning(uint16_t id);
 const char *argus_shim_status_field(uint32_t field);
 const char *argus_shim_sonar_field(uint32_t field);
 void argus_shim_status(const argus_t *core, int64_t *fields, int64_t *sonars);
+size_t argus_shim_brief_size(void);
+void argus_shim_brief(const argus_t *core, uint8_t *bytes);
 
 size_t argus_shim_core_size(void) {
     return sizeof(argus_t);
@@ -125,7 +127,9 @@ const char *argus_shim_event_meaning(uint16_t id) {
     X(bumpers_rear)     \
     X(sips)             \
     X(bad_checksums)    \
-    X(skipped_bytes)
+    X(skipped_bytes)    \
+    X(stops)            \
+    X(goal_mm)
 #define SONAR_TABLE(X) X(reading_mm) X(age_ms) X(health) X(kind)
 
 static const char *const status_names[] = {
@@ -161,5 +165,21 @@ void argus_shim_status(const argus_t *core, int64_t *fields, int64_t *sonars) {
 #define PUT(field) sonars[at++] = (int64_t)status.field[k];
         SONAR_TABLE(PUT)
 #undef PUT
+    }
+}
+
+// What a simulator looks at after every call: mode, mission, then health and kind of each sonar, a byte each.
+#define BRIEF_HEAD ((size_t)2)
+
+size_t argus_shim_brief_size(void) {
+    return BRIEF_HEAD + 2 * (size_t)ARGUS_SONARS;
+}
+
+void argus_shim_brief(const argus_t *core, uint8_t *bytes) {
+    bytes[0] = (uint8_t)core->mode;
+    bytes[1] = (uint8_t)core->mission;
+    for (size_t k = 0; k < ARGUS_SONARS; k++) {
+        bytes[BRIEF_HEAD + k] = (uint8_t)core->knowledge.sonar[k].health;
+        bytes[BRIEF_HEAD + ARGUS_SONARS + k] = (uint8_t)core->knowledge.sonar[k].kind;
     }
 }

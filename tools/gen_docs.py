@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Fill the generated tables of SPEC.md from the C headers that define them."""
+"""Fill the generated tables of SPEC.md from the C headers and the DBC file that define them."""
 
 from __future__ import annotations
 
@@ -47,9 +47,65 @@ def config() -> str:
     return "\n".join(lines)
 
 
+# A frame, its signals, and what is said about them, as they stand in a DBC file.
+_FRAME = re.compile(r"^BO_ (\d+) (\w+): (\d+) (\w+)\n((?: SG_ [^\n]*\n)+)", re.MULTILINE)
+_SIGNAL = re.compile(r' SG_ (\w+) : (\d+)\|(\d+)@1([+-]) \(1,0\) \[[^\]]*\] "([^"]*)"')
+_NUMBERED = re.compile(r"(S)\d\d(_\w+)|([A-Za-z]+)\d")
+
+
+def _series(signals: list[tuple[str, ...]]) -> list[list[tuple[str, ...]]]:
+    """Put signals together that differ in a number only: one for each sonar, one for each rotation."""
+    found: dict[str, list[tuple[str, ...]]] = {}
+    for signal in signals:
+        numbered = _NUMBERED.fullmatch(signal[0])
+        stem = "".join(part or "" for part in numbered.groups()) if numbered else signal[0]
+        found.setdefault(stem, []).append(signal)
+    return list(found.values())
+
+
+def _bits(series: list[tuple[str, ...]]) -> str:
+    starts = [int(signal[1]) for signal in series]
+    length = int(series[0][2])
+    if len(starts) == 1:
+        return f"{starts[0]}" if length == 1 else f"{starts[0]} .. {starts[0] + length - 1}"
+    return f"{starts[0]}, {starts[1]} .. {starts[-1]}; {length} each"
+
+
+def _values(text: str, frame: str, name: str) -> str:
+    given = re.search(rf"^VAL_ {frame} {name} (.*) ;$", text, re.MULTILINE)
+    pairs = re.findall(r'(\d+) "([^"]*)"', given[1]) if given else []
+    if len(pairs) > 16:
+        return "see [Events](#events)"
+    return ", ".join(f"{value} {word}" for value, word in reversed(pairs))
+
+
+def can() -> str:
+    """Return the CAN frames and their signals as Markdown tables."""
+    text = (ROOT / "tools/argus.dbc").read_text(encoding="utf-8")
+    comments = dict(re.findall(r'^CM_ ((?:BO_|SG_) \d+(?: \w+)?) "([^"]*)";$', text, re.MULTILINE))
+    frames = ["| id | frame | sent by | when |", "|---|---|---|---|"]
+    signals = ["| frame | bits | signal | unit, values | meaning |", "|---|---|---|---|---|"]
+    for frame, name, _, sender, body in _FRAME.findall(text):
+        step = "16 k" if int(frame) >= 0x500 else "k"
+        said = _cell([comments.get(f"BO_ {frame}", "")])
+        frames.append(f"| 0x{int(frame):03X} + {step} | {name} | {sender} | {said} |")
+        for series in _series(_SIGNAL.findall(body)):
+            first, last = series[0], series[-1]
+            shown = first[0] if first is last else f"{first[0]} .. {last[0]}"
+            unit = first[4] or _values(text, frame, first[0]) or ("signed" if first[3] == "-" else "")
+            if first[4] and (words := _values(text, frame, first[0])):
+                unit = f"{first[4]}; {words}"
+            meaning = comments.get(f"SG_ {frame} {first[0]}", "")
+            if meaning:  # else the frame is laid out as one before it
+                signals.append(
+                    f"| {name} | {_bits(series)} | {shown} | {_cell([unit])} | {_cell([meaning])} |"
+                )
+    return "\n".join([*frames, "", *signals])
+
+
 def filled(text: str) -> str:
     """Return SPEC.md's text with its generated parts renewed."""
-    for mark, table in (("events", events()), ("config", config())):
+    for mark, table in (("events", events()), ("config", config()), ("can", can())):
         pattern = rf"(<!-- {mark}: [^\n]*-->\n).*?(<!-- /{mark} -->)"
         text = re.sub(pattern, lambda m, t=table: f"{m[1]}{t}\n{m[2]}", text, flags=re.DOTALL)  # type: ignore[misc]
     return text

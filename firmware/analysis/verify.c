@@ -106,8 +106,7 @@ static void judge(argus_verify_t *const self) {
 static bool hear(argus_verify_t *const self, const argus_knowledge_t *const knowledge,
                  const argus_mark_t *const mark, const unsigned side) {
     const int sonar = witness_sonar(self, side);
-    const bool gone =
-        knowledge->sonar[sonar].health == ARGUS_DISABLED; // it failed on the way: it cannot testify
+    const bool gone = argus_is_out(knowledge, sonar); // it failed on the way: it cannot testify
     if (!gone && !argus_fresh_since(knowledge, sonar, mark)) {
         return false;
     }

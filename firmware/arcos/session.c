@@ -178,10 +178,16 @@ static void take_config(argus_session_t *self, const argus_packet_t *packet) {
     }
 }
 
+// The old session's SIP still tells where the robot has got to.
+static unsigned on_old_session(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
+    const unsigned got = take_sip(self, now_ms, packet) ? ARGUS_SESSION_GOT_SIP : 0;
+    return dislodge(self, now_ms) | got;
+}
+
 static unsigned on_sync(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
     const int step = (int)self->state - (int)ARGUS_SESSION_SYNC0;
     if (is_sip(packet)) {
-        return dislodge(self, now_ms);
+        return on_old_session(self, now_ms, packet);
     }
     if (packet->data[0] != step) {
         self->unknown_packets++;
@@ -269,12 +275,6 @@ static unsigned on_open(argus_session_t *self, const argus_config_t *config, uin
         self->unknown_packets++;
     }
     return 0;
-}
-
-// The old session's SIP still tells where the robot has got to.
-static unsigned on_old_session(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
-    const unsigned got = take_sip(self, now_ms, packet) ? ARGUS_SESSION_GOT_SIP : 0;
-    return dislodge(self, now_ms) | got;
 }
 
 static unsigned on_packet(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,

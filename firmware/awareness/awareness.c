@@ -75,10 +75,10 @@ static void judge_fresh(argus_alarm_t *const alarm, const argus_knowledge_t *con
                         const argus_config_t *const config, const int sonar) {
     const argus_sonar_t *const s = &knowledge->sonar[sonar];
     const bool forward = (ARGUS_FORWARD_MASK >> sonar & 1u) != 0;
-    if (s->health == ARGUS_DISABLED) {
+    if (argus_is_out(knowledge, sonar)) {
         return;
     }
-    if (forward && s->reading_mm >= ARGUS_DEAD_MM) {
+    if (forward && s->reading_mm >= ARGUS_DEAD_MM && config->profile == ARGUS_PROFILE_PAPER) {
         alarm->dead |= (uint16_t)(1u << sonar);
     }
     if (s->reading_mm <= config->object_range_mm && looks_along_motion(knowledge, sonar)) {
@@ -88,8 +88,7 @@ static void judge_fresh(argus_alarm_t *const alarm, const argus_knowledge_t *con
 
 static bool is_silent(const argus_knowledge_t *const knowledge, const argus_config_t *const config,
                       const int sonar) {
-    return knowledge->sonar[sonar].health != ARGUS_DISABLED &&
-           argus_silent_ms(knowledge, sonar) > (uint32_t)config->stale_ms;
+    return !argus_is_out(knowledge, sonar) && argus_silent_ms(knowledge, sonar) > (uint32_t)config->stale_ms;
 }
 
 argus_alarm_t argus_awareness_sip(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
@@ -130,7 +129,7 @@ static bool hold_ends(const argus_disparate_t *const d, const argus_knowledge_t 
 static bool is_suspect(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
                        const argus_config_t *const config, const int sonar) {
     argus_disparate_t *const d = &self->of[sonar];
-    if (knowledge->sonar[sonar].health == ARGUS_DISABLED || d->in_a_row < config->suspect_readings) {
+    if (argus_is_out(knowledge, sonar) || d->in_a_row < config->suspect_readings) {
         return false;
     }
     if (d->held && hold_ends(d, knowledge, config, sonar)) {

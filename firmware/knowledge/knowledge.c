@@ -141,6 +141,8 @@ void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const
 void argus_sonar_set_health(argus_sonar_t *const self, const argus_health_t health,
                             const argus_fault_kind_t kind, const uint32_t now_ms) {
     if (health == ARGUS_DISABLED && self->health != ARGUS_DISABLED && self->disabled_times < UINT16_MAX) {
+        const bool again = self->disabled_times > 0 || self->disabled_before > 0;
+        self->relapses = (uint8_t)(self->relapses + (again && self->relapses < UINT8_MAX ? 1 : 0));
         self->disabled_times++;
     }
     self->health = health;
@@ -160,9 +162,18 @@ uint16_t argus_disabled(const argus_knowledge_t *const self) {
     return argus_with_health(self, ARGUS_DISABLED);
 }
 
+bool argus_is_out(const argus_knowledge_t *const self, const int sonar) {
+    const argus_health_t health = self->sonar[sonar].health;
+    return health == ARGUS_DISABLED || health == ARGUS_PROBATION;
+}
+
+uint16_t argus_out(const argus_knowledge_t *const self) {
+    return argus_disabled(self) | argus_with_health(self, ARGUS_PROBATION);
+}
+
 bool argus_usable(const argus_knowledge_t *const self, const int sonar) {
     const argus_sonar_t *const s = &self->sonar[sonar];
-    return s->reported && s->health != ARGUS_DISABLED && s->reading_mm < ARGUS_P3DX_SONAR_NO_ECHO_MM;
+    return s->reported && !argus_is_out(self, sonar) && s->reading_mm < ARGUS_P3DX_SONAR_NO_ECHO_MM;
 }
 
 argus_mark_t argus_mark_now(const argus_knowledge_t *const self) {

@@ -1,14 +1,31 @@
 // SPDX-License-Identifier: MIT
 // The persistent record: what is remembered of every sonar between missions (SPEC.md, Record).
-#include <string.h>
-
 #include "argus/record.h"
 
-#define VERSION 1
-#define HEAD_BYTES 6  // "ARGR", version, sonars
-#define SONAR_BYTES 4 // health, kind, disabled_times lo hi
+#include <string.h>
+
+#include "argus/angle.h"
+#include "awareness/evidence_internal.h"
+
+#define VERSION 2
+#define HEAD_BYTES 12 // "ARGR", version, sonars, robot, tests, trends
+#define SONAR_BYTES 43
 #define CHECK_BYTES 2
-#define RECORD_BYTES (HEAD_BYTES + ARGUS_SONARS * SONAR_BYTES + CHECK_BYTES)
+#define AT_SCORES 6
+#define AT_CALIBRATION 18
+#define AT_SLOPES 22
+#define SLOPE_BYTES 7
+#define SAID 1u // flag: its degradation is said
+
+#define V1 1
+#define V1_HEAD_BYTES 6  // "ARGR", version, sonars
+#define V1_SONAR_BYTES 4 // health, kind, disabled_times lo hi
+#define V1_BYTES (V1_HEAD_BYTES + ARGUS_SONARS * V1_SONAR_BYTES + CHECK_BYTES)
+
+_Static_assert(ARGUS_RECORD_BYTES == HEAD_BYTES + ARGUS_SONARS * SONAR_BYTES + CHECK_BYTES,
+               "length of the record");
+_Static_assert(AT_CALIBRATION == AT_SCORES + 2 * ARGUS_TESTS, "scores");
+_Static_assert(SONAR_BYTES == AT_SLOPES + SLOPE_BYTES * ARGUS_TRENDS, "slopes");
 
 static const uint8_t magic[4] = {'A', 'R', 'G', 'R'};
 
@@ -24,52 +41,190 @@ static uint16_t crc16(const uint8_t *const data, const size_t count) {
     return (uint16_t)crc;
 }
 
-size_t argus_record_encode(const argus_knowledge_t *const knowledge, uint8_t *const out,
-                           const size_t capacity) {
-    if (capacity < RECORD_BYTES) {
+static void put16(uint8_t *const at, const unsigned value) {
+    at[0] = (uint8_t)(value & 0xFFu);
+    at[1] = (uint8_t)(value >> 8 & 0xFFu);
+}
+
+static uint16_t get16(const uint8_t *const at) {
+    return (uint16_t)(at[0] | (unsigned)at[1] << 8);
+}
+
+static int16_t get_signed(const uint8_t *const at) {
+    const int32_t value = get16(at);
+    return (int16_t)(value > INT16_MAX ? value - 0x10000 : value);
+}
+
+// FNV-1a, 32 bits; the end of each text counts.
+static uint32_t mix(uint32_t hash, const char *const text) {
+    size_t i = 0;
+    do {
+        hash = (hash ^ (uint8_t)text[i]) * 16777619u;
+    } while (text[i++] != '\0');
+    return hash;
+}
+
+uint32_t argus_record_robot(const char *const name, const char *const robot_class,
+                            const char *const subclass) {
+    const uint32_t hash = mix(mix(mix(2166136261u, name), robot_class), subclass);
+    return hash == 0 ? 1 : hash;
+}
+
+// A mission without a fault makes up for one relapse.
+static uint8_t relapses_of(const argus_sonar_t *const s) {
+    const bool forgiven = s->relapses > 0 && s->disabled_times == 0 && s->health == ARGUS_HEALTHY;
+    return (uint8_t)(s->relapses - (forgiven ? 1 : 0));
+}
+
+static void put_history(uint8_t *const at, const argus_sonar_t *const s) {
+    const uint32_t sum = (uint32_t)s->disabled_times + s->disabled_before;
+    const bool out = s->health == ARGUS_DISABLED || s->health == ARGUS_PROBATION;
+    at[0] = (uint8_t)s->health;
+    at[1] = (uint8_t)(out ? s->kind : s->kind_before);
+    put16(at + 2, sum > UINT16_MAX ? UINT16_MAX : sum);
+    at[4] = relapses_of(s);
+}
+
+// Only what makes a suspect is worth remembering, and the record changes less often.
+static void put_evidence(uint8_t *const at, const argus_case_t *const c) {
+    for (int i = 0; i < ARGUS_TESTS; i++) {
+        const bool counts = c->score[i] >= argus_bounds[i].suspicious;
+        put16(at + AT_SCORES + 2 * i, counts ? (unsigned)c->score[i] : 0u);
+    }
+}
+
+static void put_trend(uint8_t *const at, const argus_trend_sonar_t *const t) {
+    at[5] = t->said ? SAID : 0;
+    put16(at + AT_CALIBRATION, (unsigned)t->residual_mm16);
+    put16(at + AT_CALIBRATION + 2, (unsigned)t->residual_permille16);
+    for (int i = 0; i < ARGUS_TRENDS; i++) {
+        const argus_slope_t *const slope = &t->slope[i];
+        uint8_t *const to = at + AT_SLOPES + i * SLOPE_BYTES;
+        put16(to, (unsigned)slope->fast);
+        put16(to + 2, (unsigned)slope->slow);
+        to[4] = slope->segments;
+        to[5] = slope->metres;
+        to[6] = slope->run;
+    }
+}
+
+size_t argus_record_encode(const argus_knowledge_t *const knowledge, const argus_evidence_t *const evidence,
+                           const uint32_t robot, uint8_t *const out, const size_t capacity) {
+    if (capacity < ARGUS_RECORD_BYTES) {
         return 0;
     }
     memcpy(out, magic, sizeof magic);
     out[4] = VERSION;
     out[5] = ARGUS_SONARS;
+    put16(out + 6, robot & 0xFFFFu);
+    put16(out + 8, robot >> 16);
+    out[10] = ARGUS_TESTS;
+    out[11] = ARGUS_TRENDS;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        const argus_sonar_t *const s = &knowledge->sonar[i];
-        const uint32_t sum = (uint32_t)s->disabled_times + s->disabled_before;
-        const uint16_t times = sum > UINT16_MAX ? UINT16_MAX : (uint16_t)sum;
         uint8_t *const at = out + HEAD_BYTES + i * SONAR_BYTES;
-        const argus_fault_kind_t kind = s->health == ARGUS_DISABLED ? s->kind : s->kind_before;
-        at[0] = (uint8_t)s->health;
-        at[1] = (uint8_t)kind;
-        at[2] = (uint8_t)(times & 0xFFu);
-        at[3] = (uint8_t)(times >> 8);
+        put_history(at, &knowledge->sonar[i]);
+        put_evidence(at, &evidence->of[i]);
+        put_trend(at, &evidence->trend.of[i]);
     }
-    const uint16_t crc = crc16(out, RECORD_BYTES - CHECK_BYTES);
-    out[RECORD_BYTES - 2] = (uint8_t)(crc & 0xFFu);
-    out[RECORD_BYTES - 1] = (uint8_t)(crc >> 8);
-    return RECORD_BYTES;
+    put16(out + ARGUS_RECORD_BYTES - CHECK_BYTES, crc16(out, ARGUS_RECORD_BYTES - CHECK_BYTES));
+    return ARGUS_RECORD_BYTES;
+}
+
+static bool is_known(const uint8_t *const record, const size_t length) {
+    if (record[5] != ARGUS_SONARS || (record[4] != V1 && record[4] != VERSION)) {
+        return false;
+    }
+    return record[4] == V1 || length < HEAD_BYTES ||
+           (record[10] == ARGUS_TESTS && record[11] == ARGUS_TRENDS);
 }
 
 static argus_record_fault_t check(const uint8_t *const record, const size_t length) {
-    if (length < HEAD_BYTES || memcmp(record, magic, sizeof magic) != 0) {
+    if (length < V1_HEAD_BYTES || memcmp(record, magic, sizeof magic) != 0) {
         return ARGUS_RECORD_DAMAGED;
     }
-    if (record[4] != VERSION || record[5] != ARGUS_SONARS) {
+    if (!is_known(record, length)) {
         return ARGUS_RECORD_FOREIGN;
     }
-    if (length != RECORD_BYTES) {
+    if (length != (record[4] == V1 ? V1_BYTES : ARGUS_RECORD_BYTES)) {
         return ARGUS_RECORD_DAMAGED;
     }
-    const unsigned stored = record[RECORD_BYTES - 2] | (unsigned)record[RECORD_BYTES - 1] << 8;
-    return stored == crc16(record, RECORD_BYTES - CHECK_BYTES) ? ARGUS_RECORD_OK : ARGUS_RECORD_DAMAGED;
+    const bool whole = get16(record + length - CHECK_BYTES) == crc16(record, length - CHECK_BYTES);
+    return whole ? ARGUS_RECORD_OK : ARGUS_RECORD_DAMAGED;
 }
 
-argus_record_fault_t argus_record_decode(argus_knowledge_t *const knowledge, const uint8_t *const record,
+static void get_history(argus_sonar_t *const s, const uint8_t *const at) {
+    s->kind_before = (argus_fault_kind_t)(at[1] <= ARGUS_KIND_INTERMITTENT ? at[1] : 0);
+    s->disabled_before = get16(at + 2);
+}
+
+// Half counts, and the rest must come from what is seen in this mission: at most a suspicion of one that was
+// out, and less of any other.
+static void get_evidence(argus_case_t *const c, const uint8_t *const at, const bool out) {
+    for (int i = 0; i < ARGUS_TESTS; i++) {
+        const int32_t score = argus_max(0, get_signed(at + AT_SCORES + 2 * i)) / 2;
+        const int32_t limit = (out ? argus_bounds[i].naming : argus_bounds[i].suspicious) - 1;
+        c->score[i] = (int16_t)argus_min(score, limit);
+    }
+}
+
+static void get_trend(argus_trend_sonar_t *const t, const uint8_t *const at) {
+    t->said = (at[5] & SAID) != 0;
+    t->residual_mm16 = get_signed(at + AT_CALIBRATION);
+    t->residual_permille16 = get_signed(at + AT_CALIBRATION + 2);
+    for (int i = 0; i < ARGUS_TRENDS; i++) {
+        const uint8_t *const from = at + AT_SLOPES + i * SLOPE_BYTES;
+        const argus_slope_t slope = {.fast = get_signed(from),
+                                     .slow = get_signed(from + 2),
+                                     .segments = from[4],
+                                     .metres = from[5],
+                                     .run = from[6]};
+        t->slope[i] = slope;
+    }
+}
+
+static void take_v1(argus_knowledge_t *const knowledge, const uint8_t *const record) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        get_history(&knowledge->sonar[i], record + V1_HEAD_BYTES + i * V1_SONAR_BYTES);
+    }
+}
+
+static void take(argus_knowledge_t *const knowledge, argus_evidence_t *const evidence,
+                 argus_record_note_t *const note, const uint8_t *const record) {
+    unsigned mask = 0;
+    note->robot = get16(record + 6) | (uint32_t)get16(record + 8) << 16;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const uint8_t *const at = record + HEAD_BYTES + i * SONAR_BYTES;
+        const bool out = at[0] == ARGUS_DISABLED || at[0] == ARGUS_PROBATION;
+        mask |= out ? 1u << i : 0u;
+        get_history(&knowledge->sonar[i], at);
+        knowledge->sonar[i].relapses = at[4];
+        get_evidence(&evidence->of[i], at, out);
+        get_trend(&evidence->trend.of[i], at);
+    }
+    note->out = (uint16_t)mask;
+}
+
+argus_record_fault_t argus_record_decode(argus_knowledge_t *const knowledge, argus_evidence_t *const evidence,
+                                         argus_record_note_t *const note, const uint8_t *const record,
                                          const size_t length) {
     const argus_record_fault_t fault = check(record, length);
-    for (int i = 0; fault == ARGUS_RECORD_OK && i < ARGUS_SONARS; i++) {
-        const uint8_t *const at = record + HEAD_BYTES + i * SONAR_BYTES;
-        knowledge->sonar[i].kind_before = (argus_fault_kind_t)(at[1] <= ARGUS_KIND_INTERMITTENT ? at[1] : 0);
-        knowledge->sonar[i].disabled_before = (uint16_t)(at[2] | (unsigned)at[3] << 8);
+    note->robot = 0;
+    note->out = 0;
+    if (fault == ARGUS_RECORD_OK && record[4] == V1) {
+        take_v1(knowledge, record);
+    } else if (fault == ARGUS_RECORD_OK) {
+        take(knowledge, evidence, note, record);
     }
     return fault;
+}
+
+void argus_record_forget(argus_knowledge_t *const knowledge, argus_evidence_t *const evidence) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        argus_sonar_t *const s = &knowledge->sonar[i];
+        s->kind_before = ARGUS_KIND_NONE;
+        s->disabled_before = 0;
+        s->relapses = 0;
+        argus_evidence_forget(evidence, i);
+        argus_trend_forget(&evidence->trend, i);
+    }
 }

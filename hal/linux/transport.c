@@ -7,18 +7,30 @@
 void hal_transport_init(hal_transport_t *self) {
     hal_serial_init(&self->serial);
     hal_tcp_init(&self->tcp);
+    hal_isotp_init(&self->isotp, &hal_can_sys);
 }
 
 hal_link_error_t hal_transport_open(hal_transport_t *self, const hal_link_spec_t *spec, int timeout_ms,
                                     int cancel_fd, hal_link_t *link) {
     hal_link_error_t error = HAL_LINK_OK;
-    if (spec->scheme == HAL_SCHEME_SERIAL) {
-        error = hal_serial_open(&self->serial, spec->path, spec->baud);
-    } else {
+    hal_link_t opened = {0};
+    switch (spec->scheme) {
+    case HAL_SCHEME_TCP:
         error = hal_tcp_open(&self->tcp, spec->host, spec->port, timeout_ms, cancel_fd);
+        opened = hal_tcp_link(&self->tcp);
+        break;
+    case HAL_SCHEME_CAN:
+        error = hal_isotp_open(&self->isotp, &spec->can);
+        opened = hal_isotp_link(&self->isotp);
+        break;
+    case HAL_SCHEME_SERIAL:
+    default:
+        error = hal_serial_open(&self->serial, spec->path, spec->baud);
+        opened = hal_serial_link(&self->serial);
+        break;
     }
     if (error == HAL_LINK_OK) {
-        *link = spec->scheme == HAL_SCHEME_SERIAL ? hal_serial_link(&self->serial) : hal_tcp_link(&self->tcp);
+        *link = opened;
     }
     return error;
 }
@@ -30,6 +42,10 @@ bool hal_transport_moved(const hal_transport_t *self, const hal_link_spec_t *spe
 void hal_transport_explain(const hal_link_spec_t *spec, hal_link_error_t error, char *text, size_t capacity) {
     if (spec->scheme == HAL_SCHEME_SERIAL) {
         hal_serial_explain(error, spec->path, text, capacity);
+        return;
+    }
+    if (spec->scheme == HAL_SCHEME_CAN) {
+        hal_isotp_explain(error, &spec->can, text, capacity);
         return;
     }
     const char *advice = "";

@@ -28,6 +28,10 @@ int hal_link_flush(const hal_link_t *link) {
     return link->ops == NULL ? HAL_LINK_NOT_OPEN : link->ops->flush(link->context);
 }
 
+uint32_t hal_link_hold_ms(const hal_link_t *link) {
+    return link->ops == NULL || link->ops->hold_ms == NULL ? 0 : link->ops->hold_ms(link->context);
+}
+
 int hal_link_fd(const hal_link_t *link) {
     return link->ops == NULL ? -1 : link->ops->fd(link->context);
 }

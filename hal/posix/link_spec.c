@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Parses serial:PATH[@BAUD] and tcp:HOST[:PORT].
+// Parses serial:PATH[@BAUD], tcp:HOST[:PORT] and can:IFACE[,options].
 #include "hal/link_spec.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#define FORMS "serial:/dev/ttyUSB0@9600 or tcp:HOST:8101"
+#define FORMS "serial:/dev/ttyUSB0@9600, tcp:HOST:8101 or can:can0"
 
 typedef struct {
     char *text;
@@ -123,8 +123,24 @@ bool hal_link_spec_parse(hal_link_spec_t *spec, const char *text, char *message_
     if (strncmp(text, "tcp:", 4) == 0) {
         return parse_tcp(spec, text + 4, &message);
     }
+    if (strncmp(text, "can:", 4) == 0) {
+        spec->scheme = HAL_SCHEME_CAN;
+        return hal_can_spec_parse(&spec->can, text + 4, message_text, capacity);
+    }
     if (strncmp(text, "/dev/", 5) == 0) {
         return refuse(&message, "link '%s': the scheme is missing; write serial:%s", text, text);
     }
     return refuse(&message, "link '%s': unknown scheme; write " FORMS, text);
+}
+
+const char *hal_link_spec_target(const hal_link_spec_t *spec) {
+    switch (spec->scheme) {
+    case HAL_SCHEME_TCP:
+        return spec->host;
+    case HAL_SCHEME_CAN:
+        return spec->can.interface;
+    case HAL_SCHEME_SERIAL:
+    default:
+        return spec->path;
+    }
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The demonstration: the emulator on a pty, argusd on it, a judged drive, a report and a picture."""
+"""The demonstration: the emulator on a pty or a CAN bus, argusd on it, a judged drive, a report and a picture."""
 
 from __future__ import annotations
 
@@ -38,6 +38,7 @@ examples:
   tools/dev demo --seed 7 --fail off:2,wrong:4
   tools/dev demo --policy fewest --out /tmp/drive
   tools/dev demo --no-live --json > drive.json
+  tools/with-can .venv/bin/python -m hil_sim.demo --can vcan0 --no-live
 
 exit codes: 0 goal reached, nothing hit, diagnosis equals injection; 1 the judge says no; 2 wrong arguments or files;
 3 something could not be started; 129, 130, 143 ended by SIGHUP, Ctrl-C, SIGTERM; 141 nobody reads the output
@@ -130,6 +131,11 @@ def parser() -> argparse.ArgumentParser:
         metavar="S",
         help="longest drive (default %(default).0f)",
     )
+    result.add_argument(
+        "--can",
+        metavar="IFACE[,...]",
+        help="drive over a CAN bus, not a pty (as argus-sim --can, see docs/can.md)",
+    )
     result.add_argument("--no-live", action="store_true", help="lines instead of a screen, on a terminal too")
     result.add_argument(
         "--json", action="store_true", help="the verdict as JSON on standard output, nothing else there"
@@ -180,6 +186,7 @@ def _prepare(arguments: argparse.Namespace, scenario: Scenario) -> Setup:
         course=out / "course.csv",
         config=out / "argusd.conf",
         timeout_s=arguments.timeout,
+        can=arguments.can or "",
     )
 
 

@@ -37,7 +37,7 @@ class CannotStart(SimError):
 
 @dataclass(frozen=True)
 class Setup:
-    """What one drive is made of. `sim_arguments` never reach argusd; it gets the pty, `course` and `config`."""
+    """What one drive is made of. `sim_arguments` never reach argusd; it gets the link, `course` and `config`."""
 
     out: Path
     argusd: Path
@@ -45,6 +45,8 @@ class Setup:
     course: Path
     config: Path
     timeout_s: float
+    can: str = ""
+    """The bus to drive over, as `argus-sim --can` has it; empty: a pty."""
 
 
 @dataclass
@@ -163,13 +165,8 @@ class Run:
 
     def _start_sim(self) -> str:
         program = Path(sys.executable).with_name("argus-sim")
-        arguments: list[str | Path] = [
-            program,
-            "--baud",
-            str(BAUD),
-            "--truth",
-            self.setup.out / "truth.jsonl",
-        ]
+        link = ["--can", self.setup.can] if self.setup.can else ["--baud", str(BAUD)]
+        arguments: list[str | Path] = [program, *link, "--truth", self.setup.out / "truth.jsonl"]
         arguments += self.setup.sim_arguments
         sim = Child("argus-sim", arguments, self.setup.out / "argus-sim.log")
         self.children.append(sim)
@@ -186,13 +183,8 @@ class Run:
 
     def _start_argusd(self, device: str) -> Child:
         setup = self.setup
-        arguments: list[str | Path] = [
-            setup.argusd,
-            "--link",
-            f"serial:{device}@{BAUD}",
-            "--active",
-            "--json",
-        ]
+        link = f"can:{device}" if setup.can else f"serial:{device}@{BAUD}"
+        arguments: list[str | Path] = [setup.argusd, "--link", link, "--active", "--json"]
         arguments += ["--course", setup.course, "--config", setup.config]
         argusd = Child("argusd", arguments, setup.out / "argusd.log")
         self.children.append(argusd)

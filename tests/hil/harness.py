@@ -373,14 +373,14 @@ class Bench:
         config: dict[str, Any] | None = None,
         active: bool = True,
     ) -> Argusd:
-        """Start argusd on the emulator's pty, active unless told otherwise."""
+        """Start argusd on the emulator's pty by the paper's rules, active, unless told otherwise."""
         words = ["--link", link or f"serial:{self.port}@{BAUD}", "--json", *arguments]
         if active:
             words.append("--active")
-        if config:
-            file = self.path / f"argusd{len(self.daemons)}.conf"
-            file.write_text("".join(f"{key} = {value}\n" for key, value in config.items()))
-            words += ["--config", str(file)]
+        settings = {"profile": "paper", **(config or {})}
+        file = self.path / f"argusd{len(self.daemons)}.conf"
+        file.write_text("".join(f"{key} = {value}\n" for key, value in settings.items()))
+        words += ["--config", str(file)]
         daemon = Argusd(words)
         self.daemons.append(daemon)
         return daemon

@@ -312,3 +312,14 @@ def test_the_examples_in_the_docstrings_hold() -> None:
         result = doctest.testmod(module)
         assert result.attempted >= 2
         assert result.failed == 0
+
+
+def test_a_sip_made_quickly_is_the_same_sip() -> None:
+    values = {"x": 7, "sonars": ((3, 500),), "battery_x10": 121, "rotvel": -40}
+    assert Sip.of(values) == Sip(**values)  # type: ignore[arg-type]
+    assert Sip.of({}) == Sip()
+    assert hash(Sip.of(values)) == hash(Sip(**values))  # type: ignore[arg-type]
+    for hole in ("gripper", "digout", "fault_flags"):
+        assert Sip.decode(Sip.of({hole: None}).data) == Sip.decode(Sip(**{hole: None}).data)  # type: ignore[arg-type]
+    with pytest.raises(PacketError, match="rotvel = 40000"):
+        _ = Sip.of({"rotvel": 40000}).data

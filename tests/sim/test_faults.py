@@ -167,6 +167,64 @@ def test_intermittent_is_5000_with_its_probability_and_true_otherwise(p: float) 
     assert abs(values.count(HIGH) - n * p) <= 5 * math.sqrt(n * p * (1 - p)), "seed 5"
 
 
+def test_intermittent_beyond_a_range_loses_farther_echoes_only() -> None:
+    made = faults("intermittent:3:p=1:beyond=2000")
+    assert [report(made, value) for value in (100, 2000, 2001, 5000)] == [100, 2000, 5000, 5000]
+    made = faults("intermittent:3:p=0.5:beyond=2000", seed=3)
+    assert {report(made, 3000) for _ in range(100)} == {3000, 5000}
+    assert {report(made, 1000) for _ in range(100)} == {1000}
+
+
+@pytest.mark.parametrize(
+    ("text", "at", "value"),
+    [
+        ("wrong:3:scale=0.5:ramp=60s", (30_000.0, 0.0), 1500),
+        ("wrong:3:offset=-400:ramp=60s", (15_000.0, 0.0), 1900),
+        ("wrong:3:offset=-400:ramp=20000", (99_000.0, 5000.0), 1900),
+        ("wrong:3@10s:offset=-400:ramp=20s", (20_000.0, 0.0), 1800),
+        ("wrong:3@travelled>1000:scale=1.5:ramp=1000", (0.0, 1500.0), 2500),
+        ("intermittent:3:p=1:beyond=1000:ramp=100s", (50_000.0, 0.0), 2000),
+        ("intermittent:3:p=1:beyond=1000:ramp=100s", (80_000.0, 0.0), 5000),
+    ],
+)
+def test_a_fault_with_a_ramp_grows_to_itself_and_stays(
+    text: str, at: tuple[float, float], value: int
+) -> None:
+    """A row is where the fault is partly there, driving 1 mm for each 1 ms or standing, and what 2000 then reads."""
+    made = faults(text)
+    steps = [k / 100 for k in range(1, 101)]
+    assert report(made, 2000) == 2000
+    for step in steps:
+        made.update(at[0] * step, HOME, at[1] * step)
+    assert report(made, 2000) == pytest.approx(value, abs=15)
+    for k in range(1, 200):
+        made.update(at[0] + 1000.0 * k, HOME, at[1] + 1000.0 * k)
+    grown = faults(re.sub(":ramp=.*|@[^:]*", "", text))
+    assert [report(made, v) for v in (500, 2000, 4000)] == [report(grown, v) for v in (500, 2000, 4000)]
+
+
+def test_a_ramp_turns_the_axis_little_by_little() -> None:
+    made = faults("wrong:3:angle=-20:ramp=10s")
+    made.update(5000.0, HOME, 0.0)
+    assert report(made, 2000, remeasure=lambda angle: round(1000 + angle)) == 990
+
+
+def test_dropouts_grow_with_their_ramp() -> None:
+    made = faults("intermittent:3:p=0.8:ramp=10s", seed=5)
+    shares = []
+    for now_ms in (0.0, 2500.0, 5000.0, 10_000.0, 50_000.0):
+        made.update(now_ms, HOME, 0.0)
+        shares.append(sum(report(made, 777) == HIGH for _ in range(4000)) / 4000)
+    assert shares == pytest.approx([0, 0.2, 0.4, 0.8, 0.8], abs=0.03)
+
+
+def test_a_ramp_ends_with_its_fault() -> None:
+    made = faults("wrong:3@1s-3s:offset=-400:ramp=1s")
+    for now_ms in range(0, 5000, 10):
+        made.update(float(now_ms), HOME, 0.0)
+    assert report(made, 2000) == 2000
+
+
 def test_intermittent_is_one_in_two_unless_told() -> None:
     fault = parse_fault("intermittent:3")
     assert isinstance(fault, SonarFault)
@@ -335,6 +393,13 @@ BAD = [
     "slow:3:n=0",
     "slow:3:n=101",
     "slow:3:n=1.5",
+    "intermittent:3:beyond=99",
+    "intermittent:3:ramp=0s",
+    "intermittent:3:ramp=-5",
+    "intermittent:3:ramp=fast",
+    "intermittent:3:ramp=99999999999",
+    "wrong:3:ramp=60s",
+    "slow:3:ramp=60s",
     "intermittent:3:p=1.1",
     "intermittent:3:p=-0.1",
     "bumper:3",

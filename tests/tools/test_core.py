@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import re
 import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
-from argus_tools import core
+from argus_tools import core, core_build
 from argus_tools.core import Core, library, setting_value, settings
 from argus_tools.formats.base import LogError
 
@@ -54,17 +55,58 @@ def test_settings_that_do_not_hold_are_refused() -> None:
         Core(0, {"speed_mm_s": 700})
 
 
-def test_a_missing_library_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_library_that_is_none_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv(core.LIBRARY_VARIABLE, str(tmp_path / "no.so"))
-    with pytest.raises(LogError, match="does not exist: run tools/dev build release"):
+    with pytest.raises(LogError, match=r"no\.so does not exist: unset it"):
         core._load()
     (tmp_path / "no.so").write_text("no library")
     with pytest.raises(LogError, match="build it again"):
         core._load()
-    monkeypatch.delenv(core.LIBRARY_VARIABLE)
+
+
+def test_without_a_library_it_is_compiled_once(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv(core.LIBRARY_VARIABLE, raising=False)
     monkeypatch.setattr(core, "_PLACES", ())
-    with pytest.raises(LogError, match=r"libargus\.so is not built: run tools/dev build release"):
-        core._load()
+    monkeypatch.setattr(core, "build", lambda: core_build.build(tmp_path / "core"))
+    assert core._load().argus_shim_core_size() == library().argus_shim_core_size()
+    assert capfd.readouterr().err.count("compiling the fault manager") == 1
+    core._load()
+    assert capfd.readouterr().err == ""
+    assert len(list((tmp_path / "core").iterdir())) == 1
+
+
+@pytest.mark.parametrize(
+    ("compiler", "part"), [("/no/such/cc", "install gcc, or set ARGUS_CORE"), ("false", "does not compile")]
+)
+def test_without_a_compiler_it_is_one_line(
+    compiler: str, part: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("CC", compiler)
+    with pytest.raises(LogError, match=part) as raised:
+        core_build.build(tmp_path)
+    assert "\n" not in str(raised.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_sources_it_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(core_build, "_TREE", tmp_path)
+    monkeypatch.setattr(core_build, "_INSTALLED", tmp_path)
+    with pytest.raises(LogError, match="sources are not here: set ARGUS_CORE"):
+        core_build.build()
+
+
+def test_the_installed_sources_are_all_that_compile_needs() -> None:
+    listed = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["data-files"]
+    installed = {
+        f"{folder.removeprefix('share/argus/')}/{path.name}"
+        for folder, patterns in listed.items()
+        for pattern in patterns
+        for path in ROOT.glob(pattern)
+    }
+    needed = {path.relative_to(ROOT).as_posix() for path in (ROOT / "firmware").rglob("*.[ch]")}
+    assert installed == needed | {"tools/core_shim.c"}
 
 
 def run_session(active: bool) -> tuple[Core, list[str], list[int]]:

@@ -80,6 +80,38 @@ def test_the_packets_are_those_of_argus_log(path: Path, size: int, tmp_path: Pat
     assert field(pcap, "arcos.name", "arcos.to_robot == 1") == client
 
 
+def gathered(chunks: Iterable[Chunk], size: int) -> list[Chunk]:
+    """The same bytes, many packets in a segment: it ends when it is full or the other side speaks."""
+    offsets = Offsets()
+    found: list[Chunk] = []
+    for chunk in chunks:
+        if found and found[-1].dir == chunk.dir and len(found[-1].data) + len(chunk.data) <= size:
+            found[-1] = found[-1]._replace(data=found[-1].data + chunk.data)
+            offsets.at[chunk.dir] += len(chunk.data)
+        else:
+            found.append(offsets.chunk(chunk.t, chunk.dir, chunk.data))
+    return found
+
+
+@pytest.mark.parametrize("name", ["a_idle", "c_commands", "d_ram"])
+def test_many_packets_in_a_segment_and_some_over_its_edge(name: str, tmp_path: Path) -> None:
+    chunks = [chunk for chunk in open_log(str(CAPTURES[0].parent / f"{name}.jsonl")) if chunk.dir == "r2c"]
+    rows = [row for row in packets(chunks) if row.ok]
+    full = gathered(chunks, 1300)
+    assert max(len(list(packets([chunk]))) for chunk in full) > 8
+    over_edges = cut(gathered(chunks, 1 << 20), 1000)
+    for segments in (full, over_edges):
+        pcap = write(tmp_path / "a.pcap", segments)
+        assert field(pcap, "arcos.name") == [row.type for row in rows]
+        ranges = [
+            str(int.from_bytes(row.data[at + 1 : at + 3], "little"))
+            for row in rows
+            if row.type == "SIP"
+            for at in range(20, 20 + 3 * row.data[19], 3)
+        ]
+        assert field(pcap, "arcos.sonar.range") == ranges
+
+
 SIP = Sip(
     type=0x33,
     x=0x7FF0,

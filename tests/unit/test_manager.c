@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the life of a session: cold start, the course, shutdown, and what an operator may ask.
 #include "argus/manager.h"
+#include "argus/record.h"
 
 #include <math.h>
 #include <string.h>
@@ -336,7 +337,7 @@ void test_going_passive_stops_and_going_active_checks(void) {
 }
 
 void test_record_survives_a_restart_as_history(void) {
-    static uint8_t record[256];
+    static uint8_t record[ARGUS_RECORD_BYTES];
     start_idle();
     robot.fault[4] = ROBOT_OFF;
     robot_run(&robot, 2000);

@@ -20,7 +20,7 @@ static uint32_t chance(uint32_t one_in) {
 }
 
 static argus_config_t random_config(uint32_t seed) {
-    argus_config_t config = robot_config();
+    argus_config_t config = robot_config_of(seed % 3 == 0 ? ARGUS_PROFILE_PAPER : ARGUS_PROFILE_ARGUS);
     config.policy = (int32_t)(seed & 1u);
     config.active = seed % 7 != 0;
     if (seed % 5 == 0) { // the bare paper

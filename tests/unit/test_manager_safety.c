@@ -10,6 +10,7 @@
 #include "unity.h"
 
 static robot_t robot;
+static int32_t profile;
 
 static const uint8_t STOP[] = {0xFA, 0xFB, 0x03, 0x1D, 0x00, 0x1D};
 static const uint8_t E_STOP[] = {0xFA, 0xFB, 0x03, 0x37, 0x00, 0x37};
@@ -20,12 +21,39 @@ static int world_with_step(const robot_t *r, int sonar) {
     return fabs(bearing - 30) < 8 ? 1200 : 2000;
 }
 
+// Readings that stay the same whatever the robot does are evidence of a fault under argus: it gets a room.
 static void start_with(const argus_config_t *config) {
     robot_init(&robot, config, 0xFFFF0000u);
+    if (config->profile == ARGUS_PROFILE_ARGUS) {
+        robot_box(&robot, -2500, -2500, 3500, 2500);
+        robot.world = robot_world_segments;
+        robot.noise_mm = 5;
+    }
+}
+
+// Whatever a sonar's fault, both profiles put it out for silence; 5000 alone is enough for the paper.
+static robot_fault_t fault_that_puts_out(void) {
+    return profile == ARGUS_PROFILE_PAPER ? ROBOT_OFF : ROBOT_SILENT;
+}
+
+void tearDown(void) {
+    if (Unity.CurrentTestFailed) {
+        printf("profile %s\n", profile == ARGUS_PROFILE_PAPER ? "paper" : "argus");
+    }
+}
+
+static void with_profile(int32_t which, void (*check)(void)) {
+    profile = which;
+    check();
+}
+
+static void in_both_profiles(void (*check)(void)) {
+    with_profile(ARGUS_PROFILE_PAPER, check);
+    with_profile(ARGUS_PROFILE_ARGUS, check);
 }
 
 static void start_idle(void) {
-    const argus_config_t config = robot_config();
+    const argus_config_t config = robot_config_of(profile);
     start_with(&config);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
 }
@@ -34,7 +62,7 @@ static void start_idle(void) {
 static void start_driving(void) {
     start_idle();
     TEST_ASSERT_TRUE(robot_goal(&robot, 20000, 0));
-    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 8000));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 30000));
     robot_run(&robot, 2000);
     TEST_ASSERT_EQUAL(ARGUS_MODE_DRIVING, robot.argus.mode);
     TEST_ASSERT_TRUE(robot.v > 190);
@@ -61,6 +89,14 @@ static bool listed(int sonar) {
     return (robot.argus.knowledge.fresh >> sonar & 1u) != 0;
 }
 
+// Judged bad: the paper disables it; argus may leave it a suspect, for whom the plan covers as for one
+// disabled.
+static bool is_covered_for(int sonar) {
+    const bool disabled = robot.argus.knowledge.sonar[sonar].health == ARGUS_DISABLED;
+    const bool planned = (robot.argus.plan.disabled >> sonar & 1u) != 0;
+    return planned && (disabled || profile == ARGUS_PROFILE_ARGUS);
+}
+
 static int moves_ahead(int from) {
     int count = 0;
     for (int i = from; i < robot.commands; i++) {
@@ -69,10 +105,10 @@ static int moves_ahead(int from) {
     return count;
 }
 
-void test_s1_every_step_in_failure_mode_follows_a_sweep(void) {
+static void check_s1_every_step_in_failure_mode_follows_a_sweep(void) {
     start_idle();
-    robot.fault[3] = ROBOT_OFF;
-    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_DISABLED, 2000));
+    robot.fault[3] = fault_that_puts_out();
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_DISABLED, 4000));
     TEST_ASSERT_TRUE(robot_goal(&robot, 900, 0));
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 90000));
     TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_STEP, 0) >= 4);
@@ -80,11 +116,15 @@ void test_s1_every_step_in_failure_mode_follows_a_sweep(void) {
     finish(); // the watch compares every MOVE with the sweeps
 }
 
-void test_s1_object_on_a_compensated_bearing_stops_the_next_step(void) {
+void test_s1_every_step_in_failure_mode_follows_a_sweep(void) {
+    in_both_profiles(check_s1_every_step_in_failure_mode_follows_a_sweep);
+}
+
+static void check_s1_object_on_a_compensated_bearing_stops_the_next_step(void) {
     start_idle();
-    robot.fault[2] = ROBOT_OFF;
+    robot.fault[2] = fault_that_puts_out();
     robot.world = world_with_step;
-    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_DISABLED, 2000));
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_DISABLED, 4000));
     robot_box(&robot, 330, 100, 500, 400); // ahead on the left, on the bearing of sonar 2 alone or nearly so
     robot_box(&robot, -3000, -3000, 3000, 3000);
     robot.world = robot_world_segments;
@@ -96,15 +136,19 @@ void test_s1_object_on_a_compensated_bearing_stops_the_next_step(void) {
     finish();
 }
 
-void test_s1_object_on_a_healthy_bearing_stops_the_next_step(void) {
+void test_s1_object_on_a_compensated_bearing_stops_the_next_step(void) {
+    in_both_profiles(check_s1_object_on_a_compensated_bearing_stops_the_next_step);
+}
+
+static void check_s1_object_on_a_healthy_bearing_stops_the_next_step(void) {
     for (int mm = 350; mm <= 351; mm++) {
         start_idle();
-        robot.fault[2] = ROBOT_OFF;
+        robot.fault[2] = fault_that_puts_out();
         for (int i = 3; i <= 6; i++) {
             robot.fault[i] = ROBOT_VALUE;
             robot.fault_value[i] = mm;
         }
-        robot_run(&robot, 2000);
+        robot_run(&robot, 4000);
         TEST_ASSERT_EQUAL_HEX16(1u << 2, argus_disabled(&robot.argus.knowledge));
         TEST_ASSERT_TRUE(robot_goal(&robot, 2000, 0));
         TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SWEEP, 20000));
@@ -114,7 +158,11 @@ void test_s1_object_on_a_healthy_bearing_stops_the_next_step(void) {
     }
 }
 
-void test_s2_dead_reading_in_motion_is_answered_by_stop_in_the_same_call(void) {
+void test_s1_object_on_a_healthy_bearing_stops_the_next_step(void) {
+    with_profile(ARGUS_PROFILE_PAPER, check_s1_object_on_a_healthy_bearing_stops_the_next_step);
+}
+
+static void check_s2_dead_reading_in_motion_is_answered_by_stop_in_the_same_call(void) {
     for (int sonar = 1; sonar <= 6; sonar++) {
         start_driving();
         robot.fault[sonar] = ROBOT_OFF;
@@ -133,14 +181,22 @@ void test_s2_dead_reading_in_motion_is_answered_by_stop_in_the_same_call(void) {
     }
 }
 
-void test_s2_dead_reading_at_rest_is_answered_by_stop(void) {
+void test_s2_dead_reading_in_motion_is_answered_by_stop_in_the_same_call(void) {
+    with_profile(ARGUS_PROFILE_PAPER, check_s2_dead_reading_in_motion_is_answered_by_stop_in_the_same_call);
+}
+
+static void check_s2_dead_reading_at_rest_is_answered_by_stop(void) {
     start_idle();
     robot.fault[5] = ROBOT_OFF;
     TEST_ASSERT_TRUE(until_reply(STOP, sizeof STOP, 5));
     finish();
 }
 
-void test_s2_sonars_0_and_7_and_the_rear_may_read_5000(void) {
+void test_s2_dead_reading_at_rest_is_answered_by_stop(void) {
+    with_profile(ARGUS_PROFILE_PAPER, check_s2_dead_reading_at_rest_is_answered_by_stop);
+}
+
+static void check_s2_sonars_0_and_7_and_the_rear_may_read_5000(void) {
     start_idle();
     robot.fault[0] = robot.fault[7] = robot.fault[11] = ROBOT_OFF;
     const uint32_t stops = robot.argus.stops;
@@ -150,7 +206,11 @@ void test_s2_sonars_0_and_7_and_the_rear_may_read_5000(void) {
     finish();
 }
 
-void test_s2_object_in_motion_is_answered_by_stop_in_the_same_call(void) {
+void test_s2_sonars_0_and_7_and_the_rear_may_read_5000(void) {
+    in_both_profiles(check_s2_sonars_0_and_7_and_the_rear_may_read_5000);
+}
+
+static void check_s2_object_in_motion_is_answered_by_stop_in_the_same_call(void) {
     for (int sonar = 1; sonar <= 6; sonar++) {
         start_driving();
         robot.fault[sonar] = ROBOT_VALUE;
@@ -168,7 +228,11 @@ void test_s2_object_in_motion_is_answered_by_stop_in_the_same_call(void) {
     }
 }
 
-void test_s2_object_one_mm_beyond_the_range_is_none(void) {
+void test_s2_object_in_motion_is_answered_by_stop_in_the_same_call(void) {
+    in_both_profiles(check_s2_object_in_motion_is_answered_by_stop_in_the_same_call);
+}
+
+static void check_s2_object_one_mm_beyond_the_range_is_none(void) {
     start_driving();
     robot.fault[3] = ROBOT_VALUE;
     robot.fault_value[3] = 251;
@@ -180,10 +244,15 @@ void test_s2_object_one_mm_beyond_the_range_is_none(void) {
     finish();
 }
 
+void test_s2_object_one_mm_beyond_the_range_is_none(void) {
+    in_both_profiles(check_s2_object_one_mm_beyond_the_range_is_none);
+}
+
 // The MOVE is on its way, the SIPs do not show it yet, and somebody steps in front.
-void test_s2_object_before_the_first_sip_that_shows_motion(void) {
+static void check_s2_object_before_the_first_sip_that_shows_motion(void) {
     start_idle();
     TEST_ASSERT_TRUE(robot_goal(&robot, 5000, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 30000));
     robot.stuck_wheels = true; // the MOVE has been taken, the wheels have not started
     for (int i = 0; i < 600 && robot_count_commands(&robot, ARCOS_CMD_MOVE, 0) == 0; i++) {
         robot_tick(&robot);
@@ -202,14 +271,19 @@ void test_s2_object_before_the_first_sip_that_shows_motion(void) {
     finish();
 }
 
-void test_s2_a_suspect_before_the_first_sip_that_shows_motion(void) {
+void test_s2_object_before_the_first_sip_that_shows_motion(void) {
+    in_both_profiles(check_s2_object_before_the_first_sip_that_shows_motion);
+}
+
+static void check_s2_a_suspect_before_the_first_sip_that_shows_motion(void) {
     start_idle();
     TEST_ASSERT_TRUE(robot_goal(&robot, 5000, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 30000));
     robot.stuck_wheels = true;
     for (int i = 0; i < 600 && robot_count_commands(&robot, ARCOS_CMD_MOVE, 0) == 0; i++) {
         robot_tick(&robot);
     }
-    robot.fault[3] = ROBOT_SCALE;
+    robot.fault[3] = profile == ARGUS_PROFILE_PAPER ? ROBOT_SCALE : ROBOT_OFF; // what each suspects at once
     robot.fault_value[3] = 50;
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 5000));
     robot.stuck_wheels = false;
@@ -218,8 +292,12 @@ void test_s2_a_suspect_before_the_first_sip_that_shows_motion(void) {
     finish();
 }
 
+void test_s2_a_suspect_before_the_first_sip_that_shows_motion(void) {
+    in_both_profiles(check_s2_a_suspect_before_the_first_sip_that_shows_motion);
+}
+
 // GO and ACTIVE begin a health check: what was under way must not go on beside it.
-void test_s2_a_check_asked_for_in_motion_stops_the_robot(void) {
+static void check_s2_a_check_asked_for_in_motion_stops_the_robot(void) {
     static const argus_op_t ops[] = {ARGUS_OP_GO, ARGUS_OP_ACTIVE, ARGUS_OP_RECHECK, ARGUS_OP_STOP,
                                      ARGUS_OP_PASSIVE};
     for (int i = 0; i < 5; i++) {
@@ -235,7 +313,11 @@ void test_s2_a_check_asked_for_in_motion_stops_the_robot(void) {
     }
 }
 
-void test_s2_sonars_switched_off_in_motion_end_the_drive(void) {
+void test_s2_a_check_asked_for_in_motion_stops_the_robot(void) {
+    in_both_profiles(check_s2_a_check_asked_for_in_motion_stops_the_robot);
+}
+
+static void check_s2_sonars_switched_off_in_motion_end_the_drive(void) {
     start_driving();
     robot.sonar_on = false;
     robot_run(&robot, 4000);
@@ -246,7 +328,11 @@ void test_s2_sonars_switched_off_in_motion_end_the_drive(void) {
     finish();
 }
 
-void test_s2_bumper_is_answered_by_e_stop_in_the_same_call(void) {
+void test_s2_sonars_switched_off_in_motion_end_the_drive(void) {
+    in_both_profiles(check_s2_sonars_switched_off_in_motion_end_the_drive);
+}
+
+static void check_s2_bumper_is_answered_by_e_stop_in_the_same_call(void) {
     for (int segment = 1; segment <= 5; segment++) {
         for (int rear = 0; rear < 2; rear++) {
             start_driving();
@@ -259,7 +345,11 @@ void test_s2_bumper_is_answered_by_e_stop_in_the_same_call(void) {
     }
 }
 
-void test_s3_move_is_bounded_by_the_shortest_reading(void) {
+void test_s2_bumper_is_answered_by_e_stop_in_the_same_call(void) {
+    in_both_profiles(check_s2_bumper_is_answered_by_e_stop_in_the_same_call);
+}
+
+static void check_s3_move_is_bounded_by_the_shortest_reading(void) {
     start_driving();
     robot.fault[4] = ROBOT_VALUE;
     robot.fault_value[4] = 700;
@@ -269,8 +359,12 @@ void test_s3_move_is_bounded_by_the_shortest_reading(void) {
     finish();
 }
 
+void test_s3_move_is_bounded_by_the_shortest_reading(void) {
+    in_both_profiles(check_s3_move_is_bounded_by_the_shortest_reading);
+}
+
 // "fresh": a reading that is not renewed must not renew the way ahead.
-void test_s3_a_silent_sonar_does_not_renew_its_move(void) {
+static void check_s3_a_silent_sonar_does_not_renew_its_move(void) {
     start_driving();
     for (int i = 3; i <= 5; i++) {
         robot.fault[i] = ROBOT_VALUE;
@@ -285,7 +379,11 @@ void test_s3_a_silent_sonar_does_not_renew_its_move(void) {
     finish();
 }
 
-void test_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move(void) {
+void test_s3_a_silent_sonar_does_not_renew_its_move(void) {
+    in_both_profiles(check_s3_a_silent_sonar_does_not_renew_its_move);
+}
+
+static void check_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move(void) {
     start_driving();
     const int from = robot.commands;
     robot.mute = true;
@@ -305,8 +403,12 @@ void test_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move(void) {
     finish();
 }
 
+void test_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move(void) {
+    in_both_profiles(check_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move);
+}
+
 // A sonar that dies in the middle of it does not cut the full check short.
-void test_s3_the_check_after_a_stall_stays_a_full_one(void) {
+static void check_s3_the_check_after_a_stall_stays_a_full_one(void) {
     start_driving();
     robot.mute = true;
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_STALLED, 2000));
@@ -321,7 +423,11 @@ void test_s3_the_check_after_a_stall_stays_a_full_one(void) {
     finish();
 }
 
-void test_s3_link_cut_and_restored_leads_to_a_full_check(void) {
+void test_s3_the_check_after_a_stall_stays_a_full_one(void) {
+    with_profile(ARGUS_PROFILE_PAPER, check_s3_the_check_after_a_stall_stays_a_full_one);
+}
+
+static void check_s3_link_cut_and_restored_leads_to_a_full_check(void) {
     start_driving();
     argus_link_lost(&robot.argus, robot.start_ms + robot.t_ms);
     robot_drain(&robot);
@@ -340,7 +446,11 @@ void test_s3_link_cut_and_restored_leads_to_a_full_check(void) {
     finish();
 }
 
-void test_s3_velocity_is_never_used_to_drive(void) {
+void test_s3_link_cut_and_restored_leads_to_a_full_check(void) {
+    in_both_profiles(check_s3_link_cut_and_restored_leads_to_a_full_check);
+}
+
+static void check_s3_velocity_is_never_used_to_drive(void) {
     start_driving();
     robot_run(&robot, 10000);
     for (int i = 0; i < robot.commands; i++) {
@@ -352,14 +462,18 @@ void test_s3_velocity_is_never_used_to_drive(void) {
     finish();
 }
 
-void test_s4_heading_restored_after_every_sweep(void) {
+void test_s3_velocity_is_never_used_to_drive(void) {
+    in_both_profiles(check_s3_velocity_is_never_used_to_drive);
+}
+
+static void check_s4_heading_restored_after_every_sweep(void) {
     for (int policy = 0; policy < 2; policy++) {
-        argus_config_t config = robot_config();
+        argus_config_t config = robot_config_of(profile);
         config.policy = policy;
         start_with(&config);
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
-        robot.fault[2] = robot.fault[3] = robot.fault[6] = ROBOT_OFF;
-        robot_run(&robot, 1500);
+        robot.fault[2] = robot.fault[3] = robot.fault[6] = fault_that_puts_out();
+        robot_run(&robot, 4000);
         TEST_ASSERT_TRUE(robot_goal(&robot, 600, 300));
         for (int sweep = 0; sweep < 3; sweep++) {
             TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_SWEEPING, 20000));
@@ -376,18 +490,27 @@ void test_s4_heading_restored_after_every_sweep(void) {
     }
 }
 
-void test_s4_heading_restored_after_a_verification(void) {
+void test_s4_heading_restored_after_every_sweep(void) {
+    in_both_profiles(check_s4_heading_restored_after_every_sweep);
+}
+
+static void check_s4_heading_restored_after_a_verification(void) {
     start_idle();
     robot.fault[4] = ROBOT_SCALE;
     robot.fault_value[4] = 50;
     const double before = robot_heading_deg(&robot);
-    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_DISABLED, 30000));
+    const int judged = profile == ARGUS_PROFILE_PAPER ? ARGUS_EV_SONAR_DISABLED : ARGUS_EV_SONAR_UNPROVEN;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, judged, 30000));
     TEST_ASSERT_FLOAT_WITHIN(2, 0, remainder(robot_heading_deg(&robot) - before, 360));
     finish();
 }
 
-void test_s5_an_unsafe_configuration_never_drives(void) {
-    argus_config_t config = robot_config();
+void test_s4_heading_restored_after_a_verification(void) {
+    in_both_profiles(check_s4_heading_restored_after_a_verification);
+}
+
+static void check_s5_an_unsafe_configuration_never_drives(void) {
+    argus_config_t config = robot_config_of(profile);
     config.speed_mm_s = 700;
     start_with(&config);
     robot_goal(&robot, 2000, 0);
@@ -401,9 +524,13 @@ void test_s5_an_unsafe_configuration_never_drives(void) {
     finish();
 }
 
-void test_s6_no_move_until_every_front_sonar_has_reported(void) {
+void test_s5_an_unsafe_configuration_never_drives(void) {
+    in_both_profiles(check_s5_an_unsafe_configuration_never_drives);
+}
+
+static void check_s6_no_move_until_every_front_sonar_has_reported(void) {
     for (int sonar = 1; sonar <= 6; sonar++) {
-        argus_config_t config = robot_config();
+        argus_config_t config = robot_config_of(profile);
         config.stale_ms = 10000;
         start_with(&config);
         robot.fault[sonar] = ROBOT_SILENT;
@@ -411,16 +538,21 @@ void test_s6_no_move_until_every_front_sonar_has_reported(void) {
         robot_run(&robot, 8000);
         TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0));
         robot.fault[sonar] = ROBOT_OK;
-        robot_run(&robot, 4000);
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 30000));
+        robot_run(&robot, 1000);
         TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_MOVE, 0) > 0);
         finish();
     }
 }
 
+void test_s6_no_move_until_every_front_sonar_has_reported(void) {
+    in_both_profiles(check_s6_no_move_until_every_front_sonar_has_reported);
+}
+
 // A sonar that lies from the start is found before the first MOVE, whichever it is.
-void test_s6_no_move_before_the_suspect_is_verified(void) {
+static void check_s6_no_move_before_the_suspect_is_verified(void) {
     for (int sonar = 1; sonar <= 6; sonar++) {
-        const argus_config_t config = robot_config();
+        const argus_config_t config = robot_config_of(profile);
         start_with(&config);
         robot.fault[sonar] = ROBOT_SCALE;
         robot.fault_value[sonar] = 50;
@@ -430,13 +562,17 @@ void test_s6_no_move_before_the_suspect_is_verified(void) {
         }
         char text[40];
         snprintf(text, sizeof text, "sonar %d", sonar);
-        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_DISABLED, robot.argus.knowledge.sonar[sonar].health, text);
+        TEST_ASSERT_TRUE_MESSAGE(is_covered_for(sonar), text);
         finish();
     }
 }
 
+void test_s6_no_move_before_the_suspect_is_verified(void) {
+    in_both_profiles(check_s6_no_move_before_the_suspect_is_verified);
+}
+
 // Suspects found while the course is paused are not driven on by the operator's jog either.
-void test_s6_jog_while_paused_verifies_first(void) {
+static void check_s6_jog_while_paused_verifies_first(void) {
     start_idle();
     argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_STOP, 0);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 4000));
@@ -447,12 +583,16 @@ void test_s6_jog_while_paused_verifies_first(void) {
     for (int i = 0; i < 3000 && moves_ahead(0) == 0; i++) {
         robot_tick(&robot);
     }
-    TEST_ASSERT_EQUAL(ARGUS_DISABLED, robot.argus.knowledge.sonar[4].health);
+    TEST_ASSERT_TRUE(is_covered_for(4));
     finish();
 }
 
+void test_s6_jog_while_paused_verifies_first(void) {
+    in_both_profiles(check_s6_jog_while_paused_verifies_first);
+}
+
 // A suspicion whose verification is broken off stays open: it is verified before the robot drives on.
-void test_s6_a_verification_broken_off_is_taken_up_again(void) {
+static void check_s6_a_verification_broken_off_is_taken_up_again(void) {
     start_idle();
     robot.fault[2] = ROBOT_SCALE;
     robot.fault_value[2] = 50;
@@ -470,7 +610,11 @@ void test_s6_a_verification_broken_off_is_taken_up_again(void) {
     finish();
 }
 
-void test_s7_backs_off_from_a_front_bumper_and_checks_anew(void) {
+void test_s6_a_verification_broken_off_is_taken_up_again(void) {
+    with_profile(ARGUS_PROFILE_PAPER, check_s6_a_verification_broken_off_is_taken_up_again);
+}
+
+static void check_s7_backs_off_from_a_front_bumper_and_checks_anew(void) {
     start_driving();
     robot.bumpers_front = 1 << 3;
     robot_next_sip(&robot);
@@ -487,9 +631,13 @@ void test_s7_backs_off_from_a_front_bumper_and_checks_anew(void) {
     finish();
 }
 
+void test_s7_backs_off_from_a_front_bumper_and_checks_anew(void) {
+    in_both_profiles(check_s7_backs_off_from_a_front_bumper_and_checks_anew);
+}
+
 // E_STOP may cut the motors: they are switched on again to back away, but never against the robot's own
 // button.
-void test_s7_motors_cut_by_the_stop_are_enabled_to_back_away(void) {
+static void check_s7_motors_cut_by_the_stop_are_enabled_to_back_away(void) {
     for (int button = 0; button < 2; button++) {
         start_driving();
         robot.e_stop_cuts_motors = true;
@@ -503,7 +651,11 @@ void test_s7_motors_cut_by_the_stop_are_enabled_to_back_away(void) {
     }
 }
 
-void test_s7_waits_with_an_event_each_10_s_while_the_rear_is_blocked(void) {
+void test_s7_motors_cut_by_the_stop_are_enabled_to_back_away(void) {
+    in_both_profiles(check_s7_motors_cut_by_the_stop_are_enabled_to_back_away);
+}
+
+static void check_s7_waits_with_an_event_each_10_s_while_the_rear_is_blocked(void) {
     for (int blocked = 8; blocked < 16; blocked++) {
         start_driving();
         robot.fault[blocked] = ROBOT_VALUE;
@@ -522,8 +674,12 @@ void test_s7_waits_with_an_event_each_10_s_while_the_rear_is_blocked(void) {
     }
 }
 
+void test_s7_waits_with_an_event_each_10_s_while_the_rear_is_blocked(void) {
+    in_both_profiles(check_s7_waits_with_an_event_each_10_s_while_the_rear_is_blocked);
+}
+
 // A rear sonar that has fallen silent does not read clear.
-void test_s7_a_rear_sonar_gone_silent_is_not_clear(void) {
+static void check_s7_a_rear_sonar_gone_silent_is_not_clear(void) {
     start_driving();
     robot.fault[12] = ROBOT_SILENT;
     robot_run(&robot, 5000);
@@ -536,8 +692,12 @@ void test_s7_a_rear_sonar_gone_silent_is_not_clear(void) {
     finish();
 }
 
+void test_s7_a_rear_sonar_gone_silent_is_not_clear(void) {
+    in_both_profiles(check_s7_a_rear_sonar_gone_silent_is_not_clear);
+}
+
 // Somebody frees the bumper while the rear is blocked: a full health check, then on.
-void test_s7_a_freed_bumper_ends_the_wait(void) {
+static void check_s7_a_freed_bumper_ends_the_wait(void) {
     start_driving();
     robot.fault[10] = ROBOT_VALUE;
     robot.fault_value[10] = 430;
@@ -550,13 +710,18 @@ void test_s7_a_freed_bumper_ends_the_wait(void) {
     finish();
 }
 
-void test_s7_no_turn_while_the_swing_circle_is_blocked(void) {
+void test_s7_a_freed_bumper_ends_the_wait(void) {
+    in_both_profiles(check_s7_a_freed_bumper_ends_the_wait);
+}
+
+static void check_s7_no_turn_while_the_swing_circle_is_blocked(void) {
     start_idle();
     robot.fault[7] = ROBOT_VALUE;
     robot.fault_value[7] = 220; // 363 mm from the centre
     robot.fault[10] = ROBOT_VALUE;
     robot.fault_value[10] = 300; // and no way back
     robot_run(&robot, 1000);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 20000)); // argus may want to look first
     argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 90);
     robot_run(&robot, 12000);
     TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, 0));
@@ -567,8 +732,12 @@ void test_s7_no_turn_while_the_swing_circle_is_blocked(void) {
     finish();
 }
 
+void test_s7_no_turn_while_the_swing_circle_is_blocked(void) {
+    in_both_profiles(check_s7_no_turn_while_the_swing_circle_is_blocked);
+}
+
 // Hit while turned away to look: it may neither go on with the turn nor turn home.
-void test_s7_no_turn_home_while_a_bumper_is_pressed(void) {
+static void check_s7_no_turn_home_while_a_bumper_is_pressed(void) {
     start_idle();
     robot.fault[3] = ROBOT_SCALE;
     robot.fault_value[3] = 50;
@@ -589,11 +758,15 @@ void test_s7_no_turn_home_while_a_bumper_is_pressed(void) {
     TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, from));
     robot.bumpers_front = 0;
     robot_run(&robot, 20000);
-    TEST_ASSERT_EQUAL(ARGUS_DISABLED, robot.argus.knowledge.sonar[3].health);
+    TEST_ASSERT_TRUE(is_covered_for(3));
     finish();
 }
 
-void test_s7_no_correction_of_heading_beside_a_wall_that_blocks_the_swing_circle(void) {
+void test_s7_no_turn_home_while_a_bumper_is_pressed(void) {
+    in_both_profiles(check_s7_no_turn_home_while_a_bumper_is_pressed);
+}
+
+static void check_s7_no_correction_of_heading_beside_a_wall_that_blocks_the_swing_circle(void) {
     start_driving();
     robot.fault[7] = ROBOT_VALUE;
     robot.fault_value[7] = 200;
@@ -607,7 +780,11 @@ void test_s7_no_correction_of_heading_beside_a_wall_that_blocks_the_swing_circle
     finish(); // the watch names every HEAD in a blocked circle
 }
 
-void test_s8_operator_arguments_at_the_ends_of_the_range(void) {
+void test_s7_no_correction_of_heading_beside_a_wall_that_blocks_the_swing_circle(void) {
+    in_both_profiles(check_s7_no_correction_of_heading_beside_a_wall_that_blocks_the_swing_circle);
+}
+
+static void check_s8_operator_arguments_at_the_ends_of_the_range(void) {
     static const int32_t extreme[] = {INT32_MIN, INT32_MIN + 1, -1, 0, 1, INT32_MAX};
     for (int op = 0; op < 10; op++) {
         for (int i = 0; i < 6; i++) {
@@ -619,7 +796,11 @@ void test_s8_operator_arguments_at_the_ends_of_the_range(void) {
     }
 }
 
-void test_s8_impossible_sonar_numbers_and_readings(void) {
+void test_s8_operator_arguments_at_the_ends_of_the_range(void) {
+    in_both_profiles(check_s8_operator_arguments_at_the_ends_of_the_range);
+}
+
+static void check_s8_impossible_sonar_numbers_and_readings(void) {
     start_idle();
     for (int number = 0; number < 256; number += 5) {
         for (int range = 0; range < 65536; range += 13107) {
@@ -633,4 +814,8 @@ void test_s8_impossible_sonar_numbers_and_readings(void) {
         }
     }
     finish();
+}
+
+void test_s8_impossible_sonar_numbers_and_readings(void) {
+    in_both_profiles(check_s8_impossible_sonar_numbers_and_readings);
 }

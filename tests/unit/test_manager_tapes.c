@@ -81,6 +81,7 @@ static void play_due(void) {
 static void play(const char *name, uint32_t tick_ms) {
     argus_config_t config;
     argus_config_default(&config);
+    config.profile = ARGUS_PROFILE_PAPER;
     thread(name);
     memset(events, 0, sizeof events);
     moves = 0;

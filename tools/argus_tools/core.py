@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+from argus_tools.core_build import build
 from argus_tools.formats.base import LogError
 
 LIBRARY_VARIABLE: Final = "ARGUS_CORE"
@@ -21,6 +22,7 @@ _PLACES: Final = (
 )
 _SONARS: Final = 16
 _PACKET_MAX: Final = 256
+_RECORD_MAX: Final = 65536
 _NO_SONAR: Final = -1
 _LEVELS: Final = ("OK", "WARN", "ERROR", "STALE")
 _FIRST_REAR: Final = 8
@@ -52,6 +54,12 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_shim_event_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
     "argus_shim_event_meaning": (ctypes.c_char_p, (ctypes.c_uint16,)),
     "argus_shim_status_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
+    "argus_mission_name": (ctypes.c_char_p, (ctypes.c_int,)),
+    "argus_set_course": (ctypes.c_bool, (ctypes.c_void_p, ctypes.POINTER(ctypes.c_int32), ctypes.c_uint16)),
+    "argus_record_save": (ctypes.c_size_t, (ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t)),
+    "argus_record_load": (ctypes.c_bool, (ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t)),
+    "argus_shim_brief_size": (ctypes.c_size_t, ()),
+    "argus_shim_brief": (None, (ctypes.c_void_p, ctypes.c_char_p)),
     "argus_shim_sonar_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
     "argus_shim_status": (
         None,
@@ -64,9 +72,10 @@ def _load() -> ctypes.CDLL:
     given = os.environ.get(LIBRARY_VARIABLE)
     places = (Path(given),) if given else _PLACES
     path = next((place for place in places if place.exists()), None)
+    if path is None and given:
+        raise LogError(f"{LIBRARY_VARIABLE}={given} does not exist: unset it, or set it to a libargus.so")
     if path is None:
-        where = f"{LIBRARY_VARIABLE}={given} does not exist" if given else "libargus.so is not built"
-        raise LogError(f"{where}: run tools/dev build release, or set {LIBRARY_VARIABLE} to the library")
+        path = build()
     try:
         library = ctypes.CDLL(str(path))
         for name, (result, arguments) in _FUNCTIONS.items():
@@ -79,7 +88,7 @@ def _load() -> ctypes.CDLL:
 
 @cache
 def library() -> ctypes.CDLL:
-    """Return libargus.so: of ARGUS_CORE, else of the build folder, else as installed; LogError without one."""
+    """Return libargus.so: of ARGUS_CORE, else of the build folder, else as installed, else compiled now."""
     return _load()
 
 
@@ -176,6 +185,29 @@ def kind_name(kind: int) -> str:
     return _text(library().argus_kind_name(kind))
 
 
+def health_name(health: int) -> str:
+    """Return the name of a health state.
+
+    >>> health_name(1)
+    'HEALTHY'
+    """
+    return _text(library().argus_health_name(health))
+
+
+def mode_name(mode: int) -> str:
+    """Return the name of a mode of the manager."""
+    return _text(library().argus_mode_name(mode))
+
+
+def mission_name(mission: int) -> str:
+    """Return the name of a state of the mission.
+
+    >>> mission_name(2)
+    'reached'
+    """
+    return _text(library().argus_mission_name(mission))
+
+
 def _text(value: bytes) -> str:
     return value.decode("utf-8", "replace")
 
@@ -195,6 +227,7 @@ class Core:
             self._library.argus_shim_config_set(config, settings()[key][0], value)
         self._check(config)
         self._library.argus_init(self._core, config, now_ms & 0xFFFFFFFF)
+        self._brief = ctypes.create_string_buffer(self._library.argus_shim_brief_size())
 
     def _check(self, config: Any) -> None:
         row = ctypes.c_int32()
@@ -238,6 +271,28 @@ class Core:
     def is_open(self) -> bool:
         """Whether there is a session with a robot."""
         return bool(self._library.argus_shim_is_open(self._core))
+
+    def set_course(self, points: Sequence[tuple[int, int]]) -> None:
+        """Give the points to drive to, mm in the frame of the odometry at connection; LogError if they do not fit."""
+        flat = [value for point in points for value in point]
+        values = (ctypes.c_int32 * len(flat))(*flat)
+        if not self._library.argus_set_course(self._core, values, len(points)):
+            raise LogError(f"a course of {len(points)} points does not fit the fault manager; shorten it")
+
+    def save_record(self) -> bytes:
+        """Return the persistent record: health and history of every sonar."""
+        record = ctypes.create_string_buffer(_RECORD_MAX)
+        length = self._library.argus_record_save(self._core, record, _RECORD_MAX)
+        return record.raw[:length]
+
+    def load_record(self, record: bytes) -> bool:
+        """Take a record of an earlier mission as history; False, and an event, when it is damaged or foreign."""
+        return bool(self._library.argus_record_load(self._core, record, len(record)))
+
+    def brief(self) -> bytes:
+        """Return mode, mission, then health and kind of each sonar, one byte each: cheap enough for every call."""
+        self._library.argus_shim_brief(self._core, self._brief)
+        return self._brief.raw
 
     def status(self) -> dict[str, Any]:
         """Return what is known, names for the enumerations, and lists with one entry per sonar."""

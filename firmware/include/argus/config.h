@@ -6,11 +6,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#define ARGUS_PROFILE_PAPER 0
+#define ARGUS_PROFILE_ARGUS 1
+
 // X(key, default, minimum, maximum, unit, choices, meaning). `choices` names the values 0, 1, ... of a
 // setting that is picked by name ("" for a number). A front end builds its parser and its help from this
 // table.
 #define ARGUS_CONFIG_TABLE(X)                                                                                \
-    X(profile, 0, 0, 0, "", "paper", "rule set of the diagnosis")                                            \
+    X(profile, 0, 0, 1, "", "paper|argus", "rule set of the diagnosis")                                      \
     X(policy, 0, 0, 1, "", "paper|fewest", "planner of the compensating rotations")                          \
     X(active, 1, 0, 1, "", "off|on", "off: diagnose and report, never command a motion")                     \
     X(health_check_ms, 1000, 100, 10000, "ms", "", "period of the health check beside the main task")        \

@@ -72,6 +72,7 @@ typedef struct {
     uint16_t disabled_times;  // this mission
     uint16_t disabled_before; // earlier missions, from the record
     argus_fault_kind_t kind_before;
+    uint8_t relapses; // disabled again, less missions without a fault
 } argus_sonar_t;
 
 // A moment after which readings count: those listed in later SIPs, and no earlier than `from_ms` where a
@@ -127,8 +128,10 @@ void argus_sonar_set_health(argus_sonar_t *self, argus_health_t health, argus_fa
 
 // Bit masks over sonar numbers.
 uint16_t argus_disabled(const argus_knowledge_t *self);
+uint16_t argus_out(const argus_knowledge_t *self); // not used: DISABLED or on PROBATION
+bool argus_is_out(const argus_knowledge_t *self, int sonar);
 uint16_t argus_with_health(const argus_knowledge_t *self, argus_health_t health);
-bool argus_usable(const argus_knowledge_t *self, int sonar); // reported, not DISABLED, not 5000
+bool argus_usable(const argus_knowledge_t *self, int sonar); // reported, not out, not 5000
 
 argus_mark_t argus_mark_now(const argus_knowledge_t *self);
 bool argus_fresh_since(const argus_knowledge_t *self, int sonar, const argus_mark_t *mark);

@@ -15,6 +15,7 @@
 #include "argus/config.h"
 #include "argus/drive.h"
 #include "argus/events.h"
+#include "argus/inquiry.h"
 #include "argus/knowledge.h"
 #include "argus/motion.h"
 #include "argus/plan.h"
@@ -44,7 +45,9 @@ typedef enum {
     ARGUS_MISSION_FAILED
 } argus_mission_t;
 
-// What an operator may ask. The argument is mm for MOVE, degrees for TURN, else ignored.
+// What an operator may ask. The argument is mm for MOVE, degrees for TURN, a sonar (0..15) for RETEST and
+// what follows it, else ignored. PIN, UNPIN and DISABLE are for profile argus; what cannot be done is refused
+// without an event.
 typedef enum {
     ARGUS_OP_STOP = 1, // stop and stay: the course is paused
     ARGUS_OP_GO,       // (re)start the course
@@ -52,7 +55,11 @@ typedef enum {
     ARGUS_OP_MOVE,     // jog: at most step_mm ahead or backoff_mm back, with every safety rule in force
     ARGUS_OP_TURN,     // jog: turn on the spot, -180..180
     ARGUS_OP_PASSIVE,  // stop, then only report
-    ARGUS_OP_ACTIVE
+    ARGUS_OP_ACTIVE,
+    ARGUS_OP_RETEST, // forget the evidence against a sonar and look at it again
+    ARGUS_OP_PIN,    // a sonar keeps its health, whatever it reads, until it is unpinned or yields nothing
+    ARGUS_OP_UNPIN,  // the evidence decides again
+    ARGUS_OP_DISABLE // take a sonar out of use (wrong) and pin it
 } argus_op_t;
 
 // A copy of everything a screen, a log or a test wants to see.
@@ -96,12 +103,28 @@ typedef enum {
     ARGUS_WAIT_CATASTROPHIC // all six are disabled
 } argus_wait_t;
 
+// After an acquittal a sonar is not looked at again for a while.
+typedef struct {
+    uint32_t odometer_mm;
+    uint8_t acquittals;
+} argus_hold_t;
+
 typedef struct {
     argus_config_t config;
     argus_session_t session;
     argus_knowledge_t knowledge;
     argus_awareness_t awareness;
     argus_verify_t verify;
+    argus_evidence_t evidence; // profile argus
+    argus_inquiry_t inquiry;
+    argus_hold_t hold[ARGUS_SONARS];
+    uint32_t looked_ms; // last active look
+    uint32_t looked_odometer_mm;
+    uint16_t pinned;   // sonars whose health an operator has fixed
+    uint16_t recorded; // sonars on PROBATION by the record
+    uint32_t robot; // identity (argus/record.h) of the robot, or of the record before a session; 0: unknown
+    bool loaded;    // a record was taken whose robot is not compared yet
+    bool looked_once;
     argus_plan_t plan;
     argus_motion_t motion;
     argus_drive_t drive;
@@ -171,14 +194,20 @@ bool argus_next_event(argus_t *self, argus_event_t *event);
 
 void argus_operator(argus_t *self, uint32_t now_ms, argus_op_t op, int32_t argument);
 
+// Tests one sonar (0..15) anew, at rest; under `paper` by a full health check. False: no such sonar, no
+// session, or it is pinned.
+bool argus_retest(argus_t *self, uint8_t sonar, uint32_t now_ms);
+
 // Stop the robot, then SONAR 0, STOP, CLOSE; argus_closed() tells when the last byte is out (within 3 s).
 void argus_shutdown(argus_t *self, uint32_t now_ms);
 bool argus_closed(const argus_t *self);
 
 void argus_status(const argus_t *self, argus_status_t *status);
 
-// The persistent record: health and history of every sonar (SPEC.md). save returns its length, 0 if it does
-// not fit. load takes a record as history; a damaged or foreign one is said by an event and ignored.
+// The persistent record: what is known of every sonar (SPEC.md). save returns its length, 0 if it does not
+// fit. load takes a record, before a session opens; under `argus` a sonar that was out in it starts on
+// PROBATION. A damaged or foreign one is said by an event and ignored; one of another robot is, and taken
+// back, once a session is open.
 size_t argus_record_save(const argus_t *self, uint8_t *buffer, size_t capacity);
 bool argus_record_load(argus_t *self, const uint8_t *record, size_t length);
 

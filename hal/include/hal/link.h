@@ -29,7 +29,12 @@
     X(TOO_LONG, -13, "longer than a packet may be")                                        \
     X(NOT_OPEN, -14, "the link is not open")                                               \
     X(BAD_ARGUMENT, -15, "bad argument")                                                   \
-    X(IO, -16, "input/output error")
+    X(IO, -16, "input/output error")                                                       \
+    X(NO_CAN, -17, "the kernel has no CAN")                                                \
+    X(NO_PROTOCOL, -18, "the kernel has CAN, but not this protocol")                       \
+    X(NOT_CAN, -19, "not a CAN interface")                                                 \
+    X(DOWN, -20, "the interface is down")                                                  \
+    X(NO_FD, -21, "the interface is not set up for CAN FD")
 
 typedef enum {
     HAL_LINK_OK = 0,
@@ -57,6 +62,9 @@ typedef struct {
     int (*write)(void *context, const uint8_t *packet, size_t count);
     // Pushes what write kept; bytes still kept, or an error.
     int (*flush)(void *context);
+    // Not 0: after a write that was not taken, try again after so many ms, since poll() would call it
+    // writable at once. NULL: always 0.
+    uint32_t (*hold_ms)(const void *context);
     int (*fd)(const void *context); // for poll(); -1 when there is none or the link is closed
     const char *(*describe)(const void *context);
     const hal_link_counters_t *(*counters)(const void *context);
@@ -71,6 +79,7 @@ typedef struct {
 int hal_link_read(const hal_link_t *link, uint8_t *bytes, size_t capacity);
 int hal_link_write(const hal_link_t *link, const uint8_t *packet, size_t count);
 int hal_link_flush(const hal_link_t *link);
+uint32_t hal_link_hold_ms(const hal_link_t *link);
 int hal_link_fd(const hal_link_t *link);
 const char *hal_link_describe(const hal_link_t *link);
 hal_link_counters_t hal_link_counters(const hal_link_t *link);

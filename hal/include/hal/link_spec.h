@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The text form of a link: serial:PATH[@BAUD] or tcp:HOST[:PORT].
+// The text form of a link: serial:PATH[@BAUD], tcp:HOST[:PORT] or can:IFACE[,options].
 #ifndef HAL_LINK_SPEC_H
 #define HAL_LINK_SPEC_H
 
 #include <stdbool.h>
 
+#include "hal/can_spec.h"
+#include "hal/isotp.h"
 #include "hal/serial.h"
 #include "hal/tcp.h"
 
-typedef enum { HAL_SCHEME_SERIAL, HAL_SCHEME_TCP } hal_scheme_t;
+typedef enum { HAL_SCHEME_SERIAL, HAL_SCHEME_TCP, HAL_SCHEME_CAN } hal_scheme_t;
 
 typedef struct {
     hal_scheme_t scheme;
@@ -17,16 +19,21 @@ typedef struct {
     uint16_t port;
     char path[HAL_PATH_MAX];
     char host[HAL_HOST_MAX];
+    hal_can_spec_t can;
 } hal_link_spec_t;
 
 // Reads a spec. False: `message` says on one line what is wrong and what to write instead; `spec` is
 // unspecified. IPv6 addresses go in brackets: tcp:[::1]:8101.
 bool hal_link_spec_parse(hal_link_spec_t *spec, const char *text, char *message, size_t capacity);
 
-// Room for either transport.
+// What the spec leads to: path, host or interface; "" for one that was never read.
+const char *hal_link_spec_target(const hal_link_spec_t *spec);
+
+// Room for each transport.
 typedef struct {
     hal_serial_t serial;
     hal_tcp_t tcp;
+    hal_isotp_t isotp;
 } hal_transport_t;
 
 void hal_transport_init(hal_transport_t *self);

@@ -21,6 +21,7 @@
 #define OPEN_RETRY_MS 250
 #define ANSWER_MS 30000u
 #define CHECK_ANSWER_MS 10000u
+#define CAN_AS_BAUD 115200 // bytes in ISO-TP at 500 kbit/s take less time than so
 
 // Static, not allocated: argusd never asks for memory.
 static options_t options;
@@ -61,8 +62,9 @@ static argusd_exit_t print_list(options_action_t action) {
 static bool settle_baud(void) {
     int32_t *const baud = &settings.config.baud;
     const int line = settings.line[SETTINGS_baud];
-    if (options.link.scheme == HAL_SCHEME_TCP) {
-        *baud = line != 0 ? *baud : 0;
+    if (options.link.scheme != HAL_SCHEME_SERIAL) {
+        const int32_t usual = options.link.scheme == HAL_SCHEME_CAN ? CAN_AS_BAUD : 0;
+        *baud = line != 0 ? *baud : usual;
         return true;
     }
     if (line != 0 && !hal_baud_is_known((uint32_t)*baud)) {
@@ -83,16 +85,20 @@ static bool settle_baud(void) {
 
 // NULL, or why the manager starts passive although nobody asked for that.
 static const char *settle_activity(void) {
+    static const char on_serial[] =
+        "passive, since a real robot may be at the end of a serial link: it reports "
+        "and commands no motion; give --active to let it drive";
+    static const char on_can[] =
+        "passive, since a real robot may be on the CAN bus: it reports and commands no "
+        "motion; give --active to let it drive";
     int32_t *const active = &settings.config.active;
     if (options.passive || options.action == OPTIONS_CHECK) {
         *active = 0;
     } else if (options.active) {
         *active = 1;
-    } else if (options.link.scheme == HAL_SCHEME_SERIAL) {
+    } else if (options.link.scheme != HAL_SCHEME_TCP) {
         *active = 0;
-        return "passive, since a real robot may be at the end of a serial link: it reports and commands no "
-               "motion; give "
-               "--active to let it drive";
+        return options.link.scheme == HAL_SCHEME_CAN ? on_can : on_serial;
     }
     return NULL;
 }
@@ -126,6 +132,7 @@ static bool is_worth_waiting_for(hal_link_error_t error) {
     case HAL_LINK_NOT_FOUND:
     case HAL_LINK_GONE:
     case HAL_LINK_BUSY:
+    case HAL_LINK_DOWN:
     case HAL_LINK_REFUSED:
     case HAL_LINK_UNREACHABLE:
     case HAL_LINK_TIMEOUT:
@@ -205,11 +212,10 @@ static argusd_exit_t connect_robot(const hal_clock_t *clock, hal_link_t *link) {
 }
 
 static bool open_tape(void) {
-    const bool tcp = options.link.scheme == HAL_SCHEME_TCP;
     if (options.record_path == NULL) {
         return true;
     }
-    return tape_open(&loop.tape, options.record_path, tcp ? options.link.host : options.link.path,
+    return tape_open(&loop.tape, options.record_path, hal_link_spec_target(&options.link),
                      options.record_max_bytes, message, sizeof message);
 }
 
@@ -247,6 +253,20 @@ static bool open_state(void) {
     return state_save(&loop.state, &loop.driver.core, message, sizeof message);
 }
 
+// With a link over CAN the telemetry is on the same bus, for the same robot, unless something else is wanted.
+static bool open_bus(const hal_clock_t *clock) {
+    const bool given = options.telemetry.interface[0] != '\0';
+    if (options.no_telemetry || (!given && options.link.scheme != HAL_SCHEME_CAN)) {
+        return true;
+    }
+    char problem[ARGUSD_MESSAGE_MAX / 2];
+    if (!bus_open(&loop.bus, given ? &options.telemetry : &options.link.can, &hal_can_sys, bus_seed(),
+                  hal_clock_now_ms(clock), problem, sizeof problem)) {
+        return text_refuse(message, sizeof message, "telemetry: %s", problem);
+    }
+    return true;
+}
+
 static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *notice) {
     const loop_options_t wishes = {
         .json = options.json,
@@ -268,6 +288,11 @@ static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *no
         drop_tape();
         text_refuse(message, sizeof message, "the course does not fit the fault manager");
         return complain(ARGUSD_EXIT_INTERNAL);
+    }
+    if (!open_bus(&clock)) {
+        hal_link_close(&link);
+        drop_tape();
+        return complain(ARGUSD_EXIT_LINK);
     }
     loop.driver.tap = tape_tap(&loop.tape);
     driver_attach(&loop.driver, link);

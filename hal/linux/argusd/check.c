@@ -20,10 +20,11 @@ void check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *tex
         text_add(&line, "nothing was received; is the robot on and connected?%s",
                  serial ? " At another rate it is silent too: try --auto-baud" : "");
     } else if (parser->packets == 0) {
-        text_add(&line, "%u bytes of garbage were received, no packet among them; %s",
-                 (unsigned)driver->bytes_in,
-                 serial ? "the rate is wrong or it is no robot: try --auto-baud"
-                        : "this is no ARCOS server: check the port");
+        text_add(
+            &line, "%u bytes of garbage were received, no packet among them; %s", (unsigned)driver->bytes_in,
+            serial                                  ? "the rate is wrong or it is no robot: try --auto-baud"
+            : driver->spec.scheme == HAL_SCHEME_CAN ? "this is no robot that speaks ARCOS: check the two ids"
+                                                    : "this is no ARCOS server: check the port");
     } else {
         text_add(&line,
                  "%u packets and %u bad checksums were received, but no session opened; another client may "

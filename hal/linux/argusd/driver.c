@@ -10,6 +10,10 @@
 #define RETRY_MAX_MS 4000u
 #define REOPEN_TIMEOUT_MS 1000
 #define LOOK_MS 1000u
+// A robot that was sending to nobody waits up to 1 s for flow control before its next SIP (N_Bs of ISO-TP).
+// Until a SIP could have come, SYNC0 may be a PULSE to an old session, on which the robot takes up its old
+// motion.
+#define CAN_SETTLE_MS 1150u
 
 static uint32_t now_ms(const driver_t *self) {
     return hal_clock_now_ms(&self->clock);
@@ -32,7 +36,22 @@ void driver_attach(driver_t *self, hal_link_t link) {
     self->up = true;
     self->error = HAL_LINK_OK;
     self->held = 0;
+    self->up_ms = now_ms(self);
+    self->settles = self->spec.scheme == HAL_SCHEME_CAN;
+    if (!self->settles) {
+        argus_link_up(&self->core, self->up_ms);
+    }
+}
+
+// The ms until the manager is told that the link is up; what arrives before is read and dropped.
+static uint32_t settle(driver_t *self) {
+    const uint32_t passed_ms = now_ms(self) - self->up_ms;
+    if (passed_ms < CAN_SETTLE_MS) {
+        return CAN_SETTLE_MS - passed_ms;
+    }
+    self->settles = false;
     argus_link_up(&self->core, now_ms(self));
+    return UINT32_MAX;
 }
 
 hal_link_error_t driver_open(driver_t *self, int timeout_ms) {
@@ -130,6 +149,12 @@ static void look_where_it_leads(driver_t *self) {
     }
 }
 
+// While the link's queue is full: poll() would not tell when it has room.
+static uint32_t held_for_ms(const driver_t *self) {
+    const uint32_t hold_ms = self->up && self->held > 0 ? hal_link_hold_ms(&self->link) : 0;
+    return hold_ms > 0 ? hold_ms : UINT32_MAX;
+}
+
 uint32_t driver_process(driver_t *self) {
     uint32_t retry_ms = UINT32_MAX;
     if (self->up) {
@@ -139,16 +164,20 @@ uint32_t driver_process(driver_t *self) {
         }
         driver_transmit(self);
         look_where_it_leads(self);
+        retry_ms = self->up && self->settles ? settle(self) : retry_ms;
     } else if (self->transport != NULL && !argus_closed(&self->core)) {
         retry_ms = reopen(self);
     }
     const uint32_t wait_ms = argus_process(&self->core, now_ms(self));
     driver_transmit(self);
+    const uint32_t hold_ms = held_for_ms(self);
+    retry_ms = hold_ms < retry_ms ? hold_ms : retry_ms;
     return wait_ms < retry_ms ? wait_ms : retry_ms;
 }
 
 bool driver_wants_write(const driver_t *self) {
-    return self->up && (self->held > 0 || hal_link_flush(&self->link) > 0);
+    return self->up && hal_link_hold_ms(&self->link) == 0 &&
+           (self->held > 0 || hal_link_flush(&self->link) > 0);
 }
 
 void driver_close(driver_t *self) {

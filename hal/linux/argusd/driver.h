@@ -26,6 +26,8 @@ typedef struct {
     uint32_t retry_ms;      // pause before the next attempt to open
     uint32_t lost_ms;       // when the last attempt failed
     uint32_t looked_ms;     // last look at where the link's name leads
+    bool settles;           // the link is up, which the manager is not told yet
+    uint32_t up_ms;         // when the link came up
     uint32_t reopened;      // monotonic
     uint32_t bytes_in;      // over all openings
     size_t held;            // a packet that the link would not take yet

@@ -18,6 +18,7 @@
 #define CLOSE_MAX_MS 4000u
 #define DRAIN_MAX_MS 500
 #define TURN_DEG 20
+#define ORDERS_MAX 8 // in one wake-up: a flood of them must not keep time from passing
 
 static void take_time(loop_t *self) {
     const uint32_t now_ms = hal_clock_now_ms(&self->driver.clock);
@@ -89,9 +90,25 @@ static void say_losses(loop_t *self) {
 static void say_events(loop_t *self) {
     argus_event_t event;
     while (argus_next_event(&self->driver.core, &event)) {
+        bus_event(&self->bus, &self->driver.core, &event);
         say(self, &event);
     }
     say_losses(self);
+}
+
+static bool is_link_can(const driver_t *driver) {
+    return driver->spec.scheme == HAL_SCHEME_CAN && driver->transport != NULL;
+}
+
+static void look_at_can(const loop_t *self, view_t *view) {
+    const bool link = is_link_can(&self->driver);
+    view->has_can = link || self->bus.on;
+    if (link) {
+        memcpy(view->can_errors, self->driver.transport->isotp.errors, sizeof view->can_errors);
+    }
+    view->can_sent = self->bus.raw.sent;
+    view->can_taken = self->bus.telemetry.verdicts[HAL_TELEMETRY_TAKEN];
+    view->can_refused = hal_telemetry_refused(&self->bus.telemetry);
 }
 
 static void look(loop_t *self) {
@@ -107,6 +124,9 @@ static void look(loop_t *self) {
     view->counters = hal_link_counters(&driver->link);
     view->reopened = driver->reopened;
     view->course_mm = self->course_mm;
+    view->sonar = self->sonar;
+    view->pinned = driver->core.pinned;
+    look_at_can(self, view);
 }
 
 static void say_status(loop_t *self) {
@@ -179,7 +199,34 @@ static void jog(loop_t *self, tui_key_t key) {
     operate(self, turns ? ARGUS_OP_TURN : ARGUS_OP_MOVE, turns ? turn_deg : move_mm);
 }
 
+// True when the key was for the chosen sonar.
+static bool serve_sonar(loop_t *self, tui_key_t key) {
+    const bool pinned = (self->driver.core.pinned >> self->sonar & 1) != 0;
+    switch (key) {
+    case TUI_NEXT:
+        self->sonar = (uint8_t)((self->sonar + 1) % ARGUS_SONARS);
+        return true;
+    case TUI_PREVIOUS:
+        self->sonar = (uint8_t)((self->sonar + ARGUS_SONARS - 1) % ARGUS_SONARS);
+        return true;
+    case TUI_RETEST:
+        operate(self, ARGUS_OP_RETEST, self->sonar);
+        return true;
+    case TUI_PIN:
+        operate(self, pinned ? ARGUS_OP_UNPIN : ARGUS_OP_PIN, self->sonar);
+        return true;
+    case TUI_TAKE_OUT:
+        operate(self, ARGUS_OP_DISABLE, self->sonar);
+        return true;
+    default:
+        return false;
+    }
+}
+
 static void obey(loop_t *self, tui_key_t key) {
+    if (serve_sonar(self, key)) {
+        return;
+    }
     switch (key) {
     case TUI_STOP:
         operate(self, ARGUS_OP_STOP, 0);
@@ -211,6 +258,46 @@ static void take_keys(loop_t *self) {
     for (tui_key_t key = tui_key(&self->tui); key != TUI_NONE; key = tui_key(&self->tui)) {
         obey(self, key);
     }
+}
+
+static void obey_order(loop_t *self, const hal_dbc_command_t *order) {
+    static const argus_op_t ops[] = {[HAL_DBC_ORDER_STOP] = ARGUS_OP_STOP,
+                                     [HAL_DBC_ORDER_GO] = ARGUS_OP_GO,
+                                     [HAL_DBC_ORDER_PASSIVE] = ARGUS_OP_PASSIVE,
+                                     [HAL_DBC_ORDER_ACTIVE] = ARGUS_OP_ACTIVE};
+    if (order->order != HAL_DBC_ORDER_RETEST) {
+        operate(self, ops[order->order], 0);
+    } else if (!self->ending) {
+        argus_retest(&self->driver.core, order->sonar, self->now_ms);
+        driver_transmit(&self->driver);
+    }
+}
+
+static void take_orders(loop_t *self) {
+    char text[ARGUSD_MESSAGE_MAX];
+    hal_dbc_command_t order;
+    hal_telemetry_verdict_t verdict = HAL_TELEMETRY_TAKEN;
+    for (int i = 0; i < ORDERS_MAX && bus_order(&self->bus, self->now_ms, &verdict, &order); i++) {
+        if (verdict == HAL_TELEMETRY_TAKEN) {
+            obey_order(self, &order);
+        } else if (bus_refusal(&self->bus, verdict, self->now_ms, text, sizeof text)) {
+            notice(self, text);
+        }
+    }
+}
+
+// Returns the ms until it has something to send.
+static uint32_t tell_bus(loop_t *self) {
+    char text[ARGUSD_MESSAGE_MAX];
+    const uint32_t wait_ms = bus_process(&self->bus, &self->driver.core, self->now_ms);
+    if (bus_notice(&self->bus, text, sizeof text)) {
+        notice(self, text);
+    }
+    if (is_link_can(&self->driver) &&
+        bus_link_notice(&self->bus, &self->driver.transport->isotp, self->now_ms, text, sizeof text)) {
+        notice(self, text);
+    }
+    return wait_ms;
 }
 
 static void watch_mission(loop_t *self) {
@@ -298,13 +385,14 @@ static uint32_t time_to_wait(const loop_t *self, uint32_t wait_ms) {
 
 // The link comes first: what a SIP calls for is on the wire before anything else is looked at.
 static void wait_for_work(loop_t *self, uint32_t wait_ms) {
-    enum { LINK, SIGNALS, KEYS, OUT, ERR, COUNT };
+    enum { LINK, SIGNALS, KEYS, OUT, ERR, BUS, COUNT };
     struct pollfd wait[COUNT] = {
         [LINK] = {.fd = self->driver.up ? hal_link_fd(&self->driver.link) : -1, .events = POLLIN},
         [SIGNALS] = {.fd = signals_fd(), .events = POLLIN},
         [KEYS] = {.fd = self->tui.on ? self->tui.fd : -1, .events = POLLIN},
         [OUT] = {.fd = output_waits(&self->out) ? self->out.fd : -1, .events = POLLOUT},
         [ERR] = {.fd = output_waits(&self->err) ? self->err.fd : -1, .events = POLLOUT},
+        [BUS] = {.fd = bus_fd(&self->bus), .events = POLLIN},
     };
     char bytes[16];
     if (driver_wants_write(&self->driver)) {
@@ -320,6 +408,9 @@ static void wait_for_work(loop_t *self, uint32_t wait_ms) {
     }
     if (wait[KEYS].revents != 0) {
         take_keys(self);
+    }
+    if (wait[BUS].revents != 0) {
+        take_orders(self);
     }
     output_flush(&self->out);
     output_flush(&self->err);
@@ -379,10 +470,12 @@ argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
         if (is_over(self)) {
             break;
         }
-        wait_for_work(self, time_to_wait(self, wait_ms));
+        const uint32_t bus_ms = tell_bus(self);
+        wait_for_work(self, time_to_wait(self, wait_ms < bus_ms ? wait_ms : bus_ms));
         say_events(self);
     }
     say_events(self);
+    bus_close(&self->bus, &self->driver.core, self->now_ms);
     driver_close(&self->driver);
     tui_stop(&self->tui);
     save(self, true);

@@ -4,6 +4,7 @@
 #define ARGUSD_LOOP_H
 
 #include "argusd.h"
+#include "bus.h"
 #include "driver.h"
 #include "output.h"
 #include "state.h"
@@ -24,6 +25,7 @@ typedef struct {
     driver_t driver;
     state_t state;
     tape_t tape;
+    bus_t bus; // off unless opened before
     output_t out;
     output_t err;
     tui_t tui;
@@ -42,6 +44,7 @@ typedef struct {
     uint32_t lost_said; // lines dropped that have been told
     bool reader_said;   // ... and that the reader is gone
     uint32_t course_mm;
+    uint8_t sonar; // the one that the operator has chosen
     view_t view;
     char line[4096];
 } loop_t;

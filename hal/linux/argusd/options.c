@@ -17,6 +17,7 @@ enum {
     OPT_STATE,
     OPT_RECORD,
     OPT_RECORD_MAX,
+    OPT_CAN_TELEMETRY,
     OPT_PASSIVE,
     OPT_ACTIVE,
     OPT_JSON,
@@ -39,6 +40,7 @@ static const struct option table[] = {
     {"state", required_argument, NULL, OPT_STATE},
     {"record", required_argument, NULL, OPT_RECORD},
     {"record-max", required_argument, NULL, OPT_RECORD_MAX},
+    {"can-telemetry", required_argument, NULL, OPT_CAN_TELEMETRY},
     {"passive", no_argument, NULL, OPT_PASSIVE},
     {"active", no_argument, NULL, OPT_ACTIVE},
     {"json", no_argument, NULL, OPT_JSON},
@@ -61,13 +63,19 @@ void options_help(FILE *out) {
         "\n"
         "usage: argusd --link LINK [options]\n"
         "\n"
-        "  --link LINK        serial:PATH[@BAUD] (default 9600) or tcp:HOST[:PORT] (default 8101)\n"
+        "  --link LINK        serial:PATH[@BAUD] (default 9600), tcp:HOST[:PORT] (default 8101), or\n"
+        "                     can:IFACE[,robot=K][,tx=ID][,rx=ID][,pad=BYTE|none][,stmin=MS][,bs=N][,fd]:\n"
+        "                     ISO-TP (default robot=0, tx=0x640+K, rx=0x648+K, pad=0xCC, stmin=0, bs=0)\n"
+        "  --can-telemetry IFACE[,robot=K] | none\n"
+        "                     health and readings as CAN frames, orders from there (tools/argus.dbc); with "
+        "a\n"
+        "                     can link its interface is the default\n"
         "  --auto-baud        serial: try 9600 38400 115200 19200 57600 and say what was found\n"
         "  --config FILE      settings (see --list-config)\n"
         "  --course FILE      drive this course: x_mm,y_mm per line, # comments\n"
         "  --goal X,Y         drive to this one point; mm, x ahead and y left of where the robot stands\n"
         "  --passive          diagnose and report, never command a motion\n"
-        "  --active           drive; needed on a serial link, which starts passive\n"
+        "  --active           drive; needed on a serial or can link, which starts passive\n"
         "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
         "  --record FILE      append all bytes of the link, both directions, with their times (see "
         "argus-log)\n"
@@ -84,13 +92,16 @@ void options_help(FILE *out) {
         "  --version  --help\n"
         "\n"
         "keys on the screen: arrows or w a s d drive, space stops, g goes on, r checks again, p "
-        "passive/active, q ends\n"
+        "passive/active,\n  n b choose a sonar, t re-tests it, k pins it or ends that, x takes it out; q "
+        "ends\n"
         "\n"
         "examples:\n"
         "  argusd --link serial:/dev/ttyUSB0@9600 --check\n"
         "  argusd --link serial:/dev/ttyUSB0 --auto-baud\n"
         "  argusd --link serial:/dev/ttyUSB0@9600 --active --goal 3000,0 --config argusd.conf\n"
         "  argusd --link tcp:localhost --course course.csv --json\n"
+        "  argusd --link can:can0 --active --goal 3000,0\n"
+        "  argusd --link serial:/dev/ttyUSB0@9600 --can-telemetry can0,robot=2\n"
         "\n"
         "exit codes:\n",
         out);
@@ -150,10 +161,23 @@ static bool take_goal(options_t *options, const char *text, const message_t *mes
 }
 
 static bool take_link(options_t *options, const char *text, const message_t *message) {
-    if (options->link.path[0] != '\0' || options->link.host[0] != '\0') {
+    if (hal_link_spec_target(&options->link)[0] != '\0') {
         return text_refuse(message->text, message->capacity, "--link is given twice; keep one");
     }
     return hal_link_spec_parse(&options->link, text, message->text, message->capacity);
+}
+
+static bool take_telemetry(options_t *options, const char *text, const message_t *message) {
+    options->no_telemetry = strcmp(text, "none") == 0;
+    if (options->no_telemetry) {
+        options->telemetry.interface[0] = '\0';
+        return true;
+    }
+    char problem[ARGUSD_MESSAGE_MAX / 2];
+    if (!hal_can_spec_parse_telemetry(&options->telemetry, text, problem, sizeof problem)) {
+        return text_refuse(message->text, message->capacity, "--can-telemetry: %s", problem);
+    }
+    return true;
 }
 
 static bool take_flag(options_t *options, int option) {
@@ -219,6 +243,8 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
         return take_seconds(options, optarg, message);
     case OPT_STATUS:
         return take_status(options, optarg, message);
+    case OPT_CAN_TELEMETRY:
+        return take_telemetry(options, optarg, message);
     case OPT_RECORD_MAX:
         return take_record_max(options, optarg, message);
     case ':':
@@ -238,7 +264,7 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
 
 // What contradicts, or is missing.
 static bool agree(const options_t *options, const message_t *message) {
-    const bool has_link = options->link.path[0] != '\0' || options->link.host[0] != '\0';
+    const bool has_link = hal_link_spec_target(&options->link)[0] != '\0';
     const bool serial = options->link.scheme == HAL_SCHEME_SERIAL;
     const struct {
         bool wrong;
@@ -248,10 +274,12 @@ static bool agree(const options_t *options, const message_t *message) {
         {options->course_path != NULL && options->has_goal,
          "--course and --goal contradict each other; give one"},
         {!has_link,
-         "no link is given; add --link serial:/dev/ttyUSB0@9600 or --link tcp:HOST:8101 (see --help)"},
+         "no link is given; add --link serial:/dev/ttyUSB0@9600, tcp:HOST:8101 or can:can0 (see --help)"},
+        {options->action == OPTIONS_CHECK && options->telemetry.interface[0] != '\0',
+         "--check only looks at the robot; leave out --can-telemetry"},
         {options->record_max_bytes > 0 && options->record_path == NULL,
          "--record-max is for --record FILE; add it"},
-        {options->auto_baud && !serial, "--auto-baud is for serial links; a tcp link has no rate"},
+        {options->auto_baud && !serial, "--auto-baud is for serial links; no other has a rate to look for"},
         {options->auto_baud && options->link.has_baud,
          "--auto-baud and a rate in --link contradict each other; leave out @BAUD"},
     };

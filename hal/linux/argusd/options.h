@@ -29,6 +29,8 @@ typedef struct {
     const char *course_path;
     const char *state_path;
     const char *record_path;
+    hal_can_spec_t telemetry; // interface "": not given
+    bool no_telemetry;
     uint64_t record_max_bytes; // 0: not given
     argus_point_t goal;
     bool has_goal;

@@ -178,6 +178,21 @@ static void put_link(json_t *json, const view_t *view) {
     put_string(json, "subclass", view->subclass);
 }
 
+static void put_can(json_t *json, const view_t *view) {
+    if (!view->has_can) {
+        return;
+    }
+    json_name(json, "can");
+    json_open(json, '{');
+    for (int i = 0; i < HAL_ISOTP_ERRORS; i++) {
+        put_int(json, hal_isotp_error_name((hal_isotp_error_t)i), view->can_errors[i]);
+    }
+    put_int(json, "sent", view->can_sent);
+    put_int(json, "taken", view->can_taken);
+    put_int(json, "refused", view->can_refused);
+    json_close(json, '}');
+}
+
 size_t report_status_json(const view_t *view, int64_t unix_ms, char *line, size_t capacity) {
     const argus_event_t event = {.id = ARGUS_EV_STATUS,
                                  .sonar = ARGUS_NO_SONAR,
@@ -192,6 +207,7 @@ size_t report_status_json(const view_t *view, int64_t unix_ms, char *line, size_
     put_plan(&json, &view->status.plan);
     put_sonars(&json, &view->status);
     put_link(&json, view);
+    put_can(&json, view);
     return finish(&json);
 }
 

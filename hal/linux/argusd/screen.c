@@ -174,7 +174,9 @@ static void draw_ring(canvas_t *canvas, const argus_status_t *status) {
     put_text(canvas, middle + 1, column - 1, status->bumpers_rear != 0 ? TONE_BAD : TONE_PLAIN, "\\_/");
 }
 
-static void draw_sonar(canvas_t *canvas, const argus_status_t *status, int sonar, int row, int column) {
+static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row, int column) {
+    const argus_status_t *const status = &view->status;
+    const bool pinned = (view->pinned >> sonar & 1) != 0;
     char state[16];
     char reading[8] = "   -";
     const argus_health_t health = status->health[sonar];
@@ -186,15 +188,18 @@ static void draw_sonar(canvas_t *canvas, const argus_status_t *status, int sonar
     } else {
         snprintf(state, sizeof state, "%s", argus_health_name(health));
     }
-    write_at(canvas, row, column, tone_of_health(health), "%2d %+4d %s %-9.9s", sonar,
+    write_at(canvas, row, column, tone_of_health(health), "%2d%c%+4d %s %-9.9s", sonar, pinned ? '=' : ' ',
              argus_sonar_pose[sonar].heading_deg, reading, state);
+    if (sonar == view->sonar) {
+        write_at(canvas, row, column, TONE_TITLE, "%2d", sonar);
+    }
 }
 
-static void draw_sonars(canvas_t *canvas, const argus_status_t *status, int column) {
+static void draw_sonars(canvas_t *canvas, const view_t *view, int column) {
     put_text(canvas, RING_TOP, column, TONE_DIM, " # front  mm  health    # rear   mm  health");
     for (int i = 0; i < FRONT_SONARS; i++) {
-        draw_sonar(canvas, status, i, RING_TOP + 1 + i, column);
-        draw_sonar(canvas, status, i + FRONT_SONARS, RING_TOP + 1 + i, column + 22);
+        draw_sonar(canvas, view, i, RING_TOP + 1 + i, column);
+        draw_sonar(canvas, view, i + FRONT_SONARS, RING_TOP + 1 + i, column + 22);
     }
 }
 
@@ -243,12 +248,12 @@ void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log) 
     if (!narrow) {
         draw_ring(canvas, &view->status);
     }
-    draw_sonars(canvas, &view->status, narrow ? 1 : RIGHT);
+    draw_sonars(canvas, view, narrow ? 1 : RIGHT);
     draw_numbers(canvas, view, RING_TOP + 9, narrow ? 1 : RIGHT);
     draw_log(canvas, log, RIGHT_ROWS + 1, last);
     for (int column = 0; column < canvas->columns; column++) {
         put(canvas, last, column, TONE_TITLE, ' ');
     }
     put_text(canvas, last, 1, TONE_TITLE,
-             "arrows/wasd drive  space stop  g go  r recheck  p passive/active  q quit");
+             "arrows/wasd drive  space stop  g go  r recheck  p passive  nbtkx sonar  q quit");
 }

@@ -20,6 +20,11 @@ typedef enum {
     TUI_GO,
     TUI_RECHECK,
     TUI_PASSIVE,
+    TUI_NEXT, // choose a sonar,
+    TUI_PREVIOUS,
+    TUI_RETEST, // ... and what to do with it
+    TUI_PIN,
+    TUI_TAKE_OUT,
     TUI_QUIT,
     TUI_GONE // the screen's process has ended
 } tui_key_t;

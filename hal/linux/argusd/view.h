@@ -4,6 +4,7 @@
 #define ARGUSD_VIEW_H
 
 #include "argus/manager.h"
+#include "hal/isotp.h"
 #include "hal/link.h"
 
 #define VIEW_LINK_MAX 96
@@ -19,7 +20,14 @@ typedef struct {
     bool link_up;
     hal_link_counters_t counters;
     uint32_t reopened;
-    uint32_t course_mm; // straight line from the start to the goal, 0 without a course
+    bool has_can; // the link or the telemetry is on a CAN bus
+    uint32_t can_errors[HAL_ISOTP_ERRORS];
+    uint32_t can_sent;    // telemetry frames
+    uint32_t can_taken;   // orders
+    uint32_t can_refused; // ...
+    uint8_t sonar;        // the one that the operator has chosen
+    uint16_t pinned;      // mask over sonars
+    uint32_t course_mm;   // straight line from the start to the goal, 0 without a course
 } view_t;
 
 #endif

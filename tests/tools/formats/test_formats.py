@@ -119,25 +119,6 @@ def test_long_chunks_are_split_and_come_back(tmp_path: Path, name: str) -> None:
     assert (joined(back, "c2r"), damage) == (data, [])
 
 
-def test_a_lost_can_frame_costs_its_message_alone(tmp_path: Path) -> None:
-    chunks = [Chunk(float(n), "r2c", sip(x=n), 0) for n in range(3)]
-    lines = written("candump", chunks).splitlines(keepends=True)
-    per_message = len(lines) // 3
-    back, damage = read(tmp_path / "log", b"".join(lines[: per_message + 3] + lines[per_message + 4 :]))
-    assert [chunk.t for chunk in back] == [0.0, 2.0]
-    assert len(damage) == 1
-    assert "ISO-TP" in damage[0].what
-
-
-def test_other_traffic_on_the_bus_is_passed_over_and_a_robot_can_be_chosen(tmp_path: Path) -> None:
-    ours, other = (written("candump", [Chunk(1.0, "r2c", sip(x=n), 0)], robot=n) for n in (1, 2))
-    noise = b"(1.5) can0 123#DEADBEEF\n(1.6) can0 12345678#00\n"
-    back, damage = read(tmp_path / "log", ours + noise + other)
-    assert joined(back, "r2c") == sip(x=1)
-    assert "--robot" in damage[0].what
-    assert joined(read(tmp_path / "log", noise + ours + other, robot=2)[0], "r2c") == sip(x=2)
-
-
 def frames() -> list[bytes]:
     connection = Connection()
     made = connection.opening()

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 from argus_tools.formats import Chunk, open_log
+from argus_tools.log.common import BULK_BYTES
 from argus_tools.log.fields import Decoder
 from argus_tools.log.packets import packets
 from logs import CAPTURES, ROOT, command, decode, jsonl, run, sip
@@ -183,7 +184,8 @@ def test_records_without_hex_are_passed_over_and_torn_lines_are_told(tmp_path: P
 
 
 def unusable(tmp_path: Path) -> dict[str, Path]:
-    made = {"empty": b"", "random": random.Random(1).randbytes(10_000_000), "text": b"hello\n" * 50,
+    made = {"empty": b"", "cut-gzip": gzip.compress(sip())[:8],
+            "random": random.Random(1).randbytes(10_000_000), "text": b"hello\n" * 50,
             "elf": b"\x7fELF" + bytes(200_000), "no-link": b'{"a": 1}\n'}  # fmt: skip
     paths = {name: tmp_path / name for name in made}
     for name, data in made.items():
@@ -191,7 +193,9 @@ def unusable(tmp_path: Path) -> dict[str, Path]:
     return {**paths, "folder": tmp_path, "missing": tmp_path / "nothing"}
 
 
-@pytest.mark.parametrize("kind", ["empty", "random", "text", "elf", "no-link", "folder", "missing"])
+@pytest.mark.parametrize(
+    "kind", ["empty", "cut-gzip", "random", "text", "elf", "no-link", "folder", "missing"]
+)
 def test_what_is_no_log_gives_one_line_and_2(tmp_path: Path, kind: str) -> None:
     done = run("decode", "--json", unusable(tmp_path)[kind])
     lines = done.stderr.decode().splitlines()
@@ -238,3 +242,82 @@ def test_follow_shows_what_is_appended(tmp_path: Path) -> None:
         assert json.loads(process.stdout.readline())["x_mm"] == 2
         process.send_signal(signal.SIGINT)
         assert process.wait(20) == 0
+
+
+@pytest.mark.parametrize("way", ["rotated", "emptied"])
+def test_follow_goes_on_when_the_file_begins_anew(way: str, tmp_path: Path) -> None:
+    path = tmp_path / "live.jsonl"
+    path.write_bytes(jsonl([(0.0, "r2c", sip(x=1)), (0.1, "r2c", sip(x=2))]))
+    command_line = [sys.executable, "-m", "argus_tools.log.cli", "decode", "--json", "--follow", str(path)]
+    environment = {"PYTHONPATH": f"{ROOT}:{ROOT / 'tools'}", "PATH": "/usr/bin:/bin"}
+    with subprocess.Popen(
+        command_line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        assert [json.loads(process.stdout.readline())["x_mm"] for _ in range(2)] == [1, 2]
+        if way == "rotated":
+            path.rename(tmp_path / "live.jsonl.1")
+            time.sleep(0.2)
+        path.write_bytes(jsonl([(1.0, "r2c", sip(x=3))]))
+        assert json.loads(process.stdout.readline())["x_mm"] == 3
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20) == 0
+        assert (b"was replaced" if way == "rotated" else b"became shorter") in process.stderr.read()
+
+
+def random_session(rng: random.Random) -> list[Chunk]:
+    """SIPs of any layout among commands and answers, some of which change what positions mean."""
+    chunks = []
+    answers = [
+        SyncReply(b"n", b"Pioneer", b"p3dx").data,
+        SyncReply(b"n", b"Pioneer", b"p3dx-sh").data,
+        b"\xb0x",
+    ]
+    layouts = [[rng.randrange(20) for _ in range(rng.randrange(6))] for _ in range(4)]
+    x = 0
+    for n in range(rng.randrange(1, 400)):
+        t = None if rng.random() < 0.1 else n / 10
+        action = rng.random()
+        if action < 0.02:
+            chunks.append(Chunk(t, "c2r", command(rng.choice(("SETO", "PULSE", "STOP"))), n))
+        elif action < 0.03:
+            chunks.append(Chunk(t, "r2c", frame(rng.choice(answers)), n))
+        elif action < 0.04:
+            chunks.append(Chunk(t, "r2c", frame(b"\x33" + rng.randbytes(rng.randrange(40))), n))
+        elif action < 0.05:
+            chunks.append(Chunk(t, "r2c", rng.randbytes(5), n))
+        else:
+            x = rng.choice((x, x + 7, rng.randrange(1 << 16))) & 0xFFFF
+            readings = tuple((number, rng.randrange(1 << 16)) for number in rng.choice(layouts))
+            data = sip(
+                type=rng.choice((0x32, 0x33)), x=x, y=rng.randrange(1 << 16), th=rng.randrange(-2048, 2049),
+                left_vel=rng.randrange(-900, 900), flags=rng.choice((1, 7)), sonars=readings,
+                battery_x10=rng.choice((None, 126)),
+            )  # fmt: skip
+            chunks.append(Chunk(t, "r2c", data, n))
+    return chunks
+
+
+@pytest.mark.parametrize("seed", range(150))
+def test_many_at_once_are_the_same_lines(seed: int) -> None:
+    chunks = random_session(random.Random(seed))
+    decoder, expected = Decoder(), []
+    for row in packets(chunks):
+        decoder.track(row)
+        expected.append(json.dumps(decoder.fields(row)))
+    found = "\n".join(Decoder().json_lines(packets(chunks, at_once=False), at_once=False))
+    assert found.split("\n") == expected
+
+
+def test_a_long_file_gives_the_lines_of_its_parts(tmp_path: Path) -> None:
+    whole = (CAPTURES / "d_ram.jsonl").read_bytes()
+    path = tmp_path / "long.jsonl"
+    path.write_bytes(whole * 6)
+    decoder = Decoder()
+    lines = []
+    for row in packets(open_log(str(path))):
+        decoder.track(row)
+        lines.append(json.dumps(decoder.fields(row)))
+    assert path.stat().st_size > BULK_BYTES
+    assert run("decode", "--json", path).stdout.decode().splitlines() == lines

@@ -448,6 +448,8 @@ void test_a_sip_instead_of_an_echo_is_an_old_session_too(void) {
             const size_t from = robot.logged;
             robot.out_count = 0;
             robot.state = OPENED;
+            TEST_ASSERT_TRUE(run_until_seen(ARGUS_SESSION_DID_DISLODGE, 4000));
+            TEST_ASSERT_EQUAL(1, count_of(ARGUS_SESSION_GOT_SIP)); // it tells where the robot has got to
             TEST_ASSERT_TRUE(run_until_seen(ARGUS_SESSION_DID_OPEN, 4000));
             assert_log(from, dislodging, 3);
             assert_log(from + 3, greeting, GREETING);

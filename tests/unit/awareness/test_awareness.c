@@ -18,6 +18,7 @@ void setUp(void) {
     argus_knowledge_init(&k);
     argus_awareness_init(&a);
     argus_config_default(&config);
+    config.profile = ARGUS_PROFILE_PAPER;
     memset(&sip, 0, sizeof sip);
     sip.flags = 7;
     now_ms = 0xFFFFFE00u;

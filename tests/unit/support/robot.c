@@ -28,10 +28,15 @@ uint32_t robot_random(robot_t *robot, uint32_t below) {
     return below == 0 ? 0 : robot->seed % below;
 }
 
-argus_config_t robot_config(void) {
+argus_config_t robot_config_of(int32_t profile) {
     argus_config_t config;
     argus_config_default(&config);
+    config.profile = profile;
     return config;
+}
+
+argus_config_t robot_config(void) {
+    return robot_config_of(ARGUS_PROFILE_PAPER);
 }
 
 static void power_up(robot_t *robot) {
@@ -117,11 +122,22 @@ static int clip(int mm) {
     return mm < 100 ? 100 : mm > 5000 ? 5000 : mm;
 }
 
+static void remember(int *past, int mm) {
+    memmove(past + 1, past, (ROBOT_PAST - 1) * sizeof *past);
+    past[0] = mm;
+}
+
 // Negative: the slot yields no reading.
 static int reading_of(robot_t *robot, int sonar) {
     int mm = robot->world(robot, sonar);
     if (robot->noise_mm > 0 && mm < 5000) {
         mm += (int)robot_random(robot, (uint32_t)(2 * robot->noise_mm + 1)) - robot->noise_mm;
+    }
+    int *past = robot->past[sonar];
+    const int value = robot->fault_value[sonar];
+    const int late = robot->fault[sonar] == ROBOT_SLOW && past[value - 1] > 0 ? past[value - 1] : clip(mm);
+    if (robot->fault[sonar] != ROBOT_STUCK || past[0] == 0) {
+        remember(past, clip(mm));
     }
     switch (robot->fault[sonar]) {
     case ROBOT_OFF:
@@ -129,9 +145,17 @@ static int reading_of(robot_t *robot, int sonar) {
     case ROBOT_SILENT:
         return -1;
     case ROBOT_SCALE:
-        return clip(mm * robot->fault_value[sonar] / 100);
+        return clip(mm * value / 100);
     case ROBOT_VALUE:
-        return robot->fault_value[sonar];
+        return value;
+    case ROBOT_STUCK:
+        return past[0];
+    case ROBOT_GARBAGE:
+        return 100 + (int)robot_random(robot, 4901);
+    case ROBOT_SLOW:
+        return late;
+    case ROBOT_DROPOUT:
+        return (int)robot_random(robot, 100) < value ? 5000 : clip(mm);
     case ROBOT_OK:
     default:
         return clip(mm);
@@ -392,13 +416,13 @@ static void obey(robot_t *robot, const uint8_t *packet, const robot_command_t *s
     }
 }
 
-// The nearest echo shown by a sonar that is not DISABLED.
+// The nearest echo shown by a sonar that is relied on.
 static double nearest_shown_mm(const robot_t *robot) {
     double nearest = 1e9;
     for (int i = 0; i < 16; i++) {
         const argus_sonar_pose_t *at = &argus_sonar_pose[i];
-        if (robot->argus.knowledge.sonar[i].health != ARGUS_DISABLED &&
-            robot->argus.knowledge.sonar[i].reported && robot->shown[i] >= 0 && robot->shown[i] < 5000) {
+        if (!argus_is_out(&robot->argus.knowledge, i) && robot->argus.knowledge.sonar[i].reported &&
+            robot->shown[i] >= 0 && robot->shown[i] < 5000) {
             nearest = fmin(nearest, hypot(at->x_mm + robot->shown[i] * cos(at->heading_deg * DEG),
                                           at->y_mm + robot->shown[i] * sin(at->heading_deg * DEG)));
         }
@@ -406,15 +430,32 @@ static double nearest_shown_mm(const robot_t *robot) {
     return nearest;
 }
 
+static int nearest_ahead_mm(const robot_t *robot, unsigned blind) {
+    int nearest = 5000;
+    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
+        if ((blind >> i & 1u) == 0 && robot->shown[i] >= 0 && robot->shown[i] < nearest) {
+            nearest = robot->shown[i];
+        }
+    }
+    return nearest;
+}
+
 static void watch_move(robot_t *robot, int32_t mm) {
-    const uint16_t disabled = argus_disabled(&robot->argus.knowledge) & ARGUS_FORWARD_MASK;
+    const argus_knowledge_t *known = &robot->argus.knowledge;
+    const uint16_t blind = (argus_out(known) | argus_with_health(known, ARGUS_SUSPECT)) & ARGUS_FORWARD_MASK;
     if (mm < -300 || mm > 5000 || mm == 0) {
         complain(robot, "MOVE out of range", mm);
     }
     if (mm > 0 && !robot->checked) {
         complain(robot, "S3/S6: MOVE ahead before a health check", mm);
     }
-    if (mm > 0 && disabled != 0 && (mm > robot->argus.config.step_mm || !robot->swept)) {
+    if (mm > 0 && (blind & ~robot->argus.plan.disabled) != 0) {
+        complain(robot, "S1, S6: MOVE ahead without a plan for a suspect or one that is out", blind);
+    }
+    if (mm > 0 && blind != 0 && nearest_ahead_mm(robot, blind) <= robot->argus.config.check_range_mm) {
+        complain(robot, "S1: a step towards an object", nearest_ahead_mm(robot, blind));
+    }
+    if (mm > 0 && blind != 0 && (mm > robot->argus.config.step_mm || !robot->swept)) {
         complain(robot, "S1: MOVE ahead beyond the step or without a sweep", mm);
     }
     if (mm > 0 && robot->bumpers_seen != 0) {
@@ -422,8 +463,7 @@ static void watch_move(robot_t *robot, int32_t mm) {
     }
     if (mm < 0) {
         for (int i = 8; i < 16; i++) {
-            if (robot->argus.knowledge.sonar[i].health != ARGUS_DISABLED &&
-                robot->shown[i] <= robot->argus.config.rear_clear_mm) {
+            if (argus_is_out(known, i) || robot->shown[i] <= robot->argus.config.rear_clear_mm) {
                 complain(robot, "S7: MOVE back though a rear sonar does not read clear", i);
             }
         }

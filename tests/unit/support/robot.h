@@ -12,7 +12,20 @@
 #define ROBOT_SIP_MAX 195
 #define ROBOT_LATE_MAX 8192
 
-typedef enum { ROBOT_OK, ROBOT_OFF, ROBOT_SILENT, ROBOT_SCALE, ROBOT_VALUE } robot_fault_t;
+#define ROBOT_PAST 8
+
+// Percent for SCALE and DROPOUT, mm for VALUE, firings (1 to ROBOT_PAST) for SLOW.
+typedef enum {
+    ROBOT_OK,
+    ROBOT_OFF,
+    ROBOT_SILENT,
+    ROBOT_SCALE,
+    ROBOT_VALUE,
+    ROBOT_STUCK,
+    ROBOT_GARBAGE,
+    ROBOT_SLOW,
+    ROBOT_DROPOUT
+} robot_fault_t;
 
 typedef struct {
     uint32_t t_ms; // since the start
@@ -70,6 +83,7 @@ struct robot {
     int noise_mm;
     robot_fault_t fault[16];
     int fault_value[16];
+    int past[16][ROBOT_PAST];                      // what it would have read, newest first
     int (*world)(const robot_t *robot, int sonar); // the truth, mm
     double segment[ROBOT_SEGMENTS_MAX][4];
     int segments;
@@ -90,7 +104,8 @@ struct robot {
 };
 
 void robot_init(robot_t *robot, const argus_config_t *config, uint32_t start_ms);
-argus_config_t robot_config(void);
+argus_config_t robot_config(void); // the paper's rules
+argus_config_t robot_config_of(int32_t profile);
 void robot_tick(robot_t *robot); // 10 ms
 void robot_run(robot_t *robot, uint32_t ms);
 void robot_next_sip(robot_t *robot); // up to and including the delivery of one SIP, and nothing after it

@@ -10,7 +10,17 @@ from functools import cache
 from io import BufferedReader
 from typing import Any, Final
 
-from argus_tools.formats.base import Chunk, Damage, Direction, Format, LogError, Reader, ReadOptions, Writer
+from argus_tools.formats.base import (
+    Chunk,
+    Damage,
+    DamageList,
+    Direction,
+    Format,
+    LogError,
+    Reader,
+    ReadOptions,
+    Writer,
+)
 from argus_tools.formats.source import BLOCK_BYTES, Source
 
 __all__ = [
@@ -59,7 +69,8 @@ class Log:
         self.options.name = path
         self.source = Source(path, **source)
         if not self.source.head:
-            raise LogError(f"{path}: is empty")
+            what = self.source.damage[0].what if self.source.damage else "is empty"
+            raise LogError(f"{path}: {what}")
         self.format = formats()[format_name] if format_name else find_format(self.source.head)
         stream: BufferedReader = BufferedReader(self.source, BLOCK_BYTES)
         self._reader = self.format.reader(stream, self.options)
@@ -70,9 +81,9 @@ class Log:
         return self.source.damage + self._reader.damage
 
     @property
-    def damage_count(self) -> int:
-        """How many entries `damage` has."""
-        return len(self.source.damage) + len(self._reader.damage)
+    def damage_lists(self) -> tuple[DamageList, DamageList]:
+        """The two lists that `damage` is made of, which grow as the log is read."""
+        return self.source.damage, self._reader.damage
 
     def __iter__(self) -> Iterator[Chunk]:
         return iter(self._reader)

@@ -37,6 +37,22 @@ class Damage(NamedTuple):
     what: str
 
 
+class DamageList(list[Damage]):
+    """The first entries; of a file that is nothing but damage the others are only counted, in `total`."""
+
+    KEPT: Final = 1000
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.total = 0
+
+    def append(self, entry: Damage, /) -> None:
+        """Take note of one more."""
+        self.total += 1
+        if self.total <= self.KEPT:
+            super().append(entry)
+
+
 @dataclass
 class ReadOptions:
     """What the user said about a log and a format may need to know."""
@@ -54,7 +70,7 @@ class Reader(Protocol):
     nothing can be read at all.
     """
 
-    damage: list[Damage]
+    damage: DamageList
 
     def __iter__(self) -> Iterator[Chunk]: ...
 

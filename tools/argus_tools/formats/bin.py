@@ -11,7 +11,7 @@ from argus_tools.formats.base import (
     CLIENT_TO_ROBOT,
     ROBOT_TO_CLIENT,
     Chunk,
-    Damage,
+    DamageList,
     Direction,
     Format,
     LogError,
@@ -47,7 +47,7 @@ class BinReader:
     """Reads a raw capture in blocks."""
 
     def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
-        self.damage: list[Damage] = []
+        self.damage = DamageList()
         self._stream = stream
         self._direction = options.direction
 

@@ -4,14 +4,19 @@
 from __future__ import annotations
 
 import json
+import re
+from binascii import unhexlify
 from collections.abc import Iterator
 from io import BufferedReader
 from typing import Any, BinaryIO, Final
 
-from argus_tools.formats.base import Chunk, Damage, Direction, Format, Offsets, ReadOptions
+from argus_tools.formats.base import Chunk, Damage, DamageList, Direction, Format, Offsets, ReadOptions
 
 LINE_MAX: Final = 1 << 20
+T_MAX_S: Final = 1e12
+_PARSER: Final = json.JSONDecoder()
 _DIRECTIONS: Final = ("r2c", "c2r")
+_USUAL: Final = re.compile(rb'\{"t": (-?[0-9][^,_]*), "dir": "(r2c|c2r)", "hex": "([^"]*)"\}\n')
 _DIRS: Final[dict[bytes, Direction]] = {b"r2c": "r2c", b"c2r": "c2r"}
 
 
@@ -26,7 +31,7 @@ def _what_is_wrong(record: Any) -> str:
     if record.get("dir") not in _DIRECTIONS:
         return f'"dir" is {json.dumps(record.get("dir"))}, not "r2c" or "c2r"'
     t = record.get("t")
-    if t is not None and (isinstance(t, bool) or not isinstance(t, int | float) or not abs(t) < 1e12):
+    if t is not None and (isinstance(t, bool) or not isinstance(t, int | float) or not abs(t) < T_MAX_S):
         return f'"t" is {json.dumps(t)[:40]}, not seconds or null'
     return '"hex" is no even number of hexadecimal digits'
 
@@ -35,70 +40,65 @@ class JsonlReader:
     """Reads JSON lines; a line that is none is damage and the next one is read."""
 
     def __init__(self, stream: BufferedReader, _options: ReadOptions) -> None:
-        self.damage: list[Damage] = []
+        self.damage = DamageList()
         self._stream = stream
 
-    def _lines(self) -> Iterator[tuple[int, bytes]]:
+    def _skip_line(self, number: int) -> None:
+        self.damage.append(Damage(f"line {number}", f"longer than {LINE_MAX} bytes"))
+        while (line := self._stream.readline(LINE_MAX)) and line[-1] != 10:
+            pass
+
+    def __iter__(self) -> Iterator[Chunk]:
+        match, new = _USUAL.fullmatch, tuple.__new__
+        offsets = Offsets()
+        at = offsets.at
         readline = self._stream.readline
         number = 0
         while line := readline(LINE_MAX):
             number += 1
-            if len(line) == LINE_MAX and line[-1] != 10:
-                self.damage.append(Damage(f"line {number}", f"longer than {LINE_MAX} bytes"))
-                while (line := readline(LINE_MAX)) and line[-1] != 10:
-                    pass
-                continue
-            yield number, line
-
-    def __iter__(self) -> Iterator[Chunk]:
-        parse = json.JSONDecoder().raw_decode
-        offsets = Offsets()
-        at = offsets.at
-        for number, line in self._lines():
             # As we write it ourselves; anything else is read as JSON.
-            part = line.split(b'"')
-            if (
-                len(part) == 11
-                and part[1] == b"t"
-                and part[3] == b"dir"
-                and part[7] == b"hex"
-                and part[10] == b"}\n"
-                and part[5] in _DIRS
-            ):
+            if usual := match(line):
+                number_text, name, digits = usual.groups()
                 try:
-                    t = float(part[2][2:-2])
-                    data = bytes.fromhex(part[9].decode())
+                    t = float(number_text)
+                    data = unhexlify(digits)
                 except ValueError:
                     pass
                 else:
-                    if abs(t) < 1e12:
-                        direction = _DIRS[part[5]]
+                    if abs(t) < T_MAX_S:
+                        direction = _DIRS[name]
                         offset = at[direction]
                         at[direction] = offset + len(data)
-                        yield Chunk(t, direction, data, offset)
+                        yield new(Chunk, (t, direction, data, offset))
                         continue
-            try:
-                record, _ = parse(line.decode().lstrip("\ufeff \t\r"))
-            except (ValueError, RecursionError):
-                if line.strip():
-                    self.damage.append(Damage(f"line {number}", "no JSON record"))
-                continue
-            try:
-                text = record.get("hex")
-                if text is None:
-                    continue
-                t, direction = record.get("t"), record["dir"]
-                if type(t) is not float and _what_is_wrong({**record, "hex": ""})[:4] != '"hex':
-                    raise ValueError
-                data = bytes.fromhex(text)
-                offset = at[direction]
-                at[direction] = offset + len(data)
-                if t is not None and not abs(t) < 1e12:
-                    raise ValueError
-            except (ValueError, KeyError, TypeError, AttributeError):
-                self.damage.append(Damage(f"line {number}", _what_is_wrong(record)))
-                continue
-            yield Chunk(t, direction, data, offset)
+            if found := self._read(line, number):
+                yield offsets.chunk(*found)
+
+    def _read(self, line: bytes, number: int) -> tuple[float | None, Direction, bytes] | None:
+        """Read a line that may hold any JSON; tell what is wrong with it."""
+        if len(line) == LINE_MAX and line[-1] != 10:
+            self._skip_line(number)
+            return None
+        try:
+            record, _ = _PARSER.raw_decode(line.decode().lstrip("\ufeff \t\r"))
+        except (ValueError, RecursionError):
+            if line.strip():
+                self.damage.append(Damage(f"line {number}", "no JSON record"))
+            return None
+        try:
+            text = record.get("hex")
+            if text is None:
+                return None
+            t, direction = record.get("t"), record["dir"]
+            if type(t) is not float and _what_is_wrong({**record, "hex": ""})[:4] != '"hex':
+                raise ValueError
+            data = bytes.fromhex(text)
+            if direction not in _DIRECTIONS or (t is not None and not abs(t) < T_MAX_S):
+                raise ValueError
+        except (ValueError, KeyError, TypeError, AttributeError):
+            self.damage.append(Damage(f"line {number}", _what_is_wrong(record)))
+            return None
+        return t, direction, data
 
 
 class JsonlWriter:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from io import BufferedReader
 from typing import BinaryIO, Final
 
-from argus_tools.formats.base import Chunk, Damage, Format, LogError, ReadOptions
+from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.tcp import DEFAULT_PORT, LINK_ETHERNET, Connection, Streams, parse
 
 FRAME_MAX: Final = 1 << 20
@@ -26,7 +26,7 @@ class PcapReader:
     """Reads the frames one by one; a file that is cut gives all frames before the cut."""
 
     def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
-        self.damage: list[Damage] = []
+        self.damage = DamageList()
         self._stream = stream
         self._options = options
 

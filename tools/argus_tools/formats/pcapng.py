@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from io import BufferedReader
 from typing import BinaryIO, Final
 
-from argus_tools.formats.base import Chunk, Damage, Format, LogError, ReadOptions
+from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.pcap import FRAME_MAX
 from argus_tools.formats.tcp import DEFAULT_PORT, LINK_ETHERNET, Connection, Streams, parse
 
@@ -46,7 +46,7 @@ class PcapngReader:
     """Reads block by block; kinds of blocks that it does not know are passed over."""
 
     def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
-        self.damage: list[Damage] = []
+        self.damage = DamageList()
         self._stream = stream
         self._options = options
         self._order = "<"

@@ -12,6 +12,7 @@ from argus_tools.formats.base import (
     ROBOT_TO_CLIENT,
     Chunk,
     Damage,
+    DamageList,
     Direction,
     Format,
     LogError,
@@ -35,8 +36,8 @@ from hil_sim.record import (
 
 _PIECE: Final = 65536
 _DIRECTION: Final[dict[int, Direction]] = {
-    Kind.FROM_ROBOT: ROBOT_TO_CLIENT,
-    Kind.TO_ROBOT: CLIENT_TO_ROBOT,
+    int(Kind.FROM_ROBOT): ROBOT_TO_CLIENT,
+    int(Kind.TO_ROBOT): CLIENT_TO_ROBOT,
 }
 _KIND: Final = {direction: kind for kind, direction in _DIRECTION.items()}
 
@@ -45,7 +46,7 @@ class RecordReader:
     """Reads a recording; `t` is in seconds since 1970."""
 
     def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
-        self.damage: list[Damage] = []
+        self.damage = DamageList()
         self._stream = stream
         self._name = options.name
         self._decoder = Decoder()
@@ -61,7 +62,8 @@ class RecordReader:
     def _chunks(self, records: Iterator[Record]) -> Iterator[Chunk]:
         for record in records:
             t = self._timeline.at(record)
-            self._tell_gaps()
+            if self._decoder.gaps:
+                self._tell_gaps()
             if direction := _DIRECTION.get(record.kind):
                 yield self._offsets.chunk(t, direction, record.payload)
             elif record.kind == Kind.LOST:

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 
-from argus_tools.formats.base import Damage, LogError
+from argus_tools.formats.base import Damage, DamageList, LogError
 
 if TYPE_CHECKING:
     from _typeshed import WriteableBuffer
@@ -38,7 +38,7 @@ class Source(io.RawIOBase):
         on_progress: Callable[[int], None] = lambda _: None,
     ) -> None:
         self.name = path
-        self.damage: list[Damage] = []
+        self.damage = DamageList()
         self.consumed = 0
         self._follow = follow
         self._stop = stop
@@ -95,10 +95,34 @@ class Source(io.RawIOBase):
                 raise LogError(f"{self.name}: cannot be read: {error.strerror}") from error
             if data or not self._follow or self._stop():
                 break
-            time.sleep(FOLLOW_PAUSE_S)
+            if not self._is_renewed():
+                time.sleep(FOLLOW_PAUSE_S)
         self.consumed += len(data)
         self._on_progress(self.consumed)
         return data
+
+    def _is_renewed(self) -> bool:
+        """At the end of a followed file: whether it began anew, because it was rotated or emptied."""
+        if not self.is_regular or self._file is sys.stdin.buffer:
+            return False
+        try:
+            there = os.stat(self.name)  # noqa: PTH116
+            ours = os.fstat(self._file.fileno())
+            if not os.path.samestat(there, ours):
+                renewed = Path(self.name).open("rb", buffering=0)  # noqa: SIM115
+                self._file.close()
+                self._file = renewed
+                what = "the file was replaced; the new one is read from its beginning"
+            elif there.st_size < os.lseek(self._file.fileno(), 0, os.SEEK_CUR):
+                os.lseek(self._file.fileno(), 0, os.SEEK_SET)
+                what = "the file became shorter; it is read from its beginning"
+            else:
+                return False
+        except OSError:
+            # Between two files there is none for a moment.
+            return False
+        self.damage.append(Damage(f"byte {self.consumed}", what))
+        return True
 
     def _give_up(self, what: str) -> None:
         self.damage.append(Damage(f"byte {self.consumed}", what))

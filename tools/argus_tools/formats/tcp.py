@@ -25,6 +25,7 @@ LINK_ETHERNET: Final = 1
 SEGMENT_BYTES: Final = 1400
 # Out-of-order segments held back before the missing ones are given up.
 HELD_MAX: Final = 64
+CONNECTIONS_MAX: Final = 4096
 _HEADER: Final = b"\xfa\xfb"
 _FIN, _SYN, _RST, _PSH, _ACK = 1, 2, 4, 8, 16
 _TCP: Final = 6
@@ -103,14 +104,17 @@ class Streams:
     robot: Endpoint | None = None
     _offsets: Offsets = field(default_factory=Offsets)
     _halves: dict[tuple[Endpoint, Endpoint], _Half] = field(default_factory=dict)
-    _servers: set[Endpoint] = field(default_factory=set)
+    _servers: dict[Endpoint, None] = field(default_factory=dict)
     _others: set[Endpoint] = field(default_factory=set)
 
     def take(self, t: float, number: int, segment: Segment) -> Iterator[Chunk]:
         """Take the next segment, from frame `number` of the file."""
         key = (segment.source, segment.target)
         if segment.flags & _SYN:
-            self._servers.add(segment.source if segment.flags & _ACK else segment.target)
+            if self.robot is not None and self.robot not in key:
+                return
+            self._forget_oldest()
+            self._servers[segment.source if segment.flags & _ACK else segment.target] = None
             self._halves[key] = _Half((segment.seq + 1) & 0xFFFFFFFF)
             return
         if not segment.data or not self._is_ours(segment, number):
@@ -130,6 +134,20 @@ class Streams:
             direction = ROBOT_TO_CLIENT if source == self.robot else CLIENT_TO_ROBOT
             while half.held:
                 yield from self._skip_gap(half, direction, "end of file")
+
+    def _forget_oldest(self) -> None:
+        """Keep no more than so many connections, as a capture of a busy network has any number."""
+        while len(self._halves) >= CONNECTIONS_MAX and self._forget(next(iter(self._halves))):
+            pass
+        while len(self._servers) >= CONNECTIONS_MAX:
+            del self._servers[next(iter(self._servers))]
+
+    def _forget(self, key: tuple[Endpoint, Endpoint]) -> bool:
+        """Forget one direction of a connection; False if something of it is still to be read."""
+        if self._halves[key].held:
+            return False
+        del self._halves[key]
+        return True
 
     def _is_ours(self, segment: Segment, number: int) -> bool:
         if self.robot is None:
@@ -153,7 +171,9 @@ class Streams:
         if self.options.port is not None:
             return next((end for end in ends if end[1] == self.options.port), None)
         for end in ends:
-            if end in self._servers or (end[1] == DEFAULT_PORT and not self._servers & set(ends)):
+            if end in self._servers or (
+                end[1] == DEFAULT_PORT and not any(other in self._servers for other in ends)
+            ):
                 return end
         return segment.source if guess_direction(segment.data) == ROBOT_TO_CLIENT else segment.target
 

@@ -24,6 +24,7 @@ DIRECTIONS: Final = (ROBOT_TO_CLIENT, CLIENT_TO_ROBOT)
 # A file in which so much comes before the first packet is no log.
 HOPELESS_BYTES: Final = 16 << 20
 HOPELESS_ROWS: Final = 20_000
+BULK_BYTES: Final = 1 << 18
 PROGRESS_BYTES: Final = 8 << 20
 
 
@@ -113,23 +114,30 @@ class Input:
         self._dir = getattr(args, "dir", None)
         options = ReadOptions(direction=self._dir, port=args.port, robot=args.robot)
         self._progress = _Progress(self.path)
+        follow = getattr(args, "follow", False)
         self.log = Log(
             self.path,
             args.format,
             options,
-            follow=getattr(args, "follow", False),
+            follow=follow,
             on_progress=self._progress.update,
         )
         self._progress.total = self.log.source.total
+        # Whether what was read is wanted before more comes; nor is a short file worth the loading of numpy.
+        self.is_live = follow or self.log.source.total < BULK_BYTES
 
     def chunks(self) -> Iterator[Chunk]:
         """Yield the log's chunks, and tell on standard error what cannot be read."""
+        damage, in_source = self.log.damage_lists
         try:
             for chunk in self.log:
-                if self.log.damage_count != self._told:
+                if len(damage) + len(in_source) != self._told:
                     self._tell()
                 yield chunk
             self._tell()
+            more = sum(entries.total - len(entries) for entries in (damage, in_source))
+            if more:
+                print(f"argus-log: {self.path}: and {more} places more", file=sys.stderr)
         finally:
             self._progress.close()
 
@@ -137,7 +145,7 @@ class Input:
         """Yield the packets and the damage; a log without any packet raises LogError."""
         waiting: list[Row] = []
         size = 0
-        rows = packets(self.chunks())
+        rows = packets(self.chunks(), self.is_live)
         for row in rows:
             if row.ok:
                 break
@@ -193,7 +201,8 @@ class _Progress:
         self.total = 0
         self._path = path
         self._bar: Any = None
-        self._wanted = sys.stderr.isatty() and not sys.stdout.isatty() and path != "-"
+        is_capable = sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+        self._wanted = is_capable and not sys.stdout.isatty() and path != "-"
 
     def update(self, consumed: int) -> None:
         """Show how much of the file was read."""

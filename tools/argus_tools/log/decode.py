@@ -30,6 +30,7 @@ EXAMPLES: Final = """\
   argus-log decode --json live.rec --follow           as it grows; one JSON object per packet
 """
 FLUSH_ROWS: Final = 256
+FLUSH_CHARACTERS: Final = 4096
 SONARS_IN_CSV: Final = 16
 _COMMON: Final = ("t", "offset", "dir", "type", "ok")
 _SIP_COLUMNS: Final = (
@@ -95,7 +96,7 @@ def run(args: argparse.Namespace) -> int:
         rows = _filtered(args, rows, decoder)
         lines = (line_of(row) for row in rows)
     else:
-        lines = decoder.json_lines(rows) if args.json else _lines(rows, decoder, line_of)
+        lines = decoder.json_lines(rows, source.is_live) if args.json else _lines(rows, decoder, line_of)
     header = _csv_line(CSV_COLUMNS) if args.csv else "" if args.json else _HEADER
     _write(header, lines, args.follow)
     return source.exit_code
@@ -117,8 +118,9 @@ def _write(header: str, lines: Iterator[str], at_once: bool) -> None:
                 held.append(header)
                 header = ""
             held.append(line)
-            if at_once or len(held) >= FLUSH_ROWS:
-                write("\n".join(held) + "\n")
+            if at_once or len(held) >= FLUSH_ROWS or len(line) >= FLUSH_CHARACTERS:
+                held.append("")
+                write("\n".join(held))
                 held.clear()
                 if at_once:
                     sys.stdout.flush()

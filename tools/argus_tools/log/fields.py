@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from operator import itemgetter
 from struct import Struct
 from typing import Any, Final, NamedTuple
 
@@ -41,6 +43,9 @@ _INTEGERS: Final = (ARGUMENT["POSITIVE"], ARGUMENT["NEGATIVE"])
 _HEAD: Final = 20  # data bytes of a SIP before its readings
 _PORTS: Final = {TYPE["SERAUXPAC"]: 1, TYPE["SERAUX2PAC"]: 2, TYPE["SERAUX3PAC"]: 3}
 _CACHE_MAX: Final = 4096
+_BATCH_ROWS: Final = 1024
+# Fewer SIPs than this are sooner done one by one.
+_FEW_ROWS: Final = 16
 _NOWHERE: Final = '{"t": null, "offset": 0, '
 _TAIL: Final = tuple(name for name, _ in Sip._TAIL)
 
@@ -49,6 +54,8 @@ _HEADING_TEXT: Final = tuple(map(repr, HEADINGS))
 _STATE: Final = (
     "battery_v", "stall_left", "stall_right", "bumpers_front", "bumpers_rear", "moving", "motors", "flags", "compass",
 )  # fmt: skip
+_TYPE_AND_OK: Final = itemgetter(3, 4)
+_ALL_SIPS: Final = {("SIP", True)}
 
 
 def _text(value: bytes | None) -> str | None:
@@ -126,6 +133,11 @@ class Decoder:
                 self._learn(_subclass_of(data))
 
     @staticmethod
+    def heading_deg(data: bytes) -> float:
+        """Return the heading in a SIP's data."""
+        return HEADINGS[(data[5] | data[6] << 8) & (_TURN - 1)]
+
+    @staticmethod
     def _is_origin(raw: int) -> bool:
         return (raw + _ORIGIN_UNITS) & (_SPAN - 1) <= 2 * _ORIGIN_UNITS
 
@@ -181,7 +193,7 @@ class Decoder:
             if layout is not None:
                 t = row[0]
                 th, left, right, *ranges = layout.unpack(data)
-                state, tail = self._state(data, layout)
+                state, tail = self._state(data, layout.tail_at)
                 return layout.text % (
                     "null" if t is None else repr(t),
                     row[1],
@@ -207,12 +219,96 @@ class Decoder:
             return f'{{"t": {"null" if t is None else repr(t)}, "offset": {row[1]}, {body}'
         return json.dumps(self.fields(row))
 
-    def json_lines(self, rows: Iterable[Row]) -> Iterator[str]:
-        """Track the rows and yield the JSON of each."""
-        track, line_of = self.track, self.json
+    def json_lines(self, rows: Iterable[Row], at_once: bool = True) -> Iterator[str]:
+        """Track the rows and yield the JSON of each; without `at_once` many lines in one string."""
+        if at_once:
+            for row in rows:
+                self.track(row)
+                yield self.json(row)
+            return
+        rows = iter(rows)
+        while batch := list(itertools.islice(rows, _BATCH_ROWS)):
+            yield from self._json_many(batch)
+
+    def _json_many(self, rows: list[Row]) -> list[str]:
+        if set(map(_TYPE_AND_OK, rows)) == _ALL_SIPS and (text := self._json_sips(rows)):
+            return text
+        lines: list[str] = []
+        sips: list[Row] = []
+        places: list[int] = []
         for row in rows:
-            track(row)
-            yield line_of(row)
+            if row[3] == "SIP" and row[4]:
+                sips.append(row)
+                places.append(len(lines))
+                lines.append("")
+                continue
+            if row[2] == ROBOT_TO_CLIENT or row[3] == "SETO":
+                self._fill(lines, places, sips)
+                places, sips = [], []
+                self.track(row)
+            lines.append(self.json(row))
+        self._fill(lines, places, sips)
+        return lines
+
+    def _fill(self, lines: list[str], places: list[int], sips: list[Row]) -> None:
+        """Track the SIPs and put their lines where they belong."""
+        found = self._json_sips(sips, in_one=False)
+        if not found:
+            for row in sips:
+                self.track(row)
+                found.append(self.json(row))
+        for place, line in zip(places, found, strict=True):
+            lines[place] = line
+
+    def _json_sips(self, rows: list[Row], in_one: bool = True) -> list[str]:
+        """Track SIPs and return their lines, if possible `in_one` string; nothing if they are to be done singly."""
+        data = [row[5] for row in rows]
+        if len(rows) < _FEW_ROWS or self._origin_due or min(map(len, data)) < _HEAD:
+            return []
+        from argus_tools.log import bulk
+
+        sips = bulk.Sips(data)
+        kinds = list(sips.kinds())
+        if any(_HEAD + 3 * count > size for _, size, count in kinds):
+            return []
+        for members, size, count in kinds:
+            for numbers, first in sips.layouts(members, count).items():
+                if (numbers, size) not in self._layouts and self._layout(data[first]) is None:
+                    return []
+                if self._layouts.get((numbers, size)) is None:
+                    return []
+        heads = self._heads(rows, sips)
+        lines = [""] * len(rows)
+        for members, size, count in kinds:
+            states: list[str] = []
+            tails: list[str] = []
+            for begin, end in itertools.pairwise(sips.changes(members, size, count)):
+                state, tail = self._state(data[members[begin]], _HEAD + 3 * count)
+                states += [f', {state}, "sonar": {{'] * (end - begin)
+                tails += [f"}}{tail}}}\n"] * (end - begin)
+            parts = sips.texts(members, count, heads, states, tails)
+            if in_one and len(kinds) == 1:
+                parts[-1, -1] = parts[-1, -1][:-1]
+                return ["".join(parts.ravel().tolist())]
+            for n, words in zip(members.tolist(), parts.tolist(), strict=True):
+                lines[n] = "".join(words)[:-1]
+        return lines
+
+    def _heads(self, rows: list[Row], sips: Any) -> list[str]:
+        """Track the SIPs; return the beginnings of their lines."""
+        from argus_tools.log.bulk import unwrapped
+
+        xs: Sequence[float] = unwrapped(sips.x, self._x, _SPAN)
+        ys: Sequence[float] = unwrapped(sips.y, self._y, _SPAN)
+        self._x, self._y, self._raw = int(xs[-1]), int(ys[-1]), rows[-1][5][1:5]
+        if not self._is_mm:
+            xs, ys = ([round(value * self._unit, 3) for value in values] for values in (xs, ys))
+        self.x_mm, self.y_mm = xs[-1], ys[-1]
+        return [
+            f'{{"t": {"null" if row[0] is None else repr(row[0])}, "offset": {row[1]}, "dir": "r2c", "type": "SIP", '
+            f'"ok": true, "x_mm": {x}, "y_mm": {y}, "heading_deg": '
+            for row, x, y in zip(rows, xs, ys, strict=True)
+        ]
 
     def _layout(self, data: bytes) -> _Layout | None:
         """Return how SIPs like this one are printed; None for those that are read the long way."""
@@ -225,9 +321,9 @@ class Decoder:
             self._layouts[key] = layout
         return layout
 
-    def _state(self, data: bytes, layout: _Layout) -> tuple[str, str]:
+    def _state(self, data: bytes, tail_at: int) -> tuple[str, str]:
         """Return the text of what seldom changes from SIP to SIP: the state before the readings and the tail."""
-        key = data[:1] + data[11:19] + data[layout.tail_at :]
+        key = data[:1] + data[11:19] + data[tail_at:]
         found = self._states.get(key)
         if found is None:
             fields = self._sip_fields(Sip.decode(data))

@@ -22,6 +22,7 @@ MIN_MM: Final[int] = _SONAR["min_mm"]
 FIELD_OF_VIEW_RAD: Final = math.radians(_SONAR["cone_deg"])
 FRAME_ROBOT, FRAME_WORLD = "base_link", "odom"
 _INFO, _ERROR = 2, 4  # levels of foxglove.Log
+_LINE_MAX: Final = 0xFFFFFFFF
 
 _NUMBER: Final = {"type": "number"}
 _TIME: Final = {
@@ -50,12 +51,12 @@ SCHEMAS: Final = {
         frame_id=_STRING,
         sonar=_INTEGER,
         range_mm=_INTEGER,
-        range_m={"type": ["number", "null"], "description": "null when there was no echo"},
+        range_m={"type": "number", "description": "absent when there was no echo"},
         valid={"type": "boolean", "description": "false for no echo or a reading that no sonar can give"},
         field_of_view_rad=_NUMBER,
         min_range_m=_NUMBER,
         max_range_m=_NUMBER,
-        pose={**_POSE, "description": "of the transducer in frame_id; null for a sonar that a P3-DX lacks"},
+        pose={**_POSE, "description": "of the transducer in frame_id; absent for a sonar that a P3-DX lacks"},
     ),
     "foxglove.PoseInFrame": _schema("foxglove.PoseInFrame", frame_id=_STRING, pose=_POSE),
     "argus.RobotState": _schema(
@@ -134,10 +135,10 @@ def _put_sip(output: _Output, t_ns: int, fields: dict[str, Any]) -> None:
     properties = SCHEMAS["argus.RobotState"]["properties"]
     state = {name: fields[name] for name in properties if name in fields}
     output.put("/robot/state", "argus.RobotState", t_ns, state)
-    pose = _pose(fields["x_mm"], fields["y_mm"], fields["heading_deg"])
-    output.put("/odometry", "foxglove.PoseInFrame", t_ns, {"frame_id": FRAME_WORLD, "pose": pose})
+    place = _pose(fields["x_mm"], fields["y_mm"], fields["heading_deg"])
+    output.put("/odometry", "foxglove.PoseInFrame", t_ns, {"frame_id": FRAME_WORLD, "pose": place})
     frames = {"parent_frame_id": FRAME_WORLD, "child_frame_id": FRAME_ROBOT}
-    transform = {**frames, "translation": pose["position"], "rotation": pose["orientation"]}
+    transform = {**frames, "translation": place["position"], "rotation": place["orientation"]}
     output.put("/tf", "foxglove.FrameTransform", t_ns, transform)
     for number, range_mm in fields["sonar"].items():
         is_echo = range_mm < NO_ECHO_MM
@@ -145,13 +146,15 @@ def _put_sip(output: _Output, t_ns: int, fields: dict[str, Any]) -> None:
             "frame_id": FRAME_ROBOT,
             "sonar": int(number),
             "range_mm": range_mm,
-            "range_m": range_mm / 1000 if is_echo else None,
             "valid": is_echo and range_mm >= MIN_MM,
             "field_of_view_rad": FIELD_OF_VIEW_RAD,
             "min_range_m": MIN_MM / 1000,
             "max_range_m": NO_ECHO_MM / 1000,
-            "pose": _SONAR_POSES.get(int(number)),
         }
+        if is_echo:
+            reading["range_m"] = range_mm / 1000
+        if pose := _SONAR_POSES.get(int(number)):
+            reading["pose"] = pose
         output.put(f"/sonar/{int(number):02d}", "argus.SonarRange", t_ns, reading)
 
 
@@ -171,7 +174,7 @@ def write_mcap(stream: Any, first: Row, rows: Iterator[Row], decoder: Decoder) -
         }
         level = _INFO if fields["ok"] else _ERROR
         words = f"{row.type} damaged: {row.error}" if not fields["ok"] else f"{row.type} {json.dumps(detail)}"
-        place = {"file": row.dir, "line": row.offset}
+        place = {"file": row.dir, "line": min(row.offset, _LINE_MAX)}
         output.put(
             "/events", "foxglove.Log", t_ns, {"level": level, "message": words, "name": row.dir, **place}
         )

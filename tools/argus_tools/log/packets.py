@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
 from struct import Struct
 from typing import Final, NamedTuple
 
@@ -20,6 +21,10 @@ _COUNT_MIN: Final = FRAME["COUNT_MIN"]
 _WORDS: Final = tuple(Struct(f">{words}H").unpack_from for words in range(128))
 # Junk is reported in parts of this size, so that no amount of it is held in memory.
 _GAP_MAX: Final = 1 << 16
+# So many bytes are scanned together; after damage few, doubling as long as there is no more of it.
+_WINDOW_MAX: Final = 1 << 16
+_WINDOW_MIN: Final = 1 << 10
+_BATCH_MAX: Final = 2048
 # This many PULSEs or SYNC0s in a row, and nothing else, are not waited behind any longer.
 _UNDECIDED_MAX: Final = 16
 # SIPs that may still come after a CLOSE before it is taken as not obeyed.
@@ -78,10 +83,16 @@ class _Tracer(Unframer):
         self._base = offset
         self.starts: list[int] = []
 
-    @property
-    def owed(self) -> int:
-        """Bytes that the packet at the front lacks."""
-        return self._owed()
+    def reach(self, data: bytes, at: int) -> int:
+        """Return how far in the data the next decision looks, if they go on at `at`; as `feed` does it."""
+        held = len(self._held)
+        start = at
+        if not held:
+            start = data.find(HEADER[0], at)
+            if start < 0 or start - at > _GAP_MAX:
+                return min(at + _GAP_MAX, len(data))
+        front = bytes(self._held[:3]) + data[start : start + max(0, 3 - held)]
+        return len(data) if len(front) < 3 else start + front[2] + _OVERHEAD - held
 
     def _take(self) -> bytes:
         self.starts.append(self._base + self.counters.junk_bytes)
@@ -103,6 +114,8 @@ class Scanner:
         self._tracer: _Tracer | None = None
         self._gap = bytearray()
         self._gap_at = 0
+        self._cut: list[Chunk] = []
+        self._window = _WINDOW_MAX
 
     def feed(self, chunk: Chunk) -> list[Row]:
         """Take the next bytes; return what they complete."""
@@ -141,9 +154,115 @@ class Scanner:
                 self._gap_at = offset + at
         return rows
 
+    def feed_many(self, chunks: Sequence[Chunk]) -> tuple[list[Row], list[int]]:
+        """Take several chunks at once; return the rows, and for each the number of the chunk that completes it.
+
+        A packet that they cut off waits for the next call, so `feed` may not be used beside this.
+        """
+        kept = len(self._cut)
+        given = [*self._cut, *chunks]
+        self._cut = []
+        rows: list[Row] = []
+        completed_by: list[int] = []
+        number = at = 0
+        while number < len(given):
+            if self._tracer is None:
+                number, at = self._take_whole(given, number, at, rows, completed_by)
+                continue
+            chunk = given[number]
+            while self._tracer is not None and at < len(chunk.data):
+                at = self._recover(rows, chunk, at)
+            completed_by += [number] * (len(rows) - len(completed_by))
+            if at >= len(chunk.data):
+                number, at = number + 1, 0
+        return rows, [max(0, number - kept) for number in completed_by] if kept else completed_by
+
+    def _take_whole(
+        self, given: list[Chunk], number: int, at: int, rows: list[Row], completed_by: list[int]
+    ) -> tuple[int, int]:
+        """Take the packets that follow each other from byte `at` of a chunk on; return where to go on."""
+        from argus_tools.log.bulk import leading_packets
+
+        parts = self._gather(given, number, at)
+        buffer = b"".join(parts)
+        starts, end = leading_packets(buffer)
+        edges = list(itertools.accumulate(map(len, parts)))
+        names, direction, new = self._names, self.direction, tuple.__new__
+        k = 0
+        stops = [*starts[1:], end]
+        if starts and not at and edges == stops:
+            # Each chunk is one packet, as most recorders write them.
+            for t, _, whole, place in itertools.islice(given, number, number + len(parts)):
+                rows.append(new(Row, (t, place, direction, names[whole[3]], True, whole[3:-2], "")))
+            completed_by += range(number, number + len(parts))
+            starts = []
+        t, _, _, base = given[number]
+        base += at
+        edge = edges[0]
+        for start, stop in zip(starts, stops, strict=False):
+            while edge <= start:
+                k += 1
+                t, _, _, base = given[number + k]
+                base -= edge
+                edge = edges[k]
+            place = base + start
+            while edge < stop:
+                k += 1
+                t, _, _, base = given[number + k]
+                base -= edge
+                edge = edges[k]
+            data = buffer[start + 3 : stop - 2]
+            rows.append(new(Row, (t, place, direction, names[data[0]], True, data, "")))
+            completed_by.append(number + k)
+        self._window = min(2 * self._window, _WINDOW_MAX)
+        while k < len(parts) and edges[k] <= end:
+            k += 1
+        if k == len(parts):
+            last = len(parts) - 1
+            used = len(parts[last]) + (at if last == 0 else 0)
+            is_used_up = used == len(given[number + last].data)
+            return (number + k, 0) if is_used_up else (number + last, used)
+        at = end - (edges[k] - len(parts[k])) + (at if k == 0 else 0)
+        number += k
+        if not self._is_cut(buffer[end:]):
+            self._window = _WINDOW_MIN
+            self._gap_at = given[number].offset + at
+            self._tracer = _Tracer(self._gap_at)
+        elif len(buffer) - end == sum(len(chunk.data) for chunk in given[number:]) - at:
+            t, direction, data, offset = given[number]
+            rest = [Chunk(t, direction, data[at:], offset + at), *given[number + 1 :]]
+            self._cut = [chunk for chunk in rest if chunk.data]
+            return len(given), 0
+        return number, at
+
+    def _gather(self, given: list[Chunk], number: int, at: int) -> list[bytes]:
+        """Return as many bytes as are to be scanned together, as parts of the chunks from there on."""
+        left = self._window
+        if left == _WINDOW_MAX and not at:
+            return [chunk[2] for chunk in itertools.islice(given, number, None)]
+        parts: list[bytes] = []
+        for chunk in itertools.islice(given, number, None):
+            part = chunk[2][at : at + left]
+            parts.append(part)
+            at = 0
+            left -= len(part)
+            if left <= 0:
+                break
+        return parts
+
+    @staticmethod
+    def _is_cut(rest: bytes) -> bool:
+        """Whether this is the beginning of a packet whose end has not come, and no other could be inside."""
+        if not HEADER.startswith(rest[:2]) or not rest or HEADER in rest[1:]:
+            return False
+        return len(rest) < 3 or (rest[2] >= _COUNT_MIN and len(rest) < rest[2] + _OVERHEAD)
+
     def finish(self) -> list[Row]:
         """Return what is left when no byte will follow."""
         rows: list[Row] = []
+        for chunk in self._cut:
+            rows += self.feed(chunk)
+        self._cut = []
         if self._tracer is not None:
             self._collect(rows, None, self._tracer.poll(1e12))
             self._flush(rows, None, len(self._gap))
@@ -153,11 +272,7 @@ class Scanner:
     def _recover(self, rows: list[Row], chunk: Chunk, at: int) -> int:
         tracer = self._tracer
         assert tracer is not None
-        if tracer.pending:
-            piece = chunk.data[at : at + tracer.owed]
-        else:
-            start = chunk.data.find(HEADER[0], at)
-            piece = chunk.data[at : min(at + _GAP_MAX, len(chunk.data) if start < 0 else start + 3)]
+        piece = chunk.data[at : tracer.reach(chunk.data, at)]
         self._gap += piece
         self._collect(rows, chunk.t, tracer.feed(piece))
         if not tracer.pending and not self._gap:
@@ -226,10 +341,10 @@ class Session:
     def take(self, row: Row) -> list[Row]:
         """Return the rows that are settled now, in their order."""
         if not row.ok:
-            if self.undecided:
-                self.undecided.append(row)
-                return []
-            return [row]
+            if not self.undecided:
+                return [row]
+            self.undecided.append(row)
+            return [] if len(self.undecided) <= _UNDECIDED_MAX else self._settle(self._is_unanswered())
         number = row.data[0]
         if row.dir == ROBOT_TO_CLIENT:
             return self._from_robot(row, number)
@@ -309,12 +424,15 @@ class Session:
         return named
 
 
-def packets(chunks: Iterable[Chunk]) -> Iterator[Row]:
-    """Yield the packets of a log in their order, named, and the damage between them as rows with `ok` false."""
+def packets(chunks: Iterable[Chunk], at_once: bool = True) -> Iterator[Row]:
+    """Yield the packets of a log in their order, named, and the damage between them as rows with `ok` false.
+
+    Without `at_once` many chunks are read before the first row comes, which is faster.
+    """
     scanners: dict[Direction, Scanner] = {name: Scanner(name) for name in (ROBOT_TO_CLIENT, CLIENT_TO_ROBOT)}
     session = Session()
-    for chunk in chunks:
-        for row in scanners[chunk[1]].feed(chunk):
+    for rows in _scan_each(chunks, scanners) if at_once else _scan_many(chunks, scanners):
+        for row in rows:
             # Inside a session with nothing undecided a SIP settles nothing: most rows of most logs.
             if row[3] == "SIP" and session.state == "open" and not session.undecided:
                 yield row
@@ -324,3 +442,34 @@ def packets(chunks: Iterable[Chunk]) -> Iterator[Row]:
         for row in scanner.finish():
             yield from session.take(row)
     yield from session.finish()
+
+
+def _scan_each(chunks: Iterable[Chunk], scanners: dict[Direction, Scanner]) -> Iterator[list[Row]]:
+    for chunk in chunks:
+        yield scanners[chunk[1]].feed(chunk)
+
+
+def _scan_many(chunks: Iterable[Chunk], scanners: dict[Direction, Scanner]) -> Iterator[list[Row]]:
+    for batch in _batches(chunks):
+        from_robot = [n for n, chunk in enumerate(batch) if chunk[1] == ROBOT_TO_CLIENT]
+        if len(from_robot) in (0, len(batch)):
+            yield scanners[batch[0][1]].feed_many(batch)[0]
+            continue
+        from_client = [n for n, chunk in enumerate(batch) if chunk[1] == CLIENT_TO_ROBOT]
+        rows: list[Row] = []
+        order: list[int] = []
+        for direction, chosen in ((ROBOT_TO_CLIENT, from_robot), (CLIENT_TO_ROBOT, from_client)):
+            found, completed_by = scanners[direction].feed_many([batch[n] for n in chosen])
+            rows += found
+            order += [chosen[n] for n in completed_by]
+        yield [rows[at] for at in sorted(range(len(rows)), key=order.__getitem__)]
+
+
+def _batches(chunks: Iterable[Chunk]) -> Iterator[list[Chunk]]:
+    """Yield the chunks in lists, each of about as many bytes as are scanned together."""
+    chunks = iter(chunks)
+    count = 1
+    while batch := list(itertools.islice(chunks, count)):
+        yield batch
+        size = 1 + sum(len(chunk[2]) for chunk in batch) // len(batch)
+        count = min(2 * count, 1 + _WINDOW_MAX // size, _BATCH_MAX)

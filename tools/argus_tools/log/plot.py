@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from array import array
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -35,7 +36,7 @@ _BODY: Final[dict[str, int]] = load("p3dx")["body"]
 POSES: Final = {pose["number"]: pose for pose in _SONAR["pose"]}
 NO_ECHO_MM: Final[int] = _SONAR["no_echo_mm"]
 # More points than this are not told apart in a picture.
-POINTS_MAX: Final = 1 << 15
+POINTS_MAX: Final = 1 << 13
 _INK, _LINE, _GRID = "#222222", "#1f5fa8", "#dddddd"
 _COLOUR: Final = {DEAD: "#d62728", SUSPECT: "#f2a900"}
 _LABEL: Final = {DEAD: "dead: off, silent or disabled", SUSPECT: "suspect"}
@@ -53,8 +54,8 @@ FRESH_S: Final = 0.5
 class Series:
     """Values over time that never take more than a fixed amount of memory; extremes survive."""
 
-    t: list[float] = field(default_factory=list)
-    value: list[float] = field(default_factory=list)
+    t: array[float] = field(default_factory=lambda: array("d"))
+    value: array[float] = field(default_factory=lambda: array("d"))
 
     def add(self, t: float, value: float) -> None:
         """Append one value."""
@@ -68,8 +69,8 @@ class Series:
         values = np.array(self.value).reshape(-1, 4)
         at = np.sort(np.stack([values.argmin(axis=1), values.argmax(axis=1)], axis=1), axis=1)
         index = (at + 4 * np.arange(len(values))[:, None]).ravel()
-        self.t = np.array(self.t)[index].tolist()
-        self.value = np.array(self.value)[index].tolist()
+        self.t = array("d", np.array(self.t)[index].tobytes())
+        self.value = array("d", np.array(self.value)[index].tobytes())
 
 
 @dataclass
@@ -77,21 +78,27 @@ class Drive:
     """What a log says of a drive, as far as pictures need it."""
 
     sonars: dict[int, Series] = field(default_factory=dict)
-    path: list[tuple[float, float, float, float]] = field(default_factory=list)
+    path: array[float] = field(default_factory=lambda: array("d"))
     start: float = math.inf
     end: float = -math.inf
+    has_sonars: bool = True
     _skip: int = 1
     _seen: int = 0
 
-    def add(self, t: float, fields: dict[str, Any]) -> None:
-        """Take one SIP."""
+    def add(self, t: float, data: bytes, pose: tuple[float, float, float]) -> None:
+        """Take one SIP and where the robot was; the last reading of a sonar counts."""
         self.start, self.end = min(self.start, t), max(self.end, t)
-        for number, range_mm in fields["sonar"].items():
-            self.sonars.setdefault(int(number), Series()).add(t, range_mm)
+        places = range(20, 20 + 3 * data[19], 3) if self.has_sonars else ()
+        last = {data[at]: data[at + 1] | data[at + 2] << 8 for at in places}
+        for number, range_mm in last.items():
+            series = self.sonars.get(number)
+            if series is None:
+                series = self.sonars[number] = Series()
+            series.add(t, range_mm)
         if self._seen % self._skip == 0:
-            self.path.append((t, fields["x_mm"], fields["y_mm"], fields["heading_deg"]))
-            if len(self.path) >= 2 * POINTS_MAX:
-                self.path = self.path[::2]
+            self.path.extend((t, *pose))
+            if len(self.path) >= 8 * POINTS_MAX:
+                self.path = array("d", np.array(self.path).reshape(-1, 4)[::2].tobytes())
                 self._skip *= 2
         self._seen += 1
 
@@ -133,13 +140,13 @@ def run(args: argparse.Namespace) -> int:
 def _read(args: argparse.Namespace, source: Input) -> Drive:
     times = Times(args.start, args.end)
     decoder = Decoder(args.subclass)
-    drive = Drive()
+    drive = Drive(has_sonars=args.view == "ranges")
     for row in clocked(source):
         decoder.track(row)
         if times(row.t, args.log) and row.type == "SIP" and row.ok and row.t is not None:
-            fields = decoder.fields(row)
-            if fields["ok"]:
-                drive.add(row.t, fields)
+            data = row.data
+            if len(data) >= 20 and len(data) >= 20 + 3 * data[19]:
+                drive.add(row.t, data, (decoder.x_mm, decoder.y_mm, decoder.heading_deg(data)))
     if not drive.path:
         raise LogError(f"{args.log}: has no SIP to draw (in the time asked for)")
     return drive
@@ -220,7 +227,7 @@ def _one_sonar(axes: Any, number: int, series: Series, zero: float) -> None:
 
 
 def _path(drive: Drive) -> Figure:
-    t, x, y, heading = (np.array(column) for column in zip(*drive.path, strict=True))
+    t, x, y, heading = np.array(drive.path).reshape(-1, 4).T
     with rc_context(_STYLE):
         figure = _figure(8, 7)
         axes = figure.subplots()

@@ -53,3 +53,16 @@ void test_failures_are_explained(void) {
     explained(HAL_LINK_UNRESOLVED, "check the name");
     explained(HAL_LINK_TIMEOUT, "check the network");
 }
+
+void test_can_spec_opens_the_interface_or_says_what_to_load(void) {
+    hal_link_t link = {0};
+    parse("can:no-such-if");
+    const hal_link_error_t missing = hal_transport_open(&transport, &spec, 100, -1, &link);
+    // A kernel without CAN says so before it looks for the interface.
+    TEST_ASSERT_TRUE(missing == HAL_LINK_NOT_FOUND || missing == HAL_LINK_NO_CAN ||
+                     missing == HAL_LINK_NO_PROTOCOL);
+    TEST_ASSERT_NULL(link.ops);
+    explained(missing, "modprobe");
+    explained(HAL_LINK_DOWN, "ip link set no-such-if up");
+    TEST_ASSERT_FALSE(hal_transport_moved(&transport, &spec));
+}

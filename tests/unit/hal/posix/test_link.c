@@ -31,6 +31,7 @@ void test_no_link_says_so(void) {
     TEST_ASSERT_EQUAL_INT(HAL_LINK_NOT_OPEN, hal_link_read(&none, bytes, sizeof bytes));
     TEST_ASSERT_EQUAL_INT(HAL_LINK_NOT_OPEN, hal_link_write(&none, bytes, sizeof bytes));
     TEST_ASSERT_EQUAL_INT(HAL_LINK_NOT_OPEN, hal_link_flush(&none));
+    TEST_ASSERT_EQUAL_UINT32(0, hal_link_hold_ms(&none));
     TEST_ASSERT_EQUAL_INT(-1, hal_link_fd(&none));
     TEST_ASSERT_EQUAL_STRING("no link", hal_link_describe(&none));
     TEST_ASSERT_EQUAL_UINT32(0, hal_link_counters(&none).bytes_in);

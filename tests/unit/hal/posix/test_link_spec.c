@@ -57,9 +57,29 @@ void test_tcp_forms(void) {
     tcp("tcp:[fe80::1]", "fe80::1", HAL_TCP_PORT_DEFAULT);
 }
 
+void test_can_forms(void) {
+    TEST_ASSERT_TRUE_MESSAGE(parse("can:vcan0,robot=3"), message);
+    TEST_ASSERT_EQUAL_INT(HAL_SCHEME_CAN, spec.scheme);
+    TEST_ASSERT_EQUAL_STRING("vcan0", spec.can.interface);
+    TEST_ASSERT_EQUAL_HEX16(0x643, spec.can.tx_id);
+}
+
+void test_every_scheme_has_a_target(void) {
+    TEST_ASSERT_TRUE(parse("serial:/dev/ttyUSB0@9600"));
+    TEST_ASSERT_EQUAL_STRING("/dev/ttyUSB0", hal_link_spec_target(&spec));
+    TEST_ASSERT_TRUE(parse("tcp:robot:9000"));
+    TEST_ASSERT_EQUAL_STRING("robot", hal_link_spec_target(&spec));
+    TEST_ASSERT_TRUE(parse("can:can1"));
+    TEST_ASSERT_EQUAL_STRING("can1", hal_link_spec_target(&spec));
+    memset(&spec, 0, sizeof spec);
+    TEST_ASSERT_EQUAL_STRING("", hal_link_spec_target(&spec));
+}
+
 void test_refusals_say_what_to_write(void) {
     refused("", "unknown scheme");
-    refused("udp:robot:1", "serial:/dev/ttyUSB0@9600 or tcp:HOST:8101");
+    refused("udp:robot:1", "serial:/dev/ttyUSB0@9600, tcp:HOST:8101 or can:can0");
+    refused("can:", "no interface is named");
+    refused("can:can0,quick", "is no option");
     refused("/dev/ttyUSB0", "write serial:/dev/ttyUSB0");
     refused("serial:", "no port is named");
     refused("serial:@9600", "no port is named");
@@ -95,16 +115,16 @@ void test_any_text_is_survived_and_messages_fit(void) {
     srand(7);
     for (int round = 0; round < 100000; round++) {
         char text[48];
-        static const char alphabet[] = "serialtcp:/@[]0123456789.\xff%";
+        static const char alphabet[] = "serialtcpan=,xfd:/@[]0123456789.\xff%";
         const int length = rand() % (int)(sizeof text - 1);
         for (int i = 0; i < length; i++) {
             text[i] = alphabet[rand() % (int)(sizeof alphabet - 1)];
         }
         text[length] = '\0';
-        const char *const heads[] = {"", "serial:", "tcp:", "tcp:["};
+        const char *const heads[] = {"", "serial:", "tcp:", "tcp:[", "can:", "can:can0,"};
         char whole[64];
         char small[16];
-        snprintf(whole, sizeof whole, "%s%s", heads[round % 4], text);
+        snprintf(whole, sizeof whole, "%s%s", heads[round % 6], text);
         small[15] = 'x';
         if (!hal_link_spec_parse(&spec, whole, small, 15)) {
             TEST_ASSERT_LESS_THAN_size_t(15, strlen(small));

@@ -200,9 +200,12 @@ void test_a_serial_link_starts_passive_and_says_why_and_sigterm_closes_in_order(
 
 void test_active_drives(void) {
     char line[256];
-    snprintf(line, sizeof line, "--link serial:%s --active --goal 1000,0 --plain --status 50", name);
+    write_config("profile = paper\n"); // the robot of this test does not turn to look
+    snprintf(line, sizeof line, "--link serial:%s --active --goal 1000,0 --plain --status 50 --config %s",
+             name, config_path);
     await_command = ARCOS_CMD_MOVE;
     TEST_ASSERT_EQUAL_INT(0, run(line, true, "STATUS DRIVING"));
+    unlink(config_path);
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_MOVE]);
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_STOP]);
     TEST_ASSERT_EQUAL_STRING("", err);

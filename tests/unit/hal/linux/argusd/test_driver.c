@@ -27,6 +27,7 @@ static robot_t robot;
 void setUp(void) {
     argus_config_t config;
     argus_config_default(&config);
+    config.profile = ARGUS_PROFILE_PAPER;                    // the robot below does not turn to look
     time_ = (hal_fake_clock_t){.now_ms = UINT32_MAX - 5000}; // the clock wraps in every test
     clock_ = hal_fake_clock(&time_);
     hal_fake_link_init(&fake, 1, &clock_);
@@ -90,6 +91,18 @@ void test_stop_leaves_in_the_wake_up_that_reads_the_sip(void) {
     exchange();
     TEST_ASSERT_EQUAL_UINT32(stops + 1, robot.commands[ARCOS_CMD_STOP]);
     TEST_ASSERT_TRUE(said(ARGUS_EV_SONAR_DEAD));
+}
+
+// A robot on CAN may wait a second for flow control: what is said before could wake its old motion.
+void test_on_can_nothing_is_said_before_a_sip_could_have_come(void) {
+    driver.spec.scheme = HAL_SCHEME_CAN;
+    driver_attach(&driver, hal_fake_link(&fake));
+    run(1100);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_link_counters(&driver.link).bytes_out);
+    TEST_ASSERT_FALSE(said(ARGUS_EV_LINK_UP));
+    run(1000);
+    TEST_ASSERT_TRUE(said(ARGUS_EV_LINK_UP));
+    TEST_ASSERT_TRUE(robot.open);
 }
 
 void test_a_full_link_delays_and_loses_nothing(void) {
@@ -257,4 +270,59 @@ void test_a_name_that_leads_elsewhere_is_followed_while_no_robot_answers(void) {
     }
     unlink(spec.path);
     rmdir(folder);
+}
+
+// A link over a queue that is full: poll() would call it writable at once, so the driver asks for time
+// instead.
+static uint32_t hold_ms;
+static int writes_left;
+
+static int full_write(void *context, const uint8_t *packet, size_t count) {
+    (void)context;
+    (void)packet;
+    hold_ms = writes_left > 0 ? 0 : 2;
+    return writes_left-- > 0 ? (int)count : 0;
+}
+
+static int no_bytes(void *context, uint8_t *bytes, size_t capacity) {
+    (void)context;
+    (void)bytes;
+    (void)capacity;
+    return 0;
+}
+
+static int nothing_kept(void *context) {
+    (void)context;
+    return 0;
+}
+
+static uint32_t full_hold_ms(const void *context) {
+    (void)context;
+    return hold_ms;
+}
+
+static void no_close(void *context) {
+    (void)context;
+}
+
+void test_a_full_queue_is_waited_for_by_time_not_by_poll(void) {
+    static const hal_link_ops_t ops = {.read = no_bytes,
+                                       .write = full_write,
+                                       .flush = nothing_kept,
+                                       .hold_ms = full_hold_ms,
+                                       .close = no_close};
+    hold_ms = 0;
+    writes_left = 0;
+    driver_attach(&driver, (hal_link_t){.ops = &ops});
+    uint32_t wait_ms = 100;
+    for (int i = 0; i < 200 && wait_ms > 2; i++) {
+        time_.now_ms += 10;
+        wait_ms = driver_process(&driver);
+    }
+    TEST_ASSERT_EQUAL_UINT32(2, wait_ms);
+    TEST_ASSERT_GREATER_THAN_size_t(0, driver.held);
+    TEST_ASSERT_FALSE(driver_wants_write(&driver));
+    writes_left = 100;
+    driver_process(&driver);
+    TEST_ASSERT_EQUAL_size_t(0, driver.held);
 }

@@ -62,6 +62,19 @@ void test_single_options(void) {
     TEST_ASSERT_EQUAL_INT(OPTIONS_CHECK, options.action);
 }
 
+void test_can(void) {
+    TEST_ASSERT_TRUE_MESSAGE(parse("--link can:vcan0,robot=1 --active"), message);
+    TEST_ASSERT_EQUAL_INT(HAL_SCHEME_CAN, options.link.scheme);
+    TEST_ASSERT_EQUAL_STRING("", options.telemetry.interface);
+    TEST_ASSERT_FALSE(options.no_telemetry);
+    TEST_ASSERT_TRUE(parse("--link serial:/dev/x --can-telemetry can1,robot=6"));
+    TEST_ASSERT_EQUAL_STRING("can1", options.telemetry.interface);
+    TEST_ASSERT_EQUAL_UINT8(6, options.telemetry.robot);
+    TEST_ASSERT_TRUE(parse("--link can:can0 --can-telemetry none"));
+    TEST_ASSERT_TRUE(options.no_telemetry);
+    TEST_ASSERT_EQUAL_STRING("", options.telemetry.interface);
+}
+
 void test_lists_need_no_link(void) {
     static const struct {
         const char *line;
@@ -84,6 +97,11 @@ void test_refusals(void) {
     refused("--link", "--link needs a value");
     refused("--link foo", "unknown scheme");
     refused("--link tcp:a --link tcp:b", "given twice");
+    refused("--link can:a --link can:b", "given twice");
+    refused("--link can:a --auto-baud", "for serial links");
+    refused("--link can:a,robot=8", "from 0 to 7");
+    refused("--link can:a --check --can-telemetry a", "leave out --can-telemetry");
+    refused("--link tcp:a --can-telemetry a,fd", "--can-telemetry: can:a,fd: 'fd' is not for the telemetry");
     refused("--link tcp:a --frob", "unknown option --frob");
     refused("--link tcp:a -z", "unknown option");
     refused("--link tcp:a extra", "'extra' is not an option");
@@ -105,10 +123,10 @@ void test_refusals(void) {
 void test_help_names_every_option_and_exit_code(void) {
     static char text[8192];
     static const char *const options_[] = {
-        "--link",   "--auto-baud",  "--config",  "--course",      "--goal",        "--passive",
-        "--active", "--state",      "--wait",    "--check",       "--json",        "--plain",
-        "--status", "--help",       "--version", "--list-events", "--list-config", "--example-config",
-        "--record", "--record-max", "examples:"};
+        "--link",   "--auto-baud",  "--config",        "--course",      "--goal",        "--passive",
+        "--active", "--state",      "--wait",          "--check",       "--json",        "--plain",
+        "--status", "--help",       "--version",       "--list-events", "--list-config", "--example-config",
+        "--record", "--record-max", "--can-telemetry", "examples:"};
     FILE *const file = tmpfile();
     options_help(file);
     rewind(file);

@@ -86,6 +86,9 @@ static void worst(view_t *view) {
     view->status.plan.count = 200;
     view->status.sips = view->status.bad_checksums = view->status.skipped_bytes = UINT32_MAX;
     view->counters = (hal_link_counters_t){UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
+    view->has_can = true;
+    memset(view->can_errors, 0xFF, sizeof view->can_errors);
+    view->can_sent = view->can_taken = view->can_refused = UINT32_MAX;
     memset(view->name, '\x01', sizeof view->name - 1);
     memset(view->subclass, '"', sizeof view->subclass - 1);
     memset(view->link, '\xff', sizeof view->link - 1);
@@ -100,6 +103,20 @@ void test_the_worst_status_fits(void) {
     TEST_ASSERT_TRUE(line[0] == '{' && line[length - 1] == '}');
     TEST_ASSERT_EQUAL_STRING_LEN("{\"t\":", line, 5);
     TEST_ASSERT_GREATER_THAN_size_t(0, report_status_plain(&view, line, sizeof line));
+}
+
+void test_can_is_told_where_there_is_one(void) {
+    static view_t view;
+    report_status_json(&view, 0, line, sizeof line);
+    TEST_ASSERT_NULL(strstr(line, "\"can\""));
+    view.has_can = true;
+    view.can_errors[HAL_ISOTP_SEQUENCE] = 7;
+    view.can_taken = 3;
+    report_status_json(&view, 0, line, sizeof line);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(line, "\"can\":{\"no_flow\":0,\"overflow\":0,\"timeout\":0,\"sequence\":7,\"bad_frame\":0,"
+                     "\"too_long\":0,\"no_buffers\":0,\"down\":0,\"sent\":0,\"taken\":3,\"refused\":0}"),
+        line);
 }
 
 void test_a_line_that_does_not_fit_is_none(void) {

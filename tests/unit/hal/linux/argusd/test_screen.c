@@ -156,6 +156,24 @@ void test_any_size_and_any_contents_are_drawn(void) {
     }
 }
 
+void test_the_chosen_sonar_is_marked_and_a_pinned_one_too(void) {
+    view.sonar = 11;
+    view.pinned = 1u << 2;
+    draw(24, 80);
+    int marked = 0;
+    for (int row = 1; row < 23; row++) {
+        for (int column = 0; column < 80; column++) {
+            if (canvas.cell[row][column].tone == TONE_TITLE) {
+                marked++;
+                TEST_ASSERT_EQUAL_INT('1', canvas.cell[row][column].character);
+            }
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(2, marked); // "11"
+    TEST_ASSERT_TRUE(find(" 2= ") > 0);
+    TEST_ASSERT_EQUAL_INT(-1, find(" 3= "));
+}
+
 void test_keys(void) {
     TEST_ASSERT_EQUAL_INT(TUI_AHEAD, tui_meaning('w'));
     TEST_ASSERT_EQUAL_INT(TUI_AHEAD, tui_meaning(TUI_KEY_UP));
@@ -167,7 +185,12 @@ void test_keys(void) {
     TEST_ASSERT_EQUAL_INT(TUI_RECHECK, tui_meaning('r'));
     TEST_ASSERT_EQUAL_INT(TUI_PASSIVE, tui_meaning('p'));
     TEST_ASSERT_EQUAL_INT(TUI_QUIT, tui_meaning('q'));
+    TEST_ASSERT_EQUAL_INT(TUI_NEXT, tui_meaning('n'));
+    TEST_ASSERT_EQUAL_INT(TUI_PREVIOUS, tui_meaning('b'));
+    TEST_ASSERT_EQUAL_INT(TUI_RETEST, tui_meaning('t'));
+    TEST_ASSERT_EQUAL_INT(TUI_PIN, tui_meaning('k'));
+    TEST_ASSERT_EQUAL_INT(TUI_TAKE_OUT, tui_meaning('x'));
     TEST_ASSERT_EQUAL_INT(TUI_QUIT, tui_meaning(3));
-    TEST_ASSERT_EQUAL_INT(TUI_NONE, tui_meaning('x'));
+    TEST_ASSERT_EQUAL_INT(TUI_NONE, tui_meaning('z'));
     TEST_ASSERT_EQUAL_INT(TUI_NONE, tui_meaning(-1));
 }

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// What the parts of the evidence share: trails, the rule table, counting.
+#ifndef ARGUS_EVIDENCE_INTERNAL_H
+#define ARGUS_EVIDENCE_INTERNAL_H
+
+#include "argus/evidence.h"
+
+#define ARGUS_NO_ECHO_MM ARGUS_P3DX_SONAR_NO_ECHO_MM
+
+// The increments of a test, in hundredths of a nat (DESIGN.md derives them), and its bounds.
+typedef struct {
+    int16_t suspicious; // a look is called for
+    int16_t naming;     // a suspect with the name of its fault, not relied on
+    int16_t convincing; // DISABLED
+    int16_t floor;
+    int16_t ceiling;
+} argus_bounds_t;
+
+extern const argus_bounds_t argus_bounds[ARGUS_TESTS];
+
+// Adds to a test's score, within its bounds; four times what speaks for a sonar that is out.
+void argus_score(argus_case_t *self, argus_test_t test, int32_t increment);
+
+// The reading `back` before the newest that was taken in (1: that one); NULL: not so many.
+const argus_trail_t *argus_trail_at(const argus_case_t *self, int back);
+
+// What `before` would read from the place and heading of `now` if it saw a standing thing: less the way that
+// the transducer went along its axis.
+int32_t argus_trail_predict_mm(const argus_trail_t *now, const argus_trail_t *before, int sonar);
+
+bool argus_trail_goes_on(const argus_trail_t *now, const argus_trail_t *before, int sonar);
+int32_t argus_trail_moved_mm(const argus_trail_t *now, const argus_trail_t *before);
+int32_t argus_trail_turned_cdeg(const argus_trail_t *now, const argus_trail_t *before);
+
+// One reading through the tests of the sonar's own trail. True: it confirms the one before, a view.
+bool argus_trail_test(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
+                      const argus_trail_t *now);
+
+// One reading against what the others saw on about its bearing from this place, then remembered.
+typedef enum {
+    ARGUS_SCAN_NOTHING,
+    ARGUS_SCAN_AGREES,
+    ARGUS_SCAN_DIFFERS,
+    ARGUS_SCAN_MISSES
+} argus_scan_verdict_t;
+#define ARGUS_SCAN_PARTNER 16 // stands for two others or more
+void argus_scan_restart(argus_scan_t *self);
+argus_scan_verdict_t argus_scan_take(argus_scan_t *self, const argus_knowledge_t *knowledge, int sonar);
+// Whether the others saw on a bearing of before what this sonar reads now.
+bool argus_scan_explains(const argus_scan_t *self, const argus_knowledge_t *knowledge, int sonar,
+                         int32_t heading_cdeg);
+int32_t argus_scan_weight(argus_scan_verdict_t verdict); // hundredths of a nat
+
+// What a scan says of a sonar goes into its score.
+void argus_views_scan(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
+                      argus_scan_verdict_t verdict);
+
+// Something moves before this sonar; and whether it does before any other that is not out: then evidence
+// against one counts little.
+void argus_note_unrest(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
+bool argus_is_unrest_beside(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
+
+// A confirmed view: remembered, and compared with what the other sonars saw on its bearing.
+void argus_views_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
+
+// Whether another sonar has lately seen something where this one now says that its echo comes from.
+bool argus_views_support(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
+
+// The present run without an echo is one that a sonar may have here: this one has proved alive.
+void argus_trail_learn_run(argus_evidence_t *self, int sonar);
+
+#endif

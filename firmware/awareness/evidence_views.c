@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: MIT
+// Bearing memory: what the sonars saw from where, and what two views of one bearing say of both.
+#include <stddef.h>
+#include <string.h>
+
+#include "argus/angle.h"
+#include "evidence_internal.h"
+
+#define VIEW_AGE_MS 10000u
+#define SAME_BEARING_CDEG 300
+#define SAME_LATERAL_MM 50
+#define SAME_ALONG_MM 150
+#define CLOSE_BEARING_CDEG 150 // nearer pairs than this weigh in full
+#define CLOSE_LATERAL_MM 30
+#define CLOSE_ALONG_MM 50
+#define LOOSE_PERCENT 60
+#define OFF_RUN 2
+#define LAG_TURN_CDEG 3000
+#define EPISODE_MS 6000u
+#define UNREST_PERCENT 25
+#define SUPPORT_CDEG 2000 // an echo may come from anywhere in the cone of either
+#define SUPPORT_REACH_MM 6000
+#define AGAIN_PERCENT 35 // on a bearing and in a place that was counted with another partner
+#define SAME_PLACE_MM 35
+#define SAME_VIEW_CDEG 200
+#define NEAREST_MM 150
+#define FARTHEST_MM 3500 // beyond, the air decides whether an echo is heard
+#define AGREE_MM 80
+#define AGREE_PERCENT 5
+#define COUNTED_MM 100
+#define COUNTED_CDEG 800
+#define STALE_MM 40
+
+// Hundredths of a nat: a pair of views on one bearing, for the sonar that is the odd one out; see DESIGN.md,
+// Evidence.
+#define AGREES (-60)
+#define DIFFERS 320
+#define MISSES 320
+#define HEARS_MORE 200
+#define BOTH_QUIET (-20)
+#define HEAD_START 100
+
+typedef struct {
+    int32_t along_mm; // the newer view's place before the older one's, on the bearing
+    bool comparable;
+    bool close;
+} relation_t;
+
+static relation_t relate(const argus_view_t *const now, const argus_view_t *const then) {
+    relation_t relation = {0, false, false};
+    const int32_t dx = now->x_mm - then->x_mm;
+    const int32_t dy = now->y_mm - then->y_mm;
+    const bool old = now->t_ms - then->t_ms > VIEW_AGE_MS;
+    const bool far_off = argus_abs(dx) > SAME_ALONG_MM || argus_abs(dy) > SAME_ALONG_MM;
+    if (!then->valid || old || far_off ||
+        argus_angle_abs_diff(now->bearing_cdeg, then->bearing_cdeg) > SAME_BEARING_CDEG) {
+        return relation;
+    }
+    const int32_t c = argus_cos(now->bearing_cdeg);
+    const int32_t s = argus_sin(now->bearing_cdeg);
+    relation.along_mm = (dx * c + dy * s) / ARGUS_TRIG_ONE;
+    const int32_t lateral_mm = argus_abs(dy * c - dx * s) / ARGUS_TRIG_ONE;
+    relation.comparable = lateral_mm <= SAME_LATERAL_MM;
+    relation.close = lateral_mm <= CLOSE_LATERAL_MM && argus_abs(relation.along_mm) <= CLOSE_ALONG_MM &&
+                     argus_angle_abs_diff(now->bearing_cdeg, then->bearing_cdeg) <= CLOSE_BEARING_CDEG;
+    return relation;
+}
+
+static bool is_none(const argus_view_t *const view) {
+    return view->reading_mm >= ARGUS_NO_ECHO_MM;
+}
+
+typedef enum { QUIET, AGREE, DIFFER, NOW_MISSES, THEN_MISSES, NOTHING } outcome_t;
+
+static outcome_t judge_silence(const argus_view_t *const now, const argus_view_t *const then,
+                               const int32_t along_mm) {
+    if (is_none(now) && is_none(then)) {
+        return QUIET;
+    }
+    const int32_t expected = is_none(then) ? now->reading_mm + along_mm : then->reading_mm - along_mm;
+    if (expected < NEAREST_MM || expected > FARTHEST_MM) {
+        return NOTHING;
+    }
+    return is_none(now) ? NOW_MISSES : THEN_MISSES;
+}
+
+static outcome_t judge_pair(const argus_view_t *const now, const argus_view_t *const then,
+                            const int32_t along_mm) {
+    if (is_none(now) || is_none(then)) {
+        return judge_silence(now, then, along_mm);
+    }
+    const int32_t expected = then->reading_mm - along_mm;
+    if (expected < NEAREST_MM) {
+        return NOTHING;
+    }
+    const int32_t limit = AGREE_MM + argus_min(expected, now->reading_mm) * AGREE_PERCENT / 100;
+    return argus_abs(expected - now->reading_mm) <= limit ? AGREE : DIFFER;
+}
+
+// What a conflict here still adds, in hundredths: one place and bearing is one piece of evidence, whoever
+// sees it.
+static int32_t news_of(const argus_case_t *const self, const argus_view_t *const at, const int partner) {
+    int32_t news = 100;
+    for (int i = 0; i < ARGUS_REFUTED; i++) {
+        const argus_refuted_t *const r = &self->refuted[i];
+        const bool here =
+            argus_abs(r->x_mm - at->x_mm) < COUNTED_MM && argus_abs(r->y_mm - at->y_mm) < COUNTED_MM;
+        if (r->partner < 0 || !here ||
+            argus_angle_abs_diff(r->bearing_cdeg, at->bearing_cdeg) >= COUNTED_CDEG) {
+            continue;
+        }
+        if (r->partner == partner) {
+            return 0;
+        }
+        news = AGAIN_PERCENT;
+    }
+    return news;
+}
+
+static void note_counted(argus_case_t *const self, const argus_view_t *const at, const int partner) {
+    argus_refuted_t *const r = &self->refuted[self->refuted_next];
+    self->refuted_next = (uint8_t)((self->refuted_next + 1) % ARGUS_REFUTED);
+    r->x_mm = at->x_mm;
+    r->y_mm = at->y_mm;
+    r->bearing_cdeg = at->bearing_cdeg;
+    r->partner = (int8_t)partner;
+}
+
+static void disagree(argus_case_t *const self, int32_t increment, const argus_view_t *const at,
+                     const int partner, const bool misses, const uint32_t now_ms) {
+    const int32_t news = news_of(self, at, partner);
+    if (news == 0) {
+        return;
+    }
+    note_counted(self, at, partner);
+    if (self->score[ARGUS_TEST_VIEW] <= 0) {
+        self->conflicts = 0;
+        self->episodes = 0;
+        self->misses = 0;
+        self->lag_trials = 0;
+        memset(self->lag_votes, 0, sizeof self->lag_votes);
+    }
+    if (self->episodes == 0 || now_ms - self->conflict_ms >= EPISODE_MS) {
+        self->episodes = (uint8_t)argus_min(self->episodes + 1, UINT8_MAX);
+        self->conflict_ms = now_ms;
+    }
+    argus_score(self, ARGUS_TEST_VIEW, increment * news / 100);
+    if (misses && self->none_run >= OFF_RUN) {
+        argus_score(self, ARGUS_TEST_OFF, increment * news / 100);
+    }
+    self->conflicts = (uint8_t)argus_min(self->conflicts + 1, UINT8_MAX);
+    self->agreed = 0;
+}
+
+static void agree(argus_case_t *const self, const argus_knowledge_t *const knowledge) {
+    argus_score(self, ARGUS_TEST_VIEW, AGREES);
+    argus_score(self, ARGUS_TEST_LAG, AGREES);
+    self->agreed = (uint8_t)argus_min(self->agreed + 1, UINT8_MAX);
+    self->alive_odometer_mm = knowledge->odometer_mm;
+    self->alive_ms = knowledge->sip_ms;
+}
+
+// Whom a disagreement is laid to: the one with the worse record bears it, two of like record share it. One
+// that is out already is no witness.
+static int32_t share_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                        const int sonar, const int partner) {
+    if (argus_is_out(knowledge, partner)) {
+        return argus_is_out(knowledge, sonar) ? 50 : 0;
+    }
+    if (argus_is_out(knowledge, sonar)) {
+        return 100;
+    }
+    if (((self->lost | self->jumped) >> sonar & 1u) != ((self->lost | self->jumped) >> partner & 1u)) {
+        return ((self->lost | self->jumped) >> sonar & 1u) != 0 ? 100 : 20;
+    }
+    const int32_t lead = self->of[sonar].score[ARGUS_TEST_VIEW] - self->of[partner].score[ARGUS_TEST_VIEW];
+    if (lead >= HEAD_START) {
+        return 100;
+    }
+    return lead <= -HEAD_START ? 20 : 50;
+}
+
+// What moves about the robot makes healthy sonars disagree.
+static int32_t in_unrest(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                         const int sonar) {
+    return argus_is_unrest_beside(self, knowledge, sonar) ? UNREST_PERCENT : 100;
+}
+
+// One side of a disagreement; `misses`: it is the one that hears nothing.
+static void bear(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                 const int partner, const argus_view_t *const at, const int32_t weight, const bool misses) {
+    argus_case_t *const c = &self->of[sonar];
+    const int32_t share = share_of(self, knowledge, sonar, partner) * in_unrest(self, knowledge, sonar) / 100;
+    disagree(c, weight * share / 100, at, partner, misses, knowledge->sip_ms);
+    c->misses = (uint8_t)argus_min(c->misses + misses, UINT8_MAX);
+}
+
+static int32_t weight_of(const outcome_t outcome, const outcome_t missing, const bool close) {
+    const int32_t weight = outcome == DIFFER ? DIFFERS : (outcome == missing ? MISSES : HEARS_MORE);
+    return close ? weight : weight * LOOSE_PERCENT / 100;
+}
+
+static void compare(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                    const argus_view_t *const now, const int other, const argus_view_t *const then) {
+    const relation_t relation = relate(now, then);
+    const outcome_t outcome = judge_pair(now, then, relation.along_mm);
+    argus_trend_pair(&self->trend, knowledge, sonar, now->reading_mm, other, then->reading_mm,
+                     relation.along_mm);
+    if (outcome == AGREE) {
+        self->agreements++;
+        agree(&self->of[sonar], knowledge);
+        agree(&self->of[other], knowledge);
+    } else if (outcome == QUIET) {
+        argus_score(&self->of[sonar], ARGUS_TEST_OFF, BOTH_QUIET);
+        argus_score(&self->of[other], ARGUS_TEST_OFF, BOTH_QUIET);
+    } else if (outcome != NOTHING) {
+        self->disagreements++;
+        bear(self, knowledge, sonar, other, now, weight_of(outcome, NOW_MISSES, relation.close),
+             outcome == NOW_MISSES);
+        bear(self, knowledge, other, sonar, then, weight_of(outcome, THEN_MISSES, relation.close),
+             outcome == THEN_MISSES);
+    }
+}
+
+static argus_view_t view_of(const argus_knowledge_t *const knowledge, const int sonar) {
+    const argus_sonar_pose_t *const mount = &argus_sonar_pose[sonar];
+    const argus_point_t robot = {mount->x_mm, mount->y_mm};
+    const argus_point_t at = argus_to_course(&knowledge->pose, robot);
+    const argus_view_t view = {.x_mm = at.x_mm,
+                               .y_mm = at.y_mm,
+                               .bearing_cdeg =
+                                   argus_angle_wrap(knowledge->pose.heading_cdeg + mount->heading_deg * 100),
+                               .t_ms = knowledge->sip_ms,
+                               .reading_mm = knowledge->sonar[sonar].reading_mm,
+                               .rest = argus_at_rest(knowledge),
+                               .valid = true};
+    return view;
+}
+
+// From the same place on the same bearing as the last one: only another reading makes it another view.
+static bool is_same_place(const argus_case_t *const self, const argus_view_t *const now) {
+    const argus_view_t *const last = &self->view[(self->view_next + ARGUS_VIEWS - 1) % ARGUS_VIEWS];
+    const bool here = argus_abs(last->x_mm - now->x_mm) <= SAME_PLACE_MM &&
+                      argus_abs(last->y_mm - now->y_mm) <= SAME_PLACE_MM &&
+                      argus_angle_abs_diff(last->bearing_cdeg, now->bearing_cdeg) <= SAME_VIEW_CDEG;
+    return last->valid && here && now->t_ms - last->t_ms < VIEW_AGE_MS / 2;
+}
+
+static bool has_changed(const argus_case_t *const self, const argus_view_t *const now) {
+    const argus_view_t *const last = &self->view[(self->view_next + ARGUS_VIEWS - 1) % ARGUS_VIEWS];
+    const outcome_t outcome = judge_pair(now, last, 0);
+    return outcome == DIFFER || outcome == NOW_MISSES || outcome == THEN_MISSES;
+}
+
+// The latest view of another sonar that can be compared; NULL: none.
+static const argus_view_t *latest_of(const argus_case_t *const other, const argus_view_t *const now) {
+    for (int i = 1; i <= ARGUS_VIEWS; i++) {
+        const argus_view_t *const then = &other->view[(other->view_next + ARGUS_VIEWS - i) % ARGUS_VIEWS];
+        if (relate(now, then).comparable) {
+            return then;
+        }
+    }
+    return NULL;
+}
+
+// After a turn each lag would have the reading belong to another bearing: which one do the others bear out?
+static void vote_lag(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                     const int sonar) {
+    argus_case_t *const c = &self->of[sonar];
+    const argus_trail_t *const oldest = argus_trail_at(c, ARGUS_TRAIL);
+    const int32_t here = knowledge->pose.heading_cdeg;
+    if (oldest == NULL || argus_angle_abs_diff(oldest->heading_cdeg, here) < LAG_TURN_CDEG ||
+        c->lag_trials == UINT8_MAX) {
+        return;
+    }
+    c->lag_trials++;
+    for (int n = 1; n < ARGUS_TRAIL; n++) { // the newest of the trail is this reading itself
+        const argus_trail_t *const then = argus_trail_at(c, n + 1);
+        const bool elsewhere = argus_angle_abs_diff(then->heading_cdeg, here) >= COUNTED_CDEG;
+        if (elsewhere && argus_scan_explains(&self->scan, knowledge, sonar, then->heading_cdeg)) {
+            c->lag_votes[n]++;
+        }
+    }
+}
+
+void argus_views_scan(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                      const argus_scan_verdict_t verdict) {
+    argus_case_t *const c = &self->of[sonar];
+    const int32_t weight = argus_scan_weight(verdict);
+    if (verdict == ARGUS_SCAN_AGREES) {
+        const argus_view_t at = view_of(knowledge, sonar);
+        const bool here = argus_abs(at.x_mm - c->agreed_x_mm) < COUNTED_MM &&
+                          argus_abs(at.y_mm - c->agreed_y_mm) < COUNTED_MM;
+        if (!here || argus_angle_abs_diff(at.bearing_cdeg, c->agreed_cdeg) >= COUNTED_CDEG) {
+            argus_score(c, ARGUS_TEST_VIEW, weight);
+            c->agreed_x_mm = at.x_mm;
+            c->agreed_y_mm = at.y_mm;
+            c->agreed_cdeg = at.bearing_cdeg;
+        }
+    } else if (verdict != ARGUS_SCAN_NOTHING) {
+        vote_lag(self, knowledge, sonar);
+        const argus_view_t at = view_of(knowledge, sonar);
+        disagree(c, weight * in_unrest(self, knowledge, sonar) / 100, &at, ARGUS_SCAN_PARTNER,
+                 verdict == ARGUS_SCAN_MISSES, at.t_ms);
+        c->misses = (uint8_t)argus_min(c->misses + (verdict == ARGUS_SCAN_MISSES), UINT8_MAX);
+    }
+}
+
+static bool is_supported_by(const argus_view_t *const at, const argus_view_t *const by) {
+    if (!by->valid || is_none(by) || at->t_ms - by->t_ms > VIEW_AGE_MS) {
+        return false;
+    }
+    const int32_t dx = by->x_mm + by->reading_mm * argus_cos(by->bearing_cdeg) / ARGUS_TRIG_ONE - at->x_mm;
+    const int32_t dy = by->y_mm + by->reading_mm * argus_sin(by->bearing_cdeg) / ARGUS_TRIG_ONE - at->y_mm;
+    const int32_t limit = AGREE_MM + at->reading_mm * AGREE_PERCENT / 100;
+    return argus_abs(dx) < SUPPORT_REACH_MM && argus_abs(dy) < SUPPORT_REACH_MM &&
+           argus_abs(argus_hypot(dx, dy) - at->reading_mm) <= limit &&
+           argus_angle_abs_diff(argus_atan2(dy, dx), at->bearing_cdeg) <= SUPPORT_CDEG;
+}
+
+bool argus_views_support(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                         const int sonar) {
+    const argus_view_t at = view_of(knowledge, sonar);
+    for (int other = 0; other < ARGUS_SONARS; other++) {
+        for (int i = 0; other != sonar && i < ARGUS_VIEWS; i++) {
+            if (is_supported_by(&at, &self->of[other].view[i])) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+void argus_views_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                      const int sonar) {
+    argus_case_t *const c = &self->of[sonar];
+    const argus_view_t now = view_of(knowledge, sonar);
+    if (is_same_place(c, &now)) {
+        if (!has_changed(c, &now)) {
+            return;
+        }
+        if (now.rest && c->view[(c->view_next + ARGUS_VIEWS - 1) % ARGUS_VIEWS].rest) {
+            argus_note_unrest(self, knowledge, sonar); // from where it stands nothing changes by itself
+        }
+    }
+    c->view[c->view_next] = now;
+    c->view_next = (uint8_t)((c->view_next + 1) % ARGUS_VIEWS);
+    for (int other = 0; other < ARGUS_SONARS; other++) {
+        const argus_view_t *const then = other != sonar ? latest_of(&self->of[other], &now) : NULL;
+        if (then != NULL) {
+            compare(self, knowledge, sonar, &now, other, then);
+        }
+    }
+}

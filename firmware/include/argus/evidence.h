@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// Evidence (profile argus): sequential tests of every sonar, fed by its own trail of readings and by pairs of
+// views of one bearing.
+#ifndef ARGUS_EVIDENCE_H
+#define ARGUS_EVIDENCE_H
+
+#include "argus/config.h"
+#include "argus/knowledge.h"
+#include "argus/trend.h"
+
+#define ARGUS_TRAIL 10 // readings of its own that a sonar's tests look back on
+#define ARGUS_VIEWS 8  // confirmed views that are remembered of each sonar
+#define ARGUS_REFUTED 6
+
+// One cumulative-sum test (Page 1954; its increments are log-likelihood ratios as in Wald's SPRT) for each
+// way a sonar can be seen to fail. Scores are hundredths of a nat and never fall below the floor of the test.
+typedef enum {
+    ARGUS_TEST_VIEW,    // other sonars saw something else on this bearing (wrong)
+    ARGUS_TEST_OFF,     // no echo where others hear one, and none anywhere (off)
+    ARGUS_TEST_STUCK,   // the same value again though the robot moved
+    ARGUS_TEST_GARBAGE, // readings that match none before them
+    ARGUS_TEST_DROPOUT, // no echo between two echoes of one thing (intermittent)
+    ARGUS_TEST_LAG, // its own readings of some firings ago, or changes after the robot came to rest (slow)
+    ARGUS_TESTS
+} argus_test_t;
+
+// A reading as it came, with the pose of the SIP that listed it; x and y modulo 65,536 mm.
+typedef struct {
+    uint16_t reading_mm;
+    uint16_t x_mm;
+    uint16_t y_mm;
+    int16_t heading_cdeg;
+    bool steady; // neither this SIP nor the one before showed a rotation
+    bool rest;
+} argus_trail_t;
+
+// What a sonar saw, twice in agreement: from where, on which bearing (course frame), how far.
+typedef struct {
+    int32_t x_mm; // of the transducer
+    int32_t y_mm;
+    int32_t bearing_cdeg;
+    uint32_t t_ms;
+    uint16_t reading_mm;
+    bool rest; // the robot stood
+    bool valid;
+} argus_view_t;
+
+// The picture of what lies all round, about the robot's centre.
+#define ARGUS_SCAN_BINS 36
+#define ARGUS_SCAN_DEPTH 4
+typedef struct {
+    uint16_t range_mm;
+    uint16_t t_ds; // tenths of a second, low bits
+    uint8_t sonar;
+    bool used;
+} argus_scan_entry_t;
+
+typedef struct {
+    argus_scan_entry_t entry[ARGUS_SCAN_DEPTH];
+    uint8_t next;
+} argus_scan_bin_t;
+
+typedef struct {
+    argus_scan_bin_t bin[ARGUS_SCAN_BINS];
+    int32_t x_mm; // where it was begun
+    int32_t y_mm;
+} argus_scan_t;
+
+// Where a conflict was counted, so that one place and pair does not count twice.
+typedef struct {
+    int32_t x_mm;
+    int32_t y_mm;
+    int32_t bearing_cdeg;
+    int8_t partner; // -1: none
+} argus_refuted_t;
+
+typedef struct {
+    argus_trail_t trail[ARGUS_TRAIL];
+    argus_view_t view[ARGUS_VIEWS];
+    argus_refuted_t refuted[ARGUS_REFUTED];
+    int16_t score[ARGUS_TESTS];
+    uint8_t trail_count;
+    uint8_t trail_next;
+    uint8_t view_next;
+    uint8_t refuted_next;
+    uint8_t lag_run[ARGUS_TRAIL]; // [n]: readings in a row equal to the one n before
+    uint8_t track;                // echoes in a row that go on as the motion predicts
+    uint8_t none_run;             // readings in a row without an echo
+    uint8_t jump_track;           // 1: went over to another echo; its track decides
+    bool followed;                // the run without an echo began on an echo that it had followed
+    uint16_t deaf_cdeg;           // turned since it heard an echo last
+    uint8_t rest_count;           // readings since the robot came to rest
+    uint8_t rest_changes;
+    uint16_t rest_first_mm;
+    uint8_t conflicts; // counted since the VIEW score left its floor
+    uint8_t episodes;  // ... at so many times, some seconds apart
+    uint32_t conflict_ms;
+    uint8_t misses;     // of those: no echo where another hears one
+    uint8_t lag_trials; // conflicts with a scan after a turn
+    uint8_t
+        lag_votes[ARGUS_TRAIL]; // [n]: of those, how often the heading n readings ago explains the reading
+    uint8_t agreed;             // comparisons in a row that agreed, for rehabilitation
+    uint8_t echoes;             // echoes in the last 8 readings
+    uint8_t echo_bits;
+    bool lag_said;
+    int32_t agreed_x_mm; // where and on which bearing a scan agreed with it last
+    int32_t agreed_y_mm;
+    int32_t agreed_cdeg;
+    bool out;    // its evidence is of whether it may come back: what speaks for it counts more
+    bool unrest; // something moved before it, at unrest_ms
+    uint32_t unrest_ms;
+    int16_t drift_mm; // what the last reading differed from the prediction, when it was an echo after an echo
+    uint32_t counted_ms;
+    uint32_t alive_odometer_mm; // way driven when it last proved alive, or was acquitted
+    uint32_t alive_ms;
+} argus_case_t;
+
+typedef struct {
+    argus_case_t of[ARGUS_SONARS];
+    argus_scan_t scan;
+    argus_trend_t trend;
+    uint16_t lost;         // lost the echo that they followed
+    uint16_t jumped;       // went over to another echo
+    uint8_t straight_sips; // SIPs in a row without a rotation
+    uint8_t usual_run;     // readings without an echo that sonars which proved alive have had lately
+    uint32_t usual_ms;     // when that was lowered last
+    uint32_t agreements;   // monotonic counters of compared views
+    uint32_t disagreements;
+} argus_evidence_t;
+
+void argus_evidence_init(argus_evidence_t *self);
+
+// The readings begin anew (session, gap of the link): trails and views are forgotten, scores stay.
+void argus_evidence_restart(argus_evidence_t *self);
+
+// After each SIP. Cost: for each fresh sonar one pass over the views of the other 15 (120).
+void argus_evidence_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge);
+
+// Whether a look is called for; the kind that the evidence names, or convicts of (NONE: not so far). A name
+// takes disagreements with two others, a conviction takes them again at another time.
+bool argus_evidence_suspects(const argus_evidence_t *self, int sonar);
+
+// It does not agree with itself: more of its readings at rest would tell.
+bool argus_evidence_is_unsteady(const argus_evidence_t *self, int sonar);
+argus_fault_kind_t argus_evidence_names(const argus_evidence_t *self, int sonar);
+argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *self, int sonar);
+
+// Sonars of 1..6 that hear nothing and have proved alive last long ago.
+uint16_t argus_evidence_unseen(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
+                               const argus_config_t *config);
+
+// A sonar was looked at and not convicted: its suspicions are spent.
+void argus_evidence_acquit(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
+
+// Forgets what is known of one sonar (an operator's re-test).
+void argus_evidence_forget(argus_evidence_t *self, int sonar);
+
+#endif

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT
+// Profile argus at work: convictions, active looks and the way back of a sonar that does well again.
+#include "argus/angle.h"
+#include "manager_internal.h"
+
+#define HOLD_MM 400u      // an acquitted sonar is not looked at again for a lost echo before this distance,
+#define HOLD_DOUBLINGS 2u // ... doubled with each acquittal so often
+#define HOLD_FORGET_MM 4000u // ... and forgotten after this one
+#define SPACING_MS 3000u     // between two looks for a mere jump
+#define ROUTINE_MS 20000u    // a look at all beside the main task at least so often,
+#define ROUTINE_MM 2000u     // ... when the robot has driven so far
+#define PROBATION_AGREED 4
+#define PROBATION_MS 4000u
+#define PROBATION_DOUBLINGS 4
+
+bool argus_judges(const argus_t *const self) {
+    return self->config.profile == ARGUS_PROFILE_ARGUS;
+}
+
+static void stop_for(argus_t *const self, const int sonar) {
+    const bool ahead = (ARGUS_FORWARD_MASK >> sonar & 1u) != 0;
+    const bool busy = self->mode == ARGUS_MODE_WAITING || self->mode == ARGUS_MODE_CLOSING ||
+                      self->mode == ARGUS_MODE_VERIFYING || self->mode == ARGUS_MODE_BACKING;
+    if (ahead && !busy) {
+        argus_halt(self);
+        argus_enter_checking(self, false);
+    }
+}
+
+static void convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+    argus_disable(self, sonar, kind);
+    self->evidence.of[sonar].agreed = 0;
+    argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
+    stop_for(self, sonar);
+}
+
+// A suspect carries the kind that the evidence names so far.
+static void name(argus_t *const self, const int sonar) {
+    argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
+    if (s->health == ARGUS_SUSPECT && kind != s->kind && kind != ARGUS_KIND_NONE) {
+        s->kind = kind;
+        argus_say(self, ARGUS_EV_SONAR_NAMED, sonar, (int32_t)kind);
+    }
+    const bool held = self->mode == ARGUS_MODE_VERIFYING || (self->evidence.lost >> sonar & 1u) != 0;
+    if (s->health == ARGUS_SUSPECT && !argus_evidence_suspects(&self->evidence, sonar) && !held) {
+        argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
+        argus_say(self, ARGUS_EV_SUSPICION_DROPPED, sonar, s->reading_mm);
+        argus_replan(self);
+    }
+}
+
+static void judge_in(argus_t *const self, const int sonar) {
+    const argus_fault_kind_t kind = argus_evidence_convicts(&self->evidence, sonar);
+    if (kind != ARGUS_KIND_NONE) {
+        convict(self, sonar, kind);
+    } else {
+        name(self, sonar);
+    }
+}
+
+static void restore(argus_t *const self, const int sonar, const argus_health_t health) {
+    argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const bool healthy = health == ARGUS_HEALTHY;
+    argus_sonar_set_health(s, health, healthy ? ARGUS_KIND_NONE : s->kind, self->now_ms);
+    self->evidence.of[sonar].agreed = 0;
+    argus_say(self, healthy ? ARGUS_EV_SONAR_HEALTHY : ARGUS_EV_SONAR_PROBATION, sonar, s->reading_mm);
+    argus_replan(self);
+}
+
+// Probation grows with each relapse.
+static uint8_t agreements_wanted(const argus_sonar_t *const s) {
+    if (s->health == ARGUS_DISABLED) {
+        return PROBATION_AGREED;
+    }
+    return (uint8_t)(PROBATION_AGREED << argus_min(s->relapses, PROBATION_DOUBLINGS));
+}
+
+// Off and wrong are what is left when nothing more definite shows.
+static bool is_better(const argus_fault_kind_t present, const argus_fault_kind_t found) {
+    const bool vague = present == ARGUS_KIND_OFF || present == ARGUS_KIND_WRONG;
+    return found != ARGUS_KIND_NONE && found != present && vague;
+}
+
+static void judge_out(argus_t *const self, const int sonar) {
+    argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const argus_fault_kind_t convicted = argus_evidence_convicts(&self->evidence, sonar);
+    const argus_fault_kind_t named = argus_evidence_names(&self->evidence, sonar);
+    const bool suspected = argus_evidence_suspects(&self->evidence, sonar);
+    if (is_better(s->kind, convicted) && s->health == ARGUS_DISABLED) {
+        s->kind = convicted;
+        argus_say(self, ARGUS_EV_SONAR_KIND, sonar, (int32_t)convicted);
+    }
+    if (suspected) {
+        if (s->health == ARGUS_PROBATION && named != ARGUS_KIND_NONE) {
+            argus_disable(self, sonar, named);
+        }
+        return;
+    }
+    const bool long_enough = self->now_ms - s->since_ms >= PROBATION_MS;
+    if (long_enough && self->evidence.of[sonar].agreed >= agreements_wanted(s)) {
+        restore(self, sonar, s->health == ARGUS_DISABLED ? ARGUS_PROBATION : ARGUS_HEALTHY);
+    }
+}
+
+// The others than 1..6 yield to the same tests; one that yields nothing is out as well.
+static void judge_silence(argus_t *const self, const int sonar) {
+    const bool other = (ARGUS_FORWARD_MASK >> sonar & 1u) == 0;
+    if (other && argus_silent_ms(&self->knowledge, sonar) > (uint32_t)self->config.stale_ms) {
+        argus_disable(self, sonar, ARGUS_KIND_SILENT);
+    }
+}
+
+void argus_judge(argus_t *const self) {
+    if (!argus_judges(self) || self->mode == ARGUS_MODE_CLOSING) {
+        return;
+    }
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if ((self->pinned >> i & 1u) != 0) {
+            continue;
+        }
+        if (argus_is_out(&self->knowledge, i)) {
+            judge_out(self, i);
+        } else {
+            judge_silence(self, i);
+            judge_in(self, i);
+        }
+    }
+}
+
+static bool is_held(const argus_t *const self, const int sonar) {
+    const argus_hold_t *const hold = &self->hold[sonar];
+    const uint32_t way_mm = self->knowledge.odometer_mm - hold->odometer_mm;
+    return hold->acquittals > 0 &&
+           way_mm < HOLD_MM << (unsigned)argus_min(hold->acquittals - 1, (int32_t)HOLD_DOUBLINGS);
+}
+
+static uint16_t without_held(const argus_t *const self, const unsigned mask) {
+    unsigned free_mask = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        free_mask |= (mask >> i & 1u) != 0 && !is_held(self, i) ? 1u << i : 0u;
+    }
+    return (uint16_t)free_mask;
+}
+
+static uint16_t suspected(const argus_t *const self) {
+    unsigned mask = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        mask |= argus_evidence_suspects(&self->evidence, i) ? 1u << i : 0u;
+    }
+    return (uint16_t)(mask & ~(unsigned)argus_out(&self->knowledge) & ~(unsigned)self->pinned);
+}
+
+// What is worth a stop now: evidence that a look can settle, a lost echo ahead, a bearing unseen for too
+// long.
+uint16_t argus_worth_a_look(argus_t *const self) {
+    const uint16_t unseen = argus_evidence_unseen(&self->evidence, &self->knowledge, &self->config);
+    const unsigned ahead = self->evidence.lost | unseen;
+    const bool spaced = self->now_ms - self->looked_ms >= SPACING_MS;
+    const unsigned jumped = spaced ? self->evidence.jumped & ARGUS_FORWARD_MASK : 0u;
+    const unsigned open = without_held(self, suspected(self) | jumped) | ahead;
+    return (uint16_t)(open & ~(unsigned)argus_out(&self->knowledge) & ~(unsigned)self->awareness.verified &
+                      ~(unsigned)self->pinned);
+}
+
+bool argus_routine_is_due(const argus_t *const self) {
+    const bool first = !self->looked_once;
+    const bool long_ago = self->now_ms - self->looked_ms >= ROUTINE_MS &&
+                          self->knowledge.odometer_mm - self->looked_odometer_mm >= ROUTINE_MM;
+    return (first || long_ago) && !self->passive && !self->stay && argus_may_turn(self) &&
+           self->mission == ARGUS_MISSION_RUNNING;
+}
+
+static void acquit(argus_t *const self, const int sonar) {
+    argus_hold_t *const hold = &self->hold[sonar];
+    argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    if (self->knowledge.odometer_mm - hold->odometer_mm > HOLD_FORGET_MM) {
+        hold->acquittals = 0;
+    }
+    hold->acquittals = (uint8_t)argus_min(hold->acquittals + 1, UINT8_MAX);
+    hold->odometer_mm = self->knowledge.odometer_mm;
+    argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
+    if (s->health == ARGUS_SUSPECT) {
+        argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
+        argus_say(self, ARGUS_EV_SONAR_CLEARED, sonar, s->reading_mm);
+    }
+}
+
+static void leave_open(argus_t *const self, const int sonar) {
+    self->awareness.verified |= (uint16_t)(1u << sonar);
+    argus_say(self, ARGUS_EV_SONAR_UNPROVEN, sonar, self->knowledge.sonar[sonar].reading_mm);
+}
+
+// What the looks have shown of one sonar.
+static void conclude(argus_t *const self, const int sonar) {
+    const bool suspect = self->knowledge.sonar[sonar].health == ARGUS_SUSPECT;
+    const bool asked = suspect || (self->inquiry.suspects >> sonar & 1u) != 0;
+    if (argus_is_out(&self->knowledge, sonar)) {
+        return;
+    }
+    if (!asked && !argus_evidence_suspects(&self->evidence, sonar)) {
+        argus_evidence_acquit(&self->evidence, &self->knowledge, sonar); // it was looked at like the others
+    } else if (asked && argus_evidence_names(&self->evidence, sonar) == ARGUS_KIND_NONE) {
+        acquit(self, sonar);
+    } else if (suspect) {
+        leave_open(self, sonar);
+    }
+}
+
+static void finish(argus_t *const self) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        conclude(self, i);
+    }
+    self->looked_ms = self->now_ms;
+    self->looked_odometer_mm = self->knowledge.odometer_mm;
+    self->looked_once = true;
+    argus_inquiry_init(&self->inquiry);
+    argus_replan(self);
+    argus_enter_checking(self, false);
+}
+
+static void begin(argus_t *const self) {
+    const uint16_t suspects =
+        (uint16_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) & ~(unsigned)self->awareness.verified);
+    argus_take_base(self);
+    argus_inquiry_begin(&self->inquiry, suspects, argus_out(&self->knowledge), self->base_cdeg);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if ((suspects >> i & 1u) != 0) {
+            argus_say(self, ARGUS_EV_SONAR_VERIFYING, i, self->knowledge.sonar[i].reading_mm);
+        }
+    }
+    if (suspects == 0) {
+        argus_say(self, ARGUS_EV_LOOK, ARGUS_NO_SONAR, 0);
+    }
+    if (!argus_turn(self, argus_inquiry_heading_cdeg(&self->inquiry))) {
+        argus_inquiry_init(&self->inquiry);
+    }
+}
+
+// In VERIFYING mode, on each SIP.
+void argus_run_inquiry(argus_t *const self) {
+    if (self->motion.failed) {
+        argus_inquiry_init(&self->inquiry);
+        argus_give_up_turn(self);
+        return;
+    }
+    if (!self->motion.settled) {
+        return;
+    }
+    if (!self->inquiry.active) {
+        begin(self);
+        return;
+    }
+    self->inquiry.watched &= (uint16_t)~(unsigned)argus_out(&self->knowledge);
+    if (!argus_inquiry_step(&self->inquiry, &self->knowledge, &self->evidence)) {
+        return;
+    }
+    if (!self->inquiry.active) {
+        finish(self);
+    } else if (!argus_turn(self, argus_inquiry_heading_cdeg(&self->inquiry))) {
+        argus_inquiry_init(&self->inquiry);
+    }
+}

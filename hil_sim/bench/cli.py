@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: MIT
+"""`argus-sim bench diagnosis`: how well the fault manager diagnoses, in thousands of seeded missions."""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+import re
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final, NoReturn, TextIO
+
+from argus_tools.core import LIBRARY_VARIABLE, library
+from argus_tools.formats.base import LogError
+
+from hil_sim.bench import plan, pool
+from hil_sim.bench.show import timeline
+from hil_sim.bench.store import RESULTS, Store
+from hil_sim.bench.work import run_case, world_files
+from hil_sim.errors import SimError
+
+PROG: Final = "argus-sim bench diagnosis"
+EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
+_PROFILES: Final = "paper,argus"
+_EXAMPLES: Final = """\
+examples:
+  argus-sim bench diagnosis --worlds office --seeds 1-20 --profiles argus --kinds off,wrong --out /tmp/x
+  argus-sim bench diagnosis --worlds 'gen-*' --seeds 1-100 --out results --resume
+  argus-sim bench diagnosis --worlds 'maps/*.map' --seeds 1-50 --out results
+  argus-sim bench diagnosis --one argus/tune/office/7/wrong-scale0.5
+  argus-sim bench diagnosis --profiles argus,argus:suspect_readings=5 --out trade     settings side by side
+  argus-sim bench diagnosis --scheduler tcp://10.0.0.1:8786 --out results             on a Dask cluster
+  argus-sim bench diagnosis --quick                                                   the small one of the tests
+
+Writes results.jsonl (a line per mission), diagnosis.json, diagnosis.csv, diagnosis.md and pictures into --out.
+How everything is measured: docs/diagnosis.md.
+
+exit codes: 0 all missions ran (and with --quick, all is within the bounds), 1 a mission failed or a bound is broken,
+            2 wrong argument or file, 130 interrupted; go on with --resume
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        self.exit(EXIT_USAGE, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def _seeds(text: str) -> range:
+    match = re.fullmatch(r"(\d{1,15})(?:-(\d{1,15}))?", text)
+    if not match or int(match[2] or match[1]) < int(match[1]):
+        raise argparse.ArgumentTypeError(f"'{text}' is no range of seeds; write 1-20 or 7")
+    return range(int(match[1]), int(match[2] or match[1]) + 1)
+
+
+def _profiles(text: str) -> list[str]:
+    return [part for part in text.split(",") if part]
+
+
+def _kinds(text: str) -> list[str]:
+    kinds = [part for part in text.split(",") if part]
+    for kind in kinds:
+        if kind not in plan.KINDS:
+            raise argparse.ArgumentTypeError(f"'{kind}' is no kind; there are {', '.join(plan.KINDS)}")
+    return kinds
+
+
+def _jobs(text: str) -> int:
+    if not text.isdigit() or not 1 <= int(text) <= 4096:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of processes from 1 to 4096")
+    return int(text)
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the argument parser of the bench."""
+    result = _Parser(
+        prog=PROG,
+        description="Run seeded missions with and without sonar faults and judge what the fault manager makes of them.",
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    what = result.add_argument_group("what is run")
+    what.add_argument(
+        "--worlds",
+        action="append",
+        metavar="GLOB",
+        help="names of our worlds or of generated ones, or .map and .yaml files (default: office,lab,gen-*)",
+    )
+    what.add_argument("--seeds", type=_seeds, metavar="A-B", help="seeds (default 1-10)")
+    what.add_argument(
+        "--profiles",
+        type=_profiles,
+        metavar="P,P",
+        help=f"profiles, each with settings if wanted: argus:step_mm=100 (default {_PROFILES})",
+    )
+    what.add_argument("--kinds", type=_kinds, metavar="K,K", help=f"of {','.join(plan.KINDS)} (default: all)")
+    what.add_argument(
+        "--every", action="store_true", help="every severity of a kind for each seed, not the next one"
+    )
+    what.add_argument("--sensitivity", action="store_true", help="again with other noise and other crosstalk")
+    what.add_argument(
+        "--split",
+        choices=tuple(plan.SPLITS),
+        default="tune",
+        help="tune (default) to choose settings with, judge to publish: no mission is in both",
+    )
+    what.add_argument("--one", metavar="ID", help="run one mission and print its time line")
+    what.add_argument(
+        "--quick", action="store_true", help="a small fixed bench against checked-in bounds, a minute"
+    )
+    how = result.add_argument_group("how")
+    how.add_argument(
+        "--jobs", type=_jobs, default=os.cpu_count() or 1, metavar="N", help="processes (default: cores)"
+    )
+    how.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers run the missions")
+    how.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: bench-diagnosis)")
+    how.add_argument("--resume", action="store_true", help="go on with what is in --out")
+    how.add_argument("--fresh", action="store_true", help="replace what is in --out")
+    how.add_argument("--no-plots", action="store_true", help="write no pictures")
+    return result
+
+
+class Progress:
+    """Tells on standard error how far it is: a line that is rewritten on a terminal, one each 10 s elsewhere."""
+
+    def __init__(self, total: int, before: int, stream: TextIO) -> None:
+        self.total, self.before, self.done = total, before, 0
+        self.simulated_s = 0.0
+        self.errors = 0
+        self._stream = stream
+        self._live = stream.isatty() and os.environ.get("TERM") != "dumb"
+        self._begin = time.monotonic()
+        self._said = self._begin - (0 if not self._live else 10)
+
+    def add(self, record: dict[str, Any]) -> None:
+        """Count a mission."""
+        self.done += 1
+        self.errors += record["error"] is not None
+        self.simulated_s += record.get("t_s") or 0.0
+        now = time.monotonic()
+        if now - self._said >= (0.2 if self._live else 10.0):
+            self._said = now
+            self._say(now)
+
+    def _say(self, now: float) -> None:
+        took = max(now - self._begin, 1e-3)
+        left = (self.total - self.before - self.done) * took / max(self.done, 1)
+        text = (
+            f"{self.before + self.done}/{self.total} missions, {self.simulated_s / took:.0f} x real time, "
+            f"{left:.0f} s left" + (f", {self.errors} failed" if self.errors else "")
+        )
+        print(
+            f"\r\033[K{text}" if self._live else text,
+            end="" if self._live else "\n",
+            file=self._stream,
+            flush=True,
+        )
+
+    def close(self) -> None:
+        """Say the last figure."""
+        self._say(time.monotonic())
+        if self._live:
+            print(file=self._stream, flush=True)
+
+
+def _say(text: str) -> None:
+    print(f"argus-sim: {text}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def fixed_core() -> Iterator[str]:
+    """Give every process one and the same fault manager, even if it is built again meanwhile; yield its digest."""
+    path = Path(str(library()._name))
+    with tempfile.TemporaryDirectory(prefix="argus-core-") as folder:
+        copy = Path(folder) / path.name
+        shutil.copyfile(path, copy)
+        before = os.environ.get(LIBRARY_VARIABLE)
+        os.environ[LIBRARY_VARIABLE] = str(copy)
+        try:
+            yield hashlib.sha256(copy.read_bytes()).hexdigest()
+        finally:
+            if before is None:
+                os.environ.pop(LIBRARY_VARIABLE)
+            else:
+                os.environ[LIBRARY_VARIABLE] = before
+
+
+def _terminated(number: int, frame: object) -> NoReturn:
+    del number, frame
+    raise KeyboardInterrupt
+
+
+def run_cases(cases: Sequence[plan.Case], store: Store, arguments: argparse.Namespace) -> bool:
+    """Run the cases that have no result yet; False when it was interrupted."""
+    todo = [case.id for case in cases if not store.done(case.id)]
+    progress = Progress(len(cases), len(cases) - len(todo), sys.stderr)
+    if not todo:
+        return True
+    before = signal.signal(signal.SIGTERM, _terminated)
+    try:
+        if arguments.scheduler:
+            records = pool.run_cluster(todo, arguments.scheduler, world_files(list(cases)))
+        else:
+            records = pool.run_here(todo, min(arguments.jobs, len(todo)))
+        for record in records:
+            store.add(record)
+            progress.add(record)
+    except KeyboardInterrupt:
+        return False
+    finally:
+        signal.signal(signal.SIGTERM, before)
+        progress.close()
+    return True
+
+
+def _cases(arguments: argparse.Namespace) -> list[plan.Case]:
+    profiles = arguments.profiles or _profiles(_PROFILES)
+    for profile in profiles:
+        plan.check_profile(profile)
+    return plan.make_cases(
+        profiles,
+        arguments.split,
+        plan.find_worlds(arguments.worlds or ["office", "lab", "gen-*"]),
+        arguments.seeds or range(1, 11),
+        arguments.kinds or list(plan.KINDS),
+        every=arguments.every,
+        sensitivity=arguments.sensitivity,
+    )
+
+
+def _bench(arguments: argparse.Namespace) -> int:
+    from hil_sim.bench.report import write_report
+
+    out = arguments.out or Path("bench-diagnosis")
+    cases = _cases(arguments)
+    with fixed_core() as digest:
+        meta = {"core": digest, "split": arguments.split, "missions": len(cases)}
+        with Store(out, meta, resume=arguments.resume, fresh=arguments.fresh) as store:
+            finished = run_cases(cases, store, arguments)
+            if not finished:
+                _say(
+                    f"interrupted; {len(store.records)} missions are in {out / RESULTS}, the same with --resume goes on"
+                )
+                return EXIT_INTERRUPTED
+            wanted = {case.id for case in cases}
+            records = [record for name, record in store.records.items() if name in wanted]
+    print(write_report(out, records, meta, plots=not arguments.no_plots), end="")
+    return _failures(records)
+
+
+def _failures(records: Sequence[dict[str, Any]]) -> int:
+    failed = [record for record in records if record["error"] is not None]
+    for record in failed[:5]:
+        _say(f"{record['id']}: {record['error']}")
+    if failed:
+        _say(f"{len(failed)} missions failed; --one ID shows one, --resume runs them again")
+    return EXIT_FAILED if failed else 0
+
+
+def _one(text: str) -> int:
+    case = plan.parse_id(text)
+    record, outcome = run_case(case)
+    print(timeline(record, outcome), end="")
+    print(json.dumps(record))
+    return 0
+
+
+def main(argv: Sequence[str]) -> int:
+    """Run `argus-sim bench ARGV`; return the exit code."""
+    names = ("diagnosis",)
+    if not argv or argv[0] not in names:
+        if argv and argv[0] in ("-h", "--help"):
+            print(f"usage: argus-sim bench {{{','.join(names)}}} ...; see {PROG} --help")
+            return 0
+        _say(f"bench: name one of {', '.join(names)}; see {PROG} --help")
+        return EXIT_USAGE
+    arguments = parser().parse_args(argv[1:])
+    try:
+        return _one(arguments.one) if arguments.one else _bench(arguments)
+    except SimError as error:
+        _say(str(error))
+        return error.exit_code
+    except LogError as error:
+        _say(str(error))
+        return EXIT_USAGE

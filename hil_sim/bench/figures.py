@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: MIT
+"""The figures of a bench: rates with bounds, latencies, the confusion matrix, and the bars that they must clear."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Final
+
+from hil_sim.bench.judge import BOUND_S
+from hil_sim.bench.plan import FORWARD, sonar_defaults
+from hil_sim.bench.stats import count_bound_high, quantile, share_bound_low, share_interval
+
+Record = dict[str, Any]
+KINDS: Final = tuple(BOUND_S)
+NOT_FOUND: Final = "not found"
+SURE: Final = ("off", "stuck", "garbage", "slow")
+"""Kinds of which 99 % must be found; of the others 97 %."""
+HARD: Final = ("wrong", "intermittent")
+QUICK: Final = ("off", "garbage", "slow")
+"""Kinds that must be found within 2 s (median) and 10 s (p99); the others within 5 s and 30 s."""
+SLOWER: Final = ("silent", "stuck", "wrong", "intermittent")
+
+
+@dataclass(frozen=True)
+class Bar:
+    """One line of the table that decides. verdict: pass, open (the value clears it, its 95 % bound does not), fail."""
+
+    name: str
+    bar: str
+    value: float | None
+    bound: float | None
+    unit: str
+    cases: int
+    verdict: str
+
+
+def summarise(records: Iterable[Record]) -> dict[str, Any]:
+    """Return the figures of all profiles, and of each point of a sensitivity sweep."""
+    good = [record for record in records if record["error"] is None]
+    profiles = list(dict.fromkeys(record["profile"] for record in good))
+    result: dict[str, Any] = {"profiles": {}, "sensitivity": []}
+    for profile in profiles:
+        own = [record for record in good if record["profile"] == profile]
+        result["profiles"][profile] = figures([record for record in own if not record["sonar"]])
+        swept = sorted({tuple(sorted(record["sonar"].items())) for record in own if record["sonar"]})
+        for point in [((name, value),) for name, value in sonar_defaults().items()] if swept else []:
+            part = [record for record in own if not record["sonar"]]
+            result["sensitivity"].append(_point(profile, point, part))
+        for point in swept:
+            part = [record for record in own if tuple(sorted(record["sonar"].items())) == point]
+            result["sensitivity"].append(_point(profile, point, part))
+    return result
+
+
+def _point(profile: str, point: tuple[tuple[str, float], ...], records: Sequence[Record]) -> dict[str, Any]:
+    whole = figures(records)
+    return {
+        "profile": profile,
+        "parameter": point[0][0],
+        "value": point[0][1],
+        "found": {kind: row["rate"] for kind, row in whole["kinds"].items() if row["judged"]},
+        "found_all": whole["all"]["rate"],
+        "found_interval": whole["all"]["interval"],
+        "false_per_100h": whole["false_disables"]["per_100h"],
+        "false_per_100h_high": whole["false_disables"]["per_100h_high"],
+        "hours": whole["false_disables"]["hours"],
+    }
+
+
+def figures(records: Sequence[Record]) -> dict[str, Any]:
+    """Return the figures of one profile."""
+    faults = [
+        fault | {"place": r["place"], "variant": r["variant"]} for r in records for fault in r["faults"]
+    ]
+    free = [record for record in records if record["variant"].startswith("free")]
+    hours = sum(record["driving_s"] for record in records) / 3600
+    result: dict[str, Any] = {
+        "missions": len(records),
+        "driving_hours": round(hours, 3),
+        "not_injected": sum(not r["faults"] for r in records if not r["variant"].startswith("free")),
+        "reached": {
+            "fault-free": _share(sum(r["reached"] for r in free), len(free)),
+            "with faults": _share(
+                sum(r["reached"] for r in records) - sum(r["reached"] for r in free), len(records) - len(free)
+            ),
+        },
+        "kinds": {kind: _detection([f for f in faults if f["kind"] == kind]) for kind in KINDS},
+        "pairs": _detection([f for f in faults if f["variant"] == "pair"]),
+        "variants": {
+            name: _detection([f for f in faults if f["variant"] == name])
+            for name in sorted({f["variant"] for f in faults})
+        },
+        "all": _detection(faults),
+        "confusion": _confusion(faults, records),
+        "false_disables": _false(free),
+        "false_disables_with_faults": _false([r for r in records if r not in free]),
+        "rehabilitation": _rehabilitation(faults),
+        "verification": _verification(records),
+        "collisions": _collisions(records),
+    }
+    result["bars"] = [asdict(bar) for bar in bars(result, faults)]
+    return result
+
+
+def _share(hits: int, total: int) -> dict[str, Any]:
+    return {
+        "hits": hits,
+        "of": total,
+        "rate": _r(hits / total) if total else None,
+        "low": _r(share_bound_low(hits, total)),
+        "interval": [_r(v) for v in share_interval(hits, total)],
+    }
+
+
+def _detection(faults: Sequence[Record]) -> dict[str, Any]:
+    judged = [fault for fault in faults if fault["apart"] is None]
+    ahead = [fault for fault in judged if fault["sonar"] in FORWARD]
+    found = [fault for fault in judged if fault["found"]]
+    seen = [fault for fault in judged if fault["latency_s"] is not None]
+    rooms = [fault for fault in seen if fault["place"] == "room"]
+    whole = _share(len(found), len(judged))
+    strict = [f for f in faults if f["apart"] in (None, "not shown") and f["visible_s"] is not None]
+    return {
+        "injected": len(faults),
+        "apart": dict(Counter(fault["apart"] for fault in faults if fault["apart"])),
+        "judged": len(judged),
+        "found": len(found),
+        "late": len(seen) - len(found),
+        "never": len(judged) - len(seen),
+        "rate": whole["rate"],
+        "low": whole["low"],
+        "interval": whole["interval"],
+        "forward": _share(sum(fault["found"] for fault in ahead), len(ahead)),
+        "visible_once": _share(sum(fault["found"] for fault in strict), len(strict)),
+        "named": _share(sum(fault["named"] == fault["kind"] for fault in found), len(found)),
+        "named_end": _share(sum(fault["named_end"] == fault["kind"] for fault in found), len(found)),
+        "latency_s": _spread([fault["latency_s"] for fault in rooms]),
+        "latency_mm": _spread([fault["latency_mm"] for fault in rooms]),
+        "latency_s_everywhere": _spread([fault["latency_s"] for fault in seen]),
+    }
+
+
+def _spread(values: Sequence[float]) -> dict[str, Any]:
+    return {"n": len(values), "median": quantile(values, 0.5), "p99": quantile(values, 0.99)}
+
+
+def _confusion(faults: Sequence[Record], records: Sequence[Record]) -> dict[str, dict[str, int]]:
+    """Injected kind to named kind, of those judged; the row `none` counts the false disables."""
+    table: dict[str, dict[str, int]] = {}
+    for kind in KINDS:
+        judged = [f for f in faults if f["kind"] == kind and f["apart"] is None]
+        table[kind] = dict(Counter(f["named"] if f["found"] else NOT_FOUND for f in judged))
+    table["none"] = dict(Counter(one["kind"] for record in records for one in record["false_disables"]))
+    return table
+
+
+def _false(records: Sequence[Record]) -> dict[str, Any]:
+    count = sum(len(record["false_disables"]) for record in records)
+    hours = sum(record["driving_s"] for record in records) / 3600
+    return {
+        "count": count,
+        "hours": round(hours, 3),
+        "missions": len(records),
+        "per_100h": round(100 * count / hours, 3) if hours else None,
+        "per_100h_high": round(100 * count_bound_high(count) / hours, 3) if hours else None,
+    }
+
+
+def _rehabilitation(faults: Sequence[Record]) -> dict[str, Any]:
+    counts = Counter(fault["rehabilitation"] for fault in faults if fault["rehabilitation"])
+    tried = counts["back"] + counts["late"] + counts["never"]
+    times = [f["rehabilitated_s"] for f in faults if f["rehabilitated_s"] is not None]
+    return _share(counts["back"], tried) | {"counts": dict(counts), "driving_s": _spread(times)}
+
+
+def _verification(records: Sequence[Record]) -> dict[str, Any]:
+    hours = sum(record["driving_s"] for record in records) / 3600
+
+    def per_hour(name: str) -> float | None:
+        return round(sum(record[name] for record in records) / hours, 2) if hours else None
+
+    return {
+        "stops_per_h": per_hour("stops"),
+        "verifications_per_h": per_hour("verifications"),
+        "verifying_s_per_h": per_hour("verifying_s"),
+    }
+
+
+def _collisions(records: Sequence[Record]) -> dict[str, int]:
+    hit = [record for record in records if record["collisions"]]
+    return {
+        "missions": len(records),
+        "attributable": sum(record["attributable"] for record in hit),
+        "undetected": sum(record["undetected"] for record in hit),
+        "other": sum(not record["attributable"] for record in hit),
+        "struck": sum(record["struck"] for record in records),
+    }
+
+
+# ---- the bars ---------------------------------------------------------------------------------------------------
+
+
+def bars(figure: Record, faults: Sequence[Record]) -> list[Bar]:
+    """Return the table that decides, in the order in which it was asked for."""
+
+    def of(kinds: Sequence[str]) -> dict[str, Any]:
+        return _detection([fault for fault in faults if fault["kind"] in kinds])
+
+    def at_least(name: str, share: Record, least: float) -> Bar:
+        return _at_least(name, share["rate"], share["low"], share["of"], least)
+
+    sure, hard = of(SURE), of(HARD)
+    rows = [
+        _at_least("found: off, stuck, garbage, slow", sure["rate"], sure["low"], sure["judged"], 0.99),
+        _at_least("found: wrong, intermittent", hard["rate"], hard["low"], hard["judged"], 0.97),
+        at_least("kind named correctly when found", figure["all"]["named"], 0.95),
+    ]
+    false = figure["false_disables"]
+    rows.append(
+        _at_most(
+            "false disables in 100 fault-free robot hours",
+            false["per_100h"],
+            false["per_100h_high"],
+            false["missions"],
+            1.0,
+            "",
+        )
+    )
+    for kinds, median, p99 in ((QUICK, 2.0, 10.0), (SLOWER, 5.0, 30.0)):
+        spread = of(kinds)["latency_s"]
+        for part, limit in (("median", median), ("p99", p99)):
+            rows.append(
+                _at_most(
+                    f"latency {part} in rooms: {', '.join(kinds)}",
+                    spread[part],
+                    spread[part],
+                    spread["n"],
+                    limit,
+                    "s",
+                )
+            )
+    rows.append(at_least("repaired sonar HEALTHY within 60 s of driving", figure["rehabilitation"], 0.95))
+    hits, missions = figure["collisions"]["undetected"], figure["missions"]
+    rows.append(
+        Bar(
+            "collisions attributable to an undetected fault",
+            "0 in 1000 missions",
+            float(hits),
+            None,
+            "",
+            missions,
+            "fail" if hits else "pass" if missions >= 1000 else "open",
+        )
+    )
+    return rows
+
+
+def _at_least(name: str, value: float | None, low: float, cases: int, least: float) -> Bar:
+    return _bar(name, f">= {100 * least:g} %", value, low, "%", cases, lambda v: v >= least)
+
+
+def _at_most(name: str, value: float | None, high: float | None, cases: int, most: float, unit: str) -> Bar:
+    return _bar(name, f"<= {most:g} {unit}".rstrip(), value, high, unit, cases, lambda v: v <= most)
+
+
+def _bar(
+    name: str,
+    bar: str,
+    value: float | None,
+    bound: float | None,
+    unit: str,
+    cases: int,
+    clears: Callable[[float], bool],
+) -> Bar:
+    if value is None or not cases:
+        verdict = "open"
+    elif not clears(value):
+        verdict = "fail"
+    else:
+        verdict = "pass" if bound is not None and clears(bound) else "open"
+    return Bar(name, bar, value, bound, unit, cases, verdict)
+
+
+def _r(value: float) -> float:
+    return round(value, 5)

@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: MIT
+"""The judge of one bench mission: what was found, when, what it was called, and what was wrongly given up."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any, Final
+
+from hil_sim.sil import VISIBLE_MM, VISIBLE_PART, FaultTruth, Outcome, Sighting, Sil
+
+BOUND_S: Final[Mapping[str, float]] = {
+    "off": 10.0,
+    "silent": 30.0,
+    "stuck": 30.0,
+    "wrong": 30.0,
+    "garbage": 10.0,
+    "slow": 10.0,
+    "intermittent": 30.0,
+}
+"""Within this time from the first visible reading a fault must be found: the p99 bounds."""
+SHOWN_READINGS: Final = 3
+"""A fault with fewer visible readings in its whole life could not show: nobody tells one or two from crosstalk.
+
+A sonar that is DISABLED fires no more, so the rule sets none apart that was DISABLED while it failed.
+"""
+FALSE_AFTER_S: Final = 10.0
+"""A sonar DISABLED this long after its fault has ended is a false disable."""
+REPAIRED_DRIVING_S: Final = 60.0
+DISABLED: Final = "DISABLED"
+HEALTHY: Final = "HEALTHY"
+_SAYS_NOTHING: Final = (HEALTHY, "UNKNOWN")
+_MOVING_MM_S: Final = 5.0
+_TURNING_DEG_S: Final = 1.0
+
+Change = tuple[float, str, str]
+
+
+@dataclass
+class Track:
+    """What the judge notes with each SIP: way and driving time, and the visible readings of the faulty sonars."""
+
+    t_s: list[float] = field(default_factory=list)
+    driven_mm: list[float] = field(default_factory=list)
+    driving_s: list[float] = field(default_factory=list)
+    visible_s: dict[int, list[float]] = field(default_factory=dict)
+    missing: tuple[int, ...] = ()
+
+    def __call__(self, sil: Sil, sighting: Sighting) -> None:
+        """Take a SIP; pass the track itself as `trace`."""
+        robot = sil.robot
+        before_t = self.t_s[-1] if self.t_s else sighting.t_s
+        before = self.driving_s[-1] if self.driving_s else 0.0
+        moves = abs(robot.v) > _MOVING_MM_S or abs(robot.w) > _TURNING_DEG_S
+        self.t_s.append(sighting.t_s)
+        self.driven_mm.append(robot.travelled_mm)
+        self.driving_s.append(before + (sighting.t_s - before_t if moves else 0.0))
+        for reading in sighting.readings:
+            if getattr(reading, "fault", None) is not None and is_visible(reading):
+                self.visible_s.setdefault(reading.number, []).append(reading.t_ms / 1000)
+
+    def driving_at(self, t_s: float) -> float:
+        """Return the time in motion up to a moment."""
+        return self._at(self.driving_s, t_s)
+
+    def driven_at(self, t_s: float) -> float:
+        """Return the way driven up to a moment."""
+        return self._at(self.driven_mm, t_s)
+
+    def _at(self, values: Sequence[float], t_s: float) -> float:
+        place = bisect_right(self.t_s, t_s)
+        return values[place - 1] if place else 0.0
+
+
+def is_visible(reading: Any) -> bool:
+    """Whether a reading is off by more than max(100 mm, 5 %)."""
+    return bool(abs(reading.range_mm - reading.true_mm) > max(VISIBLE_MM, VISIBLE_PART * reading.true_mm))
+
+
+def health_at(changes: Sequence[Change], t_s: float) -> tuple[str, str]:
+    """Return health and kind of a sonar at a moment."""
+    now = ("UNKNOWN", "")
+    for at, health, kind in changes:
+        if at > t_s:
+            break
+        now = (health, kind)
+    return now
+
+
+def detection(
+    changes: Sequence[Change], kind: str, begin_s: float, end_s: float
+) -> tuple[float, str, str] | None:
+    """Return when a sonar was first DISABLED, or named with this kind, from begin to end; health and kind then.
+
+    A sonar that was DISABLED before it failed says nothing about the fault; the judge sets such cases apart.
+    """
+    for at, health, named in changes:
+        if begin_s <= at <= end_s and (health == DISABLED or (named == kind and health not in _SAYS_NOTHING)):
+            return at, health, named
+    return None
+
+
+def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, Any]:
+    """Return the record of one injected fault."""
+    changes = outcome.health[truth.sonar]
+    end_s = truth.end_s if truth.end_s is not None else outcome.t_s
+    bound_s = BOUND_S[truth.kind]
+    record: dict[str, Any] = {
+        "kind": truth.kind,
+        "sonar": truth.sonar,
+        "text": truth.text,
+        "onset_s": _r(truth.onset_s),
+        "end_s": _r(truth.end_s),
+        "visible_s": _r(truth.first_visible_s),
+        "visible_n": _visible_count(truth, track, end_s),
+        "apart": None,
+        "found": False,
+        "named": None,
+        "named_end": None,
+        "latency_s": None,
+        "latency_mm": None,
+        "latency_readings": None,
+        "rehabilitated_s": None,
+        "rehabilitation": None,
+    }
+    first_s = truth.first_visible_s
+    found = detection(changes, truth.kind, truth.onset_s, end_s)
+    if health_at(changes, truth.onset_s)[0] == DISABLED:
+        record["apart"] = "disabled before"
+    elif first_s is None or (found is None and record["visible_n"] < SHOWN_READINGS):
+        record["apart"] = "not shown"
+    elif end_s - first_s < bound_s:
+        record["apart"] = "ended early"
+    if found is not None:
+        at, _, named = found
+        since = first_s if first_s is not None else at
+        record["latency_s"] = _r(max(0.0, at - since))
+        record["latency_mm"] = _r(max(0.0, track.driven_at(at) - track.driven_at(since)))
+        seen = track.visible_s.get(truth.sonar, [])
+        record["latency_readings"] = bisect_right(seen, at) - bisect_right(seen, truth.onset_s)
+        record["found"] = record["latency_s"] <= bound_s
+        record["named"] = named or "none"
+        record["named_end"] = _kind_at_end(changes, truth.onset_s, end_s) or "none"
+    _judge_repair(record, truth, outcome, track)
+    return record
+
+
+def _visible_count(truth: FaultTruth, track: Track, end_s: float) -> int:
+    if truth.kind == "silent":
+        # A missing reading is in no SIP; each slot from the first one on is one.
+        return 0 if truth.first_visible_s is None else 1 + int((end_s - truth.first_visible_s) / 0.32)
+    seen = track.visible_s.get(truth.sonar, [])
+    return bisect_right(seen, end_s) - bisect_right(seen, truth.onset_s)
+
+
+def _kind_at_end(changes: Sequence[Change], onset_s: float, end_s: float) -> str:
+    """The last kind that the sonar was given while the fault was there."""
+    kinds = [kind for at, health, kind in changes if onset_s <= at <= end_s and health == DISABLED]
+    return kinds[-1] if kinds else ""
+
+
+def _judge_repair(record: dict[str, Any], truth: FaultTruth, outcome: Outcome, track: Track) -> None:
+    """Whether a sonar that was not HEALTHY when its fault ended came back within 60 s of driving."""
+    if truth.end_s is None or record["apart"] == "disabled before":
+        return
+    changes = outcome.health[truth.sonar]
+    if not any(truth.onset_s <= at <= truth.end_s and health == DISABLED for at, health, _ in changes):
+        return
+    if health_at(changes, truth.end_s)[0] == HEALTHY:
+        return
+    start = track.driving_at(truth.end_s)
+    back = next((at for at, health, _ in changes if at > truth.end_s and health == HEALTHY), None)
+    if back is not None:
+        took = track.driving_at(back) - start
+        record["rehabilitated_s"] = _r(took)
+        record["rehabilitation"] = "back" if took <= REPAIRED_DRIVING_S else "late"
+    elif track.driving_at(outcome.t_s) - start < REPAIRED_DRIVING_S:
+        record["rehabilitation"] = "ended early"
+    else:
+        record["rehabilitation"] = "never"
+
+
+def false_disables(outcome: Outcome) -> list[dict[str, Any]]:
+    """Return each entry of a sonar into DISABLED with no fault of it active in the last 10 s."""
+    result = []
+    for sonar, changes in enumerate(outcome.health):
+        spans = [
+            (truth.onset_s, (truth.end_s if truth.end_s is not None else outcome.t_s) + FALSE_AFTER_S)
+            for truth in outcome.truth
+            if truth.sonar == sonar
+        ]
+        for before, (at, health, kind) in pairwise([(0.0, "UNKNOWN", ""), *changes]):
+            if health != DISABLED or before[1] == DISABLED:
+                continue
+            if not any(begin <= at <= end for begin, end in spans):
+                result.append({"t_s": _r(at), "sonar": sonar, "kind": kind or "none"})
+    return result
+
+
+def judge(outcome: Outcome, track: Track, twin: Outcome | None) -> dict[str, Any]:
+    """Return the record of a mission; `twin`: the same mission without faults, where a collision asked for it."""
+    faults = [judge_fault(truth, outcome, track) for truth in outcome.truth]
+    hits = [hit for hit in outcome.collisions if not hit.struck]
+    twin_hits = [hit for hit in twin.collisions if not hit.struck] if twin is not None else hits
+    attributable = bool(hits) and bool(outcome.truth) and not twin_hits
+    return {
+        "t_s": _r(outcome.t_s),
+        "driving_s": _r(outcome.driving_s),
+        "driven_mm": _r(outcome.driven_mm),
+        "reached": outcome.reached,
+        "goal_mm": _r(outcome.goal_mm),
+        "faults": faults,
+        "false_disables": false_disables(outcome),
+        "collisions": [[_r(hit.t_s), _r(hit.x), _r(hit.y)] for hit in hits],
+        "struck": len(outcome.collisions) - len(hits),
+        "attributable": attributable,
+        "undetected": attributable and _undetected(outcome, hits[0].t_s),
+        "stops": outcome.stops,
+        "verifications": outcome.verifications,
+        "verifying_s": _r(outcome.verifying_s),
+        "digest": outcome.digest,
+    }
+
+
+def _undetected(outcome: Outcome, t_s: float) -> bool:
+    """Whether a fault was there at a moment that had not been found."""
+    return any(
+        truth.onset_s <= t_s
+        and (truth.end_s is None or t_s < truth.end_s)
+        and health_at(outcome.health[truth.sonar], t_s)[0] != DISABLED
+        for truth in outcome.truth
+    )
+
+
+def _r(value: float | None) -> float | None:
+    return None if value is None else round(value, 3)

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""Runs many missions at a time: in processes of this machine, or on a Dask cluster; a dead worker costs nothing."""
+
+from __future__ import annotations
+
+import importlib
+import multiprocessing
+import signal
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from typing import Any, Final
+
+from hil_sim.bench.plan import parse_id
+from hil_sim.bench.work import Record, failed, work
+from hil_sim.errors import LinkError, SimError
+
+AHEAD: Final = 4
+"""Missions handed out for each worker: enough that none waits for the next."""
+_LIVES: Final = 2
+"""A mission that was running each time so many workers died is taken to have killed them."""
+_CLUSTER_LIVES: Final = 100
+
+Work = Callable[[str], Record]
+
+
+def _ignore_interrupt() -> None:
+    # Ctrl-C goes to the whole group; the parent ends its workers when it has written what is done.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def run_here(ids: Sequence[str], jobs: int, run: Work = work) -> Iterator[Record]:
+    """Yield the record of each id as it comes, from `jobs` processes; in this process when that is 1."""
+    if jobs <= 1:
+        yield from map(run, ids)
+        return
+    waiting, deaths = deque(ids), dict.fromkeys(ids, 0)
+    while waiting:
+        # After a death one at a time until the culprit is known, so that no other mission is blamed.
+        suspects = [name for name in waiting if deaths[name]]
+        if suspects:
+            for name in suspects:
+                waiting.remove(name)
+            yield from _alone(suspects, deaths, waiting, run)
+        else:
+            yield from _together(waiting, jobs, deaths, run)
+
+
+def _pool(jobs: int) -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _ignore_interrupt)
+
+
+def _together(waiting: deque[str], jobs: int, deaths: dict[str, int], run: Work) -> Iterator[Record]:
+    pool = _pool(jobs)
+    running: dict[Future[Record], str] = {}
+    try:
+        while waiting or running:
+            while waiting and len(running) < AHEAD * jobs:
+                name = waiting.popleft()
+                running[pool.submit(run, name)] = name
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                record = future.result()
+                del running[future]
+                yield record
+    except BrokenProcessPool:
+        for name in running.values():
+            deaths[name] += 1
+            waiting.append(name)
+    finally:
+        _end(pool)
+
+
+def _alone(suspects: list[str], deaths: dict[str, int], waiting: deque[str], run: Work) -> Iterator[Record]:
+    while suspects:
+        pool = _pool(1)
+        try:
+            while suspects:
+                record = pool.submit(run, suspects[0]).result()
+                suspects.pop(0)
+                yield record
+        except BrokenProcessPool:
+            name = suspects.pop(0)
+            deaths[name] += 1
+            if deaths[name] >= _LIVES:
+                yield failed(parse_id(name), "the process that ran it died")
+            else:
+                waiting.append(name)
+        finally:
+            _end(pool)
+
+
+def _end(pool: ProcessPoolExecutor) -> None:
+    """End the workers now: what they have not finished is run again by --resume."""
+    processes = list((pool._processes or {}).values())
+    pool.shutdown(wait=False, cancel_futures=True)
+    for process in processes:
+        process.kill()
+    for process in processes:
+        process.join()
+
+
+def run_cluster(
+    ids: Sequence[str], address: str, files: Mapping[str, bytes], run: Any = work
+) -> Iterator[Record]:
+    """Yield the record of each id as it comes from the workers of a Dask scheduler.
+
+    A mission whose worker dies goes to another one. LinkError when nobody answers at the address.
+    """
+    try:
+        # Any: the package is optional, and its types are not complete.
+        dask: Any = importlib.import_module("distributed")
+    except ImportError:
+        raise SimError(
+            "--scheduler needs Dask, which is not installed: pip install 'argus-p3dx[cluster]'"
+        ) from None
+    try:
+        client = dask.Client(address, timeout=10, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise LinkError(
+            f"--scheduler {address}: nobody answers ({error}); start dask-scheduler there"
+        ) from error
+    with client:
+        shared = client.scatter(dict(files), broadcast=True) if files else None
+        waiting = deque(ids)
+        width = AHEAD * max(1, sum(client.nthreads().values()))
+
+        def submit() -> Any:
+            # Not pure: a second bench must not be handed the first one's results.
+            name = waiting.popleft()
+            future = client.submit(run, name, shared, pure=False, retries=_CLUSTER_LIVES)
+            names[future.key] = name
+            return future
+
+        names: dict[str, str] = {}
+        running = dask.as_completed([submit() for _ in range(min(width, len(waiting)))])
+        for future in running:
+            name = names.pop(future.key)
+            if future.status == "finished":
+                yield future.result()
+            else:
+                yield failed(parse_id(name), f"the cluster gave it up: {future.exception()}")
+            if waiting:
+                running.add(submit())

@@ -1,0 +1,495 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack (profile argus): a fault is convicted by the test made for it and by nothing else; what
+// is healthy is never convicted, whatever moves, is far, is smooth or echoes across.
+#include "argus/evidence.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "awareness/evidence_internal.h"
+#include "scene.h"
+#include "unity.h"
+
+#define LEGS 8
+#define SEEDS 3
+#define START_MS 0xFFFF8000u // the clock wraps in every tour
+
+static scene_t s;
+static char text[480];
+
+static const char *told(const char *what, int sonar, unsigned seed) {
+    snprintf(text, sizeof text, "%s, sonar %d, seed %u: %s", what, sonar, seed, scene_text(&s));
+    return text;
+}
+
+static void start(unsigned seed) {
+    scene_init(&s, seed, START_MS);
+    scene_office(&s);
+}
+
+// The fault begins on the way; nobody else may be convicted beside it.
+static void convicts(argus_fault_kind_t kind, int value) {
+    static const int sonars[] = {2, 4, 11};
+    for (unsigned seed = 1; seed <= SEEDS; seed++) {
+        for (int i = 0; i < 3; i++) {
+            start(seed * 16 + (unsigned)sonars[i]);
+            scene_tour(&s, 2);
+            scene_inject(&s, sonars[i], kind, value);
+            scene_tour(&s, LEGS);
+            for (int k = 0; k < ARGUS_SONARS; k++) {
+                TEST_ASSERT_EQUAL_MESSAGE(k == sonars[i] ? kind : ARGUS_KIND_NONE, s.convicted[k],
+                                          told(argus_kind_name(kind), sonars[i], seed));
+            }
+            TEST_ASSERT_EQUAL_STRING("", s.broken);
+        }
+    }
+}
+
+void test_off(void) {
+    convicts(ARGUS_KIND_OFF, 0);
+}
+
+void test_stuck(void) {
+    convicts(ARGUS_KIND_STUCK, 0);
+}
+
+void test_stuck_at_a_value_far_from_what_it_read(void) {
+    convicts(ARGUS_KIND_STUCK, 1730);
+}
+
+void test_wrong_by_half(void) {
+    convicts(ARGUS_KIND_WRONG, 50);
+}
+
+void test_garbage(void) {
+    convicts(ARGUS_KIND_GARBAGE, 0);
+}
+
+void test_intermittent(void) {
+    convicts(ARGUS_KIND_INTERMITTENT, 60);
+}
+
+static void stays_quiet(const char *what, void (*prepare)(void), void (*each_leg)(void)) {
+    for (unsigned seed = 1; seed <= 2 * SEEDS; seed++) {
+        start(seed);
+        prepare();
+        for (int leg = 0; leg < LEGS; leg++) {
+            if (each_leg != NULL) {
+                each_leg();
+            }
+            scene_tour(&s, 1);
+        }
+        TEST_ASSERT_TRUE_MESSAGE(scene_all_quiet(&s), told(what, -1, seed));
+        TEST_ASSERT_EQUAL_STRING("", s.broken);
+    }
+}
+
+static void as_it_is(void) {
+}
+
+static void rough_noise(void) {
+    s.noise_mm = 20;
+}
+
+static void smooth_walls(void) {
+    s.smooth_deg = 25;
+}
+
+static void much_crosstalk(void) {
+    s.crosstalk_permille = 30;
+}
+
+// Somebody walks across the way again and again, nearer than every wall.
+static void walk_across(void) {
+    const double side = scene_random(&s, 2) == 0 ? 1 : -1;
+    const double ahead = 700 + scene_random(&s, 900);
+    const double speed = 600 + scene_random(&s, 900);
+    const double along = s.th + side * 1.57;
+    s.person_r = 200;
+    s.person_x = s.x + ahead * cos(s.th) + 1500 * cos(along);
+    s.person_y = s.y + ahead * sin(s.th) + 1500 * sin(along);
+    s.person_vx = -speed * cos(along);
+    s.person_vy = -speed * sin(along);
+}
+
+void test_healthy_in_an_office_with_noise_and_crosstalk(void) {
+    stays_quiet("office", as_it_is, NULL);
+}
+
+void test_healthy_with_four_times_the_noise(void) {
+    stays_quiet("noise", rough_noise, NULL);
+}
+
+void test_healthy_with_three_times_the_crosstalk(void) {
+    stays_quiet("crosstalk", much_crosstalk, NULL);
+}
+
+void test_healthy_between_smooth_walls(void) {
+    stays_quiet("smooth", smooth_walls, NULL);
+}
+
+void test_healthy_while_somebody_walks_about(void) {
+    stays_quiet("person", as_it_is, walk_across);
+}
+
+// 5000 everywhere says nothing against anyone: not a name, not even with somebody who comes and goes.
+void test_an_open_hall_convicts_nobody(void) {
+    for (int person = 0; person < 2; person++) {
+        scene_init(&s, 5, START_MS);
+        for (int leg = 0; leg < LEGS; leg++) {
+            if (person != 0) {
+                walk_across();
+            }
+            scene_tour(&s, 1);
+        }
+        TEST_ASSERT_TRUE_MESSAGE(scene_all_quiet(&s), told("hall", -1, 5));
+        TEST_ASSERT_TRUE(person != 0 || s.named == 0);
+    }
+}
+
+// Who hears nothing at all where all others hear nothing either is not suspected of it; from a hall into a
+// room the same sonar is.
+void test_off_shows_only_where_others_hear(void) {
+    scene_init(&s, 7, START_MS);
+    s.noise_mm = 5;
+    s.fault[3].kind = ARGUS_KIND_OFF;
+    scene_tour(&s, LEGS);
+    TEST_ASSERT_TRUE(scene_all_quiet(&s));
+    TEST_ASSERT_EQUAL_HEX16(0, s.named);
+    scene_box(&s, s.x - 2500, s.y - 2500, s.x + 2500, s.y + 2500);
+    scene_tour(&s, LEGS);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, s.convicted[3]);
+}
+
+static void at_rest(uint32_t ms) {
+    scene_run(&s, ms);
+}
+
+// The first run without an echo, the first jump: a look may settle them, they prove nothing.
+void test_one_look_at_rest_convicts_nobody(void) {
+    for (unsigned seed = 1; seed <= SEEDS; seed++) {
+        start(seed);
+        at_rest(3000);
+        s.fault[3] = (scene_fault_t){ARGUS_KIND_OFF, 0};
+        s.fault[5] = (scene_fault_t){ARGUS_KIND_WRONG, 50};
+        at_rest(30000);
+        TEST_ASSERT_TRUE_MESSAGE(scene_all_quiet(&s), told("at rest", 3, seed));
+    }
+}
+
+// Of those that see one bearing the odd one is named, and nobody beside it.
+void test_the_odd_one_of_three_is_named(void) {
+    for (int sonar = 2; sonar <= 5; sonar++) {
+        start((unsigned)sonar);
+        s.crosstalk_permille = 0;
+        at_rest(3000);
+        s.fault[sonar] = (scene_fault_t){ARGUS_KIND_WRONG, 50};
+        for (int i = 0; i < 4; i++) {
+            scene_look(&s);
+        }
+        TEST_ASSERT_EQUAL_HEX16_MESSAGE(1u << sonar, s.named, told("named", sonar, (unsigned)sonar));
+    }
+}
+
+// Two that disagree, and nobody else: neither is named, however often and wherever they do.
+void test_two_without_a_third_witness_name_nobody(void) {
+    static const int pair[][2] = {{3, 4}, {7, 8}, {0, 15}, {1, 2}};
+    for (int i = 0; i < 4; i++) {
+        for (int liar = 0; liar < 2; liar++) {
+            start((unsigned)(10 + i));
+            s.crosstalk_permille = 0;
+            s.mute = ~(1u << pair[i][0] | 1u << pair[i][1]);
+            s.fault[pair[i][liar]] = (scene_fault_t){ARGUS_KIND_WRONG, 50};
+            scene_tour(&s, LEGS);
+            TEST_ASSERT_TRUE(s.e.disagreements > 0 || i == 3);
+            TEST_ASSERT_EQUAL_HEX16_MESSAGE(0, s.named, told("named", pair[i][liar], (unsigned)(10 + i)));
+            TEST_ASSERT_TRUE(scene_all_quiet(&s));
+        }
+    }
+}
+
+static int score_sum(int sonar) {
+    int sum = 0;
+    for (int test = 0; test < ARGUS_TESTS; test++) {
+        sum += s.e.of[sonar].score[test];
+    }
+    return sum;
+}
+
+void test_restart_forgets_the_trails_and_keeps_the_scores(void) {
+    start(3);
+    s.fault[3] = (scene_fault_t){ARGUS_KIND_WRONG, 50};
+    scene_look(&s);
+    scene_look(&s);
+    int before[ARGUS_SONARS];
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        before[i] = score_sum(i);
+    }
+    TEST_ASSERT_TRUE(s.e.of[3].score[ARGUS_TEST_VIEW] > 0);
+    argus_evidence_restart(&s.e);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        TEST_ASSERT_EQUAL(before[i], score_sum(i));
+        TEST_ASSERT_NULL(argus_trail_at(&s.e.of[i], 1));
+    }
+    const uint32_t compared = s.e.agreements + s.e.disagreements;
+    scene_turn(&s, 20); // onto bearings that were seen before: there is nothing to compare them with
+    at_rest(1500);
+    TEST_ASSERT_EQUAL_UINT32(compared, s.e.agreements + s.e.disagreements);
+    scene_look(&s);
+    TEST_ASSERT_TRUE(s.e.agreements + s.e.disagreements > compared);
+}
+
+void test_forgetting_one_sonar_leaves_the_others_alone(void) {
+    start(3);
+    s.fault[3] = (scene_fault_t){ARGUS_KIND_WRONG, 50};
+    scene_look(&s);
+    scene_look(&s);
+    const int other = score_sum(4);
+    argus_evidence_forget(&s.e, 3);
+    TEST_ASSERT_EQUAL(0, score_sum(3));
+    TEST_ASSERT_EQUAL(other, score_sum(4));
+    TEST_ASSERT_FALSE(argus_evidence_suspects(&s.e, 3));
+}
+
+// ---- pairs of views, by hand
+
+static int reading[ARGUS_SONARS];
+
+static void stand_at(double x, double y, double deg) {
+    s.x = x;
+    s.y = y;
+    s.th = deg * 3.14159265358979323846 / 180;
+}
+
+static void see(int sonar, int mm) {
+    reading[sonar] = mm;
+    for (int i = 0; i < 4; i++) {
+        scene_say(&s, 1u << sonar, reading);
+    }
+}
+
+static uint32_t compared_after(double x, double y, double deg, uint32_t wait_ms) {
+    scene_init(&s, 1, START_MS);
+    stand_at(0, 0, 0);
+    see(3, 1500); // on +10 degrees
+    const uint32_t before = s.e.agreements + s.e.disagreements;
+    TEST_ASSERT_EQUAL_UINT32(0, before);
+    s.t_ms += wait_ms;
+    stand_at(x, y, deg);
+    see(4, 1500); // on -10 degrees of its own heading
+    return s.e.agreements + s.e.disagreements;
+}
+
+void test_views_are_compared_on_one_bearing_from_one_place_only(void) {
+    TEST_ASSERT_TRUE(compared_after(0, 0, 20, 0) > 0); // the control: turned by the pitch of the ring
+    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 0, 40, 0));
+    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 0, -20, 0));
+    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 400, 20, 0));
+    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, -400, 20, 0));
+    TEST_ASSERT_EQUAL_UINT32(0, compared_after(1500, 0, 20, 0));
+    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 0, 20, 120000)); // long ago
+}
+
+void test_a_view_half_a_turn_away_is_of_another_bearing(void) {
+    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 0, -160, 0));
+    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 0, 160, 0));
+}
+
+// One pair in one place is one piece of evidence, however often it is seen.
+void test_the_same_pair_in_the_same_place_counts_once(void) {
+    scene_init(&s, 1, START_MS);
+    for (int i = 0; i < 40; i++) {
+        stand_at(0, 0, 0);
+        see(3, 3000);
+        stand_at(0, 0, 20);
+        see(4, 1000);
+    }
+    TEST_ASSERT_TRUE(s.e.disagreements > 0);
+    TEST_ASSERT_EQUAL_HEX16(0, s.named);
+    TEST_ASSERT_TRUE(scene_all_quiet(&s));
+}
+
+// ---- the trail, by hand
+
+// Drives straight at a wall; what sonar 3 says is `of` the firing number.
+static void drive_at_wall(int count, int (*of)(int n)) {
+    scene_init(&s, 1, START_MS);
+    s.v_mm_s = 200;
+    for (int n = 0; n < count; n++) {
+        for (int sip = 0; sip < 3; sip++) { // one firing in three SIPs
+            s.x += 20;
+            reading[3] = of(n);
+            scene_say(&s, sip == 0 ? 1u << 3 : 0u, reading);
+        }
+    }
+}
+
+static int true_to_the_way(int n) {
+    return 3000 - 59 * n;
+}
+
+static int late_by_eight(int n) {
+    return true_to_the_way(n < 12 ? n : n - 8);
+}
+
+static int the_same(int n) {
+    (void)n;
+    return 2000;
+}
+
+static int nearest(int n) {
+    (void)n;
+    return 100;
+}
+
+static int jumping(int n) {
+    static const int mm[] = {700, 2900, 1500, 4200, 300, 3500, 2200, 1000, 4700};
+    return mm[n * 4 % 9] + 13 * n; // none comes again
+}
+
+static int every_other_missing(int n) {
+    return n > 5 && n % 2 == 0 ? 5000 : true_to_the_way(n);
+}
+
+void test_a_range_that_shrinks_with_the_way_is_evidence_of_nothing(void) {
+    drive_at_wall(40, true_to_the_way);
+    TEST_ASSERT_FALSE(argus_evidence_suspects(&s.e, 3));
+}
+
+void test_a_trail_that_comes_again_is_late(void) {
+    drive_at_wall(22, late_by_eight);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, argus_evidence_names(&s.e, 3));
+}
+
+void test_a_range_that_stays_though_the_robot_drives_is_stuck(void) {
+    drive_at_wall(20, the_same);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, argus_evidence_convicts(&s.e, 3));
+}
+
+// What clips at the nearest range stays there for many reasons.
+void test_the_nearest_range_is_not_stuck(void) {
+    drive_at_wall(40, nearest);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_names(&s.e, 3));
+}
+
+void test_readings_that_match_none_before_are_garbage(void) {
+    drive_at_wall(40, jumping);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, argus_evidence_convicts(&s.e, 3));
+}
+
+void test_gaps_in_one_trail_are_dropouts(void) {
+    drive_at_wall(40, every_other_missing);
+    TEST_ASSERT_TRUE(s.e.of[3].score[ARGUS_TEST_DROPOUT] > 0);
+    TEST_ASSERT_EQUAL(0, s.e.of[3].score[ARGUS_TEST_GARBAGE]);
+    TEST_ASSERT_TRUE(s.convicted[3] == ARGUS_KIND_NONE || s.convicted[3] == ARGUS_KIND_INTERMITTENT);
+}
+
+// At rest an unchanged reading is what is expected.
+void test_the_same_reading_at_rest_is_not_stuck(void) {
+    scene_init(&s, 1, START_MS);
+    reading[3] = 1500;
+    for (int i = 0; i < 2000; i++) {
+        scene_say(&s, 1u << 3, reading);
+    }
+    TEST_ASSERT_EQUAL(0, s.e.of[3].score[ARGUS_TEST_STUCK]);
+    TEST_ASSERT_FALSE(argus_evidence_suspects(&s.e, 3));
+}
+
+// A wall beside a straight way: the same range again and again, if a little noise lives in it.
+void test_a_wall_along_the_way_is_not_stuck(void) {
+    scene_init(&s, 9, START_MS);
+    scene_box(&s, -3000, -900, 40000, 900);
+    s.noise_mm = 2;
+    s.v_mm_s = 200;
+    scene_run(&s, 60000);
+    TEST_ASSERT_TRUE_MESSAGE(scene_all_quiet(&s), told("corridor", 0, 9));
+}
+
+// ---- arithmetic
+
+static void run_from(uint32_t start_ms, int32_t x_mm, int32_t y_mm) {
+    scene_init(&s, 4, start_ms);
+    s.k.pose.x_mm = x_mm;
+    s.k.pose.y_mm = y_mm;
+    scene_office(&s);
+    s.fault[2] = (scene_fault_t){ARGUS_KIND_GARBAGE, 0};
+    s.fault[5] = (scene_fault_t){ARGUS_KIND_WRONG, 60};
+    scene_tour(&s, 5);
+}
+
+// The same tour elsewhere is the same tour: trails keep the place modulo 65,536 mm.
+void test_the_place_changes_nothing(void) {
+    static const int32_t places[][2] = {{32760, -32760}, {65530, 65530}, {-65530, 10}, {1000000, -1000000}};
+    static argus_case_t want[ARGUS_SONARS];
+    run_from(1000, 0, 0);
+    memcpy(want, s.e.of, sizeof want);
+    for (int i = 0; i < 4; i++) {
+        run_from(1000, places[i][0], places[i][1]);
+        for (int k = 0; k < ARGUS_SONARS; k++) {
+            TEST_ASSERT_EQUAL_INT16_ARRAY(want[k].score, s.e.of[k].score, ARGUS_TESTS);
+        }
+    }
+}
+
+void test_the_clock_may_wrap_at_any_moment(void) {
+    argus_fault_kind_t want[ARGUS_SONARS];
+    run_from(1000, 0, 0);
+    memcpy(want, s.convicted, sizeof want);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, want[2]);
+    for (uint32_t at = 1; at < 60000; at += 7013) {
+        run_from(UINT32_MAX - at, 0, 0);
+        TEST_ASSERT_EQUAL_MESSAGE(want[2], s.convicted[2], told("wrap", 2, at));
+        TEST_ASSERT_TRUE_MESSAGE(s.convicted[5] != ARGUS_KIND_NONE, told("wrap", 5, at));
+    }
+}
+
+static void shake(int i) {
+    const int sonar = (int)scene_random(&s, ARGUS_SONARS);
+    switch (scene_random(&s, 200)) {
+    case 0:
+        argus_evidence_restart(&s.e);
+        break;
+    case 1:
+        argus_evidence_acquit(&s.e, &s.k, sonar);
+        break;
+    case 2:
+        argus_evidence_forget(&s.e, sonar);
+        break;
+    case 3:
+        argus_sonar_set_health(&s.k.sonar[sonar], (argus_health_t)scene_random(&s, 6), ARGUS_KIND_NONE,
+                               s.k.sip_ms);
+        break;
+    case 4:
+        s.k.pose.x_mm = (int32_t)scene_random(&s, 4000000) - 2000000;
+        break;
+    case 5:
+        s.t_ms += scene_random(&s, 0x7FFFFFFFu);
+        break;
+    default:
+        s.x += scene_random(&s, 200);
+        s.th += scene_random(&s, 100) / 100.0;
+        s.v_mm_s = i % 50 < 25 ? 0 : scene_random(&s, 700);
+        s.w_rad_s = i % 7 == 0 ? scene_random(&s, 100) / 50.0 : 0;
+        break;
+    }
+}
+
+// Whatever the readings, the way and the times: every score stays within the bounds of its test.
+void test_scores_stay_within_their_bounds_whatever_is_read(void) {
+    static const int extreme[] = {0, 1, 100, 105, 106, 4999, 5000, 5001, 32767, 32768, 65535};
+    for (unsigned seed = 1; seed <= 5; seed++) {
+        scene_init(&s, seed, START_MS);
+        for (int i = 0; i < 4000; i++) {
+            shake(i);
+            for (int k = 0; k < ARGUS_SONARS; k++) {
+                const int kind = (int)scene_random(&s, 4);
+                reading[k] = kind == 0   ? extreme[scene_random(&s, 11)]
+                             : kind == 1 ? reading[k]
+                                         : (int)scene_random(&s, 5001);
+            }
+            scene_say(&s, scene_random(&s, 0x10000), reading);
+            TEST_ASSERT_EQUAL_STRING_MESSAGE("", s.broken, told("bounds", i, seed));
+        }
+    }
+}

@@ -1,0 +1,496 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack (profile argus): the manager acts on evidence. Every kind of fault is found on the way
+// and named, an open hall is none, a look ends on the heading that it began on, who is not cleared is covered
+// for, and a repaired sonar comes back on agreements alone.
+#include "argus/manager.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "awareness/evidence_internal.h"
+#include "robot.h"
+#include "unity.h"
+
+static robot_t robot;
+static char text[400];
+
+static void start(void) {
+    const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    robot_init(&robot, &config, 0xFFFF8000u);
+    robot.noise_mm = 5;
+}
+
+// Things all round, so that turning shows another range on every bearing.
+static void furnish(void) {
+    robot_box(&robot, -2500, -2300, 3300, 2500);
+    robot_box(&robot, 1800, 1200, 2300, 1700);
+    robot_box(&robot, 2300, -2300, 3300, -1400);
+    robot_box(&robot, -2500, 1500, -1500, 2500);
+    robot.world = robot_world_segments;
+}
+
+static void start_in_a_room(void) {
+    start();
+    furnish();
+}
+
+static void finish(void) {
+    TEST_ASSERT_EQUAL_STRING("", robot.violation);
+}
+
+static argus_health_t health(int sonar) {
+    return robot.argus.knowledge.sonar[sonar].health;
+}
+
+static const char *told(const char *what, int sonar) {
+    int used = snprintf(text, sizeof text, "%s, sonar %d, t %u ms, mode %s:", what, sonar,
+                        (unsigned)robot.t_ms, argus_mode_name(robot.argus.mode));
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (health(i) > ARGUS_HEALTHY && used < (int)sizeof text) {
+            used +=
+                snprintf(text + used, sizeof text - (size_t)used, " %d %s %s", i,
+                         argus_health_name(health(i)), argus_kind_name(robot.argus.knowledge.sonar[i].kind));
+        }
+    }
+    return text;
+}
+
+// To and fro until `enough`, or for so long.
+static bool drive_until(bool (*enough)(int sonar), int sonar, uint32_t ms) {
+    static const argus_point_t there[] = {{1000, 0}, {0, 700}, {-900, 0}, {0, -700}};
+    const uint32_t from = robot.t_ms;
+    for (int i = 0; robot.t_ms - from < ms; i++) {
+        robot_goal(&robot, there[i % 4].x_mm, there[i % 4].y_mm);
+        while (robot.t_ms - from < ms && robot.argus.mission == ARGUS_MISSION_RUNNING) {
+            if (enough(sonar)) {
+                return true;
+            }
+            robot_tick(&robot);
+        }
+        if (robot.argus.mission != ARGUS_MISSION_RUNNING) {
+            robot_run(&robot, 500);
+        }
+    }
+    return enough(sonar);
+}
+
+static bool never(int sonar) {
+    (void)sonar;
+    return false;
+}
+
+static bool is_disabled(int sonar) {
+    return health(sonar) == ARGUS_DISABLED;
+}
+
+// DISABLED, or a suspect with the name of its fault: it is not relied on from there.
+static bool is_found(int sonar) {
+    return robot.argus.knowledge.sonar[sonar].kind != ARGUS_KIND_NONE;
+}
+
+static bool is_healthy(int sonar) {
+    return health(sonar) == ARGUS_HEALTHY;
+}
+
+static int disabled_events_of_others(int sonar) {
+    int count = 0;
+    for (int i = 0; i < robot.events; i++) {
+        count += robot.event[i].id == ARGUS_EV_SONAR_DISABLED && robot.event[i].sonar != sonar;
+    }
+    return count;
+}
+
+// A suspect may yet be called otherwise; what it is disabled for is what it has.
+static void finds(robot_fault_t fault, int value, argus_fault_kind_t kind, bool (*found)(int sonar)) {
+    static const int sonars[] = {2, 3, 5, 12};
+    for (int i = 0; i < 4; i++) {
+        start_in_a_room();
+        robot.seed += (uint32_t)i * 7919u;
+        drive_until(never, 0, 12000);
+        robot.fault[sonars[i]] = fault;
+        robot.fault_value[sonars[i]] = value;
+        TEST_ASSERT_TRUE_MESSAGE(drive_until(found, sonars[i], 120000), told("not found", sonars[i]));
+        drive_until(never, 0, 20000); // the kind may become clearer
+        const bool right = robot.argus.knowledge.sonar[sonars[i]].kind == kind;
+        TEST_ASSERT_TRUE_MESSAGE(right || !is_disabled(sonars[i]), told("kind", sonars[i]));
+        TEST_ASSERT_EQUAL_MESSAGE(0, disabled_events_of_others(sonars[i]), told("others", sonars[i]));
+        finish();
+    }
+}
+
+void test_off_is_found(void) {
+    finds(ROBOT_OFF, 0, ARGUS_KIND_OFF, is_disabled);
+}
+
+void test_silent_is_found(void) {
+    finds(ROBOT_SILENT, 0, ARGUS_KIND_SILENT, is_disabled);
+}
+
+void test_stuck_is_found(void) {
+    finds(ROBOT_STUCK, 0, ARGUS_KIND_STUCK, is_disabled);
+}
+
+void test_wrong_is_found(void) {
+    finds(ROBOT_SCALE, 50, ARGUS_KIND_WRONG, is_disabled);
+}
+
+void test_garbage_is_found(void) {
+    finds(ROBOT_GARBAGE, 0, ARGUS_KIND_GARBAGE, is_disabled);
+}
+
+// Late by so many firings that its trail comes again clearly.
+void test_slow_is_found(void) {
+    finds(ROBOT_SLOW, 8, ARGUS_KIND_SLOW, is_found);
+}
+
+void test_intermittent_is_found(void) {
+    finds(ROBOT_DROPOUT, 40, ARGUS_KIND_INTERMITTENT, is_found);
+}
+
+void test_healthy_in_a_room_for_ten_minutes(void) {
+    start_in_a_room();
+    drive_until(never, 0, 600000);
+    TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_SONAR_DISABLED, 0), told("room", -1));
+    TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_GOAL_REACHED, 0) > 5);
+    finish();
+}
+
+// What the paper's rule takes for six dead sonars.
+void test_an_open_hall_is_driven_through(void) {
+    start();
+    robot_box(&robot, -30000, -30000, 30000, 30000);
+    robot.world = robot_world_segments;
+    TEST_ASSERT_TRUE(robot_goal(&robot, 6000, 0));
+    TEST_ASSERT_TRUE_MESSAGE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 240000), told("hall", -1));
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_SONAR_DISABLED, 0));
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_SONAR_DEAD, 0));
+    finish();
+}
+
+// S4: the heading of a look is the heading of the next step; and nothing translates in between.
+void test_a_look_begins_and_ends_on_one_heading_and_place(void) {
+    start_in_a_room();
+    int seen = 0;
+    TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 600));
+    for (int i = 0; i < 12000 && robot.argus.mission == ARGUS_MISSION_RUNNING; i++) {
+        if (i == 3000) {
+            robot.fault[3] = ROBOT_OFF;
+        }
+        robot_tick(&robot);
+        if (robot.argus.mode != ARGUS_MODE_VERIFYING || !robot.argus.inquiry.active) {
+            continue;
+        }
+        const double base = robot.argus.base_cdeg / 100.0;
+        const double x = robot.x, y = robot.y;
+        const int from = robot.commands;
+        while (robot.argus.mode == ARGUS_MODE_VERIFYING) {
+            robot_tick(&robot);
+        }
+        if (robot.argus.mode == ARGUS_MODE_CHECKING &&
+            robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 60000)) {
+            seen++;
+            TEST_ASSERT_FLOAT_WITHIN(3, 0, remainder(robot_heading_deg(&robot) - base, 360));
+            TEST_ASSERT_FLOAT_WITHIN(5, 0, hypot(robot.x - x, robot.y - y));
+            TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, from));
+        }
+    }
+    TEST_ASSERT_TRUE(seen > 0);
+    finish();
+}
+
+// Before a course's first metre all sonars are tried once.
+void test_the_first_metre_is_driven_after_a_look(void) {
+    start_in_a_room();
+    TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_LOOK, 0));
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0));
+    TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_HEAD, 0) >= 3);
+    finish();
+}
+
+// S6, S1: a suspect that a look has not cleared is planned for as if it were disabled, and stepped for.
+void test_a_suspect_that_stays_open_is_covered_by_the_plan(void) {
+    int open = 0;
+    for (int sonar = 1; sonar <= 6; sonar++) {
+        start_in_a_room();
+        robot.fault[sonar] = ROBOT_SCALE;
+        robot.fault_value[sonar] = 60;
+        robot_goal(&robot, 1500, 0);
+        for (int i = 0; i < 6000 && robot.argus.mission == ARGUS_MISSION_RUNNING && !is_disabled(sonar);
+             i++) {
+            robot_tick(&robot);
+            const bool verified = (robot.argus.awareness.verified >> sonar & 1u) != 0;
+            if (health(sonar) == ARGUS_SUSPECT && verified && robot.argus.mode != ARGUS_MODE_VERIFYING) {
+                open++;
+                TEST_ASSERT_TRUE_MESSAGE((robot.argus.plan.disabled >> sonar & 1u) != 0, told("plan", sonar));
+            }
+        }
+        finish(); // the watch compares every MOVE ahead with plan and sweeps
+    }
+    TEST_ASSERT_TRUE_MESSAGE(open > 0, "no suspect stayed open: the test shows nothing");
+}
+
+// A suspect behind is no reason to plan for what looks ahead, nor to say the plan again and again.
+void test_a_suspect_behind_leaves_the_plan_alone(void) {
+    start_in_a_room();
+    robot.fault[12] = ROBOT_SCALE;
+    robot.fault_value[12] = 60;
+    drive_until(is_disabled, 12, 90000);
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_PLAN, 0));
+    TEST_ASSERT_EQUAL_HEX16(0, robot.argus.plan.disabled);
+    finish();
+}
+
+// ---- the way back
+
+static void break_and_repair(int sonar) {
+    robot.fault[sonar] = ROBOT_OFF;
+    TEST_ASSERT_TRUE_MESSAGE(drive_until(is_disabled, sonar, 120000), told("not found", sonar));
+    robot.fault[sonar] = ROBOT_OK;
+}
+
+// Drives until it is healthy again; `way`: what it was on the way, a bit each.
+static void drive_back(int sonar, unsigned *way) {
+    static const argus_point_t there[] = {{1000, 0}, {0, 700}, {-900, 0}, {0, -700}};
+    for (int i = 0; i < 24 && !is_healthy(sonar); i++) {
+        robot_goal(&robot, there[i % 4].x_mm, there[i % 4].y_mm);
+        for (int n = 0; n < 3000 && robot.argus.mission == ARGUS_MISSION_RUNNING && !is_healthy(sonar); n++) {
+            robot_tick(&robot);
+            *way |= 1u << health(sonar);
+        }
+    }
+}
+
+void test_a_repaired_sonar_comes_back_over_probation(void) {
+    static const int sonars[] = {2, 4, 12};
+    for (int i = 0; i < 3; i++) {
+        unsigned way = 0;
+        start_in_a_room();
+        break_and_repair(sonars[i]);
+        const uint32_t before = robot.argus.evidence.agreements;
+        drive_back(sonars[i], &way);
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_HEALTHY, health(sonars[i]), told("back", sonars[i]));
+        TEST_ASSERT_TRUE_MESSAGE((way >> ARGUS_PROBATION & 1u) != 0, "straight from DISABLED to HEALTHY");
+        TEST_ASSERT_TRUE(robot.argus.evidence.agreements > before);
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, robot.argus.knowledge.sonar[sonars[i]].kind);
+        TEST_ASSERT_EQUAL_HEX16(0, robot.argus.plan.disabled);
+        finish();
+    }
+}
+
+// Time alone clears nobody.
+void test_nobody_comes_back_by_standing_still(void) {
+    start_in_a_room();
+    break_and_repair(3);
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_STOP, 0);
+    robot_run(&robot, 1000);
+    const argus_health_t before = health(3);
+    const int said = robot.events;
+    robot_run(&robot, 300000);
+    TEST_ASSERT_EQUAL(before, health(3));
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_SONAR_HEALTHY, said));
+    finish();
+}
+
+// One that is still broken never becomes healthy, though it be on probation at times.
+void test_a_broken_sonar_does_not_come_back(void) {
+    static const struct {
+        robot_fault_t fault;
+        int value;
+    } faults[] = {{ROBOT_OFF, 0}, {ROBOT_SCALE, 50}, {ROBOT_STUCK, 0}, {ROBOT_GARBAGE, 0}, {ROBOT_SILENT, 0}};
+    for (int i = 0; i < 5; i++) {
+        start_in_a_room();
+        robot.fault[3] = faults[i].fault;
+        robot.fault_value[3] = faults[i].value;
+        TEST_ASSERT_TRUE_MESSAGE(drive_until(is_disabled, 3, 120000), told("not found", 3));
+        const int said = robot.events;
+        drive_until(never, 0, 120000);
+        for (int n = said; n < robot.events; n++) {
+            TEST_ASSERT_FALSE_MESSAGE(robot.event[n].id == ARGUS_EV_SONAR_HEALTHY &&
+                                          robot.event[n].sonar == 3,
+                                      told("came back broken", 3));
+        }
+        finish();
+    }
+}
+
+// Comes back with so many agreements?
+static bool comes_back(int agreed) {
+    argus_sonar_t *sonar = &robot.argus.knowledge.sonar[3];
+    argus_sonar_set_health(sonar, ARGUS_PROBATION, ARGUS_KIND_OFF, robot.argus.now_ms - 600000);
+    robot.argus.evidence.of[3].agreed = (uint8_t)agreed;
+    robot.argus.failure = argus_failure_of(argus_out(&robot.argus.knowledge) & ARGUS_FORWARD_MASK);
+    robot_next_sip(&robot); // at rest nothing new is compared
+    return health(3) == ARGUS_HEALTHY;
+}
+
+// ... after it has failed once more.
+static int agreements_wanted(void) {
+    argus_sonar_set_health(&robot.argus.knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF,
+                           robot.argus.now_ms);
+    for (int agreed = 0; agreed <= UINT8_MAX; agreed++) {
+        if (comes_back(agreed)) {
+            return agreed;
+        }
+    }
+    return -1;
+}
+
+// Probation grows with each relapse, but not beyond what can be counted.
+void test_a_relapse_doubles_the_agreements_wanted(void) {
+    start_in_a_room();
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+    robot_run(&robot, 2000);
+    const int once = agreements_wanted();
+    TEST_ASSERT_TRUE(once > 0);
+    TEST_ASSERT_EQUAL(2 * once, agreements_wanted());
+    TEST_ASSERT_EQUAL(4 * once, agreements_wanted());
+    int last = 4 * once;
+    for (int i = 0; i < 300; i++) { // more often than a byte counts
+        const int wanted = agreements_wanted();
+        TEST_ASSERT_TRUE(wanted >= last);
+        last = wanted;
+    }
+}
+
+void test_a_relapse_is_counted(void) {
+    start_in_a_room();
+    for (int time = 1; time <= 2; time++) {
+        unsigned way = 0;
+        break_and_repair(3);
+        TEST_ASSERT_EQUAL(time, robot.argus.knowledge.sonar[3].disabled_times);
+        drive_back(3, &way);
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_HEALTHY, health(3), told("back", time));
+    }
+    finish();
+}
+
+// ---- what comes in between
+
+void test_a_link_that_stalls_during_a_look(void) {
+    start_in_a_room();
+    TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
+    for (int i = 0; i < 3000 && fabs(robot_heading_deg(&robot)) < 15; i++) {
+        robot_tick(&robot);
+    }
+    TEST_ASSERT_TRUE(robot.argus.inquiry.active);
+    robot.mute = true;
+    robot_run(&robot, 1500);
+    TEST_ASSERT_FALSE(robot.argus.inquiry.active);
+    robot.mute = false;
+    const int from = robot.commands;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_RESUMED, 2000));
+    for (int i = 0; i < ARGUS_SONARS; i++) { // whoever moved the robot in the gap: the trails begin anew
+        TEST_ASSERT_TRUE(robot.argus.evidence.of[i].trail_count <= 1);
+    }
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 60000));
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, from));
+    TEST_ASSERT_FLOAT_WITHIN(3, 0, robot_heading_deg(&robot));
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 90000));
+    finish();
+}
+
+void test_a_witness_that_dies_during_a_look(void) {
+    start_in_a_room();
+    robot_goal(&robot, 1500, 0);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+    robot_run(&robot, 1500);
+    robot.fault[3] = ROBOT_OFF;
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 20000));
+    robot.fault[2] = robot.fault[4] = ROBOT_SILENT;
+    TEST_ASSERT_TRUE_MESSAGE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 60000), told("look", 3));
+    TEST_ASSERT_TRUE(is_disabled(2) && is_disabled(4));
+    robot_run(&robot, 60000);
+    finish(); // the watch: no step without a plan for all that are not relied on
+}
+
+// S2 in spirit: what convicts a sonar that looks ahead while the robot drives stops it in the same call.
+void test_a_conviction_in_motion_is_answered_by_stop_in_the_same_call(void) {
+    for (int sonar = 1; sonar <= 6; sonar++) {
+        start_in_a_room();
+        robot_goal(&robot, 2000, 0);
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+        robot_run(&robot, 1500);
+        TEST_ASSERT_EQUAL(ARGUS_MODE_DRIVING, robot.argus.mode);
+        robot.argus.evidence.of[sonar].score[ARGUS_TEST_DROPOUT] = argus_bounds[ARGUS_TEST_DROPOUT].ceiling;
+        robot_next_sip(&robot);
+        TEST_ASSERT_TRUE_MESSAGE(is_disabled(sonar), told("conviction", sonar));
+        TEST_ASSERT_TRUE(robot.reply_length > 3);
+        TEST_ASSERT_EQUAL_HEX8(ARCOS_CMD_STOP, robot.reply[3]);
+        TEST_ASSERT_TRUE((robot.argus.plan.disabled >> sonar & 1u) != 0);
+        robot_run(&robot, 30000);
+        finish();
+    }
+}
+
+// S7: what is not relied on does not read clear, however far it reads.
+void test_no_backing_away_with_a_rear_sonar_that_is_out(void) {
+    static const argus_health_t out[] = {ARGUS_DISABLED, ARGUS_PROBATION};
+    for (int sonar = 8; sonar < ARGUS_SONARS; sonar++) {
+        for (int i = 0; i < 2; i++) {
+            start_in_a_room();
+            TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+            argus_sonar_set_health(&robot.argus.knowledge.sonar[sonar], out[i], ARGUS_KIND_WRONG,
+                                   robot.argus.now_ms);
+            robot.bumpers_front = 1 << 2;
+            robot_run(&robot, 8000);
+            TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_BACKING, 0));
+            finish();
+        }
+    }
+}
+
+// Watching only: it may judge, but it does not turn to look, and it does not stop what it does not drive.
+void test_passive_judges_and_moves_nothing(void) {
+    start_in_a_room();
+    argus_operator(&robot.argus, robot.start_ms, ARGUS_OP_PASSIVE, 0);
+    robot_run(&robot, 5000);
+    const int from = robot.commands;
+    robot.fault[3] = ROBOT_STUCK;
+    robot.fault[11] = ROBOT_SILENT;
+    for (int i = 0; i < 60; i++) { // somebody else drives
+        robot.motors = true;
+        robot.turning = true;
+        robot.heading += i % 8 < 4 ? 0.4 : -0.4;
+        robot_run(&robot, 1500);
+    }
+    TEST_ASSERT_TRUE(is_disabled(3));
+    TEST_ASSERT_TRUE(is_disabled(11));
+    for (int i = from; i < robot.commands; i++) {
+        const uint8_t c = robot.command[i].command;
+        TEST_ASSERT_FALSE(c == ARCOS_CMD_MOVE || c == ARCOS_CMD_HEAD || c == ARCOS_CMD_STOP);
+    }
+    finish();
+}
+
+// The operator's STOP stays: no look of its own accord.
+void test_no_look_after_the_operators_stop(void) {
+    start_in_a_room();
+    robot_goal(&robot, 1500, 0);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_STOP, 0);
+    robot_run(&robot, 3000);
+    const int from = robot.commands;
+    robot.fault[3] = ROBOT_OFF;
+    robot.fault[4] = ROBOT_GARBAGE;
+    robot_run(&robot, 60000);
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, from));
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, from));
+    finish();
+}
+
+void test_retest_takes_sonars_that_exist_and_a_session(void) {
+    const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    robot_init(&robot, &config, 0);
+    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 3, 0));
+    furnish();
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 16, robot.t_ms));
+    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 255, robot.t_ms));
+    TEST_ASSERT_TRUE(argus_retest(&robot.argus, 3, robot.t_ms));
+    robot_drain(&robot);
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 60000));
+    finish();
+}

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""Compiles the fault manager into a shared library where none was built, from the sources that came with the tools."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from pathlib import Path
+from typing import Final
+
+from argus_tools.formats.base import LogError
+
+_TREE: Final = Path(__file__).resolve().parents[2]
+_INSTALLED: Final = Path(sysconfig.get_path("data")) / "share" / "argus"
+_SHIM: Final = "tools/core_shim.c"
+_FLAGS: Final = ("-std=c11", "-O2", "-fPIC", "-shared")
+_PATIENCE_S: Final = 300
+HINT: Final = "set ARGUS_CORE to a libargus.so"
+
+
+def sources() -> Path:
+    """Return the folder that holds firmware/ and the shim: the source tree, or what pip installed."""
+    for place in (_TREE, _INSTALLED):
+        if (place / _SHIM).is_file() and (place / "firmware" / "include").is_dir():
+            return place
+    raise LogError(f"libargus.so is not built, and its sources are not here: {HINT}")
+
+
+def build(cache: Path | None = None) -> Path:
+    """Return a library made of the sources as they are, compiling it if that was not done before."""
+    root = sources()
+    files = sorted((root / "firmware").rglob("*.c"))
+    headers = sorted((root / "firmware").rglob("*.h"))
+    digest = hashlib.sha256(" ".join(_FLAGS).encode())
+    for file in (*files, *headers, root / _SHIM):
+        digest.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes())
+    folder = cache or _cache(root)
+    library = folder / f"libargus-{digest.hexdigest()[:16]}.so"
+    if not library.exists():
+        _compile(library, root, files)
+    return library
+
+
+def _cache(root: Path) -> Path:
+    if root == _TREE:
+        return root / "build" / "core"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "argus"
+
+
+def _compile(library: Path, root: Path, files: list[Path]) -> None:
+    words = os.environ.get("CC", "").split() or [next(filter(shutil.which, ("cc", "gcc", "clang")), "cc")]
+    if not shutil.which(words[0]):
+        raise LogError(f"libargus.so is not built, and there is no C compiler: install gcc, or {HINT}")
+    print(f"argus-log: compiling the fault manager, once, into {library}", file=sys.stderr)
+    includes = [f"-I{root / 'firmware' / 'include'}", f"-I{root / 'firmware'}"]
+    try:
+        library.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=library.parent) as folder:
+            made = Path(folder) / library.name
+            command = [*words, *_FLAGS, *includes, "-o", str(made), *map(str, files), str(root / _SHIM)]
+            done = subprocess.run(command, capture_output=True, text=True, timeout=_PATIENCE_S, check=False)
+            if done.returncode:
+                lines = (line for line in done.stderr.splitlines() if "error" in line)
+                first = next(lines, f"exit code {done.returncode}")
+                raise LogError(f"the fault manager does not compile ({first}); {HINT}")
+            made.replace(library)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise LogError(f"{library}: the fault manager cannot be compiled ({error}); {HINT}") from error
