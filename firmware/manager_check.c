@@ -199,6 +199,11 @@ static void drop_suspicions(argus_t *const self) {
     }
 }
 
+// While the course is paused nothing is looked at, but before an operator's step (S6).
+static bool may_verify(const argus_t *const self) {
+    return !self->passive && !(self->paused && self->mode == ARGUS_MODE_IDLE);
+}
+
 // The periodic health check beside the main task; true when it took over.
 bool argus_health_check(argus_t *const self) {
     if (!check_is_due(self)) {
@@ -213,7 +218,7 @@ bool argus_health_check(argus_t *const self) {
     if (suspects == 0 && !routine) {
         return false;
     }
-    if (self->passive || self->paused) {
+    if (!may_verify(self)) {
         argus_flag_suspects(self, suspects);
         return false;
     }

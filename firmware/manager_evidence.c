@@ -76,9 +76,12 @@ static uint8_t agreements_wanted(const argus_sonar_t *const s) {
     return (uint8_t)(PROBATION_AGREED << argus_min(s->relapses, PROBATION_DOUBLINGS));
 }
 
-// Off and wrong are what is left when nothing more definite shows.
-static bool is_better(const argus_fault_kind_t present, const argus_fault_kind_t found) {
-    const bool vague = present == ARGUS_KIND_OFF || present == ARGUS_KIND_WRONG;
+// Off and wrong are what is left when nothing more definite shows; one other value refutes stuck.
+static bool is_better(const argus_case_t *const c, const argus_fault_kind_t present,
+                      const argus_fault_kind_t found) {
+    const bool refuted = present == ARGUS_KIND_STUCK && c->score[ARGUS_TEST_STUCK] == 0;
+    const bool echoed = present == ARGUS_KIND_WRONG && found != ARGUS_KIND_OFF; // what echoed once is not off
+    const bool vague = present == ARGUS_KIND_OFF || echoed || refuted;
     return found != ARGUS_KIND_NONE && found != present && vague;
 }
 
@@ -87,13 +90,14 @@ static void judge_out(argus_t *const self, const int sonar) {
     const argus_fault_kind_t convicted = argus_evidence_convicts(&self->evidence, sonar);
     const argus_fault_kind_t named = argus_evidence_names(&self->evidence, sonar);
     const bool suspected = argus_evidence_suspects(&self->evidence, sonar);
-    if (is_better(s->kind, convicted) && s->health == ARGUS_DISABLED) {
+    if (is_better(&self->evidence.of[sonar], s->kind, convicted) && s->health == ARGUS_DISABLED) {
         s->kind = convicted;
         argus_say(self, ARGUS_EV_SONAR_KIND, sonar, (int32_t)convicted);
     }
     if (suspected) {
         if (s->health == ARGUS_PROBATION && named != ARGUS_KIND_NONE) {
             argus_disable(self, sonar, named);
+            self->evidence.of[sonar].agreed = 0;
         }
         return;
     }

@@ -18,6 +18,7 @@
 #define LATE_TRIALS 4
 #define LATE_TENTHS 8
 #define CONVICT_CONFLICTS 4
+#define CONVICT_BESIDE 3
 #define CONVICT_EPISODES 3 // what moves about the robot does not contradict the same sonar again later
 #define UNSEEN_MM 1500u
 #define USUAL_MS 2000u
@@ -165,6 +166,30 @@ static int partners(const argus_case_t *const c) {
     return distinct;
 }
 
+static int partner_at(const argus_case_t *const c, const int back) {
+    return c->refuted[(c->refuted_next + ARGUS_REFUTED - back) % ARGUS_REFUTED].partner;
+}
+
+static int conflicts_with(const argus_case_t *const c, const int partner, const int count) {
+    int same = 0;
+    for (int i = 1; i <= count; i++) {
+        same += partner_at(c, i) == partner ? 1 : 0;
+    }
+    return same;
+}
+
+// Conflicts, of the last ones counted, with others than the partner of most of them: a liar beside it is one
+// voice.
+static int beside_the_main(const argus_case_t *const c) {
+    const int count = argus_min(c->conflicts, ARGUS_REFUTED);
+    int most = 0;
+    for (int i = 1; i <= count; i++) {
+        const int partner = partner_at(c, i);
+        most = partner != ARGUS_SCAN_PARTNER ? argus_max(most, conflicts_with(c, partner, count)) : most;
+    }
+    return count - most;
+}
+
 static const uint8_t kind_of_test[ARGUS_TESTS] = {
     [ARGUS_TEST_OFF] = ARGUS_KIND_OFF,         [ARGUS_TEST_STUCK] = ARGUS_KIND_STUCK,
     [ARGUS_TEST_GARBAGE] = ARGUS_KIND_GARBAGE, [ARGUS_TEST_DROPOUT] = ARGUS_KIND_INTERMITTENT,
@@ -184,7 +209,8 @@ static bool is_named_by(const argus_case_t *const c, const argus_test_t test) {
 
 static bool is_convicted_by(const argus_case_t *const c, const argus_test_t test) {
     const bool enough =
-        !rests_on_views(test) || (c->conflicts >= CONVICT_CONFLICTS && c->episodes >= CONVICT_EPISODES);
+        !rests_on_views(test) || (c->conflicts >= CONVICT_CONFLICTS && c->episodes >= CONVICT_EPISODES &&
+                                  beside_the_main(c) >= CONVICT_BESIDE);
     return c->score[test] >= argus_bounds[test].convincing && enough && is_named_by(c, test);
 }
 

@@ -75,7 +75,7 @@ static picture_t gather(const argus_scan_t *const self, const argus_knowledge_t 
         const argus_scan_bin_t *const b = &self->bin[(k + ARGUS_SCAN_BINS) % ARGUS_SCAN_BINS];
         for (int i = 0; i < ARGUS_SCAN_DEPTH; i++) {
             const argus_scan_entry_t *const e = &b->entry[i];
-            const bool fresh = e->used && (uint16_t)(knowledge->sip_ms / 100 - e->t_ds) < SCAN_AGE_MS / 100;
+            const bool fresh = e->used && knowledge->sip_ms - e->t_ms < SCAN_AGE_MS;
             if (fresh && e->sonar != sonar && !argus_is_out(knowledge, e->sonar)) {
                 look_at(&picture, e, range_mm);
                 picture.sides |= e->range_mm < ARGUS_NO_ECHO_MM ? 1u << (k - bin + 1) : 0u;
@@ -118,7 +118,7 @@ static void remember(argus_scan_bin_t *const bin, const int sonar, const int32_t
     e->used = true;
     e->sonar = (uint8_t)sonar;
     e->range_mm = (uint16_t)range_mm;
-    e->t_ds = (uint16_t)(now_ms / 100);
+    e->t_ms = now_ms;
 }
 
 argus_scan_verdict_t argus_scan_take(argus_scan_t *const self, const argus_knowledge_t *const knowledge,

@@ -119,14 +119,17 @@ static int32_t spread_mm(const argus_case_t *const self, const argus_trail_t *co
     return most - least;
 }
 
-// A sonar that hands out its echoes late repeats what it has read already when the lag begins.
+// A sonar that hands out its echoes late repeats what it has read already when the lag begins. One value
+// again and again is no stretch of the past.
 static void test_replay(argus_case_t *const self, const argus_trail_t *const now) {
+    const argus_trail_t *const before = argus_trail_at(self, 1);
+    const bool new_value = before->reading_mm != now->reading_mm;
     for (int n = LAG_MIN; n < ARGUS_TRAIL; n++) {
         const argus_trail_t *const then = argus_trail_at(self, n);
         const bool same = then != NULL && is_echo(now) && then->reading_mm == now->reading_mm;
         if (!same) {
             self->lag_run[n] = 0;
-        } else if (spread_mm(self, now, n) >= LAG_SPREAD_MM && now->reading_mm > CLIPPED_MM) {
+        } else if (new_value && spread_mm(self, now, n) >= LAG_SPREAD_MM && now->reading_mm > CLIPPED_MM) {
             self->lag_run[n]++;
             if (self->lag_run[n] >= LAG_MIN) {
                 argus_score(self, ARGUS_TEST_LAG, self->lag_run[n] == LAG_MIN ? 2 * LAG_MATCH : LAG_MATCH);

@@ -116,6 +116,12 @@ def parser() -> argparse.ArgumentParser:
         "--policy", choices=("paper", "fewest"), default="paper", help="planner (default paper)"
     )
     result.add_argument(
+        "--profile",
+        choices=("argus", "paper"),
+        default="argus",
+        help="rules of the diagnosis (default argus)",
+    )
+    result.add_argument(
         "--world", choices=WORLDS, default="demo", help="smooth: smooth walls and 1 %% crosstalk"
     )
     result.add_argument(
@@ -174,7 +180,9 @@ def _prepare(arguments: argparse.Namespace, scenario: Scenario) -> Setup:
         (out / "course.csv").write_text(
             "# x_mm,y_mm\n" + "".join(f"{x:.0f},{y:.0f}\n" for x, y in scenario.course), encoding="utf-8"
         )
-        (out / "argusd.conf").write_text(f"profile = paper\npolicy = {arguments.policy}\n", encoding="utf-8")
+        (out / "argusd.conf").write_text(
+            f"profile = {arguments.profile}\npolicy = {arguments.policy}\n", encoding="utf-8"
+        )
         (out / "truth.jsonl").unlink(missing_ok=True)
     except OSError as error:
         raise SimError(f"{out}: {error.strerror}; name a folder that can be written with --out") from None

@@ -425,6 +425,24 @@ void test_a_conviction_in_motion_is_answered_by_stop_in_the_same_call(void) {
     }
 }
 
+// S6: a suspicion that comes up in the very SIP of an operator's step is looked at first.
+void test_a_jog_does_not_outrun_a_suspicion(void) {
+    for (int delay = 0; delay < 12; delay++) {
+        start_in_a_room();
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+        argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_STOP, 0);
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+        argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_MOVE, 200);
+        for (int i = 0; i < delay; i++) {
+            robot_next_sip(&robot);
+        }
+        robot.argus.evidence.lost |= 1u << 3;
+        robot_run(&robot, 20000);
+        TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_SONAR_SUSPECT, 0) > 0);
+        finish(); // the watch: no MOVE ahead beside a suspect that the plan does not cover
+    }
+}
+
 // S7: what is not relied on does not read clear, however far it reads.
 void test_no_backing_away_with_a_rear_sonar_that_is_out(void) {
     static const argus_health_t out[] = {ARGUS_DISABLED, ARGUS_PROBATION};

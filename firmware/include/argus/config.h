@@ -13,7 +13,7 @@
 // setting that is picked by name ("" for a number). A front end builds its parser and its help from this
 // table.
 #define ARGUS_CONFIG_TABLE(X)                                                                                \
-    X(profile, 0, 0, 1, "", "paper|argus", "rule set of the diagnosis")                                      \
+    X(profile, 1, 0, 1, "", "paper|argus", "rule set of the diagnosis")                                      \
     X(policy, 0, 0, 1, "", "paper|fewest", "planner of the compensating rotations")                          \
     X(active, 1, 0, 1, "", "off|on", "off: diagnose and report, never command a motion")                     \
     X(health_check_ms, 1000, 100, 10000, "ms", "", "period of the health check beside the main task")        \

@@ -49,8 +49,8 @@ typedef struct {
 #define ARGUS_SCAN_BINS 36
 #define ARGUS_SCAN_DEPTH 4
 typedef struct {
+    uint32_t t_ms;
     uint16_t range_mm;
-    uint16_t t_ds; // tenths of a second, low bits
     uint8_t sonar;
     bool used;
 } argus_scan_entry_t;

@@ -49,7 +49,7 @@ def test_the_drive_shows_what_the_text_says(tmp_path: Path) -> None:
     path.write_bytes(drive())
     rows = decode(path)
     assert sum(not row["ok"] for row in rows) == 1
-    told = run("faults", path).stdout.decode()
+    told = run("faults", path, "--profile", "paper").stdout.decode()
     assert re.search(r"sonar/front/03 SONAR_DEAD", told)
     assert re.search(r"sonar/front/04 SONAR_SUSPECT", told)
     assert re.search(r"sonar/front/06 SONAR_SUSPECT", told)

@@ -50,7 +50,8 @@ def write(path: Path, chunks: list[Chunk], format_: str = "record") -> Path:
 
 def faults(path: Path, capsys: pytest.CaptureFixture[str], *arguments: str) -> list[dict[str, Any]]:
     capsys.readouterr()
-    assert main(["faults", "--json", str(path), *arguments]) == 0
+    words = arguments if "--profile" in arguments else (*arguments, "--profile", "paper")
+    assert main(["faults", "--json", str(path), *words]) == 0
     lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert lines[-1]["event"] == "STATUS"
     return lines
@@ -167,7 +168,7 @@ def test_recorded_sessions_are_judged(name: str, capsys: pytest.CaptureFixture[s
 
 def test_the_table_for_people(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write(tmp_path / "a.rec", timed(sips(100, dead=[3], dead_at=50)))
-    assert main(["faults", str(path)]) == 0
+    assert main(["faults", "--profile", "paper", str(path)]) == 0
     out = capsys.readouterr().out
     assert "ERROR sonar/front/03 SONAR_DISABLED (off): not used any more\n" in out
     assert "\n    3  DISABLED  off       5000\n" in out

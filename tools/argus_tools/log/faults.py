@@ -177,7 +177,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_log_arguments(parser, follow=True)
     parser.add_argument("--json", action="store_true", help="one JSON object per line, as argusd --json")
-    parser.add_argument("--profile", default="paper", metavar="NAME", help="rule set (default: paper)")
+    parser.add_argument(
+        "--profile", default="argus", metavar="NAME", help="rule set (default: argus, as argusd)"
+    )
     parser.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="a setting, see argusd --list-config"
     )

@@ -116,6 +116,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)"
     )
     parser.add_argument(
+        "--profile", default="argus", metavar="NAME", help="rules that find what is shaded (default: argus)"
+    )
+    parser.add_argument(
         "--no-faults", action="store_true", help="shade nothing: do not run the fault manager"
     )
     add_time_arguments(parser)

@@ -68,10 +68,11 @@ def spans(happenings: Iterable[Happening], end: float) -> list[Span]:
     return found
 
 
-def _judge(rows: Iterable[Row], subclass: str | None) -> Iterator[Happening]:
+def _judge(rows: Iterable[Row], profile: str, subclass: str | None) -> Iterator[Happening]:
+    from argus_tools.core import setting_value
     from argus_tools.log.faults import Listener
 
-    listener = Listener({}, subclass)
+    listener = Listener({"profile": setting_value("profile", profile)}, subclass)
     for row in rows:
         for said in listener.take(row):
             if said.event.sonar is not None and said.t is not None:
@@ -93,7 +94,7 @@ def find_spans(args: argparse.Namespace) -> tuple[list[Span], str]:
             yield row
 
     try:
-        happenings = list(_judge(watched(), args.subclass))
+        happenings = list(_judge(watched(), args.profile, args.subclass))
     except (LogError, ImportError) as error:
         return [], f"not judged: {error}"
     return spans(happenings, last), ""
