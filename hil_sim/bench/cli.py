@@ -21,7 +21,8 @@ from typing import Any, Final, NoReturn, TextIO
 from argus_tools.core import LIBRARY_VARIABLE, library
 from argus_tools.formats.base import LogError
 
-from hil_sim.bench import plan, pool
+from hil_sim.bench import plan, pool, quick
+from hil_sim.bench.figures import summarise
 from hil_sim.bench.show import timeline
 from hil_sim.bench.store import RESULTS, Store
 from hil_sim.bench.work import run_case, world_files
@@ -30,6 +31,8 @@ from hil_sim.errors import SimError
 PROG: Final = "argus-sim bench diagnosis"
 EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
 _PROFILES: Final = "paper,argus"
+_WHAT: Final = ("worlds", "seeds", "profiles", "kinds", "every", "sensitivity", "split")
+"""What --one and --quick leave no choice of."""
 _EXAMPLES: Final = """\
 examples:
   argus-sim bench diagnosis --worlds office --seeds 1-20 --profiles argus --kinds off,wrong --out /tmp/x
@@ -198,8 +201,8 @@ def _terminated(number: int, frame: object) -> NoReturn:
     raise KeyboardInterrupt
 
 
-def run_cases(cases: Sequence[plan.Case], store: Store, arguments: argparse.Namespace) -> bool:
-    """Run the cases that have no result yet; False when it was interrupted."""
+def run_cases(cases: Sequence[plan.Case], store: Store, arguments: argparse.Namespace, core: str) -> bool:
+    """Run the cases that have no result yet, by the fault manager with this digest; False when interrupted."""
     todo = [case.id for case in cases if not store.done(case.id)]
     progress = Progress(len(cases), len(cases) - len(todo), sys.stderr)
     if not todo:
@@ -207,7 +210,7 @@ def run_cases(cases: Sequence[plan.Case], store: Store, arguments: argparse.Name
     before = signal.signal(signal.SIGTERM, _terminated)
     try:
         if arguments.scheduler:
-            records = pool.run_cluster(todo, arguments.scheduler, world_files(list(cases)))
+            records = pool.run_cluster(todo, arguments.scheduler, world_files(list(cases)), core)
         else:
             records = pool.run_here(todo, min(arguments.jobs, len(todo)))
         for record in records:
@@ -236,24 +239,43 @@ def _cases(arguments: argparse.Namespace) -> list[plan.Case]:
     )
 
 
-def _bench(arguments: argparse.Namespace) -> int:
+def _run(arguments: argparse.Namespace, cases: Sequence[plan.Case], out: Path) -> list[dict[str, Any]] | None:
+    """Run the cases and write the report; return their records, None when it was interrupted."""
     from hil_sim.bench.report import write_report
 
-    out = arguments.out or Path("bench-diagnosis")
-    cases = _cases(arguments)
     with fixed_core() as digest:
-        meta = {"core": digest, "split": arguments.split, "missions": len(cases)}
+        meta = {"core": digest, "split": cases[0].split, "missions": len(cases)}
         with Store(out, meta, resume=arguments.resume, fresh=arguments.fresh) as store:
-            finished = run_cases(cases, store, arguments)
-            if not finished:
+            if not run_cases(cases, store, arguments, digest):
                 _say(
                     f"interrupted; {len(store.records)} missions are in {out / RESULTS}, the same with --resume goes on"
                 )
-                return EXIT_INTERRUPTED
+                return None
             wanted = {case.id for case in cases}
             records = [record for name, record in store.records.items() if name in wanted]
     print(write_report(out, records, meta, plots=not arguments.no_plots), end="")
-    return _failures(records)
+    return records
+
+
+def _bench(arguments: argparse.Namespace) -> int:
+    records = _run(arguments, _cases(arguments), arguments.out or Path("bench-diagnosis"))
+    return EXIT_INTERRUPTED if records is None else _failures(records)
+
+
+def _quick(arguments: argparse.Namespace) -> int:
+    """The fixed bench against its bounds; without --out it leaves nothing."""
+    bounds = quick.load_bounds()
+    with tempfile.TemporaryDirectory(prefix="argus-bench-") as folder:
+        records = _run(arguments, quick.cases(), arguments.out or Path(folder))
+    if records is None:
+        return EXIT_INTERRUPTED
+    code = _failures(records)
+    broken = quick.broken(summarise(records), bounds)
+    for line in broken:
+        _say(line)
+    if broken:
+        _say(f"{len(broken)} bounds of {quick.BOUNDS} are broken")
+    return EXIT_FAILED if broken else code
 
 
 def _failures(records: Sequence[dict[str, Any]]) -> int:
@@ -273,6 +295,17 @@ def _one(text: str) -> int:
     return 0
 
 
+def _check(options: argparse.ArgumentParser, arguments: argparse.Namespace) -> None:
+    """Refuse arguments that another one makes void."""
+    fixed = [name for name in ("one", "quick") if getattr(arguments, name)]
+    given = [name for name in _WHAT if getattr(arguments, name) != options.get_default(name)]
+    if fixed and (given or len(fixed) > 1):
+        other = (given or fixed[1:])[0]
+        options.error(f"--{fixed[0]} has its own missions; leave --{other} out")
+    if arguments.resume and arguments.fresh:
+        options.error("--resume goes on with what --fresh throws away; give one of them")
+
+
 def main(argv: Sequence[str]) -> int:
     """Run `argus-sim bench ARGV`; return the exit code."""
     names = ("diagnosis",)
@@ -282,9 +315,13 @@ def main(argv: Sequence[str]) -> int:
             return 0
         _say(f"bench: name one of {', '.join(names)}; see {PROG} --help")
         return EXIT_USAGE
-    arguments = parser().parse_args(argv[1:])
+    options = parser()
+    arguments = options.parse_args(argv[1:])
+    _check(options, arguments)
     try:
-        return _one(arguments.one) if arguments.one else _bench(arguments)
+        if arguments.one:
+            return _one(arguments.one)
+        return _quick(arguments) if arguments.quick else _bench(arguments)
     except SimError as error:
         _say(str(error))
         return error.exit_code

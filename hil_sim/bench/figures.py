@@ -95,7 +95,8 @@ def figures(records: Sequence[Record]) -> dict[str, Any]:
         "all": _detection(faults),
         "confusion": _confusion(faults, records),
         "false_disables": _false(free),
-        "false_disables_with_faults": _false([r for r in records if r not in free]),
+        "false_disables_with_faults": _false([r for r in records if not r["variant"].startswith("free")]),
+        "false_names": _false(free, "false_names"),
         "rehabilitation": _rehabilitation(faults),
         "verification": _verification(records),
         "collisions": _collisions(records),
@@ -134,8 +135,8 @@ def _detection(faults: Sequence[Record]) -> dict[str, Any]:
         "interval": whole["interval"],
         "forward": _share(sum(fault["found"] for fault in ahead), len(ahead)),
         "visible_once": _share(sum(fault["found"] for fault in strict), len(strict)),
-        "named": _share(sum(fault["named"] == fault["kind"] for fault in found), len(found)),
-        "named_end": _share(sum(fault["named_end"] == fault["kind"] for fault in found), len(found)),
+        "named": _share(sum(fault["named_right"] for fault in found), len(found)),
+        "named_end": _share(sum(fault["named_end_right"] for fault in found), len(found)),
         "latency_s": _spread([fault["latency_s"] for fault in rooms]),
         "latency_mm": _spread([fault["latency_mm"] for fault in rooms]),
         "latency_s_everywhere": _spread([fault["latency_s"] for fault in seen]),
@@ -147,17 +148,26 @@ def _spread(values: Sequence[float]) -> dict[str, Any]:
 
 
 def _confusion(faults: Sequence[Record], records: Sequence[Record]) -> dict[str, dict[str, int]]:
-    """Injected kind to named kind, of those judged; the row `none` counts the false disables."""
+    """Injected kind to named kind, of those judged; the row `none` counts the false disables.
+
+    A right name counts as the kind that was injected.
+    """
     table: dict[str, dict[str, int]] = {}
     for kind in KINDS:
         judged = [f for f in faults if f["kind"] == kind and f["apart"] is None]
-        table[kind] = dict(Counter(f["named"] if f["found"] else NOT_FOUND for f in judged))
+        table[kind] = dict(Counter(_called(fault) for fault in judged))
     table["none"] = dict(Counter(one["kind"] for record in records for one in record["false_disables"]))
     return table
 
 
-def _false(records: Sequence[Record]) -> dict[str, Any]:
-    count = sum(len(record["false_disables"]) for record in records)
+def _called(fault: Record) -> str:
+    if not fault["found"]:
+        return NOT_FOUND
+    return str(fault["kind"] if fault["named_right"] else fault["named"])
+
+
+def _false(records: Sequence[Record], what: str = "false_disables") -> dict[str, Any]:
+    count = sum(len(record[what]) for record in records)
     hours = sum(record["driving_s"] for record in records) / 3600
     return {
         "count": count,

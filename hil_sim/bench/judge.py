@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, Final
 
 from hil_sim.sil import VISIBLE_MM, VISIBLE_PART, FaultTruth, Outcome, Sighting, Sil
+from hil_sim.sonar import NO_ECHO_MM
 
 BOUND_S: Final[Mapping[str, float]] = {
     "off": 10.0,
@@ -30,6 +31,7 @@ FALSE_AFTER_S: Final = 10.0
 """A sonar DISABLED this long after its fault has ended is a false disable."""
 REPAIRED_DRIVING_S: Final = 60.0
 DISABLED: Final = "DISABLED"
+SUSPECT: Final = "SUSPECT"
 HEALTHY: Final = "HEALTHY"
 _SAYS_NOTHING: Final = (HEALTHY, "UNKNOWN")
 _MOVING_MM_S: Final = 5.0
@@ -40,13 +42,13 @@ Change = tuple[float, str, str]
 
 @dataclass
 class Track:
-    """What the judge notes with each SIP: way and driving time, and the visible readings of the faulty sonars."""
+    """What the judge notes with each SIP: way and driving time, and what faulty sonars report."""
 
     t_s: list[float] = field(default_factory=list)
     driven_mm: list[float] = field(default_factory=list)
     driving_s: list[float] = field(default_factory=list)
     visible_s: dict[int, list[float]] = field(default_factory=dict)
-    missing: tuple[int, ...] = ()
+    stuck_mm: dict[int, set[int]] = field(default_factory=dict)
 
     def __call__(self, sil: Sil, sighting: Sighting) -> None:
         """Take a SIP; pass the track itself as `trace`."""
@@ -58,7 +60,9 @@ class Track:
         self.driven_mm.append(robot.travelled_mm)
         self.driving_s.append(before + (sighting.t_s - before_t if moves else 0.0))
         for reading in sighting.readings:
-            if getattr(reading, "fault", None) is not None and is_visible(reading):
+            if reading.fault == "stuck":
+                self.stuck_mm.setdefault(reading.number, set()).add(reading.range_mm)
+            if reading.fault is not None and is_visible(reading):
                 self.visible_s.setdefault(reading.number, []).append(reading.t_ms / 1000)
 
     def driving_at(self, t_s: float) -> float:
@@ -89,15 +93,27 @@ def health_at(changes: Sequence[Change], t_s: float) -> tuple[str, str]:
     return now
 
 
+def right_names(truth: FaultTruth, track: Track) -> tuple[str, ...]:
+    """Return the kinds that name a fault rightly: its own, and `off` for one stuck at the value of no echo.
+
+    On the wire the two are the same: 5000 in each slot.
+    """
+    if truth.kind == "stuck" and track.stuck_mm.get(truth.sonar) == {NO_ECHO_MM}:
+        return truth.kind, "off"
+    return (truth.kind,)
+
+
 def detection(
-    changes: Sequence[Change], kind: str, begin_s: float, end_s: float
+    changes: Sequence[Change], kinds: Sequence[str], begin_s: float, end_s: float
 ) -> tuple[float, str, str] | None:
-    """Return when a sonar was first DISABLED, or named with this kind, from begin to end; health and kind then.
+    """Return when a sonar was first DISABLED, or named rightly, from begin to end; health and kind then.
 
     A sonar that was DISABLED before it failed says nothing about the fault; the judge sets such cases apart.
     """
     for at, health, named in changes:
-        if begin_s <= at <= end_s and (health == DISABLED or (named == kind and health not in _SAYS_NOTHING)):
+        if begin_s <= at <= end_s and (
+            health == DISABLED or (named in kinds and health not in _SAYS_NOTHING)
+        ):
             return at, health, named
     return None
 
@@ -118,7 +134,9 @@ def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, 
         "apart": None,
         "found": False,
         "named": None,
+        "named_right": None,
         "named_end": None,
+        "named_end_right": None,
         "latency_s": None,
         "latency_mm": None,
         "latency_readings": None,
@@ -126,7 +144,8 @@ def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, 
         "rehabilitation": None,
     }
     first_s = truth.first_visible_s
-    found = detection(changes, truth.kind, truth.onset_s, end_s)
+    kinds = right_names(truth, track)
+    found = detection(changes, kinds, truth.onset_s, end_s)
     if health_at(changes, truth.onset_s)[0] == DISABLED:
         record["apart"] = "disabled before"
     elif first_s is None or (found is None and record["visible_n"] < SHOWN_READINGS):
@@ -142,7 +161,9 @@ def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, 
         record["latency_readings"] = bisect_right(seen, at) - bisect_right(seen, truth.onset_s)
         record["found"] = record["latency_s"] <= bound_s
         record["named"] = named or "none"
+        record["named_right"] = named in kinds
         record["named_end"] = _kind_at_end(changes, truth.onset_s, end_s) or "none"
+        record["named_end_right"] = record["named_end"] in kinds
     _judge_repair(record, truth, outcome, track)
     return record
 
@@ -156,8 +177,12 @@ def _visible_count(truth: FaultTruth, track: Track, end_s: float) -> int:
 
 
 def _kind_at_end(changes: Sequence[Change], onset_s: float, end_s: float) -> str:
-    """The last kind that the sonar was given while the fault was there."""
-    kinds = [kind for at, health, kind in changes if onset_s <= at <= end_s and health == DISABLED]
+    """The kind of the last state while the fault was there that is DISABLED, or another that counts as named."""
+    kinds = [
+        kind
+        for at, health, kind in changes
+        if onset_s <= at <= end_s and (health == DISABLED or (kind and health not in _SAYS_NOTHING))
+    ]
     return kinds[-1] if kinds else ""
 
 
@@ -184,19 +209,36 @@ def _judge_repair(record: dict[str, Any], truth: FaultTruth, outcome: Outcome, t
 
 def false_disables(outcome: Outcome) -> list[dict[str, Any]]:
     """Return each entry of a sonar into DISABLED with no fault of it active in the last 10 s."""
-    result = []
+    return [
+        {"t_s": _r(at), "sonar": sonar, "kind": kind or "none"}
+        for sonar, before, (at, health, kind) in _without_fault(outcome)
+        if health == DISABLED and before[1] != DISABLED
+    ]
+
+
+def false_names(outcome: Outcome) -> list[dict[str, Any]]:
+    """Return each time that a SUSPECT was given a kind with no fault of it active in the last 10 s.
+
+    No robot acts on it as on a false disable, but a name is what the definition of found accepts.
+    """
+    return [
+        {"t_s": _r(at), "sonar": sonar, "kind": kind}
+        for sonar, before, (at, health, kind) in _without_fault(outcome)
+        if health == SUSPECT and kind and before[1:] != (SUSPECT, kind)
+    ]
+
+
+def _without_fault(outcome: Outcome) -> Iterator[tuple[int, Change, Change]]:
+    """Each change of a sonar with no fault of it active in the last 10 s, and the state before it."""
     for sonar, changes in enumerate(outcome.health):
         spans = [
             (truth.onset_s, (truth.end_s if truth.end_s is not None else outcome.t_s) + FALSE_AFTER_S)
             for truth in outcome.truth
             if truth.sonar == sonar
         ]
-        for before, (at, health, kind) in pairwise([(0.0, "UNKNOWN", ""), *changes]):
-            if health != DISABLED or before[1] == DISABLED:
-                continue
-            if not any(begin <= at <= end for begin, end in spans):
-                result.append({"t_s": _r(at), "sonar": sonar, "kind": kind or "none"})
-    return result
+        for before, now in pairwise([(0.0, "UNKNOWN", ""), *changes]):
+            if not any(begin <= now[0] <= end for begin, end in spans):
+                yield sonar, before, now
 
 
 def judge(outcome: Outcome, track: Track, twin: Outcome | None) -> dict[str, Any]:
@@ -213,6 +255,7 @@ def judge(outcome: Outcome, track: Track, twin: Outcome | None) -> dict[str, Any
         "goal_mm": _r(outcome.goal_mm),
         "faults": faults,
         "false_disables": false_disables(outcome),
+        "false_names": false_names(outcome),
         "collisions": [[_r(hit.t_s), _r(hit.x), _r(hit.y)] for hit in hits],
         "struck": len(outcome.collisions) - len(hits),
         "attributable": attributable,

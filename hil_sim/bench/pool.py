@@ -101,11 +101,12 @@ def _end(pool: ProcessPoolExecutor) -> None:
 
 
 def run_cluster(
-    ids: Sequence[str], address: str, files: Mapping[str, bytes], run: Any = work
+    ids: Sequence[str], address: str, files: Mapping[str, bytes], core: str, run: Any = work
 ) -> Iterator[Record]:
     """Yield the record of each id as it comes from the workers of a Dask scheduler.
 
-    A mission whose worker dies goes to another one. LinkError when nobody answers at the address.
+    A mission whose worker dies goes to another one. core: digest of the fault manager that the workers must have.
+    LinkError when nobody answers at the address.
     """
     try:
         # Any: the package is optional, and its types are not complete.
@@ -121,14 +122,17 @@ def run_cluster(
             f"--scheduler {address}: nobody answers ({error}); start dask-scheduler there"
         ) from error
     with client:
-        shared = client.scatter(dict(files), broadcast=True) if files else None
         waiting = deque(ids)
         width = AHEAD * max(1, sum(client.nthreads().values()))
+        given = dict(files)
 
         def submit() -> Any:
-            # Not pure: a second bench must not be handed the first one's results.
+            # Not pure: a second bench must not be handed the first one's results. The files go along with each
+            # mission, not ahead to some workers: whatever dies, the next worker has all that it needs.
             name = waiting.popleft()
-            future = client.submit(run, name, shared, pure=False, retries=_CLUSTER_LIVES)
+            world = parse_id(name).world
+            own = {world: given[world]} if world in given else None
+            future = client.submit(run, name, own, core, pure=False, retries=_CLUSTER_LIVES)
             names[future.key] = name
             return future
 
@@ -139,6 +143,14 @@ def run_cluster(
             if future.status == "finished":
                 yield future.result()
             else:
-                yield failed(parse_id(name), f"the cluster gave it up: {future.exception()}")
+                yield failed(parse_id(name), f"the cluster gave it up: {future.status}, {_reason(future)}")
             if waiting:
                 running.add(submit())
+
+
+def _reason(future: Any) -> str:
+    """Why a task has no result; asking a cancelled one raises."""
+    try:
+        return str(future.exception())
+    except Exception as error:  # whatever it is, it is the reason
+        return f"{type(error).__name__} {error}"

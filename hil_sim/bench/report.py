@@ -26,7 +26,9 @@ _FIELDS: Final = (
     "apart",
     "found",
     "named",
+    "named_right",
     "named_end",
+    "named_end_right",
     "latency_s",
     "latency_mm",
     "latency_readings",
@@ -34,6 +36,7 @@ _FIELDS: Final = (
     "rehabilitated_s",
 )
 _MISSION: Final = ("id", "profile", "split", "world", "place", "seed", "variant")
+_LAST: Final = ("collisions", "attributable", "undetected")
 _AFTER: Final = ("t_s", "driving_s", "driven_mm", "reached", "stops", "verifications", "verifying_s")
 
 
@@ -58,7 +61,7 @@ def table(records: Iterable[Record]) -> str:
     """Return one CSV line for each fault, and one for each mission without."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([*_MISSION, "sweep", *_FIELDS, *_AFTER, "false_disables", "collisions", "attributable"])
+    writer.writerow([*_MISSION, "sweep", *_FIELDS, *_AFTER, "false_disables", "false_names", *_LAST])
     for record in sorted(records, key=lambda one: str(one["id"])):
         if record["error"] is not None:
             continue
@@ -71,8 +74,10 @@ def table(records: Iterable[Record]) -> str:
                     *(fault.get(name) for name in _FIELDS),
                     *(record[name] for name in _AFTER),
                     len(record["false_disables"]),
+                    len(record["false_names"]),
                     len(record["collisions"]),
                     record["attributable"],
+                    record["undetected"],
                 ]
             )
     return out.getvalue()
@@ -174,12 +179,13 @@ def _confusion(one: Record) -> list[str]:
 
 
 def _other(one: Record) -> list[str]:
-    false, hurt = one["false_disables"], one["false_disables_with_faults"]
+    false, hurt, named = one["false_disables"], one["false_disables_with_faults"], one["false_names"]
     verify, hits, back = one["verification"], one["collisions"], one["rehabilitation"]
     counts = ", ".join(f"{count} {how}" for how, count in sorted(back["counts"].items()))
     lines = [
         f"- False disables, fault-free: {false['count']} in {false['hours']:.2f} h of {false['missions']} missions; "
         f"of healthy sonars in missions with faults: {hurt['count']} in {hurt['hours']:.2f} h",
+        f"- A healthy sonar SUSPECT with a kind, fault-free: {named['count']} times in {named['hours']:.2f} h",
         f"- Per hour of driving: {verify['stops_per_h']} stops, {verify['verifications_per_h']} verifications, "
         f"{verify['verifying_s_per_h']} s spent on them",
         f"- Repaired: {counts or 'none'}; s of driving until HEALTHY, median / p99: {_two(back['driving_s'], 1.0)}",
@@ -226,7 +232,7 @@ def _complaints(record: Record) -> list[str]:
         kind = fault["kind"]
         if fault["apart"] is None and not fault["found"]:
             what.append(f"{kind} {'never found' if fault['latency_s'] is None else 'found late'}")
-        elif fault["apart"] is None and fault["named"] != kind:
+        elif fault["apart"] is None and not fault["named_right"]:
             what.append(f"{kind} named {fault['named']}")
         if fault["rehabilitation"] in ("late", "never"):
             what.append(f"{kind} repaired, HEALTHY {fault['rehabilitation']}")

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import hashlib
+import platform
 import tempfile
 import time
 import traceback
@@ -11,6 +12,8 @@ from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+
+from argus_tools.core import LIBRARY_VARIABLE, library
 
 from hil_sim.bench.judge import Track, judge
 from hil_sim.bench.plan import Case, mission_of, parse_id, without_faults
@@ -49,16 +52,26 @@ def head(case: Case) -> Record:
     }
 
 
-def work(case_id: str, files: Mapping[str, bytes] | None = None) -> Record:
+def work(case_id: str, files: Mapping[str, bytes] | None = None, core: str | None = None) -> Record:
     """Run the case of an id; never raises: a record with `error` tells what went wrong, so that the bench goes on.
 
-    `files`: contents of world files, for a machine that does not have them.
+    `files`: contents of world files, for a machine that does not have them. `core`: digest of the fault manager
+    that must run it.
     """
     case = parse_id(case_id)
     try:
+        if core is not None and core_digest() != core:
+            reason = f"{platform.node()} has another build of the fault manager; copy the file, set {LIBRARY_VARIABLE}"
+            return failed(case, reason)
         return run_case(_with_file(case, files or {}))[0] | head(case)
     except Exception as error:  # whatever a mission does, the others must run
         return failed(case, f"{type(error).__name__}: {error}", traceback.format_exc())
+
+
+@lru_cache(maxsize=1)
+def core_digest() -> str:
+    """Return the digest of the fault manager that this process runs."""
+    return hashlib.sha256(Path(str(library()._name)).read_bytes()).hexdigest()
 
 
 def failed(case: Case, reason: str, details: str = "") -> Record:

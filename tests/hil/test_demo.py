@@ -85,11 +85,11 @@ def test_five_seeds(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
-def test_three_pairs_that_the_paper_cannot_tell(tmp_path: Path) -> None:
-    judge([(1, pair) for pair in ("off:5,wrong:3", "off:6,wrong:4", "off:3,wrong:5")], tmp_path, "argus")
+def test_pairs_that_the_paper_cannot_tell(tmp_path: Path) -> None:
+    judge([(1, pair) for pair in ("off:5,wrong:3", "off:3,wrong:5")], tmp_path, "argus")
 
 
 @pytest.mark.long
 def test_the_paper(tmp_path: Path) -> None:
-    pairs = (DEFAULT, "off:2,wrong:3", "off:4,wrong:5", "off:5,wrong:4")
+    pairs = (DEFAULT, "off:2,wrong:3", "off:5,wrong:4")
     judge([(1, pair) for pair in pairs], tmp_path, "paper")

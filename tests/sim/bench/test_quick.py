@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: MIT
+"""Rule: the diagnosis is no worse than the checked-in bounds; a bound that is broken is named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from missions import judged, record
+
+from hil_sim.bench.cli import main
+from hil_sim.bench.figures import summarise
+from hil_sim.bench.quick import broken, cases, load_bounds
+from hil_sim.errors import SimError
+
+
+def test_the_quick_bench_is_within_its_bounds(capfd: pytest.CaptureFixture[str]) -> None:
+    code = main(["diagnosis", "--quick", "--no-plots"])
+    out, err = capfd.readouterr()
+    assert code == 0, err
+    assert "## argus" in out
+    assert "## paper" in out
+
+
+def test_the_bounds_are_of_the_missions_that_run() -> None:
+    bounds = load_bounds()
+    for profile, wanted in bounds.items():
+        assert wanted["missions"] == sum(case.profile == profile for case in cases())
+
+
+def test_a_broken_bound_is_named() -> None:
+    wrong = [{"t_s": 1.0, "sonar": 2, "kind": "off"}]
+    records = [
+        record("argus/tune/lab/1/off", faults=[judged("off")]),
+        record("argus/tune/lab/2/off", faults=[judged("off", found=False, latency_s=None)]),
+        record("argus/tune/lab/1/free", false_disables=wrong),
+    ]
+    summary = summarise(records)
+    held = {"missions": 3, "found": {"off": 0.5}, "named": 1.0, "false_disables": 1, "attributable": 0}
+    assert broken(summary, {"argus": held}) == []
+    for name, value, line in (
+        ("missions", 4, "argus: missions is 3, must be 4"),
+        ("found", {"off": 0.51}, "argus: found of off is 0.5, must be at least 0.51"),
+        ("found", {"slow": 0.1}, "argus: found of slow: nothing to judge"),
+        ("found_all", 0.6, "argus: found_all is 0.5, must be at least 0.6"),
+        ("rehabilitated", 0.1, "argus: rehabilitated: nothing to judge"),
+        ("false_disables", 0, "argus: false_disables is 1, must be at most 0"),
+    ):
+        assert broken(summary, {"argus": held | {name: value}}) == [line]
+    assert broken(summary, {"paper": {}}) == ["paper: no mission ran"]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("argus = 3", "'argus' is no table"),
+        ("[argus]\nspeed = 3", "speed is no bound"),
+        ("[argus]\nmissions = 'x'", "missions is no number"),
+        ("[argus]\nfound = 3", "found is no number"),
+        ("[argus.found]\nbroken = 3", "found: there are"),
+        ("[argus", "not TOML"),
+    ],
+)
+def test_a_wrong_file_of_bounds_is_told_in_a_line(tmp_path: Path, text: str, said: str) -> None:
+    path = tmp_path / "bounds.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(SimError, match=said):
+        load_bounds(path)
+    with pytest.raises(SimError, match="cannot read"):
+        load_bounds(tmp_path / "none.toml")
