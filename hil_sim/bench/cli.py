@@ -46,7 +46,7 @@ examples:
 Writes results.jsonl (a line per mission), diagnosis.json, diagnosis.csv, diagnosis.md and pictures into --out.
 How everything is measured: docs/diagnosis.md.
 
-exit codes: 0 all missions ran (and with --quick, all is within the bounds), 1 a mission failed or a bound is broken,
+exit codes: 0 all missions ran (and with --quick, all is within the bounds), 1 a mission failed, a bound is broken or no scheduler answers,
             2 wrong argument or file, 130 interrupted; go on with --resume
 """
 

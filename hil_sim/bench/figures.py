@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
@@ -110,7 +111,7 @@ def _share(hits: int, total: int) -> dict[str, Any]:
         "hits": hits,
         "of": total,
         "rate": _r(hits / total) if total else None,
-        "low": _r(share_bound_low(hits, total)),
+        "low": math.floor(1e5 * share_bound_low(hits, total)) / 1e5,  # never rounded across a bar
         "interval": [_r(v) for v in share_interval(hits, total)],
     }
 
@@ -174,7 +175,7 @@ def _false(records: Sequence[Record], what: str = "false_disables") -> dict[str,
         "hours": round(hours, 3),
         "missions": len(records),
         "per_100h": round(100 * count / hours, 3) if hours else None,
-        "per_100h_high": round(100 * count_bound_high(count) / hours, 3) if hours else None,
+        "per_100h_high": math.ceil(1e5 * count_bound_high(count) / hours) / 1e3 if hours else None,
     }
 
 
@@ -294,4 +295,4 @@ def _bar(
 
 
 def _r(value: float) -> float:
-    return round(value, 5)
+    return round(value, 9)

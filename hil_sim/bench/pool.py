@@ -18,6 +18,7 @@ from hil_sim.errors import LinkError, SimError
 
 AHEAD: Final = 4
 """Missions handed out for each worker: enough that none waits for the next."""
+CONNECT_S = 10.0
 _LIVES: Final = 2
 """A mission that was running each time so many workers died is taken to have killed them."""
 _CLUSTER_LIVES: Final = 100
@@ -116,7 +117,7 @@ def run_cluster(
             "--scheduler needs Dask, which is not installed: pip install 'argus-p3dx[cluster]'"
         ) from None
     try:
-        client = dask.Client(address, timeout=10, set_as_default=False)
+        client = dask.Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError) as error:
         raise LinkError(
             f"--scheduler {address}: nobody answers ({error}); start dask-scheduler there"

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from statistics import NormalDist
 from typing import Final
 
 CONFIDENCE: Final = 0.95
@@ -91,9 +92,10 @@ def count_bound_high(count: int, confidence: float = CONFIDENCE) -> float:
             term *= mean / (k + 1)
         return 1 - total
 
-    # exp(-mean) is 0 in floating point beyond 745: far up the normal approximation is as good as exact.
+    # exp(-mean) is 0 in floating point beyond 745: far up Wilson and Hilferty's approximation is as good as exact.
     if count > 500:
-        return count + 1.645 * math.sqrt(count) + 1
+        n = count + 1
+        return float(n * (1 - 1 / (9 * n) + NormalDist().inv_cdf(confidence) / (3 * math.sqrt(n))) ** 3)
     return _solve(above, confidence, 0.0, 10.0 + 3 * count)
 
 

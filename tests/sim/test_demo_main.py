@@ -197,7 +197,7 @@ def test_json_is_one_object_and_nothing_else(
 def test_argusd_is_told_neither_scenario_nor_seed_nor_faults(tmp_path: Path, played: type[Played]) -> None:
     run("--json", "--out", str(tmp_path), "--seed", "77", "--fail", "off:2,wrong:4", "--policy", "fewest")
     given = played.setup.course.read_text(encoding="utf-8") + played.setup.config.read_text(encoding="utf-8")
-    assert given.split("\n")[-3:] == ["profile = paper", "policy = fewest", ""]
+    assert given.split("\n")[-3:] == ["profile = argus", "policy = fewest", ""]
     for secret in ("77", "off", "wrong", "seed", "sonar"):
         assert secret not in given, secret
     scenario = yaml.safe_load((tmp_path / "scenario.yaml").read_text(encoding="utf-8"))

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import dataclasses
+import os
+import signal
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -122,3 +124,13 @@ def judged(kind: str = "off", **more: Any) -> dict[str, Any]:
 def later(truth: FaultTruth, **more: Any) -> FaultTruth:
     """Return the fault with other fields."""
     return dataclasses.replace(truth, **more)
+
+
+DEADLY = "argus/tune/lab/2/garbage"
+
+
+def deadly(name: str) -> dict[str, Any]:
+    """Run no mission; one of them kills its process each time."""
+    if name == DEADLY:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return record(name)

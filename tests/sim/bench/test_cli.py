@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 
 import pytest
+from argus_tools.core import LIBRARY_VARIABLE
 
 from hil_sim.bench import cli
 from hil_sim.bench.store import META, RESULTS
@@ -50,7 +51,11 @@ def bench(*words: str) -> int:
     ],
 )
 def test_wrong_arguments_give_one_line(
-    words: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    words: list[str],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert bench(*words) == 2
@@ -77,7 +82,9 @@ def test_one_prints_the_time_line_and_the_record(capfd: pytest.CaptureFixture[st
     assert any(line.startswith("judged: sonar ") for line in lines)
 
 
-def test_resume_runs_what_is_missing_and_nothing_twice(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_resume_runs_what_is_missing_and_nothing_twice(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     words = ("diagnosis", *TINY, "--out", str(tmp_path))
     assert bench(*words, "--seeds", "1-2") == 0
     path = tmp_path / RESULTS
@@ -136,8 +143,8 @@ def test_a_mission_that_fails_is_told_and_fails_the_bench(
 
 
 def test_the_fault_manager_stays_the_same_file_during_a_bench() -> None:
-    before = os.environ.get(cli.LIBRARY_VARIABLE)
+    before = os.environ.get(LIBRARY_VARIABLE)
     with cli.fixed_core() as digest:
-        assert os.environ[cli.LIBRARY_VARIABLE] != before
+        assert os.environ[LIBRARY_VARIABLE] != before
         assert len(digest) == 64
-    assert os.environ.get(cli.LIBRARY_VARIABLE) == before
+    assert os.environ.get(LIBRARY_VARIABLE) == before

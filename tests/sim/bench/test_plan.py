@@ -13,7 +13,7 @@ import pytest
 from hil_sim.bench import plan
 from hil_sim.bench.plan import Case, faults_of, make_cases, mission_of, parse_id, world_of
 from hil_sim.errors import SimError
-from hil_sim.faults import parse_fault
+from hil_sim.faults import SonarFault, parse_fault
 
 IDS = (
     "argus/tune/office/7/wrong-scale0.5",
@@ -24,7 +24,9 @@ IDS = (
 
 
 def test_an_id_is_the_case_it_names() -> None:
-    for case in make_cases(["argus", "paper"], "judge", ["office"], range(1, 4), plan.KINDS, sensitivity=True):
+    for case in make_cases(
+        ["argus", "paper"], "judge", ["office"], range(1, 4), plan.KINDS, sensitivity=True
+    ):
         assert parse_id(case.id) == case
 
 
@@ -57,11 +59,11 @@ def test_an_id_gives_the_same_mission_in_any_process() -> None:
 def test_the_splits_share_nothing_that_is_drawn() -> None:
     drawn: dict[str, set[object]] = {}
     for split in plan.SPLITS:
-        cases = [Case("argus", split, "lab", seed, "wrong-offset300") for seed in range(1, 16)]
+        cases = [Case("argus", split, "lab", seed, "wrong-offset+300") for seed in range(1, 16)]
         missions = [mission_of(case) for case in cases]
-        drawn[split] = {
-            value for m in missions for value in (m.seed, m.course, m.faults)
-        } | {Path(world_of("gen-room", split, seed)[2]).read_text(encoding="utf-8") for seed in range(1, 4)}
+        drawn[split] = {value for m in missions for value in (m.seed, m.course, m.faults)} | {
+            Path(world_of("gen-room", split, seed)[2]).read_text(encoding="utf-8") for seed in range(1, 4)
+        }
         assert len(drawn[split]) == 3 * 15 + 3
     assert not drawn["tune"] & drawn["judge"]
 
@@ -78,6 +80,7 @@ def test_every_severity_is_in_the_range_that_was_asked_for() -> None:
         for seed in range(1, 6):
             (text,) = faults_of(Case("argus", "tune", "lab", seed, variant))
             fault = parse_fault(text)
+            assert isinstance(fault, SonarFault)
             assert fault.kind == kind
             values = dict(part.partition("=")[::2] for part in text.split(":")[3:])
             assert abs(float(values.get("scale", 0.5)) - 1) >= 0.2 - 1e-9
@@ -88,7 +91,9 @@ def test_every_severity_is_in_the_range_that_was_asked_for() -> None:
 
 def test_a_pair_hits_two_sonars_and_free_none() -> None:
     for seed in range(1, 40):
-        sonars = [text.split("@")[0].split(":")[1] for text in faults_of(Case("argus", "tune", "lab", seed, "pair"))]
+        sonars = [
+            text.split("@")[0].split(":")[1] for text in faults_of(Case("argus", "tune", "lab", seed, "pair"))
+        ]
         assert len(set(sonars)) == 2
     assert faults_of(Case("argus", "tune", "lab", 1, "free")) == ()
 

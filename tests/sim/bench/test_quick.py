@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from missions import judged, record
+from bench.missions import judged, record
 
 from hil_sim.bench.cli import main
 from hil_sim.bench.figures import summarise

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 
 import pytest
-from missions import record
+from bench.missions import record
 
 from hil_sim.bench.store import META, RESULTS, Store
 from hil_sim.errors import SimError
