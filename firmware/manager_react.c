@@ -64,19 +64,25 @@ void argus_back_off(argus_t *const self, const int32_t distance_mm) {
     argus_enter(self, ARGUS_MODE_BACKING);
 }
 
+// S7 under `argus`: what was seen a moment ago and has left the cones is still there.
+static int32_t nearest_to_centre_mm(const argus_t *const self) {
+    const int32_t now_mm = argus_nearest_to_centre_mm(&self->knowledge, 0);
+    return argus_judges(self) ? argus_min(now_mm, argus_task_nearest_mm(&self->task, &self->knowledge))
+                              : now_mm;
+}
+
 bool argus_swing_is_blocked(const argus_t *const self) {
-    return argus_nearest_to_centre_mm(&self->knowledge, 0) <= SWING_MM;
+    return nearest_to_centre_mm(self) <= SWING_MM;
 }
 
 // S7: no rotation while a bumper is pressed or an echo lies within the swing circle.
 bool argus_may_turn(const argus_t *const self) {
-    return is_active(self) && self->bumpers == 0 &&
-           argus_nearest_to_centre_mm(&self->knowledge, 0) > SWING_MM;
+    return is_active(self) && self->bumpers == 0 && nearest_to_centre_mm(self) > SWING_MM;
 }
 
 // Where it may not turn, a few times backing away may help.
 bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
-    const int32_t nearest = argus_nearest_to_centre_mm(&self->knowledge, 0);
+    const int32_t nearest = nearest_to_centre_mm(self);
     if (argus_may_turn(self)) {
         argus_motion_turn(&self->motion, &self->session.outbox, &self->knowledge, heading_cdeg, self->now_ms);
         return true;
