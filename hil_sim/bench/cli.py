@@ -46,8 +46,9 @@ examples:
 Writes results.jsonl (a line per mission), diagnosis.json, diagnosis.csv, diagnosis.md and pictures into --out.
 How everything is measured: docs/diagnosis.md.
 
-exit codes: 0 all missions ran (and with --quick, all is within the bounds), 1 a mission failed, a bound is broken or no scheduler answers,
-            2 wrong argument or file, 130 interrupted; go on with --resume
+exit codes: 0 all missions ran (and with --quick, all is within the bounds),
+            1 a mission failed, a bound is broken or no scheduler answers, 2 wrong argument or file,
+            130 interrupted; go on with --resume
 """
 
 
@@ -274,7 +275,7 @@ def _quick(arguments: argparse.Namespace) -> int:
     for line in broken:
         _say(line)
     if broken:
-        _say(f"{len(broken)} bounds of {quick.BOUNDS} are broken")
+        _say(f"{len(broken)} of the bounds in {quick.BOUNDS.name} broken")
     return EXIT_FAILED if broken else code
 
 
@@ -291,7 +292,7 @@ def _one(text: str) -> int:
     case = plan.parse_id(text)
     record, outcome = run_case(case)
     print(timeline(record, outcome), end="")
-    print(json.dumps(record))
+    print(json.dumps(record), flush=True)
     return 0
 
 
@@ -328,3 +329,7 @@ def main(argv: Sequence[str]) -> int:
     except LogError as error:
         _say(str(error))
         return EXIT_USAGE
+    except BrokenPipeError:
+        # Nobody reads our output; the interpreter would complain once more while it closes it.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0

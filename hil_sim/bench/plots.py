@@ -18,7 +18,7 @@ from hil_sim.bench.judge import BOUND_S
 
 # Okabe and Ito's palette and line styles: told apart by colour-blind readers and in grey.
 _COLOURS: Final = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#222222")
-_DASHES: Final = ("-", "--", "-.", ":", "-", "--", "-.")
+_DASHES: Final[Any] = ("-", "--", "-.", ":", (0, (7, 2)), (0, (1, 2)), (0, (4, 1, 1, 1, 1, 1)))
 _MARKS: Final = ("o", "s", "^", "D", "v", "P", "X")
 _STYLE: Final[Any] = {"svg.hashsalt": "argus", "font.size": 9, "axes.grid": True, "grid.color": "#dddddd"}
 _LEAST_S: Final = 0.05
@@ -57,7 +57,7 @@ def _latencies(folder: Path, records: Sequence[Record], profiles: Sequence[str])
                 place.axvline(limit, color="#888888", linewidth=0.8)
             place.set(xscale="log", xlim=(_LEAST_S, 400), ylim=(0, 1.02), title=profile)
             place.set_xlabel("s from the first visible reading, in rooms")
-            place.legend(loc="upper left", fontsize=7)
+            _legend(place, 7)
         axes[0].set_ylabel("share of the faults found by then")
 
 
@@ -81,7 +81,8 @@ def _steps(place: Axes, records: Sequence[Record], profile: str, kind: str, k: i
 def _confusions(folder: Path, profiles: Mapping[str, Record]) -> None:
     columns = [*KINDS, "none", NOT_FOUND]
     with _picture(folder, "confusion", (5.4 * len(profiles), 4.4)) as figure:
-        axes = figure.subplots(1, len(profiles), squeeze=False)[0]
+        axes = figure.subplots(1, len(profiles), squeeze=False, sharey=True)[0]
+        axes[0].set_ylabel("injected")
         for place, (profile, one) in zip(axes, profiles.items(), strict=True):
             counts = np.array(
                 [[one["confusion"][kind].get(c, 0) for c in columns] for kind in KINDS], dtype=float
@@ -92,7 +93,9 @@ def _confusions(folder: Path, profiles: Mapping[str, Record]) -> None:
             place.grid(visible=False)
             place.set_xticks(range(len(columns)), columns, rotation=40, ha="right")
             place.set_yticks(range(len(KINDS)), KINDS)
-            place.set(title=profile, xlabel="named", ylabel="injected")
+            place.set(title=f"{profile}: {total.sum():.0f} faults, % of each kind", xlabel="named")
+            if not counts.any():
+                _say_nothing(place)
             for (row, column), share in np.ndenumerate(shares):
                 if counts[row, column]:
                     ink = "white" if share > 0.6 else "#222222"
@@ -126,8 +129,19 @@ def _trade(folder: Path, profiles: Mapping[str, Record]) -> None:
             xlabel="false disables in 100 fault-free robot hours", ylabel="share of all faults found in time"
         )
         place.set(ylim=(0, 1.02), xlim=(-0.1, None))
-        if place.get_legend_handles_labels()[0]:
-            place.legend(fontsize=8)
+        _legend(place, 8)
+
+
+def _legend(place: Axes, size: int) -> None:
+    """Tell the lines apart, or that there is none."""
+    if place.get_legend_handles_labels()[0]:
+        place.legend(loc="best", fontsize=size, framealpha=0.9)
+    else:
+        _say_nothing(place)
+
+
+def _say_nothing(place: Axes) -> None:
+    place.text(0.5, 0.5, "nothing to judge", transform=place.transAxes, ha="center", color="#666666")
 
 
 def _sensitivity(folder: Path, points: Sequence[Record]) -> None:
@@ -141,14 +155,23 @@ def _sensitivity(folder: Path, points: Sequence[Record]) -> None:
                     key=lambda p: p["value"],
                 )
                 style: dict[str, Any] = {"color": _COLOURS[k % 7], "marker": _MARKS[k % 7], "label": profile}
-                _line(axes[0][column], own, "found_all", style)
-                _line(axes[1][column], own, "false_per_100h", style)
+                found = [(p["value"], p["found_all"], *p["found_interval"]) for p in own if p["judged"]]
+                _line(axes[0][column], found, style)
+                false = [
+                    (p["value"], p["false_per_100h"], p["false_per_100h"], p["false_per_100h_high"])
+                    for p in own
+                    if p["hours"]
+                ]
+                _line(axes[1][column], false, style)
             axes[0][column].set(ylabel="share of all faults found in time", ylim=(0, 1.02))
             axes[1][column].set(xlabel=name, ylabel="false disables / 100 h")
             axes[1][column].set_yscale("symlog", linthresh=1.0)
-            axes[0][column].legend(fontsize=8)
+            axes[1][column].set_ylim(bottom=-0.3)
+            _legend(axes[0][column], 8)
 
 
-def _line(place: Axes, points: Sequence[Record], field: str, style: Mapping[str, Any]) -> None:
-    known = [(point["value"], point[field]) for point in points if point[field] is not None]
-    place.plot([x for x, _ in known], [y for _, y in known], **style)
+def _line(place: Axes, points: Sequence[tuple[float, float, float, float]], style: Mapping[str, Any]) -> None:
+    """Draw x, y and the bounds of y."""
+    if points:
+        x, y, low, high = np.array(points).T
+        place.errorbar(x, y, yerr=[y - low, high - y], capsize=3, elinewidth=0.8, **style)

@@ -120,7 +120,7 @@ def run_cluster(
         client = dask.Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError) as error:
         raise LinkError(
-            f"--scheduler {address}: nobody answers ({error}); start dask-scheduler there"
+            f"--scheduler {address}: nobody answers ({error}); start 'dask scheduler' there"
         ) from error
     with client:
         waiting = deque(ids)
@@ -138,7 +138,8 @@ def run_cluster(
             return future
 
         names: dict[str, str] = {}
-        running = dask.as_completed([submit() for _ in range(min(width, len(waiting)))])
+        first = [submit() for _ in range(min(width, len(waiting)))]
+        running = dask.as_completed(first, loop=client.loop)
         for future in running:
             name = names.pop(future.key)
             if future.status == "finished":

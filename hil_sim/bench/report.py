@@ -199,12 +199,23 @@ def _other(one: Record) -> list[str]:
 
 def _sensitivity(points: Sequence[Record]) -> list[str]:
     return _rows(
-        ("profile", "parameter", "value", "found %", "false disables / 100 h", "95 % bound"),
+        (
+            "profile",
+            "parameter",
+            "value",
+            "faults judged",
+            "ended before",
+            "found %",
+            "false disables / 100 h",
+            "95 % bound",
+        ),
         [
             (
                 p["profile"],
                 p["parameter"],
                 f"{p['value']:g}",
+                p["judged"],
+                p["not_injected"],
                 _percent(p["found_all"]),
                 _value(p["false_per_100h"], ""),
                 _value(p["false_per_100h_high"], ""),

@@ -82,6 +82,16 @@ def test_one_prints_the_time_line_and_the_record(capfd: pytest.CaptureFixture[st
     assert any(line.startswith("judged: sonar ") for line in lines)
 
 
+def test_a_reader_that_leaves_is_no_error() -> None:
+    command = [sys.executable, "-m", "hil_sim.cli", "bench", "diagnosis", "--one", "argus/tune/lab/2/off"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        err = process.stderr.read()
+    assert (process.returncode, err) == (0, "")
+
+
 def test_resume_runs_what_is_missing_and_nothing_twice(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -109,8 +119,11 @@ def strip(line: str) -> dict[str, object]:
     return {name: value for name, value in json.loads(line).items() if name != "wall_s"}
 
 
-def test_an_interrupt_keeps_what_is_done_and_ends_with_130(tmp_path: Path) -> None:
+@pytest.mark.parametrize("jobs", ["1", "2"])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_an_interrupt_keeps_what_is_done_and_ends_with_130(tmp_path: Path, jobs: str, number: int) -> None:
     command = [sys.executable, "-m", "hil_sim.cli", "bench", "diagnosis", *TINY, "--seeds", "1-400"]
+    command += ["--jobs", jobs]
     with subprocess.Popen(
         [*command, "--out", str(tmp_path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:
@@ -119,7 +132,7 @@ def test_an_interrupt_keeps_what_is_done_and_ends_with_130(tmp_path: Path) -> No
             assert process.poll() is None, process.communicate()
             assert time.monotonic() < end
             time.sleep(0.05)
-        process.send_signal(signal.SIGTERM)
+        process.send_signal(number)
         out, err = process.communicate(timeout=60)
     assert process.returncode == cli.EXIT_INTERRUPTED, err
     assert out == ""

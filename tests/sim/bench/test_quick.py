@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 from bench.missions import judged, record
 
+from hil_sim.bench import quick
 from hil_sim.bench.cli import main
 from hil_sim.bench.figures import summarise
+from hil_sim.bench.plan import parse_id
 from hil_sim.bench.quick import broken, cases, load_bounds
 from hil_sim.errors import SimError
 
@@ -48,6 +50,17 @@ def test_a_broken_bound_is_named() -> None:
     ):
         assert broken(summary, {"argus": held | {name: value}}) == [line]
     assert broken(summary, {"paper": {}}) == ["paper: no mission ran"]
+
+
+def test_a_broken_bound_fails_the_command(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(quick, "cases", lambda: [parse_id("argus/tune/lab/1/off")])
+    monkeypatch.setattr(quick, "load_bounds", lambda: {"argus": {"missions": 2, "undetected": 0}})
+    assert main(["diagnosis", "--quick", "--no-plots", "--jobs", "1"]) == 1
+    err = capfd.readouterr().err
+    assert "argus-sim: argus: missions is 1, must be 2\n" in err
+    assert "1 of the bounds in bounds.toml broken" in err
 
 
 @pytest.mark.parametrize(
