@@ -19,6 +19,7 @@ from hil_sim.errors import LinkError, SimError
 AHEAD: Final = 4
 """Missions handed out for each worker: enough that none waits for the next."""
 CONNECT_S = 10.0
+_END_S: Final = 5.0
 _LIVES: Final = 2
 """A mission that was running each time so many workers died is taken to have killed them."""
 _CLUSTER_LIVES: Final = 100
@@ -94,9 +95,14 @@ def _alone(suspects: list[str], deaths: dict[str, int], waiting: deque[str], run
 def _end(pool: ProcessPoolExecutor) -> None:
     """End the workers now: what they have not finished is run again by --resume."""
     processes = list((pool._processes or {}).values())
+    manager: Any = pool._executor_manager_thread  # a thread; typeshed takes it for something else
     pool.shutdown(wait=False, cancel_futures=True)
     for process in processes:
         process.kill()
+    # The pool's own thread reaps them too, and whoever comes second cannot tell that they are gone. With a limit: it
+    # reads from them, and what died in the middle of a record never ends it.
+    if manager is not None:
+        manager.join(_END_S)
     for process in processes:
         process.join()
 
