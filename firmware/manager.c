@@ -33,6 +33,7 @@ void argus_init(argus_t *const self, const argus_config_t *const config, const u
     argus_awareness_init(&self->awareness);
     argus_verify_init(&self->verify);
     argus_evidence_init(&self->evidence);
+    argus_evidence_set_caution(&self->evidence, self->config.caution);
     argus_inquiry_init(&self->inquiry);
     argus_motion_init(&self->motion);
     argus_task_init(&self->task);

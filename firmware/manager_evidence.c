@@ -7,8 +7,8 @@
 #define HOLD_DOUBLINGS 2u // ... doubled with each acquittal so often
 #define HOLD_FORGET_MM 4000u // ... and forgotten after this one
 #define SPACING_MS 3000u     // between two looks for a mere jump
-#define ROUTINE_MS 20000u    // a look at all beside the main task at least so often,
-#define ROUTINE_MM 2000u     // ... when the robot has driven so far
+#define ROUTINE_MM_S \
+    100u // a look at all beside the main task only when the robot has driven so far in the meantime
 #define PROBATION_AGREED 4
 #define PROBATION_MS 4000u
 #define PROBATION_DOUBLINGS 4
@@ -29,7 +29,6 @@ static void stop_for(argus_t *const self, const int sonar) {
 
 static void convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     argus_disable(self, sonar, kind);
-    self->evidence.of[sonar].agreed = 0;
     argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
     stop_for(self, sonar);
 }
@@ -38,6 +37,9 @@ static void convict(argus_t *const self, const int sonar, const argus_fault_kind
 static void name(argus_t *const self, const int sonar) {
     argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
+    if (kind != ARGUS_KIND_NONE) {
+        argus_flag_suspects(self, (uint16_t)(1u << sonar));
+    }
     if (s->health == ARGUS_SUSPECT && kind != s->kind && kind != ARGUS_KIND_NONE) {
         s->kind = kind;
         argus_say(self, ARGUS_EV_SONAR_NAMED, sonar, (int32_t)kind);
@@ -97,12 +99,12 @@ static void judge_out(argus_t *const self, const int sonar) {
     if (suspected) {
         if (s->health == ARGUS_PROBATION && named != ARGUS_KIND_NONE) {
             argus_disable(self, sonar, named);
-            self->evidence.of[sonar].agreed = 0;
         }
         return;
     }
     const bool long_enough = self->now_ms - s->since_ms >= PROBATION_MS;
-    if (long_enough && self->evidence.of[sonar].agreed >= agreements_wanted(s)) {
+    const bool silent = argus_silent_ms(&self->knowledge, sonar) > (uint32_t)self->config.stale_ms;
+    if (long_enough && !silent && self->evidence.of[sonar].agreed >= agreements_wanted(s)) {
         restore(self, sonar, s->health == ARGUS_DISABLED ? ARGUS_PROBATION : ARGUS_HEALTHY);
     }
 }
@@ -169,8 +171,9 @@ uint16_t argus_worth_a_look(argus_t *const self) {
 
 bool argus_routine_is_due(const argus_t *const self) {
     const bool first = !self->looked_once;
-    const bool long_ago = self->now_ms - self->looked_ms >= ROUTINE_MS &&
-                          self->knowledge.odometer_mm - self->looked_odometer_mm >= ROUTINE_MM;
+    const uint32_t every_s = (uint32_t)self->config.look_every_s;
+    const bool long_ago = self->now_ms - self->looked_ms >= every_s * 1000u &&
+                          self->knowledge.odometer_mm - self->looked_odometer_mm >= every_s * ROUTINE_MM_S;
     return (first || long_ago) && !self->passive && !self->stay && argus_may_turn(self) &&
            self->mission == ARGUS_MISSION_RUNNING;
 }
@@ -227,7 +230,7 @@ static void begin(argus_t *const self) {
     const uint16_t suspects =
         (uint16_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) & ~(unsigned)self->awareness.verified);
     argus_take_base(self);
-    argus_inquiry_begin(&self->inquiry, suspects, argus_out(&self->knowledge), self->base_cdeg);
+    argus_inquiry_begin(&self->inquiry, &self->knowledge, &self->evidence, suspects, self->base_cdeg);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if ((suspects >> i & 1u) != 0) {
             argus_say(self, ARGUS_EV_SONAR_VERIFYING, i, self->knowledge.sonar[i].reading_mm);

@@ -99,6 +99,7 @@ bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
 
 void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     argus_sonar_set_health(&self->knowledge.sonar[sonar], ARGUS_DISABLED, kind, self->now_ms);
+    self->evidence.of[sonar].agreed = 0; // what brings it back comes after this
     argus_task_forget(&self->task, sonar);
     argus_task_restart(&self->task);
     argus_replan(self);

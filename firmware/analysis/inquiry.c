@@ -10,6 +10,15 @@
 #define READINGS_UNSTEADY 7 // where a sonar does not agree with itself
 #define LOOK_MS 2600u       // a sonar that yields nothing is not waited for longer
 #define FIRST_LOOKS 2
+#define SILENT_RUN 2
+#define AIMS_MAX 4   // turns of a suspect onto what another has heard
+#define AIMS_ASIDE 2 // ... and, while that lasts, of one that is none
+#define AIMED_SILENT 2
+#define AIMED_HEARD 3
+#define AIMED_MOST 7
+#define QUIET_RUN 4
+#define QUIET_MS 2500u
+#define ALONE_MS 8000u
 
 // The pitch of the ring is 20 degrees; 0 and 7 are 40 off their neighbours. Half a turn lets the other array
 // see.
@@ -33,12 +42,60 @@ static uint16_t around(const uint16_t suspects) {
     return (uint16_t)mask;
 }
 
-void argus_inquiry_begin(argus_inquiry_t *const self, const uint16_t suspects, const uint16_t out,
+// Suspects that hear nothing, and are not named yet.
+static bool is_silent(const argus_inquiry_t *const self, const argus_evidence_t *const evidence,
+                      const int sonar) {
+    return (self->suspects >> sonar & 1u) != 0 && evidence->of[sonar].none_run >= SILENT_RUN &&
+           argus_evidence_names(evidence, sonar) == ARGUS_KIND_NONE;
+}
+
+// Neither suspect nor proved of late, by an echo that goes on or by another sonar: a look is the occasion.
+static bool is_unproved(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+                        const argus_evidence_t *const evidence, const int sonar) {
+    const argus_case_t *const c = &evidence->of[sonar];
+    const bool quiet = c->none_run >= QUIET_RUN && knowledge->sip_ms - c->alive_ms >= QUIET_MS;
+    const bool alone = knowledge->sip_ms - c->agreed_ms >= ALONE_MS;
+    return self->aims < AIMS_ASIDE && (quiet || alone) && !argus_is_out(knowledge, sonar) &&
+           argus_evidence_names(evidence, sonar) == ARGUS_KIND_NONE;
+}
+
+static bool aim(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+                const argus_evidence_t *const evidence, const int sonar) {
+    self->aiming = argus_evidence_aim(evidence, knowledge, sonar, &self->aim_cdeg);
+    self->aimed = (uint8_t)sonar;
+    self->aims = (uint8_t)(self->aims + (self->aiming ? 1 : 0));
+    return self->aiming;
+}
+
+// Suspects first. False: nothing to aim at, or often enough.
+static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+                     const argus_evidence_t *const evidence) {
+    self->aiming = false;
+    if (self->aims >= AIMS_MAX) {
+        return false;
+    }
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (is_silent(self, evidence, i) && aim(self, knowledge, evidence, i)) {
+            return true;
+        }
+    }
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (is_unproved(self, knowledge, evidence, i) && aim(self, knowledge, evidence, i)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void argus_inquiry_begin(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+                         const argus_evidence_t *const evidence, const uint16_t suspects,
                          const int32_t base_cdeg) {
     argus_inquiry_init(self);
     self->active = true;
     self->base_cdeg = base_cdeg;
-    argus_inquiry_add(self, suspects, out);
+    self->all = evidence->agreements == 0;
+    argus_inquiry_add(self, suspects, argus_out(knowledge));
+    take_aim(self, knowledge, evidence);
 }
 
 void argus_inquiry_add(argus_inquiry_t *const self, const uint16_t suspects, const uint16_t out) {
@@ -48,21 +105,40 @@ void argus_inquiry_add(argus_inquiry_t *const self, const uint16_t suspects, con
 }
 
 int32_t argus_inquiry_heading_cdeg(const argus_inquiry_t *const self) {
-    return self->returning ? self->base_cdeg : argus_angle_wrap(self->base_cdeg + looks_cdeg[self->look]);
+    if (self->returning || self->aiming) {
+        return self->returning ? self->base_cdeg : self->aim_cdeg;
+    }
+    return argus_angle_wrap(self->base_cdeg + looks_cdeg[self->look]);
 }
 
-static void mark_settled(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge) {
+static void mark_settled(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+                         const argus_evidence_t *const evidence) {
     self->marked = true;
+    self->aimed_from = evidence->of[self->aimed].taken;
     self->settled_ms = knowledge->sip_ms;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         self->seen[i] = (uint8_t)(knowledge->sonar[i].readings & 0xFFu);
     }
 }
 
+// Silent all along or hearing all along; where it does not agree with itself, more.
+_Static_assert(AIMED_MOST <= 8, "echo_bits has eight");
+static bool has_aimed_enough(const argus_inquiry_t *const self, const argus_evidence_t *const evidence) {
+    const argus_case_t *const c = &evidence->of[self->aimed];
+    const unsigned more = (unsigned)(c->taken - self->aimed_from) & 0xFFu;
+    const unsigned mask = (1u << argus_min((int32_t)more, AIMED_MOST)) - 1u;
+    const unsigned heard = c->echo_bits & mask;
+    return more >= AIMED_MOST || (more >= AIMED_SILENT && heard == 0) ||
+           (more >= AIMED_HEARD && heard == mask);
+}
+
 static bool has_seen_enough(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                             const argus_evidence_t *const evidence) {
     if (knowledge->sip_ms - self->settled_ms >= LOOK_MS) {
         return true;
+    }
+    if (self->aiming) {
+        return has_aimed_enough(self, evidence);
     }
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const unsigned more = (knowledge->sonar[i].readings - self->seen[i]) & 0xFFu;
@@ -109,21 +185,41 @@ static uint8_t next_look(const argus_inquiry_t *const self, const argus_knowledg
     return enough || next >= LOOK_BEHIND ? LOOKS : next;
 }
 
+// The aims have settled nothing of some suspect.
+static bool is_in_doubt(const argus_inquiry_t *const self, const argus_evidence_t *const evidence) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const bool asked = (self->suspects >> i & 1u) != 0;
+        if (asked &&
+            (is_silent(self, evidence, i) || (evidence->of[i].none_run == 0 && is_open(evidence, i)))) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool argus_inquiry_step(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                         const argus_evidence_t *const evidence) {
+    self->suspects &= (uint16_t)~(unsigned)argus_out(knowledge); // what is out is judged by other looks
     if (self->returning) {
         self->active = false;
         return true;
     }
     if (!self->marked) {
-        mark_settled(self, knowledge);
+        mark_settled(self, knowledge, evidence);
         return false;
     }
     if (!has_seen_enough(self, knowledge, evidence)) {
         return false;
     }
     self->marked = false;
-    self->look = next_look(self, knowledge, evidence);
-    self->returning = self->look >= LOOKS;
+    const bool aimed = self->aiming;
+    if (take_aim(self, knowledge, evidence)) {
+        return true;
+    }
+    self->returning = aimed && !self->all && !is_in_doubt(self, evidence);
+    if (!aimed) {
+        self->look = next_look(self, knowledge, evidence);
+        self->returning = self->look >= LOOKS;
+    }
     return true;
 }

@@ -8,6 +8,7 @@
 #include "argus/angle.h"
 #include "evidence_internal.h"
 
+#define CAUTION_PERCENT 100
 #define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
 #define STEADY_SIPS 2   // a SIP lists pings up to 140 ms old
 #define REST_SIPS 3
@@ -17,12 +18,14 @@
 #define OFF_RUN 5
 #define LATE_TRIALS 4
 #define LATE_TENTHS 8
+#define LATE_LEAD 400
 #define CONVICT_CONFLICTS 4
 #define CONVICT_BESIDE 3
 #define CONVICT_EPISODES 3 // what moves about the robot does not contradict the same sonar again later
 #define UNSEEN_MM 1500u
 #define USUAL_MS 2000u
 #define UNREST_MS 8000u
+#define CALM_MS 15000u // nobody is convicted by views before nothing has moved for so long
 
 const argus_bounds_t argus_bounds[ARGUS_TESTS] = {
     [ARGUS_TEST_VIEW] =
@@ -30,14 +33,16 @@ const argus_bounds_t argus_bounds[ARGUS_TESTS] = {
     [ARGUS_TEST_OFF] = {.suspicious = 300, .naming = 450, .convincing = 1500, .floor = 0, .ceiling = 2000},
     [ARGUS_TEST_STUCK] = {.suspicious = 840, .naming = 1050, .convincing = 1470, .floor = 0, .ceiling = 2000},
     [ARGUS_TEST_GARBAGE] =
-        {.suspicious = 400, .naming = 650, .convincing = 1800, .floor = 0, .ceiling = 2200},
+        {.suspicious = 400, .naming = 650, .convincing = 2800, .floor = 0, .ceiling = 3200},
     [ARGUS_TEST_DROPOUT] =
-        {.suspicious = 500, .naming = 750, .convincing = 1800, .floor = 0, .ceiling = 2200},
-    [ARGUS_TEST_LAG] = {.suspicious = 420, .naming = 600, .convincing = 1400, .floor = 0, .ceiling = 1800},
+        {.suspicious = 500, .naming = 750, .convincing = 2400, .floor = 0, .ceiling = 2800},
+    [ARGUS_TEST_LAG] = {.suspicious = 300, .naming = 500, .convincing = 2600, .floor = 0, .ceiling = 3000},
 };
 
 static void forget_case(argus_case_t *const self) {
+    const uint16_t caution = self->caution;
     memset(self, 0, sizeof *self);
+    self->caution = caution;
     for (int i = 0; i < ARGUS_REFUTED; i++) {
         self->refuted[i].partner = -1;
     }
@@ -47,6 +52,13 @@ void argus_evidence_init(argus_evidence_t *const self) {
     memset(self, 0, sizeof *self);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         forget_case(&self->of[i]);
+    }
+    argus_evidence_set_caution(self, CAUTION_PERCENT);
+}
+
+void argus_evidence_set_caution(argus_evidence_t *const self, const int32_t percent) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        self->of[i].caution = (uint16_t)percent;
     }
 }
 
@@ -64,7 +76,7 @@ void argus_evidence_restart(argus_evidence_t *const self) {
         c->track = 0;
         c->none_run = 0;
         c->jump_track = 0;
-        c->rest_count = 0;
+        memset(c->lag_doubt, 0, sizeof c->lag_doubt);
         memset(c->lag_run, 0, sizeof c->lag_run);
         memset(c->view, 0, sizeof c->view);
     }
@@ -72,7 +84,8 @@ void argus_evidence_restart(argus_evidence_t *const self) {
 
 void argus_score(argus_case_t *const self, const argus_test_t test, const int32_t increment) {
     const argus_bounds_t *const bounds = &argus_bounds[test];
-    const int32_t sum = self->score[test] + (self->out && increment < 0 ? 4 * increment : increment);
+    const int32_t scaled = increment * CAUTION_PERCENT / self->caution;
+    const int32_t sum = self->score[test] + (self->out && scaled < 0 ? 4 * scaled : scaled);
     self->score[test] = (int16_t)argus_max(bounds->floor, argus_min(bounds->ceiling, sum));
 }
 
@@ -80,14 +93,21 @@ void argus_note_unrest(argus_evidence_t *const self, const argus_knowledge_t *co
                        const int sonar) {
     self->of[sonar].unrest = true;
     self->of[sonar].unrest_ms = knowledge->sip_ms;
+    if (!argus_is_out(knowledge, sonar)) {
+        self->busy = true;
+        self->busy_ms = knowledge->sip_ms;
+    }
+}
+
+bool argus_is_unrest_before(const argus_case_t *const self, const argus_knowledge_t *const knowledge) {
+    return self->unrest && knowledge->sip_ms - self->unrest_ms < UNREST_MS;
 }
 
 bool argus_is_unrest_beside(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                             const int sonar) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_case_t *const c = &self->of[i];
-        if (i != sonar && c->unrest && !argus_is_out(knowledge, i) &&
-            knowledge->sip_ms - c->unrest_ms < UNREST_MS) {
+        if (i != sonar && !argus_is_out(knowledge, i) && argus_is_unrest_before(c, knowledge)) {
             return true;
         }
     }
@@ -101,6 +121,7 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
         return;
     }
     c->counted_ms = knowledge->sip_ms;
+    c->taken++;
     c->out = argus_is_out(knowledge, sonar);
     argus_trend_reading(&self->trend, knowledge, sonar);
     const argus_trail_t now = {.reading_mm = knowledge->sonar[sonar].reading_mm,
@@ -125,6 +146,7 @@ void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *c
         self->usual_run--;
         self->usual_ms = knowledge->sip_ms;
     }
+    self->busy = self->busy && knowledge->sip_ms - self->busy_ms < CALM_MS;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if ((knowledge->fresh >> i & 1u) != 0) {
             take(self, knowledge, i);
@@ -139,7 +161,8 @@ static bool is_late(const argus_case_t *const c) {
     for (int n = 1; n < ARGUS_TRAIL; n++) {
         most = argus_max(most, c->lag_votes[n]);
     }
-    return (c->lag_trials >= LATE_TRIALS && most * 10 >= c->lag_trials * LATE_TENTHS);
+    return (c->lag_trials >= LATE_TRIALS && most * 10 >= c->lag_trials * LATE_TENTHS) ||
+           argus_trail_lag_lead(c) >= LATE_LEAD;
 }
 
 // Off and wrong share a test; what the readings look like tells them apart, and a late sonar from both.
@@ -207,10 +230,10 @@ static bool is_named_by(const argus_case_t *const c, const argus_test_t test) {
     return c->score[test] >= argus_bounds[test].naming && enough;
 }
 
-static bool is_convicted_by(const argus_case_t *const c, const argus_test_t test) {
-    const bool enough =
-        !rests_on_views(test) || (c->conflicts >= CONVICT_CONFLICTS && c->episodes >= CONVICT_EPISODES &&
-                                  beside_the_main(c) >= CONVICT_BESIDE);
+static bool is_convicted_by(const argus_case_t *const c, const argus_test_t test, const bool busy) {
+    const bool enough = !rests_on_views(test) ||
+                        (!busy && 2 * c->borne_out <= c->conflicts && c->conflicts >= CONVICT_CONFLICTS &&
+                         c->episodes >= CONVICT_EPISODES && beside_the_main(c) >= CONVICT_BESIDE);
     return c->score[test] >= argus_bounds[test].convincing && enough && is_named_by(c, test);
 }
 
@@ -233,7 +256,7 @@ argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, cons
 
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, const int sonar) {
     for (int i = 0; i < ARGUS_TESTS; i++) {
-        if (is_convicted_by(&self->of[sonar], (argus_test_t)precedence[i])) {
+        if (is_convicted_by(&self->of[sonar], (argus_test_t)precedence[i], self->busy)) {
             return kind_by(&self->of[sonar], (argus_test_t)precedence[i]);
         }
     }
@@ -245,7 +268,7 @@ bool argus_evidence_is_unsteady(const argus_evidence_t *const self, const int so
     for (int i = 0; i < (int)sizeof tests; i++) {
         const argus_test_t test = (argus_test_t)tests[i];
         if (self->of[sonar].score[test] >= argus_bounds[test].suspicious &&
-            !is_convicted_by(&self->of[sonar], test)) {
+            !is_convicted_by(&self->of[sonar], test, self->busy)) {
             return true;
         }
     }

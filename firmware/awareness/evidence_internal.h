@@ -32,6 +32,9 @@ bool argus_trail_goes_on(const argus_trail_t *now, const argus_trail_t *before, 
 int32_t argus_trail_moved_mm(const argus_trail_t *now, const argus_trail_t *before);
 int32_t argus_trail_turned_cdeg(const argus_trail_t *now, const argus_trail_t *before);
 
+// By how much some lag explains the changes of the readings better than none, in hundredths of a nat.
+int32_t argus_trail_lag_lead(const argus_case_t *self);
+
 // One reading through the tests of the sonar's own trail. True: it confirms the one before, a view.
 bool argus_trail_test(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
                       const argus_trail_t *now);
@@ -58,6 +61,7 @@ void argus_views_scan(argus_evidence_t *self, const argus_knowledge_t *knowledge
 // Something moves before this sonar; and whether it does before any other that is not out: then evidence
 // against one counts little.
 void argus_note_unrest(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
+bool argus_is_unrest_before(const argus_case_t *self, const argus_knowledge_t *knowledge);
 bool argus_is_unrest_beside(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
 
 // A confirmed view: remembered, and compared with what the other sonars saw on its bearing.

@@ -27,22 +27,26 @@
 #define HEARD_BACK 5
 #define HEARD_CDEG 1000
 #define DEAF_CDEG 6000 // no echo through such a turn
-#define SETTLE_READINGS 10
 #define SETTLED_MM 50
 
 // Hundredths of a nat; see DESIGN.md, Evidence.
 #define STUCK_MOVED 210
 #define STUCK_ABEAM 90
 #define LAG_MATCH 210
-#define LAG_AFTER_REST 430
+#define LAG_STILL 330
+#define LAG_FLIP 150
+#define LAG_STRAIGHT 120
+#define LAG_DOUBT_FADES 8
+#define LAG_CLEARER 3      // so many times less doubtful than no lag at all
 #define LAG_FORGOTTEN (-8) // with each reading
 #define NOVEL 180
 #define FAMILIAR (-300)
 #define BETWEEN 50
+#define BETWEEN_MAX 600
 #define DROPOUT_REST 400
-#define DROPOUT_MOVING 230
-#define DROPOUT_LONE 100
-#define DROPOUT_MOVING_MAX 700
+#define DROPOUT_MOVING 320
+#define DROPOUT_LONE 160
+#define DROPOUT_MOVING_MAX 740
 #define STEADY_ECHO (-12)
 
 const argus_trail_t *argus_trail_at(const argus_case_t *const self, const int back) {
@@ -138,31 +142,70 @@ static void test_replay(argus_case_t *const self, const argus_trail_t *const now
     }
 }
 
-static void begin_rest(argus_case_t *const self, const argus_trail_t *const now) {
-    self->rest_count = now->rest ? 1 : 0;
-    self->rest_changes = 0;
-    self->rest_first_mm = now->reading_mm;
-    self->lag_said = false;
+// What two readings in a row cost the claim that the robot was here, then there, when they were taken, in
+// hundredths of a nat.
+static int32_t cost_of_step(const argus_trail_t *const now, const argus_trail_t *const before,
+                            const argus_trail_t *const here, const argus_trail_t *const there,
+                            const int sonar) {
+    if (argus_trail_turned_cdeg(here, there) >= STILL_CDEG) {
+        return 0;
+    }
+    const int32_t moved = argus_trail_moved_mm(here, there);
+    const bool still = there->rest && moved < STILL_MM;
+    if (is_echo(now) != is_echo(before)) {
+        return still ? LAG_FLIP : 0;
+    }
+    const int32_t predicted = argus_trail_predict_mm(here, there, sonar) - there->reading_mm;
+    const int32_t limit = SETTLED_MM + now->reading_mm / 100 + moved / GO_ON_QUARTER;
+    const bool fits = argus_abs(now->reading_mm - before->reading_mm - predicted) <= limit;
+    return fits ? 0 : (still ? LAG_STILL : LAG_STRAIGHT);
 }
 
-// At rest nothing changes for a healthy sonar; a late one goes on changing for some readings, then stays with
-// another one than at first.
-static void test_settling(argus_case_t *const self, const argus_trail_t *const now,
-                          const argus_trail_t *const before, const bool unrest) {
-    if (!now->rest || self->rest_count == 0) {
-        begin_rest(self, now);
+static int best_lag(const argus_case_t *const self) {
+    int best = LAG_MIN;
+    for (int n = LAG_MIN; n < ARGUS_TRAIL; n++) {
+        best = self->lag_doubt[n] < self->lag_doubt[best] ? n : best;
+    }
+    return best;
+}
+
+int32_t argus_trail_lag_lead(const argus_case_t *const self) {
+    const int32_t least = self->lag_doubt[best_lag(self)];
+    return least * LAG_CLEARER <= self->lag_doubt[0] ? self->lag_doubt[0] - least : 0;
+}
+
+// The readings change with what the robot does: a healthy sonar's at once, a late one's some firings after.
+// How much the step that the readings make now speaks against each lag.
+static bool doubt_lags(argus_case_t *const self, const argus_trail_t *const now, int32_t *const cost,
+                       const int sonar) {
+    const argus_trail_t *const before = argus_trail_at(self, 1);
+    int32_t most = 0;
+    for (int n = 0; n < ARGUS_TRAIL; n++) {
+        const argus_trail_t *const here = n > 0 ? argus_trail_at(self, n) : now;
+        const argus_trail_t *const there = argus_trail_at(self, n + 1);
+        cost[n] = here != NULL && there != NULL ? cost_of_step(now, before, here, there, sonar) : 0;
+        most = argus_max(most, cost[n]);
+    }
+    for (int n = 0; n < ARGUS_TRAIL && most > 0; n++) {
+        self->lag_doubt[n] = (int16_t)(self->lag_doubt[n] - self->lag_doubt[n] / LAG_DOUBT_FADES + cost[n]);
+    }
+    return most > 0;
+}
+
+static void test_settling(argus_case_t *const self, const argus_trail_t *const now, const bool unrest,
+                          const int sonar) {
+    int32_t cost[ARGUS_TRAIL];
+    self->lag_said = self->lag_said && now->rest;
+    if (unrest || !doubt_lags(self, now, cost, sonar)) {
         return;
     }
-    self->rest_count = (uint8_t)argus_min(self->rest_count + 1, UINT8_MAX);
-    const int32_t limit = SETTLED_MM + now->reading_mm / 100;
-    if (argus_abs(now->reading_mm - before->reading_mm) > limit) {
-        self->rest_changes = (uint8_t)argus_min(self->rest_changes + 1, UINT8_MAX);
-        return;
-    }
-    const bool elsewhere = argus_abs(now->reading_mm - self->rest_first_mm) > 2 * limit;
-    if (self->rest_changes > 0 && elsewhere && !self->lag_said && self->rest_count <= SETTLE_READINGS) {
-        self->lag_said = true;
-        argus_score(self, ARGUS_TEST_LAG, unrest ? 0 : LAG_AFTER_REST);
+    const int best = best_lag(self);
+    const int32_t gain = cost[0] - cost[best];
+    if (gain > 0 && argus_trail_lag_lead(self) > 0) {
+        argus_score(self, ARGUS_TEST_LAG, self->lag_said ? gain / 3 : gain);
+        self->lag_said = now->rest;
+    } else {
+        argus_score(self, ARGUS_TEST_LAG, argus_min(gain, 0) / 2);
     }
 }
 
@@ -203,8 +246,9 @@ static void test_garbage(argus_case_t *const self, const argus_trail_t *const no
     }
     if (like.familiar) {
         argus_score(self, ARGUS_TEST_GARBAGE, FAMILIAR);
-    } else if (!unrest) {
-        argus_score(self, ARGUS_TEST_GARBAGE, like.novel ? NOVEL : BETWEEN);
+    } else if (!unrest && (like.novel || self->score[ARGUS_TEST_GARBAGE] < BETWEEN_MAX)) {
+        argus_score(self, ARGUS_TEST_GARBAGE,
+                    like.novel ? NOVEL : BETWEEN); // so somebody who walks looks, too
     }
 }
 
@@ -368,7 +412,7 @@ bool argus_trail_test(argus_evidence_t *const self, const argus_knowledge_t *con
     test_replay(c, now);
     const bool unrest = argus_is_unrest_beside(self, knowledge, sonar);
     test_walker(self, knowledge, now, before, sonar);
-    test_settling(c, now, before, unrest);
+    test_settling(c, now, unrest, sonar);
     if (now->steady) {
         test_garbage(c, now, sonar, unrest);
         test_dropout(c, now, sonar, unrest);

@@ -24,6 +24,9 @@
 #define SAME_PLACE_MM 35
 #define SAME_VIEW_CDEG 200
 #define NEAREST_MM 150
+#define AIM_NEAREST_MM 250
+#define AIM_FARTHEST_MM 3000
+#define AIM_TURN_CDEG 10000
 #define FARTHEST_MM 3500 // beyond, the air decides whether an echo is heard
 #define AGREE_MM 80
 #define AGREE_PERCENT 5
@@ -127,7 +130,7 @@ static void note_counted(argus_case_t *const self, const argus_view_t *const at,
 }
 
 static void disagree(argus_case_t *const self, int32_t increment, const argus_view_t *const at,
-                     const int partner, const bool misses, const uint32_t now_ms) {
+                     const int partner, const bool misses, const bool calm, const uint32_t now_ms) {
     const int32_t news = news_of(self, at, partner);
     if (news == 0) {
         return;
@@ -135,12 +138,13 @@ static void disagree(argus_case_t *const self, int32_t increment, const argus_vi
     note_counted(self, at, partner);
     if (self->score[ARGUS_TEST_VIEW] <= 0) {
         self->conflicts = 0;
+        self->borne_out = 0;
         self->episodes = 0;
         self->misses = 0;
         self->lag_trials = 0;
         memset(self->lag_votes, 0, sizeof self->lag_votes);
     }
-    if (self->episodes == 0 || now_ms - self->conflict_ms >= EPISODE_MS) {
+    if (calm && (self->episodes == 0 || now_ms - self->conflict_ms >= EPISODE_MS)) {
         self->episodes = (uint8_t)argus_min(self->episodes + 1, UINT8_MAX);
         self->conflict_ms = now_ms;
     }
@@ -156,8 +160,10 @@ static void agree(argus_case_t *const self, const argus_knowledge_t *const knowl
     argus_score(self, ARGUS_TEST_VIEW, AGREES);
     argus_score(self, ARGUS_TEST_LAG, AGREES);
     self->agreed = (uint8_t)argus_min(self->agreed + 1, UINT8_MAX);
+    self->borne_out = (uint8_t)argus_min(self->borne_out + 1, UINT8_MAX);
     self->alive_odometer_mm = knowledge->odometer_mm;
     self->alive_ms = knowledge->sip_ms;
+    self->agreed_ms = knowledge->sip_ms;
 }
 
 // Whom a disagreement is laid to: the one with the worse record bears it, two of like record share it. One
@@ -180,10 +186,16 @@ static int32_t share_of(const argus_evidence_t *const self, const argus_knowledg
     return lead <= -HEAD_START ? 20 : 50;
 }
 
+static bool is_unrest(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                      const int sonar) {
+    return argus_is_unrest_before(&self->of[sonar], knowledge) ||
+           argus_is_unrest_beside(self, knowledge, sonar);
+}
+
 // What moves about the robot makes healthy sonars disagree.
 static int32_t in_unrest(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                          const int sonar) {
-    return argus_is_unrest_beside(self, knowledge, sonar) ? UNREST_PERCENT : 100;
+    return is_unrest(self, knowledge, sonar) ? UNREST_PERCENT : 100;
 }
 
 // One side of a disagreement; `misses`: it is the one that hears nothing.
@@ -191,7 +203,8 @@ static void bear(argus_evidence_t *const self, const argus_knowledge_t *const kn
                  const int partner, const argus_view_t *const at, const int32_t weight, const bool misses) {
     argus_case_t *const c = &self->of[sonar];
     const int32_t share = share_of(self, knowledge, sonar, partner) * in_unrest(self, knowledge, sonar) / 100;
-    disagree(c, weight * share / 100, at, partner, misses, knowledge->sip_ms);
+    disagree(c, weight * share / 100, at, partner, misses, !is_unrest(self, knowledge, sonar),
+             knowledge->sip_ms);
     c->misses = (uint8_t)argus_min(c->misses + misses, UINT8_MAX);
 }
 
@@ -293,17 +306,60 @@ void argus_views_scan(argus_evidence_t *const self, const argus_knowledge_t *con
                           argus_abs(at.y_mm - c->agreed_y_mm) < COUNTED_MM;
         if (!here || argus_angle_abs_diff(at.bearing_cdeg, c->agreed_cdeg) >= COUNTED_CDEG) {
             argus_score(c, ARGUS_TEST_VIEW, weight);
+            c->borne_out = (uint8_t)argus_min(c->borne_out + 1, UINT8_MAX);
             c->agreed_x_mm = at.x_mm;
             c->agreed_y_mm = at.y_mm;
             c->agreed_cdeg = at.bearing_cdeg;
+            c->agreed_ms = at.t_ms;
         }
     } else if (verdict != ARGUS_SCAN_NOTHING) {
         vote_lag(self, knowledge, sonar);
         const argus_view_t at = view_of(knowledge, sonar);
         disagree(c, weight * in_unrest(self, knowledge, sonar) / 100, &at, ARGUS_SCAN_PARTNER,
-                 verdict == ARGUS_SCAN_MISSES, at.t_ms);
+                 verdict == ARGUS_SCAN_MISSES, !is_unrest(self, knowledge, sonar), at.t_ms);
         c->misses = (uint8_t)argus_min(c->misses + (verdict == ARGUS_SCAN_MISSES), UINT8_MAX);
     }
+}
+
+static bool is_witness(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar) {
+    const unsigned doubted = (unsigned)argus_out(knowledge) | self->lost | self->jumped;
+    return (doubted >> sonar & 1u) == 0 && !argus_evidence_suspects(self, sonar);
+}
+
+// What it costs to look along a view's bearing, in hundredths of a degree of turn; INT32_MAX: it is no use.
+static int32_t cost_of_aim(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                           const int sonar, const int other, const argus_view_t *const then) {
+    const argus_sonar_pose_t *const mount = &argus_sonar_pose[sonar];
+    const int32_t heading = argus_angle_wrap(then->bearing_cdeg - mount->heading_deg * 100);
+    const argus_pose_t turned = {
+        .x_mm = knowledge->pose.x_mm, .y_mm = knowledge->pose.y_mm, .heading_cdeg = heading};
+    const argus_point_t robot = {mount->x_mm, mount->y_mm};
+    const argus_point_t at = argus_to_course(&turned, robot);
+    const argus_view_t there = {
+        .x_mm = at.x_mm, .y_mm = at.y_mm, .bearing_cdeg = then->bearing_cdeg, .t_ms = knowledge->sip_ms};
+    const int32_t turn = argus_angle_abs_diff(heading, knowledge->pose.heading_cdeg);
+    const bool telling = then->reading_mm >= AIM_NEAREST_MM && then->reading_mm <= AIM_FARTHEST_MM &&
+                         turn >= SAME_BEARING_CDEG && turn <= AIM_TURN_CDEG &&
+                         relate(&there, then).comparable;
+    return telling && news_of(&self->of[sonar], &there, other) == 100 ? turn + then->reading_mm : INT32_MAX;
+}
+
+bool argus_evidence_aim(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                        const int sonar, int32_t *const heading_cdeg) {
+    int32_t least = INT32_MAX;
+    for (int other = 0; other < ARGUS_SONARS; other++) {
+        for (int i = 0; other != sonar && is_witness(self, knowledge, other) && i < ARGUS_VIEWS; i++) {
+            const argus_view_t *const then = &self->of[other].view[i];
+            const int32_t cost = cost_of_aim(self, knowledge, sonar, other, then);
+            if (cost < least) {
+                least = cost;
+                *heading_cdeg =
+                    argus_angle_wrap(then->bearing_cdeg - argus_sonar_pose[sonar].heading_deg * 100);
+            }
+        }
+    }
+    return least < INT32_MAX;
 }
 
 static bool is_supported_by(const argus_view_t *const at, const argus_view_t *const by) {

@@ -401,6 +401,7 @@ void test_a_witness_that_dies_during_a_look(void) {
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 20000));
     robot.fault[2] = robot.fault[4] = ROBOT_SILENT;
     TEST_ASSERT_TRUE_MESSAGE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 60000), told("look", 3));
+    robot_run(&robot, 2000); // the look may be over before they count as silent
     TEST_ASSERT_TRUE(is_disabled(2) && is_disabled(4));
     robot_run(&robot, 60000);
     finish(); // the watch: no step without a plan for all that are not relied on
@@ -510,5 +511,234 @@ void test_retest_takes_sonars_that_exist_and_a_session(void) {
     TEST_ASSERT_TRUE(argus_retest(&robot.argus, 3, robot.t_ms));
     robot_drain(&robot);
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 60000));
+    finish();
+}
+
+// ---- what the evidence names
+
+static void score_dropout(int sonar, int beside_naming) {
+    robot.argus.evidence.of[sonar].score[ARGUS_TEST_DROPOUT] =
+        (int16_t)(argus_bounds[ARGUS_TEST_DROPOUT].naming + beside_naming);
+}
+
+// S6: what is named is not relied on from the same SIP on, whatever the manager is about.
+static void named_at_once(int sonar) {
+    const int from = robot.events;
+    score_dropout(sonar, 60); // an echo takes little from it
+    robot_next_sip(&robot);
+    TEST_ASSERT_EQUAL_MESSAGE(ARGUS_SUSPECT, health(sonar), told("named", sonar));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, robot.argus.knowledge.sonar[sonar].kind);
+    TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_SONAR_SUSPECT, from) > 0);
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_SONAR_NAMED, from));
+    TEST_ASSERT_EQUAL(sonar, robot_last_event(&robot, ARGUS_EV_SONAR_NAMED)->sonar);
+}
+
+void test_what_is_named_is_a_suspect_at_once(void) {
+    for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
+        start_in_a_room();
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+        robot_run(&robot, 2000);
+        named_at_once(sonar);
+        start_in_a_room();
+        TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+        named_at_once(sonar);
+        robot_run(&robot, 5000);
+        finish();
+    }
+}
+
+// An acquittal keeps mere suspicions from stopping the robot, not a name: it looks before it goes on.
+void test_what_is_named_is_looked_at_though_it_was_acquitted_a_moment_ago(void) {
+    for (int sonar = 1; sonar <= 6; sonar++) {
+        start_in_a_room();
+        TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+        robot_run(&robot, 1000);
+        robot.argus.hold[sonar].acquittals = 3;
+        robot.argus.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm;
+        named_at_once(sonar);
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_MODE_VERIFYING, robot.argus.mode, told("not looked at", sonar));
+        robot_run(&robot, 10000);
+        finish();
+    }
+}
+
+// Into the look that is held for 3.
+static void start_looking(void) {
+    start_in_a_room();
+    TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+    robot_run(&robot, 1000);
+    robot.argus.evidence.lost |= 1u << 3;
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 5000));
+    for (int i = 0; i < 50 && !robot.argus.inquiry.active; i++) {
+        robot_next_sip(&robot);
+    }
+    TEST_ASSERT_TRUE(robot.argus.inquiry.active);
+}
+
+void test_what_is_named_during_a_look_held_for_another_is_a_suspect_at_once(void) {
+    static const int others[] = {0, 1, 5, 6, 12};
+    for (int i = 0; i < 5; i++) {
+        start_looking();
+        named_at_once(others[i]);
+        TEST_ASSERT_EQUAL(ARGUS_MODE_VERIFYING, robot.argus.mode);
+        TEST_ASSERT_TRUE(robot.argus.inquiry.active);
+        robot_run(&robot, 20000);
+        finish(); // the watch: no step without a plan for all that are not relied on
+    }
+}
+
+// What is only suspected is for the look to settle.
+void test_what_is_not_named_during_a_look_is_no_suspect_yet(void) {
+    start_looking();
+    const int from = robot.events;
+    score_dropout(6, -20);
+    robot_next_sip(&robot);
+    TEST_ASSERT_TRUE(argus_evidence_suspects(&robot.argus.evidence, 6));
+    TEST_ASSERT_EQUAL(ARGUS_HEALTHY, health(6));
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_SONAR_NAMED, from));
+    finish();
+}
+
+void test_what_is_pinned_is_not_made_a_suspect(void) {
+    start_in_a_room();
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+    robot_run(&robot, 2000);
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_PIN, 6);
+    score_dropout(6, 60);
+    robot_run(&robot, 300);
+    TEST_ASSERT_EQUAL(ARGUS_HEALTHY, health(6));
+    finish();
+}
+
+// ---- caution, look_every_s
+
+static void start_with(int32_t caution, int32_t look_every_s) {
+    argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    config.caution = caution;
+    config.look_every_s = look_every_s;
+    robot_init(&robot, &config, 0xFFFF8000u);
+    robot.noise_mm = 5;
+    furnish();
+}
+
+// How long it drives with a sonar that hangs, until that is disabled; with no look in between, but the first.
+static uint32_t found_after_ms(int32_t caution) {
+    start_with(caution, 3600);
+    drive_until(never, 0, 12000);
+    const uint32_t from = robot.t_ms;
+    robot.fault[3] = ROBOT_STUCK;
+    TEST_ASSERT_TRUE_MESSAGE(drive_until(is_disabled, 3, 240000), told("not found", (int)caution));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, robot.argus.knowledge.sonar[3].kind);
+    finish();
+    return robot.t_ms - from;
+}
+
+void test_caution_is_how_much_evidence_a_verdict_takes(void) {
+    const uint32_t bold = found_after_ms(50);
+    const uint32_t usual = found_after_ms(100);
+    const uint32_t wary = found_after_ms(400);
+    TEST_ASSERT_TRUE(bold < usual);
+    TEST_ASSERT_TRUE(usual < wary);
+}
+
+void test_caution_outlives_a_retest(void) {
+    start_with(400, 20);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+    TEST_ASSERT_TRUE(argus_retest(&robot.argus, 3, robot.start_ms + robot.t_ms));
+    robot_run(&robot, 1000);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        TEST_ASSERT_EQUAL(400, robot.argus.evidence.of[i].caution);
+    }
+}
+
+static int looks_in_two_minutes(int32_t look_every_s) {
+    start_with(100, look_every_s);
+    drive_until(never, 0, 120000);
+    finish();
+    return robot_count_events(&robot, ARGUS_EV_LOOK, 0);
+}
+
+void test_it_looks_at_all_as_often_as_it_is_told(void) {
+    const int often = looks_in_two_minutes(2);
+    const int usual = looks_in_two_minutes(20);
+    TEST_ASSERT_EQUAL(1, looks_in_two_minutes(3600)); // before the first metre
+    TEST_ASSERT_TRUE(usual > 1);
+    TEST_ASSERT_TRUE(often > usual);
+}
+
+// ---- old agreements
+
+void test_whoever_is_disabled_begins_without_agreements(void) {
+    for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
+        start_in_a_room();
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+        robot_run(&robot, 2000);
+        robot.argus.evidence.of[sonar].agreed = 200;
+        robot.fault[sonar] = ROBOT_SILENT;
+        for (int i = 0; i < 600 && !is_disabled(sonar); i++) {
+            robot_next_sip(&robot);
+        }
+        TEST_ASSERT_TRUE_MESSAGE(is_disabled(sonar), told("not found", sonar));
+        TEST_ASSERT_EQUAL(0, robot.argus.evidence.of[sonar].agreed);
+    }
+}
+
+static int count_restored(int sonar, int from) {
+    int count = 0;
+    for (int i = from; i < robot.events; i++) {
+        const int id = robot.event[i].id;
+        count +=
+            robot.event[i].sonar == sonar && (id == ARGUS_EV_SONAR_PROBATION || id == ARGUS_EV_SONAR_HEALTHY);
+    }
+    return count;
+}
+
+// One that yields nothing does not come back for what others said of it before, nor of late.
+static void stays_out(int sonar, bool again_and_again) {
+    start_in_a_room();
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+    robot_run(&robot, 2000);
+    robot.argus.evidence.of[sonar].agreed = 200;
+    robot.fault[sonar] = ROBOT_SILENT;
+    TEST_ASSERT_TRUE_MESSAGE(drive_until(is_disabled, sonar, 60000), told("not found", sonar));
+    const int from = robot.events;
+    for (int i = 0; i < 20; i++) {
+        if (again_and_again) {
+            robot.argus.evidence.of[sonar].agreed = 200;
+        }
+        robot_run(&robot, 1000);
+    }
+    TEST_ASSERT_EQUAL_MESSAGE(0, count_restored(sonar, from), told("came back", sonar));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_SILENT, robot.argus.knowledge.sonar[sonar].kind);
+    finish();
+}
+
+void test_a_silent_sonar_does_not_come_back_through_old_agreements(void) {
+    for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
+        stays_out(sonar, false);
+    }
+}
+
+void test_a_silent_sonar_does_not_come_back_whatever_agrees(void) {
+    for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
+        stays_out(sonar, true);
+    }
+}
+
+// The control: with the same agreements, but readings, it does.
+void test_with_readings_the_same_agreements_bring_it_back(void) {
+    start_in_a_room();
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+    robot.fault[3] = ROBOT_SILENT;
+    TEST_ASSERT_TRUE_MESSAGE(drive_until(is_disabled, 3, 60000), told("not found", 3));
+    const int from = robot.events;
+    robot.fault[3] = ROBOT_OK;
+    robot_run(&robot, 10000);
+    robot.argus.evidence.of[3].agreed = 200;
+    robot_run(&robot, 1000);
+    TEST_ASSERT_TRUE_MESSAGE(count_restored(3, from) > 0, told("stays out", 3));
     finish();
 }

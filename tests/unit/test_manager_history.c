@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "awareness/evidence_internal.h"
 #include "robot.h"
 #include "unity.h"
 
@@ -187,12 +188,40 @@ void test_a_pinned_sonar_keeps_its_health(void) {
     for (int test = 0; test < ARGUS_TESTS; test++) {
         robot.argus.evidence.of[3].score[test] = 0;
     }
-    robot.argus.evidence.of[3].score[ARGUS_TEST_LAG] = 1800;
+    robot.argus.evidence.of[3].score[ARGUS_TEST_LAG] = argus_bounds[ARGUS_TEST_LAG].ceiling;
     ask(ARGUS_OP_UNPIN, 3);
     TEST_ASSERT_EQUAL(0, robot_last_event(&robot, ARGUS_EV_SONAR_PINNED)->value);
     robot_run(&robot, 1000);
     TEST_ASSERT_EQUAL(ARGUS_DISABLED, sonar(3)->health);
     finish();
+}
+
+// What others agreed to before it was taken out is nothing that brings it back.
+void test_what_is_disabled_by_hand_begins_without_agreements(void) {
+    start_idle();
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        robot.argus.evidence.of[i].agreed = 200;
+        ask(ARGUS_OP_DISABLE, i);
+        TEST_ASSERT_EQUAL(ARGUS_DISABLED, sonar(i)->health);
+        TEST_ASSERT_EQUAL(0, robot.argus.evidence.of[i].agreed);
+        ask(ARGUS_OP_UNPIN, i);
+    }
+    robot_run(&robot, 6000);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        TEST_ASSERT_EQUAL(ARGUS_DISABLED, sonar(i)->health);
+    }
+}
+
+// The record tells of faults, not of caution: that is the config's.
+void test_a_record_leaves_the_caution_alone(void) {
+    save_one();
+    argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    config.caution = 200;
+    robot_init(&robot, &config, 4711);
+    TEST_ASSERT_TRUE(argus_record_load(&robot.argus, record, sizeof record));
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        TEST_ASSERT_EQUAL(200, robot.argus.evidence.of[i].caution);
+    }
 }
 
 void test_taken_out_by_hand_it_stays_out(void) {

@@ -283,6 +283,7 @@ static void check_s2_a_suspect_before_the_first_sip_that_shows_motion(void) {
     for (int i = 0; i < 600 && robot_count_commands(&robot, ARCOS_CMD_MOVE, 0) == 0; i++) {
         robot_tick(&robot);
     }
+    robot_run(&robot, 1000); // it has followed its echo on this heading
     robot.fault[3] = profile == ARGUS_PROFILE_PAPER ? ROBOT_SCALE : ROBOT_OFF; // what each suspects at once
     robot.fault_value[3] = 50;
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 5000));

@@ -20,6 +20,8 @@
     X(suspect_readings, 3, 1, 50, "", "", "consecutive disparate fresh readings before a sonar is verified") \
     X(holdoff_mm, 1000, 0, 20000, "mm", "", "a cleared sonar is not verified again before this distance")    \
     X(holdoff_deg, 30, 0, 180, "deg", "", "... or before this change of heading")                            \
+    X(caution, 100, 25, 400, "%", "", "profile argus: so much of the tabled evidence a verdict takes")       \
+    X(look_every_s, 20, 2, 3600, "s", "", "profile argus: a look at all sonars at least so often")           \
     X(stale_ms, 1500, 700, 10000, "ms", "", "a sonar that yields no reading for this long is silent")        \
     X(object_range_mm, 250, 150, 1000, "mm", "",                                                             \
       "while driving, a reading at or below this is an object: STOP")                                        \

@@ -89,11 +89,13 @@ typedef struct {
     uint8_t jump_track;           // 1: went over to another echo; its track decides
     bool followed;                // the run without an echo began on an echo that it had followed
     uint16_t deaf_cdeg;           // turned since it heard an echo last
-    uint8_t rest_count;           // readings since the robot came to rest
-    uint8_t rest_changes;
-    uint16_t rest_first_mm;
-    uint8_t conflicts; // counted since the VIEW score left its floor
-    uint8_t episodes;  // ... at so many times, some seconds apart
+    uint8_t taken;                // counts its readings, low bits
+    int16_t
+        lag_doubt[ARGUS_TRAIL]; // [n]: changes while the robot of n readings ago stood, hundredths of a nat
+    bool lag_said;              // ... counted in full since the robot came to rest
+    uint8_t conflicts;          // counted since the VIEW score left its floor
+    uint8_t borne_out;          // agreements since then
+    uint8_t episodes;           // ... at so many times, some seconds apart
     uint32_t conflict_ms;
     uint8_t misses;     // of those: no echo where another hears one
     uint8_t lag_trials; // conflicts with a scan after a turn
@@ -102,17 +104,18 @@ typedef struct {
     uint8_t agreed;             // comparisons in a row that agreed, for rehabilitation
     uint8_t echoes;             // echoes in the last 8 readings
     uint8_t echo_bits;
-    bool lag_said;
     int32_t agreed_x_mm; // where and on which bearing a scan agreed with it last
     int32_t agreed_y_mm;
     int32_t agreed_cdeg;
-    bool out;    // its evidence is of whether it may come back: what speaks for it counts more
-    bool unrest; // something moved before it, at unrest_ms
+    uint16_t caution; // percent: so much of the tabled evidence a level takes
+    bool out;         // its evidence is of whether it may come back: what speaks for it counts more
+    bool unrest;      // something moved before it, at unrest_ms
     uint32_t unrest_ms;
     int16_t drift_mm; // what the last reading differed from the prediction, when it was an echo after an echo
     uint32_t counted_ms;
     uint32_t alive_odometer_mm; // way driven when it last proved alive, or was acquitted
     uint32_t alive_ms;
+    uint32_t agreed_ms; // when others bore it out last
 } argus_case_t;
 
 typedef struct {
@@ -124,11 +127,16 @@ typedef struct {
     uint8_t straight_sips; // SIPs in a row without a rotation
     uint8_t usual_run;     // readings without an echo that sonars which proved alive have had lately
     uint32_t usual_ms;     // when that was lowered last
-    uint32_t agreements;   // monotonic counters of compared views
+    bool busy;             // something moved about the robot, last at busy_ms
+    uint32_t busy_ms;
+    uint32_t agreements; // monotonic counters of compared views
     uint32_t disagreements;
 } argus_evidence_t;
 
 void argus_evidence_init(argus_evidence_t *self);
+
+// `percent` of the tabled evidence, 25 to 400, is what each level takes from now on; 100 after init.
+void argus_evidence_set_caution(argus_evidence_t *self, int32_t percent);
 
 // The readings begin anew (session, gap of the link): trails and views are forgotten, scores stay.
 void argus_evidence_restart(argus_evidence_t *self);
@@ -148,6 +156,12 @@ argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *self, int son
 // Sonars of 1..6 that hear nothing and have proved alive last long ago.
 uint16_t argus_evidence_unseen(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
                                const argus_config_t *config);
+
+// The heading on which a sonar that hears nothing would look along a bearing where another one lately heard
+// something near, from the same place: whether it is deaf is told there. False: there is none that would be
+// news. Cost: one pass over 120 views.
+bool argus_evidence_aim(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
+                        int32_t *heading_cdeg);
 
 // A sonar was looked at and not convicted: its suspicions are spent.
 void argus_evidence_acquit(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack (S4, active verification): looks to either side of the heading, as many as are needed and
-// no more, half a turn when one array is deaf, and back to the heading in the end.
+// Rule under attack (S4, active verification): first whoever hears nothing is turned onto what another heard,
+// a few times at most; then looks to either side of the heading, as many as are needed and no more, half a
+// turn when one array is deaf, and back to the heading in the end.
 #include "argus/inquiry.h"
 
 #include <stdlib.h>
@@ -10,7 +11,9 @@
 #include "awareness/evidence_internal.h"
 #include "unity.h"
 
-#define LOOKS_MAX 8
+#define AIMS_MAX 4
+#define ASIDE_MAX 2
+#define LOOKS_MAX (AIMS_MAX + 7)
 #define SIPS_MAX 60
 #define SLOT_SIPS 3 // a sonar is listed in every third SIP
 
@@ -23,6 +26,10 @@ static uint32_t sips;
 static uint32_t longest_ms;
 static unsigned mute;
 static int32_t base_cdeg;
+static int aims;        // looks that were turned onto something heard
+static unsigned hears;  // sonars that have an echo now,
+static unsigned wavers; // ... or every other time
+static int aimed[LOOKS_MAX + 1];
 
 void setUp(void) {
     argus_knowledge_init(&k);
@@ -35,7 +42,13 @@ void setUp(void) {
         k.sonar[i].health = ARGUS_HEALTHY;
     }
     k.sip_ms = UINT32_MAX - 3000; // the clock, too
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        e.of[i].taken = 254;
+        e.of[i].alive_ms = e.of[i].agreed_ms = k.sip_ms; // each was proved a moment ago
+    }
     mute = 0;
+    hears = 0xFFFF;
+    wavers = 0;
     sips = 0;
 }
 
@@ -44,7 +57,10 @@ static void sip(void) {
     k.sip_ms += 100;
     for (unsigned i = 0; i < ARGUS_SONARS; i++) {
         if ((sips + i) % SLOT_SIPS == 0 && (mute >> i & 1u) == 0) {
+            const unsigned flips = wavers >> i & e.of[i].taken & 1u;
             k.sonar[i].readings++;
+            e.of[i].taken++;
+            e.of[i].echo_bits = (uint8_t)(e.of[i].echo_bits << 1 | ((hears >> i ^ flips) & 1u));
         }
     }
 }
@@ -66,12 +82,20 @@ static bool look_here(void) {
 static void inquire(uint16_t suspects, uint16_t out, int32_t base) {
     base_cdeg = base;
     looks = 0;
+    aims = 0;
     longest_ms = 0;
-    argus_inquiry_begin(&inquiry, suspects, out, base);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        k.sonar[i].health = (out >> i & 1u) != 0 ? ARGUS_DISABLED : k.sonar[i].health;
+    }
+    k.pose.heading_cdeg = base;
+    argus_inquiry_begin(&inquiry, &k, &e, suspects, base);
     TEST_ASSERT_TRUE(inquiry.active);
     while (inquiry.active) {
         TEST_ASSERT_TRUE_MESSAGE(looks <= LOOKS_MAX, "it does not end");
-        heading[looks++] = argus_inquiry_heading_cdeg(&inquiry);
+        k.pose.heading_cdeg = argus_inquiry_heading_cdeg(&inquiry);
+        aimed[looks] = inquiry.aiming ? inquiry.aimed : -1;
+        aims += inquiry.aiming ? 1 : 0;
+        heading[looks++] = k.pose.heading_cdeg;
         TEST_ASSERT_TRUE_MESSAGE(look_here(), "it waits for ever");
     }
 }
@@ -163,7 +187,7 @@ void test_no_half_turn_when_both_or_none_are_deaf(void) {
 void test_waits_for_new_readings_of_the_suspect_and_its_neighbours(void) {
     for (int sonar = 2; sonar <= 5; sonar++) {
         setUp();
-        argus_inquiry_begin(&inquiry, (uint16_t)(1u << sonar), 0, 0);
+        argus_inquiry_begin(&inquiry, &k, &e, (uint16_t)(1u << sonar), 0);
         sip();
         TEST_ASSERT_FALSE(argus_inquiry_step(&inquiry, &k, &e));
         const uint32_t from = k.sonar[sonar].readings;
@@ -196,7 +220,7 @@ void test_one_that_is_out_is_not_waited_for_at_all(void) {
 }
 
 void test_more_suspects_may_be_taken_in_under_way(void) {
-    argus_inquiry_begin(&inquiry, 1u << 1, 0, 0);
+    argus_inquiry_begin(&inquiry, &k, &e, 1u << 1, 0);
     TEST_ASSERT_EQUAL(0, inquiry.watched >> 12 & 1u);
     argus_inquiry_add(&inquiry, 1u << 12, 1u << 13);
     TEST_ASSERT_EQUAL_HEX16(1u << 1 | 1u << 12, inquiry.suspects);
@@ -208,7 +232,7 @@ void test_more_suspects_may_be_taken_in_under_way(void) {
 // The arrays do not look into each other's sectors: who is watched is of the suspect's own array.
 void test_neighbours_are_of_the_same_array(void) {
     for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
-        argus_inquiry_begin(&inquiry, (uint16_t)(1u << sonar), 0, 0);
+        argus_inquiry_begin(&inquiry, &k, &e, (uint16_t)(1u << sonar), 0);
         TEST_ASSERT_EQUAL_HEX16(0, inquiry.watched & (sonar < 8 ? 0xFF00u : 0x00FFu));
         TEST_ASSERT_EQUAL(1, inquiry.watched >> sonar & 1u);
     }
@@ -233,4 +257,303 @@ void test_it_ends_at_home_whatever_happens(void) {
         inquire((uint16_t)rand(), (uint16_t)rand(), base);
         TEST_ASSERT_EQUAL(base, heading[looks - 1]);
     }
+}
+
+// ---- aims
+
+// `sonar` has heard something at `mm` on the robot's heading `cdeg`.
+static void heard(int sonar, int32_t cdeg, int mm) {
+    const argus_sonar_pose_t *mount = &argus_sonar_pose[sonar];
+    const argus_pose_t pose = {k.pose.x_mm, k.pose.y_mm, cdeg};
+    const argus_point_t robot = {mount->x_mm, mount->y_mm};
+    const argus_point_t at = argus_to_course(&pose, robot);
+    argus_case_t *c = &e.of[sonar];
+    c->view[c->view_next] = (argus_view_t){.x_mm = at.x_mm,
+                                           .y_mm = at.y_mm,
+                                           .bearing_cdeg = argus_angle_wrap(cdeg + mount->heading_deg * 100),
+                                           .t_ms = k.sip_ms,
+                                           .reading_mm = (uint16_t)mm,
+                                           .rest = true,
+                                           .valid = true};
+    c->view_next = (uint8_t)((c->view_next + 1) % ARGUS_VIEWS);
+}
+
+static void falls_silent(int sonar) {
+    e.of[sonar].none_run = 3;
+    e.of[sonar].echo_bits = 0;
+    hears &= ~(1u << sonar);
+}
+
+// 3 hears nothing; on -20 degrees it would look where 4 has heard something, on +20 where 2 has.
+static void three_falls_silent(void) {
+    setUp();
+    e.agreements = 10;
+    falls_silent(3);
+    heard(4, 0, 1500);
+}
+
+static void comes_back(int sonar) {
+    e.of[sonar].none_run = 0;
+    hears |= 1u << sonar;
+}
+
+// Looks until it is settled on the next heading, which is returned.
+static int32_t next_heading(void) {
+    k.pose.heading_cdeg = argus_inquiry_heading_cdeg(&inquiry);
+    TEST_ASSERT_TRUE_MESSAGE(look_here(), "it waits for ever");
+    return argus_inquiry_heading_cdeg(&inquiry);
+}
+
+static void begin_on(unsigned suspects) {
+    k.pose.heading_cdeg = 0;
+    argus_inquiry_begin(&inquiry, &k, &e, (uint16_t)suspects, 0);
+}
+
+void test_a_silent_suspect_is_turned_first_onto_what_another_heard(void) {
+    three_falls_silent();
+    heard(5, 0, 700); // 40 degrees off: dearer
+    begin_on(1u << 3);
+    TEST_ASSERT_TRUE(inquiry.aiming);
+    TEST_ASSERT_EQUAL(3, inquiry.aimed);
+    TEST_ASSERT_EQUAL_INT32(-2000, argus_inquiry_heading_cdeg(&inquiry));
+}
+
+void test_a_suspect_that_is_named_or_hears_is_not_turned(void) {
+    three_falls_silent();
+    e.of[3].score[ARGUS_TEST_DROPOUT] = argus_bounds[ARGUS_TEST_DROPOUT].naming;
+    begin_on(1u << 3);
+    TEST_ASSERT_FALSE(inquiry.aiming);
+    three_falls_silent();
+    comes_back(3);
+    begin_on(1u << 3);
+    TEST_ASSERT_FALSE(inquiry.aiming);
+}
+
+// Once the aim has shown an echo, the looks to either side would show nothing more.
+void test_an_aim_that_settles_it_ends_the_look(void) {
+    three_falls_silent();
+    begin_on(1u << 3);
+    comes_back(3);
+    TEST_ASSERT_EQUAL_INT32(0, next_heading());
+    TEST_ASSERT_TRUE(inquiry.returning);
+}
+
+// It stays silent where another heard something: that has been counted now, and is not aimed at again.
+void test_an_aim_that_settles_nothing_is_followed_by_the_looks(void) {
+    three_falls_silent();
+    begin_on(1u << 3);
+    const argus_view_t *v = &e.of[4].view[0];
+    e.of[3].refuted[0] = (argus_refuted_t){v->x_mm, v->y_mm, v->bearing_cdeg, 4};
+    unsigned seen = 0;
+    for (int i = 0; inquiry.active && i < LOOKS_MAX; i++) {
+        const int32_t to = next_heading();
+        TEST_ASSERT_FALSE(inquiry.active && inquiry.aiming);
+        seen |= to == -2000 ? 1u : (to == 2000 ? 2u : 0u);
+    }
+    TEST_ASSERT_EQUAL(3, seen);
+    TEST_ASSERT_FALSE(inquiry.active);
+    TEST_ASSERT_EQUAL_INT32(0, k.pose.heading_cdeg);
+}
+
+// An echo that keeps others contradicting it is not settled by being heard.
+void test_an_aim_that_leaves_the_suspect_open_is_followed_by_the_looks(void) {
+    three_falls_silent();
+    begin_on(1u << 3);
+    comes_back(3);
+    suspect_openly(3);
+    TEST_ASSERT_TRUE(next_heading() == -2000);
+    TEST_ASSERT_FALSE(inquiry.aiming || inquiry.returning);
+}
+
+// While nobody has borne out anybody, the aims alone show too little: the looks follow in any case.
+void test_before_anybody_is_borne_out_the_aims_are_not_enough(void) {
+    three_falls_silent();
+    e.agreements = 0;
+    begin_on(1u << 3);
+    TEST_ASSERT_TRUE(inquiry.aiming);
+    comes_back(3);
+    TEST_ASSERT_EQUAL_INT32(-2000, next_heading());
+    TEST_ASSERT_FALSE(inquiry.aiming || inquiry.returning);
+}
+
+// Firings of 3 that the aim takes.
+static unsigned firings_on_aim(void) {
+    TEST_ASSERT_TRUE(inquiry.aiming);
+    k.pose.heading_cdeg = argus_inquiry_heading_cdeg(&inquiry);
+    sip();
+    TEST_ASSERT_FALSE(argus_inquiry_step(&inquiry, &k, &e)); // settled from here
+    const uint32_t from = k.sonar[3].readings;
+    TEST_ASSERT_TRUE_MESSAGE(look_here(), "it waits for ever");
+    return k.sonar[3].readings - from;
+}
+
+void test_an_aim_takes_longer_where_the_sonar_does_not_agree_with_itself(void) {
+    for (unsigned taken = 240; taken < 260; taken++) { // the counter wraps on the way
+        three_falls_silent();
+        e.of[3].taken = (uint8_t)taken;
+        begin_on(1u << 3);
+        const unsigned silent = firings_on_aim();
+        three_falls_silent();
+        e.of[3].taken = (uint8_t)taken;
+        begin_on(1u << 3);
+        comes_back(3);
+        const unsigned hearing = firings_on_aim();
+        three_falls_silent();
+        e.of[3].taken = (uint8_t)taken;
+        begin_on(1u << 3);
+        wavers = 1u << 3;
+        const unsigned wavering = firings_on_aim();
+        TEST_ASSERT_EQUAL(2, silent);
+        TEST_ASSERT_EQUAL(3, hearing);
+        TEST_ASSERT_TRUE(wavering > hearing && wavering <= 8);
+    }
+}
+
+void test_an_aimed_sonar_that_yields_nothing_is_not_waited_for_long(void) {
+    three_falls_silent();
+    mute = 1u << 3;
+    inquire(1u << 3, 0, 0);
+    TEST_ASSERT_TRUE(aims > 0);
+    TEST_ASSERT_TRUE(longest_ms <= 5000);
+    TEST_ASSERT_EQUAL(0, heading[looks - 1]);
+}
+
+// Everybody hears nothing, and there is something to aim at for each, wherever the robot looks.
+static void all_fall_silent(void) {
+    setUp();
+    e.agreements = 10;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        falls_silent(i);
+        e.of[i].none_run = 20;
+        for (int n = 0; n < ARGUS_VIEWS; n++) {
+            heard(i, n * 2000, 1000 + 10 * i);
+        }
+    }
+}
+
+static void nobody_was_proved_of_late(void) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        e.of[i].alive_ms -= 9000;
+        e.of[i].agreed_ms -= 9000;
+    }
+}
+
+void test_suspects_are_aimed_so_often_and_no_more(void) {
+    all_fall_silent();
+    inquire(0xFFFF, 0, 0);
+    TEST_ASSERT_EQUAL(AIMS_MAX, aims);
+    TEST_ASSERT_EQUAL(0, heading[looks - 1]);
+}
+
+// A look is the occasion for one that was not proved of late; but it is not held for it.
+void test_who_is_no_suspect_is_aimed_twice_at_most(void) {
+    all_fall_silent();
+    nobody_was_proved_of_late();
+    inquire(0, 0, 0);
+    TEST_ASSERT_EQUAL(ASIDE_MAX, aims);
+    TEST_ASSERT_EQUAL(ASIDE_MAX + 1, looks); // and home
+}
+
+void test_who_was_proved_of_late_is_not_aimed(void) {
+    all_fall_silent();
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        comes_back(i);
+    }
+    inquire(0, 0, 0);
+    TEST_ASSERT_EQUAL(0, aims);
+    all_fall_silent();
+    k.sip_ms += 2000; // a moment of silence
+    inquire(0, 0, 0);
+    TEST_ASSERT_EQUAL(-1, aimed[0]);
+}
+
+void test_suspects_come_before_those_that_are_none(void) {
+    int some = 0;
+    for (int suspect = 1; suspect < ARGUS_SONARS; suspect++) {
+        int32_t to = 0;
+        all_fall_silent();
+        nobody_was_proved_of_late();
+        begin_on(1u << suspect);
+        TEST_ASSERT_TRUE(inquiry.aiming);
+        if (argus_evidence_aim(&e, &k, suspect, &to)) { // turning shifts some too far aside
+            TEST_ASSERT_EQUAL(suspect, inquiry.aimed);
+            TEST_ASSERT_EQUAL_INT32(to, argus_inquiry_heading_cdeg(&inquiry));
+            some++;
+        }
+    }
+    TEST_ASSERT_TRUE(some >= 6);
+}
+
+void test_who_is_out_is_not_aimed_unasked(void) {
+    all_fall_silent();
+    nobody_was_proved_of_late();
+    inquire(0, 0x7FFF, 0); // 15 alone is left, and nobody to bear it out
+    TEST_ASSERT_EQUAL(0, aims);
+    for (int i = 0; i < 40; i++) {
+        all_fall_silent();
+        nobody_was_proved_of_late();
+        const uint16_t out = (uint16_t)(0x1111u << (i % 4) | 1u << (i % 16));
+        inquire(0, out, 0);
+        TEST_ASSERT_TRUE(aims > 0);
+        for (int n = 0; n < looks; n++) {
+            TEST_ASSERT_TRUE(aimed[n] < 0 || (out >> aimed[n] & 1u) == 0);
+        }
+    }
+}
+
+static uint8_t byte(void) {
+    return (uint8_t)rand();
+}
+
+static void any_state(unsigned seed) {
+    srand(seed);
+    setUp();
+    e.agreements = (uint32_t)(rand() % 2);
+    mute = (unsigned)rand() & (unsigned)rand() & 0xFFFFu;
+    wavers = (unsigned)rand() & 0xFFFFu;
+    hears = (unsigned)rand() & 0xFFFFu;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        e.of[i].taken = byte();
+        e.of[i].none_run = rand() % 2 == 0 ? byte() : 0;
+        e.of[i].alive_ms = k.sip_ms - (uint32_t)(rand() % 20000);
+        e.of[i].agreed_ms = k.sip_ms - (uint32_t)(rand() % 20000);
+        k.sonar[i].health = rand() % 3 == 0 ? (argus_health_t)(rand() % 6) : ARGUS_HEALTHY;
+        if (rand() % 3 == 0) {
+            e.of[i].score[rand() % ARGUS_TESTS] = (int16_t)(rand() % 2000);
+        }
+        for (int n = rand() % (ARGUS_VIEWS + 1); n > 0; n--) {
+            heard(i, rand() % 36000 - 17999, rand() % 5001);
+        }
+    }
+}
+
+// Whatever was heard and whoever hears: few aims, no heading that is none, and home in the end.
+void test_aims_are_few_and_lead_home_whatever_the_state(void) {
+    int aimed_at_all = 0;
+    for (unsigned seed = 1; seed <= 1500; seed++) {
+        any_state(seed);
+        const int32_t base = rand() % 36000 - 17999;
+        inquire((uint16_t)(rand() & rand()), 0, base);
+        TEST_ASSERT_TRUE(aims <= AIMS_MAX);
+        for (int i = 0; i < looks; i++) {
+            TEST_ASSERT_TRUE(heading[i] > -18000 && heading[i] <= 18000);
+        }
+        TEST_ASSERT_EQUAL(base, heading[looks - 1]);
+        aimed_at_all += aims;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(aimed_at_all > 300, "hardly anything was aimed at: the test shows nothing");
+}
+
+// A suspect that yields nothing any more, and is out, would be turned for nothing.
+void test_a_suspect_that_goes_out_during_the_look_is_not_aimed_again(void) {
+    all_fall_silent();
+    begin_on(1u << 3);
+    TEST_ASSERT_TRUE(inquiry.aiming);
+    mute = 1u << 3;
+    k.sonar[3].health = ARGUS_DISABLED;
+    for (int i = 0; inquiry.active && i < LOOKS_MAX; i++) {
+        next_heading();
+        TEST_ASSERT_FALSE(inquiry.active && inquiry.aiming && inquiry.aimed == 3);
+    }
+    TEST_ASSERT_FALSE(inquiry.active);
 }

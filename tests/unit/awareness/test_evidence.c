@@ -406,6 +406,110 @@ void test_a_wall_along_the_way_is_not_stuck(void) {
     TEST_ASSERT_TRUE_MESSAGE(scene_all_quiet(&s), told("corridor", 0, 9));
 }
 
+// ---- caution
+
+// Firings until the evidence names it, or convicts it.
+static int firings_until(int32_t caution, int (*of)(int n), bool conviction) {
+    scene_init(&s, 1, START_MS);
+    if (caution > 0) {
+        argus_evidence_set_caution(&s.e, caution);
+    }
+    s.v_mm_s = 200;
+    for (int n = 0; n < 200; n++) {
+        for (int sip = 0; sip < 3; sip++) {
+            s.x += 20;
+            reading[3] = of(n);
+            scene_say(&s, sip == 0 ? 1u << 3 : 0u, reading);
+        }
+        if (conviction ? s.convicted[3] != ARGUS_KIND_NONE : s.named != 0) {
+            return n;
+        }
+    }
+    return -1;
+}
+
+// The first reading of a stuck sonar says nothing, each one after it the same.
+void test_twice_the_caution_takes_twice_the_evidence_and_half_of_it_half(void) {
+    for (int conviction = 0; conviction < 2; conviction++) {
+        const int usual = firings_until(100, the_same, conviction != 0);
+        TEST_ASSERT_TRUE(usual > 2);
+        TEST_ASSERT_EQUAL(2 * usual, firings_until(200, the_same, conviction != 0));
+        TEST_ASSERT_INT_WITHIN(1, 4 * usual, firings_until(400, the_same, conviction != 0)); // it is rounded
+        TEST_ASSERT_EQUAL((usual + 1) / 2, firings_until(50, the_same, conviction != 0));
+        TEST_ASSERT_EQUAL(usual, firings_until(0, the_same, conviction != 0)); // 100 is what it begins with
+    }
+}
+
+static int counts_until(argus_case_t *c, argus_test_t test, int32_t increment, int level) {
+    c->score[test] = 0;
+    for (int n = 1; n < 1000; n++) {
+        argus_score(c, test, increment);
+        if (c->score[test] >= level) {
+            return n;
+        }
+    }
+    return -1;
+}
+
+void test_caution_scales_the_evidence_of_every_test(void) {
+    scene_init(&s, 1, START_MS);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        argus_case_t *c = &s.e.of[i];
+        for (int test = 0; test < ARGUS_TESTS; test++) {
+            const int level = argus_bounds[test].convincing;
+            argus_evidence_set_caution(&s.e, 100);
+            const int usual = counts_until(c, (argus_test_t)test, 40, level);
+            argus_evidence_set_caution(&s.e, 200);
+            TEST_ASSERT_INT_WITHIN(1, 2 * usual, counts_until(c, (argus_test_t)test, 40, level));
+            argus_evidence_set_caution(&s.e, 50);
+            TEST_ASSERT_INT_WITHIN(1, usual / 2, counts_until(c, (argus_test_t)test, 40, level));
+        }
+    }
+}
+
+// What speaks for a sonar is scaled alike: more caution does not acquit sooner.
+void test_caution_scales_what_speaks_for_a_sonar_too(void) {
+    for (int out = 0; out < 2; out++) {
+        scene_init(&s, 1, START_MS);
+        argus_case_t *c = &s.e.of[3];
+        c->out = out != 0;
+        c->score[ARGUS_TEST_VIEW] = 1000;
+        argus_score(c, ARGUS_TEST_VIEW, -60);
+        const int usual = 1000 - c->score[ARGUS_TEST_VIEW];
+        argus_evidence_set_caution(&s.e, 200);
+        c->score[ARGUS_TEST_VIEW] = 1000;
+        argus_score(c, ARGUS_TEST_VIEW, -60);
+        TEST_ASSERT_EQUAL(usual, 2 * (1000 - c->score[ARGUS_TEST_VIEW]));
+    }
+}
+
+void test_caution_outlives_forgetting_and_restart(void) {
+    scene_init(&s, 1, START_MS);
+    argus_evidence_set_caution(&s.e, 400);
+    argus_evidence_forget(&s.e, 3);
+    argus_evidence_restart(&s.e);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        argus_score(&s.e.of[i], ARGUS_TEST_STUCK, 400);
+        TEST_ASSERT_EQUAL(100, s.e.of[i].score[ARGUS_TEST_STUCK]);
+    }
+}
+
+void test_no_caution_leads_out_of_the_bounds(void) {
+    for (int32_t caution = 25; caution <= 400; caution += 25) {
+        scene_init(&s, 1, START_MS);
+        argus_evidence_set_caution(&s.e, caution);
+        argus_case_t *c = &s.e.of[3];
+        for (int i = 0; i < 200; i++) {
+            c->out = i % 3 == 0;
+            for (int test = 0; test < ARGUS_TESTS; test++) {
+                argus_score(c, (argus_test_t)test, i % 40 < 20 ? 430 : -300);
+                TEST_ASSERT_TRUE(c->score[test] >= argus_bounds[test].floor);
+                TEST_ASSERT_TRUE(c->score[test] <= argus_bounds[test].ceiling);
+            }
+        }
+    }
+}
+
 // ---- arithmetic
 
 static void run_from(uint32_t start_ms, int32_t x_mm, int32_t y_mm) {
