@@ -105,31 +105,37 @@ def _confusions(folder: Path, profiles: Mapping[str, Record]) -> None:
 
 
 def _trade(folder: Path, profiles: Mapping[str, Record]) -> None:
-    """Found against false disables, one point for each set of settings."""
-    with _picture(folder, "trade-off", (6.0, 4.4)) as figure:
-        place = figure.subplots()
+    """Found against what is said of healthy sonars, one point for each set of settings."""
+    with _picture(folder, "trade-off", (9.6, 4.4)) as figure:
+        given_up, named = figure.subplots(1, 2, sharey=True)
         for k, (profile, one) in enumerate(profiles.items()):
-            false, found = one["false_disables"], one["all"]
-            if false["per_100h"] is None or found["rate"] is None:
-                continue
-            low, high = found["interval"]
-            error = [[found["rate"] - low], [high - found["rate"]]]
-            x = false["per_100h"]
-            style: dict[str, Any] = {
-                "color": _COLOURS[k % 7],
-                "marker": _MARKS[k % 7],
-                "capsize": 3,
-                "label": profile,
-            }
-            right = [[0.0], [false["per_100h_high"] - x]]
-            place.errorbar([x], [found["rate"]], yerr=error, xerr=right, linestyle="none", **style)
-        place.axvline(1.0, color="#888888", linewidth=0.8)
-        place.set_xscale("symlog", linthresh=1.0)
-        place.set(
+            for place, false, hours in ((given_up, "false_disables", 100), (named, "false_names", 1)):
+                _trade_point(place, k, profile, one, false, hours)
+        given_up.axvline(1.0, color="#888888", linewidth=0.8)
+        given_up.set_xscale("symlog", linthresh=1.0)
+        given_up.set(
             xlabel="false disables in 100 fault-free robot hours", ylabel="share of all faults found in time"
         )
-        place.set(ylim=(0, 1.02), xlim=(-0.1, None))
-        _legend(place, 8)
+        given_up.set(ylim=(0, 1.02), xlim=(-0.1, None))
+        named.set(xlabel="false names in a fault-free robot hour", xscale="symlog", xlim=(0, None))
+        _legend(named, 8)
+
+
+def _trade_point(place: Axes, k: int, profile: str, one: Record, false: str, hours: int) -> None:
+    found, x = one["all"], one[false]["per_100h"]
+    if x is None or found["rate"] is None:
+        return
+    x, high_x = x * hours / 100, one[false]["per_100h_high"] * hours / 100
+    low, high = found["interval"]
+    style: dict[str, Any] = {
+        "color": _COLOURS[k % 7],
+        "marker": _MARKS[k % 7],
+        "capsize": 3,
+        "label": profile,
+    }
+    error = [[found["rate"] - low], [high - found["rate"]]]
+    right = [[0.0], [high_x - x]]
+    place.errorbar([x], [found["rate"]], yerr=error, xerr=right, linestyle="none", **style)
 
 
 def _legend(place: Axes, size: int) -> None:

@@ -28,7 +28,7 @@ from hil_sim.world import World, load_world
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENARIOS = Path(__file__).resolve().parents[1] / "scenarios"
-WORLDS = ("demo", "smooth")
+WORLDS = ("demo", "open-office", "smooth")
 FIRST_FAULT_MM, NEXT_FAULT_MM = 600, 800
 TIMEOUT_S, LONGEST_S = 180.0, 3600.0
 
@@ -122,7 +122,10 @@ def parser() -> argparse.ArgumentParser:
         help="rules of the diagnosis (default argus)",
     )
     result.add_argument(
-        "--world", choices=WORLDS, default="demo", help="smooth: smooth walls and 1 %% crosstalk"
+        "--world",
+        choices=WORLDS,
+        default="demo",
+        help="open-office: a glass wall and open floor; smooth: smooth walls and 1 %% crosstalk",
     )
     result.add_argument(
         "--out", type=Path, default=Path("build/demo"), metavar="DIR", help="records and picture"

@@ -29,6 +29,8 @@ _INK, _GREY, _PALE, _FLOOR = "#222222", "#8a8a8a", "#d5d5d5", "#fafafa"
 _SIZE_IN: Final = (16.0, 10.0)
 _DPI: Final = 100
 _FRONT: Final = range(1, 7)
+_ABOUT_MM: Final = 2500.0
+_ROOM_MM: Final = 4000.0
 _MARGIN_MM: Final = 1500.0
 """Room for words to the right of the map."""
 _STANDS_MM_S: Final = 5.0
@@ -257,8 +259,21 @@ def _draw_course(axes: Axes, drive: Drive) -> None:
     axes.plot(gx, gy, marker="*", ms=21, mfc="white", mec=_INK, mew=1.3, zorder=6.5)
 
 
-def _draw_scale(axes: Axes, world: World) -> None:
-    x1, y1, _, _ = world.bounds
+def _window(drive: Drive) -> tuple[float, float, float, float]:
+    """What the map shows: the whole of a room and some paper beside it, of a larger world what lies about the way."""
+    states = drive.states() or [{"x_mm": 0.0, "y_mm": 0.0}]
+    xs, ys = [s["x_mm"] for s in states], [s["y_mm"] for s in states]
+    x1, y1, x2, y2 = drive.world.bounds
+    return (
+        max(x1, min(xs) - _ABOUT_MM),
+        max(y1, min(ys) - _ABOUT_MM),
+        min(x2 + _MARGIN_MM, max(xs) + _ABOUT_MM),
+        min(y2, max(ys) + _ABOUT_MM),
+    )
+
+
+def _draw_scale(axes: Axes, drive: Drive) -> None:
+    x1, y1, _, _ = _window(drive)
     x, y = x1 + 40, y1 - 170
     axes.plot([x, x + 1000], [y, y], color=_INK, lw=2.4, solid_capstyle="butt", clip_on=False)
     for at in (x, x + 1000):
@@ -271,8 +286,10 @@ class _Callouts:
 
     def __init__(self, axes: Axes, drive: Drive) -> None:
         self.axes = axes
-        x1, y1, x2, y2 = drive.world.bounds
-        self.limits = (x1 + 60, y1 + 60, x2 + _MARGIN_MM, y2 - 60)
+        x1, y1, x2, y2 = _window(drive)
+        # The letters keep their size on paper, so in a larger window they take more of the floor.
+        self.scale = max(1.0, (y2 - y1) / _ROOM_MM)
+        self.limits = (x1 + 60, y1 + 60, x2, y2 - 60)
         states = drive.states()[::3]
         self.busy = [(s["x_mm"], s["y_mm"], 3.0) for s in states]
         for finding in drive.verdict.findings:
@@ -303,7 +320,8 @@ class _Callouts:
     def put(self, x: float, y: float, text: str, colour: str, bold_head: bool = True) -> None:
         """Write a box that points at (x, y)."""
         lines = text.split("\n")
-        width, height = 42 * max(len(line) for line in lines) + 90, 88 * len(lines) + 80
+        width = self.scale * (42 * max(len(line) for line in lines) + 90)
+        height = self.scale * (88 * len(lines) + 80)
         places = []
         for radius in (400, 550, 700, 900, 1150, 1450, 1800, 2200, 2600, 3000):
             for k in range(24):
@@ -407,9 +425,9 @@ def _draw_map(axes: Axes, drive: Drive) -> None:
     _draw_faults(axes, drive, callouts)
     _draw_false(axes, drive, callouts)
     _draw_ends(axes, drive, callouts)
-    _draw_scale(axes, drive.world)
-    x1, y1, x2, y2 = drive.world.bounds
-    axes.set_xlim(x1 - 60, x2 + _MARGIN_MM + 60)
+    _draw_scale(axes, drive)
+    x1, y1, x2, y2 = _window(drive)
+    axes.set_xlim(x1 - 60, x2 + 60)
     axes.set_ylim(y1 - 260, y2 + 60)
     axes.set_aspect("equal", anchor="NW")
     axes.axis("off")

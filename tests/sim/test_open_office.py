@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+"""Rule under attack: the demonstration's office is what it says, and there, too, diagnosis equals injection.
+
+Glass at grazing angles and open floor take echoes away from healthy sonars; virtual time, a few seeds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from hil_sim.scenario import load_scenario
+from hil_sim.sil import Mission, Sighting, Sil, run
+from hil_sim.sonar import NO_ECHO_MM, SONAR_POSES
+from hil_sim.world import load_world
+
+SCENARIO = load_scenario("open-office")
+COURSE = tuple(SCENARIO.course)
+FAULTS = ("off:3@travelled>600", "wrong:6@travelled>1400:scale=0.5")
+AHEAD = range(1, 7)
+
+
+def along_axis_mm(x_mm: float, y_mm: float, deg: float) -> float:
+    """How far it is along a bearing to the nearest solid of the world; inf: to none."""
+    x1, y1, x2, y2 = np.asarray(load_world("open-office").segments, dtype=float).T
+    c, s = math.cos(math.radians(deg)), math.sin(math.radians(deg))
+    across = c * (y2 - y1) - s * (x2 - x1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        way = ((x1 - x_mm) * (y2 - y1) - (y1 - y_mm) * (x2 - x1)) / across
+        part = ((x1 - x_mm) * s - (y1 - y_mm) * c) / across
+    return float(np.min(way, where=(way > 0) & (part >= 0) & (part <= 1), initial=np.inf))
+
+
+def test_open_floor_and_glass_take_echoes_away() -> None:
+    seen: Counter[str] = Counter()
+
+    def note(_: Sil, sighting: Sighting) -> None:
+        for reading in sighting.readings:
+            if reading.number in AHEAD:
+                mount, pose = SONAR_POSES[reading.number], sighting.pose
+                turn = math.radians(pose.heading_deg)
+                x = pose.x_mm + mount.x_mm * math.cos(turn) - mount.y_mm * math.sin(turn)
+                y = pose.y_mm + mount.x_mm * math.sin(turn) + mount.y_mm * math.cos(turn)
+                echo = reading.true_mm < NO_ECHO_MM
+                near = along_axis_mm(x, y, pose.heading_deg + mount.heading_deg) < NO_ECHO_MM
+                seen["echo" if echo else ("glass" if near else "open")] += 1
+
+    run(Mission("open-office", COURSE, sonar={"crosstalk": 0.0}, limit_s=60), trace=note)
+    total = sum(seen.values())
+    assert seen["open"] >= 0.03 * total, seen
+    assert seen["glass"] >= 0.03 * total, seen
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_the_faults_are_told_and_the_goal_is_reached(seed: int) -> None:
+    seen = run(
+        Mission("open-office", COURSE, faults=FAULTS, seed=seed, sonar={"crosstalk": 0.0}, limit_s=120)
+    )
+    assert seen.reached
+    assert not seen.collisions
+    out = {number: state for number, state in enumerate(seen.final) if state[0] == "DISABLED"}
+    assert out == {3: ("DISABLED", "off"), 6: ("DISABLED", "wrong")}
+    for number, states in enumerate(seen.health):
+        assert number in out or all(health != "DISABLED" for _, health, _ in states), f"sonar {number}"
