@@ -192,6 +192,7 @@ static bool doubt_lags(argus_case_t *const self, const argus_trail_t *const now,
     return most > 0;
 }
 
+// The first step of a rest that only a lag explains counts in full, the others are part of the same story.
 static void test_settling(argus_case_t *const self, const argus_trail_t *const now, const bool unrest,
                           const int sonar) {
     int32_t cost[ARGUS_TRAIL];
@@ -238,6 +239,7 @@ static likeness_t liken(const argus_case_t *const self, const argus_trail_t *con
     return like;
 }
 
+// Readings between familiar and novel name nobody: so looks somebody who walks, too.
 static void test_garbage(argus_case_t *const self, const argus_trail_t *const now, const int sonar,
                          const bool unrest) {
     const likeness_t like = liken(self, now, sonar);
@@ -247,8 +249,7 @@ static void test_garbage(argus_case_t *const self, const argus_trail_t *const no
     if (like.familiar) {
         argus_score(self, ARGUS_TEST_GARBAGE, FAMILIAR);
     } else if (!unrest && (like.novel || self->score[ARGUS_TEST_GARBAGE] < BETWEEN_MAX)) {
-        argus_score(self, ARGUS_TEST_GARBAGE,
-                    like.novel ? NOVEL : BETWEEN); // so somebody who walks looks, too
+        argus_score(self, ARGUS_TEST_GARBAGE, like.novel ? NOVEL : BETWEEN);
     }
 }
 
