@@ -40,12 +40,12 @@ static void name(argus_t *const self, const int sonar) {
     if (kind != ARGUS_KIND_NONE) {
         argus_flag_suspects(self, (uint16_t)(1u << sonar));
     }
-    if (s->health == ARGUS_SUSPECT && kind != s->kind && kind != ARGUS_KIND_NONE) {
+    if (s->health == ARGUS_SUSPECT && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
         s->kind = kind;
         argus_say(self, ARGUS_EV_SONAR_NAMED, sonar, (int32_t)kind);
     }
     const bool held = self->mode == ARGUS_MODE_VERIFYING || (self->evidence.lost >> sonar & 1u) != 0;
-    if (s->health == ARGUS_SUSPECT && !argus_evidence_suspects(&self->evidence, sonar) && !held) {
+    if (s->health == ARGUS_SUSPECT && !argus_evidence_holds(&self->evidence, sonar) && !held) {
         argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
         argus_say(self, ARGUS_EV_SUSPICION_DROPPED, sonar, s->reading_mm);
         argus_replan(self);
@@ -78,21 +78,12 @@ static uint8_t agreements_wanted(const argus_sonar_t *const s) {
     return (uint8_t)(PROBATION_AGREED << argus_min(s->relapses, PROBATION_DOUBLINGS));
 }
 
-// Off and wrong are what is left when nothing more definite shows; one other value refutes stuck.
-static bool is_better(const argus_case_t *const c, const argus_fault_kind_t present,
-                      const argus_fault_kind_t found) {
-    const bool refuted = present == ARGUS_KIND_STUCK && c->score[ARGUS_TEST_STUCK] == 0;
-    const bool echoed = present == ARGUS_KIND_WRONG && found != ARGUS_KIND_OFF; // what echoed once is not off
-    const bool vague = present == ARGUS_KIND_OFF || echoed || refuted;
-    return found != ARGUS_KIND_NONE && found != present && vague;
-}
-
 static void judge_out(argus_t *const self, const int sonar) {
     argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t convicted = argus_evidence_convicts(&self->evidence, sonar);
     const argus_fault_kind_t named = argus_evidence_names(&self->evidence, sonar);
     const bool suspected = argus_evidence_suspects(&self->evidence, sonar);
-    if (is_better(&self->evidence.of[sonar], s->kind, convicted) && s->health == ARGUS_DISABLED) {
+    if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, convicted)) {
         s->kind = convicted;
         argus_say(self, ARGUS_EV_SONAR_KIND, sonar, (int32_t)convicted);
     }

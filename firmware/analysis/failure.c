@@ -2,21 +2,15 @@
 // Classes the failure over the forward-facing six (paper: Fig. 6).
 #include "argus/failure.h"
 
-#define FORWARD_MASK 0x7Eu
+#include "argus/angle.h"
 
-int argus_count_bits(const uint16_t mask) {
-    int count = 0;
-    for (unsigned rest = mask; rest != 0; rest &= rest - 1) {
-        count++;
-    }
-    return count;
-}
+#define FORWARD_MASK 0x7Eu
 
 argus_failure_t argus_failure_of(const uint16_t disabled) {
     static const argus_failure_t by_count[] = {ARGUS_IS_NORMAL,      ARGUS_IS_MINOR, ARGUS_IS_MINOR,
                                                ARGUS_IS_MAJOR,       ARGUS_IS_MAJOR, ARGUS_IS_MAJOR,
                                                ARGUS_IS_CATASTROPHIC};
-    return by_count[argus_count_bits((uint16_t)(disabled & FORWARD_MASK))];
+    return by_count[argus_count_bits(disabled & FORWARD_MASK)];
 }
 
 const char *argus_failure_name(const argus_failure_t failure) {

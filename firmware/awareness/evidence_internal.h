@@ -28,6 +28,9 @@ const argus_trail_t *argus_trail_at(const argus_case_t *self, int back);
 // the transducer went along its axis.
 int32_t argus_trail_predict_mm(const argus_trail_t *now, const argus_trail_t *before, int sonar);
 
+// Difference of two coordinates modulo 65,536 mm.
+int32_t argus_trail_offset_mm(uint16_t now_mm, uint16_t before_mm);
+
 bool argus_trail_goes_on(const argus_trail_t *now, const argus_trail_t *before, int sonar);
 int32_t argus_trail_moved_mm(const argus_trail_t *now, const argus_trail_t *before);
 int32_t argus_trail_turned_cdeg(const argus_trail_t *now, const argus_trail_t *before);
@@ -49,9 +52,6 @@ typedef enum {
 #define ARGUS_SCAN_PARTNER 16 // stands for two others or more
 void argus_scan_restart(argus_scan_t *self);
 argus_scan_verdict_t argus_scan_take(argus_scan_t *self, const argus_knowledge_t *knowledge, int sonar);
-// Whether the others saw on a bearing of before what this sonar reads now.
-bool argus_scan_explains(const argus_scan_t *self, const argus_knowledge_t *knowledge, int sonar,
-                         int32_t heading_cdeg);
 int32_t argus_scan_weight(argus_scan_verdict_t verdict); // hundredths of a nat
 
 // What a scan says of a sonar goes into its score.
@@ -69,6 +69,19 @@ void argus_views_take(argus_evidence_t *self, const argus_knowledge_t *knowledge
 
 // Whether another sonar has lately seen something where this one now says that its echo comes from.
 bool argus_views_support(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
+
+// One reading against the glimpses of the other sonars on its bearing, as of now and as of earlier poses of
+// its own; then it is one itself. Cost: up to 8 * 15 * 32 glimpses looked through.
+void argus_peers_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
+void argus_peers_sip(argus_peers_t *self, const argus_knowledge_t *knowledge); // after all of a SIP
+void argus_peers_restart(argus_peers_t *self);
+void argus_peers_forget(argus_peers_t *self, int sonar);
+// For some lag, in hundredths of a nat: late against well, and late against wrong.
+int32_t argus_peers_late(const argus_peers_t *self, int sonar);
+int32_t argus_peers_told(const argus_peers_t *self, int sonar);
+int argus_peers_against(const argus_peers_t *self, int sonar); // others that contradict it, 0 to 15
+// Of its last contradicted readings, up to 8: how many were without an echo.
+int argus_peers_hollow(const argus_peers_t *self, int sonar, int of_last);
 
 // The present run without an echo is one that a sonar may have here: this one has proved alive.
 void argus_trail_learn_run(argus_evidence_t *self, int sonar);

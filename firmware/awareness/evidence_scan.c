@@ -85,21 +85,13 @@ static picture_t gather(const argus_scan_t *const self, const argus_knowledge_t 
     return picture;
 }
 
-static int count_sonars(uint32_t mask) {
-    int count = 0;
-    for (; mask != 0; mask &= mask - 1) {
-        count++;
-    }
-    return count;
-}
-
 static argus_scan_verdict_t judge(const picture_t *const picture, const bool echo, const int32_t range_mm) {
     if (echo && picture->agrees) {
         return ARGUS_SCAN_AGREES;
     }
     // At the edge of what is heard of a wall, one side hears and the other does not.
     const bool between = (picture->sides & BOTH_SIDES) == BOTH_SIDES;
-    if (picture->none || !between || count_sonars(picture->echo_sonars) < WITNESSES ||
+    if (picture->none || !between || argus_count_bits(picture->echo_sonars) < WITNESSES ||
         picture->most_mm > FARTHEST_MM) {
         return ARGUS_SCAN_NOTHING;
     }
@@ -138,16 +130,6 @@ argus_scan_verdict_t argus_scan_take(argus_scan_t *const self, const argus_knowl
     const picture_t picture = gather(self, knowledge, sonar, bin, range);
     remember(&self->bin[bin], sonar, range, knowledge->sip_ms);
     return judge(&picture, echo, range);
-}
-
-bool argus_scan_explains(const argus_scan_t *const self, const argus_knowledge_t *const knowledge,
-                         const int sonar, const int32_t heading_cdeg) {
-    const int32_t reading = knowledge->sonar[sonar].reading_mm;
-    const int32_t bearing = argus_angle_wrap(heading_cdeg + argus_sonar_pose[sonar].heading_deg * 100);
-    const int bin = (int)((bearing + 36000) / BIN_CDEG % ARGUS_SCAN_BINS);
-    const bool echo = reading < ARGUS_NO_ECHO_MM;
-    const picture_t picture = gather(self, knowledge, sonar, bin, from_centre_mm(sonar, reading));
-    return echo ? picture.agrees : picture.none && picture.echo_sonars == 0;
 }
 
 int32_t argus_scan_weight(const argus_scan_verdict_t verdict) {

@@ -56,13 +56,14 @@ const argus_trail_t *argus_trail_at(const argus_case_t *const self, const int ba
     return &self->trail[(self->trail_next + ARGUS_TRAIL - back) % ARGUS_TRAIL];
 }
 
-static int32_t wrapped(const uint16_t now, const uint16_t before) {
-    const int32_t delta = (int32_t)((uint32_t)(now - before) & 0xFFFFu);
+int32_t argus_trail_offset_mm(const uint16_t now_mm, const uint16_t before_mm) {
+    const int32_t delta = (int32_t)((uint32_t)(now_mm - before_mm) & 0xFFFFu);
     return delta > INT16_MAX ? delta - 0x10000 : delta;
 }
 
 int32_t argus_trail_moved_mm(const argus_trail_t *const now, const argus_trail_t *const before) {
-    return argus_hypot(wrapped(now->x_mm, before->x_mm), wrapped(now->y_mm, before->y_mm));
+    return argus_hypot(argus_trail_offset_mm(now->x_mm, before->x_mm),
+                       argus_trail_offset_mm(now->y_mm, before->y_mm));
 }
 
 int32_t argus_trail_turned_cdeg(const argus_trail_t *const now, const argus_trail_t *const before) {
@@ -72,8 +73,8 @@ int32_t argus_trail_turned_cdeg(const argus_trail_t *const now, const argus_trai
 int32_t argus_trail_predict_mm(const argus_trail_t *const now, const argus_trail_t *const before,
                                const int sonar) {
     const int32_t axis = now->heading_cdeg + argus_sonar_pose[sonar].heading_deg * 100;
-    const int32_t dx = wrapped(now->x_mm, before->x_mm);
-    const int32_t dy = wrapped(now->y_mm, before->y_mm);
+    const int32_t dx = argus_trail_offset_mm(now->x_mm, before->x_mm);
+    const int32_t dy = argus_trail_offset_mm(now->y_mm, before->y_mm);
     return before->reading_mm - (dx * argus_cos(axis) + dy * argus_sin(axis)) / ARGUS_TRIG_ONE;
 }
 

@@ -15,7 +15,6 @@
 #define CLOSE_ALONG_MM 50
 #define LOOSE_PERCENT 60
 #define OFF_RUN 2
-#define LAG_TURN_CDEG 3000
 #define EPISODE_MS 6000u
 #define UNREST_PERCENT 25
 #define SUPPORT_CDEG 2000 // an echo may come from anywhere in the cone of either
@@ -141,8 +140,6 @@ static void disagree(argus_case_t *const self, int32_t increment, const argus_vi
         self->borne_out = 0;
         self->episodes = 0;
         self->misses = 0;
-        self->lag_trials = 0;
-        memset(self->lag_votes, 0, sizeof self->lag_votes);
     }
     if (calm && (self->episodes == 0 || now_ms - self->conflict_ms >= EPISODE_MS)) {
         self->episodes = (uint8_t)argus_min(self->episodes + 1, UINT8_MAX);
@@ -276,26 +273,6 @@ static const argus_view_t *latest_of(const argus_case_t *const other, const argu
     return NULL;
 }
 
-// After a turn each lag would have the reading belong to another bearing: which one do the others bear out?
-static void vote_lag(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                     const int sonar) {
-    argus_case_t *const c = &self->of[sonar];
-    const argus_trail_t *const oldest = argus_trail_at(c, ARGUS_TRAIL);
-    const int32_t here = knowledge->pose.heading_cdeg;
-    if (oldest == NULL || argus_angle_abs_diff(oldest->heading_cdeg, here) < LAG_TURN_CDEG ||
-        c->lag_trials == UINT8_MAX) {
-        return;
-    }
-    c->lag_trials++;
-    for (int n = 1; n < ARGUS_TRAIL; n++) { // the newest of the trail is this reading itself
-        const argus_trail_t *const then = argus_trail_at(c, n + 1);
-        const bool elsewhere = argus_angle_abs_diff(then->heading_cdeg, here) >= COUNTED_CDEG;
-        if (elsewhere && argus_scan_explains(&self->scan, knowledge, sonar, then->heading_cdeg)) {
-            c->lag_votes[n]++;
-        }
-    }
-}
-
 void argus_views_scan(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const argus_scan_verdict_t verdict) {
     argus_case_t *const c = &self->of[sonar];
@@ -313,7 +290,6 @@ void argus_views_scan(argus_evidence_t *const self, const argus_knowledge_t *con
             c->agreed_ms = at.t_ms;
         }
     } else if (verdict != ARGUS_SCAN_NOTHING) {
-        vote_lag(self, knowledge, sonar);
         const argus_view_t at = view_of(knowledge, sonar);
         disagree(c, weight * in_unrest(self, knowledge, sonar) / 100, &at, ARGUS_SCAN_PARTNER,
                  verdict == ARGUS_SCAN_MISSES, !is_unrest(self, knowledge, sonar), at.t_ms);

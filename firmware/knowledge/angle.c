@@ -106,3 +106,11 @@ int32_t argus_hypot(const int32_t x, const int32_t y) {
     const uint32_t ay = (uint32_t)argus_min(argus_abs(y), 46000);
     return (int32_t)argus_sqrt(ax * ax + ay * ay);
 }
+
+int argus_count_bits(const uint32_t mask) {
+    int count = 0;
+    for (uint32_t rest = mask; rest != 0; rest &= rest - 1) {
+        count++;
+    }
+    return count;
+}

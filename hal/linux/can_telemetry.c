@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "argus/angle.h"
+
 #define GROUP 4 // sonars in a frame of readings
 #define ARRAY 8 // and in a frame of health
 

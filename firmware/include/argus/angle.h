@@ -27,5 +27,6 @@ int32_t argus_hypot(int32_t x, int32_t y);
 int32_t argus_abs(int32_t value);
 int32_t argus_min(int32_t a, int32_t b);
 int32_t argus_max(int32_t a, int32_t b);
+int argus_count_bits(uint32_t mask);
 
 #endif

@@ -20,7 +20,8 @@ typedef enum {
     ARGUS_TEST_STUCK,   // the same value again though the robot moved
     ARGUS_TEST_GARBAGE, // readings that match none before them
     ARGUS_TEST_DROPOUT, // no echo between two echoes of one thing (intermittent)
-    ARGUS_TEST_LAG, // its own readings of some firings ago, or changes after the robot came to rest (slow)
+    ARGUS_TEST_LAG,   // its own readings of some firings ago, or changes after the robot came to rest (slow)
+    ARGUS_TEST_PEERS, // other sonars saw something else, each reading counted (names only)
     ARGUS_TESTS
 } argus_test_t;
 
@@ -97,12 +98,9 @@ typedef struct {
     uint8_t borne_out;          // agreements since then
     uint8_t episodes;           // ... at so many times, some seconds apart
     uint32_t conflict_ms;
-    uint8_t misses;     // of those: no echo where another hears one
-    uint8_t lag_trials; // conflicts with a scan after a turn
-    uint8_t
-        lag_votes[ARGUS_TRAIL]; // [n]: of those, how often the heading n readings ago explains the reading
-    uint8_t agreed;             // comparisons in a row that agreed, for rehabilitation
-    uint8_t echoes;             // echoes in the last 8 readings
+    uint8_t misses; // of those: no echo where another hears one
+    uint8_t agreed; // comparisons in a row that agreed, for rehabilitation
+    uint8_t echoes; // echoes in the last 8 readings
     uint8_t echo_bits;
     int32_t agreed_x_mm; // where and on which bearing a scan agreed with it last
     int32_t agreed_y_mm;
@@ -118,8 +116,42 @@ typedef struct {
     uint32_t agreed_ms; // when others bore it out last
 } argus_case_t;
 
+// A reading with the place of its transducer and its bearing when the ping was sent, about; x and y modulo
+// 65,536 mm, course frame.
+#define ARGUS_GLIMPSES 32 // that are remembered of each sonar: some 10 s
+#define ARGUS_COUNTED 6
+typedef struct {
+    uint32_t t_ms;
+    uint16_t x_mm;
+    uint16_t y_mm;
+    int16_t bearing_cdeg;
+    uint16_t reading_mm;
+} argus_glimpse_t;
+
+typedef struct {
+    argus_glimpse_t seen[ARGUS_GLIMPSES];
+    argus_glimpse_t counted[ARGUS_COUNTED];
+    int16_t late[ARGUS_TRAIL]; // [n]: that it is n firings late and not well, hundredths of a nat
+    int16_t told[ARGUS_TRAIL]; // [n]: ... and not wrong
+    uint16_t verdicts;         // that the others gave on it, sixteenths, fading
+    uint16_t contradicted;     // ... and of those, against it
+    uint16_t against;          // bit i: sonar i, since its score left 0
+    uint8_t hollow;            // bit i: of the contradicted readings, the one i before had no echo
+    uint8_t next;
+    uint8_t count;
+    uint8_t counted_next;
+} argus_peer_t;
+
+typedef struct {
+    argus_peer_t of[ARGUS_SONARS];
+    argus_pose_t before; // of the SIP before, at before_ms
+    uint32_t before_ms;
+    uint32_t faded_ms;
+} argus_peers_t;
+
 typedef struct {
     argus_case_t of[ARGUS_SONARS];
+    argus_peers_t peers;
     argus_scan_t scan;
     argus_trend_t trend;
     uint16_t lost;         // lost the echo that they followed
@@ -141,17 +173,26 @@ void argus_evidence_set_caution(argus_evidence_t *self, int32_t percent);
 // The readings begin anew (session, gap of the link): trails and views are forgotten, scores stay.
 void argus_evidence_restart(argus_evidence_t *self);
 
-// After each SIP. Cost: for each fresh sonar one pass over the views of the other 15 (120).
+// After each SIP. Cost: for each fresh sonar one pass over the views of the other 15 (120), and up to 9 over
+// their glimpses (480).
 void argus_evidence_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge);
 
 // Whether a look is called for; the kind that the evidence names, or convicts of (NONE: not so far). A name
 // takes disagreements with two others, a conviction takes them again at another time.
 bool argus_evidence_suspects(const argus_evidence_t *self, int sonar);
 
+// Whether what made a suspect is not gone yet: the levels that clear are below those that accuse.
+bool argus_evidence_holds(const argus_evidence_t *self, int sonar);
+
 // It does not agree with itself: more of its readings at rest would tell.
 bool argus_evidence_is_unsteady(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *self, int sonar);
+
+// Whether the kind `found` is to replace the kind that a sonar carries: a name that says more, or one whose
+// ground is gone.
+bool argus_evidence_replaces(const argus_evidence_t *self, int sonar, argus_fault_kind_t present,
+                             argus_fault_kind_t found);
 
 // Sonars of 1..6 that hear nothing and have proved alive last long ago.
 uint16_t argus_evidence_unseen(const argus_evidence_t *self, const argus_knowledge_t *knowledge,

@@ -14,7 +14,6 @@ typedef enum {
 
 // `disabled`: bit mask over sonar numbers; only 1..6 count.
 argus_failure_t argus_failure_of(uint16_t disabled);
-int argus_count_bits(uint16_t mask);
 const char *argus_failure_name(argus_failure_t failure); // IsNormal, IsMinor, IsMajor, IsCatastrophic
 
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the failure state of every fault map (paper: Fig. 6), whatever the other sonars do.
+#include "argus/angle.h"
 #include "argus/failure.h"
 
 #include "unity.h"

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// What the tests of a sonar amount to: a suspicion, a name, a conviction (profile argus).
+#include "argus/angle.h"
+#include "evidence_internal.h"
+
+#define NAME_CONFLICTS 3 // a view is one of a pair: who is wrong takes a third
+#define NAME_PARTNERS 2
+#define NAME_MISSES 2
+#define OFF_RUN 5
+#define OFF_RUN_LONG 12 // what echoed before is named off after so many readings without an echo
+#define OFF_HOLLOW 3
+#define VIEW_OFF_RUN 3
+#define VIEW_ECHOES 6
+#define HOLLOW_OF 4
+#define CONVICT_CONFLICTS 4
+#define CONVICT_BESIDE 3
+#define CONVICT_EPISODES 3 // what moves about the robot does not contradict the same sonar again later
+#define HELD 150           // hundredths of a nat that the peers must come down to before one is cleared
+#define LATE_NAMING 1400
+#define LATE_CONTRADICTED 300 // ... of one that the others contradict
+#define LATE_FIRST 400 // hundredths of a nat, all that speaks for late and against wrong together: at first
+#define LATE_AFTER 700 // ... and once it is called wrong
+#define LATE_NO_MORE 150
+
+// How many others contradict it, of the last conflicts counted.
+static int partners(const argus_case_t *const c) {
+    uint32_t mask = 0;
+    const int count = argus_min(c->conflicts, ARGUS_REFUTED);
+    for (int i = 1; i <= count; i++) {
+        const int partner = c->refuted[(c->refuted_next + ARGUS_REFUTED - i) % ARGUS_REFUTED].partner;
+        mask |= partner == ARGUS_SCAN_PARTNER ? 0x30000u : (partner >= 0 ? 1u << partner : 0u);
+    }
+    return argus_count_bits(mask);
+}
+
+static int partner_at(const argus_case_t *const c, const int back) {
+    return c->refuted[(c->refuted_next + ARGUS_REFUTED - back) % ARGUS_REFUTED].partner;
+}
+
+static int conflicts_with(const argus_case_t *const c, const int partner, const int count) {
+    int same = 0;
+    for (int i = 1; i <= count; i++) {
+        same += partner_at(c, i) == partner ? 1 : 0;
+    }
+    return same;
+}
+
+// Conflicts, of the last ones counted, with others than the partner of most of them: a liar beside it is one
+// voice.
+static int beside_the_main(const argus_case_t *const c) {
+    const int count = argus_min(c->conflicts, ARGUS_REFUTED);
+    int most = 0;
+    for (int i = 1; i <= count; i++) {
+        const int partner = partner_at(c, i);
+        most = partner != ARGUS_SCAN_PARTNER ? argus_max(most, conflicts_with(c, partner, count)) : most;
+    }
+    return count - most;
+}
+
+static const uint8_t kind_of_test[ARGUS_TESTS] = {
+    [ARGUS_TEST_OFF] = ARGUS_KIND_OFF,         [ARGUS_TEST_STUCK] = ARGUS_KIND_STUCK,
+    [ARGUS_TEST_GARBAGE] = ARGUS_KIND_GARBAGE, [ARGUS_TEST_DROPOUT] = ARGUS_KIND_INTERMITTENT,
+    [ARGUS_TEST_LAG] = ARGUS_KIND_SLOW,
+};
+
+static bool rests_on_views(const argus_test_t test) {
+    return test == ARGUS_TEST_VIEW || test == ARGUS_TEST_OFF;
+}
+
+static bool is_named_by(const argus_case_t *const c, const argus_test_t test) {
+    const bool enough = test == ARGUS_TEST_OFF ? c->none_run >= OFF_RUN && c->misses >= NAME_MISSES
+                                               : test != ARGUS_TEST_VIEW || (c->conflicts >= NAME_CONFLICTS &&
+                                                                             partners(c) >= NAME_PARTNERS);
+    return c->score[test] >= argus_bounds[test].naming && enough;
+}
+
+static bool is_convicted_by(const argus_case_t *const c, const argus_test_t test, const bool busy) {
+    const bool enough = !rests_on_views(test) ||
+                        (!busy && 2 * c->borne_out <= c->conflicts && c->conflicts >= CONVICT_CONFLICTS &&
+                         c->episodes >= CONVICT_EPISODES && beside_the_main(c) >= CONVICT_BESIDE);
+    return c->score[test] >= argus_bounds[test].convincing && enough && is_named_by(c, test);
+}
+
+// Late against wrong, in hundredths of a nat: what the changes of its own readings say, and what the others
+// saw where it was some firings ago.
+static int32_t lateness(const argus_evidence_t *const self, const int sonar) {
+    const argus_case_t *const c = &self->of[sonar];
+    return argus_peers_late(&self->peers, sonar) / 4 + argus_peers_told(&self->peers, sonar) +
+           argus_trail_lag_lead(c) + c->score[ARGUS_TEST_LAG];
+}
+
+static bool looks_late(const argus_evidence_t *const self, const int sonar) {
+    return argus_peers_late(&self->peers, sonar) >= LATE_NAMING &&
+           self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_CONTRADICTED;
+}
+
+static argus_fault_kind_t late_or_wrong(const argus_evidence_t *const self, const int sonar) {
+    return lateness(self, sonar) >= LATE_FIRST ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
+}
+
+// Off and wrong share a test; what the readings look like tells them apart, and a late sonar from both.
+static argus_fault_kind_t kind_of_view(const argus_evidence_t *const self, const int sonar) {
+    const argus_case_t *const c = &self->of[sonar];
+    if (c->none_run == 0 && c->echoes >= VIEW_ECHOES) {
+        return late_or_wrong(self, sonar);
+    }
+    if (c->score[ARGUS_TEST_DROPOUT] > 0) {
+        return ARGUS_KIND_INTERMITTENT;
+    }
+    return c->none_run >= VIEW_OFF_RUN ? ARGUS_KIND_OFF : ARGUS_KIND_WRONG;
+}
+
+static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, const int sonar) {
+    const argus_case_t *const c = &self->of[sonar];
+    const int hollow = argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW);
+    if (c->none_run >= OFF_RUN && hollow == OFF_HOLLOW) {
+        return ARGUS_KIND_OFF;
+    }
+    if (c->score[ARGUS_TEST_DROPOUT] > 0 && hollow > 0) {
+        return ARGUS_KIND_INTERMITTENT;
+    }
+    return late_or_wrong(self, sonar);
+}
+
+static argus_fault_kind_t kind_by(const argus_evidence_t *const self, const int sonar,
+                                  const argus_test_t test) {
+    if (test == ARGUS_TEST_PEERS) {
+        return kind_of_peers(self, sonar);
+    }
+    return test == ARGUS_TEST_VIEW ? kind_of_view(self, sonar) : (argus_fault_kind_t)kind_of_test[test];
+}
+
+// Who is wrong takes a third, among peers too; and one that the peers contradict is late only where that says
+// more than wrong.
+static bool is_gainsaid(const argus_evidence_t *const self, const int sonar, const argus_test_t test) {
+    if (test == ARGUS_TEST_PEERS) {
+        return argus_peers_against(&self->peers, sonar) < NAME_PARTNERS;
+    }
+    const int32_t contradicted = self->of[sonar].score[ARGUS_TEST_PEERS];
+    return test == ARGUS_TEST_LAG && contradicted >= argus_bounds[ARGUS_TEST_PEERS].suspicious &&
+           lateness(self, sonar) < LATE_FIRST;
+}
+
+// The more definite tests come first.
+static const uint8_t precedence[ARGUS_TESTS] = {ARGUS_TEST_OFF,     ARGUS_TEST_STUCK,   ARGUS_TEST_LAG,
+                                                ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT, ARGUS_TEST_VIEW,
+                                                ARGUS_TEST_PEERS};
+
+argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
+    for (int i = 0; i < ARGUS_TESTS; i++) {
+        const argus_test_t test = (argus_test_t)precedence[i];
+        if (is_named_by(&self->of[sonar], test) && !is_gainsaid(self, sonar, test)) {
+            return kind_by(self, sonar, test);
+        }
+    }
+    const bool late = looks_late(self, sonar) && !is_gainsaid(self, sonar, ARGUS_TEST_PEERS) &&
+                      !is_gainsaid(self, sonar, ARGUS_TEST_LAG);
+    return late ? ARGUS_KIND_SLOW : ARGUS_KIND_NONE;
+}
+
+argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, const int sonar) {
+    for (int i = 0; i < ARGUS_TESTS; i++) {
+        const argus_test_t test = (argus_test_t)precedence[i];
+        if (is_convicted_by(&self->of[sonar], test, self->busy) && !is_gainsaid(self, sonar, test)) {
+            return kind_by(self, sonar, test);
+        }
+    }
+    return ARGUS_KIND_NONE;
+}
+
+// Wrong is what is left when nothing more definite shows.
+static bool is_more_than_wrong(const argus_evidence_t *const self, const int sonar,
+                               const argus_fault_kind_t found) {
+    switch (found) {
+    case ARGUS_KIND_OFF:
+        return self->of[sonar].none_run >= OFF_RUN_LONG &&
+               argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW) == OFF_HOLLOW;
+    case ARGUS_KIND_INTERMITTENT:
+        return argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) >= HOLLOW_OF - 1;
+    case ARGUS_KIND_SLOW:
+        return lateness(self, sonar) >= LATE_AFTER;
+    default:
+        return true;
+    }
+}
+
+bool argus_evidence_replaces(const argus_evidence_t *const self, const int sonar,
+                             const argus_fault_kind_t present, const argus_fault_kind_t found) {
+    if (found == ARGUS_KIND_NONE || found == present) {
+        return false;
+    }
+    switch (present) {
+    case ARGUS_KIND_NONE:
+    case ARGUS_KIND_OFF:
+        return true;
+    case ARGUS_KIND_STUCK:
+        return self->of[sonar].score[ARGUS_TEST_STUCK] == 0; // one other value refutes it
+    case ARGUS_KIND_SLOW:
+        return found == ARGUS_KIND_WRONG && lateness(self, sonar) < LATE_NO_MORE;
+    case ARGUS_KIND_WRONG:
+        return is_more_than_wrong(self, sonar, found);
+    default:
+        return false;
+    }
+}
+
+bool argus_evidence_is_unsteady(const argus_evidence_t *const self, const int sonar) {
+    static const uint8_t tests[] = {ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT, ARGUS_TEST_LAG};
+    for (int i = 0; i < (int)sizeof tests; i++) {
+        const argus_test_t test = (argus_test_t)tests[i];
+        if (self->of[sonar].score[test] >= argus_bounds[test].suspicious &&
+            !is_convicted_by(&self->of[sonar], test, self->busy)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool argus_evidence_suspects(const argus_evidence_t *const self, const int sonar) {
+    for (int i = 0; i < ARGUS_TESTS; i++) {
+        if (self->of[sonar].score[i] >= argus_bounds[i].suspicious) {
+            return true;
+        }
+    }
+    return looks_late(self, sonar);
+}
+
+bool argus_evidence_holds(const argus_evidence_t *const self, const int sonar) {
+    return argus_evidence_suspects(self, sonar) || self->of[sonar].score[ARGUS_TEST_PEERS] > HELD ||
+           argus_peers_late(&self->peers, sonar) > HELD;
+}

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+// The peers: every reading, in motion and in turns too, against what the others saw on its bearing from its
+// place.
+#include <stddef.h>
+#include <string.h>
+
+#include "argus/angle.h"
+#include "evidence_internal.h"
+
+#define AGE_MS 10000u
+#define SAME_BEARING_CDEG 300
+#define SAME_LATERAL_MM 60
+#define SAME_ALONG_MM 200
+#define NEAREST_MM 150
+#define FARTHEST_MM 4000 // beyond, the air decides whether an echo is heard
+#define AGREE_MM 80
+#define AGREE_PERCENT 5
+#define PING_AGE_MS 70 // a SIP lists pings 0 to 140 ms old
+#define SIP_MOST_MS 300u
+#define COUNTED_MM 100
+#define COUNTED_CDEG 800
+#define COUNTED_MS 4000u
+#define UNREST_PERCENT 25
+#define FADE_MS 1000u
+#define FADE_EIGHTHS 7
+#define ONE_VERDICT 16 // in the fading counts
+#define LAG_LEAST 2
+#define LAG_TURN_CDEG 1000
+#define LATE_CEILING 2000
+#define TOLD_CEILING 1500
+#define HOLLOW_BITS 8
+
+// What the others say of one reading. SAME: the pose of then would have it look where it looks now.
+typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, DIVIDED, SAME, VERDICTS } verdict_t;
+
+typedef struct {
+    uint8_t agree;
+    uint8_t differ;
+    uint8_t quiet;
+    uint16_t against; // those that differ, bit i: sonar i
+} tally_t;
+
+// Hundredths of a nat; DESIGN.md, Evidence, derives them. By the part of the other sonars' readings that is
+// contradicted at the time, in steps of 5 % from 5 %.
+#define PARTS 12
+static const int16_t contradicts[PARTS] = {277, 208, 167, 139, 116, 98, 83, 69, 58, 47, 37, 29};
+static const int16_t bears_out[PARTS] = {-93, -90, -87, -83, -79, -75, -70, -66, -60, -55, -48, -41};
+
+// That a reading is so many firings late and not well. Rows: the verdict as of now; columns: as of then.
+static const int16_t late_than_well[VERDICTS][VERDICTS] = {
+    [UNSEEN] = {[AGREED] = 50, [CONTRADICTED] = -200},
+    [QUIET] = {[CONTRADICTED] = -350},
+    [AGREED] = {[CONTRADICTED] = -400},
+    [CONTRADICTED] = {[QUIET] = 100, [AGREED] = 300, [CONTRADICTED] = -150, [SAME] = -150},
+};
+
+// That it is late and not wrong: ln of one in so many lags at which it agrees, and what one takes back.
+#define CHANCES 8
+static const int16_t late_than_wrong[CHANCES] = {0, 69, 110, 139, 161, 179, 195, 208};
+#define REFUTES_LAG (-150)
+
+static bool is_same_place(const argus_glimpse_t *const now, const argus_glimpse_t *const then,
+                          int32_t *const along_mm) {
+    const int32_t dx = argus_trail_offset_mm(now->x_mm, then->x_mm);
+    const int32_t dy = argus_trail_offset_mm(now->y_mm, then->y_mm);
+    if (argus_abs(dx) > SAME_ALONG_MM || argus_abs(dy) > SAME_ALONG_MM) {
+        return false;
+    }
+    const int32_t c = argus_cos(now->bearing_cdeg);
+    const int32_t s = argus_sin(now->bearing_cdeg);
+    *along_mm = (dx * c + dy * s) / ARGUS_TRIG_ONE;
+    return argus_abs(dy * c - dx * s) / ARGUS_TRIG_ONE <= SAME_LATERAL_MM;
+}
+
+// UNSEEN: the two cannot be compared.
+static verdict_t compare(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
+    const bool none = now_mm >= ARGUS_NO_ECHO_MM;
+    const bool was_none = then_mm >= ARGUS_NO_ECHO_MM;
+    if (none && was_none) {
+        return QUIET;
+    }
+    const int32_t expected = was_none ? now_mm + along_mm : then_mm - along_mm;
+    if (expected < NEAREST_MM || (none != was_none && expected > FARTHEST_MM)) {
+        return UNSEEN;
+    }
+    const int32_t limit = AGREE_MM + argus_min(expected, now_mm) * AGREE_PERCENT / 100;
+    return none == was_none && argus_abs(expected - now_mm) <= limit ? AGREED : CONTRADICTED;
+}
+
+static const argus_glimpse_t *at_back(const argus_peer_t *const self, const int back) {
+    return back <= self->count ? &self->seen[(self->next + ARGUS_GLIMPSES - back) % ARGUS_GLIMPSES] : NULL;
+}
+
+// The latest glimpse of a peer on the bearing of `now` from its place decides.
+static verdict_t ask(const argus_peer_t *const peer, const argus_glimpse_t *const now,
+                     const uint32_t now_ms) {
+    for (int i = 1; i <= peer->count; i++) {
+        const argus_glimpse_t *const then = at_back(peer, i);
+        int32_t along_mm = 0;
+        if (now_ms - then->t_ms > AGE_MS) {
+            return UNSEEN;
+        }
+        if (argus_angle_abs_diff(now->bearing_cdeg, then->bearing_cdeg) <= SAME_BEARING_CDEG &&
+            is_same_place(now, then, &along_mm)) {
+            return compare(now->reading_mm, then->reading_mm, along_mm);
+        }
+    }
+    return UNSEEN;
+}
+
+// One that is contradicted at least as much itself says nothing of another: neither a liar of those beside
+// it, nor either of two that nobody else bears out.
+static bool is_witness(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar, const int of) {
+    const int32_t own = self->of[sonar].score[ARGUS_TEST_PEERS];
+    return sonar != of && !argus_is_out(knowledge, sonar) &&
+           (own < argus_bounds[ARGUS_TEST_PEERS].suspicious || own < self->of[of].score[ARGUS_TEST_PEERS]);
+}
+
+static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar, const argus_glimpse_t *const now) {
+    tally_t tally = {0, 0, 0, 0};
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (!is_witness(self, knowledge, i, sonar)) {
+            continue;
+        }
+        const verdict_t said = ask(&self->peers.of[i], now, knowledge->sip_ms);
+        tally.quiet = (uint8_t)(tally.quiet + (said == QUIET));
+        tally.agree = (uint8_t)(tally.agree + (said == AGREED));
+        tally.differ = (uint8_t)(tally.differ + (said == CONTRADICTED));
+        tally.against = (uint16_t)(tally.against | (said == CONTRADICTED ? 1u << i : 0u));
+    }
+    return tally;
+}
+
+static verdict_t verdict_of(const tally_t *const tally) {
+    if (tally->agree > 0) {
+        return tally->agree >= tally->differ ? AGREED : DIVIDED;
+    }
+    if (tally->differ > 0) {
+        return tally->quiet > 0 ? DIVIDED : CONTRADICTED;
+    }
+    return tally->quiet > 0 ? QUIET : UNSEEN;
+}
+
+// From one place and on one bearing, one reading counts.
+static bool is_news(const argus_peer_t *const self, const argus_glimpse_t *const now) {
+    for (int i = 0; i < ARGUS_COUNTED; i++) {
+        const argus_glimpse_t *const then = &self->counted[i];
+        if (then->t_ms != 0 && now->t_ms - then->t_ms < COUNTED_MS &&
+            argus_abs(argus_trail_offset_mm(now->x_mm, then->x_mm)) < COUNTED_MM &&
+            argus_abs(argus_trail_offset_mm(now->y_mm, then->y_mm)) < COUNTED_MM &&
+            argus_angle_abs_diff(now->bearing_cdeg, then->bearing_cdeg) < COUNTED_CDEG) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Which part of the others' readings is contradicted at present; at the start one in twenty of six.
+static int part_contradicted(const argus_peers_t *const self, const int sonar) {
+    int32_t all = 6 * ONE_VERDICT;
+    int32_t contradicted = 6 * ONE_VERDICT / 20 + 1;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        all += i != sonar ? self->of[i].verdicts : 0;
+        contradicted += i != sonar ? self->of[i].contradicted : 0;
+    }
+    return (int)argus_max(0, argus_min(PARTS - 1, (contradicted * 20 + all / 2) / all - 1));
+}
+
+static void note_counted(argus_peer_t *const self, const argus_glimpse_t *const now, const bool odd) {
+    self->counted[self->counted_next] = *now;
+    self->counted_next = (uint8_t)((self->counted_next + 1) % ARGUS_COUNTED);
+    self->verdicts = (uint16_t)(self->verdicts + ONE_VERDICT);
+    if (odd) {
+        const unsigned hollow = now->reading_mm >= ARGUS_NO_ECHO_MM ? 1u : 0u;
+        self->hollow = (uint8_t)((unsigned)self->hollow << 1 | hollow);
+        self->contradicted = (uint16_t)(self->contradicted + ONE_VERDICT);
+    }
+}
+
+static bool is_unrest(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                      const int sonar) {
+    return argus_is_unrest_before(&self->of[sonar], knowledge) ||
+           argus_is_unrest_beside(self, knowledge, sonar);
+}
+
+static void count(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                  const argus_glimpse_t *const now, const uint16_t against) {
+    argus_peer_t *const peer = &self->peers.of[sonar];
+    argus_case_t *const c = &self->of[sonar];
+    const int part = part_contradicted(&self->peers, sonar);
+    if (against != 0) {
+        const int32_t percent = is_unrest(self, knowledge, sonar) ? UNREST_PERCENT : 100;
+        argus_score(c, ARGUS_TEST_PEERS, contradicts[part] * percent / 100);
+    } else {
+        argus_score(c, ARGUS_TEST_PEERS, bears_out[part]);
+    }
+    peer->against = c->score[ARGUS_TEST_PEERS] > 0 ? (uint16_t)(peer->against | against) : 0;
+    note_counted(peer, now, against != 0);
+}
+
+// What the others would say of this reading had it been made at an earlier pose of its sonar.
+static verdict_t verdict_as_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                               const int sonar, const argus_glimpse_t *const now, const int lag) {
+    const argus_glimpse_t *const then = at_back(&self->peers.of[sonar], lag);
+    if (then == NULL) {
+        return UNSEEN;
+    }
+    if (argus_angle_abs_diff(now->bearing_cdeg, then->bearing_cdeg) < LAG_TURN_CDEG) {
+        return SAME;
+    }
+    argus_glimpse_t as_of = *then;
+    as_of.reading_mm = now->reading_mm;
+    const tally_t tally = ask_all(self, knowledge, sonar, &as_of);
+    return verdict_of(&tally);
+}
+
+static int16_t limited(const int32_t sum, const int32_t ceiling) {
+    return (int16_t)argus_max(0, argus_min(ceiling, sum));
+}
+
+// How little it means that `agreed` of the lags that can be told agree: by chance one will.
+static int32_t worth_of(const int agreed, const int told) {
+    return late_than_wrong[argus_min(CHANCES, told / argus_max(1, agreed)) - 1];
+}
+
+static void weigh_lags(argus_peer_t *const peer, const verdict_t now, const uint8_t *const as_of,
+                       const int32_t worth) {
+    for (int n = LAG_LEAST; n < ARGUS_TRAIL; n++) {
+        const bool explains = now == CONTRADICTED && as_of[n] == AGREED;
+        const bool refutes = as_of[n] == CONTRADICTED || (now == CONTRADICTED && as_of[n] == SAME);
+        peer->late[n] = limited(peer->late[n] + late_than_well[now][as_of[n]], LATE_CEILING);
+        peer->told[n] =
+            limited(peer->told[n] + (explains ? worth : (refutes ? REFUTES_LAG : 0)), TOLD_CEILING);
+    }
+}
+
+static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar, const argus_glimpse_t *const now, const verdict_t verdict) {
+    uint8_t as_of[ARGUS_TRAIL] = {UNSEEN};
+    int agreed = 0;
+    int told = 0;
+    for (int n = LAG_LEAST; n < ARGUS_TRAIL; n++) {
+        as_of[n] = (uint8_t)verdict_as_of(self, knowledge, sonar, now, n);
+        agreed += as_of[n] == AGREED;
+        told +=
+            as_of[n] == AGREED || as_of[n] == CONTRADICTED || (as_of[n] == SAME && verdict == CONTRADICTED);
+    }
+    weigh_lags(&self->peers.of[sonar], verdict, as_of, agreed > 0 ? worth_of(agreed, told) : 0);
+}
+
+static int32_t most_of(const int16_t *const lags) {
+    int32_t most = 0;
+    for (int n = LAG_LEAST; n < ARGUS_TRAIL; n++) {
+        most = argus_max(most, lags[n]);
+    }
+    return most;
+}
+
+int32_t argus_peers_late(const argus_peers_t *const self, const int sonar) {
+    return most_of(self->of[sonar].late);
+}
+
+int32_t argus_peers_told(const argus_peers_t *const self, const int sonar) {
+    return most_of(self->of[sonar].told);
+}
+
+int argus_peers_against(const argus_peers_t *const self, const int sonar) {
+    return argus_count_bits(self->of[sonar].against);
+}
+
+int argus_peers_hollow(const argus_peers_t *const self, const int sonar, const int of_last) {
+    return argus_count_bits(self->of[sonar].hollow & ((1u << argus_min(of_last, HOLLOW_BITS)) - 1u));
+}
+
+// Where the robot was when the pings of this SIP were sent, about: between its two last poses.
+static argus_pose_t pose_of_pings(const argus_peers_t *const self, const argus_knowledge_t *const knowledge) {
+    argus_pose_t pose = knowledge->pose;
+    const uint32_t passed_ms = knowledge->sip_ms - self->before_ms;
+    if (self->before_ms != 0 && passed_ms > 0 && passed_ms <= SIP_MOST_MS) {
+        const int32_t span = (int32_t)passed_ms;
+        const int32_t ago = argus_min(PING_AGE_MS, span);
+        const int32_t turn_cdeg = argus_angle_wrap(pose.heading_cdeg - self->before.heading_cdeg);
+        pose.x_mm -= (pose.x_mm - self->before.x_mm) * ago / span;
+        pose.y_mm -= (pose.y_mm - self->before.y_mm) * ago / span;
+        pose.heading_cdeg = argus_angle_wrap(pose.heading_cdeg - turn_cdeg * ago / span);
+    }
+    return pose;
+}
+
+static argus_glimpse_t glimpse_of(const argus_peers_t *const self, const argus_knowledge_t *const knowledge,
+                                  const int sonar) {
+    const argus_pose_t pose = pose_of_pings(self, knowledge);
+    const argus_sonar_pose_t *const mount = &argus_sonar_pose[sonar];
+    const argus_point_t robot = {mount->x_mm, mount->y_mm};
+    const argus_point_t at = argus_to_course(&pose, robot);
+    const int32_t bearing_cdeg = argus_angle_wrap(pose.heading_cdeg + mount->heading_deg * 100);
+    const argus_glimpse_t glimpse = {.t_ms = knowledge->sip_ms,
+                                     .x_mm = (uint16_t)((uint32_t)at.x_mm & 0xFFFFu),
+                                     .y_mm = (uint16_t)((uint32_t)at.y_mm & 0xFFFFu),
+                                     .bearing_cdeg = (int16_t)bearing_cdeg,
+                                     .reading_mm = knowledge->sonar[sonar].reading_mm};
+    return glimpse;
+}
+
+void argus_peers_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                      const int sonar) {
+    argus_peer_t *const peer = &self->peers.of[sonar];
+    const argus_glimpse_t now = glimpse_of(&self->peers, knowledge, sonar);
+    const tally_t tally = ask_all(self, knowledge, sonar, &now);
+    const verdict_t verdict = verdict_of(&tally);
+    const bool odd = tally.agree == 0 && tally.differ > 0;
+    const bool borne_out = tally.agree > 0 && tally.agree >= tally.differ;
+    if ((odd || borne_out) && is_news(peer, &now)) {
+        count(self, knowledge, sonar, &now, odd ? tally.against : 0);
+    }
+    if (verdict != DIVIDED && !(verdict == CONTRADICTED && argus_is_unrest_beside(self, knowledge, sonar))) {
+        doubt_time(self, knowledge, sonar, &now, verdict);
+    }
+    peer->seen[peer->next] = now;
+    peer->next = (uint8_t)((peer->next + 1) % ARGUS_GLIMPSES);
+    peer->count = (uint8_t)argus_min(peer->count + 1, ARGUS_GLIMPSES);
+}
+
+void argus_peers_sip(argus_peers_t *const self, const argus_knowledge_t *const knowledge) {
+    self->before = knowledge->pose;
+    self->before_ms = knowledge->sip_ms;
+    if (knowledge->sip_ms - self->faded_ms < FADE_MS) {
+        return;
+    }
+    self->faded_ms = knowledge->sip_ms;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        argus_peer_t *const peer = &self->of[i];
+        peer->verdicts = (uint16_t)(peer->verdicts * FADE_EIGHTHS / 8);
+        peer->contradicted = (uint16_t)(peer->contradicted * FADE_EIGHTHS / 8);
+    }
+}
+
+void argus_peers_forget(argus_peers_t *const self, const int sonar) {
+    memset(&self->of[sonar], 0, sizeof self->of[sonar]);
+}
+
+void argus_peers_restart(argus_peers_t *const self) {
+    memset(self, 0, sizeof *self);
+}
