@@ -110,16 +110,16 @@ static argus_fault_kind_t kind_of_view(const argus_evidence_t *const self, const
     return c->none_run >= VIEW_OFF_RUN ? ARGUS_KIND_OFF : ARGUS_KIND_WRONG;
 }
 
+// Contradicted for silence only: off, unless they bore out an echo of it meanwhile.
 static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, const int sonar) {
     const argus_case_t *const c = &self->of[sonar];
     const int hollow = argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW);
-    if (c->none_run >= OFF_RUN && hollow == OFF_HOLLOW) {
-        return ARGUS_KIND_OFF;
+    if (hollow == OFF_HOLLOW) {
+        return c->none_run >= OFF_RUN && !self->peers.of[sonar].borne_out ? ARGUS_KIND_OFF
+                                                                          : ARGUS_KIND_INTERMITTENT;
     }
-    if (c->score[ARGUS_TEST_DROPOUT] > 0 && hollow > 0) {
-        return ARGUS_KIND_INTERMITTENT;
-    }
-    return late_or_wrong(self, sonar);
+    return hollow > 0 && c->score[ARGUS_TEST_DROPOUT] > 0 ? ARGUS_KIND_INTERMITTENT
+                                                          : late_or_wrong(self, sonar);
 }
 
 static argus_fault_kind_t kind_by(const argus_evidence_t *const self, const int sonar,
@@ -146,16 +146,26 @@ static const uint8_t precedence[ARGUS_TESTS] = {ARGUS_TEST_OFF,     ARGUS_TEST_S
                                                 ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT, ARGUS_TEST_VIEW,
                                                 ARGUS_TEST_PEERS};
 
-argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
-    for (int i = 0; i < ARGUS_TESTS; i++) {
+static argus_fault_kind_t first_name(const argus_evidence_t *const self, const int sonar, const int tests) {
+    for (int i = 0; i < tests; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
         if (is_named_by(&self->of[sonar], test) && !is_gainsaid(self, sonar, test)) {
             return kind_by(self, sonar, test);
         }
     }
-    const bool late = looks_late(self, sonar) && !is_gainsaid(self, sonar, ARGUS_TEST_PEERS) &&
+    return ARGUS_KIND_NONE;
+}
+
+argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
+    const argus_fault_kind_t kind = first_name(self, sonar, ARGUS_TESTS);
+    const bool late = kind == ARGUS_KIND_NONE && looks_late(self, sonar) &&
+                      !is_gainsaid(self, sonar, ARGUS_TEST_PEERS) &&
                       !is_gainsaid(self, sonar, ARGUS_TEST_LAG);
-    return late ? ARGUS_KIND_SLOW : ARGUS_KIND_NONE;
+    return late ? ARGUS_KIND_SLOW : kind;
+}
+
+argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, const int sonar) {
+    return first_name(self, sonar, ARGUS_TESTS - 1);
 }
 
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, const int sonar) {

@@ -59,6 +59,11 @@ static const int16_t late_than_well[VERDICTS][VERDICTS] = {
 static const int16_t late_than_wrong[CHANCES] = {0, 69, 110, 139, 161, 179, 195, 208};
 #define REFUTES_LAG (-150)
 
+static int32_t bearing_diff_cdeg(const argus_glimpse_t *const a, const argus_glimpse_t *const b) {
+    const int32_t diff = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
+    return diff > 18000 ? 36000 - diff : diff;
+}
+
 static bool is_same_place(const argus_glimpse_t *const now, const argus_glimpse_t *const then,
                           int32_t *const along_mm) {
     const int32_t dx = argus_trail_offset_mm(now->x_mm, then->x_mm);
@@ -100,8 +105,7 @@ static verdict_t ask(const argus_peer_t *const peer, const argus_glimpse_t *cons
         if (now_ms - then->t_ms > AGE_MS) {
             return UNSEEN;
         }
-        if (argus_angle_abs_diff(now->bearing_cdeg, then->bearing_cdeg) <= SAME_BEARING_CDEG &&
-            is_same_place(now, then, &along_mm)) {
+        if (bearing_diff_cdeg(now, then) <= SAME_BEARING_CDEG && is_same_place(now, then, &along_mm)) {
             return compare(now->reading_mm, then->reading_mm, along_mm);
         }
     }
@@ -150,7 +154,7 @@ static bool is_news(const argus_peer_t *const self, const argus_glimpse_t *const
         if (then->t_ms != 0 && now->t_ms - then->t_ms < COUNTED_MS &&
             argus_abs(argus_trail_offset_mm(now->x_mm, then->x_mm)) < COUNTED_MM &&
             argus_abs(argus_trail_offset_mm(now->y_mm, then->y_mm)) < COUNTED_MM &&
-            argus_angle_abs_diff(now->bearing_cdeg, then->bearing_cdeg) < COUNTED_CDEG) {
+            bearing_diff_cdeg(now, then) < COUNTED_CDEG) {
             return false;
         }
     }
@@ -196,8 +200,16 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     } else {
         argus_score(c, ARGUS_TEST_PEERS, bears_out[part]);
     }
-    peer->against = c->score[ARGUS_TEST_PEERS] > 0 ? (uint16_t)(peer->against | against) : 0;
+    const bool doubted = c->score[ARGUS_TEST_PEERS] > 0;
+    const bool echo = now->reading_mm < ARGUS_NO_ECHO_MM;
+    peer->against = doubted ? (uint16_t)(peer->against | against) : 0;
+    peer->borne_out = doubted && (peer->borne_out || (against == 0 && echo));
     note_counted(peer, now, against != 0);
+}
+
+// Nothing that the others may say would change what is known of this lag.
+static bool is_idle(const argus_peer_t *const self, const verdict_t verdict, const int lag) {
+    return (verdict == AGREED || verdict == QUIET) && self->late[lag] == 0 && self->told[lag] == 0;
 }
 
 // What the others would say of this reading had it been made at an earlier pose of its sonar.
@@ -207,7 +219,7 @@ static verdict_t verdict_as_of(const argus_evidence_t *const self, const argus_k
     if (then == NULL) {
         return UNSEEN;
     }
-    if (argus_angle_abs_diff(now->bearing_cdeg, then->bearing_cdeg) < LAG_TURN_CDEG) {
+    if (bearing_diff_cdeg(now, then) < LAG_TURN_CDEG) {
         return SAME;
     }
     argus_glimpse_t as_of = *then;
@@ -238,16 +250,20 @@ static void weigh_lags(argus_peer_t *const peer, const verdict_t now, const uint
 
 static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const argus_glimpse_t *const now, const verdict_t verdict) {
+    argus_peer_t *const peer = &self->peers.of[sonar];
     uint8_t as_of[ARGUS_TRAIL] = {UNSEEN};
     int agreed = 0;
     int told = 0;
     for (int n = LAG_LEAST; n < ARGUS_TRAIL; n++) {
+        if (is_idle(peer, verdict, n)) {
+            continue;
+        }
         as_of[n] = (uint8_t)verdict_as_of(self, knowledge, sonar, now, n);
         agreed += as_of[n] == AGREED;
         told +=
             as_of[n] == AGREED || as_of[n] == CONTRADICTED || (as_of[n] == SAME && verdict == CONTRADICTED);
     }
-    weigh_lags(&self->peers.of[sonar], verdict, as_of, agreed > 0 ? worth_of(agreed, told) : 0);
+    weigh_lags(peer, verdict, as_of, agreed > 0 ? worth_of(agreed, told) : 0);
 }
 
 static int32_t most_of(const int16_t *const lags) {

@@ -136,6 +136,7 @@ typedef struct {
     uint16_t verdicts;         // that the others gave on it, sixteenths, fading
     uint16_t contradicted;     // ... and of those, against it
     uint16_t against;          // bit i: sonar i, since its score left 0
+    bool borne_out;            // an echo of it was, since then
     uint8_t hollow;            // bit i: of the contradicted readings, the one i before had no echo
     uint8_t next;
     uint8_t count;
@@ -188,6 +189,9 @@ bool argus_evidence_holds(const argus_evidence_t *self, int sonar);
 bool argus_evidence_is_unsteady(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *self, int sonar);
+
+// The kind that names a sonar on probation, and ends it: as names, without what the peers alone say.
+argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *self, int sonar);
 
 // Whether the kind `found` is to replace the kind that a sonar carries: a name that says more, or one whose
 // ground is gone.
