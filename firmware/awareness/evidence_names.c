@@ -130,15 +130,9 @@ static argus_fault_kind_t kind_by(const argus_evidence_t *const self, const int 
     return test == ARGUS_TEST_VIEW ? kind_of_view(self, sonar) : (argus_fault_kind_t)kind_of_test[test];
 }
 
-// Who is wrong takes a third, among peers too; and one that the peers contradict is late only where that says
-// more than wrong.
-static bool is_gainsaid(const argus_evidence_t *const self, const int sonar, const argus_test_t test) {
-    if (test == ARGUS_TEST_PEERS) {
-        return argus_peers_against(&self->peers, sonar) < NAME_PARTNERS;
-    }
-    const int32_t contradicted = self->of[sonar].score[ARGUS_TEST_PEERS];
-    return test == ARGUS_TEST_LAG && contradicted >= argus_bounds[ARGUS_TEST_PEERS].suspicious &&
-           lateness(self, sonar) < LATE_FIRST;
+// Who is wrong takes a third, among peers too.
+static bool has_partners(const argus_evidence_t *const self, const int sonar) {
+    return argus_peers_against(&self->peers, sonar) >= NAME_PARTNERS;
 }
 
 // The more definite tests come first.
@@ -149,19 +143,24 @@ static const uint8_t precedence[ARGUS_TESTS] = {ARGUS_TEST_OFF,     ARGUS_TEST_S
 static argus_fault_kind_t first_name(const argus_evidence_t *const self, const int sonar, const int tests) {
     for (int i = 0; i < tests; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
-        if (is_named_by(&self->of[sonar], test) && !is_gainsaid(self, sonar, test)) {
+        const bool enough = test != ARGUS_TEST_PEERS || has_partners(self, sonar);
+        if (is_named_by(&self->of[sonar], test) && enough) {
             return kind_by(self, sonar, test);
         }
     }
     return ARGUS_KIND_NONE;
 }
 
+// One that the peers accuse is late by itself only where that says more than wrong.
+static bool is_named_late(const argus_evidence_t *const self, const int sonar) {
+    const bool accused = self->of[sonar].score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].suspicious;
+    return looks_late(self, sonar) && has_partners(self, sonar) &&
+           (!accused || lateness(self, sonar) >= LATE_FIRST);
+}
+
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
     const argus_fault_kind_t kind = first_name(self, sonar, ARGUS_TESTS);
-    const bool late = kind == ARGUS_KIND_NONE && looks_late(self, sonar) &&
-                      !is_gainsaid(self, sonar, ARGUS_TEST_PEERS) &&
-                      !is_gainsaid(self, sonar, ARGUS_TEST_LAG);
-    return late ? ARGUS_KIND_SLOW : kind;
+    return kind == ARGUS_KIND_NONE && is_named_late(self, sonar) ? ARGUS_KIND_SLOW : kind;
 }
 
 argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, const int sonar) {
@@ -171,7 +170,7 @@ argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, c
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, const int sonar) {
     for (int i = 0; i < ARGUS_TESTS; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
-        if (is_convicted_by(&self->of[sonar], test, self->busy) && !is_gainsaid(self, sonar, test)) {
+        if (is_convicted_by(&self->of[sonar], test, self->busy)) {
             return kind_by(self, sonar, test);
         }
     }

@@ -1,0 +1,543 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack (profile argus): a sonar is suspected, named and convicted by what its tests amount to
+// and by no less; the more definite test gives the kind, and a name stays until its ground is gone.
+#include "argus/evidence.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "awareness/evidence_internal.h"
+#include "unity.h"
+
+#define SONAR 4
+#define OTHER 9
+#define LAG 5
+
+static argus_evidence_t e;
+static argus_case_t *c;
+static argus_peer_t *peer;
+static char text[160];
+
+void setUp(void) {
+    argus_evidence_init(&e);
+    c = &e.of[SONAR];
+    peer = &e.peers.of[SONAR];
+}
+
+static argus_fault_kind_t named(void) {
+    return argus_evidence_names(&e, SONAR);
+}
+
+static argus_fault_kind_t convicted(void) {
+    return argus_evidence_convicts(&e, SONAR);
+}
+
+static bool replaces(argus_fault_kind_t present, argus_fault_kind_t found) {
+    return argus_evidence_replaces(&e, SONAR, present, found);
+}
+
+// Conflicts with these partners, the last one last.
+static void conflicts_with(const int8_t *partner, int count) {
+    for (int i = 0; i < count; i++) {
+        c->refuted[c->refuted_next].partner = partner[i];
+        c->refuted_next = (uint8_t)((c->refuted_next + 1) % ARGUS_REFUTED);
+    }
+    c->conflicts = (uint8_t)(c->conflicts + count);
+}
+
+// All that a test needs beside its score, for a name and for a conviction.
+static void give_ground(void) {
+    static const int8_t partner[] = {1, 2, 3, 1, 2, 3};
+    conflicts_with(partner, 6);
+    c->episodes = 3;
+    c->misses = 2;
+    c->echoes = 8;
+    peer->against = 3;
+}
+
+static void accuse(argus_test_t test, int score) {
+    c->score[test] = (int16_t)score;
+    c->none_run = test == ARGUS_TEST_OFF ? 5 : c->none_run;
+}
+
+static const struct {
+    argus_test_t test;
+    argus_fault_kind_t kind;
+} by_precedence[ARGUS_TESTS] = {
+    {ARGUS_TEST_OFF, ARGUS_KIND_OFF},
+    {ARGUS_TEST_STUCK, ARGUS_KIND_STUCK},
+    {ARGUS_TEST_LAG, ARGUS_KIND_SLOW},
+    {ARGUS_TEST_GARBAGE, ARGUS_KIND_GARBAGE},
+    {ARGUS_TEST_DROPOUT, ARGUS_KIND_INTERMITTENT},
+    {ARGUS_TEST_VIEW, ARGUS_KIND_WRONG},
+    {ARGUS_TEST_PEERS, ARGUS_KIND_WRONG},
+};
+
+// ---- what is needed
+
+// Of a fresh sonar nothing is said at all.
+void test_nothing_is_said_of_a_fresh_sonar(void) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        TEST_ASSERT_FALSE(argus_evidence_suspects(&e, i));
+        TEST_ASSERT_FALSE(argus_evidence_holds(&e, i));
+        TEST_ASSERT_FALSE(argus_evidence_is_unsteady(&e, i));
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_names(&e, i));
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_relapses(&e, i));
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_convicts(&e, i));
+    }
+}
+
+// Each test names its kind from its own level on; what is said of one sonar is not said of another.
+void test_each_test_names_its_kind_from_its_level_on(void) {
+    for (int i = 0; i < ARGUS_TESTS; i++) {
+        const argus_test_t test = by_precedence[i].test;
+        for (int below = 0; below < 2; below++) {
+            setUp();
+            give_ground();
+            accuse(test, argus_bounds[test].naming - below);
+            snprintf(text, sizeof text, "test %d, %d below", (int)test, below);
+            TEST_ASSERT_EQUAL_MESSAGE(below == 0 ? by_precedence[i].kind : ARGUS_KIND_NONE, named(), text);
+            TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, argus_evidence_names(&e, OTHER), text);
+        }
+    }
+}
+
+// Each test convicts from its own level on, but the peers do not at any score.
+void test_each_test_but_the_peers_convicts_from_its_level_on(void) {
+    for (int i = 0; i < ARGUS_TESTS; i++) {
+        const argus_test_t test = by_precedence[i].test;
+        for (int below = 0; below < 2; below++) {
+            setUp();
+            give_ground();
+            const bool peers = test == ARGUS_TEST_PEERS;
+            accuse(test, (peers ? argus_bounds[test].ceiling : argus_bounds[test].convincing) - below);
+            snprintf(text, sizeof text, "test %d, %d below", (int)test, below);
+            TEST_ASSERT_EQUAL_MESSAGE(below == 0 && !peers ? by_precedence[i].kind : ARGUS_KIND_NONE,
+                                      convicted(), text);
+            TEST_ASSERT_EQUAL_MESSAGE(by_precedence[i].kind, named(), text);
+        }
+    }
+    TEST_ASSERT_TRUE(argus_bounds[ARGUS_TEST_PEERS].ceiling < argus_bounds[ARGUS_TEST_PEERS].convincing);
+}
+
+// Where several tests name, the more definite one gives the kind; so it is with convictions.
+void test_the_more_definite_test_gives_the_kind(void) {
+    for (int first = 0; first < ARGUS_TESTS; first++) {
+        setUp();
+        give_ground();
+        for (int i = first; i < ARGUS_TESTS; i++) {
+            const argus_test_t test = by_precedence[i].test;
+            accuse(test, argus_bounds[test].ceiling);
+        }
+        c->none_run = first == 0 ? 5 : 0;
+        snprintf(text, sizeof text, "first %d", first);
+        TEST_ASSERT_EQUAL_MESSAGE(by_precedence[first].kind, named(), text);
+        const bool peers = by_precedence[first].test == ARGUS_TEST_PEERS;
+        TEST_ASSERT_EQUAL_MESSAGE(peers ? ARGUS_KIND_NONE : by_precedence[first].kind, convicted(), text);
+    }
+}
+
+// Off takes five readings in a row without an echo and two misses.
+void test_off_takes_a_run_and_misses(void) {
+    for (int run = 4; run <= 5; run++) {
+        for (int misses = 1; misses <= 2; misses++) {
+            setUp();
+            give_ground();
+            accuse(ARGUS_TEST_OFF, argus_bounds[ARGUS_TEST_OFF].ceiling);
+            c->none_run = (uint8_t)run;
+            c->misses = (uint8_t)misses;
+            TEST_ASSERT_EQUAL(run == 5 && misses == 2 ? ARGUS_KIND_OFF : ARGUS_KIND_NONE, named());
+            TEST_ASSERT_EQUAL(run == 5 && misses == 2 ? ARGUS_KIND_OFF : ARGUS_KIND_NONE, convicted());
+        }
+    }
+}
+
+static argus_fault_kind_t named_by_views(const int8_t *partner, int count) {
+    setUp();
+    c->score[ARGUS_TEST_VIEW] = argus_bounds[ARGUS_TEST_VIEW].naming;
+    c->echoes = 8;
+    conflicts_with(partner, count);
+    return named();
+}
+
+// A view is one of a pair: who is wrong takes three conflicts, with two others.
+void test_views_name_only_with_conflicts_with_two_others(void) {
+    static const int8_t alone[] = {3, 3, 3, 3, 3, 3}, two[] = {3, 5, 3}, nobody[] = {-1, -1, -1, -1};
+    static const int8_t scan[] = {ARGUS_SCAN_PARTNER, ARGUS_SCAN_PARTNER, ARGUS_SCAN_PARTNER};
+    static const int8_t past[] = {5, 3, 3, 3, 3, 3, 3}, low[] = {0, 15, 0}, one[] = {-1, 3, -1};
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named_by_views(alone, 6));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named_by_views(two, 2));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, named_by_views(two, 3));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, named_by_views(low, 3));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named_by_views(nobody, 4));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named_by_views(one, 3));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, named_by_views(scan, 3)); // it stands for two
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, named_by_views(past, 6));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named_by_views(past, 7)); // the first is forgotten
+}
+
+// Who is wrong takes a third, among peers too.
+void test_peers_name_only_with_two_others_against(void) {
+    for (unsigned against = 0; against < 64; against++) {
+        setUp();
+        c->echoes = 8;
+        c->score[ARGUS_TEST_PEERS] = argus_bounds[ARGUS_TEST_PEERS].ceiling;
+        peer->against = (uint16_t)(against << 10);
+        const bool two = (against & (against - 1)) != 0;
+        snprintf(text, sizeof text, "against %04X", against << 10);
+        TEST_ASSERT_EQUAL_MESSAGE(two ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE, named(), text);
+    }
+}
+
+// A view or a miss convicts again at other times, where nothing moves, against others than one liar beside.
+void test_views_convict_only_with_ground_at_several_times(void) {
+    static const int8_t main_of_six[] = {3, 3, 3, 3, 5, 6}, four[] = {1, 2, 3, 5};
+    static const int8_t three[] = {1, 2, 3}, three_beside[] = {3, 5, 6, 3, 3, 7};
+    static const int8_t scans[] = {ARGUS_SCAN_PARTNER, ARGUS_SCAN_PARTNER, ARGUS_SCAN_PARTNER,
+                                   ARGUS_SCAN_PARTNER};
+    static const int8_t scan[] = {3, 3, ARGUS_SCAN_PARTNER, ARGUS_SCAN_PARTNER, ARGUS_SCAN_PARTNER, 3};
+    const struct {
+        const int8_t *partner;
+        int count;
+        int episodes;
+        int borne_out;
+        bool busy;
+        bool enough;
+    } by[] = {{four, 4, 3, 0, false, true},         {four, 4, 2, 0, false, false},
+              {four, 4, 3, 2, false, true},         {four, 4, 3, 3, false, false},
+              {four, 4, 3, 0, true, false},         {three, 3, 3, 0, false, false},
+              {main_of_six, 6, 3, 0, false, false}, {three_beside, 6, 3, 0, false, true},
+              {scan, 6, 3, 0, false, true},         {scans, 3, 3, 0, false, false},
+              {scans, 4, 3, 0, false, true}};
+    static const argus_test_t tests[] = {ARGUS_TEST_VIEW, ARGUS_TEST_OFF};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        for (int t = 0; t < 2; t++) {
+            setUp();
+            conflicts_with(by[i].partner, by[i].count);
+            c->episodes = (uint8_t)by[i].episodes;
+            c->borne_out = (uint8_t)by[i].borne_out;
+            c->misses = 4;
+            c->echoes = 8;
+            e.busy = by[i].busy;
+            accuse(tests[t], argus_bounds[tests[t]].convincing);
+            const argus_fault_kind_t kind = t == 0 ? ARGUS_KIND_WRONG : ARGUS_KIND_OFF;
+            snprintf(text, sizeof text, "case %d, test %d", i, t);
+            TEST_ASSERT_EQUAL_MESSAGE(by[i].enough ? kind : ARGUS_KIND_NONE, convicted(), text);
+            TEST_ASSERT_EQUAL_MESSAGE(kind, named(), text);
+        }
+    }
+}
+
+// Its own trail convicts whatever moves about and whoever bears it out.
+void test_the_own_trail_convicts_without_others(void) {
+    static const argus_test_t own[] = {ARGUS_TEST_STUCK, ARGUS_TEST_LAG, ARGUS_TEST_GARBAGE,
+                                       ARGUS_TEST_DROPOUT};
+    for (int i = 0; i < 4; i++) {
+        setUp();
+        e.busy = true;
+        c->borne_out = 9;
+        accuse(own[i], argus_bounds[own[i]].convincing);
+        TEST_ASSERT_NOT_EQUAL(ARGUS_KIND_NONE, convicted());
+    }
+}
+
+// ---- which kind
+
+// Views: all echoes are wrong, gaps that its own trail shows intermittent, a run without an echo off.
+void test_what_the_readings_look_like_tells_the_kind_of_a_view(void) {
+    static const struct {
+        int none_run;
+        int echoes;
+        int dropout;
+        argus_fault_kind_t kind;
+    } by[] = {
+        {0, 6, 0, ARGUS_KIND_WRONG}, {0, 6, 1, ARGUS_KIND_WRONG},        {0, 5, 1, ARGUS_KIND_INTERMITTENT},
+        {0, 5, 0, ARGUS_KIND_WRONG}, {1, 7, 1, ARGUS_KIND_INTERMITTENT}, {2, 0, 0, ARGUS_KIND_WRONG},
+        {3, 0, 0, ARGUS_KIND_OFF},   {3, 0, 1, ARGUS_KIND_INTERMITTENT}, {3, 8, 0, ARGUS_KIND_OFF}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        give_ground();
+        accuse(ARGUS_TEST_VIEW, argus_bounds[ARGUS_TEST_VIEW].naming);
+        c->none_run = (uint8_t)by[i].none_run;
+        c->echoes = (uint8_t)by[i].echoes;
+        c->score[ARGUS_TEST_DROPOUT] = (int16_t)by[i].dropout;
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
+    }
+}
+
+// Peers: off is who was silent the last three times that it was contradicted, is silent since five readings
+// and was borne out in no echo meanwhile; otherwise its silence comes and goes.
+void test_what_was_contradicted_tells_the_kind_of_the_peers(void) {
+    static const struct {
+        int none_run;
+        unsigned hollow; // bit i: the one i before
+        int dropout;
+        bool borne_out;
+        argus_fault_kind_t kind;
+    } by[] = {
+        {5, 0x07, 0, false, ARGUS_KIND_OFF},          {4, 0x07, 0, false, ARGUS_KIND_INTERMITTENT},
+        {5, 0x07, 0, true, ARGUS_KIND_INTERMITTENT},  {5, 0x07, 1, false, ARGUS_KIND_OFF},
+        {5, 0xFB, 0, false, ARGUS_KIND_WRONG},        {0, 0x01, 1, false, ARGUS_KIND_INTERMITTENT},
+        {0, 0x04, 1, false, ARGUS_KIND_INTERMITTENT}, {0, 0x08, 1, false, ARGUS_KIND_WRONG},
+        {0, 0x01, 0, true, ARGUS_KIND_WRONG},         {0, 0x00, 1, true, ARGUS_KIND_WRONG},
+    };
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        accuse(ARGUS_TEST_PEERS, argus_bounds[ARGUS_TEST_PEERS].naming);
+        peer->against = 3;
+        peer->hollow = (uint8_t)by[i].hollow;
+        peer->borne_out = by[i].borne_out;
+        c->none_run = (uint8_t)by[i].none_run;
+        c->score[ARGUS_TEST_DROPOUT] = (int16_t)by[i].dropout;
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
+    }
+}
+
+// A lateness of so much, in four ways: what the peers say, against well a quarter, and what it shows itself.
+static void be_late(int way, int by) {
+    memset(peer->late, 0, sizeof peer->late);
+    memset(peer->told, 0, sizeof peer->told);
+    memset(c->lag_doubt, 0, sizeof c->lag_doubt);
+    c->score[ARGUS_TEST_LAG] = 0;
+    switch (way) {
+    case 0:
+        peer->told[LAG] = (int16_t)by;
+        break;
+    case 1:
+        peer->late[LAG] = (int16_t)(by * 4);
+        break;
+    case 2:
+        for (int n = 0; n < ARGUS_TRAIL; n++) {
+            c->lag_doubt[n] = (int16_t)(n == LAG ? 0 : by);
+        }
+        break;
+    case 3:
+        c->score[ARGUS_TEST_LAG] = (int16_t)by;
+        break;
+    default: // some of each, 100 of it by three of them
+        peer->told[LAG] = (int16_t)(by - 100);
+        peer->late[LAG] = 160;
+        c->score[ARGUS_TEST_LAG] = 60;
+        break;
+    }
+}
+
+// What others contradict is late from 400 on, all that tells late from wrong taken together.
+void test_late_is_told_from_wrong_by_all_that_speaks_for_it(void) {
+    for (int way = 0; way < 5; way++) {
+        for (int peers = 0; peers < 2; peers++) {
+            setUp();
+            give_ground();
+            const argus_test_t test = peers != 0 ? ARGUS_TEST_PEERS : ARGUS_TEST_VIEW;
+            accuse(test, argus_bounds[test].naming);
+            snprintf(text, sizeof text, "way %d, peers %d", way, peers);
+            be_late(way, 399);
+            TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_WRONG, named(), text);
+            be_late(way, 400);
+            TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_SLOW, named(), text);
+        }
+    }
+}
+
+// Convicted by views, it is called late by the same rule.
+void test_a_conviction_tells_late_from_wrong_too(void) {
+    give_ground();
+    accuse(ARGUS_TEST_VIEW, argus_bounds[ARGUS_TEST_VIEW].convincing);
+    be_late(0, 399);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, convicted());
+    be_late(0, 400);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, convicted());
+}
+
+// Late and not well from 1,400 on names one that others contradict, 300 and by two; once they contradict it
+// enough for a suspicion, only where something tells late from wrong.
+void test_lateness_alone_names_only_one_that_others_contradict(void) {
+    static const struct {
+        int late;
+        int peers;
+        unsigned against;
+        int told;
+        argus_fault_kind_t kind;
+    } by[] = {{1400, 300, 3, 0, ARGUS_KIND_SLOW},  {1399, 300, 3, 0, ARGUS_KIND_NONE},
+              {1400, 299, 3, 0, ARGUS_KIND_NONE},  {1400, 300, 1, 0, ARGUS_KIND_NONE},
+              {1400, 599, 3, 0, ARGUS_KIND_SLOW},  {1400, 600, 3, 0, ARGUS_KIND_NONE},
+              {1400, 600, 3, 49, ARGUS_KIND_NONE}, {1400, 600, 3, 50, ARGUS_KIND_SLOW},
+              {2000, 600, 3, 0, ARGUS_KIND_SLOW},  {2000, 0, 3, 1500, ARGUS_KIND_NONE}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        peer->late[LAG] = (int16_t)by[i].late;
+        peer->told[LAG] = (int16_t)by[i].told;
+        peer->against = (uint16_t)by[i].against;
+        c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].peers >= 600 || (by[i].late >= 1400 && by[i].peers >= 300),
+                                  argus_evidence_suspects(&e, SONAR), text);
+    }
+}
+
+// Another name comes before lateness.
+void test_lateness_takes_nothing_from_another_name(void) {
+    peer->late[LAG] = 2000;
+    peer->against = 3;
+    c->score[ARGUS_TEST_PEERS] = 300;
+    accuse(ARGUS_TEST_STUCK, argus_bounds[ARGUS_TEST_STUCK].naming);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, named());
+}
+
+// ---- on probation
+
+// What ends a probation is what names, but for what the peers alone say.
+void test_a_relapse_ignores_the_peers(void) {
+    for (int i = 0; i < ARGUS_TESTS; i++) {
+        const argus_test_t test = by_precedence[i].test;
+        const bool peers = test == ARGUS_TEST_PEERS;
+        setUp();
+        give_ground();
+        accuse(ARGUS_TEST_PEERS, argus_bounds[ARGUS_TEST_PEERS].ceiling);
+        peer->late[LAG] = 2000;
+        TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, named());
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_relapses(&e, SONAR));
+        peer->late[LAG] = 0;
+        accuse(test, argus_bounds[test].naming);
+        snprintf(text, sizeof text, "test %d", (int)test);
+        TEST_ASSERT_EQUAL_MESSAGE(peers ? ARGUS_KIND_NONE : by_precedence[i].kind,
+                                  argus_evidence_relapses(&e, SONAR), text);
+        TEST_ASSERT_EQUAL_MESSAGE(by_precedence[i].kind, named(), text);
+    }
+}
+
+// ---- names that stay
+
+#define NEVER 0
+#define ALWAYS 1
+#define IF_MOVED 2 // the STUCK score is 0
+#define IF_WELL 3  // lateness below 150
+#define IF_LATE 4  // lateness from 700 on
+#define IF_DEAF 5  // 12 readings without an echo, the last three contradicted ones too
+#define IF_GAPS 6  // three of the last four contradicted ones without an echo
+#define KINDS 8
+
+// Rows: the kind that it carries; columns: the kind that is found.
+static const uint8_t replaced_when[KINDS][KINDS] = {
+    [ARGUS_KIND_NONE] = {NEVER, ALWAYS, ALWAYS, ALWAYS, ALWAYS, ALWAYS, ALWAYS, ALWAYS},
+    [ARGUS_KIND_OFF] = {NEVER, NEVER, ALWAYS, ALWAYS, ALWAYS, ALWAYS, ALWAYS, ALWAYS},
+    [ARGUS_KIND_SILENT] = {NEVER},
+    [ARGUS_KIND_STUCK] = {NEVER, IF_MOVED, IF_MOVED, NEVER, IF_MOVED, IF_MOVED, IF_MOVED, IF_MOVED},
+    [ARGUS_KIND_WRONG] = {NEVER, IF_DEAF, ALWAYS, ALWAYS, NEVER, ALWAYS, IF_LATE, IF_GAPS},
+    [ARGUS_KIND_GARBAGE] = {NEVER},
+    [ARGUS_KIND_SLOW] = {NEVER, NEVER, NEVER, NEVER, IF_WELL, NEVER, NEVER, NEVER},
+    [ARGUS_KIND_INTERMITTENT] = {NEVER},
+};
+
+// Everything speaks against a change but what is asked for.
+static void set_up_but(int condition) {
+    setUp();
+    c->score[ARGUS_TEST_STUCK] = condition == IF_MOVED ? 0 : 1;
+    peer->told[LAG] = (int16_t)(condition == IF_WELL ? 149 : (condition == IF_LATE ? 700 : 150));
+    c->none_run = condition == IF_DEAF ? 12 : 11;
+    peer->hollow = condition == IF_DEAF ? 0x07 : (condition == IF_GAPS ? 0x0D : 0xF3);
+}
+
+// A kind gives way to one that says more or when its ground is gone, and to no other, whatever shows.
+void test_which_kind_replaces_which(void) {
+    for (int present = 0; present < KINDS; present++) {
+        for (int found = 0; found < KINDS; found++) {
+            for (int condition = NEVER; condition <= IF_GAPS; condition++) {
+                const int when = replaced_when[present][found];
+                set_up_but(condition);
+                snprintf(text, sizeof text, "%s by %s, condition %d",
+                         argus_kind_name((argus_fault_kind_t)present),
+                         argus_kind_name((argus_fault_kind_t)found), condition);
+                const bool gaps = when == IF_GAPS && condition == IF_DEAF; // 3 of 4 as well
+                TEST_ASSERT_EQUAL_MESSAGE(when == ALWAYS || (when != NEVER && when == condition) || gaps,
+                                          replaces((argus_fault_kind_t)present, (argus_fault_kind_t)found),
+                                          text);
+            }
+        }
+    }
+}
+
+// Each part of a condition is needed.
+void test_wrong_gives_way_to_off_and_to_gaps_only_where_all_of_it_shows(void) {
+    static const struct {
+        int none_run;
+        unsigned hollow;
+        bool off;
+        bool gaps;
+    } by[] = {{12, 0x07, true, true},   {11, 0x07, false, true},  {12, 0x03, false, false},
+              {12, 0x0B, false, true},  {12, 0x0E, false, true},  {255, 0xFF, true, true},
+              {12, 0x0C, false, false}, {12, 0xF5, false, false}, {0, 0x0D, false, true}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        c->none_run = (uint8_t)by[i].none_run;
+        peer->hollow = (uint8_t)by[i].hollow;
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].off, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_OFF), text);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].gaps, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_INTERMITTENT), text);
+    }
+}
+
+// Between late and wrong a name changes only when it is clear, so it does not go to and fro.
+void test_between_late_and_wrong_there_is_room(void) {
+    for (int way = 0; way < 5; way++) {
+        for (int by = 110; by <= 800; by++) {
+            be_late(way, by);
+            snprintf(text, sizeof text, "way %d, lateness %d", way, by);
+            TEST_ASSERT_EQUAL_MESSAGE(by >= 700, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_SLOW), text);
+            TEST_ASSERT_EQUAL_MESSAGE(by < 150, replaces(ARGUS_KIND_SLOW, ARGUS_KIND_WRONG), text);
+        }
+    }
+}
+
+// ---- suspicions
+
+// Each test suspects from its own level on, none below it.
+void test_each_test_suspects_from_its_level_on(void) {
+    for (int test = 0; test < ARGUS_TESTS; test++) {
+        for (int below = 0; below < 2; below++) {
+            setUp();
+            c->score[test] = (int16_t)(argus_bounds[test].suspicious - below);
+            snprintf(text, sizeof text, "test %d, %d below", test, below);
+            TEST_ASSERT_EQUAL_MESSAGE(below == 0, argus_evidence_suspects(&e, SONAR), text);
+            TEST_ASSERT_FALSE_MESSAGE(argus_evidence_suspects(&e, OTHER), text);
+            TEST_ASSERT_EQUAL_MESSAGE(below == 0 || test == ARGUS_TEST_PEERS, argus_evidence_holds(&e, SONAR),
+                                      text);
+            TEST_ASSERT_FALSE_MESSAGE(argus_evidence_holds(&e, OTHER), text);
+        }
+    }
+}
+
+// A suspicion is held until what the peers say has come down to 150, below the level that raised it.
+void test_a_suspicion_is_held_until_the_peers_have_nothing_left(void) {
+    for (int level = 0; level <= 600; level++) {
+        setUp();
+        snprintf(text, sizeof text, "level %d", level);
+        c->score[ARGUS_TEST_PEERS] = (int16_t)level;
+        TEST_ASSERT_EQUAL_MESSAGE(level > 150, argus_evidence_holds(&e, SONAR), text);
+        c->score[ARGUS_TEST_PEERS] = 0;
+        peer->late[LAG] = (int16_t)level;
+        TEST_ASSERT_EQUAL_MESSAGE(level > 150, argus_evidence_holds(&e, SONAR), text);
+        peer->late[LAG] = 0;
+        peer->told[LAG] = (int16_t)level; // of late or wrong, not of well
+        TEST_ASSERT_FALSE_MESSAGE(argus_evidence_holds(&e, SONAR), text);
+    }
+}
+
+// One that does not agree with itself is watched at rest, until that has convicted it.
+void test_unsteady_is_who_is_suspected_by_its_own_readings_and_not_convicted(void) {
+    for (int test = 0; test < ARGUS_TESTS; test++) {
+        const bool own = test == ARGUS_TEST_GARBAGE || test == ARGUS_TEST_DROPOUT || test == ARGUS_TEST_LAG;
+        const argus_bounds_t *bounds = &argus_bounds[test];
+        const int scores[] = {bounds->suspicious - 1, bounds->suspicious, bounds->convincing - 1,
+                              bounds->convincing};
+        for (int i = 0; i < 4; i++) {
+            setUp();
+            c->score[test] = (int16_t)scores[i];
+            snprintf(text, sizeof text, "test %d at %d", test, scores[i]);
+            TEST_ASSERT_EQUAL_MESSAGE(own && (i == 1 || i == 2), argus_evidence_is_unsteady(&e, SONAR), text);
+        }
+    }
+}
