@@ -82,7 +82,7 @@ static void judge_out(argus_t *const self, const int sonar) {
     argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t convicted = argus_evidence_convicts(&self->evidence, sonar);
     const argus_fault_kind_t named = argus_evidence_relapses(&self->evidence, sonar);
-    const bool suspected = argus_evidence_suspects(&self->evidence, sonar);
+    const bool suspected = argus_evidence_keeps_out(&self->evidence, sonar);
     if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, convicted)) {
         s->kind = convicted;
         argus_say(self, ARGUS_EV_SONAR_KIND, sonar, (int32_t)convicted);

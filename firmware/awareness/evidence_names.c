@@ -7,7 +7,8 @@
 #define NAME_PARTNERS 2
 #define NAME_MISSES 2
 #define OFF_RUN 5
-#define OFF_RUN_LONG 12 // what echoed before is named off after so many readings without an echo
+#define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
+#define OFF_RUN_LONGEST 20 // ... and what was called intermittent
 #define OFF_HOLLOW 3
 #define VIEW_OFF_RUN 3
 #define VIEW_ECHOES 6
@@ -110,13 +111,13 @@ static argus_fault_kind_t kind_of_view(const argus_evidence_t *const self, const
     return c->none_run >= VIEW_OFF_RUN ? ARGUS_KIND_OFF : ARGUS_KIND_WRONG;
 }
 
-// Contradicted for silence only: off, unless they bore out an echo of it meanwhile.
+// Contradicted for silence only: off, unless they bore out an echo of it a moment ago.
 static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, const int sonar) {
     const argus_case_t *const c = &self->of[sonar];
     const int hollow = argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW);
     if (hollow == OFF_HOLLOW) {
-        return c->none_run >= OFF_RUN && !self->peers.of[sonar].borne_out ? ARGUS_KIND_OFF
-                                                                          : ARGUS_KIND_INTERMITTENT;
+        const int run = self->peers.of[sonar].borne_out ? OFF_RUN_LONG : OFF_RUN;
+        return c->none_run >= run ? ARGUS_KIND_OFF : ARGUS_KIND_INTERMITTENT;
     }
     return hollow > 0 && c->score[ARGUS_TEST_DROPOUT] > 0 ? ARGUS_KIND_INTERMITTENT
                                                           : late_or_wrong(self, sonar);
@@ -202,6 +203,8 @@ bool argus_evidence_replaces(const argus_evidence_t *const self, const int sonar
     case ARGUS_KIND_NONE:
     case ARGUS_KIND_OFF:
         return true;
+    case ARGUS_KIND_INTERMITTENT:
+        return found == ARGUS_KIND_OFF && self->of[sonar].none_run >= OFF_RUN_LONGEST;
     case ARGUS_KIND_STUCK:
         return self->of[sonar].score[ARGUS_TEST_STUCK] == 0; // one other value refutes it
     case ARGUS_KIND_SLOW:
@@ -225,13 +228,21 @@ bool argus_evidence_is_unsteady(const argus_evidence_t *const self, const int so
     return false;
 }
 
-bool argus_evidence_suspects(const argus_evidence_t *const self, const int sonar) {
-    for (int i = 0; i < ARGUS_TESTS; i++) {
+static bool is_suspected_by(const argus_evidence_t *const self, const int sonar, const int tests) {
+    for (int i = 0; i < tests; i++) {
         if (self->of[sonar].score[i] >= argus_bounds[i].suspicious) {
             return true;
         }
     }
-    return looks_late(self, sonar);
+    return false;
+}
+
+bool argus_evidence_suspects(const argus_evidence_t *const self, const int sonar) {
+    return is_suspected_by(self, sonar, ARGUS_TESTS) || looks_late(self, sonar);
+}
+
+bool argus_evidence_keeps_out(const argus_evidence_t *const self, const int sonar) {
+    return is_suspected_by(self, sonar, ARGUS_TEST_PEERS);
 }
 
 bool argus_evidence_holds(const argus_evidence_t *const self, const int sonar) {

@@ -190,7 +190,9 @@ bool argus_evidence_is_unsteady(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *self, int sonar);
 
-// The kind that names a sonar on probation, and ends it: as names, without what the peers alone say.
+// What keeps a sonar out, and the kind that ends its probation: as suspects and names, without what the peers
+// alone say.
+bool argus_evidence_keeps_out(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *self, int sonar);
 
 // Whether the kind `found` is to replace the kind that a sonar carries: a name that says more, or one whose
