@@ -266,8 +266,8 @@ void test_what_the_readings_look_like_tells_the_kind_of_a_view(void) {
     }
 }
 
-// Peers: off is who was silent the last three times that it was contradicted, is silent since five readings
-// and was borne out in no echo meanwhile; otherwise its silence comes and goes.
+// Peers: off is who was silent the last three times that it was contradicted and is silent since five
+// readings, twelve where an echo of it was borne out of late; otherwise its silence comes and goes.
 void test_what_was_contradicted_tells_the_kind_of_the_peers(void) {
     static const struct {
         int none_run;
@@ -278,6 +278,7 @@ void test_what_was_contradicted_tells_the_kind_of_the_peers(void) {
     } by[] = {
         {5, 0x07, 0, false, ARGUS_KIND_OFF},          {4, 0x07, 0, false, ARGUS_KIND_INTERMITTENT},
         {5, 0x07, 0, true, ARGUS_KIND_INTERMITTENT},  {5, 0x07, 1, false, ARGUS_KIND_OFF},
+        {12, 0x07, 1, true, ARGUS_KIND_OFF},          {11, 0x07, 0, true, ARGUS_KIND_INTERMITTENT},
         {5, 0xFB, 0, false, ARGUS_KIND_WRONG},        {0, 0x01, 1, false, ARGUS_KIND_INTERMITTENT},
         {0, 0x04, 1, false, ARGUS_KIND_INTERMITTENT}, {0, 0x08, 1, false, ARGUS_KIND_WRONG},
         {0, 0x01, 0, true, ARGUS_KIND_WRONG},         {0, 0x00, 1, true, ARGUS_KIND_WRONG},
@@ -410,6 +411,19 @@ void test_a_relapse_ignores_the_peers(void) {
     }
 }
 
+// Each test of its own and the views keep a sonar out from their first level on; the peers do not.
+void test_the_peers_alone_keep_nobody_out(void) {
+    for (int test = 0; test < ARGUS_TESTS; test++) {
+        setUp();
+        peer->late[LAG] = 2000;
+        c->score[test] = argus_bounds[test].suspicious;
+        snprintf(text, sizeof text, "test %d", test);
+        TEST_ASSERT_EQUAL_MESSAGE(test != ARGUS_TEST_PEERS, argus_evidence_keeps_out(&e, SONAR), text);
+        c->score[test] = (int16_t)(argus_bounds[test].suspicious - 1);
+        TEST_ASSERT_FALSE_MESSAGE(argus_evidence_keeps_out(&e, SONAR), text);
+    }
+}
+
 // ---- names that stay
 
 #define NEVER 0
@@ -478,6 +492,15 @@ void test_wrong_gives_way_to_off_and_to_gaps_only_where_all_of_it_shows(void) {
         TEST_ASSERT_EQUAL_MESSAGE(by[i].off, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_OFF), text);
         TEST_ASSERT_EQUAL_MESSAGE(by[i].gaps, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_INTERMITTENT), text);
     }
+}
+
+// Silence that came and went is off after twenty readings without an echo.
+void test_gaps_give_way_to_off_after_a_long_silence(void) {
+    c->none_run = 19;
+    TEST_ASSERT_FALSE(replaces(ARGUS_KIND_INTERMITTENT, ARGUS_KIND_OFF));
+    c->none_run = 20;
+    TEST_ASSERT_TRUE(replaces(ARGUS_KIND_INTERMITTENT, ARGUS_KIND_OFF));
+    TEST_ASSERT_FALSE(replaces(ARGUS_KIND_INTERMITTENT, ARGUS_KIND_WRONG));
 }
 
 // Between late and wrong a name changes only when it is clear, so it does not go to and fro.
