@@ -18,6 +18,8 @@
 #define CALM_MS 15000u  // something moved about the robot: for so long nobody is convicted by views
 #define NEVER INT16_MAX // what the peers say calls for looks, which convict
 
+_Static_assert(ARGUS_TEST_PEERS == ARGUS_TESTS - 1, "what is kept and what convicts comes before the peers");
+
 const argus_bounds_t argus_bounds[ARGUS_TESTS] = {
     [ARGUS_TEST_VIEW] =
         {.suspicious = 300, .naming = 700, .convincing = 2200, .floor = -150, .ceiling = 2600},
@@ -67,6 +69,7 @@ void argus_evidence_restart(argus_evidence_t *const self) {
     argus_trend_restart(&self->trend);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         argus_case_t *const c = &self->of[i];
+        c->score[ARGUS_TEST_PEERS] = 0; // who spoke against it is forgotten
         c->trail_count = 0;
         c->track = 0;
         c->none_run = 0;

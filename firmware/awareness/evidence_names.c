@@ -111,7 +111,7 @@ static argus_fault_kind_t kind_of_view(const argus_evidence_t *const self, const
     return c->none_run >= VIEW_OFF_RUN ? ARGUS_KIND_OFF : ARGUS_KIND_WRONG;
 }
 
-// Contradicted for silence only: off, unless they bore out an echo of it a moment ago.
+// Contradicted for silence only: off, unless they bore out an echo of it since they doubt it.
 static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, const int sonar) {
     const argus_case_t *const c = &self->of[sonar];
     const int hollow = argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW);

@@ -112,8 +112,8 @@ static verdict_t ask(const argus_peer_t *const peer, const argus_glimpse_t *cons
     return UNSEEN;
 }
 
-// One that is contradicted at least as much itself says nothing of another: neither a liar of those beside
-// it, nor either of two that nobody else bears out.
+// A suspect that is contradicted at least as much itself says nothing of another: neither a liar of those
+// beside it, nor either of two that nobody else bears out.
 static bool is_witness(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const int of) {
     const int32_t own = self->of[sonar].score[ARGUS_TEST_PEERS];
@@ -232,7 +232,7 @@ static int16_t limited(const int32_t sum, const int32_t ceiling) {
     return (int16_t)argus_max(0, argus_min(ceiling, sum));
 }
 
-// How little it means that `agreed` of the lags that can be told agree: by chance one will.
+// The fewer of the lags that can be told agree, the more it means: by chance one will.
 static int32_t worth_of(const int agreed, const int told) {
     return late_than_wrong[argus_min(CHANCES, told / argus_max(1, agreed)) - 1];
 }

@@ -171,7 +171,8 @@ void argus_evidence_init(argus_evidence_t *self);
 // `percent` of the tabled evidence, 25 to 400, is what each level takes from now on; 100 after init.
 void argus_evidence_set_caution(argus_evidence_t *self, int32_t percent);
 
-// The readings begin anew (session, gap of the link): trails and views are forgotten, scores stay.
+// The readings begin anew (session, gap of the link): trails and views are forgotten, and with them what the
+// peers say; the other scores stay.
 void argus_evidence_restart(argus_evidence_t *self);
 
 // After each SIP. Cost: for each fresh sonar one pass over the views of the other 15 (120), and up to 9 over

@@ -870,13 +870,14 @@ void test_forgetting_clears_one_sonar(void) {
     TEST_ASSERT_EQUAL(77, e.peers.before_ms);
 }
 
-// A restart forgets the glimpses and lags of all, and the pose before; scores stay.
+// A restart forgets the glimpses and lags of all, the pose before, and what rested on them: a score without
+// those who spoke would be cleared in the next look.
 void test_a_restart_clears_all_glimpses(void) {
     fill();
     argus_evidence_restart(&e);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         TEST_ASSERT_TRUE(is_blank(i));
-        TEST_ASSERT_EQUAL(800, score_of(i));
+        TEST_ASSERT_EQUAL(0, score_of(i));
     }
     TEST_ASSERT_EQUAL(0, e.peers.before_ms);
     TEST_ASSERT_EQUAL(0, e.peers.faded_ms);
