@@ -118,7 +118,7 @@ def _trade(folder: Path, profiles: Mapping[str, Record]) -> None:
         )
         given_up.set(ylim=(0, 1.02), xlim=(-0.1, None))
         named.set(xlabel="false names in a fault-free robot hour", xscale="symlog", xlim=(0, None))
-        _legend(named, 8)
+        _legend(named, 8, "lower left")  # where nothing is found there are no bars to hide
 
 
 def _trade_point(place: Axes, k: int, profile: str, one: Record, false: str, hours: int) -> None:
@@ -138,10 +138,10 @@ def _trade_point(place: Axes, k: int, profile: str, one: Record, false: str, hou
     place.errorbar([x], [found["rate"]], yerr=error, xerr=right, linestyle="none", **style)
 
 
-def _legend(place: Axes, size: int) -> None:
+def _legend(place: Axes, size: int, loc: str = "best") -> None:
     """Tell the lines apart, or that there is none."""
     if place.get_legend_handles_labels()[0]:
-        place.legend(loc="best", fontsize=size, framealpha=0.9)
+        place.legend(loc=loc, fontsize=size, framealpha=0.9)
     else:
         _say_nothing(place)
 
