@@ -24,12 +24,7 @@ static argus_evidence_t e;
 static int32_t aim_cdeg;
 
 void setUp(void) {
-    argus_knowledge_init(&k);
-    argus_evidence_init(&e);
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        k.sonar[i].health = ARGUS_HEALTHY;
-    }
-    k.sip_ms = 2000; // the clock has wrapped a moment ago
+    scene_blank(&k, &e);
     aim_cdeg = INT32_MIN;
 }
 

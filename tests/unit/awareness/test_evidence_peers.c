@@ -26,12 +26,7 @@ static scene_t s;
 static char text[300];
 
 void setUp(void) {
-    argus_knowledge_init(&k);
-    argus_evidence_init(&e);
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        k.sonar[i].health = ARGUS_HEALTHY;
-    }
-    k.sip_ms = 2000; // the clock has wrapped a moment ago
+    scene_blank(&k, &e);
 }
 
 static void face(int sonar, int32_t bearing_cdeg) {

@@ -315,3 +315,12 @@ const char *scene_text(const scene_t *self) {
     }
     return text;
 }
+
+void scene_blank(argus_knowledge_t *k, argus_evidence_t *e) {
+    argus_knowledge_init(k);
+    argus_evidence_init(e);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        k->sonar[i].health = ARGUS_HEALTHY;
+    }
+    k->sip_ms = 2000; // the clock has wrapped a moment ago
+}

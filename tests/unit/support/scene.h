@@ -55,6 +55,7 @@ void scene_inject(scene_t *self, int sonar, argus_fault_kind_t kind, int value);
 void scene_tour(scene_t *self, int legs);
 void scene_say(scene_t *self, unsigned sonars, const int *reading_mm); // one SIP by hand
 bool scene_all_quiet(const scene_t *self);                             // nobody was ever convicted
+void scene_blank(argus_knowledge_t *k, argus_evidence_t *e);           // all HEALTHY, nothing seen
 uint32_t scene_random(scene_t *self, uint32_t below);
 const char *scene_text(const scene_t *self); // seed and convictions, for a message
 
