@@ -355,6 +355,9 @@ void argus_peers_sip(argus_peers_t *const self, const argus_knowledge_t *const k
 
 void argus_peers_forget(argus_peers_t *const self, const int sonar) {
     memset(&self->of[sonar], 0, sizeof self->of[sonar]);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        self->of[i].against = (uint16_t)(self->of[i].against & ~(1u << sonar));
+    }
 }
 
 void argus_peers_restart(argus_peers_t *const self) {

@@ -857,12 +857,14 @@ static void fill(void) {
 // Forgetting one sonar leaves the others alone.
 void test_forgetting_clears_one_sonar(void) {
     fill();
+    e.peers.of[WITNESS].against = 1u << ME | 1u << THIRD;
     argus_evidence_forget(&e, ME);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         TEST_ASSERT_EQUAL(i == ME, is_blank(i));
         TEST_ASSERT_EQUAL(i == ME ? 0 : 800, score_of(i));
     }
     TEST_ASSERT_EQUAL(77, e.peers.before_ms);
+    TEST_ASSERT_EQUAL_HEX16(1u << THIRD, e.peers.of[WITNESS].against); // nor what it has said
 }
 
 // A restart forgets the glimpses and lags of all, the pose before, and what rested on them: a score without
