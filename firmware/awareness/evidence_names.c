@@ -194,11 +194,8 @@ static bool is_more_than_wrong(const argus_evidence_t *const self, const int son
     }
 }
 
-bool argus_evidence_replaces(const argus_evidence_t *const self, const int sonar,
-                             const argus_fault_kind_t present, const argus_fault_kind_t found) {
-    if (found == ARGUS_KIND_NONE || found == present) {
-        return false;
-    }
+static bool gives_way(const argus_evidence_t *const self, const int sonar, const argus_fault_kind_t present,
+                      const argus_fault_kind_t found) {
     switch (present) {
     case ARGUS_KIND_NONE:
     case ARGUS_KIND_OFF:
@@ -214,6 +211,11 @@ bool argus_evidence_replaces(const argus_evidence_t *const self, const int sonar
     default:
         return false;
     }
+}
+
+bool argus_evidence_replaces(const argus_evidence_t *const self, const int sonar,
+                             const argus_fault_kind_t present, const argus_fault_kind_t found) {
+    return found != ARGUS_KIND_NONE && found != present && gives_way(self, sonar, present, found);
 }
 
 bool argus_evidence_is_unsteady(const argus_evidence_t *const self, const int sonar) {
