@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Literal, Final
 
 import numpy as np
 from matplotlib import rc_context
@@ -138,7 +138,7 @@ def _trade_point(place: Axes, k: int, profile: str, one: Record, false: str, hou
     place.errorbar([x], [found["rate"]], yerr=error, xerr=right, linestyle="none", **style)
 
 
-def _legend(place: Axes, size: int, loc: str = "best") -> None:
+def _legend(place: Axes, size: int, loc: Literal["best", "lower left"] = "best") -> None:
     """Tell the lines apart, or that there is none."""
     if place.get_legend_handles_labels()[0]:
         place.legend(loc=loc, fontsize=size, framealpha=0.9)
