@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Literal, Final
+from typing import Any, Final, Literal
 
 import numpy as np
 from matplotlib import rc_context
