@@ -15,6 +15,7 @@
 #define UNSEEN_MM 1500u
 #define USUAL_MS 2000u
 #define UNREST_MS 8000u
+#define UNREST_PERCENT 25
 #define CALM_MS 15000u  // something moved about the robot: for so long nobody is convicted by views
 #define NEVER INT16_MAX // what the peers say calls for looks, which convict
 
@@ -110,6 +111,18 @@ bool argus_is_unrest_beside(const argus_evidence_t *const self, const argus_know
         }
     }
     return false;
+}
+
+bool argus_is_unrest(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                     const int sonar) {
+    return argus_is_unrest_before(&self->of[sonar], knowledge) ||
+           argus_is_unrest_beside(self, knowledge, sonar);
+}
+
+// What moves about the robot makes healthy sonars disagree.
+int32_t argus_unrest_percent(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                             const int sonar) {
+    return argus_is_unrest(self, knowledge, sonar) ? UNREST_PERCENT : 100;
 }
 
 static void take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {

@@ -63,6 +63,8 @@ void argus_views_scan(argus_evidence_t *self, const argus_knowledge_t *knowledge
 void argus_note_unrest(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
 bool argus_is_unrest_before(const argus_case_t *self, const argus_knowledge_t *knowledge);
 bool argus_is_unrest_beside(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
+bool argus_is_unrest(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar); // either
+int32_t argus_unrest_percent(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
 
 // A confirmed view: remembered, and compared with what the other sonars saw on its bearing.
 void argus_views_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);

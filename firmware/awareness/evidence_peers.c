@@ -20,7 +20,6 @@
 #define COUNTED_MM 100
 #define COUNTED_CDEG 800
 #define COUNTED_MS 4000u
-#define UNREST_PERCENT 25
 #define FADE_MS 1000u
 #define FADE_EIGHTHS 7
 #define ONE_VERDICT 16 // in the fading counts
@@ -183,20 +182,14 @@ static void note_counted(argus_peer_t *const self, const argus_glimpse_t *const 
     }
 }
 
-static bool is_unrest(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                      const int sonar) {
-    return argus_is_unrest_before(&self->of[sonar], knowledge) ||
-           argus_is_unrest_beside(self, knowledge, sonar);
-}
-
 static void count(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const argus_glimpse_t *const now, const uint16_t against) {
     argus_peer_t *const peer = &self->peers.of[sonar];
     argus_case_t *const c = &self->of[sonar];
     const int part = part_contradicted(&self->peers, sonar);
     if (against != 0) {
-        const int32_t percent = is_unrest(self, knowledge, sonar) ? UNREST_PERCENT : 100;
-        argus_score(c, ARGUS_TEST_PEERS, contradicts[part] * percent / 100);
+        argus_score(c, ARGUS_TEST_PEERS,
+                    contradicts[part] * argus_unrest_percent(self, knowledge, sonar) / 100);
     } else {
         argus_score(c, ARGUS_TEST_PEERS, bears_out[part]);
     }

@@ -388,10 +388,7 @@ static void count_echo(argus_case_t *const self, const argus_knowledge_t *const 
     }
     self->none_run = echo ? 0 : (uint8_t)argus_min(self->none_run + 1, UINT8_MAX);
     self->echo_bits = (uint8_t)((unsigned)self->echo_bits << 1 | (echo ? 1u : 0u));
-    self->echoes = 0;
-    for (unsigned bits = self->echo_bits; bits != 0; bits &= bits - 1) {
-        self->echoes++;
-    }
+    self->echoes = (uint8_t)argus_count_bits(self->echo_bits);
     if (echo && goes_on) {
         self->alive_odometer_mm = knowledge->odometer_mm;
         self->alive_ms = knowledge->sip_ms;

@@ -16,7 +16,6 @@
 #define LOOSE_PERCENT 60
 #define OFF_RUN 2
 #define EPISODE_MS 6000u
-#define UNREST_PERCENT 25
 #define SUPPORT_CDEG 2000 // an echo may come from anywhere in the cone of either
 #define SUPPORT_REACH_MM 6000
 #define AGAIN_PERCENT 35 // on a bearing and in a place that was counted with another partner
@@ -183,24 +182,13 @@ static int32_t share_of(const argus_evidence_t *const self, const argus_knowledg
     return lead <= -HEAD_START ? 20 : 50;
 }
 
-static bool is_unrest(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                      const int sonar) {
-    return argus_is_unrest_before(&self->of[sonar], knowledge) ||
-           argus_is_unrest_beside(self, knowledge, sonar);
-}
-
-// What moves about the robot makes healthy sonars disagree.
-static int32_t in_unrest(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                         const int sonar) {
-    return is_unrest(self, knowledge, sonar) ? UNREST_PERCENT : 100;
-}
-
 // One side of a disagreement; `misses`: it is the one that hears nothing.
 static void bear(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                  const int partner, const argus_view_t *const at, const int32_t weight, const bool misses) {
     argus_case_t *const c = &self->of[sonar];
-    const int32_t share = share_of(self, knowledge, sonar, partner) * in_unrest(self, knowledge, sonar) / 100;
-    disagree(c, weight * share / 100, at, partner, misses, !is_unrest(self, knowledge, sonar),
+    const int32_t share =
+        share_of(self, knowledge, sonar, partner) * argus_unrest_percent(self, knowledge, sonar) / 100;
+    disagree(c, weight * share / 100, at, partner, misses, !argus_is_unrest(self, knowledge, sonar),
              knowledge->sip_ms);
     c->misses = (uint8_t)argus_min(c->misses + misses, UINT8_MAX);
 }
@@ -291,8 +279,8 @@ void argus_views_scan(argus_evidence_t *const self, const argus_knowledge_t *con
         }
     } else if (verdict != ARGUS_SCAN_NOTHING) {
         const argus_view_t at = view_of(knowledge, sonar);
-        disagree(c, weight * in_unrest(self, knowledge, sonar) / 100, &at, ARGUS_SCAN_PARTNER,
-                 verdict == ARGUS_SCAN_MISSES, !is_unrest(self, knowledge, sonar), at.t_ms);
+        disagree(c, weight * argus_unrest_percent(self, knowledge, sonar) / 100, &at, ARGUS_SCAN_PARTNER,
+                 verdict == ARGUS_SCAN_MISSES, !argus_is_unrest(self, knowledge, sonar), at.t_ms);
         c->misses = (uint8_t)argus_min(c->misses + (verdict == ARGUS_SCAN_MISSES), UINT8_MAX);
     }
 }
