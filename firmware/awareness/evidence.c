@@ -16,7 +16,7 @@
 #define USUAL_MS 2000u
 #define UNREST_MS 8000u
 #define UNREST_PERCENT 25
-#define CALM_MS 15000u  // something moved about the robot: for so long nobody is convicted by views
+#define CALM_MS 30000u  // something moved about the robot: for so long nobody is convicted by views
 #define NEVER INT16_MAX // what the peers say calls for looks, which convict
 
 _Static_assert(ARGUS_TEST_PEERS == ARGUS_TESTS - 1, "what is kept and what convicts comes before the peers");
@@ -29,10 +29,10 @@ const argus_bounds_t argus_bounds[ARGUS_TESTS] = {
     [ARGUS_TEST_GARBAGE] =
         {.suspicious = 400, .naming = 650, .convincing = 2800, .floor = 0, .ceiling = 3200},
     [ARGUS_TEST_DROPOUT] =
-        {.suspicious = 500, .naming = 750, .convincing = 2400, .floor = 0, .ceiling = 2800},
+        {.suspicious = 400, .naming = 500, .convincing = 2700, .floor = 0, .ceiling = 3000},
     [ARGUS_TEST_LAG] = {.suspicious = 300, .naming = 500, .convincing = 2600, .floor = 0, .ceiling = 3000},
     [ARGUS_TEST_PEERS] =
-        {.suspicious = 600, .naming = 900, .convincing = NEVER, .floor = -150, .ceiling = 2500},
+        {.suspicious = 450, .naming = 650, .convincing = NEVER, .floor = -150, .ceiling = 2500},
 };
 
 static void forget_case(argus_case_t *const self) {
@@ -133,7 +133,11 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     }
     c->counted_ms = knowledge->sip_ms;
     c->taken++;
+    const bool was_out = c->out;
     c->out = argus_is_out(knowledge, sonar);
+    if (c->out && !was_out) {
+        argus_peers_retract(self, sonar);
+    }
     argus_trend_reading(&self->trend, knowledge, sonar);
     const argus_trail_t now = {.reading_mm = knowledge->sonar[sonar].reading_mm,
                                .x_mm = (uint16_t)((uint32_t)knowledge->pose.x_mm & 0xFFFFu),
@@ -165,7 +169,7 @@ void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *c
         }
     }
     argus_trend_sip(&self->trend, knowledge);
-    argus_peers_sip(&self->peers, knowledge);
+    argus_peers_sip(self, knowledge);
 }
 
 uint16_t argus_evidence_unseen(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,

@@ -19,8 +19,8 @@
 #define HELD 150           // hundredths of a nat that the peers must come down to before one is cleared
 #define LATE_NAMING 1400
 #define LATE_CONTRADICTED 300 // ... of one that the others contradict
-#define LATE_FIRST 400 // hundredths of a nat, all that speaks for late and against wrong together: at first
-#define LATE_AFTER 700 // ... and once it is called wrong
+#define LATE_FIRST 250 // hundredths of a nat, all that speaks for late and against wrong together: at first
+#define LATE_AFTER 450 // ... and once it is called wrong
 #define LATE_NO_MORE 150
 
 // How many others contradict it, of the last conflicts counted.
@@ -152,11 +152,8 @@ static argus_fault_kind_t first_name(const argus_evidence_t *const self, const i
     return ARGUS_KIND_NONE;
 }
 
-// One that the peers accuse is late by itself only where that says more than wrong.
 static bool is_named_late(const argus_evidence_t *const self, const int sonar) {
-    const bool accused = self->of[sonar].score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].suspicious;
-    return looks_late(self, sonar) && has_partners(self, sonar) &&
-           (!accused || lateness(self, sonar) >= LATE_FIRST);
+    return looks_late(self, sonar) && has_partners(self, sonar);
 }
 
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {

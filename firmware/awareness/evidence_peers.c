@@ -22,7 +22,8 @@
 #define COUNTED_MS 4000u
 #define FADE_MS 1000u
 #define FADE_EIGHTHS 7
-#define ONE_VERDICT 16 // in the fading counts
+#define SCORE_FADES_S 60 // in the open nobody bears it out
+#define ONE_VERDICT 16   // in the fading counts
 #define LAG_LEAST 2
 #define LAG_TURN_CDEG 1000
 #define LATE_CEILING 2000
@@ -160,13 +161,16 @@ static bool is_news(const argus_peer_t *const self, const argus_glimpse_t *const
     return true;
 }
 
-// Which part of the others' readings is contradicted at present; at the start one in twenty of six.
-static int part_contradicted(const argus_peers_t *const self, const int sonar) {
+// Which part of the readings of the others in use is contradicted at present; at the start one in twenty of
+// six.
+static int part_contradicted(const argus_peers_t *const self, const argus_knowledge_t *const knowledge,
+                             const int sonar) {
     int32_t all = 6 * ONE_VERDICT;
     int32_t contradicted = 6 * ONE_VERDICT / 20 + 1;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        all += i != sonar ? self->of[i].verdicts : 0;
-        contradicted += i != sonar ? self->of[i].contradicted : 0;
+        const bool counts = i != sonar && !argus_is_out(knowledge, i);
+        all += counts ? self->of[i].verdicts : 0;
+        contradicted += counts ? self->of[i].contradicted : 0;
     }
     return (int)argus_max(0, argus_min(PARTS - 1, (contradicted * 20 + all / 2) / all - 1));
 }
@@ -182,11 +186,18 @@ static void note_counted(argus_peer_t *const self, const argus_glimpse_t *const 
     }
 }
 
+// Whether one that is out failed in a way that no echo in agreement is compatible with.
+static bool shows_at_once(const argus_knowledge_t *const knowledge, const int sonar) {
+    const argus_fault_kind_t kind = knowledge->sonar[sonar].kind;
+    return argus_is_out(knowledge, sonar) && (kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_SILENT ||
+                                              kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE);
+}
+
 static void count(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const argus_glimpse_t *const now, const uint16_t against) {
     argus_peer_t *const peer = &self->peers.of[sonar];
     argus_case_t *const c = &self->of[sonar];
-    const int part = part_contradicted(&self->peers, sonar);
+    const int part = part_contradicted(&self->peers, knowledge, sonar);
     if (against != 0) {
         argus_score(c, ARGUS_TEST_PEERS,
                     contradicts[part] * argus_unrest_percent(self, knowledge, sonar) / 100);
@@ -197,6 +208,9 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     const bool echo = now->reading_mm < ARGUS_NO_ECHO_MM;
     peer->against = doubted ? (uint16_t)(peer->against | against) : 0;
     peer->borne_out = doubted && (peer->borne_out || (against == 0 && echo));
+    if (against == 0 && echo && shows_at_once(knowledge, sonar)) {
+        c->agreed = (uint8_t)argus_min(c->agreed + 1, UINT8_MAX);
+    }
     note_counted(peer, now, against != 0);
 }
 
@@ -212,7 +226,8 @@ static verdict_t verdict_as_of(const argus_evidence_t *const self, const argus_k
     if (then == NULL) {
         return UNSEEN;
     }
-    if (bearing_diff_cdeg(now, then) < LAG_TURN_CDEG) {
+    int32_t along_mm = 0;
+    if (bearing_diff_cdeg(now, then) < LAG_TURN_CDEG && is_same_place(now, then, &along_mm)) {
         return SAME;
     }
     argus_glimpse_t as_of = *then;
@@ -332,17 +347,32 @@ void argus_peers_take(argus_evidence_t *const self, const argus_knowledge_t *con
     peer->count = (uint8_t)argus_min(peer->count + 1, ARGUS_GLIMPSES);
 }
 
-void argus_peers_sip(argus_peers_t *const self, const argus_knowledge_t *const knowledge) {
-    self->before = knowledge->pose;
-    self->before_ms = knowledge->sip_ms;
-    if (knowledge->sip_ms - self->faded_ms < FADE_MS) {
+void argus_peers_sip(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+    argus_peers_t *const peers = &self->peers;
+    peers->before = knowledge->pose;
+    peers->before_ms = knowledge->sip_ms;
+    if (knowledge->sip_ms - peers->faded_ms < FADE_MS) {
         return;
     }
-    self->faded_ms = knowledge->sip_ms;
+    peers->faded_ms = knowledge->sip_ms;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        argus_peer_t *const peer = &self->of[i];
+        argus_peer_t *const peer = &peers->of[i];
+        int16_t *const score = &self->of[i].score[ARGUS_TEST_PEERS];
         peer->verdicts = (uint16_t)(peer->verdicts * FADE_EIGHTHS / 8);
         peer->contradicted = (uint16_t)(peer->contradicted * FADE_EIGHTHS / 8);
+        *score = (int16_t)(*score - *score / SCORE_FADES_S);
+    }
+}
+
+// What a liar said of the others is taken back: where nobody else contradicts them, the whole of it.
+void argus_peers_retract(argus_evidence_t *const self, const int sonar) {
+    const uint16_t bit = (uint16_t)(1u << sonar);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        argus_peer_t *const peer = &self->peers.of[i];
+        if (peer->against == bit) {
+            self->of[i].score[ARGUS_TEST_PEERS] = 0;
+        }
+        peer->against = (uint16_t)(peer->against & ~bit);
     }
 }
 

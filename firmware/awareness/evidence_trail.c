@@ -18,7 +18,7 @@
 #define NOVEL_BACK 2
 #define WALK_MIN_MM 70
 #define CLIPPED_MM 105
-#define FAR_MM 3500 // echoes from beyond come and go
+#define FAR_MM 4200 // echoes from beyond come and go
 #define JUMP_MM 80
 #define TRACKED 3
 #define LOST_RUN_OTHERS 4
@@ -45,8 +45,7 @@
 #define BETWEEN_MAX 600
 #define DROPOUT_REST 400
 #define DROPOUT_MOVING 320
-#define DROPOUT_LONE 160
-#define DROPOUT_MOVING_MAX 740
+#define DROPOUT_MOVING_MAX 1100
 #define STEADY_ECHO (-12)
 
 const argus_trail_t *argus_trail_at(const argus_case_t *const self, const int back) {
@@ -282,16 +281,14 @@ static const argus_trail_t *echo_before_gap(const argus_case_t *const self) {
 
 // In motion an echo at the edge of what is heard comes and goes by itself: that alone convicts no one.
 static void score_dropout(argus_case_t *const self, const argus_trail_t *const now,
-                          const argus_trail_t *const then, const int sonar, const bool unrest) {
-    const argus_trail_t *const earlier = argus_trail_at(self, self->none_run + 2);
-    const bool tracked = earlier != NULL && argus_trail_goes_on(then, earlier, sonar);
+                          const argus_trail_t *const then, const bool unrest) {
     if (unrest) {
         return; // somebody may have stood in between
     }
     if (now->rest && then->rest) {
         argus_score(self, ARGUS_TEST_DROPOUT, DROPOUT_REST);
     } else if (self->score[ARGUS_TEST_DROPOUT] < DROPOUT_MOVING_MAX) {
-        argus_score(self, ARGUS_TEST_DROPOUT, tracked ? DROPOUT_MOVING : DROPOUT_LONE);
+        argus_score(self, ARGUS_TEST_DROPOUT, DROPOUT_MOVING);
     }
 }
 
@@ -303,7 +300,7 @@ static void test_dropout(argus_case_t *const self, const argus_trail_t *const no
     const argus_trail_t *const then = self->none_run > 0 ? echo_before_gap(self) : NULL;
     if (then != NULL && now->reading_mm < FAR_MM && argus_trail_turned_cdeg(now, then) <= SAME_CDEG &&
         is_near(now, then, sonar)) {
-        score_dropout(self, now, then, sonar, unrest);
+        score_dropout(self, now, then, unrest);
     } else {
         argus_score(self, ARGUS_TEST_DROPOUT, STEADY_ECHO);
     }

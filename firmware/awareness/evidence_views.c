@@ -25,7 +25,7 @@
 #define AIM_NEAREST_MM 250
 #define AIM_FARTHEST_MM 3000
 #define AIM_TURN_CDEG 10000
-#define FARTHEST_MM 3500 // beyond, the air decides whether an echo is heard
+#define FARTHEST_MM 4000 // beyond, the air decides whether an echo is heard
 #define AGREE_MM 80
 #define AGREE_PERCENT 5
 #define COUNTED_MM 100

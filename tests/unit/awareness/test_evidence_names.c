@@ -325,7 +325,7 @@ static void be_late(int way, int by) {
     }
 }
 
-// What others contradict is late from 400 on, all that tells late from wrong taken together.
+// What others contradict is late from 250 on, all that tells late from wrong taken together.
 void test_late_is_told_from_wrong_by_all_that_speaks_for_it(void) {
     for (int way = 0; way < 5; way++) {
         for (int peers = 0; peers < 2; peers++) {
@@ -334,9 +334,9 @@ void test_late_is_told_from_wrong_by_all_that_speaks_for_it(void) {
             const argus_test_t test = peers != 0 ? ARGUS_TEST_PEERS : ARGUS_TEST_VIEW;
             accuse(test, argus_bounds[test].naming);
             snprintf(text, sizeof text, "way %d, peers %d", way, peers);
-            be_late(way, 399);
+            be_late(way, 249);
             TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_WRONG, named(), text);
-            be_late(way, 400);
+            be_late(way, 250);
             TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_SLOW, named(), text);
         }
     }
@@ -346,14 +346,13 @@ void test_late_is_told_from_wrong_by_all_that_speaks_for_it(void) {
 void test_a_conviction_tells_late_from_wrong_too(void) {
     give_ground();
     accuse(ARGUS_TEST_VIEW, argus_bounds[ARGUS_TEST_VIEW].convincing);
-    be_late(0, 399);
+    be_late(0, 249);
     TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, convicted());
-    be_late(0, 400);
+    be_late(0, 250);
     TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, convicted());
 }
 
-// Late and not well from 1,400 on names one that others contradict, 300 and by two; once they contradict it
-// enough for a suspicion, only where something tells late from wrong.
+// Late and not well from 1,400 on names one that others contradict, 300 and by two.
 void test_lateness_alone_names_only_one_that_others_contradict(void) {
     static const struct {
         int late;
@@ -363,9 +362,8 @@ void test_lateness_alone_names_only_one_that_others_contradict(void) {
         argus_fault_kind_t kind;
     } by[] = {{1400, 300, 3, 0, ARGUS_KIND_SLOW},  {1399, 300, 3, 0, ARGUS_KIND_NONE},
               {1400, 299, 3, 0, ARGUS_KIND_NONE},  {1400, 300, 1, 0, ARGUS_KIND_NONE},
-              {1400, 599, 3, 0, ARGUS_KIND_SLOW},  {1400, 600, 3, 0, ARGUS_KIND_NONE},
-              {1400, 600, 3, 49, ARGUS_KIND_NONE}, {1400, 600, 3, 50, ARGUS_KIND_SLOW},
-              {2000, 600, 3, 0, ARGUS_KIND_SLOW},  {2000, 0, 3, 1500, ARGUS_KIND_NONE}};
+              {1400, 449, 3, 0, ARGUS_KIND_SLOW},  {1400, 450, 3, 0, ARGUS_KIND_SLOW},
+              {1399, 450, 3, 50, ARGUS_KIND_NONE}, {2000, 0, 3, 1500, ARGUS_KIND_NONE}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
         setUp();
         peer->late[LAG] = (int16_t)by[i].late;
@@ -375,7 +373,7 @@ void test_lateness_alone_names_only_one_that_others_contradict(void) {
         snprintf(text, sizeof text, "case %d", i);
         TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
         TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
-        TEST_ASSERT_EQUAL_MESSAGE(by[i].peers >= 600 || (by[i].late >= 1400 && by[i].peers >= 300),
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].peers >= 450 || (by[i].late >= 1400 && by[i].peers >= 300),
                                   argus_evidence_suspects(&e, SONAR), text);
     }
 }
@@ -430,7 +428,7 @@ void test_the_peers_alone_keep_nobody_out(void) {
 #define ALWAYS 1
 #define IF_MOVED 2 // the STUCK score is 0
 #define IF_WELL 3  // lateness below 150
-#define IF_LATE 4  // lateness from 700 on
+#define IF_LATE 4  // lateness from 450 on
 #define IF_DEAF 5  // 12 readings without an echo, the last three contradicted ones too
 #define IF_GAPS 6  // three of the last four contradicted ones without an echo
 #define KINDS 8
@@ -451,7 +449,7 @@ static const uint8_t replaced_when[KINDS][KINDS] = {
 static void set_up_but(int condition) {
     setUp();
     c->score[ARGUS_TEST_STUCK] = condition == IF_MOVED ? 0 : 1;
-    peer->told[LAG] = (int16_t)(condition == IF_WELL ? 149 : (condition == IF_LATE ? 700 : 150));
+    peer->told[LAG] = (int16_t)(condition == IF_WELL ? 149 : (condition == IF_LATE ? 450 : 150));
     c->none_run = condition == IF_DEAF ? 12 : 11;
     peer->hollow = condition == IF_DEAF ? 0x07 : (condition == IF_GAPS ? 0x0D : 0xF3);
 }
@@ -509,7 +507,7 @@ void test_between_late_and_wrong_there_is_room(void) {
         for (int by = 110; by <= 800; by++) {
             be_late(way, by);
             snprintf(text, sizeof text, "way %d, lateness %d", way, by);
-            TEST_ASSERT_EQUAL_MESSAGE(by >= 700, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_SLOW), text);
+            TEST_ASSERT_EQUAL_MESSAGE(by >= 450, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_SLOW), text);
             TEST_ASSERT_EQUAL_MESSAGE(by < 150, replaces(ARGUS_KIND_SLOW, ARGUS_KIND_WRONG), text);
         }
     }
