@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
-from hil_sim.bench.judge import BOUND_S
+from hil_sim.bench.judge import BOUND_S, REFRESH_S, SHOWN_READINGS
 from hil_sim.bench.plan import FORWARD, sonar_defaults
 from hil_sim.bench.stats import count_bound_high, quantile, share_bound_low, share_interval
 
@@ -22,6 +22,9 @@ HARD: Final = ("wrong", "intermittent")
 QUICK: Final = ("off", "garbage", "slow")
 """Kinds that must be found within 2 s (median) and 10 s (p99); the others within 5 s and 30 s."""
 SLOWER: Final = ("silent", "stuck", "wrong", "intermittent")
+
+
+SONARS: Final = 16
 
 
 @dataclass(frozen=True)
@@ -96,6 +99,10 @@ def figures(records: Sequence[Record]) -> dict[str, Any]:
             for name in sorted({f["variant"] for f in faults})
         },
         "all": _detection(faults),
+        "ideal": {
+            "sure": _ideal([f for f in faults if f["kind"] in SURE]),
+            "hard": _ideal([f for f in faults if f["kind"] in HARD]),
+        },
         "confusion": _confusion(faults, records),
         "false_disables": _false(free),
         "false_disables_with_faults": _false([r for r in records if not r["variant"].startswith("free")]),
@@ -144,6 +151,38 @@ def _detection(faults: Sequence[Record]) -> dict[str, Any]:
         "latency_mm": _spread([fault["latency_mm"] for fault in rooms]),
         "latency_s_everywhere": _spread([fault["latency_s"] for fault in seen]),
     }
+
+
+def readings_wanted(window_s: float, crosstalk: float) -> int:
+    """Return how many readings of a window must be off before a fault is sure, by this count alone.
+
+    Smallest count that 16 healthy sonars reach by crosstalk (share of the readings, 0 to 1) in less than one of the
+    successive windows of 100 h.
+    """
+    fired = int(window_s / REFRESH_S)
+    windows = SONARS * 100 * 3600 / window_s
+    fewer = 0.0
+    for count in range(fired + 1):
+        if windows * (1.0 - fewer) <= 1.0:
+            return count
+        fewer += math.comb(fired, count) * crosstalk**count * (1.0 - crosstalk) ** (fired - count)
+    return fired
+
+
+def _ideal(faults: Sequence[Record]) -> dict[str, Any]:
+    """What an observer would find in time that knows each true range, and counts the readings that are off.
+
+    `three`: three are enough for it, so by its count alone it errs thousands of times in 100 h. `once`: it errs once.
+    What was found by less, such as one value again and again, is found by it too.
+    """
+    judged = [fault for fault in faults if fault["apart"] is None]
+    crosstalk = sonar_defaults()["crosstalk"]
+
+    def found(wanted: Callable[[float], int]) -> dict[str, Any]:
+        enough = [f["found"] or f["visible_in_time"] >= wanted(BOUND_S[f["kind"]]) for f in judged]
+        return _share(sum(enough), len(enough))
+
+    return {"three": found(lambda _: SHOWN_READINGS), "once": found(lambda s: readings_wanted(s, crosstalk))}
 
 
 def _spread(values: Sequence[float]) -> dict[str, Any]:

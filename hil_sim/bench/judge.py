@@ -27,6 +27,8 @@ SHOWN_READINGS: Final = 3
 
 A sonar that is DISABLED fires no more, so the rule sets none apart that was DISABLED while it failed.
 """
+REFRESH_S: Final = 0.32
+"""Each sonar fires once in this time."""
 FALSE_AFTER_S: Final = 10.0
 """A sonar DISABLED this long after its fault has ended is a false disable."""
 REPAIRED_DRIVING_S: Final = 60.0
@@ -131,6 +133,7 @@ def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, 
         "end_s": _r(truth.end_s),
         "visible_s": _r(truth.first_visible_s),
         "visible_n": _visible_count(truth, track, end_s),
+        "visible_in_time": _visible_in_time(truth, track, end_s),
         "apart": None,
         "found": False,
         "named": None,
@@ -168,10 +171,17 @@ def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, 
     return record
 
 
+def _visible_in_time(truth: FaultTruth, track: Track, end_s: float) -> int:
+    """The visible readings while there is time to find the fault: nobody has more to find it by."""
+    if truth.first_visible_s is None:
+        return 0
+    return _visible_count(truth, track, min(end_s, truth.first_visible_s + BOUND_S[truth.kind]))
+
+
 def _visible_count(truth: FaultTruth, track: Track, end_s: float) -> int:
     if truth.kind == "silent":
         # A missing reading is in no SIP; each slot from the first one on is one.
-        return 0 if truth.first_visible_s is None else 1 + int((end_s - truth.first_visible_s) / 0.32)
+        return 0 if truth.first_visible_s is None else 1 + int((end_s - truth.first_visible_s) / REFRESH_S)
     seen = track.visible_s.get(truth.sonar, [])
     return bisect_right(seen, end_s) - bisect_right(seen, truth.onset_s)
 

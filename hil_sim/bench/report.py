@@ -23,6 +23,7 @@ _FIELDS: Final = (
     "end_s",
     "visible_s",
     "visible_n",
+    "visible_in_time",
     "apart",
     "found",
     "named",
@@ -182,7 +183,12 @@ def _other(one: Record) -> list[str]:
     false, hurt, named = one["false_disables"], one["false_disables_with_faults"], one["false_names"]
     verify, hits, back = one["verification"], one["collisions"], one["rehabilitation"]
     counts = ", ".join(f"{count} {how}" for how, count in sorted(back["counts"].items()))
+    sure, hard = one["ideal"]["sure"], one["ideal"]["hard"]
     lines = [
+        "- Who knows each true range and takes three readings that are off for a fault finds at most "
+        f"{_percent(sure['three']['rate'])} % (off, stuck, garbage, slow) and {_percent(hard['three']['rate'])} % "
+        "(wrong, intermittent) in time; who takes so many that crosstalk deceives it once in 100 h, at most "
+        f"{_percent(sure['once']['rate'])} % and {_percent(hard['once']['rate'])} %",
         f"- False disables, fault-free: {false['count']} in {false['hours']:.2f} h of {false['missions']} missions; "
         f"of healthy sonars in missions with faults: {hurt['count']} in {hurt['hours']:.2f} h",
         f"- A healthy sonar SUSPECT with a kind, fault-free: {named['count']} times in {named['hours']:.2f} h",

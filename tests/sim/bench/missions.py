@@ -107,6 +107,7 @@ def judged(kind: str = "off", **more: Any) -> dict[str, Any]:
         "end_s": None,
         "visible_s": 10.0,
         "visible_n": 9,
+        "visible_in_time": 9,
         "apart": None,
         "found": True,
         "named": kind,

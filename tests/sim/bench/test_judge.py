@@ -161,6 +161,15 @@ def test_slots_of_a_silent_sonar_count_as_readings() -> None:
     assert judged(fault("silent"), track=track())["visible_n"] > 1000
 
 
+def test_readings_in_time_are_those_within_the_bound_and_the_fault() -> None:
+    own = track((3, 10.5))  # one a second, twenty of them
+    assert judged(fault("off", first_visible_s=10.5), track=own)["visible_in_time"] == 11
+    assert judged(fault("wrong", first_visible_s=10.5), track=own)["visible_in_time"] == 20
+    assert judged(fault("wrong", first_visible_s=10.5, end_s=13.0), track=own)["visible_in_time"] == 3
+    assert judged(fault("off", first_visible_s=None), track=track())["visible_in_time"] == 0
+    assert judged(fault("silent", first_visible_s=10.5), track=track())["visible_in_time"] == 94
+
+
 @pytest.mark.parametrize(
     ("true_mm", "heard_mm", "visible"),
     [(1000, 1100, False), (1000, 1101, True), (4000, 4200, False), (4000, 3799, True), (5000, 100, True)],

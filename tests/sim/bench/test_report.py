@@ -7,13 +7,14 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 from pathlib import Path
 from typing import Any
 
 import pytest
 from bench.missions import judged, record
 
-from hil_sim.bench.figures import KINDS, summarise
+from hil_sim.bench.figures import KINDS, readings_wanted, summarise
 from hil_sim.bench.report import table, write_report
 
 META = {"core": "0" * 64, "split": "judge"}
@@ -85,6 +86,50 @@ def test_false_names_are_counted_beside_them() -> None:
     one = summarise(free(4, false_names=named))["profiles"]["argus"]
     assert one["false_names"]["count"] == 8
     assert one["false_names"]["per_100h"] == 200.0
+
+
+@pytest.mark.parametrize("window_s", [10.0, 30.0])
+@pytest.mark.parametrize("crosstalk", [0.01, 0.03])
+def test_an_observer_that_errs_once_in_100_h_wants_so_many_readings(
+    window_s: float, crosstalk: float
+) -> None:
+    windows = 16 * 360_000 / window_s
+    fired = int(window_s / 0.32)
+
+    def deceived(count: int) -> float:
+        ways = range(count, fired + 1)
+        return windows * sum(
+            math.comb(fired, k) * crosstalk**k * (1 - crosstalk) ** (fired - k) for k in ways
+        )
+
+    wanted = readings_wanted(window_s, crosstalk)
+    assert deceived(wanted) <= 1 < deceived(wanted - 1)
+
+
+def test_what_an_observer_of_the_truth_would_find_is_told() -> None:
+    late = {"found": False, "latency_s": 50.0}
+    records = [
+        *missions(4),
+        *missions(1, visible_in_time=5, **late),
+        *missions(1, visible_in_time=6, **late),
+        *missions(1, visible_in_time=2, **late),
+        *missions(1, visible_in_time=0),
+        *missions(3, "wrong", visible_in_time=7, **late),
+        *missions(1, "wrong", visible_in_time=8, **late),
+        *missions(9, "wrong", visible_in_time=9, apart="not shown", **late),
+        *missions(5, "silent", visible_in_time=0, **late),
+    ]
+    ideal = summarise(records)["profiles"]["argus"]["ideal"]
+    assert (ideal["sure"]["three"]["hits"], ideal["sure"]["once"]["hits"], ideal["sure"]["once"]["of"]) == (
+        7,
+        6,
+        8,
+    )
+    assert (ideal["hard"]["three"]["hits"], ideal["hard"]["once"]["hits"], ideal["hard"]["once"]["of"]) == (
+        4,
+        1,
+        4,
+    )
 
 
 def test_collisions_pass_with_none_in_1000_missions() -> None:
