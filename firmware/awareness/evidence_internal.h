@@ -42,6 +42,29 @@ int32_t argus_trail_lag_lead(const argus_case_t *self);
 bool argus_trail_test(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
                       const argus_trail_t *now);
 
+// Where one of two readings was made, seen from where the other was, which is at most some metres away: how
+// far ahead on the bearing, how far beside it.
+typedef struct {
+    int32_t along_mm;
+    int32_t lateral_mm; // no sign
+} argus_shift_t;
+argus_shift_t argus_pair_shift(int32_t dx_mm, int32_t dy_mm, int32_t bearing_cdeg);
+
+// By how much two echoes of one thing may differ at a range.
+int32_t argus_pair_limit_mm(int32_t range_mm);
+
+// What two readings on one bearing say of each other, `now` made `along_mm` ahead of `then`. NOTHING: too
+// near, or an echo from so far that the air decides whether it is heard.
+typedef enum {
+    ARGUS_PAIR_QUIET, // both without an echo
+    ARGUS_PAIR_AGREE,
+    ARGUS_PAIR_DIFFER,
+    ARGUS_PAIR_NOW_MISSES, // no echo where the other heard one
+    ARGUS_PAIR_THEN_MISSES,
+    ARGUS_PAIR_NOTHING
+} argus_outcome_t;
+argus_outcome_t argus_pair_compare(int32_t now_mm, int32_t then_mm, int32_t along_mm);
+
 // One reading against what the others saw on about its bearing from this place, then remembered.
 typedef enum {
     ARGUS_SCAN_NOTHING,

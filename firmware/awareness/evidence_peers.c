@@ -11,10 +11,6 @@
 #define SAME_BEARING_CDEG 300
 #define SAME_LATERAL_MM 60
 #define SAME_ALONG_MM 200
-#define NEAREST_MM 150
-#define FARTHEST_MM 4000 // beyond, the air decides whether an echo is heard
-#define AGREE_MM 80
-#define AGREE_PERCENT 5
 #define PING_AGE_MS 70 // a SIP lists pings 0 to 140 ms old
 #define SIP_MOST_MS 300u
 #define COUNTED_MM 100
@@ -71,25 +67,19 @@ static bool is_same_place(const argus_glimpse_t *const now, const argus_glimpse_
     if (argus_abs(dx) > SAME_ALONG_MM || argus_abs(dy) > SAME_ALONG_MM) {
         return false;
     }
-    const int32_t c = argus_cos(now->bearing_cdeg);
-    const int32_t s = argus_sin(now->bearing_cdeg);
-    *along_mm = (dx * c + dy * s) / ARGUS_TRIG_ONE;
-    return argus_abs(dy * c - dx * s) / ARGUS_TRIG_ONE <= SAME_LATERAL_MM;
+    const argus_shift_t shift = argus_pair_shift(dx, dy, now->bearing_cdeg);
+    *along_mm = shift.along_mm;
+    return shift.lateral_mm <= SAME_LATERAL_MM;
 }
 
-// UNSEEN: the two cannot be compared.
 static verdict_t compare(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
-    const bool none = now_mm >= ARGUS_NO_ECHO_MM;
-    const bool was_none = then_mm >= ARGUS_NO_ECHO_MM;
-    if (none && was_none) {
-        return QUIET;
-    }
-    const int32_t expected = was_none ? now_mm + along_mm : then_mm - along_mm;
-    if (expected < NEAREST_MM || (none != was_none && expected > FARTHEST_MM)) {
-        return UNSEEN;
-    }
-    const int32_t limit = AGREE_MM + argus_min(expected, now_mm) * AGREE_PERCENT / 100;
-    return none == was_none && argus_abs(expected - now_mm) <= limit ? AGREED : CONTRADICTED;
+    static const uint8_t verdict[] = {[ARGUS_PAIR_QUIET] = QUIET,
+                                      [ARGUS_PAIR_AGREE] = AGREED,
+                                      [ARGUS_PAIR_DIFFER] = CONTRADICTED,
+                                      [ARGUS_PAIR_NOW_MISSES] = CONTRADICTED,
+                                      [ARGUS_PAIR_THEN_MISSES] = CONTRADICTED,
+                                      [ARGUS_PAIR_NOTHING] = UNSEEN};
+    return (verdict_t)verdict[argus_pair_compare(now_mm, then_mm, along_mm)];
 }
 
 static const argus_glimpse_t *at_back(const argus_peer_t *const self, const int back) {

@@ -21,13 +21,9 @@
 #define AGAIN_PERCENT 35 // on a bearing and in a place that was counted with another partner
 #define SAME_PLACE_MM 35
 #define SAME_VIEW_CDEG 200
-#define NEAREST_MM 150
 #define AIM_NEAREST_MM 250
 #define AIM_FARTHEST_MM 3000
 #define AIM_TURN_CDEG 10000
-#define FARTHEST_MM 4000 // beyond, the air decides whether an echo is heard
-#define AGREE_MM 80
-#define AGREE_PERCENT 5
 #define COUNTED_MM 100
 #define COUNTED_CDEG 800
 #define STALE_MM 40
@@ -57,45 +53,17 @@ static relation_t relate(const argus_view_t *const now, const argus_view_t *cons
         argus_angle_abs_diff(now->bearing_cdeg, then->bearing_cdeg) > SAME_BEARING_CDEG) {
         return relation;
     }
-    const int32_t c = argus_cos(now->bearing_cdeg);
-    const int32_t s = argus_sin(now->bearing_cdeg);
-    relation.along_mm = (dx * c + dy * s) / ARGUS_TRIG_ONE;
-    const int32_t lateral_mm = argus_abs(dy * c - dx * s) / ARGUS_TRIG_ONE;
-    relation.comparable = lateral_mm <= SAME_LATERAL_MM;
-    relation.close = lateral_mm <= CLOSE_LATERAL_MM && argus_abs(relation.along_mm) <= CLOSE_ALONG_MM &&
+    const argus_shift_t shift = argus_pair_shift(dx, dy, now->bearing_cdeg);
+    relation.along_mm = shift.along_mm;
+    relation.comparable = shift.lateral_mm <= SAME_LATERAL_MM;
+    relation.close = shift.lateral_mm <= CLOSE_LATERAL_MM && argus_abs(relation.along_mm) <= CLOSE_ALONG_MM &&
                      argus_angle_abs_diff(now->bearing_cdeg, then->bearing_cdeg) <= CLOSE_BEARING_CDEG;
     return relation;
 }
 
-static bool is_none(const argus_view_t *const view) {
-    return view->reading_mm >= ARGUS_NO_ECHO_MM;
-}
-
-typedef enum { QUIET, AGREE, DIFFER, NOW_MISSES, THEN_MISSES, NOTHING } outcome_t;
-
-static outcome_t judge_silence(const argus_view_t *const now, const argus_view_t *const then,
-                               const int32_t along_mm) {
-    if (is_none(now) && is_none(then)) {
-        return QUIET;
-    }
-    const int32_t expected = is_none(then) ? now->reading_mm + along_mm : then->reading_mm - along_mm;
-    if (expected < NEAREST_MM || expected > FARTHEST_MM) {
-        return NOTHING;
-    }
-    return is_none(now) ? NOW_MISSES : THEN_MISSES;
-}
-
-static outcome_t judge_pair(const argus_view_t *const now, const argus_view_t *const then,
-                            const int32_t along_mm) {
-    if (is_none(now) || is_none(then)) {
-        return judge_silence(now, then, along_mm);
-    }
-    const int32_t expected = then->reading_mm - along_mm;
-    if (expected < NEAREST_MM) {
-        return NOTHING;
-    }
-    const int32_t limit = AGREE_MM + argus_min(expected, now->reading_mm) * AGREE_PERCENT / 100;
-    return argus_abs(expected - now->reading_mm) <= limit ? AGREE : DIFFER;
+static argus_outcome_t judge_pair(const argus_view_t *const now, const argus_view_t *const then,
+                                  const int32_t along_mm) {
+    return argus_pair_compare(now->reading_mm, then->reading_mm, along_mm);
 }
 
 // What a conflict here still adds, in hundredths: one place and bearing is one piece of evidence, whoever
@@ -193,30 +161,31 @@ static void bear(argus_evidence_t *const self, const argus_knowledge_t *const kn
     c->misses = (uint8_t)argus_min(c->misses + misses, UINT8_MAX);
 }
 
-static int32_t weight_of(const outcome_t outcome, const outcome_t missing, const bool close) {
-    const int32_t weight = outcome == DIFFER ? DIFFERS : (outcome == missing ? MISSES : HEARS_MORE);
+static int32_t weight_of(const argus_outcome_t outcome, const argus_outcome_t missing, const bool close) {
+    const int32_t weight =
+        outcome == ARGUS_PAIR_DIFFER ? DIFFERS : (outcome == missing ? MISSES : HEARS_MORE);
     return close ? weight : weight * LOOSE_PERCENT / 100;
 }
 
 static void compare(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                     const argus_view_t *const now, const int other, const argus_view_t *const then) {
     const relation_t relation = relate(now, then);
-    const outcome_t outcome = judge_pair(now, then, relation.along_mm);
+    const argus_outcome_t outcome = judge_pair(now, then, relation.along_mm);
     argus_trend_pair(&self->trend, knowledge, sonar, now->reading_mm, other, then->reading_mm,
                      relation.along_mm);
-    if (outcome == AGREE) {
+    if (outcome == ARGUS_PAIR_AGREE) {
         self->agreements++;
         agree(&self->of[sonar], knowledge);
         agree(&self->of[other], knowledge);
-    } else if (outcome == QUIET) {
+    } else if (outcome == ARGUS_PAIR_QUIET) {
         argus_score(&self->of[sonar], ARGUS_TEST_OFF, BOTH_QUIET);
         argus_score(&self->of[other], ARGUS_TEST_OFF, BOTH_QUIET);
-    } else if (outcome != NOTHING) {
+    } else if (outcome != ARGUS_PAIR_NOTHING) {
         self->disagreements++;
-        bear(self, knowledge, sonar, other, now, weight_of(outcome, NOW_MISSES, relation.close),
-             outcome == NOW_MISSES);
-        bear(self, knowledge, other, sonar, then, weight_of(outcome, THEN_MISSES, relation.close),
-             outcome == THEN_MISSES);
+        bear(self, knowledge, sonar, other, now, weight_of(outcome, ARGUS_PAIR_NOW_MISSES, relation.close),
+             outcome == ARGUS_PAIR_NOW_MISSES);
+        bear(self, knowledge, other, sonar, then, weight_of(outcome, ARGUS_PAIR_THEN_MISSES, relation.close),
+             outcome == ARGUS_PAIR_THEN_MISSES);
     }
 }
 
@@ -246,8 +215,9 @@ static bool is_same_place(const argus_case_t *const self, const argus_view_t *co
 
 static bool has_changed(const argus_case_t *const self, const argus_view_t *const now) {
     const argus_view_t *const last = &self->view[(self->view_next + ARGUS_VIEWS - 1) % ARGUS_VIEWS];
-    const outcome_t outcome = judge_pair(now, last, 0);
-    return outcome == DIFFER || outcome == NOW_MISSES || outcome == THEN_MISSES;
+    const argus_outcome_t outcome = judge_pair(now, last, 0);
+    return outcome == ARGUS_PAIR_DIFFER || outcome == ARGUS_PAIR_NOW_MISSES ||
+           outcome == ARGUS_PAIR_THEN_MISSES;
 }
 
 // The latest view of another sonar that can be compared; NULL: none.
@@ -327,14 +297,13 @@ bool argus_evidence_aim(const argus_evidence_t *const self, const argus_knowledg
 }
 
 static bool is_supported_by(const argus_view_t *const at, const argus_view_t *const by) {
-    if (!by->valid || is_none(by) || at->t_ms - by->t_ms > VIEW_AGE_MS) {
+    if (!by->valid || by->reading_mm >= ARGUS_NO_ECHO_MM || at->t_ms - by->t_ms > VIEW_AGE_MS) {
         return false;
     }
     const int32_t dx = by->x_mm + by->reading_mm * argus_cos(by->bearing_cdeg) / ARGUS_TRIG_ONE - at->x_mm;
     const int32_t dy = by->y_mm + by->reading_mm * argus_sin(by->bearing_cdeg) / ARGUS_TRIG_ONE - at->y_mm;
-    const int32_t limit = AGREE_MM + at->reading_mm * AGREE_PERCENT / 100;
     return argus_abs(dx) < SUPPORT_REACH_MM && argus_abs(dy) < SUPPORT_REACH_MM &&
-           argus_abs(argus_hypot(dx, dy) - at->reading_mm) <= limit &&
+           argus_abs(argus_hypot(dx, dy) - at->reading_mm) <= argus_pair_limit_mm(at->reading_mm) &&
            argus_angle_abs_diff(argus_atan2(dy, dx), at->bearing_cdeg) <= SUPPORT_CDEG;
 }
 

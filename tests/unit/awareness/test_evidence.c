@@ -382,11 +382,35 @@ void test_readings_that_match_none_before_are_garbage(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, argus_evidence_convicts(&s.e, 3));
 }
 
-void test_gaps_in_one_trail_are_dropouts(void) {
-    drive_at_wall(40, every_other_missing);
+static int one_missing(int n) {
+    return n == 9 ? 5000 : true_to_the_way(n);
+}
+
+static int two_missing(int n) {
+    return n == 9 || n == 14 ? 5000 : true_to_the_way(n);
+}
+
+// In motion one gap is an edge that passes by, two name it, and no number of them convicts it.
+void test_gaps_in_one_trail_name_it_and_in_motion_convict_nobody(void) {
+    drive_at_wall(20, one_missing);
     TEST_ASSERT_TRUE(s.e.of[3].score[ARGUS_TEST_DROPOUT] > 0);
+    TEST_ASSERT_FALSE(argus_evidence_suspects(&s.e, 3));
+    drive_at_wall(20, two_missing);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, argus_evidence_names(&s.e, 3));
+    drive_at_wall(40, every_other_missing);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, argus_evidence_names(&s.e, 3));
     TEST_ASSERT_EQUAL(0, s.e.of[3].score[ARGUS_TEST_GARBAGE]);
-    TEST_ASSERT_TRUE(s.convicted[3] == ARGUS_KIND_NONE || s.convicted[3] == ARGUS_KIND_INTERMITTENT);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, s.convicted[3]);
+}
+
+// ... the same at rest does.
+void test_gaps_at_rest_convict(void) {
+    scene_init(&s, 1, START_MS);
+    for (int n = 0; n < 60; n++) {
+        reading[3] = n > 5 && n % 3 == 0 ? 5000 : 1500;
+        scene_say(&s, 1u << 3, reading);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, s.convicted[3]);
 }
 
 // At rest an unchanged reading is what is expected.

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Two readings on one bearing, from one place or nearly: how far apart they were made, and what they say of
+// each other.
+#include "argus/angle.h"
+#include "evidence_internal.h"
+
+#define NEAREST_MM 150
+#define FARTHEST_MM 4000 // beyond, the air decides whether an echo is heard
+#define AGREE_MM 80
+#define AGREE_PERCENT 5
+
+argus_shift_t argus_pair_shift(const int32_t dx_mm, const int32_t dy_mm, const int32_t bearing_cdeg) {
+    const int32_t c = argus_cos(bearing_cdeg);
+    const int32_t s = argus_sin(bearing_cdeg);
+    const argus_shift_t shift = {.along_mm = (dx_mm * c + dy_mm * s) / ARGUS_TRIG_ONE,
+                                 .lateral_mm = argus_abs(dy_mm * c - dx_mm * s) / ARGUS_TRIG_ONE};
+    return shift;
+}
+
+int32_t argus_pair_limit_mm(const int32_t range_mm) {
+    return AGREE_MM + range_mm * AGREE_PERCENT / 100;
+}
+
+static argus_outcome_t compare_silence(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
+    const bool none = now_mm >= ARGUS_NO_ECHO_MM;
+    const bool was_none = then_mm >= ARGUS_NO_ECHO_MM;
+    if (none && was_none) {
+        return ARGUS_PAIR_QUIET;
+    }
+    const int32_t expected = was_none ? now_mm + along_mm : then_mm - along_mm;
+    if (expected < NEAREST_MM || expected > FARTHEST_MM) {
+        return ARGUS_PAIR_NOTHING;
+    }
+    return none ? ARGUS_PAIR_NOW_MISSES : ARGUS_PAIR_THEN_MISSES;
+}
+
+argus_outcome_t argus_pair_compare(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
+    if (now_mm >= ARGUS_NO_ECHO_MM || then_mm >= ARGUS_NO_ECHO_MM) {
+        return compare_silence(now_mm, then_mm, along_mm);
+    }
+    const int32_t expected = then_mm - along_mm;
+    if (expected < NEAREST_MM) {
+        return ARGUS_PAIR_NOTHING;
+    }
+    const int32_t limit = argus_pair_limit_mm(argus_min(expected, now_mm));
+    return argus_abs(expected - now_mm) <= limit ? ARGUS_PAIR_AGREE : ARGUS_PAIR_DIFFER;
+}
