@@ -44,8 +44,9 @@ bool argus_rear_is_clear(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
         const bool counts = (REAR_SONARS >> i & 1u) != 0;
+        const bool named = s->health == ARGUS_SUSPECT && s->kind != ARGUS_KIND_NONE;
         const bool heard =
-            argus_age_ms(&self->knowledge, i, self->now_ms) <= (uint32_t)self->config.stale_ms &&
+            argus_age_ms(&self->knowledge, i, self->now_ms) <= (uint32_t)self->config.stale_ms && !named &&
             !argus_is_out(&self->knowledge, i); // nobody looks there in its place
         if (counts && (!heard || s->reading_mm <= self->config.rear_clear_mm)) {
             return false;

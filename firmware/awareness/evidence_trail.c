@@ -44,6 +44,7 @@
 #define BETWEEN 50
 #define BETWEEN_MAX 600
 #define DROPOUT_REST 400
+#define DROPOUT_REST_MOST 2 // of one place: at the edge of what is heard echoes come and go
 #define DROPOUT_MOVING 320
 #define DROPOUT_MOVING_MAX 1100
 #define STEADY_ECHO (-12)
@@ -279,14 +280,17 @@ static const argus_trail_t *echo_before_gap(const argus_case_t *const self) {
                                                               : NULL;
 }
 
-// In motion an echo at the edge of what is heard comes and goes by itself: that alone convicts no one.
+// In motion an echo at the edge of what is heard comes and goes by itself: that alone convicts no one, nor
+// does one rest.
 static void score_dropout(argus_case_t *const self, const argus_trail_t *const now,
                           const argus_trail_t *const then, const bool unrest) {
     if (unrest) {
         return; // somebody may have stood in between
     }
     if (now->rest && then->rest) {
-        argus_score(self, ARGUS_TEST_DROPOUT, DROPOUT_REST);
+        const bool again = self->rest_gaps >= DROPOUT_REST_MOST;
+        argus_score(self, ARGUS_TEST_DROPOUT, again ? DROPOUT_REST / 4 : DROPOUT_REST);
+        self->rest_gaps = (uint8_t)argus_min(self->rest_gaps + 1, UINT8_MAX);
     } else if (self->score[ARGUS_TEST_DROPOUT] < DROPOUT_MOVING_MAX) {
         argus_score(self, ARGUS_TEST_DROPOUT, DROPOUT_MOVING);
     }
@@ -409,6 +413,7 @@ bool argus_trail_test(argus_evidence_t *const self, const argus_knowledge_t *con
     const bool unrest = argus_is_unrest_beside(self, knowledge, sonar);
     test_walker(self, knowledge, now, before, sonar);
     test_settling(c, now, unrest, sonar);
+    c->rest_gaps = now->rest ? c->rest_gaps : 0;
     if (now->steady) {
         test_garbage(c, now, sonar, unrest);
         test_dropout(c, now, sonar, unrest);

@@ -445,14 +445,16 @@ void test_a_jog_does_not_outrun_a_suspicion(void) {
 }
 
 // S7: what is not relied on does not read clear, however far it reads.
-void test_no_backing_away_with_a_rear_sonar_that_is_out(void) {
-    static const argus_health_t out[] = {ARGUS_DISABLED, ARGUS_PROBATION};
+void test_no_backing_away_with_a_rear_sonar_that_is_out_or_has_a_name(void) {
+    static const argus_health_t out[] = {ARGUS_DISABLED, ARGUS_PROBATION, ARGUS_SUSPECT};
     for (int sonar = 8; sonar < ARGUS_SONARS; sonar++) {
-        for (int i = 0; i < 2; i++) {
+        for (int i = 0; i < 3; i++) {
             start_in_a_room();
             TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
-            argus_sonar_set_health(&robot.argus.knowledge.sonar[sonar], out[i], ARGUS_KIND_WRONG,
+            argus_sonar_set_health(&robot.argus.knowledge.sonar[sonar], out[i], ARGUS_KIND_INTERMITTENT,
                                    robot.argus.now_ms);
+            robot.argus.evidence.of[sonar].score[ARGUS_TEST_DROPOUT] =
+                argus_bounds[ARGUS_TEST_DROPOUT].convincing - 1;
             robot.bumpers_front = 1 << 2;
             robot_run(&robot, 8000);
             TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_BACKING, 0));

@@ -403,12 +403,25 @@ void test_gaps_in_one_trail_name_it_and_in_motion_convict_nobody(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, s.convicted[3]);
 }
 
-// ... the same at rest does.
-void test_gaps_at_rest_convict(void) {
+// At rest two count, of one place: it takes a third place to convict.
+void test_gaps_convict_at_rest_in_several_places(void) {
     scene_init(&s, 1, START_MS);
-    for (int n = 0; n < 60; n++) {
-        reading[3] = n > 5 && n % 3 == 0 ? 5000 : 1500;
-        scene_say(&s, 1u << 3, reading);
+    int range = 3500;
+    for (int place = 0; place < 6; place++) {
+        for (int n = 0; n < 18; n++) {
+            reading[3] = n > 5 && n % 3 == 0 ? 5000 : range;
+            scene_say(&s, 1u << 3, reading);
+        }
+        TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, argus_evidence_names(&s.e, 3));
+        TEST_ASSERT_TRUE(place > 1 || s.convicted[3] == ARGUS_KIND_NONE);
+        s.v_mm_s = 200;
+        for (int n = 0; n < 6; n++) {
+            s.x += 60;
+            range -= 59;
+            reading[3] = range;
+            scene_say(&s, 1u << 3, reading);
+        }
+        s.v_mm_s = 0;
     }
     TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, s.convicted[3]);
 }
