@@ -107,7 +107,7 @@ def test_an_observer_that_errs_once_in_100_h_wants_so_many_readings(
 
 
 def test_what_an_observer_of_the_truth_would_find_is_told() -> None:
-    late = {"found": False, "latency_s": 50.0}
+    late: dict[str, Any] = {"found": False, "latency_s": 50.0}
     records = [
         *missions(4),
         *missions(1, visible_in_time=5, **late),
