@@ -25,6 +25,7 @@ bool argus_turn(argus_t *self,
 void argus_give_up_turn(argus_t *self); // it was commanded several times and not executed
 bool argus_swing_is_blocked(const argus_t *self);
 bool argus_may_translate(const argus_t *self);
+bool argus_rear_is_watched(const argus_t *self); // by all its sonars, none of them out or named
 bool argus_rear_is_clear(const argus_t *self);
 void argus_back_off(argus_t *self, int32_t distance_mm);
 

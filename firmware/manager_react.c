@@ -40,19 +40,31 @@ bool argus_may_translate(const argus_t *const self) {
     return is_active(self) && healthy_link && motors && self->checked && self->bumpers == 0;
 }
 
-bool argus_rear_is_clear(const argus_t *const self) {
+// What has failed, or has the name of a fault, does not read clear: nobody looks there in its place.
+static bool is_relied_on(const argus_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const bool named = s->health == ARGUS_SUSPECT && s->kind != ARGUS_KIND_NONE;
+    return argus_age_ms(&self->knowledge, sonar, self->now_ms) <= (uint32_t)self->config.stale_ms && !named &&
+           !argus_is_out(&self->knowledge, sonar);
+}
+
+bool argus_rear_is_watched(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        const argus_sonar_t *const s = &self->knowledge.sonar[i];
-        const bool counts = (REAR_SONARS >> i & 1u) != 0;
-        const bool named = s->health == ARGUS_SUSPECT && s->kind != ARGUS_KIND_NONE;
-        const bool heard =
-            argus_age_ms(&self->knowledge, i, self->now_ms) <= (uint32_t)self->config.stale_ms && !named &&
-            !argus_is_out(&self->knowledge, i); // nobody looks there in its place
-        if (counts && (!heard || s->reading_mm <= self->config.rear_clear_mm)) {
+        if ((REAR_SONARS >> i & 1u) != 0 && !is_relied_on(self, i)) {
             return false;
         }
     }
     return true;
+}
+
+bool argus_rear_is_clear(const argus_t *const self) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const bool counts = (REAR_SONARS >> i & 1u) != 0;
+        if (counts && self->knowledge.sonar[i].reading_mm <= self->config.rear_clear_mm) {
+            return false;
+        }
+    }
+    return argus_rear_is_watched(self);
 }
 
 void argus_back_off(argus_t *const self, const int32_t distance_mm) {
@@ -101,6 +113,7 @@ bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
 void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     argus_sonar_set_health(&self->knowledge.sonar[sonar], ARGUS_DISABLED, kind, self->now_ms);
     self->evidence.of[sonar].agreed = 0; // what brings it back comes after this
+    argus_evidence_retract(&self->evidence, sonar);
     argus_task_forget(&self->task, sonar);
     argus_task_restart(&self->task);
     argus_replan(self);

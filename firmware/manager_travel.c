@@ -296,5 +296,7 @@ void argus_run_backing(argus_t *const self) {
         } else {
             argus_enter_checking(self, true);
         }
+    } else if (!argus_rear_is_watched(self)) {
+        argus_halt(self);
     }
 }

@@ -74,6 +74,7 @@ void argus_evidence_restart(argus_evidence_t *const self) {
         c->trail_count = 0;
         c->track = 0;
         c->none_run = 0;
+        c->rest_gaps = 0;
         c->jump_track = 0;
         memset(c->lag_doubt, 0, sizeof c->lag_doubt);
         memset(c->lag_run, 0, sizeof c->lag_run);
@@ -133,11 +134,7 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     }
     c->counted_ms = knowledge->sip_ms;
     c->taken++;
-    const bool was_out = c->out;
     c->out = argus_is_out(knowledge, sonar);
-    if (c->out && !was_out) {
-        argus_peers_retract(self, sonar);
-    }
     argus_trend_reading(&self->trend, knowledge, sonar);
     const argus_trail_t now = {.reading_mm = knowledge->sonar[sonar].reading_mm,
                                .x_mm = (uint16_t)((uint32_t)knowledge->pose.x_mm & 0xFFFFu),

@@ -101,7 +101,6 @@ void argus_peers_take(argus_evidence_t *self, const argus_knowledge_t *knowledge
 void argus_peers_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge); // after all of a SIP
 void argus_peers_restart(argus_peers_t *self);
 void argus_peers_forget(argus_peers_t *self, int sonar);
-void argus_peers_retract(argus_evidence_t *self, int sonar); // it is out: what it contradicted
 // For some lag, in hundredths of a nat: late against well, and late against wrong.
 int32_t argus_peers_late(const argus_peers_t *self, int sonar);
 int32_t argus_peers_told(const argus_peers_t *self, int sonar);

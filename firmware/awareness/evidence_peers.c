@@ -176,7 +176,7 @@ static void note_counted(argus_peer_t *const self, const argus_glimpse_t *const 
     }
 }
 
-// Whether one that is out failed in a way that no echo in agreement is compatible with.
+// Whether one that is out failed in a way that seldom lets its echoes agree, and hardly twice in a row.
 static bool shows_at_once(const argus_knowledge_t *const knowledge, const int sonar) {
     const argus_fault_kind_t kind = knowledge->sonar[sonar].kind;
     return argus_is_out(knowledge, sonar) && (kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_SILENT ||
@@ -198,8 +198,8 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     const bool echo = now->reading_mm < ARGUS_NO_ECHO_MM;
     peer->against = doubted ? (uint16_t)(peer->against | against) : 0;
     peer->borne_out = doubted && (peer->borne_out || (against == 0 && echo));
-    if (against == 0 && echo && shows_at_once(knowledge, sonar)) {
-        c->agreed = (uint8_t)argus_min(c->agreed + 1, UINT8_MAX);
+    if (shows_at_once(knowledge, sonar)) {
+        c->agreed = (uint8_t)(against == 0 && echo ? argus_min(c->agreed + 1, UINT8_MAX) : 0);
     }
     note_counted(peer, now, against != 0);
 }
@@ -337,6 +337,13 @@ void argus_peers_take(argus_evidence_t *const self, const argus_knowledge_t *con
     peer->count = (uint8_t)argus_min(peer->count + 1, ARGUS_GLIMPSES);
 }
 
+// By a sixtieth, at least by one.
+static int16_t faded(const int16_t score) {
+    const int32_t by = score / SCORE_FADES_S;
+    const int32_t least = (score > 0) - (score < 0);
+    return (int16_t)(score - (by != 0 ? by : least));
+}
+
 void argus_peers_sip(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
     argus_peers_t *const peers = &self->peers;
     peers->before = knowledge->pose;
@@ -350,19 +357,25 @@ void argus_peers_sip(argus_evidence_t *const self, const argus_knowledge_t *cons
         int16_t *const score = &self->of[i].score[ARGUS_TEST_PEERS];
         peer->verdicts = (uint16_t)(peer->verdicts * FADE_EIGHTHS / 8);
         peer->contradicted = (uint16_t)(peer->contradicted * FADE_EIGHTHS / 8);
-        *score = (int16_t)(*score - *score / SCORE_FADES_S);
+        *score = faded(*score);
+        peer->against = *score > 0 ? peer->against : 0;
+        peer->borne_out = *score > 0 && peer->borne_out;
     }
 }
 
 // What a liar said of the others is taken back: where nobody else contradicts them, the whole of it.
-void argus_peers_retract(argus_evidence_t *const self, const int sonar) {
+void argus_evidence_retract(argus_evidence_t *const self, const int sonar) {
     const uint16_t bit = (uint16_t)(1u << sonar);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         argus_peer_t *const peer = &self->peers.of[i];
         if (peer->against == bit) {
             self->of[i].score[ARGUS_TEST_PEERS] = 0;
+            peer->borne_out = false;
+            peer->hollow = 0;
+            memset(peer->late, 0, sizeof peer->late);
+            memset(peer->told, 0, sizeof peer->told);
         }
-        peer->against = (uint16_t)(peer->against & ~bit);
+        peer->against = (uint16_t)(peer->against & ~(unsigned)bit);
     }
 }
 

@@ -44,7 +44,7 @@
 #define BETWEEN 50
 #define BETWEEN_MAX 600
 #define DROPOUT_REST 400
-#define DROPOUT_REST_MOST 2 // of one place: at the edge of what is heard echoes come and go
+#define DROPOUT_REST_MOST 3 // of one rest: at the edge of what is heard echoes come and go
 #define DROPOUT_MOVING 320
 #define DROPOUT_MOVING_MAX 1100
 #define STEADY_ECHO (-12)
@@ -288,11 +288,11 @@ static void score_dropout(argus_case_t *const self, const argus_trail_t *const n
         return; // somebody may have stood in between
     }
     if (now->rest && then->rest) {
-        const bool again = self->rest_gaps >= DROPOUT_REST_MOST;
-        argus_score(self, ARGUS_TEST_DROPOUT, again ? DROPOUT_REST / 4 : DROPOUT_REST);
-        self->rest_gaps = (uint8_t)argus_min(self->rest_gaps + 1, UINT8_MAX);
+        argus_score(self, ARGUS_TEST_DROPOUT, self->rest_gaps < DROPOUT_REST_MOST ? DROPOUT_REST : 0);
+        self->rest_gaps = (uint8_t)argus_min(self->rest_gaps + 1, DROPOUT_REST_MOST);
     } else if (self->score[ARGUS_TEST_DROPOUT] < DROPOUT_MOVING_MAX) {
-        argus_score(self, ARGUS_TEST_DROPOUT, DROPOUT_MOVING);
+        const int32_t left = DROPOUT_MOVING_MAX - self->score[ARGUS_TEST_DROPOUT];
+        argus_score(self, ARGUS_TEST_DROPOUT, argus_min(left, DROPOUT_MOVING));
     }
 }
 

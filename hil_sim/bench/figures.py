@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 from hil_sim.bench.judge import BOUND_S, REFRESH_S, SHOWN_READINGS
-from hil_sim.bench.plan import FORWARD, sonar_defaults
+from hil_sim.bench.plan import FORWARD, SONARS, sonar_defaults
 from hil_sim.bench.stats import count_bound_high, quantile, share_bound_low, share_interval
 
 Record = dict[str, Any]
@@ -22,9 +22,6 @@ HARD: Final = ("wrong", "intermittent")
 QUICK: Final = ("off", "garbage", "slow")
 """Kinds that must be found within 2 s (median) and 10 s (p99); the others within 5 s and 30 s."""
 SLOWER: Final = ("silent", "stuck", "wrong", "intermittent")
-
-
-SONARS: Final = 16
 
 
 @dataclass(frozen=True)

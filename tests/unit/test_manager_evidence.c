@@ -446,20 +446,42 @@ void test_a_jog_does_not_outrun_a_suspicion(void) {
 
 // S7: what is not relied on does not read clear, however far it reads.
 void test_no_backing_away_with_a_rear_sonar_that_is_out_or_has_a_name(void) {
-    static const argus_health_t out[] = {ARGUS_DISABLED, ARGUS_PROBATION, ARGUS_SUSPECT};
+    static const argus_health_t out[] = {ARGUS_DISABLED, ARGUS_PROBATION, ARGUS_SUSPECT, ARGUS_SUSPECT};
+    static const argus_fault_kind_t kind[] = {ARGUS_KIND_WRONG, ARGUS_KIND_WRONG, ARGUS_KIND_INTERMITTENT,
+                                              ARGUS_KIND_NONE};
     for (int sonar = 8; sonar < ARGUS_SONARS; sonar++) {
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 4; i++) {
             start_in_a_room();
             TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
-            argus_sonar_set_health(&robot.argus.knowledge.sonar[sonar], out[i], ARGUS_KIND_INTERMITTENT,
-                                   robot.argus.now_ms);
-            robot.argus.evidence.of[sonar].score[ARGUS_TEST_DROPOUT] =
-                argus_bounds[ARGUS_TEST_DROPOUT].convincing - 1;
+            argus_sonar_set_health(&robot.argus.knowledge.sonar[sonar], out[i], kind[i], robot.argus.now_ms);
+            if (out[i] == ARGUS_SUSPECT) { // or it would be cleared at once
+                robot.argus.evidence.of[sonar].score[ARGUS_TEST_DROPOUT] =
+                    (int16_t)(kind[i] != ARGUS_KIND_NONE ? argus_bounds[ARGUS_TEST_DROPOUT].convincing - 1
+                                                         : argus_bounds[ARGUS_TEST_DROPOUT].naming - 1);
+            }
             robot.bumpers_front = 1 << 2;
             robot_run(&robot, 8000);
-            TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_BACKING, 0));
+            const bool relied_on = kind[i] == ARGUS_KIND_NONE;
+            TEST_ASSERT_EQUAL(relied_on, robot_count_events(&robot, ARGUS_EV_BACKING, 0) > 0);
             finish();
         }
+    }
+}
+
+// S7: ... and one that fails on the way back ends it.
+void test_backing_away_ends_when_a_rear_sonar_fails(void) {
+    for (int sonar = 8; sonar < ARGUS_SONARS; sonar++) {
+        start_in_a_room();
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+        robot.bumpers_front = 1 << 2;
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 8000));
+        const uint32_t stops = robot.argus.stops;
+        argus_sonar_set_health(&robot.argus.knowledge.sonar[sonar], ARGUS_DISABLED, ARGUS_KIND_WRONG,
+                               robot.argus.now_ms);
+        robot_next_sip(&robot);
+        robot_next_sip(&robot);
+        TEST_ASSERT_TRUE(robot.argus.stops > stops);
+        finish();
     }
 }
 

@@ -87,7 +87,7 @@ typedef struct {
     uint8_t lag_run[ARGUS_TRAIL]; // [n]: readings in a row equal to the one n before
     uint8_t track;                // echoes in a row that go on as the motion predicts
     uint8_t none_run;             // readings in a row without an echo
-    uint8_t rest_gaps;            // in the trail since the robot came to rest
+    uint8_t rest_gaps;            // in its trail since the robot came to rest, up to those that count
     uint8_t jump_track;           // 1: went over to another echo; its track decides
     bool followed;                // the run without an echo began on an echo that it had followed
     uint16_t deaf_cdeg;           // turned since it heard an echo last
@@ -214,6 +214,9 @@ bool argus_evidence_aim(const argus_evidence_t *self, const argus_knowledge_t *k
 
 // A sonar was looked at and not convicted: its suspicions are spent.
 void argus_evidence_acquit(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
+
+// A sonar was given up: what it alone has said against others is taken back.
+void argus_evidence_retract(argus_evidence_t *self, int sonar);
 
 // Forgets what is known of one sonar (an operator's re-test).
 void argus_evidence_forget(argus_evidence_t *self, int sonar);

@@ -403,7 +403,17 @@ void test_gaps_in_one_trail_name_it_and_in_motion_convict_nobody(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, s.convicted[3]);
 }
 
-// At rest two count, of one place: it takes a third place to convict.
+// However long the robot stands: in one place echoes may come and go by themselves.
+void test_gaps_of_one_rest_convict_nobody(void) {
+    scene_init(&s, 1, START_MS);
+    for (int n = 0; n < 600; n++) {
+        reading[3] = n > 5 && n % 2 == 0 ? 5000 : 1500;
+        scene_say(&s, 1u << 3, reading);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, s.convicted[3]);
+}
+
+// At rest three count of one place: it takes a third place to convict.
 void test_gaps_convict_at_rest_in_several_places(void) {
     scene_init(&s, 1, START_MS);
     int range = 3500;

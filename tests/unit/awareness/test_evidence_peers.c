@@ -528,16 +528,20 @@ void test_the_verdicts_of_the_others_fade(void) {
     TEST_ASSERT_EQUAL(14, e.peers.of[ME].verdicts);
 }
 
-// What they say of a sonar fades by a sixtieth a second, either way, where nobody says more.
+// What they say of a sonar fades by a sixtieth a second, either way, where nobody says more; who said it is
+// forgotten with it.
 void test_what_the_others_say_fades(void) {
     static const struct {
         int before;
         int after;
-    } by[] = {{2500, 2459}, {600, 590}, {119, 118}, {60, 59}, {59, 59}, {0, 0}, {-59, -59}, {-150, -148}};
+    } by[] = {{2500, 2459}, {600, 590}, {119, 118}, {60, 59},   {59, 58},
+              {1, 0},       {0, 0},     {-1, 0},    {-59, -58}, {-150, -148}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
         setUp();
         e.of[ME].score[ARGUS_TEST_PEERS] = (int16_t)by[i].before;
         e.of[ME].score[ARGUS_TEST_VIEW] = 700;
+        e.peers.of[ME].against = 1u << WITNESS;
+        e.peers.of[ME].borne_out = true;
         k.sip_ms = e.peers.faded_ms + 999;
         argus_peers_sip(&e, &k);
         TEST_ASSERT_EQUAL(by[i].before, e.of[ME].score[ARGUS_TEST_PEERS]);
@@ -545,6 +549,8 @@ void test_what_the_others_say_fades(void) {
         argus_peers_sip(&e, &k);
         TEST_ASSERT_EQUAL(by[i].after, e.of[ME].score[ARGUS_TEST_PEERS]);
         TEST_ASSERT_EQUAL(700, e.of[ME].score[ARGUS_TEST_VIEW]);
+        TEST_ASSERT_EQUAL(by[i].after > 0, argus_peers_against(&e.peers, ME));
+        TEST_ASSERT_EQUAL(by[i].after > 0, e.peers.of[ME].borne_out);
     }
 }
 
@@ -553,15 +559,23 @@ void test_what_a_liar_said_is_taken_back_when_it_is_out(void) {
     for (int other = 0; other < 2; other++) {
         setUp();
         e.of[ME].score[ARGUS_TEST_PEERS] = 700;
-        e.peers.of[ME].against = (uint16_t)(1u << WITNESS | (other != 0 ? 1u : 0u));
-        argus_peers_retract(&e, WITNESS);
+        argus_peer_t *peer = &e.peers.of[ME];
+        peer->against = (uint16_t)(1u << WITNESS | (other != 0 ? 1u : 0u));
+        peer->borne_out = true;
+        peer->hollow = 1;
+        peer->late[5] = peer->told[5] = 900;
+        argus_evidence_retract(&e, WITNESS);
         TEST_ASSERT_EQUAL(other != 0 ? 700 : 0, e.of[ME].score[ARGUS_TEST_PEERS]);
+        TEST_ASSERT_EQUAL(other, peer->borne_out);
+        TEST_ASSERT_EQUAL(other, argus_peers_hollow(&e.peers, ME, 8));
+        TEST_ASSERT_EQUAL(other * 900, argus_peers_late(&e.peers, ME));
+        TEST_ASSERT_EQUAL(other * 900, argus_peers_told(&e.peers, ME));
         TEST_ASSERT_EQUAL(other, argus_peers_against(&e.peers, ME));
     }
     setUp();
     e.of[ME].score[ARGUS_TEST_PEERS] = 700;
     e.peers.of[ME].against = 1u;
-    argus_peers_retract(&e, WITNESS);
+    argus_evidence_retract(&e, WITNESS);
     TEST_ASSERT_EQUAL(700, e.of[ME].score[ARGUS_TEST_PEERS]);
     TEST_ASSERT_EQUAL(1, argus_peers_against(&e.peers, ME));
 }
@@ -588,6 +602,22 @@ void test_who_is_out_comes_back_on_echoes_that_are_borne_out(void) {
         reads(by[i].reading_mm);
         snprintf(text, sizeof text, "case %d", i);
         TEST_ASSERT_EQUAL_MESSAGE(by[i].agreed, e.of[ME].agreed, text);
+    }
+}
+
+// ... in a row: garbage agrees by chance now and then.
+void test_a_contradiction_begins_the_way_back_anew(void) {
+    static const argus_fault_kind_t kinds[] = {ARGUS_KIND_OFF, ARGUS_KIND_SILENT, ARGUS_KIND_STUCK,
+                                               ARGUS_KIND_GARBAGE, ARGUS_KIND_WRONG};
+    for (int i = 0; i < 5; i++) {
+        setUp();
+        face(ME, 0);
+        saw(WITNESS, 3000);
+        k.sonar[ME].health = ARGUS_PROBATION;
+        k.sonar[ME].kind = kinds[i];
+        e.of[ME].agreed = 3;
+        reads(1000);
+        TEST_ASSERT_EQUAL(kinds[i] == ARGUS_KIND_WRONG ? 3 : 0, e.of[ME].agreed);
     }
 }
 
@@ -1053,10 +1083,11 @@ void test_a_liar_hardly_gets_those_beside_it_named(void) {
 }
 
 #define TOURS 24
-#define AT_MOST 2 // of 16 * TOURS: of 400 tours of other seeds 47 had one sonar that reached it
+#define AT_MOST \
+    7 // sonars of 16 * TOURS that reach naming; of 400 tours of other seeds 47, 41 with two against
 
-// Nobody moves, nobody lies: hardly a sonar ever reaches the naming score.
-void test_in_a_healthy_office_next_to_nobody_reaches_naming(void) {
+// Nobody moves, nobody lies: in one tour of ten one sonar of sixteen reaches the naming score.
+void test_in_a_healthy_office_few_reach_naming(void) {
     int reached = 0;
     int with_two = 0;
     for (unsigned seed = 1; seed <= TOURS; seed++) {
@@ -1070,7 +1101,7 @@ void test_in_a_healthy_office_next_to_nobody_reaches_naming(void) {
     snprintf(text, sizeof text, "%d of %d reached naming, %d with two against", reached, 16 * TOURS,
              with_two);
     TEST_ASSERT_TRUE_MESSAGE(reached <= AT_MOST, text);
-    TEST_ASSERT_TRUE_MESSAGE(with_two <= AT_MOST, text);
+    TEST_ASSERT_TRUE_MESSAGE(with_two <= reached, text);
 }
 
 // Two that disagree, and nobody else: neither is named.
