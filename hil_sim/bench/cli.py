@@ -23,6 +23,7 @@ from argus_tools.formats.base import LogError
 
 from hil_sim.bench import plan, pool, quick
 from hil_sim.bench.figures import summarise
+from hil_sim.bench.judge import RECORD_FORMAT
 from hil_sim.bench.show import timeline
 from hil_sim.bench.store import RESULTS, Store
 from hil_sim.bench.work import run_case, world_files
@@ -245,7 +246,7 @@ def _run(arguments: argparse.Namespace, cases: Sequence[plan.Case], out: Path) -
     from hil_sim.bench.report import write_report
 
     with fixed_core() as digest:
-        meta = {"core": digest, "split": cases[0].split, "missions": len(cases)}
+        meta = {"core": digest, "format": RECORD_FORMAT, "split": cases[0].split, "missions": len(cases)}
         with Store(out, meta, resume=arguments.resume, fresh=arguments.fresh) as store:
             if not run_cases(cases, store, arguments, digest):
                 _say(

@@ -12,6 +12,8 @@ from typing import Any, Final
 from hil_sim.sil import VISIBLE_MM, VISIBLE_PART, FaultTruth, Outcome, Sighting, Sil
 from hil_sim.sonar import NO_ECHO_MM
 
+RECORD_FORMAT: Final = 2
+"""Raised whenever a record gets another field: results of two formats do not mix."""
 BOUND_S: Final[Mapping[str, float]] = {
     "off": 10.0,
     "silent": 30.0,

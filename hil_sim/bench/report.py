@@ -187,7 +187,8 @@ def _other(one: Record) -> list[str]:
     lines = [
         "- Who knows each true range and takes three readings that are off for a fault finds at most "
         f"{_percent(sure['three']['rate'])} % (off, stuck, garbage, slow) and {_percent(hard['three']['rate'])} % "
-        "(wrong, intermittent) in time; who takes so many that crosstalk of 1 % deceives it once in 100 h of successive windows, at most "
+        "(wrong, intermittent) in time; who takes so many that "
+        "1 % of crosstalk deceives it once in 100 h of successive windows, at most "
         f"{_percent(sure['once']['rate'])} % and {_percent(hard['once']['rate'])} %",
         f"- False disables, fault-free: {false['count']} in {false['hours']:.2f} h of {false['missions']} missions; "
         f"of healthy sonars in missions with faults: {hurt['count']} in {hurt['hours']:.2f} h",

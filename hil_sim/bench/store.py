@@ -51,6 +51,10 @@ class Store:
             raise SimError(
                 f"{folder}: its results are of another build of the fault manager; start again with --fresh"
             )
+        if before.get("format") != meta.get("format"):
+            raise SimError(
+                f"{folder}: its results are of another version of the bench; start again with --fresh"
+            )
 
     def _load(self) -> None:
         """Read what is there; a last line that was cut short by an interrupt is dropped, any other is an error."""

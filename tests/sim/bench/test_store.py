@@ -73,6 +73,8 @@ def test_results_of_another_build_are_not_mixed(tmp_path: Path) -> None:
     fill(tmp_path, ONE)
     with pytest.raises(SimError, match="another build"):
         Store(tmp_path, META_A | {"core": "b"}, resume=True)
+    with pytest.raises(SimError, match="another version of the bench"):
+        Store(tmp_path, META_A | {"format": 3}, resume=True)
     (tmp_path / META).write_text("{", encoding="utf-8")
     with pytest.raises(SimError, match="damaged"):
         Store(tmp_path, META_A, resume=True)
