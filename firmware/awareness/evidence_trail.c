@@ -44,7 +44,8 @@
 #define BETWEEN 50
 #define BETWEEN_MAX 600
 #define DROPOUT_REST 400
-#define DROPOUT_REST_MOST 3 // of one rest: at the edge of what is heard echoes come and go
+#define REST_PLACE_MM 200u
+#define DROPOUT_REST_MOST 3 // of one place: at the edge of what is heard echoes come and go
 #define DROPOUT_MOVING 320
 #define DROPOUT_MOVING_MAX 1100
 #define STEADY_ECHO (-12)
@@ -280,6 +281,17 @@ static const argus_trail_t *echo_before_gap(const argus_case_t *const self) {
                                                               : NULL;
 }
 
+// A look aside that heard nothing is no gap in what the sonar hears ahead.
+static bool is_all_on_heading(const argus_case_t *const self, const argus_trail_t *const now,
+                              const int count) {
+    for (int i = 1; i <= count; i++) {
+        if (argus_trail_turned_cdeg(now, argus_trail_at(self, i)) > SAME_CDEG) {
+            return false;
+        }
+    }
+    return true;
+}
+
 // In motion an echo at the edge of what is heard comes and goes by itself: that alone convicts no one, nor
 // does one rest.
 static void score_dropout(argus_case_t *const self, const argus_trail_t *const now,
@@ -302,7 +314,7 @@ static void test_dropout(argus_case_t *const self, const argus_trail_t *const no
         return;
     }
     const argus_trail_t *const then = self->none_run > 0 ? echo_before_gap(self) : NULL;
-    if (then != NULL && now->reading_mm < FAR_MM && argus_trail_turned_cdeg(now, then) <= SAME_CDEG &&
+    if (then != NULL && now->reading_mm < FAR_MM && is_all_on_heading(self, now, self->none_run + 1) &&
         is_near(now, then, sonar)) {
         score_dropout(self, now, then, unrest);
     } else {
@@ -413,7 +425,10 @@ bool argus_trail_test(argus_evidence_t *const self, const argus_knowledge_t *con
     const bool unrest = argus_is_unrest_beside(self, knowledge, sonar);
     test_walker(self, knowledge, now, before, sonar);
     test_settling(c, now, unrest, sonar);
-    c->rest_gaps = now->rest ? c->rest_gaps : 0;
+    if (knowledge->odometer_mm - c->rest_odometer_mm >= REST_PLACE_MM) {
+        c->rest_odometer_mm = knowledge->odometer_mm;
+        c->rest_gaps = 0;
+    }
     if (now->steady) {
         test_garbage(c, now, sonar, unrest);
         test_dropout(c, now, sonar, unrest);

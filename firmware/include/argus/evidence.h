@@ -87,7 +87,8 @@ typedef struct {
     uint8_t lag_run[ARGUS_TRAIL]; // [n]: readings in a row equal to the one n before
     uint8_t track;                // echoes in a row that go on as the motion predicts
     uint8_t none_run;             // readings in a row without an echo
-    uint8_t rest_gaps;            // in its trail since the robot came to rest, up to those that count
+    uint8_t rest_gaps;            // in its trail at rest in this place, up to those that count
+    uint32_t rest_odometer_mm;    // where that place began
     uint8_t jump_track;           // 1: went over to another echo; its track decides
     bool followed;                // the run without an echo began on an echo that it had followed
     uint16_t deaf_cdeg;           // turned since it heard an echo last

@@ -403,11 +403,26 @@ void test_gaps_in_one_trail_name_it_and_in_motion_convict_nobody(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, s.convicted[3]);
 }
 
+// Nothing heard on another heading is no gap on this one.
+void test_a_look_aside_that_hears_nothing_is_no_gap(void) {
+    for (int aside = 0; aside < 2; aside++) {
+        scene_init(&s, 1, START_MS);
+        for (int n = 0; n < 24; n++) {
+            const bool none = n > 7 && n % 8 < 3;
+            s.th = none && aside != 0 ? 0.35 : 0;
+            reading[3] = none ? 5000 : 1500;
+            scene_say(&s, 1u << 3, reading);
+        }
+        TEST_ASSERT_EQUAL(aside == 0, s.e.of[3].score[ARGUS_TEST_DROPOUT] > 0);
+    }
+}
+
 // However long the robot stands: in one place echoes may come and go by themselves.
-void test_gaps_of_one_rest_convict_nobody(void) {
+void test_gaps_of_one_place_convict_nobody(void) {
     scene_init(&s, 1, START_MS);
     for (int n = 0; n < 600; n++) {
         reading[3] = n > 5 && n % 2 == 0 ? 5000 : 1500;
+        s.w_rad_s = n % 100 < 4 ? 0.1 : 0; // and turns to look
         scene_say(&s, 1u << 3, reading);
     }
     TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, s.convicted[3]);
