@@ -21,6 +21,7 @@
 #define LATE_CONTRADICTED 300 // ... of one that the others contradict
 #define LATE_FIRST 250 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 450 // ... and once it is called wrong
+#define LATE_CONVICTED 450 // ... and convicted by views: the last word takes more
 #define LATE_NO_MORE 150
 
 // How many others contradict it, of the last conflicts counted.
@@ -169,7 +170,9 @@ argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, c
     for (int i = 0; i < ARGUS_TESTS; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
         if (is_convicted_by(&self->of[sonar], test, self->busy)) {
-            return kind_by(self, sonar, test);
+            const argus_fault_kind_t kind = kind_by(self, sonar, test);
+            const bool late = kind == ARGUS_KIND_SLOW && test == ARGUS_TEST_VIEW;
+            return late && lateness(self, sonar) < LATE_CONVICTED ? ARGUS_KIND_WRONG : kind;
         }
     }
     return ARGUS_KIND_NONE;

@@ -342,13 +342,13 @@ void test_late_is_told_from_wrong_by_all_that_speaks_for_it(void) {
     }
 }
 
-// Convicted by views, it is called late by the same rule.
+// Convicted by views, it takes more to be called late.
 void test_a_conviction_tells_late_from_wrong_too(void) {
     give_ground();
     accuse(ARGUS_TEST_VIEW, argus_bounds[ARGUS_TEST_VIEW].convincing);
-    be_late(0, 249);
+    be_late(0, 449);
     TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, convicted());
-    be_late(0, 250);
+    be_late(0, 450);
     TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, convicted());
 }
 
