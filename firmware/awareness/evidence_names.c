@@ -20,8 +20,7 @@
 #define LATE_NAMING 1400
 #define LATE_CONTRADICTED 300 // ... of one that the others contradict
 #define LATE_FIRST 250 // hundredths of a nat, all that speaks for late and against wrong together: at first
-#define LATE_AFTER 450 // ... and once it is called wrong
-#define LATE_CONVICTED 450 // ... and convicted by views: the last word takes more
+#define LATE_AFTER 450 // ... and once it is called wrong, and for a conviction
 #define LATE_NO_MORE 150
 
 // How many others contradict it, of the last conflicts counted.
@@ -96,15 +95,17 @@ static bool looks_late(const argus_evidence_t *const self, const int sonar) {
            self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_CONTRADICTED;
 }
 
-static argus_fault_kind_t late_or_wrong(const argus_evidence_t *const self, const int sonar) {
-    return lateness(self, sonar) >= LATE_FIRST ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
+static argus_fault_kind_t late_or_wrong(const argus_evidence_t *const self, const int sonar,
+                                        const int32_t late_from) {
+    return lateness(self, sonar) >= late_from ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
 }
 
 // Off and wrong share a test; what the readings look like tells them apart, and a late sonar from both.
-static argus_fault_kind_t kind_of_view(const argus_evidence_t *const self, const int sonar) {
+static argus_fault_kind_t kind_of_view(const argus_evidence_t *const self, const int sonar,
+                                       const int32_t late_from) {
     const argus_case_t *const c = &self->of[sonar];
     if (c->none_run == 0 && c->echoes >= VIEW_ECHOES) {
-        return late_or_wrong(self, sonar);
+        return late_or_wrong(self, sonar, late_from);
     }
     if (c->score[ARGUS_TEST_DROPOUT] > 0) {
         return ARGUS_KIND_INTERMITTENT;
@@ -113,7 +114,8 @@ static argus_fault_kind_t kind_of_view(const argus_evidence_t *const self, const
 }
 
 // Contradicted for silence only: off, unless they bore out an echo of it since they doubt it.
-static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, const int sonar) {
+static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, const int sonar,
+                                        const int32_t late_from) {
     const argus_case_t *const c = &self->of[sonar];
     const int hollow = argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW);
     if (hollow == OFF_HOLLOW) {
@@ -121,15 +123,16 @@ static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, cons
         return c->none_run >= run ? ARGUS_KIND_OFF : ARGUS_KIND_INTERMITTENT;
     }
     return hollow > 0 && c->score[ARGUS_TEST_DROPOUT] > 0 ? ARGUS_KIND_INTERMITTENT
-                                                          : late_or_wrong(self, sonar);
+                                                          : late_or_wrong(self, sonar, late_from);
 }
 
 static argus_fault_kind_t kind_by(const argus_evidence_t *const self, const int sonar,
-                                  const argus_test_t test) {
+                                  const argus_test_t test, const int32_t late_from) {
     if (test == ARGUS_TEST_PEERS) {
-        return kind_of_peers(self, sonar);
+        return kind_of_peers(self, sonar, late_from);
     }
-    return test == ARGUS_TEST_VIEW ? kind_of_view(self, sonar) : (argus_fault_kind_t)kind_of_test[test];
+    return test == ARGUS_TEST_VIEW ? kind_of_view(self, sonar, late_from)
+                                   : (argus_fault_kind_t)kind_of_test[test];
 }
 
 // Who is wrong takes a third, among peers too.
@@ -147,7 +150,7 @@ static argus_fault_kind_t first_name(const argus_evidence_t *const self, const i
         const argus_test_t test = (argus_test_t)precedence[i];
         const bool enough = test != ARGUS_TEST_PEERS || has_partners(self, sonar);
         if (is_named_by(&self->of[sonar], test) && enough) {
-            return kind_by(self, sonar, test);
+            return kind_by(self, sonar, test, LATE_FIRST);
         }
     }
     return ARGUS_KIND_NONE;
@@ -170,9 +173,7 @@ argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, c
     for (int i = 0; i < ARGUS_TESTS; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
         if (is_convicted_by(&self->of[sonar], test, self->busy)) {
-            const argus_fault_kind_t kind = kind_by(self, sonar, test);
-            const bool late = kind == ARGUS_KIND_SLOW && test == ARGUS_TEST_VIEW;
-            return late && lateness(self, sonar) < LATE_CONVICTED ? ARGUS_KIND_WRONG : kind;
+            return kind_by(self, sonar, test, LATE_AFTER);
         }
     }
     return ARGUS_KIND_NONE;

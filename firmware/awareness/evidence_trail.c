@@ -293,15 +293,17 @@ static bool is_all_on_heading(const argus_case_t *const self, const argus_trail_
 }
 
 // In motion an echo at the edge of what is heard comes and goes by itself: that alone convicts no one, nor
-// does one rest.
+// does one place.
 static void score_dropout(argus_case_t *const self, const argus_trail_t *const now,
                           const argus_trail_t *const then, const bool unrest) {
     if (unrest) {
         return; // somebody may have stood in between
     }
     if (now->rest && then->rest) {
-        argus_score(self, ARGUS_TEST_DROPOUT, self->rest_gaps < DROPOUT_REST_MOST ? DROPOUT_REST : 0);
-        self->rest_gaps = (uint8_t)argus_min(self->rest_gaps + 1, DROPOUT_REST_MOST);
+        if (self->rest_gaps < DROPOUT_REST_MOST) {
+            self->rest_gaps++;
+            argus_score(self, ARGUS_TEST_DROPOUT, DROPOUT_REST);
+        }
     } else if (self->score[ARGUS_TEST_DROPOUT] < DROPOUT_MOVING_MAX) {
         const int32_t left = DROPOUT_MOVING_MAX - self->score[ARGUS_TEST_DROPOUT];
         argus_score(self, ARGUS_TEST_DROPOUT, argus_min(left, DROPOUT_MOVING));

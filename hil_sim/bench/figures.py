@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from hil_sim.bench.judge import BOUND_S, REFRESH_S, SHOWN_READINGS
 from hil_sim.bench.plan import FORWARD, SONARS, sonar_defaults
-from hil_sim.bench.stats import count_bound_high, quantile, share_bound_low, share_interval
+from hil_sim.bench.stats import beta_cdf, count_bound_high, quantile, share_bound_low, share_interval
 
 Record = dict[str, Any]
 KINDS: Final = tuple(BOUND_S)
@@ -158,12 +158,7 @@ def readings_wanted(window_s: float, crosstalk: float) -> int:
     """
     fired = int(window_s / REFRESH_S)
     windows = SONARS * 100 * 3600 / window_s
-    fewer = 0.0
-    for count in range(fired + 1):
-        if windows * (1.0 - fewer) <= 1.0:
-            return count
-        fewer += math.comb(fired, count) * crosstalk**count * (1.0 - crosstalk) ** (fired - count)
-    return fired
+    return next((n for n in range(1, fired) if windows * beta_cdf(crosstalk, n, fired - n + 1) <= 1.0), fired)
 
 
 def _ideal(faults: Sequence[Record]) -> dict[str, Any]:

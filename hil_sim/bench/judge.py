@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import Any, Final
 
 from hil_sim.sil import VISIBLE_MM, VISIBLE_PART, FaultTruth, Outcome, Sighting, Sil
-from hil_sim.sonar import NO_ECHO_MM
+from hil_sim.sonar import CYCLE_MS, NO_ECHO_MM
 
 RECORD_FORMAT: Final = 2
 """Raised whenever a record gets another field: results of two formats do not mix."""
@@ -29,8 +29,8 @@ SHOWN_READINGS: Final = 3
 
 A sonar that is DISABLED fires no more, so the rule sets none apart that was DISABLED while it failed.
 """
-REFRESH_S: Final = 0.32
-"""Each sonar fires once in this time."""
+REFRESH_S: Final = 8 * CYCLE_MS / 1000
+"""Each sonar of the two arrays of eight fires once in this time."""
 FALSE_AFTER_S: Final = 10.0
 """A sonar DISABLED this long after its fault has ended is a false disable."""
 REPAIRED_DRIVING_S: Final = 60.0
