@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import select
 import selectors
 import shlex
 import signal
@@ -314,12 +315,20 @@ class Tap:
                     self._carry(key.fd, to_robot=key.data)
 
     def _carry(self, source: int, *, to_robot: bool) -> None:
-        data = os.read(source, 4096)
+        try:
+            data = os.read(source, 4096)
+        except BlockingIOError:  # said to be ready, then flushed at the other end before it was read
+            return
         if not self.connected:
             return
         now = time.time()
         self.heard += [Heard(now, to_robot, bytes(p)) for p in self._frames[to_robot].feed(data, now * 1000)]
-        os.write(self._robot.fileno() if to_robot else self._master, data)
+        sink = self._robot.fileno() if to_robot else self._master
+        while data:
+            if select.select([self._stop_r], [sink], [])[0]:
+                return
+            with contextlib.suppress(BlockingIOError):
+                data = data[os.write(sink, data) :]
 
     def commands(self, after_unix_s: float = 0.0) -> list[Heard]:
         """What argusd sent, oldest first."""
