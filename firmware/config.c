@@ -68,6 +68,12 @@ static void work_out_driving(argus_config_report_t *report, const argus_config_t
     report->brake_mm = report->driving_mm - report->overhang_mm - report->travel_mm;
 }
 
+int32_t argus_config_stop_mm(const argus_config_t *config) {
+    argus_config_report_t report = {.fault = ARGUS_CONFIG_OK, .key = -1};
+    work_out_driving(&report, config);
+    return report.travel_mm + report.brake_mm;
+}
+
 static int32_t sqrt_up(int32_t value) {
     const uint32_t root = argus_sqrt((uint32_t)value);
     return (int32_t)(root * root < (uint32_t)value ? root + 1 : root);

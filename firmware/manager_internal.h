@@ -20,6 +20,7 @@ void argus_decide(argus_t *self); // a mode has ended well: what next?
 void argus_stop(argus_t *self, uint8_t command); // STOP or E_STOP, unless passive
 void argus_halt(argus_t *self);                  // STOP, unless the robot stands and no motion is on its way
 bool argus_may_turn(const argus_t *self);        // S7
+bool argus_is_hemmed_in(const argus_t *self); // on its course, and has waited in vain to turn or to back away
 bool argus_turn(argus_t *self,
                 int32_t heading_cdeg);  // false: S7 forbids it, and the manager waits or backs away
 void argus_give_up_turn(argus_t *self); // it was commanded several times and not executed

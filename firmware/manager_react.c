@@ -5,7 +5,8 @@
 
 #define SWING_MM ARGUS_P3DX_BODY_SWING_RADIUS_MM
 #define BACKOFFS_MAX 3
-#define LOW_BATTERY_DV 115 // where CONFIGpac names none
+#define HEMMED_IN_MS 10000u // people who stand beside it walk on
+#define LOW_BATTERY_DV 115  // where CONFIGpac names none
 #define REAR_SONARS 0xFF00u
 
 static bool is_active(const argus_t *const self) {
@@ -93,6 +94,17 @@ bool argus_may_turn(const argus_t *const self) {
     return is_active(self) && self->bumpers == 0 && nearest_to_centre_mm(self) > SWING_MM;
 }
 
+static bool may_back_off(const argus_t *const self) {
+    return is_active(self) && self->bumpers == 0 && self->backed < BACKOFFS_MAX && argus_rear_is_clear(self);
+}
+
+bool argus_is_hemmed_in(const argus_t *const self) {
+    const bool waited =
+        self->wait_last == ARGUS_WAIT_TURN && self->now_ms - self->wait_since_ms >= HEMMED_IN_MS;
+    return argus_judges(self) && self->mission == ARGUS_MISSION_RUNNING && waited && self->bumpers == 0 &&
+           !argus_may_turn(self) && !may_back_off(self);
+}
+
 // Where it may not turn, a few times backing away may help.
 bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
     const int32_t nearest = nearest_to_centre_mm(self);
@@ -101,7 +113,7 @@ bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
         return true;
     }
     argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, nearest == INT32_MAX ? 0 : nearest);
-    if (self->bumpers == 0 && self->backed < BACKOFFS_MAX && argus_rear_is_clear(self) && is_active(self)) {
+    if (may_back_off(self)) {
         self->backed++;
         argus_back_off(self, self->config.backoff_mm);
     } else {
@@ -240,6 +252,12 @@ static bool react_dead(argus_t *const self, const argus_alarm_t *const alarm) {
     return true;
 }
 
+static void stop_before(argus_t *const self, const int sonar, const int32_t reading_mm) {
+    argus_say(self, ARGUS_EV_OBJECT, sonar, reading_mm);
+    argus_stop(self, ARCOS_CMD_STOP);
+    self->jog_mm = 0;
+}
+
 // An object is looked at again at rest, with Algorithm 1, before it is believed: a sonar that lies low is
 // found there.
 static bool react_object(argus_t *const self, const argus_alarm_t *const alarm) {
@@ -248,15 +266,31 @@ static bool react_object(argus_t *const self, const argus_alarm_t *const alarm) 
     if (alarm->object == 0 || !translating || self->motion.kind == ARGUS_MOTION_STOP) {
         return false;
     }
-    argus_say(self, ARGUS_EV_OBJECT, alarm->object_sonar, alarm->object_mm);
     self->evidence.jumped |= alarm->object; // looked at before it is believed
-    argus_stop(self, ARCOS_CMD_STOP);
+    stop_before(self, alarm->object_sonar, alarm->object_mm);
     if (self->mode != ARGUS_MODE_BACKING) {
         argus_task_refuse(&self->task, &self->knowledge);
     }
-    self->jog_mm = 0;
     argus_enter_checking(self, true);
     return true;
+}
+
+// A smooth wall that the robot slants into is heard by the sonar that looks abeam alone.
+static void react_flank(argus_t *const self) {
+    const bool ahead = self->mode == ARGUS_MODE_DRIVING || self->mode == ARGUS_MODE_STEPPING;
+    if (!argus_judges(self) || !ahead || self->motion.kind == ARGUS_MOTION_STOP) {
+        return;
+    }
+    const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge);
+    const int32_t stop_mm = argus_config_stop_mm(&self->config);
+    for (int i = ARGUS_FLANK_LEFT; i <= ARGUS_FLANK_RIGHT; i += ARGUS_FLANK_RIGHT - ARGUS_FLANK_LEFT) {
+        if ((usable >> i & 1u) != 0 && argus_evidence_slants_in(&self->evidence, i, stop_mm)) {
+            stop_before(self, i, self->knowledge.sonar[i].reading_mm);
+            argus_task_refuse_slant(&self->task, &self->knowledge);
+            argus_enter_checking(self, true);
+            return;
+        }
+    }
 }
 
 // The motors may be cut by the robot's own button or E-stop at any time; a bumper's own stop is answered
@@ -320,7 +354,7 @@ void argus_react(argus_t *const self, const argus_alarm_t *const alarm) {
     }
     react_battery(self);
     react_motors(self);
-    if (!react_dead(self, alarm)) {
-        react_object(self, alarm);
+    if (!react_dead(self, alarm) && !react_object(self, alarm)) {
+        react_flank(self);
     }
 }

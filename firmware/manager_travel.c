@@ -8,6 +8,7 @@
 #define STEER_CDEG 200   // while driving, corrected beyond this
 #define STEER_LEG_MM 250 // ... and only this far from the leg's end
 #define LEG_DONE_MM 60
+#define FLANK_MM 130
 #define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
 
 // A leg to drive; false when every heading is blocked and the manager waits.
@@ -37,9 +38,15 @@ static int32_t off_bearing(const argus_t *const self) {
     return argus_angle_abs_diff(bearing(self), self->knowledge.pose.heading_cdeg);
 }
 
-// Where there is no room to turn, a leg straight ahead may lead out.
+static bool is_flank_near(const argus_t *const self, const int sonar) {
+    return argus_usable(&self->knowledge, sonar) && self->knowledge.sonar[sonar].reading_mm <= FLANK_MM;
+}
+
+// Where there is no room to turn, a leg straight ahead may lead out; not along a wall that is so near that a
+// slant could not be seen in time.
 static void turn_to_bearing(argus_t *const self) {
-    const bool narrow = argus_swing_is_blocked(self) && self->jog_mm == 0;
+    const bool narrow = argus_swing_is_blocked(self) && self->jog_mm == 0 &&
+                        !is_flank_near(self, ARGUS_FLANK_LEFT) && !is_flank_near(self, ARGUS_FLANK_RIGHT);
     if (!narrow || !argus_task_escape(&self->task, &self->knowledge)) {
         argus_turn(self, bearing(self));
     }

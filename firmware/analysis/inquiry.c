@@ -67,6 +67,31 @@ static bool aim(argus_inquiry_t *const self, const argus_knowledge_t *const know
     return self->aiming;
 }
 
+// Of those in `mask`, the one that the others contradict most; the lowest number of equals.
+static int most_contradicted(const argus_evidence_t *const evidence, const unsigned mask) {
+    int worst = -1;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const bool counts = (mask >> i & 1u) != 0;
+        if (counts && (worst < 0 || evidence->of[i].score[ARGUS_TEST_PEERS] >
+                                        evidence->of[worst].score[ARGUS_TEST_PEERS])) {
+            worst = i;
+        }
+    }
+    return worst;
+}
+
+static bool aim_at_one_of(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+                          const argus_evidence_t *const evidence, unsigned mask) {
+    while (mask != 0) {
+        const int sonar = most_contradicted(evidence, mask);
+        if (aim(self, knowledge, evidence, sonar)) {
+            return true;
+        }
+        mask &= ~(1u << sonar);
+    }
+    return false;
+}
+
 // Suspects first. False: nothing to aim at, or often enough.
 static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                      const argus_evidence_t *const evidence) {
@@ -74,17 +99,14 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
     if (self->aims >= AIMS_MAX) {
         return false;
     }
+    unsigned silent = 0;
+    unsigned unproved = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        if (is_silent(self, evidence, i) && aim(self, knowledge, evidence, i)) {
-            return true;
-        }
+        silent |= is_silent(self, evidence, i) ? 1u << i : 0u;
+        unproved |= is_unproved(self, knowledge, evidence, i) ? 1u << i : 0u;
     }
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        if (is_unproved(self, knowledge, evidence, i) && aim(self, knowledge, evidence, i)) {
-            return true;
-        }
-    }
-    return false;
+    return aim_at_one_of(self, knowledge, evidence, silent) ||
+           aim_at_one_of(self, knowledge, evidence, unproved);
 }
 
 void argus_inquiry_begin(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,

@@ -131,6 +131,12 @@ void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const 
     }
 }
 
+void argus_task_refuse_slant(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
+    argus_task_refuse(self, knowledge);
+    self->slanted = true;
+    self->slanted_cdeg = knowledge->pose.heading_cdeg;
+}
+
 void argus_task_forgive(argus_task_t *const self) {
     self->refused = 0;
 }
@@ -140,10 +146,14 @@ static void forgive_when_moved(argus_task_t *const self, const argus_knowledge_t
                                       knowledge->pose.y_mm - self->refused_at.y_mm);
     if (moved >= MOVED_ON_MM) {
         self->refused = 0;
+        self->slanted = false;
     }
 }
 
 static bool is_refused(const argus_task_t *const self, const int32_t heading_cdeg) {
+    if (self->slanted && argus_angle_abs_diff(self->slanted_cdeg, heading_cdeg) < REFUSED_CDEG) {
+        return true;
+    }
     for (uint8_t i = 0; i < self->refused; i++) {
         if (argus_angle_abs_diff(self->refused_cdeg[i], heading_cdeg) < REFUSED_CDEG) {
             return true;

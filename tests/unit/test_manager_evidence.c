@@ -12,6 +12,8 @@
 #include "robot.h"
 #include "unity.h"
 
+#define RAD (3.14159265358979323846 / 180)
+
 static robot_t robot;
 static char text[400];
 
@@ -482,6 +484,101 @@ void test_backing_away_ends_when_a_rear_sonar_fails(void) {
         robot_next_sip(&robot);
         TEST_ASSERT_TRUE(robot.argus.stops > stops);
         finish();
+    }
+}
+
+// On the way, and from then on an echo within the swing circle behind it, which a sonar makes up.
+static void hem_in_by(int sonar) {
+    start_in_a_room();
+    robot_goal(&robot, 1200, 0);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+    robot_run(&robot, 1500);
+    robot.fault[sonar] = ROBOT_VALUE;
+    robot.fault_value[sonar] = 100;
+    robot_run(&robot, 500);
+}
+
+static void accuse(int sonar) {
+    robot.argus.evidence.of[sonar].score[ARGUS_TEST_VIEW] = argus_bounds[ARGUS_TEST_VIEW].naming;
+}
+
+// It can neither turn nor back away: a suspect that does not look ahead is no reason to wait for ever.
+void test_hemmed_in_it_goes_on_with_a_suspect_behind(void) {
+    for (int sonar = 9; sonar <= 14; sonar++) {
+        hem_in_by(sonar);
+        accuse(sonar);
+        robot_run(&robot, 30000);
+        TEST_ASSERT_TRUE_MESSAGE(robot_count_events(&robot, ARGUS_EV_GOAL_REACHED, 0) > 0,
+                                 told("waits", sonar));
+        TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_SONAR_UNPROVEN, 0) > 0);
+        finish();
+    }
+}
+
+// ... nor is a turn home that it cannot make.
+void test_hemmed_in_on_another_heading_it_goes_on_from_there(void) {
+    start_in_a_room();
+    robot_goal(&robot, 1200, 0);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 40000));
+    while (fabs(robot_heading_deg(&robot)) < 15) {
+        robot_tick(&robot);
+    }
+    robot_run(&robot, 500);
+    robot.fault[12] = ROBOT_VALUE;
+    robot.fault_value[12] = 100;
+    const double x = robot.x, y = robot.y;
+    robot_run(&robot, 30000);
+    TEST_ASSERT_TRUE_MESSAGE(hypot(robot.x - x, robot.y - y) > 200, told("waits", 12));
+    finish();
+}
+
+// S1: ... but one that looks ahead is.
+void test_hemmed_in_it_stays_with_a_suspect_ahead(void) {
+    for (int sonar = 1; sonar <= 6; sonar++) {
+        hem_in_by(12);
+        accuse(sonar);
+        robot_run(&robot, 200);
+        const double x = robot.x;
+        robot_run(&robot, 12000);
+        TEST_ASSERT_TRUE_MESSAGE(robot.x < x + 100, told("drove on", sonar));
+        TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
+        finish();
+    }
+}
+
+// A smooth wall: heard where it is looked at squarely, and not otherwise.
+static int smooth_wall(const robot_t *r, int sonar) {
+    const argus_sonar_pose_t *at = &argus_sonar_pose[sonar];
+    const double c = cos(r->th), s = sin(r->th);
+    const double *w = r->segment[0];
+    const double length = hypot(w[2] - w[0], w[3] - w[1]);
+    const double nx = (w[3] - w[1]) / length, ny = -(w[2] - w[0]) / length;
+    const double x = r->x + at->x_mm * c - at->y_mm * s, y = r->y + at->x_mm * s + at->y_mm * c;
+    const double distance = (w[0] - x) * nx + (w[1] - y) * ny;
+    const double bearing = r->th + at->heading_deg * RAD;
+    const double square = (cos(bearing) * nx + sin(bearing) * ny) * (distance < 0 ? -1 : 1);
+    return square > cos(25 * RAD) ? (int)lround(fabs(distance) / square) : 5000;
+}
+
+// S2: the sonars ahead hear nothing of a smooth wall that the robot slants into; the one abeam does.
+void test_a_smooth_wall_beside_the_way_is_not_touched(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        for (int slant = 6; slant <= 20; slant += 2) {
+            start();
+            robot.world = smooth_wall;
+            robot.segments = 1;
+            const double beside = 420 + 600 * tan(slant * RAD); // at the start, where it looks round
+            const double wall[4] = {-4000, side * (beside + 4000 * tan(slant * RAD)), 4000,
+                                    side * (beside - 4000 * tan(slant * RAD))};
+            memcpy(robot.segment[0], wall, sizeof wall);
+            robot_goal(&robot, 3500, 0);
+            robot_run(&robot, 60000);
+            snprintf(text, sizeof text, "slant %d degrees, side %d: %.0f mm at the closest, %d stops", slant,
+                     side, robot.closest_mm, robot_count_events(&robot, ARGUS_EV_OBJECT, 0));
+            TEST_ASSERT_TRUE_MESSAGE(robot.closest_mm >= 5, text);
+            TEST_ASSERT_TRUE_MESSAGE(robot.x > 300, text); // it did get there
+            finish();
+        }
     }
 }
 

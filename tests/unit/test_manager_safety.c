@@ -130,7 +130,7 @@ static void check_s1_object_on_a_compensated_bearing_stops_the_next_step(void) {
     robot.world = robot_world_segments;
     const int from = robot.commands;
     TEST_ASSERT_TRUE(robot_goal(&robot, 2000, 0));
-    robot_until_event(&robot, ARGUS_EV_OBJECT_CHECKED, 20000);
+    robot_until_event(&robot, ARGUS_EV_OBJECT_CHECKED, 40000);
     TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_OBJECT_CHECKED, 0));
     TEST_ASSERT_EQUAL(0, moves_ahead(from));
     finish();

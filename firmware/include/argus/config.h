@@ -82,6 +82,10 @@ void argus_config_default(argus_config_t *config);
 // Ranges first, then the two S5 inequalities. Cost: a few thousand integer operations, once at start.
 argus_config_report_t argus_config_check(const argus_config_t *config);
 
+// The way, in mm, from a reading that asks for a stop to standstill at the driving speed (S5: v t + v^2 / (2
+// decel)).
+int32_t argus_config_stop_mm(const argus_config_t *config);
+
 // Largest reading, in mm, that a front sonar gives of a point which the body sweeps when it moves `step_mm`
 // ahead.
 int32_t argus_config_reach_mm(int32_t step_mm);

@@ -213,6 +213,11 @@ uint16_t argus_evidence_unseen(const argus_evidence_t *self, const argus_knowled
 bool argus_evidence_aim(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
                         int32_t *heading_cdeg);
 
+// Whether the last readings of a sonar that looks abeam (0, 7) show a wall that the robot slants into, so
+// near that the body would touch it within `stop_mm` of way. False also when they were not made on a way
+// straight ahead of 80 mm or more.
+bool argus_evidence_slants_in(const argus_evidence_t *self, int sonar, int32_t stop_mm);
+
 // A sonar was looked at and not convicted: its suspicions are spent.
 void argus_evidence_acquit(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
 

@@ -14,6 +14,8 @@
 #define ARGUS_SONARS ARGUS_P3DX_SONAR_COUNT
 #define ARGUS_FORWARD_FIRST 1 // the paper's forward-facing six are 1..6
 #define ARGUS_FORWARD_LAST 6
+#define ARGUS_FLANK_LEFT 0 // look abeam of the front
+#define ARGUS_FLANK_RIGHT 7
 #define ARGUS_FORWARD_MASK 0x7Eu
 #define ARGUS_REAR_MASK 0x7E00u // 9..14: what looks along a backward motion
 

@@ -31,6 +31,8 @@ typedef struct {
     bool has_leg;
     int32_t refused_cdeg[8]; // headings found blocked in this place
     uint8_t refused;
+    bool slanted; // into a wall beside it, on this heading: refused after waiting, too
+    int32_t slanted_cdeg;
     argus_point_t refused_at;
 } argus_task_t;
 
@@ -62,7 +64,10 @@ int32_t argus_task_nearest_mm(const argus_task_t *self, const argus_knowledge_t 
 // An object stopped the robot on its present heading: that heading is refused until the robot has moved on.
 void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge);
 
-// After waiting in one place: every heading may be tried again.
+// A wall beside the robot, which only its flank hears, stopped it: waiting does not take that one away.
+void argus_task_refuse_slant(argus_task_t *self, const argus_knowledge_t *knowledge);
+
+// After waiting in one place: every heading may be tried again, but into such a wall.
 void argus_task_forgive(argus_task_t *self);
 
 // Chooses the next leg: the waypoint itself when the way is free, else the nearest free heading. False: no

@@ -484,6 +484,30 @@ void test_suspects_come_before_those_that_are_none(void) {
     TEST_ASSERT_TRUE(some >= 6);
 }
 
+// There are not turns for all: the one that the others contradict most comes first, suspect or not.
+void test_who_is_contradicted_most_is_aimed_first(void) {
+    int some = 0;
+    for (int asked = 0; asked < 2; asked++) {
+        for (int worst = 0; worst < ARGUS_SONARS; worst++) {
+            int32_t to = 0;
+            all_fall_silent();
+            if (asked == 0) {
+                nobody_was_proved_of_late();
+            }
+            e.of[worst].score[ARGUS_TEST_PEERS] = 200;
+            e.of[(worst + 5) % ARGUS_SONARS].score[ARGUS_TEST_PEERS] = 100;
+            const bool may = argus_evidence_aim(&e, &k, worst, &to);
+            begin_on(asked == 0 ? 0 : 0xFFFF);
+            TEST_ASSERT_TRUE(inquiry.aiming);
+            if (may) {
+                TEST_ASSERT_EQUAL(worst, inquiry.aimed);
+                some++;
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(some >= 12);
+}
+
 void test_who_is_out_is_not_aimed_unasked(void) {
     all_fall_silent();
     nobody_was_proved_of_late();
