@@ -100,6 +100,10 @@ def figures(records: Sequence[Record]) -> dict[str, Any]:
             "sure": _ideal([f for f in faults if f["kind"] in SURE]),
             "hard": _ideal([f for f in faults if f["kind"] in HARD]),
         },
+        "doubted": {
+            "sure": _doubted([f for f in faults if f["kind"] in SURE]),
+            "hard": _doubted([f for f in faults if f["kind"] in HARD]),
+        },
         "confusion": _confusion(faults, records),
         "false_disables": _false(free),
         "false_disables_with_faults": _false([r for r in records if not r["variant"].startswith("free")]),
@@ -175,6 +179,13 @@ def _ideal(faults: Sequence[Record]) -> dict[str, Any]:
         return _share(sum(enough), len(enough))
 
     return {"three": found(lambda _: SHOWN_READINGS), "once": found(lambda s: readings_wanted(s, crosstalk))}
+
+
+def _doubted(faults: Sequence[Record]) -> dict[str, Any]:
+    """What was DISABLED or a SUSPECT of any kind in time: covered for, though perhaps by a wrong name."""
+    judged = [fault for fault in faults if fault["apart"] is None]
+    in_time = [f["doubted_s"] is not None and f["doubted_s"] <= BOUND_S[f["kind"]] for f in judged]
+    return _share(sum(in_time), len(in_time))
 
 
 def _spread(values: Sequence[float]) -> dict[str, Any]:

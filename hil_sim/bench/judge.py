@@ -12,7 +12,7 @@ from typing import Any, Final
 from hil_sim.sil import VISIBLE_MM, VISIBLE_PART, FaultTruth, Outcome, Sighting, Sil
 from hil_sim.sonar import CYCLE_MS, NO_ECHO_MM
 
-RECORD_FORMAT: Final = 2
+RECORD_FORMAT: Final = 3
 """Raised whenever a record gets another field: results of two formats do not mix."""
 BOUND_S: Final[Mapping[str, float]] = {
     "off": 10.0,
@@ -37,6 +37,7 @@ REPAIRED_DRIVING_S: Final = 60.0
 DISABLED: Final = "DISABLED"
 SUSPECT: Final = "SUSPECT"
 HEALTHY: Final = "HEALTHY"
+_ANY_NAME: Final = tuple(BOUND_S)
 _SAYS_NOTHING: Final = (HEALTHY, "UNKNOWN")
 _MOVING_MM_S: Final = 5.0
 _TURNING_DEG_S: Final = 1.0
@@ -110,7 +111,7 @@ def right_names(truth: FaultTruth, track: Track) -> tuple[str, ...]:
 def detection(
     changes: Sequence[Change], kinds: Sequence[str], begin_s: float, end_s: float
 ) -> tuple[float, str, str] | None:
-    """Return when a sonar was first DISABLED, or named rightly, from begin to end; health and kind then.
+    """Return when a sonar was first DISABLED, or named by one of the kinds, from begin to end; health and kind then.
 
     A sonar that was DISABLED before it failed says nothing about the fault; the judge sets such cases apart.
     """
@@ -138,6 +139,7 @@ def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, 
         "visible_in_time": _visible_in_time(truth, track, end_s),
         "apart": None,
         "found": False,
+        "doubted_s": None,
         "named": None,
         "named_right": None,
         "named_end": None,
@@ -157,6 +159,9 @@ def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, 
         record["apart"] = "not shown"
     elif end_s - first_s < bound_s:
         record["apart"] = "ended early"
+    doubted = detection(changes, _ANY_NAME, truth.onset_s, end_s)
+    if doubted is not None and first_s is not None:
+        record["doubted_s"] = _r(max(0.0, doubted[0] - first_s))
     if found is not None:
         at, _, named = found
         since = first_s if first_s is not None else at

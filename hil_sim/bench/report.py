@@ -26,6 +26,7 @@ _FIELDS: Final = (
     "visible_in_time",
     "apart",
     "found",
+    "doubted_s",
     "named",
     "named_right",
     "named_end",
@@ -184,12 +185,15 @@ def _other(one: Record) -> list[str]:
     verify, hits, back = one["verification"], one["collisions"], one["rehabilitation"]
     counts = ", ".join(f"{count} {how}" for how, count in sorted(back["counts"].items()))
     sure, hard = one["ideal"]["sure"], one["ideal"]["hard"]
+    doubted = [_percent(one["doubted"][kinds]["rate"]) for kinds in ("sure", "hard")]
     lines = [
         "- Who knows each true range and takes three readings that are off for a fault finds at most "
         f"{_percent(sure['three']['rate'])} % (off, stuck, garbage, slow) and {_percent(hard['three']['rate'])} % "
         "(wrong, intermittent) in time; who takes so many that "
         "1 % of crosstalk deceives it once in 100 h of successive windows, at most "
         f"{_percent(sure['once']['rate'])} % and {_percent(hard['once']['rate'])} %",
+        f"- DISABLED or a SUSPECT with any kind, also a wrong one, in time: {doubted[0]} % (off, stuck, garbage, slow) "
+        f"and {doubted[1]} % (wrong, intermittent)",
         f"- False disables, fault-free: {false['count']} in {false['hours']:.2f} h of {false['missions']} missions; "
         f"of healthy sonars in missions with faults: {hurt['count']} in {hurt['hours']:.2f} h",
         f"- A healthy sonar SUSPECT with a kind, fault-free: {named['count']} times in {named['hours']:.2f} h",

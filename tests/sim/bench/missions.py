@@ -110,6 +110,7 @@ def judged(kind: str = "off", **more: Any) -> dict[str, Any]:
         "visible_in_time": 9,
         "apart": None,
         "found": True,
+        "doubted_s": 1.0,
         "named": kind,
         "named_right": True,
         "named_end": kind,

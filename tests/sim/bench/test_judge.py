@@ -161,6 +161,15 @@ def test_slots_of_a_silent_sonar_count_as_readings() -> None:
     assert judged(fault("silent"), track=track())["visible_n"] > 1000
 
 
+def test_a_wrong_name_is_a_doubt_and_no_find() -> None:
+    own = judged(fault("slow"), (12.0, "SUSPECT", ""), (13.0, "SUSPECT", "wrong"), (25.0, "SUSPECT", "slow"))
+    assert (own["doubted_s"], own["latency_s"], own["found"]) == (3.0, 15.0, False)
+    assert judged(fault("slow"), (12.0, "SUSPECT", "slow"))["doubted_s"] == 2.0
+    assert judged(fault("slow"), (12.0, "DISABLED", ""))["doubted_s"] == 2.0
+    assert judged(fault("slow"), (9.0, "SUSPECT", "wrong"), (12.0, "SUSPECT", ""))["doubted_s"] is None
+    assert judged(fault("slow", end_s=30.0), (31.0, "SUSPECT", "slow"))["doubted_s"] is None
+
+
 def test_readings_in_time_are_those_within_the_bound_and_the_fault() -> None:
     own = track((3, 10.5))  # one a second, twenty of them
     assert judged(fault("off", first_visible_s=10.5), track=own)["visible_in_time"] == 11

@@ -132,6 +132,23 @@ def test_what_an_observer_of_the_truth_would_find_is_told() -> None:
     )
 
 
+def test_what_is_doubted_in_time_is_told_whatever_its_name() -> None:
+    late: dict[str, Any] = {"found": False, "latency_s": 50.0}
+    records = [
+        *missions(4),
+        *missions(2, doubted_s=10.0, **late),
+        *missions(1, doubted_s=10.1, **late),
+        *missions(1, doubted_s=None, **late),
+        *missions(9, doubted_s=1.0, apart="ended early", **late),
+        *missions(3, "wrong", doubted_s=29.0, **late),
+        *missions(2, "wrong", doubted_s=31.0, **late),
+        *missions(5, "silent", doubted_s=None, **late),
+    ]
+    doubted = summarise(records)["profiles"]["argus"]["doubted"]
+    assert (doubted["sure"]["hits"], doubted["sure"]["of"]) == (6, 8)
+    assert (doubted["hard"]["hits"], doubted["hard"]["of"]) == (3, 5)
+
+
 def test_collisions_pass_with_none_in_1000_missions() -> None:
     start = "collisions"
     hit = {"collisions": [[1, 2, 3]], "attributable": True}
