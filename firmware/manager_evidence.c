@@ -217,27 +217,20 @@ static void finish(argus_t *const self) {
     argus_enter_checking(self, false);
 }
 
-// Where no look is to be had: who is not cleared is covered for (S1), and a turn that this takes waits.
+// No look is to be had, and none of them looks ahead: they are left open.
 static void go_on_without(argus_t *const self, const uint16_t suspects) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        if ((suspects >> i & 1u) == 0) {
-            continue;
-        }
-        leave_open(self, i);
-        if (self->evidence.of[i].none_run == 0) { // it hears again
-            self->evidence.lost &= (uint16_t)~(1u << i);
-            self->evidence.jumped &= (uint16_t)~(1u << i);
+        if ((suspects >> i & 1u) != 0) {
+            leave_open(self, i);
         }
     }
-    argus_replan(self);
     argus_enter_checking(self, false);
 }
 
 static void begin(argus_t *const self) {
-    const uint16_t suspects =
-        (uint16_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) & ~(unsigned)self->awareness.verified);
+    const uint16_t suspects = argus_open_suspects(self);
     argus_take_base(self);
-    if (suspects != 0 && argus_is_hemmed_in(self)) {
+    if (suspects != 0 && (suspects & ARGUS_FORWARD_MASK) == 0 && argus_is_hemmed_in(self)) {
         go_on_without(self, suspects);
         return;
     }

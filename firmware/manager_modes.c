@@ -141,7 +141,7 @@ static void leave_waiting(argus_t *const self) {
         break;
     case ARGUS_WAIT_TURN:
     case ARGUS_WAIT_WAY:
-        argus_task_forgive(&self->task);
+        argus_task_forgive(&self->task, &self->knowledge);
         argus_enter_checking(self, true);
         break;
     case ARGUS_WAIT_NONE:

@@ -101,14 +101,15 @@ static bool may_back_off(const argus_t *const self) {
 bool argus_is_hemmed_in(const argus_t *const self) {
     const bool waited =
         self->wait_last == ARGUS_WAIT_TURN && self->now_ms - self->wait_since_ms >= HEMMED_IN_MS;
-    return argus_judges(self) && self->mission == ARGUS_MISSION_RUNNING && waited && self->bumpers == 0 &&
-           !argus_may_turn(self) && !may_back_off(self);
+    return argus_judges(self) && self->mission == ARGUS_MISSION_RUNNING && !self->paused && waited &&
+           self->bumpers == 0 && !argus_may_turn(self) && !may_back_off(self);
 }
 
 // Where it may not turn, a few times backing away may help.
 bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
     const int32_t nearest = nearest_to_centre_mm(self);
     if (argus_may_turn(self)) {
+        self->wait_last = self->wait_last == ARGUS_WAIT_TURN ? ARGUS_WAIT_NONE : self->wait_last;
         argus_motion_turn(&self->motion, &self->session.outbox, &self->knowledge, heading_cdeg, self->now_ms);
         return true;
     }
@@ -255,7 +256,6 @@ static bool react_dead(argus_t *const self, const argus_alarm_t *const alarm) {
 static void stop_before(argus_t *const self, const int sonar, const int32_t reading_mm) {
     argus_say(self, ARGUS_EV_OBJECT, sonar, reading_mm);
     argus_stop(self, ARCOS_CMD_STOP);
-    self->jog_mm = 0;
 }
 
 // An object is looked at again at rest, with Algorithm 1, before it is believed: a sonar that lies low is
@@ -278,7 +278,7 @@ static bool react_object(argus_t *const self, const argus_alarm_t *const alarm) 
 // A smooth wall that the robot slants into is heard by the sonar that looks abeam alone.
 static void react_flank(argus_t *const self) {
     const bool ahead = self->mode == ARGUS_MODE_DRIVING || self->mode == ARGUS_MODE_STEPPING;
-    if (!argus_judges(self) || !ahead || self->motion.kind == ARGUS_MOTION_STOP) {
+    if (!argus_judges(self) || !ahead || self->motion.kind != ARGUS_MOTION_MOVE || self->motion.settled) {
         return;
     }
     const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge);

@@ -24,7 +24,7 @@ _Static_assert(ARGUS_TEST_PEERS == ARGUS_TESTS - 1, "what is kept and what convi
 const argus_bounds_t argus_bounds[ARGUS_TESTS] = {
     [ARGUS_TEST_VIEW] =
         {.suspicious = 300, .naming = 700, .convincing = 2200, .floor = -150, .ceiling = 2600},
-    [ARGUS_TEST_OFF] = {.suspicious = 300, .naming = 450, .convincing = 1500, .floor = 0, .ceiling = 2000},
+    [ARGUS_TEST_OFF] = {.suspicious = 300, .naming = 300, .convincing = 1500, .floor = 0, .ceiling = 2000},
     [ARGUS_TEST_STUCK] = {.suspicious = 840, .naming = 1050, .convincing = 1470, .floor = 0, .ceiling = 2000},
     [ARGUS_TEST_GARBAGE] =
         {.suspicious = 400, .naming = 650, .convincing = 2800, .floor = 0, .ceiling = 3200},

@@ -50,6 +50,9 @@ typedef struct {
 } argus_shift_t;
 argus_shift_t argus_pair_shift(int32_t dx_mm, int32_t dy_mm, int32_t bearing_cdeg);
 
+// Beyond, the air decides whether an echo is heard.
+#define ARGUS_PAIR_FARTHEST_MM 4000
+
 // By how much two echoes of one thing may differ at a range.
 int32_t argus_pair_limit_mm(int32_t range_mm);
 

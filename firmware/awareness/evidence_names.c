@@ -5,7 +5,7 @@
 
 #define NAME_CONFLICTS 3 // a view is one of a pair: who is wrong takes a third
 #define NAME_PARTNERS 2
-#define NAME_MISSES 2
+#define NAME_MISSES 1
 #define OFF_RUN 5
 #define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
 #define OFF_RUN_LONGEST 20 // ... and what was called intermittent

@@ -5,7 +5,6 @@
 #include "evidence_internal.h"
 
 #define NEAREST_MM 150
-#define FARTHEST_MM 4000 // beyond, the air decides whether an echo is heard
 #define AGREE_MM 80
 #define AGREE_PERCENT 5
 
@@ -28,7 +27,7 @@ static argus_outcome_t compare_silence(const int32_t now_mm, const int32_t then_
         return ARGUS_PAIR_QUIET;
     }
     const int32_t expected = was_none ? now_mm + along_mm : then_mm - along_mm;
-    if (expected < NEAREST_MM || expected > FARTHEST_MM) {
+    if (expected < NEAREST_MM || expected > ARGUS_PAIR_FARTHEST_MM) {
         return ARGUS_PAIR_NOTHING;
     }
     return none ? ARGUS_PAIR_NOW_MISSES : ARGUS_PAIR_THEN_MISSES;

@@ -22,7 +22,7 @@
 #define SAME_PLACE_MM 35
 #define SAME_VIEW_CDEG 200
 #define AIM_NEAREST_MM 250
-#define AIM_FARTHEST_MM 3900 // within what two readings are compared at
+#define AIM_FARTHEST_MM (ARGUS_PAIR_FARTHEST_MM - SAME_ALONG_MM)
 #define AIM_TURN_CDEG 10000
 #define COUNTED_MM 100
 #define COUNTED_CDEG 800

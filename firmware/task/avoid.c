@@ -131,14 +131,20 @@ void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const 
     }
 }
 
+static bool is_flank_near(const argus_knowledge_t *const knowledge, const int sonar) {
+    return argus_usable(knowledge, sonar) && knowledge->sonar[sonar].reading_mm <= ARGUS_FLANK_NEAR_MM;
+}
+
 void argus_task_refuse_slant(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
     argus_task_refuse(self, knowledge);
     self->slanted = true;
     self->slanted_cdeg = knowledge->pose.heading_cdeg;
 }
 
-void argus_task_forgive(argus_task_t *const self) {
+void argus_task_forgive(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
     self->refused = 0;
+    self->slanted = self->slanted && (is_flank_near(knowledge, ARGUS_FLANK_LEFT) ||
+                                      is_flank_near(knowledge, ARGUS_FLANK_RIGHT));
 }
 
 static void forgive_when_moved(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
@@ -216,11 +222,12 @@ static bool choose_corridor(argus_task_t *const self, const argus_knowledge_t *c
     lead_to(self, self->waypoint[self->next]);
     const int32_t bearing = argus_task_bearing_cdeg(self, knowledge);
     const corridor_t direct = {half_mm, argus_min(CORRIDOR_MM, argus_task_leg_mm(self, knowledge) + half_mm)};
-    if (!self->avoiding || is_free(self, knowledge, bearing, &direct)) {
+    if ((!self->avoiding && !is_refused(self, bearing)) || is_free(self, knowledge, bearing, &direct)) {
         self->avoiding = false;
         self->side = 0;
         return true;
     }
+    self->avoiding = true;
     int32_t heading = 0;
     if (!find_detour(self, knowledge, half_mm, bearing, &heading)) {
         return false;

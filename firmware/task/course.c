@@ -38,7 +38,6 @@ void argus_task_restart(argus_task_t *const self) {
     self->avoiding = false;
     self->side = 0;
     self->refused = 0;
-    self->slanted = false;
 }
 
 static int32_t distance_mm(const argus_knowledge_t *const knowledge, const argus_point_t *const to) {

@@ -62,9 +62,7 @@ typedef enum {
     X(48, SONAR_PINNED, WARN, "sonar", "keeps its health until unpinned; value: 1 pinned, 0 unpinned")      \
     X(49, SONAR_DEGRADING, WARN, "sonar", "gets worse; value: metres of driving until it will have failed") \
     X(50, OBJECT, WARN, "object",                                                                           \
-      "a healthy sonar sees an object in range, or (0, 7) a wall beside the way that the robot slants "     \
-      "into: "                                                                                              \
-      "STOP sent; value: the reading in mm")                                                                \
+      "an object in range, or (0, 7) a wall that the way slants into: STOP sent; value: the reading in mm") \
     X(51, OBJECT_CHECKED, WARN, "object",                                                                   \
       "a check in failure mode finds an object; value: the reading in mm")                                  \
     X(52, AVOIDING, OK, "task", "goes round an obstacle; value: heading chosen, degrees")                   \

@@ -16,6 +16,7 @@
 #define ARGUS_FORWARD_LAST 6
 #define ARGUS_FLANK_LEFT 0 // look abeam of the front
 #define ARGUS_FLANK_RIGHT 7
+#define ARGUS_FLANK_NEAR_MM 350 // what they read of a wall that the way may slant into
 #define ARGUS_FORWARD_MASK 0x7Eu
 #define ARGUS_REAR_MASK 0x7E00u // 9..14: what looks along a backward motion
 

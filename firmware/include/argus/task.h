@@ -67,8 +67,9 @@ void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge);
 // A wall beside the robot, which only its flank hears, stopped it: waiting does not take that one away.
 void argus_task_refuse_slant(argus_task_t *self, const argus_knowledge_t *knowledge);
 
-// After waiting in one place: every heading may be tried again, but into such a wall.
-void argus_task_forgive(argus_task_t *self);
+// After waiting in one place: every heading may be tried again, but into such a wall while the flank reads
+// near.
+void argus_task_forgive(argus_task_t *self, const argus_knowledge_t *knowledge);
 
 // Chooses the next leg: the waypoint itself when the way is free, else the nearest free heading. False: no
 // way.
