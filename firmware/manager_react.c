@@ -91,7 +91,7 @@ bool argus_swing_is_blocked(const argus_t *const self) {
 
 // S7: no rotation while a bumper is pressed or an echo lies within the swing circle.
 bool argus_may_turn(const argus_t *const self) {
-    return is_active(self) && self->bumpers == 0 && nearest_to_centre_mm(self) > SWING_MM;
+    return is_active(self) && self->bumpers == 0 && !argus_swing_is_blocked(self);
 }
 
 static bool may_back_off(const argus_t *const self) {

@@ -4,13 +4,14 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "argus/config.h"
 #include "awareness/evidence_internal.h"
 #include "scene.h"
 #include "unity.h"
 
 #define RAD (3.14159265358979323846 / 180)
 #define STEP_MM 64 // at 200 mm/s from one reading to the next
-#define STOP_MM 164
+#define STOP_MM 163
 #define HALF_WIDTH_MM 212.5
 #define FRONT_MM 210
 #define FAR_MM 2000
@@ -39,6 +40,14 @@ static void read_at(int sonar, double range_mm) {
 static double touches_at(double slant_deg) {
     const double x = argus_sonar_pose[0].x_mm, y = argus_sonar_pose[0].y_mm;
     return HALF_WIDTH_MM - y + (FRONT_MM - x) * tan(slant_deg * RAD);
+}
+
+void test_the_stopping_way_is_that_of_the_default_configuration(void) {
+    argus_config_t config;
+    argus_config_default(&config);
+    const argus_config_report_t report = argus_config_check(&config);
+    TEST_ASSERT_EQUAL_INT32(STOP_MM, argus_config_stop_mm(&config));
+    TEST_ASSERT_EQUAL_INT32(report.driving_mm - report.overhang_mm, argus_config_stop_mm(&config));
 }
 
 static int lost_each; // no echo in so many readings once

@@ -120,6 +120,44 @@ void test_a_refused_heading_is_not_taken_again_here(void) {
     TEST_ASSERT_TRUE(argus_angle_abs_diff(heading_chosen(), 0) < 100);
 }
 
+static void flank_reads(int sonar, int mm) {
+    k.sonar[sonar].reported = true;
+    k.sonar[sonar].health = ARGUS_HEALTHY;
+    k.sonar[sonar].reading_mm = (uint16_t)mm;
+}
+
+static bool goes_straight_on(void) {
+    return argus_task_choose(&t, &k) && argus_angle_abs_diff(heading_chosen(), 0) < 1500;
+}
+
+// Neither waiting nor a sonar that is given up takes a wall beside the way out of it.
+void test_a_slant_stays_refused_while_the_flank_reads_near(void) {
+    for (int sonar = 0; sonar <= 7; sonar += 7) {
+        setUp();
+        flank_reads(0, 5000);
+        flank_reads(7, 5000);
+        flank_reads(sonar, 150);
+        argus_task_refuse_slant(&t, &k);
+        argus_task_forgive(&t, &k);
+        TEST_ASSERT_FALSE(goes_straight_on());
+        argus_task_restart(&t);
+        TEST_ASSERT_FALSE(goes_straight_on());
+        TEST_ASSERT_TRUE(t.avoiding); // so that the detour ends, and the bearing is tried again
+        flank_reads(sonar, 351);
+        argus_task_forgive(&t, &k);
+        TEST_ASSERT_TRUE(goes_straight_on());
+    }
+}
+
+void test_a_slant_is_forgotten_when_the_robot_has_moved_on(void) {
+    flank_reads(7, 150);
+    argus_task_refuse_slant(&t, &k);
+    k.pose.x_mm -= 149;
+    TEST_ASSERT_FALSE(goes_straight_on());
+    k.pose.x_mm -= 1;
+    TEST_ASSERT_TRUE(goes_straight_on());
+}
+
 void test_the_detour_leads_past_the_obstacle(void) {
     for (int y = -300; y <= 100; y += 100) {
         place(450, y);
