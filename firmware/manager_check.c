@@ -31,9 +31,8 @@ static bool is_home(argus_t *const self) {
         return false;
     }
     argus_take_base(self);
-    if (argus_is_hemmed_in(self)) {
-        self->base_cdeg =
-            self->knowledge.pose.heading_cdeg; // where it cannot turn back, it may get out ahead
+    if (argus_is_hemmed_in(self)) { // it may get out ahead
+        self->base_cdeg = self->knowledge.pose.heading_cdeg;
     }
     if (argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, self->base_cdeg) > 2 * 100) {
         argus_turn(self, self->base_cdeg);
