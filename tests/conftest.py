@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Generated examples are the same in every run, so a red build repeats; HYPOTHESIS_PROFILE=default roams."""
+"""What all tests rely on: generated examples that repeat (HYPOTHESIS_PROFILE=default roams), and Ctrl-C in programs."""
 
 from __future__ import annotations
 
 import os
+import signal
 
 from hypothesis import settings
 
 settings.register_profile("repeatable", derandomize=True, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
+
+# A shell starts what it puts in the background with SIGINT ignored, and every program started from here would inherit
+# that: those that are ended by Ctrl-C would go on for ever.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
