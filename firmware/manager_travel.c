@@ -38,15 +38,11 @@ static int32_t off_bearing(const argus_t *const self) {
     return argus_angle_abs_diff(bearing(self), self->knowledge.pose.heading_cdeg);
 }
 
-static bool is_flank_near(const argus_t *const self, const int sonar) {
-    return argus_usable(&self->knowledge, sonar) && self->knowledge.sonar[sonar].reading_mm <= FLANK_MM;
-}
-
 // Where there is no room to turn, a leg straight ahead may lead out; not along a wall that is so near that a
 // slant could not be seen in time.
 static void turn_to_bearing(argus_t *const self) {
-    const bool narrow = argus_swing_is_blocked(self) && self->jog_mm == 0 &&
-                        !is_flank_near(self, ARGUS_FLANK_LEFT) && !is_flank_near(self, ARGUS_FLANK_RIGHT);
+    const bool narrow =
+        argus_swing_is_blocked(self) && self->jog_mm == 0 && argus_flank_mm(&self->knowledge) > FLANK_MM;
     if (!narrow || !argus_task_escape(&self->task, &self->knowledge)) {
         argus_turn(self, bearing(self));
     }

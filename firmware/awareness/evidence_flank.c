@@ -5,7 +5,6 @@
 #include "argus/angle.h"
 #include "evidence_internal.h"
 
-#define NEAR_MM ARGUS_FLANK_NEAR_MM
 #define WAY_MM 80 // two readings show a slant when they were made so far apart
 #define STRAIGHT_CDEG 300
 #define FALL_MM 12   // ... and differ by more than noise
@@ -36,7 +35,7 @@ static const argus_trail_t *slant_since(const argus_case_t *const self, const ar
         if (argus_trail_turned_cdeg(now, then) > STRAIGHT_CDEG) {
             return NULL;
         }
-        if (then->reading_mm <= NEAR_MM && then->reading_mm - now->reading_mm >= FALL_MM &&
+        if (then->reading_mm <= ARGUS_FLANK_NEAR_MM && then->reading_mm - now->reading_mm >= FALL_MM &&
             ahead_of_mm(now, then) >= WAY_MM) {
             return then;
         }

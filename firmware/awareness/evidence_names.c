@@ -5,7 +5,6 @@
 
 #define NAME_CONFLICTS 3 // a view is one of a pair: who is wrong takes a third
 #define NAME_PARTNERS 2
-#define NAME_MISSES 1
 #define OFF_RUN 5
 #define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
 #define OFF_RUN_LONGEST 20 // ... and what was called intermittent
@@ -69,7 +68,7 @@ static bool rests_on_views(const argus_test_t test) {
 }
 
 static bool is_named_by(const argus_case_t *const c, const argus_test_t test) {
-    const bool enough = test == ARGUS_TEST_OFF ? c->none_run >= OFF_RUN && c->misses >= NAME_MISSES
+    const bool enough = test == ARGUS_TEST_OFF ? c->none_run >= OFF_RUN && c->misses > 0
                                                : test != ARGUS_TEST_VIEW || (c->conflicts >= NAME_CONFLICTS &&
                                                                              partners(c) >= NAME_PARTNERS);
     return c->score[test] >= argus_bounds[test].naming && enough;

@@ -176,6 +176,14 @@ bool argus_usable(const argus_knowledge_t *const self, const int sonar) {
     return s->reported && !argus_is_out(self, sonar) && s->reading_mm < ARGUS_P3DX_SONAR_NO_ECHO_MM;
 }
 
+int32_t argus_flank_mm(const argus_knowledge_t *const self) {
+    const int32_t left =
+        argus_usable(self, ARGUS_FLANK_LEFT) ? self->sonar[ARGUS_FLANK_LEFT].reading_mm : INT32_MAX;
+    const int32_t right =
+        argus_usable(self, ARGUS_FLANK_RIGHT) ? self->sonar[ARGUS_FLANK_RIGHT].reading_mm : INT32_MAX;
+    return argus_min(left, right);
+}
+
 argus_mark_t argus_mark_now(const argus_knowledge_t *const self) {
     const argus_mark_t mark = {.sip = self->sips, .from_ms = self->sip_ms + LISTS_ALL_WAIT_MS};
     return mark;

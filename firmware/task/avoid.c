@@ -131,10 +131,6 @@ void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const 
     }
 }
 
-static bool is_flank_near(const argus_knowledge_t *const knowledge, const int sonar) {
-    return argus_usable(knowledge, sonar) && knowledge->sonar[sonar].reading_mm <= ARGUS_FLANK_NEAR_MM;
-}
-
 void argus_task_refuse_slant(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
     argus_task_refuse(self, knowledge);
     self->slanted = true;
@@ -143,8 +139,7 @@ void argus_task_refuse_slant(argus_task_t *const self, const argus_knowledge_t *
 
 void argus_task_forgive(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
     self->refused = 0;
-    self->slanted = self->slanted && (is_flank_near(knowledge, ARGUS_FLANK_LEFT) ||
-                                      is_flank_near(knowledge, ARGUS_FLANK_RIGHT));
+    self->slanted = self->slanted && argus_flank_mm(knowledge) <= ARGUS_FLANK_NEAR_MM;
 }
 
 static void forgive_when_moved(argus_task_t *const self, const argus_knowledge_t *const knowledge) {

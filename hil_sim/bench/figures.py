@@ -182,7 +182,7 @@ def _ideal(faults: Sequence[Record]) -> dict[str, Any]:
 
 
 def _doubted(faults: Sequence[Record]) -> dict[str, Any]:
-    """What was DISABLED or a SUSPECT of any kind in time: covered for, though perhaps by a wrong name."""
+    """What was DISABLED or a SUSPECT of any kind in time, perhaps by a wrong name."""
     judged = [fault for fault in faults if fault["apart"] is None]
     in_time = [f["doubted_s"] is not None and f["doubted_s"] <= BOUND_S[f["kind"]] for f in judged]
     return _share(sum(in_time), len(in_time))

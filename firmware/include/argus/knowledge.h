@@ -136,6 +136,9 @@ bool argus_is_out(const argus_knowledge_t *self, int sonar);
 uint16_t argus_with_health(const argus_knowledge_t *self, argus_health_t health);
 bool argus_usable(const argus_knowledge_t *self, int sonar); // reported, not out, not 5000
 
+// The nearest echo, in mm, of the sonars 0 and 7, those that are out left aside; INT32_MAX: none.
+int32_t argus_flank_mm(const argus_knowledge_t *self);
+
 argus_mark_t argus_mark_now(const argus_knowledge_t *self);
 bool argus_fresh_since(const argus_knowledge_t *self, int sonar, const argus_mark_t *mark);
 bool argus_all_fresh_since(const argus_knowledge_t *self, uint16_t sonars, const argus_mark_t *mark);
