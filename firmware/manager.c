@@ -89,6 +89,7 @@ static void on_open(argus_t *const self) {
     self->motors_said = false;
     self->stalled = false;
     self->has_base = false;
+    self->ordered = false;
     if (self->plan.disabled != 0) {
         argus_share_slots(self); // the robot begins each session with its own order
     }
@@ -258,7 +259,7 @@ static void go_active(argus_t *const self) {
     self->motors_said = false;
     argus_say(self, ARGUS_EV_ACTIVE, ARGUS_NO_SONAR, 0);
     enable_motors(self);
-    if (self->plan.disabled != 0) {
+    if (self->plan.disabled != 0 || self->ordered) { // the plan may have gone while nothing was commanded
         argus_share_slots(self);
     }
     if (argus_session_is_open(&self->session)) {

@@ -155,6 +155,7 @@ void argus_share_slots(argus_t *const self) {
         }
     }
     argus_outbox_string(&self->session.outbox, ARCOS_CMD_POLLING, order, count);
+    self->ordered = true;
 }
 
 static void say_plan(argus_t *const self) {

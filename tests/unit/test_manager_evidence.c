@@ -881,3 +881,31 @@ void test_with_readings_the_same_agreements_bring_it_back(void) {
     TEST_ASSERT_TRUE_MESSAGE(count_restored(3, from) > 0, told("stays out", 3));
     finish();
 }
+
+// A sonar that came back while nothing was commanded has its slot in every round again once the robot moves
+// by itself (S5): the order of the old plan has it in one of thirteen.
+void test_the_order_follows_a_plan_that_went_while_passive(void) {
+    start_in_a_room();
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+    const int said = robot.commands;
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_DISABLE, 3);
+    robot_run(&robot, 500);
+    TEST_ASSERT_EQUAL_HEX16(1u << 3, robot.argus.plan.disabled);
+    TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_POLLING, said) > 0);
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_PASSIVE, 0);
+    robot_run(&robot, 500);
+    argus_sonar_set_health(&robot.argus.knowledge.sonar[3], ARGUS_HEALTHY, ARGUS_KIND_NONE,
+                           robot.argus.now_ms);
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_RECHECK, 0);
+    robot_run(&robot, 3000);
+    TEST_ASSERT_EQUAL_HEX16(0, robot.argus.plan.disabled);
+    const int from = robot.commands;
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_ACTIVE, 0);
+    robot_run(&robot, 500);
+    TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_POLLING, from) > 0);
+    int slots = 0;
+    for (int k = 0; k < robot.order_count[0]; k++) {
+        slots += robot.order[0][k] == 3;
+    }
+    TEST_ASSERT_TRUE(8 * slots >= robot.order_count[0]);
+}

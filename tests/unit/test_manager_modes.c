@@ -403,3 +403,13 @@ void test_polling_is_sent_again_after_reconnecting(void) {
     TEST_ASSERT_EQUAL(1, robot_count_commands(&robot, ARCOS_CMD_POLLING, from));
     finish();
 }
+
+void test_polling_is_left_alone_where_no_order_was_given(void) {
+    start_idle();
+    argus_operator(&robot.argus, now(), ARGUS_OP_PASSIVE, 0);
+    robot_run(&robot, 500);
+    argus_operator(&robot.argus, now(), ARGUS_OP_ACTIVE, 0);
+    robot_run(&robot, 2000);
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_POLLING, 0));
+    finish();
+}

@@ -126,6 +126,7 @@ typedef struct {
     bool loaded;    // a record was taken whose robot is not compared yet
     bool looked_once;
     argus_plan_t plan;
+    bool ordered; // the sonars fire in an order of ours, in this session
     argus_motion_t motion;
     argus_drive_t drive;
     argus_task_t task;
