@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "awareness/evidence_internal.h"
+#include "manager_internal.h"
 #include "robot.h"
 #include "unity.h"
 
@@ -896,7 +897,7 @@ void test_the_order_follows_a_plan_that_went_while_passive(void) {
     robot_run(&robot, 500);
     argus_sonar_set_health(&robot.argus.knowledge.sonar[3], ARGUS_HEALTHY, ARGUS_KIND_NONE,
                            robot.argus.now_ms);
-    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_RECHECK, 0);
+    argus_replan(&robot.argus); // as for every sonar that is restored
     robot_run(&robot, 3000);
     TEST_ASSERT_EQUAL_HEX16(0, robot.argus.plan.disabled);
     const int from = robot.commands;
@@ -908,4 +909,5 @@ void test_the_order_follows_a_plan_that_went_while_passive(void) {
         slots += robot.order[0][k] == 3;
     }
     TEST_ASSERT_TRUE(8 * slots >= robot.order_count[0]);
+    finish();
 }
