@@ -99,6 +99,10 @@ def figures(records: Sequence[Record]) -> dict[str, Any]:
         "ideal": {
             "sure": _ideal([f for f in faults if f["kind"] in SURE]),
             "hard": _ideal([f for f in faults if f["kind"] in HARD]),
+            "quick_rooms": _ideal([f for f in faults if f["kind"] in QUICK and f["place"] == "room"]),
+            "slower_rooms": _ideal([f for f in faults if f["kind"] in SLOWER and f["place"] == "room"]),
+            "sure_rooms": _ideal([f for f in faults if f["kind"] in SURE and f["place"] == "room"]),
+            "hard_rooms": _ideal([f for f in faults if f["kind"] in HARD and f["place"] == "room"]),
         },
         "doubted": {
             "sure": _doubted([f for f in faults if f["kind"] in SURE]),
@@ -154,31 +158,48 @@ def _detection(faults: Sequence[Record]) -> dict[str, Any]:
     }
 
 
-def readings_wanted(window_s: float, crosstalk: float) -> int:
+def readings_wanted(window_s: float, crosstalk: float, fired: int | None = None) -> int:
     """Return how many readings of a window must be off before a fault is sure, by this count alone.
 
-    Smallest count that 16 healthy sonars reach by crosstalk (share of the readings, 0 to 1) in less than one of the
-    successive windows of 100 h.
+    Smallest count that 16 healthy sonars, each with `fired` readings (default: as often as all take turns), reach by
+    crosstalk (share of the readings, 0 to 1) in less than one of the successive windows of 100 h.
     """
-    fired = int(window_s / REFRESH_S)
+    fired = int(window_s / REFRESH_S) if fired is None else fired
     windows = SONARS * 100 * 3600 / window_s
     return next((n for n in range(1, fired) if windows * beta_cdf(crosstalk, n, fired - n + 1) <= 1.0), fired)
 
 
 def _ideal(faults: Sequence[Record]) -> dict[str, Any]:
-    """What an observer would find in time that knows each true range, and counts the readings that are off.
+    """What two observers would find in time that count the readings that are off.
 
-    `three`: three are enough for it, so by its count alone it errs thousands of times in 100 h. `once`: it errs once.
-    What was found by less, such as one value again and again, is found by it too.
+    The first knows each true range. `three`: three are enough for it, so by its count alone it errs thousands of times
+    in 100 h. `once`: so many, of those that the sonar gave, that it errs once; `once_latency_s`: when it is sure then.
+    `peers`: the second counts only those of the first that another sonar contradicts, and wants as many as `once`.
+    What was found by less, such as one value again and again, is found by both too.
     """
     judged = [fault for fault in faults if fault["apart"] is None]
     crosstalk = sonar_defaults()["crosstalk"]
 
-    def found(wanted: Callable[[float], int]) -> dict[str, Any]:
-        enough = [f["found"] or f["visible_in_time"] >= wanted(BOUND_S[f["kind"]]) for f in judged]
-        return _share(sum(enough), len(enough))
+    def found(count: str, wanted: Callable[[Record], int]) -> dict[str, Any]:
+        return _share(sum(f["found"] or f[count] >= wanted(f) for f in judged), len(judged))
 
-    return {"three": found(lambda _: SHOWN_READINGS), "once": found(lambda s: readings_wanted(s, crosstalk))}
+    def sure(fault: Record) -> int:
+        return max(1, readings_wanted(BOUND_S[fault["kind"]], crosstalk, fault["readings_in_time"]))
+
+    return {
+        "three": found("visible_in_time", lambda _: SHOWN_READINGS),
+        "once": found("visible_in_time", sure),
+        "peers": found("contradicted_in_time", sure),
+        "measured": _share(sum(f["found"] for f in judged), len(judged)),
+        "latency_s": _spread([f["latency_s"] for f in judged if f["latency_s"] is not None]),
+        "once_latency_s": _spread([at for f in judged if (at := _sure_at(f, sure(f))) is not None]),
+    }
+
+
+def _sure_at(fault: Record, wanted: int) -> float | None:
+    """When the observer of the truth is sure, or the fault was found, if that was sooner; None: never."""
+    times = [fault["latency_s"], *fault["visible_at"][wanted - 1 : wanted]]
+    return min((float(t) for t in times if t is not None), default=None)
 
 
 def _doubted(faults: Sequence[Record]) -> dict[str, Any]:

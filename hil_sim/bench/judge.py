@@ -9,10 +9,11 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, Final
 
-from hil_sim.sil import VISIBLE_MM, VISIBLE_PART, FaultTruth, Outcome, Sighting, Sil
+from hil_sim.bench.witness import contradicted, fired, is_visible
+from hil_sim.sil import FaultTruth, Outcome, Sighting, Sil
 from hil_sim.sonar import CYCLE_MS, NO_ECHO_MM
 
-RECORD_FORMAT: Final = 3
+RECORD_FORMAT: Final = 4
 """Raised whenever a record gets another field: results of two formats do not mix."""
 BOUND_S: Final[Mapping[str, float]] = {
     "off": 10.0,
@@ -29,6 +30,8 @@ SHOWN_READINGS: Final = 3
 
 A sonar that is DISABLED fires no more, so the rule sets none apart that was DISABLED while it failed.
 """
+NOTED_READINGS: Final = 16
+"""Of so many of its first visible readings a record tells the times."""
 REFRESH_S: Final = 8 * CYCLE_MS / 1000
 """Each sonar of the two arrays of eight fires once in this time."""
 FALSE_AFTER_S: Final = 10.0
@@ -47,13 +50,14 @@ Change = tuple[float, str, str]
 
 @dataclass
 class Track:
-    """What the judge notes with each SIP: way and driving time, and what faulty sonars report."""
+    """What the judge notes with each SIP: way and driving time, what faulty sonars report, and all that was seen."""
 
     t_s: list[float] = field(default_factory=list)
     driven_mm: list[float] = field(default_factory=list)
     driving_s: list[float] = field(default_factory=list)
     visible_s: dict[int, list[float]] = field(default_factory=dict)
     stuck_mm: dict[int, set[int]] = field(default_factory=dict)
+    sightings: list[Sighting] = field(default_factory=list)
 
     def __call__(self, sil: Sil, sighting: Sighting) -> None:
         """Take a SIP; pass the track itself as `trace`."""
@@ -62,6 +66,7 @@ class Track:
         before = self.driving_s[-1] if self.driving_s else 0.0
         moves = abs(robot.v) > _MOVING_MM_S or abs(robot.w) > _TURNING_DEG_S
         self.t_s.append(sighting.t_s)
+        self.sightings.append(sighting)
         self.driven_mm.append(robot.travelled_mm)
         self.driving_s.append(before + (sighting.t_s - before_t if moves else 0.0))
         for reading in sighting.readings:
@@ -81,11 +86,6 @@ class Track:
     def _at(self, values: Sequence[float], t_s: float) -> float:
         place = bisect_right(self.t_s, t_s)
         return values[place - 1] if place else 0.0
-
-
-def is_visible(reading: Any) -> bool:
-    """Whether a reading is off by more than max(100 mm, 5 %)."""
-    return bool(abs(reading.range_mm - reading.true_mm) > max(VISIBLE_MM, VISIBLE_PART * reading.true_mm))
 
 
 def health_at(changes: Sequence[Change], t_s: float) -> tuple[str, str]:
@@ -137,6 +137,9 @@ def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, 
         "visible_s": _r(truth.first_visible_s),
         "visible_n": _visible_count(truth, track, end_s),
         "visible_in_time": _visible_in_time(truth, track, end_s),
+        "visible_at": _visible_at(truth, track, end_s),
+        "readings_in_time": _readings_in_time(truth, track, end_s),
+        "contradicted_in_time": _contradicted_in_time(truth, track, end_s),
         "apart": None,
         "found": False,
         "doubted_s": None,
@@ -183,6 +186,39 @@ def _visible_in_time(truth: FaultTruth, track: Track, end_s: float) -> int:
     if truth.first_visible_s is None:
         return 0
     return _visible_count(truth, track, min(end_s, truth.first_visible_s + BOUND_S[truth.kind]))
+
+
+def _in_time(truth: FaultTruth, end_s: float) -> tuple[float, float]:
+    """From the first visible reading on, the time to find a fault."""
+    first_s = truth.first_visible_s if truth.first_visible_s is not None else end_s
+    return first_s, min(end_s, first_s + BOUND_S[truth.kind])
+
+
+def _visible_at(truth: FaultTruth, track: Track, end_s: float) -> list[float]:
+    """When the first visible readings came, s after the first: as many as an observer of the truth may want."""
+    first_s = truth.first_visible_s
+    if first_s is None:
+        return []
+    if truth.kind == "silent":
+        return [
+            round(k * REFRESH_S, 3) for k in range(min(NOTED_READINGS, _visible_count(truth, track, end_s)))
+        ]
+    seen = [t for t in track.visible_s.get(truth.sonar, []) if first_s <= t <= end_s]
+    return [round(t - first_s, 3) for t in seen[:NOTED_READINGS]]
+
+
+def _readings_in_time(truth: FaultTruth, track: Track, end_s: float) -> int:
+    """All that the sonar reported in that time, right or not; of one that is silent its slots."""
+    if truth.kind == "silent":
+        return _visible_in_time(truth, track, end_s)
+    return fired(track.sightings, truth.sonar, *_in_time(truth, end_s))
+
+
+def _contradicted_in_time(truth: FaultTruth, track: Track, end_s: float) -> int:
+    """Of the visible readings in that time, those that another sonar contradicts; a missing one needs none."""
+    if truth.kind == "silent":
+        return _visible_in_time(truth, track, end_s)
+    return contradicted(track.sightings, truth.sonar, *_in_time(truth, end_s))
 
 
 def _visible_count(truth: FaultTruth, track: Track, end_s: float) -> int:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from hil_sim.bench.figures import KINDS, NOT_FOUND, Record, summarise
+from hil_sim.bench.figures import HARD, KINDS, NOT_FOUND, QUICK, SLOWER, SURE, Record, summarise
 from hil_sim.errors import SimError
 
 NAME: Final = "diagnosis"
@@ -24,6 +24,8 @@ _FIELDS: Final = (
     "visible_s",
     "visible_n",
     "visible_in_time",
+    "readings_in_time",
+    "contradicted_in_time",
     "apart",
     "found",
     "doubted_s",
@@ -125,8 +127,45 @@ def _profile(one: Record) -> list[str]:
             for bar in one["bars"]
         ],
     )
-    lines += ["", *_kinds(one), "", *_confusion(one), "", *_other(one)]
+    lines += ["", *_kinds(one), "", *_confusion(one), "", *_ideal(one), "", *_other(one)]
     return lines
+
+
+# ---- what could be found ------------------------------------------------------------------------------------------
+
+_OBSERVERS: Final = ("measured", "peers", "once", "three")
+_GROUPS: Final = {
+    "sure": ", ".join(SURE),
+    "hard": ", ".join(HARD),
+    "sure_rooms": f"{', '.join(SURE)}; rooms",
+    "hard_rooms": f"{', '.join(HARD)}; rooms",
+    "quick_rooms": f"{', '.join(QUICK)}; rooms",
+    "slower_rooms": f"{', '.join(SLOWER)}; rooms",
+}
+
+
+def _ideal(one: Record) -> list[str]:
+    return _rows(
+        (
+            "found in time, %",
+            "cases",
+            "measured",
+            "by the peers alone",
+            "by the truth, once in 100 h",
+            "three off",
+        ),
+        [
+            (
+                title,
+                ideal["measured"]["of"],
+                *(_percent(ideal[by]["rate"]) for by in _OBSERVERS),
+                _two(ideal["latency_s"], 1.0),
+                _two(ideal["once_latency_s"], 1.0),
+            )
+            for group, title in _GROUPS.items()
+            for ideal in [one["ideal"][group]]
+        ],
+    )
 
 
 def _kinds(one: Record) -> list[str]:
@@ -184,14 +223,8 @@ def _other(one: Record) -> list[str]:
     false, hurt, named = one["false_disables"], one["false_disables_with_faults"], one["false_names"]
     verify, hits, back = one["verification"], one["collisions"], one["rehabilitation"]
     counts = ", ".join(f"{count} {how}" for how, count in sorted(back["counts"].items()))
-    sure, hard = one["ideal"]["sure"], one["ideal"]["hard"]
     doubted = [_percent(one["doubted"][kinds]["rate"]) for kinds in ("sure", "hard")]
     lines = [
-        "- Who knows each true range and takes three readings that are off for a fault finds at most "
-        f"{_percent(sure['three']['rate'])} % (off, stuck, garbage, slow) and {_percent(hard['three']['rate'])} % "
-        "(wrong, intermittent) in time; who takes so many that "
-        "1 % of crosstalk deceives it once in 100 h of successive windows, at most "
-        f"{_percent(sure['once']['rate'])} % and {_percent(hard['once']['rate'])} %",
         f"- DISABLED or a SUSPECT with any kind, also a wrong one, in time: {doubted[0]} % (off, stuck, garbage, slow) "
         f"and {doubted[1]} % (wrong, intermittent)",
         f"- False disables, fault-free: {false['count']} in {false['hours']:.2f} h of {false['missions']} missions; "

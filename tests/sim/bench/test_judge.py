@@ -14,10 +14,10 @@ from hil_sim.bench.judge import (
     Track,
     false_disables,
     false_names,
-    is_visible,
     judge,
     judge_fault,
 )
+from hil_sim.bench.witness import is_visible
 from hil_sim.sil import Collision, FaultTruth, Mission, run
 from hil_sim.sonar import NO_ECHO_MM, Reading
 
@@ -120,6 +120,16 @@ def test_stuck_at_no_echo_may_be_called_off(kind: str, readings: set[int], right
     own.stuck_mm[3] = readings
     assert judged(fault(kind), (12.0, "DISABLED", "off"), track=own)["named_right"] is right
     assert judged(fault(kind), (12.0, "SUSPECT", "off"), track=own)["found"] is right
+
+
+# ---- what could be seen -----------------------------------------------------------------------------------------
+
+
+def test_the_times_of_the_first_visible_readings_are_noted() -> None:
+    assert judged(fault(end_s=14.5))["visible_at"] == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert judged(fault(end_s=200.0))["visible_at"] == [float(k) for k in range(16)]
+    assert judged(fault("silent", end_s=11.0))["visible_at"] == [0.0, 0.32, 0.64, 0.96]
+    assert judged(fault(first_visible_s=None), track=track())["visible_at"] == []
 
 
 # ---- set apart --------------------------------------------------------------------------------------------------

@@ -90,11 +90,12 @@ def test_false_names_are_counted_beside_them() -> None:
 
 @pytest.mark.parametrize("window_s", [10.0, 30.0])
 @pytest.mark.parametrize("crosstalk", [0.01, 0.03])
+@pytest.mark.parametrize("pace", [None, 1.0, 2.0])
 def test_an_observer_that_errs_once_in_100_h_wants_so_many_readings(
-    window_s: float, crosstalk: float
+    window_s: float, crosstalk: float, pace: float | None
 ) -> None:
     windows = 16 * 360_000 / window_s
-    fired = int(window_s / 0.32)
+    fired = int((pace or 1) * window_s / 0.32)
 
     def deceived(count: int) -> float:
         ways = range(count, fired + 1)
@@ -102,7 +103,7 @@ def test_an_observer_that_errs_once_in_100_h_wants_so_many_readings(
             math.comb(fired, k) * crosstalk**k * (1 - crosstalk) ** (fired - k) for k in ways
         )
 
-    wanted = readings_wanted(window_s, crosstalk)
+    wanted = readings_wanted(window_s, crosstalk, None if pace is None else fired)
     assert deceived(wanted) <= 1 < deceived(wanted - 1)
 
 
@@ -130,6 +131,46 @@ def test_what_an_observer_of_the_truth_would_find_is_told() -> None:
         1,
         4,
     )
+
+
+def test_what_the_peers_alone_would_find_is_told_of_all_and_of_rooms() -> None:
+    late: dict[str, Any] = {"found": False, "latency_s": 50.0}
+    hall = [one | {"place": "open"} for one in missions(2, contradicted_in_time=5, **late)]
+    records = [
+        *hall,
+        *missions(4, contradicted_in_time=0),
+        *missions(1, contradicted_in_time=5, **late),
+        *missions(1, contradicted_in_time=6, **late),
+        *missions(3, "slow", contradicted_in_time=1, **late),
+        *missions(1, contradicted_in_time=7, readings_in_time=62, **late),  # of twice as many
+        *missions(3, "wrong", contradicted_in_time=7, **late),
+        *missions(2, "silent", contradicted_in_time=8, **late),
+    ]
+    ideal = summarise(records)["profiles"]["argus"]["ideal"]
+
+    def told(group: str) -> tuple[int, int, int]:
+        one = ideal[group]
+        return one["measured"]["hits"], one["peers"]["hits"], one["peers"]["of"]
+
+    assert told("sure") == (4, 5, 12)
+    assert told("sure_rooms") == told("quick_rooms") == (4, 5, 10)
+    assert told("hard") == told("hard_rooms") == (0, 0, 3)
+    assert told("slower_rooms") == (0, 2, 5)
+
+
+def test_when_an_observer_of_the_truth_is_sure_is_told() -> None:
+    times = [0.0, 0.4, 0.8, 2.0, 3.0, 4.0, 5.0, 9.0, 9.5]
+    records = [
+        *missions(3, latency_s=8.0, visible_at=times),  # wants six of 31
+        *missions(1, latency_s=8.0, visible_at=times, readings_in_time=62),  # eight of 62
+        *missions(1, latency_s=1.0, visible_at=times),  # found sooner
+        *missions(1, found=False, latency_s=None, visible_at=times[:5]),  # neither
+        *missions(2, "wrong", latency_s=20.0, visible_at=times),  # eight of 93
+    ]
+    ideal = summarise(records)["profiles"]["argus"]["ideal"]
+    assert ideal["quick_rooms"]["once_latency_s"] == {"n": 5, "median": 4.0, "p99": 8.0}
+    assert ideal["quick_rooms"]["latency_s"] == {"n": 5, "median": 8.0, "p99": 8.0}
+    assert ideal["slower_rooms"]["once_latency_s"] == {"n": 2, "median": 9.0, "p99": 9.0}
 
 
 def test_what_is_doubted_in_time_is_told_whatever_its_name() -> None:
