@@ -153,6 +153,8 @@ def _ideal(one: Record) -> list[str]:
             "by the peers alone",
             "by the truth, once in 100 h",
             "three off",
+            "latency s, median / p99: measured",
+            "by the truth, once in 100 h",
         ),
         [
             (

@@ -8,6 +8,7 @@ import csv
 import io
 import json
 import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ import pytest
 from bench.missions import judged, record
 
 from hil_sim.bench.figures import KINDS, readings_wanted, summarise
-from hil_sim.bench.report import table, write_report
+from hil_sim.bench.report import markdown, table, write_report
 
 META = {"core": "0" * 64, "split": "judge"}
 BARS = {
@@ -266,3 +267,17 @@ def test_all_files_are_written_and_agree(tmp_path: Path) -> None:
 @pytest.mark.parametrize("records", [[], [{**record(), "error": "it broke"}]])
 def test_nothing_to_report_is_no_error(tmp_path: Path, records: list[dict[str, Any]]) -> None:
     assert "0 missions" in write_report(tmp_path, records, META, plots=True)
+
+
+def test_every_row_of_a_table_has_the_columns_of_its_head() -> None:
+    lines = markdown(
+        {"meta": META | {"errors": 0}} | summarise([*missions(3), *missions(2, "wrong"), *free(2)])
+    ).splitlines()
+    columns = 0
+    tables = 0
+    for before, line in pairwise(["", *lines]):
+        if line.startswith("|"):
+            tables += not before.startswith("|")
+            columns = columns if before.startswith("|") else line.count("|")
+            assert line.count("|") == columns, line
+    assert tables == 4
