@@ -30,6 +30,19 @@ SONAR_POSES: Final[tuple[Pose, ...]] = tuple(
     Pose(float(p["x_mm"]), float(p["y_mm"]), float(p["heading_deg"])) for p in _TABLE["pose"]
 )
 
+
+def transducer_pose(number: int, robot: Pose) -> Pose:
+    """Return where sonar 0 to 15 of a robot is in the world, and where it looks; degrees as they add up."""
+    mount = SONAR_POSES[number]
+    heading = math.radians(robot.heading_deg)
+    c, s = math.cos(heading), math.sin(heading)
+    return Pose(
+        robot.x_mm + mount.x_mm * c - mount.y_mm * s,
+        robot.y_mm + mount.x_mm * s + mount.y_mm * c,
+        robot.heading_deg + mount.heading_deg,
+    )
+
+
 _RAY_STEP_DEG: Final = 1.5
 _CELL_MM: Final = 500.0
 _RESUME_MS: Final = 1000.0
@@ -235,12 +248,8 @@ class EchoModel:
             value = self._kernel.ping_mm(number, pose.x_mm, pose.y_mm, pose.heading_deg, angle_deg, patch)
             if value >= 0:
                 return value
-        mount = SONAR_POSES[number]
-        heading = math.radians(pose.heading_deg)
-        c, s = math.cos(heading), math.sin(heading)
-        x = pose.x_mm + mount.x_mm * c - mount.y_mm * s
-        y = pose.y_mm + mount.x_mm * s + mount.y_mm * c
-        return self.range_mm(x, y, pose.heading_deg + mount.heading_deg + angle_deg, moving)
+        at = transducer_pose(number, pose)
+        return self.range_mm(at.x_mm, at.y_mm, at.heading_deg + angle_deg, moving)
 
     def range_mm(
         self, x_mm: float, y_mm: float, heading_deg: float, moving: MovingEchoes | None = None

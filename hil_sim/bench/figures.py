@@ -24,6 +24,19 @@ QUICK: Final = ("off", "garbage", "slow")
 SLOWER: Final = ("silent", "stuck", "wrong", "intermittent")
 
 
+ROOMS: Final = ("room",)
+EVERYWHERE: Final = ("room", "open")
+OBSERVED: Final = {
+    "sure": (SURE, EVERYWHERE),
+    "hard": (HARD, EVERYWHERE),
+    "sure_rooms": (SURE, ROOMS),
+    "hard_rooms": (HARD, ROOMS),
+    "quick_rooms": (QUICK, ROOMS),
+    "slower_rooms": (SLOWER, ROOMS),
+}
+"""Of which kinds in which places the report tells what could be found."""
+
+
 @dataclass(frozen=True)
 class Bar:
     """One line of the table that decides. verdict: pass, open (the value clears it, its 95 % bound does not), fail."""
@@ -97,12 +110,8 @@ def figures(records: Sequence[Record]) -> dict[str, Any]:
         },
         "all": _detection(faults),
         "ideal": {
-            "sure": _ideal([f for f in faults if f["kind"] in SURE]),
-            "hard": _ideal([f for f in faults if f["kind"] in HARD]),
-            "quick_rooms": _ideal([f for f in faults if f["kind"] in QUICK and f["place"] == "room"]),
-            "slower_rooms": _ideal([f for f in faults if f["kind"] in SLOWER and f["place"] == "room"]),
-            "sure_rooms": _ideal([f for f in faults if f["kind"] in SURE and f["place"] == "room"]),
-            "hard_rooms": _ideal([f for f in faults if f["kind"] in HARD and f["place"] == "room"]),
+            name: _ideal([f for f in faults if f["kind"] in kinds and f["place"] in places])
+            for name, (kinds, places) in OBSERVED.items()
         },
         "doubted": {
             "sure": _doubted([f for f in faults if f["kind"] in SURE]),

@@ -181,17 +181,17 @@ def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, 
     return record
 
 
-def _visible_in_time(truth: FaultTruth, track: Track, end_s: float) -> int:
-    """The visible readings while there is time to find the fault: nobody has more to find it by."""
-    if truth.first_visible_s is None:
-        return 0
-    return _visible_count(truth, track, min(end_s, truth.first_visible_s + BOUND_S[truth.kind]))
-
-
 def _in_time(truth: FaultTruth, end_s: float) -> tuple[float, float]:
     """From the first visible reading on, the time to find a fault."""
     first_s = truth.first_visible_s if truth.first_visible_s is not None else end_s
     return first_s, min(end_s, first_s + BOUND_S[truth.kind])
+
+
+def _visible_in_time(truth: FaultTruth, track: Track, end_s: float) -> int:
+    """The visible readings while there is time to find the fault: nobody has more to find it by."""
+    if truth.first_visible_s is None:
+        return 0
+    return _visible_count(truth, track, _in_time(truth, end_s)[1])
 
 
 def _visible_at(truth: FaultTruth, track: Track, end_s: float) -> list[float]:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from hil_sim.bench.figures import HARD, KINDS, NOT_FOUND, QUICK, SLOWER, SURE, Record, summarise
+from hil_sim.bench.figures import KINDS, NOT_FOUND, OBSERVED, ROOMS, Record, summarise
 from hil_sim.errors import SimError
 
 NAME: Final = "diagnosis"
@@ -134,14 +134,6 @@ def _profile(one: Record) -> list[str]:
 # ---- what could be found ------------------------------------------------------------------------------------------
 
 _OBSERVERS: Final = ("measured", "peers", "once", "three")
-_GROUPS: Final = {
-    "sure": ", ".join(SURE),
-    "hard": ", ".join(HARD),
-    "sure_rooms": f"{', '.join(SURE)}; rooms",
-    "hard_rooms": f"{', '.join(HARD)}; rooms",
-    "quick_rooms": f"{', '.join(QUICK)}; rooms",
-    "slower_rooms": f"{', '.join(SLOWER)}; rooms",
-}
 
 
 def _ideal(one: Record) -> list[str]:
@@ -158,14 +150,14 @@ def _ideal(one: Record) -> list[str]:
         ),
         [
             (
-                title,
+                ", ".join(kinds) + ("; rooms" if places == ROOMS else ""),
                 ideal["measured"]["of"],
                 *(_percent(ideal[by]["rate"]) for by in _OBSERVERS),
                 _two(ideal["latency_s"], 1.0),
                 _two(ideal["once_latency_s"], 1.0),
             )
-            for group, title in _GROUPS.items()
-            for ideal in [one["ideal"][group]]
+            for name, (kinds, places) in OBSERVED.items()
+            for ideal in [one["ideal"][name]]
         ],
     )
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from hil_sim.robot import SonarReading
 from hil_sim.sil import VISIBLE_MM, VISIBLE_PART, Sighting
-from hil_sim.sonar import NO_ECHO_MM, SONAR_POSES
+from hil_sim.sonar import NO_ECHO_MM, transducer_pose
 from hil_sim.world import Pose
 
 # One place and one bearing are for the observer what they are for the peers (firmware/awareness/evidence_peers.c and
@@ -81,12 +81,8 @@ def _glimpses(sightings: Sequence[Sighting], sonar: int) -> tuple[Table, Table]:
 
 
 def _glimpse(reading: SonarReading, before: Sighting, now: Sighting) -> tuple[float, ...]:
-    pose = _between(before, now, reading.t_ms / 1000)
-    mount = SONAR_POSES[reading.number]
-    c, s = math.cos(math.radians(pose.heading_deg)), math.sin(math.radians(pose.heading_deg))
-    x = pose.x_mm + mount.x_mm * c - mount.y_mm * s
-    y = pose.y_mm + mount.x_mm * s + mount.y_mm * c
-    return reading.t_ms / 1000, x, y, pose.heading_deg + mount.heading_deg, reading.range_mm
+    at = transducer_pose(reading.number, _between(before, now, reading.t_ms / 1000))
+    return reading.t_ms / 1000, at.x_mm, at.y_mm, at.heading_deg, reading.range_mm
 
 
 def _between(before: Sighting, now: Sighting, t_s: float) -> Pose:
