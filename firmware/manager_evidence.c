@@ -6,6 +6,7 @@
 #define HOLD_MM 400u      // an acquitted sonar is not looked at again for a lost echo before this distance,
 #define HOLD_DOUBLINGS 2u // ... doubled with each acquittal so often
 #define HOLD_FORGET_MM 4000u // ... and forgotten after this one
+#define LOST_HOLD_MM 100u    // ... for its own lost echo, one that does not look ahead
 #define SPACING_MS 3000u     // between two looks for a mere jump
 #define ROUTINE_MM_S \
     100u // a look at all beside the main task only when the robot has driven so far in the meantime
@@ -125,11 +126,25 @@ void argus_judge(argus_t *const self) {
     }
 }
 
-static bool is_held(const argus_t *const self, const int sonar) {
+static bool was_cleared_within(const argus_t *const self, const int sonar, const uint32_t way_mm) {
     const argus_hold_t *const hold = &self->hold[sonar];
-    const uint32_t way_mm = self->knowledge.odometer_mm - hold->odometer_mm;
-    return hold->acquittals > 0 &&
-           way_mm < HOLD_MM << (unsigned)argus_min(hold->acquittals - 1, (int32_t)HOLD_DOUBLINGS);
+    return hold->acquittals > 0 && self->knowledge.odometer_mm - hold->odometer_mm < way_mm;
+}
+
+static bool is_held(const argus_t *const self, const int sonar) {
+    const int32_t doublings = argus_min(self->hold[sonar].acquittals - 1, (int32_t)HOLD_DOUBLINGS);
+    return was_cleared_within(self, sonar, HOLD_MM << (unsigned)argus_max(0, doublings));
+}
+
+// Beside a smooth wall one that looks aside loses its echo in each look anew: it must not keep the robot
+// there.
+static uint16_t lost(const argus_t *const self) {
+    unsigned mask = self->evidence.lost;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const bool ahead = (ARGUS_FORWARD_MASK >> i & 1u) != 0;
+        mask &= !ahead && was_cleared_within(self, i, LOST_HOLD_MM) ? ~(1u << i) : ~0u;
+    }
+    return (uint16_t)mask;
 }
 
 static uint16_t without_held(const argus_t *const self, const unsigned mask) {
@@ -152,7 +167,7 @@ static uint16_t suspected(const argus_t *const self) {
 // long.
 uint16_t argus_worth_a_look(argus_t *const self) {
     const uint16_t unseen = argus_evidence_unseen(&self->evidence, &self->knowledge, &self->config);
-    const unsigned ahead = self->evidence.lost | unseen;
+    const unsigned ahead = lost(self) | unseen;
     const bool spaced = self->now_ms - self->looked_ms >= SPACING_MS;
     const unsigned jumped = spaced ? self->evidence.jumped & ARGUS_FORWARD_MASK : 0u;
     const unsigned open = without_held(self, suspected(self) | jumped) | ahead;

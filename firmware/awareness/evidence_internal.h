@@ -9,9 +9,10 @@
 
 // The increments of a test, in hundredths of a nat (DESIGN.md derives them), and its bounds.
 typedef struct {
-    int16_t suspicious; // a look is called for
-    int16_t naming;     // a suspect with the name of its fault, not relied on
-    int16_t convincing; // DISABLED
+    int16_t suspicious;  // a look is called for
+    int16_t naming;      // a suspect with the name of its fault, not relied on
+    int16_t naming_busy; // ... while something moves about the robot; at least `naming`
+    int16_t convincing;  // DISABLED
     int16_t floor;
     int16_t ceiling;
 } argus_bounds_t;

@@ -67,18 +67,23 @@ static bool rests_on_views(const argus_test_t test) {
     return test == ARGUS_TEST_VIEW || test == ARGUS_TEST_OFF;
 }
 
-static bool is_named_by(const argus_case_t *const c, const argus_test_t test) {
+static bool is_named_by(const argus_case_t *const c, const argus_test_t test, const int32_t level) {
     const bool enough = test == ARGUS_TEST_OFF ? c->none_run >= OFF_RUN && c->misses > 0
                                                : test != ARGUS_TEST_VIEW || (c->conflicts >= NAME_CONFLICTS &&
                                                                              partners(c) >= NAME_PARTNERS);
-    return c->score[test] >= argus_bounds[test].naming && enough;
+    return c->score[test] >= level && enough;
+}
+
+static int32_t naming_level(const argus_evidence_t *const self, const argus_test_t test) {
+    return self->busy ? argus_bounds[test].naming_busy : argus_bounds[test].naming;
 }
 
 static bool is_convicted_by(const argus_case_t *const c, const argus_test_t test, const bool busy) {
     const bool enough = !rests_on_views(test) ||
                         (!busy && 2 * c->borne_out <= c->conflicts && c->conflicts >= CONVICT_CONFLICTS &&
                          c->episodes >= CONVICT_EPISODES && beside_the_main(c) >= CONVICT_BESIDE);
-    return c->score[test] >= argus_bounds[test].convincing && enough && is_named_by(c, test);
+    return c->score[test] >= argus_bounds[test].convincing && enough &&
+           is_named_by(c, test, argus_bounds[test].naming);
 }
 
 // Late against wrong, in hundredths of a nat: what the changes of its own readings say, and what the others
@@ -148,7 +153,7 @@ static argus_fault_kind_t first_name(const argus_evidence_t *const self, const i
     for (int i = 0; i < tests; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
         const bool enough = test != ARGUS_TEST_PEERS || has_partners(self, sonar);
-        if (is_named_by(&self->of[sonar], test) && enough) {
+        if (is_named_by(&self->of[sonar], test, naming_level(self, test)) && enough) {
             return kind_by(self, sonar, test, LATE_FIRST);
         }
     }

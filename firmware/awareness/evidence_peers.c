@@ -9,6 +9,7 @@
 
 #define AGE_MS 10000u
 #define SAME_BEARING_CDEG 300
+#define BESIDE_CDEG 500 // at a step of what is seen a reading may be of either side
 #define SAME_LATERAL_MM 60
 #define SAME_ALONG_MM 200
 #define PING_AGE_MS 70 // a SIP lists pings 0 to 140 ms old
@@ -33,8 +34,11 @@ typedef struct {
     uint8_t agree;
     uint8_t differ;
     uint8_t quiet;
+    bool excused;     // nobody agrees, but one of them saw the same a little aside
     uint16_t against; // those that differ, bit i: sonar i
 } tally_t;
+
+_Static_assert(ARGUS_GLIMPSES <= 32, "weighed has a bit for each");
 
 // Hundredths of a nat; DESIGN.md, Evidence, derives them. By the part of the other sonars' readings that is
 // contradicted at the time, in steps of 5 % from 5 %.
@@ -82,24 +86,55 @@ static verdict_t compare(const int32_t now_mm, const int32_t then_mm, const int3
     return (verdict_t)verdict[argus_pair_compare(now_mm, then_mm, along_mm)];
 }
 
-static const argus_glimpse_t *at_back(const argus_peer_t *const self, const int back) {
-    return back <= self->count ? &self->seen[(self->next + ARGUS_GLIMPSES - back) % ARGUS_GLIMPSES] : NULL;
+static int slot_of(const argus_peer_t *const self, const int back) {
+    return (self->next + ARGUS_GLIMPSES - back) % ARGUS_GLIMPSES;
 }
 
-// The latest glimpse of a peer on the bearing of `now` from its place decides.
-static verdict_t ask(const argus_peer_t *const peer, const argus_glimpse_t *const now,
-                     const uint32_t now_ms) {
-    for (int i = 1; i <= peer->count; i++) {
+// 1: the last.
+static const argus_glimpse_t *at_back(const argus_peer_t *const self, const int back) {
+    return back <= self->count ? &self->seen[slot_of(self, back)] : NULL;
+}
+
+// How far back, beyond `after`, a peer looked from the place of `at` within `span_cdeg` of its bearing; 0: it
+// did not.
+static int find(const argus_peer_t *const peer, const argus_glimpse_t *const at, const uint32_t now_ms,
+                const int32_t span_cdeg, const int after) {
+    for (int i = after + 1; i <= peer->count; i++) {
         const argus_glimpse_t *const then = at_back(peer, i);
         int32_t along_mm = 0;
         if (now_ms - then->t_ms > AGE_MS) {
-            return UNSEEN;
+            return 0;
         }
-        if (bearing_diff_cdeg(now, then) <= SAME_BEARING_CDEG && is_same_place(now, then, &along_mm)) {
-            return compare(now->reading_mm, then->reading_mm, along_mm);
+        if (bearing_diff_cdeg(at, then) <= span_cdeg && is_same_place(at, then, &along_mm)) {
+            return i;
         }
     }
-    return UNSEEN;
+    return 0;
+}
+
+static verdict_t compare_with(const argus_peer_t *const peer, const int back,
+                              const argus_glimpse_t *const at) {
+    const argus_glimpse_t *const then = at_back(peer, back);
+    int32_t along_mm = 0;
+    (void)is_same_place(at, then, &along_mm);
+    return compare(at->reading_mm, then->reading_mm, along_mm);
+}
+
+// The latest glimpse of a peer on the bearing of `at` from its place decides.
+static verdict_t ask(const argus_peer_t *const peer, const argus_glimpse_t *const at, const uint32_t now_ms) {
+    const int back = find(peer, at, now_ms, SAME_BEARING_CDEG, 0);
+    return back > 0 ? compare_with(peer, back, at) : UNSEEN;
+}
+
+static bool excuses(const argus_peer_t *const peer, const argus_glimpse_t *const at, const uint32_t now_ms) {
+    for (int back = find(peer, at, now_ms, BESIDE_CDEG, 0); back > 0;
+         back = find(peer, at, now_ms, BESIDE_CDEG, back)) {
+        const verdict_t said = compare_with(peer, back, at);
+        if (said == AGREED || said == QUIET) {
+            return true;
+        }
+    }
+    return false;
 }
 
 // A suspect that is contradicted at least as much itself says nothing of another: neither a liar of those
@@ -111,9 +146,19 @@ static bool is_witness(const argus_evidence_t *const self, const argus_knowledge
            (own < argus_bounds[ARGUS_TEST_PEERS].suspicious || own < self->of[of].score[ARGUS_TEST_PEERS]);
 }
 
+static bool is_excused(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar, const argus_glimpse_t *const now) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (is_witness(self, knowledge, i, sonar) && excuses(&self->peers.of[i], now, knowledge->sip_ms)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const argus_glimpse_t *const now) {
-    tally_t tally = {0, 0, 0, 0};
+    tally_t tally = {0, 0, 0, false, 0};
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if (!is_witness(self, knowledge, i, sonar)) {
             continue;
@@ -124,6 +169,8 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
         tally.differ = (uint8_t)(tally.differ + (said == CONTRADICTED));
         tally.against = (uint16_t)(tally.against | (said == CONTRADICTED ? 1u << i : 0u));
     }
+    const bool odd = tally.differ > 0 && tally.agree == 0 && tally.quiet == 0;
+    tally.excused = odd && is_excused(self, knowledge, sonar, now);
     return tally;
 }
 
@@ -132,16 +179,22 @@ static verdict_t verdict_of(const tally_t *const tally) {
         return tally->agree >= tally->differ ? AGREED : DIVIDED;
     }
     if (tally->differ > 0) {
-        return tally->quiet > 0 ? DIVIDED : CONTRADICTED;
+        return tally->quiet > 0 || tally->excused ? DIVIDED : CONTRADICTED;
     }
     return tally->quiet > 0 ? QUIET : UNSEEN;
+}
+
+// Of two in whichever order.
+static uint32_t ms_between(const argus_glimpse_t *const a, const argus_glimpse_t *const b) {
+    const uint32_t ms = a->t_ms - b->t_ms;
+    return ms <= INT32_MAX ? ms : b->t_ms - a->t_ms;
 }
 
 // From one place and on one bearing, one reading counts.
 static bool is_news(const argus_peer_t *const self, const argus_glimpse_t *const now) {
     for (int i = 0; i < ARGUS_COUNTED; i++) {
         const argus_glimpse_t *const then = &self->counted[i];
-        if (then->t_ms != 0 && now->t_ms - then->t_ms < COUNTED_MS &&
+        if (then->t_ms != 0 && ms_between(now, then) < COUNTED_MS &&
             argus_abs(argus_trail_offset_mm(now->x_mm, then->x_mm)) < COUNTED_MM &&
             argus_abs(argus_trail_offset_mm(now->y_mm, then->y_mm)) < COUNTED_MM &&
             bearing_diff_cdeg(now, then) < COUNTED_CDEG) {
@@ -209,10 +262,10 @@ static bool is_idle(const argus_peer_t *const self, const verdict_t verdict, con
     return (verdict == AGREED || verdict == QUIET) && self->late[lag] == 0 && self->told[lag] == 0;
 }
 
-// What the others would say of this reading had it been made at an earlier pose of its sonar.
+// What the others would say of this reading had it been made at the pose of its sonar so far back.
 static verdict_t verdict_as_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                               const int sonar, const argus_glimpse_t *const now, const int lag) {
-    const argus_glimpse_t *const then = at_back(&self->peers.of[sonar], lag);
+                               const int sonar, const argus_glimpse_t *const now, const int back) {
+    const argus_glimpse_t *const then = at_back(&self->peers.of[sonar], back);
     if (then == NULL) {
         return UNSEEN;
     }
@@ -247,8 +300,9 @@ static void weigh_lags(argus_peer_t *const peer, const verdict_t now, const uint
 }
 
 static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                       const int sonar, const argus_glimpse_t *const now, const verdict_t verdict) {
+                       const int sonar, const int back, const verdict_t verdict) {
     argus_peer_t *const peer = &self->peers.of[sonar];
+    const argus_glimpse_t now = *at_back(peer, back);
     uint8_t as_of[ARGUS_TRAIL] = {UNSEEN};
     int agreed = 0;
     int told = 0;
@@ -256,7 +310,7 @@ static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *co
         if (is_idle(peer, verdict, n)) {
             continue;
         }
-        as_of[n] = (uint8_t)verdict_as_of(self, knowledge, sonar, now, n);
+        as_of[n] = (uint8_t)verdict_as_of(self, knowledge, sonar, &now, back + n);
         agreed += as_of[n] == AGREED;
         told +=
             as_of[n] == AGREED || as_of[n] == CONTRADICTED || (as_of[n] == SAME && verdict == CONTRADICTED);
@@ -318,23 +372,48 @@ static argus_glimpse_t glimpse_of(const argus_peers_t *const self, const argus_k
     return glimpse;
 }
 
-void argus_peers_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                      const int sonar) {
+static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                  const int back) {
     argus_peer_t *const peer = &self->peers.of[sonar];
-    const argus_glimpse_t now = glimpse_of(&self->peers, knowledge, sonar);
-    const tally_t tally = ask_all(self, knowledge, sonar, &now);
+    const argus_glimpse_t at = *at_back(peer, back);
+    const tally_t tally = ask_all(self, knowledge, sonar, &at);
     const verdict_t verdict = verdict_of(&tally);
-    const bool odd = tally.agree == 0 && tally.differ > 0;
+    const bool odd = tally.agree == 0 && tally.differ > 0 && !tally.excused;
     const bool borne_out = tally.agree > 0 && tally.agree >= tally.differ;
-    if ((odd || borne_out) && is_news(peer, &now)) {
-        count(self, knowledge, sonar, &now, odd ? tally.against : 0);
+    peer->weighed |= verdict != UNSEEN ? 1u << slot_of(peer, back) : 0u;
+    if ((odd || borne_out) && is_news(peer, &at)) {
+        count(self, knowledge, sonar, &at, odd ? tally.against : 0);
     }
     if (verdict != DIVIDED && !(verdict == CONTRADICTED && argus_is_unrest_beside(self, knowledge, sonar))) {
-        doubt_time(self, knowledge, sonar, &now, verdict);
+        doubt_time(self, knowledge, sonar, back, verdict);
     }
-    peer->seen[peer->next] = now;
-    peer->next = (uint8_t)((peer->next + 1) % ARGUS_GLIMPSES);
-    peer->count = (uint8_t)argus_min(peer->count + 1, ARGUS_GLIMPSES);
+}
+
+// What nobody could judge when it was read is judged by who looks there later.
+static void look_back(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                      const int sonar) {
+    const argus_glimpse_t now = *at_back(&self->peers.of[sonar], 1);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const argus_peer_t *const peer = &self->peers.of[i];
+        const int back = i != sonar ? find(peer, &now, knowledge->sip_ms, SAME_BEARING_CDEG, 0) : 0;
+        if (back > 0 && (peer->weighed >> slot_of(peer, back) & 1u) == 0) {
+            weigh(self, knowledge, i, back);
+        }
+    }
+}
+
+static void note_seen(argus_peer_t *const self, const argus_glimpse_t now) {
+    self->seen[self->next] = now;
+    self->weighed &= ~(1u << self->next);
+    self->next = (uint8_t)((self->next + 1) % ARGUS_GLIMPSES);
+    self->count = (uint8_t)argus_min(self->count + 1, ARGUS_GLIMPSES);
+}
+
+void argus_peers_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                      const int sonar) {
+    note_seen(&self->peers.of[sonar], glimpse_of(&self->peers, knowledge, sonar));
+    weigh(self, knowledge, sonar, 1);
+    look_back(self, knowledge, sonar);
 }
 
 // By a sixtieth, at least by one.

@@ -27,6 +27,7 @@
 #define HEARD_BACK 5
 #define HEARD_CDEG 1000
 #define DEAF_CDEG 6000 // no echo through such a turn
+#define DEAF_RUN 5     // ... through so many readings: one more is a view, two would not say more
 #define SETTLED_MM 50
 
 // Hundredths of a nat; see DESIGN.md, Evidence.
@@ -437,5 +438,5 @@ bool argus_trail_test(argus_evidence_t *const self, const argus_knowledge_t *con
     }
     count_echo(c, knowledge, now, goes_on);
     follow(self, knowledge, now, before, goes_on, sonar);
-    return goes_on;
+    return goes_on || (now->steady && c->none_run >= DEAF_RUN);
 }

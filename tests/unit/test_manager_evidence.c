@@ -579,7 +579,8 @@ static int smooth_wall(const robot_t *r, int sonar) {
     return square > cos(25 * RAD) ? (int)lround(fabs(distance) / square) : 5000;
 }
 
-// S2: the sonars ahead hear nothing of a smooth wall that the robot slants into; the one abeam does.
+// S2: the sonars ahead hear nothing of a smooth wall that the robot slants into; the one abeam does. And a
+// sonar that loses the wall in each look does not keep the robot looking for it.
 void test_a_smooth_wall_beside_the_way_is_not_touched(void) {
     for (int side = -1; side <= 1; side += 2) {
         for (int slant = 6; slant <= 20; slant += 2) {
@@ -591,7 +592,9 @@ void test_a_smooth_wall_beside_the_way_is_not_touched(void) {
                                     side * (beside - 4000 * tan(slant * RAD))};
             memcpy(robot.segment[0], wall, sizeof wall);
             robot_goal(&robot, 3500, 0);
-            robot_run(&robot, 60000);
+            for (int minutes = 0; minutes == 0 || (minutes < 3 && robot.x <= 300); minutes++) {
+                robot_run(&robot, 60000);
+            }
             snprintf(text, sizeof text, "slant %d degrees, side %d: %.0f mm at the closest, %d stops", slant,
                      side, robot.closest_mm, robot_count_events(&robot, ARGUS_EV_OBJECT, 0));
             TEST_ASSERT_TRUE_MESSAGE(robot.closest_mm >= 5, text);

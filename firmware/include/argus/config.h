@@ -31,7 +31,7 @@
     X(step_speed_mm_s, 100, 30, 300, "mm/s", "", "speed of a step")                                          \
     X(speed_mm_s, 200, 30, 750, "mm/s", "", "speed of normal driving")                                       \
     X(accel_mm_s2, 300, 50, 2000, "mm/s2", "", "acceleration asked of the robot")                            \
-    X(decel_mm_s2, 300, 50, 2000, "mm/s2", "", "deceleration asked of the robot")                            \
+    X(decel_mm_s2, 600, 50, 2000, "mm/s2", "", "deceleration asked of the robot")                            \
     X(turn_speed_deg_s, 60, 10, 100, "deg/s", "", "speed of a turn")                                         \
     X(turn_accel_deg_s2, 200, 20, 300, "deg/s2", "", "angular acceleration asked of the robot")              \
     X(noise_mm, 5, 0, 100, "mm", "", "standard deviation of a sonar reading, for the S5 margin")             \

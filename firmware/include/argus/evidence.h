@@ -143,6 +143,7 @@ typedef struct {
     uint8_t next;
     uint8_t count;
     uint8_t counted_next;
+    uint32_t weighed; // bit i: seen[i] was, against what the others saw
 } argus_peer_t;
 
 typedef struct {
@@ -177,8 +178,9 @@ void argus_evidence_set_caution(argus_evidence_t *self, int32_t percent);
 // peers say; the other scores stay.
 void argus_evidence_restart(argus_evidence_t *self);
 
-// After each SIP. Cost: for each fresh sonar one pass over the views of the other 15 (120), and up to 9 over
-// their glimpses (480).
+// After each SIP. Cost: for each fresh sonar one pass over the views of the other 15 (120); over their
+// glimpses (480) one, two where they contradict it, eight more where its lags are doubted, and the same again
+// for each of the others that it answers.
 void argus_evidence_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge);
 
 // Whether a look is called for; the kind that the evidence names, or convicts of (NONE: not so far). A name

@@ -273,7 +273,7 @@ static const entry_t greeting[] = {{ARCOS_CMD_PULSE, 0, 0}, {ARCOS_CMD_OPEN, 0, 
                                    {ARCOS_CMD_OPEN, 0, 0},  {ARCOS_CMD_VEL, 0, 0},   {ARCOS_CMD_RVEL, 0, 0},
                                    {ARCOS_CMD_SETO, 0, 0},  {ARCOS_CMD_CONFIG, 0, 0}};
 static const entry_t set_up[] = {{ARCOS_CMD_SETV, 200, 0},  {ARCOS_CMD_SETA, 300, 0},
-                                 {ARCOS_CMD_SETA, -300, 0}, {ARCOS_CMD_SETRV, 60, 0},
+                                 {ARCOS_CMD_SETA, -600, 0}, {ARCOS_CMD_SETRV, 60, 0},
                                  {ARCOS_CMD_SETRA, 200, 0}, {ARCOS_CMD_SETRA, -200, 0},
                                  {ARCOS_CMD_SONAR, 1, 0},   {ARCOS_CMD_ENABLE, 1, 0}};
 #define GREETING (sizeof greeting / sizeof greeting[0])

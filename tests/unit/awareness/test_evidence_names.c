@@ -102,6 +102,30 @@ void test_each_test_names_its_kind_from_its_level_on(void) {
     }
 }
 
+// Readings that match nothing name garbage sooner where nothing moves, and convict no sooner; no test names
+// sooner where something does.
+void test_garbage_is_named_sooner_where_nothing_moves(void) {
+    static const struct {
+        int score;
+        bool busy;
+        argus_fault_kind_t named;
+    } by[] = {{499, false, ARGUS_KIND_NONE},
+              {500, false, ARGUS_KIND_GARBAGE},
+              {649, true, ARGUS_KIND_NONE},
+              {650, true, ARGUS_KIND_GARBAGE}};
+    for (int i = 0; i < 4; i++) {
+        setUp();
+        accuse(ARGUS_TEST_GARBAGE, by[i].score);
+        e.busy = by[i].busy;
+        snprintf(text, sizeof text, "%d, busy %d", by[i].score, by[i].busy);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].named, named(), text);
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
+    }
+    for (int test = 0; test < ARGUS_TESTS; test++) {
+        TEST_ASSERT_TRUE(argus_bounds[test].naming_busy >= argus_bounds[test].naming);
+    }
+}
+
 // Each test convicts from its own level on, but the peers do not at any score.
 void test_each_test_but_the_peers_convicts_from_its_level_on(void) {
     for (int i = 0; i < ARGUS_TESTS; i++) {

@@ -15,7 +15,8 @@
 #define ME 3
 #define WITNESS 4
 #define THIRD 5
-#define AGAINST 277 // one reading, where as few are contradicted as at the start
+#define AGAINST 277      // one reading, where as few are contradicted as at the start
+#define AGAINST_BOTH 139 // ... where the reading of who contradicts it has just been, too
 #define FOR (-93)
 #define NONE_MM 5000
 #define START_MS 0xFFFF8000u // the clock wraps in every tour
@@ -49,6 +50,7 @@ static argus_glimpse_t *remember(int sonar, argus_glimpse_t glimpse) {
     argus_peer_t *peer = &e.peers.of[sonar];
     argus_glimpse_t *at = &peer->seen[peer->next];
     *at = glimpse;
+    peer->weighed |= 1u << peer->next; // it is not the one that is judged
     peer->next = (uint8_t)((peer->next + 1) % ARGUS_GLIMPSES);
     peer->count = (uint8_t)argus_min(peer->count + 1, ARGUS_GLIMPSES);
     return at;
@@ -216,18 +218,114 @@ void test_the_seam_of_the_coordinates_changes_nothing(void) {
     TEST_ASSERT_EQUAL(0, compared_from(0, 0, 32768, 3000, 1000));
 }
 
-// Of several glimpses of one sonar the latest decides.
+// Of several glimpses of one sonar the latest decides; where it contradicts, one before it that agrees makes
+// it undecided.
 void test_the_latest_glimpse_of_a_witness_decides(void) {
     face(ME, 0);
-    saw(WITNESS, 1000);
+    saw(WITNESS, 2000);
     saw(WITNESS, 3000);
-    saw(WITNESS, 3000)->bearing_cdeg = 2000; // elsewhere
+    saw(WITNESS, 1000)->bearing_cdeg = 2000; // elsewhere
     TEST_ASSERT_EQUAL(AGAINST, reads(1000));
     setUp();
     face(ME, 0);
     saw(WITNESS, 3000);
     saw(WITNESS, 1000);
     TEST_ASSERT_EQUAL(FOR, reads(1000));
+    setUp();
+    face(ME, 0);
+    saw(WITNESS, 1000);
+    saw(WITNESS, 3000);
+    TEST_ASSERT_EQUAL(0, reads(1000));
+}
+
+// Beside a step of what is seen a reading may be of either side: any other sonar, 5 degrees off or less, that
+// saw the same excuses it; silence excuses silence; one that is no witness excuses nothing.
+void test_what_another_saw_a_little_aside_is_not_contradicted(void) {
+    static const struct {
+        int off_cdeg;
+        int aside_mm; // what it saw there
+        int mm;       // what ME reads
+        int expect;
+    } by[] = {{500, 1000, 1000, 0},          {-500, 1000, 1000, 0},
+              {501, 1000, 1000, AGAINST},    {-501, 1000, 1000, AGAINST},
+              {400, 1130, 1000, 0},          {400, 1131, 1000, AGAINST},
+              {400, NONE_MM, NONE_MM, 0},    {400, NONE_MM, 1000, AGAINST},
+              {400, 1000, NONE_MM, AGAINST}, {501, NONE_MM, NONE_MM, AGAINST}};
+    for (int i = 0; i < 10; i++) {
+        for (int who = WITNESS; who <= THIRD; who++) {
+            for (int out = 0; out < 2; out++) {
+                setUp();
+                face(ME, 0);
+                saw(who, by[i].aside_mm)->bearing_cdeg = (int16_t)by[i].off_cdeg;
+                saw(WITNESS, 3000);
+                k.sonar[THIRD].health = out != 0 ? ARGUS_DISABLED : ARGUS_HEALTHY;
+                const int expect = out != 0 && who == THIRD ? AGAINST : by[i].expect;
+                snprintf(text, sizeof text, "case %d, by %d, out %d", i, who, out);
+                TEST_ASSERT_EQUAL_MESSAGE(expect, reads(by[i].mm), text);
+            }
+        }
+    }
+}
+
+// What nobody had seen when it was read is judged by the next sonar that looks there, as if it had looked
+// before; once.
+void test_what_is_read_is_judged_by_who_looks_there_later(void) {
+    static const struct {
+        int mine;
+        int theirs;
+        int expect;
+    } by[] = {{1000, 3000, AGAINST_BOTH},
+              {1000, 1050, FOR},
+              {NONE_MM, 3000, AGAINST_BOTH},
+              {NONE_MM, NONE_MM, 0},
+              {1000, NONE_MM, AGAINST_BOTH}};
+    for (int i = 0; i < 5; i++) {
+        setUp();
+        e.of[ME].score[ARGUS_TEST_PEERS] = 100;
+        face(ME, 0);
+        TEST_ASSERT_EQUAL(0, reads(by[i].mine));
+        const argus_glimpse_t mine = here(ME);
+        for (int who = WITNESS; who <= THIRD; who++) {
+            k.sip_ms += 300;
+            face(who, 0);
+            k.pose.x_mm += (int16_t)(mine.x_mm - here(who).x_mm);
+            k.pose.y_mm += (int16_t)(mine.y_mm - here(who).y_mm);
+            k.sonar[who].reading_mm = (uint16_t)by[i].theirs;
+            argus_peers_take(&e, &k, who);
+            snprintf(text, sizeof text, "case %d, after sonar %d", i, who);
+            TEST_ASSERT_EQUAL_MESSAGE(100 + by[i].expect, score_of(ME), text);
+            TEST_ASSERT_EQUAL_HEX16_MESSAGE(by[i].expect > 0 ? 1u << WITNESS : 0u, e.peers.of[ME].against,
+                                            text);
+        }
+    }
+}
+
+// ... for ten seconds, and from its place on its bearing only.
+void test_what_is_read_is_not_judged_from_elsewhere_or_too_late(void) {
+    static const struct {
+        uint32_t later_ms;
+        int dx_mm;
+        int32_t turn_cdeg;
+        int expect;
+    } by[] = {{10000, 0, 0, AGAINST_BOTH},
+              {10001, 0, 0, 0},
+              {300, 200, 0, AGAINST_BOTH},
+              {300, 201, 0, 0},
+              {300, 0, 301, 0}};
+    for (int i = 0; i < 5; i++) {
+        setUp();
+        face(ME, 0);
+        reads(1000);
+        const argus_glimpse_t mine = here(ME);
+        k.sip_ms += by[i].later_ms;
+        face(WITNESS, by[i].turn_cdeg);
+        k.pose.x_mm += (int16_t)(mine.x_mm - here(WITNESS).x_mm) + by[i].dx_mm;
+        k.pose.y_mm += (int16_t)(mine.y_mm - here(WITNESS).y_mm);
+        k.sonar[WITNESS].reading_mm = 3000;
+        argus_peers_take(&e, &k, WITNESS);
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].expect, score_of(ME), text);
+    }
 }
 
 // 32 glimpses of a sonar are remembered, in a ring.
@@ -315,7 +413,7 @@ void test_those_against_are_forgotten_with_the_score(void) {
         saw(WITNESS, 1000);
         TEST_ASSERT_EQUAL(FOR, reads(1000));
         TEST_ASSERT_EQUAL(i == 0 ? 2 : 0, argus_peers_against(&e.peers, ME));
-        k.sip_ms += 4000;
+        k.sip_ms += 10001; // what agreed excuses nothing any more
     }
 }
 
