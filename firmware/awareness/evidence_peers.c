@@ -372,18 +372,23 @@ static argus_glimpse_t glimpse_of(const argus_peers_t *const self, const argus_k
     return glimpse;
 }
 
+static void count_if_news(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                          const int sonar, const argus_glimpse_t *const at, const tally_t *const tally) {
+    const bool odd = tally->agree == 0 && tally->differ > 0 && !tally->excused;
+    const bool borne_out = tally->agree > 0 && tally->agree >= tally->differ;
+    if ((odd || borne_out) && is_news(&self->peers.of[sonar], at)) {
+        count(self, knowledge, sonar, at, odd ? tally->against : 0);
+    }
+}
+
 static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const int back) {
     argus_peer_t *const peer = &self->peers.of[sonar];
     const argus_glimpse_t at = *at_back(peer, back);
     const tally_t tally = ask_all(self, knowledge, sonar, &at);
     const verdict_t verdict = verdict_of(&tally);
-    const bool odd = tally.agree == 0 && tally.differ > 0 && !tally.excused;
-    const bool borne_out = tally.agree > 0 && tally.agree >= tally.differ;
     peer->weighed |= verdict != UNSEEN ? 1u << slot_of(peer, back) : 0u;
-    if ((odd || borne_out) && is_news(peer, &at)) {
-        count(self, knowledge, sonar, &at, odd ? tally.against : 0);
-    }
+    count_if_news(self, knowledge, sonar, &at, &tally);
     if (verdict != DIVIDED && !(verdict == CONTRADICTED && argus_is_unrest_beside(self, knowledge, sonar))) {
         doubt_time(self, knowledge, sonar, back, verdict);
     }
