@@ -54,13 +54,18 @@ static uint32_t reaction_us(const argus_config_t *config) {
     return (refresh_ms + ARCOS_TIMING_SIP_CYCLE_MS) * 1000 + wire_us;
 }
 
+// What is asked beyond the robot's own setting is a gain, not a promise: the order may be lost on the wire.
+static uint32_t sure_decel_mm_s2(const argus_config_t *config) {
+    return (uint32_t)argus_min(config->decel_mm_s2, ARGUS_P3DX_MOTION_DECEL_MM_S2);
+}
+
 // Rounded once, at the end: a sum of rounded parts would refuse speeds that are within the limit. The order
 // of the multiplications keeps everything within 32 bits for any setting in range.
 static void work_out_driving(argus_config_report_t *report, const argus_config_t *config) {
     const uint32_t v = (uint32_t)config->speed_mm_s;
     const uint32_t t_us = reaction_us(config);
     const uint32_t travel_um = v * (t_us / 1000) + v * (t_us % 1000) / 1000;
-    const uint32_t brake_um = v * v * 1000 / (2 * (uint32_t)config->decel_mm_s2);
+    const uint32_t brake_um = v * v * 1000 / (2 * sure_decel_mm_s2(config));
     report->overhang_mm = ARGUS_P3DX_BODY_FRONT_MM - ARGUS_P3DX_BODY_SONAR_FACE_MM;
     report->reaction_ms = (int32_t)((t_us + 500) / 1000);
     report->travel_mm = (int32_t)(travel_um / 1000);

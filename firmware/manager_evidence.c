@@ -3,10 +3,10 @@
 #include "argus/angle.h"
 #include "manager_internal.h"
 
-#define HOLD_MM 400u      // an acquitted sonar is not looked at again for a lost echo before this distance,
-#define HOLD_DOUBLINGS 2u // ... doubled with each acquittal so often
+#define HOLD_MM 400u         // an acquitted sonar is not looked at again before this distance,
+#define HOLD_DOUBLINGS 2u    // ... doubled with each acquittal so often
 #define HOLD_FORGET_MM 4000u // ... and forgotten after this one
-#define LOST_HOLD_MM 100u    // ... for its own lost echo, one that does not look ahead
+#define LOST_HOLD_MM 100u    // for a lost echo one ahead at once, any other after this distance
 #define SPACING_MS 3000u     // between two looks for a mere jump
 #define ROUTINE_MM_S \
     100u // a look at all beside the main task only when the robot has driven so far in the meantime

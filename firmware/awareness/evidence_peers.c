@@ -251,7 +251,9 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     const bool echo = now->reading_mm < ARGUS_NO_ECHO_MM;
     peer->against = doubted ? (uint16_t)(peer->against | against) : 0;
     peer->borne_out = doubted && (peer->borne_out || (against == 0 && echo));
-    if (shows_at_once(knowledge, sonar)) {
+    // What it read before it was given up does not bring it back.
+    const bool since = knowledge->sip_ms - now->t_ms <= knowledge->sip_ms - knowledge->sonar[sonar].since_ms;
+    if (since && shows_at_once(knowledge, sonar)) {
         c->agreed = (uint8_t)(against == 0 && echo ? argus_min(c->agreed + 1, UINT8_MAX) : 0);
     }
     note_counted(peer, now, against != 0);
@@ -382,14 +384,15 @@ static void count_if_news(argus_evidence_t *const self, const argus_knowledge_t 
 }
 
 static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
-                  const int back) {
+                  const int back, const bool fresh) {
     argus_peer_t *const peer = &self->peers.of[sonar];
     const argus_glimpse_t at = *at_back(peer, back);
     const tally_t tally = ask_all(self, knowledge, sonar, &at);
     const verdict_t verdict = verdict_of(&tally);
     peer->weighed |= verdict != UNSEEN ? 1u << slot_of(peer, back) : 0u;
     count_if_news(self, knowledge, sonar, &at, &tally);
-    if (verdict != DIVIDED && !(verdict == CONTRADICTED && argus_is_unrest_beside(self, knowledge, sonar))) {
+    const bool tells = verdict != DIVIDED && (fresh || verdict != UNSEEN);
+    if (tells && !(verdict == CONTRADICTED && argus_is_unrest_beside(self, knowledge, sonar))) {
         doubt_time(self, knowledge, sonar, back, verdict);
     }
 }
@@ -400,9 +403,10 @@ static void look_back(argus_evidence_t *const self, const argus_knowledge_t *con
     const argus_glimpse_t now = *at_back(&self->peers.of[sonar], 1);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_peer_t *const peer = &self->peers.of[i];
-        const int back = i != sonar ? find(peer, &now, knowledge->sip_ms, SAME_BEARING_CDEG, 0) : 0;
+        const bool asked = is_witness(self, knowledge, sonar, i);
+        const int back = asked ? find(peer, &now, knowledge->sip_ms, SAME_BEARING_CDEG, 0) : 0;
         if (back > 0 && (peer->weighed >> slot_of(peer, back) & 1u) == 0) {
-            weigh(self, knowledge, i, back);
+            weigh(self, knowledge, i, back, false);
         }
     }
 }
@@ -417,7 +421,7 @@ static void note_seen(argus_peer_t *const self, const argus_glimpse_t now) {
 void argus_peers_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                       const int sonar) {
     note_seen(&self->peers.of[sonar], glimpse_of(&self->peers, knowledge, sonar));
-    weigh(self, knowledge, sonar, 1);
+    weigh(self, knowledge, sonar, 1, true);
     look_back(self, knowledge, sonar);
 }
 

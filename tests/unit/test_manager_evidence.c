@@ -565,6 +565,23 @@ void test_hemmed_in_it_stays_with_a_suspect_ahead(void) {
     }
 }
 
+// One of 1..6 that loses an echo is looked at whatever was found a moment ago; any other, that was cleared
+// here, only after 100 mm.
+void test_a_lost_echo_is_looked_for_at_once_ahead_and_not_in_one_place_elsewhere(void) {
+    start_in_a_room();
+    for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
+        for (int way = 99; way <= 100; way++) {
+            robot.argus.evidence.lost = (uint16_t)(1u << sonar);
+            robot.argus.hold[sonar].acquittals = 1;
+            robot.argus.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm - (uint32_t)way;
+            const bool ahead = sonar >= 1 && sonar <= 6;
+            const bool looked = (argus_worth_a_look(&robot.argus) >> sonar & 1) != 0;
+            TEST_ASSERT_EQUAL_MESSAGE(ahead || way == 100, looked, told("lost", sonar));
+        }
+    }
+    finish();
+}
+
 // A smooth wall: heard where it is looked at squarely, and not otherwise.
 static int smooth_wall(const robot_t *r, int sonar) {
     const argus_sonar_pose_t *at = &argus_sonar_pose[sonar];

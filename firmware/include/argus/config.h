@@ -71,7 +71,7 @@ typedef struct {
     int32_t overhang_mm; // body front ahead of the sonar faces
     int32_t reaction_ms; // sonar refresh + SIP period + SIP and command on the wire
     int32_t travel_mm;   // speed x reaction
-    int32_t brake_mm;    // speed^2 / (2 decel)
+    int32_t brake_mm;    // speed^2 / (2 decel), decel at most 300 mm/s2
     int32_t driving_mm;  // overhang + travel + brake: must be < object_range_mm
     int32_t reach_mm;    // largest reading of a point that the body sweeps in one step
     int32_t stepping_mm; // reach + 3 noise + 20: must be < check_range_mm

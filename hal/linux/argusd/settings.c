@@ -235,8 +235,8 @@ bool settings_check(const settings_t *self, char *message, size_t capacity) {
         return text_refuse(
             message, capacity,
             "driving would be unsafe (S5): overhang %d + travel %d (%d mm/s x %d ms) + braking %d = %d mm "
-            "must be less than object_range_mm = %d; lower speed_mm_s, or raise object_range_mm or "
-            "decel_mm_s2",
+            "must be less than object_range_mm = %d; lower speed_mm_s, or raise object_range_mm (or "
+            "decel_mm_s2, of which 300 at most count)",
             (int)report.overhang_mm, (int)report.travel_mm, (int)config->speed_mm_s, (int)report.reaction_ms,
             (int)report.brake_mm, (int)report.driving_mm, (int)config->object_range_mm);
     case ARGUS_CONFIG_STEP:

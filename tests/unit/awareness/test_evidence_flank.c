@@ -11,7 +11,7 @@
 
 #define RAD (3.14159265358979323846 / 180)
 #define STEP_MM 64 // at 200 mm/s from one reading to the next
-#define STOP_MM 130
+#define STOP_MM 163
 #define HALF_WIDTH_MM 212.5
 #define FRONT_MM 210
 #define FAR_MM 2000

@@ -286,6 +286,8 @@ void test_what_is_read_is_judged_by_who_looks_there_later(void) {
         TEST_ASSERT_EQUAL(0, reads(by[i].mine));
         const argus_glimpse_t mine = here(ME);
         for (int who = WITNESS; who <= THIRD; who++) {
+            memset(e.peers.of[ME].counted, 0,
+                   sizeof e.peers.of[ME].counted); // not that place keeps it at one
             k.sip_ms += 300;
             face(who, 0);
             k.pose.x_mm += (int16_t)(mine.x_mm - here(who).x_mm);
@@ -297,6 +299,51 @@ void test_what_is_read_is_judged_by_who_looks_there_later(void) {
             TEST_ASSERT_EQUAL_HEX16_MESSAGE(by[i].expect > 0 ? 1u << WITNESS : 0u, e.peers.of[ME].against,
                                             text);
         }
+    }
+}
+
+// ... nor does it tell of lags again and again: who looks there and can say nothing changes nothing.
+void test_who_can_say_nothing_changes_nothing(void) {
+    static const int theirs[] = {149, NONE_MM}; // too near, silence far beyond what must be heard
+    for (int i = 0; i < 2; i++) {
+        setUp();
+        face(ME, 0);
+        saw(THIRD, 4500)->bearing_cdeg = 9000;
+        saw(ME, 4500)->bearing_cdeg = 9000;
+        saw(ME, 4500)->bearing_cdeg = 9000;
+        reads(4500); // which two firings ago would have agreed
+        TEST_ASSERT_EQUAL(50, argus_peers_late(&e.peers, ME));
+        const argus_glimpse_t mine = here(ME);
+        const argus_peer_t was = e.peers.of[ME];
+        for (int n = 0; n < 30; n++) {
+            face(WITNESS, 0);
+            k.pose.x_mm += (int16_t)(mine.x_mm - here(WITNESS).x_mm);
+            k.pose.y_mm += (int16_t)(mine.y_mm - here(WITNESS).y_mm);
+            k.sonar[WITNESS].reading_mm = (uint16_t)theirs[i];
+            argus_peers_take(&e, &k, WITNESS);
+        }
+        TEST_ASSERT_EQUAL_MEMORY(&was, &e.peers.of[ME], sizeof was);
+    }
+}
+
+// One that was given up is not brought back by what it read before that.
+void test_what_it_read_before_it_was_given_up_does_not_bring_it_back(void) {
+    for (int after = 0; after < 2; after++) {
+        setUp();
+        face(ME, 0);
+        k.sip_ms = START_MS;
+        reads(1000);
+        const argus_glimpse_t mine = here(ME);
+        k.sonar[ME].health = ARGUS_DISABLED;
+        k.sonar[ME].kind = ARGUS_KIND_OFF;
+        k.sonar[ME].since_ms = after != 0 ? START_MS : START_MS + 1;
+        k.sip_ms += 2000;
+        face(WITNESS, 0);
+        k.pose.x_mm += (int16_t)(mine.x_mm - here(WITNESS).x_mm);
+        k.pose.y_mm += (int16_t)(mine.y_mm - here(WITNESS).y_mm);
+        k.sonar[WITNESS].reading_mm = 1000;
+        argus_peers_take(&e, &k, WITNESS);
+        TEST_ASSERT_EQUAL(after, e.of[ME].agreed);
     }
 }
 
