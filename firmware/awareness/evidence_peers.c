@@ -95,41 +95,34 @@ static const argus_glimpse_t *at_back(const argus_peer_t *const self, const int 
     return back <= self->count ? &self->seen[slot_of(self, back)] : NULL;
 }
 
-// How far back, beyond `after`, a peer looked from the place of `at` within `span_cdeg` of its bearing; 0: it
-// did not.
+// How far back, beyond `after`, a peer looked from the place of `at` within `span_cdeg` of its bearing, and
+// so far behind it; 0: it did not.
 static int find(const argus_peer_t *const peer, const argus_glimpse_t *const at, const uint32_t now_ms,
-                const int32_t span_cdeg, const int after) {
+                const int32_t span_cdeg, const int after, int32_t *const along_mm) {
     for (int i = after + 1; i <= peer->count; i++) {
         const argus_glimpse_t *const then = at_back(peer, i);
-        int32_t along_mm = 0;
         if (now_ms - then->t_ms > AGE_MS) {
             return 0;
         }
-        if (bearing_diff_cdeg(at, then) <= span_cdeg && is_same_place(at, then, &along_mm)) {
+        if (bearing_diff_cdeg(at, then) <= span_cdeg && is_same_place(at, then, along_mm)) {
             return i;
         }
     }
     return 0;
 }
 
-static verdict_t compare_with(const argus_peer_t *const peer, const int back,
-                              const argus_glimpse_t *const at) {
-    const argus_glimpse_t *const then = at_back(peer, back);
-    int32_t along_mm = 0;
-    (void)is_same_place(at, then, &along_mm);
-    return compare(at->reading_mm, then->reading_mm, along_mm);
-}
-
 // The latest glimpse of a peer on the bearing of `at` from its place decides.
 static verdict_t ask(const argus_peer_t *const peer, const argus_glimpse_t *const at, const uint32_t now_ms) {
-    const int back = find(peer, at, now_ms, SAME_BEARING_CDEG, 0);
-    return back > 0 ? compare_with(peer, back, at) : UNSEEN;
+    int32_t along_mm = 0;
+    const int back = find(peer, at, now_ms, SAME_BEARING_CDEG, 0, &along_mm);
+    return back > 0 ? compare(at->reading_mm, at_back(peer, back)->reading_mm, along_mm) : UNSEEN;
 }
 
 static bool excuses(const argus_peer_t *const peer, const argus_glimpse_t *const at, const uint32_t now_ms) {
-    for (int back = find(peer, at, now_ms, BESIDE_CDEG, 0); back > 0;
-         back = find(peer, at, now_ms, BESIDE_CDEG, back)) {
-        const verdict_t said = compare_with(peer, back, at);
+    int32_t along_mm = 0;
+    for (int back = find(peer, at, now_ms, BESIDE_CDEG, 0, &along_mm); back > 0;
+         back = find(peer, at, now_ms, BESIDE_CDEG, back, &along_mm)) {
+        const verdict_t said = compare(at->reading_mm, at_back(peer, back)->reading_mm, along_mm);
         if (said == AGREED || said == QUIET) {
             return true;
         }
@@ -404,7 +397,8 @@ static void look_back(argus_evidence_t *const self, const argus_knowledge_t *con
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_peer_t *const peer = &self->peers.of[i];
         const bool asked = is_witness(self, knowledge, sonar, i);
-        const int back = asked ? find(peer, &now, knowledge->sip_ms, SAME_BEARING_CDEG, 0) : 0;
+        int32_t along_mm = 0;
+        const int back = asked ? find(peer, &now, knowledge->sip_ms, SAME_BEARING_CDEG, 0, &along_mm) : 0;
         if (back > 0 && (peer->weighed >> slot_of(peer, back) & 1u) == 0) {
             weigh(self, knowledge, i, back, false);
         }

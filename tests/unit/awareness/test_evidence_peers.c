@@ -75,6 +75,15 @@ static int reads(int mm) {
     return score_of(ME) - before;
 }
 
+// Another one reads so much on ME's bearing, from where ME was.
+static void looks_there(int sonar, const argus_glimpse_t *mine, int mm) {
+    face(sonar, 0);
+    k.pose.x_mm += (int16_t)(mine->x_mm - here(sonar).x_mm);
+    k.pose.y_mm += (int16_t)(mine->y_mm - here(sonar).y_mm);
+    k.sonar[sonar].reading_mm = (uint16_t)mm;
+    argus_peers_take(&e, &k, sonar);
+}
+
 static int compared(int witness_mm, int mm) {
     setUp();
     face(ME, 0);
@@ -289,11 +298,7 @@ void test_what_is_read_is_judged_by_who_looks_there_later(void) {
             memset(e.peers.of[ME].counted, 0,
                    sizeof e.peers.of[ME].counted); // not that place keeps it at one
             k.sip_ms += 300;
-            face(who, 0);
-            k.pose.x_mm += (int16_t)(mine.x_mm - here(who).x_mm);
-            k.pose.y_mm += (int16_t)(mine.y_mm - here(who).y_mm);
-            k.sonar[who].reading_mm = (uint16_t)by[i].theirs;
-            argus_peers_take(&e, &k, who);
+            looks_there(who, &mine, by[i].theirs);
             snprintf(text, sizeof text, "case %d, after sonar %d", i, who);
             TEST_ASSERT_EQUAL_MESSAGE(100 + by[i].expect, score_of(ME), text);
             TEST_ASSERT_EQUAL_HEX16_MESSAGE(by[i].expect > 0 ? 1u << WITNESS : 0u, e.peers.of[ME].against,
@@ -316,11 +321,7 @@ void test_who_can_say_nothing_changes_nothing(void) {
         const argus_glimpse_t mine = here(ME);
         const argus_peer_t was = e.peers.of[ME];
         for (int n = 0; n < 30; n++) {
-            face(WITNESS, 0);
-            k.pose.x_mm += (int16_t)(mine.x_mm - here(WITNESS).x_mm);
-            k.pose.y_mm += (int16_t)(mine.y_mm - here(WITNESS).y_mm);
-            k.sonar[WITNESS].reading_mm = (uint16_t)theirs[i];
-            argus_peers_take(&e, &k, WITNESS);
+            looks_there(WITNESS, &mine, theirs[i]);
         }
         TEST_ASSERT_EQUAL_MEMORY(&was, &e.peers.of[ME], sizeof was);
     }
@@ -338,11 +339,7 @@ void test_what_it_read_before_it_was_given_up_does_not_bring_it_back(void) {
         k.sonar[ME].kind = ARGUS_KIND_OFF;
         k.sonar[ME].since_ms = after != 0 ? START_MS : START_MS + 1;
         k.sip_ms += 2000;
-        face(WITNESS, 0);
-        k.pose.x_mm += (int16_t)(mine.x_mm - here(WITNESS).x_mm);
-        k.pose.y_mm += (int16_t)(mine.y_mm - here(WITNESS).y_mm);
-        k.sonar[WITNESS].reading_mm = 1000;
-        argus_peers_take(&e, &k, WITNESS);
+        looks_there(WITNESS, &mine, 1000);
         TEST_ASSERT_EQUAL(after, e.of[ME].agreed);
     }
 }
@@ -400,11 +397,7 @@ void test_what_is_read_is_a_glimpse_for_the_others(void) {
         TEST_ASSERT_EQUAL(argus_min(i + 1, ARGUS_GLIMPSES), e.peers.of[ME].count);
     }
     const argus_glimpse_t mine = here(ME);
-    face(WITNESS, 0);
-    k.pose.x_mm += (int16_t)(mine.x_mm - here(WITNESS).x_mm);
-    k.pose.y_mm += (int16_t)(mine.y_mm - here(WITNESS).y_mm);
-    k.sonar[WITNESS].reading_mm = 1000;
-    argus_peers_take(&e, &k, WITNESS);
+    looks_there(WITNESS, &mine, 1000);
     TEST_ASSERT_EQUAL(AGAINST, score_of(WITNESS));
     TEST_ASSERT_EQUAL_HEX16(1u << ME, e.peers.of[WITNESS].against);
 }
