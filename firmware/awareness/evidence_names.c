@@ -14,13 +14,17 @@
 #define HOLLOW_OF 4
 #define CONVICT_CONFLICTS 4
 #define CONVICT_BESIDE 3
-#define CONVICT_EPISODES 3 // what moves about the robot does not contradict the same sonar again later
-#define HELD 150           // hundredths of a nat that the peers must come down to before one is cleared
-#define LATE_NAMING 1400
-#define LATE_CONTRADICTED 300 // ... of one that the others contradict
-#define LATE_FIRST 250 // hundredths of a nat, all that speaks for late and against wrong together: at first
-#define LATE_AFTER 450 // ... and once it is called wrong, and for a conviction
-#define LATE_NO_MORE 150
+#define VIEW_OUTWEIGHS 3      // so many times more views of it are contradicted than borne out,
+#define OFF_OUTWEIGHS 2       // ... of one that is silent, since any echo clears it
+#define CONVICT_EPISODES 3    // what moves about the robot does not contradict the same sonar again later
+#define HELD 150              // hundredths of a nat that the peers must come down to before one is cleared
+#define LATE_NAMING 800       // late and not well, of one without a name,
+#define LATE_NAMING_BUSY 1400 // ... while something moves about the robot,
+#define LATE_CONTRADICTED 300 // ... that the others contradict,
+#define LATE_SURE 1000        // ... or of one that is intermittent or garbage so far
+#define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
+#define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
+#define LATE_NO_MORE 420
 
 // How many others contradict it, of the last conflicts counted.
 static int partners(const argus_case_t *const c) {
@@ -78,10 +82,14 @@ static int32_t naming_level(const argus_evidence_t *const self, const argus_test
     return self->busy ? argus_bounds[test].naming_busy : argus_bounds[test].naming;
 }
 
+static bool outweighs(const argus_case_t *const c, const argus_test_t test) {
+    return (test == ARGUS_TEST_OFF ? OFF_OUTWEIGHS : VIEW_OUTWEIGHS) * c->borne_out <= c->conflicts;
+}
+
 static bool is_convicted_by(const argus_case_t *const c, const argus_test_t test, const bool busy) {
-    const bool enough = !rests_on_views(test) ||
-                        (!busy && 2 * c->borne_out <= c->conflicts && c->conflicts >= CONVICT_CONFLICTS &&
-                         c->episodes >= CONVICT_EPISODES && beside_the_main(c) >= CONVICT_BESIDE);
+    const bool enough =
+        !rests_on_views(test) || (!busy && outweighs(c, test) && c->conflicts >= CONVICT_CONFLICTS &&
+                                  c->episodes >= CONVICT_EPISODES && beside_the_main(c) >= CONVICT_BESIDE);
     return c->score[test] >= argus_bounds[test].convincing && enough &&
            is_named_by(c, test, argus_bounds[test].naming);
 }
@@ -90,13 +98,22 @@ static bool is_convicted_by(const argus_case_t *const c, const argus_test_t test
 // saw where it was some firings ago.
 static int32_t lateness(const argus_evidence_t *const self, const int sonar) {
     const argus_case_t *const c = &self->of[sonar];
-    return argus_peers_late(&self->peers, sonar) / 4 + argus_peers_told(&self->peers, sonar) +
-           argus_trail_lag_lead(c) + c->score[ARGUS_TEST_LAG];
+    return argus_peers_told(&self->peers, sonar) + argus_trail_lag_lead(c) + c->score[ARGUS_TEST_LAG];
+}
+
+// Late, neither well nor wrong, and contradicted.
+static bool is_late_from(const argus_evidence_t *const self, const int sonar, const int32_t level) {
+    return argus_peers_late(&self->peers, sonar) >= level && lateness(self, sonar) >= LATE_FIRST &&
+           self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_CONTRADICTED;
 }
 
 static bool looks_late(const argus_evidence_t *const self, const int sonar) {
-    return argus_peers_late(&self->peers, sonar) >= LATE_NAMING &&
-           self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_CONTRADICTED;
+    return is_late_from(self, sonar, self->busy ? LATE_NAMING_BUSY : LATE_NAMING);
+}
+
+// Neither gaps nor wild readings come to this; the echoes of a late sonar may look like either.
+static bool is_surely_late(const argus_evidence_t *const self, const int sonar) {
+    return is_late_from(self, sonar, LATE_SURE);
 }
 
 static argus_fault_kind_t late_or_wrong(const argus_evidence_t *const self, const int sonar,
@@ -108,6 +125,10 @@ static argus_fault_kind_t late_or_wrong(const argus_evidence_t *const self, cons
 static argus_fault_kind_t kind_of_view(const argus_evidence_t *const self, const int sonar,
                                        const int32_t late_from) {
     const argus_case_t *const c = &self->of[sonar];
+    if (c->none_run < VIEW_OFF_RUN && self->peers.of[sonar].borne_out &&
+        argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) == HOLLOW_OF) {
+        return ARGUS_KIND_INTERMITTENT;
+    }
     if (c->none_run == 0 && c->echoes >= VIEW_ECHOES) {
         return late_or_wrong(self, sonar, late_from);
     }
@@ -160,13 +181,18 @@ static argus_fault_kind_t first_name(const argus_evidence_t *const self, const i
     return ARGUS_KIND_NONE;
 }
 
-static bool is_named_late(const argus_evidence_t *const self, const int sonar) {
-    return looks_late(self, sonar) && has_partners(self, sonar);
+// Late without another name, or under one that a late sonar may get as well.
+static bool is_rather_late(const argus_evidence_t *const self, const int sonar,
+                           const argus_fault_kind_t other) {
+    const bool unsteady = other == ARGUS_KIND_INTERMITTENT || other == ARGUS_KIND_GARBAGE;
+    const bool late =
+        other == ARGUS_KIND_NONE ? looks_late(self, sonar) : unsteady && is_surely_late(self, sonar);
+    return late && has_partners(self, sonar);
 }
 
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
     const argus_fault_kind_t kind = first_name(self, sonar, ARGUS_TESTS);
-    return kind == ARGUS_KIND_NONE && is_named_late(self, sonar) ? ARGUS_KIND_SLOW : kind;
+    return is_rather_late(self, sonar, kind) ? ARGUS_KIND_SLOW : kind;
 }
 
 argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, const int sonar) {
@@ -177,7 +203,8 @@ argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, c
     for (int i = 0; i < ARGUS_TESTS; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
         if (is_convicted_by(&self->of[sonar], test, self->busy)) {
-            return kind_by(self, sonar, test, LATE_AFTER);
+            const argus_fault_kind_t kind = kind_by(self, sonar, test, LATE_AFTER);
+            return is_rather_late(self, sonar, kind) ? ARGUS_KIND_SLOW : kind;
         }
     }
     return ARGUS_KIND_NONE;
@@ -199,6 +226,13 @@ static bool is_more_than_wrong(const argus_evidence_t *const self, const int son
     }
 }
 
+// Gaps give way to a silence that lasts; gaps and wild readings to what is late for sure.
+static bool is_more_than_unsteady(const argus_evidence_t *const self, const int sonar,
+                                  const argus_fault_kind_t present, const argus_fault_kind_t found) {
+    const bool deaf = present == ARGUS_KIND_INTERMITTENT && self->of[sonar].none_run >= OFF_RUN_LONGEST;
+    return (found == ARGUS_KIND_OFF && deaf) || (found == ARGUS_KIND_SLOW && is_surely_late(self, sonar));
+}
+
 static bool gives_way(const argus_evidence_t *const self, const int sonar, const argus_fault_kind_t present,
                       const argus_fault_kind_t found) {
     switch (present) {
@@ -206,7 +240,8 @@ static bool gives_way(const argus_evidence_t *const self, const int sonar, const
     case ARGUS_KIND_OFF:
         return true;
     case ARGUS_KIND_INTERMITTENT:
-        return found == ARGUS_KIND_OFF && self->of[sonar].none_run >= OFF_RUN_LONGEST;
+    case ARGUS_KIND_GARBAGE:
+        return is_more_than_unsteady(self, sonar, present, found);
     case ARGUS_KIND_STUCK:
         return self->of[sonar].score[ARGUS_TEST_STUCK] == 0; // one other value refutes it
     case ARGUS_KIND_SLOW:

@@ -24,7 +24,7 @@
 #define LAG_LEAST 2
 #define LAG_TURN_CDEG 1000
 #define LATE_CEILING 2000
-#define TOLD_CEILING 1500
+#define TOLD_CEILING 900
 #define HOLLOW_BITS 8
 
 // What the others say of one reading. SAME: the pose of then would have it look where it looks now.
@@ -54,10 +54,11 @@ static const int16_t late_than_well[VERDICTS][VERDICTS] = {
     [CONTRADICTED] = {[QUIET] = 100, [AGREED] = 300, [CONTRADICTED] = -150, [SAME] = -150},
 };
 
-// That it is late and not wrong: ln of one in so many lags at which it agrees, and what one takes back.
-#define CHANCES 8
-static const int16_t late_than_wrong[CHANCES] = {0, 69, 110, 139, 161, 179, 195, 208};
-#define REFUTES_LAG (-150)
+// That it is late and not wrong: who is wrong agrees with the past as seldom as with the present.
+static const int16_t late_than_wrong[VERDICTS][VERDICTS] = {
+    [AGREED] = {[CONTRADICTED] = -390},
+    [CONTRADICTED] = {[QUIET] = 230, [AGREED] = 230, [CONTRADICTED] = -300, [SAME] = -150},
+};
 
 static int32_t bearing_diff_cdeg(const argus_glimpse_t *const a, const argus_glimpse_t *const b) {
     const int32_t diff = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
@@ -278,39 +279,20 @@ static int16_t limited(const int32_t sum, const int32_t ceiling) {
     return (int16_t)argus_max(0, argus_min(ceiling, sum));
 }
 
-// The fewer of the lags that can be told agree, the more it means: by chance one will.
-static int32_t worth_of(const int agreed, const int told) {
-    return late_than_wrong[argus_min(CHANCES, told / argus_max(1, agreed)) - 1];
-}
-
-static void weigh_lags(argus_peer_t *const peer, const verdict_t now, const uint8_t *const as_of,
-                       const int32_t worth) {
-    for (int n = LAG_LEAST; n < ARGUS_TRAIL; n++) {
-        const bool explains = now == CONTRADICTED && as_of[n] == AGREED;
-        const bool refutes = as_of[n] == CONTRADICTED || (now == CONTRADICTED && as_of[n] == SAME);
-        peer->late[n] = limited(peer->late[n] + late_than_well[now][as_of[n]], LATE_CEILING);
-        peer->told[n] =
-            limited(peer->told[n] + (explains ? worth : (refutes ? REFUTES_LAG : 0)), TOLD_CEILING);
-    }
+static void weigh_lag(argus_peer_t *const peer, const int lag, const verdict_t now, const verdict_t as_of) {
+    peer->late[lag] = limited(peer->late[lag] + late_than_well[now][as_of], LATE_CEILING);
+    peer->told[lag] = limited(peer->told[lag] + late_than_wrong[now][as_of], TOLD_CEILING);
 }
 
 static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const int back, const verdict_t verdict) {
     argus_peer_t *const peer = &self->peers.of[sonar];
     const argus_glimpse_t now = *at_back(peer, back);
-    uint8_t as_of[ARGUS_TRAIL] = {UNSEEN};
-    int agreed = 0;
-    int told = 0;
     for (int n = LAG_LEAST; n < ARGUS_TRAIL; n++) {
-        if (is_idle(peer, verdict, n)) {
-            continue;
+        if (!is_idle(peer, verdict, n)) {
+            weigh_lag(peer, n, verdict, verdict_as_of(self, knowledge, sonar, &now, back + n));
         }
-        as_of[n] = (uint8_t)verdict_as_of(self, knowledge, sonar, &now, back + n);
-        agreed += as_of[n] == AGREED;
-        told +=
-            as_of[n] == AGREED || as_of[n] == CONTRADICTED || (as_of[n] == SAME && verdict == CONTRADICTED);
     }
-    weigh_lags(peer, verdict, as_of, agreed > 0 ? worth_of(agreed, told) : 0);
 }
 
 static int32_t most_of(const int16_t *const lags) {

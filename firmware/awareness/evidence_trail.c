@@ -41,6 +41,7 @@
 #define LAG_CLEARER 3      // so many times less doubtful than no lag at all
 #define LAG_FORGOTTEN (-8) // with each reading
 #define NOVEL 180
+#define SILENT_RUN 4 // and one more: what reads at random is not without an echo so often in a row
 #define FAMILIAR (-300)
 #define BETWEEN 50
 #define BETWEEN_MAX 600
@@ -246,12 +247,11 @@ static likeness_t liken(const argus_case_t *const self, const argus_trail_t *con
 static void test_garbage(argus_case_t *const self, const argus_trail_t *const now, const int sonar,
                          const bool unrest) {
     const likeness_t like = liken(self, now, sonar);
-    if (!is_echo(now) || like.comparable == 0) {
-        return;
-    }
-    if (like.familiar) {
+    const bool familiar = is_echo(now) ? like.familiar : self->out && self->none_run >= SILENT_RUN;
+    if (familiar) {
         argus_score(self, ARGUS_TEST_GARBAGE, FAMILIAR);
-    } else if (!unrest && (like.novel || self->score[ARGUS_TEST_GARBAGE] < BETWEEN_MAX)) {
+    } else if (is_echo(now) && like.comparable > 0 && !unrest &&
+               (like.novel || self->score[ARGUS_TEST_GARBAGE] < BETWEEN_MAX)) {
         argus_score(self, ARGUS_TEST_GARBAGE, like.novel ? NOVEL : BETWEEN);
     }
 }

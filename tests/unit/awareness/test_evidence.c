@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): a fault is convicted by the test made for it and by nothing else; what
 // is healthy is never convicted, whatever moves, is far, is smooth or echoes across.
+#include "argus/angle.h"
 #include "argus/evidence.h"
 
 #include <math.h>
@@ -380,6 +381,31 @@ void test_the_nearest_range_is_not_stuck(void) {
 void test_readings_that_match_none_before_are_garbage(void) {
     drive_at_wall(40, jumping);
     TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, argus_evidence_convicts(&s.e, 3));
+}
+
+// What reads at random is not without an echo five times in a row: in the open, too, garbage that was given
+// up can end. (What speaks for it counts four times then.) A suspect may have gone silent as well: nothing
+// ends.
+void test_a_silence_takes_garbage_back_of_one_that_is_out(void) {
+    for (int out = 0; out < 2; out++) {
+        drive_at_wall(out != 0 ? 40 : 10, jumping);
+        const int score = s.e.of[3].score[ARGUS_TEST_GARBAGE];
+        TEST_ASSERT_EQUAL(out != 0, score >= argus_bounds[ARGUS_TEST_GARBAGE].convincing);
+        TEST_ASSERT_TRUE(score >= argus_bounds[ARGUS_TEST_GARBAGE].naming);
+        for (int n = 1; n <= 9; n++) { // four, an echo, four: it begins anew
+            reading[3] = n == 5 ? 400 : 5000;
+            scene_say(&s, 1u << 3, reading);
+            s.e.of[3].score[ARGUS_TEST_GARBAGE] =
+                n == 5 ? (int16_t)score : s.e.of[3].score[ARGUS_TEST_GARBAGE];
+            TEST_ASSERT_EQUAL(score, s.e.of[3].score[ARGUS_TEST_GARBAGE]);
+        }
+        scene_say(&s, 1u << 3, reading);
+        TEST_ASSERT_EQUAL(out != 0 ? score - 1200 : score, s.e.of[3].score[ARGUS_TEST_GARBAGE]);
+        for (int n = 0; n < 12; n++) {
+            scene_say(&s, 1u << 3, reading);
+        }
+        TEST_ASSERT_EQUAL(out != 0 ? 0 : score, s.e.of[3].score[ARGUS_TEST_GARBAGE]);
+    }
 }
 
 static int one_missing(int n) {

@@ -226,13 +226,14 @@ void test_views_convict_only_with_ground_at_several_times(void) {
         int episodes;
         int borne_out;
         bool busy;
-        bool enough;
-    } by[] = {{four, 4, 3, 0, false, true},         {four, 4, 2, 0, false, false},
-              {four, 4, 3, 2, false, true},         {four, 4, 3, 3, false, false},
-              {four, 4, 3, 0, true, false},         {three, 3, 3, 0, false, false},
-              {main_of_six, 6, 3, 0, false, false}, {three_beside, 6, 3, 0, false, true},
-              {scan, 6, 3, 0, false, true},         {scans, 3, 3, 0, false, false},
-              {scans, 4, 3, 0, false, true}};
+        bool enough;     // for a view
+        bool enough_off; // for silence: twice as many conflicts are enough
+    } by[] = {{four, 4, 3, 0, false, true, true},           {four, 4, 2, 0, false, false, false},
+              {three_beside, 6, 3, 2, false, true, true},   {three_beside, 6, 3, 3, false, false, true},
+              {three_beside, 6, 3, 4, false, false, false}, {four, 4, 3, 0, true, false, false},
+              {three, 3, 3, 0, false, false, false},        {main_of_six, 6, 3, 0, false, false, false},
+              {three_beside, 6, 3, 0, false, true, true},   {scan, 6, 3, 0, false, true, true},
+              {scans, 3, 3, 0, false, false, false},        {scans, 4, 3, 0, false, true, true}};
     static const argus_test_t tests[] = {ARGUS_TEST_VIEW, ARGUS_TEST_OFF};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
         for (int t = 0; t < 2; t++) {
@@ -246,7 +247,8 @@ void test_views_convict_only_with_ground_at_several_times(void) {
             accuse(tests[t], argus_bounds[tests[t]].convincing);
             const argus_fault_kind_t kind = t == 0 ? ARGUS_KIND_WRONG : ARGUS_KIND_OFF;
             snprintf(text, sizeof text, "case %d, test %d", i, t);
-            TEST_ASSERT_EQUAL_MESSAGE(by[i].enough ? kind : ARGUS_KIND_NONE, convicted(), text);
+            const bool enough = t == 0 ? by[i].enough : by[i].enough_off;
+            TEST_ASSERT_EQUAL_MESSAGE(enough ? kind : ARGUS_KIND_NONE, convicted(), text);
             TEST_ASSERT_EQUAL_MESSAGE(kind, named(), text);
         }
     }
@@ -290,6 +292,28 @@ void test_what_the_readings_look_like_tells_the_kind_of_a_view(void) {
     }
 }
 
+// Gaps, too: its silences alone are contradicted, four of the last four, and an echo since was borne out.
+void test_views_of_one_contradicted_for_its_silences_tell_of_gaps(void) {
+    static const struct {
+        unsigned hollow;
+        bool borne_out;
+        int none_run;
+        argus_fault_kind_t kind;
+    } by[] = {{0x0F, true, 0, ARGUS_KIND_INTERMITTENT}, {0x0F, true, 2, ARGUS_KIND_INTERMITTENT},
+              {0x0F, true, 3, ARGUS_KIND_OFF},          {0x0F, false, 0, ARGUS_KIND_WRONG},
+              {0x0E, true, 0, ARGUS_KIND_WRONG},        {0xF7, true, 2, ARGUS_KIND_WRONG}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        give_ground();
+        accuse(ARGUS_TEST_VIEW, argus_bounds[ARGUS_TEST_VIEW].naming);
+        peer->hollow = (uint8_t)by[i].hollow;
+        peer->borne_out = by[i].borne_out;
+        c->none_run = (uint8_t)by[i].none_run;
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
+    }
+}
+
 // Peers: off is who was silent the last three times that it was contradicted and is silent since five
 // readings, twelve where an echo of it was borne out of late; otherwise its silence comes and goes.
 void test_what_was_contradicted_tells_the_kind_of_the_peers(void) {
@@ -320,47 +344,47 @@ void test_what_was_contradicted_tells_the_kind_of_the_peers(void) {
     }
 }
 
-// A lateness of so much, in four ways: what the peers say, against well a quarter, and what it shows itself.
+#define WAYS 4
+
+// A lateness of so much, in each of its ways: what the peers say, what it shows itself, and some of each.
+// Late and not well is none.
 static void be_late(int way, int by) {
     memset(peer->late, 0, sizeof peer->late);
     memset(peer->told, 0, sizeof peer->told);
     memset(c->lag_doubt, 0, sizeof c->lag_doubt);
     c->score[ARGUS_TEST_LAG] = 0;
+    peer->late[LAG] = 2000;
     switch (way) {
     case 0:
         peer->told[LAG] = (int16_t)by;
         break;
     case 1:
-        peer->late[LAG] = (int16_t)(by * 4);
-        break;
-    case 2:
         for (int n = 0; n < ARGUS_TRAIL; n++) {
             c->lag_doubt[n] = (int16_t)(n == LAG ? 0 : by);
         }
         break;
-    case 3:
+    case 2:
         c->score[ARGUS_TEST_LAG] = (int16_t)by;
         break;
-    default: // some of each, 100 of it by three of them
+    default:
         peer->told[LAG] = (int16_t)(by - 100);
-        peer->late[LAG] = 160;
-        c->score[ARGUS_TEST_LAG] = 60;
+        c->score[ARGUS_TEST_LAG] = 100;
         break;
     }
 }
 
-// What others contradict is late from 250 on, all that tells late from wrong taken together.
+// What others contradict is late from 430 on, all that tells late from wrong taken together.
 void test_late_is_told_from_wrong_by_all_that_speaks_for_it(void) {
-    for (int way = 0; way < 5; way++) {
+    for (int way = 0; way < WAYS; way++) {
         for (int peers = 0; peers < 2; peers++) {
             setUp();
             give_ground();
             const argus_test_t test = peers != 0 ? ARGUS_TEST_PEERS : ARGUS_TEST_VIEW;
             accuse(test, argus_bounds[test].naming);
             snprintf(text, sizeof text, "way %d, peers %d", way, peers);
-            be_late(way, 249);
+            be_late(way, 429);
             TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_WRONG, named(), text);
-            be_late(way, 250);
+            be_late(way, 430);
             TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_SLOW, named(), text);
         }
     }
@@ -370,41 +394,82 @@ void test_late_is_told_from_wrong_by_all_that_speaks_for_it(void) {
 void test_a_conviction_tells_late_from_wrong_too(void) {
     give_ground();
     accuse(ARGUS_TEST_VIEW, argus_bounds[ARGUS_TEST_VIEW].convincing);
-    be_late(0, 449);
+    be_late(0, 879);
     TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, convicted());
-    be_late(0, 450);
+    be_late(0, 880);
     TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, convicted());
 }
 
-// Late and not well from 1,400 on names one that others contradict, 300 and by two.
+// Late and not well from 800 on, 1,400 while something moves about, names one that others contradict, 300 and
+// by two, where it is late and not wrong as well.
 void test_lateness_alone_names_only_one_that_others_contradict(void) {
     static const struct {
         int late;
         int peers;
         unsigned against;
         int told;
+        bool busy;
         argus_fault_kind_t kind;
-    } by[] = {{1400, 300, 3, 0, ARGUS_KIND_SLOW},  {1399, 300, 3, 0, ARGUS_KIND_NONE},
-              {1400, 299, 3, 0, ARGUS_KIND_NONE},  {1400, 300, 1, 0, ARGUS_KIND_NONE},
-              {1400, 449, 3, 0, ARGUS_KIND_SLOW},  {1400, 450, 3, 0, ARGUS_KIND_SLOW},
-              {1399, 450, 3, 50, ARGUS_KIND_NONE}, {2000, 0, 3, 1500, ARGUS_KIND_NONE}};
+    } by[] = {{800, 300, 3, 430, false, ARGUS_KIND_SLOW}, {799, 300, 3, 900, false, ARGUS_KIND_NONE},
+              {800, 299, 3, 900, false, ARGUS_KIND_NONE}, {800, 300, 1, 900, false, ARGUS_KIND_NONE},
+              {800, 300, 3, 429, false, ARGUS_KIND_NONE}, {1400, 300, 3, 430, true, ARGUS_KIND_SLOW},
+              {1399, 449, 3, 900, true, ARGUS_KIND_NONE}, {1400, 450, 3, 430, true, ARGUS_KIND_SLOW},
+              {799, 450, 3, 900, false, ARGUS_KIND_NONE}, {2000, 0, 3, 900, false, ARGUS_KIND_NONE}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
         setUp();
         peer->late[LAG] = (int16_t)by[i].late;
         peer->told[LAG] = (int16_t)by[i].told;
         peer->against = (uint16_t)by[i].against;
         c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
+        e.busy = by[i].busy;
         snprintf(text, sizeof text, "case %d", i);
         TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
         TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
-        TEST_ASSERT_EQUAL_MESSAGE(by[i].peers >= 450 || (by[i].late >= 1400 && by[i].peers >= 300),
-                                  argus_evidence_suspects(&e, SONAR), text);
+        const bool late = by[i].late >= (by[i].busy ? 1400 : 800) && by[i].peers >= 300 && by[i].told >= 430;
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].peers >= 450 || late, argus_evidence_suspects(&e, SONAR), text);
+    }
+}
+
+// The echoes of a late sonar look like gaps or like garbage at times: late and not well from 1,000 on, late
+// and not wrong, contradicted and by two, it is slow, in a conviction too.
+void test_late_for_sure_is_neither_garbage_nor_gaps(void) {
+    static const argus_test_t tests[] = {ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT, ARGUS_TEST_VIEW};
+    static const argus_fault_kind_t kinds[] = {ARGUS_KIND_GARBAGE, ARGUS_KIND_INTERMITTENT,
+                                               ARGUS_KIND_INTERMITTENT};
+    static const struct {
+        int late;
+        int told;
+        int peers;
+        unsigned against;
+        bool slow;
+    } by[] = {{1000, 430, 300, 3, true},
+              {999, 900, 300, 3, false},
+              {2000, 429, 300, 3, false},
+              {2000, 900, 299, 3, false},
+              {2000, 900, 300, 1, false}};
+    for (int t = 0; t < 3; t++) {
+        for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+            setUp();
+            give_ground();
+            peer->hollow = 0x0F; // so that a view tells of gaps
+            peer->borne_out = true;
+            accuse(tests[t], argus_bounds[tests[t]].naming);
+            peer->late[LAG] = (int16_t)by[i].late;
+            peer->told[LAG] = (int16_t)by[i].told;
+            peer->against = (uint16_t)by[i].against;
+            c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
+            snprintf(text, sizeof text, "test %d, case %d", (int)tests[t], i);
+            TEST_ASSERT_EQUAL_MESSAGE(by[i].slow ? ARGUS_KIND_SLOW : kinds[t], named(), text);
+            accuse(tests[t], argus_bounds[tests[t]].convincing);
+            TEST_ASSERT_EQUAL_MESSAGE(by[i].slow ? ARGUS_KIND_SLOW : kinds[t], convicted(), text);
+        }
     }
 }
 
 // Another name comes before lateness.
 void test_lateness_takes_nothing_from_another_name(void) {
     peer->late[LAG] = 2000;
+    peer->told[LAG] = 900;
     peer->against = 3;
     c->score[ARGUS_TEST_PEERS] = 300;
     accuse(ARGUS_TEST_STUCK, argus_bounds[ARGUS_TEST_STUCK].naming);
@@ -422,9 +487,10 @@ void test_a_relapse_ignores_the_peers(void) {
         give_ground();
         accuse(ARGUS_TEST_PEERS, argus_bounds[ARGUS_TEST_PEERS].ceiling);
         peer->late[LAG] = 2000;
+        peer->told[LAG] = 900;
         TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, named());
         TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_relapses(&e, SONAR));
-        peer->late[LAG] = 0;
+        peer->late[LAG] = peer->told[LAG] = 0;
         accuse(test, argus_bounds[test].naming);
         snprintf(text, sizeof text, "test %d", (int)test);
         TEST_ASSERT_EQUAL_MESSAGE(peers ? ARGUS_KIND_NONE : by_precedence[i].kind,
@@ -451,10 +517,11 @@ void test_the_peers_alone_keep_nobody_out(void) {
 #define NEVER 0
 #define ALWAYS 1
 #define IF_MOVED 2 // the STUCK score is 0
-#define IF_WELL 3  // lateness below 150
-#define IF_LATE 4  // lateness from 450 on
+#define IF_WELL 3  // lateness below 420
+#define IF_LATE 4  // lateness from 880 on
 #define IF_DEAF 5  // 12 readings without an echo, the last three contradicted ones too
 #define IF_GAPS 6  // three of the last four contradicted ones without an echo
+#define IF_SURE 7  // late and not well from 1,000 on, lateness from 430 on
 #define KINDS 8
 
 // Rows: the kind that it carries; columns: the kind that is found.
@@ -464,16 +531,18 @@ static const uint8_t replaced_when[KINDS][KINDS] = {
     [ARGUS_KIND_SILENT] = {NEVER},
     [ARGUS_KIND_STUCK] = {NEVER, IF_MOVED, IF_MOVED, NEVER, IF_MOVED, IF_MOVED, IF_MOVED, IF_MOVED},
     [ARGUS_KIND_WRONG] = {NEVER, IF_DEAF, ALWAYS, ALWAYS, NEVER, ALWAYS, IF_LATE, IF_GAPS},
-    [ARGUS_KIND_GARBAGE] = {NEVER},
+    [ARGUS_KIND_GARBAGE] = {NEVER, NEVER, NEVER, NEVER, NEVER, NEVER, IF_SURE, NEVER},
     [ARGUS_KIND_SLOW] = {NEVER, NEVER, NEVER, NEVER, IF_WELL, NEVER, NEVER, NEVER},
-    [ARGUS_KIND_INTERMITTENT] = {NEVER},
+    [ARGUS_KIND_INTERMITTENT] = {NEVER, NEVER, NEVER, NEVER, NEVER, NEVER, IF_SURE, NEVER},
 };
 
 // Everything speaks against a change but what is asked for.
 static void set_up_but(int condition) {
     setUp();
     c->score[ARGUS_TEST_STUCK] = condition == IF_MOVED ? 0 : 1;
-    peer->told[LAG] = (int16_t)(condition == IF_WELL ? 149 : (condition == IF_LATE ? 450 : 150));
+    peer->told[LAG] = (int16_t)(condition == IF_WELL ? 419 : (condition == IF_LATE ? 880 : 430));
+    peer->late[LAG] = condition == IF_SURE ? 1000 : 999;
+    c->score[ARGUS_TEST_PEERS] = 300;
     c->none_run = condition == IF_DEAF ? 12 : 11;
     peer->hollow = condition == IF_DEAF ? 0x07 : (condition == IF_GAPS ? 0x0D : 0xF3);
 }
@@ -482,7 +551,7 @@ static void set_up_but(int condition) {
 void test_which_kind_replaces_which(void) {
     for (int present = 0; present < KINDS; present++) {
         for (int found = 0; found < KINDS; found++) {
-            for (int condition = NEVER; condition <= IF_GAPS; condition++) {
+            for (int condition = NEVER; condition <= IF_SURE; condition++) {
                 const int when = replaced_when[present][found];
                 set_up_but(condition);
                 snprintf(text, sizeof text, "%s by %s, condition %d",
@@ -527,12 +596,12 @@ void test_gaps_give_way_to_off_after_a_long_silence(void) {
 
 // Between late and wrong a name changes only when it is clear, so it does not go to and fro.
 void test_between_late_and_wrong_there_is_room(void) {
-    for (int way = 0; way < 5; way++) {
-        for (int by = 110; by <= 800; by++) {
+    for (int way = 0; way < WAYS; way++) {
+        for (int by = 110; by <= 900; by++) {
             be_late(way, by);
             snprintf(text, sizeof text, "way %d, lateness %d", way, by);
-            TEST_ASSERT_EQUAL_MESSAGE(by >= 450, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_SLOW), text);
-            TEST_ASSERT_EQUAL_MESSAGE(by < 150, replaces(ARGUS_KIND_SLOW, ARGUS_KIND_WRONG), text);
+            TEST_ASSERT_EQUAL_MESSAGE(by >= 880, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_SLOW), text);
+            TEST_ASSERT_EQUAL_MESSAGE(by < 420, replaces(ARGUS_KIND_SLOW, ARGUS_KIND_WRONG), text);
         }
     }
 }
