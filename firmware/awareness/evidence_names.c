@@ -182,17 +182,16 @@ static argus_fault_kind_t first_name(const argus_evidence_t *const self, const i
 }
 
 // Late without another name, or under one that a late sonar may get as well.
-static bool is_rather_late(const argus_evidence_t *const self, const int sonar,
-                           const argus_fault_kind_t other) {
+static argus_fault_kind_t slow_or(const argus_evidence_t *const self, const int sonar,
+                                  const argus_fault_kind_t other) {
     const bool unsteady = other == ARGUS_KIND_INTERMITTENT || other == ARGUS_KIND_GARBAGE;
     const bool late =
         other == ARGUS_KIND_NONE ? looks_late(self, sonar) : unsteady && is_surely_late(self, sonar);
-    return late && has_partners(self, sonar);
+    return late && has_partners(self, sonar) ? ARGUS_KIND_SLOW : other;
 }
 
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
-    const argus_fault_kind_t kind = first_name(self, sonar, ARGUS_TESTS);
-    return is_rather_late(self, sonar, kind) ? ARGUS_KIND_SLOW : kind;
+    return slow_or(self, sonar, first_name(self, sonar, ARGUS_TESTS));
 }
 
 argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, const int sonar) {
@@ -203,8 +202,7 @@ argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, c
     for (int i = 0; i < ARGUS_TESTS; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
         if (is_convicted_by(&self->of[sonar], test, self->busy)) {
-            const argus_fault_kind_t kind = kind_by(self, sonar, test, LATE_AFTER);
-            return is_rather_late(self, sonar, kind) ? ARGUS_KIND_SLOW : kind;
+            return slow_or(self, sonar, kind_by(self, sonar, test, LATE_AFTER));
         }
     }
     return ARGUS_KIND_NONE;

@@ -246,11 +246,16 @@ static likeness_t liken(const argus_case_t *const self, const argus_trail_t *con
 // Readings between familiar and novel name nobody: so looks somebody who walks, too.
 static void test_garbage(argus_case_t *const self, const argus_trail_t *const now, const int sonar,
                          const bool unrest) {
+    if (!is_echo(now)) {
+        if (self->out && self->none_run >= SILENT_RUN) {
+            argus_score(self, ARGUS_TEST_GARBAGE, FAMILIAR);
+        }
+        return;
+    }
     const likeness_t like = liken(self, now, sonar);
-    const bool familiar = is_echo(now) ? like.familiar : self->out && self->none_run >= SILENT_RUN;
-    if (familiar) {
+    if (like.familiar) {
         argus_score(self, ARGUS_TEST_GARBAGE, FAMILIAR);
-    } else if (is_echo(now) && like.comparable > 0 && !unrest &&
+    } else if (like.comparable > 0 && !unrest &&
                (like.novel || self->score[ARGUS_TEST_GARBAGE] < BETWEEN_MAX)) {
         argus_score(self, ARGUS_TEST_GARBAGE, like.novel ? NOVEL : BETWEEN);
     }
