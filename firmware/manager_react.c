@@ -4,6 +4,8 @@
 #include "manager_internal.h"
 
 #define SWING_MM ARGUS_P3DX_BODY_SWING_RADIUS_MM
+#define NEAR_APART_MM 150 // two echoes of one thing in a turn
+#define NEAR_MS 700u
 #define BACKOFFS_MAX 3
 #define HEMMED_IN_MS 10000u // people who stand beside it walk on
 #define LOW_BATTERY_DV 115  // where CONFIGpac names none
@@ -276,6 +278,41 @@ static bool react_object(argus_t *const self, const argus_alarm_t *const alarm) 
     return true;
 }
 
+// One echo within the swing circle may be crosstalk: the second one of the same place is not.
+static bool is_near_again(argus_t *const self, const int sonar) {
+    const argus_point_t echo = argus_echo_robot(&self->knowledge, sonar);
+    if (argus_hypot(echo.x_mm, echo.y_mm) > SWING_MM) {
+        return false;
+    }
+    const argus_point_t at = argus_to_course(&self->knowledge.pose, echo);
+    const bool lately = self->has_near && self->now_ms - self->near_ms <= NEAR_MS;
+    const bool again = lately && argus_abs(at.x_mm - self->near_at.x_mm) <= NEAR_APART_MM &&
+                       argus_abs(at.y_mm - self->near_at.y_mm) <= NEAR_APART_MM;
+    self->near_at = at;
+    self->near_ms = self->now_ms;
+    self->has_near = true;
+    return again;
+}
+
+// S7 holds through the turn: what comes into view within the swing circle ends it.
+static bool react_swing(argus_t *const self) {
+    const bool turning = self->motion.kind == ARGUS_MOTION_TURN && !self->motion.settled;
+    if (!argus_judges(self) || !turning) {
+        self->has_near = false;
+        return false;
+    }
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const bool fresh = (self->knowledge.fresh >> i & 1u) != 0 && argus_usable(&self->knowledge, i);
+        if (fresh && is_near_again(self, i)) {
+            argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, nearest_to_centre_mm(self));
+            argus_stop(self, ARCOS_CMD_STOP);
+            argus_enter_checking(self, true);
+            return true;
+        }
+    }
+    return false;
+}
+
 // A smooth wall that the robot slants into is heard by the sonar that looks abeam alone.
 static void react_flank(argus_t *const self) {
     const bool ahead = self->mode == ARGUS_MODE_DRIVING || self->mode == ARGUS_MODE_STEPPING;
@@ -355,7 +392,7 @@ void argus_react(argus_t *const self, const argus_alarm_t *const alarm) {
     }
     react_battery(self);
     react_motors(self);
-    if (!react_dead(self, alarm) && !react_object(self, alarm)) {
+    if (!react_dead(self, alarm) && !react_object(self, alarm) && !react_swing(self)) {
         react_flank(self);
     }
 }

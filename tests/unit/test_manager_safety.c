@@ -737,6 +737,34 @@ void test_s7_no_turn_while_the_swing_circle_is_blocked(void) {
     in_both_profiles(check_s7_no_turn_while_the_swing_circle_is_blocked);
 }
 
+// What no sonar had seen when the turn began; one echo alone may be crosstalk.
+static void check_s7_a_turn_ends_when_something_shows_within_the_swing_circle(void) {
+    for (int lasts = 0; lasts < 2; lasts++) {
+        start_idle();
+        argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 170);
+        for (int i = 0; i < 5000 && fabs(robot_heading_deg(&robot)) < 20; i++) {
+            robot_tick(&robot);
+        }
+        robot.fault[3] = ROBOT_VALUE;
+        robot.fault_value[3] = 150;
+        robot_run(&robot, lasts ? 1000 : 300);
+        if (lasts) {
+            TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
+            TEST_ASSERT_TRUE(fabs(robot_heading_deg(&robot)) < 90);
+        } else {
+            robot.fault[3] = ROBOT_OK;
+            TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0));
+        }
+        robot_run(&robot, 4000);
+        TEST_ASSERT_EQUAL(lasts, fabs(robot_heading_deg(&robot)) < 90);
+        finish();
+    }
+}
+
+void test_s7_a_turn_ends_when_something_shows_within_the_swing_circle(void) {
+    with_profile(ARGUS_PROFILE_ARGUS, check_s7_a_turn_ends_when_something_shows_within_the_swing_circle);
+}
+
 // Hit while turned away to look: it may neither go on with the turn nor turn home.
 static void check_s7_no_turn_home_while_a_bumper_is_pressed(void) {
     start_idle();

@@ -146,11 +146,14 @@ typedef struct {
     uint32_t stops;     // STOP and E_STOP sent, monotonic
     argus_mark_t mark;  // CHECKING: readings after this count
     bool marked;
-    uint8_t rounds;    // CHECKING: rounds of fresh readings still wanted
-    int32_t base_cdeg; // heading to return to after verification and sweeps (S4)
-    int32_t jog_mm;    // the operator's step, 0: the course decides
-    uint16_t bumpers;  // bumper bits answered already, front << 8 | rear
-    uint8_t backed;    // back-offs in this place
+    uint8_t rounds;        // CHECKING: rounds of fresh readings still wanted
+    int32_t base_cdeg;     // heading to return to after verification and sweeps (S4)
+    int32_t jog_mm;        // the operator's step, 0: the course decides
+    uint16_t bumpers;      // bumper bits answered already, front << 8 | rear
+    uint8_t backed;        // back-offs in this place
+    argus_point_t near_at; // the last echo within the swing circle in a turn, course frame, at near_ms
+    uint32_t near_ms;
+    bool has_near;
     bool has_base;
     bool aimed;    // DRIVING: the leg's bearing was turned to
     bool arriving; // at the goal, stopping
