@@ -4,6 +4,7 @@
 #include "manager_internal.h"
 
 #define REFRESH_MS 320u
+#define ALL_ROUND_MS 700u // no sonar that still reports takes longer, 0 and 7 in failure mode neither
 
 void argus_take_base(argus_t *const self) {
     if (!self->has_base) {
@@ -82,6 +83,21 @@ uint16_t argus_wanted_sonars(const argus_t *const self) {
     return (uint16_t)(ARGUS_FORWARD_MASK & ~(unsigned)argus_out(&self->knowledge));
 }
 
+static uint16_t usable(const argus_knowledge_t *const knowledge) {
+    unsigned mask = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        mask |= argus_usable(knowledge, i) ? 1u << i : 0u;
+    }
+    return (uint16_t)mask;
+}
+
+// Those ahead have been read again; before a turn that S7 forbade the others as well, while they report.
+static bool has_round(const argus_t *const self) {
+    const bool waits = self->all_round && self->now_ms - self->since_ms < ALL_ROUND_MS;
+    return argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->mark) &&
+           (!waits || argus_all_fresh_since(&self->knowledge, usable(&self->knowledge), &self->mark));
+}
+
 void argus_run_checking(argus_t *const self) {
     if (!is_home(self)) {
         self->marked = false;
@@ -91,7 +107,7 @@ void argus_run_checking(argus_t *const self) {
         self->marked = true;
         self->mark = self->passive ? argus_mark_now(&self->knowledge) : self->motion.mark;
     }
-    if (!argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->mark)) {
+    if (!has_round(self)) {
         return;
     }
     self->mark = argus_mark_now(&self->knowledge);

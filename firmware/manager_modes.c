@@ -52,6 +52,7 @@ void argus_enter_checking(argus_t *const self, const bool full) {
     self->rounds = full || !self->checked ? (uint8_t)self->config.suspect_readings : 1;
     self->arriving = false;
     self->marked = false;
+    self->all_round = false;
     come_to_rest(self);
     argus_enter(self, ARGUS_MODE_CHECKING);
 }

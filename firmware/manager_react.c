@@ -4,12 +4,21 @@
 #include "manager_internal.h"
 
 #define SWING_MM ARGUS_P3DX_BODY_SWING_RADIUS_MM
+#define SWING_MARGIN_MM 20  // an echo is taken to lie on the axis of its sonar
+#define SWING_TURNING_MM 10 // ... of which that much is left in a turn: readings scatter
+#define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
 #define NEAR_APART_MM 150 // two echoes of one thing in a turn
 #define NEAR_MS 700u
 #define BACKOFFS_MAX 3
 #define HEMMED_IN_MS 10000u // people who stand beside it walk on
 #define LOW_BATTERY_DV 115  // where CONFIGpac names none
 #define REAR_SONARS 0xFF00u
+#define ABEAM_SONARS (1u << 8 | 1u << 15)
+#define ABEAM_CLEAR_MM 250 // beside a way straight back of 300 mm; the body ends 77 mm beside their faces
+#define BACK_MOST_MM 300
+#define BACK_LEFT_MM 150 // of what the rear reads clear
+#define BACK_STEP_MM 25
+#define REAR_OVERHANG_MM 46
 
 static bool is_active(const argus_t *const self) {
     return !self->passive && !self->shutdown;
@@ -60,14 +69,27 @@ bool argus_rear_is_watched(const argus_t *const self) {
     return true;
 }
 
+// Those that look abeam see what the robot passes by, not what it backs into.
+static int32_t rear_clear_mm(const argus_t *const self, const int sonar) {
+    const bool abeam = argus_judges(self) && (ABEAM_SONARS >> sonar & 1u) != 0;
+    return abeam ? argus_min(ABEAM_CLEAR_MM, self->config.rear_clear_mm) : self->config.rear_clear_mm;
+}
+
 bool argus_rear_is_clear(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const bool counts = (REAR_SONARS >> i & 1u) != 0;
-        if (counts && self->knowledge.sonar[i].reading_mm <= self->config.rear_clear_mm) {
+        if (counts && self->knowledge.sonar[i].reading_mm <= rear_clear_mm(self, i)) {
             return false;
         }
     }
     return argus_rear_is_watched(self);
+}
+
+// As fast as S5 lets it drive with the rear's overhang.
+static int32_t back_speed_mm_s(const argus_t *const self) {
+    const bool stops_in_time =
+        argus_config_stop_mm(&self->config) + REAR_OVERHANG_MM < self->config.object_range_mm;
+    return argus_judges(self) && stops_in_time ? self->config.speed_mm_s : self->config.step_speed_mm_s;
 }
 
 void argus_back_off(argus_t *const self, const int32_t distance_mm) {
@@ -75,20 +97,39 @@ void argus_back_off(argus_t *const self, const int32_t distance_mm) {
         return;
     }
     argus_say(self, ARGUS_EV_BACKING, ARGUS_NO_SONAR, distance_mm);
-    argus_motion_move(&self->motion, &self->session.outbox, -distance_mm, self->config.step_speed_mm_s,
+    argus_motion_move(&self->motion, &self->session.outbox, -distance_mm, back_speed_mm_s(self),
                       self->now_ms);
     argus_enter(self, ARGUS_MODE_BACKING);
 }
 
-// S7 under `argus`: what was seen a moment ago and has left the cones is still there.
-static int32_t nearest_to_centre_mm(const argus_t *const self) {
-    const int32_t now_mm = argus_nearest_to_centre_mm(&self->knowledge, 0);
-    return argus_judges(self) ? argus_min(now_mm, argus_task_nearest_mm(&self->task, &self->knowledge))
-                              : now_mm;
+// Of what is seen, were the robot farther back; under `argus` what was seen a moment ago and has left the
+// cones is still there.
+static int32_t nearest_to_centre_mm(const argus_t *const self, const int32_t back_mm) {
+    const int32_t now_mm = argus_nearest_to_centre_mm(&self->knowledge, back_mm);
+    return argus_judges(self)
+               ? argus_min(now_mm, argus_task_nearest_mm(&self->task, &self->knowledge, back_mm))
+               : now_mm;
+}
+
+static int32_t swing_mm(const argus_t *const self) {
+    return argus_judges(self) ? SWING_MM + SWING_MARGIN_MM : SWING_MM;
 }
 
 bool argus_swing_is_blocked(const argus_t *const self) {
-    return nearest_to_centre_mm(self) <= SWING_MM;
+    return nearest_to_centre_mm(self, 0) <= swing_mm(self);
+}
+
+// The least way back, up to where the rear reads clear, after which a turn is free; where none is, the usual
+// one.
+static int32_t way_to_turn_mm(const argus_t *const self) {
+    const int32_t usual_mm = self->config.backoff_mm;
+    const int32_t most_mm = argus_min(BACK_MOST_MM, self->config.rear_clear_mm - BACK_LEFT_MM);
+    for (int32_t way_mm = usual_mm; argus_judges(self) && way_mm <= most_mm; way_mm += BACK_STEP_MM) {
+        if (nearest_to_centre_mm(self, way_mm) > swing_mm(self) + SWING_SPARE_MM) {
+            return way_mm;
+        }
+    }
+    return usual_mm;
 }
 
 // S7: no rotation while a bumper is pressed or an echo lies within the swing circle.
@@ -109,7 +150,7 @@ bool argus_is_hemmed_in(const argus_t *const self) {
 
 // Where it may not turn, a few times backing away may help.
 bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
-    const int32_t nearest = nearest_to_centre_mm(self);
+    const int32_t nearest = nearest_to_centre_mm(self, 0);
     if (argus_may_turn(self)) {
         self->wait_last = self->wait_last == ARGUS_WAIT_TURN ? ARGUS_WAIT_NONE : self->wait_last;
         argus_motion_turn(&self->motion, &self->session.outbox, &self->knowledge, heading_cdeg, self->now_ms);
@@ -117,8 +158,9 @@ bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
     }
     argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, nearest == INT32_MAX ? 0 : nearest);
     if (may_back_off(self)) {
-        self->backed++;
-        argus_back_off(self, self->config.backoff_mm);
+        const int32_t way_mm = way_to_turn_mm(self);
+        self->backed = (uint8_t)(self->backed + (way_mm > self->config.backoff_mm ? 2 : 1));
+        argus_back_off(self, way_mm);
     } else {
         argus_enter_waiting(self, ARGUS_WAIT_TURN);
     }
@@ -281,7 +323,7 @@ static bool react_object(argus_t *const self, const argus_alarm_t *const alarm) 
 // One echo within the swing circle may be crosstalk: the second one of the same place is not.
 static bool is_near_again(argus_t *const self, const int sonar) {
     const argus_point_t echo = argus_echo_robot(&self->knowledge, sonar);
-    if (argus_hypot(echo.x_mm, echo.y_mm) > SWING_MM) {
+    if (argus_hypot(echo.x_mm, echo.y_mm) > SWING_MM + SWING_TURNING_MM) {
         return false;
     }
     const argus_point_t at = argus_to_course(&self->knowledge.pose, echo);
@@ -304,7 +346,7 @@ static bool react_swing(argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const bool fresh = (self->knowledge.fresh >> i & 1u) != 0 && argus_usable(&self->knowledge, i);
         if (fresh && is_near_again(self, i)) {
-            argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, nearest_to_centre_mm(self));
+            argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, nearest_to_centre_mm(self, 0));
             argus_stop(self, ARCOS_CMD_STOP);
             argus_enter_checking(self, true);
             return true;

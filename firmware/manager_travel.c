@@ -297,7 +297,8 @@ void argus_run_backing(argus_t *const self) {
         if (self->bumpers != 0) {
             argus_enter_waiting(self, ARGUS_WAIT_BUMPER);
         } else {
-            argus_enter_checking(self, true);
+            argus_enter_checking(self, !argus_judges(self));
+            self->all_round = argus_judges(self);
         }
     } else if (!argus_rear_is_watched(self)) {
         argus_halt(self);

@@ -11,6 +11,7 @@
 #define LOOK_MS 2600u       // a sonar that yields nothing is not waited for longer
 #define FIRST_LOOKS 2
 #define SILENT_RUN 2
+#define ACCUSED 100 // of a silent one, by the others, in hundredths of a nat: it is worth an aim
 #define AIMS_MAX 4   // turns of a suspect onto what another has heard
 #define AIMS_ASIDE 2 // ... and, while that lasts, of one that is none
 #define AIMED_SILENT 2
@@ -42,11 +43,22 @@ static uint16_t around(const uint16_t suspects) {
     return (uint16_t)mask;
 }
 
-// Suspects that hear nothing, and are not named yet.
-static bool is_silent(const argus_inquiry_t *const self, const argus_evidence_t *const evidence,
-                      const int sonar) {
-    return (self->suspects >> sonar & 1u) != 0 && evidence->of[sonar].none_run >= SILENT_RUN &&
+// Hears nothing, and is not named yet.
+static bool is_silent(const argus_evidence_t *const evidence, const int sonar) {
+    return evidence->of[sonar].none_run >= SILENT_RUN &&
            argus_evidence_names(evidence, sonar) == ARGUS_KIND_NONE;
+}
+
+static bool is_silent_suspect(const argus_inquiry_t *const self, const argus_evidence_t *const evidence,
+                              const int sonar) {
+    return (self->suspects >> sonar & 1u) != 0 && is_silent(evidence, sonar);
+}
+
+// No suspect yet, but others hear what it does not.
+static bool is_accused(const argus_knowledge_t *const knowledge, const argus_evidence_t *const evidence,
+                       const int sonar) {
+    return evidence->of[sonar].score[ARGUS_TEST_PEERS] >= ACCUSED && is_silent(evidence, sonar) &&
+           !argus_is_out(knowledge, sonar);
 }
 
 // Neither suspect nor proved of late, by an echo that goes on or by another sonar: a look is the occasion.
@@ -92,7 +104,7 @@ static bool aim_at_one_of(argus_inquiry_t *const self, const argus_knowledge_t *
     return false;
 }
 
-// Suspects first. False: nothing to aim at, or often enough.
+// Suspects first, then whom the others contradict. False: nothing to aim at, or often enough.
 static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                      const argus_evidence_t *const evidence) {
     self->aiming = false;
@@ -100,12 +112,15 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
         return false;
     }
     unsigned silent = 0;
+    unsigned accused = 0;
     unsigned unproved = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        silent |= is_silent(self, evidence, i) ? 1u << i : 0u;
+        silent |= is_silent_suspect(self, evidence, i) ? 1u << i : 0u;
+        accused |= is_accused(knowledge, evidence, i) ? 1u << i : 0u;
         unproved |= is_unproved(self, knowledge, evidence, i) ? 1u << i : 0u;
     }
     return aim_at_one_of(self, knowledge, evidence, silent) ||
+           aim_at_one_of(self, knowledge, evidence, accused) ||
            aim_at_one_of(self, knowledge, evidence, unproved);
 }
 
@@ -212,7 +227,7 @@ static bool is_in_doubt(const argus_inquiry_t *const self, const argus_evidence_
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const bool asked = (self->suspects >> i & 1u) != 0;
         if (asked &&
-            (is_silent(self, evidence, i) || (evidence->of[i].none_run == 0 && is_open(evidence, i)))) {
+            (is_silent(evidence, i) || (evidence->of[i].none_run == 0 && is_open(evidence, i)))) {
             return true;
         }
     }

@@ -91,6 +91,7 @@ void argus_note_unrest(argus_evidence_t *const self, const argus_knowledge_t *co
     self->of[sonar].unrest_ms = knowledge->sip_ms;
     if (!argus_is_out(knowledge, sonar)) {
         self->busy = true;
+        self->stirred |= (uint16_t)(1u << sonar);
         self->busy_ms = knowledge->sip_ms;
     }
 }
@@ -156,6 +157,7 @@ void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *c
         self->usual_ms = knowledge->sip_ms;
     }
     self->busy = self->busy && knowledge->sip_ms - self->busy_ms < CALM_MS;
+    self->stirred = self->busy ? self->stirred : 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if ((knowledge->fresh >> i & 1u) != 0) {
             take(self, knowledge, i);

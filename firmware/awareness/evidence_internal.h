@@ -51,8 +51,9 @@ typedef struct {
 } argus_shift_t;
 argus_shift_t argus_pair_shift(int32_t dx_mm, int32_t dy_mm, int32_t bearing_cdeg);
 
-// Beyond, the air decides whether an echo is heard.
-#define ARGUS_PAIR_FARTHEST_MM 4000
+// Beyond, the air decides whether an echo is heard; from the first on it begins to.
+#define ARGUS_PAIR_SURE_MM 4000
+#define ARGUS_PAIR_FARTHEST_MM 4600
 
 // By how much two echoes of one thing may differ at a range.
 int32_t argus_pair_limit_mm(int32_t range_mm);
@@ -68,6 +69,9 @@ typedef enum {
     ARGUS_PAIR_NOTHING
 } argus_outcome_t;
 argus_outcome_t argus_pair_compare(int32_t now_mm, int32_t then_mm, int32_t along_mm);
+
+// Whether one of the two misses what the other heard so far off that the air may have decided.
+bool argus_pair_is_faint(int32_t now_mm, int32_t then_mm, int32_t along_mm);
 
 // One reading against what the others saw on about its bearing from this place, then remembered.
 typedef enum {

@@ -107,8 +107,10 @@ static bool is_late_from(const argus_evidence_t *const self, const int sonar, co
            self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_CONTRADICTED;
 }
 
+// A late sonar's own echoes come and go after the robot has come to rest: only those of others are of people.
 static bool looks_late(const argus_evidence_t *const self, const int sonar) {
-    return is_late_from(self, sonar, self->busy ? LATE_NAMING_BUSY : LATE_NAMING);
+    const bool busy = (self->stirred & ~(1u << sonar)) != 0;
+    return is_late_from(self, sonar, busy ? LATE_NAMING_BUSY : LATE_NAMING);
 }
 
 // Neither gaps nor wild readings come to this; the echoes of a late sonar may look like either.

@@ -20,13 +20,17 @@ int32_t argus_pair_limit_mm(const int32_t range_mm) {
     return AGREE_MM + range_mm * AGREE_PERCENT / 100;
 }
 
+// Where the echo that one of the two heard would be for the other.
+static int32_t heard_at_mm(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
+    return then_mm >= ARGUS_NO_ECHO_MM ? now_mm + along_mm : then_mm - along_mm;
+}
+
 static argus_outcome_t compare_silence(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
     const bool none = now_mm >= ARGUS_NO_ECHO_MM;
-    const bool was_none = then_mm >= ARGUS_NO_ECHO_MM;
-    if (none && was_none) {
+    if (none && then_mm >= ARGUS_NO_ECHO_MM) {
         return ARGUS_PAIR_QUIET;
     }
-    const int32_t expected = was_none ? now_mm + along_mm : then_mm - along_mm;
+    const int32_t expected = heard_at_mm(now_mm, then_mm, along_mm);
     if (expected < NEAREST_MM || expected > ARGUS_PAIR_FARTHEST_MM) {
         return ARGUS_PAIR_NOTHING;
     }
@@ -43,4 +47,9 @@ argus_outcome_t argus_pair_compare(const int32_t now_mm, const int32_t then_mm, 
     }
     const int32_t limit = argus_pair_limit_mm(argus_min(expected, now_mm));
     return argus_abs(expected - now_mm) <= limit ? ARGUS_PAIR_AGREE : ARGUS_PAIR_DIFFER;
+}
+
+bool argus_pair_is_faint(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
+    const bool one_misses = (now_mm >= ARGUS_NO_ECHO_MM) != (then_mm >= ARGUS_NO_ECHO_MM);
+    return one_misses && heard_at_mm(now_mm, then_mm, along_mm) > ARGUS_PAIR_SURE_MM;
 }

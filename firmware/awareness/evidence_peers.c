@@ -27,12 +27,14 @@
 #define TOLD_CEILING 900
 #define HOLLOW_BITS 8
 
-// What the others say of one reading. SAME: the pose of then would have it look where it looks now.
-typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, DIVIDED, SAME, VERDICTS } verdict_t;
+// What the others say of one reading. FAINT: it misses an echo that the air may have swallowed, or the other
+// way round; SAME: the pose of then would have it look where it looks now.
+typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, FAINT, DIVIDED, SAME, VERDICTS } verdict_t;
 
 typedef struct {
     uint8_t agree;
     uint8_t differ;
+    uint8_t faint; // ... of those
     uint8_t quiet;
     bool excused;     // nobody agrees, but one of them saw the same a little aside
     uint16_t against; // those that differ, bit i: sonar i
@@ -84,7 +86,9 @@ static verdict_t compare(const int32_t now_mm, const int32_t then_mm, const int3
                                       [ARGUS_PAIR_NOW_MISSES] = CONTRADICTED,
                                       [ARGUS_PAIR_THEN_MISSES] = CONTRADICTED,
                                       [ARGUS_PAIR_NOTHING] = UNSEEN};
-    return (verdict_t)verdict[argus_pair_compare(now_mm, then_mm, along_mm)];
+    const bool faint = argus_pair_is_faint(now_mm, then_mm, along_mm);
+    const verdict_t said = (verdict_t)verdict[argus_pair_compare(now_mm, then_mm, along_mm)];
+    return said == CONTRADICTED && faint ? FAINT : said;
 }
 
 static int slot_of(const argus_peer_t *const self, const int back) {
@@ -152,7 +156,7 @@ static bool is_excused(const argus_evidence_t *const self, const argus_knowledge
 
 static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const argus_glimpse_t *const now) {
-    tally_t tally = {0, 0, 0, false, 0};
+    tally_t tally = {.agree = 0};
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if (!is_witness(self, knowledge, i, sonar)) {
             continue;
@@ -160,19 +164,23 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
         const verdict_t said = ask(&self->peers.of[i], now, knowledge->sip_ms);
         tally.quiet = (uint8_t)(tally.quiet + (said == QUIET));
         tally.agree = (uint8_t)(tally.agree + (said == AGREED));
-        tally.differ = (uint8_t)(tally.differ + (said == CONTRADICTED));
-        tally.against = (uint16_t)(tally.against | (said == CONTRADICTED ? 1u << i : 0u));
+        const bool differs = said == CONTRADICTED || said == FAINT;
+        tally.differ = (uint8_t)(tally.differ + differs);
+        tally.faint = (uint8_t)(tally.faint + (said == FAINT));
+        tally.against = (uint16_t)(tally.against | (differs ? 1u << i : 0u));
     }
     const bool odd = tally.differ > 0 && tally.agree == 0 && tally.quiet == 0;
     tally.excused = odd && is_excused(self, knowledge, sonar, now);
     return tally;
 }
 
+// For the lags, whose tables were measured without what is faint.
 static verdict_t verdict_of(const tally_t *const tally) {
+    const int differ = tally->differ - tally->faint;
     if (tally->agree > 0) {
-        return tally->agree >= tally->differ ? AGREED : DIVIDED;
+        return tally->agree >= differ ? AGREED : DIVIDED;
     }
-    if (tally->differ > 0) {
+    if (differ > 0) {
         return tally->quiet > 0 || tally->excused ? DIVIDED : CONTRADICTED;
     }
     return tally->quiet > 0 ? QUIET : UNSEEN;
@@ -364,7 +372,8 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     const argus_glimpse_t at = *at_back(peer, back);
     const tally_t tally = ask_all(self, knowledge, sonar, &at);
     const verdict_t verdict = verdict_of(&tally);
-    peer->weighed |= verdict != UNSEEN ? 1u << slot_of(peer, back) : 0u;
+    const bool seen = verdict != UNSEEN || tally.differ > 0;
+    peer->weighed |= seen ? 1u << slot_of(peer, back) : 0u;
     count_if_news(self, knowledge, sonar, &at, &tally);
     const bool tells = verdict != DIVIDED && (fresh || verdict != UNSEEN);
     if (tells && !(verdict == CONTRADICTED && argus_is_unrest_beside(self, knowledge, sonar))) {

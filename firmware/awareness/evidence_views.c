@@ -14,6 +14,7 @@
 #define CLOSE_LATERAL_MM 30
 #define CLOSE_ALONG_MM 50
 #define LOOSE_PERCENT 60
+#define FAINT_PERCENT 45 // of what healthy pairs miss in a tenth of the cases, not a twentieth
 #define OFF_RUN 2
 #define EPISODE_MS 6000u
 #define SUPPORT_CDEG 2000 // an echo may come from anywhere in the cone of either
@@ -161,10 +162,10 @@ static void bear(argus_evidence_t *const self, const argus_knowledge_t *const kn
     c->misses = (uint8_t)argus_min(c->misses + misses, UINT8_MAX);
 }
 
-static int32_t weight_of(const argus_outcome_t outcome, const argus_outcome_t missing, const bool close) {
+static int32_t weight_of(const argus_outcome_t outcome, const argus_outcome_t missing, const int32_t percent) {
     const int32_t weight =
         outcome == ARGUS_PAIR_DIFFER ? DIFFERS : (outcome == missing ? MISSES : HEARS_MORE);
-    return close ? weight : weight * LOOSE_PERCENT / 100;
+    return weight * percent / 100;
 }
 
 static void compare(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
@@ -181,10 +182,12 @@ static void compare(argus_evidence_t *const self, const argus_knowledge_t *const
         argus_score(&self->of[sonar], ARGUS_TEST_OFF, BOTH_QUIET);
         argus_score(&self->of[other], ARGUS_TEST_OFF, BOTH_QUIET);
     } else if (outcome != ARGUS_PAIR_NOTHING) {
+        const bool faint = argus_pair_is_faint(now->reading_mm, then->reading_mm, relation.along_mm);
+        const int32_t percent = (relation.close ? 100 : LOOSE_PERCENT) * (faint ? FAINT_PERCENT : 100) / 100;
         self->disagreements++;
-        bear(self, knowledge, sonar, other, now, weight_of(outcome, ARGUS_PAIR_NOW_MISSES, relation.close),
+        bear(self, knowledge, sonar, other, now, weight_of(outcome, ARGUS_PAIR_NOW_MISSES, percent),
              outcome == ARGUS_PAIR_NOW_MISSES);
-        bear(self, knowledge, other, sonar, then, weight_of(outcome, ARGUS_PAIR_THEN_MISSES, relation.close),
+        bear(self, knowledge, other, sonar, then, weight_of(outcome, ARGUS_PAIR_THEN_MISSES, percent),
              outcome == ARGUS_PAIR_THEN_MISSES);
     }
 }

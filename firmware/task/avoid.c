@@ -9,7 +9,7 @@
 #define REMEMBER_BELOW_MM 2000 // beyond it a beam is too wide to say where the echo lies
 #define SAME_PLACE_MM 80
 #define FORGET_MS 60000u
-#define WIDE_HALF_MM 385   // room to turn on the spot anywhere along it (swing radius 370)
+#define WIDE_HALF_MM 400   // room to turn on the spot anywhere along it (S7 wants 390 under `argus`)
 #define NARROW_HALF_MM 305 // half the body (213), and room for the beam's width: where there is no wide way
 #define NEAR_MM 1000
 #define LATELY_MS 5000u    // what was seen so near does not go away while a look is prepared
@@ -108,11 +108,14 @@ int32_t argus_task_clear_mm(const argus_task_t *const self, const argus_knowledg
     return clear;
 }
 
-int32_t argus_task_nearest_mm(const argus_task_t *const self, const argus_knowledge_t *const knowledge) {
+int32_t argus_task_nearest_mm(const argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                              const int32_t back_mm) {
+    const argus_point_t back = {-back_mm, 0};
+    const argus_point_t centre = argus_to_course(&knowledge->pose, back);
     int32_t nearest = INT32_MAX;
     for (uint16_t i = 0; i < self->seen_count; i++) {
-        const int32_t dx = self->seen[i].x_mm - knowledge->pose.x_mm;
-        const int32_t dy = self->seen[i].y_mm - knowledge->pose.y_mm;
+        const int32_t dx = self->seen[i].x_mm - centre.x_mm;
+        const int32_t dy = self->seen[i].y_mm - centre.y_mm;
         const bool near = argus_abs(dx) < NEAR_MM && argus_abs(dy) < NEAR_MM;
         if (near && knowledge->sip_ms - self->seen[i].seen_ms <= LATELY_MS) {
             nearest = argus_min(nearest, argus_hypot(dx, dy));

@@ -24,7 +24,7 @@ BEARING_DEG: Final = 3.0
 ACROSS_MM: Final = 60.0
 ALONG_MM: Final = 200.0
 NEAREST_MM: Final = 150.0
-FARTHEST_MM: Final = 4000.0
+FARTHEST_MM: Final = 4600.0
 AGREE_MM: Final = 80.0
 AGREE_PART: Final = 0.05
 

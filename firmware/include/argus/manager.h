@@ -147,6 +147,7 @@ typedef struct {
     argus_mark_t mark;  // CHECKING: readings after this count
     bool marked;
     uint8_t rounds;        // CHECKING: rounds of fresh readings still wanted
+    bool all_round;        // ... of all sonars, for a turn, not only of those that look ahead
     int32_t base_cdeg;     // heading to return to after verification and sweeps (S4)
     int32_t jog_mm;        // the operator's step, 0: the course decides
     uint16_t bumpers;      // bumper bits answered already, front << 8 | rear

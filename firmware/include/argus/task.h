@@ -57,9 +57,9 @@ int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *kn
 int32_t argus_task_clear_mm(const argus_task_t *self, const argus_knowledge_t *knowledge,
                             int32_t heading_cdeg, int32_t half_mm);
 
-// Nearest to the robot's centre of what was seen in the last seconds, also where no sonar sees it now;
-// INT32_MAX without any. Cost: one pass over the points.
-int32_t argus_task_nearest_mm(const argus_task_t *self, const argus_knowledge_t *knowledge);
+// Nearest to the robot's centre, were it `back_mm` farther back, of what was seen in the last seconds, also
+// where no sonar sees it now; INT32_MAX without any. Cost: one pass over the points.
+int32_t argus_task_nearest_mm(const argus_task_t *self, const argus_knowledge_t *knowledge, int32_t back_mm);
 
 // An object stopped the robot on its present heading: that heading is refused until the robot has moved on.
 void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge);

@@ -329,6 +329,41 @@ void test_a_suspect_that_is_named_or_hears_is_not_turned(void) {
     TEST_ASSERT_FALSE(inquiry.aiming);
 }
 
+static void is_contradicted(int sonar, int by) {
+    e.of[sonar].score[ARGUS_TEST_PEERS] = (int16_t)by;
+}
+
+// Others hear what it does not: it is turned there whoever is suspected, or nobody.
+void test_who_is_silent_and_contradicted_is_turned_though_no_suspect(void) {
+    for (int by = 99; by <= 100; by++) {
+        three_falls_silent();
+        is_contradicted(3, by);
+        begin_on(0);
+        TEST_ASSERT_EQUAL(by == 100, inquiry.aiming);
+        three_falls_silent();
+        is_contradicted(3, by);
+        comes_back(3);
+        begin_on(0);
+        TEST_ASSERT_FALSE(inquiry.aiming);
+    }
+    three_falls_silent();
+    is_contradicted(3, 100);
+    k.sonar[3].health = ARGUS_DISABLED;
+    begin_on(0);
+    TEST_ASSERT_FALSE(inquiry.aiming);
+}
+
+// However much more the other one is contradicted.
+void test_a_silent_suspect_is_turned_before_one_that_is_contradicted(void) {
+    three_falls_silent();
+    falls_silent(4);
+    heard(5, 0, 1500); // where 4 looks on -20 degrees
+    is_contradicted(4, 400);
+    begin_on(1u << 3);
+    TEST_ASSERT_TRUE(inquiry.aiming);
+    TEST_ASSERT_EQUAL(3, inquiry.aimed);
+}
+
 // Once the aim has shown an echo, the looks to either side would show nothing more.
 void test_an_aim_that_settles_it_ends_the_look(void) {
     three_falls_silent();

@@ -17,7 +17,7 @@
 #define TURN_LEAST_CDEG 300
 #define TURN_MOST_CDEG 10000
 #define NEAREST_MM 250
-#define FARTHEST_MM 3850
+#define FARTHEST_MM 4450
 
 static argus_knowledge_t k;
 static argus_evidence_t e;

@@ -400,8 +400,8 @@ void test_a_conviction_tells_late_from_wrong_too(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, convicted());
 }
 
-// Late and not well from 800 on, 1,400 while something moves about, names one that others contradict, 300 and
-// by two, where it is late and not wrong as well.
+// Late and not well from 800 on, 1,400 while something moves before others, names one that others contradict,
+// 300 and by two, where it is late and not wrong as well.
 void test_lateness_alone_names_only_one_that_others_contradict(void) {
     static const struct {
         int late;
@@ -421,7 +421,8 @@ void test_lateness_alone_names_only_one_that_others_contradict(void) {
         peer->told[LAG] = (int16_t)by[i].told;
         peer->against = (uint16_t)by[i].against;
         c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
-        e.busy = by[i].busy;
+        e.busy = true;
+        e.stirred = (uint16_t)(1u << SONAR | (by[i].busy ? 1u << (SONAR + 1) : 0u));
         snprintf(text, sizeof text, "case %d", i);
         TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
         TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);

@@ -44,11 +44,22 @@ void test_echoes_agree_within_80_mm_and_5_percent_of_the_shorter(void) {
 
 void test_who_hears_none_where_the_other_hears_one_misses(void) {
     says(ARGUS_PAIR_QUIET, NONE_MM, NONE_MM, 100);
-    says(ARGUS_PAIR_NOW_MISSES, NONE_MM, 4000, 0);
-    says(ARGUS_PAIR_NOTHING, NONE_MM, 4001, 0);
-    says(ARGUS_PAIR_NOW_MISSES, NONE_MM, 4100, 100);
-    says(ARGUS_PAIR_THEN_MISSES, 3900, NONE_MM, 100);
-    says(ARGUS_PAIR_NOTHING, 3901, NONE_MM, 100);
+    says(ARGUS_PAIR_NOW_MISSES, NONE_MM, 4600, 0);
+    says(ARGUS_PAIR_NOTHING, NONE_MM, 4601, 0);
+    says(ARGUS_PAIR_NOW_MISSES, NONE_MM, 4700, 100);
+    says(ARGUS_PAIR_THEN_MISSES, 4500, NONE_MM, 100);
+    says(ARGUS_PAIR_NOTHING, 4501, NONE_MM, 100);
+}
+
+// The air may have swallowed the echo: only of silences, from 4 m on, of the place where it is missed.
+void test_a_silence_is_faint_where_the_echo_would_be_beyond_4_m(void) {
+    TEST_ASSERT_FALSE(argus_pair_is_faint(NONE_MM, 4000, 0));
+    TEST_ASSERT_TRUE(argus_pair_is_faint(NONE_MM, 4001, 0));
+    TEST_ASSERT_FALSE(argus_pair_is_faint(NONE_MM, 4100, 100));
+    TEST_ASSERT_TRUE(argus_pair_is_faint(3901, NONE_MM, 100));
+    TEST_ASSERT_FALSE(argus_pair_is_faint(3900, NONE_MM, 100));
+    TEST_ASSERT_FALSE(argus_pair_is_faint(4500, 1000, 0));
+    TEST_ASSERT_FALSE(argus_pair_is_faint(NONE_MM, NONE_MM, 0));
 }
 
 void test_what_would_be_nearer_than_150_mm_tells_nothing(void) {

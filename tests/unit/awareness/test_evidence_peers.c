@@ -129,16 +129,43 @@ void test_silence_on_both_sides_says_nothing(void) {
     TEST_ASSERT_EQUAL(0, e.peers.of[ME].verdicts);
 }
 
-// Beyond 4,000 mm the air decides whether an echo is heard; nearer, silence contradicts, on either side.
+// Beyond 4,600 mm the air decides whether an echo is heard; nearer, silence contradicts, on either side.
 void test_silence_contradicts_an_echo_that_is_near_only(void) {
-    TEST_ASSERT_EQUAL(AGAINST, compared(4000, NONE_MM));
-    TEST_ASSERT_EQUAL(0, compared(4001, NONE_MM));
-    TEST_ASSERT_EQUAL(AGAINST, compared(NONE_MM, 4000));
-    TEST_ASSERT_EQUAL(0, compared(NONE_MM, 4001));
-    TEST_ASSERT_EQUAL(AGAINST, compared_from(0, 100, 0, 4100, NONE_MM));
-    TEST_ASSERT_EQUAL(0, compared_from(0, 100, 0, 4101, NONE_MM));
-    TEST_ASSERT_EQUAL(AGAINST, compared_from(0, 100, 0, NONE_MM, 3900));
-    TEST_ASSERT_EQUAL(0, compared_from(0, 100, 0, NONE_MM, 3901));
+    TEST_ASSERT_EQUAL(AGAINST, compared(4600, NONE_MM));
+    TEST_ASSERT_EQUAL(0, compared(4601, NONE_MM));
+    TEST_ASSERT_EQUAL(AGAINST, compared(NONE_MM, 4600));
+    TEST_ASSERT_EQUAL(0, compared(NONE_MM, 4601));
+    TEST_ASSERT_EQUAL(AGAINST, compared_from(0, 100, 0, 4700, NONE_MM));
+    TEST_ASSERT_EQUAL(0, compared_from(0, 100, 0, 4701, NONE_MM));
+    TEST_ASSERT_EQUAL(AGAINST, compared_from(0, 100, 0, NONE_MM, 4500));
+    TEST_ASSERT_EQUAL(0, compared_from(0, 100, 0, NONE_MM, 4501));
+}
+
+// The tables of the lags know nothing of silences beyond 4,000 mm: those count against the reading alone.
+void test_a_faint_silence_tells_nothing_of_lags(void) {
+    for (int mm = 4000; mm <= 4001; mm++) {
+        setUp();
+        face(ME, 0);
+        saw(THIRD, mm)->bearing_cdeg = 9000;
+        saw(ME, mm)->bearing_cdeg = 9000;
+        saw(ME, mm)->bearing_cdeg = 9000;
+        saw(WITNESS, NONE_MM);
+        TEST_ASSERT_EQUAL(AGAINST, reads(mm)); // two firings ago it would have agreed
+        TEST_ASSERT_EQUAL(mm == 4000 ? 300 : 50, argus_peers_late(&e.peers, ME));
+        TEST_ASSERT_EQUAL(1, argus_peers_against(&e.peers, ME));
+    }
+}
+
+// ... and what was judged so is not judged again by the next one who looks there.
+void test_a_faint_silence_has_been_weighed(void) {
+    setUp();
+    face(ME, 0);
+    saw(WITNESS, NONE_MM);
+    TEST_ASSERT_EQUAL(AGAINST, reads(4500));
+    const argus_glimpse_t mine = *(&e.peers.of[ME].seen[e.peers.of[ME].next - 1]);
+    k.sip_ms += 5000;
+    looks_there(THIRD, &mine, NONE_MM);
+    TEST_ASSERT_EQUAL(AGAINST, score_of(ME));
 }
 
 // The way along the bearing is taken off, whichever way it points.
@@ -313,10 +340,10 @@ void test_who_can_say_nothing_changes_nothing(void) {
     for (int i = 0; i < 2; i++) {
         setUp();
         face(ME, 0);
-        saw(THIRD, 4500)->bearing_cdeg = 9000;
-        saw(ME, 4500)->bearing_cdeg = 9000;
-        saw(ME, 4500)->bearing_cdeg = 9000;
-        reads(4500); // which two firings ago would have agreed
+        saw(THIRD, 4700)->bearing_cdeg = 9000;
+        saw(ME, 4700)->bearing_cdeg = 9000;
+        saw(ME, 4700)->bearing_cdeg = 9000;
+        reads(4700); // which two firings ago would have agreed
         TEST_ASSERT_EQUAL(50, argus_peers_late(&e.peers, ME));
         const argus_glimpse_t mine = here(ME);
         const argus_peer_t was = e.peers.of[ME];

@@ -463,8 +463,13 @@ static void watch_move(robot_t *robot, int32_t mm) {
     }
     if (mm < 0) {
         for (int i = 8; i < 16; i++) {
-            if (argus_is_out(known, i) || robot->shown[i] <= robot->argus.config.rear_clear_mm) {
+            const bool abeam = robot->argus.config.profile == ARGUS_PROFILE_ARGUS && (i == 8 || i == 15);
+            const int clear_mm = abeam ? 250 : robot->argus.config.rear_clear_mm;
+            if (argus_is_out(known, i) || robot->shown[i] <= clear_mm) {
                 complain(robot, "S7: MOVE back though a rear sonar does not read clear", i);
+            }
+            if (!abeam && robot->shown[i] + mm < 150) {
+                complain(robot, "S7: MOVE back farther than the rear reads clear", mm);
             }
         }
     }
@@ -481,7 +486,8 @@ static void watch_motion(robot_t *robot, const robot_command_t *sent) {
         if (robot->bumpers_seen != 0) {
             complain(robot, "S7: HEAD with a bumper pressed", sent->argument);
         }
-        if (nearest_shown_mm(robot) < SWING_MM - 2) {
+        const double margin_mm = robot->argus.config.profile == ARGUS_PROFILE_ARGUS ? 20 : 0;
+        if (nearest_shown_mm(robot) < SWING_MM + margin_mm - 2) {
             complain(robot, "S7: HEAD in a blocked swing circle", (int)nearest_shown_mm(robot));
         }
     }
