@@ -7,7 +7,7 @@
 #define SWING_MARGIN_MM 20  // an echo is taken to lie on the axis of its sonar
 #define SWING_TURNING_MM 10 // ... of which that much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
-#define NEAR_APART_MM 150 // two echoes of one thing in a turn
+#define NEAR_APART_MM 150   // two echoes of one thing in a turn
 #define NEAR_MS 700u
 #define BACKOFFS_MAX 3
 #define HEMMED_IN_MS 10000u // people who stand beside it walk on

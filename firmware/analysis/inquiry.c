@@ -11,7 +11,7 @@
 #define LOOK_MS 2600u       // a sonar that yields nothing is not waited for longer
 #define FIRST_LOOKS 2
 #define SILENT_RUN 2
-#define ACCUSED 100 // of a silent one, by the others, in hundredths of a nat: it is worth an aim
+#define ACCUSED 100  // of a silent one, by the others, in hundredths of a nat: it is worth an aim
 #define AIMS_MAX 4   // turns of a suspect onto what another has heard
 #define AIMS_ASIDE 2 // ... and, while that lasts, of one that is none
 #define AIMED_SILENT 2
@@ -226,8 +226,7 @@ static uint8_t next_look(const argus_inquiry_t *const self, const argus_knowledg
 static bool is_in_doubt(const argus_inquiry_t *const self, const argus_evidence_t *const evidence) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const bool asked = (self->suspects >> i & 1u) != 0;
-        if (asked &&
-            (is_silent(evidence, i) || (evidence->of[i].none_run == 0 && is_open(evidence, i)))) {
+        if (asked && (is_silent(evidence, i) || (evidence->of[i].none_run == 0 && is_open(evidence, i)))) {
             return true;
         }
     }

@@ -162,7 +162,8 @@ static void bear(argus_evidence_t *const self, const argus_knowledge_t *const kn
     c->misses = (uint8_t)argus_min(c->misses + misses, UINT8_MAX);
 }
 
-static int32_t weight_of(const argus_outcome_t outcome, const argus_outcome_t missing, const int32_t percent) {
+static int32_t weight_of(const argus_outcome_t outcome, const argus_outcome_t missing,
+                         const int32_t percent) {
     const int32_t weight =
         outcome == ARGUS_PAIR_DIFFER ? DIFFERS : (outcome == missing ? MISSES : HEARS_MORE);
     return weight * percent / 100;

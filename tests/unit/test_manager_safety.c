@@ -660,7 +660,8 @@ static void check_s7_waits_with_an_event_each_10_s_while_the_rear_is_blocked(voi
     for (int blocked = 8; blocked < 16; blocked++) {
         start_driving();
         robot.fault[blocked] = ROBOT_VALUE;
-        const bool passes = robot.argus.config.profile == ARGUS_PROFILE_ARGUS && (blocked == 8 || blocked == 15);
+        const bool passes =
+            robot.argus.config.profile == ARGUS_PROFILE_ARGUS && (blocked == 8 || blocked == 15);
         robot.fault_value[blocked] = passes ? 250 : 450;
         robot_run(&robot, 500);
         robot.bumpers_front = 1 << 2;
@@ -775,7 +776,8 @@ static void check_s7_backs_off_as_far_as_the_turn_asks_for(void) {
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 8000)); // argus may want to look first
         robot_run(&robot, 200);
         TEST_ASSERT_EQUAL(-by[i].way_mm, robot_last_command(&robot, ARCOS_CMD_MOVE)->argument);
-        TEST_ASSERT_EQUAL(robot.argus.config.speed_mm_s, robot_last_command(&robot, ARCOS_CMD_SETV)->argument);
+        TEST_ASSERT_EQUAL(robot.argus.config.speed_mm_s,
+                          robot_last_command(&robot, ARCOS_CMD_SETV)->argument);
         finish();
     }
 }

@@ -35,7 +35,8 @@
     X(turn_speed_deg_s, 60, 10, 100, "deg/s", "", "speed of a turn")                                         \
     X(turn_accel_deg_s2, 200, 20, 300, "deg/s2", "", "angular acceleration asked of the robot")              \
     X(noise_mm, 5, 0, 100, "mm", "", "standard deviation of a sonar reading, for the S5 margin")             \
-    X(backoff_mm, 150, 50, 300, "mm", "", "how far to back away from a pressed bumper")                      \
+    X(backoff_mm, 150, 50, 300, "mm", "",                                                                    \
+      "how far to back away from a pressed bumper; for a turn, at least")                                    \
     X(rear_clear_mm, 450, 200, 2000, "mm", "", "every rear sonar must read more than this to back away")     \
     X(waypoint_radius_mm, 100, 20, 500, "mm", "", "a waypoint this near counts as passed")                   \
     X(goal_radius_mm, 60, 20, 140, "mm", "", "the goal counts as reached this near")                         \
