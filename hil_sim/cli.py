@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import functools
 import logging
 import math
 import os
@@ -12,7 +13,7 @@ import re
 import signal
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, NoReturn
@@ -25,7 +26,7 @@ from hil_sim.can_spec import CanSpec, parse_spec
 from hil_sim.errors import SimError
 from hil_sim.faults import Fault, FaultSet, fault_help, parse_fault
 from hil_sim.link_faults import LinkFaults
-from hil_sim.links import Fleet, Link, Loop, PtyLink, SerialLink, TcpLink
+from hil_sim.links import LATE_MS, Fleet, Link, Loop, PtyLink, SerialLink, TcpLink
 from hil_sim.mobilesim import NAME as MOBILESIM_NAME
 from hil_sim.mobilesim import MobileSimServer
 from hil_sim.moving import moving_solids
@@ -323,18 +324,23 @@ def _robot_name(arguments: argparse.Namespace, index: int) -> str:
 
 
 @contextmanager
+def _on_signal(number: int, act: Callable[[], object]) -> Iterator[None]:
+    """Act when that signal comes."""
+    handler = signal.signal(number, lambda _number, _frame: act())
+    try:
+        yield
+    finally:
+        signal.signal(number, handler)
+
+
+@contextmanager
 def _signals() -> Iterator[list[int]]:
     """Collect SIGINT and SIGTERM; the wake-up pipe ends a sleep that one falls into."""
     caught: list[int] = []
-    handlers = {
-        number: signal.signal(number, lambda n, _: caught.append(n))
-        for number in (signal.SIGINT, signal.SIGTERM)
-    }
-    try:
+    with ExitStack() as stack:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            stack.enter_context(_on_signal(number, functools.partial(caught.append, number)))
         yield caught
-    finally:
-        for number, handler in handlers.items():
-            signal.signal(number, handler)
 
 
 def _say(text: str) -> None:
@@ -437,11 +443,31 @@ def _serve(arguments: argparse.Namespace, scenario: Scenario, stack: ExitStack) 
     for loop in loops:
         if loop.server.log is not None:
             loop.server.log("clock", {"t_s": loop.now_ms() / 1000, "unix_s": time.time()})
+
+    def resumed() -> None:
+        for loop in loops:
+            loop.resumed()
+
+    stack.enter_context(_on_signal(signal.SIGCONT, resumed))
     runner = loops[0] if len(loops) == 1 else Fleet(loops)
     runner.run(lambda: bool(caught), arguments.duration and arguments.duration * 1000)
     if arguments.verbose:
         for loop in loops:
             _report(loop.server, loop.link)
+    if warning := _lateness(loops):
+        _say(warning)
+
+
+def _lateness(loops: Sequence[Loop]) -> str:
+    """What to say of a host that did not keep up; empty of one that did."""
+    turns = sum(loop.late_turns for loop in loops)
+    if not turns:
+        return ""
+    worst_ms = max(loop.late_max_ms for loop in loops)
+    return (
+        f"the host was late: {turns} {'turn' if turns == 1 else 'turns'} by more than {LATE_MS:.0f} ms, "
+        f"at most {worst_ms:.0f} ms; timing in this run means nothing exact"
+    )
 
 
 def _report(server: ArcosServer, link: Link) -> None:

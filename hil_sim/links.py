@@ -35,7 +35,9 @@ _TX_LIMIT: Final = 65536
 IDLE_MS: Final = 20.0
 """Time passes for a robot at least this often, so that several in one thread do not all do it when a SIP is due."""
 _GAP_MS: Final = 500.0
-"""A longer silence of the clock (the process was suspended) is taken out of the robot's time."""
+"""A longer silence of the clock (the process was suspended, or starved) is taken out of the robot's time."""
+LATE_MS: Final = 100.0
+"""A turn that comes later than this after it was due is told: a SIP may have come a whole cycle late."""
 
 _SPEEDS: Final = {
     getattr(termios, name): int(name[1:])
@@ -536,7 +538,11 @@ class Loop:
         self._origin_ms = clock_ms() - server.robot.now_ms
         self._last_ms = float(server.robot.now_ms)
         self._baud = server.baud
+        self._due_ms: float | None = None
+        self._suspended = False
         self.skipped_ms = 0.0
+        self.late_max_ms = 0.0
+        self.late_turns = 0
 
     def now_ms(self) -> float:
         """Robot time: the monotonic clock less the time this process was suspended."""
@@ -551,7 +557,7 @@ class Loop:
 
     def turn(self) -> float:
         """Do what is due; return how long the loop may then sleep, in ms."""
-        now = self.now_ms()
+        now = self._begin_turn()
         server, link, faults = self.server, self.link, self.faults
         if faults is not None:
             faults.update(now)
@@ -577,7 +583,28 @@ class Loop:
         link.transmit(now)
         if server.take_hang_up():
             link.hang_up()
-        return self._rest_ms(now)
+        rest_ms = self._rest_ms(now)
+        self._due_ms = now + rest_ms
+        return rest_ms
+
+    def resumed(self) -> None:
+        """Tell that this process was suspended on purpose (SIGCONT says so): the next turn is not late."""
+        self._suspended = True
+
+    def _begin_turn(self) -> float:
+        """Return robot time, and account how late the host is with this turn."""
+        skipped_ms = self.skipped_ms
+        now = self.now_ms()
+        suspended, self._suspended = self._suspended, False
+        if self._due_ms is None or suspended:
+            return now
+        late_ms = now + self.skipped_ms - skipped_ms - self._due_ms
+        self.late_max_ms = max(self.late_max_ms, late_ms)
+        if late_ms > LATE_MS:
+            self.late_turns += 1
+            if self.server.log is not None:
+                self.server.log("late", {"t_s": now / 1000, "late_ms": round(late_ms, 1)})
+        return now
 
     def _send(self, packet: bytes, now: float) -> None:
         self.link.send(packet, now)

@@ -15,7 +15,8 @@ class TruthRecord:
     """Writes truth records to a file; callable as a `Log`.
 
     Types: meta, clock, state (each 100 ms), sonar, fault, collision, struck (a solid met the robot at
-    rest), bumper, watchdog, link, session. All but meta have `t_s`, seconds of robot time since the start.
+    rest), bumper, watchdog, link, session, late (the host served the robot `late_ms`, more than 100,
+    after it was due). All but meta have `t_s`, seconds of robot time since the start.
     """
 
     def __init__(self, path: str | Path, meta: dict[str, Any]) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The bench as a fixture, a timeline when a test fails, and long tests first."""
+"""The bench as a fixture, a timeline when a test fails, a watch on the host, and long tests first."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from pathlib import Path
 
 import pytest
 from harness import ARGUSD, SIM, Bench
+from lateness import watch_host
 
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "long: takes more than 30 s; started first")
+    watch_host(config, "hil")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -432,9 +432,11 @@ class Bench:
 
 
 def _sim_lines(sim: Sim) -> Iterator[str]:
-    rare = [r for r in sim.records if r["type"] not in ("meta", "state", "sonar", "clock")]
+    rare = [r for r in sim.records if r["type"] not in ("meta", "state", "sonar", "clock", "late")]
     yield f"truth at {sim.t_s:.1f} s: {json.dumps({k: v for k, v in sim.now.items() if k != 'energy_j'})}"
     yield from (f"  truth {json.dumps(record)}" for record in rare[-15:])
+    if late := [record["late_ms"] for record in sim.of("late")]:
+        yield f"the host was late with {len(late)} turns of the robot, at most {max(late):.0f} ms"
     if log := sim.log_path.read_text(errors="replace").strip():
         yield f"argus-sim says: {log[-500:]}"
 

@@ -17,11 +17,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from doubles import Port, cmd, connect, sips
+from doubles import Port, cmd, connect, make_robot, sips
 
 from hil_sim.arcos import ConfigPac, Packet, Sip, Unframer, decode
-from hil_sim.cli import build_robot, main
+from hil_sim.cli import _lateness, build_robot, main
+from hil_sim.links import Loop, TcpLink
 from hil_sim.scenario import Scenario
+from hil_sim.server import ArcosServer
 from hil_sim.world import load_world
 
 ROOT = Path(__file__).parents[2]
@@ -62,7 +64,8 @@ def code_of(arguments: list[str]) -> int:
 def end(process: subprocess.Popen[str], number: int) -> tuple[int, str, str]:
     process.send_signal(number)
     out, error = process.communicate(timeout=20)
-    return process.returncode, out, error
+    said = [line for line in error.splitlines(keepends=True) if "the host was late" not in line]
+    return process.returncode, out, "".join(said)
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
@@ -300,3 +303,28 @@ def test_commands_are_told_at_vv() -> None:
         port.close()
         _, _, error = end(process, signal.SIGTERM)
     assert "BATTERYINFO (62) 1: ignored, no battery controller" in error
+
+
+def test_a_host_that_was_late_is_told_in_one_line() -> None:
+    def loop(turns: int, worst_ms: float) -> Loop:
+        result = Loop(ArcosServer(make_robot()), TcpLink("127.0.0.1", 0))
+        result.late_turns, result.late_max_ms = turns, worst_ms
+        return result
+
+    assert _lateness([loop(0, 99.0), loop(0, 3.0)]) == ""
+    assert _lateness([loop(1, 101.2)]) == (
+        "the host was late: 1 turn by more than 100 ms, at most 101 ms; timing in this run means nothing exact"
+    )
+    assert "17 turns by more than 100 ms, at most 562 ms" in _lateness([loop(5, 120.0), loop(12, 562.3)])
+
+
+def test_a_suspended_emulator_does_not_call_its_host_late(tmp_path: Path) -> None:
+    truth = tmp_path / "truth.jsonl"
+    with simulator("--world", WORLD, "--truth", str(truth)) as (process, _):
+        for number in (signal.SIGSTOP, signal.SIGCONT):
+            time.sleep(3.0 if number == signal.SIGCONT else 1.0)
+            process.send_signal(number)
+        time.sleep(0.5)
+        end(process, signal.SIGTERM)
+    records = [json.loads(line) for line in truth.read_text().splitlines()]
+    assert [r for r in records if r["type"] == "late" and r["late_ms"] > 2500] == []

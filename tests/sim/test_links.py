@@ -12,7 +12,9 @@ import termios
 import threading
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import pytest
 from doubles import Port, cmd, connect, make_robot, sips
@@ -21,7 +23,7 @@ from hil_sim.arcos import Packet, Unframer, decode
 from hil_sim.errors import LinkError, SimError
 from hil_sim.faults import LinkFault
 from hil_sim.link_faults import LinkFaults
-from hil_sim.links import IDLE_MS, Link, Loop, PtyLink, SerialLink, TcpLink, Wire
+from hil_sim.links import IDLE_MS, LATE_MS, Link, Loop, PtyLink, SerialLink, TcpLink, Wire
 from hil_sim.server import ArcosServer, State
 
 
@@ -182,6 +184,72 @@ def test_a_suspended_loop_does_not_make_up_for_lost_time() -> None:
     clock[0] += 100
     loop.turn()
     assert len(link.sent) == 6
+
+
+@dataclass
+class LateLoop:
+    """A loop on a clock of the test, with the `late` records it wrote."""
+
+    clock_ms: float = 5000.0
+    told: list[tuple[str, float, float]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        def log(kind: str, fields: dict[str, Any]) -> None:
+            if kind == "late":
+                self.told.append((kind, fields["t_s"], fields["late_ms"]))
+
+        server = ArcosServer(make_robot(), log=log)
+        self.loop = Loop(server, NoLink(), clock_ms=lambda: self.clock_ms)
+
+    def turn_after(self, ms: float) -> None:
+        self.clock_ms += ms
+        self.loop.turn()
+
+
+def test_a_turn_is_late_by_what_it_came_after_its_due_and_told_from_one_sip_on() -> None:
+    late = LateLoop()
+    late.turn_after(400)
+    assert late.loop.late_max_ms == 0, "nothing was due before the first turn"
+    late.turn_after(IDLE_MS)
+    late.turn_after(IDLE_MS + LATE_MS)
+    assert (late.loop.late_turns, late.told) == (0, [])
+    assert late.loop.late_max_ms == LATE_MS
+    late.turn_after(IDLE_MS + 150)
+    late.turn_after(IDLE_MS + 120)
+    assert late.loop.late_turns == 2
+    assert late.loop.late_max_ms == 150
+    assert [ms for _, _, ms in late.told] == [150, 120]
+    assert late.told[0][1] == pytest.approx(0.4 + 3 * IDLE_MS / 1000 + 0.1 + 0.15)
+
+
+def test_a_turn_that_input_brings_forward_is_not_late() -> None:
+    late = LateLoop()
+    late.turn_after(0)
+    for _ in range(200):
+        late.turn_after(1)
+    assert (late.loop.late_turns, late.loop.late_max_ms) == (0, 0)
+
+
+def test_a_silence_that_is_taken_out_of_the_robots_time_is_late_in_full() -> None:
+    late = LateLoop()
+    late.turn_after(0)
+    late.turn_after(IDLE_MS + 900)
+    assert late.loop.skipped_ms == pytest.approx(IDLE_MS + 900 - 500)
+    assert [ms for _, _, ms in late.told] == [900]
+    late.turn_after(IDLE_MS)
+    assert late.loop.late_turns == 1, "what was skipped was counted once more"
+
+
+def test_who_was_suspended_on_purpose_was_not_late() -> None:
+    late = LateLoop()
+    late.turn_after(0)
+    for ms in (300, 501, 3_600_000):
+        late.loop.resumed()
+        late.turn_after(ms)
+    assert late.loop.skipped_ms == pytest.approx(1 + 3_600_000 - 500)
+    assert (late.loop.late_turns, late.told, late.loop.late_max_ms) == (0, [], 0)
+    late.turn_after(IDLE_MS + 500)
+    assert late.loop.late_turns == 1
 
 
 def test_the_loop_sleeps_no_longer_than_the_next_sip() -> None:

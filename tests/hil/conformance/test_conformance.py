@@ -54,8 +54,8 @@ VENDOR_FAILS = {
 
 
 @contextlib.contextmanager
-def robots(*arguments: str) -> Iterator[list[str]]:
-    """The addresses of as many emulated robots as there are shares."""
+def robots(folder: Path, *arguments: str) -> Iterator[list[str]]:
+    """The addresses of as many emulated robots as there are shares; their truth tells whether the host was late."""
     command = [
         sys.executable,
         "-m",
@@ -64,6 +64,8 @@ def robots(*arguments: str) -> Iterator[list[str]]:
         WORLD,
         "--robots",
         str(len(SHARES)),
+        "--truth",
+        str(folder / "truth.jsonl"),
         *arguments,
     ]
     process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
@@ -103,23 +105,23 @@ def test_the_shares_are_all_checks() -> None:
     assert sorted(names) == sorted(check.title for check in CHECKS)
 
 
-def test_our_emulator_on_ptys() -> None:
-    with robots() as addresses:
+def test_our_emulator_on_ptys(tmp_path: Path) -> None:
+    with robots(tmp_path) as addresses:
         results = results_of("serial", addresses)
     assert of(results, FAIL) == {}
     assert of(results, NOT_APPLICABLE) == {}
     assert len(results) == len(CHECKS)
 
 
-def test_our_emulator_on_tcp() -> None:
-    with robots("--tcp", "0") as addresses:
+def test_our_emulator_on_tcp(tmp_path: Path) -> None:
+    with robots(tmp_path, "--tcp", "0") as addresses:
         results = results_of("tcp", addresses)
     assert of(results, FAIL) == {}
     assert set(of(results, NOT_APPLICABLE)) == {"packets/host-baud"}
 
 
-def test_the_vendor_emulators_habits() -> None:
-    with robots("--tcp", "0", "--quirks", "mobilesim") as addresses:
+def test_the_vendor_emulators_habits(tmp_path: Path) -> None:
+    with robots(tmp_path, "--tcp", "0", "--quirks", "mobilesim") as addresses:
         results = results_of("tcp", addresses, VENDOR_FAILS)
     fails = of(results, FAIL)
     assert set(fails) == VENDOR_FAILS, {
@@ -129,9 +131,9 @@ def test_the_vendor_emulators_habits() -> None:
 
 
 def test_the_command_prints_a_table_or_json_and_moves_nothing_unasked(
-    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with robots("--tcp", "0") as addresses:
+    with robots(tmp_path, "--tcp", "0") as addresses:
         target = f"tcp:{addresses[0]}"
         assert main(["--target", target, "--only", "three-syncs", "--only", "drive/enable"]) == 0
         table = capsys.readouterr().out.splitlines()
