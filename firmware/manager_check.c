@@ -4,7 +4,6 @@
 #include "manager_internal.h"
 
 #define REFRESH_MS 320u
-#define ALL_ROUND_MS 700u // no sonar that still reports takes longer, 0 and 7 in failure mode neither
 
 void argus_take_base(argus_t *const self) {
     if (!self->has_base) {
@@ -83,19 +82,21 @@ uint16_t argus_wanted_sonars(const argus_t *const self) {
     return (uint16_t)(ARGUS_FORWARD_MASK & ~(unsigned)argus_out(&self->knowledge));
 }
 
-static uint16_t usable(const argus_knowledge_t *const knowledge) {
+static uint16_t in_use(const argus_knowledge_t *const knowledge) {
     unsigned mask = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        mask |= argus_usable(knowledge, i) ? 1u << i : 0u;
+        mask |= knowledge->sonar[i].reported && !argus_is_out(knowledge, i) ? 1u << i : 0u;
     }
     return (uint16_t)mask;
 }
 
-// Those ahead have been read again; before a turn that S7 forbade the others as well, while they report.
+// Those ahead have been read again; before a turn that S7 forbade the others as well, for two rounds at most:
+// one of them may have fallen silent.
 static bool has_round(const argus_t *const self) {
-    const bool waits = self->all_round && self->now_ms - self->since_ms < ALL_ROUND_MS;
+    const uint32_t most_ms = 2u * 8u * (uint32_t)self->config.sonar_cycle_ms + 100u;
+    const bool waits = self->all_round && self->now_ms - self->since_ms < most_ms;
     return argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->mark) &&
-           (!waits || argus_all_fresh_since(&self->knowledge, usable(&self->knowledge), &self->mark));
+           (!waits || argus_all_fresh_since(&self->knowledge, in_use(&self->knowledge), &self->mark));
 }
 
 void argus_run_checking(argus_t *const self) {

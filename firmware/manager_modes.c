@@ -121,7 +121,7 @@ static void leave_bumper(argus_t *const self) {
         argus_outbox_int(&self->session.outbox, ARCOS_CMD_ENABLE, 1);
     } else if (motors && self->bumpers == 0 && !argus_rear_is_clear(self)) {
         argus_enter_checking(self, true); // freed, or a stall: no need to back away
-    } else if (motors && argus_at_rest(&self->knowledge)) {
+    } else if (motors && self->knowledge.bumpers_rear == 0 && argus_at_rest(&self->knowledge)) {
         argus_back_off(self, self->config.backoff_mm);
     }
 }

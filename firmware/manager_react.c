@@ -8,7 +8,8 @@
 #define SWING_TURNING_MM 10 // ... of which that much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
 #define NEAR_APART_MM 150   // two echoes of one thing in a turn
-#define NEAR_MS 700u
+#define ROUNDS_OF_TWO 16u   // slots in which each sonar of an array has fired twice
+#define SIP_MS 100u
 #define BACKOFFS_MAX 3
 #define HEMMED_IN_MS 10000u // people who stand beside it walk on
 #define LOW_BATTERY_DV 115  // where CONFIGpac names none
@@ -18,7 +19,9 @@
 #define BACK_MOST_MM 300
 #define BACK_LEFT_MM 150 // of what the rear reads clear
 #define BACK_STEP_MM 25
-#define REAR_OVERHANG_MM 46
+#define REAR_OVERHANG_MM 64 // of 10 and 13; head-on, 11 and 12, it is 46
+#define BESIDE_MM 260       // half the body (213), and something for its heading
+#define BEHIND_MM 50
 
 static bool is_active(const argus_t *const self) {
     return !self->passive && !self->shutdown;
@@ -92,14 +95,17 @@ static int32_t back_speed_mm_s(const argus_t *const self) {
     return argus_judges(self) && stops_in_time ? self->config.speed_mm_s : self->config.step_speed_mm_s;
 }
 
-void argus_back_off(argus_t *const self, const int32_t distance_mm) {
+static void back_off(argus_t *const self, const int32_t distance_mm, const int32_t speed_mm_s) {
     if (!is_active(self) || !argus_rear_is_clear(self)) {
         return;
     }
     argus_say(self, ARGUS_EV_BACKING, ARGUS_NO_SONAR, distance_mm);
-    argus_motion_move(&self->motion, &self->session.outbox, -distance_mm, back_speed_mm_s(self),
-                      self->now_ms);
+    argus_motion_move(&self->motion, &self->session.outbox, -distance_mm, speed_mm_s, self->now_ms);
     argus_enter(self, ARGUS_MODE_BACKING);
+}
+
+void argus_back_off(argus_t *const self, const int32_t distance_mm) {
+    back_off(self, distance_mm, self->config.step_speed_mm_s);
 }
 
 // Of what is seen, were the robot farther back; under `argus` what was seen a moment ago and has left the
@@ -119,17 +125,30 @@ bool argus_swing_is_blocked(const argus_t *const self) {
     return nearest_to_centre_mm(self, 0) <= swing_mm(self);
 }
 
-// The least way back, up to where the rear reads clear, after which a turn is free; where none is, the usual
-// one.
+// What the rear reads clear less some room; no farther than usual past what was seen beside the way, since a
+// smooth wall that slants in by 15 to 25 degrees is heard by nobody.
+static int32_t most_back_mm(const argus_t *const self) {
+    const int32_t clear_mm = argus_min(BACK_MOST_MM, self->config.rear_clear_mm - BACK_LEFT_MM);
+    const int32_t astern_cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + 18000);
+    const int32_t free_mm = argus_task_clear_mm(&self->task, &self->knowledge, astern_cdeg, BESIDE_MM);
+    const bool is_free = free_mm >= ARGUS_P3DX_BODY_REAR_MM + clear_mm + BEHIND_MM;
+    const bool again = self->backed > 1; // far once is far enough
+    return is_free && !again ? clear_mm : argus_min(clear_mm, self->config.backoff_mm);
+}
+
+// The least way back, up to the most, after which a turn is free; where none is, the usual one.
 static int32_t way_to_turn_mm(const argus_t *const self) {
     const int32_t usual_mm = self->config.backoff_mm;
-    const int32_t most_mm = argus_min(BACK_MOST_MM, self->config.rear_clear_mm - BACK_LEFT_MM);
-    for (int32_t way_mm = usual_mm; argus_judges(self) && way_mm <= most_mm; way_mm += BACK_STEP_MM) {
+    if (!argus_judges(self)) {
+        return usual_mm;
+    }
+    const int32_t most_mm = most_back_mm(self);
+    for (int32_t way_mm = usual_mm; way_mm <= most_mm; way_mm += BACK_STEP_MM) {
         if (nearest_to_centre_mm(self, way_mm) > swing_mm(self) + SWING_SPARE_MM) {
             return way_mm;
         }
     }
-    return usual_mm;
+    return argus_min(usual_mm, most_mm);
 }
 
 // S7: no rotation while a bumper is pressed or an echo lies within the swing circle.
@@ -160,7 +179,7 @@ bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
     if (may_back_off(self)) {
         const int32_t way_mm = way_to_turn_mm(self);
         self->backed = (uint8_t)(self->backed + (way_mm > self->config.backoff_mm ? 2 : 1));
-        argus_back_off(self, way_mm);
+        back_off(self, way_mm, back_speed_mm_s(self));
     } else {
         argus_enter_waiting(self, ARGUS_WAIT_TURN);
     }
@@ -326,13 +345,16 @@ static bool is_near_again(argus_t *const self, const int sonar) {
     if (argus_hypot(echo.x_mm, echo.y_mm) > SWING_MM + SWING_TURNING_MM) {
         return false;
     }
+    argus_near_t *const near = &self->near[echo.y_mm > 0 ? 1 : 0]; // in a passage both sides show
     const argus_point_t at = argus_to_course(&self->knowledge.pose, echo);
-    const bool lately = self->has_near && self->now_ms - self->near_ms <= NEAR_MS;
-    const bool again = lately && argus_abs(at.x_mm - self->near_at.x_mm) <= NEAR_APART_MM &&
-                       argus_abs(at.y_mm - self->near_at.y_mm) <= NEAR_APART_MM;
-    self->near_at = at;
-    self->near_ms = self->now_ms;
-    self->has_near = true;
+    const uint32_t most_ms = ROUNDS_OF_TWO * (uint32_t)self->config.sonar_cycle_ms + SIP_MS;
+    const bool again = near->valid && self->now_ms - near->t_ms <= most_ms &&
+                       argus_abs(at.x_mm - near->at.x_mm) <= NEAR_APART_MM &&
+                       argus_abs(at.y_mm - near->at.y_mm) <= NEAR_APART_MM;
+    *near = (argus_near_t){at, self->now_ms, true};
+    if (again) {
+        argus_task_touched(&self->task, at, self->now_ms); // or the rest of the turn would be tried at once
+    }
     return again;
 }
 
@@ -340,7 +362,7 @@ static bool is_near_again(argus_t *const self, const int sonar) {
 static bool react_swing(argus_t *const self) {
     const bool turning = self->motion.kind == ARGUS_MOTION_TURN && !self->motion.settled;
     if (!argus_judges(self) || !turning) {
-        self->has_near = false;
+        self->near[0].valid = self->near[1].valid = false;
         return false;
     }
     for (int i = 0; i < ARGUS_SONARS; i++) {

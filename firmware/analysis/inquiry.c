@@ -54,11 +54,11 @@ static bool is_silent_suspect(const argus_inquiry_t *const self, const argus_evi
     return (self->suspects >> sonar & 1u) != 0 && is_silent(evidence, sonar);
 }
 
-// No suspect yet, but others hear what it does not.
-static bool is_accused(const argus_knowledge_t *const knowledge, const argus_evidence_t *const evidence,
-                       const int sonar) {
-    return evidence->of[sonar].score[ARGUS_TEST_PEERS] >= ACCUSED && is_silent(evidence, sonar) &&
-           !argus_is_out(knowledge, sonar);
+// No suspect yet, but others hear what it does not. Where there are suspects, some aims are theirs.
+static bool is_accused(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+                       const argus_evidence_t *const evidence, const int sonar) {
+    return (self->suspects == 0 || self->aims < AIMS_ASIDE) && !argus_is_out(knowledge, sonar) &&
+           evidence->of[sonar].score[ARGUS_TEST_PEERS] >= ACCUSED && is_silent(evidence, sonar);
 }
 
 // Neither suspect nor proved of late, by an echo that goes on or by another sonar: a look is the occasion.
@@ -116,7 +116,7 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
     unsigned unproved = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         silent |= is_silent_suspect(self, evidence, i) ? 1u << i : 0u;
-        accused |= is_accused(knowledge, evidence, i) ? 1u << i : 0u;
+        accused |= is_accused(self, knowledge, evidence, i) ? 1u << i : 0u;
         unproved |= is_unproved(self, knowledge, evidence, i) ? 1u << i : 0u;
     }
     return aim_at_one_of(self, knowledge, evidence, silent) ||
@@ -226,7 +226,8 @@ static uint8_t next_look(const argus_inquiry_t *const self, const argus_knowledg
 static bool is_in_doubt(const argus_inquiry_t *const self, const argus_evidence_t *const evidence) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const bool asked = (self->suspects >> i & 1u) != 0;
-        if (asked && (is_silent(evidence, i) || (evidence->of[i].none_run == 0 && is_open(evidence, i)))) {
+        if (asked &&
+            (is_silent(evidence, i) || (evidence->of[i].none_run < SILENT_RUN && is_open(evidence, i)))) {
             return true;
         }
     }

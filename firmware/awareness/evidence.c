@@ -91,7 +91,6 @@ void argus_note_unrest(argus_evidence_t *const self, const argus_knowledge_t *co
     self->of[sonar].unrest_ms = knowledge->sip_ms;
     if (!argus_is_out(knowledge, sonar)) {
         self->busy = true;
-        self->stirred |= (uint16_t)(1u << sonar);
         self->busy_ms = knowledge->sip_ms;
     }
 }
@@ -150,6 +149,16 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     argus_views_scan(self, knowledge, sonar, argus_scan_take(&self->scan, knowledge, sonar));
 }
 
+static uint16_t stirred(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+    unsigned mask = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const argus_case_t *const c = &self->of[i];
+        const bool lately = c->unrest && knowledge->sip_ms - c->unrest_ms < CALM_MS;
+        mask |= lately && !argus_is_out(knowledge, i) ? 1u << i : 0u;
+    }
+    return (uint16_t)mask;
+}
+
 void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
     self->straight_sips = knowledge->rotating ? 0 : (uint8_t)argus_min(self->straight_sips + 1, UINT8_MAX);
     if (self->usual_run > 0 && knowledge->sip_ms - self->usual_ms >= USUAL_MS) {
@@ -157,12 +166,12 @@ void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *c
         self->usual_ms = knowledge->sip_ms;
     }
     self->busy = self->busy && knowledge->sip_ms - self->busy_ms < CALM_MS;
-    self->stirred = self->busy ? self->stirred : 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if ((knowledge->fresh >> i & 1u) != 0) {
             take(self, knowledge, i);
         }
     }
+    self->stirred = stirred(self, knowledge);
     argus_trend_sip(&self->trend, knowledge);
     argus_peers_sip(self, knowledge);
 }

@@ -220,6 +220,9 @@ static bool is_same_place(const argus_case_t *const self, const argus_view_t *co
 static bool has_changed(const argus_case_t *const self, const argus_view_t *const now) {
     const argus_view_t *const last = &self->view[(self->view_next + ARGUS_VIEWS - 1) % ARGUS_VIEWS];
     const argus_outcome_t outcome = judge_pair(now, last, 0);
+    if (argus_pair_is_faint(now->reading_mm, last->reading_mm, 0)) { // comes and goes by itself
+        return false;
+    }
     return outcome == ARGUS_PAIR_DIFFER || outcome == ARGUS_PAIR_NOW_MISSES ||
            outcome == ARGUS_PAIR_THEN_MISSES;
 }

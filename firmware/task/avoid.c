@@ -78,6 +78,10 @@ void argus_task_forget(argus_task_t *const self, const int sonar) {
     self->seen_next = 0;
 }
 
+void argus_task_touched(argus_task_t *const self, const argus_point_t at, const uint32_t now_ms) {
+    remember(self, at, UINT8_MAX, now_ms);
+}
+
 // The front segments lie across the bow, bit 1 leftmost; what they touched is remembered as if it had been
 // seen.
 void argus_task_bumped(argus_task_t *const self, const argus_knowledge_t *const knowledge,
@@ -85,7 +89,7 @@ void argus_task_bumped(argus_task_t *const self, const argus_knowledge_t *const 
     for (int segment = 1; segment <= 5; segment++) {
         if ((knowledge->bumpers_front >> segment & 1u) != 0) {
             const argus_point_t touched = {BUMPER_AHEAD_MM, (3 - segment) * 85};
-            remember(self, argus_to_course(&knowledge->pose, touched), UINT8_MAX, now_ms);
+            argus_task_touched(self, argus_to_course(&knowledge->pose, touched), now_ms);
         }
     }
 }

@@ -786,28 +786,144 @@ void test_s7_backs_off_as_far_as_the_turn_asks_for(void) {
     with_profile(ARGUS_PROFILE_ARGUS, check_s7_backs_off_as_far_as_the_turn_asks_for);
 }
 
-// What no sonar had seen when the turn began; one echo alone may be crosstalk.
-static void check_s7_a_turn_ends_when_something_shows_within_the_swing_circle(void) {
-    for (int lasts = 0; lasts < 2; lasts++) {
-        start_idle();
-        argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 170);
-        for (int i = 0; i < 5000 && fabs(robot_heading_deg(&robot)) < 20; i++) {
-            robot_tick(&robot);
-        }
-        robot.fault[3] = ROBOT_VALUE;
-        robot.fault_value[3] = 150;
-        robot_run(&robot, lasts ? 1000 : 300);
-        if (lasts) {
-            TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
-            TEST_ASSERT_TRUE(fabs(robot_heading_deg(&robot)) < 90);
-        } else {
-            robot.fault[3] = ROBOT_OK;
-            TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0));
-        }
-        robot_run(&robot, 4000);
-        TEST_ASSERT_EQUAL(lasts, fabs(robot_heading_deg(&robot)) < 90);
+// As fast as S5 allows with the rear's overhang: 163 + 64 = 227 mm at 200 mm/s.
+static void check_s7_backs_off_at_a_speed_that_s5_allows(void) {
+    for (int range = 227; range <= 228; range++) {
+        argus_config_t config = robot_config_of(profile);
+        config.object_range_mm = range;
+        start_with(&config);
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+        robot.fault[0] = ROBOT_VALUE;
+        robot.fault_value[0] = 150;
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 12000));
+        robot_run(&robot, 200);
+        TEST_ASSERT_EQUAL(range == 228 ? config.speed_mm_s : config.step_speed_mm_s,
+                          robot_last_command(&robot, ARCOS_CMD_SETV)->argument);
         finish();
     }
+}
+
+void test_s7_backs_off_at_a_speed_that_s5_allows(void) {
+    with_profile(ARGUS_PROFILE_ARGUS, check_s7_backs_off_at_a_speed_that_s5_allows);
+}
+
+// ... and farther than usual only where nothing is remembered beside the way.
+static void check_s7_backs_no_farther_past_what_it_remembers(void) {
+    for (int beside = 255; beside <= 265; beside += 10) {
+        start_idle();
+        robot.noise_mm = 0;
+        const argus_point_t at = {(int32_t)robot.x - 600, beside};
+        argus_task_touched(&robot.argus.task, at, robot.argus.now_ms);
+        robot.fault[0] = ROBOT_VALUE;
+        robot.fault_value[0] = 150;
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 12000));
+        robot_run(&robot, 200);
+        TEST_ASSERT_EQUAL(beside > 260 ? -225 : -150, robot_last_command(&robot, ARCOS_CMD_MOVE)->argument);
+        finish();
+    }
+}
+
+void test_s7_backs_no_farther_past_what_it_remembers(void) {
+    with_profile(ARGUS_PROFILE_ARGUS, check_s7_backs_no_farther_past_what_it_remembers);
+}
+
+// One round of all sonars, those that hear nothing too; one that has fallen silent is waited for in vain for
+// two rounds at most.
+static void check_s7_looks_all_round_after_backing_off(void) {
+    for (int silent = 0; silent < 2; silent++) {
+        start_idle();
+        robot.noise_mm = 0;
+        robot.fault[0] = ROBOT_VALUE;
+        robot.fault_value[0] = 150;
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 12000));
+        robot.fault[9] = silent ? ROBOT_SILENT : ROBOT_OFF;
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_CHECKING, 5000));
+        uint32_t before[ARGUS_SONARS];
+        for (int i = 0; i < ARGUS_SONARS; i++) {
+            before[i] = robot.argus.knowledge.sonar[i].readings;
+        }
+        const uint32_t from_ms = robot.t_ms;
+        while (robot.argus.mode == ARGUS_MODE_CHECKING && robot.t_ms - from_ms < 3000) {
+            robot_tick(&robot);
+        }
+        TEST_ASSERT_TRUE(robot.t_ms - from_ms <= (silent ? 900u : 600u));
+        for (int i = 0; i < ARGUS_SONARS; i++) {
+            TEST_ASSERT_EQUAL(!(silent && i == 9), robot.argus.knowledge.sonar[i].readings > before[i]);
+        }
+        finish();
+    }
+}
+
+void test_s7_looks_all_round_after_backing_off(void) {
+    with_profile(ARGUS_PROFILE_ARGUS, check_s7_looks_all_round_after_backing_off);
+}
+
+// Backwards it would push into what it has touched.
+static void check_s7_does_not_back_onto_a_rear_bumper(void) {
+    start_driving();
+    robot.bumpers_rear = 1 << 3;
+    const int from = robot.commands;
+    robot_run(&robot, 5000);
+    for (int i = from; i < robot.commands; i++) {
+        TEST_ASSERT_FALSE(robot.command[i].command == ARCOS_CMD_MOVE && robot.command[i].argument < 0);
+    }
+    finish();
+}
+
+void test_s7_does_not_back_onto_a_rear_bumper(void) {
+    in_both_profiles(check_s7_does_not_back_onto_a_rear_bumper);
+}
+
+static void turn_begins(void) {
+    start_idle();
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 170);
+    for (int i = 0; i < 5000 && fabs(robot_heading_deg(&robot)) < 20; i++) {
+        robot_tick(&robot);
+    }
+}
+
+// Sonar 3 reads so until the manager has so many readings of it, then as before.
+static void shows(int mm, int times) {
+    robot.fault[3] = ROBOT_VALUE;
+    robot.fault_value[3] = mm;
+    for (int seen = 0, before = -1; seen < times;) {
+        const int readings = (int)robot.argus.knowledge.sonar[3].readings;
+        robot_next_sip(&robot);
+        robot_drain(&robot);
+        const int now = (int)robot.argus.knowledge.sonar[3].readings;
+        seen += now != readings && robot.argus.knowledge.sonar[3].reading_mm == mm ? 1 : 0;
+        TEST_ASSERT_TRUE_MESSAGE(++before < 40, "it is not read");
+    }
+    robot.fault[3] = ROBOT_OK;
+}
+
+// What no sonar had seen when the turn began; one echo alone may be crosstalk. What ended a turn is not
+// forgotten when the next one is asked for.
+static void check_s7_a_turn_ends_when_something_shows_within_the_swing_circle(void) {
+    for (int times = 1; times <= 2; times++) {
+        turn_begins();
+        shows(150, times);
+        TEST_ASSERT_EQUAL(times == 2, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
+        const int from = robot.commands;
+        robot_run(&robot, 2500);
+        TEST_ASSERT_EQUAL(times == 2, fabs(robot_heading_deg(&robot)) < 90);
+        TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, from));
+        finish();
+    }
+}
+
+// 380 mm: 10 less than what a turn begins with, since readings scatter.
+static void check_s7_how_near_ends_a_turn(void) {
+    for (int mm = 208; mm <= 214; mm += 6) { // 376 and 382 mm from the centre
+        turn_begins();
+        shows(mm, 2);
+        TEST_ASSERT_EQUAL(mm == 208, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
+        finish();
+    }
+}
+
+void test_s7_how_near_ends_a_turn(void) {
+    with_profile(ARGUS_PROFILE_ARGUS, check_s7_how_near_ends_a_turn);
 }
 
 void test_s7_a_turn_ends_when_something_shows_within_the_swing_circle(void) {

@@ -165,7 +165,7 @@ typedef struct {
     uint8_t usual_run;     // readings without an echo that sonars which proved alive have had lately
     uint32_t usual_ms;     // when that was lowered last
     bool busy;             // something moved about the robot, last at busy_ms
-    uint16_t stirred;      // ... before these sonars
+    uint16_t stirred;      // ... before these sonars, those that are out left aside
     uint32_t busy_ms;
     uint32_t agreements; // monotonic counters of compared views
     uint32_t disagreements;

@@ -109,6 +109,13 @@ typedef struct {
     uint8_t acquittals;
 } argus_hold_t;
 
+// An echo, course frame.
+typedef struct {
+    argus_point_t at;
+    uint32_t t_ms;
+    bool valid;
+} argus_near_t;
+
 typedef struct {
     argus_config_t config;
     argus_session_t session;
@@ -146,15 +153,13 @@ typedef struct {
     uint32_t stops;     // STOP and E_STOP sent, monotonic
     argus_mark_t mark;  // CHECKING: readings after this count
     bool marked;
-    uint8_t rounds;        // CHECKING: rounds of fresh readings still wanted
-    bool all_round;        // ... of all sonars, for a turn, not only of those that look ahead
-    int32_t base_cdeg;     // heading to return to after verification and sweeps (S4)
-    int32_t jog_mm;        // the operator's step, 0: the course decides
-    uint16_t bumpers;      // bumper bits answered already, front << 8 | rear
-    uint8_t backed;        // back-offs in this place
-    argus_point_t near_at; // the last echo within the swing circle in a turn, course frame, at near_ms
-    uint32_t near_ms;
-    bool has_near;
+    uint8_t rounds;       // CHECKING: rounds of fresh readings still wanted
+    bool all_round;       // ... of all sonars, for a turn, not only of those that look ahead
+    int32_t base_cdeg;    // heading to return to after verification and sweeps (S4)
+    int32_t jog_mm;       // the operator's step, 0: the course decides
+    uint16_t bumpers;     // bumper bits answered already, front << 8 | rear
+    uint8_t backed;       // back-offs in this place
+    argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
     bool has_base;
     bool aimed;    // DRIVING: the leg's bearing was turned to
     bool arriving; // at the goal, stopping

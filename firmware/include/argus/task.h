@@ -71,6 +71,9 @@ void argus_task_refuse_slant(argus_task_t *self, const argus_knowledge_t *knowle
 // near.
 void argus_task_forgive(argus_task_t *self, const argus_knowledge_t *knowledge);
 
+// Something is there, course frame, whoever found it.
+void argus_task_touched(argus_task_t *self, argus_point_t at, uint32_t now_ms);
+
 // Chooses the next leg: the waypoint itself when the way is free, else the nearest free heading. False: no
 // way.
 bool argus_task_choose(argus_task_t *self, const argus_knowledge_t *knowledge);

@@ -364,6 +364,24 @@ void test_a_silent_suspect_is_turned_before_one_that_is_contradicted(void) {
     TEST_ASSERT_EQUAL(3, inquiry.aimed);
 }
 
+// ... and while there are suspects, two of the four aims are kept for them.
+void test_those_that_are_contradicted_leave_some_aims_to_the_suspects(void) {
+    for (int suspects = 0; suspects < 2; suspects++) {
+        three_falls_silent();
+        is_contradicted(3, 400);
+        heard(2, 0, 1500);
+        heard(4, -40, 1500);
+        heard(2, 40, 1500);
+        e.of[3].taken = 0;
+        k.pose.heading_cdeg = 0;
+        argus_inquiry_begin(&inquiry, &k, &e, suspects ? 1u << 12 : 0, 0);
+        inquiry.aims = 2;
+        inquiry.marked = false;
+        next_heading();
+        TEST_ASSERT_EQUAL(suspects ? 2 : 3, inquiry.aims);
+    }
+}
+
 // Once the aim has shown an echo, the looks to either side would show nothing more.
 void test_an_aim_that_settles_it_ends_the_look(void) {
     three_falls_silent();

@@ -351,3 +351,52 @@ void test_the_unrest_of_one_that_is_out_delays_no_conviction(void) {
     argus_note_unrest(&s.e, &s.k, 11);
     TEST_ASSERT_TRUE(s.e.busy);
 }
+
+// What 4 bears where 3 has heard at `mm` what it does not.
+static int missed(int mm) {
+    scene_init(&s, 1, 0xFFFFF000u);
+    see(3, 0, mm);
+    for (int i = 0; i < 2; i++) { // a silence is a view after five readings
+        see(4, 20, 5000);
+    }
+    TEST_ASSERT_TRUE(s.e.disagreements > 0);
+    return s.e.of[4].score[ARGUS_TEST_VIEW];
+}
+
+// Healthy pairs miss a tenth there: 1.4 nats, not 3.2.
+void test_a_silence_is_worth_less_than_half_where_the_echo_is_faint(void) {
+    const int near = missed(3900);
+    const int faint = missed(4300);
+    TEST_ASSERT_TRUE(near > 0);
+    TEST_ASSERT_INT_WITHIN(near / 20, near * 45 / 100, faint);
+}
+
+// An echo from beyond 4 m comes and goes by itself, one from nearer does not.
+void test_a_faint_echo_that_comes_and_goes_is_no_unrest(void) {
+    for (int faint = 0; faint < 2; faint++) {
+        scene_init(&s, 1, 0xFFFFF000u);
+        for (int i = 0; i < 6; i++) {
+            see(3, 0, faint ? 4300 : 3700);
+            see(3, 0, 5000);
+            see(3, 0, 5000);
+        }
+        TEST_ASSERT_EQUAL(!faint, s.e.busy);
+    }
+}
+
+// Each sonar's for itself: one that goes on changing does not keep up what moved before another.
+void test_what_moved_before_one_sonar_is_forgotten_whatever_goes_on_before_another(void) {
+    scene_init(&s, 1, 0xFFFFF000u);
+    see(3, 0, 3000);
+    argus_note_unrest(&s.e, &s.k, 5);
+    for (int i = 0; i < 4; i++) {
+        argus_note_unrest(&s.e, &s.k, 2);
+        see(3, 0, 3000);
+        TEST_ASSERT_TRUE(s.e.busy);
+        TEST_ASSERT_EQUAL_HEX16(i < 3 ? 1u << 5 | 1u << 2 : 1u << 2, s.e.stirred);
+        s.t_ms += 10000;
+    }
+    s.k.sonar[2].health = ARGUS_DISABLED;
+    see(3, 0, 3000);
+    TEST_ASSERT_EQUAL_HEX16(0, s.e.stirred);
+}
