@@ -9,6 +9,11 @@ from pathlib import Path
 
 import pytest
 from harness import ARGUSD, SIM, Bench
+from lateness import watch_host
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    watch_host(config, "can")
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
