@@ -26,6 +26,7 @@
 #define LATE_CEILING 2000
 #define TOLD_CEILING 900
 #define HOLLOW_BITS 8
+#define BOTH_SILENT (-20)
 
 // What the others say of one reading. FAINT: it misses an echo that the air may have swallowed, or the other
 // way round; SAME: the pose of then would have it look where it looks now.
@@ -238,6 +239,12 @@ static bool shows_at_once(const argus_knowledge_t *const knowledge, const int so
                                               kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE);
 }
 
+// What it read before it was given up does not bring it back.
+static bool is_since(const argus_knowledge_t *const knowledge, const int sonar,
+                     const argus_glimpse_t *const at) {
+    return knowledge->sip_ms - at->t_ms <= knowledge->sip_ms - knowledge->sonar[sonar].since_ms;
+}
+
 static void count(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const argus_glimpse_t *const now, const uint16_t against) {
     argus_peer_t *const peer = &self->peers.of[sonar];
@@ -253,9 +260,7 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     const bool echo = now->reading_mm < ARGUS_NO_ECHO_MM;
     peer->against = doubted ? (uint16_t)(peer->against | against) : 0;
     peer->borne_out = doubted && (peer->borne_out || (against == 0 && echo));
-    // What it read before it was given up does not bring it back.
-    const bool since = knowledge->sip_ms - now->t_ms <= knowledge->sip_ms - knowledge->sonar[sonar].since_ms;
-    if (since && shows_at_once(knowledge, sonar)) {
+    if (is_since(knowledge, sonar, now) && shows_at_once(knowledge, sonar)) {
         c->agreed = (uint8_t)(against == 0 && echo ? argus_min(c->agreed + 1, UINT8_MAX) : 0);
     }
     note_counted(peer, now, against != 0);
@@ -357,6 +362,24 @@ static argus_glimpse_t glimpse_of(const argus_peers_t *const self, const argus_k
     return glimpse;
 }
 
+// In the open nothing else bears one out. Who made echoes up is not silent where others are, again and again.
+static bool shows_by_silence(const argus_knowledge_t *const knowledge, const int sonar) {
+    const argus_fault_kind_t kind = knowledge->sonar[sonar].kind;
+    return argus_is_out(knowledge, sonar) && (kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE);
+}
+
+static void count_silence(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                          const int sonar, const argus_glimpse_t *const at, const tally_t *const tally) {
+    argus_case_t *const c = &self->of[sonar];
+    const bool quiet = tally->quiet > 0 && tally->agree == 0 && tally->differ == 0;
+    if (quiet && shows_by_silence(knowledge, sonar) && is_since(knowledge, sonar, at) &&
+        is_news(&self->peers.of[sonar], at)) {
+        c->agreed = (uint8_t)argus_min(c->agreed + 1, UINT8_MAX);
+        argus_score(c, ARGUS_TEST_VIEW, BOTH_SILENT); // as views that hear nothing both
+        note_counted(&self->peers.of[sonar], at, false);
+    }
+}
+
 static void count_if_news(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                           const int sonar, const argus_glimpse_t *const at, const tally_t *const tally) {
     const bool odd = tally->agree == 0 && tally->differ > 0 && !tally->excused;
@@ -375,6 +398,7 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     const bool seen = verdict != UNSEEN || tally.differ > 0;
     peer->weighed |= seen ? 1u << slot_of(peer, back) : 0u;
     count_if_news(self, knowledge, sonar, &at, &tally);
+    count_silence(self, knowledge, sonar, &at, &tally);
     const bool tells = verdict != DIVIDED && (fresh || verdict != UNSEEN);
     if (tells && !(verdict == CONTRADICTED && argus_is_unrest_beside(self, knowledge, sonar))) {
         doubt_time(self, knowledge, sonar, back, verdict);

@@ -354,6 +354,36 @@ void test_who_can_say_nothing_changes_nothing(void) {
     }
 }
 
+// In the open: who made echoes up is silent there only when it does well again. From one place once; where
+// another one hears something it begins anew.
+void test_being_silent_together_brings_back_who_made_echoes_up(void) {
+    static const argus_fault_kind_t kinds[] = {ARGUS_KIND_STUCK,  ARGUS_KIND_GARBAGE, ARGUS_KIND_OFF,
+                                               ARGUS_KIND_SILENT, ARGUS_KIND_WRONG,   ARGUS_KIND_SLOW};
+    for (int i = 0; i < (int)(sizeof kinds / sizeof kinds[0]); i++) {
+        setUp();
+        argus_sonar_set_health(&k.sonar[ME], ARGUS_DISABLED, kinds[i], k.sip_ms);
+        e.of[ME].out = true;
+        e.of[ME].score[ARGUS_TEST_VIEW] = 600;
+        face(ME, 0);
+        k.sip_ms += 300;
+        saw(WITNESS, NONE_MM);
+        reads(NONE_MM);
+        reads(NONE_MM);
+        const bool counts = kinds[i] == ARGUS_KIND_STUCK || kinds[i] == ARGUS_KIND_GARBAGE;
+        TEST_ASSERT_EQUAL_MESSAGE(counts, e.of[ME].agreed, argus_kind_name(kinds[i]));
+        TEST_ASSERT_EQUAL(counts ? 520 : 600, e.of[ME].score[ARGUS_TEST_VIEW]);
+        k.pose.x_mm += 150;
+        saw(WITNESS, NONE_MM);
+        reads(NONE_MM);
+        TEST_ASSERT_EQUAL(counts ? 2 : 0, e.of[ME].agreed);
+        k.pose.x_mm += 150;
+        saw(WITNESS, NONE_MM);
+        saw(THIRD, 1500);
+        reads(NONE_MM);
+        TEST_ASSERT_EQUAL(0, e.of[ME].agreed);
+    }
+}
+
 // One that was given up is not brought back by what it read before that.
 void test_what_it_read_before_it_was_given_up_does_not_bring_it_back(void) {
     for (int after = 0; after < 2; after++) {
