@@ -4,6 +4,8 @@
 #include "manager_internal.h"
 
 #define REFRESH_MS 320u
+#define SLOTS 8u // in a round
+#define SIP_MS 100u
 
 void argus_take_base(argus_t *const self) {
     if (!self->has_base) {
@@ -82,6 +84,10 @@ uint16_t argus_wanted_sonars(const argus_t *const self) {
     return (uint16_t)(ARGUS_FORWARD_MASK & ~(unsigned)argus_out(&self->knowledge));
 }
 
+uint32_t argus_two_rounds_ms(const argus_t *const self) {
+    return 2u * SLOTS * (uint32_t)self->config.sonar_cycle_ms + SIP_MS;
+}
+
 static uint16_t in_use(const argus_knowledge_t *const knowledge) {
     unsigned mask = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
@@ -93,8 +99,7 @@ static uint16_t in_use(const argus_knowledge_t *const knowledge) {
 // Those ahead have been read again; before a turn that S7 forbade the others as well, for two rounds at most:
 // one of them may have fallen silent.
 static bool has_round(const argus_t *const self) {
-    const uint32_t most_ms = 2u * 8u * (uint32_t)self->config.sonar_cycle_ms + 100u;
-    const bool waits = self->all_round && self->now_ms - self->since_ms < most_ms;
+    const bool waits = self->all_round && self->now_ms - self->since_ms < argus_two_rounds_ms(self);
     return argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->mark) &&
            (!waits || argus_all_fresh_since(&self->knowledge, in_use(&self->knowledge), &self->mark));
 }

@@ -37,6 +37,7 @@ void argus_share_slots(argus_t *self); // POLLING for the present plan; again in
 uint16_t argus_open_suspects(const argus_t *self);
 void argus_take_base(argus_t *self);               // the present heading becomes the one to return to
 uint16_t argus_wanted_sonars(const argus_t *self); // those of 1..6 that are not DISABLED
+uint32_t argus_two_rounds_ms(const argus_t *self); // in which each sonar of an array has been listed twice
 bool argus_health_check(argus_t *self); // the periodic one beside the main task; true when it took over
 void argus_flag_suspects(argus_t *self, uint16_t suspects);
 

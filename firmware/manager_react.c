@@ -8,8 +8,6 @@
 #define SWING_TURNING_MM 10 // ... of which that much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
 #define NEAR_APART_MM 150   // two echoes of one thing in a turn
-#define ROUNDS_OF_TWO 16u   // slots in which each sonar of an array has fired twice
-#define SIP_MS 100u
 #define BACKOFFS_MAX 3
 #define HEMMED_IN_MS 10000u // people who stand beside it walk on
 #define LOW_BATTERY_DV 115  // where CONFIGpac names none
@@ -347,8 +345,7 @@ static bool is_near_again(argus_t *const self, const int sonar) {
     }
     argus_near_t *const near = &self->near[echo.y_mm > 0 ? 1 : 0]; // in a passage both sides show
     const argus_point_t at = argus_to_course(&self->knowledge.pose, echo);
-    const uint32_t most_ms = ROUNDS_OF_TWO * (uint32_t)self->config.sonar_cycle_ms + SIP_MS;
-    const bool again = near->valid && self->now_ms - near->t_ms <= most_ms &&
+    const bool again = near->valid && self->now_ms - near->t_ms <= argus_two_rounds_ms(self) &&
                        argus_abs(at.x_mm - near->at.x_mm) <= NEAR_APART_MM &&
                        argus_abs(at.y_mm - near->at.y_mm) <= NEAR_APART_MM;
     *near = (argus_near_t){at, self->now_ms, true};

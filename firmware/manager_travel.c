@@ -132,7 +132,7 @@ static void moved_on(argus_t *const self) {
 
 // Every sonar that looks ahead has been refreshed within two rounds of its array.
 static bool sees_ahead(const argus_t *const self) {
-    const uint32_t limit_ms = 2u * 8u * (uint32_t)self->config.sonar_cycle_ms + 100u;
+    const uint32_t limit_ms = argus_two_rounds_ms(self);
     for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
         const bool counts = !argus_is_out(&self->knowledge, i);
         if (counts && argus_age_ms(&self->knowledge, i, self->now_ms) > limit_ms) {
