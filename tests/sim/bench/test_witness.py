@@ -61,7 +61,8 @@ def test_another_value_from_the_same_place_contradicts() -> None:
         (1000, 1135, 1),  # 80 mm and 5 % of the nearer one, and 5 mm by which the transducers differ
         (1000, 1125, 0),
         (NO_ECHO_MM, 2000, 1),
-        (NO_ECHO_MM, 4100, 0),  # from so far the air decides
+        (NO_ECHO_MM, 4590, 1),
+        (NO_ECHO_MM, 4610, 0),  # from so far the air decides
         (NO_ECHO_MM, NO_ECHO_MM, 0),
         (1000, NO_ECHO_MM, 1),
         (2050, 3000, 0),  # not off by more than noise
