@@ -17,9 +17,8 @@
 #define BACK_MOST_MM 300
 #define BACK_LEFT_MM 150 // of what the rear reads clear
 #define BACK_STEP_MM 25
-#define REAR_OVERHANG_MM 64 // of 10 and 13; head-on, 11 and 12, it is 46
-#define BESIDE_MM 260       // half the body (213), and something for its heading
-#define BEHIND_MM 50
+#define REAR_WORST 10 // and 13: 64 mm ahead of the rear end; 11 and 12, head-on, 46
+#define ASTERN_MM 50  // beyond the rear end
 
 static bool is_active(const argus_t *const self) {
     return !self->passive && !self->shutdown;
@@ -88,8 +87,9 @@ bool argus_rear_is_clear(const argus_t *const self) {
 
 // As fast as S5 lets it drive with the rear's overhang.
 static int32_t back_speed_mm_s(const argus_t *const self) {
+    const int32_t overhang_mm = ARGUS_P3DX_BODY_REAR_MM + argus_sonar_pose[REAR_WORST].x_mm;
     const bool stops_in_time =
-        argus_config_stop_mm(&self->config) + REAR_OVERHANG_MM < self->config.object_range_mm;
+        argus_config_stop_mm(&self->config) + overhang_mm < self->config.object_range_mm;
     return argus_judges(self) && stops_in_time ? self->config.speed_mm_s : self->config.step_speed_mm_s;
 }
 
@@ -128,8 +128,9 @@ bool argus_swing_is_blocked(const argus_t *const self) {
 static int32_t most_back_mm(const argus_t *const self) {
     const int32_t clear_mm = argus_min(BACK_MOST_MM, self->config.rear_clear_mm - BACK_LEFT_MM);
     const int32_t astern_cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + 18000);
-    const int32_t free_mm = argus_task_clear_mm(&self->task, &self->knowledge, astern_cdeg, BESIDE_MM);
-    const bool is_free = free_mm >= ARGUS_P3DX_BODY_REAR_MM + clear_mm + BEHIND_MM;
+    const int32_t free_mm =
+        argus_task_clear_mm(&self->task, &self->knowledge, astern_cdeg, ARGUS_STRAIGHT_HALF_MM);
+    const bool is_free = free_mm >= ARGUS_P3DX_BODY_REAR_MM + clear_mm + ASTERN_MM;
     const bool again = self->backed > 1; // far once is far enough
     return is_free && !again ? clear_mm : argus_min(clear_mm, self->config.backoff_mm);
 }
@@ -337,8 +338,9 @@ static bool react_object(argus_t *const self, const argus_alarm_t *const alarm) 
     return true;
 }
 
-// One echo within the swing circle may be crosstalk: the second one of the same place is not.
-static bool is_near_again(argus_t *const self, const int sonar) {
+// True: for the second time. One echo within the swing circle may be crosstalk, the second one of the same
+// place is not; it is remembered.
+static bool note_near(argus_t *const self, const int sonar) {
     const argus_point_t echo = argus_echo_robot(&self->knowledge, sonar);
     if (argus_hypot(echo.x_mm, echo.y_mm) > SWING_MM + SWING_TURNING_MM) {
         return false;
@@ -364,7 +366,7 @@ static bool react_swing(argus_t *const self) {
     }
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const bool fresh = (self->knowledge.fresh >> i & 1u) != 0 && argus_usable(&self->knowledge, i);
-        if (fresh && is_near_again(self, i)) {
+        if (fresh && note_near(self, i)) {
             argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, nearest_to_centre_mm(self, 0));
             argus_stop(self, ARCOS_CMD_STOP);
             argus_enter_checking(self, true);

@@ -49,16 +49,10 @@ static bool is_silent(const argus_evidence_t *const evidence, const int sonar) {
            argus_evidence_names(evidence, sonar) == ARGUS_KIND_NONE;
 }
 
-static bool is_silent_suspect(const argus_inquiry_t *const self, const argus_evidence_t *const evidence,
-                              const int sonar) {
-    return (self->suspects >> sonar & 1u) != 0 && is_silent(evidence, sonar);
-}
-
-// No suspect yet, but others hear what it does not. Where there are suspects, some aims are theirs.
-static bool is_accused(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
-                       const argus_evidence_t *const evidence, const int sonar) {
-    return (self->suspects == 0 || self->aims < AIMS_ASIDE) && !argus_is_out(knowledge, sonar) &&
-           evidence->of[sonar].score[ARGUS_TEST_PEERS] >= ACCUSED && is_silent(evidence, sonar);
+// No suspect yet, perhaps, but others contradict it.
+static bool is_accused(const argus_knowledge_t *const knowledge, const argus_evidence_t *const evidence,
+                       const int sonar) {
+    return !argus_is_out(knowledge, sonar) && evidence->of[sonar].score[ARGUS_TEST_PEERS] >= ACCUSED;
 }
 
 // Neither suspect nor proved of late, by an echo that goes on or by another sonar: a look is the occasion.
@@ -115,12 +109,14 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
     unsigned accused = 0;
     unsigned unproved = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        silent |= is_silent_suspect(self, evidence, i) ? 1u << i : 0u;
-        accused |= is_accused(self, knowledge, evidence, i) ? 1u << i : 0u;
+        silent |= is_silent(evidence, i) ? 1u << i : 0u;
+        accused |= is_accused(knowledge, evidence, i) ? 1u << i : 0u;
         unproved |= is_unproved(self, knowledge, evidence, i) ? 1u << i : 0u;
     }
-    return aim_at_one_of(self, knowledge, evidence, silent) ||
-           aim_at_one_of(self, knowledge, evidence, accused) ||
+    // Where there are suspects, some aims are theirs.
+    const bool aside = self->suspects == 0 || self->aims < AIMS_ASIDE;
+    return aim_at_one_of(self, knowledge, evidence, silent & self->suspects) ||
+           (aside && aim_at_one_of(self, knowledge, evidence, silent & accused)) ||
            aim_at_one_of(self, knowledge, evidence, unproved);
 }
 

@@ -95,8 +95,13 @@ void argus_note_unrest(argus_evidence_t *const self, const argus_knowledge_t *co
     }
 }
 
+static bool moved_within(const argus_case_t *const self, const argus_knowledge_t *const knowledge,
+                         const uint32_t ms) {
+    return self->unrest && knowledge->sip_ms - self->unrest_ms < ms;
+}
+
 bool argus_is_unrest_before(const argus_case_t *const self, const argus_knowledge_t *const knowledge) {
-    return self->unrest && knowledge->sip_ms - self->unrest_ms < UNREST_MS;
+    return moved_within(self, knowledge, UNREST_MS);
 }
 
 bool argus_is_unrest_beside(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
@@ -152,9 +157,8 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
 static uint16_t stirred(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
     unsigned mask = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        const argus_case_t *const c = &self->of[i];
-        const bool lately = c->unrest && knowledge->sip_ms - c->unrest_ms < CALM_MS;
-        mask |= lately && !argus_is_out(knowledge, i) ? 1u << i : 0u;
+        const bool counts = moved_within(&self->of[i], knowledge, CALM_MS) && !argus_is_out(knowledge, i);
+        mask |= counts ? 1u << i : 0u;
     }
     return (uint16_t)mask;
 }

@@ -73,6 +73,9 @@ argus_outcome_t argus_pair_compare(int32_t now_mm, int32_t then_mm, int32_t alon
 // Whether one of the two misses what the other heard so far off that the air may have decided.
 bool argus_pair_is_faint(int32_t now_mm, int32_t then_mm, int32_t along_mm);
 
+// What QUIET is worth, in hundredths of a nat.
+#define ARGUS_BOTH_QUIET (-20)
+
 // One reading against what the others saw on about its bearing from this place, then remembered.
 typedef enum {
     ARGUS_SCAN_NOTHING,

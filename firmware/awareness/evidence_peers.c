@@ -26,7 +26,6 @@
 #define LATE_CEILING 2000
 #define TOLD_CEILING 900
 #define HOLLOW_BITS 8
-#define BOTH_SILENT (-20)
 
 // What the others say of one reading. FAINT: it misses an echo that the air may have swallowed, or the other
 // way round; SAME: the pose of then would have it look where it looks now.
@@ -87,9 +86,8 @@ static verdict_t compare(const int32_t now_mm, const int32_t then_mm, const int3
                                       [ARGUS_PAIR_NOW_MISSES] = CONTRADICTED,
                                       [ARGUS_PAIR_THEN_MISSES] = CONTRADICTED,
                                       [ARGUS_PAIR_NOTHING] = UNSEEN};
-    const bool faint = argus_pair_is_faint(now_mm, then_mm, along_mm);
     const verdict_t said = (verdict_t)verdict[argus_pair_compare(now_mm, then_mm, along_mm)];
-    return said == CONTRADICTED && faint ? FAINT : said;
+    return said == CONTRADICTED && argus_pair_is_faint(now_mm, then_mm, along_mm) ? FAINT : said;
 }
 
 static int slot_of(const argus_peer_t *const self, const int back) {
@@ -232,11 +230,17 @@ static void note_counted(argus_peer_t *const self, const argus_glimpse_t *const 
     }
 }
 
+// In the open nothing else bears one out: who made echoes up is not silent where others are, again and again.
+static bool made_echoes_up(const argus_knowledge_t *const knowledge, const int sonar) {
+    const argus_fault_kind_t kind = knowledge->sonar[sonar].kind;
+    return argus_is_out(knowledge, sonar) && (kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE);
+}
+
 // Whether one that is out failed in a way that seldom lets its echoes agree, and hardly twice in a row.
 static bool shows_at_once(const argus_knowledge_t *const knowledge, const int sonar) {
     const argus_fault_kind_t kind = knowledge->sonar[sonar].kind;
-    return argus_is_out(knowledge, sonar) && (kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_SILENT ||
-                                              kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE);
+    const bool was_mute = kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_SILENT;
+    return made_echoes_up(knowledge, sonar) || (argus_is_out(knowledge, sonar) && was_mute);
 }
 
 // What it read before it was given up does not bring it back.
@@ -362,20 +366,14 @@ static argus_glimpse_t glimpse_of(const argus_peers_t *const self, const argus_k
     return glimpse;
 }
 
-// In the open nothing else bears one out. Who made echoes up is not silent where others are, again and again.
-static bool shows_by_silence(const argus_knowledge_t *const knowledge, const int sonar) {
-    const argus_fault_kind_t kind = knowledge->sonar[sonar].kind;
-    return argus_is_out(knowledge, sonar) && (kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE);
-}
-
 static void count_silence(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                           const int sonar, const argus_glimpse_t *const at, const tally_t *const tally) {
     argus_case_t *const c = &self->of[sonar];
     const bool quiet = tally->quiet > 0 && tally->agree == 0 && tally->differ == 0;
-    if (quiet && shows_by_silence(knowledge, sonar) && is_since(knowledge, sonar, at) &&
+    if (quiet && made_echoes_up(knowledge, sonar) && is_since(knowledge, sonar, at) &&
         is_news(&self->peers.of[sonar], at)) {
         c->agreed = (uint8_t)argus_min(c->agreed + 1, UINT8_MAX);
-        argus_score(c, ARGUS_TEST_VIEW, BOTH_SILENT); // as views that hear nothing both
+        argus_score(c, ARGUS_TEST_VIEW, ARGUS_BOTH_QUIET); // as two silent views
         note_counted(&self->peers.of[sonar], at, false);
     }
 }

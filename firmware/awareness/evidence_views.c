@@ -35,7 +35,6 @@
 #define DIFFERS 320
 #define MISSES 320
 #define HEARS_MORE 200
-#define BOTH_QUIET (-20)
 #define HEAD_START 100
 
 typedef struct {
@@ -180,8 +179,8 @@ static void compare(argus_evidence_t *const self, const argus_knowledge_t *const
         agree(&self->of[sonar], knowledge);
         agree(&self->of[other], knowledge);
     } else if (outcome == ARGUS_PAIR_QUIET) {
-        argus_score(&self->of[sonar], ARGUS_TEST_OFF, BOTH_QUIET);
-        argus_score(&self->of[other], ARGUS_TEST_OFF, BOTH_QUIET);
+        argus_score(&self->of[sonar], ARGUS_TEST_OFF, ARGUS_BOTH_QUIET);
+        argus_score(&self->of[other], ARGUS_TEST_OFF, ARGUS_BOTH_QUIET);
     } else if (outcome != ARGUS_PAIR_NOTHING) {
         const bool faint = argus_pair_is_faint(now->reading_mm, then->reading_mm, relation.along_mm);
         const int32_t percent = (relation.close ? 100 : LOOSE_PERCENT) * (faint ? FAINT_PERCENT : 100) / 100;

@@ -12,11 +12,10 @@
 #define WIDE_HALF_MM 400   // room to turn on the spot anywhere along it (S7 wants 390 under `argus`)
 #define NARROW_HALF_MM 305 // half the body (213), and room for the beam's width: where there is no wide way
 #define NEAR_MM 1000
-#define LATELY_MS 5000u    // what was seen so near does not go away while a look is prepared
-#define ESCAPE_HALF_MM 260 // straight ahead, out of a place too narrow to turn in
-#define CORRIDOR_MM 650    // free length wanted ahead
-#define BEHIND_MM 100      // an echo this far ahead of the centre is beside the robot already
-#define LEG_MM 300         // way along a detour before choosing again
+#define LATELY_MS 5000u // what was seen so near does not go away while a look is prepared
+#define CORRIDOR_MM 650 // free length wanted ahead
+#define BEHIND_MM 100   // an echo this far ahead of the centre is beside the robot already
+#define LEG_MM 300      // way along a detour before choosing again
 #define STEP_CDEG 1000
 #define STEPS 14           // detours up to 140 degrees off the waypoint's bearing
 #define OTHER_SIDE_STEPS 6 // a detour prefers the side it began on by so much
@@ -253,7 +252,7 @@ bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const 
 
 bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
     const int32_t heading = knowledge->pose.heading_cdeg;
-    const corridor_t wanted = {ESCAPE_HALF_MM, CORRIDOR_MM};
+    const corridor_t wanted = {ARGUS_STRAIGHT_HALF_MM, CORRIDOR_MM};
     if (self->next >= self->count || !is_free(self, knowledge, heading, &wanted)) {
         return false;
     }

@@ -786,6 +786,13 @@ void test_s7_backs_off_as_far_as_the_turn_asks_for(void) {
     with_profile(ARGUS_PROFILE_ARGUS, check_s7_backs_off_as_far_as_the_turn_asks_for);
 }
 
+// Something beside the bow: the robot backs away before it looks.
+static void blocks_the_turn(void) {
+    robot.fault[0] = ROBOT_VALUE;
+    robot.fault_value[0] = 150;
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 12000));
+}
+
 // As fast as S5 allows with the rear's overhang: 163 + 64 = 227 mm at 200 mm/s.
 static void check_s7_backs_off_at_a_speed_that_s5_allows(void) {
     for (int range = 227; range <= 228; range++) {
@@ -793,9 +800,7 @@ static void check_s7_backs_off_at_a_speed_that_s5_allows(void) {
         config.object_range_mm = range;
         start_with(&config);
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
-        robot.fault[0] = ROBOT_VALUE;
-        robot.fault_value[0] = 150;
-        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 12000));
+        blocks_the_turn();
         robot_run(&robot, 200);
         TEST_ASSERT_EQUAL(range == 228 ? config.speed_mm_s : config.step_speed_mm_s,
                           robot_last_command(&robot, ARCOS_CMD_SETV)->argument);
@@ -814,9 +819,7 @@ static void check_s7_backs_no_farther_past_what_it_remembers(void) {
         robot.noise_mm = 0;
         const argus_point_t at = {(int32_t)robot.x - 600, beside};
         argus_task_touched(&robot.argus.task, at, robot.argus.now_ms);
-        robot.fault[0] = ROBOT_VALUE;
-        robot.fault_value[0] = 150;
-        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 12000));
+        blocks_the_turn();
         robot_run(&robot, 200);
         TEST_ASSERT_EQUAL(beside > 260 ? -225 : -150, robot_last_command(&robot, ARCOS_CMD_MOVE)->argument);
         finish();
@@ -833,9 +836,7 @@ static void check_s7_looks_all_round_after_backing_off(void) {
     for (int silent = 0; silent < 2; silent++) {
         start_idle();
         robot.noise_mm = 0;
-        robot.fault[0] = ROBOT_VALUE;
-        robot.fault_value[0] = 150;
-        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 12000));
+        blocks_the_turn();
         robot.fault[9] = silent ? ROBOT_SILENT : ROBOT_OFF;
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_CHECKING, 5000));
         uint32_t before[ARGUS_SONARS];

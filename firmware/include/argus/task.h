@@ -52,6 +52,10 @@ bool argus_task_progress(argus_task_t *self, const argus_knowledge_t *knowledge,
 
 int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *knowledge);
 
+// Half of what is driven straight along, ahead or back, without a turn: half the body (213), and something
+// for its heading.
+#define ARGUS_STRAIGHT_HALF_MM 260
+
 // Length of the corridor of 2 x half_mm that is free of remembered echoes along a heading; INT32_MAX without
 // any.
 int32_t argus_task_clear_mm(const argus_task_t *self, const argus_knowledge_t *knowledge,
