@@ -25,6 +25,14 @@
 #define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
 #define LATE_NO_MORE 420
+#define MUTE_NAMING 450 // by the peers, of one that they contradict for silence only
+#define BENT_NAMING 1100
+#define BENT_NAMING_BUSY 1500
+#define BENT_CONTRADICTED 300
+#define BENT_SURE 1000 // in the place of another name
+#define BENT_SURE_TOLD 300
+#define BENT_HOLLOW 5 // more silences than this, of the last eight contradicted readings, are no bent axis
+#define HOLLOW_MOST 8
 
 // How many others contradict it, of the last conflicts counted.
 static int partners(const argus_case_t *const c) {
@@ -183,6 +191,46 @@ static argus_fault_kind_t first_name(const argus_evidence_t *const self, const i
     return ARGUS_KIND_NONE;
 }
 
+// The others heard something wherever it lately did not, and it has heard nothing for a while: less is wanted
+// than of one whose echoes might be of another thing.
+static bool is_mute(const argus_evidence_t *const self, const int sonar) {
+    const argus_case_t *const c = &self->of[sonar];
+    return c->none_run >= OFF_RUN && !self->peers.of[sonar].borne_out &&
+           c->score[ARGUS_TEST_PEERS] >= MUTE_NAMING &&
+           argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW) == OFF_HOLLOW && has_partners(self, sonar);
+}
+
+static argus_fault_kind_t off_or(const argus_evidence_t *const self, const int sonar,
+                                 const argus_fault_kind_t other) {
+    return other == ARGUS_KIND_NONE && is_mute(self, sonar) ? ARGUS_KIND_OFF : other;
+}
+
+static bool looks_bent(const argus_evidence_t *const self, const int sonar) {
+    const argus_case_t *const c = &self->of[sonar];
+    const bool busy = (self->stirred & ~(1u << sonar)) != 0;
+    const int32_t level = (busy ? BENT_NAMING_BUSY : BENT_NAMING) * c->caution / 100;
+    return argus_bend(&self->peers, sonar) >= level && c->score[ARGUS_TEST_PEERS] >= BENT_CONTRADICTED &&
+           has_partners(self, sonar);
+}
+
+// In a turn a late sonar looks bent, and a bent one late: what tells more of it decides.
+static bool is_surely_bent(const argus_evidence_t *const self, const int sonar) {
+    const int32_t told = argus_bend_told(&self->peers, sonar);
+    return argus_bend(&self->peers, sonar) >= BENT_SURE && told >= BENT_SURE_TOLD &&
+           2 * told > lateness(self, sonar) && has_partners(self, sonar) &&
+           argus_peers_hollow(&self->peers, sonar, HOLLOW_MOST) <= BENT_HOLLOW;
+}
+
+// A bent axis without another name, or under one that it may get as well.
+static argus_fault_kind_t bent_or(const argus_evidence_t *const self, const int sonar,
+                                  const argus_fault_kind_t other) {
+    const bool unlike = other == ARGUS_KIND_INTERMITTENT || other == ARGUS_KIND_GARBAGE ||
+                        other == ARGUS_KIND_SLOW;
+    const bool bent =
+        other == ARGUS_KIND_NONE ? looks_bent(self, sonar) : unlike && is_surely_bent(self, sonar);
+    return bent ? ARGUS_KIND_WRONG : other;
+}
+
 // Late without another name, or under one that a late sonar may get as well.
 static argus_fault_kind_t slow_or(const argus_evidence_t *const self, const int sonar,
                                   const argus_fault_kind_t other) {
@@ -193,7 +241,8 @@ static argus_fault_kind_t slow_or(const argus_evidence_t *const self, const int 
 }
 
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
-    return slow_or(self, sonar, first_name(self, sonar, ARGUS_TESTS));
+    const argus_fault_kind_t first = off_or(self, sonar, first_name(self, sonar, ARGUS_TESTS));
+    return bent_or(self, sonar, slow_or(self, sonar, first));
 }
 
 argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, const int sonar) {
@@ -226,26 +275,37 @@ static bool is_more_than_wrong(const argus_evidence_t *const self, const int son
     }
 }
 
-// Gaps give way to a silence that lasts; gaps and wild readings to what is late for sure.
+// A stray echo is crosstalk as soon as life: while nearly all that contradicts it is silence it may have gaps,
+// nothing else.
+static bool is_more_than_off(const argus_evidence_t *const self, const int sonar,
+                             const argus_fault_kind_t found) {
+    return found == ARGUS_KIND_INTERMITTENT ||
+           argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) < HOLLOW_OF - 1;
+}
+
+// Gaps give way to a silence that lasts; gaps and wild readings to what is late or bent for sure.
 static bool is_more_than_unsteady(const argus_evidence_t *const self, const int sonar,
                                   const argus_fault_kind_t present, const argus_fault_kind_t found) {
     const bool deaf = present == ARGUS_KIND_INTERMITTENT && self->of[sonar].none_run >= OFF_RUN_LONGEST;
-    return (found == ARGUS_KIND_OFF && deaf) || (found == ARGUS_KIND_SLOW && is_surely_late(self, sonar));
+    return (found == ARGUS_KIND_OFF && deaf) || (found == ARGUS_KIND_SLOW && is_surely_late(self, sonar)) ||
+           (found == ARGUS_KIND_WRONG && is_surely_bent(self, sonar));
 }
 
 static bool gives_way(const argus_evidence_t *const self, const int sonar, const argus_fault_kind_t present,
                       const argus_fault_kind_t found) {
     switch (present) {
     case ARGUS_KIND_NONE:
-    case ARGUS_KIND_OFF:
         return true;
+    case ARGUS_KIND_OFF:
+        return is_more_than_off(self, sonar, found);
     case ARGUS_KIND_INTERMITTENT:
     case ARGUS_KIND_GARBAGE:
         return is_more_than_unsteady(self, sonar, present, found);
     case ARGUS_KIND_STUCK:
         return self->of[sonar].score[ARGUS_TEST_STUCK] == 0; // one other value refutes it
     case ARGUS_KIND_SLOW:
-        return found == ARGUS_KIND_WRONG && lateness(self, sonar) < LATE_NO_MORE;
+        return found == ARGUS_KIND_WRONG &&
+               (lateness(self, sonar) < LATE_NO_MORE || is_surely_bent(self, sonar));
     case ARGUS_KIND_WRONG:
         return is_more_than_wrong(self, sonar, found);
     default:

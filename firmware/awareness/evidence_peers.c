@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "argus/angle.h"
-#include "evidence_internal.h"
+#include "evidence_said.h"
 
 #define AGE_MS 10000u
 #define SAME_BEARING_CDEG 300
@@ -26,10 +26,6 @@
 #define LATE_CEILING 2000
 #define TOLD_CEILING 900
 #define HOLLOW_BITS 8
-
-// What the others say of one reading. FAINT: it misses an echo that the air may have swallowed, or the other
-// way round; SAME: the pose of then would have it look where it looks now.
-typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, FAINT, DIVIDED, SAME, VERDICTS } verdict_t;
 
 typedef struct {
     uint8_t agree;
@@ -79,14 +75,14 @@ static bool is_same_place(const argus_glimpse_t *const now, const argus_glimpse_
     return shift.lateral_mm <= SAME_LATERAL_MM;
 }
 
-static verdict_t compare(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
+static argus_said_t compare(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
     static const uint8_t verdict[] = {[ARGUS_PAIR_QUIET] = QUIET,
                                       [ARGUS_PAIR_AGREE] = AGREED,
                                       [ARGUS_PAIR_DIFFER] = CONTRADICTED,
                                       [ARGUS_PAIR_NOW_MISSES] = CONTRADICTED,
                                       [ARGUS_PAIR_THEN_MISSES] = CONTRADICTED,
                                       [ARGUS_PAIR_NOTHING] = UNSEEN};
-    const verdict_t said = (verdict_t)verdict[argus_pair_compare(now_mm, then_mm, along_mm)];
+    const argus_said_t said = (argus_said_t)verdict[argus_pair_compare(now_mm, then_mm, along_mm)];
     return said == CONTRADICTED && argus_pair_is_faint(now_mm, then_mm, along_mm) ? FAINT : said;
 }
 
@@ -116,7 +112,7 @@ static int find(const argus_peer_t *const peer, const argus_glimpse_t *const at,
 }
 
 // The latest glimpse of a peer on the bearing of `at` from its place decides.
-static verdict_t ask(const argus_peer_t *const peer, const argus_glimpse_t *const at, const uint32_t now_ms) {
+static argus_said_t ask(const argus_peer_t *const peer, const argus_glimpse_t *const at, const uint32_t now_ms) {
     int32_t along_mm = 0;
     const int back = find(peer, at, now_ms, SAME_BEARING_CDEG, 0, &along_mm);
     return back > 0 ? compare(at->reading_mm, at_back(peer, back)->reading_mm, along_mm) : UNSEEN;
@@ -126,7 +122,7 @@ static bool excuses(const argus_peer_t *const peer, const argus_glimpse_t *const
     int32_t along_mm = 0;
     for (int back = find(peer, at, now_ms, BESIDE_CDEG, 0, &along_mm); back > 0;
          back = find(peer, at, now_ms, BESIDE_CDEG, back, &along_mm)) {
-        const verdict_t said = compare(at->reading_mm, at_back(peer, back)->reading_mm, along_mm);
+        const argus_said_t said = compare(at->reading_mm, at_back(peer, back)->reading_mm, along_mm);
         if (said == AGREED || said == QUIET) {
             return true;
         }
@@ -160,7 +156,7 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
         if (!is_witness(self, knowledge, i, sonar)) {
             continue;
         }
-        const verdict_t said = ask(&self->peers.of[i], now, knowledge->sip_ms);
+        const argus_said_t said = ask(&self->peers.of[i], now, knowledge->sip_ms);
         tally.quiet = (uint8_t)(tally.quiet + (said == QUIET));
         tally.agree = (uint8_t)(tally.agree + (said == AGREED));
         const bool differs = said == CONTRADICTED || said == FAINT;
@@ -174,7 +170,7 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
 }
 
 // For the lags, whose tables were measured without what is faint.
-static verdict_t verdict_of(const tally_t *const tally) {
+static argus_said_t verdict_of(const tally_t *const tally) {
     const int differ = tally->differ - tally->faint;
     if (tally->agree > 0) {
         return tally->agree >= differ ? AGREED : DIVIDED;
@@ -183,6 +179,12 @@ static verdict_t verdict_of(const tally_t *const tally) {
         return tally->quiet > 0 || tally->excused ? DIVIDED : CONTRADICTED;
     }
     return tally->quiet > 0 ? QUIET : UNSEEN;
+}
+
+argus_said_t argus_peers_say(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                             const int sonar, const argus_glimpse_t *const at) {
+    const tally_t tally = ask_all(self, knowledge, sonar, at);
+    return verdict_of(&tally);
 }
 
 // Of two in whichever order.
@@ -254,12 +256,10 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     argus_peer_t *const peer = &self->peers.of[sonar];
     argus_case_t *const c = &self->of[sonar];
     const int part = part_contradicted(&self->peers, knowledge, sonar);
-    if (against != 0) {
-        argus_score(c, ARGUS_TEST_PEERS,
-                    contradicts[part] * argus_unrest_percent(self, knowledge, sonar) / 100);
-    } else {
-        argus_score(c, ARGUS_TEST_PEERS, bears_out[part]);
-    }
+    const int32_t increment =
+        against != 0 ? contradicts[part] * argus_unrest_percent(self, knowledge, sonar) / 100 : bears_out[part];
+    argus_score(c, ARGUS_TEST_PEERS, increment);
+    argus_bend_weigh(self, knowledge, sonar, now, against != 0 ? CONTRADICTED : AGREED, increment);
     const bool doubted = c->score[ARGUS_TEST_PEERS] > 0;
     const bool echo = now->reading_mm < ARGUS_NO_ECHO_MM;
     peer->against = doubted ? (uint16_t)(peer->against | against) : 0;
@@ -271,12 +271,12 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
 }
 
 // Nothing that the others may say would change what is known of this lag.
-static bool is_idle(const argus_peer_t *const self, const verdict_t verdict, const int lag) {
+static bool is_idle(const argus_peer_t *const self, const argus_said_t verdict, const int lag) {
     return (verdict == AGREED || verdict == QUIET) && self->late[lag] == 0 && self->told[lag] == 0;
 }
 
 // What the others would say of this reading had it been made at the pose of its sonar so far back.
-static verdict_t verdict_as_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+static argus_said_t verdict_as_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                                const int sonar, const argus_glimpse_t *const now, const int back) {
     const argus_glimpse_t *const then = at_back(&self->peers.of[sonar], back);
     if (then == NULL) {
@@ -288,21 +288,20 @@ static verdict_t verdict_as_of(const argus_evidence_t *const self, const argus_k
     }
     argus_glimpse_t as_of = *then;
     as_of.reading_mm = now->reading_mm;
-    const tally_t tally = ask_all(self, knowledge, sonar, &as_of);
-    return verdict_of(&tally);
+    return argus_peers_say(self, knowledge, sonar, &as_of);
 }
 
 static int16_t limited(const int32_t sum, const int32_t ceiling) {
     return (int16_t)argus_max(0, argus_min(ceiling, sum));
 }
 
-static void weigh_lag(argus_peer_t *const peer, const int lag, const verdict_t now, const verdict_t as_of) {
+static void weigh_lag(argus_peer_t *const peer, const int lag, const argus_said_t now, const argus_said_t as_of) {
     peer->late[lag] = limited(peer->late[lag] + late_than_well[now][as_of], LATE_CEILING);
     peer->told[lag] = limited(peer->told[lag] + late_than_wrong[now][as_of], TOLD_CEILING);
 }
 
 static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                       const int sonar, const int back, const verdict_t verdict) {
+                       const int sonar, const int back, const argus_said_t verdict) {
     argus_peer_t *const peer = &self->peers.of[sonar];
     const argus_glimpse_t now = *at_back(peer, back);
     for (int n = LAG_LEAST; n < ARGUS_TRAIL; n++) {
@@ -392,7 +391,7 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     argus_peer_t *const peer = &self->peers.of[sonar];
     const argus_glimpse_t at = *at_back(peer, back);
     const tally_t tally = ask_all(self, knowledge, sonar, &at);
-    const verdict_t verdict = verdict_of(&tally);
+    const argus_said_t verdict = verdict_of(&tally);
     const bool seen = verdict != UNSEEN || tally.differ > 0;
     peer->weighed |= seen ? 1u << slot_of(peer, back) : 0u;
     count_if_news(self, knowledge, sonar, &at, &tally);
@@ -453,6 +452,9 @@ void argus_peers_sip(argus_evidence_t *const self, const argus_knowledge_t *cons
         peer->verdicts = (uint16_t)(peer->verdicts * FADE_EIGHTHS / 8);
         peer->contradicted = (uint16_t)(peer->contradicted * FADE_EIGHTHS / 8);
         *score = faded(*score);
+        for (int n = 0; n < ARGUS_BENDS; n++) {
+            peer->bend[n] = faded(peer->bend[n]);
+        }
         peer->against = *score > 0 ? peer->against : 0;
         peer->borne_out = *score > 0 && peer->borne_out;
     }
@@ -469,6 +471,7 @@ void argus_evidence_retract(argus_evidence_t *const self, const int sonar) {
             peer->hollow = 0;
             memset(peer->late, 0, sizeof peer->late);
             memset(peer->told, 0, sizeof peer->told);
+            argus_bend_forget(peer);
         }
         peer->against = (uint16_t)(peer->against & ~(unsigned)bit);
     }

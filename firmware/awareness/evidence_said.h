@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// What the peers say of one reading, and who asks them.
+#ifndef ARGUS_EVIDENCE_SAID_H
+#define ARGUS_EVIDENCE_SAID_H
+
+#include "evidence_internal.h"
+
+// FAINT: it misses an echo that the air may have swallowed, or the other way round; SAME: the pose of then
+// would have it look where it looks now.
+typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, FAINT, DIVIDED, SAME, VERDICTS } argus_said_t;
+
+// Of a reading of this sonar, had it been made there. Cost: up to 15 * 32 glimpses looked through.
+argus_said_t argus_peers_say(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
+                             const argus_glimpse_t *at);
+
+// One counted reading of this sonar (`verdict`: AGREED or CONTRADICTED; `increment`, hundredths of a nat: what
+// it adds to PEERS) as if its axis were bent. Cost: up to 6 times argus_peers_say.
+void argus_bend_weigh(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
+                      const argus_glimpse_t *at, argus_said_t verdict, int32_t increment);
+void argus_bend_forget(argus_peer_t *self);
+
+#endif
