@@ -253,7 +253,7 @@ argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, c
     for (int i = 0; i < ARGUS_TESTS; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
         if (is_convicted_by(&self->of[sonar], test, self->busy)) {
-            return slow_or(self, sonar, kind_by(self, sonar, test, LATE_AFTER));
+            return bent_or(self, sonar, slow_or(self, sonar, kind_by(self, sonar, test, LATE_AFTER)));
         }
     }
     return ARGUS_KIND_NONE;
@@ -275,12 +275,11 @@ static bool is_more_than_wrong(const argus_evidence_t *const self, const int son
     }
 }
 
-// A stray echo is crosstalk as soon as life: while nearly all that contradicts it is silence it may have gaps,
-// nothing else.
+// A stray echo among silences that are contradicted may be crosstalk; what it says of late or wrong is little.
 static bool is_more_than_off(const argus_evidence_t *const self, const int sonar,
                              const argus_fault_kind_t found) {
-    return found == ARGUS_KIND_INTERMITTENT ||
-           argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) < HOLLOW_OF - 1;
+    const bool by_echoes = found == ARGUS_KIND_WRONG || found == ARGUS_KIND_SLOW;
+    return !by_echoes || argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) < HOLLOW_OF - 1;
 }
 
 // Gaps give way to a silence that lasts; gaps and wild readings to what is late or bent for sure.
@@ -340,7 +339,7 @@ static bool is_suspected_by(const argus_evidence_t *const self, const int sonar,
 }
 
 bool argus_evidence_suspects(const argus_evidence_t *const self, const int sonar) {
-    return is_suspected_by(self, sonar, ARGUS_TESTS) || looks_late(self, sonar);
+    return is_suspected_by(self, sonar, ARGUS_TESTS) || looks_late(self, sonar) || looks_bent(self, sonar);
 }
 
 bool argus_evidence_keeps_out(const argus_evidence_t *const self, const int sonar) {

@@ -477,6 +477,145 @@ void test_lateness_takes_nothing_from_another_name(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, named());
 }
 
+// ---- a bent axis
+
+static void bend(int well, int told) {
+    peer->bend[2] = (int16_t)well;
+    peer->bend_told[2] = (int16_t)told;
+}
+
+// Bent and not well from 1,100 on (1,500 while something moves about before others), told of by 200,
+// contradicted and by two: wrong, and worth a look; never a conviction.
+void test_a_bent_axis_is_a_name_by_itself(void) {
+    static const struct {
+        int well;
+        int told;
+        int peers;
+        unsigned against;
+        bool busy;
+        bool wrong;
+    } by[] = {{1100, 200, 300, 3, false, true},  {1099, 900, 300, 3, false, false},
+              {3000, 199, 300, 3, false, false}, {3000, 900, 299, 3, false, false},
+              {3000, 900, 300, 1, false, false}, {1500, 200, 300, 3, true, true},
+              {1499, 200, 300, 3, true, false}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        bend(by[i].well, by[i].told);
+        peer->against = (uint16_t)by[i].against;
+        c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
+        e.stirred = (uint16_t)(1u << SONAR | (by[i].busy ? 1u << (SONAR + 1) : 0u));
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].wrong ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE, named(), text);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].wrong, argus_evidence_suspects(&e, SONAR), text);
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
+    }
+}
+
+void test_caution_scales_what_a_bent_axis_takes(void) {
+    for (int percent = 50; percent <= 200; percent += 50) {
+        for (int below = 0; below < 2; below++) {
+            setUp();
+            argus_evidence_set_caution(&e, percent);
+            bend(11 * percent - below, 200);
+            peer->against = 3;
+            c->score[ARGUS_TEST_PEERS] = 300;
+            TEST_ASSERT_EQUAL(below ? ARGUS_KIND_NONE : ARGUS_KIND_WRONG, named());
+        }
+    }
+}
+
+// In its place a bent axis takes the names that it may look like: gaps, garbage and lateness, also of one that
+// is out; not that of one that tells more of a lag, nor of one that mostly hears nothing.
+void test_bent_for_sure_takes_the_place_of_what_it_looks_like(void) {
+    static const argus_test_t tests[] = {ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT, ARGUS_TEST_LAG};
+    static const argus_fault_kind_t kinds[] = {ARGUS_KIND_GARBAGE, ARGUS_KIND_INTERMITTENT, ARGUS_KIND_SLOW};
+    static const struct {
+        int well;
+        int told;
+        unsigned against;
+        uint8_t hollow;
+        int late_told; // beside the score of LAG
+        bool wrong;
+    } by[] = {{1000, 900, 3, 0x00, 0, true},     {999, 900, 3, 0x00, 0, false}, {1000, 299, 3, 0x00, 0, false},
+              {1000, 900, 1, 0x00, 0, false},    {1000, 900, 3, 0x1F, 0, true}, {1000, 900, 3, 0x3F, 0, false},
+              {1000, 900, 3, 0x00, 1800, false}, {1000, 300, 3, 0x00, 600, false}};
+    for (int t = 0; t < 3; t++) {
+        for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+            setUp();
+            give_ground();
+            accuse(tests[t], argus_bounds[tests[t]].naming);
+            bend(by[i].well, by[i].told);
+            peer->told[LAG] = (int16_t)by[i].late_told;
+            peer->against = (uint16_t)by[i].against;
+            peer->hollow = by[i].hollow;
+            const bool outdone = tests[t] == ARGUS_TEST_LAG && 2 * by[i].told <= argus_bounds[tests[t]].naming;
+            const argus_fault_kind_t kind = by[i].wrong && !outdone ? ARGUS_KIND_WRONG : kinds[t];
+            snprintf(text, sizeof text, "test %d, case %d", (int)tests[t], i);
+            TEST_ASSERT_EQUAL_MESSAGE(kind, named(), text);
+            TEST_ASSERT_EQUAL_MESSAGE(kind != kinds[t], replaces(kinds[t], ARGUS_KIND_WRONG), text);
+        }
+    }
+}
+
+void test_a_bent_axis_is_convicted_as_wrong(void) {
+    give_ground();
+    accuse(ARGUS_TEST_GARBAGE, argus_bounds[ARGUS_TEST_GARBAGE].convincing);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, convicted());
+    bend(1000, 300);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, convicted());
+}
+
+// What sticks and what is off is told by its readings: a bend says nothing of either.
+void test_a_bend_takes_nothing_from_stuck_and_off(void) {
+    static const argus_test_t tests[] = {ARGUS_TEST_STUCK, ARGUS_TEST_OFF};
+    for (int t = 0; t < 2; t++) {
+        setUp();
+        give_ground();
+        accuse(tests[t], argus_bounds[tests[t]].naming);
+        bend(3000, 900);
+        TEST_ASSERT_EQUAL(t == 0 ? ARGUS_KIND_STUCK : ARGUS_KIND_OFF, named());
+    }
+}
+
+// ---- silence alone
+
+// Contradicted for nothing but silence and silent for five readings: off from 450 on, two against it.
+void test_a_silence_that_all_contradict_is_off_sooner(void) {
+    static const struct {
+        int peers;
+        int run;
+        uint8_t hollow;
+        unsigned against;
+        bool borne_out;
+        argus_fault_kind_t kind;
+    } by[] = {{450, 5, 0x07, 3, false, ARGUS_KIND_OFF},  {449, 5, 0x07, 3, false, ARGUS_KIND_NONE},
+              {649, 4, 0x07, 3, false, ARGUS_KIND_NONE}, {649, 5, 0x06, 3, false, ARGUS_KIND_NONE},
+              {649, 5, 0x07, 1, false, ARGUS_KIND_NONE}, {649, 5, 0x07, 3, true, ARGUS_KIND_NONE}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
+        c->none_run = (uint8_t)by[i].run;
+        peer->hollow = by[i].hollow;
+        peer->against = (uint16_t)by[i].against;
+        peer->borne_out = by[i].borne_out;
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
+    }
+}
+
+// One stray echo among the silences that contradict it may be crosstalk: off becomes nothing but intermittent.
+void test_off_stays_off_through_a_stray_echo(void) {
+    static const uint8_t hollow[] = {0x0F, 0x0E, 0x07, 0x06, 0x00};
+    for (int i = 0; i < 5; i++) {
+        setUp();
+        peer->hollow = hollow[i];
+        TEST_ASSERT_TRUE(replaces(ARGUS_KIND_OFF, ARGUS_KIND_INTERMITTENT));
+        TEST_ASSERT_EQUAL(i >= 3, replaces(ARGUS_KIND_OFF, ARGUS_KIND_WRONG));
+        TEST_ASSERT_EQUAL(i >= 3, replaces(ARGUS_KIND_OFF, ARGUS_KIND_SLOW));
+    }
+}
+
 // ---- on probation
 
 // What ends a probation is what names, but for what the peers alone say.
@@ -523,18 +662,20 @@ void test_the_peers_alone_keep_nobody_out(void) {
 #define IF_DEAF 5  // 12 readings without an echo, the last three contradicted ones too
 #define IF_GAPS 6  // three of the last four contradicted ones without an echo
 #define IF_SURE 7  // late and not well from 1,000 on, lateness from 430 on
+#define IF_BENT 8  // bent from 1,000 on, told of by more than half of the lateness
+#define IF_HEARD 9 // ... not IF_GAPS
 #define KINDS 8
 
 // Rows: the kind that it carries; columns: the kind that is found.
 static const uint8_t replaced_when[KINDS][KINDS] = {
     [ARGUS_KIND_NONE] = {NEVER, ALWAYS, ALWAYS, ALWAYS, ALWAYS, ALWAYS, ALWAYS, ALWAYS},
-    [ARGUS_KIND_OFF] = {NEVER, NEVER, ALWAYS, ALWAYS, ALWAYS, ALWAYS, ALWAYS, ALWAYS},
+    [ARGUS_KIND_OFF] = {NEVER, NEVER, ALWAYS, ALWAYS, IF_HEARD, ALWAYS, IF_HEARD, ALWAYS},
     [ARGUS_KIND_SILENT] = {NEVER},
     [ARGUS_KIND_STUCK] = {NEVER, IF_MOVED, IF_MOVED, NEVER, IF_MOVED, IF_MOVED, IF_MOVED, IF_MOVED},
     [ARGUS_KIND_WRONG] = {NEVER, IF_DEAF, ALWAYS, ALWAYS, NEVER, ALWAYS, IF_LATE, IF_GAPS},
-    [ARGUS_KIND_GARBAGE] = {NEVER, NEVER, NEVER, NEVER, NEVER, NEVER, IF_SURE, NEVER},
+    [ARGUS_KIND_GARBAGE] = {NEVER, NEVER, NEVER, NEVER, IF_BENT, NEVER, IF_SURE, NEVER},
     [ARGUS_KIND_SLOW] = {NEVER, NEVER, NEVER, NEVER, IF_WELL, NEVER, NEVER, NEVER},
-    [ARGUS_KIND_INTERMITTENT] = {NEVER, NEVER, NEVER, NEVER, NEVER, NEVER, IF_SURE, NEVER},
+    [ARGUS_KIND_INTERMITTENT] = {NEVER, NEVER, NEVER, NEVER, IF_BENT, NEVER, IF_SURE, NEVER},
 };
 
 // Everything speaks against a change but what is asked for.
@@ -543,23 +684,29 @@ static void set_up_but(int condition) {
     c->score[ARGUS_TEST_STUCK] = condition == IF_MOVED ? 0 : 1;
     peer->told[LAG] = (int16_t)(condition == IF_WELL ? 419 : (condition == IF_LATE ? 880 : 430));
     peer->late[LAG] = condition == IF_SURE ? 1000 : 999;
+    peer->bend[0] = condition == IF_BENT ? 1000 : 999;
+    peer->bend_told[0] = 441;
+    peer->against = 3;
     c->score[ARGUS_TEST_PEERS] = 300;
     c->none_run = condition == IF_DEAF ? 12 : 11;
-    peer->hollow = condition == IF_DEAF ? 0x07 : (condition == IF_GAPS ? 0x0D : 0xF3);
+    peer->hollow = condition == IF_DEAF ? 0x07 : (condition == IF_GAPS ? 0x0D : 0x73);
 }
 
 // A kind gives way to one that says more or when its ground is gone, and to no other, whatever shows.
 void test_which_kind_replaces_which(void) {
     for (int present = 0; present < KINDS; present++) {
         for (int found = 0; found < KINDS; found++) {
-            for (int condition = NEVER; condition <= IF_SURE; condition++) {
+            for (int condition = NEVER; condition <= IF_BENT; condition++) {
                 const int when = replaced_when[present][found];
                 set_up_but(condition);
                 snprintf(text, sizeof text, "%s by %s, condition %d",
                          argus_kind_name((argus_fault_kind_t)present),
                          argus_kind_name((argus_fault_kind_t)found), condition);
-                const bool gaps = when == IF_GAPS && condition == IF_DEAF; // 3 of 4 as well
-                TEST_ASSERT_EQUAL_MESSAGE(when == ALWAYS || (when != NEVER && when == condition) || gaps,
+                const bool gaps = condition == IF_DEAF || condition == IF_GAPS; // 3 of 4, both
+                const bool well = when == IF_WELL && condition == IF_BENT;
+                const bool given = when == ALWAYS || (when != NEVER && when == condition) ||
+                                   (when == IF_GAPS && gaps) || (when == IF_HEARD && !gaps) || well;
+                TEST_ASSERT_EQUAL_MESSAGE(given,
                                           replaces((argus_fault_kind_t)present, (argus_fault_kind_t)found),
                                           text);
             }

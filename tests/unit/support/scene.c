@@ -116,7 +116,8 @@ static int true_reading(scene_t *self, int sonar) {
     const double c = cos(self->th), s = sin(self->th);
     const double x = self->x + at->x_mm * c - at->y_mm * s;
     const double y = self->y + at->x_mm * s + at->y_mm * c;
-    const int mm = with_noise(self, range_of(self, x, y, self->th + at->heading_deg * DEG));
+    const int axis_deg = at->heading_deg + self->bent_deg[sonar];
+    const int mm = with_noise(self, range_of(self, x, y, self->th + axis_deg * DEG));
     if ((int)scene_random(self, 1000) < self->crosstalk_permille) {
         return 300 +
                (int)scene_random(self, (uint32_t)(mm > 400 ? mm - 300 : 100)); // another one's echo: too near

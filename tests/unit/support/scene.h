@@ -30,6 +30,7 @@ typedef struct {
     scene_fault_t fault[ARGUS_SONARS];
     scene_fault_t coming; // begins 200 mm into the next drive
     int coming_to;
+    int bent_deg[ARGUS_SONARS];
     unsigned mute; // sonars whose slots yield nothing
     uint32_t seed;
     // inside

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack (profile argus): a sonar is bent when it sees what the others see some way aside of its
+// bearing; what they do not see there either, and a well sonar's reading here, speaks against it.
+#include "argus/evidence.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "argus/angle.h"
+#include "awareness/evidence_said.h"
+#include "scene.h"
+#include "unity.h"
+
+#define ME 3
+#define WITNESS 5
+#define START_MS 0xFFFF8000u // the clock wraps in every tour
+#define NONE_MM 5000
+
+static argus_knowledge_t k;
+static argus_evidence_t e;
+static argus_peer_t *me;
+static scene_t s;
+static char text[200];
+
+void setUp(void) {
+    scene_blank(&k, &e);
+    me = &e.peers.of[ME];
+}
+
+static argus_glimpse_t here(int mm) {
+    return (argus_glimpse_t){.t_ms = k.sip_ms, .reading_mm = (uint16_t)mm};
+}
+
+// The witness saw so far from here, so much aside of where ME looks.
+static void saw_aside(int cdeg, int mm) {
+    argus_peer_t *peer = &e.peers.of[WITNESS];
+    argus_glimpse_t glimpse = here(mm);
+    glimpse.bearing_cdeg = (int16_t)cdeg;
+    peer->seen[peer->next] = glimpse;
+    peer->next = (uint8_t)((peer->next + 1) % ARGUS_GLIMPSES);
+    peer->count = (uint8_t)(peer->count + 1);
+}
+
+static void weigh(argus_said_t verdict, int mm, int increment) {
+    const argus_glimpse_t at = here(mm);
+    argus_bend_weigh(&e, &k, ME, &at, verdict, increment);
+}
+
+// ---- one reading
+
+// Contradicted here and seen by another 18 degrees aside: bent so far, and not in another way.
+void test_what_another_sees_aside_speaks_for_that_bend(void) {
+    saw_aside(1800, 1500);
+    weigh(CONTRADICTED, 1500, 277);
+    static const int bend[ARGUS_BENDS] = {277, 277, 277, 277, 277 + 150, 277};
+    static const int told[ARGUS_BENDS] = {0, 0, 0, 0, 160, 0};
+    for (int i = 0; i < ARGUS_BENDS; i++) {
+        TEST_ASSERT_EQUAL(bend[i], me->bend[i]);
+        TEST_ASSERT_EQUAL(told[i], me->bend_told[i]);
+    }
+    TEST_ASSERT_EQUAL(160, argus_bend_told(&e.peers, ME));
+    TEST_ASSERT_EQUAL(0, argus_bend(&e.peers, ME)); // told of too little as yet
+    weigh(CONTRADICTED, 1500, 277);
+    TEST_ASSERT_EQUAL(2 * (277 + 150), argus_bend(&e.peers, ME));
+}
+
+// Each side and each bend for itself, through the wrap of the bearings too.
+void test_each_bend_has_its_own_bearing(void) {
+    static const int cdeg[ARGUS_BENDS] = {-2400, -1800, -1200, 1200, 1800, 2400};
+    for (int own = -18000; own < 18000; own += 1700) {
+        for (int i = 0; i < ARGUS_BENDS; i++) {
+            setUp();
+            saw_aside(argus_angle_wrap(own + cdeg[i]), 900);
+            argus_glimpse_t at = here(900);
+            at.bearing_cdeg = (int16_t)own;
+            argus_bend_weigh(&e, &k, ME, &at, CONTRADICTED, 100);
+            for (int j = 0; j < ARGUS_BENDS; j++) {
+                snprintf(text, sizeof text, "bearing %d, bend %d, asked %d", own, cdeg[i], cdeg[j]);
+                TEST_ASSERT_EQUAL_MESSAGE(i == j ? 160 : 0, me->bend_told[j], text);
+            }
+        }
+    }
+}
+
+void test_silence_on_both_sides_speaks_a_little_for_it(void) {
+    saw_aside(-1200, NONE_MM);
+    weigh(CONTRADICTED, NONE_MM, 277);
+    TEST_ASSERT_EQUAL(277 + 40, me->bend[2]);
+    TEST_ASSERT_EQUAL(60, me->bend_told[2]);
+}
+
+void test_what_nobody_sees_there_either_speaks_against_it(void) {
+    saw_aside(1200, 3000);
+    me->bend[3] = 500;
+    me->bend_told[3] = 500;
+    weigh(CONTRADICTED, 1500, 277);
+    TEST_ASSERT_EQUAL(500 + 277 - 190, me->bend[3]);
+    TEST_ASSERT_EQUAL(500 - 200, me->bend_told[3]);
+}
+
+// A reading that the others bear out: a wall may fill both cones; where it does not, the axis is straight.
+void test_what_is_borne_out_counts_by_what_is_aside(void) {
+    static const struct {
+        int aside_mm; // 0: nobody looked there
+        int bend;
+        int told;
+    } by[] = {{1500, 500 - 93 + 60, 500 + 30}, {3000, 500 - 93 - 320, 500 - 300}, {0, 500 - 93, 500}};
+    for (int i = 0; i < 3; i++) {
+        setUp();
+        if (by[i].aside_mm > 0) {
+            saw_aside(2400, by[i].aside_mm);
+        }
+        me->bend[5] = 500;
+        me->bend_told[5] = 500;
+        weigh(AGREED, 1500, -93);
+        TEST_ASSERT_EQUAL(by[i].bend, me->bend[5]);
+        TEST_ASSERT_EQUAL(by[i].told, me->bend_told[5]);
+    }
+}
+
+// What is borne out and was never contradicted is no bend, however often the others see the same aside.
+void test_nothing_grows_from_what_is_borne_out(void) {
+    saw_aside(1200, 1500);
+    for (int i = 0; i < 100; i++) {
+        weigh(AGREED, 1500, -93);
+    }
+    TEST_ASSERT_EQUAL(0, me->bend[3]);
+    TEST_ASSERT_EQUAL(0, me->bend_told[3]);
+}
+
+void test_what_moves_about_makes_it_count_a_quarter(void) {
+    saw_aside(1800, 1500);
+    argus_note_unrest(&e, &k, WITNESS);
+    weigh(CONTRADICTED, 1500, 277 / 4);
+    TEST_ASSERT_EQUAL(277 / 4 + 150 / 4, me->bend[4]);
+    TEST_ASSERT_EQUAL(160 / 4, me->bend_told[4]);
+}
+
+void test_the_sums_stay_within_their_bounds(void) {
+    saw_aside(1800, 1500);
+    saw_aside(-1800, 3000);
+    for (int i = 0; i < 200; i++) {
+        weigh(CONTRADICTED, 1500, 277);
+        weigh(CONTRADICTED, 1500, 29);
+        for (int b = 0; b < ARGUS_BENDS; b++) {
+            TEST_ASSERT_TRUE(me->bend[b] >= 0 && me->bend[b] <= 3000);
+            TEST_ASSERT_TRUE(me->bend_told[b] >= 0 && me->bend_told[b] <= 900);
+        }
+    }
+    TEST_ASSERT_EQUAL(3000, me->bend[4]);
+    TEST_ASSERT_EQUAL(900, me->bend_told[4]);
+    argus_bend_forget(me);
+    TEST_ASSERT_EQUAL(0, argus_bend(&e.peers, ME) + argus_bend_told(&e.peers, ME));
+}
+
+// ---- a room
+
+// How far a sonar's sums came in a tour of the office.
+static int most_bend(unsigned seed, int sonar, int bent_deg, scene_fault_t fault) {
+    scene_init(&s, seed, START_MS);
+    scene_office(&s);
+    s.bent_deg[sonar] = bent_deg;
+    s.fault[sonar] = fault;
+    int most = 0;
+    for (int leg = 0; leg < 6 && s.convicted[sonar] == ARGUS_KIND_NONE; leg++) {
+        scene_tour(&s, 1);
+        most = argus_max(most, argus_bend(&s.e.peers, sonar));
+    }
+    return most;
+}
+
+// Of those with a bent axis nearly all come to what names one, and of those that are well or scaled hardly any.
+void test_a_bent_axis_shows_in_a_room_and_only_there(void) {
+    static const int bends[] = {-25, -20, -15, 15, 20, 25};
+    const scene_fault_t none = {ARGUS_KIND_NONE, 0};
+    int bent = 0;
+    int well = 0;
+    for (unsigned seed = 1; seed <= 48; seed++) {
+        const int sonar = (int)(seed * 5 % ARGUS_SONARS);
+        bent += most_bend(seed, sonar, bends[seed % 6], none) >= 1100;
+        well += most_bend(seed, sonar, 0, none) >= 1100;
+    }
+    snprintf(text, sizeof text, "of 48: %d bent, %d well", bent, well);
+    TEST_ASSERT_TRUE_MESSAGE(bent >= 40 && well <= 2, text);
+    puts(text);
+}
