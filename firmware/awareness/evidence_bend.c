@@ -12,8 +12,8 @@
 // A view of a wall fills cones that are 6 degrees apart alike, so bends between these show as well.
 static const int16_t bend_cdeg[ARGUS_BENDS] = {-2400, -1800, -1200, 1200, 1800, 2400};
 
-// Hundredths of a nat, that it is bent so far and not well, beyond what the verdict itself is worth. Rows: the
-// verdict on its bearing; columns: ... on the bent one. DESIGN.md, Evidence, derives them.
+// Hundredths of a nat, that it is bent so far and not well, beyond what the verdict itself is worth. Rows:
+// the verdict on its bearing; columns: ... on the bent one. DESIGN.md, Evidence, derives them.
 static const int16_t bent_than_well[VERDICTS][VERDICTS] = {
     [AGREED] = {[AGREED] = 60, [CONTRADICTED] = -320},
     [CONTRADICTED] = {[QUIET] = 40, [AGREED] = 150, [CONTRADICTED] = -190},

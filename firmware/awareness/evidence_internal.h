@@ -115,8 +115,8 @@ void argus_peers_forget(argus_peers_t *self, int sonar);
 // For some lag, in hundredths of a nat: late against well, and late against wrong.
 int32_t argus_peers_late(const argus_peers_t *self, int sonar);
 int32_t argus_peers_told(const argus_peers_t *self, int sonar);
-// For some bend of its axis, in hundredths of a nat: bent against well where the others' words speak of a bend
-// at all, and bent against faulty in another way.
+// For some bend of its axis, in hundredths of a nat: bent against well where the others' words speak of a
+// bend at all, and bent against faulty in another way.
 int32_t argus_bend(const argus_peers_t *self, int sonar);
 int32_t argus_bend_told(const argus_peers_t *self, int sonar);
 int argus_peers_against(const argus_peers_t *self, int sonar); // others that contradict it, 0 to 15

@@ -21,11 +21,14 @@
 #define LATE_NAMING 800       // late and not well, of one without a name,
 #define LATE_NAMING_BUSY 1400 // ... while something moves about the robot,
 #define LATE_CONTRADICTED 300 // ... that the others contradict,
-#define LATE_SURE 1000        // ... or of one that is intermittent or garbage so far
+#define LATE_BEYOND 400       // ... or, so far beyond the level,
+#define LATE_CONTRADICTED_BEYOND 100
+#define LATE_SURE 1000 // ... or of one that is intermittent or garbage so far
 #define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
 #define LATE_NO_MORE 420
-#define MUTE_NAMING 450 // by the peers, of one that they contradict for silence only
+#define LATE_OF_WILD 300 // less is no lag, of one whose readings are wild
+#define MUTE_NAMING 450  // by the peers, of one that they contradict for silence only
 #define BENT_NAMING 1100
 #define BENT_NAMING_BUSY 1500
 #define BENT_CONTRADICTED 300
@@ -109,10 +112,12 @@ static int32_t lateness(const argus_evidence_t *const self, const int sonar) {
     return argus_peers_told(&self->peers, sonar) + argus_trail_lag_lead(c) + c->score[ARGUS_TEST_LAG];
 }
 
-// Late, neither well nor wrong, and contradicted.
+// Late, neither well nor wrong, and contradicted: a late sonar is borne out again whenever the robot rests.
 static bool is_late_from(const argus_evidence_t *const self, const int sonar, const int32_t level) {
-    return argus_peers_late(&self->peers, sonar) >= level && lateness(self, sonar) >= LATE_FIRST &&
-           self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_CONTRADICTED;
+    const int32_t beyond = argus_peers_late(&self->peers, sonar) - level;
+    const int32_t wanted = beyond >= LATE_BEYOND ? LATE_CONTRADICTED_BEYOND : LATE_CONTRADICTED;
+    return beyond >= 0 && lateness(self, sonar) >= LATE_FIRST &&
+           self->of[sonar].score[ARGUS_TEST_PEERS] >= wanted;
 }
 
 // A late sonar's own echoes come and go after the robot has come to rest: only those of others are of people.
@@ -161,10 +166,19 @@ static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, cons
                                                           : late_or_wrong(self, sonar, late_from);
 }
 
+// Among wild readings some lag always explains a few; the peers know of a lag that is one.
+static bool is_wild(const argus_evidence_t *const self, const int sonar) {
+    return self->of[sonar].score[ARGUS_TEST_GARBAGE] >= naming_level(self, ARGUS_TEST_GARBAGE) &&
+           argus_peers_late(&self->peers, sonar) < LATE_OF_WILD;
+}
+
 static argus_fault_kind_t kind_by(const argus_evidence_t *const self, const int sonar,
                                   const argus_test_t test, const int32_t late_from) {
     if (test == ARGUS_TEST_PEERS) {
         return kind_of_peers(self, sonar, late_from);
+    }
+    if (test == ARGUS_TEST_LAG && is_wild(self, sonar)) {
+        return ARGUS_KIND_GARBAGE;
     }
     return test == ARGUS_TEST_VIEW ? kind_of_view(self, sonar, late_from)
                                    : (argus_fault_kind_t)kind_of_test[test];
@@ -224,8 +238,8 @@ static bool is_surely_bent(const argus_evidence_t *const self, const int sonar) 
 // A bent axis without another name, or under one that it may get as well.
 static argus_fault_kind_t bent_or(const argus_evidence_t *const self, const int sonar,
                                   const argus_fault_kind_t other) {
-    const bool unlike = other == ARGUS_KIND_INTERMITTENT || other == ARGUS_KIND_GARBAGE ||
-                        other == ARGUS_KIND_SLOW;
+    const bool unlike =
+        other == ARGUS_KIND_INTERMITTENT || other == ARGUS_KIND_GARBAGE || other == ARGUS_KIND_SLOW;
     const bool bent =
         other == ARGUS_KIND_NONE ? looks_bent(self, sonar) : unlike && is_surely_bent(self, sonar);
     return bent ? ARGUS_KIND_WRONG : other;
@@ -275,11 +289,20 @@ static bool is_more_than_wrong(const argus_evidence_t *const self, const int son
     }
 }
 
-// A stray echo among silences that are contradicted may be crosstalk; what it says of late or wrong is little.
+// A stray echo among silences that are contradicted may be crosstalk; what it says of late or wrong is
+// little.
 static bool is_more_than_off(const argus_evidence_t *const self, const int sonar,
                              const argus_fault_kind_t found) {
-    const bool by_echoes = found == ARGUS_KIND_WRONG || found == ARGUS_KIND_SLOW;
-    return !by_echoes || argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) < HOLLOW_OF - 1;
+    const bool late = found == ARGUS_KIND_SLOW && !is_surely_late(self, sonar) &&
+                      self->of[sonar].score[ARGUS_TEST_LAG] < argus_bounds[ARGUS_TEST_LAG].naming;
+    return !(found == ARGUS_KIND_WRONG || late) ||
+           argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) < HOLLOW_OF - 1;
+}
+
+static bool is_more_than_slow(const argus_evidence_t *const self, const int sonar,
+                              const argus_fault_kind_t found) {
+    const bool wrong = lateness(self, sonar) < LATE_NO_MORE || is_surely_bent(self, sonar);
+    return (found == ARGUS_KIND_WRONG && wrong) || (found == ARGUS_KIND_GARBAGE && is_wild(self, sonar));
 }
 
 // Gaps give way to a silence that lasts; gaps and wild readings to what is late or bent for sure.
@@ -303,8 +326,7 @@ static bool gives_way(const argus_evidence_t *const self, const int sonar, const
     case ARGUS_KIND_STUCK:
         return self->of[sonar].score[ARGUS_TEST_STUCK] == 0; // one other value refutes it
     case ARGUS_KIND_SLOW:
-        return found == ARGUS_KIND_WRONG &&
-               (lateness(self, sonar) < LATE_NO_MORE || is_surely_bent(self, sonar));
+        return is_more_than_slow(self, sonar, found);
     case ARGUS_KIND_WRONG:
         return is_more_than_wrong(self, sonar, found);
     default:

@@ -112,7 +112,8 @@ static int find(const argus_peer_t *const peer, const argus_glimpse_t *const at,
 }
 
 // The latest glimpse of a peer on the bearing of `at` from its place decides.
-static argus_said_t ask(const argus_peer_t *const peer, const argus_glimpse_t *const at, const uint32_t now_ms) {
+static argus_said_t ask(const argus_peer_t *const peer, const argus_glimpse_t *const at,
+                        const uint32_t now_ms) {
     int32_t along_mm = 0;
     const int back = find(peer, at, now_ms, SAME_BEARING_CDEG, 0, &along_mm);
     return back > 0 ? compare(at->reading_mm, at_back(peer, back)->reading_mm, along_mm) : UNSEEN;
@@ -251,13 +252,17 @@ static bool is_since(const argus_knowledge_t *const knowledge, const int sonar,
     return knowledge->sip_ms - at->t_ms <= knowledge->sip_ms - knowledge->sonar[sonar].since_ms;
 }
 
+static int32_t increment_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                            const int sonar, const bool odd) {
+    const int part = part_contradicted(&self->peers, knowledge, sonar);
+    return odd ? contradicts[part] * argus_unrest_percent(self, knowledge, sonar) / 100 : bears_out[part];
+}
+
 static void count(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const argus_glimpse_t *const now, const uint16_t against) {
     argus_peer_t *const peer = &self->peers.of[sonar];
     argus_case_t *const c = &self->of[sonar];
-    const int part = part_contradicted(&self->peers, knowledge, sonar);
-    const int32_t increment =
-        against != 0 ? contradicts[part] * argus_unrest_percent(self, knowledge, sonar) / 100 : bears_out[part];
+    const int32_t increment = increment_of(self, knowledge, sonar, against != 0);
     argus_score(c, ARGUS_TEST_PEERS, increment);
     argus_bend_weigh(self, knowledge, sonar, now, against != 0 ? CONTRADICTED : AGREED, increment);
     const bool doubted = c->score[ARGUS_TEST_PEERS] > 0;
@@ -276,8 +281,9 @@ static bool is_idle(const argus_peer_t *const self, const argus_said_t verdict, 
 }
 
 // What the others would say of this reading had it been made at the pose of its sonar so far back.
-static argus_said_t verdict_as_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                               const int sonar, const argus_glimpse_t *const now, const int back) {
+static argus_said_t verdict_as_of(const argus_evidence_t *const self,
+                                  const argus_knowledge_t *const knowledge, const int sonar,
+                                  const argus_glimpse_t *const now, const int back) {
     const argus_glimpse_t *const then = at_back(&self->peers.of[sonar], back);
     if (then == NULL) {
         return UNSEEN;
@@ -295,7 +301,8 @@ static int16_t limited(const int32_t sum, const int32_t ceiling) {
     return (int16_t)argus_max(0, argus_min(ceiling, sum));
 }
 
-static void weigh_lag(argus_peer_t *const peer, const int lag, const argus_said_t now, const argus_said_t as_of) {
+static void weigh_lag(argus_peer_t *const peer, const int lag, const argus_said_t now,
+                      const argus_said_t as_of) {
     peer->late[lag] = limited(peer->late[lag] + late_than_well[now][as_of], LATE_CEILING);
     peer->told[lag] = limited(peer->told[lag] + late_than_wrong[now][as_of], TOLD_CEILING);
 }

@@ -13,8 +13,8 @@ typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, FAINT, DIVIDED, SAME, VERDIC
 argus_said_t argus_peers_say(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
                              const argus_glimpse_t *at);
 
-// One counted reading of this sonar (`verdict`: AGREED or CONTRADICTED; `increment`, hundredths of a nat: what
-// it adds to PEERS) as if its axis were bent. Cost: up to 6 times argus_peers_say.
+// One counted reading of this sonar (`verdict`: AGREED or CONTRADICTED; `increment`, hundredths of a nat:
+// what it adds to PEERS) as if its axis were bent. Cost: up to 6 times argus_peers_say.
 void argus_bend_weigh(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
                       const argus_glimpse_t *at, argus_said_t verdict, int32_t increment);
 void argus_bend_forget(argus_peer_t *self);

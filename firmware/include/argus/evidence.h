@@ -134,14 +134,14 @@ typedef struct {
 typedef struct {
     argus_glimpse_t seen[ARGUS_GLIMPSES];
     argus_glimpse_t counted[ARGUS_COUNTED];
-    int16_t late[ARGUS_TRAIL]; // [n]: that it is n firings late and not well, hundredths of a nat
-    int16_t told[ARGUS_TRAIL]; // [n]: ... and not wrong
+    int16_t late[ARGUS_TRAIL];      // [n]: that it is n firings late and not well, hundredths of a nat
+    int16_t told[ARGUS_TRAIL];      // [n]: ... and not wrong
     int16_t bend[ARGUS_BENDS];      // [i]: that its axis is bent so far and it is not well; evidence_bend.c
     int16_t bend_told[ARGUS_BENDS]; // [i]: ... and not faulty in another way
-    uint16_t verdicts;         // that the others gave on it, sixteenths, fading
-    uint16_t contradicted;     // ... and of those, against it
-    uint16_t against;          // bit i: sonar i, since its score left 0
-    bool borne_out;            // an echo of it was, since then
+    uint16_t verdicts;              // that the others gave on it, sixteenths, fading
+    uint16_t contradicted;          // ... and of those, against it
+    uint16_t against;               // bit i: sonar i, since its score left 0
+    bool borne_out;                 // an echo of it was, since then
     uint8_t hollow; // bit i: of the contradicted readings, in the order they were judged, the one i before
                     // had no echo
     uint8_t next;

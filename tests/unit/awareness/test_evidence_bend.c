@@ -169,7 +169,8 @@ static int most_bend(unsigned seed, int sonar, int bent_deg, scene_fault_t fault
     return most;
 }
 
-// Of those with a bent axis nearly all come to what names one, and of those that are well or scaled hardly any.
+// Of those with a bent axis nearly all come to what names one, and of those that are well or scaled hardly
+// any.
 void test_a_bent_axis_shows_in_a_room_and_only_there(void) {
     static const int bends[] = {-25, -20, -15, 15, 20, 25};
     const scene_fault_t none = {ARGUS_KIND_NONE, 0};
