@@ -135,7 +135,11 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     }
     c->counted_ms = knowledge->sip_ms;
     c->taken++;
-    c->out = argus_is_out(knowledge, sonar);
+    const bool out = argus_is_out(knowledge, sonar);
+    if (c->out && !out) {
+        argus_bend_forget(&self->peers.of[sonar]); // it was mended
+    }
+    c->out = out;
     argus_trend_reading(&self->trend, knowledge, sonar);
     const argus_trail_t now = {.reading_mm = knowledge->sonar[sonar].reading_mm,
                                .x_mm = (uint16_t)((uint32_t)knowledge->pose.x_mm & 0xFFFFu),

@@ -6,10 +6,11 @@
 #include "evidence_said.h"
 
 #define CEILING 3000
-#define TOLD_CEILING 900
 #define TOLD_LEAST 200 // less: what contradicts it says nothing of a bend
+#define OUT_TIMES 4    // what speaks for a sonar that is out counts so often, as in every test
+#define FULL_PERCENT 100
 
-// A view of a wall fills cones that are 6 degrees apart alike, so bends between these show as well.
+// A wall fills cones that are 6 degrees apart alike, so bends between these show as well.
 static const int16_t bend_cdeg[ARGUS_BENDS] = {-2400, -1800, -1200, 1200, 1800, 2400};
 
 // Hundredths of a nat, that it is bent so far and not well, beyond what the verdict itself is worth. Rows:
@@ -25,14 +26,25 @@ static const int16_t bent_than_other[VERDICTS][VERDICTS] = {
     [CONTRADICTED] = {[QUIET] = 60, [AGREED] = 160, [CONTRADICTED] = -200},
 };
 
-static int16_t limited(const int32_t sum, const int32_t ceiling) {
-    return (int16_t)argus_max(0, argus_min(ceiling, sum));
+// What is borne out never speaks for a fault, whatever is seen aside.
+static int32_t worth_of(const argus_case_t *const c, const argus_said_t verdict, const argus_said_t aside,
+                        const int32_t increment, const int32_t percent) {
+    const int32_t sum = increment + bent_than_well[verdict][aside] * percent / FULL_PERCENT;
+    const int32_t worth = verdict == AGREED ? argus_min(0, sum) : sum;
+    return (c->out && worth < 0 ? OUT_TIMES * worth : worth) * FULL_PERCENT / c->caution;
+}
+
+static void add(argus_peer_t *const peer, const int bend, const int32_t well, const int32_t told) {
+    peer->bend[bend] = argus_limited(peer->bend[bend] + well, CEILING);
+    const int32_t sum = peer->bend[bend] > 0 ? peer->bend_told[bend] + told : 0; // its episode is over
+    peer->bend_told[bend] = argus_limited(sum, ARGUS_TOLD_CEILING);
 }
 
 void argus_bend_weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const argus_glimpse_t *const at, const argus_said_t verdict, const int32_t increment) {
+    const argus_case_t *const c = &self->of[sonar];
     argus_peer_t *const peer = &self->peers.of[sonar];
-    const int32_t percent = verdict == AGREED ? 100 : argus_unrest_percent(self, knowledge, sonar);
+    const int32_t percent = verdict == AGREED ? FULL_PERCENT : argus_unrest_percent(self, knowledge, sonar);
     for (int i = 0; i < ARGUS_BENDS; i++) {
         if (verdict == AGREED && peer->bend[i] == 0) {
             continue;
@@ -40,10 +52,15 @@ void argus_bend_weigh(argus_evidence_t *const self, const argus_knowledge_t *con
         argus_glimpse_t aside = *at;
         aside.bearing_cdeg = (int16_t)argus_angle_wrap(at->bearing_cdeg + bend_cdeg[i]);
         const argus_said_t there = argus_peers_say(self, knowledge, sonar, &aside);
-        const int32_t well = increment + bent_than_well[verdict][there] * percent / 100;
-        const int32_t other = bent_than_other[verdict][there] * percent / 100;
-        peer->bend[i] = limited(peer->bend[i] + well, CEILING);
-        peer->bend_told[i] = limited(peer->bend_told[i] + other, TOLD_CEILING);
+        add(peer, i, worth_of(c, verdict, there, increment, percent),
+            bent_than_other[verdict][there] * percent / c->caution);
+    }
+}
+
+void argus_bend_fade(argus_peer_t *const self) {
+    for (int i = 0; i < ARGUS_BENDS; i++) {
+        self->bend[i] = argus_faded(self->bend[i]);
+        self->bend_told[i] = self->bend[i] > 0 ? self->bend_told[i] : (int16_t)0;
     }
 }
 
@@ -52,19 +69,14 @@ void argus_bend_forget(argus_peer_t *const self) {
     memset(self->bend_told, 0, sizeof self->bend_told);
 }
 
-int32_t argus_bend(const argus_peers_t *const self, const int sonar) {
-    int32_t most = 0;
+argus_bend_t argus_bend(const argus_peers_t *const self, const int sonar) {
+    const argus_peer_t *const peer = &self->of[sonar];
+    argus_bend_t most = {.well = 0};
     for (int i = 0; i < ARGUS_BENDS; i++) {
-        const bool told = self->of[sonar].bend_told[i] >= TOLD_LEAST;
-        most = told ? argus_max(most, self->of[sonar].bend[i]) : most;
-    }
-    return most;
-}
-
-int32_t argus_bend_told(const argus_peers_t *const self, const int sonar) {
-    int32_t most = 0;
-    for (int i = 0; i < ARGUS_BENDS; i++) {
-        most = argus_max(most, self->of[sonar].bend_told[i]);
+        if (peer->bend_told[i] >= TOLD_LEAST && peer->bend[i] > most.well) {
+            most.well = peer->bend[i];
+            most.told = peer->bend_told[i];
+        }
     }
     return most;
 }

@@ -107,7 +107,7 @@ void argus_views_take(argus_evidence_t *self, const argus_knowledge_t *knowledge
 bool argus_views_support(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
 
 // One reading against the glimpses of the other sonars on its bearing, as of now and as of earlier poses of
-// its own; then it is one itself. Cost: up to 15 * 15 * 32 glimpses looked through.
+// its own; then it is one itself. Cost: up to 30 * 15 * 32 glimpses looked through.
 void argus_peers_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
 void argus_peers_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge); // after all of a SIP
 void argus_peers_restart(argus_peers_t *self);
@@ -115,10 +115,15 @@ void argus_peers_forget(argus_peers_t *self, int sonar);
 // For some lag, in hundredths of a nat: late against well, and late against wrong.
 int32_t argus_peers_late(const argus_peers_t *self, int sonar);
 int32_t argus_peers_told(const argus_peers_t *self, int sonar);
-// For some bend of its axis, in hundredths of a nat: bent against well where the others' words speak of a
-// bend at all, and bent against faulty in another way.
-int32_t argus_bend(const argus_peers_t *self, int sonar);
-int32_t argus_bend_told(const argus_peers_t *self, int sonar);
+// Of the bend of its axis that most speaks for, in hundredths of a nat: bent against well (0 to 3000), and
+// bent against faulty in another way (200 to 900); both 0: what the others see aside speaks of none.
+typedef struct {
+    int32_t well;
+    int32_t told;
+} argus_bend_t;
+argus_bend_t argus_bend(const argus_peers_t *self, int sonar);
+void argus_bend_forget(argus_peer_t *self);
+
 int argus_peers_against(const argus_peers_t *self, int sonar); // others that contradict it, 0 to 15
 // Of its last contradicted readings, up to 8: how many were without an echo.
 int argus_peers_hollow(const argus_peers_t *self, int sonar, int of_last);

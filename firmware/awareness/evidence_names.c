@@ -27,13 +27,16 @@
 #define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
 #define LATE_NO_MORE 420
-#define LATE_OF_WILD 300 // less is no lag, of one whose readings are wild
-#define MUTE_NAMING 450  // by the peers, of one that they contradict for silence only
+#define LEAPS_CONTRADICTED 360 // two of them
+#define LATE_OF_WILD 300       // less is no lag, of one whose readings are wild
+#define MUTE_NAMING 450        // by the peers, of one that they contradict for silence only
 #define BENT_NAMING 1100
 #define BENT_NAMING_BUSY 1500
 #define BENT_CONTRADICTED 300
 #define BENT_SURE 1000 // in the place of another name
 #define BENT_SURE_TOLD 300
+#define BENT_NO_LESS 500
+#define BENT_KEEPS 4  // times what tells of the bend is more than the lateness
 #define BENT_HOLLOW 5 // more silences than this, of the last eight contradicted readings, are no bent axis
 #define HOLLOW_MOST 8
 
@@ -120,10 +123,14 @@ static bool is_late_from(const argus_evidence_t *const self, const int sonar, co
            self->of[sonar].score[ARGUS_TEST_PEERS] >= wanted;
 }
 
-// A late sonar's own echoes come and go after the robot has come to rest: only those of others are of people.
+// A faulty sonar's own echoes come and go after the robot has come to rest: only those of others are of
+// people.
+static bool is_busy_beside(const argus_evidence_t *const self, const int sonar) {
+    return (self->stirred & ~(1u << sonar)) != 0;
+}
+
 static bool looks_late(const argus_evidence_t *const self, const int sonar) {
-    const bool busy = (self->stirred & ~(1u << sonar)) != 0;
-    return is_late_from(self, sonar, busy ? LATE_NAMING_BUSY : LATE_NAMING);
+    return is_late_from(self, sonar, is_busy_beside(self, sonar) ? LATE_NAMING_BUSY : LATE_NAMING);
 }
 
 // Neither gaps nor wild readings come to this; the echoes of a late sonar may look like either.
@@ -166,9 +173,11 @@ static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, cons
                                                           : late_or_wrong(self, sonar, late_from);
 }
 
-// Among wild readings some lag always explains a few; the peers know of a lag that is one.
+// Among wild readings some lag always explains a few; of one that the others contradict they know whether it
+// is.
 static bool is_wild(const argus_evidence_t *const self, const int sonar) {
     return self->of[sonar].score[ARGUS_TEST_GARBAGE] >= naming_level(self, ARGUS_TEST_GARBAGE) &&
+           self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_CONTRADICTED &&
            argus_peers_late(&self->peers, sonar) < LATE_OF_WILD;
 }
 
@@ -210,8 +219,20 @@ static argus_fault_kind_t first_name(const argus_evidence_t *const self, const i
 static bool is_mute(const argus_evidence_t *const self, const int sonar) {
     const argus_case_t *const c = &self->of[sonar];
     return c->none_run >= OFF_RUN && !self->peers.of[sonar].borne_out &&
-           c->score[ARGUS_TEST_PEERS] >= MUTE_NAMING &&
+           c->score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].suspicious &&
            argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW) == OFF_HOLLOW && has_partners(self, sonar);
+}
+
+// What leaps, contradicted by the others, is garbage a leap before it is so by itself.
+static argus_fault_kind_t garbage_or(const argus_evidence_t *const self, const int sonar,
+                                     const argus_fault_kind_t other) {
+    const argus_case_t *const c = &self->of[sonar];
+    const bool open = other == ARGUS_KIND_NONE || other == ARGUS_KIND_WRONG;
+    const bool leaps = c->score[ARGUS_TEST_GARBAGE] >= LEAPS_CONTRADICTED &&
+                       c->score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].suspicious &&
+                       argus_peers_late(&self->peers, sonar) < LATE_OF_WILD;
+    return open && leaps && !is_busy_beside(self, sonar) && has_partners(self, sonar) ? ARGUS_KIND_GARBAGE
+                                                                                      : other;
 }
 
 static argus_fault_kind_t off_or(const argus_evidence_t *const self, const int sonar,
@@ -219,20 +240,22 @@ static argus_fault_kind_t off_or(const argus_evidence_t *const self, const int s
     return other == ARGUS_KIND_NONE && is_mute(self, sonar) ? ARGUS_KIND_OFF : other;
 }
 
-static bool looks_bent(const argus_evidence_t *const self, const int sonar) {
-    const argus_case_t *const c = &self->of[sonar];
-    const bool busy = (self->stirred & ~(1u << sonar)) != 0;
-    const int32_t level = (busy ? BENT_NAMING_BUSY : BENT_NAMING) * c->caution / 100;
-    return argus_bend(&self->peers, sonar) >= level && c->score[ARGUS_TEST_PEERS] >= BENT_CONTRADICTED &&
-           has_partners(self, sonar);
+// In a turn a late sonar looks bent, and a bent one late: half as much that tells of a bend decides, since a
+// bend is told of once in a place, a lag by every reading. One that mostly hears nothing is not bent.
+static bool is_bent(const argus_evidence_t *const self, const int sonar, const int32_t level,
+                    const int32_t told) {
+    const argus_bend_t bend = argus_bend(&self->peers, sonar);
+    return bend.well >= level && bend.told >= told && 2 * bend.told > lateness(self, sonar) &&
+           has_partners(self, sonar) && argus_peers_hollow(&self->peers, sonar, HOLLOW_MOST) <= BENT_HOLLOW;
 }
 
-// In a turn a late sonar looks bent, and a bent one late: what tells more of it decides.
+static bool looks_bent(const argus_evidence_t *const self, const int sonar) {
+    return self->of[sonar].score[ARGUS_TEST_PEERS] >= BENT_CONTRADICTED &&
+           is_bent(self, sonar, is_busy_beside(self, sonar) ? BENT_NAMING_BUSY : BENT_NAMING, 0);
+}
+
 static bool is_surely_bent(const argus_evidence_t *const self, const int sonar) {
-    const int32_t told = argus_bend_told(&self->peers, sonar);
-    return argus_bend(&self->peers, sonar) >= BENT_SURE && told >= BENT_SURE_TOLD &&
-           2 * told > lateness(self, sonar) && has_partners(self, sonar) &&
-           argus_peers_hollow(&self->peers, sonar, HOLLOW_MOST) <= BENT_HOLLOW;
+    return is_bent(self, sonar, BENT_SURE, BENT_SURE_TOLD);
 }
 
 // A bent axis without another name, or under one that it may get as well.
@@ -256,7 +279,7 @@ static argus_fault_kind_t slow_or(const argus_evidence_t *const self, const int 
 
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
     const argus_fault_kind_t first = off_or(self, sonar, first_name(self, sonar, ARGUS_TESTS));
-    return bent_or(self, sonar, slow_or(self, sonar, first));
+    return bent_or(self, sonar, slow_or(self, sonar, garbage_or(self, sonar, first)));
 }
 
 argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, const int sonar) {
@@ -273,6 +296,12 @@ argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, c
     return ARGUS_KIND_NONE;
 }
 
+// What took the name of another fault for that of a bent axis keeps it while it looks like one at all.
+static bool is_still_bent(const argus_evidence_t *const self, const int sonar) {
+    const argus_bend_t bend = argus_bend(&self->peers, sonar);
+    return bend.well >= BENT_NO_LESS && BENT_KEEPS * bend.told > lateness(self, sonar);
+}
+
 // Wrong is what is left when nothing more definite shows.
 static bool is_more_than_wrong(const argus_evidence_t *const self, const int sonar,
                                const argus_fault_kind_t found) {
@@ -281,9 +310,12 @@ static bool is_more_than_wrong(const argus_evidence_t *const self, const int son
         return self->of[sonar].none_run >= OFF_RUN_LONG &&
                argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW) == OFF_HOLLOW;
     case ARGUS_KIND_INTERMITTENT:
-        return argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) >= HOLLOW_OF - 1;
+        return argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) >= HOLLOW_OF - 1 &&
+               !is_still_bent(self, sonar);
     case ARGUS_KIND_SLOW:
-        return lateness(self, sonar) >= LATE_AFTER;
+        return lateness(self, sonar) >= LATE_AFTER && !is_still_bent(self, sonar);
+    case ARGUS_KIND_GARBAGE:
+        return !is_still_bent(self, sonar);
     default:
         return true;
     }
@@ -321,8 +353,10 @@ static bool gives_way(const argus_evidence_t *const self, const int sonar, const
     case ARGUS_KIND_OFF:
         return is_more_than_off(self, sonar, found);
     case ARGUS_KIND_INTERMITTENT:
-    case ARGUS_KIND_GARBAGE:
         return is_more_than_unsteady(self, sonar, present, found);
+    case ARGUS_KIND_GARBAGE:
+        return is_more_than_unsteady(self, sonar, present, found) ||
+               (found == ARGUS_KIND_WRONG && self->of[sonar].score[ARGUS_TEST_GARBAGE] <= 0);
     case ARGUS_KIND_STUCK:
         return self->of[sonar].score[ARGUS_TEST_STUCK] == 0; // one other value refutes it
     case ARGUS_KIND_SLOW:

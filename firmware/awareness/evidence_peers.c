@@ -24,7 +24,6 @@
 #define LAG_LEAST 2
 #define LAG_TURN_CDEG 1000
 #define LATE_CEILING 2000
-#define TOLD_CEILING 900
 #define HOLLOW_BITS 8
 
 typedef struct {
@@ -170,7 +169,7 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
     return tally;
 }
 
-// For the lags, whose tables were measured without what is faint.
+// For the lags and bends, whose tables were measured without what is faint.
 static argus_said_t verdict_of(const tally_t *const tally) {
     const int differ = tally->differ - tally->faint;
     if (tally->agree > 0) {
@@ -263,8 +262,8 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     argus_peer_t *const peer = &self->peers.of[sonar];
     argus_case_t *const c = &self->of[sonar];
     const int32_t increment = increment_of(self, knowledge, sonar, against != 0);
-    argus_score(c, ARGUS_TEST_PEERS, increment);
     argus_bend_weigh(self, knowledge, sonar, now, against != 0 ? CONTRADICTED : AGREED, increment);
+    argus_score(c, ARGUS_TEST_PEERS, increment); // after that, since who is a witness depends on it
     const bool doubted = c->score[ARGUS_TEST_PEERS] > 0;
     const bool echo = now->reading_mm < ARGUS_NO_ECHO_MM;
     peer->against = doubted ? (uint16_t)(peer->against | against) : 0;
@@ -297,14 +296,14 @@ static argus_said_t verdict_as_of(const argus_evidence_t *const self,
     return argus_peers_say(self, knowledge, sonar, &as_of);
 }
 
-static int16_t limited(const int32_t sum, const int32_t ceiling) {
+int16_t argus_limited(const int32_t sum, const int32_t ceiling) {
     return (int16_t)argus_max(0, argus_min(ceiling, sum));
 }
 
 static void weigh_lag(argus_peer_t *const peer, const int lag, const argus_said_t now,
                       const argus_said_t as_of) {
-    peer->late[lag] = limited(peer->late[lag] + late_than_well[now][as_of], LATE_CEILING);
-    peer->told[lag] = limited(peer->told[lag] + late_than_wrong[now][as_of], TOLD_CEILING);
+    peer->late[lag] = argus_limited(peer->late[lag] + late_than_well[now][as_of], LATE_CEILING);
+    peer->told[lag] = argus_limited(peer->told[lag] + late_than_wrong[now][as_of], ARGUS_TOLD_CEILING);
 }
 
 static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
@@ -439,7 +438,7 @@ void argus_peers_take(argus_evidence_t *const self, const argus_knowledge_t *con
 }
 
 // By a sixtieth, at least by one.
-static int16_t faded(const int16_t score) {
+int16_t argus_faded(const int16_t score) {
     const int32_t by = score / SCORE_FADES_S;
     const int32_t least = (score > 0) - (score < 0);
     return (int16_t)(score - (by != 0 ? by : least));
@@ -458,10 +457,8 @@ void argus_peers_sip(argus_evidence_t *const self, const argus_knowledge_t *cons
         int16_t *const score = &self->of[i].score[ARGUS_TEST_PEERS];
         peer->verdicts = (uint16_t)(peer->verdicts * FADE_EIGHTHS / 8);
         peer->contradicted = (uint16_t)(peer->contradicted * FADE_EIGHTHS / 8);
-        *score = faded(*score);
-        for (int n = 0; n < ARGUS_BENDS; n++) {
-            peer->bend[n] = faded(peer->bend[n]);
-        }
+        *score = argus_faded(*score);
+        argus_bend_fade(peer);
         peer->against = *score > 0 ? peer->against : 0;
         peer->borne_out = *score > 0 && peer->borne_out;
     }

@@ -122,7 +122,7 @@ typedef struct {
 // 65,536 mm, course frame.
 #define ARGUS_GLIMPSES 32 // that are remembered of each sonar: some 10 s
 #define ARGUS_COUNTED 6
-#define ARGUS_BENDS 6 // of an axis that are asked for
+#define ARGUS_BENDS 6 // of an axis: -24, -18, -12, 12, 18, 24 degrees
 typedef struct {
     uint32_t t_ms;
     uint16_t x_mm;
@@ -136,8 +136,8 @@ typedef struct {
     argus_glimpse_t counted[ARGUS_COUNTED];
     int16_t late[ARGUS_TRAIL];      // [n]: that it is n firings late and not well, hundredths of a nat
     int16_t told[ARGUS_TRAIL];      // [n]: ... and not wrong
-    int16_t bend[ARGUS_BENDS];      // [i]: that its axis is bent so far and it is not well; evidence_bend.c
-    int16_t bend_told[ARGUS_BENDS]; // [i]: ... and not faulty in another way
+    int16_t bend[ARGUS_BENDS];      // [i]: bent so far and not well, hundredths of a nat, 0 to 3000
+    int16_t bend_told[ARGUS_BENDS]; // [i]: ... and not faulty in another way, 0 to 900
     uint16_t verdicts;              // that the others gave on it, sixteenths, fading
     uint16_t contradicted;          // ... and of those, against it
     uint16_t against;               // bit i: sonar i, since its score left 0
