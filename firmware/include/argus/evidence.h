@@ -184,8 +184,8 @@ void argus_evidence_set_caution(argus_evidence_t *self, int32_t percent);
 void argus_evidence_restart(argus_evidence_t *self);
 
 // After each SIP. Cost: for each fresh sonar one pass over the views of the other 15 (120); over their
-// glimpses (480) one, two where they contradict it, up to sixteen more where its lags are doubted, and the
-// same again for each of the others that it answers.
+// glimpses (480) one, two where they contradict it, up to sixteen more where its lags are doubted and
+// twelve where its axis is, and the same again for each of the others that it answers.
 void argus_evidence_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge);
 
 // Whether a look is called for; the kind that the evidence names, or convicts of (NONE: not so far). A name

@@ -737,6 +737,7 @@ void test_what_the_others_say_fades(void) {
         e.of[ME].score[ARGUS_TEST_VIEW] = 700;
         e.peers.of[ME].against = 1u << WITNESS;
         e.peers.of[ME].borne_out = true;
+        e.peers.of[ME].bend[1] = 600;
         k.sip_ms = e.peers.faded_ms + 999;
         argus_peers_sip(&e, &k);
         TEST_ASSERT_EQUAL(by[i].before, e.of[ME].score[ARGUS_TEST_PEERS]);
@@ -746,7 +747,21 @@ void test_what_the_others_say_fades(void) {
         TEST_ASSERT_EQUAL(700, e.of[ME].score[ARGUS_TEST_VIEW]);
         TEST_ASSERT_EQUAL(by[i].after > 0, argus_peers_against(&e.peers, ME));
         TEST_ASSERT_EQUAL(by[i].after > 0, e.peers.of[ME].borne_out);
+        TEST_ASSERT_EQUAL(590, e.peers.of[ME].bend[1]);
     }
+}
+
+// What counts for the peers counts for the bends of the axis, each reading once.
+void test_a_counted_reading_is_asked_aside_as_well(void) {
+    face(ME, 0);
+    saw(WITNESS, 1500);
+    argus_glimpse_t *aside = saw(WITNESS, 3000);
+    aside->bearing_cdeg = 1800;
+    TEST_ASSERT_EQUAL(AGAINST, reads(3000));
+    TEST_ASSERT_EQUAL(AGAINST + 150, e.peers.of[ME].bend[4]);
+    TEST_ASSERT_EQUAL(160, e.peers.of[ME].bend_told[4]);
+    TEST_ASSERT_EQUAL(0, reads(3000)); // no news
+    TEST_ASSERT_EQUAL(AGAINST + 150, e.peers.of[ME].bend[4]);
 }
 
 // What a sonar that is out has said of others is taken back: the whole where nobody else says so.
@@ -759,12 +774,15 @@ void test_what_a_liar_said_is_taken_back_when_it_is_out(void) {
         peer->borne_out = true;
         peer->hollow = 1;
         peer->late[5] = peer->told[5] = 900;
+        peer->bend[2] = peer->bend_told[2] = 900;
         argus_evidence_retract(&e, WITNESS);
         TEST_ASSERT_EQUAL(other != 0 ? 700 : 0, e.of[ME].score[ARGUS_TEST_PEERS]);
         TEST_ASSERT_EQUAL(other, peer->borne_out);
         TEST_ASSERT_EQUAL(other, argus_peers_hollow(&e.peers, ME, 8));
         TEST_ASSERT_EQUAL(other * 900, argus_peers_late(&e.peers, ME));
         TEST_ASSERT_EQUAL(other * 900, argus_peers_told(&e.peers, ME));
+        TEST_ASSERT_EQUAL(other * 900, peer->bend[2]);
+        TEST_ASSERT_EQUAL(other * 900, peer->bend_told[2]);
         TEST_ASSERT_EQUAL(other, argus_peers_against(&e.peers, ME));
     }
     setUp();
