@@ -308,6 +308,8 @@ def _value(value: float | None, unit: str) -> str:
         return "-"
     if unit == "%":
         return f"{100 * value:.2f} %"
+    if unit == "s":
+        return f"{value:.3f} s"  # as fine as it is measured: 2.004 s is more than 2
     return f"{value:.2f} {unit}".rstrip() if value < 1000 else f"{value:.0f} {unit}".rstrip()
 
 
