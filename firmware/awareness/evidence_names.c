@@ -29,7 +29,6 @@
 #define LATE_NO_MORE 420
 #define LEAPS_CONTRADICTED 360 // two of them
 #define LATE_OF_WILD 300       // less is no lag, of one whose readings are wild
-#define MUTE_NAMING 450        // by the peers, of one that they contradict for silence only
 #define BENT_NAMING 1100
 #define BENT_NAMING_BUSY 1500
 #define BENT_CONTRADICTED 300
@@ -123,8 +122,7 @@ static bool is_late_from(const argus_evidence_t *const self, const int sonar, co
            self->of[sonar].score[ARGUS_TEST_PEERS] >= wanted;
 }
 
-// A faulty sonar's own echoes come and go after the robot has come to rest: only those of others are of
-// people.
+// A faulty sonar's own echoes come and go after the robot has come to rest; those of others are of people.
 static bool is_busy_beside(const argus_evidence_t *const self, const int sonar) {
     return (self->stirred & ~(1u << sonar)) != 0;
 }
@@ -173,8 +171,8 @@ static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, cons
                                                           : late_or_wrong(self, sonar, late_from);
 }
 
-// Among wild readings some lag always explains a few; of one that the others contradict they know whether it
-// is.
+// Among wild readings some lag always explains a few: the others, where they contradict it, know of a true
+// one.
 static bool is_wild(const argus_evidence_t *const self, const int sonar) {
     return self->of[sonar].score[ARGUS_TEST_GARBAGE] >= naming_level(self, ARGUS_TEST_GARBAGE) &&
            self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_CONTRADICTED &&
@@ -321,8 +319,7 @@ static bool is_more_than_wrong(const argus_evidence_t *const self, const int son
     }
 }
 
-// A stray echo among silences that are contradicted may be crosstalk; what it says of late or wrong is
-// little.
+// A stray echo among silences that are contradicted may be crosstalk: it makes nobody late or wrong.
 static bool is_more_than_off(const argus_evidence_t *const self, const int sonar,
                              const argus_fault_kind_t found) {
     const bool late = found == ARGUS_KIND_SLOW && !is_surely_late(self, sonar) &&

@@ -15,7 +15,7 @@ argus_said_t argus_peers_say(const argus_evidence_t *self, const argus_knowledge
 
 #define ARGUS_TOLD_CEILING 900                       // of sums against another fault
 int16_t argus_limited(int32_t sum, int32_t ceiling); // from 0 to the ceiling
-int16_t argus_faded(int16_t score);                  // by what a sum of the peers loses in a second
+int16_t argus_faded(int16_t score);                  // what is left of a sum of the peers after a second
 
 // One counted reading of this sonar (`verdict`: AGREED or CONTRADICTED; `increment`, hundredths of a nat:
 // what it adds to PEERS) as if its axis were bent. Cost: up to 6 times argus_peers_say.
