@@ -158,6 +158,15 @@ static argus_fault_kind_t kind_of_view(const argus_evidence_t *const self, const
     return c->none_run >= VIEW_OFF_RUN ? ARGUS_KIND_OFF : ARGUS_KIND_WRONG;
 }
 
+// All that contradicted it of late was silence; nearly all.
+static bool is_hollow(const argus_evidence_t *const self, const int sonar) {
+    return argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW) == OFF_HOLLOW;
+}
+
+static bool is_mostly_hollow(const argus_evidence_t *const self, const int sonar) {
+    return argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) >= HOLLOW_OF - 1;
+}
+
 // Contradicted for silence only: off, unless they bore out an echo of it since they doubt it.
 static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, const int sonar,
                                         const int32_t late_from) {
@@ -218,7 +227,7 @@ static bool is_mute(const argus_evidence_t *const self, const int sonar) {
     const argus_case_t *const c = &self->of[sonar];
     return c->none_run >= OFF_RUN && !self->peers.of[sonar].borne_out &&
            c->score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].suspicious &&
-           argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW) == OFF_HOLLOW && has_partners(self, sonar);
+           is_hollow(self, sonar) && has_partners(self, sonar);
 }
 
 // What leaps, contradicted by the others, is garbage a leap before it is so by itself.
@@ -305,11 +314,9 @@ static bool is_more_than_wrong(const argus_evidence_t *const self, const int son
                                const argus_fault_kind_t found) {
     switch (found) {
     case ARGUS_KIND_OFF:
-        return self->of[sonar].none_run >= OFF_RUN_LONG &&
-               argus_peers_hollow(&self->peers, sonar, OFF_HOLLOW) == OFF_HOLLOW;
+        return self->of[sonar].none_run >= OFF_RUN_LONG && is_hollow(self, sonar);
     case ARGUS_KIND_INTERMITTENT:
-        return argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) >= HOLLOW_OF - 1 &&
-               !is_still_bent(self, sonar);
+        return is_mostly_hollow(self, sonar) && !is_still_bent(self, sonar);
     case ARGUS_KIND_SLOW:
         return lateness(self, sonar) >= LATE_AFTER && !is_still_bent(self, sonar);
     case ARGUS_KIND_GARBAGE:
@@ -324,8 +331,7 @@ static bool is_more_than_off(const argus_evidence_t *const self, const int sonar
                              const argus_fault_kind_t found) {
     const bool late = found == ARGUS_KIND_SLOW && !is_surely_late(self, sonar) &&
                       self->of[sonar].score[ARGUS_TEST_LAG] < argus_bounds[ARGUS_TEST_LAG].naming;
-    return !(found == ARGUS_KIND_WRONG || late) ||
-           argus_peers_hollow(&self->peers, sonar, HOLLOW_OF) < HOLLOW_OF - 1;
+    return !(found == ARGUS_KIND_WRONG || late) || !is_mostly_hollow(self, sonar);
 }
 
 static bool is_more_than_slow(const argus_evidence_t *const self, const int sonar,
