@@ -166,6 +166,7 @@ static void get_evidence(argus_case_t *const c, const uint8_t *const at, const b
         const int32_t limit = (out ? argus_bounds[i].naming : argus_bounds[i].suspicious) - 1;
         c->score[i] = (int16_t)argus_min(score, limit);
     }
+    argus_lag_restore(c);
 }
 
 static void get_trend(argus_trend_sonar_t *const t, const uint8_t *const at) {

@@ -9,6 +9,7 @@
 #include "evidence_internal.h"
 
 #define CAUTION_PERCENT 100
+#define OUT_TIMES 4
 #define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
 #define STEADY_SIPS 2   // a SIP lists pings up to 140 ms old
 #define REST_SIPS 3
@@ -27,7 +28,7 @@ const argus_bounds_t argus_bounds[ARGUS_TESTS] = {
     [ARGUS_TEST_STUCK] = {840, 1050, 1050, 1470, 0, 2000},
     [ARGUS_TEST_GARBAGE] = {400, 500, 650, 2800, 0, 3200}, // who walks into view makes as many leaps
     [ARGUS_TEST_DROPOUT] = {400, 500, 500, 2700, 0, 3000},
-    [ARGUS_TEST_LAG] = {300, 500, 500, 2600, 0, 3000},
+    [ARGUS_TEST_LAG] = {600, 1200, 1400, 2200, 0, 3000},
     [ARGUS_TEST_PEERS] = {450, 650, 650, NEVER, -150, 2500},
 };
 
@@ -72,16 +73,19 @@ void argus_evidence_restart(argus_evidence_t *const self) {
         c->none_run = 0;
         c->rest_gaps = 0;
         c->jump_track = 0;
-        memset(c->lag_doubt, 0, sizeof c->lag_doubt);
         memset(c->lag_run, 0, sizeof c->lag_run);
         memset(c->view, 0, sizeof c->view);
     }
 }
 
+int32_t argus_cautious(const argus_case_t *const self, const int32_t increment) {
+    return increment * CAUTION_PERCENT / self->caution;
+}
+
 void argus_score(argus_case_t *const self, const argus_test_t test, const int32_t increment) {
     const argus_bounds_t *const bounds = &argus_bounds[test];
-    const int32_t scaled = increment * CAUTION_PERCENT / self->caution;
-    const int32_t sum = self->score[test] + (self->out && scaled < 0 ? 4 * scaled : scaled);
+    const int32_t scaled = argus_cautious(self, increment);
+    const int32_t sum = self->score[test] + (self->out && scaled < 0 ? OUT_TIMES * scaled : scaled);
     self->score[test] = (int16_t)argus_max(bounds->floor, argus_min(bounds->ceiling, sum));
 }
 

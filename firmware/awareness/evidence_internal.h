@@ -19,7 +19,10 @@ typedef struct {
 
 extern const argus_bounds_t argus_bounds[ARGUS_TESTS];
 
-// Adds to a test's score, within its bounds; four times what speaks for a sonar that is out.
+// What an increment is worth, by caution.
+int32_t argus_cautious(const argus_case_t *self, int32_t increment);
+
+// Adds that to a test's score, within its bounds; four times what speaks for a sonar that is out.
 void argus_score(argus_case_t *self, argus_test_t test, int32_t increment);
 
 // The reading `back` before the newest that was taken in (1: that one); NULL: not so many.
@@ -36,8 +39,19 @@ bool argus_trail_goes_on(const argus_trail_t *now, const argus_trail_t *before, 
 int32_t argus_trail_moved_mm(const argus_trail_t *now, const argus_trail_t *before);
 int32_t argus_trail_turned_cdeg(const argus_trail_t *now, const argus_trail_t *before);
 
-// By how much some lag explains the changes of the readings better than none, in hundredths of a nat.
-int32_t argus_trail_lag_lead(const argus_case_t *self);
+bool argus_trail_is_echo(const argus_trail_t *at);
+
+#define ARGUS_STILL_MM 12 // less way and turn than this may leave a reading as it is
+#define ARGUS_STILL_CDEG 150
+#define ARGUS_CLIPPED_MM 105 // the shortest readings are all alike
+
+// One more reading through the tests of each lag, LEAST_LAG to ARGUS_TRAIL - 1 firings, which make its LAG
+// score; in unrest no step speaks for one. Cost: nine readings predicted.
+#define ARGUS_LEAST_LAG 2
+void argus_lag_test(argus_case_t *self, const argus_trail_t *now, bool unrest, int sonar);
+
+// What was known of its lateness (its LAG score, 0 to 3000) may be of any lag.
+void argus_lag_restore(argus_case_t *self);
 
 // One reading through the tests of the sonar's own trail. True: it confirms the one before, a view.
 bool argus_trail_test(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
@@ -112,8 +126,10 @@ void argus_peers_take(argus_evidence_t *self, const argus_knowledge_t *knowledge
 void argus_peers_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge); // after all of a SIP
 void argus_peers_restart(argus_peers_t *self);
 void argus_peers_forget(argus_peers_t *self, int sonar);
-// For some lag, in hundredths of a nat: late against well, and late against wrong.
+// For some lag, in hundredths of a nat: late against well by the peers, 0 to 2000, ... with its own changes,
+// 0 to 5000, and late against wrong, 0 to 900.
 int32_t argus_peers_late(const argus_peers_t *self, int sonar);
+int32_t argus_late(const argus_evidence_t *self, int sonar);
 int32_t argus_peers_told(const argus_peers_t *self, int sonar);
 // Of the bend of its axis that most speaks for, in hundredths of a nat: bent against well (0 to 3000), and
 // bent against faulty in another way (200 to 900); both 0: what the others see aside speaks of none.

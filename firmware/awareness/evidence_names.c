@@ -23,6 +23,9 @@
 #define LATE_CONTRADICTED 300 // ... that the others contradict,
 #define LATE_BEYOND 400       // ... or, so far beyond the level,
 #define LATE_CONTRADICTED_BEYOND 100
+#define LATE_BOTH 1000
+#define LATE_BOTH_BUSY 1400
+#define LATE_BOTH_CONTRADICTED 50
 #define LATE_SURE 1000 // ... or of one that is intermittent or garbage so far
 #define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
@@ -91,8 +94,14 @@ static bool is_named_by(const argus_case_t *const c, const argus_test_t test, co
     return c->score[test] >= level && enough;
 }
 
-static int32_t naming_level(const argus_evidence_t *const self, const argus_test_t test) {
-    return self->busy ? argus_bounds[test].naming_busy : argus_bounds[test].naming;
+// A faulty sonar's own echoes come and go after the robot has come to rest; those of others are of people.
+static bool is_busy_beside(const argus_evidence_t *const self, const int sonar) {
+    return (self->stirred & ~(1u << sonar)) != 0;
+}
+
+static int32_t naming_level(const argus_evidence_t *const self, const int sonar, const argus_test_t test) {
+    const bool busy = test == ARGUS_TEST_LAG ? is_busy_beside(self, sonar) : self->busy;
+    return busy ? argus_bounds[test].naming_busy : argus_bounds[test].naming;
 }
 
 static bool outweighs(const argus_case_t *const c, const argus_test_t test) {
@@ -110,8 +119,7 @@ static bool is_convicted_by(const argus_case_t *const c, const argus_test_t test
 // Late against wrong, in hundredths of a nat: what the changes of its own readings say, and what the others
 // saw where it was some firings ago.
 static int32_t lateness(const argus_evidence_t *const self, const int sonar) {
-    const argus_case_t *const c = &self->of[sonar];
-    return argus_peers_told(&self->peers, sonar) + argus_trail_lag_lead(c) + c->score[ARGUS_TEST_LAG];
+    return argus_peers_told(&self->peers, sonar) + self->of[sonar].score[ARGUS_TEST_LAG];
 }
 
 // Late, neither well nor wrong, and contradicted: a late sonar is borne out again whenever the robot rests.
@@ -122,13 +130,11 @@ static bool is_late_from(const argus_evidence_t *const self, const int sonar, co
            self->of[sonar].score[ARGUS_TEST_PEERS] >= wanted;
 }
 
-// A faulty sonar's own echoes come and go after the robot has come to rest; those of others are of people.
-static bool is_busy_beside(const argus_evidence_t *const self, const int sonar) {
-    return (self->stirred & ~(1u << sonar)) != 0;
-}
-
 static bool looks_late(const argus_evidence_t *const self, const int sonar) {
-    return is_late_from(self, sonar, is_busy_beside(self, sonar) ? LATE_NAMING_BUSY : LATE_NAMING);
+    const bool busy = is_busy_beside(self, sonar);
+    return is_late_from(self, sonar, busy ? LATE_NAMING_BUSY : LATE_NAMING) ||
+           (argus_late(self, sonar) >= (busy ? LATE_BOTH_BUSY : LATE_BOTH) &&
+            self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_BOTH_CONTRADICTED);
 }
 
 // Neither gaps nor wild readings come to this; the echoes of a late sonar may look like either.
@@ -183,7 +189,7 @@ static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, cons
 // Among wild readings some lag always explains a few: the others, where they contradict it, know of a true
 // one.
 static bool is_wild(const argus_evidence_t *const self, const int sonar) {
-    return self->of[sonar].score[ARGUS_TEST_GARBAGE] >= naming_level(self, ARGUS_TEST_GARBAGE) &&
+    return self->of[sonar].score[ARGUS_TEST_GARBAGE] >= naming_level(self, sonar, ARGUS_TEST_GARBAGE) &&
            self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_CONTRADICTED &&
            argus_peers_late(&self->peers, sonar) < LATE_OF_WILD;
 }
@@ -214,7 +220,7 @@ static argus_fault_kind_t first_name(const argus_evidence_t *const self, const i
     for (int i = 0; i < tests; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
         const bool enough = test != ARGUS_TEST_PEERS || has_partners(self, sonar);
-        if (is_named_by(&self->of[sonar], test, naming_level(self, test)) && enough) {
+        if (is_named_by(&self->of[sonar], test, naming_level(self, sonar, test)) && enough) {
             return kind_by(self, sonar, test, LATE_FIRST);
         }
     }

@@ -21,9 +21,9 @@
 #define FADE_EIGHTHS 7
 #define SCORE_FADES_S 60 // in the open nobody bears it out
 #define ONE_VERDICT 16   // in the fading counts
-#define LAG_LEAST 2
 #define LAG_TURN_CDEG 1000
 #define LATE_CEILING 2000
+#define OWN_LEAST 500
 #define HOLLOW_BITS 8
 
 typedef struct {
@@ -310,7 +310,7 @@ static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *co
                        const int sonar, const int back, const argus_said_t verdict) {
     argus_peer_t *const peer = &self->peers.of[sonar];
     const argus_glimpse_t now = *at_back(peer, back);
-    for (int n = LAG_LEAST; n < ARGUS_TRAIL; n++) {
+    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
         if (!is_idle(peer, verdict, n)) {
             weigh_lag(peer, n, verdict, verdict_as_of(self, knowledge, sonar, &now, back + n));
         }
@@ -319,7 +319,7 @@ static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *co
 
 static int32_t most_of(const int16_t *const lags) {
     int32_t most = 0;
-    for (int n = LAG_LEAST; n < ARGUS_TRAIL; n++) {
+    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
         most = argus_max(most, lags[n]);
     }
     return most;
@@ -327,6 +327,15 @@ static int32_t most_of(const int16_t *const lags) {
 
 int32_t argus_peers_late(const argus_peers_t *const self, const int sonar) {
     return most_of(self->of[sonar].late);
+}
+
+int32_t argus_late(const argus_evidence_t *const self, const int sonar) {
+    int32_t most = 0;
+    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
+        const int32_t own = self->of[sonar].lag[n];
+        most = argus_max(most, own >= OWN_LEAST ? self->peers.of[sonar].late[n] + own : 0);
+    }
+    return most;
 }
 
 int32_t argus_peers_told(const argus_peers_t *const self, const int sonar) {

@@ -9,15 +9,10 @@
 #define GO_ON_PERCENT 3 // ... this part of it,
 #define GO_ON_QUARTER 4 // ... and one fourth of the way driven
 #define SAME_CDEG 300   // readings on headings farther apart are not of one bearing
-#define STILL_MM 12     // less way and turn than this may leave a reading as it is
-#define STILL_CDEG 150
-#define LAG_SPREAD_MM 60 // a stretch that varies less says nothing of a lag
-#define LAG_MIN 2
 #define FAMILIAR_MM 100
 #define NOVEL_MM 450 // nobody walks so far between two firings
 #define NOVEL_BACK 2
 #define WALK_MIN_MM 70
-#define CLIPPED_MM 105
 #define FAR_MM 4200 // echoes from beyond come and go
 #define JUMP_MM 80
 #define TRACKED 3
@@ -28,18 +23,10 @@
 #define HEARD_CDEG 1000
 #define DEAF_CDEG 6000 // no echo through such a turn
 #define DEAF_RUN 5     // ... through so many readings: one more is a view, two would not say more
-#define SETTLED_MM 50
 
 // Hundredths of a nat; see DESIGN.md, Evidence.
 #define STUCK_MOVED 210
 #define STUCK_ABEAM 90
-#define LAG_MATCH 210
-#define LAG_STILL 330
-#define LAG_FLIP 150
-#define LAG_STRAIGHT 120
-#define LAG_DOUBT_FADES 8
-#define LAG_CLEARER 3      // so many times less doubtful than no lag at all
-#define LAG_FORGOTTEN (-8) // with each reading
 #define NOVEL 180
 #define SILENT_RUN 4 // and one more: what reads at random is not without an echo so often in a row
 #define FAMILIAR (-300)
@@ -94,7 +81,7 @@ bool argus_trail_goes_on(const argus_trail_t *const now, const argus_trail_t *co
     return argus_abs(now->reading_mm - argus_trail_predict_mm(now, before, sonar)) <= limit;
 }
 
-static bool is_echo(const argus_trail_t *const at) {
+bool argus_trail_is_echo(const argus_trail_t *const at) {
     return at->reading_mm < ARGUS_NO_ECHO_MM;
 }
 
@@ -105,118 +92,21 @@ static bool looks_abeam(const int sonar) {
 
 static void test_stuck(argus_case_t *const self, const argus_trail_t *const now,
                        const argus_trail_t *const before, const int sonar) {
-    if (now->reading_mm != before->reading_mm || !is_echo(now) || now->reading_mm <= CLIPPED_MM) {
+    if (now->reading_mm != before->reading_mm || !argus_trail_is_echo(now) ||
+        now->reading_mm <= ARGUS_CLIPPED_MM) {
         self->score[ARGUS_TEST_STUCK] = 0;
         return;
     }
-    const bool turned = argus_trail_turned_cdeg(now, before) >= STILL_CDEG;
-    if (turned || argus_trail_moved_mm(now, before) >= STILL_MM) {
+    const bool turned = argus_trail_turned_cdeg(now, before) >= ARGUS_STILL_CDEG;
+    if (turned || argus_trail_moved_mm(now, before) >= ARGUS_STILL_MM) {
         argus_score(self, ARGUS_TEST_STUCK, looks_abeam(sonar) && !turned ? STUCK_ABEAM : STUCK_MOVED);
-    }
-}
-
-// Spread of the last `count` readings before `now`, and of it.
-static int32_t spread_mm(const argus_case_t *const self, const argus_trail_t *const now, const int count) {
-    int32_t least = now->reading_mm;
-    int32_t most = now->reading_mm;
-    for (int i = 1; i <= count; i++) {
-        const argus_trail_t *const at = argus_trail_at(self, i);
-        least = argus_min(least, at != NULL ? at->reading_mm : least);
-        most = argus_max(most, at != NULL ? at->reading_mm : most);
-    }
-    return most - least;
-}
-
-// A sonar that hands out its echoes late repeats what it has read already when the lag begins. One value
-// again and again is no stretch of the past.
-static void test_replay(argus_case_t *const self, const argus_trail_t *const now) {
-    const argus_trail_t *const before = argus_trail_at(self, 1);
-    const bool new_value = before->reading_mm != now->reading_mm;
-    for (int n = LAG_MIN; n < ARGUS_TRAIL; n++) {
-        const argus_trail_t *const then = argus_trail_at(self, n);
-        const bool same = then != NULL && is_echo(now) && then->reading_mm == now->reading_mm;
-        if (!same) {
-            self->lag_run[n] = 0;
-        } else if (new_value && spread_mm(self, now, n) >= LAG_SPREAD_MM && now->reading_mm > CLIPPED_MM) {
-            self->lag_run[n]++;
-            if (self->lag_run[n] >= LAG_MIN) {
-                argus_score(self, ARGUS_TEST_LAG, self->lag_run[n] == LAG_MIN ? 2 * LAG_MATCH : LAG_MATCH);
-            }
-        }
-    }
-}
-
-// What two readings in a row cost the claim that the robot was here, then there, when they were taken, in
-// hundredths of a nat.
-static int32_t cost_of_step(const argus_trail_t *const now, const argus_trail_t *const before,
-                            const argus_trail_t *const here, const argus_trail_t *const there,
-                            const int sonar) {
-    if (argus_trail_turned_cdeg(here, there) >= STILL_CDEG) {
-        return 0;
-    }
-    const int32_t moved = argus_trail_moved_mm(here, there);
-    const bool still = there->rest && moved < STILL_MM;
-    if (is_echo(now) != is_echo(before)) {
-        return still ? LAG_FLIP : 0;
-    }
-    const int32_t predicted = argus_trail_predict_mm(here, there, sonar) - there->reading_mm;
-    const int32_t limit = SETTLED_MM + now->reading_mm / 100 + moved / GO_ON_QUARTER;
-    const bool fits = argus_abs(now->reading_mm - before->reading_mm - predicted) <= limit;
-    return fits ? 0 : (still ? LAG_STILL : LAG_STRAIGHT);
-}
-
-static int best_lag(const argus_case_t *const self) {
-    int best = LAG_MIN;
-    for (int n = LAG_MIN; n < ARGUS_TRAIL; n++) {
-        best = self->lag_doubt[n] < self->lag_doubt[best] ? n : best;
-    }
-    return best;
-}
-
-int32_t argus_trail_lag_lead(const argus_case_t *const self) {
-    const int32_t least = self->lag_doubt[best_lag(self)];
-    return least * LAG_CLEARER <= self->lag_doubt[0] ? self->lag_doubt[0] - least : 0;
-}
-
-// The readings change with what the robot does: a healthy sonar's at once, a late one's some firings after.
-// How much the step that the readings make now speaks against each lag.
-static bool doubt_lags(argus_case_t *const self, const argus_trail_t *const now, int32_t *const cost,
-                       const int sonar) {
-    const argus_trail_t *const before = argus_trail_at(self, 1);
-    int32_t most = 0;
-    for (int n = 0; n < ARGUS_TRAIL; n++) {
-        const argus_trail_t *const here = n > 0 ? argus_trail_at(self, n) : now;
-        const argus_trail_t *const there = argus_trail_at(self, n + 1);
-        cost[n] = here != NULL && there != NULL ? cost_of_step(now, before, here, there, sonar) : 0;
-        most = argus_max(most, cost[n]);
-    }
-    for (int n = 0; n < ARGUS_TRAIL && most > 0; n++) {
-        self->lag_doubt[n] = (int16_t)(self->lag_doubt[n] - self->lag_doubt[n] / LAG_DOUBT_FADES + cost[n]);
-    }
-    return most > 0;
-}
-
-// The first step of a rest that only a lag explains counts in full, the others are part of the same story.
-static void test_settling(argus_case_t *const self, const argus_trail_t *const now, const bool unrest,
-                          const int sonar) {
-    int32_t cost[ARGUS_TRAIL];
-    self->lag_said = self->lag_said && now->rest;
-    if (unrest || !doubt_lags(self, now, cost, sonar)) {
-        return;
-    }
-    const int best = best_lag(self);
-    const int32_t gain = cost[0] - cost[best];
-    if (gain > 0 && argus_trail_lag_lead(self) > 0) {
-        argus_score(self, ARGUS_TEST_LAG, self->lag_said ? gain / 3 : gain);
-        self->lag_said = now->rest;
-    } else {
-        argus_score(self, ARGUS_TEST_LAG, argus_min(gain, 0) / 2);
     }
 }
 
 static bool is_near(const argus_trail_t *const now, const argus_trail_t *const then, const int sonar) {
     const int32_t limit = FAMILIAR_MM + argus_trail_moved_mm(now, then);
-    return is_echo(then) && argus_abs(now->reading_mm - argus_trail_predict_mm(now, then, sonar)) <= limit;
+    return argus_trail_is_echo(then) &&
+           argus_abs(now->reading_mm - argus_trail_predict_mm(now, then, sonar)) <= limit;
 }
 
 static bool is_far_from(const argus_trail_t *const now, const argus_trail_t *const then, const int sonar) {
@@ -234,7 +124,7 @@ static likeness_t liken(const argus_case_t *const self, const argus_trail_t *con
     likeness_t like = {0, false, true};
     for (int i = 1; i <= self->trail_count && like.comparable < NOVEL_BACK; i++) {
         const argus_trail_t *const then = argus_trail_at(self, i);
-        if (is_echo(then) && then->steady && argus_trail_turned_cdeg(now, then) <= SAME_CDEG) {
+        if (argus_trail_is_echo(then) && then->steady && argus_trail_turned_cdeg(now, then) <= SAME_CDEG) {
             like.comparable++;
             like.familiar = like.familiar || is_near(now, then, sonar);
             like.novel = like.novel && is_far_from(now, then, sonar);
@@ -246,7 +136,7 @@ static likeness_t liken(const argus_case_t *const self, const argus_trail_t *con
 // Readings between familiar and novel name nobody: so looks somebody who walks, too.
 static void test_garbage(argus_case_t *const self, const argus_trail_t *const now, const int sonar,
                          const bool unrest) {
-    if (!is_echo(now)) {
+    if (!argus_trail_is_echo(now)) {
         if (self->out && self->none_run >= SILENT_RUN) {
             argus_score(self, ARGUS_TEST_GARBAGE, FAMILIAR);
         }
@@ -264,8 +154,8 @@ static void test_garbage(argus_case_t *const self, const argus_trail_t *const no
 // How far a reading at rest is from the one before; 0 when they cannot be compared.
 static int32_t drift_at_rest(const argus_trail_t *const now, const argus_trail_t *const before,
                              const int sonar) {
-    const bool comparable = now->rest && before->rest && is_echo(now) && is_echo(before) &&
-                            argus_trail_turned_cdeg(now, before) <= SAME_CDEG;
+    const bool comparable = now->rest && before->rest && argus_trail_is_echo(now) &&
+                            argus_trail_is_echo(before) && argus_trail_turned_cdeg(now, before) <= SAME_CDEG;
     return comparable ? now->reading_mm - argus_trail_predict_mm(now, before, sonar) : 0;
 }
 
@@ -318,7 +208,7 @@ static void score_dropout(argus_case_t *const self, const argus_trail_t *const n
 
 static void test_dropout(argus_case_t *const self, const argus_trail_t *const now, const int sonar,
                          const bool unrest) {
-    if (!is_echo(now)) {
+    if (!argus_trail_is_echo(now)) {
         return;
     }
     const argus_trail_t *const then = self->none_run > 0 ? echo_before_gap(self) : NULL;
@@ -335,7 +225,7 @@ static int heard_before(const argus_case_t *const c, const argus_trail_t *const 
     int heard = 0;
     for (int i = c->none_run; i < c->none_run + HEARD_BACK; i++) {
         const argus_trail_t *const then = argus_trail_at(c, i);
-        heard += then != NULL && is_echo(then) && then->reading_mm < FAR_MM &&
+        heard += then != NULL && argus_trail_is_echo(then) && then->reading_mm < FAR_MM &&
                  argus_trail_turned_cdeg(now, then) <= HEARD_CDEG;
     }
     return heard;
@@ -384,7 +274,7 @@ static void follow(argus_evidence_t *const self, const argus_knowledge_t *const 
                    const argus_trail_t *const now, const argus_trail_t *const before, const bool goes_on,
                    const int sonar) {
     argus_case_t *const c = &self->of[sonar];
-    if (!is_echo(now)) {
+    if (!argus_trail_is_echo(now)) {
         follow_lost(self, c, now, before, sonar);
         return;
     }
@@ -403,7 +293,7 @@ void argus_trail_learn_run(argus_evidence_t *const self, const int sonar) {
 
 static void count_echo(argus_case_t *const self, const argus_knowledge_t *const knowledge,
                        const argus_trail_t *const now, const bool goes_on) {
-    const bool echo = is_echo(now);
+    const bool echo = argus_trail_is_echo(now);
     if (echo) {
         self->score[ARGUS_TEST_OFF] = 0;
     }
@@ -424,15 +314,13 @@ bool argus_trail_test(argus_evidence_t *const self, const argus_knowledge_t *con
         return false;
     }
     const bool goes_on = now->steady && argus_trail_goes_on(now, before, sonar);
-    if (is_echo(now) && (ARGUS_FORWARD_MASK >> sonar & 1u) != 0) {
+    if (argus_trail_is_echo(now) && (ARGUS_FORWARD_MASK >> sonar & 1u) != 0) {
         argus_trail_learn_run(self, sonar);
     }
     test_stuck(c, now, before, sonar);
-    argus_score(c, ARGUS_TEST_LAG, LAG_FORGOTTEN);
-    test_replay(c, now);
     const bool unrest = argus_is_unrest_beside(self, knowledge, sonar);
+    argus_lag_test(c, now, unrest, sonar);
     test_walker(self, knowledge, now, before, sonar);
-    test_settling(c, now, unrest, sonar);
     if (knowledge->odometer_mm - c->rest_odometer_mm >= REST_PLACE_MM) {
         c->rest_odometer_mm = knowledge->odometer_mm;
         c->rest_gaps = 0;

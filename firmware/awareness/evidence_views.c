@@ -122,7 +122,6 @@ static void disagree(argus_case_t *const self, int32_t increment, const argus_vi
 
 static void agree(argus_case_t *const self, const argus_knowledge_t *const knowledge) {
     argus_score(self, ARGUS_TEST_VIEW, AGREES);
-    argus_score(self, ARGUS_TEST_LAG, AGREES);
     self->agreed = (uint8_t)argus_min(self->agreed + 1, UINT8_MAX);
     self->borne_out = (uint8_t)argus_min(self->borne_out + 1, UINT8_MAX);
     self->alive_odometer_mm = knowledge->odometer_mm;

@@ -786,11 +786,13 @@ void test_s7_backs_off_as_far_as_the_turn_asks_for(void) {
     with_profile(ARGUS_PROFILE_ARGUS, check_s7_backs_off_as_far_as_the_turn_asks_for);
 }
 
-// Something beside the bow: the robot backs away before it looks.
+// Something beside the bow: the robot backs away before it turns.
 static void blocks_the_turn(void) {
     robot.fault[0] = ROBOT_VALUE;
     robot.fault_value[0] = 150;
-    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 12000));
+    robot_run(&robot, 600);
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 20);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 8000)); // argus may want to look first
 }
 
 // As fast as S5 allows with the rear's overhang: 163 + 64 = 227 mm at 200 mm/s.

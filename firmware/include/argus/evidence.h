@@ -20,8 +20,8 @@ typedef enum {
     ARGUS_TEST_STUCK,   // the same value again though the robot moved
     ARGUS_TEST_GARBAGE, // readings that match none before them
     ARGUS_TEST_DROPOUT, // no echo between two echoes of one thing (intermittent)
-    ARGUS_TEST_LAG,   // its own readings of some firings ago, or changes after the robot came to rest (slow)
-    ARGUS_TEST_PEERS, // other sonars saw something else, each reading counted (names only)
+    ARGUS_TEST_LAG,     // its readings do what the robot did some firings ago (slow)
+    ARGUS_TEST_PEERS,   // other sonars saw something else, each reading counted (names only)
     ARGUS_TESTS
 } argus_test_t;
 
@@ -93,12 +93,10 @@ typedef struct {
     bool followed;                // the run without an echo began on an echo that it had followed
     uint16_t deaf_cdeg;           // turned since it heard an echo last
     uint8_t taken;                // counts its readings, low bits
-    int16_t
-        lag_doubt[ARGUS_TRAIL]; // [n]: changes while the robot of n readings ago stood, hundredths of a nat
-    bool lag_said;              // ... counted in full since the robot came to rest
-    uint8_t conflicts;          // counted since the VIEW score left its floor
-    uint8_t borne_out;          // agreements since then
-    uint8_t episodes;           // ... at so many times, some seconds apart
+    int16_t lag[ARGUS_TRAIL];     // [n]: that it is n firings late, by its own readings, 0 to 3000
+    uint8_t conflicts;            // counted since the VIEW score left its floor
+    uint8_t borne_out;            // agreements since then
+    uint8_t episodes;             // ... at so many times, some seconds apart
     uint32_t conflict_ms;
     uint8_t misses; // of those: no echo where another hears one
     uint8_t agreed; // comparisons in a row that agreed, for rehabilitation

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "argus/angle.h"
 #include "awareness/evidence_internal.h"
 #include "scene.h"
 #include "unity.h"
@@ -30,9 +31,8 @@ static bool ever_slow;
 static char text[200];
 
 static const char *told(unsigned seed) {
-    snprintf(text, sizeof text, "seed %u, sonar %d, lag %d, score %d, doubt %d / lead %d", seed, sonar, lag,
-             s.e.of[sonar].score[ARGUS_TEST_LAG], s.e.of[sonar].lag_doubt[0],
-             (int)argus_trail_lag_lead(&s.e.of[sonar]));
+    snprintf(text, sizeof text, "seed %u, sonar %d, lag %d, score %d", seed, sonar, lag,
+             s.e.of[sonar].score[ARGUS_TEST_LAG]);
     return text;
 }
 
@@ -167,45 +167,25 @@ void test_who_stands_is_never_named_slow_however_late(void) {
     TEST_ASSERT_FALSE(ever_slow);
     TEST_ASSERT_EQUAL(0, s.e.of[4].score[ARGUS_TEST_LAG]);
     for (int n = 0; n < ARGUS_TRAIL; n++) {
-        TEST_ASSERT_EQUAL(0, s.e.of[4].lag_doubt[n]); // no change, no doubt
+        TEST_ASSERT_EQUAL(0, s.e.of[4].lag[n]); // all lags explain it alike
     }
 }
 
-// The lag that explains the readings is the one that is doubted least.
-void test_the_true_lag_is_doubted_less_than_none(void) {
-    for (int late = 2; late <= 8; late++) {
+static int best_lag(void) {
+    int best = ARGUS_LEAST_LAG;
+    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
+        best = s.e.of[4].lag[n] > s.e.of[4].lag[best] ? n : best;
+    }
+    return best;
+}
+
+void test_the_true_lag_is_the_one_that_speaks_for_itself(void) {
+    for (int late = ARGUS_LEAST_LAG; late <= 8; late++) {
         start((unsigned)late, 4, late);
-        turn_about(16);
-        const int16_t *doubt = s.e.of[4].lag_doubt;
-        TEST_ASSERT_TRUE_MESSAGE(doubt[late] * 3 <= doubt[0], told((unsigned)late));
-        TEST_ASSERT_TRUE_MESSAGE(argus_trail_lag_lead(&s.e.of[4]) > 0, told((unsigned)late));
+        turn_about(6);
+        TEST_ASSERT_EQUAL_MESSAGE(late, best_lag(), told((unsigned)late));
+        TEST_ASSERT_EQUAL(s.e.of[4].lag[late], s.e.of[4].score[ARGUS_TEST_LAG]);
     }
-    start(1, 4, 0);
-    turn_about(16);
-    TEST_ASSERT_EQUAL(0, argus_trail_lag_lead(&s.e.of[4]));
-}
-
-// ---- by hand
-
-static argus_case_t *doubts(int at_once, int least_at, int least, int others) {
-    argus_evidence_init(&s.e);
-    argus_case_t *c = &s.e.of[4];
-    for (int n = 0; n < ARGUS_TRAIL; n++) {
-        c->lag_doubt[n] = (int16_t)others;
-    }
-    c->lag_doubt[0] = (int16_t)at_once;
-    c->lag_doubt[least_at] = (int16_t)least;
-    return c;
-}
-
-void test_a_lead_takes_a_lag_that_is_clearly_better(void) {
-    for (int n = 2; n < ARGUS_TRAIL; n++) {
-        TEST_ASSERT_EQUAL(900, argus_trail_lag_lead(doubts(900, n, 0, 900)));
-        TEST_ASSERT_EQUAL(600, argus_trail_lag_lead(doubts(900, n, 300, 900)));
-        TEST_ASSERT_EQUAL(0, argus_trail_lag_lead(doubts(900, n, 301, 900)));
-        TEST_ASSERT_EQUAL(0, argus_trail_lag_lead(doubts(0, n, 0, 900)));
-    }
-    TEST_ASSERT_EQUAL(0, argus_trail_lag_lead(doubts(900, 1, 0, 900))); // one firing is within a SIP's age
 }
 
 // Contradicted by two others: what its own changes tell says whether it is late or wrong.
@@ -220,54 +200,170 @@ static argus_fault_kind_t contradicted(argus_case_t *c) {
 }
 
 void test_a_contradicted_sonar_is_slow_when_its_changes_come_late(void) {
-    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, contradicted(doubts(0, 5, 0, 0)));
-    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, contradicted(doubts(100, 5, 0, 0)));
-    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, contradicted(doubts(2000, 5, 1500, 2000)));
-    TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, contradicted(doubts(2000, 5, 0, 2000)));
+    static const struct {
+        int by;
+        argus_fault_kind_t kind;
+    } of[] = {
+        {0, ARGUS_KIND_WRONG}, {420, ARGUS_KIND_WRONG}, {430, ARGUS_KIND_SLOW}, {2000, ARGUS_KIND_SLOW}};
+    for (int i = 0; i < 4; i++) {
+        argus_evidence_init(&s.e);
+        s.e.of[4].score[ARGUS_TEST_LAG] = (int16_t)of[i].by;
+        TEST_ASSERT_EQUAL(of[i].kind, contradicted(&s.e.of[4]));
+    }
 }
 
-// A change of the reading some firings after a turn, with such doubts of each lag so far.
-static int score_after_a_late_change(int doubts_so_far, int restless) {
-    start(5, 4, 0);
-    for (int i = 0; i < BINS; i++) {
-        range_mm[i] = 1500;
-    }
-    turn(60);
-    stand(5);
-    for (int n = 0; n < ARGUS_TRAIL; n++) {
-        s.e.of[4].lag_doubt[n] = (int16_t)doubts_so_far;
-    }
-    if (restless >= 0) {
-        argus_note_unrest(&s.e, &s.k, restless);
-    }
-    walker_mm = 400;
-    fire();
-    TEST_ASSERT_EQUAL(restless < 0 || restless == 4, s.e.of[4].lag_doubt[0] > doubts_so_far);
-    return s.e.of[4].score[ARGUS_TEST_LAG];
+// ---- by hand: one sonar, reading by reading
+
+static argus_case_t one;
+
+static void begin(void) {
+    argus_evidence_init(&s.e);
+    one = s.e.of[4];
 }
 
-void test_a_late_change_counts_only_where_a_lag_explains_them_all_better(void) {
-    TEST_ASSERT_TRUE(score_after_a_late_change(0, -1) > 100);
-    TEST_ASSERT_EQUAL(0, score_after_a_late_change(2000, -1));
+static void read_at(int of, int reading_mm, int x_mm, int heading_cdeg, bool unrest) {
+    const argus_trail_t now = {.reading_mm = (uint16_t)reading_mm,
+                               .x_mm = (uint16_t)x_mm,
+                               .heading_cdeg = (int16_t)heading_cdeg,
+                               .steady = true};
+    if (one.trail_count > 0) {
+        argus_lag_test(&one, &now, unrest, of);
+    }
+    one.trail[one.trail_next] = now;
+    one.trail_next = (uint8_t)((one.trail_next + 1) % ARGUS_TRAIL);
+    one.trail_count = (uint8_t)(one.trail_count < ARGUS_TRAIL ? one.trail_count + 1 : ARGUS_TRAIL);
+}
+
+static int score(void) {
+    return one.score[ARGUS_TEST_LAG];
+}
+
+#define AHEAD 4 // looks 10 degrees aside
+
+// A robot that drives at a wall and stops: the range of a late sonar goes on shrinking.
+static void drive_and_stop_on(int late, bool unrest) {
+    int wall_mm[40];
+    for (int i = 0; i < 40; i++) {
+        const int x_mm = i < 12 ? 0 : (i < 26 ? (i - 11) * 60 : 15 * 60);
+        wall_mm[i] = 2500 - x_mm * 985 / 1000;
+        read_at(AHEAD, wall_mm[i > late ? i - late : 0], x_mm, 0, unrest);
+    }
+}
+
+static int drive_and_stop(int late, bool unrest) {
+    begin();
+    drive_and_stop_on(late, unrest);
+    return score();
+}
+
+void test_who_stops_and_still_sees_the_wall_come_nearer_is_late(void) {
+    for (int late = ARGUS_LEAST_LAG; late < ARGUS_TRAIL; late++) {
+        TEST_ASSERT_TRUE_MESSAGE(drive_and_stop(late, false) > 250 * argus_min(late, 4),
+                                 told((unsigned)late));
+        TEST_ASSERT_EQUAL(score(), one.lag[late]);
+    }
+    TEST_ASSERT_EQUAL(0, drive_and_stop(0, false));
 }
 
 // What moves beside it may as well move before it.
-void test_a_late_change_counts_for_nothing_while_something_moves_beside_it(void) {
-    TEST_ASSERT_EQUAL(0, score_after_a_late_change(0, 5));
-    TEST_ASSERT_EQUAL(0, score_after_a_late_change(0, 12));
+void test_no_step_speaks_for_a_lag_in_unrest(void) {
+    TEST_ASSERT_EQUAL(0, drive_and_stop(5, true));
 }
 
-void test_a_restart_forgets_the_doubts(void) {
-    doubts(2000, 5, 100, 900);
-    argus_evidence_restart(&s.e);
-    for (int n = 0; n < ARGUS_TRAIL; n++) {
-        TEST_ASSERT_EQUAL(0, s.e.of[4].lag_doubt[n]);
+// Three stops are enough whatever the lag is, in unrest too.
+void test_steps_at_once_with_the_motion_clear(void) {
+    begin();
+    one.score[ARGUS_TEST_LAG] = 3000;
+    argus_lag_restore(&one);
+    for (int i = 0; i < 3; i++) {
+        drive_and_stop_on(0, true);
     }
-    TEST_ASSERT_EQUAL(0, argus_trail_lag_lead(&s.e.of[4]));
+    TEST_ASSERT_TRUE(score() < argus_bounds[ARGUS_TEST_LAG].suspicious);
 }
 
-// Doubt fades with every change that is counted: no counter wraps, however long it goes on.
-void test_doubt_is_bounded_whatever_is_read(void) {
+// Beside a wall the range stays the same, whatever the axis of the sonar foretells.
+void test_a_wall_beside_the_way_makes_nobody_late(void) {
+    for (int of = 0; of < ARGUS_SONARS; of++) {
+        begin();
+        for (int i = 0; i < 60; i++) {
+            const int legs = i / 12; // stands, drives, stands ...
+            const int x_mm = legs / 2 * 720 + (legs % 2 == 1 ? (i - 12 * legs + 1) * 60 : 0);
+            read_at(of, 900 + i % 3, x_mm, 0, false);
+            TEST_ASSERT_EQUAL_MESSAGE(0, score(), told((unsigned)of));
+        }
+    }
+}
+
+// What reads at random, or hears now and then nothing, is explained by no lag.
+void test_random_readings_and_gaps_make_nobody_late(void) {
+    for (unsigned seed = 1; seed <= 8; seed++) {
+        begin();
+        scene_init(&s, seed, START_MS);
+        for (int i = 0; i < 3000; i++) {
+            const int x_mm = i % 60 < 20 ? i / 60 * 1200 : i / 60 * 1200 + (i % 60 - 20) * 30;
+            const bool gap = scene_random(&s, 3) == 0;
+            const int random_mm = 200 + (int)scene_random(&s, 4800);
+            read_at(AHEAD, seed % 2 == 0 ? random_mm : (gap ? 5000 : 1500), x_mm % 60000, 0, false);
+            TEST_ASSERT_TRUE_MESSAGE(score() < argus_bounds[ARGUS_TEST_LAG].naming, told(seed));
+        }
+    }
+}
+
+// A stretch that it has read before, on a steady way; `same`: so many readings of it.
+static int replay(int lag_of, int same, int spread_mm) {
+    begin();
+    int last[ARGUS_TRAIL];
+    for (int i = 0; i < ARGUS_TRAIL; i++) {
+        last[i] = 2000 - i * spread_mm + i % 2;
+        read_at(AHEAD, last[i], i * spread_mm, 0, false);
+    }
+    for (int i = 0; i < same; i++) {
+        read_at(AHEAD, last[ARGUS_TRAIL - lag_of + i], (ARGUS_TRAIL + i) * spread_mm, 0, false);
+    }
+    return score();
+}
+
+void test_three_readings_that_it_has_given_before_name_it_also_among_people(void) {
+    for (int n = 3; n < ARGUS_TRAIL; n++) {
+        TEST_ASSERT_TRUE_MESSAGE(replay(n, 2, 60) < argus_bounds[ARGUS_TEST_LAG].naming, told((unsigned)n));
+        TEST_ASSERT_TRUE_MESSAGE(replay(n, 3, 60) >= argus_bounds[ARGUS_TEST_LAG].naming_busy,
+                                 told((unsigned)n));
+        TEST_ASSERT_TRUE_MESSAGE(replay(n, 3, 60) < argus_bounds[ARGUS_TEST_LAG].convincing,
+                                 told((unsigned)n));
+    }
+}
+
+// Where all readings are much alike some are the same by chance.
+void test_what_hardly_varies_is_not_known_again(void) {
+    for (int n = 3; n < ARGUS_TRAIL; n++) {
+        TEST_ASSERT_TRUE_MESSAGE(replay(n, 3, 5) < argus_bounds[ARGUS_TEST_LAG].suspicious,
+                                 told((unsigned)n));
+    }
+}
+
+// Trails are forgotten with the session, sums are not.
+void test_a_restart_compares_nothing_with_what_was_before(void) {
+    argus_evidence_init(&s.e);
+    s.e.of[4].score[ARGUS_TEST_LAG] = 700;
+    argus_lag_restore(&s.e.of[4]);
+    argus_evidence_restart(&s.e);
+    one = s.e.of[4];
+    read_at(AHEAD, 1000, 0, 0, false);
+    read_at(AHEAD, 2900, 0, 0, false);
+    TEST_ASSERT_TRUE(score() <= 700 && score() >= 690);
+}
+
+// Caution makes every step, and what is forgotten, worth less.
+void test_caution_scales_the_sums(void) {
+    const int full = drive_and_stop(5, false);
+    begin();
+    one.caution = 200;
+    drive_and_stop_on(5, false);
+    TEST_ASSERT_INT_WITHIN(20, full / 2, score());
+}
+
+// No counter wraps, whatever is read and however long it goes on.
+void test_sums_are_bounded_whatever_is_read(void) {
     for (unsigned seed = 1; seed <= 4; seed++) {
         start(seed, 4, 0);
         for (int i = 0; i < 3000; i++) {
@@ -279,8 +375,9 @@ void test_doubt_is_bounded_whatever_is_read(void) {
             }
             stand(1);
             for (int n = 0; n < ARGUS_TRAIL; n++) {
-                TEST_ASSERT_TRUE_MESSAGE(s.e.of[4].lag_doubt[n] >= 0, told(seed));
-                TEST_ASSERT_TRUE_MESSAGE(s.e.of[4].lag_doubt[n] < 4000, told(seed));
+                TEST_ASSERT_TRUE_MESSAGE(s.e.of[4].lag[n] >= 0, told(seed));
+                TEST_ASSERT_TRUE_MESSAGE(s.e.of[4].lag[n] <= argus_bounds[ARGUS_TEST_LAG].ceiling,
+                                         told(seed));
             }
             TEST_ASSERT_EQUAL_STRING("", s.broken);
         }

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+// Whether a sonar hands out its echoes some firings late: its readings do what the robot did then.
+#include <stddef.h>
+
+#include "argus/angle.h"
+#include "evidence_internal.h"
+
+#define SPIN_CDEG 1000
+#define SPREAD_MM 60 // a stretch that varies less is not known again
+#define MATCHES_LEAST 2
+#define MATCHES_MOST 3
+#define CEILING 3000
+
+// Hundredths of a nat; see DESIGN.md, Evidence.
+#define MATCH 290 // the second reading in a row that it has given before; the third one and a half times
+#define STEP_MOST 300
+#define FORGOTTEN 4 // with each reading
+
+// What the robot did between two firings of a sonar.
+typedef enum { STILL, STRAIGHT, TURN, SPIN, MOTIONS } motion_t;
+
+// How much better a motion explains that a reading is so far from what it predicts, one row each, than
+// nothing does: a reading at random, as likely as exp(-9.5) for a millimetre.
+#define CHANGES 13
+static const int16_t change_from_mm[CHANGES] = {0, 8, 16, 25, 40, 60, 90, 140, 220, 350, 600, 1000, 2000};
+static const int16_t explains_change[MOTIONS][CHANGES] = {
+    [STILL] = {660, 620, 540, 400, 200, 50, -10, -60, -90, -140, -160, -250, -450},
+    [STRAIGHT] = {630, 610, 560, 470, 340, 190, 50, -30, -60, -110, -120, -220, -420},
+    [TURN] = {610, 590, 530, 440, 340, 270, 210, 160, 110, 40, 10, -120, -330},
+    [SPIN] = {510, 500, 470, 430, 370, 300, 260, 230, 190, 130, 90, -30, -240},
+};
+// ... that it loses its echo, or hears one again: one gap in twenty readings needs no reason.
+static const int16_t explains_loss[MOTIONS] = {-200, -170, 0, 110};
+static const int16_t explains_find[MOTIONS] = {-100, -80, 90, 160};
+
+static motion_t motion_of(const argus_trail_t *const here, const argus_trail_t *const there) {
+    const int32_t turned_cdeg = argus_trail_turned_cdeg(here, there);
+    if (turned_cdeg >= ARGUS_STILL_CDEG) {
+        return turned_cdeg >= SPIN_CDEG ? SPIN : TURN;
+    }
+    return argus_trail_moved_mm(here, there) >= ARGUS_STILL_MM ? STRAIGHT : STILL;
+}
+
+static int32_t worth_of_change(const motion_t motion, const int32_t change_mm) {
+    int i = CHANGES - 1;
+    while (i > 0 && argus_abs(change_mm) < change_from_mm[i]) {
+        i--;
+    }
+    return explains_change[motion][i];
+}
+
+// How well it explains `now` after `before` that the robot went from `there` to `here`.
+static int32_t worth_of(const argus_trail_t *const now, const argus_trail_t *const before,
+                        const argus_trail_t *const here, const argus_trail_t *const there, const int sonar) {
+    const motion_t motion = motion_of(here, there);
+    if (!argus_trail_is_echo(now)) {
+        return explains_loss[motion];
+    }
+    if (!argus_trail_is_echo(before)) {
+        return explains_find[motion];
+    }
+    const int32_t predicted_mm = argus_trail_predict_mm(here, there, sonar) - there->reading_mm;
+    return worth_of_change(motion, now->reading_mm - before->reading_mm - predicted_mm);
+}
+
+// ... without a lag; beside a wall a range stays the same though the robot drives.
+static int32_t worth_of_none(const argus_trail_t *const now, const argus_trail_t *const before,
+                             const int sonar) {
+    const bool along =
+        argus_trail_is_echo(now) && argus_trail_is_echo(before) && motion_of(now, before) == STRAIGHT;
+    const int32_t wall = along ? worth_of_change(STILL, now->reading_mm - before->reading_mm) : 0;
+    return argus_max(0, argus_max(wall, worth_of(now, before, now, before, sonar)));
+}
+
+// The readings change with what the robot does: a healthy sonar's at once, a late one's some firings after.
+static int32_t step_of(const argus_case_t *const self, const argus_trail_t *const now, const int lag,
+                       const int32_t none, const int sonar) {
+    const argus_trail_t *const before = argus_trail_at(self, 1);
+    const argus_trail_t *const here = argus_trail_at(self, lag);
+    const argus_trail_t *const there = argus_trail_at(self, lag + 1);
+    if (there == NULL || (!argus_trail_is_echo(now) && !argus_trail_is_echo(before))) {
+        return 0;
+    }
+    const int32_t gain = worth_of(now, before, here, there, sonar) - none;
+    return argus_max(-STEP_MOST, argus_min(STEP_MOST, gain));
+}
+
+// Spread of the last `count` readings before `now`, and of it.
+static int32_t spread_mm(const argus_case_t *const self, const argus_trail_t *const now, const int count) {
+    int32_t least = now->reading_mm;
+    int32_t most = now->reading_mm;
+    for (int i = 1; i <= count; i++) {
+        const argus_trail_t *const at = argus_trail_at(self, i);
+        least = argus_min(least, at->reading_mm);
+        most = argus_max(most, at->reading_mm);
+    }
+    return most - least;
+}
+
+// A sonar that hands out its echoes late repeats what it has read already when the lag begins. One value
+// again and again is no stretch of the past.
+static int32_t replay_of(argus_case_t *const self, const argus_trail_t *const now, const int lag) {
+    const argus_trail_t *const then = argus_trail_at(self, lag);
+    if (then == NULL || !argus_trail_is_echo(now) || then->reading_mm != now->reading_mm) {
+        self->lag_run[lag] = 0;
+        return 0;
+    }
+    const bool new_value = argus_trail_at(self, 1)->reading_mm != now->reading_mm;
+    if (!new_value || now->reading_mm <= ARGUS_CLIPPED_MM || spread_mm(self, now, lag) < SPREAD_MM) {
+        return 0;
+    }
+    self->lag_run[lag] = (uint8_t)argus_min(self->lag_run[lag] + 1, MATCHES_MOST);
+    return self->lag_run[lag] >= MATCHES_LEAST ? MATCH * self->lag_run[lag] : 0;
+}
+
+void argus_lag_test(argus_case_t *const self, const argus_trail_t *const now, const bool unrest,
+                    const int sonar) {
+    const int32_t none = worth_of_none(now, argus_trail_at(self, 1), sonar);
+    int32_t most = 0;
+    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
+        const int32_t step = step_of(self, now, n, none, sonar);
+        const int32_t gain = (unrest ? argus_min(0, step) : step) + replay_of(self, now, n) - FORGOTTEN;
+        const int32_t sum = self->lag[n] + argus_cautious(self, gain);
+        self->lag[n] = (int16_t)argus_max(0, argus_min(CEILING, sum));
+        most = argus_max(most, self->lag[n]);
+    }
+    self->score[ARGUS_TEST_LAG] = (int16_t)most;
+}
+
+void argus_lag_restore(argus_case_t *const self) {
+    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
+        self->lag[n] = self->score[ARGUS_TEST_LAG];
+    }
+}
