@@ -23,9 +23,9 @@
 #define LATE_CONTRADICTED 300 // ... that the others contradict,
 #define LATE_BEYOND 400       // ... or, so far beyond the level,
 #define LATE_CONTRADICTED_BEYOND 100
-#define LATE_BOTH 1000
+#define LATE_BOTH 1100
 #define LATE_BOTH_BUSY 1400
-#define LATE_BOTH_CONTRADICTED 50
+#define LATE_BOTH_CONTRADICTED 0
 #define LATE_SURE 1000 // ... or of one that is intermittent or garbage so far
 #define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
@@ -131,10 +131,13 @@ static bool is_late_from(const argus_evidence_t *const self, const int sonar, co
 }
 
 static bool looks_late(const argus_evidence_t *const self, const int sonar) {
-    const bool busy = is_busy_beside(self, sonar);
-    return is_late_from(self, sonar, busy ? LATE_NAMING_BUSY : LATE_NAMING) ||
-           (argus_late(self, sonar) >= (busy ? LATE_BOTH_BUSY : LATE_BOTH) &&
-            self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_BOTH_CONTRADICTED);
+    return is_late_from(self, sonar, is_busy_beside(self, sonar) ? LATE_NAMING_BUSY : LATE_NAMING);
+}
+
+// By its own readings and by the peers: it is the third who says who is wrong.
+static bool is_late_by_both(const argus_evidence_t *const self, const int sonar) {
+    return argus_late(self, sonar) >= (is_busy_beside(self, sonar) ? LATE_BOTH_BUSY : LATE_BOTH) &&
+           self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_BOTH_CONTRADICTED;
 }
 
 // Neither gaps nor wild readings come to this; the echoes of a late sonar may look like either.
@@ -287,7 +290,8 @@ static argus_fault_kind_t slow_or(const argus_evidence_t *const self, const int 
     const bool unsteady = other == ARGUS_KIND_INTERMITTENT || other == ARGUS_KIND_GARBAGE;
     const bool late =
         other == ARGUS_KIND_NONE ? looks_late(self, sonar) : unsteady && is_surely_late(self, sonar);
-    return late && has_partners(self, sonar) ? ARGUS_KIND_SLOW : other;
+    const bool both = other == ARGUS_KIND_NONE && is_late_by_both(self, sonar);
+    return both || (late && has_partners(self, sonar)) ? ARGUS_KIND_SLOW : other;
 }
 
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
@@ -404,7 +408,8 @@ static bool is_suspected_by(const argus_evidence_t *const self, const int sonar,
 }
 
 bool argus_evidence_suspects(const argus_evidence_t *const self, const int sonar) {
-    return is_suspected_by(self, sonar, ARGUS_TESTS) || looks_late(self, sonar) || looks_bent(self, sonar);
+    return is_suspected_by(self, sonar, ARGUS_TESTS) || looks_late(self, sonar) ||
+           is_late_by_both(self, sonar) || looks_bent(self, sonar);
 }
 
 bool argus_evidence_keeps_out(const argus_evidence_t *const self, const int sonar) {

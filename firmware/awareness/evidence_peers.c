@@ -23,7 +23,7 @@
 #define ONE_VERDICT 16   // in the fading counts
 #define LAG_TURN_CDEG 1000
 #define LATE_CEILING 2000
-#define OWN_LEAST 500
+#define OWN_LEAST 400
 #define HOLLOW_BITS 8
 
 typedef struct {

@@ -429,6 +429,38 @@ void test_lateness_alone_names_only_one_that_others_contradict(void) {
     }
 }
 
+// Of one lag, its own readings (400 at least) and the peers together: 1,100, or 1,400 while something moves
+// before others, name it where the others do not bear it out; whoever they are, it needs no second of them.
+void test_its_own_readings_and_the_peers_name_together(void) {
+    static const struct {
+        int own;
+        int late;
+        int late_other; // of the next lag
+        int peers;
+        bool busy;
+        argus_fault_kind_t kind;
+    } by[] = {{400, 700, 0, 0, false, ARGUS_KIND_SLOW}, {399, 2000, 0, 0, false, ARGUS_KIND_NONE},
+              {400, 699, 0, 0, false, ARGUS_KIND_NONE}, {400, 700, 0, -1, false, ARGUS_KIND_NONE},
+              {400, 0, 700, 0, false, ARGUS_KIND_NONE}, {700, 699, 0, 0, true, ARGUS_KIND_NONE},
+              {700, 700, 0, 0, true, ARGUS_KIND_SLOW},  {1100, 0, 0, 0, false, ARGUS_KIND_SLOW},
+              {1100, 0, 0, 0, true, ARGUS_KIND_NONE}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        c->lag[LAG] = (int16_t)by[i].own;
+        c->score[ARGUS_TEST_LAG] = (int16_t)by[i].own;
+        peer->late[LAG] = (int16_t)by[i].late;
+        peer->late[LAG + 1] = (int16_t)by[i].late_other;
+        c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
+        e.stirred = (uint16_t)(1u << SONAR | (by[i].busy ? 1u << OTHER : 0u));
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
+        const bool suspect =
+            by[i].kind == ARGUS_KIND_SLOW || by[i].own >= argus_bounds[ARGUS_TEST_LAG].suspicious;
+        TEST_ASSERT_EQUAL_MESSAGE(suspect, argus_evidence_suspects(&e, SONAR), text);
+    }
+}
+
 // The echoes of a late sonar look like gaps or like garbage at times: late and not well from 1,000 on, late
 // and not wrong, contradicted and by two, it is slow, in a conviction too.
 void test_late_for_sure_is_neither_garbage_nor_gaps(void) {
