@@ -126,10 +126,10 @@ void argus_peers_take(argus_evidence_t *self, const argus_knowledge_t *knowledge
 void argus_peers_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge); // after all of a SIP
 void argus_peers_restart(argus_peers_t *self);
 void argus_peers_forget(argus_peers_t *self, int sonar);
-// For some lag, in hundredths of a nat: late against well by the peers, 0 to 2000, ... with its own changes,
-// 0 to 5000, and late against wrong, 0 to 900.
+// For some lag, in hundredths of a nat: late against well by the peers, 0 to 2000; by them and by its own
+// readings, 401 to 5000, or 0 where one of the two says little of each lag; late against wrong, 0 to 900.
 int32_t argus_peers_late(const argus_peers_t *self, int sonar);
-int32_t argus_late(const argus_evidence_t *self, int sonar);
+int32_t argus_late_by_both(const argus_evidence_t *self, int sonar);
 int32_t argus_peers_told(const argus_peers_t *self, int sonar);
 // Of the bend of its axis that most speaks for, in hundredths of a nat: bent against well (0 to 3000), and
 // bent against faulty in another way (200 to 900); both 0: what the others see aside speaks of none.

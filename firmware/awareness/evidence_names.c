@@ -6,6 +6,8 @@
 #define NAME_CONFLICTS 3 // a view is one of a pair: who is wrong takes a third
 #define NAME_PARTNERS 2
 #define OFF_RUN 5
+#define LOST_RUN 4
+#define LOST_CONTRADICTED 200
 #define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
 #define OFF_RUN_LONGEST 20 // ... and what was called intermittent
 #define OFF_HOLLOW 3
@@ -136,7 +138,7 @@ static bool looks_late(const argus_evidence_t *const self, const int sonar) {
 
 // By its own readings and by the peers: it is the third who says who is wrong.
 static bool is_late_by_both(const argus_evidence_t *const self, const int sonar) {
-    return argus_late(self, sonar) >= (is_busy_beside(self, sonar) ? LATE_BOTH_BUSY : LATE_BOTH) &&
+    return argus_late_by_both(self, sonar) >= (is_busy_beside(self, sonar) ? LATE_BOTH_BUSY : LATE_BOTH) &&
            self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_BOTH_CONTRADICTED;
 }
 
@@ -239,6 +241,15 @@ static bool is_mute(const argus_evidence_t *const self, const int sonar) {
            is_hollow(self, sonar) && has_partners(self, sonar);
 }
 
+// It followed an echo, lost it, and somebody else hears one there: what it did itself is the second voice.
+static bool has_lost(const argus_evidence_t *const self, const int sonar) {
+    const argus_case_t *const c = &self->of[sonar];
+    return c->followed && c->none_run >= LOST_RUN && !self->peers.of[sonar].borne_out &&
+           c->score[ARGUS_TEST_PEERS] >= LOST_CONTRADICTED &&
+           argus_peers_hollow(&self->peers, sonar, 1) == 1 && !is_busy_beside(self, sonar) &&
+           argus_peers_against(&self->peers, sonar) > 0;
+}
+
 // What leaps, contradicted by the others, is garbage a leap before it is so by itself.
 static argus_fault_kind_t garbage_or(const argus_evidence_t *const self, const int sonar,
                                      const argus_fault_kind_t other) {
@@ -253,7 +264,8 @@ static argus_fault_kind_t garbage_or(const argus_evidence_t *const self, const i
 
 static argus_fault_kind_t off_or(const argus_evidence_t *const self, const int sonar,
                                  const argus_fault_kind_t other) {
-    return other == ARGUS_KIND_NONE && is_mute(self, sonar) ? ARGUS_KIND_OFF : other;
+    return other == ARGUS_KIND_NONE && (is_mute(self, sonar) || has_lost(self, sonar)) ? ARGUS_KIND_OFF
+                                                                                       : other;
 }
 
 // In a turn a late sonar looks bent, and a bent one late: half as much that tells of a bend decides, since a

@@ -329,11 +329,12 @@ int32_t argus_peers_late(const argus_peers_t *const self, const int sonar) {
     return most_of(self->of[sonar].late);
 }
 
-int32_t argus_late(const argus_evidence_t *const self, const int sonar) {
+int32_t argus_late_by_both(const argus_evidence_t *const self, const int sonar) {
     int32_t most = 0;
     for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
         const int32_t own = self->of[sonar].lag[n];
-        most = argus_max(most, own >= OWN_LEAST ? self->peers.of[sonar].late[n] + own : 0);
+        const int32_t theirs = self->peers.of[sonar].late[n];
+        most = argus_max(most, own >= OWN_LEAST && theirs > 0 ? theirs + own : 0);
     }
     return most;
 }

@@ -429,6 +429,40 @@ void test_lateness_alone_names_only_one_that_others_contradict(void) {
     }
 }
 
+// It followed an echo and has heard none four times in a row: one other that hears something there is enough.
+void test_a_lost_echo_and_one_voice_are_off(void) {
+    static const struct {
+        bool followed;
+        int run;
+        int peers;
+        unsigned hollow;
+        unsigned against;
+        bool borne_out;
+        bool busy;
+        argus_fault_kind_t kind;
+    } by[] = {{true, 4, 200, 1, 1, false, false, ARGUS_KIND_OFF},
+              {false, 4, 200, 1, 1, false, false, ARGUS_KIND_NONE},
+              {true, 3, 200, 1, 1, false, false, ARGUS_KIND_NONE},
+              {true, 4, 199, 1, 1, false, false, ARGUS_KIND_NONE},
+              {true, 4, 200, 6, 1, false, false, ARGUS_KIND_NONE}, // the last contradicted one was an echo
+              {true, 4, 200, 1, 0, false, false, ARGUS_KIND_NONE},
+              {true, 4, 200, 1, 1, true, false, ARGUS_KIND_NONE},
+              {true, 4, 200, 1, 1, false, true, ARGUS_KIND_NONE}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        c->followed = by[i].followed;
+        c->none_run = (uint8_t)by[i].run;
+        c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
+        peer->hollow = (uint8_t)by[i].hollow;
+        peer->against = (uint16_t)by[i].against;
+        peer->borne_out = by[i].borne_out;
+        e.stirred = (uint16_t)(1u << SONAR | (by[i].busy ? 1u << OTHER : 0u));
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
+    }
+}
+
 // Of one lag, its own readings (400 at least) and the peers together: 1,100, or 1,400 while something moves
 // before others, name it where the others do not bear it out; whoever they are, it needs no second of them.
 void test_its_own_readings_and_the_peers_name_together(void) {
@@ -442,8 +476,8 @@ void test_its_own_readings_and_the_peers_name_together(void) {
     } by[] = {{400, 700, 0, 0, false, ARGUS_KIND_SLOW}, {399, 2000, 0, 0, false, ARGUS_KIND_NONE},
               {400, 699, 0, 0, false, ARGUS_KIND_NONE}, {400, 700, 0, -1, false, ARGUS_KIND_NONE},
               {400, 0, 700, 0, false, ARGUS_KIND_NONE}, {700, 699, 0, 0, true, ARGUS_KIND_NONE},
-              {700, 700, 0, 0, true, ARGUS_KIND_SLOW},  {1100, 0, 0, 0, false, ARGUS_KIND_SLOW},
-              {1100, 0, 0, 0, true, ARGUS_KIND_NONE}};
+              {700, 700, 0, 0, true, ARGUS_KIND_SLOW},  {1100, 0, 0, 0, false, ARGUS_KIND_NONE},
+              {1100, 1, 0, 0, false, ARGUS_KIND_SLOW}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
         setUp();
         c->lag[LAG] = (int16_t)by[i].own;
