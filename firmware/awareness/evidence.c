@@ -73,18 +73,13 @@ void argus_evidence_restart(argus_evidence_t *const self) {
         c->none_run = 0;
         c->rest_gaps = 0;
         c->jump_track = 0;
-        memset(c->lag_run, 0, sizeof c->lag_run);
         memset(c->view, 0, sizeof c->view);
     }
 }
 
-int32_t argus_cautious(const argus_case_t *const self, const int32_t increment) {
-    return increment * CAUTION_PERCENT / self->caution;
-}
-
 void argus_score(argus_case_t *const self, const argus_test_t test, const int32_t increment) {
     const argus_bounds_t *const bounds = &argus_bounds[test];
-    const int32_t scaled = argus_cautious(self, increment);
+    const int32_t scaled = increment * CAUTION_PERCENT / self->caution;
     const int32_t sum = self->score[test] + (self->out && scaled < 0 ? OUT_TIMES * scaled : scaled);
     self->score[test] = (int16_t)argus_max(bounds->floor, argus_min(bounds->ceiling, sum));
 }

@@ -11,7 +11,7 @@
 typedef struct {
     int16_t suspicious;  // a look is called for
     int16_t naming;      // a suspect with the name of its fault, not relied on
-    int16_t naming_busy; // ... while something moves about the robot; at least `naming`
+    int16_t naming_busy; // ... while something moves about the robot (LAG: before others); at least `naming`
     int16_t convincing;  // DISABLED
     int16_t floor;
     int16_t ceiling;
@@ -19,10 +19,7 @@ typedef struct {
 
 extern const argus_bounds_t argus_bounds[ARGUS_TESTS];
 
-// What an increment is worth, by caution.
-int32_t argus_cautious(const argus_case_t *self, int32_t increment);
-
-// Adds that to a test's score, within its bounds; four times what speaks for a sonar that is out.
+// Adds to a test's score, by caution and within its bounds; four times what speaks for a sonar that is out.
 void argus_score(argus_case_t *self, argus_test_t test, int32_t increment);
 
 // The reading `back` before the newest that was taken in (1: that one); NULL: not so many.
@@ -46,7 +43,7 @@ bool argus_trail_is_echo(const argus_trail_t *at);
 #define ARGUS_CLIPPED_MM 105 // the shortest readings are all alike
 
 // One more reading through the tests of each lag, LEAST_LAG to ARGUS_TRAIL - 1 firings, which make its LAG
-// score; in unrest no step speaks for one. Cost: nine readings predicted.
+// score; in unrest no step speaks for one. `caution` below 100 counts as 100. Cost: nine readings predicted.
 #define ARGUS_LEAST_LAG 2
 void argus_lag_test(argus_case_t *self, const argus_trail_t *now, bool unrest, int sonar);
 
@@ -126,10 +123,8 @@ void argus_peers_take(argus_evidence_t *self, const argus_knowledge_t *knowledge
 void argus_peers_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge); // after all of a SIP
 void argus_peers_restart(argus_peers_t *self);
 void argus_peers_forget(argus_peers_t *self, int sonar);
-// For some lag, in hundredths of a nat: late against well by the peers, 0 to 2000; by them and by its own
-// readings, 401 to 5000, or 0 where one of the two says little of each lag; late against wrong, 0 to 900.
+// For some lag, in hundredths of a nat: late against well, 0 to 2000, and late against wrong, 0 to 900.
 int32_t argus_peers_late(const argus_peers_t *self, int sonar);
-int32_t argus_late_by_both(const argus_evidence_t *self, int sonar);
 int32_t argus_peers_told(const argus_peers_t *self, int sonar);
 // Of the bend of its axis that most speaks for, in hundredths of a nat: bent against well (0 to 3000), and
 // bent against faulty in another way (200 to 900); both 0: what the others see aside speaks of none.

@@ -7,20 +7,19 @@
 
 #define SPIN_CDEG 1000
 #define SPREAD_MM 60 // a stretch that varies less is not known again
-#define MATCHES_LEAST 2
-#define MATCHES_MOST 3
-#define CEILING 3000
 
 // Hundredths of a nat; see DESIGN.md, Evidence.
-#define MATCH 290 // the second reading in a row that it has given before; the third one and a half times
 #define STEP_MOST 300
+#define FULL_PERCENT 100
 #define FORGOTTEN 4 // with each reading
+#define REPEATS 5
+static const int16_t repeated[REPEATS] = {0, 0, 580, 870, 0}; // [i]: the i-th reading in a row given before
 
 // What the robot did between two firings of a sonar.
 typedef enum { STILL, STRAIGHT, TURN, SPIN, MOTIONS } motion_t;
 
 // How much better a motion explains that a reading is so far from what it predicts, one row each, than
-// nothing does: a reading at random, as likely as exp(-9.5) for a millimetre.
+// nothing does: a reading at random, counted as exp(-9.5) for a millimetre.
 #define CHANGES 13
 static const int16_t change_from_mm[CHANGES] = {0, 8, 16, 25, 40, 60, 90, 140, 220, 350, 600, 1000, 2000};
 static const int16_t explains_change[MOTIONS][CHANGES] = {
@@ -63,26 +62,37 @@ static int32_t worth_of(const argus_trail_t *const now, const argus_trail_t *con
     return worth_of_change(motion, now->reading_mm - before->reading_mm - predicted_mm);
 }
 
-// ... without a lag; beside a wall a range stays the same though the robot drives.
-static int32_t worth_of_none(const argus_trail_t *const now, const argus_trail_t *const before,
-                             const int sonar) {
+// ... without a lag: the motion now, or nothing at all; and a wall beside the way, where a range stays the
+// same though the robot drives. That speaks against no lag: a late sonar sees walls, too.
+typedef struct {
+    int32_t motion;
+    int32_t wall;
+} without_lag_t;
+
+static without_lag_t without_lag(const argus_trail_t *const now, const argus_trail_t *const before,
+                                 const int sonar) {
     const bool along =
         argus_trail_is_echo(now) && argus_trail_is_echo(before) && motion_of(now, before) == STRAIGHT;
-    const int32_t wall = along ? worth_of_change(STILL, now->reading_mm - before->reading_mm) : 0;
-    return argus_max(0, argus_max(wall, worth_of(now, before, now, before, sonar)));
+    const without_lag_t worth = {.motion = argus_max(0, worth_of(now, before, now, before, sonar)),
+                                 .wall = along ? worth_of_change(STILL, now->reading_mm - before->reading_mm)
+                                               : 0};
+    return worth;
 }
 
 // The readings change with what the robot does: a healthy sonar's at once, a late one's some firings after.
 static int32_t step_of(const argus_case_t *const self, const argus_trail_t *const now, const int lag,
-                       const int32_t none, const int sonar) {
+                       const without_lag_t *const without, const int sonar) {
     const argus_trail_t *const before = argus_trail_at(self, 1);
     const argus_trail_t *const here = argus_trail_at(self, lag);
     const argus_trail_t *const there = argus_trail_at(self, lag + 1);
     if (there == NULL || (!argus_trail_is_echo(now) && !argus_trail_is_echo(before))) {
         return 0;
     }
-    const int32_t gain = worth_of(now, before, here, there, sonar) - none;
-    return argus_max(-STEP_MOST, argus_min(STEP_MOST, gain));
+    const int32_t worth = worth_of(now, before, here, there, sonar);
+    if (worth <= without->motion) {
+        return argus_max(-STEP_MOST, worth - without->motion);
+    }
+    return argus_max(0, argus_min(STEP_MOST, worth - argus_max(without->motion, without->wall)));
 }
 
 // Spread of the last `count` readings before `now`, and of it.
@@ -97,31 +107,42 @@ static int32_t spread_mm(const argus_case_t *const self, const argus_trail_t *co
     return most - least;
 }
 
-// A sonar that hands out its echoes late repeats what it has read already when the lag begins. One value
-// again and again is no stretch of the past.
+// A stretch of the past comes again once: what has been read since as well goes to and fro.
+static bool is_known_again(const argus_case_t *const self, const argus_trail_t *const now, const int lag) {
+    for (int i = 1; i < lag; i++) {
+        if (argus_trail_at(self, i)->reading_mm == now->reading_mm) {
+            return false;
+        }
+    }
+    return now->reading_mm > ARGUS_CLIPPED_MM && spread_mm(self, now, lag) >= SPREAD_MM;
+}
+
+// A sonar that hands out its echoes late repeats what it has read already when the lag begins, as many
+// readings as it is late.
 static int32_t replay_of(argus_case_t *const self, const argus_trail_t *const now, const int lag) {
     const argus_trail_t *const then = argus_trail_at(self, lag);
     if (then == NULL || !argus_trail_is_echo(now) || then->reading_mm != now->reading_mm) {
         self->lag_run[lag] = 0;
         return 0;
     }
-    const bool new_value = argus_trail_at(self, 1)->reading_mm != now->reading_mm;
-    if (!new_value || now->reading_mm <= ARGUS_CLIPPED_MM || spread_mm(self, now, lag) < SPREAD_MM) {
+    if (self->lag_run[lag] >= lag || !is_known_again(self, now, lag)) {
         return 0;
     }
-    self->lag_run[lag] = (uint8_t)argus_min(self->lag_run[lag] + 1, MATCHES_MOST);
-    return self->lag_run[lag] >= MATCHES_LEAST ? MATCH * self->lag_run[lag] : 0;
+    self->lag_run[lag] = (uint8_t)argus_min(self->lag_run[lag] + 1, REPEATS - 1);
+    return repeated[self->lag_run[lag]];
 }
 
+// Less caution than 100 % would make a lag of what is chance: the levels of this test are as low as they may
+// be.
 void argus_lag_test(argus_case_t *const self, const argus_trail_t *const now, const bool unrest,
                     const int sonar) {
-    const int32_t none = worth_of_none(now, argus_trail_at(self, 1), sonar);
+    const without_lag_t without = without_lag(now, argus_trail_at(self, 1), sonar);
     int32_t most = 0;
     for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
-        const int32_t step = step_of(self, now, n, none, sonar);
+        const int32_t step = step_of(self, now, n, &without, sonar);
         const int32_t gain = (unrest ? argus_min(0, step) : step) + replay_of(self, now, n) - FORGOTTEN;
-        const int32_t sum = self->lag[n] + argus_cautious(self, gain);
-        self->lag[n] = (int16_t)argus_max(0, argus_min(CEILING, sum));
+        const int32_t sum = self->lag[n] + gain * FULL_PERCENT / argus_max(FULL_PERCENT, self->caution);
+        self->lag[n] = (int16_t)argus_max(0, argus_min(argus_bounds[ARGUS_TEST_LAG].ceiling, sum));
         most = argus_max(most, self->lag[n]);
     }
     self->score[ARGUS_TEST_LAG] = (int16_t)most;

@@ -6,7 +6,7 @@
 #define NAME_CONFLICTS 3 // a view is one of a pair: who is wrong takes a third
 #define NAME_PARTNERS 2
 #define OFF_RUN 5
-#define LOST_RUN 4
+#define LOST_FOR 4
 #define LOST_CONTRADICTED 200
 #define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
 #define OFF_RUN_LONGEST 20 // ... and what was called intermittent
@@ -25,13 +25,12 @@
 #define LATE_CONTRADICTED 300 // ... that the others contradict,
 #define LATE_BEYOND 400       // ... or, so far beyond the level,
 #define LATE_CONTRADICTED_BEYOND 100
-#define LATE_BOTH 1100
-#define LATE_BOTH_BUSY 1400
-#define LATE_BOTH_CONTRADICTED 0
 #define LATE_SURE 1000 // ... or of one that is intermittent or garbage so far
 #define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
 #define LATE_NO_MORE 420
+#define LATE_BOTH 1100 // by the peers and by its own readings, those LATE_FIRST at least
+#define LATE_BOTH_BUSY 1400
 #define LEAPS_CONTRADICTED 360 // two of them
 #define LATE_OF_WILD 300       // less is no lag, of one whose readings are wild
 #define BENT_NAMING 1100
@@ -136,10 +135,21 @@ static bool looks_late(const argus_evidence_t *const self, const int sonar) {
     return is_late_from(self, sonar, is_busy_beside(self, sonar) ? LATE_NAMING_BUSY : LATE_NAMING);
 }
 
-// By its own readings and by the peers: it is the third who says who is wrong.
+// Of one lag: what its own readings and the peers say together.
+static int32_t late_of_both(const argus_evidence_t *const self, const int sonar) {
+    int32_t most = 0;
+    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
+        const int32_t own = self->of[sonar].lag[n];
+        const int32_t theirs = self->peers.of[sonar].late[n];
+        most = argus_max(most, own >= LATE_FIRST && theirs > 0 ? own + theirs : 0);
+    }
+    return most;
+}
+
+// Its own readings are the third who says who is wrong, where the others rather contradict it.
 static bool is_late_by_both(const argus_evidence_t *const self, const int sonar) {
-    return argus_late_by_both(self, sonar) >= (is_busy_beside(self, sonar) ? LATE_BOTH_BUSY : LATE_BOTH) &&
-           self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_BOTH_CONTRADICTED;
+    return self->of[sonar].score[ARGUS_TEST_PEERS] >= 0 &&
+           late_of_both(self, sonar) >= (is_busy_beside(self, sonar) ? LATE_BOTH_BUSY : LATE_BOTH);
 }
 
 // Neither gaps nor wild readings come to this; the echoes of a late sonar may look like either.
@@ -241,13 +251,21 @@ static bool is_mute(const argus_evidence_t *const self, const int sonar) {
            is_hollow(self, sonar) && has_partners(self, sonar);
 }
 
+// The last of its readings that counted is a silence, contradicted since it last proved alive.
+static bool is_missed(const argus_evidence_t *const self, const int sonar) {
+    const argus_peer_t *const peer = &self->peers.of[sonar];
+    const argus_glimpse_t *const last =
+        &peer->counted[(peer->counted_next + ARGUS_COUNTED - 1) % ARGUS_COUNTED];
+    const uint32_t since_ms = last->t_ms - self->of[sonar].alive_ms;
+    return last->reading_mm >= ARGUS_NO_ECHO_MM && since_ms > 0 && since_ms <= INT32_MAX;
+}
+
 // It followed an echo, lost it, and somebody else hears one there: what it did itself is the second voice.
 static bool has_lost(const argus_evidence_t *const self, const int sonar) {
     const argus_case_t *const c = &self->of[sonar];
-    return c->followed && c->none_run >= LOST_RUN && !self->peers.of[sonar].borne_out &&
-           c->score[ARGUS_TEST_PEERS] >= LOST_CONTRADICTED &&
-           argus_peers_hollow(&self->peers, sonar, 1) == 1 && !is_busy_beside(self, sonar) &&
-           argus_peers_against(&self->peers, sonar) > 0;
+    return c->followed && c->none_run >= LOST_FOR && !self->peers.of[sonar].borne_out &&
+           c->score[ARGUS_TEST_PEERS] >= LOST_CONTRADICTED && is_missed(self, sonar) &&
+           !is_busy_beside(self, sonar);
 }
 
 // What leaps, contradicted by the others, is garbage a leap before it is so by itself.

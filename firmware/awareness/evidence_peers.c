@@ -23,7 +23,6 @@
 #define ONE_VERDICT 16   // in the fading counts
 #define LAG_TURN_CDEG 1000
 #define LATE_CEILING 2000
-#define OWN_LEAST 400
 #define HOLLOW_BITS 8
 
 typedef struct {
@@ -327,16 +326,6 @@ static int32_t most_of(const int16_t *const lags) {
 
 int32_t argus_peers_late(const argus_peers_t *const self, const int sonar) {
     return most_of(self->of[sonar].late);
-}
-
-int32_t argus_late_by_both(const argus_evidence_t *const self, const int sonar) {
-    int32_t most = 0;
-    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
-        const int32_t own = self->of[sonar].lag[n];
-        const int32_t theirs = self->peers.of[sonar].late[n];
-        most = argus_max(most, own >= OWN_LEAST && theirs > 0 ? theirs + own : 0);
-    }
-    return most;
 }
 
 int32_t argus_peers_told(const argus_peers_t *const self, const int sonar) {

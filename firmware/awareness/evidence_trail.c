@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tests of a sonar's own trail: stuck, garbage, intermittent, slow, and the loss of an echo.
+// The tests of a sonar's own trail: stuck, garbage, intermittent, and the loss of an echo.
 #include <stddef.h>
 
 #include "argus/angle.h"

@@ -84,7 +84,7 @@ typedef struct {
     uint8_t trail_next;
     uint8_t view_next;
     uint8_t refuted_next;
-    uint8_t lag_run[ARGUS_TRAIL]; // [n]: readings in a row equal to the one n before
+    uint8_t lag_run[ARGUS_TRAIL]; // [n]: readings in a row that vary and equal the one n before, up to 4
     uint8_t track;                // echoes in a row that go on as the motion predicts
     uint8_t none_run;             // readings in a row without an echo
     uint8_t rest_gaps;            // in its trail at rest in this place, up to those that count
@@ -93,10 +93,11 @@ typedef struct {
     bool followed;                // the run without an echo began on an echo that it had followed
     uint16_t deaf_cdeg;           // turned since it heard an echo last
     uint8_t taken;                // counts its readings, low bits
-    int16_t lag[ARGUS_TRAIL];     // [n]: that it is n firings late, by its own readings, 0 to 3000
-    uint8_t conflicts;            // counted since the VIEW score left its floor
-    uint8_t borne_out;            // agreements since then
-    uint8_t episodes;             // ... at so many times, some seconds apart
+    int16_t lag[ARGUS_TRAIL]; // [n], n >= 2: that it is n firings late, by its own readings, hundredths of a
+                              // nat, 0 to 3000
+    uint8_t conflicts;        // counted since the VIEW score left its floor
+    uint8_t borne_out;        // agreements since then
+    uint8_t episodes;         // ... at so many times, some seconds apart
     uint32_t conflict_ms;
     uint8_t misses; // of those: no echo where another hears one
     uint8_t agreed; // comparisons in a row that agreed, for rehabilitation
@@ -106,8 +107,8 @@ typedef struct {
     int32_t agreed_y_mm;
     int32_t agreed_cdeg;
     uint16_t caution; // percent: so much of the tabled evidence a level takes
-    bool out;         // its evidence is of whether it may come back: what speaks for it counts more
-    bool unrest;      // something moved before it, at unrest_ms
+    bool out;    // its evidence is of whether it may come back: what speaks for it counts more, but in LAG
+    bool unrest; // something moved before it, at unrest_ms
     uint32_t unrest_ms;
     int16_t drift_mm; // what the last reading differed from the prediction, when it was an echo after an echo
     uint32_t counted_ms;
@@ -174,7 +175,8 @@ typedef struct {
 
 void argus_evidence_init(argus_evidence_t *self);
 
-// `percent` of the tabled evidence, 25 to 400, is what each level takes from now on; 100 after init.
+// `percent` of the tabled evidence, 25 to 400, is what each level takes from now on (LAG: 100 at least); 100
+// after init.
 void argus_evidence_set_caution(argus_evidence_t *self, int32_t percent);
 
 // The readings begin anew (session, gap of the link): trails and views are forgotten, and with them what the
@@ -187,7 +189,8 @@ void argus_evidence_restart(argus_evidence_t *self);
 void argus_evidence_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge);
 
 // Whether a look is called for; the kind that the evidence names, or convicts of (NONE: not so far). A name
-// takes disagreements with two others, a conviction takes them again at another time.
+// takes disagreements with two others, or with one and what its own readings tell; a conviction takes them
+// again at another time.
 bool argus_evidence_suspects(const argus_evidence_t *self, int sonar);
 
 // Whether what made a suspect is not gone yet: the levels that clear are below those that accuse.

@@ -98,6 +98,23 @@ void test_old_evidence_neither_names_nor_convicts(void) {
     TEST_ASSERT_TRUE(argus_evidence_suspects(&found, 3));
 }
 
+// What is known of a lag is not forgotten with the first readings.
+void test_old_lateness_stays_until_something_speaks_against_it(void) {
+    write_one();
+    e.of[4].score[ARGUS_TEST_LAG] = argus_bounds[ARGUS_TEST_LAG].ceiling;
+    TEST_ASSERT_EQUAL(ARGUS_RECORD_OK,
+                      read_back(record, argus_record_encode(&k, &e, 1, record, sizeof record)));
+    argus_case_t *const c = &found.of[4];
+    const int before = c->score[ARGUS_TEST_LAG];
+    TEST_ASSERT_TRUE(before > argus_bounds[ARGUS_TEST_LAG].suspicious);
+    const argus_trail_t now = {.reading_mm = 1000, .steady = true};
+    c->trail[0] = now;
+    c->trail_next = 1;
+    c->trail_count = 1;
+    argus_lag_test(c, &now, false, 4);
+    TEST_ASSERT_INT_WITHIN(10, before, c->score[ARGUS_TEST_LAG]);
+}
+
 void test_a_mission_without_a_fault_makes_up_for_a_relapse(void) {
     write_one();
     argus_sonar_set_health(&k.sonar[5], ARGUS_HEALTHY, ARGUS_KIND_NONE, 9);

@@ -221,6 +221,12 @@ static void begin(void) {
     one = s.e.of[4];
 }
 
+static void put(const argus_trail_t *now) {
+    one.trail[one.trail_next] = *now;
+    one.trail_next = (uint8_t)((one.trail_next + 1) % ARGUS_TRAIL);
+    one.trail_count = (uint8_t)(one.trail_count < ARGUS_TRAIL ? one.trail_count + 1 : ARGUS_TRAIL);
+}
+
 static void read_at(int of, int reading_mm, int x_mm, int heading_cdeg, bool unrest) {
     const argus_trail_t now = {.reading_mm = (uint16_t)reading_mm,
                                .x_mm = (uint16_t)x_mm,
@@ -229,24 +235,33 @@ static void read_at(int of, int reading_mm, int x_mm, int heading_cdeg, bool unr
     if (one.trail_count > 0) {
         argus_lag_test(&one, &now, unrest, of);
     }
-    one.trail[one.trail_next] = now;
-    one.trail_next = (uint8_t)((one.trail_next + 1) % ARGUS_TRAIL);
-    one.trail_count = (uint8_t)(one.trail_count < ARGUS_TRAIL ? one.trail_count + 1 : ARGUS_TRAIL);
+    put(&now);
 }
 
 static int score(void) {
     return one.score[ARGUS_TEST_LAG];
 }
 
-#define AHEAD 4 // looks 10 degrees aside
+static const char *by_hand(int of, int late) {
+    snprintf(text, sizeof text, "sonar %d, lag %d, score %d", of, late, score());
+    return text;
+}
+
+static void be_late(int by) {
+    one.score[ARGUS_TEST_LAG] = (int16_t)by;
+    argus_lag_restore(&one);
+}
+
+#define AHEAD 4      // looks 10 degrees aside
+#define FROM_X 65000 // x wraps on the way
 
 // A robot that drives at a wall and stops: the range of a late sonar goes on shrinking.
 static void drive_and_stop_on(int late, bool unrest) {
     int wall_mm[40];
     for (int i = 0; i < 40; i++) {
-        const int x_mm = i < 12 ? 0 : (i < 26 ? (i - 11) * 60 : 15 * 60);
-        wall_mm[i] = 2500 - x_mm * 985 / 1000;
-        read_at(AHEAD, wall_mm[i > late ? i - late : 0], x_mm, 0, unrest);
+        const int way_mm = i < 12 ? 0 : (i < 26 ? (i - 11) * 60 : 15 * 60);
+        wall_mm[i] = 2500 - way_mm * 985 / 1000;
+        read_at(AHEAD, wall_mm[i > late ? i - late : 0], FROM_X + way_mm, 0, unrest);
     }
 }
 
@@ -259,7 +274,7 @@ static int drive_and_stop(int late, bool unrest) {
 void test_who_stops_and_still_sees_the_wall_come_nearer_is_late(void) {
     for (int late = ARGUS_LEAST_LAG; late < ARGUS_TRAIL; late++) {
         TEST_ASSERT_TRUE_MESSAGE(drive_and_stop(late, false) > 250 * argus_min(late, 4),
-                                 told((unsigned)late));
+                                 by_hand(AHEAD, late));
         TEST_ASSERT_EQUAL(score(), one.lag[late]);
     }
     TEST_ASSERT_EQUAL(0, drive_and_stop(0, false));
@@ -270,96 +285,185 @@ void test_no_step_speaks_for_a_lag_in_unrest(void) {
     TEST_ASSERT_EQUAL(0, drive_and_stop(5, true));
 }
 
-// Three stops are enough whatever the lag is, in unrest too.
+// Three stops are enough whatever the lag is, in unrest too, and no more of one that is out: a late sonar
+// does well at every rest.
 void test_steps_at_once_with_the_motion_clear(void) {
-    begin();
-    one.score[ARGUS_TEST_LAG] = 3000;
-    argus_lag_restore(&one);
-    for (int i = 0; i < 3; i++) {
+    for (int out = 0; out < 2; out++) {
+        begin();
+        one.out = out != 0;
+        be_late(3000);
         drive_and_stop_on(0, true);
+        TEST_ASSERT_TRUE(score() > argus_bounds[ARGUS_TEST_LAG].naming);
+        drive_and_stop_on(0, true);
+        drive_and_stop_on(0, true);
+        TEST_ASSERT_TRUE(score() < argus_bounds[ARGUS_TEST_LAG].suspicious);
     }
-    TEST_ASSERT_TRUE(score() < argus_bounds[ARGUS_TEST_LAG].suspicious);
 }
 
-// Beside a wall the range stays the same, whatever the axis of the sonar foretells.
-void test_a_wall_beside_the_way_makes_nobody_late(void) {
+// A step counts for 3 nats at most, for a lag or against it, however unlikely; time takes a little.
+void test_one_step_says_little(void) {
+    begin();
+    be_late(1500);
+    for (int i = 0; i < ARGUS_TRAIL; i++) {
+        read_at(AHEAD, 2000, 0, 0, false);
+    }
+    TEST_ASSERT_EQUAL(1500 - 4 * (ARGUS_TRAIL - 1), score());
+    const int before = score();
+    read_at(AHEAD, 2000 - 900 * 985 / 1000, 900, 0, false); // drives on, and the reading with it
+    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
+        TEST_ASSERT_EQUAL(before - 304, one.lag[n]);
+    }
+    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) { // stands; so does the reading, now it would not
+        read_at(AHEAD, 2000 - 900 * 985 / 1000, 900, 0, false);
+    }
+    TEST_ASSERT_EQUAL(before - 304 - 304 - 4 * (ARGUS_TRAIL - 1 - ARGUS_LEAST_LAG), one.lag[ARGUS_LEAST_LAG]);
+    drive_and_stop(ARGUS_LEAST_LAG, false);
+    TEST_ASSERT_TRUE(score() <= 2 * 300);
+}
+
+// Beside a wall the range stays the same, whatever the axis of the sonar foretells: that makes nobody late,
+// and of who is late it takes nothing.
+void test_a_wall_beside_the_way_says_nothing_of_a_lag(void) {
     for (int of = 0; of < ARGUS_SONARS; of++) {
-        begin();
-        for (int i = 0; i < 60; i++) {
-            const int legs = i / 12; // stands, drives, stands ...
-            const int x_mm = legs / 2 * 720 + (legs % 2 == 1 ? (i - 12 * legs + 1) * 60 : 0);
-            read_at(of, 900 + i % 3, x_mm, 0, false);
-            TEST_ASSERT_EQUAL_MESSAGE(0, score(), told((unsigned)of));
+        for (int late = 0; late <= 2200; late += 2200) {
+            begin();
+            be_late(late);
+            for (int i = 0; i < 60; i++) {
+                read_at(of, 900 + i % 3, FROM_X + argus_max(0, i - 12) * 60, 0, false);
+                TEST_ASSERT_TRUE_MESSAGE(score() <= late, by_hand(of, 0));
+            }
+            const int forgotten = 4 * 59 + 30 * 12; // and what tells still from straight in the noise
+            TEST_ASSERT_TRUE_MESSAGE(score() >= late - 2 * forgotten, by_hand(of, 0));
         }
     }
 }
 
-// What reads at random, or hears now and then nothing, is explained by no lag.
+// What reads at random, or hears now and then nothing, while the robot stands and turns, is explained by no
+// lag.
 void test_random_readings_and_gaps_make_nobody_late(void) {
     for (unsigned seed = 1; seed <= 8; seed++) {
         begin();
         scene_init(&s, seed, START_MS);
+        int turned = 0;
         for (int i = 0; i < 3000; i++) {
-            const int x_mm = i % 60 < 20 ? i / 60 * 1200 : i / 60 * 1200 + (i % 60 - 20) * 30;
+            const bool turns = i / 10 % 2 == 0 && scene_random(&s, 2) == 0;
+            turned += turns ? 1 : 0;
             const bool gap = scene_random(&s, 3) == 0;
             const int random_mm = 200 + (int)scene_random(&s, 4800);
-            read_at(AHEAD, seed % 2 == 0 ? random_mm : (gap ? 5000 : 1500), x_mm % 60000, 0, false);
+            const int heading_cdeg = turned * 1500 % 36000 - 18000;
+            const int there_mm = 800 + turned % 24 * 7919 % 2000;
+            read_at(AHEAD, seed % 2 == 0 ? random_mm : (gap ? 5000 : there_mm), 0, heading_cdeg, false);
             TEST_ASSERT_TRUE_MESSAGE(score() < argus_bounds[ARGUS_TEST_LAG].naming, told(seed));
         }
     }
 }
 
+// An echo that comes or goes while the robot stands, and would not have while it turned, is late; one that
+// does so in a turn is not.
+void test_echoes_that_come_and_go_after_a_turn_are_late(void) {
+    for (int late = 0; late < 5; late += 4) {
+        begin();
+        for (int turn = 0; turn < 6; turn++) {
+            for (int i = 0; i < 14; i++) {
+                const int step = turn * 14 + i;
+                const int seen = step - late; // an echo on every other heading
+                const bool echo = seen < 0 || seen / 14 % 2 == 0;
+                read_at(AHEAD, echo ? 1500 : 5000, 0, step / 14 * 3000, false);
+            }
+        }
+        TEST_ASSERT_EQUAL_MESSAGE(late > 0, score() >= 700, by_hand(AHEAD, late));
+    }
+}
+
 // A stretch that it has read before, on a steady way; `same`: so many readings of it.
-static int replay(int lag_of, int same, int spread_mm) {
+static int replay(int lag_of, int same, int spread_mm, int least_mm, bool unrest) {
     begin();
     int last[ARGUS_TRAIL];
     for (int i = 0; i < ARGUS_TRAIL; i++) {
-        last[i] = 2000 - i * spread_mm + i % 2;
-        read_at(AHEAD, last[i], i * spread_mm, 0, false);
+        last[i] = least_mm + (ARGUS_TRAIL - i) * spread_mm + i % 2;
+        read_at(AHEAD, last[i], i * spread_mm, 0, unrest);
     }
     for (int i = 0; i < same; i++) {
-        read_at(AHEAD, last[ARGUS_TRAIL - lag_of + i], (ARGUS_TRAIL + i) * spread_mm, 0, false);
+        read_at(AHEAD, last[ARGUS_TRAIL - lag_of + i], (ARGUS_TRAIL + i) * spread_mm, 0, unrest);
     }
     return score();
 }
 
 void test_three_readings_that_it_has_given_before_name_it_also_among_people(void) {
+    const argus_bounds_t *const level = &argus_bounds[ARGUS_TEST_LAG];
     for (int n = 3; n < ARGUS_TRAIL; n++) {
-        TEST_ASSERT_TRUE_MESSAGE(replay(n, 2, 60) < argus_bounds[ARGUS_TEST_LAG].naming, told((unsigned)n));
-        TEST_ASSERT_TRUE_MESSAGE(replay(n, 3, 60) >= argus_bounds[ARGUS_TEST_LAG].naming_busy,
-                                 told((unsigned)n));
-        TEST_ASSERT_TRUE_MESSAGE(replay(n, 3, 60) < argus_bounds[ARGUS_TEST_LAG].convincing,
-                                 told((unsigned)n));
+        TEST_ASSERT_TRUE_MESSAGE(replay(n, 2, 60, 1400, true) < level->naming, by_hand(AHEAD, n));
+        TEST_ASSERT_TRUE_MESSAGE(replay(n, 3, 60, 1400, true) >= level->naming_busy, by_hand(AHEAD, n));
     }
 }
 
-// Where all readings are much alike some are the same by chance.
+// However long the stretch is, and so the lag.
+void test_readings_given_before_convict_nobody(void) {
+    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
+        replay(n, n, 60, 1400, true);
+        TEST_ASSERT_TRUE_MESSAGE(score() < argus_bounds[ARGUS_TEST_LAG].convincing, by_hand(AHEAD, n));
+    }
+}
+
+// Where all readings are much alike some are the same by chance; the shortest are all alike.
 void test_what_hardly_varies_is_not_known_again(void) {
     for (int n = 3; n < ARGUS_TRAIL; n++) {
-        TEST_ASSERT_TRUE_MESSAGE(replay(n, 3, 5) < argus_bounds[ARGUS_TEST_LAG].suspicious,
-                                 told((unsigned)n));
+        replay(n, 3, 5, 1400, true);
+        TEST_ASSERT_TRUE_MESSAGE(score() < argus_bounds[ARGUS_TEST_LAG].suspicious, by_hand(AHEAD, n));
+    }
+    replay(3, 3, 60, 1400, true);
+    const int known = score();
+    begin();
+    for (int i = 0; i < 12; i++) {
+        read_at(AHEAD, i % 4 == 0 ? 400 : 100 + i % 4, i * 60, 0, true);
+    }
+    TEST_ASSERT_TRUE(score() < known / 2);
+}
+
+// At an edge two or three echoes take turns: no stretch of the past comes again and again.
+void test_echoes_that_take_turns_make_nobody_late(void) {
+    for (int period = 2; period < 4; period++) {
+        begin();
+        for (int i = 0; i < 60; i++) {
+            read_at(AHEAD, 1000 + i % period * 300, 0, 0, true);
+            const argus_bounds_t *const level = &argus_bounds[ARGUS_TEST_LAG];
+            TEST_ASSERT_TRUE_MESSAGE(score() < (period == 2 ? level->naming : level->naming_busy),
+                                     by_hand(AHEAD, period));
+        }
+        TEST_ASSERT_TRUE_MESSAGE(score() < argus_bounds[ARGUS_TEST_LAG].naming, by_hand(AHEAD, period));
     }
 }
 
 // Trails are forgotten with the session, sums are not.
 void test_a_restart_compares_nothing_with_what_was_before(void) {
-    argus_evidence_init(&s.e);
-    s.e.of[4].score[ARGUS_TEST_LAG] = 700;
-    argus_lag_restore(&s.e.of[4]);
+    begin();
+    for (int i = 0; i < ARGUS_TRAIL; i++) {
+        read_at(AHEAD, 2000 - i * 60, i * 60, 0, false);
+    }
+    be_late(700);
+    s.e.of[4] = one;
     argus_evidence_restart(&s.e);
     one = s.e.of[4];
-    read_at(AHEAD, 1000, 0, 0, false);
-    read_at(AHEAD, 2900, 0, 0, false);
-    TEST_ASSERT_TRUE(score() <= 700 && score() >= 690);
+    for (int i = 0; i < 5; i++) { // as five firings ago
+        read_at(AHEAD, 2000 - (5 + i) * 60, (ARGUS_TRAIL + i) * 60, 0, false);
+    }
+    TEST_ASSERT_TRUE(score() <= 700 && score() >= 680);
 }
 
-// Caution makes every step, and what is forgotten, worth less.
+// Caution makes every step, and what is forgotten, worth less; less caution than usual leaves them as they
+// are, since its levels are as low as they may be.
 void test_caution_scales_the_sums(void) {
     const int full = drive_and_stop(5, false);
-    begin();
-    one.caution = 200;
-    drive_and_stop_on(5, false);
-    TEST_ASSERT_INT_WITHIN(20, full / 2, score());
+    static const struct {
+        int caution;
+        int of_full;
+    } by[] = {{25, 100}, {50, 100}, {100, 100}, {200, 50}, {400, 25}};
+    for (int i = 0; i < 5; i++) {
+        begin();
+        one.caution = (uint16_t)by[i].caution;
+        drive_and_stop_on(5, false);
+        TEST_ASSERT_INT_WITHIN(by[i].of_full < 100 ? 60 : 0, full * by[i].of_full / 100, score());
+    }
 }
 
 // No counter wraps, whatever is read and however long it goes on.

@@ -429,41 +429,49 @@ void test_lateness_alone_names_only_one_that_others_contradict(void) {
     }
 }
 
-// It followed an echo and has heard none four times in a row: one other that hears something there is enough.
+// It followed an echo and has heard none four times in a row: one other that hears something there, since, is
+// enough.
 void test_a_lost_echo_and_one_voice_are_off(void) {
     static const struct {
         bool followed;
         int run;
         int peers;
-        unsigned hollow;
-        unsigned against;
+        int reading_mm; // that was contradicted last,
+        int since_ms;   // ... so long after the last echo
         bool borne_out;
         bool busy;
         argus_fault_kind_t kind;
-    } by[] = {{true, 4, 200, 1, 1, false, false, ARGUS_KIND_OFF},
-              {false, 4, 200, 1, 1, false, false, ARGUS_KIND_NONE},
-              {true, 3, 200, 1, 1, false, false, ARGUS_KIND_NONE},
-              {true, 4, 199, 1, 1, false, false, ARGUS_KIND_NONE},
-              {true, 4, 200, 6, 1, false, false, ARGUS_KIND_NONE}, // the last contradicted one was an echo
-              {true, 4, 200, 1, 0, false, false, ARGUS_KIND_NONE},
-              {true, 4, 200, 1, 1, true, false, ARGUS_KIND_NONE},
-              {true, 4, 200, 1, 1, false, true, ARGUS_KIND_NONE}};
+    } by[] = {{true, 4, 200, 5000, 1, false, false, ARGUS_KIND_OFF},
+              {false, 4, 200, 5000, 1, false, false, ARGUS_KIND_NONE},
+              {true, 3, 200, 5000, 1, false, false, ARGUS_KIND_NONE},
+              {true, 4, 199, 5000, 1, false, false, ARGUS_KIND_NONE},
+              {true, 4, 200, 4999, 1, false, false, ARGUS_KIND_NONE},
+              {true, 4, 200, 5000, 0, false, false, ARGUS_KIND_NONE},
+              {true, 4, 200, 5000, -900, false, false, ARGUS_KIND_NONE}, // in another silence
+              {true, 4, 200, 5000, 1, true, false, ARGUS_KIND_NONE},
+              {true, 4, 200, 5000, 1, false, true, ARGUS_KIND_NONE}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
-        setUp();
-        c->followed = by[i].followed;
-        c->none_run = (uint8_t)by[i].run;
-        c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
-        peer->hollow = (uint8_t)by[i].hollow;
-        peer->against = (uint16_t)by[i].against;
-        peer->borne_out = by[i].borne_out;
-        e.stirred = (uint16_t)(1u << SONAR | (by[i].busy ? 1u << OTHER : 0u));
-        snprintf(text, sizeof text, "case %d", i);
-        TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
-        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
+        for (int next = 0; next < ARGUS_COUNTED; next++) {
+            setUp();
+            c->followed = by[i].followed;
+            c->none_run = (uint8_t)by[i].run;
+            c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
+            c->alive_ms = UINT32_MAX; // the clock wraps then
+            peer->counted_next = (uint8_t)next;
+            argus_glimpse_t *const last = &peer->counted[(next + ARGUS_COUNTED - 1) % ARGUS_COUNTED];
+            last->t_ms = c->alive_ms + (uint32_t)by[i].since_ms;
+            last->reading_mm = (uint16_t)by[i].reading_mm;
+            peer->against = 1;
+            peer->borne_out = by[i].borne_out;
+            e.stirred = (uint16_t)(1u << SONAR | (by[i].busy ? 1u << OTHER : 0u));
+            snprintf(text, sizeof text, "case %d, next %d", i, next);
+            TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
+            TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
+        }
     }
 }
 
-// Of one lag, its own readings (400 at least) and the peers together: 1,100, or 1,400 while something moves
+// Of one lag, its own readings (430 at least) and the peers together: 1,100, or 1,400 while something moves
 // before others, name it where the others do not bear it out; whoever they are, it needs no second of them.
 void test_its_own_readings_and_the_peers_name_together(void) {
     static const struct {
@@ -473,9 +481,9 @@ void test_its_own_readings_and_the_peers_name_together(void) {
         int peers;
         bool busy;
         argus_fault_kind_t kind;
-    } by[] = {{400, 700, 0, 0, false, ARGUS_KIND_SLOW}, {399, 2000, 0, 0, false, ARGUS_KIND_NONE},
-              {400, 699, 0, 0, false, ARGUS_KIND_NONE}, {400, 700, 0, -1, false, ARGUS_KIND_NONE},
-              {400, 0, 700, 0, false, ARGUS_KIND_NONE}, {700, 699, 0, 0, true, ARGUS_KIND_NONE},
+    } by[] = {{430, 670, 0, 0, false, ARGUS_KIND_SLOW}, {429, 2000, 0, 0, false, ARGUS_KIND_NONE},
+              {430, 669, 0, 0, false, ARGUS_KIND_NONE}, {430, 670, 0, -1, false, ARGUS_KIND_NONE},
+              {430, 0, 670, 0, false, ARGUS_KIND_NONE}, {700, 699, 0, 0, true, ARGUS_KIND_NONE},
               {700, 700, 0, 0, true, ARGUS_KIND_SLOW},  {1100, 0, 0, 0, false, ARGUS_KIND_NONE},
               {1100, 1, 0, 0, false, ARGUS_KIND_SLOW}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
