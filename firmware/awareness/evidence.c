@@ -28,7 +28,7 @@ const argus_bounds_t argus_bounds[ARGUS_TESTS] = {
     [ARGUS_TEST_STUCK] = {840, 1050, 1050, 1470, 0, 2000},
     [ARGUS_TEST_GARBAGE] = {400, 500, 650, 2800, 0, 3200}, // who walks into view makes as many leaps
     [ARGUS_TEST_DROPOUT] = {400, 500, 500, 2700, 0, 3000},
-    [ARGUS_TEST_LAG] = {600, 1200, 1400, 2200, 0, 3000},
+    [ARGUS_TEST_LAG] = {600, 900, 1400, 2200, 0, 3000},
     [ARGUS_TEST_PEERS] = {450, 650, 650, NEVER, -150, 2500},
 };
 

@@ -62,20 +62,25 @@ static int32_t worth_of(const argus_trail_t *const now, const argus_trail_t *con
     return worth_of_change(motion, now->reading_mm - before->reading_mm - predicted_mm);
 }
 
-// ... without a lag: the motion now, or nothing at all; and a wall beside the way, where a range stays the
-// same though the robot drives. That speaks against no lag: a late sonar sees walls, too.
+// ... without a lag: the motion now, or nothing at all; and a wall that is seen aslant, whose range may
+// change by all that the robot drives, or not at all. That speaks against no lag: a late sonar sees walls,
+// too.
 typedef struct {
     int32_t motion;
     int32_t wall;
 } without_lag_t;
 
+static int32_t worth_of_wall(const argus_trail_t *const now, const argus_trail_t *const before) {
+    const int32_t change_mm = argus_abs(now->reading_mm - before->reading_mm);
+    return worth_of_change(STILL, argus_max(0, change_mm - argus_trail_moved_mm(now, before)));
+}
+
 static without_lag_t without_lag(const argus_trail_t *const now, const argus_trail_t *const before,
                                  const int sonar) {
-    const bool along =
+    const bool wall =
         argus_trail_is_echo(now) && argus_trail_is_echo(before) && motion_of(now, before) == STRAIGHT;
     const without_lag_t worth = {.motion = argus_max(0, worth_of(now, before, now, before, sonar)),
-                                 .wall = along ? worth_of_change(STILL, now->reading_mm - before->reading_mm)
-                                               : 0};
+                                 .wall = wall ? worth_of_wall(now, before) : 0};
     return worth;
 }
 

@@ -175,7 +175,7 @@ typedef struct {
 
 void argus_evidence_init(argus_evidence_t *self);
 
-// `percent` of the tabled evidence, 25 to 400, is what each level takes from now on (LAG: 100 at least); 100
+// `percent` of the tabled evidence, 25 to 400 (LAG: 100 at least), is what each level takes from now on; 100
 // after init.
 void argus_evidence_set_caution(argus_evidence_t *self, int32_t percent);
 

@@ -484,8 +484,8 @@ void test_its_own_readings_and_the_peers_name_together(void) {
     } by[] = {{430, 670, 0, 0, false, ARGUS_KIND_SLOW}, {429, 2000, 0, 0, false, ARGUS_KIND_NONE},
               {430, 669, 0, 0, false, ARGUS_KIND_NONE}, {430, 670, 0, -1, false, ARGUS_KIND_NONE},
               {430, 0, 670, 0, false, ARGUS_KIND_NONE}, {700, 699, 0, 0, true, ARGUS_KIND_NONE},
-              {700, 700, 0, 0, true, ARGUS_KIND_SLOW},  {1100, 0, 0, 0, false, ARGUS_KIND_NONE},
-              {1100, 1, 0, 0, false, ARGUS_KIND_SLOW}};
+              {700, 700, 0, 0, true, ARGUS_KIND_SLOW},  {899, 0, 0, 0, false, ARGUS_KIND_NONE},
+              {899, 201, 0, 0, false, ARGUS_KIND_SLOW}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
         setUp();
         c->lag[LAG] = (int16_t)by[i].own;
