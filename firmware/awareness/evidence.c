@@ -8,8 +8,6 @@
 #include "argus/angle.h"
 #include "evidence_internal.h"
 
-#define CAUTION_PERCENT 100
-#define OUT_TIMES 4
 #define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
 #define STEADY_SIPS 2   // a SIP lists pings up to 140 ms old
 #define REST_SIPS 3
@@ -46,7 +44,7 @@ void argus_evidence_init(argus_evidence_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         forget_case(&self->of[i]);
     }
-    argus_evidence_set_caution(self, CAUTION_PERCENT);
+    argus_evidence_set_caution(self, ARGUS_FULL_PERCENT);
 }
 
 void argus_evidence_set_caution(argus_evidence_t *const self, const int32_t percent) {
@@ -79,8 +77,8 @@ void argus_evidence_restart(argus_evidence_t *const self) {
 
 void argus_score(argus_case_t *const self, const argus_test_t test, const int32_t increment) {
     const argus_bounds_t *const bounds = &argus_bounds[test];
-    const int32_t scaled = increment * CAUTION_PERCENT / self->caution;
-    const int32_t sum = self->score[test] + (self->out && scaled < 0 ? OUT_TIMES * scaled : scaled);
+    const int32_t scaled = increment * ARGUS_FULL_PERCENT / self->caution;
+    const int32_t sum = self->score[test] + (self->out && scaled < 0 ? ARGUS_OUT_TIMES * scaled : scaled);
     self->score[test] = (int16_t)argus_max(bounds->floor, argus_min(bounds->ceiling, sum));
 }
 

@@ -7,8 +7,6 @@
 
 #define CEILING 3000
 #define TOLD_LEAST 200 // less: what contradicts it says nothing of a bend
-#define OUT_TIMES 4    // what speaks for a sonar that is out counts so often, as in every test
-#define FULL_PERCENT 100
 
 // A wall fills cones that are 6 degrees apart alike, so bends between these show as well.
 static const int16_t bend_cdeg[ARGUS_BENDS] = {-2400, -1800, -1200, 1200, 1800, 2400};
@@ -29,9 +27,9 @@ static const int16_t bent_than_other[VERDICTS][VERDICTS] = {
 // What is borne out never speaks for a fault, whatever is seen aside.
 static int32_t worth_of(const argus_case_t *const c, const argus_said_t verdict, const argus_said_t aside,
                         const int32_t increment, const int32_t percent) {
-    const int32_t sum = increment + bent_than_well[verdict][aside] * percent / FULL_PERCENT;
+    const int32_t sum = increment + bent_than_well[verdict][aside] * percent / ARGUS_FULL_PERCENT;
     const int32_t worth = verdict == AGREED ? argus_min(0, sum) : sum;
-    return (c->out && worth < 0 ? OUT_TIMES * worth : worth) * FULL_PERCENT / c->caution;
+    return (c->out && worth < 0 ? ARGUS_OUT_TIMES * worth : worth) * ARGUS_FULL_PERCENT / c->caution;
 }
 
 static void add(argus_peer_t *const peer, const int bend, const int32_t well, const int32_t told) {
@@ -44,7 +42,8 @@ void argus_bend_weigh(argus_evidence_t *const self, const argus_knowledge_t *con
                       const argus_glimpse_t *const at, const argus_said_t verdict, const int32_t increment) {
     const argus_case_t *const c = &self->of[sonar];
     argus_peer_t *const peer = &self->peers.of[sonar];
-    const int32_t percent = verdict == AGREED ? FULL_PERCENT : argus_unrest_percent(self, knowledge, sonar);
+    const int32_t percent =
+        verdict == AGREED ? ARGUS_FULL_PERCENT : argus_unrest_percent(self, knowledge, sonar);
     for (int i = 0; i < ARGUS_BENDS; i++) {
         if (verdict == AGREED && peer->bend[i] == 0) {
             continue;

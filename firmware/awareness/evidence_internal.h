@@ -19,6 +19,9 @@ typedef struct {
 
 extern const argus_bounds_t argus_bounds[ARGUS_TESTS];
 
+#define ARGUS_FULL_PERCENT 100 // the caution of the tables
+#define ARGUS_OUT_TIMES 4      // what speaks for a sonar that is out counts so often, but in LAG
+
 // Adds to a test's score, by caution and within its bounds; four times what speaks for a sonar that is out.
 void argus_score(argus_case_t *self, argus_test_t test, int32_t increment);
 

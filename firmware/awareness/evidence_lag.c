@@ -3,14 +3,13 @@
 #include <stddef.h>
 
 #include "argus/angle.h"
-#include "evidence_internal.h"
+#include "evidence_said.h"
 
 #define SPIN_CDEG 1000
 #define SPREAD_MM 60 // a stretch that varies less is not known again
 
 // Hundredths of a nat; see DESIGN.md, Evidence.
 #define STEP_MOST 300
-#define FULL_PERCENT 100
 #define FORGOTTEN 4 // with each reading
 #define REPEATS 5
 static const int16_t repeated[REPEATS] = {0, 0, 580, 870, 0}; // [i]: the i-th reading in a row given before
@@ -146,8 +145,9 @@ void argus_lag_test(argus_case_t *const self, const argus_trail_t *const now, co
     for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
         const int32_t step = step_of(self, now, n, &without, sonar);
         const int32_t gain = (unrest ? argus_min(0, step) : step) + replay_of(self, now, n) - FORGOTTEN;
-        const int32_t sum = self->lag[n] + gain * FULL_PERCENT / argus_max(FULL_PERCENT, self->caution);
-        self->lag[n] = (int16_t)argus_max(0, argus_min(argus_bounds[ARGUS_TEST_LAG].ceiling, sum));
+        const int32_t sum =
+            self->lag[n] + gain * ARGUS_FULL_PERCENT / argus_max(ARGUS_FULL_PERCENT, self->caution);
+        self->lag[n] = argus_limited(sum, argus_bounds[ARGUS_TEST_LAG].ceiling);
         most = argus_max(most, self->lag[n]);
     }
     self->score[ARGUS_TEST_LAG] = (int16_t)most;

@@ -377,16 +377,16 @@ void test_echoes_that_come_and_go_after_a_turn_are_late(void) {
     }
 }
 
-// A stretch that it has read before, on a steady way; `same`: so many readings of it.
-static int replay(int lag_of, int same, int spread_mm, int least_mm, bool unrest) {
+// A stretch that it has read before, on a steady way among people; `same`: so many readings of it.
+static int replay(int lag_of, int same, int spread_mm) {
     begin();
     int last[ARGUS_TRAIL];
     for (int i = 0; i < ARGUS_TRAIL; i++) {
-        last[i] = least_mm + (ARGUS_TRAIL - i) * spread_mm + i % 2;
-        read_at(AHEAD, last[i], i * spread_mm, 0, unrest);
+        last[i] = 1400 + (ARGUS_TRAIL - i) * spread_mm + i % 2;
+        read_at(AHEAD, last[i], i * spread_mm, 0, true);
     }
     for (int i = 0; i < same; i++) {
-        read_at(AHEAD, last[ARGUS_TRAIL - lag_of + i], (ARGUS_TRAIL + i) * spread_mm, 0, unrest);
+        read_at(AHEAD, last[ARGUS_TRAIL - lag_of + i], (ARGUS_TRAIL + i) * spread_mm, 0, true);
     }
     return score();
 }
@@ -394,15 +394,15 @@ static int replay(int lag_of, int same, int spread_mm, int least_mm, bool unrest
 void test_three_readings_that_it_has_given_before_name_it_also_among_people(void) {
     const argus_bounds_t *const level = &argus_bounds[ARGUS_TEST_LAG];
     for (int n = 3; n < ARGUS_TRAIL; n++) {
-        TEST_ASSERT_TRUE_MESSAGE(replay(n, 2, 60, 1400, true) < level->naming, by_hand(AHEAD, n));
-        TEST_ASSERT_TRUE_MESSAGE(replay(n, 3, 60, 1400, true) >= level->naming_busy, by_hand(AHEAD, n));
+        TEST_ASSERT_TRUE_MESSAGE(replay(n, 2, 60) < level->naming, by_hand(AHEAD, n));
+        TEST_ASSERT_TRUE_MESSAGE(replay(n, 3, 60) >= level->naming_busy, by_hand(AHEAD, n));
     }
 }
 
 // However long the stretch is, and so the lag.
 void test_readings_given_before_convict_nobody(void) {
     for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
-        replay(n, n, 60, 1400, true);
+        replay(n, n, 60);
         TEST_ASSERT_TRUE_MESSAGE(score() < argus_bounds[ARGUS_TEST_LAG].convincing, by_hand(AHEAD, n));
     }
 }
@@ -410,10 +410,10 @@ void test_readings_given_before_convict_nobody(void) {
 // Where all readings are much alike some are the same by chance; the shortest are all alike.
 void test_what_hardly_varies_is_not_known_again(void) {
     for (int n = 3; n < ARGUS_TRAIL; n++) {
-        replay(n, 3, 5, 1400, true);
+        replay(n, 3, 5);
         TEST_ASSERT_TRUE_MESSAGE(score() < argus_bounds[ARGUS_TEST_LAG].suspicious, by_hand(AHEAD, n));
     }
-    replay(3, 3, 60, 1400, true);
+    replay(3, 3, 60);
     const int known = score();
     begin();
     for (int i = 0; i < 12; i++) {
