@@ -37,7 +37,7 @@ static void convict(argus_t *const self, const int sonar, const argus_fault_kind
 // A suspect carries the kind that the evidence names so far.
 static void name(argus_t *const self, const int sonar) {
     argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
+    const argus_fault_kind_t kind = argus_evidence_renames(&self->evidence, sonar, s->kind);
     if (kind != ARGUS_KIND_NONE) {
         argus_flag_suspects(self, (uint16_t)(1u << sonar));
     }

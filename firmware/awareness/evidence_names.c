@@ -8,6 +8,8 @@
 #define OFF_RUN 5
 #define LOST_FOR 4
 #define LOST_CONTRADICTED 200
+#define BACK_CONTRADICTED 200
+#define HEARD_TRACK 3 // crosstalk makes no three echoes of one thing
 #define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
 #define OFF_RUN_LONGEST 20 // ... and what was called intermittent
 #define OFF_HOLLOW 3
@@ -329,6 +331,23 @@ argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, cons
     return bent_or(self, sonar, slow_or(self, sonar, garbage_or(self, sonar, first)));
 }
 
+// It hears again what the others hear, and silence was nearly all that contradicted it; a late one would tell
+// by itself.
+static bool has_come_back(const argus_evidence_t *const self, const int sonar) {
+    const argus_case_t *const c = &self->of[sonar];
+    return c->none_run < VIEW_OFF_RUN && self->peers.of[sonar].borne_out &&
+           c->score[ARGUS_TEST_PEERS] >= BACK_CONTRADICTED && is_mostly_hollow(self, sonar) &&
+           c->score[ARGUS_TEST_LAG] < LATE_FIRST;
+}
+
+argus_fault_kind_t argus_evidence_renames(const argus_evidence_t *const self, const int sonar,
+                                          const argus_fault_kind_t present) {
+    const argus_fault_kind_t found = argus_evidence_names(self, sonar);
+    const bool gaps =
+        found == ARGUS_KIND_NONE && present == ARGUS_KIND_OFF && has_come_back(self, sonar);
+    return gaps ? ARGUS_KIND_INTERMITTENT : found;
+}
+
 argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, const int sonar) {
     return first_name(self, sonar, ARGUS_TESTS - 1);
 }
@@ -354,7 +373,8 @@ static bool is_more_than_wrong(const argus_evidence_t *const self, const int son
                                const argus_fault_kind_t found) {
     switch (found) {
     case ARGUS_KIND_OFF:
-        return self->of[sonar].none_run >= OFF_RUN_LONG && is_hollow(self, sonar);
+        return self->of[sonar].none_run >= OFF_RUN_LONG && is_hollow(self, sonar) &&
+               !is_still_bent(self, sonar);
     case ARGUS_KIND_INTERMITTENT:
         return is_mostly_hollow(self, sonar) && !is_still_bent(self, sonar);
     case ARGUS_KIND_SLOW:
@@ -366,12 +386,17 @@ static bool is_more_than_wrong(const argus_evidence_t *const self, const int son
     }
 }
 
+static bool is_heard(const argus_case_t *const self) {
+    return self->none_run == 0 && self->track >= HEARD_TRACK;
+}
+
 // A stray echo among silences that are contradicted may be crosstalk: it makes nobody late or wrong.
 static bool is_more_than_off(const argus_evidence_t *const self, const int sonar,
                              const argus_fault_kind_t found) {
     const bool late = found == ARGUS_KIND_SLOW && !is_surely_late(self, sonar) &&
                       self->of[sonar].score[ARGUS_TEST_LAG] < argus_bounds[ARGUS_TEST_LAG].naming;
-    return !(found == ARGUS_KIND_WRONG || late) || !is_mostly_hollow(self, sonar);
+    const bool stray = is_mostly_hollow(self, sonar) && !is_heard(&self->of[sonar]);
+    return !(found == ARGUS_KIND_WRONG || late) || !stray;
 }
 
 static bool is_more_than_slow(const argus_evidence_t *const self, const int sonar,

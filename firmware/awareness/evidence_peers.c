@@ -7,11 +7,11 @@
 #include "argus/angle.h"
 #include "evidence_said.h"
 
-#define AGE_MS 10000u
+#define REMEMBERED_MS 40000u // what stands still stays where it was seen
+#define BUSY_MS 10000u       // ... but not where something moves
+#define ASIDE_MS 10000u
 #define SAME_BEARING_CDEG 300
 #define BESIDE_CDEG 500 // at a step of what is seen a reading may be of either side
-#define SAME_LATERAL_MM 60
-#define SAME_ALONG_MM 200
 #define PING_AGE_MS 70 // a SIP lists pings 0 to 140 ms old
 #define SIP_MOST_MS 300u
 #define COUNTED_MM 100
@@ -34,8 +34,6 @@ typedef struct {
     uint16_t against; // those that differ, bit i: sonar i
 } tally_t;
 
-_Static_assert(ARGUS_GLIMPSES <= 32, "weighed has a bit for each");
-
 // Hundredths of a nat; DESIGN.md, Evidence, derives them. By the part of the other sonars' readings that is
 // contradicted at the time, in steps of 5 % from 5 %.
 #define PARTS 12
@@ -56,23 +54,6 @@ static const int16_t late_than_wrong[VERDICTS][VERDICTS] = {
     [CONTRADICTED] = {[QUIET] = 230, [AGREED] = 230, [CONTRADICTED] = -300, [SAME] = -150},
 };
 
-static int32_t bearing_diff_cdeg(const argus_glimpse_t *const a, const argus_glimpse_t *const b) {
-    const int32_t diff = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
-    return diff > 18000 ? 36000 - diff : diff;
-}
-
-static bool is_same_place(const argus_glimpse_t *const now, const argus_glimpse_t *const then,
-                          int32_t *const along_mm) {
-    const int32_t dx = argus_trail_offset_mm(now->x_mm, then->x_mm);
-    const int32_t dy = argus_trail_offset_mm(now->y_mm, then->y_mm);
-    if (argus_abs(dx) > SAME_ALONG_MM || argus_abs(dy) > SAME_ALONG_MM) {
-        return false;
-    }
-    const argus_shift_t shift = argus_pair_shift(dx, dy, now->bearing_cdeg);
-    *along_mm = shift.along_mm;
-    return shift.lateral_mm <= SAME_LATERAL_MM;
-}
-
 static argus_said_t compare(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
     static const uint8_t verdict[] = {[ARGUS_PAIR_QUIET] = QUIET,
                                       [ARGUS_PAIR_AGREE] = AGREED,
@@ -84,44 +65,29 @@ static argus_said_t compare(const int32_t now_mm, const int32_t then_mm, const i
     return said == CONTRADICTED && argus_pair_is_faint(now_mm, then_mm, along_mm) ? FAINT : said;
 }
 
-static int slot_of(const argus_peer_t *const self, const int back) {
-    return (self->next + ARGUS_GLIMPSES - back) % ARGUS_GLIMPSES;
+// What was seen on the bearing of a reading from its place.
+static argus_gaze_t gaze_at(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                            const argus_glimpse_t *const at) {
+    const argus_gaze_t gaze = {.at = at,
+                               .now_ms = knowledge->sip_ms,
+                               .age_ms = self->busy ? BUSY_MS : REMEMBERED_MS,
+                               .span_cdeg = SAME_BEARING_CDEG};
+    return gaze;
 }
 
-// 1: the last.
-static const argus_glimpse_t *at_back(const argus_peer_t *const self, const int back) {
-    return back <= self->count ? &self->seen[slot_of(self, back)] : NULL;
-}
-
-// How far back, beyond `after`, a peer looked from the place of `at` within `span_cdeg` of its bearing, and
-// so far behind it; 0: it did not.
-static int find(const argus_peer_t *const peer, const argus_glimpse_t *const at, const uint32_t now_ms,
-                const int32_t span_cdeg, const int after, int32_t *const along_mm) {
-    for (int i = after + 1; i <= peer->count; i++) {
-        const argus_glimpse_t *const then = at_back(peer, i);
-        if (now_ms - then->t_ms > AGE_MS) {
-            return 0;
-        }
-        if (bearing_diff_cdeg(at, then) <= span_cdeg && is_same_place(at, then, along_mm)) {
-            return i;
-        }
-    }
-    return 0;
-}
-
-// The latest glimpse of a peer on the bearing of `at` from its place decides.
-static argus_said_t ask(const argus_peer_t *const peer, const argus_glimpse_t *const at,
-                        const uint32_t now_ms) {
+// The latest glimpse of a peer decides.
+static argus_said_t ask(const argus_peer_t *const peer, const argus_gaze_t *const gaze) {
     int32_t along_mm = 0;
-    const int back = find(peer, at, now_ms, SAME_BEARING_CDEG, 0, &along_mm);
-    return back > 0 ? compare(at->reading_mm, at_back(peer, back)->reading_mm, along_mm) : UNSEEN;
+    const int back = argus_seen_find(peer, gaze, 0, &along_mm);
+    return back > 0 ? compare(gaze->at->reading_mm, argus_seen_at(peer, back)->reading_mm, along_mm) : UNSEEN;
 }
 
-static bool excuses(const argus_peer_t *const peer, const argus_glimpse_t *const at, const uint32_t now_ms) {
+static bool excuses(const argus_peer_t *const peer, const argus_gaze_t *const gaze) {
     int32_t along_mm = 0;
-    for (int back = find(peer, at, now_ms, BESIDE_CDEG, 0, &along_mm); back > 0;
-         back = find(peer, at, now_ms, BESIDE_CDEG, back, &along_mm)) {
-        const argus_said_t said = compare(at->reading_mm, at_back(peer, back)->reading_mm, along_mm);
+    for (int back = argus_seen_find(peer, gaze, 0, &along_mm); back > 0;
+         back = argus_seen_find(peer, gaze, back, &along_mm)) {
+        const argus_said_t said =
+            compare(gaze->at->reading_mm, argus_seen_at(peer, back)->reading_mm, along_mm);
         if (said == AGREED || said == QUIET) {
             return true;
         }
@@ -140,8 +106,10 @@ static bool is_witness(const argus_evidence_t *const self, const argus_knowledge
 
 static bool is_excused(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const argus_glimpse_t *const now) {
+    const argus_gaze_t aside = {
+        .at = now, .now_ms = knowledge->sip_ms, .age_ms = ASIDE_MS, .span_cdeg = BESIDE_CDEG};
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        if (is_witness(self, knowledge, i, sonar) && excuses(&self->peers.of[i], now, knowledge->sip_ms)) {
+        if (is_witness(self, knowledge, i, sonar) && excuses(&self->peers.of[i], &aside)) {
             return true;
         }
     }
@@ -150,12 +118,13 @@ static bool is_excused(const argus_evidence_t *const self, const argus_knowledge
 
 static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const argus_glimpse_t *const now) {
+    const argus_gaze_t gaze = gaze_at(self, knowledge, now);
     tally_t tally = {.agree = 0};
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if (!is_witness(self, knowledge, i, sonar)) {
             continue;
         }
-        const argus_said_t said = ask(&self->peers.of[i], now, knowledge->sip_ms);
+        const argus_said_t said = ask(&self->peers.of[i], &gaze);
         tally.quiet = (uint8_t)(tally.quiet + (said == QUIET));
         tally.agree = (uint8_t)(tally.agree + (said == AGREED));
         const bool differs = said == CONTRADICTED || said == FAINT;
@@ -199,7 +168,7 @@ static bool is_news(const argus_peer_t *const self, const argus_glimpse_t *const
         if (then->t_ms != 0 && ms_between(now, then) < COUNTED_MS &&
             argus_abs(argus_trail_offset_mm(now->x_mm, then->x_mm)) < COUNTED_MM &&
             argus_abs(argus_trail_offset_mm(now->y_mm, then->y_mm)) < COUNTED_MM &&
-            bearing_diff_cdeg(now, then) < COUNTED_CDEG) {
+            argus_seen_bearing_cdeg(now, then) < COUNTED_CDEG) {
             return false;
         }
     }
@@ -281,13 +250,13 @@ static bool is_idle(const argus_peer_t *const self, const argus_said_t verdict, 
 // What the others would say of this reading had it been made at the pose of its sonar so far back.
 static argus_said_t verdict_as_of(const argus_evidence_t *const self,
                                   const argus_knowledge_t *const knowledge, const int sonar,
-                                  const argus_glimpse_t *const now, const int back) {
-    const argus_glimpse_t *const then = at_back(&self->peers.of[sonar], back);
+                                  const argus_glimpse_t *const now,
+                                  const argus_glimpse_t *const then) {
     if (then == NULL) {
         return UNSEEN;
     }
     int32_t along_mm = 0;
-    if (bearing_diff_cdeg(now, then) < LAG_TURN_CDEG && is_same_place(now, then, &along_mm)) {
+    if (argus_seen_bearing_cdeg(now, then) < LAG_TURN_CDEG && argus_seen_from(now, then, &along_mm)) {
         return SAME;
     }
     argus_glimpse_t as_of = *then;
@@ -308,10 +277,11 @@ static void weigh_lag(argus_peer_t *const peer, const int lag, const argus_said_
 static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const int back, const argus_said_t verdict) {
     argus_peer_t *const peer = &self->peers.of[sonar];
-    const argus_glimpse_t now = *at_back(peer, back);
+    const argus_glimpse_t now = *argus_seen_at(peer, back);
     for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
         if (!is_idle(peer, verdict, n)) {
-            weigh_lag(peer, n, verdict, verdict_as_of(self, knowledge, sonar, &now, back + n));
+            const argus_glimpse_t *const then = argus_seen_before(peer, back, n);
+            weigh_lag(peer, n, verdict, verdict_as_of(self, knowledge, sonar, &now, then));
         }
     }
 }
@@ -391,15 +361,28 @@ static void count_if_news(argus_evidence_t *const self, const argus_knowledge_t 
     }
 }
 
+// That it hears shows also where a silence of it has counted already.
+static void note_borne_out(argus_evidence_t *const self, const int sonar, const argus_glimpse_t *const at,
+                           const tally_t *const tally, const bool fresh) {
+    argus_peer_t *const peer = &self->peers.of[sonar];
+    const bool agrees = tally->agree > 0 && tally->agree >= tally->differ;
+    const bool echo = fresh && at->reading_mm < ARGUS_NO_ECHO_MM;
+    peer->borne_out =
+        peer->borne_out || (echo && agrees && self->of[sonar].score[ARGUS_TEST_PEERS] > 0);
+}
+
 static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const int back, const bool fresh) {
     argus_peer_t *const peer = &self->peers.of[sonar];
-    const argus_glimpse_t at = *at_back(peer, back);
+    const argus_glimpse_t at = *argus_seen_at(peer, back);
     const tally_t tally = ask_all(self, knowledge, sonar, &at);
     const argus_said_t verdict = verdict_of(&tally);
     const bool seen = verdict != UNSEEN || tally.differ > 0;
-    peer->weighed |= seen ? 1u << slot_of(peer, back) : 0u;
+    if (seen) {
+        argus_seen_weigh(peer, back);
+    }
     count_if_news(self, knowledge, sonar, &at, &tally);
+    note_borne_out(self, sonar, &at, &tally, fresh);
     count_silence(self, knowledge, sonar, &at, &tally);
     const bool tells = verdict != DIVIDED && (fresh || verdict != UNSEEN);
     if (tells && !(verdict == CONTRADICTED && argus_is_unrest_beside(self, knowledge, sonar))) {
@@ -410,28 +393,22 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
 // What nobody could judge when it was read is judged by who looks there later.
 static void look_back(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                       const int sonar) {
-    const argus_glimpse_t now = *at_back(&self->peers.of[sonar], 1);
+    const argus_glimpse_t now = *argus_seen_at(&self->peers.of[sonar], 1);
+    const argus_gaze_t gaze = gaze_at(self, knowledge, &now);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_peer_t *const peer = &self->peers.of[i];
         const bool asked = is_witness(self, knowledge, sonar, i);
         int32_t along_mm = 0;
-        const int back = asked ? find(peer, &now, knowledge->sip_ms, SAME_BEARING_CDEG, 0, &along_mm) : 0;
-        if (back > 0 && (peer->weighed >> slot_of(peer, back) & 1u) == 0) {
+        const int back = asked ? argus_seen_find(peer, &gaze, 0, &along_mm) : 0;
+        if (back > 0 && !argus_seen_is_weighed(peer, back)) {
             weigh(self, knowledge, i, back, false);
         }
     }
 }
 
-static void note_seen(argus_peer_t *const self, const argus_glimpse_t now) {
-    self->seen[self->next] = now;
-    self->weighed &= ~(1u << self->next);
-    self->next = (uint8_t)((self->next + 1) % ARGUS_GLIMPSES);
-    self->count = (uint8_t)argus_min(self->count + 1, ARGUS_GLIMPSES);
-}
-
 void argus_peers_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                       const int sonar) {
-    note_seen(&self->peers.of[sonar], glimpse_of(&self->peers, knowledge, sonar));
+    argus_seen_note(&self->peers.of[sonar], glimpse_of(&self->peers, knowledge, sonar));
     weigh(self, knowledge, sonar, 1, true);
     look_back(self, knowledge, sonar);
 }

@@ -119,7 +119,7 @@ typedef struct {
 
 // A reading with the place of its transducer and its bearing when the ping was sent, about; x and y modulo
 // 65,536 mm, course frame.
-#define ARGUS_GLIMPSES 32 // that are remembered of each sonar: some 10 s
+#define ARGUS_GLIMPSES 64 // that are remembered of each sonar: 20 s in motion, longer at rest
 #define ARGUS_COUNTED 6
 #define ARGUS_BENDS 6 // of an axis: -24, -18, -12, 12, 18, 24 degrees
 typedef struct {
@@ -128,6 +128,7 @@ typedef struct {
     uint16_t y_mm;
     int16_t bearing_cdeg;
     uint16_t reading_mm;
+    uint16_t repeats; // readings before it, in a row, that were alike, from the same place
 } argus_glimpse_t;
 
 typedef struct {
@@ -146,7 +147,7 @@ typedef struct {
     uint8_t next;
     uint8_t count;
     uint8_t counted_next;
-    uint32_t weighed; // bit i: seen[i] was, against what the others saw
+    uint64_t weighed; // bit i: seen[i] was, against what the others saw
 } argus_peer_t;
 
 typedef struct {
@@ -184,7 +185,7 @@ void argus_evidence_set_caution(argus_evidence_t *self, int32_t percent);
 void argus_evidence_restart(argus_evidence_t *self);
 
 // After each SIP. Cost: for each fresh sonar one pass over the views of the other 15 (120); over their
-// glimpses (480) one, two where they contradict it, up to sixteen more where its lags are doubted and
+// glimpses (960) one, two where they contradict it, up to sixteen more where its lags are doubted and
 // twelve where its axis is, and the same again for each of the others that it answers.
 void argus_evidence_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge);
 
@@ -200,6 +201,11 @@ bool argus_evidence_holds(const argus_evidence_t *self, int sonar);
 bool argus_evidence_is_unsteady(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *self, int sonar);
+
+// What a suspect that carries `present` (NONE: no name) is named now: as above, and INTERMITTENT who was taken
+// for OFF and is heard again.
+argus_fault_kind_t argus_evidence_renames(const argus_evidence_t *self, int sonar,
+                                          argus_fault_kind_t present);
 
 // What keeps a sonar out, and the kind that ends its probation: as suspects and names, without what the peers
 // alone say.

@@ -50,7 +50,7 @@ static argus_glimpse_t *remember(int sonar, argus_glimpse_t glimpse) {
     argus_peer_t *peer = &e.peers.of[sonar];
     argus_glimpse_t *at = &peer->seen[peer->next];
     *at = glimpse;
-    peer->weighed |= 1u << peer->next; // it is not the one that is judged
+    peer->weighed |= (uint64_t)1 << peer->next; // it is not the one that is judged
     peer->next = (uint8_t)((peer->next + 1) % ARGUS_GLIMPSES);
     peer->count = (uint8_t)argus_min(peer->count + 1, ARGUS_GLIMPSES);
     return at;
@@ -221,18 +221,28 @@ void test_only_glimpses_on_the_same_bearing_compare(void) {
 }
 
 // What was seen 10 s ago counts, a millisecond more does not; the clock wraps between the two.
-void test_glimpses_older_than_ten_seconds_do_not_compare(void) {
-    static const uint32_t clocks[] = {1, 2000, 9999, 10000, 10001, 500000, 0x80000000u, UINT32_MAX};
-    for (int i = 0; i < 8; i++) {
+static void looked_ago(uint32_t most_ms, bool busy) {
+    static const uint32_t clocks[] = {1, 2000, 9999, 10000, 40000, 40001, 500000, 0x80000000u, UINT32_MAX};
+    for (int i = 0; i < 9; i++) {
         for (uint32_t late = 0; late < 2; late++) {
             setUp();
             k.sip_ms = clocks[i];
+            e.busy = busy;
             face(ME, 0);
-            saw(WITNESS, 3000)->t_ms -= 10000u + late;
+            saw(WITNESS, 3000)->t_ms -= most_ms + late;
             snprintf(text, sizeof text, "clock %u, %u ms late", (unsigned)clocks[i], (unsigned)late);
             TEST_ASSERT_EQUAL_MESSAGE(late == 0 ? AGAINST : 0, reads(1000), text);
         }
     }
+}
+
+void test_glimpses_older_than_forty_seconds_do_not_compare(void) {
+    looked_ago(40000, false);
+}
+
+// What moves may have gone where a standing thing was seen, and come where nothing was.
+void test_while_something_moves_ten_seconds_are_old(void) {
+    looked_ago(10000, true);
 }
 
 // The place is kept modulo 65,536 mm: the seam changes nothing, and half the world away is not here.
@@ -300,6 +310,19 @@ void test_what_another_saw_a_little_aside_is_not_contradicted(void) {
                 TEST_ASSERT_EQUAL_MESSAGE(expect, reads(by[i].mm), text);
             }
         }
+    }
+}
+
+// A step is looked at anew: what was seen aside longer ago than ten seconds excuses nothing.
+void test_what_was_seen_aside_long_ago_excuses_nothing(void) {
+    for (uint32_t late = 0; late < 2; late++) {
+        setUp();
+        face(ME, 0);
+        argus_glimpse_t *aside = saw(THIRD, 1000);
+        aside->bearing_cdeg = 400;
+        aside->t_ms -= 10000u + late;
+        saw(WITNESS, 3000);
+        TEST_ASSERT_EQUAL(late == 0 ? 0 : AGAINST, reads(1000));
     }
 }
 
@@ -408,8 +431,8 @@ void test_what_is_read_is_not_judged_from_elsewhere_or_too_late(void) {
         int dx_mm;
         int32_t turn_cdeg;
         int expect;
-    } by[] = {{10000, 0, 0, AGAINST_BOTH},
-              {10001, 0, 0, 0},
+    } by[] = {{40000, 0, 0, AGAINST_BOTH},
+              {40001, 0, 0, 0},
               {300, 200, 0, AGAINST_BOTH},
               {300, 201, 0, 0},
               {300, 0, 301, 0}};
@@ -429,7 +452,7 @@ void test_what_is_read_is_not_judged_from_elsewhere_or_too_late(void) {
     }
 }
 
-// 32 glimpses of a sonar are remembered, in a ring.
+// 64 glimpses of a sonar are remembered, in a ring.
 void test_the_last_glimpses_are_remembered(void) {
     for (int since = 0; since < 2 * ARGUS_GLIMPSES; since++) {
         setUp();
@@ -450,7 +473,7 @@ void test_the_last_glimpses_are_remembered(void) {
 void test_what_is_read_is_a_glimpse_for_the_others(void) {
     for (int i = 0; i < 3 * ARGUS_GLIMPSES; i++) {
         face(ME, 0);
-        reads(3000);
+        reads(i % 2 == 0 ? 2000 : 3000); // alike they would be one glimpse
         TEST_ASSERT_EQUAL(argus_min(i + 1, ARGUS_GLIMPSES), e.peers.of[ME].count);
     }
     const argus_glimpse_t mine = here(ME);
