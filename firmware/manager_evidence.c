@@ -43,6 +43,7 @@ static void name(argus_t *const self, const int sonar) {
     }
     if (s->health == ARGUS_SUSPECT && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
         s->kind = kind;
+        argus_evidence_note_name(&self->evidence, sonar, kind);
         argus_say(self, ARGUS_EV_SONAR_NAMED, sonar, (int32_t)kind);
     }
     const bool held = self->mode == ARGUS_MODE_VERIFYING || (self->evidence.lost >> sonar & 1u) != 0;

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "argus/angle.h"
-#include "evidence_internal.h"
+#include "evidence_said.h"
 
 #define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
 #define STEADY_SIPS 2   // a SIP lists pings up to 140 ms old
@@ -135,6 +135,7 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     const bool out = argus_is_out(knowledge, sonar);
     if (c->out && !out) {
         argus_bend_forget(&self->peers.of[sonar]); // it was mended
+        argus_seen_forget(&self->peers.of[sonar]);
     }
     c->out = out;
     argus_trend_reading(&self->trend, knowledge, sonar);

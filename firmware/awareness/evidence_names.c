@@ -9,7 +9,7 @@
 #define LOST_FOR 4
 #define LOST_CONTRADICTED 200
 #define BACK_CONTRADICTED 200
-#define HEARD_TRACK 3 // crosstalk makes no three echoes of one thing
+#define HEARD_TRACK 3      // crosstalk makes no three echoes of one thing
 #define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
 #define OFF_RUN_LONGEST 20 // ... and what was called intermittent
 #define OFF_HOLLOW 3
@@ -253,13 +253,17 @@ static bool is_mute(const argus_evidence_t *const self, const int sonar) {
            is_hollow(self, sonar) && has_partners(self, sonar);
 }
 
-// The last of its readings that counted is a silence, contradicted since it last proved alive.
+// One of its readings that counted is a silence since it last proved alive: contradicted, or it had not
+// counted.
 static bool is_missed(const argus_evidence_t *const self, const int sonar) {
-    const argus_peer_t *const peer = &self->peers.of[sonar];
-    const argus_glimpse_t *const last =
-        &peer->counted[(peer->counted_next + ARGUS_COUNTED - 1) % ARGUS_COUNTED];
-    const uint32_t since_ms = last->t_ms - self->of[sonar].alive_ms;
-    return last->reading_mm >= ARGUS_NO_ECHO_MM && since_ms > 0 && since_ms <= INT32_MAX;
+    for (int i = 0; i < ARGUS_COUNTED; i++) {
+        const argus_glimpse_t *const at = &self->peers.of[sonar].counted[i];
+        const uint32_t since_ms = at->t_ms - self->of[sonar].alive_ms;
+        if (at->reading_mm >= ARGUS_NO_ECHO_MM && since_ms > 0 && since_ms <= INT32_MAX) {
+            return true;
+        }
+    }
+    return false;
 }
 
 // It followed an echo, lost it, and somebody else hears one there: what it did itself is the second voice.
@@ -343,9 +347,13 @@ static bool has_come_back(const argus_evidence_t *const self, const int sonar) {
 argus_fault_kind_t argus_evidence_renames(const argus_evidence_t *const self, const int sonar,
                                           const argus_fault_kind_t present) {
     const argus_fault_kind_t found = argus_evidence_names(self, sonar);
-    const bool gaps =
-        found == ARGUS_KIND_NONE && present == ARGUS_KIND_OFF && has_come_back(self, sonar);
+    const bool gaps = found == ARGUS_KIND_NONE && present == ARGUS_KIND_OFF && has_come_back(self, sonar);
     return gaps ? ARGUS_KIND_INTERMITTENT : found;
+}
+
+void argus_evidence_note_name(argus_evidence_t *const self, const int sonar, const argus_fault_kind_t kind) {
+    argus_peer_t *const peer = &self->peers.of[sonar];
+    peer->borne_out = peer->borne_out && kind != ARGUS_KIND_OFF; // what it heard before tells nothing of now
 }
 
 argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, const int sonar) {

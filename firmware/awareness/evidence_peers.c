@@ -7,12 +7,11 @@
 #include "argus/angle.h"
 #include "evidence_said.h"
 
-#define REMEMBERED_MS 40000u // what stands still stays where it was seen
-#define BUSY_MS 10000u       // ... but not where something moves
+#define REMEMBERED_LEAST_MS 10000u
 #define ASIDE_MS 10000u
 #define SAME_BEARING_CDEG 300
 #define BESIDE_CDEG 500 // at a step of what is seen a reading may be of either side
-#define PING_AGE_MS 70 // a SIP lists pings 0 to 140 ms old
+#define PING_AGE_MS 70  // a SIP lists pings 0 to 140 ms old
 #define SIP_MOST_MS 300u
 #define COUNTED_MM 100
 #define COUNTED_CDEG 800
@@ -65,12 +64,27 @@ static argus_said_t compare(const int32_t now_mm, const int32_t then_mm, const i
     return said == CONTRADICTED && argus_pair_is_faint(now_mm, then_mm, along_mm) ? FAINT : said;
 }
 
-// What was seen on the bearing of a reading from its place.
-static argus_gaze_t gaze_at(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                            const argus_glimpse_t *const at) {
+// For how long things stand still before the others in use.
+static uint32_t still_ms(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                         const int of) {
+    uint32_t still = ARGUS_REMEMBERED_MS;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const argus_case_t *const c = &self->of[i];
+        const uint32_t since_ms = knowledge->sip_ms - c->unrest_ms;
+        if (i != of && c->unrest && since_ms < still && !argus_is_out(knowledge, i)) {
+            still = since_ms;
+        }
+    }
+    return still;
+}
+
+// Who looked from the place of a reading on its bearing. What was seen before something moved may be gone.
+static argus_gaze_t gaze_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                            const int sonar, const argus_glimpse_t *const at) {
+    const uint32_t still = still_ms(self, knowledge, sonar);
     const argus_gaze_t gaze = {.at = at,
                                .now_ms = knowledge->sip_ms,
-                               .age_ms = self->busy ? BUSY_MS : REMEMBERED_MS,
+                               .age_ms = still > REMEMBERED_LEAST_MS ? still : REMEMBERED_LEAST_MS,
                                .span_cdeg = SAME_BEARING_CDEG};
     return gaze;
 }
@@ -118,7 +132,7 @@ static bool is_excused(const argus_evidence_t *const self, const argus_knowledge
 
 static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const argus_glimpse_t *const now) {
-    const argus_gaze_t gaze = gaze_at(self, knowledge, now);
+    const argus_gaze_t gaze = gaze_of(self, knowledge, sonar, now);
     tally_t tally = {.agree = 0};
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if (!is_witness(self, knowledge, i, sonar)) {
@@ -235,7 +249,7 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     const bool doubted = c->score[ARGUS_TEST_PEERS] > 0;
     const bool echo = now->reading_mm < ARGUS_NO_ECHO_MM;
     peer->against = doubted ? (uint16_t)(peer->against | against) : 0;
-    peer->borne_out = doubted && (peer->borne_out || (against == 0 && echo));
+    peer->borne_out = doubted && peer->borne_out;
     if (is_since(knowledge, sonar, now) && shows_at_once(knowledge, sonar)) {
         c->agreed = (uint8_t)(against == 0 && echo ? argus_min(c->agreed + 1, UINT8_MAX) : 0);
     }
@@ -250,8 +264,7 @@ static bool is_idle(const argus_peer_t *const self, const argus_said_t verdict, 
 // What the others would say of this reading had it been made at the pose of its sonar so far back.
 static argus_said_t verdict_as_of(const argus_evidence_t *const self,
                                   const argus_knowledge_t *const knowledge, const int sonar,
-                                  const argus_glimpse_t *const now,
-                                  const argus_glimpse_t *const then) {
+                                  const argus_glimpse_t *const now, const argus_glimpse_t *const then) {
     if (then == NULL) {
         return UNSEEN;
     }
@@ -361,14 +374,14 @@ static void count_if_news(argus_evidence_t *const self, const argus_knowledge_t 
     }
 }
 
-// That it hears shows also where a silence of it has counted already.
+// That it hears shows also where a silence of it has counted already; not by what it heard before it fell
+// silent, and is judged later.
 static void note_borne_out(argus_evidence_t *const self, const int sonar, const argus_glimpse_t *const at,
                            const tally_t *const tally, const bool fresh) {
     argus_peer_t *const peer = &self->peers.of[sonar];
     const bool agrees = tally->agree > 0 && tally->agree >= tally->differ;
     const bool echo = fresh && at->reading_mm < ARGUS_NO_ECHO_MM;
-    peer->borne_out =
-        peer->borne_out || (echo && agrees && self->of[sonar].score[ARGUS_TEST_PEERS] > 0);
+    peer->borne_out = peer->borne_out || (echo && agrees && self->of[sonar].score[ARGUS_TEST_PEERS] > 0);
 }
 
 static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
@@ -394,9 +407,9 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
 static void look_back(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                       const int sonar) {
     const argus_glimpse_t now = *argus_seen_at(&self->peers.of[sonar], 1);
-    const argus_gaze_t gaze = gaze_at(self, knowledge, &now);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_peer_t *const peer = &self->peers.of[i];
+        const argus_gaze_t gaze = gaze_of(self, knowledge, i, &now);
         const bool asked = is_witness(self, knowledge, sonar, i);
         int32_t along_mm = 0;
         const int back = asked ? argus_seen_find(peer, &gaze, 0, &along_mm) : 0;

@@ -27,8 +27,13 @@ int argus_seen_find(const argus_peer_t *self, const argus_gaze_t *gaze, int afte
 const argus_glimpse_t *argus_seen_at(const argus_peer_t *self, int back);
 const argus_glimpse_t *argus_seen_before(const argus_peer_t *self, int back, int firings);
 
-// One more; what a robot at rest sees again and again is one glimpse.
+// What stands still stays where it was seen.
+#define ARGUS_REMEMBERED_MS 40000u
+
+// One more, `repeats` 0; what a robot at rest sees again and again is one glimpse, the first, of the last
+// time. What is too old for any gaze goes.
 void argus_seen_note(argus_peer_t *self, argus_glimpse_t now);
+void argus_seen_forget(argus_peer_t *self);
 
 // Whether what was seen so far back was judged by the others; that it was.
 bool argus_seen_is_weighed(const argus_peer_t *self, int back);

@@ -55,7 +55,7 @@ int argus_seen_find(const argus_peer_t *const self, const argus_gaze_t *const ga
     for (int i = after + 1; i <= self->count; i++) {
         const argus_glimpse_t *const then = argus_seen_at(self, i);
         if (gaze->now_ms - then->t_ms > gaze->age_ms) {
-            return 0;
+            return 0; // those before it are older still
         }
         if (argus_seen_bearing_cdeg(gaze->at, then) <= gaze->span_cdeg &&
             argus_seen_from(gaze->at, then, along_mm)) {
@@ -74,23 +74,37 @@ void argus_seen_weigh(argus_peer_t *const self, const int back) {
 }
 
 static bool is_alike(const argus_glimpse_t *const a, const argus_glimpse_t *const b) {
-    return argus_abs(a->reading_mm - b->reading_mm) <= ALIKE_MM &&
+    const bool as_loud = (a->reading_mm >= ARGUS_NO_ECHO_MM) == (b->reading_mm >= ARGUS_NO_ECHO_MM);
+    return as_loud && argus_abs(a->reading_mm - b->reading_mm) <= ALIKE_MM &&
            argus_seen_bearing_cdeg(a, b) <= ALIKE_CDEG &&
            argus_abs(argus_trail_offset_mm(a->x_mm, b->x_mm)) <= ALIKE_PLACE_MM &&
            argus_abs(argus_trail_offset_mm(a->y_mm, b->y_mm)) <= ALIKE_PLACE_MM;
 }
 
-// A robot at rest would fill the memory with one view.
+// Nobody asks for them any more, and after 49 days they would look new.
+static void drop_old(argus_peer_t *const self, const uint32_t now_ms) {
+    while (self->count > 0 && now_ms - self->seen[slot_of(self, self->count)].t_ms > ARGUS_REMEMBERED_MS) {
+        self->count--;
+    }
+}
+
+// A robot at rest would fill the memory with one view. The first of those that are alike stays, since each
+// could be a little aside of the one before.
 void argus_seen_note(argus_peer_t *const self, const argus_glimpse_t now) {
-    const argus_glimpse_t *const last = argus_seen_at(self, 1);
-    const bool again = last != NULL && is_alike(&now, last);
-    const int repeats = again ? argus_min(last->repeats + 1, UINT16_MAX) : 0;
-    if (!again) {
+    drop_old(self, now.t_ms);
+    argus_glimpse_t *const last = &self->seen[slot_of(self, 1)];
+    if (self->count > 0 && is_alike(&now, last)) {
+        last->t_ms = now.t_ms;
+        last->repeats = (uint16_t)argus_min(last->repeats + 1, UINT16_MAX);
+    } else {
+        self->seen[self->next] = now;
         self->next = (uint8_t)((self->next + 1) % ARGUS_GLIMPSES);
         self->count = (uint8_t)argus_min(self->count + 1, ARGUS_GLIMPSES);
     }
-    argus_glimpse_t *const at = &self->seen[slot_of(self, 1)];
-    *at = now;
-    at->repeats = (uint16_t)repeats;
     self->weighed &= ~((uint64_t)1 << slot_of(self, 1));
+}
+
+void argus_seen_forget(argus_peer_t *const self) {
+    self->count = 0;
+    self->weighed = 0;
 }

@@ -17,9 +17,9 @@ from hil_sim.sil import VISIBLE_MM, VISIBLE_PART, Sighting
 from hil_sim.sonar import NO_ECHO_MM, transducer_pose
 from hil_sim.world import Pose
 
-# One place and one bearing are for the observer what they are for the peers (firmware/awareness/evidence_peers.c and
-# evidence_pair.c; a test compares them).
-AGE_S: Final = 10.0
+# One place and one bearing are for the observer what they are for the peers (firmware/awareness/evidence_peers.c,
+# evidence_seen.c and evidence_pair.c; a test compares them).
+AGE_S: Final = 40.0
 BEARING_DEG: Final = 3.0
 ACROSS_MM: Final = 60.0
 ALONG_MM: Final = 200.0
@@ -50,8 +50,8 @@ def fired(sightings: Sequence[Sighting], sonar: int, begin_s: float, end_s: floa
 def contradicted(sightings: Sequence[Sighting], sonar: int, begin_s: float, end_s: float) -> int:
     """Return how many visible readings of a faulty sonar, begin to end, a sound reading of another contradicts.
 
-    Both from one place on one bearing, at most 10 s apart, in whichever order, and both made by `end_s`. `sightings`:
-    of the whole mission in order of time. Cost: the product of both counts, about 100 by 1,000 for 30 s.
+    Both from one place on one bearing, at most 40 s apart, in whichever order, and both made by `end_s`. `sightings`:
+    of the whole mission in order of time. Cost: the product of both counts, about 100 by 3,500 for 30 s.
     """
     own, others = _glimpses(_seen(sightings, begin_s - AGE_S, end_s), sonar)
     own = own[(own[:, _T] >= begin_s) & (own[:, _T] <= end_s)]

@@ -119,7 +119,7 @@ typedef struct {
 
 // A reading with the place of its transducer and its bearing when the ping was sent, about; x and y modulo
 // 65,536 mm, course frame.
-#define ARGUS_GLIMPSES 64 // that are remembered of each sonar: 20 s in motion, longer at rest
+#define ARGUS_GLIMPSES 64 // that are remembered of each sonar: some 20 s in motion, longer at rest
 #define ARGUS_COUNTED 6
 #define ARGUS_BENDS 6 // of an axis: -24, -18, -12, 12, 18, 24 degrees
 typedef struct {
@@ -128,7 +128,7 @@ typedef struct {
     uint16_t y_mm;
     int16_t bearing_cdeg;
     uint16_t reading_mm;
-    uint16_t repeats; // readings before it, in a row, that were alike, from the same place
+    uint16_t repeats; // further ones that were alike, from the same place, the last at t_ms
 } argus_glimpse_t;
 
 typedef struct {
@@ -202,10 +202,11 @@ bool argus_evidence_is_unsteady(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *self, int sonar);
 
-// What a suspect that carries `present` (NONE: no name) is named now: as above, and INTERMITTENT who was taken
-// for OFF and is heard again.
+// What a suspect that carries `present` (NONE: no name) is named now: as above, and INTERMITTENT who was
+// taken for OFF and hears again, since then, what another hears. That it was given a name.
 argus_fault_kind_t argus_evidence_renames(const argus_evidence_t *self, int sonar,
                                           argus_fault_kind_t present);
+void argus_evidence_note_name(argus_evidence_t *self, int sonar, argus_fault_kind_t kind);
 
 // What keeps a sonar out, and the kind that ends its probation: as suspects and names, without what the peers
 // alone say.

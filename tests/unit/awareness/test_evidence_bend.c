@@ -207,7 +207,7 @@ void test_the_sums_stay_within_their_bounds(void) {
     TEST_ASSERT_EQUAL(0, argus_bend(&e.peers, ME).well + me->bend_told[4]);
 }
 
-// One that comes back was mended: its axis is not held against it.
+// One that comes back was mended: its axis is not held against it, and what it saw before against nobody.
 void test_who_is_back_is_bent_no_more(void) {
     static const int reading_mm[ARGUS_SONARS];
     scene_init(&s, 1, START_MS);
@@ -215,8 +215,14 @@ void test_who_is_back_is_bent_no_more(void) {
         const argus_health_t health = back ? ARGUS_HEALTHY : ARGUS_DISABLED;
         argus_sonar_set_health(&s.k.sonar[ME], health, ARGUS_KIND_NONE, s.k.sip_ms);
         s.e.peers.of[ME].bend[1] = 2000;
+        argus_seen_forget(&s.e.peers.of[ME]);
+        for (int i = 0; i < 9; i++) {
+            argus_seen_note(&s.e.peers.of[ME],
+                            (argus_glimpse_t){.t_ms = s.k.sip_ms, .x_mm = (uint16_t)(99 * i)});
+        }
         scene_say(&s, 1u << ME, reading_mm);
         TEST_ASSERT_EQUAL(!back, s.e.peers.of[ME].bend[1] > 0);
+        TEST_ASSERT_EQUAL(back ? 1 : 10, s.e.peers.of[ME].count);
     }
 }
 

@@ -12,6 +12,7 @@
 #define SONAR 4
 #define OTHER 9
 #define LAG 5
+#define KINDS 8
 
 static argus_evidence_t e;
 static argus_case_t *c;
@@ -466,6 +467,10 @@ void test_a_lost_echo_and_one_voice_are_off(void) {
             snprintf(text, sizeof text, "case %d, next %d", i, next);
             TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
             TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
+            peer->counted_next = (uint8_t)((next + 1) % ARGUS_COUNTED); // an echo was judged since
+            peer->counted[next].t_ms = last->t_ms - 20000;
+            peer->counted[next].reading_mm = 1000;
+            TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
         }
     }
 }
@@ -786,6 +791,76 @@ void test_off_stays_off_through_a_stray_echo(void) {
     }
 }
 
+// Three echoes of one thing in a row are no crosstalk.
+void test_off_is_over_when_an_echo_is_followed_again(void) {
+    for (int track = 0; track <= 4; track++) {
+        for (int run = 0; run < 2; run++) {
+            setUp();
+            peer->hollow = 0x0F;
+            c->track = (uint8_t)track;
+            c->none_run = (uint8_t)run;
+            snprintf(text, sizeof text, "track %d, run %d", track, run);
+            const bool heard = track >= 3 && run == 0;
+            TEST_ASSERT_EQUAL_MESSAGE(heard, replaces(ARGUS_KIND_OFF, ARGUS_KIND_WRONG), text);
+            TEST_ASSERT_EQUAL_MESSAGE(heard, replaces(ARGUS_KIND_OFF, ARGUS_KIND_SLOW), text);
+        }
+    }
+}
+
+// Who was taken for off, hears again what another hears, and was contradicted for little but silence has
+// gaps; nobody else is named for that, and what the evidence names comes first.
+void test_off_that_is_heard_again_has_gaps(void) {
+    static const struct {
+        argus_fault_kind_t present;
+        int run;
+        int peers;
+        uint8_t hollow;
+        bool borne_out;
+        int lag;
+        argus_fault_kind_t kind;
+    } by[] = {{ARGUS_KIND_OFF, 2, 200, 0x0D, true, 429, ARGUS_KIND_INTERMITTENT},
+              {ARGUS_KIND_NONE, 2, 200, 0x0D, true, 429, ARGUS_KIND_NONE},
+              {ARGUS_KIND_WRONG, 2, 200, 0x0D, true, 429, ARGUS_KIND_NONE},
+              {ARGUS_KIND_OFF, 3, 200, 0x0D, true, 429, ARGUS_KIND_NONE},
+              {ARGUS_KIND_OFF, 2, 199, 0x0D, true, 429, ARGUS_KIND_NONE},
+              {ARGUS_KIND_OFF, 2, 200, 0x0C, true, 429, ARGUS_KIND_NONE},
+              {ARGUS_KIND_OFF, 2, 200, 0x0D, false, 429, ARGUS_KIND_NONE},
+              {ARGUS_KIND_OFF, 2, 200, 0x0D, true, 430, ARGUS_KIND_NONE},
+              {ARGUS_KIND_OFF, 2, 200, 0x0D, true, 900, ARGUS_KIND_SLOW}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        c->none_run = (uint8_t)by[i].run;
+        c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
+        c->score[ARGUS_TEST_LAG] = (int16_t)by[i].lag;
+        peer->hollow = by[i].hollow;
+        peer->borne_out = by[i].borne_out;
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, argus_evidence_renames(&e, SONAR, by[i].present), text);
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_renames(&e, OTHER, by[i].present));
+    }
+}
+
+void test_off_that_is_heard_again_gets_the_name_that_the_evidence_has(void) {
+    c->score[ARGUS_TEST_PEERS] = 200;
+    peer->hollow = 0x0F;
+    peer->borne_out = true;
+    TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, argus_evidence_renames(&e, SONAR, ARGUS_KIND_OFF));
+    accuse(ARGUS_TEST_GARBAGE, argus_bounds[ARGUS_TEST_GARBAGE].naming);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, argus_evidence_renames(&e, SONAR, ARGUS_KIND_OFF));
+}
+
+// What it heard before it was called off does not tell that it hears; other names take nothing back.
+void test_the_name_off_begins_the_hearing_anew(void) {
+    for (int kind = ARGUS_KIND_NONE; kind < KINDS; kind++) {
+        setUp();
+        peer->borne_out = true;
+        e.peers.of[OTHER].borne_out = true;
+        argus_evidence_note_name(&e, SONAR, (argus_fault_kind_t)kind);
+        TEST_ASSERT_EQUAL(kind != ARGUS_KIND_OFF, peer->borne_out);
+        TEST_ASSERT_TRUE(e.peers.of[OTHER].borne_out);
+    }
+}
+
 // ---- on probation
 
 // What ends a probation is what names, but for what the peers alone say.
@@ -835,7 +910,6 @@ void test_the_peers_alone_keep_nobody_out(void) {
 #define IF_BENT 8  // bent from 1,000 on, told of by more than half of the lateness
 #define IF_HEARD 9 // less than three of the last four contradicted ones without an echo
 #define IF_LAG 10  // ... or late for sure
-#define KINDS 8
 
 // Rows: the kind that it carries; columns: the kind that is found.
 static const uint8_t replaced_when[KINDS][KINDS] = {
@@ -904,6 +978,19 @@ void test_wrong_gives_way_to_off_and_to_gaps_only_where_all_of_it_shows(void) {
         snprintf(text, sizeof text, "case %d", i);
         TEST_ASSERT_EQUAL_MESSAGE(by[i].off, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_OFF), text);
         TEST_ASSERT_EQUAL_MESSAGE(by[i].gaps, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_INTERMITTENT), text);
+    }
+}
+
+// A bent axis that hears nothing for a while is bent all the same.
+void test_a_bent_axis_is_not_off_for_a_silence(void) {
+    for (int told = 0; told < 2; told++) {
+        for (int well = 499; well <= 500; well++) {
+            setUp();
+            c->none_run = 12;
+            peer->hollow = 0x07;
+            bend(well, told != 0 ? 200 : 0);
+            TEST_ASSERT_EQUAL(told == 0 || well < 500, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_OFF));
+        }
     }
 }
 

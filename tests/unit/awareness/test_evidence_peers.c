@@ -220,29 +220,73 @@ void test_only_glimpses_on_the_same_bearing_compare(void) {
     }
 }
 
-// What was seen 10 s ago counts, a millisecond more does not; the clock wraps between the two.
-static void looked_ago(uint32_t most_ms, bool busy) {
+// What was seen 40 s ago counts, before that it does not, whatever the clock.
+static void looked_ago(uint32_t ago_ms, int expect) {
     static const uint32_t clocks[] = {1, 2000, 9999, 10000, 40000, 40001, 500000, 0x80000000u, UINT32_MAX};
+    const bool unrest = e.of[WITNESS].unrest;
+    const uint32_t moved_ms = k.sip_ms - e.of[WITNESS].unrest_ms;
     for (int i = 0; i < 9; i++) {
-        for (uint32_t late = 0; late < 2; late++) {
-            setUp();
-            k.sip_ms = clocks[i];
-            e.busy = busy;
-            face(ME, 0);
-            saw(WITNESS, 3000)->t_ms -= most_ms + late;
-            snprintf(text, sizeof text, "clock %u, %u ms late", (unsigned)clocks[i], (unsigned)late);
-            TEST_ASSERT_EQUAL_MESSAGE(late == 0 ? AGAINST : 0, reads(1000), text);
-        }
+        setUp();
+        k.sip_ms = clocks[i];
+        e.of[WITNESS].unrest = unrest;
+        e.of[WITNESS].unrest_ms = k.sip_ms - moved_ms;
+        face(ME, 0);
+        saw(WITNESS, 3000)->t_ms -= ago_ms;
+        snprintf(text, sizeof text, "clock %u, %u ms ago", (unsigned)clocks[i], (unsigned)ago_ms);
+        TEST_ASSERT_EQUAL_MESSAGE(expect, reads(1000), text);
     }
 }
 
 void test_glimpses_older_than_forty_seconds_do_not_compare(void) {
-    looked_ago(40000, false);
+    looked_ago(40000, AGAINST);
+    looked_ago(40001, 0);
 }
 
-// What moves may have gone where a standing thing was seen, and come where nothing was.
-void test_while_something_moves_ten_seconds_are_old(void) {
-    looked_ago(10000, true);
+// Before what moves nothing is known of what stands still: what was seen since counts, and ten seconds
+// always.
+void test_what_was_seen_before_something_moved_is_old(void) {
+    static const uint32_t moved[][2] = {{8001, 10000}, {15000, 15000}, {39000, 39000}, {50000, 40000}};
+    for (int i = 0; i < 4; i++) {
+        for (uint32_t late = 0; late < 2; late++) {
+            setUp();
+            e.of[WITNESS].unrest = true;
+            e.of[WITNESS].unrest_ms = k.sip_ms - moved[i][0];
+            looked_ago(moved[i][1] + late, late == 0 ? AGAINST : 0);
+        }
+    }
+}
+
+// ... before any other sonar in use, and whoever looks first; what moves before itself may be its fault.
+void test_who_saw_something_move_makes_old_what_all_saw(void) {
+    static const struct {
+        int who; // saw something move 15 s ago
+        bool out;
+        bool counts; // what was seen 20 s ago
+    } by[] = {{WITNESS, false, false}, {THIRD, false, false}, {15, false, false},
+              {THIRD, true, true},     {ME, false, true},     {ME, true, true}};
+    for (int i = 0; i < 6; i++) {
+        for (int later = 0; later < 2; later++) {
+            setUp();
+            face(ME, 0);
+            argus_glimpse_t mine = here(ME);
+            if (later != 0) {
+                reads(1000);
+            } else {
+                saw(WITNESS, 3000);
+            }
+            k.sip_ms += 20000;
+            e.of[by[i].who].unrest = true;
+            e.of[by[i].who].unrest_ms = k.sip_ms - 15000;
+            k.sonar[by[i].who].health = by[i].out && by[i].who != ME ? ARGUS_DISABLED : ARGUS_HEALTHY;
+            if (later != 0) {
+                looks_there(WITNESS, &mine, 3000);
+            } else {
+                reads(1000);
+            }
+            snprintf(text, sizeof text, "case %d, later %d", i, later);
+            TEST_ASSERT_EQUAL_MESSAGE(by[i].counts, score_of(ME) > 0, text);
+        }
+    }
 }
 
 // The place is kept modulo 65,536 mm: the seam changes nothing, and half the world away is not here.
@@ -424,7 +468,7 @@ void test_what_it_read_before_it_was_given_up_does_not_bring_it_back(void) {
     }
 }
 
-// ... for ten seconds, and from its place on its bearing only.
+// ... for forty seconds, and from its place on its bearing only.
 void test_what_is_read_is_not_judged_from_elsewhere_or_too_late(void) {
     static const struct {
         uint32_t later_ms;
@@ -554,6 +598,69 @@ void test_an_echo_borne_out_is_forgotten_with_the_score(void) {
         TEST_ASSERT_EQUAL(step[i].mm == 1000 ? FOR : AGAINST, reads(step[i].mm));
         snprintf(text, sizeof text, "step %d", i);
         TEST_ASSERT_EQUAL_MESSAGE(step[i].borne_out, e.peers.of[ME].borne_out, text);
+    }
+}
+
+// Where a silence has counted an echo does not count as well, but it tells that the sonar hears; not if more
+// contradict it than bear it out, nor of one that nobody doubts.
+void test_an_echo_borne_out_tells_though_it_does_not_count(void) {
+    static const struct {
+        int score;
+        int witness_mm;
+        int third_mm;
+        int fourth_mm;
+        bool borne_out;
+    } by[] = {{500, 1000, 1000, 1000, true},
+              {500, 1000, 1000, 3000, true},
+              {500, 1000, 3000, 3000, false},
+              {500, 3000, 3000, 3000, false},
+              {0, 1000, 1000, 1000, false}};
+    for (int i = 0; i < 5; i++) {
+        for (int echo = 0; echo < 2; echo++) {
+            setUp();
+            face(ME, 0);
+            saw(WITNESS, 1000);
+            TEST_ASSERT_EQUAL(AGAINST, reads(NONE_MM));
+            e.of[ME].score[ARGUS_TEST_PEERS] = (int16_t)by[i].score;
+            k.sip_ms += 300;
+            saw(WITNESS, by[i].witness_mm);
+            saw(THIRD, by[i].third_mm);
+            saw(THIRD + 1, by[i].fourth_mm);
+            snprintf(text, sizeof text, "case %d, echo %d", i, echo);
+            TEST_ASSERT_EQUAL_MESSAGE(0, reads(echo != 0 ? 1000 : NONE_MM), text);
+            TEST_ASSERT_EQUAL_MESSAGE(echo != 0 && by[i].borne_out, e.peers.of[ME].borne_out, text);
+        }
+    }
+}
+
+// Whom nobody looked after, or only one who hears as little, is borne out by nobody.
+void test_an_echo_that_nobody_saw_tells_nothing(void) {
+    for (int far = 0; far < 2; far++) {
+        setUp();
+        face(ME, 0);
+        if (far != 0) {
+            saw(WITNESS, NONE_MM);
+        }
+        e.of[ME].score[ARGUS_TEST_PEERS] = 500;
+        reads(4700); // farther than silence tells
+        TEST_ASSERT_FALSE(e.peers.of[ME].borne_out);
+    }
+}
+
+// What it heard before it fell silent says nothing of now.
+void test_an_echo_that_is_judged_later_does_not_tell_that_it_hears(void) {
+    for (int counts = 0; counts < 2; counts++) {
+        setUp();
+        face(ME, 0);
+        reads(1000);
+        const argus_glimpse_t mine = here(ME);
+        e.of[ME].score[ARGUS_TEST_PEERS] = 500;
+        e.peers.of[ME].counted[0] = mine; // its place has counted already
+        e.peers.of[ME].counted[0].t_ms -= counts != 0 ? 4000u : 0u;
+        k.sip_ms += 300;
+        looks_there(WITNESS, &mine, 1000);
+        TEST_ASSERT_EQUAL(500 + (counts != 0 ? FOR : 0), score_of(ME));
+        TEST_ASSERT_FALSE(e.peers.of[ME].borne_out);
     }
 }
 
@@ -1099,6 +1206,46 @@ void test_a_lag_of_one_firing_is_none(void) {
         TEST_ASSERT_EQUAL(100 * n, argus_peers_late(&e.peers, ME));
         TEST_ASSERT_EQUAL(10 * n, argus_peers_told(&e.peers, ME));
         TEST_ASSERT_EQUAL(0, argus_peers_late(&e.peers, WITNESS));
+    }
+}
+
+// A robot that stood saw the same thing in many firings: each counts when the lag is looked back for, from
+// the reading that is judged, whether at once or by who looks there later.
+void test_a_lag_counts_the_firings_of_a_robot_that_stood(void) {
+    for (int later = 0; later < 2; later++) {
+        for (int stood = 1; stood <= 9; stood++) {
+            setUp();
+            face(ME, 9000);
+            argus_glimpse_t then = here(ME);
+            then.reading_mm = 1000;
+            remember(WITNESS, then); // where ME looked before it turned
+            face(ME, 0);
+            const argus_glimpse_t now = here(ME);
+            if (later == 0) {
+                saw(WITNESS, 3000);
+            }
+            face(ME, 9000);
+            reads(NONE_MM);
+            face(ME, -9000);
+            for (int i = 1; i < stood; i++) {
+                reads(NONE_MM);
+            }
+            face(ME, 0);
+            for (int n = 0; n < ARGUS_TRAIL; n++) {
+                e.peers.of[ME].late[n] = e.peers.of[ME].told[n] = 0;
+            }
+            reads(1000);
+            if (later != 0) {
+                face(ME, -4500);
+                reads(NONE_MM); // what is judged is not the last
+                looks_there(WITNESS, &now, 3000);
+            }
+            snprintf(text, sizeof text, "later %d, stood %d", later, stood);
+            for (int n = 2; n < ARGUS_TRAIL; n++) {
+                const int late = later != 0 ? 50 + 300 : 300; // seen then at first, contradicted now as well
+                TEST_ASSERT_EQUAL_MESSAGE(n == stood ? late : 0, e.peers.of[ME].late[n], text);
+            }
+        }
     }
 }
 

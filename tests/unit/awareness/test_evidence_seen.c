@@ -14,7 +14,8 @@ void setUp(void) {
     memset(&me, 0, sizeof me);
 }
 
-void tearDown(void) {}
+void tearDown(void) {
+}
 
 static argus_glimpse_t seen(uint32_t t_ms, int x_mm, int y_mm, int bearing_cdeg, int mm) {
     return (argus_glimpse_t){.t_ms = t_ms,
@@ -30,7 +31,7 @@ static void note(uint32_t t_ms, int x_mm, int mm) {
 
 // ---- what is one glimpse
 
-// From within 5 mm, on within 0.3 degrees, within 30 mm: one glimpse; the last is the one that is kept.
+// From within 5 mm, on within 0.3 degrees, within 30 mm: one glimpse, the first, of the time of the last.
 void test_what_is_alike_is_one_glimpse(void) {
     static const struct {
         int x_mm;
@@ -38,9 +39,9 @@ void test_what_is_alike_is_one_glimpse(void) {
         int bearing_cdeg;
         int mm;
         int glimpses;
-    } by[] = {{0, 0, 0, 1000, 1},  {5, 0, 0, 1000, 1},  {6, 0, 0, 1000, 2},   {0, -5, 0, 1000, 1},
-              {0, -6, 0, 1000, 2}, {0, 0, 30, 1000, 1}, {0, 0, 31, 1000, 2},  {0, 0, -31, 1000, 2},
-              {0, 0, 0, 1030, 1},  {0, 0, 0, 1031, 2},  {0, 0, 0, 969, 2},    {0, 0, 0, 5000, 2},
+    } by[] = {{0, 0, 0, 1000, 1},  {5, 0, 0, 1000, 1},   {6, 0, 0, 1000, 2},  {0, -5, 0, 1000, 1},
+              {0, -6, 0, 1000, 2}, {0, 0, 30, 1000, 1},  {0, 0, 31, 1000, 2}, {0, 0, -31, 1000, 2},
+              {0, 0, 0, 1030, 1},  {0, 0, 0, 1031, 2},   {0, 0, 0, 969, 2},   {0, 0, 0, 5000, 2},
               {0, 0, 0, 970, 1},   {-5, 5, -30, 970, 1}, {-6, 0, 0, 1000, 2}, {32768, 0, 0, 1000, 2}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
         setUp();
@@ -50,9 +51,12 @@ void test_what_is_alike_is_one_glimpse(void) {
         snprintf(text, sizeof text, "case %d", i);
         TEST_ASSERT_EQUAL_MESSAGE(by[i].glimpses, me.count, text);
         const argus_glimpse_t *last = argus_seen_at(&me, 1);
+        const bool new = by[i].glimpses == 2;
         TEST_ASSERT_EQUAL_MESSAGE(420, last->t_ms, text);
-        TEST_ASSERT_EQUAL_MESSAGE(now.x_mm, last->x_mm, text);
-        TEST_ASSERT_EQUAL_MESSAGE(now.reading_mm, last->reading_mm, text);
+        TEST_ASSERT_EQUAL_MESSAGE(new ? now.x_mm : 0, last->x_mm, text);
+        TEST_ASSERT_EQUAL_MESSAGE(new ? now.y_mm : 0, last->y_mm, text);
+        TEST_ASSERT_EQUAL_MESSAGE(new ? now.bearing_cdeg : 0, last->bearing_cdeg, text);
+        TEST_ASSERT_EQUAL_MESSAGE(new ? now.reading_mm : 1000, last->reading_mm, text);
         TEST_ASSERT_EQUAL_MESSAGE(2 - by[i].glimpses, last->repeats, text);
     }
 }
@@ -62,6 +66,30 @@ void test_what_is_alike_is_so_across_the_seams(void) {
     argus_seen_note(&me, seen(0, 65534, 2, 17990, 1000));
     argus_seen_note(&me, seen(1, 1, 65535, -17990, 1000));
     TEST_ASSERT_EQUAL(1, me.count);
+}
+
+// An echo from afar is no silence.
+void test_an_echo_is_never_alike_to_a_silence(void) {
+    static const int mm[][3] = {
+        {5000, 5000, 1}, {5000, 65535, 2}, {4999, 5000, 2}, {5000, 4999, 2}, {4999, 4998, 1}};
+    for (int i = 0; i < 5; i++) {
+        setUp();
+        note(1, 0, mm[i][0]);
+        note(2, 0, mm[i][1]);
+        TEST_ASSERT_EQUAL(mm[i][2], me.count);
+    }
+}
+
+// Small steps add up: each is alike to the one before, but not to the first.
+void test_what_creeps_is_not_one_glimpse(void) {
+    for (int way = 0; way < 3; way++) {
+        setUp();
+        for (int i = 0; i < 21; i++) {
+            argus_seen_note(&me, seen((uint32_t)i, way == 0 ? 5 * i : 0, 0, way == 1 ? 30 * i : 0,
+                                      way == 2 ? 1000 + 30 * i : 1000));
+        }
+        TEST_ASSERT_EQUAL(11, me.count);
+    }
 }
 
 // Only what follows at once: an echo that is heard again after a gap is another glimpse.
@@ -81,11 +109,31 @@ void test_what_comes_again_is_a_glimpse_of_its_own(void) {
 void test_a_robot_at_rest_forgets_nothing(void) {
     note(1, 500, 3000);
     for (uint32_t i = 0; i < 70000; i++) {
-        note(2 + i, 0, 1000);
+        note(2 + i / 2, 0, 1000);
     }
     TEST_ASSERT_EQUAL(2, me.count);
     TEST_ASSERT_EQUAL(UINT16_MAX, argus_seen_at(&me, 1)->repeats);
     TEST_ASSERT_EQUAL(3000, argus_seen_at(&me, 2)->reading_mm);
+}
+
+// ... for 40 s, across the wrap of the clock; a clock that has come round finds nothing that looks new.
+void test_what_is_too_old_goes(void) {
+    for (uint32_t late = 0; late < 2; late++) {
+        setUp();
+        note(UINT32_MAX - 20000, 0, 1000);
+        note(UINT32_MAX - 19000, 500, 1000);
+        note(UINT32_MAX - 20000 + 40000 + late, 900, 1000);
+        TEST_ASSERT_EQUAL(3 - late, me.count);
+        TEST_ASSERT_EQUAL(late == 0 ? 0 : 500, argus_seen_at(&me, me.count)->x_mm);
+    }
+    note(60000000, 0, 1000);
+    TEST_ASSERT_EQUAL(1, me.count);
+    argus_seen_weigh(&me, 1);
+    argus_seen_forget(&me);
+    TEST_ASSERT_NULL(argus_seen_at(&me, 1));
+    note(60000001, 0, 1000);
+    TEST_ASSERT_EQUAL(1, me.count);
+    TEST_ASSERT_FALSE(argus_seen_is_weighed(&me, 1));
 }
 
 // In motion the last 64 are remembered.
