@@ -218,7 +218,7 @@ void test_who_is_back_is_bent_no_more(void) {
         argus_seen_forget(&s.e.peers.of[ME]);
         for (int i = 0; i < 9; i++) {
             argus_seen_note(&s.e.peers.of[ME],
-                            (argus_glimpse_t){.t_ms = s.k.sip_ms, .x_mm = (uint16_t)(99 * i)});
+                            (argus_glimpse_t){.t_ms = START_MS, .x_mm = (uint16_t)(99 * i)});
         }
         scene_say(&s, 1u << ME, reading_mm);
         TEST_ASSERT_EQUAL(!back, s.e.peers.of[ME].bend[1] > 0);
