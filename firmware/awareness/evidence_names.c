@@ -31,8 +31,11 @@
 #define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
 #define LATE_NO_MORE 420
-#define LATE_BOTH 1100 // by the peers and by its own readings, those LATE_FIRST at least
-#define LATE_BOTH_BUSY 1400
+#define LATE_BOTH 1000 // by the peers and by its own readings, those LATE_OWN at least
+#define LATE_BOTH_BUSY 1300
+#define LATE_BOTH_SURE 1450 // ... those LATE_OWN_LITTLE at least
+#define LATE_OWN 300
+#define LATE_OWN_LITTLE 150
 #define LEAPS_CONTRADICTED 360 // two of them
 #define LATE_OF_WILD 300       // less is no lag, of one whose readings are wild
 #define BENT_NAMING 1100
@@ -137,13 +140,17 @@ static bool looks_late(const argus_evidence_t *const self, const int sonar) {
     return is_late_from(self, sonar, is_busy_beside(self, sonar) ? LATE_NAMING_BUSY : LATE_NAMING);
 }
 
-// Of one lag: what its own readings and the peers say together.
-static int32_t late_of_both(const argus_evidence_t *const self, const int sonar) {
+// Of one lag: what its own readings and the peers say together, where both do; 0: not enough of its own.
+static int32_t late_of_both(const int32_t own, const int32_t theirs) {
+    const int32_t sum = own + theirs;
+    const bool counts = own >= LATE_OWN || (own >= LATE_OWN_LITTLE && sum >= LATE_BOTH_SURE);
+    return counts && theirs > 0 ? sum : 0;
+}
+
+static int32_t most_late_of_both(const argus_evidence_t *const self, const int sonar) {
     int32_t most = 0;
     for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
-        const int32_t own = self->of[sonar].lag[n];
-        const int32_t theirs = self->peers.of[sonar].late[n];
-        most = argus_max(most, own >= LATE_FIRST && theirs > 0 ? own + theirs : 0);
+        most = argus_max(most, late_of_both(self->of[sonar].lag[n], self->peers.of[sonar].late[n]));
     }
     return most;
 }
@@ -151,7 +158,7 @@ static int32_t late_of_both(const argus_evidence_t *const self, const int sonar)
 // Its own readings are the third who says who is wrong, where the others rather contradict it.
 static bool is_late_by_both(const argus_evidence_t *const self, const int sonar) {
     return self->of[sonar].score[ARGUS_TEST_PEERS] >= 0 &&
-           late_of_both(self, sonar) >= (is_busy_beside(self, sonar) ? LATE_BOTH_BUSY : LATE_BOTH);
+           most_late_of_both(self, sonar) >= (is_busy_beside(self, sonar) ? LATE_BOTH_BUSY : LATE_BOTH);
 }
 
 // Neither gaps nor wild readings come to this; the echoes of a late sonar may look like either.

@@ -475,8 +475,9 @@ void test_a_lost_echo_and_one_voice_are_off(void) {
     }
 }
 
-// Of one lag, its own readings (430 at least) and the peers together: 1,100, or 1,400 while something moves
+// Of one lag, its own readings (300 at least) and the peers together: 1,000, or 1,300 while something moves
 // before others, name it where the others do not bear it out; whoever they are, it needs no second of them.
+// From 1,450 on, 150 of its own are enough.
 void test_its_own_readings_and_the_peers_name_together(void) {
     static const struct {
         int own;
@@ -485,11 +486,14 @@ void test_its_own_readings_and_the_peers_name_together(void) {
         int peers;
         bool busy;
         argus_fault_kind_t kind;
-    } by[] = {{430, 670, 0, 0, false, ARGUS_KIND_SLOW}, {429, 2000, 0, 0, false, ARGUS_KIND_NONE},
-              {430, 669, 0, 0, false, ARGUS_KIND_NONE}, {430, 670, 0, -1, false, ARGUS_KIND_NONE},
-              {430, 0, 670, 0, false, ARGUS_KIND_NONE}, {700, 699, 0, 0, true, ARGUS_KIND_NONE},
-              {700, 700, 0, 0, true, ARGUS_KIND_SLOW},  {899, 0, 0, 0, false, ARGUS_KIND_NONE},
-              {899, 201, 0, 0, false, ARGUS_KIND_SLOW}};
+    } by[] = {{300, 700, 0, 0, false, ARGUS_KIND_SLOW},   {299, 1150, 0, 0, false, ARGUS_KIND_NONE},
+              {300, 699, 0, 0, false, ARGUS_KIND_NONE},   {300, 700, 0, -1, false, ARGUS_KIND_NONE},
+              {300, 0, 700, 0, false, ARGUS_KIND_NONE},   {700, 599, 0, 0, true, ARGUS_KIND_NONE},
+              {700, 600, 0, 0, true, ARGUS_KIND_SLOW},    {899, 0, 0, 0, false, ARGUS_KIND_NONE},
+              {899, 101, 0, 0, false, ARGUS_KIND_SLOW},   {150, 1300, 0, 0, false, ARGUS_KIND_SLOW},
+              {150, 1299, 0, 0, false, ARGUS_KIND_NONE},  {149, 2000, 0, 0, false, ARGUS_KIND_NONE},
+              {150, 1300, 0, 0, true, ARGUS_KIND_SLOW},   {299, 1151, 0, 0, false, ARGUS_KIND_SLOW},
+              {150, 700, 1300, 0, false, ARGUS_KIND_NONE}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
         setUp();
         c->lag[LAG] = (int16_t)by[i].own;
