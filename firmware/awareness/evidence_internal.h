@@ -121,7 +121,8 @@ void argus_views_take(argus_evidence_t *self, const argus_knowledge_t *knowledge
 bool argus_views_support(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
 
 // One reading against the glimpses of the other sonars on its bearing, as of now and as of earlier poses of
-// its own; then it is one itself. Cost: up to 30 * 15 * 64 glimpses looked through.
+// its own; then it is one itself, and answers for those of the others that nobody has judged. Cost: up to
+// 30 * 15 * 64 glimpses looked through, and as many again for each of up to 15 that it answers.
 void argus_peers_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
 void argus_peers_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge); // after all of a SIP
 void argus_peers_restart(argus_peers_t *self);
