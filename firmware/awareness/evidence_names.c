@@ -367,10 +367,16 @@ argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, c
     return first_name(self, sonar, ARGUS_TESTS - 1);
 }
 
+// Who walks away does, while the robot turns and stops, what it did a moment ago.
+static bool convicts(const argus_evidence_t *const self, const int sonar, const argus_test_t test) {
+    const bool walker = test == ARGUS_TEST_LAG && is_busy_beside(self, sonar);
+    return is_convicted_by(&self->of[sonar], test, self->busy) && !walker;
+}
+
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, const int sonar) {
     for (int i = 0; i < ARGUS_TESTS; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
-        if (is_convicted_by(&self->of[sonar], test, self->busy)) {
+        if (convicts(self, sonar, test)) {
             return bent_or(self, sonar, slow_or(self, sonar, kind_by(self, sonar, test, LATE_AFTER)));
         }
     }
@@ -460,8 +466,7 @@ bool argus_evidence_is_unsteady(const argus_evidence_t *const self, const int so
     static const uint8_t tests[] = {ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT, ARGUS_TEST_LAG};
     for (int i = 0; i < (int)sizeof tests; i++) {
         const argus_test_t test = (argus_test_t)tests[i];
-        if (self->of[sonar].score[test] >= argus_bounds[test].suspicious &&
-            !is_convicted_by(&self->of[sonar], test, self->busy)) {
+        if (self->of[sonar].score[test] >= argus_bounds[test].suspicious && !convicts(self, sonar, test)) {
             return true;
         }
     }

@@ -256,6 +256,19 @@ void test_views_convict_only_with_ground_at_several_times(void) {
     }
 }
 
+// Who walks away looks late: while something moves before others no lag convicts, but it names.
+void test_no_lag_convicts_while_something_moves_beside(void) {
+    for (int who = 0; who < ARGUS_SONARS; who++) {
+        setUp();
+        c->score[ARGUS_TEST_LAG] = argus_bounds[ARGUS_TEST_LAG].convincing;
+        e.stirred = (uint16_t)(1u << who);
+        const bool beside = who != SONAR;
+        TEST_ASSERT_EQUAL(beside ? ARGUS_KIND_NONE : ARGUS_KIND_SLOW, convicted());
+        TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, named());
+        TEST_ASSERT_EQUAL(beside, argus_evidence_is_unsteady(&e, SONAR));
+    }
+}
+
 // Its own trail convicts whatever moves about and whoever bears it out.
 void test_the_own_trail_convicts_without_others(void) {
     static const argus_test_t own[] = {ARGUS_TEST_STUCK, ARGUS_TEST_LAG, ARGUS_TEST_GARBAGE,
