@@ -105,20 +105,30 @@ static bool is_busy_beside(const argus_evidence_t *const self, const int sonar) 
     return (self->stirred & ~(1u << sonar)) != 0;
 }
 
+static bool is_busy_for(const argus_evidence_t *const self, const int sonar, const argus_test_t test) {
+    return test == ARGUS_TEST_LAG ? is_busy_beside(self, sonar) : self->busy;
+}
+
 static int32_t naming_level(const argus_evidence_t *const self, const int sonar, const argus_test_t test) {
-    const bool busy = test == ARGUS_TEST_LAG ? is_busy_beside(self, sonar) : self->busy;
-    return busy ? argus_bounds[test].naming_busy : argus_bounds[test].naming;
+    return is_busy_for(self, sonar, test) ? argus_bounds[test].naming_busy : argus_bounds[test].naming;
 }
 
 static bool outweighs(const argus_case_t *const c, const argus_test_t test) {
     return (test == ARGUS_TEST_OFF ? OFF_OUTWEIGHS : VIEW_OUTWEIGHS) * c->borne_out <= c->conflicts;
 }
 
-static bool is_convicted_by(const argus_case_t *const c, const argus_test_t test, const bool busy) {
+// Who walks about contradicts, and does, while the robot turns and stops, what it did a moment ago.
+static bool wants_calm(const argus_test_t test) {
+    return rests_on_views(test) || test == ARGUS_TEST_LAG;
+}
+
+static bool is_convicted_by(const argus_evidence_t *const self, const int sonar, const argus_test_t test) {
+    const argus_case_t *const c = &self->of[sonar];
     const bool enough =
-        !rests_on_views(test) || (!busy && outweighs(c, test) && c->conflicts >= CONVICT_CONFLICTS &&
+        !rests_on_views(test) || (outweighs(c, test) && c->conflicts >= CONVICT_CONFLICTS &&
                                   c->episodes >= CONVICT_EPISODES && beside_the_main(c) >= CONVICT_BESIDE);
     return c->score[test] >= argus_bounds[test].convincing && enough &&
+           !(wants_calm(test) && is_busy_for(self, sonar, test)) &&
            is_named_by(c, test, argus_bounds[test].naming);
 }
 
@@ -367,16 +377,10 @@ argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, c
     return first_name(self, sonar, ARGUS_TESTS - 1);
 }
 
-// Who walks away does, while the robot turns and stops, what it did a moment ago.
-static bool convicts(const argus_evidence_t *const self, const int sonar, const argus_test_t test) {
-    const bool walker = test == ARGUS_TEST_LAG && is_busy_beside(self, sonar);
-    return is_convicted_by(&self->of[sonar], test, self->busy) && !walker;
-}
-
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, const int sonar) {
     for (int i = 0; i < ARGUS_TESTS; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
-        if (convicts(self, sonar, test)) {
+        if (is_convicted_by(self, sonar, test)) {
             return bent_or(self, sonar, slow_or(self, sonar, kind_by(self, sonar, test, LATE_AFTER)));
         }
     }
@@ -466,7 +470,8 @@ bool argus_evidence_is_unsteady(const argus_evidence_t *const self, const int so
     static const uint8_t tests[] = {ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT, ARGUS_TEST_LAG};
     for (int i = 0; i < (int)sizeof tests; i++) {
         const argus_test_t test = (argus_test_t)tests[i];
-        if (self->of[sonar].score[test] >= argus_bounds[test].suspicious && !convicts(self, sonar, test)) {
+        if (self->of[sonar].score[test] >= argus_bounds[test].suspicious &&
+            !is_convicted_by(self, sonar, test)) {
             return true;
         }
     }

@@ -408,11 +408,13 @@ static void look_back(argus_evidence_t *const self, const argus_knowledge_t *con
                       const int sonar) {
     const argus_glimpse_t now = *argus_seen_at(&self->peers.of[sonar], 1);
     for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (!is_witness(self, knowledge, sonar, i)) {
+            continue;
+        }
         const argus_peer_t *const peer = &self->peers.of[i];
         const argus_gaze_t gaze = gaze_of(self, knowledge, i, &now);
-        const bool asked = is_witness(self, knowledge, sonar, i);
         int32_t along_mm = 0;
-        const int back = asked ? argus_seen_find(peer, &gaze, 0, &along_mm) : 0;
+        const int back = argus_seen_find(peer, &gaze, 0, &along_mm);
         if (back > 0 && !argus_seen_is_weighed(peer, back)) {
             weigh(self, knowledge, i, back, false);
         }

@@ -269,7 +269,7 @@ void test_no_lag_convicts_while_something_moves_beside(void) {
     }
 }
 
-// Its own trail convicts whatever moves about and whoever bears it out.
+// Its own trail convicts whatever moves about (LAG: not before others, above) and whoever bears it out.
 void test_the_own_trail_convicts_without_others(void) {
     static const argus_test_t own[] = {ARGUS_TEST_STUCK, ARGUS_TEST_LAG, ARGUS_TEST_GARBAGE,
                                        ARGUS_TEST_DROPOUT};
