@@ -13,6 +13,8 @@
 #define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
 #define OFF_RUN_LONGEST 20 // ... and what was called intermittent
 #define OFF_HOLLOW 3
+#define DEAF_RUN 8 // who hears nothing for so long, and is contradicted for it, is neither late nor wrong
+#define DEAF_HOLLOW 2
 #define VIEW_OFF_RUN 3
 #define VIEW_ECHOES 6
 #define HOLLOW_OF 4
@@ -347,9 +349,20 @@ static argus_fault_kind_t slow_or(const argus_evidence_t *const self, const int 
     return both || (late && has_partners(self, sonar)) ? ARGUS_KIND_SLOW : other;
 }
 
+// What contradicted it before it fell silent, by an echo, was of another time.
+static argus_fault_kind_t deaf_or(const argus_evidence_t *const self, const int sonar,
+                                  const argus_fault_kind_t other) {
+    const bool unlike = other == ARGUS_KIND_SLOW || other == ARGUS_KIND_WRONG;
+    const bool deaf = self->of[sonar].none_run >= DEAF_RUN &&
+                      argus_peers_hollow(&self->peers, sonar, DEAF_HOLLOW) == DEAF_HOLLOW;
+    return unlike && deaf ? ARGUS_KIND_OFF : other;
+}
+
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
     const argus_fault_kind_t first = off_or(self, sonar, first_name(self, sonar, ARGUS_TESTS));
-    return bent_or(self, sonar, slow_or(self, sonar, garbage_or(self, sonar, first)));
+    const argus_fault_kind_t found =
+        bent_or(self, sonar, slow_or(self, sonar, garbage_or(self, sonar, first)));
+    return deaf_or(self, sonar, found);
 }
 
 // It hears again what the others hear, and silence was nearly all that contradicted it; a late one would tell

@@ -13,9 +13,14 @@
 
 _Static_assert(ARGUS_GLIMPSES <= 64, "weighed has a bit for each");
 
+static int32_t bearing_between(const argus_glimpse_t *const a, const argus_glimpse_t *const b) {
+    const int32_t diff = a->bearing_cdeg - b->bearing_cdeg;
+    const int32_t size = diff < 0 ? -diff : diff;
+    return size > 18000 ? 36000 - size : size;
+}
+
 int32_t argus_seen_bearing_cdeg(const argus_glimpse_t *const a, const argus_glimpse_t *const b) {
-    const int32_t diff = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
-    return diff > 18000 ? 36000 - diff : diff;
+    return bearing_between(a, b);
 }
 
 bool argus_seen_from(const argus_glimpse_t *const now, const argus_glimpse_t *const then,
@@ -30,8 +35,8 @@ bool argus_seen_from(const argus_glimpse_t *const now, const argus_glimpse_t *co
     return shift.lateral_mm <= SAME_LATERAL_MM;
 }
 
-static int slot_of(const argus_peer_t *const self, const int back) {
-    return (self->next + ARGUS_GLIMPSES - back) % ARGUS_GLIMPSES;
+static unsigned slot_of(const argus_peer_t *const self, const int back) {
+    return (self->next + ARGUS_GLIMPSES - (unsigned)back) % ARGUS_GLIMPSES;
 }
 
 const argus_glimpse_t *argus_seen_at(const argus_peer_t *const self, const int back) {
@@ -53,12 +58,11 @@ const argus_glimpse_t *argus_seen_before(const argus_peer_t *const self, const i
 int argus_seen_find(const argus_peer_t *const self, const argus_gaze_t *const gaze, const int after,
                     int32_t *const along_mm) {
     for (int i = after + 1; i <= self->count; i++) {
-        const argus_glimpse_t *const then = argus_seen_at(self, i);
+        const argus_glimpse_t *const then = &self->seen[slot_of(self, i)];
         if (gaze->now_ms - then->t_ms > gaze->age_ms) {
             return 0; // those before it are older still
         }
-        if (argus_seen_bearing_cdeg(gaze->at, then) <= gaze->span_cdeg &&
-            argus_seen_from(gaze->at, then, along_mm)) {
+        if (bearing_between(gaze->at, then) <= gaze->span_cdeg && argus_seen_from(gaze->at, then, along_mm)) {
             return i;
         }
     }

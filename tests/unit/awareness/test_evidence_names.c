@@ -442,6 +442,29 @@ void test_lateness_alone_names_only_one_that_others_contradict(void) {
     }
 }
 
+// Who has heard nothing eight times in a row, and was contradicted for a silence the last two times, is off,
+// whatever an echo before that made of it.
+void test_who_hears_nothing_is_neither_late_nor_wrong(void) {
+    static const struct {
+        int run;
+        unsigned hollow; // bit i: the one i before
+        bool deaf;
+    } by[] = {{8, 0x03, true}, {7, 0x03, false}, {8, 0x02, false}, {8, 0x01, false}, {255, 0xFB, true}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        for (int late = 0; late < 2; late++) {
+            setUp();
+            peer->hollow = (uint8_t)by[i].hollow;
+            peer->against = 3;
+            c->none_run = (uint8_t)by[i].run;
+            accuse(ARGUS_TEST_PEERS, argus_bounds[ARGUS_TEST_PEERS].naming);
+            be_late(0, late != 0 ? 430 : 0);
+            snprintf(text, sizeof text, "case %d, late %d", i, late);
+            const argus_fault_kind_t other = late != 0 ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
+            TEST_ASSERT_EQUAL_MESSAGE(by[i].deaf ? ARGUS_KIND_OFF : other, named(), text);
+        }
+    }
+}
+
 // It followed an echo and has heard none four times in a row: one other that hears something there, since, is
 // enough.
 void test_a_lost_echo_and_one_voice_are_off(void) {
