@@ -43,6 +43,8 @@
 #define BENT_NAMING 1100
 #define BENT_NAMING_BUSY 1500
 #define BENT_CONTRADICTED 300
+#define BENT_TOLD_NAMING 600 // ... while nothing does, of one that the bend tells so much of
+#define BENT_TOLD 500
 #define BENT_SURE 1000 // in the place of another name
 #define BENT_SURE_TOLD 300
 #define BENT_NO_LESS 500
@@ -124,13 +126,18 @@ static bool wants_calm(const argus_test_t test) {
     return rests_on_views(test) || test == ARGUS_TEST_LAG;
 }
 
+// By its own readings alone, however late they look, nobody is given up.
+static bool is_told_of(const argus_evidence_t *const self, const int sonar, const argus_test_t test) {
+    return test != ARGUS_TEST_LAG || argus_peers_told(&self->peers, sonar) > 0;
+}
+
 static bool is_convicted_by(const argus_evidence_t *const self, const int sonar, const argus_test_t test) {
     const argus_case_t *const c = &self->of[sonar];
     const bool enough =
         !rests_on_views(test) || (outweighs(c, test) && c->conflicts >= CONVICT_CONFLICTS &&
                                   c->episodes >= CONVICT_EPISODES && beside_the_main(c) >= CONVICT_BESIDE);
     return c->score[test] >= argus_bounds[test].convincing && enough &&
-           !(wants_calm(test) && is_busy_for(self, sonar, test)) &&
+           !(wants_calm(test) && is_busy_for(self, sonar, test)) && is_told_of(self, sonar, test) &&
            is_named_by(c, test, argus_bounds[test].naming);
 }
 
@@ -320,9 +327,15 @@ static bool is_bent(const argus_evidence_t *const self, const int sonar, const i
            has_partners(self, sonar) && argus_peers_hollow(&self->peers, sonar, HOLLOW_MOST) <= BENT_HOLLOW;
 }
 
+// Before a broad wall it is borne out again and again: where it mostly sees what others see aside, that it
+// is contradicted on the whole is enough.
 static bool looks_bent(const argus_evidence_t *const self, const int sonar) {
-    return self->of[sonar].score[ARGUS_TEST_PEERS] >= BENT_CONTRADICTED &&
-           is_bent(self, sonar, is_busy_beside(self, sonar) ? BENT_NAMING_BUSY : BENT_NAMING, 0);
+    const int32_t contradicted = self->of[sonar].score[ARGUS_TEST_PEERS];
+    if (is_busy_beside(self, sonar)) {
+        return contradicted >= BENT_CONTRADICTED && is_bent(self, sonar, BENT_NAMING_BUSY, 0);
+    }
+    return (contradicted >= BENT_CONTRADICTED && is_bent(self, sonar, BENT_NAMING, 0)) ||
+           (contradicted >= 0 && is_bent(self, sonar, BENT_TOLD_NAMING, BENT_TOLD));
 }
 
 static bool is_surely_bent(const argus_evidence_t *const self, const int sonar) {

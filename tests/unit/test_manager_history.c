@@ -189,6 +189,7 @@ void test_a_pinned_sonar_keeps_its_health(void) {
         robot.argus.evidence.of[3].score[test] = 0;
     }
     robot.argus.evidence.of[3].score[ARGUS_TEST_LAG] = argus_bounds[ARGUS_TEST_LAG].ceiling;
+    robot.argus.evidence.peers.of[3].told[5] = 1;
     argus_lag_restore(&robot.argus.evidence.of[3]);
     ask(ARGUS_OP_UNPIN, 3);
     TEST_ASSERT_EQUAL(0, robot_last_event(&robot, ARGUS_EV_SONAR_PINNED)->value);

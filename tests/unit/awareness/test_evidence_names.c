@@ -59,6 +59,7 @@ static void give_ground(void) {
 static void accuse(argus_test_t test, int score) {
     c->score[test] = (int16_t)score;
     c->none_run = test == ARGUS_TEST_OFF ? 5 : c->none_run;
+    peer->told[LAG] = test == ARGUS_TEST_LAG ? 1 : peer->told[LAG];
 }
 
 static const struct {
@@ -261,6 +262,7 @@ void test_no_lag_convicts_while_something_moves_beside(void) {
     for (int who = 0; who < ARGUS_SONARS; who++) {
         setUp();
         c->score[ARGUS_TEST_LAG] = argus_bounds[ARGUS_TEST_LAG].convincing;
+        peer->told[LAG] = 1;
         e.stirred = (uint16_t)(1u << who);
         const bool beside = who != SONAR;
         TEST_ASSERT_EQUAL(beside ? ARGUS_KIND_NONE : ARGUS_KIND_SLOW, convicted());
@@ -269,11 +271,21 @@ void test_no_lag_convicts_while_something_moves_beside(void) {
     }
 }
 
-// Its own trail convicts whatever moves about (LAG: not before others, above) and whoever bears it out.
+// No lag convicts by the own trail alone: the others must tell of one, however little.
+void test_no_lag_convicts_of_which_the_others_do_not_tell(void) {
+    for (int below = 0; below < 2; below++) {
+        setUp();
+        c->score[ARGUS_TEST_LAG] = argus_bounds[ARGUS_TEST_LAG].ceiling;
+        peer->told[LAG] = (int16_t)(1 - below);
+        TEST_ASSERT_EQUAL(below ? ARGUS_KIND_NONE : ARGUS_KIND_SLOW, convicted());
+        TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, named());
+    }
+}
+
+// Its own trail convicts whatever moves about and whoever bears it out (LAG does not, above).
 void test_the_own_trail_convicts_without_others(void) {
-    static const argus_test_t own[] = {ARGUS_TEST_STUCK, ARGUS_TEST_LAG, ARGUS_TEST_GARBAGE,
-                                       ARGUS_TEST_DROPOUT};
-    for (int i = 0; i < 4; i++) {
+    static const argus_test_t own[] = {ARGUS_TEST_STUCK, ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT};
+    for (int i = 0; i < (int)(sizeof own / sizeof own[0]); i++) {
         setUp();
         e.busy = true;
         c->borne_out = 9;
@@ -623,7 +635,8 @@ static void bend(int well, int told) {
 }
 
 // Bent and not well from 1,100 on (1,500 while something moves about before others), told of by 200,
-// contradicted and by two: wrong, and worth a look; never a conviction.
+// contradicted and by two, or from 600 on, told of by 500 and rather contradicted, while nothing moves:
+// wrong, and worth a look; never a conviction.
 void test_a_bent_axis_is_a_name_by_itself(void) {
     static const struct {
         int well;
@@ -632,8 +645,11 @@ void test_a_bent_axis_is_a_name_by_itself(void) {
         unsigned against;
         bool busy;
         bool wrong;
-    } by[] = {{1100, 200, 300, 3, false, true},  {1099, 900, 300, 3, false, false},
-              {3000, 199, 300, 3, false, false}, {3000, 900, 299, 3, false, false},
+    } by[] = {{1100, 200, 300, 3, false, true},  {1099, 499, 300, 3, false, false},
+              {3000, 199, 300, 3, false, false}, {3000, 499, 299, 3, false, false},
+              {600, 500, 0, 3, false, true},     {599, 900, 0, 3, false, false},
+              {600, 499, 0, 3, false, false},    {3000, 900, -1, 3, false, false},
+              {600, 500, 0, 1, false, false},    {600, 500, 0, 3, true, false},
               {3000, 900, 300, 1, false, false}, {1500, 200, 300, 3, true, true},
               {1499, 200, 300, 3, true, false}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
@@ -1098,7 +1114,7 @@ void test_unsteady_is_who_is_suspected_by_its_own_readings_and_not_convicted(voi
                               bounds->convincing};
         for (int i = 0; i < 4; i++) {
             setUp();
-            c->score[test] = (int16_t)scores[i];
+            accuse((argus_test_t)test, scores[i]);
             snprintf(text, sizeof text, "test %d at %d", test, scores[i]);
             TEST_ASSERT_EQUAL_MESSAGE(own && (i == 1 || i == 2), argus_evidence_is_unsteady(&e, SONAR), text);
         }
