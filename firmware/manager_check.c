@@ -20,6 +20,15 @@ void argus_give_up_turn(argus_t *const self) {
     argus_enter_waiting(self, ARGUS_WAIT_MOTORS);
 }
 
+static uint32_t round_ms(const argus_t *const self) {
+    return SLOTS * (uint32_t)self->config.sonar_cycle_ms + SIP_MS;
+}
+
+// An echo that forbade to turn is read once more before it does so again.
+static bool is_reading_again(const argus_t *const self) {
+    return self->swing_again && self->now_ms - self->since_ms < round_ms(self);
+}
+
 // True when the robot stands on the base heading; else it is on its way there, or S7 forbids.
 static bool is_home(argus_t *const self) {
     if (self->passive) {
@@ -37,7 +46,9 @@ static bool is_home(argus_t *const self) {
         self->base_cdeg = self->knowledge.pose.heading_cdeg;
     }
     if (argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, self->base_cdeg) > 2 * 100) {
-        argus_turn(self, self->base_cdeg);
+        if (!is_reading_again(self)) {
+            argus_turn(self, self->base_cdeg);
+        }
         return false;
     }
     return true;

@@ -166,14 +166,33 @@ bool argus_is_hemmed_in(const argus_t *const self) {
            self->bumpers == 0 && !argus_may_turn(self) && !may_back_off(self);
 }
 
+// All that forbids to turn is an echo of now: a round later it is gone, or remembered. Once in a place, since
+// that of a suspect is not.
+static bool may_be_crosstalk(const argus_t *const self) {
+    return argus_judges(self) && !self->swing_again && self->bumpers == 0 &&
+           argus_task_nearest_mm(&self->task, &self->knowledge, 0) > swing_mm(self);
+}
+
+static void read_again(argus_t *const self) {
+    self->swing_again = true;
+    argus_enter_checking(self, false);
+    self->all_round = true;
+}
+
 // Where it may not turn, a few times backing away may help.
 bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
     const int32_t nearest = nearest_to_centre_mm(self, 0);
     if (argus_may_turn(self)) {
         self->wait_last = self->wait_last == ARGUS_WAIT_TURN ? ARGUS_WAIT_NONE : self->wait_last;
         argus_motion_turn(&self->motion, &self->session.outbox, &self->knowledge, heading_cdeg, self->now_ms);
+        self->swing_again = false;
         return true;
     }
+    if (may_be_crosstalk(self)) {
+        read_again(self);
+        return false;
+    }
+    self->swing_again = false;
     argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, nearest == INT32_MAX ? 0 : nearest);
     if (may_back_off(self)) {
         const int32_t way_mm = way_to_turn_mm(self);

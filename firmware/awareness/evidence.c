@@ -156,6 +156,14 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     argus_views_scan(self, knowledge, sonar, argus_scan_take(&self->scan, knowledge, sonar));
 }
 
+static void note_crowd(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+    if (argus_peers_crowded(&self->peers, knowledge)) {
+        self->crowded = true;
+        self->crowded_ms = knowledge->sip_ms;
+    }
+    self->crowded = self->crowded && knowledge->sip_ms - self->crowded_ms < CALM_MS;
+}
+
 static uint16_t stirred(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
     unsigned mask = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
@@ -178,6 +186,7 @@ void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *c
         }
     }
     self->stirred = stirred(self, knowledge);
+    note_crowd(self, knowledge);
     argus_trend_sip(&self->trend, knowledge);
     argus_peers_sip(self, knowledge);
 }

@@ -126,6 +126,8 @@ bool argus_views_support(const argus_evidence_t *self, const argus_knowledge_t *
 void argus_peers_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
 void argus_peers_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge); // after all of a SIP
 void argus_peers_restart(argus_peers_t *self);
+// More of what the sonars in use read is contradicted than faults make so: people are about.
+bool argus_peers_crowded(const argus_peers_t *self, const argus_knowledge_t *knowledge);
 void argus_peers_forget(argus_peers_t *self, int sonar);
 // For some lag, in hundredths of a nat: late against well, 0 to 2000, and late against wrong, 0 to 900.
 int32_t argus_peers_late(const argus_peers_t *self, int sonar);

@@ -13,6 +13,7 @@
 #define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
 #define OFF_RUN_LONGEST 20 // ... and what was called intermittent
 #define OFF_HOLLOW 3
+#define MUTE_CONTRADICTED 380
 #define DEAF_RUN 8 // who hears nothing for so long, and is contradicted for it, is neither late nor wrong
 #define DEAF_HOLLOW 2
 #define VIEW_OFF_RUN 3
@@ -137,8 +138,8 @@ static bool is_convicted_by(const argus_evidence_t *const self, const int sonar,
         !rests_on_views(test) || (outweighs(c, test) && c->conflicts >= CONVICT_CONFLICTS &&
                                   c->episodes >= CONVICT_EPISODES && beside_the_main(c) >= CONVICT_BESIDE);
     return c->score[test] >= argus_bounds[test].convincing && enough &&
-           !(wants_calm(test) && is_busy_for(self, sonar, test)) && is_told_of(self, sonar, test) &&
-           is_named_by(c, test, argus_bounds[test].naming);
+           !(wants_calm(test) && (self->crowded || is_busy_for(self, sonar, test))) &&
+           is_told_of(self, sonar, test) && is_named_by(c, test, argus_bounds[test].naming);
 }
 
 // Late against wrong, in hundredths of a nat: what the changes of its own readings say, and what the others
@@ -275,8 +276,8 @@ static argus_fault_kind_t first_name(const argus_evidence_t *const self, const i
 static bool is_mute(const argus_evidence_t *const self, const int sonar) {
     const argus_case_t *const c = &self->of[sonar];
     return c->none_run >= OFF_RUN && !self->peers.of[sonar].borne_out &&
-           c->score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].suspicious &&
-           is_hollow(self, sonar) && has_partners(self, sonar);
+           c->score[ARGUS_TEST_PEERS] >= MUTE_CONTRADICTED && is_hollow(self, sonar) &&
+           has_partners(self, sonar);
 }
 
 // One of its readings that counted is a silence since it last proved alive: contradicted, or it had not

@@ -23,6 +23,7 @@
 #define LAG_TURN_CDEG 1000
 #define LATE_CEILING 2000
 #define HOLLOW_BITS 8
+#define CROWD_PERCENT 35
 
 typedef struct {
     uint8_t agree;
@@ -189,18 +190,27 @@ static bool is_news(const argus_peer_t *const self, const argus_glimpse_t *const
     return true;
 }
 
-// Which part of the readings of the others in use is contradicted at present; at the start one in twenty of
-// six.
-static int part_contradicted(const argus_peers_t *const self, const argus_knowledge_t *const knowledge,
-                             const int sonar) {
-    int32_t all = 6 * ONE_VERDICT;
-    int32_t contradicted = 6 * ONE_VERDICT / 20 + 1;
+// Which part of the readings of those in use, but this one, is contradicted at present; at the start one in
+// twenty of six.
+typedef struct {
+    int32_t all;
+    int32_t contradicted;
+} part_t;
+
+static part_t part_contradicted(const argus_peers_t *const self, const argus_knowledge_t *const knowledge,
+                                const int but) {
+    part_t part = {.all = 6 * ONE_VERDICT, .contradicted = 6 * ONE_VERDICT / 20 + 1};
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        const bool counts = i != sonar && !argus_is_out(knowledge, i);
-        all += counts ? self->of[i].verdicts : 0;
-        contradicted += counts ? self->of[i].contradicted : 0;
+        const bool counts = i != but && !argus_is_out(knowledge, i);
+        part.all += counts ? self->of[i].verdicts : 0;
+        part.contradicted += counts ? self->of[i].contradicted : 0;
     }
-    return (int)argus_max(0, argus_min(PARTS - 1, (contradicted * 20 + all / 2) / all - 1));
+    return part;
+}
+
+bool argus_peers_crowded(const argus_peers_t *const self, const argus_knowledge_t *const knowledge) {
+    const part_t part = part_contradicted(self, knowledge, ARGUS_SONARS);
+    return part.contradicted * 100 > part.all * CROWD_PERCENT;
 }
 
 static void note_counted(argus_peer_t *const self, const argus_glimpse_t *const now, const bool odd) {
@@ -235,7 +245,9 @@ static bool is_since(const argus_knowledge_t *const knowledge, const int sonar,
 
 static int32_t increment_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                             const int sonar, const bool odd) {
-    const int part = part_contradicted(&self->peers, knowledge, sonar);
+    const part_t of = part_contradicted(&self->peers, knowledge, sonar);
+    const int32_t twentieths = (of.contradicted * 20 + of.all / 2) / of.all;
+    const int32_t part = argus_max(0, argus_min(PARTS - 1, twentieths - 1));
     return odd ? contradicts[part] * argus_unrest_percent(self, knowledge, sonar) / 100 : bears_out[part];
 }
 

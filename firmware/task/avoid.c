@@ -8,6 +8,7 @@
 
 #define REMEMBER_BELOW_MM 2000 // beyond it a beam is too wide to say where the echo lies
 #define SAME_PLACE_MM 80
+#define SAME_THING_MM 150
 #define FORGET_MS 60000u
 #define WIDE_HALF_MM 400   // room to turn on the spot anywhere along it (S7 wants 390 under `argus`)
 #define NARROW_HALF_MM 305 // half the body (213), and room for the beam's width: where there is no wide way
@@ -22,6 +23,7 @@
 #define REFUSED_CDEG 1500
 #define MOVED_ON_MM 150
 #define BUMPER_AHEAD_MM 240
+#define BY_TOUCH UINT8_MAX // no sonar: it is there for sure
 
 static bool same_place(const argus_seen_t *const seen, const argus_point_t *const at) {
     return argus_abs(seen->x_mm - at->x_mm) < SAME_PLACE_MM &&
@@ -42,12 +44,27 @@ static argus_seen_t *slot_for(argus_task_t *const self, const argus_point_t *con
     return &self->seen[self->seen_next];
 }
 
+// A second echo of one thing; a wall gives one a little farther on, as far as the robot drove meanwhile.
+static bool is_seen_again(const argus_task_t *const self, const argus_point_t *const at,
+                          const uint32_t now_ms) {
+    for (uint16_t i = 0; i < self->seen_count; i++) {
+        const argus_seen_t *const seen = &self->seen[i];
+        if (now_ms - seen->seen_ms <= LATELY_MS && argus_abs(seen->x_mm - at->x_mm) <= SAME_THING_MM &&
+            argus_abs(seen->y_mm - at->y_mm) <= SAME_THING_MM) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void remember(argus_task_t *const self, const argus_point_t at, const uint8_t sonar,
                      const uint32_t now_ms) {
     if (argus_abs(at.x_mm) > INT16_MAX || argus_abs(at.y_mm) > INT16_MAX) {
         return;
     }
+    const bool again = sonar == BY_TOUCH || is_seen_again(self, &at, now_ms);
     argus_seen_t *const slot = slot_for(self, &at);
+    slot->again = again;
     slot->x_mm = (int16_t)at.x_mm;
     slot->y_mm = (int16_t)at.y_mm;
     slot->sonar = sonar;
@@ -78,7 +95,7 @@ void argus_task_forget(argus_task_t *const self, const int sonar) {
 }
 
 void argus_task_touched(argus_task_t *const self, const argus_point_t at, const uint32_t now_ms) {
-    remember(self, at, UINT8_MAX, now_ms);
+    remember(self, at, BY_TOUCH, now_ms);
 }
 
 // The front segments lie across the bow, bit 1 leftmost; what they touched is remembered as if it had been
@@ -120,7 +137,7 @@ int32_t argus_task_nearest_mm(const argus_task_t *const self, const argus_knowle
         const int32_t dx = self->seen[i].x_mm - centre.x_mm;
         const int32_t dy = self->seen[i].y_mm - centre.y_mm;
         const bool near = argus_abs(dx) < NEAR_MM && argus_abs(dy) < NEAR_MM;
-        if (near && knowledge->sip_ms - self->seen[i].seen_ms <= LATELY_MS) {
+        if (near && self->seen[i].again && knowledge->sip_ms - self->seen[i].seen_ms <= LATELY_MS) {
             nearest = argus_min(nearest, argus_hypot(dx, dy));
         }
     }

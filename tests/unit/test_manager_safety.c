@@ -760,6 +760,39 @@ void test_s7_leaves_a_margin(void) {
     with_profile(ARGUS_PROFILE_ARGUS, check_s7_leaves_a_margin);
 }
 
+// One echo may be crosstalk: it is read once more before it forbids a turn. What is there is seen again; what
+// only a suspect sees, whom nothing is remembered of, forbids it after one round as well.
+static void check_s7_one_echo_is_read_again(void) {
+    enum { CROSSTALK, THERE, SUSPECTED, CASES };
+    for (int which = 0; which < CASES; which++) {
+        start_idle();
+        robot.noise_mm = 0;
+        robot.fault[0] = ROBOT_VALUE;
+        robot.fault_value[0] = 150;
+        for (int i = 0; i < 1000 && robot.argus.knowledge.sonar[0].reading_mm != 150; i++) {
+            robot_tick(&robot);
+        }
+        TEST_ASSERT_EQUAL(150, robot.argus.knowledge.sonar[0].reading_mm);
+        robot.fault[0] = which == CROSSTALK ? ROBOT_OK : ROBOT_VALUE;
+        argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 20);
+        const uint32_t from_ms = robot.t_ms;
+        while (robot.t_ms - from_ms < 900) {
+            robot_tick(&robot);
+            if (which == SUSPECTED) {
+                argus_sonar_set_health(&robot.argus.knowledge.sonar[0], ARGUS_SUSPECT, ARGUS_KIND_WRONG,
+                                       robot.argus.now_ms);
+            }
+        }
+        TEST_ASSERT_EQUAL(which != CROSSTALK, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
+        TEST_ASSERT_EQUAL(which == CROSSTALK, robot_heading_deg(&robot) > 1);
+        finish();
+    }
+}
+
+void test_s7_one_echo_is_read_again(void) {
+    with_profile(ARGUS_PROFILE_ARGUS, check_s7_one_echo_is_read_again);
+}
+
 // 0 shows something 69 mm ahead of the centre and so far beside it; 400 mm off it is let be.
 static void check_s7_backs_off_as_far_as_the_turn_asks_for(void) {
     static const struct {

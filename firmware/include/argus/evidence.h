@@ -170,6 +170,8 @@ typedef struct {
     bool busy;             // something moved about the robot, last at busy_ms
     uint16_t stirred;      // ... before these sonars, those that are out left aside
     uint32_t busy_ms;
+    bool crowded; // the sonars contradicted each other as they do among people, last at crowded_ms
+    uint32_t crowded_ms;
     uint32_t agreements; // monotonic counters of compared views
     uint32_t disagreements;
 } argus_evidence_t;

@@ -159,6 +159,7 @@ typedef struct {
     int32_t jog_mm;       // the operator's step, 0: the course decides
     uint16_t bumpers;     // bumper bits answered already, front << 8 | rear
     uint8_t backed;       // back-offs in this place
+    bool swing_again;     // an echo that forbade to turn has been waited out for a round
     argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
     bool has_base;
     bool aimed;    // DRIVING: the leg's bearing was turned to

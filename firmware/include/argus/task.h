@@ -15,6 +15,7 @@ typedef struct {
     int16_t x_mm;
     int16_t y_mm;
     uint8_t sonar;
+    bool again; // by two echoes at least: one may be crosstalk
     uint32_t seen_ms;
 } argus_seen_t;
 
@@ -61,8 +62,8 @@ int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *kn
 int32_t argus_task_clear_mm(const argus_task_t *self, const argus_knowledge_t *knowledge,
                             int32_t heading_cdeg, int32_t half_mm);
 
-// Nearest to the robot's centre, were it `back_mm` farther back, of what was seen in the last seconds, also
-// where no sonar sees it now; INT32_MAX without any. Cost: one pass over the points.
+// Nearest to the robot's centre, were it `back_mm` farther back, of what was seen more than once in the last
+// seconds, also where no sonar sees it now; INT32_MAX without any. Cost: one pass over the points.
 int32_t argus_task_nearest_mm(const argus_task_t *self, const argus_knowledge_t *knowledge, int32_t back_mm);
 
 // An object stopped the robot on its present heading: that heading is refused until the robot has moved on.

@@ -833,6 +833,39 @@ void test_the_part_that_is_contradicted_has_bounds(void) {
     TEST_ASSERT_EQUAL(AGAINST, reads(1000));
 }
 
+// Among people more than 35 % of all that the sonars in use read is contradicted, whoever reads it; of 1,600
+// sixteenths, those of the start among them (5 contradicted).
+void test_a_crowd_is_told_by_the_part_that_is_contradicted(void) {
+    for (int who = 0; who < ARGUS_SONARS; who++) {
+        setUp();
+        e.peers.of[who].verdicts = 1504;
+        e.peers.of[who].contradicted = 555;
+        TEST_ASSERT_FALSE(argus_peers_crowded(&e.peers, &k));
+        e.peers.of[who].contradicted = 556;
+        TEST_ASSERT_TRUE(argus_peers_crowded(&e.peers, &k));
+        argus_sonar_set_health(&k.sonar[who], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+        TEST_ASSERT_FALSE(argus_peers_crowded(&e.peers, &k)); // a liar makes none
+    }
+}
+
+// ... and it is one for 30 s from then on.
+void test_a_crowd_lasts_for_30_s(void) {
+    k.fresh = 0;
+    k.sip_ms = START_MS;
+    e.peers.of[7].verdicts = 1504;
+    e.peers.of[7].contradicted = 1504;
+    e.peers.faded_ms = k.sip_ms;
+    argus_evidence_sip(&e, &k);
+    TEST_ASSERT_TRUE(e.crowded);
+    e.peers.of[7].contradicted = 0;
+    k.sip_ms = START_MS + 29999u;
+    argus_evidence_sip(&e, &k);
+    TEST_ASSERT_TRUE(e.crowded);
+    k.sip_ms++;
+    argus_evidence_sip(&e, &k);
+    TEST_ASSERT_FALSE(e.crowded);
+}
+
 // Every verdict counts 16 and fades by an eighth a second.
 void test_the_verdicts_of_the_others_fade(void) {
     face(ME, 0);

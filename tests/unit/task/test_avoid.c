@@ -3,6 +3,7 @@
 // is none.
 #include "argus/task.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,6 +12,7 @@
 
 static argus_task_t t;
 static argus_knowledge_t k;
+static char text[16];
 
 void setUp(void) {
     argus_task_init(&t);
@@ -56,6 +58,31 @@ void test_what_is_not_remembered(void) {
     k.rotating = true;
     see(2, 500);
     TEST_ASSERT_EQUAL(0, t.seen_count);
+}
+
+// S7 asks for what is near, and one echo may be crosstalk: two of one thing, 5 s and 150 mm apart at most, by
+// whomever; what was touched is there for sure.
+void test_near_is_what_was_seen_again(void) {
+    static const struct {
+        int second;
+        int second_mm;
+        uint32_t later_ms;
+        bool again;
+    } by[] = {{0, 200, 320, true},  {0, 200, 5000, true},  {0, 200, 5001, false}, {0, 349, 320, true},
+              {0, 352, 320, false}, {15, 200, 320, false}, {1, 150, 320, true},   {0, 120, 320, true}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        see(0, 200);
+        TEST_ASSERT_EQUAL(INT32_MAX, argus_task_nearest_mm(&t, &k, 0));
+        k.sip_ms += by[i].later_ms;
+        see(by[i].second, by[i].second_mm);
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].again, argus_task_nearest_mm(&t, &k, 0) < INT32_MAX, text);
+    }
+    setUp();
+    const argus_point_t touched = {240, 0};
+    argus_task_touched(&t, touched, k.sip_ms);
+    TEST_ASSERT_EQUAL(240, argus_task_nearest_mm(&t, &k, 0));
 }
 
 void test_a_convicted_sonars_echoes_are_forgotten(void) {
