@@ -20,13 +20,28 @@ void argus_give_up_turn(argus_t *const self) {
     argus_enter_waiting(self, ARGUS_WAIT_MOTORS);
 }
 
-static uint32_t round_ms(const argus_t *const self) {
-    return SLOTS * (uint32_t)self->config.sonar_cycle_ms + SIP_MS;
+uint16_t argus_wanted_sonars(const argus_t *const self) {
+    return (uint16_t)(ARGUS_FORWARD_MASK & ~(unsigned)argus_out(&self->knowledge));
 }
 
-// An echo that forbade to turn is read once more before it does so again.
-static bool is_reading_again(const argus_t *const self) {
-    return self->swing_again && self->now_ms - self->since_ms < round_ms(self);
+uint32_t argus_two_rounds_ms(const argus_t *const self) {
+    return 2u * SLOTS * (uint32_t)self->config.sonar_cycle_ms + SIP_MS;
+}
+
+static uint16_t in_use(const argus_knowledge_t *const knowledge) {
+    unsigned mask = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        mask |= knowledge->sonar[i].reported && !argus_is_out(knowledge, i) ? 1u << i : 0u;
+    }
+    return (uint16_t)mask;
+}
+
+// Those ahead have been read again; before a turn that S7 forbade the others as well, for two rounds at most:
+// one of them may have fallen silent.
+static bool has_round(const argus_t *const self) {
+    const bool waits = self->all_round && self->now_ms - self->since_ms < argus_two_rounds_ms(self);
+    return argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->mark) &&
+           (!waits || argus_all_fresh_since(&self->knowledge, in_use(&self->knowledge), &self->mark));
 }
 
 // True when the robot stands on the base heading; else it is on its way there, or S7 forbids.
@@ -46,7 +61,7 @@ static bool is_home(argus_t *const self) {
         self->base_cdeg = self->knowledge.pose.heading_cdeg;
     }
     if (argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, self->base_cdeg) > 2 * 100) {
-        if (!is_reading_again(self)) {
+        if (!self->swing_again || has_round(self)) { // an echo that forbade to turn is read once more
             argus_turn(self, self->base_cdeg);
         }
         return false;
@@ -89,30 +104,6 @@ static void finish_check(argus_t *const self) {
     self->checked = true;
     argus_say(self, ARGUS_EV_HEALTH_CHECK, ARGUS_NO_SONAR, argus_count_bits(argus_out(&self->knowledge)));
     argus_decide(self);
-}
-
-uint16_t argus_wanted_sonars(const argus_t *const self) {
-    return (uint16_t)(ARGUS_FORWARD_MASK & ~(unsigned)argus_out(&self->knowledge));
-}
-
-uint32_t argus_two_rounds_ms(const argus_t *const self) {
-    return 2u * SLOTS * (uint32_t)self->config.sonar_cycle_ms + SIP_MS;
-}
-
-static uint16_t in_use(const argus_knowledge_t *const knowledge) {
-    unsigned mask = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        mask |= knowledge->sonar[i].reported && !argus_is_out(knowledge, i) ? 1u << i : 0u;
-    }
-    return (uint16_t)mask;
-}
-
-// Those ahead have been read again; before a turn that S7 forbade the others as well, for two rounds at most:
-// one of them may have fallen silent.
-static bool has_round(const argus_t *const self) {
-    const bool waits = self->all_round && self->now_ms - self->since_ms < argus_two_rounds_ms(self);
-    return argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->mark) &&
-           (!waits || argus_all_fresh_since(&self->knowledge, in_use(&self->knowledge), &self->mark));
 }
 
 void argus_run_checking(argus_t *const self) {

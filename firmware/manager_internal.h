@@ -21,8 +21,9 @@ void argus_stop(argus_t *self, uint8_t command); // STOP or E_STOP, unless passi
 void argus_halt(argus_t *self);                  // STOP, unless the robot stands and no motion is on its way
 bool argus_may_turn(const argus_t *self);        // S7
 bool argus_is_hemmed_in(const argus_t *self); // on its course, and has waited in vain to turn or to back away
-bool argus_turn(argus_t *self,
-                int32_t heading_cdeg);  // false: S7 forbids it, and the manager waits or backs away
+bool argus_turn(
+    argus_t *self,
+    int32_t heading_cdeg); // false: S7 forbids it, and the manager reads again, waits or backs away
 void argus_give_up_turn(argus_t *self); // it was commanded several times and not executed
 bool argus_swing_is_blocked(const argus_t *self);
 bool argus_may_translate(const argus_t *self);

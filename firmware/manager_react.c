@@ -166,17 +166,39 @@ bool argus_is_hemmed_in(const argus_t *const self) {
            self->bumpers == 0 && !argus_may_turn(self) && !may_back_off(self);
 }
 
-// All that forbids to turn is an echo of now: a round later it is gone, or remembered. Once in a place, since
-// that of a suspect is not.
+// It is healthy and shows no gaps: what is there it hears again.
+static bool is_steady(const argus_t *const self, const int sonar) {
+    return self->knowledge.sonar[sonar].health == ARGUS_HEALTHY &&
+           self->evidence.of[sonar].score[ARGUS_TEST_DROPOUT] <= 0;
+}
+
+static bool only_steady_forbid_to_turn(const argus_t *const self) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const argus_point_t echo = argus_echo_robot(&self->knowledge, i);
+        const bool forbids =
+            argus_usable(&self->knowledge, i) && argus_hypot(echo.x_mm, echo.y_mm) <= swing_mm(self);
+        if (forbids && !is_steady(self, i)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// All that forbids to turn is an echo of now, of who would hear it again were something there. Once in a
+// place, since echoes that jump are never remembered as of one thing.
 static bool may_be_crosstalk(const argus_t *const self) {
     return argus_judges(self) && !self->swing_again && self->bumpers == 0 &&
-           argus_task_nearest_mm(&self->task, &self->knowledge, 0) > swing_mm(self);
+           argus_task_nearest_mm(&self->task, &self->knowledge, 0) > swing_mm(self) &&
+           only_steady_forbid_to_turn(self);
 }
 
 static void read_again(argus_t *const self) {
+    const int32_t rounds = self->rounds; // of a full check under way
     self->swing_again = true;
     argus_enter_checking(self, false);
+    self->rounds = (uint8_t)argus_max(rounds, self->rounds);
     self->all_round = true;
+    self->mark = argus_mark_now(&self->knowledge);
 }
 
 // Where it may not turn, a few times backing away may help.
@@ -366,9 +388,11 @@ static bool note_near(argus_t *const self, const int sonar) {
     }
     argus_near_t *const near = &self->near[echo.y_mm > 0 ? 1 : 0]; // in a passage both sides show
     const argus_point_t at = argus_to_course(&self->knowledge.pose, echo);
-    const bool again = near->valid && self->now_ms - near->t_ms <= argus_two_rounds_ms(self) &&
-                       argus_abs(at.x_mm - near->at.x_mm) <= NEAR_APART_MM &&
-                       argus_abs(at.y_mm - near->at.y_mm) <= NEAR_APART_MM;
+    const bool here = near->valid && self->now_ms - near->t_ms <= argus_two_rounds_ms(self) &&
+                      argus_abs(at.x_mm - near->at.x_mm) <= NEAR_APART_MM &&
+                      argus_abs(at.y_mm - near->at.y_mm) <= NEAR_APART_MM;
+    const bool again =
+        here || argus_task_has_seen(&self->task, &self->knowledge, at, SWING_MM + SWING_TURNING_MM);
     *near = (argus_near_t){at, self->now_ms, true};
     if (again) {
         argus_task_touched(&self->task, at, self->now_ms); // or the rest of the turn would be tried at once

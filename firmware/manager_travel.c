@@ -127,6 +127,7 @@ static void moved_on(argus_t *const self) {
         argus_awareness_moved(&self->awareness);
     }
     self->backed = 0;
+    self->swing_again = false;
     self->wait_last = ARGUS_WAIT_NONE;
 }
 

@@ -15,7 +15,7 @@
 #define USUAL_MS 2000u
 #define UNREST_MS 8000u
 #define UNREST_PERCENT 25
-#define CALM_MS 30000u  // something moved about the robot: for so long nobody is convicted by views
+#define CALM_MS 30000u  // people are, or something moved, about the robot: nobody is convicted by others
 #define NEVER INT16_MAX // what the peers say calls for looks, which convict
 
 _Static_assert(ARGUS_TEST_PEERS == ARGUS_TESTS - 1, "what is kept and what convicts comes before the peers");

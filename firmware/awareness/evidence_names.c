@@ -36,7 +36,9 @@
 #define LATE_NO_MORE 420
 #define LATE_BOTH 1000 // by the peers and by its own readings, those LATE_OWN at least
 #define LATE_BOTH_BUSY 1300
-#define LATE_BOTH_SURE 1450 // ... those LATE_OWN_LITTLE at least
+#define LATE_BOTH_CONTRADICTED 850 // ... of one that the others contradict by BACK_CONTRADICTED
+#define LATE_BOTH_INSTEAD 1200     // ... in the place of gaps or wild readings
+#define LATE_BOTH_SURE 1450        // ... of a bent axis; or with LATE_OWN_LITTLE at least
 #define LATE_OWN 300
 #define LATE_OWN_LITTLE 150
 #define LEAPS_CONTRADICTED 360 // two of them
@@ -176,14 +178,25 @@ static int32_t most_late_of_both(const argus_evidence_t *const self, const int s
 }
 
 // Its own readings are the third who says who is wrong, where the others rather contradict it.
+static bool is_late_by_both_from(const argus_evidence_t *const self, const int sonar, const int32_t level) {
+    return self->of[sonar].score[ARGUS_TEST_PEERS] >= 0 && most_late_of_both(self, sonar) >= level;
+}
+
 static bool is_late_by_both(const argus_evidence_t *const self, const int sonar) {
-    return self->of[sonar].score[ARGUS_TEST_PEERS] >= 0 &&
-           most_late_of_both(self, sonar) >= (is_busy_beside(self, sonar) ? LATE_BOTH_BUSY : LATE_BOTH);
+    if (is_busy_beside(self, sonar)) {
+        return is_late_by_both_from(self, sonar, LATE_BOTH_BUSY);
+    }
+    const bool contradicted = self->of[sonar].score[ARGUS_TEST_PEERS] >= BACK_CONTRADICTED;
+    return is_late_by_both_from(self, sonar, contradicted ? LATE_BOTH_CONTRADICTED : LATE_BOTH);
 }
 
 // Neither gaps nor wild readings come to this; the echoes of a late sonar may look like either.
 static bool is_surely_late(const argus_evidence_t *const self, const int sonar) {
     return is_late_from(self, sonar, LATE_SURE);
+}
+
+static bool is_late_instead(const argus_evidence_t *const self, const int sonar) {
+    return is_surely_late(self, sonar) || is_late_by_both_from(self, sonar, LATE_BOTH_INSTEAD);
 }
 
 static argus_fault_kind_t late_or_wrong(const argus_evidence_t *const self, const int sonar,
@@ -359,7 +372,9 @@ static argus_fault_kind_t slow_or(const argus_evidence_t *const self, const int 
     const bool unsteady = other == ARGUS_KIND_INTERMITTENT || other == ARGUS_KIND_GARBAGE;
     const bool late =
         other == ARGUS_KIND_NONE ? looks_late(self, sonar) : unsteady && is_surely_late(self, sonar);
-    const bool both = other == ARGUS_KIND_NONE && is_late_by_both(self, sonar);
+    const bool both = other == ARGUS_KIND_NONE
+                          ? is_late_by_both(self, sonar)
+                          : unsteady && is_late_by_both_from(self, sonar, LATE_BOTH_INSTEAD);
     return both || (late && has_partners(self, sonar)) ? ARGUS_KIND_SLOW : other;
 }
 
@@ -430,7 +445,8 @@ static bool is_more_than_wrong(const argus_evidence_t *const self, const int son
     case ARGUS_KIND_INTERMITTENT:
         return is_mostly_hollow(self, sonar) && !is_still_bent(self, sonar);
     case ARGUS_KIND_SLOW:
-        return lateness(self, sonar) >= LATE_AFTER && !is_still_bent(self, sonar);
+        return lateness(self, sonar) >= LATE_AFTER &&
+               (!is_still_bent(self, sonar) || is_late_by_both_from(self, sonar, LATE_BOTH_SURE));
     case ARGUS_KIND_GARBAGE:
         return !is_still_bent(self, sonar);
     default:
@@ -451,17 +467,21 @@ static bool is_more_than_off(const argus_evidence_t *const self, const int sonar
     return !(found == ARGUS_KIND_WRONG || late) || !stray;
 }
 
+// What tells of no lag any more gives the name up, for gaps or silence too where those are contradicted.
 static bool is_more_than_slow(const argus_evidence_t *const self, const int sonar,
                               const argus_fault_kind_t found) {
-    const bool wrong = lateness(self, sonar) < LATE_NO_MORE || is_surely_bent(self, sonar);
-    return (found == ARGUS_KIND_WRONG && wrong) || (found == ARGUS_KIND_GARBAGE && is_wild(self, sonar));
+    const bool late = lateness(self, sonar) >= LATE_NO_MORE;
+    const bool hollow = found == ARGUS_KIND_INTERMITTENT || found == ARGUS_KIND_OFF;
+    return (found == ARGUS_KIND_WRONG && (!late || is_surely_bent(self, sonar))) ||
+           (found == ARGUS_KIND_GARBAGE && is_wild(self, sonar)) ||
+           (hollow && !late && is_mostly_hollow(self, sonar));
 }
 
 // Gaps give way to a silence that lasts; gaps and wild readings to what is late or bent for sure.
 static bool is_more_than_unsteady(const argus_evidence_t *const self, const int sonar,
                                   const argus_fault_kind_t present, const argus_fault_kind_t found) {
     const bool deaf = present == ARGUS_KIND_INTERMITTENT && self->of[sonar].none_run >= OFF_RUN_LONGEST;
-    return (found == ARGUS_KIND_OFF && deaf) || (found == ARGUS_KIND_SLOW && is_surely_late(self, sonar)) ||
+    return (found == ARGUS_KIND_OFF && deaf) || (found == ARGUS_KIND_SLOW && is_late_instead(self, sonar)) ||
            (found == ARGUS_KIND_WRONG && is_surely_bent(self, sonar));
 }
 

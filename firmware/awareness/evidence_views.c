@@ -149,13 +149,19 @@ static int32_t share_of(const argus_evidence_t *const self, const argus_knowledg
     return lead <= -HEAD_START ? 20 : 50;
 }
 
+// Only then a disagreement makes an episode.
+static bool is_calm(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                    const int sonar) {
+    return !self->crowded && !argus_is_unrest(self, knowledge, sonar);
+}
+
 // One side of a disagreement; `misses`: it is the one that hears nothing.
 static void bear(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                  const int partner, const argus_view_t *const at, const int32_t weight, const bool misses) {
     argus_case_t *const c = &self->of[sonar];
     const int32_t share =
         share_of(self, knowledge, sonar, partner) * argus_unrest_percent(self, knowledge, sonar) / 100;
-    disagree(c, weight * share / 100, at, partner, misses, !argus_is_unrest(self, knowledge, sonar),
+    disagree(c, weight * share / 100, at, partner, misses, is_calm(self, knowledge, sonar),
              knowledge->sip_ms);
     c->misses = (uint8_t)argus_min(c->misses + misses, UINT8_MAX);
 }
@@ -255,7 +261,7 @@ void argus_views_scan(argus_evidence_t *const self, const argus_knowledge_t *con
     } else if (verdict != ARGUS_SCAN_NOTHING) {
         const argus_view_t at = view_of(knowledge, sonar);
         disagree(c, weight * argus_unrest_percent(self, knowledge, sonar) / 100, &at, ARGUS_SCAN_PARTNER,
-                 verdict == ARGUS_SCAN_MISSES, !argus_is_unrest(self, knowledge, sonar), at.t_ms);
+                 verdict == ARGUS_SCAN_MISSES, is_calm(self, knowledge, sonar), at.t_ms);
         c->misses = (uint8_t)argus_min(c->misses + (verdict == ARGUS_SCAN_MISSES), UINT8_MAX);
     }
 }

@@ -44,17 +44,33 @@ static argus_seen_t *slot_for(argus_task_t *const self, const argus_point_t *con
     return &self->seen[self->seen_next];
 }
 
-// A second echo of one thing; a wall gives one a little farther on, as far as the robot drove meanwhile.
-static bool is_seen_again(const argus_task_t *const self, const argus_point_t *const at,
+// A second echo of one thing, lately; a wall gives one a little farther on, as far as the robot drove
+// meanwhile. What was seen twice before stays so for as long as it is remembered.
+static bool is_seen_again(const argus_seen_t *const seen, const argus_point_t *const at,
                           const uint32_t now_ms) {
+    const uint32_t age_ms = now_ms - seen->seen_ms;
+    const bool near = argus_abs(seen->x_mm - at->x_mm) <= SAME_THING_MM &&
+                      argus_abs(seen->y_mm - at->y_mm) <= SAME_THING_MM;
+    return (near && age_ms <= LATELY_MS) || (seen->again && age_ms <= FORGET_MS && same_place(seen, at));
+}
+
+// ... of something at most so far from there.
+static bool has_seen(const argus_task_t *const self, const argus_point_t *const at, const uint32_t now_ms,
+                     const argus_point_t *const from, const int32_t within_mm) {
     for (uint16_t i = 0; i < self->seen_count; i++) {
         const argus_seen_t *const seen = &self->seen[i];
-        if (now_ms - seen->seen_ms <= LATELY_MS && argus_abs(seen->x_mm - at->x_mm) <= SAME_THING_MM &&
-            argus_abs(seen->y_mm - at->y_mm) <= SAME_THING_MM) {
+        if (is_seen_again(seen, at, now_ms) &&
+            argus_hypot(seen->x_mm - from->x_mm, seen->y_mm - from->y_mm) <= within_mm) {
             return true;
         }
     }
     return false;
+}
+
+bool argus_task_has_seen(const argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                         const argus_point_t at, const int32_t within_mm) {
+    const argus_point_t centre = {knowledge->pose.x_mm, knowledge->pose.y_mm};
+    return has_seen(self, &at, knowledge->sip_ms, &centre, within_mm);
 }
 
 static void remember(argus_task_t *const self, const argus_point_t at, const uint8_t sonar,
@@ -62,7 +78,7 @@ static void remember(argus_task_t *const self, const argus_point_t at, const uin
     if (argus_abs(at.x_mm) > INT16_MAX || argus_abs(at.y_mm) > INT16_MAX) {
         return;
     }
-    const bool again = sonar == BY_TOUCH || is_seen_again(self, &at, now_ms);
+    const bool again = sonar == BY_TOUCH || has_seen(self, &at, now_ms, &at, INT32_MAX);
     argus_seen_t *const slot = slot_for(self, &at);
     slot->again = again;
     slot->x_mm = (int16_t)at.x_mm;

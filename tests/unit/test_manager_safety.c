@@ -11,6 +11,7 @@
 
 static robot_t robot;
 static int32_t profile;
+static char which_case[32];
 
 static const uint8_t STOP[] = {0xFA, 0xFB, 0x03, 0x1D, 0x00, 0x1D};
 static const uint8_t E_STOP[] = {0xFA, 0xFB, 0x03, 0x37, 0x00, 0x37};
@@ -761,9 +762,9 @@ void test_s7_leaves_a_margin(void) {
 }
 
 // One echo may be crosstalk: it is read once more before it forbids a turn. What is there is seen again; what
-// only a suspect sees, whom nothing is remembered of, forbids it after one round as well.
+// jumps is not, and forbids it after one round; what a suspect hears, or one that has gaps, at once.
 static void check_s7_one_echo_is_read_again(void) {
-    enum { CROSSTALK, THERE, SUSPECTED, CASES };
+    enum { CROSSTALK, THERE, JUMPING, SUSPECTED, WITH_GAPS, CASES };
     for (int which = 0; which < CASES; which++) {
         start_idle();
         robot.noise_mm = 0;
@@ -774,23 +775,62 @@ static void check_s7_one_echo_is_read_again(void) {
         }
         TEST_ASSERT_EQUAL(150, robot.argus.knowledge.sonar[0].reading_mm);
         robot.fault[0] = which == CROSSTALK ? ROBOT_OK : ROBOT_VALUE;
+        robot.argus.evidence.of[0].score[ARGUS_TEST_DROPOUT] = which == WITH_GAPS ? 100 : 0;
+        if (which == SUSPECTED) { // looked at in vain; held by what the others say
+            robot.argus.knowledge.sonar[0].health = ARGUS_SUSPECT;
+            robot.argus.awareness.verified |= 1;
+            robot.argus.evidence.of[0].score[ARGUS_TEST_PEERS] = 400;
+        }
         argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 20);
         const uint32_t from_ms = robot.t_ms;
-        while (robot.t_ms - from_ms < 900) {
+        bool read_again = false;
+        for (uint32_t seen = robot.argus.knowledge.sonar[0].readings; robot.t_ms - from_ms < 900;) {
             robot_tick(&robot);
-            if (which == SUSPECTED) {
-                argus_sonar_set_health(&robot.argus.knowledge.sonar[0], ARGUS_SUSPECT, ARGUS_KIND_WRONG,
-                                       robot.argus.now_ms);
+            read_again |= robot.argus.swing_again;
+            if (which == JUMPING && robot.argus.knowledge.sonar[0].readings != seen) { // 60 and 220 in turn
+                seen = robot.argus.knowledge.sonar[0].readings;
+                robot.fault_value[0] = robot.fault_value[0] == 60 ? 220 : 60;
             }
         }
-        TEST_ASSERT_EQUAL(which != CROSSTALK, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
-        TEST_ASSERT_EQUAL(which == CROSSTALK, robot_heading_deg(&robot) > 1);
+        const bool doubted = which == SUSPECTED || which == WITH_GAPS;
+        snprintf(which_case, sizeof which_case, "case %d", which);
+        TEST_ASSERT_EQUAL_MESSAGE(which != CROSSTALK,
+                                  robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0, which_case);
+        TEST_ASSERT_EQUAL_MESSAGE(which == CROSSTALK, robot_heading_deg(&robot) > 1, which_case);
+        TEST_ASSERT_TRUE_MESSAGE(which == THERE || read_again == !doubted, which_case);
         finish();
     }
 }
 
 void test_s7_one_echo_is_read_again(void) {
     with_profile(ARGUS_PROFILE_ARGUS, check_s7_one_echo_is_read_again);
+}
+
+// Not where something remembered, a bumper or the paper's rules forbid it.
+static void check_s7_what_else_forbids_a_turn_is_not_read_again(void) {
+    start_idle();
+    robot.noise_mm = 0;
+    robot.fault[0] = ROBOT_VALUE;
+    robot.fault_value[0] = 150;
+    for (int i = 0; i < 1000 && robot.argus.knowledge.sonar[0].reading_mm != 150; i++) {
+        robot_tick(&robot);
+    }
+    robot.fault[0] = ROBOT_OK;
+    if (profile == ARGUS_PROFILE_ARGUS) {
+        const argus_point_t at = {(int32_t)robot.x + 300, 0};
+        argus_task_touched(&robot.argus.task, at, robot.argus.now_ms);
+    }
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 20);
+    robot_next_sip(&robot);
+    robot_next_sip(&robot);
+    robot_drain(&robot);
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0));
+    TEST_ASSERT_FALSE(robot.argus.swing_again);
+    finish();
+}
+
+void test_s7_what_else_forbids_a_turn_is_not_read_again(void) {
+    in_both_profiles(check_s7_what_else_forbids_a_turn_is_not_read_again);
 }
 
 // 0 shows something 69 mm ahead of the centre and so far beside it; 400 mm off it is let be.
@@ -948,6 +988,25 @@ static void check_s7_a_turn_ends_when_something_shows_within_the_swing_circle(vo
     }
 }
 
+// What was seen once before the turn, and once in it, is there.
+static void check_s7_an_echo_before_the_turn_and_one_in_it_end_it(void) {
+    for (int known = 0; known < 2; known++) {
+        turn_begins();
+        argus_knowledge_t seen = robot.argus.knowledge;
+        seen.sonar[3].reading_mm = 150;
+        const argus_point_t at = argus_to_course(&seen.pose, argus_echo_robot(&seen, 3));
+        argus_seen_t *const slot = &robot.argus.task.seen[0];
+        slot->x_mm = (int16_t)at.x_mm;
+        slot->y_mm = (int16_t)at.y_mm;
+        slot->again = false;
+        slot->seen_ms = robot.argus.now_ms;
+        robot.argus.task.seen_count = known ? 1 : 0;
+        shows(150, 1);
+        TEST_ASSERT_EQUAL(known, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
+        finish();
+    }
+}
+
 // 380 mm: 10 less than what a turn begins with, since readings scatter.
 static void check_s7_how_near_ends_a_turn(void) {
     for (int mm = 208; mm <= 214; mm += 6) { // 376 and 382 mm from the centre
@@ -956,6 +1015,10 @@ static void check_s7_how_near_ends_a_turn(void) {
         TEST_ASSERT_EQUAL(mm == 208, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
         finish();
     }
+}
+
+void test_s7_an_echo_before_the_turn_and_one_in_it_end_it(void) {
+    with_profile(ARGUS_PROFILE_ARGUS, check_s7_an_echo_before_the_turn_and_one_in_it_end_it);
 }
 
 void test_s7_how_near_ends_a_turn(void) {

@@ -324,6 +324,19 @@ void test_a_conflict_while_something_moves_beside_it_counts_a_quarter_and_is_no_
     counts_a_quarter(12);
 }
 
+// Among people, though nothing is seen to move.
+void test_a_conflict_in_a_crowd_is_no_episode(void) {
+    const int calm = conflict(-1, 0);
+    scene_init(&s, 1, 0xFFFFF000u);
+    see(3, 0, 3000);
+    s.e.crowded = true;
+    s.e.crowded_ms = s.k.sip_ms;
+    see(4, 20, 1000);
+    TEST_ASSERT_TRUE(s.e.crowded);
+    TEST_ASSERT_EQUAL(calm, s.e.of[4].score[ARGUS_TEST_VIEW]);
+    TEST_ASSERT_EQUAL(0, s.e.of[4].episodes);
+}
+
 void test_what_moved_some_time_ago_takes_nothing_from_a_conflict(void) {
     TEST_ASSERT_EQUAL(conflict(-1, 9000), conflict(4, 9000));
     TEST_ASSERT_EQUAL(1, s.e.of[4].episodes);

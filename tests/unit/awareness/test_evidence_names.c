@@ -544,7 +544,7 @@ void test_a_lost_echo_and_one_voice_are_off(void) {
 
 // Of one lag, its own readings (300 at least) and the peers together: 1,000, or 1,300 while something moves
 // before others, name it where the others do not bear it out; whoever they are, it needs no second of them.
-// From 1,450 on, 150 of its own are enough.
+// From 1,450 on, 150 of its own are enough; where the others contradict it (200) and nothing moves, 850.
 void test_its_own_readings_and_the_peers_name_together(void) {
     static const struct {
         int own;
@@ -553,14 +553,16 @@ void test_its_own_readings_and_the_peers_name_together(void) {
         int peers;
         bool busy;
         argus_fault_kind_t kind;
-    } by[] = {{300, 700, 0, 0, false, ARGUS_KIND_SLOW},   {299, 1150, 0, 0, false, ARGUS_KIND_NONE},
-              {300, 699, 0, 0, false, ARGUS_KIND_NONE},   {300, 700, 0, -1, false, ARGUS_KIND_NONE},
-              {300, 0, 700, 0, false, ARGUS_KIND_NONE},   {700, 599, 0, 0, true, ARGUS_KIND_NONE},
-              {700, 600, 0, 0, true, ARGUS_KIND_SLOW},    {899, 0, 0, 0, false, ARGUS_KIND_NONE},
-              {899, 101, 0, 0, false, ARGUS_KIND_SLOW},   {150, 1300, 0, 0, false, ARGUS_KIND_SLOW},
-              {150, 1299, 0, 0, false, ARGUS_KIND_NONE},  {149, 2000, 0, 0, false, ARGUS_KIND_NONE},
-              {150, 1300, 0, 0, true, ARGUS_KIND_SLOW},   {299, 1151, 0, 0, false, ARGUS_KIND_SLOW},
-              {150, 700, 1300, 0, false, ARGUS_KIND_NONE}};
+    } by[] = {{300, 700, 0, 0, false, ARGUS_KIND_SLOW},    {299, 1150, 0, 0, false, ARGUS_KIND_NONE},
+              {300, 699, 0, 0, false, ARGUS_KIND_NONE},    {300, 700, 0, -1, false, ARGUS_KIND_NONE},
+              {300, 0, 700, 0, false, ARGUS_KIND_NONE},    {700, 599, 0, 0, true, ARGUS_KIND_NONE},
+              {700, 600, 0, 0, true, ARGUS_KIND_SLOW},     {899, 0, 0, 0, false, ARGUS_KIND_NONE},
+              {899, 101, 0, 0, false, ARGUS_KIND_SLOW},    {150, 1300, 0, 0, false, ARGUS_KIND_SLOW},
+              {150, 1299, 0, 0, false, ARGUS_KIND_NONE},   {149, 2000, 0, 0, false, ARGUS_KIND_NONE},
+              {150, 1300, 0, 0, true, ARGUS_KIND_SLOW},    {299, 1151, 0, 0, false, ARGUS_KIND_SLOW},
+              {150, 700, 1300, 0, false, ARGUS_KIND_NONE}, {300, 550, 0, 200, false, ARGUS_KIND_SLOW},
+              {300, 549, 0, 200, false, ARGUS_KIND_NONE},  {300, 550, 0, 199, false, ARGUS_KIND_NONE},
+              {300, 550, 0, 200, true, ARGUS_KIND_NONE},   {299, 700, 0, 200, false, ARGUS_KIND_NONE}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
         setUp();
         c->lag[LAG] = (int16_t)by[i].own;
@@ -609,6 +611,64 @@ void test_late_for_sure_is_neither_garbage_nor_gaps(void) {
             accuse(tests[t], argus_bounds[tests[t]].convincing);
             TEST_ASSERT_EQUAL_MESSAGE(by[i].slow ? ARGUS_KIND_SLOW : kinds[t], convicted(), text);
         }
+    }
+}
+
+// ... and so it is by its own readings (300) and the peers together from 1,200 on, not borne out, whatever it
+// was called before.
+void test_late_by_both_is_neither_garbage_nor_gaps(void) {
+    static const argus_test_t tests[] = {ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT};
+    static const argus_fault_kind_t kinds[] = {ARGUS_KIND_GARBAGE, ARGUS_KIND_INTERMITTENT};
+    static const struct {
+        int own;
+        int late;
+        int peers;
+        bool slow;
+    } by[] = {{300, 900, 0, true}, {300, 899, 0, false}, {299, 1100, 0, false}, {300, 900, -1, false}};
+    for (int t = 0; t < 2; t++) {
+        for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+            setUp();
+            accuse(tests[t], argus_bounds[tests[t]].convincing);
+            c->lag[LAG] = c->score[ARGUS_TEST_LAG] = (int16_t)by[i].own;
+            peer->late[LAG] = (int16_t)by[i].late;
+            c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
+            snprintf(text, sizeof text, "test %d, case %d", (int)tests[t], i);
+            TEST_ASSERT_EQUAL_MESSAGE(by[i].slow ? ARGUS_KIND_SLOW : kinds[t], named(), text);
+            TEST_ASSERT_EQUAL_MESSAGE(by[i].slow ? ARGUS_KIND_SLOW : kinds[t], convicted(), text);
+            TEST_ASSERT_EQUAL_MESSAGE(by[i].slow, replaces(kinds[t], ARGUS_KIND_SLOW), text);
+        }
+    }
+}
+
+// What was called wrong for a bent axis, and looks bent still, is slow where both together say 1,450.
+void test_late_by_both_for_sure_is_not_bent(void) {
+    for (int below = 0; below < 2; below++) {
+        setUp();
+        peer->bend[2] = 600;
+        peer->bend_told[2] = 900;
+        peer->told[LAG] = 300;
+        c->lag[LAG] = c->score[ARGUS_TEST_LAG] = 580;
+        peer->late[LAG] = (int16_t)(870 - below);
+        TEST_ASSERT_EQUAL(!below, replaces(ARGUS_KIND_WRONG, ARGUS_KIND_SLOW));
+    }
+}
+
+// Gaps and silence take the name of what tells of no lag any more (420), where nearly all that contradicts it
+// is silence.
+void test_slow_without_a_lag_gives_way_to_gaps(void) {
+    static const struct {
+        int told;
+        uint8_t hollow;
+        bool gives_way;
+    } by[] = {{419, 0x07, true}, {420, 0x07, false}, {419, 0x03, false}, {0, 0x0E, true}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        peer->told[LAG] = (int16_t)by[i].told;
+        peer->hollow = by[i].hollow;
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].gives_way, replaces(ARGUS_KIND_SLOW, ARGUS_KIND_INTERMITTENT), text);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].gives_way, replaces(ARGUS_KIND_SLOW, ARGUS_KIND_OFF), text);
+        TEST_ASSERT_FALSE_MESSAGE(replaces(ARGUS_KIND_SLOW, ARGUS_KIND_STUCK), text);
     }
 }
 

@@ -85,6 +85,34 @@ void test_near_is_what_was_seen_again(void) {
     TEST_ASSERT_EQUAL(240, argus_task_nearest_mm(&t, &k, 0));
 }
 
+// ... and stays so in its place for the minute that it is remembered.
+void test_what_was_seen_twice_once_more_is_seen_again(void) {
+    for (int late = 0; late < 2; late++) {
+        setUp();
+        see(0, 200);
+        k.sip_ms += 320;
+        see(0, 200);
+        k.sip_ms += 60000u + (uint32_t)late;
+        TEST_ASSERT_EQUAL(INT32_MAX, argus_task_nearest_mm(&t, &k, 0));
+        see(0, 210);
+        TEST_ASSERT_EQUAL(!late, argus_task_nearest_mm(&t, &k, 0) < INT32_MAX);
+    }
+}
+
+// A turn asks whether an echo is the second one of something near: at (69, 336), 343 mm from the centre.
+void test_what_a_turn_is_told_of_a_second_echo(void) {
+    see(0, 200);
+    const argus_point_t there = argus_to_course(&k.pose, argus_echo_robot(&k, 0));
+    const argus_point_t aside = {there.x_mm + 150, there.y_mm};
+    const argus_point_t beyond = {there.x_mm + 151, there.y_mm};
+    TEST_ASSERT_TRUE(argus_task_has_seen(&t, &k, there, 345));
+    TEST_ASSERT_FALSE(argus_task_has_seen(&t, &k, there, 340));
+    TEST_ASSERT_TRUE(argus_task_has_seen(&t, &k, aside, 345));
+    TEST_ASSERT_FALSE(argus_task_has_seen(&t, &k, beyond, 345));
+    k.sip_ms += 5001;
+    TEST_ASSERT_FALSE(argus_task_has_seen(&t, &k, there, 345));
+}
+
 void test_a_convicted_sonars_echoes_are_forgotten(void) {
     see(3, 500);
     see(6, 900);
