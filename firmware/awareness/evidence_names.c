@@ -125,8 +125,9 @@ static bool outweighs(const argus_case_t *const c, const argus_test_t test) {
 }
 
 // Who walks about contradicts, and does, while the robot turns and stops, what it did a moment ago.
-static bool wants_calm(const argus_test_t test) {
-    return rests_on_views(test) || test == ARGUS_TEST_LAG;
+static bool is_disturbed(const argus_evidence_t *const self, const int sonar, const argus_test_t test) {
+    const bool wants_calm = rests_on_views(test) || test == ARGUS_TEST_LAG;
+    return wants_calm && (self->crowded || is_busy_for(self, sonar, test));
 }
 
 // By its own readings alone, however late they look, nobody is given up.
@@ -139,8 +140,7 @@ static bool is_convicted_by(const argus_evidence_t *const self, const int sonar,
     const bool enough =
         !rests_on_views(test) || (outweighs(c, test) && c->conflicts >= CONVICT_CONFLICTS &&
                                   c->episodes >= CONVICT_EPISODES && beside_the_main(c) >= CONVICT_BESIDE);
-    return c->score[test] >= argus_bounds[test].convincing && enough &&
-           !(wants_calm(test) && (self->crowded || is_busy_for(self, sonar, test))) &&
+    return c->score[test] >= argus_bounds[test].convincing && enough && !is_disturbed(self, sonar, test) &&
            is_told_of(self, sonar, test) && is_named_by(c, test, argus_bounds[test].naming);
 }
 
