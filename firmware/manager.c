@@ -126,8 +126,8 @@ static void on_sip(argus_t *const self) {
     if (argus_judges(self)) {
         argus_evidence_sip(&self->evidence, &self->knowledge);
     }
+    argus_react(self, &alarm); // it asks what was seen before this SIP
     argus_task_see(&self->task, &self->knowledge, self->now_ms);
-    argus_react(self, &alarm);
     argus_judge(self);
     argus_foretell(self);
     argus_motion_sip(&self->motion, &self->session.outbox, &self->knowledge, self->now_ms);

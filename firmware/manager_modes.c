@@ -88,6 +88,7 @@ void argus_decide(argus_t *const self) {
     const bool wants = jogging || (self->mission == ARGUS_MISSION_RUNNING && !self->paused);
     if (self->passive || !wants) {
         self->has_base = false;
+        self->swing_again = false;
         self->wait_last = ARGUS_WAIT_NONE;
         argus_enter(self, ARGUS_MODE_IDLE);
     } else if (self->plan.disabled != 0 &&

@@ -184,8 +184,8 @@ static bool only_steady_forbid_to_turn(const argus_t *const self) {
     return true;
 }
 
-// All that forbids to turn is an echo of now, of who would hear it again were something there. Once in a
-// place, since echoes that jump are never remembered as of one thing.
+// All that forbids to turn is an echo of now, of who would hear it again were something there. Once for each
+// try, since echoes that jump are never remembered as of one thing.
 static bool may_be_crosstalk(const argus_t *const self) {
     return argus_judges(self) && !self->swing_again && self->bumpers == 0 &&
            argus_task_nearest_mm(&self->task, &self->knowledge, 0) > swing_mm(self) &&
@@ -198,6 +198,7 @@ static void read_again(argus_t *const self) {
     argus_enter_checking(self, false);
     self->rounds = (uint8_t)argus_max(rounds, self->rounds);
     self->all_round = true;
+    self->marked = true;
     self->mark = argus_mark_now(&self->knowledge);
 }
 

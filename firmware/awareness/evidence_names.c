@@ -34,7 +34,8 @@
 #define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
 #define LATE_NO_MORE 420
-#define LATE_BOTH 1000 // by the peers and by its own readings, those LATE_OWN at least
+#define LATE_NO_MORE_OF_SILENT 150 // less than any name of slow takes
+#define LATE_BOTH 1000             // by the peers and by its own readings, those LATE_OWN at least
 #define LATE_BOTH_BUSY 1300
 #define LATE_BOTH_CONTRADICTED 850 // ... of one that the others contradict by BACK_CONTRADICTED
 #define LATE_BOTH_INSTEAD 1200     // ... in the place of gaps or wild readings
@@ -195,8 +196,10 @@ static bool is_surely_late(const argus_evidence_t *const self, const int sonar) 
     return is_late_from(self, sonar, LATE_SURE);
 }
 
-static bool is_late_instead(const argus_evidence_t *const self, const int sonar) {
-    return is_surely_late(self, sonar) || is_late_by_both_from(self, sonar, LATE_BOTH_INSTEAD);
+// Among wild readings some lag always explains a few: the others must know of one.
+static bool is_late_by_both_instead(const argus_evidence_t *const self, const int sonar) {
+    return argus_peers_late(&self->peers, sonar) >= LATE_OF_WILD &&
+           is_late_by_both_from(self, sonar, LATE_BOTH_INSTEAD);
 }
 
 static argus_fault_kind_t late_or_wrong(const argus_evidence_t *const self, const int sonar,
@@ -372,9 +375,8 @@ static argus_fault_kind_t slow_or(const argus_evidence_t *const self, const int 
     const bool unsteady = other == ARGUS_KIND_INTERMITTENT || other == ARGUS_KIND_GARBAGE;
     const bool late =
         other == ARGUS_KIND_NONE ? looks_late(self, sonar) : unsteady && is_surely_late(self, sonar);
-    const bool both = other == ARGUS_KIND_NONE
-                          ? is_late_by_both(self, sonar)
-                          : unsteady && is_late_by_both_from(self, sonar, LATE_BOTH_INSTEAD);
+    const bool both = other == ARGUS_KIND_NONE ? is_late_by_both(self, sonar)
+                                               : unsteady && is_late_by_both_instead(self, sonar);
     return both || (late && has_partners(self, sonar)) ? ARGUS_KIND_SLOW : other;
 }
 
@@ -467,21 +469,24 @@ static bool is_more_than_off(const argus_evidence_t *const self, const int sonar
     return !(found == ARGUS_KIND_WRONG || late) || !stray;
 }
 
-// What tells of no lag any more gives the name up, for gaps or silence too where those are contradicted.
+// What tells of no lag gives the name up, for gaps or silence too where those are contradicted. A name that
+// was taken from a bent axis for sure goes back for less than it took.
 static bool is_more_than_slow(const argus_evidence_t *const self, const int sonar,
                               const argus_fault_kind_t found) {
-    const bool late = lateness(self, sonar) >= LATE_NO_MORE;
+    const int32_t late = lateness(self, sonar);
+    const bool bent = is_surely_bent(self, sonar) && !is_late_by_both_from(self, sonar, LATE_BOTH);
     const bool hollow = found == ARGUS_KIND_INTERMITTENT || found == ARGUS_KIND_OFF;
-    return (found == ARGUS_KIND_WRONG && (!late || is_surely_bent(self, sonar))) ||
+    return (found == ARGUS_KIND_WRONG && (late < LATE_NO_MORE || bent)) ||
            (found == ARGUS_KIND_GARBAGE && is_wild(self, sonar)) ||
-           (hollow && !late && is_mostly_hollow(self, sonar));
+           (hollow && late < LATE_NO_MORE_OF_SILENT && is_mostly_hollow(self, sonar));
 }
 
 // Gaps give way to a silence that lasts; gaps and wild readings to what is late or bent for sure.
 static bool is_more_than_unsteady(const argus_evidence_t *const self, const int sonar,
                                   const argus_fault_kind_t present, const argus_fault_kind_t found) {
     const bool deaf = present == ARGUS_KIND_INTERMITTENT && self->of[sonar].none_run >= OFF_RUN_LONGEST;
-    return (found == ARGUS_KIND_OFF && deaf) || (found == ARGUS_KIND_SLOW && is_late_instead(self, sonar)) ||
+    const bool late = is_surely_late(self, sonar) || is_late_by_both_instead(self, sonar);
+    return (found == ARGUS_KIND_OFF && deaf) || (found == ARGUS_KIND_SLOW && late) ||
            (found == ARGUS_KIND_WRONG && is_surely_bent(self, sonar));
 }
 

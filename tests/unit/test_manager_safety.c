@@ -761,6 +761,21 @@ void test_s7_leaves_a_margin(void) {
     with_profile(ARGUS_PROFILE_ARGUS, check_s7_leaves_a_margin);
 }
 
+// A sonar reads so until the manager has so many readings of it, then as before.
+static void shows(int sonar, int mm, int times) {
+    robot.fault[sonar] = ROBOT_VALUE;
+    robot.fault_value[sonar] = mm;
+    for (int seen = 0, before = -1; seen < times;) {
+        const int readings = (int)robot.argus.knowledge.sonar[sonar].readings;
+        robot_next_sip(&robot);
+        robot_drain(&robot);
+        const int now = (int)robot.argus.knowledge.sonar[sonar].readings;
+        seen += now != readings && robot.argus.knowledge.sonar[sonar].reading_mm == mm ? 1 : 0;
+        TEST_ASSERT_TRUE_MESSAGE(++before < 40, "it is not read");
+    }
+    robot.fault[sonar] = ROBOT_OK;
+}
+
 // One echo may be crosstalk: it is read once more before it forbids a turn. What is there is seen again; what
 // jumps is not, and forbids it after one round; what a suspect hears, or one that has gaps, at once.
 static void check_s7_one_echo_is_read_again(void) {
@@ -804,6 +819,27 @@ static void check_s7_one_echo_is_read_again(void) {
 
 void test_s7_one_echo_is_read_again(void) {
     with_profile(ARGUS_PROFILE_ARGUS, check_s7_one_echo_is_read_again);
+}
+
+// ... before a look, too, which begins on the heading where the robot stands.
+static void check_s7_one_echo_does_not_hold_up_a_look(void) {
+    for (int phase = 0; phase < 16 * 24; phase++) {
+        start_idle();
+        robot.noise_mm = 0;
+        TEST_ASSERT_TRUE(robot_goal(&robot, 3000, 0));
+        for (int i = 0; i < 10 * (phase / 16); i++) {
+            robot_tick(&robot);
+        }
+        shows(phase % 16, 120, 1);
+        robot_run(&robot, 2000);
+        snprintf(which_case, sizeof which_case, "sonar %d, SIP %d", phase % 16, phase / 16);
+        TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0), which_case);
+        finish();
+    }
+}
+
+void test_s7_one_echo_does_not_hold_up_a_look(void) {
+    with_profile(ARGUS_PROFILE_ARGUS, check_s7_one_echo_does_not_hold_up_a_look);
 }
 
 // Not where something remembered, a bumper or the paper's rules forbid it.
@@ -958,27 +994,12 @@ static void turn_begins(void) {
     }
 }
 
-// Sonar 3 reads so until the manager has so many readings of it, then as before.
-static void shows(int mm, int times) {
-    robot.fault[3] = ROBOT_VALUE;
-    robot.fault_value[3] = mm;
-    for (int seen = 0, before = -1; seen < times;) {
-        const int readings = (int)robot.argus.knowledge.sonar[3].readings;
-        robot_next_sip(&robot);
-        robot_drain(&robot);
-        const int now = (int)robot.argus.knowledge.sonar[3].readings;
-        seen += now != readings && robot.argus.knowledge.sonar[3].reading_mm == mm ? 1 : 0;
-        TEST_ASSERT_TRUE_MESSAGE(++before < 40, "it is not read");
-    }
-    robot.fault[3] = ROBOT_OK;
-}
-
 // What no sonar had seen when the turn began; one echo alone may be crosstalk. What ended a turn is not
 // forgotten when the next one is asked for.
 static void check_s7_a_turn_ends_when_something_shows_within_the_swing_circle(void) {
     for (int times = 1; times <= 2; times++) {
         turn_begins();
-        shows(150, times);
+        shows(3, 150, times);
         TEST_ASSERT_EQUAL(times == 2, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
         const int from = robot.commands;
         robot_run(&robot, 2500);
@@ -1001,17 +1022,38 @@ static void check_s7_an_echo_before_the_turn_and_one_in_it_end_it(void) {
         slot->again = false;
         slot->seen_ms = robot.argus.now_ms;
         robot.argus.task.seen_count = known ? 1 : 0;
-        shows(150, 1);
+        shows(3, 150, 1);
         TEST_ASSERT_EQUAL(known, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
         finish();
     }
+}
+
+// One echo is one echo, also while the robot comes to rest.
+static void check_s7_one_echo_at_the_end_of_a_turn_does_not_end_it(void) {
+    for (int phase = 0; phase < 30; phase++) {
+        turn_begins();
+        for (int i = 0; i < 5000 && fabs(robot_heading_deg(&robot)) < 155; i++) {
+            robot_tick(&robot);
+        }
+        for (int i = 0; i < 2 * phase; i++) {
+            robot_tick(&robot);
+        }
+        shows(3, 150, 1);
+        snprintf(which_case, sizeof which_case, "phase %d", phase);
+        TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0), which_case);
+        finish();
+    }
+}
+
+void test_s7_one_echo_at_the_end_of_a_turn_does_not_end_it(void) {
+    with_profile(ARGUS_PROFILE_ARGUS, check_s7_one_echo_at_the_end_of_a_turn_does_not_end_it);
 }
 
 // 380 mm: 10 less than what a turn begins with, since readings scatter.
 static void check_s7_how_near_ends_a_turn(void) {
     for (int mm = 208; mm <= 214; mm += 6) { // 376 and 382 mm from the centre
         turn_begins();
-        shows(mm, 2);
+        shows(3, mm, 2);
         TEST_ASSERT_EQUAL(mm == 208, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
         finish();
     }

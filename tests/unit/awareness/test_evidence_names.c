@@ -653,14 +653,28 @@ void test_late_by_both_for_sure_is_not_bent(void) {
     }
 }
 
-// Gaps and silence take the name of what tells of no lag any more (420), where nearly all that contradicts it
+// ... and goes back to a bent axis for sure only under 1,000.
+void test_late_by_both_goes_back_to_bent_for_less_than_it_took(void) {
+    for (int below = 0; below < 2; below++) {
+        setUp();
+        peer->bend[2] = 1000;
+        peer->bend_told[2] = 900;
+        peer->against = 3;
+        peer->told[LAG] = 400;
+        c->lag[LAG] = c->score[ARGUS_TEST_LAG] = 400;
+        peer->late[LAG] = (int16_t)(600 - below);
+        TEST_ASSERT_EQUAL(below, replaces(ARGUS_KIND_SLOW, ARGUS_KIND_WRONG));
+    }
+}
+
+// Gaps and silence take the name of what tells of no lag any more (150), where nearly all that contradicts it
 // is silence.
 void test_slow_without_a_lag_gives_way_to_gaps(void) {
     static const struct {
         int told;
         uint8_t hollow;
         bool gives_way;
-    } by[] = {{419, 0x07, true}, {420, 0x07, false}, {419, 0x03, false}, {0, 0x0E, true}};
+    } by[] = {{149, 0x07, true}, {150, 0x07, false}, {149, 0x03, false}, {0, 0x0E, true}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
         setUp();
         peer->told[LAG] = (int16_t)by[i].told;
@@ -669,6 +683,46 @@ void test_slow_without_a_lag_gives_way_to_gaps(void) {
         TEST_ASSERT_EQUAL_MESSAGE(by[i].gives_way, replaces(ARGUS_KIND_SLOW, ARGUS_KIND_INTERMITTENT), text);
         TEST_ASSERT_EQUAL_MESSAGE(by[i].gives_way, replaces(ARGUS_KIND_SLOW, ARGUS_KIND_OFF), text);
         TEST_ASSERT_FALSE_MESSAGE(replaces(ARGUS_KIND_SLOW, ARGUS_KIND_STUCK), text);
+    }
+}
+
+// In no state two names take each other's place, SIP after SIP.
+void test_names_of_lateness_do_not_go_to_and_fro(void) {
+    static const argus_fault_kind_t others[] = {ARGUS_KIND_GARBAGE, ARGUS_KIND_INTERMITTENT, ARGUS_KIND_OFF,
+                                                ARGUS_KIND_WRONG};
+    static const int own[] = {0, 149, 150, 300, 420, 600, 950}, late[] = {0, 250, 300, 600, 900, 1000, 2000};
+    static const int told[] = {0, 50, 149, 400, 430, 900}, leaps[] = {0, 400, 2800};
+    static const uint8_t hollow[] = {0x00, 0x07, 0xFF}, runs[] = {0, 12, 30};
+    for (unsigned at = 0; at < 7u * 7 * 6 * 3 * 3 * 3 * 2; at++) {
+        setUp();
+        unsigned rest = at;
+        c->lag[LAG] = c->score[ARGUS_TEST_LAG] = (int16_t)own[rest % 7];
+        rest /= 7;
+        peer->late[LAG] = (int16_t)late[rest % 7];
+        rest /= 7;
+        peer->told[LAG] = (int16_t)told[rest % 6];
+        rest /= 6;
+        c->score[ARGUS_TEST_GARBAGE] = (int16_t)leaps[rest % 3];
+        rest /= 3;
+        peer->hollow = hollow[rest % 3];
+        rest /= 3;
+        c->none_run = runs[rest % 3];
+        rest /= 3;
+        peer->bend[2] = rest != 0 ? 1000 : 0;
+        peer->bend_told[2] = rest != 0 ? 600 : 0;
+        c->score[ARGUS_TEST_PEERS] = 400;
+        c->score[ARGUS_TEST_DROPOUT] = 600;
+        peer->against = 3;
+        const argus_fault_kind_t found = named();
+        if (found != ARGUS_KIND_SLOW) {
+            continue;
+        }
+        for (int i = 0; i < 4; i++) {
+            const bool goes = replaces(others[i], ARGUS_KIND_SLOW);
+            const bool comes = replaces(ARGUS_KIND_SLOW, others[i]);
+            snprintf(text, sizeof text, "state %u, kind %d", at, (int)others[i]);
+            TEST_ASSERT_FALSE_MESSAGE(goes && comes, text);
+        }
     }
 }
 
