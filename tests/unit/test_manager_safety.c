@@ -821,8 +821,26 @@ void test_s7_one_echo_is_read_again(void) {
     with_profile(ARGUS_PROFILE_ARGUS, check_s7_one_echo_is_read_again);
 }
 
+// Until the turn is tried again each sonar has been read.
+static bool reads_all_again(void) {
+    uint32_t before[ARGUS_SONARS];
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        before[i] = robot.argus.knowledge.sonar[i].readings;
+    }
+    for (int i = 0; i < 100 && robot.argus.swing_again; i++) {
+        robot_tick(&robot);
+    }
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (robot.argus.knowledge.sonar[i].readings == before[i]) {
+            return false;
+        }
+    }
+    return true;
+}
+
 // ... before a look, too, which begins on the heading where the robot stands.
 static void check_s7_one_echo_does_not_hold_up_a_look(void) {
+    int again = 0;
     for (int phase = 0; phase < 16 * 24; phase++) {
         start_idle();
         robot.noise_mm = 0;
@@ -831,11 +849,16 @@ static void check_s7_one_echo_does_not_hold_up_a_look(void) {
             robot_tick(&robot);
         }
         shows(phase % 16, 120, 1);
-        robot_run(&robot, 2000);
         snprintf(which_case, sizeof which_case, "sonar %d, SIP %d", phase % 16, phase / 16);
+        for (int i = 0; i < 200; i++) {
+            robot_tick(&robot);
+            again += robot.argus.swing_again ? 1 : 0;
+            TEST_ASSERT_TRUE_MESSAGE(!robot.argus.swing_again || reads_all_again(), which_case);
+        }
         TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0), which_case);
         finish();
     }
+    TEST_ASSERT_TRUE(again > 20);
 }
 
 void test_s7_one_echo_does_not_hold_up_a_look(void) {

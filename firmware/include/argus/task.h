@@ -63,8 +63,8 @@ int32_t argus_task_clear_mm(const argus_task_t *self, const argus_knowledge_t *k
                             int32_t heading_cdeg, int32_t half_mm);
 
 // Whether an echo there, course frame, `within_mm` of the robot's centre, would be the second one of a thing
-// that was seen within them as well: 150 mm from there in the last 5 s, or known by two echoes already. Cost:
-// one pass over the points.
+// that was seen within them as well: 150 mm from there in the last 5 s, or known by two echoes in the last
+// minute, 80 mm from there. Cost: one pass over the points.
 bool argus_task_has_seen(const argus_task_t *self, const argus_knowledge_t *knowledge, argus_point_t at,
                          int32_t within_mm);
 
