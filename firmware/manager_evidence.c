@@ -80,14 +80,22 @@ static uint8_t agreements_wanted(const argus_sonar_t *const s) {
     return (uint8_t)(PROBATION_AGREED << argus_min(s->relapses, PROBATION_DOUBLINGS));
 }
 
+// What repeated one value, and shows another one now, was not stuck: a name is enough to say what it is. Half
+// the truth, where nothing is in range, is the same value each time.
+static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar) {
+    const argus_fault_kind_t convicted = argus_evidence_convicts(&self->evidence, sonar);
+    const bool stuck = self->knowledge.sonar[sonar].kind == ARGUS_KIND_STUCK;
+    return convicted == ARGUS_KIND_NONE && stuck ? argus_evidence_names(&self->evidence, sonar) : convicted;
+}
+
 static void judge_out(argus_t *const self, const int sonar) {
     argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    const argus_fault_kind_t convicted = argus_evidence_convicts(&self->evidence, sonar);
+    const argus_fault_kind_t kind = kind_of_out(self, sonar);
     const argus_fault_kind_t named = argus_evidence_relapses(&self->evidence, sonar);
     const bool suspected = argus_evidence_keeps_out(&self->evidence, sonar);
-    if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, convicted)) {
-        s->kind = convicted;
-        argus_say(self, ARGUS_EV_SONAR_KIND, sonar, (int32_t)convicted);
+    if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
+        s->kind = kind;
+        argus_say(self, ARGUS_EV_SONAR_KIND, sonar, (int32_t)kind);
     }
     if (suspected) {
         if (s->health == ARGUS_PROBATION && named != ARGUS_KIND_NONE) {

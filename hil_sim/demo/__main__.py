@@ -28,7 +28,7 @@ from hil_sim.world import World, load_world
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENARIOS = Path(__file__).resolve().parents[1] / "scenarios"
-WORLDS = ("demo", "open-office", "smooth")
+WORLDS = ("open-office", "demo", "smooth")
 FIRST_FAULT_MM, NEXT_FAULT_MM = 600, 800
 TIMEOUT_S, LONGEST_S = 180.0, 3600.0
 
@@ -37,6 +37,7 @@ examples:
   tools/dev demo                            sonar 3 goes dead, later sonar 6 reads half the truth
   tools/dev demo --seed 7 --fail off:2,wrong:4
   tools/dev demo --policy fewest --out /tmp/drive
+  tools/dev demo --profile paper --world demo    the paper's rules, under the conditions that they ask for
   tools/dev demo --no-live --json > drive.json
   tools/with-can .venv/bin/python -m hil_sim.demo --can vcan0 --no-live
 
@@ -124,8 +125,9 @@ def parser() -> argparse.ArgumentParser:
     result.add_argument(
         "--world",
         choices=WORLDS,
-        default="demo",
-        help="open-office: a glass wall and open floor; smooth: smooth walls and 1 %% crosstalk",
+        default="open-office",
+        help="open-office (default): a glass wall and open floor; demo: rough walls, a box; smooth: smooth walls "
+        "and 1 %% crosstalk",
     )
     result.add_argument(
         "--out", type=Path, default=Path("build/demo"), metavar="DIR", help="records and picture"

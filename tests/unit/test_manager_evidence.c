@@ -735,6 +735,32 @@ void test_off_that_is_heard_again_is_renamed(void) {
     finish();
 }
 
+// Who was given up as stuck and shows another value is what the evidence names; who is out for anything else
+// keeps that until another conviction.
+void test_stuck_that_shows_another_value_is_renamed(void) {
+    static const argus_fault_kind_t kinds[] = {ARGUS_KIND_STUCK, ARGUS_KIND_OFF, ARGUS_KIND_GARBAGE};
+    for (int i = 0; i < 3; i++) {
+        for (int repeats = 0; repeats < 2; repeats++) {
+            start_in_a_room();
+            TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+            robot_run(&robot, 2000);
+            argus_sonar_t *const s = &robot.argus.knowledge.sonar[3];
+            argus_case_t *const c = &robot.argus.evidence.of[3];
+            argus_sonar_set_health(s, ARGUS_DISABLED, kinds[i], robot.argus.now_ms);
+            c->score[ARGUS_TEST_STUCK] = (int16_t)(repeats ? 300 : 0);
+            c->score[ARGUS_TEST_PEERS] = argus_bounds[ARGUS_TEST_PEERS].naming;
+            robot.argus.evidence.peers.of[3].against = 3;
+            const int from = robot.events;
+            argus_judge(&robot.argus);
+            robot_drain(&robot);
+            const bool renamed = kinds[i] == ARGUS_KIND_STUCK && !repeats;
+            TEST_ASSERT_EQUAL(renamed ? ARGUS_KIND_WRONG : kinds[i], s->kind);
+            TEST_ASSERT_EQUAL(ARGUS_DISABLED, s->health);
+            TEST_ASSERT_EQUAL(renamed, robot_count_events(&robot, ARGUS_EV_SONAR_KIND, from));
+        }
+    }
+}
+
 // An acquittal keeps mere suspicions from stopping the robot, not a name: it looks before it goes on.
 void test_what_is_named_is_looked_at_though_it_was_acquitted_a_moment_ago(void) {
     for (int sonar = 1; sonar <= 6; sonar++) {

@@ -437,10 +437,14 @@ class Drive:
         ip("link", "add", self.interface, "type", "vcan")
         ip("link", "set", self.interface, "up")
         self._dump = Dump(self.interface, self.dump_file)
-        words = [str(PYTHON), "-m", "hil_sim.demo", "--json", "--can", self.interface, "--out", str(folder)]
+        words = [str(PYTHON), "-m", "hil_sim.demo", "--json", "--world", "demo", "--can", self.interface]
         with (folder / "verdict.json").open("wb") as out, (folder / "errors").open("wb") as err:
             self._process = subprocess.Popen(
-                [*words, "--argusd", str(ARGUSD)], stdin=subprocess.DEVNULL, stdout=out, stderr=err, cwd=ROOT
+                [*words, "--out", str(folder), "--argusd", str(ARGUSD)],
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=err,
+                cwd=ROOT,
             )
 
     def verdict(self) -> tuple[int, str]:
