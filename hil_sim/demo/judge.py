@@ -262,20 +262,34 @@ def _disables(drive: _Drive) -> list[tuple[float, int, str]]:
     found = []
     for t_s, event in drive.named("SONAR_DISABLED"):
         sonar = sonar_of(event)
-        found.append((t_s, -1 if sonar is None else sonar, KIND_NAME.get(event.get("value", 0), "unknown")))
+        found.append((t_s, -1 if sonar is None else sonar, _kind_of(event)))
     return found
 
 
 def _finding(drive: _Drive, fault: Injected) -> Finding:
     onset = _onset(drive, fault)
-    own = [(t_s, kind) for t_s, sonar, kind in _disables(drive) if sonar == fault.sonar]
-    diagnosed = drive.moment(own[0][0]) if own else None
-    kind = own[-1][1] if own else None
+    own = [t_s for t_s, sonar, _ in _disables(drive) if sonar == fault.sonar]
+    diagnosed = drive.moment(own[0]) if own else None
+    kind = _last_kind(drive, fault.sonar)
     if onset is None:
         return Finding(fault, None, None, None, kind, diagnosed)
     at_s = float(onset["t_s"])
     left = drive.way_mm[-1] - drive.way_mm[drive.index(at_s)]
     return Finding(fault, drive.moment(at_s), left, _first_off_s(drive, fault, at_s), kind, diagnosed)
+
+
+def _last_kind(drive: _Drive, wanted: int) -> str | None:
+    """The kind under which a sonar was DISABLED last: SONAR_KIND tells when argusd knows better."""
+    kind = None
+    for _, event in drive.events:
+        disabled = event.get("event") == "SONAR_DISABLED"
+        if sonar_of(event) == wanted and (disabled or (event.get("event") == "SONAR_KIND" and kind)):
+            kind = _kind_of(event)
+    return kind
+
+
+def _kind_of(event: Record) -> str:
+    return KIND_NAME.get(event.get("value", 0), "unknown")
 
 
 def _final_set(drive: _Drive) -> dict[int, str]:
@@ -285,8 +299,8 @@ def _final_set(drive: _Drive) -> dict[int, str]:
         sonar = sonar_of(event)
         if sonar is None:
             continue
-        if event.get("event") == "SONAR_DISABLED":
-            held[sonar] = KIND_NAME.get(event.get("value", 0), "unknown")
+        if event.get("event") == "SONAR_DISABLED" or (event.get("event") == "SONAR_KIND" and sonar in held):
+            held[sonar] = _kind_of(event)
         elif event.get("event") == "SONAR_HEALTHY":
             held.pop(sonar, None)
     return held

@@ -44,7 +44,8 @@ def event_line(event: Record) -> str:
     """One event for people."""
     level = _LEVEL[min(int(event.get("level", 0)), 3)]
     value = event.get("value")
-    shown = _KIND.get(int(value or 0), "?") if event.get("event") == "SONAR_DISABLED" else value
+    tells_kind = event.get("event") in ("SONAR_DISABLED", "SONAR_KIND", "SONAR_NAMED")
+    shown = _KIND.get(int(value or 0), "?") if tells_kind else value
     return f"{event_s(event):8.2f} s  {level} {event.get('name', ''):<15} {event.get('event', '')} {shown}"
 
 

@@ -363,3 +363,17 @@ def test_clocks_that_cannot_be_joined_are_an_error_in_one_line() -> None:
 def test_nothing_recorded_is_an_error_in_one_line() -> None:
     with pytest.raises(SimError, match="nothing to judge"):
         judge([], [], TASK)
+
+
+@pytest.mark.parametrize(("kind", "holds"), [(4, True), (3, False)])
+def test_the_last_kind_of_a_sonar_counts(kind: int, holds: bool) -> None:
+    truth, events = made_up()
+    found = next(one for one in named(events, "SONAR_DISABLED") if sonar_of(one) == 6)
+    found["value"] = 7 - kind
+    event(events, robot_s(found) + 2.0, "SONAR_KIND", "sonar/front/06", kind)
+    event(events, robot_s(found) + 2.0, "SONAR_KIND", "sonar/front/04", 4)  # of one that is not DISABLED
+    verdict = verdict_on(truth, events)
+    assert failing(verdict) == (set() if holds else {EQUALS})
+    assert verdict.findings[1].diagnosed_kind == ("wrong" if holds else "stuck")
+    assert verdict.findings[1].diagnosed is not None
+    assert verdict.findings[1].diagnosed.t_s == pytest.approx(robot_s(found))
