@@ -22,6 +22,7 @@ from hil_sim.demo.judge import Injected
 from hil_sim.demo.runner import ENDING, CannotStart, Recording, Setup
 
 ROOT = Path(__file__).parents[2]
+ROOM = ("--world", "demo")  # the made-up drive is one through it
 
 
 class Played:
@@ -70,8 +71,14 @@ def miss(_: list[Record], events: list[Record]) -> None:
 
 def test_the_made_up_drive_has_the_demos_course_and_faults() -> None:
     assert program.parser().get_default("fail") == FAULTS
-    scenario = program._scenario(program.parser().parse_args([]))
+    scenario = program._scenario(program.parser().parse_args([*ROOM]))
     assert scenario.course == WAYPOINTS[1:]
+
+
+def test_it_drives_through_the_office_unless_told_otherwise() -> None:
+    scenario = program._scenario(program.parser().parse_args([]))
+    assert scenario.world == "open-office"
+    assert [fault.text.split("@")[0] for fault in scenario.faults] == ["off:3", "wrong:6"]
 
 
 def test_help(capsys: pytest.CaptureFixture[str]) -> None:
@@ -155,7 +162,7 @@ def test_a_picture_that_cannot_be_written_gives_one_line_and_2(
 def test_a_good_drive_ends_with_0_and_leaves_its_files(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], played: type[Played]
 ) -> None:
-    assert run("--out", str(tmp_path)) == 0
+    assert run(*ROOM, "--out", str(tmp_path)) == 0
     said = capsys.readouterr()
     assert said.err == ""
     assert "PASSED" in said.out
@@ -169,7 +176,7 @@ def test_a_bad_drive_ends_with_1(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], played: type[Played]
 ) -> None:
     played.doctor = staticmethod(miss)
-    assert run("--out", str(tmp_path)) == 1
+    assert run(*ROOM, "--out", str(tmp_path)) == 1
     assert "FAILED: diagnosis equals injection" in capsys.readouterr().out
     assert json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))["passed"] is False
 
@@ -180,7 +187,7 @@ def test_json_is_one_object_and_nothing_else(
 ) -> None:
     if bad:
         played.doctor = staticmethod(miss)
-    assert run("--json", "--out", str(tmp_path)) == int(bad)
+    assert run(*ROOM, "--json", "--out", str(tmp_path)) == int(bad)
     said = capsys.readouterr()
     assert said.out.count("\n") == 1
     record = json.loads(said.out)
