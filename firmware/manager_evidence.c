@@ -110,10 +110,18 @@ static void judge_out(argus_t *const self, const int sonar) {
     }
 }
 
+// Its turn in a round comes late: each new order begins the round anew, so plans that change may pass it
+// over.
+static bool is_passed_over(const argus_t *const self, const int sonar) {
+    const bool late = sonar == ARGUS_FLANK_LEFT || sonar == ARGUS_FLANK_RIGHT;
+    return late && self->ordered && self->now_ms - self->ordered_ms <= (uint32_t)self->config.stale_ms;
+}
+
 // The others than 1..6 yield to the same tests; one that yields nothing is out as well.
 static void judge_silence(argus_t *const self, const int sonar) {
     const bool other = (ARGUS_FORWARD_MASK >> sonar & 1u) == 0;
-    if (other && argus_silent_ms(&self->knowledge, sonar) > (uint32_t)self->config.stale_ms) {
+    const bool silent = argus_silent_ms(&self->knowledge, sonar) > (uint32_t)self->config.stale_ms;
+    if (other && silent && !is_passed_over(self, sonar)) {
         argus_disable(self, sonar, ARGUS_KIND_SILENT);
     }
 }

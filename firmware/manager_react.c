@@ -260,6 +260,7 @@ void argus_share_slots(argus_t *const self) {
     }
     argus_outbox_string(&self->session.outbox, ARCOS_CMD_POLLING, order, count);
     self->ordered = true;
+    self->ordered_ms = self->now_ms;
 }
 
 static void say_plan(argus_t *const self) {

@@ -735,6 +735,25 @@ void test_off_that_is_heard_again_is_renamed(void) {
     finish();
 }
 
+// Plans that change begin the round of POLLING anew, and 0 and 7 come late in it: what is silent since the
+// last order is silent.
+void test_who_is_passed_over_by_new_orders_is_not_silent(void) {
+    for (int sonar = 0; sonar <= 8; sonar += sonar == 0 ? 7 : 1) {
+        start_in_a_room();
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+        robot_run(&robot, 2000);
+        robot.fault[sonar] = ROBOT_SILENT;
+        for (int i = 0; i < 10; i++) {
+            argus_share_slots(&robot.argus);
+            robot_run(&robot, 500);
+        }
+        TEST_ASSERT_EQUAL_MESSAGE(sonar == 8, is_disabled(sonar),
+                                  told("passed over", sonar)); // not of this array
+        robot_run(&robot, 1500);
+        TEST_ASSERT_TRUE_MESSAGE(is_disabled(sonar), told("silent", sonar));
+    }
+}
+
 // Who was given up as stuck and shows another value is what the evidence names; who is out for anything else
 // keeps that until another conviction.
 void test_stuck_that_shows_another_value_is_renamed(void) {

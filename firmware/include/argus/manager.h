@@ -133,7 +133,8 @@ typedef struct {
     bool loaded;    // a record was taken whose robot is not compared yet
     bool looked_once;
     argus_plan_t plan;
-    bool ordered; // the sonars fire in an order of ours, in this session
+    bool ordered; // the sonars fire in an order of ours, in this session, begun anew at ordered_ms
+    uint32_t ordered_ms;
     argus_motion_t motion;
     argus_drive_t drive;
     argus_task_t task;
