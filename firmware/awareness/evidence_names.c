@@ -13,7 +13,7 @@
 #define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
 #define OFF_RUN_LONGEST 20 // ... and what was called intermittent
 #define OFF_HOLLOW 3
-#define MUTE_CONTRADICTED 380
+#define MUTE_CONTRADICTED 380 // of one that hears nothing, where nothing else is contradicted
 #define DEAF_RUN 8 // who hears nothing for so long, and is contradicted for it, is neither late nor wrong
 #define DEAF_HOLLOW 2
 #define VIEW_OFF_RUN 3

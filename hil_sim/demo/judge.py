@@ -270,7 +270,7 @@ def _finding(drive: _Drive, fault: Injected) -> Finding:
     onset = _onset(drive, fault)
     own = [t_s for t_s, sonar, _ in _disables(drive) if sonar == fault.sonar]
     diagnosed = drive.moment(own[0]) if own else None
-    kind = _last_kind(drive, fault.sonar)
+    kind = _kinds(drive).get(fault.sonar)
     if onset is None:
         return Finding(fault, None, None, None, kind, diagnosed)
     at_s = float(onset["t_s"])
@@ -278,30 +278,20 @@ def _finding(drive: _Drive, fault: Injected) -> Finding:
     return Finding(fault, drive.moment(at_s), left, _first_off_s(drive, fault, at_s), kind, diagnosed)
 
 
-def _last_kind(drive: _Drive, wanted: int) -> str | None:
-    """The kind under which a sonar was DISABLED last: SONAR_KIND tells when argusd knows better."""
-    kind = None
-    for _, event in drive.events:
-        disabled = event.get("event") == "SONAR_DISABLED"
-        if sonar_of(event) == wanted and (disabled or (event.get("event") == "SONAR_KIND" and kind)):
-            kind = _kind_of(event)
-    return kind
-
-
 def _kind_of(event: Record) -> str:
     return KIND_NAME.get(event.get("value", 0), "unknown")
 
 
-def _final_set(drive: _Drive) -> dict[int, str]:
-    """The sonars that argusd holds DISABLED at the end, with their kinds."""
+def _kinds(drive: _Drive, *, at_the_end: bool = False) -> dict[int, str]:
+    """The sonars that argusd called DISABLED, or holds so at the end, with the kinds that it gave them last."""
     held: dict[int, str] = {}
     for _, event in drive.events:
-        sonar = sonar_of(event)
+        sonar, name = sonar_of(event), event.get("event")
         if sonar is None:
             continue
-        if event.get("event") == "SONAR_DISABLED" or (event.get("event") == "SONAR_KIND" and sonar in held):
+        if name == "SONAR_DISABLED" or (name == "SONAR_KIND" and sonar in held):
             held[sonar] = _kind_of(event)
-        elif event.get("event") == "SONAR_HEALTHY":
+        elif name == "SONAR_HEALTHY" and at_the_end:
             held.pop(sonar, None)
     return held
 
@@ -379,7 +369,7 @@ def _rule_injected(findings: Sequence[Finding]) -> Rule:
 
 def _rule_equals(drive: _Drive, task: Task) -> Rule:
     wanted = {fault.sonar: fault.kind for fault in task.faults}
-    held = _final_set(drive)
+    held = _kinds(drive, at_the_end=True)
     detail = f"injected: {_set_text(wanted)}; DISABLED at the end: {_set_text(held)}"
     return Rule("diagnosis equals injection", wanted == held, detail)
 

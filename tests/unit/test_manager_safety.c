@@ -776,19 +776,24 @@ static void shows(int sonar, int mm, int times) {
     robot.fault[sonar] = ROBOT_OK;
 }
 
+// Sonar 0 has just read 150 mm, and goes on to.
+static void stand_beside_an_echo(void) {
+    start_idle();
+    robot.noise_mm = 0;
+    robot.fault[0] = ROBOT_VALUE;
+    robot.fault_value[0] = 150;
+    for (int i = 0; i < 1000 && robot.argus.knowledge.sonar[0].reading_mm != 150; i++) {
+        robot_tick(&robot);
+    }
+    TEST_ASSERT_EQUAL(150, robot.argus.knowledge.sonar[0].reading_mm);
+}
+
 // One echo may be crosstalk: it is read once more before it forbids a turn. What is there is seen again; what
 // jumps is not, and forbids it after one round; what a suspect hears, or one that has gaps, at once.
 static void check_s7_one_echo_is_read_again(void) {
     enum { CROSSTALK, THERE, JUMPING, SUSPECTED, WITH_GAPS, CASES };
     for (int which = 0; which < CASES; which++) {
-        start_idle();
-        robot.noise_mm = 0;
-        robot.fault[0] = ROBOT_VALUE;
-        robot.fault_value[0] = 150;
-        for (int i = 0; i < 1000 && robot.argus.knowledge.sonar[0].reading_mm != 150; i++) {
-            robot_tick(&robot);
-        }
-        TEST_ASSERT_EQUAL(150, robot.argus.knowledge.sonar[0].reading_mm);
+        stand_beside_an_echo();
         robot.fault[0] = which == CROSSTALK ? ROBOT_OK : ROBOT_VALUE;
         robot.argus.evidence.of[0].score[ARGUS_TEST_DROPOUT] = which == WITH_GAPS ? 100 : 0;
         if (which == SUSPECTED) { // looked at in vain; held by what the others say
@@ -867,13 +872,7 @@ void test_s7_one_echo_does_not_hold_up_a_look(void) {
 
 // Not where something remembered, a bumper or the paper's rules forbid it.
 static void check_s7_what_else_forbids_a_turn_is_not_read_again(void) {
-    start_idle();
-    robot.noise_mm = 0;
-    robot.fault[0] = ROBOT_VALUE;
-    robot.fault_value[0] = 150;
-    for (int i = 0; i < 1000 && robot.argus.knowledge.sonar[0].reading_mm != 150; i++) {
-        robot_tick(&robot);
-    }
+    stand_beside_an_echo();
     robot.fault[0] = ROBOT_OK;
     if (profile == ARGUS_PROFILE_ARGUS) {
         const argus_point_t at = {(int32_t)robot.x + 300, 0};
