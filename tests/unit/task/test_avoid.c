@@ -12,7 +12,7 @@
 
 static argus_task_t t;
 static argus_knowledge_t k;
-static char text[16];
+static char text[32];
 
 void setUp(void) {
     argus_task_init(&t);
