@@ -7,7 +7,6 @@
 #define SWING_MARGIN_MM 20  // an echo is taken to lie on the axis of its sonar
 #define SWING_TURNING_MM 10 // ... of which that much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
-#define NEAR_APART_MM 150   // two echoes of one thing in a turn
 #define BACKOFFS_MAX 3
 #define HEMMED_IN_MS 10000u // people who stand beside it walk on
 #define LOW_BATTERY_DV 115  // where CONFIGpac names none
@@ -174,9 +173,7 @@ static bool is_steady(const argus_t *const self, const int sonar) {
 
 static bool only_steady_forbid_to_turn(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        const argus_point_t echo = argus_echo_robot(&self->knowledge, i);
-        const bool forbids =
-            argus_usable(&self->knowledge, i) && argus_hypot(echo.x_mm, echo.y_mm) <= swing_mm(self);
+        const bool forbids = argus_echo_to_centre_mm(&self->knowledge, i, 0) <= swing_mm(self);
         if (forbids && !is_steady(self, i)) {
             return false;
         }
@@ -391,8 +388,7 @@ static bool note_near(argus_t *const self, const int sonar) {
     argus_near_t *const near = &self->near[echo.y_mm > 0 ? 1 : 0]; // in a passage both sides show
     const argus_point_t at = argus_to_course(&self->knowledge.pose, echo);
     const bool here = near->valid && self->now_ms - near->t_ms <= argus_two_rounds_ms(self) &&
-                      argus_abs(at.x_mm - near->at.x_mm) <= NEAR_APART_MM &&
-                      argus_abs(at.y_mm - near->at.y_mm) <= NEAR_APART_MM;
+                      argus_task_is_one_thing(at, near->at);
     const bool again =
         here || argus_task_has_seen(&self->task, &self->knowledge, at, SWING_MM + SWING_TURNING_MM);
     *near = (argus_near_t){at, self->now_ms, true};

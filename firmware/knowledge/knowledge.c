@@ -236,13 +236,15 @@ argus_point_t argus_to_course(const argus_pose_t *const pose, const argus_point_
     return point;
 }
 
+int32_t argus_echo_to_centre_mm(const argus_knowledge_t *const self, const int sonar, const int32_t back_mm) {
+    const argus_point_t echo = argus_echo_robot(self, sonar);
+    return argus_usable(self, sonar) ? argus_hypot(echo.x_mm + back_mm, echo.y_mm) : INT32_MAX;
+}
+
 int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *const self, const int32_t back_mm) {
     int32_t nearest = INT32_MAX;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        if (argus_usable(self, i)) {
-            const argus_point_t echo = argus_echo_robot(self, i);
-            nearest = argus_min(nearest, argus_hypot(echo.x_mm + back_mm, echo.y_mm));
-        }
+        nearest = argus_min(nearest, argus_echo_to_centre_mm(self, i, back_mm));
     }
     return nearest;
 }

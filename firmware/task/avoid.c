@@ -44,14 +44,18 @@ static argus_seen_t *slot_for(argus_task_t *const self, const argus_point_t *con
     return &self->seen[self->seen_next];
 }
 
+bool argus_task_is_one_thing(const argus_point_t a, const argus_point_t b) {
+    return argus_abs(a.x_mm - b.x_mm) <= SAME_THING_MM && argus_abs(a.y_mm - b.y_mm) <= SAME_THING_MM;
+}
+
 // A second echo of one thing, lately; a wall gives one a little farther on, as far as the robot drove
 // meanwhile. What was seen twice before stays so for as long as it is remembered.
 static bool is_seen_again(const argus_seen_t *const seen, const argus_point_t *const at,
                           const uint32_t now_ms) {
     const uint32_t age_ms = now_ms - seen->seen_ms;
-    const bool near = argus_abs(seen->x_mm - at->x_mm) <= SAME_THING_MM &&
-                      argus_abs(seen->y_mm - at->y_mm) <= SAME_THING_MM;
-    return (near && age_ms <= LATELY_MS) || (seen->again && age_ms <= FORGET_MS && same_place(seen, at));
+    const argus_point_t there = {seen->x_mm, seen->y_mm};
+    return (argus_task_is_one_thing(there, *at) && age_ms <= LATELY_MS) ||
+           (seen->again && age_ms <= FORGET_MS && same_place(seen, at));
 }
 
 // ... of something at most so far from there.

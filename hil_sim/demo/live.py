@@ -14,7 +14,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from hil_sim.demo.judge import Record, event_s, of_type
+from hil_sim.demo.judge import KIND_NAME, Record, event_s, of_type
 from hil_sim.demo.runner import Recording
 from hil_sim.tables import load
 
@@ -24,7 +24,6 @@ _QUIET: Final = frozenset({"STATUS", "SONAR_HEALTHY", "STOPPED", "SONAR_WITNESS"
 _LEVEL: Final = ("OK   ", "WARN ", "ERROR", "STALE")
 _LEVEL_STYLE: Final = ("", "yellow", "bold red", "magenta")
 _HEALTH_STYLE: Final = {"HEALTHY": "green", "SUSPECT": "yellow", "DISABLED": "bold red", "STALE": "magenta"}
-_KIND: Final = {1: "off", 2: "silent", 3: "stuck", 4: "wrong", 5: "garbage", 6: "slow", 7: "intermittent"}
 _POSES: Final[Mapping[int, int]] = {
     int(p["number"]): int(p["heading_deg"]) for p in load("p3dx")["sonar"]["pose"]
 }
@@ -45,7 +44,7 @@ def event_line(event: Record) -> str:
     level = _LEVEL[min(int(event.get("level", 0)), 3)]
     value = event.get("value")
     tells_kind = event.get("event") in ("SONAR_DISABLED", "SONAR_KIND", "SONAR_NAMED")
-    shown = _KIND.get(int(value or 0), "?") if tells_kind else value
+    shown = KIND_NAME.get(int(value or 0), "?") if tells_kind else value
     return f"{event_s(event):8.2f} s  {level} {event.get('name', ''):<15} {event.get('event', '')} {shown}"
 
 

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 
 import pytest
+from argus_tools.core import kind_name
 from demo_drive import (
     CLOCK_S,
     FAULTS,
@@ -22,7 +23,7 @@ from demo_drive import (
     verdict_on,
 )
 
-from hil_sim.demo.judge import Injected, Task, Verdict, clock_offset_s, energy_j, judge, sonar_of
+from hil_sim.demo.judge import KIND_NAME, Injected, Task, Verdict, clock_offset_s, energy_j, judge, sonar_of
 from hil_sim.errors import SimError
 from hil_sim.tables import load
 
@@ -377,3 +378,8 @@ def test_the_last_kind_of_a_sonar_counts(kind: int, holds: bool) -> None:
     assert verdict.findings[1].diagnosed_kind == ("wrong" if holds else "stuck")
     assert verdict.findings[1].diagnosed is not None
     assert verdict.findings[1].diagnosed.t_s == pytest.approx(robot_s(found))
+
+
+def test_the_kinds_are_called_as_the_fault_manager_calls_them() -> None:
+    assert {number: kind_name(number) for number in KIND_NAME} == dict(KIND_NAME)
+    assert kind_name(max(KIND_NAME) + 1) == "?"

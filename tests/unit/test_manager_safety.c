@@ -1050,6 +1050,10 @@ static void check_s7_an_echo_before_the_turn_and_one_in_it_end_it(void) {
     }
 }
 
+void test_s7_an_echo_before_the_turn_and_one_in_it_end_it(void) {
+    with_profile(ARGUS_PROFILE_ARGUS, check_s7_an_echo_before_the_turn_and_one_in_it_end_it);
+}
+
 // One echo is one echo, also while the robot comes to rest.
 static void check_s7_one_echo_at_the_end_of_a_turn_does_not_end_it(void) {
     for (int phase = 0; phase < 30; phase++) {
@@ -1079,10 +1083,6 @@ static void check_s7_how_near_ends_a_turn(void) {
         TEST_ASSERT_EQUAL(mm == 208, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
         finish();
     }
-}
-
-void test_s7_an_echo_before_the_turn_and_one_in_it_end_it(void) {
-    with_profile(ARGUS_PROFILE_ARGUS, check_s7_an_echo_before_the_turn_and_one_in_it_end_it);
 }
 
 void test_s7_how_near_ends_a_turn(void) {

@@ -153,8 +153,9 @@ bool argus_at_rest(const argus_knowledge_t *self); // two consecutive SIPs withi
 argus_point_t argus_echo_robot(const argus_knowledge_t *self, int sonar);
 argus_point_t argus_to_course(const argus_pose_t *pose, argus_point_t robot);
 
-// Nearest echo to the robot's centre, mm, over sonars not DISABLED (and not 5000), were the robot `back_mm`
-// farther back; INT32_MAX when none.
+// From the echo of this sonar to the robot's centre, mm, were the robot `back_mm` farther back; INT32_MAX
+// when it is DISABLED or reads 5000. The nearest of all.
+int32_t argus_echo_to_centre_mm(const argus_knowledge_t *self, int sonar, int32_t back_mm);
 int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *self, int32_t back_mm);
 
 const char *argus_health_name(argus_health_t health);

@@ -62,6 +62,9 @@ int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *kn
 int32_t argus_task_clear_mm(const argus_task_t *self, const argus_knowledge_t *knowledge,
                             int32_t heading_cdeg, int32_t half_mm);
 
+// Whether two echoes may be of one thing: at most 150 mm apart along x and along y.
+bool argus_task_is_one_thing(argus_point_t a, argus_point_t b);
+
 // Whether an echo there, course frame, `within_mm` of the robot's centre, would be the second one of a thing
 // that was seen within them as well: 150 mm from there in the last 5 s, or known by two echoes in the last
 // minute, 80 mm from there. Cost: one pass over the points.

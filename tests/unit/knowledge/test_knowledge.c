@@ -212,8 +212,12 @@ void test_nearest_echo_leaves_out_the_disabled_and_may_be_of_a_place_farther_bac
     take(1000);
     TEST_ASSERT_INT32_WITHIN(3, 468, argus_nearest_to_centre_mm(&k, 0));
     TEST_ASSERT_INT32_WITHIN(3, 567, argus_nearest_to_centre_mm(&k, 100));
+    TEST_ASSERT_INT32_WITHIN(3, 468, argus_echo_to_centre_mm(&k, 3, 0));
+    TEST_ASSERT_INT32_WITHIN(3, 568, argus_echo_to_centre_mm(&k, 4, 0));
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_echo_to_centre_mm(&k, 2, 0)); // not read
     argus_sonar_set_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
     TEST_ASSERT_INT32_WITHIN(3, 568, argus_nearest_to_centre_mm(&k, 0));
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_echo_to_centre_mm(&k, 3, 0));
     argus_knowledge_init(&k);
     TEST_ASSERT_EQUAL(INT32_MAX, argus_nearest_to_centre_mm(&k, 0));
 }

@@ -99,6 +99,15 @@ void test_what_was_seen_twice_once_more_is_seen_again(void) {
     }
 }
 
+void test_one_thing_is_at_most_150_mm_apart_each_way(void) {
+    const argus_point_t at = {-40, 70};
+    for (int sign = -1; sign <= 1; sign += 2) {
+        TEST_ASSERT_TRUE(argus_task_is_one_thing(at, (argus_point_t){-40 + 150 * sign, 70 - 150 * sign}));
+        TEST_ASSERT_FALSE(argus_task_is_one_thing(at, (argus_point_t){-40 + 151 * sign, 70}));
+        TEST_ASSERT_FALSE(argus_task_is_one_thing((argus_point_t){-40, 70 + 151 * sign}, at));
+    }
+}
+
 // A turn asks whether an echo is the second one of something near: at (69, 336), 343 mm from the centre.
 void test_what_a_turn_is_told_of_a_second_echo(void) {
     see(0, 200);
