@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "argus/manager.h"
+#include "supervisor/manager.h"
 
 size_t argus_shim_core_size(void);
 size_t argus_shim_config_size(void);

@@ -3,8 +3,8 @@
 // heading.
 #include <string.h>
 
-#include "argus/angle.h"
-#include "argus/drive.h"
+#include "adjustment/drive.h"
+#include "knowledge/angle.h"
 
 void argus_sweep_begin(argus_drive_t *const self, const argus_plan_t *const plan, const int32_t base_cdeg) {
     memset(self, 0, sizeof *self);

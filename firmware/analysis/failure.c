@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Classes the failure over the forward-facing six (paper: Fig. 6).
-#include "argus/failure.h"
+#include "analysis/failure.h"
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define FORWARD_MASK 0x7Eu
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Chooses the looks of an active verification and says when they have shown enough.
-#include "argus/inquiry.h"
+#include "analysis/inquiry.h"
 
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define READINGS 2          // two that agree make a view
 #define READINGS_UNSTEADY 7 // where a sonar does not agree with itself

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The ARCOS session as one state machine, driven by packets and by time.
-#include "argus/session.h"
+#include "arcos/session.h"
 
 #include <string.h>
 

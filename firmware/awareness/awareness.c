@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Looks at every SIP for what calls for a STOP, and counts the disparities that make a suspect.
-#include "argus/awareness.h"
+#include "awareness/awareness.h"
 
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define MOVING_MM_S 5
 #define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Takes every reading through the tests and says what they amount to (profile argus).
-#include "argus/evidence.h"
+#include "awareness/evidence.h"
 
 #include <stddef.h>
 #include <string.h>
 
-#include "argus/angle.h"
-#include "evidence_said.h"
+#include "awareness/evidence_said.h"
+#include "knowledge/angle.h"
 
 #define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
 #define STEADY_SIPS 2   // a SIP lists pings up to 140 ms old

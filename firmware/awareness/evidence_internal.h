@@ -3,7 +3,7 @@
 #ifndef ARGUS_EVIDENCE_INTERNAL_H
 #define ARGUS_EVIDENCE_INTERNAL_H
 
-#include "argus/evidence.h"
+#include "awareness/evidence.h"
 
 #define ARGUS_NO_ECHO_MM ARGUS_P3DX_SONAR_NO_ECHO_MM
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Turns SIPs into readings with their age, a pose that survives the robot's own wraps and resets, and the
 // robot's state.
-#include "argus/knowledge.h"
+#include "knowledge/knowledge.h"
 
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define REST_MM_S 5
 #define ROTATING_MM_S 10  // wheel speed difference beyond which a reading is smeared by rotation

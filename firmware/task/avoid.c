@@ -3,8 +3,8 @@
 // waypoint.
 #include <string.h>
 
-#include "argus/angle.h"
-#include "argus/task.h"
+#include "knowledge/angle.h"
+#include "task/task.h"
 
 #define REMEMBER_BELOW_MM 2000 // beyond it a beam is too wide to say where the echo lies
 #define SAME_PLACE_MM 80

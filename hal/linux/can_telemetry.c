@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define GROUP 4 // sonars in a frame of readings
 #define ARRAY 8 // and in a frame of health

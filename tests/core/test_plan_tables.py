@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ["adjustment/plan.c", "analysis/failure.c", "knowledge/angle.c", "knowledge/geometry.c"]
 PROGRAM = r"""
 #include <stdio.h>
-#include "argus/plan.h"
+#include "adjustment/plan.h"
 int main(void) {
     for (int policy = 0; policy <= 1; policy++) {
         for (unsigned mask = 0; mask < 128; mask += 2) {

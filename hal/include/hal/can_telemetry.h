@@ -5,8 +5,8 @@
 #ifndef HAL_CAN_TELEMETRY_H
 #define HAL_CAN_TELEMETRY_H
 
-#include "argus/manager.h"
 #include "hal/gen_argus_dbc.h"
+#include "supervisor/manager.h"
 
 #define HAL_TELEMETRY_PERIOD_MS 1000u // of every frame that nothing else makes due
 #define HAL_TELEMETRY_CHANGE_MS 200u  // health and plan: at most one frame in this time

@@ -3,9 +3,9 @@
 #ifndef ARGUSD_DRIVER_H
 #define ARGUSD_DRIVER_H
 
-#include "argus/manager.h"
 #include "hal/clock.h"
 #include "hal/link_spec.h"
+#include "supervisor/manager.h"
 
 // Sees all bytes that pass, from the robot or to it. Must not wait.
 typedef struct {

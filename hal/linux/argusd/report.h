@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#include "argus/events.h"
+#include "supervisor/events.h"
 #include "view.h"
 
 #define REPORT_LINE_MAX 4096

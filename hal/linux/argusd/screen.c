@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "argus/gen_arcos.h"
+#include "arcos/gen_arcos.h"
 
 #define FRONT_SONARS 8
 #define RING_TOP 3

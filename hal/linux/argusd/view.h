@@ -3,9 +3,9 @@
 #ifndef ARGUSD_VIEW_H
 #define ARGUSD_VIEW_H
 
-#include "argus/manager.h"
 #include "hal/isotp.h"
 #include "hal/link.h"
+#include "supervisor/manager.h"
 
 #define VIEW_LINK_MAX 96
 

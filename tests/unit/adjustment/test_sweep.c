@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: a sweep reads every bearing of the plan after the turn has settled, keeps the smallest,
 // ends at home.
-#include "argus/drive.h"
+#include "adjustment/drive.h"
 
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 #include "unity.h"
 
 #define BASE 17900

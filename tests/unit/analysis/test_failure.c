@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the failure state of every fault map (paper: Fig. 6), whatever the other sonars do.
-#include "argus/angle.h"
-#include "argus/failure.h"
+#include "analysis/failure.h"
+#include "knowledge/angle.h"
 
 #include "unity.h"
 

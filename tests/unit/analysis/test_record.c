@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: a record is taken whole or not at all; any bytes are survived; what it says of evidence
 // convicts no one.
-#include "argus/record.h"
+#include "analysis/record.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: Algorithm 2: which way it turns, whom it hears, what it concludes, and that it always
 // turns back.
-#include "argus/verify.h"
+#include "analysis/verify.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the session finds, opens, keeps, loses, finds again and leaves the robot in the order
 // that is safe, whatever the robot answers, when, and in which pieces.
-#include "argus/session.h"
+#include "arcos/session.h"
 
 #include <stdio.h>
 #include <string.h>

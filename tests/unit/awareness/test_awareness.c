@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: what one SIP shows (dead, silent, object, bumper), when a sonar becomes a suspect, and
 // the hold-off.
-#include "argus/awareness.h"
+#include "awareness/awareness.h"
 
 #include <string.h>
 

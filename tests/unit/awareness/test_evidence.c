@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): a fault is convicted by the test made for it and by nothing else; what
 // is healthy is never convicted, whatever moves, is far, is smooth or echoes across.
-#include "argus/angle.h"
-#include "argus/evidence.h"
+#include "awareness/evidence.h"
+#include "knowledge/angle.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): a sonar is bent when it sees what the others see some way aside of its
 // bearing; what they do not see there either, and a well sonar's reading here, speaks against it.
-#include "argus/evidence.h"
+#include "awareness/evidence.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "argus/angle.h"
 #include "awareness/evidence_said.h"
+#include "knowledge/angle.h"
 #include "scene.h"
 #include "unity.h"
 

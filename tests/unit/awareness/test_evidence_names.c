@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): a sonar is suspected, named and convicted by what its tests amount to
 // and by no less; the more definite test gives the kind, and a name stays until its ground is gone.
-#include "argus/evidence.h"
+#include "awareness/evidence.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): a reading counts against a sonar only where another one, that is relied
 // on, lately saw something else on the same bearing from the same place; once, less where something moves.
-#include "argus/evidence.h"
+#include "awareness/evidence.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "argus/angle.h"
 #include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 #include "scene.h"
 #include "unity.h"
 

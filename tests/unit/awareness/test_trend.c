@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: what grows over the way driven is foretold before it convicts, once; what stays, comes
 // and goes or befalls all alike is not.
-#include "argus/trend.h"
+#include "awareness/trend.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the pose survives the robot's wraps, units and resets; a reading is fresh only if listed
 // after the mark.
-#include "argus/knowledge.h"
+#include "knowledge/knowledge.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 #include "unity.h"
 
 static argus_knowledge_t k;

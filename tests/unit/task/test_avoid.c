@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the way round: what is remembered, which heading is free, which side is kept, when there
 // is none.
-#include "argus/task.h"
+#include "task/task.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 #include "unity.h"
 
 static argus_task_t t;

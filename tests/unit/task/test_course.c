@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: waypoints pass in order, the goal only within its own radius, and a bad course changes
 // nothing.
-#include "argus/task.h"
+#include "task/task.h"
 
 #include <string.h>
 
