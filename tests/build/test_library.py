@@ -78,7 +78,7 @@ def test_layers_point_one_way() -> None:
     order = ["arcos", "robot", "knowledge", "awareness", "analysis", "adjustment", "task", "supervisor"]
     vocabulary = {"supervisor/config.h", "supervisor/events.h"}  # what every layer may speak of
     firmware = ROOT / "firmware"
-    assert {path.name for path in firmware.iterdir() if path.is_dir()} == set(order)
+    assert {path.parent.name for path in firmware.glob("*/*.c")} <= set(order)
     found = []
     for path in sorted(firmware.rglob("*.[ch]")):
         for folder, name in re.findall(r'#include "(\w+)/(\w+\.h)"', path.read_text(encoding="utf-8")):
