@@ -29,7 +29,9 @@ __all__ = [
 ]  # fmt: skip
 
 # In the order in which they are tried on a file; "bin" takes whatever no other format claims.
-MODULES: Final = ("record", "pcapng", "pcap", "jsonl", "candump", "bin")
+MODULES: Final = (
+    "record", "pcapng", "pcap", "jsonl", "candump", "hexdump", "hextext", "bin",
+)  # fmt: skip
 
 
 @cache
