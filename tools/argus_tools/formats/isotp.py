@@ -34,6 +34,11 @@ _SINGLE, _FIRST, _NEXT, _FLOW_CONTROL = range(4)
 _IDS_SHOWN: Final = 4
 
 
+def is_robot_id(can_id: int) -> bool:
+    """Whether frames of this 11-bit id are of a robot's link."""
+    return ID_TO_ROBOT <= can_id < ID_FROM_ROBOT + ROBOTS
+
+
 @dataclass
 class Transfer:
     """A message whose frames are still coming; `place` is that of its first."""
@@ -77,7 +82,7 @@ class CanLink:
         return self._directions[key]
 
     def _new_direction(self, bus: str, can_id: int, is_long_id: bool, place: int) -> Direction | None:
-        if is_long_id or not ID_TO_ROBOT <= can_id < ID_FROM_ROBOT + ROBOTS:
+        if is_long_id or not is_robot_id(can_id):
             if len(self._strange) < _IDS_SHOWN:
                 self._strange[can_id] = None
             return None

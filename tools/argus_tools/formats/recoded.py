@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""Bytes of a link that a program took for text and saved in another encoding: told, with what gets them back if anything does."""
+
+from __future__ import annotations
+
+import codecs
+from collections.abc import Iterator
+from io import BufferedReader
+from typing import Final
+
+from argus_tools.formats.base import (
+    EXPECTED,
+    Chunk,
+    DamageList,
+    Format,
+    LogError,
+    Reader,
+    ReadOptions,
+    shell_name,
+)
+from argus_tools.formats.source import HEAD_BYTES
+from hil_sim.arcos import Unframer
+
+_HEADER: Final = b"\xfa\xfb"
+_BINARY: Final = "record as binary (raw) in the terminal program, or with argusd --record drive.rec"
+# Python's and iconv's name of each code page that a terminal program may take the bytes for.
+_PAGES: Final = (
+    ("latin-1", "LATIN1"), ("cp1252", "CP1252"), ("cp437", "CP437"), ("cp850", "CP850"), ("mac_roman", "MACINTOSH"),
+    ("cp1251", "CP1251"), ("koi8_r", "KOI8-R"), ("iso8859-15", "LATIN-9"), ("cp866", "CP866"),
+)  # fmt: skip
+_REPLACED: Final = "\ufffd".encode()
+_REPLACED_MIN: Final = 2
+_MARKS: Final = {codecs.BOM_UTF16_LE: "utf-16-le", codecs.BOM_UTF16_BE: "utf-16-be"}
+_SAMPLE: Final = 1 << 14
+
+
+def _utf16(head: bytes) -> str | None:
+    """Return the byte order of UTF-16, by its mark or by the header of a packet in it."""
+    if marked := _MARKS.get(head[:2]):
+        return marked
+    for encoding in _MARKS.values():
+        if any(_HEADER.decode(page).encode(encoding) in head for page, _ in _PAGES):
+            return encoding
+    # Text of ASCII has a zero in every second place.
+    sample = head[: _SAMPLE & ~1]
+    for encoding, high in (("utf-16-le", 1), ("utf-16-be", 0)):
+        zeros, others = sample[high::2], sample[1 - high :: 2]
+        if len(zeros) >= 16 and not any(zeros) and all(9 <= byte < 127 for byte in others):
+            return encoding
+    return None
+
+
+def _utf8_pages(head: bytes) -> list[tuple[str, str]]:
+    return [(page, name) for page, name in _PAGES if _HEADER.decode(page).encode() in head]
+
+
+def _sniff(head: bytes) -> bool:
+    if _utf16(head):
+        return True
+    if _HEADER in head:
+        return False
+    return bool(_utf8_pages(head)) or head.count(_REPLACED) >= _REPLACED_MIN
+
+
+def _text(head: bytes, encoding: str) -> str | None:
+    """Decode all but what is cut at the end; None if it is not of this encoding."""
+    try:
+        return codecs.getincrementaldecoder(encoding)("strict").decode(head.removeprefix(b"\xff\xfe").removeprefix(b"\xfe\xff"))
+    except UnicodeDecodeError:
+        return None
+
+
+def _has_packets(data: bytes) -> bool:
+    return any(True for _ in Unframer().feed(data))
+
+
+def _explain(name: str, head: bytes) -> str:
+    encoding = _utf16(head) or "utf-8"
+    shown = encoding.upper().replace("-LE", "LE").replace("-BE", "BE")
+    text = _text(head, encoding)
+    if text is not None and "\ufffd" not in text:
+        for page, iconv in _PAGES:
+            if _has_packets(_encoded(text, page)):
+                back = f"iconv -f {shown} -t {iconv} {name} > drive.bin gets them back"
+                return f"looks like a link's bytes saved as {shown} text; expected {EXPECTED}; {back}; next time {_BINARY}"
+        if encoding != "utf-8" and text.lstrip("\ufeff").isascii():
+            return f"looks like {shown} text; expected {EXPECTED}; iconv -f {shown} -t UTF-8 {name} > drive.txt"
+    return f"looks like a link's bytes saved as {shown} text, which lost some; expected {EXPECTED}; {_BINARY}"
+
+
+def _encoded(text: str, page: str) -> bytes:
+    try:
+        return text.lstrip("\ufeff").encode(page)
+    except UnicodeEncodeError:
+        return b""
+
+
+class RecodedReader(Reader):
+    """Reads nothing: says what became of the bytes."""
+
+    def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
+        self.damage = DamageList()
+        self._stream = stream
+        self._name = options.name
+
+    def __iter__(self) -> Iterator[Chunk]:
+        raise LogError(f"{self._name}: {_explain(shell_name(self._name), self._stream.peek(HEAD_BYTES))}")
+
+
+FORMATS: Final = (
+    Format(
+        name="recoded",
+        help="bytes of a link saved as UTF-8 or UTF-16 text",
+        sniff=_sniff,
+        reader=RecodedReader,
+        is_read=False,
+    ),
+)
