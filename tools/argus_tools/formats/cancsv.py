@@ -21,8 +21,12 @@ _HEADING_LINES: Final = 40
 _SEPARATORS: Final = (",", ";", "\t")
 _BYTES_MAX: Final = 64
 _SHORT_ID_MAX: Final = 0x7FF
-_ID: Final = re.compile(r"(can |message |msg |arbitration |frame )?(id|identifier|addr(?:ess)?)( ?[(\[]?(hex|dec)[)\]]?)?")
-_TIME: Final = re.compile(r"(time ?(stamp|offset)?|abs(olute)? ?time|t)( ?[(\[]?(s|sec|seconds|ms|us|µs|ns)[)\]]?)?")
+_ID: Final = re.compile(
+    r"(can |message |msg |arbitration |frame )?(id|identifier|addr(?:ess)?)( ?[(\[]?(hex|dec)[)\]]?)?"
+)
+_TIME: Final = re.compile(
+    r"(time ?(stamp|offset)?|abs(olute)? ?time|t)( ?[(\[]?(s|sec|seconds|ms|us|µs|ns)[)\]]?)?"
+)
 _SIZE: Final = re.compile(r"len|length|dlc?|dl|data ?length( code)?|size|bytes")
 _DATA: Final = re.compile(r"(data|payload)( ?(bytes|field))?( ?[(\[]?hex[)\]]?)?")
 _ONE: Final = re.compile(r"(?:d|b|db|data|byte|data ?byte)[ _]?\[?(\d{1,2})\]?")
@@ -145,7 +149,11 @@ class _Cells:
         else:
             # Unquoted bytes may have cells of their own behind the last heading.
             assert columns.data is not None
-            text = " ".join(self._cells[columns.data :]) if self._is_last(columns.data) else self._at(columns.data)
+            text = (
+                " ".join(self._cells[columns.data :])
+                if self._is_last(columns.data)
+                else self._at(columns.data)
+            )
             data = bytes.fromhex(re.sub(r"0x|[-:|']", " ", text.lower()))
         if size is not None and len(data) < size:
             raise ValueError(f"{len(data)} of {size} bytes")

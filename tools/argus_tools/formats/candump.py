@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from io import BufferedReader
 from itertools import pairwise
-from typing import BinaryIO, Final
+from typing import Any, BinaryIO, Final
 
 from argus_tools.formats.base import (
     CLIENT_TO_ROBOT,
@@ -92,7 +92,7 @@ class CandumpReader:
         while line := self._stream.readline(_LINE_MAX):
             number += 1
             match = usual(line)
-            fields: Fields | None = match.groups() if match else self._unusual(line, number)
+            fields: Any = match.groups() if match else self._unusual(line, number)
             if fields is None:
                 continue
             t, bus, can_id, digits = fields
@@ -176,7 +176,8 @@ def _screen_digits(shown: bytes, size: int) -> bytes | None:
             return b"".join(pairs[:size] if _SWAPPED not in match[0] else pairs[size - 1 :: -1])
     width = 3 * size - 1
     front = text[:width]
-    if len(front) != width or text[width : width + 1].strip():
+    behind = text[width:].strip()
+    if len(front) != width or (behind and not behind.startswith((b"'", *_NO_DATA))):
         return None
     pairs = re.split(rb"[ `]", front)
     if len(pairs) != size or not all(re.fullmatch(rb"[0-9A-Fa-f]{2}", pair) for pair in pairs):
@@ -196,6 +197,7 @@ def _seconds(date: str) -> float:
 def _sniff(head: bytes) -> bool:
     lines = (_COLOUR.sub(b"", line) for line in first_lines(head))
     return any(_LINE.fullmatch(line) or _SCREEN.fullmatch(line) for line in lines)
+
 
 class CandumpWriter:
     """Writes each chunk as ISO-TP frames with the flow control that answers them."""

@@ -49,7 +49,9 @@ _KINDS: Final = (
         "CRTD",
         re.compile(r"\d+\.\d+\s+\d?[RT](?:11|29)\s"),
         re.compile(
-            r"(?P<t>\d+\.\d+)\s+(?P<bus>\d?)[RT](?P<long>11|29)\s+(?P<id>[0-9A-Fa-f]+)(?:\s+|$)" + _BYTES + "$"
+            r"(?P<t>\d+\.\d+)\s+(?P<bus>\d?)[RT](?P<long>11|29)\s+(?P<id>[0-9A-Fa-f]+)(?:\s+|$)"
+            + _BYTES
+            + "$"
         ),
     ),
 )
@@ -90,7 +92,11 @@ class CanLinesReader:
         yield from self._link.finish()
 
     def _complain(self, kind: _Kind | None, text: str, number: int) -> None:
-        if text and not _PASSED.match(text) and not (kind and kind.line.match(text) and _is_without_data(text)):
+        if (
+            text
+            and not _PASSED.match(text)
+            and not (kind and kind.line.match(text) and _is_without_data(text))
+        ):
             self.damage.append(Damage(f"line {number}", f"no line of {kind.name if kind else 'CAN frames'}"))
 
 

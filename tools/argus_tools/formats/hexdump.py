@@ -28,6 +28,7 @@ from argus_tools.formats.base import (
 from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.source import HEAD_BYTES
 from argus_tools.formats.text import first_lines
+from hil_sim.arcos import Unframer
 
 HEADER: Final = b"\xfa\xfb"
 # A line of asterisks stands for as many bytes as the offsets say; not for more than this.
@@ -74,7 +75,12 @@ class _Words:
 _WORDS: Final = {2: _Words(2, 16, 1), 3: _Words(3, 8, 1), 4: _Words(4, 16, 2), 6: _Words(6, 8, 2),
                  8: _Words(8, 16, 4), 11: _Words(11, 8, 4), 16: _Words(16, 16, 8)}  # fmt: skip
 _BITS: Final = _Words(8, 2, 1)
-_DIGITS: Final = {2: re.compile(rb"[01]+"), 8: re.compile(rb"[0-7]+"), 10: re.compile(rb"[0-9]+"), 16: re.compile(rb"[0-9A-Fa-f]+")}
+_DIGITS: Final = {
+    2: re.compile(rb"[01]+"),
+    8: re.compile(rb"[0-7]+"),
+    10: re.compile(rb"[0-9]+"),
+    16: re.compile(rb"[0-9A-Fa-f]+"),
+}
 
 
 @dataclass(frozen=True)
@@ -127,12 +133,17 @@ def _plan(head: bytes) -> _Plan | None:
     is_swapped = False
     if words.size > 1:
         natural, swapped = (
-            b"".join(words.decode(line.words, turn) for line in full).count(HEADER) for turn in (False, True)
+            _likeness(b"".join(words.decode(line.words, turn) for line in full)) for turn in (False, True)
         )
         is_swapped = swapped > natural
     sample = b"".join(words.decode(line.words, is_swapped) for line in full)
     indents = {line.indent for line in full}
     return _Plan(words, _base(lines, words), is_swapped, len(indents) == 2, sample, column)
+
+
+def _likeness(data: bytes) -> tuple[int, int]:
+    """How much these bytes are like a link's: whole packets, then headers."""
+    return sum(1 for _ in Unframer().feed(data)), data.count(HEADER)
 
 
 def _words(lines: list[_Line]) -> _Words | None:
@@ -271,7 +282,9 @@ def _sniff(head: bytes) -> bool:
     if not pairs:
         return plan.column is not None or len(parsed[0].offset) > _OFFSET_MIN
     try:
-        steps = [int(b.offset, plan.base) - int(a.offset, plan.base) == plan.words.count(a.words) for a, b in pairs]
+        steps = [
+            int(b.offset, plan.base) - int(a.offset, plan.base) == plan.words.count(a.words) for a, b in pairs
+        ]
     except ValueError:
         return False
     return 2 * sum(steps) > len(steps)

@@ -38,18 +38,26 @@ _CLOCK: Final = (
 )
 _SINCE: Final = rb"(?P<since>[+]?\d{1,12}\.\d{1,9})(?:[ ]?s)?"
 _TIME: Final = re.compile(
-    rb"[\[(<{]?[ ]*(?:" + _CLOCK + rb"|" + _SINCE + rb")(?:[ ]+[+]?\d{1,9}\.\d{1,9})?[ ]*[\])>}]?[ \t]*[:;,|-]?(?:[ \t]+|\Z)"
+    rb"[\[({]?[ ]*(?:"
+    + _CLOCK
+    + rb"|"
+    + _SINCE
+    + rb")(?:[ ]+[+]?\d{1,9}\.\d{1,9})?[ ]*[\])}]?[ \t]*[:;,|-]?(?:[ \t]+|\Z)"
 )
 _MARK: Final = re.compile(
     rb"[\[(<]?(?P<mark>RXD?|TXD?|RECV|SENT|SEND|RECEIVED|READ|WRITE|WRITTEN|IN|OUT|RCV|SND|-+>|<-+|<<|>>|<|>)[\])>]?"
     rb"[ \t]*[:=|-]?(?:[ \t]+|\Z)",
     re.IGNORECASE,
 )
-_TO_ROBOT: Final = frozenset((b"TX", b"TXD", b"SENT", b"SEND", b"WRITE", b"WRITTEN", b"OUT", b"SND", b">", b">>"))
+_TO_ROBOT: Final = frozenset(
+    (b"TX", b"TXD", b"SENT", b"SEND", b"WRITE", b"WRITTEN", b"OUT", b"SND", b">", b">>")
+)
 _PAIR: Final = rb"(?:0[xX]|\\x|\$)?[0-9A-Fa-f]{2}[hH]?"
 _RUN: Final = re.compile(
-    rb"[\"'{b]{0,2}(?P<run>(?:" + _PAIR + rb"(?:[,;:-]?[ ]?(?![ ])|[,;]?[ ]{2,}(?=[0-9A-Fa-f]{2}(?:[ \r\n]|\Z))))+)[\"'}]?"
+    rb"[\"'{b]{0,2}(?P<run>" + _PAIR + rb"(?:[,;:-]?[ ]*" + _PAIR + rb")*)[,;]?[ ]*[\"'}]?;?"
 )
+# What may part the bytes from the characters that some print behind them; the first that leaves only bytes counts.
+_BEHIND: Final = tuple(map(re.compile, (rb"\Z", rb"\s*[|\t]", rb"\s{3}", rb"\s{2}", rb"\s[;<>\"']")))
 _PREFIXES: Final = re.compile(rb"0[xX]|\\x")
 _DIGITS: Final = re.compile(rb"[0-9A-Fa-f]{2}")
 
@@ -102,17 +110,13 @@ def _parse(line: bytes, begins: bool, times: _Times) -> _Piece:
             if t is None and (match := _TIME.match(rest)):
                 t, rest = times.at(match), rest[match.end() :]
             if mark is None and (match := _MARK.match(rest)):
-                mark, rest = match["mark"].upper(), rest[match.end() :]
-    match = _RUN.match(rest)
-    # The characters may stand behind the bytes, but a word that begins as digits do is none.
-    if match is None or not _is_end(rest[match.end() :], match["run"]):
-        return _Piece(t, mark, None)
-    text = _PREFIXES.sub(b"", match["run"])
-    return _Piece(t, mark, bytes(int(pair, 16) for pair in _DIGITS.findall(text)))
-
-
-def _is_end(rest: bytes, run: bytes) -> bool:
-    return not rest or run[-1:].isspace() or rest[:1] in b" \t|;<>\"'}]"
+                mark, rest = match["mark"].upper().replace(b"-", b""), rest[match.end() :]
+    for behind in _BEHIND:
+        # Words that begin as bytes do, and bytes that are cut, are none.
+        if match := _RUN.fullmatch(behind.split(rest, maxsplit=1)[0]):
+            text = _PREFIXES.sub(b"", match["run"])
+            return _Piece(t, mark, bytes(int(pair, 16) for pair in _DIGITS.findall(text)))
+    return _Piece(t, mark, None)
 
 
 class HextextReader:
@@ -136,7 +140,9 @@ class HextextReader:
                 direction = directions.get(mark) or directions[b""]
                 yield offsets.chunk(t, direction, piece.data)
             elif text.strip() and piece.t is None and piece.mark is None and not text.startswith(b"#"):
-                self.damage.append(Damage(f"line {number}", _REPEATED if text.strip() == b"*" else "no hexadecimal bytes"))
+                self.damage.append(
+                    Damage(f"line {number}", _REPEATED if text.strip() == b"*" else "no hexadecimal bytes")
+                )
 
     def _directions(self, head: bytes) -> dict[bytes, Direction]:
         """Say which direction each mark is; what a client calls sent goes to the robot, if the bytes do not deny it."""

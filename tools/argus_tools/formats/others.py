@@ -21,7 +21,7 @@ from argus_tools.formats.base import (
     ReadOptions,
     shell_name,
 )
-from argus_tools.formats.text import BOM, first_lines, is_text
+from argus_tools.formats.text import first_lines
 
 _HEADER: Final = b"\xfa\xfb"
 _RECORD: Final = "record the link itself: argusd --record drive.rec"
@@ -80,12 +80,24 @@ def _is_tar(head: bytes) -> bool:
 
 
 _OTHERS: Final = (
-    _Other("mf4", _begins(b"MDF     ", b"UnFinMF "), "an MDF measurement (.mf4)",
-           "export its CAN frames as BLF or ASC from the tool that wrote it, or " + _CANDUMP),
-    _Other("sqlite", _begins(b"SQLite format 3\0"), "an SQLite database, as python-can's logger writes one (.db)",
-           "python -m can.logconvert FILE drive.asc"),
-    _Other("mcap", _begins(b"\x89MCAP0\r\n"), "an MCAP file, which argus-log writes for Foxglove but does not read",
-           "give the log that it was made from"),
+    _Other(
+        "mf4",
+        _begins(b"MDF     ", b"UnFinMF "),
+        "an MDF measurement (.mf4)",
+        "export its CAN frames as BLF or ASC from the tool that wrote it, or " + _CANDUMP,
+    ),
+    _Other(
+        "sqlite",
+        _begins(b"SQLite format 3\0"),
+        "an SQLite database, as python-can's logger writes one (.db)",
+        "python -m can.logconvert FILE drive.asc",
+    ),
+    _Other(
+        "mcap",
+        _begins(b"\x89MCAP0\r\n"),
+        "an MCAP file, which argus-log writes for Foxglove but does not read",
+        "give the log that it was made from",
+    ),
     _Other("rosbag", _begins(b"#ROSBAG V"), "a ROS bag", _RECORD),
     _Other("zip", _begins(b"PK\x03\x04"), "a ZIP archive", "unzip -p FILE | argus-log decode -"),
     _Other("xz", _begins(b"\xfd7zXZ\0"), "an xz file", "xz -dc FILE | argus-log decode -"),
@@ -97,37 +109,97 @@ _OTHERS: Final = (
     _Other("elf", _begins(b"\x7fELF"), "a program", "give the log, not the program"),
     _Other("pdf", _begins(b"%PDF-"), "a PDF document", "give the log itself"),
     _Other("picture", _begins(b"\x89PNG\r\n", b"\xff\xd8\xff", b"GIF8"), "a picture", "give the log itself"),
-    _Other("html", _lines(rb"\s*<(?:!DOCTYPE|html|\?xml)"), "a web page or XML",
-           "save the file itself, not the page that shows it"),
+    _Other(
+        "html",
+        _lines(rb"\s*<(?:!DOCTYPE|html|\?xml)"),
+        "a web page or XML",
+        "save the file itself, not the page that shows it",
+    ),
     _Other("snoop", _begins(b"snoop\0\0\0"), "a snoop capture", "editcap -F pcapng FILE drive.pcapng"),
     _Other("btsnoop", _begins(b"btsnoop\0"), "a Bluetooth capture", _RECORD),
-    _Other("pcap-modified", _begins(b"\xa1\xb2\xcd\x34", b"\x34\xcd\xb2\xa1", b"\xa1\xb2\x34\xcd"), "a pcap of a modified kind",
-           "editcap -F pcapng FILE drive.pcapng"),
-    _Other("tcpdump-hex", _lines(rb"\t0x[0-9a-f]{4}:  (?:[0-9a-f]{2,4} ?)+"), "what tcpdump -x prints on the screen",
-           "capture into a file: tcpdump -i any -w robot.pcap tcp port 8101"),
-    _Other("tcpdump-text", _lines(rb"(?:\d\d:\d\d:\d\d\.\d+ )?(?:\S+ +(?:In|Out) +)?IP6? \S+ > \S+: "),
-           "what tcpdump prints on the screen, without the bytes",
-           "capture into a file: tcpdump -i any -w robot.pcap tcp port 8101"),
-    _Other("tshark-text", _lines(rb" *\d+ +\d+\.\d+ +\S+ +(?:\xe2\x86\x92|->) +\S+ +[A-Z]"),
-           "what tshark prints on the screen, without the bytes", "tshark -i can0 -w can0.pcapng"),
-    _Other("strace", _lines(rb"(?:\[pid +\d+\] |\d+ +)?(?:[\d:.]+ )?(?:read|write|recvfrom|sendto|openat)\(\d*.*\) += "),
-           "what strace prints", _RECORD),
-    _Other("cansniffer", _lines(rb"(?:\x1b\[\S*)?\d\d (?:delta +ID +data|ms)"), "what cansniffer shows", _CANDUMP),
-    _Other("slcan", _lines(rb"[tTrR][0-9A-Fa-f]{3,8}[0-8][0-9A-Fa-f]*(?:\r|$)", 2), "what an slcan adapter sends",
-           "let slcand make an interface of it, then " + _CANDUMP),
-    _Other("intel-hex", _lines(rb":[0-9A-Fa-f]{10,}\s*$", 2), "Intel HEX", "objcopy -I ihex -O binary FILE drive.bin"),
-    _Other("s-record", _lines(rb"S[0-9][0-9A-Fa-f]{8,}\s*$", 2), "Motorola S-records", "objcopy -I srec -O binary FILE drive.bin"),
-    _Other("octal-dump", _lines(rb"[0-7]{7}(?: {2,3}(?:\\[0abtnvfr]|[0-7]{3}|\S))+\s*$", 2), "what od -c or hexdump -c prints",
-           "dump it as numbers: od -v -t x1, which argus-log reads"),
-    _Other("decimal-dump", _lines(rb"[0-9A-Fa-f]{7}(?: +-?\d{1,5})+\s*$", 2), "a dump in decimal numbers",
-           "dump it in hexadecimal ones: od -v -t x1, which argus-log reads"),
-    _Other("decoded-table", _lines(rb" +t +offset +dir +type +content"), "what argus-log decode prints",
-           "give the log that it was made from"),
-    _Other("decoded-csv", _lines(rb"t,offset,dir,type,ok,"), "the CSV of argus-log", "give the log that it was made from"),
+    _Other(
+        "pcap-modified",
+        _begins(b"\xa1\xb2\xcd\x34", b"\x34\xcd\xb2\xa1", b"\xa1\xb2\x34\xcd"),
+        "a pcap of a modified kind",
+        "editcap -F pcapng FILE drive.pcapng",
+    ),
+    _Other(
+        "tcpdump-hex",
+        _lines(rb"\t0x[0-9a-f]{4}:  (?:[0-9a-f]{2,4} ?)+"),
+        "what tcpdump -x prints on the screen",
+        "capture into a file: tcpdump -i any -w robot.pcap tcp port 8101",
+    ),
+    _Other(
+        "tcpdump-text",
+        _lines(rb"(?:\d\d:\d\d:\d\d\.\d+ )?(?:\S+ +(?:In|Out) +)?IP6? \S+ > \S+: "),
+        "what tcpdump prints on the screen, without the bytes",
+        "capture into a file: tcpdump -i any -w robot.pcap tcp port 8101",
+    ),
+    _Other(
+        "tshark-text",
+        _lines(rb" *\d+ +\d+\.\d+ +\S+ +(?:\xe2\x86\x92|->) +\S+ +[A-Z]"),
+        "what tshark prints on the screen, without the bytes",
+        "tshark -i can0 -w can0.pcapng",
+    ),
+    _Other(
+        "strace",
+        _lines(rb"(?:\[pid +\d+\] |\d+ +)?(?:[\d:.]+ )?(?:read|write|recvfrom|sendto|openat)\(\d*.*\) += "),
+        "what strace prints",
+        _RECORD,
+    ),
+    _Other(
+        "cansniffer", _lines(rb"(?:\x1b\[\S*)?\d\d (?:delta +ID +data|ms)"), "what cansniffer shows", _CANDUMP
+    ),
+    _Other(
+        "slcan",
+        _lines(rb"[tTrR][0-9A-Fa-f]{3,8}[0-8][0-9A-Fa-f]*(?:\r|$)", 2),
+        "what an slcan adapter sends",
+        "let slcand make an interface of it, then " + _CANDUMP,
+    ),
+    _Other(
+        "intel-hex",
+        _lines(rb":[0-9A-Fa-f]{10,}\s*$", 2),
+        "Intel HEX",
+        "objcopy -I ihex -O binary FILE drive.bin",
+    ),
+    _Other(
+        "s-record",
+        _lines(rb"S[0-9][0-9A-Fa-f]{8,}\s*$", 2),
+        "Motorola S-records",
+        "objcopy -I srec -O binary FILE drive.bin",
+    ),
+    _Other(
+        "octal-dump",
+        _lines(rb"[0-7]{7}(?: {2,3}(?:\\[0abtnvfr]|[0-7]{3}|\S))+\s*$", 2),
+        "what od -c or hexdump -c prints",
+        "dump it as numbers: od -v -t x1, which argus-log reads",
+    ),
+    _Other(
+        "decimal-dump",
+        _lines(rb"[0-9A-Fa-f]{7}(?: +-?\d{1,5})+\s*$", 2),
+        "a dump in decimal numbers",
+        "dump it in hexadecimal ones: od -v -t x1, which argus-log reads",
+    ),
+    _Other(
+        "decoded-table",
+        _lines(rb" +t +offset +dir +type +content"),
+        "what argus-log decode prints",
+        "give the log that it was made from",
+    ),
+    _Other(
+        "decoded-csv",
+        _lines(rb"t,offset,dir,type,ok,"),
+        "the CSV of argus-log",
+        "give the log that it was made from",
+    ),
     _Other("base64", _is_base64, "base64 of a robot's link", "base64 -d FILE > drive.bin"),
-    _Other("seven-bit", _is_seven_bit, "a robot's link without the highest bit of each byte, which is lost",
-           "set the terminal program and the port to 8 data bits and save as binary"),
-)  # fmt: skip
+    _Other(
+        "seven-bit",
+        _is_seven_bit,
+        "a robot's link without the highest bit of each byte, which is lost",
+        "set the terminal program and the port to 8 data bits and save as binary",
+    ),
+)
 
 
 class _Refusal(Reader):

@@ -74,7 +74,9 @@ class PcapngReader:
     def _packet(self, kind: int, body: bytes, number: int) -> Captured:
         if kind == _SIMPLE:
             size = struct.unpack_from(self._order + "I", body)[0]
-            return Captured(0.0, number, self._interfaces[0].link, body[4 : 4 + size], self._interfaces[0].name)
+            return Captured(
+                0.0, number, self._interfaces[0].link, body[4 : 4 + size], self._interfaces[0].name
+            )
         form = "IIIII" if kind == _ENHANCED else "HHIIII"
         values = struct.unpack_from(self._order + form, body)
         high, low, size = values[-4:-1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Bytes of a link that a program took for text and saved in another encoding: told, with what gets them back if anything does."""
+"""Bytes of a link that a program took for text and saved in another encoding: told, with what gets them back."""
 
 from __future__ import annotations
 
@@ -64,8 +64,10 @@ def _sniff(head: bytes) -> bool:
 
 def _text(head: bytes, encoding: str) -> str | None:
     """Decode all but what is cut at the end; None if it is not of this encoding."""
+    if head[:2] in _MARKS:
+        head = head[2:]
     try:
-        return codecs.getincrementaldecoder(encoding)("strict").decode(head.removeprefix(b"\xff\xfe").removeprefix(b"\xfe\xff"))
+        return codecs.getincrementaldecoder(encoding)("strict").decode(head)
     except UnicodeDecodeError:
         return None
 
@@ -82,9 +84,12 @@ def _explain(name: str, head: bytes) -> str:
         for page, iconv in _PAGES:
             if _has_packets(_encoded(text, page)):
                 back = f"iconv -f {shown} -t {iconv} {name} > drive.bin gets them back"
-                return f"looks like a link's bytes saved as {shown} text; expected {EXPECTED}; {back}; next time {_BINARY}"
+                what = f"looks like a link's bytes saved as {shown} text; expected {EXPECTED}"
+                return f"{what}; {back}; next time {_BINARY}"
         if encoding != "utf-8" and text.lstrip("\ufeff").isascii():
-            return f"looks like {shown} text; expected {EXPECTED}; iconv -f {shown} -t UTF-8 {name} > drive.txt"
+            return (
+                f"looks like {shown} text; expected {EXPECTED}; iconv -f {shown} -t UTF-8 {name} > drive.txt"
+            )
     return f"looks like a link's bytes saved as {shown} text, which lost some; expected {EXPECTED}; {_BINARY}"
 
 

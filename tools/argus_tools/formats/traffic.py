@@ -20,9 +20,9 @@ _CAN_HEADER: Final = 8
 _LONG_ID, _REMOTE, _ERROR = 1 << 31, 1 << 30, 1 << 29
 _LONG_ID_MASK: Final = (1 << 29) - 1
 # By number: what it is, and what records the robot's link instead (tcpdump.org, LINK-LAYER HEADER TYPES).
-_SERIAL_REMEDY: Final = "record the port itself, with argusd --record, or a CAN adapter's interface with tcpdump -i can0 -w can0.pcap"
 _CAN_REMEDY: Final = "capture the interface itself: tcpdump -i can0 -w can0.pcap"
-_IP_REMEDY: Final = "capture on the machine that speaks with the robot: tcpdump -i any -w robot.pcap tcp port 8101"
+_SERIAL_REMEDY: Final = f"record the port itself with argusd --record; of a CAN adapter, {_CAN_REMEDY}"
+_IP_REMEDY: Final = "capture where the client runs: tcpdump -i any -w robot.pcap tcp port 8101"
 _LINKS: Final = {
     105: ("802.11 radio frames", _IP_REMEDY),
     127: ("802.11 radio frames with radiotap headers", _IP_REMEDY),
