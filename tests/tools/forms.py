@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
-from argus_tools.formats.base import Direction
+from argus_tools.formats.base import Chunk
 from logs import command, sip
 
 SIPS = [sip(x=5 * n, sonars=((0, 1000 + n), (1, 2000 - n), (7, 0xFAFB))) for n in range(12)]
@@ -115,6 +115,6 @@ def pcapng(link: int, packets: list[tuple[float, bytes]], name: bytes = b"can0")
     return out
 
 
-def joined(chunks: list[tuple[float | None, Direction, bytes, int]], direction: str) -> bytes:
+def joined(chunks: Iterable[Chunk], direction: str) -> bytes:
     """The bytes of one direction."""
-    return b"".join(chunk[2] for chunk in chunks if chunk[1] == direction)
+    return b"".join(chunk.data for chunk in chunks if chunk.dir == direction)

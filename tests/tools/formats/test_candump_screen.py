@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -29,7 +31,7 @@ def zero(frame: CanFrame) -> str:
 
 def deltas() -> list[str]:
     times = [START_S, *(frame.t for frame in frames())]
-    return [f" ({b - a:010.6f})" for a, b in zip(times, times[1:], strict=False)]
+    return [f" ({b - a:010.6f})" for a, b in itertools.pairwise(times)]
 
 
 def bits(frame: CanFrame) -> str:
@@ -54,7 +56,7 @@ def coloured(frame: CanFrame) -> str:
     return f"\x1b[31m  can0  {frame.can_id:3X}   [8]  {frame.data.hex(' ').upper()}\x1b[0m"
 
 
-VIEWS = {
+VIEWS: dict[str, Callable[[CanFrame], str]] = {
     "plain": body,
     "-ta": lambda f: absolute(f) + body(f),
     "-ta, nanoseconds": lambda f: f" ({f.t:.9f})" + body(f),
@@ -117,8 +119,9 @@ def log_line(frame: CanFrame) -> str:
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("make", [log_line, lambda frame: body(frame) + "\n"])
-def test_comments_before_the_first_line_are_fine(before: str, make: object, tmp_path: Path) -> None:
-    assert callable(make)
+def test_comments_before_the_first_line_are_fine(
+    before: str, make: Callable[[CanFrame], str], tmp_path: Path
+) -> None:
     log = read(tmp_path / "a.log", before + "".join(make(frame) for frame in frames()))
     assert joined(list(log), "r2c") == ROBOT
     assert log.damage == []
@@ -127,8 +130,10 @@ def test_comments_before_the_first_line_are_fine(before: str, make: object, tmp_
 @pytest.mark.parametrize(
     "noise",
     [
-        "  can0  123   [8]  remote request", "  can0  20000004   [8]  00 04 00 00 00 00 00 00   ERRORFRAME\n\tbus-off",
-        "  can0  18DA4806   [3]  02 61 62", "  can0  500   [0]", "  can0  101  [64]  " + bytes(64).hex(" "), "# a comment",
+        "  can0  123   [8]  remote request",
+        "  can0  20000004   [8]  00 04 00 00 00 00 00 00   ERRORFRAME\n\tbus-off",
+        "  can0  18DA4806   [3]  02 61 62", "  can0  500   [0]", "  can0  101  [64]  " + bytes(64).hex(" "),
+        "# a comment",
     ],
 )  # fmt: skip
 def test_other_traffic_is_passed_over(noise: str, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -104,8 +105,9 @@ def squeezed(text: str) -> str:
 
 @pytest.mark.parametrize("make", [hexdump_c, od, lambda data: od(data, "07o", 2, "06o")])
 @pytest.mark.parametrize("count", [33, 160, 70_000])
-def test_an_asterisk_stands_for_the_lines_it_replaces(make: object, count: int, tmp_path: Path) -> None:
-    assert callable(make)
+def test_an_asterisk_stands_for_the_lines_it_replaces(
+    make: Callable[[bytes], str], count: int, tmp_path: Path
+) -> None:
     data = ROBOT + bytes(count) + ROBOT + b"\x01" * 64
     text = squeezed(make(data))
     assert "\n*\n" in text

@@ -8,6 +8,7 @@ import re
 import struct
 import zlib
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from io import BufferedReader
 from typing import Any, Final
 
@@ -29,6 +30,10 @@ _FAILURES: Final = (
 _LINE_MAX: Final = 4096
 _HEADER_LINES: Final = 64
 _BLF_MAGIC: Final = b"LOGG"
+# Bytes of a BLF object: at most, its head, and to what its size is filled up.
+_OBJECT_MAX: Final = 1 << 26
+_OBJECT_HEAD: Final = 16
+_FILLING: Final = 4
 _ASC_HEAD: Final = re.compile(
     rb"\s*(date\s+\w{3}\s|base\s+(?:hex|dec)\b|begin\s+triggerblock\b)", re.IGNORECASE
 )
@@ -108,6 +113,17 @@ class _Messages:
     def _tell(self, place: int, what: str) -> None:
         self.damage.append(Damage(f"{self._unit} {place}", what))
 
+    @contextmanager
+    def _listening(self, place: Callable[[], int]) -> Iterator[None]:
+        """Take what python-can only warns of for damage, too."""
+        told = _Told(lambda what: self._tell(place(), what))
+        logger = logging.getLogger("can.io")
+        logger.addHandler(told)
+        try:
+            yield
+        finally:
+            logger.removeHandler(told)
+
     def _take(self, message: Any, place: int) -> Iterator[Chunk]:
         if message.is_error_frame or message.is_remote_frame:
             return
@@ -127,10 +143,7 @@ class TextReader(_Messages):
         self._name = options.name
 
     def __iter__(self) -> Iterator[Chunk]:
-        told = _Told(lambda what: self._tell(self._lines.number, what))
-        logger = logging.getLogger("can.io")
-        logger.addHandler(told)
-        try:
+        with self._listening(lambda: self._lines.number):
             while not self._lines.is_over:
                 try:
                     for message in self._reader():
@@ -139,8 +152,6 @@ class TextReader(_Messages):
                     self._tell(self._lines.number, f"no line of {self._kind.upper()} ({_brief(error)})")
                     self._lines.rewind()
             yield from self._link.finish()
-        finally:
-            logger.removeHandler(told)
 
     def _reader(self) -> Any:
         import can
@@ -164,18 +175,25 @@ class BlfReader(_Messages):
         from can.io.blf import BLFParseError
 
         number = 0
-        stream: Any = _Open(self._stream)
-        try:
-            for message in can.BLFReader(stream):
-                number += 1
-                yield from self._take(message, number)
-        except (*_FAILURES, BLFParseError) as error:
-            if not number:
-                raise LogError(f"{self._name}: a BLF file that cannot be read ({_brief(error)})") from error
-            self._tell(
-                number + 1, f"the BLF file is damaged or cut here ({_brief(error)}); the rest is not read"
-            )
-        yield from self._link.finish()
+        stream = _Open(self._stream)
+        opened: Any = stream
+        with self._listening(lambda: number):
+            try:
+                for message in can.BLFReader(opened):
+                    number += 1
+                    yield from self._take(message, number)
+            except (*_FAILURES, BLFParseError) as error:
+                if not number:
+                    raise LogError(
+                        f"{self._name}: a BLF file that cannot be read ({_brief(error)})"
+                    ) from error
+                self._tell(
+                    number + 1, f"the BLF file is damaged here ({_brief(error)}); the rest is not read"
+                )
+            else:
+                if stream.is_cut:
+                    self._tell(number + 1, "the BLF file is cut off here")
+            yield from self._link.finish()
 
 
 class _Open:
@@ -183,17 +201,18 @@ class _Open:
 
     def __init__(self, stream: BufferedReader) -> None:
         self._stream = stream
+        self.is_cut = False
 
     def read(self, size: int) -> bytes:
         if not 0 <= size <= _OBJECT_MAX:
             raise ValueError(f"an object of {size} bytes")
-        return self._stream.read(size)
+        data = self._stream.read(size)
+        # Nothing at all is the end, and what fills an object up may be missing there.
+        self.is_cut |= len(data) < size and size >= _FILLING and (bool(data) or size != _OBJECT_HEAD)
+        return data
 
     def close(self) -> None:
         """The stream is closed by whoever opened it."""
-
-
-_OBJECT_MAX: Final = 1 << 26
 
 
 def _brief(error: BaseException) -> str:

@@ -21,7 +21,9 @@ from argus_tools.formats.base import (
     ReadOptions,
     shell_name,
 )
+from argus_tools.formats.hexdump import FORMAT as HEXDUMP
 from argus_tools.formats.text import first_lines
+from hil_sim.arcos import Unframer
 
 _HEADER: Final = b"\xfa\xfb"
 _RECORD: Final = "record the link itself: argusd --record drive.rec"
@@ -56,7 +58,7 @@ def _is_base64(head: bytes) -> bool:
     if not re.fullmatch(rb"[A-Za-z0-9+/]{16,}={0,2}", text):
         return False
     try:
-        return _HEADER in base64.b64decode(text[: len(text) & ~3])
+        return any(True for _ in Unframer().feed(base64.b64decode(text[: len(text) & ~3])))
     except binascii.Error:
         return False
 
@@ -73,6 +75,10 @@ def _is_seven_bit(head: bytes) -> bool:
         if chain == _SEVEN_BIT_PACKETS:
             return True
     return False
+
+
+def _is_decimal_dump(head: bytes) -> bool:
+    return _lines(rb"[0-9A-Fa-f]{7}(?: +-?\d{1,5})+\s*$", 2)(head) and not HEXDUMP.sniff(head)
 
 
 def _is_tar(head: bytes) -> bool:
@@ -137,7 +143,7 @@ _OTHERS: Final = (
     ),
     _Other(
         "tshark-text",
-        _lines(rb" *\d+ +\d+\.\d+ +\S+ +(?:\xe2\x86\x92|->) +\S+ +[A-Z]"),
+        _lines(rb" *\d+ +\d+\.\d+ +(?:\S+ +)?(?:\xe2\x86\x92|->) +(?:\S+ +)?[A-Z]"),
         "what tshark prints on the screen, without the bytes",
         "tshark -i can0 -w can0.pcapng",
     ),
@@ -176,7 +182,7 @@ _OTHERS: Final = (
     ),
     _Other(
         "decimal-dump",
-        _lines(rb"[0-9A-Fa-f]{7}(?: +-?\d{1,5})+\s*$", 2),
+        _is_decimal_dump,
         "a dump in decimal numbers",
         "dump it in hexadecimal ones: od -v -t x1, which argus-log reads",
     ),

@@ -19,13 +19,14 @@ from argus_tools.formats.base import (
     shell_name,
 )
 from argus_tools.formats.source import HEAD_BYTES
+from argus_tools.formats.text import BOM
 from hil_sim.arcos import Unframer
 
 _HEADER: Final = b"\xfa\xfb"
 _BINARY: Final = "record as binary (raw) in the terminal program, or with argusd --record drive.rec"
-# Python's and iconv's name of each code page that a terminal program may take the bytes for.
+# Python's and iconv's name of each code page that a terminal program may take the bytes for; iconv's Mac is another.
 _PAGES: Final = (
-    ("latin-1", "LATIN1"), ("cp1252", "CP1252"), ("cp437", "CP437"), ("cp850", "CP850"), ("mac_roman", "MACINTOSH"),
+    ("latin-1", "LATIN1"), ("cp1252", "CP1252"), ("cp437", "CP437"), ("cp850", "CP850"), ("mac_roman", None),
     ("cp1251", "CP1251"), ("koi8_r", "KOI8-R"), ("iso8859-15", "LATIN-9"), ("cp866", "CP866"),
 )  # fmt: skip
 _REPLACED: Final = "\ufffd".encode()
@@ -50,8 +51,8 @@ def _utf16(head: bytes) -> str | None:
     return None
 
 
-def _utf8_pages(head: bytes) -> list[tuple[str, str]]:
-    return [(page, name) for page, name in _PAGES if _HEADER.decode(page).encode() in head]
+def _has_utf8(head: bytes) -> bool:
+    return any(_HEADER.decode(page).encode() in head for page, _ in _PAGES)
 
 
 def _sniff(head: bytes) -> bool:
@@ -59,7 +60,7 @@ def _sniff(head: bytes) -> bool:
         return True
     if _HEADER in head:
         return False
-    return bool(_utf8_pages(head)) or head.count(_REPLACED) >= _REPLACED_MIN
+    return _has_utf8(head) or head.count(_REPLACED) >= _REPLACED_MIN
 
 
 def _text(head: bytes, encoding: str) -> str | None:
@@ -78,24 +79,25 @@ def _has_packets(data: bytes) -> bool:
 
 def _explain(name: str, head: bytes) -> str:
     encoding = _utf16(head) or "utf-8"
-    shown = encoding.upper().replace("-LE", "LE").replace("-BE", "BE")
-    text = _text(head, encoding)
-    if text is not None and "\ufffd" not in text:
-        for page, iconv in _PAGES:
-            if _has_packets(_encoded(text, page)):
-                back = f"iconv -f {shown} -t {iconv} {name} > drive.bin gets them back"
-                what = f"looks like a link's bytes saved as {shown} text; expected {EXPECTED}"
-                return f"{what}; {back}; next time {_BINARY}"
-        if encoding != "utf-8" and text.lstrip("\ufeff").isascii():
-            return (
-                f"looks like {shown} text; expected {EXPECTED}; iconv -f {shown} -t UTF-8 {name} > drive.txt"
-            )
-    return f"looks like a link's bytes saved as {shown} text, which lost some; expected {EXPECTED}; {_BINARY}"
+    shown = "UTF-16" if head[:2] in _MARKS else encoding.upper().replace("-LE", "LE").replace("-BE", "BE")
+    what = f"looks like a link's bytes saved as {shown} text"
+    text = _text(head.removeprefix(BOM), encoding)
+    if text is None or "\ufffd" in text:
+        return f"{what}, which lost some; expected {EXPECTED}; {_BINARY}"
+    for page, iconv in _PAGES:
+        if iconv and _has_packets(_encoded(text, page)):
+            back = f"iconv -f {shown} -t {iconv} {name} > drive.bin"
+            if head.startswith(BOM):
+                back = f"tail -c +{len(BOM) + 1} {name} | iconv -f {shown} -t {iconv} > drive.bin"
+            return f"{what}; expected {EXPECTED}; {back} gets them back; next time {_BINARY}"
+    if encoding != "utf-8" and text.isascii():
+        return f"looks like {shown} text; expected {EXPECTED}; iconv -f {shown} -t UTF-8 {name} > drive.txt"
+    return f"{what}, and there is no way back that is sure; expected {EXPECTED}; {_BINARY}"
 
 
 def _encoded(text: str, page: str) -> bytes:
     try:
-        return text.lstrip("\ufeff").encode(page)
+        return text.encode(page)
     except UnicodeEncodeError:
         return b""
 

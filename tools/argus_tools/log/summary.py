@@ -16,8 +16,9 @@ LASTING_S: Final = 5.0
 # Sonars fail one by one. When more than these are suspects at once, it is the place or the motion that misleads.
 SUSPECTS_MAX: Final = 4
 SUSPECT, DISABLED = "SUSPECT", "DISABLED"
-# As many that go at the same moment are told in lines of their own.
+# As many that go within so short a time are told in lines of their own.
 _TOGETHER: Final = 2
+_TOGETHER_S: Final = 1.0
 _RAISED: Final = "SONAR_SUSPECT"
 _ENDED: Final = frozenset(("SUSPICION_DROPPED", "SONAR_CLEARED", "SONAR_HEALTHY", "SONAR_DISABLED"))
 _DISABLED: Final = "SONAR_DISABLED"
@@ -35,7 +36,7 @@ class Summary:
     def __init__(self) -> None:
         self._since: dict[int, float] = {}
         self._suspicions = 0
-        self._disabled: dict[int, tuple[str, str]] = {}
+        self._disabled: dict[int, tuple[str, float, str]] = {}
         self._also: Counter[str] = Counter()
         self._meaning: dict[str, str] = {}
         self._first: float | None = None
@@ -61,7 +62,7 @@ class Summary:
             self._since.pop(event.sonar, None)
         if name == _DISABLED and event.sonar is not None:
             place = f"byte {offset}" if t is None else f"+{t - (self._first or 0.0):.1f} s"
-            self._disabled[event.sonar] = (kind_name(event.value), place)
+            self._disabled[event.sonar] = (kind_name(event.value), self._now, place)
 
     def lines(self, status: dict[str, Any], damage: Iterable[Damage]) -> list[str]:
         """Return the lines, with what the manager knows at the end."""
@@ -82,17 +83,26 @@ class Summary:
 
     def _gone(self, health: list[str]) -> list[str]:
         """Tell of the disabled sonars, those that went together in one line."""
-        together: dict[tuple[str, str], list[int]] = {}
-        for number, why in sorted(self._disabled.items()):
-            if health[number] == DISABLED:
-                together.setdefault(why, []).append(number)
+        groups: list[list[int]] = []
+        for number, (kind, at, _) in sorted(self._disabled.items(), key=lambda item: item[1]):
+            if health[number] != DISABLED:
+                continue
+            first = self._disabled[groups[-1][0]] if groups else None
+            if first and first[0] == kind and at - first[1] <= _TOGETHER_S:
+                groups[-1].append(number)
+            else:
+                groups.append([number])
         out = []
-        for (kind, place), numbers in together.items():
+        for numbers in sorted(map(sorted, groups)):
             if len(numbers) > _TOGETHER:
+                kind, _, place = min(self._disabled[number] for number in numbers)
                 who = f"{len(numbers)} sonars ({', '.join(map(str, numbers))})"
                 out.append(f"{who} disabled as {kind} at {place}, all at once")
             else:
-                out += [f"{_name(number):<14} disabled as {kind} at {place}" for number in numbers]
+                out += [
+                    f"{_name(number):<14} disabled as {self._disabled[number][0]} at {self._disabled[number][2]}"
+                    for number in numbers
+                ]
         return out
 
     def _suspects(self, lasting: list[int], kinds: list[str]) -> list[str]:
