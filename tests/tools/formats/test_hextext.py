@@ -70,6 +70,11 @@ STAMPS: dict[str, tuple[Callable[[float], str], float, float]] = {
     "tio": (lambda t: f"[{clock(t, '%H:%M:%S.%f')[:-3]}]", DAY_S, MILLIS),
     "tio ISO": (lambda t: f"[{clock(t, '%Y-%m-%dT%H:%M:%S.%f')[:-3]}]", START_S, MILLIS),
     "tio ISO with zone": (lambda t: f"[{clock(t, '%Y-%m-%dT%H:%M:%S.%f')[:-3]}+00:00]", START_S, MILLIS),
+    "tio ISO of another zone": (
+        lambda t: f"[{clock(t + 7200, '%Y-%m-%dT%H:%M:%S.%f')[:-3]}+0200]",
+        START_S,
+        MILLIS,
+    ),
     "seconds since 1970": (lambda t: f"({t:.6f})", START_S, 1e-5),
     "seconds and a colon": (lambda t: f"{t - START_S:.3f}:", 0.0, MILLIS),
     "date and time": (lambda t: clock(t, "%Y-%m-%d %H:%M:%S.%f"), START_S, 1e-5),
