@@ -39,6 +39,7 @@ PLAIN = {
     "hexdump -e": "".join(f"{byte:02X} " for byte in ROBOT),
     "a byte in a line": "".join(f"{byte:02x}\n" for byte in ROBOT),
     "gap in the middle": in_lines(lambda part: f"{part[:8].hex(' ')}  {part[8:].hex(' ')}"),
+    "interceptty": "".join(f"< 0x{byte:02x} ({chr(byte) if 32 <= byte < 127 else '.'})\n" for byte in ROBOT),
     "comment": "# of Monday\n" + in_lines(lambda part: part.hex(" ")),
 }
 
@@ -56,6 +57,17 @@ def test_every_way_of_writing_bytes(name: str, tmp_path: Path) -> None:
     assert (log.format.name, log.damage) == ("hextext", [])
     assert data == (ROBOT * 40 if name == "one long line" else ROBOT)
     assert {chunk.t for chunk in chunks} == {None}
+
+
+@pytest.mark.parametrize("head", ["", "Time [s],Value,Parity Error,Framing Error\n"])
+def test_a_byte_and_its_time_of_a_logic_analyser(head: str, tmp_path: Path) -> None:
+    end = ",," if head else ""
+    text = head + "".join(f"{n / 1000:.6f},0x{byte:02X}{end}\n" for n, byte in enumerate(ROBOT))
+    log = read(tmp_path / "a.csv", text)
+    chunks = list(log)
+    assert joined(chunks, "r2c") == ROBOT
+    assert chunks[-1].t == pytest.approx((len(ROBOT) - 1) / 1000)
+    assert len(log.damage) == bool(head)
 
 
 def clock(t: float, form: str) -> str:
@@ -135,7 +147,7 @@ def test_socat_tells_time_and_direction_in_lines_of_their_own(tmp_path: Path) ->
             text += "".join(f" {part.hex(' ')}\n" for part in lines(data, 16)) + "--\n"
     log = read(tmp_path / "a.txt", text)
     chunks = list(log)
-    assert (joined(chunks, "c2r"), joined(chunks, "r2c")) == (CLIENT, ROBOT)
+    assert (joined(chunks, "c2r"), joined(chunks, "r2c"), log.damage) == (CLIENT, ROBOT, [])
 
 
 @pytest.mark.parametrize(
@@ -146,6 +158,8 @@ def test_socat_tells_time_and_direction_in_lines_of_their_own(tmp_path: Path) ->
         ("FA FB 0", "no hexadecimal bytes"),
         ("FA FG 03", "no hexadecimal bytes"),
         ("0xFA 0xFBB", "no hexadecimal bytes"),
+        ("[06:38:47.5] FA FG 03", "no hexadecimal bytes"),
+        ("[06:38:47.5] Connected", "no hexadecimal bytes"),
     ],
 )
 def test_what_is_none_is_told_by_its_line(line: str, part: str, tmp_path: Path) -> None:

@@ -43,7 +43,7 @@ _TIME: Final = re.compile(
     + _CLOCK
     + rb"|"
     + _SINCE
-    + rb")(?:[ ]+[+]?\d{1,9}\.\d{1,9})?[ ]*[\])}]?[ \t]*[:;,|-]?(?:[ \t]+|\Z)"
+    + rb")(?:[ ]+[+]?\d{1,9}\.\d{1,9})?[ ]*[\])}]?[ \t]*(?:[:;,|-]?(?:[ \t]+|\Z)|[,;])"
 )
 _MARK: Final = re.compile(
     rb"[\[(<]?(?P<mark>RXD?|TXD?|RECV|SENT|SEND|RECEIVED|READ|WRITE|WRITTEN|IN|OUT|RCV|SND|-+>|<-+|<<|>>|<|>)[\])>]?"
@@ -58,7 +58,9 @@ _RUN: Final = re.compile(
     rb"[\"'{b]{0,2}(?P<run>" + _PAIR + rb"(?:[,;:-]?[ ]*" + _PAIR + rb")*)[,;]?[ ]*[\"'}]?;?"
 )
 # What may part the bytes from the characters that some print behind them; the first that leaves only bytes counts.
-_BEHIND: Final = tuple(map(re.compile, (rb"\Z", rb"\s*[|\t]", rb"\s{3}", rb"\s{2}", rb"\s[;<>\"']")))
+_BEHIND: Final = tuple(map(re.compile, (rb"\Z", rb"\s*[|\t]", rb"\s{3}", rb"\s{2}", rb"\s[;<>\"'(]", rb",,")))
+# What socat and jpnevulator write into a line of its own before the bytes, and between two of them.
+_HEADING: Final = re.compile(rb"length=\d|/dev/|--\Z")
 _PREFIXES: Final = re.compile(rb"0[xX]|\\x")
 _NO_DIGITS: Final = b" ,;:-hH$"
 
@@ -69,6 +71,8 @@ class _Piece(NamedTuple):
     t: float | None
     mark: bytes | None
     data: bytes | None
+    # Whether there is something else.
+    is_strange: bool = False
 
 
 @dataclass
@@ -124,7 +128,7 @@ def _parse(line: bytes, begins: bool, times: _Times) -> _Piece:
         if match := _RUN.fullmatch(behind.split(rest, maxsplit=1)[0]):
             text = _PREFIXES.sub(b"", match["run"])
             return _Piece(t, mark, unhexlify(text.translate(None, _NO_DIGITS)))
-    return _Piece(t, mark, None)
+    return _Piece(t, mark, None, bool(rest) and not _HEADING.match(rest))
 
 
 class HextextReader:
@@ -147,7 +151,7 @@ class HextextReader:
             if piece.data:
                 direction = directions.get(mark) or directions[b""]
                 yield offsets.chunk(t, direction, piece.data)
-            elif text.strip() and piece.t is None and piece.mark is None and not text.startswith(b"#"):
+            elif piece.is_strange and not text.startswith(b"#"):
                 self.damage.append(
                     Damage(f"line {number}", _REPEATED if text.strip() == b"*" else "no hexadecimal bytes")
                 )
