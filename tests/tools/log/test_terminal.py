@@ -15,6 +15,8 @@ from pathlib import Path
 import pytest
 from logs import ROOT, jsonl, sip
 
+pytestmark = pytest.mark.soak
+
 LONG_BYTES = 24 << 20
 _ESCAPES = re.compile(rb"\x1b\[[0-9;?]*[A-Za-z]")
 
