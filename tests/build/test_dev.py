@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -112,6 +113,20 @@ def test_a_shell_finds_what_was_built() -> None:
         str(ROOT / "build/release/argusd"),
         str(ROOT / ".venv/bin/argus-sim"),
     ]
+
+
+def test_in_the_shell_dev_neither_runs_on_venv_nor_makes_it_anew() -> None:
+    stamp = ROOT / ".venv/argus-recipe"
+    before = stamp.stat()
+    done = dev("shell", "tools/dev", "shell", "true")
+    assert done.returncode == 0, done.stderr
+    assert ".venv" not in done.stdout
+    assert stamp.stat().st_mtime_ns == before.st_mtime_ns
+    program = "import sys; sys.argv[0] = 'x'; from devtool.setup import leave_venv; leave_venv(); print(sys.prefix)"
+    command = [str(ROOT / ".venv/bin/python"), "-c", program]
+    env = os.environ | {"PYTHONPATH": str(ROOT / "tools")}
+    done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() != str(ROOT / ".venv")
 
 
 def test_a_shell_that_is_not_there() -> None:

@@ -12,6 +12,7 @@ from devtool import commands
 from devtool.base import Stop
 from devtool.cmake import presets
 from devtool.linting import LINT_STAGES, format_stages
+from devtool.setup import leave_venv
 from devtool.stages import add_stage_options, staged_command
 from devtool.testing import QUICK_STAGES, TEST_STAGES
 
@@ -146,6 +147,7 @@ def parse(argv: Sequence[str]) -> argparse.Namespace:
 def main(argv: Sequence[str]) -> int:
     """Run the command line and return its exit code."""
     args = parse(argv)
+    leave_venv()
     action: Action = args.action
     try:
         return action(args)

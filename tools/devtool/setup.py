@@ -59,6 +59,12 @@ def run_steps(steps: Sequence[Command], log: Path) -> None:
                 raise Stop(f"{line_of(step)} failed; the end of {log}:\n  {tail}", EXIT_SETUP)
 
 
+def leave_venv() -> None:
+    """Start again with the interpreter that .venv was made with: what may be removed and made anew cannot run us."""
+    if Path(sys.prefix) == VENV:
+        os.execv(base_python(), [base_python(), *sys.orig_argv[1:]])
+
+
 def ensure_python() -> None:
     """Make .venv as requirements.lock says, unless it is so already."""
     stamp = VENV / "argus-recipe"

@@ -54,8 +54,8 @@ def has_library(header: str, flag: str) -> bool:
 
 
 def base_python() -> str:
-    """Return the interpreter outside of any virtual environment."""
-    return getattr(sys, "_base_executable", None) or sys.executable
+    """Return the interpreter outside of any virtual environment, by the one name that is no link."""
+    return os.path.realpath(getattr(sys, "_base_executable", None) or sys.executable)
 
 
 def gcc_major() -> str:
