@@ -122,7 +122,9 @@ def test_in_the_shell_dev_neither_runs_on_venv_nor_makes_it_anew() -> None:
     assert done.returncode == 0, done.stderr
     assert ".venv" not in done.stdout
     assert stamp.stat().st_mtime_ns == before.st_mtime_ns
-    program = "import sys; sys.argv[0] = 'x'; from devtool.setup import leave_venv; leave_venv(); print(sys.prefix)"
+    program = (
+        "import sys; sys.argv[0] = 'x'; from devtool.setup import leave_venv; leave_venv(); print(sys.prefix)"
+    )
     command = [str(ROOT / ".venv/bin/python"), "-c", program]
     env = os.environ | {"PYTHONPATH": str(ROOT / "tools")}
     done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)

@@ -107,14 +107,15 @@ def test_what_fails_punctually_when_run_again_fails(runs: Runs) -> None:
 
 
 def test_a_host_that_is_late_for_a_single_test_fails_the_stage(runs: Runs) -> None:
-    runs.ends = [(1, {"a": 300})] * 3
+    runs.ends = [(1, {"a": 300})] * 5
     with pytest.raises(StageFailed, match="even for one test at a time"):
         runs.go()
-    assert len(runs.commands) == 3
+    assert [command[3] for command in runs.commands] == ["10", "3", "1", "1", "1"]
 
 
 @pytest.mark.parametrize(
-    ("workers", "expected"), [(10, (10, 3, 1)), (32, (32, 10, 1)), (4, (4, 2, 1)), (2, (2, 2, 1))]
+    ("workers", "expected"),
+    [(10, (10, 3, 1, 1, 1)), (32, (32, 10, 1, 1, 1)), (4, (4, 2, 1, 1, 1)), (2, (2, 2, 1, 1, 1))],
 )
 def test_the_workers_of_each_run(workers: int, expected: tuple[int, ...]) -> None:
     assert worker_plan(workers) == expected

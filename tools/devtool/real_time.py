@@ -18,6 +18,10 @@ TESTS_FAILED: Final = 1
 """The exit code of pytest when tests failed and nothing else was wrong."""
 
 
+ALONE: Final = (1, 1, 1)
+"""A test alone on a busy host gets this many chances: others are not late all the time."""
+
+
 @dataclasses.dataclass(frozen=True)
 class Lateness:
     """What tests/hil/lateness.py found: who failed, and how late the host was meanwhile; 0 if it was punctual."""
@@ -45,9 +49,9 @@ def to_repeat(found: Lateness) -> tuple[str, ...]:
     return tuple(found.failed) if found.exit_code == TESTS_FAILED and not found.punctual else ()
 
 
-def worker_plan(workers: int) -> tuple[int, int, int]:
-    """Return how many workers run the tests at first, and how many what is run again."""
-    return workers, max(2, workers // 3), 1
+def worker_plan(workers: int) -> tuple[int, ...]:
+    """Return how many workers run the tests at first, and how many what is run again: alone at last, and patiently."""
+    return workers, max(2, workers // 3), *ALONE
 
 
 def say_late(found: Lateness, workers: int) -> None:
