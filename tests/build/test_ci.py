@@ -14,8 +14,12 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.mark.parametrize(
     ("failing", "code", "said"),
-    [("", 0, ""), ("test", 1, "ci: failed: test\n"), ("lint", 1, "ci: failed: lint\n")]
-    + [("test lint", 1, "ci: failed: test lint\n")],
+    [
+        ("", 0, ""),
+        ("test", 1, "ci: failed: test\n"),
+        ("lint", 1, "ci: failed: lint\n"),
+        ("test lint", 1, "ci: failed: test lint\n"),
+    ],
 )
 def test_all_steps_run(tmp_path: Path, failing: str, code: int, said: str) -> None:
     for folder in (".ci", "tools"):
