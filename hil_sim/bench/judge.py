@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from hil_sim.bench.witness import contradicted, fired, is_visible
 from hil_sim.sil import FaultTruth, Outcome, Sighting, Sil
-from hil_sim.sonar import CYCLE_MS, NO_ECHO_MM
+from hil_sim.sonar.params import CYCLE_MS, NO_ECHO_MM
 
 RECORD_FORMAT: Final = 4
 """Raised whenever a record gets another field: results of two formats do not mix."""
@@ -64,10 +64,10 @@ class Track:
         robot = sil.robot
         before_t = self.t_s[-1] if self.t_s else sighting.t_s
         before = self.driving_s[-1] if self.driving_s else 0.0
-        moves = abs(robot.v) > _MOVING_MM_S or abs(robot.w) > _TURNING_DEG_S
+        moves = abs(robot.drive.v) > _MOVING_MM_S or abs(robot.drive.w) > _TURNING_DEG_S
         self.t_s.append(sighting.t_s)
         self.sightings.append(sighting)
-        self.driven_mm.append(robot.travelled_mm)
+        self.driven_mm.append(robot.chassis.travelled_mm)
         self.driving_s.append(before + (sighting.t_s - before_t if moves else 0.0))
         for reading in sighting.readings:
             if reading.fault == "stuck":

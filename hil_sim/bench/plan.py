@@ -21,10 +21,11 @@ from argus_tools.formats.base import LogError
 from hil_sim.bench.course import LEG_MM, ROOM_MM, Field, Floats, Point, make_course, make_field
 from hil_sim.bench.worlds import GENERATED, OPEN, make_world
 from hil_sim.errors import SimError
-from hil_sim.movers import Person
 from hil_sim.sil import Mission
-from hil_sim.sonar import SonarParams
-from hil_sim.world import World, load_world, world_names
+from hil_sim.sonar.params import SonarParams
+from hil_sim.world.files import load_world, world_names
+from hil_sim.world.model import World
+from hil_sim.world.movers import Person
 
 Rng = np.random.Generator
 

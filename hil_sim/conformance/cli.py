@@ -13,7 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Final, NoReturn
 
-from hil_sim.conformance.checks import CHECKS, GROUPS, Check
+from hil_sim.conformance.check import Check
+from hil_sim.conformance.checks import CHECKS, GROUPS
 from hil_sim.conformance.client import Client, Failed, NotApplicable, Target, parse_target
 from hil_sim.errors import SimError
 

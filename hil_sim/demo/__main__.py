@@ -21,10 +21,12 @@ from hil_sim.demo import picture, report
 from hil_sim.demo.judge import Injected, Task, Verdict, clock_offset_s, judge
 from hil_sim.demo.live import view
 from hil_sim.demo.runner import ENDING, Recording, Run, Setup
+from hil_sim.demo.scene import Drive
 from hil_sim.errors import SimError
-from hil_sim.faults import parse_fault
-from hil_sim.scenario import SEED_MAX, Scenario, load_scenario
-from hil_sim.world import World, load_world
+from hil_sim.faults.grammar import parse_fault
+from hil_sim.scenario.scenario import SEED_MAX, Scenario, load_scenario
+from hil_sim.world.files import load_world
+from hil_sim.world.model import World
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENARIOS = Path(__file__).resolve().parents[1] / "scenarios"
@@ -224,7 +226,7 @@ def _conclude(
 ) -> None:
     path = arguments.out / "demo.png"
     picture.draw(
-        picture.Drive(
+        Drive(
             world=load_world(scenario.world),
             course_mm=scenario.course,
             truth=recording.truth,

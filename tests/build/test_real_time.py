@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 from lateness import emulators_late_ms
 
-from hil_sim.truth import TruthRecord
+from hil_sim.record.truth import TruthRecord
 
 ROOT = Path(__file__).resolve().parents[2]
 
