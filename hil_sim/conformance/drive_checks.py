@@ -96,6 +96,11 @@ def setv(client: Client) -> str:
     return require(percent(speed_of(sip), 120) < 5, f"{speed_of(sip):g} mm/s")
 
 
+def _steps(speeds: list[float], low: float, high: float) -> list[float]:
+    """The changes from one SIP to the next, both within the bounds."""
+    return [b - a for a, b in itertools.pairwise(speeds) if low < min(a, b) and max(a, b) < high]
+
+
 @CHECKS.check("drive", motion=True)
 def seta(client: Client) -> str:
     """SETA +100 -400: the speed grows by 100 mm/s in a second and falls four times as fast."""
@@ -106,8 +111,8 @@ def seta(client: Client) -> str:
     up = [speed_of(sip) for sip in client.sips(24)]
     client.command("VEL", 0)
     down = [speed_of(sip) for sip in client.sips(16)]
-    rises = [b - a for a, b in itertools.pairwise(up) if a > 10 and b < 190]
-    falls = [a - b for a, b in itertools.pairwise(down) if a < 195 and b > 2]
+    rises = _steps(up, 10, 190)
+    falls = [-step for step in _steps(down, 2, 195)]
     if not rises or not falls:
         raise Failed(f"speeds {up[:8]} and {down[:8]}")
     rise, fall = statistics.mean(rises), statistics.mean(falls)

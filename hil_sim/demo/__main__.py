@@ -12,7 +12,8 @@ import re
 import signal
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 from typing import NoReturn
@@ -269,16 +270,29 @@ def _demonstrate(arguments: argparse.Namespace) -> int:
     return 0 if verdict.passed else 1
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run the demonstration; return its exit code."""
-    arguments = parser().parse_args(argv)
-    # Without this a SIGTERM would leave argusd driving. What was ignored (nohup) stays ignored.
+@contextmanager
+def _ending_signals() -> Iterator[None]:
+    """Let a signal that ends this program end the drive first: without this a SIGTERM would leave argusd driving.
+
+    What was ignored (nohup) stays ignored.
+    """
     before = {number: signal.getsignal(number) for number in ENDING}
     for number, handler in before.items():
         if handler is not signal.SIG_IGN:
             signal.signal(number, _ended)
     try:
-        return _demonstrate(arguments)
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the demonstration; return its exit code."""
+    arguments = parser().parse_args(argv)
+    try:
+        with _ending_signals():
+            return _demonstrate(arguments)
     except SimError as error:
         print(f"demo: {error}", file=sys.stderr)
         return error.exit_code
@@ -292,9 +306,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         print(f"demo: {error.filename}: {error.strerror}; name another folder with --out", file=sys.stderr)
         return 2
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 if __name__ == "__main__":

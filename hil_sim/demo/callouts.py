@@ -46,18 +46,11 @@ class Callouts:
         self.taken: list[tuple[float, float, float, float]] = []
 
     def _cost(self, box: tuple[float, float, float, float], anchor: tuple[float, float]) -> float:
+        cost = sum(weight for x, y, weight in self.busy if _overlap(box, (x, y, x, y), 45.0))
+        cost += 500 * sum(_overlap(box, other, 50.0) for other in self.taken)
         x1, y1, x2, y2 = box
-        pad = 45.0
-        cost = sum(
-            weight for x, y, weight in self.busy if x1 - pad < x < x2 + pad and y1 - pad < y < y2 + pad
-        )
-        cost += sum(
-            500
-            for a1, b1, a2, b2 in self.taken
-            if x1 < a2 + 50 and x2 > a1 - 50 and y1 < b2 + 50 and y2 > b1 - 50
-        )
         low_x, low_y, high_x, high_y = self.limits
-        cost += 1000 * (x1 < low_x or y1 < low_y or x2 > high_x or y2 > high_y)
+        cost += 1000 * any((x1 < low_x, y1 < low_y, x2 > high_x, y2 > high_y))
         return cost + math.hypot((x1 + x2) / 2 - anchor[0], (y1 + y2) / 2 - anchor[1]) / 150
 
     def put(self, x: float, y: float, text: str, colour: str, bold_head: bool = True) -> None:
@@ -88,6 +81,15 @@ class Callouts:
             bbox={"boxstyle": "round,pad=0.4", "fc": "white", "ec": colour, "lw": 1.6},
             arrowprops={"arrowstyle": "-", "color": colour, "lw": 1.4, "shrinkB": 7},
         )
+
+
+def _overlap(
+    one: tuple[float, float, float, float], other: tuple[float, float, float, float], pad: float
+) -> bool:
+    """Whether two boxes are nearer than `pad` in both axes."""
+    x1, y1, x2, y2 = one
+    a1, b1, a2, b2 = other
+    return x1 < a2 + pad and x2 > a1 - pad and y1 < b2 + pad and y2 > b1 - pad
 
 
 def _draw_beam(axes: Axes, one: Finding) -> None:

@@ -52,20 +52,11 @@ def _draw_hits(axes: Axes, drive: Drive) -> None:
     good = [(x, y) for _, x, y, fault in hits(drive) if not fault]
     bad = [(x, y) for _, x, y, fault in hits(drive) if fault]
     if good:
-        axes.scatter(
-            [x for x, _ in good], [y for _, y in good], s=5, color=GREEN, alpha=0.35, lw=0, zorder=2.5
-        )
+        xs, ys = zip(*good, strict=True)
+        axes.scatter(xs, ys, s=5, color=GREEN, alpha=0.35, lw=0, zorder=2.5)
     if bad:
-        axes.scatter(
-            [x for x, _ in bad],
-            [y for _, y in bad],
-            s=16,
-            color=PURPLE,
-            marker="x",
-            lw=0.9,
-            alpha=0.75,
-            zorder=2.6,
-        )
+        xs, ys = zip(*bad, strict=True)
+        axes.scatter(xs, ys, s=16, color=PURPLE, marker="x", lw=0.9, alpha=0.75, zorder=2.6)
 
 
 def _draw_path(axes: Axes, drive: Drive) -> None:

@@ -19,33 +19,8 @@ def draw_ring(axes: Axes, drive: Drive) -> None:
     kinds |= {sonar: kind for _, sonar, kind in drive.verdict.false_disables}
     points = body(0, 0, 90)
     axes.add_patch(Polygon(points, facecolor="#eeeeee", edgecolor=INK, lw=1.4))
-    for number, pose in POSE.items():
-        heading = pose["heading_deg"] + 90
-        x, y = place(0, 0, 90, (pose["x_mm"], pose["y_mm"]))
-        bad = kinds.get(number)
-        reach = 430 if number in FRONT else 240
-        colour = RED if bad else (GREEN if number in FRONT else PALE)
-        axes.add_patch(
-            Wedge((x, y), reach, heading - 9, heading + 9, facecolor=colour, alpha=0.75 if bad else 0.4, lw=0)
-        )
-        tx, ty = (
-            x + (reach + 75) * math.cos(math.radians(heading)),
-            y + (reach + 75) * math.sin(math.radians(heading)),
-        )
-        weight = "bold" if bad else "normal"
-        axes.text(
-            tx,
-            ty,
-            str(number),
-            ha="center",
-            va="center",
-            fontsize=10.5,
-            fontweight=weight,
-            color=RED if bad else INK,
-        )
-        if bad:
-            wx, wy = x + 225 * math.cos(math.radians(heading)), y + 225 * math.sin(math.radians(heading))
-            axes.plot(wx, wy, "x", ms=9, mew=2.6, color="white")
+    for number in POSE:
+        _draw_sonar(axes, number, bad=number in kinds)
     axes.text(0, -30, "P3-DX", ha="center", va="center", fontsize=10, color=INK)
     verdicts = (
         ", ".join(f"sonar {number}: {kind}" for number, kind in sorted(kinds.items())) or "no sonar disabled"
@@ -55,6 +30,39 @@ def draw_ring(axes: Axes, drive: Drive) -> None:
     axes.set_ylim(-640, 760)
     axes.set_aspect("equal")
     axes.axis("off")
+
+
+def _draw_sonar(axes: Axes, number: int, *, bad: bool) -> None:
+    """Draw where one sonar looks, and whether it is known to be bad; the forward-facing six are longer."""
+    pose, forward = POSE[number], number in FRONT
+    heading = pose["heading_deg"] + 90
+    c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
+    x, y = place(0, 0, 90, (pose["x_mm"], pose["y_mm"]))
+    reach = 430 if forward else 240
+    colour = GREEN if forward else PALE
+    axes.add_patch(
+        Wedge(
+            (x, y),
+            reach,
+            heading - 9,
+            heading + 9,
+            facecolor=RED if bad else colour,
+            alpha=0.75 if bad else 0.4,
+            lw=0,
+        )
+    )
+    axes.text(
+        x + (reach + 75) * c,
+        y + (reach + 75) * s,
+        str(number),
+        ha="center",
+        va="center",
+        fontsize=10.5,
+        fontweight="bold" if bad else "normal",
+        color=RED if bad else INK,
+    )
+    if bad:
+        axes.plot(x + 225 * c, y + 225 * s, "x", ms=9, mew=2.6, color="white")
 
 
 def _bar(

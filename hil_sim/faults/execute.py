@@ -25,7 +25,23 @@ class _State:
         self.since: float | None = None
         self.part = 1.0 if fault.ramp is None else 0.0
 
-    def grow(self, now_ms: float, travelled_mm: float) -> None:
+    def update(self, now_ms: float, pose: Pose, travelled_mm: float) -> list[FaultChange]:
+        """Begin or end; return the change of each sonar."""
+        if self.ended:
+            return []
+        fault = self.fault
+        if not self.started:
+            assert fault.start is not None
+            self.started = fault.start.met(now_ms, pose, travelled_mm)
+        if self.started and fault.end is not None:
+            self.ended = fault.end.met(now_ms, pose, travelled_mm)
+        self._grow(now_ms, travelled_mm)
+        if self.on == self.told:
+            return []
+        self.told = self.on
+        return [FaultChange(now_ms, fault.kind, self.on, fault.text, sonar=number) for number in fault.sonars]
+
+    def _grow(self, now_ms: float, travelled_mm: float) -> None:
         """Let a fault with a ramp grow, from where it began."""
         ramp = self.fault.ramp
         if ramp is not None and self.on:
@@ -33,9 +49,24 @@ class _State:
             self.since = here if self.since is None else self.since
             self.part = ramp.grown(self.since, here)
 
+    def has(self, number: int) -> bool:
+        """Whether it is on and of this sonar."""
+        return self.on and number in self.fault.sonars
+
+    def hold(self, number: int, measured: int) -> None:
+        """Keep the reading at onset of one that is stuck; also while another fault hides it."""
+        if self.fault.kind == "stuck" and self.has(number):
+            value = self.fault.value
+            self.held.setdefault(number, measured if value is None else value)
+
     @property
     def on(self) -> bool:
         return self.started and not self.ended
+
+    @property
+    def settled(self) -> bool:
+        """It has ended, or is on for good: it does not change any more."""
+        return self.ended or (self.on and self.fault.end is None and self.part >= 1.0)
 
 
 class FaultSet:
@@ -47,17 +78,15 @@ class FaultSet:
         self._states = [_State(fault) for fault in self.faults if isinstance(fault, SonarFault)]
         self._hits = [fault for fault in self.faults if isinstance(fault, BumperHit)]
         self._pressed = [False] * len(self._hits)
-        self._afflicted = {number for state in self._states for number in state.fault.sonars}
         self._waiting = list(self._states)
-        self._slowest = {
-            number: max(state.fault.n for state in self._states if number in state.fault.sonars)
-            for number in {
-                n for state in self._states if state.fault.kind == "slow" for n in state.fault.sonars
-            }
-        }
-        self._echoes: dict[int, deque[int]] = {
-            n: deque(maxlen=count + 1) for n, count in self._slowest.items()
-        }
+        self._afflicted: set[int] = set()
+        slowest: dict[int, int] = {}
+        for state in self._states:
+            fault = state.fault
+            self._afflicted.update(fault.sonars)
+            for number in fault.sonars if fault.kind == "slow" else ():
+                slowest[number] = max(fault.n, slowest.get(number, 0))
+        self._echoes: dict[int, deque[int]] = {n: deque(maxlen=count + 1) for n, count in slowest.items()}
 
     @property
     def link_faults(self) -> list[LinkFault]:
@@ -70,28 +99,9 @@ class FaultSet:
         if not self._waiting and not self._hits:
             return changes
         for state in self._waiting:
-            if state.ended:
-                continue
-            fault = state.fault
-            if not state.started:
-                assert fault.start is not None
-                state.started = fault.start.met(now_ms, pose, travelled_mm)
-            if state.started and fault.end is not None:
-                state.ended = fault.end.met(now_ms, pose, travelled_mm)
-            state.grow(now_ms, travelled_mm)
-            if state.on != state.told:
-                state.told = state.on
-                changes += [
-                    FaultChange(now_ms, fault.kind, state.on, fault.text, sonar=number)
-                    for number in fault.sonars
-                ]
+            changes += state.update(now_ms, pose, travelled_mm)
         if changes:
-            # What has ended, or is on for good, does not change any more.
-            self._waiting = [
-                s
-                for s in self._waiting
-                if not s.ended and (not s.on or s.fault.end is not None or s.part < 1.0)
-            ]
+            self._waiting = [state for state in self._waiting if not state.settled]
         for k, hit in enumerate(self._hits):
             pressed = hit.start_ms <= now_ms < hit.end_ms
             if pressed != self._pressed[k]:
@@ -102,7 +112,7 @@ class FaultSet:
     def active(self, number: int) -> SonarFault | None:
         """Return the fault that has sonar 0 to 15 now: of several the one written last."""
         for state in reversed(self._states):
-            if state.on and number in state.fault.sonars:
+            if state.has(number):
                 return state.fault
         return None
 
@@ -120,12 +130,9 @@ class FaultSet:
         if echoes is not None:
             echoes.append(true_measured_mm)
         for state in self._states:
-            # Also while another fault hides it: the reading at onset is what counts.
-            if state.fault.kind == "stuck" and state.on and number in state.fault.sonars:
-                value = state.fault.value
-                state.held.setdefault(number, true_measured_mm if value is None else value)
+            state.hold(number, true_measured_mm)
         for state in reversed(self._states):
-            if state.on and number in state.fault.sonars:
+            if state.has(number):
                 return self._report(state, number, true_measured_mm, remeasure), state.fault.kind
         return true_measured_mm, None
 

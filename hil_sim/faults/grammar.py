@@ -92,19 +92,21 @@ def parse_fault(text: str) -> Fault:
     kind = match["kind"] if match else ""
     if match is None or kind not in _PARAMETERS:
         raise SimError(f"fault '{text}': expected KIND:TARGET@FROM with KIND one of {', '.join(_PARAMETERS)}")
-    target, rest = match["target"], match["rest"]
-    if kind.startswith("link-") and target and "=" in target and match["when"] is None:
-        target, rest = None, f":{target}{rest}"
-    values = _parameters(text, kind, rest)
     if kind.startswith("link-"):
-        if target:
-            raise SimError(f"fault '{text}': a link fault has no target; write {kind}@FROM-TO")
-        return _link_fault(text, kind, match["when"], values)
+        return _link_fault(text, kind, match)
+    target = match["target"]
+    values = _parameters(text, kind, match["rest"])
     if not target:
         raise SimError(f"fault '{text}': which one? write {kind}:3 for number 3")
     if kind == "bumper":
         return _bumper(text, target, match["when"])
-    start, end = _bounds(text, match["when"])
+    return _sonar_fault(text, kind, target, match["when"], values)
+
+
+def _sonar_fault(
+    text: str, kind: str, target: str, when: str | None, values: Mapping[str, float | str | Ramp]
+) -> SonarFault:
+    start, end = _bounds(text, when)
     numbers = {name: value for name, value in values.items() if not isinstance(value, str)}
     if kind == "wrong" and not values.keys() - {"ramp"}:
         raise SimError(f"fault '{text}': wrong in what way? add :scale=0.5, :offset=-200 or :angle=20")
@@ -209,9 +211,13 @@ def _bumper(text: str, target: str, when: str | None) -> BumperHit:
     return BumperHit(text.strip(), int(target), start, start + 500 if end is None else end)
 
 
-def _link_fault(
-    text: str, kind: str, when: str | None, values: Mapping[str, float | str | Ramp]
-) -> LinkFault:
+def _link_fault(text: str, kind: str, match: re.Match[str]) -> LinkFault:
+    target, when, rest = match["target"], match["when"], match["rest"]
+    if target and "=" in target and when is None:
+        target, rest = None, f":{target}{rest}"
+    values = _parameters(text, kind, rest)
+    if target:
+        raise SimError(f"fault '{text}': a link fault has no target; write {kind}@FROM-TO")
     start, end = _times(text, when)
     if kind == "link-delay" and "ms" not in values:
         raise SimError(f"fault '{text}': how long? add :ms=250")

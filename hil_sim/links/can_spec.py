@@ -64,26 +64,28 @@ def _number(word: str, text: str) -> int:
     return value
 
 
+def _option(word: str) -> tuple[str, Any]:
+    """Return the field that an option sets, and to what."""
+    key, _, value = word.partition("=")
+    if word == "fd":
+        return "fd", True
+    if word == "pad=none":
+        return "pad", None
+    if key in _LIMIT:
+        return f"{key}_id" if key in ("tx", "rx") else key, _number(key, value)
+    if key != "stack":
+        raise SimError(f"'{word}' is no option; write {_FORM}")
+    if value not in STACKS:
+        raise SimError(f"stack={value}: there are {', '.join(STACKS)}")
+    return "stack", value
+
+
 def parse_spec(text: str) -> CanSpec:
     """Read IFACE[,robot=K][,tx=ID][,rx=ID][,pad=BYTE|none][,stmin=MS][,bs=N][,fd][,stack=auto|kernel|user]."""
     interface, *words = text.split(",")
     if not re.fullmatch(r"[^\s/:]{1,15}", interface):
         raise SimError(f"'{interface}' cannot be the name of an interface; write {_FORM}")
-    given: dict[str, Any] = {}
-    for word in words:
-        key, _, value = word.partition("=")
-        if word == "fd":
-            given["fd"] = True
-        elif word == "pad=none":
-            given["pad"] = None
-        elif key == "stack" and value in STACKS:
-            given["stack"] = value
-        elif key in _LIMIT:
-            given[f"{key}_id" if key in ("tx", "rx") else key] = _number(key, value)
-        elif key == "stack":
-            raise SimError(f"stack={value}: there are {', '.join(STACKS)}")
-        else:
-            raise SimError(f"'{word}' is no option; write {_FORM}")
+    given: dict[str, Any] = dict(_option(word) for word in words)
     robot = given.get("robot", 0)
     spec = CanSpec(interface, **{"tx_id": TO_HOST_ID + robot, "rx_id": TO_ROBOT_ID + robot} | given)
     if spec.tx_id == spec.rx_id:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import contextlib
 import select
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Final
 
 from hil_sim.faults.link import LinkFaults
@@ -80,20 +80,23 @@ class Loop:
                 self._to_server(data, now)
         server.advance(now)
         self._follow_baud()
-        for packet in server.outgoing():
-            if faults is None:
-                self._send(packet, now)
-            else:
-                faults.push(packet, now, "to_client")
-        if faults is not None:
-            for packet in faults.pop(now, "to_client"):
-                self._send(packet, now)
+        self._answer(now)
         link.transmit(now)
         if server.take_hang_up():
             link.hang_up()
         rest_ms = self._rest_ms(now)
         self._due_ms = now + rest_ms
         return rest_ms
+
+    def _answer(self, now: float) -> None:
+        """Send what the server says, as far as the faults let it through."""
+        packets: Iterable[bytes] = self.server.outgoing()
+        if self.faults is not None:
+            for packet in packets:
+                self.faults.push(packet, now, "to_client")
+            packets = self.faults.pop(now, "to_client")
+        for packet in packets:
+            self._send(packet, now)
 
     def resumed(self) -> None:
         """Tell that this process was suspended on purpose (SIGCONT says so): the next turn is not late."""

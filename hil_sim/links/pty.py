@@ -106,27 +106,35 @@ class PtyLink(Link):
         keeps the settings reachable, is let go for a moment. A client's exclusive mode would lock us out (and
         everyone, after the client's death): it is lifted and put back.
         """
-        exclusive = False
-        if self._keeper >= 0:
-            flag = fcntl.ioctl(self._keeper, _TIOCGEXCL, b"\0\0\0\0")
-            exclusive = struct.unpack("i", flag)[0] != 0
-            if exclusive:
-                fcntl.ioctl(self._keeper, termios.TIOCNXCL)
-            os.close(self._keeper)
-            self._keeper = -1
+        exclusive = self._let_go()
         hung_up = any(event & select.POLLHUP for _, event in self._poll.poll(0))
         with contextlib.suppress(OSError):
             self._keeper = os.open(self._path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         if exclusive and not hung_up and self._keeper >= 0:
             fcntl.ioctl(self._keeper, termios.TIOCEXCL)
         if hung_up and self._present:
-            self._drain_master(now_ms)
-        if hung_up and self._present and self._keeper >= 0:
-            # What nobody will read must not greet the next client; a UART forgets it too.
-            termios.tcflush(self._keeper, termios.TCIFLUSH)
-            self._make_raw()
+            self._forget(now_ms)
         self._present = not hung_up
         self._probe_ms = now_ms + (100.0 if self._present else 20.0)
+
+    def _forget(self, now_ms: float) -> None:
+        """The client has gone: what nobody will read must not greet the next one; a UART forgets it too."""
+        self._drain_master(now_ms)
+        if self._keeper >= 0:
+            termios.tcflush(self._keeper, termios.TCIFLUSH)
+            self._make_raw()
+
+    def _let_go(self) -> bool:
+        """Close our own hold of the client's side; tell whether a client had it in exclusive mode, which is lifted."""
+        if self._keeper < 0:
+            return False
+        flag = fcntl.ioctl(self._keeper, _TIOCGEXCL, b"\0\0\0\0")
+        exclusive = bool(struct.unpack("i", flag)[0] != 0)
+        if exclusive:
+            fcntl.ioctl(self._keeper, termios.TIOCNXCL)
+        os.close(self._keeper)
+        self._keeper = -1
+        return exclusive
 
     def _client_baud(self) -> int:
         try:

@@ -120,25 +120,11 @@ class Decoder:
     def _scan(self, data: bytes, *, final: bool) -> Iterator[Record]:
         held = self._held + data
         at = 0
-        size = len(held)
-        new, unpack = tuple.__new__, _HEAD.unpack_from
-        while at < size:
-            # Written out, as most of most files is whole records.
-            while size - at >= _SHORTEST:
-                sync, kind, length, time_us = unpack(held, at)
-                end = at + length + _SHORTEST
-                if sync != SYNC or length > PAYLOAD_MAX or end > size:
-                    break
-                payload_end = end - _CRC_BYTES
-                crc = zlib.crc32(held[at + 2 : payload_end])
-                if held[payload_end:end] != crc.to_bytes(_CRC_BYTES, "little"):
-                    break
-                if self._skipped:
-                    self._close_gap(self._place + at)
-                payload = held[at + _HEAD.size : payload_end]
-                yield new(Record, (kind, time_us, payload, self._place + at))
+        while at < len(held):
+            for end, record in self._whole(held, at):
                 at = end
-            if at >= size:
+                yield record
+            if at >= len(held):
                 break
             end = _end_of(held, at)
             if end > len(held) and not final:
@@ -155,6 +141,25 @@ class Decoder:
                 at = after
         self._held = held[at:]
         self._place += at
+
+    def _whole(self, held: bytes, at: int) -> Iterator[tuple[int, Record]]:
+        """Yield whole records one after the other, each with where it ends: most of most files, so written out."""
+        size, new, unpack = len(held), tuple.__new__, _HEAD.unpack_from
+        while size - at >= _SHORTEST:
+            sync, kind, length, time_us = unpack(held, at)
+            end = at + length + _SHORTEST
+            if sync != SYNC or length > PAYLOAD_MAX or end > size:
+                return
+            payload_end = end - _CRC_BYTES
+            crc = zlib.crc32(held[at + 2 : payload_end])
+            if held[payload_end:end] != crc.to_bytes(_CRC_BYTES, "little"):
+                return
+            if self._skipped:
+                self._close_gap(self._place + at)
+            payload = held[at + _HEAD.size : payload_end]
+            record = new(Record, (kind, time_us, payload, self._place + at))
+            at = end
+            yield at, record
 
 
 def _end_of(held: bytes, at: int) -> int:
@@ -181,21 +186,22 @@ class Timeline:
 
     def at(self, record: Record) -> float | None:
         """Return when this record was made; None as long as no clock was read."""
-        kind = record.kind
-        if kind in _LINK_KINDS:
-            pass
-        elif kind == Kind.HEADER:
-            self._mono_us = self._anchor_us = None
-        elif kind == Kind.CLOCK and len(record.payload) == _CLOCK.size:
-            mono_us, wall_us = _CLOCK.unpack(record.payload)
-            if self._anchor_us is None or (self._mono_us or 0) - mono_us > _RESTART_US:
-                self._anchor_us = wall_us - mono_us
-            self._mono_us = mono_us
+        if record.kind not in _LINK_KINDS:
+            self._take_clock(record)
         if self._mono_us is None or self._anchor_us is None:
             return None
         ahead = (record.time_us - self._mono_us) & 0xFFFFFFFF
         self._mono_us += ahead - (1 << 32 if ahead >= 1 << 31 else 0)
         return (self._anchor_us + self._mono_us) / 1e6
+
+    def _take_clock(self, record: Record) -> None:
+        if record.kind == Kind.HEADER:
+            self._mono_us = self._anchor_us = None
+        elif record.kind == Kind.CLOCK and len(record.payload) == _CLOCK.size:
+            mono_us, wall_us = _CLOCK.unpack(record.payload)
+            if self._anchor_us is None or (self._mono_us or 0) - mono_us > _RESTART_US:
+                self._anchor_us = wall_us - mono_us
+            self._mono_us = mono_us
 
 
 class Recorder:

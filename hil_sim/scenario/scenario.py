@@ -66,31 +66,38 @@ class Scenario:
 
     def text(self) -> str:
         """Return the scenario as YAML; values that are the default are left out, world and seed never."""
-        plain: dict[str, Any] = {"about": self.about} if self.about else {}
-        plain |= {"world": self.world, "seed": self.seed}
-        if self.start is not None:
-            plain["start"] = [self.start.x_mm, self.start.y_mm, self.start.heading_deg]
-        if self.course:
-            plain["course"] = [list(point) for point in self.course]
-        if self.goal is not None:
-            plain["goal"] = list(self.goal)
-        sonar = {
-            f.name: getattr(self.sonar, f.name)
-            for f in dataclasses.fields(SonarParams)
-            if getattr(self.sonar, f.name) != f.default
-        }
-        if sonar:
-            plain["sonar"] = sonar
-        if self.faults:
-            plain["faults"] = [fault.text for fault in self.faults]
-        if self.bumpers != BUMPERS[-1]:
-            plain["bumpers"] = self.bumpers
-        for name, movers in (("people", self.people), ("doors", self.doors)):
-            if movers:
-                plain[name] = [movers_plain(mover) for mover in movers]
+        changed = _changed(self)
+        plain = {name: self._plain(name) for name in _ORDER if name in changed or name in _ALWAYS}
         return yaml.safe_dump(plain, sort_keys=False, default_flow_style=None, width=100)
 
+    def _plain(self, name: str) -> Any:
+        """A value as YAML has it."""
+        value = getattr(self, name)
+        if name == "sonar":
+            return _changed(value)
+        if name == "faults":
+            return [fault.text for fault in value]
+        if name in ("people", "doors"):
+            return [movers_plain(mover) for mover in value]
+        if name == "course":
+            return [list(point) for point in value]
+        return list(value) if isinstance(value, tuple) else value
 
+
+def _changed(values: Any) -> dict[str, Any]:
+    """The fields of a dataclass that are not as by default."""
+    found = {}
+    for f in dataclasses.fields(values):
+        default = f.default_factory() if f.default_factory is not dataclasses.MISSING else f.default
+        if getattr(values, f.name) != default:
+            found[f.name] = getattr(values, f.name)
+    return found
+
+
+_ALWAYS: Final = ("world", "seed")
+_ORDER: Final = (
+    "about", "world", "seed", "start", "course", "goal", "sonar", "faults", "bumpers", "people", "doors",
+)  # fmt: skip
 _KEYS: Final = tuple(f.name for f in dataclasses.fields(Scenario))
 _SONAR_LIMITS: Final = {
     "noise_mm": (0, 1000),

@@ -178,6 +178,15 @@ class ArcosServer:
 
     def _handshake(self, command: Command) -> None:
         number = command.number
+        if number in (_SYNC0, _SYNC1, _SYNC2):
+            self._sync(number)
+        elif number == COMMAND["RESET"]:
+            self._end_session("reset")
+        elif number in (COMMAND["SIM_SET_POSE"], COMMAND["SIM_RESET"]):
+            self._handlers[number](command)
+
+    def _sync(self, number: int) -> None:
+        """Answer the next SYNC or the same again; any other begins anew."""
         if number == _SYNC0:
             self._synced, self.state = _SYNC0, State.WAIT
             self._send(SyncEcho(number).data)
@@ -189,12 +198,8 @@ class ArcosServer:
         elif number == _SYNC2 and self._synced in (_SYNC1, _SYNC2):
             self._synced, self.state = _SYNC2, State.SYNCED
             self._send(SyncReply(self.name, b"Pioneer", self.subclass).data)
-        elif number in (_SYNC1, _SYNC2):
+        else:
             self._synced, self.state = -1, State.WAIT
-        elif number == COMMAND["RESET"]:
-            self._end_session("reset")
-        elif number in (COMMAND["SIM_SET_POSE"], COMMAND["SIM_RESET"]):
-            self._handlers[number](command)
 
     def _open(self) -> None:
         self.state = State.CONNECTED

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 from hil_sim.arcos import TIMING
@@ -26,6 +27,11 @@ class Line:
             return
         self._free_ms = max(self._free_ms, now_ms) + len(data) * self.byte_ms
         self.held.append((self._free_ms, data))
+
+    def pop(self, now_ms: float) -> Iterator[bytes]:
+        """Yield the packets that are through, oldest first."""
+        while self.held and self.held[0][0] <= now_ms:
+            yield self.held.popleft()[1]
 
     @property
     def due_ms(self) -> float:

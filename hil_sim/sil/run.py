@@ -152,9 +152,8 @@ class Sil:
     def _turn(self, now_ms: float) -> None:
         """Do what is due at this moment, in the order in which argus-sim's loop does."""
         self.now_ms = now_ms
-        line = self._to_robot
-        while line.held and line.held[0][0] <= now_ms:
-            self._to_server(line.held.popleft()[1], now_ms)
+        for data in self._to_robot.pop(now_ms):
+            self._to_server(data, now_ms)
         if self._disturb is not None:
             self._disturb.update(now_ms)
             for data in self._disturb.pop(now_ms, "to_robot"):
@@ -163,9 +162,8 @@ class Sil:
         if (server_ms is not None and server_ms <= now_ms) or self.server.unframer.pending:
             self.server.advance(now_ms)
         self._collect(now_ms)
-        line = self._to_core
-        while line.held and line.held[0][0] <= now_ms:
-            self._to_manager(line.held.popleft()[1])
+        for data in self._to_core.pop(now_ms):
+            self._to_manager(data)
         if self._core_due_ms <= now_ms:
             self._serve_core(int(now_ms))
 

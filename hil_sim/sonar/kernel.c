@@ -326,6 +326,25 @@ static double hear_fan(const model_t *const model, const scene_t *const scene, c
     return nearest;
 }
 
+static double corner_loss_db(const model_t *const model, const patch_t *const patch, const int32_t k,
+                             const double dx, const double dy) {
+    const double *const inverse = &patch->inverse[4 * k];
+    // The transducer looks into the corner when the way back is a positive mix of the corner's arms.
+    const bool into = inverse[0] * dx + inverse[1] * dy < 0 && inverse[2] * dx + inverse[3] * dy < 0;
+    return into && patch->retro[k] > 0 ? model->corner_db : model->tip_db;
+}
+
+// The first of these segments that is met on the way to a corner; what lies beyond `nearest` is not told.
+static hit_t cast_at_corner(const scene_t *const scene, const double dx, const double dy, const double far,
+                            const double nearest, const double touch) {
+    const hit_t hit = cast(scene->nearer, scene->nearer_count, dx, dy, touch);
+    if (hit.range < nearest || far >= nearest) {
+        return hit;
+    }
+    // It slipped past the corner: what it meets behind is among those left out.
+    return cast(scene->near, scene->count, dx, dy, touch);
+}
+
 // Where sound comes back from when sent to a corner within the cone; INFINITY when it is not seen, not heard,
 // or no nearer than `nearest`.
 static double hear_corner(const model_t *const model, const scene_t *const scene, const view_t view,
@@ -338,14 +357,7 @@ static double hear_corner(const model_t *const model, const scene_t *const scene
     }
     dx /= far;
     dy /= far;
-    hit_t hit = cast(scene->nearer, scene->nearer_count, dx, dy, model->touch);
-    if (hit.range >= nearest && far >= nearest) {
-        return INFINITY;
-    }
-    if (hit.range >= nearest) {
-        // It slipped past the corner: what it meets behind is among those left out.
-        hit = cast(scene->near, scene->count, dx, dy, model->touch);
-    }
+    const hit_t hit = cast_at_corner(scene, dx, dy, far, nearest, model->touch);
     const bool reached = hit.range >= far - 1.0;
     const double range = reached ? far : hit.range;
     if (range >= nearest) {
@@ -353,10 +365,7 @@ static double hear_corner(const model_t *const model, const scene_t *const scene
     }
     double loss = surface_db(scene, hit, dx, dy);
     if (reached) {
-        const double *const inverse = &patch->inverse[4 * k];
-        // The transducer looks into the corner when the way back is a positive mix of the corner's arms.
-        const bool into = inverse[0] * dx + inverse[1] * dy < 0 && inverse[2] * dx + inverse[3] * dy < 0;
-        loss = fmin(loss, into && patch->retro[k] > 0 ? model->corner_db : model->tip_db);
+        loss = fmin(loss, corner_loss_db(model, patch, k, dx, dy));
     }
     const double part = along / far;
     const double off = acos(part < 1.0 ? part : 1.0) * deg_per_rad * 2 / model->cone_deg;

@@ -62,23 +62,27 @@ class _MapReader:
         section = what = ""
         for self.number, raw in enumerate(lines[1:], 2):
             line = raw.strip()
-            word = line.split()[0] if line else ""
             if match := _SECTION.fullmatch(line):
                 section = match["what"]
                 what = (match["sensor"] or "") + ("NumLines" if section == "LINES" else "NumPoints")
-            elif section and word:
+            elif section and line:
                 self.counted[what] = self.counted.get(what, 0) + 1
                 self.take_entry(section, line)
-            elif match := _COUNT.match(line):
-                self.take_count(match["what"], match["count"].strip())
-            elif word == "Cairn:":
-                self.take_cairn(line[len("Cairn:") :].strip())
-            elif word and ":" not in line:
-                self.fail(f"'{line[:40]}' is neither a header line nor LINES or DATA; correct or remove it")
+            elif line:
+                self.take_header(line)
             self.check_size()
         self.check_counts()
         self.add_points()
         return self.finish()
+
+    def take_header(self, line: str) -> None:
+        """Use a line before the first section, if it matters here."""
+        if match := _COUNT.match(line):
+            self.take_count(match["what"], match["count"].strip())
+        elif line.split()[0] == "Cairn:":
+            self.take_cairn(line[len("Cairn:") :].strip())
+        elif ":" not in line:
+            self.fail(f"'{line[:40]}' is neither a header line nor LINES or DATA; correct or remove it")
 
     def take_count(self, what: str, count: str) -> None:
         """Note how many entries the header announces."""

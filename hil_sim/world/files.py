@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from hil_sim.document import Item, read_document
 from hil_sim.errors import SimError
@@ -50,20 +51,14 @@ def load_yaml(path: str | Path) -> World:
     keys = top.mapping(_TOP)
     build = Builder()
     rough = keys["roughness"].number(0, 1) if "roughness" in keys else 1.0
-    for wall in keys["walls"].items() if "walls" in keys else []:
-        _add_wall(build, wall, rough)
-    for box in keys["boxes"].items() if "boxes" in keys else []:
-        _add_box(build, box, rough)
-    for post in keys["posts"].items() if "posts" in keys else []:
-        _add_post(build, post, rough)
-    start = _pose(keys["start"]) if "start" in keys else Pose(0.0, 0.0, 0.0)
-    goals = {name: _pose(item) for name, item in keys["goals"].named().items()} if "goals" in keys else {}
-    about = keys["about"].text() if "about" in keys else ""
+    for name, add in (("walls", _add_wall), ("boxes", _add_box), ("posts", _add_post)):
+        for item in keys[name].items() if name in keys else []:
+            add(build, item, rough)
     if len(build.rows) > MAX_SEGMENTS:
         top.fail(f"more than {MAX_SEGMENTS} solids; leave some out")
-    people = read_people(keys["people"]) if "people" in keys else ()
-    doors = read_doors(keys["doors"]) if "doors" in keys else ()
-    world = build.world(Path(path).stem, start=start, goals=goals, about=about, movers=(*people, *doors))
+    values = {name: read(keys[name]) for name, read in _READERS.items() if name in keys}
+    movers = (*values.pop("people", ()), *values.pop("doors", ()))
+    world = build.world(Path(path).stem, movers=movers, **values)
     _check_start(world, keys.get("start", top))
     return world
 
@@ -125,3 +120,16 @@ def _add_post(build: Builder, item: Item, rough: float) -> None:
     angles = [2 * math.pi * (k + 0.5) / POST_SIDES for k in range(POST_SIDES)]
     points = [(cx + radius * math.cos(a), cy + radius * math.sin(a)) for a in angles]
     build.line(points, _rough(keys, rough), closed=True)
+
+
+def _goals(item: Item) -> dict[str, Pose]:
+    return {name: _pose(goal) for name, goal in item.named().items()}
+
+
+_READERS: Final[dict[str, Callable[[Item], Any]]] = {
+    "start": _pose,
+    "goals": _goals,
+    "about": Item.text,
+    "people": read_people,
+    "doors": read_doors,
+}
