@@ -17,7 +17,7 @@ from devtool.real_time import core_part, run_in_real_time, worker_count, worker_
 from devtool.stages import StageFailed
 from lateness import emulators_late_ms
 
-from hil_sim.truth import TruthRecord
+from hil_sim.record.truth import TruthRecord
 
 ROOT = Path(__file__).resolve().parents[2]
 

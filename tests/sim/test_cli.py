@@ -20,11 +20,15 @@ import pytest
 from doubles import Port, cmd, connect, make_robot, sips
 
 from hil_sim.arcos import ConfigPac, Packet, Sip, Unframer, decode
-from hil_sim.cli import _lateness, build_robot, main
-from hil_sim.links import Loop, TcpLink
-from hil_sim.scenario import Scenario
-from hil_sim.server import ArcosServer
-from hil_sim.world import load_world
+from hil_sim.cli.main import main
+from hil_sim.cli.serve import _lateness
+from hil_sim.links.loop import Loop
+from hil_sim.links.tcp import TcpLink
+from hil_sim.robot.report import sip
+from hil_sim.scenario.build import build_robot
+from hil_sim.scenario.scenario import Scenario
+from hil_sim.server.server import ArcosServer
+from hil_sim.world.files import load_world
 
 ROOT = Path(__file__).parents[2]
 WORLD = "demo"
@@ -204,7 +208,7 @@ def test_a_start_inside_a_solid_is_refused(capsys: pytest.CaptureFixture[str]) -
     x1, y1, x2, y2 = load_world(WORLD).segments[0]
     middle = f"--start={(x1 + x2) / 2:.0f},{(y1 + y2) / 2:.0f},0"
     assert code_of(["--world", WORLD, middle, "--duration", "0.1"]) == 2
-    assert "--start" in capsys.readouterr().err
+    assert "choose another start" in capsys.readouterr().err
 
 
 def test_the_same_seed_gives_the_same_noise(tmp_path: Path) -> None:
@@ -215,7 +219,7 @@ def test_the_same_seed_gives_the_same_noise(tmp_path: Path) -> None:
         got: list[tuple[int, int]] = []
         for _ in range(20):
             robot.advance(100)
-            got += robot.sip().sonars
+            got += sip(robot).sonars
         return got
 
     assert readings(5) == readings(5)

@@ -21,10 +21,15 @@ from doubles import Port, cmd, connect, make_robot, sips
 
 from hil_sim.arcos import Packet, Unframer, decode
 from hil_sim.errors import LinkError, SimError
-from hil_sim.faults import LinkFault
-from hil_sim.link_faults import LinkFaults
-from hil_sim.links import IDLE_MS, LATE_MS, Link, Loop, PtyLink, SerialLink, TcpLink, Wire
-from hil_sim.server import ArcosServer, State
+from hil_sim.faults.kinds import LinkFault
+from hil_sim.faults.link import LinkFaults
+from hil_sim.links.base import Link
+from hil_sim.links.loop import IDLE_MS, LATE_MS, Loop
+from hil_sim.links.pty import PtyLink
+from hil_sim.links.tcp import TcpLink
+from hil_sim.links.uart import SerialLink
+from hil_sim.links.wire import Wire
+from hil_sim.server.server import ArcosServer, State
 
 
 @contextlib.contextmanager

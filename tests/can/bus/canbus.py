@@ -27,8 +27,8 @@ from cantools.database import Database
 from harness import ARGUSD, PATIENCE_S, PYTHON, ROOT, HilFailure, wait_for
 
 from hil_sim.arcos import Command, frame
-from hil_sim.can_spec import PADDING, TO_HOST_ID, TO_ROBOT_ID
-from hil_sim.links_can import CanLink
+from hil_sim.links.can import CanLink
+from hil_sim.links.can_spec import PADDING, TO_HOST_ID, TO_ROBOT_ID
 
 _FRAME: Final = struct.Struct("=IB3x8s")
 _FD_FRAME: Final = struct.Struct("=IBB2x64s")

@@ -13,7 +13,7 @@ import pytest
 from canbus import Drive, Frame, load_dbc, stuffed_bits, worst_bits
 from harness import PYTHON, ROOT, run_python
 
-from hil_sim.can_spec import TO_HOST_ID, TO_ROBOT_ID
+from hil_sim.links.can_spec import TO_HOST_ID, TO_ROBOT_ID
 
 BIT_RATE = 500_000
 TELEMETRY_PART, ALL_PART = 0.02, 0.06

@@ -17,7 +17,7 @@ from argus_tools.core import LIBRARY_VARIABLE
 
 from hil_sim.bench import cli
 from hil_sim.bench.store import META, RESULTS
-from hil_sim.cli import main
+from hil_sim.cli.main import main
 
 TINY = ("--worlds", "lab", "--kinds", "off,garbage", "--profiles", "argus", "--jobs", "1", "--no-plots")
 
