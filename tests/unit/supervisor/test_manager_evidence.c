@@ -48,12 +48,12 @@ static argus_health_t health(int sonar) {
 
 static const char *told(const char *what, int sonar) {
     int used = snprintf(text, sizeof text, "%s, sonar %d, t %u ms, mode %s:", what, sonar,
-                        (unsigned)robot.t_ms, argus_mode_name(robot.argus.mode));
+                        (unsigned)robot.t_ms, argus_name(ARGUS_NAME_MODE, robot.argus.mode));
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if (health(i) > ARGUS_HEALTHY && used < (int)sizeof text) {
-            used +=
-                snprintf(text + used, sizeof text - (size_t)used, " %d %s %s", i,
-                         argus_health_name(health(i)), argus_kind_name(robot.argus.knowledge.sonar[i].kind));
+            used += snprintf(text + used, sizeof text - (size_t)used, " %d %s %s", i,
+                             argus_name(ARGUS_NAME_HEALTH, health(i)),
+                             argus_name(ARGUS_NAME_KIND, robot.argus.knowledge.sonar[i].kind));
         }
     }
     return text;
@@ -151,7 +151,7 @@ void test_intermittent_is_found(void) {
     finds(ROBOT_DROPOUT, 40, ARGUS_KIND_INTERMITTENT, is_found);
 }
 
-void test_healthy_in_a_room_for_ten_minutes(void) {
+void test_healthy_in_a_room_for_ten_minutes(void) { // soak
     start_in_a_room();
     drive_until(never, 0, 600000);
     TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_SONAR_DISABLED, 0), told("room", -1));
@@ -298,7 +298,7 @@ void test_nobody_comes_back_by_standing_still(void) {
 }
 
 // One that is still broken never becomes healthy, though it be on probation at times.
-void test_a_broken_sonar_does_not_come_back(void) {
+void test_a_broken_sonar_does_not_come_back(void) { // soak
     static const struct {
         robot_fault_t fault;
         int value;
@@ -342,7 +342,7 @@ static int agreements_wanted(void) {
 }
 
 // Probation grows with each relapse, but not beyond what can be counted.
-void test_a_relapse_doubles_the_agreements_wanted(void) {
+void test_a_relapse_doubles_the_agreements_wanted(void) { // soak
     start_in_a_room();
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
     robot_run(&robot, 2000);
@@ -548,7 +548,7 @@ static void unsee(int sonar) {
 }
 
 // S1: ... but one that looks ahead is, whatever makes it a suspect.
-void test_hemmed_in_it_stays_with_a_suspect_ahead(void) {
+void test_hemmed_in_it_stays_with_a_suspect_ahead(void) { // soak
     static void (*const make[])(int) = {accuse, lose, jump, unsee};
     for (int how = 0; how < 4; how++) {
         for (int sonar = 1; sonar <= 6; sonar++) {
@@ -663,12 +663,12 @@ void test_no_look_after_the_operators_stop(void) {
 void test_retest_takes_sonars_that_exist_and_a_session(void) {
     const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
     robot_init(&robot, &config, 0);
-    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 3, 0));
+    TEST_ASSERT_FALSE(argus_operator(&robot.argus, 0, ARGUS_OP_RETEST, 3));
     furnish();
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
-    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 16, robot.t_ms));
-    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 255, robot.t_ms));
-    TEST_ASSERT_TRUE(argus_retest(&robot.argus, 3, robot.t_ms));
+    TEST_ASSERT_FALSE(argus_operator(&robot.argus, robot.t_ms, ARGUS_OP_RETEST, 16));
+    TEST_ASSERT_FALSE(argus_operator(&robot.argus, robot.t_ms, ARGUS_OP_RETEST, 255));
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.t_ms, ARGUS_OP_RETEST, 3));
     robot_drain(&robot);
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 60000));
     finish();
@@ -879,7 +879,7 @@ void test_caution_is_how_much_evidence_a_verdict_takes(void) {
 void test_caution_outlives_a_retest(void) {
     start_with(400, 20);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
-    TEST_ASSERT_TRUE(argus_retest(&robot.argus, 3, robot.start_ms + robot.t_ms));
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_RETEST, 3));
     robot_run(&robot, 1000);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         TEST_ASSERT_EQUAL(400, robot.argus.evidence.of[i].caution);
@@ -893,7 +893,7 @@ static int looks_in_two_minutes(int32_t look_every_s) {
     return robot_count_events(&robot, ARGUS_EV_LOOK, 0);
 }
 
-void test_it_looks_at_all_as_often_as_it_is_told(void) {
+void test_it_looks_at_all_as_often_as_it_is_told(void) { // soak
     const int often = looks_in_two_minutes(2);
     const int usual = looks_in_two_minutes(20);
     TEST_ASSERT_EQUAL(1, looks_in_two_minutes(3600)); // before the first metre
