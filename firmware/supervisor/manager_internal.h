@@ -53,6 +53,10 @@ void argus_foretell(argus_t *self); // each SIP: a sonar that gets worse
 // Across missions.
 void argus_meet_robot(argus_t *self); // a session is open: is it the robot of the record?
 
+// Another robot than before is behind the wire: nothing that was known of the one before holds for it, no
+// motion is commanded until an operator makes the manager active again, and the course waits for GO.
+void argus_meet_stranger(argus_t *self);
+
 // What an operator asks of one sonar (RETEST and what follows it); false, and no event, when it cannot be
 // done.
 bool argus_serve(argus_t *self, argus_op_t op, int32_t sonar);
