@@ -63,6 +63,7 @@ def _meta(scenario: Scenario, world: World, start: Pose) -> dict[str, Any]:
         "course": [list(point) for point in scenario.course],
         "goal": list(scenario.goal) if scenario.goal else None,
         "faults": [str(fault) for fault in scenario.faults],
+        "robot": scenario.robot,
         "bumpers": scenario.bumpers,
         "scenario": scenario.text(),
     }
@@ -82,7 +83,7 @@ def _loop(
     kind = MobileSimServer if is_mobilesim(arguments) else ArcosServer
     server = kind(
         robot,
-        name=robot_name(arguments, index),
+        name=robot_name(arguments, scenario.robot, index),
         subclass=arguments.subclass,
         flash_baud=baud,
         sip_cycle_ms=arguments.sip_cycle,

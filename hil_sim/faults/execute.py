@@ -110,7 +110,7 @@ class FaultSet:
         return changes
 
     def active(self, number: int) -> SonarFault | None:
-        """Return the fault that has sonar 0 to 15 now: of several the one written last."""
+        """Return the fault that a sonar has now: of several the one written last."""
         for state in reversed(self._states):
             if state.has(number):
                 return state.fault

@@ -6,8 +6,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Final
 
-from hil_sim.sonar.params import SONAR_POSES
-from hil_sim.tables import load
 from hil_sim.world.model import Pose
 
 SONAR_KINDS: Final = {
@@ -26,8 +24,6 @@ LINK_KINDS: Final = {
     "link-cut": "lets nothing through",
 }
 DIRECTIONS: Final = ("both", "to_client", "to_robot")
-BUMPER_SEGMENTS: Final[int] = load("robots/p3dx-sh")["body"]["front_bumpers"]
-SONARS: Final = len(SONAR_POSES)
 
 
 @dataclass(frozen=True)

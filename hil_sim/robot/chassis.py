@@ -10,15 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from hil_sim.arcos import MOTION
 from hil_sim.robot.interfaces import Body, Contact
-from hil_sim.tables import load
+from hil_sim.tables.robot import RobotTable
 from hil_sim.world.model import Pose
 from hil_sim.world.step import STEP_MS
 
 DEG: Final = math.pi / 180
-_TRACK_MM: Final[float] = MOTION["track_mm"]
-_SWING_MM: Final[float] = load("robots/p3dx-sh")["body"]["swing_radius_mm"]
 _TOUCH_RELEASE_MM: Final = 5.0
 _BISECTIONS: Final = 7
 _HISTORY: Final = 64
@@ -44,6 +41,7 @@ class Chassis:
         self,
         body: Body,
         start: Pose,
+        table: RobotTable,
         error: OdometryError,
         seed: int,
         *,
@@ -53,6 +51,8 @@ class Chassis:
     ) -> None:
         """`moving`: solids move by themselves and tell when; `dynamic`: some may, of which nothing is known."""
         self.body = body
+        self._swing_mm = table.body.swing_mm
+        self._track_mm = table.motion["track_mm"]
         self._moving = moving
         # While the nearest solid cannot have arrived nobody needs to look; of `dynamic` alone nothing is known.
         self._knows_free = moving or not dynamic
@@ -117,7 +117,7 @@ class Chassis:
         """Move the body as far as the solids let it; return the part of the step that was possible."""
         true_ds = ds * self.true_distance
         true_dth = dth * self.true_turn + ds * self._drift_deg_mm
-        self.free_mm -= abs(true_ds) + abs(true_dth) * DEG * _SWING_MM
+        self.free_mm -= abs(true_ds) + abs(true_dth) * DEG * self._swing_mm
         part = 1.0
         if self.free_mm <= 0:
             part = self._free_part(true_ds, true_dth, now_ms)
@@ -132,7 +132,7 @@ class Chassis:
     def _count(self, ds: float, dth: float) -> None:
         """Let the encoders see a step."""
         self.odo_x, self.odo_y, self.odo_th = _moved(self.odo_x, self.odo_y, self.odo_th, ds, dth)
-        half = dth * DEG * _TRACK_MM / 2
+        half = dth * DEG * self._track_mm / 2
         self.left_mm += ds - half
         self.right_mm += ds + half
 

@@ -15,6 +15,7 @@ from hil_sim.errors import SimError
 from hil_sim.faults.grammar import parse_fault
 from hil_sim.faults.kinds import Fault, LinkFault
 from hil_sim.sonar.params import SonarParams
+from hil_sim.tables.robot import DEFAULT_ROBOT, RobotTable, robot_table
 from hil_sim.world.model import Pose
 from hil_sim.world.movers import Door, Mover, Person, read_doors, read_people
 from hil_sim.world.movers import plain as movers_plain
@@ -28,7 +29,8 @@ BUMPERS: Final = (0, 5)
 class Scenario:
     """One run of the emulator.
 
-    start: None takes the world's. course: waypoints in world axes, mm; the goal is the last.
+    robot: its subclass, one of those with a table. start: None takes the world's. course: waypoints in world axes, mm;
+    the goal is the last. bumpers: front segments; None is as the robot has.
 
     faults: sonar faults, bumper hits and link faults, in the order written. people, doors: besides the world's own.
     """
@@ -40,7 +42,8 @@ class Scenario:
     goal: tuple[float, float] | None = None
     sonar: SonarParams = field(default_factory=SonarParams)
     faults: tuple[Fault, ...] = ()
-    bumpers: int = 5
+    bumpers: int | None = None
+    robot: str = DEFAULT_ROBOT
     about: str = ""
     people: tuple[Person, ...] = ()
     doors: tuple[Door, ...] = ()
@@ -96,7 +99,7 @@ def _changed(values: Any) -> dict[str, Any]:
 
 _ALWAYS: Final = ("world", "seed")
 _ORDER: Final = (
-    "about", "world", "seed", "start", "course", "goal", "sonar", "faults", "bumpers", "people", "doors",
+    "about", "world", "robot", "seed", "start", "course", "goal", "sonar", "faults", "bumpers", "people", "doors",
 )  # fmt: skip
 _KEYS: Final = tuple(f.name for f in dataclasses.fields(Scenario))
 _SONAR_LIMITS: Final = {
@@ -119,21 +122,26 @@ def load_scenario(path: str | Path) -> Scenario:
     A name without a suffix is one of the scenarios that come with the emulator. A world is looked for beside the
     scenario file first.
     """
-    file = Path(path)
-    if file.suffix == "" and not _exists(file):
-        file = SCENARIO_DIR / f"{path}.yaml"
+    file = _file_of(path)
     top = read_document(file)
     keys = top.mapping(_KEYS)
     if "course" in keys and "goal" in keys:
         keys["goal"].fail("give a course or a goal, not both; a course ends at its last point")
     values: dict[str, Any] = {}
+    robot = keys["robot"].convert(robot_table) if "robot" in keys else robot_table()
     for name, item in keys.items():
-        values[name] = _READERS[name](item)
+        values[name] = _faults(item, robot) if name == "faults" else _READERS[name](item)
     if "world" in values:
         beside = file.parent / values["world"]
         if beside.suffix in (".yaml", ".yml", ".map") and _exists(beside):
             values["world"] = str(beside)
     return Scenario(**values)
+
+
+def _file_of(path: str | Path) -> Path:
+    """A file, or one of our scenarios by its name."""
+    file = Path(path)
+    return SCENARIO_DIR / f"{path}.yaml" if file.suffix == "" and not _exists(file) else file
 
 
 def _exists(path: Path) -> bool:
@@ -174,6 +182,10 @@ def _sonar(item: Item) -> SonarParams:
     return SonarParams(**values)
 
 
+def _faults(item: Item, robot: RobotTable) -> tuple[Fault, ...]:
+    return tuple(fault.convert(lambda text: parse_fault(text, robot)) for fault in item.items())
+
+
 def _bumpers(item: Item) -> int:
     if item.value not in BUMPERS or isinstance(item.value, bool):
         item.fail(f"bumpers is {' or '.join(str(n) for n in BUMPERS)}, not '{item.value}'")
@@ -188,7 +200,7 @@ _READERS: Final = {
     "course": _course,
     "goal": _point,
     "sonar": _sonar,
-    "faults": lambda item: tuple(fault.convert(parse_fault) for fault in item.items()),
+    "robot": Item.text,
     "bumpers": _bumpers,
     "people": read_people,
     "doors": read_doors,

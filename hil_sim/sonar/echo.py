@@ -9,8 +9,9 @@ from typing import Final
 import numpy as np
 
 from hil_sim.sonar import kernel
-from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, SONAR_POSES, SonarParams, transducer_pose
+from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, SonarParams, transducer_pose
 from hil_sim.sonar.patch import MovingEchoes, Patch, find_corners
+from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.model import Floats, Pose, World
 
 _RAY_STEP_DEG: Final = 1.5
@@ -24,8 +25,17 @@ class EchoModel:
     Computed in C when the library is there, else here with numpy; to the same mm.
     """
 
-    def __init__(self, world: World, params: SonarParams, *, in_c: bool = True) -> None:
+    def __init__(
+        self,
+        world: World,
+        params: SonarParams,
+        robot: RobotTable | None = None,
+        *,
+        in_c: bool = True,
+    ) -> None:
+        """`robot`: whose sonars they are; None is the one that is emulated by default."""
         self.params = params
+        self._mounts = (robot if robot is not None else robot_table()).mounts
         self._segments = world.segments
         self._roughness = world.roughness
         self._corners = find_corners(world.segments)
@@ -47,7 +57,7 @@ class EchoModel:
             "cell_mm": _CELL_MM,
             "touch": _TOUCH,
         }
-        mount = np.array([(p.x_mm, p.y_mm, p.heading_deg) for p in SONAR_POSES])
+        mount = np.array([(p.x_mm, p.y_mm, p.heading_deg) for p in self._mounts])
         # From the axis outwards: what is heard there mostly settles what the rays further out could add.
         order = np.argsort(self._ray_db, kind="stable")
         rays = {f"ray_{name}": getattr(self, f"_ray_{name}")[order] for name in ("cos", "sin", "db")}
@@ -56,13 +66,13 @@ class EchoModel:
     def ping_mm(
         self, number: int, pose: Pose, angle_deg: float = 0.0, moving: MovingEchoes | None = None
     ) -> int:
-        """Return what sonar 0 to 15 of a robot at `pose` reads, its axis turned by `angle_deg`."""
+        """Return what a sonar of a robot at `pose` reads, its axis turned by `angle_deg`."""
         if self._kernel is not None:
             patch = moving.patch(True).for_c if moving is not None else None
             value = self._kernel.ping_mm(number, pose.x_mm, pose.y_mm, pose.heading_deg, angle_deg, patch)
             if value >= 0:
                 return value
-        at = transducer_pose(number, pose)
+        at = transducer_pose(self._mounts[number], pose)
         return self.range_mm(at.x_mm, at.y_mm, at.heading_deg + angle_deg, moving)
 
     def range_mm(

@@ -10,22 +10,17 @@ from typing import Any, Final, Protocol, SupportsIndex
 
 import numpy as np
 
+from hil_sim.arcos import TIMING
 from hil_sim.sonar.echo import EchoModel
-from hil_sim.sonar.params import (
-    ARRAYS,
-    CYCLE_MS,
-    FITTED_ARRAYS,
-    MIN_MM,
-    NO_ECHO_MM,
-    PER_ARRAY,
-    Reading,
-    SonarParams,
-)
+from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, Reading, SonarParams
 from hil_sim.sonar.patch import MovingEchoes
+from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.model import Pose, World
 from hil_sim.world.moving import MovingSolids
 
-MAX_ORDER: Final = 16
+PER_ARRAY: Final = TIMING["TRANSDUCERS_PER_ARRAY"]
+ARRAYS: Final = TIMING["ARRAYS_MAX"]
+MAX_ORDER: Final = TIMING["POLLING_MAX_PER_ARRAY"]
 SOUND_MM_MS: Final = 343.0
 _RESUME_MS: Final = 1000.0
 
@@ -78,9 +73,9 @@ def _completion_ms(reading: Reading) -> float:
 
 
 class SonarRing:
-    """The arrays of a P3-DX: every `cycle_ms` each enabled array fires its next transducer.
+    """The arrays of a robot: every `cycle_ms` each enabled array fires its next transducer.
 
-    enabled: one switch for each array; [0] front, [1] rear, the others are not fitted.
+    enabled: one switch for each array that ARCOS knows; switches of arrays that are not fitted do nothing.
     """
 
     def __init__(
@@ -90,22 +85,27 @@ class SonarRing:
         faults: SonarFaults | None = None,
         rng: np.random.Generator | None = None,
         *,
+        robot: RobotTable | None = None,
         echoes: EchoModel | None = None,
         moving: MovingSolids | None = None,
     ) -> None:
-        """`echoes`: a model of the same world and parameters, to share what it has worked out.
+        """`robot`: whose sonars they are; None is the one that is emulated by default.
+
+        `echoes`: a model of the same world, parameters and robot, to share what it has worked out.
 
         `moving`: what else is in the way; whoever owns it lets it move.
         """
+        self._table = robot if robot is not None else robot_table()
+        self._fitted = len(self._table.orders)
         self.params = params or SonarParams()
-        self.echoes = echoes if echoes is not None else EchoModel(world, self.params)
+        self.echoes = echoes if echoes is not None else EchoModel(world, self.params, self._table)
         self.faults = faults
-        self.cycle_ms = CYCLE_MS
+        self.cycle_ms = self._table.cycle_ms
         rng = rng if rng is not None else np.random.default_rng(0)
         self._normal: Callable[[], float] = rng.standard_normal
         self._random: Callable[[], float] = rng.random
-        self._enabled = _Switches([True] * FITTED_ARRAYS + [False] * (ARRAYS - FITTED_ARRAYS))
-        self._arrays = [self._default(array) for array in range(FITTED_ARRAYS)]
+        self._enabled = _Switches([True] * self._fitted + [False] * (ARRAYS - self._fitted))
+        self._arrays = [self._default(array) for array in range(self._fitted)]
         self._quiet = False
         self._last_ms: float | None = None
         self._pending: list[Reading] = []
@@ -125,13 +125,12 @@ class SonarRing:
     def enabled(self, values: Sequence[bool]) -> None:
         self._enabled[:] = list(values)
 
-    @staticmethod
-    def _default(array: int) -> _Array:
-        return _Array(list(range(PER_ARRAY * array, PER_ARRAY * (array + 1))))
+    def _default(self, array: int) -> _Array:
+        return _Array(list(self._table.orders[array]))
 
     def reset(self) -> None:
         """Return to the power-up firing order and cycle; the switches stay."""
-        self.cycle_ms = CYCLE_MS
+        self.cycle_ms = self._table.cycle_ms
         self._quiet = False
         for array, state in enumerate(self._arrays):
             state.order = self._default(array).order
@@ -146,6 +145,7 @@ class SonarRing:
         """
         named = [number - 1 for number in numbers if 1 <= number <= ARRAYS * PER_ARRAY]
         self._quiet = not named
+        named = [number for number in named if number < self._table.sonars]
         for array, state in enumerate(self._arrays):
             order = [number for number in named if number // PER_ARRAY == array][:MAX_ORDER]
             if order:
@@ -159,7 +159,7 @@ class SonarRing:
         """
         last_ms, self._last_ms = self._last_ms, now_ms
         if last_ms is not None and now_ms - last_ms > _RESUME_MS:
-            self._restart(range(FITTED_ARRAYS))
+            self._restart(range(self._fitted))
         if self._enabled.touched:
             self._take_switches()
         if now_ms >= self._fire_ms:
@@ -173,7 +173,7 @@ class SonarRing:
 
     def _take_switches(self) -> None:
         """Note which arrays fire from now on."""
-        self._restart(array for array in self._enabled.cut if array < FITTED_ARRAYS)
+        self._restart(array for array in self._enabled.cut if array < self._fitted)
         self._enabled.cut.clear()
         self._enabled.touched = False
         self._live = [state for array, state in enumerate(self._arrays) if self._enabled[array]]
@@ -202,7 +202,7 @@ class SonarRing:
         This is what emulators that know no schedule do; the firing order and its clock are left alone.
         """
         readings = []
-        for array in range(FITTED_ARRAYS):
+        for array in range(self._fitted):
             if self._enabled[array]:
                 for number in self._default(array).order:
                     readings += self._fire_one(number, now_ms, pose)
@@ -254,7 +254,7 @@ class SonarRing:
                 self._ready_ms = ready_ms
 
     def true_range(self, number: int, pose: Pose) -> int:
-        """Return what sonar 0 to 15 reads at a pose without noise, crosstalk and faults."""
+        """Return what a sonar reads at a pose without noise, crosstalk and faults."""
         moment = self._moving.moment if self._moving is not None else 0
         known = self._known.get(number)
         if known is not None and known[1] == moment and (known[0] is pose or known[0] == pose):
