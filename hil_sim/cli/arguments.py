@@ -12,11 +12,13 @@ from hil_sim.arcos import BAUD
 from hil_sim.errors import SimError
 from hil_sim.links.can_spec import CanSpec, parse_spec
 from hil_sim.record.recording import MAX_BYTES
-from hil_sim.scenario.scenario import SEED_MAX, Scenario
+from hil_sim.scenario.scenario import SEED_MAX, Scenario, sonar_value
+from hil_sim.server.quirks import QUIRKS
 from hil_sim.server.server import SIP_CYCLE_MS
 from hil_sim.tables import robots
 from hil_sim.tables.robot import DEFAULT_ROBOT
 from hil_sim.world.model import Pose
+from hil_sim.world.physics import LIMITS, SETS, Physics, parse_physics
 
 DEFAULT_TCP_HOST = "127.0.0.1"
 ROBOTS_MAX = 64
@@ -30,6 +32,7 @@ examples:
   argus-sim --serial /dev/ttyUSB0@9600        on a real UART
   argus-sim --can can0                        on a CAN bus, each ARCOS packet an ISO-TP message (docs/can.md)
   argus-sim --robot amigo-sh --world office   an AmigoBot with its eight sonars
+  argus-sim --physics rough-day               sonars and wheels as on a bad day (docs/worlds.md)
   argus-sim --robots 3 --tcp 8101             three robots, on ports 8101 to 8103
   argus-sim --tcp 8101 --quirks mobilesim     with the answers of the vendor's emulator
   argus-sim bench diagnosis --help            how well faults are diagnosed, over many missions without a link
@@ -137,6 +140,21 @@ def _sip_cycle(text: str) -> int:
     return int(text)
 
 
+def _physics(text: str) -> Physics:
+    try:
+        return parse_physics(text)
+    except SimError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def _sonar(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    try:
+        return sonar_value(name, value)
+    except SimError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
 def _megabytes(text: str) -> int:
     try:
         megabytes = int(text)
@@ -179,12 +197,26 @@ def parser() -> argparse.ArgumentParser:
     )
     place.add_argument(
         "--quirks",
-        choices=("robot", "mobilesim"),
+        choices=tuple(QUIRKS),
         default="robot",
         help="whose habits: the robot's (default) or the vendor emulator's",
     )
     place.add_argument(
         "--sip-cycle", type=_sip_cycle, default=SIP_CYCLE_MS, metavar="MS", help="between SIPs (default 100)"
+    )
+    place.add_argument(
+        "--physics",
+        type=_physics,
+        metavar="SET|NAME=VALUE,...",
+        help=f"{', '.join(SETS)}, or values of {', '.join(LIMITS)} (docs/worlds.md)",
+    )
+    place.add_argument(
+        "--sonar",
+        type=_sonar,
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="a parameter of the sonar model, as in a scenario (docs/worlds.md); repeatable",
     )
     place.add_argument("--aux-loopback", action="store_true", help="a loop-back plug on each AUX port")
     faults = result.add_argument_group("faults")

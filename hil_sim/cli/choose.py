@@ -32,11 +32,14 @@ def scenario_of(arguments: argparse.Namespace) -> Scenario:
             ("start", arguments.start),
             ("bumpers", arguments.bumpers),
             ("robot", arguments.robot),
+            ("physics", arguments.physics),
         )
         if value is not None
     }
+    sonar = dict(arguments.sonar)
     if arguments.crosstalk is not None:
-        changes["sonar"] = dataclasses.replace(scenario.sonar, crosstalk=arguments.crosstalk)
+        sonar["crosstalk"] = arguments.crosstalk
+    changes["sonar"] = dataclasses.replace(scenario.sonar, **sonar)
     scenario = dataclasses.replace(scenario, **changes)
     # Those of the file again, since another robot may not have the sonars that they name.
     table = robot_table(scenario.robot)

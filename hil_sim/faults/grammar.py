@@ -24,6 +24,8 @@ from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM
 from hil_sim.tables.robot import RobotTable, robot_table
 
 _BUMPER_SEGMENTS: Final = 5
+WIRE_MAX: Final = 65535
+"""The largest range that a SIP can carry."""
 _SLOW_MAX: Final = 100
 _FAR: Final = 1e7
 """Seconds or mm: no run gets there, so a bound beyond it is a slip."""
@@ -34,10 +36,10 @@ _PARAMETERS: Final = {
     "off": (),
     "silent": (),
     "stuck": ("value",),
-    "wrong": ("scale", "offset", "angle", "ramp"),
-    "garbage": (),
+    "wrong": ("scale", "offset", "angle", "ramp", "low", "high"),
+    "garbage": ("low", "high"),
     "slow": ("n",),
-    "intermittent": ("p", "beyond", "ramp"),
+    "intermittent": ("p", "beyond", "ramp", "value"),
     "bumper": (),
     "link-drop": ("p", "dir"),
     "link-corrupt": ("p", "dir"),
@@ -45,16 +47,18 @@ _PARAMETERS: Final = {
     "link-cut": ("dir",),
 }
 _LIMITS: Final = {
-    "value": (MIN_MM, NO_ECHO_MM),
+    "value": (0, WIRE_MAX),
+    "low": (0, WIRE_MAX),
+    "high": (0, WIRE_MAX),
     "scale": (0.0, 50.0),
-    "offset": (-NO_ECHO_MM, NO_ECHO_MM),
+    "offset": (-WIRE_MAX, WIRE_MAX),
     "angle": (-180.0, 180.0),
     "n": (1, _SLOW_MAX),
     "p": (0.0, 1.0),
     "beyond": (MIN_MM, NO_ECHO_MM),
     "ms": (0.0, 60_000.0),
 }
-_WHOLE: Final = ("value", "n", "beyond")
+_WHOLE: Final = ("value", "n", "beyond", "low", "high")
 
 
 def fault_help() -> str:
@@ -72,6 +76,7 @@ def fault_help() -> str:
             "",
             *kinds,
             "",
+            "Readings are clipped to 100..5000 unless low= and high= (0 to 65535) say otherwise.",
             "wrong and intermittent grow from nothing (beyond: from 5000) within ramp=60s or ramp=20000 mm of way.",
             "",
             "examples: off:3@12s   wrong:6@x>2000:scale=0.5   stuck:2@10s-20s:value=400   silent:rear@travelled>1500",
@@ -110,6 +115,9 @@ def _sonar_fault(
     numbers = {name: value for name, value in values.items() if not isinstance(value, str)}
     if kind == "wrong" and not values.keys() - {"ramp"}:
         raise SimError(f"fault '{text}': wrong in what way? add :scale=0.5, :offset=-200 or :angle=20")
+    low, high = values.get("low", MIN_MM), values.get("high", NO_ECHO_MM)
+    if not isinstance(low, int) or not isinstance(high, int) or low > high:
+        raise SimError(f"fault '{text}': low is {low} and high is {high}; exchange them")
     return SonarFault(text.strip(), kind, sonars, start, end, **numbers)  # type: ignore[arg-type]
 
 

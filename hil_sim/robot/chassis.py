@@ -13,6 +13,7 @@ from typing import Final
 from hil_sim.robot.interfaces import Body, Contact
 from hil_sim.tables.robot import RobotTable
 from hil_sim.world.model import Pose
+from hil_sim.world.physics import PLAIN, Physics
 from hil_sim.world.step import STEP_MS
 
 DEG: Final = math.pi / 180
@@ -20,6 +21,10 @@ _TOUCH_RELEASE_MM: Final = 5.0
 _BISECTIONS: Final = 7
 _HISTORY: Final = 64
 _LOOK_MS: Final = 50
+SLIP_STRETCH_MM: Final = 100.0
+"""For each stretch it is drawn whether the wheels slip on it."""
+SLIP_GRIP: Final = 0.5
+"""Part of the way of slipping wheels that the body makes."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +34,23 @@ class OdometryError:
     distance: float = 0.002
     turn: float = 0.002
     drift_deg_per_m: float = 0.1
+
+
+class Slip:
+    """Stretches of the way on which the wheels slip and the body is left behind."""
+
+    def __init__(self, share: float, rng: random.Random) -> None:
+        self._share, self._rng = share, rng
+        self._left_mm = 0.0
+        self._slips = False
+
+    def grip(self, ds: float) -> float:
+        """Return the part of a step of the wheels that the body makes."""
+        if self._left_mm <= 0:
+            self._left_mm = SLIP_STRETCH_MM
+            self._slips = self._rng.random() < self._share
+        self._left_mm -= abs(ds)
+        return SLIP_GRIP if self._slips else 1.0
 
 
 class Chassis:
@@ -45,6 +67,7 @@ class Chassis:
         error: OdometryError,
         seed: int,
         *,
+        physics: Physics = PLAIN,
         moving: bool,
         dynamic: bool,
         on_hit: Callable[[bool], None],
@@ -61,6 +84,11 @@ class Chassis:
         self.true_distance = 1 + rng.gauss(0, error.distance)
         self.true_turn = 1 + rng.gauss(0, error.turn)
         self._drift_deg_mm = rng.gauss(0, error.drift_deg_per_m) / 1000
+        # The size is as asked for, the sign is drawn.
+        wheels = random.Random(f"wheels {seed}")
+        self.true_distance *= 1 + wheels.choice((-1, 1)) * physics.odometry_scale
+        self._drift_deg_mm += wheels.choice((-1, 1)) * physics.odometry_drift_deg_m / 1000
+        self._slip = Slip(physics.slip, wheels) if physics.slip else None
         self._pose = start
         self._pose_th = start.heading_deg
         self.x = start.x_mm
@@ -117,6 +145,8 @@ class Chassis:
         """Move the body as far as the solids let it; return the part of the step that was possible."""
         true_ds = ds * self.true_distance
         true_dth = dth * self.true_turn + ds * self._drift_deg_mm
+        if self._slip is not None:
+            true_ds *= self._slip.grip(ds)
         self.free_mm -= abs(true_ds) + abs(true_dth) * DEG * self._swing_mm
         part = 1.0
         if self.free_mm <= 0:

@@ -19,6 +19,7 @@ from hil_sim.robot.interfaces import Body, Faults, Moving, Ring, SonarReading
 from hil_sim.robot.stall import StallMonitor
 from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.model import Pose
+from hil_sim.world.physics import PLAIN, Physics
 from hil_sim.world.step import STEP_MS, STEP_S
 
 _STATE_EVERY_MS: Final = 100
@@ -46,6 +47,7 @@ class Robot:
         rear_bumpers: int | None = None,
         seed: int = 0,
         odometry_error: OdometryError | None = None,
+        physics: Physics = PLAIN,
         dynamic: bool = False,
         moving: Moving | None = None,
         log: Log | None = None,
@@ -71,6 +73,7 @@ class Robot:
             table,
             odometry_error or OdometryError(),
             seed,
+            physics=physics,
             moving=moving is not None,
             dynamic=dynamic,
             on_hit=self._hit,

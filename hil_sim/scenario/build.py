@@ -17,11 +17,13 @@ from hil_sim.scenario.scenario import Scenario
 from hil_sim.sonar.echo import EchoModel
 from hil_sim.sonar.params import SonarParams
 from hil_sim.sonar.ring import SonarRing
+from hil_sim.sonar.rough import Roughness
 from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.body import BodyModel
 from hil_sim.world.model import Pose, World
 from hil_sim.world.movers import Mover
 from hil_sim.world.moving import moving_solids
+from hil_sim.world.physics import Physics
 
 R = TypeVar("R", bound=Robot)
 
@@ -34,6 +36,7 @@ def assemble(
     table: RobotTable,
     seed: int,
     sonar: SonarParams,
+    physics: Physics | None = None,
     faults: Sequence[Fault] = (),
     movers: Sequence[Mover] = (),
     bumpers: int | None = None,
@@ -44,8 +47,8 @@ def assemble(
 ) -> R:
     """Return a robot, made by `make`, at `start`; SimError when a solid is there.
 
-    movers: besides the world's own. echoes: a model of the same world, parameters and robot, to share what it has
-    worked out.
+    physics: None is as the world says. movers: besides the world's own. echoes: a model of the same world, parameters
+    and robot, to share what it has worked out.
     """
     moving = moving_solids((*world.movers, *movers), table.body)
     body = BodyModel(world, moving, table.body)
@@ -54,6 +57,10 @@ def assemble(
         raise SimError(f"start {place}: a solid of world {world.name} is there; choose another start")
     # Streams of their own, so that one more draw in one place changes nothing elsewhere.
     injected = make_faults(faults, np.random.default_rng([seed, 1])) if faults else None
+    physics = world.physics if physics is None else physics
+    rough = None
+    if physics.on_sonars:
+        rough = Roughness(physics, table.sonars, np.random.default_rng([seed, 3]))
     ring = SonarRing(
         world,
         sonar,
@@ -62,12 +69,14 @@ def assemble(
         robot=table,
         echoes=echoes,
         moving=moving,
+        rough=rough,
     )
     return make(
         body,
         ring,
         start,
         table=table,
+        physics=physics,
         faults=injected,
         bumpers=bumpers,
         rear_bumpers=rear_bumpers,
@@ -88,6 +97,7 @@ def build_robot(
         table=robot_table(scenario.robot),
         seed=scenario.seed,
         sonar=scenario.sonar,
+        physics=scenario.physics,
         faults=scenario.faults,
         movers=scenario.movers,
         bumpers=scenario.bumpers,

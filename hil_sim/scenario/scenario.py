@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -19,6 +20,7 @@ from hil_sim.tables.robot import DEFAULT_ROBOT, RobotTable, robot_table
 from hil_sim.world.model import Pose
 from hil_sim.world.movers import Door, Mover, Person, read_doors, read_people
 from hil_sim.world.movers import plain as movers_plain
+from hil_sim.world.physics import Physics, read_physics
 
 SCENARIO_DIR: Final = Path(__file__).resolve().parents[1] / "scenarios"
 SEED_MAX: Final = 2**63 - 1
@@ -30,7 +32,7 @@ class Scenario:
     """One run of the emulator.
 
     robot: its subclass, one of those with a table. start: None takes the world's. course: waypoints in world axes, mm;
-    the goal is the last. bumpers: front segments; None is as the robot has.
+    the goal is the last. physics: None is as the world says. bumpers: front segments; None is as the robot has.
 
     faults: sonar faults, bumper hits and link faults, in the order written. people, doors: besides the world's own.
     """
@@ -44,6 +46,7 @@ class Scenario:
     faults: tuple[Fault, ...] = ()
     bumpers: int | None = None
     robot: str = DEFAULT_ROBOT
+    physics: Physics | None = None
     about: str = ""
     people: tuple[Person, ...] = ()
     doors: tuple[Door, ...] = ()
@@ -78,6 +81,8 @@ class Scenario:
         value = getattr(self, name)
         if name == "sonar":
             return _changed(value)
+        if name == "physics":
+            return value.text
         if name == "faults":
             return [fault.text for fault in value]
         if name in ("people", "doors"):
@@ -99,7 +104,8 @@ def _changed(values: Any) -> dict[str, Any]:
 
 _ALWAYS: Final = ("world", "seed")
 _ORDER: Final = (
-    "about", "world", "robot", "seed", "start", "course", "goal", "sonar", "faults", "bumpers", "people", "doors",
+    "about", "world", "robot", "seed", "start", "course", "goal", "physics", "sonar", "faults", "bumpers",
+    "people", "doors",
 )  # fmt: skip
 _KEYS: Final = tuple(f.name for f in dataclasses.fields(Scenario))
 _SONAR_LIMITS: Final = {
@@ -113,6 +119,8 @@ _SONAR_LIMITS: Final = {
     "mirror_db_deg2": (0, 10),
     "corner_db": (0, 100),
     "tip_db": (0, 100),
+    "side_lobe_db": (0, 100),
+    "side_lobe_deg": (2, 170),
 }
 
 
@@ -201,7 +209,22 @@ _READERS: Final = {
     "goal": _point,
     "sonar": _sonar,
     "robot": Item.text,
+    "physics": read_physics,
     "bumpers": _bumpers,
     "people": read_people,
     "doors": read_doors,
 }
+
+
+def sonar_value(name: str, text: str) -> tuple[str, float]:
+    """Return a parameter of the sonar model with its value; SimError when there is none or it is out of range."""
+    if name not in _SONAR_LIMITS:
+        raise SimError(f"sonar: '{name}' is no parameter of the model; there are {', '.join(_SONAR_LIMITS)}")
+    low, high = _SONAR_LIMITS[name]
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not low <= value <= high:
+        raise SimError(f"sonar: {name} must be a number from {low:g} to {high:g}, not '{text}'")
+    return name, value

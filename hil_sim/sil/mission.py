@@ -52,7 +52,7 @@ class Mission:
     sonar: parameters of the sonar model by name. movers: people and doors besides the world's own.
     limit_s: robot time at which the run is given up.
     record: the persistent record of an earlier mission. stop_at_goal: False goes on to the limit.
-    robot: its subclass, as for `argus-sim --robot`.
+    robot, physics, quirks: as for the options of argus-sim; no physics is as the world says.
     """
 
     world: str
@@ -68,6 +68,8 @@ class Mission:
     baud: int = 9600
     stop_at_goal: bool = True
     robot: str = DEFAULT_ROBOT
+    physics: str = ""
+    quirks: str = "robot"
 
     def __post_init__(self) -> None:
         fix = object.__setattr__

@@ -38,6 +38,7 @@ class SonarParams:
     cone_deg: full width of the beam. edge_db: loss at the edge of the cone, there and back.
     margin_db: loss at which an echo is no longer heard. air_db_m: loss for each metre of range that the receiver's gain
     does not make up. mirror_db_deg2: loss of a smooth surface for each squared degree of incidence.
+    side_lobe_db: loss of what is heard beside the cone, there and back, 0 for deaf; side_lobe_deg: full width of that.
     corner_db, tip_db: loss at an inner corner and at an edge or end, against a square-on wall.
     """
 
@@ -52,6 +53,8 @@ class SonarParams:
     mirror_db_deg2: float = 0.24
     corner_db: float = 3.0
     tip_db: float = 18.0
+    side_lobe_db: float = 0.0
+    side_lobe_deg: float = 80.0
 
 
 class Reading(NamedTuple):
