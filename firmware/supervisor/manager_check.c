@@ -71,10 +71,9 @@ static bool is_home(argus_t *const self) {
 
 static void declare_healthy(argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        argus_sonar_t *const s = &self->knowledge.sonar[i];
+        const argus_sonar_t *const s = &self->knowledge.sonar[i];
         if (s->reported && (s->health == ARGUS_UNKNOWN || s->health == ARGUS_STALE)) {
-            argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
-            argus_say(self, ARGUS_EV_SONAR_HEALTHY, i, s->reading_mm);
+            argus_say_change(self, i, ARGUS_CHANGE_JUDGED, ARGUS_KIND_NONE, s->reading_mm);
         }
     }
 }
@@ -130,20 +129,17 @@ void argus_run_checking(argus_t *const self) {
 
 static void apply_verdict(argus_t *const self) {
     const int sonar = self->verify.sonar;
-    argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     switch (self->verify.result) {
     case ARGUS_RESULT_CONVICTED:
         argus_disable(self, sonar, ARGUS_KIND_WRONG);
         break;
     case ARGUS_RESULT_CLEARED:
         argus_awareness_cleared(&self->awareness, &self->knowledge, sonar, self->verify.difference_mm);
-        argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
-        argus_say(self, ARGUS_EV_SONAR_CLEARED, sonar, self->verify.mean_mm);
+        argus_say_change(self, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, self->verify.mean_mm);
         break;
     case ARGUS_RESULT_DROPPED:
         self->awareness.of[sonar].in_a_row = 0;
-        argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
-        argus_say(self, ARGUS_EV_SUSPICION_DROPPED, sonar, self->verify.difference_mm);
+        argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, self->verify.difference_mm);
         break;
     case ARGUS_RESULT_UNPROVEN:
         self->awareness.verified |= (uint16_t)(1u << sonar);
@@ -218,10 +214,8 @@ static bool check_is_due(const argus_t *const self) {
 // Who may not turn cannot verify: there a suspicion lasts as long as the disparity.
 static void drop_suspicions(argus_t *const self) {
     for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        argus_sonar_t *const s = &self->knowledge.sonar[i];
-        if (s->health == ARGUS_SUSPECT && self->awareness.of[i].in_a_row == 0) {
-            argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
-            argus_say(self, ARGUS_EV_SUSPICION_DROPPED, i, 0);
+        if (self->knowledge.sonar[i].health == ARGUS_SUSPECT && self->awareness.of[i].in_a_row == 0) {
+            argus_say_change(self, i, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, 0);
         }
     }
 }

@@ -36,20 +36,18 @@ static void convict(argus_t *const self, const int sonar, const argus_fault_kind
 
 // A suspect carries the kind that the evidence names so far.
 static void name(argus_t *const self, const int sonar) {
-    argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = argus_evidence_renames(&self->evidence, sonar, s->kind);
     if (kind != ARGUS_KIND_NONE) {
         argus_flag_suspects(self, (uint16_t)(1u << sonar));
     }
     if (s->health == ARGUS_SUSPECT && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
-        s->kind = kind;
         argus_evidence_note_name(&self->evidence, sonar, kind);
-        argus_say(self, ARGUS_EV_SONAR_NAMED, sonar, (int32_t)kind);
+        argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
     }
     const bool held = self->mode == ARGUS_MODE_VERIFYING || (self->evidence.lost >> sonar & 1u) != 0;
     if (s->health == ARGUS_SUSPECT && !argus_evidence_holds(&self->evidence, sonar) && !held) {
-        argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
-        argus_say(self, ARGUS_EV_SUSPICION_DROPPED, sonar, s->reading_mm);
+        argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, s->reading_mm);
         argus_replan(self);
     }
 }
@@ -63,12 +61,13 @@ static void judge_in(argus_t *const self, const int sonar) {
     }
 }
 
-static void restore(argus_t *const self, const int sonar, const argus_health_t health) {
-    argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    const bool healthy = health == ARGUS_HEALTHY;
-    argus_sonar_set_health(s, health, healthy ? ARGUS_KIND_NONE : s->kind, self->now_ms);
+// One that is DISABLED goes on PROBATION, one on PROBATION is healthy.
+static void restore(argus_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const bool healthy = s->health == ARGUS_PROBATION;
     self->evidence.of[sonar].agreed = 0;
-    argus_say(self, healthy ? ARGUS_EV_SONAR_HEALTHY : ARGUS_EV_SONAR_PROBATION, sonar, s->reading_mm);
+    argus_say_change(self, sonar, healthy ? ARGUS_CHANGE_RESTORED : ARGUS_CHANGE_TRIED,
+                     healthy ? ARGUS_KIND_NONE : s->kind, s->reading_mm);
     argus_replan(self);
 }
 
@@ -89,13 +88,12 @@ static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar
 }
 
 static void judge_out(argus_t *const self, const int sonar) {
-    argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = kind_of_out(self, sonar);
     const argus_fault_kind_t named = argus_evidence_relapses(&self->evidence, sonar);
     const bool suspected = argus_evidence_keeps_out(&self->evidence, sonar);
     if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
-        s->kind = kind;
-        argus_say(self, ARGUS_EV_SONAR_KIND, sonar, (int32_t)kind);
+        argus_say_change(self, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
     }
     if (suspected) {
         if (s->health == ARGUS_PROBATION && named != ARGUS_KIND_NONE) {
@@ -106,7 +104,7 @@ static void judge_out(argus_t *const self, const int sonar) {
     const bool long_enough = self->now_ms - s->since_ms >= PROBATION_MS;
     const bool silent = argus_silent_ms(&self->knowledge, sonar) > (uint32_t)self->config.stale_ms;
     if (long_enough && !silent && self->evidence.of[sonar].agreed >= agreements_wanted(s)) {
-        restore(self, sonar, s->health == ARGUS_DISABLED ? ARGUS_PROBATION : ARGUS_HEALTHY);
+        restore(self, sonar);
     }
 }
 
@@ -203,7 +201,7 @@ bool argus_routine_is_due(const argus_t *const self) {
 
 static void acquit(argus_t *const self, const int sonar) {
     argus_hold_t *const hold = &self->hold[sonar];
-    argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     if (self->knowledge.odometer_mm - hold->odometer_mm > HOLD_FORGET_MM) {
         hold->acquittals = 0;
     }
@@ -211,8 +209,7 @@ static void acquit(argus_t *const self, const int sonar) {
     hold->odometer_mm = self->knowledge.odometer_mm;
     argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
     if (s->health == ARGUS_SUSPECT) {
-        argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
-        argus_say(self, ARGUS_EV_SONAR_CLEARED, sonar, s->reading_mm);
+        argus_say_change(self, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, s->reading_mm);
     }
 }
 

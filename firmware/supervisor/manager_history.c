@@ -16,14 +16,13 @@ size_t argus_record_save(const argus_t *const self, uint8_t *const buffer, const
 // mission.
 static void put_on_probation(argus_t *const self, const uint16_t sonars) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        argus_sonar_t *const s = &self->knowledge.sonar[i];
+        const argus_sonar_t *const s = &self->knowledge.sonar[i];
         if ((sonars >> i & 1u) == 0 || argus_is_out(&self->knowledge, i)) {
             continue;
         }
         const argus_fault_kind_t kind = s->kind_before == ARGUS_KIND_NONE ? ARGUS_KIND_WRONG : s->kind_before;
-        argus_sonar_set_health(s, ARGUS_PROBATION, kind, self->now_ms);
         self->recorded |= (uint16_t)(1u << i);
-        argus_say(self, ARGUS_EV_SONAR_PROBATION, i, 0);
+        argus_say_change(self, i, ARGUS_CHANGE_RECORDED, kind, 0);
     }
     argus_replan(self);
 }
@@ -36,9 +35,9 @@ static void refuse(argus_t *const self, const argus_record_fault_t fault) {
 static void take_back(argus_t *const self) {
     argus_record_forget(&self->knowledge, &self->evidence);
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        argus_sonar_t *const s = &self->knowledge.sonar[i];
+        const argus_sonar_t *const s = &self->knowledge.sonar[i];
         if ((self->recorded >> i & 1u) != 0 && s->health == ARGUS_PROBATION) {
-            argus_sonar_set_health(s, ARGUS_UNKNOWN, ARGUS_KIND_NONE, self->now_ms);
+            argus_say_change(self, i, ARGUS_CHANGE_FORGOTTEN, ARGUS_KIND_NONE, 0);
         }
     }
     self->recorded = 0;
@@ -87,16 +86,14 @@ void argus_foretell(argus_t *const self) {
 // One in use becomes a suspect that the next health check looks at; one that is out begins its probation
 // anew, with its relapses forgiven, since nothing but evidence brings it back.
 static void begin_retest(argus_t *const self, const int sonar) {
-    argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const uint16_t bit = (uint16_t)(1u << sonar);
     argus_evidence_forget(&self->evidence, sonar);
     argus_trend_forget(&self->evidence.trend, sonar);
     self->hold[sonar].acquittals = 0;
     self->awareness.verified &= (uint16_t)~(unsigned)bit;
     if (argus_is_out(&self->knowledge, sonar)) {
-        s->relapses = 0;
-        argus_sonar_set_health(s, ARGUS_PROBATION, s->kind, self->now_ms);
-        argus_say(self, ARGUS_EV_SONAR_PROBATION, sonar, s->reading_mm);
+        argus_say_change(self, sonar, ARGUS_CHANGE_RETESTED, s->kind, s->reading_mm);
         self->looked_once = false; // a look at all comes with the check
     } else {
         self->evidence.lost |= bit;

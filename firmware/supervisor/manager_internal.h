@@ -4,10 +4,15 @@
 #ifndef ARGUS_MANAGER_INTERNAL_H
 #define ARGUS_MANAGER_INTERNAL_H
 
+#include "knowledge/health.h"
 #include "supervisor/manager.h"
 
 // Events.
 void argus_say(argus_t *self, argus_event_id_t id, int sonar, int32_t value);
+void argus_say_event(argus_t *self,
+                     argus_event_t event); // its time and failure state are filled in; id 0: nothing
+void argus_say_change(argus_t *self, int sonar, argus_change_t change, argus_fault_kind_t kind,
+                      int32_t value);
 
 // Transitions.
 void argus_enter(argus_t *self, argus_mode_t mode);

@@ -225,13 +225,14 @@ bool argus_turn(argus_t *const self, const int32_t heading_cdeg) {
 }
 
 void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
-    argus_sonar_set_health(&self->knowledge.sonar[sonar], ARGUS_DISABLED, kind, self->now_ms);
+    const argus_event_t said =
+        argus_health_set(&self->knowledge, sonar, ARGUS_CHANGE_DISABLED, kind, (int32_t)kind, self->now_ms);
     self->evidence.of[sonar].agreed = 0; // what brings it back comes after this
     argus_evidence_retract(&self->evidence, sonar);
     argus_task_forget(&self->task, sonar);
     argus_task_restart(&self->task);
     argus_replan(self);
-    argus_say(self, ARGUS_EV_SONAR_DISABLED, sonar, (int32_t)kind);
+    argus_say_event(self, said); // after the plan that follows from it
 }
 
 // In failure mode the slots of the sonars that are out go to those that look ahead; 0 and 7 watch the swing
@@ -288,10 +289,10 @@ void argus_replan(argus_t *const self) {
 
 void argus_flag_suspects(argus_t *const self, const uint16_t suspects) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        argus_sonar_t *const s = &self->knowledge.sonar[i];
+        const argus_sonar_t *const s = &self->knowledge.sonar[i];
         if ((suspects >> i & 1u) != 0 && s->health != ARGUS_SUSPECT) {
-            argus_sonar_set_health(s, ARGUS_SUSPECT, ARGUS_KIND_NONE, self->now_ms);
-            argus_say(self, ARGUS_EV_SONAR_SUSPECT, i, self->awareness.of[i].difference_mm);
+            argus_say_change(self, i, ARGUS_CHANGE_SUSPECTED, ARGUS_KIND_NONE,
+                             self->awareness.of[i].difference_mm);
         }
     }
 }
@@ -459,15 +460,15 @@ static void react_motors(argus_t *const self) {
 // on.
 static void watch_others(argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        argus_sonar_t *const s = &self->knowledge.sonar[i];
+        const argus_sonar_t *const s = &self->knowledge.sonar[i];
         const bool other = (ARGUS_FORWARD_MASK >> i & 1u) == 0;
         const uint32_t silent_ms = argus_silent_ms(&self->knowledge, i);
         const bool stale = silent_ms > (uint32_t)self->config.stale_ms;
         if (other && s->health == ARGUS_HEALTHY && stale) {
-            argus_sonar_set_health(s, ARGUS_STALE, ARGUS_KIND_NONE, self->now_ms);
-            argus_say(self, ARGUS_EV_SONAR_STALE, i, (int32_t)(silent_ms & 0x7FFFFFFFu));
+            argus_say_change(self, i, ARGUS_CHANGE_STALLED, ARGUS_KIND_NONE,
+                             (int32_t)(silent_ms & 0x7FFFFFFFu));
         } else if (other && s->health == ARGUS_STALE && !stale) {
-            argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
+            argus_say_change(self, i, ARGUS_CHANGE_HEARD, ARGUS_KIND_NONE, 0);
         }
     }
 }

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "health.h"
 #include "knowledge/angle.h"
 #include "unity.h"
 
@@ -21,7 +22,7 @@ static void begin(argus_policy_t policy, uint16_t disabled) {
         k.sonar[i].reported = true;
         k.sonar[i].reading_mm = 3000;
         if ((disabled >> i & 1u) != 0) {
-            argus_sonar_set_health(&k.sonar[i], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+            put_health(&k.sonar[i], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
             k.sonar[i].reading_mm = 100; // a lie that must not count
         }
     }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "awareness/evidence_internal.h"
+#include "health.h"
 #include "robot.h"
 #include "supervisor/manager_internal.h"
 #include "unity.h"
@@ -322,7 +323,7 @@ void test_a_broken_sonar_does_not_come_back(void) {
 // Comes back with so many agreements?
 static bool comes_back(int agreed) {
     argus_sonar_t *sonar = &robot.argus.knowledge.sonar[3];
-    argus_sonar_set_health(sonar, ARGUS_PROBATION, ARGUS_KIND_OFF, robot.argus.now_ms - 600000);
+    put_health(sonar, ARGUS_PROBATION, ARGUS_KIND_OFF, robot.argus.now_ms - 600000);
     robot.argus.evidence.of[3].agreed = (uint8_t)agreed;
     robot.argus.failure = argus_failure_of(argus_out(&robot.argus.knowledge) & ARGUS_FORWARD_MASK);
     robot_next_sip(&robot); // at rest nothing new is compared
@@ -331,8 +332,7 @@ static bool comes_back(int agreed) {
 
 // ... after it has failed once more.
 static int agreements_wanted(void) {
-    argus_sonar_set_health(&robot.argus.knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF,
-                           robot.argus.now_ms);
+    put_health(&robot.argus.knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, robot.argus.now_ms);
     for (int agreed = 0; agreed <= UINT8_MAX; agreed++) {
         if (comes_back(agreed)) {
             return agreed;
@@ -456,7 +456,7 @@ void test_no_backing_away_with_a_rear_sonar_that_is_out_or_has_a_name(void) {
         for (int i = 0; i < 4; i++) {
             start_in_a_room();
             TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
-            argus_sonar_set_health(&robot.argus.knowledge.sonar[sonar], out[i], kind[i], robot.argus.now_ms);
+            put_health(&robot.argus.knowledge.sonar[sonar], out[i], kind[i], robot.argus.now_ms);
             if (out[i] == ARGUS_SUSPECT) { // or it would be cleared at once
                 robot.argus.evidence.of[sonar].score[ARGUS_TEST_DROPOUT] =
                     (int16_t)(kind[i] != ARGUS_KIND_NONE ? argus_bounds[ARGUS_TEST_DROPOUT].convincing - 1
@@ -479,8 +479,7 @@ void test_backing_away_ends_when_a_rear_sonar_fails(void) {
         robot.bumpers_front = 1 << 2;
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 8000));
         const uint32_t stops = robot.argus.stops;
-        argus_sonar_set_health(&robot.argus.knowledge.sonar[sonar], ARGUS_DISABLED, ARGUS_KIND_WRONG,
-                               robot.argus.now_ms);
+        put_health(&robot.argus.knowledge.sonar[sonar], ARGUS_DISABLED, ARGUS_KIND_WRONG, robot.argus.now_ms);
         robot_next_sip(&robot);
         robot_next_sip(&robot);
         TEST_ASSERT_TRUE(robot.argus.stops > stops);
@@ -765,7 +764,7 @@ void test_stuck_that_shows_another_value_is_renamed(void) {
             robot_run(&robot, 2000);
             argus_sonar_t *const s = &robot.argus.knowledge.sonar[3];
             argus_case_t *const c = &robot.argus.evidence.of[3];
-            argus_sonar_set_health(s, ARGUS_DISABLED, kinds[i], robot.argus.now_ms);
+            put_health(s, ARGUS_DISABLED, kinds[i], robot.argus.now_ms);
             c->score[ARGUS_TEST_STUCK] = (int16_t)(repeats ? 300 : 0);
             c->score[ARGUS_TEST_PEERS] = argus_bounds[ARGUS_TEST_PEERS].naming;
             robot.argus.evidence.peers.of[3].against = 3;
@@ -987,8 +986,7 @@ void test_the_order_follows_a_plan_that_went_while_passive(void) {
     TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_POLLING, said) > 0);
     argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_PASSIVE, 0);
     robot_run(&robot, 500);
-    argus_sonar_set_health(&robot.argus.knowledge.sonar[3], ARGUS_HEALTHY, ARGUS_KIND_NONE,
-                           robot.argus.now_ms);
+    put_health(&robot.argus.knowledge.sonar[3], ARGUS_HEALTHY, ARGUS_KIND_NONE, robot.argus.now_ms);
     argus_replan(&robot.argus); // as for every sonar that is restored
     robot_run(&robot, 3000);
     TEST_ASSERT_EQUAL_HEX16(0, robot.argus.plan.disabled);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "awareness/evidence_internal.h"
+#include "health.h"
 #include "robot.h"
 #include "unity.h"
 
@@ -47,8 +48,8 @@ static void ask(argus_op_t op, int32_t argument) {
 // The record of a mission in which 3 was disabled and 9 was on probation.
 static void save_one(void) {
     start_idle();
-    argus_sonar_set_health(sonar(3), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
-    argus_sonar_set_health(sonar(9), ARGUS_PROBATION, ARGUS_KIND_WRONG, now());
+    put_health(sonar(3), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
+    put_health(sonar(9), ARGUS_PROBATION, ARGUS_KIND_WRONG, now());
     TEST_ASSERT_EQUAL(ARGUS_RECORD_BYTES, argus_record_save(&robot.argus, record, sizeof record));
 }
 
@@ -89,12 +90,12 @@ void test_a_relapse_makes_probation_longer(void) {
     save_one();
     start(ARGUS_PROFILE_ARGUS);
     TEST_ASSERT_TRUE(argus_record_load(&robot.argus, record, sizeof record));
-    argus_sonar_set_health(sonar(3), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
+    put_health(sonar(3), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
     TEST_ASSERT_EQUAL(1, sonar(3)->relapses);
-    argus_sonar_set_health(sonar(5), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
+    put_health(sonar(5), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
     TEST_ASSERT_EQUAL(0, sonar(5)->relapses);
-    argus_sonar_set_health(sonar(5), ARGUS_PROBATION, ARGUS_KIND_OFF, now());
-    argus_sonar_set_health(sonar(5), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
+    put_health(sonar(5), ARGUS_PROBATION, ARGUS_KIND_OFF, now());
+    put_health(sonar(5), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
     TEST_ASSERT_EQUAL(1, sonar(5)->relapses);
 }
 

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "health.h"
 #include "knowledge/angle.h"
 #include "unity.h"
 
@@ -51,9 +52,9 @@ void test_echoes_are_remembered_where_they_lie(void) {
 void test_what_is_not_remembered(void) {
     see(3, 2000);
     see(3, 5000);
-    argus_sonar_set_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+    put_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
     see(4, 500);
-    argus_sonar_set_health(&k.sonar[5], ARGUS_SUSPECT, ARGUS_KIND_NONE, 0);
+    put_health(&k.sonar[5], ARGUS_SUSPECT, ARGUS_KIND_NONE, 0);
     see(5, 500);
     k.rotating = true;
     see(2, 500);
