@@ -12,8 +12,3 @@ argus_failure_t argus_failure_of(const uint16_t disabled) {
                                                ARGUS_IS_CATASTROPHIC};
     return by_count[argus_count_bits(disabled & FORWARD_MASK)];
 }
-
-const char *argus_failure_name(const argus_failure_t failure) {
-    static const char name[][16] = {"IsNormal", "IsMinor", "IsMajor", "IsCatastrophic"};
-    return (unsigned)failure < sizeof name / sizeof name[0] ? name[failure] : "?";
-}

@@ -7,7 +7,7 @@
 #include "arcos/command.h"
 #include "arcos/configpac.h"
 #include "arcos/sip.h"
-#include "supervisor/config.h"
+#include "argus/argus.h"
 
 typedef enum {
     ARGUS_SESSION_DOWN,     // no transport

@@ -4,8 +4,8 @@
 #ifndef ARGUS_AWARENESS_H
 #define ARGUS_AWARENESS_H
 
+#include "argus/argus.h"
 #include "knowledge/knowledge.h"
-#include "supervisor/config.h"
 
 #define ARGUS_DEAD_MM ARGUS_P3DX_SONAR_NO_ECHO_MM
 

@@ -236,13 +236,3 @@ int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *const self, const in
     }
     return nearest;
 }
-
-const char *argus_health_name(const argus_health_t health) {
-    static const char name[][16] = {"UNKNOWN", "HEALTHY", "SUSPECT", "DISABLED", "PROBATION", "STALE"};
-    return (unsigned)health < sizeof name / sizeof name[0] ? name[health] : "?";
-}
-
-const char *argus_kind_name(const argus_fault_kind_t kind) {
-    static const char name[][16] = {"", "off", "silent", "stuck", "wrong", "garbage", "slow", "intermittent"};
-    return (unsigned)kind < sizeof name / sizeof name[0] ? name[kind] : "?";
-}

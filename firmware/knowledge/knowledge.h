@@ -4,53 +4,15 @@
 #ifndef ARGUS_KNOWLEDGE_H
 #define ARGUS_KNOWLEDGE_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "arcos/sip.h"
+#include "argus/argus.h"
 #include "robot/gen_p3dx.h"
 
-#define ARGUS_SONARS ARGUS_P3DX_SONAR_COUNT
-#define ARGUS_FORWARD_FIRST 1 // the paper's forward-facing six are 1..6
-#define ARGUS_FORWARD_LAST 6
 #define ARGUS_FLANK_LEFT 0 // look abeam of the front
 #define ARGUS_FLANK_RIGHT 7
 #define ARGUS_FLANK_NEAR_MM 350 // what they read of a wall that the way may slant into
 #define ARGUS_FORWARD_MASK 0x7Eu
 #define ARGUS_REAR_MASK 0x7E00u // 9..14: what looks along a backward motion
-
-typedef enum {
-    ARGUS_UNKNOWN,   // not judged yet
-    ARGUS_HEALTHY,   // judged, no complaint
-    ARGUS_SUSPECT,   // disparate, not verified yet or no witness
-    ARGUS_DISABLED,  // not used; latched for the mission under `paper`
-    ARGUS_PROBATION, // (profile argus) may come back
-    ARGUS_STALE      // has not reported yet, or not for long
-} argus_health_t;
-
-// After the failure words of PX4; the numbers are on the wire (SPEC.md, Events) and in the record.
-typedef enum {
-    ARGUS_KIND_NONE = 0,
-    ARGUS_KIND_OFF = 1,
-    ARGUS_KIND_SILENT = 2,
-    ARGUS_KIND_STUCK = 3,
-    ARGUS_KIND_WRONG = 4,
-    ARGUS_KIND_GARBAGE = 5,
-    ARGUS_KIND_SLOW = 6,
-    ARGUS_KIND_INTERMITTENT = 7
-} argus_fault_kind_t;
-
-typedef struct {
-    int32_t x_mm;
-    int32_t y_mm;
-} argus_point_t;
-
-typedef struct {
-    int32_t x_mm; // ahead and to the left of where the course starts
-    int32_t y_mm;
-    int32_t heading_cdeg;
-} argus_pose_t;
 
 // Where and whither a sonar looks, robot frame.
 typedef struct {
@@ -154,8 +116,5 @@ argus_point_t argus_to_course(const argus_pose_t *pose, argus_point_t robot);
 // when it is DISABLED or reads 5000. The nearest of all.
 int32_t argus_echo_to_centre_mm(const argus_knowledge_t *self, int sonar, int32_t back_mm);
 int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *self, int32_t back_mm);
-
-const char *argus_health_name(argus_health_t health);
-const char *argus_kind_name(argus_fault_kind_t kind);
 
 #endif

@@ -139,9 +139,9 @@ static void take_out(argus_t *const self, const int sonar) {
     }
 }
 
-void argus_serve(argus_t *const self, const argus_op_t op, const int32_t sonar) {
+bool argus_serve(argus_t *const self, const argus_op_t op, const int32_t sonar) {
     if (!may_serve(self, op, sonar)) {
-        return;
+        return false;
     }
     argus_say(self, ARGUS_EV_OPERATOR, ARGUS_NO_SONAR, (int32_t)op);
     if (op == ARGUS_OP_RETEST) {
@@ -151,12 +151,5 @@ void argus_serve(argus_t *const self, const argus_op_t op, const int32_t sonar) 
     } else {
         pin(self, sonar, op == ARGUS_OP_PIN);
     }
-}
-
-bool argus_retest(argus_t *const self, const uint8_t sonar, const uint32_t now_ms) {
-    if (self->shutdown || !may_serve(self, ARGUS_OP_RETEST, sonar)) {
-        return false;
-    }
-    argus_operator(self, now_ms, argus_judges(self) ? ARGUS_OP_RETEST : ARGUS_OP_RECHECK, sonar);
     return true;
 }

@@ -58,9 +58,9 @@ void argus_foretell(argus_t *self); // each SIP: a sonar that gets worse
 // Across missions.
 void argus_meet_robot(argus_t *self); // a session is open: is it the robot of the record?
 
-// What an operator asks of one sonar (RETEST and what follows it); refused without an event when it cannot be
+// What an operator asks of one sonar (RETEST and what follows it); false, and no event, when it cannot be
 // done.
-void argus_serve(argus_t *self, argus_op_t op, int32_t sonar);
+bool argus_serve(argus_t *self, argus_op_t op, int32_t sonar);
 
 // One SIP in the present mode.
 void argus_run_checking(argus_t *self);

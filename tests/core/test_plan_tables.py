@@ -66,7 +66,18 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> Table:
     firmware = ROOT / "firmware"
     sources = [firmware / name for name in SOURCES]
     subprocess.run(
-        ["gcc", "-std=c11", "-I", firmware / "include", "-o", folder / "plan", folder / "main.c", *sources],
+        [
+            "gcc",
+            "-std=c11",
+            "-I",
+            firmware,
+            "-I",
+            firmware / "include",
+            "-o",
+            folder / "plan",
+            folder / "main.c",
+            *sources,
+        ],
         check=True,
     )
     text = subprocess.run([str(folder / "plan")], check=True, stdout=subprocess.PIPE, text=True).stdout

@@ -119,9 +119,10 @@ static void draw_progress(canvas_t *canvas, const view_t *view, int row, int col
 
 static void draw_mode(canvas_t *canvas, const view_t *view) {
     const argus_status_t *const status = &view->status;
-    write_at(canvas, 1, 1, TONE_PLAIN, "%-9s", argus_mode_name(status->mode));
-    write_at(canvas, 1, 11, tone_of_failure(status->failure), "%s", argus_failure_name(status->failure));
-    write_at(canvas, 1, 27, TONE_PLAIN, "mission %s", argus_mission_name(status->mission));
+    write_at(canvas, 1, 1, TONE_PLAIN, "%-9s", argus_name(ARGUS_NAME_MODE, status->mode));
+    write_at(canvas, 1, 11, tone_of_failure(status->failure), "%s",
+             argus_name(ARGUS_NAME_FAILURE, status->failure));
+    write_at(canvas, 1, 27, TONE_PLAIN, "mission %s", argus_name(ARGUS_NAME_MISSION, status->mission));
     if (status->waypoints > 0) {
         draw_progress(canvas, view, 2, 1);
     } else {
@@ -184,9 +185,9 @@ static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row,
         snprintf(reading, sizeof reading, "%4d", status->reading_mm[sonar]);
     }
     if (health == ARGUS_DISABLED) {
-        snprintf(state, sizeof state, "!%s", argus_kind_name(status->kind[sonar]));
+        snprintf(state, sizeof state, "!%s", argus_name(ARGUS_NAME_KIND, status->kind[sonar]));
     } else {
-        snprintf(state, sizeof state, "%s", argus_health_name(health));
+        snprintf(state, sizeof state, "%s", argus_name(ARGUS_NAME_HEALTH, health));
     }
     write_at(canvas, row, column, tone_of_health(health), "%2d%c%+4d %s %-9.9s", sonar, pinned ? '=' : ' ',
              argus_sonar_pose[sonar].heading_deg, reading, state);

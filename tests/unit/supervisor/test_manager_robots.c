@@ -280,7 +280,8 @@ void test_a_robot_that_ignores_any_one_command_is_not_flooded(void) {
         TEST_ASSERT_TRUE(robot_goal(&robot, 900, 900));
         robot_run(&robot, 60000);
         snprintf(message, sizeof message, "ignores command %d: %d packets, %d events, mode %s",
-                 commands[i / 2], robot.commands, robot.events, argus_mode_name(robot.argus.mode));
+                 commands[i / 2], robot.commands, robot.events,
+                 argus_name(ARGUS_NAME_MODE, robot.argus.mode));
         TEST_ASSERT_LESS_THAN_MESSAGE(60 * 8, robot.commands, message);
         TEST_ASSERT_LESS_THAN_MESSAGE(60 * 5, robot.events, message);
         TEST_ASSERT_EQUAL_MESSAGE(1, robot_count_events(&robot, ARGUS_EV_SESSION_OPEN, 0), message);
