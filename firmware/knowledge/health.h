@@ -4,8 +4,8 @@
 #ifndef ARGUS_HEALTH_H
 #define ARGUS_HEALTH_H
 
+#include "argus/argus.h"
 #include "knowledge/knowledge.h"
-#include "supervisor/events.h"
 
 // X(NAME, from, to, event, meaning): what may happen to a sonar. `from`: the states in which it may, U
 // UNKNOWN, H HEALTHY, S SUSPECT, D DISABLED, P PROBATION, T STALE; `event`: what says so, NONE: nobody needs

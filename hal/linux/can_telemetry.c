@@ -227,7 +227,7 @@ static uint8_t state_of(const argus_t *core) {
     case ARGUS_MODE_CLOSED:
         return HAL_DBC_STATE_CLOSED;
     default:
-        return core->passive ? HAL_DBC_STATE_PASSIVE : HAL_DBC_STATE_ACTIVE;
+        return core->orders.passive ? HAL_DBC_STATE_PASSIVE : HAL_DBC_STATE_ACTIVE;
     }
 }
 
@@ -246,7 +246,7 @@ static void fill_heartbeat(const hal_telemetry_t *self, const argus_t *core, uin
         .state = state,
         .failure = (uint8_t)core->failure,
         .mission = (uint8_t)core->mission,
-        .wait = core->mode == ARGUS_MODE_WAITING ? (uint8_t)core->wait : (uint8_t)ARGUS_WAIT_NONE,
+        .wait = core->mode == ARGUS_MODE_WAITING ? (uint8_t)core->waiting.why : (uint8_t)ARGUS_WAIT_NONE,
         .disabled = (uint8_t)argus_count_bits(argus_disabled(&core->knowledge) & ARGUS_FORWARD_MASK),
         .roll = self->roll & 0xFu,
         .stops = core->stops & 0xFu,

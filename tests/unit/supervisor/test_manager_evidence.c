@@ -11,7 +11,9 @@
 #include "awareness/evidence_internal.h"
 #include "health.h"
 #include "robot.h"
-#include "supervisor/manager_internal.h"
+#include "supervisor/faults.h"
+#include "supervisor/looks.h"
+#include "supervisor/modes.h"
 #include "unity.h"
 
 #define RAD (3.14159265358979323846 / 180)
@@ -182,10 +184,10 @@ void test_a_look_begins_and_ends_on_one_heading_and_place(void) {
             robot.fault[3] = ROBOT_OFF;
         }
         robot_tick(&robot);
-        if (robot.argus.mode != ARGUS_MODE_VERIFYING || !robot.argus.inquiry.active) {
+        if (robot.argus.mode != ARGUS_MODE_VERIFYING || !robot.argus.verifying.inquiry.active) {
             continue;
         }
-        const double base = robot.argus.base_cdeg / 100.0;
+        const double base = robot.argus.base.cdeg / 100.0;
         const double x = robot.x, y = robot.y;
         const int from = robot.commands;
         while (robot.argus.mode == ARGUS_MODE_VERIFYING) {
@@ -378,10 +380,10 @@ void test_a_link_that_stalls_during_a_look(void) {
     for (int i = 0; i < 3000 && fabs(robot_heading_deg(&robot)) < 15; i++) {
         robot_tick(&robot);
     }
-    TEST_ASSERT_TRUE(robot.argus.inquiry.active);
+    TEST_ASSERT_TRUE(robot.argus.verifying.inquiry.active);
     robot.mute = true;
     robot_run(&robot, 1500);
-    TEST_ASSERT_FALSE(robot.argus.inquiry.active);
+    TEST_ASSERT_FALSE(robot.argus.verifying.inquiry.active);
     robot.mute = false;
     const int from = robot.commands;
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_RESUMED, 2000));
@@ -571,8 +573,8 @@ void test_a_lost_echo_is_looked_for_at_once_ahead_and_not_in_one_place_elsewhere
     for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
         for (int way = 99; way <= 100; way++) {
             robot.argus.evidence.lost = (uint16_t)(1u << sonar);
-            robot.argus.hold[sonar].acquittals = 1;
-            robot.argus.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm - (uint32_t)way;
+            robot.argus.looks.hold[sonar].acquittals = 1;
+            robot.argus.looks.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm - (uint32_t)way;
             const bool ahead = sonar >= 1 && sonar <= 6;
             const bool looked = (argus_worth_a_look(&robot.argus) >> sonar & 1) != 0;
             TEST_ASSERT_EQUAL_MESSAGE(ahead || way == 100, looked, told("lost", sonar));
@@ -722,14 +724,14 @@ void test_off_that_is_heard_again_is_renamed(void) {
     peer->borne_out = true;
     c->score[ARGUS_TEST_PEERS] = 300;
     peer->hollow = 0x0F;
-    argus_judge(&robot.argus);
+    argus_judge_all(&robot.argus);
     TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, s->kind);
     TEST_ASSERT_FALSE(peer->borne_out);
     c->none_run = 0;
-    argus_judge(&robot.argus);
+    argus_judge_all(&robot.argus);
     TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, s->kind);
     peer->borne_out = true;
-    argus_judge(&robot.argus);
+    argus_judge_all(&robot.argus);
     TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, s->kind);
     finish();
 }
@@ -769,7 +771,7 @@ void test_stuck_that_shows_another_value_is_renamed(void) {
             c->score[ARGUS_TEST_PEERS] = argus_bounds[ARGUS_TEST_PEERS].naming;
             robot.argus.evidence.peers.of[3].against = 3;
             const int from = robot.events;
-            argus_judge(&robot.argus);
+            argus_judge_all(&robot.argus);
             robot_drain(&robot);
             const bool renamed = kinds[i] == ARGUS_KIND_STUCK && !repeats;
             TEST_ASSERT_EQUAL(renamed ? ARGUS_KIND_WRONG : kinds[i], s->kind);
@@ -786,8 +788,8 @@ void test_what_is_named_is_looked_at_though_it_was_acquitted_a_moment_ago(void) 
         TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
         robot_run(&robot, 1000);
-        robot.argus.hold[sonar].acquittals = 3;
-        robot.argus.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm;
+        robot.argus.looks.hold[sonar].acquittals = 3;
+        robot.argus.looks.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm;
         named_at_once(sonar);
         TEST_ASSERT_EQUAL_MESSAGE(ARGUS_MODE_VERIFYING, robot.argus.mode, told("not looked at", sonar));
         robot_run(&robot, 10000);
@@ -803,10 +805,10 @@ static void start_looking(void) {
     robot_run(&robot, 1000);
     robot.argus.evidence.lost |= 1u << 3;
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 5000));
-    for (int i = 0; i < 50 && !robot.argus.inquiry.active; i++) {
+    for (int i = 0; i < 50 && !robot.argus.verifying.inquiry.active; i++) {
         robot_next_sip(&robot);
     }
-    TEST_ASSERT_TRUE(robot.argus.inquiry.active);
+    TEST_ASSERT_TRUE(robot.argus.verifying.inquiry.active);
 }
 
 void test_what_is_named_during_a_look_held_for_another_is_a_suspect_at_once(void) {
@@ -815,7 +817,7 @@ void test_what_is_named_during_a_look_held_for_another_is_a_suspect_at_once(void
         start_looking();
         named_at_once(others[i]);
         TEST_ASSERT_EQUAL(ARGUS_MODE_VERIFYING, robot.argus.mode);
-        TEST_ASSERT_TRUE(robot.argus.inquiry.active);
+        TEST_ASSERT_TRUE(robot.argus.verifying.inquiry.active);
         robot_run(&robot, 20000);
         finish(); // the watch: no step without a plan for all that are not relied on
     }

@@ -242,9 +242,9 @@ void test_a_pin_does_not_end_a_stop(void) {
     start_idle();
     ask(ARGUS_OP_STOP, 0);
     ask(ARGUS_OP_PIN, 3);
-    TEST_ASSERT_TRUE(robot.argus.stay);
+    TEST_ASSERT_TRUE(robot.argus.orders.stay);
     ask(ARGUS_OP_RECHECK, 0);
-    TEST_ASSERT_FALSE(robot.argus.stay);
+    TEST_ASSERT_FALSE(robot.argus.orders.stay);
 }
 
 void test_what_cannot_be_done_is_refused(void) {
@@ -260,7 +260,7 @@ void test_what_cannot_be_done_is_refused(void) {
     ask(ARGUS_OP_UNPIN, 3); // it is not pinned
     TEST_ASSERT_FALSE(argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, 16));
     TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_OPERATOR, from));
-    TEST_ASSERT_EQUAL_HEX16(0, robot.argus.pinned);
+    TEST_ASSERT_EQUAL_HEX16(0, robot.argus.orders.pinned);
     start(ARGUS_PROFILE_ARGUS);
     TEST_ASSERT_FALSE(argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, 3)); // no session
     start(ARGUS_PROFILE_PAPER);
@@ -268,7 +268,7 @@ void test_what_cannot_be_done_is_refused(void) {
     for (int i = 1; i < 4; i++) {
         ask(ops[i], 3);
     }
-    TEST_ASSERT_EQUAL_HEX16(0, robot.argus.pinned);
+    TEST_ASSERT_EQUAL_HEX16(0, robot.argus.orders.pinned);
     TEST_ASSERT_EQUAL(ARGUS_HEALTHY, sonar(3)->health);
     TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_OPERATOR, 0));
     finish();
