@@ -153,6 +153,9 @@ static void handle_link(argus_t *const self, const unsigned bits) {
 
 static void handle(argus_t *const self, const unsigned bits) {
     handle_link(self, bits);
+    if ((bits & ARGUS_SESSION_OTHER_ROBOT) != 0) { // first: nothing of the other one's plan is for this robot
+        argus_meet_stranger(self);
+    }
     if ((bits & ARGUS_SESSION_DID_OPEN) != 0) {
         on_open(self);
     }

@@ -7,8 +7,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "argus/argus.h"
 #include "hal/link_spec.h"
-#include "knowledge/knowledge.h"
 
 typedef enum {
     OPTIONS_RUN,

@@ -6,8 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "arcos/gen_arcos.h"
-
 #define FRONT_SONARS 8
 #define RING_TOP 3
 #define RING_ROWS 13
@@ -147,7 +145,7 @@ static void put_polar(canvas_t *canvas, int degrees, int radius, tone_t tone, ch
 
 static void draw_echo(canvas_t *canvas, const argus_status_t *status, int sonar) {
     static const char digits[] = "0123456789ABCDEF";
-    const int bearing = argus_sonar_pose[sonar].heading_deg;
+    const int bearing = status->bearing_deg[sonar];
     const int rim = RING_ROWS - 1;
     const int reading = between(status->reading_mm[sonar], 0, RING_RANGE_MM);
     if (status->age_ms[sonar] == UINT32_MAX) {
@@ -157,7 +155,7 @@ static void draw_echo(canvas_t *canvas, const argus_status_t *status, int sonar)
     const int radius = RING_INNER + (rim - RING_INNER) * reading / RING_RANGE_MM;
     if (status->health[sonar] == ARGUS_DISABLED) {
         put_polar(canvas, bearing, rim, TONE_BAD, 'x');
-    } else if (status->reading_mm[sonar] >= ARGUS_P3DX_SONAR_NO_ECHO_MM) {
+    } else if (status->reading_mm[sonar] >= ARGUS_NO_ECHO_MM) {
         put_polar(canvas, bearing, rim, TONE_DIM, '.');
     } else {
         put_polar(canvas, bearing, radius, tone_of_health(status->health[sonar]), digits[sonar]);
@@ -177,7 +175,7 @@ static void draw_ring(canvas_t *canvas, const argus_status_t *status) {
 
 static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row, int column) {
     const argus_status_t *const status = &view->status;
-    const bool pinned = (view->pinned >> sonar & 1) != 0;
+    const bool pinned = (status->pinned >> sonar & 1) != 0;
     char state[16];
     char reading[8] = "   -";
     const argus_health_t health = status->health[sonar];
@@ -190,7 +188,7 @@ static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row,
         snprintf(state, sizeof state, "%s", argus_name(ARGUS_NAME_HEALTH, health));
     }
     write_at(canvas, row, column, tone_of_health(health), "%2d%c%+4d %s %-9.9s", sonar, pinned ? '=' : ' ',
-             argus_sonar_pose[sonar].heading_deg, reading, state);
+             status->bearing_deg[sonar], reading, state);
     if (sonar == view->sonar) {
         write_at(canvas, row, column, TONE_TITLE, "%2d", sonar);
     }
@@ -218,14 +216,13 @@ static void draw_plan(canvas_t *canvas, const argus_plan_t *plan, int row, int c
 
 static void draw_numbers(canvas_t *canvas, const view_t *view, int row, int column) {
     const argus_status_t *const status = &view->status;
-    const bool motors = (status->flags & ARCOS_FLAG_MOTORS) != 0;
     draw_plan(canvas, &status->plan, row, column);
     write_at(canvas, row + 1, column, TONE_PLAIN, "at %d, %d mm, %d deg   %d/%d mm/s", (int)status->pose.x_mm,
              (int)status->pose.y_mm, (int)(status->pose.heading_cdeg / 100), status->vel_left_mm_s,
              status->vel_right_mm_s);
     write_at(canvas, row + 2, column,
              status->bumpers_front != 0 || status->bumpers_rear != 0 ? TONE_BAD : TONE_PLAIN,
-             "motors %s  bumpers %02x/%02x  stops %u", motors ? "on" : "off", status->bumpers_front,
+             "motors %s  bumpers %02x/%02x  stops %u", status->motors ? "on" : "off", status->bumpers_front,
              status->bumpers_rear, (unsigned)status->stops);
     write_at(canvas, row + 3, column, view->link_up ? TONE_PLAIN : TONE_BAD,
              "link %s  SIPs %u  bad %u  junk %u", view->link_up ? "up" : "DOWN", (unsigned)status->sips,
