@@ -12,6 +12,7 @@
 #include "supervisor/orders.h"
 #include "supervisor/say.h"
 #include "supervisor/state.h"
+#include "supervisor/stranger.h"
 
 #define AWAY_CDEG 500
 #define IDLE_POLL_MS 50u
