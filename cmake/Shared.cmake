@@ -35,7 +35,7 @@ endif()
 
 # libargus_sim.so: the emulator's echo model in C. Neither contraction nor sincos, so that every number is the one that
 # Python forms; the other options change no result, since nobody looks at errno or at the exception flags.
-add_library(argus_sim SHARED hil_sim/kernel.c)
+add_library(argus_sim SHARED hil_sim/sonar/kernel.c)
 target_compile_options(argus_sim PRIVATE ${ARGUS_STRICT} -ffp-contract=off -fno-builtin-sin -fno-builtin-cos
                                          -fno-math-errno -fno-trapping-math $<$<CONFIG:Release>:-O3>)
 target_link_libraries(argus_sim PRIVATE argus_flags m)

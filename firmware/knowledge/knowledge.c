@@ -138,18 +138,6 @@ void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const
     take_readings(self, sip);
 }
 
-void argus_sonar_set_health(argus_sonar_t *const self, const argus_health_t health,
-                            const argus_fault_kind_t kind, const uint32_t now_ms) {
-    if (health == ARGUS_DISABLED && self->health != ARGUS_DISABLED && self->disabled_times < UINT16_MAX) {
-        const bool again = self->disabled_times > 0 || self->disabled_before > 0;
-        self->relapses = (uint8_t)(self->relapses + (again && self->relapses < UINT8_MAX ? 1 : 0));
-        self->disabled_times++;
-    }
-    self->health = health;
-    self->kind = kind;
-    self->since_ms = now_ms;
-}
-
 uint16_t argus_with_health(const argus_knowledge_t *const self, const argus_health_t health) {
     unsigned mask = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {

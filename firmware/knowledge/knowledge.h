@@ -88,9 +88,6 @@ void argus_knowledge_sip(argus_knowledge_t *self, const argus_sip_t *sip, int32_
 // Only the odometry of a SIP (a session that is about to be closed).
 void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um);
 
-void argus_sonar_set_health(argus_sonar_t *self, argus_health_t health, argus_fault_kind_t kind,
-                            uint32_t now_ms);
-
 // Bit masks over sonar numbers.
 uint16_t argus_disabled(const argus_knowledge_t *self);
 uint16_t argus_out(const argus_knowledge_t *self); // not used: DISABLED or on PROBATION

@@ -6,7 +6,7 @@
 
 #include "awareness/evidence_internal.h"
 #include "scene.h"
-#include "supervisor/config.h"
+#include "knowledge/config.h"
 #include "unity.h"
 
 #define RAD (3.14159265358979323846 / 180)

@@ -55,7 +55,7 @@ static void expect_stranger(int32_t part) {
     TEST_ASSERT_EQUAL_INT(0, motions());
     TEST_ASSERT_EQUAL_INT(1, robot_count_events(&robot, ARGUS_EV_OTHER_ROBOT, 0));
     TEST_ASSERT_EQUAL_INT32(part, robot_last_event(&robot, ARGUS_EV_OTHER_ROBOT)->value);
-    TEST_ASSERT_TRUE(robot.argus.passive);
+    TEST_ASSERT_TRUE(robot.argus.orders.passive);
     TEST_ASSERT_EQUAL_INT(ARGUS_MISSION_RUNNING, robot.argus.mission);
     TEST_ASSERT_EQUAL_STRING("", robot.violation);
 }
