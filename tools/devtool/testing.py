@@ -77,7 +77,7 @@ PYTHON: Final = Stage(
     "Python tests that need no robot",
     python_tests,
     ("release", "cortex-m4"),
-    ("tshark", "groff", "pkg-config"),
+    ("tshark", "groff", "pkg-config", "g++"),
 )
 QUICK_STAGES: Final = (TABLES, RELEASE, CORTEX_M4, PYTHON)
 TEST_STAGES: Final = (
