@@ -11,7 +11,6 @@ import sys
 from pathlib import Path
 
 import pytest
-
 from argus_tools.formats import formats
 from logs import ROOT, decode, run
 
