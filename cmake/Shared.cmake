@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-# libargus.so: the fault manager for other languages, with tools/core_shim.c; exports what the public headers declare.
-file(GLOB public_headers CONFIGURE_DEPENDS firmware/include/argus/*.h)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${public_headers} ${PROJECT_SOURCE_DIR}/tools/core_shim.c)
+# libargus.so: the fault manager for other languages, with tools/core_shim.c; exports what the public header and the shim declare.
+set(declaring ${PROJECT_SOURCE_DIR}/firmware/include/argus/argus.h ${PROJECT_SOURCE_DIR}/tools/core_shim.c)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${declaring})
 set(names "")
-foreach(source IN LISTS public_headers ITEMS ${PROJECT_SOURCE_DIR}/tools/core_shim.c)
+foreach(source IN LISTS declaring)
     file(STRINGS ${source} lines REGEX "^[a-z][a-z0-9_ *]*[ *]argus_[a-z0-9_]+(\\(|\\[)")
     foreach(line IN LISTS lines)
         if(line MATCHES "^(static|typedef)")
@@ -18,14 +18,20 @@ list(JOIN names ";\n    " names)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/argus.map CONTENT "{\nglobal:\n    @names@;\nlocal:\n    *;\n};\n" @ONLY)
 
 add_library(argus_shared SHARED ${firmware_sources} tools/core_shim.c)
-target_include_directories(argus_shared PRIVATE firmware/include firmware)
+target_include_directories(argus_shared PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/firmware/include>
+                                               $<INSTALL_INTERFACE:include>
+                           PRIVATE firmware)
 target_compile_options(argus_shared PRIVATE ${ARGUS_STRICT})
 target_link_options(argus_shared PRIVATE -Wl,--version-script=${PROJECT_BINARY_DIR}/argus.map)
-target_link_libraries(argus_shared PRIVATE argus_flags)
-set_target_properties(argus_shared PROPERTIES OUTPUT_NAME argus POSITION_INDEPENDENT_CODE ON
+target_link_libraries(argus_shared PRIVATE $<BUILD_INTERFACE:argus_flags>)
+set_target_properties(argus_shared PROPERTIES OUTPUT_NAME argus VERSION ${PROJECT_VERSION}
+                      SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} POSITION_INDEPENDENT_CODE ON
                       LINK_DEPENDS ${PROJECT_BINARY_DIR}/argus.map
                       LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
-install(TARGETS argus_shared)
+
+if(ARGUS_ASSERTS)
+    target_compile_definitions(argus_shared PRIVATE ARGUS_ASSERTS=1)
+endif()
 
 # libargus_sim.so: the emulator's echo model in C. Neither contraction nor sincos, so that every number is the one that
 # Python forms; the other options change no result, since nobody looks at errno or at the exception flags.
@@ -35,4 +41,3 @@ target_compile_options(argus_sim PRIVATE ${ARGUS_STRICT} -ffp-contract=off -fno-
 target_link_libraries(argus_sim PRIVATE argus_flags m)
 set_target_properties(argus_sim PROPERTIES POSITION_INDEPENDENT_CODE ON C_VISIBILITY_PRESET default
                       LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
-install(TARGETS argus_sim)

@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 DBC = Path("tools/argus.dbc")
 HEADER = Path("hal/include/hal/gen_argus_dbc.h")
 SOURCE = Path("hal/linux/gen_argus_dbc.c")
-HEADERS = ROOT / "firmware/include/argus"
+HEADERS = ROOT / "firmware"
 ROBOTS = 8
 STEP_TELEMETRY, STEP_OTHER = 16, 1  # how far the ids of two robots lie apart
 
@@ -33,13 +33,18 @@ exit codes: 0 done or current, 1 out of date, 2 the DBC file or a header cannot 
 
 # Value tables that are enumerations of the firmware: header, type, what to cut off, how argusd writes them.
 ENUMS = {
-    "Mode": ("manager.h", "argus_mode_t", "ARGUS_MODE_", str.upper),
-    "Mission": ("manager.h", "argus_mission_t", "ARGUS_MISSION_", str.lower),
-    "Wait": ("manager.h", "argus_wait_t", "ARGUS_WAIT_", str.lower),
-    "Failure": ("failure.h", "argus_failure_t", "ARGUS_IS_", lambda name: "Is" + name.capitalize()),
-    "Health": ("knowledge.h", "argus_health_t", "ARGUS_", str.upper),
-    "Fault": ("knowledge.h", "argus_fault_kind_t", "ARGUS_KIND_", str.lower),
-    "Level": ("events.h", "argus_level_t", "ARGUS_LEVEL_", str.upper),
+    "Mode": ("include/argus/argus.h", "argus_mode_t", "ARGUS_MODE_", str.upper),
+    "Mission": ("include/argus/argus.h", "argus_mission_t", "ARGUS_MISSION_", str.lower),
+    "Wait": ("include/argus/argus.h", "argus_wait_t", "ARGUS_WAIT_", str.lower),
+    "Failure": (
+        "include/argus/argus.h",
+        "argus_failure_t",
+        "ARGUS_IS_",
+        lambda name: "Is" + name.capitalize(),
+    ),
+    "Health": ("include/argus/argus.h", "argus_health_t", "ARGUS_", str.upper),
+    "Fault": ("include/argus/argus.h", "argus_fault_kind_t", "ARGUS_KIND_", str.lower),
+    "Level": ("include/argus/argus.h", "argus_level_t", "ARGUS_LEVEL_", str.upper),
 }
 # Value tables of signals whose name, behind a sonar's number, is not that of a table.
 TABLE_OF_SIGNAL = {("ArgusEmergency", "Sonar"): "SonarNumber"}
@@ -54,9 +59,7 @@ def enum_values(header: str, name: str) -> dict[int, str]:
     text = (HEADERS / header).read_text(encoding="utf-8")
     found = re.search(r"typedef enum \{([^{}]*)\} " + name + ";", text)
     if found is None:
-        raise DbcError(
-            f"firmware/include/argus/{header}: no enumeration {name}; tell tools/gen_dbc.py where it is"
-        )
+        raise DbcError(f"firmware/{header}: no enumeration {name}; tell tools/gen_dbc.py where it is")
     values: dict[int, str] = {}
     following = 0
     for line in re.sub(r"//[^\n]*", "", found[1]).split(","):
@@ -77,7 +80,7 @@ def header_tables() -> dict[str, dict[int, str]]:
         }
         for table, (header, name, prefix, form) in ENUMS.items()
     }
-    tables["Event"] = {int(row[0]): row[1] for row in rows("events.h", "ARGUS_EVENT_TABLE")}
+    tables["Event"] = {int(row[0]): row[1] for row in rows("include/argus/argus.h", "ARGUS_EVENT_TABLE")}
     return tables
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 TABLES = Path("hil_sim/tables")
-HEADERS = Path("firmware/include/argus")
+HEADERS = {"p3dx": Path("firmware/robot"), "arcos": Path("firmware/arcos")}
 
 ARCOS_SHORT = {
     "command": "CMD",
@@ -162,7 +162,7 @@ def read_or_none(path: Path) -> str | None:
 
 def process(root: Path, name: str, check: bool) -> int:
     """Write, or with CHECK compare, the header of one table; return the exit code for it."""
-    path = HEADERS / f"gen_{name}.h"
+    path = HEADERS[name] / f"gen_{name}.h"
     try:
         text = GENERATORS[name](load(root, SOURCES[name]))
     except TableError as error:

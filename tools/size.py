@@ -66,7 +66,7 @@ def object_sizes(size: str, library: Path) -> list[tuple[str, int, int, int]]:
 def type_sizes(folder: Path, names: tuple[str, ...]) -> dict[str, int]:
     """Return sizeof each type of NAMES, found by compiling one array of that many bytes for the target."""
     cwd, command = compile_command(folder)
-    source = '#include "argus/manager.h"\n' + "".join(f"char size_of_{n}[sizeof({n})];\n" for n in names)
+    source = '#include "supervisor/manager.h"\n' + "".join(f"char size_of_{n}[sizeof({n})];\n" for n in names)
     with tempfile.TemporaryDirectory() as temporary:
         file = Path(temporary, "sizes.c")
         file.write_text(source, encoding="utf-8")

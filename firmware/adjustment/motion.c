@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Commands one motion and watches the SIPs until it has settled.
-#include "argus/motion.h"
+#include "adjustment/motion.h"
 
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define ON_TARGET_CDEG 100
 #define SETTLED_SIPS 2

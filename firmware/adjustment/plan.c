@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The policies: Algorithm 3's walk, and the fewest stops by trying every set of rotations.
-#include "argus/plan.h"
+#include "adjustment/plan.h"
 
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define PITCH_DEG 20
 #define FIRST 1

@@ -3,8 +3,8 @@
 // heading.
 #include <string.h>
 
-#include "argus/angle.h"
-#include "argus/drive.h"
+#include "adjustment/drive.h"
+#include "knowledge/angle.h"
 
 void argus_sweep_begin(argus_drive_t *const self, const argus_plan_t *const plan, const int32_t base_cdeg) {
     memset(self, 0, sizeof *self);
@@ -53,15 +53,4 @@ bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan,
     note_smallest(self, plan, knowledge);
     next_rotation(self, plan);
     return true;
-}
-
-int32_t argus_drive_free_mm(const argus_knowledge_t *const knowledge, const int32_t object_range_mm) {
-    int32_t shortest = INT32_MAX;
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        if (argus_usable(knowledge, i)) {
-            const int32_t since_mm = (int32_t)(knowledge->odometer_mm - knowledge->sonar[i].odometer_mm);
-            shortest = argus_min(shortest, knowledge->sonar[i].reading_mm - since_mm);
-        }
-    }
-    return argus_max(0, argus_min(shortest, ARGUS_P3DX_SONAR_NO_ECHO_MM) - object_range_mm);
 }

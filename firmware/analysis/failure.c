@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Classes the failure over the forward-facing six (paper: Fig. 6).
-#include "argus/failure.h"
+#include "analysis/failure.h"
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define FORWARD_MASK 0x7Eu
 
@@ -11,9 +11,4 @@ argus_failure_t argus_failure_of(const uint16_t disabled) {
                                                ARGUS_IS_MAJOR,       ARGUS_IS_MAJOR, ARGUS_IS_MAJOR,
                                                ARGUS_IS_CATASTROPHIC};
     return by_count[argus_count_bits(disabled & FORWARD_MASK)];
-}
-
-const char *argus_failure_name(const argus_failure_t failure) {
-    static const char name[][16] = {"IsNormal", "IsMinor", "IsMajor", "IsCatastrophic"};
-    return (unsigned)failure < sizeof name / sizeof name[0] ? name[failure] : "?";
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The persistent record: what is remembered of every sonar between missions (SPEC.md, Record).
-#include "argus/record.h"
+#include "analysis/record.h"
 
 #include <string.h>
 
-#include "argus/angle.h"
 #include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 
 #define VERSION 2
 #define HEAD_BYTES 12 // "ARGR", version, sonars, robot, tests, trends

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Algorithm 2 as a state machine (paper: Table III, in the convention and with the corrections named below).
-#include "argus/verify.h"
+#include "analysis/verify.h"
 
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define PITCH_CDEG 2000 // between two neighbours of the ring
 #define LEFT 0u

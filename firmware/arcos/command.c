@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Builds client commands and keeps them in order until they are sent.
-#include "argus/command.h"
+#include "arcos/command.h"
 
 #include <string.h>
 

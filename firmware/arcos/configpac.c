@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Decodes the CONFIGpac, field after field, with 0 for what a short one lacks.
-#include "argus/configpac.h"
+#include "arcos/configpac.h"
 
 #include <string.h>
 

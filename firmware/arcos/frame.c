@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // ARCOS framing: the checksum, building packets, and finding them in any stream of bytes.
-#include "argus/frame.h"
+#include "arcos/frame.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Decodes the standard SIP, whichever of its tail groups are there.
-#include "argus/sip.h"
+#include "arcos/sip.h"
 
 // Offsets of the tables count from the header; those of a packet's data from its type.
 #define DATA_OFFSET(offset) ((offset) - ARCOS_SIP_OFFSET_TYPE)

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Looks at every SIP for what calls for a STOP, and counts the disparities that make a suspect.
-#include "argus/awareness.h"
+#include "awareness/awareness.h"
 
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
+#include "knowledge/profile.h"
 
 #define MOVING_MM_S 5
 #define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
@@ -78,7 +79,7 @@ static void judge_fresh(argus_alarm_t *const alarm, const argus_knowledge_t *con
     if (argus_is_out(knowledge, sonar)) {
         return;
     }
-    if (forward && s->reading_mm >= ARGUS_DEAD_MM && config->profile == ARGUS_PROFILE_PAPER) {
+    if (forward && s->reading_mm >= ARGUS_DEAD_MM && argus_profile(config)->dead_reading) {
         alarm->dead |= (uint16_t)(1u << sonar);
     }
     if (s->reading_mm <= config->object_range_mm && looks_along_motion(knowledge, sonar)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The tolerance range and Algorithm 1 (paper: Fig. 7, eq. 1 and 2, Table II).
-#include "argus/angle.h"
-#include "argus/awareness.h"
+#include "awareness/awareness.h"
+#include "knowledge/angle.h"
 
 // tr = (a1 + a2) (1 / cos 20 - 1). With fewer digits some readings round to the wrong side.
 #define FACE_MM 167

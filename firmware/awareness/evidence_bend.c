@@ -2,8 +2,8 @@
 // A bent axis: whether a sonar sees what the others see some way aside of its bearing.
 #include <string.h>
 
-#include "argus/angle.h"
-#include "evidence_said.h"
+#include "awareness/evidence_said.h"
+#include "knowledge/angle.h"
 
 #define CEILING 3000
 #define TOLD_LEAST 200 // less: what contradicts it says nothing of a bend

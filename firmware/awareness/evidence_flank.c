@@ -2,8 +2,8 @@
 // A wall beside the way: whether the robot slants into one that the sonars ahead do not hear.
 #include <stddef.h>
 
-#include "argus/angle.h"
-#include "evidence_internal.h"
+#include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 
 #define WAY_MM 80 // two readings show a slant when they were made so far apart
 #define STRAIGHT_CDEG 300

@@ -3,9 +3,7 @@
 #ifndef ARGUS_EVIDENCE_INTERNAL_H
 #define ARGUS_EVIDENCE_INTERNAL_H
 
-#include "argus/evidence.h"
-
-#define ARGUS_NO_ECHO_MM ARGUS_P3DX_SONAR_NO_ECHO_MM
+#include "awareness/evidence.h"
 
 // The increments of a test, in hundredths of a nat (DESIGN.md derives them), and its bounds.
 typedef struct {

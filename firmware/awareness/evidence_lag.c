@@ -2,8 +2,8 @@
 // Whether a sonar hands out its echoes some firings late: its readings do what the robot did then.
 #include <stddef.h>
 
-#include "argus/angle.h"
-#include "evidence_said.h"
+#include "awareness/evidence_said.h"
+#include "knowledge/angle.h"
 
 #define SPIN_CDEG 1000
 #define SPREAD_MM 60 // a stretch that varies less is not known again

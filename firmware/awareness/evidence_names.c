@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the tests of a sonar amount to: a suspicion, a name, a conviction (profile argus).
-#include "argus/angle.h"
-#include "evidence_internal.h"
+#include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 
 #define NAME_CONFLICTS 3 // a view is one of a pair: who is wrong takes a third
 #define NAME_PARTNERS 2

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Two readings on one bearing, from one place or nearly: how far apart they were made, and what they say of
 // each other.
-#include "argus/angle.h"
-#include "evidence_internal.h"
+#include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 
 #define NEAREST_MM 150
 #define AGREE_MM 80

@@ -4,8 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "argus/angle.h"
-#include "evidence_said.h"
+#include "awareness/evidence_said.h"
+#include "knowledge/angle.h"
 
 #define REMEMBERED_LEAST_MS 10000u
 #define ASIDE_MS 10000u

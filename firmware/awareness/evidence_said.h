@@ -3,7 +3,7 @@
 #ifndef ARGUS_EVIDENCE_SAID_H
 #define ARGUS_EVIDENCE_SAID_H
 
-#include "evidence_internal.h"
+#include "awareness/evidence_internal.h"
 
 // FAINT: it misses an echo that the air may have swallowed, or the other way round; SAME: the pose of then
 // would have it look where it looks now.

@@ -3,8 +3,8 @@
 // sonars.
 #include <string.h>
 
-#include "argus/angle.h"
-#include "evidence_internal.h"
+#include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 
 #define BIN_CDEG (36000 / ARGUS_SCAN_BINS)
 #define PLACE_MM 120      // farther from where it began, the picture is of another place

@@ -2,8 +2,8 @@
 // What each sonar saw lately, from where and on which bearing.
 #include <stddef.h>
 
-#include "argus/angle.h"
-#include "evidence_said.h"
+#include "awareness/evidence_said.h"
+#include "knowledge/angle.h"
 
 #define SAME_LATERAL_MM 60
 #define SAME_ALONG_MM 200

@@ -2,8 +2,8 @@
 // The tests of a sonar's own trail: stuck, garbage, intermittent, and the loss of an echo.
 #include <stddef.h>
 
-#include "argus/angle.h"
-#include "evidence_internal.h"
+#include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 
 #define GO_ON_MM 60     // a reading goes on with the one before within this,
 #define GO_ON_PERCENT 3 // ... this part of it,

@@ -3,8 +3,8 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "argus/angle.h"
-#include "evidence_internal.h"
+#include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 
 #define VIEW_AGE_MS 10000u
 #define SAME_BEARING_CDEG 300

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Slow statistics of every sonar, their slopes, and what they foretell.
-#include "argus/trend.h"
+#include "awareness/trend.h"
 
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define NO_ECHO_MM ARGUS_P3DX_SONAR_NO_ECHO_MM
 #define UNIT 16000  // a statistic of 1

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Integer trigonometry: a quarter-wave table with linear interpolation, and CORDIC for directions.
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define QUARTER 9000
 #define HALF 18000

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Turns SIPs into readings with their age, a pose that survives the robot's own wraps and resets, and the
 // robot's state.
-#include "argus/knowledge.h"
+#include "knowledge/knowledge.h"
 
 #include <string.h>
 
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #define REST_MM_S 5
 #define ROTATING_MM_S 10  // wheel speed difference beyond which a reading is smeared by rotation
@@ -138,18 +138,6 @@ void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const
     take_readings(self, sip);
 }
 
-void argus_sonar_set_health(argus_sonar_t *const self, const argus_health_t health,
-                            const argus_fault_kind_t kind, const uint32_t now_ms) {
-    if (health == ARGUS_DISABLED && self->health != ARGUS_DISABLED && self->disabled_times < UINT16_MAX) {
-        const bool again = self->disabled_times > 0 || self->disabled_before > 0;
-        self->relapses = (uint8_t)(self->relapses + (again && self->relapses < UINT8_MAX ? 1 : 0));
-        self->disabled_times++;
-    }
-    self->health = health;
-    self->kind = kind;
-    self->since_ms = now_ms;
-}
-
 uint16_t argus_with_health(const argus_knowledge_t *const self, const argus_health_t health) {
     unsigned mask = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
@@ -247,14 +235,4 @@ int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *const self, const in
         nearest = argus_min(nearest, argus_echo_to_centre_mm(self, i, back_mm));
     }
     return nearest;
-}
-
-const char *argus_health_name(const argus_health_t health) {
-    static const char name[][16] = {"UNKNOWN", "HEALTHY", "SUSPECT", "DISABLED", "PROBATION", "STALE"};
-    return (unsigned)health < sizeof name / sizeof name[0] ? name[health] : "?";
-}
-
-const char *argus_kind_name(const argus_fault_kind_t kind) {
-    static const char name[][16] = {"", "off", "silent", "stuck", "wrong", "garbage", "slow", "intermittent"};
-    return (unsigned)kind < sizeof name / sizeof name[0] ? name[kind] : "?";
 }

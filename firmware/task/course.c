@@ -2,8 +2,8 @@
 // The course: waypoints in order, and how far the goal is.
 #include <string.h>
 
-#include "argus/angle.h"
-#include "argus/task.h"
+#include "knowledge/angle.h"
+#include "task/task.h"
 
 void argus_task_init(argus_task_t *const self) {
     memset(self, 0, sizeof *self);

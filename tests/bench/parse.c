@@ -6,8 +6,8 @@
 #include <time.h>
 
 #include "../unit/support/captures.c"
-#include "argus/knowledge.h"
-#include "argus/sip.h"
+#include "arcos/sip.h"
+#include "knowledge/knowledge.h"
 
 #define ROUNDS 400
 #define READ_BYTES 4096

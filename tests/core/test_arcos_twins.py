@@ -130,7 +130,9 @@ def twin(tmp_path_factory: pytest.TempPathFactory) -> Twin:
         "-fsanitize=undefined",
     ]
     subprocess.run(
-        ["gcc", *flags, "-I", ROOT / "firmware/include", "-o", library, *sources], check=True, timeout=120
+        ["gcc", *flags, "-I", ROOT / "firmware", "-I", ROOT / "firmware/include", "-o", library, *sources],
+        check=True,
+        timeout=600,
     )
     return Twin(library)
 

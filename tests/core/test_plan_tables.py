@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ["adjustment/plan.c", "analysis/failure.c", "knowledge/angle.c", "knowledge/geometry.c"]
 PROGRAM = r"""
 #include <stdio.h>
-#include "argus/plan.h"
+#include "adjustment/plan.h"
 int main(void) {
     for (int policy = 0; policy <= 1; policy++) {
         for (unsigned mask = 0; mask < 128; mask += 2) {
@@ -66,7 +66,18 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> Table:
     firmware = ROOT / "firmware"
     sources = [firmware / name for name in SOURCES]
     subprocess.run(
-        ["gcc", "-std=c11", "-I", firmware / "include", "-o", folder / "plan", folder / "main.c", *sources],
+        [
+            "gcc",
+            "-std=c11",
+            "-I",
+            firmware,
+            "-I",
+            firmware / "include",
+            "-o",
+            folder / "plan",
+            folder / "main.c",
+            *sources,
+        ],
         check=True,
     )
     text = subprocess.run([str(folder / "plan")], check=True, stdout=subprocess.PIPE, text=True).stdout

@@ -2,9 +2,9 @@
 // Opens the ARCOS part of the firmware to tests/core/test_arcos_twins.py as flat arrays, one call per stream.
 #include <string.h>
 
-#include "argus/command.h"
-#include "argus/configpac.h"
-#include "argus/sip.h"
+#include "arcos/command.h"
+#include "arcos/configpac.h"
+#include "arcos/sip.h"
 
 typedef struct {
     uint8_t *at;

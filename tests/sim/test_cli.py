@@ -40,7 +40,7 @@ def command(*arguments: str) -> list[str]:
 
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        command(*arguments), cwd=ROOT, capture_output=True, text=True, timeout=60, check=False
+        command(*arguments), cwd=ROOT, capture_output=True, text=True, timeout=600, check=False
     )
 
 
@@ -67,7 +67,7 @@ def code_of(arguments: list[str]) -> int:
 
 def end(process: subprocess.Popen[str], number: int) -> tuple[int, str, str]:
     process.send_signal(number)
-    out, error = process.communicate(timeout=20)
+    out, error = process.communicate(timeout=600)
     said = [line for line in error.splitlines(keepends=True) if "the host was late" not in line]
     return process.returncode, out, "".join(said)
 
@@ -108,7 +108,7 @@ def test_a_robot_on_tcp_shows_its_injected_faults(tmp_path: Path) -> None:
     faults = ["--fault", "off:3", "--fault", "bumper:2@0.5s-90s"]
     with simulator("--world", WORLD, "--tcp", "0", *faults, "--truth", str(truth)) as (process, address):
         host, _, number = address.rpartition(":")
-        client = socket.create_connection((host, int(number)), timeout=20)
+        client = socket.create_connection((host, int(number)), timeout=600)
         unframer = Unframer()
         got: list[Packet] = []
         client.sendall(cmd("PULSE") + cmd("OPEN") + cmd("CLOSE") + cmd("OPEN"))

@@ -386,7 +386,7 @@ def test_tcp_session_one_client_at_a_time_and_reconnection() -> None:
     address = (host, int(number))
     link.open = lambda: None  # type: ignore[method-assign]
     with served(link, server):
-        client = socket.create_connection(address, timeout=5)
+        client = socket.create_connection(address, timeout=600)
         unframer = Unframer()
 
         def read(count: int) -> list[Packet]:
@@ -402,13 +402,13 @@ def test_tcp_session_one_client_at_a_time_and_reconnection() -> None:
             read(1)
         client.sendall(cmd("OPEN", 1))
         assert len(sips(read(3))) >= 3
-        second = socket.create_connection(address, timeout=5)
+        second = socket.create_connection(address, timeout=600)
         assert second.recv(10) == b""
         second.close()
         assert sips(read(2))
         client.close()
         time.sleep(0.3)
-        client = socket.create_connection(address, timeout=5)
+        client = socket.create_connection(address, timeout=600)
         unframer.clear()
         assert len(sips(read(2))) >= 2
         client.sendall(cmd("CLOSE", 1))

@@ -26,7 +26,7 @@ HINT: Final = "set ARGUS_CORE to a libargus.so"
 def sources() -> Path:
     """Return the folder that holds firmware/ and the shim: the source tree, or what pip installed."""
     for place in (_TREE, _INSTALLED):
-        if (place / _SHIM).is_file() and (place / "firmware" / "include").is_dir():
+        if (place / _SHIM).is_file() and (place / "firmware").is_dir():
             return place
     raise LogError(f"libargus.so is not built, and its sources are not here: {HINT}")
 
@@ -57,7 +57,7 @@ def _compile(library: Path, root: Path, files: list[Path]) -> None:
     if not shutil.which(words[0]):
         raise LogError(f"libargus.so is not built, and there is no C compiler: install gcc, or {HINT}")
     print(f"argus-log: compiling the fault manager, once, into {library}", file=sys.stderr)
-    includes = [f"-I{root / 'firmware' / 'include'}", f"-I{root / 'firmware'}"]
+    includes = [f"-I{root / 'firmware'}", f"-I{root / 'firmware/include'}"]
     try:
         library.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=library.parent) as folder:

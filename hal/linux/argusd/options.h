@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "argus/knowledge.h"
+#include "argus/argus.h"
 #include "hal/link_spec.h"
 
 typedef enum {

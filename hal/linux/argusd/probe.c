@@ -4,7 +4,7 @@
 
 #include <poll.h>
 
-#include "argus/frame.h"
+#include "arcos/frame.h"
 
 #define LISTEN_MS 300u
 #define ANSWER_MS 350u

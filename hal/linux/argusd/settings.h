@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "argus/config.h"
+#include "argus/argus.h"
 
 enum {
 #define SETTINGS_ROW(key, def, min, max, unit, choices, meaning) SETTINGS_##key,

@@ -3,7 +3,7 @@
 #ifndef ARGUSD_STATE_H
 #define ARGUSD_STATE_H
 
-#include "argus/manager.h"
+#include "argus/argus.h"
 #include "hal/store.h"
 
 typedef struct {

@@ -75,7 +75,7 @@ def robots(folder: Path, *arguments: str) -> Iterator[list[str]]:
         yield [process.stdout.readline().strip() for _ in SHARES]
     finally:
         process.terminate()
-        process.wait(10)
+        process.wait(600)
         process.stdout.close() if process.stdout else None
 
 

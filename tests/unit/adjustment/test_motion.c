@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: settled means two SIPs in a row at rest (a turn: within 1 degree), and readings of later
 // SIPs only.
-#include "argus/motion.h"
+#include "adjustment/motion.h"
 
 #include <string.h>
 

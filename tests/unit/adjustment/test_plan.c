@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: Table IV, bits that are none of the six, and what covers what; all 62 lists: tests/core.
-#include "argus/plan.h"
+#include "adjustment/plan.h"
 
 #include "unity.h"
 

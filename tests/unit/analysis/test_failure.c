@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the failure state of every fault map (paper: Fig. 6), whatever the other sonars do.
-#include "argus/angle.h"
-#include "argus/failure.h"
+#include "analysis/failure.h"
+#include "knowledge/angle.h"
 
 #include "unity.h"
 
@@ -23,9 +23,9 @@ void test_all_64_maps(void) {
 }
 
 void test_names(void) {
-    TEST_ASSERT_EQUAL_STRING("IsNormal", argus_failure_name(ARGUS_IS_NORMAL));
-    TEST_ASSERT_EQUAL_STRING("IsMinor", argus_failure_name(ARGUS_IS_MINOR));
-    TEST_ASSERT_EQUAL_STRING("IsMajor", argus_failure_name(ARGUS_IS_MAJOR));
-    TEST_ASSERT_EQUAL_STRING("IsCatastrophic", argus_failure_name(ARGUS_IS_CATASTROPHIC));
-    TEST_ASSERT_EQUAL_STRING("?", argus_failure_name((argus_failure_t)4));
+    TEST_ASSERT_EQUAL_STRING("IsNormal", argus_name(ARGUS_NAME_FAILURE, ARGUS_IS_NORMAL));
+    TEST_ASSERT_EQUAL_STRING("IsMinor", argus_name(ARGUS_NAME_FAILURE, ARGUS_IS_MINOR));
+    TEST_ASSERT_EQUAL_STRING("IsMajor", argus_name(ARGUS_NAME_FAILURE, ARGUS_IS_MAJOR));
+    TEST_ASSERT_EQUAL_STRING("IsCatastrophic", argus_name(ARGUS_NAME_FAILURE, ARGUS_IS_CATASTROPHIC));
+    TEST_ASSERT_EQUAL_STRING("?", argus_name(ARGUS_NAME_FAILURE, (int)4));
 }

@@ -2,13 +2,13 @@
 // Rule under attack (S4, active verification): first whoever hears nothing is turned onto what another heard,
 // a few times at most; then looks to either side of the heading, as many as are needed and no more, half a
 // turn when one array is deaf, and back to the heading in the end.
-#include "argus/inquiry.h"
+#include "analysis/inquiry.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "argus/angle.h"
 #include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 #include "unity.h"
 
 #define AIMS_MAX 4

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: Algorithm 2: which way it turns, whom it hears, what it concludes, and that it always
 // turns back.
-#include "argus/verify.h"
+#include "analysis/verify.h"
 
 #include <string.h>
 
+#include "health.h"
 #include "unity.h"
 
 #define BASE 17500 // so that +20 degrees wraps
@@ -117,7 +118,7 @@ void test_one_usable_witness(void) {
         for (int how = 0; how < 2; how++) {
             setUp();
             if (how == 0) {
-                argus_sonar_set_health(&k.sonar[out], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+                put_health(&k.sonar[out], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
             } else {
                 k.sonar[out].reading_mm = 5000;
             }
@@ -137,8 +138,8 @@ void test_one_usable_witness(void) {
 }
 
 void test_no_usable_witness_leaves_it_unproven(void) {
-    argus_sonar_set_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
-    argus_sonar_set_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+    put_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+    put_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
     argus_verify_begin(&v, 3, BASE);
     read(3, 1000);
     TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
@@ -192,7 +193,7 @@ void test_both_witnesses_lost_leave_it_unproven(void) {
 void test_a_witness_disabled_on_the_way_is_not_waited_for(void) {
     recheck(3, 1000, 2000);
     turned_right();
-    argus_sonar_set_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_SILENT, 0);
+    put_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_SILENT, 0);
     TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
     turned_left();
     testify(4, 1900);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: commands carry their sign in the argument type, leave whole and in order, and STOP
 // overtakes.
-#include "argus/command.h"
+#include "arcos/command.h"
 
 #include <stdio.h>
 #include <string.h>

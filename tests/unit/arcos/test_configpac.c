@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: every field of a CONFIGpac is read from its place, and what a short one lacks reads as
 // 0.
-#include "argus/configpac.h"
+#include "arcos/configpac.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: an intact packet is never lost and none is invented, whatever surrounds it and however
 // it arrives, and a false COUNT delays the next SIP by at most one.
-#include "argus/frame.h"
+#include "arcos/frame.h"
 
 #include <stdio.h>
 #include <stdlib.h>

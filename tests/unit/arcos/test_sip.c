@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: a SIP is decoded by the length that is there, field by field, and a lying sonar count is
 // refused.
-#include "argus/sip.h"
+#include "arcos/sip.h"
 
 #include <string.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): a sonar is only ever turned onto what another one, that is relied on,
 // lately heard near by from the same place, and only where that is news; what moves beside it is no evidence.
-#include "argus/evidence.h"
+#include "awareness/evidence.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "argus/angle.h"
 #include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 #include "scene.h"
 #include "unity.h"
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): a sonar is bent when it sees what the others see some way aside of its
 // bearing; what they do not see there either, and a well sonar's reading here, speaks against it.
-#include "argus/evidence.h"
+#include "awareness/evidence.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "argus/angle.h"
 #include "awareness/evidence_said.h"
+#include "health.h"
+#include "knowledge/angle.h"
 #include "scene.h"
 #include "unity.h"
 
@@ -213,7 +214,7 @@ void test_who_is_back_is_bent_no_more(void) {
     scene_init(&s, 1, START_MS);
     for (int back = 0; back < 2; back++) {
         const argus_health_t health = back ? ARGUS_HEALTHY : ARGUS_DISABLED;
-        argus_sonar_set_health(&s.k.sonar[ME], health, ARGUS_KIND_NONE, s.k.sip_ms);
+        put_health(&s.k.sonar[ME], health, ARGUS_KIND_NONE, s.k.sip_ms);
         s.e.peers.of[ME].bend[1] = 2000;
         argus_seen_forget(&s.e.peers.of[ME]);
         for (int i = 0; i < 9; i++) {
@@ -248,7 +249,7 @@ static void tour(unsigned seed, int sonar, int bent_deg, scene_fault_t fault) {
 }
 
 // Of those with a bent axis nearly all come to what names one, and of those that are well hardly any.
-void test_a_bent_axis_shows_in_a_room_and_only_there(void) {
+void test_a_bent_axis_shows_in_a_room_and_only_there(void) { // soak
     static const int bends[] = {-25, -20, -15, 15, 20, 25};
     const scene_fault_t none = {ARGUS_KIND_NONE, 0};
     int bent = 0;
@@ -270,7 +271,7 @@ void test_a_bent_axis_shows_in_a_room_and_only_there(void) {
 }
 
 // A fault of another kind is seldom taken for a bent axis.
-void test_other_faults_are_seldom_called_wrong_for_a_bend(void) {
+void test_other_faults_are_seldom_called_wrong_for_a_bend(void) { // soak
     static const scene_fault_t faults[] = {{ARGUS_KIND_SLOW, 3},
                                            {ARGUS_KIND_SLOW, 8},
                                            {ARGUS_KIND_INTERMITTENT, 50},

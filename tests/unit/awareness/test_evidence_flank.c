@@ -4,9 +4,9 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "argus/config.h"
 #include "awareness/evidence_internal.h"
 #include "scene.h"
+#include "knowledge/config.h"
 #include "unity.h"
 
 #define RAD (3.14159265358979323846 / 180)

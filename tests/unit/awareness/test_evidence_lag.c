@@ -2,14 +2,14 @@
 // Rule under attack (profile argus): a sonar is late when its readings change with what the robot did some
 // firings ago; one whose readings change with the robot at once is never called slow, nor is anyone by what
 // walks about.
-#include "argus/evidence.h"
+#include "awareness/evidence.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "argus/angle.h"
 #include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 #include "scene.h"
 #include "unity.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the integer maps stay within the errors that angle.h promises, over dense samples.
-#include "argus/angle.h"
+#include "knowledge/angle.h"
 
 #include <math.h>
 #include <stdio.h>

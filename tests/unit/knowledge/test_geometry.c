@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the ring of the firmware is the P3-DX's: angles, neighbours 20 degrees apart, left and
 // right alike.
-#include "argus/knowledge.h"
+#include "knowledge/knowledge.h"
 
 #include <math.h>
 

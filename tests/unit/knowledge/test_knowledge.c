@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the pose survives the robot's wraps, units and resets; a reading is fresh only if listed
 // after the mark.
-#include "argus/knowledge.h"
+#include "knowledge/knowledge.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "argus/angle.h"
+#include "health.h"
+#include "knowledge/angle.h"
 #include "unity.h"
 
 static argus_knowledge_t k;
@@ -176,7 +177,7 @@ void test_usable_readings(void) {
     TEST_ASSERT_FALSE(argus_usable(&k, 2));
     sip.sonar[0].range_mm = 800;
     take(1000);
-    argus_sonar_set_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_WRONG, now_ms);
+    put_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_WRONG, now_ms);
     TEST_ASSERT_FALSE(argus_usable(&k, 2));
     TEST_ASSERT_EQUAL_HEX16(4, argus_disabled(&k));
     TEST_ASSERT_EQUAL(1, k.sonar[2].disabled_times);
@@ -215,7 +216,7 @@ void test_nearest_echo_leaves_out_the_disabled_and_may_be_of_a_place_farther_bac
     TEST_ASSERT_INT32_WITHIN(3, 468, argus_echo_to_centre_mm(&k, 3, 0));
     TEST_ASSERT_INT32_WITHIN(3, 568, argus_echo_to_centre_mm(&k, 4, 0));
     TEST_ASSERT_EQUAL(INT32_MAX, argus_echo_to_centre_mm(&k, 2, 0)); // not read
-    argus_sonar_set_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
+    put_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
     TEST_ASSERT_INT32_WITHIN(3, 568, argus_nearest_to_centre_mm(&k, 0));
     TEST_ASSERT_EQUAL(INT32_MAX, argus_echo_to_centre_mm(&k, 3, 0));
     argus_knowledge_init(&k);

@@ -17,7 +17,7 @@
 static void complain(robot_t *robot, const char *what, int value) {
     if (robot->violation[0] == '\0') {
         snprintf(robot->violation, sizeof robot->violation, "t %u ms, mode %s: %s (%d)",
-                 (unsigned)robot->t_ms, argus_mode_name(robot->argus.mode), what, value);
+                 (unsigned)robot->t_ms, argus_name(ARGUS_NAME_MODE, robot->argus.mode), what, value);
     }
 }
 
@@ -72,7 +72,7 @@ void robot_init(robot_t *robot, const argus_config_t *config, uint32_t start_ms)
     for (int i = 0; i < 16; i++) {
         robot->shown[i] = -1;
     }
-    argus_init(&robot->argus, config, start_ms);
+    argus_manager_init(&robot->argus, config, start_ms);
     argus_link_up(&robot->argus, start_ms);
 }
 
@@ -506,7 +506,7 @@ static void watch(robot_t *robot, const robot_command_t *sent) {
     }
     const bool motion =
         c == ARCOS_CMD_MOVE || c == ARCOS_CMD_HEAD || (c == ARCOS_CMD_ENABLE && sent->argument != 0);
-    if (robot->argus.passive && motion) {
+    if (robot->argus.orders.passive && motion) {
         complain(robot, "passive, yet commands a motion", c);
     }
     watch_motion(robot, sent);
@@ -578,7 +578,8 @@ void robot_deliver(robot_t *robot, const uint8_t *bytes, size_t count) {
 
 static bool is_answered(const robot_t *robot, bool open) {
     const argus_t *argus = &robot->argus;
-    return open && argus_session_is_open(&argus->session) && !argus->passive && !argus->shutdown;
+    return open && argus_session_is_open(&argus->session) && !argus->orders.passive &&
+           !argus->orders.shutdown;
 }
 
 static void send_sip(robot_t *robot) {

@@ -4,7 +4,7 @@
 #ifndef TEST_ROBOT_H
 #define TEST_ROBOT_H
 
-#include "argus/manager.h"
+#include "supervisor/manager.h"
 
 #define ROBOT_COMMANDS_MAX 40000
 #define ROBOT_EVENTS_MAX 40000

@@ -3,7 +3,7 @@
 #ifndef TEST_SCENE_H
 #define TEST_SCENE_H
 
-#include "argus/evidence.h"
+#include "awareness/evidence.h"
 
 #define SCENE_WALLS_MAX 64
 #define SCENE_PAST 8

@@ -13,6 +13,7 @@
 #include "driver.h"
 #include "hal/fake_clock.h"
 #include "hal/fake_link.h"
+#include "supervisor/manager.h"
 #include "unity.h"
 #include "wire_robot.h"
 
@@ -62,7 +63,7 @@ static void run(uint32_t ms) {
 static bool said(uint16_t id) {
     argus_event_t event;
     bool found = false;
-    while (argus_next_event(&driver.core, &event)) {
+    while (argus_next_event(driver.core, &event)) {
         found = found || event.id == id;
     }
     return found;
@@ -70,11 +71,11 @@ static bool said(uint16_t id) {
 
 static void drive(void) {
     static const argus_point_t goal = {3000, 0};
-    TEST_ASSERT_TRUE(argus_set_course(&driver.core, &goal, 1));
+    TEST_ASSERT_TRUE(argus_set_course(driver.core, &goal, 1));
     driver_attach(&driver, hal_fake_link(&fake));
     run(4000);
     TEST_ASSERT_TRUE(robot.open);
-    TEST_ASSERT_EQUAL_INT(ARGUS_MODE_DRIVING, driver.core.mode);
+    TEST_ASSERT_EQUAL_INT(ARGUS_MODE_DRIVING, driver.core->mode);
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_MOVE]);
 }
 
@@ -135,9 +136,9 @@ void test_short_reads_and_a_noisy_wire_are_survived(void) {
     fake.from_robot = (hal_fake_faults_t){.drop_permille = 5, .corrupt_permille = 5};
     for (int i = 0; i < 100; i++) {
         run(100);
-        TEST_ASSERT_EQUAL_INT(0, argus_invariants_broken(&driver.core));
+        TEST_ASSERT_EQUAL_INT(0, argus_invariants_broken(driver.core));
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(0, driver.core.session.parser.bad_checksums);
+    TEST_ASSERT_GREATER_THAN_UINT32(0, driver.core->session.parser.bad_checksums);
 }
 
 void test_an_error_of_the_link_is_said_and_stops_the_use_of_it(void) {
@@ -174,12 +175,12 @@ void test_no_translation_after_reconnecting_before_a_full_check(void) {
     hal_fake_link_init(&fake, 2, &clock_);
     robot_init(&robot);
     driver_attach(&driver, hal_fake_link(&fake));
-    TEST_ASSERT_FALSE(driver.core.checked);
-    for (int i = 0; i < 100 && !driver.core.checked; i++) {
+    TEST_ASSERT_FALSE(driver.core->checked);
+    for (int i = 0; i < 100 && !driver.core->checked; i++) {
         TEST_ASSERT_EQUAL_UINT32(0, robot.commands[ARCOS_CMD_MOVE] + robot.commands[ARCOS_CMD_VEL2]);
         run(50);
     }
-    TEST_ASSERT_TRUE(driver.core.checked);
+    TEST_ASSERT_TRUE(driver.core->checked);
     run(2000);
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_MOVE]);
     TEST_ASSERT_GREATER_THAN_UINT32(0, moves);
@@ -187,10 +188,10 @@ void test_no_translation_after_reconnecting_before_a_full_check(void) {
 
 void test_shutdown_closes_in_order(void) {
     drive();
-    argus_shutdown(&driver.core, time_.now_ms);
+    argus_shutdown(driver.core, time_.now_ms);
     driver_transmit(&driver);
     run(3000);
-    TEST_ASSERT_TRUE(argus_closed(&driver.core));
+    TEST_ASSERT_TRUE(argus_closed(driver.core));
     TEST_ASSERT_FALSE(robot.open);
     TEST_ASSERT_EQUAL_UINT8(ARCOS_CMD_CLOSE, robot.last[0]);
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_STOP]);
@@ -234,6 +235,111 @@ void test_a_tcp_link_that_closes_is_opened_again_with_pauses(void) {
     TEST_ASSERT_TRUE(driver.up);
     TEST_ASSERT_EQUAL_UINT32(1, driver.reopened);
     driver_close(&driver);
+    close(server);
+}
+
+static char reason[1024];
+
+static int reasons(const char *part) {
+    int told = 0;
+    while (driver_reason(&driver, reason, sizeof reason)) {
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(reason, part), reason);
+        TEST_ASSERT_NULL(strchr(reason, '\n'));
+        told++;
+    }
+    return told;
+}
+
+static void pass(uint32_t ms) {
+    for (uint32_t passed = 0; passed < ms; passed += 10) {
+        time_.now_ms += 10;
+        driver_process(&driver);
+        driver_receive(&driver);
+    }
+}
+
+void test_why_a_link_stays_away_is_told_once_and_again_when_it_changes(void) {
+    char folder[] = "/tmp/argus-driver-XXXXXX";
+    char device[64];
+    char other[300];
+    int master = -1;
+    int slave = -1;
+    argus_config_t config;
+    argus_config_default(&config);
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, device, NULL, NULL));
+    fcntl(master, F_SETFL, O_NONBLOCK);
+    spec = (hal_link_spec_t){.scheme = HAL_SCHEME_SERIAL, .baud = 9600};
+    snprintf(spec.path, sizeof spec.path, "%s/ttyUSB0", folder);
+    snprintf(other, sizeof other, "%s/ttyUSB1", folder);
+    TEST_ASSERT_EQUAL_INT(0, symlink(device, spec.path));
+    driver_init(&driver, &config, clock_, &spec, &transport);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 0));
+    TEST_ASSERT_EQUAL_INT(0, reasons(""));
+    // The adapter comes back under the next number.
+    unlink(spec.path);
+    TEST_ASSERT_EQUAL_INT(0, symlink(device, other));
+    close(master);
+    pass(10000);
+    TEST_ASSERT_EQUAL_INT(1, reasons("ttyUSB0: no such file; "));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(reason, other), reason);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(reason, "/dev/serial/by-id"), reason);
+    pass(10000);
+    TEST_ASSERT_EQUAL_INT(0, reasons(""));
+    // Something else is wrong now.
+    TEST_ASSERT_EQUAL_INT(0, symlink("/dev/null", spec.path));
+    pass(5000);
+    TEST_ASSERT_EQUAL_INT(1, reasons("not a serial port"));
+    unlink(spec.path);
+    close(slave);
+    TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, device, NULL, NULL));
+    TEST_ASSERT_EQUAL_INT(0, symlink(device, spec.path));
+    pass(5000);
+    TEST_ASSERT_TRUE(driver.up);
+    TEST_ASSERT_EQUAL_INT(1, reasons("open again"));
+    driver_close(&driver);
+    close(master);
+    close(slave);
+    unlink(spec.path);
+    unlink(other);
+    rmdir(folder);
+}
+
+void test_a_server_that_closes_at_once_is_told_once_and_asked_less_often(void) {
+    int server = -1;
+    int accepted = 0;
+    argus_config_t config;
+    argus_config_default(&config);
+    spec = (hal_link_spec_t){.scheme = HAL_SCHEME_TCP, .port = listen_here(&server), .host = "127.0.0.1"};
+    fcntl(server, F_SETFL, O_NONBLOCK);
+    driver_init(&driver, &config, clock_, &spec, &transport);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 1000));
+    int told = 0;
+    for (int i = 0; i < 2000; i++) { // 20 s
+        const int client = accept(server, NULL, NULL);
+        if (client >= 0) {
+            accepted++;
+            close(client);
+        }
+        pass(10);
+        told += reasons("the other end accepts and closes at once");
+    }
+    TEST_ASSERT_EQUAL_INT(1, told);
+    TEST_ASSERT_TRUE(driver_is_turned_away(&driver));
+    TEST_ASSERT_TRUE_MESSAGE(accepted >= 4 && accepted <= 12, "pauses of 0.5, 1, 2, 4, 4 s");
+    // The other client has gone: bytes come.
+    int client = -1;
+    for (int i = 0; i < 1000 && client < 0; i++) {
+        pass(10);
+        client = accept(server, NULL, NULL);
+    }
+    TEST_ASSERT_TRUE(client >= 0);
+    TEST_ASSERT_EQUAL_INT(4, write(client, "xxxx", 4));
+    pass(2000);
+    TEST_ASSERT_EQUAL_INT(1, reasons("open again"));
+    TEST_ASSERT_FALSE(driver_is_turned_away(&driver));
+    driver_close(&driver);
+    close(client);
     close(server);
 }
 

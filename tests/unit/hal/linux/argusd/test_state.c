@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "state.h"
+#include "supervisor/manager.h"
 #include "unity.h"
 
 static argus_t core;
@@ -23,7 +24,7 @@ static void remove_slot(const char *end) {
 static void new_core(void) {
     argus_config_t config;
     argus_config_default(&config);
-    argus_init(&core, &config, 0);
+    argus_manager_init(&core, &config, 0);
 }
 
 static void open_state(void) {

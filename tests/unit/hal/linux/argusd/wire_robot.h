@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "argus/frame.h"
+#include "arcos/frame.h"
 
 #define ROBOT_OUT 1024
 

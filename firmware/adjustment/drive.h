@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The sweep through the plan's rotations (paper: Fig. 10).
+#ifndef ARGUS_DRIVE_H
+#define ARGUS_DRIVE_H
+
+#include "adjustment/plan.h"
+#include "knowledge/knowledge.h"
+
+// Walks the rotations of a plan. Like the verification it only says which heading it wants.
+typedef struct {
+    uint8_t index; // rotation at work
+    bool home;     // on the way back to the base heading
+    bool done;     // back on it, all rotations read
+    int32_t base_cdeg;
+    uint16_t smallest_mm; // smallest compensating reading so far
+    int8_t smallest_of;   // the disabled sonar whose bearing showed it
+    uint8_t smallest_at;  // rotation index
+} argus_drive_t;
+
+void argus_sweep_begin(argus_drive_t *self, const argus_plan_t *plan, int32_t base_cdeg);
+int32_t argus_sweep_heading_cdeg(const argus_drive_t *self, const argus_plan_t *plan);
+
+// Call on each SIP while settled on that heading since `mark`. True when the wanted heading changed or it is
+// done.
+bool argus_sweep_step(argus_drive_t *self, const argus_plan_t *plan, const argus_knowledge_t *knowledge,
+                      const argus_mark_t *mark);
+
+#endif

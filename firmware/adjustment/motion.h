@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// One motion at a time: a turn to a heading or a move by a distance, watched until the robot has settled.
+#ifndef ARGUS_MOTION_H
+#define ARGUS_MOTION_H
+
+#include "arcos/command.h"
+#include "argus/argus.h"
+#include "knowledge/knowledge.h"
+
+typedef enum {
+    ARGUS_MOTION_NONE,
+    ARGUS_MOTION_TURN,
+    ARGUS_MOTION_MOVE,
+    ARGUS_MOTION_STOP
+} argus_motion_kind_t;
+
+typedef struct {
+    argus_motion_kind_t kind;
+    int32_t target_cdeg; // TURN: course frame, as commanded (whole degrees of the robot's own heading)
+    int32_t target_mm;   // MOVE: signed
+    uint32_t issued_ms;
+    uint8_t on_target;  // consecutive SIPs that meet the end condition
+    uint8_t off_target; // consecutive SIPs at rest that do not
+    uint8_t tries;
+    int32_t speed_mm_s; // last SETV, 0: the robot's own
+    bool settled;
+    bool failed;       // the robot does not do it
+    argus_mark_t mark; // when it settled
+} argus_motion_t;
+
+void argus_motion_init(argus_motion_t *self);
+void argus_motion_turn(argus_motion_t *self, argus_outbox_t *out, const argus_knowledge_t *knowledge,
+                       int32_t heading_cdeg, uint32_t now_ms);
+// SETV goes before the MOVE when the speed differs from the last one.
+void argus_motion_move(argus_motion_t *self, argus_outbox_t *out, int32_t distance_mm, int32_t speed_mm_s,
+                       uint32_t now_ms);
+// Sends STOP and waits for rest.
+void argus_motion_stop(argus_motion_t *self, argus_outbox_t *out, uint32_t now_ms);
+// Waits for rest on whatever heading, without a command.
+void argus_motion_hold(argus_motion_t *self, uint32_t now_ms);
+
+// While translating: a heading correction that is not waited for.
+void argus_motion_steer(argus_outbox_t *out, const argus_knowledge_t *knowledge, int32_t heading_cdeg);
+
+// After each SIP. Settled: two consecutive SIPs with |L|, |R| <= 5 mm/s (a turn: heading within 1 degree of
+// the target). A turn at rest off its target is commanded again, three times at most, then it failed.
+void argus_motion_sip(argus_motion_t *self, argus_outbox_t *out, const argus_knowledge_t *knowledge,
+                      uint32_t now_ms);
+
+#endif

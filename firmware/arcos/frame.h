@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// ARCOS framing: bytes to packets and back (SPEC.md, Framing).
+#ifndef ARGUS_FRAME_H
+#define ARGUS_FRAME_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "arcos/gen_arcos.h"
+
+// Largest packet on the wire: header, COUNT and 255 bytes.
+#define ARGUS_FRAME_TOTAL_MAX (ARCOS_FRAME_COUNT_MAX + 3)
+
+// The 16-bit ARCOS checksum of `count` data bytes. Cost: one pass.
+uint16_t argus_frame_checksum(const uint8_t *data, size_t count);
+
+// Wraps `count` data bytes (1..195) into a packet; returns its length, or 0 when it does not fit `capacity`
+// or would be longer than ARCOS_FRAME_SEND_TOTAL_MAX.
+size_t argus_frame_encode(uint8_t *packet, size_t capacity, const uint8_t *data, size_t count);
+
+// A received packet: its data bytes (type first), valid until the next call on the parser.
+typedef struct {
+    const uint8_t *data;
+    uint8_t count; // data bytes, 1..253
+} argus_packet_t;
+
+// Two of the longest packets: room to leave a packet where it is while the next one is received.
+#define ARGUS_PARSER_BYTES (2 * ARGUS_FRAME_TOTAL_MAX)
+
+// Finds packets in a stream of any bytes. After a bad checksum or an impossible COUNT it goes on one byte
+// after the rejected header, so an intact packet behind a damaged one is never lost. A packet that is
+// incomplete and doubtful loses to a complete one with a good checksum inside it, so a false COUNT delays the
+// next SIP by at most one. Doubtful is: a SIP whose COUNT does not fit its sonar count; any other packet
+// longer than its type ever is, or broken off for 30 ms. A SIP whose two counts agree is never doubted, for a
+// position may look like a packet (x = -1030 mm is FA FB). What is owed longer than its COUNT takes at 9600
+// baud + 100 ms is given up once the line is silent.
+typedef struct {
+    uint8_t held[ARGUS_PARSER_BYTES];
+    uint16_t first;    // the bytes held begin here
+    uint16_t length;   // bytes held
+    uint16_t searched; // every packet inside the first one that ends up to here has been found bad
+    bool broken_off;   // 30 ms went by without a byte while a packet was incomplete
+    uint32_t last_byte_ms;
+    uint32_t since_ms; // the first byte held arrived then at the latest
+    uint32_t packets;  // monotonic counters
+    uint32_t bad_checksums;
+    uint32_t bad_counts;
+    uint32_t skipped_bytes; // bytes that belong to no accepted packet
+    uint32_t timeouts;
+} argus_parser_t;
+
+void argus_parser_init(argus_parser_t *self);
+// Drops what is held; the counters go on.
+void argus_parser_flush(argus_parser_t *self);
+
+// Offers bytes; takes as many as it can use before a packet is complete and returns how many it took (0 when
+// a packet is waiting to be fetched first). Loop: push, then fetch with argus_parser_next() until false,
+// until all bytes are taken.
+size_t argus_parser_push(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count);
+
+// The next complete packet, or false. Also applies the time rules: call it from the periodic process too.
+bool argus_parser_next(argus_parser_t *self, uint32_t now_ms, argus_packet_t *packet);
+
+#endif

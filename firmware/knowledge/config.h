@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// The arithmetic of S5 that others than argus_config_check() need.
+#ifndef ARGUS_CONFIG_H
+#define ARGUS_CONFIG_H
+
+#include "argus/argus.h"
+
+// The way, in mm, from a reading that asks for a stop to standstill at the driving speed (S5: v t + v^2 / (2
+// decel)).
+int32_t argus_config_stop_mm(const argus_config_t *config);
+
+// Largest reading, in mm, that a front sonar gives of a point which the body sweeps when it moves `step_mm`
+// ahead.
+int32_t argus_config_reach_mm(int32_t step_mm);
+
+#endif

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// Knowledge (the K of MAPE-K): sonar geometry, readings and their age, the health of every sonar, where the
+// robot is.
+#ifndef ARGUS_KNOWLEDGE_H
+#define ARGUS_KNOWLEDGE_H
+
+#include "arcos/sip.h"
+#include "argus/argus.h"
+#include "robot/gen_p3dx.h"
+
+#define ARGUS_FLANK_LEFT 0 // look abeam of the front
+#define ARGUS_FLANK_RIGHT 7
+#define ARGUS_FLANK_NEAR_MM 350 // what they read of a wall that the way may slant into
+#define ARGUS_FORWARD_MASK 0x7Eu
+#define ARGUS_REAR_MASK 0x7E00u // 9..14: what looks along a backward motion
+
+// Where and whither a sonar looks, robot frame.
+typedef struct {
+    int16_t x_mm;
+    int16_t y_mm;
+    int16_t heading_deg;
+} argus_sonar_pose_t;
+
+extern const argus_sonar_pose_t argus_sonar_pose[ARGUS_SONARS];
+
+typedef struct {
+    uint16_t reading_mm;
+    bool reported;
+    bool steady;          // taken while the robot did not rotate
+    uint32_t sip;         // index of the SIP that listed it last
+    uint32_t heard_ms;    // time of that SIP
+    uint32_t odometer_mm; // way driven by then
+    uint32_t readings;    // monotonic
+    argus_health_t health;
+    argus_fault_kind_t kind;
+    uint32_t since_ms;        // entry into `health`
+    uint16_t disabled_times;  // this mission
+    uint16_t disabled_before; // earlier missions, from the record
+    argus_fault_kind_t kind_before;
+    uint8_t relapses; // disabled again, less missions without a fault
+} argus_sonar_t;
+
+// A moment after which readings count: those listed in later SIPs, and no earlier than `from_ms` where a
+// server lists every sonar in every SIP.
+typedef struct {
+    uint32_t sip;
+    uint32_t from_ms;
+} argus_mark_t;
+
+typedef struct {
+    argus_sonar_t sonar[ARGUS_SONARS];
+    argus_pose_t pose;
+    int32_t heading_offset_cdeg; // pose heading - the robot's own
+    int32_t x_um;                // remainders of the pose, below a mm
+    int32_t y_um;
+    uint32_t odometer_mm; // way driven, monotonic
+    int32_t odometer_um;
+    uint16_t x_raw;
+    uint16_t y_raw;
+    bool has_raw;
+    int16_t vel_left_mm_s;
+    int16_t vel_right_mm_s;
+    bool rotating;
+    uint16_t still_sips; // consecutive SIPs at rest
+    uint16_t flags;
+    uint8_t bumpers_front;
+    uint8_t bumpers_rear;
+    bool stall_left;
+    bool stall_right;
+    int16_t battery_dv;
+    bool lists_all; // the server lists every sonar in every SIP
+    uint32_t sips;
+    uint32_t sip_ms;    // time of the last SIP
+    uint16_t fresh;     // sonars listed in the last SIP
+    uint32_t online_ms; // when SIPs began to come, or came again after a gap
+} argus_knowledge_t;
+
+void argus_knowledge_init(argus_knowledge_t *self);
+
+// A session opened: the robot's odometry starts anew, our pose goes on from where it was; every sonar must
+// report anew.
+void argus_knowledge_reopen(argus_knowledge_t *self, uint32_t now_ms);
+
+// One SIP. `distance_um`: thousandths of a mm per position unit.
+void argus_knowledge_sip(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um,
+                         uint32_t now_ms);
+
+// Only the odometry of a SIP (a session that is about to be closed).
+void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um);
+
+// Bit masks over sonar numbers.
+uint16_t argus_disabled(const argus_knowledge_t *self);
+uint16_t argus_out(const argus_knowledge_t *self); // not used: DISABLED or on PROBATION
+bool argus_is_out(const argus_knowledge_t *self, int sonar);
+uint16_t argus_with_health(const argus_knowledge_t *self, argus_health_t health);
+bool argus_usable(const argus_knowledge_t *self, int sonar); // reported, not out, not 5000
+
+// The nearest echo, in mm, of the sonars 0 and 7, those that are out left aside; INT32_MAX: none.
+int32_t argus_flank_mm(const argus_knowledge_t *self);
+
+argus_mark_t argus_mark_now(const argus_knowledge_t *self);
+bool argus_fresh_since(const argus_knowledge_t *self, int sonar, const argus_mark_t *mark);
+bool argus_all_fresh_since(const argus_knowledge_t *self, uint16_t sonars, const argus_mark_t *mark);
+
+uint32_t argus_age_ms(const argus_knowledge_t *self, int sonar,
+                      uint32_t now_ms); // UINT32_MAX: never reported
+uint32_t argus_silent_ms(const argus_knowledge_t *self,
+                         int sonar);               // how long it has missed its slots, as of the last SIP
+bool argus_at_rest(const argus_knowledge_t *self); // two consecutive SIPs within 5 mm/s
+
+// Where the echo of a sonar lies, robot frame and course frame, beam axis taken.
+argus_point_t argus_echo_robot(const argus_knowledge_t *self, int sonar);
+argus_point_t argus_to_course(const argus_pose_t *pose, argus_point_t robot);
+
+// From the echo of this sonar to the robot's centre, mm, were the robot `back_mm` farther back; INT32_MAX
+// when it is DISABLED or reads 5000. The nearest of all.
+int32_t argus_echo_to_centre_mm(const argus_knowledge_t *self, int sonar, int32_t back_mm);
+int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *self, int32_t back_mm);
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The event queue.
+#include "supervisor/events.h"
+
+#include <string.h>
+
+void argus_events_init(argus_events_t *self) {
+    memset(self, 0, sizeof *self);
+}
+
+void argus_events_push(argus_events_t *self, argus_event_t event) {
+    if (self->count >= ARGUS_EVENT_QUEUE) {
+        self->lost++;
+        return;
+    }
+    self->slot[(self->head + self->count) % ARGUS_EVENT_QUEUE] = event;
+    self->count++;
+}
+
+bool argus_events_pop(argus_events_t *self, argus_event_t *event) {
+    if (self->count == 0) {
+        return false;
+    }
+    *event = self->slot[self->head];
+    self->head = (uint16_t)((self->head + 1) % ARGUS_EVENT_QUEUE);
+    self->count--;
+    return true;
+}

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+// The health-check loop: bytes to SIPs to knowledge to awareness, then the present mode; and what an operator
+// asks.
+#include "supervisor/manager.h"
+
+#include <string.h>
+
+#include "knowledge/angle.h"
+#include "supervisor/faults.h"
+#include "supervisor/history.h"
+#include "supervisor/modes.h"
+#include "supervisor/orders.h"
+#include "supervisor/say.h"
+#include "supervisor/state.h"
+#include "supervisor/stranger.h"
+
+#define AWAY_CDEG 500
+#define IDLE_POLL_MS 50u
+#define BUSY_POLL_MS 10u
+
+void argus_manager_init(argus_t *const self, const argus_config_t *const config, const uint32_t now_ms) {
+    memset(self, 0, sizeof *self);
+    self->config = *config;
+    self->orders.locked = argus_config_check(config).fault != ARGUS_CONFIG_OK;
+    self->orders.passive = self->orders.locked || config->active == 0;
+    self->now_ms = now_ms;
+    argus_session_init(&self->session, !self->orders.passive);
+    argus_knowledge_init(&self->knowledge);
+    argus_echoes_init(&self->echoes);
+    argus_awareness_init(&self->awareness);
+    argus_evidence_init(&self->evidence);
+    argus_evidence_set_caution(&self->evidence, self->config.caution);
+    argus_motion_init(&self->motion);
+    argus_task_init(&self->travel.task);
+    argus_events_init(&self->events);
+    argus_do(self, (argus_intent_t){.act = ARGUS_DO_GO_OFFLINE});
+}
+
+static void check(argus_t *const self, const bool full) {
+    argus_do(self, (argus_intent_t){.act = ARGUS_DO_CHECK, .full = full});
+}
+
+bool argus_set_course(argus_t *const self, const argus_point_t *const points, const uint16_t count) {
+    if (!argus_task_set(&self->travel.task, points, count)) {
+        return false;
+    }
+    self->mission = ARGUS_MISSION_RUNNING;
+    self->travel.arriving = false;
+    argus_say(self, ARGUS_EV_MISSION_START, ARGUS_NO_SONAR, count);
+    if (self->mode == ARGUS_MODE_IDLE || self->waiting.why == ARGUS_WAIT_CATASTROPHIC) {
+        check(self, true);
+    }
+    return true;
+}
+
+void argus_link_up(argus_t *const self, const uint32_t now_ms) {
+    self->now_ms = now_ms;
+    argus_session_link_up(&self->session, now_ms);
+    argus_say(self, ARGUS_EV_LINK_UP, ARGUS_NO_SONAR, 0);
+}
+
+static void go_offline(argus_t *const self) {
+    const uint32_t silence_ms = self->now_ms - self->session.heard_ms;
+    self->checked = false;
+    self->stalled = false;
+    self->travel.jog_mm = 0;
+    argus_motion_init(&self->motion);
+    argus_do(self, (argus_intent_t){.event = ARGUS_EV_LINK_LOST,
+                                    .sonar = ARGUS_NO_SONAR,
+                                    .value = (int32_t)(silence_ms & 0x7FFFFFFFu),
+                                    .base = ARGUS_BASE_DROP,
+                                    .act = ARGUS_DO_GO_OFFLINE});
+}
+
+void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
+    self->now_ms = now_ms;
+    argus_session_link_down(&self->session);
+    go_offline(self);
+}
+
+static void on_open(argus_t *const self) {
+    argus_say(self, ARGUS_EV_SESSION_OPEN, ARGUS_NO_SONAR, self->session.attempts);
+    if (!argus_session_knows_subclass(&self->session)) {
+        argus_say(self, ARGUS_EV_SUBCLASS_UNKNOWN, ARGUS_NO_SONAR, 0);
+    }
+    argus_knowledge_reopen(&self->knowledge, self->now_ms);
+    argus_awareness_restart(&self->awareness);
+    argus_evidence_restart(&self->evidence);
+    self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it
+    self->reflexes.motors_said = false;
+    self->stalled = false;
+    self->base.taken = false;
+    self->ordered = false;
+    if (self->plan.disabled != 0) {
+        argus_share_slots(self); // the robot begins each session with its own order
+    }
+    argus_meet_robot(self);
+    check(self, true);
+}
+
+static void on_stall(argus_t *const self) {
+    self->stalled = true;
+    argus_do(self, (argus_intent_t){.event = ARGUS_EV_LINK_STALLED,
+                                    .sonar = ARGUS_NO_SONAR,
+                                    .value = self->config.link_stall_ms,
+                                    .stop = ARGUS_STOP_STOP,
+                                    .unchecked = true,
+                                    .act = ARGUS_DO_CHECK,
+                                    .full = true});
+}
+
+static void on_resume(argus_t *const self) {
+    self->stalled = false;
+    argus_say(self, ARGUS_EV_LINK_RESUMED, ARGUS_NO_SONAR, (int32_t)self->session.gap_ms);
+    argus_awareness_restart(&self->awareness);
+    argus_evidence_restart(&self->evidence);
+    check(self, true);
+}
+
+static void on_sip(argus_t *const self) {
+    const int32_t unit_um = argus_session_distance_um(&self->session);
+    if (!argus_session_is_open(&self->session) || self->mode == ARGUS_MODE_CLOSED) {
+        argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um);
+        return;
+    }
+    argus_knowledge_sip(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
+    self->awareness.away =
+        argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, argus_base_cdeg(self)) > AWAY_CDEG;
+    const argus_alarm_t alarm = argus_awareness_sip(&self->awareness, &self->knowledge, &self->config);
+    if (argus_rules(self)->evidence) {
+        argus_evidence_sip(&self->evidence, &self->knowledge);
+    }
+    argus_react(self, &alarm); // it asks what was seen before this SIP
+    argus_echoes_see(&self->echoes, &self->knowledge, self->now_ms);
+    argus_judge_all(self);
+    argus_motion_sip(&self->motion, &self->session.outbox, &self->knowledge, self->now_ms);
+    argus_run_mode(self);
+}
+
+static void handle_link(argus_t *const self, const unsigned bits) {
+    if ((bits & ARGUS_SESSION_NO_ANSWER) != 0) {
+        argus_say(self, ARGUS_EV_SESSION_NO_ANSWER, ARGUS_NO_SONAR, self->session.attempts);
+    }
+    if ((bits & ARGUS_SESSION_DID_DISLODGE) != 0) {
+        argus_say(self, ARGUS_EV_SESSION_DISLODGED, ARGUS_NO_SONAR, 0);
+    }
+    if ((bits & ARGUS_SESSION_DID_STALL) != 0) {
+        on_stall(self);
+    }
+    if ((bits & ARGUS_SESSION_DID_LOSE) != 0) {
+        go_offline(self);
+    }
+}
+
+static void handle(argus_t *const self, const unsigned bits) {
+    handle_link(self, bits);
+    if ((bits & ARGUS_SESSION_OTHER_ROBOT) != 0) { // first: nothing of the other one's plan is for this robot
+        argus_meet_stranger(self);
+    }
+    if ((bits & ARGUS_SESSION_DID_OPEN) != 0) {
+        on_open(self);
+    }
+    if ((bits & ARGUS_SESSION_DID_RESUME) != 0) {
+        on_resume(self);
+    }
+    if ((bits & ARGUS_SESSION_GOT_SIP) != 0) {
+        on_sip(self);
+    }
+    if ((bits & ARGUS_SESSION_DID_CLOSE) != 0) {
+        argus_say(self, ARGUS_EV_SESSION_CLOSED, ARGUS_NO_SONAR, 0);
+        argus_do(self, (argus_intent_t){.act = ARGUS_DO_END});
+    }
+}
+
+void argus_receive(argus_t *const self, const uint32_t now_ms, const uint8_t *const bytes,
+                   const size_t count) {
+    self->now_ms = now_ms;
+    size_t done = 0;
+    for (;;) { // one packet may be complete without taking a byte more
+        size_t taken = 0;
+        const unsigned bits =
+            argus_session_receive(&self->session, &self->config, now_ms, bytes + done, count - done, &taken);
+        handle(self, bits);
+        done += taken;
+        if (bits == 0 && (done >= count || taken == 0)) {
+            break;
+        }
+    }
+}
+
+static void check_invariants(argus_t *const self) {
+    const int broken = argus_invariants_broken(self);
+    if (broken != 0 && self->invariant_said == 0) {
+        self->invariant_said = (uint8_t)broken;
+        argus_say(self, ARGUS_EV_INVARIANT, ARGUS_NO_SONAR, broken);
+    }
+}
+
+uint32_t argus_process(argus_t *const self, const uint32_t now_ms) {
+    self->now_ms = now_ms;
+    for (;;) {
+        const unsigned bits = argus_session_process(&self->session, &self->config, now_ms);
+        if (bits == 0) {
+            break;
+        }
+        handle(self, bits);
+    }
+    argus_process_mode(self);
+    check_invariants(self);
+    return self->session.parser.length > 0 || self->session.outbox.length > 0 ? BUSY_POLL_MS : IDLE_POLL_MS;
+}
+
+size_t argus_transmit(argus_t *const self, uint8_t *const buffer, const size_t capacity) {
+    return argus_session_transmit(&self->session, self->now_ms, buffer, capacity);
+}
+
+bool argus_next_event(argus_t *const self, argus_event_t *const event) {
+    argus_events_t *const events = &self->events;
+    if (argus_events_pop(events, event)) {
+        return true;
+    }
+    if (events->lost == events->lost_said) {
+        return false;
+    }
+    argus_say(self, ARGUS_EV_EVENTS_LOST, ARGUS_NO_SONAR,
+              (int32_t)((events->lost - events->lost_said) & 0x7FFFFFFFu));
+    events->lost_said = events->lost;
+    return argus_events_pop(events, event);
+}
+
+bool argus_operator(argus_t *const self, const uint32_t now_ms, const argus_op_t op, const int32_t argument) {
+    self->now_ms = now_ms;
+    return argus_obey(self, op, argument);
+}
+
+void argus_shutdown(argus_t *const self, const uint32_t now_ms) {
+    self->now_ms = now_ms;
+    if (self->orders.shutdown) {
+        return;
+    }
+    self->orders.shutdown = true;
+    if (argus_is_open(self)) {
+        argus_do(self, (argus_intent_t){.stop = ARGUS_STOP_STOP, .act = ARGUS_DO_LEAVE});
+        return;
+    }
+    argus_session_leave(&self->session, now_ms); // one that is only being opened is closed again
+    const bool leaving = self->session.state == ARGUS_SESSION_LEAVING;
+    argus_do(self, (argus_intent_t){.act = leaving ? ARGUS_DO_LEAVE : ARGUS_DO_END});
+}
+
+bool argus_closed(const argus_t *const self) {
+    return self->mode == ARGUS_MODE_CLOSED;
+}

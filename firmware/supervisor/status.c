@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// What the manager shows of itself: a status copy, and its invariants.
+#include <string.h>
+
+#include "supervisor/state.h"
+
+static void copy_sonars(const argus_t *const self, argus_status_t *const status) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const argus_sonar_t *const s = &self->knowledge.sonar[i];
+        status->bearing_deg[i] = argus_sonar_pose[i].heading_deg;
+        status->reading_mm[i] = s->reported ? s->reading_mm : 0;
+        status->readings[i] = s->readings;
+        status->age_ms[i] = argus_age_ms(&self->knowledge, i, self->now_ms);
+        status->health[i] = s->health;
+        status->kind[i] = s->kind;
+    }
+}
+
+static void copy_robot(const argus_knowledge_t *const from, argus_status_t *const status) {
+    status->pose = from->pose;
+    status->battery_dv = from->battery_dv;
+    status->vel_left_mm_s = from->vel_left_mm_s;
+    status->vel_right_mm_s = from->vel_right_mm_s;
+    status->flags = from->flags;
+    status->motors = (from->flags & ARCOS_FLAG_MOTORS) != 0;
+    status->lists_all = from->lists_all;
+    status->bumpers_front = from->bumpers_front;
+    status->bumpers_rear = from->bumpers_rear;
+    status->sips = from->sips;
+}
+
+static void copy_session(const argus_session_t *const from, argus_status_t *const status) {
+    status->open = argus_session_is_open(from);
+    status->packets = from->parser.packets;
+    status->bad_checksums = from->parser.bad_checksums;
+    status->skipped_bytes = from->parser.skipped_bytes;
+    status->robot_name = from->name;
+    status->robot_class = from->robot_class;
+    status->robot_subclass = from->subclass;
+    status->robot_known = argus_session_knows_subclass(from);
+    status->robot_told = from->has_robot;
+    status->robot_version = from->robot.version;
+    status->robot_serial = from->robot.serial;
+    status->robot_watchdog_ms = from->robot.watchdog_ms;
+    status->robot_sonar_cycle_ms = from->robot.sonar_cycle_ms;
+}
+
+void argus_status(const argus_t *const self, argus_status_t *const status) {
+    memset(status, 0, sizeof *status);
+    copy_sonars(self, status);
+    copy_robot(&self->knowledge, status);
+    copy_session(&self->session, status);
+    status->mode = self->mode;
+    status->mission = self->mission;
+    status->wait = self->mode == ARGUS_MODE_WAITING ? self->waiting.why : ARGUS_WAIT_NONE;
+    status->failure = self->failure;
+    status->plan = self->plan;
+    status->goal_mm = argus_task_goal_mm(&self->travel.task, &self->knowledge);
+    status->waypoint = self->travel.task.next;
+    status->waypoints = self->travel.task.count;
+    status->active = !self->orders.passive;
+    status->paused = self->orders.paused;
+    status->online = status->open && !self->stalled;
+    status->pinned = self->orders.pinned;
+    status->stops = self->stops;
+}
+
+static bool queues_hold(const argus_t *const self) {
+    return self->events.count <= ARGUS_EVENT_QUEUE && self->events.head < ARGUS_EVENT_QUEUE &&
+           self->session.outbox.length <= ARGUS_OUTBOX_BYTES &&
+           self->session.parser.length <= ARGUS_FRAME_TOTAL_MAX;
+}
+
+static bool task_holds(const argus_t *const self) {
+    return self->travel.task.count <= ARGUS_WAYPOINTS_MAX &&
+           self->travel.task.next <= self->travel.task.count && self->echoes.count <= ARGUS_POINTS_MAX &&
+           self->echoes.next < ARGUS_POINTS_MAX;
+}
+
+static bool plan_holds(const argus_t *const self) {
+    return self->plan.count <= ARGUS_ROTATIONS_MAX &&
+           (self->plan.disabled & ~(unsigned)ARGUS_FORWARD_MASK) == 0;
+}
+
+// S1 and S6: nothing translates before a full check; normal driving only while no bearing is blind.
+static bool driving_holds(const argus_t *const self) {
+    const bool driving = self->mode == ARGUS_MODE_DRIVING;
+    const bool stepping = self->mode == ARGUS_MODE_STEPPING;
+    if (!driving && !stepping) {
+        return true;
+    }
+    return self->checked && !self->orders.passive &&
+           (stepping ? argus_guard_may_step(&self->plan) : argus_guard_may_drive(&self->plan));
+}
+
+static bool health_holds(const argus_t *const self) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const argus_sonar_t *const s = &self->knowledge.sonar[i];
+        const bool whole =
+            s->health == ARGUS_HEALTHY || s->health == ARGUS_UNKNOWN || s->health == ARGUS_STALE;
+        if (s->health > ARGUS_STALE || (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
+            (whole && s->kind != ARGUS_KIND_NONE)) {
+            return false;
+        }
+    }
+    return argus_failure_of(argus_out(&self->knowledge)) == self->failure;
+}
+
+int argus_invariants_broken(const argus_t *const self) {
+    const bool holds[] = {queues_hold(self), task_holds(self), plan_holds(self), driving_holds(self),
+                          health_holds(self)};
+    for (int i = 0; i < (int)(sizeof holds / sizeof holds[0]); i++) {
+        if (!holds[i]) {
+            return i + 1;
+        }
+    }
+    return 0;
+}

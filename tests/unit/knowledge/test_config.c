@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: S5 refuses every speed and step that could touch what the sonars were to keep away, and
+// no other.
+#include "knowledge/config.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "captures.h"
+#include "robot/gen_p3dx.h"
+#include "unity.h"
+
+static argus_config_t config;
+static char message[160];
+
+void setUp(void) {
+    memset(&config, 0xA5, sizeof config);
+    argus_config_default(&config);
+}
+
+void test_the_defaults_are_those_of_the_table_and_pass(void) {
+#define SAME(key, def, min, max, unit, choices, meaning) TEST_ASSERT_EQUAL_MESSAGE(def, config.key, #key);
+    ARGUS_CONFIG_TABLE(SAME)
+    const argus_config_report_t report = argus_config_check(&config);
+    TEST_ASSERT_EQUAL(ARGUS_CONFIG_OK, report.fault);
+    TEST_ASSERT_EQUAL(-1, report.key);
+    TEST_ASSERT_EQUAL(44, report.overhang_mm);
+    TEST_ASSERT_EQUAL(487, report.reaction_ms); // 8 x 40 + 100 + 64 bytes at 9600 baud
+    TEST_ASSERT_EQUAL(97, report.travel_mm);
+    TEST_ASSERT_EQUAL(66, report.brake_mm); // with 300 mm/s2, whatever more is asked
+    TEST_ASSERT_EQUAL(report.driving_mm, report.overhang_mm + report.travel_mm + report.brake_mm);
+    TEST_ASSERT_EQUAL(report.stepping_mm, report.reach_mm + 3 * config.noise_mm + 20);
+}
+
+static void assert_range(int32_t *setting, int32_t minimum, int32_t maximum, int32_t row, const char *name) {
+    const int32_t bad[] = {minimum - 1, maximum + 1, INT32_MIN, INT32_MAX};
+    const int32_t usual = *setting;
+    *setting = minimum;
+    TEST_ASSERT_NOT_EQUAL_MESSAGE(ARGUS_CONFIG_RANGE, argus_config_check(&config).fault, name);
+    *setting = maximum;
+    TEST_ASSERT_NOT_EQUAL_MESSAGE(ARGUS_CONFIG_RANGE, argus_config_check(&config).fault, name);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        *setting = bad[i];
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_CONFIG_RANGE, argus_config_check(&config).fault, name);
+        TEST_ASSERT_EQUAL_MESSAGE(row, argus_config_check(&config).key, name);
+    }
+    *setting = usual;
+}
+
+void test_both_ends_of_every_range_hold(void) {
+    int32_t row = 0;
+#define ENDS(name, def, min, max, unit, choices, meaning) \
+    assert_range(&config.name, (min), (max), row++, #name);
+    ARGUS_CONFIG_TABLE(ENDS)
+    TEST_ASSERT_EQUAL(sizeof config / sizeof(int32_t), row);
+}
+
+static bool driving_refused(void) {
+    return argus_config_check(&config).fault == ARGUS_CONFIG_DRIVING;
+}
+
+void test_at_9600_baud_234_mm_s_is_the_limit(void) {
+    for (config.speed_mm_s = 30; config.speed_mm_s <= 750; config.speed_mm_s++) {
+        TEST_ASSERT_EQUAL(config.speed_mm_s > 234, driving_refused());
+    }
+}
+
+static double driving_exactly(void) {
+    const double wire = config.baud > 0 ? 64.0 * 10 / config.baud : 0;
+    const double t = 8 * config.sonar_cycle_ms / 1000.0 + 0.1 + wire;
+    const double v = config.speed_mm_s;
+    return 44 + v * t + v * v / (2.0 * fmin(300, config.decel_mm_s2));
+}
+
+// Against the same inequality in floating point; within a thousandth of a mm either answer will do.
+static void driving_cases(int cases) {
+    static const int32_t bauds[] = {0, 1, 110, 1200, 9600, 19200, 38400, 57600, 115200};
+    random_t random = random_seed(11);
+    size_t refused = 0;
+    for (int i = 0; i < cases; i++) {
+        config.speed_mm_s = 30 + (int32_t)random_below(&random, 721);
+        config.decel_mm_s2 = 50 + (int32_t)random_below(&random, 1951);
+        config.object_range_mm = 150 + (int32_t)random_below(&random, 851);
+        config.sonar_cycle_ms = 20 + (int32_t)random_below(&random, 101);
+        config.baud = bauds[random_below(&random, sizeof bauds / sizeof bauds[0])];
+        const double slack = config.object_range_mm - driving_exactly();
+        snprintf(message, sizeof message, "case %d: slack %.4f mm", i, slack);
+        if (fabs(slack) > 0.01) {
+            TEST_ASSERT_EQUAL_MESSAGE(slack < 0, driving_refused(), message);
+        }
+        if (fabs(slack - round(slack)) > 0.01) {
+            const int32_t wanted = (int32_t)floor(driving_exactly());
+            TEST_ASSERT_EQUAL_MESSAGE(wanted, argus_config_check(&config).driving_mm, message);
+        }
+        refused += slack < 0;
+    }
+    const size_t tenth = (size_t)cases / 10;
+    TEST_ASSERT_TRUE(refused > tenth && refused < 9 * tenth); // the cases lie on both sides
+}
+
+void test_driving_is_refused_when_the_inequality_fails(void) {
+    driving_cases(200);
+}
+
+void test_driving_is_refused_exactly_when_the_inequality_fails(void) { // soak
+    driving_cases(3000);
+}
+
+void test_stepping_is_refused_exactly_when_the_inequality_fails(void) {
+    const int32_t needed = argus_config_reach_mm(200) + 3 * 5 + 20;
+    for (config.check_range_mm = 200; config.check_range_mm < 500; config.check_range_mm++) {
+        const argus_config_report_t report = argus_config_check(&config);
+        TEST_ASSERT_EQUAL(config.check_range_mm <= needed, report.fault == ARGUS_CONFIG_STEP);
+        TEST_ASSERT_EQUAL(needed, report.stepping_mm);
+    }
+    config.check_range_mm = 350;
+    config.noise_mm = 20;
+    TEST_ASSERT_EQUAL(ARGUS_CONFIG_STEP, argus_config_check(&config).fault);
+}
+
+#define POSE(number, x, y, heading) {x, y, heading},
+static const double pose[][3] = {ARGUS_P3DX_SONAR_TABLE(POSE)};
+
+static double reading_exactly(double x, double y) {
+    double seen = 1e9;
+    double nearest = 1e9;
+    for (int i = 1; i <= 6; i++) {
+        const double d = hypot(x - pose[i][0], y - pose[i][1]);
+        const double off = atan2(y - pose[i][1], x - pose[i][0]) * 57.29577951308232 - pose[i][2];
+        nearest = fmin(nearest, d);
+        seen = fabs(off) <= 15 ? fmin(seen, d) : seen;
+    }
+    return seen < 1e9 ? seen : nearest;
+}
+
+// Never less than the geometry in floating point on a finer grid, and at most 1 mm more.
+void test_reach_is_what_geometry_gives(void) {
+    for (int32_t step = 50; step <= 200; step += 10) {
+        double exact = 0;
+        for (double y = -212.5; y <= 212.5; y += 0.125) {
+            exact = fmax(exact, reading_exactly(210 + step, y));
+        }
+        snprintf(message, sizeof message, "step %d: exactly %.2f mm", (int)step, exact);
+        TEST_ASSERT_TRUE_MESSAGE(argus_config_reach_mm(step) >= exact, message);
+        TEST_ASSERT_TRUE_MESSAGE(argus_config_reach_mm(step) <= exact + 1.01, message);
+    }
+    TEST_ASSERT_EQUAL(211, argus_config_reach_mm(100));
+    TEST_ASSERT_EQUAL(252, argus_config_reach_mm(150));
+    TEST_ASSERT_EQUAL(295, argus_config_reach_mm(200));
+}
