@@ -78,7 +78,7 @@ static tone_t tone_of(const argus_event_t *event) {
 // thing.
 static uint16_t key_of(const argus_event_t *event) {
     const uint16_t id = event->id == ARGUS_EV_SUSPICION_DROPPED ? ARGUS_EV_SONAR_SUSPECT : event->id;
-    return (uint16_t)(id << 5 | ((unsigned)event->sonar & 0x1Fu));
+    return (uint16_t)((unsigned)id << 5 | ((unsigned)event->sonar & 0x1Fu));
 }
 
 // Returns the length of the line, for people.
