@@ -551,7 +551,7 @@ local function checksum(data)
         sum = (sum + data(at, 2):uint()) % 65536
     end
     if length % 2 == 1 then
-        sum = bit32.bxor(sum, data(length - 1, 1):uint())
+        sum = bit.bxor(sum, data(length - 1, 1):uint())
     end
     return sum
 end

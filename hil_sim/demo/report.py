@@ -99,6 +99,14 @@ def _rules(verdict: Verdict, colour: bool) -> list[str]:
     return [f"  {marks[rule.holds]} {rule.name.ljust(width)}  {rule.detail}" for rule in verdict.rules]
 
 
+def _end(verdict: Verdict, colour: bool) -> list[str]:
+    """Return the lines that say whether it passed, and whether the host was late meanwhile."""
+    late = [_paint(_host_line(verdict.host_late_ms), _BAD, colour)] if verdict.host_late_ms else []
+    failed = [rule.name for rule in verdict.rules if not rule.holds]
+    last = "PASSED" if not failed else "FAILED: " + ", ".join(failed)
+    return ["  " + line for line in (*late, _paint(last, _BOLD + (_BAD if failed else _GOOD), colour))]
+
+
 def text(verdict: Verdict, *, colour: bool = False) -> str:
     """Return the report, lines ending without spaces; times count from the opened session."""
     journey = verdict.journey
@@ -108,9 +116,5 @@ def text(verdict: Verdict, *, colour: bool = False) -> str:
     if journey is not None:
         lines += ["", _paint("Journey", _BOLD, colour), *_journey(journey)]
     lines += ["", _paint("Verdict", _BOLD, colour), *_rules(verdict, colour)]
-    if verdict.host_late_ms:
-        lines.append("  " + _paint(_host_line(verdict.host_late_ms), _BAD, colour))
-    failed = [rule.name for rule in verdict.rules if not rule.holds]
-    last = "PASSED" if not failed else "FAILED: " + ", ".join(failed)
-    lines.append("  " + _paint(last, _BOLD + (_BAD if failed else _GOOD), colour))
+    lines += _end(verdict, colour)
     return "\n".join(lines)
