@@ -30,8 +30,8 @@ DEFAULT: Final = section("arcos", "default")
 HOSTBAUD: Final = section("arcos", "hostbaud")
 BUMPSTALL: Final = section("arcos", "bumpstall")
 BAUD: Final = section("arcos", "baud")
-MOTION: Final = section("p3dx", "motion")
-SONAR_CYCLE_MS: Final[int] = load("p3dx")["sonar"]["cycle_ms"]
+MOTION: Final = section("robots/p3dx-sh", "motion")
+SONAR_CYCLE_MS: Final[int] = load("robots/p3dx-sh")["sonar"]["cycle_ms"]
 
 BAUD_OF_CODE: Final = {code: BAUD[name] for name, code in HOSTBAUD.items()}
 

@@ -10,11 +10,11 @@ from typing import Final, Protocol, TypeAlias
 from hil_sim.tables import section
 from hil_sim.world import Pose, World
 
-_BODY: Final = section("p3dx", "body")
+_BODY: Final = section("robots/p3dx-sh", "body")
 FRONT_MM: Final = float(_BODY["front_mm"])
 REAR_MM: Final = float(_BODY["rear_mm"])
 HALF_MM: Final = _BODY["width_mm"] / 2
-SEGMENTS: Final = _BODY["bumper_segments"]
+SEGMENTS: Final = _BODY["front_bumpers"]
 _BUMPER_DEPTH_MM: Final = 60.0
 """How far back along the sides the front and rear bumpers reach: a contact further from the end presses none."""
 _CELL_MM: Final = 500.0

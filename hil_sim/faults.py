@@ -33,7 +33,7 @@ LINK_KINDS: Final = {
     "link-cut": "lets nothing through",
 }
 DIRECTIONS: Final = ("both", "to_client", "to_robot")
-BUMPER_SEGMENTS: Final[int] = load("p3dx")["body"]["bumper_segments"]
+BUMPER_SEGMENTS: Final[int] = load("robots/p3dx-sh")["body"]["front_bumpers"]
 SONARS: Final = len(SONAR_POSES)
 _TARGETS: Final = {"front": range(PER_ARRAY), "rear": range(PER_ARRAY, SONARS), "all": range(SONARS)}
 _SLOW_MAX: Final = 100

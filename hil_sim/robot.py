@@ -38,7 +38,7 @@ from hil_sim.world import Pose
 _STATE_EVERY_MS: Final = 100
 _DEG: Final = math.pi / 180
 _TRACK_MM: Final[float] = MOTION["track_mm"]
-_SWING_MM: Final[float] = load("p3dx")["body"]["swing_radius_mm"]
+_SWING_MM: Final[float] = load("robots/p3dx-sh")["body"]["swing_radius_mm"]
 _WATCHDOG_MS: Final = TIMING["WATCHDOG_MS"]
 _TOUCH_RELEASE_MM: Final = 5.0
 _BUMPER_MASK: Final = SIP["BUMPER_MASK"]

@@ -15,7 +15,7 @@ from hil_sim.moving import MovingSolids
 from hil_sim.tables import load
 from hil_sim.world import Floats, Pose, World
 
-_TABLE: Final[dict[str, Any]] = load("p3dx")["sonar"]
+_TABLE: Final[dict[str, Any]] = load("robots/p3dx-sh")["sonar"]
 MIN_MM: Final[int] = _TABLE["min_mm"]
 NO_ECHO_MM: Final[int] = _TABLE["no_echo_mm"]
 CYCLE_MS: Final[int] = _TABLE["cycle_ms"]

@@ -25,7 +25,7 @@ _LEVEL: Final = ("OK   ", "WARN ", "ERROR", "STALE")
 _LEVEL_STYLE: Final = ("", "yellow", "bold red", "magenta")
 _HEALTH_STYLE: Final = {"HEALTHY": "green", "SUSPECT": "yellow", "DISABLED": "bold red", "STALE": "magenta"}
 _POSES: Final[Mapping[int, int]] = {
-    int(p["number"]): int(p["heading_deg"]) for p in load("p3dx")["sonar"]["pose"]
+    int(p["number"]): int(p["heading_deg"]) for p in load("robots/p3dx-sh")["sonar"]["pose"]
 }
 
 

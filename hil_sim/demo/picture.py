@@ -34,7 +34,7 @@ _ROOM_MM: Final = 4000.0
 _MARGIN_MM: Final = 1500.0
 """Room for words to the right of the map."""
 _STANDS_MM_S: Final = 5.0
-_P3DX: Final = load("p3dx")
+_P3DX: Final = load("robots/p3dx-sh")
 _POSE: Final = {int(pose["number"]): pose for pose in _P3DX["sonar"]["pose"]}
 _NO_ECHO_MM: Final = float(_P3DX["sonar"]["no_echo_mm"])
 _FAULT_WORDS: Final = {

@@ -15,7 +15,7 @@ TABLE_DIR = Path(__file__).resolve().parent
 
 @cache
 def load(name: str) -> dict[str, Any]:
-    """Return table `name` ("arcos", "p3dx", "energy") as nested dictionaries; read once, not to be changed.
+    """Return table `name` ("arcos", "energy", "robots/p3dx-sh") as nested dictionaries; read once, not to be changed.
 
     >>> load("arcos")["frame"]["HEADER0"] == 0xFA
     True
@@ -31,12 +31,18 @@ def load(name: str) -> dict[str, Any]:
 
 
 def section(name: str, part: str) -> dict[str, int]:
-    """Return one section of a table whose values are all integers.
+    """Return the integers of one section of a table.
 
     >>> section("arcos", "command")["SONAR_CYCLE"]
     48
     """
-    values = load(name)[part]
-    assert all(isinstance(value, int) for value in values.values())
-    result: dict[str, int] = values
-    return result
+    return {key: value for key, value in load(name)[part].items() if isinstance(value, int)}
+
+
+def robots() -> tuple[str, ...]:
+    """Return the subclasses of the robots that have a table, in order.
+
+    >>> "p3dx-sh" in robots()
+    True
+    """
+    return tuple(sorted(path.stem for path in (TABLE_DIR / "robots").glob("*.toml")))

@@ -40,7 +40,7 @@ def test_checked_in_headers_are_current(tree: Path) -> None:
 def test_check_sees_every_changed_number(tree: Path) -> None:
     generate(tree)
     assert generate(tree, "--check").returncode == 0
-    table = tree / TABLES / "p3dx.toml"
+    table = tree / TABLES / "robots/p3dx-sh.toml"
     front = tomllib.loads(table.read_text())["body"]["front_mm"]
     text = table.read_text()
     changed = text.replace(f"front_mm = {front}", f"front_mm = {front + 1}")
@@ -55,11 +55,11 @@ def test_check_sees_every_changed_number(tree: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "text", "expected"),
     [
-        ("p3dx", "[body\n", "p3dx.toml: not valid TOML"),
-        ("p3dx", "[body]\nfront_mm = 1\n", "no [[sonar.pose]] entries"),
-        ("p3dx", "[[sonar.pose]]\nnumber = 1\nx_mm = 1\ny_mm = 1\nheading_deg = 1\n", "number must be 0"),
+        ("robots/p3dx-sh", "[body\n", "p3dx-sh.toml: not valid TOML"),
+        ("robots/p3dx-sh", "[body]\nfront_mm = 1\n", "no [[sonar.pose]] entries"),
+        ("robots/p3dx-sh", "[[sonar.pose]]\nnumber = 1\nx_mm = 1\ny_mm = 1\nheading_deg = 1\n", "number must be 0"),
         (
-            "p3dx",
+            "robots/p3dx-sh",
             "[[sonar.pose]]\nnumber = 0\nx_mm = 1.5\ny_mm = 1\nheading_deg = 1\n",
             "x_mm must be an integer",
         ),

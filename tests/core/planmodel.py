@@ -10,7 +10,7 @@ from itertools import combinations
 from pathlib import Path
 
 FORWARD = range(1, 7)
-POSES = Path(__file__).resolve().parents[2] / "hil_sim" / "tables" / "p3dx.toml"
+POSES = Path(__file__).resolve().parents[2] / "hil_sim" / "tables" / "robots" / "p3dx-sh.toml"
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ WALL_MM = 1100
 CHECK_RANGE_MM = 350
 STEP_MM = 200
 NOISE_MM = 20
-SONAR_FACE_MM: int = load("p3dx")["body"]["sonar_face_mm"]
+SONAR_FACE_MM: int = load("robots/p3dx-sh")["body"]["sonar_face_mm"]
 
 
 @pytest.mark.parametrize("sonar", range(1, 7))

@@ -15,9 +15,9 @@ from hil_sim.body import BodyModel
 from hil_sim.tables import load
 from hil_sim.world import Pose, World
 
-BODY = load("p3dx")["body"]
+BODY = load("robots/p3dx-sh")["body"]
 FRONT, REAR, HALF = float(BODY["front_mm"]), float(BODY["rear_mm"]), BODY["width_mm"] / 2
-COUNT = BODY["bumper_segments"]
+COUNT = BODY["front_bumpers"]
 BUMPER_DEPTH = 60.0
 FARTHEST = 3000.0
 GRAIN = 1.0

@@ -18,14 +18,14 @@ from hil_sim.sonar import EchoModel, Reading, SonarParams, SonarRing
 from hil_sim.tables import load
 from hil_sim.world import Pose, World
 
-TABLE = load("p3dx")["sonar"]
+TABLE = load("robots/p3dx-sh")["sonar"]
 LOW: int = TABLE["min_mm"]
 NONE: int = TABLE["no_echo_mm"]
 CYCLE: int = TABLE["cycle_ms"]
 HALF_CONE = TABLE["cone_deg"] / 2
 MOUNTS = {p["number"]: p for p in TABLE["pose"]}
 FAR = 60_000.0
-RADIUS = load("p3dx")["body"]["tolerance_centre_mm"]
+RADIUS = load("robots/p3dx-sh")["body"]["tolerance_centre_mm"]
 SOUND_MM_MS = 343.0
 QUIET = SonarParams(noise_mm=0, noise_part=0, crosstalk=0)
 HOME = Pose(0, 0, 0)

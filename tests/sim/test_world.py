@@ -25,7 +25,7 @@ from hil_sim.sonar import SONAR_POSES, EchoModel
 from hil_sim.tables import load
 from hil_sim.world import MAP_ROUGHNESS, Pose, World, load_map, load_world, load_yaml, world_names
 
-SWING_MM = load("p3dx")["body"]["swing_radius_mm"]
+SWING_MM = load("robots/p3dx-sh")["body"]["swing_radius_mm"]
 FRONT = range(8)
 ROOM = "walls:\n  - {points: [[-2000, -2000], [2000, -2000], [2000, 2000], [-2000, 2000]], closed: true}\n"
 

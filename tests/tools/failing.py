@@ -12,7 +12,7 @@ from hil_sim.tables import load
 SIPS = 300
 DEAD_FROM, LONG_FROM = 150, 200
 ROOM_MM = 2800
-_POSES = load("p3dx")["sonar"]["pose"]
+_POSES = load("robots/p3dx-sh")["sonar"]["pose"]
 
 
 def _range(pose: dict[str, int], x_mm: float, rng: random.Random) -> int:

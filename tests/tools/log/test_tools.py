@@ -98,7 +98,7 @@ def test_convert_refuses_what_it_cannot_do(tmp_path: Path) -> None:
 def test_mcap_has_poses_validity_odometry_and_events(tmp_path: Path) -> None:
     made = tmp_path / "a.mcap"
     assert run("convert", RAM, made).returncode == 0
-    poses = {pose["number"]: pose for pose in load("p3dx")["sonar"]["pose"]}
+    poses = {pose["number"]: pose for pose in load("robots/p3dx-sh")["sonar"]["pose"]}
     sips = decode(RAM, "--type", "SIP")
     with made.open("rb") as file:
         reader = make_reader(file)

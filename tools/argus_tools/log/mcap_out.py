@@ -15,7 +15,7 @@ from argus_tools.log.fields import Decoder
 from argus_tools.log.packets import Row
 from hil_sim.tables import load
 
-_SONAR: Final[dict[str, Any]] = load("p3dx")["sonar"]
+_SONAR: Final[dict[str, Any]] = load("robots/p3dx-sh")["sonar"]
 POSES: Final = {pose["number"]: pose for pose in _SONAR["pose"]}
 NO_ECHO_MM: Final[int] = _SONAR["no_echo_mm"]
 MIN_MM: Final[int] = _SONAR["min_mm"]

@@ -31,8 +31,8 @@ EXAMPLES: Final = """\
   argus-log plot drive.rec -o path.png --view path
   argus-log plot drive.rec -o ring.png --view ring --at +31.5
 """
-_SONAR: Final[dict[str, Any]] = load("p3dx")["sonar"]
-_BODY: Final[dict[str, int]] = load("p3dx")["body"]
+_SONAR: Final[dict[str, Any]] = load("robots/p3dx-sh")["sonar"]
+_BODY: Final[dict[str, int]] = load("robots/p3dx-sh")["body"]
 POSES: Final = {pose["number"]: pose for pose in _SONAR["pose"]}
 NO_ECHO_MM: Final[int] = _SONAR["no_echo_mm"]
 # More points than this are not told apart in a picture.

@@ -19,7 +19,7 @@ EXAMPLES: Final = """\
   argus-log stats drive.rec
   argus-log stats drive.pcapng --from +60 --json
 """
-NO_ECHO_MM: Final[int] = load("p3dx")["sonar"]["no_echo_mm"]
+NO_ECHO_MM: Final[int] = load("robots/p3dx-sh")["sonar"]["no_echo_mm"]
 BIN_MM: Final = 500
 BINS: Final = NO_ECHO_MM // BIN_MM
 # A SIP that comes later than this many cycles is a gap.
