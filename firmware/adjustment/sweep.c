@@ -22,8 +22,10 @@ int32_t argus_sweep_heading_cdeg(const argus_drive_t *const self, const argus_pl
 static void note_smallest(argus_drive_t *const self, const argus_plan_t *const plan,
                           const argus_knowledge_t *const knowledge) {
     const int16_t rotation = plan->rotation_deg[self->index];
-    for (int d = ARGUS_FORWARD_FIRST; d <= ARGUS_FORWARD_LAST; d++) {
-        const int by = (plan->disabled >> d & 1u) != 0 ? argus_plan_cover(plan, rotation, d) : -1;
+    const argus_robot_t *const robot = knowledge->robot;
+    for (int i = 0; i < robot->forward_count; i++) {
+        const int d = robot->forward[i];
+        const int by = (plan->disabled >> d & 1u) != 0 ? argus_plan_cover(robot, plan, rotation, d) : -1;
         if (by >= 0 && knowledge->sonar[by].reading_mm < self->smallest_mm) {
             self->smallest_mm = knowledge->sonar[by].reading_mm;
             self->smallest_of = (int8_t)d;
@@ -47,7 +49,9 @@ bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan,
         self->done = self->index >= plan->count;
         return true;
     }
-    if (!argus_all_fresh_since(knowledge, argus_plan_covering(plan, plan->rotation_deg[self->index]), mark)) {
+    const argus_mask_t wanted =
+        argus_plan_covering(knowledge->robot, plan, plan->rotation_deg[self->index]);
+    if (!argus_all_fresh_since(knowledge, wanted, mark)) {
         return false;
     }
     note_smallest(self, plan, knowledge);
@@ -57,11 +61,11 @@ bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan,
 
 int32_t argus_drive_free_mm(const argus_knowledge_t *const knowledge, const int32_t object_range_mm) {
     int32_t shortest = INT32_MAX;
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        if (argus_usable(knowledge, i)) {
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i)) {
             const int32_t since_mm = (int32_t)(knowledge->odometer_mm - knowledge->sonar[i].odometer_mm);
             shortest = argus_min(shortest, knowledge->sonar[i].reading_mm - since_mm);
         }
     }
-    return argus_max(0, argus_min(shortest, ARGUS_P3DX_SONAR_NO_ECHO_MM) - object_range_mm);
+    return argus_max(0, argus_min(shortest, knowledge->robot->no_echo_mm) - object_range_mm);
 }

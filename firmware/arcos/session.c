@@ -29,11 +29,10 @@ static void enter(argus_session_t *self, uint32_t now_ms, argus_session_state_t 
     self->since_ms = now_ms;
 }
 
-void argus_session_init(argus_session_t *self, bool motors) {
+void argus_session_init(argus_session_t *self) {
     memset(self, 0, sizeof *self);
     argus_parser_init(&self->parser);
     argus_outbox_init(&self->outbox);
-    self->motors = motors;
     self->pause_ms = PAUSE_FIRST_MS;
 }
 
@@ -129,9 +128,6 @@ static void set_up(argus_session_t *self, const argus_config_t *config) {
     argus_outbox_int(outbox, ARCOS_CMD_SONAR, 1);
     if (!self->has_robot || self->robot.sonar_cycle_ms != config->sonar_cycle_ms) {
         argus_outbox_int(outbox, ARCOS_CMD_SONAR_CYCLE, config->sonar_cycle_ms);
-    }
-    if (self->motors) {
-        argus_outbox_int(outbox, ARCOS_CMD_ENABLE, 1);
     }
 }
 
@@ -486,12 +482,7 @@ static bool subclass_is(const argus_session_t *self, const char *name, size_t si
     return memcmp(lower, name, size) == 0;
 }
 
-bool argus_session_knows_subclass(const argus_session_t *self) {
-    static const char known[] = "p3dx-sh";
-    return subclass_is(self, known, sizeof known);
-}
-
-int32_t argus_session_distance_um(const argus_session_t *self) {
+int32_t argus_session_distance_um(const argus_session_t *self, int32_t usual_um) {
     static const char older[] = "p3dx";
-    return subclass_is(self, older, sizeof older) ? 485 : 1000;
+    return subclass_is(self, older, sizeof older) ? ARCOS_SIP_OLD_UNIT_UM : usual_um;
 }

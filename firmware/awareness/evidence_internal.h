@@ -4,6 +4,7 @@
 #define ARGUS_EVIDENCE_INTERNAL_H
 
 #include "awareness/evidence.h"
+#include "robot/compat.h"
 
 #define ARGUS_NO_ECHO_MM ARGUS_P3DX_SONAR_NO_ECHO_MM
 

@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "robot/robot.h"
+
 #define ARGUS_PROFILE_PAPER 0
 #define ARGUS_PROFILE_ARGUS 1
 
@@ -15,6 +17,8 @@
 #define ARGUS_CONFIG_TABLE(X)                                                                                \
     X(profile, 1, 0, 1, "", "paper|argus", "rule set of the diagnosis")                                      \
     X(policy, 0, 0, 1, "", "paper|fewest", "planner of the compensating rotations")                          \
+    X(robot, 0, 0, ARGUS_ROBOTS, "", ARGUS_ROBOT_CHOICES,                                                      \
+      "whose body and sonars hold; by-subclass: of the robot that answers, passive when unknown")              \
     X(active, 1, 0, 1, "", "off|on", "off: diagnose and report, never command a motion")                     \
     X(health_check_ms, 1000, 100, 10000, "ms", "", "period of the health check beside the main task")        \
     X(suspect_readings, 3, 1, 50, "", "", "consecutive disparate fresh readings before a sonar is verified") \
@@ -72,7 +76,7 @@ typedef struct {
     int32_t overhang_mm; // body front ahead of the sonar faces
     int32_t reaction_ms; // sonar refresh + SIP period + SIP and command on the wire
     int32_t travel_mm;   // speed x reaction
-    int32_t brake_mm;    // speed^2 / (2 decel), decel at most 300 mm/s2
+    int32_t brake_mm;    // speed^2 / (2 decel), decel at most that of the robot (300 mm/s2)
     int32_t driving_mm;  // overhang + travel + brake: must be < object_range_mm
     int32_t reach_mm;    // largest reading of a point that the body sweeps in one step
     int32_t stepping_mm; // reach + 3 noise + 20: must be < check_range_mm
@@ -80,15 +84,19 @@ typedef struct {
 
 void argus_config_default(argus_config_t *config);
 
-// Ranges first, then the two S5 inequalities. Cost: a few thousand integer operations, once at start.
+// Ranges first, then the two S5 inequalities for the robot that the setting names, or for the default one.
+// Cost: a few thousand integer operations, once at start and once when another robot answers.
 argus_config_report_t argus_config_check(const argus_config_t *config);
+
+// The same for a robot.
+argus_config_report_t argus_config_check_for(const argus_config_t *config, const argus_robot_t *robot);
 
 // The way, in mm, from a reading that asks for a stop to standstill at the driving speed (S5: v t + v^2 / (2
 // decel)).
-int32_t argus_config_stop_mm(const argus_config_t *config);
+int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *robot);
 
-// Largest reading, in mm, that a front sonar gives of a point which the body sweeps when it moves `step_mm`
+// Largest reading, in mm, that a forward-facing sonar gives of a point which the body sweeps when it moves `step_mm`
 // ahead.
-int32_t argus_config_reach_mm(int32_t step_mm);
+int32_t argus_config_reach_mm(const argus_robot_t *robot, int32_t step_mm);
 
 #endif

@@ -26,7 +26,10 @@ typedef enum {
     X(15, SESSION_OPEN, OK, "session", "the robot answered and reports; value: attempts it took")           \
     X(16, SESSION_CLOSED, OK, "session", "orderly end: SONAR 0, STOP, CLOSE sent")                          \
     X(17, SESSION_DISLODGED, WARN, "session", "the robot was still in an old session, which was closed")    \
-    X(18, SUBCLASS_UNKNOWN, WARN, "session", "not a P3-DX that we know: its own geometry is assumed")       \
+    X(18, SUBCLASS_UNKNOWN, WARN, "session",                                                                \
+      "a robot whose body is not known: passive until the setting `robot` says which it is")                \
+    X(19, ROBOT_UNSAFE, ERROR, "session",                                                                   \
+      "the settings are unsafe for this robot (S5): passive; value: mm that S5 needs")                      \
     X(20, MOTORS_OFF, ERROR, "drive",                                                                       \
       "the motors are off (button or E-stop): enable them to go on; value: SIP flags")                      \
     X(21, MOTORS_ON, OK, "drive", "the motors are on; value: SIP flags")                                    \
@@ -35,6 +38,8 @@ typedef enum {
     X(23, BUMPER_CLEAR, OK, "bumper", "no bumper is pressed any more")                                      \
     X(24, STALL, ERROR, "drive", "a wheel stalls: STOP sent; value: 1 left, 2 right, 3 both")               \
     X(25, BATTERY_LOW, WARN, "battery", "battery low; value: decivolts")                                    \
+    X(26, SONARS_BEYOND, WARN, "session",                                                                   \
+      "it has more sonars than this build manages, those beyond are left out; value: how many it has")      \
     X(30, SONAR_DEAD, ERROR, "sonar", "dead reading: STOP sent; value: the reading in mm")                  \
     X(31, SONAR_SILENT, ERROR, "sonar",                                                                     \
       "its slot yields no reading: STOP sent; value: age of its last reading in ms")                        \

@@ -28,8 +28,11 @@ void argus_init(argus_t *const self, const argus_config_t *const config, const u
     self->locked = argus_config_check(config).fault != ARGUS_CONFIG_OK;
     self->passive = self->locked || config->active == 0;
     self->now_ms = now_ms;
-    argus_session_init(&self->session, !self->passive);
+    argus_session_init(&self->session);
     argus_knowledge_init(&self->knowledge);
+    if (argus_robot_chosen(config->robot) != NULL) {
+        argus_knowledge_set_robot(&self->knowledge, argus_robot_chosen(config->robot), now_ms);
+    }
     argus_awareness_init(&self->awareness);
     argus_verify_init(&self->verify);
     argus_evidence_init(&self->evidence);
@@ -77,11 +80,16 @@ void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
     go_offline(self);
 }
 
+static void enable_motors(argus_t *const self) {
+    if (!self->passive && argus_session_is_open(&self->session)) {
+        argus_outbox_int(&self->session.outbox, ARCOS_CMD_ENABLE, 1);
+    }
+}
+
 static void on_open(argus_t *const self) {
     argus_say(self, ARGUS_EV_SESSION_OPEN, ARGUS_NO_SONAR, self->session.attempts);
-    if (!argus_session_knows_subclass(&self->session)) {
-        argus_say(self, ARGUS_EV_SUBCLASS_UNKNOWN, ARGUS_NO_SONAR, 0);
-    }
+    argus_meet_body(self);
+    enable_motors(self);
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
     argus_awareness_restart(&self->awareness);
     argus_evidence_restart(&self->evidence);
@@ -114,7 +122,7 @@ static void on_resume(argus_t *const self) {
 }
 
 static void on_sip(argus_t *const self) {
-    const int32_t unit_um = argus_session_distance_um(&self->session);
+    const int32_t unit_um = argus_session_distance_um(&self->session, self->knowledge.robot->dist_conv_um);
     if (!argus_session_is_open(&self->session) || self->mode == ARGUS_MODE_CLOSED) {
         argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um);
         return;
@@ -237,25 +245,18 @@ bool argus_next_event(argus_t *const self, argus_event_t *const event) {
 static void go_passive(argus_t *const self) {
     argus_stop(self, ARCOS_CMD_STOP);
     self->passive = true;
-    self->session.motors = false;
+    self->barred = false;
     argus_say(self, ARGUS_EV_PASSIVE, ARGUS_NO_SONAR, 0);
     if (argus_session_is_open(&self->session)) {
         argus_enter_checking(self, false);
     }
 }
 
-static void enable_motors(argus_t *const self) {
-    if (!self->passive && argus_session_is_open(&self->session)) {
-        argus_outbox_int(&self->session.outbox, ARCOS_CMD_ENABLE, 1);
-    }
-}
-
 static void go_active(argus_t *const self) {
-    if (self->locked) {
+    if (self->locked || argus_say_barred(self)) {
         return;
     }
     self->passive = false;
-    self->session.motors = true;
     self->motors_said = false;
     argus_say(self, ARGUS_EV_ACTIVE, ARGUS_NO_SONAR, 0);
     enable_motors(self);

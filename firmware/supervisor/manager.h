@@ -91,6 +91,8 @@ typedef struct {
     const char *robot_name; // identity from the SYNC2 reply, "" before
     const char *robot_class;
     const char *robot_subclass;
+    uint8_t body;   // whose geometry holds: argus_robot_chosen() of it, 0: not known
+    uint8_t sonars; // that are managed: the others are ABSENT
 } argus_status_t;
 
 // Why the manager waits (mode WAITING).
@@ -127,8 +129,8 @@ typedef struct {
     argus_hold_t hold[ARGUS_SONARS];
     uint32_t looked_ms; // last active look
     uint32_t looked_odometer_mm;
-    uint16_t pinned;   // sonars whose health an operator has fixed
-    uint16_t recorded; // sonars on PROBATION by the record
+    argus_mask_t pinned;   // sonars whose health an operator has fixed
+    argus_mask_t recorded; // sonars on PROBATION by the record
     uint32_t
         robot;   // identity (analysis/record.h) of the robot, or of the record before a session; 0: unknown
     bool loaded; // a record was taken whose robot is not compared yet
@@ -167,6 +169,7 @@ typedef struct {
     bool aimed;    // DRIVING: the leg's bearing was turned to
     bool arriving; // at the goal, stopping
     bool locked;   // the configuration is unsafe: never active
+    bool barred;   // would be active, but not with this robot: unknown, or unsafe with these settings
     bool passive;
     bool paused;
     bool stay;    // after the operator's STOP: no turn either, until another order

@@ -20,20 +20,20 @@ void argus_give_up_turn(argus_t *const self) {
     argus_enter_waiting(self, ARGUS_WAIT_MOTORS);
 }
 
-uint16_t argus_wanted_sonars(const argus_t *const self) {
-    return (uint16_t)(ARGUS_FORWARD_MASK & ~(unsigned)argus_out(&self->knowledge));
+argus_mask_t argus_wanted_sonars(const argus_t *const self) {
+    return (argus_mask_t)(ARGUS_FORWARD_MASK & ~(unsigned)argus_out(&self->knowledge));
 }
 
 uint32_t argus_two_rounds_ms(const argus_t *const self) {
     return 2u * SLOTS * (uint32_t)self->config.sonar_cycle_ms + SIP_MS;
 }
 
-static uint16_t in_use(const argus_knowledge_t *const knowledge) {
+static argus_mask_t in_use(const argus_knowledge_t *const knowledge) {
     unsigned mask = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < knowledge->sonars; i++) {
         mask |= knowledge->sonar[i].reported && !argus_is_out(knowledge, i) ? 1u << i : 0u;
     }
-    return (uint16_t)mask;
+    return (argus_mask_t)mask;
 }
 
 // Those ahead have been read again; before a turn that S7 forbade the others as well, for two rounds at most:
@@ -70,7 +70,7 @@ static bool is_home(argus_t *const self) {
 }
 
 static void declare_healthy(argus_t *const self) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         argus_sonar_t *const s = &self->knowledge.sonar[i];
         if (s->reported && (s->health == ARGUS_UNKNOWN || s->health == ARGUS_STALE)) {
             argus_sonar_set_health(s, ARGUS_HEALTHY, ARGUS_KIND_NONE, self->now_ms);
@@ -80,18 +80,18 @@ static void declare_healthy(argus_t *const self) {
 }
 
 // Suspects not verified in this place: also those whose verification was broken off, or could not be begun.
-uint16_t argus_open_suspects(const argus_t *const self) {
-    return (uint16_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
+argus_mask_t argus_open_suspects(const argus_t *const self) {
+    return (argus_mask_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
                       ~(unsigned)self->awareness.verified);
 }
 
-static uint16_t find_suspects(argus_t *const self) {
-    return argus_judges(self) ? (uint16_t)(argus_worth_a_look(self) | argus_open_suspects(self))
+static argus_mask_t find_suspects(argus_t *const self) {
+    return argus_judges(self) ? (argus_mask_t)(argus_worth_a_look(self) | argus_open_suspects(self))
                               : argus_suspects(&self->awareness, &self->knowledge, &self->config);
 }
 
 static void finish_check(argus_t *const self) {
-    const uint16_t suspects = (uint16_t)(find_suspects(self) | argus_open_suspects(self));
+    const argus_mask_t suspects = (argus_mask_t)(find_suspects(self) | argus_open_suspects(self));
     const bool routine = argus_judges(self) && argus_routine_is_due(self);
     self->check_ms = self->now_ms;
     if ((suspects != 0 || routine) && !self->passive && !self->stay) {
@@ -146,7 +146,7 @@ static void apply_verdict(argus_t *const self) {
         argus_say(self, ARGUS_EV_SUSPICION_DROPPED, sonar, self->verify.difference_mm);
         break;
     case ARGUS_RESULT_UNPROVEN:
-        self->awareness.verified |= (uint16_t)(1u << sonar);
+        self->awareness.verified |= (argus_mask_t)(1u << sonar);
         argus_say(self, ARGUS_EV_SONAR_UNPROVEN, sonar, self->verify.reading_mm);
         break;
     case ARGUS_RESULT_NONE:
@@ -158,7 +158,7 @@ static void apply_verdict(argus_t *const self) {
 static void say_witnesses(argus_t *const self) {
     for (int side = 0; side < 2; side++) {
         if ((self->verify.heard >> side & 1) != 0) {
-            argus_say(self, ARGUS_EV_SONAR_WITNESS, self->verify.sonar + (side == 0 ? -1 : 1),
+            argus_say(self, ARGUS_EV_SONAR_WITNESS, self->verify.by[side],
                       self->verify.witness_mm[side]);
         }
     }
@@ -180,7 +180,7 @@ static void begin_next_suspect(argus_t *const self) {
         argus_enter_checking(self, false);
         return;
     }
-    argus_verify_begin(&self->verify, sonar, self->base_cdeg);
+    argus_verify_begin(&self->verify, self->knowledge.robot, sonar, self->base_cdeg);
     argus_say(self, ARGUS_EV_SONAR_VERIFYING, sonar, self->knowledge.sonar[sonar].reading_mm);
 }
 
@@ -237,7 +237,7 @@ bool argus_health_check(argus_t *const self) {
         return false;
     }
     self->check_ms = self->now_ms;
-    const uint16_t suspects = find_suspects(self);
+    const argus_mask_t suspects = find_suspects(self);
     const bool routine = argus_judges(self) && self->mode == ARGUS_MODE_DRIVING && argus_routine_is_due(self);
     if (self->passive && !argus_judges(self)) {
         drop_suspicions(self);

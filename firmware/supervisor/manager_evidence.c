@@ -39,7 +39,7 @@ static void name(argus_t *const self, const int sonar) {
     argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = argus_evidence_renames(&self->evidence, sonar, s->kind);
     if (kind != ARGUS_KIND_NONE) {
-        argus_flag_suspects(self, (uint16_t)(1u << sonar));
+        argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
     }
     if (s->health == ARGUS_SUSPECT && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
         s->kind = kind;
@@ -113,7 +113,7 @@ static void judge_out(argus_t *const self, const int sonar) {
 // Its turn in a round comes late: each new order begins the round anew, so plans that change may pass it
 // over.
 static bool is_passed_over(const argus_t *const self, const int sonar) {
-    const bool late = sonar == ARGUS_FLANK_LEFT || sonar == ARGUS_FLANK_RIGHT;
+    const bool late = (argus_robot_flank(self->knowledge.robot) >> sonar & 1u) != 0;
     return late && self->ordered && self->now_ms - self->ordered_ms <= (uint32_t)self->config.stale_ms;
 }
 
@@ -130,7 +130,7 @@ void argus_judge(argus_t *const self) {
     if (!argus_judges(self) || self->mode == ARGUS_MODE_CLOSING) {
         return;
     }
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((self->pinned >> i & 1u) != 0) {
             continue;
         }
@@ -155,40 +155,40 @@ static bool is_held(const argus_t *const self, const int sonar) {
 
 // Beside a smooth wall one that looks aside loses its echo in each look anew: it must not keep the robot
 // there.
-static uint16_t lost(const argus_t *const self) {
+static argus_mask_t lost(const argus_t *const self) {
     unsigned mask = self->evidence.lost;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         const bool ahead = (ARGUS_FORWARD_MASK >> i & 1u) != 0;
         mask &= !ahead && was_cleared_within(self, i, LOST_HOLD_MM) ? ~(1u << i) : ~0u;
     }
-    return (uint16_t)mask;
+    return (argus_mask_t)mask;
 }
 
-static uint16_t without_held(const argus_t *const self, const unsigned mask) {
+static argus_mask_t without_held(const argus_t *const self, const unsigned mask) {
     unsigned free_mask = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         free_mask |= (mask >> i & 1u) != 0 && !is_held(self, i) ? 1u << i : 0u;
     }
-    return (uint16_t)free_mask;
+    return (argus_mask_t)free_mask;
 }
 
-static uint16_t suspected(const argus_t *const self) {
+static argus_mask_t suspected(const argus_t *const self) {
     unsigned mask = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         mask |= argus_evidence_suspects(&self->evidence, i) ? 1u << i : 0u;
     }
-    return (uint16_t)(mask & ~(unsigned)argus_out(&self->knowledge) & ~(unsigned)self->pinned);
+    return (argus_mask_t)(mask & ~(unsigned)argus_out(&self->knowledge) & ~(unsigned)self->pinned);
 }
 
 // What is worth a stop now: evidence that a look can settle, a lost echo ahead, a bearing unseen for too
 // long.
-uint16_t argus_worth_a_look(argus_t *const self) {
-    const uint16_t unseen = argus_evidence_unseen(&self->evidence, &self->knowledge, &self->config);
+argus_mask_t argus_worth_a_look(argus_t *const self) {
+    const argus_mask_t unseen = argus_evidence_unseen(&self->evidence, &self->knowledge, &self->config);
     const unsigned ahead = lost(self) | unseen;
     const bool spaced = self->now_ms - self->looked_ms >= SPACING_MS;
     const unsigned jumped = spaced ? self->evidence.jumped & ARGUS_FORWARD_MASK : 0u;
     const unsigned open = without_held(self, suspected(self) | jumped) | ahead;
-    return (uint16_t)(open & ~(unsigned)argus_out(&self->knowledge) & ~(unsigned)self->awareness.verified &
+    return (argus_mask_t)(open & ~(unsigned)argus_out(&self->knowledge) & ~(unsigned)self->awareness.verified &
                       ~(unsigned)self->pinned);
 }
 
@@ -217,7 +217,7 @@ static void acquit(argus_t *const self, const int sonar) {
 }
 
 static void leave_open(argus_t *const self, const int sonar) {
-    self->awareness.verified |= (uint16_t)(1u << sonar);
+    self->awareness.verified |= (argus_mask_t)(1u << sonar);
     argus_say(self, ARGUS_EV_SONAR_UNPROVEN, sonar, self->knowledge.sonar[sonar].reading_mm);
 }
 
@@ -238,7 +238,7 @@ static void conclude(argus_t *const self, const int sonar) {
 }
 
 static void finish(argus_t *const self) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         conclude(self, i);
     }
     self->looked_ms = self->now_ms;
@@ -250,8 +250,8 @@ static void finish(argus_t *const self) {
 }
 
 // No look is to be had, and none of them looks ahead: they are left open.
-static void go_on_without(argus_t *const self, const uint16_t suspects) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+static void go_on_without(argus_t *const self, const argus_mask_t suspects) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((suspects >> i & 1u) != 0) {
             leave_open(self, i);
         }
@@ -260,14 +260,14 @@ static void go_on_without(argus_t *const self, const uint16_t suspects) {
 }
 
 static void begin(argus_t *const self) {
-    const uint16_t suspects = argus_open_suspects(self);
+    const argus_mask_t suspects = argus_open_suspects(self);
     argus_take_base(self);
     if (suspects != 0 && (suspects & ARGUS_FORWARD_MASK) == 0 && argus_is_hemmed_in(self)) {
         go_on_without(self, suspects);
         return;
     }
     argus_inquiry_begin(&self->inquiry, &self->knowledge, &self->evidence, suspects, self->base_cdeg);
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((suspects >> i & 1u) != 0) {
             argus_say(self, ARGUS_EV_SONAR_VERIFYING, i, self->knowledge.sonar[i].reading_mm);
         }
@@ -294,7 +294,7 @@ void argus_run_inquiry(argus_t *const self) {
         begin(self);
         return;
     }
-    self->inquiry.watched &= (uint16_t)~(unsigned)argus_out(&self->knowledge);
+    self->inquiry.watched &= (argus_mask_t)~(unsigned)argus_out(&self->knowledge);
     if (!argus_inquiry_step(&self->inquiry, &self->knowledge, &self->evidence)) {
         return;
     }

@@ -14,15 +14,15 @@ size_t argus_record_save(const argus_t *const self, uint8_t *const buffer, const
 
 // What failed last time may have been repaired: it comes back on evidence, like one that failed in this
 // mission.
-static void put_on_probation(argus_t *const self, const uint16_t sonars) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+static void put_on_probation(argus_t *const self, const argus_mask_t sonars) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         argus_sonar_t *const s = &self->knowledge.sonar[i];
         if ((sonars >> i & 1u) == 0 || argus_is_out(&self->knowledge, i)) {
             continue;
         }
         const argus_fault_kind_t kind = s->kind_before == ARGUS_KIND_NONE ? ARGUS_KIND_WRONG : s->kind_before;
         argus_sonar_set_health(s, ARGUS_PROBATION, kind, self->now_ms);
-        self->recorded |= (uint16_t)(1u << i);
+        self->recorded |= (argus_mask_t)(1u << i);
         argus_say(self, ARGUS_EV_SONAR_PROBATION, i, 0);
     }
     argus_replan(self);
@@ -35,7 +35,7 @@ static void refuse(argus_t *const self, const argus_record_fault_t fault) {
 // The robot was not known when the record was read.
 static void take_back(argus_t *const self) {
     argus_record_forget(&self->knowledge, &self->evidence);
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         argus_sonar_t *const s = &self->knowledge.sonar[i];
         if ((self->recorded >> i & 1u) != 0 && s->health == ARGUS_PROBATION) {
             argus_sonar_set_health(s, ARGUS_UNKNOWN, ARGUS_KIND_NONE, self->now_ms);
@@ -88,11 +88,11 @@ void argus_foretell(argus_t *const self) {
 // anew, with its relapses forgiven, since nothing but evidence brings it back.
 static void begin_retest(argus_t *const self, const int sonar) {
     argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    const uint16_t bit = (uint16_t)(1u << sonar);
+    const argus_mask_t bit = (argus_mask_t)(1u << sonar);
     argus_evidence_forget(&self->evidence, sonar);
     argus_trend_forget(&self->evidence.trend, sonar);
     self->hold[sonar].acquittals = 0;
-    self->awareness.verified &= (uint16_t)~(unsigned)bit;
+    self->awareness.verified &= (argus_mask_t)~(unsigned)bit;
     if (argus_is_out(&self->knowledge, sonar)) {
         s->relapses = 0;
         argus_sonar_set_health(s, ARGUS_PROBATION, s->kind, self->now_ms);
@@ -105,7 +105,7 @@ static void begin_retest(argus_t *const self, const int sonar) {
 }
 
 static bool may_serve(const argus_t *const self, const argus_op_t op, const int32_t sonar) {
-    if (sonar < 0 || sonar >= ARGUS_SONARS || op > ARGUS_OP_DISABLE) {
+    if (sonar < 0 || sonar >= self->knowledge.sonars || op > ARGUS_OP_DISABLE) {
         return false;
     }
     const bool pinned = (self->pinned >> sonar & 1u) != 0;
@@ -128,7 +128,7 @@ static void retest(argus_t *const self, const int sonar) {
 
 static void pin(argus_t *const self, const int sonar, const bool on) {
     const unsigned bit = 1u << sonar;
-    self->pinned = (uint16_t)(on ? self->pinned | bit : self->pinned & ~bit);
+    self->pinned = (argus_mask_t)(on ? self->pinned | bit : self->pinned & ~bit);
     argus_say(self, ARGUS_EV_SONAR_PINNED, sonar, on ? 1 : 0);
 }
 

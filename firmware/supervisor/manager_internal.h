@@ -5,6 +5,7 @@
 #define ARGUS_MANAGER_INTERNAL_H
 
 #include "supervisor/manager.h"
+#include "supervisor/robot_compat.h"
 
 // Events.
 void argus_say(argus_t *self, argus_event_id_t id, int sonar, int32_t value);
@@ -13,7 +14,7 @@ void argus_say(argus_t *self, argus_event_id_t id, int sonar, int32_t value);
 void argus_enter(argus_t *self, argus_mode_t mode);
 void argus_enter_waiting(argus_t *self, argus_wait_t why);
 void argus_enter_checking(argus_t *self, bool full);
-void argus_enter_verifying(argus_t *self, uint16_t suspects);
+void argus_enter_verifying(argus_t *self, argus_mask_t suspects);
 void argus_decide(argus_t *self); // a mode has ended well: what next?
 
 // Motion, each under its invariant.
@@ -35,20 +36,24 @@ void argus_back_off(argus_t *self, int32_t distance_mm);
 void argus_disable(argus_t *self, int sonar, argus_fault_kind_t kind);
 void argus_replan(argus_t *self);
 void argus_share_slots(argus_t *self); // POLLING for the present plan; again in each new session
-uint16_t argus_open_suspects(const argus_t *self);
+argus_mask_t argus_open_suspects(const argus_t *self);
 void argus_take_base(argus_t *self);               // the present heading becomes the one to return to
-uint16_t argus_wanted_sonars(const argus_t *self); // those of 1..6 that are not DISABLED
+argus_mask_t argus_wanted_sonars(const argus_t *self); // those of 1..6 that are not DISABLED
 uint32_t argus_two_rounds_ms(const argus_t *self); // in which each sonar of an array has been listed twice
 bool argus_health_check(argus_t *self); // the periodic one beside the main task; true when it took over
-void argus_flag_suspects(argus_t *self, uint16_t suspects);
+void argus_flag_suspects(argus_t *self, argus_mask_t suspects);
 
 // Profile argus.
 bool argus_judges(const argus_t *self);
 void argus_judge(argus_t *self); // each SIP: convictions, names, rehabilitation
-uint16_t argus_worth_a_look(argus_t *self);
+argus_mask_t argus_worth_a_look(argus_t *self);
 bool argus_routine_is_due(const argus_t *self);
 void argus_run_inquiry(argus_t *self);
 void argus_foretell(argus_t *self); // each SIP: a sonar that gets worse
+
+// Which robot it is.
+void argus_meet_body(argus_t *self);  // a session is open: its geometry holds, and it may be driven or not
+bool argus_say_barred(argus_t *self); // says why it may not be driven; false: it may
 
 // Across missions.
 void argus_meet_robot(argus_t *self); // a session is open: is it the robot of the record?

@@ -57,7 +57,7 @@ void argus_enter_checking(argus_t *const self, const bool full) {
     argus_enter(self, ARGUS_MODE_CHECKING);
 }
 
-void argus_enter_verifying(argus_t *const self, const uint16_t suspects) {
+void argus_enter_verifying(argus_t *const self, const argus_mask_t suspects) {
     argus_flag_suspects(self, suspects);
     argus_halt(self);
     if (!self->motion.settled && self->motion.kind != ARGUS_MOTION_STOP) {

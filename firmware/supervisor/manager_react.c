@@ -3,20 +3,19 @@
 #include "knowledge/angle.h"
 #include "supervisor/manager_internal.h"
 
-#define SWING_MM ARGUS_P3DX_BODY_SWING_RADIUS_MM
+#define SWING_MM (self->knowledge.robot->swing_radius_mm)
 #define SWING_MARGIN_MM 20  // an echo is taken to lie on the axis of its sonar
 #define SWING_TURNING_MM 10 // ... of which that much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
 #define BACKOFFS_MAX 3
 #define HEMMED_IN_MS 10000u // people who stand beside it walk on
 #define LOW_BATTERY_DV 115  // where CONFIGpac names none
-#define REAR_SONARS 0xFF00u
-#define ABEAM_SONARS (1u << 8 | 1u << 15)
+#define ABEAM_SONARS argus_robot_rear_flank(self->knowledge.robot)
+#define REAR_SONARS (argus_robot_astern(self->knowledge.robot) | ABEAM_SONARS)
 #define ABEAM_CLEAR_MM 250 // beside a way straight back of 300 mm; the body ends 77 mm beside their faces
 #define BACK_MOST_MM 300
 #define BACK_LEFT_MM 150 // of what the rear reads clear
 #define BACK_STEP_MM 25
-#define REAR_WORST 10 // and 13: 64 mm ahead of the rear end; 11 and 12, head-on, 46
 #define ASTERN_MM 50  // beyond the rear end
 
 static bool is_active(const argus_t *const self) {
@@ -60,7 +59,7 @@ static bool is_relied_on(const argus_t *const self, const int sonar) {
 }
 
 bool argus_rear_is_watched(const argus_t *const self) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((REAR_SONARS >> i & 1u) != 0 && !is_relied_on(self, i)) {
             return false;
         }
@@ -75,7 +74,7 @@ static int32_t rear_clear_mm(const argus_t *const self, const int sonar) {
 }
 
 bool argus_rear_is_clear(const argus_t *const self) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         const bool counts = (REAR_SONARS >> i & 1u) != 0;
         if (counts && self->knowledge.sonar[i].reading_mm <= rear_clear_mm(self, i)) {
             return false;
@@ -86,9 +85,9 @@ bool argus_rear_is_clear(const argus_t *const self) {
 
 // As fast as S5 lets it drive with the rear's overhang.
 static int32_t back_speed_mm_s(const argus_t *const self) {
-    const int32_t overhang_mm = ARGUS_P3DX_BODY_REAR_MM + argus_sonar_pose[REAR_WORST].x_mm;
+    const int32_t overhang_mm = self->knowledge.robot->rear_overhang_mm;
     const bool stops_in_time =
-        argus_config_stop_mm(&self->config) + overhang_mm < self->config.object_range_mm;
+        argus_config_stop_mm(&self->config, self->knowledge.robot) + overhang_mm < self->config.object_range_mm;
     return argus_judges(self) && stops_in_time ? self->config.speed_mm_s : self->config.step_speed_mm_s;
 }
 
@@ -128,8 +127,8 @@ static int32_t most_back_mm(const argus_t *const self) {
     const int32_t clear_mm = argus_min(BACK_MOST_MM, self->config.rear_clear_mm - BACK_LEFT_MM);
     const int32_t astern_cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + 18000);
     const int32_t free_mm =
-        argus_task_clear_mm(&self->task, &self->knowledge, astern_cdeg, ARGUS_STRAIGHT_HALF_MM);
-    const bool is_free = free_mm >= ARGUS_P3DX_BODY_REAR_MM + clear_mm + ASTERN_MM;
+        argus_task_clear_mm(&self->task, &self->knowledge, astern_cdeg, argus_task_straight_half_mm(self->knowledge.robot));
+    const bool is_free = free_mm >= self->knowledge.robot->rear_mm + clear_mm + ASTERN_MM;
     const bool again = self->backed > 1; // far once is far enough
     return is_free && !again ? clear_mm : argus_min(clear_mm, self->config.backoff_mm);
 }
@@ -172,7 +171,7 @@ static bool is_steady(const argus_t *const self, const int sonar) {
 }
 
 static bool only_steady_forbid_to_turn(const argus_t *const self) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         const bool forbids = argus_echo_to_centre_mm(&self->knowledge, i, 0) <= swing_mm(self);
         if (forbids && !is_steady(self, i)) {
             return false;
@@ -240,7 +239,7 @@ void argus_share_slots(argus_t *const self) {
     if (!is_active(self) || !argus_session_is_open(&self->session)) {
         return;
     }
-    uint8_t order[2 * (ARGUS_FORWARD_LAST + 1)];
+    uint8_t order[2 * (ARGUS_FORWARD_MAX + 1)];
     size_t count = 0;
     for (int half = 0; half < 2; half++) {
         for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
@@ -248,7 +247,7 @@ void argus_share_slots(argus_t *const self) {
                 order[count++] = (uint8_t)(i + 1);
             }
         }
-        order[count++] = half == 0 ? 1 : ARGUS_FORWARD_LAST + 2;
+        order[count++] = (uint8_t)(half == 0 ? ARGUS_FORWARD_FIRST : ARGUS_FORWARD_LAST + 2);
     }
     for (int i = ARGUS_FORWARD_FIRST; argus_judges(self) && i <= ARGUS_FORWARD_LAST; i++) {
         if (argus_is_out(&self->knowledge, i)) { // its own slot, to show that it does well again
@@ -270,10 +269,10 @@ static void say_plan(argus_t *const self) {
 // A suspect that no witness could judge is planned for as if it were disabled: its bearing counts as
 // uncovered. One that is still to be verified is not: nothing moves ahead before it is.
 void argus_replan(argus_t *const self) {
-    const uint16_t disabled = argus_out(&self->knowledge) & ARGUS_FORWARD_MASK;
-    const uint16_t blind = disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
+    const argus_mask_t disabled = argus_out(&self->knowledge) & ARGUS_FORWARD_MASK;
+    const argus_mask_t blind = disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
                                        self->awareness.verified & ARGUS_FORWARD_MASK);
-    const argus_failure_t failure = argus_failure_of(disabled);
+    const argus_failure_t failure = argus_failure_of(self->knowledge.robot, disabled);
     if (failure != self->failure) {
         self->failure = failure;
         argus_say(self, ARGUS_EV_FAILURE_STATE, ARGUS_NO_SONAR, argus_count_bits(disabled));
@@ -281,13 +280,13 @@ void argus_replan(argus_t *const self) {
     if (blind == self->plan.disabled) {
         return;
     }
-    self->plan = argus_plan((argus_policy_t)self->config.policy, blind);
+    self->plan = argus_plan(self->knowledge.robot, (argus_policy_t)self->config.policy, blind);
     say_plan(self);
     argus_share_slots(self);
 }
 
-void argus_flag_suspects(argus_t *const self, const uint16_t suspects) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+void argus_flag_suspects(argus_t *const self, const argus_mask_t suspects) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         argus_sonar_t *const s = &self->knowledge.sonar[i];
         if ((suspects >> i & 1u) != 0 && s->health != ARGUS_SUSPECT) {
             argus_sonar_set_health(s, ARGUS_SUSPECT, ARGUS_KIND_NONE, self->now_ms);
@@ -335,7 +334,7 @@ static bool react_stall(argus_t *const self, const argus_alarm_t *const alarm) {
 }
 
 static bool react_dead(argus_t *const self, const argus_alarm_t *const alarm) {
-    const uint16_t lost = alarm->dead | alarm->silent;
+    const argus_mask_t lost = alarm->dead | alarm->silent;
     if (lost == 0) {
         return false;
     }
@@ -405,7 +404,7 @@ static bool react_swing(argus_t *const self) {
         self->near[0].valid = self->near[1].valid = false;
         return false;
     }
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         const bool fresh = (self->knowledge.fresh >> i & 1u) != 0 && argus_usable(&self->knowledge, i);
         if (fresh && note_near(self, i)) {
             argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, nearest_to_centre_mm(self, 0));
@@ -423,9 +422,10 @@ static void react_flank(argus_t *const self) {
     if (!argus_judges(self) || !ahead || self->motion.kind != ARGUS_MOTION_MOVE || self->motion.settled) {
         return;
     }
-    const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge);
-    const int32_t stop_mm = argus_config_stop_mm(&self->config);
-    for (int i = ARGUS_FLANK_LEFT; i <= ARGUS_FLANK_RIGHT; i += ARGUS_FLANK_RIGHT - ARGUS_FLANK_LEFT) {
+    const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge) &
+                            argus_robot_flank(self->knowledge.robot);
+    const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((usable >> i & 1u) != 0 && argus_evidence_slants_in(&self->evidence, i, stop_mm)) {
             stop_before(self, i, self->knowledge.sonar[i].reading_mm);
             argus_task_refuse_slant(&self->task, &self->knowledge);
@@ -458,7 +458,7 @@ static void react_motors(argus_t *const self) {
 // The others (0, 7, the rear array) are not judged, but one that yields nothing any more must not be relied
 // on.
 static void watch_others(argus_t *const self) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         argus_sonar_t *const s = &self->knowledge.sonar[i];
         const bool other = (ARGUS_FORWARD_MASK >> i & 1u) == 0;
         const uint32_t silent_ms = argus_silent_ms(&self->knowledge, i);

@@ -44,6 +44,8 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
     status->robot_name = self->session.name;
     status->robot_class = self->session.robot_class;
     status->robot_subclass = self->session.subclass;
+    status->body = argus_robot_choice(self->knowledge.robot);
+    status->sonars = self->knowledge.sonars;
 }
 
 static bool queues_hold(const argus_t *const self) {
@@ -77,13 +79,13 @@ static bool health_holds(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
         const bool whole =
-            s->health == ARGUS_HEALTHY || s->health == ARGUS_UNKNOWN || s->health == ARGUS_STALE;
-        if (s->health > ARGUS_STALE || (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
+            s->health != ARGUS_SUSPECT && s->health != ARGUS_DISABLED && s->health != ARGUS_PROBATION;
+        if (s->health > ARGUS_ABSENT || (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
             (whole && s->kind != ARGUS_KIND_NONE)) {
             return false;
         }
     }
-    return argus_failure_of(argus_out(&self->knowledge)) == self->failure;
+    return argus_failure_of(self->knowledge.robot, argus_out(&self->knowledge)) == self->failure;
 }
 
 int argus_invariants_broken(const argus_t *const self) {

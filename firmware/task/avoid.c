@@ -10,11 +10,12 @@
 #define SAME_PLACE_MM 80
 #define SAME_THING_MM 150
 #define FORGET_MS 60000u
-#define WIDE_HALF_MM 400   // room to turn on the spot anywhere along it (S7 wants 390 under `argus`)
-#define NARROW_HALF_MM 305 // half the body (213), and room for the beam's width: where there is no wide way
+#define WIDE_ROOM_MM 30   // beside the swing circle: room to turn anywhere on the way (S7 wants 20 under `argus`)
+#define NARROW_ROOM_MM 92 // beside the body, for the beam's width: where there is no wide way
+#define STRAIGHT_ROOM_MM 47
 #define NEAR_MM 1000
 #define LATELY_MS 5000u // what was seen so near does not go away while a look is prepared
-#define CORRIDOR_MM 650 // free length wanted ahead
+#define CORRIDOR_ROOM_MM 440 // free length wanted ahead of the body
 #define BEHIND_MM 100   // an echo this far ahead of the centre is beside the robot already
 #define LEG_MM 300      // way along a detour before choosing again
 #define STEP_CDEG 1000
@@ -22,8 +23,16 @@
 #define OTHER_SIDE_STEPS 6 // a detour prefers the side it began on by so much
 #define REFUSED_CDEG 1500
 #define MOVED_ON_MM 150
-#define BUMPER_AHEAD_MM 240
+#define BUMPER_AHEAD_MM 30 // of the body
 #define BY_TOUCH UINT8_MAX // no sonar: it is there for sure
+
+int32_t argus_task_straight_half_mm(const argus_robot_t *const robot) {
+    return argus_robot_half_width_mm(robot) + STRAIGHT_ROOM_MM;
+}
+
+static int32_t corridor_mm(const argus_knowledge_t *const knowledge) {
+    return knowledge->robot->front_mm + CORRIDOR_ROOM_MM;
+}
 
 static bool same_place(const argus_seen_t *const seen, const argus_point_t *const at) {
     return argus_abs(seen->x_mm - at->x_mm) < SAME_PLACE_MM &&
@@ -93,7 +102,7 @@ static void remember(argus_task_t *const self, const argus_point_t at, const uin
 
 void argus_task_see(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                     const uint32_t now_ms) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < knowledge->sonars; i++) {
         const bool fresh = (knowledge->fresh >> i & 1u) != 0;
         if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT &&
             !knowledge->rotating && knowledge->sonar[i].reading_mm < REMEMBER_BELOW_MM) {
@@ -122,9 +131,12 @@ void argus_task_touched(argus_task_t *const self, const argus_point_t at, const 
 // seen.
 void argus_task_bumped(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                        const uint32_t now_ms) {
-    for (int segment = 1; segment <= 5; segment++) {
+    const argus_robot_t *const robot = knowledge->robot;
+    const int segments = robot->front_bumpers;
+    for (int segment = 1; segment <= segments; segment++) {
         if ((knowledge->bumpers_front >> segment & 1u) != 0) {
-            const argus_point_t touched = {BUMPER_AHEAD_MM, (3 - segment) * 85};
+            const int32_t beside_mm = (segments + 1 - 2 * segment) * (robot->width_mm / segments) / 2;
+            const argus_point_t touched = {robot->front_mm + BUMPER_AHEAD_MM, beside_mm};
             argus_task_touched(self, argus_to_course(&knowledge->pose, touched), now_ms);
         }
     }
@@ -227,7 +239,7 @@ static int detour_size(const argus_task_t *const self, const int step, const int
 // Nearest to the bearing first.
 static bool find_detour(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                         const int32_t half_mm, const int32_t bearing_cdeg, int32_t *const heading_cdeg) {
-    const corridor_t wanted = {half_mm, CORRIDOR_MM};
+    const corridor_t wanted = {half_mm, corridor_mm(knowledge)};
     int8_t side = self->side != 0 ? self->side : 1;
     for (int i = 2; i < 2 * (STEPS + OTHER_SIDE_STEPS + 1); i++) {
         const int size = detour_size(self, i / 2, side);
@@ -259,7 +271,8 @@ static bool choose_corridor(argus_task_t *const self, const argus_knowledge_t *c
                             const int32_t half_mm) {
     lead_to(self, self->waypoint[self->next]);
     const int32_t bearing = argus_task_bearing_cdeg(self, knowledge);
-    const corridor_t direct = {half_mm, argus_min(CORRIDOR_MM, argus_task_leg_mm(self, knowledge) + half_mm)};
+    const int32_t leg_mm = argus_task_leg_mm(self, knowledge);
+    const corridor_t direct = {half_mm, argus_min(corridor_mm(knowledge), leg_mm + half_mm)};
     if ((!self->avoiding && !is_refused(self, bearing)) || is_free(self, knowledge, bearing, &direct)) {
         self->avoiding = false;
         self->side = 0;
@@ -279,7 +292,9 @@ bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const 
         return false;
     }
     forgive_when_moved(self, knowledge);
-    if (choose_corridor(self, knowledge, WIDE_HALF_MM) || choose_corridor(self, knowledge, NARROW_HALF_MM)) {
+    const int32_t wide_mm = knowledge->robot->swing_radius_mm + WIDE_ROOM_MM;
+    const int32_t narrow_mm = argus_robot_half_width_mm(knowledge->robot) + NARROW_ROOM_MM;
+    if (choose_corridor(self, knowledge, wide_mm) || choose_corridor(self, knowledge, narrow_mm)) {
         return true;
     }
     self->has_leg = false;
@@ -289,7 +304,7 @@ bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const 
 
 bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
     const int32_t heading = knowledge->pose.heading_cdeg;
-    const corridor_t wanted = {ARGUS_STRAIGHT_HALF_MM, CORRIDOR_MM};
+    const corridor_t wanted = {argus_task_straight_half_mm(knowledge->robot), corridor_mm(knowledge)};
     if (self->next >= self->count || !is_free(self, knowledge, heading, &wanted)) {
         return false;
     }

@@ -53,9 +53,9 @@ bool argus_task_progress(argus_task_t *self, const argus_knowledge_t *knowledge,
 
 int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *knowledge);
 
-// Half of what is driven straight along, ahead or back, without a turn: half the body (213), and something
-// for its heading.
-#define ARGUS_STRAIGHT_HALF_MM 260
+// Half of what is driven straight along, ahead or back, without a turn: half the body, and something for its
+// heading.
+int32_t argus_task_straight_half_mm(const argus_robot_t *robot);
 
 // Length of the corridor of 2 x half_mm that is free of remembered echoes along a heading; INT32_MAX without
 // any.

@@ -247,7 +247,8 @@ static void fill_heartbeat(const hal_telemetry_t *self, const argus_t *core, uin
         .failure = (uint8_t)core->failure,
         .mission = (uint8_t)core->mission,
         .wait = core->mode == ARGUS_MODE_WAITING ? (uint8_t)core->wait : (uint8_t)ARGUS_WAIT_NONE,
-        .disabled = (uint8_t)argus_count_bits(argus_disabled(&core->knowledge) & ARGUS_FORWARD_MASK),
+        .disabled = (uint8_t)argus_count_bits(argus_disabled(&core->knowledge) &
+                                             argus_robot_forward(core->knowledge.robot)),
         .roll = self->roll & 0xFu,
         .stops = core->stops & 0xFu,
         .taken = self->verdicts[HAL_TELEMETRY_TAKEN] & 0xFu,
@@ -296,7 +297,7 @@ static int8_t degrees(int16_t value) {
     return (int8_t)(value > INT8_MAX ? INT8_MAX : value < INT8_MIN ? INT8_MIN : value);
 }
 
-static void fill_plan(const argus_plan_t *from, uint8_t roll, uint8_t *data) {
+static void fill_plan(const argus_robot_t *robot, const argus_plan_t *from, uint8_t roll, uint8_t *data) {
     hal_dbc_plan_t plan = {.count = from->count,
                            .complete = from->complete,
                            .return_each = from->return_each,
@@ -304,8 +305,8 @@ static void fill_plan(const argus_plan_t *from, uint8_t roll, uint8_t *data) {
     for (int i = 0; i < ARGUS_ROTATIONS_MAX && i < from->count; i++) {
         plan.rotation[i] = degrees(from->rotation_deg[i]);
     }
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        plan.blind[i - ARGUS_FORWARD_FIRST] = from->disabled >> i & 1u;
+    for (int i = 0; i < robot->forward_count; i++) {
+        plan.blind[i] = from->disabled >> robot->forward[i] & 1u;
     }
     hal_dbc_plan_pack(data, &plan);
 }
@@ -328,7 +329,7 @@ static uint32_t fill(hal_telemetry_t *self, const argus_t *core, int slot, uint3
     if (slot == HAL_TELEMETRY_HEALTH_FRONT || slot == HAL_TELEMETRY_HEALTH_REAR) {
         fill_health(core, slot == HAL_TELEMETRY_HEALTH_FRONT ? 0 : ARRAY, data);
     } else if (slot == HAL_TELEMETRY_PLAN) {
-        fill_plan(&core->plan, self->plan_roll, data);
+        fill_plan(core->knowledge.robot, &core->plan, self->plan_roll, data);
     } else if (slot >= HAL_TELEMETRY_READINGS) {
         const int first = (slot - HAL_TELEMETRY_READINGS) * GROUP;
         fill_readings(self, core, first, now_ms, data);
@@ -350,7 +351,7 @@ static void sent(hal_telemetry_t *self, const argus_t *core, int slot, uint32_t 
         self->roll++;
     } else if (slot == HAL_TELEMETRY_PLAN && s->ever && memcmp(frame->data, s->data, HAL_DBC_LENGTH) != 0) {
         self->plan_roll++;
-        fill_plan(&core->plan, self->plan_roll, frame->data);
+        fill_plan(core->knowledge.robot, &core->plan, self->plan_roll, frame->data);
     } else if (slot >= HAL_TELEMETRY_READINGS && slot < HAL_TELEMETRY_PLAN) {
         const int first = (slot - HAL_TELEMETRY_READINGS) * GROUP;
         for (int i = first; i < first + GROUP; i++) {

@@ -29,7 +29,7 @@ def test_exports_only_the_public_headers() -> None:
     done = subprocess.run(["nm", "-D", "--defined-only", path], capture_output=True, text=True, check=True)
     exported = {line.split()[-1] for line in done.stdout.splitlines()}
     allowed = declared(*HEADERS, ROOT / "tools/core_shim.c")
-    assert {"argus_init", "argus_receive", "argus_next_event", "argus_sonar_pose"} <= exported
+    assert {"argus_init", "argus_receive", "argus_next_event", "argus_sonar_poses"} <= exported
     assert exported <= allowed, exported - allowed
 
 

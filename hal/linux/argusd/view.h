@@ -26,7 +26,7 @@ typedef struct {
     uint32_t can_taken;   // orders
     uint32_t can_refused; // ...
     uint8_t sonar;        // the one that the operator has chosen
-    uint16_t pinned;      // mask over sonars
+    argus_mask_t pinned;  // mask over sonars
     uint32_t course_mm;   // straight line from the start to the goal, 0 without a course
 } view_t;
 

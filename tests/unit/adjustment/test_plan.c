@@ -5,7 +5,7 @@
 #include "unity.h"
 
 static void expect(argus_policy_t policy, uint16_t disabled, int count, const int16_t *rotations) {
-    const argus_plan_t plan = argus_plan(policy, disabled);
+    const argus_plan_t plan = argus_plan(argus_robot_default(), policy, disabled);
     TEST_ASSERT_EQUAL(count, plan.count);
     TEST_ASSERT_TRUE(plan.complete);
     TEST_ASSERT_EQUAL_INT16_ARRAY(rotations, plan.rotation_deg, count);
@@ -21,16 +21,16 @@ void test_table_iv(void) {
 void test_every_map_is_covered_by_healthy_sonars(void) {
     for (int policy = 0; policy < 2; policy++) {
         for (uint16_t map = 2; map < 126; map = (uint16_t)(map + 2)) {
-            const argus_plan_t plan = argus_plan((argus_policy_t)policy, map);
+            const argus_plan_t plan = argus_plan(argus_robot_default(), (argus_policy_t)policy, map);
             unsigned seen = 0;
             for (int i = 0; i < plan.count; i++) {
                 for (int d = 1; d <= 6; d++) {
-                    const int by = argus_plan_cover(&plan, plan.rotation_deg[i], d);
+                    const int by = argus_plan_cover(argus_robot_default(), &plan, plan.rotation_deg[i], d);
                     TEST_ASSERT_TRUE(by < 0 || (map >> by & 1u) == 0);
                     seen |= by >= 0 ? 1u << d : 0u;
                 }
-                TEST_ASSERT_EQUAL(0, argus_plan_covering(&plan, plan.rotation_deg[i]) & map);
-                TEST_ASSERT_TRUE(argus_plan_covering(&plan, plan.rotation_deg[i]) != 0);
+                TEST_ASSERT_EQUAL(0, argus_plan_covering(argus_robot_default(), &plan, plan.rotation_deg[i]) & map);
+                TEST_ASSERT_TRUE(argus_plan_covering(argus_robot_default(), &plan, plan.rotation_deg[i]) != 0);
             }
             TEST_ASSERT_EQUAL_HEX16(map, seen & map);
         }
@@ -39,15 +39,15 @@ void test_every_map_is_covered_by_healthy_sonars(void) {
 
 void test_nothing_or_everything_out(void) {
     for (int policy = 0; policy < 2; policy++) {
-        TEST_ASSERT_EQUAL(0, argus_plan((argus_policy_t)policy, 0).count);
-        TEST_ASSERT_TRUE(argus_plan((argus_policy_t)policy, 0).complete);
-        TEST_ASSERT_EQUAL(0, argus_plan((argus_policy_t)policy, 0x7E).count);
-        TEST_ASSERT_FALSE(argus_plan((argus_policy_t)policy, 0x7E).complete);
+        TEST_ASSERT_EQUAL(0, argus_plan(argus_robot_default(), (argus_policy_t)policy, 0).count);
+        TEST_ASSERT_TRUE(argus_plan(argus_robot_default(), (argus_policy_t)policy, 0).complete);
+        TEST_ASSERT_EQUAL(0, argus_plan(argus_robot_default(), (argus_policy_t)policy, 0x7E).count);
+        TEST_ASSERT_FALSE(argus_plan(argus_robot_default(), (argus_policy_t)policy, 0x7E).complete);
     }
 }
 
 void test_only_the_six_count(void) {
-    const argus_plan_t plan = argus_plan(ARGUS_POLICY_PAPER, 0xFF81);
+    const argus_plan_t plan = argus_plan(argus_robot_default(), ARGUS_POLICY_PAPER, 0xFF81);
     TEST_ASSERT_EQUAL(0, plan.count);
     TEST_ASSERT_EQUAL(0, plan.disabled);
 }

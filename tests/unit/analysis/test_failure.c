@@ -15,9 +15,9 @@ void test_all_64_maps(void) {
                                        : count <= 2 ? ARGUS_IS_MINOR
                                        : count <= 5 ? ARGUS_IS_MAJOR
                                                     : ARGUS_IS_CATASTROPHIC;
-        TEST_ASSERT_EQUAL(wanted, argus_failure_of((uint16_t)(map << 1)));
+        TEST_ASSERT_EQUAL(wanted, argus_failure_of(argus_robot_default(), (uint16_t)(map << 1)));
         TEST_ASSERT_EQUAL(wanted,
-                          argus_failure_of((uint16_t)(map << 1 | 0xFF81u))); // 0, 7 and the rear do not count
+                          argus_failure_of(argus_robot_default(), (uint16_t)(map << 1 | 0xFF81u))); // 0, 7 and the rear do not count
         TEST_ASSERT_EQUAL(count, argus_count_bits((uint16_t)(map << 1)));
     }
 }

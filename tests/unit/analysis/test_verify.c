@@ -36,7 +36,7 @@ static void read(int sonar, int mm) {
 
 // Recheck: `own` between its neighbours; then the machine wants the first turn, or is done.
 static void recheck(int sonar, int own, int neighbours) {
-    argus_verify_begin(&v, sonar, BASE);
+    argus_verify_begin(&v, k.robot, sonar, BASE);
     TEST_ASSERT_EQUAL(BASE, argus_verify_heading_cdeg(&v));
     TEST_ASSERT_FALSE(argus_verify_step(&v, &k, &mark)); // nothing is fresh
     for (int i = sonar - 1; i <= sonar + 1; i++) {
@@ -121,7 +121,7 @@ void test_one_usable_witness(void) {
             } else {
                 k.sonar[out].reading_mm = 5000;
             }
-            argus_verify_begin(&v, 3, BASE);
+            argus_verify_begin(&v, k.robot, 3, BASE);
             read(out == 2 ? 4 : 2, 2000);
             read(3, 1000);
             TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
@@ -139,7 +139,7 @@ void test_one_usable_witness(void) {
 void test_no_usable_witness_leaves_it_unproven(void) {
     argus_sonar_set_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
     argus_sonar_set_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
-    argus_verify_begin(&v, 3, BASE);
+    argus_verify_begin(&v, k.robot, 3, BASE);
     read(3, 1000);
     TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
     TEST_ASSERT_EQUAL(ARGUS_VERIFY_DONE, v.phase);
