@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-# libargus.so: the fault manager for other languages, with tools/core_shim.c; exports what the public headers declare.
-file(GLOB public_headers CONFIGURE_DEPENDS firmware/*/*.h)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${public_headers} ${PROJECT_SOURCE_DIR}/tools/core_shim.c)
+# libargus.so: the fault manager for other languages, with tools/core_shim.c; exports what the public header and the shim declare.
+set(declaring ${PROJECT_SOURCE_DIR}/firmware/include/argus/argus.h ${PROJECT_SOURCE_DIR}/tools/core_shim.c)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${declaring})
 set(names "")
-foreach(source IN LISTS public_headers ITEMS ${PROJECT_SOURCE_DIR}/tools/core_shim.c)
+foreach(source IN LISTS declaring)
     file(STRINGS ${source} lines REGEX "^[a-z][a-z0-9_ *]*[ *]argus_[a-z0-9_]+(\\(|\\[)")
     foreach(line IN LISTS lines)
         if(line MATCHES "^(static|typedef)")
@@ -18,7 +18,7 @@ list(JOIN names ";\n    " names)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/argus.map CONTENT "{\nglobal:\n    @names@;\nlocal:\n    *;\n};\n" @ONLY)
 
 add_library(argus_shared SHARED ${firmware_sources} tools/core_shim.c)
-target_include_directories(argus_shared PRIVATE firmware)
+target_include_directories(argus_shared PRIVATE firmware firmware/include)
 target_compile_options(argus_shared PRIVATE ${ARGUS_STRICT})
 target_link_options(argus_shared PRIVATE -Wl,--version-script=${PROJECT_BINARY_DIR}/argus.map)
 target_link_libraries(argus_shared PRIVATE argus_flags)

@@ -23,7 +23,7 @@ size_t argus_shim_brief_size(void);
 void argus_shim_brief(const argus_t *core, uint8_t *bytes);
 
 size_t argus_shim_core_size(void) {
-    return sizeof(argus_t);
+    return sizeof(argus_storage_t);
 }
 
 size_t argus_shim_config_size(void) {

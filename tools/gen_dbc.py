@@ -33,13 +33,18 @@ exit codes: 0 done or current, 1 out of date, 2 the DBC file or a header cannot 
 
 # Value tables that are enumerations of the firmware: header, type, what to cut off, how argusd writes them.
 ENUMS = {
-    "Mode": ("supervisor/manager.h", "argus_mode_t", "ARGUS_MODE_", str.upper),
-    "Mission": ("supervisor/manager.h", "argus_mission_t", "ARGUS_MISSION_", str.lower),
-    "Wait": ("supervisor/manager.h", "argus_wait_t", "ARGUS_WAIT_", str.lower),
-    "Failure": ("analysis/failure.h", "argus_failure_t", "ARGUS_IS_", lambda name: "Is" + name.capitalize()),
-    "Health": ("knowledge/knowledge.h", "argus_health_t", "ARGUS_", str.upper),
-    "Fault": ("knowledge/knowledge.h", "argus_fault_kind_t", "ARGUS_KIND_", str.lower),
-    "Level": ("supervisor/events.h", "argus_level_t", "ARGUS_LEVEL_", str.upper),
+    "Mode": ("include/argus/argus.h", "argus_mode_t", "ARGUS_MODE_", str.upper),
+    "Mission": ("include/argus/argus.h", "argus_mission_t", "ARGUS_MISSION_", str.lower),
+    "Wait": ("include/argus/argus.h", "argus_wait_t", "ARGUS_WAIT_", str.lower),
+    "Failure": (
+        "include/argus/argus.h",
+        "argus_failure_t",
+        "ARGUS_IS_",
+        lambda name: "Is" + name.capitalize(),
+    ),
+    "Health": ("include/argus/argus.h", "argus_health_t", "ARGUS_", str.upper),
+    "Fault": ("include/argus/argus.h", "argus_fault_kind_t", "ARGUS_KIND_", str.lower),
+    "Level": ("include/argus/argus.h", "argus_level_t", "ARGUS_LEVEL_", str.upper),
 }
 # Value tables of signals whose name, behind a sonar's number, is not that of a table.
 TABLE_OF_SIGNAL = {("ArgusEmergency", "Sonar"): "SonarNumber"}
@@ -75,7 +80,7 @@ def header_tables() -> dict[str, dict[int, str]]:
         }
         for table, (header, name, prefix, form) in ENUMS.items()
     }
-    tables["Event"] = {int(row[0]): row[1] for row in rows("supervisor/events.h", "ARGUS_EVENT_TABLE")}
+    tables["Event"] = {int(row[0]): row[1] for row in rows("include/argus/argus.h", "ARGUS_EVENT_TABLE")}
     return tables
 
 

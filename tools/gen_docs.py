@@ -31,7 +31,7 @@ def _cell(parts: list[str]) -> str:
 def events() -> str:
     """Return the event catalogue as a Markdown table."""
     lines = ["| id | event | level | about | meaning |", "|---|---|---|---|---|"]
-    for number, name, level, subject, *meaning in rows("supervisor/events.h", "ARGUS_EVENT_TABLE"):
+    for number, name, level, subject, *meaning in rows("include/argus/argus.h", "ARGUS_EVENT_TABLE"):
         lines.append(f"| {number} | {name} | {level} | {subject} | {_cell(meaning)} |")
     return "\n".join(lines)
 
@@ -39,7 +39,9 @@ def events() -> str:
 def config() -> str:
     """Return the settings as a Markdown table."""
     lines = ["| key | default | range | unit | meaning |", "|---|---|---|---|---|"]
-    for key, default, low, high, unit, choices, *meaning in rows("supervisor/config.h", "ARGUS_CONFIG_TABLE"):
+    for key, default, low, high, unit, choices, *meaning in rows(
+        "include/argus/argus.h", "ARGUS_CONFIG_TABLE"
+    ):
         named = choices.split("|") if choices else []
         shown = named[int(default)] if named else default
         span = ", ".join(named) if named else f"{low} .. {high}"

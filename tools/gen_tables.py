@@ -247,7 +247,9 @@ def read_robot(root: Path, name: str) -> Robot:
                 raise TableError(f"{source}: [{section}] {key} must be an integer")
     forward = table.get("sonar", {}).get("forward", [])
     if not 2 <= len(forward) <= FORWARD_MAX or not set(forward) <= set(range(len(poses))):
-        raise TableError(f"{source}: [sonar] forward must name 2 to {FORWARD_MAX} of the sonars, left to right")
+        raise TableError(
+            f"{source}: [sonar] forward must name 2 to {FORWARD_MAX} of the sonars, left to right"
+        )
     robot = Robot(name, figures, poses, forward)
     if min(robot.spacings()) <= 0 or len(robot.rotations()) > ROTATIONS_MAX:
         raise TableError(
@@ -255,7 +257,9 @@ def read_robot(root: Path, name: str) -> Robot:
             "different distances at most"
         )
     if table.get("identity", {}).get("subclass") != name or len(name) >= NAME_BYTES:
-        raise TableError(f"{source}: [identity] subclass must be the file's name, of {NAME_BYTES - 1} letters at most")
+        raise TableError(
+            f"{source}: [identity] subclass must be the file's name, of {NAME_BYTES - 1} letters at most"
+        )
     return robot
 
 
@@ -273,9 +277,6 @@ def robots_header(root: Path) -> str:
         f"#define ARGUS_ROBOT_NAME_MAX {NAME_BYTES} // the final 0 included",
         f"#define ARGUS_FORWARD_MAX {FORWARD_MAX} // forward-facing sonars of one robot, at most",
         f"#define ARGUS_TURNS_MAX {ROTATIONS_MAX} // different turns of one onto the bearing of another",
-        "",
-        "// Values of the setting `robot`: 0, or a row of argus_robots counted from 1.",
-        f'#define ARGUS_ROBOT_CHOICES "by-subclass|{"|".join(robot.name for robot in robots)}"',
     ]
     return header("ARGUS_GEN_ROBOTS_H", "robots/*.toml", "Which robots are known", body)
 

@@ -4,8 +4,8 @@
 #define ARGUS_MOTION_H
 
 #include "arcos/command.h"
+#include "argus/argus.h"
 #include "knowledge/knowledge.h"
-#include "supervisor/config.h"
 
 typedef enum {
     ARGUS_MOTION_NONE,

@@ -4,21 +4,8 @@
 #ifndef ARGUS_PLAN_H
 #define ARGUS_PLAN_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
 #include "analysis/failure.h"
-#include "supervisor/config.h"
-
-#define ARGUS_ROTATIONS_MAX 6
-
-typedef struct {
-    argus_mask_t disabled; // the fault map it is for, forward-facing sonars only
-    uint8_t count;
-    int16_t rotation_deg[ARGUS_ROTATIONS_MAX]; // in the order of visit, CCW positive
-    bool return_each; // back to the heading after each rotation's reading (policy paper), else one sweep
-    bool complete;    // every disabled bearing is covered
-} argus_plan_t;
+#include "argus/argus.h"
 
 // `paper`: the walk of Algorithm 3, a tie goes to the negative rotation. `fewest`: least count, then least
 // sweep, then least sum, then the list that sorted ascending comes first; visited negative side outward, then

@@ -49,8 +49,7 @@ bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan,
         self->done = self->index >= plan->count;
         return true;
     }
-    const argus_mask_t wanted =
-        argus_plan_covering(knowledge->robot, plan, plan->rotation_deg[self->index]);
+    const argus_mask_t wanted = argus_plan_covering(knowledge->robot, plan, plan->rotation_deg[self->index]);
     if (!argus_all_fresh_since(knowledge, wanted, mark)) {
         return false;
     }

@@ -16,8 +16,3 @@ argus_failure_t argus_failure_of(const argus_robot_t *const robot, const argus_m
     }
     return out * MINOR_PARTS <= robot->forward_count ? ARGUS_IS_MINOR : ARGUS_IS_MAJOR;
 }
-
-const char *argus_failure_name(const argus_failure_t failure) {
-    static const char name[][16] = {"IsNormal", "IsMinor", "IsMajor", "IsCatastrophic"};
-    return (unsigned)failure < sizeof name / sizeof name[0] ? name[failure] : "?";
-}

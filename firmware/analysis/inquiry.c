@@ -250,7 +250,7 @@ static bool is_in_doubt(const argus_inquiry_t *const self, const argus_evidence_
 
 bool argus_inquiry_step(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                         const argus_evidence_t *const evidence) {
-    self->suspects &= (argus_mask_t)~(unsigned)argus_out(knowledge); // what is out is judged by other looks
+    self->suspects &= (argus_mask_t) ~(unsigned)argus_out(knowledge); // what is out is judged by other looks
     if (self->returning) {
         self->active = false;
         return true;

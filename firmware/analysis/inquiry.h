@@ -19,7 +19,7 @@ typedef struct {
     uint8_t aimed_from; // ... its count when the robot had settled
     uint8_t look;       // index of the present heading
     int32_t aim_cdeg;
-    int32_t look_cdeg; // of the present look, from the base heading
+    int32_t look_cdeg;          // of the present look, from the base heading
     argus_mask_t suspects;      // what it is held for; empty: a look at all
     argus_mask_t watched;       // sonars whose readings are waited for
     uint8_t needed;             // ... so many of each

@@ -16,7 +16,7 @@ typedef enum {
 } argus_record_fault_t;
 
 typedef struct {
-    uint32_t robot; // whose record it is, 0: unknown
+    uint32_t robot;   // whose record it is, 0: unknown
     argus_mask_t out; // sonars that were DISABLED or on PROBATION; their kind is in kind_before
 } argus_record_note_t;
 

@@ -29,8 +29,8 @@ typedef struct {
     int8_t sonar;
     int8_t by[2];        // its neighbours, left and right; -1: none
     int16_t turn_deg[2]; // that put each of them on its bearing
-    uint8_t witnesses; // usable neighbours: bit 0 left, bit 1 right
-    uint8_t heard;     // witnesses that gave a usable reading
+    uint8_t witnesses;   // usable neighbours: bit 0 left, bit 1 right
+    uint8_t heard;       // witnesses that gave a usable reading
     int32_t base_cdeg;
     uint16_t reading_mm;    // v
     uint16_t witness_mm[2]; // A, B

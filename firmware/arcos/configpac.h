@@ -4,8 +4,7 @@
 #define ARGUS_CONFIGPAC_H
 
 #include "arcos/frame.h"
-
-#define ARGUS_NAME_MAX 32 // identity strings, cut to 31 characters and a NUL
+#include "argus/argus.h"
 
 // Fields missing at the end of a short packet read as 0.
 typedef struct {

@@ -135,14 +135,14 @@ static bool is_suspect(argus_awareness_t *const self, const argus_knowledge_t *c
     if (d->held && hold_ends(d, knowledge, config, sonar)) {
         d->held = false;
         if (has_changed(d, knowledge, sonar)) { // another case, also in the same place
-            self->verified &= (argus_mask_t)~(1u << sonar);
+            self->verified &= (argus_mask_t) ~(1u << sonar);
         }
     }
     return !d->held && (self->verified >> sonar & 1u) == 0;
 }
 
 argus_mask_t argus_suspects(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
-                        const argus_config_t *const config) {
+                            const argus_config_t *const config) {
     unsigned mask = 0;
     for (int i = 0; i < knowledge->robot->forward_count; i++) {
         const int sonar = knowledge->robot->forward[i];

@@ -4,8 +4,8 @@
 #ifndef ARGUS_AWARENESS_H
 #define ARGUS_AWARENESS_H
 
+#include "argus/argus.h"
 #include "knowledge/knowledge.h"
-#include "supervisor/config.h"
 
 // Tolerance range, mm, rounded to nearest, of a reading a1 in 0..65535 (paper: eq. 1 and 2; for the P3-DX a2
 // = 167 mm and 20 degrees).
@@ -17,8 +17,8 @@ typedef enum {
     ARGUS_DISPARATE
 } argus_verdict_t;
 
-// Algorithm 1 for one forward-facing sonar on the present readings; `difference_mm` is r(neighbour) - r(sonar).
-// paper: the listing lacks the absolute value on the neighbours' difference and reuses the previous
+// Algorithm 1 for one forward-facing sonar on the present readings; `difference_mm` is r(neighbour) -
+// r(sonar). paper: the listing lacks the absolute value on the neighbours' difference and reuses the previous
 // difference where they disagree; here that sonar yields no verdict.
 argus_verdict_t argus_disparity(const argus_knowledge_t *knowledge, int sonar, int32_t *difference_mm);
 
@@ -46,7 +46,7 @@ typedef struct {
 
 typedef struct {
     argus_disparate_t of[ARGUS_SONARS];
-    bool away;         // turned away to look: what is read there is no verdict on the sonars' own bearings
+    bool away; // turned away to look: what is read there is no verdict on the sonars' own bearings
     argus_mask_t verified; // sonars verified since the robot last drove: not again in this place
 } argus_awareness_t;
 
@@ -59,7 +59,7 @@ argus_alarm_t argus_awareness_sip(argus_awareness_t *self, const argus_knowledge
 // Sonars that Algorithm 1 now calls suspects: suspect_readings in a row, not held off, not verified in this
 // place.
 argus_mask_t argus_suspects(argus_awareness_t *self, const argus_knowledge_t *knowledge,
-                        const argus_config_t *config);
+                            const argus_config_t *config);
 
 // Algorithm 2 cleared the sonar, whose disparity at rest was `difference_mm`: hold off. / The robot stands
 // somewhere new. / The readings begin anew.

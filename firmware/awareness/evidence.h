@@ -4,9 +4,9 @@
 #ifndef ARGUS_EVIDENCE_H
 #define ARGUS_EVIDENCE_H
 
+#include "argus/argus.h"
 #include "awareness/trend.h"
 #include "knowledge/knowledge.h"
-#include "supervisor/config.h"
 
 #define ARGUS_TRAIL 10 // readings of its own that a sonar's tests look back on
 #define ARGUS_VIEWS 8  // confirmed views that are remembered of each sonar

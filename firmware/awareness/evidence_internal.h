@@ -6,8 +6,6 @@
 #include "awareness/evidence.h"
 #include "robot/compat.h"
 
-#define ARGUS_NO_ECHO_MM ARGUS_P3DX_SONAR_NO_ECHO_MM
-
 // The increments of a test, in hundredths of a nat (DESIGN.md derives them), and its bounds.
 typedef struct {
     int16_t suspicious;  // a look is called for

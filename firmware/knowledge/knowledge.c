@@ -8,7 +8,7 @@
 #include "knowledge/angle.h"
 
 #define REST_MM_S 5
-#define ROTATING_MM_S 10  // wheel speed difference beyond which a reading is smeared by rotation
+#define ROTATING_MM_S 10 // wheel speed difference beyond which a reading is smeared by rotation
 #define ARRAY ARCOS_TIMING_TRANSDUCERS_PER_ARRAY
 #define LISTS_ALL_COUNT (ARRAY - 1) // in one SIP: the firing schedule lists at most 3 at its default pace
 #define LISTS_ALL_WAIT_MS 460
@@ -266,14 +266,4 @@ int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *const self, const in
         nearest = argus_min(nearest, argus_echo_to_centre_mm(self, i, back_mm));
     }
     return nearest;
-}
-
-const char *argus_health_name(const argus_health_t health) {
-    static const char name[][16] = {"UNKNOWN", "HEALTHY", "SUSPECT", "DISABLED", "PROBATION", "STALE", "ABSENT"};
-    return (unsigned)health < sizeof name / sizeof name[0] ? name[health] : "?";
-}
-
-const char *argus_kind_name(const argus_fault_kind_t kind) {
-    static const char name[][16] = {"", "off", "silent", "stuck", "wrong", "garbage", "slow", "intermittent"};
-    return (unsigned)kind < sizeof name / sizeof name[0] ? name[kind] : "?";
 }

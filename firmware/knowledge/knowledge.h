@@ -4,47 +4,11 @@
 #ifndef ARGUS_KNOWLEDGE_H
 #define ARGUS_KNOWLEDGE_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "arcos/sip.h"
+#include "argus/argus.h"
 #include "robot/robot.h"
 
 #define ARGUS_FLANK_NEAR_MM 350 // what a flank sonar reads of a wall that the way may slant into
-
-typedef enum {
-    ARGUS_UNKNOWN,   // not judged yet
-    ARGUS_HEALTHY,   // judged, no complaint
-    ARGUS_SUSPECT,   // disparate, not verified yet or no witness
-    ARGUS_DISABLED,  // not used; latched for the mission under `paper`
-    ARGUS_PROBATION, // (profile argus) may come back
-    ARGUS_STALE,     // has not reported yet, or not for long
-    ARGUS_ABSENT     // this robot has not got it: neither judged nor planned with
-} argus_health_t;
-
-// After the failure words of PX4; the numbers are on the wire (SPEC.md, Events) and in the record.
-typedef enum {
-    ARGUS_KIND_NONE = 0,
-    ARGUS_KIND_OFF = 1,
-    ARGUS_KIND_SILENT = 2,
-    ARGUS_KIND_STUCK = 3,
-    ARGUS_KIND_WRONG = 4,
-    ARGUS_KIND_GARBAGE = 5,
-    ARGUS_KIND_SLOW = 6,
-    ARGUS_KIND_INTERMITTENT = 7
-} argus_fault_kind_t;
-
-typedef struct {
-    int32_t x_mm;
-    int32_t y_mm;
-} argus_point_t;
-
-typedef struct {
-    int32_t x_mm; // ahead and to the left of where the course starts
-    int32_t y_mm;
-    int32_t heading_cdeg;
-} argus_pose_t;
 
 typedef struct {
     uint16_t reading_mm;
@@ -148,8 +112,5 @@ argus_point_t argus_to_course(const argus_pose_t *pose, argus_point_t robot);
 // when it is DISABLED or reads 5000. The nearest of all.
 int32_t argus_echo_to_centre_mm(const argus_knowledge_t *self, int sonar, int32_t back_mm);
 int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *self, int32_t back_mm);
-
-const char *argus_health_name(argus_health_t health);
-const char *argus_kind_name(argus_fault_kind_t kind);
 
 #endif

@@ -8,9 +8,6 @@
 #define ARGUS_ROBOT_NAME_MAX 16 // the final 0 included
 #define ARGUS_FORWARD_MAX 6 // forward-facing sonars of one robot, at most
 #define ARGUS_TURNS_MAX 10 // different turns of one onto the bearing of another
-
-// Values of the setting `robot`: 0, or a row of argus_robots counted from 1.
-#define ARGUS_ROBOT_CHOICES "by-subclass|p3dx-sh|amigo-sh|p3at-sh|peoplebot-sh"
 // clang-format on
 
 #endif

@@ -3,23 +3,8 @@
 #ifndef ARGUS_ROBOT_H
 #define ARGUS_ROBOT_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
+#include "argus/argus.h"
 #include "robot/gen_robots.h"
-
-// The most sonars that a build manages: 8, 16, 24 or 32. Each costs RAM; a robot may have fewer or more.
-#ifndef ARGUS_SONARS
-#define ARGUS_SONARS 16
-#endif
-_Static_assert(ARGUS_SONARS % 8 == 0 && ARGUS_SONARS >= 8 && ARGUS_SONARS <= 32, "8, 16, 24 or 32");
-
-// Bit masks over sonar numbers.
-#if ARGUS_SONARS > 16
-typedef uint32_t argus_mask_t;
-#else
-typedef uint16_t argus_mask_t;
-#endif
 
 // Where and whither a sonar looks, robot frame, and who is mounted beside it.
 typedef struct {
@@ -42,8 +27,8 @@ typedef struct {
     uint8_t forward_count;
     uint8_t turns;
     uint8_t forward[ARGUS_FORWARD_MAX]; // the forward-facing sonars, left to right; the paper's six
-    int16_t turn_deg[ARGUS_TURNS_MAX]; // that put one of them on the bearing of another: nearest to 0 first, of
-                                       // two the negative one
+    int16_t turn_deg[ARGUS_TURNS_MAX];  // that put one of them on the bearing of another: nearest to 0 first,
+                                       // of two the negative one
     uint32_t forward_mask;
     uint32_t ahead_mask; // who sees what the robot drives into, forward-facing or not
     uint32_t astern_mask;
@@ -52,10 +37,10 @@ typedef struct {
     int16_t front_mm;         // from the centre of rotation to the ends of the body
     int16_t rear_mm;
     int16_t width_mm;
-    int16_t swing_radius_mm; // to the farthest corner of the body
-    int16_t sonar_face_mm;   // x of the foremost transducers
-    int16_t rear_overhang_mm; // of the body beyond those that look astern head-on
-    int16_t pitch_deg;        // between two neighbours of the forward-facing ones, mean
+    int16_t swing_radius_mm;     // to the farthest corner of the body
+    int16_t sonar_face_mm;       // x of the foremost transducers
+    int16_t rear_overhang_mm;    // of the body beyond those that look astern head-on
+    int16_t pitch_deg;           // between two neighbours of the forward-facing ones, mean
     int16_t tolerance_centre_mm; // a2 of the paper's eq. 2
     uint32_t tolerance_excess;   // 1 / cos of the widest angle between neighbours, less 1, in 1e-10
     int16_t decel_mm_s2;         // that the robot brakes with unless told otherwise

@@ -22,7 +22,7 @@ void argus_say(argus_t *const self, const argus_event_id_t id, const int sonar, 
     argus_events_push(&self->events, event);
 }
 
-void argus_init(argus_t *const self, const argus_config_t *const config, const uint32_t now_ms) {
+void argus_manager_init(argus_t *const self, const argus_config_t *const config, const uint32_t now_ms) {
     memset(self, 0, sizeof *self);
     self->config = *config;
     self->locked = argus_config_check(config).fault != ARGUS_CONFIG_OK;
@@ -326,14 +326,13 @@ static void recheck(argus_t *const self) {
     }
 }
 
-void argus_operator(argus_t *const self, const uint32_t now_ms, const argus_op_t op, const int32_t argument) {
+bool argus_operator(argus_t *const self, const uint32_t now_ms, const argus_op_t op, const int32_t argument) {
     self->now_ms = now_ms;
     if (self->shutdown) {
-        return;
+        return false;
     }
     if (op >= ARGUS_OP_RETEST) {
-        argus_serve(self, op, argument);
-        return;
+        return argus_serve(self, op, argument);
     }
     argus_say(self, ARGUS_EV_OPERATOR, ARGUS_NO_SONAR, (int32_t)op);
     self->stay = false;
@@ -362,6 +361,7 @@ void argus_operator(argus_t *const self, const uint32_t now_ms, const argus_op_t
     default:
         break;
     }
+    return true;
 }
 
 void argus_shutdown(argus_t *const self, const uint32_t now_ms) {

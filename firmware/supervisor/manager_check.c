@@ -82,7 +82,7 @@ static void declare_healthy(argus_t *const self) {
 // Suspects not verified in this place: also those whose verification was broken off, or could not be begun.
 argus_mask_t argus_open_suspects(const argus_t *const self) {
     return (argus_mask_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
-                      ~(unsigned)self->awareness.verified);
+                          ~(unsigned)self->awareness.verified);
 }
 
 static argus_mask_t find_suspects(argus_t *const self) {
@@ -158,8 +158,7 @@ static void apply_verdict(argus_t *const self) {
 static void say_witnesses(argus_t *const self) {
     for (int side = 0; side < 2; side++) {
         if ((self->verify.heard >> side & 1) != 0) {
-            argus_say(self, ARGUS_EV_SONAR_WITNESS, self->verify.by[side],
-                      self->verify.witness_mm[side]);
+            argus_say(self, ARGUS_EV_SONAR_WITNESS, self->verify.by[side], self->verify.witness_mm[side]);
         }
     }
 }

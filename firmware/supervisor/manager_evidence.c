@@ -188,8 +188,8 @@ argus_mask_t argus_worth_a_look(argus_t *const self) {
     const bool spaced = self->now_ms - self->looked_ms >= SPACING_MS;
     const unsigned jumped = spaced ? self->evidence.jumped & ARGUS_FORWARD_MASK : 0u;
     const unsigned open = without_held(self, suspected(self) | jumped) | ahead;
-    return (argus_mask_t)(open & ~(unsigned)argus_out(&self->knowledge) & ~(unsigned)self->awareness.verified &
-                      ~(unsigned)self->pinned);
+    return (argus_mask_t)(open & ~(unsigned)argus_out(&self->knowledge) &
+                          ~(unsigned)self->awareness.verified & ~(unsigned)self->pinned);
 }
 
 bool argus_routine_is_due(const argus_t *const self) {
@@ -294,7 +294,7 @@ void argus_run_inquiry(argus_t *const self) {
         begin(self);
         return;
     }
-    self->inquiry.watched &= (argus_mask_t)~(unsigned)argus_out(&self->knowledge);
+    self->inquiry.watched &= (argus_mask_t) ~(unsigned)argus_out(&self->knowledge);
     if (!argus_inquiry_step(&self->inquiry, &self->knowledge, &self->evidence)) {
         return;
     }

@@ -92,7 +92,7 @@ static void begin_retest(argus_t *const self, const int sonar) {
     argus_evidence_forget(&self->evidence, sonar);
     argus_trend_forget(&self->evidence.trend, sonar);
     self->hold[sonar].acquittals = 0;
-    self->awareness.verified &= (argus_mask_t)~(unsigned)bit;
+    self->awareness.verified &= (argus_mask_t) ~(unsigned)bit;
     if (argus_is_out(&self->knowledge, sonar)) {
         s->relapses = 0;
         argus_sonar_set_health(s, ARGUS_PROBATION, s->kind, self->now_ms);
@@ -142,9 +142,9 @@ static void take_out(argus_t *const self, const int sonar) {
     }
 }
 
-void argus_serve(argus_t *const self, const argus_op_t op, const int32_t sonar) {
+bool argus_serve(argus_t *const self, const argus_op_t op, const int32_t sonar) {
     if (!may_serve(self, op, sonar)) {
-        return;
+        return false;
     }
     argus_say(self, ARGUS_EV_OPERATOR, ARGUS_NO_SONAR, (int32_t)op);
     if (op == ARGUS_OP_RETEST) {
@@ -154,12 +154,5 @@ void argus_serve(argus_t *const self, const argus_op_t op, const int32_t sonar) 
     } else {
         pin(self, sonar, op == ARGUS_OP_PIN);
     }
-}
-
-bool argus_retest(argus_t *const self, const uint8_t sonar, const uint32_t now_ms) {
-    if (self->shutdown || !may_serve(self, ARGUS_OP_RETEST, sonar)) {
-        return false;
-    }
-    argus_operator(self, now_ms, argus_judges(self) ? ARGUS_OP_RETEST : ARGUS_OP_RECHECK, sonar);
     return true;
 }

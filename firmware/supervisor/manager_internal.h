@@ -37,7 +37,7 @@ void argus_disable(argus_t *self, int sonar, argus_fault_kind_t kind);
 void argus_replan(argus_t *self);
 void argus_share_slots(argus_t *self); // POLLING for the present plan; again in each new session
 argus_mask_t argus_open_suspects(const argus_t *self);
-void argus_take_base(argus_t *self);               // the present heading becomes the one to return to
+void argus_take_base(argus_t *self);                   // the present heading becomes the one to return to
 argus_mask_t argus_wanted_sonars(const argus_t *self); // those of 1..6 that are not DISABLED
 uint32_t argus_two_rounds_ms(const argus_t *self); // in which each sonar of an array has been listed twice
 bool argus_health_check(argus_t *self); // the periodic one beside the main task; true when it took over
@@ -58,9 +58,9 @@ bool argus_say_barred(argus_t *self); // says why it may not be driven; false: i
 // Across missions.
 void argus_meet_robot(argus_t *self); // a session is open: is it the robot of the record?
 
-// What an operator asks of one sonar (RETEST and what follows it); refused without an event when it cannot be
+// What an operator asks of one sonar (RETEST and what follows it); false, and no event, when it cannot be
 // done.
-void argus_serve(argus_t *self, argus_op_t op, int32_t sonar);
+bool argus_serve(argus_t *self, argus_op_t op, int32_t sonar);
 
 // One SIP in the present mode.
 void argus_run_checking(argus_t *self);

@@ -16,7 +16,7 @@
 #define BACK_MOST_MM 300
 #define BACK_LEFT_MM 150 // of what the rear reads clear
 #define BACK_STEP_MM 25
-#define ASTERN_MM 50  // beyond the rear end
+#define ASTERN_MM 50 // beyond the rear end
 
 static bool is_active(const argus_t *const self) {
     return !self->passive && !self->shutdown;
@@ -86,8 +86,8 @@ bool argus_rear_is_clear(const argus_t *const self) {
 // As fast as S5 lets it drive with the rear's overhang.
 static int32_t back_speed_mm_s(const argus_t *const self) {
     const int32_t overhang_mm = self->knowledge.robot->rear_overhang_mm;
-    const bool stops_in_time =
-        argus_config_stop_mm(&self->config, self->knowledge.robot) + overhang_mm < self->config.object_range_mm;
+    const bool stops_in_time = argus_config_stop_mm(&self->config, self->knowledge.robot) + overhang_mm <
+                               self->config.object_range_mm;
     return argus_judges(self) && stops_in_time ? self->config.speed_mm_s : self->config.step_speed_mm_s;
 }
 
@@ -126,8 +126,8 @@ bool argus_swing_is_blocked(const argus_t *const self) {
 static int32_t most_back_mm(const argus_t *const self) {
     const int32_t clear_mm = argus_min(BACK_MOST_MM, self->config.rear_clear_mm - BACK_LEFT_MM);
     const int32_t astern_cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + 18000);
-    const int32_t free_mm =
-        argus_task_clear_mm(&self->task, &self->knowledge, astern_cdeg, argus_task_straight_half_mm(self->knowledge.robot));
+    const int32_t free_mm = argus_task_clear_mm(&self->task, &self->knowledge, astern_cdeg,
+                                                argus_task_straight_half_mm(self->knowledge.robot));
     const bool is_free = free_mm >= self->knowledge.robot->rear_mm + clear_mm + ASTERN_MM;
     const bool again = self->backed > 1; // far once is far enough
     return is_free && !again ? clear_mm : argus_min(clear_mm, self->config.backoff_mm);
@@ -271,7 +271,7 @@ static void say_plan(argus_t *const self) {
 void argus_replan(argus_t *const self) {
     const argus_mask_t disabled = argus_out(&self->knowledge) & ARGUS_FORWARD_MASK;
     const argus_mask_t blind = disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
-                                       self->awareness.verified & ARGUS_FORWARD_MASK);
+                                           self->awareness.verified & ARGUS_FORWARD_MASK);
     const argus_failure_t failure = argus_failure_of(self->knowledge.robot, disabled);
     if (failure != self->failure) {
         self->failure = failure;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which robot has answered, and whether it may be driven: its body must be known and the settings safe for it.
+// Which robot has answered, and whether it may be driven: its body must be known and the settings safe for
+// it.
 #include "supervisor/manager_internal.h"
 
 // The operator's word stands above what the robot says of itself.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the manager shows of itself: a status copy, its invariants, names.
+// What the manager shows of itself: a status copy, and its invariants.
 #include <string.h>
 
 #include "supervisor/manager_internal.h"
@@ -7,11 +7,17 @@
 static void copy_sonars(const argus_t *const self, argus_status_t *const status) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
-        status->reading_mm[i] = s->reported ? (int16_t)(s->reading_mm & 0x7FFF) : 0;
+        status->reading_mm[i] = s->reported ? s->reading_mm : 0;
+        status->readings[i] = s->readings;
         status->age_ms[i] = argus_age_ms(&self->knowledge, i, self->now_ms);
         status->health[i] = s->health;
         status->kind[i] = s->kind;
     }
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        status->bearing_deg[i] = argus_robot_pose(self->knowledge.robot, i)->heading_deg;
+    }
+    status->sonars = self->knowledge.sonars;
+    status->forward = argus_robot_forward(self->knowledge.robot);
 }
 
 static void copy_robot(const argus_knowledge_t *const from, argus_status_t *const status) {
@@ -20,32 +26,47 @@ static void copy_robot(const argus_knowledge_t *const from, argus_status_t *cons
     status->vel_left_mm_s = from->vel_left_mm_s;
     status->vel_right_mm_s = from->vel_right_mm_s;
     status->flags = from->flags;
+    status->motors = (from->flags & ARCOS_FLAG_MOTORS) != 0;
+    status->lists_all = from->lists_all;
     status->bumpers_front = from->bumpers_front;
     status->bumpers_rear = from->bumpers_rear;
     status->sips = from->sips;
+}
+
+static void copy_session(const argus_session_t *const from, argus_status_t *const status) {
+    status->open = argus_session_is_open(from);
+    status->packets = from->parser.packets;
+    status->bad_checksums = from->parser.bad_checksums;
+    status->skipped_bytes = from->parser.skipped_bytes;
+    status->robot_name = from->name;
+    status->robot_class = from->robot_class;
+    status->robot_subclass = from->subclass;
+    status->robot_told = from->has_robot;
+    status->robot_version = from->robot.version;
+    status->robot_serial = from->robot.serial;
+    status->robot_watchdog_ms = from->robot.watchdog_ms;
+    status->robot_sonar_cycle_ms = from->robot.sonar_cycle_ms;
 }
 
 void argus_status(const argus_t *const self, argus_status_t *const status) {
     memset(status, 0, sizeof *status);
     copy_sonars(self, status);
     copy_robot(&self->knowledge, status);
+    copy_session(&self->session, status);
     status->mode = self->mode;
     status->mission = self->mission;
+    status->wait = self->mode == ARGUS_MODE_WAITING ? self->wait : ARGUS_WAIT_NONE;
     status->failure = self->failure;
     status->plan = self->plan;
     status->goal_mm = argus_task_goal_mm(&self->task, &self->knowledge);
     status->waypoint = self->task.next;
     status->waypoints = self->task.count;
     status->active = !self->passive;
-    status->online = argus_session_is_open(&self->session) && !self->stalled;
-    status->bad_checksums = self->session.parser.bad_checksums;
-    status->skipped_bytes = self->session.parser.skipped_bytes;
+    status->paused = self->paused;
+    status->online = status->open && !self->stalled;
+    status->pinned = self->pinned;
     status->stops = self->stops;
-    status->robot_name = self->session.name;
-    status->robot_class = self->session.robot_class;
-    status->robot_subclass = self->session.subclass;
-    status->body = argus_robot_choice(self->knowledge.robot);
-    status->sonars = self->knowledge.sonars;
+    status->robot_body = self->knowledge.robot->name;
 }
 
 static bool queues_hold(const argus_t *const self) {
@@ -97,15 +118,4 @@ int argus_invariants_broken(const argus_t *const self) {
         }
     }
     return 0;
-}
-
-const char *argus_mode_name(const argus_mode_t mode) {
-    static const char name[][16] = {"OFFLINE",  "CHECKING", "VERIFYING", "IDLE",    "DRIVING", "SWEEPING",
-                                    "STEPPING", "BACKING",  "WAITING",   "CLOSING", "CLOSED"};
-    return (unsigned)mode < sizeof name / sizeof name[0] ? name[mode] : "?";
-}
-
-const char *argus_mission_name(const argus_mission_t mission) {
-    static const char name[][16] = {"none", "running", "reached", "failed"};
-    return (unsigned)mission < sizeof name / sizeof name[0] ? name[mission] : "?";
 }

@@ -106,7 +106,8 @@ static void blocked_ahead(argus_t *const self, const argus_event_id_t event, con
 static int nearest_forward(const argus_knowledge_t *const knowledge) {
     int nearest = -1;
     for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_robot_faces_forward(knowledge->robot, i) && knowledge->sonar[i].reported && !argus_is_out(knowledge, i) &&
+        if (argus_robot_faces_forward(knowledge->robot, i) && knowledge->sonar[i].reported &&
+            !argus_is_out(knowledge, i) &&
             (nearest < 0 || knowledge->sonar[i].reading_mm < knowledge->sonar[nearest].reading_mm)) {
             nearest = i;
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Names of the forward-facing sonars for the parts of the manager that have `self`; they go when these ask the
-// robot.
+// Names of the forward-facing sonars for the parts of the manager that have `self`; they go when these ask
+// the robot.
 #ifndef ARGUS_SUPERVISOR_ROBOT_COMPAT_H
 #define ARGUS_SUPERVISOR_ROBOT_COMPAT_H
 

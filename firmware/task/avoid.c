@@ -10,14 +10,15 @@
 #define SAME_PLACE_MM 80
 #define SAME_THING_MM 150
 #define FORGET_MS 60000u
-#define WIDE_ROOM_MM 30   // beside the swing circle: room to turn anywhere on the way (S7 wants 20 under `argus`)
+#define WIDE_ROOM_MM \
+    30 // beside the swing circle: room to turn anywhere on the way (S7 wants 20 under `argus`)
 #define NARROW_ROOM_MM 92 // beside the body, for the beam's width: where there is no wide way
 #define STRAIGHT_ROOM_MM 47
 #define NEAR_MM 1000
-#define LATELY_MS 5000u // what was seen so near does not go away while a look is prepared
+#define LATELY_MS 5000u      // what was seen so near does not go away while a look is prepared
 #define CORRIDOR_ROOM_MM 440 // free length wanted ahead of the body
-#define BEHIND_MM 100   // an echo this far ahead of the centre is beside the robot already
-#define LEG_MM 300      // way along a detour before choosing again
+#define BEHIND_MM 100        // an echo this far ahead of the centre is beside the robot already
+#define LEG_MM 300           // way along a detour before choosing again
 #define STEP_CDEG 1000
 #define STEPS 14           // detours up to 140 degrees off the waypoint's bearing
 #define OTHER_SIDE_STEPS 6 // a detour prefers the side it began on by so much

@@ -3,11 +3,9 @@
 #ifndef ARGUS_TASK_H
 #define ARGUS_TASK_H
 
+#include "argus/argus.h"
 #include "knowledge/knowledge.h"
-#include "supervisor/config.h"
 
-#define ARGUS_WAYPOINTS_MAX 64
-#define ARGUS_COURSE_LIMIT_MM 30000
 #define ARGUS_POINTS_MAX 128
 
 // Echoes seen lately, course frame: what the way round an obstacle is planned from.

@@ -248,7 +248,7 @@ static void fill_heartbeat(const hal_telemetry_t *self, const argus_t *core, uin
         .mission = (uint8_t)core->mission,
         .wait = core->mode == ARGUS_MODE_WAITING ? (uint8_t)core->wait : (uint8_t)ARGUS_WAIT_NONE,
         .disabled = (uint8_t)argus_count_bits(argus_disabled(&core->knowledge) &
-                                             argus_robot_forward(core->knowledge.robot)),
+                                              argus_robot_forward(core->knowledge.robot)),
         .roll = self->roll & 0xFu,
         .stops = core->stops & 0xFu,
         .taken = self->verdicts[HAL_TELEMETRY_TAKEN] & 0xFu,

@@ -275,12 +275,14 @@ def test_bus_load_in_the_specification_adds_up() -> None:
 
 # What argusd writes in its own lines: the same words as in the frames.
 WORDS = {
-    ("ArgusHeartbeat", "Mode"): "argus_mode_name",
-    ("ArgusHeartbeat", "Mission"): "argus_mission_name",
-    ("ArgusHeartbeat", "Failure"): "argus_failure_name",
-    ("ArgusHealthFront", "S00_Health"): "argus_health_name",
-    ("ArgusHealthFront", "S00_Fault"): "argus_kind_name",
-    ("ArgusEmergency", "Event"): "argus_event_name",
+    ("ArgusHeartbeat", "Mode"): "ARGUS_NAME_MODE",
+    ("ArgusHeartbeat", "Wait"): "ARGUS_NAME_WAIT",
+    ("ArgusHeartbeat", "Mission"): "ARGUS_NAME_MISSION",
+    ("ArgusHeartbeat", "Failure"): "ARGUS_NAME_FAILURE",
+    ("ArgusHealthFront", "S00_Health"): "ARGUS_NAME_HEALTH",
+    ("ArgusHealthFront", "S00_Fault"): "ARGUS_NAME_KIND",
+    ("ArgusEmergency", "Level"): "ARGUS_NAME_LEVEL",
+    ("ArgusEmergency", "Event"): "ARGUS_NAME_EVENT",
 }
 
 
@@ -288,9 +290,11 @@ WORDS = {
 def test_words_are_those_of_argusd(database: Database, message: str, signal: str) -> None:
     built = ROOT / "build/release/libargus.so"
     assert built.exists(), "build it: tools/dev build release"
-    name_of = getattr(ctypes.CDLL(str(built)), WORDS[message, signal])
+    name_of = ctypes.CDLL(str(built)).argus_name
     name_of.restype = ctypes.c_char_p
+    tables = {name: value for value, name in gen_dbc.enum_values("include/argus/argus.h", "argus_name_of_t").items()}
+    table = tables[WORDS[message, signal]]
     choices = database.get_message_by_name(message).get_signal_by_name(signal).choices
     assert choices
     for value, word in choices.items():
-        assert (name_of(value).decode() or "none") == str(word)  # argusd leaves no fault empty
+        assert (name_of(table, value).decode() or "none") == str(word)  # argusd leaves no fault empty

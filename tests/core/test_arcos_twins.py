@@ -129,7 +129,11 @@ def twin(tmp_path_factory: pytest.TempPathFactory) -> Twin:
         "-shared",
         "-fsanitize=undefined",
     ]
-    subprocess.run(["gcc", *flags, "-I", ROOT / "firmware", "-o", library, *sources], check=True, timeout=120)
+    subprocess.run(
+        ["gcc", *flags, "-I", ROOT / "firmware", "-I", ROOT / "firmware/include", "-o", library, *sources],
+        check=True,
+        timeout=120,
+    )
     return Twin(library)
 
 

@@ -7,16 +7,19 @@ import ctypes
 import itertools
 import os
 import random
+import subprocess
+import tempfile
 from collections.abc import Callable, Iterator
 from functools import cache
+from pathlib import Path
 
 import pytest
-from argus_tools.core import library
 from argus_tools.formats.base import Offsets
 from argus_tools.log.packets import Row, packets
 
 from hil_sim.arcos import COMMAND, Command, ConfigPac, Sip, frame
 
+ROOT = Path(__file__).resolve().parents[2]
 SEED = int(os.environ.get("ARGUS_SEED", "20261121"))
 STREAMS, PARTS = 100_000, 20
 LATER_MS = 1_000_000
@@ -29,10 +32,10 @@ class _Packet(ctypes.Structure):
 
 
 class Parser:
-    """The firmware's parser, straight from libargus.so."""
+    """The firmware's parser, compiled into a library of its own."""
 
     def __init__(self) -> None:
-        core = library()
+        core = _compiled()
         self._init, self._push, self._next = (
             getattr(core, f"argus_parser_{name}") for name in ("init", "push", "next")
         )
@@ -55,6 +58,27 @@ class Parser:
         packet = self._packet
         while self._next(self._self, ctypes.c_uint32(now_ms), ctypes.byref(packet)):
             yield ctypes.string_at(packet.data, packet.count)
+
+
+@cache
+def _compiled() -> ctypes.CDLL:
+    firmware = ROOT / "firmware"
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder, "frame.so")
+        command = [
+            "gcc",
+            "-std=c11",
+            "-O2",
+            "-fPIC",
+            "-shared",
+            "-I",
+            firmware,
+            "-o",
+            made,
+            firmware / "arcos/frame.c",
+        ]
+        subprocess.run(command, check=True, timeout=120)
+        return ctypes.CDLL(str(made))
 
 
 @cache

@@ -13,7 +13,13 @@ from tests.core import planmodel
 from tests.core.planmodel import Plan
 
 ROOT = Path(__file__).resolve().parents[2]
-SOURCES = ["adjustment/plan.c", "analysis/failure.c", "knowledge/angle.c", "robot/robot.c", "robot/gen_robots.c"]
+SOURCES = [
+    "adjustment/plan.c",
+    "analysis/failure.c",
+    "knowledge/angle.c",
+    "robot/robot.c",
+    "robot/gen_robots.c",
+]
 PROGRAM = r"""
 #include <stdio.h>
 #include "adjustment/plan.h"
@@ -66,7 +72,18 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> Table:
     firmware = ROOT / "firmware"
     sources = [firmware / name for name in SOURCES]
     subprocess.run(
-        ["gcc", "-std=c11", "-I", firmware / "include", "-o", folder / "plan", folder / "main.c", *sources],
+        [
+            "gcc",
+            "-std=c11",
+            "-I",
+            firmware,
+            "-I",
+            firmware / "include",
+            "-o",
+            folder / "plan",
+            folder / "main.c",
+            *sources,
+        ],
         check=True,
     )
     text = subprocess.run([str(folder / "plan")], check=True, stdout=subprocess.PIPE, text=True).stdout

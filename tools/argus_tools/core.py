@@ -6,6 +6,7 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from enum import IntEnum
 from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -27,21 +28,32 @@ _NO_SONAR: Final = -1
 _LEVELS: Final = ("OK", "WARN", "ERROR", "STALE")
 _FIRST_REAR: Final = 8
 
+
+class _Names(IntEnum):
+    """argus_name_of_t."""
+
+    EVENT = 0
+    SUBJECT = 1
+    LEVEL = 2
+    MODE = 3
+    MISSION = 4
+    WAIT = 5
+    FAILURE = 6
+    HEALTH = 7
+    KIND = 8
+    OP = 9
+
+
 _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_config_default": (None, (ctypes.c_void_p,)),
-    "argus_init": (None, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32)),
+    "argus_init": (ctypes.c_void_p, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32)),
     "argus_link_up": (None, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_link_lost": (None, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_receive": (None, (ctypes.c_void_p, ctypes.c_uint32, ctypes.c_char_p, ctypes.c_size_t)),
     "argus_process": (ctypes.c_uint32, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_transmit": (ctypes.c_size_t, (ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t)),
-    "argus_event_name": (ctypes.c_char_p, (ctypes.c_uint16,)),
-    "argus_event_subject": (ctypes.c_char_p, (ctypes.c_uint16,)),
+    "argus_name": (ctypes.c_char_p, (ctypes.c_int, ctypes.c_int)),
     "argus_event_level": (ctypes.c_int, (ctypes.c_uint16,)),
-    "argus_failure_name": (ctypes.c_char_p, (ctypes.c_int,)),
-    "argus_health_name": (ctypes.c_char_p, (ctypes.c_int,)),
-    "argus_kind_name": (ctypes.c_char_p, (ctypes.c_int,)),
-    "argus_mode_name": (ctypes.c_char_p, (ctypes.c_int,)),
     "argus_shim_core_size": (ctypes.c_size_t, ()),
     "argus_shim_config_size": (ctypes.c_size_t, ()),
     "argus_shim_config_key": (ctypes.c_char_p, (ctypes.c_uint32,)),
@@ -54,7 +66,6 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_shim_event_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
     "argus_shim_event_meaning": (ctypes.c_char_p, (ctypes.c_uint16,)),
     "argus_shim_status_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
-    "argus_mission_name": (ctypes.c_char_p, (ctypes.c_int,)),
     "argus_set_course": (ctypes.c_bool, (ctypes.c_void_p, ctypes.POINTER(ctypes.c_int32), ctypes.c_uint16)),
     "argus_record_save": (ctypes.c_size_t, (ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t)),
     "argus_record_load": (ctypes.c_bool, (ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t)),
@@ -146,7 +157,7 @@ class Event(NamedTuple):
     @property
     def event(self) -> str:
         """Its name in the catalogue."""
-        return _text(library().argus_event_name(self.id))
+        return _name(_Names.EVENT, self.id)
 
     @property
     def level(self) -> int:
@@ -162,7 +173,7 @@ class Event(NamedTuple):
     def name(self) -> str:
         """What it is about, as sonar/front/03."""
         if self.sonar is None:
-            return _text(library().argus_event_subject(self.id))
+            return _name(_Names.SUBJECT, self.id)
         return f"sonar/{'rear' if self.sonar >= _FIRST_REAR else 'front'}/{self.sonar:02d}"
 
     @property
@@ -182,7 +193,7 @@ def kind_name(kind: int) -> str:
     >>> kind_name(1)
     'off'
     """
-    return _text(library().argus_kind_name(kind))
+    return _name(_Names.KIND, kind)
 
 
 def health_name(health: int) -> str:
@@ -191,12 +202,12 @@ def health_name(health: int) -> str:
     >>> health_name(1)
     'HEALTHY'
     """
-    return _text(library().argus_health_name(health))
+    return _name(_Names.HEALTH, health)
 
 
 def mode_name(mode: int) -> str:
     """Return the name of a mode of the manager."""
-    return _text(library().argus_mode_name(mode))
+    return _name(_Names.MODE, mode)
 
 
 def mission_name(mission: int) -> str:
@@ -205,7 +216,15 @@ def mission_name(mission: int) -> str:
     >>> mission_name(2)
     'reached'
     """
-    return _text(library().argus_mission_name(mission))
+    return _name(_Names.MISSION, mission)
+
+
+def _name(of: _Names, number: int) -> str:
+    return _text(library().argus_name(of, number))
+
+
+def _storage(size: int) -> ctypes.Array[ctypes.c_uint64]:
+    return (ctypes.c_uint64 * -(-size // ctypes.sizeof(ctypes.c_uint64)))()
 
 
 def _text(value: bytes) -> str:
@@ -217,7 +236,7 @@ class Core:
 
     def __init__(self, now_ms: int, given: Mapping[str, int] | None = None) -> None:
         self._library = library()
-        self._core = ctypes.create_string_buffer(self._library.argus_shim_core_size())
+        self._core = _storage(self._library.argus_shim_core_size())
         self._packet = ctypes.create_string_buffer(_PACKET_MAX)
         self._event_names = _names(self._library.argus_shim_event_field)
         self._event = (ctypes.c_int32 * len(self._event_names))()
@@ -263,7 +282,7 @@ class Core:
                 fields["t_ms"] & 0xFFFFFFFF,
                 fields["id"],
                 None if fields["sonar"] == _NO_SONAR else fields["sonar"],
-                _text(self._library.argus_failure_name(fields["state"])),
+                _name(_Names.FAILURE, fields["state"]),
                 fields["value"],
             )
 
@@ -303,8 +322,8 @@ class Core:
         self._library.argus_shim_status(self._core, fields, sonars)
         found: dict[str, Any] = dict(zip(names, fields, strict=True))
         found |= {name: sonars[at :: len(per_sonar)] for at, name in enumerate(per_sonar)}
-        found["mode"] = _text(self._library.argus_mode_name(found["mode"]))
-        found["failure"] = _text(self._library.argus_failure_name(found["failure"]))
-        found["health"] = [_text(self._library.argus_health_name(value)) for value in found["health"]]
+        found["mode"] = _name(_Names.MODE, found["mode"])
+        found["failure"] = _name(_Names.FAILURE, found["failure"])
+        found["health"] = [_name(_Names.HEALTH, value) for value in found["health"]]
         found["kind"] = [kind_name(value) for value in found["kind"]]
         return found

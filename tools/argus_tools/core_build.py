@@ -57,7 +57,7 @@ def _compile(library: Path, root: Path, files: list[Path]) -> None:
     if not shutil.which(words[0]):
         raise LogError(f"libargus.so is not built, and there is no C compiler: install gcc, or {HINT}")
     print(f"argus-log: compiling the fault manager, once, into {library}", file=sys.stderr)
-    includes = [f"-I{root / 'firmware'}"]
+    includes = [f"-I{root / 'firmware'}", f"-I{root / 'firmware/include'}"]
     try:
         library.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=library.parent) as folder:

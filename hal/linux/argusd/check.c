@@ -78,7 +78,7 @@ static void tell_plain(const driver_t *driver, const argus_status_t *status, FIL
     }
     fprintf(out, "robot     name '%s', class '%s', subclass '%s'%s\n", status->robot_name,
             status->robot_class, status->robot_subclass,
-            status->body != 0 ? "" : " (its body is not known: name it with --robot)");
+            status->robot_body[0] != '\0' ? "" : " (its body is not known: name it with --robot)");
     if (session->has_robot) {
         fprintf(out, "firmware  version '%s', serial number '%s', watchdog %u ms, sonar cycle %u ms\n",
                 session->robot.version, session->robot.serial, (unsigned)session->robot.watchdog_ms,

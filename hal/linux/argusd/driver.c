@@ -28,7 +28,7 @@ void driver_init(driver_t *self, const argus_config_t *config, hal_clock_t clock
     self->cancel_fd = -1;
     self->retry_ms = RETRY_FIRST_MS;
     self->error = HAL_LINK_NOT_OPEN;
-    argus_init(&self->core, config, now_ms(self));
+    argus_manager_init(&self->core, config, now_ms(self));
 }
 
 void driver_attach(driver_t *self, hal_link_t link) {

@@ -264,13 +264,9 @@ static void obey_order(loop_t *self, const hal_dbc_command_t *order) {
     static const argus_op_t ops[] = {[HAL_DBC_ORDER_STOP] = ARGUS_OP_STOP,
                                      [HAL_DBC_ORDER_GO] = ARGUS_OP_GO,
                                      [HAL_DBC_ORDER_PASSIVE] = ARGUS_OP_PASSIVE,
-                                     [HAL_DBC_ORDER_ACTIVE] = ARGUS_OP_ACTIVE};
-    if (order->order != HAL_DBC_ORDER_RETEST) {
-        operate(self, ops[order->order], 0);
-    } else if (!self->ending) {
-        argus_retest(&self->driver.core, order->sonar, self->now_ms);
-        driver_transmit(&self->driver);
-    }
+                                     [HAL_DBC_ORDER_ACTIVE] = ARGUS_OP_ACTIVE,
+                                     [HAL_DBC_ORDER_RETEST] = ARGUS_OP_RETEST};
+    operate(self, ops[order->order], order->sonar);
 }
 
 static void take_orders(loop_t *self) {

@@ -31,7 +31,7 @@ void report_name(const argus_event_t *event, char *text, size_t capacity) {
         snprintf(text, capacity, "sonar/%s/%02d", event->sonar < FRONT_SONARS ? "front" : "rear",
                  event->sonar);
     } else {
-        snprintf(text, capacity, "%s", argus_event_subject(event->id));
+        snprintf(text, capacity, "%s", argus_name(ARGUS_NAME_SUBJECT, event->id));
     }
 }
 
@@ -56,12 +56,12 @@ static void put_event(json_t *json, const argus_event_t *event, uint64_t t_ms) {
     report_name(event, name, sizeof name);
     json_name(json, "t");
     json_thousandths(json, (int64_t)t_ms);
-    put_string(json, "event", argus_event_name(event->id));
+    put_string(json, "event", argus_name(ARGUS_NAME_EVENT, event->id));
     put_int(json, "id", event->id);
     put_int(json, "level", argus_event_level(event->id));
     put_string(json, "name", name);
     put_int(json, "value", event->value);
-    put_string(json, "state", argus_failure_name((argus_failure_t)event->state));
+    put_string(json, "state", argus_name(ARGUS_NAME_FAILURE, (int)event->state));
 }
 
 static size_t finish(json_t *json) {
@@ -83,7 +83,7 @@ static const char *colour_of(argus_level_t level) {
 // "value" in words where a number alone says nothing, and only where the catalogue gives it a meaning.
 static void add_value(text_t *text, const argus_event_t *event) {
     if (event->id == ARGUS_EV_SONAR_DISABLED) {
-        text_add(text, " (%s)", argus_kind_name((argus_fault_kind_t)event->value));
+        text_add(text, " (%s)", argus_name(ARGUS_NAME_KIND, (int)event->value));
     } else if (strstr(meaning_of(event->id), "value:") != NULL) {
         text_add(text, " %d", (int)event->value);
     }
@@ -99,7 +99,8 @@ size_t report_event_plain(const argus_event_t *event, uint64_t t_ms, bool colour
     text_t text = text_in(line, capacity);
     report_name(event, name, sizeof name);
     text_add(&text, "%5u.%03u %s%-5s%s %-14s %s", (unsigned)(t_ms / 1000u), (unsigned)(t_ms % 1000u), tint,
-             level_name(level), tint[0] != '\0' ? "\033[0m" : "", name, argus_event_name(event->id));
+             level_name(level), tint[0] != '\0' ? "\033[0m" : "", name,
+             argus_name(ARGUS_NAME_EVENT, event->id));
     add_value(&text, event);
     text_add(&text, ": %.*s", end == NULL ? (int)strlen(meaning) : (int)(end - meaning), meaning);
     return text.cut ? 0 : text.length;
@@ -121,13 +122,13 @@ static void put_sonars(json_t *json, const argus_status_t *status) {
     json_name(json, "health");
     json_open(json, '[');
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        json_string(json, argus_health_name(status->health[i]));
+        json_string(json, argus_name(ARGUS_NAME_HEALTH, status->health[i]));
     }
     json_close(json, ']');
     json_name(json, "kind");
     json_open(json, '[');
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        json_string(json, argus_kind_name(status->kind[i]));
+        json_string(json, argus_name(ARGUS_NAME_KIND, status->kind[i]));
     }
     json_close(json, ']');
 }
@@ -144,8 +145,8 @@ static void put_plan(json_t *json, const argus_plan_t *plan) {
 
 static void put_robot(json_t *json, const view_t *view) {
     const argus_status_t *const status = &view->status;
-    put_string(json, "mode", argus_mode_name(status->mode));
-    put_string(json, "mission", argus_mission_name(status->mission));
+    put_string(json, "mode", argus_name(ARGUS_NAME_MODE, status->mode));
+    put_string(json, "mission", argus_name(ARGUS_NAME_MISSION, status->mission));
     put_bool(json, "active", status->active);
     put_bool(json, "online", status->online);
     put_int(json, "x_mm", status->pose.x_mm);
@@ -232,7 +233,7 @@ size_t report_status_plain(const view_t *view, char *line, size_t capacity) {
     const argus_status_t *const status = &view->status;
     text_t text = text_in(line, capacity);
     text_add(&text, "%5u.%03u STATUS %s %s", (unsigned)(view->t_ms / 1000u), (unsigned)(view->t_ms % 1000u),
-             argus_mode_name(status->mode), argus_failure_name(status->failure));
+             argus_name(ARGUS_NAME_MODE, status->mode), argus_name(ARGUS_NAME_FAILURE, status->failure));
     if (!status->online) {
         text_add(&text, " no robot");
         return text.length;

@@ -121,9 +121,10 @@ static void draw_progress(canvas_t *canvas, const view_t *view, int row, int col
 
 static void draw_mode(canvas_t *canvas, const view_t *view) {
     const argus_status_t *const status = &view->status;
-    write_at(canvas, 1, 1, TONE_PLAIN, "%-9s", argus_mode_name(status->mode));
-    write_at(canvas, 1, 11, tone_of_failure(status->failure), "%s", argus_failure_name(status->failure));
-    write_at(canvas, 1, 27, TONE_PLAIN, "mission %s", argus_mission_name(status->mission));
+    write_at(canvas, 1, 1, TONE_PLAIN, "%-9s", argus_name(ARGUS_NAME_MODE, status->mode));
+    write_at(canvas, 1, 11, tone_of_failure(status->failure), "%s",
+             argus_name(ARGUS_NAME_FAILURE, status->failure));
+    write_at(canvas, 1, 27, TONE_PLAIN, "mission %s", argus_name(ARGUS_NAME_MISSION, status->mission));
     if (status->waypoints > 0) {
         draw_progress(canvas, view, 2, 1);
     } else {
@@ -144,14 +145,9 @@ static void put_polar(canvas_t *canvas, int degrees, int radius, tone_t tone, ch
     put(canvas, row, column, tone, character);
 }
 
-static const argus_robot_t *robot_of(const argus_status_t *status) {
-    const argus_robot_t *const robot = argus_robot_chosen(status->body);
-    return robot != NULL ? robot : argus_robot_unknown();
-}
-
 static void draw_echo(canvas_t *canvas, const argus_status_t *status, int sonar) {
     static const char digits[] = "0123456789ABCDEFGHIJKLMNOPQRSTUV";
-    const int bearing = argus_robot_pose(robot_of(status), sonar)->heading_deg;
+    const int bearing = status->bearing_deg[sonar];
     const int rim = RING_ROWS - 1;
     const int reading = between(status->reading_mm[sonar], 0, RING_RANGE_MM);
     if (status->age_ms[sonar] == UINT32_MAX) {
@@ -161,7 +157,7 @@ static void draw_echo(canvas_t *canvas, const argus_status_t *status, int sonar)
     const int radius = RING_INNER + (rim - RING_INNER) * reading / RING_RANGE_MM;
     if (status->health[sonar] == ARGUS_DISABLED) {
         put_polar(canvas, bearing, rim, TONE_BAD, 'x');
-    } else if (status->reading_mm[sonar] >= robot_of(status)->no_echo_mm) {
+    } else if (status->reading_mm[sonar] >= ARGUS_NO_ECHO_MM) {
         put_polar(canvas, bearing, rim, TONE_DIM, '.');
     } else {
         put_polar(canvas, bearing, radius, tone_of_health(status->health[sonar]), digits[sonar]);
@@ -190,12 +186,12 @@ static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row,
         snprintf(reading, sizeof reading, "%4d", status->reading_mm[sonar]);
     }
     if (sonar < status->sonars) {
-        snprintf(bearing, sizeof bearing, "%+4d", argus_robot_pose(robot_of(status), sonar)->heading_deg);
+        snprintf(bearing, sizeof bearing, "%+4d", status->bearing_deg[sonar]);
     }
     if (health == ARGUS_DISABLED) {
-        snprintf(state, sizeof state, "!%s", argus_kind_name(status->kind[sonar]));
+        snprintf(state, sizeof state, "!%s", argus_name(ARGUS_NAME_KIND, status->kind[sonar]));
     } else {
-        snprintf(state, sizeof state, "%s", argus_health_name(health));
+        snprintf(state, sizeof state, "%s", argus_name(ARGUS_NAME_HEALTH, health));
     }
     write_at(canvas, row, column, tone_of_health(health), "%2d%c%s %s %-9.9s", sonar, pinned ? '=' : ' ',
              bearing, reading, state);

@@ -279,7 +279,7 @@ void settings_list(FILE *out) {
     fprintf(out, "%-18s %-7s %-13s %-8s %-6s %s\n", "KEY", "TYPE", "RANGE", "DEFAULT", "UNIT", "MEANING");
     for (int i = 0; i < SETTINGS_COUNT; i++) {
         char value[32];
-        char range[48];
+        char range[80];
         name_value(&rows[i], rows[i].value, value, sizeof value);
         name_range(&rows[i], range, sizeof range);
         fprintf(out, "%-18s %-7s %-13s %-8s %-6s %s\n", rows[i].key,
@@ -295,7 +295,7 @@ void settings_example(FILE *out) {
         "[" SECTION "]\n");
     for (int i = 0; i < SETTINGS_COUNT; i++) {
         char value[32];
-        char range[48];
+        char range[80];
         name_value(&rows[i], rows[i].value, value, sizeof value);
         name_range(&rows[i], range, sizeof range);
         fprintf(out, "\n# %s (%s%s%s)\n%s = %s\n", rows[i].meaning, range, rows[i].unit[0] == '\0' ? "" : " ",

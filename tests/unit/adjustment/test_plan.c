@@ -29,8 +29,10 @@ void test_every_map_is_covered_by_healthy_sonars(void) {
                     TEST_ASSERT_TRUE(by < 0 || (map >> by & 1u) == 0);
                     seen |= by >= 0 ? 1u << d : 0u;
                 }
-                TEST_ASSERT_EQUAL(0, argus_plan_covering(argus_robot_default(), &plan, plan.rotation_deg[i]) & map);
-                TEST_ASSERT_TRUE(argus_plan_covering(argus_robot_default(), &plan, plan.rotation_deg[i]) != 0);
+                TEST_ASSERT_EQUAL(0, argus_plan_covering(argus_robot_default(), &plan, plan.rotation_deg[i]) &
+                                         map);
+                TEST_ASSERT_TRUE(argus_plan_covering(argus_robot_default(), &plan, plan.rotation_deg[i]) !=
+                                 0);
             }
             TEST_ASSERT_EQUAL_HEX16(map, seen & map);
         }

@@ -17,15 +17,16 @@ void test_all_64_maps(void) {
                                                     : ARGUS_IS_CATASTROPHIC;
         TEST_ASSERT_EQUAL(wanted, argus_failure_of(argus_robot_default(), (uint16_t)(map << 1)));
         TEST_ASSERT_EQUAL(wanted,
-                          argus_failure_of(argus_robot_default(), (uint16_t)(map << 1 | 0xFF81u))); // 0, 7 and the rear do not count
+                          argus_failure_of(argus_robot_default(),
+                                           (uint16_t)(map << 1 | 0xFF81u))); // 0, 7 and the rear do not count
         TEST_ASSERT_EQUAL(count, argus_count_bits((uint16_t)(map << 1)));
     }
 }
 
 void test_names(void) {
-    TEST_ASSERT_EQUAL_STRING("IsNormal", argus_failure_name(ARGUS_IS_NORMAL));
-    TEST_ASSERT_EQUAL_STRING("IsMinor", argus_failure_name(ARGUS_IS_MINOR));
-    TEST_ASSERT_EQUAL_STRING("IsMajor", argus_failure_name(ARGUS_IS_MAJOR));
-    TEST_ASSERT_EQUAL_STRING("IsCatastrophic", argus_failure_name(ARGUS_IS_CATASTROPHIC));
-    TEST_ASSERT_EQUAL_STRING("?", argus_failure_name((argus_failure_t)4));
+    TEST_ASSERT_EQUAL_STRING("IsNormal", argus_name(ARGUS_NAME_FAILURE, ARGUS_IS_NORMAL));
+    TEST_ASSERT_EQUAL_STRING("IsMinor", argus_name(ARGUS_NAME_FAILURE, ARGUS_IS_MINOR));
+    TEST_ASSERT_EQUAL_STRING("IsMajor", argus_name(ARGUS_NAME_FAILURE, ARGUS_IS_MAJOR));
+    TEST_ASSERT_EQUAL_STRING("IsCatastrophic", argus_name(ARGUS_NAME_FAILURE, ARGUS_IS_CATASTROPHIC));
+    TEST_ASSERT_EQUAL_STRING("?", argus_name(ARGUS_NAME_FAILURE, (int)4));
 }

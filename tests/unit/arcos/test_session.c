@@ -553,7 +553,8 @@ void test_the_subclass_decides_the_unit(void) {
                  {"p3dx-s", 750},  {"p3dx-shx", 750}, {"p3at-sh", 750}, {"", 750}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         strcpy(session.subclass, cases[i].subclass);
-        TEST_ASSERT_EQUAL_MESSAGE(cases[i].unit_um, argus_session_distance_um(&session, 750), cases[i].subclass);
+        TEST_ASSERT_EQUAL_MESSAGE(cases[i].unit_um, argus_session_distance_um(&session, 750),
+                                  cases[i].subclass);
     }
 }
 

@@ -40,7 +40,7 @@ static void convicts(argus_fault_kind_t kind, int value) {
             scene_tour(&s, LEGS);
             for (int k = 0; k < ARGUS_SONARS; k++) {
                 TEST_ASSERT_EQUAL_MESSAGE(k == sonars[i] ? kind : ARGUS_KIND_NONE, s.convicted[k],
-                                          told(argus_kind_name(kind), sonars[i], seed));
+                                          told(argus_name(ARGUS_NAME_KIND, kind), sonars[i], seed));
             }
             TEST_ASSERT_EQUAL_STRING("", s.broken);
         }

@@ -1135,8 +1135,8 @@ void test_which_kind_replaces_which(void) {
                 const int when = replaced_when[present][found];
                 set_up_but(condition);
                 snprintf(text, sizeof text, "%s by %s, condition %d",
-                         argus_kind_name((argus_fault_kind_t)present),
-                         argus_kind_name((argus_fault_kind_t)found), condition);
+                         argus_name(ARGUS_NAME_KIND, (int)present), argus_name(ARGUS_NAME_KIND, (int)found),
+                         condition);
                 const bool gaps = condition == IF_DEAF || condition == IF_GAPS; // 3 of 4, both
                 const bool well = when == IF_WELL && condition == IF_BENT;
                 const bool kept =

@@ -437,7 +437,7 @@ void test_being_silent_together_brings_back_who_made_echoes_up(void) {
         reads(NONE_MM);
         reads(NONE_MM);
         const bool counts = kinds[i] == ARGUS_KIND_STUCK || kinds[i] == ARGUS_KIND_GARBAGE;
-        TEST_ASSERT_EQUAL_MESSAGE(counts, e.of[ME].agreed, argus_kind_name(kinds[i]));
+        TEST_ASSERT_EQUAL_MESSAGE(counts, e.of[ME].agreed, argus_name(ARGUS_NAME_KIND, kinds[i]));
         TEST_ASSERT_EQUAL(counts ? 520 : 600, e.of[ME].score[ARGUS_TEST_VIEW]);
         k.pose.x_mm += 150;
         saw(WITNESS, NONE_MM);

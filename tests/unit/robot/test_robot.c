@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: every robot's table against facts that are not taken from it: the vendor's body and sonar
-// figures, what bearings say of roles and masks, and who is found under which name.
+// Rule under attack: every robot's table against facts that are not taken from it: the vendor's body and
+// sonar figures, what bearings say of roles and masks, and who is found under which name.
 #include "robot/robot.h"
 
 #include <math.h>
@@ -15,8 +15,8 @@
 
 static char text[80];
 
-// RobotLengthFront, RobotLengthRear, RobotWidth, SonarNum of ARIA's params; the PeopleBot's ends are those of its
-// upper deck and of half its length.
+// RobotLengthFront, RobotLengthRear, RobotWidth, SonarNum of ARIA's params; the PeopleBot's ends are those of
+// its upper deck and of half its length.
 static const struct {
     const char *name;
     int front, rear, width, sonars;
@@ -74,8 +74,8 @@ void test_every_face_lies_in_its_body_and_looks_outwards(void) {
             const argus_sonar_pose_t *p = argus_robot_pose(robot, i);
             TEST_ASSERT_TRUE_MESSAGE(p->x_mm <= robot->front_mm && p->x_mm >= -robot->rear_mm, text);
             TEST_ASSERT_TRUE_MESSAGE(2 * abs(p->y_mm) <= robot->width_mm, text);
-            TEST_ASSERT_TRUE_MESSAGE(p->x_mm * cos(p->heading_deg * DEG) + p->y_mm * sin(p->heading_deg * DEG) > 0,
-                                     text);
+            TEST_ASSERT_TRUE_MESSAGE(
+                p->x_mm * cos(p->heading_deg * DEG) + p->y_mm * sin(p->heading_deg * DEG) > 0, text);
             foremost = p->x_mm > foremost ? p->x_mm : foremost;
         }
         TEST_ASSERT_EQUAL_MESSAGE(robot->sonar_face_mm, foremost, text);
@@ -153,7 +153,8 @@ void test_turns_are_all_the_differences_of_bearings(void) {
             for (int a = 0; a < robot->forward_count; a++) {
                 for (int b = 0; b < robot->forward_count; b++) {
                     wanted = wanted ||
-                             (a != b && bearing(robot, robot->forward[a]) - bearing(robot, robot->forward[b]) == turn);
+                             (a != b &&
+                              bearing(robot, robot->forward[a]) - bearing(robot, robot->forward[b]) == turn);
                 }
             }
             for (int i = 0; i < robot->turns; i++) {
@@ -162,7 +163,8 @@ void test_turns_are_all_the_differences_of_bearings(void) {
             TEST_ASSERT_EQUAL_MESSAGE(wanted, listed, text);
         }
         for (int i = 0; i + 1 < robot->turns; i += 2) { // in pairs, the negative one first
-            TEST_ASSERT_TRUE_MESSAGE(robot->turn_deg[i] < 0 && robot->turn_deg[i + 1] == -robot->turn_deg[i], text);
+            TEST_ASSERT_TRUE_MESSAGE(robot->turn_deg[i] < 0 && robot->turn_deg[i + 1] == -robot->turn_deg[i],
+                                     text);
             TEST_ASSERT_TRUE_MESSAGE(i == 0 || robot->turn_deg[i + 1] > robot->turn_deg[i - 1], text);
         }
     }
@@ -194,17 +196,27 @@ void test_arrays_hold_eight_in_a_row(void) {
 void test_who_is_found_under_which_name(void) {
     TEST_ASSERT_EQUAL_PTR(argus_robot_default(), argus_robot_find("p3dx-sh"));
     TEST_ASSERT_EQUAL_PTR(argus_robot_default(), argus_robot_find("P3DX-sh"));
-    TEST_ASSERT_EQUAL_PTR(argus_robot_default(), argus_robot_find("p3dx")); // the older controller on that body
+    TEST_ASSERT_EQUAL_PTR(argus_robot_default(),
+                          argus_robot_find("p3dx")); // the older controller on that body
     TEST_ASSERT_EQUAL_STRING("amigo-sh", argus_robot_find("AmigO-Sh")->name);
-    static const char *const strange[] = {"", "p3dx-s", "p3dx-shx", "powerbot-sh", "p3at", "amigo", "p2de", "by-subclass"};
+    static const char *const strange[] = {"",     "p3dx-s", "p3dx-shx", "powerbot-sh",
+                                          "p3at", "amigo",  "p2de",     "by-subclass"};
     for (size_t i = 0; i < sizeof strange / sizeof strange[0]; i++) {
         TEST_ASSERT_NULL_MESSAGE(argus_robot_find(strange[i]), strange[i]);
     }
 }
 
 void test_the_choices_are_the_rows(void) {
-    static const char choices[] = ARGUS_ROBOT_CHOICES;
+    const char *choices = "";
+    int most = 0;
+#define FIND(key, def, min, max, unit, names, meaning) \
+    if (strcmp(#key, "robot") == 0) {                  \
+        choices = names;                               \
+        most = max;                                    \
+    }
+    ARGUS_CONFIG_TABLE(FIND)
     const char *at = strchr(choices, '|');
+    TEST_ASSERT_EQUAL(ARGUS_ROBOTS, most);
     TEST_ASSERT_NULL(argus_robot_chosen(0));
     for (int choice = 1; choice <= ARGUS_ROBOTS; choice++) {
         const argus_robot_t *robot = argus_robot_chosen(choice);
@@ -230,7 +242,8 @@ void test_nothing_is_known_of_an_unknown_one(void) {
 }
 
 void test_a_build_manages_as_many_as_it_was_made_for(void) {
-    TEST_ASSERT_EQUAL(32 < ARGUS_SONARS ? 32 : ARGUS_SONARS, argus_robot_sonars(argus_robot_find("peoplebot-sh")));
+    TEST_ASSERT_EQUAL(32 < ARGUS_SONARS ? 32 : ARGUS_SONARS,
+                      argus_robot_sonars(argus_robot_find("peoplebot-sh")));
     TEST_ASSERT_EQUAL(8, argus_robot_sonars(argus_robot_find("amigo-sh")));
     TEST_ASSERT_EQUAL(ARGUS_SONARS, argus_count_bits(argus_robot_all(argus_robot_find("peoplebot-sh"))));
 }

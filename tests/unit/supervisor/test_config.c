@@ -110,7 +110,7 @@ void test_stepping_is_refused_exactly_when_the_inequality_fails(void) {
 }
 
 // The vendor's figures of the sonars 0 to 6 (p3dx-sh.p, SonarUnit).
-static const double pose[][3] = {{69, 136, 90},   {114, 119, 50},  {148, 78, 30},  {166, 27, 10},
+static const double pose[][3] = {{69, 136, 90},   {114, 119, 50},  {148, 78, 30},   {166, 27, 10},
                                  {166, -27, -10}, {148, -78, -30}, {114, -119, -50}};
 
 static double reading_exactly(double x, double y) {

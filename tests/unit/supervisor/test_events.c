@@ -66,11 +66,11 @@ static const struct {
 void test_the_catalogue_is_found_row_by_row(void) {
     for (size_t i = 0; i < ROWS; i++) {
         const uint16_t id = (uint16_t)catalogue[i].id;
-        TEST_ASSERT_EQUAL_STRING(catalogue[i].name, argus_event_name(id));
-        TEST_ASSERT_EQUAL_STRING(catalogue[i].subject, argus_event_subject(id));
+        TEST_ASSERT_EQUAL_STRING(catalogue[i].name, argus_name(ARGUS_NAME_EVENT, id));
+        TEST_ASSERT_EQUAL_STRING(catalogue[i].subject, argus_name(ARGUS_NAME_SUBJECT, id));
         TEST_ASSERT_EQUAL(catalogue[i].level, argus_event_level(id));
     }
-    TEST_ASSERT_EQUAL_STRING("BUMPER", argus_event_name(22));
+    TEST_ASSERT_EQUAL_STRING("BUMPER", argus_name(ARGUS_NAME_EVENT, 22));
     TEST_ASSERT_EQUAL(ARGUS_LEVEL_ERROR, argus_event_level(22));
 }
 
@@ -94,7 +94,7 @@ void test_an_unknown_id_is_an_error_without_a_name(void) {
             known = known || catalogue[i].id == id;
         }
         if (!known) {
-            TEST_ASSERT_EQUAL_STRING("?", argus_event_name((uint16_t)id));
+            TEST_ASSERT_EQUAL_STRING("?", argus_name(ARGUS_NAME_EVENT, (uint16_t)id));
             TEST_ASSERT_EQUAL(ARGUS_LEVEL_ERROR, argus_event_level((uint16_t)id));
         }
     }

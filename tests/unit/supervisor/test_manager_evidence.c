@@ -48,12 +48,12 @@ static argus_health_t health(int sonar) {
 
 static const char *told(const char *what, int sonar) {
     int used = snprintf(text, sizeof text, "%s, sonar %d, t %u ms, mode %s:", what, sonar,
-                        (unsigned)robot.t_ms, argus_mode_name(robot.argus.mode));
+                        (unsigned)robot.t_ms, argus_name(ARGUS_NAME_MODE, robot.argus.mode));
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if (health(i) > ARGUS_HEALTHY && used < (int)sizeof text) {
-            used +=
-                snprintf(text + used, sizeof text - (size_t)used, " %d %s %s", i,
-                         argus_health_name(health(i)), argus_kind_name(robot.argus.knowledge.sonar[i].kind));
+            used += snprintf(text + used, sizeof text - (size_t)used, " %d %s %s", i,
+                             argus_name(ARGUS_NAME_HEALTH, health(i)),
+                             argus_name(ARGUS_NAME_KIND, robot.argus.knowledge.sonar[i].kind));
         }
     }
     return text;
@@ -663,12 +663,12 @@ void test_no_look_after_the_operators_stop(void) {
 void test_retest_takes_sonars_that_exist_and_a_session(void) {
     const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
     robot_init(&robot, &config, 0);
-    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 3, 0));
+    TEST_ASSERT_FALSE(argus_operator(&robot.argus, 0, ARGUS_OP_RETEST, 3));
     furnish();
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
-    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 16, robot.t_ms));
-    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 255, robot.t_ms));
-    TEST_ASSERT_TRUE(argus_retest(&robot.argus, 3, robot.t_ms));
+    TEST_ASSERT_FALSE(argus_operator(&robot.argus, robot.t_ms, ARGUS_OP_RETEST, 16));
+    TEST_ASSERT_FALSE(argus_operator(&robot.argus, robot.t_ms, ARGUS_OP_RETEST, 255));
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.t_ms, ARGUS_OP_RETEST, 3));
     robot_drain(&robot);
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 60000));
     finish();
@@ -879,7 +879,7 @@ void test_caution_is_how_much_evidence_a_verdict_takes(void) {
 void test_caution_outlives_a_retest(void) {
     start_with(400, 20);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
-    TEST_ASSERT_TRUE(argus_retest(&robot.argus, 3, robot.start_ms + robot.t_ms));
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_RETEST, 3));
     robot_run(&robot, 1000);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         TEST_ASSERT_EQUAL(400, robot.argus.evidence.of[i].caution);

@@ -148,7 +148,7 @@ void test_retest_of_one_in_use_makes_it_a_suspect_and_looks(void) {
     start_idle();
     robot.argus.evidence.of[4].score[ARGUS_TEST_VIEW] = 250;
     const int from = robot.events;
-    TEST_ASSERT_TRUE(argus_retest(&robot.argus, 4, now()));
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, 4));
     robot_drain(&robot);
     TEST_ASSERT_EQUAL(ARGUS_SUSPECT, sonar(4)->health);
     TEST_ASSERT_EQUAL(0, robot.argus.evidence.of[4].score[ARGUS_TEST_VIEW]);
@@ -166,7 +166,7 @@ void test_retest_of_one_that_is_out_begins_its_probation_anew(void) {
     ask(ARGUS_OP_DISABLE, 4);
     ask(ARGUS_OP_UNPIN, 4);
     sonar(4)->relapses = 3;
-    TEST_ASSERT_TRUE(argus_retest(&robot.argus, 4, now()));
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, 4));
     TEST_ASSERT_EQUAL(ARGUS_PROBATION, sonar(4)->health);
     TEST_ASSERT_EQUAL(0, sonar(4)->relapses);
     TEST_ASSERT_TRUE(robot_goal(&robot, 900, 0));
@@ -184,7 +184,7 @@ void test_a_pinned_sonar_keeps_its_health(void) {
     }
     robot_run(&robot, 3000);
     TEST_ASSERT_EQUAL(ARGUS_HEALTHY, sonar(3)->health);
-    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 3, now()));
+    TEST_ASSERT_FALSE(argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, 3));
     for (int test = 0; test < ARGUS_TESTS; test++) {
         robot.argus.evidence.of[3].score[test] = 0;
     }
@@ -257,11 +257,11 @@ void test_what_cannot_be_done_is_refused(void) {
         }
     }
     ask(ARGUS_OP_UNPIN, 3); // it is not pinned
-    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 16, now()));
+    TEST_ASSERT_FALSE(argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, 16));
     TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_OPERATOR, from));
     TEST_ASSERT_EQUAL_HEX16(0, robot.argus.pinned);
     start(ARGUS_PROFILE_ARGUS);
-    TEST_ASSERT_FALSE(argus_retest(&robot.argus, 3, now())); // no session
+    TEST_ASSERT_FALSE(argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, 3)); // no session
     start(ARGUS_PROFILE_PAPER);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
     for (int i = 1; i < 4; i++) {

@@ -326,7 +326,7 @@ void test_goes_round_a_box_and_touches_nothing(void) {
     const bool reached = robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 240000);
     char text[100];
     snprintf(text, sizeof text, "at %.0f %.0f, mode %s, closest %.0f", robot.x, robot.y,
-             argus_mode_name(robot.argus.mode), robot.closest_mm);
+             argus_name(ARGUS_NAME_MODE, robot.argus.mode), robot.closest_mm);
     TEST_ASSERT_TRUE_MESSAGE(reached, text);
     TEST_ASSERT_TRUE_MESSAGE(robot.closest_mm > 0, text);
     TEST_ASSERT_TRUE(hypot(robot.x - 3000, robot.y) <= 150);
@@ -352,7 +352,7 @@ void test_round_a_box_with_a_sonar_that_dies_and_one_that_lies(void) {
     const bool reached = robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 900000);
     char text[140];
     snprintf(text, sizeof text, "at %.0f %.0f, mode %s, closest %.0f, disabled %x", robot.x, robot.y,
-             argus_mode_name(robot.argus.mode), robot.closest_mm,
+             argus_name(ARGUS_NAME_MODE, robot.argus.mode), robot.closest_mm,
              (unsigned)argus_disabled(&robot.argus.knowledge));
     TEST_ASSERT_TRUE_MESSAGE(reached, text);
     TEST_ASSERT_TRUE_MESSAGE(robot.closest_mm > 0, text);

@@ -306,8 +306,8 @@ void test_a_known_robot_after_an_unknown_one_drives(void) {
     finish("seekur, then p3dx-sh");
 }
 
-// S5 for the body that answers: a P3-DX stops in time from 200 mm/s at 9600 baud, a PeopleBot has more before its
-// sonars.
+// S5 for the body that answers: a P3-DX stops in time from 200 mm/s at 9600 baud, a PeopleBot has more before
+// its sonars.
 void test_settings_that_are_unsafe_for_the_robot_bar_it(void) {
     start();
     robot.subclass = "peoplebot-sh";
@@ -334,7 +334,7 @@ void test_a_sonar_that_the_robot_has_not_got_is_absent(void) {
         for (int i = 0; i < ARGUS_SONARS; i++) {
             TEST_ASSERT_EQUAL(i >= 8, status.health[i] == ARGUS_ABSENT);
             TEST_ASSERT_TRUE(i < 8 || (status.age_ms[i] == UINT32_MAX && status.reading_mm[i] == 0));
-            TEST_ASSERT_FALSE(i >= 8 && argus_retest(&robot.argus, (uint8_t)i, now()));
+            TEST_ASSERT_FALSE(i >= 8 && argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, i));
         }
         TEST_ASSERT_EQUAL(0, argus_out(&robot.argus.knowledge) >> 8);
         for (int i = 0; i < robot.events; i++) {
@@ -361,7 +361,8 @@ void test_a_robot_that_ignores_any_one_command_is_not_flooded(void) {
         TEST_ASSERT_TRUE(robot_goal(&robot, 900, 900));
         robot_run(&robot, 60000);
         snprintf(message, sizeof message, "ignores command %d: %d packets, %d events, mode %s",
-                 commands[i / 2], robot.commands, robot.events, argus_mode_name(robot.argus.mode));
+                 commands[i / 2], robot.commands, robot.events,
+                 argus_name(ARGUS_NAME_MODE, robot.argus.mode));
         TEST_ASSERT_LESS_THAN_MESSAGE(60 * 8, robot.commands, message);
         TEST_ASSERT_LESS_THAN_MESSAGE(60 * 5, robot.events, message);
         TEST_ASSERT_EQUAL_MESSAGE(1, robot_count_events(&robot, ARGUS_EV_SESSION_OPEN, 0), message);

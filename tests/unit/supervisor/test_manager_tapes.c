@@ -85,7 +85,7 @@ static void play(const char *name, uint32_t tick_ms) {
     thread(name);
     memset(events, 0, sizeof events);
     moves = 0;
-    argus_init(&argus, &config, EPOCH_MS);
+    argus_manager_init(&argus, &config, EPOCH_MS);
     argus_link_up(&argus, EPOCH_MS);
     for (time_ms = 0; next < tape.chunks && time_ms < PLAY_MAX_MS; time_ms += tick_ms) {
         play_due();

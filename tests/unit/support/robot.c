@@ -17,7 +17,7 @@
 static void complain(robot_t *robot, const char *what, int value) {
     if (robot->violation[0] == '\0') {
         snprintf(robot->violation, sizeof robot->violation, "t %u ms, mode %s: %s (%d)",
-                 (unsigned)robot->t_ms, argus_mode_name(robot->argus.mode), what, value);
+                 (unsigned)robot->t_ms, argus_name(ARGUS_NAME_MODE, robot->argus.mode), what, value);
     }
 }
 
@@ -72,7 +72,7 @@ void robot_init(robot_t *robot, const argus_config_t *config, uint32_t start_ms)
     for (int i = 0; i < 16; i++) {
         robot->shown[i] = -1;
     }
-    argus_init(&robot->argus, config, start_ms);
+    argus_manager_init(&robot->argus, config, start_ms);
     argus_link_up(&robot->argus, start_ms);
 }
 

@@ -310,8 +310,9 @@ const char *scene_text(const scene_t *self) {
                         (unsigned)self->start_ms, self->broken);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         if (self->convicted[i] != ARGUS_KIND_NONE) {
-            used += snprintf(text + used, sizeof text - (size_t)used, " [%d %s at %u ms]", i,
-                             argus_kind_name(self->convicted[i]), (unsigned)self->convicted_ms[i]);
+            used +=
+                snprintf(text + used, sizeof text - (size_t)used, " [%d %s at %u ms]", i,
+                         argus_name(ARGUS_NAME_KIND, self->convicted[i]), (unsigned)self->convicted_ms[i]);
         }
     }
     return text;

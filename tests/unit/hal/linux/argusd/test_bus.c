@@ -19,7 +19,7 @@ void setUp(void) {
     hal_can_spec_t spec;
     fake_can_reset();
     now_ms = UINT32_MAX - 1500; // the clock wraps
-    argus_init(&core, &config, now_ms);
+    argus_manager_init(&core, &config, now_ms);
     TEST_ASSERT_TRUE(hal_can_spec_parse_telemetry(&spec, "can0,robot=1", text, sizeof text));
     TEST_ASSERT_TRUE(bus_open(&bus, &spec, &fake_can_sys, 1, now_ms, text, sizeof text));
 }

@@ -61,8 +61,8 @@ void test_every_event_of_the_catalogue(void) {
         const argus_event_t event = {.id = ids[i], .sonar = ARGUS_NO_SONAR, .value = -7};
         char expected[64];
         TEST_ASSERT_GREATER_THAN_size_t(0, report_event_json(&event, 0, line, sizeof line));
-        snprintf(expected, sizeof expected, "\"event\":\"%s\",\"id\":%u,", argus_event_name(ids[i]),
-                 (unsigned)ids[i]);
+        snprintf(expected, sizeof expected, "\"event\":\"%s\",\"id\":%u,",
+                 argus_name(ARGUS_NAME_EVENT, ids[i]), (unsigned)ids[i]);
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(line, expected), line);
         TEST_ASSERT_GREATER_THAN_size_t(0, report_event_plain(&event, 0, false, line, sizeof line));
         TEST_ASSERT_NULL(strstr(line, "value:"));

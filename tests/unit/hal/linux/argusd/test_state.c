@@ -23,7 +23,7 @@ static void remove_slot(const char *end) {
 static void new_core(void) {
     argus_config_t config;
     argus_config_default(&config);
-    argus_init(&core, &config, 0);
+    argus_manager_init(&core, &config, 0);
 }
 
 static void open_state(void) {

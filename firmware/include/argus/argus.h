@@ -1,0 +1,513 @@
+// SPDX-License-Identifier: MIT
+// Argus: the autonomic sonar fault manager for ARCOS robots. This is its one public header.
+//
+// WHAT IT IS. Bytes of the robot's serial line and the time go in; packets for the robot, events and a status
+// come out. In between the manager keeps the ARCOS session, judges every sonar, works round those that
+// failed, and drives a course under its safety rules (DESIGN.md). It allocates nothing, reads no clock, does
+// no I/O, has no mutable statics, and needs of the C library memcpy, memset and memcmp only. Any C11
+// compiler, 32 bit and up.
+//
+// HOW TO USE IT. A port owns the wire and the clock; this is all it does (examples/embed/ is a whole one):
+//
+//     static argus_storage_t storage;
+//     argus_config_t config;
+//     argus_config_default(&config);                       // then change what is to be changed
+//     argus_t *const argus = argus_init(&storage, &config, now_ms());
+//     argus_link_up(argus, now_ms());
+//     while (!argus_closed(argus)) {
+//         argus_receive(argus, now_ms(), bytes, read_wire(bytes, sizeof bytes));
+//         while ((n = argus_transmit(argus, packet, sizeof packet)) > 0) { write_wire(packet, n); }
+//         const uint32_t wait_ms = argus_process(argus, now_ms());
+//         while ((n = argus_transmit(argus, packet, sizeof packet)) > 0) { write_wire(packet, n); }
+//         while (argus_next_event(argus, &event)) { log_event(&event); }
+//         wait_for_bytes(wait_ms);                         // at most so long
+//     }
+//
+// ORDER OF A LIFE. argus_init(); then argus_record_load() and argus_set_course(), if wanted; argus_link_up()
+// when the wire is open; the loop above; argus_link_lost() and argus_link_up() as the wire goes and comes;
+// argus_shutdown(); the loop until argus_closed(); argus_record_save(). To start anew call argus_init()
+// again.
+//
+// CONCURRENCY. Not thread-safe, but reentrant: one thread (or one interrupt level) owns an instance; any
+// number of instances may live side by side. No function calls back.
+//
+// UNITS. Names end in them: _mm, _ms, _cdeg (hundredths of a degree), _dv (decivolts). Angles are
+// counter-clockwise positive. Times are ms of any free-running counter, uint32_t, and may wrap; they never go
+// back.
+//
+// ERRORS. What a function refuses it says by its result and changes nothing. What goes wrong on the robot is
+// an event. A pointer that must not be NULL and an enumeration out of its range are errors of the caller; see
+// ARGUS_ASSERT.
+//
+// COST. No call runs longer than one pass over the bytes given and, for each SIP in them, the diagnosis of
+// that SIP; none waits. Figures for one machine: docs/performance.md.
+#ifndef ARGUS_ARGUS_H
+#define ARGUS_ARGUS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Build ----------------------------------------------------------------------------------------------------
+
+// Checks of what must be true inside the library, and of its callers. Whoever builds the library may define
+// it, for example as -D'ARGUS_ASSERT(condition)=((condition) ? (void)0 : board_reset())'; it must then be a
+// void expression. Else it costs nothing, unless ARGUS_ASSERTS is defined (as in every test build): then it
+// traps, with no call to anything. The condition has no side effects.
+#ifndef ARGUS_ASSERT
+#ifdef ARGUS_ASSERTS
+#define ARGUS_ASSERT(condition) ((condition) ? (void)0 : __builtin_trap())
+#else
+#define ARGUS_ASSERT(condition) ((void)sizeof((condition) ? 1 : 0))
+#endif
+#endif
+
+// Bounds ---------------------------------------------------------------------------------------------------
+
+// The most sonars that a build manages, numbered from 0: 8, 16, 24 or 32. Each costs some 2 KB of RAM; a
+// robot may have fewer or more. Library and program must be built with the same number.
+#ifndef ARGUS_SONARS
+#define ARGUS_SONARS 16
+#endif
+#define ARGUS_NO_SONAR ((int8_t)-1)
+// Masks over sonar numbers.
+#if ARGUS_SONARS > 16
+typedef uint32_t argus_mask_t;
+#else
+typedef uint16_t argus_mask_t;
+#endif
+#define ARGUS_NO_ECHO_MM 5000 // a reading of this or more: nothing was heard
+#define ARGUS_NAME_MAX 32     // identity strings, cut to 31 characters and a NUL
+#define ARGUS_WAYPOINTS_MAX 64
+#define ARGUS_COURSE_LIMIT_MM 30000
+#define ARGUS_PACKET_MAX 200                      // the longest packet that is ever sent
+#define ARGUS_RECORD_MAX (64 + 60 * ARGUS_SONARS) // the longest record that is ever saved
+
+// Settings -------------------------------------------------------------------------------------------------
+
+#define ARGUS_PROFILE_PAPER 0
+#define ARGUS_PROFILE_ARGUS 1
+
+// X(key, default, minimum, maximum, unit, choices, meaning). `choices` names the values 0, 1, ... of a
+// setting that is picked by name ("" for a number). A front end builds its parser and its help from this
+// table.
+#define ARGUS_CONFIG_TABLE(X)                                                                                \
+    X(profile, 1, 0, 1, "", "paper|argus", "rule set of the diagnosis")                                      \
+    X(policy, 0, 0, 1, "", "paper|fewest", "planner of the compensating rotations")                          \
+    X(robot, 0, 0, 4, "", "by-subclass|p3dx-sh|amigo-sh|p3at-sh|peoplebot-sh",                               \
+      "whose body and sonars it has; by-subclass: as it says itself, and passive when that is not known")    \
+    X(active, 1, 0, 1, "", "off|on", "off: diagnose and report, never command a motion")                     \
+    X(health_check_ms, 1000, 100, 10000, "ms", "", "period of the health check beside the main task")        \
+    X(suspect_readings, 3, 1, 50, "", "", "consecutive disparate fresh readings before a sonar is verified") \
+    X(holdoff_mm, 1000, 0, 20000, "mm", "", "a cleared sonar is not verified again before this distance")    \
+    X(holdoff_deg, 30, 0, 180, "deg", "", "... or before this change of heading")                            \
+    X(caution, 100, 25, 400, "%", "", "profile argus: so much of the tabled evidence a verdict takes")       \
+    X(look_every_s, 20, 2, 3600, "s", "", "profile argus: a look at all sonars at least so often")           \
+    X(stale_ms, 1500, 700, 10000, "ms", "", "a sonar that yields no reading for this long is silent")        \
+    X(object_range_mm, 250, 150, 1000, "mm", "",                                                             \
+      "while driving, a reading at or below this is an object: STOP")                                        \
+    X(check_range_mm, 350, 200, 1500, "mm", "",                                                              \
+      "in failure mode, a reading at or below this stops the next step")                                     \
+    X(step_mm, 200, 50, 200, "mm", "", "length of one step in failure mode")                                 \
+    X(step_speed_mm_s, 100, 30, 300, "mm/s", "", "speed of a step")                                          \
+    X(speed_mm_s, 200, 30, 750, "mm/s", "", "speed of normal driving")                                       \
+    X(accel_mm_s2, 300, 50, 2000, "mm/s2", "", "acceleration asked of the robot")                            \
+    X(decel_mm_s2, 600, 50, 2000, "mm/s2", "", "deceleration asked of the robot")                            \
+    X(turn_speed_deg_s, 60, 10, 100, "deg/s", "", "speed of a turn")                                         \
+    X(turn_accel_deg_s2, 200, 20, 300, "deg/s2", "", "angular acceleration asked of the robot")              \
+    X(noise_mm, 5, 0, 100, "mm", "", "standard deviation of a sonar reading, for the S5 margin")             \
+    X(backoff_mm, 150, 50, 300, "mm", "",                                                                    \
+      "how far to back away from a pressed bumper; for a turn, at least")                                    \
+    X(rear_clear_mm, 450, 200, 2000, "mm", "", "every rear sonar must read more than this to back away")     \
+    X(waypoint_radius_mm, 100, 20, 500, "mm", "", "a waypoint this near counts as passed")                   \
+    X(goal_radius_mm, 60, 20, 140, "mm", "", "the goal counts as reached this near")                         \
+    X(sonar_cycle_ms, 40, 20, 120, "ms", "", "time between two pings of one array")                          \
+    X(baud, 9600, 0, 115200, "bit/s", "",                                                                    \
+      "rate of the wire, for its share of the reaction time (0: none, TCP)")                                 \
+    X(pulse_ms, 500, 100, 1500, "ms", "", "longest silence towards the robot before a PULSE is sent")        \
+    X(link_stall_ms, 600, 200, 5000, "ms", "",                                                               \
+      "no SIP for this long: stand, and check all sonars before driving on")                                 \
+    X(link_lost_ms, 4000, 1000, 60000, "ms", "", "no SIP for this long: start the session again")            \
+    X(retry_max_ms, 8000, 500, 60000, "ms", "", "longest pause between two attempts to reach the robot")
+
+typedef struct {
+#define ARGUS_CONFIG_FIELD(key, def, min, max, unit, choices, meaning) int32_t key;
+    ARGUS_CONFIG_TABLE(ARGUS_CONFIG_FIELD)
+#undef ARGUS_CONFIG_FIELD
+} argus_config_t;
+
+typedef enum { ARGUS_POLICY_PAPER = 0, ARGUS_POLICY_FEWEST = 1 } argus_policy_t;
+
+// What is wrong with a configuration; ARGUS_CONFIG_OK when nothing is.
+typedef enum {
+    ARGUS_CONFIG_OK = 0,
+    ARGUS_CONFIG_RANGE,   // the setting number `key` (its row in the table) is out of its range
+    ARGUS_CONFIG_DRIVING, // S5: the robot would reach the object before it stands
+    ARGUS_CONFIG_STEP     // S5: a step could sweep a point that the check does not see
+} argus_config_fault_t;
+
+// The arithmetic of S5 (DESIGN.md, safety invariants), so that a refusal can show it.
+typedef struct {
+    argus_config_fault_t fault;
+    int32_t key;         // row of the table, for ARGUS_CONFIG_RANGE, else -1
+    int32_t overhang_mm; // body front ahead of the sonar faces
+    int32_t reaction_ms; // sonar refresh + SIP period + SIP and command on the wire
+    int32_t travel_mm;   // speed x reaction
+    int32_t brake_mm;    // speed^2 / (2 decel), decel at most the robot's own (300 mm/s2)
+    int32_t driving_mm;  // overhang + travel + brake: must be < object_range_mm
+    int32_t reach_mm;    // largest reading of a point that the body sweeps in one step
+    int32_t stepping_mm; // reach + 3 noise + 20: must be < check_range_mm
+} argus_config_report_t;
+
+// Events ---------------------------------------------------------------------------------------------------
+
+// Levels are those of ROS diagnostics.
+typedef enum {
+    ARGUS_LEVEL_OK = 0,
+    ARGUS_LEVEL_WARN = 1,
+    ARGUS_LEVEL_ERROR = 2,
+    ARGUS_LEVEL_STALE = 3
+} argus_level_t;
+
+// X(id, NAME, level, subject, meaning). Ids are stable: never reuse one. `subject` is what the event is
+// about; "sonar" events carry the sonar's number. `meaning` says what `value` is.
+#define ARGUS_EVENT_TABLE(X)                                                                                \
+    X(10, LINK_UP, OK, "link", "the transport is open")                                                     \
+    X(11, LINK_LOST, ERROR, "link",                                                                         \
+      "the transport is gone, or no SIP came for link_lost_ms; value: ms without a SIP")                    \
+    X(12, LINK_STALLED, WARN, "link", "no SIP for link_stall_ms: standing; value: ms without a SIP")        \
+    X(13, LINK_RESUMED, OK, "link", "SIPs come again; value: length of the gap in ms")                      \
+    X(14, SESSION_NO_ANSWER, WARN, "session", "nobody answers SYNC; value: attempts so far")                \
+    X(15, SESSION_OPEN, OK, "session", "the robot answered and reports; value: attempts it took")           \
+    X(16, SESSION_CLOSED, OK, "session", "orderly end: SONAR 0, STOP, CLOSE sent")                          \
+    X(17, SESSION_DISLODGED, WARN, "session", "the robot was still in an old session, which was closed")    \
+    X(18, SUBCLASS_UNKNOWN, WARN, "session",                                                                \
+      "a robot whose body is not known: passive until the setting `robot` says which it is")                \
+    X(19, ROBOT_UNSAFE, ERROR, "session",                                                                   \
+      "the settings are unsafe for this robot (S5): passive; value: mm that S5 needs")                      \
+    X(20, MOTORS_OFF, ERROR, "drive",                                                                       \
+      "the motors are off (button or E-stop): enable them to go on; value: SIP flags")                      \
+    X(21, MOTORS_ON, OK, "drive", "the motors are on; value: SIP flags")                                    \
+    X(22, BUMPER, ERROR, "bumper",                                                                          \
+      "a bumper was hit: E_STOP sent; value: front segments << 8 | rear segments")                          \
+    X(23, BUMPER_CLEAR, OK, "bumper", "no bumper is pressed any more")                                      \
+    X(24, STALL, ERROR, "drive", "a wheel stalls: STOP sent; value: 1 left, 2 right, 3 both")               \
+    X(25, BATTERY_LOW, WARN, "battery", "battery low; value: decivolts")                                    \
+    X(26, SONARS_BEYOND, WARN, "session",                                                                   \
+      "it has more sonars than this build manages, those beyond are left out; value: how many it has")      \
+    X(30, SONAR_DEAD, ERROR, "sonar", "dead reading: STOP sent; value: the reading in mm")                  \
+    X(31, SONAR_SILENT, ERROR, "sonar",                                                                     \
+      "its slot yields no reading: STOP sent; value: age of its last reading in ms")                        \
+    X(32, SONAR_SUSPECT, WARN, "sonar",                                                                     \
+      "disparate to its neighbours (Algorithm 1); value: the disparity in mm")                              \
+    X(33, SONAR_VERIFYING, OK, "sonar",                                                                     \
+      "neighbours turn onto its bearing (Algorithm 2); value: its reading in mm")                           \
+    X(34, SONAR_WITNESS, OK, "sonar", "a neighbour saw on its bearing; value: that reading in mm")          \
+    X(35, SONAR_CLEARED, OK, "sonar", "the witnesses agree with it; value: mean of the witnesses in mm")    \
+    X(36, SUSPICION_DROPPED, OK, "sonar", "no longer disparate at rest; value: the disparity in mm")        \
+    X(37, SONAR_DISABLED, ERROR, "sonar", "not used any more; value: fault kind")                           \
+    X(38, SONAR_HEALTHY, OK, "sonar", "judged healthy; value: its reading in mm")                           \
+    X(39, SONAR_UNPROVEN, WARN, "sonar", "no usable witness: it stays a suspect; value: its reading in mm") \
+    X(40, FAILURE_STATE, WARN, "health",                                                                    \
+      "the failure state changed; value: number of disabled sonars among 1..6")                             \
+    X(41, PLAN, WARN, "plan", "rotations that cover the disabled bearings; value: how many")                \
+    X(42, PLAN_ROTATION, OK, "plan", "one rotation of the plan; value: degrees, CCW positive")              \
+    X(43, HEALTH_CHECK, OK, "health",                                                                       \
+      "all front sonars have reported and no suspect is open; value: disabled")                             \
+    X(44, SONAR_STALE, STALE, "sonar", "a sonar outside 1..6 yields no reading; value: ms without one")     \
+    X(45, SONAR_NAMED, WARN, "sonar", "a suspect: the evidence so far names this fault; value: fault kind") \
+    X(46, SONAR_PROBATION, WARN, "sonar",                                                                   \
+      "not used yet: does well again, or failed in the last mission; value: its reading in mm")             \
+    X(47, SONAR_KIND, WARN, "sonar", "its fault is known better now; value: fault kind")                    \
+    X(48, SONAR_PINNED, WARN, "sonar", "keeps its health until unpinned; value: 1 pinned, 0 unpinned")      \
+    X(49, SONAR_DEGRADING, WARN, "sonar", "gets worse; value: metres of driving until it will have failed") \
+    X(50, OBJECT, WARN, "object",                                                                           \
+      "an object in range, or (0, 7) a wall that the way slants into: STOP sent; value: the reading in mm") \
+    X(51, OBJECT_CHECKED, WARN, "object",                                                                   \
+      "a check in failure mode finds an object; value: the reading in mm")                                  \
+    X(52, AVOIDING, OK, "task", "goes round an obstacle; value: heading chosen, degrees")                   \
+    X(53, NO_WAY, WARN, "task", "every heading is blocked: waits; value: seconds waited")                   \
+    X(54, STEP, OK, "drive", "one step in failure mode; value: mm commanded")                               \
+    X(55, SWEEP, OK, "drive", "a sweep of the planned rotations is done; value: smallest reading in mm")    \
+    X(56, STOPPED, WARN, "drive", "STOP sent; value: heading in hundredths of a degree")                    \
+    X(57, BACKING, WARN, "drive", "backs away; value: mm")                                                  \
+    X(58, TURN_BLOCKED, WARN, "drive",                                                                      \
+      "the swing circle is not free: no turn; value: the nearest point in mm")                              \
+    X(59, WAITING, WARN, "drive", "cannot go on by itself; value: seconds waited")                          \
+    X(60, MISSION_START, OK, "task", "a course starts; value: waypoints")                                   \
+    X(61, WAYPOINT, OK, "task", "a waypoint was passed; value: its number, from 1")                         \
+    X(62, GOAL_REACHED, OK, "task", "at rest at the goal; value: distance to it in mm")                     \
+    X(63, MISSION_FAILED, ERROR, "task", "the course was given up; value: distance to the goal in mm")      \
+    X(64, TURN_FAILED, WARN, "drive", "a turn did not settle in time; value: degrees off")                  \
+    X(65, LOOK, OK, "drive", "looks round to try all sonars; value: 0")                                     \
+    X(70, OPERATOR, OK, "operator", "an operator's command was taken; value: its number")                   \
+    X(71, PASSIVE, OK, "operator", "reports only: commands no motion")                                      \
+    X(72, ACTIVE, OK, "operator", "drives")                                                                 \
+    X(80, RECORD_IGNORED, WARN, "record",                                                                   \
+      "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")           \
+    X(81, EVENTS_LOST, ERROR, "events", "the event queue overflowed; value: events lost")                   \
+    X(90, INVARIANT, ERROR, "manager", "an internal invariant does not hold; value: its number")            \
+    X(91, STATUS, OK, "status", "periodic picture of all that is known")
+
+typedef enum {
+#define ARGUS_EVENT_ENUM(id, name, level, subject, meaning) ARGUS_EV_##name = (id),
+    ARGUS_EVENT_TABLE(ARGUS_EVENT_ENUM)
+#undef ARGUS_EVENT_ENUM
+} argus_event_id_t;
+
+typedef struct {
+    uint32_t t_ms; // time of the call that raised it
+    uint16_t id;   // argus_event_id_t
+    int8_t sonar;  // 0..15, or ARGUS_NO_SONAR
+    uint8_t state; // argus_failure_t when it was raised
+    int32_t value; // see the catalogue
+} argus_event_t;
+
+// State ----------------------------------------------------------------------------------------------------
+
+typedef struct {
+    int32_t x_mm;
+    int32_t y_mm;
+} argus_point_t;
+
+typedef struct {
+    int32_t x_mm; // ahead and to the left of where the course starts
+    int32_t y_mm;
+    int32_t heading_cdeg;
+} argus_pose_t;
+
+typedef enum {
+    ARGUS_UNKNOWN,   // not judged yet
+    ARGUS_HEALTHY,   // judged, no complaint
+    ARGUS_SUSPECT,   // disparate, not verified yet or no witness
+    ARGUS_DISABLED,  // not used; latched for the mission under `paper`
+    ARGUS_PROBATION, // (profile argus) may come back
+    ARGUS_STALE,     // has not reported yet, or not for long
+    ARGUS_ABSENT     // this robot has not got it: neither judged nor planned with
+} argus_health_t;
+
+// After the failure words of PX4; the numbers are on the wire (SPEC.md, Events) and in the record.
+typedef enum {
+    ARGUS_KIND_NONE = 0,
+    ARGUS_KIND_OFF = 1,
+    ARGUS_KIND_SILENT = 2,
+    ARGUS_KIND_STUCK = 3,
+    ARGUS_KIND_WRONG = 4,
+    ARGUS_KIND_GARBAGE = 5,
+    ARGUS_KIND_SLOW = 6,
+    ARGUS_KIND_INTERMITTENT = 7
+} argus_fault_kind_t;
+
+// The failure state over the forward-facing sonars (paper: Fig. 6).
+typedef enum {
+    ARGUS_IS_NORMAL,      // none disabled
+    ARGUS_IS_MINOR,       // a third of them at most: 1 or 2 of six
+    ARGUS_IS_MAJOR,       // more, but not all: 3 to 5 of six
+    ARGUS_IS_CATASTROPHIC // all
+} argus_failure_t;
+
+// Rotations by which the healthy sonars cover for the disabled ones (paper: Tables IV and V).
+#define ARGUS_ROTATIONS_MAX 6
+
+typedef struct {
+    argus_mask_t disabled; // the fault map it is for: forward-facing sonars only
+    uint8_t count;
+    int16_t rotation_deg[ARGUS_ROTATIONS_MAX]; // in the order of visit, CCW positive
+    bool return_each; // back to the heading after each rotation's reading (policy paper), else one sweep
+    bool complete;    // every disabled bearing is covered
+} argus_plan_t;
+
+// What the manager is doing. Order is not severity.
+typedef enum {
+    ARGUS_MODE_OFFLINE,   // no session with a robot
+    ARGUS_MODE_CHECKING,  // at rest: every forward-facing sonar must report before anything moves (S6)
+    ARGUS_MODE_VERIFYING, // Algorithm 2 turns neighbours onto a suspect's bearing
+    ARGUS_MODE_IDLE,      // healthy enough, nothing to do
+    ARGUS_MODE_DRIVING,   // normal driving
+    ARGUS_MODE_SWEEPING,  // failure mode, at rest: turns through the plan's rotations
+    ARGUS_MODE_STEPPING,  // failure mode: one step ahead
+    ARGUS_MODE_BACKING,   // backs away from a pressed bumper or a blocked swing circle
+    ARGUS_MODE_WAITING,   // cannot go on by itself: bumper, motors off, no way, catastrophic
+    ARGUS_MODE_CLOSING,   // shutdown: stopping, then closing the session
+    ARGUS_MODE_CLOSED     // over
+} argus_mode_t;
+
+typedef enum {
+    ARGUS_MISSION_NONE,
+    ARGUS_MISSION_RUNNING,
+    ARGUS_MISSION_REACHED,
+    ARGUS_MISSION_FAILED
+} argus_mission_t;
+
+// Why the manager waits (mode WAITING).
+typedef enum {
+    ARGUS_WAIT_NONE,
+    ARGUS_WAIT_BUMPER,
+    ARGUS_WAIT_MOTORS,
+    ARGUS_WAIT_TURN,        // the swing circle is blocked (S7)
+    ARGUS_WAIT_WAY,         // every heading is blocked
+    ARGUS_WAIT_CATASTROPHIC // all forward-facing sonars are disabled
+} argus_wait_t;
+
+// What an operator may ask. The argument is mm for MOVE, degrees for TURN, a sonar (0..15) for RETEST and
+// what follows it, else ignored. PIN, UNPIN and DISABLE are for profile argus.
+typedef enum {
+    ARGUS_OP_STOP = 1, // stop and stay: the course is paused
+    ARGUS_OP_GO,       // (re)start the course
+    ARGUS_OP_RECHECK,  // full health check, suspects verified
+    ARGUS_OP_MOVE,     // jog: at most step_mm ahead or backoff_mm back, with every safety rule in force
+    ARGUS_OP_TURN,     // jog: turn on the spot, -180..180
+    ARGUS_OP_PASSIVE,  // stop, then only report
+    ARGUS_OP_ACTIVE,
+    ARGUS_OP_RETEST, // forget the evidence against a sonar and look at it again
+    ARGUS_OP_PIN,    // a sonar keeps its health, whatever it reads, until it is unpinned or yields nothing
+    ARGUS_OP_UNPIN,  // the evidence decides again
+    ARGUS_OP_DISABLE // take a sonar out of use (wrong) and pin it
+} argus_op_t;
+
+// A copy of everything a screen, a log or a test wants to see.
+typedef struct {
+    argus_mode_t mode;
+    argus_mission_t mission;
+    argus_wait_t wait; // why, in mode WAITING, else ARGUS_WAIT_NONE
+    argus_failure_t failure;
+    argus_plan_t plan;
+    argus_pose_t pose;
+    int32_t goal_mm;   // straight-line distance to the last waypoint, 0 without a course
+    uint16_t waypoint; // next waypoint, from 0
+    uint16_t waypoints;
+    bool active;        // false: passive
+    bool paused;        // by the operator's STOP
+    bool open;          // there is a session with a robot
+    bool online;        // ... and SIPs are coming
+    bool motors;        // on, as the robot says
+    bool lists_all;     // the server lists every sonar in every SIP
+    int16_t battery_dv; // decivolts
+    int16_t vel_left_mm_s;
+    int16_t vel_right_mm_s;
+    uint16_t flags;        // of the SIP
+    uint8_t bumpers_front; // bits 1..5, bit 1 leftmost
+    uint8_t bumpers_rear;
+    uint8_t sonars;                    // that are managed, from 0: those beyond are ABSENT
+    argus_mask_t forward;              // who faces forward: whom the plan covers for
+    int16_t bearing_deg[ARGUS_SONARS]; // whither each looks, robot frame
+    uint16_t reading_mm[ARGUS_SONARS]; // as on the wire; 0: never reported, or so read
+    uint32_t age_ms[ARGUS_SONARS];     // UINT32_MAX: never reported
+    uint32_t readings[ARGUS_SONARS];   // monotonic
+    argus_health_t health[ARGUS_SONARS];
+    argus_fault_kind_t kind[ARGUS_SONARS];
+    argus_mask_t pinned; // sonars whose health an operator has fixed, a mask
+    uint32_t packets;    // with a right checksum; monotonic counters, like what follows
+    uint32_t sips;
+    uint32_t bad_checksums;
+    uint32_t skipped_bytes;
+    uint32_t stops;
+    const char *robot_name; // identity from the SYNC2 reply, "" before; they live as long as the instance
+    const char *robot_class;
+    const char *robot_subclass;
+    const char *robot_body; // whose geometry holds: a choice of the setting `robot`, "" when it is not known
+    bool robot_told;        // its CONFIGpac came: what follows is its own word, else "" and 0
+    const char *robot_version;
+    const char *robot_serial;
+    uint16_t robot_watchdog_ms;
+    uint16_t robot_sonar_cycle_ms;
+} argus_status_t;
+
+// What argus_name() names.
+typedef enum {
+    ARGUS_NAME_EVENT,   // argus_event_id_t: SONAR_DEAD
+    ARGUS_NAME_SUBJECT, // argus_event_id_t: what it is about, sonar
+    ARGUS_NAME_LEVEL,   // argus_level_t: WARN
+    ARGUS_NAME_MODE,    // argus_mode_t: DRIVING
+    ARGUS_NAME_MISSION, // argus_mission_t: running
+    ARGUS_NAME_WAIT,    // argus_wait_t: bumper
+    ARGUS_NAME_FAILURE, // argus_failure_t: IsMinor
+    ARGUS_NAME_HEALTH,  // argus_health_t: SUSPECT
+    ARGUS_NAME_KIND,    // argus_fault_kind_t: stuck; "" for none
+    ARGUS_NAME_OP       // argus_op_t: RECHECK
+} argus_name_of_t;
+
+// Instance -------------------------------------------------------------------------------------------------
+
+// Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
+// Its contents are the library's own.
+#define ARGUS_STORAGE_BYTES (8192 + 1920 * ARGUS_SONARS)
+typedef union {
+    uint64_t align;
+    uint8_t bytes[ARGUS_STORAGE_BYTES];
+} argus_storage_t;
+
+typedef struct argus argus_t;
+
+// Functions ------------------------------------------------------------------------------------------------
+
+void argus_config_default(argus_config_t *config);
+
+// Ranges first, then the two S5 inequalities, for the robot that the setting `robot` names (by-subclass: for
+// p3dx-sh; when another one answers, S5 is asked again for that one). Cost: a few thousand integer
+// operations, once at start.
+argus_config_report_t argus_config_check(const argus_config_t *config);
+
+// Starts from nothing: no robot, every sonar UNKNOWN, no course. `config` is copied; it should have passed
+// argus_config_check(), otherwise the manager starts passive and stays so. The result is in `storage`.
+argus_t *argus_init(argus_storage_t *storage, const argus_config_t *config, uint32_t now_ms);
+
+// The course: 1..ARGUS_WAYPOINTS_MAX points in the frame of the robot's odometry at connection (x ahead, y
+// left, mm, each |v| <= ARGUS_COURSE_LIMIT_MM). False, and nothing changed, when it does not fit. Driving
+// starts by itself when active and checked.
+bool argus_set_course(argus_t *self, const argus_point_t *points, uint16_t count);
+
+// The wire is open / is gone.
+void argus_link_up(argus_t *self, uint32_t now_ms);
+void argus_link_lost(argus_t *self, uint32_t now_ms);
+
+// Takes any number of received bytes, none too. A STOP that they call for is ready in argus_transmit() when
+// this returns.
+void argus_receive(argus_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count);
+
+// Does what time alone makes due; returns the ms (1..100) after which it wants to be called again.
+uint32_t argus_process(argus_t *self, uint32_t now_ms);
+
+// Next packet to write, whole, at most ARGUS_PACKET_MAX bytes; 0 when there is none. A buffer too small: 0.
+size_t argus_transmit(argus_t *self, uint8_t *buffer, size_t capacity);
+
+// The oldest event that was not taken yet; false: none. What does not fit the queue is counted and told.
+bool argus_next_event(argus_t *self, argus_event_t *event);
+
+// False, and no event, when it cannot be done now: after argus_shutdown(), for a sonar that there is not or
+// that is pinned (or not), for what the profile has not.
+bool argus_operator(argus_t *self, uint32_t now_ms, argus_op_t op, int32_t argument);
+
+// Stop the robot, then SONAR 0, STOP, CLOSE; argus_closed() tells when the last byte is out (within 3 s).
+void argus_shutdown(argus_t *self, uint32_t now_ms);
+bool argus_closed(const argus_t *self);
+
+// Cost: one copy of some 500 bytes.
+void argus_status(const argus_t *self, argus_status_t *status);
+
+// The persistent record: what is known of every sonar (SPEC.md). save returns its length, 0 if it does not
+// fit; ARGUS_RECORD_MAX is enough. load takes a record, before a session opens; under `argus` a sonar that
+// was out in it starts on PROBATION. A damaged or foreign one is said by an event and ignored; one of another
+// robot is, and taken back, once a session is open.
+size_t argus_record_save(const argus_t *self, uint8_t *buffer, size_t capacity);
+bool argus_record_load(argus_t *self, const uint8_t *record, size_t length);
+
+// 0 when every internal invariant holds, else the number of the first that does not. For supervisors, tests,
+// fuzzers.
+int argus_invariants_broken(const argus_t *self);
+
+// Names and levels are static data; an unknown number is "?" and ARGUS_LEVEL_ERROR. What else the catalogue
+// of events and the table of settings hold a program can build from their X-macros. Cost: one pass over a
+// table.
+const char *argus_name(argus_name_of_t of, int number);
+argus_level_t argus_event_level(uint16_t id);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
