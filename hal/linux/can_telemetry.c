@@ -4,8 +4,6 @@
 
 #include <string.h>
 
-#include "knowledge/angle.h"
-
 #define GROUP 4 // sonars in a frame of readings
 #define ARRAY 8 // and in a frame of health
 
@@ -169,7 +167,7 @@ static void enqueue(hal_telemetry_t *self, const hal_dbc_emergency_t *emergency)
     hal_dbc_emergency_pack(frame->data, emergency);
 }
 
-void hal_telemetry_event(hal_telemetry_t *self, const argus_t *core, const argus_event_t *event) {
+void hal_telemetry_event(hal_telemetry_t *self, const argus_status_t *status, const argus_event_t *event) {
     const bool has_sonar = event->sonar >= 0 && event->sonar < ARGUS_SONARS;
     const uint16_t bit = has_sonar ? (uint16_t)(1u << event->sonar) : 0;
     const bool alarm = is_alarm(event);
@@ -185,7 +183,7 @@ void hal_telemetry_event(hal_telemetry_t *self, const argus_t *core, const argus
         .level = (uint8_t)argus_event_level(event->id),
         .failure = event->state,
         .sonar = has_sonar ? (uint8_t)event->sonar : HAL_DBC_SONAR_NUMBER_NONE,
-        .fault = has_sonar ? (uint8_t)core->knowledge.sonar[event->sonar].kind : 0,
+        .fault = has_sonar ? (uint8_t)status->kind[event->sonar] : 0,
         .roll = self->edge_roll,
         .value = event->value,
     };
@@ -219,15 +217,15 @@ static bool take_edge(hal_telemetry_t *self, uint32_t now_ms, hal_telemetry_fram
 // Contents
 // ---------------------------------------------------------------------------------------------------
 
-static uint8_t state_of(const argus_t *core) {
-    switch ((int)core->mode) {
+static uint8_t state_of(const argus_status_t *status) {
+    switch ((int)status->mode) {
     case ARGUS_MODE_OFFLINE:
         return HAL_DBC_STATE_OFFLINE;
     case ARGUS_MODE_CLOSING:
     case ARGUS_MODE_CLOSED:
         return HAL_DBC_STATE_CLOSED;
     default:
-        return core->passive ? HAL_DBC_STATE_PASSIVE : HAL_DBC_STATE_ACTIVE;
+        return status->active ? HAL_DBC_STATE_ACTIVE : HAL_DBC_STATE_PASSIVE;
     }
 }
 
@@ -239,18 +237,26 @@ uint32_t hal_telemetry_refused(const hal_telemetry_t *self) {
     return sum;
 }
 
-static void fill_heartbeat(const hal_telemetry_t *self, const argus_t *core, uint8_t state, uint16_t nonce,
-                           uint8_t *data) {
+static uint8_t forward_disabled(const argus_status_t *status) {
+    uint8_t count = 0;
+    for (int i = 0; i < status->sonars; i++) {
+        const bool forward = (status->forward >> i & 1u) != 0;
+        count = (uint8_t)(count + (forward && status->health[i] == ARGUS_DISABLED));
+    }
+    return count;
+}
+
+static void fill_heartbeat(const hal_telemetry_t *self, const argus_status_t *status, uint8_t state,
+                           uint16_t nonce, uint8_t *data) {
     const hal_dbc_heartbeat_t heartbeat = {
-        .mode = (uint8_t)core->mode,
+        .mode = (uint8_t)status->mode,
         .state = state,
-        .failure = (uint8_t)core->failure,
-        .mission = (uint8_t)core->mission,
-        .wait = core->mode == ARGUS_MODE_WAITING ? (uint8_t)core->wait : (uint8_t)ARGUS_WAIT_NONE,
-        .disabled = (uint8_t)argus_count_bits(argus_disabled(&core->knowledge) &
-                                              argus_robot_forward(core->knowledge.robot)),
+        .failure = (uint8_t)status->failure,
+        .mission = (uint8_t)status->mission,
+        .wait = (uint8_t)status->wait,
+        .disabled = forward_disabled(status),
         .roll = self->roll & 0xFu,
-        .stops = core->stops & 0xFu,
+        .stops = status->stops & 0xFu,
         .taken = self->verdicts[HAL_TELEMETRY_TAKEN] & 0xFu,
         .refused = hal_telemetry_refused(self) & 0xFu,
         .uptime = (uint16_t)(self->uptime_s & 0xFFFFu),
@@ -259,36 +265,35 @@ static void fill_heartbeat(const hal_telemetry_t *self, const argus_t *core, uin
     hal_dbc_heartbeat_pack(data, &heartbeat);
 }
 
-static void fill_health(const argus_t *core, int first, uint8_t *data) {
+static void fill_health(const argus_status_t *status, int first, uint8_t *data) {
     hal_dbc_health_t health;
     for (int i = 0; i < ARRAY; i++) {
-        health.health[i] = (uint8_t)core->knowledge.sonar[first + i].health;
-        health.fault[i] = (uint8_t)core->knowledge.sonar[first + i].kind;
+        health.health[i] = (uint8_t)status->health[first + i];
+        health.fault[i] = (uint8_t)status->kind[first + i];
     }
     hal_dbc_health_pack(data, &health);
 }
 
-static uint8_t validity_of(const hal_telemetry_t *self, const argus_t *core, int sonar, uint32_t now_ms) {
-    const argus_sonar_t *const s = &core->knowledge.sonar[sonar];
-    if (!s->reported) {
+static uint8_t validity_of(const hal_telemetry_t *self, const argus_status_t *status, int sonar) {
+    if (status->age_ms[sonar] == UINT32_MAX) {
         return HAL_DBC_VALIDITY_NEVER;
     }
-    if (s->health == ARGUS_DISABLED) {
+    if (status->health[sonar] == ARGUS_DISABLED) {
         return HAL_DBC_VALIDITY_DISABLED;
     }
-    if (now_ms - s->heard_ms > (uint32_t)core->config.stale_ms) {
+    if (status->age_ms[sonar] > self->stale_ms) {
         return HAL_DBC_VALIDITY_OLD;
     }
-    return s->readings != self->readings[sonar] ? HAL_DBC_VALIDITY_FRESH : HAL_DBC_VALIDITY_HELD;
+    return status->readings[sonar] != self->readings[sonar] ? HAL_DBC_VALIDITY_FRESH : HAL_DBC_VALIDITY_HELD;
 }
 
-static void fill_readings(const hal_telemetry_t *self, const argus_t *core, int first, uint32_t now_ms,
+static void fill_readings(const hal_telemetry_t *self, const argus_status_t *status, int first,
                           uint8_t *data) {
     hal_dbc_readings_t readings;
     for (int i = 0; i < GROUP; i++) {
-        const argus_sonar_t *const s = &core->knowledge.sonar[first + i];
-        readings.range[i] = s->reported ? s->reading_mm : (uint16_t)HAL_DBC_RANGE_NONE;
-        readings.validity[i] = validity_of(self, core, first + i, now_ms);
+        const bool reported = status->age_ms[first + i] != UINT32_MAX;
+        readings.range[i] = reported ? status->reading_mm[first + i] : (uint16_t)HAL_DBC_RANGE_NONE;
+        readings.validity[i] = validity_of(self, status, first + i);
     }
     hal_dbc_readings_pack(data, &readings);
 }
@@ -297,7 +302,8 @@ static int8_t degrees(int16_t value) {
     return (int8_t)(value > INT8_MAX ? INT8_MAX : value < INT8_MIN ? INT8_MIN : value);
 }
 
-static void fill_plan(const argus_robot_t *robot, const argus_plan_t *from, uint8_t roll, uint8_t *data) {
+static void fill_plan(const argus_status_t *status, uint8_t roll, uint8_t *data) {
+    const argus_plan_t *const from = &status->plan;
     hal_dbc_plan_t plan = {.count = from->count,
                            .complete = from->complete,
                            .return_each = from->return_each,
@@ -305,8 +311,11 @@ static void fill_plan(const argus_robot_t *robot, const argus_plan_t *from, uint
     for (int i = 0; i < ARGUS_ROTATIONS_MAX && i < from->count; i++) {
         plan.rotation[i] = degrees(from->rotation_deg[i]);
     }
-    for (int i = 0; i < robot->forward_count; i++) {
-        plan.blind[i] = from->disabled >> robot->forward[i] & 1u;
+    size_t blind = 0; // one for each that faces forward, in the order of their numbers
+    for (int i = 0; i < status->sonars; i++) {
+        if ((status->forward >> i & 1u) != 0 && blind < sizeof plan.blind / sizeof plan.blind[0]) {
+            plan.blind[blind++] = from->disabled >> i & 1u;
+        }
     }
     hal_dbc_plan_pack(data, &plan);
 }
@@ -314,9 +323,9 @@ static void fill_plan(const argus_robot_t *robot, const argus_plan_t *from, uint
 // Schedule
 // ---------------------------------------------------------------------------------------------------
 
-static bool has_news(const hal_telemetry_t *self, const argus_t *core, int first) {
+static bool has_news(const hal_telemetry_t *self, const argus_status_t *status, int first) {
     for (int i = first; i < first + GROUP; i++) {
-        if (core->knowledge.sonar[i].readings != self->readings[i]) {
+        if (status->readings[i] != self->readings[i]) {
             return true;
         }
     }
@@ -324,38 +333,38 @@ static bool has_news(const hal_telemetry_t *self, const argus_t *core, int first
 }
 
 // Fills the frame of a slot as it would be now, and says how long after the last one it is due.
-static uint32_t fill(hal_telemetry_t *self, const argus_t *core, int slot, uint32_t now_ms, uint8_t *data) {
+static uint32_t fill(hal_telemetry_t *self, const argus_status_t *status, int slot, uint8_t *data) {
     const uint8_t *const last = self->sent[slot].data;
     if (slot == HAL_TELEMETRY_HEALTH_FRONT || slot == HAL_TELEMETRY_HEALTH_REAR) {
-        fill_health(core, slot == HAL_TELEMETRY_HEALTH_FRONT ? 0 : ARRAY, data);
+        fill_health(status, slot == HAL_TELEMETRY_HEALTH_FRONT ? 0 : ARRAY, data);
     } else if (slot == HAL_TELEMETRY_PLAN) {
-        fill_plan(core->knowledge.robot, &core->plan, self->plan_roll, data);
+        fill_plan(status, self->plan_roll, data);
     } else if (slot >= HAL_TELEMETRY_READINGS) {
         const int first = (slot - HAL_TELEMETRY_READINGS) * GROUP;
-        fill_readings(self, core, first, now_ms, data);
-        if (!has_news(self, core, first)) {
+        fill_readings(self, status, first, data);
+        if (!has_news(self, status, first)) {
             return HAL_TELEMETRY_PERIOD_MS;
         }
-        return core->knowledge.lists_all ? HAL_TELEMETRY_ALL_MS : HAL_TELEMETRY_READING_MS;
+        return status->lists_all ? HAL_TELEMETRY_ALL_MS : HAL_TELEMETRY_READING_MS;
     } else {
         return HAL_TELEMETRY_PERIOD_MS; // the heartbeat is filled when it goes, for its nonce
     }
     return memcmp(data, last, HAL_DBC_LENGTH) != 0 ? HAL_TELEMETRY_CHANGE_MS : HAL_TELEMETRY_PERIOD_MS;
 }
 
-static void sent(hal_telemetry_t *self, const argus_t *core, int slot, uint32_t now_ms,
+static void sent(hal_telemetry_t *self, const argus_status_t *status, int slot, uint32_t now_ms,
                  hal_telemetry_frame_t *frame) {
     hal_telemetry_sent_t *const s = &self->sent[slot];
     if (slot == HAL_TELEMETRY_HEARTBEAT) {
-        fill_heartbeat(self, core, state_of(core), next_nonce(self, now_ms), frame->data);
+        fill_heartbeat(self, status, state_of(status), next_nonce(self, now_ms), frame->data);
         self->roll++;
     } else if (slot == HAL_TELEMETRY_PLAN && s->ever && memcmp(frame->data, s->data, HAL_DBC_LENGTH) != 0) {
         self->plan_roll++;
-        fill_plan(core->knowledge.robot, &core->plan, self->plan_roll, frame->data);
+        fill_plan(status, self->plan_roll, frame->data);
     } else if (slot >= HAL_TELEMETRY_READINGS && slot < HAL_TELEMETRY_PLAN) {
         const int first = (slot - HAL_TELEMETRY_READINGS) * GROUP;
         for (int i = first; i < first + GROUP; i++) {
-            self->readings[i] = core->knowledge.sonar[i].readings;
+            self->readings[i] = status->readings[i];
         }
     }
     frame->id = (uint16_t)(HAL_DBC_HEARTBEAT_ID + self->robot * HAL_DBC_STEP_TELEMETRY + (unsigned)slot);
@@ -374,7 +383,7 @@ static void tick(hal_telemetry_t *self, uint32_t now_ms) {
     self->second_ms += passed_s * 1000u;
 }
 
-bool hal_telemetry_next(hal_telemetry_t *self, const argus_t *core, uint32_t now_ms,
+bool hal_telemetry_next(hal_telemetry_t *self, const argus_status_t *status, uint32_t now_ms,
                         hal_telemetry_frame_t *frame) {
     tick(self, now_ms);
     if (take_edge(self, now_ms, frame)) {
@@ -382,21 +391,21 @@ bool hal_telemetry_next(hal_telemetry_t *self, const argus_t *core, uint32_t now
     }
     for (int slot = 0; slot < HAL_TELEMETRY_FRAMES; slot++) {
         hal_telemetry_sent_t *const s = &self->sent[slot];
-        s->wait_ms = fill(self, core, slot, now_ms, frame->data);
+        s->wait_ms = fill(self, status, slot, frame->data);
         if (!s->ever || now_ms - s->sent_ms >= s->wait_ms) {
-            sent(self, core, slot, now_ms, frame);
+            sent(self, status, slot, now_ms, frame);
             return true;
         }
     }
     return false;
 }
 
-void hal_telemetry_farewell(hal_telemetry_t *self, const argus_t *core, uint32_t now_ms,
+void hal_telemetry_farewell(hal_telemetry_t *self, const argus_status_t *status, uint32_t now_ms,
                             hal_telemetry_frame_t *frame) {
     tick(self, now_ms);
-    sent(self, core, HAL_TELEMETRY_HEARTBEAT, now_ms, frame);
+    sent(self, status, HAL_TELEMETRY_HEARTBEAT, now_ms, frame);
     self->roll--; // filled anew, but the same heartbeat
-    fill_heartbeat(self, core, HAL_DBC_STATE_CLOSED, self->nonce[self->newest].value, frame->data);
+    fill_heartbeat(self, status, HAL_DBC_STATE_CLOSED, self->nonce[self->newest].value, frame->data);
     self->roll++;
 }
 
@@ -417,9 +426,11 @@ uint32_t hal_telemetry_due_ms(const hal_telemetry_t *self, uint32_t now_ms) {
     return due_ms;
 }
 
-void hal_telemetry_init(hal_telemetry_t *self, uint8_t robot, uint64_t seed, uint32_t now_ms) {
+void hal_telemetry_init(hal_telemetry_t *self, uint8_t robot, uint32_t stale_ms, uint64_t seed,
+                        uint32_t now_ms) {
     memset(self, 0, sizeof *self);
     self->robot = robot;
+    self->stale_ms = stale_ms;
     self->second_ms = now_ms;
     self->edge_ms = now_ms;
     self->edges = HAL_TELEMETRY_EDGE_BURST;

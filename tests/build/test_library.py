@@ -74,6 +74,34 @@ def test_sources_name_no_floating_point() -> None:
     assert found == []
 
 
+_INCLUDE = re.compile(r'^#include "([\w/]+\.h)"', re.MULTILINE)
+
+
+def test_programs_see_the_public_header_only() -> None:
+    # --auto-baud speaks to a robot before there is a manager: the wire part is usable alone.
+    allowed = {("hal/linux/argusd/probe.c", "arcos/frame.h")}
+    rooms = {path.name for path in (ROOT / "firmware").iterdir()}
+    found = {
+        (path.relative_to(ROOT).as_posix(), name)
+        for path in (ROOT / "hal").rglob("*.[ch]")
+        for name in _INCLUDE.findall(path.read_text(encoding="utf-8"))
+        if name.split("/")[0] in rooms or name.split("/")[0] == "argus"
+    }
+    assert {pair for pair in found if pair[1] != "argus/argus.h"} == allowed
+
+
+def test_no_file_of_hal_includes_itself_by_way_of_others() -> None:
+    # A header and the source of its name are one node: what one of them needs, both need.
+    needs: dict[str, set[str]] = {}
+    for path in sorted((ROOT / "hal").rglob("*.[ch]")):
+        names = {name.split("/")[-1][:-2] for name in _INCLUDE.findall(path.read_text(encoding="utf-8"))}
+        needs.setdefault(path.stem, set()).update(names - {path.stem})
+    while leaves := [name for name, wanted in needs.items() if not wanted & needs.keys()]:
+        for name in leaves:
+            del needs[name]
+    assert sorted(needs) == []
+
+
 def test_layers_point_one_way() -> None:
     order = ["argus", "arcos", "robot", "knowledge", "awareness", "analysis", "adjustment", "task", "supervisor"]
     firmware = ROOT / "firmware"

@@ -18,7 +18,7 @@ REGISTRIES = re.compile("|".join(["pypi" + r"\.org", "python" + "hosted", "npm" 
 
 def texts() -> Iterator[tuple[Path, str]]:
     """Return path and text of every file that a person wrote."""
-    tops = [path for path in ROOT.iterdir() if path.is_file() and path.suffix not in BINARY]
+    tops = [path for path in ROOT.iterdir() if path.is_file() and path.suffix not in BINARY and path.name != ".git"]
     below = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*") if path.is_file()]
     for path in sorted(tops + below):
         relative = path.relative_to(ROOT)

@@ -5,8 +5,8 @@
 #ifndef HAL_CAN_TELEMETRY_H
 #define HAL_CAN_TELEMETRY_H
 
+#include "argus/argus.h"
 #include "hal/gen_argus_dbc.h"
-#include "supervisor/manager.h"
 
 #define HAL_TELEMETRY_PERIOD_MS 1000u // of every frame that nothing else makes due
 #define HAL_TELEMETRY_CHANGE_MS 200u  // health and plan: at most one frame in this time
@@ -74,6 +74,7 @@ typedef struct {
 
 typedef struct {
     uint8_t robot;
+    uint32_t stale_ms;
     uint32_t second_ms; // uptime is counted in whole seconds, over the wrap of the clock
     uint32_t uptime_s;
     hal_telemetry_sent_t sent[HAL_TELEMETRY_FRAMES];
@@ -95,21 +96,23 @@ typedef struct {
     uint32_t verdicts[HAL_TELEMETRY_VERDICTS]; // monotonic
 } hal_telemetry_t;
 
-// `seed` should differ from start to start. Nonces do not repeat for 65,536 heartbeats.
-void hal_telemetry_init(hal_telemetry_t *self, uint8_t robot, uint64_t seed, uint32_t now_ms);
+// A reading older than `stale_ms` is sent as old. `seed` should differ from start to start. Nonces do not
+// repeat for 65,536 heartbeats.
+void hal_telemetry_init(hal_telemetry_t *self, uint8_t robot, uint32_t stale_ms, uint64_t seed,
+                        uint32_t now_ms);
 
 // Ids on the bus for this robot.
 uint16_t hal_telemetry_command_id(const hal_telemetry_t *self);
 
 // An event of the manager; an edge becomes an emergency frame.
-void hal_telemetry_event(hal_telemetry_t *self, const argus_t *core, const argus_event_t *event);
+void hal_telemetry_event(hal_telemetry_t *self, const argus_status_t *status, const argus_event_t *event);
 
 // The next frame that is due, emergencies first; false: none now. It counts as sent.
-bool hal_telemetry_next(hal_telemetry_t *self, const argus_t *core, uint32_t now_ms,
+bool hal_telemetry_next(hal_telemetry_t *self, const argus_status_t *status, uint32_t now_ms,
                         hal_telemetry_frame_t *frame);
 
 // A last heartbeat, whose state says that argusd ends.
-void hal_telemetry_farewell(hal_telemetry_t *self, const argus_t *core, uint32_t now_ms,
+void hal_telemetry_farewell(hal_telemetry_t *self, const argus_status_t *status, uint32_t now_ms,
                             hal_telemetry_frame_t *frame);
 
 // Ms until a frame is due by time, at most HAL_TELEMETRY_PERIOD_MS.

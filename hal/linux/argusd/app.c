@@ -109,6 +109,10 @@ static bool load_files(void) {
         !settings_load(&settings, options.config_path, message, sizeof message)) {
         return false;
     }
+    if (options.robot != NULL &&
+        !settings_choose(&settings, SETTINGS_robot, options.robot, "--robot", message, sizeof message)) {
+        return false;
+    }
     if (!settle_baud()) {
         return false;
     }
@@ -244,13 +248,13 @@ static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
 
 // Saves once at the start: a place that cannot be written is better known now than after the mission.
 static bool open_state(void) {
-    if (!state_open(&loop.state, options.state_path, &loop.driver.core, message, sizeof message)) {
+    if (!state_open(&loop.state, options.state_path, loop.driver.core, message, sizeof message)) {
         return false;
     }
     if (message[0] != '\0') {
         complain(ARGUSD_EXIT_OK);
     }
-    return state_save(&loop.state, &loop.driver.core, message, sizeof message);
+    return state_save(&loop.state, loop.driver.core, message, sizeof message);
 }
 
 // With a link over CAN the telemetry is on the same bus, for the same robot, unless something else is wanted.
@@ -260,8 +264,9 @@ static bool open_bus(const hal_clock_t *clock) {
         return true;
     }
     char problem[ARGUSD_MESSAGE_MAX / 2];
-    if (!bus_open(&loop.bus, given ? &options.telemetry : &options.link.can, &hal_can_sys, bus_seed(),
-                  hal_clock_now_ms(clock), problem, sizeof problem)) {
+    if (!bus_open(&loop.bus, given ? &options.telemetry : &options.link.can, &hal_can_sys,
+                  (uint32_t)settings.config.stale_ms, bus_seed(), hal_clock_now_ms(clock), problem,
+                  sizeof problem)) {
         return text_refuse(message, sizeof message, "telemetry: %s", problem);
     }
     return true;
@@ -269,11 +274,12 @@ static bool open_bus(const hal_clock_t *clock) {
 
 static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *notice) {
     const loop_options_t wishes = {
-        .json = options.json,
-        .plain = options.plain,
-        .status_ms = options.has_status ? options.status_ms
-                     : options.json     ? 500u
-                                        : 2000u,
+        .voice = {.json = options.json,
+                  .plain = options.plain,
+                  .status_ms = options.has_status ? options.status_ms
+                               : options.json     ? 500u
+                                                  : 2000u},
+        .config = &settings.config,
         .answer_ms = options.has_wait ? options.wait_ms : ANSWER_MS,
         .notice = notice,
     };
@@ -283,7 +289,7 @@ static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *no
         drop_tape();
         return complain(ARGUSD_EXIT_USAGE);
     }
-    if (course.count > 0 && !argus_set_course(&loop.driver.core, course.point, course.count)) {
+    if (course.count > 0 && !argus_set_course(loop.driver.core, course.point, course.count)) {
         hal_link_close(&link);
         drop_tape();
         text_refuse(message, sizeof message, "the course does not fit the fault manager");

@@ -22,11 +22,11 @@ uint64_t bus_seed(void) {
     return (uint64_t)wall.tv_sec << 32 ^ (uint64_t)wall.tv_nsec ^ (uint64_t)getpid() << 20;
 }
 
-bool bus_open(bus_t *self, const hal_can_spec_t *spec, const hal_can_sys_t *sys, uint64_t seed,
-              uint32_t now_ms, char *message, size_t capacity) {
+bool bus_open(bus_t *self, const hal_can_spec_t *spec, const hal_can_sys_t *sys, uint32_t stale_ms,
+              uint64_t seed, uint32_t now_ms, char *message, size_t capacity) {
     memset(self, 0, sizeof *self);
     hal_can_raw_init(&self->raw, sys);
-    hal_telemetry_init(&self->telemetry, spec->robot, seed, now_ms);
+    hal_telemetry_init(&self->telemetry, spec->robot, stale_ms, seed, now_ms);
     const hal_link_error_t error =
         hal_can_raw_open(&self->raw, spec->interface, hal_telemetry_command_id(&self->telemetry), now_ms);
     if (error != HAL_LINK_OK) {
@@ -37,9 +37,9 @@ bool bus_open(bus_t *self, const hal_can_spec_t *spec, const hal_can_sys_t *sys,
     return true;
 }
 
-void bus_event(bus_t *self, const argus_t *core, const argus_event_t *event) {
+void bus_event(bus_t *self, const argus_status_t *status, const argus_event_t *event) {
     if (self->on) {
-        hal_telemetry_event(&self->telemetry, core, event);
+        hal_telemetry_event(&self->telemetry, status, event);
     }
 }
 
@@ -50,7 +50,7 @@ static void forget_old(bus_t *self) {
     }
 }
 
-uint32_t bus_process(bus_t *self, const argus_t *core, uint32_t now_ms) {
+uint32_t bus_process(bus_t *self, const argus_status_t *status, uint32_t now_ms) {
     if (!self->on) {
         return UINT32_MAX;
     }
@@ -61,7 +61,7 @@ uint32_t bus_process(bus_t *self, const argus_t *core, uint32_t now_ms) {
             forget_old(self);
             return wait_ms;
         }
-        self->holds = self->holds || hal_telemetry_next(&self->telemetry, core, now_ms, &self->held);
+        self->holds = self->holds || hal_telemetry_next(&self->telemetry, status, now_ms, &self->held);
         if (!self->holds) {
             break;
         }
@@ -139,13 +139,13 @@ int bus_fd(const bus_t *self) {
     return self->on ? hal_can_raw_fd(&self->raw) : -1;
 }
 
-void bus_close(bus_t *self, const argus_t *core, uint32_t now_ms) {
+void bus_close(bus_t *self, const argus_status_t *status, uint32_t now_ms) {
     hal_telemetry_frame_t frame;
     if (!self->on) {
         return;
     }
-    (void)bus_process(self, core, now_ms);
-    hal_telemetry_farewell(&self->telemetry, core, now_ms, &frame);
+    (void)bus_process(self, status, now_ms);
+    hal_telemetry_farewell(&self->telemetry, status, now_ms, &frame);
     (void)hal_can_raw_send(&self->raw, frame.id, frame.data, frame.length, now_ms);
     hal_can_raw_close(&self->raw);
     self->on = false;

@@ -25,18 +25,19 @@ typedef struct {
     bool ever_link;
 } bus_t;
 
-// Starts telemetry of the spec's robot on its interface. False: `message` says why not and what to do.
-bool bus_open(bus_t *self, const hal_can_spec_t *spec, const hal_can_sys_t *sys, uint64_t seed,
-              uint32_t now_ms, char *message, size_t capacity);
+// Starts telemetry of the spec's robot on its interface. `stale_ms`: as in the settings. False: `message`
+// says why not and what to do.
+bool bus_open(bus_t *self, const hal_can_spec_t *spec, const hal_can_sys_t *sys, uint32_t stale_ms,
+              uint64_t seed, uint32_t now_ms, char *message, size_t capacity);
 
 // A number that differs from start to start.
 uint64_t bus_seed(void);
 
 // Call with each event, before it is shown to anybody.
-void bus_event(bus_t *self, const argus_t *core, const argus_event_t *event);
+void bus_event(bus_t *self, const argus_status_t *status, const argus_event_t *event);
 
 // Sends what is due, as far as the interface takes it; returns the ms until it wants to be called again.
-uint32_t bus_process(bus_t *self, const argus_t *core, uint32_t now_ms);
+uint32_t bus_process(bus_t *self, const argus_status_t *status, uint32_t now_ms);
 
 // The next frame received on the command id; false: none. `order` is to be carried out if it is TAKEN.
 bool bus_order(bus_t *self, uint32_t now_ms, hal_telemetry_verdict_t *verdict, hal_dbc_command_t *order);
@@ -51,6 +52,6 @@ bool bus_link_notice(bus_t *self, const hal_isotp_t *link, uint32_t now_ms, char
 int bus_fd(const bus_t *self); // -1: none
 
 // A last heartbeat, then silence.
-void bus_close(bus_t *self, const argus_t *core, uint32_t now_ms);
+void bus_close(bus_t *self, const argus_status_t *status, uint32_t now_ms);
 
 #endif

@@ -11,7 +11,8 @@
 #define LEAVE_MS 4000u
 
 void check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *text, size_t capacity) {
-    const argus_parser_t *const parser = &driver->core.session.parser;
+    argus_status_t status;
+    argus_status(driver->core, &status);
     const bool serial = driver->spec.scheme == HAL_SCHEME_SERIAL;
     text_t line = text_in(text, capacity);
     text_add(&line, "%s: no robot answered in %u s: ", hal_link_describe(&driver->link),
@@ -19,7 +20,7 @@ void check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *tex
     if (driver->bytes_in == 0) {
         text_add(&line, "nothing was received; is the robot on and connected?%s",
                  serial ? " At another rate it is silent too: try --auto-baud" : "");
-    } else if (parser->packets == 0) {
+    } else if (status.packets == 0) {
         text_add(
             &line, "%u bytes of garbage were received, no packet among them; %s", (unsigned)driver->bytes_in,
             serial                                  ? "the rate is wrong or it is no robot: try --auto-baud"
@@ -30,7 +31,7 @@ void check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *tex
                  "%u packets and %u bad checksums were received, but no session opened; another client may "
                  "hold the "
                  "robot, or the line is noisy or looped back",
-                 (unsigned)parser->packets, (unsigned)parser->bad_checksums);
+                 (unsigned)status.packets, (unsigned)status.bad_checksums);
     }
 }
 
@@ -46,7 +47,7 @@ static bool turn(driver_t *driver, int cancel_fd, uint32_t most_ms) {
     }
     poll(wait, 2, (int)wait_ms);
     driver_receive(driver);
-    while (argus_next_event(&driver->core, &event)) {
+    while (argus_next_event(driver->core, &event)) {
     }
     return wait[1].revents == 0;
 }
@@ -71,7 +72,6 @@ static void put_seen(FILE *out, const argus_status_t *status, bool wanted) {
 }
 
 static void tell_plain(const driver_t *driver, const argus_status_t *status, FILE *out) {
-    const argus_session_t *const session = &driver->core.session;
     fprintf(out, "port      %s\n", hal_link_describe(&driver->link));
     if (driver->spec.scheme == HAL_SCHEME_SERIAL) {
         fprintf(out, "rate      %u bit/s\n", (unsigned)driver->spec.baud);
@@ -79,10 +79,10 @@ static void tell_plain(const driver_t *driver, const argus_status_t *status, FIL
     fprintf(out, "robot     name '%s', class '%s', subclass '%s'%s\n", status->robot_name,
             status->robot_class, status->robot_subclass,
             status->robot_body[0] != '\0' ? "" : " (its body is not known: name it with --robot)");
-    if (session->has_robot) {
+    if (status->robot_told) {
         fprintf(out, "firmware  version '%s', serial number '%s', watchdog %u ms, sonar cycle %u ms\n",
-                session->robot.version, session->robot.serial, (unsigned)session->robot.watchdog_ms,
-                (unsigned)session->robot.sonar_cycle_ms);
+                status->robot_version, status->robot_serial, (unsigned)status->robot_watchdog_ms,
+                (unsigned)status->robot_sonar_cycle_ms);
     }
     fprintf(out, "battery   %d.%d V\n", status->battery_dv / 10, status->battery_dv % 10);
     fprintf(out, "sonars    %d of %d seen:", sonars_seen(status), status->sonars);
@@ -112,7 +112,7 @@ static void tell_json(const driver_t *driver, const argus_status_t *status, FILE
     json_name(&json, "subclass");
     json_string(&json, status->robot_subclass);
     json_name(&json, "version");
-    json_string(&json, driver->core.session.robot.version);
+    json_string(&json, status->robot_version);
     json_name(&json, "battery_dv");
     json_int(&json, status->battery_dv);
     json_name(&json, "sonars");
@@ -135,9 +135,9 @@ static void tell_json(const driver_t *driver, const argus_status_t *status, FILE
 
 static void leave(driver_t *driver) {
     const uint32_t start_ms = hal_clock_now_ms(&driver->clock);
-    argus_shutdown(&driver->core, start_ms);
+    argus_shutdown(driver->core, start_ms);
     while (driver->up && hal_clock_now_ms(&driver->clock) - start_ms < LEAVE_MS) {
-        if (argus_closed(&driver->core) && driver->held == 0) {
+        if (argus_closed(driver->core) && driver->held == 0) {
             break;
         }
         turn(driver, -1, 100);
@@ -148,21 +148,21 @@ static void leave(driver_t *driver) {
 argusd_exit_t check_run(driver_t *driver, uint32_t wait_ms, int cancel_fd, bool json, FILE *out,
                         char *message, size_t capacity) {
     const uint32_t start_ms = hal_clock_now_ms(&driver->clock);
+    argus_status_t status;
     uint32_t met_ms = 0;
     bool met = false;
     bool going_on = true;
     while (going_on) {
         going_on = turn(driver, cancel_fd, 100);
         const uint32_t now_ms = hal_clock_now_ms(&driver->clock);
-        if (!met && argus_session_is_open(&driver->core.session)) {
+        argus_status(driver->core, &status);
+        if (!met && status.open) {
             met = true;
             met_ms = now_ms;
         }
         going_on = going_on && (met ? now_ms - met_ms < LOOK_MS : now_ms - start_ms < wait_ms);
     }
     if (met) {
-        argus_status_t status;
-        argus_status(&driver->core, &status);
         json ? tell_json(driver, &status, out) : tell_plain(driver, &status, out);
     } else {
         check_explain_silence(driver, hal_clock_now_ms(&driver->clock) - start_ms, message, capacity);

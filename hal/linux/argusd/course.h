@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "task/task.h"
+#include "argus/argus.h"
 
 typedef struct {
     argus_point_t point[ARGUS_WAYPOINTS_MAX];

@@ -28,7 +28,7 @@ void driver_init(driver_t *self, const argus_config_t *config, hal_clock_t clock
     self->cancel_fd = -1;
     self->retry_ms = RETRY_FIRST_MS;
     self->error = HAL_LINK_NOT_OPEN;
-    argus_manager_init(&self->core, config, now_ms(self));
+    self->core = argus_init(&self->memory, config, now_ms(self));
 }
 
 void driver_attach(driver_t *self, hal_link_t link) {
@@ -39,7 +39,7 @@ void driver_attach(driver_t *self, hal_link_t link) {
     self->up_ms = now_ms(self);
     self->settles = self->spec.scheme == HAL_SCHEME_CAN;
     if (!self->settles) {
-        argus_link_up(&self->core, self->up_ms);
+        argus_link_up(self->core, self->up_ms);
     }
 }
 
@@ -50,7 +50,7 @@ static uint32_t settle(driver_t *self) {
         return CAN_SETTLE_MS - passed_ms;
     }
     self->settles = false;
-    argus_link_up(&self->core, now_ms(self));
+    argus_link_up(self->core, now_ms(self));
     return UINT32_MAX;
 }
 
@@ -70,7 +70,7 @@ static void lose(driver_t *self, int error) {
     self->error = (hal_link_error_t)error;
     self->lost_ms = now_ms(self);
     self->retry_ms = RETRY_FIRST_MS;
-    argus_link_lost(&self->core, self->lost_ms);
+    argus_link_lost(self->core, self->lost_ms);
 }
 
 static void show(const driver_t *self, bool from_robot, const uint8_t *bytes, size_t count) {
@@ -96,7 +96,7 @@ static bool write_held(driver_t *self) {
 void driver_transmit(driver_t *self) {
     while (self->up) {
         if (self->held == 0) {
-            self->held = argus_transmit(&self->core, self->packet, sizeof self->packet);
+            self->held = argus_transmit(self->core, self->packet, sizeof self->packet);
         }
         if (self->held == 0 || !write_held(self)) {
             return;
@@ -117,7 +117,7 @@ void driver_receive(driver_t *self) {
         }
         self->bytes_in += (uint32_t)got;
         show(self, true, bytes, (size_t)got);
-        argus_receive(&self->core, now_ms(self), bytes, (size_t)got);
+        argus_receive(self->core, now_ms(self), bytes, (size_t)got);
         driver_transmit(self);
     }
 }
@@ -137,10 +137,16 @@ static uint32_t reopen(driver_t *self) {
     return self->retry_ms;
 }
 
+static bool has_session(const driver_t *self) {
+    argus_status_t status;
+    argus_status(self->core, &status);
+    return status.open;
+}
+
 // While no robot answers: a stable name may have moved to the adapter that the robot is at now.
 static void look_where_it_leads(driver_t *self) {
     const uint32_t passed_ms = now_ms(self) - self->looked_ms;
-    if (self->transport == NULL || passed_ms < LOOK_MS || argus_session_is_open(&self->core.session)) {
+    if (self->transport == NULL || passed_ms < LOOK_MS || has_session(self)) {
         return;
     }
     self->looked_ms = now_ms(self);
@@ -165,10 +171,10 @@ uint32_t driver_process(driver_t *self) {
         driver_transmit(self);
         look_where_it_leads(self);
         retry_ms = self->up && self->settles ? settle(self) : retry_ms;
-    } else if (self->transport != NULL && !argus_closed(&self->core)) {
+    } else if (self->transport != NULL && !argus_closed(self->core)) {
         retry_ms = reopen(self);
     }
-    const uint32_t wait_ms = argus_process(&self->core, now_ms(self));
+    const uint32_t wait_ms = argus_process(self->core, now_ms(self));
     driver_transmit(self);
     const uint32_t hold_ms = held_for_ms(self);
     retry_ms = hold_ms < retry_ms ? hold_ms : retry_ms;

@@ -3,9 +3,9 @@
 #ifndef ARGUSD_DRIVER_H
 #define ARGUSD_DRIVER_H
 
+#include "argus/argus.h"
 #include "hal/clock.h"
 #include "hal/link_spec.h"
-#include "supervisor/manager.h"
 
 // Sees all bytes that pass, from the robot or to it. Must not wait.
 typedef struct {
@@ -14,7 +14,8 @@ typedef struct {
 } driver_tap_t;
 
 typedef struct {
-    argus_t core;
+    argus_storage_t memory;
+    argus_t *core; // in `memory`
     hal_clock_t clock;
     hal_link_spec_t spec;
     hal_transport_t *transport; // NULL: a link lost is not opened again

@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#include "supervisor/events.h"
+#include "argus/argus.h"
 #include "view.h"
 
 #define REPORT_LINE_MAX 4096

@@ -6,9 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "arcos/gen_arcos.h"
-#include "knowledge/angle.h"
-
 #define FRONT_SONARS 8
 #define SHOWN_SONARS 16
 #define RING_TOP 3
@@ -132,10 +129,15 @@ static void draw_mode(canvas_t *canvas, const view_t *view) {
     }
 }
 
-// 256 times the cosine, rounded.
+// 256 times the cosine, by table: on whole tens of degrees exactly, between them on a straight line.
 static int cos256(int degrees) {
-    const int32_t scaled = argus_cos(degrees * 100) * 256;
-    return (int)((scaled + (scaled >= 0 ? ARGUS_TRIG_ONE / 2 : -ARGUS_TRIG_ONE / 2)) / ARGUS_TRIG_ONE);
+    static const int16_t quarter[] = {256, 252, 241, 222, 196, 165, 128, 88, 44, 0, -44};
+    const int turn = ((degrees % 360) + 360) % 360;
+    const int half = turn <= 180 ? turn : 360 - turn;
+    const int size = half <= 90 ? half : 180 - half;
+    const int step = quarter[size / 10 + 1] - quarter[size / 10];
+    const int value = quarter[size / 10] + step * (size % 10) / 10;
+    return half <= 90 ? value : -value;
 }
 
 // A row is twice as high as a column is wide.
@@ -177,7 +179,7 @@ static void draw_ring(canvas_t *canvas, const argus_status_t *status) {
 
 static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row, int column) {
     const argus_status_t *const status = &view->status;
-    const bool pinned = (view->pinned >> sonar & 1) != 0;
+    const bool pinned = (status->pinned >> sonar & 1) != 0;
     char state[16];
     char reading[8] = "   -";
     char bearing[8] = "   -";
@@ -223,14 +225,13 @@ static void draw_plan(canvas_t *canvas, const argus_plan_t *plan, int row, int c
 
 static void draw_numbers(canvas_t *canvas, const view_t *view, int row, int column) {
     const argus_status_t *const status = &view->status;
-    const bool motors = (status->flags & ARCOS_FLAG_MOTORS) != 0;
     draw_plan(canvas, &status->plan, row, column);
     write_at(canvas, row + 1, column, TONE_PLAIN, "at %d, %d mm, %d deg   %d/%d mm/s", (int)status->pose.x_mm,
              (int)status->pose.y_mm, (int)(status->pose.heading_cdeg / 100), status->vel_left_mm_s,
              status->vel_right_mm_s);
     write_at(canvas, row + 2, column,
              status->bumpers_front != 0 || status->bumpers_rear != 0 ? TONE_BAD : TONE_PLAIN,
-             "motors %s  bumpers %02x/%02x  stops %u", motors ? "on" : "off", status->bumpers_front,
+             "motors %s  bumpers %02x/%02x  stops %u", status->motors ? "on" : "off", status->bumpers_front,
              status->bumpers_rear, (unsigned)status->stops);
     write_at(canvas, row + 3, column, view->link_up ? TONE_PLAIN : TONE_BAD,
              "link %s  SIPs %u  bad %u  junk %u", view->link_up ? "up" : "DOWN", (unsigned)status->sips,

@@ -225,6 +225,16 @@ bool settings_load(settings_t *self, const char *path, char *message, size_t cap
     return good;
 }
 
+bool settings_choose(settings_t *self, int row, const char *text, const char *option, char *message,
+                     size_t capacity) {
+    const int32_t value = choice(rows[row].choices, text);
+    if (value < 0) {
+        return text_refuse(message, capacity, "%s %.40s: choose one of %s", option, text, rows[row].choices);
+    }
+    memcpy((char *)&self->config + rows[row].offset, &value, sizeof value);
+    return true;
+}
+
 bool settings_check(const settings_t *self, char *message, size_t capacity) {
     const argus_config_t *const config = &self->config;
     const argus_config_report_t report = argus_config_check(config);

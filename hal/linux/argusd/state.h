@@ -3,8 +3,8 @@
 #ifndef ARGUSD_STATE_H
 #define ARGUSD_STATE_H
 
+#include "argus/argus.h"
 #include "hal/store.h"
-#include "supervisor/manager.h"
 
 typedef struct {
     bool on;

@@ -15,8 +15,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "tui_key.h"
-
 #if defined(ARGUS_TUI)
 #include <curses.h>
 #endif

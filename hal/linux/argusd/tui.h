@@ -9,25 +9,7 @@
 #include <termios.h>
 
 #include "screen.h"
-
-typedef enum {
-    TUI_NONE,
-    TUI_AHEAD,
-    TUI_BACK,
-    TUI_LEFT,
-    TUI_RIGHT,
-    TUI_STOP,
-    TUI_GO,
-    TUI_RECHECK,
-    TUI_PASSIVE,
-    TUI_NEXT, // choose a sonar,
-    TUI_PREVIOUS,
-    TUI_RETEST, // ... and what to do with it
-    TUI_PIN,
-    TUI_TAKE_OUT,
-    TUI_QUIT,
-    TUI_GONE // the screen's process has ended
-} tui_key_t;
+#include "tui_key.h"
 
 typedef struct {
     bool on;

@@ -3,9 +3,9 @@
 #ifndef ARGUSD_VIEW_H
 #define ARGUSD_VIEW_H
 
+#include "argus/argus.h"
 #include "hal/isotp.h"
 #include "hal/link.h"
-#include "supervisor/manager.h"
 
 #define VIEW_LINK_MAX 96
 
@@ -26,7 +26,6 @@ typedef struct {
     uint32_t can_taken;   // orders
     uint32_t can_refused; // ...
     uint8_t sonar;        // the one that the operator has chosen
-    argus_mask_t pinned;  // mask over sonars
     uint32_t course_mm;   // straight line from the start to the goal, 0 without a course
 } view_t;
 

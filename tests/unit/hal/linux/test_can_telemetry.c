@@ -24,7 +24,7 @@ static uint32_t now_ms(void) {
 static void begin(uint8_t number, uint32_t start_ms) {
     const argus_config_t config = robot_config();
     robot_init(&robot, &config, start_ms);
-    hal_telemetry_init(&telemetry, number, 42, now_ms());
+    hal_telemetry_init(&telemetry, number, (uint32_t)config.stale_ms, 42, now_ms());
     count = 0;
     events_fed = 0;
 }
@@ -33,11 +33,17 @@ void setUp(void) {
     begin(0, UINT32_MAX - 3000); // the clock wraps in every test
 }
 
+static const argus_status_t *seen(void) {
+    static argus_status_t status;
+    argus_status(&robot.argus, &status);
+    return &status;
+}
+
 static void collect(void) {
     for (; events_fed < robot.events; events_fed++) {
-        hal_telemetry_event(&telemetry, &robot.argus, &robot.event[events_fed]);
+        hal_telemetry_event(&telemetry, seen(), &robot.event[events_fed]);
     }
-    while (hal_telemetry_next(&telemetry, &robot.argus, now_ms(), &frames[count])) {
+    while (hal_telemetry_next(&telemetry, seen(), now_ms(), &frames[count])) {
         frame_ms[count] = robot.t_ms;
         count++;
         TEST_ASSERT_LESS_THAN_INT(MAX_FRAMES, count);
@@ -202,24 +208,24 @@ void test_due_tells_when_to_call_again(void) {
 #define BUS_BITS_S 500000
 
 void test_nothing_that_happens_makes_telemetry_take_two_percent_of_the_bus(void) {
-    static argus_t core;
+    argus_status_t status;
     const uint32_t seconds = 60;
     uint32_t time_ms = 5;
     uint64_t bits = 0;
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
-    core = robot.argus;
-    hal_telemetry_init(&telemetry, 0, 42, time_ms);
+    status = *seen();
+    hal_telemetry_init(&telemetry, 0, 1500, 42, time_ms);
     for (uint32_t tick = 0; tick < seconds * 1000; tick++) { // everything changes each ms
         hal_telemetry_frame_t frame;
         const argus_event_t event = {.id = ARGUS_EV_STALL, .sonar = ARGUS_NO_SONAR, .value = (int32_t)tick};
         time_ms++;
         for (int i = 0; i < 16; i++) {
-            core.knowledge.sonar[i].readings++;
-            core.knowledge.sonar[i].health = (argus_health_t)(tick % 5);
+            status.readings[i]++;
+            status.health[i] = (argus_health_t)(tick % 5);
         }
-        core.plan.count = (uint8_t)(1 + tick % 3);
-        hal_telemetry_event(&telemetry, &core, &event);
-        while (hal_telemetry_next(&telemetry, &core, time_ms, &frame)) {
+        status.plan.count = (uint8_t)(1 + tick % 3);
+        hal_telemetry_event(&telemetry, &status, &event);
+        while (hal_telemetry_next(&telemetry, &status, time_ms, &frame)) {
             bits += WORST_FRAME_BITS;
         }
     }
@@ -235,7 +241,7 @@ void test_ids_of_another_robot(void) {
     TEST_ASSERT_EQUAL_HEX16(0x577, frames[HAL_TELEMETRY_FRAMES - 1].id);
     TEST_ASSERT_EQUAL_HEX16(0x207, hal_telemetry_command_id(&telemetry));
     const argus_event_t event = {.id = ARGUS_EV_BUMPER, .sonar = ARGUS_NO_SONAR, .value = 0x200};
-    hal_telemetry_event(&telemetry, &robot.argus, &event);
+    hal_telemetry_event(&telemetry, seen(), &event);
     collect();
     TEST_ASSERT_EQUAL_HEX16(0x087, frames[count - 1].id);
 }
@@ -267,7 +273,7 @@ void test_farewell_says_closed_whatever_the_mode(void) {
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
     collect();
     const uint32_t roll = get(0x500, 16, 4);
-    hal_telemetry_farewell(&telemetry, &robot.argus, now_ms(), &frames[count]);
+    hal_telemetry_farewell(&telemetry, seen(), now_ms(), &frames[count]);
     TEST_ASSERT_EQUAL_HEX16(0x500, frames[count].id);
     count++;
     TEST_ASSERT_EQUAL_UINT32((roll + 1) & 0xF, get(0x500, 16, 4));
@@ -314,7 +320,7 @@ void test_a_sonar_that_never_reported_and_one_that_stopped(void) {
 
 static void say(uint16_t id, int sonar, int32_t value) {
     const argus_event_t event = {.id = id, .sonar = (int8_t)sonar, .state = ARGUS_IS_MINOR, .value = value};
-    hal_telemetry_event(&telemetry, &robot.argus, &event);
+    hal_telemetry_event(&telemetry, seen(), &event);
 }
 
 void test_an_emergency_goes_first_and_at_once(void) {
@@ -546,7 +552,7 @@ void test_nonces_do_not_come_again_and_differ_from_start_to_start(void) {
         }
     }
     int same = 0;
-    hal_telemetry_init(&telemetry, 0, 43, now_ms());
+    hal_telemetry_init(&telemetry, 0, 1500, 43, now_ms());
     for (int i = 0; i < 64; i++) {
         robot.t_ms += 1000;
         count = 0;

@@ -11,6 +11,7 @@
 
 static bus_t bus;
 static argus_t core;
+static argus_status_t status;
 static uint32_t now_ms;
 static char text[1024];
 
@@ -20,12 +21,13 @@ void setUp(void) {
     fake_can_reset();
     now_ms = UINT32_MAX - 1500; // the clock wraps
     argus_manager_init(&core, &config, now_ms);
+    argus_status(&core, &status);
     TEST_ASSERT_TRUE(hal_can_spec_parse_telemetry(&spec, "can0,robot=1", text, sizeof text));
-    TEST_ASSERT_TRUE(bus_open(&bus, &spec, &fake_can_sys, 1, now_ms, text, sizeof text));
+    TEST_ASSERT_TRUE(bus_open(&bus, &spec, &fake_can_sys, 1500, 1, now_ms, text, sizeof text));
 }
 
 static uint32_t process(void) {
-    return bus_process(&bus, &core, now_ms);
+    return bus_process(&bus, &status, now_ms);
 }
 
 static struct can_frame sent(int number) {
@@ -43,7 +45,7 @@ static void run(uint32_t ms) {
 
 static void bump(void) {
     const argus_event_t event = {.id = ARGUS_EV_BUMPER, .sonar = ARGUS_NO_SONAR, .value = 0x200};
-    bus_event(&bus, &core, &event);
+    bus_event(&bus, &status, &event);
 }
 
 void test_frames_go_out_and_the_wait_is_told(void) {
@@ -66,12 +68,12 @@ void test_switched_off_it_does_nothing(void) {
     hal_dbc_command_t order;
     memset(&off, 0, sizeof off);
     bump();
-    bus_event(&off, &core, &(argus_event_t){.id = ARGUS_EV_BUMPER});
-    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, bus_process(&off, &core, now_ms));
+    bus_event(&off, &status, &(argus_event_t){.id = ARGUS_EV_BUMPER});
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, bus_process(&off, &status, now_ms));
     TEST_ASSERT_EQUAL_INT(-1, bus_fd(&off));
     TEST_ASSERT_FALSE(bus_order(&off, now_ms, &verdict, &order));
     TEST_ASSERT_FALSE(bus_notice(&off, text, sizeof text));
-    bus_close(&off, &core, now_ms);
+    bus_close(&off, &status, now_ms);
     TEST_ASSERT_EQUAL_INT(0, fake_can.closed);
     TEST_ASSERT_EQUAL_INT(0, fake_can.sends);
 }
@@ -161,7 +163,7 @@ void test_bus_off_is_said_with_the_command_that_helps(void) {
 
 void test_the_end_is_said_on_the_bus(void) {
     process();
-    bus_close(&bus, &core, now_ms);
+    bus_close(&bus, &status, now_ms);
     TEST_ASSERT_EQUAL_HEX32(0x510, sent(fake_can.sends - 1).can_id);
     TEST_ASSERT_EQUAL_UINT8(HAL_DBC_STATE_CLOSED, sent(fake_can.sends - 1).data[0] >> 4 & 3);
     TEST_ASSERT_EQUAL_INT(1, fake_can.closed);
@@ -170,10 +172,10 @@ void test_the_end_is_said_on_the_bus(void) {
 void test_what_is_missing_is_named(void) {
     hal_can_spec_t spec = {.interface = "can9"};
     fake_can.index = 0;
-    TEST_ASSERT_FALSE(bus_open(&bus, &spec, &fake_can_sys, 1, now_ms, text, sizeof text));
+    TEST_ASSERT_FALSE(bus_open(&bus, &spec, &fake_can_sys, 1500, 1, now_ms, text, sizeof text));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "can9: no such interface"), text);
     fake_can.socket_says = -EPROTONOSUPPORT;
-    TEST_ASSERT_FALSE(bus_open(&bus, &spec, &fake_can_sys, 1, now_ms, text, sizeof text));
+    TEST_ASSERT_FALSE(bus_open(&bus, &spec, &fake_can_sys, 1500, 1, now_ms, text, sizeof text));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "modprobe can-raw"), text);
     TEST_ASSERT_FALSE(bus.on);
 }

@@ -13,6 +13,7 @@
 #include "driver.h"
 #include "hal/fake_clock.h"
 #include "hal/fake_link.h"
+#include "supervisor/manager.h"
 #include "unity.h"
 #include "wire_robot.h"
 
@@ -62,7 +63,7 @@ static void run(uint32_t ms) {
 static bool said(uint16_t id) {
     argus_event_t event;
     bool found = false;
-    while (argus_next_event(&driver.core, &event)) {
+    while (argus_next_event(driver.core, &event)) {
         found = found || event.id == id;
     }
     return found;
@@ -70,11 +71,11 @@ static bool said(uint16_t id) {
 
 static void drive(void) {
     static const argus_point_t goal = {3000, 0};
-    TEST_ASSERT_TRUE(argus_set_course(&driver.core, &goal, 1));
+    TEST_ASSERT_TRUE(argus_set_course(driver.core, &goal, 1));
     driver_attach(&driver, hal_fake_link(&fake));
     run(4000);
     TEST_ASSERT_TRUE(robot.open);
-    TEST_ASSERT_EQUAL_INT(ARGUS_MODE_DRIVING, driver.core.mode);
+    TEST_ASSERT_EQUAL_INT(ARGUS_MODE_DRIVING, driver.core->mode);
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_MOVE]);
 }
 
@@ -135,9 +136,9 @@ void test_short_reads_and_a_noisy_wire_are_survived(void) {
     fake.from_robot = (hal_fake_faults_t){.drop_permille = 5, .corrupt_permille = 5};
     for (int i = 0; i < 100; i++) {
         run(100);
-        TEST_ASSERT_EQUAL_INT(0, argus_invariants_broken(&driver.core));
+        TEST_ASSERT_EQUAL_INT(0, argus_invariants_broken(driver.core));
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(0, driver.core.session.parser.bad_checksums);
+    TEST_ASSERT_GREATER_THAN_UINT32(0, driver.core->session.parser.bad_checksums);
 }
 
 void test_an_error_of_the_link_is_said_and_stops_the_use_of_it(void) {
@@ -174,12 +175,12 @@ void test_no_translation_after_reconnecting_before_a_full_check(void) {
     hal_fake_link_init(&fake, 2, &clock_);
     robot_init(&robot);
     driver_attach(&driver, hal_fake_link(&fake));
-    TEST_ASSERT_FALSE(driver.core.checked);
-    for (int i = 0; i < 100 && !driver.core.checked; i++) {
+    TEST_ASSERT_FALSE(driver.core->checked);
+    for (int i = 0; i < 100 && !driver.core->checked; i++) {
         TEST_ASSERT_EQUAL_UINT32(0, robot.commands[ARCOS_CMD_MOVE] + robot.commands[ARCOS_CMD_VEL2]);
         run(50);
     }
-    TEST_ASSERT_TRUE(driver.core.checked);
+    TEST_ASSERT_TRUE(driver.core->checked);
     run(2000);
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_MOVE]);
     TEST_ASSERT_GREATER_THAN_UINT32(0, moves);
@@ -187,10 +188,10 @@ void test_no_translation_after_reconnecting_before_a_full_check(void) {
 
 void test_shutdown_closes_in_order(void) {
     drive();
-    argus_shutdown(&driver.core, time_.now_ms);
+    argus_shutdown(driver.core, time_.now_ms);
     driver_transmit(&driver);
     run(3000);
-    TEST_ASSERT_TRUE(argus_closed(&driver.core));
+    TEST_ASSERT_TRUE(argus_closed(driver.core));
     TEST_ASSERT_FALSE(robot.open);
     TEST_ASSERT_EQUAL_UINT8(ARCOS_CMD_CLOSE, robot.last[0]);
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_STOP]);

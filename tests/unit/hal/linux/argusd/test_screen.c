@@ -33,10 +33,13 @@ static int find(const char *part) {
 }
 
 void setUp(void) {
+    static const int16_t bearings[ARGUS_SONARS] = {90,  50,   30,   10,   -10, -30, -50, -90,
+                                                   -90, -130, -150, -170, 170, 150, 130, 90};
     memset(&view, 0, sizeof view);
+    memcpy(view.status.bearing_deg, bearings, sizeof bearings);
     memset(&log_, 0, sizeof log_);
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        view.status.reading_mm[i] = (int16_t)(1000 + i);
+        view.status.reading_mm[i] = (uint16_t)(1000 + i);
         view.status.health[i] = ARGUS_HEALTHY;
         view.status.bearing_deg[i] = argus_robot_pose(argus_robot_default(), i)->heading_deg;
     }
@@ -163,7 +166,7 @@ void test_any_size_and_any_contents_are_drawn(void) {
 
 void test_the_chosen_sonar_is_marked_and_a_pinned_one_too(void) {
     view.sonar = 11;
-    view.pinned = 1u << 2;
+    view.status.pinned = 1u << 2;
     draw(24, 80);
     int marked = 0;
     for (int row = 1; row < 23; row++) {

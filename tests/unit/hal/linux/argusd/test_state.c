@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "state.h"
+#include "supervisor/manager.h"
 #include "unity.h"
 
 static argus_t core;

@@ -99,7 +99,7 @@ void test_the_tap_sees_every_byte(void) {
     TEST_ASSERT_EQUAL_size_t(carried[0].used, seen[0].used);
     fake.would_block_permille = 0;
     last_from_robot = true;
-    argus_operator(&driver.core, time_.now_ms, ARGUS_OP_STOP, 0);
+    argus_operator(driver.core, time_.now_ms, ARGUS_OP_STOP, 0);
     driver_transmit(&driver);
     TEST_ASSERT_FALSE(last_from_robot);
 }

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Attacks: every number of every table has its name, and a number beyond has none.
+#include "argus/argus.h"
+#include "unity.h"
+
+static void expect(argus_name_of_t of, int first, int last, const char *name_of_last) {
+    TEST_ASSERT_EQUAL_STRING(name_of_last, argus_name(of, last));
+    for (int i = first; i <= last; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(argus_name(of, i)[0] != '?', argus_name(of, i));
+    }
+    TEST_ASSERT_EQUAL_STRING("?", argus_name(of, first - 1));
+    TEST_ASSERT_EQUAL_STRING("?", argus_name(of, last + 1));
+    TEST_ASSERT_EQUAL_STRING("?", argus_name(of, 1000000));
+}
+
+void test_every_enumeration_is_named_from_end_to_end(void) {
+    expect(ARGUS_NAME_LEVEL, ARGUS_LEVEL_OK, ARGUS_LEVEL_STALE, "STALE");
+    expect(ARGUS_NAME_MODE, ARGUS_MODE_OFFLINE, ARGUS_MODE_CLOSED, "CLOSED");
+    expect(ARGUS_NAME_MISSION, ARGUS_MISSION_NONE, ARGUS_MISSION_FAILED, "failed");
+    expect(ARGUS_NAME_WAIT, ARGUS_WAIT_NONE, ARGUS_WAIT_CATASTROPHIC, "catastrophic");
+    expect(ARGUS_NAME_FAILURE, ARGUS_IS_NORMAL, ARGUS_IS_CATASTROPHIC, "IsCatastrophic");
+    expect(ARGUS_NAME_HEALTH, ARGUS_UNKNOWN, ARGUS_STALE, "STALE");
+    expect(ARGUS_NAME_KIND, ARGUS_KIND_NONE, ARGUS_KIND_INTERMITTENT, "intermittent");
+    expect(ARGUS_NAME_OP, ARGUS_OP_STOP, ARGUS_OP_DISABLE, "DISABLE");
+    TEST_ASSERT_EQUAL_STRING("", argus_name(ARGUS_NAME_KIND, ARGUS_KIND_NONE));
+    TEST_ASSERT_EQUAL_STRING("?", argus_name((argus_name_of_t)99, 1));
+}
