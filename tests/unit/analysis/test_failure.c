@@ -30,3 +30,13 @@ void test_names(void) {
     TEST_ASSERT_EQUAL_STRING("IsCatastrophic", argus_name(ARGUS_NAME_FAILURE, ARGUS_IS_CATASTROPHIC));
     TEST_ASSERT_EQUAL_STRING("?", argus_name(ARGUS_NAME_FAILURE, (int)4));
 }
+
+void test_of_four_forward_sonars_one_is_minor_and_four_are_catastrophic(void) {
+    static const argus_failure_t wanted[] = {ARGUS_IS_NORMAL, ARGUS_IS_MINOR, ARGUS_IS_MAJOR, ARGUS_IS_MAJOR,
+                                             ARGUS_IS_CATASTROPHIC};
+    const argus_robot_t *amigo = argus_robot_find("amigo-sh");
+    for (unsigned map = 0; map < 16; map++) {
+        TEST_ASSERT_EQUAL(wanted[argus_count_bits(map)], argus_failure_of(amigo, (argus_mask_t)(map << 1)));
+        TEST_ASSERT_EQUAL(wanted[argus_count_bits(map)], argus_failure_of(amigo, (argus_mask_t)(map << 1 | 0xE1)));
+    }
+}

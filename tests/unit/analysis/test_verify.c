@@ -204,3 +204,27 @@ void test_idle_does_nothing(void) {
     TEST_ASSERT_FALSE(argus_verify_step(&v, &k, &mark));
     TEST_ASSERT_EQUAL(ARGUS_VERIFY_IDLE, v.phase);
 }
+
+// The AmigoBot's 2 looks at 15 degrees, between 41 and -15: who stands left turns by -26 onto its bearing.
+void test_an_amigobot_turns_by_its_own_bearings(void) {
+    argus_knowledge_set_robot(&k, argus_robot_find("amigo-sh"), 0);
+    settle();
+    argus_verify_begin(&v, k.robot, 2, 0);
+    read(1, 2000), read(2, 1000), read(3, 2000);
+    TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
+    TEST_ASSERT_EQUAL(ARGUS_VERIFY_LEFT, v.phase);
+    TEST_ASSERT_EQUAL(-2600, argus_verify_heading_cdeg(&v));
+    settle();
+    testify(1, 1950);
+    TEST_ASSERT_EQUAL(ARGUS_VERIFY_RIGHT, v.phase);
+    TEST_ASSERT_EQUAL(3000, argus_verify_heading_cdeg(&v));
+    settle();
+    testify(3, 1950);
+    TEST_ASSERT_EQUAL(ARGUS_RESULT_CONVICTED, v.result);
+    argus_verify_begin(&v, k.robot, 4, 0); // at the edge: one neighbour, and no sonar of another role
+    read(3, 2000), read(4, 1000), read(5, 2000);
+    TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
+    TEST_ASSERT_EQUAL(ARGUS_VERIFY_LEFT, v.phase);
+    TEST_ASSERT_EQUAL(1, v.witnesses);
+    TEST_ASSERT_EQUAL(-2600, argus_verify_heading_cdeg(&v));
+}
