@@ -18,21 +18,26 @@ list(JOIN names ";\n    " names)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/argus.map CONTENT "{\nglobal:\n    @names@;\nlocal:\n    *;\n};\n" @ONLY)
 
 add_library(argus_shared SHARED ${firmware_sources} tools/core_shim.c)
-target_include_directories(argus_shared PRIVATE firmware firmware/include)
+target_include_directories(argus_shared PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/firmware/include>
+                                               $<INSTALL_INTERFACE:include>
+                           PRIVATE firmware)
 target_compile_options(argus_shared PRIVATE ${ARGUS_STRICT})
 target_link_options(argus_shared PRIVATE -Wl,--version-script=${PROJECT_BINARY_DIR}/argus.map)
-target_link_libraries(argus_shared PRIVATE argus_flags)
-set_target_properties(argus_shared PROPERTIES OUTPUT_NAME argus POSITION_INDEPENDENT_CODE ON
+target_link_libraries(argus_shared PRIVATE $<BUILD_INTERFACE:argus_flags>)
+set_target_properties(argus_shared PROPERTIES OUTPUT_NAME argus VERSION ${PROJECT_VERSION}
+                      SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} POSITION_INDEPENDENT_CODE ON
                       LINK_DEPENDS ${PROJECT_BINARY_DIR}/argus.map
                       LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
-install(TARGETS argus_shared)
+
+if(ARGUS_ASSERTS)
+    target_compile_definitions(argus_shared PRIVATE ARGUS_ASSERTS=1)
+endif()
 
 # libargus_sim.so: the emulator's echo model in C. Neither contraction nor sincos, so that every number is the one that
 # Python forms; the other options change no result, since nobody looks at errno or at the exception flags.
-add_library(argus_sim SHARED hil_sim/kernel.c)
+add_library(argus_sim SHARED hil_sim/sonar/kernel.c)
 target_compile_options(argus_sim PRIVATE ${ARGUS_STRICT} -ffp-contract=off -fno-builtin-sin -fno-builtin-cos
                                          -fno-math-errno -fno-trapping-math $<$<CONFIG:Release>:-O3>)
 target_link_libraries(argus_sim PRIVATE argus_flags m)
 set_target_properties(argus_sim PROPERTIES POSITION_INDEPENDENT_CODE ON C_VISIBILITY_PRESET default
                       LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
-install(TARGETS argus_sim)

@@ -6,7 +6,14 @@ from __future__ import annotations
 import os
 import signal
 
+import pytest
 from hypothesis import settings
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Make the marks known that any test may carry."""
+    config.addinivalue_line("markers", "soak: computes for long; tools/dev test --quick leaves it out")
+
 
 settings.register_profile("repeatable", derandomize=True, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))

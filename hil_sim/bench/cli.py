@@ -301,9 +301,9 @@ def _check(options: argparse.ArgumentParser, arguments: argparse.Namespace) -> N
     """Refuse arguments that another one makes void."""
     fixed = [name for name in ("one", "quick") if getattr(arguments, name)]
     given = [name for name in _WHAT if getattr(arguments, name) != options.get_default(name)]
-    if fixed and (given or len(fixed) > 1):
-        other = (given or fixed[1:])[0]
-        options.error(f"--{fixed[0]} has its own missions; leave --{other} out")
+    others = given or fixed[1:]
+    if fixed and others:
+        options.error(f"--{fixed[0]} has its own missions; leave --{others[0]} out")
     if arguments.resume and arguments.fresh:
         options.error("--resume goes on with what --fresh throws away; give one of them")
 

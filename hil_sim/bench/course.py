@@ -11,9 +11,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from hil_sim.body import HALF_MM, REAR_MM
 from hil_sim.errors import SimError
-from hil_sim.world import World
+from hil_sim.world.body import HALF_MM, REAR_MM
+from hil_sim.world.model import World
 
 CELL_MM: Final = 50.0
 SWING_MM: Final = math.hypot(REAR_MM, HALF_MM)

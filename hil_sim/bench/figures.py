@@ -50,25 +50,28 @@ class Bar:
     verdict: str
 
 
+_Point = tuple[tuple[str, float], ...]
+"""Names and values of the parameters of the sonar model that are not as by default."""
+
+
 def summarise(records: Iterable[Record]) -> dict[str, Any]:
     """Return the figures of all profiles, and of each point of a sensitivity sweep."""
-    good = [record for record in records if record["error"] is None]
-    profiles = list(dict.fromkeys(record["profile"] for record in good))
     result: dict[str, Any] = {"profiles": {}, "sensitivity": []}
-    for profile in profiles:
-        own = [record for record in good if record["profile"] == profile]
-        result["profiles"][profile] = figures([record for record in own if not record["sonar"]])
-        swept = sorted({tuple(sorted(record["sonar"].items())) for record in own if record["sonar"]})
-        for point in [((name, value),) for name, value in sonar_defaults().items()] if swept else []:
-            part = [record for record in own if not record["sonar"]]
-            result["sensitivity"].append(_point(profile, point, part))
-        for point in swept:
-            part = [record for record in own if tuple(sorted(record["sonar"].items())) == point]
-            result["sensitivity"].append(_point(profile, point, part))
+    by_profile: dict[str, dict[_Point, list[Record]]] = {}
+    for record in records:
+        if record["error"] is None:
+            points = by_profile.setdefault(record["profile"], {(): []})
+            points.setdefault(tuple(sorted(record["sonar"].items())), []).append(record)
+    for profile, points in by_profile.items():
+        plain = points.pop(())
+        result["profiles"][profile] = figures(plain)
+        defaults = [((name, value),) for name, value in sonar_defaults().items()] if points else []
+        result["sensitivity"] += [_point(profile, point, plain) for point in defaults]
+        result["sensitivity"] += [_point(profile, point, points[point]) for point in sorted(points)]
     return result
 
 
-def _point(profile: str, point: tuple[tuple[str, float], ...], records: Sequence[Record]) -> dict[str, Any]:
+def _point(profile: str, point: _Point, records: Sequence[Record]) -> dict[str, Any]:
     whole = figures(records)
     return {
         "profile": profile,
@@ -87,39 +90,23 @@ def _point(profile: str, point: tuple[tuple[str, float], ...], records: Sequence
 
 def figures(records: Sequence[Record]) -> dict[str, Any]:
     """Return the figures of one profile."""
-    faults = [
-        fault | {"place": r["place"], "variant": r["variant"]} for r in records for fault in r["faults"]
-    ]
-    free = [record for record in records if record["variant"].startswith("free")]
+    faults = _faults(records)
+    free, tried = _free(records, True), _free(records, False)
     hours = sum(record["driving_s"] for record in records) / 3600
     result: dict[str, Any] = {
         "missions": len(records),
         "driving_hours": round(hours, 3),
-        "not_injected": sum(not r["faults"] for r in records if not r["variant"].startswith("free")),
-        "reached": {
-            "fault-free": _share(sum(r["reached"] for r in free), len(free)),
-            "with faults": _share(
-                sum(r["reached"] for r in records) - sum(r["reached"] for r in free), len(records) - len(free)
-            ),
-        },
-        "kinds": {kind: _detection([f for f in faults if f["kind"] == kind]) for kind in KINDS},
-        "pairs": _detection([f for f in faults if f["variant"] == "pair"]),
-        "variants": {
-            name: _detection([f for f in faults if f["variant"] == name])
-            for name in sorted({f["variant"] for f in faults})
-        },
+        "not_injected": sum(not record["faults"] for record in tried),
+        "reached": {"fault-free": _reached(free), "with faults": _reached(tried)},
+        "kinds": {kind: _detection(_of(faults, (kind,))) for kind in KINDS},
+        "pairs": _detection(_of_variant(faults, "pair")),
+        "variants": {name: _detection(_of_variant(faults, name)) for name in _variants(faults)},
         "all": _detection(faults),
-        "ideal": {
-            name: _ideal([f for f in faults if f["kind"] in kinds and f["place"] in places])
-            for name, (kinds, places) in OBSERVED.items()
-        },
-        "doubted": {
-            "sure": _doubted([f for f in faults if f["kind"] in SURE]),
-            "hard": _doubted([f for f in faults if f["kind"] in HARD]),
-        },
+        "ideal": {name: _ideal(_of(faults, kinds, places)) for name, (kinds, places) in OBSERVED.items()},
+        "doubted": {"sure": _doubted(_of(faults, SURE)), "hard": _doubted(_of(faults, HARD))},
         "confusion": _confusion(faults, records),
         "false_disables": _false(free),
-        "false_disables_with_faults": _false([r for r in records if not r["variant"].startswith("free")]),
+        "false_disables_with_faults": _false(tried),
         "false_names": _false(free, "false_names"),
         "rehabilitation": _rehabilitation(faults),
         "verification": _verification(records),
@@ -127,6 +114,32 @@ def figures(records: Sequence[Record]) -> dict[str, Any]:
     }
     result["bars"] = [asdict(bar) for bar in bars(result, faults)]
     return result
+
+
+def _of(faults: Sequence[Record], kinds: Sequence[str], places: Sequence[str] = EVERYWHERE) -> list[Record]:
+    return [fault for fault in faults if fault["kind"] in kinds and fault["place"] in places]
+
+
+def _faults(records: Sequence[Record]) -> list[Record]:
+    """All faults, with what is told of their missions."""
+    return [fault | {"place": r["place"], "variant": r["variant"]} for r in records for fault in r["faults"]]
+
+
+def _free(records: Sequence[Record], free: bool) -> list[Record]:
+    """The missions without faults, or those with."""
+    return [record for record in records if record["variant"].startswith("free") == free]
+
+
+def _variants(faults: Sequence[Record]) -> list[str]:
+    return sorted({fault["variant"] for fault in faults})
+
+
+def _of_variant(faults: Sequence[Record], variant: str) -> list[Record]:
+    return [fault for fault in faults if fault["variant"] == variant]
+
+
+def _reached(records: Sequence[Record]) -> dict[str, Any]:
+    return _share(sum(record["reached"] for record in records), len(records))
 
 
 def _share(hits: int, total: int) -> dict[str, Any]:
@@ -140,16 +153,14 @@ def _share(hits: int, total: int) -> dict[str, Any]:
 
 
 def _detection(faults: Sequence[Record]) -> dict[str, Any]:
-    judged = [fault for fault in faults if fault["apart"] is None]
-    ahead = [fault for fault in judged if fault["sonar"] in FORWARD]
+    judged = _judged(faults)
     found = [fault for fault in judged if fault["found"]]
     seen = [fault for fault in judged if fault["latency_s"] is not None]
-    rooms = [fault for fault in seen if fault["place"] == "room"]
+    rooms = _of(seen, KINDS, ROOMS)
     whole = _share(len(found), len(judged))
-    strict = [f for f in faults if f["apart"] in (None, "not shown") and f["visible_s"] is not None]
     return {
         "injected": len(faults),
-        "apart": dict(Counter(fault["apart"] for fault in faults if fault["apart"])),
+        "apart": _counts(faults, "apart"),
         "judged": len(judged),
         "found": len(found),
         "late": len(seen) - len(found),
@@ -157,14 +168,35 @@ def _detection(faults: Sequence[Record]) -> dict[str, Any]:
         "rate": whole["rate"],
         "low": whole["low"],
         "interval": whole["interval"],
-        "forward": _share(sum(fault["found"] for fault in ahead), len(ahead)),
-        "visible_once": _share(sum(fault["found"] for fault in strict), len(strict)),
-        "named": _share(sum(fault["named_right"] for fault in found), len(found)),
-        "named_end": _share(sum(fault["named_end_right"] for fault in found), len(found)),
-        "latency_s": _spread([fault["latency_s"] for fault in rooms]),
-        "latency_mm": _spread([fault["latency_mm"] for fault in rooms]),
-        "latency_s_everywhere": _spread([fault["latency_s"] for fault in seen]),
+        "forward": _share_of([fault for fault in judged if fault["sonar"] in FORWARD], "found"),
+        "visible_once": _share_of(_visible_once(faults), "found"),
+        "named": _share_of(found, "named_right"),
+        "named_end": _share_of(found, "named_end_right"),
+        "latency_s": _spread_of(rooms, "latency_s"),
+        "latency_mm": _spread_of(rooms, "latency_mm"),
+        "latency_s_everywhere": _spread_of(seen, "latency_s"),
     }
+
+
+def _judged(faults: Sequence[Record]) -> list[Record]:
+    return [fault for fault in faults if fault["apart"] is None]
+
+
+def _visible_once(faults: Sequence[Record]) -> list[Record]:
+    """Those that showed in a reading at least once, and had their time."""
+    return [f for f in faults if f["apart"] in (None, "not shown") and f["visible_s"] is not None]
+
+
+def _counts(faults: Sequence[Record], what: str) -> dict[str, int]:
+    return dict(Counter(fault[what] for fault in faults if fault[what]))
+
+
+def _share_of(faults: Sequence[Record], what: str) -> dict[str, Any]:
+    return _share(sum(fault[what] for fault in faults), len(faults))
+
+
+def _spread_of(faults: Sequence[Record], what: str) -> dict[str, Any]:
+    return _spread([fault[what] for fault in faults])
 
 
 def readings_wanted(window_s: float, crosstalk: float, fired: int | None = None) -> int:
@@ -186,7 +218,7 @@ def _ideal(faults: Sequence[Record]) -> dict[str, Any]:
     `peers`: the second counts only those of the first that another sonar contradicts, and wants as many as `once`.
     What was found by less, such as one value again and again, is found by both too.
     """
-    judged = [fault for fault in faults if fault["apart"] is None]
+    judged = _judged(faults)
     crosstalk = sonar_defaults()["crosstalk"]
 
     def found(count: str, wanted: Callable[[Record], int]) -> dict[str, Any]:
@@ -213,7 +245,7 @@ def _sure_at(fault: Record, wanted: int) -> float | None:
 
 def _doubted(faults: Sequence[Record]) -> dict[str, Any]:
     """What was DISABLED or a SUSPECT of any kind in time, perhaps by a wrong name."""
-    judged = [fault for fault in faults if fault["apart"] is None]
+    judged = _judged(faults)
     in_time = [f["doubted_s"] is not None and f["doubted_s"] <= BOUND_S[f["kind"]] for f in judged]
     return _share(sum(in_time), len(in_time))
 
@@ -291,7 +323,7 @@ def bars(figure: Record, faults: Sequence[Record]) -> list[Bar]:
     """Return the table that decides, in the order in which it was asked for."""
 
     def of(kinds: Sequence[str]) -> dict[str, Any]:
-        return _detection([fault for fault in faults if fault["kind"] in kinds])
+        return _detection(_of(faults, kinds))
 
     def at_least(name: str, share: Record, least: float) -> Bar:
         return _at_least(name, share["rate"], share["low"], share["of"], least)

@@ -10,8 +10,8 @@ from itertools import pairwise
 from typing import Any, Final
 
 from hil_sim.bench.witness import contradicted, fired, is_visible
-from hil_sim.sil import FaultTruth, Outcome, Sighting, Sil
-from hil_sim.sonar import CYCLE_MS, NO_ECHO_MM
+from hil_sim.sil import Collision, FaultTruth, Outcome, Sighting, Sil
+from hil_sim.sonar.params import CYCLE_MS, NO_ECHO_MM
 
 RECORD_FORMAT: Final = 4
 """Raised whenever a record gets another field: results of two formats do not mix."""
@@ -64,10 +64,10 @@ class Track:
         robot = sil.robot
         before_t = self.t_s[-1] if self.t_s else sighting.t_s
         before = self.driving_s[-1] if self.driving_s else 0.0
-        moves = abs(robot.v) > _MOVING_MM_S or abs(robot.w) > _TURNING_DEG_S
+        moves = abs(robot.drive.v) > _MOVING_MM_S or abs(robot.drive.w) > _TURNING_DEG_S
         self.t_s.append(sighting.t_s)
         self.sightings.append(sighting)
-        self.driven_mm.append(robot.travelled_mm)
+        self.driven_mm.append(robot.chassis.travelled_mm)
         self.driving_s.append(before + (sighting.t_s - before_t if moves else 0.0))
         for reading in sighting.readings:
             if reading.fault == "stuck":
@@ -127,7 +127,6 @@ def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, 
     """Return the record of one injected fault."""
     changes = outcome.health[truth.sonar]
     end_s = truth.end_s if truth.end_s is not None else outcome.t_s
-    bound_s = BOUND_S[truth.kind]
     record: dict[str, Any] = {
         "kind": truth.kind,
         "sonar": truth.sonar,
@@ -153,32 +152,43 @@ def judge_fault(truth: FaultTruth, outcome: Outcome, track: Track) -> dict[str, 
         "rehabilitated_s": None,
         "rehabilitation": None,
     }
-    first_s = truth.first_visible_s
     kinds = right_names(truth, track)
     found = detection(changes, kinds, truth.onset_s, end_s)
-    if health_at(changes, truth.onset_s)[0] == DISABLED:
-        record["apart"] = "disabled before"
-    elif first_s is None or (found is None and record["visible_n"] < SHOWN_READINGS):
-        record["apart"] = "not shown"
-    elif end_s - first_s < bound_s:
-        record["apart"] = "ended early"
+    record["apart"] = _apart(truth, changes, end_s, found is None and record["visible_n"] < SHOWN_READINGS)
     doubted = detection(changes, _ANY_NAME, truth.onset_s, end_s)
-    if doubted is not None and first_s is not None:
-        record["doubted_s"] = _r(max(0.0, doubted[0] - first_s))
+    if doubted is not None and truth.first_visible_s is not None:
+        record["doubted_s"] = _r(max(0.0, doubted[0] - truth.first_visible_s))
     if found is not None:
         at, _, named = found
-        since = first_s if first_s is not None else at
-        record["latency_s"] = _r(max(0.0, at - since))
-        record["latency_mm"] = _r(max(0.0, track.driven_at(at) - track.driven_at(since)))
-        seen = track.visible_s.get(truth.sonar, [])
-        record["latency_readings"] = bisect_right(seen, at) - bisect_right(seen, truth.onset_s)
-        record["found"] = record["latency_s"] <= bound_s
+        record |= _latency(truth, track, at)
         record["named"] = named or "none"
         record["named_right"] = named in kinds
         record["named_end"] = _kind_at_end(changes, truth.onset_s, end_s) or "none"
         record["named_end_right"] = record["named_end"] in kinds
     _judge_repair(record, truth, outcome, track)
     return record
+
+
+def _apart(truth: FaultTruth, changes: Sequence[Change], end_s: float, hardly_shown: bool) -> str | None:
+    """Why a case says nothing about the diagnosis; None when it does."""
+    if health_at(changes, truth.onset_s)[0] == DISABLED:
+        return "disabled before"
+    if truth.first_visible_s is None or hardly_shown:
+        return "not shown"
+    return "ended early" if end_s - truth.first_visible_s < BOUND_S[truth.kind] else None
+
+
+def _latency(truth: FaultTruth, track: Track, at: float) -> dict[str, Any]:
+    """How long it took until a fault was found at `at`, and whether that was in time."""
+    since = truth.first_visible_s if truth.first_visible_s is not None else at
+    took_s = round(max(0.0, at - since), 3)
+    seen = track.visible_s.get(truth.sonar, [])
+    return {
+        "latency_s": took_s,
+        "latency_mm": _r(max(0.0, track.driven_at(at) - track.driven_at(since))),
+        "latency_readings": bisect_right(seen, at) - bisect_right(seen, truth.onset_s),
+        "found": took_s <= BOUND_S[truth.kind],
+    }
 
 
 def _in_time(truth: FaultTruth, end_s: float) -> tuple[float, float]:
@@ -241,12 +251,8 @@ def _kind_at_end(changes: Sequence[Change], onset_s: float, end_s: float) -> str
 
 def _judge_repair(record: dict[str, Any], truth: FaultTruth, outcome: Outcome, track: Track) -> None:
     """Whether a sonar that was not HEALTHY when its fault ended came back within 60 s of driving."""
-    if truth.end_s is None or record["apart"] == "disabled before":
-        return
     changes = outcome.health[truth.sonar]
-    if not any(truth.onset_s <= at <= truth.end_s and health == DISABLED for at, health, _ in changes):
-        return
-    if health_at(changes, truth.end_s)[0] == HEALTHY:
+    if truth.end_s is None or record["apart"] == "disabled before" or not _was_disabled(truth, changes):
         return
     start = track.driving_at(truth.end_s)
     back = next((at for at, health, _ in changes if at > truth.end_s and health == HEALTHY), None)
@@ -258,6 +264,13 @@ def _judge_repair(record: dict[str, Any], truth: FaultTruth, outcome: Outcome, t
         record["rehabilitation"] = "ended early"
     else:
         record["rehabilitation"] = "never"
+
+
+def _was_disabled(truth: FaultTruth, changes: Sequence[Change]) -> bool:
+    """Whether a sonar was DISABLED while its fault was there, and not HEALTHY at its end."""
+    assert truth.end_s is not None
+    during = [health for at, health, _ in changes if truth.onset_s <= at <= truth.end_s]
+    return DISABLED in during and health_at(changes, truth.end_s)[0] != HEALTHY
 
 
 def false_disables(outcome: Outcome) -> list[dict[str, Any]]:
@@ -297,8 +310,8 @@ def _without_fault(outcome: Outcome) -> Iterator[tuple[int, Change, Change]]:
 def judge(outcome: Outcome, track: Track, twin: Outcome | None) -> dict[str, Any]:
     """Return the record of a mission; `twin`: the same mission without faults, where a collision asked for it."""
     faults = [judge_fault(truth, outcome, track) for truth in outcome.truth]
-    hits = [hit for hit in outcome.collisions if not hit.struck]
-    twin_hits = [hit for hit in twin.collisions if not hit.struck] if twin is not None else hits
+    hits = _driven_into(outcome)
+    twin_hits = hits if twin is None else _driven_into(twin)
     attributable = bool(hits) and bool(outcome.truth) and not twin_hits
     return {
         "t_s": _r(outcome.t_s),
@@ -318,6 +331,10 @@ def judge(outcome: Outcome, track: Track, twin: Outcome | None) -> dict[str, Any
         "verifying_s": _r(outcome.verifying_s),
         "digest": outcome.digest,
     }
+
+
+def _driven_into(outcome: Outcome) -> list[Collision]:
+    return [hit for hit in outcome.collisions if not hit.struck]
 
 
 def _undetected(outcome: Outcome, t_s: float) -> bool:

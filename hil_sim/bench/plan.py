@@ -11,6 +11,7 @@ import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import product
 from pathlib import Path
 from typing import Any, Final
 
@@ -21,10 +22,11 @@ from argus_tools.formats.base import LogError
 from hil_sim.bench.course import LEG_MM, ROOM_MM, Field, Floats, Point, make_course, make_field
 from hil_sim.bench.worlds import GENERATED, OPEN, make_world
 from hil_sim.errors import SimError
-from hil_sim.movers import Person
 from hil_sim.sil import Mission
-from hil_sim.sonar import SonarParams
-from hil_sim.world import World, load_world, world_names
+from hil_sim.sonar.params import SonarParams
+from hil_sim.world.files import load_world, world_names
+from hil_sim.world.model import World
+from hil_sim.world.movers import Person
 
 Rng = np.random.Generator
 
@@ -107,6 +109,7 @@ class Case:
         return "open" if Path(self.world).stem in OPEN else "room"
 
 
+_VARIANTS: Final = tuple(name for names in VARIANTS.values() for name in names)
 _ID: Final = re.compile(r"(?P<profile>[^/]+)/(?P<split>\w+)/(?P<world>.+)/(?P<seed>\d+)/(?P<rest>[^/]+)")
 
 
@@ -117,12 +120,10 @@ def parse_id(text: str) -> Case:
     'argus/tune/office/7/wrong-scale0.5~noise_mm=20'
     """
     match = _ID.fullmatch(text.strip())
-    known = [name for names in VARIANTS.values() for name in names]
     if match is not None and match["split"] in SPLITS:
         variant, *swept = match["rest"].split("~")
-        pairs = [part.partition("=") for part in swept]
-        if variant in known and all(name in SWEEPS and _is_number(value) for name, _, value in pairs):
-            sonar = tuple((name, float(value)) for name, _, value in pairs)
+        sonar = _swept(swept)
+        if variant in _VARIANTS and sonar is not None:
             check_profile(match["profile"])
             return Case(match["profile"], match["split"], match["world"], int(match["seed"]), variant, sonar)
     raise SimError(
@@ -130,12 +131,14 @@ def parse_id(text: str) -> Case:
     )
 
 
-def _is_number(text: str) -> bool:
+def _swept(parts: Sequence[str]) -> tuple[tuple[str, float], ...] | None:
+    """The parameters of the sonar model that an id names; None when one is none."""
+    pairs = [part.partition("=") for part in parts]
     try:
-        float(text)
+        sonar = tuple((name, float(value)) for name, _, value in pairs)
     except ValueError:
-        return False
-    return True
+        return None
+    return sonar if all(name in SWEEPS for name, _ in sonar) else None
 
 
 def check_profile(text: str) -> dict[str, int | str]:
@@ -189,20 +192,19 @@ def make_cases(
     sweeps: list[tuple[tuple[str, float], ...]] = [()]
     if sensitivity:
         sweeps += [((name, value),) for name, values in SWEEPS.items() for value in values]
-    worlds, profiles = list(worlds), list(profiles)
-    cases = []
-    for seed in seeds:
-        for world in worlds:
-            for kind in kinds:
-                names = VARIANTS[kind]
-                step = seed + zlib.crc32(_stem(world).encode())
-                for variant in names if every else (names[step % len(names)],):
-                    cases += [
-                        Case(profile, split, world, seed, variant, sonar)
-                        for sonar in sweeps
-                        for profile in profiles
-                    ]
-    return cases
+    profiles = list(profiles)
+    return [
+        Case(profile, split, world, seed, variant, sonar)
+        for seed, world, kind in product(seeds, worlds, kinds)
+        for variant in _variants(kind, seed, world, every)
+        for sonar, profile in product(sweeps, profiles)
+    ]
+
+
+def _variants(kind: str, seed: int, world: str, every: bool) -> tuple[str, ...]:
+    """The severities of a kind that come up for a seed in a world."""
+    names = VARIANTS[kind]
+    return names if every else (names[(seed + zlib.crc32(_stem(world).encode())) % len(names)],)
 
 
 # ---- from a case to a mission ------------------------------------------------------------------------------------

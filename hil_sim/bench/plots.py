@@ -156,24 +156,27 @@ def _sensitivity(folder: Path, points: Sequence[Record]) -> None:
         axes = figure.subplots(2, len(names), squeeze=False, sharex="col")
         for column, name in enumerate(names):
             for k, profile in enumerate(dict.fromkeys(point["profile"] for point in points)):
-                own = sorted(
-                    (p for p in points if p["parameter"] == name and p["profile"] == profile),
-                    key=lambda p: p["value"],
-                )
+                own = [p for p in points if p["parameter"] == name and p["profile"] == profile]
                 style: dict[str, Any] = {"color": _COLOURS[k % 7], "marker": _MARKS[k % 7], "label": profile}
-                found = [(p["value"], p["found_all"], *p["found_interval"]) for p in own if p["judged"]]
-                _line(axes[0][column], found, style)
-                false = [
-                    (p["value"], p["false_per_100h"], p["false_per_100h"], p["false_per_100h_high"])
-                    for p in own
-                    if p["hours"]
-                ]
-                _line(axes[1][column], false, style)
+                _sweep((axes[0][column], axes[1][column]), own, style)
             axes[0][column].set(ylabel="share of all faults found in time", ylim=(0, 1.02))
             axes[1][column].set(xlabel=name, ylabel="false disables / 100 h")
             axes[1][column].set_yscale("symlog", linthresh=1.0)
             axes[1][column].set_ylim(bottom=-0.3)
             _legend(axes[0][column], 8)
+
+
+def _sweep(places: tuple[Axes, Axes], points: Sequence[Record], style: Mapping[str, Any]) -> None:
+    """Draw what is found and what is falsely disabled along one parameter."""
+    points = sorted(points, key=lambda p: p["value"])
+    found = [(p["value"], p["found_all"], *p["found_interval"]) for p in points if p["judged"]]
+    _line(places[0], found, style)
+    false = [
+        (p["value"], p["false_per_100h"], p["false_per_100h"], p["false_per_100h_high"])
+        for p in points
+        if p["hours"]
+    ]
+    _line(places[1], false, style)
 
 
 def _line(place: Axes, points: Sequence[tuple[float, float, float, float]], style: Mapping[str, Any]) -> None:

@@ -47,14 +47,18 @@ def load_bounds(path: Path = BOUNDS) -> dict[str, dict[str, Any]]:
         if not isinstance(wanted, dict):
             raise SimError(f"{path}: '{profile}' is no table; write the bounds of a profile under [NAME]")
         for name, value in wanted.items():
-            if name not in _FIELDS:
-                raise SimError(f"{path}: [{profile}] {name} is no bound; there are {', '.join(_FIELDS)}")
-            rows = value if name == "found" else {"": value}
-            if not isinstance(rows, dict) or any(type(one) not in (int, float) for one in rows.values()):
-                raise SimError(f"{path}: [{profile}] {name} is no number, or no table of one for each kind")
-            if name == "found" and set(rows) - set(KINDS):
-                raise SimError(f"{path}: [{profile}] found: there are {', '.join(KINDS)}")
+            _check_bound(f"{path}: [{profile}]", name, value)
     return bounds
+
+
+def _check_bound(where: str, name: str, value: Any) -> None:
+    if name not in _FIELDS:
+        raise SimError(f"{where} {name} is no bound; there are {', '.join(_FIELDS)}")
+    rows = value if name == "found" else {"": value}
+    if not isinstance(rows, dict) or any(type(one) not in (int, float) for one in rows.values()):
+        raise SimError(f"{where} {name} is no number, or no table of one for each kind")
+    if name == "found" and set(rows) - set(KINDS):
+        raise SimError(f"{where} found: there are {', '.join(KINDS)}")
 
 
 def broken(summary: Record, bounds: Mapping[str, Mapping[str, Any]]) -> list[str]:
@@ -67,17 +71,23 @@ def broken(summary: Record, bounds: Mapping[str, Mapping[str, Any]]) -> list[str
             continue
         have = _values(one)
         for name, value in wanted.items():
-            for kind, bound in (value if name == "found" else {"": value}).items():
-                got = have[name][kind] if name == "found" else have[name]
-                what = f"{profile}: {name}" + (f" of {kind}" if kind else "")
-                if got is None:
-                    lines.append(f"{what}: nothing to judge")
-                elif name == "missions":
-                    lines += [f"{what} is {got}, must be {bound}"] if got != bound else []
-                elif (got > bound) if name in _MOST else (got < bound):
-                    limit = "at most" if name in _MOST else "at least"
-                    lines.append(f"{what} is {got:g}, must be {limit} {bound:g}")
+            if name == "found":
+                for kind, bound in value.items():
+                    lines += _against(f"{profile}: {name} of {kind}", name, have[name][kind], bound)
+            else:
+                lines += _against(f"{profile}: {name}", name, have[name], value)
     return lines
+
+
+def _against(what: str, name: str, got: float | None, bound: float) -> list[str]:
+    """A line when a figure breaks its bound."""
+    if got is None:
+        return [f"{what}: nothing to judge"]
+    if name == "missions":
+        return [f"{what} is {got}, must be {bound}"] if got != bound else []
+    if name in _MOST:
+        return [f"{what} is {got:g}, must be at most {bound:g}"] if got > bound else []
+    return [f"{what} is {got:g}, must be at least {bound:g}"] if got < bound else []
 
 
 def _values(one: Record) -> dict[str, Any]:

@@ -276,18 +276,21 @@ def _wrong(records: Sequence[Record]) -> list[str]:
 
 
 def _complaints(record: Record) -> list[str]:
-    what = []
-    for fault in record["faults"]:
-        kind = fault["kind"]
-        if fault["apart"] is None and not fault["found"]:
-            what.append(f"{kind} {'never found' if fault['latency_s'] is None else 'found late'}")
-        elif fault["apart"] is None and not fault["named_right"]:
-            what.append(f"{kind} named {fault['named']}")
-        if fault["rehabilitation"] in ("late", "never"):
-            what.append(f"{kind} repaired, HEALTHY {fault['rehabilitation']}")
+    what = [text for fault in record["faults"] for text in _fault_complaints(fault)]
     what += sorted({f"false disable as {one['kind']}" for one in record["false_disables"]})
     if record["collisions"]:
         what.append("collision due to the fault" if record["attributable"] else "collision")
+    return what
+
+
+def _fault_complaints(fault: Record) -> list[str]:
+    what, kind = [], fault["kind"]
+    if fault["apart"] is None and not fault["found"]:
+        what.append(f"{kind} {'never found' if fault['latency_s'] is None else 'found late'}")
+    elif fault["apart"] is None and not fault["named_right"]:
+        what.append(f"{kind} named {fault['named']}")
+    if fault["rehabilitation"] in ("late", "never"):
+        what.append(f"{kind} repaired, HEALTHY {fault['rehabilitation']}")
     return what
 
 

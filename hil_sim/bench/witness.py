@@ -12,10 +12,11 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from hil_sim.robot import SonarReading
-from hil_sim.sil import VISIBLE_MM, VISIBLE_PART, Sighting
-from hil_sim.sonar import NO_ECHO_MM, transducer_pose
-from hil_sim.world import Pose
+from hil_sim.robot.interfaces import SonarReading
+from hil_sim.sil import Sighting
+from hil_sim.sil.noted import VISIBLE_MM, VISIBLE_PART
+from hil_sim.sonar.params import NO_ECHO_MM, transducer_pose
+from hil_sim.world.model import Pose
 
 # One place and one bearing are for the observer what they are for the peers (firmware/awareness/evidence_peers.c,
 # evidence_seen.c and evidence_pair.c; a test compares them).

@@ -15,7 +15,8 @@ import yaml
 
 from hil_sim.bench.course import ROOM_MM, SWING_MM, Field, make_field
 from hil_sim.errors import SimError
-from hil_sim.world import World, load_yaml
+from hil_sim.world.files import load_yaml
+from hil_sim.world.model import World
 
 Rng = np.random.Generator
 _TRIES: Final = 50

@@ -13,7 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Final, NoReturn
 
-from hil_sim.conformance.checks import CHECKS, GROUPS, Check
+from hil_sim.conformance.check import Check
+from hil_sim.conformance.checks import CHECKS, GROUPS
 from hil_sim.conformance.client import Client, Failed, NotApplicable, Target, parse_target
 from hil_sim.errors import SimError
 
@@ -148,20 +149,28 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         checks = selected(arguments.only)
         if arguments.list:
-            for check in checks:
-                print(f"{check.title:32}  {'moves' if check.motion else '     '}  {check.expects}")
+            _list(checks)
             return 0
-        if not arguments.target:
-            raise SimError("--target is needed: tcp:HOST:PORT or serial:PATH[@BAUD]")
-        target = parse_target(arguments.target)
-        motion = _may_move(arguments, checks)
-        tell = (lambda r: print(json.dumps(asdict(r)), flush=True)) if arguments.json else _print
-        results = run(target, checks, motion, tell)
+        return _check_target(arguments, checks)
     except SimError as error:
         print(f"argus-conformance: {error}", file=sys.stderr)
         return 3 if error.exit_code == 1 else 2
     except KeyboardInterrupt:
         return 130
+
+
+def _list(checks: Sequence[Check]) -> None:
+    for check in checks:
+        print(f"{check.title:32}  {'moves' if check.motion else '     '}  {check.expects}")
+
+
+def _check_target(arguments: argparse.Namespace, checks: Sequence[Check]) -> int:
+    if not arguments.target:
+        raise SimError("--target is needed: tcp:HOST:PORT or serial:PATH[@BAUD]")
+    target = parse_target(arguments.target)
+    motion = _may_move(arguments, checks)
+    tell = (lambda r: print(json.dumps(asdict(r)), flush=True)) if arguments.json else _print
+    results = run(target, checks, motion, tell)
     verdicts = Counter(result.verdict for result in results)
     if not arguments.json:
         print(", ".join(f"{verdicts[verdict]} {verdict}" for verdict in _COLOURS))

@@ -177,8 +177,7 @@ class Client:
         heard: list[Heard] = []
         until = time.monotonic() + seconds
         while (now := time.monotonic()) < until:
-            if self.pulses and self.in_session and now - self._sent_s > _PULSE_S and self._line is not None:
-                self.command("PULSE")
+            self._pulse(now)
             if not self._waiting:
                 self._take(min(until - now, 0.1))
             while self._waiting:
@@ -188,6 +187,11 @@ class Client:
             if self._line is None:
                 break
         return heard
+
+    def _pulse(self, now: float) -> None:
+        """Keep a session alive in which nothing was said for a while."""
+        if self.pulses and self.in_session and now - self._sent_s > _PULSE_S and self._line is not None:
+            self.command("PULSE")
 
     def _take(self, timeout_s: float) -> None:
         data = self._read(timeout_s)

@@ -12,7 +12,8 @@ import re
 import signal
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 from typing import NoReturn
@@ -21,10 +22,12 @@ from hil_sim.demo import picture, report
 from hil_sim.demo.judge import Injected, Task, Verdict, clock_offset_s, judge
 from hil_sim.demo.live import view
 from hil_sim.demo.runner import ENDING, Recording, Run, Setup
+from hil_sim.demo.scene import Drive
 from hil_sim.errors import SimError
-from hil_sim.faults import parse_fault
-from hil_sim.scenario import SEED_MAX, Scenario, load_scenario
-from hil_sim.world import World, load_world
+from hil_sim.faults.grammar import parse_fault
+from hil_sim.scenario.scenario import SEED_MAX, Scenario, load_scenario
+from hil_sim.world.files import load_world
+from hil_sim.world.model import World
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENARIOS = Path(__file__).resolve().parents[1] / "scenarios"
@@ -224,7 +227,7 @@ def _conclude(
 ) -> None:
     path = arguments.out / "demo.png"
     picture.draw(
-        picture.Drive(
+        Drive(
             world=load_world(scenario.world),
             course_mm=scenario.course,
             truth=recording.truth,
@@ -267,16 +270,29 @@ def _demonstrate(arguments: argparse.Namespace) -> int:
     return 0 if verdict.passed else 1
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run the demonstration; return its exit code."""
-    arguments = parser().parse_args(argv)
-    # Without this a SIGTERM would leave argusd driving. What was ignored (nohup) stays ignored.
+@contextmanager
+def _ending_signals() -> Iterator[None]:
+    """Let a signal that ends this program end the drive first: without this a SIGTERM would leave argusd driving.
+
+    What was ignored (nohup) stays ignored.
+    """
     before = {number: signal.getsignal(number) for number in ENDING}
     for number, handler in before.items():
         if handler is not signal.SIG_IGN:
             signal.signal(number, _ended)
     try:
-        return _demonstrate(arguments)
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the demonstration; return its exit code."""
+    arguments = parser().parse_args(argv)
+    try:
+        with _ending_signals():
+            return _demonstrate(arguments)
     except SimError as error:
         print(f"demo: {error}", file=sys.stderr)
         return error.exit_code
@@ -290,9 +306,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         print(f"demo: {error.filename}: {error.strerror}; name another folder with --out", file=sys.stderr)
         return 2
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 if __name__ == "__main__":

@@ -132,6 +132,8 @@ class Verdict:
     findings: tuple[Finding, ...]
     journey: Journey | None
     false_disables: tuple[tuple[float, int, str], ...] = field(default=())
+    host_late_ms: tuple[float, ...] = field(default=())
+    """How late the host was with each turn that the emulator calls late: a failure then says little of Argus."""
 
     @property
     def passed(self) -> bool:
@@ -143,6 +145,10 @@ class Verdict:
         record: dict[str, Any] = {"passed": self.passed, "rules": [asdict(rule) for rule in self.rules]}
         record["findings"] = [asdict(one) | {"latency_s": one.latency_s} for one in self.findings]
         record["journey"] = asdict(self.journey) | {"time_s": self.journey.time_s} if self.journey else None
+        record["host"] = {
+            "late_turns": len(self.host_late_ms),
+            "late_max_ms": max(self.host_late_ms, default=0.0),
+        }
         record["false_disables"] = [
             {"t_s": t_s, "sonar": sonar, "kind": kind} for t_s, sonar, kind in self.false_disables
         ]
@@ -476,4 +482,5 @@ def judge(truth: Sequence[Record], events: Sequence[Record], task: Task) -> Verd
         _rule_healthy(false),
         _rule_whole(drive),
     )
-    return Verdict(rules, findings, _journey(drive), false)
+    late = tuple(float(record["late_ms"]) for record in of_type(truth, "late"))
+    return Verdict(rules, findings, _journey(drive), false, late)

@@ -88,6 +88,11 @@ def _journey(journey: Journey) -> list[str]:
     return _columns(rows)
 
 
+def _host_line(late_ms: Sequence[float]) -> str:
+    turns = f"{len(late_ms)} turn{'s' * (len(late_ms) > 1)} of the emulator"
+    return f"the host was late with {turns}, at most {max(late_ms):.0f} ms: what fails may be its doing, not Argus's"
+
+
 def text(verdict: Verdict, *, colour: bool = False) -> str:
     """Return the report, lines ending without spaces; times count from the opened session."""
     journey = verdict.journey
@@ -101,6 +106,8 @@ def text(verdict: Verdict, *, colour: bool = False) -> str:
     for rule in verdict.rules:
         mark = _paint("ok  ", _GOOD, colour) if rule.holds else _paint("FAIL", _BAD, colour)
         lines.append(f"  {mark} {rule.name.ljust(width)}  {rule.detail}")
+    if verdict.host_late_ms:
+        lines.append("  " + _paint(_host_line(verdict.host_late_ms), _BAD, colour))
     failed = [rule.name for rule in verdict.rules if not rule.holds]
     last = "PASSED" if not failed else "FAILED: " + ", ".join(failed)
     lines.append("  " + _paint(last, _BOLD + (_BAD if failed else _GOOD), colour))

@@ -221,12 +221,9 @@ class Run:
         recording = self.recording
         for child in self.children:
             if child.process.poll() is not None:
-                arrived = child.name == "argusd" and child.process.returncode == 0 and goal_seen is not None
-                recording.ended = "goal reached" if arrived else child.why_ended()
-                if recording.opened_s is None:
-                    raise CannotStart(child.why_ended())
-        now = time.monotonic()
+                self._note_end_of(child, goal_seen)
         if not recording.ended:
+            now = time.monotonic()
             if goal_seen is not None and now - goal_seen > _AFTER_GOAL_S and self._stands():
                 recording.ended = "goal reached"
             elif recording.opened_s is None and now - started > _SESSION_WITHIN_S:
@@ -236,6 +233,12 @@ class Run:
             elif recording.journey_s > self.setup.timeout_s:
                 recording.ended = f"no goal within {self.setup.timeout_s:.0f} s of robot time"
         return bool(recording.ended)
+
+    def _note_end_of(self, child: Child, goal_seen: float | None) -> None:
+        arrived = child.name == "argusd" and child.process.returncode == 0 and goal_seen is not None
+        self.recording.ended = "goal reached" if arrived else child.why_ended()
+        if self.recording.opened_s is None:
+            raise CannotStart(child.why_ended())
 
     def _stands(self) -> bool:
         states = [record for record in self.recording.truth[-200:] if record.get("type") == "state"]

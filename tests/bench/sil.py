@@ -8,10 +8,10 @@ import statistics
 import time
 from collections.abc import Mapping
 
-from hil_sim import kernel
-from hil_sim.movers import Door, Person
 from hil_sim.sil import Mission, Sil
-from hil_sim.world import load_world
+from hil_sim.sonar import kernel
+from hil_sim.world.files import load_world
+from hil_sim.world.movers import Door, Person
 
 _ROUNDS = ((2300.0, 1000.0), (-500.0, 500.0), (2300.0, -800.0), (0.0, 0.0))
 _PEOPLE = (

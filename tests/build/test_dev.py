@@ -3,20 +3,23 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
+import lizard
 import pytest
+from devtool import cmake, testing
 
 ROOT = Path(__file__).resolve().parents[2]
-COMMANDS = ("demo", "test", "build", "format", "lint", "coverage", "size", "bench", "clean")
+COMMANDS = ("demo", "shell", "test", "build", "format", "lint", "coverage", "size", "bench", "clean")
 
 
 def dev(*arguments: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, str(ROOT / "tools/dev"), *arguments]
-    return subprocess.run(command, check=False, capture_output=True, text=True, timeout=60)
+    return subprocess.run(command, check=False, capture_output=True, text=True, timeout=600)
 
 
 def test_help_names_every_command() -> None:
@@ -43,6 +46,7 @@ def test_help_of_each_command(command: str) -> None:
         (["nonsense"], "invalid choice"),
         (["build", "nonsense"], "there are: debug release"),
         (["test", "--only", "nonsense"], "there are: tables release"),
+        (["test", "--quick", "--only", "hil"], "there are: tables release"),
         (["test", "--nonsense"], "unrecognized arguments"),
     ],
 )
@@ -59,3 +63,84 @@ def test_list_prints_the_stages_and_does_nothing(command: str) -> None:
     assert done.returncode == 0
     assert len(done.stdout.splitlines()) >= 2
     assert "dev:" not in done.stdout
+
+
+def stages_of(*arguments: str) -> list[str]:
+    return [line.split()[0] for line in dev(*arguments, "--list").stdout.splitlines()]
+
+
+def test_the_quick_stages_are_some_of_all() -> None:
+    quick, everything = stages_of("test", "--quick"), stages_of("test")
+    assert set(quick) < set(everything)
+    assert not {"hil", "can", "soak"} & set(quick)
+
+
+@pytest.fixture
+def commands(monkeypatch: pytest.MonkeyPatch) -> dict[str, list[list[str]]]:
+    """What each stage would run, builds left out."""
+    found: dict[str, list[list[str]]] = {}
+    for module in (cmake, testing):
+        monkeypatch.setattr(module, "build", lambda preset, run: None)
+    for stage in testing.TEST_STAGES:
+        if stage.name not in {"hil", "can"}:
+            runs: list[list[str]] = found.setdefault(stage.name, [])
+            stage.action(lambda command, runs=runs: runs.append([str(word) for word in command]))  # type: ignore[misc]
+    return found
+
+
+def test_every_c_test_is_run_optimised(commands: dict[str, list[list[str]]]) -> None:
+    """The fast ones in the stage of the release build, those that compute for long in that of their own."""
+    for stage, choice in (("release", ["-LE", "soak"]), ("soak", ["-L", "soak"])):
+        (ctest,) = (run for run in commands[stage] if run[0] == "ctest")
+        assert ctest[1:3] == ["--preset", "release"]
+        assert ctest[-2:] == choice
+
+
+def test_every_python_test_is_run(commands: dict[str, list[list[str]]]) -> None:
+    """Those that compute are in python or soak, the others in hil or can."""
+    for stage, mark in (("python", "not soak"), ("soak", "soak")):
+        (pytests,) = (run for run in commands[stage] if "pytest" in run)
+        assert pytests[pytests.index("-m", 2) + 1] == mark
+        assert "tests" in pytests
+        ignored = {word for word in pytests if word.startswith("--ignore")}
+        assert ignored == {"--ignore=tests/hil", "--ignore=tests/can"}
+
+
+def test_a_shell_finds_what_was_built() -> None:
+    done = dev("shell", "sh", "-c", "command -v argusd; command -v argus-sim; exit 7")
+    assert done.returncode == 7, done.stderr
+    assert done.stdout.splitlines()[-2:] == [
+        str(ROOT / "build/release/argusd"),
+        str(ROOT / ".venv/bin/argus-sim"),
+    ]
+
+
+def test_in_the_shell_dev_neither_runs_on_venv_nor_makes_it_anew() -> None:
+    stamp = ROOT / ".venv/argus-recipe"
+    before = stamp.stat()
+    done = dev("shell", "tools/dev", "shell", "true")
+    assert done.returncode == 0, done.stderr
+    assert ".venv" not in done.stdout
+    assert stamp.stat().st_mtime_ns == before.st_mtime_ns
+    program = (
+        "import sys; sys.argv[0] = 'x'; from devtool.setup import leave_venv; leave_venv(); print(sys.prefix)"
+    )
+    command = [str(ROOT / ".venv/bin/python"), "-c", program]
+    env = os.environ | {"PYTHONPATH": str(ROOT / "tools")}
+    done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() != str(ROOT / ".venv")
+
+
+def test_a_shell_that_is_not_there() -> None:
+    done = dev("shell", "no-such-command")
+    assert (done.returncode, done.stderr) == (2, "dev: no-such-command: No such file or directory\n")
+
+
+def test_the_modules_are_small_and_need_nothing_but_python() -> None:
+    for path in sorted((ROOT / "tools/devtool").glob("*.py")):
+        text = path.read_text(encoding="utf-8")
+        assert len(text.splitlines()) <= 500, path
+        for name in re.findall(r"^(?:from|import) (\w+)", text, re.MULTILINE):
+            assert name in sys.stdlib_module_names or name == "devtool", f"{path}: {name}"
+        for one in lizard.analyze_file(str(path)).function_list:
+            assert one.cyclomatic_complexity <= 10, f"{path}:{one.start_line}: {one.name}"

@@ -292,7 +292,9 @@ def test_words_are_those_of_argusd(database: Database, message: str, signal: str
     assert built.exists(), "build it: tools/dev build release"
     name_of = ctypes.CDLL(str(built)).argus_name
     name_of.restype = ctypes.c_char_p
-    tables = {name: value for value, name in gen_dbc.enum_values("include/argus/argus.h", "argus_name_of_t").items()}
+    tables = {
+        name: value for value, name in gen_dbc.enum_values("include/argus/argus.h", "argus_name_of_t").items()
+    }
     table = tables[WORDS[message, signal]]
     choices = database.get_message_by_name(message).get_signal_by_name(signal).choices
     assert choices

@@ -103,7 +103,17 @@ def test_no_file_of_hal_includes_itself_by_way_of_others() -> None:
 
 
 def test_layers_point_one_way() -> None:
-    order = ["argus", "arcos", "robot", "knowledge", "awareness", "analysis", "adjustment", "task", "supervisor"]
+    order = [
+        "argus",
+        "arcos",
+        "robot",
+        "knowledge",
+        "awareness",
+        "analysis",
+        "adjustment",
+        "task",
+        "supervisor",
+    ]
     firmware = ROOT / "firmware"
     assert {path.parent.name for path in firmware.glob("*/*.c")} <= set(order)
     found = []

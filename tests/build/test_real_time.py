@@ -4,45 +4,28 @@ one that fails on a punctual host fails the stage."""
 
 from __future__ import annotations
 
-import importlib.machinery
-import importlib.util
 import json
 import os
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import pytest
+from devtool.real_time import core_part, run_in_real_time, worker_count, worker_plan
+from devtool.stages import StageFailed
 from lateness import emulators_late_ms
 
-from hil_sim.truth import TruthRecord
+from hil_sim.record.truth import TruthRecord
 
 ROOT = Path(__file__).resolve().parents[2]
-
-
-@pytest.fixture(scope="module")
-def dev() -> Iterator[Any]:
-    """tools/dev as a module."""
-    loader = importlib.machinery.SourceFileLoader("dev_under_test", str(ROOT / "tools/dev"))
-    spec = importlib.util.spec_from_loader(loader.name, loader)
-    assert spec is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[loader.name] = module  # dataclasses look their module up
-    before, sys.dont_write_bytecode = sys.dont_write_bytecode, True
-    loader.exec_module(module)
-    sys.dont_write_bytecode = before
-    yield module
-    del sys.modules[loader.name]
 
 
 @dataclass
 class Runs:
     """Stands for running pytest: each run ends as the next of `ends` says, (exit code, failed and how late)."""
 
-    dev: Any
     report: Path
     ends: list[tuple[int, dict[str, int]] | None]
     commands: list[list[str]] = field(default_factory=list)
@@ -52,23 +35,21 @@ class Runs:
         self.commands.append([str(word) for word in command])
         end = self.ends.pop(0)
         if end is None:
-            raise self.dev.StageFailed("killed")
+            raise StageFailed("killed")
         code, failed = end
         self.report.write_text(json.dumps({"exit": code, "failed": failed}))
         if code:
-            raise self.dev.StageFailed(f"exit code {code}")
+            raise StageFailed(f"exit code {code}")
 
     def go(self, workers: int = 10) -> str | None:
-        note = self.dev.run_in_real_time(self, ["pytest", "-q"], ["tests/hil"], workers, self.report)
-        assert note is None or isinstance(note, str)
-        return note
+        return run_in_real_time(self, ["pytest", "-q"], ["tests/hil"], workers, self.report)
 
 
 @pytest.fixture
-def runs(dev: Any, tmp_path: Path) -> Runs:
+def runs(tmp_path: Path) -> Runs:
     report = tmp_path / "host-late.json"
     report.write_text("of an earlier stage")
-    return Runs(dev, report, [])
+    return Runs(report, [])
 
 
 def test_what_passes_is_run_once(runs: Runs) -> None:
@@ -108,47 +89,48 @@ def test_what_failed_while_the_host_was_late_is_run_again_with_ever_fewer_worker
 )
 def test_nothing_else_is_run_again(runs: Runs, end: tuple[int, dict[str, int]] | None) -> None:
     runs.ends = [end]
-    with pytest.raises(runs.dev.StageFailed):
+    with pytest.raises(StageFailed):
         runs.go()
     assert len(runs.commands) == 1
 
 
 def test_a_failure_on_a_punctual_host_is_named(runs: Runs) -> None:
     runs.ends = [(1, {"a": 300, "b": 0})]
-    with pytest.raises(runs.dev.StageFailed, match="the host was punctual: b$"):
+    with pytest.raises(StageFailed, match=r"the host was punctual: b$"):
         runs.go()
 
 
 def test_what_fails_punctually_when_run_again_fails(runs: Runs) -> None:
     runs.ends = [(1, {"a": 300, "b": 200}), (1, {"b": 0})]
-    with pytest.raises(runs.dev.StageFailed, match="punctual: b$"):
+    with pytest.raises(StageFailed, match=r"punctual: b$"):
         runs.go()
 
 
 def test_a_host_that_is_late_for_a_single_test_fails_the_stage(runs: Runs) -> None:
-    runs.ends = [(1, {"a": 300})] * 3
-    with pytest.raises(runs.dev.StageFailed, match="even for one test at a time"):
+    runs.ends = [(1, {"a": 300})] * 5
+    with pytest.raises(StageFailed, match="even for one test at a time"):
         runs.go()
-    assert len(runs.commands) == 3
+    assert [command[3] for command in runs.commands] == ["10", "3", "1", "1", "1"]
 
 
 @pytest.mark.parametrize(
-    ("workers", "expected"), [(10, (10, 3, 1)), (32, (32, 10, 1)), (4, (4, 2, 1)), (2, (2, 2, 1))]
+    ("workers", "expected"),
+    [(10, (10, 3, 1, 1, 1)), (32, (32, 10, 1, 1, 1)), (4, (4, 2, 1, 1, 1)), (2, (2, 2, 1, 1, 1))],
 )
-def test_the_workers_of_each_run(dev: Any, workers: int, expected: tuple[int, ...]) -> None:
-    assert dev.worker_plan(workers) == expected
+def test_the_workers_of_each_run(workers: int, expected: tuple[int, ...]) -> None:
+    assert worker_plan(workers) == expected
 
 
-def test_the_workers_follow_what_the_machine_gives(dev: Any) -> None:
-    usual = dev.worker_count(2, 1.0, 0.4)
+def test_the_workers_follow_what_the_machine_gives() -> None:
+    usual = worker_count(2, 1.0, 0.4)
     assert usual == 10
-    slow = dev.worker_count(2, 1.0, 3 * 0.4)
-    shared = dev.worker_count(2, 1 / 3, 0.4)
+    slow = worker_count(2, 1.0, 3 * 0.4)
+    shared = worker_count(2, 1 / 3, 0.4)
     assert 2 < slow < usual
     assert slow == shared
-    assert dev.worker_count(1, 0.1, 2.0) == 2
-    assert dev.worker_count(2, 1.0, 0.0) == 10
-    assert dev.worker_count(8, 1.0, 0.2) == 32
+    assert worker_count(1, 0.1, 2.0) == 2
+    assert worker_count(2, 1.0, 0.0) == 10
+    assert worker_count(8, 1.0, 0.2) == 32
 
 
 def test_the_latest_turn_is_found_in_every_truth_record_below_the_folder(tmp_path: Path) -> None:
@@ -208,5 +190,5 @@ def test_who_failed_is_reported_with_how_late_the_host_was(tmp_path: Path, worke
     assert found["failed"]["test_all.py::test_fails"] < 60000
 
 
-def test_the_measurement_tells_parts_of_a_core(dev: Any) -> None:
-    assert 0.0 < dev.core_part() <= 1.05
+def test_the_measurement_tells_parts_of_a_core() -> None:
+    assert 0.0 < core_part() <= 1.05

@@ -17,6 +17,9 @@ foreach(name argus argus_hal argus_flags unity)
     add_library(${name} INTERFACE)
 endforeach()
 add_subdirectory(unit)
+get_property(tests DIRECTORY unit PROPERTY TESTS)
+list(JOIN tests " " tests)
+message(STATUS "tests: ${tests}.")
 """
 
 
@@ -56,6 +59,7 @@ def test_own_hooks_are_used(tmp_path: Path) -> None:
         ("void test_a(void) {\n}\nstatic void test_b(void) {\n}\n", "would never run"),
         ("void test_a(void) {\n}\nvoid test_b() {\n}\n", "would never run"),
         ("void test_a(void) {\n}\nint test_b(int x) {\n    return x;\n}\n", "would never run"),
+        ("void test_a(void) { // soaks\n}\n", "'soak' is the one known"),
         ("int helper(void) {\n    return 0;\n}\n", "no 'void test_name(void)'"),
     ],
 )
@@ -64,3 +68,26 @@ def test_a_test_that_would_not_run_stops_the_build(tmp_path: Path, source: str, 
     assert done.returncode != 0
     assert "arcos/test_probe.c" in done.stderr
     assert expected in " ".join(done.stderr.split())
+
+
+def test_who_computes_for_long_is_run_apart(tmp_path: Path) -> None:
+    configure(tmp_path, "void test_a(void);\nvoid test_a(void) { // soak\n}\n\nvoid test_b(void) {\n}\n")
+    lines = [line.strip() for line in runner(tmp_path).splitlines()]
+    for name, kind in (("test_a", "soak"), ("test_b", "short")):
+        at = lines.index(f'UnityDefaultTestRun({name}, "{name}", __LINE__);')
+        assert lines[at - 1] == f'if (wanted(argc, argv, "{kind}"))'
+
+
+@pytest.mark.parametrize(
+    ("source", "tests"),
+    [
+        ("void test_a(void) {\n}\n", "arcos.test_probe"),
+        ("void test_a(void) { // soak\n}\n", "arcos.test_probe.soak"),
+        (
+            "void test_a(void) { // soak\n}\nvoid test_b(void) {\n}\n",
+            "arcos.test_probe arcos.test_probe.soak",
+        ),
+    ],
+)
+def test_each_kind_that_a_file_has_is_a_test_of_ctest(tmp_path: Path, source: str, tests: str) -> None:
+    assert f"tests: {tests}.\n" in configure(tmp_path, source).stdout

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FOLDERS = ("firmware", "hal", "hil_sim", "tests", "tools", "cmake", ".ci", ".github")
+FOLDERS = ("firmware", "hal", "hil_sim", "tests", "tools", "cmake", "examples", ".ci", ".github")
 SOURCES = {".c", ".h", ".py", ".cmake", ".toml", ".yaml", ".yml", ".sh"}
 BINARY = {".png", ".gz", ".bin", ".log", ".pyc"}
 # Split, so that this file does not hold what it looks for.
@@ -18,7 +18,11 @@ REGISTRIES = re.compile("|".join(["pypi" + r"\.org", "python" + "hosted", "npm" 
 
 def texts() -> Iterator[tuple[Path, str]]:
     """Return path and text of every file that a person wrote."""
-    tops = [path for path in ROOT.iterdir() if path.is_file() and path.suffix not in BINARY and path.name != ".git"]
+    tops = [
+        path
+        for path in ROOT.iterdir()
+        if path.is_file() and path.suffix not in BINARY and path.name != ".git"
+    ]
     below = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*") if path.is_file()]
     for path in sorted(tops + below):
         relative = path.relative_to(ROOT)

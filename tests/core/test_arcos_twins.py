@@ -132,7 +132,7 @@ def twin(tmp_path_factory: pytest.TempPathFactory) -> Twin:
     subprocess.run(
         ["gcc", *flags, "-I", ROOT / "firmware", "-I", ROOT / "firmware/include", "-o", library, *sources],
         check=True,
-        timeout=120,
+        timeout=600,
     )
     return Twin(library)
 

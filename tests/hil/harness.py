@@ -35,8 +35,8 @@ REST_MM_S: Final = 1.0
 REST_DEG_S: Final = 0.5
 POLL_S: Final = 0.05
 
-# The host may be busy: no test waits less than this for a program to do what it does in a second.
-PATIENCE_S: Final = 30.0
+# A guard against what hangs, not a rule: what is waited for comes within seconds where the host is not busy.
+PATIENCE_S: Final = 180.0
 
 Record = dict[str, Any]
 T = TypeVar("T")
@@ -58,7 +58,7 @@ def wait_for(what: str, probe: Callable[[], T], timeout_s: float) -> T:
         time.sleep(POLL_S)
 
 
-def terminate(process: subprocess.Popen[bytes], grace_s: float = 5.0) -> None:
+def terminate(process: subprocess.Popen[bytes], grace_s: float = 60.0) -> None:
     """End a process of ours, by force if it must be."""
     if process.poll() is None:
         process.send_signal(signal.SIGCONT)
@@ -452,7 +452,7 @@ def _daemon_lines(daemon: Argusd) -> Iterator[str]:
     yield from (f"argusd says: {line}" for line in daemon.errors[-5:])
 
 
-def run_argusd(*arguments: str, timeout_s: float = 60.0) -> subprocess.CompletedProcess[str]:
+def run_argusd(*arguments: str, timeout_s: float = 600.0) -> subprocess.CompletedProcess[str]:
     """Run argusd to its end."""
     return subprocess.run(
         [str(ARGUSD), *arguments], capture_output=True, text=True, timeout=timeout_s, check=False

@@ -13,7 +13,7 @@ from typing import Final
 import pytest
 from harness import ROOT
 
-from hil_sim.links import LATE_MS
+from hil_sim.links.loop import LATE_MS
 
 _TICK_S: Final = 0.02
 _KEY: Final = "host_late_ms"

@@ -23,8 +23,8 @@ SONAR_FACE_MM: int = load("robots/p3dx-sh")["body"]["sonar_face_mm"]
 def test_every_bearing(bench: Bench, sonar: int) -> None:
     sim = bench.sim(bench.world(**hall_with_box(BOX_X_MM, sonar)), seed=sonar)
     argusd = bench.argusd("--goal", f"{GOAL_MM},0")
-    seen = argusd.wait("OBJECT", "AVOIDING", timeout_s=40)
-    ended = argusd.wait("GOAL_REACHED", "NO_WAY", "MISSION_FAILED", after_t=seen["t"], timeout_s=90)
+    seen = argusd.wait("OBJECT", "AVOIDING")
+    ended = argusd.wait("GOAL_REACHED", "NO_WAY", "MISSION_FAILED", after_t=seen["t"])
     sim.assert_no_collision()
     assert_only(argusd)
     if ended["event"] == "GOAL_REACHED":
@@ -38,7 +38,7 @@ def test_every_bearing(bench: Bench, sonar: int) -> None:
 def test_with_the_two_foremost_sonars_dead(bench: Bench, sonar: int) -> None:
     sim = bench.sim(bench.world(**hall_with_box(BOX_X_MM, sonar)), "off:3+4@0s", seed=sonar)
     argusd = bench.argusd("--goal", f"{GOAL_MM},0")
-    seen = argusd.wait("OBJECT_CHECKED", "OBJECT", "AVOIDING", timeout_s=60)
+    seen = argusd.wait("OBJECT_CHECKED", "OBJECT", "AVOIDING")
     # Long enough to come to rest, to choose a way and to start on it, where a bad choice would touch the box.
     until_s = sim.robot_time(argusd.unix(seen)) + 15
     sim.wait("what it does next", lambda s: s["t_s"] > until_s, 40)
@@ -54,7 +54,7 @@ def test_a_wall_that_only_the_sweep_sees_stops_the_next_step(bench: Bench) -> No
     """The goal lies so near a wall that the last step before it may not be made."""
     sim = bench.sim(bench.world(**hall(length_mm=WALL_MM)), "off:3+4@0s")
     argusd = bench.argusd("--goal", f"{WALL_MM - 300:.0f},0")
-    checked = argusd.wait("OBJECT_CHECKED", timeout_s=60)
+    checked = argusd.wait("OBJECT_CHECKED")
     assert checked["value"] <= CHECK_RANGE_MM
     sim.wait("what it does next", lambda s: s["t_s"] > sim.robot_time(argusd.unix(checked)) + 5)
     farthest_mm = max(s["x_mm"] for s in sim.of("state"))

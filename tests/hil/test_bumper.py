@@ -38,7 +38,7 @@ def test_hit_in_motion_stops_backs_off_checks_and_goes_on(bench: Bench) -> None:
     sim = bench.sim(bench.world(**hall()), "bumper:3@6s-8s")
     tap = bench.tap()
     argusd = bench.argusd("--goal", "1500,0", link=f"serial:{tap.address}@9600")
-    bumper = argusd.wait("BUMPER", timeout_s=40)
+    bumper = argusd.wait("BUMPER")
     backing = argusd.wait("BACKING", value=BACK_OFF_MM)
     check = argusd.wait("HEALTH_CHECK", after_t=backing["t"])
     hit_s, backing_s = pressed_s(sim), sim.robot_time(argusd.unix(backing))
@@ -53,7 +53,7 @@ def test_hit_in_motion_stops_backs_off_checks_and_goes_on(bench: Bench) -> None:
         "drives on before the check"
     )
     assert bumper["value"] >> 8 == 1 << 3
-    argusd.wait("GOAL_REACHED", timeout_s=60)
+    argusd.wait("GOAL_REACHED")
     assert_only(argusd)
     assert argusd.wait_exit() == 0
     assert_reached(sim, 1500)
@@ -63,8 +63,8 @@ def test_hit_in_motion_stops_backs_off_checks_and_goes_on(bench: Bench) -> None:
 def test_hit_with_the_rear_blocked_waits_and_says_so_each_10_s(bench: Bench) -> None:
     sim = bench.sim(bench.world(**hall()), "bumper:3@6s-28s", "stuck:11@0s:value=300")
     argusd = bench.argusd("--goal", "1500,0")
-    argusd.wait("BUMPER", timeout_s=40)
-    says = [argusd.wait("WAITING", value=value, timeout_s=40) for value in (0, 10, 20)]
+    argusd.wait("BUMPER")
+    says = [argusd.wait("WAITING", value=value) for value in (0, 10, 20)]
     assert not argusd.named("BACKING")
     hit_s = pressed_s(sim)
     waiting = [
@@ -73,8 +73,8 @@ def test_hit_with_the_rear_blocked_waits_and_says_so_each_10_s(bench: Bench) -> 
     assert waiting
     assert not any(map(is_translating, waiting))
     assert not any(abs(s["w_deg_s"]) > 1 for s in waiting), "turns with a bumper pressed"
-    clear = argusd.wait("BUMPER_CLEAR", timeout_s=40)
+    clear = argusd.wait("BUMPER_CLEAR")
     argusd.wait("HEALTH_CHECK", after_t=clear["t"])
-    argusd.wait("GOAL_REACHED", timeout_s=60)
+    argusd.wait("GOAL_REACHED")
     assert argusd.wait_exit() == 0
     assert_reached(sim, 1500)

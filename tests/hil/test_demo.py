@@ -12,10 +12,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from harness import ARGUSD, PYTHON, ROOT, HilFailure
+from harness import ARGUSD, PATIENCE_S, PYTHON, ROOT, HilFailure
 
 DEFAULT = "off:3,wrong:6"
-LONGEST_S = 240.0
+LONGEST_S = 1200.0
 
 
 def command(out: Path, seed: int, faults: str, profile: str, world: str | None) -> list[str]:
@@ -44,7 +44,7 @@ def started(commands: Sequence[list[str]], folder: Path) -> Iterator[list[subpro
                 drive.send_signal(signal.SIGINT)
         for drive in drives:
             try:
-                drive.wait(20)
+                drive.wait(PATIENCE_S)
             except subprocess.TimeoutExpired:
                 drive.kill()
                 drive.wait()

@@ -7,7 +7,7 @@ import signal
 import time
 
 import pytest
-from harness import SIP_S, Argusd, Bench, Record, Sim
+from harness import PATIENCE_S, SIP_S, Argusd, Bench, Record, Sim
 from rules import (
     JITTER_S,
     assert_no_move_sent,
@@ -48,7 +48,7 @@ def test_cut_in_motion_and_restored(bench: Bench, seconds: float) -> None:
     argusd.wait("LINK_RESUMED" if seconds < 4 else "SESSION_OPEN", after_t=cut_t)
     check_unix = assert_checked_first(sim, argusd, rest, cut_t)
     assert_no_move_sent(tap, back_unix, check_unix - JITTER_S)
-    argusd.wait("GOAL_REACHED", timeout_s=60)
+    argusd.wait("GOAL_REACHED")
     assert_only(argusd)
     assert argusd.wait_exit() == 0
     assert_reached(sim, GOAL_MM)
@@ -58,11 +58,11 @@ def test_cut_by_the_emulator(bench: Bench) -> None:
     """The same as a link fault of the emulator, which users have without a tap."""
     sim = bench.sim(bench.world(**hall()), "link-cut@6s-9s")
     argusd = bench.argusd("--goal", f"{GOAL_MM},0")
-    stalled = argusd.wait("LINK_STALLED", timeout_s=40)
+    stalled = argusd.wait("LINK_STALLED")
     cut_s = next(r["t_s"] for r in sim.of("link") if r["on"])
     rest = assert_stops_in_time(sim, cut_s)
     assert_checked_first(sim, argusd, rest, stalled["t"])
-    argusd.wait("GOAL_REACHED", timeout_s=60)
+    argusd.wait("GOAL_REACHED")
     assert argusd.wait_exit() == 0
     assert_reached(sim, GOAL_MM)
 
@@ -76,7 +76,7 @@ def test_host_frozen_in_motion(bench: Bench) -> None:
     rest = assert_stops_in_time(sim, sim.robot_time(frozen_unix))
     argusd.signal(signal.SIGCONT)
     assert_checked_first(sim, argusd, rest, frozen_t)
-    argusd.wait("GOAL_REACHED", timeout_s=60)
+    argusd.wait("GOAL_REACHED")
     assert argusd.wait_exit() == 0
     assert_reached(sim, GOAL_MM)
 
@@ -91,7 +91,7 @@ def test_killed_in_motion_and_a_second_argusd_goes_on(bench: Bench) -> None:
     second.wait("SESSION_OPEN")
     assert second.named("SESSION_DISLODGED"), "the old session was still open"
     assert_checked_first(sim, second, rest, 0.0)
-    second.wait("GOAL_REACHED", timeout_s=60)
+    second.wait("GOAL_REACHED")
     assert second.wait_exit() == 0
     assert_reached(sim, rest["x_mm"] + 400)
 
@@ -109,8 +109,8 @@ def test_emulator_killed_and_started_again(bench: Bench) -> None:
     assert_checked_first(again, argusd, again.of("state")[0], lost["t"])
     # The new robot stands at the start of its world; what was driven before is argusd's to remember.
     cruise(again, x_mm=50)
-    argusd.wait("GOAL_REACHED", timeout_s=60)
-    assert argusd.process.wait(10) == 0
+    argusd.wait("GOAL_REACHED")
+    assert argusd.process.wait(PATIENCE_S) == 0
     again.wait_rest()
     again.assert_no_collision()
 
@@ -148,7 +148,7 @@ def test_signal_in_motion_stops_then_closes_in_order(bench: Bench, number: int) 
 def test_a_noisy_cable_delays_but_does_not_mislead(bench: Bench) -> None:
     sim = bench.sim(bench.world(**hall()), "link-corrupt@3s:p=0.1", "link-drop@3s:p=0.02", seed=5)
     argusd = bench.argusd("--goal", "1200,0")
-    argusd.wait("GOAL_REACHED", timeout_s=60)
+    argusd.wait("GOAL_REACHED")
     assert argusd.status["bad_checksums"] + argusd.status["skipped_bytes"] > 0, "the noise did not arrive"
     assert_only(argusd)
     assert argusd.wait_exit() == 0

@@ -13,7 +13,7 @@ import pytest
 from argus_tools.formats.base import Chunk, ReadOptions
 from argus_tools.formats.record import FORMAT
 from argus_tools.log.cli import main
-from harness import Bench, Record
+from harness import PATIENCE_S, Bench, Record
 from rules import assert_reached
 from worlds import hall
 
@@ -38,11 +38,11 @@ def test_both_ends_record_the_same_wire(bench: Bench) -> None:
     files = [bench.path / "argusd.rec", bench.path / "sim.rec"]
     sim = bench.sim(bench.world(**hall()), extra=["--record", str(files[1])])
     argusd = bench.argusd("--goal", f"{GOAL_MM},0", "--record", str(files[0]))
-    argusd.wait("GOAL_REACHED", timeout_s=60)
+    argusd.wait("GOAL_REACHED")
     assert argusd.wait_exit() == 0
     assert_reached(sim, GOAL_MM)
     sim.process.terminate()
-    sim.process.wait(10)
+    sim.process.wait(PATIENCE_S)
     ours, theirs = map(read, files)
     assert stream(ours, "c2r") == stream(theirs, "c2r")
     heard = Unframer()
@@ -74,7 +74,7 @@ def test_a_disk_that_refuses_does_not_stop_the_drive(bench: Bench) -> None:
     sim = bench.sim(bench.world(**hall()))
     argusd = bench.argusd("--goal", f"{GOAL_MM},0", "--record", str(file))
     resource.prlimit(argusd.process.pid, resource.RLIMIT_FSIZE, (1500, 1500))
-    argusd.wait("GOAL_REACHED", timeout_s=60)
+    argusd.wait("GOAL_REACHED")
     assert argusd.wait_exit() == 0
     assert_reached(sim, GOAL_MM)
     assert file.stat().st_size <= 1500

@@ -38,7 +38,7 @@ def test_paper_disables_healthy_sonars_and_stands(bench: Bench) -> None:
     course = bench.path / "course.csv"
     course.write_text(COURSE)
     argusd = bench.argusd("--course", str(course))
-    argusd.wait("SESSION_OPEN", timeout_s=PATIENCE_S)
+    argusd.wait("SESSION_OPEN")
     ended = argusd.wait("MISSION_FAILED", "GOAL_REACHED", timeout_s=ENOUGH_S + PATIENCE_S)
     sim.wait_rest()
     result = record(sim, argusd, ended["event"])

@@ -31,7 +31,7 @@ def assert_waits(argusd: Argusd, seconds: float) -> None:
 def assert_checked_before_it_drives(sim: Sim, argusd: Argusd) -> None:
     assert argusd.wait("SESSION_OPEN")
     check = argusd.wait("HEALTH_CHECK")
-    argusd.wait("GOAL_REACHED", timeout_s=40)
+    argusd.wait("GOAL_REACHED")
     assert_still_between(sim, 0.0, sim.robot_time(argusd.unix(check)))
     assert argusd.wait_exit() == 0
     assert_reached(sim, 300)

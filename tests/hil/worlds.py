@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from hil_sim.sonar import SONAR_POSES
+from hil_sim.sonar.params import SONAR_POSES
 
 START: Final = [0, 0, 0]
 BOX_MM: Final = 200

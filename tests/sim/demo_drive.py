@@ -10,8 +10,8 @@ from random import Random
 from typing import Any
 
 from hil_sim.demo.judge import Injected, Task, Verdict, judge
-from hil_sim.demo.picture import Drive as Drawing
-from hil_sim.world import load_world
+from hil_sim.demo.scene import Drive as Drawing
+from hil_sim.world.files import load_world
 
 OPEN_S = 1.0
 """Robot time at which the session opens."""

@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from hil_sim.arcos import COMMAND, Command, Packet, Sip, SyncEcho, SyncReply, Unframer, decode, frame
-from hil_sim.faults import FaultChange
-from hil_sim.robot import OdometryError, Robot
-from hil_sim.server import ArcosServer
-from hil_sim.world import Pose
+from hil_sim.faults.kinds import FaultChange
+from hil_sim.robot.chassis import OdometryError
+from hil_sim.robot.robot import Robot
+from hil_sim.server.server import ArcosServer
+from hil_sim.world.model import Pose
 
 FRONT_MM = 210.0
 

@@ -11,9 +11,9 @@ import random
 import numpy as np
 import pytest
 
-from hil_sim.body import BodyModel
 from hil_sim.tables import load
-from hil_sim.world import Pose, World
+from hil_sim.world.body import BodyModel
+from hil_sim.world.model import Pose, World
 
 BODY = load("robots/p3dx-sh")["body"]
 FRONT, REAR, HALF = float(BODY["front_mm"]), float(BODY["rear_mm"]), BODY["width_mm"] / 2

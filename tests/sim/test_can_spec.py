@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from hil_sim import can_spec
-from hil_sim.can_spec import CanSpec, parse_spec
-from hil_sim.cli import main
+from hil_sim.cli.main import main
 from hil_sim.errors import SimError
-from hil_sim.links_can import PACKET_MAX, is_packet
+from hil_sim.links import can_spec
+from hil_sim.links.can import PACKET_MAX, is_packet
+from hil_sim.links.can_spec import CanSpec, parse_spec
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 from doubles import FakeRing, Session, cmd, make_robot, sips
 
-from hil_sim import commands
 from hil_sim.arcos import (
     BAUD_OF_CODE,
     COMMAND,
@@ -29,9 +28,10 @@ from hil_sim.arcos import (
     Sip,
     frame,
 )
-from hil_sim.commands import IGNORED, IGNORED_RANGES, NAME, WHY_IGNORED
 from hil_sim.conformance import checks, client
-from hil_sim.server import ArcosServer, State
+from hil_sim.server import commands
+from hil_sim.server.commands import IGNORED, IGNORED_RANGES, NAME, WHY_IGNORED
+from hil_sim.server.server import ArcosServer, State
 
 FORMS = {
     "no argument": b"",
@@ -58,13 +58,19 @@ def snapshot(server: ArcosServer) -> Snapshot:
     """All that a command can change, by name."""
     robot, ring = server.robot, server.robot.ring
     assert isinstance(ring, FakeRing)
-    settings = {f"set {name}": value for name, value in vars(robot.settings).items() if name != "config"}
-    mine = ("v", "w", "motors", "anport", "digout", "battery_test_dv", "_move_mode", "_head_mode", "_vel2")
-    more = ("_v_set", "_w_set", "_move_left", "_head_left", "_head_set", "odo_x", "odo_y", "odo_th")
+    settings = {
+        f"set {name}": value for name, value in vars(robot.drive.settings).items() if name != "config"
+    }
+    parts: dict[str, tuple[Any, tuple[str, ...]]] = {
+        "robot": (robot, ("anport", "digout", "battery_test_dv")),
+        "speeds": (robot.drive, ("v", "w", "motors", "_move_mode", "_head_mode", "_vel2")),
+        "set points": (robot.drive, ("_v_set", "_w_set", "_move_left", "_head_left", "_head_set")),
+        "odometry": (robot.chassis, ("odo_x", "odo_y", "odo_th")),
+    }
     return settings | {
-        **{name.strip("_"): getattr(robot, name) for name in mine + more},
-        "config": dict(robot.settings.config),
-        "pose": (robot.x, robot.y, robot.th),
+        **{name.strip("_"): getattr(part, name) for part, names in parts.values() for name in names},
+        "config": dict(robot.drive.settings.config),
+        "pose": (robot.chassis.x, robot.chassis.y, robot.chassis.th),
         "state": server.state,
         "baud": server.baud,
         "arrays": tuple(ring.enabled),
@@ -250,7 +256,7 @@ def test_each_form_of_argument(number: int) -> None:
         assert len(sips(session.run(TIMING["SIP_CYCLE_MS"]))) == 1, where
         # At rest what follows still has its effect.
         session.send(cmd("SETV", 123))
-        assert server.robot.settings.v_max == 123, where
+        assert server.robot.drive.settings.v_max == 123, where
 
 
 def test_commands_that_undo_motion() -> None:
@@ -261,13 +267,13 @@ def test_commands_that_undo_motion() -> None:
             session.connect()
             session.send(cmd("VEL", 200), cmd("RVEL", 20))
             session.run(1500)
-            assert server.robot.v == 200
+            assert server.robot.drive.v == 200
             session.send(frame(Command(COMMAND[name], argument).data))
-            at_once = server.robot.v == 0
+            at_once = server.robot.drive.v == 0
             assert at_once == (name != "STOP"), f"{name}, {form}"
             session.run(1000)
-            assert server.robot.v == server.robot.w == 0, f"{name}, {form}"
-            assert server.robot.motors
+            assert server.robot.drive.v == server.robot.drive.w == 0, f"{name}, {form}"
+            assert server.robot.drive.motors
 
 
 @pytest.mark.parametrize("argument", FORMS.values(), ids=list(FORMS))
@@ -354,7 +360,7 @@ def test_what_is_obeyed_and_what_is_ignored_is_logged_at_debug_level(
 
 def test_rear_bumpers_show_in_the_low_byte_and_stall_backwards() -> None:
     robot = make_robot(rear_bumpers=5)
-    robot.contact_rear = 0b000110
+    robot.chassis.contact_rear = 0b000110
     server = ArcosServer(robot)
     session = Session(server)
     session.connect()
@@ -363,10 +369,10 @@ def test_rear_bumpers_show_in_the_low_byte_and_stall_backwards() -> None:
     session.send(cmd("VEL", -100))
     packet = sips(session.run(300))[-1]
     assert packet.left_stalled
-    assert robot.v == 0
+    assert robot.drive.v == 0
     session.send(cmd("BUMPSTALL", 1))
     session.run(300)
-    assert robot.v < 0
+    assert robot.drive.v < 0
     config = session.send(cmd("CONFIG"))[0]
     assert isinstance(config, ConfigPac)
     assert config.rear_bumps == 5

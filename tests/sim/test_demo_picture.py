@@ -13,9 +13,10 @@ from matplotlib.backend_bases import RendererBase
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from hil_sim.demo import picture
+from hil_sim.demo import picture, scene
 from hil_sim.demo.judge import of_type, sonar_of
-from hil_sim.world import load_world
+from hil_sim.demo.scene import Drive
+from hil_sim.world.files import load_world
 
 LEAST_WIDE_PX, MOST_BYTES = 1200, 400_000
 
@@ -44,7 +45,7 @@ def size_px(path: Path) -> tuple[int, int]:
     return width, height
 
 
-def drawn(drive: picture.Drive, path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Bbox]:
+def drawn(drive: Drive, path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Bbox]:
     """Draw; return every text that was really drawn, with the box it takes in pixels."""
     boxes: dict[str, Bbox] = {}
     draw = Text.draw
@@ -133,14 +134,14 @@ def test_a_drive_that_broke_off_at_once_is_drawn_too(kept: int, tmp_path: Path) 
 
 def test_the_outlines_of_a_world_are_its_room_and_its_boxes() -> None:
     world = load_world("demo")
-    outlines = list(picture.loops(world))
+    outlines = list(scene.loops(world))
     assert sum(len(outline) for outline in outlines) == len(world.segments)
     assert len(outlines) == 2
 
 
 def test_health_spans_have_no_gap_and_follow_the_events() -> None:
     drive = drawing(*made_up())
-    spans = picture.health_spans(drive, 3)
+    spans = scene.health_spans(drive, 3)
     assert [word for _, _, word in spans] == ["unknown", "disabled"]
     assert spans[0][0] == drive.start_s
     assert spans[-1][1] == drive.end_s

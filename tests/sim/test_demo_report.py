@@ -82,3 +82,16 @@ def test_a_drive_that_never_began_has_a_report_too() -> None:
     text = report.text(Verdict(whole.rules, whole.findings, None))
     assert "Journey" not in text
     assert "Verdict" in text
+
+
+def test_a_late_host_is_told_whatever_the_verdict() -> None:
+    truth, events = made_up()
+    assert "the host was late" not in report.text(verdict_on(truth, events))
+    truth.append({"type": "late", "t_s": 30.0, "late_ms": 120.4})
+    truth.append({"type": "late", "t_s": 31.0, "late_ms": 562.0})
+    verdict = verdict_on(truth, events)
+    assert verdict.passed
+    late, last = report.text(verdict).splitlines()[-2:]
+    assert late.startswith("  the host was late with 2 turns of the emulator, at most 562 ms")
+    assert last == "  PASSED"
+    assert verdict.as_record()["host"] == {"late_turns": 2, "late_max_ms": 562.0}

@@ -15,19 +15,12 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from hil_sim.errors import SimError
-from hil_sim.faults import (
-    LINK_KINDS,
-    SONAR_KINDS,
-    BumperHit,
-    Fault,
-    FaultSet,
-    LinkFault,
-    SonarFault,
-    fault_help,
-    parse_fault,
-)
-from hil_sim.sonar import SonarParams, SonarRing
-from hil_sim.world import Pose, World
+from hil_sim.faults.execute import FaultSet
+from hil_sim.faults.grammar import fault_help, parse_fault
+from hil_sim.faults.kinds import LINK_KINDS, SONAR_KINDS, BumperHit, Fault, LinkFault, SonarFault
+from hil_sim.sonar.params import SonarParams
+from hil_sim.sonar.ring import SonarRing
+from hil_sim.world.model import Pose, World
 
 HOME = Pose(0, 0, 0)
 LOW, HIGH = 100, 5000

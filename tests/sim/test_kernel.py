@@ -11,12 +11,15 @@ from pathlib import Path
 
 import pytest
 
-from hil_sim import kernel
 from hil_sim.errors import SimError
-from hil_sim.movers import Door, Person
-from hil_sim.moving import MovingSolids
-from hil_sim.sonar import EchoModel, MovingEchoes, SonarParams
-from hil_sim.world import Pose, World, load_world, world_names
+from hil_sim.sonar import kernel
+from hil_sim.sonar.echo import EchoModel
+from hil_sim.sonar.params import SonarParams
+from hil_sim.sonar.patch import MovingEchoes
+from hil_sim.world.files import load_world, world_names
+from hil_sim.world.model import Pose, World
+from hil_sim.world.movers import Door, Person
+from hil_sim.world.moving import MovingSolids
 
 POSES = 13_000
 """In each of the eight worlds that come with the emulator: more than 100,000 together."""

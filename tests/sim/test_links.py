@@ -21,10 +21,15 @@ from doubles import Port, cmd, connect, make_robot, sips
 
 from hil_sim.arcos import Packet, Unframer, decode
 from hil_sim.errors import LinkError, SimError
-from hil_sim.faults import LinkFault
-from hil_sim.link_faults import LinkFaults
-from hil_sim.links import IDLE_MS, LATE_MS, Link, Loop, PtyLink, SerialLink, TcpLink, Wire
-from hil_sim.server import ArcosServer, State
+from hil_sim.faults.kinds import LinkFault
+from hil_sim.faults.link import LinkFaults
+from hil_sim.links.base import Link
+from hil_sim.links.loop import IDLE_MS, LATE_MS, Loop
+from hil_sim.links.pty import PtyLink
+from hil_sim.links.tcp import TcpLink
+from hil_sim.links.uart import SerialLink
+from hil_sim.links.wire import Wire
+from hil_sim.server.server import ArcosServer, State
 
 
 @contextlib.contextmanager
@@ -381,7 +386,7 @@ def test_tcp_session_one_client_at_a_time_and_reconnection() -> None:
     address = (host, int(number))
     link.open = lambda: None  # type: ignore[method-assign]
     with served(link, server):
-        client = socket.create_connection(address, timeout=5)
+        client = socket.create_connection(address, timeout=600)
         unframer = Unframer()
 
         def read(count: int) -> list[Packet]:
@@ -397,13 +402,13 @@ def test_tcp_session_one_client_at_a_time_and_reconnection() -> None:
             read(1)
         client.sendall(cmd("OPEN", 1))
         assert len(sips(read(3))) >= 3
-        second = socket.create_connection(address, timeout=5)
+        second = socket.create_connection(address, timeout=600)
         assert second.recv(10) == b""
         second.close()
         assert sips(read(2))
         client.close()
         time.sleep(0.3)
-        client = socket.create_connection(address, timeout=5)
+        client = socket.create_connection(address, timeout=600)
         unframer.clear()
         assert len(sips(read(2))) >= 2
         client.sendall(cmd("CLOSE", 1))

@@ -22,9 +22,10 @@ from hil_sim.arcos import (
     decode,
     frame,
 )
-from hil_sim.links import Loop, TcpLink
-from hil_sim.mobilesim import OBEYED, MobileSimServer
-from hil_sim.server import State
+from hil_sim.links.loop import Loop
+from hil_sim.links.tcp import TcpLink
+from hil_sim.server.mobilesim import OBEYED, MobileSimServer
+from hil_sim.server.server import State
 
 CAPTURES = Path(__file__).parents[1] / "data/captures"
 
@@ -110,10 +111,10 @@ def test_a_second_sync2_is_a_close_and_closes_the_connection() -> None:
 def test_motors_are_on_until_the_first_session_has_ended() -> None:
     session, server = new()
     session.connect(enable=False)
-    assert server.robot.motors
+    assert server.robot.drive.motors
     session.send(cmd("CLOSE"))
     session.connect(enable=False)
-    assert not server.robot.motors
+    assert not server.robot.drive.motors
 
 
 def test_type_is_always_stationary_and_the_watchdog_only_warns(caplog: pytest.LogCaptureFixture) -> None:
@@ -122,7 +123,7 @@ def test_type_is_always_stationary_and_the_watchdog_only_warns(caplog: pytest.Lo
     packets = sips(session.run(6000, keep_alive=False))
     assert len(caplog.records) == 1
     assert {packet.type for packet in packets} == {0x32}
-    assert server.robot.v == 200
+    assert server.robot.drive.v == 200
 
 
 @pytest.mark.parametrize(("argument", "readings"), [(0, 0), (1, 16), (2, 16), (4, 16)])

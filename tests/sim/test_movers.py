@@ -10,14 +10,17 @@ from pathlib import Path
 
 import pytest
 
-from hil_sim.body import BodyModel, body_distance
-from hil_sim.cli import build_robot
 from hil_sim.errors import SimError
-from hil_sim.movers import Door, Mover, Person, plain
-from hil_sim.moving import AHEAD_MM, LEAF_MM, MovingSolids, moving_solids
-from hil_sim.scenario import Scenario, load_scenario
-from hil_sim.sonar import EchoModel, MovingEchoes, SonarParams
-from hil_sim.world import Pose, load_world, load_yaml
+from hil_sim.scenario.build import build_robot
+from hil_sim.scenario.scenario import Scenario, load_scenario
+from hil_sim.sonar.echo import EchoModel
+from hil_sim.sonar.params import SonarParams
+from hil_sim.sonar.patch import MovingEchoes
+from hil_sim.world.body import BodyModel, body_distance
+from hil_sim.world.files import load_world, load_yaml
+from hil_sim.world.model import Pose
+from hil_sim.world.movers import Door, Mover, Person, plain
+from hil_sim.world.moving import AHEAD_MM, LEAF_MM, MovingSolids, moving_solids
 
 AWAY = Pose(1e6, 1e6, 0.0)
 HALL = load_world("hall")
@@ -153,12 +156,12 @@ def test_a_robot_stops_at_a_person_who_stands() -> None:
     robot = build_robot(scenario, HALL, Pose(0.0, 0.0, 0.0), None)
     robot.open()
     robot.enable(True)
-    robot.vel(400)
+    robot.drive.vel(400)
     for _ in range(500):
         robot.heard()
         robot.step()
-    assert robot.collisions == 1
-    assert robot.x == pytest.approx(1500 - 200 - 210, abs=3)
+    assert robot.chassis.collisions == 1
+    assert robot.chassis.x == pytest.approx(1500 - 200 - 210, abs=3)
 
 
 def test_no_movers_are_no_solids() -> None:

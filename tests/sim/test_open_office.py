@@ -12,10 +12,10 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from hil_sim.scenario import load_scenario
+from hil_sim.scenario.scenario import load_scenario
 from hil_sim.sil import Mission, Sighting, Sil, run
-from hil_sim.sonar import NO_ECHO_MM, SONAR_POSES
-from hil_sim.world import load_world
+from hil_sim.sonar.params import NO_ECHO_MM, SONAR_POSES
+from hil_sim.world.files import load_world
 
 SCENARIO = load_scenario("open-office")
 COURSE = tuple(SCENARIO.course)

@@ -11,10 +11,11 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from hil_sim.arcos import COMMAND, TIMING, Command, frame
-from hil_sim.robot import Robot
-from hil_sim.server import ArcosServer
-from hil_sim.sonar import SonarParams, SonarRing
-from hil_sim.world import Pose, World
+from hil_sim.robot.robot import Robot
+from hil_sim.server.server import ArcosServer
+from hil_sim.sonar.params import SonarParams
+from hil_sim.sonar.ring import SonarRing
+from hil_sim.world.model import Pose, World
 
 PER_ARRAY = TIMING["TRANSDUCERS_PER_ARRAY"]
 ORDER_MAX = TIMING["POLLING_MAX_PER_ARRAY"]

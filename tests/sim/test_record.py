@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from hil_sim.cli import main
+from hil_sim.cli.main import main
 from hil_sim.errors import SimError
-from hil_sim.record import (
+from hil_sim.record.recording import (
     KEPT,
     MAGIC,
     MAX_BYTES,
@@ -201,7 +201,7 @@ def test_a_full_disk_is_said_once_and_counted(tmp_path: Path, monkeypatch: pytes
         left -= len(part)
         return real(fd, part)
 
-    monkeypatch.setattr("hil_sim.record.os.write", write)
+    monkeypatch.setattr("hil_sim.record.recording.os.write", write)
     for i in range(50):
         recorder.note(Kind.TO_ROBOT, bytes((i,)) * 20)
     left = 1 << 30

@@ -11,10 +11,13 @@ from typing import Any
 import pytest
 from doubles import FakeFaults, Session, WallAhead, cmd, make_robot, sips
 
-from hil_sim.motion import STEP_MS, approach
-from hil_sim.robot import Robot, _angle_units, _wrapped
-from hil_sim.server import ArcosServer
-from hil_sim.world import Pose
+from hil_sim.robot.chassis import wrapped
+from hil_sim.robot.motion import approach
+from hil_sim.robot.report import angle_units, config_pac, encoder_pac, sip
+from hil_sim.robot.robot import Robot
+from hil_sim.server.server import ArcosServer
+from hil_sim.world.model import Pose
+from hil_sim.world.step import STEP_MS
 
 
 def opened(**options: Any) -> Robot:
@@ -30,7 +33,7 @@ def run(robot: Robot, ms: int) -> list[tuple[float, float]]:
     for _ in range(ms // STEP_MS):
         robot.heard()
         robot.step()
-        speeds.append((robot.v, robot.w))
+        speeds.append((robot.drive.v, robot.drive.w))
     return speeds
 
 
@@ -38,29 +41,29 @@ def run(robot: Robot, ms: int) -> list[tuple[float, float]]:
 @pytest.mark.parametrize("speed", [100, 200, 750])
 def test_move_ends_exactly_without_overshoot(distance: int, speed: int) -> None:
     robot = opened()
-    robot.set_speed(speed)
-    robot.move(distance)
+    robot.drive.set_speed(speed)
+    robot.drive.move(distance)
     furthest = 0.0
     previous = 0.0
     for _ in range(4000):
         robot.heard()
         robot.step()
-        furthest = max(furthest, robot.odo_x * math.copysign(1, distance))
-        assert abs(robot.v) <= speed + 1e-9
-        assert abs(robot.v - previous) <= 300 * STEP_MS / 1000 + 1e-9
-        previous = robot.v
-    assert robot.odo_x == pytest.approx(distance, abs=1e-6)
+        furthest = max(furthest, robot.chassis.odo_x * math.copysign(1, distance))
+        assert abs(robot.drive.v) <= speed + 1e-9
+        assert abs(robot.drive.v - previous) <= 300 * STEP_MS / 1000 + 1e-9
+        previous = robot.drive.v
+    assert robot.chassis.odo_x == pytest.approx(distance, abs=1e-6)
     assert furthest <= abs(distance) + 1e-6
-    assert robot.v == 0
+    assert robot.drive.v == 0
     assert not robot.wants_motion
 
 
 def test_move_takes_the_time_of_its_trapezoid() -> None:
     robot = opened()
-    robot.set_speed(200)
-    robot.move(1000)
+    robot.drive.set_speed(200)
+    robot.drive.move(1000)
     steps = 0
-    while robot.wants_motion or robot.v:
+    while robot.wants_motion or robot.drive.v:
         run(robot, STEP_MS)
         steps += 1
     assert steps * STEP_MS / 1000 == pytest.approx(1000 / 200 + 200 / 300, abs=0.03)
@@ -68,23 +71,23 @@ def test_move_takes_the_time_of_its_trapezoid() -> None:
 
 def test_a_move_renewed_each_sip_runs_smoothly() -> None:
     robot = opened()
-    robot.set_speed(200)
+    robot.drive.set_speed(200)
     speeds: list[float] = []
     for _ in range(40):
-        robot.move(400)
+        robot.drive.move(400)
         speeds += [v for v, _ in run(robot, 100)]
     assert min(speeds[100:]) == max(speeds[100:]) == 200
 
 
 def test_a_shorter_move_in_motion_ends_on_its_point() -> None:
     robot = opened()
-    robot.set_speed(200)
-    robot.move(1000)
+    robot.drive.set_speed(200)
+    robot.drive.move(1000)
     run(robot, 2000)
-    where = robot.odo_x
-    robot.move(10)
+    where = robot.chassis.odo_x
+    robot.drive.move(10)
     run(robot, 5000)
-    assert robot.odo_x == pytest.approx(where + 10, abs=1e-6)
+    assert robot.chassis.odo_x == pytest.approx(where + 10, abs=1e-6)
 
 
 def test_approach_random_starts_end_on_the_point() -> None:
@@ -106,178 +109,178 @@ def test_approach_random_starts_end_on_the_point() -> None:
 @pytest.mark.parametrize("target", [1, 20, -20, 40, 90, 180, -179, 359, 720, -400])
 def test_head_ends_exactly_the_shortest_way(target: int) -> None:
     robot = opened()
-    robot.head(target)
+    robot.drive.head(target)
     turned = 0.0
     for _ in range(600):
-        before = robot.odo_th
+        before = robot.chassis.odo_th
         run(robot, STEP_MS)
-        turned += robot.odo_th - before
-    assert math.remainder(robot.odo_th - target, 360) == pytest.approx(0, abs=1e-6)
+        turned += robot.chassis.odo_th - before
+    assert math.remainder(robot.chassis.odo_th - target, 360) == pytest.approx(0, abs=1e-6)
     assert abs(turned) <= 180 + 1e-6
-    assert robot.w == 0
+    assert robot.drive.w == 0
 
 
 def test_dhead_is_from_here_and_dchead_from_the_set_point() -> None:
     robot = opened()
-    robot.dhead(90)
+    robot.drive.dhead(90)
     run(robot, 500)
-    robot.dchead(-30)
+    robot.drive.dchead(-30)
     run(robot, 5000)
-    assert robot.odo_th == pytest.approx(60, abs=1e-6)
-    robot.dhead(-180)
+    assert robot.chassis.odo_th == pytest.approx(60, abs=1e-6)
+    robot.drive.dhead(-180)
     run(robot, 6000)
-    assert robot.odo_th == pytest.approx(-120, abs=1e-6)
+    assert robot.chassis.odo_th == pytest.approx(-120, abs=1e-6)
 
 
 def test_head_is_relative_to_the_odometry_zero() -> None:
     robot = opened()
-    robot.dhead(50)
+    robot.drive.dhead(50)
     run(robot, 4000)
     robot.set_origin()
-    robot.head(10)
+    robot.drive.head(10)
     run(robot, 4000)
-    assert robot.odo_th == pytest.approx(10, abs=1e-6)
-    assert robot.th == pytest.approx(60, abs=1e-6)
+    assert robot.chassis.odo_th == pytest.approx(10, abs=1e-6)
+    assert robot.chassis.th == pytest.approx(60, abs=1e-6)
 
 
 def test_translation_and_rotation_are_independent_channels() -> None:
     robot = opened()
-    robot.vel(200)
-    robot.rvel(20)
+    robot.drive.vel(200)
+    robot.drive.rvel(20)
     run(robot, 3000)
-    assert (robot.v, robot.w) == (200, 20)
-    robot.head(0)
+    assert (robot.drive.v, robot.drive.w) == (200, 20)
+    robot.drive.head(0)
     run(robot, 8000)
-    assert robot.v == 200
-    assert robot.w == 0
-    robot.move(100)
+    assert robot.drive.v == 200
+    assert robot.drive.w == 0
+    robot.drive.move(100)
     run(robot, 4000)
-    assert robot.v == 0
+    assert robot.drive.v == 0
 
 
 def test_vel2_takes_both_channels_until_the_next_command() -> None:
     robot = opened()
-    robot.vel2(300, 100)
+    robot.drive.vel2(300, 100)
     run(robot, 3000)
-    left, right = robot._wheel_speeds()
+    left, right = robot.drive.wheel_speeds()
     assert (left, right) == pytest.approx((300, 100))
-    robot.vel(100)
+    robot.drive.vel(100)
     run(robot, 3000)
-    assert (robot.v, robot.w) == (100, 0)
+    assert (robot.drive.v, robot.drive.w) == (100, 0)
 
 
 def test_speeds_are_capped_and_accelerations_obeyed() -> None:
     robot = opened()
-    robot.set_speed(5000)
-    robot.set_accel(500)
-    robot.set_accel(-100)
-    robot.vel(9000)
+    robot.drive.set_speed(5000)
+    robot.drive.set_accel(500)
+    robot.drive.set_accel(-100)
+    robot.drive.vel(9000)
     speeds = [v for v, _ in run(robot, 4000)]
     assert max(speeds) == 1500
     assert speeds[0] == pytest.approx(5.0)
-    robot.stop()
-    before = robot.v
+    robot.drive.stop()
+    before = robot.drive.v
     assert run(robot, STEP_MS)[0][0] == pytest.approx(before - 1.0)
 
 
 def test_stop_brakes_and_estop_stands_at_once() -> None:
     robot = opened()
-    robot.vel(300)
+    robot.drive.vel(300)
     run(robot, 2000)
-    robot.stop()
+    robot.drive.stop()
     assert run(robot, 500)[-1][0] == pytest.approx(150)
-    robot.vel(300)
+    robot.drive.vel(300)
     run(robot, 2000)
-    robot.emergency_stop()
-    assert robot.v == 0
-    assert robot.motors
+    robot.drive.halt()
+    assert robot.drive.v == 0
+    assert robot.drive.motors
     assert run(robot, 100)[-1][0] == 0
 
 
 def test_motion_needs_motors_and_set_points_do_not_outlive_them() -> None:
     robot = make_robot()
     robot.open()
-    robot.vel(300)
-    robot.move(100)
+    robot.drive.vel(300)
+    robot.drive.move(100)
     robot.enable(True)
     run(robot, 1000)
-    assert robot.v == 0
-    assert robot.odo_x == 0
-    robot.vel(300)
+    assert robot.drive.v == 0
+    assert robot.chassis.odo_x == 0
+    robot.drive.vel(300)
     run(robot, 2000)
     robot.enable(False)
     run(robot, 1000)
     robot.enable(True)
     run(robot, 1000)
-    assert robot.v == 0
+    assert robot.drive.v == 0
 
 
 def test_estop_button_needs_release_and_enable() -> None:
     robot = opened()
-    robot.vel(200)
+    robot.drive.vel(200)
     run(robot, 1000)
     robot.press_estop(True)
-    assert robot.v == 0
-    assert robot.sip().flags & 0x61 == 0x60
+    assert robot.drive.v == 0
+    assert sip(robot).flags & 0x61 == 0x60
     robot.enable(True)
-    assert not robot.motors
+    assert not robot.drive.motors
     robot.press_estop(False)
-    assert robot.sip().flags & 0x21 == 0
+    assert sip(robot).flags & 0x21 == 0
     robot.enable(True)
-    assert robot.sip().flags & 0x61 == 0x01
+    assert sip(robot).flags & 0x61 == 0x01
 
 
 def test_watchdog_brakes_then_resumes_the_set_points() -> None:
     robot = opened()
-    robot.vel(200)
+    robot.drive.vel(200)
     robot.heard()
     for _ in range(200):
         robot.step()
-    assert robot.v == 200
+    assert robot.drive.v == 200
     for _ in range(30):
         robot.step()
-    assert 0 < robot.v < 200
+    assert 0 < robot.drive.v < 200
     for _ in range(50):
         robot.step()
-    assert robot.v == 0
-    assert robot.sip().type == 0x32
+    assert robot.drive.v == 0
+    assert sip(robot).type == 0x32
     robot.heard()
     run(robot, 1000)
-    assert robot.v == 200
+    assert robot.drive.v == 200
 
 
 def test_a_move_cut_by_the_watchdog_is_finished_afterwards() -> None:
     robot = opened()
-    robot.set_speed(200)
-    robot.move(1000)
+    robot.drive.set_speed(200)
+    robot.drive.move(1000)
     robot.heard()
     for _ in range(500):
         robot.step()
-    assert robot.v == 0
-    assert 0 < robot.odo_x < 600
+    assert robot.drive.v == 0
+    assert 0 < robot.chassis.odo_x < 600
     run(robot, 6000)
-    assert robot.odo_x == pytest.approx(1000, abs=1e-6)
+    assert robot.chassis.odo_x == pytest.approx(1000, abs=1e-6)
 
 
 def test_a_wall_stops_the_body_at_its_surface_and_stalls_the_wheels() -> None:
     records: list[tuple[str, dict[str, Any]]] = []
     robot = opened(wall_mm=1000, log=lambda kind, fields: records.append((kind, fields)))
-    robot.settings.bumpstall = 0
-    robot.vel(300)
+    robot.drive.settings.bumpstall = 0
+    robot.drive.vel(300)
     run(robot, 4000)
-    assert 0 <= 1000 - 210 - robot.x < 0.5
-    assert robot.v == 0
-    assert robot.odo_x == pytest.approx(robot.x)
-    assert robot.sip().stall_right == 0b1001
+    assert 0 <= 1000 - 210 - robot.chassis.x < 0.5
+    assert robot.drive.v == 0
+    assert robot.chassis.odo_x == pytest.approx(robot.chassis.x)
+    assert sip(robot).stall_right == 0b1001
     assert [kind for kind, _ in records].count("collision") == 1
-    robot.move(-100)
+    robot.drive.move(-100)
     run(robot, 3000)
-    assert robot.x == pytest.approx(690, abs=1)
+    assert robot.chassis.x == pytest.approx(690, abs=1)
     assert robot.front_bumpers == 0
-    robot.sip()
-    assert robot.sip().stall_right == 0
+    sip(robot)
+    assert sip(robot).stall_right == 0
     assert [fields["front"] for kind, fields in records if kind == "bumper"] == [0b1000, 0]
-    robot.vel(300)
+    robot.drive.vel(300)
     run(robot, 3000)
     assert [kind for kind, _ in records].count("collision") == 2
 
@@ -285,41 +288,45 @@ def test_a_wall_stops_the_body_at_its_surface_and_stalls_the_wheels() -> None:
 def test_a_bumper_stalls_only_motion_towards_it() -> None:
     faults = FakeFaults()
     robot = opened(faults=faults)
-    robot.vel(200)
+    robot.drive.vel(200)
     run(robot, 1000)
     faults.bits = 0b10
     run(robot, 500)
-    assert robot.v == 0
-    packet = robot.sip()
+    assert robot.drive.v == 0
+    packet = sip(robot)
     assert packet.front_bumpers == 0b10
     assert packet.left_stalled
     assert packet.right_stalled
-    robot.move(-150)
+    robot.drive.move(-150)
     run(robot, 3000)
-    assert robot.v == 0
-    assert robot.odo_x < 120
-    robot.settings.bumpstall = 0
-    robot.vel(200)
+    assert robot.drive.v == 0
+    assert robot.chassis.odo_x < 120
+    robot.drive.settings.bumpstall = 0
+    robot.drive.vel(200)
     run(robot, 1000)
-    assert robot.v == 200
+    assert robot.drive.v == 200
 
 
 def test_a_bare_robot_reports_no_bumper() -> None:
     robot = opened(wall_mm=400, bumpers=0)
-    robot.vel(300)
+    robot.drive.vel(300)
     run(robot, 3000)
-    assert robot.collisions == 1
-    assert robot.sip().front_bumpers == 0
-    assert robot.config_pac(b"n", b"s").front_bumps == 0
+    assert robot.chassis.collisions == 1
+    assert sip(robot).front_bumpers == 0
+    assert config_pac(robot, b"n", b"s").front_bumps == 0
 
 
 def test_odometry_errs_little_and_by_seed_only() -> None:
     def drive(seed: int) -> tuple[float, float, float]:
         robot = opened(seed=seed, odometry_error=None)
-        robot.rvel(10)
-        robot.vel(200)
+        robot.drive.rvel(10)
+        robot.drive.vel(200)
         run(robot, 20_000)
-        return robot.x - robot.odo_x, robot.y - robot.odo_y, robot.th - robot.odo_th
+        return (
+            robot.chassis.x - robot.chassis.odo_x,
+            robot.chassis.y - robot.chassis.odo_y,
+            robot.chassis.th - robot.chassis.odo_th,
+        )
 
     errors = [drive(seed) for seed in range(8)]
     assert drive(3) == errors[3]
@@ -330,15 +337,15 @@ def test_odometry_errs_little_and_by_seed_only() -> None:
 
 def test_sip_units_and_wraps() -> None:
     robot = opened()
-    robot.odo_x, robot.odo_y, robot.odo_th = -1.4, 70_000.0, 270.0
-    packet = robot.sip()
+    robot.chassis.odo_x, robot.chassis.odo_y, robot.chassis.odo_th = -1.4, 70_000.0, 270.0
+    packet = sip(robot)
     assert (packet.x, packet.y, packet.th) == (0xFFFF, 70_000 & 0xFFFF, -1024)
-    robot.v, robot.w = 100.0, 10.0
-    packet = robot.sip()
+    robot.drive.v, robot.drive.w = 100.0, 10.0
+    packet = sip(robot)
     assert packet.rotvel == 100
     assert packet.type == 0x33
     assert packet.right_vel - packet.left_vel == pytest.approx(math.radians(10) * 330, abs=1)
-    assert [_angle_units(deg) for deg in (0, 90, 179.99, 180, -90, 359.99)] == [
+    assert [angle_units(deg) for deg in (0, 90, 179.99, 180, -90, 359.99)] == [
         0,
         1024,
         -2048,
@@ -346,16 +353,16 @@ def test_sip_units_and_wraps() -> None:
         -1024,
         0,
     ]
-    assert [_wrapped(deg) for deg in (0, 180, -180, 181, 540, -541)] == [0, 180, 180, -179, 180, 179]
+    assert [wrapped(deg) for deg in (0, 180, -180, 181, 540, -541)] == [0, 180, 180, -179, 180, 179]
 
 
 def test_encoders_count_both_wheels() -> None:
     robot = opened()
-    robot.move(100)
+    robot.drive.move(100)
     run(robot, 3000)
-    robot.dhead(90)
+    robot.drive.dhead(90)
     run(robot, 4000)
-    counts = robot.encoder_pac()
+    counts = encoder_pac(robot)
     assert counts.left + counts.right == pytest.approx(2 * 100 * 128, abs=2)
     assert counts.right - counts.left == pytest.approx(math.pi / 2 * 330 * 128, rel=1e-3)
 
@@ -363,8 +370,8 @@ def test_encoders_count_both_wheels() -> None:
 def test_energy_is_split_and_the_battery_falls_with_it() -> None:
     robot = opened()
     before = robot.battery_v
-    robot.set_speed(200)
-    robot.move(1000)
+    robot.drive.set_speed(200)
+    robot.drive.move(1000)
     run(robot, 10_000)
     energy = robot.energy
     assert energy.idle_s == pytest.approx(10)
@@ -378,9 +385,9 @@ def test_energy_is_split_and_the_battery_falls_with_it() -> None:
 
 def test_pose_at_interpolates_backwards() -> None:
     robot = opened()
-    robot.vel(100)
+    robot.drive.vel(100)
     run(robot, 2000)
-    here = robot.x
+    here = robot.chassis.x
     assert robot.pose_at(robot.now_ms).x_mm == here
     assert robot.pose_at(robot.now_ms - 5).x_mm == pytest.approx(here - 0.5)
     assert robot.pose_at(robot.now_ms - 250).x_mm == pytest.approx(here - 25)
@@ -390,8 +397,8 @@ def test_pose_at_interpolates_backwards() -> None:
 def test_time_is_virtual_and_its_steps_do_not_matter() -> None:
     first, second = opened(), opened()
     for robot in (first, second):
-        robot.vel(200)
-        robot.rvel(15)
+        robot.drive.vel(200)
+        robot.drive.rvel(15)
     first.advance(1500)
     for _ in range(1000):
         second.advance(1.5)
@@ -401,7 +408,7 @@ def test_time_is_virtual_and_its_steps_do_not_matter() -> None:
 
 def test_a_robot_far_from_walls_seldom_asks_for_contact() -> None:
     robot = opened(wall_mm=5000)
-    robot.vel(200)
+    robot.drive.vel(200)
     run(robot, 10_000)
     assert isinstance(robot.body, WallAhead)
     assert robot.body.contacts < 50
@@ -409,14 +416,14 @@ def test_a_robot_far_from_walls_seldom_asks_for_contact() -> None:
 
 def test_placed_inside_a_solid_only_the_way_out_is_open() -> None:
     robot = opened(wall_mm=1000)
-    robot.place(900, 0, 0)
-    robot.settings.bumpstall = 0
-    robot.vel(100)
+    robot.chassis.place(900, 0, 0)
+    robot.drive.settings.bumpstall = 0
+    robot.drive.vel(100)
     run(robot, 1000)
-    assert robot.x == 900
-    robot.vel(-100)
+    assert robot.chassis.x == 900
+    robot.drive.vel(-100)
     run(robot, 4000)
-    assert robot.x < 790
+    assert robot.chassis.x < 790
     assert robot.front_bumpers == 0
 
 
@@ -462,15 +469,17 @@ def test_random_commands_keep_the_robot_sane() -> None:
             )
             session.run(rng.choice((50, 100, 700)), keep_alive=False)
         assert len(sips(session.packets)) > 100, f"seed {seed}"
-        assert abs(robot.v) <= 1500, f"seed {seed}"
-        assert abs(robot.w) <= 360, f"seed {seed}"
-        assert all(math.isfinite(value) for value in (robot.x, robot.y, robot.th)), f"seed {seed}"
-        assert robot.x + 210 <= wall_mm, f"seed {seed}"
+        assert abs(robot.drive.v) <= 1500, f"seed {seed}"
+        assert abs(robot.drive.w) <= 360, f"seed {seed}"
+        assert all(math.isfinite(value) for value in (robot.chassis.x, robot.chassis.y, robot.chassis.th)), (
+            f"seed {seed}"
+        )
+        assert robot.chassis.x + 210 <= wall_mm, f"seed {seed}"
 
 
 def test_start_pose_is_the_true_pose() -> None:
     robot = make_robot()
-    robot.place(10, 20, 190)
+    robot.chassis.place(10, 20, 190)
     assert robot.pose == Pose(10, 20, -170)
     robot.reset_pose()
     assert robot.pose == Pose(0, 0, 0)

@@ -13,13 +13,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hil_sim.body import BodyModel
-from hil_sim.cli import main
+from hil_sim.cli.main import main
 from hil_sim.errors import SimError
-from hil_sim.faults import LINK_KINDS, SONAR_KINDS, LinkFault, fault_help, parse_fault
-from hil_sim.scenario import _SONAR_LIMITS, SEED_MAX, Scenario, load_scenario, scenario_names
-from hil_sim.sonar import SonarParams
-from hil_sim.world import Pose, load_world, load_yaml, world_names
+from hil_sim.faults.grammar import fault_help, parse_fault
+from hil_sim.faults.kinds import LINK_KINDS, SONAR_KINDS, LinkFault
+from hil_sim.scenario.scenario import _SONAR_LIMITS, SEED_MAX, Scenario, load_scenario, scenario_names
+from hil_sim.sonar.params import SonarParams
+from hil_sim.world.body import BodyModel
+from hil_sim.world.files import load_world, load_yaml, world_names
+from hil_sim.world.model import Pose
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 

@@ -21,7 +21,7 @@ from hil_sim.arcos import (
     SyncReply,
     frame,
 )
-from hil_sim.server import ArcosServer, State
+from hil_sim.server.server import ArcosServer, State
 
 IDENTITY = SyncReply(b"P3DX_0001", b"Pioneer", b"p3dx-sh")
 
@@ -96,7 +96,7 @@ def test_a_command_split_byte_by_byte_is_heard() -> None:
     for byte in cmd("SETV", 123):
         session.send(bytes((byte,)))
         session.now_ms += 1
-    assert server.robot.settings.v_max == 123
+    assert server.robot.drive.settings.v_max == 123
 
 
 def test_a_sip_each_100_ms_with_only_new_readings() -> None:
@@ -112,7 +112,7 @@ def test_a_sip_each_100_ms_with_only_new_readings() -> None:
 
 def test_session_start_state() -> None:
     session, server = new()
-    server.robot.odo_x = 500.0
+    server.robot.chassis.odo_x = 500.0
     session.connect(enable=False)
     first = sips(session.run(150))[0]
     assert (first.type, first.x, first.y, first.th, first.flags) == (0x32, 0, 0, 0, 0x0006)
@@ -130,17 +130,17 @@ def test_close_ends_everything(argument: int | None) -> None:
     session.send(cmd("BUMPSTALL", 0), cmd("VEL", 200))
     session.run(1000)
     assert server.baud == 38400
-    assert robot.v == 200
+    assert robot.drive.v == 200
     session.send(cmd("CLOSE", argument))
     assert session.run(2000, keep_alive=False) == []
     assert server.state is State.WAIT
     assert server.baud == 9600
-    assert robot.v == 0
-    assert not robot.motors
+    assert robot.drive.v == 0
+    assert not robot.drive.motors
     assert not robot.sonar_on
-    assert robot.settings.v_max == 750
-    assert robot.settings.accel == 300
-    assert robot.settings.bumpstall == 3
+    assert robot.drive.settings.v_max == 750
+    assert robot.drive.settings.accel == 300
+    assert robot.drive.settings.bumpstall == 3
     assert isinstance(robot.ring, FakeRing)
     assert robot.ring.cycle_ms == 40
     session.connect()
@@ -151,7 +151,7 @@ def test_reset_is_a_power_cycle() -> None:
     session, server = new(connect=True)
     session.send(cmd("SETV", 200), cmd("RESET"))
     assert server.state is State.WAIT
-    assert server.robot.settings.v_max == 750
+    assert server.robot.drive.settings.v_max == 750
 
 
 def test_syncs_while_connected_are_pulse_and_open() -> None:
@@ -168,11 +168,11 @@ def test_sips_go_on_after_the_watchdog() -> None:
     session.send(cmd("VEL", 200))
     got = sips(session.run(10_000, keep_alive=False))
     assert len(got) == 100
-    assert server.robot.v == 0
+    assert server.robot.drive.v == 0
     assert got[-1].type == 0x32
     session.send(cmd("PULSE"))
     session.run(2000)
-    assert server.robot.v == 200
+    assert server.robot.drive.v == 200
 
 
 def test_any_packet_even_an_unknown_one_feeds_the_watchdog() -> None:
@@ -181,7 +181,7 @@ def test_any_packet_even_an_unknown_one_feeds_the_watchdog() -> None:
     for number in (199, 62, 15, 255, 14, 46):
         session.run(1900, keep_alive=False)
         session.send(frame(bytes((number,))))
-    assert server.robot.v == 200
+    assert server.robot.drive.v == 200
 
 
 def test_config_shows_what_was_set() -> None:
@@ -239,7 +239,7 @@ def test_motion_commands_reach_the_robot() -> None:
     session, server = new(connect=True)
     session.send(cmd("SETV", 300), cmd("SETRV", 50), cmd("MOVE", 250), cmd("HEAD", 30))
     session.run(4000)
-    assert server.robot.odo_th == pytest.approx(30)
+    assert server.robot.chassis.odo_th == pytest.approx(30)
     session.send(frame(Command.pair(COMMAND["VEL2"], -5, 3).data))
     session.run(2000)
     packet = sips(session.packets)[-1]

@@ -18,16 +18,18 @@ from typing import Any
 
 import pytest
 
-from hil_sim.cli import build_robot
 from hil_sim.errors import SimError
-from hil_sim.faults import parse_fault
-from hil_sim.links import Link, Loop, Wire
-from hil_sim.movers import Door, Person
-from hil_sim.scenario import Scenario
-from hil_sim.server import ArcosServer
+from hil_sim.faults.grammar import parse_fault
+from hil_sim.links.base import Link
+from hil_sim.links.loop import Loop
+from hil_sim.links.wire import Wire
+from hil_sim.scenario.build import build_robot
+from hil_sim.scenario.scenario import Scenario
+from hil_sim.server.server import ArcosServer
 from hil_sim.sil import Frozen, Mission, Outcome, Packet, Sighting, Sil, run
-from hil_sim.sonar import SonarParams
-from hil_sim.world import load_world
+from hil_sim.sonar.params import SonarParams
+from hil_sim.world.files import load_world
+from hil_sim.world.movers import Door, Person
 
 FAULTS = ("off:3@travelled>600", "wrong:6@9s:scale=0.5", "silent:12@2s-4s", "slow:1@3s:n=2")
 MOVERS = (Person(((-1000.0, -900.0), (1700.0, -900.0))), Door((2000.0, 800.0), width=500, period=6))
@@ -221,11 +223,11 @@ def test_collisions_are_told_from_being_struck() -> None:
     sil = Sil(STAND)
     sil.run_until(1.0)
     sil.robot.enable(True)
-    sil.robot.vel(300)
+    sil.robot.drive.vel(300)
     sil.run_until(20.0)
     hits = sil.outcome().collisions
     assert [hit.struck for hit in hits] == [False]
-    assert math.hypot(hits[0].x - sil.robot.x, hits[0].y - sil.robot.y) < 5
+    assert math.hypot(hits[0].x - sil.robot.chassis.x, hits[0].y - sil.robot.chassis.y) < 5
     rude = Person(((0.0, -1500.0), (0.0, 1000.0)), yields=False)
     hits = run(Mission(**{**vars(STAND), "movers": (rude,)})).collisions
     assert [hit.struck for hit in hits] == [True]

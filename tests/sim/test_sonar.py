@@ -13,10 +13,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil_sim.faults import FaultSet, parse_fault
-from hil_sim.sonar import EchoModel, Reading, SonarParams, SonarRing
+from hil_sim.faults.execute import FaultSet
+from hil_sim.faults.grammar import parse_fault
+from hil_sim.sonar.echo import EchoModel
+from hil_sim.sonar.params import Reading, SonarParams
+from hil_sim.sonar.ring import SonarRing
 from hil_sim.tables import load
-from hil_sim.world import Pose, World
+from hil_sim.world.model import Pose, World
 
 TABLE = load("robots/p3dx-sh")["sonar"]
 LOW: int = TABLE["min_mm"]

@@ -17,13 +17,16 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from hil_sim import world as world_module
-from hil_sim.body import BodyModel
-from hil_sim.cli import main
+from hil_sim.cli.main import main
 from hil_sim.errors import SimError
-from hil_sim.scenario import load_scenario
-from hil_sim.sonar import SONAR_POSES, EchoModel
+from hil_sim.scenario.scenario import load_scenario
+from hil_sim.sonar.echo import EchoModel
+from hil_sim.sonar.params import SONAR_POSES
 from hil_sim.tables import load
-from hil_sim.world import MAP_ROUGHNESS, Pose, World, load_map, load_world, load_yaml, world_names
+from hil_sim.world.aria_map import MAP_ROUGHNESS, load_map
+from hil_sim.world.body import BodyModel
+from hil_sim.world.files import load_world, load_yaml, world_names
+from hil_sim.world.model import Pose, World
 
 SWING_MM = load("robots/p3dx-sh")["body"]["swing_radius_mm"]
 FRONT = range(8)

@@ -22,7 +22,7 @@ def run(*arguments: str | Path, stdin: bytes | None = None) -> subprocess.Comple
     environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'tools'}", "COLUMNS": "120"}
     command = [sys.executable, "-m", "argus_tools.log.cli", *map(str, arguments)]
     done = subprocess.run(
-        command, input=stdin, capture_output=True, env=environment, timeout=120, check=False
+        command, input=stdin, capture_output=True, env=environment, timeout=600, check=False
     )
     assert b"Traceback" not in done.stderr, done.stderr.decode()
     return done

@@ -37,7 +37,7 @@ def tshark(path: Path, *arguments: str) -> str:
     program = shutil.which("tshark")
     assert program, "tshark is missing: tools/dev test installs it, or apt-get install tshark"
     command = [program, "-X", f"lua_script:{DISSECTOR}", "-r", str(path), *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == 0, done.stderr
     assert "Lua" not in done.stderr, done.stderr
     assert "Lua Error" not in done.stdout

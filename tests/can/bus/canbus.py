@@ -27,8 +27,8 @@ from cantools.database import Database
 from harness import ARGUSD, PATIENCE_S, PYTHON, ROOT, HilFailure, wait_for
 
 from hil_sim.arcos import Command, frame
-from hil_sim.can_spec import PADDING, TO_HOST_ID, TO_ROBOT_ID
-from hil_sim.links_can import CanLink
+from hil_sim.links.can import CanLink
+from hil_sim.links.can_spec import PADDING, TO_HOST_ID, TO_ROBOT_ID
 
 _FRAME: Final = struct.Struct("=IB3x8s")
 _FD_FRAME: Final = struct.Struct("=IBB2x64s")
@@ -335,7 +335,7 @@ class Dump:
         """End it and return the lines."""
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGINT)
-            self._process.wait(10)
+            self._process.wait(PATIENCE_S)
             self._out.close()
         return self.file.read_text().splitlines()
 
@@ -398,7 +398,7 @@ def running(*words: str) -> Iterator[subprocess.Popen[bytes]]:
         yield process
     finally:
         process.terminate()
-        process.wait(10)
+        process.wait(PATIENCE_S)
 
 
 class Background:
@@ -471,7 +471,7 @@ class Drive:
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGINT)
             try:
-                self._process.wait(20)
+                self._process.wait(PATIENCE_S)
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()

@@ -9,11 +9,12 @@ from typing import Any
 
 from canbus import Background, End
 
-from hil_sim.cli import build_robot
-from hil_sim.links import Link, Loop
-from hil_sim.scenario import Scenario
-from hil_sim.server import ArcosServer
-from hil_sim.world import load_world
+from hil_sim.links.base import Link
+from hil_sim.links.loop import Loop
+from hil_sim.scenario.build import build_robot
+from hil_sim.scenario.scenario import Scenario
+from hil_sim.server.server import ArcosServer
+from hil_sim.world.files import load_world
 
 _FLOW_WITHIN_S = 0.5
 

@@ -38,7 +38,7 @@ def just_now_s(sim: Sim) -> float:
 
 def assert_goes_on(sim: Sim, argusd: Argusd, rest: Record) -> None:
     """It drives on after a health check, not before, and arrives."""
-    argusd.wait("GOAL_REACHED", timeout_s=90)
+    argusd.wait("GOAL_REACHED")
     assert argusd.wait_exit() == 0
     assert_reached(sim, GOAL_MM)
     assert_only(argusd)
@@ -80,7 +80,7 @@ def test_queue_full_for_a_moment_in_motion(bench: Bench, bus: str) -> None:
     time.sleep(0.8)
     tc("qdisc", "del", "dev", bus, "root")
     wait_for("it is counted", lambda: argusd.status["can"]["no_buffers"], 15)
-    argusd.wait("GOAL_REACHED", timeout_s=60)
+    argusd.wait("GOAL_REACHED")
     assert len(argusd.named("SESSION_OPEN")) == 1
     assert argusd.wait_exit() == 0
     assert_reached(sim, GOAL_MM)

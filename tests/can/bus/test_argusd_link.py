@@ -13,8 +13,8 @@ from canbus import OVERFLOW, Raw, first_frame, interface, ip
 from harness import Argusd, Bench, run_argusd, wait_for
 from rawrobot import RawRobot
 
-from hil_sim.can_spec import TO_HOST_ID
-from hil_sim.links_can import PACKET_MAX
+from hil_sim.links.can import PACKET_MAX
+from hil_sim.links.can_spec import TO_HOST_ID
 
 
 @pytest.fixture

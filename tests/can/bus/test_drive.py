@@ -13,7 +13,7 @@ import pytest
 from canbus import Drive, Frame, load_dbc, stuffed_bits, worst_bits
 from harness import PYTHON, ROOT, run_python
 
-from hil_sim.can_spec import TO_HOST_ID, TO_ROBOT_ID
+from hil_sim.links.can_spec import TO_HOST_ID, TO_ROBOT_ID
 
 BIT_RATE = 500_000
 TELEMETRY_PART, ALL_PART = 0.02, 0.06
@@ -168,7 +168,7 @@ def test_share_of_the_bus(frames: list[Frame]) -> None:
 def test_the_dump_is_a_log(drive: Drive) -> None:
     """argus-log reads the ISO-TP link out of what candump -L wrote: all SIPs that argusd counted."""
     drive.frames()
-    done = run_python("-m", "argus_tools.log.cli", "decode", str(drive.dump_file), timeout_s=60)
+    done = run_python("-m", "argus_tools.log.cli", "decode", str(drive.dump_file), timeout_s=600)
     assert done.returncode == 0, done.stderr
     sips = sum(" SIP " in line for line in done.stdout.splitlines())
     counted = [event for event in drive.events() if event["event"] == "STATUS"][-1]["sips"]

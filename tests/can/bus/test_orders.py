@@ -137,7 +137,7 @@ def test_stop_and_go(bench: Bench, bus: str, vehicle: Vehicle) -> None:
         vehicle.send(stuck)
     wait_count(argusd, "taken", 4)
     wait_count(argusd, "refused", refused + 19)
-    argusd.wait("GOAL_REACHED", timeout_s=60)
+    argusd.wait("GOAL_REACHED")
     assert argusd.wait_exit() == 0
     assert_reached(sim, GOAL_MM)
 

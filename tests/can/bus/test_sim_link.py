@@ -27,9 +27,9 @@ from canbus import (
 from harness import wait_for
 
 from hil_sim.arcos import frame
-from hil_sim.can_spec import TO_HOST_ID, TO_ROBOT_ID, parse_spec
 from hil_sim.errors import LinkError
-from hil_sim.links_can import PACKET_MAX, CanLink
+from hil_sim.links.can import PACKET_MAX, CanLink
+from hil_sim.links.can_spec import TO_HOST_ID, TO_ROBOT_ID, parse_spec
 
 SIZES = (6, 7, 8, 13, 14, 55, 89, 200, PACKET_MAX)
 STACKS = ("kernel", "user")

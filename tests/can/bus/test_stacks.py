@@ -10,8 +10,8 @@ import time
 import pytest
 from canbus import Raw, Served, interface, packet
 
-from hil_sim.can_spec import TO_HOST_ID, TO_ROBOT_ID, parse_spec
-from hil_sim.links_can import PACKET_MAX, CanLink
+from hil_sim.links.can import PACKET_MAX, CanLink
+from hil_sim.links.can_spec import TO_HOST_ID, TO_ROBOT_ID, parse_spec
 
 SIZES = (6, 7, 8, 13, 14, 20, 55, 62, 63, 64, 89, 200, PACKET_MAX)
 PAIRS = tuple(itertools.product(("kernel", "user"), repeat=2))

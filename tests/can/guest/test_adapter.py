@@ -13,7 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGE = (ROOT / "docs/can.md").read_text(encoding="utf-8")
-LIMIT_S = 60
+LIMIT_S = 600
 
 # The page's `sudo` and `modprobe`, for one who is root already and has the modules.
 PRELUDE = """

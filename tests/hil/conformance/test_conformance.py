@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from hil_sim.conformance.checks import CHECKS, Check
+from hil_sim.conformance.check import Check
+from hil_sim.conformance.checks import CHECKS
 from hil_sim.conformance.cli import FAIL, NOT_APPLICABLE, PASS, Result, main, run, selected
 from hil_sim.conformance.client import Target, parse_target
 
@@ -74,7 +75,7 @@ def robots(folder: Path, *arguments: str) -> Iterator[list[str]]:
         yield [process.stdout.readline().strip() for _ in SHARES]
     finally:
         process.terminate()
-        process.wait(10)
+        process.wait(600)
         process.stdout.close() if process.stdout else None
 
 

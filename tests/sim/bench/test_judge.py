@@ -19,7 +19,7 @@ from hil_sim.bench.judge import (
 )
 from hil_sim.bench.witness import is_visible
 from hil_sim.sil import Collision, FaultTruth, Mission, run
-from hil_sim.sonar import NO_ECHO_MM, Reading
+from hil_sim.sonar.params import NO_ECHO_MM, Reading
 
 
 def judged(truth: FaultTruth, *changes: tuple[float, str, str], **more: Any) -> dict[str, Any]:

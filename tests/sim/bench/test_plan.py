@@ -13,7 +13,8 @@ import pytest
 from hil_sim.bench import plan
 from hil_sim.bench.plan import Case, faults_of, make_cases, mission_of, parse_id, world_of
 from hil_sim.errors import SimError
-from hil_sim.faults import SonarFault, parse_fault
+from hil_sim.faults.grammar import parse_fault
+from hil_sim.faults.kinds import SonarFault
 
 IDS = (
     "argus/tune/office/7/wrong-scale0.5",

@@ -14,12 +14,12 @@ from typing import Any
 import pytest
 from bench.missions import DEADLY, deadly
 
-from hil_sim import world as world_module
 from hil_sim.bench import pool
 from hil_sim.bench.cli import main
 from hil_sim.bench.plan import make_cases, parse_id
 from hil_sim.bench.store import RESULTS, read_results
 from hil_sim.bench.work import core_digest, work, world_files
+from hil_sim.world.files import WORLD_DIR
 
 IDS = [
     case.id
@@ -118,7 +118,7 @@ def test_the_command_runs_on_a_cluster_and_resumes(
         "--no-plots",
     ]
     words += ["--seeds", "1-3", "--scheduler", cluster, "--out", str(tmp_path)]
-    from hil_sim.cli import main as argus_sim
+    from hil_sim.cli.main import main as argus_sim
 
     assert argus_sim(words) == 0, capfd.readouterr().err
     path = tmp_path / RESULTS
@@ -152,7 +152,7 @@ def test_nobody_at_the_address_gives_one_line(
 
 
 def test_a_world_file_goes_along_to_a_machine_without_it(tmp_path: Path) -> None:
-    text = (Path(world_module.__file__).parent / "worlds" / "lab.yaml").read_bytes()
+    text = (WORLD_DIR / "lab.yaml").read_bytes()
     here = tmp_path / "here.yaml"
     here.write_bytes(text)
     case = parse_id(f"argus/tune/{here}/1/off")

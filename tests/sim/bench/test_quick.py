@@ -16,6 +16,7 @@ from hil_sim.bench.quick import broken, cases, load_bounds
 from hil_sim.errors import SimError
 
 
+@pytest.mark.soak
 def test_the_quick_bench_is_within_its_bounds(capfd: pytest.CaptureFixture[str]) -> None:
     code = main(["diagnosis", "--quick", "--no-plots"])
     out, err = capfd.readouterr()

@@ -13,8 +13,8 @@ import pytest
 from hil_sim.bench import witness
 from hil_sim.bench.witness import contradicted, fired
 from hil_sim.sil import Sighting
-from hil_sim.sonar import NO_ECHO_MM, Reading
-from hil_sim.world import Pose
+from hil_sim.sonar.params import NO_ECHO_MM, Reading
+from hil_sim.world.model import Pose
 
 FIRMWARE = Path(__file__).parents[3] / "firmware/awareness"
 FAULTY, OTHER = 3, 4  # 20 degrees apart; sonar 4 looks where 3 looked once the robot has turned by 20

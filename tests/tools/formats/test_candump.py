@@ -190,7 +190,7 @@ def test_lines_that_are_none(tmp_path: Path) -> None:
     first = len(message(SIP)) + 1
     assert sent(chunks) == SIP * 2
     assert damage == [
-        Damage(f"line {first}", "no candump -L line"),
+        Damage(f"line {first}", "no line of candump"),
         Damage(f"line {first + 1}", "an odd number of hexadecimal digits"),
     ]
 

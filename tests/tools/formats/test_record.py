@@ -9,7 +9,7 @@ import pytest
 from argus_tools.formats.base import Chunk, Damage, LogError, ReadOptions, copy
 from argus_tools.formats.record import FORMAT, RecordReader
 
-from hil_sim.record import MAGIC, Kind, encode, encode_clock, encode_start
+from hil_sim.record.recording import MAGIC, Kind, encode, encode_clock, encode_start
 
 CHUNKS = [
     Chunk(0.0, "c2r", b"\xfa\xfb\x03\x00\x00\x00", 0),

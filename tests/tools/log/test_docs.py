@@ -35,7 +35,7 @@ def test_the_commands_run_in_their_order(tmp_path: Path) -> None:
             env=environment,
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=600,
             check=False,
         )
         assert done.returncode == 0, f"{command}\n{done.stderr}"

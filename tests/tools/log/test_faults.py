@@ -166,14 +166,65 @@ def test_recorded_sessions_are_judged(name: str, capsys: pytest.CaptureFixture[s
         assert {e["name"] for e in named(events, "SONAR_DISABLED")} == {"sonar/front/05"}
 
 
-def test_the_table_for_people(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_events_for_people(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write(tmp_path / "a.rec", timed(sips(100, dead=[3], dead_at=50)))
-    assert main(["faults", "--profile", "paper", str(path)]) == 0
+    assert main(["faults", "--events", "--profile", "paper", str(path)]) == 0
     out = capsys.readouterr().out
     assert "ERROR sonar/front/03 SONAR_DISABLED (off): not used any more\n" in out
     assert "\n    3  DISABLED  off       5000\n" in out
     assert "\nIsMinor; " in out
     assert "\033" not in out
+
+
+def told(path: Path, capsys: pytest.CaptureFixture[str], *arguments: str) -> list[str]:
+    """What is printed for people."""
+    capsys.readouterr()
+    assert main(["faults", str(path), *arguments]) == 0
+    return capsys.readouterr().out.splitlines()
+
+
+@pytest.mark.parametrize("format_", ["record", "jsonl", "bin"])
+@pytest.mark.parametrize("count", [30, 100, 600])
+def test_a_healthy_log_is_one_line(
+    count: int, format_: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(tmp_path / "a", timed(sips(count), 1e9), format_)
+    (line,) = told(path, capsys, "--format", format_)
+    assert line.startswith("nothing wrong: 16 of 16 sonars healthy in ")
+    assert f" over {(count - 1) / 10:.0f} s" in line
+
+
+def test_a_dead_sonar_is_a_line_with_its_time(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write(tmp_path / "a.rec", timed(sips(200, dead=[3], dead_at=120), 1e9))
+    lines = told(path, capsys, "--profile", "paper")
+    first_at = next(i for i in range(120, 200) if 3 in {(5 * i + k) % 16 for k in range(5)})
+    assert lines[0] == f"sonar/front/03 disabled as off at +{first_at / 10:.1f} s"
+    assert lines[-1].startswith("15 of 16 sonars healthy in ")
+    assert len(lines) == 2
+    in_bin = told(
+        write(tmp_path / "a.bin", timed(sips(200, dead=[3], dead_at=120)), "bin"),
+        capsys,
+        "--profile",
+        "paper",
+    )
+    assert in_bin[0].startswith("sonar/front/03 disabled as off at byte ")
+
+
+def test_sonars_that_fail_together_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    silent = [frame(Sip(flags=1, battery=125).data)] * 60
+    lines = told(write(tmp_path / "a.rec", timed(sips(50) + silent)), capsys)
+    assert len(lines) < 6
+    assert any(line.startswith("16 sonars (0, 1, 2, ") and line.endswith(", all at once") for line in lines)
+
+
+def test_what_is_not_about_a_sonar_is_told_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = told(write(tmp_path / "a.rec", timed(sips(30)) + timed(sips(30), 5.0)), capsys)
+    assert lines[0].startswith("nothing wrong with the sonars: 16 of 16")
+    assert lines[1].startswith("also: 1 x LINK_STALLED (")
+    packets = sips(60)
+    packets[30] = packets[30][:-1] + bytes((packets[30][-1] ^ 1,))
+    (line,) = told(write(tmp_path / "b.rec", timed(packets)), capsys)
+    assert "1 bad checksums" in line
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,8 @@ from pathlib import Path
 import pytest
 from logs import CAPTURES, ROOT
 
+pytestmark = pytest.mark.soak
+
 SHORT_BYTES, LONG_BYTES = 4 << 20, 16 << 20
 GROWTH_KB = 12 << 10
 # Prints the largest resident size of the command that its arguments are, in kB.

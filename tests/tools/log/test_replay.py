@@ -25,7 +25,7 @@ from hil_sim.arcos import COMMAND, ConfigPac, Sip, SyncReply, Unframer, decode, 
 
 ROOT = Path(__file__).resolve().parents[3]
 CAPTURE = ROOT / "tests/data/captures/m_p3dx.jsonl"
-PATIENCE_S = 30.0
+PATIENCE_S = 600.0
 
 
 def rows(path: Path = CAPTURE) -> Iterator[Row]:

@@ -15,6 +15,8 @@ from pathlib import Path
 import pytest
 from logs import ROOT, jsonl, sip
 
+pytestmark = pytest.mark.soak
+
 LONG_BYTES = 24 << 20
 _ESCAPES = re.compile(rb"\x1b\[[0-9;?]*[A-Za-z]")
 
@@ -55,7 +57,7 @@ def run_on_terminal(arguments: list[str], stdout: int | None, **variables: str) 
 
     listener = threading.Thread(target=listen)
     listener.start()
-    code = process.wait(120)
+    code = process.wait(600)
     listener.join()
     os.close(ours)
     return code, bytes(seen)
@@ -98,5 +100,5 @@ def test_none_between_packets_on_the_same_terminal(tmp_path: Path, long_log: Pat
 def test_none_in_a_file(long_log: Path) -> None:
     environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'tools'}"}
     command = [sys.executable, "-m", "argus_tools.log.cli", "stats", str(long_log)]
-    done = subprocess.run(command, capture_output=True, env=environment, timeout=120, check=False)
+    done = subprocess.run(command, capture_output=True, env=environment, timeout=600, check=False)
     assert (done.returncode, done.stderr) == (0, b"")

@@ -51,23 +51,23 @@ void test_off(void) {
     convicts(ARGUS_KIND_OFF, 0);
 }
 
-void test_stuck(void) {
+void test_stuck(void) { // soak
     convicts(ARGUS_KIND_STUCK, 0);
 }
 
-void test_stuck_at_a_value_far_from_what_it_read(void) {
+void test_stuck_at_a_value_far_from_what_it_read(void) { // soak
     convicts(ARGUS_KIND_STUCK, 1730);
 }
 
-void test_wrong_by_half(void) {
+void test_wrong_by_half(void) { // soak
     convicts(ARGUS_KIND_WRONG, 50);
 }
 
-void test_garbage(void) {
+void test_garbage(void) { // soak
     convicts(ARGUS_KIND_GARBAGE, 0);
 }
 
-void test_intermittent(void) {
+void test_intermittent(void) { // soak
     convicts(ARGUS_KIND_INTERMITTENT, 60);
 }
 
@@ -118,7 +118,7 @@ void test_healthy_in_an_office_with_noise_and_crosstalk(void) {
     stays_quiet("office", as_it_is, NULL);
 }
 
-void test_healthy_with_four_times_the_noise(void) {
+void test_healthy_with_four_times_the_noise(void) { // soak
     stays_quiet("noise", rough_noise, NULL);
 }
 
@@ -672,11 +672,11 @@ static void shake(int i) {
 }
 
 // Whatever the readings, the way and the times: every score stays within the bounds of its test.
-void test_scores_stay_within_their_bounds_whatever_is_read(void) {
+static void scores_stay_within_their_bounds(unsigned seeds, int readings) {
     static const int extreme[] = {0, 1, 100, 105, 106, 4999, 5000, 5001, 32767, 32768, 65535};
-    for (unsigned seed = 1; seed <= 5; seed++) {
+    for (unsigned seed = 1; seed <= seeds; seed++) {
         scene_init(&s, seed, START_MS);
-        for (int i = 0; i < 4000; i++) {
+        for (int i = 0; i < readings; i++) {
             shake(i);
             for (int k = 0; k < ARGUS_SONARS; k++) {
                 const int kind = (int)scene_random(&s, 4);
@@ -688,4 +688,12 @@ void test_scores_stay_within_their_bounds_whatever_is_read(void) {
             TEST_ASSERT_EQUAL_STRING_MESSAGE("", s.broken, told("bounds", i, seed));
         }
     }
+}
+
+void test_scores_stay_within_their_bounds(void) {
+    scores_stay_within_their_bounds(1, 2000);
+}
+
+void test_scores_stay_within_their_bounds_whatever_is_read(void) { // soak
+    scores_stay_within_their_bounds(5, 4000);
 }

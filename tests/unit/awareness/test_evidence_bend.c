@@ -248,7 +248,7 @@ static void tour(unsigned seed, int sonar, int bent_deg, scene_fault_t fault) {
 }
 
 // Of those with a bent axis nearly all come to what names one, and of those that are well hardly any.
-void test_a_bent_axis_shows_in_a_room_and_only_there(void) {
+void test_a_bent_axis_shows_in_a_room_and_only_there(void) { // soak
     static const int bends[] = {-25, -20, -15, 15, 20, 25};
     const scene_fault_t none = {ARGUS_KIND_NONE, 0};
     int bent = 0;
@@ -270,7 +270,7 @@ void test_a_bent_axis_shows_in_a_room_and_only_there(void) {
 }
 
 // A fault of another kind is seldom taken for a bent axis.
-void test_other_faults_are_seldom_called_wrong_for_a_bend(void) {
+void test_other_faults_are_seldom_called_wrong_for_a_bend(void) { // soak
     static const scene_fault_t faults[] = {{ARGUS_KIND_SLOW, 3},
                                            {ARGUS_KIND_SLOW, 8},
                                            {ARGUS_KIND_INTERMITTENT, 50},

@@ -1457,7 +1457,7 @@ static const char *what(int sonar, unsigned seed) {
 }
 
 // Wrong by half, too near or too far: named by the peers within a tour, whichever sonar it is.
-void test_a_wrong_sonar_reaches_naming_within_a_tour(void) {
+void test_a_wrong_sonar_reaches_naming_within_a_tour(void) { // soak
     for (int percent = 50; percent <= 150; percent += 100) {
         for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
             const unsigned seed = (unsigned)(sonar * 4 + 1);
@@ -1474,7 +1474,7 @@ void test_a_wrong_sonar_reaches_naming_within_a_tour(void) {
 
 // A liar of the ring is named itself, and hardly anybody beside it. (Each of 0, 7, 8 and 15 has one other
 // that looks as it does and hardly anybody else: there the two are not told apart so well.)
-void test_a_liar_hardly_gets_those_beside_it_named(void) {
+void test_a_liar_hardly_gets_those_beside_it_named(void) { // soak
     static const int liars[] = {1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 13, 14};
     int others = 0;
     for (int i = 0; i < 12; i++) {
@@ -1492,7 +1492,7 @@ void test_a_liar_hardly_gets_those_beside_it_named(void) {
     7 // sonars of 16 * TOURS that reach naming; of 400 tours of other seeds 47, 41 with two against
 
 // Nobody moves, nobody lies: in one tour of ten one sonar of sixteen reaches the naming score.
-void test_in_a_healthy_office_few_reach_naming(void) {
+void test_in_a_healthy_office_few_reach_naming(void) { // soak
     int reached = 0;
     int with_two = 0;
     for (unsigned seed = 1; seed <= TOURS; seed++) {
@@ -1549,7 +1549,7 @@ static int told_late_percent(argus_fault_kind_t kind, int value, int *least_late
 }
 
 // Late sonars reach high sums at turns, both against well and against wrong.
-void test_a_late_sonar_is_told_from_well_and_from_wrong(void) {
+void test_a_late_sonar_is_told_from_well_and_from_wrong(void) { // soak
     static const int lags[] = {3, 5, 8};
     for (int n = 0; n < 3; n++) {
         int least_late = INT16_MAX;
@@ -1560,7 +1560,7 @@ void test_a_late_sonar_is_told_from_well_and_from_wrong(void) {
 }
 
 // What is wrong is contradicted as much, and seldom told to be late.
-void test_a_wrong_sonar_is_seldom_told_to_be_late(void) {
+void test_a_wrong_sonar_is_seldom_told_to_be_late(void) { // soak
     for (int value = 50; value <= 150; value += 100) {
         int least_late = INT16_MAX;
         const int percent = told_late_percent(ARGUS_KIND_WRONG, value, &least_late);
@@ -1569,7 +1569,7 @@ void test_a_wrong_sonar_is_seldom_told_to_be_late(void) {
 }
 
 // Nobody lies: hardly any of the ring is ever contradicted and told to be late.
-void test_the_healthy_are_hardly_ever_told_to_be_late(void) {
+void test_the_healthy_are_hardly_ever_told_to_be_late(void) { // soak
     int told_late = 0;
     for (unsigned seed = 1; seed <= TOURS; seed++) {
         start(30 + seed, 0, ARGUS_KIND_NONE, 0);

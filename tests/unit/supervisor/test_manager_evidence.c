@@ -151,7 +151,7 @@ void test_intermittent_is_found(void) {
     finds(ROBOT_DROPOUT, 40, ARGUS_KIND_INTERMITTENT, is_found);
 }
 
-void test_healthy_in_a_room_for_ten_minutes(void) {
+void test_healthy_in_a_room_for_ten_minutes(void) { // soak
     start_in_a_room();
     drive_until(never, 0, 600000);
     TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_SONAR_DISABLED, 0), told("room", -1));
@@ -298,7 +298,7 @@ void test_nobody_comes_back_by_standing_still(void) {
 }
 
 // One that is still broken never becomes healthy, though it be on probation at times.
-void test_a_broken_sonar_does_not_come_back(void) {
+void test_a_broken_sonar_does_not_come_back(void) { // soak
     static const struct {
         robot_fault_t fault;
         int value;
@@ -342,7 +342,7 @@ static int agreements_wanted(void) {
 }
 
 // Probation grows with each relapse, but not beyond what can be counted.
-void test_a_relapse_doubles_the_agreements_wanted(void) {
+void test_a_relapse_doubles_the_agreements_wanted(void) { // soak
     start_in_a_room();
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
     robot_run(&robot, 2000);
@@ -548,7 +548,7 @@ static void unsee(int sonar) {
 }
 
 // S1: ... but one that looks ahead is, whatever makes it a suspect.
-void test_hemmed_in_it_stays_with_a_suspect_ahead(void) {
+void test_hemmed_in_it_stays_with_a_suspect_ahead(void) { // soak
     static void (*const make[])(int) = {accuse, lose, jump, unsee};
     for (int how = 0; how < 4; how++) {
         for (int sonar = 1; sonar <= 6; sonar++) {
@@ -893,7 +893,7 @@ static int looks_in_two_minutes(int32_t look_every_s) {
     return robot_count_events(&robot, ARGUS_EV_LOOK, 0);
 }
 
-void test_it_looks_at_all_as_often_as_it_is_told(void) {
+void test_it_looks_at_all_as_often_as_it_is_told(void) { // soak
     const int often = looks_in_two_minutes(2);
     const int usual = looks_in_two_minutes(20);
     TEST_ASSERT_EQUAL(1, looks_in_two_minutes(3600)); // before the first metre

@@ -866,7 +866,7 @@ static void check_s7_one_echo_does_not_hold_up_a_look(void) {
     TEST_ASSERT_TRUE(again > 20);
 }
 
-void test_s7_one_echo_does_not_hold_up_a_look(void) {
+void test_s7_one_echo_does_not_hold_up_a_look(void) { // soak
     with_profile(ARGUS_PROFILE_ARGUS, check_s7_one_echo_does_not_hold_up_a_look);
 }
 

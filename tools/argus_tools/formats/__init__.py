@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 from collections.abc import Iterator
 from functools import cache
 from io import BufferedReader
@@ -22,30 +21,49 @@ from argus_tools.formats.base import (
     Writer,
 )
 from argus_tools.formats.source import BLOCK_BYTES, Source
+from argus_tools.formats.text import is_text
 
 __all__ = [
     "Chunk", "Damage", "Direction", "Format", "Log", "LogError", "ReadOptions", "Reader", "Writer",
-    "find_format", "format_of_name", "formats", "open_log",
+    "find_format", "format_of_name", "formats", "forms", "open_log",
 ]  # fmt: skip
 
-# In the order in which they are tried on a file; "bin" takes whatever no other format claims.
-MODULES: Final = ("record", "pcapng", "pcap", "jsonl", "candump", "bin")
+# Of text that comes through a pipe so much is waited for before it is taken for raw bytes.
+_TEXT_HEAD_BYTES: Final = 1 << 12
+
+# In the order in which they are tried on a file: first what begins with a mark of its own, then text, at last
+# hexadecimal text, as that may hold anything; "bin" takes whatever no other form claims.
+# Each module has a FORMAT, or FORMATS where several are alike.
+MODULES: Final = (
+    "record", "pcapng", "pcap", "canlog", "recoded", "jsonl", "candump", "canlines", "cancsv",
+    "others", "hexdump", "hextext", "bin",
+)  # fmt: skip
 
 
 @cache
-def formats() -> dict[str, Format]:
-    """Return all formats by name, in the order of detection."""
-    found = {}
+def forms() -> tuple[Format, ...]:
+    """Return all forms that are recognised, read or not, in the order of detection."""
+    found: list[Format] = []
     for name in MODULES:
-        if importlib.util.find_spec(f"argus_tools.formats.{name}"):
-            module = importlib.import_module(f"argus_tools.formats.{name}")
-            found[name] = module.FORMAT
-    return found
+        module = importlib.import_module(f"argus_tools.formats.{name}")
+        found += getattr(module, "FORMATS", None) or (module.FORMAT,)
+    return tuple(found)
+
+
+def formats() -> dict[str, Format]:
+    """Return the formats that are read, by name, in the order of detection."""
+    return {form.name: form for form in forms() if form.is_read}
 
 
 def find_format(head: bytes) -> Format:
-    """Return the first format that claims a file which begins with `head`."""
-    return next(format_ for format_ in formats().values() if format_.sniff(head))
+    """Return the first form that claims a file which begins with `head`."""
+    return next(form for form in forms() if form.sniff(head))
+
+
+def is_recognised(head: bytes) -> bool:
+    """Whether no more of a file is needed to say what it is; raw bytes are known by what is no text."""
+    form = find_format(head)
+    return form.name != "bin" or not is_text(head) or len(head) >= _TEXT_HEAD_BYTES
 
 
 def format_of_name(path: str) -> Format | None:
@@ -67,7 +85,7 @@ class Log:
     ) -> None:
         self.options = options or ReadOptions()
         self.options.name = path
-        self.source = Source(path, **source)
+        self.source = Source(path, is_enough=is_recognised, **source)
         if not self.source.head:
             what = self.source.damage[0].what if self.source.damage else "is empty"
             raise LogError(f"{path}: {what}")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from io import BufferedReader
@@ -11,6 +12,15 @@ from typing import BinaryIO, Final, Literal, NamedTuple, Protocol
 Direction = Literal["r2c", "c2r"]
 ROBOT_TO_CLIENT: Final[Direction] = "r2c"
 CLIENT_TO_ROBOT: Final[Direction] = "c2r"
+
+
+# What every refusal of a file says that it should have been.
+EXPECTED: Final = "a log of a robot's link (argus-log --help lists the forms)"
+
+
+def shell_name(name: str) -> str:
+    """Return a log's name as a shell takes it, in a command that the user may paste."""
+    return "FILE" if name == "-" else shlex.quote(name)
 
 
 class LogError(Exception):
@@ -90,7 +100,8 @@ class Format:
     """One log format: how it is called, recognised, read and written.
 
     `sniff` sees the first bytes of the file (up to 64 KiB, already unzipped) and says whether they are of
-    this format. `reader` gets a stream whose reads wait for more when the log is followed.
+    this format. `reader` gets a stream whose reads wait for more when the log is followed. What is not read is
+    only recognised: its reader raises LogError with the name of what it is and the remedy.
     """
 
     name: str
@@ -99,6 +110,7 @@ class Format:
     reader: Callable[[BufferedReader, ReadOptions], Reader]
     writer: Callable[[BinaryIO, ReadOptions], Writer] | None = None
     suffixes: tuple[str, ...] = ()
+    is_read: bool = True
 
 
 @dataclass

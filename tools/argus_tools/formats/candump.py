@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""`candump -L` logs of the ISO-TP link: 11-bit normal addressing, ids 0x640+k to the robot and 0x648+k from it."""
+"""candump logs of the ISO-TP link: `candump -L`, and what candump prints on the screen, with any of its options."""
 
 from __future__ import annotations
 
 import re
 from binascii import unhexlify
 from collections.abc import Iterator
-from dataclasses import dataclass
+from datetime import UTC, datetime
 from io import BufferedReader
-from typing import BinaryIO, Final
+from itertools import pairwise
+from typing import Any, BinaryIO, Final
 
 from argus_tools.formats.base import (
     CLIENT_TO_ROBOT,
@@ -18,69 +19,88 @@ from argus_tools.formats.base import (
     DamageList,
     Direction,
     Format,
-    Offsets,
     ReadOptions,
 )
+from argus_tools.formats.isotp import ID_FROM_ROBOT, ID_TO_ROBOT, NEXT_BYTES, CanLink
+from argus_tools.formats.text import BOM, first_lines
 
-ID_TO_ROBOT: Final = 0x640
-ID_FROM_ROBOT: Final = 0x648
-ROBOTS: Final = 8
 PDU_MAX: Final = 4095
 _PADDING: Final = b"\xcc"
 _FRAME_BYTES: Final = 8
 _LINE_MAX: Final = 4096
-# More than any message of a robot's link.
-_MESSAGE_MAX: Final = 1 << 16
-_NEXT_BYTES: Final = tuple(bytes((0x20 | number,)) for number in range(16))
+_ID: Final = rb"([0-9A-Fa-f]{3}|[0-9A-Fa-f]{8})"
 _LINE: Final = re.compile(
-    rb"\s*\((\d{1,12}\.\d{1,9})\)\s+(\S+)\s+([0-9A-Fa-f]{3}|[0-9A-Fa-f]{8})#"
+    rb"\s*\((\d{1,12}\.\d{1,9})\)\s+(\S+)\s+" + _ID + rb"#"
     rb"(?:R[0-9A-Fa-f_]*|(?:#[0-9A-Fa-f])?([0-9A-Fa-f.]*))(?:\s+[RTX])*\s*"
 )
 _USUAL: Final = re.compile(rb"\((\d{1,12}\.\d{1,9})\) (\S+) ([0-9A-Fa-f]{3})#([0-9A-Fa-f]{2,16})\n")
+# What candump prints without -L: time by -t, marks by -x, length in braces by -8.
+_SCREEN: Final = re.compile(
+    rb"\s*(?:\(\s*(?:(\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d\.\d{1,9})|(\d{1,12}\.\d{1,9}))\)\s+)?"
+    rb"([^\s#()\[\]{}]+)\s+(?:[RT]X\s+\S\s+\S\s+)?" + _ID + rb"\s+([\[{])\s*([0-9A-Fa-f]{1,2})\s*[\]}](.*)",
+    re.DOTALL,
+)
+_RELATIVE: Final = re.compile(rb"^\s*\((\d{1,8}\.\d{1,9})\)", re.MULTILINE)
+_COLOUR: Final = re.compile(rb"\x1b\[[0-9;]*[A-Za-z]")
+# The digits of -i are eight to a byte; -S turns the bytes round and marks them with another separator.
+_BITS: Final = re.compile(rb"[01]{8}(?:[ `][01]{8})*")
+_SWAPPED: Final = b"`"
 _ID_DIGITS: Final = 3
-_SINGLE, _FIRST, _NEXT, _FLOW_CONTROL = range(4)
+_NO_DATA: Final = (b"remote request", b"ERRORFRAME")
+# Below this a time is not since 1970 but since another line.
+_RELATIVE_MAX_S: Final = 1e8
+# A log of `candump -td` has more falling times than one of these; one of -tz falls where it was begun anew.
+_FALLS_OF_DELTA: Final = 10
+
+Fields = tuple[bytes | float | None, bytes, bytes, bytes]
 
 
-@dataclass
-class _Transfer:
-    total: int
-    line: int
-    data: bytearray
-    next_number: int = 1
+class _Clock:
+    """Makes one rising time of those of -td, which count from the line before, and -tz, from the run's first."""
+
+    def __init__(self, head: bytes) -> None:
+        times = [float(match[1]) for match in _RELATIVE.finditer(head)]
+        falls = sum(after < before for before, after in pairwise(times))
+        self._is_delta = falls * _FALLS_OF_DELTA > len(times)
+        self._base = self._last = 0.0
+
+    def at(self, t: float) -> float:
+        if t > _RELATIVE_MAX_S:
+            return t
+        if self._is_delta:
+            self._base += t
+            return round(self._base, 9)
+        if t < self._last / 2:
+            self._base += self._last
+        self._last = t
+        return round(self._base + t, 9)
 
 
 class CandumpReader:
-    """Puts the link's messages together again; other traffic on the bus is passed over.
-
-    Of a message that is broken off, what came is passed on, so that its packet is seen as damaged.
-    """
+    """Reads lines of either form, also of both; comments (#) and what explains an error frame are passed over."""
 
     def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
         self.damage = DamageList()
         self._stream = stream
-        self._robot = options.robot
-        self._is_asked = options.robot is not None
-        self._bus: bytes | None = None
-        self._others: set[int | bytes] = set()
-        self._open: dict[Direction, _Transfer] = {}
-        self._torn: set[Direction] = set()
+        self._link = CanLink(options, self.damage, "line")
+        self._clock: _Clock | None = None
 
     def __iter__(self) -> Iterator[Chunk]:
-        offsets = Offsets()
         directions: dict[tuple[bytes, bytes], Direction | None] = {}
-        usual, transfers = _USUAL.fullmatch, self._open
+        usual, transfers, link = _USUAL.fullmatch, self._link.transfers, self._link
         number = 0
-        t = b"0"
         while line := self._stream.readline(_LINE_MAX):
             number += 1
-            fields = usual(line) or self._unusual(line, number)
+            match = usual(line)
+            fields: Any = match.groups() if match else self._unusual(line, number)
             if fields is None:
                 continue
-            t, bus, can_id, digits = fields.groups()
+            t, bus, can_id, digits = fields
             try:
                 direction = directions[bus, can_id]
             except KeyError:
-                direction = self._direction(bus, can_id, number)
+                is_long = len(can_id) != _ID_DIGITS
+                direction = link.direction(bus.decode("latin-1"), int(can_id, 16), is_long, number)
                 directions[bus, can_id] = direction
             if direction is None or not digits:
                 continue
@@ -91,24 +111,45 @@ class CandumpReader:
             transfer = transfers.get(direction)
             if (
                 transfer
-                and frame[:1] == _NEXT_BYTES[transfer.next_number]
+                and frame[:1] == NEXT_BYTES[transfer.next_number]
                 and len(transfer.data) + len(frame) <= transfer.total
             ):
                 # The middle of a message: most lines of most logs.
                 transfer.data += frame[1:]
                 transfer.next_number = (transfer.next_number + 1) & 0xF
                 continue
-            for data in self._take(direction, frame, number):
-                yield offsets.chunk(float(t), direction, data)
-        for direction in tuple(self._open):
-            for data in self._give_up(direction, "has no end"):
-                yield offsets.chunk(float(t), direction, data)
+            yield from link.take(None if t is None else float(t), direction, frame, number)
+        yield from link.finish()
 
-    def _unusual(self, line: bytes, number: int) -> re.Match[bytes] | None:
-        fields = _LINE.fullmatch(line)
-        if fields is None and line.strip():
-            self.damage.append(Damage(f"line {number}", "no candump -L line"))
-        return fields
+    def _unusual(self, line: bytes, number: int) -> Fields | None:
+        """Return time, bus, id and digits of a line that is not as -L writes most of them."""
+        if number == 1:
+            line = line.removeprefix(BOM)
+        line = _COLOUR.sub(b"", line)
+        if match := _LINE.fullmatch(line):
+            t, bus, can_id, digits = match.groups()
+            return t, bus, can_id, digits
+        if match := _SCREEN.fullmatch(line):
+            return self._screen(match, line, number)
+        if line.strip() and not line.startswith((b"#", b"\t")):
+            self.damage.append(Damage(f"line {number}", "no line of candump"))
+        return None
+
+    def _screen(self, match: re.Match[bytes], line: bytes, number: int) -> Fields | None:
+        date, t, bus, can_id, bracket, length, shown = match.groups()
+        # Braces hold the length's code, which is above 8 for 8 bytes, too.
+        size = min(int(length, 16), _FRAME_BYTES) if bracket == b"{" else _decimal(length)
+        digits = _screen_digits(shown, size)
+        if digits is None:
+            self.damage.append(Damage(f"line {number}", f"a frame that has not the {size} bytes it tells of"))
+            return None
+        if date:
+            return _seconds(date.decode()), bus, can_id, digits
+        if t is None:
+            return None, bus, can_id, digits
+        if self._clock is None:
+            self._clock = _Clock(line + self._stream.peek(_LINE_MAX))
+        return self._clock.at(float(t)), bus, can_id, digits
 
     def _dotted(self, digits: bytes, number: int) -> bytes:
         try:
@@ -117,90 +158,45 @@ class CandumpReader:
             self.damage.append(Damage(f"line {number}", "an odd number of hexadecimal digits"))
             return b""
 
-    def _direction(self, bus: bytes, id_digits: bytes, line: int) -> Direction | None:
-        can_id = int(id_digits, 16)
-        if len(id_digits) != _ID_DIGITS or not ID_TO_ROBOT <= can_id < ID_FROM_ROBOT + ROBOTS:
-            return None
-        robot = can_id & (ROBOTS - 1)
-        if self._robot is None:
-            self._robot = robot
-        if robot != self._robot and self._is_asked:
-            return None
-        if robot != self._robot:
-            first = f"robot {self._robot} came first; choose with --robot"
-            self._leave_out(robot, f"robot {robot} is left out, as {first}", line)
-            return None
-        if self._bus is None:
-            self._bus = bus
-        if bus != self._bus:
-            name, first = (word.decode("latin-1") for word in (bus, self._bus))
-            self._leave_out(bus, f"interface {name} is left out, as robot {robot} was first on {first}", line)
-            return None
-        return CLIENT_TO_ROBOT if can_id < ID_FROM_ROBOT else ROBOT_TO_CLIENT
 
-    def _leave_out(self, other: int | bytes, what: str, line: int) -> None:
-        if other not in self._others:
-            self._others.add(other)
-            self.damage.append(Damage(f"line {line}", what))
+def _decimal(digits: bytes) -> int:
+    return int(digits) if digits.isdigit() else 0
 
-    def _give_up(self, direction: Direction, why: str) -> Iterator[bytes]:
-        transfer = self._open.pop(direction, None)
-        if transfer:
-            got = f"{len(transfer.data)} of {transfer.total} bytes"
-            self.damage.append(Damage(f"line {transfer.line}", f"an ISO-TP message {why}: {got} came"))
-            yield bytes(transfer.data)
 
-    def _take(self, direction: Direction, frame: bytes, line: int) -> Iterator[bytes]:
-        """Take a frame; yield the message that it completes, or what came of one that it breaks off."""
-        kind = frame[0] >> 4 if frame else -1
-        if kind == _SINGLE:
-            yield from self._give_up(direction, "is broken off")
-            # Frames of CAN FD have their length in a second byte.
-            at = 1 if len(frame) <= _FRAME_BYTES or frame[0] & 0xF else 2
-            size = frame[at - 1] & (0xF if at == 1 else 0xFF)
-            if 0 < size <= len(frame) - at:
-                yield frame[at : at + size]
-            else:
-                self._complain(line, f"an ISO-TP single frame of a wrong length, {size}")
-        elif kind == _FIRST:
-            yield from self._give_up(direction, "is broken off")
-            self._begin(direction, frame, line)
-        elif kind == _NEXT:
-            yield from self._continue(direction, frame, line)
-        elif kind != _FLOW_CONTROL and frame:
-            self._complain(line, "no ISO-TP frame")
+def _screen_digits(shown: bytes, size: int) -> bytes | None:
+    """Return the digits of a frame's bytes as -L has them; None if they are not `size` bytes."""
+    text = shown.strip()
+    if text.startswith(_NO_DATA) or not size:
+        return b""
+    # Behind them may stand the characters (-a), between quotes.
+    if match := _BITS.match(text):
+        bits = re.split(rb"[ `]", match[0])
+        if len(bits) >= size:
+            pairs = [b"%02X" % int(word, 2) for word in bits]
+            return b"".join(pairs[:size] if _SWAPPED not in match[0] else pairs[size - 1 :: -1])
+    width = 3 * size - 1
+    front = text[:width]
+    behind = text[width:].strip()
+    if len(front) != width or (behind and not behind.startswith((b"'", *_NO_DATA))):
+        return None
+    pairs = re.split(rb"[ `]", front)
+    if len(pairs) != size or not all(re.fullmatch(rb"[0-9A-Fa-f]{2}", pair) for pair in pairs):
+        return None
+    return b"".join(pairs[::-1] if _SWAPPED in front else pairs)
 
-    def _begin(self, direction: Direction, frame: bytes, line: int) -> None:
-        total, at = int.from_bytes(frame[:2], "big") & 0xFFF, 2
-        if not total:
-            # Longer ones have their length in four bytes more.
-            total, at = int.from_bytes(frame[2:6], "big"), 6
-        if len(frame) < _FRAME_BYTES or not len(frame) - at < total <= _MESSAGE_MAX:
-            self._torn.add(direction)
-            self._complain(line, f"an ISO-TP first frame of a wrong length, {total}")
-            return
-        self._torn.discard(direction)
-        self._open[direction] = _Transfer(total, line, bytearray(frame[at:]))
 
-    def _continue(self, direction: Direction, frame: bytes, line: int) -> Iterator[bytes]:
-        transfer = self._open.get(direction)
-        if transfer is None:
-            if direction not in self._torn:
-                self._torn.add(direction)
-                self._complain(line, "the end of an ISO-TP message whose beginning is missing")
-            return
-        if frame[0] & 0xF != transfer.next_number:
-            self._torn.add(direction)
-            yield from self._give_up(direction, "lacks a frame")
-            return
-        transfer.next_number = (transfer.next_number + 1) & 0xF
-        transfer.data += frame[1:]
-        if len(transfer.data) >= transfer.total:
-            del self._open[direction]
-            yield bytes(transfer.data[: transfer.total])
+def _seconds(date: str) -> float:
+    """Return a date of -tA in seconds since 1970; it is of the recorder's zone, which is not told, taken as UTC."""
+    whole, _, fraction = date.partition(".")
+    try:
+        return datetime.fromisoformat(whole).replace(tzinfo=UTC).timestamp() + float(f"0.{fraction}")
+    except ValueError:
+        return 0.0
 
-    def _complain(self, line: int, what: str) -> None:
-        self.damage.append(Damage(f"line {line}", what))
+
+def _sniff(head: bytes) -> bool:
+    lines = (_COLOUR.sub(b"", line) for line in first_lines(head))
+    return any(_LINE.fullmatch(line) or _SCREEN.fullmatch(line) for line in lines)
 
 
 class CandumpWriter:
@@ -238,8 +234,8 @@ class CandumpWriter:
 
 FORMAT: Final = Format(
     name="candump",
-    help="candump -L of the ISO-TP link",
-    sniff=lambda head: bool(_LINE.fullmatch(head.lstrip().split(b"\n", 1)[0])),
+    help="candump of the ISO-TP link: -L, or as on the screen, plain or with -t",
+    sniff=_sniff,
     reader=CandumpReader,
     writer=CandumpWriter,
     suffixes=(".candump", ".log"),

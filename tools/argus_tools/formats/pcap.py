@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""pcap captures of the TCP link, with microseconds or nanoseconds, of either byte order."""
+"""pcap captures of the TCP or CAN link, with microseconds or nanoseconds, of either byte order."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from io import BufferedReader
 from typing import BinaryIO, Final
 
 from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, ReadOptions
-from argus_tools.formats.tcp import DEFAULT_PORT, LINK_ETHERNET, Connection, Streams, parse
+from argus_tools.formats.tcp import DEFAULT_PORT, LINK_ETHERNET, Connection
+from argus_tools.formats.traffic import Captured, Traffic
 
 FRAME_MAX: Final = 1 << 20
 _SNAPLEN: Final = 262144
@@ -36,7 +37,7 @@ class PcapReader:
             raise LogError(f"{self._options.name}: no pcap file, or cut in its header")
         order, unit = _MAGIC[head[:4]]
         link = struct.unpack(order + "I", head[20:24])[0] & 0xFFFF
-        streams = Streams(self._options, self.damage)
+        traffic = Traffic(self._options, self.damage)
         at, number = 24, 0
         while record := self._stream.read(16):
             number += 1
@@ -52,10 +53,8 @@ class PcapReader:
                 self.damage.append(Damage(f"byte {at}", "the capture ends inside a frame"))
                 break
             at += 16 + size
-            segment = parse(link, frame)
-            if segment:
-                yield from streams.take(round(seconds + fraction * unit, 9), number, segment)
-        yield from streams.finish()
+            yield from traffic.take(Captured(round(seconds + fraction * unit, 9), number, link, frame))
+        yield from traffic.finish()
 
 
 class PcapWriter:
@@ -83,7 +82,7 @@ class PcapWriter:
 
 FORMAT: Final = Format(
     name="pcap",
-    help="pcap of the TCP link (tcpdump)",
+    help="pcap of the TCP or CAN link (tcpdump)",
     sniff=lambda head: head[:4] in _MAGIC,
     reader=PcapReader,
     writer=PcapWriter,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""pcapng captures of the TCP link, as Wireshark writes them."""
+"""pcapng captures of the TCP or CAN link, as Wireshark writes them."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ from typing import BinaryIO, Final
 
 from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.pcap import FRAME_MAX
-from argus_tools.formats.tcp import DEFAULT_PORT, LINK_ETHERNET, Connection, Streams, parse
+from argus_tools.formats.tcp import DEFAULT_PORT, LINK_ETHERNET, Connection
+from argus_tools.formats.traffic import Captured, Traffic
 
 _SECTION, _INTERFACE, _SIMPLE, _ENHANCED, _OLD_PACKET = 0x0A0D0D0A, 1, 3, 6, 2
 _ORDER_MAGIC: Final = 0x1A2B3C4D
+_OPTION_NAME: Final = 2
 _OPTION_TSRESOL: Final = 9
 _OPTION_TSOFFSET: Final = 14
 
@@ -24,6 +26,7 @@ class _Interface:
     link: int
     units_per_s: int = 1_000_000
     offset_s: int = 0
+    name: str = ""
 
 
 def _interface(order: str, body: bytes) -> _Interface:
@@ -38,6 +41,8 @@ def _interface(order: str, body: bytes) -> _Interface:
             found.units_per_s = 2 ** (value[0] & 0x7F) if value[0] & 0x80 else 10 ** min(value[0], 18)
         elif code == _OPTION_TSOFFSET and size == 8:
             found.offset_s = struct.unpack(order + "q", value)[0]
+        elif code == _OPTION_NAME:
+            found.name = value.rstrip(b"\0").decode("utf-8", "replace")
         at += 4 + size + (-size & 3)
     return found
 
@@ -53,7 +58,7 @@ class PcapngReader:
         self._interfaces: list[_Interface] = []
 
     def __iter__(self) -> Iterator[Chunk]:
-        streams = Streams(self._options, self.damage)
+        traffic = Traffic(self._options, self.damage)
         number = 0
         for kind, body in self._blocks():
             try:
@@ -61,24 +66,23 @@ class PcapngReader:
                     self._interfaces.append(_interface(self._order, body))
                 elif kind in (_ENHANCED, _SIMPLE, _OLD_PACKET):
                     number += 1
-                    t, link, frame = self._packet(kind, body)
-                    segment = parse(link, frame)
-                    if segment:
-                        yield from streams.take(t, number, segment)
+                    yield from traffic.take(self._packet(kind, body, number))
             except (struct.error, IndexError):
                 self.damage.append(Damage(f"frame {number}", "a block contradicts its length"))
-        yield from streams.finish()
+        yield from traffic.finish()
 
-    def _packet(self, kind: int, body: bytes) -> tuple[float, int, bytes]:
+    def _packet(self, kind: int, body: bytes, number: int) -> Captured:
         if kind == _SIMPLE:
             size = struct.unpack_from(self._order + "I", body)[0]
-            return 0.0, self._interfaces[0].link, body[4 : 4 + size]
+            return Captured(
+                0.0, number, self._interfaces[0].link, body[4 : 4 + size], self._interfaces[0].name
+            )
         form = "IIIII" if kind == _ENHANCED else "HHIIII"
         values = struct.unpack_from(self._order + form, body)
         high, low, size = values[-4:-1]
         interface = self._interfaces[values[0]]
         t = (high << 32 | low) / interface.units_per_s + interface.offset_s
-        return round(t, 9), interface.link, body[20 : 20 + size]
+        return Captured(round(t, 9), number, interface.link, body[20 : 20 + size], interface.name)
 
     def _blocks(self) -> Iterator[tuple[int, bytes]]:
         at = 0
@@ -139,7 +143,7 @@ class PcapngWriter:
 
 FORMAT: Final = Format(
     name="pcapng",
-    help="pcapng of the TCP link (Wireshark)",
+    help="pcapng of the TCP or CAN link (Wireshark)",
     sniff=lambda head: head[:4] == b"\x0a\x0d\x0d\x0a",
     reader=PcapngReader,
     writer=PcapngWriter,

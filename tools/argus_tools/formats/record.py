@@ -19,7 +19,7 @@ from argus_tools.formats.base import (
     Offsets,
     ReadOptions,
 )
-from hil_sim.record import (
+from hil_sim.record.recording import (
     CLOCK_US,
     MAGIC,
     PAYLOAD_MAX,

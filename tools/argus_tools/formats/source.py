@@ -36,6 +36,7 @@ class Source(io.RawIOBase):
         follow: bool = False,
         stop: Callable[[], bool] = lambda: False,
         on_progress: Callable[[int], None] = lambda _: None,
+        is_enough: Callable[[bytes], bool] = lambda _: True,
     ) -> None:
         self.name = path
         self.damage = DamageList()
@@ -51,9 +52,9 @@ class Source(io.RawIOBase):
         self._zipped = b""
         self._ready = b""
         self._given_up = False
-        self._read_head()
+        self._read_head(is_enough)
 
-    def _read_head(self) -> None:
+    def _read_head(self, is_enough: Callable[[bytes], bool]) -> None:
         first = self._raw(3)
         while first and len(first) < 3 and (more := self._raw(3 - len(first))):
             first += more
@@ -62,8 +63,12 @@ class Source(io.RawIOBase):
             self._zipped = first
         else:
             self._ready = first
-        wanted = HEAD_BYTES if self.is_regular and not self._follow else PIPE_HEAD_BYTES
-        while len(self._ready) < wanted and (more := self._next()):
+        is_live = self._follow or not self.is_regular
+        wanted = PIPE_HEAD_BYTES if is_live else HEAD_BYTES
+        while len(self._ready) < wanted or (is_live and not is_enough(self._ready)):
+            more = self._next()
+            if not more:
+                break
             self._ready += more
         self.head = self._ready
 

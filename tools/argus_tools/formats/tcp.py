@@ -34,6 +34,7 @@ _VLANS: Final = (0x8100, 0x88A8)
 # Bytes before the network header, and where in them its protocol number stands.
 _LINKS: Final = {1: (14, 12), 113: (16, 14), 276: (20, 0)}
 _RAW_LINKS: Final = {0: 4, 12: 0, 14: 0, 101: 0, 108: 4, 228: 0, 229: 0}
+IP_LINKS: Final = frozenset((*_LINKS, *_RAW_LINKS))
 
 Endpoint = tuple[bytes, int]
 
@@ -106,6 +107,11 @@ class Streams:
     _halves: dict[tuple[Endpoint, Endpoint], _Half] = field(default_factory=dict)
     _servers: dict[Endpoint, None] = field(default_factory=dict)
     _others: set[Endpoint] = field(default_factory=set)
+
+    @property
+    def is_used(self) -> bool:
+        """Whether a robot was found."""
+        return self.robot is not None
 
     def take(self, t: float, number: int, segment: Segment) -> Iterator[Chunk]:
         """Take the next segment, from frame `number` of the file."""

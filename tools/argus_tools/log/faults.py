@@ -13,11 +13,13 @@ from argus_tools.core import Core, Event, kind_name, setting_value
 from argus_tools.formats.base import ROBOT_TO_CLIENT, LogError
 from argus_tools.log.common import Input, add_log_arguments, show_table, use_colour
 from argus_tools.log.packets import Row
+from argus_tools.log.summary import Summary
 from hil_sim.arcos import COMMAND, TIMING, Command, Sip, SyncEcho, SyncReply, Unframer, frame
 
 SUMMARY: Final = "tell what the fault manager would have said from a log alone"
 EXAMPLES: Final = """\
-  argus-log faults capture.bin                 events, then the state of each sonar
+  argus-log faults capture.bin                 what is wrong, a line for each finding; one if it is nothing
+  argus-log faults capture.bin --events        everything said on the way, then the state of each sonar
   argus-log faults --json drive.rec            one JSON object per event, as argusd --json writes them
   argus-log faults drive.rec --set suspect_readings=5 --set stale_ms=3000
 
@@ -176,6 +178,9 @@ class _Opening:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_log_arguments(parser, follow=True)
+    parser.add_argument(
+        "--events", action="store_true", help="each event as a line, then all sonars (default with --follow)"
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object per line, as argusd --json")
     parser.add_argument(
         "--profile", default="argus", metavar="NAME", help="rule set (default: argus, as argusd)"
@@ -206,15 +211,24 @@ def run(args: argparse.Namespace) -> int:
     listener = Listener(_given(args), args.subclass)
     source = Input(args)
     colour = use_colour()
+    summary = None if args.json or args.events or args.follow else Summary()
     t: float | None = None
     for row in source.rows():
         t = row.t
+        if summary:
+            summary.see(t, row.type == "SIP" and row.ok)
         for said in listener.take(row):
-            print(_json(said) if args.json else _line(said, colour), flush=args.follow)
+            if summary:
+                summary.add(said.event, said.t, said.offset)
+            else:
+                print(_json(said) if args.json else _line(said, colour), flush=args.follow)
     status = listener.status
     if status is None:
         raise LogError(f"{args.log}: holds no SIP from the robot, so there is nothing to judge")
-    print(json.dumps({"t": t, **_STATUS, **status}) if args.json else _table(status, colour))
+    if summary:
+        print("\n".join(summary.lines(status, source.log.damage)))
+    else:
+        print(json.dumps({"t": t, **_STATUS, **status}) if args.json else _table(status, colour))
     return source.exit_code
 
 

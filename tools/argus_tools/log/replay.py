@@ -16,7 +16,9 @@ from argus_tools.formats.base import ROBOT_TO_CLIENT, LogError
 from argus_tools.log.common import EXIT_READ, Input, add_log_arguments
 from argus_tools.log.packets import Row
 from hil_sim.arcos import COMMAND, TIMING, Command, ConfigPac, SyncEcho, SyncReply, Unframer, frame
-from hil_sim.links import Link, PtyLink, TcpLink
+from hil_sim.links.base import Link
+from hil_sim.links.pty import PtyLink
+from hil_sim.links.tcp import TcpLink
 
 SUMMARY: Final = "serve a log as a robot, for any client"
 EXAMPLES: Final = """\

@@ -113,7 +113,7 @@ void test_a_killed_holder_does_not_lock_the_port(void) {
     if (child == 0) {
         const uint8_t result = hal_serial_open(&serial, name, 9600) == HAL_LINK_OK;
         (void)!write(ready[1], &result, 1);
-        alarm(60);
+        alarm(600);
         pause();
         _exit(0);
     }
@@ -205,7 +205,7 @@ void test_busy_names_the_process_that_holds_the_port(void) {
     char text[512];
     const pid_t child = fork();
     if (child == 0) {
-        alarm(60);
+        alarm(600);
         pause();
         _exit(0);
     }

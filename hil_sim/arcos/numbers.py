@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: MIT
+"""The numbers of the protocol, by section of tables/arcos.toml."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from hil_sim.tables import load, section
+
+COMMAND: Final = section("arcos", "command")
+TYPE: Final = section("arcos", "type")
+ARGUMENT: Final = section("arcos", "argument")
+FLAG: Final = section("arcos", "flags")
+FRAME: Final = section("arcos", "frame")
+TIMING: Final = section("arcos", "timing")
+SIP: Final = section("arcos", "sip")
+DEFAULT: Final = section("arcos", "default")
+HOSTBAUD: Final = section("arcos", "hostbaud")
+BUMPSTALL: Final = section("arcos", "bumpstall")
+BAUD: Final = section("arcos", "baud")
+MOTION: Final = section("robots/p3dx-sh", "motion")
+SONAR_CYCLE_MS: Final[int] = load("robots/p3dx-sh")["sonar"]["cycle_ms"]
+BAUD_OF_CODE: Final = {code: BAUD[name] for name, code in HOSTBAUD.items()}

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+"""The `argus-sim` command: one emulated robot on a pseudo-terminal, a TCP port, a real UART or a CAN bus."""
+
+from __future__ import annotations
+
+import logging
+import os
+import sys
+from collections.abc import Sequence
+
+from hil_sim.cli.arguments import parser
+from hil_sim.cli.choose import scenario_of
+from hil_sim.cli.serve import say, serve
+from hil_sim.errors import SimError
+from hil_sim.faults.grammar import fault_help
+from hil_sim.world.files import world_names
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run `argus-sim`; return its exit code."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    if words[:1] == ["bench"]:
+        from hil_sim.bench.cli import main as bench
+
+        return bench(words[1:])
+    arguments = parser().parse_args(words)
+    try:
+        if arguments.list_worlds:
+            print("\n".join(world_names()))
+        elif arguments.list_faults:
+            print(fault_help())
+        else:
+            logging.basicConfig(format="argus-sim: %(message)s", stream=sys.stderr)
+            if arguments.verbose > 1:
+                logging.getLogger("argus.sim").setLevel(logging.DEBUG)
+            serve(arguments, scenario_of(arguments))
+    except SimError as error:
+        say(str(error))
+        return error.exit_code
+    except BrokenPipeError:
+        # Nobody reads our output; the interpreter would complain once more while it closes it.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 0

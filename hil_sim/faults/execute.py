@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: MIT
+"""Executes the sonar faults and bumper hits of a run when they are due."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from hil_sim.faults.kinds import BumperHit, Fault, FaultChange, LinkFault, SonarFault
+from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM
+from hil_sim.world.model import Pose
+
+
+class _State:
+    """How far one sonar fault has come."""
+
+    def __init__(self, fault: SonarFault) -> None:
+        self.fault = fault
+        self.started = fault.start is None
+        self.ended = False
+        self.told = False
+        self.held: dict[int, int] = {}
+        self.since: float | None = None
+        self.part = 1.0 if fault.ramp is None else 0.0
+
+    def update(self, now_ms: float, pose: Pose, travelled_mm: float) -> list[FaultChange]:
+        """Begin or end; return the change of each sonar."""
+        if self.ended:
+            return []
+        fault = self.fault
+        if not self.started:
+            assert fault.start is not None
+            self.started = fault.start.met(now_ms, pose, travelled_mm)
+        if self.started and fault.end is not None:
+            self.ended = fault.end.met(now_ms, pose, travelled_mm)
+        self._grow(now_ms, travelled_mm)
+        if self.on == self.told:
+            return []
+        self.told = self.on
+        return [FaultChange(now_ms, fault.kind, self.on, fault.text, sonar=number) for number in fault.sonars]
+
+    def _grow(self, now_ms: float, travelled_mm: float) -> None:
+        """Let a fault with a ramp grow, from where it began."""
+        ramp = self.fault.ramp
+        if ramp is not None and self.on:
+            here = now_ms if ramp.variable == "t" else travelled_mm
+            self.since = here if self.since is None else self.since
+            self.part = ramp.grown(self.since, here)
+
+    def has(self, number: int) -> bool:
+        """Whether it is on and of this sonar."""
+        return self.on and number in self.fault.sonars
+
+    def hold(self, number: int, measured: int) -> None:
+        """Keep the reading at onset of one that is stuck; also while another fault hides it."""
+        if self.fault.kind == "stuck" and self.has(number):
+            value = self.fault.value
+            self.held.setdefault(number, measured if value is None else value)
+
+    @property
+    def on(self) -> bool:
+        return self.started and not self.ended
+
+    @property
+    def settled(self) -> bool:
+        """It has ended, or is on for good: it does not change any more."""
+        return self.ended or (self.on and self.fault.end is None and self.part >= 1.0)
+
+
+class FaultSet:
+    """Executes the sonar faults and bumper hits of a run; link faults among them are left to the link."""
+
+    def __init__(self, faults: Iterable[Fault] = (), rng: np.random.Generator | None = None) -> None:
+        self.faults = list(faults)
+        self._rng = rng if rng is not None else np.random.default_rng(0)
+        self._states = [_State(fault) for fault in self.faults if isinstance(fault, SonarFault)]
+        self._hits = [fault for fault in self.faults if isinstance(fault, BumperHit)]
+        self._pressed = [False] * len(self._hits)
+        self._waiting = list(self._states)
+        self._afflicted: set[int] = set()
+        slowest: dict[int, int] = {}
+        for state in self._states:
+            fault = state.fault
+            self._afflicted.update(fault.sonars)
+            for number in fault.sonars if fault.kind == "slow" else ():
+                slowest[number] = max(fault.n, slowest.get(number, 0))
+        self._echoes: dict[int, deque[int]] = {n: deque(maxlen=count + 1) for n, count in slowest.items()}
+
+    @property
+    def link_faults(self) -> list[LinkFault]:
+        """The faults of the link."""
+        return [fault for fault in self.faults if isinstance(fault, LinkFault)]
+
+    def update(self, now_ms: float, pose: Pose, travelled_mm: float) -> list[FaultChange]:
+        """Begin and end faults; return what changed. Call it before the ring fires."""
+        changes: list[FaultChange] = []
+        if not self._waiting and not self._hits:
+            return changes
+        for state in self._waiting:
+            changes += state.update(now_ms, pose, travelled_mm)
+        if changes:
+            self._waiting = [state for state in self._waiting if not state.settled]
+        for k, hit in enumerate(self._hits):
+            pressed = hit.start_ms <= now_ms < hit.end_ms
+            if pressed != self._pressed[k]:
+                self._pressed[k] = pressed
+                changes.append(FaultChange(now_ms, "bumper", pressed, hit.text, segment=hit.segment))
+        return changes
+
+    def active(self, number: int) -> SonarFault | None:
+        """Return the fault that has sonar 0 to 15 now: of several the one written last."""
+        for state in reversed(self._states):
+            if state.has(number):
+                return state.fault
+        return None
+
+    def apply(
+        self, number: int, now_ms: float, true_measured_mm: int, remeasure: Callable[[float], int]
+    ) -> tuple[int | None, str | None]:
+        """Return what a sonar reports for what it measured, None for a silent slot, and the fault's kind.
+
+        `remeasure(angle_deg)` gives what it would have measured with its axis turned.
+        """
+        del now_ms  # `update` has decided what is on
+        if number not in self._afflicted:
+            return true_measured_mm, None
+        echoes = self._echoes.get(number)
+        if echoes is not None:
+            echoes.append(true_measured_mm)
+        for state in self._states:
+            state.hold(number, true_measured_mm)
+        for state in reversed(self._states):
+            if state.has(number):
+                return self._report(state, number, true_measured_mm, remeasure), state.fault.kind
+        return true_measured_mm, None
+
+    def _report(
+        self, state: _State, number: int, measured: int, remeasure: Callable[[float], int]
+    ) -> int | None:
+        fault = state.fault
+        if fault.kind == "off":
+            return NO_ECHO_MM
+        if fault.kind == "silent":
+            return None
+        if fault.kind == "stuck":
+            return state.held[number]
+        if fault.kind == "garbage":
+            return int(self._rng.integers(MIN_MM, NO_ECHO_MM + 1))
+        if fault.kind == "slow":
+            echoes = self._echoes[number]
+            return echoes[max(0, len(echoes) - 1 - fault.n)]
+        if fault.kind == "intermittent":
+            return self._drop(state, measured)
+        base = measured if fault.angle is None else remeasure(fault.angle * state.part)
+        scale = 1.0 + (fault.scale - 1.0) * state.part
+        return int(min(NO_ECHO_MM, max(MIN_MM, round(base * scale + fault.offset * state.part))))
+
+    def _drop(self, state: _State, measured: int) -> int:
+        fault = state.fault
+        if fault.beyond is None:
+            lost = self._rng.random() < fault.p * state.part
+        else:
+            hears_to = NO_ECHO_MM + (fault.beyond - NO_ECHO_MM) * state.part
+            lost = self._rng.random() < fault.p and measured > hears_to
+        return NO_ECHO_MM if lost else measured
+
+    def note_ping(self, t_ms: float, number: int, true_mm: int, heard_mm: int, value: int | None) -> None:
+        """Be told of a ping that a fault may have changed; for those who judge."""
+
+    def bumper(self, now_ms: float) -> int:
+        """Return the front bumper bits that hits press now: bit 1 leftmost to bit 5 rightmost."""
+        mask = 0
+        for hit in self._hits:
+            if hit.start_ms <= now_ms < hit.end_ms:
+                mask |= 1 << hit.segment
+        return mask

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Links to a client, and the loop that serves it in real time."""

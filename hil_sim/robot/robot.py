@@ -1,0 +1,360 @@
+# SPDX-License-Identifier: MIT
+"""The robot behind the ARCOS server: drive, chassis, sonars, bumpers and battery, from one sub-step to the next.
+
+Time is virtual: `advance` moves it in fixed sub-steps and nothing here reads a clock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+from hil_sim.arcos import BUMPSTALL, SIP, SONAR_CYCLE_MS, TIMING
+from hil_sim.faults.kinds import FaultChange
+from hil_sim.record.truth import Log
+from hil_sim.robot.chassis import Chassis, OdometryError, wrapped
+from hil_sim.robot.drive import Drive, Settings, Step
+from hil_sim.robot.energy import Energy
+from hil_sim.robot.interfaces import Body, Faults, Moving, Ring, SonarReading
+from hil_sim.robot.stall import StallMonitor
+from hil_sim.world.model import Pose
+from hil_sim.world.step import STEP_MS, STEP_S
+
+_STATE_EVERY_MS: Final = 100
+_WATCHDOG_MS: Final = TIMING["WATCHDOG_MS"]
+_BUMPER_MASK: Final = SIP["BUMPER_MASK"]
+_STALLS_FRONT: Final = BUMPSTALL["FRONT"]
+_STALLS_REAR: Final = BUMPSTALL["REAR"]
+
+
+class Robot:
+    """A robot in a world: commands in, true pose, odometry and sonar readings out.
+
+    drive: what the motion commands act on. chassis: where the robot is and what it meets. stall: the stall monitor.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        ring: Ring,
+        start: Pose,
+        *,
+        faults: Faults | None = None,
+        bumpers: int = 5,
+        rear_bumpers: int = 0,
+        seed: int = 0,
+        odometry_error: OdometryError | None = None,
+        dynamic: bool = False,
+        moving: Moving | None = None,
+        log: Log | None = None,
+    ) -> None:
+        """`dynamic`: solids may move by themselves, so contact is looked for at rest too; `moving` are such."""
+        self.body = body
+        self.ring = ring
+        self.faults = faults
+        self.start = start
+        self.bumpers = bumpers
+        self.rear_segments = rear_bumpers
+        self.dynamic = dynamic or moving is not None
+        self.moving = moving
+        self._closing_mm = moving.fastest_mm_s * STEP_S if moving is not None else 0.0
+        self.log = log
+        self.chassis = Chassis(
+            body,
+            start,
+            odometry_error or OdometryError(),
+            seed,
+            moving=moving is not None,
+            dynamic=dynamic,
+            on_hit=self._hit,
+        )
+        self.drive = Drive(self.chassis)
+        self.stall = StallMonitor()
+        self.now_ms = 0
+        self._debt_ms = 0.0
+        self.energy = Energy()
+        self.connected = False
+        self.watchdog_stops = True
+        self.fires_in_turn = True
+        self.unit_mm = 1.0
+        self.estop_pressed = False
+        self.estalled = False
+        self.last_heard_ms = 0
+        self.anport = 0
+        self.digout = 0
+        self.battery_test_dv = 0
+        self.fault_bumpers = 0
+        self._readings: list[SonarReading] = []
+        self._logged_bumpers = 0
+        self._watchdog_logged = False
+        ring.enabled[:] = [False] * len(ring.enabled)
+
+    # ---- commands
+
+    def heard(self) -> None:
+        """A packet arrived: re-arm the watchdog."""
+        self.last_heard_ms = self.now_ms
+
+    def open(self) -> None:
+        """Start a session: odometry at zero, sonar on, motors off."""
+        self.connected = True
+        self.heard()
+        self._to_flash()
+        self.set_origin()
+        self.sonar(1)
+        self._readings.clear()
+
+    def close(self) -> None:
+        """End a session: motors and sonar off, FLASH values back."""
+        self.connected = False
+        self.enable(False)
+        self.sonar(0)
+        self._to_flash()
+        self._readings.clear()
+
+    def _to_flash(self) -> None:
+        self.drive.settings = Settings()
+        self.battery_test_dv = 0
+        self.estalled = False
+        self.ring.reset()
+        self.ring.cycle_ms = SONAR_CYCLE_MS
+
+    def enable(self, on: bool) -> None:
+        """Motors on or off; off also forgets the set points."""
+        self.drive.motors = on and not self.estop_pressed
+        if self.drive.motors:
+            self.estalled = False
+        else:
+            self.drive.stop()
+
+    def press_estop(self, pressed: bool) -> None:
+        """The emergency stop button, which some models have: motors stay off after its release."""
+        self.estop_pressed = pressed
+        if pressed:
+            self.estalled = self.drive.settings.estall
+            self.drive.halt()
+            self.enable(False)
+
+    def set_origin(self) -> None:
+        """SETO: odometry becomes (0, 0, 0) here."""
+        self.drive.set_odometry(0.0, 0.0, 0.0)
+
+    def sonar(self, argument: int) -> None:
+        """SONAR: bit 0 on or off, bits 1 to 3 the array, 0 for all; a P3-DX has arrays 1 and 2."""
+        bits = abs(argument)
+        array = bits >> 1 & 7
+        for fitted in (1, 2):
+            if array in (0, fitted):
+                self.ring.enabled[fitted - 1] = bool(bits & 1)
+
+    def sonar_cycle(self, ms: int) -> None:
+        """SONAR_CYCLE: time between firings in an array."""
+        low, high = TIMING["SONAR_CYCLE_MIN_MS"], TIMING["SONAR_CYCLE_MAX_MS"]
+        if low <= ms <= high:
+            self.ring.cycle_ms = ms
+
+    def reset_pose(self) -> None:
+        """Back to the start with odometry at zero."""
+        self.chassis.place(self.start.x_mm, self.start.y_mm, self.start.heading_deg)
+        self.set_origin()
+
+    # ---- state
+
+    @property
+    def pose(self) -> Pose:
+        """The true pose; heading in (-180, 180]."""
+        return self.chassis.pose
+
+    @property
+    def watchdog_expired(self) -> bool:
+        """No packet for so long that the robot stops by itself."""
+        quiet_ms = self.now_ms - self.last_heard_ms
+        return self.connected and self.watchdog_stops and quiet_ms > _WATCHDOG_MS
+
+    @property
+    def sonar_on(self) -> bool:
+        """Some array is firing."""
+        return any(self.ring.enabled)
+
+    @property
+    def front_bumpers(self) -> int:
+        """Front bumper bits as in the SIP."""
+        return (self.chassis.contact_front | self.fault_bumpers) & _BUMPER_MASK if self.bumpers else 0
+
+    @property
+    def rear_bumpers(self) -> int:
+        """Rear bumper bits as in the SIP."""
+        return self.chassis.contact_rear & _BUMPER_MASK if self.rear_segments else 0
+
+    @property
+    def wants_motion(self) -> bool:
+        """A set point is not yet reached and nothing forbids it."""
+        return self.drive.motors and not self.watchdog_expired and self.drive.has_set_point
+
+    @property
+    def battery_v(self) -> float:
+        """Terminal voltage: falls with the charge and with the load."""
+        if self.battery_test_dv:
+            return self.battery_test_dv / 10
+        left, right = self.drive.wheel_speeds()
+        return self.energy.battery_v(self.sonar_on, abs(left) + abs(right))
+
+    def pose_at(self, t_ms: float) -> Pose:
+        """The true pose at a recent time (up to 0.6 s ago), between sub-steps on a straight line."""
+        return self.chassis.pose_at(self.now_ms - t_ms)
+
+    # ---- time
+
+    def advance(self, dt_ms: float) -> None:
+        """Let `dt_ms` pass; what is left over from whole sub-steps is kept for the next call."""
+        self._debt_ms += dt_ms
+        while self._debt_ms >= STEP_MS:
+            self._debt_ms -= STEP_MS
+            self.step()
+
+    def step(self) -> None:
+        """Let one sub-step pass."""
+        self.now_ms += STEP_MS
+        if self.moving is not None:
+            self.moving.step(self.pose)
+            self.chassis.free_mm -= self._closing_mm
+        self._move()
+        self.chassis.remember()
+        if self.faults is not None:
+            self._update_faults(self.faults)
+        self.energy.idle_s += STEP_S
+        if self.sonar_on:
+            self.energy.sonar_s += STEP_S
+            if self.fires_in_turn and (readings := self.ring.advance(self.now_ms, self.pose_at)):
+                self._hear(readings)
+        if self.log is not None:
+            self._log_step(self.log)
+
+    def _move(self) -> None:
+        drive = self.drive
+        if drive.v or drive.w or self.wants_motion:
+            self._drive()
+        elif self.stall.left or self.stall.right:
+            self.stall.clear()
+        if self.dynamic and not drive.v and not drive.w:
+            self.chassis.look_for_contact(self.now_ms)
+
+    def _drive(self) -> None:
+        drive = self.drive
+        v_old, w_old = drive.v, drive.w
+        step = self._next_step()
+        if step.ds_mm or step.dth_deg:
+            part = self.chassis.displace(step.ds_mm, step.dth_deg, self.now_ms)
+            if part == 1:
+                self.stall.free()
+            else:
+                self._block()
+            drive.done(step, part)
+        left, right = drive.wheel_speeds()
+        self.energy.drive((abs(left) + abs(right)) * STEP_S, drive.v, drive.w, v_old, w_old)
+
+    def _next_step(self) -> Step:
+        drive = self.drive
+        if not drive.motors or self._is_relaxed():
+            return drive.coast()
+        return drive.brake() if self.watchdog_expired else drive.follow()
+
+    def _is_relaxed(self) -> bool:
+        """A stalled robot's wheels are without drive; a bumper counts as a stall in its own direction."""
+        if self.stall.is_relaxing(self.now_ms):
+            return True
+        hit = self._bumper_stalls(self.drive.ahead)
+        if hit or self.stall.left or self.stall.right:
+            self.stall.set(hit, hit)
+        return hit
+
+    def _bumper_stalls(self, ahead: float) -> bool:
+        stalls = self.drive.settings.bumpstall
+        if ahead > 0:
+            return bool(self.front_bumpers and stalls & _STALLS_FRONT)
+        return bool(ahead < 0 and self.rear_bumpers and stalls & _STALLS_REAR)
+
+    def _block(self) -> None:
+        """Against a solid: the wheels stand; after a while the stall monitor takes their power away."""
+        left, right = self.drive.wheel_speeds()
+        self.drive.v = self.drive.w = 0.0
+        self.stall.block(self.now_ms, abs(left) > 0, abs(right) > 0)
+
+    def _hit(self, moved_in: bool) -> None:
+        """The body met a solid; `moved_in`: the solid came to the robot at rest."""
+        if self.log is not None:
+            chassis = self.chassis
+            fields = {
+                "t_s": self.now_ms / 1000,
+                "x_mm": round(chassis.x, 1),
+                "y_mm": round(chassis.y, 1),
+                "heading_deg": round(wrapped(chassis.th), 2),
+                "v_mm_s": round(self.drive.v, 1),
+                "front": chassis.contact_front,
+                "rear": chassis.contact_rear,
+            }
+            self.log("struck" if moved_in else "collision", fields)
+
+    def _update_faults(self, faults: Faults) -> None:
+        changes = faults.update(self.now_ms, self.pose, self.chassis.travelled_mm)
+        self.fault_bumpers = faults.bumper(self.now_ms)
+        if self.log is not None:
+            for change in changes:
+                self.log("fault", {"t_s": self.now_ms / 1000, **_fault_fields(change)})
+
+    def fire_all(self) -> None:
+        """Let every sonar fire now, as no real array does; the next SIP has all their readings."""
+        if self.sonar_on:
+            self._readings.clear()
+            self._hear(self.ring.fire_all(self.now_ms, self.pose))
+
+    def _hear(self, readings: Sequence[SonarReading]) -> None:
+        self._readings += readings
+        if self.log is not None:
+            for reading in readings:
+                fields = {"sonar": reading.number, "range_mm": reading.range_mm, "true_mm": reading.true_mm}
+                self.log("sonar", {"t_s": round(reading.t_ms / 1000, 4), **fields, "fault": reading.fault})
+
+    def take_readings(self) -> list[SonarReading]:
+        """Return the readings completed since the last call."""
+        readings, self._readings = self._readings, []
+        return readings
+
+    # ---- truth
+
+    def _log_step(self, log: Log) -> None:
+        now_s = self.now_ms / 1000
+        if self.front_bumpers != self._logged_bumpers:
+            self._logged_bumpers = self.front_bumpers
+            log("bumper", {"t_s": now_s, "front": self._logged_bumpers})
+        if self.watchdog_expired != self._watchdog_logged:
+            self._watchdog_logged = not self._watchdog_logged
+            log("watchdog", {"t_s": now_s, "expired": self._watchdog_logged})
+        if self.now_ms % _STATE_EVERY_MS == 0:
+            log("state", {"t_s": now_s, **self.state()})
+
+    def state(self) -> dict[str, Any]:
+        """The truth about the robot now, as the truth record holds it."""
+        chassis, energy = self.chassis, self.energy
+        return {
+            "x_mm": round(chassis.x, 1),
+            "y_mm": round(chassis.y, 1),
+            "heading_deg": round(wrapped(chassis.th), 2),
+            "v_mm_s": round(self.drive.v * chassis.true_distance, 1),
+            "w_deg_s": round(self.drive.w * chassis.true_turn, 2),
+            "clearance_mm": round(self.body.clearance_mm(self.pose), 1),
+            "energy_j": {
+                "total": round(energy.total_j, 2),
+                "idle_s": round(energy.idle_s, 2),
+                "sonar_s": round(energy.sonar_s, 2),
+                "wheel_m": round(energy.wheel_m, 4),
+                "accel_j": round(energy.accel_j, 3),
+            },
+            "battery_v": round(self.battery_v, 3),
+        }
+
+
+def _fault_fields(change: FaultChange) -> dict[str, Any]:
+    """A fault change as truth fields; which sonars it is about is a list whether it is one or none."""
+    fields = change.as_record()
+    return fields | {"active": fields.pop("on"), "sonars": [] if change.sonar is None else [change.sonar]}

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Scenario files, and the robot that one describes."""

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: MIT
+"""Puts a robot together: body, sonars and faults in a world, each with a random stream of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TypeVar
+
+import numpy as np
+
+from hil_sim.errors import SimError
+from hil_sim.faults.execute import FaultSet
+from hil_sim.faults.kinds import Fault
+from hil_sim.record.truth import Log
+from hil_sim.robot.robot import Robot
+from hil_sim.scenario.scenario import Scenario
+from hil_sim.sonar.echo import EchoModel
+from hil_sim.sonar.params import SonarParams
+from hil_sim.sonar.ring import SonarRing
+from hil_sim.world.body import BodyModel
+from hil_sim.world.model import Pose, World
+from hil_sim.world.movers import Mover
+from hil_sim.world.moving import moving_solids
+
+R = TypeVar("R", bound=Robot)
+
+
+def assemble(
+    world: World,
+    start: Pose,
+    *,
+    make: Callable[..., R],
+    seed: int,
+    sonar: SonarParams,
+    faults: Sequence[Fault] = (),
+    movers: Sequence[Mover] = (),
+    bumpers: int = 5,
+    rear_bumpers: int = 0,
+    log: Log | None = None,
+    echoes: EchoModel | None = None,
+    make_faults: Callable[[Sequence[Fault], np.random.Generator], FaultSet] = FaultSet,
+) -> R:
+    """Return a robot, made by `make`, at `start`; SimError when a solid is there.
+
+    movers: besides the world's own. echoes: a model of the same world and parameters, to share what it has worked out.
+    """
+    moving = moving_solids((*world.movers, *movers))
+    body = BodyModel(world, moving)
+    if body.contact(start, 0.0) is not None:
+        place = f"{start.x_mm:g},{start.y_mm:g},{start.heading_deg:g}"
+        raise SimError(f"start {place}: a solid of world {world.name} is there; choose another start")
+    # Streams of their own, so that one more draw in one place changes nothing elsewhere.
+    injected = make_faults(faults, np.random.default_rng([seed, 1])) if faults else None
+    ring = SonarRing(world, sonar, injected, np.random.default_rng([seed, 2]), echoes=echoes, moving=moving)
+    return make(
+        body,
+        ring,
+        start,
+        faults=injected,
+        bumpers=bumpers,
+        rear_bumpers=rear_bumpers,
+        seed=seed,
+        moving=moving,
+        log=log,
+    )
+
+
+def build_robot(
+    scenario: Scenario, world: World, start: Pose, log: Log | None, rear_bumpers: int = 0
+) -> Robot:
+    """Return a robot at `start` in `world` with all that the scenario gives it."""
+    return assemble(
+        world,
+        start,
+        make=Robot,
+        seed=scenario.seed,
+        sonar=scenario.sonar,
+        faults=scenario.faults,
+        movers=scenario.movers,
+        bumpers=scenario.bumpers,
+        rear_bumpers=rear_bumpers,
+        log=log,
+    )

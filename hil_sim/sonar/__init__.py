@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Sonars: when they fire and what they hear."""

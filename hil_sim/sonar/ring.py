@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: MIT
+"""The sonar ring: firing schedule, noise, crosstalk and late echoes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, Protocol, SupportsIndex
+
+import numpy as np
+
+from hil_sim.sonar.echo import EchoModel
+from hil_sim.sonar.params import (
+    ARRAYS,
+    CYCLE_MS,
+    FITTED_ARRAYS,
+    MIN_MM,
+    NO_ECHO_MM,
+    PER_ARRAY,
+    Reading,
+    SonarParams,
+)
+from hil_sim.sonar.patch import MovingEchoes
+from hil_sim.world.model import Pose, World
+from hil_sim.world.moving import MovingSolids
+
+MAX_ORDER: Final = 16
+SOUND_MM_MS: Final = 343.0
+_RESUME_MS: Final = 1000.0
+
+
+class SonarFaults(Protocol):
+    """What the ring asks of the injected faults."""
+
+    def apply(
+        self, number: int, now_ms: float, true_measured_mm: int, remeasure: Callable[[float], int]
+    ) -> tuple[int | None, str | None]:
+        """Return the reading after faults (None: the slot stays silent) and the kind that changed it."""
+
+    def note_ping(self, t_ms: float, number: int, true_mm: int, heard_mm: int, value: int | None) -> None:
+        """Be told of a ping that a fault may have changed: what it would have read, and what it reports.
+
+        heard_mm: with noise and crosstalk, without the fault. value: None for a silent slot.
+        """
+
+
+class _Switches(list[bool]):
+    """Which arrays fire; remembers that they were set, and which were switched off: that restarts their clock."""
+
+    def __init__(self, values: Iterable[bool]) -> None:
+        super().__init__(values)
+        self.touched = True
+        self.cut: set[int] = set()
+
+    def __setitem__(self, key: SupportsIndex | slice, value: Any) -> None:
+        super().__setitem__(key, value)
+        self.touched = True
+        self.cut |= {array for array, on in enumerate(self) if not on}
+
+
+@dataclass
+class _Array:
+    """The firing state of one array."""
+
+    order: list[int]
+    place: int = 0
+    next_ms: float | None = None
+
+
+def _next_ms(state: _Array) -> float:
+    assert state.next_ms is not None
+    return state.next_ms
+
+
+def _completion_ms(reading: Reading) -> float:
+    return reading.t_ms
+
+
+class SonarRing:
+    """The arrays of a P3-DX: every `cycle_ms` each enabled array fires its next transducer.
+
+    enabled: one switch for each array; [0] front, [1] rear, the others are not fitted.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        params: SonarParams | None = None,
+        faults: SonarFaults | None = None,
+        rng: np.random.Generator | None = None,
+        *,
+        echoes: EchoModel | None = None,
+        moving: MovingSolids | None = None,
+    ) -> None:
+        """`echoes`: a model of the same world and parameters, to share what it has worked out.
+
+        `moving`: what else is in the way; whoever owns it lets it move.
+        """
+        self.params = params or SonarParams()
+        self.echoes = echoes if echoes is not None else EchoModel(world, self.params)
+        self.faults = faults
+        self.cycle_ms = CYCLE_MS
+        rng = rng if rng is not None else np.random.default_rng(0)
+        self._normal: Callable[[], float] = rng.standard_normal
+        self._random: Callable[[], float] = rng.random
+        self._enabled = _Switches([True] * FITTED_ARRAYS + [False] * (ARRAYS - FITTED_ARRAYS))
+        self._arrays = [self._default(array) for array in range(FITTED_ARRAYS)]
+        self._quiet = False
+        self._last_ms: float | None = None
+        self._pending: list[Reading] = []
+        self._live: list[_Array] = []
+        self._fire_ms = -math.inf
+        self._ready_ms = math.inf
+        self._moving = moving
+        self._moving_echoes = MovingEchoes(moving, self.params) if moving is not None else None
+        self._known: dict[int, tuple[Pose, int, int]] = {}
+
+    @property
+    def enabled(self) -> list[bool]:
+        """One switch for each array; set its elements."""
+        return self._enabled
+
+    @enabled.setter
+    def enabled(self, values: Sequence[bool]) -> None:
+        self._enabled[:] = list(values)
+
+    @staticmethod
+    def _default(array: int) -> _Array:
+        return _Array(list(range(PER_ARRAY * array, PER_ARRAY * (array + 1))))
+
+    def reset(self) -> None:
+        """Return to the power-up firing order and cycle; the switches stay."""
+        self.cycle_ms = CYCLE_MS
+        self._quiet = False
+        for array, state in enumerate(self._arrays):
+            state.order = self._default(array).order
+            state.place = 0
+
+    def set_polling(self, numbers: Sequence[int]) -> None:
+        """Take a POLLING string: transducers 1 to 32 in firing order.
+
+        An array that is not mentioned keeps its order; in a mentioned one, transducers left out do not fire, and
+        repeated ones fire more often (at most 16 entries an array, the rest is dropped). Numbers outside 1 to 32 are
+        passed over. An empty string silences all until the next string that is not empty.
+        """
+        named = [number - 1 for number in numbers if 1 <= number <= ARRAYS * PER_ARRAY]
+        self._quiet = not named
+        for array, state in enumerate(self._arrays):
+            order = [number for number in named if number // PER_ARRAY == array][:MAX_ORDER]
+            if order:
+                state.order, state.place = order, 0
+
+    def advance(self, now_ms: float, pose_at: Callable[[float], Pose]) -> list[Reading]:
+        """Fire what is due up to `now_ms`; return the readings whose echo is in, oldest first.
+
+        `pose_at(t)` gives the true pose at a time since the last call. A pause of more than a second is not made
+        up for: firing resumes now.
+        """
+        last_ms, self._last_ms = self._last_ms, now_ms
+        if last_ms is not None and now_ms - last_ms > _RESUME_MS:
+            self._restart(range(FITTED_ARRAYS))
+        if self._enabled.touched:
+            self._take_switches()
+        if now_ms >= self._fire_ms:
+            self._fire_due(now_ms, pose_at)
+        if now_ms < self._ready_ms:
+            return []
+        ready = [reading for reading in self._pending if reading.t_ms <= now_ms]
+        self._wait_for([reading for reading in self._pending if reading.t_ms > now_ms])
+        ready.sort(key=_completion_ms)
+        return ready
+
+    def _take_switches(self) -> None:
+        """Note which arrays fire from now on."""
+        self._restart(array for array in self._enabled.cut if array < FITTED_ARRAYS)
+        self._enabled.cut.clear()
+        self._enabled.touched = False
+        self._live = [state for array, state in enumerate(self._arrays) if self._enabled[array]]
+        self._fire_ms = -math.inf
+
+    def _wait_for(self, pending: list[Reading]) -> None:
+        self._pending = pending
+        self._ready_ms = min(map(_completion_ms, pending), default=math.inf)
+
+    def _fire_due(self, now_ms: float, pose_at: Callable[[float], Pose]) -> None:
+        live = self._live
+        for state in live:
+            if state.next_ms is None:
+                state.next_ms = now_ms
+        while live:
+            first = min(live, key=_next_ms)
+            self._fire_ms = _next_ms(first)
+            if self._fire_ms > now_ms:
+                return
+            self._fire(first, self._fire_ms, pose_at)
+        self._fire_ms = math.inf
+
+    def fire_all(self, now_ms: float, pose: Pose) -> list[Reading]:
+        """Return a reading of every sonar of the enabled arrays, without noise and crosstalk, faults applied.
+
+        This is what emulators that know no schedule do; the firing order and its clock are left alone.
+        """
+        readings = []
+        for array in range(FITTED_ARRAYS):
+            if self._enabled[array]:
+                for number in self._default(array).order:
+                    readings += self._fire_one(number, now_ms, pose)
+        return readings
+
+    def _fire_one(self, number: int, now_ms: float, pose: Pose) -> list[Reading]:
+        true_mm = self.true_range(number, pose)
+        value: int | None = true_mm
+        kind = None
+        if self.faults is not None:
+            value, kind = self.faults.apply(
+                number, now_ms, true_mm, lambda angle_deg: self._measure(number, pose, angle_deg)
+            )
+        return [] if value is None else [Reading(now_ms, number, value, true_mm, kind)]
+
+    def _restart(self, arrays: Iterable[int]) -> None:
+        for array in arrays:
+            self._arrays[array].next_ms = None
+            low = array * PER_ARRAY
+            self._wait_for([r for r in self._pending if not low <= r.number < low + PER_ARRAY])
+        self._fire_ms = -math.inf
+
+    def _fire(self, state: _Array, t_ms: float, pose_at: Callable[[float], Pose]) -> None:
+        state.next_ms = t_ms + self.cycle_ms
+        if self._quiet:
+            return
+        number = state.order[state.place]
+        state.place = (state.place + 1) % len(state.order)
+        pose = pose_at(t_ms)
+        true_mm = self.true_range(number, pose)
+        # Drawn for every ping, so that a fault or a world changes no later draw.
+        noise, chance, where = self._normal(), self._random(), self._random()
+        heard = self._heard(true_mm, noise, chance, where)
+        value: int | None = heard
+        kind = None
+        if self.faults is not None:
+
+            def remeasure(angle_deg: float) -> int:
+                turned = self._measure(number, pose, angle_deg)
+                return self._heard(turned, noise, chance, where)
+
+            value, kind = self.faults.apply(number, t_ms, heard, remeasure)
+            if kind is not None:
+                self.faults.note_ping(t_ms, number, true_mm, heard, value)
+        if value is not None:
+            ready_ms = t_ms + min(2 * value / SOUND_MM_MS, self.cycle_ms)
+            self._pending.append(Reading(ready_ms, number, value, true_mm, kind))
+            if ready_ms < self._ready_ms:
+                self._ready_ms = ready_ms
+
+    def true_range(self, number: int, pose: Pose) -> int:
+        """Return what sonar 0 to 15 reads at a pose without noise, crosstalk and faults."""
+        moment = self._moving.moment if self._moving is not None else 0
+        known = self._known.get(number)
+        if known is not None and known[1] == moment and (known[0] is pose or known[0] == pose):
+            return known[2]
+        value = self._measure(number, pose, 0.0)
+        self._known[number] = (pose, moment, value)
+        return value
+
+    def _measure(self, number: int, pose: Pose, angle_deg: float) -> int:
+        return self.echoes.ping_mm(number, pose, angle_deg, self._moving_echoes)
+
+    def _heard(self, true_mm: int, noise: float, chance: float, where: float) -> int:
+        """Add what a real ping adds: noise, another sonar's ping, and an echo that comes after the next firing."""
+        params = self.params
+        value = float(true_mm)
+        if value < NO_ECHO_MM:
+            value += noise * (params.noise_mm + params.noise_part * value)
+        if chance < params.crosstalk:
+            value = MIN_MM + where * (value - MIN_MM)
+        if 2 * value / SOUND_MM_MS > self.cycle_ms:
+            value = NO_ECHO_MM
+        whole = round(value)
+        return MIN_MM if whole < MIN_MM else min(whole, NO_ECHO_MM)

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: MIT
+"""ARIA `.map` files."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import Final, NoReturn
+
+import numpy as np
+
+from hil_sim.document import read_text
+from hil_sim.errors import SimError
+from hil_sim.world.builder import MAX_SEGMENTS, Builder, turned
+from hil_sim.world.model import Pose, World
+
+POINT_MM: Final = 20.0
+"""Side of the solid that stands for one DATA point of a map, and the grid onto which such points are thinned."""
+MAP_ROUGHNESS: Final = 0.5
+_HEADERS = ("2D-Map", "2D-Map-Ex", "2D-Map-Ex2")
+_CAIRN = re.compile(r'(\S+)\s+(\S+)\s+(\S+)\s+(\S+)\s+"[^"]*"\s+\S+\s+"([^"]*)"\s*(.*)$')
+_SECTION = re.compile(r"(?:(?P<sensor>\S+)_)?(?P<what>LINES|DATA)")
+_COUNT = re.compile(r"(?P<what>\w*Num(?:Lines|Points)):(?P<count>.*)")
+_AREAS = ("ForbiddenLine", "ForbiddenArea", "Sim.BoxObstacle")
+
+
+class _MapReader:
+    """Reads one `.map` file line by line."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.number = 0
+        self.build = Builder()
+        self.points: set[tuple[int, int]] = set()
+        self.start: Pose | None = None
+        self.goals: dict[str, Pose] = {}
+        self.forbidden: list[tuple[float, float, float, float]] = []
+        self.announced: dict[str, tuple[int, int]] = {}
+        self.counted: dict[str, int] = {}
+
+    def fail(self, what: str) -> NoReturn:
+        """Refuse the current line."""
+        raise SimError(f"{self.path}:{self.number}: {what}")
+
+    def values(self, text: str, count: int, what: str) -> list[float]:
+        """Return exactly `count` finite numbers."""
+        try:
+            values = [float(word) for word in text.split()]
+        except ValueError:
+            values = []
+        if len(values) != count or not all(math.isfinite(v) and abs(v) < 1e7 for v in values):
+            self.fail(f"{what} needs {count} numbers in mm, not '{text[:60]}'; correct or remove the line")
+        return values
+
+    def read(self) -> World:
+        """Read the file and return its world."""
+        lines = read_text(self.path).splitlines()
+        self.number = 1
+        if not lines or lines[0].strip().lstrip("\ufeff") not in _HEADERS:
+            self.fail("not an ARIA map: the first line must be 2D-Map, 2D-Map-Ex or 2D-Map-Ex2")
+        section = what = ""
+        for self.number, raw in enumerate(lines[1:], 2):
+            line = raw.strip()
+            if match := _SECTION.fullmatch(line):
+                section = match["what"]
+                what = (match["sensor"] or "") + ("NumLines" if section == "LINES" else "NumPoints")
+            elif section and line:
+                self.counted[what] = self.counted.get(what, 0) + 1
+                self.take_entry(section, line)
+            elif line:
+                self.take_header(line)
+            self.check_size()
+        self.check_counts()
+        self.add_points()
+        return self.finish()
+
+    def take_header(self, line: str) -> None:
+        """Use a line before the first section, if it matters here."""
+        if match := _COUNT.match(line):
+            self.take_count(match["what"], match["count"].strip())
+        elif line.split()[0] == "Cairn:":
+            self.take_cairn(line[len("Cairn:") :].strip())
+        elif ":" not in line:
+            self.fail(f"'{line[:40]}' is neither a header line nor LINES or DATA; correct or remove it")
+
+    def take_count(self, what: str, count: str) -> None:
+        """Note how many entries the header announces."""
+        if not re.fullmatch("[0-9]{1,9}", count):
+            self.fail(f"{what} needs a whole number, not '{count[:60]}'; correct or remove the line")
+        self.announced[what] = (int(count), self.number)
+
+    def check_counts(self) -> None:
+        """Refuse a file that was cut short; more than announced is common after editing by hand, and harmless."""
+        for what, (count, line) in self.announced.items():
+            found = self.counted.get(what, 0)
+            if found < count:
+                self.number = line
+                self.fail(
+                    f"{what} announces {count} but {found} follow; restore the file or correct the count"
+                )
+
+    def check_size(self) -> None:
+        """Refuse a map too large to be simulated before it fills the memory."""
+        if len(self.build.rows) + 2 * len(self.points) > MAX_SEGMENTS:
+            self.fail(f"more than {MAX_SEGMENTS} solids; use a map with lines, or fewer DATA points")
+
+    def take_entry(self, section: str, line: str) -> None:
+        """Add a line, or note a DATA point on a grid of POINT_MM."""
+        if section == "LINES":
+            x1, y1, x2, y2 = self.values(line, 4, "a line")
+            self.build.line([(x1, y1), (x2, y2)], MAP_ROUGHNESS)
+            return
+        x, y = self.values(line, 2, "a DATA point")
+        self.points.add((round(x / POINT_MM), round(y / POINT_MM)))
+
+    def add_points(self) -> None:
+        """Turn each noted point into a small cross, solid from every side."""
+        half = POINT_MM / 2
+        for column, row in sorted(self.points):
+            x, y = column * POINT_MM, row * POINT_MM
+            self.build.line([(x - half, y - half), (x + half, y + half)], 1.0)
+            self.build.line([(x - half, y + half), (x + half, y - half)], 1.0)
+
+    def take_cairn(self, text: str) -> None:
+        """Use a Cairn line of a kind that matters here; others are passed over."""
+        kind = text.split()[0] if text else ""
+        if kind not in _AREAS and kind not in ("RobotHome", "Goal", "GoalWithHeading", "Dock"):
+            return
+        match = _CAIRN.match(text)
+        if match is None:
+            self.fail(f'expected Cairn: {kind} X Y HEADING "" ICON "NAME" ...; correct or remove the line')
+        x, y, heading = self.values(" ".join(match.group(2, 3, 4)), 3, f"Cairn {kind}")
+        if kind == "RobotHome":
+            if self.start is None:
+                self.start = Pose(x, y, heading)
+        elif kind in _AREAS:
+            self.take_area(kind, math.radians(heading), self.values(match[6], 4, f"Cairn {kind}"))
+        else:
+            self.goals[match[5] or f"goal {len(self.goals) + 1}"] = Pose(x, y, heading)
+
+    def take_area(self, kind: str, turn: float, corners: list[float]) -> None:
+        """Corners are given in axes turned about the map's origin by the object's heading."""
+        x1, y1, x2, y2 = corners
+        if kind == "ForbiddenLine":
+            self.forbidden.append((*turned(x1, y1, turn), *turned(x2, y2, turn)))
+            return
+        points = [turned(x, y, turn) for x, y in ((x1, y1), (x2, y1), (x2, y2), (x1, y2))]
+        if kind == "Sim.BoxObstacle":
+            self.build.line(points, MAP_ROUGHNESS, closed=True)
+        else:
+            self.forbidden += [(*a, *b) for a, b in zip(points, points[1:] + points[:1], strict=True)]
+
+    def finish(self) -> World:
+        """Make the world; without a RobotHome the robot starts at the origin."""
+        return self.build.world(
+            self.path.stem,
+            start=self.start or Pose(0.0, 0.0, 0.0),
+            goals=self.goals,
+            about=f"ARIA map {self.path.name}",
+            forbidden=np.array(self.forbidden, dtype=np.float64).reshape(-1, 4),
+        )
+
+
+def load_map(path: str | Path) -> World:
+    """Load an ARIA `.map` file; raises SimError with file and line when it is malformed."""
+    return _MapReader(Path(path)).read()

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""Rule: .ci/run runs all of its steps whatever fails, tells which failed, and fails with them."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.parametrize(
+    ("failing", "code", "said"),
+    [
+        ("", 0, ""),
+        ("test", 1, "ci: failed: test\n"),
+        ("lint", 1, "ci: failed: lint\n"),
+        ("test lint", 1, "ci: failed: test lint\n"),
+    ],
+)
+def test_all_steps_run(tmp_path: Path, failing: str, code: int, said: str) -> None:
+    for folder in (".ci", "tools"):
+        (tmp_path / folder).mkdir()
+    shutil.copy(ROOT / ".ci/run", tmp_path / ".ci/run")
+    dev = tmp_path / "tools/dev"
+    dev.write_text(f'#!/bin/sh\necho "$@"\nfor name in {failing}; do [ "$name" != "$1" ] || exit 3; done\n')
+    dev.chmod(0o755)
+    done = subprocess.run([tmp_path / ".ci/run"], cwd="/", capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr, done.returncode) == ("test\nlint\n", said, code)

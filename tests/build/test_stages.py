@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""Rule: all stages run even when one fails, and the end lists what failed with each log; nothing passes by accident."""
+
+from __future__ import annotations
+
+import re
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from devtool import stages
+from devtool.base import Run, Stop
+from devtool.stages import Stage, StageFailed, logged_runner, run_stages, tail_of
+
+FAIL = [sys.executable, "-c", "print('what went wrong'); raise SystemExit(7)"]
+PASS = [sys.executable, "-c", "print('fine')"]
+
+
+@pytest.fixture(autouse=True)
+def logs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    monkeypatch.setattr(stages, "LOGS", tmp_path / "logs")
+    return tmp_path / "logs"
+
+
+def stage(name: str, action: Callable[[Run], str | None]) -> Stage:
+    return Stage(name, f"what {name} is about", action)
+
+
+def passing(run: Run) -> None:
+    run(PASS)
+
+
+def failing(run: Run) -> None:
+    run(FAIL)
+
+
+def lacking(_run: Run) -> None:
+    raise Stop("this machine lacks something", 3)
+
+
+def test_all_run_and_the_end_lists_what_failed(logs: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    todo = [stage("a", failing), stage("b", passing), stage("c", lacking), stage("d", passing)]
+    assert run_stages(todo, keep_going=True, verbose=False) == 1
+    said = capfd.readouterr().out
+    assert "what went wrong" in said
+    assert "not run" not in said
+    table, _, failed = said.rpartition("\nfailed: a, c\n")
+    for name, word in (("a", "FAILED"), ("b", "ok"), ("c", "FAILED"), ("d", "ok"), ("total", "FAILED")):
+        assert re.search(rf"^  {name} +{word} +\d+\.\d s +\d+\.\d s of CPU$", table, re.MULTILINE), table
+    first, second = failed.splitlines()
+    assert first.split()[:2] == ["a", f"{logs / 'a.log'}:"]
+    assert "exit code 7" in first
+    assert second.split()[:2] == ["c", f"{logs / 'c.log'}:"]
+    assert second.endswith("this machine lacks something")
+    assert (logs / "d.log").read_text().endswith("fine\n")
+
+
+def test_it_can_end_with_the_first_that_fails(capfd: pytest.CaptureFixture[str]) -> None:
+    assert run_stages([stage("a", failing), stage("b", passing)], keep_going=False, verbose=False) == 1
+    assert re.search(r"^  b +not run$", capfd.readouterr().out, re.MULTILINE)
+
+
+def test_nothing_is_listed_where_all_is_well(capfd: pytest.CaptureFixture[str]) -> None:
+    assert run_stages([stage("a", passing), stage("b", lambda run: "a note")], True, False) == 0
+    said = capfd.readouterr().out
+    assert "failed" not in said.lower()
+    assert "a note" in said
+    assert "fine" not in said
+
+
+def test_a_command_that_is_not_there_fails_its_stage_alone(capfd: pytest.CaptureFixture[str]) -> None:
+    todo = [stage("a", lambda run: run(["/no/such/program"])), stage("b", passing)]
+    assert run_stages(todo, True, False) == 1
+    assert "No such file or directory: /no/such/program" in capfd.readouterr().out
+
+
+def test_what_hangs_is_ended_with_its_children(tmp_path: Path) -> None:
+    script = f"sleep 600 & echo $! > {tmp_path / 'pid'}; wait"
+    with pytest.raises(StageFailed, match="not done after"):
+        logged_runner(tmp_path / "log", False, 1.0)(["sh", "-c", script])
+    child = int((tmp_path / "pid").read_text())
+    until = time.monotonic() + 30
+    while Path(f"/proc/{child}").exists() and not is_dead(child):
+        assert time.monotonic() < until, f"process {child} goes on"
+        time.sleep(0.05)
+
+
+def is_dead(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+    except OSError:
+        return True
+
+
+def test_the_tail_is_of_the_last_command_and_without_what_went_well(tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    log.write_text("$ one\nof the first\n$ two\n[ 5%] Building x\n 1/9 Test #1: a ... Passed 1 s\nerror: y\n")
+    assert tail_of(log) == "$ two\nerror: y"
+
+
+def test_the_cpu_time_of_a_stage_is_that_of_its_children(logs: Path) -> None:
+    spin = "import time\nwhile time.process_time() < 0.3: pass"
+    result = stages.run_stage(stage("a", lambda run: run([sys.executable, "-c", spin])), verbose=False)
+    assert result.passed
+    assert result.cpu_s >= 0.3
+    assert result.log == logs / "a.log"

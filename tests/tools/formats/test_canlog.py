@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: MIT
+"""Rule: what CAN analysers save is read; a line or row that is none is told, and what is behind it is read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import can
+import pytest
+from argus_tools.formats import Log, LogError, open_log
+from forms import CLIENT, ROBOT, START_S, CanFrame, frames, joined
+
+
+def written(path: Path) -> Path:
+    """The session as python-can's own writers write it, chosen by the file's name."""
+    with can.Logger(str(path)) as logger:
+        for frame in frames():
+            logger.on_message_received(
+                can.Message(
+                    timestamp=frame.t,
+                    arbitration_id=frame.can_id,
+                    is_extended_id=False,
+                    data=frame.data,
+                    channel=0,
+                )
+            )
+    return path
+
+
+def check(log: Log, name: str, damage: int = 0) -> None:
+    chunks = list(log)
+    assert log.format.name == name
+    assert (joined(chunks, "r2c"), joined(chunks, "c2r")) == (ROBOT, CLIENT)
+    assert len(log.damage) == damage, log.damage
+    if chunks[0].t is not None:
+        times = [chunk.t - chunks[0].t for chunk in chunks if chunk.dir == "r2c" and chunk.t is not None]
+        assert times == pytest.approx([0.1 * n for n in range(len(times))], abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "name"),
+    [
+        ("asc", "asc"),
+        ("blf", "blf"),
+        ("trc", "trc"),
+        ("csv", "can-csv"),
+        ("log", "candump"),
+        ("txt", "can-lines"),
+    ],
+)
+def test_the_files_of_python_can(suffix: str, name: str, tmp_path: Path) -> None:
+    check(open_log(str(written(tmp_path / f"a.{suffix}"))), name)
+
+
+def hexed(frame: CanFrame, separator: str = " ") -> str:
+    return frame.data.hex(separator).upper()
+
+
+def lines(form: Callable[[int, CanFrame], str], head: str = "", end: str = "\n") -> str:
+    return head + "".join(form(n, frame) + end for n, frame in enumerate(frames(), start=1))
+
+
+def ms(frame: CanFrame) -> float:
+    return (frame.t - START_S) * 1000
+
+
+TRC_11 = ";$FILEVERSION=1.1\n;$STARTTIME=45987.2769384156\n;\n;   Message Number\n;---+--   ----+----\n"
+TRC_13 = ";$FILEVERSION=1.3\n;$STARTTIME=45987.2769384156\n;\n"
+TRC_20 = ";$FILEVERSION=2.0\n;$STARTTIME=45987.2769384156\n;$COLUMNS=N,O,T,I,d,l,D\n;\n"
+TRC_21 = ";$FILEVERSION=2.1\n;$STARTTIME=45987.2769384156\n;$COLUMNS=N,O,T,B,I,d,R,L,D\n;\n"
+ASC = "date Wed Nov 25 06:38:47.479 am 2026\nbase hex  timestamps absolute\n"
+TEXTS = {
+    "trc 1.0": (
+        "trc",
+        lines(lambda n, f: f"{n:>6}) {ms(f):7.0f} {f.can_id:04X} 8 {hexed(f)}", "; CAN activities\n"),
+    ),
+    "trc 1.1": (
+        "trc",
+        lines(lambda n, f: f"{n:>6}) {ms(f):10.1f}  Rx    {f.can_id:04X}  8  {hexed(f)}", TRC_11),
+    ),
+    "trc 1.3": (
+        "trc",
+        lines(lambda n, f: f"{n:>6}) {ms(f):10.1f} 1  Rx    {f.can_id:04X} -  8  {hexed(f)}", TRC_13),
+    ),
+    "trc 2.0": (
+        "trc",
+        lines(lambda n, f: f"{n:>7} {ms(f):13.3f} DT     {f.can_id:04X} Rx 8  {hexed(f)}", TRC_20),
+    ),
+    "trc 2.1": (
+        "trc",
+        lines(lambda n, f: f"{n:>7} {ms(f):13.3f} DT 1      {f.can_id:04X} Rx -  8    {hexed(f)}", TRC_21),
+    ),
+    "trc, carriage returns": (
+        "trc",
+        lines(lambda n, f: f"{n:>6}) {ms(f):10.1f}  Rx    {f.can_id:04X}  8  {hexed(f)}\r", TRC_11),
+    ),
+    "asc": (
+        "asc",
+        lines(
+            lambda n, f: f"{f.t - START_S:9.6f} 1  {f.can_id:X}             Rx   d 8 {hexed(f)}",
+            ASC + "internal events logged\n",
+        ),
+    ),
+    "asc, more behind the data": (
+        "asc",
+        lines(
+            lambda n, f: (
+                f"{f.t - START_S:9.6f} 1  {f.can_id:X}             Rx   d 8 {hexed(f)}  Length = 100 BitCount = 9"
+            ),
+            ASC + "no internal events logged\n// version 9.0.0\n",
+        ),
+    ),
+    "asc, decimal": (
+        "asc",
+        lines(
+            lambda n, f: (
+                f"{f.t - START_S:9.6f} 1  {f.can_id}             Rx   d 8 {' '.join(map(str, f.data))}"
+            ),
+            ASC.replace("hex", "dec") + "internal events logged\n",
+        ),
+    ),
+    "asc, trigger block": (
+        "asc",
+        lines(
+            lambda n, f: f"{f.t - START_S:9.6f} 1  {f.can_id:X}             Rx   d 8 {hexed(f)}",
+            ASC
+            + "internal events logged\nBegin Triggerblock Wed Nov 25 06:38:47.479 am 2026\n"
+            + "   0.000000 Start of measurement\n",
+        )
+        + "End TriggerBlock\n",
+    ),
+    "SavvyCAN": (
+        "can-csv",
+        lines(
+            lambda n, f: f"{ms(f) * 1000:.0f},{f.can_id:08X},false,Rx,0,8,{hexed(f, ',')},",
+            "Time Stamp,ID,Extended,Dir,Bus,LEN,D1,D2,D3,D4,D5,D6,D7,D8\n",
+        ),
+    ),
+    "SavvyCAN's generic": (
+        "can-csv",
+        lines(lambda n, f: f"0x{f.can_id:X},{hexed(f, ',')}", "ID,D0,D1,D2,D3,D4,D5,D6,D7\n"),
+    ),
+    "PCAN": (
+        "can-csv",
+        lines(
+            lambda n, f: f"{n};{ms(f):.3f};Data;{f.can_id:04X}h;Rx;8;{hexed(f)}",
+            "Message Number;Time Offset (ms);Type;ID (hex);Dir;Length;Data (hex)\n",
+        ),
+    ),
+    "PCAN, headings in a comment": (
+        "can-csv",
+        lines(
+            lambda n, f: f"{n},{ms(f):.3f},1,Rx,{f.can_id:04X},8,{hexed(f)}",
+            ";$FILEVERSION=none\n;Number,Time Offset (ms),Bus,Type,ID (hex),Length,Data\n",
+        ).replace(";$FILEVERSION=none\n", ""),
+    ),
+    "Cabana": (
+        "can-csv",
+        lines(lambda n, f: f"{ms(f) / 1000:.6f},{hex(f.can_id)},0,{f.data.hex()}", "time,addr,bus,data\n"),
+    ),
+    "CL2000": (
+        "can-csv",
+        lines(
+            lambda n, f: f"{ms(f) / 1000:.6f};0;{f.can_id:x};{f.data.hex()}",
+            "# Logger\nTimestamp;Type;ID;Data\n",
+        ),
+    ),
+    "tabs": (
+        "can-csv",
+        lines(
+            lambda n, f: f"{ms(f) / 1000:.6f}\t{f.can_id:X}\t8\t{hexed(f)}",
+            "Time (s)\tCAN ID\tDLC\tData Bytes\n",
+        ),
+    ),
+    "quoted": (
+        "can-csv",
+        lines(
+            lambda n, f: f'"{ms(f):.3f}","0x{f.can_id:X}","8","{hexed(f)}"', '"Time [ms]","ID","DLC","Data"\n'
+        ),
+    ),
+    "data in cells without headings": (
+        "can-csv",
+        lines(lambda n, f: f"{ms(f) / 1000:.6f},{f.can_id:X},8,{hexed(f, ',')}", "Time,ID,Length,Data\n"),
+    ),
+    "BUSMASTER": (
+        "can-lines",
+        lines(
+            lambda n, f: f"06:38:{47 + ms(f) / 1000:07.4f} Rx 1 0x{f.can_id:X} s 8 {hexed(f)} ".replace(
+                ".", ":", 1
+            ),
+            "***BUSMASTER Ver 3.2.2***\n***PROTOCOL CAN***\n",
+        ),
+    ),
+    "CRTD": (
+        "can-lines",
+        lines(lambda n, f: f"{f.t:.6f} 1R11 {f.can_id:03X} {hexed(f)}", "0.000 CXX started\n"),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_every_analysers_text(name: str, tmp_path: Path) -> None:
+    form, text = TEXTS[name]
+    (tmp_path / "a.txt").write_text(text, newline="")
+    check(open_log(str(tmp_path / "a.txt")), form)
+
+
+@pytest.mark.parametrize(
+    "name", ["trc 1.1", "trc 2.1", "asc", "SavvyCAN", "PCAN", "Cabana", "BUSMASTER", "CRTD"]
+)
+@pytest.mark.parametrize("at", [0.3, 0.7])
+def test_a_line_that_is_none_costs_nothing_behind_it(name: str, at: float, tmp_path: Path) -> None:
+    form, text = TEXTS[name]
+    parts = text.splitlines(keepends=True)
+    # A copy of a good line whose id is spoilt.
+    cut = int(len(parts) * at)
+    spoilt = parts[cut].replace("648", "6Z8").replace("640", "6Z0")
+    path = tmp_path / "a.txt"
+    path.write_text("".join([*parts[:cut], spoilt, *parts[cut:]]))
+    log = open_log(str(path))
+    chunks = list(log)
+    assert (joined(chunks, "r2c"), joined(chunks, "c2r")) == (ROBOT, CLIENT)
+    if form != "asc":
+        assert [entry.place for entry in log.damage] == [f"line {cut + 1}"]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_cut_blf_gives_what_is_before_the_cut(seed: int, tmp_path: Path) -> None:
+    data = written(tmp_path / "a.blf").read_bytes()
+    end = 200 + (len(data) - 200) * seed // 20
+    (tmp_path / "b.blf").write_bytes(data[:end])
+    log = open_log(str(tmp_path / "b.blf"))
+    try:
+        chunks = list(log)
+    except LogError as error:
+        if "BLF" not in str(error):
+            raise
+        return
+    assert ROBOT.startswith(joined(chunks, "r2c")[:-60])
+    assert log.damage or not chunks
+
+
+def test_a_log_of_another_bus_is_told_with_its_ids(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("Time,ID,Data\n0.1,123,00\n")
+    with pytest.raises(LogError, match=r"no CAN frame is of a robot's link.*there are 0x123"):
+        list(open_log(str(tmp_path / "a.csv")))

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""Rule: hexadecimal text of any terminal program is read, with its times and directions; what is none is told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+from argus_tools.formats import Log, open_log
+from forms import CLIENT, COMMANDS, ROBOT, SIPS, START_S, joined, shown
+
+
+def lines(data: bytes, width: int = 24) -> list[bytes]:
+    return [data[at : at + width] for at in range(0, len(data), width)]
+
+
+def in_lines(form: Callable[[bytes], str]) -> str:
+    return "".join(form(part) + "\n" for part in lines(ROBOT))
+
+
+PLAIN = {
+    "spaces": in_lines(lambda part: part.hex(" ").upper()),
+    "lower case": in_lines(lambda part: part.hex(" ")),
+    "space at the end": in_lines(lambda part: part.hex(" ") + " "),
+    "dashes": in_lines(lambda part: part.hex("-")),
+    "colons": in_lines(lambda part: part.hex(":")),
+    "xxd -p": in_lines(bytes.hex),
+    "xxd -p without ends of lines": ROBOT.hex(),
+    "one long line": ROBOT.hex(" ") * 40,
+    "C": in_lines(lambda part: ", ".join(f"0x{byte:02X}" for byte in part) + ","),
+    "backslashes": in_lines(lambda part: "".join(f"\\x{byte:02x}" for byte in part)),
+    "h": in_lines(lambda part: " ".join(f"{byte:02X}h" for byte in part)),
+    "characters behind": in_lines(lambda part: f"{part.hex(' '):<72}  {shown(part)}"),
+    "characters behind a bar": in_lines(lambda part: f"{part.hex(' ')} | {shown(part)}"),
+    "characters behind a tab": in_lines(lambda part: f"{part.hex(' ')}\t{shown(part)}"),
+    "od -A n": in_lines(lambda part: " " + part.hex(" ")),
+    "hexdump -e": "".join(f"{byte:02X} " for byte in ROBOT),
+    "a byte in a line": "".join(f"{byte:02x}\n" for byte in ROBOT),
+    "gap in the middle": in_lines(lambda part: f"{part[:8].hex(' ')}  {part[8:].hex(' ')}"),
+    "comment": "# of Monday\n" + in_lines(lambda part: part.hex(" ")),
+}
+
+
+def read(path: Path, text: str, **options: str) -> Log:
+    path.write_text(text)
+    return open_log(str(path), **options)
+
+
+@pytest.mark.parametrize("name", PLAIN)
+def test_every_way_of_writing_bytes(name: str, tmp_path: Path) -> None:
+    log = read(tmp_path / "a.txt", PLAIN[name])
+    chunks = list(log)
+    data = joined(chunks, "r2c")
+    assert (log.format.name, log.damage) == ("hextext", [])
+    assert data == (ROBOT * 40 if name == "one long line" else ROBOT)
+    assert {chunk.t for chunk in chunks} == {None}
+
+
+def clock(t: float, form: str) -> str:
+    return datetime.fromtimestamp(t, UTC).strftime(form)
+
+
+DAY_S = START_S % 86400
+MILLIS = 1e-3
+STAMPS: dict[str, tuple[Callable[[float], str], float, float]] = {
+    "grabserial": (lambda t: f"[{t - START_S:.6f} 0.002000]", 0.0, 1e-6),
+    "grabserial -T": (lambda t: f"[{clock(t, '%H:%M:%S.%f')} 0.002000]", DAY_S, 1e-5),
+    "tio": (lambda t: f"[{clock(t, '%H:%M:%S.%f')[:-3]}]", DAY_S, MILLIS),
+    "tio ISO": (lambda t: f"[{clock(t, '%Y-%m-%dT%H:%M:%S.%f')[:-3]}]", START_S, MILLIS),
+    "tio ISO with zone": (lambda t: f"[{clock(t, '%Y-%m-%dT%H:%M:%S.%f')[:-3]}+00:00]", START_S, MILLIS),
+    "seconds since 1970": (lambda t: f"({t:.6f})", START_S, 1e-5),
+    "seconds and a colon": (lambda t: f"{t - START_S:.3f}:", 0.0, MILLIS),
+    "date and time": (lambda t: clock(t, "%Y-%m-%d %H:%M:%S.%f"), START_S, 1e-5),
+    "German date": (lambda t: clock(t, "%d.%m.%Y %H:%M:%S,%f")[:-3], START_S, MILLIS),
+    "American date": (lambda t: clock(t, "%m/%d/%Y %I:%M:%S.%f %p"), START_S, 1e-5),
+    "time and an arrow": (lambda t: clock(t, "%H:%M:%S.%f") + " >", DAY_S, 1e-5),
+    "whole seconds": (lambda t: clock(t, "%H:%M:%S") + " |", DAY_S, 1.0),
+}
+
+
+@pytest.mark.parametrize("name", STAMPS)
+def test_every_time_before_the_bytes(name: str, tmp_path: Path) -> None:
+    stamp, start, near = STAMPS[name]
+    times = [START_S + 0.1 * n for n in range(len(SIPS))]
+    text = "".join(f"{stamp(t)} {data.hex(' ').upper()}\n" for t, data in zip(times, SIPS, strict=True))
+    log = read(tmp_path / "a.txt", text)
+    chunks = list(log)
+    assert (log.format.name, log.damage, b"".join(c.data for c in chunks)) == ("hextext", [], ROBOT)
+    assert [chunk.t for chunk in chunks] == pytest.approx([start + 0.1 * n for n in range(12)], abs=near)
+
+
+def test_a_clock_without_a_date_goes_on_at_midnight(tmp_path: Path) -> None:
+    clocks = ["23:59:59.900", "00:00:00.000", "00:00:00.100"]
+    text = "".join(f"[{at}] {data.hex(' ')}\n" for at, data in zip(clocks, SIPS, strict=False))
+    times = [chunk.t for chunk in read(tmp_path / "a.txt", text)]
+    assert times == pytest.approx([86399.9, 86400.0, 86400.1])
+
+
+MARKS = {
+    "TX RX": ("TX: ", "RX: "),
+    "brackets": ("[TX] - ", "[RX] - "),
+    "words": ("Sent: ", "Received: "),
+    "arrows": ("-> ", "<- "),
+    "angles": (">> ", "<< "),
+    "lower case": ("out ", "in "),
+    "who listens at the robot": ("RX ", "TX "),
+}
+
+
+@pytest.mark.parametrize("name", MARKS)
+@pytest.mark.parametrize("stamp", ["", "12:30:00.500 "])
+def test_marks_tell_the_directions(name: str, stamp: str, tmp_path: Path) -> None:
+    to_robot, from_robot = MARKS[name]
+    text = "".join(
+        f"{stamp}{to_robot}{command.hex(' ')}\n{stamp}{from_robot}{sip.hex(' ')}\n"
+        for command, sip in zip(COMMANDS, SIPS, strict=True)
+    )
+    log = read(tmp_path / "a.txt", text)
+    chunks = list(log)
+    assert (joined(chunks, "c2r"), joined(chunks, "r2c"), log.damage) == (CLIENT, ROBOT, [])
+
+
+def test_socat_tells_time_and_direction_in_lines_of_their_own(tmp_path: Path) -> None:
+    text = ""
+    for n, (command, sip) in enumerate(zip(COMMANDS, SIPS, strict=True)):
+        for mark, data in ((">", command), ("<", sip)):
+            text += f"{mark} 2026/11/25 06:38:{n:02d}.000250  length={len(data)} from=0 to={len(data) - 1}\n"
+            text += "".join(f" {part.hex(' ')}\n" for part in lines(data, 16)) + "--\n"
+    log = read(tmp_path / "a.txt", text)
+    chunks = list(log)
+    assert (joined(chunks, "c2r"), joined(chunks, "r2c")) == (CLIENT, ROBOT)
+
+
+@pytest.mark.parametrize(
+    ("line", "part"),
+    [
+        ("connected to the robot", "no hexadecimal bytes"),
+        ("*", "with -v"),
+        ("FA FB 0", "no hexadecimal bytes"),
+        ("FA FG 03", "no hexadecimal bytes"),
+        ("0xFA 0xFBB", "no hexadecimal bytes"),
+    ],
+)
+def test_what_is_none_is_told_by_its_line(line: str, part: str, tmp_path: Path) -> None:
+    log = read(tmp_path / "a.txt", f"{ROBOT.hex(' ')}\n{line}\n{ROBOT.hex(' ')}\n")
+    assert joined(list(log), "r2c") == ROBOT * 2
+    assert [(entry.place, part in entry.what) for entry in log.damage] == [("line 2", True)]
+
+
+@pytest.mark.parametrize(
+    "text", ["hello\nworld\n", "be\n", "one two three\n" * 50, "a,b,c\n1,2,3\n", "face it\n" * 9]
+)
+def test_words_are_no_bytes(text: str, tmp_path: Path) -> None:
+    assert read(tmp_path / "a.txt", text).format.name == "bin"
+
+
+def test_the_direction_that_is_given_holds(tmp_path: Path) -> None:
+    assert joined(list(read(tmp_path / "a.txt", ROBOT.hex(" "), direction="c2r")), "c2r") == ROBOT

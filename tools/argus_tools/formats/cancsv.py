@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: MIT
+"""Tables of CAN frames as comma-separated values, of SavvyCAN, PCAN, python-can and others: found by their headings."""
+
+from __future__ import annotations
+
+import csv
+import re
+from base64 import b64decode
+from binascii import Error as Base64Error
+from collections.abc import Iterator
+from dataclasses import dataclass
+from io import BufferedReader
+from typing import Final
+
+from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, ReadOptions
+from argus_tools.formats.isotp import CanLink
+from argus_tools.formats.text import BOM, first_lines
+
+_LINE_MAX: Final = 4096
+_HEADING_LINES: Final = 40
+_SEPARATORS: Final = (",", ";", "\t")
+_BYTES_MAX: Final = 64
+_SHORT_ID_MAX: Final = 0x7FF
+_ID: Final = re.compile(
+    r"(can |message |msg |arbitration |frame )?(id|identifier|addr(?:ess)?)( ?[(\[]?(hex|dec)[)\]]?)?"
+)
+_TIME: Final = re.compile(
+    r"(time ?(stamp|offset)?|abs(olute)? ?time|t)( ?[(\[]?(s|sec|seconds|ms|us|µs|ns)[)\]]?)?"
+)
+_SIZE: Final = re.compile(r"len|length|dlc?|dl|data ?length( code)?|size|bytes")
+_DATA: Final = re.compile(r"(data|payload)( ?(bytes|field))?( ?[(\[]?hex[)\]]?)?")
+_ONE: Final = re.compile(r"(?:d|b|db|data|byte|data ?byte)[ _]?\[?(\d{1,2})\]?")
+_BUS: Final = re.compile(r"bus|channel|chn?|interface")
+_LONG: Final = re.compile(r"ext(ended)?|is[ _]extended([ _]id)?|ide")
+_KIND: Final = re.compile(r"type|frame ?type")
+_FLAG: Final = re.compile(r"remote|error|rtr")
+_UNITS: Final = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}
+# SavvyCAN counts microseconds; so does whoever writes times without a point under this heading.
+_MICROSECONDS: Final = 1e-6
+_TRUE: Final = ("1", "true", "yes", "x", "ext", "extended")
+_NO_DATA_KINDS: Final = ("rtr", "remote", "error", "errorframe", "rr", "er", "ec", "st")
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """Where in a row what stands."""
+
+    separator: str
+    can_id: int
+    time: int | None
+    unit_s: float | None
+    size: int | None
+    data: int | None
+    ones: tuple[int, ...]
+    bus: int | None
+    long: int | None
+    kinds: tuple[int, ...]
+    flags: tuple[int, ...]
+    is_base64: bool
+    is_decimal: bool
+
+
+def _columns(line: bytes) -> _Columns | None:
+    """Understand a line of headings; None if it is none of CAN frames."""
+    text = line.removeprefix(BOM).decode("utf-8", "replace").strip().lstrip(";# ").lower()
+    for separator in _SEPARATORS:
+        names = [re.sub(r"[ _]+", " ", name.strip().strip('"')) for name in text.split(separator)]
+        if len(names) >= 3 and (found := _understand(separator, names)):
+            return found
+    return None
+
+
+def _understand(separator: str, names: list[str]) -> _Columns | None:
+    def find(pattern: re.Pattern[str]) -> int | None:
+        return next((at for at, name in enumerate(names) if pattern.fullmatch(name)), None)
+
+    can_id, time, data = find(_ID), find(_TIME), find(_DATA)
+    ones = sorted((int(m[1]), at) for at, name in enumerate(names) if (m := _ONE.fullmatch(name)))
+    if can_id is None or (data is None and not ones):
+        return None
+    unit = _TIME.fullmatch(names[time]) if time is not None else None
+    return _Columns(
+        separator=separator,
+        can_id=can_id,
+        time=time,
+        unit_s=_UNITS[unit[5]] if unit and unit[5] else None,
+        size=find(_SIZE),
+        data=data,
+        ones=tuple(at for _, at in ones),
+        bus=find(_BUS),
+        long=find(_LONG),
+        kinds=tuple(at for at, name in enumerate(names) if _KIND.fullmatch(name)),
+        flags=tuple(at for at, name in enumerate(names) if _FLAG.fullmatch(name)),
+        # python-can's own.
+        is_base64=names[:7] == ["timestamp", "arbitration id", "extended", "remote", "error", "dlc", "data"],
+        is_decimal="dec" in names[can_id],
+    )
+
+
+@dataclass(frozen=True)
+class _Row:
+    t: float | None
+    bus: str
+    can_id: int
+    is_long_id: bool
+    data: bytes
+
+
+class _Cells:
+    """One row's cells by what they are."""
+
+    def __init__(self, columns: _Columns, cells: list[str]) -> None:
+        self._columns = columns
+        self._cells = [cell.strip() for cell in cells]
+
+    def _at(self, column: int | None) -> str:
+        return self._cells[column] if column is not None and column < len(self._cells) else ""
+
+    def row(self) -> _Row | None:
+        """Return the frame; None if it has no data; ValueError if the row is none."""
+        columns = self._columns
+        if any(self._at(at).lower() in _NO_DATA_KINDS for at in columns.kinds):
+            return None
+        if any(self._at(at).lower() in _TRUE for at in columns.flags):
+            return None
+        text = self._at(columns.can_id).lower()
+        is_long = text.endswith("x") or self._at(columns.long).lower() in _TRUE
+        can_id = int(text.removeprefix("0x").strip("hx"), 10 if columns.is_decimal else 16)
+        return _Row(self._t(), self._at(columns.bus), can_id, is_long or can_id > _SHORT_ID_MAX, self._data())
+
+    def _t(self) -> float | None:
+        text = self._at(self._columns.time)
+        if not text:
+            return None
+        unit = self._columns.unit_s
+        if unit is None:
+            unit = 1.0 if "." in text else _MICROSECONDS
+        return round(float(text) * unit, 9)
+
+    def _data(self) -> bytes:
+        columns = self._columns
+        size_text = self._at(columns.size)
+        size = int(size_text) if size_text else None
+        if columns.is_base64:
+            data = b64decode(self._at(columns.data), validate=True)
+        elif columns.ones:
+            cells = [self._at(at) for at in columns.ones]
+            data = bytes.fromhex("".join(c.lower().removeprefix("0x").rjust(2, "0") for c in cells if c))
+        else:
+            # Unquoted bytes may have cells of their own behind the last heading.
+            assert columns.data is not None
+            text = (
+                " ".join(self._cells[columns.data :])
+                if self._is_last(columns.data)
+                else self._at(columns.data)
+            )
+            data = bytes.fromhex(re.sub(r"0x|[-:|']", " ", text.lower()))
+        if size is not None and len(data) < size:
+            raise ValueError(f"{len(data)} of {size} bytes")
+        return data[: size if size is not None else _BYTES_MAX]
+
+    def _is_last(self, column: int) -> bool:
+        others = (self._columns.can_id, self._columns.time, self._columns.size, self._columns.bus)
+        return all(other is None or other < column for other in others)
+
+
+class CanCsvReader:
+    """Reads such a table; a row that is none is told and the next one is read."""
+
+    def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
+        self.damage = DamageList()
+        self._stream = stream
+        self._name = options.name
+        self._link = CanLink(options, self.damage, "line")
+
+    def __iter__(self) -> Iterator[Chunk]:
+        columns: _Columns | None = None
+        number = 0
+        while line := self._stream.readline(_LINE_MAX):
+            number += 1
+            if columns is None:
+                columns = _columns(line)
+                if columns is None and number >= _HEADING_LINES:
+                    break
+                continue
+            if not line.strip() or line.startswith((b"#", b";")):
+                continue
+            try:
+                cells = next(csv.reader([line.decode("latin-1")], delimiter=columns.separator))
+                row = _Cells(columns, cells).row()
+            except (ValueError, csv.Error, Base64Error, StopIteration) as error:
+                self.damage.append(Damage(f"line {number}", f"no CAN frame ({str(error)[:60]})"))
+                continue
+            if row is None:
+                continue
+            direction = self._link.direction(row.bus, row.can_id, row.is_long_id, number)
+            if direction is not None:
+                yield from self._link.take(row.t, direction, row.data, number)
+        if columns is None:
+            raise LogError(f"{self._name}: no table of CAN frames: its headings name no ID and no data")
+        yield from self._link.finish()
+
+
+def _sniff(head: bytes) -> bool:
+    return any(_columns(line) for line in first_lines(head)[:_HEADING_LINES] + _comments(head))
+
+
+def _comments(head: bytes) -> list[bytes]:
+    """Headings may stand in a comment."""
+    return [line for line in head[:_LINE_MAX].splitlines()[:_HEADING_LINES] if line[:1] in (b"#", b";")]
+
+
+FORMAT: Final = Format(
+    name="can-csv",
+    help="CSV of CAN frames: SavvyCAN, PCAN, python-can and others with headings",
+    sniff=_sniff,
+    reader=CanCsvReader,
+)

@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: MIT
+"""Files that people take for logs and that are not read: each is told by its name, with the command that helps."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from io import BufferedReader
+from typing import Final
+
+from argus_tools.formats.base import (
+    EXPECTED,
+    Chunk,
+    DamageList,
+    Format,
+    LogError,
+    Reader,
+    ReadOptions,
+    shell_name,
+)
+from argus_tools.formats.hexdump import FORMAT as HEXDUMP
+from argus_tools.formats.text import first_lines
+from hil_sim.arcos import Unframer
+
+_HEADER: Final = b"\xfa\xfb"
+_RECORD: Final = "record the link itself: argusd --record drive.rec"
+_CANDUMP: Final = "record the bus itself: candump -L can0 > can0.log"
+# Packets of two bytes or more that follow each other with all high bits gone.
+_SEVEN_BIT_PACKETS: Final = 3
+_SNIFFED: Final = 1 << 14
+
+
+@dataclass(frozen=True)
+class _Other:
+    """One such kind: how it is recognised, what it is, and what to do; FILE stands for the file's name."""
+
+    name: str
+    sniff: Callable[[bytes], bool]
+    what: str
+    remedy: str
+
+
+def _begins(*starts: bytes) -> Callable[[bytes], bool]:
+    return lambda head: head.startswith(starts)
+
+
+def _lines(pattern: bytes, least: int = 1) -> Callable[[bytes], bool]:
+    """Recognise text by so many of its first lines."""
+    match = re.compile(pattern).match
+    return lambda head: sum(bool(match(line)) for line in first_lines(head)) >= least
+
+
+def _is_base64(head: bytes) -> bool:
+    text = b"".join(head[:_SNIFFED].split())
+    if not re.fullmatch(rb"[A-Za-z0-9+/]{16,}={0,2}", text):
+        return False
+    try:
+        return any(True for _ in Unframer().feed(base64.b64decode(text[: len(text) & ~3])))
+    except binascii.Error:
+        return False
+
+
+def _is_seven_bit(head: bytes) -> bool:
+    """A chain of packets whose header lost its high bits, as a line of seven bits or a terminal makes it."""
+    if _HEADER in head or not re.search(rb"[\x00-\x06]", head):
+        return False
+    header = bytes(byte & 0x7F for byte in _HEADER)
+    for match in re.finditer(header, head[:_SNIFFED]):
+        at, chain = match.start(), 0
+        while head[at : at + 2] == header and at + 2 < len(head) and chain < _SEVEN_BIT_PACKETS:
+            at, chain = at + 3 + head[at + 2], chain + 1
+        if chain == _SEVEN_BIT_PACKETS:
+            return True
+    return False
+
+
+def _is_decimal_dump(head: bytes) -> bool:
+    return _lines(rb"[0-9A-Fa-f]{7}(?: +-?\d{1,5})+\s*$", 2)(head) and not HEXDUMP.sniff(head)
+
+
+def _is_tar(head: bytes) -> bool:
+    return head[257:262] == b"ustar"
+
+
+_OTHERS: Final = (
+    _Other(
+        "mf4",
+        _begins(b"MDF     ", b"UnFinMF "),
+        "an MDF measurement (.mf4)",
+        "export its CAN frames as BLF or ASC from the tool that wrote it, or " + _CANDUMP,
+    ),
+    _Other(
+        "sqlite",
+        _begins(b"SQLite format 3\0"),
+        "an SQLite database, as python-can's logger writes one (.db)",
+        "python -m can.logconvert FILE drive.asc",
+    ),
+    _Other(
+        "mcap",
+        _begins(b"\x89MCAP0\r\n"),
+        "an MCAP file, which argus-log writes for Foxglove but does not read",
+        "give the log that it was made from",
+    ),
+    _Other("rosbag", _begins(b"#ROSBAG V"), "a ROS bag", _RECORD),
+    _Other("zip", _begins(b"PK\x03\x04"), "a ZIP archive", "unzip -p FILE | argus-log decode -"),
+    _Other("xz", _begins(b"\xfd7zXZ\0"), "an xz file", "xz -dc FILE | argus-log decode -"),
+    _Other("bzip2", _begins(b"BZh"), "a bzip2 file", "bzip2 -dc FILE | argus-log decode -"),
+    _Other("zstd", _begins(b"\x28\xb5\x2f\xfd"), "a zstd file", "zstd -dc FILE | argus-log decode -"),
+    _Other("lz4", _begins(b"\x04\x22\x4d\x18"), "an lz4 file", "lz4 -dc FILE | argus-log decode -"),
+    _Other("7z", _begins(b"7z\xbc\xaf\x27\x1c"), "a 7z archive", "7z e -so FILE | argus-log decode -"),
+    _Other("tar", _is_tar, "a tar archive", "tar -xOf FILE | argus-log decode -"),
+    _Other("elf", _begins(b"\x7fELF"), "a program", "give the log, not the program"),
+    _Other("pdf", _begins(b"%PDF-"), "a PDF document", "give the log itself"),
+    _Other("picture", _begins(b"\x89PNG\r\n", b"\xff\xd8\xff", b"GIF8"), "a picture", "give the log itself"),
+    _Other(
+        "html",
+        _lines(rb"\s*<(?:!DOCTYPE|html|\?xml)"),
+        "a web page or XML",
+        "save the file itself, not the page that shows it",
+    ),
+    _Other("snoop", _begins(b"snoop\0\0\0"), "a snoop capture", "editcap -F pcapng FILE drive.pcapng"),
+    _Other("btsnoop", _begins(b"btsnoop\0"), "a Bluetooth capture", _RECORD),
+    _Other(
+        "pcap-modified",
+        _begins(b"\xa1\xb2\xcd\x34", b"\x34\xcd\xb2\xa1", b"\xa1\xb2\x34\xcd"),
+        "a pcap of a modified kind",
+        "editcap -F pcapng FILE drive.pcapng",
+    ),
+    _Other(
+        "tcpdump-hex",
+        _lines(rb"\t0x[0-9a-f]{4}:  (?:[0-9a-f]{2,4} ?)+"),
+        "what tcpdump -x prints on the screen",
+        "capture into a file: tcpdump -i any -w robot.pcap tcp port 8101",
+    ),
+    _Other(
+        "tcpdump-text",
+        _lines(rb"(?:\d\d:\d\d:\d\d\.\d+ )?(?:\S+ +(?:In|Out) +)?IP6? \S+ > \S+: "),
+        "what tcpdump prints on the screen, without the bytes",
+        "capture into a file: tcpdump -i any -w robot.pcap tcp port 8101",
+    ),
+    _Other(
+        "tshark-text",
+        _lines(rb" *\d+ +\d+\.\d+ +(?:\S+ +)?(?:\xe2\x86\x92|->) +(?:\S+ +)?[A-Z]"),
+        "what tshark prints on the screen, without the bytes",
+        "tshark -i can0 -w can0.pcapng",
+    ),
+    _Other(
+        "strace",
+        _lines(rb"(?:\[pid +\d+\] |\d+ +)?(?:[\d:.]+ )?(?:read|write|recvfrom|sendto|openat)\(\d*.*\) += "),
+        "what strace prints",
+        _RECORD,
+    ),
+    _Other(
+        "cansniffer", _lines(rb"(?:\x1b\[\S*)?\d\d (?:delta +ID +data|ms)"), "what cansniffer shows", _CANDUMP
+    ),
+    _Other(
+        "slcan",
+        _lines(rb"[tTrR][0-9A-Fa-f]{3,8}[0-8][0-9A-Fa-f]*(?:\r|$)", 2),
+        "what an slcan adapter sends",
+        "let slcand make an interface of it, then " + _CANDUMP,
+    ),
+    _Other(
+        "intel-hex",
+        _lines(rb":[0-9A-Fa-f]{10,}\s*$", 2),
+        "Intel HEX",
+        "objcopy -I ihex -O binary FILE drive.bin",
+    ),
+    _Other(
+        "s-record",
+        _lines(rb"S[0-9][0-9A-Fa-f]{8,}\s*$", 2),
+        "Motorola S-records",
+        "objcopy -I srec -O binary FILE drive.bin",
+    ),
+    _Other(
+        "octal-dump",
+        _lines(rb"[0-7]{7}(?: {2,3}(?:\\[0abtnvfr]|[0-7]{3}|\S))+\s*$", 2),
+        "what od -c or hexdump -c prints",
+        "dump it as numbers: od -v -t x1, which argus-log reads",
+    ),
+    _Other(
+        "decimal-dump",
+        _is_decimal_dump,
+        "a dump in decimal numbers",
+        "dump it in hexadecimal ones: od -v -t x1, which argus-log reads",
+    ),
+    _Other(
+        "decoded-table",
+        _lines(rb" +t +offset +dir +type +content"),
+        "what argus-log decode prints",
+        "give the log that it was made from",
+    ),
+    _Other(
+        "decoded-csv",
+        _lines(rb"t,offset,dir,type,ok,"),
+        "the CSV of argus-log",
+        "give the log that it was made from",
+    ),
+    _Other("base64", _is_base64, "base64 of a robot's link", "base64 -d FILE > drive.bin"),
+    _Other(
+        "seven-bit",
+        _is_seven_bit,
+        "a robot's link without the highest bit of each byte, which is lost",
+        "set the terminal program and the port to 8 data bits and save as binary",
+    ),
+)
+
+
+class _Refusal(Reader):
+    """Reads nothing: says what the file is."""
+
+    def __init__(self, name: str, other: _Other) -> None:
+        self.damage = DamageList()
+        self._name = name
+        self._other = other
+
+    def __iter__(self) -> Iterator[Chunk]:
+        remedy = self._other.remedy.replace("FILE", shell_name(self._name))
+        raise LogError(f"{self._name}: looks like {self._other.what}; expected {EXPECTED}; {remedy}")
+
+
+def _format(other: _Other) -> Format:
+    def reader(_stream: BufferedReader, options: ReadOptions) -> Reader:
+        return _Refusal(options.name, other)
+
+    return Format(name=other.name, help=other.what, sniff=other.sniff, reader=reader, is_read=False)
+
+
+FORMATS: Final = tuple(map(_format, _OTHERS))

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""What remains of all that the fault manager said of a log: a few lines for people, one if nothing is wrong."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from typing import Any, Final
+
+from argus_tools.core import Event, kind_name
+from argus_tools.formats.base import Damage
+from hil_sim.arcos import TIMING
+
+# A suspicion that is younger may go with the next SIP.
+LASTING_S: Final = 5.0
+# Sonars fail one by one. When more than these are suspects at once, it is the place or the motion that misleads.
+SUSPECTS_MAX: Final = 4
+SUSPECT, DISABLED = "SUSPECT", "DISABLED"
+# As many that go within so short a time are told in lines of their own.
+_TOGETHER: Final = 2
+_TOGETHER_S: Final = 1.0
+_RAISED: Final = "SONAR_SUSPECT"
+_ENDED: Final = frozenset(("SUSPICION_DROPPED", "SONAR_CLEARED", "SONAR_HEALTHY", "SONAR_DISABLED"))
+_DISABLED: Final = "SONAR_DISABLED"
+_UNSEEN: Final = 0xFFFFFFFF
+# What follows from a disabled sonar, and what a manager that only listens would have liked to do.
+_OWN: Final = frozenset(("health", "plan", "task", "object"))
+_OWN_DRIVE: Final = frozenset(("WAITING", "STOPPED", "BACKING", "TURN_BLOCKED", "TURN_FAILED"))
+_WARN: Final = 1
+_SIP_S: Final = TIMING["SIP_CYCLE_MS"] / 1000
+
+
+class Summary:
+    """Takes every event; `lines` tells what is left of them at the end."""
+
+    def __init__(self) -> None:
+        self._since: dict[int, float] = {}
+        self._suspicions = 0
+        self._disabled: dict[int, tuple[str, float, str]] = {}
+        self._also: Counter[str] = Counter()
+        self._meaning: dict[str, str] = {}
+        self._first: float | None = None
+        self._now = 0.0
+
+    def see(self, t: float | None, is_sip: bool) -> None:
+        """Take note of the log's time; of one that keeps none, each SIP is one cycle."""
+        self._now = t if t is not None else self._now + _SIP_S * is_sip
+        if self._first is None:
+            self._first = self._now
+
+    def add(self, event: Event, t: float | None, offset: int) -> None:
+        """Take the next event, with the log's time if it keeps one, and the place of the packet that brought it."""
+        name = event.event
+        if event.sonar is None:
+            if event.level >= _WARN and event.name not in _OWN and name not in _OWN_DRIVE:
+                self._also[name] += 1
+                self._meaning[name] = event.meaning.partition(";")[0].partition(":")[0]
+        elif name == _RAISED:
+            self._suspicions += 1
+            self._since.setdefault(event.sonar, self._now)
+        elif name in _ENDED:
+            self._since.pop(event.sonar, None)
+        if name == _DISABLED and event.sonar is not None:
+            place = f"byte {offset}" if t is None else f"+{t - (self._first or 0.0):.1f} s"
+            self._disabled[event.sonar] = (kind_name(event.value), self._now, place)
+
+    def lines(self, status: dict[str, Any], damage: Iterable[Damage]) -> list[str]:
+        """Return the lines, with what the manager knows at the end."""
+        health = status["health"]
+        out = self._gone(health)
+        lasting = [
+            number
+            for number, since in sorted(self._since.items())
+            if health[number] == SUSPECT and self._now - since >= LASTING_S
+        ]
+        out += self._suspects(lasting, status["kind"])
+        head = "" if out else "nothing wrong with the sonars: " if self._also else "nothing wrong: "
+        out.append(head + self._counts(status, len(lasting), any(True for _ in damage)))
+        if self._also:
+            said = (f"{count} x {name} ({self._meaning[name]})" for name, count in self._also.most_common())
+            out.append("also: " + "; ".join(said))
+        return out
+
+    def _gone(self, health: list[str]) -> list[str]:
+        """Tell of the disabled sonars, those that went together in one line."""
+        groups: list[list[int]] = []
+        for number, (kind, at, _) in sorted(self._disabled.items(), key=lambda item: item[1]):
+            if health[number] != DISABLED:
+                continue
+            first = self._disabled[groups[-1][0]] if groups else None
+            if first and first[0] == kind and at - first[1] <= _TOGETHER_S:
+                groups[-1].append(number)
+            else:
+                groups.append([number])
+        out = []
+        for numbers in sorted(map(sorted, groups)):
+            if len(numbers) > _TOGETHER:
+                kind, _, place = min(self._disabled[number] for number in numbers)
+                who = f"{len(numbers)} sonars ({', '.join(map(str, numbers))})"
+                out.append(f"{who} disabled as {kind} at {place}, all at once")
+            else:
+                out += [
+                    f"{_name(number):<14} disabled as {self._disabled[number][0]} at {self._disabled[number][2]}"
+                    for number in numbers
+                ]
+        return out
+
+    def _suspects(self, lasting: list[int], kinds: list[str]) -> list[str]:
+        if len(lasting) > SUSPECTS_MAX:
+            return [
+                f"{len(lasting)} sonars are suspects at once and none is proven: that is the place or the motion "
+                "rather than the sonars; --events names them"
+            ]
+        out = []
+        for number in lasting:
+            kind = f", perhaps {kinds[number]}" if kinds[number] else ""
+            held = f"for the last {self._now - self._since[number]:.0f} s"
+            out.append(f"{_name(number):<14} suspect {held}{kind}; not proven")
+        return out
+
+    def _counts(self, status: dict[str, Any], lasting: int, is_damaged: bool) -> str:
+        seen = [
+            health for health, age in zip(status["health"], status["age_ms"], strict=True) if age != _UNSEEN
+        ]
+        healthy = len(seen) - seen.count(DISABLED) - lasting
+        who = f"{healthy} of {len(seen)} sonars healthy" if seen else "no sonar reported"
+        counts = [f"{who} in {status['sips']} SIPs over {self._now - (self._first or 0.0):.0f} s"]
+        passed = self._suspicions - lasting
+        if passed > 0:
+            counts.append(f"{passed} suspicion{'s' * (passed > 1)} came and went")
+        if status["bad_checksums"] or status["skipped_bytes"] or is_damaged:
+            counts.append(f"{status['bad_checksums']} bad checksums, {status['skipped_bytes']} bytes skipped")
+        return "; ".join(counts)
+
+
+def _name(sonar: int) -> str:
+    return Event(0, 0, sonar, "", 0).name

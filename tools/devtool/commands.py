@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+"""What each command of tools/dev does, but for those that consist of stages."""
+
+from __future__ import annotations
+
+import argparse
+import functools
+import os
+import shutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+from devtool.base import (
+    BUILD,
+    EXIT_USAGE,
+    LOGS,
+    ROOT,
+    VENV,
+    Command,
+    Run,
+    Stop,
+    environment,
+    run_visibly,
+    say,
+    shown,
+)
+from devtool.cmake import build, build_and_test, presets
+from devtool.setup import ensure
+from devtool.stages import STAGE_LIMIT_S, StageFailed, logged_runner, tail_of
+
+CACHES: Final = (".mypy_cache", ".ruff_cache", ".pytest_cache", ".hypothesis", "argus_p3dx.egg-info")
+
+
+def quietly(what: str, action: Callable[[Run], None]) -> None:
+    """Do ACTION with its output in a log, which is shown only when it fails."""
+    say(what)
+    LOGS.mkdir(parents=True, exist_ok=True)
+    log = LOGS / "last.log"
+    log.write_text("")
+    try:
+        action(logged_runner(log, False, STAGE_LIMIT_S))
+    except StageFailed as error:
+        print(tail_of(log), flush=True)
+        raise Stop(f"{what}: {error} (log: {shown(log)})") from None
+
+
+def do_demo(args: argparse.Namespace) -> int:
+    """Set up, build, and hand over to the demonstration."""
+    ensure(["release"])
+    quietly("building argusd", functools.partial(build, "release"))
+    say("starting the demonstration")
+    python = str(VENV / "bin/python")
+    os.execve(python, [python, "-m", "hil_sim.demo", *args.rest], environment())
+
+
+def do_build(args: argparse.Namespace) -> int:
+    """Build presets."""
+    for preset in args.preset:
+        if preset not in presets():
+            raise Stop(f"no preset '{preset}'; there are: {' '.join(presets())}", EXIT_USAGE)
+    chosen = args.preset or ["release"]
+    ensure(chosen)
+    for preset in chosen:
+        quietly(f"building {preset}", functools.partial(build, preset))
+    return 0
+
+
+def shell_environment() -> dict[str, str]:
+    """Return the environment in which argusd, argus-sim, argus-log and the others are found by their names."""
+    env = environment()
+    env["PATH"] = os.pathsep.join([str(VENV / "bin"), str(BUILD / "release"), os.environ.get("PATH", "")])
+    env["VIRTUAL_ENV"] = str(VENV)
+    return env
+
+
+def do_shell(args: argparse.Namespace) -> int:
+    """Set up, build, and become a shell, or the command given, that finds what was built."""
+    ensure(["release"])
+    quietly("building argusd", functools.partial(build, "release"))
+    env = shell_environment()
+    command = args.rest or [os.environ.get("SHELL") or "/bin/sh"]
+    if not args.rest:
+        say("argusd, argus-sim, argus-log and python are in PATH; leave with exit")
+    try:
+        os.execvpe(command[0], command, env)
+    except OSError as error:
+        raise Stop(f"{command[0]}: {error.strerror}", EXIT_USAGE) from None
+
+
+def do_coverage(_args: argparse.Namespace) -> int:
+    """Measure what the unit tests cover."""
+    ensure(["coverage"])
+    for stale in (BUILD / "coverage").rglob("*.gcda"):
+        stale.unlink()
+    quietly("building and running the C unit tests", lambda run: build_and_test("coverage", run, ()))
+    gcovr: list[str | Path] = [VENV / "bin/gcovr", "--root", ROOT, "--object-directory", BUILD / "coverage"]
+    filters = ["--filter", "firmware/", "--filter", "hal/"]
+    html = BUILD / "coverage/html/index.html"
+    html.parent.mkdir(exist_ok=True)
+    run_visibly([*gcovr, *filters, "--txt", "-", "--txt-summary", "--html-details", html, BUILD / "coverage"])
+    say(f"line by line: {shown(html)}")
+    return 0
+
+
+def do_size(_args: argparse.Namespace) -> int:
+    """Measure the firmware on Cortex-M4."""
+    ensure(["cortex-m4"])
+    quietly("building for Cortex-M4", functools.partial(build, "cortex-m4"))
+    run_visibly([sys.executable, "tools/size.py", "build/cortex-m4"])
+    return 0
+
+
+def benchmarks() -> dict[str, Command]:
+    """Return the benchmarks that there are, by name."""
+    built = [path for path in (BUILD / "release").glob("bench_*") if os.access(path, os.X_OK)]
+    programs: dict[str, Command] = {path.name.removeprefix("bench_"): [path] for path in built}
+    programs |= {path.stem: [VENV / "bin/python", path] for path in (ROOT / "tests/bench").glob("*.py")}
+    if "can" in programs:
+        programs["can"] = [ROOT / "tools/with-can", *programs["can"]]
+    return programs
+
+
+def do_bench(args: argparse.Namespace) -> int:
+    """Run the benchmarks."""
+    ensure(["release"])
+    quietly("building the benchmarks", functools.partial(build, "release"))
+    programs = benchmarks()
+    # That on the bus is run when it is asked for: it may have to make a guest kernel first.
+    usual = ["can"] if args.can else sorted(set(programs) - {"can"})
+    wanted = [name for name in sorted(programs) if name in (args.name or usual)]
+    if not wanted:
+        raise Stop(f"no such benchmark; there are: {' '.join(sorted(programs)) or 'none'}", EXIT_USAGE)
+    for name in wanted:
+        say(f"running {name}")
+        run_visibly(programs[name])
+    return 0
+
+
+def made_paths(everything: bool) -> list[Path]:
+    """Return what was made; downloads and .venv only if EVERYTHING is asked for."""
+    made = [ROOT / name for name in CACHES]
+    if BUILD.exists():
+        made += [path for path in BUILD.iterdir() if everything or path.name != "_deps"]
+    if everything:
+        made += [BUILD, VENV]
+    for top in ("hil_sim", "tests", "tools"):
+        made += (ROOT / top).rglob("__pycache__")
+    return made
+
+
+def do_clean(args: argparse.Namespace) -> int:
+    """Remove what was made."""
+    for path in made_paths(args.all):
+        if path.is_dir():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
+    say(
+        "removed build results and caches"
+        + (", downloads and .venv" if args.all else "; kept downloads and .venv")
+    )
+    return 0

@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: MIT
+"""Commands that consist of stages: all of them are run, each with a log, and the end lists what failed."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import os
+import re
+import resource
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Final
+
+from devtool.base import (
+    EXIT_FAILED,
+    EXIT_USAGE,
+    LOGS,
+    ROOT,
+    Command,
+    Run,
+    Stop,
+    environment,
+    line_of,
+    paint,
+    say,
+    shown,
+    words,
+)
+from devtool.setup import ensure
+
+STAGE_LIMIT_S: Final = 5400.0
+"""A guard against what hangs: many times what a stage takes, so that no busy host trips it."""
+
+PROGRESS: Final = re.compile(
+    r"\[ *\d+[/%].*\] (Building|Linking|Built) |tests/.*:PASS$| +Start +\d+: | *\d+/\d+ Test .* Passed "
+)
+SHOWN_LINES: Final = 150
+
+
+class StageFailed(Exception):
+    """A command of a stage failed; the stage's log tells why."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Stage:
+    """One named step of a check, with what it needs to run."""
+
+    name: str
+    what: str
+    action: Callable[[Run], str | None]
+    """Raises StageFailed, or returns what is to be told although all is well."""
+    presets: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
+
+
+@dataclasses.dataclass(frozen=True)
+class Result:
+    """How a stage ended: why it failed, if it did, the time it took, and what is to be told."""
+
+    failure: str | None
+    seconds: float
+    cpu_s: float
+    log: Path
+    note: str | None = None
+
+    @property
+    def passed(self) -> bool:
+        """It did not fail."""
+        return self.failure is None
+
+
+def children_cpu_s() -> float:
+    """Return the CPU time of all children that have ended, and theirs."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+@contextmanager
+def process_group(command: Command, log: Path, verbose: bool) -> Iterator[subprocess.Popen[bytes]]:
+    """Start COMMAND in a group of its own, which is killed if this is left before its end: children of a test, too."""
+    with log.open("a") as file:
+        file.write(f"$ {line_of(command)}\n")
+        file.flush()
+        child = subprocess.Popen(
+            words(command),
+            cwd=ROOT,
+            env=environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=None if verbose else file,
+            stderr=None if verbose else subprocess.STDOUT,
+            start_new_session=True,
+        )
+        try:
+            yield child
+        except BaseException:
+            os.killpg(child.pid, signal.SIGKILL)
+            child.wait()
+            raise
+
+
+def logged_runner(log: Path, verbose: bool, limit_s: float) -> Run:
+    """Return a runner whose output goes to LOG, or to the terminal when VERBOSE; it ends in LIMIT_S."""
+    deadline = time.monotonic() + limit_s
+
+    def run(command: Command) -> None:
+        line = line_of(command)
+        try:
+            with process_group(command, log, verbose) as child:
+                code = child.wait(timeout=max(1.0, deadline - time.monotonic()))
+        except subprocess.TimeoutExpired:
+            raise StageFailed(f"not done after {limit_s:.0f} s: {line}") from None
+        except OSError as error:
+            raise StageFailed(f"{error.strerror}: {line}") from None
+        if code:
+            raise StageFailed(f"exit code {code}: {line}")
+
+    return run
+
+
+def tail_of(log: Path, lines: int = SHOWN_LINES) -> str:
+    """Return the end of LOG: at most LINES, of the last command only, without what went well."""
+    text = log.read_text(errors="replace")
+    last = text[text.rfind("\n$ ") + 1 :].splitlines()
+    return "\n".join([line for line in last if not PROGRESS.match(line)][-lines:])
+
+
+def run_stage(stage: Stage, verbose: bool) -> Result:
+    """Run STAGE."""
+    LOGS.mkdir(parents=True, exist_ok=True)
+    log = LOGS / f"{stage.name}.log"
+    log.write_text("")
+    say(f"{stage.name}: {stage.what}")
+    start, start_cpu_s = time.monotonic(), children_cpu_s()
+    failure = note = None
+    try:
+        note = stage.action(logged_runner(log, verbose, STAGE_LIMIT_S))
+    except (StageFailed, Stop) as error:
+        failure = str(error)
+        if not verbose:
+            print(tail_of(log), flush=True)
+        say(paint(f"{stage.name} FAILED: {failure} (log: {shown(log)})", "31"))
+    return Result(failure, time.monotonic() - start, children_cpu_s() - start_cpu_s, log, note)
+
+
+def verdict(good: bool) -> str:
+    """Return one word in colour, as wide either way."""
+    return paint("ok    ", "32") if good else paint("FAILED", "31")
+
+
+def table_lines(stages: Sequence[Stage], results: Mapping[str, Result]) -> Iterator[str]:
+    """Yield a line for each of STAGES, and their sum."""
+    for stage in stages:
+        result = results.get(stage.name)
+        if result is None:
+            yield f"  {stage.name:<14} not run"
+            continue
+        yield (
+            f"  {stage.name:<14} {verdict(result.passed)} {result.seconds:7.1f} s {result.cpu_s:7.1f} s of CPU"
+        )
+        if result.note:
+            yield paint(f"  {'':<14} {result.note}", "33")
+    good = len(results) == len(stages) and all(result.passed for result in results.values())
+    total_s, total_cpu_s = (sum(values) for values in zip(
+        *((result.seconds, result.cpu_s) for result in results.values()), strict=True
+    ))  # fmt: skip
+    yield f"  {'total':<14} {verdict(good)} {total_s:7.1f} s {total_cpu_s:7.1f} s of CPU"
+
+
+def failed_lines(results: Mapping[str, Result]) -> Iterator[str]:
+    """Yield what failed, with the log of each; nothing if all is well."""
+    failed = {name: result for name, result in results.items() if not result.passed}
+    if failed:
+        yield paint(f"failed: {', '.join(failed)}", "31")
+    for name, result in failed.items():
+        yield f"  {name:<14} {shown(result.log)}: {result.failure}"
+
+
+def run_stages(stages: Sequence[Stage], keep_going: bool, verbose: bool) -> int:
+    """Run STAGES one after another, print the summary, and return the exit code.
+
+    Robots run in real time: nothing runs beside them.
+    """
+    results: dict[str, Result] = {}
+    for stage in stages:
+        results[stage.name] = run_stage(stage, verbose)
+        if not results[stage.name].passed and not keep_going:
+            break
+    print()
+    for line in (*table_lines(stages, results), *failed_lines(results)):
+        print(line, flush=True)
+    return 0 if all(result.passed for result in results.values()) else EXIT_FAILED
+
+
+def chosen(stages: Sequence[Stage], only: Sequence[str]) -> list[Stage]:
+    """Return the stages named in ONLY, or all of them."""
+    names = [stage.name for stage in stages]
+    for name in only:
+        if name not in names:
+            raise Stop(f"no stage '{name}'; there are: {' '.join(names)}", EXIT_USAGE)
+    return [stage for stage in stages if not only or stage.name in only]
+
+
+def add_stage_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the commands that consist of stages."""
+    parser.add_argument(
+        "--only", metavar="STAGE", action="append", default=[], help="run this stage (may be repeated)"
+    )
+    parser.add_argument("--list", action="store_true", help="print the stages and do nothing")
+    parser.add_argument(
+        "--keep-going",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="go on after a stage that failed (as is done without this option), or end there",
+    )
+    parser.add_argument("--verbose", action="store_true", help="show the output of stages that pass, too")
+
+
+def staged_command(args: argparse.Namespace, stages: Sequence[Stage]) -> int:
+    """Carry out a command that consists of stages, with the options all of those share."""
+    if args.list:
+        for stage in stages:
+            print(f"{stage.name:<14} {stage.what}")
+        return 0
+    todo = chosen(stages, args.only)
+    ensure(
+        [preset for stage in todo for preset in stage.presets],
+        [need for stage in todo for need in stage.needs],
+    )
+    return run_stages(todo, args.keep_going, args.verbose)

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""The stages of `tools/dev test`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Final
+
+from devtool.base import BUILD, CORES, ROOT, VENV, Command, Run
+from devtool.cmake import SOAK, build, build_and_test, ctest
+from devtool.real_time import hil_workers, run_in_real_time
+from devtool.stages import Stage
+
+PYTEST: Final = (VENV / "bin/python", "-m", "pytest", "-q")
+IN_REAL_TIME: Final = ("tests/hil", "tests/can")
+COMPUTING: Final = ("tests", *(f"--ignore={folder}" for folder in IN_REAL_TIME))
+# Some tests take a hundred times as long as others: who has done its own takes over what another has before it.
+SHARED_OUT: Final = ("-n", str(CORES), "--dist", "worksteal")
+
+
+def ctest_stage(preset: str, what: str) -> Stage:
+    """Return the stage that builds PRESET and runs its unit tests."""
+    return Stage(preset, what, lambda run: build_and_test(preset, run), (preset,))
+
+
+def python_tests(run: Run) -> None:
+    """Run the Python tests that compute."""
+    build("release", run)
+    build("cortex-m4", run)
+    run([*PYTEST, *COMPUTING, "-m", f"not {SOAK}", *SHARED_OUT])
+
+
+def soak_tests(run: Run) -> None:
+    """Run what computes for long, in C and in Python: once, and optimised."""
+    build("release", run)
+    ctest("release", run, "-L", SOAK)
+    run([*PYTEST, *COMPUTING, "-m", SOAK, *SHARED_OUT])
+
+
+def hil_tests(run: Run) -> str | None:
+    """Run the tests over real ptys; they mostly sleep, so there are more of them at once than cores."""
+    build("release", run)
+    pytest: Command = [*PYTEST, "--dist", "load"]
+    return run_in_real_time(run, pytest, ["tests/hil"], hil_workers(), BUILD / "hil/host-late.json")
+
+
+def can_tests(run: Run) -> str | None:
+    """Run the tests on a real CAN bus: those of what provides it, then, in one boot, those that use it."""
+    build("release", run)
+    with_can: list[str | Path] = [sys.executable, ROOT / "tools/with-can", "--timeout", "0"]
+    run([*with_can, "--prepare"])
+    run([*PYTEST, "tests/can/test_with_can.py", "-n", "3"])
+    run([*with_can, "--guest", *PYTEST, "tests/can/guest"])
+    # A worker for each file: they wait for one another's robots no more than those of tests/hil do.
+    on_bus: Command = [*with_can, *PYTEST, "--dist", "loadfile"]
+    return run_in_real_time(run, on_bus, ["tests/can/bus"], 7, BUILD / "can/host-late.json")
+
+
+def cortex_m4(run: Run) -> None:
+    """Build for Cortex-M4 and check its sizes."""
+    build("cortex-m4", run)
+    run([sys.executable, "tools/size.py", "build/cortex-m4"])
+
+
+TABLES: Final = Stage(
+    "tables",
+    "generated headers agree with hil_sim/tables",
+    lambda run: run([sys.executable, "tools/gen_tables.py", "--check"]),
+)
+RELEASE: Final = ctest_stage("release", "C unit tests, optimised")
+CORTEX_M4: Final = Stage(
+    "cortex-m4", "firmware for Cortex-M4: builds, sizes, stack, no recursion", cortex_m4, ("cortex-m4",)
+)
+PYTHON: Final = Stage(
+    "python", "Python tests that need no robot", python_tests, ("release", "cortex-m4"), ("tshark",)
+)
+QUICK_STAGES: Final = (TABLES, RELEASE, CORTEX_M4, PYTHON)
+TEST_STAGES: Final = (
+    TABLES,
+    RELEASE,
+    Stage("hil", "argusd against the emulated robot over ptys", hil_tests, ("release",)),
+    ctest_stage("sanitize", "C unit tests under the address and undefined-behaviour sanitizers"),
+    ctest_stage("clang", "C unit tests, built by clang"),
+    ctest_stage("m32", "C unit tests, 32 bit"),
+    CORTEX_M4,
+    PYTHON,
+    Stage(
+        "can",
+        "the same over CAN buses, in a guest kernel if need be",
+        can_tests,
+        ("release",),
+        ("can-utils",),
+    ),
+    Stage(SOAK, "C and Python tests that compute for long", soak_tests, ("release",)),
+)

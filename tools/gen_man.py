@@ -1,0 +1,264 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Write the manual pages docs/man/*.1: what a program is, by hand below; its options, from its own --help."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+FOLDER = Path("docs/man")
+ARGUSD = "build/release/argusd"
+WIDE = "10000"  # columns: argparse then breaks no line
+
+EPILOG = """examples:
+  tools/gen_man.py            renew the pages
+  tools/gen_man.py --check    exit 1 if one of them is not what the programs say
+
+Needs build/release/argusd and the .venv of tools/dev build.
+exit codes: 0 done or current, 1 out of date, 2 a program does not answer"""
+
+
+class ManError(Exception):
+    """A page that cannot be made; the message is one line."""
+
+
+@dataclass(frozen=True)
+class Page:
+    """One page, but for what --help says."""
+
+    name: str
+    what: str
+    command: tuple[str, ...]
+    synopsis: tuple[str, ...]
+    description: tuple[str, ...]
+    has_commands: bool = False  # each with a --help of its own
+    ends: tuple[tuple[str, tuple[tuple[str, str], ...]], ...] = ()
+    also: tuple[str, ...] = field(default=())
+
+
+PAGES = (
+    Page(
+        name="argusd",
+        what="drives an ARCOS robot and keeps it safe when its sonars fail",
+        command=(ARGUSD,),
+        synopsis=("--link LINK [options]",),
+        description=(
+            "argusd talks to the microcontroller of a Pioneer P3-DX, judges every sonar, works round those that "
+            "failed, and drives a course under its safety rules. On a serial or CAN link it starts passive: it "
+            "reports and commands no motion until --active is given.",
+            "On a terminal it shows a screen; with --plain or --json, or where there is none, it writes a line "
+            "for each event on standard output. Errors and what an operator should know go to standard error.",
+            "SIGINT, SIGTERM and SIGHUP stop the robot and close the session; signals within a second count as "
+            "one, a later one ends argusd at once.",
+        ),
+        ends=(
+            (
+                "ENVIRONMENT",
+                (
+                    ("NO_COLOR", "if set and not empty, nothing is coloured"),
+                    ("TERM", "the terminal; where it cannot be drawn on, argusd does as with --plain"),
+                ),
+            ),
+            (
+                "FILES",
+                (
+                    ("argusd.conf.example", "a config file with every setting, among the documentation"),
+                    ("argusd.service", "the unit for systemd"),
+                    ("argus.dbc", "the CAN frames, for any tool that reads DBC files"),
+                ),
+            ),
+        ),
+        also=("argus-log", "argus-sim"),
+    ),
+    Page(
+        name="argus-sim",
+        what="emulates an ARCOS robot with its world, sonars and faults",
+        command=(sys.executable, "-m", "hil_sim.cli"),
+        synopsis=("[options]", "bench NAME [options]"),
+        description=(
+            "argus-sim is a robot for programs that speak ARCOS: drive, odometry, sonars and bumpers in a world "
+            "of walls, with faults of its sonars on demand.",
+        ),
+        also=("argusd", "argus-log"),
+    ),
+    Page(
+        name="argus-log",
+        what="decodes, checks, converts, draws and replays logs of a robot's link",
+        command=(sys.executable, "-m", "argus_tools.log.cli"),
+        synopsis=("COMMAND [options] LOG",),
+        description=(
+            "argus-log reads what passed on a robot's serial, TCP or CAN link, whoever recorded it.",
+        ),
+        has_commands=True,
+        ends=(
+            (
+                "ENVIRONMENT",
+                (
+                    (
+                        "ARGUS_CORE",
+                        "the libargus.so that faults takes, instead of the one it finds or compiles",
+                    ),
+                ),
+            ),
+        ),
+        also=("argusd", "argus-sim"),
+    ),
+)
+
+
+def help_of(command: tuple[str, ...]) -> list[str]:
+    """Return the lines that a program prints for --help."""
+    path = os.pathsep.join(str(ROOT / folder) for folder in (".", "tools"))
+    environment = {**os.environ, "COLUMNS": WIDE, "PYTHONPATH": path}
+    try:
+        done = subprocess.run(
+            [*command, "--help"], cwd=ROOT, env=environment, check=True, capture_output=True, text=True
+        )
+    except (OSError, subprocess.CalledProcessError) as error:
+        raise ManError(f"{' '.join(command)} --help fails ({error}); run tools/dev build release") from error
+    return done.stdout.splitlines()
+
+
+def escaped(text: str) -> str:
+    """Return text as roff shows it unchanged; a hyphen of an option must stay one."""
+    shown = text.replace("\\", "\\e").replace("-", "\\-")
+    return "\\&" + shown if shown.startswith((".", "'")) else shown
+
+
+def sections(lines: list[str]) -> Iterator[tuple[str, list[str]]]:
+    """Split help into (title, lines), from its usage on; of the usage itself nothing is kept but options below it."""
+    title, body = "", list[str]()
+    for line in lines:
+        heading = re.fullmatch(r"([a-z][^:(]*(?:\([^)]*\))?):(?: (.*))?", line)
+        if line.startswith("usage:"):
+            title, body = "options", []
+        elif heading and title:
+            yield title, [kept for kept in body if title != "options" or kept.startswith("  ")]
+            title, body = heading[1], [heading[2]] if heading[2] else []
+        else:
+            body.append(line)
+    yield title, body
+
+
+def entries(body: list[str]) -> list[tuple[str, str]] | None:
+    """Return (option, text) of a section that lists them, or None if it is no such section."""
+    found: list[list[str]] = []
+    for line in filter(None, body):
+        if re.match(r"  \S", line) and not re.match(r" {2}(argus|dask)\S* ", line):
+            head, _, text = line.strip().partition("  ")
+            found.append([head, text.strip()])
+        elif found and line.startswith("     "):
+            found[-1][1] = f"{found[-1][1]} {line.strip()}".strip()
+        else:
+            return None
+    return [(head, text) for head, text in found] or None
+
+
+def rendered(title: str, body: list[str]) -> list[str]:
+    """Return one section of help as roff."""
+    body = "\n".join(body).strip("\n").split("\n")
+    options = None if title == "examples" else entries(body)
+    if options is None:
+        return [".nf", *(escaped(line) for line in body), ".fi"]
+    lines = []
+    for head, text in options:
+        lines += [".TP", f".B {escaped(head)}", escaped(text) or "\\&"]
+    return lines
+
+
+def from_help(lines: list[str], heading: str) -> list[str]:
+    """Return all sections of help, each under a heading of its own."""
+    out = []
+    for title, body in sections(lines):
+        if any(body):
+            name = title.upper() if heading == ".SH" else title
+            out += [f'{heading} "{escaped(name)}"', *rendered(title, body)]
+    return out
+
+
+def page(description: Page, version: str) -> str:
+    """Return a whole page."""
+    name = description.name
+    lines = [
+        '.\\" SPDX-License-Identifier: MIT',
+        ".\\\" Written by tools/gen_man.py; change what it says there, or in the program's --help.",
+        f'.TH {name.upper()} 1 "" "Argus {version}" "Argus"',
+        ".nh",
+        ".ad l",
+        ".SH NAME",
+        f"{name} \\- {escaped(description.what)}",
+        ".SH SYNOPSIS",
+    ]
+    for synopsis in description.synopsis:
+        lines += [f".B {escaped(name)}", escaped(synopsis), ".br"]
+    lines[-1:] = [".SH DESCRIPTION"]
+    for paragraph in description.description:
+        lines += [".PP", escaped(paragraph)]
+    told = help_of(description.command)
+    lines += from_help(told, ".SH")
+    for command in (
+        re.findall(r"^    (\w+) {2,}", "\n".join(told), re.MULTILINE) if description.has_commands else ()
+    ):
+        lines.append(f'.SH "{escaped(name.upper())} {command.upper()}"')
+        lines += from_help(help_of((*description.command, command)), ".SS")
+    for title, items in description.ends:
+        lines.append(f'.SH "{title}"')
+        for head, text in items:
+            lines += [".TP", f".B {escaped(head)}", escaped(text)]
+    lines.append(".SH SEE ALSO")
+    lines.append(", ".join(f"\\fB{escaped(other)}\\fR(1)" for other in description.also))
+    return "\n".join(lines) + "\n"
+
+
+def version() -> str:
+    """Return the version of the project."""
+    found = re.search(
+        r"project\(argus VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    )
+    assert found is not None
+    return found[1]
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the command line and return its exit code."""
+    parser = argparse.ArgumentParser(
+        prog="tools/gen_man.py",
+        description=__doc__,
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="change nothing; exit 1 when a page is out of date"
+    )
+    args = parser.parse_args(argv)
+    code = 0
+    try:
+        for description in PAGES:
+            path = ROOT / FOLDER / f"{description.name}.1"
+            text = page(description, version())
+            if path.exists() and path.read_text(encoding="utf-8") == text:
+                continue
+            if args.check:
+                print(
+                    f"gen_man: {path.relative_to(ROOT)} is out of date; run tools/gen_man.py", file=sys.stderr
+                )
+                code = 1
+            else:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text, encoding="utf-8")
+    except ManError as error:
+        print(f"gen_man: {error}", file=sys.stderr)
+        return 2
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())
