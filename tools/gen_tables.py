@@ -131,7 +131,7 @@ def p3dx_header(table: dict[str, Any]) -> str:
         "#define ARGUS_P3DX_SONAR_TABLE(X) \\",
         " \\\n".join(rows),
     ]
-    return header("ARGUS_GEN_P3DX_H", f"{P3DX_SOURCE}.toml", "Pioneer P3-DX geometry and limits", body)
+    return header("ARGUS_GEN_P3DX_H", f"{P3DX_SOURCE}.toml", "P3-DX geometry, limits", body)
 
 
 def arcos_header(table: dict[str, Any]) -> str:

@@ -88,7 +88,8 @@ void test_an_amigobot_plans_with_its_own_bearings(void) {
                                             amigo_bearing(h) + plan.rotation_deg[i] == amigo_bearing(d);
                         seen |= covers ? 1u << d : 0u;
                         by |= covers ? 1u << h : 0u;
-                        TEST_ASSERT_TRUE(!covers || argus_plan_cover(amigo, &plan, plan.rotation_deg[i], d) == h);
+                        TEST_ASSERT_TRUE(!covers ||
+                                         argus_plan_cover(amigo, &plan, plan.rotation_deg[i], d) == h);
                     }
                 }
                 TEST_ASSERT_EQUAL_HEX16(by, argus_plan_covering(amigo, &plan, plan.rotation_deg[i]));

@@ -37,6 +37,7 @@ void test_of_four_forward_sonars_one_is_minor_and_four_are_catastrophic(void) {
     const argus_robot_t *amigo = argus_robot_find("amigo-sh");
     for (unsigned map = 0; map < 16; map++) {
         TEST_ASSERT_EQUAL(wanted[argus_count_bits(map)], argus_failure_of(amigo, (argus_mask_t)(map << 1)));
-        TEST_ASSERT_EQUAL(wanted[argus_count_bits(map)], argus_failure_of(amigo, (argus_mask_t)(map << 1 | 0xE1)));
+        TEST_ASSERT_EQUAL(wanted[argus_count_bits(map)],
+                          argus_failure_of(amigo, (argus_mask_t)(map << 1 | 0xE1)));
     }
 }
