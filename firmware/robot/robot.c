@@ -109,6 +109,15 @@ argus_mask_t argus_robot_array(const argus_robot_t *const self, const int array)
     return (argus_mask_t)mask;
 }
 
+argus_mask_t argus_robot_polled(const argus_robot_t *const self) {
+    uint32_t mask = 0;
+    for (int array = 0; array < self->arrays; array++) {
+        const argus_mask_t its = argus_robot_array(self, array);
+        mask |= (its & argus_robot_forward(self)) != 0 ? its : 0u;
+    }
+    return (argus_mask_t)mask;
+}
+
 bool argus_robot_faces_forward(const argus_robot_t *const self, const int sonar) {
     return (argus_robot_forward(self) >> sonar & 1u) != 0;
 }

@@ -113,7 +113,9 @@ static void judge_out(argus_t *const self, const int sonar) {
 // Its turn in a round comes late: each new order begins the round anew, so plans that change may pass it
 // over.
 static bool is_passed_over(const argus_t *const self, const int sonar) {
-    const bool late = (argus_robot_flank(self->knowledge.robot) >> sonar & 1u) != 0;
+    const argus_robot_t *const robot = self->knowledge.robot;
+    const bool late =
+        (argus_robot_polled(robot) >> sonar & 1u) != 0 && !argus_robot_faces_forward(robot, sonar);
     return late && self->ordered && self->now_ms - self->ordered_ms <= (uint32_t)self->config.stale_ms;
 }
 

@@ -233,25 +233,37 @@ void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_
     argus_say(self, ARGUS_EV_SONAR_DISABLED, sonar, (int32_t)kind);
 }
 
-// In failure mode the slots of the sonars that are out go to those that look ahead; 0 and 7 watch the swing
+// The forward-facing sonars in use, and every other one of the rest of their arrays: these watch the swing
 // circle.
+static size_t add_half(const argus_t *const self, const int half, uint8_t *const order) {
+    const argus_robot_t *const robot = self->knowledge.robot;
+    const unsigned others = argus_robot_polled(robot) & ~(unsigned)argus_robot_forward(robot);
+    size_t count = 0;
+    int other = 0;
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if (argus_robot_faces_forward(robot, i) && !argus_is_out(&self->knowledge, i)) {
+            order[count++] = (uint8_t)(i + 1);
+        }
+    }
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if ((others >> i & 1u) != 0 && other++ % 2 == half) {
+            order[count++] = (uint8_t)(i + 1);
+        }
+    }
+    return count;
+}
+
+// In failure mode the slots of the sonars that are out go to those that look ahead.
 void argus_share_slots(argus_t *const self) {
     if (!is_active(self) || !argus_session_is_open(&self->session)) {
         return;
     }
-    uint8_t order[2 * (ARGUS_FORWARD_MAX + 1)];
-    size_t count = 0;
-    for (int half = 0; half < 2; half++) {
-        for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-            if (!argus_is_out(&self->knowledge, i)) {
-                order[count++] = (uint8_t)(i + 1);
-            }
-        }
-        order[count++] = (uint8_t)(half == 0 ? ARGUS_FORWARD_FIRST : ARGUS_FORWARD_LAST + 2);
-    }
-    for (int i = ARGUS_FORWARD_FIRST; argus_judges(self) && i <= ARGUS_FORWARD_LAST; i++) {
-        if (argus_is_out(&self->knowledge, i)) { // its own slot, to show that it does well again
-            order[count++] = (uint8_t)(i + 1);
+    uint8_t order[ARCOS_TIMING_ARRAYS_MAX * ARCOS_TIMING_POLLING_MAX_PER_ARRAY];
+    size_t count = add_half(self, 0, order);
+    count += add_half(self, 1, order + count);
+    for (int i = 0; argus_judges(self) && i < self->knowledge.sonars; i++) {
+        if (argus_robot_faces_forward(self->knowledge.robot, i) && argus_is_out(&self->knowledge, i)) {
+            order[count++] = (uint8_t)(i + 1); // its own slot, to show that it does well again
         }
     }
     argus_outbox_string(&self->session.outbox, ARCOS_CMD_POLLING, order, count);

@@ -419,7 +419,7 @@ static void obey(robot_t *robot, const uint8_t *packet, const robot_command_t *s
 // The nearest echo shown by a sonar that is relied on.
 static double nearest_shown_mm(const robot_t *robot) {
     double nearest = 1e9;
-    for (int i = 0; i < 16; i++) {
+    for (int i = 0; i < 16 && i < ARGUS_SONARS; i++) {
         const argus_sonar_pose_t *at = &argus_sonar_poses[i];
         if (!argus_is_out(&robot->argus.knowledge, i) && robot->argus.knowledge.sonar[i].reported &&
             robot->shown[i] >= 0 && robot->shown[i] < 5000) {
@@ -462,7 +462,7 @@ static void watch_move(robot_t *robot, int32_t mm) {
         complain(robot, "MOVE ahead with a bumper pressed", mm);
     }
     if (mm < 0) {
-        for (int i = 8; i < 16; i++) {
+        for (int i = 8; i < 16 && i < ARGUS_SONARS; i++) {
             const bool abeam = robot->argus.config.profile == ARGUS_PROFILE_ARGUS && (i == 8 || i == 15);
             const int clear_mm = abeam ? 250 : robot->argus.config.rear_clear_mm;
             if (argus_is_out(known, i) || robot->shown[i] <= clear_mm) {
