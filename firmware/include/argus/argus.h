@@ -213,12 +213,13 @@ typedef enum {
     X(38, SONAR_HEALTHY, OK, "sonar", "judged healthy; value: its reading in mm")                           \
     X(39, SONAR_UNPROVEN, WARN, "sonar", "no usable witness: it stays a suspect; value: its reading in mm") \
     X(40, FAILURE_STATE, WARN, "health",                                                                    \
-      "the failure state changed; value: number of disabled sonars among 1..6")                             \
+      "the failure state changed; value: number of disabled forward-facing sonars")                         \
     X(41, PLAN, WARN, "plan", "rotations that cover the disabled bearings; value: how many")                \
     X(42, PLAN_ROTATION, OK, "plan", "one rotation of the plan; value: degrees, CCW positive")              \
     X(43, HEALTH_CHECK, OK, "health",                                                                       \
       "all front sonars have reported and no suspect is open; value: disabled")                             \
-    X(44, SONAR_STALE, STALE, "sonar", "a sonar outside 1..6 yields no reading; value: ms without one")     \
+    X(44, SONAR_STALE, STALE, "sonar",                                                                      \
+      "a sonar that does not face forward yields no reading; value: ms without one")                        \
     X(45, SONAR_NAMED, WARN, "sonar", "a suspect: the evidence so far names this fault; value: fault kind") \
     X(46, SONAR_PROBATION, WARN, "sonar",                                                                   \
       "not used yet: does well again, or failed in the last mission; value: its reading in mm")             \
