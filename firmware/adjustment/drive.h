@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Adjustment at work: the sweep through the plan's rotations and the step that it permits (paper: Fig. 10).
+// The sweep through the plan's rotations (paper: Fig. 10).
 #ifndef ARGUS_DRIVE_H
 #define ARGUS_DRIVE_H
 
@@ -24,9 +24,5 @@ int32_t argus_sweep_heading_cdeg(const argus_drive_t *self, const argus_plan_t *
 // done.
 bool argus_sweep_step(argus_drive_t *self, const argus_plan_t *plan, const argus_knowledge_t *knowledge,
                       const argus_mark_t *mark);
-
-// The longest MOVE that normal driving may ask for now: shortest front reading, less the way driven since it
-// was taken, - object range; never negative.
-int32_t argus_drive_free_mm(const argus_knowledge_t *knowledge, int32_t object_range_mm);
 
 #endif

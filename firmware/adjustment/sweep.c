@@ -57,14 +57,3 @@ bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan,
     next_rotation(self, plan);
     return true;
 }
-
-int32_t argus_drive_free_mm(const argus_knowledge_t *const knowledge, const int32_t object_range_mm) {
-    int32_t shortest = INT32_MAX;
-    for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i)) {
-            const int32_t since_mm = (int32_t)(knowledge->odometer_mm - knowledge->sonar[i].odometer_mm);
-            shortest = argus_min(shortest, knowledge->sonar[i].reading_mm - since_mm);
-        }
-    }
-    return argus_max(0, argus_min(shortest, knowledge->robot->no_echo_mm) - object_range_mm);
-}

@@ -48,22 +48,22 @@ static argus_mask_t around(const argus_robot_t *const robot, const argus_mask_t 
 
 // Hears nothing, and is not named yet.
 static bool is_silent(const argus_evidence_t *const evidence, const int sonar) {
-    return evidence->of[sonar].none_run >= SILENT_RUN &&
+    return argus_evidence_silent_run(evidence, sonar) >= SILENT_RUN &&
            argus_evidence_names(evidence, sonar) == ARGUS_KIND_NONE;
 }
 
 // No suspect yet, perhaps, but others contradict it.
 static bool is_accused(const argus_knowledge_t *const knowledge, const argus_evidence_t *const evidence,
                        const int sonar) {
-    return !argus_is_out(knowledge, sonar) && evidence->of[sonar].score[ARGUS_TEST_PEERS] >= ACCUSED;
+    return !argus_is_out(knowledge, sonar) && argus_evidence_accused(evidence, sonar) >= ACCUSED;
 }
 
 // Neither suspect nor proved of late, by an echo that goes on or by another sonar: a look is the occasion.
 static bool is_unproved(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                         const argus_evidence_t *const evidence, const int sonar) {
-    const argus_case_t *const c = &evidence->of[sonar];
-    const bool quiet = c->none_run >= QUIET_RUN && knowledge->sip_ms - c->alive_ms >= QUIET_MS;
-    const bool alone = knowledge->sip_ms - c->agreed_ms >= ALONE_MS;
+    const bool quiet = argus_evidence_silent_run(evidence, sonar) >= QUIET_RUN &&
+                       argus_evidence_alive_age_ms(evidence, knowledge, sonar) >= QUIET_MS;
+    const bool alone = argus_evidence_agreed_age_ms(evidence, knowledge, sonar) >= ALONE_MS;
     return self->aims < AIMS_ASIDE && (quiet || alone) && !argus_is_out(knowledge, sonar) &&
            argus_evidence_names(evidence, sonar) == ARGUS_KIND_NONE;
 }
@@ -81,8 +81,8 @@ static int most_contradicted(const argus_evidence_t *const evidence, const unsig
     int worst = -1;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const bool counts = (mask >> i & 1u) != 0;
-        if (counts && (worst < 0 || evidence->of[i].score[ARGUS_TEST_PEERS] >
-                                        evidence->of[worst].score[ARGUS_TEST_PEERS])) {
+        if (counts &&
+            (worst < 0 || argus_evidence_accused(evidence, i) > argus_evidence_accused(evidence, worst))) {
             worst = i;
         }
     }
@@ -135,7 +135,7 @@ void argus_inquiry_begin(argus_inquiry_t *const self, const argus_knowledge_t *c
     argus_inquiry_init(self);
     self->active = true;
     self->base_cdeg = base_cdeg;
-    self->all = evidence->agreements == 0;
+    self->all = !argus_evidence_has_pairs(evidence);
     argus_inquiry_add(self, knowledge, suspects);
     set_look(self, knowledge, 0);
     take_aim(self, knowledge, evidence);
@@ -159,7 +159,7 @@ int32_t argus_inquiry_heading_cdeg(const argus_inquiry_t *const self) {
 static void mark_settled(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                          const argus_evidence_t *const evidence) {
     self->marked = true;
-    self->aimed_from = evidence->of[self->aimed].taken;
+    self->aimed_from = argus_evidence_taken(evidence, self->aimed);
     self->settled_ms = knowledge->sip_ms;
     for (int i = 0; i < knowledge->sonars; i++) {
         self->seen[i] = (uint8_t)(knowledge->sonar[i].readings & 0xFFu);
@@ -169,10 +169,9 @@ static void mark_settled(argus_inquiry_t *const self, const argus_knowledge_t *c
 // Silent all along or hearing all along; where it does not agree with itself, more.
 _Static_assert(AIMED_MOST <= 8, "echo_bits has eight");
 static bool has_aimed_enough(const argus_inquiry_t *const self, const argus_evidence_t *const evidence) {
-    const argus_case_t *const c = &evidence->of[self->aimed];
-    const unsigned more = (unsigned)(c->taken - self->aimed_from) & 0xFFu;
+    const unsigned more = (unsigned)(argus_evidence_taken(evidence, self->aimed) - self->aimed_from) & 0xFFu;
     const unsigned mask = (1u << argus_min((int32_t)more, AIMED_MOST)) - 1u;
-    const unsigned heard = c->echo_bits & mask;
+    const unsigned heard = argus_evidence_echo_bits(evidence, self->aimed) & mask;
     return more >= AIMED_MOST || (more >= AIMED_SILENT && heard == 0) ||
            (more >= AIMED_HEARD && heard == mask);
 }
@@ -240,8 +239,8 @@ static uint8_t next_look(const argus_inquiry_t *const self, const argus_knowledg
 static bool is_in_doubt(const argus_inquiry_t *const self, const argus_evidence_t *const evidence) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const bool asked = (self->suspects >> i & 1u) != 0;
-        if (asked &&
-            (is_silent(evidence, i) || (evidence->of[i].none_run < SILENT_RUN && is_open(evidence, i)))) {
+        if (asked && (is_silent(evidence, i) ||
+                      (argus_evidence_silent_run(evidence, i) < SILENT_RUN && is_open(evidence, i)))) {
             return true;
         }
     }

@@ -199,16 +199,27 @@ static unsigned on_sync(argus_session_t *self, uint32_t now_ms, const argus_pack
     return 0;
 }
 
+static unsigned meet(argus_session_t *self) {
+    const char *const texts[ARGUS_IDENTITY_PARTS] = {self->name, self->robot_class, self->subclass,
+                                                     self->has_robot ? self->robot.serial : NULL};
+    self->differs = (uint8_t)argus_identity_meet(&self->identity, texts);
+    if (self->differs == 0) {
+        return 0;
+    }
+    return ARGUS_SESSION_OTHER_ROBOT;
+}
+
 static unsigned finish_opening(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
     if (self->opening_sips < OPENING_SIPS ||
         (!self->has_robot && in_state_ms(self, now_ms) < CONFIG_WAIT_MS)) {
         return 0;
     }
+    const unsigned other = meet(self);
     set_up(self, config);
     self->stalled = false;
     self->pause_ms = PAUSE_FIRST_MS;
     enter(self, now_ms, ARGUS_SESSION_OPEN);
-    return ARGUS_SESSION_DID_OPEN;
+    return ARGUS_SESSION_DID_OPEN | other;
 }
 
 static unsigned on_opening(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
@@ -265,11 +276,11 @@ static unsigned on_open(argus_session_t *self, const argus_config_t *config, uin
         self->gap_ms = elapsed_ms(now_ms, self->heard_ms);
         return lose(self, now_ms);
     }
-    if (type == ARCOS_TYPE_CONFIGPAC) {
+    if (type == ARCOS_TYPE_CONFIGPAC) { // late: its serial number may be news
         take_config(self, packet);
-    } else {
-        self->unknown_packets++;
+        return meet(self);
     }
+    self->unknown_packets++;
     return 0;
 }
 

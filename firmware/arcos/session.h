@@ -6,6 +6,7 @@
 
 #include "arcos/command.h"
 #include "arcos/configpac.h"
+#include "arcos/identity.h"
 #include "arcos/sip.h"
 #include "argus/argus.h"
 
@@ -33,7 +34,8 @@ enum {
     ARGUS_SESSION_DID_RESUME = 1 << 4, // a SIP after a stall: VEL 0 and RVEL 0 go out before all but E_STOP
     ARGUS_SESSION_NO_ANSWER = 1 << 5,  // one attempt failed
     ARGUS_SESSION_DID_DISLODGE = 1 << 6,
-    ARGUS_SESSION_DID_CLOSE = 1 << 7
+    ARGUS_SESSION_DID_CLOSE = 1 << 7,
+    ARGUS_SESSION_OTHER_ROBOT = 1 << 8 // than in the session before
 };
 
 typedef struct {
@@ -46,6 +48,8 @@ typedef struct {
     char name[ARGUS_NAME_MAX]; // from the SYNC2 reply
     char robot_class[ARGUS_NAME_MAX];
     char subclass[ARGUS_NAME_MAX];
+    argus_identity_t identity; // of the last robot met
+    uint8_t differs;           // in which part it was not the one before, see argus_identity_meet()
     bool stalled;
     bool closed_said;
     uint32_t since_ms;    // entry into the state

@@ -214,3 +214,72 @@ void argus_evidence_acquit(argus_evidence_t *const self, const argus_knowledge_t
     c->alive_odometer_mm = knowledge->odometer_mm;
     c->alive_ms = knowledge->sip_ms;
 }
+
+uint16_t argus_evidence_lost(const argus_evidence_t *const self) {
+    return self->lost;
+}
+
+uint16_t argus_evidence_jumped(const argus_evidence_t *const self) {
+    return self->jumped;
+}
+
+void argus_evidence_note_loss(argus_evidence_t *const self, const uint16_t sonars) {
+    self->lost |= sonars;
+}
+
+void argus_evidence_note_jump(argus_evidence_t *const self, const uint16_t sonars) {
+    self->jumped |= sonars;
+}
+
+uint8_t argus_evidence_agreed(const argus_evidence_t *const self, const int sonar) {
+    return self->of[sonar].agreed;
+}
+
+void argus_evidence_agree_anew(argus_evidence_t *const self, const int sonar) {
+    self->of[sonar].agreed = 0;
+}
+
+bool argus_evidence_has_pairs(const argus_evidence_t *const self) {
+    return self->agreements != 0;
+}
+
+bool argus_evidence_shows_gaps(const argus_evidence_t *const self, const int sonar) {
+    return self->of[sonar].score[ARGUS_TEST_DROPOUT] > 0;
+}
+
+uint8_t argus_evidence_silent_run(const argus_evidence_t *const self, const int sonar) {
+    return self->of[sonar].none_run;
+}
+
+int32_t argus_evidence_accused(const argus_evidence_t *const self, const int sonar) {
+    return self->of[sonar].score[ARGUS_TEST_PEERS];
+}
+
+uint32_t argus_evidence_alive_age_ms(const argus_evidence_t *const self,
+                                     const argus_knowledge_t *const knowledge, const int sonar) {
+    return knowledge->sip_ms - self->of[sonar].alive_ms;
+}
+
+uint32_t argus_evidence_agreed_age_ms(const argus_evidence_t *const self,
+                                      const argus_knowledge_t *const knowledge, const int sonar) {
+    return knowledge->sip_ms - self->of[sonar].agreed_ms;
+}
+
+uint8_t argus_evidence_taken(const argus_evidence_t *const self, const int sonar) {
+    return self->of[sonar].taken;
+}
+
+uint8_t argus_evidence_echo_bits(const argus_evidence_t *const self, const int sonar) {
+    return self->of[sonar].echo_bits;
+}
+
+int argus_evidence_news(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                        int32_t *const metres) {
+    const int sonar = argus_trend_news(&self->trend, knowledge);
+    *metres = sonar < 0 ? 0 : argus_trend_horizon_m(&self->trend, sonar);
+    return sonar;
+}
+
+void argus_evidence_forget_trend(argus_evidence_t *const self, const int sonar) {
+    argus_trend_forget(&self->trend, sonar);
+}

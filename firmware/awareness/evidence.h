@@ -244,4 +244,42 @@ void argus_evidence_retract(argus_evidence_t *self, int sonar);
 // Forgets what is known of one sonar (an operator's re-test).
 void argus_evidence_forget(argus_evidence_t *self, int sonar);
 
+// What others ask of it ------------------------------------------------------------------------------------
+
+// Sonars that lost the echo that they followed; that went over to another one. Both call for a look, and
+// others may say so as well.
+uint16_t argus_evidence_lost(const argus_evidence_t *self);
+uint16_t argus_evidence_jumped(const argus_evidence_t *self);
+void argus_evidence_note_loss(argus_evidence_t *self, uint16_t sonars);
+void argus_evidence_note_jump(argus_evidence_t *self, uint16_t sonars);
+
+// Comparisons in a row that agreed with it, since it was put out or on probation.
+uint8_t argus_evidence_agreed(const argus_evidence_t *self, int sonar);
+void argus_evidence_agree_anew(argus_evidence_t *self, int sonar);
+
+// Any two have ever borne each other out.
+bool argus_evidence_has_pairs(const argus_evidence_t *self);
+
+// It loses echoes between echoes of one thing.
+bool argus_evidence_shows_gaps(const argus_evidence_t *self, int sonar);
+
+// Readings in a row without an echo; that others contradict it, hundredths of a nat.
+uint8_t argus_evidence_silent_run(const argus_evidence_t *self, int sonar);
+int32_t argus_evidence_accused(const argus_evidence_t *self, int sonar);
+
+// Since it proved alive by an echo that went on; since another bore it out.
+uint32_t argus_evidence_alive_age_ms(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
+                                     int sonar);
+uint32_t argus_evidence_agreed_age_ms(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
+                                      int sonar);
+
+// Its readings are counted, low bits; bit i: of the last 8, the one i before was an echo.
+uint8_t argus_evidence_taken(const argus_evidence_t *self, int sonar);
+uint8_t argus_evidence_echo_bits(const argus_evidence_t *self, int sonar);
+
+// The sonar whose growing weakness is new and worth saying now, -1: none. `metres`: of driving until it will
+// have failed. And all of it forgotten.
+int argus_evidence_news(argus_evidence_t *self, const argus_knowledge_t *knowledge, int32_t *metres);
+void argus_evidence_forget_trend(argus_evidence_t *self, int sonar);
+
 #endif

@@ -18,21 +18,8 @@
 
 void argus_knowledge_init(argus_knowledge_t *const self) {
     memset(self, 0, sizeof *self);
-    argus_knowledge_set_robot(self, argus_robot_default(), 0);
-}
-
-void argus_knowledge_set_robot(argus_knowledge_t *const self, const argus_robot_t *const robot,
-                               const uint32_t now_ms) {
-    self->robot = robot;
-    self->sonars = (uint8_t)argus_robot_sonars(robot);
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        const bool absent = i >= self->sonars;
-        if (absent != (self->sonar[i].health == ARGUS_ABSENT)) {
-            self->sonar[i].reported = false;
-            argus_sonar_set_health(&self->sonar[i], absent ? ARGUS_ABSENT : ARGUS_UNKNOWN, ARGUS_KIND_NONE,
-                                   now_ms);
-        }
-    }
+    self->robot = argus_robot_default();
+    self->sonars = (uint8_t)argus_robot_sonars(self->robot);
 }
 
 void argus_knowledge_reopen(argus_knowledge_t *const self, const uint32_t now_ms) {
@@ -152,18 +139,6 @@ void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const
     take_motion(self, sip);
     take_state(self, sip);
     take_readings(self, sip);
-}
-
-void argus_sonar_set_health(argus_sonar_t *const self, const argus_health_t health,
-                            const argus_fault_kind_t kind, const uint32_t now_ms) {
-    if (health == ARGUS_DISABLED && self->health != ARGUS_DISABLED && self->disabled_times < UINT16_MAX) {
-        const bool again = self->disabled_times > 0 || self->disabled_before > 0;
-        self->relapses = (uint8_t)(self->relapses + (again && self->relapses < UINT8_MAX ? 1 : 0));
-        self->disabled_times++;
-    }
-    self->health = health;
-    self->kind = kind;
-    self->since_ms = now_ms;
 }
 
 argus_mask_t argus_with_health(const argus_knowledge_t *const self, const argus_health_t health) {

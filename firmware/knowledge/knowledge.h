@@ -67,9 +67,6 @@ typedef struct {
 // Nothing is known but that the robot is the default one.
 void argus_knowledge_init(argus_knowledge_t *self);
 
-// Whose geometry holds from now on. Sonars that it has not got are absent; one that was absent is UNKNOWN.
-void argus_knowledge_set_robot(argus_knowledge_t *self, const argus_robot_t *robot, uint32_t now_ms);
-
 // A session opened: the robot's odometry starts anew, our pose goes on from where it was; every sonar must
 // report anew.
 void argus_knowledge_reopen(argus_knowledge_t *self, uint32_t now_ms);
@@ -80,9 +77,6 @@ void argus_knowledge_sip(argus_knowledge_t *self, const argus_sip_t *sip, int32_
 
 // Only the odometry of a SIP (a session that is about to be closed).
 void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um);
-
-void argus_sonar_set_health(argus_sonar_t *self, argus_health_t health, argus_fault_kind_t kind,
-                            uint32_t now_ms);
 
 // Bit masks over sonar numbers.
 argus_mask_t argus_disabled(const argus_knowledge_t *self);

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "health.h"
 #include "knowledge/angle.h"
 #include "unity.h"
 
@@ -21,7 +22,7 @@ static void begin(argus_policy_t policy, uint16_t disabled) {
         k.sonar[i].reported = true;
         k.sonar[i].reading_mm = 3000;
         if ((disabled >> i & 1u) != 0) {
-            argus_sonar_set_health(&k.sonar[i], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+            put_health(&k.sonar[i], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
             k.sonar[i].reading_mm = 100; // a lie that must not count
         }
     }
@@ -115,26 +116,4 @@ void test_an_empty_plan_is_done_at_home(void) {
     home();
     TEST_ASSERT_TRUE(drive.done);
     TEST_ASSERT_EQUAL(UINT16_MAX, drive.smallest_mm);
-}
-
-void test_free_way_is_the_shortest_usable_front_reading(void) {
-    begin(ARGUS_POLICY_PAPER, 1 << 3);
-    k.sonar[0].reading_mm = k.sonar[7].reading_mm = k.sonar[12].reading_mm = 150;
-    k.sonar[4].reading_mm = 900;
-    TEST_ASSERT_EQUAL(650, argus_drive_free_mm(&k, 250));
-    k.sonar[4].reading_mm = 250;
-    TEST_ASSERT_EQUAL(0, argus_drive_free_mm(&k, 250));
-    k.sonar[4].reading_mm = 100;
-    TEST_ASSERT_EQUAL(0, argus_drive_free_mm(&k, 250));
-}
-
-void test_the_way_driven_since_a_reading_is_taken_off(void) {
-    begin(ARGUS_POLICY_PAPER, 0);
-    k.sonar[4].reading_mm = 900;
-    k.odometer_mm = 60;
-    TEST_ASSERT_EQUAL(590, argus_drive_free_mm(&k, 250));
-    k.sonar[4].odometer_mm = 60;
-    TEST_ASSERT_EQUAL(650, argus_drive_free_mm(&k, 250));
-    k.odometer_mm = 5000;
-    TEST_ASSERT_EQUAL(0, argus_drive_free_mm(&k, 250));
 }

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "awareness/evidence_internal.h"
+#include "health.h"
 #include "knowledge/angle.h"
 #include "unity.h"
 
@@ -222,7 +223,7 @@ void test_one_that_is_out_is_not_waited_for_at_all(void) {
 void test_more_suspects_may_be_taken_in_under_way(void) {
     argus_inquiry_begin(&inquiry, &k, &e, 1u << 1, 0);
     TEST_ASSERT_EQUAL(0, inquiry.watched >> 12 & 1u);
-    argus_sonar_set_health(&k.sonar[13], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+    put_health(&k.sonar[13], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
     argus_inquiry_add(&inquiry, &k, 1u << 12);
     TEST_ASSERT_EQUAL_HEX16(1u << 1 | 1u << 12, inquiry.suspects);
     TEST_ASSERT_EQUAL(1, inquiry.watched >> 12 & 1u);

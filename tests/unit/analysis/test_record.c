@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "awareness/evidence_internal.h"
+#include "health.h"
 #include "unity.h"
 
 static argus_knowledge_t k;
@@ -17,9 +18,9 @@ static uint8_t record[ARGUS_RECORD_BYTES + 10];
 static size_t write_one(void) {
     argus_knowledge_init(&k);
     argus_evidence_init(&e);
-    argus_sonar_set_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_WRONG, 5);
+    put_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_WRONG, 5);
     k.sonar[3].disabled_before = 7;
-    argus_sonar_set_health(&k.sonar[4], ARGUS_PROBATION, ARGUS_KIND_SLOW, 5);
+    put_health(&k.sonar[4], ARGUS_PROBATION, ARGUS_KIND_SLOW, 5);
     k.sonar[5].disabled_before = 65535;
     k.sonar[5].disabled_times = 9;
     k.sonar[5].relapses = 3;
@@ -117,7 +118,7 @@ void test_old_lateness_stays_until_something_speaks_against_it(void) {
 
 void test_a_mission_without_a_fault_makes_up_for_a_relapse(void) {
     write_one();
-    argus_sonar_set_health(&k.sonar[5], ARGUS_HEALTHY, ARGUS_KIND_NONE, 9);
+    put_health(&k.sonar[5], ARGUS_HEALTHY, ARGUS_KIND_NONE, 9);
     read_back(record, argus_record_encode(&k, &e, 1, record, sizeof record));
     TEST_ASSERT_EQUAL(3, other.sonar[5].relapses); // disabled in this mission
     k.sonar[5].disabled_times = 0;

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "health.h"
+#include "knowledge/body.h"
 #include "unity.h"
 
 #define BASE 17500 // so that +20 degrees wraps
@@ -117,7 +119,7 @@ void test_one_usable_witness(void) {
         for (int how = 0; how < 2; how++) {
             setUp();
             if (how == 0) {
-                argus_sonar_set_health(&k.sonar[out], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+                put_health(&k.sonar[out], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
             } else {
                 k.sonar[out].reading_mm = 5000;
             }
@@ -137,8 +139,8 @@ void test_one_usable_witness(void) {
 }
 
 void test_no_usable_witness_leaves_it_unproven(void) {
-    argus_sonar_set_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
-    argus_sonar_set_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+    put_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+    put_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
     argus_verify_begin(&v, k.robot, 3, BASE);
     read(3, 1000);
     TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
@@ -192,7 +194,7 @@ void test_both_witnesses_lost_leave_it_unproven(void) {
 void test_a_witness_disabled_on_the_way_is_not_waited_for(void) {
     recheck(3, 1000, 2000);
     turned_right();
-    argus_sonar_set_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_SILENT, 0);
+    put_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_SILENT, 0);
     TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
     turned_left();
     testify(4, 1900);
@@ -207,7 +209,7 @@ void test_idle_does_nothing(void) {
 
 // The AmigoBot's 2 looks at 15 degrees, between 41 and -15: who stands left turns by -26 onto its bearing.
 void test_an_amigobot_turns_by_its_own_bearings(void) {
-    argus_knowledge_set_robot(&k, argus_robot_find("amigo-sh"), 0);
+    argus_body_is(&k, argus_robot_find("amigo-sh"), 0);
     settle();
     argus_verify_begin(&v, k.robot, 2, 0);
     read(1, 2000), read(2, 1000), read(3, 2000);

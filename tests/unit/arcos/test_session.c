@@ -50,8 +50,8 @@ static uint32_t time_ms; // since the start of the test
 static uint32_t tick_ms;
 static size_t chunk; // bytes a read delivers at most
 static unsigned seen;
-static unsigned counts[8];
-static uint32_t last_at_ms[8];
+static unsigned counts[9];
+static uint32_t last_at_ms[9];
 static char message[160];
 
 static const uint8_t example_config[] =
@@ -164,7 +164,7 @@ static void robot_reports(void) {
 
 static void note(unsigned bits) {
     seen |= bits;
-    for (unsigned i = 0; i < 8; i++) {
+    for (unsigned i = 0; i < 9; i++) {
         if (bits >> i & 1) {
             counts[i]++;
             last_at_ms[i] = time_ms;
@@ -173,7 +173,7 @@ static void note(unsigned bits) {
 }
 
 static unsigned count_of(unsigned bit) {
-    for (unsigned i = 0; i < 8; i++) {
+    for (unsigned i = 0; i < 9; i++) {
         if (bit == 1u << i) {
             return counts[i];
         }
@@ -182,7 +182,7 @@ static unsigned count_of(unsigned bit) {
 }
 
 static uint32_t time_of(unsigned bit) {
-    for (unsigned i = 0; i < 8; i++) {
+    for (unsigned i = 0; i < 9; i++) {
         if (bit == 1u << i && counts[i] > 0) {
             return last_at_ms[i];
         }

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "health.h"
 #include "unity.h"
 
 static argus_knowledge_t k;
@@ -57,7 +58,7 @@ void test_dead_on_the_six_only(void) {
     TEST_ASSERT_EQUAL_HEX16(0x7E, take(0xFFFF).dead);
     TEST_ASSERT_EQUAL_HEX16(0, take(0).dead); // not listed: nothing new
     TEST_ASSERT_EQUAL_HEX16(0x08, take(0x08).dead);
-    argus_sonar_set_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
+    put_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
     TEST_ASSERT_EQUAL_HEX16(0x76, take(0xFFFF).dead);
     reading[2] = 65535;
     TEST_ASSERT_EQUAL_HEX16(0x04, take(0x04).dead);
@@ -79,7 +80,7 @@ void test_objects_along_the_motion(void) {
     sip.vel_left_mm_s = 100; // on the spot
     TEST_ASSERT_EQUAL_HEX16(0, take(0xFFFF).object);
     sip.vel_right_mm_s = 100;
-    argus_sonar_set_health(&k.sonar[6], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
+    put_health(&k.sonar[6], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
     TEST_ASSERT_EQUAL(5, take(0xFFFF).object_sonar);
     for (int i = 0; i < 16; i++) {
         reading[i] = 251;
@@ -232,7 +233,7 @@ void test_1_0_0_is_the_bare_paper(void) {
 void test_a_disabled_sonar_is_no_suspect(void) {
     take(0xFFFF);
     make_suspect();
-    argus_sonar_set_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_WRONG, now_ms);
+    put_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_WRONG, now_ms);
     TEST_ASSERT_EQUAL_HEX16(0, suspects());
 }
 

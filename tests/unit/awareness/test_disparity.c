@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "health.h"
 #include "unity.h"
 
 static argus_knowledge_t k;
@@ -88,7 +89,7 @@ void test_edge_sonars_have_one_neighbour(void) {
 
 static void put_out(int sonar, int how) {
     if (how == 0) {
-        argus_sonar_set_health(&k.sonar[sonar], ARGUS_DISABLED, ARGUS_KIND_WRONG, 0);
+        put_health(&k.sonar[sonar], ARGUS_DISABLED, ARGUS_KIND_WRONG, 0);
     } else if (how == 1) {
         k.sonar[sonar].reading_mm = 5000;
     } else {

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "awareness/evidence_internal.h"
+#include "health.h"
 #include "scene.h"
 #include "unity.h"
 
@@ -653,8 +654,7 @@ static void shake(int i) {
         argus_evidence_forget(&s.e, sonar);
         break;
     case 3:
-        argus_sonar_set_health(&s.k.sonar[sonar], (argus_health_t)scene_random(&s, 6), ARGUS_KIND_NONE,
-                               s.k.sip_ms);
+        put_health(&s.k.sonar[sonar], (argus_health_t)scene_random(&s, 6), ARGUS_KIND_NONE, s.k.sip_ms);
         break;
     case 4:
         s.k.pose.x_mm = (int32_t)scene_random(&s, 4000000) - 2000000;

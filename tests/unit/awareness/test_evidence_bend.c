@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "awareness/evidence_said.h"
+#include "health.h"
 #include "knowledge/angle.h"
 #include "scene.h"
 #include "unity.h"
@@ -213,7 +214,7 @@ void test_who_is_back_is_bent_no_more(void) {
     scene_init(&s, 1, START_MS);
     for (int back = 0; back < 2; back++) {
         const argus_health_t health = back ? ARGUS_HEALTHY : ARGUS_DISABLED;
-        argus_sonar_set_health(&s.k.sonar[ME], health, ARGUS_KIND_NONE, s.k.sip_ms);
+        put_health(&s.k.sonar[ME], health, ARGUS_KIND_NONE, s.k.sip_ms);
         s.e.peers.of[ME].bend[1] = 2000;
         argus_seen_forget(&s.e.peers.of[ME]);
         for (int i = 0; i < 9; i++) {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "awareness/evidence_internal.h"
+#include "health.h"
 #include "knowledge/angle.h"
 #include "scene.h"
 #include "unity.h"
@@ -428,7 +429,7 @@ void test_being_silent_together_brings_back_who_made_echoes_up(void) {
                                                ARGUS_KIND_SILENT, ARGUS_KIND_WRONG,   ARGUS_KIND_SLOW};
     for (int i = 0; i < (int)(sizeof kinds / sizeof kinds[0]); i++) {
         setUp();
-        argus_sonar_set_health(&k.sonar[ME], ARGUS_DISABLED, kinds[i], k.sip_ms);
+        put_health(&k.sonar[ME], ARGUS_DISABLED, kinds[i], k.sip_ms);
         e.of[ME].out = true;
         e.of[ME].score[ARGUS_TEST_VIEW] = 600;
         face(ME, 0);
@@ -843,7 +844,7 @@ void test_a_crowd_is_told_by_the_part_that_is_contradicted(void) {
         TEST_ASSERT_FALSE(argus_peers_crowded(&e.peers, &k));
         e.peers.of[who].contradicted = 556;
         TEST_ASSERT_TRUE(argus_peers_crowded(&e.peers, &k));
-        argus_sonar_set_health(&k.sonar[who], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+        put_health(&k.sonar[who], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
         TEST_ASSERT_FALSE(argus_peers_crowded(&e.peers, &k)); // a liar makes none
     }
 }

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "health.h"
 #include "unity.h"
 
 #define PING_MM 65 // way between two readings of a sonar
@@ -158,7 +159,7 @@ void test_shrinking_range_is_foretold(void) {
 
 // Who is out is no witness.
 void test_one_that_is_out_biases_no_other(void) {
-    argus_sonar_set_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_WRONG, 0);
+    put_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_WRONG, 0);
     TEST_ASSERT_EQUAL(-1, drive_bias(4, 150, 0, 300).sonar);
     TEST_ASSERT_INT_WITHIN(10 * 16, 0, trend.of[5].residual_mm16);
 }

@@ -9,8 +9,11 @@
 #include <string.h>
 
 #include "awareness/evidence_internal.h"
+#include "health.h"
 #include "robot.h"
-#include "supervisor/manager_internal.h"
+#include "supervisor/faults.h"
+#include "supervisor/looks.h"
+#include "supervisor/modes.h"
 #include "unity.h"
 
 #define RAD (3.14159265358979323846 / 180)
@@ -181,10 +184,10 @@ void test_a_look_begins_and_ends_on_one_heading_and_place(void) {
             robot.fault[3] = ROBOT_OFF;
         }
         robot_tick(&robot);
-        if (robot.argus.mode != ARGUS_MODE_VERIFYING || !robot.argus.inquiry.active) {
+        if (robot.argus.mode != ARGUS_MODE_VERIFYING || !robot.argus.verifying.inquiry.active) {
             continue;
         }
-        const double base = robot.argus.base_cdeg / 100.0;
+        const double base = robot.argus.base.cdeg / 100.0;
         const double x = robot.x, y = robot.y;
         const int from = robot.commands;
         while (robot.argus.mode == ARGUS_MODE_VERIFYING) {
@@ -322,7 +325,7 @@ void test_a_broken_sonar_does_not_come_back(void) { // soak
 // Comes back with so many agreements?
 static bool comes_back(int agreed) {
     argus_sonar_t *sonar = &robot.argus.knowledge.sonar[3];
-    argus_sonar_set_health(sonar, ARGUS_PROBATION, ARGUS_KIND_OFF, robot.argus.now_ms - 600000);
+    put_health(sonar, ARGUS_PROBATION, ARGUS_KIND_OFF, robot.argus.now_ms - 600000);
     robot.argus.evidence.of[3].agreed = (uint8_t)agreed;
     robot.argus.failure = argus_failure_of(robot.argus.knowledge.robot, argus_out(&robot.argus.knowledge));
     robot_next_sip(&robot); // at rest nothing new is compared
@@ -331,8 +334,7 @@ static bool comes_back(int agreed) {
 
 // ... after it has failed once more.
 static int agreements_wanted(void) {
-    argus_sonar_set_health(&robot.argus.knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF,
-                           robot.argus.now_ms);
+    put_health(&robot.argus.knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, robot.argus.now_ms);
     for (int agreed = 0; agreed <= UINT8_MAX; agreed++) {
         if (comes_back(agreed)) {
             return agreed;
@@ -378,10 +380,10 @@ void test_a_link_that_stalls_during_a_look(void) {
     for (int i = 0; i < 3000 && fabs(robot_heading_deg(&robot)) < 15; i++) {
         robot_tick(&robot);
     }
-    TEST_ASSERT_TRUE(robot.argus.inquiry.active);
+    TEST_ASSERT_TRUE(robot.argus.verifying.inquiry.active);
     robot.mute = true;
     robot_run(&robot, 1500);
-    TEST_ASSERT_FALSE(robot.argus.inquiry.active);
+    TEST_ASSERT_FALSE(robot.argus.verifying.inquiry.active);
     robot.mute = false;
     const int from = robot.commands;
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_RESUMED, 2000));
@@ -456,7 +458,7 @@ void test_no_backing_away_with_a_rear_sonar_that_is_out_or_has_a_name(void) {
         for (int i = 0; i < 4; i++) {
             start_in_a_room();
             TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
-            argus_sonar_set_health(&robot.argus.knowledge.sonar[sonar], out[i], kind[i], robot.argus.now_ms);
+            put_health(&robot.argus.knowledge.sonar[sonar], out[i], kind[i], robot.argus.now_ms);
             if (out[i] == ARGUS_SUSPECT) { // or it would be cleared at once
                 robot.argus.evidence.of[sonar].score[ARGUS_TEST_DROPOUT] =
                     (int16_t)(kind[i] != ARGUS_KIND_NONE ? argus_bounds[ARGUS_TEST_DROPOUT].convincing - 1
@@ -479,8 +481,7 @@ void test_backing_away_ends_when_a_rear_sonar_fails(void) {
         robot.bumpers_front = 1 << 2;
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 8000));
         const uint32_t stops = robot.argus.stops;
-        argus_sonar_set_health(&robot.argus.knowledge.sonar[sonar], ARGUS_DISABLED, ARGUS_KIND_WRONG,
-                               robot.argus.now_ms);
+        put_health(&robot.argus.knowledge.sonar[sonar], ARGUS_DISABLED, ARGUS_KIND_WRONG, robot.argus.now_ms);
         robot_next_sip(&robot);
         robot_next_sip(&robot);
         TEST_ASSERT_TRUE(robot.argus.stops > stops);
@@ -572,8 +573,8 @@ void test_a_lost_echo_is_looked_for_at_once_ahead_and_not_in_one_place_elsewhere
     for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
         for (int way = 99; way <= 100; way++) {
             robot.argus.evidence.lost = (uint16_t)(1u << sonar);
-            robot.argus.hold[sonar].acquittals = 1;
-            robot.argus.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm - (uint32_t)way;
+            robot.argus.looks.hold[sonar].acquittals = 1;
+            robot.argus.looks.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm - (uint32_t)way;
             const bool ahead = sonar >= 1 && sonar <= 6;
             const bool looked = (argus_worth_a_look(&robot.argus) >> sonar & 1) != 0;
             TEST_ASSERT_EQUAL_MESSAGE(ahead || way == 100, looked, told("lost", sonar));
@@ -723,14 +724,14 @@ void test_off_that_is_heard_again_is_renamed(void) {
     peer->borne_out = true;
     c->score[ARGUS_TEST_PEERS] = 300;
     peer->hollow = 0x0F;
-    argus_judge(&robot.argus);
+    argus_judge_all(&robot.argus);
     TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, s->kind);
     TEST_ASSERT_FALSE(peer->borne_out);
     c->none_run = 0;
-    argus_judge(&robot.argus);
+    argus_judge_all(&robot.argus);
     TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, s->kind);
     peer->borne_out = true;
-    argus_judge(&robot.argus);
+    argus_judge_all(&robot.argus);
     TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, s->kind);
     finish();
 }
@@ -765,12 +766,12 @@ void test_stuck_that_shows_another_value_is_renamed(void) {
             robot_run(&robot, 2000);
             argus_sonar_t *const s = &robot.argus.knowledge.sonar[3];
             argus_case_t *const c = &robot.argus.evidence.of[3];
-            argus_sonar_set_health(s, ARGUS_DISABLED, kinds[i], robot.argus.now_ms);
+            put_health(s, ARGUS_DISABLED, kinds[i], robot.argus.now_ms);
             c->score[ARGUS_TEST_STUCK] = (int16_t)(repeats ? 300 : 0);
             c->score[ARGUS_TEST_PEERS] = argus_bounds[ARGUS_TEST_PEERS].naming;
             robot.argus.evidence.peers.of[3].against = 3;
             const int from = robot.events;
-            argus_judge(&robot.argus);
+            argus_judge_all(&robot.argus);
             robot_drain(&robot);
             const bool renamed = kinds[i] == ARGUS_KIND_STUCK && !repeats;
             TEST_ASSERT_EQUAL(renamed ? ARGUS_KIND_WRONG : kinds[i], s->kind);
@@ -787,8 +788,8 @@ void test_what_is_named_is_looked_at_though_it_was_acquitted_a_moment_ago(void) 
         TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
         robot_run(&robot, 1000);
-        robot.argus.hold[sonar].acquittals = 3;
-        robot.argus.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm;
+        robot.argus.looks.hold[sonar].acquittals = 3;
+        robot.argus.looks.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm;
         named_at_once(sonar);
         TEST_ASSERT_EQUAL_MESSAGE(ARGUS_MODE_VERIFYING, robot.argus.mode, told("not looked at", sonar));
         robot_run(&robot, 10000);
@@ -804,10 +805,10 @@ static void start_looking(void) {
     robot_run(&robot, 1000);
     robot.argus.evidence.lost |= 1u << 3;
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 5000));
-    for (int i = 0; i < 50 && !robot.argus.inquiry.active; i++) {
+    for (int i = 0; i < 50 && !robot.argus.verifying.inquiry.active; i++) {
         robot_next_sip(&robot);
     }
-    TEST_ASSERT_TRUE(robot.argus.inquiry.active);
+    TEST_ASSERT_TRUE(robot.argus.verifying.inquiry.active);
 }
 
 void test_what_is_named_during_a_look_held_for_another_is_a_suspect_at_once(void) {
@@ -816,7 +817,7 @@ void test_what_is_named_during_a_look_held_for_another_is_a_suspect_at_once(void
         start_looking();
         named_at_once(others[i]);
         TEST_ASSERT_EQUAL(ARGUS_MODE_VERIFYING, robot.argus.mode);
-        TEST_ASSERT_TRUE(robot.argus.inquiry.active);
+        TEST_ASSERT_TRUE(robot.argus.verifying.inquiry.active);
         robot_run(&robot, 20000);
         finish(); // the watch: no step without a plan for all that are not relied on
     }
@@ -987,8 +988,7 @@ void test_the_order_follows_a_plan_that_went_while_passive(void) {
     TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_POLLING, said) > 0);
     argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_PASSIVE, 0);
     robot_run(&robot, 500);
-    argus_sonar_set_health(&robot.argus.knowledge.sonar[3], ARGUS_HEALTHY, ARGUS_KIND_NONE,
-                           robot.argus.now_ms);
+    put_health(&robot.argus.knowledge.sonar[3], ARGUS_HEALTHY, ARGUS_KIND_NONE, robot.argus.now_ms);
     argus_replan(&robot.argus); // as for every sonar that is restored
     robot_run(&robot, 3000);
     TEST_ASSERT_EQUAL_HEX16(0, robot.argus.plan.disabled);

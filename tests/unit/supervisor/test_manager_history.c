@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "awareness/evidence_internal.h"
+#include "health.h"
 #include "robot.h"
 #include "unity.h"
 
@@ -47,8 +48,8 @@ static void ask(argus_op_t op, int32_t argument) {
 // The record of a mission in which 3 was disabled and 9 was on probation.
 static void save_one(void) {
     start_idle();
-    argus_sonar_set_health(sonar(3), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
-    argus_sonar_set_health(sonar(9), ARGUS_PROBATION, ARGUS_KIND_WRONG, now());
+    put_health(sonar(3), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
+    put_health(sonar(9), ARGUS_PROBATION, ARGUS_KIND_WRONG, now());
     TEST_ASSERT_EQUAL(ARGUS_RECORD_BYTES, argus_record_save(&robot.argus, record, sizeof record));
 }
 
@@ -89,12 +90,12 @@ void test_a_relapse_makes_probation_longer(void) {
     save_one();
     start(ARGUS_PROFILE_ARGUS);
     TEST_ASSERT_TRUE(argus_record_load(&robot.argus, record, sizeof record));
-    argus_sonar_set_health(sonar(3), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
+    put_health(sonar(3), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
     TEST_ASSERT_EQUAL(1, sonar(3)->relapses);
-    argus_sonar_set_health(sonar(5), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
+    put_health(sonar(5), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
     TEST_ASSERT_EQUAL(0, sonar(5)->relapses);
-    argus_sonar_set_health(sonar(5), ARGUS_PROBATION, ARGUS_KIND_OFF, now());
-    argus_sonar_set_health(sonar(5), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
+    put_health(sonar(5), ARGUS_PROBATION, ARGUS_KIND_OFF, now());
+    put_health(sonar(5), ARGUS_DISABLED, ARGUS_KIND_OFF, now());
     TEST_ASSERT_EQUAL(1, sonar(5)->relapses);
 }
 
@@ -241,9 +242,9 @@ void test_a_pin_does_not_end_a_stop(void) {
     start_idle();
     ask(ARGUS_OP_STOP, 0);
     ask(ARGUS_OP_PIN, 3);
-    TEST_ASSERT_TRUE(robot.argus.stay);
+    TEST_ASSERT_TRUE(robot.argus.orders.stay);
     ask(ARGUS_OP_RECHECK, 0);
-    TEST_ASSERT_FALSE(robot.argus.stay);
+    TEST_ASSERT_FALSE(robot.argus.orders.stay);
 }
 
 void test_what_cannot_be_done_is_refused(void) {
@@ -259,7 +260,7 @@ void test_what_cannot_be_done_is_refused(void) {
     ask(ARGUS_OP_UNPIN, 3); // it is not pinned
     TEST_ASSERT_FALSE(argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, 16));
     TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_OPERATOR, from));
-    TEST_ASSERT_EQUAL_HEX16(0, robot.argus.pinned);
+    TEST_ASSERT_EQUAL_HEX16(0, robot.argus.orders.pinned);
     start(ARGUS_PROFILE_ARGUS);
     TEST_ASSERT_FALSE(argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, 3)); // no session
     start(ARGUS_PROFILE_PAPER);
@@ -267,7 +268,7 @@ void test_what_cannot_be_done_is_refused(void) {
     for (int i = 1; i < 4; i++) {
         ask(ops[i], 3);
     }
-    TEST_ASSERT_EQUAL_HEX16(0, robot.argus.pinned);
+    TEST_ASSERT_EQUAL_HEX16(0, robot.argus.orders.pinned);
     TEST_ASSERT_EQUAL(ARGUS_HEALTHY, sonar(3)->health);
     TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_OPERATOR, 0));
     finish();

@@ -479,7 +479,7 @@ static void check_s4_heading_restored_after_every_sweep(void) {
         TEST_ASSERT_TRUE(robot_goal(&robot, 600, 300));
         for (int sweep = 0; sweep < 3; sweep++) {
             TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_SWEEPING, 20000));
-            for (int i = 0; i < 3000 && !robot.argus.has_base; i++) {
+            for (int i = 0; i < 3000 && !robot.argus.base.taken; i++) {
                 robot_tick(&robot);
             }
             const double before = robot_heading_deg(&robot);
@@ -599,7 +599,7 @@ static void check_s6_a_verification_broken_off_is_taken_up_again(void) {
     robot.fault[2] = ROBOT_SCALE;
     robot.fault_value[2] = 50;
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 5000));
-    for (int i = 0; i < 300 && robot.argus.verify.phase != ARGUS_VERIFY_LEFT; i++) {
+    for (int i = 0; i < 300 && robot.argus.verifying.verify.phase != ARGUS_VERIFY_LEFT; i++) {
         robot_tick(&robot);
     }
     robot.fault[1] = ROBOT_OFF; // the witness
@@ -806,7 +806,7 @@ static void check_s7_one_echo_is_read_again(void) {
         bool read_again = false;
         for (uint32_t seen = robot.argus.knowledge.sonar[0].readings; robot.t_ms - from_ms < 900;) {
             robot_tick(&robot);
-            read_again |= robot.argus.swing_again;
+            read_again |= robot.argus.turning.again;
             if (which == JUMPING && robot.argus.knowledge.sonar[0].readings != seen) { // 60 and 220 in turn
                 seen = robot.argus.knowledge.sonar[0].readings;
                 robot.fault_value[0] = robot.fault_value[0] == 60 ? 220 : 60;
@@ -832,7 +832,7 @@ static bool reads_all_again(void) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         before[i] = robot.argus.knowledge.sonar[i].readings;
     }
-    for (int i = 0; i < 100 && robot.argus.swing_again; i++) {
+    for (int i = 0; i < 100 && robot.argus.turning.again; i++) {
         robot_tick(&robot);
     }
     for (int i = 0; i < ARGUS_SONARS; i++) {
@@ -857,8 +857,8 @@ static void check_s7_one_echo_does_not_hold_up_a_look(void) {
         snprintf(which_case, sizeof which_case, "sonar %d, SIP %d", phase % 16, phase / 16);
         for (int i = 0; i < 200; i++) {
             robot_tick(&robot);
-            again += robot.argus.swing_again ? 1 : 0;
-            TEST_ASSERT_TRUE_MESSAGE(!robot.argus.swing_again || reads_all_again(), which_case);
+            again += robot.argus.turning.again ? 1 : 0;
+            TEST_ASSERT_TRUE_MESSAGE(!robot.argus.turning.again || reads_all_again(), which_case);
         }
         TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0), which_case);
         finish();
@@ -876,14 +876,14 @@ static void check_s7_what_else_forbids_a_turn_is_not_read_again(void) {
     robot.fault[0] = ROBOT_OK;
     if (profile == ARGUS_PROFILE_ARGUS) {
         const argus_point_t at = {(int32_t)robot.x + 300, 0};
-        argus_task_touched(&robot.argus.task, at, robot.argus.now_ms);
+        argus_echoes_touched(&robot.argus.echoes, at, robot.argus.now_ms);
     }
     argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 20);
     robot_next_sip(&robot);
     robot_next_sip(&robot);
     robot_drain(&robot);
     TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0));
-    TEST_ASSERT_FALSE(robot.argus.swing_again);
+    TEST_ASSERT_FALSE(robot.argus.turning.again);
     finish();
 }
 
@@ -951,7 +951,7 @@ static void check_s7_backs_no_farther_past_what_it_remembers(void) {
         start_idle();
         robot.noise_mm = 0;
         const argus_point_t at = {(int32_t)robot.x - 600, beside};
-        argus_task_touched(&robot.argus.task, at, robot.argus.now_ms);
+        argus_echoes_touched(&robot.argus.echoes, at, robot.argus.now_ms);
         blocks_the_turn();
         robot_run(&robot, 200);
         TEST_ASSERT_EQUAL(beside > 260 ? -225 : -150, robot_last_command(&robot, ARCOS_CMD_MOVE)->argument);
@@ -1038,12 +1038,12 @@ static void check_s7_an_echo_before_the_turn_and_one_in_it_end_it(void) {
         argus_knowledge_t seen = robot.argus.knowledge;
         seen.sonar[3].reading_mm = 150;
         const argus_point_t at = argus_to_course(&seen.pose, argus_echo_robot(&seen, 3));
-        argus_seen_t *const slot = &robot.argus.task.seen[0];
+        argus_echo_t *const slot = &robot.argus.echoes.at[0];
         slot->x_mm = (int16_t)at.x_mm;
         slot->y_mm = (int16_t)at.y_mm;
         slot->again = false;
         slot->seen_ms = robot.argus.now_ms;
-        robot.argus.task.seen_count = known ? 1 : 0;
+        robot.argus.echoes.count = known ? 1 : 0;
         shows(3, 150, 1);
         TEST_ASSERT_EQUAL(known, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
         finish();

@@ -506,7 +506,7 @@ static void watch(robot_t *robot, const robot_command_t *sent) {
     }
     const bool motion =
         c == ARCOS_CMD_MOVE || c == ARCOS_CMD_HEAD || (c == ARCOS_CMD_ENABLE && sent->argument != 0);
-    if (robot->argus.passive && motion) {
+    if (robot->argus.orders.passive && motion) {
         complain(robot, "passive, yet commands a motion", c);
     }
     watch_motion(robot, sent);
@@ -578,7 +578,8 @@ void robot_deliver(robot_t *robot, const uint8_t *bytes, size_t count) {
 
 static bool is_answered(const robot_t *robot, bool open) {
     const argus_t *argus = &robot->argus;
-    return open && argus_session_is_open(&argus->session) && !argus->passive && !argus->shutdown;
+    return open && argus_session_is_open(&argus->session) && !argus->orders.passive &&
+           !argus->orders.shutdown;
 }
 
 static void send_sip(robot_t *robot) {

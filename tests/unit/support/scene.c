@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The room, the sonars and what their faults make of the readings.
 #include "scene.h"
+#include "health.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -172,7 +173,7 @@ static void note(scene_t *self) {
         if (kind != ARGUS_KIND_NONE && self->convicted[i] == ARGUS_KIND_NONE) {
             self->convicted[i] = kind;
             self->convicted_ms[i] = self->t_ms;
-            argus_sonar_set_health(&self->k.sonar[i], ARGUS_DISABLED, kind, self->start_ms + self->t_ms);
+            put_health(&self->k.sonar[i], ARGUS_DISABLED, kind, self->start_ms + self->t_ms);
             argus_evidence_acquit(&self->e, &self->k, i);
         }
         self->named |= (uint16_t)(argus_evidence_names(&self->e, i) != ARGUS_KIND_NONE ? 1u << i : 0u);

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: the way round: what is remembered, which heading is free, which side is kept, when there
-// is none.
+// Rule under attack: the way round: which heading is free, which side is kept, when there is none.
 #include "task/task.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "health.h"
 #include "knowledge/angle.h"
 #include "unity.h"
 
 static argus_task_t t;
+static argus_echoes_t e;
 static argus_knowledge_t k;
-static char text[32];
 
 void setUp(void) {
     argus_task_init(&t);
+    argus_echoes_init(&e);
     argus_knowledge_init(&k);
     k.sip_ms = 100000;
     const argus_point_t goal = {5000, 0};
@@ -26,161 +27,42 @@ static void see(int sonar, int mm) {
     k.sonar[sonar].reported = true;
     k.sonar[sonar].reading_mm = (uint16_t)mm;
     k.fresh = (uint16_t)(1u << sonar);
-    argus_task_see(&t, &k, k.sip_ms);
+    argus_echoes_see(&e, &k, k.sip_ms);
 }
 
 static void place(int x, int y) {
-    t.seen[t.seen_count].x_mm = (int16_t)x;
-    t.seen[t.seen_count].y_mm = (int16_t)y;
-    t.seen[t.seen_count].seen_ms = k.sip_ms;
-    t.seen_count++;
+    e.at[e.count].x_mm = (int16_t)x;
+    e.at[e.count].y_mm = (int16_t)y;
+    e.at[e.count].seen_ms = k.sip_ms;
+    e.count++;
 }
 
 static int32_t heading_chosen(void) {
     return argus_task_bearing_cdeg(&t, &k);
 }
 
-void test_echoes_are_remembered_where_they_lie(void) {
-    k.pose.heading_cdeg = 9000;
-    see(3, 1000); // mounted at +10 degrees
-    TEST_ASSERT_EQUAL(1, t.seen_count);
-    TEST_ASSERT_INT32_WITHIN(5, -200, t.seen[0].x_mm);
-    TEST_ASSERT_INT32_WITHIN(5, 1151, t.seen[0].y_mm);
-}
-
-void test_what_is_not_remembered(void) {
-    see(3, 2000);
-    see(3, 5000);
-    argus_sonar_set_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
-    see(4, 500);
-    argus_sonar_set_health(&k.sonar[5], ARGUS_SUSPECT, ARGUS_KIND_NONE, 0);
-    see(5, 500);
-    k.rotating = true;
-    see(2, 500);
-    TEST_ASSERT_EQUAL(0, t.seen_count);
-}
-
-// S7 asks for what is near, and one echo may be crosstalk: two of one thing, 5 s and 150 mm apart at most, by
-// whomever; what was touched is there for sure.
-void test_near_is_what_was_seen_again(void) {
-    static const struct {
-        int second;
-        int second_mm;
-        uint32_t later_ms;
-        bool again;
-    } by[] = {{0, 200, 320, true},  {0, 200, 5000, true},  {0, 200, 5001, false}, {0, 349, 320, true},
-              {0, 352, 320, false}, {15, 200, 320, false}, {1, 150, 320, true},   {0, 120, 320, true}};
-    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
-        setUp();
-        see(0, 200);
-        TEST_ASSERT_EQUAL(INT32_MAX, argus_task_nearest_mm(&t, &k, 0));
-        k.sip_ms += by[i].later_ms;
-        see(by[i].second, by[i].second_mm);
-        snprintf(text, sizeof text, "case %d", i);
-        TEST_ASSERT_EQUAL_MESSAGE(by[i].again, argus_task_nearest_mm(&t, &k, 0) < INT32_MAX, text);
-    }
-    setUp();
-    const argus_point_t touched = {240, 0};
-    argus_task_touched(&t, touched, k.sip_ms);
-    TEST_ASSERT_EQUAL(240, argus_task_nearest_mm(&t, &k, 0));
-}
-
-// ... and stays so in its place for the minute that it is remembered.
-void test_what_was_seen_twice_once_more_is_seen_again(void) {
-    for (int late = 0; late < 2; late++) {
-        setUp();
-        see(0, 200);
-        k.sip_ms += 320;
-        see(0, 200);
-        k.sip_ms += 60000u + (uint32_t)late;
-        TEST_ASSERT_EQUAL(INT32_MAX, argus_task_nearest_mm(&t, &k, 0));
-        see(0, 210);
-        TEST_ASSERT_EQUAL(!late, argus_task_nearest_mm(&t, &k, 0) < INT32_MAX);
-    }
-}
-
-void test_one_thing_is_at_most_150_mm_apart_each_way(void) {
-    const argus_point_t at = {-40, 70};
-    for (int sign = -1; sign <= 1; sign += 2) {
-        TEST_ASSERT_TRUE(argus_task_is_one_thing(at, (argus_point_t){-40 + 150 * sign, 70 - 150 * sign}));
-        TEST_ASSERT_FALSE(argus_task_is_one_thing(at, (argus_point_t){-40 + 151 * sign, 70}));
-        TEST_ASSERT_FALSE(argus_task_is_one_thing((argus_point_t){-40, 70 + 151 * sign}, at));
-    }
-}
-
-// A turn asks whether an echo is the second one of something near: at (69, 336), 343 mm from the centre.
-void test_what_a_turn_is_told_of_a_second_echo(void) {
-    see(0, 200);
-    const argus_point_t there = argus_to_course(&k.pose, argus_echo_robot(&k, 0));
-    const argus_point_t aside = {there.x_mm + 150, there.y_mm};
-    const argus_point_t beyond = {there.x_mm + 151, there.y_mm};
-    TEST_ASSERT_TRUE(argus_task_has_seen(&t, &k, there, 345));
-    TEST_ASSERT_FALSE(argus_task_has_seen(&t, &k, there, 340));
-    TEST_ASSERT_TRUE(argus_task_has_seen(&t, &k, aside, 345));
-    TEST_ASSERT_FALSE(argus_task_has_seen(&t, &k, beyond, 345));
-    k.sip_ms += 5001;
-    TEST_ASSERT_FALSE(argus_task_has_seen(&t, &k, there, 345));
-}
-
-void test_a_convicted_sonars_echoes_are_forgotten(void) {
-    see(3, 500);
-    see(6, 900);
-    see(2, 1300);
-    argus_task_forget(&t, 6);
-    TEST_ASSERT_EQUAL(2, t.seen_count);
-    for (int i = 0; i < t.seen_count; i++) {
-        TEST_ASSERT_TRUE(t.seen[i].sonar != 6);
-    }
-}
-
-void test_memory_is_bounded_and_drops_the_oldest(void) {
-    for (int i = 0; i < 2 * ARGUS_POINTS_MAX; i++) {
-        k.pose.x_mm = i * 100;
-        see(3, 500);
-        TEST_ASSERT_TRUE(t.seen_count < ARGUS_POINTS_MAX + 1);
-        TEST_ASSERT_TRUE(t.seen_next < ARGUS_POINTS_MAX);
-    }
-    int newest = 0;
-    for (int i = 0; i < t.seen_count; i++) {
-        newest += t.seen[i].x_mm >= (2 * ARGUS_POINTS_MAX - 20) * 100 + 600;
-    }
-    TEST_ASSERT_TRUE_MESSAGE(newest >= 20, "the newest echoes are not all there");
-}
-
 void test_far_from_the_start_nothing_overflows(void) {
     k.pose.x_mm = 2000000;
     k.pose.y_mm = -2000000;
     see(3, 500);
-    TEST_ASSERT_EQUAL(0, t.seen_count);
-    argus_task_clear_mm(&t, &k, 0, 305);
-    argus_task_choose(&t, &k);
-}
-
-void test_free_length_of_a_corridor(void) {
-    TEST_ASSERT_EQUAL(INT32_MAX, argus_task_clear_mm(&t, &k, 0, 305));
-    place(1000, 100);
-    TEST_ASSERT_INT32_WITHIN(2, 1000, argus_task_clear_mm(&t, &k, 0, 305));
-    TEST_ASSERT_EQUAL(INT32_MAX, argus_task_clear_mm(&t, &k, 9000, 305));
-    TEST_ASSERT_EQUAL(INT32_MAX, argus_task_clear_mm(&t, &k, 18000, 305));
-    place(700, -500); // beside the corridor
-    TEST_ASSERT_INT32_WITHIN(2, 1000, argus_task_clear_mm(&t, &k, 0, 305));
-    k.sip_ms += 60001; // long ago
-    TEST_ASSERT_EQUAL(INT32_MAX, argus_task_clear_mm(&t, &k, 0, 305));
+    TEST_ASSERT_EQUAL(0, e.count);
+    argus_echoes_clear_mm(&e, &k, 0, 305);
+    argus_task_choose(&t, &k, &e);
 }
 
 void test_the_straight_way_until_something_stops_it(void) {
     place(600, 0);
-    TEST_ASSERT_TRUE(argus_task_choose(&t, &k));
+    TEST_ASSERT_TRUE(argus_task_choose(&t, &k, &e));
     TEST_ASSERT_EQUAL(0, heading_chosen());
 }
 
 void test_a_refused_heading_is_not_taken_again_here(void) {
     argus_task_refuse(&t, &k);
-    TEST_ASSERT_TRUE(argus_task_choose(&t, &k));
+    TEST_ASSERT_TRUE(argus_task_choose(&t, &k, &e));
     TEST_ASSERT_TRUE(argus_angle_abs_diff(heading_chosen(), 0) >= 1500);
     k.pose.x_mm += 200; // moved on
     argus_task_restart(&t);
-    TEST_ASSERT_TRUE(argus_task_choose(&t, &k));
+    TEST_ASSERT_TRUE(argus_task_choose(&t, &k, &e));
     TEST_ASSERT_TRUE(argus_angle_abs_diff(heading_chosen(), 0) < 100);
 }
 
@@ -191,7 +73,7 @@ static void flank_reads(int sonar, int mm) {
 }
 
 static bool goes_straight_on(void) {
-    return argus_task_choose(&t, &k) && argus_angle_abs_diff(heading_chosen(), 0) < 1500;
+    return argus_task_choose(&t, &k, &e) && argus_angle_abs_diff(heading_chosen(), 0) < 1500;
 }
 
 // Neither waiting nor a sonar that is given up takes a wall beside the way out of it.
@@ -227,10 +109,10 @@ void test_the_detour_leads_past_the_obstacle(void) {
         place(450, y);
     }
     argus_task_refuse(&t, &k);
-    TEST_ASSERT_TRUE(argus_task_choose(&t, &k));
+    TEST_ASSERT_TRUE(argus_task_choose(&t, &k, &e));
     TEST_ASSERT_TRUE(t.avoiding);
     TEST_ASSERT_TRUE(heading_chosen() > 0); // the left side is nearer
-    TEST_ASSERT_TRUE(argus_task_clear_mm(&t, &k, heading_chosen(), 305) >= 600);
+    TEST_ASSERT_TRUE(argus_echoes_clear_mm(&e, &k, heading_chosen(), 305) >= 600);
 }
 
 void test_no_way_when_every_heading_is_blocked(void) {
@@ -238,25 +120,14 @@ void test_no_way_when_every_heading_is_blocked(void) {
         place(450 * argus_cos(a) / ARGUS_TRIG_ONE, 450 * argus_sin(a) / ARGUS_TRIG_ONE);
     }
     argus_task_refuse(&t, &k);
-    TEST_ASSERT_FALSE(argus_task_choose(&t, &k));
+    TEST_ASSERT_FALSE(argus_task_choose(&t, &k, &e));
     TEST_ASSERT_FALSE(t.has_leg);
-}
-
-void test_a_bumper_hit_is_remembered_ahead(void) {
-    k.bumpers_front = 1 << 3;
-    argus_task_bumped(&t, &k, k.sip_ms);
-    TEST_ASSERT_EQUAL(1, t.seen_count);
-    TEST_ASSERT_TRUE(t.seen[0].x_mm > 200 && abs(t.seen[0].y_mm) < 20);
-    setUp();
-    k.bumpers_front = 1 << 1; // leftmost
-    argus_task_bumped(&t, &k, k.sip_ms);
-    TEST_ASSERT_TRUE(t.seen[0].y_mm > 100);
 }
 
 void test_many_refusals_are_survived(void) {
     for (int i = 0; i < 100; i++) {
         k.pose.heading_cdeg = argus_angle_wrap(i * 997);
         argus_task_refuse(&t, &k);
-        argus_task_choose(&t, &k);
+        argus_task_choose(&t, &k, &e);
     }
 }

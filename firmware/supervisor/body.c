@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Which robot has answered, and whether it may be driven: its body must be known and the settings safe for
 // it.
-#include "supervisor/manager_internal.h"
+#include "supervisor/body.h"
+
+#include "knowledge/body.h"
+#include "knowledge/config.h"
+#include "supervisor/faults.h"
+#include "supervisor/say.h"
 
 // The operator's word stands above what the robot says of itself.
 static const argus_robot_t *robot_met(const argus_t *const self) {
@@ -18,8 +23,9 @@ static void say_beyond(argus_t *const self, const argus_robot_t *const robot) {
 // What was found out about the sonars of another body says nothing of this one's, but what its record says.
 static void forget_sonars(argus_t *const self) {
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((self->recorded >> i & 1u) == 0) {
-            argus_sonar_set_health(&self->knowledge.sonar[i], ARGUS_UNKNOWN, ARGUS_KIND_NONE, self->now_ms);
+        if ((self->history.recorded >> i & 1u) == 0 &&
+            argus_health_may(&self->knowledge, i, ARGUS_CHANGE_FORGOTTEN)) {
+            argus_say_change(self, i, ARGUS_CHANGE_FORGOTTEN, ARGUS_KIND_NONE, 0);
         }
     }
     argus_awareness_init(&self->awareness);
@@ -29,9 +35,9 @@ static void change_to(argus_t *const self, const argus_robot_t *const robot) {
     if (self->knowledge.robot == robot) {
         return;
     }
-    argus_knowledge_set_robot(&self->knowledge, robot, self->now_ms);
+    argus_body_is(&self->knowledge, robot, self->now_ms);
     forget_sonars(self);
-    argus_task_restart(&self->task);
+    argus_task_restart(&self->travel.task);
     self->plan = argus_plan(robot, (argus_policy_t)self->config.policy, 0);
     argus_replan(self);
 }
@@ -54,9 +60,10 @@ bool argus_say_barred(argus_t *const self) {
 void argus_meet_body(argus_t *const self) {
     const argus_robot_t *const met = robot_met(self);
     const argus_robot_t *const robot = met != NULL ? met : argus_robot_unknown();
-    const bool active = !self->passive || self->barred;
+    const bool active = !self->orders.passive || self->orders.barred;
     say_beyond(self, robot);
     change_to(self, robot);
-    self->barred = argus_say_barred(self) && active;
-    self->passive = self->locked || self->barred || !active;
+    self->orders.barred = argus_say_barred(self) && active;
+    self->orders.passive = self->orders.locked || self->orders.barred || !active;
+    ARGUS_ASSERT(!self->orders.barred || self->orders.passive);
 }

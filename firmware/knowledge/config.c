@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Defaults and ranges of the settings, and the two inequalities of S5.
-#include "supervisor/config.h"
+#include "knowledge/config.h"
 
 #include <stddef.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: S5 refuses every speed and step that could touch what the sonars were to keep away, and
 // no other.
-#include "supervisor/config.h"
+#include "knowledge/config.h"
 
 #include <math.h>
 #include <stdio.h>

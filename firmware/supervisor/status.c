@@ -2,7 +2,7 @@
 // What the manager shows of itself: a status copy, and its invariants.
 #include <string.h>
 
-#include "supervisor/manager_internal.h"
+#include "supervisor/state.h"
 
 static void copy_sonars(const argus_t *const self, argus_status_t *const status) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
@@ -55,16 +55,16 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
     copy_session(&self->session, status);
     status->mode = self->mode;
     status->mission = self->mission;
-    status->wait = self->mode == ARGUS_MODE_WAITING ? self->wait : ARGUS_WAIT_NONE;
+    status->wait = self->mode == ARGUS_MODE_WAITING ? self->waiting.why : ARGUS_WAIT_NONE;
     status->failure = self->failure;
     status->plan = self->plan;
-    status->goal_mm = argus_task_goal_mm(&self->task, &self->knowledge);
-    status->waypoint = self->task.next;
-    status->waypoints = self->task.count;
-    status->active = !self->passive;
-    status->paused = self->paused;
+    status->goal_mm = argus_task_goal_mm(&self->travel.task, &self->knowledge);
+    status->waypoint = self->travel.task.next;
+    status->waypoints = self->travel.task.count;
+    status->active = !self->orders.passive;
+    status->paused = self->orders.paused;
     status->online = status->open && !self->stalled;
-    status->pinned = self->pinned;
+    status->pinned = self->orders.pinned;
     status->stops = self->stops;
     status->robot_body = self->knowledge.robot->name;
 }
@@ -76,13 +76,14 @@ static bool queues_hold(const argus_t *const self) {
 }
 
 static bool task_holds(const argus_t *const self) {
-    return self->task.count <= ARGUS_WAYPOINTS_MAX && self->task.next <= self->task.count &&
-           self->task.seen_count <= ARGUS_POINTS_MAX && self->task.seen_next < ARGUS_POINTS_MAX;
+    return self->travel.task.count <= ARGUS_WAYPOINTS_MAX &&
+           self->travel.task.next <= self->travel.task.count && self->echoes.count <= ARGUS_POINTS_MAX &&
+           self->echoes.next < ARGUS_POINTS_MAX;
 }
 
 static bool plan_holds(const argus_t *const self) {
     return self->plan.count <= ARGUS_ROTATIONS_MAX &&
-           (self->plan.disabled & ~(unsigned)ARGUS_FORWARD_MASK) == 0;
+           (self->plan.disabled & ~(unsigned)argus_robot_forward(self->knowledge.robot)) == 0;
 }
 
 // S1 and S6: nothing translates before a full check; normal driving only while no bearing is blind.
@@ -92,16 +93,18 @@ static bool driving_holds(const argus_t *const self) {
     if (!driving && !stepping) {
         return true;
     }
-    return self->checked && !self->passive && (stepping || self->plan.disabled == 0) &&
-           (self->plan.disabled == 0 || self->plan.complete);
+    return self->checked && !self->orders.passive &&
+           (stepping ? argus_guard_may_step(&self->plan) : argus_guard_may_drive(&self->plan));
 }
 
 static bool health_holds(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
+        const bool absent = i >= self->knowledge.sonars;
         const bool whole =
             s->health != ARGUS_SUSPECT && s->health != ARGUS_DISABLED && s->health != ARGUS_PROBATION;
-        if (s->health > ARGUS_ABSENT || (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
+        if (absent != (s->health == ARGUS_ABSENT) || s->health > ARGUS_ABSENT ||
+            (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
             (whole && s->kind != ARGUS_KIND_NONE)) {
             return false;
         }

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// Answers the questions of the safety rules from what is known now.
+#include "adjustment/guard.h"
+
+#include "arcos/gen_arcos.h"
+#include "knowledge/angle.h"
+#include "knowledge/config.h"
+
+#define SLOTS 8u // in a round
+#define SIP_MS 100u
+#define HOME_CDEG 200
+#define STRAIGHT_ROOM_MM 47
+#define SWING_TURNING_MM 10 // of the margin so much is left in a turn: readings scatter
+#define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
+#define BACKOFFS_MAX 3
+#define ABEAM_CLEAR_MM 250 // beside a way straight back of 300 mm; a P3-DX ends 77 mm beside their faces
+#define BACK_MOST_MM 300
+#define BACK_LEFT_MM 150 // of what the rear reads clear
+#define BACK_STEP_MM 25
+#define ASTERN_MM 50 // beyond the rear end
+
+int32_t argus_guard_straight_half_mm(const argus_robot_t *const robot) {
+    return argus_robot_half_width_mm(robot) + STRAIGHT_ROOM_MM;
+}
+
+bool argus_guard_may_drive(const argus_plan_t *const plan) {
+    return plan->disabled == 0;
+}
+
+bool argus_guard_may_step(const argus_plan_t *const plan) {
+    return plan->disabled == 0 || plan->complete;
+}
+
+bool argus_guard_may_translate(const argus_guard_t *const self) {
+    const bool motors = (self->knowledge->flags & ARCOS_FLAG_MOTORS) != 0;
+    return self->active && self->linked && motors && self->checked && self->bumpers == 0;
+}
+
+int32_t argus_guard_ahead_mm(const argus_guard_t *const self) {
+    const argus_knowledge_t *const knowledge = self->knowledge;
+    int32_t shortest = INT32_MAX;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i)) {
+            const int32_t since_mm = (int32_t)(knowledge->odometer_mm - knowledge->sonar[i].odometer_mm);
+            shortest = argus_min(shortest, knowledge->sonar[i].reading_mm - since_mm);
+        }
+    }
+    return argus_max(0, argus_min(shortest, knowledge->robot->no_echo_mm) - self->config->object_range_mm);
+}
+
+uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {
+    return 2u * SLOTS * (uint32_t)config->sonar_cycle_ms + SIP_MS;
+}
+
+bool argus_guard_sees_ahead(const argus_guard_t *const self) {
+    const uint32_t limit_ms = argus_guard_two_rounds_ms(self->config);
+    for (int i = 0; i < self->knowledge->sonars; i++) {
+        const bool forward = argus_robot_faces_forward(self->knowledge->robot, i);
+        const bool counts = forward && !argus_is_out(self->knowledge, i);
+        if (counts && argus_age_ms(self->knowledge, i, self->now_ms) > limit_ms) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool argus_guard_is_home(const argus_guard_t *const self, const int32_t base_cdeg) {
+    return argus_angle_abs_diff(self->knowledge->pose.heading_cdeg, base_cdeg) <= HOME_CDEG;
+}
+
+static int32_t swing_mm(const argus_guard_t *const self) {
+    return self->knowledge->robot->swing_radius_mm + self->profile->swing_margin_mm;
+}
+
+static int32_t remembered_mm(const argus_guard_t *const self, const int32_t back_mm) {
+    return argus_echoes_nearest_mm(self->echoes, self->knowledge, back_mm);
+}
+
+int32_t argus_guard_nearest_mm(const argus_guard_t *const self, const int32_t back_mm) {
+    const int32_t now_mm = argus_nearest_to_centre_mm(self->knowledge, back_mm);
+    return self->profile->remembers ? argus_min(now_mm, remembered_mm(self, back_mm)) : now_mm;
+}
+
+bool argus_guard_swing_is_blocked(const argus_guard_t *const self) {
+    return argus_guard_nearest_mm(self, 0) <= swing_mm(self);
+}
+
+bool argus_guard_may_turn(const argus_guard_t *const self) {
+    return self->active && self->bumpers == 0 && !argus_guard_swing_is_blocked(self);
+}
+
+bool argus_guard_echo_blocks(const argus_guard_t *const self, const int sonar) {
+    return argus_echo_to_centre_mm(self->knowledge, sonar, 0) <= swing_mm(self);
+}
+
+bool argus_guard_memory_blocks(const argus_guard_t *const self) {
+    return remembered_mm(self, 0) <= swing_mm(self);
+}
+
+argus_touch_t argus_guard_touch(const argus_guard_t *const self, const int sonar, argus_point_t *const at,
+                                bool *const left) {
+    const int32_t within_mm = self->knowledge->robot->swing_radius_mm + SWING_TURNING_MM;
+    const argus_point_t echo = argus_echo_robot(self->knowledge, sonar);
+    *at = argus_to_course(&self->knowledge->pose, echo);
+    *left = echo.y_mm > 0;
+    if (argus_hypot(echo.x_mm, echo.y_mm) > within_mm) {
+        return ARGUS_TOUCH_NONE;
+    }
+    return argus_echoes_have_seen(self->echoes, self->knowledge, *at, within_mm) ? ARGUS_TOUCH_AGAIN
+                                                                                 : ARGUS_TOUCH_FIRST;
+}
+
+// What has failed, or has the name of a fault, does not read clear: nobody looks there in its place.
+static bool is_relied_on(const argus_guard_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->knowledge->sonar[sonar];
+    const bool named = s->health == ARGUS_SUSPECT && s->kind != ARGUS_KIND_NONE;
+    return argus_age_ms(self->knowledge, sonar, self->now_ms) <= (uint32_t)self->config->stale_ms && !named &&
+           !argus_is_out(self->knowledge, sonar);
+}
+
+static bool looks_back(const argus_guard_t *const self, const int sonar) {
+    const argus_robot_t *const robot = self->knowledge->robot;
+    return ((argus_robot_astern(robot) | argus_robot_rear_flank(robot)) >> sonar & 1u) != 0;
+}
+
+// A robot of which nobody looks back never backs away.
+bool argus_guard_rear_is_watched(const argus_guard_t *const self) {
+    for (int i = 0; i < self->knowledge->sonars; i++) {
+        if (looks_back(self, i) && !is_relied_on(self, i)) {
+            return false;
+        }
+    }
+    return argus_robot_astern(self->knowledge->robot) != 0;
+}
+
+// Those that look abeam see what the robot passes by, not what it backs into.
+static int32_t rear_clear_mm(const argus_guard_t *const self, const int sonar) {
+    const int32_t clear_mm = self->config->rear_clear_mm;
+    const bool flank = (argus_robot_rear_flank(self->knowledge->robot) >> sonar & 1u) != 0;
+    return self->profile->passes_abeam && flank ? argus_min(ABEAM_CLEAR_MM, clear_mm) : clear_mm;
+}
+
+bool argus_guard_rear_is_clear(const argus_guard_t *const self) {
+    for (int i = 0; i < self->knowledge->sonars; i++) {
+        if (looks_back(self, i) && self->knowledge->sonar[i].reading_mm <= rear_clear_mm(self, i)) {
+            return false;
+        }
+    }
+    return argus_guard_rear_is_watched(self);
+}
+
+bool argus_guard_may_back_off(const argus_guard_t *const self) {
+    return self->active && self->bumpers == 0 && self->backed < BACKOFFS_MAX &&
+           argus_guard_rear_is_clear(self);
+}
+
+// What the rear reads clear less some room; no farther than usual past what was seen beside the way, since a
+// smooth wall that slants in by 15 to 25 degrees is heard by nobody.
+static int32_t most_back_mm(const argus_guard_t *const self) {
+    const int32_t clear_mm = argus_min(BACK_MOST_MM, self->config->rear_clear_mm - BACK_LEFT_MM);
+    const int32_t astern_cdeg = argus_angle_wrap(self->knowledge->pose.heading_cdeg + 18000);
+    const int32_t free_mm = argus_echoes_clear_mm(self->echoes, self->knowledge, astern_cdeg,
+                                                  argus_guard_straight_half_mm(self->knowledge->robot));
+    const bool is_free = free_mm >= self->knowledge->robot->rear_mm + clear_mm + ASTERN_MM;
+    const bool again = self->backed > 1; // far once is far enough
+    return is_free && !again ? clear_mm : argus_min(clear_mm, self->config->backoff_mm);
+}
+
+// The least way back, up to the most, after which a turn is free; where none is, the usual one.
+int32_t argus_guard_back_mm(const argus_guard_t *const self) {
+    const int32_t usual_mm = self->config->backoff_mm;
+    if (!self->profile->backs_to_turn) {
+        return usual_mm;
+    }
+    const int32_t most_mm = most_back_mm(self);
+    for (int32_t way_mm = usual_mm; way_mm <= most_mm; way_mm += BACK_STEP_MM) {
+        if (argus_guard_nearest_mm(self, way_mm) > swing_mm(self) + SWING_SPARE_MM) {
+            return way_mm;
+        }
+    }
+    return argus_min(usual_mm, most_mm);
+}
+
+int32_t argus_guard_back_speed_mm_s(const argus_guard_t *const self) {
+    const argus_config_t *const config = self->config;
+    const argus_robot_t *const robot = self->knowledge->robot;
+    const bool stops_in_time =
+        argus_config_stop_mm(config, robot) + robot->rear_overhang_mm < config->object_range_mm;
+    return self->profile->backs_to_turn && stops_in_time ? config->speed_mm_s : config->step_speed_mm_s;
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// The safety rules S1 to S7 (DESIGN.md) as questions: may it turn, how far may it go ahead or back? Nothing
+// is changed.
+#ifndef ARGUS_GUARD_H
+#define ARGUS_GUARD_H
+
+#include "argus/argus.h"
+#include "knowledge/echoes.h"
+#include "knowledge/knowledge.h"
+#include "knowledge/profile.h"
+
+// Half of what is driven straight along, ahead or back, without a turn: half the body, and something for its
+// heading.
+int32_t argus_guard_straight_half_mm(const argus_robot_t *robot);
+
+// What the answers rest on.
+typedef struct {
+    const argus_config_t *config;
+    const argus_profile_t *profile;
+    const argus_knowledge_t *knowledge;
+    const argus_echoes_t *echoes;
+    uint32_t now_ms;
+    uint16_t bumpers; // pressed, as far as they were answered
+    uint8_t backed;   // back-offs in this place
+    bool active;      // it may command motions: neither passive nor leaving
+    bool linked;      // a session is open and SIPs come
+    bool checked;     // a full health check has passed since then
+} argus_guard_t;
+
+// Ahead ----------------------------------------------------------------------------------------------------
+
+// S1: normal driving only with every bearing ahead in use; a step also while the others cover for it.
+bool argus_guard_may_drive(const argus_plan_t *plan);
+bool argus_guard_may_step(const argus_plan_t *plan);
+
+// S2, S3, S6: motors on, a link that lives, a full check behind it, no bumper pressed.
+bool argus_guard_may_translate(const argus_guard_t *self);
+
+// S3: the longest MOVE that normal driving may ask for now: shortest front reading, less the way driven since
+// it was taken, less the object range; never negative.
+int32_t argus_guard_ahead_mm(const argus_guard_t *self);
+
+// S3: every sonar in use that looks ahead has been refreshed within two rounds of its array.
+bool argus_guard_sees_ahead(const argus_guard_t *self);
+
+// In which each sonar of an array has been listed twice.
+uint32_t argus_guard_two_rounds_ms(const argus_config_t *config);
+
+// Turning --------------------------------------------------------------------------------------------------
+
+// S4: near enough to the heading that a sweep or a verification began on.
+bool argus_guard_is_home(const argus_guard_t *self, int32_t base_cdeg);
+
+// S7: no bumper pressed, nothing within the circle that the body sweeps.
+bool argus_guard_may_turn(const argus_guard_t *self);
+bool argus_guard_swing_is_blocked(const argus_guard_t *self);
+
+// Nearest to the robot's centre, were it `back_mm` farther back: of what is seen, and, as the profile says,
+// of what was seen a moment ago. INT32_MAX: nothing.
+int32_t argus_guard_nearest_mm(const argus_guard_t *self, int32_t back_mm);
+
+// The echo that this sonar hears now forbids to turn. What is remembered does.
+bool argus_guard_echo_blocks(const argus_guard_t *self, int sonar);
+bool argus_guard_memory_blocks(const argus_guard_t *self);
+
+// In a turn: the echo of this sonar, just heard, lies within the circle, for the first time or again. `at`:
+// where, course frame; `left`: on which side.
+typedef enum { ARGUS_TOUCH_NONE, ARGUS_TOUCH_FIRST, ARGUS_TOUCH_AGAIN } argus_touch_t;
+argus_touch_t argus_guard_touch(const argus_guard_t *self, int sonar, argus_point_t *at, bool *left);
+
+// Back -----------------------------------------------------------------------------------------------------
+
+// S7: all sonars of the rear report, none of them is out or has the name of a fault; and all of them read
+// clear.
+bool argus_guard_rear_is_watched(const argus_guard_t *self);
+bool argus_guard_rear_is_clear(const argus_guard_t *self);
+
+// S7: it may back away to make room for a turn; how far, and how fast S5 allows it with the rear's overhang.
+bool argus_guard_may_back_off(const argus_guard_t *self);
+int32_t argus_guard_back_mm(const argus_guard_t *self);
+int32_t argus_guard_back_speed_mm_s(const argus_guard_t *self);
+
+#endif

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// Remembers the echoes of the last minute as points, and says how much room they leave.
+#include "knowledge/echoes.h"
+
+#include <string.h>
+
+#include "knowledge/angle.h"
+
+#define REMEMBER_BELOW_MM 2000 // beyond it a beam is too wide to say where the echo lies
+#define SAME_PLACE_MM 80
+#define SAME_THING_MM 150
+#define FORGET_MS 60000u
+#define NEAR_MM 1000
+#define LATELY_MS 5000u    // what was seen so near does not go away while a look is prepared
+#define BEHIND_MM 100      // an echo this far ahead of the centre is beside the robot already
+#define BUMPER_AHEAD_MM 30 // of the body
+#define BY_TOUCH UINT8_MAX // no sonar: it is there for sure
+
+void argus_echoes_init(argus_echoes_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+static bool same_place(const argus_echo_t *const seen, const argus_point_t *const at) {
+    return argus_abs(seen->x_mm - at->x_mm) < SAME_PLACE_MM &&
+           argus_abs(seen->y_mm - at->y_mm) < SAME_PLACE_MM;
+}
+
+// The slot that holds this place already, else a free one, else the oldest.
+static argus_echo_t *slot_for(argus_echoes_t *const self, const argus_point_t *const at) {
+    for (uint16_t i = 0; i < self->count; i++) {
+        if (same_place(&self->at[i], at)) {
+            return &self->at[i];
+        }
+    }
+    if (self->count < ARGUS_POINTS_MAX) {
+        return &self->at[self->count++];
+    }
+    self->next = (uint16_t)((self->next + 1) % ARGUS_POINTS_MAX);
+    return &self->at[self->next];
+}
+
+bool argus_are_one_thing(const argus_point_t a, const argus_point_t b) {
+    return argus_abs(a.x_mm - b.x_mm) <= SAME_THING_MM && argus_abs(a.y_mm - b.y_mm) <= SAME_THING_MM;
+}
+
+// A second echo of one thing, lately; a wall gives one a little farther on, as far as the robot drove
+// meanwhile. What was seen twice before stays so for as long as it is remembered.
+static bool is_seen_again(const argus_echo_t *const seen, const argus_point_t *const at,
+                          const uint32_t now_ms) {
+    const uint32_t age_ms = now_ms - seen->seen_ms;
+    const argus_point_t there = {seen->x_mm, seen->y_mm};
+    return (argus_are_one_thing(there, *at) && age_ms <= LATELY_MS) ||
+           (seen->again && age_ms <= FORGET_MS && same_place(seen, at));
+}
+
+// ... of something at most so far from there.
+static bool has_seen(const argus_echoes_t *const self, const argus_point_t *const at, const uint32_t now_ms,
+                     const argus_point_t *const from, const int32_t within_mm) {
+    for (uint16_t i = 0; i < self->count; i++) {
+        const argus_echo_t *const seen = &self->at[i];
+        if (is_seen_again(seen, at, now_ms) &&
+            argus_hypot(seen->x_mm - from->x_mm, seen->y_mm - from->y_mm) <= within_mm) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool argus_echoes_have_seen(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                            const argus_point_t at, const int32_t within_mm) {
+    const argus_point_t centre = {knowledge->pose.x_mm, knowledge->pose.y_mm};
+    return has_seen(self, &at, knowledge->sip_ms, &centre, within_mm);
+}
+
+static void remember(argus_echoes_t *const self, const argus_point_t at, const uint8_t sonar,
+                     const uint32_t now_ms) {
+    if (argus_abs(at.x_mm) > INT16_MAX || argus_abs(at.y_mm) > INT16_MAX) {
+        return;
+    }
+    const bool again = sonar == BY_TOUCH || has_seen(self, &at, now_ms, &at, INT32_MAX);
+    argus_echo_t *const slot = slot_for(self, &at);
+    slot->again = again;
+    slot->x_mm = (int16_t)at.x_mm;
+    slot->y_mm = (int16_t)at.y_mm;
+    slot->sonar = sonar;
+    slot->seen_ms = now_ms;
+}
+
+void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                      const uint32_t now_ms) {
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const bool fresh = (knowledge->fresh >> i & 1u) != 0;
+        if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT &&
+            !knowledge->rotating && knowledge->sonar[i].reading_mm < REMEMBER_BELOW_MM) {
+            remember(self, argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, i)), (uint8_t)i,
+                     now_ms);
+        }
+    }
+}
+
+void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
+    uint16_t kept = 0;
+    for (uint16_t i = 0; i < self->count; i++) {
+        if (self->at[i].sonar != sonar) {
+            self->at[kept++] = self->at[i];
+        }
+    }
+    self->count = kept;
+    self->next = 0;
+}
+
+void argus_echoes_touched(argus_echoes_t *const self, const argus_point_t at, const uint32_t now_ms) {
+    remember(self, at, BY_TOUCH, now_ms);
+}
+
+// The front segments lie across the bow, bit 1 leftmost; what they touched is remembered as if it had been
+// seen.
+void argus_echoes_bumped(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                         const uint32_t now_ms) {
+    const argus_robot_t *const robot = knowledge->robot;
+    const int segments = robot->front_bumpers;
+    for (int segment = 1; segment <= segments; segment++) {
+        if ((knowledge->bumpers_front >> segment & 1u) != 0) {
+            const int32_t beside_mm = (segments + 1 - 2 * segment) * (robot->width_mm / segments) / 2;
+            const argus_point_t touched = {robot->front_mm + BUMPER_AHEAD_MM, beside_mm};
+            argus_echoes_touched(self, argus_to_course(&knowledge->pose, touched), now_ms);
+        }
+    }
+}
+
+int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                              const int32_t heading_cdeg, const int32_t half_mm) {
+    const int32_t c = argus_cos(heading_cdeg);
+    const int32_t s = argus_sin(heading_cdeg);
+    int32_t clear = INT32_MAX;
+    for (uint16_t i = 0; i < self->count; i++) {
+        const int32_t dx = argus_max(-32000, argus_min(32000, self->at[i].x_mm - knowledge->pose.x_mm));
+        const int32_t dy = argus_max(-32000, argus_min(32000, self->at[i].y_mm - knowledge->pose.y_mm));
+        const int32_t ahead = (dx * c + dy * s) / ARGUS_TRIG_ONE;
+        const int32_t beside = (dy * c - dx * s) / ARGUS_TRIG_ONE;
+        const bool recent = knowledge->sip_ms - self->at[i].seen_ms <= FORGET_MS;
+        if (recent && ahead > BEHIND_MM && argus_abs(beside) < half_mm) {
+            clear = argus_min(clear, ahead);
+        }
+    }
+    return clear;
+}
+
+int32_t argus_echoes_nearest_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                                const int32_t back_mm) {
+    const argus_point_t back = {-back_mm, 0};
+    const argus_point_t centre = argus_to_course(&knowledge->pose, back);
+    int32_t nearest = INT32_MAX;
+    for (uint16_t i = 0; i < self->count; i++) {
+        const int32_t dx = self->at[i].x_mm - centre.x_mm;
+        const int32_t dy = self->at[i].y_mm - centre.y_mm;
+        const bool near = argus_abs(dx) < NEAR_MM && argus_abs(dy) < NEAR_MM;
+        if (near && self->at[i].again && knowledge->sip_ms - self->at[i].seen_ms <= LATELY_MS) {
+            nearest = argus_min(nearest, argus_hypot(dx, dy));
+        }
+    }
+    return nearest;
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Echoes of the last minute as points of the course frame: what stands about the robot, also where nobody
+// looks now.
+#ifndef ARGUS_ECHOES_H
+#define ARGUS_ECHOES_H
+
+#include "knowledge/knowledge.h"
+
+#define ARGUS_POINTS_MAX 128
+
+// Echoes seen lately, course frame: what the way round an obstacle is planned from.
+typedef struct {
+    int16_t x_mm;
+    int16_t y_mm;
+    uint8_t sonar;
+    bool again; // by two echoes at least: one may be crosstalk
+    uint32_t seen_ms;
+} argus_echo_t;
+
+typedef struct {
+    argus_echo_t at[ARGUS_POINTS_MAX];
+    uint16_t count;
+    uint16_t next; // oldest, once full
+} argus_echoes_t;
+
+void argus_echoes_init(argus_echoes_t *self);
+
+// Remembers the fresh echoes of sonars not DISABLED and no suspects; forgets those of a sonar; marks what the
+// bumpers touch, or a place where something is, course frame, whoever found it.
+void argus_echoes_see(argus_echoes_t *self, const argus_knowledge_t *knowledge, uint32_t now_ms);
+void argus_echoes_forget(argus_echoes_t *self, int sonar);
+void argus_echoes_bumped(argus_echoes_t *self, const argus_knowledge_t *knowledge, uint32_t now_ms);
+void argus_echoes_touched(argus_echoes_t *self, argus_point_t at, uint32_t now_ms);
+
+// Length of the corridor of 2 x half_mm that is free of remembered echoes along a heading; INT32_MAX without
+// any.
+int32_t argus_echoes_clear_mm(const argus_echoes_t *self, const argus_knowledge_t *knowledge,
+                              int32_t heading_cdeg, int32_t half_mm);
+
+// Whether two echoes may be of one thing: at most 150 mm apart along x and along y.
+bool argus_are_one_thing(argus_point_t a, argus_point_t b);
+
+// Whether an echo there, course frame, `within_mm` of the robot's centre, would be the second one of a thing
+// that was seen within them as well: 150 mm from there in the last 5 s, or known by two echoes in the last
+// minute, 80 mm from there. Cost: one pass over the points.
+bool argus_echoes_have_seen(const argus_echoes_t *self, const argus_knowledge_t *knowledge, argus_point_t at,
+                            int32_t within_mm);
+
+// Nearest to the robot's centre, were it `back_mm` farther back, of what was seen more than once in the last
+// seconds, also where no sonar sees it now; INT32_MAX without any. Cost: one pass over the points.
+int32_t argus_echoes_nearest_mm(const argus_echoes_t *self, const argus_knowledge_t *knowledge,
+                                int32_t back_mm);
+
+#endif

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Draws the conclusions of a health check (paper: Analysis).
+#include "supervisor/check.h"
+
+#include "knowledge/angle.h"
+#include "supervisor/faults.h"
+#include "supervisor/looks.h"
+#include "supervisor/say.h"
+#include "supervisor/state.h"
+
+static void declare_healthy(argus_t *const self) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        const argus_sonar_t *const s = &self->knowledge.sonar[i];
+        if (s->reported && (s->health == ARGUS_UNKNOWN || s->health == ARGUS_STALE)) {
+            argus_say_change(self, i, ARGUS_CHANGE_JUDGED, ARGUS_KIND_NONE, s->reading_mm);
+        }
+    }
+}
+
+static argus_mask_t find_suspects(argus_t *const self) {
+    return argus_rules(self)->evidence ? (argus_mask_t)(argus_worth_a_look(self) | argus_open_suspects(self))
+                                       : argus_suspects(&self->awareness, &self->knowledge, &self->config);
+}
+
+static bool is_look_due(const argus_t *const self) {
+    return argus_rules(self)->evidence && argus_routine_is_due(self);
+}
+
+static argus_intent_t verify(const argus_mask_t suspects) {
+    return (argus_intent_t){.act = ARGUS_DO_VERIFY, .sonars = suspects};
+}
+
+argus_intent_t argus_conclude_check(argus_t *const self) {
+    const argus_mask_t suspects = (argus_mask_t)(find_suspects(self) | argus_open_suspects(self));
+    const bool wanted = suspects != 0 || is_look_due(self);
+    self->looks.check_ms = self->now_ms;
+    if (wanted && !self->orders.passive && !self->orders.stay) {
+        return verify(suspects);
+    }
+    argus_flag_suspects(self, suspects);
+    declare_healthy(self);
+    argus_replan(self);
+    self->checked = true;
+    argus_say(self, ARGUS_EV_HEALTH_CHECK, ARGUS_NO_SONAR, argus_count_bits(argus_out(&self->knowledge)));
+    return (argus_intent_t){.act = ARGUS_DO_DECIDE};
+}
+
+static bool is_due(const argus_t *const self) {
+    return argus_rules(self)->evidence ||
+           self->now_ms - self->looks.check_ms >= (uint32_t)self->config.health_check_ms;
+}
+
+// Who may not turn cannot verify: there a suspicion lasts as long as the disparity.
+static void drop_suspicions(argus_t *const self) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if (argus_robot_faces_forward(self->knowledge.robot, i) &&
+            self->knowledge.sonar[i].health == ARGUS_SUSPECT && self->awareness.of[i].in_a_row == 0) {
+            argus_say_change(self, i, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, 0);
+        }
+    }
+}
+
+// While the course is paused nothing is looked at, but before an operator's step (S6).
+static bool may_verify(const argus_t *const self) {
+    return !self->orders.passive && !(self->orders.paused && self->mode == ARGUS_MODE_IDLE);
+}
+
+argus_intent_t argus_check_beside(argus_t *const self) {
+    if (!is_due(self)) {
+        return (argus_intent_t){0};
+    }
+    self->looks.check_ms = self->now_ms;
+    const argus_mask_t suspects = find_suspects(self);
+    const bool look = self->mode == ARGUS_MODE_DRIVING && is_look_due(self);
+    if (self->orders.passive && argus_rules(self)->disparity) {
+        drop_suspicions(self);
+    }
+    if (suspects == 0 && !look) {
+        return (argus_intent_t){0};
+    }
+    if (may_verify(self)) {
+        return verify(suspects);
+    }
+    argus_flag_suspects(self, suspects);
+    return (argus_intent_t){0};
+}
+
+static void say_witnesses(argus_t *const self) {
+    const argus_verify_t *const verify = &self->verifying.verify;
+    for (int side = 0; side < 2; side++) {
+        if ((verify->heard >> side & 1) != 0) {
+            argus_say(self, ARGUS_EV_SONAR_WITNESS, verify->by[side], verify->witness_mm[side]);
+        }
+    }
+}
+
+void argus_apply_verdict(argus_t *const self) {
+    const argus_verify_t *const verify = &self->verifying.verify;
+    const int sonar = verify->sonar;
+    say_witnesses(self);
+    switch (verify->result) {
+    case ARGUS_RESULT_CONVICTED:
+        argus_disable(self, sonar, ARGUS_KIND_WRONG);
+        break;
+    case ARGUS_RESULT_CLEARED:
+        argus_awareness_cleared(&self->awareness, &self->knowledge, sonar, verify->difference_mm);
+        argus_say_change(self, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, verify->mean_mm);
+        break;
+    case ARGUS_RESULT_DROPPED:
+        self->awareness.of[sonar].in_a_row = 0;
+        argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, verify->difference_mm);
+        break;
+    case ARGUS_RESULT_UNPROVEN:
+        self->awareness.verified |= (argus_mask_t)(1u << sonar);
+        argus_say(self, ARGUS_EV_SONAR_UNPROVEN, sonar, verify->reading_mm);
+        break;
+    case ARGUS_RESULT_NONE:
+    default:
+        break;
+    }
+}

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The health check: what it finds, at rest and beside the main task, and what Algorithm 2 makes of a suspect.
+#ifndef ARGUS_CHECK_H
+#define ARGUS_CHECK_H
+
+#include "supervisor/intent.h"
+#include "supervisor/manager.h"
+
+// At rest, all have reported: suspects are to be verified; without any, whoever reported is healthy.
+argus_intent_t argus_conclude_check(argus_t *self);
+
+// The periodic one beside the main task. Nothing to do: ARGUS_DO_NOTHING.
+argus_intent_t argus_check_beside(argus_t *self);
+
+// Says what the witnesses saw and applies the verdict.
+void argus_apply_verdict(argus_t *self);
+
+#endif

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// Takes sonars out of use, flags suspects, and keeps failure state, plan and firing order in step.
+#include "supervisor/faults.h"
+
+#include "knowledge/angle.h"
+#include "supervisor/say.h"
+#include "supervisor/state.h"
+
+// The forward-facing sonars in use, and every other one of the rest of their arrays: these watch the swing
+// circle.
+static size_t add_half(const argus_t *const self, const int half, uint8_t *const order) {
+    const argus_robot_t *const robot = self->knowledge.robot;
+    const unsigned others = argus_robot_polled(robot) & ~(unsigned)argus_robot_forward(robot);
+    size_t count = 0;
+    int other = 0;
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if (argus_robot_faces_forward(robot, i) && !argus_is_out(&self->knowledge, i)) {
+            order[count++] = (uint8_t)(i + 1);
+        }
+    }
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if ((others >> i & 1u) != 0 && other++ % 2 == half) {
+            order[count++] = (uint8_t)(i + 1);
+        }
+    }
+    return count;
+}
+
+// In failure mode the slots of the sonars that are out go to those that look ahead.
+void argus_share_slots(argus_t *const self) {
+    if (!argus_is_active(self) || !argus_is_open(self)) {
+        return;
+    }
+    uint8_t order[ARCOS_TIMING_ARRAYS_MAX * ARCOS_TIMING_POLLING_MAX_PER_ARRAY];
+    size_t count = add_half(self, 0, order);
+    count += add_half(self, 1, order + count);
+    for (int i = 0; argus_rules(self)->evidence && i < self->knowledge.sonars; i++) {
+        if (argus_robot_faces_forward(self->knowledge.robot, i) && argus_is_out(&self->knowledge, i)) {
+            order[count++] = (uint8_t)(i + 1); // its own slot, to show that it does well again
+        }
+    }
+    ARGUS_ASSERT(count <= sizeof order);
+    argus_outbox_string(&self->session.outbox, ARCOS_CMD_POLLING, order, count);
+    self->ordered = true;
+    self->ordered_ms = self->now_ms;
+}
+
+static void say_plan(argus_t *const self) {
+    argus_say(self, ARGUS_EV_PLAN, ARGUS_NO_SONAR, self->plan.count);
+    for (int i = 0; i < self->plan.count; i++) {
+        argus_say(self, ARGUS_EV_PLAN_ROTATION, ARGUS_NO_SONAR, self->plan.rotation_deg[i]);
+    }
+}
+
+// A suspect that no witness could judge is planned for as if it were disabled: its bearing counts as
+// uncovered. One that is still to be verified is not: nothing moves ahead before it is.
+void argus_replan(argus_t *const self) {
+    const argus_mask_t disabled = argus_out(&self->knowledge) & argus_robot_forward(self->knowledge.robot);
+    const argus_mask_t blind =
+        disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->awareness.verified &
+                    argus_robot_forward(self->knowledge.robot));
+    const argus_failure_t failure = argus_failure_of(self->knowledge.robot, disabled);
+    if (failure != self->failure) {
+        self->failure = failure;
+        argus_say(self, ARGUS_EV_FAILURE_STATE, ARGUS_NO_SONAR, argus_count_bits(disabled));
+    }
+    if (blind == self->plan.disabled) {
+        return;
+    }
+    self->plan = argus_plan(self->knowledge.robot, (argus_policy_t)self->config.policy, blind);
+    ARGUS_ASSERT(self->plan.count <= ARGUS_ROTATIONS_MAX && self->plan.disabled == blind);
+    say_plan(self);
+    argus_share_slots(self);
+}
+
+void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+    ARGUS_ASSERT(kind != ARGUS_KIND_NONE);
+    const argus_event_t said =
+        argus_health_set(&self->knowledge, sonar, ARGUS_CHANGE_DISABLED, kind, (int32_t)kind, self->now_ms);
+    argus_evidence_agree_anew(&self->evidence, sonar); // what brings it back comes after this
+    argus_evidence_retract(&self->evidence, sonar);
+    argus_echoes_forget(&self->echoes, sonar);
+    argus_task_restart(&self->travel.task);
+    argus_replan(self);
+    argus_say_event(self, said); // after the plan that follows from it
+}
+
+void argus_lose(argus_t *const self, const argus_mask_t dead, const argus_mask_t silent) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if ((dead >> i & 1u) != 0) {
+            argus_say(self, ARGUS_EV_SONAR_DEAD, i, self->knowledge.sonar[i].reading_mm);
+            argus_disable(self, i, ARGUS_KIND_OFF);
+        } else if ((silent >> i & 1u) != 0) {
+            const uint32_t age_ms = argus_age_ms(&self->knowledge, i, self->now_ms);
+            argus_say(self, ARGUS_EV_SONAR_SILENT, i, (int32_t)(age_ms & 0x7FFFFFFFu));
+            argus_disable(self, i, ARGUS_KIND_SILENT);
+        }
+    }
+}
+
+void argus_watch(argus_t *const self, const argus_mask_t sonars) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if ((sonars >> i & 1u) == 0) {
+            continue;
+        }
+        if (self->knowledge.sonar[i].health == ARGUS_STALE) {
+            argus_say_change(self, i, ARGUS_CHANGE_HEARD, ARGUS_KIND_NONE, 0);
+        } else {
+            const uint32_t silent_ms = argus_silent_ms(&self->knowledge, i);
+            argus_say_change(self, i, ARGUS_CHANGE_STALLED, ARGUS_KIND_NONE,
+                             (int32_t)(silent_ms & 0x7FFFFFFFu));
+        }
+    }
+}
+
+void argus_flag_suspects(argus_t *const self, const argus_mask_t suspects) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if ((suspects >> i & 1u) != 0 && self->knowledge.sonar[i].health != ARGUS_SUSPECT) {
+            argus_say_change(self, i, ARGUS_CHANGE_SUSPECTED, ARGUS_KIND_NONE,
+                             self->awareness.of[i].difference_mm);
+        }
+    }
+}

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// Judges one sonar by the evidence: in use, or out.
+#include "supervisor/judge.h"
+
+#include "knowledge/angle.h"
+#include "supervisor/faults.h"
+#include "supervisor/mode.h"
+#include "supervisor/say.h"
+#include "supervisor/state.h"
+
+#define PROBATION_AGREED 4
+#define PROBATION_MS 4000u
+#define PROBATION_DOUBLINGS 4
+
+static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+    const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
+    argus_disable(self, sonar, kind);
+    argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
+    if (!ahead || !argus_mode_may(self->mode, ARGUS_MAY_BREAK_OFF)) {
+        return (argus_intent_t){0};
+    }
+    return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK};
+}
+
+// A suspect carries the kind that the evidence names so far.
+static void name(argus_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const argus_fault_kind_t kind = argus_evidence_renames(&self->evidence, sonar, s->kind);
+    if (kind != ARGUS_KIND_NONE) {
+        argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
+    }
+    if (s->health == ARGUS_SUSPECT && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
+        argus_evidence_note_name(&self->evidence, sonar, kind);
+        argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
+    }
+    const bool held =
+        self->mode == ARGUS_MODE_VERIFYING || (argus_evidence_lost(&self->evidence) >> sonar & 1u) != 0;
+    if (s->health == ARGUS_SUSPECT && !argus_evidence_holds(&self->evidence, sonar) && !held) {
+        argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, s->reading_mm);
+        argus_replan(self);
+    }
+}
+
+static argus_intent_t judge_in(argus_t *const self, const int sonar) {
+    const argus_fault_kind_t kind = argus_evidence_convicts(&self->evidence, sonar);
+    if (kind != ARGUS_KIND_NONE) {
+        return convict(self, sonar, kind);
+    }
+    name(self, sonar);
+    return (argus_intent_t){0};
+}
+
+// One that is DISABLED goes on PROBATION, one on PROBATION is healthy.
+static void restore(argus_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const bool healthy = s->health == ARGUS_PROBATION;
+    argus_evidence_agree_anew(&self->evidence, sonar);
+    argus_say_change(self, sonar, healthy ? ARGUS_CHANGE_RESTORED : ARGUS_CHANGE_TRIED,
+                     healthy ? ARGUS_KIND_NONE : s->kind, s->reading_mm);
+    argus_replan(self);
+}
+
+// Probation grows with each relapse.
+static uint8_t agreements_wanted(const argus_sonar_t *const s) {
+    if (s->health == ARGUS_DISABLED) {
+        return PROBATION_AGREED;
+    }
+    return (uint8_t)(PROBATION_AGREED << argus_min(s->relapses, PROBATION_DOUBLINGS));
+}
+
+// What repeated one value, and shows another one now, was not stuck: a name is enough to say what it is. Half
+// the truth, where nothing is in range, is the same value each time.
+static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar) {
+    const argus_fault_kind_t convicted = argus_evidence_convicts(&self->evidence, sonar);
+    const bool stuck = self->knowledge.sonar[sonar].kind == ARGUS_KIND_STUCK;
+    return convicted == ARGUS_KIND_NONE && stuck ? argus_evidence_names(&self->evidence, sonar) : convicted;
+}
+
+static bool is_silent(const argus_t *const self, const int sonar) {
+    return argus_silent_ms(&self->knowledge, sonar) > (uint32_t)self->config.stale_ms;
+}
+
+static void judge_out(argus_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const argus_fault_kind_t kind = kind_of_out(self, sonar);
+    const argus_fault_kind_t named = argus_evidence_relapses(&self->evidence, sonar);
+    const bool suspected = argus_evidence_keeps_out(&self->evidence, sonar);
+    if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
+        argus_say_change(self, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
+    }
+    if (suspected) {
+        if (s->health == ARGUS_PROBATION && named != ARGUS_KIND_NONE) {
+            argus_disable(self, sonar, named);
+        }
+        return;
+    }
+    const bool long_enough = self->now_ms - s->since_ms >= PROBATION_MS;
+    if (long_enough && !is_silent(self, sonar) &&
+        argus_evidence_agreed(&self->evidence, sonar) >= agreements_wanted(s)) {
+        restore(self, sonar);
+    }
+}
+
+// Its turn in a round comes late: each new order begins the round anew, so plans that change may pass it
+// over.
+static bool is_passed_over(const argus_t *const self, const int sonar) {
+    const argus_robot_t *const robot = self->knowledge.robot;
+    const bool late =
+        (argus_robot_polled(robot) >> sonar & 1u) != 0 && !argus_robot_faces_forward(robot, sonar);
+    return late && self->ordered && self->now_ms - self->ordered_ms <= (uint32_t)self->config.stale_ms;
+}
+
+// The others than 1..6 yield to the same tests; one that yields nothing is out as well.
+static bool has_fallen_silent(const argus_t *const self, const int sonar) {
+    const bool other = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) == 0;
+    return other && is_silent(self, sonar) && !is_passed_over(self, sonar);
+}
+
+argus_intent_t argus_judge(argus_t *const self, const int sonar) {
+    if ((self->orders.pinned >> sonar & 1u) != 0) {
+        return (argus_intent_t){0};
+    }
+    if (argus_is_out(&self->knowledge, sonar)) {
+        judge_out(self, sonar);
+        return (argus_intent_t){0};
+    }
+    if (has_fallen_silent(self, sonar)) {
+        argus_disable(self, sonar, ARGUS_KIND_SILENT);
+        return (argus_intent_t){0};
+    }
+    return judge_in(self, sonar);
+}
+
+void argus_foretell(argus_t *const self) {
+    int32_t metres = 0;
+    const int sonar = argus_evidence_news(&self->evidence, &self->knowledge, &metres);
+    if (sonar >= 0) {
+        argus_say(self, ARGUS_EV_SONAR_DEGRADING, sonar, metres);
+    }
+}

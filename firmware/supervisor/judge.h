@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// What the evidence of one SIP makes of every sonar (profile argus): names, convictions, the way back.
+#ifndef ARGUS_JUDGE_H
+#define ARGUS_JUDGE_H
+
+#include "supervisor/intent.h"
+#include "supervisor/manager.h"
+
+// One sonar. A conviction ahead of the robot calls for a check at rest.
+argus_intent_t argus_judge(argus_t *self, int sonar);
+
+// Says which sonar gets worse.
+void argus_foretell(argus_t *self);
+
+#endif

@@ -1,0 +1,484 @@
+// SPDX-License-Identifier: MIT
+// Carries out intents, under the guard, and changes the mode (paper: Fig. 2).
+#include "supervisor/modes.h"
+
+#include "knowledge/angle.h"
+#include "supervisor/check.h"
+#include "supervisor/faults.h"
+#include "supervisor/judge.h"
+#include "supervisor/looks.h"
+#include "supervisor/mode.h"
+#include "supervisor/motions.h"
+#include "supervisor/reflexes.h"
+#include "supervisor/resting.h"
+#include "supervisor/say.h"
+#include "supervisor/state.h"
+#include "supervisor/travel.h"
+
+#define FOLLOW_MOST 4                       // intents in a row that follow from one
+#define MORE_MOST (ARGUS_WAYPOINTS_MAX + 8) // times that a mode has more to do in one SIP
+
+static void enter(argus_t *const self, const argus_mode_t mode) {
+    ARGUS_ASSERT(argus_mode_may_follow(self->mode, mode));
+    self->mode = mode;
+    self->since_ms = self->now_ms;
+    if (mode != ARGUS_MODE_WAITING) {
+        self->waiting.why = ARGUS_WAIT_NONE;
+    }
+    if (mode != ARGUS_MODE_VERIFYING) {
+        argus_verify_init(&self->verifying.verify);
+        argus_inquiry_init(&self->verifying.inquiry);
+    }
+}
+
+// Entering a mode ------------------------------------------------------------------------------------------
+
+// At rest on the base heading.
+static void enter_checking(argus_t *const self, const argus_intent_t *const intent) {
+    argus_checking_t *const mine = &self->checking;
+    const uint8_t rounds = mine->rounds; // of a check under way
+    if (self->mode == ARGUS_MODE_CLOSING || self->mode == ARGUS_MODE_CLOSED) {
+        return;
+    }
+    mine->rounds = intent->full || !self->checked ? (uint8_t)self->config.suspect_readings : 1;
+    mine->marked = false;
+    mine->all_round = intent->all_round || intent->again;
+    self->travel.arriving = false;
+    argus_come_to_rest(self);
+    enter(self, ARGUS_MODE_CHECKING);
+    if (intent->again) {
+        self->turning.again = true;
+        mine->rounds = (uint8_t)argus_max(rounds, mine->rounds);
+        mine->marked = true;
+        mine->mark = argus_mark_now(&self->knowledge);
+    }
+}
+
+static void enter_verifying(argus_t *const self, const argus_mask_t suspects) {
+    argus_flag_suspects(self, suspects);
+    argus_halt(self);
+    if (!self->motion.settled && self->motion.kind != ARGUS_MOTION_STOP) {
+        argus_hold(self);
+    }
+    enter(self, ARGUS_MODE_VERIFYING);
+}
+
+// Waiting for the same thing again without having driven in between counts on.
+static void enter_waiting(argus_t *const self, const argus_wait_t why) {
+    argus_waiting_t *const mine = &self->waiting;
+    if (mine->last != why) {
+        mine->last = why;
+        mine->since_ms = self->now_ms;
+        mine->said_s = 0;
+        argus_say(self, why == ARGUS_WAIT_WAY ? ARGUS_EV_NO_WAY : ARGUS_EV_WAITING, ARGUS_NO_SONAR, 0);
+    }
+    mine->why = why;
+    mine->tried_ms = self->now_ms;
+    enter(self, ARGUS_MODE_WAITING);
+}
+
+static void enter_travel(argus_t *const self) {
+    argus_begin_travel(&self->travel);
+    self->base.taken = false;
+    enter(self, argus_guard_may_drive(&self->plan) ? ARGUS_MODE_DRIVING : ARGUS_MODE_SWEEPING);
+}
+
+static void enter_idle(argus_t *const self) {
+    self->base.taken = false;
+    self->turning.again = false;
+    self->waiting.last = ARGUS_WAIT_NONE;
+    enter(self, ARGUS_MODE_IDLE);
+}
+
+static argus_intent_t wait_for(const argus_wait_t why) {
+    return (argus_intent_t){.act = ARGUS_DO_WAIT, .why = (uint8_t)why};
+}
+
+static argus_intent_t nothing(void) {
+    return (argus_intent_t){.act = ARGUS_DO_NOTHING};
+}
+
+static void fail_mission(argus_t *const self) {
+    if (self->mission == ARGUS_MISSION_RUNNING) {
+        self->mission = ARGUS_MISSION_FAILED;
+        argus_say(self, ARGUS_EV_MISSION_FAILED, ARGUS_NO_SONAR,
+                  argus_task_goal_mm(&self->travel.task, &self->knowledge));
+    }
+}
+
+static argus_intent_t decide(argus_t *const self) {
+    const argus_guard_t guard = argus_guard(self);
+    const bool jogging = self->travel.jog_mm > 0;
+    const bool wants = jogging || (self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused);
+    if (self->orders.passive || !wants) {
+        enter_idle(self);
+        return nothing();
+    }
+    if (!argus_guard_may_step(&self->plan)) { // all six are out, or suspects that no one can judge
+        fail_mission(self);
+        return wait_for(ARGUS_WAIT_CATASTROPHIC);
+    }
+    if (guard.bumpers != 0) {
+        return wait_for(ARGUS_WAIT_BUMPER);
+    }
+    if (!argus_guard_may_translate(&guard)) {
+        return wait_for(ARGUS_WAIT_MOTORS);
+    }
+    enter_travel(self);
+    return nothing();
+}
+
+// Carrying out
+// -----------------------------------------------------------------------------------------------
+
+static argus_intent_t turn(argus_t *const self, const int32_t heading_cdeg) {
+    const argus_guard_t guard = argus_guard(self);
+    if (argus_guard_may_turn(&guard)) {
+        argus_waiting_t *const waiting = &self->waiting;
+        waiting->last = waiting->last == ARGUS_WAIT_TURN ? ARGUS_WAIT_NONE : waiting->last;
+        argus_turn_to(self, heading_cdeg);
+        self->turning.again = false;
+        return nothing();
+    }
+    const argus_intent_t instead = argus_instead_of_turn(self);
+    self->turning.again = false;
+    if (instead.act == ARGUS_DO_BACK) { // far once counts twice
+        self->turning.backed =
+            (uint8_t)(self->turning.backed + (instead.mm > self->config.backoff_mm ? 2 : 1));
+    }
+    return instead;
+}
+
+static void back(argus_t *const self, const argus_intent_t *const intent) {
+    const argus_guard_t guard = argus_guard(self);
+    if (!guard.active || !argus_guard_rear_is_clear(&guard)) {
+        return;
+    }
+    argus_say(self, ARGUS_EV_BACKING, ARGUS_NO_SONAR, intent->mm);
+    argus_move(self, -intent->mm, intent->speed_mm_s);
+    enter(self, ARGUS_MODE_BACKING);
+}
+
+// The robot will stand somewhere else: what was tried and verified here does not count there.
+static void move_on(argus_t *const self) {
+    if (argus_rules(self)
+            ->evidence) { // a suspect that could not be cleared is covered for like one that is out
+        self->awareness.verified &= argus_with_health(&self->knowledge, ARGUS_SUSPECT);
+    } else {
+        argus_awareness_moved(&self->awareness);
+    }
+    self->turning.backed = 0;
+    self->turning.again = false;
+    self->waiting.last = ARGUS_WAIT_NONE;
+}
+
+static void go_ahead(argus_t *const self, const argus_intent_t *const intent) {
+    const argus_guard_t guard = argus_guard(self);
+    ARGUS_ASSERT(argus_guard_may_translate(&guard));
+    if (intent->act == ARGUS_DO_STEP) {
+        ARGUS_ASSERT(argus_guard_may_step(&self->plan));
+        enter(self, ARGUS_MODE_STEPPING);
+    } else {
+        ARGUS_ASSERT(argus_guard_may_drive(&self->plan) && intent->mm <= argus_guard_ahead_mm(&guard));
+    }
+    argus_move(self, intent->mm, intent->speed_mm_s);
+    if (intent->moves_on) {
+        move_on(self);
+    }
+    if (intent->steers) {
+        argus_steer(self, intent->cdeg);
+    }
+}
+
+// The point is remembered, or the rest of the turn would be tried at once.
+static argus_intent_t end_turn(argus_t *const self, const argus_point_t at) {
+    const argus_guard_t guard = argus_guard(self);
+    argus_echoes_touched(&self->echoes, at, self->now_ms);
+    argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, argus_guard_nearest_mm(&guard, 0));
+    return (argus_intent_t){.stop = ARGUS_STOP_STOP, .act = ARGUS_DO_CHECK, .full = true};
+}
+
+static argus_intent_t begin_looks(argus_t *const self, const argus_intent_t *const intent) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if ((intent->sonars >> i & 1u) != 0) {
+            argus_say(self, ARGUS_EV_SONAR_VERIFYING, i, self->knowledge.sonar[i].reading_mm);
+        }
+    }
+    if (intent->sonars == 0) {
+        argus_say(self, ARGUS_EV_LOOK, ARGUS_NO_SONAR, 0);
+    }
+    return turn(self, intent->cdeg);
+}
+
+static argus_intent_t lose(argus_t *const self, const argus_intent_t *const intent) {
+    argus_lose(self, intent->sonars, intent->silent);
+    const bool stays = self->mode == ARGUS_MODE_WAITING || self->mode == ARGUS_MODE_CLOSING;
+    return (argus_intent_t){.act = stays ? ARGUS_DO_NOTHING : ARGUS_DO_CHECK};
+}
+
+static argus_intent_t reach(argus_t *const self) {
+    self->mission = ARGUS_MISSION_REACHED;
+    argus_say(self, ARGUS_EV_GOAL_REACHED, ARGUS_NO_SONAR,
+              argus_task_goal_mm(&self->travel.task, &self->knowledge));
+    return (argus_intent_t){.act = ARGUS_DO_DECIDE};
+}
+
+static void stop(argus_t *const self, const argus_stop_t how) {
+    switch (how) {
+    case ARGUS_STOP_HALT:
+        argus_halt(self);
+        break;
+    case ARGUS_STOP_STOP:
+        argus_stop(self, ARCOS_CMD_STOP);
+        break;
+    case ARGUS_STOP_E_STOP:
+        argus_stop(self, ARCOS_CMD_E_STOP);
+        break;
+    case ARGUS_STOP_NONE:
+    default:
+        break;
+    }
+}
+
+static void close_way(argus_t *const self, const argus_intent_t *const intent) {
+    argus_task_t *const task = &self->travel.task;
+    if (intent->bumped) {
+        argus_echoes_bumped(&self->echoes, &self->knowledge, self->now_ms);
+    }
+    switch ((argus_way_t)intent->way) {
+    case ARGUS_WAY_REFUSE:
+        argus_task_refuse(task, &self->knowledge);
+        break;
+    case ARGUS_WAY_REFUSE_SLANT:
+        argus_task_refuse_slant(task, &self->knowledge);
+        break;
+    case ARGUS_WAY_FORGIVE:
+        argus_task_forgive(task, &self->knowledge);
+        break;
+    case ARGUS_WAY_KEEP:
+    default:
+        break;
+    }
+}
+
+static void take_base(argus_t *const self, const argus_base_do_t what) {
+    argus_base_t *const base = &self->base;
+    if (what == ARGUS_BASE_RENEW || (what == ARGUS_BASE_TAKE && !base->taken)) {
+        base->cdeg = self->knowledge.pose.heading_cdeg;
+        base->taken = true;
+    } else if (what == ARGUS_BASE_DROP) {
+        base->taken = false;
+    }
+}
+
+static void prepare(argus_t *const self, const argus_intent_t *const intent) {
+    if (intent->event != 0) {
+        argus_say(self, (argus_event_id_t)intent->event, intent->sonar, intent->value);
+    }
+    argus_evidence_note_jump(&self->evidence, intent->doubted);
+    stop(self, (argus_stop_t)intent->stop);
+    close_way(self, intent);
+    self->checked = self->checked && !intent->unchecked;
+    take_base(self, (argus_base_do_t)intent->base);
+}
+
+static argus_intent_t perform_motion(argus_t *const self, const argus_intent_t *const intent) {
+    switch ((argus_act_t)intent->act) {
+    case ARGUS_DO_HOLD:
+        argus_hold(self);
+        break;
+    case ARGUS_DO_BRAKE:
+        argus_brake(self);
+        break;
+    case ARGUS_DO_TURN:
+        return turn(self, intent->cdeg);
+    case ARGUS_DO_DRIVE:
+    case ARGUS_DO_STEP:
+        go_ahead(self, intent);
+        break;
+    case ARGUS_DO_BACK:
+        back(self, intent);
+        break;
+    case ARGUS_DO_ENABLE:
+        argus_enable_motors(self);
+        break;
+    case ARGUS_DO_END_TURN:
+        return end_turn(self, intent->at);
+    default:
+        break;
+    }
+    return nothing();
+}
+
+static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *const intent) {
+    switch ((argus_act_t)intent->act) {
+    case ARGUS_DO_CHECK:
+        enter_checking(self, intent);
+        break;
+    case ARGUS_DO_VERIFY:
+        enter_verifying(self, intent->sonars);
+        break;
+    case ARGUS_DO_WAIT:
+        enter_waiting(self, (argus_wait_t)intent->why);
+        break;
+    case ARGUS_DO_DECIDE:
+        return decide(self);
+    case ARGUS_DO_GO_OFFLINE:
+        enter(self, self->orders.shutdown ? ARGUS_MODE_CLOSED : ARGUS_MODE_OFFLINE);
+        break;
+    case ARGUS_DO_LEAVE:
+        enter(self, ARGUS_MODE_CLOSING);
+        break;
+    case ARGUS_DO_END:
+        enter(self, ARGUS_MODE_CLOSED);
+        break;
+    default:
+        break;
+    }
+    return nothing();
+}
+
+static argus_intent_t perform_judgement(argus_t *const self, const argus_intent_t *const intent) {
+    switch ((argus_act_t)intent->act) {
+    case ARGUS_DO_CHECK_BESIDE:
+        return argus_check_beside(self);
+    case ARGUS_DO_CONCLUDE:
+        return argus_conclude_check(self);
+    case ARGUS_DO_VERDICT:
+        argus_apply_verdict(self);
+        break;
+    case ARGUS_DO_LOOK:
+        return begin_looks(self, intent);
+    case ARGUS_DO_LOOKED:
+        argus_conclude_looks(self);
+        return (argus_intent_t){.act = ARGUS_DO_CHECK};
+    case ARGUS_DO_LEAVE_OPEN:
+        argus_leave_open(self, intent->sonars);
+        return (argus_intent_t){.act = ARGUS_DO_CHECK};
+    case ARGUS_DO_LOSE:
+        return lose(self, intent);
+    case ARGUS_DO_WATCH:
+        argus_watch(self, intent->sonars);
+        break;
+    case ARGUS_DO_REACH:
+        return reach(self);
+    default:
+        break;
+    }
+    return nothing();
+}
+
+static argus_intent_t perform(argus_t *const self, const argus_intent_t *const intent) {
+    if (intent->act <= ARGUS_DO_END_TURN) {
+        return perform_motion(self, intent);
+    }
+    return intent->act <= ARGUS_DO_END ? perform_change(self, intent) : perform_judgement(self, intent);
+}
+
+void argus_do(argus_t *const self, argus_intent_t intent) {
+    for (int i = 0; i < FOLLOW_MOST; i++) {
+        prepare(self, &intent);
+        if (intent.act == ARGUS_DO_NOTHING) {
+            return;
+        }
+        intent = perform(self, &intent);
+    }
+    ARGUS_ASSERT(intent.act == ARGUS_DO_NOTHING && intent.event == 0);
+}
+
+// One SIP --------------------------------------------------------------------------------------------------
+
+void argus_react(argus_t *const self, const argus_alarm_t *const alarm) {
+    bool goes_on = argus_mode_may(self->mode, ARGUS_MAY_REACT);
+    for (int i = 0; i < ARGUS_REFLEXES && goes_on; i++) {
+        const argus_intent_t intent = argus_reflex((argus_reflex_t)i, self, alarm, &self->reflexes);
+        argus_do(self, intent);
+        goes_on = intent.act == ARGUS_DO_NOTHING || !argus_reflex_is_last((argus_reflex_t)i);
+    }
+}
+
+void argus_judge_all(argus_t *const self) {
+    if (!argus_rules(self)->evidence) {
+        return;
+    }
+    for (int i = 0; i < self->knowledge.sonars && argus_mode_may(self->mode, ARGUS_MAY_JUDGE); i++) {
+        argus_do(self, argus_judge(self, i));
+    }
+    argus_foretell(self);
+}
+
+static argus_intent_t run_nobody(argus_t *const self) {
+    (void)self;
+    return nothing();
+}
+
+static argus_intent_t run_checking(argus_t *const self) {
+    return argus_run_checking(self, &self->checking);
+}
+
+static argus_intent_t run_verifying(argus_t *const self) {
+    return argus_run_verifying(self, &self->verifying);
+}
+
+static argus_intent_t run_idle(argus_t *const self) {
+    return argus_run_idle(self);
+}
+
+static argus_intent_t run_driving(argus_t *const self) {
+    return argus_run_driving(self, &self->travel);
+}
+
+static argus_intent_t run_sweeping(argus_t *const self) {
+    return argus_run_sweeping(self, &self->travel);
+}
+
+static argus_intent_t run_stepping(argus_t *const self) {
+    return argus_run_stepping(self, &self->travel);
+}
+
+static argus_intent_t run_backing(argus_t *const self) {
+    return argus_run_backing(self);
+}
+
+static argus_intent_t run_waiting(argus_t *const self) {
+    return argus_run_waiting(self, &self->waiting);
+}
+
+static argus_intent_t run(argus_t *const self) {
+    switch (self->mode) {
+#define RUN(name, run, may, limit, then, meaning) \
+    case ARGUS_MODE_##name:                       \
+        return run_##run(self);
+        ARGUS_MODE_TABLE(RUN)
+#undef RUN
+    default:
+        return nothing();
+    }
+}
+
+void argus_run_mode(argus_t *const self) {
+    bool more = true;
+    for (int i = 0; i < MORE_MOST && more; i++) {
+        const argus_mode_t mode = self->mode;
+        const argus_intent_t intent = run(self);
+        argus_do(self, intent);
+        more = intent.more && self->mode == mode;
+    }
+    ARGUS_ASSERT(!more);
+}
+
+static void close_when_at_rest(argus_t *const self) {
+    const bool rested = argus_at_rest(&self->knowledge) && self->motion.settled;
+    const bool overdue = self->now_ms - self->since_ms >= argus_mode_limit_ms(self->mode);
+    const bool leaving = self->session.state == ARGUS_SESSION_LEAVING;
+    if (!leaving && (rested || self->orders.passive || overdue)) {
+        argus_session_leave(&self->session, self->now_ms);
+    }
+}
+
+void argus_process_mode(argus_t *const self) {
+    if (self->mode == ARGUS_MODE_CLOSING) {
+        close_when_at_rest(self);
+    }
+    argus_do(self, argus_go_on_waiting(self, &self->waiting));
+}

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Carries out intents and changes the mode; nobody else does.
+#ifndef ARGUS_MODES_H
+#define ARGUS_MODES_H
+
+#include "supervisor/intent.h"
+#include "supervisor/manager.h"
+
+// The intent and what follows from it.
+void argus_do(argus_t *self, argus_intent_t intent);
+
+// One SIP: what must happen at once; what the evidence says; what the present mode wants.
+void argus_react(argus_t *self, const argus_alarm_t *alarm);
+void argus_judge_all(argus_t *self);
+void argus_run_mode(argus_t *self);
+
+// Time alone: WAITING says so, CLOSING ends.
+void argus_process_mode(argus_t *self);
+
+#endif

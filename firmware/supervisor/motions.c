@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Puts commands to the wheels into the outbox, one motion at a time.
+#include "supervisor/motions.h"
+
+#include "supervisor/say.h"
+
+void argus_brake(argus_t *const self) {
+    argus_motion_stop(&self->motion, &self->session.outbox, self->now_ms);
+}
+
+void argus_hold(argus_t *const self) {
+    argus_motion_hold(&self->motion, self->now_ms);
+}
+
+void argus_stop(argus_t *const self, const uint8_t command) {
+    ARGUS_ASSERT(command == ARCOS_CMD_STOP || command == ARCOS_CMD_E_STOP);
+    self->travel.jog_mm = 0; // what an operator asked for is not taken up again by itself
+    if (self->orders.passive) {
+        argus_hold(self);
+        return;
+    }
+    argus_brake(self);
+    if (command == ARCOS_CMD_E_STOP) {
+        argus_outbox_urgent(&self->session.outbox, ARCOS_CMD_E_STOP);
+    }
+    self->stops++;
+    argus_say(self, ARGUS_EV_STOPPED, ARGUS_NO_SONAR, self->knowledge.pose.heading_cdeg);
+}
+
+static bool is_under_way(const argus_motion_t *const motion) {
+    return motion->kind == ARGUS_MOTION_MOVE || motion->kind == ARGUS_MOTION_TURN;
+}
+
+// A motion may be on its way though the SIPs do not show it yet.
+void argus_halt(argus_t *const self) {
+    const bool commanded = is_under_way(&self->motion) && !self->motion.settled;
+    if (!argus_at_rest(&self->knowledge) || commanded) {
+        argus_stop(self, ARCOS_CMD_STOP);
+    }
+}
+
+void argus_come_to_rest(argus_t *const self) {
+    if (self->motion.settled) {
+        return;
+    }
+    if (is_under_way(&self->motion) && !self->motion.failed) {
+        argus_stop(self, ARCOS_CMD_STOP);
+    } else if (self->motion.kind != ARGUS_MOTION_STOP || self->motion.failed) {
+        argus_hold(self);
+    }
+}
+
+void argus_turn_to(argus_t *const self, const int32_t heading_cdeg) {
+    ARGUS_ASSERT(!self->orders.passive);
+    argus_motion_turn(&self->motion, &self->session.outbox, &self->knowledge, heading_cdeg, self->now_ms);
+}
+
+void argus_move(argus_t *const self, const int32_t distance_mm, const int32_t speed_mm_s) {
+    ARGUS_ASSERT(!self->orders.passive);
+    argus_motion_move(&self->motion, &self->session.outbox, distance_mm, speed_mm_s, self->now_ms);
+}
+
+void argus_steer(argus_t *const self, const int32_t heading_cdeg) {
+    argus_motion_steer(&self->session.outbox, &self->knowledge, heading_cdeg);
+}
+
+void argus_enable_motors(argus_t *const self) {
+    argus_outbox_int(&self->session.outbox, ARCOS_CMD_ENABLE, 1);
+}

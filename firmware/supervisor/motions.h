@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Commands to the robot's wheels.
+#ifndef ARGUS_MOTIONS_H
+#define ARGUS_MOTIONS_H
+
+#include "supervisor/manager.h"
+
+// STOP or E_STOP; under `passive` nothing is sent, and rest waited for.
+void argus_stop(argus_t *self, uint8_t command);
+
+// STOP, unless the robot stands and no motion is on its way.
+void argus_halt(argus_t *self);
+
+// A STOP that belongs to the way, and waiting for rest on whatever heading.
+void argus_brake(argus_t *self);
+void argus_hold(argus_t *self);
+
+// Whatever is under way must not go on beside a check.
+void argus_come_to_rest(argus_t *self);
+
+void argus_turn_to(argus_t *self, int32_t heading_cdeg);
+void argus_move(argus_t *self, int32_t distance_mm, int32_t speed_mm_s);
+void argus_steer(argus_t *self, int32_t heading_cdeg);
+void argus_enable_motors(argus_t *self);
+
+#endif

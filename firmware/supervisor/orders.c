@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+// Turns the orders of an operator into settings and intents.
+#include "supervisor/orders.h"
+
+#include "knowledge/angle.h"
+#include "supervisor/body.h"
+#include "supervisor/faults.h"
+#include "supervisor/looks.h"
+#include "supervisor/modes.h"
+#include "supervisor/motions.h"
+#include "supervisor/say.h"
+#include "supervisor/state.h"
+
+static argus_act_t check_if_open(const argus_t *const self) {
+    return argus_is_open(self) ? ARGUS_DO_CHECK : ARGUS_DO_NOTHING;
+}
+
+static void check(argus_t *const self, const bool full) {
+    argus_do(self, (argus_intent_t){.act = (uint8_t)check_if_open(self), .full = full});
+}
+
+static void stop_and_check(argus_t *const self, const bool full) {
+    argus_do(self,
+             (argus_intent_t){.stop = ARGUS_STOP_STOP, .act = (uint8_t)check_if_open(self), .full = full});
+}
+
+static void enable_motors(argus_t *const self) {
+    if (!self->orders.passive && argus_is_open(self)) {
+        argus_enable_motors(self);
+    }
+}
+
+// The whole robot ------------------------------------------------------------------------------------------
+
+static void pause(argus_t *const self) {
+    self->orders.paused = true;
+    self->orders.stay = true;
+    self->base.taken = false;
+    self->travel.jog_mm = 0;
+    stop_and_check(self, false);
+}
+
+static void resume(argus_t *const self) {
+    self->orders.paused = false;
+    enable_motors(self);
+    argus_task_restart(&self->travel.task);
+    if (self->mission == ARGUS_MISSION_FAILED) {
+        self->mission = ARGUS_MISSION_RUNNING;
+    }
+    check(self, true);
+}
+
+static void recheck(argus_t *const self) {
+    if (argus_is_open(self)) {
+        argus_awareness_init(&self->awareness);
+        stop_and_check(self, true);
+    }
+}
+
+static void go_passive(argus_t *const self) {
+    argus_do(self, (argus_intent_t){.stop = ARGUS_STOP_STOP});
+    self->orders.passive = true;
+    self->orders.barred = false;
+    argus_say(self, ARGUS_EV_PASSIVE, ARGUS_NO_SONAR, 0);
+    check(self, false);
+}
+
+static void go_active(argus_t *const self) {
+    if (self->orders.locked || argus_say_barred(self)) {
+        return;
+    }
+    self->orders.passive = false;
+    self->reflexes.motors_said = false;
+    argus_say(self, ARGUS_EV_ACTIVE, ARGUS_NO_SONAR, 0);
+    enable_motors(self);
+    if (self->plan.disabled != 0 || self->ordered) { // the plan may have gone while nothing was commanded
+        argus_share_slots(self);
+    }
+    check(self, true);
+}
+
+static void jog(argus_t *const self, const int32_t distance_mm) {
+    const argus_guard_t guard = argus_guard(self);
+    if (self->mode != ARGUS_MODE_IDLE || !argus_guard_may_translate(&guard) || distance_mm == 0) {
+        return;
+    }
+    if (argus_open_suspects(self) != 0) { // S6: verified first
+        self->travel.jog_mm = argus_max(0, argus_min(distance_mm, self->config.step_mm));
+        check(self, true);
+        return;
+    }
+    if (distance_mm < 0) {
+        argus_do(self, (argus_intent_t){.act = ARGUS_DO_BACK,
+                                        .mm = -argus_max(distance_mm, -self->config.backoff_mm),
+                                        .speed_mm_s = self->config.step_speed_mm_s});
+        return;
+    }
+    self->travel.jog_mm = argus_min(distance_mm, self->config.step_mm);
+    argus_do(self, (argus_intent_t){.act = ARGUS_DO_DECIDE});
+}
+
+// The check that follows turns to the base heading first.
+static void jog_turn(argus_t *const self, const int32_t degrees) {
+    if (self->mode == ARGUS_MODE_IDLE && !self->orders.passive) {
+        self->base.cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + degrees % 360 * 100);
+        self->base.taken = true;
+        argus_awareness_moved(&self->awareness);
+        argus_do(self, (argus_intent_t){.act = ARGUS_DO_CHECK});
+    }
+}
+
+static void obey_for_all(argus_t *const self, const argus_op_t op, const int32_t argument) {
+    self->orders.stay = false;
+    switch (op) {
+    case ARGUS_OP_STOP:
+        pause(self);
+        break;
+    case ARGUS_OP_GO:
+        resume(self);
+        break;
+    case ARGUS_OP_RECHECK:
+        recheck(self);
+        break;
+    case ARGUS_OP_MOVE:
+        jog(self, argument);
+        break;
+    case ARGUS_OP_TURN:
+        jog_turn(self, argument);
+        break;
+    case ARGUS_OP_PASSIVE:
+        go_passive(self);
+        break;
+    case ARGUS_OP_ACTIVE:
+        go_active(self);
+        break;
+    default:
+        break;
+    }
+}
+
+// One sonar ------------------------------------------------------------------------------------------------
+
+// One in use becomes a suspect that the next health check looks at; one that is out begins its probation
+// anew, with its relapses forgiven, since nothing but evidence brings it back.
+static void begin_retest(argus_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const argus_mask_t bit = (argus_mask_t)(1u << sonar);
+    argus_evidence_forget(&self->evidence, sonar);
+    argus_evidence_forget_trend(&self->evidence, sonar);
+    argus_forget_acquittals(self, sonar);
+    self->awareness.verified &= (argus_mask_t) ~(unsigned)bit;
+    if (argus_is_out(&self->knowledge, sonar)) {
+        argus_say_change(self, sonar, ARGUS_CHANGE_RETESTED, s->kind, s->reading_mm);
+        self->looks.once = false; // a look at all comes with the check
+    } else {
+        argus_evidence_note_loss(&self->evidence, bit);
+        argus_flag_suspects(self, bit);
+    }
+}
+
+static bool may_serve(const argus_t *const self, const argus_op_t op, const int32_t sonar) {
+    if (sonar < 0 || sonar >= self->knowledge.sonars || op > ARGUS_OP_DISABLE) {
+        return false;
+    }
+    const bool pinned = (self->orders.pinned >> sonar & 1u) != 0;
+    if (op == ARGUS_OP_RETEST) {
+        return argus_is_open(self) && !pinned;
+    }
+    return argus_rules(self)->evidence && pinned == (op == ARGUS_OP_UNPIN);
+}
+
+static void retest(argus_t *const self, const int sonar) {
+    self->orders.stay = false; // the others order no motion
+    if (argus_rules(self)->evidence) {
+        begin_retest(self, sonar);
+    } else {
+        argus_awareness_init(&self->awareness);
+    }
+    stop_and_check(self, true);
+}
+
+static void pin(argus_t *const self, const int sonar, const bool on) {
+    const unsigned bit = 1u << sonar;
+    self->orders.pinned = (argus_mask_t)(on ? self->orders.pinned | bit : self->orders.pinned & ~bit);
+    argus_say(self, ARGUS_EV_SONAR_PINNED, sonar, on ? 1 : 0);
+}
+
+static void take_out(argus_t *const self, const int sonar) {
+    if (self->knowledge.sonar[sonar].health != ARGUS_DISABLED) {
+        argus_disable(self, sonar, ARGUS_KIND_WRONG);
+    }
+    pin(self, sonar, true);
+    check(self, false);
+}
+
+static void obey_for_one(argus_t *const self, const argus_op_t op, const int sonar) {
+    if (op == ARGUS_OP_RETEST) {
+        retest(self, sonar);
+    } else if (op == ARGUS_OP_DISABLE) {
+        take_out(self, sonar);
+    } else {
+        pin(self, sonar, op == ARGUS_OP_PIN);
+    }
+}
+
+bool argus_obey(argus_t *const self, const argus_op_t op, const int32_t argument) {
+    const bool for_one = op >= ARGUS_OP_RETEST;
+    if (self->orders.shutdown || (for_one && !may_serve(self, op, argument))) {
+        return false;
+    }
+    argus_say(self, ARGUS_EV_OPERATOR, ARGUS_NO_SONAR, (int32_t)op);
+    if (for_one) {
+        obey_for_one(self, op, argument);
+    } else {
+        obey_for_all(self, op, argument);
+    }
+    return true;
+}

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// What an operator orders: the course, a step or a turn, passive or active, one sonar.
+#ifndef ARGUS_ORDERS_H
+#define ARGUS_ORDERS_H
+
+#include "supervisor/manager.h"
+
+// False: it cannot be done, and nothing has changed.
+bool argus_obey(argus_t *self, argus_op_t op, int32_t argument);
+
+#endif

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+// Sees what calls for a STOP, or for an event, in one SIP.
+#include "supervisor/reflexes.h"
+
+#include "knowledge/angle.h"
+#include "supervisor/mode.h"
+#include "supervisor/state.h"
+
+#define LOW_BATTERY_DV 115 // where CONFIGpac names none
+#define HYSTERESIS_DV 2
+#define SETTLED_IN_MS 1500u
+
+static argus_intent_t nothing(void) {
+    return (argus_intent_t){.act = ARGUS_DO_NOTHING};
+}
+
+static argus_intent_t say(const argus_event_id_t event, const int sonar, const int32_t value) {
+    return (argus_intent_t){.event = (uint16_t)event, .sonar = (int8_t)sonar, .value = value};
+}
+
+// New contact only: bits already answered are let be until they clear.
+static argus_intent_t sees_bumper(const argus_t *const self, const argus_alarm_t *const alarm,
+                                  argus_reflexes_t *const mine) {
+    const argus_knowledge_t *const knowledge = &self->knowledge;
+    const uint16_t pressed = (uint16_t)(knowledge->bumpers_front << 8 | knowledge->bumpers_rear);
+    const bool fresh = (pressed & ~(unsigned)mine->bumpers) != 0;
+    const bool cleared = pressed == 0 && mine->bumpers != 0;
+    (void)alarm;
+    mine->bumpers = pressed;
+    if (!fresh) {
+        return cleared ? say(ARGUS_EV_BUMPER_CLEAR, ARGUS_NO_SONAR, 0) : nothing();
+    }
+    argus_intent_t intent = say(ARGUS_EV_BUMPER, ARGUS_NO_SONAR, pressed);
+    intent.stop = ARGUS_STOP_E_STOP;
+    intent.bumped = true;
+    intent.way = ARGUS_WAY_REFUSE;
+    intent.unchecked = true;
+    intent.act = ARGUS_DO_WAIT;
+    intent.why = ARGUS_WAIT_BUMPER;
+    return intent;
+}
+
+static argus_intent_t sees_stall(const argus_t *const self, const argus_alarm_t *const alarm,
+                                 argus_reflexes_t *const mine) {
+    const bool stalls = alarm->stall && mine->bumpers == 0;
+    const bool said = mine->stall_said;
+    mine->stall_said = alarm->stall;
+    if (!stalls || said) {
+        return nothing();
+    }
+    argus_intent_t intent =
+        say(ARGUS_EV_STALL, ARGUS_NO_SONAR, self->knowledge.stall_left + 2 * self->knowledge.stall_right);
+    intent.stop = ARGUS_STOP_STOP;
+    intent.way = ARGUS_WAY_REFUSE;
+    intent.unchecked = true;
+    intent.act = ARGUS_DO_WAIT;
+    intent.why = ARGUS_WAIT_BUMPER;
+    return intent;
+}
+
+// The others (0, 7, the rear array) are not judged, but one that yields nothing any more must not be relied
+// on.
+static argus_intent_t sees_others(const argus_t *const self, const argus_alarm_t *const alarm,
+                                  argus_reflexes_t *const mine) {
+    unsigned changed = 0;
+    (void)alarm;
+    (void)mine;
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        const argus_health_t health = self->knowledge.sonar[i].health;
+        const bool other = (argus_robot_forward(self->knowledge.robot) >> i & 1u) == 0;
+        const bool silent = argus_silent_ms(&self->knowledge, i) > (uint32_t)self->config.stale_ms;
+        const bool news = (health == ARGUS_HEALTHY && silent) || (health == ARGUS_STALE && !silent);
+        changed |= other && news ? 1u << i : 0u;
+    }
+    const bool counts = argus_rules(self)->disparity && changed != 0;
+    return (argus_intent_t){.act = counts ? ARGUS_DO_WATCH : ARGUS_DO_NOTHING,
+                            .sonars = (argus_mask_t)changed};
+}
+
+static argus_intent_t sees_battery(const argus_t *const self, const argus_alarm_t *const alarm,
+                                   argus_reflexes_t *const mine) {
+    const argus_session_t *const session = &self->session;
+    const int32_t stated_dv = session->has_robot ? session->robot.low_battery_dv : 0;
+    const int32_t low_dv = stated_dv > 0 ? stated_dv : LOW_BATTERY_DV;
+    const int32_t now_dv = self->knowledge.battery_dv;
+    const bool is_low = now_dv > 0 && now_dv <= low_dv;
+    const bool said = mine->battery_said;
+    (void)alarm;
+    mine->battery_said = is_low || (said && now_dv <= low_dv + HYSTERESIS_DV);
+    return is_low && !said ? say(ARGUS_EV_BATTERY_LOW, ARGUS_NO_SONAR, now_dv) : nothing();
+}
+
+// The motors may be cut by the robot's own button or E-stop at any time; a bumper's own stop is answered
+// elsewhere.
+static argus_intent_t sees_motors(const argus_t *const self, const argus_alarm_t *const alarm,
+                                  argus_reflexes_t *const mine) {
+    const bool off = (self->knowledge.flags & ARCOS_FLAG_MOTORS) == 0;
+    const bool settled_in = self->now_ms - self->knowledge.online_ms > SETTLED_IN_MS;
+    const bool busy = self->waiting.why == ARGUS_WAIT_BUMPER;
+    (void)alarm;
+    if (!argus_is_active(self) || busy || off == mine->motors_said || (off && !settled_in)) {
+        return nothing();
+    }
+    mine->motors_said = off;
+    argus_intent_t intent =
+        say(off ? ARGUS_EV_MOTORS_OFF : ARGUS_EV_MOTORS_ON, ARGUS_NO_SONAR, self->knowledge.flags);
+    intent.stop = ARGUS_STOP_STOP;
+    intent.unchecked = true;
+    intent.act = off ? ARGUS_DO_WAIT : ARGUS_DO_CHECK;
+    intent.why = ARGUS_WAIT_MOTORS;
+    intent.full = true;
+    return intent;
+}
+
+static argus_intent_t sees_dead(const argus_t *const self, const argus_alarm_t *const alarm,
+                                argus_reflexes_t *const mine) {
+    (void)self;
+    (void)mine;
+    if ((alarm->dead | alarm->silent) == 0) {
+        return nothing();
+    }
+    return (argus_intent_t){
+        .stop = ARGUS_STOP_STOP, .act = ARGUS_DO_LOSE, .sonars = alarm->dead, .silent = alarm->silent};
+}
+
+// An object is looked at again at rest, with Algorithm 1, before it is believed: a sonar that lies low is
+// found there.
+static argus_intent_t sees_object(const argus_t *const self, const argus_alarm_t *const alarm,
+                                  argus_reflexes_t *const mine) {
+    const bool backing = self->mode == ARGUS_MODE_BACKING;
+    (void)mine;
+    if (alarm->object == 0 || !argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE) ||
+        self->motion.kind == ARGUS_MOTION_STOP) {
+        return nothing();
+    }
+    argus_intent_t intent = say(ARGUS_EV_OBJECT, alarm->object_sonar, alarm->object_mm);
+    intent.stop = ARGUS_STOP_STOP;
+    intent.way = backing ? ARGUS_WAY_KEEP : ARGUS_WAY_REFUSE;
+    intent.doubted = alarm->object;
+    intent.act = ARGUS_DO_CHECK;
+    intent.full = true;
+    return intent;
+}
+
+// True: for the second time. One echo within the swing circle may be crosstalk, the second one of the same
+// place is not.
+static bool note_near(const argus_t *const self, argus_reflexes_t *const mine, const int sonar,
+                      argus_point_t *const at) {
+    const argus_guard_t guard = argus_guard(self);
+    bool left = false;
+    const argus_touch_t touch = argus_guard_touch(&guard, sonar, at, &left);
+    if (touch == ARGUS_TOUCH_NONE) {
+        return false;
+    }
+    argus_near_t *const near = &mine->near[left ? 1 : 0]; // in a passage both sides show
+    const bool here = near->valid && self->now_ms - near->t_ms <= argus_guard_two_rounds_ms(&self->config) &&
+                      argus_are_one_thing(*at, near->at);
+    *near = (argus_near_t){*at, self->now_ms, true};
+    return here || touch == ARGUS_TOUCH_AGAIN;
+}
+
+// S7 holds through the turn: what comes into view within the swing circle ends it.
+static argus_intent_t sees_swing(const argus_t *const self, const argus_alarm_t *const alarm,
+                                 argus_reflexes_t *const mine) {
+    const bool turning = self->motion.kind == ARGUS_MOTION_TURN && !self->motion.settled;
+    argus_point_t at = {0, 0};
+    (void)alarm;
+    if (!argus_rules(self)->watches_turn || !turning) {
+        mine->near[0].valid = mine->near[1].valid = false;
+        return nothing();
+    }
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        const bool fresh = (self->knowledge.fresh >> i & 1u) != 0 && argus_usable(&self->knowledge, i);
+        if (fresh && note_near(self, mine, i, &at)) {
+            return (argus_intent_t){.act = ARGUS_DO_END_TURN, .at = at};
+        }
+    }
+    return nothing();
+}
+
+// A smooth wall that the robot slants into is heard by the sonar that looks abeam alone.
+static argus_intent_t sees_flank(const argus_t *const self, const argus_alarm_t *const alarm,
+                                 argus_reflexes_t *const mine) {
+    const bool ahead = argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE) && self->mode != ARGUS_MODE_BACKING;
+    (void)alarm;
+    (void)mine;
+    if (!argus_rules(self)->watches_flank || !ahead || self->motion.kind != ARGUS_MOTION_MOVE ||
+        self->motion.settled) {
+        return nothing();
+    }
+    const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge) &
+                            argus_robot_flank(self->knowledge.robot);
+    const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if ((usable >> i & 1u) != 0 && argus_evidence_slants_in(&self->evidence, i, stop_mm)) {
+            argus_intent_t intent = say(ARGUS_EV_OBJECT, i, self->knowledge.sonar[i].reading_mm);
+            intent.stop = ARGUS_STOP_STOP;
+            intent.way = ARGUS_WAY_REFUSE_SLANT;
+            intent.act = ARGUS_DO_CHECK;
+            intent.full = true;
+            return intent;
+        }
+    }
+    return nothing();
+}
+
+argus_intent_t argus_reflex(const argus_reflex_t reflex, const argus_t *const self,
+                            const argus_alarm_t *const alarm, argus_reflexes_t *const mine) {
+    switch (reflex) {
+#define SEES(name, last, meaning) \
+    case ARGUS_REFLEX_##name:     \
+        return sees_##name(self, alarm, mine);
+        ARGUS_REFLEX_TABLE(SEES)
+#undef SEES
+    case ARGUS_REFLEXES:
+    default:
+        return nothing();
+    }
+}
+
+bool argus_reflex_is_last(const argus_reflex_t reflex) {
+    static const uint8_t last_of[] = {
+#define LAST(name, last, meaning) (last),
+        ARGUS_REFLEX_TABLE(LAST)
+#undef LAST
+    };
+    ARGUS_ASSERT(reflex < ARGUS_REFLEXES);
+    return last_of[reflex] != 0;
+}

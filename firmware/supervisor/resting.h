@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// The modes in which the robot stays where it is: CHECKING, VERIFYING, IDLE, WAITING; and BACKING.
+#ifndef ARGUS_RESTING_H
+#define ARGUS_RESTING_H
+
+#include "supervisor/intent.h"
+#include "supervisor/manager.h"
+
+// Each says on every SIP what is to be done, and writes its own state alone.
+argus_intent_t argus_run_checking(const argus_t *self, argus_checking_t *mine);
+argus_intent_t argus_run_verifying(const argus_t *self, argus_verifying_t *mine);
+argus_intent_t argus_run_idle(const argus_t *self);
+argus_intent_t argus_run_waiting(const argus_t *self, argus_waiting_t *mine);
+argus_intent_t argus_run_backing(const argus_t *self);
+
+// WAITING says so each 10 s.
+argus_intent_t argus_go_on_waiting(const argus_t *self, argus_waiting_t *mine);
+
+#endif

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// Answers what several parts of the manager ask of its state.
+#include "supervisor/state.h"
+
+#include "knowledge/angle.h"
+
+#define HEMMED_IN_MS 10000u // people who stand beside it walk on
+
+const argus_profile_t *argus_rules(const argus_t *const self) {
+    return argus_profile(&self->config);
+}
+
+bool argus_is_active(const argus_t *const self) {
+    return !self->orders.passive && !self->orders.shutdown;
+}
+
+bool argus_is_open(const argus_t *const self) {
+    return argus_session_is_open(&self->session);
+}
+
+argus_guard_t argus_guard(const argus_t *const self) {
+    const argus_guard_t guard = {.config = &self->config,
+                                 .profile = argus_rules(self),
+                                 .knowledge = &self->knowledge,
+                                 .echoes = &self->echoes,
+                                 .now_ms = self->now_ms,
+                                 .bumpers = self->reflexes.bumpers,
+                                 .backed = self->turning.backed,
+                                 .active = argus_is_active(self),
+                                 .linked = argus_is_open(self) && !self->stalled,
+                                 .checked = self->checked};
+    return guard;
+}
+
+int32_t argus_base_cdeg(const argus_t *const self) {
+    return self->base.taken ? self->base.cdeg : self->knowledge.pose.heading_cdeg;
+}
+
+argus_mask_t argus_wanted_sonars(const argus_t *const self) {
+    return (argus_mask_t)(argus_robot_forward(self->knowledge.robot) &
+                          ~(unsigned)argus_out(&self->knowledge));
+}
+
+argus_mask_t argus_open_suspects(const argus_t *const self) {
+    return (argus_mask_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
+                          ~(unsigned)self->awareness.verified);
+}
+
+bool argus_is_hemmed_in(const argus_t *const self) {
+    const argus_waiting_t *const waiting = &self->waiting;
+    if (!argus_rules(self)->leaves_ahead || waiting->last != ARGUS_WAIT_TURN ||
+        self->now_ms - waiting->since_ms < HEMMED_IN_MS) {
+        return false;
+    }
+    const argus_guard_t guard = argus_guard(self);
+    return self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused && guard.bumpers == 0 &&
+           !argus_guard_may_turn(&guard) && !argus_guard_may_back_off(&guard);
+}
+
+int argus_nearest_ahead(const argus_t *const self) {
+    const argus_knowledge_t *const knowledge = &self->knowledge;
+    int nearest = -1;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (argus_robot_faces_forward(knowledge->robot, i) && knowledge->sonar[i].reported &&
+            !argus_is_out(knowledge, i) &&
+            (nearest < 0 || knowledge->sonar[i].reading_mm < knowledge->sonar[nearest].reading_mm)) {
+            nearest = i;
+        }
+    }
+    return nearest;
+}
+
+argus_intent_t argus_turn_failed(const argus_t *const self) {
+    const int32_t off_cdeg =
+        argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, self->motion.target_cdeg);
+    return (argus_intent_t){.event = ARGUS_EV_TURN_FAILED,
+                            .sonar = ARGUS_NO_SONAR,
+                            .value = off_cdeg / 100,
+                            .act = ARGUS_DO_WAIT,
+                            .why = ARGUS_WAIT_MOTORS};
+}
+
+bool argus_is_home(const argus_t *const self, const bool again, argus_intent_t *const intent) {
+    *intent = (argus_intent_t){0};
+    if (self->orders.passive) {
+        return true;
+    }
+    if (self->motion.failed) {
+        *intent = argus_turn_failed(self);
+        return false;
+    }
+    if (!self->motion.settled) {
+        return false;
+    }
+    const argus_guard_t guard = argus_guard(self);
+    if (argus_is_hemmed_in(self)) { // it may get out ahead
+        intent->base = ARGUS_BASE_RENEW;
+        return true;
+    }
+    intent->base = ARGUS_BASE_TAKE;
+    if (argus_guard_is_home(&guard, argus_base_cdeg(self))) {
+        return true;
+    }
+    if (!self->turning.again || again) {
+        intent->act = ARGUS_DO_TURN;
+        intent->cdeg = argus_base_cdeg(self);
+    }
+    return false;
+}
+
+// It is healthy and shows no gaps: what is there it hears again.
+static bool is_steady(const argus_t *const self, const int sonar) {
+    return self->knowledge.sonar[sonar].health == ARGUS_HEALTHY &&
+           !argus_evidence_shows_gaps(&self->evidence, sonar);
+}
+
+static bool only_steady_forbid_to_turn(const argus_t *const self, const argus_guard_t *const guard) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if (argus_guard_echo_blocks(guard, i) && !is_steady(self, i)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// All that forbids to turn is an echo of now, of who would hear it again were something there. Once for each
+// try, since echoes that jump are never remembered as of one thing.
+static bool may_be_crosstalk(const argus_t *const self, const argus_guard_t *const guard) {
+    return guard->profile->reads_again && !self->turning.again && guard->bumpers == 0 &&
+           !argus_guard_memory_blocks(guard) && only_steady_forbid_to_turn(self, guard);
+}
+
+// A few times backing away may help.
+argus_intent_t argus_instead_of_turn(const argus_t *const self) {
+    const argus_guard_t guard = argus_guard(self);
+    if (may_be_crosstalk(self, &guard)) {
+        return (argus_intent_t){.act = ARGUS_DO_CHECK, .again = true};
+    }
+    const int32_t nearest_mm = argus_guard_nearest_mm(&guard, 0);
+    argus_intent_t intent = {.event = ARGUS_EV_TURN_BLOCKED,
+                             .sonar = ARGUS_NO_SONAR,
+                             .value = nearest_mm == INT32_MAX ? 0 : nearest_mm,
+                             .act = ARGUS_DO_WAIT,
+                             .why = ARGUS_WAIT_TURN};
+    if (argus_guard_may_back_off(&guard)) {
+        intent.act = ARGUS_DO_BACK;
+        intent.mm = argus_guard_back_mm(&guard);
+        intent.speed_mm_s = argus_guard_back_speed_mm_s(&guard);
+    }
+    return intent;
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Questions on the state of the manager that several of its parts ask. Nothing is changed.
+#ifndef ARGUS_STATE_H
+#define ARGUS_STATE_H
+
+#include "adjustment/guard.h"
+#include "supervisor/intent.h"
+#include "supervisor/manager.h"
+
+// Which rules run.
+const argus_profile_t *argus_rules(const argus_t *self);
+
+// The safety rules, asked of the present state.
+argus_guard_t argus_guard(const argus_t *self);
+
+bool argus_is_active(const argus_t *self);
+bool argus_is_open(const argus_t *self);
+
+// The heading to return to; the present one where none is taken.
+int32_t argus_base_cdeg(const argus_t *self);
+
+// Sonars of 1..6 that are in use; suspects not verified in this place, also those whose verification was
+// broken off or could not be begun.
+argus_mask_t argus_wanted_sonars(const argus_t *self);
+argus_mask_t argus_open_suspects(const argus_t *self);
+
+// On its course, and has waited in vain to turn or to back away.
+bool argus_is_hemmed_in(const argus_t *self);
+
+// Of the sonars in use that look ahead the one that reads least; -1: none.
+int argus_nearest_ahead(const argus_t *self);
+
+// True when the robot stands on the base heading, which is then taken. Else what leads there is in `intent`.
+// `again`: an echo that forbade to turn has been read once more.
+bool argus_is_home(const argus_t *self, bool again, argus_intent_t *intent);
+
+// A turn was commanded several times and not executed.
+argus_intent_t argus_turn_failed(const argus_t *self);
+
+// What is done instead of a turn that S7 forbids.
+argus_intent_t argus_instead_of_turn(const argus_t *self);
+
+#endif

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Stops another robot than the one before, forgets that one, and waits for an operator.
+#include "supervisor/stranger.h"
+
+#include <string.h>
+
+#include "supervisor/faults.h"
+#include "supervisor/modes.h"
+
+static void forget(argus_t *const self) {
+    argus_knowledge_init(&self->knowledge);
+    argus_echoes_init(&self->echoes);
+    argus_awareness_init(&self->awareness);
+    argus_evidence_init(&self->evidence);
+    argus_evidence_set_caution(&self->evidence, self->config.caution);
+    memset(&self->verifying, 0, sizeof self->verifying);
+    memset(&self->looks, 0, sizeof self->looks);
+    self->orders.pinned = 0;
+    self->history.recorded = 0;
+    argus_task_restart(&self->travel.task);
+}
+
+void argus_meet_stranger(argus_t *const self) {
+    argus_do(self, (argus_intent_t){.event = ARGUS_EV_OTHER_ROBOT,
+                                    .sonar = ARGUS_NO_SONAR,
+                                    .value = self->session.differs,
+                                    .stop = ARGUS_STOP_STOP}); // it may still do what an earlier client asked
+    self->orders.passive = true;
+    self->orders.paused = true;
+    self->orders.stay = true;
+    self->orders.barred = false;
+    forget(self);
+    argus_replan(self);
+    argus_do(self, (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true});
+}

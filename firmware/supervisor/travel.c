@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+// Drives: normally, and in failure mode sweep by sweep and step by step.
+#include "supervisor/travel.h"
+
+#include "knowledge/angle.h"
+#include "supervisor/state.h"
+
+#define AIM_CDEG 1000    // a bearing farther off than this is turned to at rest
+#define AIMED_CDEG 200   // at rest, near enough
+#define STEER_CDEG 200   // while driving, corrected beyond this
+#define STEER_LEG_MM 250 // ... and only this far from the leg's end
+#define LEG_DONE_MM 60
+#define FLANK_MM 130
+#define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
+
+static argus_intent_t nothing(void) {
+    return (argus_intent_t){.act = ARGUS_DO_NOTHING};
+}
+
+static argus_intent_t check(const bool full) {
+    return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = full};
+}
+
+static argus_intent_t turn(const int32_t heading_cdeg) {
+    return (argus_intent_t){.act = ARGUS_DO_TURN, .cdeg = heading_cdeg};
+}
+
+// The SIP is not used up yet.
+static argus_intent_t say(const argus_event_id_t event, const int sonar, const int32_t value) {
+    return (argus_intent_t){.event = (uint16_t)event, .sonar = (int8_t)sonar, .value = value, .more = true};
+}
+
+void argus_begin_travel(argus_travel_t *const mine) {
+    mine->aimed = false;
+    mine->arriving = false;
+}
+
+static int32_t bearing(const argus_t *const self, const argus_travel_t *const mine) {
+    return mine->jog_mm > 0 ? self->knowledge.pose.heading_cdeg
+                            : argus_task_bearing_cdeg(&mine->task, &self->knowledge);
+}
+
+static int32_t off_bearing(const argus_t *const self, const argus_travel_t *const mine) {
+    return argus_angle_abs_diff(bearing(self, mine), self->knowledge.pose.heading_cdeg);
+}
+
+static int32_t left_mm(const argus_t *const self, const argus_travel_t *const mine) {
+    return mine->jog_mm > 0 ? mine->jog_mm : argus_task_leg_mm(&mine->task, &self->knowledge);
+}
+
+static argus_intent_t arrive(const argus_t *const self, argus_travel_t *const mine) {
+    if (!mine->arriving) {
+        mine->arriving = true;
+        return (argus_intent_t){.act = ARGUS_DO_BRAKE};
+    }
+    return (argus_intent_t){.act = self->motion.settled ? ARGUS_DO_REACH : ARGUS_DO_NOTHING};
+}
+
+// Waypoints and the goal. True: `intent` is what the SIP calls for.
+static bool makes_progress(const argus_t *const self, argus_travel_t *const mine,
+                           argus_intent_t *const intent) {
+    int passed = 0;
+    const bool arrived = argus_task_progress(&mine->task, &self->knowledge, &self->config, &passed);
+    mine->unsaid = (uint16_t)(mine->unsaid + passed);
+    if (mine->unsaid > 0) {
+        *intent = say(ARGUS_EV_WAYPOINT, ARGUS_NO_SONAR, mine->task.next - mine->unsaid + 1);
+        mine->unsaid--;
+        return true;
+    }
+    if (arrived) {
+        *intent = arrive(self, mine);
+    }
+    return arrived;
+}
+
+// What comes before the way: the motors, the course, the health check beside it. True: `intent` is what the
+// SIP calls for.
+static bool is_called_away(const argus_t *const self, argus_travel_t *const mine,
+                           argus_intent_t *const intent) {
+    if (mine->jog_mm == 0 && makes_progress(self, mine, intent)) {
+        return true;
+    }
+    if (mine->beside_sip == self->knowledge.sips) {
+        return false;
+    }
+    mine->beside_sip = self->knowledge.sips;
+    *intent = (argus_intent_t){.act = ARGUS_DO_CHECK_BESIDE, .more = true};
+    return true;
+}
+
+static argus_intent_t cannot_move(void) {
+    argus_intent_t intent = check(true);
+    intent.stop = ARGUS_STOP_STOP;
+    return intent;
+}
+
+static void end_leg(const argus_t *const self, argus_travel_t *const mine) {
+    if (mine->jog_mm > 0 || !mine->task.has_leg) {
+        return;
+    }
+    const bool detour =
+        mine->task.avoiding && argus_task_leg_mm(&mine->task, &self->knowledge) <= LEG_DONE_MM;
+    const bool missed = mine->aimed && off_bearing(self, mine) > AIM_CDEG;
+    mine->task.has_leg = !detour;
+    mine->aimed = mine->aimed && !missed;
+}
+
+// A leg to drive. False: `intent` is what the SIP calls for.
+static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
+    if (mine->jog_mm > 0 || mine->task.has_leg) {
+        return true;
+    }
+    if (!argus_task_choose(&mine->task, &self->knowledge, &self->echoes)) {
+        *intent = (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_WAY};
+        return false;
+    }
+    mine->aimed = false;
+    if (!mine->task.avoiding) {
+        return true;
+    }
+    *intent = say(ARGUS_EV_AVOIDING, ARGUS_NO_SONAR, bearing(self, mine) / 100);
+    return false;
+}
+
+// Where there is no room to turn, a leg straight ahead may lead out; not along a wall that is so near that a
+// slant could not be seen in time.
+static argus_intent_t turn_to_bearing(const argus_t *const self, argus_travel_t *const mine) {
+    const argus_guard_t guard = argus_guard(self);
+    const bool narrow = argus_guard_swing_is_blocked(&guard) && mine->jog_mm == 0 &&
+                        argus_flank_mm(&self->knowledge) > FLANK_MM;
+    const bool leads_out = narrow && argus_task_escape(&mine->task, &self->knowledge, &self->echoes);
+    return leads_out ? nothing() : turn(bearing(self, mine));
+}
+
+// Turns to the leg's bearing at rest. True when the robot looks along it, else `intent` leads there.
+static bool is_aimed(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
+    *intent = nothing();
+    if (mine->aimed) {
+        return true;
+    }
+    if (self->motion.failed) {
+        *intent = argus_turn_failed(self);
+        return false;
+    }
+    if (!argus_at_rest(&self->knowledge) || !self->motion.settled) {
+        const bool moves = self->motion.kind == ARGUS_MOTION_MOVE && !self->motion.settled;
+        intent->act = moves ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING;
+        return false;
+    }
+    if (off_bearing(self, mine) > AIMED_CDEG) {
+        *intent = turn_to_bearing(self, mine);
+        return false;
+    }
+    mine->aimed = argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->motion.mark);
+    return mine->aimed;
+}
+
+// The event, a stop if it moves, and another heading after a full check.
+static argus_intent_t blocked(argus_travel_t *const mine, const argus_event_id_t event, const int sonar,
+                              const int32_t reading_mm) {
+    argus_intent_t intent = check(true);
+    intent.event = (uint16_t)event;
+    intent.sonar = (int8_t)sonar;
+    intent.value = reading_mm;
+    intent.stop = ARGUS_STOP_HALT;
+    intent.way = ARGUS_WAY_REFUSE;
+    mine->jog_mm = 0;
+    return intent;
+}
+
+static bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
+    if (self->knowledge.still_sips == 0 || self->motion.kind != ARGUS_MOTION_MOVE || self->motion.settled) {
+        mine->heeded_ms = self->now_ms;
+    }
+    return self->now_ms - mine->heeded_ms < UNHEEDED_MS;
+}
+
+// S3: a MOVE that ends where it should without us, renewed on each SIP.
+static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const mine) {
+    const argus_guard_t guard = argus_guard(self);
+    const int32_t way_mm = left_mm(self, mine);
+    const int32_t free_mm = argus_guard_ahead_mm(&guard);
+    if (!argus_guard_sees_ahead(&guard)) {
+        return nothing(); // the MOVE at work ends by itself
+    }
+    const int sonar = argus_nearest_ahead(self);
+    const int32_t nearest_mm = sonar < 0 ? 0 : self->knowledge.sonar[sonar].reading_mm;
+    if (nearest_mm <= self->config.object_range_mm) {
+        return blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm);
+    }
+    if (free_mm == 0) {
+        return nothing(); // a fresh reading will tell
+    }
+    if (!is_heeded(self, mine)) {
+        return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_MOTORS};
+    }
+    const bool steers = off_bearing(self, mine) > STEER_CDEG && way_mm > STEER_LEG_MM;
+    return (argus_intent_t){.act = ARGUS_DO_DRIVE,
+                            .mm = argus_min(way_mm, free_mm),
+                            .speed_mm_s = self->config.speed_mm_s,
+                            .steers = steers && argus_guard_may_turn(&guard),
+                            .cdeg = bearing(self, mine),
+                            .moves_on = true};
+}
+
+static argus_intent_t step(const argus_t *const self, const int32_t way_mm) {
+    return (argus_intent_t){.act = ARGUS_DO_STEP, .mm = way_mm, .speed_mm_s = self->config.step_speed_mm_s};
+}
+
+argus_intent_t argus_run_driving(const argus_t *const self, argus_travel_t *const mine) {
+    const argus_guard_t guard = argus_guard(self);
+    argus_intent_t intent = cannot_move();
+    if (!argus_guard_may_translate(&guard) || is_called_away(self, mine, &intent)) {
+        return intent;
+    }
+    end_leg(self, mine);
+    if (!has_way(self, mine, &intent) || !is_aimed(self, mine, &intent)) {
+        return intent;
+    }
+    if (mine->jog_mm > 0) { // one MOVE, then idle again
+        return step(self, argus_min(mine->jog_mm, argus_guard_ahead_mm(&guard)));
+    }
+    return drive_on(self, mine);
+}
+
+static argus_intent_t step_ahead(const argus_t *const self, const argus_travel_t *const mine) {
+    argus_intent_t intent = step(self, argus_min(left_mm(self, mine), self->config.step_mm));
+    intent.event = ARGUS_EV_STEP;
+    intent.sonar = ARGUS_NO_SONAR;
+    intent.value = intent.mm;
+    intent.moves_on = true;
+    return intent;
+}
+
+// The sweep is done and the robot is back on its heading: the compensating and the direct readings decide.
+static argus_intent_t judge_sweep(const argus_t *const self, argus_travel_t *const mine) {
+    const int direct = argus_nearest_ahead(self);
+    const int32_t direct_mm = direct < 0 ? 0 : self->knowledge.sonar[direct].reading_mm;
+    if (!mine->swept) {
+        mine->swept = true;
+        return say(ARGUS_EV_SWEEP, mine->drive.smallest_of, mine->drive.smallest_mm);
+    }
+    if (mine->drive.smallest_mm <= self->config.check_range_mm) {
+        return blocked(mine, ARGUS_EV_OBJECT_CHECKED, mine->drive.smallest_of, mine->drive.smallest_mm);
+    }
+    if (direct_mm <= self->config.check_range_mm) {
+        return blocked(mine, ARGUS_EV_OBJECT, direct, direct_mm);
+    }
+    if (argus_open_suspects(self) != 0) { // S6: one that an operator wants looked at again
+        return check(false);
+    }
+    return step_ahead(self, mine);
+}
+
+static argus_intent_t sweep_on(const argus_t *const self, argus_travel_t *const mine) {
+    if (self->motion.failed) {
+        return check(true);
+    }
+    if (!self->motion.settled) {
+        return nothing();
+    }
+    if (mine->drive.done) {
+        const bool read =
+            argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->motion.mark);
+        return read ? judge_sweep(self, mine) : nothing();
+    }
+    if (argus_sweep_step(&mine->drive, &self->plan, &self->knowledge, &self->motion.mark) &&
+        !mine->drive.done) {
+        return turn(argus_sweep_heading_cdeg(&mine->drive, &self->plan));
+    }
+    return nothing();
+}
+
+static argus_intent_t begin_sweep(const argus_t *const self, argus_travel_t *const mine) {
+    argus_sweep_begin(&mine->drive, &self->plan, argus_base_cdeg(self));
+    mine->swept = false;
+    argus_intent_t intent = turn(argus_sweep_heading_cdeg(&mine->drive, &self->plan));
+    intent.base = ARGUS_BASE_TAKE;
+    return intent;
+}
+
+argus_intent_t argus_run_sweeping(const argus_t *const self, argus_travel_t *const mine) {
+    const argus_guard_t guard = argus_guard(self);
+    argus_intent_t intent = cannot_move();
+    if (!argus_guard_may_translate(&guard)) {
+        return intent;
+    }
+    if (self->base.taken) {
+        return sweep_on(self, mine);
+    }
+    if (is_called_away(self, mine, &intent)) {
+        return intent;
+    }
+    end_leg(self, mine);
+    if (!has_way(self, mine, &intent) || !is_aimed(self, mine, &intent)) {
+        return intent;
+    }
+    return begin_sweep(self, mine);
+}
+
+argus_intent_t argus_run_stepping(const argus_t *const self, argus_travel_t *const mine) {
+    if (!self->motion.settled) {
+        return nothing();
+    }
+    mine->jog_mm = 0;
+    return (argus_intent_t){.base = ARGUS_BASE_DROP, .act = ARGUS_DO_DECIDE};
+}

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The modes in which the robot goes its way: DRIVING, and in failure mode SWEEPING and STEPPING (paper: Fig.
+// 10).
+#ifndef ARGUS_TRAVEL_H
+#define ARGUS_TRAVEL_H
+
+#include "supervisor/intent.h"
+#include "supervisor/manager.h"
+
+// Each says on every SIP what is to be done, and writes the state of the travel alone.
+argus_intent_t argus_run_driving(const argus_t *self, argus_travel_t *mine);
+argus_intent_t argus_run_sweeping(const argus_t *self, argus_travel_t *mine);
+argus_intent_t argus_run_stepping(const argus_t *self, argus_travel_t *mine);
+
+// A way begins: DRIVING or SWEEPING is entered.
+void argus_begin_travel(argus_travel_t *mine);
+
+#endif

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: MIT
+"""Rule: a fact of firmware/ has one writer."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+# An assignment, also a compound one, an increment, or an address that somebody else could write through.
+ASSIGNED = r"(?:->|\.){field}\s*(?:[-+*/|&^]|<<|>>)?=(?!=)|(?<!&)&(?!&)\s*[\w.\[\]>-]*(?:->|\.){field}\b"
+
+
+def writers(field: str) -> set[str]:
+    pattern = re.compile(ASSIGNED.format(field=field))
+    found = set()
+    for path in sorted((ROOT / "firmware").rglob("*.[ch]")):
+        if any(pattern.search(line.split("//")[0]) for line in path.read_text(encoding="utf-8").splitlines()):
+            found.add(path.relative_to(ROOT / "firmware").as_posix())
+    return found
+
+
+def test_health_c_alone_writes_the_health_of_a_sonar() -> None:
+    assert writers("health") == {"knowledge/health.c"}
+
+
+def test_health_c_alone_writes_the_kind_of_a_fault() -> None:
+    # The kind of a motion is another thing.
+    assert writers("kind") - {"adjustment/motion.c"} == {"knowledge/health.c"}

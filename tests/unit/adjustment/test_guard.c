@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: each safety rule by itself: what it allows on the near side of its limit, and forbids on
+// the other.
+#include "adjustment/guard.h"
+
+#include <string.h>
+
+#include "adjustment/plan.h"
+#include "health.h"
+#include "knowledge/angle.h"
+#include "knowledge/config.h"
+#include "unity.h"
+
+#define NOW_MS 100000u
+
+static argus_config_t config;
+static argus_knowledge_t k;
+static argus_echoes_t e;
+static argus_guard_t g;
+
+static void use(int32_t profile) {
+    config.profile = profile;
+    g.profile = argus_profile(&config);
+}
+
+void setUp(void) {
+    argus_config_default(&config);
+    argus_knowledge_init(&k);
+    argus_echoes_init(&e);
+    memset(&g, 0, sizeof g);
+    k.sip_ms = NOW_MS;
+    k.flags = ARCOS_FLAG_MOTORS;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        k.sonar[i].reported = true;
+        k.sonar[i].reading_mm = 3000;
+        k.sonar[i].heard_ms = NOW_MS;
+        k.sonar[i].health = ARGUS_HEALTHY;
+    }
+    g = (argus_guard_t){.config = &config,
+                        .knowledge = &k,
+                        .echoes = &e,
+                        .now_ms = NOW_MS,
+                        .active = true,
+                        .linked = true,
+                        .checked = true};
+    use(ARGUS_PROFILE_PAPER);
+}
+
+// The echo of sonar 0, which looks abeam, lies this far from the robot's centre.
+static void echo_at(int32_t mm) {
+    int32_t reading = 0;
+    do {
+        k.sonar[0].reading_mm = (uint16_t)++reading;
+    } while (argus_echo_to_centre_mm(&k, 0, 0) < mm);
+}
+
+static void remember_at(int x_mm, int y_mm) {
+    const argus_point_t at = {x_mm, y_mm};
+    argus_echoes_touched(&e, at, NOW_MS);
+}
+
+// S1 -------------------------------------------------------------------------------------------------------
+
+void test_s1_normal_driving_only_with_every_bearing_in_use(void) {
+    for (unsigned disabled = 0; disabled <= 0x7Eu; disabled += 2) {
+        const argus_plan_t plan = argus_plan(argus_robot_default(), ARGUS_POLICY_PAPER, (uint16_t)disabled);
+        TEST_ASSERT_EQUAL(disabled == 0, argus_guard_may_drive(&plan));
+        TEST_ASSERT_EQUAL(disabled != 0x7Eu, argus_guard_may_step(&plan));
+    }
+}
+
+// S2, S3, S6 -----------------------------------------------------------------------------------------------
+
+void test_s6_nothing_translates_unless_all_allow_it(void) {
+    TEST_ASSERT_TRUE(argus_guard_may_translate(&g));
+    g.active = false;
+    TEST_ASSERT_FALSE(argus_guard_may_translate(&g));
+    g.active = true;
+    g.linked = false;
+    TEST_ASSERT_FALSE(argus_guard_may_translate(&g));
+    g.linked = true;
+    g.checked = false;
+    TEST_ASSERT_FALSE(argus_guard_may_translate(&g));
+    g.checked = true;
+    g.bumpers = 1;
+    TEST_ASSERT_FALSE(argus_guard_may_translate(&g));
+    g.bumpers = 0;
+    k.flags = 0;
+    TEST_ASSERT_FALSE(argus_guard_may_translate(&g));
+}
+
+void test_s3_free_way_is_the_shortest_usable_front_reading(void) {
+    put_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+    k.sonar[3].reading_mm = 100; // a lie that must not count
+    k.sonar[0].reading_mm = k.sonar[7].reading_mm = k.sonar[12].reading_mm = 150;
+    k.sonar[4].reading_mm = 900;
+    TEST_ASSERT_EQUAL(650, argus_guard_ahead_mm(&g));
+    k.sonar[4].reading_mm = 250;
+    TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g));
+    k.sonar[4].reading_mm = 100;
+    TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g));
+}
+
+void test_s3_the_way_driven_since_a_reading_is_taken_off(void) {
+    k.sonar[4].reading_mm = 900;
+    k.odometer_mm = 60;
+    TEST_ASSERT_EQUAL(590, argus_guard_ahead_mm(&g));
+    k.sonar[4].odometer_mm = 60;
+    TEST_ASSERT_EQUAL(650, argus_guard_ahead_mm(&g));
+    k.odometer_mm = 5000;
+    TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g));
+}
+
+void test_s3_a_sonar_unheard_for_two_rounds_is_blind(void) {
+    for (int i = 1; i <= 6; i++) {
+        k.sonar[i].heard_ms = NOW_MS - argus_guard_two_rounds_ms(&config);
+        TEST_ASSERT_TRUE(argus_guard_sees_ahead(&g));
+        k.sonar[i].heard_ms--;
+        TEST_ASSERT_FALSE(argus_guard_sees_ahead(&g));
+        put_health(&k.sonar[i], ARGUS_DISABLED, ARGUS_KIND_SILENT, 0); // others cover for it
+        TEST_ASSERT_TRUE(argus_guard_sees_ahead(&g));
+    }
+}
+
+// S4 -------------------------------------------------------------------------------------------------------
+
+void test_s4_home_is_within_two_degrees(void) {
+    k.pose.heading_cdeg = -17950;
+    TEST_ASSERT_TRUE(argus_guard_is_home(&g, 17850));
+    TEST_ASSERT_FALSE(argus_guard_is_home(&g, 17849));
+    TEST_ASSERT_TRUE(argus_guard_is_home(&g, -17750));
+    TEST_ASSERT_FALSE(argus_guard_is_home(&g, -17749));
+}
+
+// S7: turning ----------------------------------------------------------------------------------------------
+
+void test_s7_no_turn_with_an_echo_in_the_swing_circle(void) {
+    static const struct {
+        int32_t profile;
+        int32_t swing_mm;
+    } by[] = {{ARGUS_PROFILE_PAPER, 369}, {ARGUS_PROFILE_ARGUS, 389}};
+    for (int i = 0; i < 2; i++) {
+        use(by[i].profile);
+        const int32_t margin = g.profile->swing_margin_mm;
+        TEST_ASSERT_INT32_WITHIN(1, by[i].swing_mm, 370 + margin);
+        echo_at(370 + margin);
+        TEST_ASSERT_TRUE(argus_guard_echo_blocks(&g, 0));
+        TEST_ASSERT_TRUE(argus_guard_swing_is_blocked(&g));
+        TEST_ASSERT_FALSE(argus_guard_may_turn(&g));
+        echo_at(370 + margin + 1);
+        TEST_ASSERT_TRUE(argus_guard_may_turn(&g));
+    }
+}
+
+void test_s7_no_turn_with_a_bumper_pressed_or_without_leave(void) {
+    TEST_ASSERT_TRUE(argus_guard_may_turn(&g));
+    g.bumpers = 1u << 8;
+    TEST_ASSERT_FALSE(argus_guard_may_turn(&g));
+    g.bumpers = 0;
+    g.active = false;
+    TEST_ASSERT_FALSE(argus_guard_may_turn(&g));
+}
+
+void test_s7_what_is_out_or_reads_nothing_forbids_nothing(void) {
+    echo_at(300);
+    put_health(&k.sonar[0], ARGUS_DISABLED, ARGUS_KIND_WRONG, 0);
+    TEST_ASSERT_TRUE(argus_guard_may_turn(&g));
+    put_health(&k.sonar[0], ARGUS_HEALTHY, ARGUS_KIND_NONE, 0);
+    TEST_ASSERT_FALSE(argus_guard_may_turn(&g));
+    k.sonar[0].reading_mm = 5000;
+    TEST_ASSERT_TRUE(argus_guard_may_turn(&g));
+}
+
+// What has left the cones counts under argus alone.
+void test_s7_what_is_remembered(void) {
+    remember_at(0, 300);
+    TEST_ASSERT_TRUE(argus_guard_may_turn(&g));
+    use(ARGUS_PROFILE_ARGUS);
+    TEST_ASSERT_FALSE(argus_guard_may_turn(&g));
+    TEST_ASSERT_TRUE(argus_guard_memory_blocks(&g));
+    TEST_ASSERT_EQUAL(300, argus_guard_nearest_mm(&g, 0));
+    TEST_ASSERT_INT32_WITHIN(1, argus_hypot(200, 300), argus_guard_nearest_mm(&g, 200));
+}
+
+void test_s7_a_touch_in_a_turn_is_the_first_or_one_more(void) {
+    argus_point_t at;
+    bool left = false;
+    echo_at(370 + 11);
+    TEST_ASSERT_EQUAL(ARGUS_TOUCH_NONE, argus_guard_touch(&g, 0, &at, &left));
+    echo_at(370 + 10);
+    TEST_ASSERT_EQUAL(ARGUS_TOUCH_FIRST, argus_guard_touch(&g, 0, &at, &left));
+    TEST_ASSERT_TRUE(left);
+    argus_echoes_touched(&e, at, NOW_MS);
+    TEST_ASSERT_EQUAL(ARGUS_TOUCH_AGAIN, argus_guard_touch(&g, 0, &at, &left));
+    k.sonar[7].reading_mm = k.sonar[0].reading_mm;
+    TEST_ASSERT_EQUAL(ARGUS_TOUCH_FIRST, argus_guard_touch(&g, 7, &at, &left));
+    TEST_ASSERT_FALSE(left);
+}
+
+// S7: back -------------------------------------------------------------------------------------------------
+
+void test_s7_the_rear_is_clear_when_all_of_it_reads_clear(void) {
+    for (int i = 8; i < ARGUS_SONARS; i++) {
+        const bool abeam = i == 8 || i == 15;
+        for (int32_t profile = ARGUS_PROFILE_PAPER; profile <= ARGUS_PROFILE_ARGUS; profile++) {
+            setUp();
+            use(profile);
+            const int clear_mm = abeam && profile == ARGUS_PROFILE_ARGUS ? 250 : config.rear_clear_mm;
+            k.sonar[i].reading_mm = (uint16_t)clear_mm;
+            TEST_ASSERT_FALSE(argus_guard_rear_is_clear(&g));
+            k.sonar[i].reading_mm++;
+            TEST_ASSERT_TRUE(argus_guard_rear_is_clear(&g));
+        }
+    }
+    setUp();
+    k.sonar[3].reading_mm = 100; // not behind
+    TEST_ASSERT_TRUE(argus_guard_rear_is_clear(&g));
+}
+
+void test_s7_nobody_backs_past_a_sonar_that_cannot_be_relied_on(void) {
+    for (int i = 8; i < ARGUS_SONARS; i++) {
+        setUp();
+        k.sonar[i].heard_ms = NOW_MS - (uint32_t)config.stale_ms;
+        TEST_ASSERT_TRUE(argus_guard_rear_is_watched(&g));
+        k.sonar[i].heard_ms--;
+        TEST_ASSERT_FALSE(argus_guard_rear_is_watched(&g));
+        k.sonar[i].heard_ms = NOW_MS;
+        put_health(&k.sonar[i], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+        TEST_ASSERT_FALSE(argus_guard_rear_is_clear(&g));
+        put_health(&k.sonar[i], ARGUS_SUSPECT, ARGUS_KIND_NONE, 0);
+        TEST_ASSERT_TRUE(argus_guard_rear_is_clear(&g));
+        put_health(&k.sonar[i], ARGUS_SUSPECT, ARGUS_KIND_OFF, 0); // it has the name of a fault
+        TEST_ASSERT_FALSE(argus_guard_rear_is_clear(&g));
+    }
+}
+
+void test_s7_it_backs_away_three_times_in_one_place(void) {
+    for (uint8_t backed = 0; backed < 5; backed++) {
+        g.backed = backed;
+        TEST_ASSERT_EQUAL(backed < 3, argus_guard_may_back_off(&g));
+    }
+    g.backed = 0;
+    g.bumpers = 1;
+    TEST_ASSERT_FALSE(argus_guard_may_back_off(&g));
+}
+
+void test_s7_how_far_back(void) {
+    remember_at(250, 0); // 390 + 10 mm are wanted: 250 + 175 > 400
+    TEST_ASSERT_EQUAL(config.backoff_mm, argus_guard_back_mm(&g));
+    use(ARGUS_PROFILE_ARGUS);
+    TEST_ASSERT_EQUAL(175, argus_guard_back_mm(&g));
+    g.backed = 2; // far once is far enough
+    TEST_ASSERT_EQUAL(config.backoff_mm, argus_guard_back_mm(&g));
+    g.backed = 0;
+    remember_at(-400, 200); // beside the way back
+    TEST_ASSERT_EQUAL(config.backoff_mm, argus_guard_back_mm(&g));
+    config.rear_clear_mm = 250; // less than the usual way is read clear
+    TEST_ASSERT_EQUAL(100, argus_guard_back_mm(&g));
+}
+
+void test_s5_how_fast_back(void) {
+    TEST_ASSERT_EQUAL(config.step_speed_mm_s, argus_guard_back_speed_mm_s(&g));
+    use(ARGUS_PROFILE_ARGUS);
+    TEST_ASSERT_EQUAL(config.speed_mm_s, argus_guard_back_speed_mm_s(&g));
+    const int32_t overhang_mm = 64; // of sonars 10 and 13
+    config.object_range_mm = argus_config_stop_mm(&config, argus_robot_default()) + overhang_mm;
+    TEST_ASSERT_EQUAL(config.step_speed_mm_s, argus_guard_back_speed_mm_s(&g));
+    config.object_range_mm++;
+    TEST_ASSERT_EQUAL(config.speed_mm_s, argus_guard_back_speed_mm_s(&g));
+}
+
+// Nothing is changed by asking.
+void test_questions_change_nothing(void) {
+    remember_at(200, 100);
+    echo_at(300);
+    use(ARGUS_PROFILE_ARGUS);
+    const argus_knowledge_t knowledge = k;
+    const argus_echoes_t echoes = e;
+    argus_guard_may_turn(&g);
+    argus_guard_back_mm(&g);
+    argus_guard_may_translate(&g);
+    TEST_ASSERT_EQUAL_MEMORY(&knowledge, &k, sizeof k);
+    TEST_ASSERT_EQUAL_MEMORY(&echoes, &e, sizeof e);
+}

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: what is remembered, where, for how long, and what of it counts as seen again.
+#include "knowledge/echoes.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "health.h"
+#include "unity.h"
+
+static argus_echoes_t e;
+static argus_knowledge_t k;
+static char text[32];
+
+void setUp(void) {
+    argus_echoes_init(&e);
+    argus_knowledge_init(&k);
+    k.sip_ms = 100000;
+}
+
+static void see(int sonar, int mm) {
+    k.sonar[sonar].reported = true;
+    k.sonar[sonar].reading_mm = (uint16_t)mm;
+    k.fresh = (uint16_t)(1u << sonar);
+    argus_echoes_see(&e, &k, k.sip_ms);
+}
+
+static void place(int x, int y) {
+    e.at[e.count].x_mm = (int16_t)x;
+    e.at[e.count].y_mm = (int16_t)y;
+    e.at[e.count].seen_ms = k.sip_ms;
+    e.count++;
+}
+
+void test_echoes_are_remembered_where_they_lie(void) {
+    k.pose.heading_cdeg = 9000;
+    see(3, 1000); // mounted at +10 degrees
+    TEST_ASSERT_EQUAL(1, e.count);
+    TEST_ASSERT_INT32_WITHIN(5, -200, e.at[0].x_mm);
+    TEST_ASSERT_INT32_WITHIN(5, 1151, e.at[0].y_mm);
+}
+
+void test_what_is_not_remembered(void) {
+    see(3, 2000);
+    see(3, 5000);
+    put_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+    see(4, 500);
+    put_health(&k.sonar[5], ARGUS_SUSPECT, ARGUS_KIND_NONE, 0);
+    see(5, 500);
+    k.rotating = true;
+    see(2, 500);
+    TEST_ASSERT_EQUAL(0, e.count);
+}
+
+// S7 asks for what is near, and one echo may be crosstalk: two of one thing, 5 s and 150 mm apart at most, by
+// whomever; what was touched is there for sure.
+void test_near_is_what_was_seen_again(void) {
+    static const struct {
+        int second;
+        int second_mm;
+        uint32_t later_ms;
+        bool again;
+    } by[] = {{0, 200, 320, true},  {0, 200, 5000, true},  {0, 200, 5001, false}, {0, 349, 320, true},
+              {0, 352, 320, false}, {15, 200, 320, false}, {1, 150, 320, true},   {0, 120, 320, true}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        see(0, 200);
+        TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_nearest_mm(&e, &k, 0));
+        k.sip_ms += by[i].later_ms;
+        see(by[i].second, by[i].second_mm);
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].again, argus_echoes_nearest_mm(&e, &k, 0) < INT32_MAX, text);
+    }
+    setUp();
+    const argus_point_t touched = {240, 0};
+    argus_echoes_touched(&e, touched, k.sip_ms);
+    TEST_ASSERT_EQUAL(240, argus_echoes_nearest_mm(&e, &k, 0));
+}
+
+// ... and stays so in its place for the minute that it is remembered.
+void test_what_was_seen_twice_once_more_is_seen_again(void) {
+    for (int late = 0; late < 2; late++) {
+        setUp();
+        see(0, 200);
+        k.sip_ms += 320;
+        see(0, 200);
+        k.sip_ms += 60000u + (uint32_t)late;
+        TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_nearest_mm(&e, &k, 0));
+        see(0, 210);
+        TEST_ASSERT_EQUAL(!late, argus_echoes_nearest_mm(&e, &k, 0) < INT32_MAX);
+    }
+}
+
+void test_one_thing_is_at_most_150_mm_apart_each_way(void) {
+    const argus_point_t at = {-40, 70};
+    for (int sign = -1; sign <= 1; sign += 2) {
+        TEST_ASSERT_TRUE(argus_are_one_thing(at, (argus_point_t){-40 + 150 * sign, 70 - 150 * sign}));
+        TEST_ASSERT_FALSE(argus_are_one_thing(at, (argus_point_t){-40 + 151 * sign, 70}));
+        TEST_ASSERT_FALSE(argus_are_one_thing((argus_point_t){-40, 70 + 151 * sign}, at));
+    }
+}
+
+// A turn asks whether an echo is the second one of something near: at (69, 336), 343 mm from the centre.
+void test_what_a_turn_is_told_of_a_second_echo(void) {
+    see(0, 200);
+    const argus_point_t there = argus_to_course(&k.pose, argus_echo_robot(&k, 0));
+    const argus_point_t aside = {there.x_mm + 150, there.y_mm};
+    const argus_point_t beyond = {there.x_mm + 151, there.y_mm};
+    TEST_ASSERT_TRUE(argus_echoes_have_seen(&e, &k, there, 345));
+    TEST_ASSERT_FALSE(argus_echoes_have_seen(&e, &k, there, 340));
+    TEST_ASSERT_TRUE(argus_echoes_have_seen(&e, &k, aside, 345));
+    TEST_ASSERT_FALSE(argus_echoes_have_seen(&e, &k, beyond, 345));
+    k.sip_ms += 5001;
+    TEST_ASSERT_FALSE(argus_echoes_have_seen(&e, &k, there, 345));
+}
+
+void test_a_convicted_sonars_echoes_are_forgotten(void) {
+    see(3, 500);
+    see(6, 900);
+    see(2, 1300);
+    argus_echoes_forget(&e, 6);
+    TEST_ASSERT_EQUAL(2, e.count);
+    for (int i = 0; i < e.count; i++) {
+        TEST_ASSERT_TRUE(e.at[i].sonar != 6);
+    }
+}
+
+void test_memory_is_bounded_and_drops_the_oldest(void) {
+    for (int i = 0; i < 2 * ARGUS_POINTS_MAX; i++) {
+        k.pose.x_mm = i * 100;
+        see(3, 500);
+        TEST_ASSERT_TRUE(e.count < ARGUS_POINTS_MAX + 1);
+        TEST_ASSERT_TRUE(e.next < ARGUS_POINTS_MAX);
+    }
+    int newest = 0;
+    for (int i = 0; i < e.count; i++) {
+        newest += e.at[i].x_mm >= (2 * ARGUS_POINTS_MAX - 20) * 100 + 600;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(newest >= 20, "the newest echoes are not all there");
+}
+
+void test_free_length_of_a_corridor(void) {
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_clear_mm(&e, &k, 0, 305));
+    place(1000, 100);
+    TEST_ASSERT_INT32_WITHIN(2, 1000, argus_echoes_clear_mm(&e, &k, 0, 305));
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_clear_mm(&e, &k, 9000, 305));
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_clear_mm(&e, &k, 18000, 305));
+    place(700, -500); // beside the corridor
+    TEST_ASSERT_INT32_WITHIN(2, 1000, argus_echoes_clear_mm(&e, &k, 0, 305));
+    k.sip_ms += 60001; // long ago
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_clear_mm(&e, &k, 0, 305));
+}
+
+void test_a_bumper_hit_is_remembered_ahead(void) {
+    k.bumpers_front = 1 << 3;
+    argus_echoes_bumped(&e, &k, k.sip_ms);
+    TEST_ASSERT_EQUAL(1, e.count);
+    TEST_ASSERT_TRUE(e.at[0].x_mm > 200 && abs(e.at[0].y_mm) < 20);
+    setUp();
+    k.bumpers_front = 1 << 1; // leftmost
+    argus_echoes_bumped(&e, &k, k.sip_ms);
+    TEST_ASSERT_TRUE(e.at[0].y_mm > 100);
+}

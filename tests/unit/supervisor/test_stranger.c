@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Attacks: behind a wire that was lost and comes back is another robot: no motors, no motion, one event,
+// nothing of what was known of the first one, until an operator says so; the same robot is driven on.
+#include "robot.h"
+#include "unity.h"
+
+static const uint8_t config_1[] = "\x20"
+                                  "Pioneer\0p3dx-sh\0SERIAL-1";
+static const uint8_t config_2[] = "\x20"
+                                  "Pioneer\0p3dx-sh\0SERIAL-2";
+static robot_t robot;
+static int from; // commands before the wire was lost
+
+static uint32_t now(void) {
+    return robot.start_ms + robot.t_ms;
+}
+
+void setUp(void) {
+    const argus_config_t config = robot_config();
+    robot_init(&robot, &config, UINT32_MAX - 9000); // the clock wraps
+    robot.config = config_1;
+    robot.config_count = sizeof config_1;
+    TEST_ASSERT_TRUE(robot_goal(&robot, 20000, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 12000));
+    robot_run(&robot, 1000);
+}
+
+// The wire is lost and comes back, with a robot at rest behind it.
+static void reopen(void) {
+    argus_link_lost(&robot.argus, now());
+    from = robot.commands;
+    robot.phase = 0;
+    robot.v = robot.w = 0;
+    robot.moving = robot.turning = robot.motors = false;
+    for (int i = 0; i < 16; i++) { // each session begins with the robot's own order
+        robot.order[i / 8][i % 8] = (uint8_t)i;
+        robot.order_count[i / 8] = 8;
+    }
+    robot_run(&robot, 500);
+    argus_link_up(&robot.argus, now());
+}
+
+static int motions(void) {
+    int sum = 0;
+    static const int moving[] = {ARCOS_CMD_ENABLE, ARCOS_CMD_MOVE, ARCOS_CMD_HEAD, ARCOS_CMD_VEL2};
+    for (size_t i = 0; i < sizeof moving / sizeof moving[0]; i++) {
+        sum += robot_count_commands(&robot, moving[i], from);
+    }
+    return sum;
+}
+
+static void expect_stranger(int32_t part) {
+    reopen();
+    robot_run(&robot, 30000);
+    TEST_ASSERT_EQUAL_INT(0, motions());
+    TEST_ASSERT_EQUAL_INT(1, robot_count_events(&robot, ARGUS_EV_OTHER_ROBOT, 0));
+    TEST_ASSERT_EQUAL_INT32(part, robot_last_event(&robot, ARGUS_EV_OTHER_ROBOT)->value);
+    TEST_ASSERT_TRUE(robot.argus.orders.passive);
+    TEST_ASSERT_EQUAL_INT(ARGUS_MISSION_RUNNING, robot.argus.mission);
+    TEST_ASSERT_EQUAL_STRING("", robot.violation);
+}
+
+void test_the_same_robot_is_driven_on(void) {
+    reopen();
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 12000));
+    TEST_ASSERT_EQUAL_INT(0, robot_count_events(&robot, ARGUS_EV_OTHER_ROBOT, 0));
+}
+
+void test_another_subclass_is_not_driven(void) {
+    robot.subclass = "p3at-sh";
+    expect_stranger(3);
+}
+
+void test_another_serial_number_is_not_driven(void) {
+    robot.config = config_2;
+    robot.config_count = sizeof config_2;
+    expect_stranger(4);
+}
+
+void test_without_configpac_the_rest_decides(void) {
+    robot.config = NULL;
+    reopen();
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 12000));
+}
+
+void test_the_operator_takes_it_over_in_two_steps(void) {
+    robot.argus.config.check_range_mm = 400; // safe for a P3-AT, too
+    robot.subclass = "p3at-sh";
+    expect_stranger(3);
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, now(), ARGUS_OP_ACTIVE, 0));
+    robot_run(&robot, 12000);
+    TEST_ASSERT_EQUAL_INT(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, from));
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, now(), ARGUS_OP_GO, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 12000));
+    // It is the robot of before now.
+    reopen();
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 12000));
+    TEST_ASSERT_EQUAL_INT(1, robot_count_events(&robot, ARGUS_EV_OTHER_ROBOT, 0));
+}
+
+void test_what_was_known_of_the_first_one_is_forgotten(void) {
+    robot.fault[3] = ROBOT_SILENT;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_DISABLED, 20000));
+    robot.fault[3] = ROBOT_OK;
+    robot.subclass = "p3at-sh";
+    reopen();
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_OTHER_ROBOT, 12000));
+    robot_run(&robot, 10000);
+    TEST_ASSERT_EQUAL_INT(0, robot_count_commands(&robot, ARCOS_CMD_POLLING, from));
+    TEST_ASSERT_EQUAL_INT(ARGUS_HEALTHY, robot.argus.knowledge.sonar[3].health);
+    TEST_ASSERT_EQUAL_INT(ARGUS_IS_NORMAL, robot.argus.failure);
+    TEST_ASSERT_EQUAL_INT(0, robot.argus.plan.disabled);
+    TEST_ASSERT_EQUAL_INT(0, motions());
+}
