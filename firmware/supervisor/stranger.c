@@ -28,7 +28,7 @@ void argus_meet_stranger(argus_t *const self) {
     self->orders.passive = true;
     self->orders.paused = true;
     self->orders.stay = true;
-    self->session.motors = false;
+    self->orders.barred = false;
     forget(self);
     argus_replan(self);
     argus_do(self, (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true});
