@@ -3,7 +3,7 @@
 #ifndef ARGUS_SUPERVISOR_BODY_H
 #define ARGUS_SUPERVISOR_BODY_H
 
-#include "supervisor/manager.h"
+#include "supervisor/core.h"
 
 // A session is open: the geometry of its robot holds from now on; one that is unknown, or for which the
 // settings are unsafe, is passive.

@@ -4,7 +4,7 @@
 #define ARGUS_CHECK_H
 
 #include "supervisor/intent.h"
-#include "supervisor/manager.h"
+#include "supervisor/core.h"
 
 // At rest, all have reported: suspects are to be verified; without any, whoever reported is healthy.
 argus_intent_t argus_conclude_check(argus_t *self);

@@ -4,7 +4,7 @@
 #ifndef ARGUS_FAULTS_H
 #define ARGUS_FAULTS_H
 
-#include "supervisor/manager.h"
+#include "supervisor/core.h"
 
 void argus_disable(argus_t *self, int sonar, argus_fault_kind_t kind);
 

@@ -4,7 +4,7 @@
 #define ARGUS_JUDGE_H
 
 #include "supervisor/intent.h"
-#include "supervisor/manager.h"
+#include "supervisor/core.h"
 
 // One sonar. A conviction ahead of the robot calls for a check at rest.
 argus_intent_t argus_judge(argus_t *self, int sonar);

@@ -3,7 +3,7 @@
 #ifndef ARGUS_LOOKS_H
 #define ARGUS_LOOKS_H
 
-#include "supervisor/manager.h"
+#include "supervisor/core.h"
 
 // What is worth a stop now: evidence that a look can settle, a lost echo ahead, a bearing unseen for too
 // long.

@@ -4,7 +4,7 @@
 #define ARGUS_MODES_H
 
 #include "supervisor/intent.h"
-#include "supervisor/manager.h"
+#include "supervisor/core.h"
 
 // The intent and what follows from it.
 void argus_do(argus_t *self, argus_intent_t intent);

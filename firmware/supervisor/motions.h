@@ -3,7 +3,7 @@
 #ifndef ARGUS_MOTIONS_H
 #define ARGUS_MOTIONS_H
 
-#include "supervisor/manager.h"
+#include "supervisor/core.h"
 
 // STOP or E_STOP; under `passive` nothing is sent, and rest waited for.
 void argus_stop(argus_t *self, uint8_t command);

@@ -4,7 +4,7 @@
 #define ARGUS_REFLEXES_H
 
 #include "supervisor/intent.h"
-#include "supervisor/manager.h"
+#include "supervisor/core.h"
 
 // X(NAME, last, meaning): `last` 1: once it acts, those behind it are not asked in this SIP.
 #define ARGUS_REFLEX_TABLE(X)                                                               \

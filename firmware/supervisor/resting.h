@@ -4,7 +4,7 @@
 #define ARGUS_RESTING_H
 
 #include "supervisor/intent.h"
-#include "supervisor/manager.h"
+#include "supervisor/core.h"
 
 // Each says on every SIP what is to be done, and writes its own state alone.
 argus_intent_t argus_run_checking(const argus_t *self, argus_checking_t *mine);

@@ -4,7 +4,7 @@
 #define ARGUS_SAY_H
 
 #include "knowledge/health.h"
-#include "supervisor/manager.h"
+#include "supervisor/core.h"
 
 void argus_say(argus_t *self, argus_event_id_t id, int sonar, int32_t value);
 

@@ -5,7 +5,7 @@
 
 #include "adjustment/guard.h"
 #include "supervisor/intent.h"
-#include "supervisor/manager.h"
+#include "supervisor/core.h"
 
 // Which rules run.
 const argus_profile_t *argus_rules(const argus_t *self);

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// The whole state of the fault manager; what a port sees of it is argus/argus.h.
+#ifndef ARGUS_CORE_H
+#define ARGUS_CORE_H
+
+#include "adjustment/drive.h"
+#include "adjustment/motion.h"
+#include "adjustment/plan.h"
+#include "analysis/inquiry.h"
+#include "analysis/verify.h"
+#include "arcos/session.h"
+#include "argus/argus.h"
+#include "awareness/awareness.h"
+#include "knowledge/config.h"
+#include "knowledge/knowledge.h"
+#include "supervisor/events.h"
+#include "task/task.h"
+
+// The heading to return to after verification and sweeps (S4).
+typedef struct {
+    int32_t cdeg;
+    bool taken;
+} argus_base_t;
+
+// CHECKING.
+typedef struct {
+    argus_mark_t mark; // readings after this count
+    bool marked;
+    uint8_t rounds; // of fresh readings still wanted
+    bool all_round; // ... of all sonars, for a turn, not only of those that look ahead
+} argus_checking_t;
+
+// VERIFYING: by Algorithm 2, or by looks.
+typedef struct {
+    argus_verify_t verify;
+    argus_inquiry_t inquiry;
+} argus_verifying_t;
+
+// DRIVING, SWEEPING and STEPPING: the course and the way along it.
+typedef struct {
+    argus_task_t task;
+    argus_drive_t drive; // the sweep
+    int32_t jog_mm;      // the operator's step, 0: the course decides
+    uint32_t heeded_ms;  // since then the robot has stood, one MOVE after the other
+    uint32_t beside_sip; // the SIP in which the health check beside the task was made
+    uint16_t unsaid;     // waypoints passed and not said
+    bool aimed;          // the leg's bearing was turned to
+    bool arriving;       // at the goal, stopping
+    bool swept;          // the end of this sweep is said
+} argus_travel_t;
+
+// WAITING; what it waited for last counts on until the robot has driven.
+typedef struct {
+    argus_wait_t why;
+    argus_wait_t last;
+    uint32_t since_ms;
+    uint32_t said_s;   // waiting time said so far
+    uint32_t tried_ms; // last attempt to get out
+} argus_waiting_t;
+
+// Attempts to turn in this place.
+typedef struct {
+    uint8_t backed; // back-offs
+    bool again;     // an echo that forbade to turn has been waited out for a round
+} argus_turning_t;
+
+// An echo within the swing circle, course frame.
+typedef struct {
+    argus_point_t at;
+    uint32_t t_ms;
+    bool valid;
+} argus_near_t;
+
+// What the reflexes remember.
+typedef struct {
+    uint16_t bumpers;     // bumper bits answered already, front << 8 | rear
+    argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
+    bool motors_said;     // off
+    bool battery_said;
+    bool stall_said;
+} argus_reflexes_t;
+
+// Looks (profile argus) and checks. After an acquittal a sonar is not looked at again for a while.
+typedef struct {
+    uint32_t odometer_mm;
+    uint8_t acquittals;
+} argus_hold_t;
+
+typedef struct {
+    argus_hold_t hold[ARGUS_SONARS];
+    uint32_t last_ms; // a look
+    uint32_t last_odometer_mm;
+    uint32_t check_ms; // a health check
+    bool once;         // there was a look
+} argus_looks_t;
+
+// What operators and the configuration have settled.
+typedef struct {
+    argus_mask_t pinned; // sonars whose health an operator has fixed
+    bool locked;     // the configuration is unsafe: never active
+    bool barred;     // would be active, but not with this robot: unknown, or unsafe with these settings
+    bool passive;
+    bool paused;
+    bool stay; // after the operator's STOP: no turn either, until another order
+    bool shutdown;
+} argus_orders_t;
+
+// The record of earlier missions.
+typedef struct {
+    uint32_t
+        robot; // identity (analysis/record.h) of the robot, or of the record before a session; 0: unknown
+    argus_mask_t recorded; // sonars on PROBATION by the record
+    bool loaded;       // a record was taken whose robot is not compared yet
+} argus_history_t;
+
+struct argus {
+    argus_config_t config;
+    argus_session_t session;
+    argus_knowledge_t knowledge;
+    argus_echoes_t echoes;
+    argus_awareness_t awareness;
+    argus_evidence_t evidence; // profile argus
+    argus_plan_t plan;
+    argus_failure_t failure;
+    argus_motion_t motion;
+    argus_events_t events;
+    argus_mission_t mission;
+    argus_mode_t mode;
+    uint32_t now_ms;
+    uint32_t since_ms; // entry into the mode
+    argus_base_t base;
+    argus_checking_t checking;
+    argus_verifying_t verifying;
+    argus_travel_t travel;
+    argus_waiting_t waiting;
+    argus_turning_t turning;
+    argus_reflexes_t reflexes;
+    argus_looks_t looks;
+    argus_orders_t orders;
+    argus_history_t history;
+    uint32_t ordered_ms; // the sonars fire in an order of ours, in this session, begun anew then
+    uint32_t stops;      // STOP and E_STOP sent, monotonic
+    bool ordered;
+    bool stalled; // the link: no SIPs for a while
+    bool checked; // a full health check has passed since the session opened or resumed (S3, S6)
+    uint8_t invariant_said;
+};
+
+#endif
