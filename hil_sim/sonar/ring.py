@@ -254,9 +254,10 @@ class SonarRing:
         true_mm = self.true_range(number, pose)
         # Drawn for every ping, so that a fault or a world changes no later draw.
         draws = _Draws(self._normal(), self._random(), self._random())
+        others_mm = math.inf
         if self._rough is not None:
             draws = draws._replace(rough=self._rough.draw())
-        others_mm = self._others_mm(state, t_ms, pose)
+            others_mm = self._others_mm(self._rough, state, t_ms, pose)
         heard = self._heard(number, pose, true_mm, draws, others_mm)
         value: int | None = heard
         kind = None
@@ -289,11 +290,11 @@ class SonarRing:
         gain_db = self._rough.gain_db[number] if self._rough is not None else 0.0
         return self.echoes.ping_mm(number, pose, angle_deg, self._moving_echoes, gain_db)
 
-    def _others_mm(self, mine: _Array, t_ms: float, pose: Pose) -> float:
+    def _others_mm(self, rough: Roughness, mine: _Array, t_ms: float, pose: Pose) -> float:
         """Return at which range the ping of another array of this moment would be heard, at the nearest."""
-        if self._rough is None or not self._rough.physics.cross_array:
-            return math.inf
         found = math.inf
+        if not rough.physics.cross_array:
+            return found
         for state in self._live:
             number = state.last_number if state.last_ms == t_ms else self._due(state, t_ms)
             if state is not mine and number is not None:
