@@ -270,7 +270,7 @@ def read_robots(root: Path) -> list[Robot]:
 
 
 def robots_header(root: Path) -> str:
-    """Return the text of gen_robots.h."""
+    """Return the text of gen_sizes.h."""
     robots = read_robots(root)
     body = [
         f"#define ARGUS_ROBOTS {len(robots)} // rows of argus_robots",
@@ -278,7 +278,7 @@ def robots_header(root: Path) -> str:
         f"#define ARGUS_FORWARD_MAX {FORWARD_MAX} // forward-facing sonars of one robot, at most",
         f"#define ARGUS_TURNS_MAX {ROTATIONS_MAX} // different turns of one onto the bearing of another",
     ]
-    return header("ARGUS_GEN_ROBOTS_H", "robots/*.toml", "Which robots are known", body)
+    return header("ARGUS_GEN_SIZES_H", "robots/*.toml", "Which robots are known", body)
 
 
 def robot_rows(robot: Robot, first: str) -> list[str]:
@@ -347,7 +347,7 @@ def robots_source(root: Path) -> str:
 
 GENERATORS: dict[Path, Callable[[Path], str]] = {
     Path("firmware/robot/gen_p3dx.h"): lambda root: p3dx_header(load(root, P3DX_SOURCE)),
-    Path("firmware/robot/gen_robots.h"): robots_header,
+    Path("firmware/robot/gen_sizes.h"): robots_header,
     Path("firmware/robot/gen_robots.c"): robots_source,
     Path("firmware/arcos/gen_arcos.h"): lambda root: arcos_header(load(root, "arcos")),
 }

@@ -4,7 +4,7 @@
 #define ARGUS_ROBOT_H
 
 #include "argus/argus.h"
-#include "robot/gen_robots.h"
+#include "robot/gen_sizes.h"
 
 // Where and whither a sonar looks, robot frame, and who is mounted beside it.
 typedef struct {

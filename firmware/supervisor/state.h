@@ -4,8 +4,8 @@
 #define ARGUS_STATE_H
 
 #include "adjustment/guard.h"
-#include "supervisor/intent.h"
 #include "supervisor/core.h"
+#include "supervisor/intent.h"
 
 // Which rules run.
 const argus_profile_t *argus_rules(const argus_t *self);

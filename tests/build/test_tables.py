@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 HEADERS = {
     "gen_p3dx.h": Path("firmware/robot"),
-    "gen_robots.h": Path("firmware/robot"),
+    "gen_sizes.h": Path("firmware/robot"),
     "gen_robots.c": Path("firmware/robot"),
     "gen_arcos.h": Path("firmware/arcos"),
 }
