@@ -191,8 +191,9 @@ void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *c
     argus_peers_sip(self, knowledge);
 }
 
-argus_mask_t argus_evidence_unseen(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                               const argus_config_t *const config) {
+argus_mask_t argus_evidence_unseen(const argus_evidence_t *const self,
+                                   const argus_knowledge_t *const knowledge,
+                                   const argus_config_t *const config) {
     (void)config;
     unsigned mask = 0;
     for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
