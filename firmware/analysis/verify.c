@@ -16,6 +16,7 @@ void argus_verify_init(argus_verify_t *const self) {
 void argus_verify_begin(argus_verify_t *const self, const argus_robot_t *const robot, const int sonar,
                         const int32_t base_cdeg) {
     const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
+    ARGUS_ASSERT(argus_robot_faces_forward(robot, sonar));
     argus_verify_init(self);
     self->phase = ARGUS_VERIFY_RECHECK;
     self->sonar = (int8_t)sonar;
@@ -111,6 +112,7 @@ static void judge(argus_verify_t *const self, const argus_robot_t *const robot) 
 static bool hear(argus_verify_t *const self, const argus_knowledge_t *const knowledge,
                  const argus_mark_t *const mark, const unsigned side) {
     const int sonar = self->by[side];
+    ARGUS_ASSERT(sonar >= 0);
     const bool gone = argus_is_out(knowledge, sonar); // it failed on the way: it cannot testify
     if (!gone && !argus_fresh_since(knowledge, sonar, mark)) {
         return false;
