@@ -374,15 +374,16 @@ void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log) 
 
 void screen_draw_keys(canvas_t *canvas) {
     int row = 1;
-#define KEY_ROW(name, keys, effect)                                \
-    if (row < canvas->rows - 1) {                                  \
-        for (int column = 0; column < canvas->columns; column++) { \
-            put(canvas, row, column, TONE_PLAIN, ' ');             \
-        }                                                          \
-        put_text(canvas, row, 1, TONE_TITLE, keys);                \
-        put_text(canvas, row, 12, TONE_PLAIN, effect);             \
-        row++;                                                     \
+    for (int key = TUI_NONE; key < TUI_GONE && row < canvas->rows - 1; key++) {
+        const char *const keys = tui_keys_of((tui_key_t)key);
+        if (keys[0] == '\0') {
+            continue;
+        }
+        for (int column = 0; column < canvas->columns; column++) {
+            put(canvas, row, column, TONE_PLAIN, ' ');
+        }
+        put_text(canvas, row, 1, TONE_TITLE, keys);
+        put_text(canvas, row, 12, TONE_PLAIN, tui_effect_of((tui_key_t)key));
+        row++;
     }
-    TUI_KEY_TABLE(KEY_ROW)
-#undef KEY_ROW
 }
