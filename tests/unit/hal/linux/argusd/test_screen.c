@@ -141,6 +141,8 @@ void test_any_size_and_any_contents_are_drawn(void) {
         argus_status_t *const status = &view.status;
         status->online = status->active = view.link_up = status->plan.complete = (round & 1) != 0;
         status->plan.return_each = false;
+        status->paused = status->open = status->motors = status->lists_all = (round & 2) != 0;
+        status->robot_known = status->robot_told = view.has_can = (round & 4) != 0;
         status->mode = ARGUS_MODE_CLOSED;
         status->mission = ARGUS_MISSION_FAILED;
         status->failure = ARGUS_IS_CATASTROPHIC;
