@@ -25,12 +25,11 @@ static argus_intent_t convict(argus_t *const self, const int sonar, const argus_
 // A suspect carries the kind that the evidence names so far.
 static void name(argus_t *const self, const int sonar) {
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    const argus_fault_kind_t kind = argus_evidence_renames(&self->evidence, sonar, s->kind);
+    const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
     if (kind != ARGUS_KIND_NONE) {
         argus_flag_suspects(self, (uint16_t)(1u << sonar));
     }
-    if (s->health == ARGUS_SUSPECT && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
-        argus_evidence_note_name(&self->evidence, sonar, kind);
+    if (s->health == ARGUS_SUSPECT && kind != ARGUS_KIND_NONE && kind != s->kind) {
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
     }
     const bool held =
@@ -85,7 +84,7 @@ static void judge_out(argus_t *const self, const int sonar) {
     const argus_fault_kind_t kind = kind_of_out(self, sonar);
     const argus_fault_kind_t named = argus_evidence_relapses(&self->evidence, sonar);
     const bool suspected = argus_evidence_keeps_out(&self->evidence, sonar);
-    if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
+    if (s->health == ARGUS_DISABLED && kind != ARGUS_KIND_NONE && kind != s->kind) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
     }
     if (suspected) {

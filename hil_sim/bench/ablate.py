@@ -62,7 +62,7 @@ def sign_test(one: int, other: int) -> float:
     (1.0, 0.0625, 1.0)
     """
     total, less = one + other, min(one, other)
-    tail = sum(math.comb(total, k) for k in range(less + 1)) / 2**total
+    tail: float = sum(math.comb(total, k) for k in range(less + 1)) / 2**total
     return min(1.0, 2 * tail)
 
 

@@ -15,6 +15,7 @@ from hil_sim.bench.stream import Stream, stream_path
 from hil_sim.bench.work import Record, failed, head
 from hil_sim.robot.interfaces import SonarReading
 from hil_sim.sil import Mission, Sighting, Sil
+from hil_sim.sonar.ring import SonarRing
 
 SPEED_MM_S: Final = 200.0
 FAULT_LIMIT_S: Final = 120.0
@@ -101,7 +102,9 @@ class DriveBy(Sil):
         return speed
 
     def _nearest_ahead_mm(self) -> float:
-        return min(self.robot.ring.true_range(number, self.robot.pose) for number in _AHEAD)
+        ring = self.robot.ring
+        assert isinstance(ring, SonarRing)
+        return min(ring.true_range(number, self.robot.pose) for number in _AHEAD)
 
     def stream(self, case: Case) -> Stream:
         """Return what was recorded so far."""
