@@ -23,13 +23,11 @@
 #define LATE_CONTRADICTED 300 // ... that the others contradict,
 #define LATE_BEYOND 400       // ... or, so far beyond the level,
 #define LATE_CONTRADICTED_BEYOND 100
-#define LATE_SURE 1000 // ... or of one that is intermittent or garbage so far
 #define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
 #define LATE_BOTH 1000             // by the peers and by its own readings, those LATE_OWN at least
 #define LATE_BOTH_BUSY 1300
 #define LATE_BOTH_CONTRADICTED 850 // ... of one that the others contradict by BACK_CONTRADICTED
-#define LATE_BOTH_INSTEAD 1200     // ... in the place of gaps or wild readings
 #define LATE_BOTH_SURE 1450        // ... of a bent axis; or with LATE_OWN_LITTLE at least
 #define LATE_OWN 300
 #define LATE_OWN_LITTLE 150
@@ -39,8 +37,6 @@
 #define BENT_CONTRADICTED 300
 #define BENT_TOLD_NAMING 600 // ... while nothing does, of one that the bend tells so much of
 #define BENT_TOLD 500
-#define BENT_SURE 1000 // in the place of another name
-#define BENT_SURE_TOLD 300
 #define BENT_HOLLOW 5 // more silences than this, of the last eight contradicted readings, are no bent axis
 #define HOLLOW_MOST 8
 
@@ -179,17 +175,6 @@ static bool is_late_by_both(const argus_evidence_t *const self, const int sonar)
     return is_late_by_both_from(self, sonar, contradicted ? LATE_BOTH_CONTRADICTED : LATE_BOTH);
 }
 
-// Neither gaps nor wild readings come to this; the echoes of a late sonar may look like either.
-static bool is_surely_late(const argus_evidence_t *const self, const int sonar) {
-    return is_late_from(self, sonar, LATE_SURE);
-}
-
-// Among wild readings some lag always explains a few: the others must know of one.
-static bool is_late_by_both_instead(const argus_evidence_t *const self, const int sonar) {
-    return argus_peers_late(&self->peers, sonar) >= LATE_OF_WILD &&
-           is_late_by_both_from(self, sonar, LATE_BOTH_INSTEAD);
-}
-
 static argus_fault_kind_t late_or_wrong(const argus_evidence_t *const self, const int sonar,
                                         const int32_t late_from) {
     return lateness(self, sonar) >= late_from ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
@@ -286,33 +271,16 @@ static bool looks_bent(const argus_evidence_t *const self, const int sonar) {
            (contradicted >= 0 && is_bent(self, sonar, BENT_TOLD_NAMING, BENT_TOLD));
 }
 
-static bool is_surely_bent(const argus_evidence_t *const self, const int sonar) {
-    return is_bent(self, sonar, BENT_SURE, BENT_SURE_TOLD);
-}
-
-// A bent axis without another name, or under one that it may get as well.
-static argus_fault_kind_t bent_or(const argus_evidence_t *const self, const int sonar,
-                                  const argus_fault_kind_t other) {
-    const bool unlike =
-        other == ARGUS_KIND_INTERMITTENT || other == ARGUS_KIND_GARBAGE || other == ARGUS_KIND_SLOW;
-    const bool bent =
-        other == ARGUS_KIND_NONE ? looks_bent(self, sonar) : unlike && is_surely_bent(self, sonar);
-    return bent ? ARGUS_KIND_WRONG : other;
-}
-
-// Late without another name, or under one that a late sonar may get as well.
-static argus_fault_kind_t slow_or(const argus_evidence_t *const self, const int sonar,
-                                  const argus_fault_kind_t other) {
-    const bool unsteady = other == ARGUS_KIND_INTERMITTENT || other == ARGUS_KIND_GARBAGE;
-    const bool late =
-        other == ARGUS_KIND_NONE ? looks_late(self, sonar) : unsteady && is_surely_late(self, sonar);
-    const bool both = other == ARGUS_KIND_NONE ? is_late_by_both(self, sonar)
-                                               : unsteady && is_late_by_both_instead(self, sonar);
-    return both || (late && has_partners(self, sonar)) ? ARGUS_KIND_SLOW : other;
-}
-
+// What no test names may be late, or its axis bent.
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
-    return bent_or(self, sonar, slow_or(self, sonar, first_name(self, sonar, ARGUS_TESTS)));
+    const argus_fault_kind_t first = first_name(self, sonar, ARGUS_TESTS);
+    if (first != ARGUS_KIND_NONE) {
+        return first;
+    }
+    if (is_late_by_both(self, sonar) || (looks_late(self, sonar) && has_partners(self, sonar))) {
+        return ARGUS_KIND_SLOW;
+    }
+    return looks_bent(self, sonar) ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;
 }
 
 argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, const int sonar) {
@@ -323,7 +291,7 @@ argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, c
     for (int i = 0; i < ARGUS_TESTS; i++) {
         const argus_test_t test = (argus_test_t)precedence[i];
         if (is_convicted_by(self, sonar, test)) {
-            return bent_or(self, sonar, slow_or(self, sonar, kind_by(self, sonar, test, LATE_AFTER)));
+            return kind_by(self, sonar, test, LATE_AFTER);
         }
     }
     return ARGUS_KIND_NONE;

@@ -507,65 +507,6 @@ void test_its_own_readings_and_the_peers_name_together(void) {
     }
 }
 
-// The echoes of a late sonar look like gaps or like garbage at times: late and not well from 1,000 on, late
-// and not wrong, contradicted and by two, it is slow, in a conviction too.
-void test_late_for_sure_is_neither_garbage_nor_gaps(void) {
-    static const argus_test_t tests[] = {ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT, ARGUS_TEST_VIEW};
-    static const argus_fault_kind_t kinds[] = {ARGUS_KIND_GARBAGE, ARGUS_KIND_INTERMITTENT,
-                                               ARGUS_KIND_INTERMITTENT};
-    static const struct {
-        int late;
-        int told;
-        int peers;
-        unsigned against;
-        bool slow;
-    } by[] = {{1000, 430, 300, 3, true},  {999, 900, 300, 3, false}, {2000, 429, 300, 3, false},
-              {1399, 900, 299, 3, false}, {1400, 430, 100, 3, true}, {2000, 900, 99, 3, false},
-              {2000, 900, 300, 1, false}};
-    for (int t = 0; t < 3; t++) {
-        for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
-            setUp();
-            give_ground();
-            peer->hollow = 0x0F; // so that a view tells of gaps
-            peer->borne_out = true;
-            accuse(tests[t], argus_bounds[tests[t]].naming);
-            peer->late[LAG] = (int16_t)by[i].late;
-            peer->told[LAG] = (int16_t)by[i].told;
-            peer->against = (uint16_t)by[i].against;
-            c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
-            snprintf(text, sizeof text, "test %d, case %d", (int)tests[t], i);
-            TEST_ASSERT_EQUAL_MESSAGE(by[i].slow ? ARGUS_KIND_SLOW : kinds[t], named(), text);
-            accuse(tests[t], argus_bounds[tests[t]].convincing);
-            TEST_ASSERT_EQUAL_MESSAGE(by[i].slow ? ARGUS_KIND_SLOW : kinds[t], convicted(), text);
-        }
-    }
-}
-
-// ... and so it is by its own readings (300) and the peers together from 1,200 on, not borne out, whatever it
-// was called before.
-void test_late_by_both_is_neither_garbage_nor_gaps(void) {
-    static const argus_test_t tests[] = {ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT};
-    static const argus_fault_kind_t kinds[] = {ARGUS_KIND_GARBAGE, ARGUS_KIND_INTERMITTENT};
-    static const struct {
-        int own;
-        int late;
-        int peers;
-        bool slow;
-    } by[] = {{300, 900, 0, true}, {300, 899, 0, false}, {299, 1100, 0, false}, {300, 900, -1, false}};
-    for (int t = 0; t < 2; t++) {
-        for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
-            setUp();
-            accuse(tests[t], argus_bounds[tests[t]].convincing);
-            c->lag[LAG] = c->score[ARGUS_TEST_LAG] = (int16_t)by[i].own;
-            peer->late[LAG] = (int16_t)by[i].late;
-            c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
-            snprintf(text, sizeof text, "test %d, case %d", (int)tests[t], i);
-            TEST_ASSERT_EQUAL_MESSAGE(by[i].slow ? ARGUS_KIND_SLOW : kinds[t], named(), text);
-            TEST_ASSERT_EQUAL_MESSAGE(by[i].slow ? ARGUS_KIND_SLOW : kinds[t], convicted(), text);
-        }
-    }
-}
-
 // Another name comes before lateness.
 void test_lateness_takes_nothing_from_another_name(void) {
     peer->late[LAG] = 2000;
@@ -653,48 +594,6 @@ void test_what_is_late_or_silent_does_not_look_bent(void) {
         snprintf(text, sizeof text, "case %d", i);
         TEST_ASSERT_EQUAL_MESSAGE(by[i].wrong ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE, named(), text);
     }
-}
-
-// In its place a bent axis takes the names that it may look like: gaps, garbage and lateness, also of one
-// that is out; not that of one that tells more of a lag, nor of one that mostly hears nothing.
-void test_bent_for_sure_takes_the_place_of_what_it_looks_like(void) {
-    static const argus_test_t tests[] = {ARGUS_TEST_GARBAGE, ARGUS_TEST_DROPOUT, ARGUS_TEST_LAG};
-    static const argus_fault_kind_t kinds[] = {ARGUS_KIND_GARBAGE, ARGUS_KIND_INTERMITTENT, ARGUS_KIND_SLOW};
-    static const struct {
-        int well;
-        int told;
-        unsigned against;
-        uint8_t hollow;
-        int late_told; // beside the score of LAG
-        bool wrong;
-    } by[] = {{1000, 900, 3, 0x00, 0, true},     {999, 900, 3, 0x00, 0, false},
-              {1000, 299, 3, 0x00, 0, false},    {1000, 900, 1, 0x00, 0, false},
-              {1000, 900, 3, 0x1F, 0, true},     {1000, 900, 3, 0x3F, 0, false},
-              {1000, 900, 3, 0x00, 1800, false}, {1000, 300, 3, 0x00, 600, false}};
-    for (int t = 0; t < 3; t++) {
-        for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
-            setUp();
-            give_ground();
-            accuse(tests[t], argus_bounds[tests[t]].naming);
-            bend(by[i].well, by[i].told);
-            peer->told[LAG] = (int16_t)by[i].late_told;
-            peer->against = (uint16_t)by[i].against;
-            peer->hollow = by[i].hollow;
-            const bool outdone =
-                tests[t] == ARGUS_TEST_LAG && 2 * by[i].told <= argus_bounds[tests[t]].naming;
-            const argus_fault_kind_t kind = by[i].wrong && !outdone ? ARGUS_KIND_WRONG : kinds[t];
-            snprintf(text, sizeof text, "test %d, case %d", (int)tests[t], i);
-            TEST_ASSERT_EQUAL_MESSAGE(kind, named(), text);
-        }
-    }
-}
-
-void test_a_bent_axis_is_convicted_as_wrong(void) {
-    give_ground();
-    accuse(ARGUS_TEST_GARBAGE, argus_bounds[ARGUS_TEST_GARBAGE].convincing);
-    TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, convicted());
-    bend(1000, 300);
-    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, convicted());
 }
 
 // What sticks and what is off is told by its readings: a bend says nothing of either.
