@@ -210,6 +210,7 @@ static unsigned meet(argus_session_t *self) {
     if (self->differs == 0) {
         return 0;
     }
+    ARGUS_ASSERT(self->differs <= ARGUS_IDENTITY_PARTS);
     self->motors = false;
     return ARGUS_SESSION_OTHER_ROBOT;
 }

@@ -26,7 +26,7 @@ static int slave = -1;
 static char name[64];
 static robot_t robot;
 static void (*during)(pid_t child, int turn); // NULL: nothing happens besides
-static int await_command = ARCOS_CMD_PULSE; // SIGTERM waits until the robot has got one of these, too
+static int await_command = ARCOS_CMD_PULSE;   // SIGTERM waits until the robot has got one of these, too
 
 void setUp(void) {
     await_command = ARCOS_CMD_PULSE;
