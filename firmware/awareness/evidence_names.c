@@ -6,7 +6,6 @@
 #define NAME_CONFLICTS 3 // a view is one of a pair: who is wrong takes a third
 #define NAME_PARTNERS 2
 #define OFF_RUN 5
-#define BACK_CONTRADICTED 200
 #define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
 #define OFF_HOLLOW 3
 #define VIEW_OFF_RUN 3
@@ -18,20 +17,8 @@
 #define OFF_OUTWEIGHS 2       // ... of one that is silent, since any echo clears it
 #define CONVICT_EPISODES 3    // what moves about the robot does not contradict the same sonar again later
 #define HELD 150              // hundredths of a nat that the peers must come down to before one is cleared
-#define LATE_NAMING 800       // late and not well, of one without a name,
-#define LATE_NAMING_BUSY 1400 // ... while something moves about the robot,
-#define LATE_CONTRADICTED 300 // ... that the others contradict,
-#define LATE_BEYOND 400       // ... or, so far beyond the level,
-#define LATE_CONTRADICTED_BEYOND 100
 #define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
-#define LATE_BOTH 1000             // by the peers and by its own readings, those LATE_OWN at least
-#define LATE_BOTH_BUSY 1300
-#define LATE_BOTH_CONTRADICTED 850 // ... of one that the others contradict by BACK_CONTRADICTED
-#define LATE_BOTH_SURE 1450        // ... of a bent axis; or with LATE_OWN_LITTLE at least
-#define LATE_OWN 300
-#define LATE_OWN_LITTLE 150
-#define LATE_OF_WILD 300       // less is no lag, of one whose readings are wild
 #define BENT_NAMING 1100
 #define BENT_NAMING_BUSY 1500
 #define BENT_CONTRADICTED 300
@@ -135,46 +122,6 @@ static int32_t lateness(const argus_evidence_t *const self, const int sonar) {
     return argus_peers_told(&self->peers, sonar) + self->of[sonar].score[ARGUS_TEST_LAG];
 }
 
-// Late, neither well nor wrong, and contradicted: a late sonar is borne out again whenever the robot rests.
-static bool is_late_from(const argus_evidence_t *const self, const int sonar, const int32_t level) {
-    const int32_t beyond = argus_peers_late(&self->peers, sonar) - level;
-    const int32_t wanted = beyond >= LATE_BEYOND ? LATE_CONTRADICTED_BEYOND : LATE_CONTRADICTED;
-    return beyond >= 0 && lateness(self, sonar) >= LATE_FIRST &&
-           self->of[sonar].score[ARGUS_TEST_PEERS] >= wanted;
-}
-
-static bool looks_late(const argus_evidence_t *const self, const int sonar) {
-    return is_late_from(self, sonar, is_busy_beside(self, sonar) ? LATE_NAMING_BUSY : LATE_NAMING);
-}
-
-// Of one lag: what its own readings and the peers say together, where both do; 0: not enough of its own.
-static int32_t late_of_both(const int32_t own, const int32_t theirs) {
-    const int32_t sum = own + theirs;
-    const bool counts = own >= LATE_OWN || (own >= LATE_OWN_LITTLE && sum >= LATE_BOTH_SURE);
-    return counts && theirs > 0 ? sum : 0;
-}
-
-static int32_t most_late_of_both(const argus_evidence_t *const self, const int sonar) {
-    int32_t most = 0;
-    for (int n = ARGUS_LEAST_LAG; n < ARGUS_TRAIL; n++) {
-        most = argus_max(most, late_of_both(self->of[sonar].lag[n], self->peers.of[sonar].late[n]));
-    }
-    return most;
-}
-
-// Its own readings are the third who says who is wrong, where the others rather contradict it.
-static bool is_late_by_both_from(const argus_evidence_t *const self, const int sonar, const int32_t level) {
-    return self->of[sonar].score[ARGUS_TEST_PEERS] >= 0 && most_late_of_both(self, sonar) >= level;
-}
-
-static bool is_late_by_both(const argus_evidence_t *const self, const int sonar) {
-    if (is_busy_beside(self, sonar)) {
-        return is_late_by_both_from(self, sonar, LATE_BOTH_BUSY);
-    }
-    const bool contradicted = self->of[sonar].score[ARGUS_TEST_PEERS] >= BACK_CONTRADICTED;
-    return is_late_by_both_from(self, sonar, contradicted ? LATE_BOTH_CONTRADICTED : LATE_BOTH);
-}
-
 static argus_fault_kind_t late_or_wrong(const argus_evidence_t *const self, const int sonar,
                                         const int32_t late_from) {
     return lateness(self, sonar) >= late_from ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
@@ -210,21 +157,10 @@ static argus_fault_kind_t kind_of_peers(const argus_evidence_t *const self, cons
                                                           : late_or_wrong(self, sonar, late_from);
 }
 
-// Among wild readings some lag always explains a few: the others, where they contradict it, know of a true
-// one.
-static bool is_wild(const argus_evidence_t *const self, const int sonar) {
-    return self->of[sonar].score[ARGUS_TEST_GARBAGE] >= naming_level(self, sonar, ARGUS_TEST_GARBAGE) &&
-           self->of[sonar].score[ARGUS_TEST_PEERS] >= LATE_CONTRADICTED &&
-           argus_peers_late(&self->peers, sonar) < LATE_OF_WILD;
-}
-
 static argus_fault_kind_t kind_by(const argus_evidence_t *const self, const int sonar,
                                   const argus_test_t test, const int32_t late_from) {
     if (test == ARGUS_TEST_PEERS) {
         return kind_of_peers(self, sonar, late_from);
-    }
-    if (test == ARGUS_TEST_LAG && is_wild(self, sonar)) {
-        return ARGUS_KIND_GARBAGE;
     }
     return test == ARGUS_TEST_VIEW ? kind_of_view(self, sonar, late_from)
                                    : (argus_fault_kind_t)kind_of_test[test];
@@ -271,16 +207,10 @@ static bool looks_bent(const argus_evidence_t *const self, const int sonar) {
            (contradicted >= 0 && is_bent(self, sonar, BENT_TOLD_NAMING, BENT_TOLD));
 }
 
-// What no test names may be late, or its axis bent.
+// What no test names may have a bent axis.
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
     const argus_fault_kind_t first = first_name(self, sonar, ARGUS_TESTS);
-    if (first != ARGUS_KIND_NONE) {
-        return first;
-    }
-    if (is_late_by_both(self, sonar) || (looks_late(self, sonar) && has_partners(self, sonar))) {
-        return ARGUS_KIND_SLOW;
-    }
-    return looks_bent(self, sonar) ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;
+    return first == ARGUS_KIND_NONE && looks_bent(self, sonar) ? ARGUS_KIND_WRONG : first;
 }
 
 argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *const self, const int sonar) {
@@ -318,13 +248,12 @@ static bool is_suspected_by(const argus_evidence_t *const self, const int sonar,
     return false;
 }
 
-bool argus_evidence_suspects(const argus_evidence_t *const self, const int sonar) {
-    return is_suspected_by(self, sonar, ARGUS_TESTS) || looks_late(self, sonar) ||
-           is_late_by_both(self, sonar) || looks_bent(self, sonar);
-}
-
 bool argus_evidence_keeps_out(const argus_evidence_t *const self, const int sonar) {
     return is_suspected_by(self, sonar, ARGUS_TEST_PEERS);
+}
+
+bool argus_evidence_suspects(const argus_evidence_t *const self, const int sonar) {
+    return is_suspected_by(self, sonar, ARGUS_TESTS) || looks_bent(self, sonar);
 }
 
 bool argus_evidence_holds(const argus_evidence_t *const self, const int sonar) {

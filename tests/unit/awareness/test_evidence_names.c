@@ -12,7 +12,6 @@
 #define SONAR 4
 #define OTHER 9
 #define LAG 5
-#define KINDS 8
 
 static argus_evidence_t e;
 static argus_case_t *c;
@@ -152,7 +151,6 @@ void test_the_more_definite_test_gives_the_kind(void) {
             accuse(test, argus_bounds[test].ceiling);
         }
         c->none_run = first == 0 ? 5 : 0;
-        peer->late[LAG] = 300; // the peers know of a lag
         snprintf(text, sizeof text, "first %d", first);
         TEST_ASSERT_EQUAL_MESSAGE(by_precedence[first].kind, named(), text);
         const bool peers = by_precedence[first].test == ARGUS_TEST_PEERS;
@@ -436,109 +434,6 @@ void test_a_conviction_tells_late_from_wrong_too(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, convicted());
 }
 
-// Late and not well from 800 on, 1,400 while something moves before others, names one that others contradict,
-// 300 (100 of one that is later by 400) and by two, where it is late and not wrong as well.
-void test_lateness_alone_names_only_one_that_others_contradict(void) {
-    static const struct {
-        int late;
-        int peers;
-        unsigned against;
-        int told;
-        bool busy;
-        argus_fault_kind_t kind;
-    } by[] = {{800, 300, 3, 430, false, ARGUS_KIND_SLOW},  {799, 300, 3, 900, false, ARGUS_KIND_NONE},
-              {800, 299, 3, 900, false, ARGUS_KIND_NONE},  {800, 300, 1, 900, false, ARGUS_KIND_NONE},
-              {800, 300, 3, 429, false, ARGUS_KIND_NONE},  {1400, 300, 3, 430, true, ARGUS_KIND_SLOW},
-              {1399, 449, 3, 900, true, ARGUS_KIND_NONE},  {1400, 450, 3, 430, true, ARGUS_KIND_SLOW},
-              {799, 450, 3, 900, false, ARGUS_KIND_NONE},  {2000, 99, 3, 900, false, ARGUS_KIND_NONE},
-              {1199, 299, 3, 900, false, ARGUS_KIND_NONE}, {1200, 100, 3, 430, false, ARGUS_KIND_SLOW},
-              {1799, 299, 3, 900, true, ARGUS_KIND_NONE},  {1800, 100, 3, 430, true, ARGUS_KIND_SLOW}};
-    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
-        setUp();
-        peer->late[LAG] = (int16_t)by[i].late;
-        peer->told[LAG] = (int16_t)by[i].told;
-        peer->against = (uint16_t)by[i].against;
-        c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
-        e.busy = true;
-        e.stirred = (uint16_t)(1u << SONAR | (by[i].busy ? 1u << (SONAR + 1) : 0u));
-        snprintf(text, sizeof text, "case %d", i);
-        TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
-        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
-        const bool late = by[i].kind == ARGUS_KIND_SLOW || by[i].against == 1; // by one: a look, no name
-        TEST_ASSERT_EQUAL_MESSAGE(by[i].peers >= 450 || late, argus_evidence_suspects(&e, SONAR), text);
-    }
-}
-
-// Of one lag, its own readings (300 at least) and the peers together: 1,000, or 1,300 while something moves
-// before others, name it where the others do not bear it out; whoever they are, it needs no second of them.
-// From 1,450 on, 150 of its own are enough; where the others contradict it (200) and nothing moves, 850.
-void test_its_own_readings_and_the_peers_name_together(void) {
-    static const struct {
-        int own;
-        int late;
-        int late_other; // of the next lag
-        int peers;
-        bool busy;
-        argus_fault_kind_t kind;
-    } by[] = {{300, 700, 0, 0, false, ARGUS_KIND_SLOW},    {299, 1150, 0, 0, false, ARGUS_KIND_NONE},
-              {300, 699, 0, 0, false, ARGUS_KIND_NONE},    {300, 700, 0, -1, false, ARGUS_KIND_NONE},
-              {300, 0, 700, 0, false, ARGUS_KIND_NONE},    {700, 599, 0, 0, true, ARGUS_KIND_NONE},
-              {700, 600, 0, 0, true, ARGUS_KIND_SLOW},     {899, 0, 0, 0, false, ARGUS_KIND_NONE},
-              {899, 101, 0, 0, false, ARGUS_KIND_SLOW},    {150, 1300, 0, 0, false, ARGUS_KIND_SLOW},
-              {150, 1299, 0, 0, false, ARGUS_KIND_NONE},   {149, 2000, 0, 0, false, ARGUS_KIND_NONE},
-              {150, 1300, 0, 0, true, ARGUS_KIND_SLOW},    {299, 1151, 0, 0, false, ARGUS_KIND_SLOW},
-              {150, 700, 1300, 0, false, ARGUS_KIND_NONE}, {300, 550, 0, 200, false, ARGUS_KIND_SLOW},
-              {300, 549, 0, 200, false, ARGUS_KIND_NONE},  {300, 550, 0, 199, false, ARGUS_KIND_NONE},
-              {300, 550, 0, 200, true, ARGUS_KIND_NONE},   {299, 700, 0, 200, false, ARGUS_KIND_NONE}};
-    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
-        setUp();
-        c->lag[LAG] = (int16_t)by[i].own;
-        c->score[ARGUS_TEST_LAG] = (int16_t)by[i].own;
-        peer->late[LAG] = (int16_t)by[i].late;
-        peer->late[LAG + 1] = (int16_t)by[i].late_other;
-        c->score[ARGUS_TEST_PEERS] = (int16_t)by[i].peers;
-        e.stirred = (uint16_t)(1u << SONAR | (by[i].busy ? 1u << OTHER : 0u));
-        snprintf(text, sizeof text, "case %d", i);
-        TEST_ASSERT_EQUAL_MESSAGE(by[i].kind, named(), text);
-        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, convicted(), text);
-        const bool suspect =
-            by[i].kind == ARGUS_KIND_SLOW || by[i].own >= argus_bounds[ARGUS_TEST_LAG].suspicious;
-        TEST_ASSERT_EQUAL_MESSAGE(suspect, argus_evidence_suspects(&e, SONAR), text);
-    }
-}
-
-// Another name comes before lateness.
-void test_lateness_takes_nothing_from_another_name(void) {
-    peer->late[LAG] = 2000;
-    peer->told[LAG] = 900;
-    peer->against = 3;
-    c->score[ARGUS_TEST_PEERS] = 300;
-    accuse(ARGUS_TEST_STUCK, argus_bounds[ARGUS_TEST_STUCK].naming);
-    TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, named());
-}
-
-// Some lag explains a few of the readings of garbage by chance: it is slow only if the peers know of a lag,
-// 300, and gives the name back.
-void test_wild_readings_are_slow_only_if_the_peers_know_of_a_lag(void) {
-    for (int late = 299; late <= 300; late++) {
-        for (int below = 0; below < 2; below++) {
-            setUp();
-            give_ground();
-            accuse(ARGUS_TEST_LAG, argus_bounds[ARGUS_TEST_LAG].ceiling);
-            accuse(ARGUS_TEST_GARBAGE, argus_bounds[ARGUS_TEST_GARBAGE].naming - below);
-            peer->late[LAG] = (int16_t)late;
-            c->score[ARGUS_TEST_PEERS] = 300;
-            const bool wild = late < 300 && !below;
-            snprintf(text, sizeof text, "late %d, %d below", late, below);
-            TEST_ASSERT_EQUAL_MESSAGE(wild ? ARGUS_KIND_GARBAGE : ARGUS_KIND_SLOW, named(), text);
-            TEST_ASSERT_EQUAL_MESSAGE(wild ? ARGUS_KIND_GARBAGE : ARGUS_KIND_SLOW, convicted(), text);
-            argus_evidence_restart(
-                &e); // what the peers knew of a lag is forgotten: no ground for another name
-            TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_SLOW, named(), text);
-        }
-    }
-}
-
 // ---- a bent axis
 
 static void bend(int well, int told) {
@@ -608,8 +503,6 @@ void test_a_bend_takes_nothing_from_stuck_and_off(void) {
     }
 }
 
-// ---- silence alone
-
 // ---- on probation
 
 // What ends a probation is what names, but for what the peers alone say.
@@ -645,20 +538,6 @@ void test_the_peers_alone_keep_nobody_out(void) {
         TEST_ASSERT_FALSE_MESSAGE(argus_evidence_keeps_out(&e, SONAR), text);
     }
 }
-
-// ---- names that stay
-
-#define NEVER 0
-#define ALWAYS 1
-#define IF_MOVED 2 // the STUCK score is 0
-#define IF_WELL 3  // lateness below 420
-#define IF_LATE 4  // lateness from 880 on
-#define IF_DEAF 5  // 12 readings without an echo, the last three contradicted ones too
-#define IF_GAPS 6  // three of the last four contradicted ones without an echo
-#define IF_SURE 7  // late and not well from 1,000 on, lateness from 430 on
-#define IF_BENT 8  // bent from 1,000 on, told of by more than half of the lateness
-#define IF_HEARD 9 // less than three of the last four contradicted ones without an echo
-#define IF_LAG 10  // ... or late for sure
 
 // ---- suspicions
 
