@@ -249,6 +249,9 @@ void argus_evidence_agree_anew(argus_evidence_t *self, int sonar);
 // Any two have ever borne each other out.
 bool argus_evidence_has_pairs(const argus_evidence_t *self);
 
+// It gave the same value again though the robot moved.
+bool argus_evidence_repeats(const argus_evidence_t *self, int sonar);
+
 // It loses echoes between echoes of one thing.
 bool argus_evidence_shows_gaps(const argus_evidence_t *self, int sonar);
 

@@ -6,17 +6,17 @@
 #define NAME_CONFLICTS 3 // a view is one of a pair: who is wrong takes a third
 #define NAME_PARTNERS 2
 #define OFF_RUN 5
-#define OFF_RUN_LONG 12    // what echoed before is named off after so many readings without an echo
+#define OFF_RUN_LONG 12 // what echoed before is named off after so many readings without an echo
 #define OFF_HOLLOW 3
 #define VIEW_OFF_RUN 3
 #define VIEW_ECHOES 6
 #define HOLLOW_OF 4
 #define CONVICT_CONFLICTS 4
 #define CONVICT_BESIDE 3
-#define VIEW_OUTWEIGHS 3      // so many times more views of it are contradicted than borne out,
-#define OFF_OUTWEIGHS 2       // ... of one that is silent, since any echo clears it
-#define CONVICT_EPISODES 3    // what moves about the robot does not contradict the same sonar again later
-#define HELD 150              // hundredths of a nat that the peers must come down to before one is cleared
+#define VIEW_OUTWEIGHS 3   // so many times more views of it are contradicted than borne out,
+#define OFF_OUTWEIGHS 2    // ... of one that is silent, since any echo clears it
+#define CONVICT_EPISODES 3 // what moves about the robot does not contradict the same sonar again later
+#define HELD 150           // hundredths of a nat that the peers must come down to before one is cleared
 #define LATE_FIRST 430 // hundredths of a nat, all that speaks for late and against wrong together: at first
 #define LATE_AFTER 880 // ... and once it is called wrong, and for a conviction
 #define BENT_NAMING 1100

@@ -70,8 +70,11 @@ static uint8_t agreements_wanted(const argus_sonar_t *const s) {
 // What repeated one value, and shows another one now, was not stuck: a name is enough to say what it is. Half
 // the truth, where nothing is in range, is the same value each time.
 static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar) {
-    const argus_fault_kind_t convicted = argus_evidence_convicts(&self->evidence, sonar);
     const bool stuck = self->knowledge.sonar[sonar].kind == ARGUS_KIND_STUCK;
+    if (stuck && argus_evidence_repeats(&self->evidence, sonar)) {
+        return ARGUS_KIND_NONE;
+    }
+    const argus_fault_kind_t convicted = argus_evidence_convicts(&self->evidence, sonar);
     return convicted == ARGUS_KIND_NONE && stuck ? argus_evidence_names(&self->evidence, sonar) : convicted;
 }
 
