@@ -9,9 +9,9 @@
 #include "knowledge/knowledge.h"
 #include "knowledge/profile.h"
 
-// Half of what is driven straight along, ahead or back, without a turn: half the body (213), and something
-// for its heading.
-#define ARGUS_STRAIGHT_HALF_MM 260
+// Half of what is driven straight along, ahead or back, without a turn: half the body, and something for its
+// heading.
+int32_t argus_guard_straight_half_mm(const argus_robot_t *robot);
 
 // What the answers rest on.
 typedef struct {

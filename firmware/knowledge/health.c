@@ -19,7 +19,7 @@ static const row_t *row_of(const argus_change_t change) {
 }
 
 bool argus_health_may(const argus_knowledge_t *const self, const int sonar, const argus_change_t change) {
-    static const char initial[] = {'U', 'H', 'S', 'D', 'P', 'T'};
+    static const char initial[] = {'U', 'H', 'S', 'D', 'P', 'T', 'A'};
     const char *from = row_of(change)->from;
     const char now = initial[self->sonar[sonar].health];
     while (*from != '\0' && *from != now) {

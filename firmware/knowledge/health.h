@@ -8,8 +8,8 @@
 #include "knowledge/knowledge.h"
 
 // X(NAME, from, to, event, meaning): what may happen to a sonar. `from`: the states in which it may, U
-// UNKNOWN, H HEALTHY, S SUSPECT, D DISABLED, P PROBATION, T STALE; `event`: what says so, NONE: nobody needs
-// to know.
+// UNKNOWN, H HEALTHY, S SUSPECT, D DISABLED, P PROBATION, T STALE, A ABSENT; `event`: what says so, NONE:
+// nobody needs to know.
 #define ARGUS_CHANGE_TABLE(X)                                                                               \
     X(JUDGED, "UT", HEALTHY, SONAR_HEALTHY, "a full check at rest found no complaint")                      \
     X(RESTORED, "P", HEALTHY, SONAR_HEALTHY, "its probation is over")                                       \
@@ -24,7 +24,9 @@
     X(RETESTED, "DP", PROBATION, SONAR_PROBATION, "an operator wants it tried anew: relapses are forgiven") \
     X(RECORDED, "UHST", PROBATION, SONAR_PROBATION, "it was out in the last mission")                       \
     X(STALLED, "H", STALE, SONAR_STALE, "it yields no reading")                                             \
-    X(FORGOTTEN, "P", UNKNOWN, NONE, "the record was of another robot")
+    X(FORGOTTEN, "UHSDPT", UNKNOWN, NONE, "the record, or what was found out, was of another robot")        \
+    X(MISSING, "UHSDPT", ABSENT, NONE, "the robot that answers has not got it")                             \
+    X(FITTED, "A", UNKNOWN, NONE, "the robot that answers has it")
 
 typedef enum {
 #define ARGUS_CHANGE_ENUM(name, from, to, event, meaning) ARGUS_CHANGE_##name,

@@ -32,8 +32,8 @@ typedef enum {
     ARGUS_DO_LOOKED,       // they are over
     ARGUS_DO_LEAVE_OPEN,   // `sonars` are not to be looked at here
     ARGUS_DO_LOSE,         // `sonars` are dead, `silent` yield nothing: DISABLED
-    ARGUS_DO_WATCH,        // of `sonars`, outside 1..6, STALE ones report again, others do not any more
-    ARGUS_DO_REACH         // the goal is reached
+    ARGUS_DO_WATCH, // of `sonars`, that do not face forward, STALE ones report again, others do not any more
+    ARGUS_DO_REACH  // the goal is reached
 } argus_act_t;
 
 typedef enum { ARGUS_STOP_NONE, ARGUS_STOP_HALT, ARGUS_STOP_STOP, ARGUS_STOP_E_STOP } argus_stop_t;
@@ -64,9 +64,9 @@ typedef struct {
     int32_t speed_mm_s;
     int32_t cdeg;
     argus_point_t at;
-    uint16_t sonars;
-    uint16_t silent;
-    uint16_t doubted; // their echoes are looked at before they are believed
+    argus_mask_t sonars;
+    argus_mask_t silent;
+    argus_mask_t doubted; // their echoes are looked at before they are believed
 } argus_intent_t;
 
 #endif

@@ -6,9 +6,12 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
+#include "knowledge/body.h"
+#include "supervisor/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/history.h"
 #include "supervisor/modes.h"
+#include "supervisor/motions.h"
 #include "supervisor/orders.h"
 #include "supervisor/say.h"
 #include "supervisor/state.h"
@@ -19,13 +22,15 @@
 #define BUSY_POLL_MS 10u
 
 void argus_manager_init(argus_t *const self, const argus_config_t *const config, const uint32_t now_ms) {
+    const argus_robot_t *const chosen = argus_robot_chosen(config->robot);
     memset(self, 0, sizeof *self);
     self->config = *config;
     self->orders.locked = argus_config_check(config).fault != ARGUS_CONFIG_OK;
     self->orders.passive = self->orders.locked || config->active == 0;
     self->now_ms = now_ms;
-    argus_session_init(&self->session, !self->orders.passive);
+    argus_session_init(&self->session);
     argus_knowledge_init(&self->knowledge);
+    argus_body_is(&self->knowledge, chosen != NULL ? chosen : argus_robot_default(), now_ms);
     argus_echoes_init(&self->echoes);
     argus_awareness_init(&self->awareness);
     argus_evidence_init(&self->evidence);
@@ -81,8 +86,9 @@ void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
 
 static void on_open(argus_t *const self) {
     argus_say(self, ARGUS_EV_SESSION_OPEN, ARGUS_NO_SONAR, self->session.attempts);
-    if (!argus_session_knows_subclass(&self->session)) {
-        argus_say(self, ARGUS_EV_SUBCLASS_UNKNOWN, ARGUS_NO_SONAR, 0);
+    argus_meet_body(self);
+    if (!self->orders.passive) {
+        argus_enable_motors(self);
     }
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
     argus_awareness_restart(&self->awareness);
@@ -119,7 +125,7 @@ static void on_resume(argus_t *const self) {
 }
 
 static void on_sip(argus_t *const self) {
-    const int32_t unit_um = argus_session_distance_um(&self->session);
+    const int32_t unit_um = argus_session_distance_um(&self->session, self->knowledge.robot->dist_conv_um);
     if (!argus_session_is_open(&self->session) || self->mode == ARGUS_MODE_CLOSED) {
         argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um);
         return;

@@ -63,7 +63,7 @@ static const char *words_of(const argus_name_of_t of) {
     case ARGUS_NAME_FAILURE:
         return "IsNormal\0IsMinor\0IsMajor\0IsCatastrophic\0";
     case ARGUS_NAME_HEALTH:
-        return "UNKNOWN\0HEALTHY\0SUSPECT\0DISABLED\0PROBATION\0STALE\0";
+        return "UNKNOWN\0HEALTHY\0SUSPECT\0DISABLED\0PROBATION\0STALE\0ABSENT\0";
     case ARGUS_NAME_KIND:
         return "off\0silent\0stuck\0wrong\0garbage\0slow\0intermittent\0";
     case ARGUS_NAME_OP:

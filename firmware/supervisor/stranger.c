@@ -4,11 +4,15 @@
 
 #include <string.h>
 
+#include "knowledge/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/modes.h"
 
+// Whose body it has is found out when its session opens; until then the one before holds.
 static void forget(argus_t *const self) {
+    const argus_robot_t *const before = self->knowledge.robot;
     argus_knowledge_init(&self->knowledge);
+    argus_body_is(&self->knowledge, before, self->now_ms);
     argus_echoes_init(&self->echoes);
     argus_awareness_init(&self->awareness);
     argus_evidence_init(&self->evidence);
@@ -28,7 +32,7 @@ void argus_meet_stranger(argus_t *const self) {
     self->orders.passive = true;
     self->orders.paused = true;
     self->orders.stay = true;
-    self->session.motors = false;
+    self->orders.barred = false;
     forget(self);
     argus_replan(self);
     argus_do(self, (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true});

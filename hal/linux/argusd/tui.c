@@ -59,6 +59,7 @@ void tui_show(const tui_t *self, const view_t *view) {
     message.as.view.status.robot_name = NULL;
     message.as.view.status.robot_class = NULL;
     message.as.view.status.robot_subclass = NULL;
+    message.as.view.status.robot_body = NULL;
     message.as.view.status.robot_version = NULL;
     message.as.view.status.robot_serial = NULL;
     send_message(self, &message);

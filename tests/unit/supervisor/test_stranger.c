@@ -86,6 +86,7 @@ void test_without_configpac_the_rest_decides(void) {
 }
 
 void test_the_operator_takes_it_over_in_two_steps(void) {
+    robot.argus.config.check_range_mm = 400; // safe for a P3-AT, too
     robot.subclass = "p3at-sh";
     expect_stranger(3);
     TEST_ASSERT_TRUE(argus_operator(&robot.argus, now(), ARGUS_OP_ACTIVE, 0));

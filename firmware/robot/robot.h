@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Which robots are known, and what the data of one says.
+#ifndef ARGUS_ROBOT_H
+#define ARGUS_ROBOT_H
+
+#include "robot/table.h"
+
+// The robot that is assumed while none is known (p3dx-sh), and one of which nothing is known: no sonars.
+const argus_robot_t *argus_robot_default(void);
+const argus_robot_t *argus_robot_unknown(void);
+
+// The robot of a subclass as it is announced, in any letter case; NULL: not known. "p3dx" is the body of the
+// P3-DX with the older controller. `subclass` ends with 0 within 32 bytes.
+const argus_robot_t *argus_robot_find(const char *subclass);
+
+// The robot that the setting `robot` names; NULL for 0 (by subclass) and beyond the table.
+const argus_robot_t *argus_robot_chosen(int32_t choice);
+
+// ... and the value that names it, 0 for the unknown one.
+uint8_t argus_robot_choice(const argus_robot_t *self);
+
+bool argus_robot_is_known(const argus_robot_t *self);
+
+// Sonars that are managed: those that it has, at most ARGUS_SONARS.
+int argus_robot_sonars(const argus_robot_t *self);
+
+// 0 <= sonar < argus_robot_sonars().
+const argus_sonar_pose_t *argus_robot_pose(const argus_robot_t *self, int sonar);
+
+// Masks over the sonars that are managed.
+argus_mask_t argus_robot_all(const argus_robot_t *self);
+argus_mask_t argus_robot_forward(const argus_robot_t *self);
+argus_mask_t argus_robot_ahead(const argus_robot_t *self);
+argus_mask_t argus_robot_astern(const argus_robot_t *self);
+argus_mask_t argus_robot_flank(const argus_robot_t *self);
+argus_mask_t argus_robot_rear_flank(const argus_robot_t *self);
+argus_mask_t argus_robot_array(const argus_robot_t *self, int array);
+argus_mask_t argus_robot_polled(const argus_robot_t *self); // all of the arrays of those that face forward
+bool argus_robot_faces_forward(const argus_robot_t *self, int sonar);
+
+// Half of its width, mm, rounded up.
+int32_t argus_robot_half_width_mm(const argus_robot_t *self);
+
+#endif
