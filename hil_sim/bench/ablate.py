@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import multiprocessing
+import operator
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -80,10 +81,6 @@ def _in_time(finding: Finding | None) -> bool:
     return finding is not None and finding.in_time
 
 
-def _ever(finding: Finding | None) -> bool:
-    return finding is not None and finding.latency_s is not None
-
-
 def median_latency_s(verdicts: Sequence[Verdict]) -> float:
     """Return the median time to find a fault, those never found included as infinite; nan of none."""
     found = [f.latency_s if f.latency_s is not None else math.inf for v in verdicts for f in v.findings]
@@ -94,8 +91,7 @@ def median_latency_s(verdicts: Sequence[Verdict]) -> float:
 def compare(variant: Variant, whole: Sequence[Verdict], without: Sequence[Verdict]) -> Worth:
     """Return what a rule is worth by the verdicts on the same streams with it and without it."""
     pairs = list(_pairs(whole, without))
-    lost = sum(_in_time(a) and not _in_time(b) for a, b in pairs)
-    won = sum(_in_time(b) and not _in_time(a) for a, b in pairs)
+    lost, won = _only_one(pairs), _only_one([(b, a) for a, b in pairs])
     names = [len(b.names) - len(a.names) for a, b in zip(whole, without, strict=True)]
     return Worth(
         variant.name,
@@ -103,13 +99,30 @@ def compare(variant: Variant, whole: Sequence[Verdict], without: Sequence[Verdic
         lost,
         won,
         sign_test(lost, won),
-        sum(_ever(a) for a, _ in pairs) - sum(_ever(b) for _, b in pairs),
+        _ever_found(whole) - _ever_found(without),
         sum(names),
-        sign_test(sum(n > 0 for n in names), sum(n < 0 for n in names)),
-        sum(len(v.disables) for v in without) - sum(len(v.disables) for v in whole),
+        _chance_of(names),
+        _disables(without) - _disables(whole),
         median_latency_s(without) - median_latency_s(whole),
-        sum(a != b for a, b in zip(whole, without, strict=True)),
+        sum(map(operator.ne, whole, without)),
     )
+
+
+def _only_one(pairs: Sequence[tuple[Finding | None, Finding | None]]) -> int:
+    """How many faults only the first of the two found in time."""
+    return sum(_in_time(a) and not _in_time(b) for a, b in pairs)
+
+
+def _chance_of(more: Sequence[int]) -> float:
+    return sign_test(sum(n > 0 for n in more), sum(n < 0 for n in more))
+
+
+def _ever_found(verdicts: Sequence[Verdict]) -> int:
+    return sum(f.latency_s is not None for v in verdicts for f in v.findings)
+
+
+def _disables(verdicts: Sequence[Verdict]) -> int:
+    return sum(len(v.disables) for v in verdicts)
 
 
 @lru_cache(maxsize=1)

@@ -63,10 +63,7 @@ class DriveBy(Sil):
     def _steer(self) -> None:
         drive = self.robot.drive
         if not drive.motors:
-            self.robot.enable(True)
-            for sign in (1, -1):
-                drive.set_accel(sign * _ACCEL_MM_S2)
-                drive.set_turn_accel(sign * _TURN_ACCEL_DEG_S2)
+            self._begin()
         away_mm, off_deg = self._aim()
         passed = not self._turning and away_mm < _PASSED_MM and abs(off_deg) > _PASSED_DEG
         if away_mm < _REACHED_MM or passed:
@@ -80,6 +77,12 @@ class DriveBy(Sil):
             rate = _bounded(_KEEP_GAIN * off_deg, _KEEP_MOST_DEG_S) if speed else 0.0
         drive.vel(speed)
         drive.rvel(rate)
+
+    def _begin(self) -> None:
+        self.robot.enable(True)
+        for sign in (1, -1):
+            self.robot.drive.set_accel(sign * _ACCEL_MM_S2)
+            self.robot.drive.set_turn_accel(sign * _TURN_ACCEL_DEG_S2)
 
     def _aim(self) -> tuple[float, float]:
         """How far the next point is, and how much to the left of the heading."""

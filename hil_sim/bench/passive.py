@@ -105,9 +105,13 @@ def _count_false(stream: Stream, changes: Sequence[Change], verdict: Verdict) ->
     for t_s, sonar, health, kind in changes:
         was = before.get(sonar, ("", ""))
         before[sonar] = health, kind
-        if any(sonar == of and begin <= t_s <= end for of, begin, end in spans):
+        if _is_within(spans, sonar, t_s):
             continue
         if health == DISABLED and was[0] != DISABLED:
             verdict.disables.append((t_s, sonar, kind))
         if health == SUSPECT and kind and (health, kind) != was:
             verdict.names.append((t_s, sonar, kind))
+
+
+def _is_within(spans: Sequence[tuple[int, float, float]], sonar: int, t_s: float) -> bool:
+    return any(sonar == of and begin <= t_s <= end for of, begin, end in spans)

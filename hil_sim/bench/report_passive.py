@@ -52,17 +52,20 @@ def _false(verdicts: Sequence[Verdict]) -> dict[str, Any]:
 
 def summarise(verdicts: Sequence[Verdict]) -> dict[str, Any]:
     """Return the figures of some verdicts, as they go into JSON."""
-    findings = [finding for verdict in verdicts for finding in verdict.findings]
-    groups = {"all": findings, "rooms": [f for f in findings if f.place == "room"]}
-    groups |= {kind: [f for f in findings if f.kind == kind] for kind in BOUND_S}
     return {
         "streams": len(verdicts),
-        "found": {name: _found(group) for name, group in groups.items() if group},
+        "found": {name: _found(group) for name, group in _groups(verdicts).items() if group},
         "false": {
-            name: _false([verdict for verdict in verdicts if verdict.people == people])
-            for name, people in (("nobody about", False), ("people", True))
+            "nobody about": _false([verdict for verdict in verdicts if not verdict.people]),
+            "people": _false([verdict for verdict in verdicts if verdict.people]),
         },
     }
+
+
+def _groups(verdicts: Sequence[Verdict]) -> dict[str, list[Finding]]:
+    findings = [finding for verdict in verdicts for finding in verdict.findings]
+    groups = {"all": findings, "rooms": [f for f in findings if f.place == "room"]}
+    return groups | {kind: [f for f in findings if f.kind == kind] for kind in BOUND_S}
 
 
 def _percent(share: dict[str, Any]) -> str:
