@@ -221,8 +221,8 @@ bool argus_evidence_replaces(const argus_evidence_t *self, int sonar, argus_faul
                              argus_fault_kind_t found);
 
 // Sonars of 1..6 that hear nothing and have proved alive last long ago.
-uint16_t argus_evidence_unseen(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
-                               const argus_config_t *config);
+argus_mask_t argus_evidence_unseen(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
+                                   const argus_config_t *config);
 
 // The heading on which a sonar that hears nothing would look along a bearing where another one lately heard
 // something near, from the same place: whether it is deaf is told there. False: there is none that would be
@@ -248,10 +248,10 @@ void argus_evidence_forget(argus_evidence_t *self, int sonar);
 
 // Sonars that lost the echo that they followed; that went over to another one. Both call for a look, and
 // others may say so as well.
-uint16_t argus_evidence_lost(const argus_evidence_t *self);
-uint16_t argus_evidence_jumped(const argus_evidence_t *self);
-void argus_evidence_note_loss(argus_evidence_t *self, uint16_t sonars);
-void argus_evidence_note_jump(argus_evidence_t *self, uint16_t sonars);
+argus_mask_t argus_evidence_lost(const argus_evidence_t *self);
+argus_mask_t argus_evidence_jumped(const argus_evidence_t *self);
+void argus_evidence_note_loss(argus_evidence_t *self, argus_mask_t sonars);
+void argus_evidence_note_jump(argus_evidence_t *self, argus_mask_t sonars);
 
 // Comparisons in a row that agreed with it, since it was put out or on probation.
 uint8_t argus_evidence_agreed(const argus_evidence_t *self, int sonar);
