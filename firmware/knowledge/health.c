@@ -10,6 +10,7 @@ typedef struct {
 } row_t;
 
 static const row_t *row_of(const argus_change_t change) {
+    ARGUS_ASSERT(change < ARGUS_CHANGES);
 #define ARGUS_EV_NONE 0
 #define ROW(name, from, to, event, meaning) {from, ARGUS_##to, ARGUS_EV_##event},
     static const row_t rows[] = {ARGUS_CHANGE_TABLE(ROW)};
@@ -30,6 +31,7 @@ bool argus_health_may(const argus_knowledge_t *const self, const int sonar, cons
 
 // A relapse: it fails again, in this mission or after one in which it failed.
 static void count_failure(argus_sonar_t *const s) {
+    ARGUS_ASSERT(s->health != ARGUS_DISABLED);
     const bool again = s->disabled_times > 0 || s->disabled_before > 0;
     s->relapses = (uint8_t)(s->relapses + (again && s->relapses < UINT8_MAX ? 1 : 0));
     s->disabled_times = (uint16_t)(s->disabled_times + (s->disabled_times < UINT16_MAX ? 1 : 0));
