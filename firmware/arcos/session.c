@@ -206,6 +206,7 @@ static unsigned meet(argus_session_t *self) {
     if (self->differs == 0) {
         return 0;
     }
+    ARGUS_ASSERT(self->differs <= ARGUS_IDENTITY_PARTS);
     return ARGUS_SESSION_OTHER_ROBOT;
 }
 

@@ -65,7 +65,8 @@ void argus_link_up(argus_t *const self, const uint32_t now_ms) {
 }
 
 static void go_offline(argus_t *const self) {
-    const uint32_t silence_ms = self->now_ms - self->session.heard_ms;
+    // None was ever heard: the silence has no beginning.
+    const uint32_t silence_ms = self->session.sips > 0 ? self->now_ms - self->session.heard_ms : 0;
     self->checked = false;
     self->stalled = false;
     self->travel.jog_mm = 0;

@@ -101,6 +101,24 @@ static bool is_member(gid_t group) {
     return member;
 }
 
+static void advise_denied(line_t *line, const char *path, const struct stat *about, const char *group) {
+    const bool group_may = (about->st_mode & 060u) == 060u;
+    if (about->st_uid == geteuid()) {
+        add(line, ": you own it, but may not read and write it: chmod u+rw %s", path);
+    } else if (is_member(about->st_gid) && !group_may) {
+        add(line, ": you are in that group, which may not read and write it: %schmod g+rw %s", as_root(),
+            path);
+    } else if (!group_may) {
+        add(line,
+            ": only its owner may read and write it: %schmod g+rw %s, and join the group, or a udev rule",
+            as_root(), path);
+    } else if (is_member(about->st_gid)) {
+        add(line, ": that would do; something else forbids it, as a container or a security module");
+    } else {
+        add(line, ": join the group: %susermod -aG %s \"$USER\", then log in again", as_root(), group);
+    }
+}
+
 static void explain_denied(line_t *line, const char *path) {
     struct stat about;
     char user_name[32];
@@ -112,27 +130,12 @@ static void explain_denied(line_t *line, const char *path) {
     }
     const struct passwd *const user = getpwuid(about.st_uid);
     const struct group *const group = getgrgid(about.st_gid);
-    const unsigned mode = about.st_mode & 0777u;
-    const bool group_may = (mode & 060u) == 060u;
     snprintf(user_name, sizeof user_name, "%u", (unsigned)about.st_uid);
     snprintf(group_name, sizeof group_name, "%u", (unsigned)about.st_gid);
+    const char *const group_text = group != NULL ? group->gr_name : group_name;
     add(line, "; it belongs to user %s and group %s, mode %03o", user != NULL ? user->pw_name : user_name,
-        group != NULL ? group->gr_name : group_name, mode);
-    if (about.st_uid == geteuid()) {
-        add(line, ": you own it, but may not read and write it: chmod u+rw %s", path);
-    } else if (is_member(about.st_gid) && !group_may) {
-        add(line, ": you are in that group, which may not read and write it: %schmod g+rw %s", as_root(),
-            path);
-    } else if (!group_may) {
-        add(line,
-            ": only its owner may read and write it: %schmod g+rw %s, and join the group, or a udev rule",
-            as_root(), path);
-    } else if (is_member(about.st_gid)) {
-        add(line, ": that would do; something else forbids it, as a container or a security module");
-    } else {
-        add(line, ": join the group: %susermod -aG %s \"$USER\", then log in again", as_root(),
-            group != NULL ? group->gr_name : group_name);
-    }
+        group_text, (unsigned)(about.st_mode & 0777u));
+    advise_denied(line, path, &about, group_text);
 }
 
 static bool holds(const char *process, const char *device) {

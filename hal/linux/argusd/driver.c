@@ -206,8 +206,12 @@ uint32_t driver_process(driver_t *self) {
 
 void driver_explain_turned_away(const driver_t *self, char *text, size_t capacity) {
     const bool tcp = self->spec.scheme == HAL_SCHEME_TCP;
-    snprintf(text, capacity, "%s: the other end accepts and closes at once, %u times so far: %s",
-             hal_link_spec_target(&self->spec), (unsigned)self->fruitless,
+    char port[16] = "";
+    if (tcp) {
+        snprintf(port, sizeof port, " port %u", (unsigned)self->spec.port);
+    }
+    snprintf(text, capacity, "%s%s: the other end accepts and closes at once, %u times so far: %s",
+             hal_link_spec_target(&self->spec), port, (unsigned)self->fruitless,
              tcp ? "another client may be using the robot; end that one, or check the port"
                  : "is the device in order, and is nobody else at it?");
 }

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #define TURN_DEG 20
+#define REPEAT_MS 1000u // a key that is held or bounces asks once
 
 void operator_init(operator_t *self, driver_t *driver, const argus_config_t *config) {
     *self = (operator_t){.driver = driver,
@@ -101,6 +102,17 @@ static const char *effect_of(tui_key_t key, argus_op_t op) {
     }
 }
 
+// A key that goes to and fro would undo itself.
+static bool is_repeated(operator_t *self, tui_key_t key) {
+    const bool toggles = key == TUI_PASSIVE || key == TUI_PIN;
+    const bool repeated = toggles && self->toggled == key && self->now_ms - self->toggled_ms < REPEAT_MS;
+    if (toggles && !repeated) {
+        self->toggled = key;
+        self->toggled_ms = self->now_ms;
+    }
+    return repeated;
+}
+
 static void choose(operator_t *self, int step) {
     self->sonar = (uint8_t)((self->sonar + ARGUS_SONARS + step) % ARGUS_SONARS);
 }
@@ -123,6 +135,10 @@ void operator_key(operator_t *self, tui_key_t key, uint32_t now_ms, char *answer
     argus_status(self->driver->core, &status);
     if (!wish_of(self, &status, key, &op, &argument)) {
         answer_screen(self, key, answer, capacity);
+        return;
+    }
+    if (is_repeated(self, key)) {
+        snprintf(answer, capacity, "> %s: twice within a second is once", tui_keys_of(key));
         return;
     }
     if (is_of_sonar(op)) {

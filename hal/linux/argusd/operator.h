@@ -13,6 +13,8 @@ typedef struct {
     int32_t back_mm;
     bool judges; // profile argus
     uint32_t now_ms;
+    tui_key_t toggled; // the last key that goes to and fro, pressed at toggled_ms
+    uint32_t toggled_ms;
     driver_t *driver;
 } operator_t;
 

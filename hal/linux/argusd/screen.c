@@ -171,10 +171,10 @@ static void draw_progress(canvas_t *canvas, const view_t *view, int row, int col
 
 static void draw_mode(canvas_t *canvas, const view_t *view) {
     const argus_status_t *const status = &view->status;
-    write_at(canvas, 1, 1, TONE_PLAIN, "%-9s", argus_name(ARGUS_NAME_MODE, status->mode));
+    write_at(canvas, 1, 1, TONE_PLAIN, "%-9s", argus_name(ARGUS_NAME_MODE, (int)status->mode));
     write_at(canvas, 1, 11, tone_of_failure(status->failure), "%s",
-             argus_name(ARGUS_NAME_FAILURE, status->failure));
-    write_at(canvas, 1, 27, TONE_PLAIN, "mission %s", argus_name(ARGUS_NAME_MISSION, status->mission));
+             argus_name(ARGUS_NAME_FAILURE, (int)status->failure));
+    write_at(canvas, 1, 27, TONE_PLAIN, "mission %s", argus_name(ARGUS_NAME_MISSION, (int)status->mission));
     if (status->paused) {
         put_text(canvas, 1, 44, TONE_OPERATOR, "PAUSED: g goes on");
     }
@@ -281,8 +281,8 @@ static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row,
     }
     if (layout->health) {
         snprintf(state, sizeof state, " %s%.9s", out ? "!" : "",
-                 out ? argus_name(ARGUS_NAME_KIND, status->kind[sonar])
-                     : argus_name(ARGUS_NAME_HEALTH, health));
+                 out ? argus_name(ARGUS_NAME_KIND, (int)status->kind[sonar])
+                     : argus_name(ARGUS_NAME_HEALTH, (int)health));
     }
     write_at(canvas, row, column, tone_of_health(health), "%2d%c%s %s%.10s", sonar, pinned ? '=' : ' ',
              bearing, reading,
@@ -383,15 +383,16 @@ void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log) 
 
 void screen_draw_keys(canvas_t *canvas) {
     int row = 1;
-#define KEY_ROW(name, keys, effect)                                \
-    if (row < canvas->rows - 1) {                                  \
-        for (int column = 0; column < canvas->columns; column++) { \
-            put(canvas, row, column, TONE_PLAIN, ' ');             \
-        }                                                          \
-        put_text(canvas, row, 1, TONE_TITLE, keys);                \
-        put_text(canvas, row, 12, TONE_PLAIN, effect);             \
-        row++;                                                     \
+    for (int key = TUI_NONE; key < TUI_GONE && row < canvas->rows - 1; key++) {
+        const char *const keys = tui_keys_of((tui_key_t)key);
+        if (keys[0] == '\0') {
+            continue;
+        }
+        for (int column = 0; column < canvas->columns; column++) {
+            put(canvas, row, column, TONE_PLAIN, ' ');
+        }
+        put_text(canvas, row, 1, TONE_TITLE, keys);
+        put_text(canvas, row, 12, TONE_PLAIN, tui_effect_of((tui_key_t)key));
+        row++;
     }
-    TUI_KEY_TABLE(KEY_ROW)
-#undef KEY_ROW
 }

@@ -14,6 +14,11 @@
 #define SCREEN_MS 200u
 #define DRAIN_MAX_MS 500
 
+// There is a terminal, but not one to draw on.
+static bool misses_screen(const voice_t *self) {
+    return !self->tui.on && tui_is_built() && isatty(STDIN_FILENO) && isatty(STDOUT_FILENO);
+}
+
 void voice_begin(voice_t *self, const voice_options_t *options, const moment_t *moment) {
     const char *const no_colour = getenv("NO_COLOR");
     self->options = *options;
@@ -23,8 +28,7 @@ void voice_begin(voice_t *self, const voice_options_t *options, const moment_t *
         tui_start(&self->tui);
     }
     output_init(&self->out, STDOUT_FILENO);
-    if (!options->json && !options->plain && !self->tui.on && tui_is_built() && isatty(STDIN_FILENO) &&
-        isatty(STDOUT_FILENO)) {
+    if (!options->json && !options->plain && misses_screen(self)) {
         voice_notice(self,
                      "no screen can be drawn on this terminal (see TERM): a line per event, as with --plain");
     }
@@ -74,7 +78,7 @@ static tone_t tone_of(const argus_event_t *event) {
 // thing.
 static uint16_t key_of(const argus_event_t *event) {
     const uint16_t id = event->id == ARGUS_EV_SUSPICION_DROPPED ? ARGUS_EV_SONAR_SUSPECT : event->id;
-    return (uint16_t)(id << 5 | ((unsigned)event->sonar & 0x1Fu));
+    return (uint16_t)((unsigned)id << 5 | ((unsigned)event->sonar & 0x1Fu));
 }
 
 // Returns the length of the line, for people.

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from argus_tools.formats import formats
 from logs import ROOT, decode, run
 
@@ -21,6 +22,7 @@ COMMANDS = [
 ]
 
 
+@pytest.mark.soak
 def test_the_commands_run_in_their_order(tmp_path: Path) -> None:
     shutil.copy(SAMPLE, tmp_path)
     program = tmp_path / "bin" / "argus-log"

@@ -48,6 +48,9 @@ void test_what_is_not_done_while_passive_says_so(void) {
     press(TUI_STOP, "stop, and stay");
     press(TUI_PASSIVE, "p: active: drives");
     TEST_ASSERT_EQUAL_INT(1, count(ARGUS_EV_ACTIVE));
+    press(TUI_PASSIVE, "twice within a second is once");
+    TEST_ASSERT_EQUAL_INT(0, count(ARGUS_EV_PASSIVE));
+    time_.now_ms += 1000;
     press(TUI_PASSIVE, "p: passive: stops");
     TEST_ASSERT_EQUAL_INT(1, count(ARGUS_EV_PASSIVE));
 }
@@ -69,6 +72,7 @@ void test_sonars_are_chosen_round_and_pinned(void) {
     press(TUI_NEXT, "sonar 1 is chosen");
     press(TUI_PIN, "k: sonar 1: keeps its health until unpinned");
     press(TUI_TAKE_OUT, "it is pinned; k ends that");
+    time_.now_ms += 1000;
     press(TUI_PIN, "k: sonar 1: the evidence decides again");
     press(TUI_TAKE_OUT, "x: sonar 1: take it out of use, pinned");
     TEST_ASSERT_EQUAL_INT(1, count(ARGUS_EV_SONAR_DISABLED));
