@@ -75,7 +75,7 @@ const argus_sonar_pose_t *argus_robot_pose(const argus_robot_t *const self, cons
 static argus_mask_t managed(const argus_robot_t *const self, const uint32_t mask) {
     const int count = argus_robot_sonars(self);
     const uint32_t all = count == 0 ? 0u : UINT32_MAX >> (32 - count);
-    ARGUS_ASSERT(count <= ARGUS_SONARS && count <= 32);
+    ARGUS_ASSERT(count <= ARGUS_SONARS);
     return (argus_mask_t)(mask & all);
 }
 

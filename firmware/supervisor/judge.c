@@ -116,7 +116,7 @@ static bool is_passed_over(const argus_t *const self, const int sonar) {
     return late && self->ordered && self->now_ms - self->ordered_ms <= (uint32_t)self->config.stale_ms;
 }
 
-// The others than 1..6 yield to the same tests; one that yields nothing is out as well.
+// Those that do not face forward yield to the same tests; one that yields nothing is out as well.
 static bool has_fallen_silent(const argus_t *const self, const int sonar) {
     const bool other = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) == 0;
     return other && is_silent(self, sonar) && !is_passed_over(self, sonar);

@@ -119,7 +119,7 @@ static argus_intent_t decide(argus_t *const self) {
         enter_idle(self);
         return nothing();
     }
-    if (!argus_guard_may_step(&self->plan)) { // all six are out, or suspects that no one can judge
+    if (!argus_guard_may_step(&self->plan)) { // all ahead are out, or suspects that no one can judge
         fail_mission(self);
         return wait_for(ARGUS_WAIT_CATASTROPHIC);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Drives robots with 8, 16 and 32 sonars by a build that manages ARGUS_SONARS, and says on a line what came
 // of it.
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -47,6 +48,22 @@ static int count_health(argus_health_t health) {
     return count;
 }
 
+// Another one of its kind answers: those that it has not got stay absent.
+static int broken_by_another(void) {
+    static char another[32];
+    const int before = count_health(ARGUS_ABSENT);
+    argus_link_lost(&robot.argus, robot.start_ms + robot.t_ms);
+    snprintf(another, sizeof another, "%s", robot.subclass);
+    another[0] = (char)toupper(another[0]); // another robot, but not another body
+    robot.subclass = another;
+    robot.phase = 0;
+    argus_link_up(&robot.argus, robot.start_ms + robot.t_ms);
+    robot_run(&robot, 10000);
+    const bool met = robot_count_events(&robot, ARGUS_EV_OTHER_ROBOT, 0) == 1;
+    const bool same = count_health(ARGUS_ABSENT) == before;
+    return !met + !same + argus_invariants_broken(&robot.argus);
+}
+
 // With one of the forward-facing ones dead it goes 600 mm ahead.
 static void drive(const char *subclass, unsigned has, int dead) {
     argus_config_t config = robot_config();
@@ -61,9 +78,11 @@ static void drive(const char *subclass, unsigned has, int dead) {
     const bool reached = robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 200000);
     argus_status_t status;
     argus_status(&robot.argus, &status);
+    const int disabled = status.health[dead] == ARGUS_DISABLED;
+    const int beyond = robot_count_events(&robot, ARGUS_EV_SONARS_BEYOND, 0);
     printf("%s %d %d %d %d %d %d %d %d\n", subclass, status.sonars, reached, count_health(ARGUS_HEALTHY),
-           count_health(ARGUS_DISABLED), count_health(ARGUS_ABSENT), status.health[dead] == ARGUS_DISABLED,
-           robot_count_events(&robot, ARGUS_EV_SONARS_BEYOND, 0), argus_invariants_broken(&robot.argus));
+           count_health(ARGUS_DISABLED), count_health(ARGUS_ABSENT), disabled, beyond,
+           argus_invariants_broken(&robot.argus) + broken_by_another());
 }
 
 int main(void) {

@@ -255,6 +255,14 @@ static layout_t layout_of(int room) {
     return layouts[i];
 }
 
+static void put_bearing(char *text, size_t capacity, const argus_status_t *status, int sonar) {
+    if (sonar < status->sonars) {
+        snprintf(text, capacity, "%+4d", status->bearing_deg[sonar]);
+    } else {
+        snprintf(text, capacity, "   -");
+    }
+}
+
 static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row, int column,
                        const layout_t *layout) {
     const argus_status_t *const status = &view->status;
@@ -267,10 +275,8 @@ static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row,
     if (status->age_ms[sonar] != UINT32_MAX) {
         snprintf(reading, sizeof reading, "%4d", status->reading_mm[sonar]);
     }
-    if (layout->bearing && sonar < status->sonars) {
-        snprintf(bearing, sizeof bearing, "%+4d", status->bearing_deg[sonar]);
-    } else if (layout->bearing) {
-        snprintf(bearing, sizeof bearing, "   -");
+    if (layout->bearing) {
+        put_bearing(bearing, sizeof bearing, status, sonar);
     }
     if (layout->health) {
         snprintf(state, sizeof state, " %s%.9s", out ? "!" : "",
