@@ -21,6 +21,7 @@ add_library(argus_shared SHARED ${firmware_sources} tools/core_shim.c)
 target_include_directories(argus_shared PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/firmware/include>
                                                $<INSTALL_INTERFACE:include>
                            PRIVATE firmware)
+target_compile_definitions(argus_shared PUBLIC ARGUS_SONARS=${ARGUS_SONARS})
 target_compile_options(argus_shared PRIVATE ${ARGUS_STRICT})
 target_link_options(argus_shared PRIVATE -Wl,--version-script=${PROJECT_BINARY_DIR}/argus.map)
 target_link_libraries(argus_shared PRIVATE $<BUILD_INTERFACE:argus_flags>)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Emulator of a Pioneer P3-DX: world, body, sonar, faults, and the ARCOS server a client talks to."""
+"""Emulator of Pioneer robots: world, body, sonar, faults, and the ARCOS server a client talks to."""

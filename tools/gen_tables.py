@@ -1,19 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes gen_p3dx.h and gen_arcos.h from the tables in hil_sim/tables, or checks that they are current."""
+"""Writes the generated tables of firmware/ from those in hil_sim/tables, or checks that they are current."""
 
 from __future__ import annotations
 
 import argparse
+import math
 import re
 import sys
 import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 TABLES = Path("hil_sim/tables")
-HEADERS = {"p3dx": Path("firmware/robot"), "arcos": Path("firmware/arcos")}
 
 ARCOS_SHORT = {
     "command": "CMD",
@@ -37,8 +40,8 @@ HEX_KEYS = {"HEADER0": 2, "HEADER1": 2}
 POSE_KEYS = ("number", "x_mm", "y_mm", "heading_deg")
 
 EPILOG = """examples:
-  tools/gen_tables.py            write both headers
-  tools/gen_tables.py --check    exit 1 if a header differs from its table
+  tools/gen_tables.py            write them
+  tools/gen_tables.py --check    exit 1 if a file differs from its table
 
 exit codes: 0 written or current, 1 out of date, 2 a table is missing or malformed"""
 
@@ -128,7 +131,7 @@ def p3dx_header(table: dict[str, Any]) -> str:
         "#define ARGUS_P3DX_SONAR_TABLE(X) \\",
         " \\\n".join(rows),
     ]
-    return header("ARGUS_GEN_P3DX_H", f"{P3DX_SOURCE}.toml", "Pioneer P3-DX geometry and limits", body)
+    return header("ARGUS_GEN_P3DX_H", f"{P3DX_SOURCE}.toml", "P3-DX geometry, limits", body)
 
 
 def arcos_header(table: dict[str, Any]) -> str:
@@ -151,8 +154,203 @@ def arcos_header(table: dict[str, Any]) -> str:
     return header("ARGUS_GEN_ARCOS_H", "arcos.toml", "Numbers of the ARCOS protocol", body[:-1])
 
 
-GENERATORS = {"p3dx": p3dx_header, "arcos": arcos_header}
-SOURCES = {"p3dx": P3DX_SOURCE, "arcos": "arcos"}
+ROBOT_FIRST = "p3dx-sh"  # the robot that is assumed where none is known; the others follow by name
+ROTATIONS_MAX = 10  # of a plan: every set of them is tried
+FORWARD_MAX = 6
+NAME_BYTES = 16
+LAST_ASTERN_DEG = 140  # who looks farther astern than this sees what the robot backs into head-on
+EXCESS_ONE = 10_000_000_000
+POSE_BLOCK = 8  # sonars of which a build manages all or none
+ROLES = ("ahead", "astern", "abeam", "none")
+ROBOT_FIGURES = {
+    "body": "front_mm rear_mm width_mm swing_radius_mm sonar_face_mm tolerance_centre_mm front_bumpers rear_bumpers",
+    "motion": "decel_mm_s2 track_mm",
+    "odometry": "dist_conv_um",
+    "sonar": "min_mm no_echo_mm cone_deg arrays",
+}
+
+
+@dataclass(frozen=True)
+class Robot:
+    """What the firmware has of one robot's table, checked and with what follows from it."""
+
+    name: str
+    figures: dict[str, int]
+    poses: list[dict[str, Any]]
+    forward: list[int]
+
+    def mask(self, role: str, *, front: bool | None = None) -> int:
+        """Return the sonars of a role as bits; front: only those whose faces are ahead of the centre, or are not."""
+        return sum(
+            1 << pose["number"]
+            for pose in self.poses
+            if pose["role"] == role and (front is None or (pose["x_mm"] > 0) == front)
+        )
+
+    def bearing(self, sonar: int) -> int:
+        """Return whither a sonar looks, in degrees."""
+        return int(self.poses[sonar]["heading_deg"])
+
+    def spacings(self) -> list[int]:
+        """Return the angles between neighbours of the forward-facing ones."""
+        return [self.bearing(a) - self.bearing(b) for a, b in pairwise(self.forward)]
+
+    def neighbours(self, sonar: int) -> tuple[int, int]:
+        """Return who is mounted left and right of a forward-facing sonar, -1 for nobody."""
+        if sonar not in self.forward:
+            return -1, -1
+        row = [-1, *self.forward, -1]
+        at = row.index(sonar)
+        return row[at - 1], row[at + 1]
+
+    def rotations(self) -> list[int]:
+        """Return the turns that put one forward-facing sonar on the bearing of another: small first, right first."""
+        turns = {self.bearing(a) - self.bearing(b) for a in self.forward for b in self.forward if a != b}
+        return sorted(turns, key=lambda turn: (abs(turn), turn))
+
+    def derived(self) -> dict[str, int]:
+        """Return the figures that follow from others."""
+        widest = max(self.spacings())
+        astern = [pose["x_mm"] for pose in self.poses if abs(pose["heading_deg"]) >= LAST_ASTERN_DEG]
+        return {
+            "pitch_deg": round(sum(self.spacings()) / len(self.spacings())),
+            "tolerance_excess": round(EXCESS_ONE * (1 / math.cos(math.radians(widest)) - 1)),
+            "rear_overhang_mm": self.figures["rear_mm"] + max(astern, default=0),
+        }
+
+
+def check_poses(source: Path, poses: list[dict[str, Any]]) -> None:
+    """Raise TableError unless the poses are whole and numbered from 0."""
+    for index, pose in enumerate(poses):
+        missing = [key for key in (*POSE_KEYS, "array") if not is_integer(pose.get(key))]
+        if missing:
+            raise TableError(f"{source}: sonar.pose {index}: {missing[0]} must be an integer")
+        if pose["number"] != index:
+            raise TableError(f"{source}: sonar.pose {index}: number must be {index}")
+        if pose.get("role") not in ROLES:
+            raise TableError(f"{source}: sonar.pose {index}: role must be one of {', '.join(ROLES)}")
+    if not poses:
+        raise TableError(f"{source}: no [[sonar.pose]] entries; add one per sonar")
+
+
+def read_robot(root: Path, name: str) -> Robot:
+    """Return the robot NAME, or raise TableError that says what its table lacks."""
+    source = TABLES / "robots" / f"{name}.toml"
+    table = load(root, f"robots/{name}")
+    poses = table.get("sonar", {}).get("pose", [])
+    check_poses(source, poses)
+    figures = {}
+    for section, keys in ROBOT_FIGURES.items():
+        for key in keys.split():
+            figures[key] = table.get(section, {}).get(key)
+            if not is_integer(figures[key]):
+                raise TableError(f"{source}: [{section}] {key} must be an integer")
+    forward = table.get("sonar", {}).get("forward", [])
+    if not 2 <= len(forward) <= FORWARD_MAX or not set(forward) <= set(range(len(poses))):
+        raise TableError(
+            f"{source}: [sonar] forward must name 2 to {FORWARD_MAX} of the sonars, left to right"
+        )
+    robot = Robot(name, figures, poses, forward)
+    if min(robot.spacings()) <= 0 or len(robot.rotations()) > ROTATIONS_MAX:
+        raise TableError(
+            f"{source}: [sonar] forward: bearings must fall from left to right, and have {ROTATIONS_MAX // 2} "
+            "different distances at most"
+        )
+    if table.get("identity", {}).get("subclass") != name or len(name) >= NAME_BYTES:
+        raise TableError(
+            f"{source}: [identity] subclass must be the file's name, of {NAME_BYTES - 1} letters at most"
+        )
+    return robot
+
+
+def read_robots(root: Path) -> list[Robot]:
+    """Return all robots, the one that is assumed first."""
+    names = sorted(path.stem for path in (root / TABLES / "robots").glob("*.toml"))
+    return [read_robot(root, name) for name in sorted(names, key=lambda name: (name != ROBOT_FIRST, name))]
+
+
+def robots_header(root: Path) -> str:
+    """Return the text of gen_robots.h."""
+    robots = read_robots(root)
+    body = [
+        f"#define ARGUS_ROBOTS {len(robots)} // rows of argus_robots",
+        f"#define ARGUS_ROBOT_NAME_MAX {NAME_BYTES} // the final 0 included",
+        f"#define ARGUS_FORWARD_MAX {FORWARD_MAX} // forward-facing sonars of one robot, at most",
+        f"#define ARGUS_TURNS_MAX {ROTATIONS_MAX} // different turns of one onto the bearing of another",
+    ]
+    return header("ARGUS_GEN_ROBOTS_H", "robots/*.toml", "Which robots are known", body)
+
+
+def robot_rows(robot: Robot, first: str) -> list[str]:
+    """Return the lines of one row of argus_robots."""
+    turns, count = robot.rotations(), len(robot.forward)
+    fields = {
+        "name": f'"{robot.name}"',
+        "first_pose": first,
+        "sonars": len(robot.poses),
+        "forward_count": count,
+        "turns": len(turns),
+        "forward": "{" + ", ".join(map(str, robot.forward)) + "}",
+        "turn_deg": "{" + ", ".join(map(str, turns)) + "}",
+        "forward_mask": hex(sum(1 << sonar for sonar in robot.forward)) + "u",
+        "ahead_mask": hex(robot.mask("ahead")) + "u",
+        "astern_mask": hex(robot.mask("astern")) + "u",
+        "flank_mask": hex(robot.mask("abeam", front=True)) + "u",
+        "rear_flank_mask": hex(robot.mask("abeam", front=False)) + "u",
+        **robot.figures,
+        **robot.derived(),
+    }
+    return ["    {", *(f"        .{key} = {value}," for key, value in fields.items()), "    },"]
+
+
+def pose_rows(robot: Robot) -> list[str]:
+    """Return one robot's rows of argus_sonar_poses."""
+    lines = [f"    // {robot.name}"]
+    for pose in robot.poses:
+        left, right = robot.neighbours(pose["number"])
+        if pose["number"] >= POSE_BLOCK and pose["number"] % POSE_BLOCK == 0:
+            lines.append(f"#if ARGUS_SONARS > {pose['number']}")
+        x, y, heading, array = (pose[key] for key in ("x_mm", "y_mm", "heading_deg", "array"))
+        lines.append(f"    {{{x}, {y}, {heading}, {array}, {left}, {right}}},")
+    return lines + ["#endif"] * ((len(robot.poses) - 1) // POSE_BLOCK)
+
+
+def robots_source(root: Path) -> str:
+    """Return the text of gen_robots.c."""
+    robots = read_robots(root)
+    rows: list[str] = []
+    first = "0"
+    for robot in robots:
+        rows += robot_rows(robot, first)
+        first = f"{first} + MANAGED({len(robot.poses)})" if first != "0" else f"MANAGED({len(robot.poses)})"
+    return "\n".join(
+        [
+            "// SPDX-License-Identifier: MIT",
+            f"// The robots that are known; generated by tools/gen_tables.py from {TABLES}/robots/*.toml.",
+            '#include "robot/robot.h"',
+            "",
+            "// clang-format off",
+            "#define MANAGED(sonars) ((sonars) < ARGUS_SONARS ? (sonars) : ARGUS_SONARS)",
+            "",
+            "const argus_robot_t argus_robots[ARGUS_ROBOTS] = {",
+            *rows,
+            "};",
+            "",
+            "const argus_sonar_pose_t argus_sonar_poses[] = {",
+            *(line for robot in robots for line in pose_rows(robot)),
+            "};",
+            "// clang-format on",
+            "",
+        ]
+    )
+
+
+GENERATORS: dict[Path, Callable[[Path], str]] = {
+    Path("firmware/robot/gen_p3dx.h"): lambda root: p3dx_header(load(root, P3DX_SOURCE)),
+    Path("firmware/robot/gen_robots.h"): robots_header,
+    Path("firmware/robot/gen_robots.c"): robots_source,
+    Path("firmware/arcos/gen_arcos.h"): lambda root: arcos_header(load(root, "arcos")),
+}
 
 
 def read_or_none(path: Path) -> str | None:
@@ -160,14 +358,13 @@ def read_or_none(path: Path) -> str | None:
     return path.read_text(encoding="utf-8") if path.exists() else None
 
 
-def process(root: Path, name: str, check: bool) -> int:
-    """Write, or with CHECK compare, the header of one table; return the exit code for it."""
-    path = HEADERS[name] / f"gen_{name}.h"
-    try:
-        text = GENERATORS[name](load(root, SOURCES[name]))
-    except TableError as error:
-        print(f"gen_tables: {error}", file=sys.stderr)
-        return 2
+def generate(root: Path) -> dict[Path, str]:
+    """Return the text of every generated file; the first bad table is told."""
+    return {path: make(root) for path, make in GENERATORS.items()}
+
+
+def process(root: Path, path: Path, text: str, check: bool) -> int:
+    """Write, or with CHECK compare, one file; return the exit code for it."""
     if read_or_none(root / path) == text:
         return 0
     if check:
@@ -190,7 +387,12 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--check", action="store_true", help="compare only, write nothing")
     parser.add_argument("--root", type=Path, default=ROOT, help="project folder (default: this one)")
     args = parser.parse_args(argv)
-    return max(process(args.root, name, args.check) for name in GENERATORS)
+    try:
+        texts = generate(args.root)
+    except TableError as error:
+        print(f"gen_tables: {error}", file=sys.stderr)
+        return 2
+    return max(process(args.root, path, text, args.check) for path, text in texts.items())
 
 
 if __name__ == "__main__":

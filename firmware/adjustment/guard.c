@@ -9,18 +9,19 @@
 #define SLOTS 8u // in a round
 #define SIP_MS 100u
 #define HOME_CDEG 200
-#define SWING_MM ARGUS_P3DX_BODY_SWING_RADIUS_MM
+#define STRAIGHT_ROOM_MM 47
 #define SWING_TURNING_MM 10 // of the margin so much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
 #define BACKOFFS_MAX 3
-#define REAR_SONARS 0xFF00u
-#define ABEAM_SONARS (1u << 8 | 1u << 15)
 #define ABEAM_CLEAR_MM 250 // beside a way straight back of 300 mm; the body ends 77 mm beside their faces
 #define BACK_MOST_MM 300
 #define BACK_LEFT_MM 150 // of what the rear reads clear
 #define BACK_STEP_MM 25
-#define REAR_WORST 10 // and 13: 64 mm ahead of the rear end; 11 and 12, head-on, 46
-#define ASTERN_MM 50  // beyond the rear end
+#define ASTERN_MM 50 // beyond the rear end
+
+int32_t argus_guard_straight_half_mm(const argus_robot_t *const robot) {
+    return argus_robot_half_width_mm(robot) + STRAIGHT_ROOM_MM;
+}
 
 bool argus_guard_may_drive(const argus_plan_t *const plan) {
     return plan->disabled == 0;
@@ -38,13 +39,13 @@ bool argus_guard_may_translate(const argus_guard_t *const self) {
 int32_t argus_guard_ahead_mm(const argus_guard_t *const self) {
     const argus_knowledge_t *const knowledge = self->knowledge;
     int32_t shortest = INT32_MAX;
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        if (argus_usable(knowledge, i)) {
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i)) {
             const int32_t since_mm = (int32_t)(knowledge->odometer_mm - knowledge->sonar[i].odometer_mm);
             shortest = argus_min(shortest, knowledge->sonar[i].reading_mm - since_mm);
         }
     }
-    return argus_max(0, argus_min(shortest, ARGUS_P3DX_SONAR_NO_ECHO_MM) - self->config->object_range_mm);
+    return argus_max(0, argus_min(shortest, knowledge->robot->no_echo_mm) - self->config->object_range_mm);
 }
 
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {
@@ -53,8 +54,9 @@ uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {
 
 bool argus_guard_sees_ahead(const argus_guard_t *const self) {
     const uint32_t limit_ms = argus_guard_two_rounds_ms(self->config);
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        const bool counts = !argus_is_out(self->knowledge, i);
+    for (int i = 0; i < self->knowledge->sonars; i++) {
+        const bool counts =
+            argus_robot_faces_forward(self->knowledge->robot, i) && !argus_is_out(self->knowledge, i);
         if (counts && argus_age_ms(self->knowledge, i, self->now_ms) > limit_ms) {
             return false;
         }
@@ -67,7 +69,7 @@ bool argus_guard_is_home(const argus_guard_t *const self, const int32_t base_cde
 }
 
 static int32_t swing_mm(const argus_guard_t *const self) {
-    return SWING_MM + self->profile->swing_margin_mm;
+    return self->knowledge->robot->swing_radius_mm + self->profile->swing_margin_mm;
 }
 
 static int32_t remembered_mm(const argus_guard_t *const self, const int32_t back_mm) {
@@ -97,7 +99,7 @@ bool argus_guard_memory_blocks(const argus_guard_t *const self) {
 
 argus_touch_t argus_guard_touch(const argus_guard_t *const self, const int sonar, argus_point_t *const at,
                                 bool *const left) {
-    const int32_t within_mm = SWING_MM + SWING_TURNING_MM;
+    const int32_t within_mm = self->knowledge->robot->swing_radius_mm + SWING_TURNING_MM;
     const argus_point_t echo = argus_echo_robot(self->knowledge, sonar);
     *at = argus_to_course(&self->knowledge->pose, echo);
     *left = echo.y_mm > 0;
@@ -116,9 +118,14 @@ static bool is_relied_on(const argus_guard_t *const self, const int sonar) {
            !argus_is_out(self->knowledge, sonar);
 }
 
+static unsigned rear_sonars(const argus_robot_t *const robot) {
+    return argus_robot_astern(robot) | argus_robot_rear_flank(robot);
+}
+
 bool argus_guard_rear_is_watched(const argus_guard_t *const self) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        if ((REAR_SONARS >> i & 1u) != 0 && !is_relied_on(self, i)) {
+    const unsigned rear = rear_sonars(self->knowledge->robot);
+    for (int i = 0; i < self->knowledge->sonars; i++) {
+        if ((rear >> i & 1u) != 0 && !is_relied_on(self, i)) {
             return false;
         }
     }
@@ -128,13 +135,15 @@ bool argus_guard_rear_is_watched(const argus_guard_t *const self) {
 // Those that look abeam see what the robot passes by, not what it backs into.
 static int32_t rear_clear_mm(const argus_guard_t *const self, const int sonar) {
     const int32_t clear_mm = self->config->rear_clear_mm;
-    const bool abeam = self->profile->passes_abeam && (ABEAM_SONARS >> sonar & 1u) != 0;
+    const bool abeam =
+        self->profile->passes_abeam && (argus_robot_rear_flank(self->knowledge->robot) >> sonar & 1u) != 0;
     return abeam ? argus_min(ABEAM_CLEAR_MM, clear_mm) : clear_mm;
 }
 
 bool argus_guard_rear_is_clear(const argus_guard_t *const self) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        const bool counts = (REAR_SONARS >> i & 1u) != 0;
+    const unsigned rear = rear_sonars(self->knowledge->robot);
+    for (int i = 0; i < self->knowledge->sonars; i++) {
+        const bool counts = (rear >> i & 1u) != 0;
         if (counts && self->knowledge->sonar[i].reading_mm <= rear_clear_mm(self, i)) {
             return false;
         }
@@ -152,9 +161,9 @@ bool argus_guard_may_back_off(const argus_guard_t *const self) {
 static int32_t most_back_mm(const argus_guard_t *const self) {
     const int32_t clear_mm = argus_min(BACK_MOST_MM, self->config->rear_clear_mm - BACK_LEFT_MM);
     const int32_t astern_cdeg = argus_angle_wrap(self->knowledge->pose.heading_cdeg + 18000);
-    const int32_t free_mm =
-        argus_echoes_clear_mm(self->echoes, self->knowledge, astern_cdeg, ARGUS_STRAIGHT_HALF_MM);
-    const bool is_free = free_mm >= ARGUS_P3DX_BODY_REAR_MM + clear_mm + ASTERN_MM;
+    const int32_t free_mm = argus_echoes_clear_mm(self->echoes, self->knowledge, astern_cdeg,
+                                                  argus_guard_straight_half_mm(self->knowledge->robot));
+    const bool is_free = free_mm >= self->knowledge->robot->rear_mm + clear_mm + ASTERN_MM;
     const bool again = self->backed > 1; // far once is far enough
     return is_free && !again ? clear_mm : argus_min(clear_mm, self->config->backoff_mm);
 }
@@ -176,7 +185,8 @@ int32_t argus_guard_back_mm(const argus_guard_t *const self) {
 
 int32_t argus_guard_back_speed_mm_s(const argus_guard_t *const self) {
     const argus_config_t *const config = self->config;
-    const int32_t overhang_mm = ARGUS_P3DX_BODY_REAR_MM + argus_sonar_pose[REAR_WORST].x_mm;
-    const bool stops_in_time = argus_config_stop_mm(config) + overhang_mm < config->object_range_mm;
+    const argus_robot_t *const robot = self->knowledge->robot;
+    const bool stops_in_time =
+        argus_config_stop_mm(config, robot) + robot->rear_overhang_mm < config->object_range_mm;
     return self->profile->backs_to_turn && stops_in_time ? config->speed_mm_s : config->step_speed_mm_s;
 }

@@ -22,8 +22,10 @@ int32_t argus_sweep_heading_cdeg(const argus_drive_t *const self, const argus_pl
 static void note_smallest(argus_drive_t *const self, const argus_plan_t *const plan,
                           const argus_knowledge_t *const knowledge) {
     const int16_t rotation = plan->rotation_deg[self->index];
-    for (int d = ARGUS_FORWARD_FIRST; d <= ARGUS_FORWARD_LAST; d++) {
-        const int by = (plan->disabled >> d & 1u) != 0 ? argus_plan_cover(plan, rotation, d) : -1;
+    const argus_robot_t *const robot = knowledge->robot;
+    for (int i = 0; i < robot->forward_count; i++) {
+        const int d = robot->forward[i];
+        const int by = (plan->disabled >> d & 1u) != 0 ? argus_plan_cover(robot, plan, rotation, d) : -1;
         if (by >= 0 && knowledge->sonar[by].reading_mm < self->smallest_mm) {
             self->smallest_mm = knowledge->sonar[by].reading_mm;
             self->smallest_of = (int8_t)d;
@@ -47,7 +49,8 @@ bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan,
         self->done = self->index >= plan->count;
         return true;
     }
-    if (!argus_all_fresh_since(knowledge, argus_plan_covering(plan, plan->rotation_deg[self->index]), mark)) {
+    const argus_mask_t wanted = argus_plan_covering(knowledge->robot, plan, plan->rotation_deg[self->index]);
+    if (!argus_all_fresh_since(knowledge, wanted, mark)) {
         return false;
     }
     note_smallest(self, plan, knowledge);

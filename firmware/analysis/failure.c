@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Classes the failure over the forward-facing six (paper: Fig. 6).
+// Classes the failure over the forward-facing sonars (paper: Fig. 6).
 #include "analysis/failure.h"
 
 #include "knowledge/angle.h"
 
-#define FORWARD_MASK 0x7Eu
+#define MINOR_PARTS 3 // of all: so much of them is out in a minor failure
 
-argus_failure_t argus_failure_of(const uint16_t disabled) {
-    static const argus_failure_t by_count[] = {ARGUS_IS_NORMAL,      ARGUS_IS_MINOR, ARGUS_IS_MINOR,
-                                               ARGUS_IS_MAJOR,       ARGUS_IS_MAJOR, ARGUS_IS_MAJOR,
-                                               ARGUS_IS_CATASTROPHIC};
-    return by_count[argus_count_bits(disabled & FORWARD_MASK)];
+argus_failure_t argus_failure_of(const argus_robot_t *const robot, const argus_mask_t disabled) {
+    const int out = argus_count_bits(disabled & argus_robot_forward(robot));
+    if (out == 0) {
+        return ARGUS_IS_NORMAL;
+    }
+    if (out >= robot->forward_count) {
+        return ARGUS_IS_CATASTROPHIC;
+    }
+    return out * MINOR_PARTS <= robot->forward_count ? ARGUS_IS_MINOR : ARGUS_IS_MAJOR;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The failure state over the forward-facing six (paper: Fig. 6).
+// The failure state over the forward-facing sonars (paper: Fig. 6).
 #ifndef ARGUS_FAILURE_H
 #define ARGUS_FAILURE_H
 
-#include "argus/argus.h"
+#include "robot/robot.h"
 
-// `disabled`: bit mask over sonar numbers; only 1..6 count.
-argus_failure_t argus_failure_of(uint16_t disabled);
+// `disabled`: bit mask over sonar numbers; only the forward-facing ones count.
+argus_failure_t argus_failure_of(const argus_robot_t *robot, argus_mask_t disabled);
 
 #endif

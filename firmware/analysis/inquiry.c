@@ -21,26 +21,29 @@
 #define QUIET_MS 2500u
 #define ALONE_MS 8000u
 
-// The pitch of the ring is 20 degrees; 0 and 7 are 40 off their neighbours. Half a turn lets the other array
-// see.
-static const int16_t looks_cdeg[] = {-2000, 2000, 0, -4000, 4000, 18000};
-#define LOOKS ((uint8_t)(sizeof looks_cdeg / sizeof looks_cdeg[0]))
-#define LOOK_BEHIND (LOOKS - 1)
+// In pitches of the ring; who looks abeam is two off its neighbour. Half a turn lets another array see.
+static const int8_t looks[] = {-1, 1, 0, -2, 2};
+#define LOOK_BEHIND ((uint8_t)(sizeof looks / sizeof looks[0]))
+#define LOOKS (LOOK_BEHIND + 1)
 
 void argus_inquiry_init(argus_inquiry_t *const self) {
     memset(self, 0, sizeof *self);
 }
 
+static bool share_an_array(const argus_robot_t *const robot, const int a, const int b) {
+    return argus_robot_pose(robot, a)->array == argus_robot_pose(robot, b)->array;
+}
+
 // The suspects, and two neighbours on either side within their array.
-static uint16_t around(const uint16_t suspects) {
+static argus_mask_t around(const argus_robot_t *const robot, const argus_mask_t suspects) {
+    const int last = argus_robot_sonars(robot) - 1;
     unsigned mask = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        for (int k = i - 2; k <= i + 2; k++) {
-            const bool same = k >= 0 && k < ARGUS_SONARS && k / 8 == i / 8;
-            mask |= same && (suspects >> i & 1u) != 0 ? 1u << k : 0u;
+    for (int i = 0; i <= last; i++) {
+        for (int k = argus_max(i - 2, 0); (suspects >> i & 1u) != 0 && k <= argus_min(i + 2, last); k++) {
+            mask |= share_an_array(robot, i, k) ? 1u << k : 0u;
         }
     }
-    return (uint16_t)mask;
+    return (argus_mask_t)mask;
 }
 
 // Hears nothing, and is not named yet.
@@ -108,7 +111,7 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
     unsigned silent = 0;
     unsigned accused = 0;
     unsigned unproved = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < knowledge->sonars; i++) {
         silent |= is_silent(evidence, i) ? 1u << i : 0u;
         accused |= is_accused(knowledge, evidence, i) ? 1u << i : 0u;
         unproved |= is_unproved(self, knowledge, evidence, i) ? 1u << i : 0u;
@@ -120,28 +123,37 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
            aim_at_one_of(self, knowledge, evidence, unproved);
 }
 
+static void set_look(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+                     const uint8_t look) {
+    self->look = look;
+    self->look_cdeg = look < LOOK_BEHIND ? looks[look] * knowledge->robot->pitch_deg * 100 : 18000;
+}
+
 void argus_inquiry_begin(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
-                         const argus_evidence_t *const evidence, const uint16_t suspects,
+                         const argus_evidence_t *const evidence, const argus_mask_t suspects,
                          const int32_t base_cdeg) {
     argus_inquiry_init(self);
     self->active = true;
     self->base_cdeg = base_cdeg;
     self->all = !argus_evidence_has_pairs(evidence);
-    argus_inquiry_add(self, suspects, argus_out(knowledge));
+    argus_inquiry_add(self, knowledge, suspects);
+    set_look(self, knowledge, 0);
     take_aim(self, knowledge, evidence);
 }
 
-void argus_inquiry_add(argus_inquiry_t *const self, const uint16_t suspects, const uint16_t out) {
+void argus_inquiry_add(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+                       const argus_mask_t suspects) {
     self->suspects |= suspects;
-    const unsigned around_mask = self->suspects != 0 ? around(self->suspects) : ARGUS_FORWARD_MASK;
-    self->watched = (uint16_t)(around_mask & ~(unsigned)out);
+    const unsigned wanted = self->suspects != 0 ? around(knowledge->robot, self->suspects)
+                                                : argus_robot_forward(knowledge->robot);
+    self->watched = (argus_mask_t)(wanted & ~(unsigned)argus_out(knowledge));
 }
 
 int32_t argus_inquiry_heading_cdeg(const argus_inquiry_t *const self) {
     if (self->returning || self->aiming) {
         return self->returning ? self->base_cdeg : self->aim_cdeg;
     }
-    return argus_angle_wrap(self->base_cdeg + looks_cdeg[self->look]);
+    return argus_angle_wrap(self->base_cdeg + self->look_cdeg);
 }
 
 static void mark_settled(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
@@ -149,7 +161,7 @@ static void mark_settled(argus_inquiry_t *const self, const argus_knowledge_t *c
     self->marked = true;
     self->aimed_from = argus_evidence_taken(evidence, self->aimed);
     self->settled_ms = knowledge->sip_ms;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < knowledge->sonars; i++) {
         self->seen[i] = (uint8_t)(knowledge->sonar[i].readings & 0xFFu);
     }
 }
@@ -172,7 +184,7 @@ static bool has_seen_enough(const argus_inquiry_t *const self, const argus_knowl
     if (self->aiming) {
         return has_aimed_enough(self, evidence);
     }
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < knowledge->sonars; i++) {
         const unsigned more = (knowledge->sonar[i].readings - self->seen[i]) & 0xFFu;
         const unsigned needed = argus_evidence_is_unsteady(evidence, i) ? READINGS_UNSTEADY : READINGS;
         if ((self->watched >> i & 1u) != 0 && more < needed) {
@@ -196,19 +208,25 @@ static bool is_resolved(const argus_inquiry_t *const self, const argus_evidence_
     return true;
 }
 
-// A whole array that hears nothing cannot clear itself: the other one must look.
-static bool is_deaf(const argus_knowledge_t *const knowledge, const int first) {
-    for (int i = first; i < first + 8; i++) {
-        if (argus_usable(knowledge, i)) {
-            return false;
+// A whole array that hears nothing cannot clear itself: another one must look.
+static bool is_one_deaf(const argus_knowledge_t *const knowledge) {
+    int arrays = 0;
+    int deaf = 0;
+    for (int array = 0; array < knowledge->robot->arrays; array++) {
+        const argus_mask_t its = argus_robot_array(knowledge->robot, array);
+        bool hears = false;
+        for (int i = 0; i < knowledge->sonars; i++) {
+            hears = hears || ((its >> i & 1u) != 0 && argus_usable(knowledge, i));
         }
+        arrays += its != 0;
+        deaf += its != 0 && !hears;
     }
-    return true;
+    return deaf > 0 && deaf < arrays;
 }
 
 static uint8_t next_look(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                          const argus_evidence_t *const evidence) {
-    const bool one_deaf = is_deaf(knowledge, 0) != is_deaf(knowledge, 8);
+    const bool one_deaf = is_one_deaf(knowledge);
     const uint8_t next = (uint8_t)(self->look + 1);
     if (next >= FIRST_LOOKS && one_deaf && self->look < LOOK_BEHIND && self->suspects != 0) {
         return LOOK_BEHIND;
@@ -231,7 +249,7 @@ static bool is_in_doubt(const argus_inquiry_t *const self, const argus_evidence_
 
 bool argus_inquiry_step(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                         const argus_evidence_t *const evidence) {
-    self->suspects &= (uint16_t)~(unsigned)argus_out(knowledge); // what is out is judged by other looks
+    self->suspects &= (argus_mask_t) ~(unsigned)argus_out(knowledge); // what is out is judged by other looks
     if (self->returning) {
         self->active = false;
         return true;
@@ -250,7 +268,7 @@ bool argus_inquiry_step(argus_inquiry_t *const self, const argus_knowledge_t *co
     }
     self->returning = aimed && !self->all && !is_in_doubt(self, evidence);
     if (!aimed) {
-        self->look = next_look(self, knowledge, evidence);
+        set_look(self, knowledge, next_look(self, knowledge, evidence));
         self->returning = self->look >= LOOKS;
     }
     return true;

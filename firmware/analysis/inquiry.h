@@ -19,8 +19,9 @@ typedef struct {
     uint8_t aimed_from; // ... its count when the robot had settled
     uint8_t look;       // index of the present heading
     int32_t aim_cdeg;
-    uint16_t suspects;          // what it is held for; empty: a look at all
-    uint16_t watched;           // sonars whose readings are waited for
+    int32_t look_cdeg;          // of the present look, from the base heading
+    argus_mask_t suspects;      // what it is held for; empty: a look at all
+    argus_mask_t watched;       // sonars whose readings are waited for
     uint8_t needed;             // ... so many of each
     uint8_t seen[ARGUS_SONARS]; // low bits of their counters when the robot had settled
     int32_t base_cdeg;
@@ -31,10 +32,10 @@ void argus_inquiry_init(argus_inquiry_t *self);
 
 // `suspects` may be empty. `base_cdeg`: the present heading.
 void argus_inquiry_begin(argus_inquiry_t *self, const argus_knowledge_t *knowledge,
-                         const argus_evidence_t *evidence, uint16_t suspects, int32_t base_cdeg);
+                         const argus_evidence_t *evidence, argus_mask_t suspects, int32_t base_cdeg);
 
 // Takes in more suspects while it is under way.
-void argus_inquiry_add(argus_inquiry_t *self, uint16_t suspects, uint16_t out);
+void argus_inquiry_add(argus_inquiry_t *self, const argus_knowledge_t *knowledge, argus_mask_t suspects);
 
 int32_t argus_inquiry_heading_cdeg(const argus_inquiry_t *self);
 

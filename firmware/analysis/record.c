@@ -203,7 +203,7 @@ static void take(argus_knowledge_t *const knowledge, argus_evidence_t *const evi
         get_evidence(&evidence->of[i], at, out);
         get_trend(&evidence->trend.of[i], at);
     }
-    note->out = (uint16_t)mask;
+    note->out = (argus_mask_t)mask;
 }
 
 argus_record_fault_t argus_record_decode(argus_knowledge_t *const knowledge, argus_evidence_t *const evidence,

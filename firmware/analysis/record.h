@@ -6,7 +6,7 @@
 #include "awareness/evidence.h"
 #include "knowledge/knowledge.h"
 
-#define ARGUS_RECORD_BYTES 702 // of version 2, the one that is written
+#define ARGUS_RECORD_BYTES (14 + 43 * ARGUS_SONARS) // of version 2, the one that is written
 
 typedef enum {
     ARGUS_RECORD_OK,
@@ -16,8 +16,8 @@ typedef enum {
 } argus_record_fault_t;
 
 typedef struct {
-    uint32_t robot; // whose record it is, 0: unknown
-    uint16_t out;   // sonars that were DISABLED or on PROBATION; their kind is in kind_before
+    uint32_t robot;   // whose record it is, 0: unknown
+    argus_mask_t out; // sonars that were DISABLED or on PROBATION; their kind is in kind_before
 } argus_record_note_t;
 
 // Identity of a robot, never 0; name, class and subclass as it states them.

@@ -6,7 +6,6 @@
 
 #include "knowledge/angle.h"
 
-#define PITCH_CDEG 2000 // between two neighbours of the ring
 #define LEFT 0u
 #define RIGHT 1u
 
@@ -14,21 +13,31 @@ void argus_verify_init(argus_verify_t *const self) {
     memset(self, 0, sizeof *self);
 }
 
-void argus_verify_begin(argus_verify_t *const self, const int sonar, const int32_t base_cdeg) {
+void argus_verify_begin(argus_verify_t *const self, const argus_robot_t *const robot, const int sonar,
+                        const int32_t base_cdeg) {
+    const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
     argus_verify_init(self);
     self->phase = ARGUS_VERIFY_RECHECK;
     self->sonar = (int8_t)sonar;
     self->base_cdeg = base_cdeg;
+    self->by[LEFT] = pose->left;
+    self->by[RIGHT] = pose->right;
+    for (unsigned side = LEFT; side <= RIGHT; side++) {
+        const int by = self->by[side];
+        const int32_t bearing_deg = by >= 0 ? argus_robot_pose(robot, by)->heading_deg : pose->heading_deg;
+        self->turn_deg[side] = (int16_t)(pose->heading_deg - bearing_deg);
+    }
 }
 
 // paper: the listing turns the edge sonars by Table I's sign and never turns back; here the left neighbour
-// gets onto the bearing by -20, the right one by +20, and RETURN ends on the base heading.
+// gets onto the bearing by a turn to the right (-20), the right one to the left (+20), and RETURN ends on the
+// base heading.
 int32_t argus_verify_heading_cdeg(const argus_verify_t *const self) {
     switch (self->phase) {
     case ARGUS_VERIFY_LEFT:
-        return argus_angle_wrap(self->base_cdeg - PITCH_CDEG);
+        return argus_angle_wrap(self->base_cdeg + self->turn_deg[LEFT] * 100);
     case ARGUS_VERIFY_RIGHT:
-        return argus_angle_wrap(self->base_cdeg + PITCH_CDEG);
+        return argus_angle_wrap(self->base_cdeg + self->turn_deg[RIGHT] * 100);
     case ARGUS_VERIFY_IDLE:
     case ARGUS_VERIFY_RECHECK:
     case ARGUS_VERIFY_RETURN:
@@ -38,12 +47,8 @@ int32_t argus_verify_heading_cdeg(const argus_verify_t *const self) {
     }
 }
 
-static int witness_sonar(const argus_verify_t *const self, const unsigned side) {
-    return side == LEFT ? self->sonar - 1 : self->sonar + 1;
-}
-
 static bool may_testify(const argus_knowledge_t *const knowledge, const int sonar) {
-    return sonar >= ARGUS_FORWARD_FIRST && sonar <= ARGUS_FORWARD_LAST && argus_usable(knowledge, sonar);
+    return sonar >= 0 && argus_usable(knowledge, sonar);
 }
 
 static argus_verify_phase_t first_turn(const argus_verify_t *const self) {
@@ -62,12 +67,12 @@ static bool recheck(argus_verify_t *const self, const argus_knowledge_t *const k
     unsigned wanted = 1u << self->sonar;
     self->witnesses = 0;
     for (unsigned side = LEFT; side <= RIGHT; side++) {
-        if (may_testify(knowledge, witness_sonar(self, side))) {
+        if (may_testify(knowledge, self->by[side])) {
             self->witnesses |= (uint8_t)(1u << side);
-            wanted |= 1u << witness_sonar(self, side);
+            wanted |= 1u << self->by[side];
         }
     }
-    if (!argus_all_fresh_since(knowledge, (uint16_t)wanted, mark)) {
+    if (!argus_all_fresh_since(knowledge, (argus_mask_t)wanted, mark)) {
         return false;
     }
     self->reading_mm = knowledge->sonar[self->sonar].reading_mm;
@@ -83,7 +88,7 @@ static bool recheck(argus_verify_t *const self, const argus_knowledge_t *const k
 
 // paper: line 19 adds before dividing and line 22 lacks the absolute value; here the mean is meant, and |mean
 // - v| > tr.
-static void judge(argus_verify_t *const self) {
+static void judge(argus_verify_t *const self, const argus_robot_t *const robot) {
     int32_t sum = 0;
     int32_t count = 0;
     for (unsigned side = LEFT; side <= RIGHT; side++) {
@@ -99,13 +104,13 @@ static void judge(argus_verify_t *const self) {
     // Twice the difference, so that the mean of two is not rounded before it is judged.
     const int32_t off = argus_abs(sum * 2 / count - 2 * (int32_t)self->reading_mm);
     self->mean_mm = sum / count;
-    conclude(self,
-             off > 2 * argus_tolerance_mm(self->reading_mm) ? ARGUS_RESULT_CONVICTED : ARGUS_RESULT_CLEARED);
+    const int32_t limit = 2 * argus_tolerance_mm(robot, self->reading_mm);
+    conclude(self, off > limit ? ARGUS_RESULT_CONVICTED : ARGUS_RESULT_CLEARED);
 }
 
 static bool hear(argus_verify_t *const self, const argus_knowledge_t *const knowledge,
                  const argus_mark_t *const mark, const unsigned side) {
-    const int sonar = witness_sonar(self, side);
+    const int sonar = self->by[side];
     const bool gone = argus_is_out(knowledge, sonar); // it failed on the way: it cannot testify
     if (!gone && !argus_fresh_since(knowledge, sonar, mark)) {
         return false;
@@ -117,7 +122,7 @@ static bool hear(argus_verify_t *const self, const argus_knowledge_t *const know
     if (side == LEFT && (self->witnesses & 1u << RIGHT) != 0) {
         self->phase = ARGUS_VERIFY_RIGHT;
     } else {
-        judge(self);
+        judge(self, knowledge->robot);
     }
     return true;
 }

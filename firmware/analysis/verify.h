@@ -8,8 +8,8 @@
 typedef enum {
     ARGUS_VERIFY_IDLE,
     ARGUS_VERIFY_RECHECK, // at the base heading: the suspect and its neighbours are read again
-    ARGUS_VERIFY_LEFT,    // turned by -20: the left neighbour, s - 1, looks where s looked
-    ARGUS_VERIFY_RIGHT,   // turned by +20: the right neighbour, s + 1
+    ARGUS_VERIFY_LEFT,    // turned to the right: the left neighbour looks where s looked
+    ARGUS_VERIFY_RIGHT,   // turned to the left: the right neighbour does
     ARGUS_VERIFY_RETURN,  // back on the base heading
     ARGUS_VERIFY_DONE
 } argus_verify_phase_t;
@@ -27,8 +27,10 @@ typedef enum {
 typedef struct {
     argus_verify_phase_t phase;
     int8_t sonar;
-    uint8_t witnesses; // usable neighbours: bit 0 left, bit 1 right
-    uint8_t heard;     // witnesses that gave a usable reading
+    int8_t by[2];        // its neighbours, left and right; -1: none
+    int16_t turn_deg[2]; // that put each of them on its bearing
+    uint8_t witnesses;   // usable neighbours: bit 0 left, bit 1 right
+    uint8_t heard;       // witnesses that gave a usable reading
     int32_t base_cdeg;
     uint16_t reading_mm;    // v
     uint16_t witness_mm[2]; // A, B
@@ -38,7 +40,8 @@ typedef struct {
 } argus_verify_t;
 
 void argus_verify_init(argus_verify_t *self);
-void argus_verify_begin(argus_verify_t *self, int sonar, int32_t base_cdeg);
+// `sonar`: a forward-facing one.
+void argus_verify_begin(argus_verify_t *self, const argus_robot_t *robot, int sonar, int32_t base_cdeg);
 
 // The heading that the present phase needs.
 int32_t argus_verify_heading_cdeg(const argus_verify_t *self);

@@ -29,11 +29,10 @@ static void enter(argus_session_t *self, uint32_t now_ms, argus_session_state_t 
     self->since_ms = now_ms;
 }
 
-void argus_session_init(argus_session_t *self, bool motors) {
+void argus_session_init(argus_session_t *self) {
     memset(self, 0, sizeof *self);
     argus_parser_init(&self->parser);
     argus_outbox_init(&self->outbox);
-    self->motors = motors;
     self->pause_ms = PAUSE_FIRST_MS;
 }
 
@@ -130,9 +129,6 @@ static void set_up(argus_session_t *self, const argus_config_t *config) {
     if (!self->has_robot || self->robot.sonar_cycle_ms != config->sonar_cycle_ms) {
         argus_outbox_int(outbox, ARCOS_CMD_SONAR_CYCLE, config->sonar_cycle_ms);
     }
-    if (self->motors) {
-        argus_outbox_int(outbox, ARCOS_CMD_ENABLE, 1);
-    }
 }
 
 static bool is_sip(const argus_packet_t *packet) {
@@ -210,7 +206,6 @@ static unsigned meet(argus_session_t *self) {
     if (self->differs == 0) {
         return 0;
     }
-    self->motors = false;
     return ARGUS_SESSION_OTHER_ROBOT;
 }
 
@@ -219,7 +214,7 @@ static unsigned finish_opening(argus_session_t *self, const argus_config_t *conf
         (!self->has_robot && in_state_ms(self, now_ms) < CONFIG_WAIT_MS)) {
         return 0;
     }
-    const unsigned other = meet(self); // before the motors are enabled
+    const unsigned other = meet(self); 
     set_up(self, config);
     self->stalled = false;
     self->pause_ms = PAUSE_FIRST_MS;
@@ -498,12 +493,7 @@ static bool subclass_is(const argus_session_t *self, const char *name, size_t si
     return memcmp(lower, name, size) == 0;
 }
 
-bool argus_session_knows_subclass(const argus_session_t *self) {
-    static const char known[] = "p3dx-sh";
-    return subclass_is(self, known, sizeof known);
-}
-
-int32_t argus_session_distance_um(const argus_session_t *self) {
+int32_t argus_session_distance_um(const argus_session_t *self, int32_t usual_um) {
     static const char older[] = "p3dx";
-    return subclass_is(self, older, sizeof older) ? 485 : 1000;
+    return subclass_is(self, older, sizeof older) ? ARCOS_SIP_OLD_UNIT_UM : usual_um;
 }

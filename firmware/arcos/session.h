@@ -35,7 +35,7 @@ enum {
     ARGUS_SESSION_NO_ANSWER = 1 << 5,  // one attempt failed
     ARGUS_SESSION_DID_DISLODGE = 1 << 6,
     ARGUS_SESSION_DID_CLOSE = 1 << 7,
-    ARGUS_SESSION_OTHER_ROBOT = 1 << 8 // than in the session before: its motors were not enabled, nor will be
+    ARGUS_SESSION_OTHER_ROBOT = 1 << 8 // than in the session before
 };
 
 typedef struct {
@@ -50,7 +50,6 @@ typedef struct {
     char subclass[ARGUS_NAME_MAX];
     argus_identity_t identity; // of the last robot met
     uint8_t differs;           // in which part it was not the one before, see argus_identity_meet()
-    bool motors;               // ENABLE 1 is part of the set-up (false: passive, or another robot answered)
     bool stalled;
     bool closed_said;
     uint32_t since_ms;    // entry into the state
@@ -68,7 +67,7 @@ typedef struct {
     uint32_t bad_sips; // right checksum, wrong inside
 } argus_session_t;
 
-void argus_session_init(argus_session_t *self, bool motors);
+void argus_session_init(argus_session_t *self);
 
 // The transport is open: begins to listen. / is gone: everything waiting is dropped.
 void argus_session_link_up(argus_session_t *self, uint32_t now_ms);
@@ -78,9 +77,9 @@ void argus_session_link_down(argus_session_t *self);
 // many. Call again with the rest, which may be none, until all bytes are taken and no bit is set: several
 // packets can be complete. With OPEN go VEL 0, RVEL 0, SETO and CONFIG. The second SIP after that, whose
 // position is counted from SETO, together with CONFIGpac (waited for at most 1 s) completes the set-up: SETV,
-// SETA +-, SETRV, SETRA +-, SONAR 1, SONAR_CYCLE when it is not known to be the robot's, ENABLE 1 unless
-// passive. Before ARGUS_SESSION_DID_OPEN no SIP is
-// reported but the one of an old session that is found when listening.
+// SETA +-, SETRV, SETRA +-, SONAR 1, SONAR_CYCLE when it is not known to be the robot's. The motors are
+// enabled by who knows the robot. Before ARGUS_SESSION_DID_OPEN no SIP is reported but the one of an old
+// session that is found when listening.
 unsigned argus_session_receive(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
                                const uint8_t *bytes, size_t count, size_t *taken);
 
@@ -100,10 +99,8 @@ void argus_session_leave(argus_session_t *self, uint32_t now_ms);
 size_t argus_session_transmit(argus_session_t *self, uint32_t now_ms, uint8_t *packet, size_t capacity);
 
 bool argus_session_is_open(const argus_session_t *self);
-// True for the subclasses (in any letter case) whose position unit is 1 mm and whose geometry we know
-// ("p3dx-sh"); "p3dx" has unit 0.485 mm.
-bool argus_session_knows_subclass(const argus_session_t *self);
-// Thousandths of a mm per position unit: 1000, or 485 for the older "p3dx".
-int32_t argus_session_distance_um(const argus_session_t *self);
+// Thousandths of a mm per position unit: `usual_um`, or 485 for the older controller, "p3dx" in any letter
+// case.
+int32_t argus_session_distance_um(const argus_session_t *self, int32_t usual_um);
 
 #endif

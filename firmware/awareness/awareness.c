@@ -33,7 +33,7 @@ void argus_awareness_cleared(argus_awareness_t *const self, const argus_knowledg
     d->held_heading_cdeg = knowledge->pose.heading_cdeg;
     d->held_difference_mm = difference_mm;
     d->in_a_row = 0;
-    self->verified |= (uint16_t)(1u << sonar);
+    self->verified |= (argus_mask_t)(1u << sonar);
 }
 
 // While the robot rotates the ring's readings belong to different headings: no verdict then. What it sees
@@ -59,13 +59,13 @@ static void count_disparity(argus_awareness_t *const self, const argus_knowledge
 
 static bool looks_along_motion(const argus_knowledge_t *const knowledge, const int sonar) {
     const int32_t speed = (knowledge->vel_left_mm_s + knowledge->vel_right_mm_s) / 2;
-    const unsigned ahead = speed > MOVING_MM_S ? ARGUS_FORWARD_MASK : 0u;
-    const unsigned behind = speed < -MOVING_MM_S ? ARGUS_REAR_MASK : 0u;
+    const unsigned ahead = speed > MOVING_MM_S ? argus_robot_ahead(knowledge->robot) : 0u;
+    const unsigned behind = speed < -MOVING_MM_S ? argus_robot_astern(knowledge->robot) : 0u;
     return ((ahead | behind) >> sonar & 1u) != 0;
 }
 
 static void see_object(argus_alarm_t *const alarm, const int sonar, const uint16_t reading_mm) {
-    alarm->object |= (uint16_t)(1u << sonar);
+    alarm->object |= (argus_mask_t)(1u << sonar);
     if (alarm->object_sonar == -1 || reading_mm < alarm->object_mm) {
         alarm->object_sonar = (int8_t)sonar;
         alarm->object_mm = reading_mm;
@@ -75,12 +75,12 @@ static void see_object(argus_alarm_t *const alarm, const int sonar, const uint16
 static void judge_fresh(argus_alarm_t *const alarm, const argus_knowledge_t *const knowledge,
                         const argus_config_t *const config, const int sonar) {
     const argus_sonar_t *const s = &knowledge->sonar[sonar];
-    const bool forward = (ARGUS_FORWARD_MASK >> sonar & 1u) != 0;
+    const bool forward = argus_robot_faces_forward(knowledge->robot, sonar);
     if (argus_is_out(knowledge, sonar)) {
         return;
     }
-    if (forward && s->reading_mm >= ARGUS_DEAD_MM && argus_profile(config)->dead_reading) {
-        alarm->dead |= (uint16_t)(1u << sonar);
+    if (forward && s->reading_mm >= knowledge->robot->no_echo_mm && argus_profile(config)->dead_reading) {
+        alarm->dead |= (argus_mask_t)(1u << sonar);
     }
     if (s->reading_mm <= config->object_range_mm && looks_along_motion(knowledge, sonar)) {
         see_object(alarm, sonar, s->reading_mm);
@@ -95,8 +95,8 @@ static bool is_silent(const argus_knowledge_t *const knowledge, const argus_conf
 argus_alarm_t argus_awareness_sip(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
                                   const argus_config_t *const config) {
     argus_alarm_t alarm = {.object_sonar = -1};
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        const bool forward = (ARGUS_FORWARD_MASK >> i & 1u) != 0;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const bool forward = argus_robot_faces_forward(knowledge->robot, i);
         if ((knowledge->fresh >> i & 1u) != 0) {
             judge_fresh(&alarm, knowledge, config, i);
             if (forward) {
@@ -104,7 +104,7 @@ argus_alarm_t argus_awareness_sip(argus_awareness_t *const self, const argus_kno
             }
         }
         if (forward && is_silent(knowledge, config, i)) {
-            alarm.silent |= (uint16_t)(1u << i);
+            alarm.silent |= (argus_mask_t)(1u << i);
         }
     }
     alarm.bumper = (knowledge->bumpers_front | knowledge->bumpers_rear) != 0;
@@ -114,7 +114,7 @@ argus_alarm_t argus_awareness_sip(argus_awareness_t *const self, const argus_kno
 
 static bool has_changed(const argus_disparate_t *const d, const argus_knowledge_t *const knowledge,
                         const int sonar) {
-    const int32_t tr = argus_tolerance_mm(knowledge->sonar[sonar].reading_mm);
+    const int32_t tr = argus_tolerance_mm(knowledge->robot, knowledge->sonar[sonar].reading_mm);
     return argus_abs(d->difference_mm - d->held_difference_mm) > 2 * tr;
 }
 
@@ -136,17 +136,18 @@ static bool is_suspect(argus_awareness_t *const self, const argus_knowledge_t *c
     if (d->held && hold_ends(d, knowledge, config, sonar)) {
         d->held = false;
         if (has_changed(d, knowledge, sonar)) { // another case, also in the same place
-            self->verified &= (uint16_t)~(1u << sonar);
+            self->verified &= (argus_mask_t) ~(1u << sonar);
         }
     }
     return !d->held && (self->verified >> sonar & 1u) == 0;
 }
 
-uint16_t argus_suspects(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
-                        const argus_config_t *const config) {
+argus_mask_t argus_suspects(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
+                            const argus_config_t *const config) {
     unsigned mask = 0;
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        mask |= is_suspect(self, knowledge, config, i) ? 1u << i : 0u;
+    for (int i = 0; i < knowledge->robot->forward_count; i++) {
+        const int sonar = knowledge->robot->forward[i];
+        mask |= is_suspect(self, knowledge, config, sonar) ? 1u << sonar : 0u;
     }
-    return (uint16_t)mask;
+    return (argus_mask_t)mask;
 }

@@ -7,11 +7,9 @@
 #include "argus/argus.h"
 #include "knowledge/knowledge.h"
 
-#define ARGUS_DEAD_MM ARGUS_P3DX_SONAR_NO_ECHO_MM
-
-// Tolerance range, mm, rounded to nearest, of a reading a1 in 0..65535 (paper: eq. 1 and 2, a2 = 167 mm, 20
-// degrees).
-int32_t argus_tolerance_mm(int32_t reading_mm);
+// Tolerance range, mm, rounded to nearest, of a reading a1 in 0..65535 (paper: eq. 1 and 2; for the P3-DX a2
+// = 167 mm and 20 degrees).
+int32_t argus_tolerance_mm(const argus_robot_t *robot, int32_t reading_mm);
 
 typedef enum {
     ARGUS_NO_VERDICT, // no usable neighbour, or the neighbours disagree
@@ -19,23 +17,23 @@ typedef enum {
     ARGUS_DISPARATE
 } argus_verdict_t;
 
-// Algorithm 1 for one sonar of 1..6 on the present readings; `difference_mm` is r(neighbour) - r(sonar).
-// paper: the listing lacks the absolute value on the neighbours' difference and reuses the previous
+// Algorithm 1 for one forward-facing sonar on the present readings; `difference_mm` is r(neighbour) -
+// r(sonar). paper: the listing lacks the absolute value on the neighbours' difference and reuses the previous
 // difference where they disagree; here that sonar yields no verdict.
 argus_verdict_t argus_disparity(const argus_knowledge_t *knowledge, int sonar, int32_t *difference_mm);
 
 // What one SIP (or the clock) shows.
 typedef struct {
-    uint16_t dead;       // 5000 on a sonar of 1..6 not DISABLED
-    uint16_t silent;     // no reading for stale_ms on a sonar of 1..6 not DISABLED
-    uint16_t object;     // at or below the object range, looking along the motion, not DISABLED
+    argus_mask_t dead;   // no echo on a forward-facing sonar not DISABLED
+    argus_mask_t silent; // no reading for stale_ms on a forward-facing sonar not DISABLED
+    argus_mask_t object; // at or below the object range, looking along the motion, not DISABLED
     int8_t object_sonar; // nearest of them
     uint16_t object_mm;
     bool bumper;
     bool stall;
 } argus_alarm_t;
 
-// Per sonar of 1..6: how often in a row it was disparate, and the hold-off after it was cleared.
+// Per forward-facing sonar: how often in a row it was disparate, and the hold-off after it was cleared.
 typedef struct {
     uint8_t in_a_row;
     uint32_t counted_ms; // when a reading was counted last
@@ -48,8 +46,8 @@ typedef struct {
 
 typedef struct {
     argus_disparate_t of[ARGUS_SONARS];
-    bool away;         // turned away to look: what is read there is no verdict on the sonars' own bearings
-    uint16_t verified; // sonars verified since the robot last drove: not again in this place
+    bool away; // turned away to look: what is read there is no verdict on the sonars' own bearings
+    argus_mask_t verified; // sonars verified since the robot last drove: not again in this place
 } argus_awareness_t;
 
 void argus_awareness_init(argus_awareness_t *self);
@@ -60,8 +58,8 @@ argus_alarm_t argus_awareness_sip(argus_awareness_t *self, const argus_knowledge
 
 // Sonars that Algorithm 1 now calls suspects: suspect_readings in a row, not held off, not verified in this
 // place.
-uint16_t argus_suspects(argus_awareness_t *self, const argus_knowledge_t *knowledge,
-                        const argus_config_t *config);
+argus_mask_t argus_suspects(argus_awareness_t *self, const argus_knowledge_t *knowledge,
+                            const argus_config_t *config);
 
 // Algorithm 2 cleared the sonar, whose disparity at rest was `difference_mm`: hold off. / The robot stands
 // somewhere new. / The readings begin anew.

@@ -4,19 +4,16 @@
 #include "knowledge/angle.h"
 
 // tr = (a1 + a2) (1 / cos 20 - 1). With fewer digits some readings round to the wrong side.
-#define FACE_MM 167
-#define EXCESS INT64_C(641777725) // of EXCESS_ONE
 #define EXCESS_ONE INT64_C(10000000000)
 
-int32_t argus_tolerance_mm(const int32_t reading_mm) {
-    const int64_t scaled = (int64_t)(reading_mm + FACE_MM) * EXCESS;
+int32_t argus_tolerance_mm(const argus_robot_t *const robot, const int32_t reading_mm) {
+    const int64_t scaled = (int64_t)(reading_mm + robot->tolerance_centre_mm) * robot->tolerance_excess;
     return (int32_t)((scaled + EXCESS_ONE / 2) / EXCESS_ONE);
 }
 
-// A neighbour that may be compared with: one of 1..6 that is usable; else -1.
-static int neighbour(const argus_knowledge_t *const knowledge, const int sonar) {
-    const bool forward = sonar >= ARGUS_FORWARD_FIRST && sonar <= ARGUS_FORWARD_LAST;
-    return forward && argus_usable(knowledge, sonar) ? sonar : -1;
+// A sonar that may be compared with, or -1.
+static int usable(const argus_knowledge_t *const knowledge, const int sonar) {
+    return sonar >= 0 && argus_usable(knowledge, sonar) ? sonar : -1;
 }
 
 static int32_t reading(const argus_knowledge_t *const knowledge, const int sonar) {
@@ -25,13 +22,14 @@ static int32_t reading(const argus_knowledge_t *const knowledge, const int sonar
 
 argus_verdict_t argus_disparity(const argus_knowledge_t *const knowledge, const int sonar,
                                 int32_t *const difference_mm) {
-    const int left = neighbour(knowledge, sonar - 1);
-    const int right = neighbour(knowledge, sonar + 1);
+    const argus_sonar_pose_t *const pose = argus_robot_pose(knowledge->robot, sonar);
+    const int left = usable(knowledge, pose->left);
+    const int right = usable(knowledge, pose->right);
     *difference_mm = 0;
-    if (neighbour(knowledge, sonar) < 0 || (left < 0 && right < 0)) {
+    if (!argus_usable(knowledge, sonar) || (left < 0 && right < 0)) {
         return ARGUS_NO_VERDICT;
     }
-    const int32_t tr = argus_tolerance_mm(reading(knowledge, sonar));
+    const int32_t tr = argus_tolerance_mm(knowledge->robot, reading(knowledge, sonar));
     if (left >= 0 && right >= 0 && argus_abs(reading(knowledge, left) - reading(knowledge, right)) > tr) {
         return ARGUS_NO_VERDICT;
     }

@@ -215,19 +215,19 @@ void argus_evidence_acquit(argus_evidence_t *const self, const argus_knowledge_t
     c->alive_ms = knowledge->sip_ms;
 }
 
-uint16_t argus_evidence_lost(const argus_evidence_t *const self) {
+argus_mask_t argus_evidence_lost(const argus_evidence_t *const self) {
     return self->lost;
 }
 
-uint16_t argus_evidence_jumped(const argus_evidence_t *const self) {
+argus_mask_t argus_evidence_jumped(const argus_evidence_t *const self) {
     return self->jumped;
 }
 
-void argus_evidence_note_loss(argus_evidence_t *const self, const uint16_t sonars) {
+void argus_evidence_note_loss(argus_evidence_t *const self, const argus_mask_t sonars) {
     self->lost |= sonars;
 }
 
-void argus_evidence_note_jump(argus_evidence_t *const self, const uint16_t sonars) {
+void argus_evidence_note_jump(argus_evidence_t *const self, const argus_mask_t sonars) {
     self->jumped |= sonars;
 }
 

@@ -162,13 +162,13 @@ typedef struct {
     argus_peers_t peers;
     argus_scan_t scan;
     argus_trend_t trend;
-    uint16_t lost;         // lost the echo that they followed
-    uint16_t jumped;       // went over to another echo
+    argus_mask_t lost;     // lost the echo that they followed
+    argus_mask_t jumped;   // went over to another echo
     uint8_t straight_sips; // SIPs in a row without a rotation
     uint8_t usual_run;     // readings without an echo that sonars which proved alive have had lately
     uint32_t usual_ms;     // when that was lowered last
     bool busy;             // something moved about the robot, last at busy_ms
-    uint16_t stirred;      // ... before these sonars, those that are out left aside
+    argus_mask_t stirred;  // ... before these sonars, those that are out left aside
     uint32_t busy_ms;
     bool crowded; // the sonars contradicted each other as they do among people, last at crowded_ms
     uint32_t crowded_ms;
@@ -248,10 +248,10 @@ void argus_evidence_forget(argus_evidence_t *self, int sonar);
 
 // Sonars that lost the echo that they followed; that went over to another one. Both call for a look, and
 // others may say so as well.
-uint16_t argus_evidence_lost(const argus_evidence_t *self);
-uint16_t argus_evidence_jumped(const argus_evidence_t *self);
-void argus_evidence_note_loss(argus_evidence_t *self, uint16_t sonars);
-void argus_evidence_note_jump(argus_evidence_t *self, uint16_t sonars);
+argus_mask_t argus_evidence_lost(const argus_evidence_t *self);
+argus_mask_t argus_evidence_jumped(const argus_evidence_t *self);
+void argus_evidence_note_loss(argus_evidence_t *self, argus_mask_t sonars);
+void argus_evidence_note_jump(argus_evidence_t *self, argus_mask_t sonars);
 
 // Comparisons in a row that agreed with it, since it was put out or on probation.
 uint8_t argus_evidence_agreed(const argus_evidence_t *self, int sonar);

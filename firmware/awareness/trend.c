@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
+#include "robot/gen_p3dx.h"
 
 #define NO_ECHO_MM ARGUS_P3DX_SONAR_NO_ECHO_MM
 #define UNIT 16000  // a statistic of 1

@@ -7,16 +7,12 @@
 
 #include "arcos/gen_arcos.h"
 #include "knowledge/angle.h"
-#include "robot/gen_p3dx.h"
 
-#define SIP_READINGS 6 // the most that a P3-DX puts into one SIP
-#define SIP_BYTES (ARCOS_SIP_COUNT_BARE + ARCOS_FRAME_OVERHEAD + SIP_READINGS * ARCOS_SIP_SONAR_BYTES)
+#define SIP_READINGS 3 // the most of each array in one SIP
+#define SIP_BARE (ARCOS_SIP_COUNT_BARE + ARCOS_FRAME_OVERHEAD)
 #define COMMAND_BYTES 9
 #define US_PER_S 1000000u
 
-#define FIRST_FRONT 1 // the sonars that guard forward motion
-#define LAST_FRONT 6
-#define HALF_CONE_CDEG (ARGUS_P3DX_SONAR_CONE_DEG * 100 / 2)
 #define NOISE_SIGMAS 3
 #define STEP_MARGIN_MM 20
 
@@ -47,35 +43,37 @@ static int32_t row_out_of_range(const argus_config_t *config) {
     return -1;
 }
 
-static uint32_t reaction_us(const argus_config_t *config) {
-    const uint32_t bits = (SIP_BYTES + COMMAND_BYTES) * ARCOS_TIMING_BITS_PER_BYTE;
+static uint32_t reaction_us(const argus_config_t *config, const argus_robot_t *robot) {
+    const uint32_t sip_bytes = SIP_BARE + (uint32_t)robot->arrays * SIP_READINGS * ARCOS_SIP_SONAR_BYTES;
+    const uint32_t bits = (sip_bytes + COMMAND_BYTES) * ARCOS_TIMING_BITS_PER_BYTE;
     const uint32_t wire_us = config->baud > 0 ? bits * US_PER_S / (uint32_t)config->baud : 0;
     const uint32_t refresh_ms = ARCOS_TIMING_TRANSDUCERS_PER_ARRAY * (uint32_t)config->sonar_cycle_ms;
     return (refresh_ms + ARCOS_TIMING_SIP_CYCLE_MS) * 1000 + wire_us;
 }
 
 // What is asked beyond the robot's own setting is a gain, not a promise: the order may be lost on the wire.
-static uint32_t sure_decel_mm_s2(const argus_config_t *config) {
-    return (uint32_t)argus_min(config->decel_mm_s2, ARGUS_P3DX_MOTION_DECEL_MM_S2);
+static uint32_t sure_decel_mm_s2(const argus_config_t *config, const argus_robot_t *robot) {
+    return (uint32_t)argus_min(config->decel_mm_s2, robot->decel_mm_s2);
 }
 
 // Rounded once, at the end: a sum of rounded parts would refuse speeds that are within the limit. The order
 // of the multiplications keeps everything within 32 bits for any setting in range.
-static void work_out_driving(argus_config_report_t *report, const argus_config_t *config) {
+static void work_out_driving(argus_config_report_t *report, const argus_config_t *config,
+                             const argus_robot_t *robot) {
     const uint32_t v = (uint32_t)config->speed_mm_s;
-    const uint32_t t_us = reaction_us(config);
+    const uint32_t t_us = reaction_us(config, robot);
     const uint32_t travel_um = v * (t_us / 1000) + v * (t_us % 1000) / 1000;
-    const uint32_t brake_um = v * v * 1000 / (2 * sure_decel_mm_s2(config));
-    report->overhang_mm = ARGUS_P3DX_BODY_FRONT_MM - ARGUS_P3DX_BODY_SONAR_FACE_MM;
+    const uint32_t brake_um = v * v * 1000 / (2 * sure_decel_mm_s2(config, robot));
+    report->overhang_mm = robot->front_mm - robot->sonar_face_mm;
     report->reaction_ms = (int32_t)((t_us + 500) / 1000);
     report->travel_mm = (int32_t)(travel_um / 1000);
     report->driving_mm = report->overhang_mm + (int32_t)((travel_um + brake_um) / 1000);
     report->brake_mm = report->driving_mm - report->overhang_mm - report->travel_mm;
 }
 
-int32_t argus_config_stop_mm(const argus_config_t *config) {
+int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *robot) {
     argus_config_report_t report = {.fault = ARGUS_CONFIG_OK, .key = -1};
-    work_out_driving(&report, config);
+    work_out_driving(&report, config, robot);
     return report.travel_mm + report.brake_mm;
 }
 
@@ -86,44 +84,45 @@ static int32_t sqrt_up(int32_t value) {
 
 // Reading of the point (x2, y2), in half millimetres like everything here because the body is an odd number
 // wide.
-static int32_t reading_of(int32_t x2, int32_t y2) {
-    static const int16_t pose[][3] = {
-#define POSE(number, x, y, heading) {(x), (y), (heading)},
-        ARGUS_P3DX_SONAR_TABLE(POSE)
-#undef POSE
-    };
+static int32_t reading_of(const argus_robot_t *robot, int32_t x2, int32_t y2) {
     int32_t seen = INT32_MAX;
     int32_t nearest = INT32_MAX;
-    for (int i = FIRST_FRONT; i <= LAST_FRONT; i++) {
-        const int32_t dx = x2 - 2 * pose[i][0];
-        const int32_t dy = y2 - 2 * pose[i][1];
+    for (int i = 0; i < robot->forward_count; i++) {
+        const argus_sonar_pose_t *pose = argus_robot_pose(robot, robot->forward[i]);
+        const int32_t dx = x2 - 2 * pose->x_mm;
+        const int32_t dy = y2 - 2 * pose->y_mm;
         const int32_t distance = sqrt_up(dx * dx + dy * dy);
         nearest = argus_min(nearest, distance);
-        if (argus_angle_abs_diff(argus_atan2(dy, dx), pose[i][2] * 100) <= HALF_CONE_CDEG) {
+        if (argus_angle_abs_diff(argus_atan2(dy, dx), pose->heading_deg * 100) <= robot->cone_deg * 100 / 2) {
             seen = argus_min(seen, distance);
         }
     }
     return seen < INT32_MAX ? seen : nearest;
 }
 
-int32_t argus_config_reach_mm(int32_t step_mm) {
-    const int32_t front2 = 2 * (ARGUS_P3DX_BODY_FRONT_MM + step_mm);
-    const int32_t side2 = ARGUS_P3DX_BODY_WIDTH_MM;
+int32_t argus_config_reach_mm(const argus_robot_t *robot, int32_t step_mm) {
+    const int32_t front2 = 2 * (robot->front_mm + step_mm);
+    const int32_t side2 = robot->width_mm;
     int32_t reach2 = 0;
     for (int32_t y2 = -side2; y2 <= side2; y2++) {
-        reach2 = argus_max(reach2, reading_of(front2, y2));
+        reach2 = argus_max(reach2, reading_of(robot, front2, y2));
     }
     return (reach2 + 1) / 2;
 }
 
 argus_config_report_t argus_config_check(const argus_config_t *config) {
+    const argus_robot_t *chosen = argus_robot_chosen(config->robot);
+    return argus_config_check_for(config, chosen != NULL ? chosen : argus_robot_default());
+}
+
+argus_config_report_t argus_config_check_for(const argus_config_t *config, const argus_robot_t *robot) {
     argus_config_report_t report = {.fault = ARGUS_CONFIG_OK, .key = row_out_of_range(config)};
     if (report.key >= 0) {
         report.fault = ARGUS_CONFIG_RANGE;
         return report; // the arithmetic below relies on the ranges
     }
-    work_out_driving(&report, config);
-    report.reach_mm = argus_config_reach_mm(config->step_mm);
+    work_out_driving(&report, config, robot);
+    report.reach_mm = argus_config_reach_mm(robot, config->step_mm);
     report.stepping_mm = report.reach_mm + NOISE_SIGMAS * config->noise_mm + STEP_MARGIN_MM;
     if (report.driving_mm >= config->object_range_mm) {
         report.fault = ARGUS_CONFIG_DRIVING;

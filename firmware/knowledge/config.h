@@ -4,13 +4,17 @@
 #define ARGUS_CONFIG_H
 
 #include "argus/argus.h"
+#include "robot/robot.h"
+
+// As argus_config_check(), for a robot.
+argus_config_report_t argus_config_check_for(const argus_config_t *config, const argus_robot_t *robot);
 
 // The way, in mm, from a reading that asks for a stop to standstill at the driving speed (S5: v t + v^2 / (2
 // decel)).
-int32_t argus_config_stop_mm(const argus_config_t *config);
+int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *robot);
 
-// Largest reading, in mm, that a front sonar gives of a point which the body sweeps when it moves `step_mm`
-// ahead.
-int32_t argus_config_reach_mm(int32_t step_mm);
+// Largest reading, in mm, that a forward-facing sonar gives of a point which the body sweeps when it moves
+// `step_mm` ahead.
+int32_t argus_config_reach_mm(const argus_robot_t *robot, int32_t step_mm);
 
 #endif

@@ -11,9 +11,9 @@
 #define SAME_THING_MM 150
 #define FORGET_MS 60000u
 #define NEAR_MM 1000
-#define LATELY_MS 5000u // what was seen so near does not go away while a look is prepared
-#define BEHIND_MM 100   // an echo this far ahead of the centre is beside the robot already
-#define BUMPER_AHEAD_MM 240
+#define LATELY_MS 5000u    // what was seen so near does not go away while a look is prepared
+#define BEHIND_MM 100      // an echo this far ahead of the centre is beside the robot already
+#define BUMPER_AHEAD_MM 30 // of the body
 #define BY_TOUCH UINT8_MAX // no sonar: it is there for sure
 
 void argus_echoes_init(argus_echoes_t *const self) {
@@ -88,7 +88,7 @@ static void remember(argus_echoes_t *const self, const argus_point_t at, const u
 
 void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                       const uint32_t now_ms) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < knowledge->sonars; i++) {
         const bool fresh = (knowledge->fresh >> i & 1u) != 0;
         if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT &&
             !knowledge->rotating && knowledge->sonar[i].reading_mm < REMEMBER_BELOW_MM) {
@@ -117,9 +117,12 @@ void argus_echoes_touched(argus_echoes_t *const self, const argus_point_t at, co
 // seen.
 void argus_echoes_bumped(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                          const uint32_t now_ms) {
-    for (int segment = 1; segment <= 5; segment++) {
+    const argus_robot_t *const robot = knowledge->robot;
+    const int segments = robot->front_bumpers;
+    for (int segment = 1; segment <= segments; segment++) {
         if ((knowledge->bumpers_front >> segment & 1u) != 0) {
-            const argus_point_t touched = {BUMPER_AHEAD_MM, (3 - segment) * 85};
+            const int32_t beside_mm = (segments + 1 - 2 * segment) * (robot->width_mm / segments) / 2;
+            const argus_point_t touched = {robot->front_mm + BUMPER_AHEAD_MM, beside_mm};
             argus_echoes_touched(self, argus_to_course(&knowledge->pose, touched), now_ms);
         }
     }

@@ -6,10 +6,12 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
+#include "knowledge/health.h"
 
 #define REST_MM_S 5
-#define ROTATING_MM_S 10  // wheel speed difference beyond which a reading is smeared by rotation
-#define LISTS_ALL_COUNT 7 // of one array in one SIP: the firing schedule lists at most 3 at its default pace
+#define ROTATING_MM_S 10 // wheel speed difference beyond which a reading is smeared by rotation
+#define ARRAY ARCOS_TIMING_TRANSDUCERS_PER_ARRAY
+#define LISTS_ALL_COUNT (ARRAY - 1) // in one SIP: the firing schedule lists at most 3 at its default pace
 #define LISTS_ALL_WAIT_MS 460
 #define JUMP_MM 3000 // farther than the robot drives before its watchdog stops it: its odometry was reset
 #define TURN_UNITS 4096
@@ -17,6 +19,21 @@
 
 void argus_knowledge_init(argus_knowledge_t *const self) {
     memset(self, 0, sizeof *self);
+    argus_knowledge_set_robot(self, argus_robot_default(), 0);
+}
+
+void argus_knowledge_set_robot(argus_knowledge_t *const self, const argus_robot_t *const robot,
+                               const uint32_t now_ms) {
+    self->robot = robot;
+    self->sonars = (uint8_t)argus_robot_sonars(robot);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const bool absent = i >= self->sonars;
+        if (absent != (self->sonar[i].health == ARGUS_ABSENT)) {
+            self->sonar[i].reported = false;
+            argus_health_set(&self->sonar[i], i, absent ? ARGUS_CHANGE_REMOVED : ARGUS_CHANGE_FOUND,
+                             ARGUS_KIND_NONE, 0, now_ms);
+        }
+    }
 }
 
 void argus_knowledge_reopen(argus_knowledge_t *const self, const uint32_t now_ms) {
@@ -108,20 +125,20 @@ static void take_reading(argus_knowledge_t *const self, const argus_sip_sonar_t 
     sonar->heard_ms = self->sip_ms;
     sonar->odometer_mm = self->odometer_mm;
     sonar->readings++;
-    self->fresh |= (uint16_t)(1u << from->number);
+    self->fresh |= (argus_mask_t)(1u << from->number);
 }
 
 static void take_readings(argus_knowledge_t *const self, const argus_sip_t *const sip) {
-    int front = 0;
+    int first = 0; // of the first array
     self->fresh = 0;
     for (int i = 0; i < sip->sonar_count; i++) {
-        if (sip->sonar[i].number < ARGUS_SONARS) {
+        if (sip->sonar[i].number < self->sonars) {
             take_reading(self, &sip->sonar[i]);
-            front += sip->sonar[i].number < ARGUS_SONARS / 2;
+            first += sip->sonar[i].number < ARRAY;
         }
     }
-    if (front > 0) {
-        self->lists_all = front >= LISTS_ALL_COUNT;
+    if (first > 0) {
+        self->lists_all = first >= LISTS_ALL_COUNT;
     }
 }
 
@@ -138,15 +155,15 @@ void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const
     take_readings(self, sip);
 }
 
-uint16_t argus_with_health(const argus_knowledge_t *const self, const argus_health_t health) {
+argus_mask_t argus_with_health(const argus_knowledge_t *const self, const argus_health_t health) {
     unsigned mask = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->sonars; i++) {
         mask |= self->sonar[i].health == health ? 1u << i : 0u;
     }
-    return (uint16_t)mask;
+    return (argus_mask_t)mask;
 }
 
-uint16_t argus_disabled(const argus_knowledge_t *const self) {
+argus_mask_t argus_disabled(const argus_knowledge_t *const self) {
     return argus_with_health(self, ARGUS_DISABLED);
 }
 
@@ -155,21 +172,24 @@ bool argus_is_out(const argus_knowledge_t *const self, const int sonar) {
     return health == ARGUS_DISABLED || health == ARGUS_PROBATION;
 }
 
-uint16_t argus_out(const argus_knowledge_t *const self) {
+argus_mask_t argus_out(const argus_knowledge_t *const self) {
     return argus_disabled(self) | argus_with_health(self, ARGUS_PROBATION);
 }
 
 bool argus_usable(const argus_knowledge_t *const self, const int sonar) {
     const argus_sonar_t *const s = &self->sonar[sonar];
-    return s->reported && !argus_is_out(self, sonar) && s->reading_mm < ARGUS_P3DX_SONAR_NO_ECHO_MM;
+    return s->reported && !argus_is_out(self, sonar) && s->reading_mm < self->robot->no_echo_mm;
 }
 
 int32_t argus_flank_mm(const argus_knowledge_t *const self) {
-    const int32_t left =
-        argus_usable(self, ARGUS_FLANK_LEFT) ? self->sonar[ARGUS_FLANK_LEFT].reading_mm : INT32_MAX;
-    const int32_t right =
-        argus_usable(self, ARGUS_FLANK_RIGHT) ? self->sonar[ARGUS_FLANK_RIGHT].reading_mm : INT32_MAX;
-    return argus_min(left, right);
+    const argus_mask_t flank = argus_robot_flank(self->robot);
+    int32_t nearest = INT32_MAX;
+    for (int i = 0; i < self->sonars; i++) {
+        if ((flank >> i & 1u) != 0 && argus_usable(self, i)) {
+            nearest = argus_min(nearest, self->sonar[i].reading_mm);
+        }
+    }
+    return nearest;
 }
 
 argus_mark_t argus_mark_now(const argus_knowledge_t *const self) {
@@ -183,9 +203,9 @@ bool argus_fresh_since(const argus_knowledge_t *const self, const int sonar, con
     return later && (!self->lists_all || (int32_t)(s->heard_ms - mark->from_ms) >= 0);
 }
 
-bool argus_all_fresh_since(const argus_knowledge_t *const self, const uint16_t sonars,
+bool argus_all_fresh_since(const argus_knowledge_t *const self, const argus_mask_t sonars,
                            const argus_mark_t *const mark) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->sonars; i++) {
         if ((sonars >> i & 1u) != 0 && !argus_fresh_since(self, i, mark)) {
             return false;
         }
@@ -209,7 +229,7 @@ bool argus_at_rest(const argus_knowledge_t *const self) {
 }
 
 argus_point_t argus_echo_robot(const argus_knowledge_t *const self, const int sonar) {
-    const argus_sonar_pose_t *const at = &argus_sonar_pose[sonar];
+    const argus_sonar_pose_t *const at = argus_robot_pose(self->robot, sonar);
     const int32_t range = self->sonar[sonar].reading_mm;
     const argus_point_t echo = {at->x_mm + range * argus_cos(at->heading_deg * 100) / ARGUS_TRIG_ONE,
                                 at->y_mm + range * argus_sin(at->heading_deg * 100) / ARGUS_TRIG_ONE};
@@ -231,7 +251,7 @@ int32_t argus_echo_to_centre_mm(const argus_knowledge_t *const self, const int s
 
 int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *const self, const int32_t back_mm) {
     int32_t nearest = INT32_MAX;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->sonars; i++) {
         nearest = argus_min(nearest, argus_echo_to_centre_mm(self, i, back_mm));
     }
     return nearest;

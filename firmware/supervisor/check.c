@@ -9,7 +9,7 @@
 #include "supervisor/state.h"
 
 static void declare_healthy(argus_t *const self) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
         if (s->reported && (s->health == ARGUS_UNKNOWN || s->health == ARGUS_STALE)) {
             argus_say_change(self, i, ARGUS_CHANGE_JUDGED, ARGUS_KIND_NONE, s->reading_mm);
@@ -17,8 +17,8 @@ static void declare_healthy(argus_t *const self) {
     }
 }
 
-static uint16_t find_suspects(argus_t *const self) {
-    return argus_rules(self)->evidence ? (uint16_t)(argus_worth_a_look(self) | argus_open_suspects(self))
+static argus_mask_t find_suspects(argus_t *const self) {
+    return argus_rules(self)->evidence ? (argus_mask_t)(argus_worth_a_look(self) | argus_open_suspects(self))
                                        : argus_suspects(&self->awareness, &self->knowledge, &self->config);
 }
 
@@ -26,12 +26,12 @@ static bool is_look_due(const argus_t *const self) {
     return argus_rules(self)->evidence && argus_routine_is_due(self);
 }
 
-static argus_intent_t verify(const uint16_t suspects) {
+static argus_intent_t verify(const argus_mask_t suspects) {
     return (argus_intent_t){.act = ARGUS_DO_VERIFY, .sonars = suspects};
 }
 
 argus_intent_t argus_conclude_check(argus_t *const self) {
-    const uint16_t suspects = (uint16_t)(find_suspects(self) | argus_open_suspects(self));
+    const argus_mask_t suspects = (argus_mask_t)(find_suspects(self) | argus_open_suspects(self));
     const bool wanted = suspects != 0 || is_look_due(self);
     self->looks.check_ms = self->now_ms;
     if (wanted && !self->orders.passive && !self->orders.stay) {
@@ -52,8 +52,9 @@ static bool is_due(const argus_t *const self) {
 
 // Who may not turn cannot verify: there a suspicion lasts as long as the disparity.
 static void drop_suspicions(argus_t *const self) {
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        if (self->knowledge.sonar[i].health == ARGUS_SUSPECT && self->awareness.of[i].in_a_row == 0) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if (argus_robot_faces_forward(self->knowledge.robot, i) &&
+            self->knowledge.sonar[i].health == ARGUS_SUSPECT && self->awareness.of[i].in_a_row == 0) {
             argus_say_change(self, i, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, 0);
         }
     }
@@ -69,7 +70,7 @@ argus_intent_t argus_check_beside(argus_t *const self) {
         return (argus_intent_t){0};
     }
     self->looks.check_ms = self->now_ms;
-    const uint16_t suspects = find_suspects(self);
+    const argus_mask_t suspects = find_suspects(self);
     const bool look = self->mode == ARGUS_MODE_DRIVING && is_look_due(self);
     if (self->orders.passive && argus_rules(self)->disparity) {
         drop_suspicions(self);
@@ -88,8 +89,7 @@ static void say_witnesses(argus_t *const self) {
     const argus_verify_t *const verify = &self->verifying.verify;
     for (int side = 0; side < 2; side++) {
         if ((verify->heard >> side & 1) != 0) {
-            argus_say(self, ARGUS_EV_SONAR_WITNESS, verify->sonar + (side == 0 ? -1 : 1),
-                      verify->witness_mm[side]);
+            argus_say(self, ARGUS_EV_SONAR_WITNESS, verify->by[side], verify->witness_mm[side]);
         }
     }
 }
@@ -111,7 +111,7 @@ void argus_apply_verdict(argus_t *const self) {
         argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, verify->difference_mm);
         break;
     case ARGUS_RESULT_UNPROVEN:
-        self->awareness.verified |= (uint16_t)(1u << sonar);
+        self->awareness.verified |= (argus_mask_t)(1u << sonar);
         argus_say(self, ARGUS_EV_SONAR_UNPROVEN, sonar, verify->reading_mm);
         break;
     case ARGUS_RESULT_NONE:

@@ -3,8 +3,8 @@
 #ifndef ARGUS_CHECK_H
 #define ARGUS_CHECK_H
 
-#include "supervisor/intent.h"
 #include "supervisor/core.h"
+#include "supervisor/intent.h"
 
 // At rest, all have reported: suspects are to be verified; without any, whoever reported is healthy.
 argus_intent_t argus_conclude_check(argus_t *self);

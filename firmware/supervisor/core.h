@@ -96,8 +96,9 @@ typedef struct {
 
 // What operators and the configuration have settled.
 typedef struct {
-    uint16_t pinned; // sonars whose health an operator has fixed
-    bool locked;     // the configuration is unsafe: never active
+    argus_mask_t pinned; // sonars whose health an operator has fixed
+    bool locked;         // the configuration is unsafe: never active
+    bool barred;         // would be active, but not with this robot: unknown, or unsafe with these settings
     bool passive;
     bool paused;
     bool stay; // after the operator's STOP: no turn either, until another order
@@ -108,8 +109,8 @@ typedef struct {
 typedef struct {
     uint32_t
         robot; // identity (analysis/record.h) of the robot, or of the record before a session; 0: unknown
-    uint16_t recorded; // sonars on PROBATION by the record
-    bool loaded;       // a record was taken whose robot is not compared yet
+    argus_mask_t recorded; // sonars on PROBATION by the record
+    bool loaded;           // a record was taken whose robot is not compared yet
 } argus_history_t;
 
 struct argus {

@@ -6,25 +6,37 @@
 #include "supervisor/say.h"
 #include "supervisor/state.h"
 
-// In failure mode the slots of the sonars that are out go to those that look ahead; 0 and 7 watch the swing
+// The forward-facing sonars in use, and every other one of the rest of their arrays: these watch the swing
 // circle.
+static size_t add_half(const argus_t *const self, const int half, uint8_t *const order) {
+    const argus_robot_t *const robot = self->knowledge.robot;
+    const unsigned others = argus_robot_polled(robot) & ~(unsigned)argus_robot_forward(robot);
+    size_t count = 0;
+    int other = 0;
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if (argus_robot_faces_forward(robot, i) && !argus_is_out(&self->knowledge, i)) {
+            order[count++] = (uint8_t)(i + 1);
+        }
+    }
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if ((others >> i & 1u) != 0 && other++ % 2 == half) {
+            order[count++] = (uint8_t)(i + 1);
+        }
+    }
+    return count;
+}
+
+// In failure mode the slots of the sonars that are out go to those that look ahead.
 void argus_share_slots(argus_t *const self) {
     if (!argus_is_active(self) || !argus_is_open(self)) {
         return;
     }
-    uint8_t order[2 * (ARGUS_FORWARD_LAST + 1)];
-    size_t count = 0;
-    for (int half = 0; half < 2; half++) {
-        for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-            if (!argus_is_out(&self->knowledge, i)) {
-                order[count++] = (uint8_t)(i + 1);
-            }
-        }
-        order[count++] = half == 0 ? 1 : ARGUS_FORWARD_LAST + 2;
-    }
-    for (int i = ARGUS_FORWARD_FIRST; argus_rules(self)->evidence && i <= ARGUS_FORWARD_LAST; i++) {
-        if (argus_is_out(&self->knowledge, i)) { // its own slot, to show that it does well again
-            order[count++] = (uint8_t)(i + 1);
+    uint8_t order[ARCOS_TIMING_ARRAYS_MAX * ARCOS_TIMING_POLLING_MAX_PER_ARRAY];
+    size_t count = add_half(self, 0, order);
+    count += add_half(self, 1, order + count);
+    for (int i = 0; argus_rules(self)->evidence && i < self->knowledge.sonars; i++) {
+        if (argus_robot_faces_forward(self->knowledge.robot, i) && argus_is_out(&self->knowledge, i)) {
+            order[count++] = (uint8_t)(i + 1); // its own slot, to show that it does well again
         }
     }
     ARGUS_ASSERT(count <= sizeof order);
@@ -43,10 +55,12 @@ static void say_plan(argus_t *const self) {
 // A suspect that no witness could judge is planned for as if it were disabled: its bearing counts as
 // uncovered. One that is still to be verified is not: nothing moves ahead before it is.
 void argus_replan(argus_t *const self) {
-    const uint16_t disabled = argus_out(&self->knowledge) & ARGUS_FORWARD_MASK;
-    const uint16_t blind = disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
-                                       self->awareness.verified & ARGUS_FORWARD_MASK);
-    const argus_failure_t failure = argus_failure_of(disabled);
+    const argus_robot_t *const robot = self->knowledge.robot;
+    const argus_mask_t forward = argus_robot_forward(robot);
+    const argus_mask_t disabled = argus_out(&self->knowledge) & forward;
+    const argus_mask_t blind =
+        disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->awareness.verified & forward);
+    const argus_failure_t failure = argus_failure_of(robot, disabled);
     if (failure != self->failure) {
         self->failure = failure;
         argus_say(self, ARGUS_EV_FAILURE_STATE, ARGUS_NO_SONAR, argus_count_bits(disabled));
@@ -54,7 +68,7 @@ void argus_replan(argus_t *const self) {
     if (blind == self->plan.disabled) {
         return;
     }
-    self->plan = argus_plan((argus_policy_t)self->config.policy, blind);
+    self->plan = argus_plan(robot, (argus_policy_t)self->config.policy, blind);
     ARGUS_ASSERT(self->plan.count <= ARGUS_ROTATIONS_MAX && self->plan.disabled == blind);
     say_plan(self);
     argus_share_slots(self);
@@ -62,8 +76,8 @@ void argus_replan(argus_t *const self) {
 
 void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     ARGUS_ASSERT(kind != ARGUS_KIND_NONE);
-    const argus_event_t said =
-        argus_health_set(&self->knowledge, sonar, ARGUS_CHANGE_DISABLED, kind, (int32_t)kind, self->now_ms);
+    const argus_event_t said = argus_health_set(&self->knowledge.sonar[sonar], sonar, ARGUS_CHANGE_DISABLED,
+                                                kind, (int32_t)kind, self->now_ms);
     argus_evidence_agree_anew(&self->evidence, sonar); // what brings it back comes after this
     argus_evidence_retract(&self->evidence, sonar);
     argus_echoes_forget(&self->echoes, sonar);
@@ -72,8 +86,8 @@ void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_
     argus_say_event(self, said); // after the plan that follows from it
 }
 
-void argus_lose(argus_t *const self, const uint16_t dead, const uint16_t silent) {
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
+void argus_lose(argus_t *const self, const argus_mask_t dead, const argus_mask_t silent) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((dead >> i & 1u) != 0) {
             argus_say(self, ARGUS_EV_SONAR_DEAD, i, self->knowledge.sonar[i].reading_mm);
             argus_disable(self, i, ARGUS_KIND_OFF);
@@ -85,8 +99,8 @@ void argus_lose(argus_t *const self, const uint16_t dead, const uint16_t silent)
     }
 }
 
-void argus_watch(argus_t *const self, const uint16_t sonars) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+void argus_watch(argus_t *const self, const argus_mask_t sonars) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((sonars >> i & 1u) == 0) {
             continue;
         }
@@ -100,8 +114,8 @@ void argus_watch(argus_t *const self, const uint16_t sonars) {
     }
 }
 
-void argus_flag_suspects(argus_t *const self, const uint16_t suspects) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+void argus_flag_suspects(argus_t *const self, const argus_mask_t suspects) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((suspects >> i & 1u) != 0 && self->knowledge.sonar[i].health != ARGUS_SUSPECT) {
             argus_say_change(self, i, ARGUS_CHANGE_SUSPECTED, ARGUS_KIND_NONE,
                              self->awareness.of[i].difference_mm);

@@ -9,12 +9,12 @@
 void argus_disable(argus_t *self, int sonar, argus_fault_kind_t kind);
 
 // Those that read dead, and those whose slots yield nothing.
-void argus_lose(argus_t *self, uint16_t dead, uint16_t silent);
+void argus_lose(argus_t *self, argus_mask_t dead, argus_mask_t silent);
 
 // Of these, outside 1..6, who is STALE reports again; the others yield nothing any more.
-void argus_watch(argus_t *self, uint16_t sonars);
+void argus_watch(argus_t *self, argus_mask_t sonars);
 
-void argus_flag_suspects(argus_t *self, uint16_t suspects);
+void argus_flag_suspects(argus_t *self, argus_mask_t suspects);
 
 // Failure state and plan for the present fault map.
 void argus_replan(argus_t *self);

@@ -18,14 +18,14 @@ size_t argus_record_save(const argus_t *const self, uint8_t *const buffer, const
 
 // What failed last time may have been repaired: it comes back on evidence, like one that failed in this
 // mission.
-static void put_on_probation(argus_t *const self, const uint16_t sonars) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+static void put_on_probation(argus_t *const self, const argus_mask_t sonars) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
         if ((sonars >> i & 1u) == 0 || argus_is_out(&self->knowledge, i)) {
             continue;
         }
         const argus_fault_kind_t kind = s->kind_before == ARGUS_KIND_NONE ? ARGUS_KIND_WRONG : s->kind_before;
-        self->history.recorded |= (uint16_t)(1u << i);
+        self->history.recorded |= (argus_mask_t)(1u << i);
         argus_say_change(self, i, ARGUS_CHANGE_RECORDED, kind, 0);
     }
     argus_replan(self);
@@ -38,7 +38,7 @@ static void refuse(argus_t *const self, const argus_record_fault_t fault) {
 // The robot was not known when the record was read.
 static void take_back(argus_t *const self) {
     argus_record_forget(&self->knowledge, &self->evidence);
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
         if ((self->history.recorded >> i & 1u) != 0 && s->health == ARGUS_PROBATION) {
             argus_say_change(self, i, ARGUS_CHANGE_FORGOTTEN, ARGUS_KIND_NONE, 0);

@@ -64,9 +64,9 @@ typedef struct {
     int32_t speed_mm_s;
     int32_t cdeg;
     argus_point_t at;
-    uint16_t sonars;
-    uint16_t silent;
-    uint16_t doubted; // their echoes are looked at before they are believed
+    argus_mask_t sonars;
+    argus_mask_t silent;
+    argus_mask_t doubted; // their echoes are looked at before they are believed
 } argus_intent_t;
 
 #endif

@@ -13,7 +13,7 @@
 #define PROBATION_DOUBLINGS 4
 
 static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
-    const bool ahead = (ARGUS_FORWARD_MASK >> sonar & 1u) != 0;
+    const bool ahead = argus_robot_faces_forward(self->knowledge.robot, sonar);
     argus_disable(self, sonar, kind);
     argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
     if (!ahead || !argus_mode_may(self->mode, ARGUS_MAY_BREAK_OFF)) {
@@ -27,7 +27,7 @@ static void name(argus_t *const self, const int sonar) {
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = argus_evidence_renames(&self->evidence, sonar, s->kind);
     if (kind != ARGUS_KIND_NONE) {
-        argus_flag_suspects(self, (uint16_t)(1u << sonar));
+        argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
     }
     if (s->health == ARGUS_SUSPECT && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
         argus_evidence_note_name(&self->evidence, sonar, kind);
@@ -104,13 +104,15 @@ static void judge_out(argus_t *const self, const int sonar) {
 // Its turn in a round comes late: each new order begins the round anew, so plans that change may pass it
 // over.
 static bool is_passed_over(const argus_t *const self, const int sonar) {
-    const bool late = sonar == ARGUS_FLANK_LEFT || sonar == ARGUS_FLANK_RIGHT;
+    const argus_robot_t *const robot = self->knowledge.robot;
+    const bool late =
+        (argus_robot_polled(robot) >> sonar & 1u) != 0 && !argus_robot_faces_forward(robot, sonar);
     return late && self->ordered && self->now_ms - self->ordered_ms <= (uint32_t)self->config.stale_ms;
 }
 
 // The others than 1..6 yield to the same tests; one that yields nothing is out as well.
 static bool has_fallen_silent(const argus_t *const self, const int sonar) {
-    const bool other = (ARGUS_FORWARD_MASK >> sonar & 1u) == 0;
+    const bool other = !argus_robot_faces_forward(self->knowledge.robot, sonar);
     return other && is_silent(self, sonar) && !is_passed_over(self, sonar);
 }
 

@@ -3,8 +3,8 @@
 #ifndef ARGUS_JUDGE_H
 #define ARGUS_JUDGE_H
 
-#include "supervisor/intent.h"
 #include "supervisor/core.h"
+#include "supervisor/intent.h"
 
 // One sonar. A conviction ahead of the robot calls for a check at rest.
 argus_intent_t argus_judge(argus_t *self, int sonar);

@@ -27,39 +27,40 @@ static bool is_held(const argus_t *const self, const int sonar) {
 
 // Beside a smooth wall one that looks aside loses its echo in each look anew: it must not keep the robot
 // there.
-static uint16_t lost(const argus_t *const self) {
+static argus_mask_t lost(const argus_t *const self) {
     unsigned mask = argus_evidence_lost(&self->evidence);
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        const bool ahead = (ARGUS_FORWARD_MASK >> i & 1u) != 0;
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        const bool ahead = argus_robot_faces_forward(self->knowledge.robot, i);
         mask &= !ahead && was_cleared_within(self, i, LOST_HOLD_MM) ? ~(1u << i) : ~0u;
     }
-    return (uint16_t)mask;
+    return (argus_mask_t)mask;
 }
 
-static uint16_t without_held(const argus_t *const self, const unsigned mask) {
+static argus_mask_t without_held(const argus_t *const self, const unsigned mask) {
     unsigned free_mask = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         free_mask |= (mask >> i & 1u) != 0 && !is_held(self, i) ? 1u << i : 0u;
     }
-    return (uint16_t)free_mask;
+    return (argus_mask_t)free_mask;
 }
 
-static uint16_t suspected(const argus_t *const self) {
+static argus_mask_t suspected(const argus_t *const self) {
     unsigned mask = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         mask |= argus_evidence_suspects(&self->evidence, i) ? 1u << i : 0u;
     }
-    return (uint16_t)mask;
+    return (argus_mask_t)mask;
 }
 
-uint16_t argus_worth_a_look(const argus_t *const self) {
-    const uint16_t unseen = argus_evidence_unseen(&self->evidence, &self->knowledge, &self->config);
+argus_mask_t argus_worth_a_look(const argus_t *const self) {
+    const argus_mask_t unseen = argus_evidence_unseen(&self->evidence, &self->knowledge, &self->config);
     const unsigned ahead = lost(self) | unseen;
     const bool spaced = self->now_ms - self->looks.last_ms >= SPACING_MS;
-    const unsigned jumped = spaced ? argus_evidence_jumped(&self->evidence) & ARGUS_FORWARD_MASK : 0u;
+    const unsigned jumped =
+        spaced ? argus_evidence_jumped(&self->evidence) & argus_robot_forward(self->knowledge.robot) : 0u;
     const unsigned open = without_held(self, suspected(self) | jumped) | ahead;
-    return (uint16_t)(open & ~(unsigned)argus_out(&self->knowledge) & ~(unsigned)self->awareness.verified &
-                      ~(unsigned)self->orders.pinned);
+    return (argus_mask_t)(open & ~(unsigned)argus_out(&self->knowledge) &
+                          ~(unsigned)self->awareness.verified & ~(unsigned)self->orders.pinned);
 }
 
 bool argus_routine_is_due(const argus_t *const self) {
@@ -89,10 +90,10 @@ static void acquit(argus_t *const self, const int sonar) {
     }
 }
 
-void argus_leave_open(argus_t *const self, const uint16_t sonars) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((sonars >> i & 1u) != 0) {
-            self->awareness.verified |= (uint16_t)(1u << i);
+            self->awareness.verified |= (argus_mask_t)(1u << i);
             argus_say(self, ARGUS_EV_SONAR_UNPROVEN, i, self->knowledge.sonar[i].reading_mm);
         }
     }
@@ -110,12 +111,12 @@ static void conclude(argus_t *const self, const int sonar) {
     } else if (asked && argus_evidence_names(&self->evidence, sonar) == ARGUS_KIND_NONE) {
         acquit(self, sonar);
     } else if (suspect) {
-        argus_leave_open(self, (uint16_t)(1u << sonar));
+        argus_leave_open(self, (argus_mask_t)(1u << sonar));
     }
 }
 
 void argus_conclude_looks(argus_t *const self) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         conclude(self, i);
     }
     self->looks.last_ms = self->now_ms;

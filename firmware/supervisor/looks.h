@@ -7,7 +7,7 @@
 
 // What is worth a stop now: evidence that a look can settle, a lost echo ahead, a bearing unseen for too
 // long.
-uint16_t argus_worth_a_look(const argus_t *self);
+argus_mask_t argus_worth_a_look(const argus_t *self);
 
 // A look at all of them is due.
 bool argus_routine_is_due(const argus_t *self);
@@ -16,7 +16,7 @@ bool argus_routine_is_due(const argus_t *self);
 void argus_conclude_looks(argus_t *self);
 
 // They are not to be looked at in this place, and covered for like those that are out.
-void argus_leave_open(argus_t *self, uint16_t sonars);
+void argus_leave_open(argus_t *self, argus_mask_t sonars);
 
 // An operator wants it looked at: its acquittals are forgotten.
 void argus_forget_acquittals(argus_t *self, int sonar);

@@ -6,9 +6,11 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
+#include "supervisor/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/history.h"
 #include "supervisor/modes.h"
+#include "supervisor/motions.h"
 #include "supervisor/orders.h"
 #include "supervisor/say.h"
 #include "supervisor/state.h"
@@ -24,8 +26,11 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     self->orders.locked = argus_config_check(config).fault != ARGUS_CONFIG_OK;
     self->orders.passive = self->orders.locked || config->active == 0;
     self->now_ms = now_ms;
-    argus_session_init(&self->session, !self->orders.passive);
+    argus_session_init(&self->session);
     argus_knowledge_init(&self->knowledge);
+    if (argus_robot_chosen(config->robot) != NULL) {
+        argus_knowledge_set_robot(&self->knowledge, argus_robot_chosen(config->robot), now_ms);
+    }
     argus_echoes_init(&self->echoes);
     argus_awareness_init(&self->awareness);
     argus_evidence_init(&self->evidence);
@@ -80,9 +85,8 @@ void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
 
 static void on_open(argus_t *const self) {
     argus_say(self, ARGUS_EV_SESSION_OPEN, ARGUS_NO_SONAR, self->session.attempts);
-    if (!argus_session_knows_subclass(&self->session)) {
-        argus_say(self, ARGUS_EV_SUBCLASS_UNKNOWN, ARGUS_NO_SONAR, 0);
-    }
+    argus_meet_body(self);
+    argus_enable_motors(self);
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
     argus_awareness_restart(&self->awareness);
     argus_evidence_restart(&self->evidence);
@@ -118,7 +122,7 @@ static void on_resume(argus_t *const self) {
 }
 
 static void on_sip(argus_t *const self) {
-    const int32_t unit_um = argus_session_distance_um(&self->session);
+    const int32_t unit_um = argus_session_distance_um(&self->session, self->knowledge.robot->dist_conv_um);
     if (!argus_session_is_open(&self->session) || self->mode == ARGUS_MODE_CLOSED) {
         argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um);
         return;

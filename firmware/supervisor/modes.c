@@ -54,7 +54,7 @@ static void enter_checking(argus_t *const self, const argus_intent_t *const inte
     }
 }
 
-static void enter_verifying(argus_t *const self, const uint16_t suspects) {
+static void enter_verifying(argus_t *const self, const argus_mask_t suspects) {
     argus_flag_suspects(self, suspects);
     argus_halt(self);
     if (!self->motion.settled && self->motion.kind != ARGUS_MOTION_STOP) {
@@ -199,7 +199,7 @@ static argus_intent_t end_turn(argus_t *const self, const argus_point_t at) {
 }
 
 static argus_intent_t begin_looks(argus_t *const self, const argus_intent_t *const intent) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((intent->sonars >> i & 1u) != 0) {
             argus_say(self, ARGUS_EV_SONAR_VERIFYING, i, self->knowledge.sonar[i].reading_mm);
         }
@@ -401,7 +401,7 @@ void argus_judge_all(argus_t *const self) {
     if (!argus_rules(self)->evidence) {
         return;
     }
-    for (int i = 0; i < ARGUS_SONARS && argus_mode_may(self->mode, ARGUS_MAY_JUDGE); i++) {
+    for (int i = 0; i < self->knowledge.sonars && argus_mode_may(self->mode, ARGUS_MAY_JUDGE); i++) {
         argus_do(self, argus_judge(self, i));
     }
     argus_foretell(self);

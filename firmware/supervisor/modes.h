@@ -3,8 +3,8 @@
 #ifndef ARGUS_MODES_H
 #define ARGUS_MODES_H
 
-#include "supervisor/intent.h"
 #include "supervisor/core.h"
+#include "supervisor/intent.h"
 
 // The intent and what follows from it.
 void argus_do(argus_t *self, argus_intent_t intent);

@@ -41,7 +41,7 @@ static const char words[][VALUES_MAX][16] = {
     {"none", "running", "reached", "failed"},
     {"none", "bumper", "motors", "turn", "way", "catastrophic"},
     {"IsNormal", "IsMinor", "IsMajor", "IsCatastrophic"},
-    {"UNKNOWN", "HEALTHY", "SUSPECT", "DISABLED", "PROBATION", "STALE"},
+    {"UNKNOWN", "HEALTHY", "SUSPECT", "DISABLED", "PROBATION", "STALE", "ABSENT"},
     {"", "off", "silent", "stuck", "wrong", "garbage", "slow", "intermittent"},
     {"?", "STOP", "GO", "RECHECK", "MOVE", "TURN", "PASSIVE", "ACTIVE", "RETEST", "PIN", "UNPIN", "DISABLE"},
 };

@@ -3,6 +3,7 @@
 #include "supervisor/orders.h"
 
 #include "knowledge/angle.h"
+#include "supervisor/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/looks.h"
 #include "supervisor/modes.h"
@@ -23,12 +24,6 @@ static void stop_and_check(argus_t *const self, const bool full) {
              (argus_intent_t){.stop = ARGUS_STOP_STOP, .act = (uint8_t)check_if_open(self), .full = full});
 }
 
-static void enable_motors(argus_t *const self) {
-    if (!self->orders.passive && argus_is_open(self)) {
-        argus_enable_motors(self);
-    }
-}
-
 // The whole robot ------------------------------------------------------------------------------------------
 
 static void pause(argus_t *const self) {
@@ -41,7 +36,7 @@ static void pause(argus_t *const self) {
 
 static void resume(argus_t *const self) {
     self->orders.paused = false;
-    enable_motors(self);
+    argus_enable_motors(self);
     argus_task_restart(&self->travel.task);
     if (self->mission == ARGUS_MISSION_FAILED) {
         self->mission = ARGUS_MISSION_RUNNING;
@@ -59,20 +54,19 @@ static void recheck(argus_t *const self) {
 static void go_passive(argus_t *const self) {
     argus_do(self, (argus_intent_t){.stop = ARGUS_STOP_STOP});
     self->orders.passive = true;
-    self->session.motors = false;
+    self->orders.barred = false;
     argus_say(self, ARGUS_EV_PASSIVE, ARGUS_NO_SONAR, 0);
     check(self, false);
 }
 
 static void go_active(argus_t *const self) {
-    if (self->orders.locked) {
+    if (self->orders.locked || argus_say_barred(self)) {
         return;
     }
     self->orders.passive = false;
-    self->session.motors = true;
     self->reflexes.motors_said = false;
     argus_say(self, ARGUS_EV_ACTIVE, ARGUS_NO_SONAR, 0);
-    enable_motors(self);
+    argus_enable_motors(self);
     if (self->plan.disabled != 0 || self->ordered) { // the plan may have gone while nothing was commanded
         argus_share_slots(self);
     }
@@ -144,11 +138,11 @@ static void obey_for_all(argus_t *const self, const argus_op_t op, const int32_t
 // anew, with its relapses forgiven, since nothing but evidence brings it back.
 static void begin_retest(argus_t *const self, const int sonar) {
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    const uint16_t bit = (uint16_t)(1u << sonar);
+    const argus_mask_t bit = (argus_mask_t)(1u << sonar);
     argus_evidence_forget(&self->evidence, sonar);
     argus_evidence_forget_trend(&self->evidence, sonar);
     argus_forget_acquittals(self, sonar);
-    self->awareness.verified &= (uint16_t)~(unsigned)bit;
+    self->awareness.verified &= (argus_mask_t) ~(unsigned)bit;
     if (argus_is_out(&self->knowledge, sonar)) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RETESTED, s->kind, s->reading_mm);
         self->looks.once = false; // a look at all comes with the check
@@ -159,7 +153,7 @@ static void begin_retest(argus_t *const self, const int sonar) {
 }
 
 static bool may_serve(const argus_t *const self, const argus_op_t op, const int32_t sonar) {
-    if (sonar < 0 || sonar >= ARGUS_SONARS || op > ARGUS_OP_DISABLE) {
+    if (sonar < 0 || sonar >= self->knowledge.sonars || op > ARGUS_OP_DISABLE) {
         return false;
     }
     const bool pinned = (self->orders.pinned >> sonar & 1u) != 0;
@@ -181,7 +175,7 @@ static void retest(argus_t *const self, const int sonar) {
 
 static void pin(argus_t *const self, const int sonar, const bool on) {
     const unsigned bit = 1u << sonar;
-    self->orders.pinned = (uint16_t)(on ? self->orders.pinned | bit : self->orders.pinned & ~bit);
+    self->orders.pinned = (argus_mask_t)(on ? self->orders.pinned | bit : self->orders.pinned & ~bit);
     argus_say(self, ARGUS_EV_SONAR_PINNED, sonar, on ? 1 : 0);
 }
 

@@ -65,15 +65,16 @@ static argus_intent_t sees_others(const argus_t *const self, const argus_alarm_t
     unsigned changed = 0;
     (void)alarm;
     (void)mine;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         const argus_health_t health = self->knowledge.sonar[i].health;
-        const bool other = (ARGUS_FORWARD_MASK >> i & 1u) == 0;
+        const bool other = !argus_robot_faces_forward(self->knowledge.robot, i);
         const bool silent = argus_silent_ms(&self->knowledge, i) > (uint32_t)self->config.stale_ms;
         const bool news = (health == ARGUS_HEALTHY && silent) || (health == ARGUS_STALE && !silent);
         changed |= other && news ? 1u << i : 0u;
     }
     const bool counts = argus_rules(self)->disparity && changed != 0;
-    return (argus_intent_t){.act = counts ? ARGUS_DO_WATCH : ARGUS_DO_NOTHING, .sonars = (uint16_t)changed};
+    return (argus_intent_t){.act = counts ? ARGUS_DO_WATCH : ARGUS_DO_NOTHING,
+                            .sonars = (argus_mask_t)changed};
 }
 
 static argus_intent_t sees_battery(const argus_t *const self, const argus_alarm_t *const alarm,
@@ -168,7 +169,7 @@ static argus_intent_t sees_swing(const argus_t *const self, const argus_alarm_t 
         mine->near[0].valid = mine->near[1].valid = false;
         return nothing();
     }
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         const bool fresh = (self->knowledge.fresh >> i & 1u) != 0 && argus_usable(&self->knowledge, i);
         if (fresh && note_near(self, mine, i, &at)) {
             return (argus_intent_t){.act = ARGUS_DO_END_TURN, .at = at};
@@ -187,9 +188,10 @@ static argus_intent_t sees_flank(const argus_t *const self, const argus_alarm_t 
         self->motion.settled) {
         return nothing();
     }
-    const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge);
-    const int32_t stop_mm = argus_config_stop_mm(&self->config);
-    for (int i = ARGUS_FLANK_LEFT; i <= ARGUS_FLANK_RIGHT; i += ARGUS_FLANK_RIGHT - ARGUS_FLANK_LEFT) {
+    const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge) &
+                            argus_robot_flank(self->knowledge.robot);
+    const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((usable >> i & 1u) != 0 && argus_evidence_slants_in(&self->evidence, i, stop_mm)) {
             argus_intent_t intent = say(ARGUS_EV_OBJECT, i, self->knowledge.sonar[i].reading_mm);
             intent.stop = ARGUS_STOP_STOP;

@@ -21,12 +21,12 @@ static argus_intent_t turn(const int32_t heading_cdeg) {
     return (argus_intent_t){.act = ARGUS_DO_TURN, .cdeg = heading_cdeg};
 }
 
-static uint16_t in_use(const argus_knowledge_t *const knowledge) {
+static argus_mask_t in_use(const argus_knowledge_t *const knowledge) {
     unsigned mask = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < knowledge->sonars; i++) {
         mask |= knowledge->sonar[i].reported && !argus_is_out(knowledge, i) ? 1u << i : 0u;
     }
-    return (uint16_t)mask;
+    return (argus_mask_t)mask;
 }
 
 // Those ahead have been read again; before a turn that S7 forbade the others as well, for two rounds at most:
@@ -65,8 +65,8 @@ argus_intent_t argus_run_checking(const argus_t *const self, argus_checking_t *c
 
 static int next_suspect(const argus_t *const self) {
     const unsigned open = argus_open_suspects(self);
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        if ((open >> i & 1u) != 0) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if ((open >> i & 1u) != 0 && argus_robot_faces_forward(self->knowledge.robot, i)) {
             return i;
         }
     }
@@ -84,7 +84,7 @@ static argus_intent_t begin_verification(const argus_t *const self, argus_verify
         intent.act = ARGUS_DO_CHECK;
         return intent;
     }
-    argus_verify_begin(mine, sonar, argus_base_cdeg(self));
+    argus_verify_begin(mine, self->knowledge.robot, sonar, argus_base_cdeg(self));
     intent.event = ARGUS_EV_SONAR_VERIFYING;
     intent.sonar = (int8_t)sonar;
     intent.value = self->knowledge.sonar[sonar].reading_mm;
@@ -109,9 +109,10 @@ static argus_intent_t verify(const argus_t *const self, argus_verify_t *const mi
 }
 
 static argus_intent_t begin_looks(const argus_t *const self, argus_inquiry_t *const mine) {
-    const uint16_t suspects = argus_open_suspects(self);
+    const argus_mask_t suspects = argus_open_suspects(self);
     argus_intent_t intent = {.base = ARGUS_BASE_TAKE, .act = ARGUS_DO_LOOK, .sonars = suspects};
-    if (suspects != 0 && (suspects & ARGUS_FORWARD_MASK) == 0 && argus_is_hemmed_in(self)) {
+    if (suspects != 0 && (suspects & argus_robot_forward(self->knowledge.robot)) == 0 &&
+        argus_is_hemmed_in(self)) {
         intent.act = ARGUS_DO_LEAVE_OPEN; // no look is to be had, and none of them looks ahead
         return intent;
     }
@@ -131,7 +132,7 @@ static argus_intent_t look(const argus_t *const self, argus_inquiry_t *const min
     if (!mine->active) {
         return begin_looks(self, mine);
     }
-    mine->watched &= (uint16_t)~(unsigned)argus_out(&self->knowledge);
+    mine->watched &= (argus_mask_t) ~(unsigned)argus_out(&self->knowledge);
     if (!argus_inquiry_step(mine, &self->knowledge, &self->evidence)) {
         return nothing();
     }

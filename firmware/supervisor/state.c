@@ -36,13 +36,14 @@ int32_t argus_base_cdeg(const argus_t *const self) {
     return self->base.taken ? self->base.cdeg : self->knowledge.pose.heading_cdeg;
 }
 
-uint16_t argus_wanted_sonars(const argus_t *const self) {
-    return (uint16_t)(ARGUS_FORWARD_MASK & ~(unsigned)argus_out(&self->knowledge));
+argus_mask_t argus_wanted_sonars(const argus_t *const self) {
+    return (argus_mask_t)(argus_robot_forward(self->knowledge.robot) &
+                          ~(unsigned)argus_out(&self->knowledge));
 }
 
-uint16_t argus_open_suspects(const argus_t *const self) {
-    return (uint16_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
-                      ~(unsigned)self->awareness.verified);
+argus_mask_t argus_open_suspects(const argus_t *const self) {
+    return (argus_mask_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
+                          ~(unsigned)self->awareness.verified);
 }
 
 bool argus_is_hemmed_in(const argus_t *const self) {
@@ -59,8 +60,9 @@ bool argus_is_hemmed_in(const argus_t *const self) {
 int argus_nearest_ahead(const argus_t *const self) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
     int nearest = -1;
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        if (knowledge->sonar[i].reported && !argus_is_out(knowledge, i) &&
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (argus_robot_faces_forward(knowledge->robot, i) && knowledge->sonar[i].reported &&
+            !argus_is_out(knowledge, i) &&
             (nearest < 0 || knowledge->sonar[i].reading_mm < knowledge->sonar[nearest].reading_mm)) {
             nearest = i;
         }
@@ -113,7 +115,7 @@ static bool is_steady(const argus_t *const self, const int sonar) {
 }
 
 static bool only_steady_forbid_to_turn(const argus_t *const self, const argus_guard_t *const guard) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
         if (argus_guard_echo_blocks(guard, i) && !is_steady(self, i)) {
             return false;
         }

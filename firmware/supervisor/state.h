@@ -4,8 +4,8 @@
 #define ARGUS_STATE_H
 
 #include "adjustment/guard.h"
-#include "supervisor/intent.h"
 #include "supervisor/core.h"
+#include "supervisor/intent.h"
 
 // Which rules run.
 const argus_profile_t *argus_rules(const argus_t *self);
@@ -19,10 +19,10 @@ bool argus_is_open(const argus_t *self);
 // The heading to return to; the present one where none is taken.
 int32_t argus_base_cdeg(const argus_t *self);
 
-// Sonars of 1..6 that are in use; suspects not verified in this place, also those whose verification was
-// broken off or could not be begun.
-uint16_t argus_wanted_sonars(const argus_t *self);
-uint16_t argus_open_suspects(const argus_t *self);
+// Forward-facing sonars that are in use; suspects not verified in this place, also those whose verification
+// was broken off or could not be begun.
+argus_mask_t argus_wanted_sonars(const argus_t *self);
+argus_mask_t argus_open_suspects(const argus_t *self);
 
 // On its course, and has waited in vain to turn or to back away.
 bool argus_is_hemmed_in(const argus_t *self);

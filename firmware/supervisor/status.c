@@ -7,13 +7,17 @@
 static void copy_sonars(const argus_t *const self, argus_status_t *const status) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
-        status->bearing_deg[i] = argus_sonar_pose[i].heading_deg;
         status->reading_mm[i] = s->reported ? s->reading_mm : 0;
         status->readings[i] = s->readings;
         status->age_ms[i] = argus_age_ms(&self->knowledge, i, self->now_ms);
         status->health[i] = s->health;
         status->kind[i] = s->kind;
     }
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        status->bearing_deg[i] = argus_robot_pose(self->knowledge.robot, i)->heading_deg;
+    }
+    status->sonars = self->knowledge.sonars;
+    status->forward = argus_robot_forward(self->knowledge.robot);
 }
 
 static void copy_robot(const argus_knowledge_t *const from, argus_status_t *const status) {
@@ -37,7 +41,6 @@ static void copy_session(const argus_session_t *const from, argus_status_t *cons
     status->robot_name = from->name;
     status->robot_class = from->robot_class;
     status->robot_subclass = from->subclass;
-    status->robot_known = argus_session_knows_subclass(from);
     status->robot_told = from->has_robot;
     status->robot_version = from->robot.version;
     status->robot_serial = from->robot.serial;
@@ -63,6 +66,7 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
     status->online = status->open && !self->stalled;
     status->pinned = self->orders.pinned;
     status->stops = self->stops;
+    status->robot_body = self->knowledge.robot->name;
 }
 
 static bool queues_hold(const argus_t *const self) {
@@ -79,7 +83,7 @@ static bool task_holds(const argus_t *const self) {
 
 static bool plan_holds(const argus_t *const self) {
     return self->plan.count <= ARGUS_ROTATIONS_MAX &&
-           (self->plan.disabled & ~(unsigned)ARGUS_FORWARD_MASK) == 0;
+           (self->plan.disabled & ~(unsigned)argus_robot_forward(self->knowledge.robot)) == 0;
 }
 
 // S1 and S6: nothing translates before a full check; normal driving only while no bearing is blind.
@@ -97,13 +101,13 @@ static bool health_holds(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
         const bool whole =
-            s->health == ARGUS_HEALTHY || s->health == ARGUS_UNKNOWN || s->health == ARGUS_STALE;
-        if (s->health > ARGUS_STALE || (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
+            s->health != ARGUS_SUSPECT && s->health != ARGUS_DISABLED && s->health != ARGUS_PROBATION;
+        if (s->health > ARGUS_ABSENT || (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
             (whole && s->kind != ARGUS_KIND_NONE)) {
             return false;
         }
     }
-    return argus_failure_of(argus_out(&self->knowledge)) == self->failure;
+    return argus_failure_of(self->knowledge.robot, argus_out(&self->knowledge)) == self->failure;
 }
 
 int argus_invariants_broken(const argus_t *const self) {

@@ -8,7 +8,9 @@
 #include "supervisor/modes.h"
 
 static void forget(argus_t *const self) {
+    const argus_robot_t *const body = self->knowledge.robot; // told apart when its session opens
     argus_knowledge_init(&self->knowledge);
+    argus_knowledge_set_robot(&self->knowledge, body, self->now_ms);
     argus_echoes_init(&self->echoes);
     argus_awareness_init(&self->awareness);
     argus_evidence_init(&self->evidence);
@@ -28,7 +30,7 @@ void argus_meet_stranger(argus_t *const self) {
     self->orders.passive = true;
     self->orders.paused = true;
     self->orders.stay = true;
-    self->session.motors = false;
+    self->orders.barred = false;
     forget(self);
     argus_replan(self);
     argus_do(self, (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true});

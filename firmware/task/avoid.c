@@ -6,15 +6,20 @@
 #include "adjustment/guard.h"
 #include "knowledge/angle.h"
 
-#define WIDE_HALF_MM 400   // room to turn on the spot anywhere along it (S7 wants 390 under `argus`)
-#define NARROW_HALF_MM 305 // half the body (213), and room for the beam's width: where there is no wide way
-#define CORRIDOR_MM 650    // free length wanted ahead
-#define LEG_MM 300         // way along a detour before choosing again
+#define WIDE_ROOM_MM \
+    30 // beside the swing circle: room to turn anywhere on the way (S7 wants 20 under `argus`)
+#define NARROW_ROOM_MM 92    // beside the body, for the beam's width: where there is no wide way
+#define CORRIDOR_ROOM_MM 440 // free length wanted ahead of the body
+#define LEG_MM 300           // way along a detour before choosing again
 #define STEP_CDEG 1000
 #define STEPS 14           // detours up to 140 degrees off the waypoint's bearing
 #define OTHER_SIDE_STEPS 6 // a detour prefers the side it began on by so much
 #define REFUSED_CDEG 1500
 #define MOVED_ON_MM 150
+
+static int32_t corridor_mm(const argus_knowledge_t *const knowledge) {
+    return knowledge->robot->front_mm + CORRIDOR_ROOM_MM;
+}
 
 void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
     self->has_leg = false;
@@ -86,7 +91,7 @@ static int detour_size(const argus_task_t *const self, const int step, const int
 // Nearest to the bearing first.
 static bool find_detour(argus_task_t *const self, const around_t *const around, const int32_t half_mm,
                         const int32_t bearing_cdeg, int32_t *const heading_cdeg) {
-    const corridor_t wanted = {half_mm, CORRIDOR_MM};
+    const corridor_t wanted = {half_mm, corridor_mm(around->knowledge)};
     int8_t side = self->side != 0 ? self->side : 1;
     for (int i = 2; i < 2 * (STEPS + OTHER_SIDE_STEPS + 1); i++) {
         const int size = detour_size(self, i / 2, side);
@@ -117,8 +122,8 @@ static void lead_ahead(argus_task_t *const self, const argus_knowledge_t *const 
 static bool choose_corridor(argus_task_t *const self, const around_t *const around, const int32_t half_mm) {
     lead_to(self, self->waypoint[self->next]);
     const int32_t bearing = argus_task_bearing_cdeg(self, around->knowledge);
-    const corridor_t direct = {half_mm,
-                               argus_min(CORRIDOR_MM, argus_task_leg_mm(self, around->knowledge) + half_mm)};
+    const corridor_t direct = {half_mm, argus_min(corridor_mm(around->knowledge),
+                                                  argus_task_leg_mm(self, around->knowledge) + half_mm)};
     if ((!self->avoiding && !is_refused(self, bearing)) || is_free(self, around, bearing, &direct)) {
         self->avoiding = false;
         self->side = 0;
@@ -140,7 +145,9 @@ bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const 
         return false;
     }
     forgive_when_moved(self, knowledge);
-    if (choose_corridor(self, &around, WIDE_HALF_MM) || choose_corridor(self, &around, NARROW_HALF_MM)) {
+    const int32_t wide_mm = knowledge->robot->swing_radius_mm + WIDE_ROOM_MM;
+    const int32_t narrow_mm = argus_robot_half_width_mm(knowledge->robot) + NARROW_ROOM_MM;
+    if (choose_corridor(self, &around, wide_mm) || choose_corridor(self, &around, narrow_mm)) {
         return true;
     }
     self->has_leg = false;
@@ -152,7 +159,7 @@ bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const 
                        const argus_echoes_t *const echoes) {
     const around_t around = {knowledge, echoes};
     const int32_t heading = knowledge->pose.heading_cdeg;
-    const corridor_t wanted = {ARGUS_STRAIGHT_HALF_MM, CORRIDOR_MM};
+    const corridor_t wanted = {argus_guard_straight_half_mm(knowledge->robot), corridor_mm(knowledge)};
     if (self->next >= self->count || !is_free(self, &around, heading, &wanted)) {
         return false;
     }

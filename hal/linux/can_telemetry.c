@@ -239,8 +239,9 @@ uint32_t hal_telemetry_refused(const hal_telemetry_t *self) {
 
 static uint8_t forward_disabled(const argus_status_t *status) {
     uint8_t count = 0;
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        count = (uint8_t)(count + (status->health[i] == ARGUS_DISABLED));
+    for (int i = 0; i < status->sonars; i++) {
+        const bool forward = (status->forward >> i & 1u) != 0;
+        count = (uint8_t)(count + (forward && status->health[i] == ARGUS_DISABLED));
     }
     return count;
 }
@@ -301,7 +302,8 @@ static int8_t degrees(int16_t value) {
     return (int8_t)(value > INT8_MAX ? INT8_MAX : value < INT8_MIN ? INT8_MIN : value);
 }
 
-static void fill_plan(const argus_plan_t *from, uint8_t roll, uint8_t *data) {
+static void fill_plan(const argus_status_t *status, uint8_t roll, uint8_t *data) {
+    const argus_plan_t *const from = &status->plan;
     hal_dbc_plan_t plan = {.count = from->count,
                            .complete = from->complete,
                            .return_each = from->return_each,
@@ -309,8 +311,11 @@ static void fill_plan(const argus_plan_t *from, uint8_t roll, uint8_t *data) {
     for (int i = 0; i < ARGUS_ROTATIONS_MAX && i < from->count; i++) {
         plan.rotation[i] = degrees(from->rotation_deg[i]);
     }
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
-        plan.blind[i - ARGUS_FORWARD_FIRST] = from->disabled >> i & 1u;
+    size_t blind = 0; // one for each that faces forward, in the order of their numbers
+    for (int i = 0; i < status->sonars; i++) {
+        if ((status->forward >> i & 1u) != 0 && blind < sizeof plan.blind / sizeof plan.blind[0]) {
+            plan.blind[blind++] = from->disabled >> i & 1u;
+        }
     }
     hal_dbc_plan_pack(data, &plan);
 }
@@ -333,7 +338,7 @@ static uint32_t fill(hal_telemetry_t *self, const argus_status_t *status, int sl
     if (slot == HAL_TELEMETRY_HEALTH_FRONT || slot == HAL_TELEMETRY_HEALTH_REAR) {
         fill_health(status, slot == HAL_TELEMETRY_HEALTH_FRONT ? 0 : ARRAY, data);
     } else if (slot == HAL_TELEMETRY_PLAN) {
-        fill_plan(&status->plan, self->plan_roll, data);
+        fill_plan(status, self->plan_roll, data);
     } else if (slot >= HAL_TELEMETRY_READINGS) {
         const int first = (slot - HAL_TELEMETRY_READINGS) * GROUP;
         fill_readings(self, status, first, data);
@@ -355,7 +360,7 @@ static void sent(hal_telemetry_t *self, const argus_status_t *status, int slot, 
         self->roll++;
     } else if (slot == HAL_TELEMETRY_PLAN && s->ever && memcmp(frame->data, s->data, HAL_DBC_LENGTH) != 0) {
         self->plan_roll++;
-        fill_plan(&status->plan, self->plan_roll, frame->data);
+        fill_plan(status, self->plan_roll, frame->data);
     } else if (slot >= HAL_TELEMETRY_READINGS && slot < HAL_TELEMETRY_PLAN) {
         const int first = (slot - HAL_TELEMETRY_READINGS) * GROUP;
         for (int i = first; i < first + GROUP; i++) {

@@ -4,26 +4,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar, Final, Self
 
 from hil_sim.arcos.fields import pack_tail, unpack_tail
-from hil_sim.arcos.numbers import DEFAULT, MOTION, SONAR_CYCLE_MS, TIMING, TYPE
+from hil_sim.arcos.numbers import DEFAULT, TIMING, TYPE
+from hil_sim.tables.robot import robot_table
+
+_ROBOT: Final = robot_table()
+_MOTION: Final = _ROBOT.motion
 
 
 @dataclass(frozen=True)
 class ConfigPac:
-    """The robot's configuration; fields that a shorter packet lacks are None."""
+    """The robot's configuration, by default that of a P3-DX; fields that a shorter packet lacks are None."""
 
-    robot_type: bytes | None = b"Pioneer"
-    subtype: bytes | None = b"p3dx-sh"
-    serial_number: bytes | None = b"P3DX0001"
+    robot_type: bytes | None = _ROBOT.robot_class.encode()
+    subtype: bytes | None = _ROBOT.subclass.encode()
+    serial_number: bytes | None = _ROBOT.serial.encode()
     four_motors: int | None = 0
-    rot_vel_top: int | None = MOTION["rotvel_top_deg_s"]
-    trans_vel_top: int | None = MOTION["vel_top_mm_s"]
-    rot_acc_top: int | None = MOTION["rotaccel_top_deg_s2"]
-    trans_acc_top: int | None = MOTION["accel_top_mm_s2"]
+    rot_vel_top: int | None = _MOTION["rotvel_top_deg_s"]
+    trans_vel_top: int | None = _MOTION["vel_top_mm_s"]
+    rot_acc_top: int | None = _MOTION["rotaccel_top_deg_s2"]
+    trans_acc_top: int | None = _MOTION["accel_top_mm_s2"]
     pwm_max: int | None = DEFAULT["PWMMAX"]
-    name: bytes | None = b"P3DX_0001"
+    name: bytes | None = _ROBOT.name.encode()
     sip_cycle_ms: int | None = TIMING["SIP_CYCLE_MS"]
     host_baud: int | None = DEFAULT["HOSTBAUD"]
     aux1_baud: int | None = 0
@@ -31,35 +35,35 @@ class ConfigPac:
     front_sonar: int | None = 1
     rear_sonar: int | None = 1
     low_battery_dv: int | None = DEFAULT["LOWBATTERY_DV"]
-    rev_count: int | None = DEFAULT["REVCOUNT"]
+    rev_count: int | None = _MOTION["rev_count"]
     watchdog_ms: int | None = TIMING["WATCHDOG_MS"]
     p2mpacs: int | None = 0
     stall_val: int | None = DEFAULT["STALLVAL"]
     stall_count_ms: int | None = DEFAULT["STALLCOUNT_MS"]
     joy_vel: int | None = DEFAULT["JOYVEL_MM_S"]
     joy_rvel: int | None = DEFAULT["JOYRVEL_DEG_S"]
-    rot_vel_max: int | None = MOTION["rotvel_max_deg_s"]
-    trans_vel_max: int | None = MOTION["vel_max_mm_s"]
-    rot_acc: int | None = MOTION["rotaccel_deg_s2"]
-    rot_decel: int | None = MOTION["rotdecel_deg_s2"]
+    rot_vel_max: int | None = _MOTION["rotvel_max_deg_s"]
+    trans_vel_max: int | None = _MOTION["vel_max_mm_s"]
+    rot_acc: int | None = _MOTION["rotaccel_deg_s2"]
+    rot_decel: int | None = _MOTION["rotdecel_deg_s2"]
     rot_kp: int | None = DEFAULT["ROTKP"]
     rot_kv: int | None = DEFAULT["ROTKV"]
     rot_ki: int | None = DEFAULT["ROTKI"]
-    trans_acc: int | None = MOTION["accel_mm_s2"]
-    trans_decel: int | None = MOTION["decel_mm_s2"]
+    trans_acc: int | None = _MOTION["accel_mm_s2"]
+    trans_decel: int | None = _MOTION["decel_mm_s2"]
     trans_kp: int | None = DEFAULT["TRANSKP"]
     trans_kv: int | None = DEFAULT["TRANSKV"]
     trans_ki: int | None = DEFAULT["TRANSKI"]
     front_bumps: int | None = 0
     rear_bumps: int | None = 0
     charger: int | None = 0
-    sonar_cycle_ms: int | None = SONAR_CYCLE_MS
+    sonar_cycle_ms: int | None = _ROBOT.cycle_ms
     auto_baud: int | None = DEFAULT["AUTOBAUD"]
     has_gyro: int | None = DEFAULT["HASGYRO"]
     drift_factor: int | None = 0
     aux2_baud: int | None = 0
     aux3_baud: int | None = 0
-    ticks_mm: int | None = MOTION["ticks_per_mm"]
+    ticks_mm: int | None = _MOTION["ticks_per_mm"]
     shutdown_dv: int | None = DEFAULT["SHUTDOWN_DV"]
     version: bytes | None = b"2.6"
     gyro_cw: int | None = 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from hil_sim.tables import load, section
+from hil_sim.tables import section
 
 COMMAND: Final = section("arcos", "command")
 TYPE: Final = section("arcos", "type")
@@ -18,6 +18,4 @@ DEFAULT: Final = section("arcos", "default")
 HOSTBAUD: Final = section("arcos", "hostbaud")
 BUMPSTALL: Final = section("arcos", "bumpstall")
 BAUD: Final = section("arcos", "baud")
-MOTION: Final = section("robots/p3dx-sh", "motion")
-SONAR_CYCLE_MS: Final[int] = load("robots/p3dx-sh")["sonar"]["cycle_ms"]
 BAUD_OF_CODE: Final = {code: BAUD[name] for name, code in HOSTBAUD.items()}

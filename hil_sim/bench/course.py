@@ -12,15 +12,16 @@ import numpy as np
 import numpy.typing as npt
 
 from hil_sim.errors import SimError
-from hil_sim.world.body import HALF_MM, REAR_MM
+from hil_sim.tables.robot import robot_table
 from hil_sim.world.model import World
 
 CELL_MM: Final = 50.0
-SWING_MM: Final = math.hypot(REAR_MM, HALF_MM)
+_BODY: Final = robot_table().body
+SWING_MM: Final = _BODY.reach_mm
 """Radius of the circle that the body sweeps when it turns in place."""
 ROOM_MM: Final = SWING_MM + 250.0
 """Distance of a waypoint from the nearest solid: 250 mm round the body at every heading."""
-LEG_MM: Final = HALF_MM + 250.0
+LEG_MM: Final = _BODY.half_mm + 250.0
 """Distance of a leg from the nearest solid: 250 mm beside a body that drives along it."""
 REACH_MM: Final = 24_000.0
 """No waypoint is further than this from the start along x or y: the firmware takes courses of 30 m to each side."""

@@ -11,7 +11,8 @@ from typing import Any, Final
 
 from hil_sim.bench.witness import contradicted, fired, is_visible
 from hil_sim.sil import Collision, FaultTruth, Outcome, Sighting, Sil
-from hil_sim.sonar.params import CYCLE_MS, NO_ECHO_MM
+from hil_sim.sonar.params import NO_ECHO_MM
+from hil_sim.tables.robot import robot_table
 
 RECORD_FORMAT: Final = 4
 """Raised whenever a record gets another field: results of two formats do not mix."""
@@ -32,7 +33,7 @@ A sonar that is DISABLED fires no more, so the rule sets none apart that was DIS
 """
 NOTED_READINGS: Final = 16
 """Of so many of its first visible readings a record tells the times."""
-REFRESH_S: Final = 8 * CYCLE_MS / 1000
+REFRESH_S: Final = robot_table().refresh_ms / 1000
 """Each sonar of the two arrays of eight fires once in this time."""
 FALSE_AFTER_S: Final = 10.0
 """A sonar DISABLED this long after its fault has ended is a false disable."""

@@ -24,6 +24,7 @@ from hil_sim.bench.worlds import GENERATED, OPEN, make_world
 from hil_sim.errors import SimError
 from hil_sim.sil import Mission
 from hil_sim.sonar.params import SonarParams
+from hil_sim.tables.robot import robot_table
 from hil_sim.world.files import load_world, world_names
 from hil_sim.world.model import World
 from hil_sim.world.movers import Person
@@ -32,8 +33,9 @@ Rng = np.random.Generator
 
 SPLITS: Final = {"tune": 0x7A3D, "judge": 0x1E55}
 """Salt of everything random: no course, fault, noise or generated world of one split occurs in the other."""
-FORWARD: Final = range(1, 7)
-SONARS: Final = 16
+ROBOT: Final = robot_table()
+FORWARD: Final = ROBOT.forward
+SONARS: Final = ROBOT.sonars
 FORWARD_SHARE: Final = 0.75
 """Share of the faults that hit one of the forward six; the others hit one of the other ten."""
 REPAIR_SHARE: Final = 1 / 3

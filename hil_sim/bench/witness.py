@@ -16,6 +16,7 @@ from hil_sim.robot.interfaces import SonarReading
 from hil_sim.sil import Sighting
 from hil_sim.sil.noted import VISIBLE_MM, VISIBLE_PART
 from hil_sim.sonar.params import NO_ECHO_MM, transducer_pose
+from hil_sim.tables.robot import robot_table
 from hil_sim.world.model import Pose
 
 # One place and one bearing are for the observer what they are for the peers (firmware/awareness/evidence_peers.c,
@@ -82,7 +83,7 @@ def _glimpses(sightings: Sequence[Sighting], sonar: int) -> tuple[Table, Table]:
 
 
 def _glimpse(reading: SonarReading, before: Sighting, now: Sighting) -> tuple[float, ...]:
-    at = transducer_pose(reading.number, _between(before, now, reading.t_ms / 1000))
+    at = transducer_pose(robot_table().mounts[reading.number], _between(before, now, reading.t_ms / 1000))
     return reading.t_ms / 1000, at.x_mm, at.y_mm, at.heading_deg, reading.range_mm
 
 

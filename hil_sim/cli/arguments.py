@@ -10,16 +10,17 @@ from typing import NoReturn
 
 from hil_sim.arcos import BAUD
 from hil_sim.errors import SimError
-from hil_sim.faults.grammar import parse_fault
-from hil_sim.faults.kinds import Fault
 from hil_sim.links.can_spec import CanSpec, parse_spec
 from hil_sim.record.recording import MAX_BYTES
-from hil_sim.scenario.scenario import SEED_MAX, Scenario
+from hil_sim.scenario.scenario import SEED_MAX, Scenario, sonar_value
+from hil_sim.server.quirks import QUIRKS
 from hil_sim.server.server import SIP_CYCLE_MS
+from hil_sim.tables import robots
+from hil_sim.tables.robot import DEFAULT_ROBOT
 from hil_sim.world.model import Pose
+from hil_sim.world.physics import LIMITS, SETS, Physics, parse_physics
 
 DEFAULT_TCP_HOST = "127.0.0.1"
-DEFAULT_NAME = "P3DX_0001"
 ROBOTS_MAX = 64
 _EXAMPLES = """\
 examples:
@@ -30,6 +31,8 @@ examples:
   argus-sim --tcp 8101                        as the vendor's emulator listens
   argus-sim --serial /dev/ttyUSB0@9600        on a real UART
   argus-sim --can can0                        on a CAN bus, each ARCOS packet an ISO-TP message (docs/can.md)
+  argus-sim --robot amigo-sh --world office   an AmigoBot with its eight sonars
+  argus-sim --physics rough-day               sonars and wheels as on a bad day (docs/worlds.md)
   argus-sim --robots 3 --tcp 8101             three robots, on ports 8101 to 8103
   argus-sim --tcp 8101 --quirks mobilesim     with the answers of the vendor's emulator
   argus-sim bench diagnosis --help            how well faults are diagnosed, over many missions without a link
@@ -137,9 +140,17 @@ def _sip_cycle(text: str) -> int:
     return int(text)
 
 
-def _fault(text: str) -> Fault:
+def _physics(text: str) -> Physics:
     try:
-        return parse_fault(text)
+        return parse_physics(text)
+    except SimError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def _sonar(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    try:
+        return sonar_value(name, value)
     except SimError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
 
@@ -158,7 +169,7 @@ def parser() -> argparse.ArgumentParser:
     """Return the argument parser of `argus-sim`."""
     result = _Parser(
         prog="argus-sim",
-        description="Emulate a Pioneer P3-DX: ARCOS server, drive, odometry, sonars, bumpers, faults.",
+        description="Emulate a Pioneer robot: ARCOS server, drive, odometry, sonars, bumpers, faults.",
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
@@ -171,32 +182,45 @@ def parser() -> argparse.ArgumentParser:
     place.add_argument("--seed", type=_seed, metavar="N", help="seed of everything random (default 1)")
     place.add_argument("--start", type=_start, metavar="X,Y,DEG", help="start pose, mm and degrees")
     place.add_argument(
-        "--bumpers", type=int, choices=(0, 5), help="front bumper segments (default 5; 0: bare robot)"
+        "--bumpers", type=int, choices=(0, 5), help="front bumper segments (default: as the robot has)"
     )
     place.add_argument(
-        "--rear-bumpers", type=int, choices=(0, 5), default=0, help="rear bumper segments (default 0)"
+        "--rear-bumpers", type=int, choices=(0, 5), help="rear bumper segments (default: as the robot has)"
     )
-    place.add_argument("--name", type=_label, help=f"the robot's name (default {DEFAULT_NAME})")
     place.add_argument(
-        "--subclass", type=_label, default="p3dx-sh", help="the subclass it announces (default %(default)s)"
+        "--robot", choices=robots(), metavar="NAME", help=f"{', '.join(robots())} (default {DEFAULT_ROBOT})"
     )
+    place.add_argument("--name", type=_label, help="the robot's name (default: as its table says)")
+    place.add_argument("--subclass", type=_label, help="the subclass it announces (default: the robot's)")
     place.add_argument(
         "--robots", type=_robots, default=1, metavar="N", help="serve N robots, each in a world of its own"
     )
     place.add_argument(
         "--quirks",
-        choices=("p3dx", "mobilesim"),
-        default="p3dx",
+        choices=tuple(QUIRKS),
+        default="robot",
         help="whose habits: the robot's (default) or the vendor emulator's",
     )
     place.add_argument(
         "--sip-cycle", type=_sip_cycle, default=SIP_CYCLE_MS, metavar="MS", help="between SIPs (default 100)"
     )
+    place.add_argument(
+        "--physics",
+        type=_physics,
+        metavar="SET|NAME=VALUE,...",
+        help=f"{', '.join(SETS)}, or values of {', '.join(LIMITS)} (docs/worlds.md)",
+    )
+    place.add_argument(
+        "--sonar",
+        type=_sonar,
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="a parameter of the sonar model, as in a scenario (docs/worlds.md); repeatable",
+    )
     place.add_argument("--aux-loopback", action="store_true", help="a loop-back plug on each AUX port")
     faults = result.add_argument_group("faults")
-    faults.add_argument(
-        "--fault", type=_fault, action="append", default=[], metavar="SPEC", help="e.g. off:3@12s"
-    )
+    faults.add_argument("--fault", action="append", default=[], metavar="SPEC", help="e.g. off:3@12s")
     faults.add_argument(
         "--crosstalk", type=_probability, metavar="P", help="probability of a crosstalk reading"
     )

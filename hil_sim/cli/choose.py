@@ -10,14 +10,15 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil_sim.arcos import BAUD
-from hil_sim.cli.arguments import DEFAULT_NAME
 from hil_sim.errors import SimError
+from hil_sim.faults.grammar import parse_fault
 from hil_sim.links.base import Link
 from hil_sim.links.pty import PtyLink
 from hil_sim.links.tcp import TcpLink
 from hil_sim.links.uart import SerialLink
 from hil_sim.scenario.scenario import Scenario, load_scenario
 from hil_sim.server.mobilesim import NAME as MOBILESIM_NAME
+from hil_sim.tables.robot import robot_table
 
 
 def scenario_of(arguments: argparse.Namespace) -> Scenario:
@@ -30,14 +31,20 @@ def scenario_of(arguments: argparse.Namespace) -> Scenario:
             ("seed", arguments.seed),
             ("start", arguments.start),
             ("bumpers", arguments.bumpers),
+            ("robot", arguments.robot),
+            ("physics", arguments.physics),
         )
         if value is not None
     }
+    sonar = dict(arguments.sonar)
     if arguments.crosstalk is not None:
-        changes["sonar"] = dataclasses.replace(scenario.sonar, crosstalk=arguments.crosstalk)
-    if arguments.fault:
-        changes["faults"] = (*scenario.faults, *arguments.fault)
-    return dataclasses.replace(scenario, **changes)
+        sonar["crosstalk"] = arguments.crosstalk
+    changes["sonar"] = dataclasses.replace(scenario.sonar, **sonar)
+    scenario = dataclasses.replace(scenario, **changes)
+    # Those of the file again, since another robot may not have the sonars that they name.
+    table = robot_table(scenario.robot)
+    texts = [*(fault.text for fault in scenario.faults), *arguments.fault]
+    return dataclasses.replace(scenario, faults=tuple(parse_fault(text, table) for text in texts))
 
 
 def link_of(arguments: argparse.Namespace, index: int, seed: int) -> tuple[Link, int]:
@@ -94,9 +101,9 @@ def numbered(path: Path, index: int) -> Path:
     return path.with_name(f"{path.stem}-{index + 1}{path.suffix}") if index else path
 
 
-def robot_name(arguments: argparse.Namespace, index: int) -> str:
+def robot_name(arguments: argparse.Namespace, robot: str, index: int) -> str:
     """The name of the robot with this index; a number at its end counts up."""
-    default = MOBILESIM_NAME if is_mobilesim(arguments) else DEFAULT_NAME
+    default = MOBILESIM_NAME if is_mobilesim(arguments) else robot_table(robot).name
     name: str = arguments.name or default
     if not index:
         return name

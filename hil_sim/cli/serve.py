@@ -14,7 +14,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
-from hil_sim.cli.choose import is_mobilesim, link_of, numbered, robot_name
+from hil_sim.cli.choose import link_of, numbered, robot_name
 from hil_sim.faults.link import LinkFaults
 from hil_sim.links.base import Link
 from hil_sim.links.loop import LATE_MS, Fleet, Loop
@@ -22,7 +22,7 @@ from hil_sim.record.recording import Recorder
 from hil_sim.record.truth import Log, TruthRecord
 from hil_sim.scenario.build import build_robot
 from hil_sim.scenario.scenario import SEED_MAX, Scenario
-from hil_sim.server.mobilesim import MobileSimServer
+from hil_sim.server.quirks import server_kind
 from hil_sim.server.server import ArcosServer
 from hil_sim.world.files import load_world
 from hil_sim.world.model import Pose, World
@@ -63,6 +63,8 @@ def _meta(scenario: Scenario, world: World, start: Pose) -> dict[str, Any]:
         "course": [list(point) for point in scenario.course],
         "goal": list(scenario.goal) if scenario.goal else None,
         "faults": [str(fault) for fault in scenario.faults],
+        "robot": scenario.robot,
+        "physics": (scenario.physics or world.physics).text,
         "bumpers": scenario.bumpers,
         "scenario": scenario.text(),
     }
@@ -79,10 +81,9 @@ def _loop(
         log = stack.enter_context(TruthRecord(truth, _meta(scenario, world, start)))
     robot = build_robot(scenario, world, start, log, arguments.rear_bumpers)
     link, baud = link_of(arguments, index, scenario.seed)
-    kind = MobileSimServer if is_mobilesim(arguments) else ArcosServer
-    server = kind(
+    server = server_kind(arguments.quirks)(
         robot,
-        name=robot_name(arguments, index),
+        name=robot_name(arguments, scenario.robot, index),
         subclass=arguments.subclass,
         flash_baud=baud,
         sip_cycle_ms=arguments.sip_cycle,

@@ -11,6 +11,7 @@ from hil_sim.arcos import (
     COMMAND,
     FLAG,
     SIP,
+    TIMING,
     Command,
     ConfigPac,
     Packet,
@@ -20,7 +21,7 @@ from hil_sim.arcos import (
 from hil_sim.conformance.client import PATIENCE_S, Client, Failed
 
 TURN: Final = SIP["TURN"]
-ARRAY_FLAGS: Final = (FLAG["SONAR1"], FLAG["SONAR2"])
+ARRAY_FLAGS: Final = tuple(FLAG[f"SONAR{k + 1}"] for k in range(TIMING["ARRAYS_MAX"]))
 
 
 def framed(name: str, value: int | None = None) -> bytes:

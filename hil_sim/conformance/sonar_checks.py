@@ -8,7 +8,6 @@ from typing import Final
 
 from hil_sim.arcos import (
     COMMAND,
-    FLAG,
     TIMING,
     Command,
     Sip,
@@ -22,11 +21,11 @@ CHECKS: Final = Group()
 
 
 _PER_ARRAY: Final = TIMING["TRANSDUCERS_PER_ARRAY"]
-_ALL_SONAR_FLAGS: Final = FLAG["SONAR1"] | FLAG["SONAR2"] | FLAG["SONAR3"] | FLAG["SONAR4"]
+_ALL_SONAR_FLAGS: Final = sum(ARRAY_FLAGS)
 
 
 def _arrays(client: Client) -> list[int]:
-    """Start a session; the fitted arrays among the first two, at least one, all firing."""
+    """Start a session; the fitted arrays, at least one, all firing."""
     client.start()
     client.command("SONAR", 1)
     client.sips(3)
@@ -38,9 +37,9 @@ def _arrays(client: Client) -> list[int]:
 
 
 def _fired(sips: Sequence[Sip]) -> list[list[int]]:
-    """The sonar numbers of each of the first two arrays, in the order they came."""
+    """The sonar numbers of each array, in the order they came."""
     numbers = [number for sip in sips for number, _ in sip.sonars]
-    return [[n for n in numbers if n // _PER_ARRAY == array] for array in (0, 1)]
+    return [[n for n in numbers if n // _PER_ARRAY == array] for array in range(len(ARRAY_FLAGS))]
 
 
 def is_cyclic(fired: Sequence[int], order: Sequence[int]) -> bool:
@@ -53,6 +52,10 @@ def is_cyclic(fired: Sequence[int], order: Sequence[int]) -> bool:
     return any(
         all(number == order[(at + shift) % size] for at, number in enumerate(fired)) for shift in range(size)
     )
+
+
+def _default_order(array: int) -> list[int]:
+    return list(range(_PER_ARRAY * array, _PER_ARRAY * (array + 1)))
 
 
 def _cycle_ms(client: Client) -> int:
@@ -76,8 +79,7 @@ def default_order(client: Client) -> str:
     """Each array fires its transducers in the order of their numbers."""
     fitted = _arrays(client)
     fired = _fired(client.sips(12))
-    orders = [list(range(_PER_ARRAY * k, _PER_ARRAY * (k + 1))) for k in (0, 1)]
-    return require(all(is_cyclic(fired[k], orders[k]) for k in fitted), f"{fired[fitted[0]][:12]}")
+    return require(all(is_cyclic(fired[k], _default_order(k)) for k in fitted), f"{fired[fitted[0]][:12]}")
 
 
 @CHECKS.check("sonar")
@@ -112,14 +114,17 @@ def array_bits(client: Client) -> str:
     if len(fitted) < 2:
         raise NotApplicable("one array only")
     seen = []
-    for argument, left in ((2, [1]), (3, [0, 1]), (4, [0]), (5, [0, 1])):
-        client.command("SONAR", argument)
-        client.sips(3)
-        sips = client.sips(4)
-        firing = [array for array in (0, 1) if _fired(sips)[array]]
-        flagged = [array for array in (0, 1) if sips[-1].flags & ARRAY_FLAGS[array]]
-        seen.append(f"{argument}: {firing}")
-        require(firing == flagged == left, f"SONAR {argument}: arrays {firing} fire, {flagged} flagged")
+    for array in fitted:
+        for on in (False, True):
+            argument = 2 * (array + 1) + on
+            client.command("SONAR", argument)
+            client.sips(3)
+            sips = client.sips(4)
+            firing = [k for k, numbers in enumerate(_fired(sips)) if numbers]
+            flagged = [k for k, flag in enumerate(ARRAY_FLAGS) if sips[-1].flags & flag]
+            seen.append(f"{argument}: {firing}")
+            left = [k for k in fitted if on or k != array]
+            require(firing == flagged == left, f"SONAR {argument}: arrays {firing} fire, {flagged} flagged")
     return "; ".join(seen)
 
 
@@ -155,7 +160,7 @@ def polling(client: Client) -> str:
         client.sips(3)
         fired = _fired(client.sips(10))
         for array in fitted:
-            order = [number - 1 for number in orders[array]]
+            order = [n - 1 for n in orders[array]] if array < len(orders) else _default_order(array)
             right = len(fired[array]) > 5 and is_cyclic(fired[array], order)
             require(right, f"POLLING {numbers}: array {array + 1} fired {fired[array][:12]}")
     return f"{len(_POLLED)} sequences"

@@ -11,9 +11,8 @@ from matplotlib.patches import Wedge
 from hil_sim.demo.ink import (
     FAULT_WORDS,
     INK,
-    P3DX,
-    POSE,
     RED,
+    ROBOT,
     ROOM_MM,
     SKY,
     body,
@@ -22,6 +21,7 @@ from hil_sim.demo.ink import (
 )
 from hil_sim.demo.judge import Finding, of_type
 from hil_sim.demo.scene import Drive, hits, window
+from hil_sim.sonar.params import SonarParams
 
 
 class Callouts:
@@ -96,10 +96,10 @@ def _draw_beam(axes: Axes, one: Finding) -> None:
     """Where the failing sonar looked when it failed."""
     if one.injected is None:
         return
-    pose = POSE[one.fault.sonar]
+    pose = ROBOT.mounts[one.fault.sonar]
     at = one.injected
-    x, y = place(at.x_mm, at.y_mm, at.heading_deg, (pose["x_mm"], pose["y_mm"]))
-    axis, half = at.heading_deg + pose["heading_deg"], P3DX["sonar"]["cone_deg"] / 2
+    x, y = place(at.x_mm, at.y_mm, at.heading_deg, (pose.x_mm, pose.y_mm))
+    axis, half = at.heading_deg + pose.heading_deg, SonarParams().cone_deg / 2
     axes.add_patch(Wedge((x, y), 520, axis - half, axis + half, facecolor=RED, alpha=0.2, lw=0, zorder=4.5))
 
 

@@ -11,21 +11,19 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
-from hil_sim.tables import load
+from hil_sim.tables.robot import robot_table
 
 # Okabe and Ito's palette: told apart by colour-blind readers too. Every colour is doubled by a shape or a word.
 BLUE, ORANGE, GREEN, RED, PURPLE, SKY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9"
 INK, GREY, PALE, FLOOR = "#222222", "#8a8a8a", "#d5d5d5", "#fafafa"
 SIZE_IN: Final = (16.0, 10.0)
 DPI: Final = 100
-FRONT: Final = range(1, 7)
+ROBOT: Final = robot_table()
+FRONT: Final = ROBOT.forward
 ABOUT_MM: Final = 2500.0
 ROOM_MM: Final = 4000.0
 MARGIN_MM: Final = 1500.0
 """Room for words to the right of the map."""
-P3DX: Final = load("robots/p3dx-sh")
-POSE: Final = {int(pose["number"]): pose for pose in P3DX["sonar"]["pose"]}
-NO_ECHO_MM: Final = float(P3DX["sonar"]["no_echo_mm"])
 FAULT_WORDS: Final = {
     "off": "goes dead:\nit reads 5000 from here on",
     "wrong": "lies from here on:\nit reads half the truth",
@@ -35,10 +33,9 @@ FAULT_WORDS: Final = {
 
 def body(x_mm: float, y_mm: float, heading_deg: float) -> list[tuple[float, float]]:
     """Return the corners of the robot in the world."""
-    body = P3DX["body"]
-    half = body["width_mm"] / 2
-    nose = body["front_mm"]
-    corners = [(nose, half * 0.5), (nose * 0.55, half), (-body["rear_mm"], half)]
+    shape = ROBOT.body
+    half, nose = shape.half_mm, shape.front_mm
+    corners = [(nose, half * 0.5), (nose * 0.55, half), (-shape.rear_mm, half)]
     corners += [(x, -y) for x, y in reversed(corners)]
     return [place(x_mm, y_mm, heading_deg, corner) for corner in corners]
 

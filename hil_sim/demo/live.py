@@ -16,7 +16,7 @@ from rich.text import Text
 
 from hil_sim.demo.judge import KIND_NAME, Record, event_s, of_type
 from hil_sim.demo.runner import Recording
-from hil_sim.tables import load
+from hil_sim.tables.robot import robot_table
 
 STATUS_EVERY_S: Final = 5.0
 _EVENTS_SHOWN: Final = 8
@@ -25,7 +25,7 @@ _LEVEL: Final = ("OK   ", "WARN ", "ERROR", "STALE")
 _LEVEL_STYLE: Final = ("", "yellow", "bold red", "magenta")
 _HEALTH_STYLE: Final = {"HEALTHY": "green", "SUSPECT": "yellow", "DISABLED": "bold red", "STALE": "magenta"}
 _POSES: Final[Mapping[int, int]] = {
-    int(p["number"]): int(p["heading_deg"]) for p in load("robots/p3dx-sh")["sonar"]["pose"]
+    number: int(mount.heading_deg) for number, mount in enumerate(robot_table().mounts)
 }
 
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch, Polygon, Wedge
 
-from hil_sim.demo.ink import BLUE, FRONT, GREEN, INK, ORANGE, PALE, POSE, RED, SKY, body, place
+from hil_sim.demo.ink import BLUE, FRONT, GREEN, INK, ORANGE, PALE, RED, ROBOT, SKY, body, place
 from hil_sim.demo.scene import Drive, health_spans, robot_spans
 
 
@@ -19,9 +19,9 @@ def draw_ring(axes: Axes, drive: Drive) -> None:
     kinds |= {sonar: kind for _, sonar, kind in drive.verdict.false_disables}
     points = body(0, 0, 90)
     axes.add_patch(Polygon(points, facecolor="#eeeeee", edgecolor=INK, lw=1.4))
-    for number in POSE:
+    for number in range(ROBOT.sonars):
         _draw_sonar(axes, number, bad=number in kinds)
-    axes.text(0, -30, "P3-DX", ha="center", va="center", fontsize=10, color=INK)
+    axes.text(0, -30, ROBOT.subclass, ha="center", va="center", fontsize=10, color=INK)
     verdicts = (
         ", ".join(f"sonar {number}: {kind}" for number, kind in sorted(kinds.items())) or "no sonar disabled"
     )
@@ -34,10 +34,10 @@ def draw_ring(axes: Axes, drive: Drive) -> None:
 
 def _draw_sonar(axes: Axes, number: int, *, bad: bool) -> None:
     """Draw where one sonar looks, and whether it is known to be bad; the forward-facing six are longer."""
-    pose, forward = POSE[number], number in FRONT
-    heading = pose["heading_deg"] + 90
+    pose, forward = ROBOT.mounts[number], number in FRONT
+    heading = pose.heading_deg + 90
     c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
-    x, y = place(0, 0, 90, (pose["x_mm"], pose["y_mm"]))
+    x, y = place(0, 0, 90, (pose.x_mm, pose.y_mm))
     reach = 430 if forward else 240
     colour = GREEN if forward else PALE
     axes.add_patch(

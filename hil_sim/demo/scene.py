@@ -8,8 +8,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from hil_sim.demo.ink import ABOUT_MM, FRONT, MARGIN_MM, NO_ECHO_MM, POSE, place
+from hil_sim.demo.ink import ABOUT_MM, FRONT, MARGIN_MM, ROBOT, place
 from hil_sim.demo.judge import Record, Verdict, of_type, sonar_of
+from hil_sim.sonar.params import NO_ECHO_MM
 from hil_sim.world.model import World
 
 _STANDS_MM_S: Final = 5.0
@@ -73,10 +74,10 @@ def hits(drive: Drive) -> Iterator[tuple[int, float, float, str | None]]:
             continue
         while k + 1 < len(states) and states[k + 1]["t_s"] <= record["t_s"]:
             k += 1
-        pose = POSE[record["sonar"]]
-        axis = math.radians(pose["heading_deg"])
+        pose = ROBOT.mounts[record["sonar"]]
+        axis = math.radians(pose.heading_deg)
         reach = record["range_mm"]
-        echo = (pose["x_mm"] + reach * math.cos(axis), pose["y_mm"] + reach * math.sin(axis))
+        echo = (pose.x_mm + reach * math.cos(axis), pose.y_mm + reach * math.sin(axis))
         state = states[k]
         x, y = place(state["x_mm"], state["y_mm"], state["heading_deg"], echo)
         if record["sonar"] in FRONT:

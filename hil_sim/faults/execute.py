@@ -110,7 +110,7 @@ class FaultSet:
         return changes
 
     def active(self, number: int) -> SonarFault | None:
-        """Return the fault that has sonar 0 to 15 now: of several the one written last."""
+        """Return the fault that a sonar has now: of several the one written last."""
         for state in reversed(self._states):
             if state.has(number):
                 return state.fault
@@ -147,7 +147,7 @@ class FaultSet:
         if fault.kind == "stuck":
             return state.held[number]
         if fault.kind == "garbage":
-            return int(self._rng.integers(MIN_MM, NO_ECHO_MM + 1))
+            return int(self._rng.integers(_low(fault), _high(fault) + 1))
         if fault.kind == "slow":
             echoes = self._echoes[number]
             return echoes[max(0, len(echoes) - 1 - fault.n)]
@@ -155,7 +155,7 @@ class FaultSet:
             return self._drop(state, measured)
         base = measured if fault.angle is None else remeasure(fault.angle * state.part)
         scale = 1.0 + (fault.scale - 1.0) * state.part
-        return int(min(NO_ECHO_MM, max(MIN_MM, round(base * scale + fault.offset * state.part))))
+        return int(min(_high(fault), max(_low(fault), round(base * scale + fault.offset * state.part))))
 
     def _drop(self, state: _State, measured: int) -> int:
         fault = state.fault
@@ -164,7 +164,7 @@ class FaultSet:
         else:
             hears_to = NO_ECHO_MM + (fault.beyond - NO_ECHO_MM) * state.part
             lost = self._rng.random() < fault.p and measured > hears_to
-        return NO_ECHO_MM if lost else measured
+        return measured if not lost else NO_ECHO_MM if fault.value is None else fault.value
 
     def note_ping(self, t_ms: float, number: int, true_mm: int, heard_mm: int, value: int | None) -> None:
         """Be told of a ping that a fault may have changed; for those who judge."""
@@ -176,3 +176,11 @@ class FaultSet:
             if hit.start_ms <= now_ms < hit.end_ms:
                 mask |= 1 << hit.segment
         return mask
+
+
+def _low(fault: SonarFault) -> int:
+    return MIN_MM if fault.low is None else fault.low
+
+
+def _high(fault: SonarFault) -> int:
+    return NO_ECHO_MM if fault.high is None else fault.high

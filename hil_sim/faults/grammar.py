@@ -10,11 +10,9 @@ from typing import Final
 
 from hil_sim.errors import SimError
 from hil_sim.faults.kinds import (
-    BUMPER_SEGMENTS,
     DIRECTIONS,
     LINK_KINDS,
     SONAR_KINDS,
-    SONARS,
     BumperHit,
     Fault,
     LinkFault,
@@ -22,9 +20,12 @@ from hil_sim.faults.kinds import (
     SonarFault,
     When,
 )
-from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, PER_ARRAY
+from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM
+from hil_sim.tables.robot import RobotTable, robot_table
 
-_TARGETS: Final = {"front": range(PER_ARRAY), "rear": range(PER_ARRAY, SONARS), "all": range(SONARS)}
+_BUMPER_SEGMENTS: Final = 5
+WIRE_MAX: Final = 65535
+"""The largest range that a SIP can carry."""
 _SLOW_MAX: Final = 100
 _FAR: Final = 1e7
 """Seconds or mm: no run gets there, so a bound beyond it is a slip."""
@@ -35,10 +36,10 @@ _PARAMETERS: Final = {
     "off": (),
     "silent": (),
     "stuck": ("value",),
-    "wrong": ("scale", "offset", "angle", "ramp"),
-    "garbage": (),
+    "wrong": ("scale", "offset", "angle", "ramp", "low", "high"),
+    "garbage": ("low", "high"),
     "slow": ("n",),
-    "intermittent": ("p", "beyond", "ramp"),
+    "intermittent": ("p", "beyond", "ramp", "value"),
     "bumper": (),
     "link-drop": ("p", "dir"),
     "link-corrupt": ("p", "dir"),
@@ -46,16 +47,18 @@ _PARAMETERS: Final = {
     "link-cut": ("dir",),
 }
 _LIMITS: Final = {
-    "value": (MIN_MM, NO_ECHO_MM),
+    "value": (0, WIRE_MAX),
+    "low": (0, WIRE_MAX),
+    "high": (0, WIRE_MAX),
     "scale": (0.0, 50.0),
-    "offset": (-NO_ECHO_MM, NO_ECHO_MM),
+    "offset": (-WIRE_MAX, WIRE_MAX),
     "angle": (-180.0, 180.0),
     "n": (1, _SLOW_MAX),
     "p": (0.0, 1.0),
     "beyond": (MIN_MM, NO_ECHO_MM),
     "ms": (0.0, 60_000.0),
 }
-_WHOLE: Final = ("value", "n", "beyond")
+_WHOLE: Final = ("value", "n", "beyond", "low", "high")
 
 
 def fault_help() -> str:
@@ -63,7 +66,7 @@ def fault_help() -> str:
     kinds = [f"  {kind:<13} {what}" for kind, what in (SONAR_KINDS | LINK_KINDS).items()]
     return "\n".join(
         [
-            "KIND:TARGET[@FROM[-TO]][:NAME=VALUE...]   a fault of sonars; TARGET 0 to 15, 3+6, front, rear or all",
+            "KIND:TARGET[@FROM[-TO]][:NAME=VALUE...]   a fault of sonars; TARGET 3, 3+6, front, rear or all",
             "bumper:SEGMENT@FROM[-TO]                  front bumper segment 1 (left) to 5, 0.5 s unless TO is given",
             "link-KIND[@FROM[-TO]][:NAME=VALUE...]     a fault of the link, times only; dir=both, to_client, to_robot",
             "",
@@ -73,6 +76,7 @@ def fault_help() -> str:
             "",
             *kinds,
             "",
+            "Readings are clipped to 100..5000 unless low= and high= (0 to 65535) say otherwise.",
             "wrong and intermittent grow from nothing (beyond: from 5000) within ramp=60s or ramp=20000 mm of way.",
             "",
             "examples: off:3@12s   wrong:6@x>2000:scale=0.5   stuck:2@10s-20s:value=400   silent:rear@travelled>1500",
@@ -82,8 +86,8 @@ def fault_help() -> str:
     )
 
 
-def parse_fault(text: str) -> Fault:
-    """Parse a fault; raises SimError that says what is wrong with it.
+def parse_fault(text: str, robot: RobotTable | None = None) -> Fault:
+    """Parse a fault of a robot (None: of the default one); raises SimError that says what is wrong with it.
 
     >>> parse_fault("off:3@12s").start.value
     12000.0
@@ -100,17 +104,21 @@ def parse_fault(text: str) -> Fault:
         raise SimError(f"fault '{text}': which one? write {kind}:3 for number 3")
     if kind == "bumper":
         return _bumper(text, target, match["when"])
-    return _sonar_fault(text, kind, target, match["when"], values)
+    table = robot if robot is not None else robot_table()
+    return _sonar_fault(text, kind, _sonars(text, target, table), match["when"], values)
 
 
 def _sonar_fault(
-    text: str, kind: str, target: str, when: str | None, values: Mapping[str, float | str | Ramp]
+    text: str, kind: str, sonars: tuple[int, ...], when: str | None, values: Mapping[str, float | str | Ramp]
 ) -> SonarFault:
     start, end = _bounds(text, when)
     numbers = {name: value for name, value in values.items() if not isinstance(value, str)}
     if kind == "wrong" and not values.keys() - {"ramp"}:
         raise SimError(f"fault '{text}': wrong in what way? add :scale=0.5, :offset=-200 or :angle=20")
-    return SonarFault(text.strip(), kind, _sonars(text, target), start, end, **numbers)  # type: ignore[arg-type]
+    low, high = values.get("low", MIN_MM), values.get("high", NO_ECHO_MM)
+    if not isinstance(low, int) or not isinstance(high, int) or low > high:
+        raise SimError(f"fault '{text}': low is {low} and high is {high}; exchange them")
+    return SonarFault(text.strip(), kind, sonars, start, end, **numbers)  # type: ignore[arg-type]
 
 
 def _parameters(text: str, kind: str, rest: str) -> dict[str, float | str | Ramp]:
@@ -160,13 +168,15 @@ def _value(text: str, name: str, value: str) -> float:
     return number
 
 
-def _sonars(text: str, target: str) -> tuple[int, ...]:
-    if target in _TARGETS:
-        return tuple(_TARGETS[target])
+def _sonars(text: str, target: str, robot: RobotTable) -> tuple[int, ...]:
+    groups = {"front": robot.front, "rear": robot.rear, "all": tuple(range(robot.sonars))}
+    if target in groups:
+        return groups[target]
     parts = target.split("+")
-    if not all(re.fullmatch(r"\d{1,2}", part) and int(part) < SONARS for part in parts):
+    if not all(re.fullmatch(r"\d{1,2}", part) and int(part) < robot.sonars for part in parts):
         raise SimError(
-            f"fault '{text}': '{target}' is no sonar; name 0 to {SONARS - 1}, 3+6, front, rear or all"
+            f"fault '{text}': '{target}' is no sonar of {robot.subclass}; "
+            f"name 0 to {robot.sonars - 1}, 3+6, front, rear or all"
         )
     return tuple(sorted({int(part) for part in parts}))
 
@@ -203,8 +213,10 @@ def _times(text: str, when: str | None) -> tuple[float, float | None]:
 
 
 def _bumper(text: str, target: str, when: str | None) -> BumperHit:
-    if not re.fullmatch(r"\d", target) or not 1 <= int(target) <= BUMPER_SEGMENTS:
-        raise SimError(f"fault '{text}': '{target}' is no bumper segment; name 1 (left) to {BUMPER_SEGMENTS}")
+    if not re.fullmatch(r"\d", target) or not 1 <= int(target) <= _BUMPER_SEGMENTS:
+        raise SimError(
+            f"fault '{text}': '{target}' is no bumper segment; name 1 (left) to {_BUMPER_SEGMENTS}"
+        )
     if when is None:
         raise SimError(f"fault '{text}': when? write bumper:{target}@8s or bumper:{target}@8s-9s")
     start, end = _times(text, when)

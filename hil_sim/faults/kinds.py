@@ -6,18 +6,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Final
 
-from hil_sim.sonar.params import SONAR_POSES
-from hil_sim.tables import load
 from hil_sim.world.model import Pose
 
 SONAR_KINDS: Final = {
     "off": "reads 5000 in each of its slots",
     "silent": "its slots yield no reading",
-    "stuck": "repeats the reading at onset, or value=MM",
-    "wrong": "scale=FACTOR, then offset=MM; or angle=DEG: the range seen along its axis + angle",
-    "garbage": "uniform from 100 to 5000",
+    "stuck": "repeats the reading at onset, or value=MM (0 to 65535)",
+    "wrong": "scale=FACTOR, then offset=MM; or angle=DEG: the range seen along its axis + angle; low=, high=",
+    "garbage": "uniform from low=100 to high=5000",
     "slow": "reports the echo of n=COUNT firings ago (default 5)",
-    "intermittent": "each reading is 5000 with probability p=P (default 0.5); beyond=MM: farther echoes only",
+    "intermittent": "each reading is value=5000 with probability p=P (default 0.5); beyond=MM: farther echoes only",
 }
 LINK_KINDS: Final = {
     "link-drop": "loses packets with probability p=P (default 1)",
@@ -26,8 +24,6 @@ LINK_KINDS: Final = {
     "link-cut": "lets nothing through",
 }
 DIRECTIONS: Final = ("both", "to_client", "to_robot")
-BUMPER_SEGMENTS: Final[int] = load("robots/p3dx-sh")["body"]["front_bumpers"]
-SONARS: Final = len(SONAR_POSES)
 
 
 @dataclass(frozen=True)
@@ -68,7 +64,10 @@ class Fault:
 
 @dataclass(frozen=True)
 class SonarFault(Fault):
-    """A fault of sonars, on from `start` to `end`; None: from the beginning, for good."""
+    """A fault of sonars, on from `start` to `end`; None: from the beginning, for good.
+
+    value: what is read. low, high: readings are clipped to these; None: to those of a healthy sonar.
+    """
 
     kind: str
     sonars: tuple[int, ...]
@@ -82,6 +81,8 @@ class SonarFault(Fault):
     p: float = 0.5
     beyond: int | None = None
     ramp: Ramp | None = None
+    low: int | None = None
+    high: int | None = None
 
 
 @dataclass(frozen=True)

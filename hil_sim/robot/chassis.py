@@ -10,19 +10,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from hil_sim.arcos import MOTION
 from hil_sim.robot.interfaces import Body, Contact
-from hil_sim.tables import load
+from hil_sim.tables.robot import RobotTable
 from hil_sim.world.model import Pose
+from hil_sim.world.physics import PLAIN, Physics
 from hil_sim.world.step import STEP_MS
 
 DEG: Final = math.pi / 180
-_TRACK_MM: Final[float] = MOTION["track_mm"]
-_SWING_MM: Final[float] = load("robots/p3dx-sh")["body"]["swing_radius_mm"]
 _TOUCH_RELEASE_MM: Final = 5.0
 _BISECTIONS: Final = 7
 _HISTORY: Final = 64
 _LOOK_MS: Final = 50
+SLIP_STRETCH_MM: Final = 100.0
+"""For each stretch it is drawn whether the wheels slip on it."""
+SLIP_GRIP: Final = 0.5
+"""Part of the way of slipping wheels that the body makes."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,23 @@ class OdometryError:
     distance: float = 0.002
     turn: float = 0.002
     drift_deg_per_m: float = 0.1
+
+
+class Slip:
+    """Stretches of the way on which the wheels slip and the body is left behind."""
+
+    def __init__(self, share: float, rng: random.Random) -> None:
+        self._share, self._rng = share, rng
+        self._left_mm = 0.0
+        self._slips = False
+
+    def grip(self, ds: float) -> float:
+        """Return the part of a step of the wheels that the body makes."""
+        if self._left_mm <= 0:
+            self._left_mm = SLIP_STRETCH_MM
+            self._slips = self._rng.random() < self._share
+        self._left_mm -= abs(ds)
+        return SLIP_GRIP if self._slips else 1.0
 
 
 class Chassis:
@@ -44,15 +63,19 @@ class Chassis:
         self,
         body: Body,
         start: Pose,
+        table: RobotTable,
         error: OdometryError,
         seed: int,
         *,
+        physics: Physics = PLAIN,
         moving: bool,
         dynamic: bool,
         on_hit: Callable[[bool], None],
     ) -> None:
         """`moving`: solids move by themselves and tell when; `dynamic`: some may, of which nothing is known."""
         self.body = body
+        self._swing_mm = table.body.swing_mm
+        self._track_mm = table.motion["track_mm"]
         self._moving = moving
         # While the nearest solid cannot have arrived nobody needs to look; of `dynamic` alone nothing is known.
         self._knows_free = moving or not dynamic
@@ -61,6 +84,11 @@ class Chassis:
         self.true_distance = 1 + rng.gauss(0, error.distance)
         self.true_turn = 1 + rng.gauss(0, error.turn)
         self._drift_deg_mm = rng.gauss(0, error.drift_deg_per_m) / 1000
+        # The size is as asked for, the sign is drawn.
+        wheels = random.Random(f"wheels {seed}")
+        self.true_distance *= 1 + wheels.choice((-1, 1)) * physics.odometry_scale
+        self._drift_deg_mm += wheels.choice((-1, 1)) * physics.odometry_drift_deg_m / 1000
+        self._slip = Slip(physics.slip, wheels) if physics.slip else None
         self._pose = start
         self._pose_th = start.heading_deg
         self.x = start.x_mm
@@ -117,7 +145,9 @@ class Chassis:
         """Move the body as far as the solids let it; return the part of the step that was possible."""
         true_ds = ds * self.true_distance
         true_dth = dth * self.true_turn + ds * self._drift_deg_mm
-        self.free_mm -= abs(true_ds) + abs(true_dth) * DEG * _SWING_MM
+        if self._slip is not None:
+            true_ds *= self._slip.grip(ds)
+        self.free_mm -= abs(true_ds) + abs(true_dth) * DEG * self._swing_mm
         part = 1.0
         if self.free_mm <= 0:
             part = self._free_part(true_ds, true_dth, now_ms)
@@ -132,7 +162,7 @@ class Chassis:
     def _count(self, ds: float, dth: float) -> None:
         """Let the encoders see a step."""
         self.odo_x, self.odo_y, self.odo_th = _moved(self.odo_x, self.odo_y, self.odo_th, ds, dth)
-        half = dth * DEG * _TRACK_MM / 2
+        half = dth * DEG * self._track_mm / 2
         self.left_mm += ds - half
         self.right_mm += ds + half
 

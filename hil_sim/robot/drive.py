@@ -10,28 +10,45 @@ import math
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
-from hil_sim.arcos import DEFAULT, MOTION
+from hil_sim.arcos import DEFAULT
 from hil_sim.robot.chassis import DEG, Chassis
-from hil_sim.robot.motion import approach, ramp
+from hil_sim.robot.motion import approach, proportional, ramp
+from hil_sim.tables.robot import RobotTable
 from hil_sim.world.step import STEP_S
 
-_TRACK_MM: Final[float] = MOTION["track_mm"]
+MOVE_GAIN: Final = 0.2
+"""1/s: MobileSim has made 806 mm of MOVE 1000 after 8.5 s (measured)."""
+HEAD_GAIN: Final = 1.0
+"""1/s: MobileSim needs 3.7 s for HEAD 20, to within the half degree that it reports (measured)."""
 
 
 @dataclass
 class Settings:
     """Run-time values that return to FLASH on CLOSE and RESET."""
 
-    v_max: float = float(MOTION["vel_max_mm_s"])
-    rv_max: float = float(MOTION["rotvel_max_deg_s"])
-    accel: float = float(MOTION["accel_mm_s2"])
-    decel: float = float(MOTION["decel_mm_s2"])
-    raccel: float = float(MOTION["rotaccel_deg_s2"])
-    rdecel: float = float(MOTION["rotdecel_deg_s2"])
+    v_max: float
+    rv_max: float
+    accel: float
+    decel: float
+    raccel: float
+    rdecel: float
     bumpstall: int = DEFAULT["BUMPSTALL"]
     estall: bool = True
     joydrive: bool = False
     config: dict[str, int] = field(default_factory=dict)
+
+
+def flash_settings(table: RobotTable) -> Settings:
+    """Return the values that a robot has at power-up."""
+    motion = table.motion
+    return Settings(
+        v_max=float(motion["vel_max_mm_s"]),
+        rv_max=float(motion["rotvel_max_deg_s"]),
+        accel=float(motion["accel_mm_s2"]),
+        decel=float(motion["decel_mm_s2"]),
+        raccel=float(motion["rotaccel_deg_s2"]),
+        rdecel=float(motion["rotdecel_deg_s2"]),
+    )
 
 
 class Step(NamedTuple):
@@ -46,13 +63,17 @@ class Step(NamedTuple):
 class Drive:
     """Two channels, translation and rotation, each with a speed or a place as its set point.
 
+    proportional: MOVE and HEAD end slower and slower, as the vendor's emulator does, not as a trapezoid.
     v, w: speeds now, mm/s and deg/s. motors: powered; without power commands are not taken.
     """
 
-    def __init__(self, chassis: Chassis) -> None:
+    def __init__(self, chassis: Chassis, table: RobotTable) -> None:
         self._chassis = chassis
-        self.settings = Settings()
+        self._motion = table.motion
+        self._track_mm = table.motion["track_mm"]
+        self.settings = flash_settings(table)
         self.motors = False
+        self.proportional = False
         self.v = self.w = 0.0
         self._move_mode = self._head_mode = self._vel2 = False
         self._v_set = self._w_set = 0.0
@@ -63,7 +84,7 @@ class Drive:
 
     def set_accel(self, value: int) -> None:
         """SETA: positive acceleration, negative deceleration, 0 changes nothing."""
-        limit = min(float(abs(value)), float(MOTION["accel_top_mm_s2"]))
+        limit = min(float(abs(value)), float(self._motion["accel_top_mm_s2"]))
         if value > 0:
             self.settings.accel = limit
         elif value < 0:
@@ -71,7 +92,7 @@ class Drive:
 
     def set_turn_accel(self, value: int) -> None:
         """SETRA: as SETA, for turning."""
-        limit = min(float(abs(value)), float(MOTION["rotaccel_top_deg_s2"]))
+        limit = min(float(abs(value)), float(self._motion["rotaccel_top_deg_s2"]))
         if value > 0:
             self.settings.raccel = limit
         elif value < 0:
@@ -79,11 +100,11 @@ class Drive:
 
     def set_speed(self, value: int) -> None:
         """SETV: speed of MOVE and cap of VEL."""
-        self.settings.v_max = min(float(abs(value)), float(MOTION["vel_top_mm_s"]))
+        self.settings.v_max = min(float(abs(value)), float(self._motion["vel_top_mm_s"]))
 
     def set_turn_speed(self, value: int) -> None:
         """SETRV: speed of HEAD and cap of RVEL."""
-        self.settings.rv_max = min(float(abs(value)), float(MOTION["rotvel_top_deg_s"]))
+        self.settings.rv_max = min(float(abs(value)), float(self._motion["rotvel_top_deg_s"]))
 
     def _leave_vel2(self) -> None:
         if self._vel2:
@@ -110,7 +131,7 @@ class Drive:
             self._move_mode = self._head_mode = False
             self._vel2 = True
             self._v_set = (left_mm_s + right_mm_s) / 2
-            self._w_set = (right_mm_s - left_mm_s) / _TRACK_MM / DEG
+            self._w_set = (right_mm_s - left_mm_s) / self._track_mm / DEG
 
     def move(self, mm: float) -> None:
         """MOVE: end `mm` ahead of here, at rest."""
@@ -170,14 +191,14 @@ class Drive:
 
     def wheel_speeds(self) -> tuple[float, float]:
         """Left and right, mm/s."""
-        half = self.w * DEG * _TRACK_MM / 2
+        half = self.w * DEG * self._track_mm / 2
         return self.v - half, self.v + half
 
     # ---- time
 
     def coast(self) -> Step:
         """A sub-step without power: only friction brakes the wheels, far stronger than any set deceleration."""
-        return self._brake(MOTION["accel_top_mm_s2"], MOTION["rotaccel_top_deg_s2"])
+        return self._brake(self._motion["accel_top_mm_s2"], self._motion["rotaccel_top_deg_s2"])
 
     def brake(self) -> Step:
         """A sub-step of braking with the set decelerations, whatever the set points are."""
@@ -195,19 +216,28 @@ class Drive:
         moved = turned = False
         if self._move_mode:
             top = settings.v_max
-            self.v, moved = approach(v_old, self._move_left, top, settings.accel, settings.decel)
+            self.v, moved = self._law(v_old, self._move_left, top, settings.accel, settings.decel, MOVE_GAIN)
         else:
             target = max(-settings.v_max, min(settings.v_max, self._v_set))
             self.v = ramp(v_old, target, settings.accel, settings.decel)
         if self._head_mode:
             top = settings.rv_max
-            self.w, turned = approach(w_old, self._head_left, top, settings.raccel, settings.rdecel)
+            self.w, turned = self._law(
+                w_old, self._head_left, top, settings.raccel, settings.rdecel, HEAD_GAIN
+            )
         else:
             target = max(-settings.rv_max, min(settings.rv_max, self._w_set))
             self.w = ramp(w_old, target, settings.raccel, settings.rdecel)
         ds = self._move_left if moved else (v_old + self.v) / 2 * STEP_S
         dth = self._head_left if turned else (w_old + self.w) / 2 * STEP_S
         return Step(ds, dth, moved, turned)
+
+    def _law(
+        self, speed: float, left: float, top: float, accel: float, decel: float, gain: float
+    ) -> tuple[float, bool]:
+        if self.proportional:
+            return proportional(speed, left, top, accel, decel, gain)
+        return approach(speed, left, top, accel, decel)
 
     def done(self, step: Step, part: float) -> None:
         """Account for the part of a step that was possible."""

@@ -52,7 +52,7 @@ class SonarReading(Protocol):
 
     @property
     def number(self) -> int:
-        """Sonar 0 to 15, as in the SIP."""
+        """Number of the sonar, as in the SIP."""
 
     @property
     def range_mm(self) -> int:

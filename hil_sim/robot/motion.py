@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from hil_sim.world.step import STEP_S
 
@@ -40,3 +41,16 @@ def approach(speed: float, left: float, top: float, accel: float, decel: float) 
         return speed - step, False
     # Less than one braking step is left: taking it whole ends exactly on the point.
     return (0.0, True) if safe <= 0 or left <= step * STEP_S / 2 else (new, False)
+
+
+NEAR: Final = 0.5
+"""A place is reached when no more than this is left, mm or degrees."""
+
+
+def proportional(
+    speed: float, left: float, top: float, accel: float, decel: float, gain: float
+) -> tuple[float, bool]:
+    """One sub-step of a controller whose speed is `gain` (1/s) times what is left; returns as `approach`."""
+    if abs(left) <= NEAR:
+        return 0.0, True
+    return ramp(speed, max(-top, min(top, gain * left)), accel, decel), False

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from hil_sim.arcos import FLAG, MOTION, SIP, TYPE, ConfigPac, EncoderPac, IoPac, SimStat, Sip
+from hil_sim.arcos import FLAG, SIP, TYPE, ConfigPac, EncoderPac, IoPac, SimStat, Sip
 from hil_sim.robot.chassis import wrapped
 from hil_sim.robot.robot import Robot
 from hil_sim.world.step import STEP_MS
@@ -42,9 +42,9 @@ def sip(robot: Robot) -> Sip:
 
 def _flags(robot: Robot) -> int:
     flags = FLAG["MOTORS"] if robot.drive.motors else 0
-    for array, name in enumerate(("SONAR1", "SONAR2")):
+    for array in range(len(robot.table.orders)):
         if robot.ring.enabled[array]:
-            flags |= FLAG[name]
+            flags |= FLAG[f"SONAR{array + 1}"]
     if robot.estop_pressed:
         flags |= FLAG["ESTOP"]
     return flags | (FLAG["ESTALL"] if robot.estalled else 0)
@@ -52,10 +52,21 @@ def _flags(robot: Robot) -> int:
 
 def config_pac(robot: Robot, name: bytes, subclass: bytes) -> ConfigPac:
     """Return the CONFIGpac: FLASH values, those changed at run time in their place."""
-    now = robot.drive.settings
+    now, table = robot.drive.settings, robot.table
     packet = ConfigPac(
+        robot_type=table.robot_class.encode(),
         subtype=subclass,
+        serial_number=table.serial.encode(),
+        four_motors=table.motion["four_motors"],
+        rot_vel_top=table.motion["rotvel_top_deg_s"],
+        trans_vel_top=table.motion["vel_top_mm_s"],
+        rot_acc_top=table.motion["rotaccel_top_deg_s2"],
+        trans_acc_top=table.motion["accel_top_mm_s2"],
         name=name,
+        front_sonar=int(bool(table.front)),
+        rear_sonar=int(bool(table.rear)),
+        rev_count=table.motion["rev_count"],
+        ticks_mm=table.motion["ticks_per_mm"],
         front_bumps=robot.bumpers,
         rear_bumps=robot.rear_segments,
         trans_vel_max=int(now.v_max),
@@ -72,7 +83,7 @@ def config_pac(robot: Robot, name: bytes, subclass: bytes) -> ConfigPac:
 
 def encoder_pac(robot: Robot) -> EncoderPac:
     """Return the ENCODERpac due now."""
-    ticks = MOTION["ticks_per_mm"]
+    ticks = robot.table.motion["ticks_per_mm"]
     return EncoderPac(round(robot.chassis.left_mm * ticks), round(robot.chassis.right_mm * ticks))
 
 

@@ -9,15 +9,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final
 
-from hil_sim.arcos import BUMPSTALL, SIP, SONAR_CYCLE_MS, TIMING
+from hil_sim.arcos import BUMPSTALL, SIP, TIMING
 from hil_sim.faults.kinds import FaultChange
 from hil_sim.record.truth import Log
 from hil_sim.robot.chassis import Chassis, OdometryError, wrapped
-from hil_sim.robot.drive import Drive, Settings, Step
+from hil_sim.robot.drive import Drive, Step, flash_settings
 from hil_sim.robot.energy import Energy
 from hil_sim.robot.interfaces import Body, Faults, Moving, Ring, SonarReading
 from hil_sim.robot.stall import StallMonitor
+from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.model import Pose
+from hil_sim.world.physics import PLAIN, Physics
 from hil_sim.world.step import STEP_MS, STEP_S
 
 _STATE_EVERY_MS: Final = 100
@@ -39,22 +41,28 @@ class Robot:
         ring: Ring,
         start: Pose,
         *,
+        table: RobotTable | None = None,
         faults: Faults | None = None,
-        bumpers: int = 5,
-        rear_bumpers: int = 0,
+        bumpers: int | None = None,
+        rear_bumpers: int | None = None,
         seed: int = 0,
         odometry_error: OdometryError | None = None,
+        physics: Physics = PLAIN,
         dynamic: bool = False,
         moving: Moving | None = None,
         log: Log | None = None,
     ) -> None:
-        """`dynamic`: solids may move by themselves, so contact is looked for at rest too; `moving` are such."""
+        """`table`: which robot it is; None is the one that is emulated by default. Bumpers: None is as the table says.
+
+        `dynamic`: solids may move by themselves, so contact is looked for at rest too; `moving` are such.
+        """
+        self.table = table = table if table is not None else robot_table()
         self.body = body
         self.ring = ring
         self.faults = faults
         self.start = start
-        self.bumpers = bumpers
-        self.rear_segments = rear_bumpers
+        self.bumpers = table.body.front_bumpers if bumpers is None else bumpers
+        self.rear_segments = table.body.rear_bumpers if rear_bumpers is None else rear_bumpers
         self.dynamic = dynamic or moving is not None
         self.moving = moving
         self._closing_mm = moving.fastest_mm_s * STEP_S if moving is not None else 0.0
@@ -62,13 +70,15 @@ class Robot:
         self.chassis = Chassis(
             body,
             start,
+            table,
             odometry_error or OdometryError(),
             seed,
+            physics=physics,
             moving=moving is not None,
             dynamic=dynamic,
             on_hit=self._hit,
         )
-        self.drive = Drive(self.chassis)
+        self.drive = Drive(self.chassis, table)
         self.stall = StallMonitor()
         self.now_ms = 0
         self._debt_ms = 0.0
@@ -113,11 +123,11 @@ class Robot:
         self._readings.clear()
 
     def _to_flash(self) -> None:
-        self.drive.settings = Settings()
+        self.drive.settings = flash_settings(self.table)
         self.battery_test_dv = 0
         self.estalled = False
         self.ring.reset()
-        self.ring.cycle_ms = SONAR_CYCLE_MS
+        self.ring.cycle_ms = self.table.cycle_ms
 
     def enable(self, on: bool) -> None:
         """Motors on or off; off also forgets the set points."""
@@ -140,10 +150,10 @@ class Robot:
         self.drive.set_odometry(0.0, 0.0, 0.0)
 
     def sonar(self, argument: int) -> None:
-        """SONAR: bit 0 on or off, bits 1 to 3 the array, 0 for all; a P3-DX has arrays 1 and 2."""
+        """SONAR: bit 0 on or off, bits 1 to 3 the array, 0 for all; arrays that are not fitted stay off."""
         bits = abs(argument)
         array = bits >> 1 & 7
-        for fitted in (1, 2):
+        for fitted in range(1, len(self.table.orders) + 1):
             if array in (0, fitted):
                 self.ring.enabled[fitted - 1] = bool(bits & 1)
 

@@ -17,10 +17,13 @@ from hil_sim.scenario.scenario import Scenario
 from hil_sim.sonar.echo import EchoModel
 from hil_sim.sonar.params import SonarParams
 from hil_sim.sonar.ring import SonarRing
+from hil_sim.sonar.rough import Roughness
+from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.body import BodyModel
 from hil_sim.world.model import Pose, World
 from hil_sim.world.movers import Mover
 from hil_sim.world.moving import moving_solids
+from hil_sim.world.physics import Physics
 
 R = TypeVar("R", bound=Robot)
 
@@ -30,32 +33,50 @@ def assemble(
     start: Pose,
     *,
     make: Callable[..., R],
+    table: RobotTable,
     seed: int,
     sonar: SonarParams,
+    physics: Physics | None = None,
     faults: Sequence[Fault] = (),
     movers: Sequence[Mover] = (),
-    bumpers: int = 5,
-    rear_bumpers: int = 0,
+    bumpers: int | None = None,
+    rear_bumpers: int | None = None,
     log: Log | None = None,
     echoes: EchoModel | None = None,
     make_faults: Callable[[Sequence[Fault], np.random.Generator], FaultSet] = FaultSet,
 ) -> R:
     """Return a robot, made by `make`, at `start`; SimError when a solid is there.
 
-    movers: besides the world's own. echoes: a model of the same world and parameters, to share what it has worked out.
+    physics: None is as the world says. movers: besides the world's own. echoes: a model of the same world, parameters
+    and robot, to share what it has worked out.
     """
-    moving = moving_solids((*world.movers, *movers))
-    body = BodyModel(world, moving)
+    moving = moving_solids((*world.movers, *movers), table.body)
+    body = BodyModel(world, moving, table.body)
     if body.contact(start, 0.0) is not None:
         place = f"{start.x_mm:g},{start.y_mm:g},{start.heading_deg:g}"
         raise SimError(f"start {place}: a solid of world {world.name} is there; choose another start")
     # Streams of their own, so that one more draw in one place changes nothing elsewhere.
     injected = make_faults(faults, np.random.default_rng([seed, 1])) if faults else None
-    ring = SonarRing(world, sonar, injected, np.random.default_rng([seed, 2]), echoes=echoes, moving=moving)
+    physics = world.physics if physics is None else physics
+    rough = None
+    if physics.on_sonars:
+        rough = Roughness(physics, table.sonars, np.random.default_rng([seed, 3]))
+    ring = SonarRing(
+        world,
+        sonar,
+        injected,
+        np.random.default_rng([seed, 2]),
+        robot=table,
+        echoes=echoes,
+        moving=moving,
+        rough=rough,
+    )
     return make(
         body,
         ring,
         start,
+        table=table,
+        physics=physics,
         faults=injected,
         bumpers=bumpers,
         rear_bumpers=rear_bumpers,
@@ -66,15 +87,17 @@ def assemble(
 
 
 def build_robot(
-    scenario: Scenario, world: World, start: Pose, log: Log | None, rear_bumpers: int = 0
+    scenario: Scenario, world: World, start: Pose, log: Log | None, rear_bumpers: int | None = None
 ) -> Robot:
     """Return a robot at `start` in `world` with all that the scenario gives it."""
     return assemble(
         world,
         start,
         make=Robot,
+        table=robot_table(scenario.robot),
         seed=scenario.seed,
         sonar=scenario.sonar,
+        physics=scenario.physics,
         faults=scenario.faults,
         movers=scenario.movers,
         bumpers=scenario.bumpers,

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -15,9 +16,11 @@ from hil_sim.errors import SimError
 from hil_sim.faults.grammar import parse_fault
 from hil_sim.faults.kinds import Fault, LinkFault
 from hil_sim.sonar.params import SonarParams
+from hil_sim.tables.robot import DEFAULT_ROBOT, RobotTable, robot_table
 from hil_sim.world.model import Pose
 from hil_sim.world.movers import Door, Mover, Person, read_doors, read_people
 from hil_sim.world.movers import plain as movers_plain
+from hil_sim.world.physics import Physics, read_physics
 
 SCENARIO_DIR: Final = Path(__file__).resolve().parents[1] / "scenarios"
 SEED_MAX: Final = 2**63 - 1
@@ -28,7 +31,8 @@ BUMPERS: Final = (0, 5)
 class Scenario:
     """One run of the emulator.
 
-    start: None takes the world's. course: waypoints in world axes, mm; the goal is the last.
+    robot: its subclass, one of those with a table. start: None takes the world's. course: waypoints in world axes, mm;
+    the goal is the last. physics: None is as the world says. bumpers: front segments; None is as the robot has.
 
     faults: sonar faults, bumper hits and link faults, in the order written. people, doors: besides the world's own.
     """
@@ -40,7 +44,9 @@ class Scenario:
     goal: tuple[float, float] | None = None
     sonar: SonarParams = field(default_factory=SonarParams)
     faults: tuple[Fault, ...] = ()
-    bumpers: int = 5
+    bumpers: int | None = None
+    robot: str = DEFAULT_ROBOT
+    physics: Physics | None = None
     about: str = ""
     people: tuple[Person, ...] = ()
     doors: tuple[Door, ...] = ()
@@ -75,6 +81,8 @@ class Scenario:
         value = getattr(self, name)
         if name == "sonar":
             return _changed(value)
+        if name == "physics":
+            return value.text
         if name == "faults":
             return [fault.text for fault in value]
         if name in ("people", "doors"):
@@ -96,7 +104,8 @@ def _changed(values: Any) -> dict[str, Any]:
 
 _ALWAYS: Final = ("world", "seed")
 _ORDER: Final = (
-    "about", "world", "seed", "start", "course", "goal", "sonar", "faults", "bumpers", "people", "doors",
+    "about", "world", "robot", "seed", "start", "course", "goal", "physics", "sonar", "faults", "bumpers",
+    "people", "doors",
 )  # fmt: skip
 _KEYS: Final = tuple(f.name for f in dataclasses.fields(Scenario))
 _SONAR_LIMITS: Final = {
@@ -110,6 +119,8 @@ _SONAR_LIMITS: Final = {
     "mirror_db_deg2": (0, 10),
     "corner_db": (0, 100),
     "tip_db": (0, 100),
+    "side_lobe_db": (0, 100),
+    "side_lobe_deg": (2, 170),
 }
 
 
@@ -119,21 +130,26 @@ def load_scenario(path: str | Path) -> Scenario:
     A name without a suffix is one of the scenarios that come with the emulator. A world is looked for beside the
     scenario file first.
     """
-    file = Path(path)
-    if file.suffix == "" and not _exists(file):
-        file = SCENARIO_DIR / f"{path}.yaml"
+    file = _file_of(path)
     top = read_document(file)
     keys = top.mapping(_KEYS)
     if "course" in keys and "goal" in keys:
         keys["goal"].fail("give a course or a goal, not both; a course ends at its last point")
     values: dict[str, Any] = {}
+    robot = keys["robot"].convert(robot_table) if "robot" in keys else robot_table()
     for name, item in keys.items():
-        values[name] = _READERS[name](item)
+        values[name] = _faults(item, robot) if name == "faults" else _READERS[name](item)
     if "world" in values:
         beside = file.parent / values["world"]
         if beside.suffix in (".yaml", ".yml", ".map") and _exists(beside):
             values["world"] = str(beside)
     return Scenario(**values)
+
+
+def _file_of(path: str | Path) -> Path:
+    """A file, or one of our scenarios by its name."""
+    file = Path(path)
+    return SCENARIO_DIR / f"{path}.yaml" if file.suffix == "" and not _exists(file) else file
 
 
 def _exists(path: Path) -> bool:
@@ -174,6 +190,10 @@ def _sonar(item: Item) -> SonarParams:
     return SonarParams(**values)
 
 
+def _faults(item: Item, robot: RobotTable) -> tuple[Fault, ...]:
+    return tuple(fault.convert(lambda text: parse_fault(text, robot)) for fault in item.items())
+
+
 def _bumpers(item: Item) -> int:
     if item.value not in BUMPERS or isinstance(item.value, bool):
         item.fail(f"bumpers is {' or '.join(str(n) for n in BUMPERS)}, not '{item.value}'")
@@ -188,8 +208,23 @@ _READERS: Final = {
     "course": _course,
     "goal": _point,
     "sonar": _sonar,
-    "faults": lambda item: tuple(fault.convert(parse_fault) for fault in item.items()),
+    "robot": Item.text,
+    "physics": read_physics,
     "bumpers": _bumpers,
     "people": read_people,
     "doors": read_doors,
 }
+
+
+def sonar_value(name: str, text: str) -> tuple[str, float]:
+    """Return a parameter of the sonar model with its value; SimError when there is none or it is out of range."""
+    if name not in _SONAR_LIMITS:
+        raise SimError(f"sonar: '{name}' is no parameter of the model; there are {', '.join(_SONAR_LIMITS)}")
+    low, high = _SONAR_LIMITS[name]
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not low <= value <= high:
+        raise SimError(f"sonar: {name} must be a number from {low:g} to {high:g}, not '{text}'")
+    return name, value

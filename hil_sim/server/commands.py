@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a P3-DX without accessories makes of each command number: its name, or why it has no effect."""
+"""What a robot without accessories makes of each command number: its name, or why it has no effect."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ IGNORED: Final[dict[str, str]] = {
     "TORQUEINFO": "no torque sensor",
     "DIGTEMPTEST": "no temperature sensor",
     "ANALOGTEMPTEST": "no temperature sensor",
-    "SIM_MODEL_CONFIG": "the model is a P3-DX",
+    "SIM_MODEL_CONFIG": "the model is chosen at the start",
     "SIM_CTRL": "the world is chosen at the start",
     "SIM_MESSAGE": "nobody to show it to",
     "SIM_EXIT": "a client does not end the emulator",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The vendor emulator's habits, `--quirks mobilesim`: what it answers where a P3-DX answers otherwise."""
+"""The vendor emulator's habits, `--quirks mobilesim`: what it answers where the robot answers otherwise."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ OBEYED: Final = (
 )  # fmt: skip
 """The commands that have an effect there."""
 
-# CONFIGpac fields that are not 0 and not a P3-DX's.
+# CONFIGpac fields that are not 0 and not the robot's.
 _CONFIG: Final[dict[str, Any]] = {
     "serial_number": b"SIM",
     "rot_vel_top": _CEILING,
@@ -53,7 +53,8 @@ class MobileSimServer(ArcosServer):
     """Speaks ARCOS as MobileSim does.
 
     A session begins at SYNC2 in whatever order the SYNCs come, with all sonars on; SIPs begin at OPEN and
-    hold all 16 readings; the watchdog only warns; CLOSE, RESET and a lost connection end session and connection.
+    hold the readings of all sonars; the watchdog only warns; CLOSE, RESET and a lost connection end session and
+    connection.
     """
 
     def __init__(self, robot: Robot, **options: Any) -> None:
@@ -61,6 +62,7 @@ class MobileSimServer(ArcosServer):
         robot.watchdog_stops = False
         robot.fires_in_turn = False
         robot.drive.motors = True
+        robot.drive.proportional = True
         robot.bumpers = robot.rear_segments = 0
         self._warned = False
 
@@ -82,7 +84,7 @@ class MobileSimServer(ArcosServer):
         if command.number != COMMAND["CLOSE"]:
             self._send(command.data)
             return
-        self._send(SyncReply(self.name, b"Pioneer", self.subclass).data)
+        self._send(SyncReply(self.name, self._class, self.subclass).data)
         self.state = State.CONNECTED
         self.robot.open()
         self._next_sip_ms = math.inf

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The ARCOS server: sessions, every command of a P3-DX, the packets that go back; in virtual time."""
+"""The ARCOS server: sessions, every command of a robot, the packets that go back; in virtual time."""
 
 from __future__ import annotations
 
@@ -86,20 +86,23 @@ class ArcosServer:
         self,
         robot: Robot,
         *,
-        name: str = "P3DX_0001",
-        subclass: str = "p3dx-sh",
+        name: str | None = None,
+        subclass: str | None = None,
         flash_baud: int = _FLASH_BAUD,
         sip_cycle_ms: int = SIP_CYCLE_MS,
         aux_loopback: bool = False,
         log: Log | None = None,
     ) -> None:
-        """`flash_baud`: the rate at which the robot starts and to which it returns.
+        """`name`, `subclass`: None is as the robot's table says.
 
-        `sip_cycle_ms`: a multiple of 10. `aux_loopback`: a plug on each AUX port sends back what goes out.
+        `flash_baud`: the rate at which the robot starts and to which it returns. `sip_cycle_ms`: a multiple
+        of 10. `aux_loopback`: a plug on each AUX port sends back what goes out.
         """
         self.robot = robot
-        self.name = name.encode("latin-1", "replace")[:20]
-        self.subclass = subclass.encode("latin-1", "replace")
+        table = robot.table
+        self.name = (name or table.name).encode("latin-1", "replace")[:20]
+        self.subclass = (subclass or table.subclass).encode("latin-1", "replace")
+        self._class = table.robot_class.encode()
         self.log = log
         self.state = State.WAIT
         self.baud = self._flash_baud = flash_baud
@@ -109,7 +112,8 @@ class ArcosServer:
         self._synced = -1
         self._next_sip_ms = 0.0
         self.sip_cycle_ms = sip_cycle_ms
-        robot.unit_mm = SIP["OLD_UNIT_UM"] / 1000 if self.subclass == _OLD_SUBCLASS else 1.0
+        old = self.subclass == _OLD_SUBCLASS
+        robot.unit_mm = (SIP["OLD_UNIT_UM"] if old else table.odometry["dist_conv_um"]) / 1000
         self.hangs_up = False
         self._encoders = self._io = self._sim_stat = self._joystick = False
         self._aux = {
@@ -197,7 +201,7 @@ class ArcosServer:
             self._send(SyncEcho(number).data)
         elif number == _SYNC2 and self._synced in (_SYNC1, _SYNC2):
             self._synced, self.state = _SYNC2, State.SYNCED
-            self._send(SyncReply(self.name, b"Pioneer", self.subclass).data)
+            self._send(SyncReply(self.name, self._class, self.subclass).data)
         else:
             self._synced, self.state = -1, State.WAIT
 
@@ -251,7 +255,7 @@ class ArcosServer:
     def _table(self) -> dict[int, Callable[[Command], None]]:
         """Command number to what it does; any other is ignored, as by a robot without the part."""
         robot = self.robot
-        unit = DEFAULT["VEL2_UNIT_MM_S"]
+        unit = robot.table.odometry["vel2_unit_mm_s"]
         by_name: dict[str, Callable[[Command], None]] = {
             "PULSE": lambda c: None,
             "OPEN": lambda c: None,

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
+from hil_sim.tables.robot import DEFAULT_ROBOT
 from hil_sim.world.movers import Door, Mover, Person, plain
 
 V = TypeVar("V")
@@ -51,6 +52,7 @@ class Mission:
     sonar: parameters of the sonar model by name. movers: people and doors besides the world's own.
     limit_s: robot time at which the run is given up.
     record: the persistent record of an earlier mission. stop_at_goal: False goes on to the limit.
+    robot, physics, quirks: as for the options of argus-sim; no physics is as the world says.
     """
 
     world: str
@@ -65,6 +67,9 @@ class Mission:
     record: bytes | None = None
     baud: int = 9600
     stop_at_goal: bool = True
+    robot: str = DEFAULT_ROBOT
+    physics: str = ""
+    quirks: str = "robot"
 
     def __post_init__(self) -> None:
         fix = object.__setattr__

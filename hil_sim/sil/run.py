@@ -23,15 +23,18 @@ from hil_sim.faults.kinds import Fault, LinkFault
 from hil_sim.faults.link import LinkFaults
 from hil_sim.robot.interfaces import SonarReading
 from hil_sim.scenario.build import assemble
-from hil_sim.server.server import ArcosServer
+from hil_sim.server.quirks import server_kind
 from hil_sim.sil.line import Line, Packet
 from hil_sim.sil.mission import Mission
 from hil_sim.sil.noted import NotedFaults, NotedRobot
 from hil_sim.sil.outcome import Event, Outcome
 from hil_sim.sil.shared import shared_echoes, shared_world, sonar_params, stamp_of
+from hil_sim.tables.robot import robot_table
 from hil_sim.world.model import Pose
+from hil_sim.world.physics import parse_physics
 
 SONARS: Final = 16
+"""Of which the fault manager tells the health."""
 REACHED_MM: Final = 150.0
 _MOVING_MM_S: Final = 5.0
 _TURNING_DEG_S: Final = 1.0
@@ -83,11 +86,12 @@ class Sil:
         self._stamp = stamp_of(mission.world)
         self.world = shared_world(mission.world, self._stamp)
         self.start = Pose(*mission.start) if mission.start is not None else self.world.start
-        given = [parse_fault(text) for text in mission.faults]
+        table = robot_table(mission.robot)
+        given = [parse_fault(text, table) for text in mission.faults]
         self.robot = self._build_robot(given)
         self._faults = self.robot.faults if isinstance(self.robot.faults, NotedFaults) else None
         links = [fault for fault in given if isinstance(fault, LinkFault)]
-        self.server = ArcosServer(self.robot, flash_baud=mission.baud)
+        self.server = server_kind(mission.quirks)(self.robot, flash_baud=mission.baud)
         self._disturb = LinkFaults(links, mission.seed) if links else None
         self.core = self._build_core()
         self.events: list[Event] = []
@@ -112,11 +116,13 @@ class Sil:
             self.world,
             self.start,
             make=NotedRobot,
+            table=robot_table(mission.robot),
             seed=mission.seed,
             sonar=params,
+            physics=parse_physics(mission.physics) if mission.physics else None,
             faults=given,
             movers=mission.movers,
-            echoes=shared_echoes(mission.world, self._stamp, params),
+            echoes=shared_echoes(mission.world, self._stamp, params, mission.robot),
             make_faults=NotedFaults,
         )
 

@@ -12,6 +12,7 @@ from typing import Any
 from hil_sim.errors import SimError
 from hil_sim.sonar.echo import EchoModel
 from hil_sim.sonar.params import SonarParams
+from hil_sim.tables.robot import robot_table
 from hil_sim.world.files import load_world
 from hil_sim.world.model import World
 
@@ -35,9 +36,9 @@ def shared_world(name: str, stamp: Stamp) -> World:  # noqa: ARG001 (a key)
 
 
 @lru_cache(maxsize=8)
-def shared_echoes(name: str, stamp: Stamp, params: SonarParams) -> EchoModel:
+def shared_echoes(name: str, stamp: Stamp, params: SonarParams, robot: str) -> EchoModel:
     """Return the echo model of a world, made once."""
-    return EchoModel(shared_world(name, stamp), params)
+    return EchoModel(shared_world(name, stamp), params, robot_table(robot))
 
 
 def sonar_params(values: Mapping[str, float]) -> SonarParams:

@@ -9,13 +9,16 @@ from typing import Final
 import numpy as np
 
 from hil_sim.sonar import kernel
-from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, SONAR_POSES, SonarParams, transducer_pose
+from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, SonarParams, transducer_pose
 from hil_sim.sonar.patch import MovingEchoes, Patch, find_corners
+from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.model import Floats, Pose, World
 
 _RAY_STEP_DEG: Final = 1.5
 _CELL_MM: Final = 500.0
 _TOUCH: Final = 1e-9
+_SMOOTH: Final = 0.25
+"""Part of mirror_db_deg2 from which on a surface is smooth: that of a roughness of 0.5."""
 
 
 class EchoModel:
@@ -24,8 +27,17 @@ class EchoModel:
     Computed in C when the library is there, else here with numpy; to the same mm.
     """
 
-    def __init__(self, world: World, params: SonarParams, *, in_c: bool = True) -> None:
+    def __init__(
+        self,
+        world: World,
+        params: SonarParams,
+        robot: RobotTable | None = None,
+        *,
+        in_c: bool = True,
+    ) -> None:
+        """`robot`: whose sonars they are; None is the one that is emulated by default."""
         self.params = params
+        self._mounts = (robot if robot is not None else robot_table()).mounts
         self._segments = world.segments
         self._roughness = world.roughness
         self._corners = find_corners(world.segments)
@@ -33,10 +45,19 @@ class EchoModel:
         half = params.cone_deg / 2
         count = 2 * max(1, math.ceil(half / _RAY_STEP_DEG)) + 1
         offsets = np.linspace(-half, half, count)
-        self._ray_cos, self._ray_sin = np.cos(np.radians(offsets)), np.sin(np.radians(offsets))
         self._ray_db = params.edge_db * (offsets / half) ** 2
+        if params.side_lobe_db > 0 and params.side_lobe_deg / 2 > half:
+            offsets, half = self._with_side_lobes(offsets)
+        self._ray_cos, self._ray_sin = np.cos(np.radians(offsets)), np.sin(np.radians(offsets))
         self._cos_half = math.cos(math.radians(half))
         self._kernel = self._new_kernel() if in_c and kernel.library() is not None else None
+
+    def _with_side_lobes(self, offsets: Floats) -> tuple[Floats, float]:
+        """Add rays beside the cone, which lose as much everywhere; return all of them, and half the width then."""
+        half, wide = self.params.cone_deg / 2, self.params.side_lobe_deg / 2
+        beside = np.linspace(half, wide, 1 + max(1, math.ceil((wide - half) / _RAY_STEP_DEG)))[1:]
+        self._ray_db = np.concatenate((self._ray_db, np.full(2 * len(beside), self.params.side_lobe_db)))
+        return np.concatenate((offsets, beside, -beside)), wide
 
     def _new_kernel(self) -> kernel.Kernel:
         numbers = vars(self.params) | {
@@ -47,26 +68,38 @@ class EchoModel:
             "cell_mm": _CELL_MM,
             "touch": _TOUCH,
         }
-        mount = np.array([(p.x_mm, p.y_mm, p.heading_deg) for p in SONAR_POSES])
+        mount = np.array([(p.x_mm, p.y_mm, p.heading_deg) for p in self._mounts])
         # From the axis outwards: what is heard there mostly settles what the rays further out could add.
         order = np.argsort(self._ray_db, kind="stable")
         rays = {f"ray_{name}": getattr(self, f"_ray_{name}")[order] for name in ("cos", "sin", "db")}
         return kernel.Kernel(numbers, rays | {"mount": mount})
 
     def ping_mm(
-        self, number: int, pose: Pose, angle_deg: float = 0.0, moving: MovingEchoes | None = None
+        self,
+        number: int,
+        pose: Pose,
+        angle_deg: float = 0.0,
+        moving: MovingEchoes | None = None,
+        gain_db: float = 0.0,
     ) -> int:
-        """Return what sonar 0 to 15 of a robot at `pose` reads, its axis turned by `angle_deg`."""
+        """Return what a sonar of a robot at `pose` reads, its axis turned by `angle_deg`, its gain off by `gain_db`."""
         if self._kernel is not None:
             patch = moving.patch(True).for_c if moving is not None else None
-            value = self._kernel.ping_mm(number, pose.x_mm, pose.y_mm, pose.heading_deg, angle_deg, patch)
+            value = self._kernel.ping_mm(
+                number, pose.x_mm, pose.y_mm, pose.heading_deg, angle_deg, gain_db, patch
+            )
             if value >= 0:
                 return value
-        at = transducer_pose(number, pose)
-        return self.range_mm(at.x_mm, at.y_mm, at.heading_deg + angle_deg, moving)
+        at = transducer_pose(self._mounts[number], pose)
+        return self.range_mm(at.x_mm, at.y_mm, at.heading_deg + angle_deg, moving, gain_db)
 
     def range_mm(
-        self, x_mm: float, y_mm: float, heading_deg: float, moving: MovingEchoes | None = None
+        self,
+        x_mm: float,
+        y_mm: float,
+        heading_deg: float,
+        moving: MovingEchoes | None = None,
+        gain_db: float = 0.0,
     ) -> int:
         """Return the range from a transducer at this place, 100 to 5000; 5000 when nothing is heard.
 
@@ -76,15 +109,40 @@ class EchoModel:
             patch = self._patch(x_mm, y_mm)
             if moving is not None:
                 patch = patch.joined(moving.patch(False))
-            return self._range_numpy(patch, x_mm, y_mm, heading_deg)
+            return self._range_numpy(patch, x_mm, y_mm, heading_deg, gain_db)
         others = moving.patch(True).for_c if moving is not None else None
-        value = self._kernel.range_mm(x_mm, y_mm, heading_deg, others)
+        value = self._kernel.range_mm(x_mm, y_mm, heading_deg, gain_db, others)
         if value == kernel.UNKNOWN_CELL:
             self._patch(x_mm, y_mm)
-            value = self._kernel.range_mm(x_mm, y_mm, heading_deg, others)
+            value = self._kernel.range_mm(x_mm, y_mm, heading_deg, gain_db, others)
         return value
 
-    def _range_numpy(self, patch: Patch, x_mm: float, y_mm: float, heading_deg: float) -> int:
+    def bounce_mm(self, number: int, pose: Pose, moving: MovingEchoes | None = None) -> int | None:
+        """Return the way along the axis by way of a smooth surface to the next one; None when there is none within 5 m.
+
+        The same with and without the library: it is seldom asked for.
+        """
+        at = transducer_pose(self._mounts[number], pose)
+        patch = self._patch(at.x_mm, at.y_mm)
+        if moving is not None:
+            patch = patch.joined(moving.patch(self._kernel is not None))
+        heading = math.radians(at.heading_deg)
+        dx, dy = math.cos(heading), math.sin(heading)
+        first = _cast(patch, at.x_mm, at.y_mm, dx, dy, -1)
+        if first is None:
+            return None
+        way, k = first
+        if patch.mirror[k] <= self.params.mirror_db_deg2 * _SMOOTH:
+            return None
+        along_x, along_y = float(patch.ex[k] / patch.length[k]), float(patch.ey[k] / patch.length[k])
+        along = dx * along_x + dy * along_y
+        mirrored = 2 * along * along_x - dx, 2 * along * along_y - dy
+        second = _cast(patch, at.x_mm + way * dx, at.y_mm + way * dy, *mirrored, k)
+        if second is None or way + second[0] >= NO_ECHO_MM:
+            return None
+        return round(way + second[0])
+
+    def _range_numpy(self, patch: Patch, x_mm: float, y_mm: float, heading_deg: float, gain_db: float) -> int:
         if len(patch.ax) == 0:
             return NO_ECHO_MM
         heading = math.radians(heading_deg)
@@ -120,7 +178,7 @@ class EchoModel:
                 loss[-count:] = np.where(reached, np.fmin(loss[-count:], tip_db), loss[-count:])
             # NaN where nothing was hit and the air takes nothing: not heard either.
             loss = loss + beam_db + self.params.air_db_m / 1000 * nearest
-        heard = nearest[loss <= self.params.margin_db]
+        heard = nearest[loss <= self.params.margin_db + gain_db]
         if heard.size == 0:
             return NO_ECHO_MM
         return int(min(NO_ECHO_MM, max(MIN_MM, round(float(heard.min())))))
@@ -147,7 +205,10 @@ class EchoModel:
         # The transducer looks into the corner when the way back is a positive mix of the corner's arms.
         into = (inverse[:, 0] * dx + inverse[:, 1] * dy < 0) & (inverse[:, 2] * dx + inverse[:, 3] * dy < 0)
         own = np.where(into & (patch.retro[inside] > 0), self.params.corner_db, self.params.tip_db)
-        return (dx, dy, distance, self.params.edge_db * off * off), own
+        beam_db = self.params.edge_db * off * off
+        if self.params.side_lobe_db > 0:
+            beam_db = np.where(off > 1, self.params.side_lobe_db, beam_db)
+        return (dx, dy, distance, beam_db), own
 
     def _patch(self, x: float, y: float) -> Patch:
         cell = (math.floor(x / _CELL_MM), math.floor(y / _CELL_MM))
@@ -170,3 +231,20 @@ def _distances(segments: Floats, x: float, y: float) -> Floats:
     t = np.clip((wx * ex + wy * ey) / (ex * ex + ey * ey), 0.0, 1.0)
     result: Floats = np.hypot(wx - t * ex, wy - t * ey)
     return result
+
+
+def _cast(patch: Patch, x: float, y: float, dx: float, dy: float, without: int) -> tuple[float, int] | None:
+    """The first segment that one ray meets: how far away and which; `without`: one that it passes through."""
+    wx, wy = patch.ax - x, patch.ay - y
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = 1.0 / (dx * patch.ey - dy * patch.ex)
+        where = (dy * wx - dx * wy) * inverse
+        ranges = (wx * patch.ey - wy * patch.ex) * inverse
+        hit = (where >= -_TOUCH) & (where <= 1 + _TOUCH) & (ranges > 0)
+    if without >= 0:
+        hit[without] = False
+    if not hit.any():
+        return None
+    ranges[~hit] = np.inf
+    k = int(ranges.argmin())
+    return float(ranges[k]), k

@@ -29,7 +29,7 @@ typedef struct {
 } slot_t;
 
 typedef struct {
-    double cone_deg, cos_half, edge_db, margin_db, air_db_mm, corner_db, tip_db;
+    double cone_deg, cos_half, edge_db, margin_db, air_db_mm, corner_db, tip_db, side_lobe_db;
     double min_mm, no_echo_mm, cell_mm, touch;
     const double *ray_cos, *ray_sin, *ray_db; // `rays` each
     const double *mount;                      // x, y, heading of each sonar
@@ -68,13 +68,14 @@ void argus_sim_echo_free(echo_t *self);
 int32_t argus_sim_echo_add(echo_t *self, int32_t column, int32_t row, const patch_t *patch);
 void argus_sim_place(patch_t *here, const patch_t *shape, const int32_t *owner, const int32_t *corner_owner,
                      const double *places);
-int32_t argus_sim_echo_range(echo_t *self, double x, double y, double heading_deg, const patch_t *others);
+int32_t argus_sim_echo_range(echo_t *self, double x, double y, double heading_deg, double gain_db,
+                             const patch_t *others);
 int32_t argus_sim_echo_ping(echo_t *self, int32_t sonar, double x, double y, double heading_deg,
-                            double angle_deg, const patch_t *others);
+                            double angle_deg, double gain_db, const patch_t *others);
 uint32_t argus_sim_version(void);
 
 uint32_t argus_sim_version(void) {
-    return 3;
+    return 4;
 }
 
 static const double deg_per_rad = 180.0 / 3.14159265358979323846;
@@ -191,6 +192,7 @@ typedef struct {
     near_t *near, *nearer; // `nearer`: those that could be heard nearer than what has been heard
     int32_t count, nearer_count;
     near_t first;
+    double margin_db; // loss at which an echo is no longer heard
 } scene_t;
 
 typedef struct {
@@ -318,7 +320,7 @@ static double hear_fan(const model_t *const model, const scene_t *const scene, c
         if (hit.near != NULL && hit.range < nearest) {
             const double loss =
                 surface_db(scene, hit, dir_x, dir_y) + model->ray_db[k] + model->air_db_mm * hit.range;
-            if (loss <= model->margin_db) {
+            if (loss <= scene->margin_db) {
                 nearest = hit.range;
             }
         }
@@ -345,6 +347,11 @@ static hit_t cast_at_corner(const scene_t *const scene, const double dx, const d
     return cast(scene->near, scene->count, dx, dy, touch);
 }
 
+// Loss of the beam, there and back, `off` half widths of the cone from the axis.
+static double beam_db(const model_t *const model, const double off) {
+    return off > 1 && model->side_lobe_db > 0 ? model->side_lobe_db : model->edge_db * off * off;
+}
+
 // Where sound comes back from when sent to a corner within the cone; INFINITY when it is not seen, not heard,
 // or no nearer than `nearest`.
 static double hear_corner(const model_t *const model, const scene_t *const scene, const view_t view,
@@ -369,8 +376,8 @@ static double hear_corner(const model_t *const model, const scene_t *const scene
     }
     const double part = along / far;
     const double off = acos(part < 1.0 ? part : 1.0) * deg_per_rad * 2 / model->cone_deg;
-    loss = loss + model->edge_db * off * off + model->air_db_mm * range;
-    return loss <= model->margin_db ? range : INFINITY;
+    loss = loss + beam_db(model, off) + model->air_db_mm * range;
+    return loss <= scene->margin_db ? range : INFINITY;
 }
 
 static void leave_out(scene_t *const scene, const double nearest) {
@@ -392,7 +399,7 @@ static double hear_corners(const model_t *const model, const scene_t *const scen
 }
 
 static int32_t heard_mm(echo_t *const self, const part_t *const still, const part_t *const others,
-                        const view_t view) {
+                        const view_t view, const double gain_db) {
     const model_t *const model = &self->model;
     const patch_t *const first = still->patch->segments > 0 ? still->patch : others->patch;
     if (first->segments <= 0) {
@@ -403,7 +410,7 @@ static int32_t heard_mm(echo_t *const self, const part_t *const still, const par
     }
     int32_t count = gather(self->near, model->cos_half, still, view);
     count += gather(&self->near[count], model->cos_half, others, view);
-    scene_t scene = {self->near, NULL, count, 0, relative(first, 0, view)};
+    scene_t scene = {self->near, NULL, count, 0, relative(first, 0, view), model->margin_db + gain_db};
     double nearest = hear_fan(model, &scene, view, INFINITY);
     leave_out(&scene, nearest);
     nearest = hear_corners(model, &scene, view, still, nearest);
@@ -412,7 +419,7 @@ static int32_t heard_mm(echo_t *const self, const part_t *const still, const par
 }
 
 int32_t argus_sim_echo_range(echo_t *const self, const double x, const double y, const double heading_deg,
-                             const patch_t *const others) {
+                             const double gain_db, const patch_t *const others) {
     static const patch_t none = {0};
     const double cell_mm = self->model.cell_mm;
     const int32_t column = (int32_t)floor(x / cell_mm), row = (int32_t)floor(y / cell_mm);
@@ -427,13 +434,14 @@ int32_t argus_sim_echo_range(echo_t *const self, const double x, const double y,
     const patch_t *const all = others != NULL ? others : &none;
     const part_t moving = {all, NULL, all->segments, all->corners};
     const double heading = heading_deg * rad_per_deg;
-    return heard_mm(self, &still, &moving, (view_t){x, y, cos(heading), sin(heading)});
+    return heard_mm(self, &still, &moving, (view_t){x, y, cos(heading), sin(heading)}, gain_db);
 }
 
 int32_t argus_sim_echo_ping(echo_t *const self, const int32_t sonar, const double x, const double y,
-                            const double heading_deg, const double angle_deg, const patch_t *const others) {
+                            const double heading_deg, const double angle_deg, const double gain_db,
+                            const patch_t *const others) {
     const double *const mount = &self->model.mount[3 * sonar];
     const double heading = heading_deg * rad_per_deg, c = cos(heading), s = sin(heading);
     return argus_sim_echo_range(self, x + mount[0] * c - mount[1] * s, y + mount[0] * s + mount[1] * c,
-                                heading_deg + mount[2] + angle_deg, others);
+                                heading_deg + mount[2] + angle_deg, gain_db, others);
 }

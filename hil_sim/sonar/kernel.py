@@ -14,7 +14,7 @@ from hil_sim.errors import SimError
 
 LIBRARY_VARIABLE: Final = "ARGUS_SIM_KERNEL"
 """Names the library to load, or is `off`."""
-VERSION: Final = 3
+VERSION: Final = 4
 UNKNOWN_CELL: Final = -1
 _NO_MEMORY: Final = -2
 _ROOT: Final = Path(__file__).resolve().parents[2]
@@ -27,7 +27,7 @@ PATCH_ARRAYS: Final = (
     "ax", "ay", "ex", "ey", "length", "mirror", "corner_x", "corner_y", "inverse", "retro",
 )  # fmt: skip
 _NUMBERS: Final = (
-    "cone_deg", "cos_half", "edge_db", "margin_db", "air_db_mm", "corner_db", "tip_db",
+    "cone_deg", "cos_half", "edge_db", "margin_db", "air_db_mm", "corner_db", "tip_db", "side_lobe_db",
     "min_mm", "no_echo_mm", "cell_mm", "touch",
 )  # fmt: skip
 _MODEL_ARRAYS: Final = ("ray_cos", "ray_sin", "ray_db", "mount")
@@ -60,10 +60,10 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
         (_HANDLE, ctypes.c_int32, ctypes.c_int32, ctypes.c_void_p),
     ),
     "argus_sim_place": (None, (ctypes.c_void_p,) * 5),
-    "argus_sim_echo_range": (ctypes.c_int32, (_HANDLE, *_PLACE, ctypes.c_void_p)),
+    "argus_sim_echo_range": (ctypes.c_int32, (_HANDLE, *_PLACE, ctypes.c_double, ctypes.c_void_p)),
     "argus_sim_echo_ping": (
         ctypes.c_int32,
-        (_HANDLE, ctypes.c_int32, *_PLACE, ctypes.c_double, ctypes.c_void_p),
+        (_HANDLE, ctypes.c_int32, *_PLACE, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
     ),
 }
 
@@ -151,10 +151,12 @@ class Kernel:
         if self._library.argus_sim_echo_add(self._handle, *cell, patch.address):
             raise MemoryError
 
-    def range_mm(self, x_mm: float, y_mm: float, heading_deg: float, others: Patch | None) -> int:
+    def range_mm(
+        self, x_mm: float, y_mm: float, heading_deg: float, gain_db: float, others: Patch | None
+    ) -> int:
         """Return the range from a transducer at this place, UNKNOWN_CELL when `add` is needed first."""
         address = others.address if others is not None else None
-        value = int(self._range(self._handle, x_mm, y_mm, heading_deg, address))
+        value = int(self._range(self._handle, x_mm, y_mm, heading_deg, gain_db, address))
         if value == _NO_MEMORY:
             raise MemoryError
         return value
@@ -166,8 +168,9 @@ class Kernel:
         y_mm: float,
         heading_deg: float,
         angle_deg: float,
+        gain_db: float,
         others: Patch | None,
     ) -> int:
-        """Return the range of one of the robot's sonars, its axis turned by `angle_deg`; as `range_mm`."""
+        """Return the range of one of the robot's sonars, its axis turned, its gain off; as `range_mm`."""
         address = others.address if others is not None else None
-        return int(self._ping(self._handle, number, x_mm, y_mm, heading_deg, angle_deg, address))
+        return int(self._ping(self._handle, number, x_mm, y_mm, heading_deg, angle_deg, gain_db, address))

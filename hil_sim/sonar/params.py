@@ -8,24 +8,17 @@ from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 from hil_sim.tables import load
+from hil_sim.tables.robot import DEFAULT_ROBOT, Mount
 from hil_sim.world.model import Pose
 
-_TABLE: Final[dict[str, Any]] = load("robots/p3dx-sh")["sonar"]
+# The same for all robots that there is a table of.
+_TABLE: Final[dict[str, Any]] = load(f"robots/{DEFAULT_ROBOT}")["sonar"]
 MIN_MM: Final[int] = _TABLE["min_mm"]
 NO_ECHO_MM: Final[int] = _TABLE["no_echo_mm"]
-CYCLE_MS: Final[int] = _TABLE["cycle_ms"]
-PER_ARRAY: Final[int] = _TABLE["transducers_per_array"]
-FITTED_ARRAYS: Final[int] = _TABLE["arrays"]
-ARRAYS: Final = 4
-"""Arrays that ARCOS knows; a P3-DX has the first two."""
-SONAR_POSES: Final[tuple[Pose, ...]] = tuple(
-    Pose(float(p["x_mm"]), float(p["y_mm"]), float(p["heading_deg"])) for p in _TABLE["pose"]
-)
 
 
-def transducer_pose(number: int, robot: Pose) -> Pose:
-    """Return where sonar 0 to 15 of a robot is in the world, and where it looks; degrees as they add up."""
-    mount = SONAR_POSES[number]
+def transducer_pose(mount: Mount, robot: Pose) -> Pose:
+    """Return where a sonar of a robot is in the world, and where it looks; degrees as they add up."""
     heading = math.radians(robot.heading_deg)
     c, s = math.cos(heading), math.sin(heading)
     return Pose(
@@ -45,6 +38,7 @@ class SonarParams:
     cone_deg: full width of the beam. edge_db: loss at the edge of the cone, there and back.
     margin_db: loss at which an echo is no longer heard. air_db_m: loss for each metre of range that the receiver's gain
     does not make up. mirror_db_deg2: loss of a smooth surface for each squared degree of incidence.
+    side_lobe_db: loss of what is heard beside the cone, there and back, 0 for deaf; side_lobe_deg: full width of that.
     corner_db, tip_db: loss at an inner corner and at an edge or end, against a square-on wall.
     """
 
@@ -59,6 +53,8 @@ class SonarParams:
     mirror_db_deg2: float = 0.24
     corner_db: float = 3.0
     tip_db: float = 18.0
+    side_lobe_db: float = 0.0
+    side_lobe_deg: float = 80.0
 
 
 class Reading(NamedTuple):

@@ -6,26 +6,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Protocol, SupportsIndex
+from typing import Any, Final, NamedTuple, Protocol, SupportsIndex
 
 import numpy as np
 
+from hil_sim.arcos import TIMING
 from hil_sim.sonar.echo import EchoModel
-from hil_sim.sonar.params import (
-    ARRAYS,
-    CYCLE_MS,
-    FITTED_ARRAYS,
-    MIN_MM,
-    NO_ECHO_MM,
-    PER_ARRAY,
-    Reading,
-    SonarParams,
-)
+from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, Reading, SonarParams
 from hil_sim.sonar.patch import MovingEchoes
+from hil_sim.sonar.rough import Roughness
+from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.model import Pose, World
 from hil_sim.world.moving import MovingSolids
 
-MAX_ORDER: Final = 16
+PER_ARRAY: Final = TIMING["TRANSDUCERS_PER_ARRAY"]
+ARRAYS: Final = TIMING["ARRAYS_MAX"]
+MAX_ORDER: Final = TIMING["POLLING_MAX_PER_ARRAY"]
 SOUND_MM_MS: Final = 343.0
 _RESUME_MS: Final = 1000.0
 
@@ -59,6 +55,15 @@ class _Switches(list[bool]):
         self.cut |= {array for array, on in enumerate(self) if not on}
 
 
+class _Draws(NamedTuple):
+    """What is drawn for one ping: noise, crosstalk and where, and of `Roughness` lost and bounced."""
+
+    noise: float
+    chance: float
+    where: float
+    rough: tuple[bool, bool] = (False, False)
+
+
 @dataclass
 class _Array:
     """The firing state of one array."""
@@ -66,6 +71,8 @@ class _Array:
     order: list[int]
     place: int = 0
     next_ms: float | None = None
+    last_ms: float = -math.inf
+    last_number: int = -1
 
 
 def _next_ms(state: _Array) -> float:
@@ -78,9 +85,9 @@ def _completion_ms(reading: Reading) -> float:
 
 
 class SonarRing:
-    """The arrays of a P3-DX: every `cycle_ms` each enabled array fires its next transducer.
+    """The arrays of a robot: every `cycle_ms` each enabled array fires its next transducer.
 
-    enabled: one switch for each array; [0] front, [1] rear, the others are not fitted.
+    enabled: one switch for each array that ARCOS knows; switches of arrays that are not fitted do nothing.
     """
 
     def __init__(
@@ -90,22 +97,29 @@ class SonarRing:
         faults: SonarFaults | None = None,
         rng: np.random.Generator | None = None,
         *,
+        robot: RobotTable | None = None,
         echoes: EchoModel | None = None,
         moving: MovingSolids | None = None,
+        rough: Roughness | None = None,
     ) -> None:
-        """`echoes`: a model of the same world and parameters, to share what it has worked out.
+        """`robot`: whose sonars they are; None is the one that is emulated by default.
 
-        `moving`: what else is in the way; whoever owns it lets it move.
+        `echoes`: a model of the same world, parameters and robot, to share what it has worked out.
+
+        `rough`: departures from the plain model. `moving`: what else is in the way; whoever owns it lets it move.
         """
+        self._table = robot if robot is not None else robot_table()
+        self._fitted = len(self._table.orders)
         self.params = params or SonarParams()
-        self.echoes = echoes if echoes is not None else EchoModel(world, self.params)
+        self.echoes = echoes if echoes is not None else EchoModel(world, self.params, self._table)
         self.faults = faults
-        self.cycle_ms = CYCLE_MS
+        self.cycle_ms = self._table.cycle_ms
         rng = rng if rng is not None else np.random.default_rng(0)
         self._normal: Callable[[], float] = rng.standard_normal
         self._random: Callable[[], float] = rng.random
-        self._enabled = _Switches([True] * FITTED_ARRAYS + [False] * (ARRAYS - FITTED_ARRAYS))
-        self._arrays = [self._default(array) for array in range(FITTED_ARRAYS)]
+        self._enabled = _Switches([True] * self._fitted + [False] * (ARRAYS - self._fitted))
+        self._arrays = [self._default(array) for array in range(self._fitted)]
+        self._rough = rough
         self._quiet = False
         self._last_ms: float | None = None
         self._pending: list[Reading] = []
@@ -125,13 +139,12 @@ class SonarRing:
     def enabled(self, values: Sequence[bool]) -> None:
         self._enabled[:] = list(values)
 
-    @staticmethod
-    def _default(array: int) -> _Array:
-        return _Array(list(range(PER_ARRAY * array, PER_ARRAY * (array + 1))))
+    def _default(self, array: int) -> _Array:
+        return _Array(list(self._table.orders[array]))
 
     def reset(self) -> None:
         """Return to the power-up firing order and cycle; the switches stay."""
-        self.cycle_ms = CYCLE_MS
+        self.cycle_ms = self._table.cycle_ms
         self._quiet = False
         for array, state in enumerate(self._arrays):
             state.order = self._default(array).order
@@ -146,6 +159,7 @@ class SonarRing:
         """
         named = [number - 1 for number in numbers if 1 <= number <= ARRAYS * PER_ARRAY]
         self._quiet = not named
+        named = [number for number in named if number < self._table.sonars]
         for array, state in enumerate(self._arrays):
             order = [number for number in named if number // PER_ARRAY == array][:MAX_ORDER]
             if order:
@@ -159,7 +173,7 @@ class SonarRing:
         """
         last_ms, self._last_ms = self._last_ms, now_ms
         if last_ms is not None and now_ms - last_ms > _RESUME_MS:
-            self._restart(range(FITTED_ARRAYS))
+            self._restart(range(self._fitted))
         if self._enabled.touched:
             self._take_switches()
         if now_ms >= self._fire_ms:
@@ -173,7 +187,7 @@ class SonarRing:
 
     def _take_switches(self) -> None:
         """Note which arrays fire from now on."""
-        self._restart(array for array in self._enabled.cut if array < FITTED_ARRAYS)
+        self._restart(array for array in self._enabled.cut if array < self._fitted)
         self._enabled.cut.clear()
         self._enabled.touched = False
         self._live = [state for array, state in enumerate(self._arrays) if self._enabled[array]]
@@ -202,7 +216,7 @@ class SonarRing:
         This is what emulators that know no schedule do; the firing order and its clock are left alone.
         """
         readings = []
-        for array in range(FITTED_ARRAYS):
+        for array in range(self._fitted):
             if self._enabled[array]:
                 for number in self._default(array).order:
                     readings += self._fire_one(number, now_ms, pose)
@@ -211,10 +225,14 @@ class SonarRing:
     def _fire_one(self, number: int, now_ms: float, pose: Pose) -> list[Reading]:
         true_mm = self.true_range(number, pose)
         value: int | None = true_mm
+        if self._rough is not None:
+            silent = _Draws(0.0, 1.0, 1.0, self._rough.draw())
+            rough_mm = self._roughly(self._rough, number, pose, float(true_mm), silent, math.inf)
+            value = self._rough.stepped(min(NO_ECHO_MM, max(MIN_MM, round(rough_mm))))
         kind = None
-        if self.faults is not None:
+        if self.faults is not None and value is not None:
             value, kind = self.faults.apply(
-                number, now_ms, true_mm, lambda angle_deg: self._measure(number, pose, angle_deg)
+                number, now_ms, value, lambda angle_deg: self._measure(number, pose, angle_deg)
             )
         return [] if value is None else [Reading(now_ms, number, value, true_mm, kind)]
 
@@ -231,18 +249,22 @@ class SonarRing:
             return
         number = state.order[state.place]
         state.place = (state.place + 1) % len(state.order)
+        state.last_ms, state.last_number = t_ms, number
         pose = pose_at(t_ms)
         true_mm = self.true_range(number, pose)
         # Drawn for every ping, so that a fault or a world changes no later draw.
-        noise, chance, where = self._normal(), self._random(), self._random()
-        heard = self._heard(true_mm, noise, chance, where)
+        draws = _Draws(self._normal(), self._random(), self._random())
+        if self._rough is not None:
+            draws = draws._replace(rough=self._rough.draw())
+        others_mm = self._others_mm(state, t_ms, pose)
+        heard = self._heard(number, pose, true_mm, draws, others_mm)
         value: int | None = heard
         kind = None
         if self.faults is not None:
 
             def remeasure(angle_deg: float) -> int:
                 turned = self._measure(number, pose, angle_deg)
-                return self._heard(turned, noise, chance, where)
+                return self._heard(number, pose, turned, draws, others_mm)
 
             value, kind = self.faults.apply(number, t_ms, heard, remeasure)
             if kind is not None:
@@ -254,7 +276,7 @@ class SonarRing:
                 self._ready_ms = ready_ms
 
     def true_range(self, number: int, pose: Pose) -> int:
-        """Return what sonar 0 to 15 reads at a pose without noise, crosstalk and faults."""
+        """Return what a sonar reads at a pose without noise, crosstalk and faults."""
         moment = self._moving.moment if self._moving is not None else 0
         known = self._known.get(number)
         if known is not None and known[1] == moment and (known[0] is pose or known[0] == pose):
@@ -264,17 +286,54 @@ class SonarRing:
         return value
 
     def _measure(self, number: int, pose: Pose, angle_deg: float) -> int:
-        return self.echoes.ping_mm(number, pose, angle_deg, self._moving_echoes)
+        gain_db = self._rough.gain_db[number] if self._rough is not None else 0.0
+        return self.echoes.ping_mm(number, pose, angle_deg, self._moving_echoes, gain_db)
 
-    def _heard(self, true_mm: int, noise: float, chance: float, where: float) -> int:
-        """Add what a real ping adds: noise, another sonar's ping, and an echo that comes after the next firing."""
+    def _others_mm(self, mine: _Array, t_ms: float, pose: Pose) -> float:
+        """Return at which range the ping of another array of this moment would be heard, at the nearest."""
+        if self._rough is None or not self._rough.physics.cross_array:
+            return math.inf
+        found = math.inf
+        for state in self._live:
+            number = state.last_number if state.last_ms == t_ms else self._due(state, t_ms)
+            if state is not mine and number is not None:
+                here, there = self._table.mounts[mine.last_number], self._table.mounts[number]
+                apart = math.hypot(here.x_mm - there.x_mm, here.y_mm - there.y_mm)
+                range_mm = self.true_range(number, pose)
+                if range_mm < NO_ECHO_MM:
+                    found = min(found, range_mm + apart / 2)
+        return found
+
+    @staticmethod
+    def _due(state: _Array, t_ms: float) -> int | None:
+        return state.order[state.place] if state.next_ms == t_ms else None
+
+    def _heard(self, number: int, pose: Pose, true_mm: int, draws: _Draws, others_mm: float) -> int:
+        """Add what a real ping adds: roughness, noise, another sonar's ping, and an echo after the next firing."""
         params = self.params
         value = float(true_mm)
+        if self._rough is not None:
+            value = self._roughly(self._rough, number, pose, value, draws, others_mm)
         if value < NO_ECHO_MM:
-            value += noise * (params.noise_mm + params.noise_part * value)
-        if chance < params.crosstalk:
-            value = MIN_MM + where * (value - MIN_MM)
+            value += draws.noise * (params.noise_mm + params.noise_part * value)
+        if draws.chance < params.crosstalk:
+            value = MIN_MM + draws.where * (value - MIN_MM)
         if 2 * value / SOUND_MM_MS > self.cycle_ms:
             value = NO_ECHO_MM
         whole = round(value)
-        return MIN_MM if whole < MIN_MM else min(whole, NO_ECHO_MM)
+        whole = MIN_MM if whole < MIN_MM else min(whole, NO_ECHO_MM)
+        return whole if self._rough is None else self._rough.stepped(whole)
+
+    def _roughly(
+        self, rough: Roughness, number: int, pose: Pose, value: float, draws: _Draws, others_mm: float
+    ) -> float:
+        lost, bounced = draws.rough
+        if lost:
+            return NO_ECHO_MM
+        if bounced:
+            way = self.echoes.bounce_mm(number, pose, self._moving_echoes)
+            value = float(way) if way is not None and way > value else value
+        # A share of the pings as well, by the number that says where a crosstalk reading lies.
+        if draws.where < rough.physics.cross_array:
+            value = min(value, others_mm)
+        return rough.heard(number, value)

@@ -7,21 +7,16 @@ import math
 from dataclasses import dataclass
 from typing import Final, Protocol, TypeAlias
 
-from hil_sim.tables import section
+from hil_sim.tables.robot import BodyShape, robot_table
 from hil_sim.world.model import Pose, World
 
-_BODY: Final = section("robots/p3dx-sh", "body")
-FRONT_MM: Final = float(_BODY["front_mm"])
-REAR_MM: Final = float(_BODY["rear_mm"])
-HALF_MM: Final = _BODY["width_mm"] / 2
-SEGMENTS: Final = _BODY["front_bumpers"]
+_SEGMENTS: Final = 5
+"""Strips of each end that a contact is told by: as many as a bumper has segments, whether there is one or not."""
 _BUMPER_DEPTH_MM: Final = 60.0
 """How far back along the sides the front and rear bumpers reach: a contact further from the end presses none."""
 _CELL_MM: Final = 500.0
 _SEARCH_MM: Final = 3000.0
 """Clearances beyond this are reported as this: nobody needs them, and it bounds the search."""
-REACH_MM: Final = math.hypot(REAR_MM, HALF_MM)
-"""From the centre of rotation to the furthest corner."""
 
 Segment: TypeAlias = tuple[float, float, float, float]
 """x1, y1, x2, y2 in mm."""
@@ -50,8 +45,11 @@ class Moving(Protocol):
 class BodyModel:
     """The body's contact with the solids of one world, and with what moves in it."""
 
-    def __init__(self, world: World, moving: Moving | None = None) -> None:
+    def __init__(self, world: World, moving: Moving | None = None, shape: BodyShape | None = None) -> None:
+        """`shape`: of the robot; None is the one that is emulated by default."""
         self._moving = moving
+        self.shape = shape if shape is not None else robot_table().body
+        self._reach_mm = self.shape.reach_mm
         self._solids = [(float(a), float(b), float(c), float(d)) for a, b, c, d in world.segments]
         self._cells: dict[tuple[int, int], list[tuple[float, float, float, float]]] = {}
         self._last: tuple[float, float, float] | None = None
@@ -61,21 +59,30 @@ class BodyModel:
         """Return the contact at `pose`, or None when the body is free. Cost: 1 us while it cannot have arrived."""
         pieces = self._still_pieces(pose)
         if self._moving is not None:
-            pieces += _pieces(pose, self._moving.near(pose, REACH_MM))
+            pieces += self._pieces(pose, self._moving.near(pose, self._reach_mm))
         if not pieces:
             return None
         front_x = max(max(piece[0], piece[2]) for piece in pieces)
-        front = sum(1 << k for k in _pressed(pieces, 1.0, FRONT_MM - _BUMPER_DEPTH_MM))
-        rear = sum(1 << k for k in _pressed(pieces, -1.0, REAR_MM - _BUMPER_DEPTH_MM))
+        front = sum(
+            1 << k for k in _pressed(pieces, 1.0, self.shape.front_mm - _BUMPER_DEPTH_MM, self.shape.half_mm)
+        )
+        rear = sum(
+            1 << k for k in _pressed(pieces, -1.0, self.shape.rear_mm - _BUMPER_DEPTH_MM, self.shape.half_mm)
+        )
         return Contact(front_x > 0 if not front and not rear else front != 0, front, rear)
 
     def _still_pieces(self, pose: Pose) -> list[Segment]:
         if self._last is not None and self._travel(pose, self._last) < self._last_clearance:
             return []
-        pieces = _pieces(pose, self._near(pose))
+        pieces = self._pieces(pose, self._near(pose))
         if not pieces:
             self._remember(pose, self._measure(pose, self._near(pose)))
         return pieces
+
+    def _pieces(self, pose: Pose, segments: list[Segment]) -> list[Segment]:
+        """What of the segments is inside the body, in its frame."""
+        clipped = (_clip(self.shape, *_to_body(pose, segment)) for segment in segments)
+        return [piece for piece in clipped if piece is not None]
 
     def clearance_mm(self, pose: Pose) -> float:
         """Return the distance from the body to the nearest solid, 0 when they meet, at most 3000."""
@@ -84,47 +91,39 @@ class BodyModel:
             self._remember(pose, self._measure(pose, self._near(pose)))
         if self._moving is None:
             return self._last_clearance
-        reach = self._last_clearance + REACH_MM
+        reach = self._last_clearance + self._reach_mm
         return min(self._last_clearance, self._measure(pose, self._moving.near(pose, reach)))
 
     def _remember(self, pose: Pose, clearance: float) -> None:
         self._last = (pose.x_mm, pose.y_mm, pose.heading_deg)
         self._last_clearance = clearance
 
-    @staticmethod
-    def _travel(pose: Pose, last: tuple[float, float, float]) -> float:
+    def _travel(self, pose: Pose, last: tuple[float, float, float]) -> float:
         """The most that any point of the body can have moved since `last`."""
         turn = abs((pose.heading_deg - last[2] + 180) % 360 - 180)
-        return math.hypot(pose.x_mm - last[0], pose.y_mm - last[1]) + math.radians(turn) * REACH_MM
+        return math.hypot(pose.x_mm - last[0], pose.y_mm - last[1]) + math.radians(turn) * self._reach_mm
 
     def _near(self, pose: Pose) -> list[tuple[float, float, float, float]]:
         """Solids within the search distance of the pose's grid cell."""
         cell = (math.floor(pose.x_mm / _CELL_MM), math.floor(pose.y_mm / _CELL_MM))
         if cell not in self._cells:
             x, y = (cell[0] + 0.5) * _CELL_MM, (cell[1] + 0.5) * _CELL_MM
-            limit = _SEARCH_MM + REACH_MM + _CELL_MM
+            limit = _SEARCH_MM + self._reach_mm + _CELL_MM
             self._cells[cell] = [s for s in self._solids if _point_distance(x, y, *s) <= limit]
         return self._cells[cell]
 
-    @staticmethod
-    def _measure(pose: Pose, segments: list[Segment]) -> float:
+    def _measure(self, pose: Pose, segments: list[Segment]) -> float:
         best = _SEARCH_MM
         for segment in segments:
-            # The rectangle lies within REACH_MM of the centre: most solids are too far to improve on `best`.
-            if _point_distance(pose.x_mm, pose.y_mm, *segment) - REACH_MM < best:
-                best = min(best, body_distance(pose, segment))
+            # The rectangle lies within the reach of the centre: most solids are too far to improve on `best`.
+            if _point_distance(pose.x_mm, pose.y_mm, *segment) - self._reach_mm < best:
+                best = min(best, body_distance(pose, segment, self.shape))
         return best
 
 
-def body_distance(pose: Pose, segment: Segment) -> float:
+def body_distance(pose: Pose, segment: Segment, shape: BodyShape) -> float:
     """Return the distance from the body at `pose` to a segment, 0 when they meet."""
-    return _rectangle_distance(*_to_body(pose, segment))
-
-
-def _pieces(pose: Pose, segments: list[Segment]) -> list[Segment]:
-    """What of the segments is inside the body, in its frame."""
-    clipped = (_clip(*_to_body(pose, segment)) for segment in segments)
-    return [piece for piece in clipped if piece is not None]
+    return _rectangle_distance(shape, *_to_body(pose, segment))
 
 
 def _to_body(pose: Pose, segment: Segment) -> Segment:
@@ -135,11 +134,12 @@ def _to_body(pose: Pose, segment: Segment) -> Segment:
     return x1 * c + y1 * s, y1 * c - x1 * s, x2 * c + y2 * s, y2 * c - x2 * s
 
 
-def _clip(x1: float, y1: float, x2: float, y2: float) -> Segment | None:
+def _clip(shape: BodyShape, x1: float, y1: float, x2: float, y2: float) -> Segment | None:
     """The part of a segment, in the body's frame, that lies inside the body (Liang and Barsky's method)."""
     dx, dy = x2 - x1, y2 - y1
     low, high = 0.0, 1.0
-    for step, room in ((-dx, x1 + REAR_MM), (dx, FRONT_MM - x1), (-dy, y1 + HALF_MM), (dy, HALF_MM - y1)):
+    ends = (-dx, x1 + shape.rear_mm), (dx, shape.front_mm - x1)
+    for step, room in (*ends, (-dy, y1 + shape.half_mm), (dy, shape.half_mm - y1)):
         if step == 0:
             if room < 0:
                 return None
@@ -152,7 +152,7 @@ def _clip(x1: float, y1: float, x2: float, y2: float) -> Segment | None:
     return x1 + low * dx, y1 + low * dy, x1 + high * dx, y1 + high * dy
 
 
-def _pressed(pieces: list[Segment], side: float, limit: float) -> set[int]:
+def _pressed(pieces: list[Segment], side: float, limit: float, half: float) -> set[int]:
     """Bumper segments, 1 leftmost, that the pieces reach at the front (side 1) or the rear (side -1)."""
     pressed: set[int] = set()
     for x1, y1, x2, y2 in pieces:
@@ -163,12 +163,12 @@ def _pressed(pieces: list[Segment], side: float, limit: float) -> set[int]:
             y1 += (y2 - y1) * a / (a - b)
         elif b < 0:
             y2 += (y1 - y2) * b / (b - a)
-        pressed.update(range(_strip(max(y1, y2)), _strip(min(y1, y2)) + 1))
+        pressed.update(range(_strip(max(y1, y2), half), _strip(min(y1, y2), half) + 1))
     return pressed
 
 
-def _strip(y: float) -> int:
-    return min(SEGMENTS, max(1, 1 + int((HALF_MM - y) / (2 * HALF_MM) * SEGMENTS)))
+def _strip(y: float, half: float) -> int:
+    return min(_SEGMENTS, max(1, 1 + int((half - y) / (2 * half) * _SEGMENTS)))
 
 
 def _point_distance(px: float, py: float, x1: float, y1: float, x2: float, y2: float) -> float:
@@ -179,15 +179,12 @@ def _point_distance(px: float, py: float, x1: float, y1: float, x2: float, y2: f
     return math.hypot(x1 + t * dx - px, y1 + t * dy - py)
 
 
-_CORNERS: Final = ((FRONT_MM, HALF_MM), (FRONT_MM, -HALF_MM), (-REAR_MM, -HALF_MM), (-REAR_MM, HALF_MM))
-
-
-def _rectangle_distance(x1: float, y1: float, x2: float, y2: float) -> float:
-    if _clip(x1, y1, x2, y2) is not None:
+def _rectangle_distance(shape: BodyShape, x1: float, y1: float, x2: float, y2: float) -> float:
+    if _clip(shape, x1, y1, x2, y2) is not None:
         return 0.0
-    ends = min(_outside(x1, y1), _outside(x2, y2))
-    return min(ends, *(_point_distance(x, y, x1, y1, x2, y2) for x, y in _CORNERS))
+    ends = min(_outside(shape, x1, y1), _outside(shape, x2, y2))
+    return min(ends, *(_point_distance(x, y, x1, y1, x2, y2) for x, y in shape.corners))
 
 
-def _outside(x: float, y: float) -> float:
-    return math.hypot(max(x - FRONT_MM, -REAR_MM - x, 0.0), max(abs(y) - HALF_MM, 0.0))
+def _outside(shape: BodyShape, x: float, y: float) -> float:
+    return math.hypot(max(x - shape.front_mm, -shape.rear_mm - x, 0.0), max(abs(y) - shape.half_mm, 0.0))

@@ -16,6 +16,7 @@ from hil_sim.world.builder import MAX_SEGMENTS, Builder, turned
 from hil_sim.world.model import POST_SIDES, Pose, World
 from hil_sim.world.movers import read_doors, read_people
 from hil_sim.world.moving import moving_solids
+from hil_sim.world.physics import read_physics
 
 WORLD_DIR: Final = Path(__file__).resolve().parents[1] / "worlds"
 
@@ -42,7 +43,7 @@ def load_world(name_or_path: str) -> World:
     return load_yaml(WORLD_DIR / f"{name_or_path}.yaml")
 
 
-_TOP = ("about", "start", "goals", "roughness", "walls", "boxes", "posts", "people", "doors")
+_TOP = ("about", "start", "goals", "roughness", "walls", "boxes", "posts", "people", "doors", "physics")
 
 
 def load_yaml(path: str | Path) -> World:
@@ -132,4 +133,5 @@ _READERS: Final[dict[str, Callable[[Item], Any]]] = {
     "about": Item.text,
     "people": read_people,
     "doors": read_doors,
+    "physics": read_physics,
 }

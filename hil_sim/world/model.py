@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil_sim.world.movers import Mover
+from hil_sim.world.physics import PLAIN, Physics
 
 Floats = npt.NDArray[np.float64]
 POST_SIDES: Final = 8
@@ -32,6 +33,7 @@ class World:
 
     segments: N x 4, x1 y1 x2 y2 in mm. roughness: N, 0 smooth (mirrors sound) to 1 rough (scatters it back).
     goals: places by name. forbidden: N x 4, lines that a map asks a planner to keep away from; not solid.
+    physics: how sonars and wheels depart from the plain model, unless a scenario says otherwise.
     movers: people and doors, which are not among the segments.
     """
 
@@ -43,6 +45,7 @@ class World:
     about: str = ""
     forbidden: Floats = field(default_factory=lambda: np.zeros((0, 4)))
     movers: tuple[Mover, ...] = ()
+    physics: Physics = PLAIN
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:

@@ -10,7 +10,8 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from hil_sim.world.body import REACH_MM, Segment, body_distance
+from hil_sim.tables.robot import BodyShape, robot_table
+from hil_sim.world.body import Segment, body_distance
 from hil_sim.world.model import POST_SIDES, Floats, Pose
 from hil_sim.world.movers import Door, Mover, Person
 from hil_sim.world.step import STEP_MS, STEP_S
@@ -45,7 +46,8 @@ class _Actor(Protocol):
 class _Walker:
     """A person."""
 
-    def __init__(self, person: Person) -> None:
+    def __init__(self, person: Person, body: BodyShape) -> None:
+        self._body, self._robot_reach_mm = body, body.reach_mm
         angles = [2 * math.pi * (k + 0.5) / POST_SIDES for k in range(POST_SIDES)]
         # Corners outside the circle, so that the sides touch it: nobody is thinner than he says.
         outer = person.radius / math.cos(math.pi / POST_SIDES)
@@ -117,14 +119,14 @@ class _Walker:
     def _is_blocked(self, robot: Pose) -> bool:
         """Whether the body is in the strip ahead, as wide as the person."""
         away = math.hypot(robot.x_mm - self.x, robot.y_mm - self.y)
-        spare = away - REACH_MM - AHEAD_MM - self.person.radius
+        spare = away - self._robot_reach_mm - AHEAD_MM - self.person.radius
         if spare > 0:
             self._unwatched = self._steps_until(spare)
             return False
         (x1, y1), (x2, y2), length = self._legs[self._leg]
         part = self._sign * AHEAD_MM / length
         ahead = self.x, self.y, self.x + (x2 - x1) * part, self.y + (y2 - y1) * part
-        gap = body_distance(robot, ahead) - self.person.radius
+        gap = body_distance(robot, ahead, self._body) - self.person.radius
         self._unwatched = self._steps_until(gap)
         return gap <= 0
 
@@ -136,7 +138,8 @@ class _Walker:
 class _Leaf:
     """A door."""
 
-    def __init__(self, door: Door) -> None:
+    def __init__(self, door: Door, body: BodyShape) -> None:
+        self._body, self._robot_reach_mm = body, body.reach_mm
         self.shape: Floats = np.array([(0.0, 0.0, door.width, 0.0)])
         self.roughness = door.roughness
         self.reach_mm = door.width
@@ -184,11 +187,15 @@ class _Leaf:
 
     def _is_blocked(self, robot: Pose) -> bool:
         away = math.hypot(robot.x_mm - self.x, robot.y_mm - self.y)
-        if away > REACH_MM + self.door.width + LEAF_MM:
+        if away > self._robot_reach_mm + self.door.width + LEAF_MM:
             return False
         ahead = self._direction(self._t_ms + self._ahead_ms)
         return any(
-            body_distance(robot, (self.x, self.y, self.x + c * self.door.width, self.y + s * self.door.width))
+            body_distance(
+                robot,
+                (self.x, self.y, self.x + c * self.door.width, self.y + s * self.door.width),
+                self._body,
+            )
             <= LEAF_MM
             for c, s in ((self.c, self.s), ahead)
         )
@@ -197,9 +204,11 @@ class _Leaf:
 class MovingSolids:
     """All that moves by itself in one run; `moment` counts the sub-steps in which anything did."""
 
-    def __init__(self, movers: Sequence[Mover]) -> None:
+    def __init__(self, movers: Sequence[Mover], body: BodyShape | None = None) -> None:
+        """`body`: of the robot for which they wait; None is the one that is emulated by default."""
+        body = body if body is not None else robot_table().body
         self.actors: list[_Actor] = [
-            _Walker(mover) if isinstance(mover, Person) else _Leaf(mover) for mover in movers
+            _Walker(mover, body) if isinstance(mover, Person) else _Leaf(mover, body) for mover in movers
         ]
         self.moment = 0
         self.shape: Floats = np.concatenate([actor.shape for actor in self.actors])
@@ -243,6 +252,6 @@ class MovingSolids:
         return found
 
 
-def moving_solids(movers: Sequence[Mover]) -> MovingSolids | None:
-    """Return what these movers are in a run; None without any."""
-    return MovingSolids(movers) if movers else None
+def moving_solids(movers: Sequence[Mover], body: BodyShape | None = None) -> MovingSolids | None:
+    """Return what these movers are in a run; None without any. `body`: as for MovingSolids."""
+    return MovingSolids(movers, body) if movers else None

@@ -105,7 +105,7 @@ static void make_sip(void) {
     data[16] = 0x07; // motors and both arrays on
     data[19] = 6;
     for (size_t i = 0; i < 6; i++) {
-        const unsigned range = number[i] == 3 ? ARGUS_P3DX_SONAR_NO_ECHO_MM : 2000u;
+        const unsigned range = number[i] == 3 ? (unsigned)argus_robot_default()->no_echo_mm : 2000u;
         data[20 + 3 * i] = number[i];
         data[21 + 3 * i] = (uint8_t)(range & 0xFFu);
         data[22 + 3 * i] = (uint8_t)(range >> 8);

@@ -74,7 +74,7 @@ static size_t dead_sip(uint8_t *const packet) {
     static const uint8_t number[6] = {2, 10, 3, 11, 4, 12};
     data[19] = 6;
     for (size_t i = 0; i < 6; i++) {
-        const unsigned range = number[i] == 3 ? ARGUS_P3DX_SONAR_NO_ECHO_MM : 2000u;
+        const unsigned range = number[i] == 3 ? (unsigned)argus_robot_default()->no_echo_mm : 2000u;
         data[20 + 3 * i] = number[i];
         data[21 + 3 * i] = (uint8_t)(range & 0xFFu);
         data[22 + 3 * i] = (uint8_t)(range >> 8);

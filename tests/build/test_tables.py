@@ -12,7 +12,12 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-HEADERS = {"gen_p3dx.h": Path("firmware/robot"), "gen_arcos.h": Path("firmware/arcos")}
+HEADERS = {
+    "gen_p3dx.h": Path("firmware/robot"),
+    "gen_robots.h": Path("firmware/robot"),
+    "gen_robots.c": Path("firmware/robot"),
+    "gen_arcos.h": Path("firmware/arcos"),
+}
 TABLES = Path("hil_sim/tables")
 
 
@@ -24,7 +29,7 @@ def generate(root: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
     for folder in HEADERS.values():
-        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder).mkdir(parents=True, exist_ok=True)
     shutil.copytree(ROOT / TABLES, tmp_path / TABLES)
     return tmp_path
 
@@ -49,6 +54,7 @@ def test_check_sees_every_changed_number(tree: Path) -> None:
     done = generate(tree, "--check")
     assert done.returncode == 1
     assert "gen_p3dx.h" in done.stderr
+    assert "gen_robots.c" in done.stderr
     assert "gen_arcos.h" not in done.stderr
 
 
@@ -63,12 +69,21 @@ def test_check_sees_every_changed_number(tree: Path) -> None:
             "[[sonar.pose]]\nnumber = 0\nx_mm = 1.5\ny_mm = 1\nheading_deg = 1\n",
             "x_mm must be an integer",
         ),
+        ("robots/amigo-sh", ("forward = [1, 2, 3, 4]", "forward = [4, 3, 2, 1]"), "bearings must fall"),
+        ("robots/amigo-sh", ("forward = [1, 2, 3, 4]", "forward = [1, 2, 3, 40]"), "forward must name 2 to 6"),
+        ("robots/amigo-sh", ('subclass = "amigo-sh"', 'subclass = "amigo"'), "must be the file's name"),
+        ("robots/amigo-sh", ('role = "abeam"', 'role = "beside"'), "role must be one of"),
+        ("robots/p3at-sh", ("heading_deg = 30\n", "heading_deg = 31\n"), "have 5 different distances at most"),
         ("arcos", "[command]\nPULSE = 0\n", "section [type] is missing"),
         ("arcos", None, "no such table"),
     ],
 )
-def test_bad_table_is_refused(tree: Path, name: str, text: str | None, expected: str) -> None:
+def test_bad_table_is_refused(
+    tree: Path, name: str, text: str | tuple[str, str] | None, expected: str
+) -> None:
     table = tree / TABLES / f"{name}.toml"
+    if isinstance(text, tuple):
+        text = table.read_text().replace(*text)
     table.unlink()
     if text is not None:
         table.write_text(text)

@@ -13,19 +13,25 @@ from tests.core import planmodel
 from tests.core.planmodel import Plan
 
 ROOT = Path(__file__).resolve().parents[2]
-SOURCES = ["adjustment/plan.c", "analysis/failure.c", "knowledge/angle.c", "knowledge/geometry.c"]
+SOURCES = [
+    "adjustment/plan.c",
+    "analysis/failure.c",
+    "knowledge/angle.c",
+    "robot/robot.c",
+    "robot/gen_robots.c",
+]
 PROGRAM = r"""
 #include <stdio.h>
 #include "adjustment/plan.h"
 int main(void) {
     for (int policy = 0; policy <= 1; policy++) {
         for (unsigned mask = 0; mask < 128; mask += 2) {
-            const argus_plan_t plan = argus_plan((argus_policy_t)policy, (uint16_t)mask);
+            const argus_plan_t plan = argus_plan(argus_robot_default(), (argus_policy_t)policy, (uint16_t)mask);
             printf("%d %u %u %d %d", policy, mask, plan.disabled, plan.return_each, plan.complete);
             for (int i = 0; i < plan.count; i++) {
-                printf(" %d/%u", plan.rotation_deg[i], argus_plan_covering(&plan, plan.rotation_deg[i]));
+                printf(" %d/%u", plan.rotation_deg[i], argus_plan_covering(argus_robot_default(), &plan, plan.rotation_deg[i]));
                 for (int d = 1; d <= 6; d++) {
-                    printf("/%d", mask >> d & 1 ? argus_plan_cover(&plan, plan.rotation_deg[i], d) : -1);
+                    printf("/%d", mask >> d & 1 ? argus_plan_cover(argus_robot_default(), &plan, plan.rotation_deg[i], d) : -1);
                 }
             }
             printf("\n");

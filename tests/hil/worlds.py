@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from hil_sim.sonar.params import SONAR_POSES
+from hil_sim.tables.robot import robot_table
 
 START: Final = [0, 0, 0]
 BOX_MM: Final = 200
@@ -27,7 +27,7 @@ def hall(
 
 def hall_with_box(x_mm: float, sonar: int) -> dict[str, Any]:
     """The hall with a box in the way, which comes onto the axis of one of sonars 1 to 6 when it is near."""
-    pose = SONAR_POSES[sonar]
+    pose = robot_table().mounts[sonar]
     range_mm = 200 if sonar in (1, 6) else 250
     y_mm = pose.y_mm + range_mm * math.sin(math.radians(pose.heading_deg))
     return hall(boxes=[{"centre": [x_mm, round(y_mm)], "size": [BOX_MM, BOX_MM]}])

@@ -16,7 +16,6 @@ from doubles import FakeRing, Session, cmd, make_robot, sips
 from hil_sim.arcos import (
     BAUD_OF_CODE,
     COMMAND,
-    MOTION,
     TIMING,
     TYPE,
     Command,
@@ -28,10 +27,11 @@ from hil_sim.arcos import (
     Sip,
     frame,
 )
-from hil_sim.conformance import checks, client
+from hil_sim.conformance import client, sonar_checks
 from hil_sim.server import commands
 from hil_sim.server.commands import IGNORED, IGNORED_RANGES, NAME, WHY_IGNORED
 from hil_sim.server.server import ArcosServer, State
+from hil_sim.tables.robot import robot_table
 
 FORMS = {
     "no argument": b"",
@@ -50,6 +50,8 @@ FORMS = {
     "raw": bytes.fromhex("00e8030000 30f8ffff 5a000000"),
     "long": b"\x00" + bytes(range(180)),
 }
+
+MOTION = robot_table().motion
 
 Snapshot = dict[str, Any]
 
@@ -386,7 +388,7 @@ def test_the_old_subclass_counts_in_its_own_unit() -> None:
     assert sips(session.run(4000))[-1].x == 1000
 
 
-@pytest.mark.parametrize("module", [commands, checks, client], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [commands, sonar_checks, client], ids=lambda module: module.__name__)
 def test_examples_in_the_docs_are_true(module: ModuleType) -> None:
     result = doctest.testmod(module)
     assert result.attempted > 0

@@ -115,7 +115,7 @@ def test_an_empty_world_and_a_very_large_one() -> None:
 
 
 def says(value: str) -> tuple[int, str]:
-    program = "from hil_sim import kernel; print(kernel.library() is not None)"
+    program = "from hil_sim.sonar import kernel; print(kernel.library() is not None)"
     done = subprocess.run(
         [sys.executable, "-c", program],
         env={"ARGUS_SIM_KERNEL": value, "PATH": "/usr/bin:/bin"},

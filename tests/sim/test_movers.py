@@ -16,6 +16,7 @@ from hil_sim.scenario.scenario import Scenario, load_scenario
 from hil_sim.sonar.echo import EchoModel
 from hil_sim.sonar.params import SonarParams
 from hil_sim.sonar.patch import MovingEchoes
+from hil_sim.tables.robot import robot_table
 from hil_sim.world.body import BodyModel, body_distance
 from hil_sim.world.files import load_world, load_yaml
 from hil_sim.world.model import Pose
@@ -25,6 +26,9 @@ from hil_sim.world.moving import AHEAD_MM, LEAF_MM, MovingSolids, moving_solids
 AWAY = Pose(1e6, 1e6, 0.0)
 HALL = load_world("hall")
 START = HALL.start
+
+
+BODY = robot_table().body
 
 
 def track(mover: Mover, seconds: float, robot: Pose = AWAY) -> list[tuple[float, float]]:
@@ -110,7 +114,7 @@ def test_a_door_waits_while_the_robot_is_in_its_way() -> None:
     near = []
     for _ in range(3000):
         moving.step(robot)
-        near.append(min(body_distance(robot, segment) for segment in moving.near(robot, 5000)))
+        near.append(min(body_distance(robot, segment, BODY) for segment in moving.near(robot, 5000)))
     assert min(near) >= LEAF_MM * 0.8
     assert near[-1] < 300, "it began to open"
     assert near[-1] == near[-1000]

@@ -14,7 +14,8 @@ import pytest
 
 from hil_sim.scenario.scenario import load_scenario
 from hil_sim.sil import Mission, Sighting, Sil, run
-from hil_sim.sonar.params import NO_ECHO_MM, SONAR_POSES
+from hil_sim.sonar.params import NO_ECHO_MM
+from hil_sim.tables.robot import robot_table
 from hil_sim.world.files import load_world
 
 SCENARIO = load_scenario("open-office")
@@ -40,7 +41,7 @@ def test_open_floor_and_glass_take_echoes_away() -> None:
     def note(_: Sil, sighting: Sighting) -> None:
         for reading in sighting.readings:
             if reading.number in AHEAD:
-                mount, pose = SONAR_POSES[reading.number], sighting.pose
+                mount, pose = robot_table().mounts[reading.number], sighting.pose
                 turn = math.radians(pose.heading_deg)
                 x = pose.x_mm + mount.x_mm * math.cos(turn) - mount.y_mm * math.sin(turn)
                 y = pose.y_mm + mount.x_mm * math.sin(turn) + mount.y_mm * math.cos(turn)

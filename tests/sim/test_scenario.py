@@ -77,7 +77,7 @@ def test_every_key_ends_where_it_belongs_and_comes_back_when_saved(tmp_path: Pat
 def test_a_goal_instead_of_a_course_and_defaults_for_the_rest(tmp_path: Path) -> None:
     scenario = load_scenario(write(tmp_path / "g.yaml", "goal: [1, -2.5]\n"))
     assert scenario == Scenario(goal=(1, -2.5))
-    assert (scenario.world, scenario.seed, scenario.start, scenario.bumpers) == ("lab", 1, None, 5)
+    assert (scenario.world, scenario.seed, scenario.start, scenario.bumpers) == ("lab", 1, None, None)
     scenario.save(tmp_path / "again.yaml")
     assert load_scenario(tmp_path / "again.yaml") == scenario
 

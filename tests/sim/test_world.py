@@ -16,13 +16,13 @@ import yaml
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from hil_sim import world as world_module
 from hil_sim.cli.main import main
 from hil_sim.errors import SimError
 from hil_sim.scenario.scenario import load_scenario
 from hil_sim.sonar.echo import EchoModel
-from hil_sim.sonar.params import SONAR_POSES
 from hil_sim.tables import load
+from hil_sim.tables.robot import robot_table
+from hil_sim.world import aria_map, files
 from hil_sim.world.aria_map import MAP_ROUGHNESS, load_map
 from hil_sim.world.body import BodyModel
 from hil_sim.world.files import load_world, load_yaml, world_names
@@ -165,7 +165,8 @@ def test_an_unknown_name_lists_the_known_ones(capsys: pytest.CaptureFixture[str]
 def test_too_many_solids_are_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(world_module, "MAX_SEGMENTS", 3)
+    for module in (aria_map, files):
+        monkeypatch.setattr(module, "MAX_SEGMENTS", 3)
     assert "more than 3 solids" in refused(write(tmp_path / "w.yaml", ROOM), capsys)
     text = "2D-Map\nLINES\n" + "".join(f"{k} 0 {k} 5000\n" for k in range(1000, 1004))
     assert refused(write(tmp_path / "w.map", text), capsys).startswith("6: more than 3 solids")
@@ -327,7 +328,7 @@ def test_a_bad_map_is_one_line_with_its_place(
 def test_a_map_whose_home_is_in_a_wall_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write(tmp_path / "home.map", "2D-Map\nLINES\n0 -900 0 900\n")
     assert main(["--world", str(path), "--duration", "1"]) == 2
-    assert "a solid of world home is there; choose another with --start" in capsys.readouterr().err
+    assert "a solid of world home is there; choose another start" in capsys.readouterr().err
 
 
 def test_more_entries_than_announced_are_all_read(tmp_path: Path) -> None:
@@ -423,7 +424,7 @@ def reachable(world: World, step: float = 100.0) -> set[tuple[float, float]]:
 
 
 def from_sonar(pose: Pose, number: int) -> Pose:
-    mount = SONAR_POSES[number]
+    mount = robot_table().mounts[number]
     c, s = math.cos(math.radians(pose.heading_deg)), math.sin(math.radians(pose.heading_deg))
     x, y = pose.x_mm + mount.x_mm * c - mount.y_mm * s, pose.y_mm + mount.x_mm * s + mount.y_mm * c
     return Pose(x, y, pose.heading_deg + mount.heading_deg)

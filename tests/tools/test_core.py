@@ -43,7 +43,8 @@ def test_names_are_numbered_as_in_the_header() -> None:
         name.name for name in core._Names
     ]
     assert core.kind_name(7) == "intermittent"
-    assert core.health_name(6) == "?"
+    assert core.health_name(6) == "ABSENT"
+    assert core.health_name(7) == "?"
 
 
 def test_settings_are_those_of_the_table() -> None:

@@ -68,16 +68,24 @@ extern "C" {
 
 // Bounds ---------------------------------------------------------------------------------------------------
 
-#define ARGUS_SONARS 16 // numbered from 0
+// The most sonars that a build manages, numbered from 0: 8, 16, 24 or 32. Each costs some 2 KB of RAM; a
+// robot may have fewer or more. Library and program must be built with the same number.
+#ifndef ARGUS_SONARS
+#define ARGUS_SONARS 16
+#endif
 #define ARGUS_NO_SONAR ((int8_t)-1)
-#define ARGUS_FORWARD_FIRST 1 // the paper's forward-facing six are 1..6
-#define ARGUS_FORWARD_LAST 6
+// Masks over sonar numbers.
+#if ARGUS_SONARS > 16
+typedef uint32_t argus_mask_t;
+#else
+typedef uint16_t argus_mask_t;
+#endif
 #define ARGUS_NO_ECHO_MM 5000 // a reading of this or more: nothing was heard
 #define ARGUS_NAME_MAX 32     // identity strings, cut to 31 characters and a NUL
 #define ARGUS_WAYPOINTS_MAX 64
 #define ARGUS_COURSE_LIMIT_MM 30000
-#define ARGUS_PACKET_MAX 200  // the longest packet that is ever sent
-#define ARGUS_RECORD_MAX 1024 // the longest record that is ever saved
+#define ARGUS_PACKET_MAX 200                      // the longest packet that is ever sent
+#define ARGUS_RECORD_MAX (64 + 60 * ARGUS_SONARS) // the longest record that is ever saved
 
 // Settings -------------------------------------------------------------------------------------------------
 
@@ -90,6 +98,8 @@ extern "C" {
 #define ARGUS_CONFIG_TABLE(X)                                                                                \
     X(profile, 1, 0, 1, "", "paper|argus", "rule set of the diagnosis")                                      \
     X(policy, 0, 0, 1, "", "paper|fewest", "planner of the compensating rotations")                          \
+    X(robot, 0, 0, 4, "", "by-subclass|p3dx-sh|amigo-sh|p3at-sh|peoplebot-sh",                               \
+      "whose body and sonars it has; by-subclass: as it says itself, and passive when that is not known")    \
     X(active, 1, 0, 1, "", "off|on", "off: diagnose and report, never command a motion")                     \
     X(health_check_ms, 1000, 100, 10000, "ms", "", "period of the health check beside the main task")        \
     X(suspect_readings, 3, 1, 50, "", "", "consecutive disparate fresh readings before a sonar is verified") \
@@ -147,7 +157,7 @@ typedef struct {
     int32_t overhang_mm; // body front ahead of the sonar faces
     int32_t reaction_ms; // sonar refresh + SIP period + SIP and command on the wire
     int32_t travel_mm;   // speed x reaction
-    int32_t brake_mm;    // speed^2 / (2 decel), decel at most 300 mm/s2
+    int32_t brake_mm;    // speed^2 / (2 decel), decel at most the robot's own (300 mm/s2)
     int32_t driving_mm;  // overhang + travel + brake: must be < object_range_mm
     int32_t reach_mm;    // largest reading of a point that the body sweeps in one step
     int32_t stepping_mm; // reach + 3 noise + 20: must be < check_range_mm
@@ -175,7 +185,8 @@ typedef enum {
     X(15, SESSION_OPEN, OK, "session", "the robot answered and reports; value: attempts it took")            \
     X(16, SESSION_CLOSED, OK, "session", "orderly end: SONAR 0, STOP, CLOSE sent")                           \
     X(17, SESSION_DISLODGED, WARN, "session", "the robot was still in an old session, which was closed")     \
-    X(18, SUBCLASS_UNKNOWN, WARN, "session", "not a P3-DX that we know: its own geometry is assumed")        \
+    X(18, SUBCLASS_UNKNOWN, WARN, "session",                                                                 \
+      "a robot whose body is not known: passive until the setting `robot` says which it is")                 \
     X(19, OTHER_ROBOT, ERROR, "session",                                                                     \
       "another robot answers than before: passive, the course is paused, until an operator says active and " \
       "go; value: what differs, 1 name, 2 class, 3 subclass, 4 serial number")                               \
@@ -187,6 +198,10 @@ typedef enum {
     X(23, BUMPER_CLEAR, OK, "bumper", "no bumper is pressed any more")                                       \
     X(24, STALL, ERROR, "drive", "a wheel stalls: STOP sent; value: 1 left, 2 right, 3 both")                \
     X(25, BATTERY_LOW, WARN, "battery", "battery low; value: decivolts")                                     \
+    X(26, SONARS_BEYOND, WARN, "session",                                                                    \
+      "it has more sonars than this build manages, those beyond are left out; value: how many it has")       \
+    X(27, ROBOT_UNSAFE, ERROR, "session",                                                                    \
+      "the settings are unsafe for this robot (S5): passive; value: mm that S5 needs")                       \
     X(30, SONAR_DEAD, ERROR, "sonar", "dead reading: STOP sent; value: the reading in mm")                   \
     X(31, SONAR_SILENT, ERROR, "sonar",                                                                      \
       "its slot yields no reading: STOP sent; value: age of its last reading in ms")                         \
@@ -201,12 +216,13 @@ typedef enum {
     X(38, SONAR_HEALTHY, OK, "sonar", "judged healthy; value: its reading in mm")                            \
     X(39, SONAR_UNPROVEN, WARN, "sonar", "no usable witness: it stays a suspect; value: its reading in mm")  \
     X(40, FAILURE_STATE, WARN, "health",                                                                     \
-      "the failure state changed; value: number of disabled sonars among 1..6")                              \
+      "the failure state changed; value: number of disabled forward-facing sonars")                          \
     X(41, PLAN, WARN, "plan", "rotations that cover the disabled bearings; value: how many")                 \
     X(42, PLAN_ROTATION, OK, "plan", "one rotation of the plan; value: degrees, CCW positive")               \
     X(43, HEALTH_CHECK, OK, "health",                                                                        \
       "all front sonars have reported and no suspect is open; value: disabled")                              \
-    X(44, SONAR_STALE, STALE, "sonar", "a sonar outside 1..6 yields no reading; value: ms without one")      \
+    X(44, SONAR_STALE, STALE, "sonar",                                                                       \
+      "a sonar that does not face forward yields no reading; value: ms without one")                         \
     X(45, SONAR_NAMED, WARN, "sonar", "a suspect: the evidence so far names this fault; value: fault kind")  \
     X(46, SONAR_PROBATION, WARN, "sonar",                                                                    \
       "not used yet: does well again, or failed in the last mission; value: its reading in mm")              \
@@ -274,7 +290,8 @@ typedef enum {
     ARGUS_SUSPECT,   // disparate, not verified yet or no witness
     ARGUS_DISABLED,  // not used; latched for the mission under `paper`
     ARGUS_PROBATION, // (profile argus) may come back
-    ARGUS_STALE      // has not reported yet, or not for long
+    ARGUS_STALE,     // has not reported yet, or not for long
+    ARGUS_ABSENT     // this robot has not got it: neither judged nor planned with
 } argus_health_t;
 
 // After the failure words of PX4; the numbers are on the wire (SPEC.md, Events) and in the record.
@@ -289,19 +306,19 @@ typedef enum {
     ARGUS_KIND_INTERMITTENT = 7
 } argus_fault_kind_t;
 
-// The failure state over the forward-facing six (paper: Fig. 6).
+// The failure state over the forward-facing sonars (paper: Fig. 6).
 typedef enum {
     ARGUS_IS_NORMAL,      // none disabled
-    ARGUS_IS_MINOR,       // 1 or 2
-    ARGUS_IS_MAJOR,       // 3 to 5
-    ARGUS_IS_CATASTROPHIC // all 6
+    ARGUS_IS_MINOR,       // a third of them at most: 1 or 2 of six
+    ARGUS_IS_MAJOR,       // more, but not all: 3 to 5 of six
+    ARGUS_IS_CATASTROPHIC // all
 } argus_failure_t;
 
 // Rotations by which the healthy sonars cover for the disabled ones (paper: Tables IV and V).
 #define ARGUS_ROTATIONS_MAX 6
 
 typedef struct {
-    uint16_t disabled; // the fault map it is for, bits 1..6
+    argus_mask_t disabled; // the fault map it is for: forward-facing sonars only
     uint8_t count;
     int16_t rotation_deg[ARGUS_ROTATIONS_MAX]; // in the order of visit, CCW positive
     bool return_each; // back to the heading after each rotation's reading (policy paper), else one sweep
@@ -311,7 +328,7 @@ typedef struct {
 // What the manager is doing. Order is not severity.
 typedef enum {
     ARGUS_MODE_OFFLINE,   // no session with a robot
-    ARGUS_MODE_CHECKING,  // at rest: every sonar of 1..6 must report before anything moves (S6)
+    ARGUS_MODE_CHECKING,  // at rest: every forward-facing sonar must report before anything moves (S6)
     ARGUS_MODE_VERIFYING, // Algorithm 2 turns neighbours onto a suspect's bearing
     ARGUS_MODE_IDLE,      // healthy enough, nothing to do
     ARGUS_MODE_DRIVING,   // normal driving
@@ -337,7 +354,7 @@ typedef enum {
     ARGUS_WAIT_MOTORS,
     ARGUS_WAIT_TURN,        // the swing circle is blocked (S7)
     ARGUS_WAIT_WAY,         // every heading is blocked
-    ARGUS_WAIT_CATASTROPHIC // all six are disabled
+    ARGUS_WAIT_CATASTROPHIC // all forward-facing sonars are disabled
 } argus_wait_t;
 
 // What an operator may ask. The argument is mm for MOVE, degrees for TURN, a sonar (0..15) for RETEST and
@@ -379,14 +396,16 @@ typedef struct {
     uint16_t flags;        // of the SIP
     uint8_t bumpers_front; // bits 1..5, bit 1 leftmost
     uint8_t bumpers_rear;
+    uint8_t sonars;                    // that are managed, from 0: those beyond are ABSENT
+    argus_mask_t forward;              // who faces forward: whom the plan covers for
     int16_t bearing_deg[ARGUS_SONARS]; // whither each looks, robot frame
     uint16_t reading_mm[ARGUS_SONARS]; // as on the wire; 0: never reported, or so read
     uint32_t age_ms[ARGUS_SONARS];     // UINT32_MAX: never reported
     uint32_t readings[ARGUS_SONARS];   // monotonic
     argus_health_t health[ARGUS_SONARS];
     argus_fault_kind_t kind[ARGUS_SONARS];
-    uint16_t pinned;  // sonars whose health an operator has fixed, a mask
-    uint32_t packets; // with a right checksum; monotonic counters, like what follows
+    argus_mask_t pinned; // sonars whose health an operator has fixed, a mask
+    uint32_t packets;    // with a right checksum; monotonic counters, like what follows
     uint32_t sips;
     uint32_t bad_checksums;
     uint32_t skipped_bytes;
@@ -394,8 +413,8 @@ typedef struct {
     const char *robot_name; // identity from the SYNC2 reply, "" before; they live as long as the instance
     const char *robot_class;
     const char *robot_subclass;
-    bool robot_known; // we have the geometry of its subclass
-    bool robot_told;  // its CONFIGpac came: what follows is its own word, else "" and 0
+    const char *robot_body; // whose geometry holds: a choice of the setting `robot`, "" when it is not known
+    bool robot_told;        // its CONFIGpac came: what follows is its own word, else "" and 0
     const char *robot_version;
     const char *robot_serial;
     uint16_t robot_watchdog_ms;
@@ -420,7 +439,7 @@ typedef enum {
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.
-#define ARGUS_STORAGE_BYTES 38912
+#define ARGUS_STORAGE_BYTES (8192 + 1920 * ARGUS_SONARS)
 typedef union {
     uint64_t align;
     uint8_t bytes[ARGUS_STORAGE_BYTES];
@@ -432,7 +451,9 @@ typedef struct argus argus_t;
 
 void argus_config_default(argus_config_t *config);
 
-// Ranges first, then the two S5 inequalities. Cost: a few thousand integer operations, once at start.
+// Ranges first, then the two S5 inequalities, for the robot that the setting `robot` names (by-subclass: for
+// p3dx-sh; when another one answers, S5 is asked again for that one). Cost: a few thousand integer
+// operations, once at start.
 argus_config_report_t argus_config_check(const argus_config_t *config);
 
 // Starts from nothing: no robot, every sonar UNKNOWN, no course. `config` is copied; it should have passed

@@ -109,6 +109,10 @@ static bool load_files(void) {
         !settings_load(&settings, options.config_path, message, sizeof message)) {
         return false;
     }
+    if (options.robot != NULL &&
+        !settings_choose(&settings, SETTINGS_robot, options.robot, "--robot", message, sizeof message)) {
+        return false;
+    }
     if (!settle_baud()) {
         return false;
     }

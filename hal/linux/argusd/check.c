@@ -54,7 +54,7 @@ static bool turn(driver_t *driver, int cancel_fd, uint32_t most_ms) {
 
 static int sonars_seen(const argus_status_t *status) {
     int seen = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < status->sonars; i++) {
         seen += status->age_ms[i] != UINT32_MAX;
     }
     return seen;
@@ -62,7 +62,7 @@ static int sonars_seen(const argus_status_t *status) {
 
 static void put_seen(FILE *out, const argus_status_t *status, bool wanted) {
     int count = 0;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < status->sonars; i++) {
         if ((status->age_ms[i] != UINT32_MAX) == wanted) {
             fprintf(out, " %d", i);
             count++;
@@ -78,19 +78,19 @@ static void tell_plain(const driver_t *driver, const argus_status_t *status, FIL
     }
     fprintf(out, "robot     name '%s', class '%s', subclass '%s'%s\n", status->robot_name,
             status->robot_class, status->robot_subclass,
-            status->robot_known ? "" : " (not a P3-DX that is known)");
+            status->robot_body[0] != '\0' ? "" : " (its body is not known: name it with --robot)");
     if (status->robot_told) {
         fprintf(out, "firmware  version '%s', serial number '%s', watchdog %u ms, sonar cycle %u ms\n",
                 status->robot_version, status->robot_serial, (unsigned)status->robot_watchdog_ms,
                 (unsigned)status->robot_sonar_cycle_ms);
     }
     fprintf(out, "battery   %d.%d V\n", status->battery_dv / 10, status->battery_dv % 10);
-    fprintf(out, "sonars    %d of %d seen:", sonars_seen(status), ARGUS_SONARS);
+    fprintf(out, "sonars    %d of %d seen:", sonars_seen(status), status->sonars);
     put_seen(out, status, true);
     fprintf(out, "silent   ");
     put_seen(out, status, false);
     fprintf(out, "readings ");
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < status->sonars; i++) {
         fprintf(out, " %d", status->reading_mm[i]);
     }
     fprintf(out, " mm\ntraffic   %u SIPs, %u bad checksums, %u stray bytes\n", (unsigned)status->sips,
@@ -117,7 +117,7 @@ static void tell_json(const driver_t *driver, const argus_status_t *status, FILE
     json_int(&json, status->battery_dv);
     json_name(&json, "sonars");
     json_open(&json, '[');
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < status->sonars; i++) {
         if (status->age_ms[i] != UINT32_MAX) {
             json_int(&json, i);
         }

@@ -17,6 +17,7 @@ enum {
     OPT_STATE,
     OPT_RECORD,
     OPT_RECORD_MAX,
+    OPT_ROBOT,
     OPT_CAN_TELEMETRY,
     OPT_PASSIVE,
     OPT_ACTIVE,
@@ -40,6 +41,7 @@ static const struct option table[] = {
     {"state", required_argument, NULL, OPT_STATE},
     {"record", required_argument, NULL, OPT_RECORD},
     {"record-max", required_argument, NULL, OPT_RECORD_MAX},
+    {"robot", required_argument, NULL, OPT_ROBOT},
     {"can-telemetry", required_argument, NULL, OPT_CAN_TELEMETRY},
     {"passive", no_argument, NULL, OPT_PASSIVE},
     {"active", no_argument, NULL, OPT_ACTIVE},
@@ -74,6 +76,9 @@ void options_help(FILE *out) {
         "  --config FILE      settings (see --list-config)\n"
         "  --course FILE      drive this course: x_mm,y_mm per line, # comments\n"
         "  --goal X,Y         drive to this one point; mm, x ahead and y left of where the robot stands\n"
+        "  --robot NAME       whose body and sonars it has, where it does not say so itself: p3dx-sh, "
+        "amigo-sh,\n"
+        "                     p3at-sh, peoplebot-sh; one that is not known is never driven\n"
         "  --passive          diagnose and report, never command a motion\n"
         "  --active           drive; needed on a serial or can link, which starts passive\n"
         "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
@@ -194,6 +199,9 @@ static bool take_flag(options_t *options, int option) {
         return true;
     case OPT_RECORD:
         options->record_path = optarg;
+        return true;
+    case OPT_ROBOT:
+        options->robot = optarg;
         return true;
     case OPT_PASSIVE:
         options->passive = true;

@@ -29,6 +29,7 @@ typedef struct {
     const char *course_path;
     const char *state_path;
     const char *record_path;
+    const char *robot;        // a choice of the setting of that name
     hal_can_spec_t telemetry; // interface "": not given
     bool no_telemetry;
     uint64_t record_max_bytes; // 0: not given

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #define FRONT_SONARS 8
+#define SHOWN_SONARS 16
 #define RING_TOP 3
 #define RING_ROWS 13
 #define RING_COLUMNS 34
@@ -128,12 +129,15 @@ static void draw_mode(canvas_t *canvas, const view_t *view) {
     }
 }
 
-// 256 times the cosine, by table: the sonars stand at tens of degrees.
+// 256 times the cosine, by table: on whole tens of degrees exactly, between them on a straight line.
 static int cos256(int degrees) {
-    static const int16_t quarter[] = {256, 252, 241, 222, 196, 165, 128, 88, 44, 0};
+    static const int16_t quarter[] = {256, 252, 241, 222, 196, 165, 128, 88, 44, 0, -44};
     const int turn = ((degrees % 360) + 360) % 360;
     const int half = turn <= 180 ? turn : 360 - turn;
-    return half <= 90 ? quarter[half / 10] : -quarter[(180 - half) / 10];
+    const int size = half <= 90 ? half : 180 - half;
+    const int step = quarter[size / 10 + 1] - quarter[size / 10];
+    const int value = quarter[size / 10] + step * (size % 10) / 10;
+    return half <= 90 ? value : -value;
 }
 
 // A row is twice as high as a column is wide.
@@ -144,7 +148,7 @@ static void put_polar(canvas_t *canvas, int degrees, int radius, tone_t tone, ch
 }
 
 static void draw_echo(canvas_t *canvas, const argus_status_t *status, int sonar) {
-    static const char digits[] = "0123456789ABCDEF";
+    static const char digits[] = "0123456789ABCDEFGHIJKLMNOPQRSTUV";
     const int bearing = status->bearing_deg[sonar];
     const int rim = RING_ROWS - 1;
     const int reading = between(status->reading_mm[sonar], 0, RING_RANGE_MM);
@@ -165,7 +169,7 @@ static void draw_echo(canvas_t *canvas, const argus_status_t *status, int sonar)
 static void draw_ring(canvas_t *canvas, const argus_status_t *status) {
     const int middle = RING_TOP + RING_ROWS / 2;
     const int column = RING_COLUMNS / 2;
-    for (int sonar = ARGUS_SONARS - 1; sonar >= 0; sonar--) {
+    for (int sonar = status->sonars - 1; sonar >= 0; sonar--) {
         draw_echo(canvas, status, sonar);
     }
     put_text(canvas, middle - 1, column - 1, status->bumpers_front != 0 ? TONE_BAD : TONE_PLAIN, "/^\\");
@@ -178,17 +182,21 @@ static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row,
     const bool pinned = (status->pinned >> sonar & 1) != 0;
     char state[16];
     char reading[8] = "   -";
+    char bearing[8] = "   -";
     const argus_health_t health = status->health[sonar];
     if (status->age_ms[sonar] != UINT32_MAX) {
         snprintf(reading, sizeof reading, "%4d", status->reading_mm[sonar]);
+    }
+    if (sonar < status->sonars) {
+        snprintf(bearing, sizeof bearing, "%+4d", status->bearing_deg[sonar]);
     }
     if (health == ARGUS_DISABLED) {
         snprintf(state, sizeof state, "!%s", argus_name(ARGUS_NAME_KIND, status->kind[sonar]));
     } else {
         snprintf(state, sizeof state, "%s", argus_name(ARGUS_NAME_HEALTH, health));
     }
-    write_at(canvas, row, column, tone_of_health(health), "%2d%c%+4d %s %-9.9s", sonar, pinned ? '=' : ' ',
-             status->bearing_deg[sonar], reading, state);
+    write_at(canvas, row, column, tone_of_health(health), "%2d%c%s %s %-9.9s", sonar, pinned ? '=' : ' ',
+             bearing, reading, state);
     if (sonar == view->sonar) {
         write_at(canvas, row, column, TONE_TITLE, "%2d", sonar);
     }
@@ -196,9 +204,10 @@ static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row,
 
 static void draw_sonars(canvas_t *canvas, const view_t *view, int column) {
     put_text(canvas, RING_TOP, column, TONE_DIM, " # front  mm  health    # rear   mm  health");
-    for (int i = 0; i < FRONT_SONARS; i++) {
-        draw_sonar(canvas, view, i, RING_TOP + 1 + i, column);
-        draw_sonar(canvas, view, i + FRONT_SONARS, RING_TOP + 1 + i, column + 22);
+    const int first = view->sonar / SHOWN_SONARS * SHOWN_SONARS; // the page with the chosen one
+    for (int i = first; i < first + SHOWN_SONARS && i < ARGUS_SONARS; i++) {
+        const int row = RING_TOP + 1 + i % FRONT_SONARS;
+        draw_sonar(canvas, view, i, row, i - first < FRONT_SONARS ? column : column + 22);
     }
 }
 

@@ -225,6 +225,16 @@ bool settings_load(settings_t *self, const char *path, char *message, size_t cap
     return good;
 }
 
+bool settings_choose(settings_t *self, int row, const char *text, const char *option, char *message,
+                     size_t capacity) {
+    const int32_t value = choice(rows[row].choices, text);
+    if (value < 0) {
+        return text_refuse(message, capacity, "%s %.40s: choose one of %s", option, text, rows[row].choices);
+    }
+    memcpy((char *)&self->config + rows[row].offset, &value, sizeof value);
+    return true;
+}
+
 bool settings_check(const settings_t *self, char *message, size_t capacity) {
     const argus_config_t *const config = &self->config;
     const argus_config_report_t report = argus_config_check(config);
@@ -279,7 +289,7 @@ void settings_list(FILE *out) {
     fprintf(out, "%-18s %-7s %-13s %-8s %-6s %s\n", "KEY", "TYPE", "RANGE", "DEFAULT", "UNIT", "MEANING");
     for (int i = 0; i < SETTINGS_COUNT; i++) {
         char value[32];
-        char range[48];
+        char range[80];
         name_value(&rows[i], rows[i].value, value, sizeof value);
         name_range(&rows[i], range, sizeof range);
         fprintf(out, "%-18s %-7s %-13s %-8s %-6s %s\n", rows[i].key,
@@ -295,7 +305,7 @@ void settings_example(FILE *out) {
         "[" SECTION "]\n");
     for (int i = 0; i < SETTINGS_COUNT; i++) {
         char value[32];
-        char range[48];
+        char range[80];
         name_value(&rows[i], rows[i].value, value, sizeof value);
         name_range(&rows[i], range, sizeof range);
         fprintf(out, "\n# %s (%s%s%s)\n%s = %s\n", rows[i].meaning, range, rows[i].unit[0] == '\0' ? "" : " ",

@@ -26,6 +26,10 @@ void settings_default(settings_t *self);
 bool settings_read(settings_t *self, FILE *file, const char *path, char *message, size_t capacity);
 bool settings_load(settings_t *self, const char *path, char *message, size_t capacity);
 
+// Sets what is picked by name from the command line. False: `message` names `option` and the choices.
+bool settings_choose(settings_t *self, int row, const char *text, const char *option, char *message,
+                     size_t capacity);
+
 // The firmware's verdict, with S5's arithmetic when it refuses.
 bool settings_check(const settings_t *self, char *message, size_t capacity);
 

@@ -56,6 +56,7 @@ void tui_show(const tui_t *self, const view_t *view) {
     message.as.view.status.robot_name = NULL;
     message.as.view.status.robot_class = NULL;
     message.as.view.status.robot_subclass = NULL;
+    message.as.view.status.robot_body = NULL;
     send_message(self, &message);
 }
 

@@ -26,7 +26,7 @@ static void begin(argus_policy_t policy, uint16_t disabled) {
             k.sonar[i].reading_mm = 100; // a lie that must not count
         }
     }
-    plan = argus_plan(policy, disabled);
+    plan = argus_plan(argus_robot_default(), policy, disabled);
     argus_sweep_begin(&drive, &plan, BASE);
 }
 
@@ -49,7 +49,7 @@ static void look(int rotation_deg, int mm) {
     TEST_ASSERT_EQUAL(argus_angle_wrap(BASE + rotation_deg * 100), argus_sweep_heading_cdeg(&drive, &plan));
     settle();
     TEST_ASSERT_FALSE(step());
-    const uint16_t covering = argus_plan_covering(&plan, (int16_t)rotation_deg);
+    const uint16_t covering = argus_plan_covering(argus_robot_default(), &plan, (int16_t)rotation_deg);
     for (int i = 1; i <= 6; i++) {
         if ((covering >> i & 1u) != 0) {
             TEST_ASSERT_FALSE(step());

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "awareness/evidence_internal.h"
+#include "health.h"
 #include "knowledge/angle.h"
 #include "unity.h"
 
@@ -222,7 +223,8 @@ void test_one_that_is_out_is_not_waited_for_at_all(void) {
 void test_more_suspects_may_be_taken_in_under_way(void) {
     argus_inquiry_begin(&inquiry, &k, &e, 1u << 1, 0);
     TEST_ASSERT_EQUAL(0, inquiry.watched >> 12 & 1u);
-    argus_inquiry_add(&inquiry, 1u << 12, 1u << 13);
+    put_health(&k.sonar[13], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+    argus_inquiry_add(&inquiry, &k, 1u << 12);
     TEST_ASSERT_EQUAL_HEX16(1u << 1 | 1u << 12, inquiry.suspects);
     TEST_ASSERT_EQUAL(1, inquiry.watched >> 12 & 1u);
     TEST_ASSERT_EQUAL(1, inquiry.watched >> 1 & 1u);
@@ -263,7 +265,7 @@ void test_it_ends_at_home_whatever_happens(void) {
 
 // `sonar` has heard something at `mm` on the robot's heading `cdeg`.
 static void heard(int sonar, int32_t cdeg, int mm) {
-    const argus_sonar_pose_t *mount = &argus_sonar_pose[sonar];
+    const argus_sonar_pose_t *mount = &argus_sonar_poses[sonar];
     const argus_pose_t pose = {k.pose.x_mm, k.pose.y_mm, cdeg};
     const argus_point_t robot = {mount->x_mm, mount->y_mm};
     const argus_point_t at = argus_to_course(&pose, robot);

@@ -37,7 +37,7 @@ static void read(int sonar, int mm) {
 
 // Recheck: `own` between its neighbours; then the machine wants the first turn, or is done.
 static void recheck(int sonar, int own, int neighbours) {
-    argus_verify_begin(&v, sonar, BASE);
+    argus_verify_begin(&v, k.robot, sonar, BASE);
     TEST_ASSERT_EQUAL(BASE, argus_verify_heading_cdeg(&v));
     TEST_ASSERT_FALSE(argus_verify_step(&v, &k, &mark)); // nothing is fresh
     for (int i = sonar - 1; i <= sonar + 1; i++) {
@@ -122,7 +122,7 @@ void test_one_usable_witness(void) {
             } else {
                 k.sonar[out].reading_mm = 5000;
             }
-            argus_verify_begin(&v, 3, BASE);
+            argus_verify_begin(&v, k.robot, 3, BASE);
             read(out == 2 ? 4 : 2, 2000);
             read(3, 1000);
             TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
@@ -140,7 +140,7 @@ void test_one_usable_witness(void) {
 void test_no_usable_witness_leaves_it_unproven(void) {
     put_health(&k.sonar[2], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
     put_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
-    argus_verify_begin(&v, 3, BASE);
+    argus_verify_begin(&v, k.robot, 3, BASE);
     read(3, 1000);
     TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
     TEST_ASSERT_EQUAL(ARGUS_VERIFY_DONE, v.phase);
@@ -204,4 +204,28 @@ void test_idle_does_nothing(void) {
     argus_verify_init(&v);
     TEST_ASSERT_FALSE(argus_verify_step(&v, &k, &mark));
     TEST_ASSERT_EQUAL(ARGUS_VERIFY_IDLE, v.phase);
+}
+
+// The AmigoBot's 2 looks at 15 degrees, between 41 and -15: who stands left turns by -26 onto its bearing.
+void test_an_amigobot_turns_by_its_own_bearings(void) {
+    argus_knowledge_set_robot(&k, argus_robot_find("amigo-sh"), 0);
+    settle();
+    argus_verify_begin(&v, k.robot, 2, 0);
+    read(1, 2000), read(2, 1000), read(3, 2000);
+    TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
+    TEST_ASSERT_EQUAL(ARGUS_VERIFY_LEFT, v.phase);
+    TEST_ASSERT_EQUAL(-2600, argus_verify_heading_cdeg(&v));
+    settle();
+    testify(1, 1950);
+    TEST_ASSERT_EQUAL(ARGUS_VERIFY_RIGHT, v.phase);
+    TEST_ASSERT_EQUAL(3000, argus_verify_heading_cdeg(&v));
+    settle();
+    testify(3, 1950);
+    TEST_ASSERT_EQUAL(ARGUS_RESULT_CONVICTED, v.result);
+    argus_verify_begin(&v, k.robot, 4, 0); // at the edge: one neighbour, and no sonar of another role
+    read(3, 2000), read(4, 1000), read(5, 2000);
+    TEST_ASSERT_TRUE(argus_verify_step(&v, &k, &mark));
+    TEST_ASSERT_EQUAL(ARGUS_VERIFY_LEFT, v.phase);
+    TEST_ASSERT_EQUAL(1, v.witnesses);
+    TEST_ASSERT_EQUAL(-2600, argus_verify_heading_cdeg(&v));
 }

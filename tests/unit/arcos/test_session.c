@@ -77,7 +77,7 @@ void setUp(void) {
     robot.identity = example_identity;
     robot.identity_count = sizeof example_identity;
     argus_config_default(&config);
-    argus_session_init(&session, true);
+    argus_session_init(&session);
     time_ms = 0;
     tick_ms = 10;
     chunk = sizeof robot.out;
@@ -275,7 +275,7 @@ static const entry_t greeting[] = {{ARCOS_CMD_PULSE, 0, 0}, {ARCOS_CMD_OPEN, 0, 
 static const entry_t set_up[] = {{ARCOS_CMD_SETV, 200, 0},  {ARCOS_CMD_SETA, 300, 0},
                                  {ARCOS_CMD_SETA, -600, 0}, {ARCOS_CMD_SETRV, 60, 0},
                                  {ARCOS_CMD_SETRA, 200, 0}, {ARCOS_CMD_SETRA, -200, 0},
-                                 {ARCOS_CMD_SONAR, 1, 0},   {ARCOS_CMD_ENABLE, 1, 0}};
+                                 {ARCOS_CMD_SONAR, 1, 0}};
 #define GREETING (sizeof greeting / sizeof greeting[0])
 #define SET_UP (sizeof set_up / sizeof set_up[0])
 
@@ -288,8 +288,7 @@ void test_a_waiting_robot_is_opened_in_the_right_order(void) {
     TEST_ASSERT_EQUAL(GREETING + SET_UP, robot.logged);
     TEST_ASSERT_GREATER_OR_EQUAL(250, robot.log[0].at_ms); // it listens first
     TEST_ASSERT_TRUE(argus_session_is_open(&session));
-    TEST_ASSERT_TRUE(argus_session_knows_subclass(&session));
-    TEST_ASSERT_EQUAL(1000, argus_session_distance_um(&session));
+    TEST_ASSERT_EQUAL(1000, argus_session_distance_um(&session, 1000));
     TEST_ASSERT_EQUAL_STRING("P3DX_0001", session.name);
     TEST_ASSERT_EQUAL_STRING("Pioneer", session.robot_class);
     TEST_ASSERT_EQUAL_STRING("p3dx-sh", session.subclass);
@@ -298,11 +297,11 @@ void test_a_waiting_robot_is_opened_in_the_right_order(void) {
     TEST_ASSERT_EQUAL(0, seen & ~(unsigned)(ARGUS_SESSION_DID_OPEN | ARGUS_SESSION_GOT_SIP));
 }
 
-void test_passive_never_enables_the_motors(void) {
-    session.motors = false;
+// Who may be driven is decided by who knows the body.
+void test_the_set_up_never_enables_the_motors(void) {
     connect();
     run_until(3000);
-    assert_log(GREETING, set_up, SET_UP - 1);
+    assert_log(GREETING, set_up, SET_UP);
     TEST_ASSERT_EQUAL(0, logged(ARCOS_CMD_ENABLE));
 }
 
@@ -549,15 +548,13 @@ void test_the_identity_comes_from_sync2_when_there_is_no_configpac(void) {
 void test_the_subclass_decides_the_unit(void) {
     static const struct {
         const char *subclass;
-        bool known;
         int32_t unit_um;
-    } cases[] = {{"p3dx-sh", true, 1000},  {"P3DX-SH", true, 1000}, {"p3dx", false, 485},
-                 {"P3DX", false, 485},     {"p3dx-s", false, 1000}, {"p3dx-shx", false, 1000},
-                 {"p3at-sh", false, 1000}, {"", false, 1000}};
+    } cases[] = {{"p3dx-sh", 750}, {"P3DX-SH", 750},  {"p3dx", 485},    {"P3DX", 485},
+                 {"p3dx-s", 750},  {"p3dx-shx", 750}, {"p3at-sh", 750}, {"", 750}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         strcpy(session.subclass, cases[i].subclass);
-        TEST_ASSERT_EQUAL_MESSAGE(cases[i].known, argus_session_knows_subclass(&session), cases[i].subclass);
-        TEST_ASSERT_EQUAL_MESSAGE(cases[i].unit_um, argus_session_distance_um(&session), cases[i].subclass);
+        TEST_ASSERT_EQUAL_MESSAGE(cases[i].unit_um, argus_session_distance_um(&session, 750),
+                                  cases[i].subclass);
     }
 }
 
@@ -952,8 +949,7 @@ void test_a_recorded_conversation_opens(void) {
     }
     TEST_ASSERT_TRUE(argus_session_is_open(&session));
     TEST_ASSERT_EQUAL_STRING("MobileSim", session.name);
-    TEST_ASSERT_EQUAL(485, argus_session_distance_um(&session));
-    TEST_ASSERT_FALSE(argus_session_knows_subclass(&session));
+    TEST_ASSERT_EQUAL(485, argus_session_distance_um(&session, 1000));
     TEST_ASSERT_EQUAL(16, session.sip.sonar_count);
     TEST_ASSERT_GREATER_THAN(50, count_of(ARGUS_SESSION_GOT_SIP));
 }

@@ -204,7 +204,7 @@ void test_a_cleared_sonar_whose_disparity_changes_by_more_than_2_tr(void) {
     take(0xFFFF);
     make_suspect(); // disparity 500
     argus_awareness_cleared(&a, &k, 3, a.of[3].difference_mm);
-    reading[3] = 500 - 2 * argus_tolerance_mm(400); // tr(424) = 38, tr(400) = 36: a change of 72
+    reading[3] = 500 - 2 * argus_tolerance_mm(k.robot, 400); // tr(424) = 38, tr(400) = 36: a change of 72
     for (int i = 0; i < 4; i++) {
         take(0x08);
     }

@@ -34,12 +34,13 @@ void test_tolerance_of_every_reading(void) {
         const double exact = (a1 + 167) * (1 / cos(20 * 3.14159265358979323846 / 180) - 1);
         char text[30];
         snprintf(text, sizeof text, "tr(%d)", a1);
-        TEST_ASSERT_EQUAL_MESSAGE((int32_t)lround(exact), argus_tolerance_mm(a1), text);
+        TEST_ASSERT_EQUAL_MESSAGE((int32_t)lround(exact), argus_tolerance_mm(argus_robot_default(), a1),
+                                  text);
     }
-    TEST_ASSERT_EQUAL(26, argus_tolerance_mm(245));
-    TEST_ASSERT_EQUAL(75, argus_tolerance_mm(1000));
-    TEST_ASSERT_EQUAL(267, argus_tolerance_mm(4000));
-    TEST_ASSERT_TRUE(argus_tolerance_mm(65535) > 4000);
+    TEST_ASSERT_EQUAL(26, argus_tolerance_mm(argus_robot_default(), 245));
+    TEST_ASSERT_EQUAL(75, argus_tolerance_mm(argus_robot_default(), 1000));
+    TEST_ASSERT_EQUAL(267, argus_tolerance_mm(argus_robot_default(), 4000));
+    TEST_ASSERT_TRUE(argus_tolerance_mm(argus_robot_default(), 65535) > 4000);
 }
 
 void test_the_papers_example(void) {

@@ -30,7 +30,7 @@ void setUp(void) {
 
 // What `sonar` would have taken for a view from the present place, so long ago.
 static argus_view_t *view(int sonar, int32_t reading_mm, uint32_t age_ms) {
-    const argus_sonar_pose_t *mount = &argus_sonar_pose[sonar];
+    const argus_sonar_pose_t *mount = &argus_sonar_poses[sonar];
     const argus_point_t robot = {mount->x_mm, mount->y_mm};
     const argus_point_t at = argus_to_course(&k.pose, robot);
     argus_case_t *c = &e.of[sonar];
@@ -62,7 +62,7 @@ void test_it_looks_along_the_bearing_that_another_has_heard_on(void) {
         TEST_ASSERT_TRUE(aims(3));
         TEST_ASSERT_EQUAL_INT32(argus_angle_wrap(heading - 2000), aim_cdeg);
         TEST_ASSERT_EQUAL_INT32(heard->bearing_cdeg,
-                                argus_angle_wrap(aim_cdeg + argus_sonar_pose[3].heading_deg * 100));
+                                argus_angle_wrap(aim_cdeg + argus_sonar_poses[3].heading_deg * 100));
     }
 }
 
@@ -247,7 +247,7 @@ static bool is_relied_on(int sonar) {
 
 // The view, of one that is relied on, that this heading looks along.
 static bool is_borne_out(int sonar, int32_t heading_cdeg) {
-    const int32_t bearing = argus_angle_wrap(heading_cdeg + argus_sonar_pose[sonar].heading_deg * 100);
+    const int32_t bearing = argus_angle_wrap(heading_cdeg + argus_sonar_poses[sonar].heading_deg * 100);
     for (int other = 0; other < ARGUS_SONARS; other++) {
         for (int i = 0; other != sonar && is_relied_on(other) && i < ARGUS_VIEWS; i++) {
             const argus_view_t *v = &e.of[other].view[i];

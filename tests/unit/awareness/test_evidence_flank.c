@@ -38,7 +38,7 @@ static void read_at(int sonar, double range_mm) {
 // How far beyond the sonar's face a wall at `slant` degrees is when the front corner touches it, on the
 // sonar's axis.
 static double touches_at(double slant_deg) {
-    const double x = argus_sonar_pose[0].x_mm, y = argus_sonar_pose[0].y_mm;
+    const double x = argus_sonar_poses[0].x_mm, y = argus_sonar_poses[0].y_mm;
     return HALF_WIDTH_MM - y + (FRONT_MM - x) * tan(slant_deg * RAD);
 }
 
@@ -46,8 +46,9 @@ void test_the_stopping_way_is_that_of_the_default_configuration(void) {
     argus_config_t config;
     argus_config_default(&config);
     const argus_config_report_t report = argus_config_check(&config);
-    TEST_ASSERT_EQUAL_INT32(STOP_MM, argus_config_stop_mm(&config));
-    TEST_ASSERT_EQUAL_INT32(report.driving_mm - report.overhang_mm, argus_config_stop_mm(&config));
+    TEST_ASSERT_EQUAL_INT32(STOP_MM, argus_config_stop_mm(&config, argus_robot_default()));
+    TEST_ASSERT_EQUAL_INT32(report.driving_mm - report.overhang_mm,
+                            argus_config_stop_mm(&config, argus_robot_default()));
 }
 
 static int lost_each; // no echo in so many readings once

@@ -32,11 +32,11 @@ void setUp(void) {
 }
 
 static void face(int sonar, int32_t bearing_cdeg) {
-    k.pose.heading_cdeg = argus_angle_wrap(bearing_cdeg - argus_sonar_pose[sonar].heading_deg * 100);
+    k.pose.heading_cdeg = argus_angle_wrap(bearing_cdeg - argus_sonar_poses[sonar].heading_deg * 100);
 }
 
 static argus_glimpse_t here(int sonar) {
-    const argus_sonar_pose_t *mount = &argus_sonar_pose[sonar];
+    const argus_sonar_pose_t *mount = &argus_sonar_poses[sonar];
     const argus_point_t robot = {mount->x_mm, mount->y_mm};
     const argus_point_t at = argus_to_course(&k.pose, robot);
     return (argus_glimpse_t){

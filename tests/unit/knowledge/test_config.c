@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "captures.h"
-#include "robot/gen_p3dx.h"
 #include "unity.h"
 
 static argus_config_t config;
@@ -108,7 +107,7 @@ void test_driving_is_refused_exactly_when_the_inequality_fails(void) { // soak
 }
 
 void test_stepping_is_refused_exactly_when_the_inequality_fails(void) {
-    const int32_t needed = argus_config_reach_mm(200) + 3 * 5 + 20;
+    const int32_t needed = argus_config_reach_mm(argus_robot_default(), 200) + 3 * 5 + 20;
     for (config.check_range_mm = 200; config.check_range_mm < 500; config.check_range_mm++) {
         const argus_config_report_t report = argus_config_check(&config);
         TEST_ASSERT_EQUAL(config.check_range_mm <= needed, report.fault == ARGUS_CONFIG_STEP);
@@ -119,8 +118,9 @@ void test_stepping_is_refused_exactly_when_the_inequality_fails(void) {
     TEST_ASSERT_EQUAL(ARGUS_CONFIG_STEP, argus_config_check(&config).fault);
 }
 
-#define POSE(number, x, y, heading) {x, y, heading},
-static const double pose[][3] = {ARGUS_P3DX_SONAR_TABLE(POSE)};
+// The vendor's figures of the sonars 0 to 6 (p3dx-sh.p, SonarUnit).
+static const double pose[][3] = {{69, 136, 90},   {114, 119, 50},  {148, 78, 30},   {166, 27, 10},
+                                 {166, -27, -10}, {148, -78, -30}, {114, -119, -50}};
 
 static double reading_exactly(double x, double y) {
     double seen = 1e9;
@@ -142,10 +142,10 @@ void test_reach_is_what_geometry_gives(void) {
             exact = fmax(exact, reading_exactly(210 + step, y));
         }
         snprintf(message, sizeof message, "step %d: exactly %.2f mm", (int)step, exact);
-        TEST_ASSERT_TRUE_MESSAGE(argus_config_reach_mm(step) >= exact, message);
-        TEST_ASSERT_TRUE_MESSAGE(argus_config_reach_mm(step) <= exact + 1.01, message);
+        TEST_ASSERT_TRUE_MESSAGE(argus_config_reach_mm(argus_robot_default(), step) >= exact, message);
+        TEST_ASSERT_TRUE_MESSAGE(argus_config_reach_mm(argus_robot_default(), step) <= exact + 1.01, message);
     }
-    TEST_ASSERT_EQUAL(211, argus_config_reach_mm(100));
-    TEST_ASSERT_EQUAL(252, argus_config_reach_mm(150));
-    TEST_ASSERT_EQUAL(295, argus_config_reach_mm(200));
+    TEST_ASSERT_EQUAL(211, argus_config_reach_mm(argus_robot_default(), 100));
+    TEST_ASSERT_EQUAL(252, argus_config_reach_mm(argus_robot_default(), 150));
+    TEST_ASSERT_EQUAL(295, argus_config_reach_mm(argus_robot_default(), 200));
 }

@@ -196,10 +196,10 @@ void test_where_an_echo_lies(void) {
     }
     take(1000);
     for (int i = 0; i < 16; i++) {
-        const double a = argus_sonar_pose[i].heading_deg * 3.14159265358979 / 180;
+        const double a = argus_sonar_poses[i].heading_deg * 3.14159265358979 / 180;
         const argus_point_t echo = argus_echo_robot(&k, i);
-        TEST_ASSERT_INT32_WITHIN(2, (int32_t)lround(argus_sonar_pose[i].x_mm + 1000 * cos(a)), echo.x_mm);
-        TEST_ASSERT_INT32_WITHIN(2, (int32_t)lround(argus_sonar_pose[i].y_mm + 1000 * sin(a)), echo.y_mm);
+        TEST_ASSERT_INT32_WITHIN(2, (int32_t)lround(argus_sonar_poses[i].x_mm + 1000 * cos(a)), echo.x_mm);
+        TEST_ASSERT_INT32_WITHIN(2, (int32_t)lround(argus_sonar_poses[i].y_mm + 1000 * sin(a)), echo.y_mm);
     }
     const argus_pose_t pose = {100, 200, 9000};
     const argus_point_t ahead = {1000, 10};
@@ -220,5 +220,27 @@ void test_nearest_echo_leaves_out_the_disabled_and_may_be_of_a_place_farther_bac
     TEST_ASSERT_INT32_WITHIN(3, 568, argus_nearest_to_centre_mm(&k, 0));
     TEST_ASSERT_EQUAL(INT32_MAX, argus_echo_to_centre_mm(&k, 3, 0));
     argus_knowledge_init(&k);
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_nearest_to_centre_mm(&k, 0));
+}
+
+void test_sonars_beyond_the_robots_are_absent_and_not_heard(void) {
+    argus_knowledge_set_robot(&k, argus_robot_find("amigo-sh"), now_ms);
+    for (int i = 0; i < 16; i++) {
+        list(i, 300);
+    }
+    take(1000);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        TEST_ASSERT_EQUAL(i < 8 ? ARGUS_UNKNOWN : ARGUS_ABSENT, k.sonar[i].health);
+        TEST_ASSERT_EQUAL(i < 8, k.sonar[i].reported);
+        TEST_ASSERT_EQUAL(i < 8, argus_usable(&k, i));
+    }
+    TEST_ASSERT_EQUAL_HEX16(0xFF, k.fresh);
+    TEST_ASSERT_EQUAL_HEX16(0, argus_out(&k));
+    TEST_ASSERT_EQUAL(300, argus_flank_mm(&k));
+    argus_knowledge_set_robot(&k, argus_robot_default(), now_ms);
+    TEST_ASSERT_EQUAL_HEX16(0xFFFF, argus_with_health(&k, ARGUS_UNKNOWN));
+    argus_knowledge_set_robot(&k, argus_robot_unknown(), now_ms);
+    TEST_ASSERT_EQUAL(0, k.sonars);
+    TEST_ASSERT_EQUAL(ARGUS_ABSENT, k.sonar[0].health);
     TEST_ASSERT_EQUAL(INT32_MAX, argus_nearest_to_centre_mm(&k, 0));
 }

@@ -327,7 +327,7 @@ static bool comes_back(int agreed) {
     argus_sonar_t *sonar = &robot.argus.knowledge.sonar[3];
     put_health(sonar, ARGUS_PROBATION, ARGUS_KIND_OFF, robot.argus.now_ms - 600000);
     robot.argus.evidence.of[3].agreed = (uint8_t)agreed;
-    robot.argus.failure = argus_failure_of(argus_out(&robot.argus.knowledge) & ARGUS_FORWARD_MASK);
+    robot.argus.failure = argus_failure_of(robot.argus.knowledge.robot, argus_out(&robot.argus.knowledge));
     robot_next_sip(&robot); // at rest nothing new is compared
     return health(3) == ARGUS_HEALTHY;
 }
@@ -585,7 +585,7 @@ void test_a_lost_echo_is_looked_for_at_once_ahead_and_not_in_one_place_elsewhere
 
 // A smooth wall: heard where it is looked at squarely, and not otherwise.
 static int smooth_wall(const robot_t *r, int sonar) {
-    const argus_sonar_pose_t *at = &argus_sonar_pose[sonar];
+    const argus_sonar_pose_t *at = &argus_sonar_poses[sonar];
     const double c = cos(r->th), s = sin(r->th);
     const double *w = r->segment[0];
     const double length = hypot(w[2] - w[0], w[3] - w[1]);

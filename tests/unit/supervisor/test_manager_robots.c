@@ -246,20 +246,107 @@ void test_a_robot_without_sonars_is_never_driven(void) {
     robot_run(&robot, 60000);
     TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0));
     TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_SESSION_OPEN, 0));
-    TEST_ASSERT_EQUAL_HEX16(ARGUS_FORWARD_MASK, argus_disabled(&robot.argus.knowledge));
+    TEST_ASSERT_EQUAL_HEX16(0x7E, argus_disabled(&robot.argus.knowledge));
     finish("no sonars");
 }
 
-void test_a_foreign_subclass_is_said_once_and_gets_our_geometry(void) {
-    static const char *const names[] = {"p3at-sh", "powerbot", "seekur", "", "p3dx-shx"};
+static void expect_no_motion(const char *name) {
+    TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_commands(&robot, ARCOS_CMD_ENABLE, 0), name);
+    TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0), name);
+    TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, 0), name);
+}
+
+void test_an_unknown_subclass_is_said_once_and_never_moved(void) {
+    static const char *const names[] = {"powerbot-sh", "seekur", "", "p3dx-shx", "p3at", "amigo"};
+    for (size_t i = 0; i < 2 * sizeof names / sizeof names[0]; i++) {
+        const char *name = names[i / 2];
+        start();
+        robot.argus.config.profile = i % 2 == 0 ? ARGUS_PROFILE_PAPER : ARGUS_PROFILE_ARGUS;
+        robot.subclass = name;
+        TEST_ASSERT_TRUE_MESSAGE(robot_goal(&robot, 600, 0), name);
+        robot_run(&robot, 20000);
+        TEST_ASSERT_EQUAL_MESSAGE(1, robot_count_events(&robot, ARGUS_EV_SUBCLASS_UNKNOWN, 0), name);
+        TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_SONAR_DISABLED, 0), name);
+        TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_GOAL_REACHED, 0), name);
+        for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
+            TEST_ASSERT_EQUAL_MESSAGE(ARGUS_ABSENT, robot.argus.knowledge.sonar[sonar].health, name);
+        }
+        argus_operator(&robot.argus, now(), ARGUS_OP_ACTIVE, 0); // that does not say what body it is
+        robot_run(&robot, 10000);
+        TEST_ASSERT_EQUAL_MESSAGE(2, robot_count_events(&robot, ARGUS_EV_SUBCLASS_UNKNOWN, 0), name);
+        expect_no_motion(name);
+        finish(name);
+    }
+}
+
+void test_the_operator_says_which_body_it_is(void) {
+    static const char *const names[] = {"powerbot-sh", "", "p3at-sh"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         start();
         robot.subclass = names[i];
+        robot.argus.config.robot = argus_robot_choice(argus_robot_default());
         TEST_ASSERT_TRUE_MESSAGE(robot_goal(&robot, 600, 0), names[i]);
         TEST_ASSERT_TRUE_MESSAGE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 60000), names[i]);
-        TEST_ASSERT_EQUAL_MESSAGE(1, robot_count_events(&robot, ARGUS_EV_SUBCLASS_UNKNOWN, 0), names[i]);
-        TEST_ASSERT_TRUE_MESSAGE(hypot(robot.x - 600, robot.y) <= 150, names[i]); // position unit 1 mm
+        TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_SUBCLASS_UNKNOWN, 0), names[i]);
+        TEST_ASSERT_TRUE_MESSAGE(hypot(robot.x - 600, robot.y) <= 150, names[i]);
         finish(names[i]);
+    }
+}
+
+// It is another robot: an operator says that it is to be driven.
+void test_a_known_robot_after_an_unknown_one_drives(void) {
+    start();
+    robot.subclass = "seekur";
+    TEST_ASSERT_TRUE(robot_goal(&robot, 600, 0));
+    robot_run(&robot, 5000);
+    expect_no_motion("seekur");
+    argus_link_lost(&robot.argus, now());
+    robot.subclass = "p3dx-sh";
+    argus_link_up(&robot.argus, now());
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_OTHER_ROBOT, 5000));
+    robot_run(&robot, 5000);
+    expect_no_motion("seekur, then p3dx-sh");
+    argus_operator(&robot.argus, now(), ARGUS_OP_ACTIVE, 0);
+    argus_operator(&robot.argus, now(), ARGUS_OP_GO, 0);
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 60000));
+    finish("seekur, then p3dx-sh");
+}
+
+// S5 for the body that answers: a P3-DX stops in time from 200 mm/s at 9600 baud, a PeopleBot has more before
+// its sonars.
+void test_settings_that_are_unsafe_for_the_robot_bar_it(void) {
+    start();
+    robot.subclass = "peoplebot-sh";
+    robot.argus.config.baud = 9600;
+    TEST_ASSERT_EQUAL(ARGUS_CONFIG_OK, argus_config_check(&robot.argus.config).fault);
+    TEST_ASSERT_TRUE(robot_goal(&robot, 600, 0));
+    robot_run(&robot, 10000);
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_ROBOT_UNSAFE, 0));
+    TEST_ASSERT_EQUAL(ARGUS_SONARS < 32, robot_count_events(&robot, ARGUS_EV_SONARS_BEYOND, 0));
+    expect_no_motion("peoplebot-sh");
+    finish("peoplebot-sh");
+}
+
+// The AmigoBot has eight sonars: the others are absent, whatever is listed, and none of them is given up.
+void test_a_sonar_that_the_robot_has_not_got_is_absent(void) {
+    for (int profile = 0; profile < 2; profile++) {
+        start();
+        robot.argus.config.profile = profile;
+        robot.subclass = "amigo-sh";
+        robot_run(&robot, 20000);
+        argus_status_t status;
+        argus_status(&robot.argus, &status);
+        TEST_ASSERT_EQUAL(8, status.sonars);
+        for (int i = 0; i < ARGUS_SONARS; i++) {
+            TEST_ASSERT_EQUAL(i >= 8, status.health[i] == ARGUS_ABSENT);
+            TEST_ASSERT_TRUE(i < 8 || (status.age_ms[i] == UINT32_MAX && status.reading_mm[i] == 0));
+            TEST_ASSERT_FALSE(i >= 8 && argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, i));
+        }
+        TEST_ASSERT_EQUAL(0, argus_out(&robot.argus.knowledge) >> 8);
+        for (int i = 0; i < robot.events; i++) {
+            TEST_ASSERT_TRUE(robot.event[i].sonar < 8);
+        }
+        finish("amigo-sh");
     }
 }
 

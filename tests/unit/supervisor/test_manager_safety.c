@@ -18,7 +18,7 @@ static const uint8_t E_STOP[] = {0xFA, 0xFB, 0x03, 0x37, 0x00, 0x37};
 
 // 2000 mm on every bearing, but for a post of 600 mm that only a look to the left of 25 degrees (world) sees.
 static int world_with_step(const robot_t *r, int sonar) {
-    const double bearing = remainder(robot_heading_deg(r) + argus_sonar_pose[sonar].heading_deg, 360);
+    const double bearing = remainder(robot_heading_deg(r) + argus_sonar_poses[sonar].heading_deg, 360);
     return fabs(bearing - 30) < 8 ? 1200 : 2000;
 }
 

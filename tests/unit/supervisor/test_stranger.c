@@ -16,7 +16,9 @@ static uint32_t now(void) {
 }
 
 void setUp(void) {
-    const argus_config_t config = robot_config();
+    argus_config_t config = robot_config();
+    config.baud = 0; // so that S5 allows these settings to every robot
+    config.step_mm = 100;
     robot_init(&robot, &config, UINT32_MAX - 9000); // the clock wraps
     robot.config = config_1;
     robot.config_count = sizeof config_1;

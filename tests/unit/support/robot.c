@@ -107,7 +107,7 @@ static double ray(const robot_t *robot, double x, double y, double angle) {
 }
 
 int robot_world_segments(const robot_t *robot, int sonar) {
-    const argus_sonar_pose_t *at = &argus_sonar_pose[sonar];
+    const argus_sonar_pose_t *at = &argus_sonar_poses[sonar];
     const double c = cos(robot->th), s = sin(robot->th);
     const double x = robot->x + at->x_mm * c - at->y_mm * s;
     const double y = robot->y + at->x_mm * s + at->y_mm * c;
@@ -419,8 +419,8 @@ static void obey(robot_t *robot, const uint8_t *packet, const robot_command_t *s
 // The nearest echo shown by a sonar that is relied on.
 static double nearest_shown_mm(const robot_t *robot) {
     double nearest = 1e9;
-    for (int i = 0; i < 16; i++) {
-        const argus_sonar_pose_t *at = &argus_sonar_pose[i];
+    for (int i = 0; i < 16 && i < ARGUS_SONARS; i++) {
+        const argus_sonar_pose_t *at = &argus_sonar_poses[i];
         if (!argus_is_out(&robot->argus.knowledge, i) && robot->argus.knowledge.sonar[i].reported &&
             robot->shown[i] >= 0 && robot->shown[i] < 5000) {
             nearest = fmin(nearest, hypot(at->x_mm + robot->shown[i] * cos(at->heading_deg * DEG),
@@ -432,7 +432,7 @@ static double nearest_shown_mm(const robot_t *robot) {
 
 static int nearest_ahead_mm(const robot_t *robot, unsigned blind) {
     int nearest = 5000;
-    for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
+    for (int i = 1; i <= 6; i++) {
         if ((blind >> i & 1u) == 0 && robot->shown[i] >= 0 && robot->shown[i] < nearest) {
             nearest = robot->shown[i];
         }
@@ -442,7 +442,7 @@ static int nearest_ahead_mm(const robot_t *robot, unsigned blind) {
 
 static void watch_move(robot_t *robot, int32_t mm) {
     const argus_knowledge_t *known = &robot->argus.knowledge;
-    const uint16_t blind = (argus_out(known) | argus_with_health(known, ARGUS_SUSPECT)) & ARGUS_FORWARD_MASK;
+    const uint16_t blind = (argus_out(known) | argus_with_health(known, ARGUS_SUSPECT)) & 0x7Eu;
     if (mm < -300 || mm > 5000 || mm == 0) {
         complain(robot, "MOVE out of range", mm);
     }
@@ -462,7 +462,7 @@ static void watch_move(robot_t *robot, int32_t mm) {
         complain(robot, "MOVE ahead with a bumper pressed", mm);
     }
     if (mm < 0) {
-        for (int i = 8; i < 16; i++) {
+        for (int i = 8; i < 16 && i < ARGUS_SONARS; i++) {
             const bool abeam = robot->argus.config.profile == ARGUS_PROFILE_ARGUS && (i == 8 || i == 15);
             const int clear_mm = abeam ? 250 : robot->argus.config.rear_clear_mm;
             if (argus_is_out(known, i) || robot->shown[i] <= clear_mm) {

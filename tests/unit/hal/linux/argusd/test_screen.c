@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "robot/robot.h"
 #include "screen.h"
 #include "tui_key.h"
 #include "unity.h"
@@ -40,7 +41,9 @@ void setUp(void) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         view.status.reading_mm[i] = (uint16_t)(1000 + i);
         view.status.health[i] = ARGUS_HEALTHY;
+        view.status.bearing_deg[i] = argus_robot_pose(argus_robot_default(), i)->heading_deg;
     }
+    view.status.sonars = ARGUS_SONARS;
     strcpy(view.link, "serial:/dev/ttyUSB0@9600");
     strcpy(view.name, "P3DX_0001");
     view.status.online = true;
@@ -141,11 +144,13 @@ void test_any_size_and_any_contents_are_drawn(void) {
         argus_status_t *const status = &view.status;
         status->online = status->active = view.link_up = status->plan.complete = (round & 1) != 0;
         status->plan.return_each = false;
+        status->sonars = (uint8_t)(rand() % (ARGUS_SONARS + 1));
+        view.sonar = (uint8_t)(rand() % ARGUS_SONARS);
         status->mode = ARGUS_MODE_CLOSED;
         status->mission = ARGUS_MISSION_FAILED;
         status->failure = ARGUS_IS_CATASTROPHIC;
         for (int i = 0; i < ARGUS_SONARS; i++) {
-            status->health[i] = (argus_health_t)(rand() % 6);
+            status->health[i] = (argus_health_t)(rand() % (ARGUS_ABSENT + 1));
             status->kind[i] = (argus_fault_kind_t)(rand() % 8);
         }
         view.name[ARGUS_NAME_MAX - 1] = view.link[VIEW_LINK_MAX - 1] = '\0';

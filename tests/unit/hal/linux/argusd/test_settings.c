@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "robot/robot.h"
 #include "settings.h"
 #include "unity.h"
 
@@ -108,6 +109,26 @@ void test_missing_and_unreadable_files(void) {
     TEST_ASSERT_EQUAL_STRING_LEN("/no/such/conf: cannot be opened: ", message, 33);
     TEST_ASSERT_FALSE(settings_load(&settings, "/tmp", message, sizeof message));
     TEST_ASSERT_EQUAL_STRING_LEN("/tmp: cannot be read: ", message, 22);
+}
+
+void test_a_robot_is_chosen_by_name(void) {
+    char why[200];
+    settings_default(&settings);
+    TEST_ASSERT_TRUE(settings_choose(&settings, SETTINGS_robot, "amigo-sh", "--robot", why, sizeof why));
+    TEST_ASSERT_EQUAL(argus_robot_choice(argus_robot_find("amigo-sh")), settings.config.robot);
+    TEST_ASSERT_FALSE(settings_choose(&settings, SETTINGS_robot, "amigo", "--robot", why, sizeof why));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "--robot amigo: choose one of by-subclass|p3dx-sh|"), why);
+    TEST_ASSERT_EQUAL(argus_robot_choice(argus_robot_find("amigo-sh")), settings.config.robot);
+}
+
+// The PeopleBot's body goes farther ahead of its sonars than the others.
+void test_s5_is_that_of_the_robot_chosen(void) {
+    char why[400];
+    settings_default(&settings);
+    TEST_ASSERT_TRUE(settings_check(&settings, why, sizeof why));
+    settings.config.robot = argus_robot_choice(argus_robot_find("peoplebot-sh"));
+    TEST_ASSERT_FALSE(settings_check(&settings, why, sizeof why));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "overhang 91 "), why);
 }
 
 void test_s5_is_refused_with_its_numbers(void) {

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// What the evidence takes for granted of the P3-DX, until it asks argus_knowledge_t.robot.
+#ifndef ARGUS_ROBOT_COMPAT_H
+#define ARGUS_ROBOT_COMPAT_H
+
+#include "robot/gen_p3dx.h"
+#include "robot/robot.h"
+
+#define argus_sonar_pose argus_sonar_poses // the default robot's rows come first
+#define ARGUS_FORWARD_MASK 0x7Eu
+#define ARGUS_FORWARD_FIRST 1
+#define ARGUS_FORWARD_LAST 6
+
+#endif

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// Looks up a robot, and what its masks and figures say.
+#include "robot/robot.h"
+
+#include <stddef.h>
+
+#define SUBCLASS_MAX 32
+
+const argus_robot_t *argus_robot_default(void) {
+    return &argus_robots[0];
+}
+
+const argus_robot_t *argus_robot_unknown(void) {
+    static const argus_robot_t unknown = {.front_mm = INT16_MAX,
+                                          .rear_mm = INT16_MAX,
+                                          .width_mm = INT16_MAX,
+                                          .swing_radius_mm = INT16_MAX,
+                                          .pitch_deg = 1,
+                                          .decel_mm_s2 = 1,
+                                          .track_mm = 1,
+                                          .dist_conv_um = 1000,
+                                          .no_echo_mm = 5000};
+    return &unknown;
+}
+
+static char lower(const char letter) {
+    return letter >= 'A' && letter <= 'Z' ? (char)(letter + ('a' - 'A')) : letter;
+}
+
+static bool is_name(const char *const said, const char *const name) {
+    for (size_t i = 0; i < SUBCLASS_MAX; i++) {
+        if (lower(said[i]) != name[i]) {
+            return false;
+        }
+        if (name[i] == '\0') {
+            return true;
+        }
+    }
+    return false;
+}
+
+const argus_robot_t *argus_robot_find(const char *const subclass) {
+    if (is_name(subclass, "p3dx")) {
+        return argus_robot_default();
+    }
+    for (int i = 0; i < ARGUS_ROBOTS; i++) {
+        if (is_name(subclass, argus_robots[i].name)) {
+            return &argus_robots[i];
+        }
+    }
+    return NULL;
+}
+
+const argus_robot_t *argus_robot_chosen(const int32_t choice) {
+    return choice >= 1 && choice <= ARGUS_ROBOTS ? &argus_robots[choice - 1] : NULL;
+}
+
+uint8_t argus_robot_choice(const argus_robot_t *const self) {
+    return argus_robot_is_known(self) ? (uint8_t)(self - argus_robots + 1) : 0;
+}
+
+bool argus_robot_is_known(const argus_robot_t *const self) {
+    return self->name[0] != '\0';
+}
+
+int argus_robot_sonars(const argus_robot_t *const self) {
+    return self->sonars < ARGUS_SONARS ? self->sonars : ARGUS_SONARS;
+}
+
+const argus_sonar_pose_t *argus_robot_pose(const argus_robot_t *const self, const int sonar) {
+    return &argus_sonar_poses[self->first_pose + sonar];
+}
+
+static argus_mask_t managed(const argus_robot_t *const self, const uint32_t mask) {
+    const int count = argus_robot_sonars(self);
+    const uint32_t all = count == 0 ? 0u : UINT32_MAX >> (32 - count);
+    return (argus_mask_t)(mask & all);
+}
+
+argus_mask_t argus_robot_all(const argus_robot_t *const self) {
+    return managed(self, UINT32_MAX);
+}
+
+argus_mask_t argus_robot_forward(const argus_robot_t *const self) {
+    return managed(self, self->forward_mask);
+}
+
+argus_mask_t argus_robot_ahead(const argus_robot_t *const self) {
+    return managed(self, self->ahead_mask);
+}
+
+argus_mask_t argus_robot_astern(const argus_robot_t *const self) {
+    return managed(self, self->astern_mask);
+}
+
+argus_mask_t argus_robot_flank(const argus_robot_t *const self) {
+    return managed(self, self->flank_mask);
+}
+
+argus_mask_t argus_robot_rear_flank(const argus_robot_t *const self) {
+    return managed(self, self->rear_flank_mask);
+}
+
+argus_mask_t argus_robot_array(const argus_robot_t *const self, const int array) {
+    uint32_t mask = 0;
+    for (int i = 0; i < argus_robot_sonars(self); i++) {
+        mask |= argus_robot_pose(self, i)->array == array ? 1u << i : 0u;
+    }
+    return (argus_mask_t)mask;
+}
+
+argus_mask_t argus_robot_polled(const argus_robot_t *const self) {
+    uint32_t mask = 0;
+    for (int array = 0; array < self->arrays; array++) {
+        const argus_mask_t its = argus_robot_array(self, array);
+        mask |= (its & argus_robot_forward(self)) != 0 ? its : 0u;
+    }
+    return (argus_mask_t)mask;
+}
+
+bool argus_robot_faces_forward(const argus_robot_t *const self, const int sonar) {
+    return (argus_robot_forward(self) >> sonar & 1u) != 0;
+}
+
+int32_t argus_robot_half_width_mm(const argus_robot_t *const self) {
+    return (self->width_mm + 1) / 2;
+}

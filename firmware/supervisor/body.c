@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Which robot has answered, and whether it may be driven: its body must be known and the settings safe for
+// it.
+#include "supervisor/body.h"
+
+#include "knowledge/config.h"
+#include "supervisor/faults.h"
+#include "supervisor/say.h"
+
+// The operator's word stands above what the robot says of itself.
+static const argus_robot_t *robot_met(const argus_t *const self) {
+    const argus_robot_t *const chosen = argus_robot_chosen(self->config.robot);
+    return chosen != NULL ? chosen : argus_robot_find(self->session.subclass);
+}
+
+static void say_beyond(argus_t *const self, const argus_robot_t *const robot) {
+    if (robot->sonars > ARGUS_SONARS) {
+        argus_say(self, ARGUS_EV_SONARS_BEYOND, ARGUS_NO_SONAR, robot->sonars);
+    }
+}
+
+// What was found out about the sonars of another body says nothing of this one's, but what its record says.
+static void forget_sonars(argus_t *const self) {
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if ((self->history.recorded >> i & 1u) == 0) {
+            argus_say_change(self, i, ARGUS_CHANGE_FORGOTTEN, ARGUS_KIND_NONE, 0);
+        }
+    }
+    argus_awareness_init(&self->awareness);
+}
+
+static void change_to(argus_t *const self, const argus_robot_t *const robot) {
+    if (self->knowledge.robot == robot) {
+        return;
+    }
+    argus_knowledge_set_robot(&self->knowledge, robot, self->now_ms);
+    forget_sonars(self);
+    argus_task_restart(&self->travel.task);
+    self->plan = argus_plan(robot, (argus_policy_t)self->config.policy, 0);
+    argus_replan(self);
+}
+
+bool argus_say_barred(argus_t *const self) {
+    if (!argus_robot_is_known(self->knowledge.robot)) {
+        argus_say(self, ARGUS_EV_SUBCLASS_UNKNOWN, ARGUS_NO_SONAR, 0);
+        return true;
+    }
+    const argus_config_report_t report = argus_config_check_for(&self->config, self->knowledge.robot);
+    if (report.fault != ARGUS_CONFIG_OK) {
+        const bool driving = report.fault == ARGUS_CONFIG_DRIVING;
+        argus_say(self, ARGUS_EV_ROBOT_UNSAFE, ARGUS_NO_SONAR,
+                  driving ? report.driving_mm : report.stepping_mm);
+    }
+    return report.fault != ARGUS_CONFIG_OK;
+}
+
+// One that was only barred by the robot before drives again with a robot that it may drive.
+void argus_meet_body(argus_t *const self) {
+    const argus_robot_t *const met = robot_met(self);
+    const argus_robot_t *const robot = met != NULL ? met : argus_robot_unknown();
+    const bool active = !self->orders.passive || self->orders.barred;
+    say_beyond(self, robot);
+    change_to(self, robot);
+    self->orders.barred = argus_say_barred(self) && active;
+    self->orders.passive = self->orders.locked || self->orders.barred || !active;
+}

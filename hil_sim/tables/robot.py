@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: MIT
+"""A robot as its table says, typed: body, motion, odometry, sonars."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, Final
+
+from hil_sim.errors import SimError
+from hil_sim.tables import load, robots
+
+DEFAULT_ROBOT: Final = "p3dx-sh"
+
+
+@dataclass(frozen=True)
+class BodyShape:
+    """The body as a rectangle round the centre of rotation, mm; bumpers: segments at each end, 0 for none."""
+
+    front_mm: float
+    rear_mm: float
+    half_mm: float
+    swing_mm: float
+    front_bumpers: int
+    rear_bumpers: int
+
+    @property
+    def reach_mm(self) -> float:
+        """From the centre of rotation to the furthest corner."""
+        return math.hypot(max(self.front_mm, self.rear_mm), self.half_mm)
+
+    @property
+    def corners(self) -> tuple[tuple[float, float], ...]:
+        """The corners of the rectangle: front left and right, rear right and left."""
+        front, rear, half = self.front_mm, self.rear_mm, self.half_mm
+        return (front, half), (front, -half), (-rear, -half), (-rear, half)
+
+
+@dataclass(frozen=True)
+class Mount:
+    """Where a sonar stands on the robot, where it looks, the index of its array, and what it guards."""
+
+    x_mm: float
+    y_mm: float
+    heading_deg: float
+    array: int
+    role: str
+
+
+@dataclass(frozen=True)
+class RobotTable:
+    """One robot; the files in hil_sim/tables/robots have the source of each figure.
+
+    motion, odometry: figures by their names in the file. orders: sonars of each array in their default firing order.
+    front, rear: sonars of the arrays of that place, or of a ring those that look that way. forward: the paper's
+    forward-facing six or what stands for them.
+    """
+
+    robot_class: str
+    subclass: str
+    name: str
+    serial: str
+    body: BodyShape
+    motion: dict[str, int]
+    odometry: dict[str, int]
+    cycle_ms: int
+    mounts: tuple[Mount, ...]
+    orders: tuple[tuple[int, ...], ...]
+    front: tuple[int, ...]
+    rear: tuple[int, ...]
+    forward: tuple[int, ...]
+
+    @property
+    def sonars(self) -> int:
+        """How many sonars it has, numbered from 0."""
+        return len(self.mounts)
+
+    @property
+    def refresh_ms(self) -> int:
+        """Time between two firings of one sonar by default."""
+        return self.cycle_ms * max(len(order) for order in self.orders)
+
+
+@cache
+def robot_table(name: str = DEFAULT_ROBOT) -> RobotTable:
+    """Return the table of a robot by its subclass; SimError for one that there is not.
+
+    >>> robot_table("p3dx-sh").sonars
+    16
+    """
+    if name not in robots():
+        raise SimError(f"no robot '{name}'; name one of {', '.join(robots())}")
+    table = load(f"robots/{name}")
+    identity, body, sonar = table["identity"], table["body"], table["sonar"]
+    mounts = tuple(
+        Mount(float(p["x_mm"]), float(p["y_mm"]), float(p["heading_deg"]), p["array"], p["role"])
+        for p in sonar["pose"]
+    )
+    front = tuple(n for n, mount in enumerate(mounts) if _is_front(mount, sonar["array"][mount.array]))
+    return RobotTable(
+        robot_class=identity["class"],
+        subclass=identity["subclass"],
+        name=identity["name"],
+        serial=identity["serial"],
+        body=BodyShape(
+            float(body["front_mm"]),
+            float(body["rear_mm"]),
+            body["width_mm"] / 2,
+            float(body["swing_radius_mm"]),
+            body["front_bumpers"],
+            body["rear_bumpers"],
+        ),
+        motion=table["motion"],
+        odometry=table["odometry"],
+        cycle_ms=sonar["cycle_ms"],
+        mounts=mounts,
+        orders=tuple(tuple(array["order"]) for array in sonar["array"]),
+        front=front,
+        rear=tuple(n for n in range(len(mounts)) if n not in front),
+        forward=tuple(sonar["forward"]),
+    )
+
+
+def _is_front(mount: Mount, array: dict[str, Any]) -> bool:
+    place = str(array["place"])
+    return mount.role != "astern" if place == "ring" else place.endswith("front")
