@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Fill the generated tables of SPEC.md from the C headers and the DBC file that define them."""
+"""Fill the generated parts of SPEC.md and DESIGN.md from the C headers and the DBC file that define them."""
 
 from __future__ import annotations
 
@@ -105,30 +105,85 @@ def can() -> str:
     return "\n".join([*frames, "", *signals])
 
 
-def filled(text: str) -> str:
-    """Return SPEC.md's text with its generated parts renewed."""
-    for mark, table in (("events", events()), ("config", config()), ("can", can())):
+def rules() -> str:
+    """Return the rules of the two profiles as a Markdown table."""
+    lines = ["| rule | `paper` | `argus` | meaning |", "|---|---|---|---|"]
+    for rule, paper, argus, *meaning in rows("knowledge/profile.h", "ARGUS_RULE_TABLE"):
+        lines.append(f"| {rule} | {paper} | {argus} | {_cell(meaning)} |")
+    return "\n".join(lines)
+
+
+def health() -> str:
+    """Return what may happen to a sonar as a Markdown table."""
+    states = {"U": "UNKNOWN", "H": "HEALTHY", "S": "SUSPECT", "D": "DISABLED", "P": "PROBATION"}
+    states |= {"T": "STALE", "A": "ABSENT"}
+    lines = ["| change | from | to | event | meaning |", "|---|---|---|---|---|"]
+    for name, before, after, event, *meaning in rows("knowledge/health.h", "ARGUS_CHANGE_TABLE"):
+        known = ", ".join(states[letter] for letter in before)
+        said = "" if event == "NONE" else event
+        lines.append(f"| {name} | {known} | {after} | {said} | {_cell(meaning)} |")
+    return "\n".join(lines)
+
+
+def reflexes() -> str:
+    """Return the reflexes in their order as a Markdown table."""
+    lines = ["| reflex | ends the SIP's reflexes | what it sees and does |", "|---|---|---|"]
+    for name, last, *meaning in rows("supervisor/reflexes.h", "ARGUS_REFLEX_TABLE"):
+        lines.append(f"| {name} | {'yes' if last == '1' else 'no'} | {_cell(meaning)} |")
+    return "\n".join(lines)
+
+
+def modes() -> str:
+    """Return the modes as a Markdown table, then the ways between them as a Mermaid diagram."""
+    flags = {"ARGUS_MAY_TURN": "turns", "ARGUS_MAY_TRANSLATE": "drives", "ARGUS_MAY_BREAK_OFF": "broken off"}
+    lines = ["| mode | may | ends by itself | meaning |", "|---|---|---|---|"]
+    for name, _, may, limit, after, *meaning in rows("supervisor/mode.h", "ARGUS_MODE_TABLE"):
+        shown = ", ".join(word for flag, word in flags.items() if flag in may)
+        end = "" if limit == "0" else f"after {limit} ms: {after}"
+        lines.append(f"| {name} | {shown} | {end} | {_cell(meaning)} |")
+    # ANY stands for itself: Mermaid draws no arrow from a state to one inside it.
+    diagram = ["```mermaid", "stateDiagram-v2", "    [*] --> OFFLINE", "    ANY : any mode in a session"]
+    for before, after, *when in rows("supervisor/mode.h", "ARGUS_WAY_TABLE"):
+        diagram.append(f"    {before} --> {after} : {', '.join(when)}")
+    return "\n".join([*lines, "", *diagram, "    CLOSED --> [*]", "```"])
+
+
+PARTS = {
+    "SPEC.md": {"events": events, "config": config, "can": can},
+    "DESIGN.md": {"modes": modes, "reflexes": reflexes, "rules": rules, "health": health},
+}
+
+
+def filled(name: str, text: str) -> str:
+    """Return the text of a document with its generated parts renewed."""
+    for mark, part in PARTS[name].items():
         pattern = rf"(<!-- {mark}: [^\n]*-->\n).*?(<!-- /{mark} -->)"
+        if not re.search(pattern, text, flags=re.DOTALL):
+            sys.exit(f"{name} has no part {mark}: put <!-- {mark}: --> and <!-- /{mark} --> where it belongs")
+        table = part()
         text = re.sub(pattern, lambda m, t=table: f"{m[1]}{t}\n{m[2]}", text, flags=re.DOTALL)  # type: ignore[misc]
     return text
 
 
 def main() -> int:
-    """Write SPEC.md, or with --check compare it."""
+    """Write the documents, or with --check compare them."""
     parser = argparse.ArgumentParser(description=__doc__, epilog="example: tools/gen_docs.py --check")
     parser.add_argument(
-        "--check", action="store_true", help="change nothing; exit 1 when SPEC.md is out of date"
+        "--check", action="store_true", help="change nothing; exit 1 when a document is out of date"
     )
     arguments = parser.parse_args()
-    path = ROOT / "SPEC.md"
-    old = path.read_text(encoding="utf-8")
-    new = filled(old)
-    if arguments.check:
+    stale = []
+    for name in PARTS:
+        path = ROOT / name
+        old = path.read_text(encoding="utf-8")
+        new = filled(name, old)
         if new != old:
-            print("SPEC.md is out of date: run tools/gen_docs.py", file=sys.stderr)
-        return int(new != old)
-    path.write_text(new, encoding="utf-8")
-    return 0
+            stale.append(name)
+        if not arguments.check:
+            path.write_text(new, encoding="utf-8")
+    if arguments.check and stale:
+        print(f"{', '.join(stale)}: out of date, run tools/gen_docs.py", file=sys.stderr)
+    return int(arguments.check and bool(stale))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The tolerance range and Algorithm 1 (paper: Fig. 7, eq. 1 and 2, Table II).
-#include "awareness/awareness.h"
+#include "awareness/disparity.h"
+
 #include "knowledge/angle.h"
 
 // tr = (a1 + a2) (1 / cos 20 - 1). With fewer digits some readings round to the wrong side.

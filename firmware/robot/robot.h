@@ -1,58 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A robot as const data: body, swing circle, where its sonars look and what each is for.
+// Finds the row of a robot, and answers what is asked of it.
 #ifndef ARGUS_ROBOT_H
 #define ARGUS_ROBOT_H
 
-#include "argus/argus.h"
-#include "robot/gen_robots.h"
-
-// Where and whither a sonar looks, robot frame, and who is mounted beside it.
-typedef struct {
-    int16_t x_mm;
-    int16_t y_mm;
-    int16_t heading_deg; // counter-clockwise, 0 = ahead
-    int8_t array;        // that fires it, from 0
-    int8_t left;         // neighbours of one that faces forward: sonar numbers, -1: none
-    int8_t right;
-} argus_sonar_pose_t;
-
-// One row of hil_sim/tables/robots, which has the source of each figure.
-typedef struct {
-    char name[ARGUS_ROBOT_NAME_MAX]; // the subclass that it announces at SYNC2
-    uint8_t first_pose;              // row of argus_sonar_poses
-    uint8_t sonars;                  // that it has; argus_robot_sonars() of them are managed
-    uint8_t arrays;
-    uint8_t front_bumpers; // segments, 0: no bumper
-    uint8_t rear_bumpers;
-    uint8_t forward_count;
-    uint8_t turns;
-    uint8_t forward[ARGUS_FORWARD_MAX]; // the forward-facing sonars, left to right; the paper's six
-    int16_t turn_deg[ARGUS_TURNS_MAX];  // that put one of them on the bearing of another: nearest to 0 first,
-                                        // of two the negative one
-    uint32_t forward_mask;
-    uint32_t ahead_mask; // who sees what the robot drives into, forward-facing or not
-    uint32_t astern_mask;
-    uint32_t flank_mask;      // who looks abeam from ahead of the centre
-    uint32_t rear_flank_mask; // ... from behind it
-    int16_t front_mm;         // from the centre of rotation to the ends of the body
-    int16_t rear_mm;
-    int16_t width_mm;
-    int16_t swing_radius_mm;     // to the farthest corner of the body
-    int16_t sonar_face_mm;       // x of the foremost transducers
-    int16_t rear_overhang_mm;    // of the body beyond those that look astern head-on
-    int16_t pitch_deg;           // between two neighbours of the forward-facing ones, mean
-    int16_t tolerance_centre_mm; // a2 of the paper's eq. 2
-    uint32_t tolerance_excess;   // 1 / cos of the widest angle between neighbours, less 1, in 1e-10
-    int16_t decel_mm_s2;         // that the robot brakes with unless told otherwise
-    int16_t track_mm;
-    int16_t dist_conv_um; // what one unit of position is
-    int16_t min_mm;       // readings are from here to no_echo_mm, which says that nothing was heard
-    int16_t no_echo_mm;
-    int16_t cone_deg;
-} argus_robot_t;
-
-extern const argus_robot_t argus_robots[ARGUS_ROBOTS];
-extern const argus_sonar_pose_t argus_sonar_poses[];
+#include "robot/body.h"
 
 // The robot that is assumed while none is known (p3dx-sh), and one of which nothing is known: no sonars.
 const argus_robot_t *argus_robot_default(void);

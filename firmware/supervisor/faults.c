@@ -75,7 +75,8 @@ void argus_replan(argus_t *const self) {
 }
 
 void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
-    ARGUS_ASSERT(kind != ARGUS_KIND_NONE);
+    ARGUS_ASSERT(kind != ARGUS_KIND_NONE &&
+                 argus_health_may(&self->knowledge.sonar[sonar], ARGUS_CHANGE_DISABLED));
     const argus_event_t said = argus_health_set(&self->knowledge.sonar[sonar], sonar, ARGUS_CHANGE_DISABLED,
                                                 kind, (int32_t)kind, self->now_ms);
     argus_evidence_agree_anew(&self->evidence, sonar); // what brings it back comes after this

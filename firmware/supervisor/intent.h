@@ -32,8 +32,8 @@ typedef enum {
     ARGUS_DO_LOOKED,       // they are over
     ARGUS_DO_LEAVE_OPEN,   // `sonars` are not to be looked at here
     ARGUS_DO_LOSE,         // `sonars` are dead, `silent` yield nothing: DISABLED
-    ARGUS_DO_WATCH,        // of `sonars`, outside 1..6, STALE ones report again, others do not any more
-    ARGUS_DO_REACH         // the goal is reached
+    ARGUS_DO_WATCH, // of `sonars`, that do not face forward, STALE ones report again, others do not any more
+    ARGUS_DO_REACH  // the goal is reached
 } argus_act_t;
 
 typedef enum { ARGUS_STOP_NONE, ARGUS_STOP_HALT, ARGUS_STOP_STOP, ARGUS_STOP_E_STOP } argus_stop_t;

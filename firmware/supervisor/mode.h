@@ -19,7 +19,7 @@
 #define ARGUS_MODE_TABLE(X)                                                                               \
     X(OFFLINE, nobody, 0, 0, OFFLINE, "no session with a robot")                                          \
     X(CHECKING, checking, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_BREAK_OFF, 0, CHECKING,           \
-      "at rest: every sonar of 1..6 reports before anything moves")                                       \
+      "at rest: every forward-facing sonar reports before anything moves")                                \
     X(VERIFYING, verifying, ARGUS_IN_SESSION | ARGUS_MAY_TURN, 0, VERIFYING,                              \
       "neighbours turn onto a suspect's bearing, or the robot looks round")                               \
     X(IDLE, idle, ARGUS_IN_SESSION | ARGUS_MAY_BREAK_OFF, 0, IDLE, "nothing to do")                       \

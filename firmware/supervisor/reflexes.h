@@ -7,15 +7,15 @@
 #include "supervisor/intent.h"
 
 // X(NAME, last, meaning): `last` 1: once it acts, those behind it are not asked in this SIP.
-#define ARGUS_REFLEX_TABLE(X)                                                               \
-    X(bumper, 1, "a new contact: E_STOP, then away from it")                                \
-    X(stall, 1, "a wheel stalls with no bumper pressed: STOP")                              \
-    X(others, 0, "a sonar outside 1..6 yields nothing any more, or does again (paper)")     \
-    X(battery, 0, "the battery is low: said once")                                          \
-    X(motors, 0, "the motors were cut, or are on again: STOP, then a full check")           \
-    X(dead, 1, "a dead or silent sonar ahead: STOP, DISABLED")                              \
-    X(object, 1, "an object in range along the motion: STOP, then looked at again at rest") \
-    X(swing, 1, "something within the swing circle in a turn: STOP (argus)")                \
+#define ARGUS_REFLEX_TABLE(X)                                                                         \
+    X(bumper, 1, "a new contact: E_STOP, then away from it")                                          \
+    X(stall, 1, "a wheel stalls with no bumper pressed: STOP")                                        \
+    X(others, 0, "a sonar that does not face forward yields nothing any more, or does again (paper)") \
+    X(battery, 0, "the battery is low: said once")                                                    \
+    X(motors, 0, "the motors were cut, or are on again: STOP, then a full check")                     \
+    X(dead, 1, "a dead or silent sonar ahead: STOP, DISABLED")                                        \
+    X(object, 1, "an object in range along the motion: STOP, then looked at again at rest")           \
+    X(swing, 1, "something within the swing circle in a turn: STOP (argus)")                          \
     X(flank, 1, "a wall beside the robot that its way slants into: STOP (argus)")
 
 typedef enum {

@@ -70,7 +70,9 @@ def circles(graph: Graph) -> set[frozenset[str]]:
     """Return the sets of files each of which leads to each other."""
     led = {file: reach(graph, file) for file in graph}
     return {
-        frozenset(other for other in led[file] if file in led.get(other, set())) for file in graph if file in led[file]
+        frozenset(other for other in led[file] if file in led.get(other, set()))
+        for file in graph
+        if file in led[file]
     }
 
 
