@@ -8,9 +8,10 @@
 
 // Walks the rotations of a plan. Like the verification it only says which heading it wants.
 typedef struct {
-    uint8_t index; // rotation at work
-    bool home;     // on the way back to the base heading
-    bool done;     // back on it, all rotations read
+    uint8_t index;       // rotation at work
+    argus_mask_t covers; // the disabled sonars that its plan is for
+    bool home;           // on the way back to the base heading
+    bool done;           // back on it, all rotations read
     int32_t base_cdeg;
     uint16_t smallest_mm; // smallest compensating reading so far
     int8_t smallest_of;   // the disabled sonar whose bearing showed it

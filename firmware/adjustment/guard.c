@@ -28,10 +28,12 @@ bool argus_guard_may_drive(const argus_plan_t *const plan) {
 }
 
 bool argus_guard_may_step(const argus_plan_t *const plan) {
+    ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
     return plan->disabled == 0 || plan->complete;
 }
 
 bool argus_guard_may_translate(const argus_guard_t *const self) {
+    ARGUS_ASSERT(self->knowledge->robot != NULL);
     const bool motors = (self->knowledge->flags & ARCOS_FLAG_MOTORS) != 0;
     return self->active && self->linked && motors && self->checked && self->bumpers == 0;
 }
@@ -49,6 +51,7 @@ int32_t argus_guard_ahead_mm(const argus_guard_t *const self) {
 }
 
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {
+    ARGUS_ASSERT(config->sonar_cycle_ms > 0);
     return 2u * SLOTS * (uint32_t)config->sonar_cycle_ms + SIP_MS;
 }
 
@@ -69,6 +72,7 @@ bool argus_guard_is_home(const argus_guard_t *const self, const int32_t base_cde
 }
 
 static int32_t swing_mm(const argus_guard_t *const self) {
+    ARGUS_ASSERT(self->knowledge->robot->swing_radius_mm >= 0);
     return self->knowledge->robot->swing_radius_mm + self->profile->swing_margin_mm;
 }
 
@@ -77,6 +81,7 @@ static int32_t remembered_mm(const argus_guard_t *const self, const int32_t back
 }
 
 int32_t argus_guard_nearest_mm(const argus_guard_t *const self, const int32_t back_mm) {
+    ARGUS_ASSERT(back_mm >= 0);
     const int32_t now_mm = argus_nearest_to_centre_mm(self->knowledge, back_mm);
     return self->profile->remembers ? argus_min(now_mm, remembered_mm(self, back_mm)) : now_mm;
 }
@@ -86,10 +91,12 @@ bool argus_guard_swing_is_blocked(const argus_guard_t *const self) {
 }
 
 bool argus_guard_may_turn(const argus_guard_t *const self) {
+    ARGUS_ASSERT(self->profile != NULL && self->echoes != NULL);
     return self->active && self->bumpers == 0 && !argus_guard_swing_is_blocked(self);
 }
 
 bool argus_guard_echo_blocks(const argus_guard_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge->sonars);
     return argus_echo_to_centre_mm(self->knowledge, sonar, 0) <= swing_mm(self);
 }
 
@@ -99,6 +106,7 @@ bool argus_guard_memory_blocks(const argus_guard_t *const self) {
 
 argus_touch_t argus_guard_touch(const argus_guard_t *const self, const int sonar, argus_point_t *const at,
                                 bool *const left) {
+    ARGUS_ASSERT(argus_usable(self->knowledge, sonar));
     const int32_t within_mm = self->knowledge->robot->swing_radius_mm + SWING_TURNING_MM;
     const argus_point_t echo = argus_echo_robot(self->knowledge, sonar);
     *at = argus_to_course(&self->knowledge->pose, echo);
@@ -134,6 +142,7 @@ bool argus_guard_rear_is_watched(const argus_guard_t *const self) {
 
 // Those that look abeam see what the robot passes by, not what it backs into.
 static int32_t rear_clear_mm(const argus_guard_t *const self, const int sonar) {
+    ARGUS_ASSERT(self->config->rear_clear_mm > 0);
     const int32_t clear_mm = self->config->rear_clear_mm;
     const bool abeam =
         self->profile->passes_abeam && (argus_robot_rear_flank(self->knowledge->robot) >> sonar & 1u) != 0;
@@ -170,6 +179,7 @@ static int32_t most_back_mm(const argus_guard_t *const self) {
 
 // The least way back, up to the most, after which a turn is free; where none is, the usual one.
 int32_t argus_guard_back_mm(const argus_guard_t *const self) {
+    ARGUS_ASSERT(self->config->backoff_mm > 0);
     const int32_t usual_mm = self->config->backoff_mm;
     if (!self->profile->backs_to_turn) {
         return usual_mm;

@@ -17,6 +17,7 @@ void argus_motion_init(argus_motion_t *const self) {
 }
 
 static void begin(argus_motion_t *const self, const argus_motion_kind_t kind, const uint32_t now_ms) {
+    ARGUS_ASSERT(kind != ARGUS_MOTION_NONE);
     self->kind = kind;
     self->issued_ms = now_ms;
     self->on_target = 0;
@@ -29,6 +30,7 @@ static void begin(argus_motion_t *const self, const argus_motion_kind_t kind, co
 // The robot takes headings in whole degrees of its own odometry frame.
 static int32_t robot_degrees(const argus_knowledge_t *const knowledge, const int32_t heading_cdeg) {
     const int32_t own = argus_angle_wrap(heading_cdeg - knowledge->heading_offset_cdeg);
+    ARGUS_ASSERT(own > -18000 && own <= 18000);
     return (own + (own >= 0 ? 50 : -50)) / 100;
 }
 
@@ -48,6 +50,7 @@ void argus_motion_steer(argus_outbox_t *const out, const argus_knowledge_t *cons
 
 void argus_motion_move(argus_motion_t *const self, argus_outbox_t *const out, const int32_t distance_mm,
                        const int32_t speed_mm_s, const uint32_t now_ms) {
+    ARGUS_ASSERT(speed_mm_s > 0);
     if (self->speed_mm_s != speed_mm_s) {
         argus_outbox_int(out, ARCOS_CMD_SETV, speed_mm_s);
         self->speed_mm_s = speed_mm_s;
@@ -81,6 +84,7 @@ static bool on_target(const argus_motion_t *const self, const argus_knowledge_t 
 
 static void again(argus_motion_t *const self, argus_outbox_t *const out,
                   const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
+    ARGUS_ASSERT(self->kind == ARGUS_MOTION_TURN && self->tries > 0);
     if (self->tries >= TRIES_MAX) {
         self->failed = true;
         return;

@@ -7,8 +7,10 @@
 #include "knowledge/angle.h"
 
 void argus_sweep_begin(argus_drive_t *const self, const argus_plan_t *const plan, const int32_t base_cdeg) {
+    ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
     memset(self, 0, sizeof *self);
     self->base_cdeg = base_cdeg;
+    self->covers = plan->disabled;
     self->smallest_mm = UINT16_MAX;
     self->smallest_of = -1;
     self->home = plan->count == 0;
@@ -21,6 +23,7 @@ int32_t argus_sweep_heading_cdeg(const argus_drive_t *const self, const argus_pl
 
 static void note_smallest(argus_drive_t *const self, const argus_plan_t *const plan,
                           const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(self->index < plan->count);
     const int16_t rotation = plan->rotation_deg[self->index];
     const argus_robot_t *const robot = knowledge->robot;
     for (int i = 0; i < robot->forward_count; i++) {
@@ -35,12 +38,14 @@ static void note_smallest(argus_drive_t *const self, const argus_plan_t *const p
 }
 
 static void next_rotation(argus_drive_t *const self, const argus_plan_t *const plan) {
+    ARGUS_ASSERT(self->index < plan->count);
     self->index++;
     self->home = plan->return_each || self->index >= plan->count;
 }
 
 bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan,
                       const argus_knowledge_t *const knowledge, const argus_mark_t *const mark) {
+    ARGUS_ASSERT(self->index <= ARGUS_ROTATIONS_MAX);
     if (self->done) {
         return false;
     }

@@ -70,6 +70,7 @@ static bool is_unproved(const argus_inquiry_t *const self, const argus_knowledge
 
 static bool aim(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                 const argus_evidence_t *const evidence, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < knowledge->sonars && self->aims < AIMS_MAX);
     self->aiming = argus_evidence_aim(evidence, knowledge, sonar, &self->aim_cdeg);
     self->aimed = (uint8_t)sonar;
     self->aims = (uint8_t)(self->aims + (self->aiming ? 1 : 0));
@@ -78,6 +79,7 @@ static bool aim(argus_inquiry_t *const self, const argus_knowledge_t *const know
 
 // Of those in `mask`, the one that the others contradict most; the lowest number of equals.
 static int most_contradicted(const argus_evidence_t *const evidence, const unsigned mask) {
+    ARGUS_ASSERT(mask != 0);
     int worst = -1;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const bool counts = (mask >> i & 1u) != 0;
@@ -125,6 +127,7 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
 
 static void set_look(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                      const uint8_t look) {
+    ARGUS_ASSERT(look <= LOOKS);
     self->look = look;
     self->look_cdeg = look < LOOK_BEHIND ? looks[look] * knowledge->robot->pitch_deg * 100 : 18000;
 }
@@ -150,6 +153,7 @@ void argus_inquiry_add(argus_inquiry_t *const self, const argus_knowledge_t *con
 }
 
 int32_t argus_inquiry_heading_cdeg(const argus_inquiry_t *const self) {
+    ARGUS_ASSERT(self->look <= LOOKS);
     if (self->returning || self->aiming) {
         return self->returning ? self->base_cdeg : self->aim_cdeg;
     }
@@ -169,6 +173,7 @@ static void mark_settled(argus_inquiry_t *const self, const argus_knowledge_t *c
 // Silent all along or hearing all along; where it does not agree with itself, more.
 _Static_assert(AIMED_MOST <= 8, "echo_bits has eight");
 static bool has_aimed_enough(const argus_inquiry_t *const self, const argus_evidence_t *const evidence) {
+    ARGUS_ASSERT(self->aiming);
     const unsigned more = (unsigned)(argus_evidence_taken(evidence, self->aimed) - self->aimed_from) & 0xFFu;
     const unsigned mask = (1u << argus_min((int32_t)more, AIMED_MOST)) - 1u;
     const unsigned heard = argus_evidence_echo_bits(evidence, self->aimed) & mask;
@@ -226,6 +231,7 @@ static bool is_one_deaf(const argus_knowledge_t *const knowledge) {
 
 static uint8_t next_look(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                          const argus_evidence_t *const evidence) {
+    ARGUS_ASSERT(self->look < LOOKS);
     const bool one_deaf = is_one_deaf(knowledge);
     const uint8_t next = (uint8_t)(self->look + 1);
     if (next >= FIRST_LOOKS && one_deaf && self->look < LOOK_BEHIND && self->suspects != 0) {
@@ -249,6 +255,7 @@ static bool is_in_doubt(const argus_inquiry_t *const self, const argus_evidence_
 
 bool argus_inquiry_step(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                         const argus_evidence_t *const evidence) {
+    ARGUS_ASSERT(self->active);
     self->suspects &= (argus_mask_t) ~(unsigned)argus_out(knowledge); // what is out is judged by other looks
     if (self->returning) {
         self->active = false;

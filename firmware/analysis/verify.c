@@ -15,6 +15,7 @@ void argus_verify_init(argus_verify_t *const self) {
 
 void argus_verify_begin(argus_verify_t *const self, const argus_robot_t *const robot, const int sonar,
                         const int32_t base_cdeg) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < argus_robot_sonars(robot));
     const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
     argus_verify_init(self);
     self->phase = ARGUS_VERIFY_RECHECK;
@@ -56,6 +57,7 @@ static argus_verify_phase_t first_turn(const argus_verify_t *const self) {
 }
 
 static void conclude(argus_verify_t *const self, const argus_result_t result) {
+    ARGUS_ASSERT(result != ARGUS_RESULT_NONE && self->result == ARGUS_RESULT_NONE);
     self->result = result;
     self->phase = ARGUS_VERIFY_RETURN;
 }
@@ -64,6 +66,7 @@ static void conclude(argus_verify_t *const self, const argus_result_t result) {
 // turn.
 static bool recheck(argus_verify_t *const self, const argus_knowledge_t *const knowledge,
                     const argus_mark_t *const mark) {
+    ARGUS_ASSERT(self->phase == ARGUS_VERIFY_RECHECK && self->sonar >= 0);
     unsigned wanted = 1u << self->sonar;
     self->witnesses = 0;
     for (unsigned side = LEFT; side <= RIGHT; side++) {
@@ -89,6 +92,7 @@ static bool recheck(argus_verify_t *const self, const argus_knowledge_t *const k
 // paper: line 19 adds before dividing and line 22 lacks the absolute value; here the mean is meant, and |mean
 // - v| > tr.
 static void judge(argus_verify_t *const self, const argus_robot_t *const robot) {
+    ARGUS_ASSERT((self->heard & ~self->witnesses & 3) == 0);
     int32_t sum = 0;
     int32_t count = 0;
     for (unsigned side = LEFT; side <= RIGHT; side++) {
@@ -129,6 +133,7 @@ static bool hear(argus_verify_t *const self, const argus_knowledge_t *const know
 
 bool argus_verify_step(argus_verify_t *const self, const argus_knowledge_t *const knowledge,
                        const argus_mark_t *const mark) {
+    ARGUS_ASSERT(self->phase <= ARGUS_VERIFY_DONE);
     switch (self->phase) {
     case ARGUS_VERIFY_RECHECK:
         return recheck(self, knowledge, mark);

@@ -44,6 +44,7 @@ static int32_t row_out_of_range(const argus_config_t *config) {
 }
 
 static uint32_t reaction_us(const argus_config_t *config, const argus_robot_t *robot) {
+    ARGUS_ASSERT(robot->arrays > 0 && config->sonar_cycle_ms > 0);
     const uint32_t sip_bytes = SIP_BARE + (uint32_t)robot->arrays * SIP_READINGS * ARCOS_SIP_SONAR_BYTES;
     const uint32_t bits = (sip_bytes + COMMAND_BYTES) * ARCOS_TIMING_BITS_PER_BYTE;
     const uint32_t wire_us = config->baud > 0 ? bits * US_PER_S / (uint32_t)config->baud : 0;
@@ -72,12 +73,14 @@ static void work_out_driving(argus_config_report_t *report, const argus_config_t
 }
 
 int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *robot) {
+    ARGUS_ASSERT(config->speed_mm_s > 0 && config->decel_mm_s2 > 0);
     argus_config_report_t report = {.fault = ARGUS_CONFIG_OK, .key = -1};
     work_out_driving(&report, config, robot);
     return report.travel_mm + report.brake_mm;
 }
 
 static int32_t sqrt_up(int32_t value) {
+    ARGUS_ASSERT(value >= 0);
     const uint32_t root = argus_sqrt((uint32_t)value);
     return (int32_t)(root * root < (uint32_t)value ? root + 1 : root);
 }
@@ -101,6 +104,7 @@ static int32_t reading_of(const argus_robot_t *robot, int32_t x2, int32_t y2) {
 }
 
 int32_t argus_config_reach_mm(const argus_robot_t *robot, int32_t step_mm) {
+    ARGUS_ASSERT(step_mm > 0 && robot->width_mm > 0);
     const int32_t front2 = 2 * (robot->front_mm + step_mm);
     const int32_t side2 = robot->width_mm;
     int32_t reach2 = 0;

@@ -27,6 +27,7 @@ static bool same_place(const argus_echo_t *const seen, const argus_point_t *cons
 
 // The slot that holds this place already, else a free one, else the oldest.
 static argus_echo_t *slot_for(argus_echoes_t *const self, const argus_point_t *const at) {
+    ARGUS_ASSERT(self->count <= ARGUS_POINTS_MAX && self->next < ARGUS_POINTS_MAX);
     for (uint16_t i = 0; i < self->count; i++) {
         if (same_place(&self->at[i], at)) {
             return &self->at[i];
@@ -68,12 +69,14 @@ static bool has_seen(const argus_echoes_t *const self, const argus_point_t *cons
 
 bool argus_echoes_have_seen(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                             const argus_point_t at, const int32_t within_mm) {
+    ARGUS_ASSERT(within_mm > 0);
     const argus_point_t centre = {knowledge->pose.x_mm, knowledge->pose.y_mm};
     return has_seen(self, &at, knowledge->sip_ms, &centre, within_mm);
 }
 
 static void remember(argus_echoes_t *const self, const argus_point_t at, const uint8_t sonar,
                      const uint32_t now_ms) {
+    ARGUS_ASSERT(sonar < ARGUS_SONARS || sonar == BY_TOUCH);
     if (argus_abs(at.x_mm) > INT16_MAX || argus_abs(at.y_mm) > INT16_MAX) {
         return;
     }
@@ -99,6 +102,7 @@ void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const
 }
 
 void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     uint16_t kept = 0;
     for (uint16_t i = 0; i < self->count; i++) {
         if (self->at[i].sonar != sonar) {
@@ -106,6 +110,7 @@ void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
         }
     }
     self->count = kept;
+    ARGUS_ASSERT(kept <= ARGUS_POINTS_MAX);
     self->next = 0;
 }
 
@@ -117,6 +122,7 @@ void argus_echoes_touched(argus_echoes_t *const self, const argus_point_t at, co
 // seen.
 void argus_echoes_bumped(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                          const uint32_t now_ms) {
+    ARGUS_ASSERT(knowledge->robot->front_bumpers <= 7);
     const argus_robot_t *const robot = knowledge->robot;
     const int segments = robot->front_bumpers;
     for (int segment = 1; segment <= segments; segment++) {
@@ -130,6 +136,7 @@ void argus_echoes_bumped(argus_echoes_t *const self, const argus_knowledge_t *co
 
 int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                               const int32_t heading_cdeg, const int32_t half_mm) {
+    ARGUS_ASSERT(half_mm > 0 && self->count <= ARGUS_POINTS_MAX);
     const int32_t c = argus_cos(heading_cdeg);
     const int32_t s = argus_sin(heading_cdeg);
     int32_t clear = INT32_MAX;
@@ -148,6 +155,7 @@ int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_know
 
 int32_t argus_echoes_nearest_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                                 const int32_t back_mm) {
+    ARGUS_ASSERT(back_mm >= 0 && self->count <= ARGUS_POINTS_MAX);
     const argus_point_t back = {-back_mm, 0};
     const argus_point_t centre = argus_to_course(&knowledge->pose, back);
     int32_t nearest = INT32_MAX;

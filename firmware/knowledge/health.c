@@ -10,6 +10,7 @@ typedef struct {
 } row_t;
 
 static const row_t *row_of(const argus_change_t change) {
+    ARGUS_ASSERT(change < ARGUS_CHANGES);
 #define ARGUS_EV_NONE 0
 #define ROW(name, from, to, event, meaning) {from, ARGUS_##to, ARGUS_EV_##event},
     static const row_t rows[] = {ARGUS_CHANGE_TABLE(ROW)};
@@ -19,6 +20,7 @@ static const row_t *row_of(const argus_change_t change) {
 }
 
 bool argus_health_may(const argus_sonar_t *const self, const argus_change_t change) {
+    ARGUS_ASSERT(self->health <= ARGUS_ABSENT);
     static const char initial[] = {'U', 'H', 'S', 'D', 'P', 'T', 'A'};
     const char *from = row_of(change)->from;
     const char now = initial[self->health];
@@ -30,6 +32,7 @@ bool argus_health_may(const argus_sonar_t *const self, const argus_change_t chan
 
 // A relapse: it fails again, in this mission or after one in which it failed.
 static void count_failure(argus_sonar_t *const s) {
+    ARGUS_ASSERT(s->health != ARGUS_DISABLED);
     const bool again = s->disabled_times > 0 || s->disabled_before > 0;
     s->relapses = (uint8_t)(s->relapses + (again && s->relapses < UINT8_MAX ? 1 : 0));
     s->disabled_times = (uint16_t)(s->disabled_times + (s->disabled_times < UINT16_MAX ? 1 : 0));
@@ -37,6 +40,8 @@ static void count_failure(argus_sonar_t *const s) {
 
 argus_event_t argus_health_set(argus_sonar_t *const self, const int sonar, const argus_change_t change,
                                const argus_fault_kind_t kind, const int32_t value, const uint32_t now_ms) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(kind <= ARGUS_KIND_INTERMITTENT);
     const row_t *const row = row_of(change);
     const bool same = change == ARGUS_CHANGE_NAMED || change == ARGUS_CHANGE_RENAMED; // it is known better
     if (row->to == ARGUS_DISABLED && self->health != ARGUS_DISABLED) {

@@ -24,6 +24,7 @@ void argus_knowledge_init(argus_knowledge_t *const self) {
 
 void argus_knowledge_set_robot(argus_knowledge_t *const self, const argus_robot_t *const robot,
                                const uint32_t now_ms) {
+    ARGUS_ASSERT(robot != NULL && argus_robot_sonars(robot) <= ARGUS_SONARS);
     self->robot = robot;
     self->sonars = (uint8_t)argus_robot_sonars(robot);
     for (int i = 0; i < ARGUS_SONARS; i++) {
@@ -66,6 +67,7 @@ static int32_t carry_mm(int32_t *const rest_um, const int32_t more_um) {
     const int32_t sum = *rest_um + more_um;
     const int32_t whole = sum / 1000;
     *rest_um = sum - whole * 1000;
+    ARGUS_ASSERT(*rest_um > -1000 && *rest_um < 1000);
     return whole;
 }
 
@@ -117,6 +119,7 @@ static void take_state(argus_knowledge_t *const self, const argus_sip_t *const s
 }
 
 static void take_reading(argus_knowledge_t *const self, const argus_sip_sonar_t *const from) {
+    ARGUS_ASSERT(from->number < self->sonars);
     argus_sonar_t *const sonar = &self->sonar[from->number];
     sonar->reading_mm = from->range_mm;
     sonar->reported = true;
@@ -144,6 +147,7 @@ static void take_readings(argus_knowledge_t *const self, const argus_sip_t *cons
 
 void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const sip,
                          const int32_t distance_um, const uint32_t now_ms) {
+    ARGUS_ASSERT(self->robot != NULL && distance_um > 0);
     if (self->sips > 0 && now_ms - self->sip_ms > GAP_MS) {
         self->online_ms = now_ms;
     }
@@ -156,6 +160,7 @@ void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const
 }
 
 argus_mask_t argus_with_health(const argus_knowledge_t *const self, const argus_health_t health) {
+    ARGUS_ASSERT(health <= ARGUS_ABSENT);
     unsigned mask = 0;
     for (int i = 0; i < self->sonars; i++) {
         mask |= self->sonar[i].health == health ? 1u << i : 0u;
@@ -168,6 +173,7 @@ argus_mask_t argus_disabled(const argus_knowledge_t *const self) {
 }
 
 bool argus_is_out(const argus_knowledge_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_health_t health = self->sonar[sonar].health;
     return health == ARGUS_DISABLED || health == ARGUS_PROBATION;
 }
@@ -177,6 +183,7 @@ argus_mask_t argus_out(const argus_knowledge_t *const self) {
 }
 
 bool argus_usable(const argus_knowledge_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_t *const s = &self->sonar[sonar];
     return s->reported && !argus_is_out(self, sonar) && s->reading_mm < self->robot->no_echo_mm;
 }
@@ -198,6 +205,7 @@ argus_mark_t argus_mark_now(const argus_knowledge_t *const self) {
 }
 
 bool argus_fresh_since(const argus_knowledge_t *const self, const int sonar, const argus_mark_t *const mark) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_t *const s = &self->sonar[sonar];
     const bool later = s->reported && (int32_t)(s->sip - mark->sip) > 0;
     return later && (!self->lists_all || (int32_t)(s->heard_ms - mark->from_ms) >= 0);
@@ -214,6 +222,7 @@ bool argus_all_fresh_since(const argus_knowledge_t *const self, const argus_mask
 }
 
 uint32_t argus_silent_ms(const argus_knowledge_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_t *const s = &self->sonar[sonar];
     const uint32_t since_online = self->sip_ms - self->online_ms;
     const uint32_t since_heard = self->sip_ms - s->heard_ms;
@@ -221,6 +230,7 @@ uint32_t argus_silent_ms(const argus_knowledge_t *const self, const int sonar) {
 }
 
 uint32_t argus_age_ms(const argus_knowledge_t *const self, const int sonar, const uint32_t now_ms) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->sonar[sonar].reported ? now_ms - self->sonar[sonar].heard_ms : UINT32_MAX;
 }
 
@@ -229,6 +239,7 @@ bool argus_at_rest(const argus_knowledge_t *const self) {
 }
 
 argus_point_t argus_echo_robot(const argus_knowledge_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < self->sonars);
     const argus_sonar_pose_t *const at = argus_robot_pose(self->robot, sonar);
     const int32_t range = self->sonar[sonar].reading_mm;
     const argus_point_t echo = {at->x_mm + range * argus_cos(at->heading_deg * 100) / ARGUS_TRIG_ONE,
@@ -245,6 +256,7 @@ argus_point_t argus_to_course(const argus_pose_t *const pose, const argus_point_
 }
 
 int32_t argus_echo_to_centre_mm(const argus_knowledge_t *const self, const int sonar, const int32_t back_mm) {
+    ARGUS_ASSERT(back_mm >= 0);
     const argus_point_t echo = argus_echo_robot(self, sonar);
     return argus_usable(self, sonar) ? argus_hypot(echo.x_mm + back_mm, echo.y_mm) : INT32_MAX;
 }

@@ -6,6 +6,7 @@
 #include "knowledge/config.h"
 #include "supervisor/faults.h"
 #include "supervisor/say.h"
+#include "supervisor/state.h"
 
 // The operator's word stands above what the robot says of itself.
 static const argus_robot_t *robot_met(const argus_t *const self) {
@@ -30,6 +31,7 @@ static void forget_sonars(argus_t *const self) {
 }
 
 static void change_to(argus_t *const self, const argus_robot_t *const robot) {
+    ARGUS_ASSERT(robot != NULL);
     if (self->knowledge.robot == robot) {
         return;
     }
@@ -56,6 +58,7 @@ bool argus_say_barred(argus_t *const self) {
 
 // One that was only barred by the robot before drives again with a robot that it may drive.
 void argus_meet_body(argus_t *const self) {
+    ARGUS_ASSERT(argus_is_open(self));
     const argus_robot_t *const met = robot_met(self);
     const argus_robot_t *const robot = met != NULL ? met : argus_robot_unknown();
     const bool active = !self->orders.passive || self->orders.barred;

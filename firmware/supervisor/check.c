@@ -31,6 +31,7 @@ static argus_intent_t verify(const argus_mask_t suspects) {
 }
 
 argus_intent_t argus_conclude_check(argus_t *const self) {
+    ARGUS_ASSERT(self->mode == ARGUS_MODE_CHECKING);
     const argus_mask_t suspects = (argus_mask_t)(find_suspects(self) | argus_open_suspects(self));
     const bool wanted = suspects != 0 || is_look_due(self);
     self->looks.check_ms = self->now_ms;
@@ -52,6 +53,7 @@ static bool is_due(const argus_t *const self) {
 
 // Who may not turn cannot verify: there a suspicion lasts as long as the disparity.
 static void drop_suspicions(argus_t *const self) {
+    ARGUS_ASSERT(self->orders.passive);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if (argus_robot_faces_forward(self->knowledge.robot, i) &&
             self->knowledge.sonar[i].health == ARGUS_SUSPECT && self->awareness.of[i].in_a_row == 0) {
@@ -66,6 +68,7 @@ static bool may_verify(const argus_t *const self) {
 }
 
 argus_intent_t argus_check_beside(argus_t *const self) {
+    ARGUS_ASSERT(self->mode != ARGUS_MODE_VERIFYING && self->mode != ARGUS_MODE_CHECKING);
     if (!is_due(self)) {
         return (argus_intent_t){0};
     }
@@ -95,6 +98,8 @@ static void say_witnesses(argus_t *const self) {
 }
 
 void argus_apply_verdict(argus_t *const self) {
+    ARGUS_ASSERT(self->verifying.verify.phase == ARGUS_VERIFY_DONE);
+    ARGUS_ASSERT(self->verifying.verify.result != ARGUS_RESULT_NONE);
     const argus_verify_t *const verify = &self->verifying.verify;
     const int sonar = verify->sonar;
     say_witnesses(self);

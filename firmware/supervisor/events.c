@@ -9,6 +9,7 @@ void argus_events_init(argus_events_t *self) {
 }
 
 void argus_events_push(argus_events_t *self, argus_event_t event) {
+    ARGUS_ASSERT(self->count <= ARGUS_EVENT_QUEUE && self->head < ARGUS_EVENT_QUEUE);
     if (self->count >= ARGUS_EVENT_QUEUE) {
         self->lost++;
         return;
@@ -18,6 +19,7 @@ void argus_events_push(argus_events_t *self, argus_event_t event) {
 }
 
 bool argus_events_pop(argus_events_t *self, argus_event_t *event) {
+    ARGUS_ASSERT(self->count <= ARGUS_EVENT_QUEUE && self->head < ARGUS_EVENT_QUEUE);
     if (self->count == 0) {
         return false;
     }

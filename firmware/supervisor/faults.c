@@ -9,6 +9,7 @@
 // The forward-facing sonars in use, and every other one of the rest of their arrays: these watch the swing
 // circle.
 static size_t add_half(const argus_t *const self, const int half, uint8_t *const order) {
+    ARGUS_ASSERT(half == 0 || half == 1);
     const argus_robot_t *const robot = self->knowledge.robot;
     const unsigned others = argus_robot_polled(robot) & ~(unsigned)argus_robot_forward(robot);
     size_t count = 0;
@@ -46,6 +47,7 @@ void argus_share_slots(argus_t *const self) {
 }
 
 static void say_plan(argus_t *const self) {
+    ARGUS_ASSERT(self->plan.count <= ARGUS_ROTATIONS_MAX);
     argus_say(self, ARGUS_EV_PLAN, ARGUS_NO_SONAR, self->plan.count);
     for (int i = 0; i < self->plan.count; i++) {
         argus_say(self, ARGUS_EV_PLAN_ROTATION, ARGUS_NO_SONAR, self->plan.rotation_deg[i]);
@@ -88,6 +90,7 @@ void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_
 }
 
 void argus_lose(argus_t *const self, const argus_mask_t dead, const argus_mask_t silent) {
+    ARGUS_ASSERT(((dead | silent) & argus_out(&self->knowledge)) == 0);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((dead >> i & 1u) != 0) {
             argus_say(self, ARGUS_EV_SONAR_DEAD, i, self->knowledge.sonar[i].reading_mm);
@@ -101,6 +104,7 @@ void argus_lose(argus_t *const self, const argus_mask_t dead, const argus_mask_t
 }
 
 void argus_watch(argus_t *const self, const argus_mask_t sonars) {
+    ARGUS_ASSERT((sonars & argus_robot_forward(self->knowledge.robot)) == 0);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((sonars >> i & 1u) == 0) {
             continue;
@@ -116,6 +120,7 @@ void argus_watch(argus_t *const self, const argus_mask_t sonars) {
 }
 
 void argus_flag_suspects(argus_t *const self, const argus_mask_t suspects) {
+    ARGUS_ASSERT((suspects & argus_out(&self->knowledge)) == 0);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((suspects >> i & 1u) != 0 && self->knowledge.sonar[i].health != ARGUS_SUSPECT) {
             argus_say_change(self, i, ARGUS_CHANGE_SUSPECTED, ARGUS_KIND_NONE,

@@ -19,6 +19,7 @@ size_t argus_record_save(const argus_t *const self, uint8_t *const buffer, const
 // What failed last time may have been repaired: it comes back on evidence, like one that failed in this
 // mission.
 static void put_on_probation(argus_t *const self, const argus_mask_t sonars) {
+    ARGUS_ASSERT(argus_rules(self)->evidence);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
         if ((sonars >> i & 1u) == 0 || argus_is_out(&self->knowledge, i)) {
@@ -32,11 +33,13 @@ static void put_on_probation(argus_t *const self, const argus_mask_t sonars) {
 }
 
 static void refuse(argus_t *const self, const argus_record_fault_t fault) {
+    ARGUS_ASSERT(fault != ARGUS_RECORD_OK);
     argus_say(self, ARGUS_EV_RECORD_IGNORED, ARGUS_NO_SONAR, (int32_t)fault);
 }
 
 // The robot was not known when the record was read.
 static void take_back(argus_t *const self) {
+    ARGUS_ASSERT(self->history.loaded);
     argus_record_forget(&self->knowledge, &self->evidence);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
@@ -50,6 +53,7 @@ static void take_back(argus_t *const self) {
 }
 
 void argus_meet_robot(argus_t *const self) {
+    ARGUS_ASSERT(argus_is_open(self));
     const uint32_t robot = robot_of(self);
     if (self->history.loaded && self->history.robot != 0 && self->history.robot != robot) {
         take_back(self);

@@ -13,6 +13,7 @@
 #define PROBATION_DOUBLINGS 4
 
 static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+    ARGUS_ASSERT(kind != ARGUS_KIND_NONE && !argus_is_out(&self->knowledge, sonar));
     const bool ahead = argus_robot_faces_forward(self->knowledge.robot, sonar);
     argus_disable(self, sonar, kind);
     argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
@@ -24,6 +25,7 @@ static argus_intent_t convict(argus_t *const self, const int sonar, const argus_
 
 // A suspect carries the kind that the evidence names so far.
 static void name(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = argus_evidence_renames(&self->evidence, sonar, s->kind);
     if (kind != ARGUS_KIND_NONE) {
@@ -52,6 +54,7 @@ static argus_intent_t judge_in(argus_t *const self, const int sonar) {
 
 // One that is DISABLED goes on PROBATION, one on PROBATION is healthy.
 static void restore(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const bool healthy = s->health == ARGUS_PROBATION;
     argus_evidence_agree_anew(&self->evidence, sonar);
@@ -62,6 +65,7 @@ static void restore(argus_t *const self, const int sonar) {
 
 // Probation grows with each relapse.
 static uint8_t agreements_wanted(const argus_sonar_t *const s) {
+    ARGUS_ASSERT(s->health == ARGUS_DISABLED || s->health == ARGUS_PROBATION);
     if (s->health == ARGUS_DISABLED) {
         return PROBATION_AGREED;
     }
@@ -81,6 +85,7 @@ static bool is_silent(const argus_t *const self, const int sonar) {
 }
 
 static void judge_out(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = kind_of_out(self, sonar);
     const argus_fault_kind_t named = argus_evidence_relapses(&self->evidence, sonar);
@@ -117,6 +122,7 @@ static bool has_fallen_silent(const argus_t *const self, const int sonar) {
 }
 
 argus_intent_t argus_judge(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(argus_rules(self)->evidence && sonar < self->knowledge.sonars);
     if ((self->orders.pinned >> sonar & 1u) != 0) {
         return (argus_intent_t){0};
     }
@@ -132,6 +138,7 @@ argus_intent_t argus_judge(argus_t *const self, const int sonar) {
 }
 
 void argus_foretell(argus_t *const self) {
+    ARGUS_ASSERT(argus_rules(self)->evidence);
     int32_t metres = 0;
     const int sonar = argus_evidence_news(&self->evidence, &self->knowledge, &metres);
     if (sonar >= 0) {

@@ -21,6 +21,7 @@ static bool was_cleared_within(const argus_t *const self, const int sonar, const
 }
 
 static bool is_held(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
     const int32_t doublings = argus_min(self->looks.hold[sonar].acquittals - 1, HOLD_DOUBLINGS);
     return was_cleared_within(self, sonar, HOLD_MM << (unsigned)argus_max(0, doublings));
 }
@@ -53,6 +54,7 @@ static argus_mask_t suspected(const argus_t *const self) {
 }
 
 argus_mask_t argus_worth_a_look(const argus_t *const self) {
+    ARGUS_ASSERT(argus_rules(self)->evidence);
     const argus_mask_t unseen = argus_evidence_unseen(&self->evidence, &self->knowledge, &self->config);
     const unsigned ahead = lost(self) | unseen;
     const bool spaced = self->now_ms - self->looks.last_ms >= SPACING_MS;
@@ -77,6 +79,7 @@ bool argus_routine_is_due(const argus_t *const self) {
 }
 
 static void acquit(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
     argus_hold_t *const hold = &self->looks.hold[sonar];
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     if (self->knowledge.odometer_mm - hold->odometer_mm > HOLD_FORGET_MM) {
@@ -91,6 +94,7 @@ static void acquit(argus_t *const self, const int sonar) {
 }
 
 void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
+    ARGUS_ASSERT((sonars & argus_out(&self->knowledge)) == 0);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((sonars >> i & 1u) != 0) {
             self->awareness.verified |= (argus_mask_t)(1u << i);
@@ -116,6 +120,7 @@ static void conclude(argus_t *const self, const int sonar) {
 }
 
 void argus_conclude_looks(argus_t *const self) {
+    ARGUS_ASSERT(!self->verifying.inquiry.active);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         conclude(self, i);
     }
@@ -126,5 +131,6 @@ void argus_conclude_looks(argus_t *const self) {
 }
 
 void argus_forget_acquittals(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
     self->looks.hold[sonar].acquittals = 0;
 }

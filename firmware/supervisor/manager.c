@@ -65,6 +65,7 @@ void argus_link_up(argus_t *const self, const uint32_t now_ms) {
 }
 
 static void go_offline(argus_t *const self) {
+    ARGUS_ASSERT(!argus_is_open(self));
     const uint32_t silence_ms = self->now_ms - self->session.heard_ms;
     self->checked = false;
     self->stalled = false;
@@ -84,6 +85,7 @@ void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
 }
 
 static void on_open(argus_t *const self) {
+    ARGUS_ASSERT(argus_is_open(self));
     argus_say(self, ARGUS_EV_SESSION_OPEN, ARGUS_NO_SONAR, self->session.attempts);
     argus_meet_body(self);
     argus_enable_motors(self);
@@ -178,6 +180,7 @@ static void handle(argus_t *const self, const unsigned bits) {
 
 void argus_receive(argus_t *const self, const uint32_t now_ms, const uint8_t *const bytes,
                    const size_t count) {
+    ARGUS_ASSERT(bytes != NULL || count == 0);
     self->now_ms = now_ms;
     size_t done = 0;
     for (;;) { // one packet may be complete without taking a byte more

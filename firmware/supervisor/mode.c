@@ -34,6 +34,7 @@ bool argus_mode_may(const argus_mode_t mode, const unsigned what) {
 }
 
 bool argus_mode_may_follow(const argus_mode_t from, const argus_mode_t to) {
+    ARGUS_ASSERT(from <= ARGUS_MODE_CLOSED && to <= ARGUS_MODE_CLOSED);
     static const uint16_t way[][2] = {
 #define WAY(from, to, when) {FROM_##from, ARGUS_MODE_##to},
         ARGUS_WAY_TABLE(WAY)

@@ -35,6 +35,7 @@ static void enter(argus_t *const self, const argus_mode_t mode) {
 
 // At rest on the base heading.
 static void enter_checking(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(self->config.suspect_readings > 0);
     argus_checking_t *const mine = &self->checking;
     const uint8_t rounds = mine->rounds; // of a check under way
     if (self->mode == ARGUS_MODE_CLOSING || self->mode == ARGUS_MODE_CLOSED) {
@@ -55,6 +56,7 @@ static void enter_checking(argus_t *const self, const argus_intent_t *const inte
 }
 
 static void enter_verifying(argus_t *const self, const argus_mask_t suspects) {
+    ARGUS_ASSERT(!self->orders.passive);
     argus_flag_suspects(self, suspects);
     argus_halt(self);
     if (!self->motion.settled && self->motion.kind != ARGUS_MOTION_STOP) {
@@ -65,6 +67,7 @@ static void enter_verifying(argus_t *const self, const argus_mask_t suspects) {
 
 // Waiting for the same thing again without having driven in between counts on.
 static void enter_waiting(argus_t *const self, const argus_wait_t why) {
+    ARGUS_ASSERT(why != ARGUS_WAIT_NONE);
     argus_waiting_t *const mine = &self->waiting;
     if (mine->last != why) {
         mine->last = why;
@@ -78,6 +81,7 @@ static void enter_waiting(argus_t *const self, const argus_wait_t why) {
 }
 
 static void enter_travel(argus_t *const self) {
+    ARGUS_ASSERT(self->checked && argus_guard_may_step(&self->plan));
     argus_begin_travel(&self->travel);
     self->base.taken = false;
     enter(self, argus_guard_may_drive(&self->plan) ? ARGUS_MODE_DRIVING : ARGUS_MODE_SWEEPING);
@@ -107,6 +111,7 @@ static void fail_mission(argus_t *const self) {
 }
 
 static argus_intent_t decide(argus_t *const self) {
+    ARGUS_ASSERT(self->mode != ARGUS_MODE_CLOSING && self->mode != ARGUS_MODE_CLOSED);
     const argus_guard_t guard = argus_guard(self);
     const bool jogging = self->travel.jog_mm > 0;
     const bool wants = jogging || (self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused);
@@ -132,6 +137,7 @@ static argus_intent_t decide(argus_t *const self) {
 // -----------------------------------------------------------------------------------------------
 
 static argus_intent_t turn(argus_t *const self, const int32_t heading_cdeg) {
+    ARGUS_ASSERT(!self->orders.passive && !self->orders.shutdown);
     const argus_guard_t guard = argus_guard(self);
     if (argus_guard_may_turn(&guard)) {
         argus_waiting_t *const waiting = &self->waiting;
@@ -150,6 +156,7 @@ static argus_intent_t turn(argus_t *const self, const int32_t heading_cdeg) {
 }
 
 static void back(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->mm > 0 && intent->speed_mm_s > 0);
     const argus_guard_t guard = argus_guard(self);
     if (!guard.active || !argus_guard_rear_is_clear(&guard)) {
         return;
@@ -161,6 +168,7 @@ static void back(argus_t *const self, const argus_intent_t *const intent) {
 
 // The robot will stand somewhere else: what was tried and verified here does not count there.
 static void move_on(argus_t *const self) {
+    ARGUS_ASSERT(self->checked);
     if (argus_rules(self)
             ->evidence) { // a suspect that could not be cleared is covered for like one that is out
         self->awareness.verified &= argus_with_health(&self->knowledge, ARGUS_SUSPECT);
@@ -192,6 +200,7 @@ static void go_ahead(argus_t *const self, const argus_intent_t *const intent) {
 
 // The point is remembered, or the rest of the turn would be tried at once.
 static argus_intent_t end_turn(argus_t *const self, const argus_point_t at) {
+    ARGUS_ASSERT(self->motion.kind == ARGUS_MOTION_TURN);
     const argus_guard_t guard = argus_guard(self);
     argus_echoes_touched(&self->echoes, at, self->now_ms);
     argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, argus_guard_nearest_mm(&guard, 0));
@@ -199,6 +208,7 @@ static argus_intent_t end_turn(argus_t *const self, const argus_point_t at) {
 }
 
 static argus_intent_t begin_looks(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(self->mode == ARGUS_MODE_VERIFYING && self->verifying.inquiry.active);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((intent->sonars >> i & 1u) != 0) {
             argus_say(self, ARGUS_EV_SONAR_VERIFYING, i, self->knowledge.sonar[i].reading_mm);
@@ -211,12 +221,14 @@ static argus_intent_t begin_looks(argus_t *const self, const argus_intent_t *con
 }
 
 static argus_intent_t lose(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT((intent->sonars | intent->silent) != 0);
     argus_lose(self, intent->sonars, intent->silent);
     const bool stays = self->mode == ARGUS_MODE_WAITING || self->mode == ARGUS_MODE_CLOSING;
     return (argus_intent_t){.act = stays ? ARGUS_DO_NOTHING : ARGUS_DO_CHECK};
 }
 
 static argus_intent_t reach(argus_t *const self) {
+    ARGUS_ASSERT(self->mission == ARGUS_MISSION_RUNNING);
     self->mission = ARGUS_MISSION_REACHED;
     argus_say(self, ARGUS_EV_GOAL_REACHED, ARGUS_NO_SONAR,
               argus_task_goal_mm(&self->travel.task, &self->knowledge));
@@ -224,6 +236,7 @@ static argus_intent_t reach(argus_t *const self) {
 }
 
 static void stop(argus_t *const self, const argus_stop_t how) {
+    ARGUS_ASSERT(how <= ARGUS_STOP_E_STOP);
     switch (how) {
     case ARGUS_STOP_HALT:
         argus_halt(self);
@@ -241,6 +254,7 @@ static void stop(argus_t *const self, const argus_stop_t how) {
 }
 
 static void close_way(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->way <= ARGUS_WAY_FORGIVE);
     argus_task_t *const task = &self->travel.task;
     if (intent->bumped) {
         argus_echoes_bumped(&self->echoes, &self->knowledge, self->now_ms);
@@ -262,6 +276,7 @@ static void close_way(argus_t *const self, const argus_intent_t *const intent) {
 }
 
 static void take_base(argus_t *const self, const argus_base_do_t what) {
+    ARGUS_ASSERT(what <= ARGUS_BASE_DROP);
     argus_base_t *const base = &self->base;
     if (what == ARGUS_BASE_RENEW || (what == ARGUS_BASE_TAKE && !base->taken)) {
         base->cdeg = self->knowledge.pose.heading_cdeg;
@@ -283,6 +298,7 @@ static void prepare(argus_t *const self, const argus_intent_t *const intent) {
 }
 
 static argus_intent_t perform_motion(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->act != ARGUS_DO_NOTHING);
     switch ((argus_act_t)intent->act) {
     case ARGUS_DO_HOLD:
         argus_hold(self);
@@ -311,6 +327,7 @@ static argus_intent_t perform_motion(argus_t *const self, const argus_intent_t *
 }
 
 static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->act >= ARGUS_DO_CHECK && intent->act <= ARGUS_DO_END);
     switch ((argus_act_t)intent->act) {
     case ARGUS_DO_CHECK:
         enter_checking(self, intent);
@@ -339,6 +356,7 @@ static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *
 }
 
 static argus_intent_t perform_judgement(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->act >= ARGUS_DO_CHECK_BESIDE && intent->act <= ARGUS_DO_REACH);
     switch ((argus_act_t)intent->act) {
     case ARGUS_DO_CHECK_BESIDE:
         return argus_check_beside(self);
@@ -468,6 +486,7 @@ void argus_run_mode(argus_t *const self) {
 }
 
 static void close_when_at_rest(argus_t *const self) {
+    ARGUS_ASSERT(self->orders.shutdown);
     const bool rested = argus_at_rest(&self->knowledge) && self->motion.settled;
     const bool overdue = self->now_ms - self->since_ms >= argus_mode_limit_ms(self->mode);
     const bool leaving = self->session.state == ARGUS_SESSION_LEAVING;

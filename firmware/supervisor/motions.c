@@ -56,6 +56,7 @@ void argus_turn_to(argus_t *const self, const int32_t heading_cdeg) {
 }
 
 void argus_move(argus_t *const self, const int32_t distance_mm, const int32_t speed_mm_s) {
+    ARGUS_ASSERT(speed_mm_s > 0 && distance_mm != INT32_MIN);
     ARGUS_ASSERT(!self->orders.passive);
     argus_motion_move(&self->motion, &self->session.outbox, distance_mm, speed_mm_s, self->now_ms);
 }

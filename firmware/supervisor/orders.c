@@ -137,6 +137,7 @@ static void obey_for_all(argus_t *const self, const argus_op_t op, const int32_t
 // One in use becomes a suspect that the next health check looks at; one that is out begins its probation
 // anew, with its relapses forgiven, since nothing but evidence brings it back.
 static void begin_retest(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(argus_rules(self)->evidence && (self->orders.pinned >> sonar & 1u) == 0);
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_mask_t bit = (argus_mask_t)(1u << sonar);
     argus_evidence_forget(&self->evidence, sonar);
@@ -174,6 +175,7 @@ static void retest(argus_t *const self, const int sonar) {
 }
 
 static void pin(argus_t *const self, const int sonar, const bool on) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
     const unsigned bit = 1u << sonar;
     self->orders.pinned = (argus_mask_t)(on ? self->orders.pinned | bit : self->orders.pinned & ~bit);
     argus_say(self, ARGUS_EV_SONAR_PINNED, sonar, on ? 1 : 0);

@@ -114,6 +114,7 @@ static argus_intent_t sees_motors(const argus_t *const self, const argus_alarm_t
 
 static argus_intent_t sees_dead(const argus_t *const self, const argus_alarm_t *const alarm,
                                 argus_reflexes_t *const mine) {
+    ARGUS_ASSERT((alarm->dead & alarm->silent & argus_out(&self->knowledge)) == 0);
     (void)self;
     (void)mine;
     if ((alarm->dead | alarm->silent) == 0) {
@@ -127,6 +128,7 @@ static argus_intent_t sees_dead(const argus_t *const self, const argus_alarm_t *
 // found there.
 static argus_intent_t sees_object(const argus_t *const self, const argus_alarm_t *const alarm,
                                   argus_reflexes_t *const mine) {
+    ARGUS_ASSERT(alarm->object == 0 || alarm->object_sonar >= 0);
     const bool backing = self->mode == ARGUS_MODE_BACKING;
     (void)mine;
     if (alarm->object == 0 || !argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE) ||
@@ -146,6 +148,7 @@ static argus_intent_t sees_object(const argus_t *const self, const argus_alarm_t
 // place is not.
 static bool note_near(const argus_t *const self, argus_reflexes_t *const mine, const int sonar,
                       argus_point_t *const at) {
+    ARGUS_ASSERT(argus_rules(self)->watches_turn);
     const argus_guard_t guard = argus_guard(self);
     bool left = false;
     const argus_touch_t touch = argus_guard_touch(&guard, sonar, at, &left);

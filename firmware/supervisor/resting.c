@@ -140,6 +140,7 @@ static argus_intent_t look(const argus_t *const self, argus_inquiry_t *const min
 }
 
 argus_intent_t argus_run_verifying(const argus_t *const self, argus_verifying_t *const mine) {
+    ARGUS_ASSERT(self->verifying.verify.phase <= ARGUS_VERIFY_DONE);
     return argus_rules(self)->evidence ? look(self, &mine->inquiry) : verify(self, &mine->verify);
 }
 

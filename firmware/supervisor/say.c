@@ -3,6 +3,7 @@
 #include "supervisor/say.h"
 
 void argus_say_event(argus_t *const self, argus_event_t event) {
+    ARGUS_ASSERT(event.id == 0 || event.sonar >= ARGUS_NO_SONAR);
     event.t_ms = self->now_ms;
     event.state = (uint8_t)self->failure;
     if (event.id != 0) {
@@ -11,6 +12,7 @@ void argus_say_event(argus_t *const self, argus_event_t event) {
 }
 
 void argus_say(argus_t *const self, const argus_event_id_t id, const int sonar, const int32_t value) {
+    ARGUS_ASSERT(sonar >= ARGUS_NO_SONAR && sonar < ARGUS_SONARS);
     argus_say_event(self, (argus_event_t){.id = (uint16_t)id, .sonar = (int8_t)sonar, .value = value});
 }
 

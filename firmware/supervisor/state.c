@@ -71,6 +71,7 @@ int argus_nearest_ahead(const argus_t *const self) {
 }
 
 argus_intent_t argus_turn_failed(const argus_t *const self) {
+    ARGUS_ASSERT(self->motion.failed);
     const int32_t off_cdeg =
         argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, self->motion.target_cdeg);
     return (argus_intent_t){.event = ARGUS_EV_TURN_FAILED,
@@ -81,6 +82,7 @@ argus_intent_t argus_turn_failed(const argus_t *const self) {
 }
 
 bool argus_is_home(const argus_t *const self, const bool again, argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent != NULL);
     *intent = (argus_intent_t){0};
     if (self->orders.passive) {
         return true;
@@ -110,6 +112,7 @@ bool argus_is_home(const argus_t *const self, const bool again, argus_intent_t *
 
 // It is healthy and shows no gaps: what is there it hears again.
 static bool is_steady(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
     return self->knowledge.sonar[sonar].health == ARGUS_HEALTHY &&
            !argus_evidence_shows_gaps(&self->evidence, sonar);
 }
@@ -132,6 +135,7 @@ static bool may_be_crosstalk(const argus_t *const self, const argus_guard_t *con
 
 // A few times backing away may help.
 argus_intent_t argus_instead_of_turn(const argus_t *const self) {
+    ARGUS_ASSERT(argus_is_active(self));
     const argus_guard_t guard = argus_guard(self);
     if (may_be_crosstalk(self, &guard)) {
         return (argus_intent_t){.act = ARGUS_DO_CHECK, .again = true};

@@ -45,6 +45,7 @@ static int32_t off_bearing(const argus_t *const self, const argus_travel_t *cons
 }
 
 static int32_t left_mm(const argus_t *const self, const argus_travel_t *const mine) {
+    ARGUS_ASSERT(mine->jog_mm >= 0);
     return mine->jog_mm > 0 ? mine->jog_mm : argus_task_leg_mm(&mine->task, &self->knowledge);
 }
 
@@ -158,6 +159,7 @@ static bool is_aimed(const argus_t *const self, argus_travel_t *const mine, argu
 // The event, a stop if it moves, and another heading after a full check.
 static argus_intent_t blocked(argus_travel_t *const mine, const argus_event_id_t event, const int sonar,
                               const int32_t reading_mm) {
+    ARGUS_ASSERT(reading_mm >= 0);
     argus_intent_t intent = check(true);
     intent.event = (uint16_t)event;
     intent.sonar = (int8_t)sonar;
@@ -208,6 +210,7 @@ static argus_intent_t step(const argus_t *const self, const int32_t way_mm) {
 }
 
 argus_intent_t argus_run_driving(const argus_t *const self, argus_travel_t *const mine) {
+    ARGUS_ASSERT(mine->unsaid <= ARGUS_WAYPOINTS_MAX);
     const argus_guard_t guard = argus_guard(self);
     argus_intent_t intent = cannot_move();
     if (!argus_guard_may_translate(&guard) || is_called_away(self, mine, &intent)) {
@@ -252,12 +255,24 @@ static argus_intent_t judge_sweep(const argus_t *const self, argus_travel_t *con
     return step_ahead(self, mine);
 }
 
+static argus_intent_t begin_sweep(const argus_t *const self, argus_travel_t *const mine) {
+    argus_sweep_begin(&mine->drive, &self->plan, argus_base_cdeg(self));
+    mine->swept = false;
+    argus_intent_t intent = turn(argus_sweep_heading_cdeg(&mine->drive, &self->plan));
+    intent.base = ARGUS_BASE_TAKE;
+    return intent;
+}
+
 static argus_intent_t sweep_on(const argus_t *const self, argus_travel_t *const mine) {
     if (self->motion.failed) {
         return check(true);
     }
     if (!self->motion.settled) {
         return nothing();
+    }
+    if (mine->drive.covers !=
+        self->plan.disabled) { // S1: the plan has changed, and so have the bearings to see
+        return begin_sweep(self, mine);
     }
     if (mine->drive.done) {
         const bool read =
@@ -269,14 +284,6 @@ static argus_intent_t sweep_on(const argus_t *const self, argus_travel_t *const 
         return turn(argus_sweep_heading_cdeg(&mine->drive, &self->plan));
     }
     return nothing();
-}
-
-static argus_intent_t begin_sweep(const argus_t *const self, argus_travel_t *const mine) {
-    argus_sweep_begin(&mine->drive, &self->plan, argus_base_cdeg(self));
-    mine->swept = false;
-    argus_intent_t intent = turn(argus_sweep_heading_cdeg(&mine->drive, &self->plan));
-    intent.base = ARGUS_BASE_TAKE;
-    return intent;
 }
 
 argus_intent_t argus_run_sweeping(const argus_t *const self, argus_travel_t *const mine) {

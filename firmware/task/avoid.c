@@ -52,6 +52,7 @@ static void forgive_when_moved(argus_task_t *const self, const argus_knowledge_t
 }
 
 static bool is_refused(const argus_task_t *const self, const int32_t heading_cdeg) {
+    ARGUS_ASSERT(self->refused <= sizeof self->refused_cdeg / sizeof self->refused_cdeg[0]);
     if (self->slanted && argus_angle_abs_diff(self->slanted_cdeg, heading_cdeg) < REFUSED_CDEG) {
         return true;
     }
@@ -91,6 +92,7 @@ static int detour_size(const argus_task_t *const self, const int step, const int
 // Nearest to the bearing first.
 static bool find_detour(argus_task_t *const self, const around_t *const around, const int32_t half_mm,
                         const int32_t bearing_cdeg, int32_t *const heading_cdeg) {
+    ARGUS_ASSERT(half_mm > 0 && self->side >= -1 && self->side <= 1);
     const corridor_t wanted = {half_mm, corridor_mm(around->knowledge)};
     int8_t side = self->side != 0 ? self->side : 1;
     for (int i = 2; i < 2 * (STEPS + OTHER_SIDE_STEPS + 1); i++) {
@@ -120,6 +122,7 @@ static void lead_ahead(argus_task_t *const self, const argus_knowledge_t *const 
 
 // The waypoint itself when the corridor to it is free, else the best detour of that width.
 static bool choose_corridor(argus_task_t *const self, const around_t *const around, const int32_t half_mm) {
+    ARGUS_ASSERT(self->next < self->count);
     lead_to(self, self->waypoint[self->next]);
     const int32_t bearing = argus_task_bearing_cdeg(self, around->knowledge);
     const corridor_t direct = {half_mm, argus_min(corridor_mm(around->knowledge),
@@ -140,6 +143,7 @@ static bool choose_corridor(argus_task_t *const self, const around_t *const arou
 
 bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                        const argus_echoes_t *const echoes) {
+    ARGUS_ASSERT(self->next <= self->count);
     const around_t around = {knowledge, echoes};
     if (self->next >= self->count) {
         return false;
@@ -157,6 +161,7 @@ bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const 
 
 bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                        const argus_echoes_t *const echoes) {
+    ARGUS_ASSERT(self->count <= ARGUS_WAYPOINTS_MAX);
     const around_t around = {knowledge, echoes};
     const int32_t heading = knowledge->pose.heading_cdeg;
     const corridor_t wanted = {argus_guard_straight_half_mm(knowledge->robot), corridor_mm(knowledge)};

@@ -45,11 +45,13 @@ static int32_t distance_mm(const argus_knowledge_t *const knowledge, const argus
 }
 
 int32_t argus_task_goal_mm(const argus_task_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(self->count <= ARGUS_WAYPOINTS_MAX);
     return self->count == 0 ? 0 : distance_mm(knowledge, &self->waypoint[self->count - 1]);
 }
 
 bool argus_task_progress(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                          const argus_config_t *const config, int *const passed) {
+    ARGUS_ASSERT(self->next <= self->count && self->count <= ARGUS_WAYPOINTS_MAX);
     *passed = 0;
     while (self->next < self->count) {
         const bool last = self->next + 1 == self->count;

@@ -142,3 +142,21 @@ void test_a_turn_that_s7_forbids_is_not_commanded(void) {
     TEST_ASSERT_NOT_EQUAL(ARGUS_MOTION_TURN, copy.motion.kind);
     TEST_ASSERT_TRUE(copy.mode == ARGUS_MODE_BACKING || copy.mode == ARGUS_MODE_WAITING);
 }
+
+void test_s1_a_plan_that_changes_under_a_sweep_begins_it_anew(void) {
+    begin(2); // under `paper` a reading of 5000 is dead
+    robot.world = robot_world_far;
+    robot.fault[3] = ROBOT_OFF;
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_SWEEPING, 30000));
+    for (int i = 0; i < 1000 && !(robot.argus.base.taken && robot.argus.motion.settled); i++) {
+        robot_tick(&robot);
+    }
+    memcpy(&copy, &robot.argus, sizeof copy);
+    copy.plan = argus_plan(copy.knowledge.robot, ARGUS_POLICY_PAPER, 1u << 2 | 1u << 3);
+    copy.travel.drive.index = 1;
+    const argus_intent_t intent = argus_run_sweeping(&copy, &copy.travel);
+    TEST_ASSERT_EQUAL(ARGUS_DO_TURN, intent.act);
+    TEST_ASSERT_EQUAL(copy.base.cdeg + copy.plan.rotation_deg[0] * 100, intent.cdeg);
+    TEST_ASSERT_EQUAL(0, copy.travel.drive.index);
+    TEST_ASSERT_EQUAL_HEX16(copy.plan.disabled, copy.travel.drive.covers);
+}
