@@ -14,7 +14,7 @@
 
 #define WORLDS 40u
 #define WORLD_MS 60000u
-#define LOOK_MS 500u
+#define LOOK_MS 100u
 
 static robot_t robot;
 static argus_t copy;
@@ -53,22 +53,45 @@ static void expect_nothing_else(const void *at, size_t size, const char *who) {
     TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&robot.argus, &copy, sizeof copy, text);
 }
 
-static void try_all_modes(void) {
+static void try_mode(void) {
     memcpy(&copy, &robot.argus, sizeof copy);
-    argus_run_checking(&copy, &copy.checking);
-    expect_nothing_else(&copy.checking, sizeof copy.checking, "checking");
-    argus_run_verifying(&copy, &copy.verifying);
-    expect_nothing_else(&copy.verifying, sizeof copy.verifying, "verifying");
-    argus_run_idle(&copy);
-    argus_run_backing(&copy);
-    expect_nothing_else(&copy, 0, "idle, backing");
-    argus_run_waiting(&copy, &copy.waiting);
-    argus_go_on_waiting(&copy, &copy.waiting);
-    expect_nothing_else(&copy.waiting, sizeof copy.waiting, "waiting");
-    argus_run_driving(&copy, &copy.travel);
-    argus_run_sweeping(&copy, &copy.travel);
-    argus_run_stepping(&copy, &copy.travel);
-    expect_nothing_else(&copy.travel, sizeof copy.travel, "travel");
+    switch ((int)robot.argus.mode) {
+    case ARGUS_MODE_CHECKING:
+        argus_run_checking(&copy, &copy.checking);
+        expect_nothing_else(&copy.checking, sizeof copy.checking, "checking");
+        break;
+    case ARGUS_MODE_VERIFYING:
+        argus_run_verifying(&copy, &copy.verifying);
+        expect_nothing_else(&copy.verifying, sizeof copy.verifying, "verifying");
+        break;
+    case ARGUS_MODE_IDLE:
+        argus_run_idle(&copy);
+        expect_nothing_else(&copy, 0, "idle");
+        break;
+    case ARGUS_MODE_BACKING:
+        argus_run_backing(&copy);
+        expect_nothing_else(&copy, 0, "backing");
+        break;
+    case ARGUS_MODE_WAITING:
+        argus_run_waiting(&copy, &copy.waiting);
+        argus_go_on_waiting(&copy, &copy.waiting);
+        expect_nothing_else(&copy.waiting, sizeof copy.waiting, "waiting");
+        break;
+    case ARGUS_MODE_DRIVING:
+        argus_run_driving(&copy, &copy.travel);
+        expect_nothing_else(&copy.travel, sizeof copy.travel, "driving");
+        break;
+    case ARGUS_MODE_SWEEPING:
+        argus_run_sweeping(&copy, &copy.travel);
+        expect_nothing_else(&copy.travel, sizeof copy.travel, "sweeping");
+        break;
+    case ARGUS_MODE_STEPPING:
+        argus_run_stepping(&copy, &copy.travel);
+        expect_nothing_else(&copy.travel, sizeof copy.travel, "stepping");
+        break;
+    default:
+        break;
+    }
 }
 
 static void try_all_reflexes(void) {
@@ -94,7 +117,7 @@ void test_a_mode_writes_its_own_state_alone(void) {
             robot_tick(&robot);
             if (at % LOOK_MS == 0) {
                 seen |= 1u << robot.argus.mode;
-                try_all_modes();
+                try_mode();
                 try_all_reflexes();
             }
         }
