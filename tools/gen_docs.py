@@ -19,7 +19,7 @@ def rows(header: str, macro: str) -> list[list[str]]:
     start = text.index(f"#define {macro}(X)")
     body = re.match(r"(?:[^\n]*\\\n)*[^\n]*\n", text[start:])
     assert body is not None
-    joined = body[0].replace("\\\n", " ")
+    joined = re.sub(r'"\s+"', "", body[0].replace("\\\n", " "))  # a string may go on on the next line
     found = re.findall(r"X\(((?:[^()\"]|\"[^\"]*\")*)\)", joined.split("(X)", 1)[1])
     return [[part.strip().strip('"') for part in re.findall(r'"[^"]*"|[^,]+', row)] for row in found]
 

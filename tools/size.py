@@ -22,7 +22,7 @@ EPILOG = """examples:
 exit codes: 0 measured, 1 the library has data or bss, or its stack has no bound, 2 no build there"""
 
 SYMBOL = re.compile(r"^\d+ (\d+) \S size_of_(\w+)$", re.MULTILINE)
-SIZED_TYPES = ("argus_t", "argus_config_t")
+SIZED_TYPES = ("argus_t", "argus_storage_t", "argus_config_t")
 
 
 class NoBuild(Exception):

@@ -44,6 +44,6 @@ int main(void) {
     argus_status_t status;
     argus_status(argus, &status);
     printf("%u SIPs from %s; sonar 3 is %s\n", (unsigned)status.sips, status.robot_name,
-           argus_name(ARGUS_NAME_HEALTH, status.health[3]));
+           argus_name(ARGUS_NAME_HEALTH, (int)status.health[3]));
     return 0;
 }

@@ -13,7 +13,7 @@
 #define SWING_TURNING_MM 10 // of the margin so much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
 #define BACKOFFS_MAX 3
-#define ABEAM_CLEAR_MM 250 // beside a way straight back of 300 mm; the body ends 77 mm beside their faces
+#define ABEAM_CLEAR_MM 250 // beside a way straight back of 300 mm; a P3-DX ends 77 mm beside their faces
 #define BACK_MOST_MM 300
 #define BACK_LEFT_MM 150 // of what the rear reads clear
 #define BACK_STEP_MM 25
@@ -58,8 +58,8 @@ uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {
 bool argus_guard_sees_ahead(const argus_guard_t *const self) {
     const uint32_t limit_ms = argus_guard_two_rounds_ms(self->config);
     for (int i = 0; i < self->knowledge->sonars; i++) {
-        const bool counts =
-            argus_robot_faces_forward(self->knowledge->robot, i) && !argus_is_out(self->knowledge, i);
+        const bool forward = argus_robot_faces_forward(self->knowledge->robot, i);
+        const bool counts = forward && !argus_is_out(self->knowledge, i);
         if (counts && argus_age_ms(self->knowledge, i, self->now_ms) > limit_ms) {
             return false;
         }
@@ -126,34 +126,32 @@ static bool is_relied_on(const argus_guard_t *const self, const int sonar) {
            !argus_is_out(self->knowledge, sonar);
 }
 
-static unsigned rear_sonars(const argus_robot_t *const robot) {
-    return argus_robot_astern(robot) | argus_robot_rear_flank(robot);
+static bool looks_back(const argus_guard_t *const self, const int sonar) {
+    const argus_robot_t *const robot = self->knowledge->robot;
+    return ((argus_robot_astern(robot) | argus_robot_rear_flank(robot)) >> sonar & 1u) != 0;
 }
 
+// A robot of which nobody looks back never backs away.
 bool argus_guard_rear_is_watched(const argus_guard_t *const self) {
-    const unsigned rear = rear_sonars(self->knowledge->robot);
     for (int i = 0; i < self->knowledge->sonars; i++) {
-        if ((rear >> i & 1u) != 0 && !is_relied_on(self, i)) {
+        if (looks_back(self, i) && !is_relied_on(self, i)) {
             return false;
         }
     }
-    return true;
+    return argus_robot_astern(self->knowledge->robot) != 0;
 }
 
 // Those that look abeam see what the robot passes by, not what it backs into.
 static int32_t rear_clear_mm(const argus_guard_t *const self, const int sonar) {
     ARGUS_ASSERT(self->config->rear_clear_mm > 0);
     const int32_t clear_mm = self->config->rear_clear_mm;
-    const bool abeam =
-        self->profile->passes_abeam && (argus_robot_rear_flank(self->knowledge->robot) >> sonar & 1u) != 0;
-    return abeam ? argus_min(ABEAM_CLEAR_MM, clear_mm) : clear_mm;
+    const bool flank = (argus_robot_rear_flank(self->knowledge->robot) >> sonar & 1u) != 0;
+    return self->profile->passes_abeam && flank ? argus_min(ABEAM_CLEAR_MM, clear_mm) : clear_mm;
 }
 
 bool argus_guard_rear_is_clear(const argus_guard_t *const self) {
-    const unsigned rear = rear_sonars(self->knowledge->robot);
     for (int i = 0; i < self->knowledge->sonars; i++) {
-        const bool counts = (rear >> i & 1u) != 0;
-        if (counts && self->knowledge->sonar[i].reading_mm <= rear_clear_mm(self, i)) {
+        if (looks_back(self, i) && self->knowledge->sonar[i].reading_mm <= rear_clear_mm(self, i)) {
             return false;
         }
     }

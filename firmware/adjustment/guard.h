@@ -9,6 +9,10 @@
 #include "knowledge/knowledge.h"
 #include "knowledge/profile.h"
 
+// Half of what is driven straight along, ahead or back, without a turn: half the body, and something for its
+// heading.
+int32_t argus_guard_straight_half_mm(const argus_robot_t *robot);
+
 // What the answers rest on.
 typedef struct {
     const argus_config_t *config;
@@ -41,10 +45,6 @@ bool argus_guard_sees_ahead(const argus_guard_t *self);
 
 // In which each sonar of an array has been listed twice.
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *config);
-
-// Half of what is driven straight along, ahead or back, without a turn: half the body, and something for its
-// heading.
-int32_t argus_guard_straight_half_mm(const argus_robot_t *robot);
 
 // Turning --------------------------------------------------------------------------------------------------
 

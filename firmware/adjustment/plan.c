@@ -157,6 +157,7 @@ argus_plan_t argus_plan(const argus_robot_t *const robot, const argus_policy_t p
     plan.return_each = policy == ARGUS_POLICY_PAPER;
     plan.complete = plan.disabled == 0;
     turns_t turns = {.robot = robot, .disabled = plan.disabled};
+    ARGUS_ASSERT(robot->turns <= ARGUS_TURNS_MAX && robot->forward_count <= ARGUS_FORWARD_MAX);
     for (unsigned i = 0; i < robot->turns; i++) {
         turns.sees[i] = seen_after(robot, &plan, robot->turn_deg[i]);
     }

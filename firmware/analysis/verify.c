@@ -17,6 +17,7 @@ void argus_verify_begin(argus_verify_t *const self, const argus_robot_t *const r
                         const int32_t base_cdeg) {
     ARGUS_ASSERT(sonar >= 0 && sonar < argus_robot_sonars(robot));
     const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
+    ARGUS_ASSERT(argus_robot_faces_forward(robot, sonar));
     argus_verify_init(self);
     self->phase = ARGUS_VERIFY_RECHECK;
     self->sonar = (int8_t)sonar;
@@ -115,6 +116,7 @@ static void judge(argus_verify_t *const self, const argus_robot_t *const robot) 
 static bool hear(argus_verify_t *const self, const argus_knowledge_t *const knowledge,
                  const argus_mark_t *const mark, const unsigned side) {
     const int sonar = self->by[side];
+    ARGUS_ASSERT(sonar >= 0);
     const bool gone = argus_is_out(knowledge, sonar); // it failed on the way: it cannot testify
     if (!gone && !argus_fresh_since(knowledge, sonar, mark)) {
         return false;

@@ -4,6 +4,8 @@
 
 #include <stddef.h>
 
+#include "argus/argus.h"
+
 #define FNV_BASIS 2166136261u
 #define FNV_PRIME 16777619u
 
@@ -27,6 +29,7 @@ static bool differs(argus_identity_part_t part, uint32_t before, uint32_t now) {
 
 int argus_identity_meet(argus_identity_t *self, const char *const texts[ARGUS_IDENTITY_PARTS]) {
     const uint32_t serial = self->part[ARGUS_IDENTITY_SERIAL];
+    ARGUS_ASSERT(self->met || serial == 0); // begun anew, or with what was met
     int first = 0;
     for (int i = ARGUS_IDENTITY_PARTS - 1; i >= 0; i--) {
         const uint32_t now = hash(texts[i]);
@@ -39,5 +42,6 @@ int argus_identity_meet(argus_identity_t *self, const char *const texts[ARGUS_ID
         self->part[ARGUS_IDENTITY_SERIAL] = serial; // not told this time, but still its own
     }
     self->met = true;
+    ARGUS_ASSERT(first >= 0 && first <= ARGUS_IDENTITY_PARTS);
     return first;
 }

@@ -206,6 +206,7 @@ static unsigned meet(argus_session_t *self) {
     if (self->differs == 0) {
         return 0;
     }
+    ARGUS_ASSERT(self->differs <= ARGUS_IDENTITY_PARTS);
     return ARGUS_SESSION_OTHER_ROBOT;
 }
 
@@ -214,7 +215,7 @@ static unsigned finish_opening(argus_session_t *self, const argus_config_t *conf
         (!self->has_robot && in_state_ms(self, now_ms) < CONFIG_WAIT_MS)) {
         return 0;
     }
-    const unsigned other = meet(self); 
+    const unsigned other = meet(self);
     set_up(self, config);
     self->stalled = false;
     self->pause_ms = PAUSE_FIRST_MS;

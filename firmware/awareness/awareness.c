@@ -79,7 +79,8 @@ static void judge_fresh(argus_alarm_t *const alarm, const argus_knowledge_t *con
     if (argus_is_out(knowledge, sonar)) {
         return;
     }
-    if (forward && s->reading_mm >= knowledge->robot->no_echo_mm && argus_profile(config)->dead_reading) {
+    const bool dead = s->reading_mm >= knowledge->robot->no_echo_mm;
+    if (forward && dead && argus_profile(config)->dead_reading) {
         alarm->dead |= (argus_mask_t)(1u << sonar);
     }
     if (s->reading_mm <= config->object_range_mm && looks_along_motion(knowledge, sonar)) {

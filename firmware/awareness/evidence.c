@@ -191,15 +191,16 @@ void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *c
     argus_peers_sip(self, knowledge);
 }
 
-uint16_t argus_evidence_unseen(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                               const argus_config_t *const config) {
+argus_mask_t argus_evidence_unseen(const argus_evidence_t *const self,
+                                   const argus_knowledge_t *const knowledge,
+                                   const argus_config_t *const config) {
     (void)config;
     unsigned mask = 0;
     for (int i = ARGUS_FORWARD_FIRST; i <= ARGUS_FORWARD_LAST; i++) {
         const argus_case_t *const c = &self->of[i];
         mask |= c->none_run > 0 && knowledge->odometer_mm - c->alive_odometer_mm > UNSEEN_MM ? 1u << i : 0u;
     }
-    return (uint16_t)(mask & ~(unsigned)argus_out(knowledge));
+    return (argus_mask_t)(mask & ~(unsigned)argus_out(knowledge));
 }
 
 void argus_evidence_acquit(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,

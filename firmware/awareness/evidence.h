@@ -221,8 +221,8 @@ bool argus_evidence_replaces(const argus_evidence_t *self, int sonar, argus_faul
                              argus_fault_kind_t found);
 
 // Sonars of 1..6 that hear nothing and have proved alive last long ago.
-uint16_t argus_evidence_unseen(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
-                               const argus_config_t *config);
+argus_mask_t argus_evidence_unseen(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
+                                   const argus_config_t *config);
 
 // The heading on which a sonar that hears nothing would look along a bearing where another one lately heard
 // something near, from the same place: whether it is deaf is told there. False: there is none that would be

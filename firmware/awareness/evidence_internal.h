@@ -4,7 +4,7 @@
 #define ARGUS_EVIDENCE_INTERNAL_H
 
 #include "awareness/evidence.h"
-#include "robot/compat.h"
+#include "awareness/robot_compat.h"
 
 // The increments of a test, in hundredths of a nat (DESIGN.md derives them), and its bounds.
 typedef struct {

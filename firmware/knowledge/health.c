@@ -19,11 +19,10 @@ static const row_t *row_of(const argus_change_t change) {
     return &rows[change];
 }
 
-bool argus_health_may(const argus_sonar_t *const self, const argus_change_t change) {
-    ARGUS_ASSERT(self->health <= ARGUS_ABSENT);
+bool argus_health_may(const argus_knowledge_t *const self, const int sonar, const argus_change_t change) {
     static const char initial[] = {'U', 'H', 'S', 'D', 'P', 'T', 'A'};
     const char *from = row_of(change)->from;
-    const char now = initial[self->health];
+    const char now = initial[self->sonar[sonar].health];
     while (*from != '\0' && *from != now) {
         from++;
     }
@@ -38,18 +37,17 @@ static void count_failure(argus_sonar_t *const s) {
     s->disabled_times = (uint16_t)(s->disabled_times + (s->disabled_times < UINT16_MAX ? 1 : 0));
 }
 
-argus_event_t argus_health_set(argus_sonar_t *const self, const int sonar, const argus_change_t change,
+argus_event_t argus_health_set(argus_knowledge_t *const self, const int sonar, const argus_change_t change,
                                const argus_fault_kind_t kind, const int32_t value, const uint32_t now_ms) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    ARGUS_ASSERT(kind <= ARGUS_KIND_INTERMITTENT);
+    argus_sonar_t *const s = &self->sonar[sonar];
     const row_t *const row = row_of(change);
     const bool same = change == ARGUS_CHANGE_NAMED || change == ARGUS_CHANGE_RENAMED; // it is known better
-    if (row->to == ARGUS_DISABLED && self->health != ARGUS_DISABLED) {
-        count_failure(self);
+    if (row->to == ARGUS_DISABLED && s->health != ARGUS_DISABLED) {
+        count_failure(s);
     }
-    self->relapses = change == ARGUS_CHANGE_RETESTED ? 0 : self->relapses;
-    self->since_ms = same ? self->since_ms : now_ms;
-    self->health = (argus_health_t)row->to;
-    self->kind = kind;
+    s->relapses = change == ARGUS_CHANGE_RETESTED ? 0 : s->relapses;
+    s->since_ms = same ? s->since_ms : now_ms;
+    s->health = (argus_health_t)row->to;
+    s->kind = kind;
     return (argus_event_t){.id = row->event, .sonar = (int8_t)sonar, .value = value};
 }

@@ -5,7 +5,7 @@
 #define ARGUS_HEALTH_H
 
 #include "argus/argus.h"
-#include "knowledge/sonar.h"
+#include "knowledge/knowledge.h"
 
 // X(NAME, from, to, event, meaning): what may happen to a sonar. `from`: the states in which it may, U
 // UNKNOWN, H HEALTHY, S SUSPECT, D DISABLED, P PROBATION, T STALE, A ABSENT; `event`: what says so, NONE:
@@ -24,9 +24,9 @@
     X(RETESTED, "DP", PROBATION, SONAR_PROBATION, "an operator wants it tried anew: relapses are forgiven") \
     X(RECORDED, "UHST", PROBATION, SONAR_PROBATION, "it was out in the last mission")                       \
     X(STALLED, "H", STALE, SONAR_STALE, "it yields no reading")                                             \
-    X(FORGOTTEN, "UHSDPT", UNKNOWN, NONE, "what was known is of another robot")                             \
-    X(REMOVED, "UHSDPT", ABSENT, NONE, "the robot has not got it")                                          \
-    X(FOUND, "A", UNKNOWN, NONE, "the robot has got it")
+    X(FORGOTTEN, "UHSDPT", UNKNOWN, NONE, "the record, or what was found out, was of another robot")        \
+    X(MISSING, "UHSDPT", ABSENT, NONE, "the robot that answers has not got it")                             \
+    X(FITTED, "A", UNKNOWN, NONE, "the robot that answers has it")
 
 typedef enum {
 #define ARGUS_CHANGE_ENUM(name, from, to, event, meaning) ARGUS_CHANGE_##name,
@@ -35,13 +35,13 @@ typedef enum {
         ARGUS_CHANGES
 } argus_change_t;
 
-// Makes the change of sonar number `sonar` and returns the event to say, its id 0 when there is none; time
-// and failure state are the caller's to fill in. `kind`: of the fault, ARGUS_KIND_NONE where the new state
-// has none. `value`: of the event.
-argus_event_t argus_health_set(argus_sonar_t *self, int sonar, argus_change_t change, argus_fault_kind_t kind,
-                               int32_t value, uint32_t now_ms);
+// Makes the change and returns the event to say, its id 0 when there is none; time and failure state are the
+// caller's to fill in. `kind`: of the fault, ARGUS_KIND_NONE where the new state has none. `value`: of the
+// event.
+argus_event_t argus_health_set(argus_knowledge_t *self, int sonar, argus_change_t change,
+                               argus_fault_kind_t kind, int32_t value, uint32_t now_ms);
 
 // Whether the change may happen to the sonar now.
-bool argus_health_may(const argus_sonar_t *self, argus_change_t change);
+bool argus_health_may(const argus_knowledge_t *self, int sonar, argus_change_t change);
 
 #endif

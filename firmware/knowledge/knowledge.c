@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
-#include "knowledge/health.h"
 
 #define REST_MM_S 5
 #define ROTATING_MM_S 10 // wheel speed difference beyond which a reading is smeared by rotation
@@ -19,22 +18,8 @@
 
 void argus_knowledge_init(argus_knowledge_t *const self) {
     memset(self, 0, sizeof *self);
-    argus_knowledge_set_robot(self, argus_robot_default(), 0);
-}
-
-void argus_knowledge_set_robot(argus_knowledge_t *const self, const argus_robot_t *const robot,
-                               const uint32_t now_ms) {
-    ARGUS_ASSERT(robot != NULL && argus_robot_sonars(robot) <= ARGUS_SONARS);
-    self->robot = robot;
-    self->sonars = (uint8_t)argus_robot_sonars(robot);
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        const bool absent = i >= self->sonars;
-        if (absent != (self->sonar[i].health == ARGUS_ABSENT)) {
-            self->sonar[i].reported = false;
-            argus_health_set(&self->sonar[i], i, absent ? ARGUS_CHANGE_REMOVED : ARGUS_CHANGE_FOUND,
-                             ARGUS_KIND_NONE, 0, now_ms);
-        }
-    }
+    self->robot = argus_robot_default();
+    self->sonars = (uint8_t)argus_robot_sonars(self->robot);
 }
 
 void argus_knowledge_reopen(argus_knowledge_t *const self, const uint32_t now_ms) {

@@ -6,10 +6,26 @@
 
 #include "arcos/sip.h"
 #include "argus/argus.h"
-#include "knowledge/sonar.h"
 #include "robot/robot.h"
 
 #define ARGUS_FLANK_NEAR_MM 350 // what a flank sonar reads of a wall that the way may slant into
+
+typedef struct {
+    uint16_t reading_mm;
+    bool reported;
+    bool steady;          // taken while the robot did not rotate
+    uint32_t sip;         // index of the SIP that listed it last
+    uint32_t heard_ms;    // time of that SIP
+    uint32_t odometer_mm; // way driven by then
+    uint32_t readings;    // monotonic
+    argus_health_t health;
+    argus_fault_kind_t kind;
+    uint32_t since_ms;        // entry into `health`
+    uint16_t disabled_times;  // this mission
+    uint16_t disabled_before; // earlier missions, from the record
+    argus_fault_kind_t kind_before;
+    uint8_t relapses; // disabled again, less missions without a fault
+} argus_sonar_t;
 
 // A moment after which readings count: those listed in later SIPs, and no earlier than `from_ms` where a
 // server lists every sonar in every SIP.
@@ -50,9 +66,6 @@ typedef struct {
 
 // Nothing is known but that the robot is the default one.
 void argus_knowledge_init(argus_knowledge_t *self);
-
-// Whose geometry holds from now on. Sonars that it has not got are absent; one that was absent is UNKNOWN.
-void argus_knowledge_set_robot(argus_knowledge_t *self, const argus_robot_t *robot, uint32_t now_ms);
 
 // A session opened: the robot's odometry starts anew, our pose goes on from where it was; every sonar must
 // report anew.

@@ -68,12 +68,14 @@ int argus_robot_sonars(const argus_robot_t *const self) {
 }
 
 const argus_sonar_pose_t *argus_robot_pose(const argus_robot_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < argus_robot_sonars(self));
     return &argus_sonar_poses[self->first_pose + sonar];
 }
 
 static argus_mask_t managed(const argus_robot_t *const self, const uint32_t mask) {
     const int count = argus_robot_sonars(self);
     const uint32_t all = count == 0 ? 0u : UINT32_MAX >> (32 - count);
+    ARGUS_ASSERT(count <= ARGUS_SONARS && count <= 32);
     return (argus_mask_t)(mask & all);
 }
 

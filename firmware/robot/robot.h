@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Finds the row of a robot, and answers what is asked of it.
+// Which robots are known, and what the data of one says.
 #ifndef ARGUS_ROBOT_H
 #define ARGUS_ROBOT_H
 
-#include "robot/body.h"
+#include "robot/table.h"
 
 // The robot that is assumed while none is known (p3dx-sh), and one of which nothing is known: no sonars.
 const argus_robot_t *argus_robot_default(void);

@@ -3,6 +3,7 @@
 // it.
 #include "supervisor/body.h"
 
+#include "knowledge/body.h"
 #include "knowledge/config.h"
 #include "supervisor/faults.h"
 #include "supervisor/say.h"
@@ -23,7 +24,8 @@ static void say_beyond(argus_t *const self, const argus_robot_t *const robot) {
 // What was found out about the sonars of another body says nothing of this one's, but what its record says.
 static void forget_sonars(argus_t *const self) {
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((self->history.recorded >> i & 1u) == 0) {
+        if ((self->history.recorded >> i & 1u) == 0 &&
+            argus_health_may(&self->knowledge, i, ARGUS_CHANGE_FORGOTTEN)) {
             argus_say_change(self, i, ARGUS_CHANGE_FORGOTTEN, ARGUS_KIND_NONE, 0);
         }
     }
@@ -35,7 +37,7 @@ static void change_to(argus_t *const self, const argus_robot_t *const robot) {
     if (self->knowledge.robot == robot) {
         return;
     }
-    argus_knowledge_set_robot(&self->knowledge, robot, self->now_ms);
+    argus_body_is(&self->knowledge, robot, self->now_ms);
     forget_sonars(self);
     argus_task_restart(&self->travel.task);
     self->plan = argus_plan(robot, (argus_policy_t)self->config.policy, 0);
@@ -66,4 +68,5 @@ void argus_meet_body(argus_t *const self) {
     change_to(self, robot);
     self->orders.barred = argus_say_barred(self) && active;
     self->orders.passive = self->orders.locked || self->orders.barred || !active;
+    ARGUS_ASSERT(!self->orders.barred || self->orders.passive);
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Which robot it is, and whether it may be driven.
-#ifndef ARGUS_BODY_H
-#define ARGUS_BODY_H
+// Which robot has answered, and whether it may be driven.
+#ifndef ARGUS_SUPERVISOR_BODY_H
+#define ARGUS_SUPERVISOR_BODY_H
 
 #include "supervisor/core.h"
 
-// A session is open: the geometry of its robot holds, and it may be driven or not.
+// A session is open: the geometry of its robot holds from now on; one that is unknown, or for which the
+// settings are unsafe, is passive.
 void argus_meet_body(argus_t *self);
 
-// Says why the robot may not be driven; false: it may.
+// Says why the robot at hand may not be driven; false: it may.
 bool argus_say_barred(argus_t *self);
 
 #endif

@@ -57,12 +57,11 @@ static void say_plan(argus_t *const self) {
 // A suspect that no witness could judge is planned for as if it were disabled: its bearing counts as
 // uncovered. One that is still to be verified is not: nothing moves ahead before it is.
 void argus_replan(argus_t *const self) {
-    const argus_robot_t *const robot = self->knowledge.robot;
-    const argus_mask_t forward = argus_robot_forward(robot);
-    const argus_mask_t disabled = argus_out(&self->knowledge) & forward;
+    const argus_mask_t disabled = argus_out(&self->knowledge) & argus_robot_forward(self->knowledge.robot);
     const argus_mask_t blind =
-        disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->awareness.verified & forward);
-    const argus_failure_t failure = argus_failure_of(robot, disabled);
+        disabled | (argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->awareness.verified &
+                    argus_robot_forward(self->knowledge.robot));
+    const argus_failure_t failure = argus_failure_of(self->knowledge.robot, disabled);
     if (failure != self->failure) {
         self->failure = failure;
         argus_say(self, ARGUS_EV_FAILURE_STATE, ARGUS_NO_SONAR, argus_count_bits(disabled));
@@ -70,17 +69,16 @@ void argus_replan(argus_t *const self) {
     if (blind == self->plan.disabled) {
         return;
     }
-    self->plan = argus_plan(robot, (argus_policy_t)self->config.policy, blind);
+    self->plan = argus_plan(self->knowledge.robot, (argus_policy_t)self->config.policy, blind);
     ARGUS_ASSERT(self->plan.count <= ARGUS_ROTATIONS_MAX && self->plan.disabled == blind);
     say_plan(self);
     argus_share_slots(self);
 }
 
 void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
-    ARGUS_ASSERT(kind != ARGUS_KIND_NONE &&
-                 argus_health_may(&self->knowledge.sonar[sonar], ARGUS_CHANGE_DISABLED));
-    const argus_event_t said = argus_health_set(&self->knowledge.sonar[sonar], sonar, ARGUS_CHANGE_DISABLED,
-                                                kind, (int32_t)kind, self->now_ms);
+    ARGUS_ASSERT(kind != ARGUS_KIND_NONE);
+    const argus_event_t said =
+        argus_health_set(&self->knowledge, sonar, ARGUS_CHANGE_DISABLED, kind, (int32_t)kind, self->now_ms);
     argus_evidence_agree_anew(&self->evidence, sonar); // what brings it back comes after this
     argus_evidence_retract(&self->evidence, sonar);
     argus_echoes_forget(&self->echoes, sonar);

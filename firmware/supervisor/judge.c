@@ -13,8 +13,7 @@
 #define PROBATION_DOUBLINGS 4
 
 static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
-    ARGUS_ASSERT(kind != ARGUS_KIND_NONE && !argus_is_out(&self->knowledge, sonar));
-    const bool ahead = argus_robot_faces_forward(self->knowledge.robot, sonar);
+    const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
     argus_disable(self, sonar, kind);
     argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
     if (!ahead || !argus_mode_may(self->mode, ARGUS_MAY_BREAK_OFF)) {
@@ -117,7 +116,7 @@ static bool is_passed_over(const argus_t *const self, const int sonar) {
 
 // The others than 1..6 yield to the same tests; one that yields nothing is out as well.
 static bool has_fallen_silent(const argus_t *const self, const int sonar) {
-    const bool other = !argus_robot_faces_forward(self->knowledge.robot, sonar);
+    const bool other = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) == 0;
     return other && is_silent(self, sonar) && !is_passed_over(self, sonar);
 }
 

@@ -31,7 +31,7 @@ static bool is_held(const argus_t *const self, const int sonar) {
 static argus_mask_t lost(const argus_t *const self) {
     unsigned mask = argus_evidence_lost(&self->evidence);
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        const bool ahead = argus_robot_faces_forward(self->knowledge.robot, i);
+        const bool ahead = (argus_robot_forward(self->knowledge.robot) >> i & 1u) != 0;
         mask &= !ahead && was_cleared_within(self, i, LOST_HOLD_MM) ? ~(1u << i) : ~0u;
     }
     return (argus_mask_t)mask;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
+#include "knowledge/body.h"
 #include "supervisor/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/history.h"
@@ -21,6 +22,7 @@
 #define BUSY_POLL_MS 10u
 
 void argus_manager_init(argus_t *const self, const argus_config_t *const config, const uint32_t now_ms) {
+    const argus_robot_t *const chosen = argus_robot_chosen(config->robot);
     memset(self, 0, sizeof *self);
     self->config = *config;
     self->orders.locked = argus_config_check(config).fault != ARGUS_CONFIG_OK;
@@ -28,9 +30,7 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     self->now_ms = now_ms;
     argus_session_init(&self->session);
     argus_knowledge_init(&self->knowledge);
-    if (argus_robot_chosen(config->robot) != NULL) {
-        argus_knowledge_set_robot(&self->knowledge, argus_robot_chosen(config->robot), now_ms);
-    }
+    argus_body_is(&self->knowledge, chosen != NULL ? chosen : argus_robot_default(), now_ms);
     argus_echoes_init(&self->echoes);
     argus_awareness_init(&self->awareness);
     argus_evidence_init(&self->evidence);
@@ -65,8 +65,8 @@ void argus_link_up(argus_t *const self, const uint32_t now_ms) {
 }
 
 static void go_offline(argus_t *const self) {
-    ARGUS_ASSERT(!argus_is_open(self));
-    const uint32_t silence_ms = self->now_ms - self->session.heard_ms;
+    // None was ever heard: the silence has no beginning.
+    const uint32_t silence_ms = self->session.sips > 0 ? self->now_ms - self->session.heard_ms : 0;
     self->checked = false;
     self->stalled = false;
     self->travel.jog_mm = 0;
@@ -88,7 +88,9 @@ static void on_open(argus_t *const self) {
     ARGUS_ASSERT(argus_is_open(self));
     argus_say(self, ARGUS_EV_SESSION_OPEN, ARGUS_NO_SONAR, self->session.attempts);
     argus_meet_body(self);
-    argus_enable_motors(self);
+    if (!self->orders.passive) {
+        argus_enable_motors(self);
+    }
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
     argus_awareness_restart(&self->awareness);
     argus_evidence_restart(&self->evidence);

@@ -66,7 +66,5 @@ void argus_steer(argus_t *const self, const int32_t heading_cdeg) {
 }
 
 void argus_enable_motors(argus_t *const self) {
-    if (!self->orders.passive && argus_session_is_open(&self->session)) {
-        argus_outbox_int(&self->session.outbox, ARCOS_CMD_ENABLE, 1);
-    }
+    argus_outbox_int(&self->session.outbox, ARCOS_CMD_ENABLE, 1);
 }

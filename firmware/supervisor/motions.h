@@ -21,8 +21,6 @@ void argus_come_to_rest(argus_t *self);
 void argus_turn_to(argus_t *self, int32_t heading_cdeg);
 void argus_move(argus_t *self, int32_t distance_mm, int32_t speed_mm_s);
 void argus_steer(argus_t *self, int32_t heading_cdeg);
-
-// Unless passive.
 void argus_enable_motors(argus_t *self);
 
 #endif

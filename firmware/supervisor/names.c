@@ -2,60 +2,87 @@
 // Names of what the manager says: look-ups in the event catalogue and in the enumerations.
 #include "argus/argus.h"
 
-// Texts, not pointers to them: a table of pointers is initialized data in a position-independent build.
-#define NAME_BYTES 24
-#define SUBJECT_BYTES 13
+// Words in a row, an empty one at the end: a table of pointers would be initialized data in a
+// position-independent build, one of texts of equal size mostly padding.
+static const char *nth(const char *words, int number) {
+    while (number > 0 && words[0] != '\0') {
+        while (words[0] != '\0') {
+            words++;
+        }
+        words++;
+        number--;
+    }
+    return number < 0 || words[0] == '\0' ? "?" : words;
+}
 
-typedef struct {
-    uint16_t id;
-    uint8_t level;
-    char name[NAME_BYTES];
-    char subject[SUBJECT_BYTES];
-} entry_t;
-
-static const char nobody[] = "?";
-
-static const entry_t *find(const int id) {
-#define ENTRY(number, NAME, LEVEL, about, meaning) {number, ARGUS_LEVEL_##LEVEL, #NAME, about},
-    static const entry_t catalogue[] = {ARGUS_EVENT_TABLE(ENTRY)};
-#undef ENTRY
-    for (size_t i = 0; i < sizeof catalogue / sizeof catalogue[0]; i++) {
-        if (catalogue[i].id == id) {
-            return &catalogue[i];
+// Row of the catalogue, or -1.
+static int row_of(const int id) {
+#define ID(number, name, level, subject, meaning) (number),
+    static const uint16_t ids[] = {ARGUS_EVENT_TABLE(ID)};
+#undef ID
+    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
+        if (ids[i] == id) {
+            return (int)i;
         }
     }
-    return NULL;
+    return -1;
 }
 
 argus_level_t argus_event_level(const uint16_t id) {
-    const entry_t *const entry = find(id);
-    return entry != NULL ? (argus_level_t)entry->level : ARGUS_LEVEL_ERROR;
+#define LEVEL(number, name, level, subject, meaning) ARGUS_LEVEL_##level,
+    static const uint8_t levels[] = {ARGUS_EVENT_TABLE(LEVEL)};
+#undef LEVEL
+    const int row = row_of(id);
+    return row >= 0 ? (argus_level_t)levels[row] : ARGUS_LEVEL_ERROR;
 }
 
-// The enumerations that count from 0 (ARGUS_NAME_OP from 1), in the order of argus_name_of_t.
-#define VALUES_MAX 12
-static const char words[][VALUES_MAX][16] = {
-    {"OK", "WARN", "ERROR", "STALE"},
-    {"OFFLINE", "CHECKING", "VERIFYING", "IDLE", "DRIVING", "SWEEPING", "STEPPING", "BACKING", "WAITING",
-     "CLOSING", "CLOSED"},
-    {"none", "running", "reached", "failed"},
-    {"none", "bumper", "motors", "turn", "way", "catastrophic"},
-    {"IsNormal", "IsMinor", "IsMajor", "IsCatastrophic"},
-    {"UNKNOWN", "HEALTHY", "SUSPECT", "DISABLED", "PROBATION", "STALE", "ABSENT"},
-    {"", "off", "silent", "stuck", "wrong", "garbage", "slow", "intermittent"},
-    {"?", "STOP", "GO", "RECHECK", "MOVE", "TURN", "PASSIVE", "ACTIVE", "RETEST", "PIN", "UNPIN", "DISABLE"},
-};
+static const char *event_name(const int id) {
+#define NAME(number, name, level, subject, meaning) #name "\0"
+    return nth(ARGUS_EVENT_TABLE(NAME), row_of(id));
+#undef NAME
+}
+
+static const char *event_subject(const int id) {
+#define SUBJECT(number, name, level, subject, meaning) subject "\0"
+    return nth(ARGUS_EVENT_TABLE(SUBJECT), row_of(id));
+#undef SUBJECT
+}
+
+// Of an enumeration, from its first constant on.
+static const char *words_of(const argus_name_of_t of) {
+    switch (of) {
+    case ARGUS_NAME_LEVEL:
+        return "OK\0WARN\0ERROR\0STALE\0";
+    case ARGUS_NAME_MODE:
+        return "OFFLINE\0CHECKING\0VERIFYING\0IDLE\0DRIVING\0SWEEPING\0STEPPING\0BACKING\0WAITING\0CLOSING\0C"
+               "LOSED\0";
+    case ARGUS_NAME_MISSION:
+        return "none\0running\0reached\0failed\0";
+    case ARGUS_NAME_WAIT:
+        return "none\0bumper\0motors\0turn\0way\0catastrophic\0";
+    case ARGUS_NAME_FAILURE:
+        return "IsNormal\0IsMinor\0IsMajor\0IsCatastrophic\0";
+    case ARGUS_NAME_HEALTH:
+        return "UNKNOWN\0HEALTHY\0SUSPECT\0DISABLED\0PROBATION\0STALE\0ABSENT\0";
+    case ARGUS_NAME_KIND:
+        return "off\0silent\0stuck\0wrong\0garbage\0slow\0intermittent\0";
+    case ARGUS_NAME_OP:
+        return "STOP\0GO\0RECHECK\0MOVE\0TURN\0PASSIVE\0ACTIVE\0RETEST\0PIN\0UNPIN\0DISABLE\0";
+    default:
+        return "";
+    }
+}
 
 const char *argus_name(const argus_name_of_t of, const int number) {
-    if (of == ARGUS_NAME_EVENT || of == ARGUS_NAME_SUBJECT) {
-        const entry_t *const entry = find(number);
-        return entry == NULL ? nobody : of == ARGUS_NAME_EVENT ? entry->name : entry->subject;
+    if (of == ARGUS_NAME_EVENT) {
+        return event_name(number);
     }
-    const unsigned table = (unsigned)of - ARGUS_NAME_LEVEL;
-    if (table >= sizeof words / sizeof words[0] || number < 0 || number >= VALUES_MAX) {
-        return nobody;
+    if (of == ARGUS_NAME_SUBJECT) {
+        return event_subject(number);
     }
-    const char *const word = words[table][number];
-    const bool none = of == ARGUS_NAME_KIND && number == 0;
-    return word[0] != '\0' || none ? word : nobody;
+    if (of == ARGUS_NAME_KIND && number == ARGUS_KIND_NONE) {
+        return "";
+    }
+    const bool from_one = of == ARGUS_NAME_KIND || of == ARGUS_NAME_OP;
+    return nth(words_of(of), from_one ? number - 1 : number);
 }

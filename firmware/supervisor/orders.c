@@ -24,6 +24,12 @@ static void stop_and_check(argus_t *const self, const bool full) {
              (argus_intent_t){.stop = ARGUS_STOP_STOP, .act = (uint8_t)check_if_open(self), .full = full});
 }
 
+static void enable_motors(argus_t *const self) {
+    if (!self->orders.passive && argus_is_open(self)) {
+        argus_enable_motors(self);
+    }
+}
+
 // The whole robot ------------------------------------------------------------------------------------------
 
 static void pause(argus_t *const self) {
@@ -36,7 +42,7 @@ static void pause(argus_t *const self) {
 
 static void resume(argus_t *const self) {
     self->orders.paused = false;
-    argus_enable_motors(self);
+    enable_motors(self);
     argus_task_restart(&self->travel.task);
     if (self->mission == ARGUS_MISSION_FAILED) {
         self->mission = ARGUS_MISSION_RUNNING;
@@ -66,7 +72,7 @@ static void go_active(argus_t *const self) {
     self->orders.passive = false;
     self->reflexes.motors_said = false;
     argus_say(self, ARGUS_EV_ACTIVE, ARGUS_NO_SONAR, 0);
-    argus_enable_motors(self);
+    enable_motors(self);
     if (self->plan.disabled != 0 || self->ordered) { // the plan may have gone while nothing was commanded
         argus_share_slots(self);
     }

@@ -10,7 +10,7 @@ _Static_assert(ARCOS_FRAME_SEND_TOTAL_MAX == ARGUS_PACKET_MAX, "ARGUS_PACKET_MAX
 
 argus_t *argus_init(argus_storage_t *const storage, const argus_config_t *const config,
                     const uint32_t now_ms) {
-    argus_t *const self = (argus_t *)(void *)storage;
+    argus_t *const self = (argus_t *)storage;
     ARGUS_ASSERT(storage != NULL && config != NULL);
     argus_manager_init(self, config, now_ms);
     return self;

@@ -67,7 +67,7 @@ static argus_intent_t sees_others(const argus_t *const self, const argus_alarm_t
     (void)mine;
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const argus_health_t health = self->knowledge.sonar[i].health;
-        const bool other = !argus_robot_faces_forward(self->knowledge.robot, i);
+        const bool other = (argus_robot_forward(self->knowledge.robot) >> i & 1u) == 0;
         const bool silent = argus_silent_ms(&self->knowledge, i) > (uint32_t)self->config.stale_ms;
         const bool news = (health == ARGUS_HEALTHY && silent) || (health == ARGUS_STALE && !silent);
         changed |= other && news ? 1u << i : 0u;

@@ -64,9 +64,9 @@ argus_intent_t argus_run_checking(const argus_t *const self, argus_checking_t *c
 }
 
 static int next_suspect(const argus_t *const self) {
-    const unsigned open = argus_open_suspects(self);
+    const unsigned open = (unsigned)argus_open_suspects(self) & argus_robot_forward(self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((open >> i & 1u) != 0 && argus_robot_faces_forward(self->knowledge.robot, i)) {
+        if ((open >> i & 1u) != 0) {
             return i;
         }
     }

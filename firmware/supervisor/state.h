@@ -19,8 +19,8 @@ bool argus_is_open(const argus_t *self);
 // The heading to return to; the present one where none is taken.
 int32_t argus_base_cdeg(const argus_t *self);
 
-// Forward-facing sonars that are in use; suspects not verified in this place, also those whose verification
-// was broken off or could not be begun.
+// Sonars of 1..6 that are in use; suspects not verified in this place, also those whose verification was
+// broken off or could not be begun.
 argus_mask_t argus_wanted_sonars(const argus_t *self);
 argus_mask_t argus_open_suspects(const argus_t *self);
 

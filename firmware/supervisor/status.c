@@ -100,9 +100,11 @@ static bool driving_holds(const argus_t *const self) {
 static bool health_holds(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
+        const bool absent = i >= self->knowledge.sonars;
         const bool whole =
             s->health != ARGUS_SUSPECT && s->health != ARGUS_DISABLED && s->health != ARGUS_PROBATION;
-        if (s->health > ARGUS_ABSENT || (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
+        if (absent != (s->health == ARGUS_ABSENT) || s->health > ARGUS_ABSENT ||
+            (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
             (whole && s->kind != ARGUS_KIND_NONE)) {
             return false;
         }

@@ -4,13 +4,15 @@
 
 #include <string.h>
 
+#include "knowledge/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/modes.h"
 
+// Whose body it has is found out when its session opens; until then the one before holds.
 static void forget(argus_t *const self) {
-    const argus_robot_t *const body = self->knowledge.robot; // told apart when its session opens
+    const argus_robot_t *const before = self->knowledge.robot;
     argus_knowledge_init(&self->knowledge);
-    argus_knowledge_set_robot(&self->knowledge, body, self->now_ms);
+    argus_body_is(&self->knowledge, before, self->now_ms);
     argus_echoes_init(&self->echoes);
     argus_awareness_init(&self->awareness);
     argus_evidence_init(&self->evidence);

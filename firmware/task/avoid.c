@@ -125,8 +125,8 @@ static bool choose_corridor(argus_task_t *const self, const around_t *const arou
     ARGUS_ASSERT(self->next < self->count);
     lead_to(self, self->waypoint[self->next]);
     const int32_t bearing = argus_task_bearing_cdeg(self, around->knowledge);
-    const corridor_t direct = {half_mm, argus_min(corridor_mm(around->knowledge),
-                                                  argus_task_leg_mm(self, around->knowledge) + half_mm)};
+    const int32_t leg_mm = argus_task_leg_mm(self, around->knowledge);
+    const corridor_t direct = {half_mm, argus_min(corridor_mm(around->knowledge), leg_mm + half_mm)};
     if ((!self->avoiding && !is_refused(self, bearing)) || is_free(self, around, bearing, &direct)) {
         self->avoiding = false;
         self->side = 0;

@@ -266,8 +266,8 @@ static void fill_heartbeat(const hal_telemetry_t *self, const argus_status_t *st
 }
 
 static void fill_health(const argus_status_t *status, int first, uint8_t *data) {
-    hal_dbc_health_t health;
-    for (int i = 0; i < ARRAY; i++) {
+    hal_dbc_health_t health = {0};
+    for (int i = 0; i < ARRAY && first + i < ARGUS_SONARS; i++) {
         health.health[i] = (uint8_t)status->health[first + i];
         health.fault[i] = (uint8_t)status->kind[first + i];
     }
@@ -289,8 +289,8 @@ static uint8_t validity_of(const hal_telemetry_t *self, const argus_status_t *st
 
 static void fill_readings(const hal_telemetry_t *self, const argus_status_t *status, int first,
                           uint8_t *data) {
-    hal_dbc_readings_t readings;
-    for (int i = 0; i < GROUP; i++) {
+    hal_dbc_readings_t readings = {0};
+    for (int i = 0; i < GROUP && first + i < ARGUS_SONARS; i++) {
         const bool reported = status->age_ms[first + i] != UINT32_MAX;
         readings.range[i] = reported ? status->reading_mm[first + i] : (uint16_t)HAL_DBC_RANGE_NONE;
         readings.validity[i] = validity_of(self, status, first + i);
@@ -323,8 +323,13 @@ static void fill_plan(const argus_status_t *status, uint8_t roll, uint8_t *data)
 // Schedule
 // ---------------------------------------------------------------------------------------------------
 
+// A build may manage fewer sonars than there are frames.
+static int end_of_group(int first) {
+    return first + GROUP < ARGUS_SONARS ? first + GROUP : ARGUS_SONARS;
+}
+
 static bool has_news(const hal_telemetry_t *self, const argus_status_t *status, int first) {
-    for (int i = first; i < first + GROUP; i++) {
+    for (int i = first; i < end_of_group(first); i++) {
         if (status->readings[i] != self->readings[i]) {
             return true;
         }
@@ -363,7 +368,7 @@ static void sent(hal_telemetry_t *self, const argus_status_t *status, int slot, 
         fill_plan(status, self->plan_roll, frame->data);
     } else if (slot >= HAL_TELEMETRY_READINGS && slot < HAL_TELEMETRY_PLAN) {
         const int first = (slot - HAL_TELEMETRY_READINGS) * GROUP;
-        for (int i = first; i < first + GROUP; i++) {
+        for (int i = first; i < end_of_group(first); i++) {
             self->readings[i] = status->readings[i];
         }
     }

@@ -2,9 +2,11 @@
 // What to do when a serial port cannot be opened.
 #include <ctype.h>
 #include <dirent.h>
+#include <errno.h>
 #include <glob.h>
 #include <grp.h>
 #include <limits.h>
+#include <pwd.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,12 +35,35 @@ __attribute__((format(printf, 2, 3))) static void add(line_t *line, const char *
     }
 }
 
-static void list_candidates(line_t *line) {
+// The ports whose names differ from this one's in their number only, and those of the usual names.
+static void find_candidates(const char *path, glob_t *found) {
     static const char *const patterns[] = {"/dev/serial/by-id/*", "/dev/ttyUSB*", "/dev/ttyACM*"};
-    glob_t found = {0};
-    for (size_t i = 0; i < sizeof patterns / sizeof patterns[0]; i++) {
-        glob(patterns[i], i == 0 ? 0 : GLOB_APPEND, NULL, &found);
+    char siblings[HAL_PATH_MAX + 1];
+    size_t length = strlen(path);
+    while (length > 0 && isdigit((unsigned char)path[length - 1])) {
+        length--;
     }
+    for (size_t i = 0; i < sizeof patterns / sizeof patterns[0]; i++) {
+        glob(patterns[i], i == 0 ? 0 : GLOB_APPEND, NULL, found);
+    }
+    if (length == 0 || path[length - 1] == '/' || path[length] == '\0') {
+        return; // no number, or nothing else
+    }
+    snprintf(siblings, sizeof siblings, "%.*s*", (int)length, path);
+    if (strcmp(siblings, patterns[1]) != 0 && strcmp(siblings, patterns[2]) != 0) {
+        glob(siblings, GLOB_APPEND, NULL, found);
+    }
+}
+
+static void explain_missing(line_t *line, const char *path) {
+    glob_t found = {0};
+    char target[HAL_PATH_MAX];
+    const ssize_t length = readlink(path, target, sizeof target - 1);
+    if (length > 0) {
+        target[length] = '\0';
+        add(line, "; it is a name for %s, which is not there", target);
+    }
+    find_candidates(path, &found);
     if (found.gl_pathc == 0) {
         add(line,
             "; there is no /dev/ttyUSB*, /dev/ttyACM* or /dev/serial/by-id/*: is the adapter plugged in?");
@@ -47,19 +72,70 @@ static void list_candidates(line_t *line) {
         for (size_t i = 0; i < found.gl_pathc && i < CANDIDATES_MAX; i++) {
             add(line, " %s", found.gl_pathv[i]);
         }
+        if (strstr(path, "/by-id/") == NULL) {
+            add(line, "; an adapter that is plugged in again may get another number: give its name under "
+                      "/dev/serial/by-id, which stays");
+        }
     }
     globfree(&found);
 }
 
+// "sudo " where there is one, for advice that needs it.
+static const char *as_root(void) {
+    static const char *const places[] = {"/usr/bin/sudo", "/bin/sudo", "/usr/local/bin/sudo"};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        if (geteuid() != 0 && access(places[i], X_OK) == 0) {
+            return "sudo ";
+        }
+    }
+    return geteuid() == 0 ? "" : "as root: ";
+}
+
+static bool is_member(gid_t group) {
+    gid_t groups[NGROUPS_MAX];
+    const int count = getgroups(NGROUPS_MAX, groups);
+    bool member = getegid() == group;
+    for (int i = 0; i < count; i++) {
+        member = member || groups[i] == group;
+    }
+    return member;
+}
+
+static void advise_denied(line_t *line, const char *path, const struct stat *about, const char *group) {
+    const bool group_may = (about->st_mode & 060u) == 060u;
+    if (about->st_uid == geteuid()) {
+        add(line, ": you own it, but may not read and write it: chmod u+rw %s", path);
+    } else if (is_member(about->st_gid) && !group_may) {
+        add(line, ": you are in that group, which may not read and write it: %schmod g+rw %s", as_root(),
+            path);
+    } else if (!group_may) {
+        add(line,
+            ": only its owner may read and write it: %schmod g+rw %s, and join the group, or a udev rule",
+            as_root(), path);
+    } else if (is_member(about->st_gid)) {
+        add(line, ": that would do; something else forbids it, as a container or a security module");
+    } else {
+        add(line, ": join the group: %susermod -aG %s \"$USER\", then log in again", as_root(), group);
+    }
+}
+
 static void explain_denied(line_t *line, const char *path) {
     struct stat about;
-    const struct group *group = NULL;
-    if (stat(path, &about) == 0) {
-        group = getgrgid(about.st_gid);
+    char user_name[32];
+    char group_name[32];
+    if (stat(path, &about) != 0) {
+        add(line,
+            errno == EACCES ? "; a folder on the way to it may not be entered" : "; and it is gone now");
+        return;
     }
-    const char *const name =
-        group != NULL && strcmp(group->gr_name, "root") != 0 ? group->gr_name : "dialout";
-    add(line, "; join the group that owns it: sudo usermod -aG %s \"$USER\", then log in again", name);
+    const struct passwd *const user = getpwuid(about.st_uid);
+    const struct group *const group = getgrgid(about.st_gid);
+    snprintf(user_name, sizeof user_name, "%u", (unsigned)about.st_uid);
+    snprintf(group_name, sizeof group_name, "%u", (unsigned)about.st_gid);
+    const char *const group_text = group != NULL ? group->gr_name : group_name;
+    add(line, "; it belongs to user %s and group %s, mode %03o", user != NULL ? user->pw_name : user_name,
+        group_text, (unsigned)(about.st_mode & 0777u));
+    advise_denied(line, path, &about, group_text);
 }
 
 static bool holds(const char *process, const char *device) {
@@ -113,9 +189,8 @@ static void explain_busy(line_t *line, const char *path) {
         closedir(processes);
     }
     if (!found) {
-        add(line,
-            "; another argusd, a terminal program or ModemManager may hold it: sudo fuser -v %s names it",
-            path);
+        add(line, "; another argusd, a terminal program or ModemManager may hold it: %sfuser -v %s names it",
+            as_root(), path);
     }
 }
 
@@ -124,7 +199,7 @@ void hal_serial_explain(hal_link_error_t error, const char *path, char *text, si
     add(&line, "%s: %s", path, hal_link_error_text(error));
     switch (error) {
     case HAL_LINK_NOT_FOUND:
-        list_candidates(&line);
+        explain_missing(&line, path);
         break;
     case HAL_LINK_DENIED:
         explain_denied(&line, path);

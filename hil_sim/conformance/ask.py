@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Sequence
 from typing import Final
@@ -94,6 +95,14 @@ def settle(client: Client, sips: int) -> Sip:
     client.until("the motion begins", lambda sip: not at_rest(sip), 12)
     client.until("the motion ends", at_rest, sips)
     return client.sips(1)[0]
+
+
+def come_back(client: Client, mm: int) -> None:
+    """Drive back the way of a check, for 6 s at most; how the target ends a MOVE is no matter here."""
+    client.command("MOVE", mm)
+    with contextlib.suppress(Failed):
+        settle(client, 60)
+    rest(client)
 
 
 def percent(value: float, wanted: float) -> float:

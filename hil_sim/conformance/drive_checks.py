@@ -11,7 +11,7 @@ from hil_sim.arcos import (
     TIMING,
     TYPE,
 )
-from hil_sim.conformance.ask import at_rest, moved, percent, rest, settle, speed_of
+from hil_sim.conformance.ask import at_rest, come_back, moved, percent, rest, settle, speed_of
 from hil_sim.conformance.check import Group, require
 from hil_sim.conformance.client import Client, Failed
 
@@ -119,8 +119,7 @@ def seta(client: Client) -> str:
     cycle_s = TIMING["SIP_CYCLE_MS"] / 1000
     observed = f"{rise / cycle_s:.0f} mm/s2 up, {fall / cycle_s:.0f} mm/s2 down"
     client.command("SETA", 300)
-    client.command("MOVE", -250)
-    settle(client, 60)
+    come_back(client, -250)
     return require(percent(rise / cycle_s, 100) < 15 and percent(fall / cycle_s, 400) < 20, observed)
 
 
@@ -133,8 +132,7 @@ def stop(client: Client) -> str:
     client.command("STOP")
     sips = client.sips(14)
     ways = [speed_of(sip) for sip in sips]
-    client.command("MOVE", -220)
-    settle(client, 60)
+    come_back(client, -220)
     braking = sum(5 < speed < 195 for speed in ways)
     return require(at_rest(sips[-1]) and braking >= 3 and bool(sips[-1].flags & 1), f"speeds {ways[:10]}")
 
@@ -149,8 +147,7 @@ def e_stop(client: Client) -> str:
     client.command("E_STOP")
     speeds = [speed_of(sip) for sip in client.sips(4)]
     client.command("SETA", -300)
-    client.command("MOVE", -180)
-    settle(client, 60)
+    come_back(client, -180)
     return require(abs(speeds[-1]) < 10, f"speeds {speeds}")
 
 
@@ -158,10 +155,10 @@ def e_stop(client: Client) -> str:
 def seto(client: Client) -> str:
     """SETO makes odometry (0, 0, 0)."""
     client.start(motors=True)
-    client.command("MOVE", 120)
-    far = settle(client, 60)
+    client.command("VEL", 120)
+    client.sips(12)
+    far = rest(client)
     client.command("SETO")
     sip = client.until("x, y and th 0 after SETO", lambda sip: (sip.x, sip.y, sip.th) == (0, 0, 0), 6)
-    client.command("MOVE", -120)
-    settle(client, 60)
+    come_back(client, -120)
     return f"x {far.x} then {sip.x}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from hil_sim.conformance.ask import at_rest, config_of, settle, speed_of
+from hil_sim.conformance.ask import at_rest, come_back, config_of, speed_of
 from hil_sim.conformance.check import Group, require
 from hil_sim.conformance.client import Client
 
@@ -28,8 +28,7 @@ def watchdog(client: Client) -> str:
     require(at_rest(sips[-1]) and bool(moving) and 17 <= moving[-1] + 1 <= 25, observed)
     client.command("PULSE")
     client.until("the robot takes up its set point again", lambda sip: speed_of(sip) > 80, 15)
-    client.command("MOVE", -350)
-    settle(client, 60)
+    come_back(client, -350)
     return observed
 
 
@@ -43,8 +42,7 @@ def close_in_motion(client: Client) -> str:
     (sip,) = client.sips(1)
     flags = f"speed {speed_of(sip):g}, flags 0x{sip.flags:04X}"
     client.command("ENABLE", 1)
-    client.command("MOVE", -120)
-    settle(client, 60)
+    come_back(client, -120)
     return require(at_rest(sip) and not sip.flags & 1, flags)
 
 

@@ -107,6 +107,15 @@ def all_off_and_on(client: Client) -> str:
     return require(flags[0] == readings[0] == 0 and flags[1] > 0 and readings[1] > 0, f"{flags}, {readings}")
 
 
+def _switched(client: Client, argument: int) -> tuple[list[int], list[int]]:
+    """The arrays that fire, and those of which FLAGS say so, after a SONAR command."""
+    client.command("SONAR", argument)
+    client.sips(3)
+    sips = client.sips(4)
+    firing = [k for k, numbers in enumerate(_fired(sips)) if numbers]
+    return firing, [k for k, flag in enumerate(ARRAY_FLAGS) if sips[-1].flags & flag]
+
+
 @CHECKS.check("sonar")
 def array_bits(client: Client) -> str:
     """SONAR is a bit field: 2 x array + on."""
@@ -117,11 +126,7 @@ def array_bits(client: Client) -> str:
     for array in fitted:
         for on in (False, True):
             argument = 2 * (array + 1) + on
-            client.command("SONAR", argument)
-            client.sips(3)
-            sips = client.sips(4)
-            firing = [k for k, numbers in enumerate(_fired(sips)) if numbers]
-            flagged = [k for k, flag in enumerate(ARRAY_FLAGS) if sips[-1].flags & flag]
+            firing, flagged = _switched(client, argument)
             seen.append(f"{argument}: {firing}")
             left = [k for k in fitted if on or k != array]
             require(firing == flagged == left, f"SONAR {argument}: arrays {firing} fire, {flagged} flagged")

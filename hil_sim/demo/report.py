@@ -93,6 +93,20 @@ def _host_line(late_ms: Sequence[float]) -> str:
     return f"the host was late with {turns}, at most {max(late_ms):.0f} ms: what fails may be its doing, not Argus's"
 
 
+def _rules(verdict: Verdict, colour: bool) -> list[str]:
+    width = max(len(rule.name) for rule in verdict.rules)
+    marks = {True: _paint("ok  ", _GOOD, colour), False: _paint("FAIL", _BAD, colour)}
+    return [f"  {marks[rule.holds]} {rule.name.ljust(width)}  {rule.detail}" for rule in verdict.rules]
+
+
+def _end(verdict: Verdict, colour: bool) -> list[str]:
+    """Return the lines that say whether it passed, and whether the host was late meanwhile."""
+    late = [_paint(_host_line(verdict.host_late_ms), _BAD, colour)] if verdict.host_late_ms else []
+    failed = [rule.name for rule in verdict.rules if not rule.holds]
+    last = "PASSED" if not failed else "FAILED: " + ", ".join(failed)
+    return ["  " + line for line in (*late, _paint(last, _BOLD + (_BAD if failed else _GOOD), colour))]
+
+
 def text(verdict: Verdict, *, colour: bool = False) -> str:
     """Return the report, lines ending without spaces; times count from the opened session."""
     journey = verdict.journey
@@ -101,14 +115,6 @@ def text(verdict: Verdict, *, colour: bool = False) -> str:
     lines += _findings(verdict, start_s)
     if journey is not None:
         lines += ["", _paint("Journey", _BOLD, colour), *_journey(journey)]
-    lines += ["", _paint("Verdict", _BOLD, colour)]
-    width = max(len(rule.name) for rule in verdict.rules)
-    for rule in verdict.rules:
-        mark = _paint("ok  ", _GOOD, colour) if rule.holds else _paint("FAIL", _BAD, colour)
-        lines.append(f"  {mark} {rule.name.ljust(width)}  {rule.detail}")
-    if verdict.host_late_ms:
-        lines.append("  " + _paint(_host_line(verdict.host_late_ms), _BAD, colour))
-    failed = [rule.name for rule in verdict.rules if not rule.holds]
-    last = "PASSED" if not failed else "FAILED: " + ", ".join(failed)
-    lines.append("  " + _paint(last, _BOLD + (_BAD if failed else _GOOD), colour))
+    lines += ["", _paint("Verdict", _BOLD, colour), *_rules(verdict, colour)]
+    lines += _end(verdict, colour)
     return "\n".join(lines)

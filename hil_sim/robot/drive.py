@@ -7,7 +7,9 @@ It works in odometry space, as the real one does with its encoders.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Final, NamedTuple
 
 from hil_sim.arcos import DEFAULT
@@ -20,6 +22,10 @@ MOVE_GAIN: Final = 0.2
 """1/s: MobileSim has made 806 mm of MOVE 1000 after 8.5 s (measured)."""
 HEAD_GAIN: Final = 1.0
 """1/s: MobileSim needs 3.7 s for HEAD 20, to within the half degree that it reports (measured)."""
+
+
+Law = Callable[[float, float, float, float, float], tuple[float, bool]]
+"""How a place is approached: as `approach`."""
 
 
 @dataclass
@@ -63,7 +69,6 @@ class Step(NamedTuple):
 class Drive:
     """Two channels, translation and rotation, each with a speed or a place as its set point.
 
-    proportional: MOVE and HEAD end slower and slower, as the vendor's emulator does, not as a trapezoid.
     v, w: speeds now, mm/s and deg/s. motors: powered; without power commands are not taken.
     """
 
@@ -73,12 +78,18 @@ class Drive:
         self._track_mm = table.motion["track_mm"]
         self.settings = flash_settings(table)
         self.motors = False
-        self.proportional = False
+        self._move_law: Law = approach
+        self._head_law: Law = approach
         self.v = self.w = 0.0
         self._move_mode = self._head_mode = self._vel2 = False
         self._v_set = self._w_set = 0.0
         self._move_left = self._head_left = 0.0
         self._head_set = 0.0
+
+    def approach_proportionally(self) -> None:
+        """End MOVE and HEAD slower and slower from now on, as the vendor's emulator does, not as a trapezoid."""
+        self._move_law = partial(proportional, gain=MOVE_GAIN)
+        self._head_law = partial(proportional, gain=HEAD_GAIN)
 
     # ---- commands
 
@@ -216,28 +227,19 @@ class Drive:
         moved = turned = False
         if self._move_mode:
             top = settings.v_max
-            self.v, moved = self._law(v_old, self._move_left, top, settings.accel, settings.decel, MOVE_GAIN)
+            self.v, moved = self._move_law(v_old, self._move_left, top, settings.accel, settings.decel)
         else:
             target = max(-settings.v_max, min(settings.v_max, self._v_set))
             self.v = ramp(v_old, target, settings.accel, settings.decel)
         if self._head_mode:
             top = settings.rv_max
-            self.w, turned = self._law(
-                w_old, self._head_left, top, settings.raccel, settings.rdecel, HEAD_GAIN
-            )
+            self.w, turned = self._head_law(w_old, self._head_left, top, settings.raccel, settings.rdecel)
         else:
             target = max(-settings.rv_max, min(settings.rv_max, self._w_set))
             self.w = ramp(w_old, target, settings.raccel, settings.rdecel)
         ds = self._move_left if moved else (v_old + self.v) / 2 * STEP_S
         dth = self._head_left if turned else (w_old + self.w) / 2 * STEP_S
         return Step(ds, dth, moved, turned)
-
-    def _law(
-        self, speed: float, left: float, top: float, accel: float, decel: float, gain: float
-    ) -> tuple[float, bool]:
-        if self.proportional:
-            return proportional(speed, left, top, accel, decel, gain)
-        return approach(speed, left, top, accel, decel)
 
     def done(self, step: Step, part: float) -> None:
         """Account for the part of a step that was possible."""

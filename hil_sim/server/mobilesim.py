@@ -62,7 +62,7 @@ class MobileSimServer(ArcosServer):
         robot.watchdog_stops = False
         robot.fires_in_turn = False
         robot.drive.motors = True
-        robot.drive.proportional = True
+        robot.drive.approach_proportionally()
         robot.bumpers = robot.rear_segments = 0
         self._warned = False
 

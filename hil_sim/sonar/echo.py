@@ -117,8 +117,10 @@ class EchoModel:
             value = self._kernel.range_mm(x_mm, y_mm, heading_deg, gain_db, others)
         return value
 
-    def bounce_mm(self, number: int, pose: Pose, moving: MovingEchoes | None = None) -> int | None:
-        """Return the way along the axis by way of a smooth surface to the next one; None when there is none within 5 m.
+    def bounce_mm(
+        self, number: int, pose: Pose, angle_deg: float = 0.0, moving: MovingEchoes | None = None
+    ) -> int | None:
+        """Return the way along the axis by way of a smooth surface to the next one; None when none is within 5 m.
 
         The same with and without the library: it is seldom asked for.
         """
@@ -126,7 +128,7 @@ class EchoModel:
         patch = self._patch(at.x_mm, at.y_mm)
         if moving is not None:
             patch = patch.joined(moving.patch(self._kernel is not None))
-        heading = math.radians(at.heading_deg)
+        heading = math.radians(at.heading_deg + angle_deg)
         dx, dy = math.cos(heading), math.sin(heading)
         first = _cast(patch, at.x_mm, at.y_mm, dx, dy, -1)
         if first is None:

@@ -235,8 +235,8 @@ static near_t relative(const patch_t *const patch, const int32_t k, const view_t
 static bool list_sector(const model_t *const model, const slot_t *const slot, const int32_t number) {
     const patch_t *const patch = slot->patch;
     sector_t *const sector = &slot->sectors[number];
-    const double middle = (number + 0.5) * (360.0 / SECTORS) * rad_per_deg;
-    const double half = acos(model->cos_half) + (180.0 / SECTORS + 0.1) * rad_per_deg;
+    const double middle = (number + 0.5) * (360.0 / (double)SECTORS) * rad_per_deg;
+    const double half = acos(model->cos_half) + (180.0 / (double)SECTORS + 0.1) * rad_per_deg;
     // From anywhere in the cell, and what rounding may add.
     const double radius = model->cell_mm * 0.75 + 2.0;
     const outside_t out = outside(cos(middle), sin(middle), cos(half), radius);
@@ -264,7 +264,7 @@ static bool list_sector(const model_t *const model, const slot_t *const slot, co
 // What of a cell a transducer with this heading may hear; `patch` NULL: no memory.
 static part_t part_of(const model_t *const model, const slot_t *const slot, const double heading_deg) {
     const double turns = heading_deg / 360.0;
-    const int32_t number = (int32_t)((turns - floor(turns)) * SECTORS) % SECTORS;
+    const int32_t number = (int32_t)((turns - floor(turns)) * (double)SECTORS) % SECTORS;
     const sector_t *const sector = &slot->sectors[number];
     if (sector->items == NULL && !list_sector(model, slot, number)) {
         return (part_t){NULL, NULL, 0, 0};

@@ -55,13 +55,21 @@ class _Switches(list[bool]):
         self.cut |= {array for array, on in enumerate(self) if not on}
 
 
-class _Draws(NamedTuple):
-    """What is drawn for one ping: noise, crosstalk and where, and of `Roughness` lost and bounced."""
+class _Ping(NamedTuple):
+    """One ping: which sonar, where the robot was, and what was drawn for it, whatever comes of it.
 
+    noise, chance, where: noise, whether it hears another ping, and where that lies. lost, bounced: of `Roughness`.
+    others_mm: at which range the ping of another array of the same moment would be heard.
+    """
+
+    number: int
+    pose: Pose
     noise: float
     chance: float
     where: float
-    rough: tuple[bool, bool] = (False, False)
+    lost: bool = False
+    bounced: bool = False
+    others_mm: float = math.inf
 
 
 @dataclass
@@ -226,8 +234,8 @@ class SonarRing:
         true_mm = self.true_range(number, pose)
         value: int | None = true_mm
         if self._rough is not None:
-            silent = _Draws(0.0, 1.0, 1.0, self._rough.draw())
-            rough_mm = self._roughly(self._rough, number, pose, float(true_mm), silent, math.inf)
+            ping = _Ping(number, pose, 0.0, 1.0, 1.0, *self._rough.draw())
+            rough_mm = self._roughly(self._rough, ping, float(true_mm), 0.0)
             value = self._rough.stepped(min(NO_ECHO_MM, max(MIN_MM, round(rough_mm))))
         kind = None
         if self.faults is not None and value is not None:
@@ -252,19 +260,14 @@ class SonarRing:
         state.last_ms, state.last_number = t_ms, number
         pose = pose_at(t_ms)
         true_mm = self.true_range(number, pose)
-        # Drawn for every ping, so that a fault or a world changes no later draw.
-        draws = _Draws(self._normal(), self._random(), self._random())
-        if self._rough is not None:
-            draws = draws._replace(rough=self._rough.draw())
-        others_mm = self._others_mm(state, t_ms, pose)
-        heard = self._heard(number, pose, true_mm, draws, others_mm)
+        ping = self._draw(state, number, t_ms, pose)
+        heard = self._heard(ping, true_mm, 0.0)
         value: int | None = heard
         kind = None
         if self.faults is not None:
 
             def remeasure(angle_deg: float) -> int:
-                turned = self._measure(number, pose, angle_deg)
-                return self._heard(number, pose, turned, draws, others_mm)
+                return self._heard(ping, self._measure(number, pose, angle_deg), angle_deg)
 
             value, kind = self.faults.apply(number, t_ms, heard, remeasure)
             if kind is not None:
@@ -274,6 +277,15 @@ class SonarRing:
             self._pending.append(Reading(ready_ms, number, value, true_mm, kind))
             if ready_ms < self._ready_ms:
                 self._ready_ms = ready_ms
+
+    def _draw(self, state: _Array, number: int, t_ms: float, pose: Pose) -> _Ping:
+        """Draw what a ping needs: always as much, so that a fault or a world changes no later draw."""
+        noise, chance, where = self._normal(), self._random(), self._random()
+        if self._rough is None:
+            return _Ping(number, pose, noise, chance, where)
+        lost, bounced = self._rough.draw()
+        others_mm = self._others_mm(self._rough, state, t_ms, pose)
+        return _Ping(number, pose, noise, chance, where, lost, bounced, others_mm)
 
     def true_range(self, number: int, pose: Pose) -> int:
         """Return what a sonar reads at a pose without noise, crosstalk and faults."""
@@ -289,11 +301,11 @@ class SonarRing:
         gain_db = self._rough.gain_db[number] if self._rough is not None else 0.0
         return self.echoes.ping_mm(number, pose, angle_deg, self._moving_echoes, gain_db)
 
-    def _others_mm(self, mine: _Array, t_ms: float, pose: Pose) -> float:
+    def _others_mm(self, rough: Roughness, mine: _Array, t_ms: float, pose: Pose) -> float:
         """Return at which range the ping of another array of this moment would be heard, at the nearest."""
-        if self._rough is None or not self._rough.physics.cross_array:
-            return math.inf
         found = math.inf
+        if not rough.physics.cross_array:
+            return found
         for state in self._live:
             number = state.last_number if state.last_ms == t_ms else self._due(state, t_ms)
             if state is not mine and number is not None:
@@ -308,32 +320,29 @@ class SonarRing:
     def _due(state: _Array, t_ms: float) -> int | None:
         return state.order[state.place] if state.next_ms == t_ms else None
 
-    def _heard(self, number: int, pose: Pose, true_mm: int, draws: _Draws, others_mm: float) -> int:
+    def _heard(self, ping: _Ping, true_mm: int, angle_deg: float) -> int:
         """Add what a real ping adds: roughness, noise, another sonar's ping, and an echo after the next firing."""
         params = self.params
         value = float(true_mm)
         if self._rough is not None:
-            value = self._roughly(self._rough, number, pose, value, draws, others_mm)
+            value = self._roughly(self._rough, ping, value, angle_deg)
         if value < NO_ECHO_MM:
-            value += draws.noise * (params.noise_mm + params.noise_part * value)
-        if draws.chance < params.crosstalk:
-            value = MIN_MM + draws.where * (value - MIN_MM)
+            value += ping.noise * (params.noise_mm + params.noise_part * value)
+        if ping.chance < params.crosstalk:
+            value = MIN_MM + ping.where * (value - MIN_MM)
         if 2 * value / SOUND_MM_MS > self.cycle_ms:
             value = NO_ECHO_MM
         whole = round(value)
         whole = MIN_MM if whole < MIN_MM else min(whole, NO_ECHO_MM)
         return whole if self._rough is None else self._rough.stepped(whole)
 
-    def _roughly(
-        self, rough: Roughness, number: int, pose: Pose, value: float, draws: _Draws, others_mm: float
-    ) -> float:
-        lost, bounced = draws.rough
-        if lost:
+    def _roughly(self, rough: Roughness, ping: _Ping, value: float, angle_deg: float) -> float:
+        if ping.lost:
             return NO_ECHO_MM
-        if bounced:
-            way = self.echoes.bounce_mm(number, pose, self._moving_echoes)
+        if ping.bounced:
+            way = self.echoes.bounce_mm(ping.number, ping.pose, angle_deg, self._moving_echoes)
             value = float(way) if way is not None and way > value else value
         # A share of the pings as well, by the number that says where a crosstalk reading lies.
-        if draws.where < rough.physics.cross_array:
-            value = min(value, others_mm)
-        return rough.heard(number, value)
+        if ping.where < rough.physics.cross_array:
+            value = min(value, ping.others_mm)
+        return rough.heard(ping.number, value)

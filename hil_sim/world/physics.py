@@ -50,7 +50,7 @@ class Physics:
         for name, values in SETS.items():
             if self == values:
                 return name
-        return ",".join(f"{name}={getattr(self, name):g}" for name in LIMITS if getattr(self, name))
+        return ",".join(f"{name}={getattr(self, name)!r}" for name in LIMITS if getattr(self, name))
 
 
 LIMITS: Final = {

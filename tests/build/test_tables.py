@@ -14,8 +14,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 HEADERS = {
     "gen_p3dx.h": Path("firmware/robot"),
-    "gen_robots.h": Path("firmware/robot"),
-    "gen_rows.c": Path("firmware/robot"),
+    "gen_sizes.h": Path("firmware/robot"),
+    "gen_robots.c": Path("firmware/robot"),
     "gen_arcos.h": Path("firmware/arcos"),
 }
 TABLES = Path("hil_sim/tables")
@@ -54,7 +54,7 @@ def test_check_sees_every_changed_number(tree: Path) -> None:
     done = generate(tree, "--check")
     assert done.returncode == 1
     assert "gen_p3dx.h" in done.stderr
-    assert "gen_rows.c" in done.stderr
+    assert "gen_robots.c" in done.stderr
     assert "gen_arcos.h" not in done.stderr
 
 

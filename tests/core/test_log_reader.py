@@ -77,7 +77,7 @@ def _compiled() -> ctypes.CDLL:
             made,
             firmware / "arcos/frame.c",
         ]
-        subprocess.run(command, check=True, timeout=120)
+        subprocess.run(command, check=True, timeout=600)
         return ctypes.CDLL(str(made))
 
 

@@ -18,7 +18,7 @@ SOURCES = [
     "analysis/failure.c",
     "knowledge/angle.c",
     "robot/robot.c",
-    "robot/gen_rows.c",
+    "robot/gen_robots.c",
 ]
 PROGRAM = r"""
 #include <stdio.h>

@@ -19,9 +19,12 @@ from hil_sim.faults.grammar import fault_help, parse_fault
 from hil_sim.faults.kinds import LINK_KINDS, SONAR_KINDS, LinkFault
 from hil_sim.scenario.scenario import _SONAR_LIMITS, SEED_MAX, Scenario, load_scenario, scenario_names
 from hil_sim.sonar.params import SonarParams
+from hil_sim.tables import robots
+from hil_sim.tables.robot import robot_table
 from hil_sim.world.body import BodyModel
 from hil_sim.world.files import load_world, load_yaml, world_names
 from hil_sim.world.model import Pose
+from hil_sim.world.physics import LIMITS, Physics
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
@@ -164,6 +167,7 @@ def test_a_scenario_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
 
 numbers = st.floats(-1e6, 1e6, allow_nan=False)
 points = st.tuples(numbers, numbers)
+# Of sonars that the smallest robot has, too.
 texts = ["off:3", "wrong:6@travelled>1400:scale=0.5", "bumper:1@2s", "link-delay:ms=10", "slow:rear@x<-1:n=7"]
 
 
@@ -175,7 +179,9 @@ texts = ["off:3", "wrong:6@travelled>1400:scale=0.5", "bumper:1@2s", "link-delay
     crosstalk=st.floats(0, 1),
     specular=st.booleans(),
     faults=st.lists(st.sampled_from(texts), max_size=4),
-    bumpers=st.sampled_from([0, 5]),
+    bumpers=st.sampled_from([None, 0, 5]),
+    robot=st.sampled_from(robots()),
+    physics=st.none() | st.builds(Physics, **{name: st.floats(*LIMITS[name]) for name in LIMITS}),
     about=st.text(max_size=20),
     world=st.sampled_from(world_names()),
 )
@@ -185,13 +191,15 @@ def test_any_scenario_comes_back_from_its_text(
     crosstalk: float,
     specular: bool,
     faults: list[str],
+    robot: str,
     **rest: object,
 ) -> None:
     scenario = Scenario(
         course=way[0],
         goal=way[1],
         sonar=SonarParams(crosstalk=crosstalk, specular=specular),
-        faults=tuple(parse_fault(text) for text in faults),
+        faults=tuple(parse_fault(text, robot_table(robot)) for text in faults),
+        robot=robot,
         **rest,  # type: ignore[arg-type]
     )
     path = tmp_path_factory.getbasetemp() / "any-scenario.yaml"

@@ -13,7 +13,7 @@ from devtool.cmake import configure
 from devtool.setup import alone
 from devtool.stages import Stage
 
-C_FOLDERS: Final = ("firmware", "hal", "hil_sim", "tests", "tools")
+C_FOLDERS: Final = ("examples", "firmware", "hal", "hil_sim", "tests", "tools")
 PROGRAMS: Final = ("tools/dev", "tools/with-can")
 """Written in Python without being named so."""
 

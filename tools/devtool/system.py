@@ -108,6 +108,9 @@ NEEDS: Final = {
     ),
     "clang": command_need("clang", "clang"),
     "tshark": command_need("tshark", "tshark"),
+    "g++": command_need("g++", "g++"),
+    "groff": command_need("groff", "groff-base"),
+    "pkg-config": command_need("pkg-config", "pkg-config"),
     "can-utils": command_need("candump", "can-utils"),
 }
 BASIC_NEEDS: Final = ("gcc", "libc", "cmake", "generator", "venv", "inih", "curses")

@@ -73,7 +73,11 @@ CORTEX_M4: Final = Stage(
     "cortex-m4", "firmware for Cortex-M4: builds, sizes, stack, no recursion", cortex_m4, ("cortex-m4",)
 )
 PYTHON: Final = Stage(
-    "python", "Python tests that need no robot", python_tests, ("release", "cortex-m4"), ("tshark",)
+    "python",
+    "Python tests that need no robot",
+    python_tests,
+    ("release", "cortex-m4"),
+    ("tshark", "groff", "pkg-config", "g++"),
 )
 QUICK_STAGES: Final = (TABLES, RELEASE, CORTEX_M4, PYTHON)
 TEST_STAGES: Final = (

@@ -187,9 +187,8 @@ typedef enum {
     X(17, SESSION_DISLODGED, WARN, "session", "the robot was still in an old session, which was closed")     \
     X(18, SUBCLASS_UNKNOWN, WARN, "session",                                                                 \
       "a robot whose body is not known: passive until the setting `robot` says which it is")                 \
-    X(19, OTHER_ROBOT, ERROR, "session",                                                                     \
-      "another robot answers than before: passive, the course is paused, until an operator says active and " \
-      "go; value: what differs, 1 name, 2 class, 3 subclass, 4 serial number")                               \
+    X(19, ROBOT_UNSAFE, ERROR, "session",                                                                    \
+      "the settings are unsafe for this robot (S5): passive; value: mm that S5 needs")                       \
     X(20, MOTORS_OFF, ERROR, "drive",                                                                        \
       "the motors are off (button or E-stop): enable them to go on; value: SIP flags")                       \
     X(21, MOTORS_ON, OK, "drive", "the motors are on; value: SIP flags")                                     \
@@ -200,8 +199,9 @@ typedef enum {
     X(25, BATTERY_LOW, WARN, "battery", "battery low; value: decivolts")                                     \
     X(26, SONARS_BEYOND, WARN, "session",                                                                    \
       "it has more sonars than this build manages, those beyond are left out; value: how many it has")       \
-    X(27, ROBOT_UNSAFE, ERROR, "session",                                                                    \
-      "the settings are unsafe for this robot (S5): passive; value: mm that S5 needs")                       \
+    X(27, OTHER_ROBOT, ERROR, "session",                                                                     \
+      "another robot answers than before: passive, the course is paused, until an operator says active and " \
+      "go; value: what differs, 1 name, 2 class, 3 subclass, 4 serial number")                               \
     X(30, SONAR_DEAD, ERROR, "sonar", "dead reading: STOP sent; value: the reading in mm")                   \
     X(31, SONAR_SILENT, ERROR, "sonar",                                                                      \
       "its slot yields no reading: STOP sent; value: age of its last reading in ms")                         \

@@ -161,11 +161,18 @@ static void pause_for(int ms) {
 
 static hal_link_error_t open_link(const hal_clock_t *clock, hal_link_t *link) {
     const uint32_t start_ms = hal_clock_now_ms(clock);
+    hal_link_error_t told = HAL_LINK_OK;
     for (;;) {
         const hal_link_error_t error =
             hal_transport_open(&transport, &options.link, OPEN_TIMEOUT_MS, signals_fd(), link);
         if (!is_worth_waiting_for(error) || !is_time_left(clock, start_ms)) {
             return error;
+        }
+        if (error != told) {
+            told = error;
+            hal_transport_explain(&options.link, error, message, sizeof message);
+            fprintf(stderr, "argusd: %s; waiting for it\n", message);
+            message[0] = '\0';
         }
         pause_for(OPEN_RETRY_MS);
     }

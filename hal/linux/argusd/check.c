@@ -10,7 +10,7 @@
 #define LOOK_MS 3000u // long enough for every transducer to fire several times
 #define LEAVE_MS 4000u
 
-void check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *text, size_t capacity) {
+static void explain_silence(const driver_t *driver, uint32_t waited_ms, char *text, size_t capacity) {
     argus_status_t status;
     argus_status(driver->core, &status);
     const bool serial = driver->spec.scheme == HAL_SCHEME_SERIAL;
@@ -19,7 +19,9 @@ void check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *tex
              (unsigned)(waited_ms / 1000u));
     if (driver->bytes_in == 0) {
         text_add(&line, "nothing was received; is the robot on and connected?%s",
-                 serial ? " At another rate it is silent too: try --auto-baud" : "");
+                 serial ? " At another rate it is silent too: try --auto-baud"
+                 : driver->spec.scheme == HAL_SCHEME_TCP ? " Is another client using it?"
+                                                         : "");
     } else if (status.packets == 0) {
         text_add(
             &line, "%u bytes of garbage were received, no packet among them; %s", (unsigned)driver->bytes_in,
@@ -33,6 +35,19 @@ void check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *tex
                  "robot, or the line is noisy or looped back",
                  (unsigned)status.packets, (unsigned)status.bad_checksums);
     }
+}
+
+argusd_exit_t check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *text, size_t capacity) {
+    if (driver_is_turned_away(driver)) {
+        driver_explain_turned_away(driver, text, capacity);
+        return ARGUSD_EXIT_NO_ROBOT;
+    }
+    if (!driver->up) {
+        hal_transport_explain(&driver->spec, driver->error, text, capacity);
+        return ARGUSD_EXIT_LINK;
+    }
+    explain_silence(driver, waited_ms, text, capacity);
+    return ARGUSD_EXIT_NO_ROBOT;
 }
 
 // One turn of the loop; false when somebody gave up.
@@ -149,6 +164,7 @@ argusd_exit_t check_run(driver_t *driver, uint32_t wait_ms, int cancel_fd, bool 
                         char *message, size_t capacity) {
     const uint32_t start_ms = hal_clock_now_ms(&driver->clock);
     argus_status_t status;
+    argusd_exit_t code = ARGUSD_EXIT_OK;
     uint32_t met_ms = 0;
     bool met = false;
     bool going_on = true;
@@ -165,8 +181,8 @@ argusd_exit_t check_run(driver_t *driver, uint32_t wait_ms, int cancel_fd, bool 
     if (met) {
         json ? tell_json(driver, &status, out) : tell_plain(driver, &status, out);
     } else {
-        check_explain_silence(driver, hal_clock_now_ms(&driver->clock) - start_ms, message, capacity);
+        code = check_explain_silence(driver, hal_clock_now_ms(&driver->clock) - start_ms, message, capacity);
     }
     leave(driver);
-    return met ? ARGUSD_EXIT_OK : ARGUSD_EXIT_NO_ROBOT;
+    return code;
 }

@@ -8,8 +8,9 @@
 #include "argusd.h"
 #include "driver.h"
 
-// Why no robot answered, on one line: silence, garbage, or packets that lead nowhere.
-void check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *text, size_t capacity);
+// Why no robot answered, on one line: no link, silence, garbage, or packets that lead nowhere; and the exit
+// code for that.
+argusd_exit_t check_explain_silence(const driver_t *driver, uint32_t waited_ms, char *text, size_t capacity);
 
 // The driver's link is open and it is passive. Writes the findings to `out`, or the reason for none to
 // `message`.

@@ -2,7 +2,10 @@
 // The manager's hands on the wire.
 #include "driver.h"
 
+#include <stdio.h>
 #include <string.h>
+
+#include "argusd.h"
 
 #define READ_BYTES 512
 #define READS_PER_WAKE 8 // a flood must not keep time from passing
@@ -10,6 +13,8 @@
 #define RETRY_MAX_MS 4000u
 #define REOPEN_TIMEOUT_MS 1000
 #define LOOK_MS 1000u
+#define AT_ONCE_MS 1000u
+#define FRUITLESS_MIN 2
 // A robot that was sending to nobody waits up to 1 s for flow control before its next SIP (N_Bs of ISO-TP).
 // Until a SIP could have come, SYNC0 may be a PULSE to an old session, on which the robot takes up its old
 // motion.
@@ -37,6 +42,8 @@ void driver_attach(driver_t *self, hal_link_t link) {
     self->error = HAL_LINK_OK;
     self->held = 0;
     self->up_ms = now_ms(self);
+    self->heard = self->bytes_in;
+    self->failed = false;
     self->settles = self->spec.scheme == HAL_SCHEME_CAN;
     if (!self->settles) {
         argus_link_up(self->core, self->up_ms);
@@ -57,10 +64,17 @@ static uint32_t settle(driver_t *self) {
 hal_link_error_t driver_open(driver_t *self, int timeout_ms) {
     hal_link_t link = {0};
     self->error = hal_transport_open(self->transport, &self->spec, timeout_ms, self->cancel_fd, &link);
+    self->failed = self->error != HAL_LINK_OK && self->error != HAL_LINK_CANCELLED;
     if (self->error == HAL_LINK_OK) {
         driver_attach(self, link);
+    } else {
+        self->fruitless = 0;
     }
     return self->error;
+}
+
+static void lengthen_pause(driver_t *self) {
+    self->retry_ms = self->retry_ms < RETRY_MAX_MS / 2 ? self->retry_ms * 2 : RETRY_MAX_MS;
 }
 
 static void lose(driver_t *self, int error) {
@@ -69,7 +83,16 @@ static void lose(driver_t *self, int error) {
     self->held = 0;
     self->error = (hal_link_error_t)error;
     self->lost_ms = now_ms(self);
-    self->retry_ms = RETRY_FIRST_MS;
+    if (self->bytes_in == self->heard && self->lost_ms - self->up_ms < AT_ONCE_MS) {
+        self->fruitless++;
+    } else {
+        self->fruitless = 0;
+    }
+    if (self->fruitless < FRUITLESS_MIN) {
+        self->retry_ms = RETRY_FIRST_MS;
+    } else {
+        lengthen_pause(self);
+    }
     argus_link_lost(self->core, self->lost_ms);
 }
 
@@ -133,7 +156,7 @@ static uint32_t reopen(driver_t *self) {
         return 0;
     }
     self->lost_ms = now_ms(self);
-    self->retry_ms = self->retry_ms < RETRY_MAX_MS / 2 ? self->retry_ms * 2 : RETRY_MAX_MS;
+    lengthen_pause(self);
     return self->retry_ms;
 }
 
@@ -179,6 +202,52 @@ uint32_t driver_process(driver_t *self) {
     const uint32_t hold_ms = held_for_ms(self);
     retry_ms = hold_ms < retry_ms ? hold_ms : retry_ms;
     return wait_ms < retry_ms ? wait_ms : retry_ms;
+}
+
+void driver_explain_turned_away(const driver_t *self, char *text, size_t capacity) {
+    const bool tcp = self->spec.scheme == HAL_SCHEME_TCP;
+    char port[16] = "";
+    if (tcp) {
+        snprintf(port, sizeof port, " port %u", (unsigned)self->spec.port);
+    }
+    snprintf(text, capacity, "%s%s: the other end accepts and closes at once, %u times so far: %s",
+             hal_link_spec_target(&self->spec), port, (unsigned)self->fruitless,
+             tcp ? "another client may be using the robot; end that one, or check the port"
+                 : "is the device in order, and is nobody else at it?");
+}
+
+bool driver_is_turned_away(const driver_t *self) {
+    return self->fruitless >= FRUITLESS_MIN && (!self->up || self->bytes_in == self->heard);
+}
+
+// The reason as of now; HAL_LINK_OK: none, the link is of use. What an attempt brought while the link is
+// turned away is the same reason.
+static hal_link_error_t reason_now(const driver_t *self) {
+    if (driver_is_turned_away(self)) {
+        return HAL_LINK_CLOSED;
+    }
+    if (self->up) {
+        return self->bytes_in == self->heard && self->told == HAL_LINK_CLOSED ? HAL_LINK_CLOSED : HAL_LINK_OK;
+    }
+    return self->failed ? self->error : self->told;
+}
+
+bool driver_reason(driver_t *self, char *text, size_t capacity) {
+    const hal_link_error_t reason = reason_now(self);
+    if (reason == self->told || self->transport == NULL) {
+        return false;
+    }
+    self->told = reason;
+    if (reason == HAL_LINK_OK) {
+        snprintf(text, capacity, "%s: open again", hal_link_describe(&self->link));
+    } else if (reason == HAL_LINK_CLOSED) {
+        driver_explain_turned_away(self, text, capacity);
+    } else {
+        char why[ARGUSD_MESSAGE_MAX];
+        hal_transport_explain(&self->spec, reason, why, sizeof why);
+        snprintf(text, capacity, "%.*s; trying again until it is there", ARGUSD_MESSAGE_MAX - 64, why);
+    }
+    return true;
 }
 
 bool driver_wants_write(const driver_t *self) {

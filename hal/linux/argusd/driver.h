@@ -24,6 +24,10 @@ typedef struct {
     bool up;
     int cancel_fd;          // becomes readable when opening is to be given up; -1: none
     hal_link_error_t error; // why the link is not up
+    bool failed;            // ... since an attempt to open it failed
+    hal_link_error_t told;  // the reason told last; HAL_LINK_OK: none is to be told as over
+    uint32_t heard;         // bytes_in when the link came up
+    uint32_t fruitless;     // times in a row that the link closed at once and nothing was heard
     uint32_t retry_ms;      // pause before the next attempt to open
     uint32_t lost_ms;       // when the last attempt failed
     uint32_t looked_ms;     // last look at where the link's name leads
@@ -54,6 +58,15 @@ uint32_t driver_process(driver_t *self);
 
 // Writes what the manager has to send, as far as the link takes it.
 void driver_transmit(driver_t *self);
+
+// Why the link stays away, or that it is back: each once. False: nothing new.
+bool driver_reason(driver_t *self, char *text, size_t capacity);
+
+// One line about that, see below.
+void driver_explain_turned_away(const driver_t *self, char *text, size_t capacity);
+
+// Whether whoever is at the other end takes the link and closes it at once, time and again.
+bool driver_is_turned_away(const driver_t *self);
 
 bool driver_wants_write(const driver_t *self);
 void driver_close(driver_t *self);

@@ -12,6 +12,7 @@
 
 #define SAVE_MS 5000u
 #define CLOSE_MAX_MS 4000u
+#define WISH_MS 1000u
 #define ORDERS_MAX 8 // in one wake-up: a flood of them must not keep time from passing
 
 static void take_time(loop_t *self) {
@@ -24,12 +25,27 @@ static argus_status_t status_of(const loop_t *self) {
     return status;
 }
 
+static void say_stranger(loop_t *self, const argus_status_t *status) {
+    char text[ARGUSD_MESSAGE_MAX];
+    snprintf(text, sizeof text,
+             "another robot is at the link now: name '%s', class '%s', subclass '%s', serial number '%s'; it "
+             "is not "
+             "driven until it is made active and told to go (p, g, or the orders over CAN)",
+             status->robot_name, status->robot_class, status->robot_subclass, status->robot_serial);
+    voice_notice(&self->voice, text);
+}
+
 static void say_events(loop_t *self) {
     argus_event_t event;
     const argus_status_t status = status_of(self);
     while (argus_next_event(self->driver.core, &event)) {
+        self->closed =
+            event.id == ARGUS_EV_SESSION_CLOSED || (self->closed && event.id != ARGUS_EV_SESSION_OPEN);
         bus_event(&self->bus, &status, &event);
         voice_event(&self->voice, &self->moment, &event);
+        if (event.id == ARGUS_EV_OTHER_ROBOT) {
+            say_stranger(self, &status);
+        }
     }
     voice_losses(&self->voice, &self->moment, status.failure);
 }
@@ -87,9 +103,21 @@ static argusd_exit_t code_of_mission(const loop_t *self) {
     return status_of(self).mission == ARGUS_MISSION_FAILED ? ARGUSD_EXIT_MISSION : ARGUSD_EXIT_OK;
 }
 
-static void quit(loop_t *self) {
-    self->quits++;
+// A wrapper and the terminal may deliver one Ctrl-C twice, a key repeats, SIGHUP follows SIGTERM.
+static void wish_to_end(loop_t *self) {
+    if (self->wishes == 0 || self->moment.now_ms - self->wished_ms >= WISH_MS) {
+        self->wishes++;
+        self->wished_ms = self->moment.now_ms;
+    }
     end(self, code_of_mission(self));
+}
+
+static void take_signals(loop_t *self) {
+    const int signals = signals_ends();
+    if (signals != self->signals) {
+        self->signals = signals;
+        wish_to_end(self);
+    }
 }
 
 // Whoever watched can no longer stop it by hand.
@@ -101,11 +129,15 @@ static void lose_screen(loop_t *self) {
 
 static void obey(loop_t *self, tui_key_t key) {
     if (key == TUI_QUIT) {
-        quit(self);
+        wish_to_end(self);
     } else if (key == TUI_GONE) {
         lose_screen(self);
-    } else if (!self->ending) {
-        operator_key(&self->operator, key, self->moment.now_ms);
+    } else if (self->ending) {
+        voice_answer(&self->voice, "> it is ending");
+    } else {
+        char answer[ARGUSD_MESSAGE_MAX];
+        operator_key(&self->operator, key, self->moment.now_ms, answer, sizeof answer);
+        voice_answer(&self->voice, answer);
     }
 }
 
@@ -165,10 +197,10 @@ static void watch_answer(loop_t *self) {
         return;
     }
     char text[ARGUSD_MESSAGE_MAX];
-    check_explain_silence(&self->driver, waited_ms, text, sizeof text);
+    const argusd_exit_t code = check_explain_silence(&self->driver, waited_ms, text, sizeof text);
     tui_stop(&self->voice.tui);
     voice_notice(&self->voice, text);
-    end(self, ARGUSD_EXIT_NO_ROBOT);
+    end(self, code);
 }
 
 static bool is_at_rest(const argus_status_t *status) {
@@ -190,6 +222,13 @@ static void save(loop_t *self, bool now) {
     }
 }
 
+static void watch_link(loop_t *self) {
+    char text[ARGUSD_MESSAGE_MAX];
+    if (driver_reason(&self->driver, text, sizeof text)) {
+        voice_notice(&self->voice, text);
+    }
+}
+
 static void watch_tape(loop_t *self) {
     char text[ARGUSD_MESSAGE_MAX];
     if (tape_problem(&self->tape, text, sizeof text)) {
@@ -204,15 +243,32 @@ static void close_tape(loop_t *self) {
     }
 }
 
+static void say_unclean(loop_t *self, const char *why) {
+    char text[ARGUSD_MESSAGE_MAX];
+    snprintf(text, sizeof text, "the session was not closed in order, %s; the robot's watchdog stops it",
+             why);
+    voice_notice(&self->voice, text);
+    if (self->code == ARGUSD_EXIT_OK || self->code == ARGUSD_EXIT_MISSION) {
+        self->code = ARGUSD_EXIT_UNCLEAN;
+    }
+}
+
 static bool is_over(loop_t *self) {
     if (!self->ending) {
         return false;
     }
     if (argus_closed(self->driver.core) && !driver_wants_write(&self->driver)) {
+        if (self->met && !self->closed) {
+            say_unclean(self, self->driver.up ? "since no robot answered" : "since the link was down");
+        }
         return true;
     }
-    if (self->moment.now_ms - self->ending_ms >= CLOSE_MAX_MS || signals_ends() + self->quits > 1) {
-        voice_notice(&self->voice, "the session was not closed in order; the robot's watchdog stops it");
+    if (self->moment.now_ms - self->ending_ms >= CLOSE_MAX_MS) {
+        say_unclean(self, "since it took too long");
+        return true;
+    }
+    if (self->wishes > 1) {
+        say_unclean(self, "since the end was asked for again");
         return true;
     }
     return false;
@@ -271,11 +327,10 @@ argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
         const uint32_t wait_ms = driver_process(&self->driver);
         take_time(self);
         say_events(self);
+        watch_link(self);
         watch_answer(self);
         watch_mission(self);
-        if (signals_ends() > 0) {
-            end(self, code_of_mission(self));
-        }
+        take_signals(self);
         show(self);
         save(self, false);
         watch_tape(self);
@@ -292,6 +347,8 @@ argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
     bus_close(&self->bus, &status, self->moment.now_ms);
     driver_close(&self->driver);
     tui_stop(&self->voice.tui);
+    look(self);
+    voice_summary(&self->voice, &self->view);
     save(self, true);
     close_tape(self);
     voice_end(&self->voice, &self->driver.clock);

@@ -34,8 +34,11 @@ typedef struct {
     argusd_exit_t code;
     uint32_t start_ms;
     uint32_t ending_ms;
-    uint32_t saved_ms; // last look at the record
-    int quits;         // how often q was pressed
+    uint32_t saved_ms;  // last look at the record
+    int signals;        // seen so far
+    int wishes;         // to end; what comes within a second of one is the same
+    uint32_t wished_ms; // when the last one came
+    bool closed;        // the session was closed in order
     uint32_t course_mm;
     view_t view;
 } loop_t;

@@ -1,82 +1,156 @@
 // SPDX-License-Identifier: MIT
-// What each key and each order asks.
+// What each key and each order asks, and what is answered.
 #include "operator.h"
 
+#include <stdio.h>
+
 #define TURN_DEG 20
+#define REPEAT_MS 1000u // a key that is held or bounces asks once
 
 void operator_init(operator_t *self, driver_t *driver, const argus_config_t *config) {
-    *self = (operator_t){.driver = driver, .ahead_mm = config->step_mm, .back_mm = -config->backoff_mm};
+    *self = (operator_t){.driver = driver,
+                         .ahead_mm = config->step_mm,
+                         .back_mm = -config->backoff_mm,
+                         .judges = config->profile == ARGUS_PROFILE_ARGUS};
 }
 
-static void ask(operator_t *self, argus_op_t op, int32_t argument) {
-    argus_operator(self->driver->core, self->now_ms, op, argument);
+static bool ask(operator_t *self, argus_op_t op, int32_t argument) {
+    const bool taken = argus_operator(self->driver->core, self->now_ms, op, argument);
     driver_transmit(self->driver);
+    return taken;
 }
 
-static argus_status_t status_of(const operator_t *self) {
-    argus_status_t status;
-    argus_status(self->driver->core, &status);
-    return status;
-}
-
-static void drive(operator_t *self, tui_key_t key) {
-    if (key == TUI_LEFT || key == TUI_RIGHT) {
-        ask(self, ARGUS_OP_TURN, key == TUI_LEFT ? TURN_DEG : -TURN_DEG);
-    } else {
-        ask(self, ARGUS_OP_MOVE, key == TUI_AHEAD ? self->ahead_mm : self->back_mm);
+// What a key asks of the manager; false: nothing, it is the screen's.
+static bool wish_of(const operator_t *self, const argus_status_t *status, tui_key_t key, argus_op_t *op,
+                    int32_t *argument) {
+    const bool pinned = (status->pinned >> self->sonar & 1) != 0;
+    const struct {
+        tui_key_t key;
+        argus_op_t op;
+        int32_t argument;
+    } wishes[] = {
+        {TUI_AHEAD, ARGUS_OP_MOVE, self->ahead_mm},
+        {TUI_BACK, ARGUS_OP_MOVE, self->back_mm},
+        {TUI_LEFT, ARGUS_OP_TURN, TURN_DEG},
+        {TUI_RIGHT, ARGUS_OP_TURN, -TURN_DEG},
+        {TUI_STOP, ARGUS_OP_STOP, 0},
+        {TUI_GO, ARGUS_OP_GO, 0},
+        {TUI_RECHECK, ARGUS_OP_RECHECK, 0},
+        {TUI_PASSIVE, status->active ? ARGUS_OP_PASSIVE : ARGUS_OP_ACTIVE, 0},
+        {TUI_RETEST, ARGUS_OP_RETEST, self->sonar},
+        {TUI_PIN, pinned ? ARGUS_OP_UNPIN : ARGUS_OP_PIN, self->sonar},
+        {TUI_TAKE_OUT, ARGUS_OP_DISABLE, self->sonar},
+    };
+    for (size_t i = 0; i < sizeof wishes / sizeof wishes[0]; i++) {
+        if (wishes[i].key == key) {
+            *op = wishes[i].op;
+            *argument = wishes[i].argument;
+            return true;
+        }
     }
+    return false;
 }
 
-// True when the key was for the chosen sonar.
-static bool serve_sonar(operator_t *self, tui_key_t key) {
-    const bool pinned = (status_of(self).pinned >> self->sonar & 1) != 0;
-    switch (key) {
-    case TUI_NEXT:
-        self->sonar = (uint8_t)((self->sonar + 1) % ARGUS_SONARS);
-        return true;
-    case TUI_PREVIOUS:
-        self->sonar = (uint8_t)((self->sonar + ARGUS_SONARS - 1) % ARGUS_SONARS);
-        return true;
-    case TUI_RETEST:
-        ask(self, ARGUS_OP_RETEST, self->sonar);
-        return true;
-    case TUI_PIN:
-        ask(self, pinned ? ARGUS_OP_UNPIN : ARGUS_OP_PIN, self->sonar);
-        return true;
-    case TUI_TAKE_OUT:
-        ask(self, ARGUS_OP_DISABLE, self->sonar);
-        return true;
+static bool is_of_sonar(argus_op_t op) {
+    return op >= ARGUS_OP_RETEST;
+}
+
+// NULL: nothing stands against it.
+static const char *why_no_motion(const argus_status_t *status, argus_op_t op) {
+    const bool drives = op == ARGUS_OP_MOVE || op == ARGUS_OP_TURN;
+    if (!drives && op != ARGUS_OP_GO) {
+        return NULL;
+    }
+    if (!status->active) {
+        return "not while passive; p makes it active";
+    }
+    if (!status->online) {
+        return "not without a robot";
+    }
+    if (op == ARGUS_OP_GO) {
+        return status->waypoints == 0 ? "there is no course" : NULL;
+    }
+    return status->mode != ARGUS_MODE_IDLE ? "not while it is busy; space stops it" : NULL;
+}
+
+static const char *why_not(const operator_t *self, const argus_status_t *status, argus_op_t op) {
+    const bool pinned = (status->pinned >> self->sonar & 1) != 0;
+    if (!is_of_sonar(op)) {
+        return why_no_motion(status, op);
+    }
+    if (op == ARGUS_OP_RETEST) {
+        return !status->open ? "not without a robot" : pinned ? "it is pinned; k ends that" : NULL;
+    }
+    if (!self->judges) {
+        return "not with profile paper";
+    }
+    return op == ARGUS_OP_DISABLE && pinned ? "it is pinned; k ends that" : NULL;
+}
+
+static const char *effect_of(tui_key_t key, argus_op_t op) {
+    switch (op) {
+    case ARGUS_OP_PASSIVE:
+        return "passive: stops, then only reports";
+    case ARGUS_OP_ACTIVE:
+        return "active: drives";
+    case ARGUS_OP_PIN:
+        return "keeps its health until unpinned";
+    case ARGUS_OP_UNPIN:
+        return "the evidence decides again";
     default:
-        return false;
+        return tui_effect_of(key);
     }
 }
 
-void operator_key(operator_t *self, tui_key_t key, uint32_t now_ms) {
+// A key that goes to and fro would undo itself.
+static bool is_repeated(operator_t *self, tui_key_t key) {
+    const bool toggles = key == TUI_PASSIVE || key == TUI_PIN;
+    const bool repeated = toggles && self->toggled == key && self->now_ms - self->toggled_ms < REPEAT_MS;
+    if (toggles && !repeated) {
+        self->toggled = key;
+        self->toggled_ms = self->now_ms;
+    }
+    return repeated;
+}
+
+static void choose(operator_t *self, int step) {
+    self->sonar = (uint8_t)((self->sonar + ARGUS_SONARS + step) % ARGUS_SONARS);
+}
+
+static void answer_screen(operator_t *self, tui_key_t key, char *answer, size_t capacity) {
+    if (key == TUI_NEXT || key == TUI_PREVIOUS) {
+        choose(self, key == TUI_NEXT ? 1 : -1);
+        snprintf(answer, capacity, "> %s: sonar %d is chosen", tui_keys_of(key), self->sonar);
+    } else {
+        snprintf(answer, capacity, "> no such key; ? shows the keys");
+    }
+}
+
+void operator_key(operator_t *self, tui_key_t key, uint32_t now_ms, char *answer, size_t capacity) {
+    argus_status_t status;
+    argus_op_t op = ARGUS_OP_STOP;
+    int32_t argument = 0;
+    char whom[16] = "";
     self->now_ms = now_ms;
-    if (serve_sonar(self, key)) {
+    argus_status(self->driver->core, &status);
+    if (!wish_of(self, &status, key, &op, &argument)) {
+        answer_screen(self, key, answer, capacity);
         return;
     }
-    switch (key) {
-    case TUI_STOP:
-        ask(self, ARGUS_OP_STOP, 0);
-        break;
-    case TUI_GO:
-        ask(self, ARGUS_OP_GO, 0);
-        break;
-    case TUI_RECHECK:
-        ask(self, ARGUS_OP_RECHECK, 0);
-        break;
-    case TUI_PASSIVE:
-        ask(self, status_of(self).active ? ARGUS_OP_PASSIVE : ARGUS_OP_ACTIVE, 0);
-        break;
-    case TUI_AHEAD:
-    case TUI_BACK:
-    case TUI_LEFT:
-    case TUI_RIGHT:
-        drive(self, key);
-        break;
-    default:
-        break;
+    if (is_repeated(self, key)) {
+        snprintf(answer, capacity, "> %s: twice within a second is once", tui_keys_of(key));
+        return;
+    }
+    if (is_of_sonar(op)) {
+        snprintf(whom, sizeof whom, "sonar %d: ", self->sonar);
+    }
+    const char *const obstacle = why_not(self, &status, op);
+    const bool taken = ask(self, op, argument); // whatever is thought here, the manager decides
+    if (obstacle != NULL || !taken) {
+        snprintf(answer, capacity, "> %s: %s%s: %s", tui_keys_of(key), whom, effect_of(key, op),
+                 obstacle != NULL ? obstacle : "it was refused");
+    } else {
+        snprintf(answer, capacity, "> %s: %s%s", tui_keys_of(key), whom, effect_of(key, op));
     }
 }
 

@@ -5,20 +5,23 @@
 
 #include "driver.h"
 #include "hal/gen_argus_dbc.h"
-#include "tui.h"
+#include "tui_key.h"
 
 typedef struct {
     uint8_t sonar;    // the chosen one
     int32_t ahead_mm; // of one key
     int32_t back_mm;
+    bool judges; // profile argus
     uint32_t now_ms;
+    tui_key_t toggled; // the last key that goes to and fro, pressed at toggled_ms
+    uint32_t toggled_ms;
     driver_t *driver;
 } operator_t;
 
 void operator_init(operator_t *self, driver_t *driver, const argus_config_t *config);
 
-// Not for TUI_QUIT and TUI_GONE, which are the loop's.
-void operator_key(operator_t *self, tui_key_t key, uint32_t now_ms);
+// Not for TUI_QUIT and TUI_GONE, which are the loop's. `answer`: the key and what it does, or why not.
+void operator_key(operator_t *self, tui_key_t key, uint32_t now_ms, char *answer, size_t capacity);
 
 // An order that was taken.
 void operator_order(operator_t *self, const hal_dbc_command_t *order, uint32_t now_ms);

@@ -186,7 +186,8 @@ static bool take_telemetry(options_t *options, const char *text, const message_t
     return true;
 }
 
-static bool take_flag(options_t *options, int option) {
+// What is kept as it was written.
+static bool take_text(options_t *options, int option) {
     switch (option) {
     case OPT_CONFIG:
         options->config_path = optarg;
@@ -203,6 +204,13 @@ static bool take_flag(options_t *options, int option) {
     case OPT_ROBOT:
         options->robot = optarg;
         return true;
+    default:
+        return false;
+    }
+}
+
+static bool take_flag(options_t *options, int option) {
+    switch (option) {
     case OPT_PASSIVE:
         options->passive = true;
         return true;
@@ -219,7 +227,7 @@ static bool take_flag(options_t *options, int option) {
         options->auto_baud = true;
         return true;
     default:
-        return false;
+        return take_text(options, option);
     }
 }
 

@@ -84,6 +84,8 @@ static const char *colour_of(argus_level_t level) {
 static void add_value(text_t *text, const argus_event_t *event) {
     if (event->id == ARGUS_EV_SONAR_DISABLED) {
         text_add(text, " (%s)", argus_name(ARGUS_NAME_KIND, (int)event->value));
+    } else if (event->id == ARGUS_EV_OPERATOR) {
+        text_add(text, " %s", argus_name(ARGUS_NAME_OP, (int)event->value));
     } else if (strstr(meaning_of(event->id), "value:") != NULL) {
         text_add(text, " %d", (int)event->value);
     }
@@ -122,13 +124,13 @@ static void put_sonars(json_t *json, const argus_status_t *status) {
     json_name(json, "health");
     json_open(json, '[');
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        json_string(json, argus_name(ARGUS_NAME_HEALTH, status->health[i]));
+        json_string(json, argus_name(ARGUS_NAME_HEALTH, (int)status->health[i]));
     }
     json_close(json, ']');
     json_name(json, "kind");
     json_open(json, '[');
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        json_string(json, argus_name(ARGUS_NAME_KIND, status->kind[i]));
+        json_string(json, argus_name(ARGUS_NAME_KIND, (int)status->kind[i]));
     }
     json_close(json, ']');
 }
@@ -145,9 +147,10 @@ static void put_plan(json_t *json, const argus_plan_t *plan) {
 
 static void put_robot(json_t *json, const view_t *view) {
     const argus_status_t *const status = &view->status;
-    put_string(json, "mode", argus_name(ARGUS_NAME_MODE, status->mode));
-    put_string(json, "mission", argus_name(ARGUS_NAME_MISSION, status->mission));
+    put_string(json, "mode", argus_name(ARGUS_NAME_MODE, (int)status->mode));
+    put_string(json, "mission", argus_name(ARGUS_NAME_MISSION, (int)status->mission));
     put_bool(json, "active", status->active);
+    put_bool(json, "paused", status->paused);
     put_bool(json, "online", status->online);
     put_int(json, "x_mm", status->pose.x_mm);
     put_int(json, "y_mm", status->pose.y_mm);
@@ -233,19 +236,51 @@ size_t report_status_plain(const view_t *view, char *line, size_t capacity) {
     const argus_status_t *const status = &view->status;
     text_t text = text_in(line, capacity);
     text_add(&text, "%5u.%03u STATUS %s %s", (unsigned)(view->t_ms / 1000u), (unsigned)(view->t_ms % 1000u),
-             argus_name(ARGUS_NAME_MODE, status->mode), argus_name(ARGUS_NAME_FAILURE, status->failure));
+             argus_name(ARGUS_NAME_MODE, (int)status->mode),
+             argus_name(ARGUS_NAME_FAILURE, (int)status->failure));
     if (!status->online) {
         text_add(&text, " no robot");
         return text.length;
     }
-    text_add(&text, " %s at %d,%d mm %d deg", status->active ? "active" : "passive", (int)status->pose.x_mm,
-             (int)status->pose.y_mm, (int)(status->pose.heading_cdeg / 100));
+    text_add(&text, " %s%s at %d,%d mm %d deg", status->active ? "active" : "passive",
+             status->paused ? ", paused," : "", (int)status->pose.x_mm, (int)status->pose.y_mm,
+             (int)(status->pose.heading_cdeg / 100));
     if (status->waypoints > 0) {
         text_add(&text, " goal %d mm", (int)status->goal_mm);
     }
     text_add(&text, " %d.%d V", status->battery_dv / 10, status->battery_dv % 10);
     add_readings(&text, "front", status, 0);
     add_readings(&text, "rear", status, FRONT_SONARS);
+    return text.cut ? 0 : text.length;
+}
+
+static void add_out_of_use(text_t *text, const argus_status_t *status) {
+    int count = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (status->health[i] == ARGUS_DISABLED || status->health[i] == ARGUS_PROBATION) {
+            text_add(text, "%s %d (%s)", count == 0 ? "out of use: sonar" : ",", i,
+                     argus_name(ARGUS_NAME_KIND, (int)status->kind[i]));
+            count++;
+        }
+    }
+    if (count == 0) {
+        text_add(text, "no sonar out of use");
+    }
+}
+
+size_t report_summary(const view_t *view, char *line, size_t capacity) {
+    const argus_status_t *const status = &view->status;
+    text_t text = text_in(line, capacity);
+    text_add(&text, "%5u.%03u SUMMARY mission %s", (unsigned)(view->t_ms / 1000u),
+             (unsigned)(view->t_ms % 1000u), argus_name(ARGUS_NAME_MISSION, (int)status->mission));
+    if (status->waypoints > 0) {
+        text_add(&text, ", %d mm from the goal", (int)status->goal_mm);
+    }
+    text_add(&text, "; %s; ", argus_name(ARGUS_NAME_FAILURE, (int)status->failure));
+    add_out_of_use(&text, status);
+    text_add(&text, "; %u stops; %u SIPs, %u bad checksums, link opened again %u times",
+             (unsigned)status->stops, (unsigned)status->sips, (unsigned)status->bad_checksums,
+             (unsigned)view->reopened);
     return text.cut ? 0 : text.length;
 }
 

@@ -21,6 +21,9 @@ size_t report_event_plain(const argus_event_t *event, uint64_t t_ms, bool colour
 size_t report_status_json(const view_t *view, int64_t unix_ms, char *line, size_t capacity);
 size_t report_status_plain(const view_t *view, char *line, size_t capacity);
 
+// What came of it all, for people.
+size_t report_summary(const view_t *view, char *line, size_t capacity);
+
 void report_list_events(FILE *out);
 
 #endif

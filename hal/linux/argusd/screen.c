@@ -6,8 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "tui_key.h"
+
 #define FRONT_SONARS 8
-#define SHOWN_SONARS 16
 #define RING_TOP 3
 #define RING_ROWS 13
 #define RING_COLUMNS 34
@@ -15,17 +16,29 @@
 #define RING_INNER 3       // columns from the centre where a reading of 0 lies
 #define RIGHT 36           // column of the tables
 #define RIGHT_ROWS 16      // below: the log
-#define NARROW 60          // fewer columns: no ring
+#define RECENT 8           // lines of the log among which a repeated one counts
 
-void screen_log_add(screen_log_t *self, const char *line, tone_t tone) {
-    const int at = (self->first + self->count) % SCREEN_LOG_LINES;
-    snprintf(self->line[at], sizeof self->line[at], "%s", line);
-    self->tone[at] = (uint8_t)tone;
-    if (self->count < SCREEN_LOG_LINES) {
-        self->count++;
-    } else {
-        self->first = (self->first + 1) % SCREEN_LOG_LINES;
+void screen_log_add(screen_log_t *self, const char *line, tone_t tone, uint16_t key) {
+    unsigned times = 1;
+    int gone = self->count == SCREEN_LOG_LINES ? 0 : self->count;
+    for (int i = self->count - 1; key != 0 && i >= 0 && i >= self->count - RECENT; i--) {
+        if (self->line[i].key == key) {
+            times = self->line[i].times + 1u;
+            gone = i;
+            break;
+        }
     }
+    if (gone < self->count) {
+        memmove(&self->line[gone], &self->line[gone + 1],
+                (size_t)(self->count - gone - 1) * sizeof self->line[0]);
+        self->count--;
+    }
+    screen_line_t *const last = &self->line[self->count];
+    snprintf(last->text, sizeof last->text, "%s", line);
+    last->tone = (uint8_t)tone;
+    last->key = key;
+    last->times = (uint16_t)(times < UINT16_MAX ? times : UINT16_MAX);
+    self->count++;
 }
 
 static int between(int value, int low, int high) {
@@ -50,10 +63,40 @@ static void put(canvas_t *canvas, int row, int column, tone_t tone, char charact
     }
 }
 
-static void put_text(canvas_t *canvas, int row, int column, tone_t tone, const char *text) {
-    for (int i = 0; text[i] != '\0'; i++) {
+// Of a text, what fits in so many columns without cutting a word.
+static int length_that_fits(const char *text, int room) {
+    const int length = (int)strlen(text);
+    if (length <= room) {
+        return length;
+    }
+    int end = room < 0 ? 0 : room;
+    while (end > 0 && text[end] != ' ') {
+        end--;
+    }
+    while (end > 0 && strchr(" ,;:", text[end - 1]) != NULL) {
+        end--;
+    }
+    return end;
+}
+
+static int put_words(canvas_t *canvas, int row, int column, int room, tone_t tone, const char *text) {
+    const int length = length_that_fits(text, room);
+    for (int i = 0; i < length; i++) {
         put(canvas, row, column + i, tone, text[i]);
     }
+    return length;
+}
+
+static void put_text(canvas_t *canvas, int row, int column, tone_t tone, const char *text) {
+    put_words(canvas, row, column, canvas->columns - column, tone, text);
+}
+
+// The first of the texts that fits whole; "" ends them.
+static const char *first_that_fits(const char *const *texts, int room) {
+    while ((*texts)[0] != '\0' && (int)strlen(*texts) > room) {
+        texts++;
+    }
+    return *texts;
 }
 
 __attribute__((format(printf, 5, 6))) static void write_at(canvas_t *canvas, int row, int column, tone_t tone,
@@ -88,15 +131,24 @@ static tone_t tone_of_health(argus_health_t health) {
 
 static void draw_title(canvas_t *canvas, const view_t *view) {
     const argus_status_t *const status = &view->status;
+    const char *const activity = status->active ? "ACTIVE" : "PASSIVE";
+    const char *const name = view->name[0] != '\0' ? view->name : "no robot";
+    char right[2][40];
+    char left[2][96];
     for (int column = 0; column < canvas->columns; column++) {
         put(canvas, 0, column, TONE_TITLE, ' ');
     }
-    write_at(canvas, 0, 1, TONE_TITLE, "argus  %.40s  %.16s", view->link,
-             view->name[0] != '\0' ? view->name : "no robot");
-    char right[40];
-    snprintf(right, sizeof right, " %s %s %2d.%d V ", status->online ? "online" : "OFFLINE",
-             status->active ? "ACTIVE" : "PASSIVE", status->battery_dv / 10, status->battery_dv % 10);
-    put_text(canvas, 0, canvas->columns - (int)strlen(right), TONE_TITLE, right);
+    snprintf(right[0], sizeof right[0], " %s %s %2d.%d V ", status->online ? "online" : "OFFLINE", activity,
+             status->battery_dv / 10, status->battery_dv % 10);
+    snprintf(right[1], sizeof right[1], " %s ", activity);
+    const char *const rights[] = {right[0], right[1], ""};
+    const char *const shown = first_that_fits(rights, canvas->columns);
+    const int room = canvas->columns - (int)strlen(shown);
+    put_text(canvas, 0, room, TONE_TITLE, shown);
+    snprintf(left[0], sizeof left[0], " argus  %.40s  %.16s", view->link, name);
+    snprintf(left[1], sizeof left[1], " argus  %.16s", name);
+    const char *const lefts[] = {left[0], left[1], " argus", ""};
+    put_text(canvas, 0, 0, TONE_TITLE, first_that_fits(lefts, room));
 }
 
 static void draw_progress(canvas_t *canvas, const view_t *view, int row, int column) {
@@ -118,10 +170,13 @@ static void draw_progress(canvas_t *canvas, const view_t *view, int row, int col
 
 static void draw_mode(canvas_t *canvas, const view_t *view) {
     const argus_status_t *const status = &view->status;
-    write_at(canvas, 1, 1, TONE_PLAIN, "%-9s", argus_name(ARGUS_NAME_MODE, status->mode));
+    write_at(canvas, 1, 1, TONE_PLAIN, "%-9s", argus_name(ARGUS_NAME_MODE, (int)status->mode));
     write_at(canvas, 1, 11, tone_of_failure(status->failure), "%s",
-             argus_name(ARGUS_NAME_FAILURE, status->failure));
-    write_at(canvas, 1, 27, TONE_PLAIN, "mission %s", argus_name(ARGUS_NAME_MISSION, status->mission));
+             argus_name(ARGUS_NAME_FAILURE, (int)status->failure));
+    write_at(canvas, 1, 27, TONE_PLAIN, "mission %s", argus_name(ARGUS_NAME_MISSION, (int)status->mission));
+    if (status->paused) {
+        put_text(canvas, 1, 44, TONE_OPERATOR, "PAUSED: g goes on");
+    }
     if (status->waypoints > 0) {
         draw_progress(canvas, view, 2, 1);
     } else {
@@ -177,37 +232,69 @@ static void draw_ring(canvas_t *canvas, const argus_status_t *status) {
     put_text(canvas, middle + 1, column - 1, status->bumpers_rear != 0 ? TONE_BAD : TONE_PLAIN, "\\_/");
 }
 
-static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row, int column) {
+// What of a sonar there is room for.
+typedef struct {
+    int width;
+    int other; // column of the rear array
+    bool bearing;
+    bool health;
+    const char *head;
+} layout_t;
+
+static layout_t layout_of(int room) {
+    static const layout_t layouts[] = {
+        {44, 22, true, true, " # front  mm  health    # rear   mm  health"},
+        {37, 19, false, true, " #    mm  health    #    mm  health"},
+        {18, 10, false, false, " #    mm   #    mm"},
+        {8, 0, false, false, " #    mm"},
+    };
+    size_t i = 0;
+    while (i + 1 < sizeof layouts / sizeof layouts[0] && layouts[i].width > room) {
+        i++;
+    }
+    return layouts[i];
+}
+
+static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row, int column,
+                       const layout_t *layout) {
     const argus_status_t *const status = &view->status;
     const bool pinned = (status->pinned >> sonar & 1) != 0;
-    char state[16];
-    char reading[8] = "   -";
-    char bearing[8] = "   -";
     const argus_health_t health = status->health[sonar];
+    const bool out = health == ARGUS_DISABLED;
+    char bearing[8] = "";
+    char reading[8] = "   -";
+    char state[16] = "";
     if (status->age_ms[sonar] != UINT32_MAX) {
         snprintf(reading, sizeof reading, "%4d", status->reading_mm[sonar]);
     }
-    if (sonar < status->sonars) {
+    if (layout->bearing && sonar < status->sonars) {
         snprintf(bearing, sizeof bearing, "%+4d", status->bearing_deg[sonar]);
+    } else if (layout->bearing) {
+        snprintf(bearing, sizeof bearing, "   -");
     }
-    if (health == ARGUS_DISABLED) {
-        snprintf(state, sizeof state, "!%s", argus_name(ARGUS_NAME_KIND, status->kind[sonar]));
-    } else {
-        snprintf(state, sizeof state, "%s", argus_name(ARGUS_NAME_HEALTH, health));
+    if (layout->health) {
+        snprintf(state, sizeof state, " %s%.9s", out ? "!" : "",
+                 out ? argus_name(ARGUS_NAME_KIND, (int)status->kind[sonar])
+                     : argus_name(ARGUS_NAME_HEALTH, (int)health));
     }
-    write_at(canvas, row, column, tone_of_health(health), "%2d%c%s %s %-9.9s", sonar, pinned ? '=' : ' ',
-             bearing, reading, state);
+    write_at(canvas, row, column, tone_of_health(health), "%2d%c%s %s%.10s", sonar, pinned ? '=' : ' ',
+             bearing, reading,
+             layout->health ? state
+             : out          ? "!"
+                            : "");
     if (sonar == view->sonar) {
         write_at(canvas, row, column, TONE_TITLE, "%2d", sonar);
     }
 }
 
 static void draw_sonars(canvas_t *canvas, const view_t *view, int column) {
-    put_text(canvas, RING_TOP, column, TONE_DIM, " # front  mm  health    # rear   mm  health");
-    const int first = view->sonar / SHOWN_SONARS * SHOWN_SONARS; // the page with the chosen one
-    for (int i = first; i < first + SHOWN_SONARS && i < ARGUS_SONARS; i++) {
-        const int row = RING_TOP + 1 + i % FRONT_SONARS;
-        draw_sonar(canvas, view, i, row, i - first < FRONT_SONARS ? column : column + 22);
+    const layout_t layout = layout_of(canvas->columns - column);
+    put_text(canvas, RING_TOP, column, TONE_DIM, layout.head);
+    const int shown = layout.other > 0 ? 2 * FRONT_SONARS : FRONT_SONARS;
+    const int first = view->sonar / shown * shown; // the page with the chosen one
+    for (int i = 0; i < shown && first + i < ARGUS_SONARS; i++) {
+        draw_sonar(canvas, view, first + i, RING_TOP + 1 + i % FRONT_SONARS,
+                   i < FRONT_SONARS ? column : column + layout.other, &layout);
     }
 }
 
@@ -242,14 +329,38 @@ static void draw_log(canvas_t *canvas, const screen_log_t *log, int top, int bot
     const int room = bottom - top;
     const int shown = log->count < room ? log->count : room;
     for (int i = 0; i < shown; i++) {
-        const int at = (log->first + log->count - shown + i) % SCREEN_LOG_LINES;
-        put_text(canvas, top + i, 1, (tone_t)log->tone[at], log->line[at]);
+        const screen_line_t *const line = &log->line[log->count - shown + i];
+        char times[16] = "";
+        if (line->times > 1) {
+            snprintf(times, sizeof times, " (%u times)", (unsigned)line->times);
+        }
+        const int width = canvas->columns - 1 - (int)strlen(times);
+        const int length = put_words(canvas, top + i, 1, width, (tone_t)line->tone, line->text);
+        put_text(canvas, top + i, 1 + length, (tone_t)line->tone, times);
     }
 }
 
-void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log) {
-    const bool narrow = canvas->columns < NARROW;
+static void draw_bottom(canvas_t *canvas) {
+    static const char *const texts[] = {
+        "arrows/wasd drive  space stop  g go  r recheck  p passive  nbtkx sonar  ? keys  q quit",
+        "wasd drive  space stop  g go  r recheck  p passive  nbtkx sonar  ? keys  q quit",
+        "space stop  g go  p passive  ? keys  q quit",
+        "space stop  ? keys  q quit",
+        "? keys  q quit",
+        "? keys",
+        "?",
+        "",
+    };
     const int last = canvas->rows - 1;
+    for (int column = 0; column < canvas->columns; column++) {
+        put(canvas, last, column, TONE_TITLE, ' ');
+    }
+    put_text(canvas, last, 1, TONE_TITLE, first_that_fits(texts, canvas->columns - 1));
+}
+
+void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log) {
+    // The ring has room beside the numbers, or is left out.
+    const bool narrow = layout_of(canvas->columns - RIGHT).health == false;
     draw_title(canvas, view);
     draw_mode(canvas, view);
     if (!narrow) {
@@ -257,10 +368,22 @@ void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log) 
     }
     draw_sonars(canvas, view, narrow ? 1 : RIGHT);
     draw_numbers(canvas, view, RING_TOP + 9, narrow ? 1 : RIGHT);
-    draw_log(canvas, log, RIGHT_ROWS + 1, last);
-    for (int column = 0; column < canvas->columns; column++) {
-        put(canvas, last, column, TONE_TITLE, ' ');
+    draw_log(canvas, log, RIGHT_ROWS + 1, canvas->rows - 1);
+    draw_bottom(canvas);
+}
+
+void screen_draw_keys(canvas_t *canvas) {
+    int row = 1;
+    for (int key = TUI_NONE; key < TUI_GONE && row < canvas->rows - 1; key++) {
+        const char *const keys = tui_keys_of((tui_key_t)key);
+        if (keys[0] == '\0') {
+            continue;
+        }
+        for (int column = 0; column < canvas->columns; column++) {
+            put(canvas, row, column, TONE_PLAIN, ' ');
+        }
+        put_text(canvas, row, 1, TONE_TITLE, keys);
+        put_text(canvas, row, 12, TONE_PLAIN, tui_effect_of((tui_key_t)key));
+        row++;
     }
-    put_text(canvas, last, 1, TONE_TITLE,
-             "arrows/wasd drive  space stop  g go  r recheck  p passive  nbtkx sonar  q quit");
 }

@@ -12,7 +12,7 @@
 #define SCREEN_LOG_LINES 64
 #define SCREEN_LOG_WIDTH 160
 
-typedef enum { TONE_PLAIN, TONE_TITLE, TONE_DIM, TONE_GOOD, TONE_WARN, TONE_BAD } tone_t;
+typedef enum { TONE_PLAIN, TONE_TITLE, TONE_DIM, TONE_GOOD, TONE_WARN, TONE_BAD, TONE_OPERATOR } tone_t;
 
 typedef struct {
     char character;
@@ -25,20 +25,30 @@ typedef struct {
     cell_t cell[SCREEN_ROWS_MAX][SCREEN_COLUMNS_MAX];
 } canvas_t;
 
-// The last lines said, oldest first from `first`.
+// A line said, and how often in a row of few.
 typedef struct {
-    char line[SCREEN_LOG_LINES][SCREEN_LOG_WIDTH];
-    uint8_t tone[SCREEN_LOG_LINES];
-    int first;
+    char text[SCREEN_LOG_WIDTH];
+    uint8_t tone;
+    uint16_t key;
+    uint16_t times;
+} screen_line_t;
+
+// The last lines said, oldest first.
+typedef struct {
+    screen_line_t line[SCREEN_LOG_LINES];
     int count;
 } screen_log_t;
 
-void screen_log_add(screen_log_t *self, const char *line, tone_t tone);
+// A line whose key is that of one of the last few takes its place, at the end, and counts; key 0 never does.
+void screen_log_add(screen_log_t *self, const char *line, tone_t tone, uint16_t key);
 
 // Sizes are cut to the largest; any size down to 1 x 1 is drawn, as much of it as fits.
 void canvas_clear(canvas_t *self, int rows, int columns);
 
-// Draws everything. What lies outside the canvas is not drawn.
+// Draws everything that fits: a narrow canvas has fewer columns and shorter lines, but no word is cut.
 void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log);
+
+// Lays the list of keys over it.
+void screen_draw_keys(canvas_t *canvas);
 
 #endif

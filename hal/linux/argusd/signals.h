@@ -9,7 +9,7 @@
 bool signals_open(void);
 int signals_fd(void);
 
-// How many asked us to end, so far: one is a request, two are an order.
+// How many asked us to end, so far.
 int signals_ends(void);
 
 #endif

@@ -15,6 +15,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "tui_term.h"
+
 #if defined(ARGUS_TUI)
 #include <curses.h>
 #endif
@@ -29,6 +31,7 @@ typedef enum { MESSAGE_VIEW, MESSAGE_LINE } message_kind_t;
 typedef struct {
     message_kind_t kind;
     tone_t tone;
+    uint16_t key;
     union {
         view_t view;
         char line[SCREEN_LOG_WIDTH];
@@ -57,11 +60,13 @@ void tui_show(const tui_t *self, const view_t *view) {
     message.as.view.status.robot_class = NULL;
     message.as.view.status.robot_subclass = NULL;
     message.as.view.status.robot_body = NULL;
+    message.as.view.status.robot_version = NULL;
+    message.as.view.status.robot_serial = NULL;
     send_message(self, &message);
 }
 
-void tui_log(const tui_t *self, const char *line, tone_t tone) {
-    message_t message = {.kind = MESSAGE_LINE, .tone = tone};
+void tui_log(const tui_t *self, const char *line, tone_t tone, uint16_t key) {
+    message_t message = {.kind = MESSAGE_LINE, .tone = tone, .key = key};
     snprintf(message.as.line, sizeof message.as.line, "%s", line);
     send_message(self, &message);
 }
@@ -84,6 +89,7 @@ typedef struct {
     int fd;
     bool has_view;
     bool changed;
+    bool keys; // the list of keys is shown
     view_t view;
     screen_log_t log;
     canvas_t canvas;
@@ -106,6 +112,7 @@ static void set_colours(void) {
     init_pair(TONE_GOOD, COLOR_GREEN, -1);
     init_pair(TONE_WARN, COLOR_YELLOW, -1);
     init_pair(TONE_BAD, COLOR_RED, -1);
+    init_pair(TONE_OPERATOR, COLOR_CYAN, -1);
 }
 
 static chtype attributes(uint8_t tone) {
@@ -116,6 +123,7 @@ static chtype attributes(uint8_t tone) {
         return A_DIM;
     case TONE_GOOD:
     case TONE_WARN:
+    case TONE_OPERATOR:
         return COLOR_PAIR(tone);
     case TONE_BAD:
         return COLOR_PAIR(tone) | A_BOLD;
@@ -130,6 +138,9 @@ static void paint(screen_t *screen) {
     getmaxyx(stdscr, rows, columns);
     canvas_clear(&screen->canvas, rows, columns);
     screen_draw(&screen->canvas, &screen->view, &screen->log);
+    if (screen->keys) {
+        screen_draw_keys(&screen->canvas);
+    }
     for (int row = 0; row < screen->canvas.rows; row++) {
         for (int column = 0; column < screen->canvas.columns; column++) {
             const cell_t cell = screen->canvas.cell[row][column];
@@ -154,7 +165,7 @@ static bool take_messages(screen_t *screen) {
         if (message.kind == MESSAGE_VIEW) {
             screen->view = message.as.view;
         } else {
-            screen_log_add(&screen->log, message.as.line, message.tone);
+            screen_log_add(&screen->log, message.as.line, (tone_t)message.tone, message.key);
         }
         screen->changed = true;
     }
@@ -175,10 +186,13 @@ static int key_code(int key) {
     }
 }
 
-static void take_keys(const screen_t *screen) {
+static void take_keys(screen_t *screen) {
     for (int key = getch(); key != ERR; key = getch()) {
         const uint8_t meaning = (uint8_t)tui_meaning(key_code(key));
-        if (meaning != TUI_NONE) {
+        if (meaning == TUI_HELP) {
+            screen->keys = !screen->keys;
+            screen->changed = true;
+        } else if (meaning != TUI_NONE) {
             (void)!send(screen->fd, &meaning, 1, MSG_DONTWAIT | MSG_NOSIGNAL);
         }
     }
@@ -250,7 +264,7 @@ static void drop_inherited(int keep) {
 bool tui_start(tui_t *self) {
     int pair[2];
     memset(self, 0, sizeof *self);
-    if (tcgetattr(STDIN_FILENO, &self->saved) != 0 || !isatty(STDOUT_FILENO)) {
+    if (tcgetattr(STDIN_FILENO, &self->saved) != 0 || !isatty(STDOUT_FILENO) || !tui_term_can_draw()) {
         return false;
     }
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) != 0) {

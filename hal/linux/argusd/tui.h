@@ -20,12 +20,14 @@ typedef struct {
 
 bool tui_is_built(void);
 
-// Takes over the terminal on standard input and output. False: there is none, or the system refuses.
+// Takes over the terminal on standard input and output. False: there is none, it cannot be drawn on, or the
+// system refuses.
 bool tui_start(tui_t *self);
 
 // Never wait; a picture or a line that the screen is too busy for is not shown.
 void tui_show(const tui_t *self, const view_t *view);
-void tui_log(const tui_t *self, const char *line, tone_t tone);
+// `key`: see screen_log_add().
+void tui_log(const tui_t *self, const char *line, tone_t tone, uint16_t key);
 
 tui_key_t tui_key(tui_t *self);
 

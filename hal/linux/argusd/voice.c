@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -12,6 +13,11 @@
 
 #define SCREEN_MS 200u
 #define DRAIN_MAX_MS 500
+
+// There is a terminal, but not one to draw on.
+static bool misses_screen(const voice_t *self) {
+    return !self->tui.on && tui_is_built() && isatty(STDIN_FILENO) && isatty(STDOUT_FILENO);
+}
 
 void voice_begin(voice_t *self, const voice_options_t *options, const moment_t *moment) {
     const char *const no_colour = getenv("NO_COLOR");
@@ -22,12 +28,16 @@ void voice_begin(voice_t *self, const voice_options_t *options, const moment_t *
         tui_start(&self->tui);
     }
     output_init(&self->out, STDOUT_FILENO);
+    if (!options->json && !options->plain && misses_screen(self)) {
+        voice_notice(self,
+                     "no screen can be drawn on this terminal (see TERM): a line per event, as with --plain");
+    }
     self->colour = isatty(STDOUT_FILENO) && (no_colour == NULL || no_colour[0] == '\0');
 }
 
 void voice_notice(voice_t *self, const char *text) {
     if (self->tui.on) {
-        tui_log(&self->tui, text, TONE_WARN);
+        tui_log(&self->tui, text, TONE_WARN, 0);
         return;
     }
     const int length = snprintf(self->line, sizeof self->line, "argusd: %s", text);
@@ -35,23 +45,69 @@ void voice_notice(voice_t *self, const char *text) {
                 (size_t)length < sizeof self->line ? (size_t)length : sizeof self->line - 1);
 }
 
-static tone_t tone_of(argus_level_t level) {
+void voice_answer(voice_t *self, const char *text) {
+    tui_log(&self->tui, text, TONE_OPERATOR, 0);
+    self->shown_ms -= SCREEN_MS; // at once
+}
+
+void voice_summary(voice_t *self, const view_t *view) {
+    const size_t length = self->options.json ? 0 : report_summary(view, self->line, sizeof self->line);
+    if (length > 0) {
+        output_line(&self->out, self->line, length);
+    }
+}
+
+// What follows from an operator's order is no verdict.
+static bool is_by_operator(voice_t *self, const argus_event_t *event) {
+    if (event->id == ARGUS_EV_OPERATOR) {
+        self->taken_out = event->value == ARGUS_OP_DISABLE;
+        self->taken_out_ms = event->t_ms;
+    }
+    return event->id == ARGUS_EV_SONAR_DISABLED && self->taken_out && self->taken_out_ms == event->t_ms;
+}
+
+static tone_t tone_of(const argus_event_t *event) {
+    const argus_level_t level = argus_event_level(event->id);
+    if (strcmp(argus_name(ARGUS_NAME_SUBJECT, event->id), "operator") == 0) {
+        return TONE_OPERATOR;
+    }
     return level == ARGUS_LEVEL_ERROR ? TONE_BAD : level == ARGUS_LEVEL_WARN ? TONE_WARN : TONE_PLAIN;
+}
+
+// Lines with the same key are one line on the screen, which counts. A suspicion that comes and goes is one
+// thing.
+static uint16_t key_of(const argus_event_t *event) {
+    const uint16_t id = event->id == ARGUS_EV_SUSPICION_DROPPED ? ARGUS_EV_SONAR_SUSPECT : event->id;
+    return (uint16_t)((unsigned)id << 5 | ((unsigned)event->sonar & 0x1Fu));
+}
+
+// Returns the length of the line, for people.
+static size_t plain_line(voice_t *self, uint64_t t_ms, const argus_event_t *event, bool by_operator) {
+    static const char note[] = " (by the operator)";
+    const bool colour = self->colour && !self->tui.on;
+    const size_t length =
+        report_event_plain(event, t_ms, colour, self->line, sizeof self->line - sizeof note);
+    if (length == 0 || !by_operator) {
+        return length;
+    }
+    memcpy(self->line + length, note, sizeof note);
+    return length + sizeof note - 1;
 }
 
 void voice_event(voice_t *self, const moment_t *moment, const argus_event_t *event) {
     const uint64_t t_ms = moment_of(moment, event->t_ms);
+    const bool by_operator = is_by_operator(self, event);
     size_t length = 0;
     if (self->tui.on) {
-        report_event_plain(event, t_ms, false, self->line, sizeof self->line);
-        tui_log(&self->tui, self->line, tone_of(argus_event_level(event->id)));
+        plain_line(self, t_ms, event, by_operator);
+        tui_log(&self->tui, self->line, by_operator ? TONE_OPERATOR : tone_of(event), key_of(event));
         self->shown_ms = moment->now_ms - SCREEN_MS;
         return;
     }
     if (self->options.json) {
         length = report_event_json(event, t_ms, self->line, sizeof self->line);
     } else {
-        length = report_event_plain(event, t_ms, self->colour, self->line, sizeof self->line);
+        length = plain_line(self, t_ms, event, by_operator);
     }
     if (length > 0) {
         output_line(&self->out, self->line, length);

@@ -26,6 +26,8 @@ typedef struct {
     uint32_t shown_ms;  // last picture on the screen
     uint32_t lost_said; // lines dropped that have been told
     bool reader_said;   // ... and that the reader is gone
+    bool taken_out;     // the operator took a sonar out of use at taken_out_ms
+    uint32_t taken_out_ms;
     char line[4096];
 } voice_t;
 
@@ -33,6 +35,9 @@ void voice_begin(voice_t *self, const voice_options_t *options, const moment_t *
 
 // For people: a line on the screen, else on standard error.
 void voice_notice(voice_t *self, const char *text);
+
+// To the operator, about a key.
+void voice_answer(voice_t *self, const char *text);
 
 void voice_event(voice_t *self, const moment_t *moment, const argus_event_t *event);
 
@@ -48,6 +53,9 @@ uint32_t voice_wait_ms(const voice_t *self, uint32_t now_ms, uint32_t wait_ms);
 
 // Writes what its readers take now.
 void voice_flush(voice_t *self);
+
+// For people, on standard output after the last event: what came of it all. Call when the screen is gone.
+void voice_summary(voice_t *self, const view_t *view);
 
 // The last lines may still wait for their reader, but not for long.
 void voice_end(voice_t *self, const hal_clock_t *clock);

@@ -27,6 +27,8 @@ IDS = [
 ]
 
 distributed: Any = importlib.import_module("distributed")
+pytestmark = pytest.mark.soak
+
 Records = dict[str, dict[str, Any]]
 
 

@@ -244,6 +244,7 @@ def test_the_table_has_a_line_for_each_fault_and_each_mission_without() -> None:
     ]
 
 
+@pytest.mark.soak
 def test_all_files_are_written_and_agree(tmp_path: Path) -> None:
     records = [
         *missions(3),

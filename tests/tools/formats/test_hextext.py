@@ -39,6 +39,7 @@ PLAIN = {
     "hexdump -e": "".join(f"{byte:02X} " for byte in ROBOT),
     "a byte in a line": "".join(f"{byte:02x}\n" for byte in ROBOT),
     "gap in the middle": in_lines(lambda part: f"{part[:8].hex(' ')}  {part[8:].hex(' ')}"),
+    "interceptty": "".join(f"< 0x{byte:02x} ({chr(byte) if 32 <= byte < 127 else '.'})\n" for byte in ROBOT),
     "comment": "# of Monday\n" + in_lines(lambda part: part.hex(" ")),
 }
 
@@ -58,6 +59,17 @@ def test_every_way_of_writing_bytes(name: str, tmp_path: Path) -> None:
     assert {chunk.t for chunk in chunks} == {None}
 
 
+@pytest.mark.parametrize("head", ["", "Time [s],Value,Parity Error,Framing Error\n"])
+def test_a_byte_and_its_time_of_a_logic_analyser(head: str, tmp_path: Path) -> None:
+    end = ",," if head else ""
+    text = head + "".join(f"{n / 1000:.6f},0x{byte:02X}{end}\n" for n, byte in enumerate(ROBOT))
+    log = read(tmp_path / "a.csv", text)
+    chunks = list(log)
+    assert joined(chunks, "r2c") == ROBOT
+    assert chunks[-1].t == pytest.approx((len(ROBOT) - 1) / 1000)
+    assert len(log.damage) == bool(head)
+
+
 def clock(t: float, form: str) -> str:
     return datetime.fromtimestamp(t, UTC).strftime(form)
 
@@ -70,6 +82,11 @@ STAMPS: dict[str, tuple[Callable[[float], str], float, float]] = {
     "tio": (lambda t: f"[{clock(t, '%H:%M:%S.%f')[:-3]}]", DAY_S, MILLIS),
     "tio ISO": (lambda t: f"[{clock(t, '%Y-%m-%dT%H:%M:%S.%f')[:-3]}]", START_S, MILLIS),
     "tio ISO with zone": (lambda t: f"[{clock(t, '%Y-%m-%dT%H:%M:%S.%f')[:-3]}+00:00]", START_S, MILLIS),
+    "tio ISO of another zone": (
+        lambda t: f"[{clock(t + 7200, '%Y-%m-%dT%H:%M:%S.%f')[:-3]}+0200]",
+        START_S,
+        MILLIS,
+    ),
     "seconds since 1970": (lambda t: f"({t:.6f})", START_S, 1e-5),
     "seconds and a colon": (lambda t: f"{t - START_S:.3f}:", 0.0, MILLIS),
     "date and time": (lambda t: clock(t, "%Y-%m-%d %H:%M:%S.%f"), START_S, 1e-5),
@@ -130,7 +147,7 @@ def test_socat_tells_time_and_direction_in_lines_of_their_own(tmp_path: Path) ->
             text += "".join(f" {part.hex(' ')}\n" for part in lines(data, 16)) + "--\n"
     log = read(tmp_path / "a.txt", text)
     chunks = list(log)
-    assert (joined(chunks, "c2r"), joined(chunks, "r2c")) == (CLIENT, ROBOT)
+    assert (joined(chunks, "c2r"), joined(chunks, "r2c"), log.damage) == (CLIENT, ROBOT, [])
 
 
 @pytest.mark.parametrize(
@@ -141,6 +158,8 @@ def test_socat_tells_time_and_direction_in_lines_of_their_own(tmp_path: Path) ->
         ("FA FB 0", "no hexadecimal bytes"),
         ("FA FG 03", "no hexadecimal bytes"),
         ("0xFA 0xFBB", "no hexadecimal bytes"),
+        ("[06:38:47.5] FA FG 03", "no hexadecimal bytes"),
+        ("[06:38:47.5] Connected", "no hexadecimal bytes"),
     ],
 )
 def test_what_is_none_is_told_by_its_line(line: str, part: str, tmp_path: Path) -> None:

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 from argus_tools.formats import LogError, find_format, formats, forms, open_log
-from forms import ROBOT, hexdump_c, od, xxd
-from logs import CAPTURES, run
+from forms import ROBOT, hexdump_c, joined, od, xxd
+from logs import CAPTURES, run, sip
 
 SEVEN = bytes(byte & 0x7F for byte in ROBOT)
 OD_C = "".join(
@@ -144,6 +144,28 @@ def test_a_real_capture_is_never_taken_for_another_form() -> None:
             data = b"".join(chunk.data for chunk in open_log(str(path)) if chunk.dir == direction)
             for start in range(0, min(len(data), 2000), 37):
                 assert find_format(data[start:]).name == "bin", (path.name, direction, start)
+
+
+def test_speeds_that_look_like_a_recoded_header_are_none(tmp_path: Path) -> None:
+    path = tmp_path / "a.bin"
+    path.write_bytes(b"".join(sip(x=n, left_vel=250, right_vel=251) for n in range(50)))
+    assert open_log(str(path)).format.name == "bin"
+
+
+@pytest.mark.parametrize(
+    "name", ["candump", "hexdump", "xxd", "od", "hextext", "asc", "trc", "csv", "python-can"]
+)
+def test_zeros_that_a_power_cut_left_are_told_and_the_rest_is_read(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.log"
+    path.write_bytes(SEEDS[name])
+    good = open_log(str(path))
+    expected = joined(list(good), "r2c") + joined(list(open_log(str(path))), "c2r")
+    path.write_bytes(SEEDS[name] + bytes(5000) + b"\n")
+    log = open_log(str(path))
+    assert log.format.name == good.format.name
+    chunks = list(log)
+    assert joined(chunks, "r2c") + joined(chunks, "c2r") == expected
+    assert log.damage or name == "asc"
 
 
 def test_names_are_unique_and_unread_forms_cannot_be_chosen() -> None:

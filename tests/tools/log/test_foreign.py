@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Rule: of a healthy robot in a plant that is not ours `argus-log faults` names no sonar, in at most 10 lines.
 
-What is printed holds it. The diagnosis itself does not yet: the second test keeps the sonars that it falsely names or leaves
-suspect, so that there may be fewer but never more.
+What is printed holds it. The diagnosis itself does not yet: the second test keeps the sonars that it falsely names or
+leaves suspect, so that there may be fewer but never more.
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from forms import ROBOT, frames, hexdump_c
 from logs import CAPTURES, ROOT
 
 pytestmark = pytest.mark.soak
@@ -80,6 +81,23 @@ def test_a_longer_log_takes_no_more_as_mcap(tmp_path: Path) -> None:
         peak_kb("convert", session(tmp_path / "a.jsonl", size), tmp_path / "a.mcap")
         for size in (1 << 18, 1 << 20)
     ]
+    assert peaks[1] - peaks[0] < GROWTH_KB, peaks
+
+
+@pytest.mark.parametrize("form", ["hexdump", "hextext", "screen", "csv"])
+def test_a_longer_text_takes_no_more(form: str, tmp_path: Path) -> None:
+    makes: dict[str, Callable[[int], str]] = {
+        "hexdump": lambda n: hexdump_c(ROBOT * n),
+        "hextext": lambda n: (ROBOT * n).hex(" "),
+        "screen": lambda n: (
+            "".join(f"  can0  {f.can_id:3X}   [8]  {f.data.hex(' ')}\n" for f in frames()) * n
+        ),
+        "csv": lambda n: "Bus,ID,Data\n" + "".join(f"0,{f.can_id:X},{f.data.hex()}\n" for f in frames()) * n,
+    }
+    path, peaks = tmp_path / "a.txt", []
+    for times in (300, 1200):
+        path.write_text(makes[form](times))
+        peaks.append(peak_kb("decode", "--json", path))
     assert peaks[1] - peaks[0] < GROWTH_KB, peaks
 
 

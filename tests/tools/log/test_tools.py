@@ -203,6 +203,7 @@ def test_a_long_series_keeps_its_extremes() -> None:
     assert (min(series.value), max(series.value)) == (100.0, 5000.0)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("view", ["ranges", "path", "ring"])
 @pytest.mark.parametrize("ending", ["png", "svg"])
 def test_pictures_are_drawn(tmp_path: Path, view: str, ending: str) -> None:
@@ -218,6 +219,7 @@ def test_pictures_are_drawn(tmp_path: Path, view: str, ending: str) -> None:
         assert min(width, height) > 500
 
 
+@pytest.mark.soak
 def test_pictures_that_cannot_be_drawn(tmp_path: Path) -> None:
     for arguments in (
         ["-o", "a.gif"],

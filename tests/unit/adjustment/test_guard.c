@@ -63,7 +63,7 @@ static void remember_at(int x_mm, int y_mm) {
 
 void test_s1_normal_driving_only_with_every_bearing_in_use(void) {
     for (unsigned disabled = 0; disabled <= 0x7Eu; disabled += 2) {
-        const argus_plan_t plan = argus_plan(k.robot, ARGUS_POLICY_PAPER, (uint16_t)disabled);
+        const argus_plan_t plan = argus_plan(argus_robot_default(), ARGUS_POLICY_PAPER, (uint16_t)disabled);
         TEST_ASSERT_EQUAL(disabled == 0, argus_guard_may_drive(&plan));
         TEST_ASSERT_EQUAL(disabled != 0x7Eu, argus_guard_may_step(&plan));
     }
@@ -142,12 +142,12 @@ void test_s7_no_turn_with_an_echo_in_the_swing_circle(void) {
     for (int i = 0; i < 2; i++) {
         use(by[i].profile);
         const int32_t margin = g.profile->swing_margin_mm;
-        TEST_ASSERT_INT32_WITHIN(1, by[i].swing_mm, k.robot->swing_radius_mm + margin);
-        echo_at(k.robot->swing_radius_mm + margin);
+        TEST_ASSERT_INT32_WITHIN(1, by[i].swing_mm, 370 + margin);
+        echo_at(370 + margin);
         TEST_ASSERT_TRUE(argus_guard_echo_blocks(&g, 0));
         TEST_ASSERT_TRUE(argus_guard_swing_is_blocked(&g));
         TEST_ASSERT_FALSE(argus_guard_may_turn(&g));
-        echo_at(k.robot->swing_radius_mm + margin + 1);
+        echo_at(370 + margin + 1);
         TEST_ASSERT_TRUE(argus_guard_may_turn(&g));
     }
 }
@@ -185,9 +185,9 @@ void test_s7_what_is_remembered(void) {
 void test_s7_a_touch_in_a_turn_is_the_first_or_one_more(void) {
     argus_point_t at;
     bool left = false;
-    echo_at(k.robot->swing_radius_mm + 11);
+    echo_at(370 + 11);
     TEST_ASSERT_EQUAL(ARGUS_TOUCH_NONE, argus_guard_touch(&g, 0, &at, &left));
-    echo_at(k.robot->swing_radius_mm + 10);
+    echo_at(370 + 10);
     TEST_ASSERT_EQUAL(ARGUS_TOUCH_FIRST, argus_guard_touch(&g, 0, &at, &left));
     TEST_ASSERT_TRUE(left);
     argus_echoes_touched(&e, at, NOW_MS);
@@ -263,7 +263,7 @@ void test_s5_how_fast_back(void) {
     use(ARGUS_PROFILE_ARGUS);
     TEST_ASSERT_EQUAL(config.speed_mm_s, argus_guard_back_speed_mm_s(&g));
     const int32_t overhang_mm = 64; // of sonars 10 and 13
-    config.object_range_mm = argus_config_stop_mm(&config, k.robot) + overhang_mm;
+    config.object_range_mm = argus_config_stop_mm(&config, argus_robot_default()) + overhang_mm;
     TEST_ASSERT_EQUAL(config.step_speed_mm_s, argus_guard_back_speed_mm_s(&g));
     config.object_range_mm++;
     TEST_ASSERT_EQUAL(config.speed_mm_s, argus_guard_back_speed_mm_s(&g));

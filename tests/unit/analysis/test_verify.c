@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "health.h"
+#include "knowledge/body.h"
 #include "unity.h"
 
 #define BASE 17500 // so that +20 degrees wraps
@@ -208,7 +209,7 @@ void test_idle_does_nothing(void) {
 
 // The AmigoBot's 2 looks at 15 degrees, between 41 and -15: who stands left turns by -26 onto its bearing.
 void test_an_amigobot_turns_by_its_own_bearings(void) {
-    argus_knowledge_set_robot(&k, argus_robot_find("amigo-sh"), 0);
+    argus_body_is(&k, argus_robot_find("amigo-sh"), 0);
     settle();
     argus_verify_begin(&v, k.robot, 2, 0);
     read(1, 2000), read(2, 1000), read(3, 2000);

@@ -5,8 +5,8 @@
 #include <stdio.h>
 
 #include "awareness/evidence_internal.h"
-#include "scene.h"
 #include "knowledge/config.h"
+#include "scene.h"
 #include "unity.h"
 
 #define RAD (3.14159265358979323846 / 180)

@@ -10,24 +10,24 @@
 #define ME 4
 #define NOW_MS 777u
 
-static argus_sonar_t s;
+static argus_knowledge_t k;
 
 static const argus_health_t all[] = {ARGUS_UNKNOWN,   ARGUS_HEALTHY, ARGUS_SUSPECT, ARGUS_DISABLED,
                                      ARGUS_PROBATION, ARGUS_STALE,   ARGUS_ABSENT};
 
 void setUp(void) {
-    memset(&s, 0, sizeof s);
+    memset(&k, 0, sizeof k);
 }
 
 static argus_event_t set(argus_change_t change, argus_fault_kind_t kind) {
-    return argus_health_set(&s, ME, change, kind, 123, NOW_MS);
+    return argus_health_set(&k, ME, change, kind, 123, NOW_MS);
 }
 
 static void expect_from(argus_change_t change, const char *from) {
     static const char initial[] = "UHSDPTA";
     for (int i = 0; i < 7; i++) {
-        s.health = all[i];
-        TEST_ASSERT_EQUAL_MESSAGE(strchr(from, initial[i]) != NULL, argus_health_may(&s, change), from);
+        k.sonar[ME].health = all[i];
+        TEST_ASSERT_EQUAL_MESSAGE(strchr(from, initial[i]) != NULL, argus_health_may(&k, ME, change), from);
     }
 }
 
@@ -35,8 +35,8 @@ static void expect_to(argus_change_t change, argus_health_t to, int event) {
     const argus_fault_kind_t kind =
         to == ARGUS_DISABLED || to == ARGUS_PROBATION ? ARGUS_KIND_SLOW : ARGUS_KIND_NONE;
     const argus_event_t said = set(change, kind);
-    TEST_ASSERT_EQUAL(to, s.health);
-    TEST_ASSERT_EQUAL(kind, s.kind);
+    TEST_ASSERT_EQUAL(to, k.sonar[ME].health);
+    TEST_ASSERT_EQUAL(kind, k.sonar[ME].kind);
     TEST_ASSERT_EQUAL(event, said.id);
     TEST_ASSERT_EQUAL(ME, said.sonar);
     TEST_ASSERT_EQUAL(123, said.value);
@@ -52,50 +52,57 @@ void test_each_change_has_its_states_its_end_and_its_event(void) {
 #undef CHECK
 }
 
-// A sonar that is out comes back over its probation alone, and never becomes a suspect on the way; on another
-// robot it begins anew.
+// A sonar that is out comes back over its probation alone, and never becomes a suspect on the way; unless it
+// is another robot's.
 void test_no_short_way_back(void) {
-    s.health = ARGUS_DISABLED;
+    k.sonar[ME].health = ARGUS_DISABLED;
     for (int change = 0; change < ARGUS_CHANGES; change++) {
-        const bool stays_out = change == ARGUS_CHANGE_RENAMED || change == ARGUS_CHANGE_TRIED ||
-                               change == ARGUS_CHANGE_RETESTED || change == ARGUS_CHANGE_FORGOTTEN ||
-                               change == ARGUS_CHANGE_REMOVED;
-        TEST_ASSERT_EQUAL(stays_out, argus_health_may(&s, (argus_change_t)change));
+        const bool stays_out =
+            change == ARGUS_CHANGE_RENAMED || change == ARGUS_CHANGE_TRIED || change == ARGUS_CHANGE_RETESTED;
+        const bool other_robot = change == ARGUS_CHANGE_FORGOTTEN || change == ARGUS_CHANGE_MISSING;
+        TEST_ASSERT_EQUAL(stays_out || other_robot, argus_health_may(&k, ME, (argus_change_t)change));
     }
 }
 
 void test_entry_is_timed_and_a_better_name_is_none(void) {
     set(ARGUS_CHANGE_DISABLED, ARGUS_KIND_OFF);
-    s.since_ms = 5;
+    k.sonar[ME].since_ms = 5;
     set(ARGUS_CHANGE_RENAMED, ARGUS_KIND_STUCK);
-    TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, s.kind);
-    TEST_ASSERT_EQUAL(5, s.since_ms);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, k.sonar[ME].kind);
+    TEST_ASSERT_EQUAL(5, k.sonar[ME].since_ms);
     set(ARGUS_CHANGE_TRIED, ARGUS_KIND_STUCK);
-    TEST_ASSERT_EQUAL(NOW_MS, s.since_ms);
+    TEST_ASSERT_EQUAL(NOW_MS, k.sonar[ME].since_ms);
 }
 
 void test_failures_and_relapses_are_counted(void) {
     set(ARGUS_CHANGE_DISABLED, ARGUS_KIND_OFF);
-    TEST_ASSERT_EQUAL(1, s.disabled_times);
-    TEST_ASSERT_EQUAL(0, s.relapses);
+    TEST_ASSERT_EQUAL(1, k.sonar[ME].disabled_times);
+    TEST_ASSERT_EQUAL(0, k.sonar[ME].relapses);
     set(ARGUS_CHANGE_TRIED, ARGUS_KIND_OFF);
     set(ARGUS_CHANGE_DISABLED, ARGUS_KIND_OFF);
-    TEST_ASSERT_EQUAL(2, s.disabled_times);
-    TEST_ASSERT_EQUAL(1, s.relapses);
+    TEST_ASSERT_EQUAL(2, k.sonar[ME].disabled_times);
+    TEST_ASSERT_EQUAL(1, k.sonar[ME].relapses);
     set(ARGUS_CHANGE_RETESTED, ARGUS_KIND_OFF);
-    TEST_ASSERT_EQUAL(0, s.relapses);
+    TEST_ASSERT_EQUAL(0, k.sonar[ME].relapses);
 }
 
 void test_a_failure_after_a_mission_with_one_is_a_relapse(void) {
-    s.disabled_before = 3;
+    k.sonar[ME].disabled_before = 3;
     set(ARGUS_CHANGE_DISABLED, ARGUS_KIND_OFF);
-    TEST_ASSERT_EQUAL(1, s.relapses);
+    TEST_ASSERT_EQUAL(1, k.sonar[ME].relapses);
 }
 
 void test_counters_stop_at_their_end(void) {
-    s.disabled_times = UINT16_MAX;
-    s.relapses = UINT8_MAX;
+    k.sonar[ME].disabled_times = UINT16_MAX;
+    k.sonar[ME].relapses = UINT8_MAX;
     set(ARGUS_CHANGE_DISABLED, ARGUS_KIND_OFF);
-    TEST_ASSERT_EQUAL(UINT16_MAX, s.disabled_times);
-    TEST_ASSERT_EQUAL(UINT8_MAX, s.relapses);
+    TEST_ASSERT_EQUAL(UINT16_MAX, k.sonar[ME].disabled_times);
+    TEST_ASSERT_EQUAL(UINT8_MAX, k.sonar[ME].relapses);
+}
+
+void test_the_others_are_let_be(void) {
+    argus_knowledge_t before = k;
+    set(ARGUS_CHANGE_DISABLED, ARGUS_KIND_OFF);
+    k.sonar[ME] = before.sonar[ME];
+    TEST_ASSERT_EQUAL_MEMORY(&before, &k, sizeof k);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the pose survives the robot's wraps, units and resets; a reading is fresh only if listed
 // after the mark.
+#include "knowledge/body.h"
 #include "knowledge/knowledge.h"
 
 #include <math.h>
@@ -224,7 +225,7 @@ void test_nearest_echo_leaves_out_the_disabled_and_may_be_of_a_place_farther_bac
 }
 
 void test_sonars_beyond_the_robots_are_absent_and_not_heard(void) {
-    argus_knowledge_set_robot(&k, argus_robot_find("amigo-sh"), now_ms);
+    argus_body_is(&k, argus_robot_find("amigo-sh"), now_ms);
     for (int i = 0; i < 16; i++) {
         list(i, 300);
     }
@@ -237,9 +238,9 @@ void test_sonars_beyond_the_robots_are_absent_and_not_heard(void) {
     TEST_ASSERT_EQUAL_HEX16(0xFF, k.fresh);
     TEST_ASSERT_EQUAL_HEX16(0, argus_out(&k));
     TEST_ASSERT_EQUAL(300, argus_flank_mm(&k));
-    argus_knowledge_set_robot(&k, argus_robot_default(), now_ms);
+    argus_body_is(&k, argus_robot_default(), now_ms);
     TEST_ASSERT_EQUAL_HEX16(0xFFFF, argus_with_health(&k, ARGUS_UNKNOWN));
-    argus_knowledge_set_robot(&k, argus_robot_unknown(), now_ms);
+    argus_body_is(&k, argus_robot_unknown(), now_ms);
     TEST_ASSERT_EQUAL(0, k.sonars);
     TEST_ASSERT_EQUAL(ARGUS_ABSENT, k.sonar[0].health);
     TEST_ASSERT_EQUAL(INT32_MAX, argus_nearest_to_centre_mm(&k, 0));

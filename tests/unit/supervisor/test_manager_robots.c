@@ -293,8 +293,8 @@ void test_the_operator_says_which_body_it_is(void) {
     }
 }
 
-// It is another robot: an operator says that it is to be driven.
-void test_a_known_robot_after_an_unknown_one_drives(void) {
+// Another robot than before waits for an operator, as any other one does.
+void test_a_known_robot_after_an_unknown_one_drives_on_order(void) {
     start();
     robot.subclass = "seekur";
     TEST_ASSERT_TRUE(robot_goal(&robot, 600, 0));
@@ -303,7 +303,7 @@ void test_a_known_robot_after_an_unknown_one_drives(void) {
     argus_link_lost(&robot.argus, now());
     robot.subclass = "p3dx-sh";
     argus_link_up(&robot.argus, now());
-    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_OTHER_ROBOT, 5000));
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_OTHER_ROBOT, 10000));
     robot_run(&robot, 5000);
     expect_no_motion("seekur, then p3dx-sh");
     argus_operator(&robot.argus, now(), ARGUS_OP_ACTIVE, 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Attacks: the memory that a port gives is enough and its contents before do not matter; instances are apart;
 // what cannot be done is refused.
+#include <stdio.h>
 #include <string.h>
 
 #include "supervisor/manager.h"
@@ -59,4 +60,12 @@ void test_an_unsafe_configuration_starts_passive_and_stays_so(void) {
     argus_operator(argus, 1, ARGUS_OP_ACTIVE, 0);
     argus_status(argus, &status);
     TEST_ASSERT_FALSE(status.active);
+}
+
+// What a port gives is what it pays in RAM: room for other compilers, but not more.
+void test_the_memory_asked_of_a_port_is_what_the_manager_needs(void) {
+    char message[96];
+    snprintf(message, sizeof message, "lower ARGUS_STORAGE_BYTES (argus/argus.h) to %u",
+             (unsigned)((sizeof(argus_t) + 2048) / 1024 * 1024));
+    TEST_ASSERT_LESS_OR_EQUAL_size_t_MESSAGE(sizeof(argus_t) + 4096, sizeof(argus_storage_t), message);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Attacks: behind a wire that was lost and comes back is another robot: no motors, no motion, one event,
 // nothing of what was known of the first one, until an operator says so; the same robot is driven on.
+#include <stdio.h>
+
 #include "robot.h"
 #include "unity.h"
 
@@ -16,9 +18,7 @@ static uint32_t now(void) {
 }
 
 void setUp(void) {
-    argus_config_t config = robot_config();
-    config.baud = 0; // so that S5 allows these settings to every robot
-    config.step_mm = 100;
+    const argus_config_t config = robot_config();
     robot_init(&robot, &config, UINT32_MAX - 9000); // the clock wraps
     robot.config = config_1;
     robot.config_count = sizeof config_1;
@@ -86,6 +86,7 @@ void test_without_configpac_the_rest_decides(void) {
 }
 
 void test_the_operator_takes_it_over_in_two_steps(void) {
+    robot.argus.config.check_range_mm = 400; // safe for a P3-AT, too
     robot.subclass = "p3at-sh";
     expect_stranger(3);
     TEST_ASSERT_TRUE(argus_operator(&robot.argus, now(), ARGUS_OP_ACTIVE, 0));
@@ -112,4 +113,51 @@ void test_what_was_known_of_the_first_one_is_forgotten(void) {
     TEST_ASSERT_EQUAL_INT(ARGUS_IS_NORMAL, robot.argus.failure);
     TEST_ASSERT_EQUAL_INT(0, robot.argus.plan.disabled);
     TEST_ASSERT_EQUAL_INT(0, motions());
+}
+
+static uint32_t seed;
+
+static uint32_t draw(uint32_t below) {
+    seed = seed * 1664525u + 1013904223u;
+    return (seed >> 8) % below;
+}
+
+// Any robot may be behind the wire each time, and any part of it may differ from the one before.
+static bool change_robot(void) {
+    static const char *const subclasses[] = {"p3dx-sh", "p3at-sh", "amigo-sh"};
+    const char *const subclass = robot.subclass;
+    const uint8_t *const config = robot.config;
+    robot.subclass = subclasses[draw(3)];
+    robot.config = draw(2) == 0 ? config_1 : config_2;
+    return robot.subclass != subclass || robot.config != config;
+}
+
+void test_reopened_at_random_no_other_robot_is_ever_driven(void) {
+    char message[64];
+    int events = 0;
+    seed = 20261125;
+    for (int round = 0; round < 150; round++) {
+        const bool was_passive = robot.argus.orders.passive;
+        snprintf(message, sizeof message, "round %d of seed 20261125", round);
+        const bool other = change_robot();
+        events += other;
+        reopen();
+        robot_run(&robot, 500 + draw(8000));
+        if (!argus_session_is_open(&robot.argus.session)) {
+            TEST_ASSERT_TRUE_MESSAGE(robot_until_event(&robot, ARGUS_EV_SESSION_OPEN, 12000), message);
+        }
+        TEST_ASSERT_EQUAL_INT_MESSAGE(events, robot_count_events(&robot, ARGUS_EV_OTHER_ROBOT, 0), message);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_GOAL_REACHED, 0), message);
+        if (other || was_passive) {
+            TEST_ASSERT_EQUAL_INT_MESSAGE(0, motions(), message);
+        } else {
+            TEST_ASSERT_TRUE_MESSAGE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 12000), message);
+        }
+        if (draw(3) == 0 && robot.argus.orders.passive) {
+            argus_operator(&robot.argus, now(), ARGUS_OP_ACTIVE, 0);
+            argus_operator(&robot.argus, now(), ARGUS_OP_GO, 0);
+        }
+        TEST_ASSERT_EQUAL_STRING_MESSAGE("", robot.violation, message);
+    }
+    TEST_ASSERT_GREATER_THAN_INT(50, events);
 }

@@ -15,10 +15,12 @@ void put_health(argus_sonar_t *sonar, argus_health_t health, argus_fault_kind_t 
         [ARGUS_DISABLED] = {ARGUS_HEALTHY, ARGUS_CHANGE_DISABLED},
         [ARGUS_PROBATION] = {ARGUS_DISABLED, ARGUS_CHANGE_TRIED},
         [ARGUS_STALE] = {ARGUS_HEALTHY, ARGUS_CHANGE_STALLED},
-        [ARGUS_ABSENT] = {ARGUS_UNKNOWN, ARGUS_CHANGE_REMOVED},
     };
+    static argus_knowledge_t knowledge;
+    knowledge.sonar[0] = *sonar;
     if (sonar->health != health) {
-        sonar->health = way[health].from;
+        knowledge.sonar[0].health = way[health].from;
     }
-    argus_health_set(sonar, 0, way[health].change, kind, 0, now_ms);
+    argus_health_set(&knowledge, 0, way[health].change, kind, 0, now_ms);
+    *sonar = knowledge.sonar[0];
 }

@@ -85,7 +85,8 @@ class Log:
     ) -> None:
         self.options = options or ReadOptions()
         self.options.name = path
-        self.source = Source(path, is_enough=is_recognised, **source)
+        is_enough = (lambda _: True) if format_name else is_recognised
+        self.source = Source(path, is_enough=is_enough, **source)
         if not self.source.head:
             what = self.source.damage[0].what if self.source.damage else "is empty"
             raise LogError(f"{path}: {what}")

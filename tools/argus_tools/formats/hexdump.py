@@ -7,6 +7,7 @@ The base of the offsets, the width of the words and their byte order are found f
 from __future__ import annotations
 
 import re
+from binascii import unhexlify
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from io import BufferedReader
@@ -48,6 +49,9 @@ _WIDE: Final = re.compile(rb"[0-9A-Fa-f]+\s{4}\S")
 _XXD: Final = re.compile(rb"\s*[0-9A-Fa-f]+: \S+(?: \S+)*?  ")
 
 
+_HEX: Final = 16
+
+
 @dataclass(frozen=True)
 class _Words:
     """How one line's words are written: digits in each, their base, bytes of each."""
@@ -64,6 +68,16 @@ class _Words:
         return sum(map(self.size_of, words))
 
     def decode(self, words: list[bytes], is_swapped: bool) -> bytes:
+        size = self.size
+        if self.base == _HEX and (not is_swapped or size == 1 or not words or len(words[-1]) == self.digits):
+            # Most lines of most dumps.
+            data = unhexlify(b"".join(words))
+            if not is_swapped or size == 1:
+                return data
+            turned = bytearray(len(data))
+            for at in range(size):
+                turned[at::size] = data[size - 1 - at :: size]
+            return bytes(turned)
         out = bytearray()
         for word in words:
             size = self.size_of(word)
@@ -100,10 +114,14 @@ def _parse(line: bytes, column: int | None) -> _Line | None:
         words = line[match.end(3) : column].split()
     else:
         words = (_MARK if _WIDE.match(line) else _COLUMN).split(rest or b"", maxsplit=1)[0].split()
-    if any(not _DIGITS[16].fullmatch(word) for word in words):
+    if not words:
+        return _Line(indent, offset, words)
+    if not _DIGITS[_HEX].fullmatch(b"".join(words)) or (
+        len(words[-1]) & 1 and len(words[-1]) < len(words[0])
+    ):
         return None
     # Of a line's words only the last may be short.
-    if any(len(word) != len(words[0]) for word in words[:-1]) or (words and len(words[-1]) > len(words[0])):
+    if len(set(map(len, words[:-1]))) > 1 or len(words[-1]) > len(words[0]):
         return None
     return _Line(indent, offset, words)
 
@@ -256,8 +274,12 @@ class HexdumpReader:
                 yield offsets.chunk(None, stream.direction, data)
 
     def _bytes(self, plan: _Plan, line: _Line) -> bytes | None:
-        digits = _DIGITS[plan.words.base]
-        if any(len(w) > plan.words.digits or not digits.fullmatch(w) for w in line.words):
+        words = line.words
+        if words and (
+            len(words[0]) > plan.words.digits or not _DIGITS[plan.words.base].fullmatch(b"".join(words))
+        ):
+            return None
+        if plan.words.base == _HEX and any(len(word) & 1 for word in (words[:1] + words[-1:])):
             return None
         if not _DIGITS[plan.base].fullmatch(line.offset):
             return None

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from binascii import unhexlify
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -34,7 +35,7 @@ _DATES: Final = ("%Y-%m-%d", "%Y/%m/%d", "%Y.%m.%d", "%d.%m.%Y", "%m/%d/%Y", "%d
 _CLOCK: Final = (
     rb"(?:(?P<date>\d{4}([-/.])\d\d?\2\d\d?|\d\d?([-/.])\d\d?\3\d{4})[ T,]+)?"
     rb"(?P<hour>\d\d?):(?P<minute>\d\d):(?P<second>\d\d)(?:[.,:](?P<fraction>\d{1,9}))?"
-    rb"(?:[ ]?(?P<half>[AaPp][Mm]))?(?:Z|[+-]\d\d:?\d\d)?"
+    rb"(?:[ ]?(?P<half>[AaPp][Mm]))?(?:Z|(?P<zone>[+-]\d\d:?\d\d))?"
 )
 _SINCE: Final = rb"(?P<since>[+]?\d{1,12}\.\d{1,9})(?:[ ]?s)?"
 _TIME: Final = re.compile(
@@ -42,7 +43,7 @@ _TIME: Final = re.compile(
     + _CLOCK
     + rb"|"
     + _SINCE
-    + rb")(?:[ ]+[+]?\d{1,9}\.\d{1,9})?[ ]*[\])}]?[ \t]*[:;,|-]?(?:[ \t]+|\Z)"
+    + rb")(?:[ ]+[+]?\d{1,9}\.\d{1,9})?[ ]*[\])}]?[ \t]*(?:[:;,|-]?(?:[ \t]+|\Z)|[,;])"
 )
 _MARK: Final = re.compile(
     rb"[\[(<]?(?P<mark>RXD?|TXD?|RECV|SENT|SEND|RECEIVED|READ|WRITE|WRITTEN|IN|OUT|RCV|SND|-+>|<-+|<<|>>|<|>)[\])>]?"
@@ -57,9 +58,11 @@ _RUN: Final = re.compile(
     rb"[\"'{b]{0,2}(?P<run>" + _PAIR + rb"(?:[,;:-]?[ ]*" + _PAIR + rb")*)[,;]?[ ]*[\"'}]?;?"
 )
 # What may part the bytes from the characters that some print behind them; the first that leaves only bytes counts.
-_BEHIND: Final = tuple(map(re.compile, (rb"\Z", rb"\s*[|\t]", rb"\s{3}", rb"\s{2}", rb"\s[;<>\"']")))
+_BEHIND: Final = tuple(map(re.compile, (rb"\Z", rb"\s*[|\t]", rb"\s{3}", rb"\s{2}", rb"\s[;<>\"'(]", rb",,")))
+# What socat and jpnevulator write into a line of its own before the bytes, and between two of them.
+_HEADING: Final = re.compile(rb"length=\d|/dev/|--\Z")
 _PREFIXES: Final = re.compile(rb"0[xX]|\\x")
-_DIGITS: Final = re.compile(rb"[0-9A-Fa-f]{2}")
+_NO_DIGITS: Final = b" ,;:-hH$"
 
 
 class _Piece(NamedTuple):
@@ -68,6 +71,8 @@ class _Piece(NamedTuple):
     t: float | None
     mark: bytes | None
     data: bytes | None
+    # Whether there is something else.
+    is_strange: bool = False
 
 
 @dataclass
@@ -86,11 +91,18 @@ class _Times:
         t = hour * 3600.0 + int(match["minute"]) * 60 + int(match["second"])
         t += float(b"0." + (match["fraction"] or b"0"))
         if match["date"]:
-            return _midnight(match["date"].decode()) + t
+            return _midnight(match["date"].decode()) + t - _zone_s(match["zone"])
         if t + self.days_s < self.last - _DAY_S / 2:
             self.days_s += _DAY_S
         self.last = t + self.days_s
         return self.last
+
+
+def _zone_s(zone: bytes | None) -> float:
+    if not zone:
+        return 0.0
+    hours, minutes = int(zone[1:3]), int(zone[-2:])
+    return (hours * 3600.0 + minutes * 60.0) * (-1 if zone[:1] == b"-" else 1)
 
 
 def _midnight(date: str) -> float:
@@ -115,8 +127,8 @@ def _parse(line: bytes, begins: bool, times: _Times) -> _Piece:
         # Words that begin as bytes do, and bytes that are cut, are none.
         if match := _RUN.fullmatch(behind.split(rest, maxsplit=1)[0]):
             text = _PREFIXES.sub(b"", match["run"])
-            return _Piece(t, mark, bytes(int(pair, 16) for pair in _DIGITS.findall(text)))
-    return _Piece(t, mark, None)
+            return _Piece(t, mark, unhexlify(text.translate(None, _NO_DIGITS)))
+    return _Piece(t, mark, None, bool(rest) and not _HEADING.match(rest))
 
 
 class HextextReader:
@@ -139,7 +151,7 @@ class HextextReader:
             if piece.data:
                 direction = directions.get(mark) or directions[b""]
                 yield offsets.chunk(t, direction, piece.data)
-            elif text.strip() and piece.t is None and piece.mark is None and not text.startswith(b"#"):
+            elif piece.is_strange and not text.startswith(b"#"):
                 self.damage.append(
                     Damage(f"line {number}", _REPEATED if text.strip() == b"*" else "no hexadecimal bytes")
                 )
@@ -172,7 +184,7 @@ def _sniff(head: bytes) -> bool:
     data = b"".join(piece.data for piece in parsed if piece.data)
     with_data = sum(piece.data is not None for piece in parsed)
     with_more = sum(piece.t is not None or piece.mark is not None for piece in parsed if piece.data is None)
-    if len(data) < _SNIFF_BYTES:
+    if len(data) < _SNIFF_BYTES and _HEADER not in data:
         return False
     return _HEADER in data if 2 * (with_data + with_more) < len(lines) else True
 

@@ -56,11 +56,10 @@ def _has_utf8(head: bytes) -> bool:
 
 
 def _sniff(head: bytes) -> bool:
-    if _utf16(head):
-        return True
+    # Two speeds of 250 and 251 mm/s look like the header in UTF-16, but then a real one is near.
     if _HEADER in head:
         return False
-    return _has_utf8(head) or head.count(_REPLACED) >= _REPLACED_MIN
+    return bool(_utf16(head)) or _has_utf8(head) or head.count(_REPLACED) >= _REPLACED_MIN
 
 
 def _text(head: bytes, encoding: str) -> str | None:

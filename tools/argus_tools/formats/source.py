@@ -88,8 +88,10 @@ class Source(io.RawIOBase):
 
     def close(self) -> None:
         """Close the file, but never standard input."""
-        if not self.closed and self._file is not sys.stdin.buffer:
-            self._file.close()
+        # One that could not be opened is closed as well, by the interpreter.
+        file = getattr(self, "_file", None)
+        if not self.closed and file is not None and file is not sys.stdin.buffer:
+            file.close()
         super().close()
 
     def _raw(self, size: int) -> bytes:

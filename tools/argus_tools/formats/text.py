@@ -11,7 +11,7 @@ from typing import Final
 BOM: Final = b"\xef\xbb\xbf"
 PIECE_BYTES: Final = 1 << 14
 _FIRST_LINES: Final = 64
-_LINE_MAX: Final = 1 << 16
+_BEGINNING: Final = 1 << 8
 # Control characters that no text has; ESC is of colours.
 _BINARY: Final = re.compile(rb"[\x00-\x06\x0e-\x1a\x1c-\x1f\x7f]")
 _WORD_END: Final = re.compile(rb"[\s,;](?=[^\s,;]*\Z)")
@@ -24,10 +24,13 @@ def is_text(head: bytes) -> bool:
 
 def first_lines(head: bytes, count: int = _FIRST_LINES) -> list[bytes]:
     """Return the first lines of text that are neither blank nor comments (#); none if it is no text."""
-    if not is_text(head[:_LINE_MAX]):
+    if not is_text(head[:_BEGINNING]):
         return []
     lines = head.removeprefix(BOM).splitlines()
-    return [line for line in lines[: 4 * count] if line.strip() and not line.startswith(b"#")][:count]
+    # Further on there may be zeros that a power cut left.
+    return [
+        line for line in lines[: 4 * count] if line.strip() and not line.startswith(b"#") and is_text(line)
+    ][:count]
 
 
 def pieces(stream: BufferedReader) -> Iterator[tuple[int, bytes, bool]]:

@@ -27,7 +27,8 @@ examples:
 
 formats:
 {formats}
-Each may be gzipped. {codes}
+They are told apart by their contents and may be gzipped. Of what else is given, the name is told and the command that
+makes one of these of it. {codes}
 """
 
 
@@ -46,7 +47,7 @@ class Command(Protocol):
 
 def _parser(chosen: str | None) -> argparse.ArgumentParser:
     """Return the parser; with a known subcommand chosen, the others' modules are not loaded."""
-    known = "".join(f"  {name:<9}{format_.help}\n" for name, format_ in formats().items())
+    known = "".join(f"  {name:<11}{format_.help}\n" for name, format_ in formats().items())
     parser = Parser(
         prog="argus-log",
         description="Decodes, checks, converts, draws and replays logs of a robot's serial, TCP or CAN link.",

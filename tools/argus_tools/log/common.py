@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Final, NoReturn
 
 from argus_tools.formats import Chunk, Log, LogError, ReadOptions, formats
-from argus_tools.formats.base import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT
+from argus_tools.formats.base import CLIENT_TO_ROBOT, EXPECTED, ROBOT_TO_CLIENT
 from argus_tools.log.packets import Row, packets
 
 EXIT_READ, EXIT_DAMAGE, EXIT_UNUSABLE = 0, 1, 2
@@ -96,7 +96,7 @@ def add_log_arguments(parser: argparse.ArgumentParser, follow: bool = False) -> 
         "--port", type=whole(1, 65535), help="the robot's TCP port in a capture (default: found)"
     )
     parser.add_argument(
-        "--robot", type=whole(0, 7), help="the robot's number in a candump (default: the first)"
+        "--robot", type=whole(0, 7), help="the robot's number on a CAN bus (default: the first)"
     )
     parser.add_argument("--strict", action="store_true", help="exit with 1 if anything in the log is damaged")
     if follow:
@@ -178,14 +178,18 @@ class Input:
         return EXIT_DAMAGE if self._strict and (self.damaged or self.log.damage) else EXIT_READ
 
     def _complain_empty(self, size: int) -> NoReturn:
-        what = f"read as {self.log.format.name}"
+        form = self.log.format
+        if form.name == "bin":
+            raise LogError(
+                f"{self.path}: no ARCOS packet in {size} bytes, and not of a form that is known; expected {EXPECTED}"
+            )
         if size:
             raise LogError(
-                f"{self.path}: no ARCOS packet in {size} bytes ({what}): not a log, or --format is needed"
+                f"{self.path}: no ARCOS packet in the {size} bytes that it holds as {form.help}; "
+                "--format chooses another form"
             )
-        raise LogError(
-            f"{self.path}: holds no bytes of a robot's link ({what}); is --format or --port needed?"
-        )
+        port = "; is --port needed?" if form.name in ("pcap", "pcapng") else ""
+        raise LogError(f"{self.path}: holds no bytes of a robot's link (read as {form.help}){port}")
 
     def _tell(self) -> None:
         damage = self.log.damage

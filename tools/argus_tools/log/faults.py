@@ -226,7 +226,7 @@ def run(args: argparse.Namespace) -> int:
     if status is None:
         raise LogError(f"{args.log}: holds no SIP from the robot, so there is nothing to judge")
     if summary:
-        print("\n".join(summary.lines(status, source.log.damage)))
+        print("\n".join(summary.lines(status, sum(entries.total for entries in source.log.damage_lists))))
     else:
         print(json.dumps({"t": t, **_STATUS, **status}) if args.json else _table(status, colour))
     return source.exit_code

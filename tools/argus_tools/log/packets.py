@@ -114,6 +114,7 @@ class Scanner:
         self._tracer: _Tracer | None = None
         self._gap = bytearray()
         self._gap_at = 0
+        self._gap_t: float | None = None
         self._cut: list[Chunk] = []
         self._window = _WINDOW_MAX
 
@@ -264,8 +265,8 @@ class Scanner:
             rows += self.feed(chunk)
         self._cut = []
         if self._tracer is not None:
-            self._collect(rows, None, self._tracer.poll(1e12))
-            self._flush(rows, None, len(self._gap))
+            self._collect(rows, self._gap_t, self._tracer.poll(1e12))
+            self._flush(rows, self._gap_t, len(self._gap))
             self._tracer = None
         return rows
 
@@ -274,6 +275,7 @@ class Scanner:
         assert tracer is not None
         piece = chunk.data[at : tracer.reach(chunk.data, at)]
         self._gap += piece
+        self._gap_t = chunk.t
         self._collect(rows, chunk.t, tracer.feed(piece))
         if not tracer.pending and not self._gap:
             self._tracer = None

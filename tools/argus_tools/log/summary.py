@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
 from typing import Any, Final
 
 from argus_tools.core import Event, kind_name
-from argus_tools.formats.base import Damage
 from hil_sim.arcos import TIMING
 
 # A suspicion that is younger may go with the next SIP.
@@ -16,6 +14,8 @@ LASTING_S: Final = 5.0
 # Sonars fail one by one. When more than these are suspects at once, it is the place or the motion that misleads.
 SUSPECTS_MAX: Final = 4
 SUSPECT, DISABLED = "SUSPECT", "DISABLED"
+_ELSE: Final = {"STALE": "yields no reading any more", "PROBATION": "not used yet: on probation"}
+_JUDGED: Final = ("HEALTHY", SUSPECT, DISABLED)
 # As many that go within so short a time are told in lines of their own.
 _TOGETHER: Final = 2
 _TOGETHER_S: Final = 1.0
@@ -64,8 +64,8 @@ class Summary:
             place = f"byte {offset}" if t is None else f"+{t - (self._first or 0.0):.1f} s"
             self._disabled[event.sonar] = (kind_name(event.value), self._now, place)
 
-    def lines(self, status: dict[str, Any], damage: Iterable[Damage]) -> list[str]:
-        """Return the lines, with what the manager knows at the end."""
+    def lines(self, status: dict[str, Any], unread: int) -> list[str]:
+        """Return the lines, of what the manager knows at the end and how many places of the file were not read."""
         health = status["health"]
         out = self._gone(health)
         lasting = [
@@ -74,8 +74,18 @@ class Summary:
             if health[number] == SUSPECT and self._now - since >= LASTING_S
         ]
         out += self._suspects(lasting, status["kind"])
-        head = "" if out else "nothing wrong with the sonars: " if self._also else "nothing wrong: "
-        out.append(head + self._counts(status, len(lasting), any(True for _ in damage)))
+        out += [
+            f"{_name(number):<14} {_ELSE[state]}" for number, state in enumerate(health) if state in _ELSE
+        ]
+        is_judged = any(state in _JUDGED for state in health)
+        head = (
+            ""
+            if out or not is_judged
+            else "nothing wrong with the sonars: "
+            if self._also
+            else "nothing wrong: "
+        )
+        out.append(head + self._counts(status, len(lasting), unread))
         if self._also:
             said = (f"{count} x {name} ({self._meaning[name]})" for name, count in self._also.most_common())
             out.append("also: " + "; ".join(said))
@@ -118,18 +128,21 @@ class Summary:
             out.append(f"{_name(number):<14} suspect {held}{kind}; not proven")
         return out
 
-    def _counts(self, status: dict[str, Any], lasting: int, is_damaged: bool) -> str:
+    def _counts(self, status: dict[str, Any], lasting: int, unread: int) -> str:
         seen = [
             health for health, age in zip(status["health"], status["age_ms"], strict=True) if age != _UNSEEN
         ]
-        healthy = len(seen) - seen.count(DISABLED) - lasting
-        who = f"{healthy} of {len(seen)} sonars healthy" if seen else "no sonar reported"
+        judged = [health for health in seen if health in _JUDGED]
+        healthy = len(judged) - judged.count(DISABLED) - lasting
+        who = f"{healthy} of {len(seen)} sonars healthy" if judged else "too little to judge a sonar by"
         counts = [f"{who} in {status['sips']} SIPs over {self._now - (self._first or 0.0):.0f} s"]
         passed = self._suspicions - lasting
         if passed > 0:
             counts.append(f"{passed} suspicion{'s' * (passed > 1)} came and went")
-        if status["bad_checksums"] or status["skipped_bytes"] or is_damaged:
+        if status["bad_checksums"] or status["skipped_bytes"]:
             counts.append(f"{status['bad_checksums']} bad checksums, {status['skipped_bytes']} bytes skipped")
+        if unread:
+            counts.append(f"{unread} place{'s' * (unread > 1)} of the file could not be read")
         return "; ".join(counts)
 
 

@@ -5,6 +5,7 @@
 #include <pty.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -191,7 +192,7 @@ void test_explanations_say_what_to_do(void) {
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "/dev/ttyUSB7: no such file; "), text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "/dev/"), text);
     hal_serial_explain(HAL_LINK_DENIED, "/dev/ttyUSB7", text, sizeof text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "sudo usermod -aG dialout"), text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "/dev/ttyUSB7: no permission; "), text);
     hal_serial_explain(HAL_LINK_BAD_BAUD, name, text, sizeof text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, HAL_BAUD_LIST), text);
     hal_serial_explain(HAL_LINK_NOT_SERIAL, "/dev/null", text, sizeof text);
@@ -199,6 +200,54 @@ void test_explanations_say_what_to_do(void) {
     char small[12] = "xxxxxxxxxxx";
     hal_serial_explain(HAL_LINK_NOT_FOUND, "/dev/ttyUSB7", small, sizeof small - 1);
     TEST_ASSERT_EQUAL_STRING("/dev/ttyUS", small);
+}
+
+// One file, of some user and group, with some mode.
+static void denied(uid_t user, gid_t group, mode_t mode, const char *part) {
+    char path[] = "/tmp/argus-serial-XXXXXX";
+    char text[512];
+    const int file = mkstemp(path);
+    TEST_ASSERT_TRUE(file >= 0);
+    TEST_ASSERT_EQUAL_INT(0, fchown(file, user, group));
+    TEST_ASSERT_EQUAL_INT(0, fchmod(file, mode));
+    close(file);
+    hal_serial_explain(HAL_LINK_DENIED, path, text, sizeof text);
+    unlink(path);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, part), text);
+}
+
+void test_permission_is_explained_as_owner_and_mode_really_are(void) {
+    denied(geteuid(), getegid(), 0040,
+           "mode 040: you own it, but may not read and write it: chmod u+rw /tmp/");
+    if (geteuid() != 0) {
+        TEST_IGNORE_MESSAGE("the rest gives files away, which only root may");
+    }
+    denied(12345, 23456, 0660, "it belongs to user 12345 and group 23456, mode 660: join the group: ");
+    denied(12345, 23456, 0660, "usermod -aG 23456 \"$USER\", then log in again");
+    denied(12345, 23456, 0600, "mode 600: only its owner may read and write it: ");
+    denied(12345, 23456, 0640, "mode 640: only its owner may read and write it: ");
+    denied(12345, getegid(), 0600, "you are in that group, which may not read and write it: ");
+    denied(12345, getegid(), 0660, "something else forbids it");
+}
+
+void test_missing_names_its_siblings_and_where_a_dangling_name_leads(void) {
+    char folder[] = "/tmp/argus-serial-XXXXXX";
+    char path[3][96];
+    char text[1024];
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    snprintf(path[0], sizeof path[0], "%s/ttyXYZ0", folder);
+    snprintf(path[1], sizeof path[1], "%s/ttyXYZ12", folder);
+    snprintf(path[2], sizeof path[2], "%s/robot", folder);
+    close(open(path[1], O_CREAT | O_RDWR, 0600));
+    TEST_ASSERT_EQUAL_INT(0, symlink("ttyXYZ0", path[2]));
+    hal_serial_explain(HAL_LINK_NOT_FOUND, path[0], text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, path[1]), text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "give its name under /dev/serial/by-id"), text);
+    hal_serial_explain(HAL_LINK_NOT_FOUND, path[2], text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "it is a name for ttyXYZ0, which is not there"), text);
+    unlink(path[1]);
+    unlink(path[2]);
+    rmdir(folder);
 }
 
 void test_busy_names_the_process_that_holds_the_port(void) {

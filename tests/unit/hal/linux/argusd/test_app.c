@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "app.h"
@@ -24,13 +25,15 @@ static int master = -1;
 static int slave = -1;
 static char name[64];
 static robot_t robot;
-static int await_command = ARCOS_CMD_PULSE; // SIGTERM waits until the robot has got one of these, too
+static void (*during)(pid_t child, int turn); // NULL: nothing happens besides
+static int await_command = ARCOS_CMD_PULSE;   // SIGTERM waits until the robot has got one of these, too
 
 void setUp(void) {
     await_command = ARCOS_CMD_PULSE;
     TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, name, NULL, NULL));
     fcntl(master, F_SETFL, O_NONBLOCK);
     robot_init(&robot);
+    during = NULL;
 }
 
 void tearDown(void) {
@@ -103,8 +106,12 @@ static int run(const char *line, bool present, const char *signal_at) {
     size_t used[2] = {0, 0};
     const pid_t child = start(line, ends);
     bool ended = false;
+    out[0] = err[0] = '\0';
     for (int turns = 0; !ended && turns < 600; turns++) {
         serve(present);
+        if (during != NULL) {
+            during(child, turns);
+        }
         ended = waitpid(child, &status, WNOHANG) == child;
         gather(ends[0][0], out, sizeof out, &used[0]);
         gather(ends[1][0], err, sizeof err, &used[1]);
@@ -114,6 +121,7 @@ static int run(const char *line, bool present, const char *signal_at) {
             signal_at = NULL;
         }
     }
+    serve(present); // what was written last
     if (!ended) {
         kill(child, SIGKILL);
         waitpid(child, &status, 0);
@@ -210,4 +218,88 @@ void test_active_drives(void) {
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_STOP]);
     TEST_ASSERT_EQUAL_STRING("", err);
     TEST_ASSERT_FALSE(robot.open);
+}
+
+static int first; // turn of the first signal
+static int pause_ms;
+static int second;
+
+static void signal_twice(pid_t child, int turn) {
+    if (first == 0 && strstr(out, "HEALTH_CHECK") != NULL) {
+        const struct timespec pause = {.tv_nsec = pause_ms * 1000000L};
+        first = turn;
+        kill(child, SIGTERM);
+        nanosleep(&pause, NULL);
+        kill(child, second);
+    }
+}
+
+// A wrapper and the terminal deliver one wish to end twice.
+static void deliver_twice(int signal, int ms) {
+    char line[256];
+    first = 0;
+    pause_ms = ms;
+    second = signal;
+    during = signal_twice;
+    snprintf(line, sizeof line, "--link serial:%s --json --status 0", name);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, run(line, true, NULL), err);
+    TEST_ASSERT_TRUE(first > 0);
+    TEST_ASSERT_NOT_NULL(strstr(out, "\"event\":\"SESSION_CLOSED\""));
+    TEST_ASSERT_NULL_MESSAGE(strstr(err, "not closed in order"), err);
+    TEST_ASSERT_FALSE(robot.open);
+}
+
+void test_one_wish_to_end_delivered_twice_is_one(void) {
+    deliver_twice(SIGTERM, 0);
+    tearDown();
+    setUp();
+    deliver_twice(SIGTERM, 5);
+    tearDown();
+    setUp();
+    deliver_twice(SIGHUP, 50);
+    tearDown();
+    setUp();
+    deliver_twice(SIGINT, 300);
+}
+
+static void cut_and_signal(pid_t child, int turn) {
+    static int cut;
+    cut = turn == 0 ? 0 : cut;
+    if (cut == 0 && strstr(out, "HEALTH_CHECK") != NULL) {
+        cut = turn;
+        close(master); // the other end of the line is gone
+        close(slave);
+        master = slave = -1;
+    } else if (cut > 0 && turn == cut + 10) {
+        kill(child, SIGTERM);
+    }
+}
+
+void test_an_end_without_the_link_is_not_clean_and_has_its_own_code(void) {
+    char line[256];
+    during = cut_and_signal;
+    snprintf(line, sizeof line, "--link serial:%s --json --status 0", name);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(6, run(line, true, NULL), err);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(err, "not closed in order, since the link was down"), err);
+    TEST_ASSERT_NULL(strstr(out, "SESSION_CLOSED"));
+    setUp(); // for tearDown()
+}
+
+void test_a_summary_ends_the_lines_for_people(void) {
+    char line[256];
+    snprintf(line, sizeof line, "--link serial:%s --plain --status 0", name);
+    TEST_ASSERT_EQUAL_INT(0, run(line, true, "HEALTH_CHECK"));
+    const char *const last = strstr(out, " SUMMARY mission none; IsNormal; no sonar out of use; ");
+    TEST_ASSERT_NOT_NULL_MESSAGE(last, out);
+    TEST_ASSERT_EQUAL_PTR(out + strlen(out) - 1, strchr(last, '\n'));
+}
+
+void test_a_wait_for_the_port_says_what_for(void) {
+    TEST_ASSERT_EQUAL_INT(3, run("--link serial:/tmp/no-such-port-3 --wait 1", false, NULL));
+    const char *const why = strstr(err, "/tmp/no-such-port-3: no such file");
+    TEST_ASSERT_NOT_NULL_MESSAGE(why, err);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "; waiting for it\n"), err);
+    const char *const again = strstr(strchr(why, '\n'), "no-such-port-3: no such file");
+    TEST_ASSERT_NOT_NULL_MESSAGE(again, err); // the end says why, too, and that is all
+    TEST_ASSERT_NULL_MESSAGE(strstr(strchr(again, '\n'), "no such file"), err);
 }

@@ -238,6 +238,111 @@ void test_a_tcp_link_that_closes_is_opened_again_with_pauses(void) {
     close(server);
 }
 
+static char reason[1024];
+
+static int reasons(const char *part) {
+    int told = 0;
+    while (driver_reason(&driver, reason, sizeof reason)) {
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(reason, part), reason);
+        TEST_ASSERT_NULL(strchr(reason, '\n'));
+        told++;
+    }
+    return told;
+}
+
+static void pass(uint32_t ms) {
+    for (uint32_t passed = 0; passed < ms; passed += 10) {
+        time_.now_ms += 10;
+        driver_process(&driver);
+        driver_receive(&driver);
+    }
+}
+
+void test_why_a_link_stays_away_is_told_once_and_again_when_it_changes(void) {
+    char folder[] = "/tmp/argus-driver-XXXXXX";
+    char device[64];
+    char other[300];
+    int master = -1;
+    int slave = -1;
+    argus_config_t config;
+    argus_config_default(&config);
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, device, NULL, NULL));
+    fcntl(master, F_SETFL, O_NONBLOCK);
+    spec = (hal_link_spec_t){.scheme = HAL_SCHEME_SERIAL, .baud = 9600};
+    snprintf(spec.path, sizeof spec.path, "%s/ttyUSB0", folder);
+    snprintf(other, sizeof other, "%s/ttyUSB1", folder);
+    TEST_ASSERT_EQUAL_INT(0, symlink(device, spec.path));
+    driver_init(&driver, &config, clock_, &spec, &transport);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 0));
+    TEST_ASSERT_EQUAL_INT(0, reasons(""));
+    // The adapter comes back under the next number.
+    unlink(spec.path);
+    TEST_ASSERT_EQUAL_INT(0, symlink(device, other));
+    close(master);
+    pass(10000);
+    TEST_ASSERT_EQUAL_INT(1, reasons("ttyUSB0: no such file; "));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(reason, other), reason);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(reason, "/dev/serial/by-id"), reason);
+    pass(10000);
+    TEST_ASSERT_EQUAL_INT(0, reasons(""));
+    // Something else is wrong now.
+    TEST_ASSERT_EQUAL_INT(0, symlink("/dev/null", spec.path));
+    pass(5000);
+    TEST_ASSERT_EQUAL_INT(1, reasons("not a serial port"));
+    unlink(spec.path);
+    close(slave);
+    TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, device, NULL, NULL));
+    TEST_ASSERT_EQUAL_INT(0, symlink(device, spec.path));
+    pass(5000);
+    TEST_ASSERT_TRUE(driver.up);
+    TEST_ASSERT_EQUAL_INT(1, reasons("open again"));
+    driver_close(&driver);
+    close(master);
+    close(slave);
+    unlink(spec.path);
+    unlink(other);
+    rmdir(folder);
+}
+
+void test_a_server_that_closes_at_once_is_told_once_and_asked_less_often(void) {
+    int server = -1;
+    int accepted = 0;
+    argus_config_t config;
+    argus_config_default(&config);
+    spec = (hal_link_spec_t){.scheme = HAL_SCHEME_TCP, .port = listen_here(&server), .host = "127.0.0.1"};
+    fcntl(server, F_SETFL, O_NONBLOCK);
+    driver_init(&driver, &config, clock_, &spec, &transport);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 1000));
+    int told = 0;
+    for (int i = 0; i < 2000; i++) { // 20 s
+        const int client = accept(server, NULL, NULL);
+        if (client >= 0) {
+            accepted++;
+            close(client);
+        }
+        pass(10);
+        told += reasons("the other end accepts and closes at once");
+    }
+    TEST_ASSERT_EQUAL_INT(1, told);
+    TEST_ASSERT_TRUE(driver_is_turned_away(&driver));
+    TEST_ASSERT_TRUE_MESSAGE(accepted >= 4 && accepted <= 12, "pauses of 0.5, 1, 2, 4, 4 s");
+    // The other client has gone: bytes come.
+    int client = -1;
+    for (int i = 0; i < 1000 && client < 0; i++) {
+        pass(10);
+        client = accept(server, NULL, NULL);
+    }
+    TEST_ASSERT_TRUE(client >= 0);
+    TEST_ASSERT_EQUAL_INT(4, write(client, "xxxx", 4));
+    pass(2000);
+    TEST_ASSERT_EQUAL_INT(1, reasons("open again"));
+    TEST_ASSERT_FALSE(driver_is_turned_away(&driver));
+    driver_close(&driver);
+    close(client);
+    close(server);
+}
+
 void test_a_name_that_leads_elsewhere_is_followed_while_no_robot_answers(void) {
     char folder[] = "/tmp/argus-driver-XXXXXX";
     char device[2][64];

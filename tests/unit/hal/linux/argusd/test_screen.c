@@ -68,7 +68,7 @@ void test_all_that_matters_is_there_at_80_by_24(void) {
     view.status.waypoints = 2;
     view.status.goal_mm = 1500;
     view.course_mm = 3000;
-    screen_log_add(&log_, "the last event", TONE_BAD);
+    screen_log_add(&log_, "the last event", TONE_BAD, 0);
     draw(24, 80);
     static const char *const parts[] = {"serial:/dev/ttyUSB0@9600",
                                         "P3DX_0001",
@@ -96,7 +96,7 @@ void test_the_newest_lines_are_shown(void) {
     char line[32];
     for (int i = 0; i < 3 * SCREEN_LOG_LINES; i++) {
         snprintf(line, sizeof line, "line <%d>", i);
-        screen_log_add(&log_, line, TONE_PLAIN);
+        screen_log_add(&log_, line, TONE_PLAIN, 0);
     }
     draw(24, 80);
     TEST_ASSERT_EQUAL_INT(22, find("line <191>"));
@@ -146,6 +146,8 @@ void test_any_size_and_any_contents_are_drawn(void) {
         status->plan.return_each = false;
         status->sonars = (uint8_t)(rand() % (ARGUS_SONARS + 1));
         view.sonar = (uint8_t)(rand() % ARGUS_SONARS);
+        status->paused = status->open = status->motors = status->lists_all = (round & 2) != 0;
+        status->robot_told = view.has_can = (round & 4) != 0;
         status->mode = ARGUS_MODE_CLOSED;
         status->mission = ARGUS_MISSION_FAILED;
         status->failure = ARGUS_IS_CATASTROPHIC;
@@ -199,6 +201,103 @@ void test_keys(void) {
     TEST_ASSERT_EQUAL_INT(TUI_PIN, tui_meaning('k'));
     TEST_ASSERT_EQUAL_INT(TUI_TAKE_OUT, tui_meaning('x'));
     TEST_ASSERT_EQUAL_INT(TUI_QUIT, tui_meaning(3));
-    TEST_ASSERT_EQUAL_INT(TUI_NONE, tui_meaning('z'));
-    TEST_ASSERT_EQUAL_INT(TUI_NONE, tui_meaning(-1));
+    TEST_ASSERT_EQUAL_INT(TUI_HELP, tui_meaning('?'));
+    TEST_ASSERT_EQUAL_INT(TUI_UNKNOWN, tui_meaning('z'));
+    TEST_ASSERT_EQUAL_INT(TUI_UNKNOWN, tui_meaning(-1));
+}
+
+void test_what_repeats_is_one_line_that_counts(void) {
+    screen_log_add(&log_, "before", TONE_PLAIN, 7);
+    for (int i = 0; i < 100; i++) {
+        screen_log_add(&log_, i % 2 == 0 ? "suspect 3" : "dropped 3", TONE_WARN, 3);
+        screen_log_add(&log_, i % 2 == 0 ? "suspect 4" : "dropped 4", TONE_WARN, 4);
+    }
+    TEST_ASSERT_EQUAL_INT(3, log_.count);
+    draw(24, 80);
+    TEST_ASSERT_EQUAL_INT(17, find("before"));
+    TEST_ASSERT_EQUAL_INT(18, find("dropped 3 (100 times)"));
+    TEST_ASSERT_EQUAL_INT(19, find("dropped 4 (100 times)"));
+    for (int i = 0; i < 20; i++) { // long ago is another story
+        screen_log_add(&log_, "other", TONE_PLAIN, 0);
+    }
+    screen_log_add(&log_, "suspect 3", TONE_WARN, 3);
+    draw(24, 80);
+    TEST_ASSERT_EQUAL_INT(22, find("suspect 3"));
+    TEST_ASSERT_EQUAL_INT(-1, find("(101 times)"));
+}
+
+void test_a_pause_is_shown(void) {
+    draw(24, 80);
+    TEST_ASSERT_EQUAL_INT(-1, find("PAUSED"));
+    view.status.paused = true;
+    draw(24, 80);
+    TEST_ASSERT_EQUAL_INT(1, find("PAUSED"));
+}
+
+void test_the_keys_are_listed_each_with_what_it_does(void) {
+    draw(24, 80);
+    screen_draw_keys(&canvas);
+#define LISTED(name, keys, effect)                           \
+    TEST_ASSERT_NOT_EQUAL_MESSAGE(-1, find(keys), keys);     \
+    TEST_ASSERT_NOT_EQUAL_MESSAGE(-1, find(effect), effect); \
+    TEST_ASSERT_EQUAL_STRING(keys, tui_keys_of(TUI_##name)); \
+    TEST_ASSERT_EQUAL_STRING(effect, tui_effect_of(TUI_##name));
+    TUI_KEY_TABLE(LISTED)
+#undef LISTED
+    TEST_ASSERT_EQUAL_STRING("", tui_keys_of(TUI_UNKNOWN));
+    draw(4, 10);
+    screen_draw_keys(&canvas); // no room is no harm
+}
+
+// Words of the wide screen, and those that stand for a column where there is less room.
+static bool is_a_word(const char *wide, const char *word) {
+    static const char *const others[] = {"#", "mm", "health", "arrows/wasd", "wasd", "?"};
+    char framed[64];
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        if (strcmp(word, others[i]) == 0) {
+            return true;
+        }
+    }
+    snprintf(framed, sizeof framed, " %s ", word);
+    for (char *c = framed; *c != '\0'; c++) { // a cut ends before a comma, too
+        *c = *c == ',' || *c == ':' || *c == ';' ? ' ' : *c;
+    }
+    return strstr(wide, framed) != NULL;
+}
+
+void test_narrow_screens_drop_columns_and_cut_no_word(void) {
+    static char wide[SCREEN_ROWS_MAX * (SCREEN_COLUMNS_MAX + 2)];
+    char text[SCREEN_COLUMNS_MAX + 1];
+    size_t used = 0;
+    view.status.waypoints = 2;
+    view.status.goal_mm = 1500;
+    view.course_mm = 3000;
+    view.status.paused = true;
+    screen_log_add(&log_, "  83.123 WARN  sonar/front/03 SONAR_SUSPECT 312: disparate to its neighbours",
+                   TONE_WARN, 1);
+    draw(24, 200);
+    for (int row = 0; row < canvas.rows; row++) {
+        row_text(row, text);
+        used += (size_t)snprintf(wide + used, sizeof wide - used, " %s ", text);
+    }
+    for (char *c = wide; *c != '\0'; c++) {
+        *c = *c == ',' || *c == ':' || *c == ';' ? ' ' : *c;
+    }
+    for (int columns = 1; columns < 73; columns++) { // from 73 on there is the ring
+        draw(24, columns);
+        for (int row = 0; row < canvas.rows; row++) {
+            row_text(row, text);
+            for (char *word = strtok(text, " "); word != NULL; word = strtok(NULL, " ")) {
+                char message[128];
+                snprintf(message, sizeof message, "%d columns, row %d: '%s'", columns, row, word);
+                TEST_ASSERT_TRUE_MESSAGE(is_a_word(wide, word), message);
+            }
+        }
+    }
+    draw(24, 45);
+    TEST_ASSERT_NOT_EQUAL(-1, find(" 6  -50 1006 HEALTHY"));
+    draw(24, 40);
+    TEST_ASSERT_NOT_EQUAL(-1, find(" 6  1006 HEALTHY"));
+    draw(24, 20);
+    TEST_ASSERT_NOT_EQUAL(-1, find(" 6  1006  14  1014"));
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A robot as const data: body, swing circle, where its sonars look and what each is for. The rows are
-// generated.
-#ifndef ARGUS_ROBOT_BODY_H
-#define ARGUS_ROBOT_BODY_H
+// A robot as const data: body, swing circle, where its sonars look and what each is for.
+#ifndef ARGUS_ROBOT_TABLE_H
+#define ARGUS_ROBOT_TABLE_H
 
 #include "argus/argus.h"
-#include "robot/gen_robots.h"
+#include "robot/gen_sizes.h"
+
+_Static_assert(ARGUS_SONARS % 8 == 0 && ARGUS_SONARS >= 8 && ARGUS_SONARS <= 32, "8, 16, 24 or 32");
 
 // Where and whither a sonar looks, robot frame, and who is mounted beside it.
 typedef struct {

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""Rule: after a link comes back, another robot behind it is not driven, and a link that stays away says why, once."""
+
+from __future__ import annotations
+
+import signal
+import time
+
+import pytest
+from harness import BAUD, Argusd, Bench, is_translating
+from rules import cruise
+from worlds import hall
+
+GOAL_MM = 3000
+
+
+def told(argusd: Argusd, part: str) -> list[str]:
+    """Lines on standard error so far that hold a text."""
+    return [line for line in argusd.errors if part in line]
+
+
+@pytest.mark.parametrize(
+    ("other", "part"),
+    [(("--name", "P3DX_0002"), 1), (("--subclass", "p3dx"), 3)],
+    ids=["name", "subclass"],
+)
+def test_another_robot_behind_the_same_name_is_not_driven(
+    bench: Bench, other: tuple[str, str], part: int
+) -> None:
+    world = bench.world(**hall())
+    sim = bench.sim(world)
+    argusd = bench.argusd("--goal", f"{GOAL_MM},0")
+    cruise(sim)
+    sim.kill()
+    lost = argusd.wait("LINK_LOST")
+    again = bench.sim(world, extra=other)
+    event = argusd.wait("OTHER_ROBOT", after_t=lost["t"])
+    assert event["value"] == part
+    argusd.wait("HEALTH_CHECK", after_t=event["t"])
+    until = again.t_s + 3.0
+    again.wait("three seconds pass", lambda s: s["t_s"] > until)
+    assert not any(is_translating(state) for state in again.of("state"))
+    assert argusd.status["flags"] & 1 == 0, "the motors are on"
+    assert len(argusd.named("OTHER_ROBOT")) == 1
+    assert argusd.status["active"] is False
+    assert argusd.status["paused"] is True
+    assert not argusd.named("GOAL_REACHED", "MISSION_FAILED")
+    assert len(told(argusd, "another robot is at the link now")) == 1
+    argusd.signal(signal.SIGTERM)
+    assert argusd.wait_exit() == 0
+
+
+def test_an_adapter_with_a_new_number_is_said_once(bench: Bench) -> None:
+    sim = bench.sim(bench.world(**hall()))
+    first, second = (bench.path / f"ttyUSB{number}" for number in (0, 1))
+    tap = bench.tap()
+    first.symlink_to(tap.address)
+    argusd = bench.argusd(link=f"serial:{first}@{BAUD}", active=False)
+    argusd.wait("SESSION_OPEN")
+    first.unlink()
+    bench.taps.remove(tap)
+    tap.close()
+    lost = argusd.wait("LINK_LOST")
+    tap = bench.tap()
+    second.symlink_to(tap.address)
+    time.sleep(6.0)
+    (line,) = told(argusd, "no such file")
+    assert str(first) in line
+    assert str(second) in line
+    assert "by-id" in line
+    second.rename(first)
+    argusd.wait("SESSION_OPEN", after_t=lost["t"])
+    assert len(told(argusd, "open again")) == 1
+    assert not argusd.named("OTHER_ROBOT")
+    argusd.signal(signal.SIGTERM)
+    assert argusd.wait_exit() == 0
+    sim.assert_no_collision()
