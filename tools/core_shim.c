@@ -21,6 +21,8 @@ const char *argus_shim_sonar_field(uint32_t field);
 void argus_shim_status(const argus_t *core, int64_t *fields, int64_t *sonars);
 size_t argus_shim_brief_size(void);
 void argus_shim_brief(const argus_t *core, uint8_t *bytes);
+size_t argus_shim_replay(argus_t *core, const uint32_t *t_ms, const uint16_t *length, size_t packets,
+                         const uint8_t *bytes, uint32_t *changes, size_t capacity);
 
 size_t argus_shim_core_size(void) {
     return sizeof(argus_storage_t);
@@ -182,4 +184,65 @@ void argus_shim_brief(const argus_t *core, uint8_t *bytes) {
         bytes[BRIEF_HEAD + k] = (uint8_t)core->knowledge.sonar[k].health;
         bytes[BRIEF_HEAD + ARGUS_SONARS + k] = (uint8_t)core->knowledge.sonar[k].kind;
     }
+}
+
+// A whole recording at once, for who judges many: the packets of a robot, `length[i]` of `bytes` each at
+// t_ms[i] (rising), into a manager that was just made at 0 ms. What it says and sends is thrown away.
+// `changes` gets four values for each change of a sonar, as far as there is room: ms, sonar, health, kind.
+// Returns how many there were.
+
+typedef struct {
+    argus_t *core;
+    uint32_t *changes;
+    size_t capacity;
+    size_t count;
+    uint8_t health[ARGUS_SONARS];
+    uint8_t kind[ARGUS_SONARS];
+} replay_t;
+
+static void note_changes(replay_t *const self, const uint32_t now_ms) {
+    for (size_t k = 0; k < ARGUS_SONARS; k++) {
+        const argus_sonar_t *const sonar = &self->core->knowledge.sonar[k];
+        if (self->health[k] == (uint8_t)sonar->health && self->kind[k] == (uint8_t)sonar->kind) {
+            continue;
+        }
+        self->health[k] = (uint8_t)sonar->health;
+        self->kind[k] = (uint8_t)sonar->kind;
+        if (self->count < self->capacity) {
+            uint32_t *const row = &self->changes[4 * self->count];
+            row[0] = now_ms;
+            row[1] = (uint32_t)k;
+            row[2] = self->health[k];
+            row[3] = self->kind[k];
+        }
+        self->count++;
+    }
+}
+
+static uint32_t serve(replay_t *const self, const uint32_t now_ms) {
+    uint8_t packet[UINT8_MAX];
+    argus_event_t event;
+    const uint32_t wait_ms = argus_process(self->core, now_ms);
+    while (argus_transmit(self->core, packet, sizeof packet) > 0) {
+    }
+    while (argus_next_event(self->core, &event)) {
+    }
+    note_changes(self, now_ms);
+    return now_ms + (wait_ms > 0 ? wait_ms : 1);
+}
+
+size_t argus_shim_replay(argus_t *core, const uint32_t *t_ms, const uint16_t *length, size_t packets,
+                         const uint8_t *bytes, uint32_t *changes, size_t capacity) {
+    replay_t self = {.core = core, .changes = changes, .capacity = capacity};
+    argus_link_up(core, 0);
+    uint32_t due_ms = serve(&self, 0);
+    for (size_t i = 0; i < packets; i++) {
+        while (due_ms < t_ms[i]) {
+            due_ms = serve(&self, due_ms);
+        }
+        argus_receive(core, t_ms[i], bytes, length[i]);
+        bytes += length[i];
+        due_ms = serve(&self, t_ms[i]);
+    }
+    return self.count;
 }

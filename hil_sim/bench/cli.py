@@ -7,30 +7,29 @@ import argparse
 import hashlib
 import json
 import os
-import re
 import shutil
 import signal
 import sys
 import tempfile
-import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Final, NoReturn, TextIO
+from typing import Any, Final, NoReturn
 
 from argus_tools.core import LIBRARY_VARIABLE, library
 from argus_tools.formats.base import LogError
 
-from hil_sim.bench import plan, pool, quick
+from hil_sim.bench import cli_passive, plan, pool, quick
+from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_USAGE, Parser, jobs, kinds, say, seeds
 from hil_sim.bench.figures import summarise
 from hil_sim.bench.judge import RECORD_FORMAT
+from hil_sim.bench.progress import Progress
 from hil_sim.bench.show import timeline
 from hil_sim.bench.store import RESULTS, Store
 from hil_sim.bench.work import run_case, world_files
 from hil_sim.errors import SimError
 
 PROG: Final = "argus-sim bench diagnosis"
-EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
 _PROFILES: Final = "paper,argus"
 _WHAT: Final = ("worlds", "seeds", "profiles", "kinds", "every", "sensitivity", "split")
 """What --one and --quick leave no choice of."""
@@ -53,39 +52,13 @@ exit codes: 0 all missions ran (and with --quick, all is within the bounds),
 """
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        self.exit(EXIT_USAGE, f"{self.prog}: {message}; see {self.prog} --help\n")
-
-
-def _seeds(text: str) -> range:
-    match = re.fullmatch(r"(\d{1,15})(?:-(\d{1,15}))?", text)
-    if not match or int(match[2] or match[1]) < int(match[1]):
-        raise argparse.ArgumentTypeError(f"'{text}' is no range of seeds; write 1-20 or 7")
-    return range(int(match[1]), int(match[2] or match[1]) + 1)
-
-
 def _profiles(text: str) -> list[str]:
     return [part for part in text.split(",") if part]
 
 
-def _kinds(text: str) -> list[str]:
-    kinds = [part for part in text.split(",") if part]
-    for kind in kinds:
-        if kind not in plan.KINDS:
-            raise argparse.ArgumentTypeError(f"'{kind}' is no kind; there are {', '.join(plan.KINDS)}")
-    return kinds
-
-
-def _jobs(text: str) -> int:
-    if not text.isdigit() or not 1 <= int(text) <= 4096:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number of processes from 1 to 4096")
-    return int(text)
-
-
 def parser() -> argparse.ArgumentParser:
     """Return the argument parser of the bench."""
-    result = _Parser(
+    result = Parser(
         prog=PROG,
         description="Run seeded missions with and without sonar faults and judge what the fault manager makes of them.",
         epilog=_EXAMPLES,
@@ -99,14 +72,14 @@ def parser() -> argparse.ArgumentParser:
         metavar="GLOB",
         help="names of our worlds or of generated ones, or .map and .yaml files (default: office,lab,gen-*)",
     )
-    what.add_argument("--seeds", type=_seeds, metavar="A-B", help="seeds (default 1-10)")
+    what.add_argument("--seeds", type=seeds, metavar="A-B", help="seeds (default 1-10)")
     what.add_argument(
         "--profiles",
         type=_profiles,
         metavar="P,P",
         help=f"profiles, each with settings if wanted: argus:step_mm=100 (default {_PROFILES})",
     )
-    what.add_argument("--kinds", type=_kinds, metavar="K,K", help=f"of {','.join(plan.KINDS)} (default: all)")
+    what.add_argument("--kinds", type=kinds, metavar="K,K", help=f"of {','.join(plan.KINDS)} (default: all)")
     what.add_argument(
         "--every", action="store_true", help="every severity of a kind for each seed, not the next one"
     )
@@ -123,7 +96,7 @@ def parser() -> argparse.ArgumentParser:
     )
     how = result.add_argument_group("how")
     how.add_argument(
-        "--jobs", type=_jobs, default=os.cpu_count() or 1, metavar="N", help="processes (default: cores)"
+        "--jobs", type=jobs, default=os.cpu_count() or 1, metavar="N", help="processes (default: cores)"
     )
     how.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers run the missions")
     how.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: bench-diagnosis)")
@@ -131,53 +104,6 @@ def parser() -> argparse.ArgumentParser:
     how.add_argument("--fresh", action="store_true", help="replace what is in --out")
     how.add_argument("--no-plots", action="store_true", help="write no pictures")
     return result
-
-
-class Progress:
-    """Tells on standard error how far it is: a line that is rewritten on a terminal, one each 10 s elsewhere."""
-
-    def __init__(self, total: int, before: int, stream: TextIO) -> None:
-        self.total, self.before, self.done = total, before, 0
-        self.simulated_s = 0.0
-        self.errors = 0
-        self._stream = stream
-        self._live = stream.isatty() and os.environ.get("TERM") != "dumb"
-        self._begin = time.monotonic()
-        self._said = self._begin - (0 if not self._live else 10)
-
-    def add(self, record: dict[str, Any]) -> None:
-        """Count a mission."""
-        self.done += 1
-        self.errors += record["error"] is not None
-        self.simulated_s += record.get("t_s") or 0.0
-        now = time.monotonic()
-        if now - self._said >= (0.2 if self._live else 10.0):
-            self._said = now
-            self._say(now)
-
-    def _say(self, now: float) -> None:
-        took = max(now - self._begin, 1e-3)
-        left = (self.total - self.before - self.done) * took / max(self.done, 1)
-        text = (
-            f"{self.before + self.done}/{self.total} missions, {self.simulated_s / took:.0f} x real time, "
-            f"{left:.0f} s left" + (f", {self.errors} failed" if self.errors else "")
-        )
-        print(
-            f"\r\033[K{text}" if self._live else text,
-            end="" if self._live else "\n",
-            file=self._stream,
-            flush=True,
-        )
-
-    def close(self) -> None:
-        """Say the last figure."""
-        self._say(time.monotonic())
-        if self._live:
-            print(file=self._stream, flush=True)
-
-
-def _say(text: str) -> None:
-    print(f"argus-sim: {text}", file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -249,7 +175,7 @@ def _run(arguments: argparse.Namespace, cases: Sequence[plan.Case], out: Path) -
         meta = {"core": digest, "format": RECORD_FORMAT, "split": cases[0].split, "missions": len(cases)}
         with Store(out, meta, resume=arguments.resume, fresh=arguments.fresh) as store:
             if not run_cases(cases, store, arguments, digest):
-                _say(
+                say(
                     f"interrupted; {len(store.records)} missions are in {out / RESULTS}, the same with --resume goes on"
                 )
                 return None
@@ -274,18 +200,18 @@ def _quick(arguments: argparse.Namespace) -> int:
     code = _failures(records)
     broken = quick.broken(summarise(records), bounds)
     for line in broken:
-        _say(line)
+        say(line)
     if broken:
-        _say(f"{len(broken)} of the bounds in {quick.BOUNDS.name} broken")
+        say(f"{len(broken)} of the bounds in {quick.BOUNDS.name} broken")
     return EXIT_FAILED if broken else code
 
 
 def _failures(records: Sequence[dict[str, Any]]) -> int:
     failed = [record for record in records if record["error"] is not None]
     for record in failed[:5]:
-        _say(f"{record['id']}: {record['error']}")
+        say(f"{record['id']}: {record['error']}")
     if failed:
-        _say(f"{len(failed)} missions failed; --one ID shows one, --resume runs them again")
+        say(f"{len(failed)} missions failed; --one ID shows one, --resume runs them again")
     return EXIT_FAILED if failed else 0
 
 
@@ -310,27 +236,31 @@ def _check(options: argparse.ArgumentParser, arguments: argparse.Namespace) -> N
 
 def main(argv: Sequence[str]) -> int:
     """Run `argus-sim bench ARGV`; return the exit code."""
-    names = ("diagnosis",)
+    names = {"diagnosis": _diagnosis, "drive-by": cli_passive.drive_by, "ablate": cli_passive.ablate}
     if not argv or argv[0] not in names:
         if argv and argv[0] in ("-h", "--help"):
             print(f"usage: argus-sim bench {{{','.join(names)}}} ...; see {PROG} --help")
             return 0
-        _say(f"bench: name one of {', '.join(names)}; see {PROG} --help")
+        say(f"bench: name one of {', '.join(names)}; see {PROG} --help")
         return EXIT_USAGE
-    options = parser()
-    arguments = options.parse_args(argv[1:])
-    _check(options, arguments)
     try:
-        if arguments.one:
-            return _one(arguments.one)
-        return _quick(arguments) if arguments.quick else _bench(arguments)
+        return names[argv[0]](argv[1:])
     except SimError as error:
-        _say(str(error))
+        say(str(error))
         return error.exit_code
     except LogError as error:
-        _say(str(error))
+        say(str(error))
         return EXIT_USAGE
     except BrokenPipeError:
         # Nobody reads our output; the interpreter would complain once more while it closes it.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+
+
+def _diagnosis(argv: Sequence[str]) -> int:
+    options = parser()
+    arguments = options.parse_args(argv)
+    _check(options, arguments)
+    if arguments.one:
+        return _one(arguments.one)
+    return _quick(arguments) if arguments.quick else _bench(arguments)

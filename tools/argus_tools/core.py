@@ -71,6 +71,18 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_record_load": (ctypes.c_bool, (ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t)),
     "argus_shim_brief_size": (ctypes.c_size_t, ()),
     "argus_shim_brief": (None, (ctypes.c_void_p, ctypes.c_char_p)),
+    "argus_shim_replay": (
+        ctypes.c_size_t,
+        (
+            ctypes.c_void_p,
+            ctypes.c_char_p,
+            ctypes.c_char_p,
+            ctypes.c_size_t,
+            ctypes.c_char_p,
+            ctypes.POINTER(ctypes.c_uint32),
+            ctypes.c_size_t,
+        ),
+    ),
     "argus_shim_sonar_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
     "argus_shim_status": (
         None,
@@ -87,6 +99,11 @@ def _load() -> ctypes.CDLL:
         raise LogError(f"{LIBRARY_VARIABLE}={given} does not exist: unset it, or set it to a libargus.so")
     if path is None:
         path = build()
+    return load_library(path)
+
+
+def load_library(path: Path) -> ctypes.CDLL:
+    """Return the libargus.so of a path; LogError when it is none of this version."""
     try:
         library = ctypes.CDLL(str(path))
         for name, (result, arguments) in _FUNCTIONS.items():

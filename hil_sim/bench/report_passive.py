@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""The figures of drive-bys: found in time and ever, by kind, and what was said wrongly in an hour of driving."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from hil_sim.bench.judge import BOUND_S
+from hil_sim.bench.passive import Finding, Verdict
+from hil_sim.bench.stats import count_bound_high, quantile, share_interval
+
+_TAIL = 0.975
+
+
+def _share(hits: int, total: int) -> dict[str, Any]:
+    low, high = share_interval(hits, total)
+    return {"hits": hits, "of": total, "share": hits / total if total else None, "low": low, "high": high}
+
+
+def _rate(count: int, hours: float) -> dict[str, Any]:
+    """A count in some hours, and the exact 95 % interval of its rate."""
+    low, high = _count_low(count), count_bound_high(count, _TAIL)
+    if not hours:
+        return {"count": count, "hours": hours, "rate": None, "low": None, "high": None}
+    return {"count": count, "hours": hours, "rate": count / hours, "low": low / hours, "high": high / hours}
+
+
+def _count_low(count: int) -> float:
+    """The lower bound of the mean of a Poisson count: where one less is as likely exceeded as the tail."""
+    return count_bound_high(count - 1, 1 - _TAIL) if count else 0.0
+
+
+def _found(findings: Sequence[Finding]) -> dict[str, Any]:
+    seconds = [f.latency_s for f in findings if f.latency_s is not None]
+    return {
+        "in_time": _share(sum(f.in_time for f in findings), len(findings)),
+        "ever": _share(len(seconds), len(findings)),
+        "named_right": _share(sum(f.named_right for f in findings), len(seconds)),
+        "median_s": quantile(seconds, 0.5),
+        "p99_s": quantile(seconds, 0.99),
+    }
+
+
+def _false(verdicts: Sequence[Verdict]) -> dict[str, Any]:
+    hours = sum(verdict.hours for verdict in verdicts)
+    return {
+        "names": _rate(sum(len(verdict.names) for verdict in verdicts), hours),
+        "disables": _rate(sum(len(verdict.disables) for verdict in verdicts), hours),
+    }
+
+
+def summarise(verdicts: Sequence[Verdict]) -> dict[str, Any]:
+    """Return the figures of some verdicts, as they go into JSON."""
+    return {
+        "streams": len(verdicts),
+        "found": {name: _found(group) for name, group in _groups(verdicts).items() if group},
+        "false": {
+            "nobody about": _false([verdict for verdict in verdicts if not verdict.people]),
+            "people": _false([verdict for verdict in verdicts if verdict.people]),
+        },
+    }
+
+
+def _groups(verdicts: Sequence[Verdict]) -> dict[str, list[Finding]]:
+    findings = [finding for verdict in verdicts for finding in verdict.findings]
+    groups = {"all": findings, "rooms": [f for f in findings if f.place == "room"]}
+    return groups | {kind: [f for f in findings if f.kind == kind] for kind in BOUND_S}
+
+
+def _percent(share: dict[str, Any]) -> str:
+    if not share["of"]:
+        return "-"
+    return f"{100 * share['share']:.1f} ({100 * share['low']:.1f} to {100 * share['high']:.1f})"
+
+
+def _seconds(value: float | None) -> str:
+    return "-" if value is None else f"{value:.1f}"
+
+
+def _per_hour(rate: dict[str, Any]) -> str:
+    if rate["rate"] is None:
+        return "-"
+    return f"{rate['rate']:.2f} ({rate['low']:.2f} to {rate['high']:.2f})"
+
+
+def table(figures: dict[str, Any]) -> str:
+    """Return the figures as two tables; intervals are of 95 %."""
+    lines = [
+        "| faults | n | in time, % | ever, % | named right, % | median / p99, s |",
+        "|---|---|---|---|---|---|",
+    ]
+    for name, row in figures["found"].items():
+        lines.append(
+            f"| {name} | {row['in_time']['of']} | {_percent(row['in_time'])} | {_percent(row['ever'])} "
+            f"| {_percent(row['named_right'])} | {_seconds(row['median_s'])} / {_seconds(row['p99_s'])} |"
+        )
+    lines += ["", "| an hour of driving | h | false names | false disables |", "|---|---|---|---|"]
+    for name, row in figures["false"].items():
+        lines.append(
+            f"| {name} | {row['names']['hours']:.2f} | {_per_hour(row['names'])} | {_per_hour(row['disables'])} |"
+        )
+    return "\n".join(lines) + "\n"
