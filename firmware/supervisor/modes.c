@@ -356,7 +356,7 @@ static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *
 }
 
 static argus_intent_t perform_judgement(argus_t *const self, const argus_intent_t *const intent) {
-    ARGUS_ASSERT(intent->act >= ARGUS_DO_CHECK_BESIDE && intent->act <= ARGUS_DO_REACH);
+    ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     switch ((argus_act_t)intent->act) {
     case ARGUS_DO_CHECK_BESIDE:
         return argus_check_beside(self);
