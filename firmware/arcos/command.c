@@ -6,6 +6,9 @@
 
 #define ARGUMENT_MAX 32767
 #define STRING_MAX 190
+#define STRING_HEAD 3 // command, type, length
+#define PLAIN_TOTAL (ARCOS_FRAME_OVERHEAD + 1 + 2)
+#define INT_TOTAL (ARCOS_FRAME_OVERHEAD + 4 + 2)
 #define COMMAND_OFFSET ARCOS_FRAME_OVERHEAD
 
 size_t argus_command_plain(uint8_t *packet, size_t capacity, uint8_t command) {
@@ -28,15 +31,17 @@ size_t argus_command_int(uint8_t *packet, size_t capacity, uint8_t command, int3
 
 size_t argus_command_string(uint8_t *packet, size_t capacity, uint8_t command, const uint8_t *text,
                             size_t count) {
-    uint8_t data[3 + STRING_MAX] = {command, ARCOS_ARG_STRING};
-    if (count > STRING_MAX) {
+    if (count > STRING_MAX || capacity < ARCOS_FRAME_OVERHEAD + STRING_HEAD + count) {
         return 0;
     }
+    uint8_t *const data = packet + ARCOS_FRAME_OVERHEAD;
+    data[0] = command;
+    data[1] = ARCOS_ARG_STRING;
     data[2] = (uint8_t)count;
     if (count > 0) {
-        memcpy(data + 3, text, count);
+        memcpy(data + STRING_HEAD, text, count);
     }
-    return argus_frame_encode(packet, capacity, data, 3 + count);
+    return argus_frame_seal(packet, capacity, STRING_HEAD + count);
 }
 
 void argus_outbox_init(argus_outbox_t *self) {
@@ -77,12 +82,12 @@ static bool put(argus_outbox_t *self, const uint8_t *packet, size_t total) {
 }
 
 bool argus_outbox_plain(argus_outbox_t *self, uint8_t command) {
-    uint8_t packet[ARCOS_FRAME_SEND_TOTAL_MAX];
+    uint8_t packet[PLAIN_TOTAL];
     return put(self, packet, argus_command_plain(packet, sizeof packet, command));
 }
 
 bool argus_outbox_int(argus_outbox_t *self, uint8_t command, int32_t argument) {
-    uint8_t packet[ARCOS_FRAME_SEND_TOTAL_MAX];
+    uint8_t packet[INT_TOTAL];
     return put(self, packet, argus_command_int(packet, sizeof packet, command, argument));
 }
 

@@ -31,20 +31,32 @@ uint16_t argus_frame_checksum(const uint8_t *data, size_t count) {
     return (uint16_t)sum;
 }
 
-size_t argus_frame_encode(uint8_t *packet, size_t capacity, const uint8_t *data, size_t count) {
+static bool fits(size_t capacity, size_t count) {
     const size_t total = HEADER_BYTES + count + CHECKSUM_BYTES;
-    if (count == 0 || count > ARCOS_FRAME_SEND_TOTAL_MAX || total > ARCOS_FRAME_SEND_TOTAL_MAX ||
-        total > capacity) {
+    return count > 0 && count <= ARCOS_FRAME_SEND_TOTAL_MAX && total <= ARCOS_FRAME_SEND_TOTAL_MAX &&
+           total <= capacity;
+}
+
+size_t argus_frame_seal(uint8_t *packet, size_t capacity, size_t count) {
+    if (!fits(capacity, count)) {
         return 0;
     }
-    const uint16_t checksum = argus_frame_checksum(data, count);
+    const size_t total = HEADER_BYTES + count + CHECKSUM_BYTES;
+    const uint16_t checksum = argus_frame_checksum(packet + HEADER_BYTES, count);
     packet[0] = ARCOS_FRAME_HEADER0;
     packet[1] = ARCOS_FRAME_HEADER1;
     packet[2] = (uint8_t)(count + CHECKSUM_BYTES);
-    memcpy(packet + HEADER_BYTES, data, count);
     packet[total - 2] = (uint8_t)(checksum >> 8);
     packet[total - 1] = (uint8_t)(checksum & 0xFF);
     return total;
+}
+
+size_t argus_frame_encode(uint8_t *packet, size_t capacity, const uint8_t *data, size_t count) {
+    if (!fits(capacity, count)) {
+        return 0;
+    }
+    memcpy(packet + HEADER_BYTES, data, count);
+    return argus_frame_seal(packet, capacity, count);
 }
 
 void argus_parser_init(argus_parser_t *self) {

@@ -19,6 +19,10 @@ uint16_t argus_frame_checksum(const uint8_t *data, size_t count);
 // or would be longer than ARCOS_FRAME_SEND_TOTAL_MAX.
 size_t argus_frame_encode(uint8_t *packet, size_t capacity, const uint8_t *data, size_t count);
 
+// The same for data that stand in the packet already, from ARCOS_FRAME_OVERHEAD on: no copy of them on the
+// stack.
+size_t argus_frame_seal(uint8_t *packet, size_t capacity, size_t count);
+
 // A received packet: its data bytes (type first), valid until the next call on the parser.
 typedef struct {
     const uint8_t *data;
