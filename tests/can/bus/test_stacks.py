@@ -14,6 +14,7 @@ from hil_sim.links.can import PACKET_MAX, CanLink
 from hil_sim.links.can_spec import TO_HOST_ID, TO_ROBOT_ID, parse_spec
 
 SIZES = (6, 7, 8, 13, 14, 20, 55, 62, 63, 64, 89, 200, PACKET_MAX)
+LAST = bytes.fromhex("FAFB03010001")  # like none of the packets before it: to wait for it is to wait for all
 PAIRS = tuple(itertools.product(("kernel", "user"), repeat=2))
 
 
@@ -79,9 +80,9 @@ def test_a_stack_takes_what_the_other_calls_wrong() -> None:
                 for data in frames:
                     raw.send(TO_ROBOT_ID, data)
                 time.sleep(0.01)  # a socket holds some 300 frames, and drops the rest
-            raw.send(TO_ROBOT_ID, b"\x06" + packet(6))
+            raw.send(TO_ROBOT_ID, bytes((len(LAST),)) + LAST)
             for end in ends.values():
-                end.wait_packet(packet(6))
+                end.wait_packet(LAST)
         finally:
             raw.close()
             for end in ends.values():
