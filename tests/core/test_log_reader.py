@@ -65,7 +65,7 @@ def _compiled() -> ctypes.CDLL:
     firmware = ROOT / "firmware"
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder, "frame.so")
-        command = [
+        command: list[str | Path] = [
             "gcc",
             "-std=c11",
             "-O2",
