@@ -244,10 +244,6 @@ bool argus_evidence_has_pairs(const argus_evidence_t *const self) {
     return self->agreements != 0;
 }
 
-bool argus_evidence_repeats(const argus_evidence_t *const self, const int sonar) {
-    return self->of[sonar].score[ARGUS_TEST_STUCK] > 0;
-}
-
 bool argus_evidence_shows_gaps(const argus_evidence_t *const self, const int sonar) {
     return self->of[sonar].score[ARGUS_TEST_DROPOUT] > 0;
 }

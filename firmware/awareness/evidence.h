@@ -204,10 +204,21 @@ bool argus_evidence_is_unsteady(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *self, int sonar);
 
+// What a suspect that carries `present` (NONE: no name) is named now: as above, and INTERMITTENT who was
+// taken for OFF and hears again, since then, what another hears. That it was given a name.
+argus_fault_kind_t argus_evidence_renames(const argus_evidence_t *self, int sonar,
+                                          argus_fault_kind_t present);
+void argus_evidence_note_name(argus_evidence_t *self, int sonar, argus_fault_kind_t kind);
+
 // What keeps a sonar out, and the kind that ends its probation: as suspects and names, without what the peers
 // alone say.
 bool argus_evidence_keeps_out(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_relapses(const argus_evidence_t *self, int sonar);
+
+// Whether the kind `found` is to replace the kind that a sonar carries: a name that says more, or one whose
+// ground is gone.
+bool argus_evidence_replaces(const argus_evidence_t *self, int sonar, argus_fault_kind_t present,
+                             argus_fault_kind_t found);
 
 // Sonars of 1..6 that hear nothing and have proved alive last long ago.
 argus_mask_t argus_evidence_unseen(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
@@ -248,9 +259,6 @@ void argus_evidence_agree_anew(argus_evidence_t *self, int sonar);
 
 // Any two have ever borne each other out.
 bool argus_evidence_has_pairs(const argus_evidence_t *self);
-
-// It gave the same value again though the robot moved.
-bool argus_evidence_repeats(const argus_evidence_t *self, int sonar);
 
 // It loses echoes between echoes of one thing.
 bool argus_evidence_shows_gaps(const argus_evidence_t *self, int sonar);

@@ -26,11 +26,12 @@ static argus_intent_t convict(argus_t *const self, const int sonar, const argus_
 static void name(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
+    const argus_fault_kind_t kind = argus_evidence_renames(&self->evidence, sonar, s->kind);
     if (kind != ARGUS_KIND_NONE) {
         argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
     }
-    if (s->health == ARGUS_SUSPECT && kind != ARGUS_KIND_NONE && kind != s->kind) {
+    if (s->health == ARGUS_SUSPECT && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
+        argus_evidence_note_name(&self->evidence, sonar, kind);
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
     }
     const bool held =
@@ -73,11 +74,8 @@ static uint8_t agreements_wanted(const argus_sonar_t *const s) {
 // What repeated one value, and shows another one now, was not stuck: a name is enough to say what it is. Half
 // the truth, where nothing is in range, is the same value each time.
 static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar) {
-    const bool stuck = self->knowledge.sonar[sonar].kind == ARGUS_KIND_STUCK;
-    if (stuck && argus_evidence_repeats(&self->evidence, sonar)) {
-        return ARGUS_KIND_NONE;
-    }
     const argus_fault_kind_t convicted = argus_evidence_convicts(&self->evidence, sonar);
+    const bool stuck = self->knowledge.sonar[sonar].kind == ARGUS_KIND_STUCK;
     return convicted == ARGUS_KIND_NONE && stuck ? argus_evidence_names(&self->evidence, sonar) : convicted;
 }
 
@@ -91,7 +89,7 @@ static void judge_out(argus_t *const self, const int sonar) {
     const argus_fault_kind_t kind = kind_of_out(self, sonar);
     const argus_fault_kind_t named = argus_evidence_relapses(&self->evidence, sonar);
     const bool suspected = argus_evidence_keeps_out(&self->evidence, sonar);
-    if (s->health == ARGUS_DISABLED && kind != ARGUS_KIND_NONE && kind != s->kind) {
+    if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
     }
     if (suspected) {

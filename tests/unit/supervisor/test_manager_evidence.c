@@ -709,6 +709,33 @@ void test_what_is_named_is_a_suspect_at_once(void) {
     }
 }
 
+// Who was called off and is heard again is told to have gaps, and what it heard before it was called so does
+// not count.
+void test_off_that_is_heard_again_is_renamed(void) {
+    start_in_a_room();
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+    robot_run(&robot, 2000);
+    argus_sonar_t *const s = &robot.argus.knowledge.sonar[3];
+    argus_case_t *const c = &robot.argus.evidence.of[3];
+    argus_peer_t *const peer = &robot.argus.evidence.peers.of[3];
+    c->score[ARGUS_TEST_OFF] = (int16_t)(argus_bounds[ARGUS_TEST_OFF].naming + 50);
+    c->none_run = 5;
+    c->misses = 1;
+    peer->borne_out = true;
+    c->score[ARGUS_TEST_PEERS] = 300;
+    peer->hollow = 0x0F;
+    argus_judge_all(&robot.argus);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, s->kind);
+    TEST_ASSERT_FALSE(peer->borne_out);
+    c->none_run = 0;
+    argus_judge_all(&robot.argus);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, s->kind);
+    peer->borne_out = true;
+    argus_judge_all(&robot.argus);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, s->kind);
+    finish();
+}
+
 // Plans that change begin the round of POLLING anew, and 0 and 7 come late in it: what is silent since the
 // last order is silent.
 void test_who_is_passed_over_by_new_orders_is_not_silent(void) {
