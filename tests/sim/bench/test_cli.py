@@ -16,6 +16,7 @@ import pytest
 from argus_tools.core import LIBRARY_VARIABLE
 
 from hil_sim.bench import cli
+from hil_sim.bench.arguments import EXIT_INTERRUPTED
 from hil_sim.bench.store import META, RESULTS
 from hil_sim.cli.main import main
 
@@ -134,7 +135,7 @@ def test_an_interrupt_keeps_what_is_done_and_ends_with_130(tmp_path: Path, jobs:
             time.sleep(0.05)
         process.send_signal(number)
         out, err = process.communicate(timeout=600)
-    assert process.returncode == cli.EXIT_INTERRUPTED, err
+    assert process.returncode == EXIT_INTERRUPTED, err
     assert out == ""
     assert "--resume goes on" in err
     assert "Traceback" not in err

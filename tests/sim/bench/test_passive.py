@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from argus_tools.core import library
+from argus_tools.core_build import sources
 from argus_tools.core_replay import Change, Engine
 
 from hil_sim.bench import ablate, cli_passive, passive, variants
@@ -103,7 +104,7 @@ def test_what_is_found_and_what_is_false(stream: Stream) -> None:
 
 
 def test_every_rule_and_constant_has_its_place() -> None:
-    folder = variants.sources() / variants.AWARENESS
+    folder = sources() / variants.AWARENESS
     every = {**variants.rules(), **variants.constants()}
     assert len(every) > 50
     for variant in every.values():
