@@ -40,7 +40,7 @@
 // ARGUS_ASSERT.
 //
 // COST. No call runs longer than one pass over the bytes given and, for each SIP in them, the diagnosis of
-// that SIP; none waits. Figures for one machine: docs/performance.md.
+// that SIP; none waits. Figures: tools/dev bench parse reaction.
 #ifndef ARGUS_ARGUS_H
 #define ARGUS_ARGUS_H
 
