@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "echo.h"
 #include "health.h"
 #include "unity.h"
 
@@ -18,37 +19,23 @@ void setUp(void) {
     k.sip_ms = 100000;
 }
 
-static void see(int sonar, int mm) {
-    k.sonar[sonar].reported = true;
-    k.sonar[sonar].reading_mm = (uint16_t)mm;
-    k.fresh = (uint16_t)(1u << sonar);
-    argus_echoes_see(&e, &k, k.sip_ms);
-}
-
-static void place(int x, int y) {
-    e.at[e.count].x_mm = (int16_t)x;
-    e.at[e.count].y_mm = (int16_t)y;
-    e.at[e.count].seen_ms = k.sip_ms;
-    e.count++;
-}
-
 void test_echoes_are_remembered_where_they_lie(void) {
     k.pose.heading_cdeg = 9000;
-    see(3, 1000); // mounted at +10 degrees
+    see_echo(&e, &k, 3, 1000); // mounted at +10 degrees
     TEST_ASSERT_EQUAL(1, e.count);
     TEST_ASSERT_INT32_WITHIN(5, -200, e.at[0].x_mm);
     TEST_ASSERT_INT32_WITHIN(5, 1151, e.at[0].y_mm);
 }
 
 void test_what_is_not_remembered(void) {
-    see(3, 2000);
-    see(3, 5000);
+    see_echo(&e, &k, 3, 2000);
+    see_echo(&e, &k, 3, 5000);
     put_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
-    see(4, 500);
+    see_echo(&e, &k, 4, 500);
     put_health(&k.sonar[5], ARGUS_SUSPECT, ARGUS_KIND_NONE, 0);
-    see(5, 500);
+    see_echo(&e, &k, 5, 500);
     k.rotating = true;
-    see(2, 500);
+    see_echo(&e, &k, 2, 500);
     TEST_ASSERT_EQUAL(0, e.count);
 }
 
@@ -64,10 +51,10 @@ void test_near_is_what_was_seen_again(void) {
               {0, 352, 320, false}, {15, 200, 320, false}, {1, 150, 320, true},   {0, 120, 320, true}};
     for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
         setUp();
-        see(0, 200);
+        see_echo(&e, &k, 0, 200);
         TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_nearest_mm(&e, &k, 0));
         k.sip_ms += by[i].later_ms;
-        see(by[i].second, by[i].second_mm);
+        see_echo(&e, &k, by[i].second, by[i].second_mm);
         snprintf(text, sizeof text, "case %d", i);
         TEST_ASSERT_EQUAL_MESSAGE(by[i].again, argus_echoes_nearest_mm(&e, &k, 0) < INT32_MAX, text);
     }
@@ -81,12 +68,12 @@ void test_near_is_what_was_seen_again(void) {
 void test_what_was_seen_twice_once_more_is_seen_again(void) {
     for (int late = 0; late < 2; late++) {
         setUp();
-        see(0, 200);
+        see_echo(&e, &k, 0, 200);
         k.sip_ms += 320;
-        see(0, 200);
+        see_echo(&e, &k, 0, 200);
         k.sip_ms += 60000u + (uint32_t)late;
         TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_nearest_mm(&e, &k, 0));
-        see(0, 210);
+        see_echo(&e, &k, 0, 210);
         TEST_ASSERT_EQUAL(!late, argus_echoes_nearest_mm(&e, &k, 0) < INT32_MAX);
     }
 }
@@ -102,7 +89,7 @@ void test_one_thing_is_at_most_150_mm_apart_each_way(void) {
 
 // A turn asks whether an echo is the second one of something near: at (69, 336), 343 mm from the centre.
 void test_what_a_turn_is_told_of_a_second_echo(void) {
-    see(0, 200);
+    see_echo(&e, &k, 0, 200);
     const argus_point_t there = argus_to_course(&k.pose, argus_echo_robot(&k, 0));
     const argus_point_t aside = {there.x_mm + 150, there.y_mm};
     const argus_point_t beyond = {there.x_mm + 151, there.y_mm};
@@ -115,9 +102,9 @@ void test_what_a_turn_is_told_of_a_second_echo(void) {
 }
 
 void test_a_convicted_sonars_echoes_are_forgotten(void) {
-    see(3, 500);
-    see(6, 900);
-    see(2, 1300);
+    see_echo(&e, &k, 3, 500);
+    see_echo(&e, &k, 6, 900);
+    see_echo(&e, &k, 2, 1300);
     argus_echoes_forget(&e, 6);
     TEST_ASSERT_EQUAL(2, e.count);
     for (int i = 0; i < e.count; i++) {
@@ -128,7 +115,7 @@ void test_a_convicted_sonars_echoes_are_forgotten(void) {
 void test_memory_is_bounded_and_drops_the_oldest(void) {
     for (int i = 0; i < 2 * ARGUS_POINTS_MAX; i++) {
         k.pose.x_mm = i * 100;
-        see(3, 500);
+        see_echo(&e, &k, 3, 500);
         TEST_ASSERT_TRUE(e.count < ARGUS_POINTS_MAX + 1);
         TEST_ASSERT_TRUE(e.next < ARGUS_POINTS_MAX);
     }
@@ -141,11 +128,11 @@ void test_memory_is_bounded_and_drops_the_oldest(void) {
 
 void test_free_length_of_a_corridor(void) {
     TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_clear_mm(&e, &k, 0, 305));
-    place(1000, 100);
+    place_echo(&e, &k, 1000, 100);
     TEST_ASSERT_INT32_WITHIN(2, 1000, argus_echoes_clear_mm(&e, &k, 0, 305));
     TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_clear_mm(&e, &k, 9000, 305));
     TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_clear_mm(&e, &k, 18000, 305));
-    place(700, -500); // beside the corridor
+    place_echo(&e, &k, 700, -500); // beside the corridor
     TEST_ASSERT_INT32_WITHIN(2, 1000, argus_echoes_clear_mm(&e, &k, 0, 305));
     k.sip_ms += 60001; // long ago
     TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_clear_mm(&e, &k, 0, 305));

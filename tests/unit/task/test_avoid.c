@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "echo.h"
 #include "health.h"
 #include "knowledge/angle.h"
 #include "unity.h"
@@ -23,20 +24,6 @@ void setUp(void) {
     TEST_ASSERT_TRUE(argus_task_set(&t, &goal, 1));
 }
 
-static void see(int sonar, int mm) {
-    k.sonar[sonar].reported = true;
-    k.sonar[sonar].reading_mm = (uint16_t)mm;
-    k.fresh = (uint16_t)(1u << sonar);
-    argus_echoes_see(&e, &k, k.sip_ms);
-}
-
-static void place(int x, int y) {
-    e.at[e.count].x_mm = (int16_t)x;
-    e.at[e.count].y_mm = (int16_t)y;
-    e.at[e.count].seen_ms = k.sip_ms;
-    e.count++;
-}
-
 static int32_t heading_chosen(void) {
     return argus_task_bearing_cdeg(&t, &k);
 }
@@ -44,14 +31,14 @@ static int32_t heading_chosen(void) {
 void test_far_from_the_start_nothing_overflows(void) {
     k.pose.x_mm = 2000000;
     k.pose.y_mm = -2000000;
-    see(3, 500);
+    see_echo(&e, &k, 3, 500);
     TEST_ASSERT_EQUAL(0, e.count);
     argus_echoes_clear_mm(&e, &k, 0, 305);
     argus_task_choose(&t, &k, &e);
 }
 
 void test_the_straight_way_until_something_stops_it(void) {
-    place(600, 0);
+    place_echo(&e, &k, 600, 0);
     TEST_ASSERT_TRUE(argus_task_choose(&t, &k, &e));
     TEST_ASSERT_EQUAL(0, heading_chosen());
 }
@@ -106,7 +93,7 @@ void test_a_slant_is_forgotten_when_the_robot_has_moved_on(void) {
 
 void test_the_detour_leads_past_the_obstacle(void) {
     for (int y = -300; y <= 100; y += 100) {
-        place(450, y);
+        place_echo(&e, &k, 450, y);
     }
     argus_task_refuse(&t, &k);
     TEST_ASSERT_TRUE(argus_task_choose(&t, &k, &e));
@@ -117,7 +104,7 @@ void test_the_detour_leads_past_the_obstacle(void) {
 
 void test_no_way_when_every_heading_is_blocked(void) {
     for (int a = 0; a < 36000; a += 1000) {
-        place(450 * argus_cos(a) / ARGUS_TRIG_ONE, 450 * argus_sin(a) / ARGUS_TRIG_ONE);
+        place_echo(&e, &k, 450 * argus_cos(a) / ARGUS_TRIG_ONE, 450 * argus_sin(a) / ARGUS_TRIG_ONE);
     }
     argus_task_refuse(&t, &k);
     TEST_ASSERT_FALSE(argus_task_choose(&t, &k, &e));
