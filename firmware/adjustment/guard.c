@@ -10,6 +10,7 @@
 #define SIP_MS 100u
 #define HOME_CDEG 200
 #define STRAIGHT_ROOM_MM 47
+#define SPEED_STEP_MM_S 25 // the speed asked for changes by so much at a time
 #define SWING_TURNING_MM 10 // of the margin so much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
 #define BACKOFFS_MAX 3
@@ -38,16 +39,44 @@ bool argus_guard_may_translate(const argus_guard_t *const self) {
     return self->active && self->linked && motors && self->checked && self->bumpers == 0;
 }
 
-int32_t argus_guard_ahead_mm(const argus_guard_t *const self) {
+// What the shortest reading ahead says now, less the way driven since it was taken.
+static int32_t seen_mm(const argus_guard_t *const self) {
     const argus_knowledge_t *const knowledge = self->knowledge;
-    int32_t shortest = INT32_MAX;
+    int32_t shortest = knowledge->robot->no_echo_mm;
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i)) {
             const int32_t since_mm = (int32_t)(knowledge->odometer_mm - knowledge->sonar[i].odometer_mm);
             shortest = argus_min(shortest, knowledge->sonar[i].reading_mm - since_mm);
         }
     }
-    return argus_max(0, argus_min(shortest, knowledge->robot->no_echo_mm) - self->config->object_range_mm);
+    return shortest;
+}
+
+int32_t argus_guard_ahead_mm(const argus_guard_t *const self) {
+    return argus_max(0, seen_mm(self) - self->config->object_range_mm);
+}
+
+// A sonar ahead that is doubted, or a wall close beside, which may slant in.
+static bool is_wary(const argus_guard_t *const self) {
+    const unsigned doubted = argus_with_health(self->knowledge, ARGUS_SUSPECT);
+    return (doubted & argus_robot_ahead(self->knowledge->robot)) != 0 ||
+           argus_flank_mm(self->knowledge) <= ARGUS_FLANK_NEAR_MM;
+}
+
+int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self) {
+    const argus_config_t *const config = self->config;
+    ARGUS_ASSERT(config->speed_mm_s > 0);
+    if (!self->profile->adapts_speed) {
+        return config->speed_mm_s;
+    }
+    const int32_t range_mm = argus_max(seen_mm(self), config->object_range_mm);
+    const int32_t safe_mm_s = argus_config_speed_mm_s(config, self->knowledge->robot, range_mm);
+    const int32_t most_mm_s = argus_min(safe_mm_s / SPEED_STEP_MM_S * SPEED_STEP_MM_S, config->speed_max_mm_s);
+    return argus_max(config->speed_mm_s, most_mm_s);
+}
+
+int32_t argus_guard_speed_mm_s(const argus_guard_t *const self) {
+    return is_wary(self) ? self->config->speed_mm_s : argus_guard_free_speed_mm_s(self);
 }
 
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {

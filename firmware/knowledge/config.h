@@ -17,4 +17,8 @@ int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *
 // `step_mm` ahead.
 int32_t argus_config_reach_mm(const argus_robot_t *robot, int32_t step_mm);
 
+// S5 solved for the speed: the highest, mm/s, from which the robot stands before an object of which it reads
+// `range_mm`, 0..INT16_MAX.
+int32_t argus_config_speed_mm_s(const argus_config_t *config, const argus_robot_t *robot, int32_t range_mm);
+
 #endif

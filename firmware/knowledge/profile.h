@@ -5,29 +5,31 @@
 
 #include "argus/argus.h"
 
-// X(rule, paper, argus, meaning): 1: the rule runs; of a length: mm.
+// X(rule, paper, argus, trusting, meaning): 1: the rule runs; of a length: mm. `trusting`: with diagnosis
+// off, whatever the profile.
 #define ARGUS_RULE_TABLE(X)                                                                             \
-    X(dead_reading, 1, 0, "5000 on a sonar that looks ahead is a dead reading: STOP, DISABLED (S2)")    \
-    X(disparity, 1, 0, "Algorithm 1 finds suspects, Algorithm 2 verifies them; DISABLED is for good")   \
-    X(evidence, 0, 1,                                                                                   \
+    X(dead_reading, 1, 0, 0, "5000 on a sonar that looks ahead is a dead reading: STOP, DISABLED (S2)")    \
+    X(disparity, 1, 0, 0, "Algorithm 1 finds suspects, Algorithm 2 verifies them; DISABLED is for good")   \
+    X(evidence, 0, 1, 0,                                                                                  \
       "evidence judges every reading of every sonar; looks settle it; who does well returns")           \
-    X(swing_margin_mm, 0, 20, "S7: room wanted beyond the circle that the body sweeps in a turn")       \
-    X(remembers, 0, 1, "S7: what was seen a moment ago, twice, and has left the cones, is still there") \
-    X(reads_again, 0, 1, "S7: one echo of a steady sonar is read once more before it forbids a turn")   \
-    X(watches_turn, 0, 1, "S7: what comes into view within the circle in a turn ends it")               \
-    X(watches_flank, 0, 1, "S2: a wall beside the robot that its way slants into: STOP")                \
-    X(backs_to_turn, 0, 1,                                                                              \
+    X(swing_margin_mm, 0, 20, 20, "S7: room wanted beyond the circle that the body sweeps in a turn")       \
+    X(remembers, 0, 1, 1, "S7: what was seen a moment ago, twice, and has left the cones, is still there") \
+    X(reads_again, 0, 1, 1, "S7: one echo of a steady sonar is read once more before it forbids a turn")   \
+    X(watches_turn, 0, 1, 1, "S7: what comes into view within the circle in a turn ends it")               \
+    X(watches_flank, 0, 1, 1, "S2: a wall beside the robot that its way slants into: STOP")                \
+    X(backs_to_turn, 0, 1, 1,                                                                             \
       "S7: backs away as far as a turn asks for, at the driving speed where S5 lets it")                \
-    X(passes_abeam, 0, 1, "S7: of the rear, who looks abeam need not read clear beyond 250 mm")         \
-    X(leaves_ahead, 0, 1, "S4: hemmed in, it goes on from the heading that it has")
+    X(passes_abeam, 0, 1, 1, "S7: of the rear, who looks abeam need not read clear beyond 250 mm")         \
+    X(adapts_speed, 0, 1, 1, "S5: as fast as what is seen ahead allows; turns gently while it drives")      \
+    X(leaves_ahead, 0, 1, 1, "S4: hemmed in, it goes on from the heading that it has")
 
 typedef struct {
-#define ARGUS_RULE_FIELD(rule, paper, argus, meaning) uint8_t rule;
+#define ARGUS_RULE_FIELD(rule, paper, argus, trusting, meaning) uint8_t rule;
     ARGUS_RULE_TABLE(ARGUS_RULE_FIELD)
 #undef ARGUS_RULE_FIELD
 } argus_profile_t;
 
-// The profile of a configuration; that of the paper where the setting is out of its range.
+// The rules of a configuration; those of the paper where the setting is out of its range.
 const argus_profile_t *argus_profile(const argus_config_t *config);
 
 #endif

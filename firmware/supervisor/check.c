@@ -18,12 +18,19 @@ static void declare_healthy(argus_t *const self) {
 }
 
 static argus_mask_t find_suspects(argus_t *const self) {
-    return argus_rules(self)->evidence ? (argus_mask_t)(argus_worth_a_look(self) | argus_open_suspects(self))
-                                       : argus_suspects(&self->awareness, &self->knowledge, &self->config);
+    if (argus_rules(self)->evidence) {
+        return (argus_mask_t)(argus_doubted(self) | argus_open_suspects(self));
+    }
+    return argus_rules(self)->disparity ? argus_suspects(&self->awareness, &self->knowledge, &self->config) : 0;
 }
 
-static bool is_look_due(const argus_t *const self) {
-    return argus_rules(self)->evidence && argus_routine_is_due(self);
+// The paper verifies every suspect at once; elsewhere a look must pay.
+static bool is_look_due(argus_t *const self, const argus_mask_t suspects) {
+    if (!argus_rules(self)->evidence) {
+        return suspects != 0;
+    }
+    argus_flag_suspects(self, suspects);
+    return argus_look_pays(self);
 }
 
 static argus_intent_t verify(const argus_mask_t suspects) {
@@ -33,7 +40,7 @@ static argus_intent_t verify(const argus_mask_t suspects) {
 argus_intent_t argus_conclude_check(argus_t *const self) {
     ARGUS_ASSERT(self->mode == ARGUS_MODE_CHECKING);
     const argus_mask_t suspects = (argus_mask_t)(find_suspects(self) | argus_open_suspects(self));
-    const bool wanted = suspects != 0 || is_look_due(self);
+    const bool wanted = is_look_due(self, suspects);
     self->looks.check_ms = self->now_ms;
     if (wanted && !self->orders.passive && !self->orders.stay) {
         return verify(suspects);
@@ -74,14 +81,13 @@ argus_intent_t argus_check_beside(argus_t *const self) {
     }
     self->looks.check_ms = self->now_ms;
     const argus_mask_t suspects = find_suspects(self);
-    const bool look = self->mode == ARGUS_MODE_DRIVING && is_look_due(self);
+    if (argus_rules(self)->evidence && self->mode == ARGUS_MODE_DRIVING) {
+        argus_count_loss(self);
+    }
     if (self->orders.passive && argus_rules(self)->disparity) {
         drop_suspicions(self);
     }
-    if (suspects == 0 && !look) {
-        return (argus_intent_t){0};
-    }
-    if (may_verify(self)) {
+    if (may_verify(self) && is_look_due(self, suspects)) {
         return verify(suspects);
     }
     argus_flag_suspects(self, suspects);

@@ -86,12 +86,18 @@ typedef struct {
     uint8_t acquittals;
 } argus_hold_t;
 
+// The kind that the evidence gives it, and since when.
+typedef struct {
+    uint32_t since_ms;
+    uint8_t kind;
+} argus_naming_t;
+
 typedef struct {
     argus_hold_t hold[ARGUS_SONARS];
-    uint32_t last_ms; // a look
-    uint32_t last_odometer_mm;
+    argus_naming_t naming[ARGUS_SONARS];
     uint32_t check_ms; // a health check
-    bool once;         // there was a look
+    uint32_t lost_ms;  // what doubt has cost since the last look: time, against the speed without
+    bool asked;        // an operator wants a look
 } argus_looks_t;
 
 // What operators and the configuration have settled.

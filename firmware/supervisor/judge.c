@@ -11,6 +11,7 @@
 #define PROBATION_AGREED 4
 #define PROBATION_MS 4000u
 #define PROBATION_DOUBLINGS 4
+#define NAME_STANDS_MS 2000u // so long, six rounds, before a name is said: most for a healthy sonar pass sooner
 
 static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
@@ -22,15 +23,26 @@ static argus_intent_t convict(argus_t *const self, const int sonar, const argus_
     return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK};
 }
 
+// The name has stood for a while.
+static bool stands(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+    argus_naming_t *const naming = &self->looks.naming[sonar];
+    if (naming->kind != kind) {
+        naming->kind = (uint8_t)kind;
+        naming->since_ms = self->now_ms;
+    }
+    return kind != ARGUS_KIND_NONE && self->now_ms - naming->since_ms >= NAME_STANDS_MS;
+}
+
 // A suspect carries the kind that the evidence names so far.
 static void name(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = argus_evidence_renames(&self->evidence, sonar, s->kind);
-    if (kind != ARGUS_KIND_NONE) {
+    const bool named = stands(self, sonar, kind);
+    if (named) {
         argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
     }
-    if (s->health == ARGUS_SUSPECT && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
+    if (named && s->health == ARGUS_SUSPECT && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
         argus_evidence_note_name(&self->evidence, sonar, kind);
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
     }

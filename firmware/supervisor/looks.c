@@ -10,68 +10,58 @@
 #define HOLD_MM 400u         // an acquitted sonar is not looked at again before this distance,
 #define HOLD_DOUBLINGS 2     // ... doubled with each acquittal so often
 #define HOLD_FORGET_MM 4000u // ... and forgotten after this one
-#define LOST_HOLD_MM 100u    // for a lost echo one ahead at once, any other after this distance
-#define SPACING_MS 3000u     // between two looks for a mere jump
-#define ROUTINE_MM_S \
-    100u // a look at all beside the main task only when the robot has driven so far in the meantime
-
-static bool was_cleared_within(const argus_t *const self, const int sonar, const uint32_t way_mm) {
-    const argus_hold_t *const hold = &self->looks.hold[sonar];
-    return hold->acquittals > 0 && self->knowledge.odometer_mm - hold->odometer_mm < way_mm;
-}
+#define LOOK_COST_MS 9000u   // what a look takes: two turns aside, the way back, two rounds of readings each
+#define SIP_MS 100u
 
 static bool is_held(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
-    const int32_t doublings = argus_min(self->looks.hold[sonar].acquittals - 1, HOLD_DOUBLINGS);
-    return was_cleared_within(self, sonar, HOLD_MM << (unsigned)argus_max(0, doublings));
+    const argus_hold_t *const hold = &self->looks.hold[sonar];
+    const int32_t doublings = argus_min(hold->acquittals - 1, HOLD_DOUBLINGS);
+    return hold->acquittals > 0 &&
+           self->knowledge.odometer_mm - hold->odometer_mm < HOLD_MM << (unsigned)argus_max(0, doublings);
 }
 
-// Beside a smooth wall one that looks aside loses its echo in each look anew: it must not keep the robot
-// there.
-static argus_mask_t lost(const argus_t *const self) {
-    unsigned mask = argus_evidence_lost(&self->evidence);
-    for (int i = 0; i < self->knowledge.sonars; i++) {
-        const bool ahead = (argus_robot_forward(self->knowledge.robot) >> i & 1u) != 0;
-        mask &= !ahead && was_cleared_within(self, i, LOST_HOLD_MM) ? ~(1u << i) : ~0u;
-    }
-    return (argus_mask_t)mask;
-}
-
-static argus_mask_t without_held(const argus_t *const self, const unsigned mask) {
-    unsigned free_mask = 0;
-    for (int i = 0; i < self->knowledge.sonars; i++) {
-        free_mask |= (mask >> i & 1u) != 0 && !is_held(self, i) ? 1u << i : 0u;
-    }
-    return (argus_mask_t)free_mask;
-}
-
-static argus_mask_t suspected(const argus_t *const self) {
+argus_mask_t argus_doubted(const argus_t *const self) {
+    ARGUS_ASSERT(argus_rules(self)->evidence);
     unsigned mask = 0;
     for (int i = 0; i < self->knowledge.sonars; i++) {
         mask |= argus_evidence_suspects(&self->evidence, i) ? 1u << i : 0u;
     }
+    return (argus_mask_t)(mask & ~(unsigned)argus_out(&self->knowledge) & ~(unsigned)self->orders.pinned);
+}
+
+static bool is_trusted(const argus_t *const self, const int sonar) {
+    return sonar >= 0 && self->knowledge.sonar[sonar].health == ARGUS_HEALTHY;
+}
+
+// Suspects ahead that have no neighbour who sees on the way what they may not.
+static argus_mask_t alone(const argus_t *const self) {
+    const unsigned open = argus_open_suspects(self) & argus_robot_forward(self->knowledge.robot);
+    unsigned mask = 0;
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        const argus_sonar_pose_t *const pose = argus_robot_pose(self->knowledge.robot, i);
+        const bool seen = is_trusted(self, pose->left) || is_trusted(self, pose->right);
+        mask |= (open >> i & 1u) != 0 && !seen && !is_held(self, i) ? 1u << i : 0u;
+    }
     return (argus_mask_t)mask;
 }
 
-argus_mask_t argus_worth_a_look(const argus_t *const self) {
-    ARGUS_ASSERT(argus_rules(self)->evidence);
-    const argus_mask_t unseen = argus_evidence_unseen(&self->evidence, &self->knowledge, &self->config);
-    const unsigned ahead = lost(self) | unseen;
-    const bool spaced = self->now_ms - self->looks.last_ms >= SPACING_MS;
-    const unsigned jumped =
-        spaced ? argus_evidence_jumped(&self->evidence) & argus_robot_forward(self->knowledge.robot) : 0u;
-    const unsigned open = without_held(self, suspected(self) | jumped) | ahead;
-    return (argus_mask_t)(open & ~(unsigned)argus_out(&self->knowledge) &
-                          ~(unsigned)self->awareness.verified & ~(unsigned)self->orders.pinned);
+// Beside the way: who is doubted costs what the robot would drive faster without it.
+void argus_count_loss(argus_t *const self) {
+    const argus_guard_t guard = argus_guard(self);
+    const int32_t free_mm_s = argus_guard_free_speed_mm_s(&guard);
+    const int32_t lost_mm_s = free_mm_s - argus_guard_speed_mm_s(&guard);
+    const bool doubted = argus_open_suspects(self) != 0;
+    ARGUS_ASSERT(free_mm_s > 0 && lost_mm_s >= 0);
+    self->looks.lost_ms = doubted ? self->looks.lost_ms + SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s : 0;
 }
 
-bool argus_routine_is_due(const argus_t *const self) {
+// To hire or to buy: a look is bought when what it costs has been lost, so both together are never more than
+// twice the cheaper one. Where nobody sees what a suspect may not, it is bought at once.
+bool argus_look_pays(const argus_t *const self) {
     const argus_looks_t *const looks = &self->looks;
-    const uint32_t every_s = (uint32_t)self->config.look_every_s;
-    const bool long_ago = self->now_ms - looks->last_ms >= every_s * 1000u &&
-                          self->knowledge.odometer_mm - looks->last_odometer_mm >= every_s * ROUTINE_MM_S;
-    if ((looks->once && !long_ago) || self->orders.passive || self->orders.stay ||
-        self->mission != ARGUS_MISSION_RUNNING) {
+    const bool pays = looks->asked || alone(self) != 0 || looks->lost_ms >= LOOK_COST_MS;
+    if (!pays || self->orders.passive || self->orders.stay) {
         return false;
     }
     const argus_guard_t guard = argus_guard(self);
@@ -124,9 +114,8 @@ void argus_conclude_looks(argus_t *const self) {
     for (int i = 0; i < self->knowledge.sonars; i++) {
         conclude(self, i);
     }
-    self->looks.last_ms = self->now_ms;
-    self->looks.last_odometer_mm = self->knowledge.odometer_mm;
-    self->looks.once = true;
+    self->looks.asked = false;
+    self->looks.lost_ms = 0;
     argus_replan(self);
 }
 

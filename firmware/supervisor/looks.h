@@ -5,12 +5,14 @@
 
 #include "supervisor/core.h"
 
-// What is worth a stop now: evidence that a look can settle, a lost echo ahead, a bearing unseen for too
-// long.
-argus_mask_t argus_worth_a_look(const argus_t *self);
+// Sonars in use that the evidence suspects.
+argus_mask_t argus_doubted(const argus_t *self);
 
-// A look at all of them is due.
-bool argus_routine_is_due(const argus_t *self);
+// Once a SIP while it drives: what doubt costs.
+void argus_count_loss(argus_t *self);
+
+// A look costs less than to go on without, or an operator has asked for it; and there is room to turn.
+bool argus_look_pays(const argus_t *self);
 
 // The looks are over: whoever was asked is acquitted, or left open.
 void argus_conclude_looks(argus_t *self);

@@ -2,6 +2,8 @@
 // Puts commands to the wheels into the outbox, one motion at a time.
 #include "supervisor/motions.h"
 
+#include "knowledge/angle.h"
+
 #include "supervisor/say.h"
 
 void argus_brake(argus_t *const self) {
@@ -58,7 +60,10 @@ void argus_turn_to(argus_t *const self, const int32_t heading_cdeg) {
 void argus_move(argus_t *const self, const int32_t distance_mm, const int32_t speed_mm_s) {
     ARGUS_ASSERT(speed_mm_s > 0 && distance_mm != INT32_MIN);
     ARGUS_ASSERT(!self->orders.passive);
-    argus_motion_move(&self->motion, &self->session.outbox, distance_mm, speed_mm_s, self->now_ms);
+    const argus_session_t *const session = &self->session;
+    const int32_t top_mm_s = session->has_robot ? session->robot.vel_max_mm_s : 0; // its own ceiling
+    argus_motion_move(&self->motion, &self->session.outbox, distance_mm,
+                      top_mm_s > 0 ? argus_min(speed_mm_s, top_mm_s) : speed_mm_s, self->now_ms);
 }
 
 void argus_steer(argus_t *const self, const int32_t heading_cdeg) {

@@ -152,11 +152,10 @@ static void begin_retest(argus_t *const self, const int sonar) {
     self->awareness.verified &= (argus_mask_t) ~(unsigned)bit;
     if (argus_is_out(&self->knowledge, sonar)) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RETESTED, s->kind, s->reading_mm);
-        self->looks.once = false; // a look at all comes with the check
     } else {
-        argus_evidence_note_loss(&self->evidence, bit);
         argus_flag_suspects(self, bit);
     }
+    self->looks.asked = true; // a look comes with the check
 }
 
 static bool may_serve(const argus_t *const self, const argus_op_t op, const int32_t sonar) {

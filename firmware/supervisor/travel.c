@@ -6,6 +6,7 @@
 #include "supervisor/state.h"
 
 #define AIM_CDEG 1000    // a bearing farther off than this is turned to at rest
+#define GENTLE_CDEG 4000 // ... a new leg up to here while it drives: what the front sonars see lies there
 #define AIMED_CDEG 200   // at rest, near enough
 #define STEER_CDEG 200   // while driving, corrected beyond this
 #define STEER_LEG_MM 250 // ... and only this far from the leg's end
@@ -133,9 +134,18 @@ static argus_intent_t turn_to_bearing(const argus_t *const self, argus_travel_t 
     return leads_out ? nothing() : turn(bearing(self, mine));
 }
 
+// It drives and may turn on the way.
+static bool is_gentle(const argus_t *const self, const argus_travel_t *const mine) {
+    const argus_guard_t guard = argus_guard(self);
+    return argus_rules(self)->adapts_speed && self->motion.kind == ARGUS_MOTION_MOVE && !self->motion.settled &&
+           mine->jog_mm == 0 && off_bearing(self, mine) <= GENTLE_CDEG && left_mm(self, mine) > STEER_LEG_MM &&
+           argus_guard_may_turn(&guard);
+}
+
 // Turns to the leg's bearing at rest. True when the robot looks along it, else `intent` leads there.
 static bool is_aimed(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
     *intent = nothing();
+    mine->aimed = mine->aimed || is_gentle(self, mine);
     if (mine->aimed) {
         return true;
     }
@@ -199,7 +209,7 @@ static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const 
     const bool steers = off_bearing(self, mine) > STEER_CDEG && way_mm > STEER_LEG_MM;
     return (argus_intent_t){.act = ARGUS_DO_DRIVE,
                             .mm = argus_min(way_mm, free_mm),
-                            .speed_mm_s = self->config.speed_mm_s,
+                            .speed_mm_s = argus_guard_speed_mm_s(&guard),
                             .steers = steers && argus_guard_may_turn(&guard),
                             .cdeg = bearing(self, mine),
                             .moves_on = true};

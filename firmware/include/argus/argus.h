@@ -97,6 +97,8 @@ typedef uint16_t argus_mask_t;
 // table.
 #define ARGUS_CONFIG_TABLE(X)                                                                                \
     X(profile, 1, 0, 1, "", "paper|argus", "rule set of the diagnosis")                                      \
+    X(diagnosis, 1, 0, 1, "", "off|on",                                                                      \
+      "off: every sonar that reports is trusted, nothing is judged; for comparisons")                        \
     X(policy, 0, 0, 1, "", "paper|fewest", "planner of the compensating rotations")                          \
     X(robot, 0, 0, 4, "", "by-subclass|p3dx-sh|amigo-sh|p3at-sh|peoplebot-sh",                               \
       "whose body and sonars it has; by-subclass: as it says itself, and passive when that is not known")    \
@@ -106,7 +108,6 @@ typedef uint16_t argus_mask_t;
     X(holdoff_mm, 1000, 0, 20000, "mm", "", "a cleared sonar is not verified again before this distance")    \
     X(holdoff_deg, 30, 0, 180, "deg", "", "... or before this change of heading")                            \
     X(caution, 100, 25, 400, "%", "", "profile argus: so much of the tabled evidence a verdict takes")       \
-    X(look_every_s, 20, 2, 3600, "s", "", "profile argus: a look at all sonars at least so often")           \
     X(stale_ms, 1500, 700, 10000, "ms", "", "a sonar that yields no reading for this long is silent")        \
     X(object_range_mm, 250, 150, 1000, "mm", "",                                                             \
       "while driving, a reading at or below this is an object: STOP")                                        \
@@ -114,7 +115,10 @@ typedef uint16_t argus_mask_t;
       "in failure mode, a reading at or below this stops the next step")                                     \
     X(step_mm, 200, 50, 200, "mm", "", "length of one step in failure mode")                                 \
     X(step_speed_mm_s, 100, 30, 300, "mm/s", "", "speed of a step")                                          \
-    X(speed_mm_s, 200, 30, 750, "mm/s", "", "speed of normal driving")                                       \
+    X(speed_mm_s, 200, 30, 750, "mm/s", "",                                                                  \
+      "speed of normal driving; profile argus: where something is near or a sonar is doubted")               \
+    X(speed_max_mm_s, 500, 30, 750, "mm/s", "",                                                              \
+      "profile argus: the most where the way ahead is seen to be free")                                      \
     X(accel_mm_s2, 300, 50, 2000, "mm/s2", "", "acceleration asked of the robot")                            \
     X(decel_mm_s2, 600, 50, 2000, "mm/s2", "", "deceleration asked of the robot")                            \
     X(turn_speed_deg_s, 60, 10, 100, "deg/s", "", "speed of a turn")                                         \
