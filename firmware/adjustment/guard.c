@@ -10,6 +10,8 @@
 #define SIP_MS 100u
 #define HOME_CDEG 200
 #define STRAIGHT_ROOM_MM 47
+#define SEEN_MOST_MM 1200 // of the way that others see: more would allow no higher speed
+#define SEEN_LEFT_MM 100  // of it that is left
 #define SPEED_STEP_MM_S 25 // the speed asked for changes by so much at a time
 #define SWING_TURNING_MM 10 // of the margin so much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
@@ -24,14 +26,15 @@ int32_t argus_guard_straight_half_mm(const argus_robot_t *const robot) {
     return argus_robot_half_width_mm(robot) + STRAIGHT_ROOM_MM;
 }
 
-bool argus_guard_may_drive(const argus_plan_t *const plan) {
-    return plan->disabled == 0;
-}
-
 bool argus_guard_may_step(const argus_plan_t *const plan) {
     ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
     return plan->disabled == 0 || plan->complete;
 }
+
+bool argus_guard_may_drive(const argus_guard_t *const self, const argus_plan_t *const plan) {
+    return plan->disabled == 0 || (self->profile->drives_seen && argus_guard_may_step(plan));
+}
+
 
 bool argus_guard_may_translate(const argus_guard_t *const self) {
     ARGUS_ASSERT(self->knowledge->robot != NULL);
@@ -52,8 +55,21 @@ static int32_t seen_mm(const argus_guard_t *const self) {
     return shortest;
 }
 
+bool argus_guard_is_blind(const argus_guard_t *const self) {
+    return (argus_out(self->knowledge) & argus_robot_forward(self->knowledge->robot)) != 0;
+}
+
+int32_t argus_guard_seen_mm(const argus_guard_t *const self) {
+    if (!self->profile->drives_seen || !argus_guard_is_blind(self)) {
+        return INT32_MAX;
+    }
+    const int32_t half_mm = argus_guard_straight_half_mm(self->knowledge->robot);
+    return argus_max(0, argus_rays_seen_mm(self->rays, self->knowledge, half_mm, SEEN_MOST_MM) - SEEN_LEFT_MM);
+}
+
 int32_t argus_guard_ahead_mm(const argus_guard_t *const self) {
-    return argus_max(0, seen_mm(self) - self->config->object_range_mm);
+    const int32_t clear_mm = argus_max(0, seen_mm(self) - self->config->object_range_mm);
+    return argus_min(clear_mm, argus_guard_seen_mm(self));
 }
 
 // A sonar ahead that is doubted, or a wall close beside, which may slant in.
@@ -69,7 +85,8 @@ int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self) {
     if (!self->profile->adapts_speed) {
         return config->speed_mm_s;
     }
-    const int32_t range_mm = argus_max(seen_mm(self), config->object_range_mm);
+    const int32_t unseen_mm = argus_min(argus_guard_seen_mm(self), INT16_MAX) + SEEN_LEFT_MM;
+    const int32_t range_mm = argus_max(argus_min(seen_mm(self), unseen_mm), config->object_range_mm);
     const int32_t safe_mm_s = argus_config_speed_mm_s(config, self->knowledge->robot, range_mm);
     const int32_t most_mm_s = argus_min(safe_mm_s / SPEED_STEP_MM_S * SPEED_STEP_MM_S, config->speed_max_mm_s);
     return argus_max(config->speed_mm_s, most_mm_s);

@@ -8,6 +8,7 @@
 #include "knowledge/echoes.h"
 #include "knowledge/knowledge.h"
 #include "knowledge/profile.h"
+#include "knowledge/rays.h"
 
 // Half of what is driven straight along, ahead or back, without a turn: half the body, and something for its
 // heading.
@@ -19,6 +20,7 @@ typedef struct {
     const argus_profile_t *profile;
     const argus_knowledge_t *knowledge;
     const argus_echoes_t *echoes;
+    const argus_rays_t *rays;
     uint32_t now_ms;
     uint16_t bumpers; // pressed, as far as they were answered
     uint8_t backed;   // back-offs in this place
@@ -29,15 +31,21 @@ typedef struct {
 
 // Ahead ----------------------------------------------------------------------------------------------------
 
-// S1: normal driving only with every bearing ahead in use; a step also while the others cover for it.
-bool argus_guard_may_drive(const argus_plan_t *plan);
+// S1: driving only with every bearing ahead in use or, where the profile lets it, as far as living sonars have
+// seen the way of the body; a step also while the others cover for those that are out.
+bool argus_guard_may_drive(const argus_guard_t *self, const argus_plan_t *plan);
 bool argus_guard_may_step(const argus_plan_t *plan);
+
+// A sonar that looks ahead is out; how far the way has been seen nonetheless, less some margin. INT32_MAX: none
+// is, or the profile does not ask.
+bool argus_guard_is_blind(const argus_guard_t *self);
+int32_t argus_guard_seen_mm(const argus_guard_t *self);
 
 // S2, S3, S6: motors on, a link that lives, a full check behind it, no bumper pressed.
 bool argus_guard_may_translate(const argus_guard_t *self);
 
 // S3: the longest MOVE that normal driving may ask for now: shortest front reading, less the way driven since
-// it was taken, less the object range; never negative.
+// it was taken, less the object range, and no farther than has been seen; never negative.
 int32_t argus_guard_ahead_mm(const argus_guard_t *self);
 
 // S5: the speed for the way ahead: `speed_mm_s`; where the profile adapts it and nothing is doubted or close

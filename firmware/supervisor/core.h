@@ -13,6 +13,7 @@
 #include "awareness/awareness.h"
 #include "knowledge/config.h"
 #include "knowledge/knowledge.h"
+#include "knowledge/rays.h"
 #include "supervisor/events.h"
 #include "task/task.h"
 
@@ -44,6 +45,8 @@ typedef struct {
     uint32_t heeded_ms;  // since then the robot has stood, one MOVE after the other
     uint32_t beside_sip; // the SIP in which the health check beside the task was made
     uint16_t unsaid;     // waypoints passed and not said
+    int8_t weave;        // side that the heading swings to while a bearing is blind, +1 left
+    uint8_t woven_sips;  // that it has been there
     bool aimed;          // the leg's bearing was turned to
     bool arriving;       // at the goal, stopping
     bool swept;          // the end of this sweep is said
@@ -124,6 +127,7 @@ struct argus {
     argus_session_t session;
     argus_knowledge_t knowledge;
     argus_echoes_t echoes;
+    argus_rays_t rays;
     argus_awareness_t awareness;
     argus_evidence_t evidence; // profile argus
     argus_plan_t plan;

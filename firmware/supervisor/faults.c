@@ -83,6 +83,7 @@ void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_
     argus_evidence_agree_anew(&self->evidence, sonar); // what brings it back comes after this
     argus_evidence_retract(&self->evidence, sonar);
     argus_echoes_forget(&self->echoes, sonar);
+    argus_rays_forget(&self->rays, sonar);
     argus_task_restart(&self->travel.task);
     argus_replan(self);
     argus_say_event(self, said); // after the plan that follows from it

@@ -19,6 +19,7 @@ typedef enum {
     // modes
     ARGUS_DO_CHECK,      // CHECKING: `full`: as many rounds of readings as Algorithm 1 wants for a suspect
     ARGUS_DO_VERIFY,     // VERIFYING, for `sonars`
+    ARGUS_DO_SWEEP,      // SWEEPING: the way must be seen
     ARGUS_DO_WAIT,       // WAITING, because of `why`
     ARGUS_DO_DECIDE,     // a mode has ended well: what next?
     ARGUS_DO_GO_OFFLINE, // OFFLINE, or CLOSED when it is leaving

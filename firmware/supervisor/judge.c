@@ -17,7 +17,8 @@ static argus_intent_t convict(argus_t *const self, const int sonar, const argus_
     const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
     argus_disable(self, sonar, kind);
     argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
-    if (!ahead || !argus_mode_may(self->mode, ARGUS_MAY_BREAK_OFF)) {
+    const bool goes_on = argus_rules(self)->drives_seen && argus_guard_may_step(&self->plan);
+    if (!ahead || goes_on || !argus_mode_may(self->mode, ARGUS_MAY_BREAK_OFF)) {
         return (argus_intent_t){0};
     }
     return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK};

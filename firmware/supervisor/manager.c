@@ -32,6 +32,7 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     argus_knowledge_init(&self->knowledge);
     argus_body_is(&self->knowledge, chosen != NULL ? chosen : argus_robot_default(), now_ms);
     argus_echoes_init(&self->echoes);
+    argus_rays_init(&self->rays);
     argus_awareness_init(&self->awareness);
     argus_evidence_init(&self->evidence);
     argus_evidence_set_caution(&self->evidence, self->config.caution);
@@ -94,6 +95,7 @@ static void on_open(argus_t *const self) {
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
     argus_awareness_restart(&self->awareness);
     argus_evidence_restart(&self->evidence);
+    argus_rays_forget_all(&self->rays);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it
     self->reflexes.motors_said = false;
     self->stalled = false;
@@ -140,6 +142,7 @@ static void on_sip(argus_t *const self) {
     }
     argus_react(self, &alarm); // it asks what was seen before this SIP
     argus_echoes_see(&self->echoes, &self->knowledge, self->now_ms);
+    argus_rays_see(&self->rays, &self->knowledge);
     argus_judge_all(self);
     argus_motion_sip(&self->motion, &self->session.outbox, &self->knowledge, self->now_ms);
     argus_run_mode(self);

@@ -48,9 +48,11 @@
     X(IDLE, SWEEPING, "an operator's step, a bearing is blind")                   \
     X(DRIVING, VERIFYING, "suspects, or a look is due")                           \
     X(DRIVING, STEPPING, "an operator's step")                                    \
+    X(DRIVING, SWEEPING, "a bearing is blind, and the way is not seen far enough") \
     X(DRIVING, IDLE, "at the goal")                                               \
     X(SWEEPING, VERIFYING, "suspects")                                            \
     X(SWEEPING, STEPPING, "the sweep found nothing near")                         \
+    X(SWEEPING, DRIVING, "the sweep has seen the way")                             \
     X(SWEEPING, IDLE, "at the goal")                                              \
     X(STEPPING, SWEEPING, "the step is done")                                     \
     X(STEPPING, DRIVING, "... and every bearing is in use again")                 \

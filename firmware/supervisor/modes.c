@@ -84,7 +84,8 @@ static void enter_travel(argus_t *const self) {
     ARGUS_ASSERT(self->checked && argus_guard_may_step(&self->plan));
     argus_begin_travel(&self->travel);
     self->base.taken = false;
-    enter(self, argus_guard_may_drive(&self->plan) ? ARGUS_MODE_DRIVING : ARGUS_MODE_SWEEPING);
+    const argus_guard_t guard = argus_guard(self);
+    enter(self, argus_guard_may_drive(&guard, &self->plan) ? ARGUS_MODE_DRIVING : ARGUS_MODE_SWEEPING);
 }
 
 static void enter_idle(argus_t *const self) {
@@ -187,7 +188,7 @@ static void go_ahead(argus_t *const self, const argus_intent_t *const intent) {
         ARGUS_ASSERT(argus_guard_may_step(&self->plan));
         enter(self, ARGUS_MODE_STEPPING);
     } else {
-        ARGUS_ASSERT(argus_guard_may_drive(&self->plan) && intent->mm <= argus_guard_ahead_mm(&guard));
+        ARGUS_ASSERT(argus_guard_may_drive(&guard, &self->plan) && intent->mm <= argus_guard_ahead_mm(&guard));
     }
     argus_move(self, intent->mm, intent->speed_mm_s);
     if (intent->moves_on) {
@@ -331,6 +332,9 @@ static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *
     switch ((argus_act_t)intent->act) {
     case ARGUS_DO_CHECK:
         enter_checking(self, intent);
+        break;
+    case ARGUS_DO_SWEEP:
+        enter(self, ARGUS_MODE_SWEEPING);
         break;
     case ARGUS_DO_VERIFY:
         enter_verifying(self, intent->sonars);

@@ -23,6 +23,7 @@ argus_guard_t argus_guard(const argus_t *const self) {
                                  .profile = argus_rules(self),
                                  .knowledge = &self->knowledge,
                                  .echoes = &self->echoes,
+                                 .rays = &self->rays,
                                  .now_ms = self->now_ms,
                                  .bumpers = self->reflexes.bumpers,
                                  .backed = self->turning.backed,

@@ -93,8 +93,9 @@ static bool driving_holds(const argus_t *const self) {
     if (!driving && !stepping) {
         return true;
     }
+    const argus_guard_t guard = argus_guard(self);
     return self->checked && !self->orders.passive &&
-           (stepping ? argus_guard_may_step(&self->plan) : argus_guard_may_drive(&self->plan));
+           (stepping ? argus_guard_may_step(&self->plan) : argus_guard_may_drive(&guard, &self->plan));
 }
 
 static bool health_holds(const argus_t *const self) {

@@ -11,6 +11,10 @@
 #define STEER_CDEG 200   // while driving, corrected beyond this
 #define STEER_LEG_MM 250 // ... and only this far from the leg's end
 #define LEG_DONE_MM 60
+#define WEAVE_CDEG 1000   // to either side of the way: half the pitch of the ring
+#define WOVEN_CDEG 300    // near enough
+#define WOVEN_SIPS 4      // there: a round of the array
+#define SEEN_LEAST_MM 200 // of the way; with less it stops to look
 #define FLANK_MM 130
 #define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
 
@@ -187,6 +191,30 @@ static bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
     return self->now_ms - mine->heeded_ms < UNHEEDED_MS;
 }
 
+// Swings the heading about the way while a bearing is blind, so that living sonars look along it: to one side
+// until they have had their turns there, then to the other.
+static int32_t weave_cdeg(const argus_t *const self, argus_travel_t *const mine) {
+    const int32_t to_cdeg = argus_angle_wrap(bearing(self, mine) + mine->weave * WEAVE_CDEG);
+    const bool there = argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, to_cdeg) <= WOVEN_CDEG;
+    mine->woven_sips = there ? (uint8_t)(mine->woven_sips + 1) : 0;
+    if (mine->weave != 0 && mine->woven_sips < WOVEN_SIPS) {
+        return to_cdeg;
+    }
+    mine->weave = mine->weave > 0 ? -1 : 1;
+    mine->woven_sips = 0;
+    return argus_angle_wrap(bearing(self, mine) + mine->weave * WEAVE_CDEG);
+}
+
+// The way has not been seen far enough: a sweep, at rest.
+static argus_intent_t look_ahead(const argus_t *const self, argus_travel_t *const mine) {
+    mine->aimed = mine->jog_mm > 0;
+    if (!self->motion.settled) {
+        const bool moves = self->motion.kind == ARGUS_MOTION_MOVE;
+        return (argus_intent_t){.act = moves ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING};
+    }
+    return (argus_intent_t){.act = ARGUS_DO_SWEEP};
+}
+
 // S3: a MOVE that ends where it should without us, renewed on each SIP.
 static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const mine) {
     const argus_guard_t guard = argus_guard(self);
@@ -200,18 +228,22 @@ static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const 
     if (nearest_mm <= self->config.object_range_mm) {
         return blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm);
     }
+    if (argus_guard_seen_mm(&guard) < argus_min(way_mm, SEEN_LEAST_MM)) {
+        return look_ahead(self, mine);
+    }
     if (free_mm == 0) {
         return nothing(); // a fresh reading will tell
     }
     if (!is_heeded(self, mine)) {
         return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_MOTORS};
     }
-    const bool steers = off_bearing(self, mine) > STEER_CDEG && way_mm > STEER_LEG_MM;
+    const bool weaves = argus_guard_is_blind(&guard) && way_mm > STEER_LEG_MM;
+    const bool steers = weaves || (off_bearing(self, mine) > STEER_CDEG && way_mm > STEER_LEG_MM);
     return (argus_intent_t){.act = ARGUS_DO_DRIVE,
                             .mm = argus_min(way_mm, free_mm),
                             .speed_mm_s = argus_guard_speed_mm_s(&guard),
                             .steers = steers && argus_guard_may_turn(&guard),
-                            .cdeg = bearing(self, mine),
+                            .cdeg = weaves ? weave_cdeg(self, mine) : bearing(self, mine),
                             .moves_on = true};
 }
 
@@ -229,6 +261,9 @@ argus_intent_t argus_run_driving(const argus_t *const self, argus_travel_t *cons
     end_leg(self, mine);
     if (!has_way(self, mine, &intent) || !is_aimed(self, mine, &intent)) {
         return intent;
+    }
+    if (mine->jog_mm > 0 && argus_guard_seen_mm(&guard) < mine->jog_mm) {
+        return look_ahead(self, mine);
     }
     if (mine->jog_mm > 0) { // one MOVE, then idle again
         return step(self, argus_min(mine->jog_mm, argus_guard_ahead_mm(&guard)));
@@ -258,6 +293,10 @@ static argus_intent_t judge_sweep(const argus_t *const self, argus_travel_t *con
     }
     if (direct_mm <= self->config.check_range_mm) {
         return blocked(mine, ARGUS_EV_OBJECT, direct, direct_mm);
+    }
+    const argus_guard_t guard = argus_guard(self);
+    if (argus_guard_seen_mm(&guard) >= SEEN_LEAST_MM && argus_rules(self)->drives_seen) {
+        return (argus_intent_t){.base = ARGUS_BASE_DROP, .act = ARGUS_DO_DECIDE};
     }
     if (argus_open_suspects(self) != 0) { // S6: one that an operator wants looked at again
         return check(false);

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// Logs rays, and says how far the way ahead has been seen along them.
+#include "knowledge/rays.h"
+
+#include <string.h>
+
+#include "knowledge/angle.h"
+
+#define TRUST_MM 2000u // no reading says more: a thin thing beyond may give no echo
+#define LATELY_MS 5000u
+#define CONE_SLOPE 27 // tan 12 degrees, / 128: within 15 where the beam still tells
+#define NEAR_MM 40    // ... and so much beside the axis, close to the transducer
+#define STEP_MM 80
+#define ABREAST 3 // places on either side of the middle
+
+void argus_rays_init(argus_rays_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+void argus_rays_forget(argus_rays_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    for (int i = 0; i < self->count; i++) {
+        self->at[i].free_mm = self->at[i].sonar == sonar ? 0 : self->at[i].free_mm;
+    }
+}
+
+void argus_rays_forget_all(argus_rays_t *const self) {
+    ARGUS_ASSERT(self->count <= ARGUS_RAYS_MAX);
+    self->count = 0;
+    self->next = 0;
+}
+
+static void add(argus_rays_t *const self, const argus_ray_t *const ray) {
+    ARGUS_ASSERT(self->next < ARGUS_RAYS_MAX);
+    self->at[self->next] = *ray;
+    self->next = (uint8_t)((self->next + 1) % ARGUS_RAYS_MAX);
+    self->count = (uint8_t)argus_min(self->count + 1, ARGUS_RAYS_MAX);
+}
+
+static bool fits(const argus_point_t at) {
+    return argus_abs(at.x_mm) <= INT16_MAX && argus_abs(at.y_mm) <= INT16_MAX;
+}
+
+static void see(argus_rays_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    const argus_sonar_pose_t *const pose = argus_robot_pose(knowledge->robot, sonar);
+    const argus_point_t from = argus_to_course(&knowledge->pose, (argus_point_t){pose->x_mm, pose->y_mm});
+    const int32_t bearing_cdeg = knowledge->pose.heading_cdeg + pose->heading_deg * 100;
+    if (!fits(from)) {
+        return;
+    }
+    const argus_ray_t ray = {.x_mm = (int16_t)from.x_mm,
+                             .y_mm = (int16_t)from.y_mm,
+                             .c = (int16_t)argus_cos(bearing_cdeg),
+                             .s = (int16_t)argus_sin(bearing_cdeg),
+                             .free_mm = (uint16_t)argus_min(knowledge->sonar[sonar].reading_mm, TRUST_MM),
+                             .sonar = (uint8_t)sonar,
+                             .t_ms = knowledge->sip_ms};
+    add(self, &ray);
+}
+
+void argus_rays_see(argus_rays_t *const self, const argus_knowledge_t *const knowledge) {
+    const unsigned looks = argus_robot_ahead(knowledge->robot) | argus_robot_flank(knowledge->robot);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const bool fresh = (knowledge->fresh & looks) >> i & 1u;
+        if (fresh && knowledge->sonar[i].health == ARGUS_HEALTHY) {
+            see(self, knowledge, i);
+        }
+    }
+}
+
+static bool shows(const argus_ray_t *const ray, const argus_point_t at) {
+    const int32_t dx = at.x_mm - ray->x_mm;
+    const int32_t dy = at.y_mm - ray->y_mm;
+    const int32_t along_mm = (dx * ray->c + dy * ray->s) / ARGUS_TRIG_ONE;
+    const int32_t beside_mm = argus_abs((dy * ray->c - dx * ray->s) / ARGUS_TRIG_ONE);
+    return along_mm > 0 && along_mm < ray->free_mm && beside_mm <= along_mm * CONE_SLOPE / 128 + NEAR_MM;
+}
+
+// The newest first: it is likeliest.
+static bool is_seen(const argus_rays_t *const self, const uint32_t now_ms, const argus_point_t at) {
+    for (int i = 1; i <= self->count; i++) {
+        const argus_ray_t *const ray = &self->at[(self->next + ARGUS_RAYS_MAX - i) % ARGUS_RAYS_MAX];
+        if (now_ms - ray->t_ms > LATELY_MS) {
+            return false;
+        }
+        if (shows(ray, at)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_line_seen(const argus_rays_t *const self, const argus_knowledge_t *const knowledge,
+                         const int32_t half_mm, const int32_t ahead_mm) {
+    for (int k = -ABREAST; k <= ABREAST; k++) {
+        const argus_point_t at = {knowledge->robot->front_mm + ahead_mm, half_mm * k / ABREAST};
+        if (!is_seen(self, knowledge->sip_ms, argus_to_course(&knowledge->pose, at))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+int32_t argus_rays_seen_mm(const argus_rays_t *const self, const argus_knowledge_t *const knowledge,
+                           const int32_t half_mm, const int32_t most_mm) {
+    ARGUS_ASSERT(half_mm > 0 && most_mm >= 0);
+    int32_t seen_mm = 0;
+    while (seen_mm < most_mm && is_line_seen(self, knowledge, half_mm, seen_mm + STEP_MM)) {
+        seen_mm += STEP_MM;
+    }
+    return argus_min(seen_mm, most_mm);
+}
