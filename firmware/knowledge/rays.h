@@ -26,7 +26,7 @@ typedef struct {
 
 void argus_rays_init(argus_rays_t *self);
 
-// Logs the fresh readings of the sonars that are trusted (HEALTHY) and look ahead or abeam.
+// Logs the fresh readings of the sonars that look ahead or abeam and are trusted: neither out nor named.
 void argus_rays_see(argus_rays_t *self, const argus_knowledge_t *knowledge);
 
 // Takes back what a sonar has seen: it has failed. And all of it: the robot may have been carried.

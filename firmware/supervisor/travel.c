@@ -298,7 +298,7 @@ static argus_intent_t judge_sweep(const argus_t *const self, argus_travel_t *con
     if (argus_guard_seen_mm(&guard) >= SEEN_LEAST_MM && argus_rules(self)->drives_seen) {
         return (argus_intent_t){.base = ARGUS_BASE_DROP, .act = ARGUS_DO_DECIDE};
     }
-    if (argus_open_suspects(self) != 0) { // S6: one that an operator wants looked at again
+    if (argus_rules(self)->disparity && argus_open_suspects(self) != 0) { // S6: one that an operator wants looked at again
         return check(false);
     }
     return step_ahead(self, mine);
