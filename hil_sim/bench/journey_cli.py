@@ -90,6 +90,7 @@ def parser() -> argparse.ArgumentParser:
     how.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: bench-journey)")
     how.add_argument("--resume", action="store_true", help="go on with what is in --out")
     how.add_argument("--fresh", action="store_true", help="replace what is in --out")
+    how.add_argument("--no-plots", action="store_true", help="write no pictures")
     return result
 
 
@@ -122,7 +123,7 @@ def _run(arguments: argparse.Namespace, cases: Sequence[journeys.Case], out: Pat
                 )
                 return EXIT_INTERRUPTED
             found = [store.records[case.id] for case in cases]
-    print(write_report(out, found, meta), end="")
+    print(write_report(out, found, meta, plots=not arguments.no_plots), end="")
     return _failures(found)
 
 

@@ -24,7 +24,7 @@ _MISSION: Final = (
 _COUNTED: Final = ("false_names", "false_disables", "collisions")
 
 
-def write_report(folder: Path, records: Sequence[Record], meta: Record) -> str:
+def write_report(folder: Path, records: Sequence[Record], meta: Record, *, plots: bool) -> str:
     """Write all files into the folder; return the Markdown."""
     errors = sum(record["error"] is not None for record in records)
     rows = summarise(records)
@@ -34,6 +34,10 @@ def write_report(folder: Path, records: Sequence[Record], meta: Record) -> str:
         (folder / f"{NAME}.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
         (folder / f"{NAME}.csv").write_text(table(records), encoding="utf-8")
         (folder / f"{NAME}.md").write_text(text, encoding="utf-8")
+        if plots:
+            from hil_sim.bench.journey_plots import draw
+
+            draw(folder, records)
     except OSError as error:
         raise SimError(f"{folder}: cannot write the report ({error.strerror}); name another --out") from error
     return text
