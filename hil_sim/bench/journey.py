@@ -12,7 +12,6 @@ from functools import lru_cache
 from typing import Final
 
 import numpy as np
-from argus_tools.core import settings
 
 from hil_sim.bench import plan
 from hil_sim.bench.course import Point, make_course
@@ -26,12 +25,7 @@ Rng = np.random.Generator
 
 IDEAL: Final = "ideal"
 """The driver of the ideal time: no diagnosis, a robot without faults, everything else the same."""
-# Until the setting is there: what comes nearest.
-_OFF: Final[Mapping[str, int | str]] = {"caution": 400, "suspect_readings": 50, "look_every_s": 3600}
-IDEAL_CONFIG: Final[Mapping[str, int | str]] = {
-    "profile": "argus",
-    **({"diagnosis": "off"} if "diagnosis" in settings() else _OFF),
-}
+IDEAL_CONFIG: Final[Mapping[str, int | str]] = {"profile": "argus", "diagnosis": "off"}
 COURSE_MM: Final = 45_000.0
 LIMIT_S: Final = 900.0
 SET_LIMIT_S: Final = 300.0
