@@ -14,8 +14,9 @@ from typing import Final
 import numpy as np
 
 from hil_sim.bench import plan
-from hil_sim.bench.course import Point, make_course
-from hil_sim.bench.journey_worlds import SETS, Place, place_of
+from hil_sim.bench.course import Point
+from hil_sim.bench.journey_course import drift_course
+from hil_sim.bench.journey_worlds import LIMIT_S, SETS, Place, place_of
 from hil_sim.bench.worlds import GENERATED
 from hil_sim.errors import SimError
 from hil_sim.sil import Mission
@@ -26,10 +27,6 @@ Rng = np.random.Generator
 IDEAL: Final = "ideal"
 """The driver of the ideal time: no diagnosis, a robot without faults, everything else the same."""
 IDEAL_CONFIG: Final[Mapping[str, int | str]] = {"profile": "argus", "diagnosis": "off"}
-COURSE_MM: Final = 45_000.0
-LIMIT_S: Final = 900.0
-SET_LIMIT_S: Final = 300.0
-"""The limit of an obstacle set, whose courses are some 10 m long."""
 MIDWAY: Final = (0.3, 0.6)
 """A fault midway begins after such a part of the course."""
 ROOMS: Final = ("office", "lab", "corridor", "gen-room", "gen-corridor", "gen-hall")
@@ -258,8 +255,8 @@ def _place(world: str, split: str, seed: int) -> Place:
     if world in GENERATED or world in world_names() or world.endswith((".map", ".yaml", ".yml")):
         made, field, path = plan.world_of(world, split, seed)
         rng = _rng(Case("", split, "", world, seed), "course")
-        return Place(made, field, path, make_course(made, field, COURSE_MM, rng), LIMIT_S)
-    return place_of(world, (plan.SPLITS[split], seed), COURSE_MM, (LIMIT_S, SET_LIMIT_S))
+        return Place(made, field, path, drift_course(made, field, rng), LIMIT_S)
+    return place_of(world, (plan.SPLITS[split], seed))
 
 
 def length_mm(start: Point, course: Sequence[Point]) -> float:

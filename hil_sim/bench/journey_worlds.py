@@ -14,7 +14,8 @@ from typing import Final
 
 import numpy as np
 
-from hil_sim.bench.course import ROOM_MM, Field, Point, make_course, make_field
+from hil_sim.bench.course import ROOM_MM, Field, Point, make_field
+from hil_sim.bench.journey_course import drift_course
 from hil_sim.bench.worlds import Plan
 from hil_sim.errors import SimError
 from hil_sim.tables.robot import robot_table
@@ -22,6 +23,9 @@ from hil_sim.world.files import load_world
 from hil_sim.world.model import Pose, World
 
 Rng = np.random.Generator
+LIMIT_S: Final = 900.0
+SET_LIMIT_S: Final = 300.0
+"""The limit of an obstacle set, whose courses are some 10 m long."""
 _TRIES: Final = 60
 _PLACES_LEAST: Final = 200
 """Cells of 50 mm where a waypoint may lie, or the plan is thrown away."""
@@ -198,11 +202,8 @@ def _folder() -> tempfile.TemporaryDirectory[str]:
     return tempfile.TemporaryDirectory(prefix="argus-journey-")
 
 
-def place_of(name: str, key: tuple[int, int], course_mm: float, limits_s: tuple[float, float]) -> Place:
-    """Make the world of this name from a key of numbers, with its course.
-
-    limits_s: of a floor, whose course is `course_mm` long, and of an obstacle set. SimError when the name is unknown.
-    """
+def place_of(name: str, key: tuple[int, int]) -> Place:
+    """Make the world of this name from a key of numbers, with its course. SimError when the name is unknown."""
     of = set_of(name)
     if not of and name not in FLOORS:
         raise SimError(f"no world '{name}' for a journey; --rows and --worlds say what there is")
@@ -212,15 +213,13 @@ def place_of(name: str, key: tuple[int, int], course_mm: float, limits_s: tuple[
         rng = np.random.default_rng([zlib.crc32(name.encode()), *key, attempt])
         plan, goal = SETS[of](rng) if of else (FLOORS[name](rng), (0.0, 0.0))
         path.write_text(_aria(plan) if suffix == "map" else plan.text(), encoding="utf-8")
-        place = _tried(str(path), of, goal, rng, course_mm, limits_s)
+        place = _tried(str(path), of, goal, rng)
         if place is not None:
             return place
     raise SimError(f"world {name} of {key}: no plan has a way through it; choose another seed")
 
 
-def _tried(
-    path: str, of: str, goal: Point, rng: Rng, course_mm: float, limits_s: tuple[float, float]
-) -> Place | None:
+def _tried(path: str, of: str, goal: Point, rng: Rng) -> Place | None:
     """The place, or None when this plan is none."""
     try:
         world = load_world(path)
@@ -228,12 +227,12 @@ def _tried(
         if not of:
             if len(field.places(ROOM_MM)) < _PLACES_LEAST:
                 return None
-            return Place(world, field, path, make_course(world, field, course_mm, rng), limits_s[0])
+            return Place(world, field, path, drift_course(world, field, rng), LIMIT_S)
     except SimError:
         return None
     if of == "pairs":
-        return _pair(world, field, path, rng, limits_s[1])
-    return Place(world, field, path, (goal,), limits_s[1]) if _is_open(field, goal) else None
+        return _pair(world, field, path, rng)
+    return Place(world, field, path, (goal,), SET_LIMIT_S) if _is_open(field, goal) else None
 
 
 def _is_open(field: Field, goal: Point) -> bool:
@@ -242,7 +241,7 @@ def _is_open(field: Field, goal: Point) -> bool:
     return bool(len(places)) and bool((np.hypot(*(places - np.array(goal)).T) < 80).any())
 
 
-def _pair(world: World, field: Field, path: str, rng: Rng, limit_s: float) -> Place | None:
+def _pair(world: World, field: Field, path: str, rng: Rng) -> Place | None:
     """Start and goal in a map with a solid on the straight way between them."""
     places = field.places(ROOM_MM)
     if len(places) < _PLACES_LEAST:
@@ -255,5 +254,7 @@ def _pair(world: World, field: Field, path: str, rng: Rng, limit_s: float) -> Pl
         start = (float(a[0]), float(a[1]))
         if float(field.leg_clear_mm(start, b[None, :])[0]) < _HALF_MM:
             heading = round(float(rng.uniform(-180, 180)), 1)
-            return Place(world, field, path, ((float(b[0]), float(b[1])),), limit_s, Pose(*start, heading))
+            return Place(
+                world, field, path, ((float(b[0]), float(b[1])),), SET_LIMIT_S, Pose(*start, heading)
+            )
     return None
