@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -14,8 +13,7 @@ from typing import Final
 import numpy as np
 
 from hil_sim.bench import plan
-from hil_sim.bench.course import Point
-from hil_sim.bench.journey_course import drift_course
+from hil_sim.bench.journey_course import drift_course, length_mm
 from hil_sim.bench.journey_worlds import LIMIT_S, SETS, Place, place_of
 from hil_sim.bench.worlds import GENERATED
 from hil_sim.errors import SimError
@@ -257,11 +255,6 @@ def _place(world: str, split: str, seed: int) -> Place:
         rng = _rng(Case("", split, "", world, seed), "course")
         return Place(made, field, path, drift_course(made, field, rng), LIMIT_S)
     return place_of(world, (plan.SPLITS[split], seed))
-
-
-def length_mm(start: Point, course: Sequence[Point]) -> float:
-    """Return the length of a course from its start."""
-    return sum(math.dist(a, b) for a, b in zip([start, *course], course, strict=False))
 
 
 def faults_of(case: Case) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ the courses are chosen, with the same drift for all drivers.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -22,8 +23,8 @@ from hil_sim.world.model import World
 Rng = np.random.Generator
 Complex = npt.NDArray[np.complex128]
 
-COURSE_MM: Final = 45_000.0
-"""About so long is a course where the world is large enough, there and back."""
+COURSE_MM: Final = 47_000.0
+"""A course is some 45 m long, at least 42 where the world is large enough, there and back."""
 DRIFT_DEG_M: Final = 0.6
 """A rough day's 0.5 degrees for each metre and one standard deviation of what every odometry has (0.1)."""
 SCALE: Final = 0.01
@@ -87,7 +88,7 @@ def _usable(field: Field, way: _Way, ends: Complex) -> npt.NDArray[np.bool_]:
 
 
 def drift_course(world: World, field: Field, rng: Rng) -> tuple[Point, ...]:
-    """Return waypoints of a random course of about COURSE_MM, less where drift leaves no way on.
+    """Return waypoints of a random course of some 45 m, less where drift leaves no way on.
 
     SimError when the world has no course of 8 m. Cost: 0.3 s.
     """
@@ -146,6 +147,11 @@ def _ends(field: Field, way: _Way, places: Complex, start: complex, rng: Rng) ->
         if _usable(field, last, goals[j : j + 1])[0]:
             return [complex(seconds[i]), complex(goals[j])]
     return []
+
+
+def length_mm(start: Point, course: Sequence[Point]) -> float:
+    """Return the length of a course from its start."""
+    return sum(math.dist(a, b) for a, b in zip([start, *course], course, strict=False))
 
 
 def drift_at_goal_mm(start: Point, course: tuple[Point, ...], drift_deg_m: float) -> float:

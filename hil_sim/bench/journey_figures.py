@@ -38,9 +38,8 @@ def speed_mm_s(record: Record, ideal: Record | None) -> float:
 
 
 def over_ideal(record: Record, ideal: Record) -> float | None:
-    """Return the speed of a mission over that of its ideal; None when the ideal made no way."""
-    of = speed_mm_s(ideal, None)
-    return speed_mm_s(record, ideal) / of if of else None
+    """Return the speed of a mission over that of its ideal; None when the ideal did not get there: it is none then."""
+    return speed_mm_s(record, ideal) / speed_mm_s(ideal, None) if ideal["word"] == "reached" else None
 
 
 def _figures(row: str, driver: str, group: Sequence[Record], good: Mapping[str, Record]) -> Record:
@@ -61,7 +60,8 @@ def _figures(row: str, driver: str, group: Sequence[Record], good: Mapping[str, 
         "over_ideal": _over(group, good),
         "truly": share(sum(record["truly"] for record in group), len(group)),
         "word": share(sum(record["word"] == "reached" for record in group), len(group)),
-        "gave_up": sum(record["word"] == "failed" for record in group),
+        "gave_up": share(sum(record["word"] == "failed" for record in group), len(group)),
+        "gave_up_s": quantile([record["t_s"] for record in group if record["word"] == "failed"], 0.5),
         "off_goal_mm": quantile([r["goal_mm"] for r in group if r["word"] == "reached"], 0.5),
         "odometry_off_mm": quantile([r["odometry_off_mm"] for r in group], 0.5),
         "stops": rate(int(total("stops")), hours),
@@ -83,7 +83,8 @@ def _figures(row: str, driver: str, group: Sequence[Record], good: Mapping[str, 
 
 def _over(group: Sequence[Record], good: Mapping[str, Record]) -> Record:
     """Ratio of the sums of way and time, the interval by drawing missions with replacement, and the median ratio."""
-    pairs = [(record, good[record["ideal"]]) for record in group if record["ideal"] in good]
+    ideals = [(record, good.get(record["ideal"])) for record in group]
+    pairs = [(r, ideal) for r, ideal in ideals if ideal is not None and ideal["word"] == "reached"]
     ratios = [ratio for pair in pairs if (ratio := over_ideal(*pair)) is not None]
     if not ratios:
         return {"n": 0, "ratio": None, "low": None, "high": None, "median": None, "worst": None}
@@ -109,7 +110,7 @@ def _way_and_time(record: Record, ideal: Record) -> tuple[float, float, float, f
 def _ratio(rows: Any) -> Any:
     """Speed over speed of each draw: rows of way, time, ideal way and ideal time, draws x missions x 4."""
     sums = rows.sum(axis=1)
-    return sums[:, 0] / sums[:, 1] / np.maximum(sums[:, 2] / sums[:, 3], 1e-9)
+    return sums[:, 0] / sums[:, 1] * sums[:, 3] / sums[:, 2]
 
 
 def _per_progress(group: Sequence[Record]) -> float | None:

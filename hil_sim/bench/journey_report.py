@@ -7,10 +7,12 @@ import csv
 import io
 import json
 from collections.abc import Iterable, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
 from hil_sim.bench.journey import parse_row
+from hil_sim.bench.journey_bars import bars
 from hil_sim.bench.journey_figures import over_ideal, summarise
 from hil_sim.errors import SimError
 
@@ -30,7 +32,11 @@ def write_report(folder: Path, records: Sequence[Record], meta: Record, *, plots
     rows = summarise(records)
     text = markdown(rows, meta | {"errors": errors})
     try:
-        summary = {"meta": meta | {"errors": errors}, "rows": rows}
+        summary = {
+            "meta": meta | {"errors": errors},
+            "bars": [asdict(bar) for bar in bars(rows)],
+            "rows": rows,
+        }
         (folder / f"{NAME}.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
         (folder / f"{NAME}.csv").write_text(table(records), encoding="utf-8")
         (folder / f"{NAME}.md").write_text(text, encoding="utf-8")
@@ -74,6 +80,7 @@ def markdown(rows: Sequence[Record], meta: Record) -> str:
         f"{sum(row['missions'] for row in rows)} missions, split {meta['split']}, fault manager {meta['core'][:12]}, "
         f"{meta['errors']} missions failed. Words and rules: docs/journey.md. Intervals are of 95 %.",
         "",
+        *_bars(rows),
         *_grid(_JOURNEY, [_journey(row) for row in rows]),
         "",
         *_grid(_PRICE, [_price(row) for row in rows]),
@@ -84,6 +91,27 @@ def markdown(rows: Sequence[Record], meta: Record) -> str:
         *(f"- `{name}`: {parse_row(name).says}" for name in dict.fromkeys(row["row"] for row in rows)),
     ]
     return "\n".join(lines) + "\n"
+
+
+def _bars(rows: Sequence[Record]) -> list[str]:
+    lines = [
+        (
+            bar.name,
+            bar.bar,
+            _value(bar.value, bar.unit),
+            _value(bar.bound, bar.unit),
+            str(bar.cases),
+            bar.verdict,
+        )
+        for bar in bars(rows)
+    ]
+    return [*_grid(("bar", "must", "measured", "95 % bound", "cases", "verdict"), lines), ""] if lines else []
+
+
+def _value(value: float | None, unit: str) -> str:
+    if value is None:
+        return "-"
+    return f"{100 * value:.1f} %" if unit == "%" else f"{value:.3g} {unit}".rstrip()
 
 
 _JOURNEY: Final = (
@@ -105,10 +133,10 @@ def _journey(row: Record) -> tuple[str, ...]:
         str(row["missions"]),
         _number(row["speed_mm_s"], 0),
         ratio,
-        f"{_number(over['median'], 2)}, {_number(over['worst'], 2)}",
+        f"{_number(over['median'], 2)}, {_number(over['worst'], 2)} of {over['n']}",
         _percent(row["truly"]),
         f"{row['word']['hits']}",
-        str(row["gave_up"]),
+        f"{row['gave_up']['hits']}" + (f" in {row['gave_up_s']:.0f} s" if row["gave_up"]["hits"] else ""),
         _number(row["odometry_off_mm"], 0),
         f"{_number(row['closest_mm']['least'], 0)}, {_number(row['closest_mm']['median'], 0)}",
         f"{row['collisions']} ({row['attributable']})",

@@ -9,7 +9,8 @@ import traceback
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from hil_sim.bench.journey import Case, length_mm, mission_of, parse_id
+from hil_sim.bench.journey import Case, mission_of, parse_id
+from hil_sim.bench.journey_course import length_mm
 from hil_sim.bench.judge import Track, judge
 from hil_sim.bench.plan import without_faults
 from hil_sim.sil import Mission, Sighting, Sil, run

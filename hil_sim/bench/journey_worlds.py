@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from hil_sim.bench.course import ROOM_MM, Field, Point, make_field
-from hil_sim.bench.journey_course import drift_course
+from hil_sim.bench.journey_course import drift_course, length_mm
 from hil_sim.bench.worlds import Plan
 from hil_sim.errors import SimError
 from hil_sim.tables.robot import robot_table
@@ -29,6 +29,8 @@ SET_LIMIT_S: Final = 300.0
 _TRIES: Final = 60
 _PLACES_LEAST: Final = 200
 """Cells of 50 mm where a waypoint may lie, or the plan is thrown away."""
+_COURSE_LEAST_MM: Final = 42_000.0
+"""A floor with a shorter course is thrown away."""
 _HALF_MM: Final = robot_table().body.half_mm
 _PAIR_MM: Final = (3000.0, 11_000.0)
 _ICON: Final = '"" ICON'
@@ -112,6 +114,15 @@ def _dead_ends(rng: Rng) -> tuple[Plan, Point]:
     return plan, (goal_x, middle + float(rng.uniform(-300, 300)))
 
 
+def _closed(rng: Rng) -> tuple[Plan, Point]:
+    """A room without a door, and the goal in it: nobody gets there."""
+    plan = Plan("A goal behind walls on all sides.", round(float(rng.uniform(0.4, 0.9)), 2))
+    x, y, half = float(rng.uniform(3000, 4500)), float(rng.uniform(-800, 800)), float(rng.uniform(600, 900))
+    plan.outline(-1500, -3000, x + 2500, 3000)
+    plan.outline(x - half, y - half, x + half, y + half)
+    return plan, (x, y)
+
+
 # ---- floors ---------------------------------------------------------------------------------------------------------
 
 
@@ -185,9 +196,12 @@ SETS: Final[dict[str, Callable[[Rng], tuple[Plan, Point]]]] = {
     "corridors": _corridors,
     "bends": _bends,
     "dead-ends": _dead_ends,
+    "closed": _closed,
     "pairs": lambda rng: (_office(rng), (0.0, 0.0)),
 }
 """Obstacle sets: a plan and its goal; of the pairs, start and goal are drawn in the map."""
+NO_WAY: Final = "closed"
+"""The set whose goals nobody reaches."""
 FLOORS: Final[dict[str, Callable[[Rng], Plan]]] = {"map-office": _office, "map-floor": _floor}
 
 
@@ -227,12 +241,16 @@ def _tried(path: str, of: str, goal: Point, rng: Rng) -> Place | None:
         if not of:
             if len(field.places(ROOM_MM)) < _PLACES_LEAST:
                 return None
-            return Place(world, field, path, drift_course(world, field, rng), LIMIT_S)
+            course = drift_course(world, field, rng)
+            whole = length_mm(world.start[:2], course) >= _COURSE_LEAST_MM
+            return Place(world, field, path, course, LIMIT_S) if whole else None
     except SimError:
         return None
     if of == "pairs":
         return _pair(world, field, path, rng)
-    return Place(world, field, path, (goal,), SET_LIMIT_S) if _is_open(field, goal) else None
+    return (
+        Place(world, field, path, (goal,), SET_LIMIT_S) if _is_open(field, goal) != (of == NO_WAY) else None
+    )
 
 
 def _is_open(field: Field, goal: Point) -> bool:
