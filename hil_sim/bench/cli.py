@@ -4,26 +4,21 @@
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
 import os
-import shutil
-import signal
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final, NoReturn
+from typing import Any, Final
 
-from argus_tools.core import LIBRARY_VARIABLE, library
 from argus_tools.formats.base import LogError
 
-from hil_sim.bench import cli_passive, plan, pool, quick
+from hil_sim.bench import cli_passive, journey_cli, plan, pool, quick
 from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_USAGE, Parser, jobs, kinds, say, seeds
 from hil_sim.bench.figures import summarise
 from hil_sim.bench.judge import RECORD_FORMAT
-from hil_sim.bench.progress import Progress
+from hil_sim.bench.runner import fixed_core, keep
 from hil_sim.bench.show import timeline
 from hil_sim.bench.store import RESULTS, Store
 from hil_sim.bench.work import run_case, world_files
@@ -106,50 +101,14 @@ def parser() -> argparse.ArgumentParser:
     return result
 
 
-@contextmanager
-def fixed_core() -> Iterator[str]:
-    """Give every process one and the same fault manager, even if it is built again meanwhile; yield its digest."""
-    path = Path(str(library()._name))
-    with tempfile.TemporaryDirectory(prefix="argus-core-") as folder:
-        copy = Path(folder) / path.name
-        shutil.copyfile(path, copy)
-        before = os.environ.get(LIBRARY_VARIABLE)
-        os.environ[LIBRARY_VARIABLE] = str(copy)
-        try:
-            yield hashlib.sha256(copy.read_bytes()).hexdigest()
-        finally:
-            if before is None:
-                os.environ.pop(LIBRARY_VARIABLE)
-            else:
-                os.environ[LIBRARY_VARIABLE] = before
-
-
-def _terminated(number: int, frame: object) -> NoReturn:
-    del number, frame
-    raise KeyboardInterrupt
-
-
 def run_cases(cases: Sequence[plan.Case], store: Store, arguments: argparse.Namespace, core: str) -> bool:
     """Run the cases that have no result yet, by the fault manager with this digest; False when interrupted."""
     todo = [case.id for case in cases if not store.done(case.id)]
-    progress = Progress(len(cases), len(cases) - len(todo), sys.stderr)
-    if not todo:
-        return True
-    before = signal.signal(signal.SIGTERM, _terminated)
-    try:
-        if arguments.scheduler:
-            records = pool.run_cluster(todo, arguments.scheduler, world_files(list(cases)), core)
-        else:
-            records = pool.run_here(todo, min(arguments.jobs, len(todo)))
-        for record in records:
-            store.add(record)
-            progress.add(record)
-    except KeyboardInterrupt:
-        return False
-    finally:
-        signal.signal(signal.SIGTERM, before)
-        progress.close()
-    return True
+    if arguments.scheduler and todo:
+        records = pool.run_cluster(todo, arguments.scheduler, world_files(list(cases)), core)
+    else:
+        records = pool.run_here(todo, min(arguments.jobs, len(todo)))
+    return keep(records, store, len(cases), len(todo))
 
 
 def _cases(arguments: argparse.Namespace) -> list[plan.Case]:
@@ -236,7 +195,12 @@ def _check(options: argparse.ArgumentParser, arguments: argparse.Namespace) -> N
 
 def main(argv: Sequence[str]) -> int:
     """Run `argus-sim bench ARGV`; return the exit code."""
-    names = {"diagnosis": _diagnosis, "drive-by": cli_passive.drive_by, "ablate": cli_passive.ablate}
+    names = {
+        "diagnosis": _diagnosis,
+        "journey": journey_cli.journey,
+        "drive-by": cli_passive.drive_by,
+        "ablate": cli_passive.ablate,
+    }
     if not argv or argv[0] not in names:
         if argv and argv[0] in ("-h", "--help"):
             print(f"usage: argus-sim bench {{{','.join(names)}}} ...; see {PROG} --help")

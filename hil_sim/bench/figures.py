@@ -375,14 +375,14 @@ def bars(figure: Record, faults: Sequence[Record]) -> list[Bar]:
 
 
 def _at_least(name: str, value: float | None, low: float, cases: int, least: float) -> Bar:
-    return _bar(name, f">= {100 * least:g} %", value, low, "%", cases, lambda v: v >= least)
+    return judged_bar(name, f">= {100 * least:g} %", value, low, "%", cases, lambda v: v >= least)
 
 
 def _at_most(name: str, value: float | None, high: float | None, cases: int, most: float, unit: str) -> Bar:
-    return _bar(name, f"<= {most:g} {unit}".rstrip(), value, high, unit, cases, lambda v: v <= most)
+    return judged_bar(name, f"<= {most:g} {unit}".rstrip(), value, high, unit, cases, lambda v: v <= most)
 
 
-def _bar(
+def judged_bar(
     name: str,
     bar: str,
     value: float | None,
@@ -391,6 +391,7 @@ def _bar(
     cases: int,
     clears: Callable[[float], bool],
 ) -> Bar:
+    """Return a line of the table that decides, judged by its value and by its 95 % bound."""
     if value is None or not cases:
         verdict = "open"
     elif not clears(value):

@@ -243,7 +243,8 @@ def _rng(case: Case, purpose: str) -> Rng:
     return np.random.default_rng([SPLITS[case.split], case.seed, *(zlib.crc32(w.encode()) for w in words)])
 
 
-def _target(rng: Rng, besides: int | None = None) -> int:
+def target(rng: Rng, besides: int | None = None) -> int:
+    """Draw the sonar that fails: three times of four one that faces forward."""
     others = [n for n in range(SONARS) if n not in FORWARD]
     while True:
         pool = list(FORWARD) if rng.random() < FORWARD_SHARE else others
@@ -268,10 +269,10 @@ def faults_of(case: Case) -> tuple[str, ...]:
         return ()
     if case.kind == "pair":
         first, second = rng.choice(sorted(SINGLE), 2)
-        one = _target(rng)
-        other = _target(rng, besides=one)
+        one = target(rng)
+        other = target(rng, besides=one)
         return _fault(rng, str(first), one, False), _fault(rng, str(second), other, False)
-    return (_fault(rng, case.variant, _target(rng), bool(rng.random() < REPAIR_SHARE)),)
+    return (_fault(rng, case.variant, target(rng), bool(rng.random() < REPAIR_SHARE)),)
 
 
 def mission_of(case: Case) -> Mission:

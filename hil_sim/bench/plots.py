@@ -26,7 +26,8 @@ _LEAST_S: Final = 0.05
 
 
 @contextmanager
-def _picture(folder: Path, name: str, size: tuple[float, float]) -> Iterator[Figure]:
+def picture(folder: Path, name: str, size: tuple[float, float]) -> Iterator[Figure]:
+    """Give a figure and write it as PNG and SVG, the same bytes each time."""
     with rc_context(_STYLE):
         figure = Figure(figsize=size, layout="constrained")
         yield figure
@@ -48,7 +49,7 @@ def draw(folder: Path, summary: Record, records: Sequence[Record]) -> None:
 
 
 def _latencies(folder: Path, records: Sequence[Record], profiles: Sequence[str]) -> None:
-    with _picture(folder, "latency", (5.2 * len(profiles), 4.2)) as figure:
+    with picture(folder, "latency", (5.2 * len(profiles), 4.2)) as figure:
         axes = figure.subplots(1, len(profiles), sharey=True, squeeze=False)[0]
         for place, profile in zip(axes, profiles, strict=True):
             for k, kind in enumerate(KINDS):
@@ -80,7 +81,7 @@ def _steps(place: Axes, records: Sequence[Record], profile: str, kind: str, k: i
 
 def _confusions(folder: Path, profiles: Mapping[str, Record]) -> None:
     columns = [*KINDS, "none", NOT_FOUND]
-    with _picture(folder, "confusion", (5.4 * len(profiles), 4.4)) as figure:
+    with picture(folder, "confusion", (5.4 * len(profiles), 4.4)) as figure:
         axes = figure.subplots(1, len(profiles), squeeze=False, sharey=True)[0]
         axes[0].set_ylabel("injected")
         for place, (profile, one) in zip(axes, profiles.items(), strict=True):
@@ -106,7 +107,7 @@ def _confusions(folder: Path, profiles: Mapping[str, Record]) -> None:
 
 def _trade(folder: Path, profiles: Mapping[str, Record]) -> None:
     """Found against what is said of healthy sonars, one point for each set of settings."""
-    with _picture(folder, "trade-off", (9.6, 4.4)) as figure:
+    with picture(folder, "trade-off", (9.6, 4.4)) as figure:
         given_up, named = figure.subplots(1, 2, sharey=True)
         for k, (profile, one) in enumerate(profiles.items()):
             for place, false, hours in ((given_up, "false_disables", 100), (named, "false_names", 1)):
@@ -152,7 +153,7 @@ def _say_nothing(place: Axes) -> None:
 
 def _sensitivity(folder: Path, points: Sequence[Record]) -> None:
     names = list(dict.fromkeys(point["parameter"] for point in points))
-    with _picture(folder, "sensitivity", (5.0 * len(names), 6.4)) as figure:
+    with picture(folder, "sensitivity", (5.0 * len(names), 6.4)) as figure:
         axes = figure.subplots(2, len(names), squeeze=False, sharex="col")
         for column, name in enumerate(names):
             for k, profile in enumerate(dict.fromkeys(point["profile"] for point in points)):

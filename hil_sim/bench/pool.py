@@ -25,6 +25,12 @@ _LIVES: Final = 2
 _CLUSTER_LIVES: Final = 100
 
 Work = Callable[[str], Record]
+Fail = Callable[[str, str], Record]
+"""Makes the record of a mission that has none, from its id and the reason."""
+
+
+def _failed(case_id: str, reason: str) -> Record:
+    return failed(parse_id(case_id), reason)
 
 
 def _ignore_interrupt() -> None:
@@ -32,7 +38,7 @@ def _ignore_interrupt() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def run_here(ids: Sequence[str], jobs: int, run: Work = work) -> Iterator[Record]:
+def run_here(ids: Sequence[str], jobs: int, run: Work = work, fail: Fail = _failed) -> Iterator[Record]:
     """Yield the record of each id as it comes, from `jobs` processes; in this process when that is 1."""
     if jobs <= 1:
         yield from map(run, ids)
@@ -44,7 +50,7 @@ def run_here(ids: Sequence[str], jobs: int, run: Work = work) -> Iterator[Record
         if suspects:
             for name in suspects:
                 waiting.remove(name)
-            yield from _alone(suspects, deaths, waiting, run)
+            yield from _alone(suspects, deaths, waiting, (run, fail))
         else:
             yield from _together(waiting, jobs, deaths, run)
 
@@ -73,7 +79,10 @@ def _together(waiting: deque[str], jobs: int, deaths: dict[str, int], run: Work)
         _end(pool)
 
 
-def _alone(suspects: list[str], deaths: dict[str, int], waiting: deque[str], run: Work) -> Iterator[Record]:
+def _alone(
+    suspects: list[str], deaths: dict[str, int], waiting: deque[str], how: tuple[Work, Fail]
+) -> Iterator[Record]:
+    run, fail = how
     while suspects:
         pool = _pool(1)
         try:
@@ -85,7 +94,7 @@ def _alone(suspects: list[str], deaths: dict[str, int], waiting: deque[str], run
             name = suspects.pop(0)
             deaths[name] += 1
             if deaths[name] >= _LIVES:
-                yield failed(parse_id(name), "the process that ran it died")
+                yield fail(name, "the process that ran it died")
             else:
                 waiting.append(name)
         finally:

@@ -8,35 +8,15 @@ from typing import Any
 
 from hil_sim.bench.judge import BOUND_S
 from hil_sim.bench.passive import Finding, Verdict
-from hil_sim.bench.stats import count_bound_high, quantile, share_interval
-
-_TAIL = 0.975
-
-
-def _share(hits: int, total: int) -> dict[str, Any]:
-    low, high = share_interval(hits, total)
-    return {"hits": hits, "of": total, "share": hits / total if total else None, "low": low, "high": high}
-
-
-def _rate(count: int, hours: float) -> dict[str, Any]:
-    """A count in some hours, and the exact 95 % interval of its rate."""
-    low, high = _count_low(count), count_bound_high(count, _TAIL)
-    if not hours:
-        return {"count": count, "hours": hours, "rate": None, "low": None, "high": None}
-    return {"count": count, "hours": hours, "rate": count / hours, "low": low / hours, "high": high / hours}
-
-
-def _count_low(count: int) -> float:
-    """The lower bound of the mean of a Poisson count: where one less is as likely exceeded as the tail."""
-    return count_bound_high(count - 1, 1 - _TAIL) if count else 0.0
+from hil_sim.bench.stats import quantile, rate, share
 
 
 def _found(findings: Sequence[Finding]) -> dict[str, Any]:
     seconds = [f.latency_s for f in findings if f.latency_s is not None]
     return {
-        "in_time": _share(sum(f.in_time for f in findings), len(findings)),
-        "ever": _share(len(seconds), len(findings)),
-        "named_right": _share(sum(f.named_right for f in findings), len(seconds)),
+        "in_time": share(sum(f.in_time for f in findings), len(findings)),
+        "ever": share(len(seconds), len(findings)),
+        "named_right": share(sum(f.named_right for f in findings), len(seconds)),
         "median_s": quantile(seconds, 0.5),
         "p99_s": quantile(seconds, 0.99),
     }
@@ -45,8 +25,8 @@ def _found(findings: Sequence[Finding]) -> dict[str, Any]:
 def _false(verdicts: Sequence[Verdict]) -> dict[str, Any]:
     hours = sum(verdict.hours for verdict in verdicts)
     return {
-        "names": _rate(sum(len(verdict.names) for verdict in verdicts), hours),
-        "disables": _rate(sum(len(verdict.disables) for verdict in verdicts), hours),
+        "names": rate(sum(len(verdict.names) for verdict in verdicts), hours),
+        "disables": rate(sum(len(verdict.disables) for verdict in verdicts), hours),
     }
 
 
@@ -68,20 +48,20 @@ def _groups(verdicts: Sequence[Verdict]) -> dict[str, list[Finding]]:
     return groups | {kind: [f for f in findings if f.kind == kind] for kind in BOUND_S}
 
 
-def _percent(share: dict[str, Any]) -> str:
-    if not share["of"]:
+def _percent(part: dict[str, Any]) -> str:
+    if not part["of"]:
         return "-"
-    return f"{100 * share['share']:.1f} ({100 * share['low']:.1f} to {100 * share['high']:.1f})"
+    return f"{100 * part['share']:.1f} ({100 * part['low']:.1f} to {100 * part['high']:.1f})"
 
 
 def _seconds(value: float | None) -> str:
     return "-" if value is None else f"{value:.1f}"
 
 
-def _per_hour(rate: dict[str, Any]) -> str:
-    if rate["rate"] is None:
+def _per_hour(found: dict[str, Any]) -> str:
+    if found["rate"] is None:
         return "-"
-    return f"{rate['rate']:.2f} ({rate['low']:.2f} to {rate['high']:.2f})"
+    return f"{found['rate']:.2f} ({found['low']:.2f} to {found['high']:.2f})"
 
 
 def table(figures: dict[str, Any]) -> str:

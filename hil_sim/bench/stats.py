@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from statistics import NormalDist
-from typing import Final
+from typing import Any, Final
 
 CONFIDENCE: Final = 0.95
 _ITERATIONS: Final = 300
@@ -108,3 +108,19 @@ def quantile(values: Sequence[float], part: float) -> float | None:
     if not values:
         return None
     return sorted(values)[max(0, math.ceil(part * len(values)) - 1)]
+
+
+def share(hits: int, total: int) -> dict[str, Any]:
+    """Return a share of a total with its exact interval, as it goes into JSON; `share` is None of nothing."""
+    low, high = share_interval(hits, total)
+    return {"hits": hits, "of": total, "share": hits / total if total else None, "low": low, "high": high}
+
+
+def rate(count: int, hours: float) -> dict[str, Any]:
+    """Return a count in some hours and the exact interval of its rate, as it goes into JSON; None without hours."""
+    tail = (1 + CONFIDENCE) / 2
+    # The lower bound of the mean of a Poisson count: where one less is as likely exceeded as the tail.
+    low, high = count_bound_high(count - 1, 1 - tail) if count else 0.0, count_bound_high(count, tail)
+    if not hours:
+        return {"count": count, "hours": hours, "rate": None, "low": None, "high": None}
+    return {"count": count, "hours": hours, "rate": count / hours, "low": low / hours, "high": high / hours}

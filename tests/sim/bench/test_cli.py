@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from argus_tools.core import LIBRARY_VARIABLE
 
-from hil_sim.bench import cli
+from hil_sim.bench import runner
 from hil_sim.bench.arguments import EXIT_INTERRUPTED
 from hil_sim.bench.store import META, RESULTS
 from hil_sim.cli.main import main
@@ -158,7 +158,7 @@ def test_a_mission_that_fails_is_told_and_fails_the_bench(
 
 def test_the_fault_manager_stays_the_same_file_during_a_bench() -> None:
     before = os.environ.get(LIBRARY_VARIABLE)
-    with cli.fixed_core() as digest:
+    with runner.fixed_core() as digest:
         assert os.environ[LIBRARY_VARIABLE] != before
         assert len(digest) == 64
     assert os.environ.get(LIBRARY_VARIABLE) == before

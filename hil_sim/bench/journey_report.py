@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: MIT
+"""What `bench journey` leaves: journey.json, journey.csv, journey.md and pictures."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, Final
+
+from hil_sim.bench.journey import parse_row
+from hil_sim.bench.journey_bars import bars
+from hil_sim.bench.journey_figures import over_ideal, summarise
+from hil_sim.errors import SimError
+
+Record = dict[str, Any]
+NAME: Final = "journey"
+_MISSION: Final = (
+    "id", "driver", "split", "row", "world", "seed", "word", "truly", "goal_mm", "odometry_off_mm", "course_mm",
+    "progress_mm", "driven_mm", "t_s", "driving_s", "stops", "looks", "looking_s", "turned_deg", "energy_j",
+    "closest_mm", "early_mm", "attributable", "struck",
+)  # fmt: skip
+_COUNTED: Final = ("false_names", "false_disables", "collisions")
+
+
+def write_report(folder: Path, records: Sequence[Record], meta: Record, *, plots: bool) -> str:
+    """Write all files into the folder; return the Markdown."""
+    errors = sum(record["error"] is not None for record in records)
+    rows = summarise(records)
+    text = markdown(rows, meta | {"errors": errors})
+    try:
+        summary = {
+            "meta": meta | {"errors": errors},
+            "bars": [asdict(bar) for bar in bars(rows)],
+            "rows": rows,
+        }
+        (folder / f"{NAME}.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+        (folder / f"{NAME}.csv").write_text(table(records), encoding="utf-8")
+        (folder / f"{NAME}.md").write_text(text, encoding="utf-8")
+        if plots:
+            from hil_sim.bench.journey_plots import draw
+
+            draw(folder, records)
+    except OSError as error:
+        raise SimError(f"{folder}: cannot write the report ({error.strerror}); name another --out") from error
+    return text
+
+
+def table(records: Iterable[Record]) -> str:
+    """Return one CSV line for each mission."""
+    good = {record["id"]: record for record in records if record["error"] is None}
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow([*_MISSION, *_COUNTED, "over_ideal", "faults"])
+    for _, record in sorted(good.items()):
+        ideal = good.get(record["ideal"])
+        ratio = over_ideal(record, ideal) if ideal is not None else None
+        writer.writerow(
+            [
+                *(record[name] for name in _MISSION),
+                *(len(record[name]) for name in _COUNTED),
+                "" if ratio is None else f"{ratio:.4f}",
+                " ".join(record["faulty"]),
+            ]
+        )
+    return out.getvalue()
+
+
+# ---- Markdown ---------------------------------------------------------------------------------------------------
+
+
+def markdown(rows: Sequence[Record], meta: Record) -> str:
+    """Return the report for people."""
+    lines = [
+        "# Journeys",
+        "",
+        f"{sum(row['missions'] for row in rows)} missions, split {meta['split']}, fault manager {meta['core'][:12]}, "
+        f"{meta['errors']} missions failed. Words and rules: docs/journey.md. Intervals are of 95 %.",
+        "",
+        *_bars(rows),
+        *_grid(_JOURNEY, [_journey(row) for row in rows]),
+        "",
+        *_grid(_PRICE, [_price(row) for row in rows]),
+        "",
+        *_grid(("row", "driver", "share of the clock in each mode, %"), [_modes(row) for row in rows]),
+        "",
+        *_faults(rows),
+        *(f"- `{name}`: {parse_row(name).says}" for name in dict.fromkeys(row["row"] for row in rows)),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _bars(rows: Sequence[Record]) -> list[str]:
+    lines = [
+        (
+            bar.name,
+            bar.bar,
+            _value(bar.value, bar.unit),
+            _value(bar.bound, bar.unit),
+            str(bar.cases),
+            bar.verdict,
+        )
+        for bar in bars(rows)
+    ]
+    return [*_grid(("bar", "must", "measured", "95 % bound", "cases", "verdict"), lines), ""] if lines else []
+
+
+def _value(value: float | None, unit: str) -> str:
+    if value is None:
+        return "-"
+    return f"{100 * value:.1f} %" if unit == "%" else f"{value:.3g} {unit}".rstrip()
+
+
+_JOURNEY: Final = (
+    "row", "driver", "n", "mm/s", "over ideal", "median, worst", "truly there, %", "by its word", "gave up",
+    "odometry off mm", "closest mm: least, median", "collisions (attributable)",
+)  # fmt: skip
+_PRICE: Final = (
+    "row", "driver", "clock h", "stops/h", "looks/h", "s looking/h", "deg/m", "J/m", "false names/h",
+    "false disables/h", "m in 330 s: least, median",
+)  # fmt: skip
+
+
+def _journey(row: Record) -> tuple[str, ...]:
+    over = row["over_ideal"]
+    ratio = "-" if over["ratio"] is None else f"{over['ratio']:.2f} ({over['low']:.2f} to {over['high']:.2f})"
+    return (
+        row["row"],
+        row["driver"],
+        str(row["missions"]),
+        _number(row["speed_mm_s"], 0),
+        ratio,
+        f"{_number(over['median'], 2)}, {_number(over['worst'], 2)} of {over['n']}",
+        _percent(row["truly"]),
+        f"{row['word']['hits']}",
+        f"{row['gave_up']['hits']}" + (f" in {row['gave_up_s']:.0f} s" if row["gave_up"]["hits"] else ""),
+        _number(row["odometry_off_mm"], 0),
+        f"{_number(row['closest_mm']['least'], 0)}, {_number(row['closest_mm']['median'], 0)}",
+        f"{row['collisions']} ({row['attributable']})",
+    )
+
+
+def _price(row: Record) -> tuple[str, ...]:
+    early = row["early_mm"]
+    return (
+        row["row"],
+        row["driver"],
+        f"{row['clock_hours']:.2f}",
+        _number(row["stops"]["rate"], 0),
+        _number(row["looks"]["rate"], 0),
+        _number(row["looking_s_per_hour"], 0),
+        _number(row["turned_deg_per_m"], 0),
+        _number(row["energy_j_per_m"], 0),
+        _per_hour(row["false_names"]),
+        _per_hour(row["false_disables"]),
+        f"{_number(early['least'], -3)}, {_number(early['median'], -3)}",
+    )
+
+
+def _modes(row: Record) -> tuple[str, ...]:
+    shares = ", ".join(f"{name} {100 * part:.0f}" for name, part in row["modes"].items() if part >= 0.005)
+    return row["row"], row["driver"], shares
+
+
+def _faults(rows: Sequence[Record]) -> list[str]:
+    """What was found of the faults in time and ever."""
+    found = [
+        (
+            row["row"],
+            row["driver"],
+            kind,
+            str(one["ever"]["of"]),
+            _percent(one["in_time"]),
+            _percent(one["ever"]),
+        )
+        for row in rows
+        for kind, one in row["found"].items()
+    ]
+    return (
+        [*_grid(("row", "driver", "faults", "n", "found in time, %", "ever, %"), found), ""] if found else []
+    )
+
+
+def _grid(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
+    return [
+        f"| {' | '.join(head)} |",
+        "|" + "---|" * len(head),
+        *(f"| {' | '.join(row)} |" for row in rows),
+    ]
+
+
+def _number(value: float | None, digits: int) -> str:
+    """Digits after the point; -3 gives metres of mm, with one."""
+    if value is None:
+        return "-"
+    return f"{value / 1000:.1f}" if digits < 0 else f"{value:.{digits}f}"
+
+
+def _percent(part: Record) -> str:
+    if not part["of"]:
+        return "-"
+    return f"{100 * part['share']:.0f} ({100 * part['low']:.0f} to {100 * part['high']:.0f})"
+
+
+def _per_hour(found: Record) -> str:
+    if found["rate"] is None:
+        return "-"
+    return f"{found['rate']:.1f} ({found['low']:.1f} to {found['high']:.1f})"

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: MIT
+"""One journey from its case to its record: what it took, where it stopped and looked, how near it came to walls."""
+
+from __future__ import annotations
+
+import math
+import time
+import traceback
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from hil_sim.bench.journey import Case, mission_of, parse_id
+from hil_sim.bench.journey_course import length_mm
+from hil_sim.bench.judge import Track, judge
+from hil_sim.bench.plan import without_faults
+from hil_sim.sil import Mission, Sighting, Sil, run
+from hil_sim.tables.robot import robot_table
+from hil_sim.world.body import BodyModel
+
+RECORD_FORMAT: Final = 1
+"""Raised whenever a record gets another field: results of two formats do not mix."""
+ARRIVED_MM: Final = 150.0
+"""The robot is truly at its goal when its centre is within this of it."""
+EARLY_S: Final = 330.0
+"""The time in which others have measured the way that a robot makes."""
+LOOKING: Final = "VERIFYING"
+FREE: Final = "DRIVING"
+"""Modes: of looks, and of free driving."""
+_PATH_MM: Final = 200.0
+_RUNS_MM_S, _RESTS_MM_S = 50.0, 5.0
+_DIGITS: Final = 3
+
+Record = dict[str, Any]
+Spot = tuple[int, int]
+
+
+@dataclass
+class Diary:
+    """What is noted with each SIP. Pass it as `trace`.
+
+    stops: where the robot came to rest, having moved faster than 50 mm/s. looks: where it began to look. closest_mm:
+    the smallest distance of the body from a wall or another solid that stands, ahead in free driving. early_mm: the
+    way driven in the first 330 s.
+    """
+
+    track: Track = field(default_factory=Track)
+    path: list[Spot] = field(default_factory=list)
+    stops: list[Spot] = field(default_factory=list)
+    looks: list[Spot] = field(default_factory=list)
+    modes: dict[str, float] = field(default_factory=dict)
+    turned_deg: float = 0.0
+    closest_mm: float | None = None
+    early_mm: float = 0.0
+    _mode: str = ""
+    _t_s: float = 0.0
+    _heading_deg: float | None = None
+    _runs: bool = False
+    _body: BodyModel | None = None
+    _clear: tuple[float, float, float] | None = None
+
+    def __call__(self, sil: Sil, sighting: Sighting) -> None:
+        """Take a SIP."""
+        self.track(sil, sighting)
+        spot = (round(sil.robot.chassis.x), round(sil.robot.chassis.y))
+        if not self.path or math.dist(self.path[-1], spot) >= _PATH_MM:
+            self.path.append(spot)
+        self._note_mode(sil.mode, sighting.t_s, spot)
+        if sighting.t_s <= EARLY_S:
+            self.early_mm = sil.robot.chassis.travelled_mm
+        self._note_turn(sil.robot.chassis.th)
+        self._note_stop(abs(sil.robot.drive.v), spot)
+        if sil.mode == FREE and sil.robot.drive.v > _RESTS_MM_S:
+            self._note_clearance(sil)
+
+    def _note_mode(self, mode: str, t_s: float, spot: Spot) -> None:
+        before = self._mode or mode
+        self.modes[before] = self.modes.get(before, 0.0) + t_s - self._t_s
+        if mode == LOOKING != self._mode:
+            self.looks.append(spot)
+        self._mode, self._t_s = mode, t_s
+
+    def _note_turn(self, heading_deg: float) -> None:
+        if self._heading_deg is not None:
+            self.turned_deg += abs(heading_deg - self._heading_deg)
+        self._heading_deg = heading_deg
+
+    def _note_stop(self, speed_mm_s: float, spot: Spot) -> None:
+        if self._runs and speed_mm_s <= _RESTS_MM_S:
+            self.stops.append(spot)
+            self._runs = False
+        self._runs = self._runs or speed_mm_s > _RUNS_MM_S
+
+    def _note_clearance(self, sil: Sil) -> None:
+        """Measure only where the closest so far may be undercut: no solid comes nearer than the body goes."""
+        chassis = sil.robot.chassis
+        if self._clear is not None and self.closest_mm is not None:
+            clear, driven, turned = self._clear
+            reach = math.radians(self.turned_deg - turned) * robot_table(sil.mission.robot).body.reach_mm
+            if clear - (chassis.travelled_mm - driven) - reach > self.closest_mm:
+                return
+        if self._body is None:
+            self._body = BodyModel(sil.world, None, robot_table(sil.mission.robot).body)
+        clear = self._body.clearance_mm(chassis.pose)
+        self._clear = clear, chassis.travelled_mm, self.turned_deg
+        self.closest_mm = clear if self.closest_mm is None else min(self.closest_mm, clear)
+
+    def fields(self) -> Record:
+        """Return what goes into a record."""
+        return {
+            "stops": len(self.stops),
+            "looks": len(self.looks),
+            "turned_deg": round(self.turned_deg, 1),
+            "closest_mm": None if self.closest_mm is None else round(self.closest_mm, 1),
+            "early_mm": round(self.early_mm, 1),
+            "modes_s": {name: round(value, 1) for name, value in sorted(self.modes.items())},
+            "path": self.path,
+            "stops_at": self.stops,
+            "looks_at": self.looks,
+        }
+
+
+def run_case(case: Case) -> Record:
+    """Run a case and return its record."""
+    begin = time.perf_counter()
+    mission = mission_of(case)
+    diary = Diary()
+    sil = Sil(mission, trace=diary)
+    outcome = sil.run()
+    twin = None
+    if mission.faults and any(not hit.struck for hit in outcome.collisions):
+        twin = run(without_faults(mission))
+    record = judge(outcome, diary.track, twin)
+    record["looking_s"] = record.pop("verifying_s")
+    record["stop_commands"] = record.pop("stops")
+    record |= _arrival(sil, mission) | diary.fields()
+    record["energy_j"] = round(sil.robot.energy.total_j, 1)
+    record["faulty"] = list(mission.faults)
+    record["limit_s"] = mission.limit_s
+    return head(case) | record | {"wall_s": round(time.perf_counter() - begin, 3)}
+
+
+def _arrival(sil: Sil, mission: Mission) -> Record:
+    """How far it came, truly and by its own word."""
+    begins = (sil.start.x_mm, sil.start.y_mm)
+    length = length_mm(begins, mission.course)
+    word = sil.state_of_mission
+    chassis = sil.robot.chassis
+    passed = max((event.value for event in sil.events if event.name == "WAYPOINT"), default=0)
+    left = length_mm((chassis.x, chassis.y), mission.course[min(passed, len(mission.course) - 1) :])
+    progress = length if word == "reached" else max(0.0, length - left)
+    goal_mm = math.dist((chassis.x, chassis.y), mission.course[-1])
+    return {
+        "course_mm": round(length, 1),
+        "progress_mm": round(progress, 1),
+        "word": word,
+        "truly": word == "reached" and goal_mm <= ARRIVED_MM,
+        "odometry_off_mm": round(_odometry_off_mm(sil), 1),
+    }
+
+
+def _odometry_off_mm(sil: Sil) -> float:
+    """How far the robot is from where its odometry has it."""
+    chassis, start = sil.robot.chassis, sil.start
+    heading = math.radians(start.heading_deg)
+    x = start.x_mm + chassis.odo_x * math.cos(heading) - chassis.odo_y * math.sin(heading)
+    y = start.y_mm + chassis.odo_x * math.sin(heading) + chassis.odo_y * math.cos(heading)
+    return math.hypot(x - chassis.x, y - chassis.y)
+
+
+def head(case: Case) -> Record:
+    """Return the fields of a record that say which case it is."""
+    return {
+        "id": case.id,
+        "driver": case.driver,
+        "split": case.split,
+        "row": case.row,
+        "world": case.world,
+        "seed": case.seed,
+        "ideal": case.ideal.id,
+        "error": None,
+    }
+
+
+def work(case_id: str) -> Record:
+    """Run the case of an id; never raises: a record with `error` tells what went wrong, so that the bench goes on."""
+    try:
+        return run_case(parse_id(case_id))
+    except Exception as error:  # whatever a mission does, the others must run
+        return failed(case_id, f"{type(error).__name__}: {error}", traceback.format_exc())
+
+
+def failed(case_id: str, reason: str, details: str = "") -> Record:
+    """Return the record of a case that did not run."""
+    return head(parse_id(case_id)) | {"error": reason, "details": details}
