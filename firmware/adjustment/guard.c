@@ -72,10 +72,9 @@ int32_t argus_guard_ahead_mm(const argus_guard_t *const self) {
     return argus_min(clear_mm, argus_guard_seen_mm(self));
 }
 
-// A sonar ahead that is doubted, or a wall close beside, which may slant in.
+// A sonar ahead that has the name of a fault, or a wall close beside, which may slant in.
 static bool is_wary(const argus_guard_t *const self) {
-    const unsigned doubted = argus_with_health(self->knowledge, ARGUS_SUSPECT);
-    return (doubted & argus_robot_ahead(self->knowledge->robot)) != 0 ||
+    return (argus_named(self->knowledge) & argus_robot_ahead(self->knowledge->robot)) != 0 ||
            argus_flank_mm(self->knowledge) <= ARGUS_FLANK_NEAR_MM;
 }
 

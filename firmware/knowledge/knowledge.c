@@ -167,6 +167,22 @@ argus_mask_t argus_out(const argus_knowledge_t *const self) {
     return argus_disabled(self) | argus_with_health(self, ARGUS_PROBATION);
 }
 
+argus_mask_t argus_named(const argus_knowledge_t *const self) {
+    unsigned mask = 0;
+    for (int i = 0; i < self->sonars; i++) {
+        const argus_sonar_t *const s = &self->sonar[i];
+        mask |= s->health == ARGUS_SUSPECT && s->kind != ARGUS_KIND_NONE ? 1u << i : 0u;
+    }
+    return (argus_mask_t)mask;
+}
+
+// Doubt without a name is not enough to look away from what it says.
+bool argus_trusted(const argus_knowledge_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const argus_sonar_t *const s = &self->sonar[sonar];
+    return s->health == ARGUS_HEALTHY || (s->health == ARGUS_SUSPECT && s->kind == ARGUS_KIND_NONE);
+}
+
 bool argus_usable(const argus_knowledge_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_t *const s = &self->sonar[sonar];

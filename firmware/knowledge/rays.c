@@ -58,17 +58,11 @@ static void see(argus_rays_t *const self, const argus_knowledge_t *const knowled
     add(self, &ray);
 }
 
-// Doubt without a name is not enough to look away from what it says.
-static bool is_trusted(const argus_sonar_t *const sonar) {
-    return sonar->health == ARGUS_HEALTHY ||
-           (sonar->health == ARGUS_SUSPECT && sonar->kind == ARGUS_KIND_NONE);
-}
-
 void argus_rays_see(argus_rays_t *const self, const argus_knowledge_t *const knowledge) {
     const unsigned looks = argus_robot_ahead(knowledge->robot) | argus_robot_flank(knowledge->robot);
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool fresh = (knowledge->fresh & looks) >> i & 1u;
-        if (fresh && is_trusted(&knowledge->sonar[i])) {
+        if (fresh && argus_trusted(knowledge, i)) {
             see(self, knowledge, i);
         }
     }

@@ -31,12 +31,17 @@ argus_mask_t argus_doubted(const argus_t *const self) {
 }
 
 static bool is_trusted(const argus_t *const self, const int sonar) {
-    return sonar >= 0 && self->knowledge.sonar[sonar].health == ARGUS_HEALTHY;
+    return sonar >= 0 && argus_trusted(&self->knowledge, sonar);
+}
+
+// Those in question: named, and not yet looked at here.
+static unsigned open_names(const argus_t *const self) {
+    return argus_named(&self->knowledge) & argus_open_suspects(self);
 }
 
 // Suspects ahead that have no neighbour who sees on the way what they may not.
 static argus_mask_t alone(const argus_t *const self) {
-    const unsigned open = argus_open_suspects(self) & argus_robot_forward(self->knowledge.robot);
+    const unsigned open = open_names(self) & argus_robot_forward(self->knowledge.robot);
     unsigned mask = 0;
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const argus_sonar_pose_t *const pose = argus_robot_pose(self->knowledge.robot, i);
@@ -51,7 +56,7 @@ void argus_count_loss(argus_t *const self) {
     const argus_guard_t guard = argus_guard(self);
     const int32_t free_mm_s = argus_guard_free_speed_mm_s(&guard);
     const int32_t lost_mm_s = free_mm_s - argus_guard_speed_mm_s(&guard);
-    const bool doubted = argus_open_suspects(self) != 0;
+    const bool doubted = open_names(self) != 0;
     ARGUS_ASSERT(free_mm_s > 0 && lost_mm_s >= 0);
     self->looks.lost_ms = doubted ? self->looks.lost_ms + SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s : 0;
 }
