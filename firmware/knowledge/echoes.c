@@ -91,6 +91,7 @@ static void remember(argus_echoes_t *const self, const argus_point_t at, const u
 
 void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                       const uint32_t now_ms) {
+    argus_grid_see(&self->grid, knowledge);
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool fresh = (knowledge->fresh >> i & 1u) != 0;
         if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT &&
@@ -104,6 +105,7 @@ void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const
 void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     uint16_t kept = 0;
+    argus_grid_clear(&self->grid); // what it put there cannot be told from what the others did
     for (uint16_t i = 0; i < self->count; i++) {
         if (self->at[i].sonar != sonar) {
             self->at[kept++] = self->at[i];
@@ -116,6 +118,7 @@ void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
 
 void argus_echoes_touched(argus_echoes_t *const self, const argus_point_t at, const uint32_t now_ms) {
     remember(self, at, BY_TOUCH, now_ms);
+    argus_grid_mark(&self->grid, at);
 }
 
 // The front segments lie across the bow, bit 1 leftmost; what they touched is remembered as if it had been

@@ -4,6 +4,7 @@
 #ifndef ARGUS_ECHOES_H
 #define ARGUS_ECHOES_H
 
+#include "knowledge/grid.h"
 #include "knowledge/knowledge.h"
 
 #define ARGUS_POINTS_MAX 128
@@ -21,6 +22,7 @@ typedef struct {
     argus_echo_t at[ARGUS_POINTS_MAX];
     uint16_t count;
     uint16_t next; // oldest, once full
+    argus_grid_t grid;
 } argus_echoes_t;
 
 void argus_echoes_init(argus_echoes_t *self);

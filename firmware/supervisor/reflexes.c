@@ -198,7 +198,7 @@ static argus_intent_t sees_flank(const argus_t *const self, const argus_alarm_t 
         if ((usable >> i & 1u) != 0 && argus_evidence_slants_in(&self->evidence, i, stop_mm)) {
             argus_intent_t intent = say(ARGUS_EV_OBJECT, i, self->knowledge.sonar[i].reading_mm);
             intent.stop = ARGUS_STOP_STOP;
-            intent.way = ARGUS_WAY_REFUSE_SLANT;
+            intent.way = ARGUS_WAY_REFUSE;
             intent.act = ARGUS_DO_CHECK;
             intent.full = true;
             return intent;

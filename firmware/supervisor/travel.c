@@ -10,7 +10,6 @@
 #define AIMED_CDEG 200   // at rest, near enough
 #define STEER_CDEG 200   // while driving, corrected beyond this
 #define STEER_LEG_MM 250 // ... and only this far from the leg's end
-#define LEG_DONE_MM 60
 #define WEAVE_CDEG 1000   // to either side of the way: half the pitch of the ring
 #define WOVEN_CDEG 300    // near enough
 #define WOVEN_SIPS 4      // there: a round of the array
@@ -104,10 +103,8 @@ static void end_leg(const argus_t *const self, argus_travel_t *const mine) {
     if (mine->jog_mm > 0 || !mine->task.has_leg) {
         return;
     }
-    const bool detour =
-        mine->task.avoiding && argus_task_leg_mm(&mine->task, &self->knowledge) <= LEG_DONE_MM;
     const bool missed = mine->aimed && off_bearing(self, mine) > AIM_CDEG;
-    mine->task.has_leg = !detour;
+    argus_task_keep(&mine->task, &self->knowledge, &self->echoes);
     mine->aimed = mine->aimed && !missed;
 }
 
