@@ -63,7 +63,7 @@ void argus_task_forgive(argus_task_t *const self) {
 // What is left to go has changed by a new plan.
 static void note_way(argus_progress_t *const self, const int32_t to_go_mm) {
     const bool is_set_back = self->least_mm > 0 && to_go_mm > self->least_mm + SET_BACK_MM;
-    if (self->least_mm == 0 || is_set_back) {
+    if (self->least_mm == 0 || (is_set_back && !self->last)) {
         self->least_mm = argus_max(1, to_go_mm);
         self->set_backs = (uint8_t)(self->set_backs + (is_set_back ? 1 : 0));
     }
@@ -75,6 +75,7 @@ bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const 
     const argus_ground_t ground = ground_of(self, knowledge, echoes);
     self->has_leg = self->next < self->count &&
                     argus_way_find(&self->wave, &ground, self->waypoint[self->next], &self->leg);
+    self->progress.last = self->progress.last || !self->has_leg;
     if (self->has_leg) {
         self->avoiding = !self->leg.direct;
         note_way(&self->progress, self->leg.to_go_mm + argus_task_leg_mm(self, knowledge));
@@ -120,6 +121,7 @@ bool argus_task_is_hopeless(argus_task_t *const self, const argus_knowledge_t *c
     if (self->has_leg && mine->least_mm - to_go_mm >= PROGRESS_MM) {
         mine->least_mm = argus_max(1, to_go_mm);
         mine->vain_ms = 0;
+        mine->last = false;
     }
     return mine->vain_ms >= VAIN_MS || mine->set_backs > SET_BACKS_MAX;
 }

@@ -17,6 +17,7 @@ typedef struct {
     uint32_t last_ms;  // the last SIP
     uint32_t vain_ms;  // driven, or waited for a way, without progress
     uint8_t set_backs; // the way to go has grown so often since the waypoint was made for
+    bool last;         // there was no way: what is tried again now is no reason to have more time
 } argus_progress_t;
 
 typedef struct {
