@@ -24,6 +24,12 @@
 #define REST_EVERY 16    // ... and then of a quarter of the SIPs: they tell nothing new
 #define BODY_CELLS 1     // about its centre, where the robot stands
 
+#define BESIDE_MM 600 // of a flank's echoes the nearer ones tell of a wall along the way,
+#define APART_LEAST_MM 80 // ... two of them at such a distance,
+#define APART_MOST_MM 300
+#define ALONG_CDEG 3000 // ... within this of the heading
+#define GOES_ON_MM 600
+
 _Static_assert((CELLS & MASK) == 0 && CELLS == 64, "cells wrap around by a mask, and rows are words of 64 bits");
 
 void argus_grid_init(argus_grid_t *const self) {
@@ -155,6 +161,28 @@ static void pass(argus_grid_t *const self, const argus_knowledge_t *const knowle
     }
 }
 
+// A wall that the robot drives along is heard abeam only. It is taken to go on as between its last two echoes; a
+// beam that passes there says otherwise.
+static void extend(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const argus_point_t echo,
+                   argus_point_t *const last) {
+    const int32_t dx = echo.x_mm - last->x_mm;
+    const int32_t dy = echo.y_mm - last->y_mm;
+    const bool near = argus_abs(dx) <= APART_MOST_MM && argus_abs(dy) <= APART_MOST_MM;
+    const int32_t apart_mm = near ? argus_hypot(dx, dy) : INT32_MAX;
+    if (apart_mm < APART_LEAST_MM) {
+        return;
+    }
+    *last = echo;
+    if (apart_mm > APART_MOST_MM ||
+        argus_angle_abs_diff(argus_atan2(dy, dx), knowledge->pose.heading_cdeg) > ALONG_CDEG) {
+        return;
+    }
+    for (int32_t mm = CELL_MM; mm <= GOES_ON_MM; mm += CELL_MM) {
+        const argus_point_t on = {echo.x_mm + dx * mm / apart_mm, echo.y_mm + dy * mm / apart_mm};
+        rise(self, argus_grid_cell(on), NEAR_RISE, OCCUPIED);
+    }
+}
+
 static bool tells(const argus_knowledge_t *const knowledge, const int sonar) {
     return (knowledge->fresh >> sonar & 1u) != 0 && !argus_is_out(knowledge, sonar) &&
            knowledge->sonar[sonar].health != ARGUS_SUSPECT;
@@ -174,6 +202,10 @@ static void take(argus_grid_t *const self, const argus_knowledge_t *const knowle
         const bool near = reading_mm <= NEAR_MM;
         const argus_point_t echo = argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, sonar));
         rise(self, argus_grid_cell(echo), near ? NEAR_RISE : FAR_RISE, near ? LEVEL_MAX : FAR_MOST);
+        if ((argus_robot_flank(knowledge->robot) >> sonar & 1u) != 0 && reading_mm <= BESIDE_MM) {
+            const bool left = argus_robot_pose(knowledge->robot, sonar)->y_mm > 0;
+            extend(self, knowledge, echo, &self->abeam[left ? 1 : 0]);
+        }
     }
 }
 

@@ -18,6 +18,7 @@ typedef struct {
 typedef struct {
     uint8_t level[ARGUS_GRID_CELLS * ARGUS_GRID_CELLS / 2]; // two cells to a byte, 0 to 15
     argus_cell_t low;                                       // of the window, whose middle the robot is near
+    argus_point_t abeam[2];                                 // the last echo of a flank, right and left
 } argus_grid_t;
 
 void argus_grid_init(argus_grid_t *self);
@@ -27,7 +28,7 @@ void argus_grid_clear(argus_grid_t *self);
 
 // After each SIP: the window follows the robot, what enters it is free; every fresh reading of a sonar that is in
 // use and no suspect lowers the cells that its axis passed and raises the one of its echo. Readings taken in a
-// turn do not count. Cost: 16 cells a reading.
+// turn do not count. A wall beside the robot is taken to go on: nobody hears it ahead. Cost: 16 cells a reading.
 void argus_grid_see(argus_grid_t *self, const argus_knowledge_t *knowledge);
 
 // Something is there for sure.

@@ -63,9 +63,22 @@ void argus_task_forgive(argus_task_t *const self) {
 // What is left to go has changed by a new plan.
 static void note_way(argus_progress_t *const self, const int32_t to_go_mm) {
     const bool is_set_back = self->least_mm > 0 && to_go_mm > self->least_mm + SET_BACK_MM;
-    if (self->least_mm == 0 || (is_set_back && !self->last)) {
+    if (self->least_mm == 0) {
+        self->best_mm = argus_max(1, to_go_mm);
+    }
+    if (self->least_mm == 0 || is_set_back) {
         self->least_mm = argus_max(1, to_go_mm);
         self->set_backs = (uint8_t)(self->set_backs + (is_set_back ? 1 : 0));
+    }
+}
+
+static void note_driven(argus_progress_t *const self, const int32_t to_go_mm) {
+    const int32_t least_mm = self->exhausted ? self->best_mm : self->least_mm;
+    if (least_mm - to_go_mm >= PROGRESS_MM) {
+        self->least_mm = argus_max(1, to_go_mm);
+        self->best_mm = argus_min(self->best_mm, self->least_mm);
+        self->vain_ms = 0;
+        self->exhausted = false;
     }
 }
 
@@ -75,7 +88,7 @@ bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const 
     const argus_ground_t ground = ground_of(self, knowledge, echoes);
     self->has_leg = self->next < self->count &&
                     argus_way_find(&self->wave, &ground, self->waypoint[self->next], &self->leg);
-    self->progress.last = self->progress.last || !self->has_leg;
+    self->progress.exhausted = self->progress.exhausted || !self->has_leg;
     if (self->has_leg) {
         self->avoiding = !self->leg.direct;
         note_way(&self->progress, self->leg.to_go_mm + argus_task_leg_mm(self, knowledge));
@@ -117,11 +130,8 @@ bool argus_task_is_hopeless(argus_task_t *const self, const argus_knowledge_t *c
         return false;
     }
     mine->vain_ms += since_ms <= GAP_MS ? since_ms : 0;
-    const int32_t to_go_mm = self->leg.to_go_mm + argus_task_leg_mm(self, knowledge);
-    if (self->has_leg && mine->least_mm - to_go_mm >= PROGRESS_MM) {
-        mine->least_mm = argus_max(1, to_go_mm);
-        mine->vain_ms = 0;
-        mine->last = false;
+    if (self->has_leg) {
+        note_driven(mine, self->leg.to_go_mm + argus_task_leg_mm(self, knowledge));
     }
     return mine->vain_ms >= VAIN_MS || mine->set_backs > SET_BACKS_MAX;
 }

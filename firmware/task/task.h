@@ -13,11 +13,12 @@
 // Progress is a way to go that is shorter than it ever was. It may grow when something is found in the way, but
 // only so often.
 typedef struct {
-    int32_t least_mm;  // way to go, 0: not known yet
+    int32_t least_mm;  // way to go since it has grown last, 0: not known yet
+    int32_t best_mm;   // ... ever
     uint32_t last_ms;  // the last SIP
     uint32_t vain_ms;  // driven, or waited for a way, without progress
     uint8_t set_backs; // the way to go has grown so often since the waypoint was made for
-    bool last;         // there was no way: what is tried again now is no reason to have more time
+    bool exhausted;    // there was no way: only what is better than ever counts now
 } argus_progress_t;
 
 typedef struct {
