@@ -109,6 +109,7 @@ bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const 
     self->leg.to_go_mm += argus_task_leg_mm(self, knowledge);
     self->leg.to = argus_to_course(&knowledge->pose, ahead);
     self->leg.direct = false;
+    self->leg.narrow = true;
     self->avoiding = true;
     self->has_leg = true;
     return true;
@@ -118,7 +119,7 @@ void argus_task_keep(argus_task_t *const self, const argus_knowledge_t *const kn
                      const argus_echoes_t *const echoes) {
     const argus_ground_t ground = ground_of(self, knowledge, echoes);
     const bool done = self->avoiding && argus_task_leg_mm(self, knowledge) <= LEG_DONE_MM;
-    self->has_leg = self->has_leg && !done && argus_way_is_free(&ground, self->leg.to);
+    self->has_leg = self->has_leg && !done && argus_way_is_free(&ground, &self->leg);
 }
 
 bool argus_task_is_hopeless(argus_task_t *const self, const argus_knowledge_t *const knowledge,

@@ -12,9 +12,11 @@
 #define NARROW_ROOM_MM 110 // beside the body: what a sonar at 50 degrees stops at, for an object range of 250 mm
 #define OUT_MM 450         // about the robot and the waypoint less will do: it may have to get out of there
 #define TIGHT_MM 200
-#define LABELS 7     // neighbours are at most three steps of the wave apart
+#define PLANES 4
+#define LABELS 15    // neighbours are at most seven steps of the wave apart
+#define NARROW_STEPS 5 // that the wave takes to a cell where there is no room to turn; 1 to others
 #define STEPS_MAX 1000
-#define IDLE_STEPS 3 // without a new cell: nothing is on its way any more
+#define IDLE_STEPS (NARROW_STEPS + 1) // without a new cell: nothing is on its way any more
 #define SAMPLE_MM 50
 #define LEG_LEAST_MM 250
 #define CUT_SAMPLES 4 // a straight leg may have so many more narrow samples than the way itself
@@ -115,6 +117,10 @@ static int32_t narrow_mm(const argus_knowledge_t *const knowledge) {
     return argus_robot_half_width_mm(knowledge->robot) + NARROW_ROOM_MM;
 }
 
+static int32_t wide_mm(const argus_knowledge_t *const knowledge) {
+    return knowledge->robot->swing_radius_mm + WIDE_ROOM_MM;
+}
+
 // The planes of the labels are free for it until the wave begins.
 static void survey(argus_wave_t *const wave, const argus_ground_t *const ground, const argus_point_t waypoint) {
     uint64_t *const occupied = wave->label[0];
@@ -128,7 +134,7 @@ static void survey(argus_wave_t *const wave, const argus_ground_t *const ground,
             occupied[cell.y] |= bit(cell.x);
         }
     }
-    grow(occupied, wave->wide, ground->knowledge->robot->swing_radius_mm + WIDE_ROOM_MM);
+    grow(occupied, wave->wide, wide_mm(ground->knowledge));
     grow(occupied, wave->narrow, narrow_mm(ground->knowledge));
     grow(occupied, tight, TIGHT_MM);
     invert(wave->wide);
@@ -141,26 +147,26 @@ static void survey(argus_wave_t *const wave, const argus_ground_t *const ground,
 // The wave ----------------------------------------------------------------------------------------------------
 
 static uint64_t reached(const argus_wave_t *const wave, const int y) {
-    return wave->label[0][y] | wave->label[1][y] | wave->label[2][y];
+    return wave->label[0][y] | wave->label[1][y] | wave->label[2][y] | wave->label[3][y];
 }
 
 static uint64_t labelled(const argus_wave_t *const wave, const int y, const unsigned label) {
     uint64_t row = ~(uint64_t)0;
-    for (unsigned i = 0; i < 3; i++) {
+    for (unsigned i = 0; i < PLANES; i++) {
         row &= (label >> i & 1u) != 0 ? wave->label[i][y] : ~wave->label[i][y];
     }
     return row;
 }
 
 static void put_label(argus_wave_t *const wave, const int y, const uint64_t cells, const unsigned label) {
-    for (unsigned i = 0; i < 3; i++) {
+    for (unsigned i = 0; i < PLANES; i++) {
         wave->label[i][y] |= (label >> i & 1u) != 0 ? cells : 0;
     }
 }
 
 static unsigned label_of(const argus_wave_t *const wave, const argus_cell_t cell) {
     unsigned label = 0;
-    for (unsigned i = 0; i < 3; i++) {
+    for (unsigned i = 0; i < PLANES; i++) {
         label |= has(wave->label[i], cell) ? 1u << i : 0u;
     }
     return label;
@@ -176,18 +182,26 @@ static uint64_t beside(const uint64_t row, const uint64_t others, const bool cor
     return widened(row, 1) | (corners ? widened(others, 1) : others);
 }
 
-// Where it is narrow the wave is half as fast. True: it has come to new cells.
+// What the wave reached long enough ago to get on where it is narrow.
+static uint64_t ripened(const argus_wave_t *const wave, const int y, const int step) {
+    uint64_t young = 0;
+    for (int ago = 1; ago < NARROW_STEPS && y < CELLS; ago++) {
+        young |= labelled(wave, y, label_at(step + LABELS - ago));
+    }
+    return y < CELLS ? reached(wave, y) & ~young : 0;
+}
+
+// True: the wave has come to new cells.
 static bool advance(argus_wave_t *const wave, const int step) {
+    const bool corners = step % 2 == 0;
     uint64_t below = 0;
     uint64_t below_ripe = 0;
     uint64_t any = 0;
+    uint64_t here = reached(wave, 0);
+    uint64_t ripe = ripened(wave, 0, step);
     for (int y = 0; y < CELLS; y++) {
-        const unsigned last = label_at(step + LABELS - 1);
-        const uint64_t here = reached(wave, y);
-        const uint64_t ripe = here & ~labelled(wave, y, last);
         const uint64_t above = y + 1 < CELLS ? reached(wave, y + 1) : 0;
-        const uint64_t above_ripe = y + 1 < CELLS ? above & ~labelled(wave, y + 1, last) : 0;
-        const bool corners = step % 2 == 0;
+        const uint64_t above_ripe = ripened(wave, y + 1, step);
         const uint64_t fresh = ((beside(here, below | above, corners) & wave->wide[y]) |
                                 (beside(ripe, below_ripe | above_ripe, corners) & wave->narrow[y])) &
                                ~here;
@@ -195,6 +209,8 @@ static bool advance(argus_wave_t *const wave, const int step) {
         any |= fresh;
         below = here;
         below_ripe = ripe;
+        here = above;
+        ripe = above_ripe;
     }
     return any != 0;
 }
@@ -331,11 +347,11 @@ bool argus_way_find(argus_wave_t *const wave, const argus_ground_t *const ground
     }
     pull(wave, ground, waypoint, steps, leg);
     leg->to_go_mm += leg->direct ? 0 : beyond(goal) * CELL_MM;
+    leg->narrow = narrow_samples(wave, ground, leg->to) > 0;
     return true;
 }
 
-static bool is_clear(const argus_ground_t *const ground, const argus_cell_t about) {
-    const int32_t radius_mm = narrow_mm(ground->knowledge);
+static bool is_clear(const argus_ground_t *const ground, const argus_cell_t about, const int32_t radius_mm) {
     const int most = (int)(radius_mm / CELL_MM);
     for (int dy = -most; dy <= most; dy++) {
         const int by = reach(radius_mm, dy);
@@ -349,7 +365,9 @@ static bool is_clear(const argus_ground_t *const ground, const argus_cell_t abou
     return true;
 }
 
-bool argus_way_is_free(const argus_ground_t *const ground, const argus_point_t to) {
+bool argus_way_is_free(const argus_ground_t *const ground, const argus_leg_t *const leg) {
+    const argus_point_t to = leg->to;
+    const int32_t radius_mm = leg->narrow ? narrow_mm(ground->knowledge) : wide_mm(ground->knowledge);
     const argus_point_t from = robot_at(ground);
     const int32_t dx = argus_max(-40000, argus_min(40000, to.x_mm - from.x_mm));
     const int32_t dy = argus_max(-40000, argus_min(40000, to.y_mm - from.y_mm));
@@ -357,7 +375,7 @@ bool argus_way_is_free(const argus_ground_t *const ground, const argus_point_t t
     const int32_t end_mm = argus_min(AHEAD_MM, length_mm - OUT_MM);
     for (int32_t mm = OUT_MM + SAMPLE_MM; mm <= end_mm; mm += SAMPLE_MM) {
         const argus_point_t on = {from.x_mm + dx * mm / length_mm, from.y_mm + dy * mm / length_mm};
-        if (!is_clear(ground, argus_grid_cell(on))) {
+        if (!is_clear(ground, argus_grid_cell(on), radius_mm)) {
             return false;
         }
     }

@@ -10,13 +10,14 @@
 typedef struct {
     uint64_t wide[ARGUS_GRID_CELLS];     // the robot may stand there and turn
     uint64_t narrow[ARGUS_GRID_CELLS];   // ... pass
-    uint64_t label[3][ARGUS_GRID_CELLS]; // when the wave came: 1 to 7 in turn, 0: not yet
+    uint64_t label[4][ARGUS_GRID_CELLS]; // when the wave came: 1 to 15 in turn, 0: not yet
 } argus_wave_t;
 
 typedef struct {
     argus_point_t to;
     int32_t to_go_mm; // from its end to the waypoint, about
     bool direct;      // `to` is the waypoint
+    bool narrow;      // there is no room to turn on all of it
 } argus_leg_t;
 
 typedef struct {
@@ -32,6 +33,6 @@ typedef struct {
 bool argus_way_find(argus_wave_t *wave, const argus_ground_t *ground, argus_point_t waypoint, argus_leg_t *leg);
 
 // Whether what is known by now leaves the next metre of a leg free. Cost: at most 11 places of 37 cells.
-bool argus_way_is_free(const argus_ground_t *ground, argus_point_t to);
+bool argus_way_is_free(const argus_ground_t *ground, const argus_leg_t *leg);
 
 #endif
