@@ -118,7 +118,7 @@ void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
 
 void argus_echoes_touched(argus_echoes_t *const self, const argus_point_t at, const uint32_t now_ms) {
     remember(self, at, BY_TOUCH, now_ms);
-    argus_grid_mark(&self->grid, at);
+    argus_grid_mark(&self->grid, at, true);
 }
 
 // The front segments lie across the bow, bit 1 leftmost; what they touched is remembered as if it had been

@@ -11,12 +11,13 @@
 #define MASK (CELLS - 1)
 #define SLACK_CELLS 4 // the robot may be so far from the middle before the window follows
 #define LEVEL_MAX 15
-#define OCCUPIED 4 // a near echo, or two that are not far: one that is far tells its place badly
+#define OCCUPIED 4 // two near echoes: one may be crosstalk
+#define MARKED 8   // five beams take it back
 #define NEAR_MM 1000
 #define FAR_MM 1600
-#define NEAR_RISE 4
+#define NEAR_RISE 3
 #define FAR_RISE 1
-#define FAR_MOST 3       // far echoes alone occupy nothing
+#define FAR_MOST 3       // far echoes alone occupy nothing: they tell their place badly
 #define SHORT_MM 150     // a beam passes nothing so close to its echo
 #define PASSED_MM 1500   // ... nor beyond this, since it grows wide
 #define SILENT_MM 800    // ... nor beyond this, if nothing comes back: a smooth wall may have turned it away
@@ -94,8 +95,9 @@ static void lower(argus_grid_t *const self, const argus_cell_t cell) {
     }
 }
 
-void argus_grid_mark(argus_grid_t *const self, const argus_point_t at) {
-    rise(self, argus_grid_cell(at), LEVEL_MAX, LEVEL_MAX);
+void argus_grid_mark(argus_grid_t *const self, const argus_point_t at, const bool sure) {
+    const unsigned level = sure ? LEVEL_MAX : MARKED;
+    rise(self, argus_grid_cell(at), level, level);
 }
 
 void argus_grid_fade(argus_grid_t *const self) {
@@ -179,7 +181,7 @@ static void extend(argus_grid_t *const self, const argus_knowledge_t *const know
     }
     for (int32_t mm = CELL_MM; mm <= GOES_ON_MM; mm += CELL_MM) {
         const argus_point_t on = {echo.x_mm + dx * mm / apart_mm, echo.y_mm + dy * mm / apart_mm};
-        rise(self, argus_grid_cell(on), NEAR_RISE, OCCUPIED);
+        rise(self, argus_grid_cell(on), OCCUPIED, OCCUPIED);
     }
 }
 

@@ -31,8 +31,8 @@ void argus_grid_clear(argus_grid_t *self);
 // turn do not count. A wall beside the robot is taken to go on: nobody hears it ahead. Cost: 16 cells a reading.
 void argus_grid_see(argus_grid_t *self, const argus_knowledge_t *knowledge);
 
-// Something is there for sure.
-void argus_grid_mark(argus_grid_t *self, argus_point_t at);
+// Something is there: for sure, or until some beams have passed there.
+void argus_grid_mark(argus_grid_t *self, argus_point_t at, bool sure);
 
 // Half of all evidence is forgotten: what is not seen again is free soon.
 void argus_grid_fade(argus_grid_t *self);

@@ -256,16 +256,14 @@ static void stop(argus_t *const self, const argus_stop_t how) {
 
 static void close_way(argus_t *const self, const argus_intent_t *const intent) {
     ARGUS_ASSERT(intent->way <= ARGUS_WAY_FORGIVE);
-    argus_task_t *const task = &self->travel.task;
     if (intent->bumped) {
         argus_echoes_bumped(&self->echoes, &self->knowledge, self->now_ms);
     }
     switch ((argus_way_t)intent->way) {
     case ARGUS_WAY_REFUSE:
-        argus_task_refuse(task, &self->knowledge);
+        argus_task_refuse(&self->travel.task, &self->knowledge, &self->echoes);
         break;
     case ARGUS_WAY_FORGIVE:
-        argus_task_forgive(task);
         argus_grid_fade(&self->echoes.grid);
         break;
     case ARGUS_WAY_KEEP:

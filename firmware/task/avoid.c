@@ -10,54 +10,33 @@
 #define ESCAPE_ROOM_MM 440
 #define REFUSED_NEAR_MM 350
 #define REFUSED_AHEAD_MM 100 // of the body
-#define SAME_PLACE_MM 80
 #define PROGRESS_MM 100
 #define SET_BACK_MM 500
 #define SET_BACKS_MAX 32
 #define VAIN_MS 60000u
 #define GAP_MS 500u
 
-static argus_ground_t ground_of(const argus_task_t *const self, const argus_knowledge_t *const knowledge,
-                                const argus_echoes_t *const echoes) {
-    ARGUS_ASSERT(self->refused_count <= ARGUS_REFUSED_MAX);
-    const argus_ground_t ground = {knowledge, &echoes->grid, self->refused, self->refused_count};
+static argus_ground_t ground_of(const argus_knowledge_t *const knowledge, const argus_echoes_t *const echoes) {
+    const argus_ground_t ground = {knowledge, &echoes->grid};
     return ground;
 }
 
-static void refuse_at(argus_task_t *const self, const argus_point_t at) {
-    for (uint8_t i = 0; i < self->refused_count; i++) {
-        if (argus_abs(self->refused[i].x_mm - at.x_mm) < SAME_PLACE_MM &&
-            argus_abs(self->refused[i].y_mm - at.y_mm) < SAME_PLACE_MM) {
-            return;
-        }
-    }
-    if (self->refused_count < ARGUS_REFUSED_MAX) {
-        self->refused[self->refused_count++] = at;
-        return;
-    }
-    self->refused[self->refused_next] = at;
-    self->refused_next = (uint8_t)((self->refused_next + 1) % ARGUS_REFUSED_MAX);
-}
-
-void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const knowledge) {
+void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                       argus_echoes_t *const echoes) {
     bool found = false;
     self->has_leg = false;
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i) &&
             knowledge->sonar[i].reading_mm <= REFUSED_NEAR_MM) {
-            refuse_at(self, argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, i)));
+            const argus_point_t echo = argus_echo_robot(knowledge, i);
+            argus_grid_mark(&echoes->grid, argus_to_course(&knowledge->pose, echo), false);
             found = true;
         }
     }
     if (!found) {
         const argus_point_t ahead = {knowledge->robot->front_mm + REFUSED_AHEAD_MM, 0};
-        refuse_at(self, argus_to_course(&knowledge->pose, ahead));
+        argus_grid_mark(&echoes->grid, argus_to_course(&knowledge->pose, ahead), false);
     }
-}
-
-void argus_task_forgive(argus_task_t *const self) {
-    self->refused_count = 0;
-    self->refused_next = 0;
 }
 
 // What is left to go has changed by a new plan.
@@ -85,7 +64,7 @@ static void note_driven(argus_progress_t *const self, const int32_t to_go_mm) {
 bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                        const argus_echoes_t *const echoes) {
     ARGUS_ASSERT(self->next <= self->count);
-    const argus_ground_t ground = ground_of(self, knowledge, echoes);
+    const argus_ground_t ground = ground_of(knowledge, echoes);
     self->has_leg = self->next < self->count &&
                     argus_way_find(&self->wave, &ground, self->waypoint[self->next], &self->leg);
     self->progress.exhausted = self->progress.exhausted || !self->has_leg;
@@ -117,7 +96,7 @@ bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const 
 
 void argus_task_keep(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                      const argus_echoes_t *const echoes) {
-    const argus_ground_t ground = ground_of(self, knowledge, echoes);
+    const argus_ground_t ground = ground_of(knowledge, echoes);
     const bool done = self->avoiding && argus_task_leg_mm(self, knowledge) <= LEG_DONE_MM;
     self->has_leg = self->has_leg && !done && argus_way_is_free(&ground, &self->leg);
 }

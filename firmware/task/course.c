@@ -36,7 +36,6 @@ bool argus_task_set(argus_task_t *const self, const argus_point_t *const points,
 void argus_task_restart(argus_task_t *const self) {
     self->has_leg = false;
     self->avoiding = false;
-    argus_task_forgive(self);
     memset(&self->progress, 0, sizeof self->progress);
 }
 

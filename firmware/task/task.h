@@ -8,8 +8,6 @@
 #include "knowledge/knowledge.h"
 #include "task/way.h"
 
-#define ARGUS_REFUSED_MAX 16
-
 // Progress is a way to go that is shorter than it ever was. It may grow when something is found in the way, but
 // only so often.
 typedef struct {
@@ -28,9 +26,6 @@ typedef struct {
     bool avoiding;   // the leg does not end at the waypoint
     bool has_leg;    // where the robot now heads for
     argus_leg_t leg;
-    argus_point_t refused[ARGUS_REFUSED_MAX]; // something stopped the robot there
-    uint8_t refused_count;
-    uint8_t refused_next; // oldest, once full
     argus_progress_t progress;
     argus_wave_t wave; // scratch
 } argus_task_t;
@@ -46,11 +41,8 @@ bool argus_task_progress(argus_task_t *self, const argus_knowledge_t *knowledge,
 int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *knowledge);
 
 // An object stopped the robot: what is near ahead, or the place just ahead where nothing is heard, is taken as
-// occupied until it is forgiven.
-void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge);
-
-// After waiting in one place: every place may be tried again.
-void argus_task_forgive(argus_task_t *self);
+// occupied until beams pass there.
+void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge, argus_echoes_t *echoes);
 
 // Chooses the next leg: the first straight part of the way to the waypoint. False: no way. Cost: argus_way_find().
 bool argus_task_choose(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes);

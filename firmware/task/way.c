@@ -128,12 +128,6 @@ static void survey(argus_wave_t *const wave, const argus_ground_t *const ground,
     for (int y = 0; y < CELLS; y++) {
         occupied[y] = argus_grid_row(ground->grid, y);
     }
-    for (uint8_t i = 0; i < ground->closed_count; i++) {
-        const argus_cell_t cell = cell_in(ground->grid, ground->closed[i]);
-        if (is_within(cell)) {
-            occupied[cell.y] |= bit(cell.x);
-        }
-    }
     grow(occupied, wave->wide, wide_mm(ground->knowledge));
     grow(occupied, wave->narrow, narrow_mm(ground->knowledge));
     grow(occupied, tight, TIGHT_MM);

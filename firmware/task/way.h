@@ -23,8 +23,6 @@ typedef struct {
 typedef struct {
     const argus_knowledge_t *knowledge;
     const argus_grid_t *grid;
-    const argus_point_t *closed; // places where something stands whatever the grid says
-    uint8_t closed_count;
 } argus_ground_t;
 
 // The first leg of the way. What is not known is free. A waypoint outside the window is made for from that cell of
