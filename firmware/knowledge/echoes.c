@@ -156,18 +156,31 @@ int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_know
     return clear;
 }
 
+bool argus_echoes_near(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                       const int index, argus_point_t *const at) {
+    ARGUS_ASSERT(index >= 0 && index < self->count);
+    const argus_echo_t *const seen = &self->at[index];
+    const int32_t dx = seen->x_mm - knowledge->pose.x_mm;
+    const int32_t dy = seen->y_mm - knowledge->pose.y_mm;
+    if (!seen->again || knowledge->sip_ms - seen->seen_ms > LATELY_MS || argus_abs(dx) >= NEAR_MM ||
+        argus_abs(dy) >= NEAR_MM) {
+        return false;
+    }
+    const int32_t c = argus_cos(knowledge->pose.heading_cdeg);
+    const int32_t s = argus_sin(knowledge->pose.heading_cdeg);
+    at->x_mm = (dx * c + dy * s) / ARGUS_TRIG_ONE;
+    at->y_mm = (dy * c - dx * s) / ARGUS_TRIG_ONE;
+    return true;
+}
+
 int32_t argus_echoes_nearest_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                                 const int32_t back_mm) {
     ARGUS_ASSERT(back_mm >= 0 && self->count <= ARGUS_POINTS_MAX);
-    const argus_point_t back = {-back_mm, 0};
-    const argus_point_t centre = argus_to_course(&knowledge->pose, back);
     int32_t nearest = INT32_MAX;
-    for (uint16_t i = 0; i < self->count; i++) {
-        const int32_t dx = self->at[i].x_mm - centre.x_mm;
-        const int32_t dy = self->at[i].y_mm - centre.y_mm;
-        const bool near = argus_abs(dx) < NEAR_MM && argus_abs(dy) < NEAR_MM;
-        if (near && self->at[i].again && knowledge->sip_ms - self->at[i].seen_ms <= LATELY_MS) {
-            nearest = argus_min(nearest, argus_hypot(dx, dy));
+    for (int i = 0; i < self->count; i++) {
+        argus_point_t at;
+        if (argus_echoes_near(self, knowledge, i, &at)) {
+            nearest = argus_min(nearest, argus_hypot(at.x_mm + back_mm, at.y_mm));
         }
     }
     return nearest;

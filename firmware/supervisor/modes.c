@@ -140,7 +140,8 @@ static argus_intent_t decide(argus_t *const self) {
 static argus_intent_t turn(argus_t *const self, const int32_t heading_cdeg) {
     ARGUS_ASSERT(!self->orders.passive && !self->orders.shutdown);
     const argus_guard_t guard = argus_guard(self);
-    if (argus_guard_may_turn(&guard)) {
+    const int32_t by_cdeg = argus_angle_wrap(heading_cdeg - self->knowledge.pose.heading_cdeg);
+    if (argus_guard_may_turn(&guard) || argus_guard_may_nudge(&guard, by_cdeg)) {
         argus_waiting_t *const waiting = &self->waiting;
         waiting->last = waiting->last == ARGUS_WAIT_TURN ? ARGUS_WAIT_NONE : waiting->last;
         argus_turn_to(self, heading_cdeg);

@@ -76,17 +76,18 @@ bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const 
 }
 
 bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const knowledge,
-                       const argus_echoes_t *const echoes) {
+                       const argus_echoes_t *const echoes, const int32_t by_cdeg) {
     ARGUS_ASSERT(self->count <= ARGUS_WAYPOINTS_MAX);
     const int32_t half_mm = argus_guard_straight_half_mm(knowledge->robot);
-    const int32_t free_mm =
-        argus_echoes_clear_mm(echoes, knowledge, knowledge->pose.heading_cdeg, half_mm);
+    const int32_t heading_cdeg = argus_angle_wrap(knowledge->pose.heading_cdeg + by_cdeg);
+    const int32_t free_mm = argus_echoes_clear_mm(echoes, knowledge, heading_cdeg, half_mm);
     if (self->next >= self->count || free_mm < knowledge->robot->front_mm + ESCAPE_ROOM_MM) {
         return false;
     }
     const argus_point_t ahead = {ESCAPE_MM, 0};
+    const argus_pose_t turned = {knowledge->pose.x_mm, knowledge->pose.y_mm, heading_cdeg};
     self->leg.to_go_mm += argus_task_leg_mm(self, knowledge);
-    self->leg.to = argus_to_course(&knowledge->pose, ahead);
+    self->leg.to = argus_to_course(&turned, ahead);
     self->leg.direct = false;
     self->leg.narrow = true;
     self->avoiding = true;

@@ -47,9 +47,10 @@ void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge, a
 // Chooses the next leg: the first straight part of the way to the waypoint. False: no way. Cost: argus_way_find().
 bool argus_task_choose(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes);
 
-// Where the robot cannot turn: a leg straight ahead, if the corridor there is free. False: no way that way
-// either.
-bool argus_task_escape(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes);
+// Where the robot cannot turn: a leg ahead, but for so much of a turn, if the corridor there is free. False: no
+// way that way either.
+bool argus_task_escape(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes,
+                       int32_t by_cdeg);
 
 // Gives up a leg that is done, or on which something is seen by now.
 void argus_task_keep(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes);
