@@ -7,7 +7,7 @@
 #include "knowledge/knowledge.h"
 
 #define ARGUS_GRID_CELLS 64 // to a side: a row of cells is a word of 64 bits
-#define ARGUS_GRID_CELL_MM 100
+#define ARGUS_GRID_CELL_MM 125
 
 // A cell of the course frame: x_mm / ARGUS_GRID_CELL_MM, rounded down, and the same of y.
 typedef struct {
