@@ -16,6 +16,9 @@
 #define SWING_TURNING_MM 10 // of the margin so much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
 #define BACKOFFS_MAX 3
+#define NUDGE_CDEG 2000
+#define NUDGE_ROOM_MM 40 // an echo is anywhere in its cone: more than readings scatter
+#define NUDGE_PARTS 5
 #define ABEAM_CLEAR_MM 250 // beside a way straight back of 300 mm; a P3-DX ends 77 mm beside their faces
 #define BACK_MOST_MM 300
 #define BACK_LEFT_MM 150 // of what the rear reads clear
@@ -138,6 +141,44 @@ bool argus_guard_swing_is_blocked(const argus_guard_t *const self) {
 bool argus_guard_may_turn(const argus_guard_t *const self) {
     ARGUS_ASSERT(self->profile != NULL && self->echoes != NULL);
     return self->active && self->bumpers == 0 && !argus_guard_swing_is_blocked(self);
+}
+
+// Turned by so much, the body comes too near to a point, which is given in the robot's frame of now.
+static bool is_swept(const argus_robot_t *const robot, const argus_point_t at, const int32_t by_cdeg) {
+    const int32_t c = argus_cos(by_cdeg);
+    const int32_t s = argus_sin(by_cdeg);
+    const int32_t x_mm = (at.x_mm * c + at.y_mm * s) / ARGUS_TRIG_ONE;
+    const int32_t y_mm = (at.y_mm * c - at.x_mm * s) / ARGUS_TRIG_ONE;
+    return x_mm > -robot->rear_mm - NUDGE_ROOM_MM && x_mm < robot->front_mm + NUDGE_ROOM_MM &&
+           argus_abs(y_mm) < argus_robot_half_width_mm(robot) + NUDGE_ROOM_MM;
+}
+
+static bool is_in_nudge(const argus_robot_t *const robot, const argus_point_t at, const int32_t by_cdeg) {
+    for (int32_t part = 1; part <= NUDGE_PARTS; part++) {
+        if (is_swept(robot, at, by_cdeg * part / NUDGE_PARTS)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool argus_guard_may_nudge(const argus_guard_t *const self, const int32_t by_cdeg) {
+    const argus_knowledge_t *const knowledge = self->knowledge;
+    if (!self->profile->nudges || !self->active || self->bumpers != 0 || argus_abs(by_cdeg) > NUDGE_CDEG) {
+        return false;
+    }
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (argus_usable(knowledge, i) && is_in_nudge(knowledge->robot, argus_echo_robot(knowledge, i), by_cdeg)) {
+            return false;
+        }
+    }
+    for (int i = 0; i < self->echoes->count; i++) {
+        argus_point_t at;
+        if (argus_echoes_near(self->echoes, knowledge, i, &at) && is_in_nudge(knowledge->robot, at, by_cdeg)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 bool argus_guard_echo_blocks(const argus_guard_t *const self, const int sonar) {

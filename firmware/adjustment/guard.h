@@ -68,6 +68,10 @@ bool argus_guard_is_home(const argus_guard_t *self, int32_t base_cdeg);
 bool argus_guard_may_turn(const argus_guard_t *self);
 bool argus_guard_swing_is_blocked(const argus_guard_t *self);
 
+// S7, where the profile lets it: a turn of at most 20 degrees, from here, in which the body comes within 40 mm of
+// nothing that is seen or was seen a moment ago. Cost: six places of the body for each echo.
+bool argus_guard_may_nudge(const argus_guard_t *self, int32_t by_cdeg);
+
 // Nearest to the robot's centre, were it `back_mm` farther back: of what is seen, and, as the profile says,
 // of what was seen a moment ago. INT32_MAX: nothing.
 int32_t argus_guard_nearest_mm(const argus_guard_t *self, int32_t back_mm);

@@ -91,6 +91,7 @@ static void remember(argus_echoes_t *const self, const argus_point_t at, const u
 
 void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                       const uint32_t now_ms) {
+    argus_grid_see(&self->grid, knowledge);
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool fresh = (knowledge->fresh >> i & 1u) != 0;
         if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT &&
@@ -104,6 +105,7 @@ void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const
 void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     uint16_t kept = 0;
+    argus_grid_clear(&self->grid); // what it put there cannot be told from what the others did
     for (uint16_t i = 0; i < self->count; i++) {
         if (self->at[i].sonar != sonar) {
             self->at[kept++] = self->at[i];
@@ -116,6 +118,7 @@ void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
 
 void argus_echoes_touched(argus_echoes_t *const self, const argus_point_t at, const uint32_t now_ms) {
     remember(self, at, BY_TOUCH, now_ms);
+    argus_grid_mark(&self->grid, at, true);
 }
 
 // The front segments lie across the bow, bit 1 leftmost; what they touched is remembered as if it had been
@@ -153,18 +156,31 @@ int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_know
     return clear;
 }
 
+bool argus_echoes_near(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                       const int index, argus_point_t *const at) {
+    ARGUS_ASSERT(index >= 0 && index < self->count);
+    const argus_echo_t *const seen = &self->at[index];
+    const int32_t dx = seen->x_mm - knowledge->pose.x_mm;
+    const int32_t dy = seen->y_mm - knowledge->pose.y_mm;
+    if (!seen->again || knowledge->sip_ms - seen->seen_ms > LATELY_MS || argus_abs(dx) >= NEAR_MM ||
+        argus_abs(dy) >= NEAR_MM) {
+        return false;
+    }
+    const int32_t c = argus_cos(knowledge->pose.heading_cdeg);
+    const int32_t s = argus_sin(knowledge->pose.heading_cdeg);
+    at->x_mm = (dx * c + dy * s) / ARGUS_TRIG_ONE;
+    at->y_mm = (dy * c - dx * s) / ARGUS_TRIG_ONE;
+    return true;
+}
+
 int32_t argus_echoes_nearest_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                                 const int32_t back_mm) {
     ARGUS_ASSERT(back_mm >= 0 && self->count <= ARGUS_POINTS_MAX);
-    const argus_point_t back = {-back_mm, 0};
-    const argus_point_t centre = argus_to_course(&knowledge->pose, back);
     int32_t nearest = INT32_MAX;
-    for (uint16_t i = 0; i < self->count; i++) {
-        const int32_t dx = self->at[i].x_mm - centre.x_mm;
-        const int32_t dy = self->at[i].y_mm - centre.y_mm;
-        const bool near = argus_abs(dx) < NEAR_MM && argus_abs(dy) < NEAR_MM;
-        if (near && self->at[i].again && knowledge->sip_ms - self->at[i].seen_ms <= LATELY_MS) {
-            nearest = argus_min(nearest, argus_hypot(dx, dy));
+    for (int i = 0; i < self->count; i++) {
+        argus_point_t at;
+        if (argus_echoes_near(self, knowledge, i, &at)) {
+            nearest = argus_min(nearest, argus_hypot(at.x_mm + back_mm, at.y_mm));
         }
     }
     return nearest;

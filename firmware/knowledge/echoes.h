@@ -4,6 +4,7 @@
 #ifndef ARGUS_ECHOES_H
 #define ARGUS_ECHOES_H
 
+#include "knowledge/grid.h"
 #include "knowledge/knowledge.h"
 
 #define ARGUS_POINTS_MAX 128
@@ -21,6 +22,7 @@ typedef struct {
     argus_echo_t at[ARGUS_POINTS_MAX];
     uint16_t count;
     uint16_t next; // oldest, once full
+    argus_grid_t grid;
 } argus_echoes_t;
 
 void argus_echoes_init(argus_echoes_t *self);
@@ -45,6 +47,9 @@ bool argus_are_one_thing(argus_point_t a, argus_point_t b);
 // minute, 80 mm from there. Cost: one pass over the points.
 bool argus_echoes_have_seen(const argus_echoes_t *self, const argus_knowledge_t *knowledge, argus_point_t at,
                             int32_t within_mm);
+
+// Whether this one was seen more than once, lately and near the robot; where, robot frame. 0 <= index < count.
+bool argus_echoes_near(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index, argus_point_t *at);
 
 // Nearest to the robot's centre, were it `back_mm` farther back, of what was seen more than once in the last
 // seconds, also where no sonar sees it now; INT32_MAX without any. Cost: one pass over the points.

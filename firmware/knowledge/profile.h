@@ -15,6 +15,7 @@
     X(swing_margin_mm, 0, 20, 20, "S7: room wanted beyond the circle that the body sweeps in a turn")       \
     X(remembers, 0, 1, 1, "S7: what was seen a moment ago, twice, and has left the cones, is still there") \
     X(reads_again, 0, 1, 1, "S7: one echo of a steady sonar is read once more before it forbids a turn")   \
+    X(nudges, 0, 1, 1, "S7: a turn of 20 degrees at most asks for what the body sweeps in it, not for the circle")     \
     X(watches_turn, 0, 1, 1, "S7: what comes into view within the circle in a turn ends it")               \
     X(watches_flank, 0, 1, 1, "S2: a wall beside the robot that its way slants into: STOP")                \
     X(backs_to_turn, 0, 1, 1,                                                                             \

@@ -21,6 +21,7 @@ typedef enum {
     ARGUS_DO_VERIFY,     // VERIFYING, for `sonars`
     ARGUS_DO_SWEEP,      // SWEEPING: the way must be seen
     ARGUS_DO_WAIT,       // WAITING, because of `why`
+    ARGUS_DO_GIVE_UP,    // the mission has failed
     ARGUS_DO_DECIDE,     // a mode has ended well: what next?
     ARGUS_DO_GO_OFFLINE, // OFFLINE, or CLOSED when it is leaving
     ARGUS_DO_LEAVE,      // CLOSING
@@ -39,7 +40,7 @@ typedef enum {
 
 typedef enum { ARGUS_STOP_NONE, ARGUS_STOP_HALT, ARGUS_STOP_STOP, ARGUS_STOP_E_STOP } argus_stop_t;
 typedef enum { ARGUS_BASE_KEEP, ARGUS_BASE_TAKE, ARGUS_BASE_RENEW, ARGUS_BASE_DROP } argus_base_do_t;
-typedef enum { ARGUS_WAY_KEEP, ARGUS_WAY_REFUSE, ARGUS_WAY_REFUSE_SLANT, ARGUS_WAY_FORGIVE } argus_way_t;
+typedef enum { ARGUS_WAY_KEEP, ARGUS_WAY_REFUSE, ARGUS_WAY_FORGIVE } argus_way_t;
 
 // Done in this order: the event, the stop (HALT: only what moves or is about to), the way ahead, `unchecked`,
 // the base heading, the act. All zero: nothing.

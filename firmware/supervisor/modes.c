@@ -140,7 +140,8 @@ static argus_intent_t decide(argus_t *const self) {
 static argus_intent_t turn(argus_t *const self, const int32_t heading_cdeg) {
     ARGUS_ASSERT(!self->orders.passive && !self->orders.shutdown);
     const argus_guard_t guard = argus_guard(self);
-    if (argus_guard_may_turn(&guard)) {
+    const int32_t by_cdeg = argus_angle_wrap(heading_cdeg - self->knowledge.pose.heading_cdeg);
+    if (argus_guard_may_turn(&guard) || argus_guard_may_nudge(&guard, by_cdeg)) {
         argus_waiting_t *const waiting = &self->waiting;
         waiting->last = waiting->last == ARGUS_WAIT_TURN ? ARGUS_WAIT_NONE : waiting->last;
         argus_turn_to(self, heading_cdeg);
@@ -256,19 +257,15 @@ static void stop(argus_t *const self, const argus_stop_t how) {
 
 static void close_way(argus_t *const self, const argus_intent_t *const intent) {
     ARGUS_ASSERT(intent->way <= ARGUS_WAY_FORGIVE);
-    argus_task_t *const task = &self->travel.task;
     if (intent->bumped) {
         argus_echoes_bumped(&self->echoes, &self->knowledge, self->now_ms);
     }
     switch ((argus_way_t)intent->way) {
     case ARGUS_WAY_REFUSE:
-        argus_task_refuse(task, &self->knowledge);
-        break;
-    case ARGUS_WAY_REFUSE_SLANT:
-        argus_task_refuse_slant(task, &self->knowledge);
+        argus_task_refuse(&self->travel.task, &self->knowledge, &self->echoes);
         break;
     case ARGUS_WAY_FORGIVE:
-        argus_task_forgive(task, &self->knowledge);
+        argus_grid_fade(&self->echoes.grid);
         break;
     case ARGUS_WAY_KEEP:
     default:
@@ -342,6 +339,9 @@ static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *
     case ARGUS_DO_WAIT:
         enter_waiting(self, (argus_wait_t)intent->why);
         break;
+    case ARGUS_DO_GIVE_UP:
+        fail_mission(self);
+        return decide(self);
     case ARGUS_DO_DECIDE:
         return decide(self);
     case ARGUS_DO_GO_OFFLINE:
@@ -479,6 +479,25 @@ static argus_intent_t run(argus_t *const self) {
     }
 }
 
+// It drives, or would if there were room or a way.
+static bool is_under_way(const argus_t *const self) {
+    const argus_wait_t why = self->waiting.why;
+    const bool waits = self->mode == ARGUS_MODE_WAITING && (why == ARGUS_WAIT_WAY || why == ARGUS_WAIT_TURN);
+    return self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused && !self->orders.passive &&
+           (waits || argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE));
+}
+
+static void watch_course(argus_t *const self) {
+    argus_task_t *const task = &self->travel.task;
+    if (argus_task_is_hopeless(task, &self->knowledge, is_under_way(self))) {
+        argus_do(self, (argus_intent_t){.event = ARGUS_EV_NO_WAY,
+                                        .sonar = ARGUS_NO_SONAR,
+                                        .value = (int32_t)(task->progress.vain_ms / 1000u),
+                                        .stop = ARGUS_STOP_HALT,
+                                        .act = ARGUS_DO_GIVE_UP});
+    }
+}
+
 void argus_run_mode(argus_t *const self) {
     bool more = true;
     for (int i = 0; i < MORE_MOST && more; i++) {
@@ -488,6 +507,7 @@ void argus_run_mode(argus_t *const self) {
         more = intent.more && self->mode == mode;
     }
     ARGUS_ASSERT(!more);
+    watch_course(self);
 }
 
 static void close_when_at_rest(argus_t *const self) {

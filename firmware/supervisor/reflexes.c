@@ -166,6 +166,8 @@ static bool note_near(const argus_t *const self, argus_reflexes_t *const mine, c
 static argus_intent_t sees_swing(const argus_t *const self, const argus_alarm_t *const alarm,
                                  argus_reflexes_t *const mine) {
     const bool turning = self->motion.kind == ARGUS_MOTION_TURN && !self->motion.settled;
+    const argus_guard_t guard = argus_guard(self);
+    const int32_t left_cdeg = argus_angle_wrap(self->motion.target_cdeg - self->knowledge.pose.heading_cdeg);
     argus_point_t at = {0, 0};
     (void)alarm;
     if (!argus_rules(self)->watches_turn || !turning) {
@@ -174,7 +176,7 @@ static argus_intent_t sees_swing(const argus_t *const self, const argus_alarm_t 
     }
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const bool fresh = (self->knowledge.fresh >> i & 1u) != 0 && argus_usable(&self->knowledge, i);
-        if (fresh && note_near(self, mine, i, &at)) {
+        if (fresh && !argus_guard_may_nudge(&guard, left_cdeg) && note_near(self, mine, i, &at)) {
             return (argus_intent_t){.act = ARGUS_DO_END_TURN, .at = at};
         }
     }
@@ -198,7 +200,7 @@ static argus_intent_t sees_flank(const argus_t *const self, const argus_alarm_t 
         if ((usable >> i & 1u) != 0 && argus_evidence_slants_in(&self->evidence, i, stop_mm)) {
             argus_intent_t intent = say(ARGUS_EV_OBJECT, i, self->knowledge.sonar[i].reading_mm);
             intent.stop = ARGUS_STOP_STOP;
-            intent.way = ARGUS_WAY_REFUSE_SLANT;
+            intent.way = ARGUS_WAY_REFUSE;
             intent.act = ARGUS_DO_CHECK;
             intent.full = true;
             return intent;

@@ -10,7 +10,6 @@
 #define AIMED_CDEG 200   // at rest, near enough
 #define STEER_CDEG 200   // while driving, corrected beyond this
 #define STEER_LEG_MM 250 // ... and only this far from the leg's end
-#define LEG_DONE_MM 60
 #define WEAVE_CDEG 1000   // to either side of the way: half the pitch of the ring
 #define WOVEN_CDEG 300    // near enough
 #define WOVEN_SIPS 4      // there: a round of the array
@@ -104,10 +103,8 @@ static void end_leg(const argus_t *const self, argus_travel_t *const mine) {
     if (mine->jog_mm > 0 || !mine->task.has_leg) {
         return;
     }
-    const bool detour =
-        mine->task.avoiding && argus_task_leg_mm(&mine->task, &self->knowledge) <= LEG_DONE_MM;
     const bool missed = mine->aimed && off_bearing(self, mine) > AIM_CDEG;
-    mine->task.has_leg = !detour;
+    argus_task_keep(&mine->task, &self->knowledge, &self->echoes);
     mine->aimed = mine->aimed && !missed;
 }
 
@@ -128,14 +125,29 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
     return false;
 }
 
-// Where there is no room to turn, a leg straight ahead may lead out; not along a wall that is so near that a
-// slant could not be seen in time.
-static argus_intent_t turn_to_bearing(const argus_t *const self, argus_travel_t *const mine) {
+// A leg that leads out of a place too narrow to turn in: straight ahead, but for a nudge. Not along a wall that is
+// so near that a slant could not be seen in time.
+static bool leads_out(const argus_t *const self, argus_travel_t *const mine, const int32_t by_cdeg) {
     const argus_guard_t guard = argus_guard(self);
-    const bool narrow = argus_guard_swing_is_blocked(&guard) && mine->jog_mm == 0 &&
-                        argus_flank_mm(&self->knowledge) > FLANK_MM;
-    const bool leads_out = narrow && argus_task_escape(&mine->task, &self->knowledge, &self->echoes);
-    return leads_out ? nothing() : turn(bearing(self, mine));
+    const bool open = by_cdeg != 0 ? argus_guard_may_nudge(&guard, by_cdeg)
+                                   : argus_flank_mm(&self->knowledge) > FLANK_MM;
+    return open && argus_task_escape(&mine->task, &self->knowledge, &self->echoes, by_cdeg);
+}
+
+static argus_intent_t turn_to_bearing(const argus_t *const self, argus_travel_t *const mine) {
+    static const int16_t tries_cdeg[] = {2000, 1500, 1000, 500, 0, -500, -1000, -1500, -2000};
+    const argus_guard_t guard = argus_guard(self);
+    const int32_t to_cdeg = bearing(self, mine);
+    const int32_t now_cdeg = self->knowledge.pose.heading_cdeg;
+    const bool left = argus_angle_wrap(to_cdeg - now_cdeg) > 0;
+    const bool hemmed = argus_guard_swing_is_blocked(&guard) && mine->jog_mm == 0;
+    for (int i = 0; i < (int)(sizeof tries_cdeg / sizeof tries_cdeg[0]) && hemmed; i++) {
+        const int32_t by_cdeg = left ? tries_cdeg[i] : -tries_cdeg[i];
+        if (leads_out(self, mine, by_cdeg)) {
+            return by_cdeg != 0 ? turn(argus_angle_wrap(now_cdeg + by_cdeg)) : nothing();
+        }
+    }
+    return turn(to_cdeg);
 }
 
 // It drives and may turn on the way.

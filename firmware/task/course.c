@@ -36,8 +36,7 @@ bool argus_task_set(argus_task_t *const self, const argus_point_t *const points,
 void argus_task_restart(argus_task_t *const self) {
     self->has_leg = false;
     self->avoiding = false;
-    self->side = 0;
-    self->refused = 0;
+    memset(&self->progress, 0, sizeof self->progress);
 }
 
 static int32_t distance_mm(const argus_knowledge_t *const knowledge, const argus_point_t *const to) {
@@ -67,9 +66,9 @@ bool argus_task_progress(argus_task_t *const self, const argus_knowledge_t *cons
 }
 
 int32_t argus_task_bearing_cdeg(const argus_task_t *const self, const argus_knowledge_t *const knowledge) {
-    return argus_atan2(self->leg.y_mm - knowledge->pose.y_mm, self->leg.x_mm - knowledge->pose.x_mm);
+    return argus_atan2(self->leg.to.y_mm - knowledge->pose.y_mm, self->leg.to.x_mm - knowledge->pose.x_mm);
 }
 
 int32_t argus_task_leg_mm(const argus_task_t *const self, const argus_knowledge_t *const knowledge) {
-    return distance_mm(knowledge, &self->leg);
+    return distance_mm(knowledge, &self->leg.to);
 }

@@ -1,25 +1,33 @@
 // SPDX-License-Identifier: MIT
-// The main task: a course of waypoints, and a way round what stands in it.
+// The main task: a course of waypoints, the way round what stands in it, and when to give it up.
 #ifndef ARGUS_TASK_H
 #define ARGUS_TASK_H
 
 #include "argus/argus.h"
 #include "knowledge/echoes.h"
 #include "knowledge/knowledge.h"
+#include "task/way.h"
+
+// Progress is a way to go that is shorter than it ever was. It may grow when something is found in the way, but
+// only so often.
+typedef struct {
+    int32_t least_mm;  // way to go since it has grown last, 0: not known yet
+    int32_t best_mm;   // ... ever
+    uint32_t last_ms;  // the last SIP
+    uint32_t vain_ms;  // driven, or waited for a way, without progress
+    uint8_t set_backs; // the way to go has grown so often since the waypoint was made for
+    bool exhausted;    // there was no way: only what is better than ever counts now
+} argus_progress_t;
 
 typedef struct {
     argus_point_t waypoint[ARGUS_WAYPOINTS_MAX];
     uint16_t count;
     uint16_t next;
-    bool avoiding;
-    int8_t side;       // +1 left, -1 right, 0 none chosen yet
-    argus_point_t leg; // where the robot now heads for
-    bool has_leg;
-    int32_t refused_cdeg[8]; // headings found blocked in this place
-    uint8_t refused;
-    bool slanted; // into a wall beside it, on this heading: refused after waiting, too
-    int32_t slanted_cdeg;
-    argus_point_t refused_at;
+    bool avoiding;   // the leg does not end at the waypoint
+    bool has_leg;    // where the robot now heads for
+    argus_leg_t leg;
+    argus_progress_t progress;
+    argus_wave_t wave; // scratch
 } argus_task_t;
 
 void argus_task_init(argus_task_t *self);
@@ -32,23 +40,23 @@ bool argus_task_progress(argus_task_t *self, const argus_knowledge_t *knowledge,
 
 int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *knowledge);
 
-// An object stopped the robot on its present heading: that heading is refused until the robot has moved on.
-void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge);
+// An object stopped the robot: what is near ahead, or the place just ahead where nothing is heard, is taken as
+// occupied until beams pass there.
+void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge, argus_echoes_t *echoes);
 
-// A wall beside the robot, which only its flank hears, stopped it: waiting does not take that one away.
-void argus_task_refuse_slant(argus_task_t *self, const argus_knowledge_t *knowledge);
-
-// After waiting in one place: every heading may be tried again, but into such a wall while the flank reads
-// near.
-void argus_task_forgive(argus_task_t *self, const argus_knowledge_t *knowledge);
-
-// Chooses the next leg: the waypoint itself when the way is free, else the nearest free heading. False: no
-// way.
+// Chooses the next leg: the first straight part of the way to the waypoint. False: no way. Cost: argus_way_find().
 bool argus_task_choose(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes);
 
-// Where the robot cannot turn: a leg straight ahead, if the corridor there is free. False: no way that way
-// either.
-bool argus_task_escape(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes);
+// Where the robot cannot turn: a leg ahead, but for so much of a turn, if the corridor there is free. False: no
+// way that way either.
+bool argus_task_escape(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes,
+                       int32_t by_cdeg);
+
+// Gives up a leg that is done, or on which something is seen by now.
+void argus_task_keep(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes);
+
+// On each SIP: `drives`, or waits for a way. True: the waypoint cannot be reached; 60 s without progress.
+bool argus_task_is_hopeless(argus_task_t *self, const argus_knowledge_t *knowledge, bool drives);
 
 // The course was left (operator, reconnect): the next leg is chosen anew.
 void argus_task_restart(argus_task_t *self);

@@ -238,7 +238,7 @@ typedef enum {
     X(51, OBJECT_CHECKED, WARN, "object",                                                                    \
       "a check in failure mode finds an object; value: the reading in mm")                                   \
     X(52, AVOIDING, OK, "task", "goes round an obstacle; value: heading chosen, degrees")                    \
-    X(53, NO_WAY, WARN, "task", "every heading is blocked: waits; value: seconds waited")                    \
+    X(53, NO_WAY, WARN, "task", "no way, or no progress on it: waits, or gives up; value: seconds so far")   \
     X(54, STEP, OK, "drive", "one step in failure mode; value: mm commanded")                                \
     X(55, SWEEP, OK, "drive", "a sweep of the planned rotations is done; value: smallest reading in mm")     \
     X(56, STOPPED, WARN, "drive", "STOP sent; value: heading in hundredths of a degree")                     \
@@ -443,7 +443,7 @@ typedef enum {
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.
-#define ARGUS_STORAGE_BYTES (8192 + 1920 * ARGUS_SONARS)
+#define ARGUS_STORAGE_BYTES (13700 + 1920 * ARGUS_SONARS)
 typedef union {
     uint64_t align;
     uint8_t bytes[ARGUS_STORAGE_BYTES];

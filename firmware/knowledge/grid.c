@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// Raises cells where echoes lie and lowers those that beams passed.
+#include "knowledge/grid.h"
+
+#include <string.h>
+
+#include "knowledge/angle.h"
+
+#define CELLS ARGUS_GRID_CELLS
+#define CELL_MM ARGUS_GRID_CELL_MM
+#define MASK (CELLS - 1)
+#define SLACK_CELLS 4 // the robot may be so far from the middle before the window follows
+#define LEVEL_MAX 15
+#define OCCUPIED 4 // two near echoes: one may be crosstalk
+#define MARKED 8   // five beams take it back
+#define NEAR_MM 1000
+#define FAR_MM 1600
+#define NEAR_RISE 3
+#define FAR_RISE 1
+#define FAR_MOST 3       // far echoes alone occupy nothing: they tell their place badly
+#define SHORT_MM 150     // a beam passes nothing so close to its echo
+#define PASSED_MM 1500   // ... nor beyond this, since it grows wide
+#define SILENT_MM 800    // ... nor beyond this, if nothing comes back: a smooth wall may have turned it away
+#define REST_SIPS 4      // at rest the beams of one round count,
+#define REST_EVERY 16    // ... and then of a quarter of the SIPs: they tell nothing new
+#define BODY_CELLS 1     // about its centre, where the robot stands
+
+#define BESIDE_MM 600 // of a flank's echoes the nearer ones tell of a wall along the way,
+#define APART_LEAST_MM 80 // ... two of them at such a distance,
+#define APART_MOST_MM 300
+#define ALONG_CDEG 3000 // ... within this of the heading
+#define GOES_ON_MM 600
+
+_Static_assert((CELLS & MASK) == 0 && CELLS == 64, "cells wrap around by a mask, and rows are words of 64 bits");
+
+void argus_grid_init(argus_grid_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+void argus_grid_clear(argus_grid_t *const self) {
+    memset(self->level, 0, sizeof self->level);
+}
+
+static int32_t cell_of(const int32_t mm) {
+    return mm >= 0 ? mm / CELL_MM : -((CELL_MM - 1 - mm) / CELL_MM);
+}
+
+argus_cell_t argus_grid_cell(const argus_point_t at) {
+    const argus_cell_t cell = {cell_of(at.x_mm), cell_of(at.y_mm)};
+    return cell;
+}
+
+argus_point_t argus_grid_centre(const argus_cell_t cell) {
+    const argus_point_t at = {cell.x * CELL_MM + CELL_MM / 2, cell.y * CELL_MM + CELL_MM / 2};
+    return at;
+}
+
+static bool is_inside(const argus_grid_t *const self, const argus_cell_t cell) {
+    const int32_t x = cell.x - self->low.x;
+    const int32_t y = cell.y - self->low.y;
+    return x >= 0 && x < CELLS && y >= 0 && y < CELLS;
+}
+
+// A cell keeps its place while the window moves on: places wrap around.
+static unsigned place_of(const argus_cell_t cell) {
+    return ((unsigned)cell.y & MASK) * CELLS + ((unsigned)cell.x & MASK);
+}
+
+static unsigned level_at(const argus_grid_t *const self, const unsigned place) {
+    return self->level[place / 2] >> (place % 2 * 4) & LEVEL_MAX;
+}
+
+static void put(argus_grid_t *const self, const argus_cell_t cell, const unsigned level) {
+    ARGUS_ASSERT(level <= LEVEL_MAX);
+    const unsigned place = place_of(cell);
+    const unsigned shift = place % 2 * 4;
+    const unsigned others = self->level[place / 2] & ~((unsigned)LEVEL_MAX << shift);
+    self->level[place / 2] = (uint8_t)(others | level << shift);
+}
+
+static void rise(argus_grid_t *const self, const argus_cell_t cell, const unsigned by, const unsigned most) {
+    if (!is_inside(self, cell)) {
+        return;
+    }
+    const unsigned level = level_at(self, place_of(cell));
+    if (level < most) {
+        put(self, cell, level + by < most ? level + by : most);
+    }
+}
+
+static void lower(argus_grid_t *const self, const argus_cell_t cell) {
+    const unsigned level = is_inside(self, cell) ? level_at(self, place_of(cell)) : 0;
+    if (level > 0) {
+        put(self, cell, level - 1);
+    }
+}
+
+void argus_grid_mark(argus_grid_t *const self, const argus_point_t at, const bool sure) {
+    const unsigned level = sure ? LEVEL_MAX : MARKED;
+    rise(self, argus_grid_cell(at), level, level);
+}
+
+void argus_grid_fade(argus_grid_t *const self) {
+    for (unsigned i = 0; i < sizeof self->level; i++) {
+        self->level[i] = (uint8_t)(self->level[i] >> 1 & 0x77u);
+    }
+}
+
+// The lowest cell of the window that the robot is in the middle of, but for the slack.
+static int32_t lowest(const int32_t low, const int32_t robot) {
+    const int32_t middle = low + CELLS / 2;
+    const int32_t off = robot - middle;
+    return argus_abs(off) <= SLACK_CELLS ? low : low + off - (off > 0 ? SLACK_CELLS : -SLACK_CELLS);
+}
+
+static void enter_column(argus_grid_t *const self, const int32_t x) {
+    for (int32_t y = 0; y < CELLS; y++) {
+        const argus_cell_t cell = {x, y};
+        put(self, cell, 0);
+    }
+}
+
+static void enter_row(argus_grid_t *const self, const int32_t y) {
+    memset(&self->level[((unsigned)y & MASK) * CELLS / 2], 0, CELLS / 2);
+}
+
+static void follow(argus_grid_t *const self, const argus_cell_t robot) {
+    const argus_cell_t low = {lowest(self->low.x, robot.x), lowest(self->low.y, robot.y)};
+    if (argus_abs(low.x - self->low.x) >= CELLS || argus_abs(low.y - self->low.y) >= CELLS) {
+        argus_grid_clear(self);
+        self->low = low;
+    }
+    while (self->low.x != low.x) {
+        const bool up = self->low.x < low.x;
+        enter_column(self, up ? self->low.x : self->low.x - 1); // the one that leaves makes its place free
+        self->low.x += up ? 1 : -1;
+    }
+    while (self->low.y != low.y) {
+        const bool up = self->low.y < low.y;
+        enter_row(self, up ? self->low.y : self->low.y - 1);
+        self->low.y += up ? 1 : -1;
+    }
+    ARGUS_ASSERT(is_inside(self, robot));
+}
+
+static void clear_body(argus_grid_t *const self, const argus_cell_t robot) {
+    for (int32_t y = -BODY_CELLS; y <= BODY_CELLS; y++) {
+        for (int32_t x = -BODY_CELLS; x <= BODY_CELLS; x++) {
+            const argus_cell_t cell = {robot.x + x, robot.y + y};
+            put(self, cell, 0);
+        }
+    }
+}
+
+static void pass(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                 const int32_t way_mm) {
+    const argus_sonar_pose_t *const at = argus_robot_pose(knowledge->robot, sonar);
+    const int32_t c = argus_cos(at->heading_deg * 100);
+    const int32_t s = argus_sin(at->heading_deg * 100);
+    for (int32_t mm = CELL_MM / 2; mm < way_mm; mm += CELL_MM) {
+        const argus_point_t on = {at->x_mm + mm * c / ARGUS_TRIG_ONE, at->y_mm + mm * s / ARGUS_TRIG_ONE};
+        lower(self, argus_grid_cell(argus_to_course(&knowledge->pose, on)));
+    }
+}
+
+// A wall that the robot drives along is heard abeam only. It is taken to go on as between its last two echoes; a
+// beam that passes there says otherwise.
+static void extend(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const argus_point_t echo,
+                   argus_point_t *const last) {
+    const int32_t dx = echo.x_mm - last->x_mm;
+    const int32_t dy = echo.y_mm - last->y_mm;
+    const bool near = argus_abs(dx) <= APART_MOST_MM && argus_abs(dy) <= APART_MOST_MM;
+    const int32_t apart_mm = near ? argus_hypot(dx, dy) : INT32_MAX;
+    if (apart_mm < APART_LEAST_MM) {
+        return;
+    }
+    *last = echo;
+    if (apart_mm > APART_MOST_MM ||
+        argus_angle_abs_diff(argus_atan2(dy, dx), knowledge->pose.heading_cdeg) > ALONG_CDEG) {
+        return;
+    }
+    for (int32_t mm = CELL_MM; mm <= GOES_ON_MM; mm += CELL_MM) {
+        const argus_point_t on = {echo.x_mm + dx * mm / apart_mm, echo.y_mm + dy * mm / apart_mm};
+        rise(self, argus_grid_cell(on), OCCUPIED, OCCUPIED);
+    }
+}
+
+static bool tells(const argus_knowledge_t *const knowledge, const int sonar) {
+    return (knowledge->fresh >> sonar & 1u) != 0 && !argus_is_out(knowledge, sonar) &&
+           knowledge->sonar[sonar].health != ARGUS_SUSPECT;
+}
+
+static bool is_passing(const argus_knowledge_t *const knowledge) {
+    return knowledge->still_sips <= REST_SIPS || knowledge->still_sips % REST_EVERY < REST_SIPS;
+}
+
+static void take(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
+    const bool silent = reading_mm >= knowledge->robot->no_echo_mm;
+    if (is_passing(knowledge)) {
+        pass(self, knowledge, sonar, silent ? SILENT_MM : argus_min(reading_mm - SHORT_MM, PASSED_MM));
+    }
+    if (!silent && reading_mm <= FAR_MM) {
+        const bool near = reading_mm <= NEAR_MM;
+        const argus_point_t echo = argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, sonar));
+        rise(self, argus_grid_cell(echo), near ? NEAR_RISE : FAR_RISE, near ? LEVEL_MAX : FAR_MOST);
+        if ((argus_robot_flank(knowledge->robot) >> sonar & 1u) != 0 && reading_mm <= BESIDE_MM) {
+            const bool left = argus_robot_pose(knowledge->robot, sonar)->y_mm > 0;
+            extend(self, knowledge, echo, &self->abeam[left ? 1 : 0]);
+        }
+    }
+}
+
+void argus_grid_see(argus_grid_t *const self, const argus_knowledge_t *const knowledge) {
+    const argus_point_t centre = {knowledge->pose.x_mm, knowledge->pose.y_mm};
+    const argus_cell_t robot = argus_grid_cell(centre);
+    follow(self, robot);
+    clear_body(self, robot);
+    for (int i = 0; i < knowledge->sonars && !knowledge->rotating; i++) {
+        if (tells(knowledge, i)) {
+            take(self, knowledge, i);
+        }
+    }
+}
+
+bool argus_grid_is_occupied(const argus_grid_t *const self, const argus_cell_t cell) {
+    return is_inside(self, cell) && level_at(self, place_of(cell)) >= OCCUPIED;
+}
+
+uint64_t argus_grid_row(const argus_grid_t *const self, const int row) {
+    ARGUS_ASSERT(row >= 0 && row < CELLS);
+    uint64_t bits = 0;
+    for (int32_t x = 0; x < CELLS; x++) {
+        const argus_cell_t cell = {self->low.x + x, self->low.y + row};
+        bits |= (uint64_t)(level_at(self, place_of(cell)) >= OCCUPIED) << x;
+    }
+    return bits;
+}

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: MIT
+// Floods the grid row by row: 64 cells are one word, so a step of the wave is a few shifts for each row.
+#include "task/way.h"
+
+#include <string.h>
+
+#include "knowledge/angle.h"
+
+#define CELLS ARGUS_GRID_CELLS
+#define CELL_MM ARGUS_GRID_CELL_MM
+#define WIDE_ROOM_MM 50    // beside the swing circle: room to turn anywhere (S7 wants 20 under `argus`)
+#define NARROW_ROOM_MM 110 // beside the body: what a sonar at 50 degrees stops at, for an object range of 250 mm
+#define OUT_MM 450         // about the robot and the waypoint less will do: it may have to get out of there
+#define TIGHT_MM 200
+#define PLANES 4
+#define LABELS 15    // neighbours are at most seven steps of the wave apart
+#define NARROW_STEPS 5 // that the wave takes to a cell where there is no room to turn; 1 to others
+#define STEPS_MAX 1000
+#define IDLE_STEPS (NARROW_STEPS + 1) // without a new cell: nothing is on its way any more
+#define SAMPLE_MM 50
+#define LEG_LEAST_MM 250
+#define CUT_SAMPLES 4 // a straight leg may have so many more narrow samples than the way itself
+#define AHEAD_MM 1000
+
+static uint64_t bit(const int32_t x) {
+    ARGUS_ASSERT(x >= 0 && x < CELLS);
+    return (uint64_t)1 << x;
+}
+
+static bool is_within(const argus_cell_t cell) {
+    return cell.x >= 0 && cell.x < CELLS && cell.y >= 0 && cell.y < CELLS;
+}
+
+static bool has(const uint64_t *const rows, const argus_cell_t cell) {
+    return is_within(cell) && (rows[cell.y] & bit(cell.x)) != 0;
+}
+
+// In the window.
+static argus_cell_t cell_in(const argus_grid_t *const grid, const argus_point_t at) {
+    const argus_cell_t cell = argus_grid_cell(at);
+    const argus_cell_t in = {cell.x - grid->low.x, cell.y - grid->low.y};
+    return in;
+}
+
+static argus_point_t centre_of(const argus_grid_t *const grid, const argus_cell_t in) {
+    const argus_cell_t cell = {in.x + grid->low.x, in.y + grid->low.y};
+    return argus_grid_centre(cell);
+}
+
+static argus_point_t robot_at(const argus_ground_t *const ground) {
+    const argus_point_t at = {ground->knowledge->pose.x_mm, ground->knowledge->pose.y_mm};
+    return at;
+}
+
+static int32_t between_mm(const argus_point_t a, const argus_point_t b) {
+    const int32_t most = 40000;
+    return argus_hypot(argus_max(-most, argus_min(most, a.x_mm - b.x_mm)),
+                       argus_max(-most, argus_min(most, a.y_mm - b.y_mm)));
+}
+
+// What is passable --------------------------------------------------------------------------------------------
+
+// Cells to either side in a row `dy` rows off that are within the radius; -1: none.
+static int reach(const int32_t radius_mm, const int dy) {
+    const int32_t most = radius_mm * radius_mm / (CELL_MM * CELL_MM) - dy * dy;
+    int wide = -1;
+    while ((wide + 1) * (wide + 1) <= most) {
+        wide++;
+    }
+    return wide;
+}
+
+static uint64_t widened(const uint64_t row, const int by) {
+    uint64_t wide = row;
+    for (int i = 1; i <= by; i++) {
+        wide |= row << i | row >> i;
+    }
+    return wide;
+}
+
+// What lies within the radius of what is set.
+static void grow(const uint64_t *const from, uint64_t *const to, const int32_t radius_mm) {
+    const int most = radius_mm / CELL_MM;
+    memset(to, 0, CELLS * sizeof *to);
+    for (int dy = -most; dy <= most; dy++) {
+        const int by = reach(radius_mm, dy);
+        for (int y = argus_max(0, -dy); y < CELLS && y + dy < CELLS && by >= 0; y++) {
+            to[y] |= widened(from[y + dy], by);
+        }
+    }
+}
+
+static void invert(uint64_t *const rows) {
+    for (int y = 0; y < CELLS; y++) {
+        rows[y] = ~rows[y];
+    }
+}
+
+// About a place the robot may be nearer to things.
+static void let_out(argus_wave_t *const wave, const argus_cell_t about, const uint64_t *const tight) {
+    const int most = OUT_MM / CELL_MM;
+    for (int dy = -most; dy <= most; dy++) {
+        const int by = reach(OUT_MM, dy);
+        for (int dx = -by; dx <= by; dx++) {
+            const argus_cell_t cell = {about.x + dx, about.y + dy};
+            if (is_within(cell) && !has(tight, cell)) {
+                wave->narrow[cell.y] |= bit(cell.x);
+            }
+        }
+    }
+    if (is_within(about)) {
+        wave->narrow[about.y] |= bit(about.x);
+    }
+}
+
+static int32_t narrow_mm(const argus_knowledge_t *const knowledge) {
+    return argus_robot_half_width_mm(knowledge->robot) + NARROW_ROOM_MM;
+}
+
+static int32_t wide_mm(const argus_knowledge_t *const knowledge) {
+    return knowledge->robot->swing_radius_mm + WIDE_ROOM_MM;
+}
+
+// The planes of the labels are free for it until the wave begins.
+static void survey(argus_wave_t *const wave, const argus_ground_t *const ground, const argus_point_t waypoint) {
+    uint64_t *const occupied = wave->label[0];
+    uint64_t *const tight = wave->label[1];
+    for (int y = 0; y < CELLS; y++) {
+        occupied[y] = argus_grid_row(ground->grid, y);
+    }
+    grow(occupied, wave->wide, wide_mm(ground->knowledge));
+    grow(occupied, wave->narrow, narrow_mm(ground->knowledge));
+    grow(occupied, tight, TIGHT_MM);
+    invert(wave->wide);
+    invert(wave->narrow);
+    let_out(wave, cell_in(ground->grid, robot_at(ground)), tight);
+    let_out(wave, cell_in(ground->grid, waypoint), tight);
+    memset(wave->label, 0, sizeof wave->label);
+}
+
+// The wave ----------------------------------------------------------------------------------------------------
+
+static uint64_t reached(const argus_wave_t *const wave, const int y) {
+    return wave->label[0][y] | wave->label[1][y] | wave->label[2][y] | wave->label[3][y];
+}
+
+static uint64_t labelled(const argus_wave_t *const wave, const int y, const unsigned label) {
+    uint64_t row = ~(uint64_t)0;
+    for (unsigned i = 0; i < PLANES; i++) {
+        row &= (label >> i & 1u) != 0 ? wave->label[i][y] : ~wave->label[i][y];
+    }
+    return row;
+}
+
+static void put_label(argus_wave_t *const wave, const int y, const uint64_t cells, const unsigned label) {
+    for (unsigned i = 0; i < PLANES; i++) {
+        wave->label[i][y] |= (label >> i & 1u) != 0 ? cells : 0;
+    }
+}
+
+static unsigned label_of(const argus_wave_t *const wave, const argus_cell_t cell) {
+    unsigned label = 0;
+    for (unsigned i = 0; i < PLANES; i++) {
+        label |= has(wave->label[i], cell) ? 1u << i : 0u;
+    }
+    return label;
+}
+
+static unsigned label_at(const int step) {
+    return 1u + (unsigned)step % LABELS;
+}
+
+// The cells beside those of a row, and of the rows above and below it; every other step of the wave corners count:
+// its front is an octagon.
+static uint64_t beside(const uint64_t row, const uint64_t others, const bool corners) {
+    return widened(row, 1) | (corners ? widened(others, 1) : others);
+}
+
+// What the wave reached long enough ago to get on where it is narrow.
+static uint64_t ripened(const argus_wave_t *const wave, const int y, const int step) {
+    uint64_t young = 0;
+    for (int ago = 1; ago < NARROW_STEPS && y < CELLS; ago++) {
+        young |= labelled(wave, y, label_at(step + LABELS - ago));
+    }
+    return y < CELLS ? reached(wave, y) & ~young : 0;
+}
+
+// True: the wave has come to new cells.
+static bool advance(argus_wave_t *const wave, const int step) {
+    const bool corners = step % 2 == 0;
+    uint64_t below = 0;
+    uint64_t below_ripe = 0;
+    uint64_t any = 0;
+    uint64_t here = reached(wave, 0);
+    uint64_t ripe = ripened(wave, 0, step);
+    for (int y = 0; y < CELLS; y++) {
+        const uint64_t above = y + 1 < CELLS ? reached(wave, y + 1) : 0;
+        const uint64_t above_ripe = ripened(wave, y + 1, step);
+        const uint64_t fresh = ((beside(here, below | above, corners) & wave->wide[y]) |
+                                (beside(ripe, below_ripe | above_ripe, corners) & wave->narrow[y])) &
+                               ~here;
+        put_label(wave, y, fresh, label_at(step));
+        any |= fresh;
+        below = here;
+        below_ripe = ripe;
+        here = above;
+        ripe = above_ripe;
+    }
+    return any != 0;
+}
+
+static int32_t outside(const int32_t at) {
+    return at < 0 ? -at : argus_max(0, at - (CELLS - 1));
+}
+
+// In cells, how far the waypoint is outside the window.
+static int32_t beyond(const argus_cell_t waypoint) {
+    return argus_hypot(argus_min(outside(waypoint.x), 40000), argus_min(outside(waypoint.y), 40000));
+}
+
+static bool is_source(const argus_wave_t *const wave, const argus_cell_t cell, const argus_cell_t waypoint,
+                      const int32_t radius) {
+    const int32_t dx = cell.x - waypoint.x;
+    const int32_t dy = cell.y - waypoint.y;
+    return has(wave->narrow, cell) && label_of(wave, cell) == 0 && dx * dx + dy * dy <= radius * radius;
+}
+
+// A wave from a waypoint outside comes to the border by and by. False: it has come to all of it.
+static bool come_in(argus_wave_t *const wave, const argus_cell_t waypoint, const int step) {
+    const int32_t radius = beyond(waypoint) + step;
+    for (int32_t i = 0; i < CELLS; i++) {
+        const argus_cell_t border[] = {{i, 0}, {i, CELLS - 1}, {0, i}, {CELLS - 1, i}};
+        for (int k = 0; k < 4; k++) {
+            if (is_source(wave, border[k], waypoint, radius)) {
+                put_label(wave, (int)border[k].y, bit(border[k].x), label_at(step));
+            }
+        }
+    }
+    return step < 3 * CELLS;
+}
+
+// Steps that the wave takes from the waypoint to the robot; -1: it does not come.
+static int flood(argus_wave_t *const wave, const argus_cell_t from, const argus_cell_t to) {
+    ARGUS_ASSERT(is_within(to));
+    const bool far = !is_within(from);
+    int idle = 0;
+    if (!far) {
+        put_label(wave, (int)from.y, bit(from.x), label_at(0));
+    }
+    for (int step = 1; step < STEPS_MAX && idle < IDLE_STEPS; step++) {
+        if (label_of(wave, to) != 0) {
+            return step - 1;
+        }
+        const bool more = far && come_in(wave, from, step);
+        idle = advance(wave, step) || more ? 0 : idle + 1;
+    }
+    return -1;
+}
+
+// Back to the robot's first leg ---------------------------------------------------------------------------------
+
+// The neighbour that the wave reached soonest; false at its source.
+static bool descend(const argus_wave_t *const wave, argus_cell_t *const at, int *const steps) {
+    static const int8_t around[8][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    const unsigned here = label_of(wave, *at);
+    unsigned most = 0;
+    argus_cell_t next = *at;
+    for (int i = 0; i < 8; i++) {
+        const argus_cell_t cell = {at->x + around[i][0], at->y + around[i][1]};
+        const unsigned label = label_of(wave, cell);
+        const unsigned sooner = (here + LABELS - label) % LABELS;
+        if (label != 0 && sooner <= LABELS / 2 && sooner > most) {
+            most = sooner;
+            next = cell;
+        }
+    }
+    *at = next;
+    *steps -= (int)most;
+    return most > 0;
+}
+
+// Samples of the straight line that are not wide; INT32_MAX: it is not free.
+static int32_t narrow_samples(const argus_wave_t *const wave, const argus_ground_t *const ground,
+                              const argus_point_t to) {
+    const argus_point_t from = robot_at(ground);
+    const int32_t way_mm = argus_max(1, argus_min(between_mm(from, to), CELLS * CELL_MM));
+    const int32_t dx = argus_max(-40000, argus_min(40000, to.x_mm - from.x_mm));
+    const int32_t dy = argus_max(-40000, argus_min(40000, to.y_mm - from.y_mm));
+    const int32_t length_mm = argus_max(1, argus_hypot(dx, dy));
+    int32_t narrow = 0;
+    for (int32_t mm = 0; mm <= way_mm; mm += SAMPLE_MM) {
+        const argus_point_t on = {from.x_mm + dx * mm / length_mm, from.y_mm + dy * mm / length_mm};
+        const argus_cell_t cell = cell_in(ground->grid, on);
+        if (is_within(cell) && !has(wave->narrow, cell)) {
+            return INT32_MAX;
+        }
+        narrow += is_within(cell) && !has(wave->wide, cell) ? 1 : 0;
+    }
+    return narrow;
+}
+
+// The farthest cell of the way that can be driven straight to, best one on which the robot can turn.
+static void pull(const argus_wave_t *const wave, const argus_ground_t *const ground, const argus_point_t waypoint,
+                 int steps, argus_leg_t *const leg) {
+    argus_cell_t at = cell_in(ground->grid, robot_at(ground));
+    int32_t narrow = CUT_SAMPLES;
+    bool wide_end = false;
+    bool straight = true;
+    leg->to = robot_at(ground);
+    while (straight && descend(wave, &at, &steps)) {
+        const argus_point_t centre = centre_of(ground->grid, at);
+        const bool wide = has(wave->wide, at);
+        const bool first = between_mm(robot_at(ground), leg->to) < LEG_LEAST_MM;
+        narrow += wide ? 0 : CELL_MM / SAMPLE_MM;
+        straight = narrow_samples(wave, ground, centre) <= narrow;
+        if (first || (straight && (wide || !wide_end))) {
+            leg->to = centre;
+            leg->to_go_mm = steps * CELL_MM;
+            wide_end = wide;
+        }
+        straight = straight || first;
+    }
+    leg->direct = straight && narrow_samples(wave, ground, waypoint) <= narrow;
+    if (leg->direct) {
+        leg->to = waypoint;
+        leg->to_go_mm = 0;
+    }
+}
+
+bool argus_way_find(argus_wave_t *const wave, const argus_ground_t *const ground, const argus_point_t waypoint,
+                    argus_leg_t *const leg) {
+    const argus_cell_t robot = cell_in(ground->grid, robot_at(ground));
+    const argus_cell_t goal = cell_in(ground->grid, waypoint);
+    if (!is_within(robot)) {
+        return false; // no SIP has come yet
+    }
+    survey(wave, ground, waypoint);
+    const int steps = flood(wave, goal, robot);
+    if (steps < 0) {
+        return false;
+    }
+    pull(wave, ground, waypoint, steps, leg);
+    leg->to_go_mm += leg->direct ? 0 : beyond(goal) * CELL_MM;
+    leg->narrow = narrow_samples(wave, ground, leg->to) > 0;
+    return true;
+}
+
+static bool is_clear(const argus_ground_t *const ground, const argus_cell_t about, const int32_t radius_mm) {
+    const int most = (int)(radius_mm / CELL_MM);
+    for (int dy = -most; dy <= most; dy++) {
+        const int by = reach(radius_mm, dy);
+        for (int dx = -by; dx <= by; dx++) {
+            const argus_cell_t cell = {about.x + dx, about.y + dy};
+            if (argus_grid_is_occupied(ground->grid, cell)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+bool argus_way_is_free(const argus_ground_t *const ground, const argus_leg_t *const leg) {
+    const argus_point_t to = leg->to;
+    const int32_t radius_mm = leg->narrow ? narrow_mm(ground->knowledge) : wide_mm(ground->knowledge);
+    const argus_point_t from = robot_at(ground);
+    const int32_t dx = argus_max(-40000, argus_min(40000, to.x_mm - from.x_mm));
+    const int32_t dy = argus_max(-40000, argus_min(40000, to.y_mm - from.y_mm));
+    const int32_t length_mm = argus_max(1, argus_hypot(dx, dy));
+    const int32_t end_mm = argus_min(AHEAD_MM, length_mm - OUT_MM);
+    for (int32_t mm = OUT_MM + SAMPLE_MM; mm <= end_mm; mm += SAMPLE_MM) {
+        const argus_point_t on = {from.x_mm + dx * mm / length_mm, from.y_mm + dy * mm / length_mm};
+        if (!is_clear(ground, argus_grid_cell(on), radius_mm)) {
+            return false;
+        }
+    }
+    return true;
+}
