@@ -39,6 +39,11 @@ static unsigned open_names(const argus_t *const self) {
     return argus_named(&self->knowledge) & argus_open_suspects(self);
 }
 
+argus_mask_t argus_to_settle(const argus_t *const self) {
+    const argus_guard_t guard = argus_guard(self);
+    return argus_guard_may_turn(&guard) ? (argus_mask_t)open_names(self) : 0;
+}
+
 // Suspects ahead that have no neighbour who sees on the way what they may not.
 static argus_mask_t alone(const argus_t *const self) {
     const unsigned open = open_names(self) & argus_robot_forward(self->knowledge.robot);

@@ -3,6 +3,7 @@
 #include "supervisor/travel.h"
 
 #include "knowledge/angle.h"
+#include "supervisor/looks.h"
 #include "supervisor/state.h"
 
 #define AIM_CDEG 1000    // a bearing farther off than this is turned to at rest
@@ -58,7 +59,11 @@ static argus_intent_t arrive(const argus_t *const self, argus_travel_t *const mi
         mine->arriving = true;
         return (argus_intent_t){.act = ARGUS_DO_BRAKE};
     }
-    return (argus_intent_t){.act = self->motion.settled ? ARGUS_DO_REACH : ARGUS_DO_NOTHING};
+    if (!self->motion.settled) {
+        return nothing();
+    }
+    const argus_mask_t open = argus_rules(self)->evidence ? argus_to_settle(self) : 0;
+    return (argus_intent_t){.act = open != 0 ? ARGUS_DO_VERIFY : ARGUS_DO_REACH, .sonars = open};
 }
 
 // Waypoints and the goal. True: `intent` is what the SIP calls for.
