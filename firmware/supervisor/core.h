@@ -100,6 +100,7 @@ typedef struct {
     argus_naming_t naming[ARGUS_SONARS];
     uint32_t check_ms; // a health check
     uint32_t lost_ms;  // what doubt has cost since the last look: time, against the speed without
+    uint8_t settling;  // looks at the goal
     bool asked;        // an operator wants a look
 } argus_looks_t;
 

@@ -12,6 +12,7 @@
 #define HOLD_FORGET_MM 4000u // ... and forgotten after this one
 #define LOOK_COST_MS 9000u   // what a look takes: two turns aside, the way back, two rounds of readings each
 #define SIP_MS 100u
+#define SETTLE_MOST 5 // looks at the goal: a verdict takes disagreements at more than one time
 
 static bool is_held(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
@@ -41,7 +42,7 @@ static unsigned open_names(const argus_t *const self) {
 
 argus_mask_t argus_to_settle(const argus_t *const self) {
     const argus_guard_t guard = argus_guard(self);
-    return argus_guard_may_turn(&guard) ? (argus_mask_t)open_names(self) : 0;
+    return argus_guard_may_turn(&guard) && self->looks.settling < SETTLE_MOST ? argus_named(&self->knowledge) : 0;
 }
 
 // Suspects ahead that have no neighbour who sees on the way what they may not.

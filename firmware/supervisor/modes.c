@@ -58,6 +58,8 @@ static void enter_checking(argus_t *const self, const argus_intent_t *const inte
 static void enter_verifying(argus_t *const self, const argus_mask_t suspects) {
     ARGUS_ASSERT(!self->orders.passive);
     argus_flag_suspects(self, suspects);
+    self->awareness.verified &= (argus_mask_t) ~(unsigned)suspects;
+    self->looks.settling = (uint8_t)(self->travel.arriving ? self->looks.settling + 1 : 0);
     argus_halt(self);
     if (!self->motion.settled && self->motion.kind != ARGUS_MOTION_STOP) {
         argus_hold(self);
