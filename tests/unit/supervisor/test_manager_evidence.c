@@ -566,23 +566,6 @@ void test_hemmed_in_it_stays_with_a_suspect_ahead(void) { // soak
     }
 }
 
-// One of 1..6 that loses an echo is looked at whatever was found a moment ago; any other, that was cleared
-// here, only after 100 mm.
-void test_a_lost_echo_is_looked_for_at_once_ahead_and_not_in_one_place_elsewhere(void) {
-    start_in_a_room();
-    for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
-        for (int way = 99; way <= 100; way++) {
-            robot.argus.evidence.lost = (uint16_t)(1u << sonar);
-            robot.argus.looks.hold[sonar].acquittals = 1;
-            robot.argus.looks.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm - (uint32_t)way;
-            const bool ahead = sonar >= 1 && sonar <= 6;
-            const bool looked = (argus_worth_a_look(&robot.argus) >> sonar & 1) != 0;
-            TEST_ASSERT_EQUAL_MESSAGE(ahead || way == 100, looked, told("lost", sonar));
-        }
-    }
-    finish();
-}
-
 // A smooth wall: heard where it is looked at squarely, and not otherwise.
 static int smooth_wall(const robot_t *r, int sonar) {
     const argus_sonar_pose_t *at = &argus_sonar_poses[sonar];
@@ -846,20 +829,19 @@ void test_what_is_pinned_is_not_made_a_suspect(void) {
     finish();
 }
 
-// ---- caution, look_every_s
+// ---- caution
 
-static void start_with(int32_t caution, int32_t look_every_s) {
+static void start_with(int32_t caution) {
     argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
     config.caution = caution;
-    config.look_every_s = look_every_s;
     robot_init(&robot, &config, 0xFFFF8000u);
     robot.noise_mm = 5;
     furnish();
 }
 
-// How long it drives with a sonar that hangs, until that is disabled; with no look in between, but the first.
+// How long it drives with a sonar that hangs, until that is disabled.
 static uint32_t found_after_ms(int32_t caution) {
-    start_with(caution, 3600);
+    start_with(caution);
     drive_until(never, 0, 12000);
     const uint32_t from = robot.t_ms;
     robot.fault[3] = ROBOT_STUCK;
@@ -878,28 +860,13 @@ void test_caution_is_how_much_evidence_a_verdict_takes(void) {
 }
 
 void test_caution_outlives_a_retest(void) {
-    start_with(400, 20);
+    start_with(400);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
     TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_RETEST, 3));
     robot_run(&robot, 1000);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         TEST_ASSERT_EQUAL(400, robot.argus.evidence.of[i].caution);
     }
-}
-
-static int looks_in_two_minutes(int32_t look_every_s) {
-    start_with(100, look_every_s);
-    drive_until(never, 0, 120000);
-    finish();
-    return robot_count_events(&robot, ARGUS_EV_LOOK, 0);
-}
-
-void test_it_looks_at_all_as_often_as_it_is_told(void) { // soak
-    const int often = looks_in_two_minutes(2);
-    const int usual = looks_in_two_minutes(20);
-    TEST_ASSERT_EQUAL(1, looks_in_two_minutes(3600)); // before the first metre
-    TEST_ASSERT_TRUE(usual > 1);
-    TEST_ASSERT_TRUE(often > usual);
 }
 
 // ---- old agreements
