@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): the manager acts on evidence. Every kind of fault is found on the way
-// and named, an open hall is none, a look ends on the heading that it began on, who is not cleared is covered
-// for, and a repaired sonar comes back on agreements alone.
+// and named, an open hall is none, a look ends on the heading that it began on, and a repaired sonar comes back
+// on agreements alone.
 #include "supervisor/manager.h"
 
 #include <math.h>
@@ -84,6 +84,16 @@ static bool drive_until(bool (*enough)(int sonar), int sonar, uint32_t ms) {
 static bool never(int sonar) {
     (void)sonar;
     return false;
+}
+
+static bool ask_for_a_look(int sonar) {
+    const bool taken = argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_RETEST, sonar);
+    robot_drain(&robot);
+    return taken;
+}
+
+static void accuse(int sonar) {
+    robot.argus.evidence.of[sonar].score[ARGUS_TEST_VIEW] = argus_bounds[ARGUS_TEST_VIEW].naming;
 }
 
 static bool is_disabled(int sonar) {
@@ -180,8 +190,8 @@ void test_a_look_begins_and_ends_on_one_heading_and_place(void) {
     int seen = 0;
     TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 600));
     for (int i = 0; i < 12000 && robot.argus.mission == ARGUS_MISSION_RUNNING; i++) {
-        if (i == 3000) {
-            robot.fault[3] = ROBOT_OFF;
+        if (i % 1500 == 600) {
+            ask_for_a_look(3);
         }
         robot_tick(&robot);
         if (robot.argus.mode != ARGUS_MODE_VERIFYING || !robot.argus.verifying.inquiry.active) {
@@ -205,37 +215,16 @@ void test_a_look_begins_and_ends_on_one_heading_and_place(void) {
     finish();
 }
 
-// Before a course's first metre all sonars are tried once.
-void test_the_first_metre_is_driven_after_a_look(void) {
+// No metre is preceded by a look that nobody needs.
+void test_the_first_metre_is_driven_without_a_look(void) {
     start_in_a_room();
     TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
-    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_LOOK, 0));
-    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0));
-    TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_HEAD, 0) >= 3);
+    robot_run(&robot, 1000);
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_LOOK, 0));
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, 0));
+    TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_MOVE, 0) > 0);
     finish();
-}
-
-// S6, S1: a suspect that a look has not cleared is planned for as if it were disabled, and stepped for.
-void test_a_suspect_that_stays_open_is_covered_by_the_plan(void) {
-    int open = 0;
-    for (int sonar = 1; sonar <= 6; sonar++) {
-        start_in_a_room();
-        robot.fault[sonar] = ROBOT_SCALE;
-        robot.fault_value[sonar] = 60;
-        robot_goal(&robot, 1500, 0);
-        for (int i = 0; i < 6000 && robot.argus.mission == ARGUS_MISSION_RUNNING && !is_disabled(sonar);
-             i++) {
-            robot_tick(&robot);
-            const bool verified = (robot.argus.awareness.verified >> sonar & 1u) != 0;
-            if (health(sonar) == ARGUS_SUSPECT && verified && robot.argus.mode != ARGUS_MODE_VERIFYING) {
-                open++;
-                TEST_ASSERT_TRUE_MESSAGE((robot.argus.plan.disabled >> sonar & 1u) != 0, told("plan", sonar));
-            }
-        }
-        finish(); // the watch compares every MOVE ahead with plan and sweeps
-    }
-    TEST_ASSERT_TRUE_MESSAGE(open > 0, "no suspect stayed open: the test shows nothing");
 }
 
 // A suspect behind is no reason to plan for what looks ahead, nor to say the plan again and again.
@@ -260,7 +249,7 @@ static void break_and_repair(int sonar) {
 // Drives until it is healthy again; `way`: what it was on the way, a bit each.
 static void drive_back(int sonar, unsigned *way) {
     static const argus_point_t there[] = {{1000, 0}, {0, 700}, {-900, 0}, {0, -700}};
-    for (int i = 0; i < 24 && !is_healthy(sonar); i++) {
+    for (int i = 0; i < 100 && !is_healthy(sonar); i++) {
         robot_goal(&robot, there[i % 4].x_mm, there[i % 4].y_mm);
         for (int n = 0; n < 3000 && robot.argus.mission == ARGUS_MISSION_RUNNING && !is_healthy(sonar); n++) {
             robot_tick(&robot);
@@ -270,7 +259,7 @@ static void drive_back(int sonar, unsigned *way) {
 }
 
 void test_a_repaired_sonar_comes_back_over_probation(void) {
-    static const int sonars[] = {2, 4, 12};
+    static const int sonars[] = {1, 2, 5};
     for (int i = 0; i < 3; i++) {
         unsigned way = 0;
         start_in_a_room();
@@ -377,6 +366,8 @@ void test_a_relapse_is_counted(void) {
 void test_a_link_that_stalls_during_a_look(void) {
     start_in_a_room();
     TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+    ask_for_a_look(3);
     for (int i = 0; i < 3000 && fabs(robot_heading_deg(&robot)) < 15; i++) {
         robot_tick(&robot);
     }
@@ -403,6 +394,7 @@ void test_a_witness_that_dies_during_a_look(void) {
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
     robot_run(&robot, 1500);
     robot.fault[3] = ROBOT_OFF;
+    ask_for_a_look(3);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 20000));
     robot.fault[2] = robot.fault[4] = ROBOT_SILENT;
     TEST_ASSERT_TRUE_MESSAGE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 60000), told("look", 3));
@@ -412,28 +404,51 @@ void test_a_witness_that_dies_during_a_look(void) {
     finish(); // the watch: no step without a plan for all that are not relied on
 }
 
-// S2 in spirit: what convicts a sonar that looks ahead while the robot drives stops it in the same call.
-void test_a_conviction_in_motion_is_answered_by_stop_in_the_same_call(void) {
+static void condemn(int sonar) {
+    robot.argus.evidence.of[sonar].score[ARGUS_TEST_DROPOUT] = argus_bounds[ARGUS_TEST_DROPOUT].ceiling;
+}
+
+// S1: what convicts a sonar that looks ahead while the robot drives is planned for in the same call; it goes on
+// as far as others have seen, which the watch compares.
+void test_a_conviction_in_motion_is_planned_for_in_the_same_call(void) {
     for (int sonar = 1; sonar <= 6; sonar++) {
         start_in_a_room();
         robot_goal(&robot, 2000, 0);
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
         robot_run(&robot, 1500);
         TEST_ASSERT_EQUAL(ARGUS_MODE_DRIVING, robot.argus.mode);
-        robot.argus.evidence.of[sonar].score[ARGUS_TEST_DROPOUT] = argus_bounds[ARGUS_TEST_DROPOUT].ceiling;
+        condemn(sonar);
         robot_next_sip(&robot);
         TEST_ASSERT_TRUE_MESSAGE(is_disabled(sonar), told("conviction", sonar));
-        TEST_ASSERT_TRUE(robot.reply_length > 3);
-        TEST_ASSERT_EQUAL_HEX8(ARCOS_CMD_STOP, robot.reply[3]);
         TEST_ASSERT_TRUE((robot.argus.plan.disabled >> sonar & 1u) != 0);
         robot_run(&robot, 30000);
         finish();
     }
 }
 
-// S6: a suspicion that comes up in the very SIP of an operator's step is looked at first.
+// S2: ... and stops it in the same call where nobody is left to see.
+void test_a_conviction_that_leaves_nobody_is_answered_by_stop_in_the_same_call(void) {
+    start_in_a_room();
+    robot_goal(&robot, 2000, 0);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+    robot_run(&robot, 1500);
+    const int from = robot.commands;
+    for (int sonar = 1; sonar <= 6; sonar++) {
+        condemn(sonar);
+    }
+    robot_next_sip(&robot);
+    TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_STOP, from) > 0);
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, from));
+    robot_run(&robot, 30000);
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, from));
+    finish();
+}
+
+// S6: suspicions that come up in the very SIP of an operator's step are looked at first where nobody sees in
+// the place of one of them.
 void test_a_jog_does_not_outrun_a_suspicion(void) {
-    for (int delay = 0; delay < 12; delay++) {
+    int in_time = 0;
+    for (int delay = 0; delay < 6; delay++) {
         start_in_a_room();
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
         argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_STOP, 0);
@@ -442,11 +457,20 @@ void test_a_jog_does_not_outrun_a_suspicion(void) {
         for (int i = 0; i < delay; i++) {
             robot_next_sip(&robot);
         }
-        robot.argus.evidence.lost |= 1u << 3;
+        const int from = robot.commands;
+        for (int sonar = 2; sonar <= 4; sonar++) {
+            accuse(sonar);
+        }
+        if (robot_count_commands(&robot, ARCOS_CMD_MOVE, 0) == 0) {
+            in_time++;
+            TEST_ASSERT_TRUE_MESSAGE(robot_until_event(&robot, ARGUS_EV_SONAR_VERIFYING, 20000),
+                                     told("jog", delay));
+            TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, from));
+        }
         robot_run(&robot, 20000);
-        TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_SONAR_SUSPECT, 0) > 0);
-        finish(); // the watch: no MOVE ahead beside a suspect that the plan does not cover
+        finish(); // the watch: no MOVE ahead beside a suspect that nobody sees for
     }
+    TEST_ASSERT_TRUE_MESSAGE(in_time > 0, "the step was always under way: the test shows nothing");
 }
 
 // S7: what is not relied on does not read clear, however far it reads.
@@ -500,19 +524,16 @@ static void hem_in_by(int sonar) {
     robot_run(&robot, 500);
 }
 
-static void accuse(int sonar) {
-    robot.argus.evidence.of[sonar].score[ARGUS_TEST_VIEW] = argus_bounds[ARGUS_TEST_VIEW].naming;
-}
-
-// It can neither turn nor back away: a suspect that does not look ahead is no reason to wait for ever.
+// It can neither turn nor back away: a suspect that does not look ahead is no reason to stop for it.
 void test_hemmed_in_it_goes_on_with_a_suspect_behind(void) {
     for (int sonar = 9; sonar <= 14; sonar++) {
         hem_in_by(sonar);
+        const int from = robot.commands;
         accuse(sonar);
         robot_run(&robot, 30000);
         TEST_ASSERT_TRUE_MESSAGE(robot_count_events(&robot, ARGUS_EV_GOAL_REACHED, 0) > 0,
                                  told("waits", sonar));
-        TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_SONAR_UNPROVEN, 0) > 0);
+        TEST_ASSERT_EQUAL(1, robot_count_commands(&robot, ARCOS_CMD_STOP, from)); // at the goal
         finish();
     }
 }
@@ -521,6 +542,8 @@ void test_hemmed_in_it_goes_on_with_a_suspect_behind(void) {
 void test_hemmed_in_on_another_heading_it_goes_on_from_there(void) {
     start_in_a_room();
     robot_goal(&robot, 1200, 0);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+    ask_for_a_look(3);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 40000));
     while (fabs(robot_heading_deg(&robot)) < 15) {
         robot_tick(&robot);
@@ -532,38 +555,6 @@ void test_hemmed_in_on_another_heading_it_goes_on_from_there(void) {
     robot_run(&robot, 30000);
     TEST_ASSERT_TRUE_MESSAGE(hypot(robot.x - x, robot.y - y) > 200, told("waits", 12));
     finish();
-}
-
-static void lose(int sonar) {
-    robot.fault[sonar] = ROBOT_OFF;
-    robot.argus.evidence.lost |= (uint16_t)(1u << sonar);
-}
-
-static void jump(int sonar) {
-    robot.argus.evidence.jumped |= (uint16_t)(1u << sonar);
-}
-
-static void unsee(int sonar) {
-    robot.fault[sonar] = ROBOT_OFF;
-    robot.argus.evidence.of[sonar].alive_odometer_mm = robot.argus.knowledge.odometer_mm - 2000;
-}
-
-// S1: ... but one that looks ahead is, whatever makes it a suspect.
-void test_hemmed_in_it_stays_with_a_suspect_ahead(void) { // soak
-    static void (*const make[])(int) = {accuse, lose, jump, unsee};
-    for (int how = 0; how < 4; how++) {
-        for (int sonar = 1; sonar <= 6; sonar++) {
-            hem_in_by(12);
-            make[how](sonar);
-            TEST_ASSERT_TRUE_MESSAGE(robot_until_event(&robot, ARGUS_EV_TURN_BLOCKED, 5000),
-                                     told("turns", sonar));
-            robot_run(&robot, 500);
-            const double x = robot.x;
-            robot_run(&robot, 30000);
-            TEST_ASSERT_TRUE_MESSAGE(robot.x < x + 20, told("drove on", sonar));
-            finish();
-        }
-    }
 }
 
 // A smooth wall: heard where it is looked at squarely, and not otherwise.
@@ -665,30 +656,58 @@ static void score_dropout(int sonar, int beside_naming) {
         (int16_t)(argus_bounds[ARGUS_TEST_DROPOUT].naming + beside_naming);
 }
 
-// S6: what is named is not relied on from the same SIP on, whatever the manager is about.
-static void named_at_once(int sonar) {
+// S6: what is named for two seconds is not relied on from then on, whatever the manager is about; not before,
+// since most names of a healthy sonar pass sooner.
+static void named_in_time(int sonar) {
     const int from = robot.events;
-    score_dropout(sonar, 60); // an echo takes little from it
-    robot_next_sip(&robot);
-    TEST_ASSERT_EQUAL_MESSAGE(ARGUS_SUSPECT, health(sonar), told("named", sonar));
+    const uint32_t from_ms = robot.t_ms;
+    do {
+        score_dropout(sonar, 60); // an echo takes little from it
+        robot_next_sip(&robot);
+    } while (robot_count_events(&robot, ARGUS_EV_SONAR_NAMED, from) == 0 && robot.t_ms - from_ms < 5000);
+    TEST_ASSERT_EQUAL_MESSAGE(1, robot_count_events(&robot, ARGUS_EV_SONAR_NAMED, from), told("named", sonar));
+    TEST_ASSERT_UINT32_WITHIN_MESSAGE(100, 2100, robot.t_ms - from_ms, told("named", sonar));
+    TEST_ASSERT_EQUAL(ARGUS_SUSPECT, health(sonar));
     TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, robot.argus.knowledge.sonar[sonar].kind);
     TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_SONAR_SUSPECT, from) > 0);
-    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_SONAR_NAMED, from));
     TEST_ASSERT_EQUAL(sonar, robot_last_event(&robot, ARGUS_EV_SONAR_NAMED)->sonar);
 }
 
-void test_what_is_named_is_a_suspect_at_once(void) {
+void test_what_is_named_for_two_seconds_is_a_suspect(void) {
     for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
         start_in_a_room();
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
         robot_run(&robot, 2000);
-        named_at_once(sonar);
+        named_in_time(sonar);
         start_in_a_room();
         TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
-        named_at_once(sonar);
+        named_in_time(sonar);
         robot_run(&robot, 5000);
         finish();
+    }
+}
+
+// A name that goes within the two seconds is never said; one that changes begins them anew.
+void test_a_name_that_does_not_stand_is_not_said(void) {
+    start_in_a_room();
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+    robot_run(&robot, 2000);
+    const int from = robot.events;
+    for (int i = 0; i < 40; i++) {
+        score_dropout(3, i % 15 < 12 ? 60 : -argus_bounds[ARGUS_TEST_DROPOUT].naming);
+        robot_next_sip(&robot);
+    }
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_SONAR_NAMED, from));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, robot.argus.knowledge.sonar[3].kind);
+    finish();
+}
+
+// So long that a name stands.
+static void judge_for_a_while(void) {
+    for (int i = 0; i <= 20; i++) {
+        argus_judge_all(&robot.argus);
+        robot.argus.now_ms += 100;
     }
 }
 
@@ -707,14 +726,14 @@ void test_off_that_is_heard_again_is_renamed(void) {
     peer->borne_out = true;
     c->score[ARGUS_TEST_PEERS] = 300;
     peer->hollow = 0x0F;
-    argus_judge_all(&robot.argus);
+    judge_for_a_while();
     TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, s->kind);
     TEST_ASSERT_FALSE(peer->borne_out);
     c->none_run = 0;
-    argus_judge_all(&robot.argus);
+    judge_for_a_while();
     TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, s->kind);
     peer->borne_out = true;
-    argus_judge_all(&robot.argus);
+    judge_for_a_while();
     TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, s->kind);
     finish();
 }
@@ -764,29 +783,13 @@ void test_stuck_that_shows_another_value_is_renamed(void) {
     }
 }
 
-// An acquittal keeps mere suspicions from stopping the robot, not a name: it looks before it goes on.
-void test_what_is_named_is_looked_at_though_it_was_acquitted_a_moment_ago(void) {
-    for (int sonar = 1; sonar <= 6; sonar++) {
-        start_in_a_room();
-        TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
-        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
-        robot_run(&robot, 1000);
-        robot.argus.looks.hold[sonar].acquittals = 3;
-        robot.argus.looks.hold[sonar].odometer_mm = robot.argus.knowledge.odometer_mm;
-        named_at_once(sonar);
-        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_MODE_VERIFYING, robot.argus.mode, told("not looked at", sonar));
-        robot_run(&robot, 10000);
-        finish();
-    }
-}
-
 // Into the look that is held for 3.
 static void start_looking(void) {
     start_in_a_room();
     TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
     robot_run(&robot, 1000);
-    robot.argus.evidence.lost |= 1u << 3;
+    ask_for_a_look(3);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_VERIFYING, 5000));
     for (int i = 0; i < 50 && !robot.argus.verifying.inquiry.active; i++) {
         robot_next_sip(&robot);
@@ -794,11 +797,11 @@ static void start_looking(void) {
     TEST_ASSERT_TRUE(robot.argus.verifying.inquiry.active);
 }
 
-void test_what_is_named_during_a_look_held_for_another_is_a_suspect_at_once(void) {
+void test_what_is_named_during_a_look_held_for_another_is_a_suspect_too(void) {
     static const int others[] = {0, 1, 5, 6, 12};
     for (int i = 0; i < 5; i++) {
         start_looking();
-        named_at_once(others[i]);
+        named_in_time(others[i]);
         TEST_ASSERT_EQUAL(ARGUS_MODE_VERIFYING, robot.argus.mode);
         TEST_ASSERT_TRUE(robot.argus.verifying.inquiry.active);
         robot_run(&robot, 20000);
