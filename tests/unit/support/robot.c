@@ -444,12 +444,14 @@ static int nearest_ahead_mm(const robot_t *robot, unsigned blind) {
     return nearest;
 }
 
+// Neither out nor with the name of a fault.
 static bool trusts(const robot_t *robot, int sonar) {
-    return robot->argus.knowledge.sonar[sonar].health == ARGUS_HEALTHY;
+    const argus_sonar_t *s = &robot->argus.knowledge.sonar[sonar];
+    return s->health == ARGUS_HEALTHY || (s->health == ARGUS_SUSPECT && s->kind == ARGUS_KIND_NONE);
 }
 
-// Suspects ahead in a place where nobody has looked at them, though there is room to, and beside whom nobody is
-// trusted; but those that were acquitted a moment ago.
+// Suspects with a name, ahead, in a place where nobody has looked at them, though there is room to, and beside
+// whom nobody is trusted; but those that were acquitted a moment ago.
 static unsigned unlooked(const robot_t *robot) {
     const argus_t *argus = &robot->argus;
     const unsigned open = argus_with_health(&argus->knowledge, ARGUS_SUSPECT) & ~argus->awareness.verified;
@@ -457,7 +459,7 @@ static unsigned unlooked(const robot_t *robot) {
     unsigned mask = 0;
     for (int i = 1; i <= 6 && argus_guard_may_turn(&guard); i++) {
         const bool alone = !trusts(robot, i - 1) && !trusts(robot, i + 1);
-        mask |= (open >> i & 1u) != 0 && alone && argus->looks.hold[i].acquittals == 0 ? 1u << i : 0u;
+        mask |= (open >> i & 1u) != 0 && !trusts(robot, i) && alone && argus->looks.hold[i].acquittals == 0 ? 1u << i : 0u;
     }
     return mask;
 }
