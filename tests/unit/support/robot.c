@@ -498,8 +498,8 @@ static void watch_speed(robot_t *robot) {
     const int safe = argus_rules(&robot->argus)->adapts_speed && range_mm > 0
                          ? argus_config_speed_mm_s(config, body, range_mm)
                          : 0;
-    if (robot->setv > fmax(config->speed_mm_s, fmin(safe, config->speed_max_mm_s))) {
-        complain(robot, "S5: MOVE ahead faster than what is seen allows", (int)robot->setv);
+    if (robot->speed_asked_mm_s > fmax(config->speed_mm_s, fmin(safe, config->speed_max_mm_s))) {
+        complain(robot, "S5: MOVE ahead faster than what is seen allows", (int)robot->speed_asked_mm_s);
     }
 }
 
@@ -568,6 +568,7 @@ static void watch(robot_t *robot, const robot_command_t *sent) {
     if (c == ARCOS_CMD_VEL2 || c == ARCOS_CMD_ROTATE || c == ARCOS_CMD_DHEAD || c == ARCOS_CMD_DCHEAD) {
         complain(robot, "a motion command that is not used", c);
     }
+    robot->speed_asked_mm_s = c == ARCOS_CMD_SETV ? sent->argument : robot->speed_asked_mm_s;
     if (c == ARCOS_CMD_SETV && (sent->argument <= 0 || sent->argument > 750)) {
         complain(robot, "SETV out of range", sent->argument);
     }
