@@ -75,16 +75,20 @@ int32_t argus_guard_ahead_mm(const argus_guard_t *const self) {
     return argus_min(clear_mm, argus_guard_seen_mm(self));
 }
 
-// A sonar ahead that has the name of a fault, or a wall close beside, which may slant in.
-static bool is_wary(const argus_guard_t *const self) {
-    return (argus_named(self->knowledge) & argus_robot_ahead(self->knowledge->robot)) != 0 ||
-           argus_flank_mm(self->knowledge) <= ARGUS_FLANK_NEAR_MM;
+// A sonar ahead has the name of a fault.
+static bool is_doubted_ahead(const argus_guard_t *const self) {
+    return (argus_named(self->knowledge) & argus_robot_ahead(self->knowledge->robot)) != 0;
+}
+
+// A wall close beside may slant in.
+static bool may_hurry(const argus_guard_t *const self) {
+    return self->profile->adapts_speed && argus_flank_mm(self->knowledge) > ARGUS_FLANK_NEAR_MM;
 }
 
 int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self) {
     const argus_config_t *const config = self->config;
     ARGUS_ASSERT(config->speed_mm_s > 0);
-    if (!self->profile->adapts_speed) {
+    if (!may_hurry(self)) {
         return config->speed_mm_s;
     }
     const int32_t unseen_mm = argus_min(argus_guard_seen_mm(self), INT16_MAX) + SEEN_LEFT_MM;
@@ -95,7 +99,7 @@ int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self) {
 }
 
 int32_t argus_guard_speed_mm_s(const argus_guard_t *const self) {
-    return is_wary(self) ? self->config->speed_mm_s : argus_guard_free_speed_mm_s(self);
+    return is_doubted_ahead(self) ? self->config->speed_mm_s : argus_guard_free_speed_mm_s(self);
 }
 
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {

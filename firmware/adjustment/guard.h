@@ -51,7 +51,7 @@ int32_t argus_guard_ahead_mm(const argus_guard_t *self);
 // S5: the speed for the way ahead: `speed_mm_s`; where the profile adapts it and nothing is doubted or close
 // beside, up to `speed_max_mm_s`, as the shortest front reading allows.
 int32_t argus_guard_speed_mm_s(const argus_guard_t *self);
-int32_t argus_guard_free_speed_mm_s(const argus_guard_t *self); // ... were nothing doubted or close beside
+int32_t argus_guard_free_speed_mm_s(const argus_guard_t *self); // ... were nothing doubted
 
 // S3: every sonar in use that looks ahead has been refreshed within two rounds of its array.
 bool argus_guard_sees_ahead(const argus_guard_t *self);

@@ -79,13 +79,14 @@ int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *
     return report.travel_mm + report.brake_mm;
 }
 
-// Of v t + v^2 / 2a = s the greater root, v = sqrt((a t)^2 + 2 a s) - a t.
+// Of v t + v^2 / 2a = s the greater root, v = sqrt((a t)^2 + 2 a s) - a t. What is rounded makes it slower, and
+// 1 mm is left, since the check wants less than the range.
 int32_t argus_config_speed_mm_s(const argus_config_t *config, const argus_robot_t *robot, int32_t range_mm) {
     ARGUS_ASSERT(range_mm <= INT16_MAX);
     const int32_t decel_mm_s2 = (int32_t)sure_decel_mm_s2(config, robot);
     const int32_t overhang_mm = robot->front_mm - robot->sonar_face_mm;
-    const int32_t stop_mm = argus_max(0, range_mm - overhang_mm);
-    const int32_t slower_mm_s = decel_mm_s2 * (int32_t)(reaction_us(config, robot) / 1000 + 1) / 1000;
+    const int32_t stop_mm = argus_max(0, range_mm - overhang_mm - 1);
+    const int32_t slower_mm_s = (decel_mm_s2 * (int32_t)(reaction_us(config, robot) / 1000 + 1) + 999) / 1000;
     const uint32_t square = (uint32_t)(slower_mm_s * slower_mm_s + 2 * decel_mm_s2 * stop_mm);
     return (int32_t)argus_sqrt(square) - slower_mm_s;
 }

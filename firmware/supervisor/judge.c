@@ -47,8 +47,8 @@ static void name(argus_t *const self, const int sonar) {
         argus_evidence_note_name(&self->evidence, sonar, kind);
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
     }
-    const bool held =
-        self->mode == ARGUS_MODE_VERIFYING || (argus_evidence_lost(&self->evidence) >> sonar & 1u) != 0;
+    const bool held = self->mode == ARGUS_MODE_VERIFYING || self->looks.asked ||
+                      (argus_evidence_lost(&self->evidence) >> sonar & 1u) != 0;
     if (s->health == ARGUS_SUSPECT && !argus_evidence_holds(&self->evidence, sonar) && !held) {
         argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, s->reading_mm);
         argus_replan(self);

@@ -57,12 +57,12 @@ static argus_mask_t alone(const argus_t *const self) {
     return (argus_mask_t)mask;
 }
 
-// Beside the way: who is doubted costs what the robot would drive faster without it.
+// Who is named ahead costs what the robot would drive faster without it.
 void argus_count_loss(argus_t *const self) {
     const argus_guard_t guard = argus_guard(self);
     const int32_t free_mm_s = argus_guard_free_speed_mm_s(&guard);
     const int32_t lost_mm_s = free_mm_s - argus_guard_speed_mm_s(&guard);
-    const bool doubted = open_names(self) != 0;
+    const bool doubted = (open_names(self) & argus_robot_ahead(self->knowledge.robot)) != 0;
     ARGUS_ASSERT(free_mm_s > 0 && lost_mm_s >= 0);
     self->looks.lost_ms = doubted ? self->looks.lost_ms + SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s : 0;
 }

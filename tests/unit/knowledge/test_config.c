@@ -106,6 +106,98 @@ void test_driving_is_refused_exactly_when_the_inequality_fails(void) { // soak
     driving_cases(3000);
 }
 
+// S5 solved for the speed ----------------------------------------------------------------------------------
+
+static const argus_robot_t *const robots[] = {&argus_robots[0], &argus_robots[1], &argus_robots[2],
+                                              &argus_robots[3]};
+
+// Settings that the check accepts; `speed_mm_s` is the slowest, so that few are refused.
+static bool draw_settings(random_t *random) {
+    static const int32_t bauds[] = {0, 110, 1200, 9600, 19200, 38400, 57600, 115200};
+    config.speed_mm_s = 30;
+    config.decel_mm_s2 = 50 + (int32_t)random_below(random, 1951);
+    config.object_range_mm = 150 + (int32_t)random_below(random, 851);
+    config.sonar_cycle_ms = 20 + (int32_t)random_below(random, 101);
+    config.baud = bauds[random_below(random, sizeof bauds / sizeof bauds[0])];
+    return !driving_refused();
+}
+
+// What the check would say of that speed at this range, without its own limits.
+static int32_t driving_at(const argus_robot_t *robot, int32_t speed_mm_s) {
+    argus_config_t at = config;
+    at.speed_mm_s = speed_mm_s;
+    return robot->front_mm - robot->sonar_face_mm + argus_config_stop_mm(&at, robot);
+}
+
+// The check refuses a speed whose way reaches the range: what the law allows is not refused, and 6 mm/s more is.
+static void assert_law(const argus_robot_t *robot, int32_t range_mm, int32_t speed_mm_s) {
+    snprintf(message, sizeof message, "range %d, decel %d, cycle %d, baud %d: %d mm/s", (int)range_mm,
+             (int)config.decel_mm_s2, (int)config.sonar_cycle_ms, (int)config.baud, (int)speed_mm_s);
+    TEST_ASSERT_TRUE_MESSAGE(speed_mm_s >= 0, message);
+    if (speed_mm_s > 0) {
+        TEST_ASSERT_TRUE_MESSAGE(driving_at(robot, speed_mm_s) < range_mm, message);
+    }
+    TEST_ASSERT_TRUE_MESSAGE(driving_at(robot, speed_mm_s + 6) >= range_mm, message);
+}
+
+static void law_cases(int cases) {
+    random_t random = random_seed(12);
+    int drawn = 0;
+    for (int i = 0; i < cases; i++) {
+        const argus_robot_t *const robot = robots[random_below(&random, 4)];
+        if (!draw_settings(&random)) {
+            continue;
+        }
+        drawn++;
+        int32_t slower_mm_s = 0;
+        for (int32_t range_mm = 0; range_mm <= 5000; range_mm += 1 + (int32_t)random_below(&random, 90)) {
+            const int32_t speed_mm_s = argus_config_speed_mm_s(&config, robot, range_mm);
+            TEST_ASSERT_TRUE_MESSAGE(speed_mm_s >= slower_mm_s, "less speed for more range");
+            slower_mm_s = speed_mm_s;
+            if (range_mm > robot->front_mm - robot->sonar_face_mm + 1) {
+                assert_law(robot, range_mm, speed_mm_s);
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(drawn > cases / 2);
+}
+
+void test_the_speed_of_a_range_is_the_most_that_s5_allows(void) {
+    law_cases(40);
+}
+
+void test_the_speed_of_any_range_is_the_most_that_s5_allows(void) { // soak
+    law_cases(3000);
+}
+
+// Nearer than the body's end there is no way left: no speed, and none below zero.
+void test_no_range_no_speed(void) {
+    for (int32_t range_mm = 0; range_mm <= 45; range_mm++) {
+        TEST_ASSERT_EQUAL(0, argus_config_speed_mm_s(&config, argus_robot_default(), range_mm));
+    }
+}
+
+// The slowest link that any accepted setting has, and the longest range a reading can say: the squares of the
+// law are the largest. Nothing wraps within 32 bits: the speed is what floating point gives.
+void test_the_law_does_not_overflow(void) {
+    config.speed_mm_s = 30;
+    config.object_range_mm = 1000;
+    for (config.baud = 1; driving_refused(); config.baud++) {
+    }
+    TEST_ASSERT_TRUE(config.baud < 60);
+    for (config.sonar_cycle_ms = 20; config.sonar_cycle_ms <= 120; config.sonar_cycle_ms += 50) {
+        for (int32_t range_mm = 1; range_mm <= INT16_MAX; range_mm += 97) {
+            const double t = 8 * config.sonar_cycle_ms / 1000.0 + 0.1 + 640.0 / config.baud;
+            const double at = 300 * t;
+            const double wanted = sqrt(at * at + 2 * 300 * fmax(0, range_mm - 44.0)) - at;
+            const int32_t speed_mm_s = argus_config_speed_mm_s(&config, argus_robot_default(), range_mm);
+            snprintf(message, sizeof message, "range %d: %d mm/s, exactly %.2f", (int)range_mm,
+                     (int)speed_mm_s, wanted);
+            TEST_ASSERT_TRUE_MESSAGE(speed_mm_s <= wanted && speed_mm_s >= wanted - 6, message);
+        }
+    }
+}
+
 void test_stepping_is_refused_exactly_when_the_inequality_fails(void) {
     const int32_t needed = argus_config_reach_mm(argus_robot_default(), 200) + 3 * 5 + 20;
     for (config.check_range_mm = 200; config.check_range_mm < 500; config.check_range_mm++) {

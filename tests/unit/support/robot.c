@@ -6,6 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "adjustment/guard.h"
+#include "knowledge/config.h"
+#include "supervisor/state.h"
+
 #define TICK_MS 10u
 #define TICK_S 0.01
 #define SIP_MS 100u
@@ -440,23 +444,86 @@ static int nearest_ahead_mm(const robot_t *robot, unsigned blind) {
     return nearest;
 }
 
+// Neither out nor with the name of a fault.
+static bool trusts(const robot_t *robot, int sonar) {
+    const argus_sonar_t *s = &robot->argus.knowledge.sonar[sonar];
+    return s->health == ARGUS_HEALTHY || (s->health == ARGUS_SUSPECT && s->kind == ARGUS_KIND_NONE);
+}
+
+// Suspects with a name, ahead, in a place where nobody has looked at them, though there is room to, and beside
+// whom nobody is trusted; but those that were acquitted a moment ago.
+static unsigned unlooked(const robot_t *robot) {
+    const argus_t *argus = &robot->argus;
+    const unsigned open = argus_with_health(&argus->knowledge, ARGUS_SUSPECT) & ~argus->awareness.verified;
+    const argus_guard_t guard = argus_guard(argus);
+    unsigned mask = 0;
+    for (int i = 1; i <= 6 && argus_guard_may_turn(&guard); i++) {
+        const bool alone = !trusts(robot, i - 1) && !trusts(robot, i + 1);
+        mask |= (open >> i & 1u) != 0 && !trusts(robot, i) && alone && argus->looks.hold[i].acquittals == 0 ? 1u << i : 0u;
+    }
+    return mask;
+}
+
+// What the plan must cover for: all that are out, and with the paper's rules the suspects.
+static unsigned blind_ahead(const robot_t *robot) {
+    const argus_knowledge_t *known = &robot->argus.knowledge;
+    const unsigned suspects = argus_rules(&robot->argus)->disparity ? argus_with_health(known, ARGUS_SUSPECT) : 0;
+    return (argus_out(known) | suspects) & 0x7Eu;
+}
+
+// S1: a step after a sweep; or, where the profile lets it, as far as others have seen.
+static void watch_blind_move(robot_t *robot, int32_t mm, unsigned blind) {
+    const argus_guard_t guard = argus_guard(&robot->argus);
+    const bool steps = robot->argus.mode != ARGUS_MODE_DRIVING;
+    const int range_mm = steps ? robot->argus.config.check_range_mm : robot->argus.config.object_range_mm;
+    if ((blind & ~(unsigned)robot->argus.plan.disabled) != 0) {
+        complain(robot, "S1, S6: MOVE ahead without a plan for a suspect or one that is out", (int)blind);
+    }
+    if (nearest_ahead_mm(robot, blind) <= range_mm) {
+        complain(robot, "S1: MOVE ahead towards an object", nearest_ahead_mm(robot, blind));
+    }
+    if (steps && (mm > robot->argus.config.step_mm || !robot->swept)) {
+        complain(robot, "S1: MOVE ahead beyond the step or without a sweep", mm);
+    }
+    if (!steps && (!guard.profile->drives_seen || mm > argus_guard_seen_mm(&guard))) {
+        complain(robot, "S1: MOVE ahead farther than was seen", mm);
+    }
+}
+
+// S5: no faster than the shortest reading ahead allows, but for the speed that the settings allow anyway.
+static void watch_speed(robot_t *robot) {
+    const argus_config_t *config = &robot->argus.config;
+    const int range_mm = nearest_ahead_mm(robot, argus_out(&robot->argus.knowledge) & 0x7Eu);
+    const argus_robot_t *body = robot->argus.knowledge.robot;
+    const int safe = argus_rules(&robot->argus)->adapts_speed && range_mm > 0
+                         ? argus_config_speed_mm_s(config, body, range_mm)
+                         : 0;
+    if (robot->speed_asked_mm_s > fmax(config->speed_mm_s, fmin(safe, config->speed_max_mm_s))) {
+        complain(robot, "S5: MOVE ahead faster than what is seen allows", (int)robot->speed_asked_mm_s);
+    }
+}
+
+static void watch_ahead(robot_t *robot, int32_t mm) {
+    const unsigned blind = blind_ahead(robot);
+    if (!robot->checked) {
+        complain(robot, "S3/S6: MOVE ahead before a health check", mm);
+    }
+    if (blind != 0) {
+        watch_blind_move(robot, mm, blind);
+    }
+    if (argus_rules(&robot->argus)->evidence && unlooked(robot) != 0) {
+        complain(robot, "S6: MOVE ahead with a suspect beside whom nobody is trusted", (int)unlooked(robot));
+    }
+    watch_speed(robot);
+}
+
 static void watch_move(robot_t *robot, int32_t mm) {
     const argus_knowledge_t *known = &robot->argus.knowledge;
-    const uint16_t blind = (argus_out(known) | argus_with_health(known, ARGUS_SUSPECT)) & 0x7Eu;
     if (mm < -300 || mm > 5000 || mm == 0) {
         complain(robot, "MOVE out of range", mm);
     }
-    if (mm > 0 && !robot->checked) {
-        complain(robot, "S3/S6: MOVE ahead before a health check", mm);
-    }
-    if (mm > 0 && (blind & ~robot->argus.plan.disabled) != 0) {
-        complain(robot, "S1, S6: MOVE ahead without a plan for a suspect or one that is out", blind);
-    }
-    if (mm > 0 && blind != 0 && nearest_ahead_mm(robot, blind) <= robot->argus.config.check_range_mm) {
-        complain(robot, "S1: a step towards an object", nearest_ahead_mm(robot, blind));
-    }
-    if (mm > 0 && blind != 0 && (mm > robot->argus.config.step_mm || !robot->swept)) {
-        complain(robot, "S1: MOVE ahead beyond the step or without a sweep", mm);
+    if (mm > 0) {
+        watch_ahead(robot, mm);
     }
     if (mm > 0 && robot->bumpers_seen != 0) {
         complain(robot, "MOVE ahead with a bumper pressed", mm);
@@ -501,6 +568,7 @@ static void watch(robot_t *robot, const robot_command_t *sent) {
     if (c == ARCOS_CMD_VEL2 || c == ARCOS_CMD_ROTATE || c == ARCOS_CMD_DHEAD || c == ARCOS_CMD_DCHEAD) {
         complain(robot, "a motion command that is not used", c);
     }
+    robot->speed_asked_mm_s = c == ARCOS_CMD_SETV ? sent->argument : robot->speed_asked_mm_s;
     if (c == ARCOS_CMD_SETV && (sent->argument <= 0 || sent->argument > 750)) {
         complain(robot, "SETV out of range", sent->argument);
     }

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack (profile argus): a look must pay. None comes by the clock, for a doubt without a name, or for
+// a name that others see for; one comes at once where nobody does, when the time lost has reached what a look
+// costs and not before, and when an operator asks.
+#include "supervisor/looks.h"
+
+#include <stdio.h>
+
+#include "adjustment/guard.h"
+#include "awareness/evidence_internal.h"
+#include "robot.h"
+#include "supervisor/state.h"
+#include "unity.h"
+
+#define LOOK_COST_MS 9000.0 // DESIGN.md: what a look takes
+
+static robot_t robot;
+static char text[160];
+
+static void start_in(double x1, double y1, double x2, double y2) {
+    const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    robot_init(&robot, &config, 0xFFFF8000u);
+    robot.noise_mm = 5;
+    robot_box(&robot, x1, y1, x2, y2);
+    robot.world = robot_world_segments;
+}
+
+// A hall with a way so long that the robot comes to its highest speed.
+static void start_in_a_hall(void) {
+    start_in(-2500, -1500, 40000, 1500);
+}
+
+static void drive_off(void) {
+    TEST_ASSERT_TRUE(robot_goal(&robot, 30000, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 20000));
+    robot_run(&robot, 4000);
+}
+
+static void finish(void) {
+    TEST_ASSERT_EQUAL_STRING("", robot.violation);
+}
+
+// The score of one of its tests, held against what the next readings say; `over`: beyond what names it.
+static void hold(unsigned sonars, int over) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if ((sonars >> i & 1u) != 0) {
+            robot.argus.evidence.of[i].score[ARGUS_TEST_DROPOUT] =
+                (int16_t)(argus_bounds[ARGUS_TEST_DROPOUT].naming + over);
+        }
+    }
+}
+
+static bool is_named(int sonar) {
+    return robot.argus.knowledge.sonar[sonar].kind != ARGUS_KIND_NONE;
+}
+
+static int looks(void) {
+    return robot_count_events(&robot, ARGUS_EV_LOOK, 0) +
+           robot_count_events(&robot, ARGUS_EV_SONAR_VERIFYING, 0);
+}
+
+static bool looking(void) {
+    return robot.argus.mode == ARGUS_MODE_VERIFYING;
+}
+
+static bool are_named(unsigned sonars) {
+    bool all = true;
+    for (int k = 0; k < ARGUS_SONARS; k++) {
+        all = all && ((sonars >> k & 1u) == 0 || is_named(k));
+    }
+    return all;
+}
+
+// SIPs until they are all named, at most six seconds.
+static void name(unsigned sonars) {
+    for (int i = 0; i < 60 && !are_named(sonars); i++) {
+        hold(sonars, 60);
+        robot_next_sip(&robot);
+    }
+    TEST_ASSERT_TRUE_MESSAGE(are_named(sonars), "not named within six seconds");
+}
+
+static double free_speed(void) {
+    const argus_guard_t guard = argus_guard(&robot.argus);
+    return argus_guard_free_speed_mm_s(&guard);
+}
+
+// ---- none
+
+void test_no_look_by_the_clock(void) {
+    start_in(-2500, -2300, 3300, 2500);
+    for (int leg = 0; leg < 8; leg++) {
+        TEST_ASSERT_TRUE(robot_goal(&robot, leg % 2 == 0 ? 1800 : -800, leg % 3 * 400 - 400));
+        TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 40000));
+    }
+    TEST_ASSERT_EQUAL(0, looks());
+    robot_run(&robot, 60000); // nor at rest
+    TEST_ASSERT_EQUAL(0, looks());
+    finish();
+}
+
+// Echoes lost or jumped, or none for long, are for the evidence to weigh on the way.
+void test_no_look_for_an_echo_that_is_lost_or_has_jumped(void) {
+    start_in_a_hall();
+    drive_off();
+    for (int i = 0; i < 100; i++) {
+        robot.argus.evidence.lost = robot.argus.evidence.jumped = 0x7Eu;
+        robot.argus.evidence.of[3].alive_odometer_mm = robot.argus.knowledge.odometer_mm - 3000;
+        robot_next_sip(&robot);
+        TEST_ASSERT_EQUAL(ARGUS_MODE_DRIVING, robot.argus.mode);
+    }
+    TEST_ASSERT_EQUAL(0, looks());
+    finish();
+}
+
+// Doubt without a name costs neither a look nor speed.
+void test_doubt_without_a_name_costs_nothing(void) {
+    start_in_a_hall();
+    drive_off();
+    for (int i = 0; i < 150; i++) {
+        hold(1u << 2 | 1u << 3 | 1u << 4, -20);
+        robot_next_sip(&robot);
+        TEST_ASSERT_EQUAL(ARGUS_MODE_DRIVING, robot.argus.mode);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_SUSPECT, robot.argus.knowledge.sonar[3].health);
+    TEST_ASSERT_TRUE(robot.v > 400);
+    TEST_ASSERT_EQUAL(0, robot.argus.looks.lost_ms);
+    TEST_ASSERT_EQUAL(0, looks());
+    finish();
+}
+
+// A name ahead beside one that is trusted stops nothing; it caps the speed.
+void test_a_name_that_others_see_for_slows_down_and_stops_nothing(void) {
+    for (int sonar = 1; sonar <= 6; sonar++) {
+        start_in_a_hall();
+        drive_off();
+        TEST_ASSERT_TRUE(robot.v > 400);
+        const int from = robot.commands;
+        name(1u << sonar);
+        for (int i = 0; i < 20; i++) {
+            hold(1u << sonar, 60);
+            robot_next_sip(&robot);
+            TEST_ASSERT_EQUAL(ARGUS_MODE_DRIVING, robot.argus.mode);
+        }
+        TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_STOP, from));
+        TEST_ASSERT_EQUAL(robot.argus.config.speed_mm_s, robot.speed_asked_mm_s);
+        TEST_ASSERT_EQUAL(0, looks());
+        finish();
+    }
+}
+
+// One behind, or a wall close beside, costs no time that a look could save.
+void test_what_a_look_would_not_save_is_not_counted(void) {
+    start_in_a_hall();
+    drive_off();
+    name(1u << 12);
+    robot.fault[0] = ROBOT_VALUE; // a wall on the left, within what slows down
+    robot.fault_value[0] = 300;
+    for (int i = 0; i < 200; i++) {
+        hold(1u << 12, 60);
+        robot_next_sip(&robot);
+        TEST_ASSERT_EQUAL(0, robot.argus.looks.lost_ms);
+    }
+    TEST_ASSERT_EQUAL(0, looks());
+    finish();
+}
+
+// ---- at once
+
+void test_a_name_that_nobody_sees_for_is_looked_at_at_once(void) {
+    for (int sonar = 1; sonar <= 4; sonar++) {
+        const unsigned three = 7u << sonar;
+        start_in_a_hall();
+        drive_off();
+        name(three);
+        TEST_ASSERT_TRUE_MESSAGE(looking(), "three names in a row, and no look");
+        TEST_ASSERT_TRUE(robot.argus.looks.lost_ms < LOOK_COST_MS);
+        robot_run(&robot, 40000);
+        finish();
+    }
+}
+
+// ... but not again within the distance of its acquittal.
+void test_whoever_was_acquitted_here_is_not_looked_at_again(void) {
+    start_in_a_hall();
+    drive_off();
+    uint32_t before = 0;
+    for (int i = 0; i < 60 && !are_named(7u << 2); i++) {
+        for (int k = 0; k < ARGUS_SONARS; k++) {
+            robot.argus.looks.hold[k].acquittals = 1;
+            robot.argus.looks.hold[k].odometer_mm = before = robot.argus.knowledge.odometer_mm;
+        }
+        hold(7u << 2, 60);
+        robot_next_sip(&robot);
+    }
+    TEST_ASSERT_TRUE(are_named(7u << 2) && !looking());
+    while (!looking() && robot.argus.knowledge.odometer_mm - before < 1000) {
+        hold(7u << 2, 60);
+        robot_next_sip(&robot);
+    }
+    const uint32_t way_mm = robot.argus.knowledge.odometer_mm - before;
+    snprintf(text, sizeof text, "looked at again after %u mm", (unsigned)way_mm);
+    TEST_ASSERT_TRUE_MESSAGE(way_mm >= 400 && way_mm <= 460, text);
+    finish();
+}
+
+void test_a_retest_brings_a_look(void) {
+    for (int sonar = 0; sonar < ARGUS_SONARS; sonar += 3) {
+        start_in_a_hall();
+        drive_off();
+        TEST_ASSERT_TRUE(
+            argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_RETEST, sonar));
+        robot_drain(&robot);
+        TEST_ASSERT_EQUAL(ARGUS_SUSPECT, robot.argus.knowledge.sonar[sonar].health);
+        TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_VERIFYING, 8000));
+        TEST_ASSERT_EQUAL(sonar, robot_last_event(&robot, ARGUS_EV_SONAR_VERIFYING)->sonar);
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+        TEST_ASSERT_FALSE(robot.argus.looks.asked);
+        TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_SONAR_VERIFYING, 0));
+        finish();
+    }
+}
+
+// ---- to hire or to buy
+
+// Drives with a name until a look comes; what that has cost by this count, in ms.
+static double lost_until_look(int sonar) {
+    double lost_ms = 0;
+    for (int i = 0; i < 1200 && !looking(); i++) {
+        hold(1u << sonar, 60);
+        robot_next_sip(&robot);
+        const argus_guard_t guard = argus_guard(&robot.argus);
+        const bool open = is_named(sonar) && robot.argus.mode == ARGUS_MODE_DRIVING;
+        lost_ms += open ? 100.0 * (free_speed() - argus_guard_speed_mm_s(&guard)) / free_speed() : 0;
+        TEST_ASSERT_TRUE(looking() || robot.argus.looks.lost_ms < LOOK_COST_MS);
+    }
+    return lost_ms;
+}
+
+void test_a_look_comes_when_the_time_lost_is_what_it_costs(void) {
+    for (int sonar = 1; sonar <= 6; sonar += 2) {
+        start_in_a_hall();
+        drive_off();
+        const double lost_ms = lost_until_look(sonar);
+        TEST_ASSERT_TRUE(looking());
+        snprintf(text, sizeof text, "sonar %d: %.0f ms lost", sonar, lost_ms);
+        TEST_ASSERT_TRUE_MESSAGE(lost_ms >= LOOK_COST_MS - 300 && lost_ms <= LOOK_COST_MS + 300, text);
+        robot_run(&robot, 20000);
+        finish();
+    }
+}
+
+// What was lost before a look, or before the doubt went, does not count for the next.
+void test_the_loss_begins_anew(void) {
+    start_in_a_hall();
+    drive_off();
+    name(1u << 3);
+    for (int i = 0; i < 30; i++) {
+        hold(1u << 3, 60);
+        robot_next_sip(&robot);
+    }
+    TEST_ASSERT_TRUE(robot.argus.looks.lost_ms > 1000);
+    for (int i = 0; i < 30; i++) { // it does well again
+        hold(1u << 3, -argus_bounds[ARGUS_TEST_DROPOUT].naming);
+        robot_next_sip(&robot);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_HEALTHY, robot.argus.knowledge.sonar[3].health);
+    TEST_ASSERT_EQUAL(0, robot.argus.looks.lost_ms);
+    lost_until_look(3);
+    TEST_ASSERT_TRUE(looking());
+    hold(1u << 3, -argus_bounds[ARGUS_TEST_DROPOUT].naming);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 60000));
+    TEST_ASSERT_EQUAL(0, robot.argus.looks.lost_ms);
+    TEST_ASSERT_EQUAL(ARGUS_HEALTHY, robot.argus.knowledge.sonar[3].health);
+    finish();
+}
+
+// A suspect that nobody looks at does not keep a robot that must sweep from its step.
+void test_a_name_behind_does_not_hold_up_a_sweep(void) {
+    start_in(-2500, -2300, 3300, 2500);
+    robot.fault[2] = robot.fault[3] = robot.fault[4] = ROBOT_SILENT;
+    TEST_ASSERT_TRUE(robot_goal(&robot, 900, 0));
+    for (int i = 0; i < 900 && robot.argus.mission == ARGUS_MISSION_RUNNING; i++) {
+        hold(1u << 12, 60);
+        robot_next_sip(&robot);
+    }
+    TEST_ASSERT_EQUAL_MESSAGE(ARGUS_MISSION_REACHED, robot.argus.mission, "the way is not gone");
+    finish();
+}

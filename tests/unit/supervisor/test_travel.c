@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: the robot drives as fast as what it sees ahead allows (S5), no faster than the robot itself
+// lets it, and turns while it drives only by angles that the sonars ahead see and with its swing circle free. The
+// paper's rules know neither.
+#include "supervisor/travel.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "robot.h"
+#include "unity.h"
+
+#define RAD (3.14159265358979323846 / 180)
+
+static robot_t robot;
+static char text[120];
+
+static void start(int32_t profile) {
+    const argus_config_t config = robot_config_of(profile);
+    robot_init(&robot, &config, 0xFFFF8000u);
+    robot.noise_mm = 5;
+    robot.world = robot_world_segments;
+}
+
+static void hall(double end_mm) {
+    robot_box(&robot, -3000, -3000, end_mm, 3000);
+}
+
+static void finish(void) { // the watch compares the speed asked at each MOVE with S5
+    TEST_ASSERT_EQUAL_STRING("", robot.violation);
+}
+
+static double fastest(uint32_t ms) {
+    double most = 0;
+    for (uint32_t at = 0; at < ms && robot.argus.mission == ARGUS_MISSION_RUNNING; at += 10) {
+        robot_tick(&robot);
+        most = fmax(most, robot.v);
+    }
+    return most;
+}
+
+// ---- speed
+
+void test_s5_it_hurries_where_the_way_is_free_and_slows_down_before_a_wall(void) {
+    start(ARGUS_PROFILE_ARGUS);
+    hall(8000);
+    TEST_ASSERT_TRUE(robot_goal(&robot, 7300, 0));
+    const double most = fastest(60000);
+    TEST_ASSERT_EQUAL(ARGUS_MISSION_REACHED, robot.argus.mission);
+    TEST_ASSERT_TRUE(most > 480 && most <= robot.argus.config.speed_max_mm_s + 1);
+    TEST_ASSERT_TRUE(robot.closest_mm >= 50);
+    finish();
+}
+
+// Whatever comes up before it, whenever: it stands before it.
+void test_s5_what_comes_up_ahead_is_not_touched(void) {
+    for (int range_mm = 500; range_mm <= 2500; range_mm += 125) {
+        start(ARGUS_PROFILE_ARGUS);
+        hall(20000);
+        TEST_ASSERT_TRUE(robot_goal(&robot, 15000, 0));
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 20000));
+        robot_run(&robot, 4000);
+        const double face_mm = robot.x + 166; // of sonars 3 and 4
+        robot_box(&robot, face_mm + range_mm, -2900, face_mm + range_mm + 500, 2900);
+        robot_run(&robot, 8000);
+        snprintf(text, sizeof text, "a wall %d mm ahead: %.0f mm at the closest", range_mm, robot.closest_mm);
+        // one that comes up nearer than its way to stop at full speed is none that S5 was asked about
+        TEST_ASSERT_TRUE_MESSAGE(range_mm < 750 || robot.closest_mm > 0, text);
+        TEST_ASSERT_TRUE_MESSAGE(range_mm < 1000 || robot.closest_mm >= 50, text);
+    }
+}
+
+void test_it_drives_no_faster_than_the_robot_lets_it(void) {
+    static const int32_t tops_mm_s[] = {100, 300, 400};
+    for (int i = 0; i < 3; i++) {
+        start(ARGUS_PROFILE_ARGUS);
+        hall(20000);
+        TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+        robot.argus.session.has_robot = true;
+        robot.argus.session.robot.vel_max_mm_s = (uint16_t)tops_mm_s[i];
+        const int from = robot.commands;
+        TEST_ASSERT_TRUE(robot_goal(&robot, 15000, 0));
+        fastest(8000);
+        int32_t asked = 0;
+        for (int k = from; k < robot.commands; k++) {
+            const bool speed = robot.command[k].command == ARCOS_CMD_SETV;
+            asked = speed && robot.command[k].argument > asked ? robot.command[k].argument : asked;
+        }
+        TEST_ASSERT_EQUAL(tops_mm_s[i], asked);
+        TEST_ASSERT_TRUE(robot.v > tops_mm_s[i] - 5 && robot.v < tops_mm_s[i] + 1);
+        finish();
+    }
+}
+
+void test_the_paper_drives_at_one_speed(void) {
+    start(ARGUS_PROFILE_PAPER);
+    robot.world = robot_world_far;
+    TEST_ASSERT_TRUE(robot_goal(&robot, 4000, 0));
+    const double most = fastest(40000);
+    TEST_ASSERT_EQUAL(ARGUS_MISSION_REACHED, robot.argus.mission);
+    TEST_ASSERT_TRUE(most > 195 && most <= robot.argus.config.speed_mm_s + 1);
+    TEST_ASSERT_EQUAL(robot.argus.config.speed_mm_s, robot.speed_asked_mm_s);
+    finish();
+}
+
+// ---- gentle turns
+
+// The least speed from one second after the first metre on, until half a metre behind the corner.
+static double slowest_round_a_corner(int32_t profile, int corner_deg) {
+    const argus_point_t way[] = {{2000, 0},
+                                 {2000 + (int32_t)lround(2000 * cos(corner_deg * RAD)),
+                                  (int32_t)lround(2000 * sin(corner_deg * RAD))}};
+    start(profile);
+    hall(9000);
+    if (profile == ARGUS_PROFILE_PAPER) {
+        robot.world = robot_world_far;
+    }
+    TEST_ASSERT_TRUE(argus_set_course(&robot.argus, way, 2));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 20000));
+    double least = 1e9;
+    for (int i = 0; i < 4000 && hypot(robot.x - 2000, robot.y) < 2500; i++) {
+        robot_tick(&robot);
+        const bool beyond = robot_count_events(&robot, ARGUS_EV_WAYPOINT, 0) > 0;
+        if (beyond && hypot(robot.x - 2000, robot.y) > 500) {
+            break;
+        }
+        least = robot.x > 1000 ? fmin(least, robot.v) : least;
+    }
+    finish();
+    return least;
+}
+
+void test_it_turns_gently_by_up_to_40_degrees_while_it_drives(void) {
+    static const int corners[] = {-35, -20, 20, 35};
+    for (int i = 0; i < 4; i++) {
+        snprintf(text, sizeof text, "%d degrees", corners[i]);
+        TEST_ASSERT_TRUE_MESSAGE(slowest_round_a_corner(ARGUS_PROFILE_ARGUS, corners[i]) > 100, text);
+    }
+}
+
+void test_it_stops_for_a_turn_by_more(void) {
+    static const int corners[] = {-90, -50, 50, 90};
+    for (int i = 0; i < 4; i++) {
+        snprintf(text, sizeof text, "%d degrees", corners[i]);
+        TEST_ASSERT_TRUE_MESSAGE(slowest_round_a_corner(ARGUS_PROFILE_ARGUS, corners[i]) < 1, text);
+    }
+}
+
+void test_the_paper_stops_for_every_turn(void) {
+    TEST_ASSERT_TRUE(slowest_round_a_corner(ARGUS_PROFILE_PAPER, 30) < 1);
+}
+
+// An echo within the swing circle, by a sonar behind: no HEAD until it is gone.
+void test_it_does_not_turn_gently_with_the_swing_circle_blocked(void) {
+    const argus_point_t way[] = {{2000, 0}, {4000, 800}};
+    start(ARGUS_PROFILE_ARGUS);
+    hall(9000);
+    TEST_ASSERT_TRUE(argus_set_course(&robot.argus, way, 2));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 20000));
+    while (robot.x < 1200) {
+        robot_tick(&robot);
+    }
+    const int from = robot.commands;
+    robot.fault[12] = ROBOT_VALUE;
+    robot.fault_value[12] = 100;
+    robot_run(&robot, 400); // until it has been read
+    const int blocked = robot.commands;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_WAYPOINT, 10000));
+    robot_run(&robot, 1000);
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, blocked));
+    TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_MOVE, from) > 0);
+    finish();
+}
