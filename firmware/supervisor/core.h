@@ -11,6 +11,7 @@
 #include "arcos/session.h"
 #include "argus/argus.h"
 #include "awareness/awareness.h"
+#include "awareness/extremes.h"
 #include "knowledge/config.h"
 #include "knowledge/knowledge.h"
 #include "knowledge/rays.h"
@@ -130,6 +131,7 @@ struct argus {
     argus_rays_t rays;
     argus_awareness_t awareness;
     argus_evidence_t evidence; // profile argus
+    argus_extremes_t extremes; // profile argus
     argus_plan_t plan;
     argus_failure_t failure;
     argus_motion_t motion;
