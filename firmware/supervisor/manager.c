@@ -37,6 +37,7 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     argus_evidence_init(&self->evidence);
     argus_evidence_set_caution(&self->evidence, self->config.caution);
     argus_extremes_init(&self->extremes);
+    argus_slip_init(&self->slip);
     argus_motion_init(&self->motion);
     argus_task_init(&self->travel.task);
     argus_events_init(&self->events);
@@ -98,6 +99,7 @@ static void on_open(argus_t *const self) {
     argus_evidence_restart(&self->evidence);
     argus_rays_forget_all(&self->rays);
     argus_extremes_restart(&self->extremes);
+    argus_slip_init(&self->slip);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it
     self->reflexes.motors_said = false;
     self->stalled = false;
@@ -127,13 +129,14 @@ static void on_resume(argus_t *const self) {
     argus_awareness_restart(&self->awareness);
     argus_evidence_restart(&self->evidence);
     argus_extremes_restart(&self->extremes);
+    argus_slip_init(&self->slip);
     check(self, true);
 }
 
 static void on_sip(argus_t *const self) {
     const int32_t unit_um = argus_session_distance_um(&self->session, self->knowledge.robot->dist_conv_um);
     if (!argus_session_is_open(&self->session) || self->mode == ARGUS_MODE_CLOSED) {
-        argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um);
+        argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
         return;
     }
     argus_knowledge_sip(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
@@ -144,6 +147,7 @@ static void on_sip(argus_t *const self) {
         argus_evidence_sip(&self->evidence, &self->knowledge);
         argus_extremes_sip(&self->extremes, &self->knowledge);
     }
+    self->slipped_mm = argus_slip_sip(&self->slip, &self->knowledge);
     argus_react(self, &alarm); // it asks what was seen before this SIP
     argus_echoes_see(&self->echoes, &self->knowledge, self->now_ms);
     argus_rays_see(&self->rays, &self->knowledge);
