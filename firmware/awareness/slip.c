@@ -128,6 +128,11 @@ int32_t argus_slip_sip(argus_slip_t *const self, const argus_knowledge_t *const 
         return 0;
     }
     const int32_t slipped_mm = judge(self, knowledge, way_mm);
+    const argus_point_t from = {self->from.x_mm, self->from.y_mm};
     begin(self, knowledge);
+    if (slipped_mm > 0) {
+        self->from.x_mm = from.x_mm;
+        self->from.y_mm = from.y_mm;
+    }
     return slipped_mm;
 }

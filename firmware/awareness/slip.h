@@ -7,7 +7,7 @@
 
 // One stretch of straight way, and what each sonar read where it began; 0: nothing that counts.
 typedef struct {
-    argus_pose_t from;
+    argus_pose_t from; // where the robot still is when it has slipped
     uint16_t reading_mm[ARGUS_SONARS];
     argus_mask_t read; // sonars that have been listed since
     uint8_t stretches; // one after the other, on which those ahead alone stayed

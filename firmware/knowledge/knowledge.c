@@ -122,6 +122,13 @@ void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *
     self->y_raw = sip->y_raw;
 }
 
+void argus_knowledge_set_back(argus_knowledge_t *const self, const argus_point_t to) {
+    self->pose.x_mm = to.x_mm;
+    self->pose.y_mm = to.y_mm;
+    self->x_um = 0;
+    self->y_um = 0;
+}
+
 static void take_motion(argus_knowledge_t *const self, const argus_sip_t *const sip) {
     self->vel_left_mm_s = sip->vel_left_mm_s;
     self->vel_right_mm_s = sip->vel_right_mm_s;

@@ -85,6 +85,9 @@ void argus_knowledge_sip(argus_knowledge_t *self, const argus_sip_t *sip, int32_
 void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um,
                               uint32_t now_ms);
 
+// The robot is here: its wheels turned and it did not move.
+void argus_knowledge_set_back(argus_knowledge_t *self, argus_point_t to);
+
 // Bit masks over sonar numbers.
 argus_mask_t argus_disabled(const argus_knowledge_t *self);
 argus_mask_t argus_out(const argus_knowledge_t *self); // not used: DISABLED or on PROBATION

@@ -133,6 +133,14 @@ static void on_resume(argus_t *const self) {
     check(self, true);
 }
 
+static void take_slip(argus_t *const self) {
+    self->slipped_mm = argus_slip_sip(&self->slip, &self->knowledge);
+    if (self->slipped_mm > 0) {
+        argus_knowledge_set_back(&self->knowledge,
+                                 (argus_point_t){self->slip.from.x_mm, self->slip.from.y_mm});
+    }
+}
+
 static void on_sip(argus_t *const self) {
     const int32_t unit_um = argus_session_distance_um(&self->session, self->knowledge.robot->dist_conv_um);
     if (!argus_session_is_open(&self->session) || self->mode == ARGUS_MODE_CLOSED) {
@@ -147,7 +155,7 @@ static void on_sip(argus_t *const self) {
         argus_evidence_sip(&self->evidence, &self->knowledge);
         argus_extremes_sip(&self->extremes, &self->knowledge);
     }
-    self->slipped_mm = argus_slip_sip(&self->slip, &self->knowledge);
+    take_slip(self);
     argus_react(self, &alarm); // it asks what was seen before this SIP
     argus_echoes_see(&self->echoes, &self->knowledge, self->now_ms);
     argus_rays_see(&self->rays, &self->knowledge);

@@ -10,7 +10,7 @@
 #define HYSTERESIS_DV 2
 #define SETTLED_IN_MS 1500u
 #define BATTERY_SIPS 5 // one reading of it may be anything
-#define UNSOUND_MS 20000u
+#define UNSOUND_MS 60000u
 #define UNSOUND_MOST 3
 #define HEADING_ALONE_CDEG_MM 10 // it is the heading that leapt where there are more for each mm
 

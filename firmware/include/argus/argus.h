@@ -257,7 +257,8 @@ typedef enum {
     X(67, HEADING_LEAP, WARN, "drive",                                                                       \
       "the heading stepped as no robot turns: STOP sent, left out of the pose; value: degrees")              \
     X(68, SLIP, WARN, "drive",                                                                               \
-      "the ranges stay while the wheels turn: they slip, or are lifted: STOP sent; value: mm")               \
+      "the ranges stay while the wheels turn: they slip, or are lifted: STOP sent, left out of the pose; "   \
+      "value: mm")                                                                                           \
     X(69, ODOMETRY_LOST, ERROR, "drive",                                                                     \
       "it leaps or slips again and again: where the robot is nobody knows, the course is given up; value: "  \
       "times")                                                                                               \
