@@ -2,6 +2,7 @@
 // Compares ranges along the way with the way that the odometry says.
 #include "awareness/slip.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "knowledge/angle.h"
@@ -9,8 +10,8 @@
 #define STRETCH_MM 500
 #define BEGIN_MM 150    // a reading of the beginning is made within this
 #define TURNED_CDEG 500 // a straight way turns less
-#define ALONG_CDEG 1600 // looks along the way
-#define WALL_CDEG 2500  // likewise, of one that looks a little aside
+#define ALONG_CDEG 1600 // so far off the way one still looks along it
+#define WALL_CDEG 2500  // ... and hears this far aside, at the edge of its cone
 #define NEAR_MM 2500    // echoes from farther off come and go
 #define STAYS_MM 100    // less than a change: of 500
 #define FITS_MM 200     // off what the odometry says
@@ -18,6 +19,10 @@
 
 void argus_slip_init(argus_slip_t *const self) {
     memset(self, 0, sizeof *self);
+}
+
+void argus_slip_restart(argus_slip_t *const self) {
+    self->begun = false;
 }
 
 static void begin(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
@@ -94,8 +99,7 @@ static void ask(const argus_slip_t *const self, const argus_knowledge_t *const k
     }
 }
 
-static int32_t judge(argus_slip_t *const self, const argus_knowledge_t *const knowledge,
-                     const int32_t way_mm) {
+static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int32_t way_mm) {
     witnesses_t of = {0, 0, 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         ask(self, knowledge, i, way_mm, &of);
@@ -103,36 +107,40 @@ static int32_t judge(argus_slip_t *const self, const argus_knowledge_t *const kn
     const bool alone = of.fits == 0 && of.to >= 2;
     self->stretches = (uint8_t)(alone ? self->stretches + 1 : 0);
     if (of.fits > 0 || !((of.to > 0 && of.back > 0) || self->stretches >= ALONE)) {
-        return 0;
+        return false;
     }
     self->stretches = 0;
-    return way_mm;
+    self->slipped_mm = way_mm;
+    self->slips++;
+    return true;
 }
 
-int32_t argus_slip_sip(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
-    ARGUS_ASSERT(knowledge->robot != NULL);
+static bool is_straight(const argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
     const int32_t speed = knowledge->vel_left_mm_s + knowledge->vel_right_mm_s;
-    const bool turned =
-        argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->from.heading_cdeg) > TURNED_CDEG;
-    if (!self->begun || turned || knowledge->leapt || (speed != 0 && (speed > 0) != self->ahead)) {
+    const int32_t turned = argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->from.heading_cdeg);
+    return turned <= TURNED_CDEG && !knowledge->leapt && (speed == 0 || (speed > 0) == self->ahead);
+}
+
+bool argus_slip_sip(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->robot != NULL);
+    if (!self->begun || !is_straight(self, knowledge)) {
         self->stretches = 0;
         begin(self, knowledge);
-        return 0;
+        return false;
     }
-    const int32_t way_mm =
-        argus_hypot(knowledge->pose.x_mm - self->from.x_mm, knowledge->pose.y_mm - self->from.y_mm);
+    const argus_point_t from = {self->from.x_mm, self->from.y_mm};
+    const int32_t way_mm = argus_hypot(knowledge->pose.x_mm - from.x_mm, knowledge->pose.y_mm - from.y_mm);
     if (way_mm <= BEGIN_MM) {
         note_beginnings(self, knowledge);
     }
     if (way_mm < STRETCH_MM) {
-        return 0;
+        return false;
     }
-    const int32_t slipped_mm = judge(self, knowledge, way_mm);
-    const argus_point_t from = {self->from.x_mm, self->from.y_mm};
+    const bool slipped = judge(self, knowledge, way_mm);
     begin(self, knowledge);
-    if (slipped_mm > 0) {
+    if (slipped) {
         self->from.x_mm = from.x_mm;
         self->from.y_mm = from.y_mm;
     }
-    return slipped_mm;
+    return slipped;
 }

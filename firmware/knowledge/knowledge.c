@@ -116,6 +116,7 @@ void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *
     } else if (!move(self, sip, distance_um, &span)) {
         leave_out(self, sip, &span);
         self->leapt = true;
+        self->leaps++;
     }
     self->moved_ms = now_ms;
     self->x_raw = sip->x_raw;

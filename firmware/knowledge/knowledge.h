@@ -51,6 +51,7 @@ typedef struct {
     uint32_t moved_ms;     // time of the SIP of these
     argus_excess_t excess; // beyond what the wheels say
     bool leapt;            // in the last SIP, as no robot moves: left out of the pose
+    uint32_t leaps;        // monotonic
     int32_t leap_mm;
     int32_t leap_cdeg; // >= 0
     int16_t vel_left_mm_s;

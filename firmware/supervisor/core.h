@@ -80,6 +80,8 @@ typedef struct {
 typedef struct {
     uint16_t bumpers;     // bumper bits answered already, front << 8 | rear
     argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
+    uint32_t leaps;       // of the odometry, answered already
+    uint32_t slips;       // likewise
     uint32_t unsound_ms;  // a leap or slip of the odometry, the last one
     uint8_t unsound;      // ... how many, one soon after the other
     uint8_t battery_low;  // SIPs in a row
@@ -137,7 +139,6 @@ struct argus {
     argus_evidence_t evidence; // profile argus
     argus_extremes_t extremes; // profile argus
     argus_slip_t slip;
-    int32_t slipped_mm; // as the last SIP tells, 0: none
     argus_plan_t plan;
     argus_failure_t failure;
     argus_motion_t motion;

@@ -99,7 +99,7 @@ static void on_open(argus_t *const self) {
     argus_evidence_restart(&self->evidence);
     argus_rays_forget_all(&self->rays);
     argus_extremes_restart(&self->extremes);
-    argus_slip_init(&self->slip);
+    argus_slip_restart(&self->slip);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it
     self->reflexes.motors_said = false;
     self->stalled = false;
@@ -129,13 +129,12 @@ static void on_resume(argus_t *const self) {
     argus_awareness_restart(&self->awareness);
     argus_evidence_restart(&self->evidence);
     argus_extremes_restart(&self->extremes);
-    argus_slip_init(&self->slip);
+    argus_slip_restart(&self->slip);
     check(self, true);
 }
 
 static void take_slip(argus_t *const self) {
-    self->slipped_mm = argus_slip_sip(&self->slip, &self->knowledge);
-    if (self->slipped_mm > 0) {
+    if (argus_slip_sip(&self->slip, &self->knowledge)) {
         argus_knowledge_set_back(&self->knowledge,
                                  (argus_point_t){self->slip.from.x_mm, self->slip.from.y_mm});
     }

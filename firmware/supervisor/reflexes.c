@@ -45,8 +45,10 @@ static argus_intent_t distrust(const argus_t *const self, argus_reflexes_t *cons
 static argus_intent_t sees_leap(const argus_t *const self, const argus_alarm_t *const alarm,
                                 argus_reflexes_t *const mine) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
+    const bool news = (int32_t)(knowledge->leaps - mine->leaps) > 0;
     (void)alarm;
-    if (!knowledge->leapt) {
+    mine->leaps = knowledge->leaps;
+    if (!news) {
         return nothing();
     }
     const bool position = knowledge->leap_mm * HEADING_ALONE_CDEG_MM >= knowledge->leap_cdeg;
@@ -56,8 +58,10 @@ static argus_intent_t sees_leap(const argus_t *const self, const argus_alarm_t *
 
 static argus_intent_t sees_slip(const argus_t *const self, const argus_alarm_t *const alarm,
                                 argus_reflexes_t *const mine) {
+    const bool news = self->slip.slips != mine->slips;
     (void)alarm;
-    return self->slipped_mm > 0 ? distrust(self, mine, ARGUS_EV_SLIP, self->slipped_mm) : nothing();
+    mine->slips = self->slip.slips;
+    return news ? distrust(self, mine, ARGUS_EV_SLIP, self->slip.slipped_mm) : nothing();
 }
 
 // New contact only: bits already answered are let be until they clear.
