@@ -6,13 +6,13 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
+#include "knowledge/odometry.h"
 
 #define REST_MM_S 5
 #define ROTATING_MM_S 10 // wheel speed difference beyond which a reading is smeared by rotation
 #define ARRAY ARCOS_TIMING_TRANSDUCERS_PER_ARRAY
 #define LISTS_ALL_COUNT (ARRAY - 1) // in one SIP: the firing schedule lists at most 3 at its default pace
 #define LISTS_ALL_WAIT_MS 460
-#define JUMP_MM 3000 // farther than the robot drives before its watchdog stops it: its odometry was reset
 #define TURN_UNITS 4096
 #define GAP_MS 500 // without a SIP for longer, it was the link that was silent, not the sonars
 
@@ -66,19 +66,68 @@ static void advance_pose(argus_knowledge_t *const self, const int32_t dx_um, con
     self->odometer_mm += (uint32_t)carry_mm(&self->odometer_um, way_um);
 }
 
-void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *const sip,
-                              const int32_t distance_um) {
+// Since the last SIP, which is before this one's speeds are taken.
+static argus_span_t span_to(const argus_knowledge_t *const self, const argus_sip_t *const sip,
+                            const uint32_t now_ms) {
+    const argus_span_t span = {.before = {self->vel_left_mm_s, self->vel_right_mm_s},
+                               .after = {sip->vel_left_mm_s, sip->vel_right_mm_s},
+                               .track_mm = self->robot->track_mm,
+                               .elapsed_ms = now_ms - self->moved_ms};
+    return span;
+}
+
+// The robot moved as its wheels say; where it is now is the origin of its odometry.
+static void leave_out(argus_knowledge_t *const self, const argus_sip_t *const sip,
+                      const argus_span_t *const span) {
+    const argus_way_turn_t moved = argus_odometry_by_wheels(span);
+    const int32_t heading = self->pose.heading_cdeg + moved.turn_cdeg / 2;
+    self->pose.x_mm += moved.way_mm * argus_cos(heading) / ARGUS_TRIG_ONE;
+    self->pose.y_mm += moved.way_mm * argus_sin(heading) / ARGUS_TRIG_ONE;
+    self->odometer_mm += (uint32_t)argus_abs(moved.way_mm);
+    self->pose.heading_cdeg = argus_angle_wrap(self->pose.heading_cdeg + moved.turn_cdeg);
+    take_origin(self, sip);
+}
+
+// True: the robot can have moved so.
+static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, const int32_t distance_um,
+                 const argus_span_t *const span) {
     const int32_t dx_um = raw_delta(sip->x_raw, self->x_raw) * distance_um;
     const int32_t dy_um = raw_delta(sip->y_raw, self->y_raw) * distance_um;
-    const bool jumped = argus_abs(dx_um) > JUMP_MM * 1000 || argus_abs(dy_um) > JUMP_MM * 1000;
-    if (!self->has_raw || jumped) {
-        take_origin(self, sip);
-    } else {
-        advance_pose(self, dx_um, dy_um);
-        self->pose.heading_cdeg = argus_angle_wrap(raw_heading_cdeg(sip) + self->heading_offset_cdeg);
+    const int32_t heading = argus_angle_wrap(raw_heading_cdeg(sip) + self->heading_offset_cdeg);
+    const argus_way_turn_t moved = {argus_hypot(dx_um / 1000, dy_um / 1000),
+                                    argus_angle_abs_diff(heading, self->pose.heading_cdeg)};
+    if (!argus_odometry_may_be(&self->excess, span, &moved)) {
+        self->leap_mm = moved.way_mm;
+        self->leap_cdeg = moved.turn_cdeg;
+        return false;
     }
+    advance_pose(self, dx_um, dy_um);
+    self->pose.heading_cdeg = heading;
+    return true;
+}
+
+void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *const sip,
+                              const int32_t distance_um, const uint32_t now_ms) {
+    const argus_span_t span = span_to(self, sip, now_ms);
+    self->leapt = false;
+    if (!self->has_raw) {
+        take_origin(self, sip);
+        self->excess = (argus_excess_t){0, 0};
+    } else if (!move(self, sip, distance_um, &span)) {
+        leave_out(self, sip, &span);
+        self->leapt = true;
+        self->leaps++;
+    }
+    self->moved_ms = now_ms;
     self->x_raw = sip->x_raw;
     self->y_raw = sip->y_raw;
+}
+
+void argus_knowledge_set_back(argus_knowledge_t *const self, const argus_point_t to) {
+    self->pose.x_mm = to.x_mm;
+    self->pose.y_mm = to.y_mm;
+    self->x_um = 0;
+    self->y_um = 0;
 }
 
 static void take_motion(argus_knowledge_t *const self, const argus_sip_t *const sip) {
@@ -138,7 +187,7 @@ void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const
     }
     self->sips++;
     self->sip_ms = now_ms;
-    argus_knowledge_odometry(self, sip, distance_um);
+    argus_knowledge_odometry(self, sip, distance_um, now_ms);
     take_motion(self, sip);
     take_state(self, sip);
     take_readings(self, sip);

@@ -6,6 +6,7 @@
 
 #include "arcos/sip.h"
 #include "argus/argus.h"
+#include "knowledge/odometry.h"
 #include "robot/robot.h"
 
 #define ARGUS_FLANK_NEAR_MM 350 // what a flank sonar reads of a wall that the way may slant into
@@ -47,6 +48,12 @@ typedef struct {
     uint16_t x_raw;
     uint16_t y_raw;
     bool has_raw;
+    uint32_t moved_ms;     // time of the SIP of these
+    argus_excess_t excess; // beyond what the wheels say
+    bool leapt;            // in the last SIP, as no robot moves: left out of the pose
+    uint32_t leaps;        // monotonic
+    int32_t leap_mm;
+    int32_t leap_cdeg; // >= 0
     int16_t vel_left_mm_s;
     int16_t vel_right_mm_s;
     bool rotating;
@@ -76,7 +83,11 @@ void argus_knowledge_sip(argus_knowledge_t *self, const argus_sip_t *sip, int32_
                          uint32_t now_ms);
 
 // Only the odometry of a SIP (a session that is about to be closed).
-void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um);
+void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um,
+                              uint32_t now_ms);
+
+// The robot is here: its wheels turned and it did not move.
+void argus_knowledge_set_back(argus_knowledge_t *self, argus_point_t to);
 
 // Bit masks over sonar numbers.
 argus_mask_t argus_disabled(const argus_knowledge_t *self);

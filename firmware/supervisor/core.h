@@ -11,6 +11,8 @@
 #include "arcos/session.h"
 #include "argus/argus.h"
 #include "awareness/awareness.h"
+#include "awareness/extremes.h"
+#include "awareness/slip.h"
 #include "knowledge/config.h"
 #include "knowledge/knowledge.h"
 #include "knowledge/rays.h"
@@ -78,6 +80,11 @@ typedef struct {
 typedef struct {
     uint16_t bumpers;     // bumper bits answered already, front << 8 | rear
     argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
+    uint32_t leaps;       // of the odometry, answered already
+    uint32_t slips;       // likewise
+    uint32_t unsound_ms;  // a leap or slip of the odometry, the last one
+    uint8_t unsound;      // ... how many, one soon after the other
+    uint8_t battery_low;  // SIPs in a row
     bool motors_said;     // off
     bool battery_said;
     bool stall_said;
@@ -131,6 +138,8 @@ struct argus {
     argus_rays_t rays;
     argus_awareness_t awareness;
     argus_evidence_t evidence; // profile argus
+    argus_extremes_t extremes; // profile argus
+    argus_slip_t slip;
     argus_plan_t plan;
     argus_failure_t failure;
     argus_motion_t motion;

@@ -55,8 +55,14 @@ static void name(argus_t *const self, const int sonar) {
     }
 }
 
+// An extreme is proved by way and time alone.
+static argus_fault_kind_t convicts(const argus_t *const self, const int sonar) {
+    const argus_fault_kind_t kind = argus_extremes_convicts(&self->extremes, sonar);
+    return kind != ARGUS_KIND_NONE ? kind : argus_evidence_convicts(&self->evidence, sonar);
+}
+
 static argus_intent_t judge_in(argus_t *const self, const int sonar) {
-    const argus_fault_kind_t kind = argus_evidence_convicts(&self->evidence, sonar);
+    const argus_fault_kind_t kind = convicts(self, sonar);
     if (kind != ARGUS_KIND_NONE) {
         return convict(self, sonar, kind);
     }
@@ -87,7 +93,7 @@ static uint8_t agreements_wanted(const argus_sonar_t *const s) {
 // What repeated one value, and shows another one now, was not stuck: a name is enough to say what it is. Half
 // the truth, where nothing is in range, is the same value each time.
 static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar) {
-    const argus_fault_kind_t convicted = argus_evidence_convicts(&self->evidence, sonar);
+    const argus_fault_kind_t convicted = convicts(self, sonar);
     const bool stuck = self->knowledge.sonar[sonar].kind == ARGUS_KIND_STUCK;
     return convicted == ARGUS_KIND_NONE && stuck ? argus_evidence_names(&self->evidence, sonar) : convicted;
 }
@@ -101,7 +107,8 @@ static void judge_out(argus_t *const self, const int sonar) {
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = kind_of_out(self, sonar);
     const argus_fault_kind_t named = argus_evidence_relapses(&self->evidence, sonar);
-    const bool suspected = argus_evidence_keeps_out(&self->evidence, sonar);
+    const bool suspected =
+        argus_evidence_keeps_out(&self->evidence, sonar) || argus_extremes_keeps_out(&self->extremes, sonar);
     if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
     }

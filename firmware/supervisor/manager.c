@@ -36,6 +36,8 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     argus_awareness_init(&self->awareness);
     argus_evidence_init(&self->evidence);
     argus_evidence_set_caution(&self->evidence, self->config.caution);
+    argus_extremes_init(&self->extremes);
+    argus_slip_init(&self->slip);
     argus_motion_init(&self->motion);
     argus_task_init(&self->travel.task);
     argus_events_init(&self->events);
@@ -96,6 +98,8 @@ static void on_open(argus_t *const self) {
     argus_awareness_restart(&self->awareness);
     argus_evidence_restart(&self->evidence);
     argus_rays_forget_all(&self->rays);
+    argus_extremes_restart(&self->extremes);
+    argus_slip_restart(&self->slip);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it
     self->reflexes.motors_said = false;
     self->stalled = false;
@@ -124,13 +128,22 @@ static void on_resume(argus_t *const self) {
     argus_say(self, ARGUS_EV_LINK_RESUMED, ARGUS_NO_SONAR, (int32_t)self->session.gap_ms);
     argus_awareness_restart(&self->awareness);
     argus_evidence_restart(&self->evidence);
+    argus_extremes_restart(&self->extremes);
+    argus_slip_restart(&self->slip);
     check(self, true);
+}
+
+static void take_slip(argus_t *const self) {
+    if (argus_slip_sip(&self->slip, &self->knowledge)) {
+        argus_knowledge_set_back(&self->knowledge,
+                                 (argus_point_t){self->slip.from.x_mm, self->slip.from.y_mm});
+    }
 }
 
 static void on_sip(argus_t *const self) {
     const int32_t unit_um = argus_session_distance_um(&self->session, self->knowledge.robot->dist_conv_um);
     if (!argus_session_is_open(&self->session) || self->mode == ARGUS_MODE_CLOSED) {
-        argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um);
+        argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
         return;
     }
     argus_knowledge_sip(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
@@ -139,7 +152,9 @@ static void on_sip(argus_t *const self) {
     const argus_alarm_t alarm = argus_awareness_sip(&self->awareness, &self->knowledge, &self->config);
     if (argus_rules(self)->evidence) {
         argus_evidence_sip(&self->evidence, &self->knowledge);
+        argus_extremes_sip(&self->extremes, &self->knowledge);
     }
+    take_slip(self);
     argus_react(self, &alarm); // it asks what was seen before this SIP
     argus_echoes_see(&self->echoes, &self->knowledge, self->now_ms);
     argus_rays_see(&self->rays, &self->knowledge);

@@ -346,6 +346,9 @@ static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *
         return decide(self);
     case ARGUS_DO_DECIDE:
         return decide(self);
+    case ARGUS_DO_GIVE_UP:
+        fail_mission(self);
+        return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true};
     case ARGUS_DO_GO_OFFLINE:
         enter(self, self->orders.shutdown ? ARGUS_MODE_CLOSED : ARGUS_MODE_OFFLINE);
         break;

@@ -147,6 +147,7 @@ static void begin_retest(argus_t *const self, const int sonar) {
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_mask_t bit = (argus_mask_t)(1u << sonar);
     argus_evidence_forget(&self->evidence, sonar);
+    argus_extremes_forget(&self->extremes, sonar);
     argus_evidence_forget_trend(&self->evidence, sonar);
     argus_forget_acquittals(self, sonar);
     self->awareness.verified &= (argus_mask_t) ~(unsigned)bit;

@@ -9,6 +9,10 @@
 #define LOW_BATTERY_DV 115 // where CONFIGpac names none
 #define HYSTERESIS_DV 2
 #define SETTLED_IN_MS 1500u
+#define BATTERY_SIPS 5 // one reading of it may be anything
+#define UNSOUND_MS 60000u
+#define UNSOUND_MOST 3
+#define HEADING_ALONE_CDEG_MM 10 // it is the heading that leapt where there are more for each mm
 
 static argus_intent_t nothing(void) {
     return (argus_intent_t){.act = ARGUS_DO_NOTHING};
@@ -16,6 +20,48 @@ static argus_intent_t nothing(void) {
 
 static argus_intent_t say(const argus_event_id_t event, const int sonar, const int32_t value) {
     return (argus_intent_t){.event = (uint16_t)event, .sonar = (int8_t)sonar, .value = value};
+}
+
+// The pose has gone on without it. Again and again, and it is not known where the robot is.
+static argus_intent_t distrust(const argus_t *const self, argus_reflexes_t *const mine,
+                               const argus_event_id_t event, const int32_t value) {
+    const bool again = mine->unsound > 0 && self->now_ms - mine->unsound_ms < UNSOUND_MS;
+    mine->unsound = (uint8_t)(again ? argus_min(mine->unsound + 1, UNSOUND_MOST + 1) : 1);
+    mine->unsound_ms = self->now_ms;
+    if (mine->unsound > UNSOUND_MOST) {
+        return nothing(); // all is said and done
+    }
+    const bool lost = mine->unsound == UNSOUND_MOST;
+    argus_intent_t intent =
+        lost ? say(ARGUS_EV_ODOMETRY_LOST, ARGUS_NO_SONAR, UNSOUND_MOST) : say(event, ARGUS_NO_SONAR, value);
+    intent.stop = ARGUS_STOP_STOP;
+    intent.unchecked = true;
+    intent.base = ARGUS_BASE_DROP;
+    intent.act = lost ? ARGUS_DO_GIVE_UP : ARGUS_DO_CHECK;
+    intent.full = true;
+    return intent;
+}
+
+static argus_intent_t sees_leap(const argus_t *const self, const argus_alarm_t *const alarm,
+                                argus_reflexes_t *const mine) {
+    const argus_knowledge_t *const knowledge = &self->knowledge;
+    const bool news = (int32_t)(knowledge->leaps - mine->leaps) > 0;
+    (void)alarm;
+    mine->leaps = knowledge->leaps;
+    if (!news) {
+        return nothing();
+    }
+    const bool position = knowledge->leap_mm * HEADING_ALONE_CDEG_MM >= knowledge->leap_cdeg;
+    return position ? distrust(self, mine, ARGUS_EV_POSE_LEAP, knowledge->leap_mm)
+                    : distrust(self, mine, ARGUS_EV_HEADING_LEAP, knowledge->leap_cdeg / 100);
+}
+
+static argus_intent_t sees_slip(const argus_t *const self, const argus_alarm_t *const alarm,
+                                argus_reflexes_t *const mine) {
+    const bool news = self->slip.slips != mine->slips;
+    (void)alarm;
+    mine->slips = self->slip.slips;
+    return news ? distrust(self, mine, ARGUS_EV_SLIP, self->slip.slipped_mm) : nothing();
 }
 
 // New contact only: bits already answered are let be until they clear.
@@ -86,8 +132,10 @@ static argus_intent_t sees_battery(const argus_t *const self, const argus_alarm_
     const bool is_low = now_dv > 0 && now_dv <= low_dv;
     const bool said = mine->battery_said;
     (void)alarm;
-    mine->battery_said = is_low || (said && now_dv <= low_dv + HYSTERESIS_DV);
-    return is_low && !said ? say(ARGUS_EV_BATTERY_LOW, ARGUS_NO_SONAR, now_dv) : nothing();
+    mine->battery_low = (uint8_t)(is_low ? argus_min(mine->battery_low + 1, BATTERY_SIPS) : 0);
+    const bool holds = mine->battery_low >= BATTERY_SIPS;
+    mine->battery_said = holds || (said && now_dv <= low_dv + HYSTERESIS_DV);
+    return holds && !said ? say(ARGUS_EV_BATTERY_LOW, ARGUS_NO_SONAR, now_dv) : nothing();
 }
 
 // The motors may be cut by the robot's own button or E-stop at any time; a bumper's own stop is answered

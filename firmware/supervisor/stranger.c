@@ -17,6 +17,8 @@ static void forget(argus_t *const self) {
     argus_awareness_init(&self->awareness);
     argus_evidence_init(&self->evidence);
     argus_evidence_set_caution(&self->evidence, self->config.caution);
+    argus_extremes_init(&self->extremes);
+    argus_slip_restart(&self->slip);
     memset(&self->verifying, 0, sizeof self->verifying);
     memset(&self->looks, 0, sizeof self->looks);
     self->orders.pinned = 0;

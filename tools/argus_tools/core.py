@@ -49,6 +49,7 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_init": (ctypes.c_void_p, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32)),
     "argus_link_up": (None, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_link_lost": (None, (ctypes.c_void_p, ctypes.c_uint32)),
+    "argus_link_lost": (None, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_receive": (None, (ctypes.c_void_p, ctypes.c_uint32, ctypes.c_char_p, ctypes.c_size_t)),
     "argus_process": (ctypes.c_uint32, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_transmit": (ctypes.c_size_t, (ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t)),
@@ -275,6 +276,10 @@ class Core:
     def link_up(self, now_ms: int) -> None:
         """The transport is open."""
         self._library.argus_link_up(self._core, now_ms & 0xFFFFFFFF)
+
+    def link_lost(self, now_ms: int) -> None:
+        """The transport is gone."""
+        self._library.argus_link_lost(self._core, now_ms & 0xFFFFFFFF)
 
     def receive(self, now_ms: int, data: bytes) -> None:
         """Take bytes from the robot."""

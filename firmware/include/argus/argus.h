@@ -252,6 +252,16 @@ typedef enum {
     X(63, MISSION_FAILED, ERROR, "task", "the course was given up; value: distance to the goal in mm")       \
     X(64, TURN_FAILED, WARN, "drive", "a turn did not settle in time; value: degrees off")                   \
     X(65, LOOK, OK, "drive", "looks round to try all sonars; value: 0")                                      \
+    X(66, POSE_LEAP, WARN, "drive",                                                                          \
+      "the position stepped as no robot moves: STOP sent, left out of the pose; value: mm")                  \
+    X(67, HEADING_LEAP, WARN, "drive",                                                                       \
+      "the heading stepped as no robot turns: STOP sent, left out of the pose; value: degrees")              \
+    X(68, SLIP, WARN, "drive",                                                                               \
+      "the ranges stay while the wheels turn: they slip, or are lifted: STOP sent, left out of the pose; "   \
+      "value: mm")                                                                                           \
+    X(69, ODOMETRY_LOST, ERROR, "drive",                                                                     \
+      "it leaps or slips again and again: where the robot is nobody knows, the course is given up; value: "  \
+      "times")                                                                                               \
     X(70, OPERATOR, OK, "operator", "an operator's command was taken; value: its number")                    \
     X(71, PASSIVE, OK, "operator", "reports only: commands no motion")                                       \
     X(72, ACTIVE, OK, "operator", "drives")                                                                  \

@@ -50,13 +50,6 @@ void voice_answer(voice_t *self, const char *text) {
     self->shown_ms -= SCREEN_MS; // at once
 }
 
-void voice_summary(voice_t *self, const view_t *view) {
-    const size_t length = self->options.json ? 0 : report_summary(view, self->line, sizeof self->line);
-    if (length > 0) {
-        output_line(&self->out, self->line, length);
-    }
-}
-
 // What follows from an operator's order is no verdict.
 static bool is_by_operator(voice_t *self, const argus_event_t *event) {
     if (event->id == ARGUS_EV_OPERATOR) {
@@ -150,6 +143,18 @@ static size_t status_line(voice_t *self, const view_t *view) {
     clock_gettime(CLOCK_REALTIME, &wall);
     const int64_t unix_ms = (int64_t)wall.tv_sec * 1000 + wall.tv_nsec / 1000000;
     return report_status_json(view, unix_ms, self->line, sizeof self->line);
+}
+
+void voice_summary(voice_t *self, const view_t *view) {
+    size_t length = 0;
+    if (!self->options.json) {
+        length = report_summary(view, self->line, sizeof self->line);
+    } else if (self->options.status_ms > 0) {
+        length = status_line(self, view);
+    }
+    if (length > 0) {
+        output_line(&self->out, self->line, length);
+    }
 }
 
 void voice_show(voice_t *self, const moment_t *moment, const view_t *view) {

@@ -54,7 +54,8 @@ uint32_t voice_wait_ms(const voice_t *self, uint32_t now_ms, uint32_t wait_ms);
 // Writes what its readers take now.
 void voice_flush(voice_t *self);
 
-// For people, on standard output after the last event: what came of it all. Call when the screen is gone.
+// On standard output after the last event, what came of it all: a sentence, with --json a last STATUS. Call
+// when the screen is gone.
 void voice_summary(voice_t *self, const view_t *view);
 
 // The last lines may still wait for their reader, but not for long.

@@ -127,7 +127,7 @@ def test_readings_are_those_of_the_status(frames: list[Frame], drive: Drive) -> 
             for sonar in range(base, base + 4):
                 value = signals[f"S{sonar:02}_Range"]
                 seen[sonar].add(int(getattr(value, "value", value)))
-    for status in [event for event in drive.events() if event["event"] == "STATUS"][10:-1]:
+    for status in [event for event in drive.events() if event["event"] == "STATUS"][10:-2]:
         for sonar, range_mm in enumerate(status["reading_mm"]):
             assert range_mm in seen[sonar], f"sonar {sonar} read {range_mm} at {status['t']} s"
 

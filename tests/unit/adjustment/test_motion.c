@@ -57,6 +57,7 @@ void test_a_turn_settles_after_two_sips_at_rest_on_target(void) {
 
 void test_a_turn_beside_its_target_is_not_settled(void) {
     argus_motion_turn(&m, &out, &k, 2000, now_ms);
+    take(107, 100);
     take(214, 0); // 18.8 degrees
     take(214, 0);
     take(214, 0);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "health.h"
+#include "knowledge/angle.h"
 #include "unity.h"
 
 static argus_knowledge_t k;
@@ -47,8 +48,19 @@ static uint16_t suspects(void) {
     return argus_suspects(&a, &k, &config);
 }
 
+// Before the next SIP, however far that is.
 static void drive_mm(int mm) {
-    sip.x_raw = (uint16_t)(sip.x_raw + mm);
+    for (; mm > 0; mm -= 100) {
+        sip.x_raw = (uint16_t)(sip.x_raw + argus_min(mm, 100));
+        argus_knowledge_odometry(&k, &sip, 1000, now_ms += 1000);
+    }
+}
+
+static void turn_to(int heading_raw) {
+    while (sip.heading_raw < heading_raw) {
+        sip.heading_raw = (int16_t)argus_min(heading_raw, sip.heading_raw + 50);
+        argus_knowledge_odometry(&k, &sip, 1000, now_ms += 1000);
+    }
 }
 
 void test_dead_on_the_six_only(void) {
@@ -190,12 +202,12 @@ void test_a_cleared_sonar_is_held_off_for_30_degrees(void) {
     make_suspect();
     argus_awareness_cleared(&a, &k, 3, a.of[3].difference_mm);
     argus_awareness_moved(&a);
-    sip.heading_raw = 330; // 29.0 degrees
+    turn_to(330); // 29.0 degrees
     for (int i = 0; i < 5; i++) {
         take(0x08);
     }
     TEST_ASSERT_EQUAL_HEX16(0, suspects());
-    sip.heading_raw = 345; // 30.3
+    turn_to(345); // 30.3
     take(0x08);
     TEST_ASSERT_EQUAL_HEX16(0x08, suspects());
 }

@@ -26,6 +26,11 @@ static void take(int32_t distance_um) {
     argus_knowledge_sip(&k, &sip, distance_um, now_ms);
 }
 
+static void wheels(int left_mm_s, int right_mm_s) {
+    sip.vel_left_mm_s = (int16_t)left_mm_s;
+    sip.vel_right_mm_s = (int16_t)right_mm_s;
+}
+
 static void list(int sonar, int mm) {
     sip.sonar[sip.sonar_count].number = (uint8_t)sonar;
     sip.sonar[sip.sonar_count].range_mm = (uint16_t)mm;
@@ -35,6 +40,7 @@ static void list(int sonar, int mm) {
 static void drive_through_wraps(uint16_t mask, int32_t distance_um, int direction) {
     setUp();
     const double unit_mm = distance_um / 1000.0;
+    wheels((int)(640 * unit_mm), (int)(640 * unit_mm));
     for (int i = 0; i <= 3000; i++) { // 3000 x 60 units: more than two turns of 16 bits
         sip.x_raw = (uint16_t)(i * 60 * direction) & mask;
         sip.y_raw = (uint16_t)(-i * 20 * direction) & mask;
@@ -67,29 +73,38 @@ void test_a_first_position_other_than_zero_is_no_way_driven(void) {
 }
 
 void test_headings(void) {
-    take(1000);
-    for (int raw = -2047; raw <= 2048; raw++) {
-        sip.heading_raw = (int16_t)raw;
+    for (int raw = 0; raw <= 2048 + 4095; raw++) {
+        sip.heading_raw = (int16_t)((raw + 2047) % 4096 - 2047);
         take(1000);
-        TEST_ASSERT_INT32_WITHIN(1, argus_angle_wrap((int32_t)lround(raw * 36000.0 / 4096)),
+        TEST_ASSERT_INT32_WITHIN(1, argus_angle_wrap((int32_t)lround(raw % 4096 * 36000.0 / 4096)),
                                  k.pose.heading_cdeg);
     }
 }
 
 void test_odometry_set_to_zero_leaves_the_pose_alone(void) {
     take(1000);
+    wheels(500, 500);
     for (int i = 1; i <= 100; i++) {
         sip.x_raw = (uint16_t)(i * 50);
         take(1000);
     }
-    sip.heading_raw = 1024; // 90 degrees
-    take(1000);
+    wheels(-200, 200);
+    for (int i = 1; i <= 16; i++) {
+        sip.heading_raw = (int16_t)(i * 64); // to 90 degrees
+        take(1000);
+    }
     TEST_ASSERT_EQUAL(5000, k.pose.x_mm);
+    wheels(0, 0);
+    take(1000);
+    TEST_ASSERT_FALSE(k.leapt);
     sip.x_raw = sip.y_raw = 0;
     sip.heading_raw = 0;
     take(1000);
     TEST_ASSERT_EQUAL(5000, k.pose.x_mm);
     TEST_ASSERT_EQUAL(9000, k.pose.heading_cdeg);
+    TEST_ASSERT_TRUE(k.leapt);
+    TEST_ASSERT_EQUAL(5000, k.leap_mm);
+    TEST_ASSERT_EQUAL(9000, k.leap_cdeg);
     sip.x_raw = 100; // ahead in the new frame is left in the course's
     take(1000);
     TEST_ASSERT_INT32_WITHIN(1, 5000, k.pose.x_mm);
@@ -98,15 +113,15 @@ void test_odometry_set_to_zero_leaves_the_pose_alone(void) {
 
 void test_a_new_session_goes_on_from_where_the_robot_was(void) {
     take(1000);
-    sip.x_raw = 700;
-    sip.heading_raw = -512;
+    sip.x_raw = 140;
+    sip.heading_raw = -100;
     take(1000);
     argus_knowledge_reopen(&k, now_ms);
-    sip.x_raw = 0; // nearer than a jump: only the reopening tells
+    sip.x_raw = 0; // nearer than a leap: only the reopening tells
     sip.heading_raw = 0;
     take(1000);
-    TEST_ASSERT_EQUAL(700, k.pose.x_mm);
-    TEST_ASSERT_EQUAL(-4500, k.pose.heading_cdeg);
+    TEST_ASSERT_EQUAL(140, k.pose.x_mm);
+    TEST_ASSERT_INT32_WITHIN(1, -879, k.pose.heading_cdeg);
 }
 
 void test_reopening_makes_every_sonar_report_anew(void) {

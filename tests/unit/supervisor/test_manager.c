@@ -364,7 +364,7 @@ void test_status_is_a_picture_of_what_is_known(void) {
     TEST_ASSERT_EQUAL(ARGUS_IS_MINOR, status.failure);
     TEST_ASSERT_EQUAL(ARGUS_DISABLED, status.health[6]);
     TEST_ASSERT_EQUAL(5000, status.reading_mm[6]);
-    TEST_ASSERT_EQUAL(2000, status.reading_mm[3]);
+    TEST_ASSERT_EQUAL(2600, status.reading_mm[3]);
     TEST_ASSERT_TRUE(status.age_ms[3] <= 420);
     TEST_ASSERT_TRUE(status.active && status.online);
     TEST_ASSERT_EQUAL_STRING("p3dx-sh", status.robot_subclass);

@@ -83,7 +83,7 @@ void robot_init(robot_t *robot, const argus_config_t *config, uint32_t start_ms)
 int robot_world_far(const robot_t *robot, int sonar) {
     (void)robot;
     (void)sonar;
-    return 2000;
+    return 2600;
 }
 
 void robot_box(robot_t *robot, double x1, double y1, double x2, double y2) {

@@ -126,7 +126,7 @@ void robot_say(robot_t *robot, const uint8_t *data, size_t count); // one packet
 void robot_wake(robot_t *robot); // the host reads in one go what came while it was asleep
 
 // Worlds.
-int robot_world_far(const robot_t *robot, int sonar);      // 2000 mm whatever the bearing
+int robot_world_far(const robot_t *robot, int sonar); // 2600 mm whatever the bearing: too far to tell slip by
 int robot_world_segments(const robot_t *robot, int sonar); // rays to the segments
 
 #endif

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "awareness/evidence_internal.h"
+#include "knowledge/angle.h"
 
 #define DEG (3.14159265358979323846 / 180.0)
 #define TICK_MS 10u
@@ -198,8 +199,19 @@ static argus_sip_t sip_of(const scene_t *self) {
     return sip;
 }
 
+// A scene puts the robot where it likes, also as no robot moves: the pose follows.
+static void follow(scene_t *self, const argus_sip_t *sip) {
+    if (self->k.leapt) {
+        self->k.pose.x_mm = (int32_t)lround(self->x);
+        self->k.pose.y_mm = (int32_t)lround(self->y);
+        self->k.pose.heading_cdeg = argus_angle_wrap((int32_t)sip->heading_raw * 36000 / 4096);
+        self->k.heading_offset_cdeg = 0;
+    }
+}
+
 static void deliver(scene_t *self, const argus_sip_t *sip) {
     argus_knowledge_sip(&self->k, sip, 1000, self->start_ms + self->t_ms);
+    follow(self, sip);
     argus_evidence_sip(&self->e, &self->k);
     note(self);
 }

@@ -284,7 +284,7 @@ void test_farewell_says_closed_whatever_the_mode(void) {
 void test_readings_health_and_plan_of_a_dead_sonar(void) {
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
     run(1200);
-    TEST_ASSERT_EQUAL_UINT32(2000, get(0x503, 48, 13)); // sonar 3
+    TEST_ASSERT_EQUAL_UINT32(2600, get(0x503, 48, 13)); // sonar 3
     TEST_ASSERT_EQUAL_UINT32(ARGUS_HEALTHY, get(0x501, 24, 3));
     TEST_ASSERT_EQUAL_UINT32(0, get(0x507, 0, 3));
     const uint32_t plan_roll = get(0x507, 12, 4);
@@ -311,7 +311,7 @@ void test_a_sonar_that_never_reported_and_one_that_stopped(void) {
     TEST_ASSERT_EQUAL_UINT32(HAL_DBC_VALIDITY_NEVER, get(0x505, 29, 3));
     robot.fault[10] = ROBOT_SILENT;
     run(4000);
-    TEST_ASSERT_EQUAL_UINT32(2000, get(0x505, 32, 13));
+    TEST_ASSERT_EQUAL_UINT32(2600, get(0x505, 32, 13));
     TEST_ASSERT_EQUAL_UINT32(HAL_DBC_VALIDITY_OLD, get(0x505, 45, 3));
 }
 

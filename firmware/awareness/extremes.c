@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// Judges the extremes of a reading by way and time.
+#include "awareness/extremes.h"
+
+#include <string.h>
+
+#include "knowledge/angle.h"
+
+#define NOISE_MM 5       // the shortest readings end so far above the robot's least
+#define TURNED_CDEG 1000 // a turn beyond this may have put something else there
+#define AWAY_MM 200      // gone away from what stands within the shortest reading: it would read twice that
+#define ABEAM_MM 600     // gone past what its mate on the same side, which hears, does not see,
+#define ABEAM_ALONE_MM 2000 // ... or that it has no such mate for: nobody drives so long so near a wall
+#define CLEAR_MM 300        // its mate reads so much more
+#define ABEAM_PART 4        // looks abeam: of a way it goes away from what it reads less than a fourth
+#define LEAP_MM 600         // nobody walks so far between two firings
+#define NEAR_MM 150         // what is nearer forbids to turn
+#define IMPOSSIBLE 16
+#define VISIT 10 // leaps near and away again at once: who walks across the beam may do so, once or twice
+#define LEVEL_CONVICTS 80
+#define LEVEL_KEEPS_OUT 40
+#define LEVEL_MAX 120
+
+void argus_extremes_init(argus_extremes_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+void argus_extremes_forget(argus_extremes_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    memset(&self->of[sonar], 0, sizeof self->of[sonar]);
+}
+
+void argus_extremes_restart(argus_extremes_t *const self) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        self->of[i].running = false;
+        self->of[i].before_mm = 0;
+    }
+}
+
+static bool is_shortest(const argus_knowledge_t *const knowledge, const int32_t reading_mm) {
+    return reading_mm <= knowledge->robot->min_mm + NOISE_MM;
+}
+
+static void begin_run(argus_extreme_t *const self, const argus_pose_t *const pose) {
+    self->at = (argus_point_t){pose->x_mm, pose->y_mm};
+    self->from_cdeg = pose->heading_cdeg;
+    self->away_mm = 0;
+    self->abeam_mm = 0;
+    self->running = true;
+}
+
+// Another sonar on the same side hears the wall that this one claims to be beside, or something farther off.
+// 1: farther, 0: it cannot tell, -1: the wall.
+static int mate_says(const argus_knowledge_t *const knowledge, const int sonar) {
+    const argus_robot_t *const robot = knowledge->robot;
+    const unsigned abeam = argus_robot_flank(robot) | argus_robot_rear_flank(robot);
+    const argus_sonar_pose_t *const mine = argus_robot_pose(robot, sonar);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const bool mate = i != sonar && (abeam >> i & 1u) != 0 &&
+                          argus_robot_pose(robot, i)->heading_deg == mine->heading_deg;
+        if (mate && argus_usable(knowledge, i)) {
+            return knowledge->sonar[i].reading_mm > robot->min_mm + CLEAR_MM ? 1 : -1;
+        }
+    }
+    return 0;
+}
+
+// What stands still is as far off as the robot went away from it, at least.
+static void go_on(argus_extreme_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    const argus_pose_t *const pose = &knowledge->pose;
+    const int32_t axis = pose->heading_cdeg + argus_robot_pose(knowledge->robot, sonar)->heading_deg * 100;
+    const int32_t dx = pose->x_mm - self->at.x_mm;
+    const int32_t dy = pose->y_mm - self->at.y_mm;
+    const int32_t along = (dx * argus_cos(axis) + dy * argus_sin(axis)) / ARGUS_TRIG_ONE;
+    const int32_t way = argus_hypot(dx, dy);
+    const int says = mate_says(knowledge, sonar);
+    self->at = (argus_point_t){pose->x_mm, pose->y_mm};
+    self->away_mm = argus_max(0, self->away_mm - along);
+    if (says < 0 || argus_abs(along) * ABEAM_PART > way) {
+        self->abeam_mm = 0;
+    } else {
+        self->abeam_mm += way;
+    }
+    self->proved =
+        self->proved || self->away_mm >= AWAY_MM || self->abeam_mm >= (says > 0 ? ABEAM_MM : ABEAM_ALONE_MM);
+}
+
+static void take_shortest(argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
+                          const int sonar) {
+    const int32_t heading = knowledge->pose.heading_cdeg;
+    if (!self->running || argus_angle_abs_diff(heading, self->from_cdeg) > TURNED_CDEG) {
+        begin_run(self, &knowledge->pose);
+        return;
+    }
+    go_on(self, knowledge, sonar);
+}
+
+// How little a reading can be true after those before it; 0: it may well be.
+static int doubt(const argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
+                 const int32_t reading_mm) {
+    const int32_t far_mm = knowledge->robot->min_mm + LEAP_MM;
+    if (reading_mm < knowledge->robot->min_mm) {
+        return IMPOSSIBLE;
+    }
+    if (is_shortest(knowledge, reading_mm)) {
+        return self->before_mm > far_mm ? IMPOSSIBLE : 0;
+    }
+    return self->visited && reading_mm > far_mm ? VISIT : 0;
+}
+
+static void take(argus_extreme_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    const int32_t reading = knowledge->sonar[sonar].reading_mm;
+    const bool shortest = is_shortest(knowledge, reading);
+    const int doubted = doubt(self, knowledge, reading);
+    const int level = self->level + (doubted == 0 && !shortest ? -1 : doubted);
+    self->level = (uint8_t)argus_max(0, argus_min(level, LEVEL_MAX));
+    self->visited = !shortest && reading <= knowledge->robot->min_mm + NEAR_MM &&
+                    self->before_mm > knowledge->robot->min_mm + LEAP_MM;
+    self->before_mm = (uint16_t)reading;
+    if (shortest) {
+        take_shortest(self, knowledge, sonar);
+    } else {
+        self->running = false;
+        self->proved = false;
+    }
+}
+
+void argus_extremes_sip(argus_extremes_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((knowledge->fresh >> i & 1u) != 0) {
+            take(&self->of[i], knowledge, i);
+        }
+    }
+}
+
+argus_fault_kind_t argus_extremes_convicts(const argus_extremes_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const argus_extreme_t *const e = &self->of[sonar];
+    if (e->proved) {
+        return ARGUS_KIND_STUCK;
+    }
+    if (e->level < LEVEL_CONVICTS) {
+        return ARGUS_KIND_NONE;
+    }
+    return e->running ? ARGUS_KIND_STUCK : ARGUS_KIND_INTERMITTENT;
+}
+
+bool argus_extremes_keeps_out(const argus_extremes_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    return self->of[sonar].proved || self->of[sonar].level > LEVEL_KEEPS_OUT;
+}

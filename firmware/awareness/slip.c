@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// Compares ranges along the way with the way that the odometry says.
+#include "awareness/slip.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "knowledge/angle.h"
+
+#define STRETCH_MM 500
+#define BEGIN_MM 150    // a reading of the beginning is made within this
+#define TURNED_CDEG 500 // a straight way turns less
+#define ALONG_CDEG 1600 // so far off the way one still looks along it
+#define WALL_CDEG 2500  // ... and hears this far aside, at the edge of its cone
+#define NEAR_MM 2500    // echoes from farther off come and go
+#define STAYS_MM 100    // less than a change: of 500
+#define FITS_MM 200     // off what the odometry says
+#define ALONE 3         // stretches on which those ahead alone stay
+
+void argus_slip_init(argus_slip_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+void argus_slip_restart(argus_slip_t *const self) {
+    self->begun = false;
+}
+
+static void begin(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
+    memset(self->reading_mm, 0, sizeof self->reading_mm);
+    self->from = knowledge->pose;
+    self->read = 0;
+    self->begun = true;
+    self->ahead = knowledge->vel_left_mm_s + knowledge->vel_right_mm_s > 0;
+}
+
+static int32_t bearing_cdeg(const argus_knowledge_t *const knowledge, const int sonar) {
+    return argus_robot_pose(knowledge->robot, sonar)->heading_deg * 100;
+}
+
+// Whether it looks where the robot goes to (true) or comes from.
+static bool looks(const argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                  const bool to) {
+    const int32_t way_cdeg = self->ahead == to ? 0 : 18000;
+    return argus_angle_abs_diff(bearing_cdeg(knowledge, sonar), way_cdeg) <= ALONG_CDEG;
+}
+
+// The nearest that a sonar hears on the side to which this one looks.
+static int32_t beside_mm(const argus_knowledge_t *const knowledge, const int sonar) {
+    const bool left = argus_sin(bearing_cdeg(knowledge, sonar)) > 0;
+    int32_t nearest = INT32_MAX;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const int32_t bearing = bearing_cdeg(knowledge, i);
+        const bool abeam = argus_abs(argus_cos(bearing)) < ARGUS_TRIG_ONE / 2;
+        if (abeam && (argus_sin(bearing) > 0) == left && argus_usable(knowledge, i)) {
+            nearest = argus_min(nearest, knowledge->sonar[i].reading_mm);
+        }
+    }
+    return nearest;
+}
+
+// Along a wall the edge of the cone hears the wall, always as far off.
+static bool may_be_wall_beside(const argus_knowledge_t *const knowledge, const int sonar) {
+    const int32_t aside = knowledge->sonar[sonar].reading_mm * argus_sin(WALL_CDEG) / ARGUS_TRIG_ONE;
+    return aside + STAYS_MM >= beside_mm(knowledge, sonar);
+}
+
+static void note_beginnings(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
+    const unsigned news = knowledge->fresh & ~(unsigned)self->read;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const bool counts = (news >> i & 1u) != 0 && argus_usable(knowledge, i) &&
+                            knowledge->sonar[i].reading_mm <= NEAR_MM &&
+                            knowledge->sonar[i].reading_mm > knowledge->robot->min_mm + STRETCH_MM;
+        if (counts) {
+            self->reading_mm[i] = knowledge->sonar[i].reading_mm;
+        }
+    }
+    self->read |= knowledge->fresh;
+}
+
+typedef struct {
+    int to;   // those that look along the way and stayed,
+    int back; // ... and back
+    int fits; // whose range changed as the odometry says
+} witnesses_t;
+
+static void ask(const argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                const int32_t way_mm, witnesses_t *const of) {
+    const bool to = looks(self, knowledge, sonar, true);
+    if ((!to && !looks(self, knowledge, sonar, false)) || self->reading_mm[sonar] == 0 ||
+        !argus_usable(knowledge, sonar)) {
+        return;
+    }
+    const int32_t change = knowledge->sonar[sonar].reading_mm - self->reading_mm[sonar];
+    if (argus_abs(change - (to ? -way_mm : way_mm)) <= FITS_MM) {
+        of->fits++;
+    } else if (argus_abs(change) <= STAYS_MM && !may_be_wall_beside(knowledge, sonar)) {
+        of->to += to;
+        of->back += !to;
+    }
+}
+
+static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int32_t way_mm) {
+    witnesses_t of = {0, 0, 0};
+    for (int i = 0; i < knowledge->sonars; i++) {
+        ask(self, knowledge, i, way_mm, &of);
+    }
+    const bool alone = of.fits == 0 && of.to >= 2;
+    self->stretches = (uint8_t)(alone ? self->stretches + 1 : 0);
+    if (of.fits > 0 || !((of.to > 0 && of.back > 0) || self->stretches >= ALONE)) {
+        return false;
+    }
+    self->stretches = 0;
+    self->slipped_mm = way_mm;
+    self->slips++;
+    return true;
+}
+
+static bool is_straight(const argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
+    const int32_t speed = knowledge->vel_left_mm_s + knowledge->vel_right_mm_s;
+    const int32_t turned = argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->from.heading_cdeg);
+    return turned <= TURNED_CDEG && !knowledge->leapt && (speed == 0 || (speed > 0) == self->ahead);
+}
+
+bool argus_slip_sip(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->robot != NULL);
+    if (!self->begun || !is_straight(self, knowledge)) {
+        self->stretches = 0;
+        begin(self, knowledge);
+        return false;
+    }
+    const argus_point_t from = {self->from.x_mm, self->from.y_mm};
+    const int32_t way_mm = argus_hypot(knowledge->pose.x_mm - from.x_mm, knowledge->pose.y_mm - from.y_mm);
+    if (way_mm <= BEGIN_MM) {
+        note_beginnings(self, knowledge);
+    }
+    if (way_mm < STRETCH_MM) {
+        return false;
+    }
+    const bool slipped = judge(self, knowledge, way_mm);
+    begin(self, knowledge);
+    if (slipped) {
+        self->from.x_mm = from.x_mm;
+        self->from.y_mm = from.y_mm;
+    }
+    return slipped;
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Wheels that turn while the robot does not move: ranges along the way that stay though the odometry goes on.
+#ifndef ARGUS_SLIP_H
+#define ARGUS_SLIP_H
+
+#include "knowledge/knowledge.h"
+
+// One stretch of straight way, and what each sonar read where it began; 0: nothing that counts.
+typedef struct {
+    argus_pose_t from; // where the robot still is when it has slipped
+    uint16_t reading_mm[ARGUS_SONARS];
+    argus_mask_t read;  // sonars that have been listed since
+    uint8_t stretches;  // one after the other, on which those ahead alone stayed
+    uint32_t slips;     // monotonic
+    int32_t slipped_mm; // the last one
+    bool begun;
+    bool ahead; // the way goes
+} argus_slip_t;
+
+void argus_slip_init(argus_slip_t *self);
+
+// A session opened, or SIPs come again: the robot may have moved since.
+void argus_slip_restart(argus_slip_t *self);
+
+// One SIP. True: the wheels made `slipped_mm` of way and the robot did not, it is at `from`. False: nobody
+// can tell. It takes one that looks along the way and one that looks back, or two that look along it through
+// three stretches (somebody may walk in front), and nobody whose range changes as the odometry says.
+bool argus_slip_sip(argus_slip_t *self, const argus_knowledge_t *knowledge);
+
+#endif

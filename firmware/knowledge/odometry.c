@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// Compares steps of the odometry with what wheels can do.
+#include "knowledge/odometry.h"
+
+#include "argus/argus.h"
+#include "knowledge/angle.h"
+
+#define SIP_MS 100          // SIPs that come in a bunch were made so long apart
+#define LATE_MS 150         // ... and one that comes in time may follow one that came late
+#define GAP_MS 500u         // without a SIP for longer nobody knows what the wheels did
+#define GAP_MAX_MS 4000u    // ... but the robot's watchdog has stopped them
+#define FASTEST_MM_S 2000   // no robot of the tables drives as fast
+#define DRIVES_MM_S 750     // the fastest that it is ever told to
+#define TURNS_CDEG_S 10000  // likewise
+#define ACCEL_MM_S2 2000    // the hardest that wheels speed up or brake
+#define ACCEL_CDEG_S2 30000 // likewise
+#define ACCEL_MM 300        // in a gap they reach their speed
+#define ACCEL_CDEG 3000     // likewise
+#define ROOM_MM 100         // for what is not modelled
+#define ROOM_CDEG 400       // likewise
+#define EXCESS_MM 250       // what may build up
+#define EXCESS_CDEG 3000    // likewise
+#define LOST_MS 300         // ... and of SIPs that were lost in a bunch
+#define SLACK_PERCENT 110   // speeds are rounded and averaged
+#define SLACK_MM 2          // in each SIP
+#define SLACK_CDEG 30       // likewise
+#define CDEG_PER_RADIAN 5730
+
+static int32_t fastest_mm_s(const argus_span_t *const span) {
+    const int32_t before = argus_max(argus_abs(span->before.left_mm_s), argus_abs(span->before.right_mm_s));
+    const int32_t after = argus_max(argus_abs(span->after.left_mm_s), argus_abs(span->after.right_mm_s));
+    const int32_t gap = span->elapsed_ms > GAP_MS ? DRIVES_MM_S : 0;
+    return argus_min(FASTEST_MM_S, argus_max(gap, argus_max(before, after)));
+}
+
+static int32_t turn_cdeg_s(const argus_wheels_t *const wheels, const int32_t track_mm) {
+    ARGUS_ASSERT(track_mm > 0);
+    const int32_t most = 2 * FASTEST_MM_S;
+    const int32_t apart = wheels->right_mm_s - wheels->left_mm_s;
+    return argus_max(-most, argus_min(most, apart)) * CDEG_PER_RADIAN / track_mm;
+}
+
+static int32_t fastest_cdeg_s(const argus_span_t *const span) {
+    const int32_t before = argus_abs(turn_cdeg_s(&span->before, span->track_mm));
+    const int32_t after = argus_abs(turn_cdeg_s(&span->after, span->track_mm));
+    const int32_t gap = span->elapsed_ms > GAP_MS ? TURNS_CDEG_S : 0;
+    return argus_max(gap, argus_max(before, after));
+}
+
+// Of a speed, within a time up to some seconds.
+static int32_t times_ms(const int32_t per_s, const int32_t ms) {
+    return (int32_t)((int64_t)per_s * ms / 1000);
+}
+
+static int32_t elapsed_ms(const argus_span_t *const span) {
+    return (int32_t)(span->elapsed_ms < GAP_MAX_MS ? span->elapsed_ms : GAP_MAX_MS);
+}
+
+argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *const span) {
+    const int32_t ms = argus_min(elapsed_ms(span), SIP_MS);
+    const argus_wheels_t mean = {(span->before.left_mm_s + span->after.left_mm_s) / 2,
+                                 (span->before.right_mm_s + span->after.right_mm_s) / 2};
+    const int32_t speed =
+        argus_max(-FASTEST_MM_S, argus_min(FASTEST_MM_S, (mean.left_mm_s + mean.right_mm_s) / 2));
+    const argus_way_turn_t moved = {times_ms(speed, ms), times_ms(turn_cdeg_s(&mean, span->track_mm), ms)};
+    return moved;
+}
+
+static bool may_be_alone(const argus_span_t *const span, const argus_way_turn_t *const moved) {
+    const int32_t ms = elapsed_ms(span) + LATE_MS;
+    const int32_t sped_mm = argus_min(ACCEL_MM, times_ms(times_ms(ACCEL_MM_S2, ms), ms) / 2);
+    const int32_t sped_cdeg = argus_min(ACCEL_CDEG, times_ms(times_ms(ACCEL_CDEG_S2, ms), ms) / 2);
+    return moved->way_mm <= times_ms(fastest_mm_s(span), ms) + sped_mm + ROOM_MM &&
+           moved->turn_cdeg <= times_ms(fastest_cdeg_s(span), ms) + sped_cdeg + ROOM_CDEG;
+}
+
+static int32_t build_up(const int32_t excess, const int32_t moved, const int32_t by_wheels,
+                        const int32_t slack) {
+    return argus_max(0, excess + moved - by_wheels * SLACK_PERCENT / 100 - slack);
+}
+
+bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *const span,
+                           const argus_way_turn_t *const moved) {
+    ARGUS_ASSERT(moved->way_mm >= 0 && moved->turn_cdeg >= 0);
+    const int32_t ms = argus_max(SIP_MS, elapsed_ms(span));
+    const int32_t mm_s = fastest_mm_s(span);
+    const int32_t cdeg_s = fastest_cdeg_s(span);
+    excess->way_mm = build_up(excess->way_mm, moved->way_mm, times_ms(mm_s, ms), SLACK_MM);
+    excess->turn_cdeg = build_up(excess->turn_cdeg, moved->turn_cdeg, times_ms(cdeg_s, ms), SLACK_CDEG);
+    if (may_be_alone(span, moved) && excess->way_mm <= EXCESS_MM + times_ms(mm_s, LOST_MS) &&
+        excess->turn_cdeg <= EXCESS_CDEG + times_ms(cdeg_s, LOST_MS)) {
+        return true;
+    }
+    *excess = (argus_excess_t){0, 0};
+    return false;
+}

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+"""Rule: what the robot says of its own motion is checked against its wheels, the time and the ranges: a step that no
+robot makes is told and left out of the pose, wheels that slip are told, and a goal is never reached by either."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from hil_sim.sil import Mission, Outcome, Sil
+
+CORRIDOR = """about: Rough corridor.
+start: [0, 0, 0]
+walls:
+  - {points: [[-1500, -1200], [4700, -1200], [4700, 1200], [-1500, 1200]], closed: true}
+"""
+GOAL_MM = 3000
+NEAR_MM = 150
+Act = Callable[[Sil], None]
+
+
+@pytest.fixture
+def corridor(tmp_path: Path) -> str:
+    path = tmp_path / "corridor.yaml"
+    path.write_text(CORRIDOR)
+    return str(path)
+
+
+def drive(
+    world: str, act: Act, *, each: bool = False, profile: str = "argus", limit_s: float = 120.0
+) -> Outcome:
+    """Drive, and act on the robot when it has made half of the way; `each`: every 100 ms from then on."""
+    sil = Sil(
+        Mission(
+            world, ((GOAL_MM, 0),), config={"profile": profile}, sonar={"crosstalk": 0.0}, limit_s=limit_s
+        )
+    )
+    while not sil.over and sil.robot.chassis.travelled_mm < GOAL_MM / 2:
+        sil.step()
+    act(sil)
+    k = 0
+    while not sil.over:
+        sil.step()
+        k += 1
+        if each and k % 10 == 0:
+            act(sil)
+    outcome = sil.outcome()
+    assert not outcome.collisions
+    return outcome
+
+
+def names(outcome: Outcome) -> list[str]:
+    return [event.name for event in outcome.events]
+
+
+def odometry(x: float, y: float, deg: float) -> Act:
+    def act(sil: Sil) -> None:
+        chassis = sil.robot.chassis
+        chassis.odo_x, chassis.odo_y, chassis.odo_th = x, y, deg
+
+    return act
+
+
+@pytest.mark.parametrize("profile", ["argus", "paper"])
+@pytest.mark.parametrize(
+    "to", [(0, 0, 0), (20000, 0, 0), (-700, 300, 0), (1500, 900, 0), (2500, 0, 0), (0, 0, 90), (1500, 0, -60)]
+)
+def test_a_leap_is_told_and_left_out(corridor: str, to: tuple[float, float, float], profile: str) -> None:
+    outcome = drive(corridor, odometry(*to), profile=profile)
+    told = [n for n in names(outcome) if n in ("POSE_LEAP", "HEADING_LEAP")]
+    assert told == ["HEADING_LEAP" if to == (1500, 0, -60) else "POSE_LEAP"]
+    assert "GOAL_REACHED" in names(outcome)
+    assert outcome.reached, outcome.goal_mm
+    assert outcome.goal_mm < NEAR_MM
+
+
+def test_what_leaps_all_the_time_ends_the_course(corridor: str) -> None:
+    k = 0
+
+    def act(sil: Sil) -> None:
+        nonlocal k
+        k += 1
+        sil.robot.chassis.odo_x = 20000.0 if k % 2 else 0.0
+
+    outcome = drive(corridor, act, each=True)
+    assert names(outcome).count("POSE_LEAP") == 2
+    assert names(outcome).count("ODOMETRY_LOST") == 1
+    assert "MISSION_FAILED" in names(outcome)
+    assert "GOAL_REACHED" not in names(outcome)
+
+
+@pytest.mark.parametrize("deg", [30, -90, 180])
+def test_a_heading_that_leaps_all_the_time_ends_the_course(corridor: str, deg: float) -> None:
+    def act(sil: Sil) -> None:
+        sil.robot.chassis.odo_th += deg
+
+    outcome = drive(corridor, act, each=True)
+    assert names(outcome).count("HEADING_LEAP") == 2
+    assert "ODOMETRY_LOST" in names(outcome)
+    assert "GOAL_REACHED" not in names(outcome)
+
+
+def lifted(
+    world: str, at: tuple[float, float], *, profile: str = "argus", faults: tuple[str, ...] = ()
+) -> Outcome:
+    """The wheels turn from the beginning on, the body stays: it is jacked up, or pushes against a sill."""
+    start = (at[0], at[1], 0.0)
+    mission = Mission(
+        world, ((at[0] + GOAL_MM, at[1]),), start, faults, config={"profile": profile}, limit_s=120
+    )
+    sil = Sil(mission)
+    while not sil.over:
+        sil.step()
+        chassis = sil.robot.chassis
+        chassis.place(at[0], at[1], chassis.th)
+    return sil.outcome()
+
+
+BOX = """about: A robot between a box ahead and a wall behind.
+start: [0, 0, 0]
+walls:
+  - {points: [[-1300, -1500], [2300, -1500], [2300, 1500], [-1300, 1500]], closed: true}
+"""
+
+
+@pytest.mark.parametrize(
+    ("profile", "at"), [("argus", (0, 0)), ("argus", (-200, 300)), ("argus", (300, -200))]
+)
+def test_lifted_wheels_are_told_and_end_the_course(
+    tmp_path: Path, profile: str, at: tuple[float, float]
+) -> None:
+    path = tmp_path / "box.yaml"
+    path.write_text(BOX)
+    outcome = lifted(str(path), at, profile=profile)
+    assert names(outcome).count("SLIP") >= 2, names(outcome)
+    assert "ODOMETRY_LOST" in names(outcome)
+    assert "GOAL_REACHED" not in names(outcome)
+    assert "MISSION_FAILED" in names(outcome)
+
+
+@pytest.mark.parametrize("seed", range(1, 6))
+def test_rough_days_slip_a_little_and_nobody_calls_it_lost(corridor: str, seed: int) -> None:
+    outcome = Sil(Mission(corridor, ((GOAL_MM, 0),), seed=seed, physics="rough-day", limit_s=150)).run()
+    assert not {"POSE_LEAP", "HEADING_LEAP", "ODOMETRY_LOST", "SLIP"} & set(names(outcome))
+    assert math.isfinite(outcome.goal_mm)

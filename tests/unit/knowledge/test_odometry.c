@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+// Attacks: a step of the odometry that no robot makes gets into the pose, or one that a robot made is left
+// out, however late, bunched or lost its SIPs are.
+#include "knowledge/odometry.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "knowledge/angle.h"
+#include "knowledge/body.h"
+#include "knowledge/knowledge.h"
+#include "unity.h"
+
+#define PI 3.14159265358979
+
+static argus_knowledge_t k;
+static argus_sip_t sip;
+static uint32_t now_ms;
+static double x, y, th; // the odometry of the robot, mm and radians
+static uint32_t seed;
+static int leaps;
+
+void setUp(void) {
+    argus_knowledge_init(&k);
+    memset(&sip, 0, sizeof sip);
+    now_ms = 0xFFFFFE00u;
+    x = y = th = 0;
+    leaps = 0;
+    seed = 20261125;
+}
+
+static int draw(int below) {
+    seed = seed * 1664525u + 1013904223u;
+    return (int)((seed >> 8) % (uint32_t)below);
+}
+
+static void deliver(uint32_t ms) {
+    now_ms += ms;
+    sip.x_raw = (uint16_t)(int)lround(x);
+    sip.y_raw = (uint16_t)(int)lround(y);
+    const int raw = (int)lround(th / (2 * PI) * 4096) % 4096;
+    sip.heading_raw = (int16_t)(raw > 2048 ? raw - 4096 : raw < -2047 ? raw + 4096 : raw);
+    argus_knowledge_sip(&k, &sip, 1000, now_ms);
+    leaps += k.leapt;
+}
+
+// The robot makes 100 ms of way at these speeds of its wheels, mm/s.
+static void roll(int left, int right) {
+    const double v = (left + right) / 2.0;
+    const double w = (right - left) / (double)argus_robot_default()->track_mm;
+    th += w * 0.1;
+    x += v * 0.1 * cos(th);
+    y += v * 0.1 * sin(th);
+    sip.vel_left_mm_s = (int16_t)left;
+    sip.vel_right_mm_s = (int16_t)right;
+}
+
+static void drive(int left, int right, int sips) {
+    for (int i = 0; i < sips; i++) {
+        roll(left, right);
+        deliver(100);
+    }
+}
+
+static void expect_pose(int want_x, int want_y, int want_cdeg) {
+    TEST_ASSERT_INT32_WITHIN(25, want_x, k.pose.x_mm);
+    TEST_ASSERT_INT32_WITHIN(25, want_y, k.pose.y_mm);
+    TEST_ASSERT_LESS_OR_EQUAL_INT32(100, argus_angle_abs_diff(want_cdeg, k.pose.heading_cdeg));
+}
+
+// Positions and headings that a controller, a second program or a bit on the line may put there.
+void test_leaps_are_left_out_and_the_pose_goes_on_as_the_wheels_say(void) {
+    static const struct {
+        double x, y, deg;
+    } to[] = {{0, 0, 0},    {20000, 0, 0},  {-400, 900, 45}, {1500, 0, 180},
+              {3500, 0, 0}, {1000, 400, 0}, {2000, 0, -90}};
+    for (size_t i = 0; i < sizeof to / sizeof to[0]; i++) {
+        setUp();
+        deliver(100);
+        drive(200, 200, 100); // 2 m
+        x = to[i].x;
+        y = to[i].y;
+        th = to[i].deg * PI / 180;
+        roll(200, 200);
+        x -= 20 * cos(th);
+        y -= 20 * sin(th);
+        deliver(100);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(1, leaps, "leap");
+        expect_pose(2020, 0, 0);
+        drive(200, 200, 50); // ahead in the new frame is ahead in the course's
+        TEST_ASSERT_EQUAL_INT(1, leaps);
+        expect_pose(3020, 0, 0);
+    }
+}
+
+void test_a_position_that_flickers_is_never_believed(void) {
+    deliver(100);
+    for (int i = 0; i < 200; i++) {
+        x = i % 2 == 0 ? 20000 : 0;
+        deliver(100);
+    }
+    TEST_ASSERT_EQUAL_INT(200, leaps);
+    expect_pose(0, 0, 0);
+}
+
+void test_a_heading_alone(void) {
+    deliver(100);
+    drive(100, 100, 20);
+    th += PI / 4;
+    deliver(100);
+    TEST_ASSERT_TRUE(k.leapt);
+    TEST_ASSERT_EQUAL_INT32(0, k.leap_mm);
+    TEST_ASSERT_INT32_WITHIN(10, 4500, k.leap_cdeg);
+    expect_pose(210, 0, 0);
+}
+
+void test_what_creeps_while_the_wheels_stand_is_told_when_it_has_come_far(void) {
+    deliver(100);
+    for (int i = 0; i < 30 && leaps == 0; i++) {
+        x += 40;
+        deliver(100);
+    }
+    TEST_ASSERT_EQUAL_INT(1, leaps);
+    TEST_ASSERT_LESS_THAN_INT32(320, k.pose.x_mm);
+    setUp();
+    deliver(100);
+    for (int i = 0; i < 60 && leaps == 0; i++) {
+        th += 5 * PI / 180;
+        deliver(100);
+    }
+    TEST_ASSERT_EQUAL_INT(1, leaps);
+}
+
+void test_speeds_that_no_robot_has_do_not_excuse_a_leap(void) {
+    deliver(100);
+    sip.vel_left_mm_s = sip.vel_right_mm_s = 32767;
+    x = 3000;
+    deliver(100);
+    TEST_ASSERT_EQUAL_INT(1, leaps);
+    TEST_ASSERT_LESS_THAN_INT32(250, argus_abs(k.pose.x_mm));
+}
+
+// Speeds of all kinds; SIPs that come late and in bunches, and with `lost` percent of them lost.
+static void wander(int rounds, int lost) {
+    int held = 0;
+    int left = 0, right = 0;
+    uint32_t waited = 0;
+    deliver(100);
+    for (int i = 0; i < rounds; i++) {
+        const int target_left = draw(1500) - 750;
+        const int target_right = draw(4) == 0 ? target_left / 2 : target_left;
+        for (int j = 0; j < 10; j++) {
+            left += argus_max(-80, argus_min(80, target_left - left));
+            right += argus_max(-80, argus_min(80, target_right - right));
+            roll(left, right);
+            waited += 100;
+            held = held == 0 && draw(60) == 0 ? draw(8) : argus_max(0, held - 1);
+            if (held > 0 || draw(100) < lost) {
+                continue;
+            }
+            const uint32_t late = (uint32_t)draw(80);
+            deliver(waited > late ? waited - late : 0);
+            waited = late;
+        }
+    }
+}
+
+void test_what_a_robot_makes_is_believed(void) {
+    wander(3000, 0);
+    TEST_ASSERT_EQUAL_INT(0, leaps);
+    setUp();
+    wander(3000, 10);
+    TEST_ASSERT_EQUAL_INT(0, leaps);
+}
+
+// The host slept, and reads in one go what came meanwhile.
+void test_a_bunch_is_believed(void) {
+    deliver(100);
+    drive(750, 750, 20);
+    for (int round = 0; round < 20; round++) {
+        roll(750, 750);
+        deliver(2000);
+        for (int i = 0; i < 19; i++) {
+            roll(750, 750);
+            deliver(0);
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(0, leaps);
+    expect_pose(1500 + 20 * 20 * 75, 0, 0);
+}
+
+void test_a_gap_in_motion_is_believed_and_a_leap_after_one_is_not(void) {
+    deliver(100);
+    drive(700, 700, 20);
+    for (int i = 0; i < 20; i++) {
+        roll(700, 700);
+    }
+    sip.vel_left_mm_s = sip.vel_right_mm_s = 0;
+    deliver(2000);
+    TEST_ASSERT_EQUAL_INT(0, leaps);
+    x += 9000;
+    deliver(3000);
+    TEST_ASSERT_EQUAL_INT(1, leaps);
+}
+
+// Turns at the fastest, to and fro.
+void test_turns_are_believed(void) {
+    deliver(100);
+    for (int round = 0; round < 50; round++) {
+        for (int i = 0; i < 20; i++) {
+            const int w = argus_min(330, 40 * argus_min(i, 20 - i));
+            roll(round % 2 == 0 ? w : -w, round % 2 == 0 ? -w : w);
+            deliver(100);
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(0, leaps);
+}
