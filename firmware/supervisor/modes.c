@@ -341,9 +341,6 @@ static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *
     case ARGUS_DO_WAIT:
         enter_waiting(self, (argus_wait_t)intent->why);
         break;
-    case ARGUS_DO_GIVE_UP:
-        fail_mission(self);
-        return decide(self);
     case ARGUS_DO_DECIDE:
         return decide(self);
     case ARGUS_DO_GIVE_UP:
