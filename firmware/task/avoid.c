@@ -23,19 +23,15 @@ static argus_ground_t ground_of(const argus_knowledge_t *const knowledge, const 
 
 void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                        argus_echoes_t *const echoes) {
-    bool found = false;
+    const argus_point_t ahead = {knowledge->robot->front_mm + REFUSED_AHEAD_MM, 0};
     self->has_leg = false;
+    argus_grid_mark(&echoes->grid, argus_to_course(&knowledge->pose, ahead), false);
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i) &&
             knowledge->sonar[i].reading_mm <= REFUSED_NEAR_MM) {
             const argus_point_t echo = argus_echo_robot(knowledge, i);
             argus_grid_mark(&echoes->grid, argus_to_course(&knowledge->pose, echo), false);
-            found = true;
         }
-    }
-    if (!found) {
-        const argus_point_t ahead = {knowledge->robot->front_mm + REFUSED_AHEAD_MM, 0};
-        argus_grid_mark(&echoes->grid, argus_to_course(&knowledge->pose, ahead), false);
     }
 }
 
