@@ -12,7 +12,7 @@
 #define SLACK_CELLS 4 // the robot may be so far from the middle before the window follows
 #define LEVEL_MAX 15
 #define OCCUPIED 4 // two near echoes: one may be crosstalk
-#define MARKED 8   // five beams take it back
+#define MARKED 6   // three beams take it back
 #define NEAR_MM 1000
 #define FAR_MM 1600
 #define NEAR_RISE 3
@@ -21,8 +21,8 @@
 #define SHORT_MM 150     // a beam passes nothing so close to its echo
 #define PASSED_MM 1500   // ... nor beyond this, since it grows wide
 #define SILENT_MM 800    // ... nor beyond this, if nothing comes back: a smooth wall may have turned it away
-#define REST_SIPS 4      // at rest the beams of one round count,
-#define REST_EVERY 16    // ... and then of a quarter of the SIPs: they tell nothing new
+#define REST_SIPS 10     // at rest the beams of a check count,
+#define REST_EVERY 40    // ... and then of a quarter of the SIPs: they tell nothing new
 #define BODY_CELLS 1     // about its centre, where the robot stands
 
 #define BESIDE_MM 600 // of a flank's echoes the nearer ones tell of a wall along the way,
