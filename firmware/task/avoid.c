@@ -8,6 +8,7 @@
 #define LEG_DONE_MM 60
 #define ESCAPE_MM 300 // way straight ahead out of a place too narrow to turn in
 #define ESCAPE_LEAST_MM 100
+#define ESCAPE_BESIDE_MM 20
 #define ESCAPE_ROOM_MM 250 // beyond it
 #define REFUSED_NEAR_MM 350
 #define REFUSED_AHEAD_MM 100 // of the body
@@ -74,7 +75,7 @@ bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const 
 bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                        const argus_echoes_t *const echoes, const int32_t by_cdeg) {
     ARGUS_ASSERT(self->count <= ARGUS_WAYPOINTS_MAX);
-    const int32_t half_mm = argus_guard_straight_half_mm(knowledge->robot);
+    const int32_t half_mm = argus_robot_half_width_mm(knowledge->robot) + ESCAPE_BESIDE_MM;
     const int32_t heading_cdeg = argus_angle_wrap(knowledge->pose.heading_cdeg + by_cdeg);
     const int32_t free_mm = argus_echoes_clear_mm(echoes, knowledge, heading_cdeg, half_mm);
     const int32_t way_mm = argus_min(ESCAPE_MM, free_mm - knowledge->robot->front_mm - ESCAPE_ROOM_MM);
