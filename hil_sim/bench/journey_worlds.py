@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from hil_sim.bench.course import ROOM_MM, Field, Point, make_field
-from hil_sim.bench.journey_course import drift_course, length_mm
+from hil_sim.bench.journey_course import LEAST_MM, drift_course, length_mm
 from hil_sim.bench.worlds import Plan
 from hil_sim.errors import SimError
 from hil_sim.tables.robot import robot_table
@@ -29,8 +29,6 @@ SET_LIMIT_S: Final = 300.0
 _TRIES: Final = 60
 _PLACES_LEAST: Final = 200
 """Cells of 50 mm where a waypoint may lie, or the plan is thrown away."""
-_COURSE_LEAST_MM: Final = 42_000.0
-"""A floor with a shorter course is thrown away."""
 _HALF_MM: Final = robot_table().body.half_mm
 _PAIR_MM: Final = (3000.0, 11_000.0)
 _ICON: Final = '"" ICON'
@@ -242,7 +240,7 @@ def _tried(path: str, of: str, goal: Point, rng: Rng) -> Place | None:
             if len(field.places(ROOM_MM)) < _PLACES_LEAST:
                 return None
             course = drift_course(world, field, rng)
-            whole = length_mm(world.start[:2], course) >= _COURSE_LEAST_MM
+            whole = length_mm(world.start[:2], course) >= LEAST_MM
             return Place(world, field, path, course, LIMIT_S) if whole else None
     except SimError:
         return None
