@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil_sim.bench.journey import parse_row
-from hil_sim.bench.journey_bars import bars
+from hil_sim.bench.journey_bars import bars, found_of_one
 from hil_sim.bench.journey_figures import over_ideal, summarise
 from hil_sim.errors import SimError
 
@@ -166,22 +166,19 @@ def _modes(row: Record) -> tuple[str, ...]:
 
 
 def _faults(rows: Sequence[Record]) -> list[str]:
-    """What was found of the faults in time and ever."""
-    found = [
-        (
-            row["row"],
-            row["driver"],
-            kind,
-            str(one["ever"]["of"]),
-            _percent(one["in_time"]),
-            _percent(one["ever"]),
-        )
-        for row in rows
-        for kind, one in row["found"].items()
-    ]
-    return (
-        [*_grid(("row", "driver", "faults", "n", "found in time, %", "ever, %"), found), ""] if found else []
-    )
+    """What was found of the faults in time and ever: by row, and by kind where one fails alone."""
+    lines = [(row["row"], row["driver"], "all", row["found"]["all"]) for row in rows if "all" in row["found"]]
+    for driver in dict.fromkeys(row["driver"] for row in rows):
+        kinds = found_of_one(row for row in rows if row["driver"] == driver)
+        lines += [("one fault", driver, kind, found) for kind, found in kinds.items()]
+    if not lines:
+        return []
+    head = ("row", "driver", "faults", "n", "found in time, %", "ever, %")
+    return [*_grid(head, [_fault(*line) for line in lines]), ""]
+
+
+def _fault(row: str, driver: str, kind: str, found: Record) -> tuple[str, ...]:
+    return row, driver, kind, str(found["ever"]["of"]), _percent(found["in_time"]), _percent(found["ever"])
 
 
 def _grid(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:

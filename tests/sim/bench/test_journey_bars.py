@@ -6,8 +6,9 @@ from __future__ import annotations
 from typing import Any
 
 from bench.journeys import journey, with_ideal
+from bench.missions import judged
 
-from hil_sim.bench.journey_bars import bars
+from hil_sim.bench.journey_bars import bars, found_of_one
 from hil_sim.bench.journey_figures import summarise
 
 
@@ -73,3 +74,15 @@ def test_a_goal_behind_walls_must_be_called_one() -> None:
     ]
     assert verdicts(given_up)[name] == "pass"
     assert verdicts([one | {"word": "running"} for one in given_up])[name] == "fail"
+
+
+def test_what_is_found_is_judged_where_one_fails_alone() -> None:
+    some = [
+        journey("argus/judge/rooms+one/lab/1", faults=[judged("off"), judged("slow", found=False)]),
+        journey("argus/judge/rooms+front/lab/1", faults=[judged("off", found=False, latency_s=None)] * 8),
+    ]
+    (row,) = [bar for bar in bars(summarise(some)) if bar.name == "rows of one fault: found in time"]
+    assert (row.value, row.cases, row.verdict) == (0.5, 2, "fail")
+    kinds = found_of_one(summarise(some))
+    assert (kinds["slow"]["in_time"]["hits"], kinds["slow"]["ever"]["hits"]) == (0, 1)
+    assert set(kinds) == {"all", "off", "slow"}

@@ -47,7 +47,7 @@ def test_an_ideal_that_did_not_arrive_is_none() -> None:
 
 
 def test_who_gives_up_soon_is_counted_with_the_time_of_the_ideal() -> None:
-    early = {"word": "failed", "truly": False, "t_s": 15.0, "progress_mm": 4500.0}
+    early: dict[str, Any] = {"word": "failed", "truly": False, "t_s": 15.0, "progress_mm": 4500.0}
     ideal, record = with_ideal(**early)
     assert over_ideal(record, ideal) == pytest.approx(0.1)
     assert row_of([ideal, record])["over_ideal"]["ratio"] == pytest.approx(0.1)
