@@ -40,13 +40,13 @@ _DRIFTED_MM: Final = robot_table().body.half_mm + 170.0
 _DRIFTED_END_MM: Final = ROOM_MM - 60.0
 """Distance of a waypoint from the nearest solid where drift puts it: 190 mm round the body."""
 _LEG_MM: Final = (1500.0, 9000.0)
-_CANDIDATES: Final = 300
-_TRIES: Final = 8
+_CANDIDATES: Final = 200
+_TRIES: Final = 6
 _OFF_MM: Final = 60.0
 """A course is good enough when drift has the robot so near to its goal."""
 _END_MM: Final = 7000.0
 """The last two legs begin so much before the whole length."""
-_END_CANDIDATES: Final = 700
+_END_CANDIDATES: Final = 500
 _ENDS: Final = 2500
 """So many pairs of a last waypoint but one and a goal are tried for their clearance."""
 _FAR_MM: Final = 1e9
@@ -83,18 +83,20 @@ def _xy(points: Complex) -> Floats:
 def _usable(field: Field, way: _Way, ends: Complex) -> npt.NDArray[np.bool_]:
     """Which of the ends the robot gets to, by its odometry and by each drift."""
     length = np.abs(ends - way.here)
-    good = (length >= _LEG_MM[0]) & (length <= _LEG_MM[1])
-    start = (way.here.real, way.here.imag)
+    good = np.flatnonzero((length >= _LEG_MM[0]) & (length <= _LEG_MM[1]))
     # The first leg begins wherever the world puts the robot.
-    least = min(LEG_MM, float(field.at(np.array([start[0]]), np.array([start[1]]))[0]) - 1)
-    good &= field.leg_clear_mm(start, _xy(ends)) >= least
+    least = min(LEG_MM, float(field.at(*_xy(np.array([way.here])).T)[0]) - 1)
+    good = good[_clear(field, way.here, ends[good]) >= least]
     for drift, true in enumerate(way.true):
-        if not good.any():
-            break
-        there = way.after(ends, drift)
-        good &= field.leg_clear_mm((true.real, true.imag), _xy(there)) >= min(least, _DRIFTED_MM)
-        good &= field.at(there.real, there.imag) >= _DRIFTED_END_MM
-    return np.asarray(good)
+        there = way.after(ends[good], drift)
+        fine = _clear(field, true, there) >= min(least, _DRIFTED_MM)
+        good = good[fine & (field.at(there.real, there.imag) >= _DRIFTED_END_MM)]
+    return np.isin(np.arange(len(ends)), good)
+
+
+def _clear(field: Field, start: complex, ends: Complex) -> Floats:
+    """The smallest distance from a solid along the straight leg to each of the ends."""
+    return field.leg_clear_mm((start.real, start.imag), _xy(ends)) if len(ends) else np.zeros(0)
 
 
 def drift_course(world: World, field: Field, rng: Rng, drift_deg_m: float = DRIFT_DEG_M) -> Course:

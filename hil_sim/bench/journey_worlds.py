@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from hil_sim.bench.course import ROOM_MM, Field, Point, make_field
-from hil_sim.bench.journey_course import DRIFT_DEG_M, LEAST_MM, drift_course, length_mm
+from hil_sim.bench.journey_course import DRIFT_DEG_M, LEAST_MM, drift_at_goal_mm, drift_course, length_mm
 from hil_sim.bench.worlds import Plan
 from hil_sim.errors import SimError
 from hil_sim.tables.robot import robot_table
@@ -30,6 +30,8 @@ _TRIES: Final = 60
 _PLACES_LEAST: Final = 200
 """Cells of 50 mm where a waypoint may lie, or the plan is thrown away."""
 _HALF_MM: Final = robot_table().body.half_mm
+_OFF_MM: Final = 90.0
+"""A floor where drift has the robot further from its goal is thrown away."""
 _PAIR_MM: Final = (3000.0, 11_000.0)
 _ICON: Final = '"" ICON'
 
@@ -248,7 +250,12 @@ def _tried(path: str, of: str, goal: Point, drawn: tuple[Rng, float]) -> Place |
                 return None
             course = drift_course(world, field, rng, drift_deg_m)
             # A rough day leaves no long course between the walls of an office: then its longest is good enough.
-            whole = drift_deg_m > DRIFT_DEG_M or length_mm(world.start[:2], course) >= LEAST_MM
+            begin = world.start[:2]
+            good = (
+                length_mm(begin, course) >= LEAST_MM
+                and drift_at_goal_mm(begin, course, drift_deg_m) < _OFF_MM
+            )
+            whole = good or drift_deg_m > DRIFT_DEG_M
             return Place(world, field, path, course, LIMIT_S) if whole else None
     except SimError:
         return None
