@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from typing import Any
 
 from hil_sim.bench.journey import parse_id
@@ -55,3 +57,13 @@ def with_ideal(name: str = "argus/judge/rooms/lab/1", **more: Any) -> list[dict[
     record = journey(name, **more)
     ideal = journey(record["ideal"], t_s=150.0, driving_s=145.0, looking_s=0.0, looks=0, looks_at=[])
     return [ideal, record]
+
+
+DEADLY = "argus/tune/rooms/lab/2"
+
+
+def deadly(name: str) -> dict[str, Any]:
+    """Run no mission; one of them kills its process each time."""
+    if name == DEADLY:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return journey(name)

@@ -43,7 +43,11 @@ def test_the_report_has_each_row_and_says_what_it_is() -> None:
 
 
 def test_the_files_are_written_with_a_picture_of_the_worst(tmp_path: Path) -> None:
-    write_report(tmp_path, RECORDS, META, plots=True)
+    text = write_report(tmp_path, RECORDS, META, plots=True)
+    assert text.index("- `argus/judge/rooms/lab/2` 0.25, reached after 600 s") < text.index(
+        "- `argus/judge/rooms/lab/1` 0.50"
+    )
+    assert (tmp_path / "journey.md").read_text(encoding="utf-8") == text
     summary = json.loads((tmp_path / "journey.json").read_text(encoding="utf-8"))
     assert [(row["row"], row["driver"]) for row in summary["rows"]] == [
         ("rooms", "ideal"),

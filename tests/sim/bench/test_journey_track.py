@@ -7,9 +7,11 @@ import math
 from dataclasses import dataclass, field
 
 import pytest
+from bench.journeys import DEADLY, deadly
 
 from hil_sim.bench.journey import mission_of, parse_id
-from hil_sim.bench.journey_track import FREE, LOOKING, Diary, head, run_case, work
+from hil_sim.bench.journey_track import FREE, LOOKING, Diary, failed, head, run_case, work
+from hil_sim.bench.pool import run_here
 from hil_sim.sil import Sighting, Sil, run
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.body import BodyModel
@@ -108,3 +110,11 @@ def test_work_never_raises() -> None:
     record = work("argus/tune/rooms/mars/1")
     assert "mars" in record["error"]
     assert record["id"] == head(parse_id("argus/tune/rooms/mars/1"))["id"]
+
+
+def test_a_process_that_dies_costs_its_own_journey_only() -> None:
+    names = [f"argus/tune/rooms/lab/{seed}" for seed in range(1, 6)]
+    records = {record["id"]: record for record in run_here(names, 2, deadly, failed)}
+    assert set(records) == set(names)
+    assert [name for name in names if records[name]["error"]] == [DEADLY]
+    assert records[DEADLY]["ideal"] == "ideal/tune/rooms/lab/2"
