@@ -19,7 +19,8 @@
 #define NUDGE_CDEG 2000
 #define NUDGE_ROOM_MM 40 // an echo is anywhere in its cone: more than readings scatter
 #define NUDGE_PARTS 5
-#define ABEAM_CLEAR_MM 250 // beside a way straight back of 300 mm; a P3-DX ends 77 mm beside their faces
+#define ABEAM_LEAST_MM 97 // beside a way straight back: a P3-DX ends 77 mm beside the faces of those abeam,
+#define ABEAM_SLANT 2     // ... and a smooth wall that slants in by 25 degrees, half of the way, is heard by nobody
 #define BACK_MOST_MM 300
 #define BACK_LEFT_MM 150 // of what the rear reads clear
 #define BACK_STEP_MM 25
@@ -236,7 +237,7 @@ static int32_t rear_clear_mm(const argus_guard_t *const self, const int sonar) {
     ARGUS_ASSERT(self->config->rear_clear_mm > 0);
     const int32_t clear_mm = self->config->rear_clear_mm;
     const bool flank = (argus_robot_rear_flank(self->knowledge->robot) >> sonar & 1u) != 0;
-    return self->profile->passes_abeam && flank ? argus_min(ABEAM_CLEAR_MM, clear_mm) : clear_mm;
+    return self->profile->passes_abeam && flank ? argus_min(ABEAM_LEAST_MM + self->config->backoff_mm / ABEAM_SLANT, clear_mm) : clear_mm;
 }
 
 bool argus_guard_rear_is_clear(const argus_guard_t *const self) {
@@ -253,10 +254,22 @@ bool argus_guard_may_back_off(const argus_guard_t *const self) {
            argus_guard_rear_is_clear(self);
 }
 
+static int32_t abeam_mm(const argus_guard_t *const self) {
+    int32_t nearest_mm = self->knowledge->robot->no_echo_mm;
+    for (int i = 0; i < self->knowledge->sonars; i++) {
+        if ((argus_robot_rear_flank(self->knowledge->robot) >> i & 1u) != 0) {
+            nearest_mm = argus_min(nearest_mm, self->knowledge->sonar[i].reading_mm);
+        }
+    }
+    return nearest_mm;
+}
+
 // What the rear reads clear less some room; no farther than usual past what was seen beside the way, since a
 // smooth wall that slants in by 15 to 25 degrees is heard by nobody.
 static int32_t most_back_mm(const argus_guard_t *const self) {
-    const int32_t clear_mm = argus_min(BACK_MOST_MM, self->config->rear_clear_mm - BACK_LEFT_MM);
+    const int32_t beside_mm = (abeam_mm(self) - ABEAM_LEAST_MM) * ABEAM_SLANT;
+    const int32_t clear_mm =
+        argus_min(argus_min(BACK_MOST_MM, beside_mm), self->config->rear_clear_mm - BACK_LEFT_MM);
     const int32_t astern_cdeg = argus_angle_wrap(self->knowledge->pose.heading_cdeg + 18000);
     const int32_t free_mm = argus_echoes_clear_mm(self->echoes, self->knowledge, astern_cdeg,
                                                   argus_guard_straight_half_mm(self->knowledge->robot));

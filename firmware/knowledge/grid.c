@@ -10,9 +10,10 @@
 #define CELL_MM ARGUS_GRID_CELL_MM
 #define MASK (CELLS - 1)
 #define SLACK_CELLS 4 // the robot may be so far from the middle before the window follows
-#define LEVEL_MAX 15
+#define LEVEL_MAX 15 // touched: no beam takes that back
+#define HEARD_MOST 14
 #define OCCUPIED 4 // two near echoes: one may be crosstalk
-#define MARKED 8   // five beams take it back
+#define MARKED 6   // three beams take it back
 #define NEAR_MM 1000
 #define FAR_MM 1600
 #define NEAR_RISE 3
@@ -21,8 +22,8 @@
 #define SHORT_MM 150     // a beam passes nothing so close to its echo
 #define PASSED_MM 1500   // ... nor beyond this, since it grows wide
 #define SILENT_MM 800    // ... nor beyond this, if nothing comes back: a smooth wall may have turned it away
-#define REST_SIPS 4      // at rest the beams of one round count,
-#define REST_EVERY 16    // ... and then of a quarter of the SIPs: they tell nothing new
+#define REST_SIPS 10     // at rest the beams of a check count,
+#define REST_EVERY 40    // ... and then of a quarter of the SIPs: they tell nothing new
 #define BODY_CELLS 1     // about its centre, where the robot stands
 
 #define BESIDE_MM 600 // of a flank's echoes the nearer ones tell of a wall along the way,
@@ -90,7 +91,7 @@ static void rise(argus_grid_t *const self, const argus_cell_t cell, const unsign
 
 static void lower(argus_grid_t *const self, const argus_cell_t cell) {
     const unsigned level = is_inside(self, cell) ? level_at(self, place_of(cell)) : 0;
-    if (level > 0) {
+    if (level > 0 && level < LEVEL_MAX) {
         put(self, cell, level - 1);
     }
 }
@@ -203,7 +204,7 @@ static void take(argus_grid_t *const self, const argus_knowledge_t *const knowle
     if (!silent && reading_mm <= FAR_MM) {
         const bool near = reading_mm <= NEAR_MM;
         const argus_point_t echo = argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, sonar));
-        rise(self, argus_grid_cell(echo), near ? NEAR_RISE : FAR_RISE, near ? LEVEL_MAX : FAR_MOST);
+        rise(self, argus_grid_cell(echo), near ? NEAR_RISE : FAR_RISE, near ? HEARD_MOST : FAR_MOST);
         if ((argus_robot_flank(knowledge->robot) >> sonar & 1u) != 0 && reading_mm <= BESIDE_MM) {
             const bool left = argus_robot_pose(knowledge->robot, sonar)->y_mm > 0;
             extend(self, knowledge, echo, &self->abeam[left ? 1 : 0]);

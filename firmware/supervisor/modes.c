@@ -486,7 +486,7 @@ static bool is_under_way(const argus_t *const self) {
     const argus_wait_t why = self->waiting.why;
     const bool waits = self->mode == ARGUS_MODE_WAITING && (why == ARGUS_WAIT_WAY || why == ARGUS_WAIT_TURN);
     return self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused && !self->orders.passive &&
-           (waits || argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE));
+           (waits || self->mode == ARGUS_MODE_CHECKING || argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE));
 }
 
 static void watch_course(argus_t *const self) {

@@ -118,7 +118,9 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
     if (mine->jog_mm > 0 || mine->task.has_leg) {
         return true;
     }
-    if (!argus_task_choose(&mine->task, &self->knowledge, &self->echoes)) {
+    const int sonar = argus_nearest_ahead(self);
+    const bool stopped = sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
+    if (!argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped)) {
         *intent = (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_WAY};
         return false;
     }

@@ -7,7 +7,9 @@
 
 #define LEG_DONE_MM 60
 #define ESCAPE_MM 300 // way straight ahead out of a place too narrow to turn in
-#define ESCAPE_ROOM_MM 440
+#define ESCAPE_LEAST_MM 100
+#define ESCAPE_BESIDE_MM 20
+#define ESCAPE_ROOM_MM 250 // beyond it
 #define REFUSED_NEAR_MM 350
 #define REFUSED_AHEAD_MM 100 // of the body
 #define PROGRESS_MM 100
@@ -16,24 +18,19 @@
 #define VAIN_MS 60000u
 #define GAP_MS 500u
 
-static argus_ground_t ground_of(const argus_knowledge_t *const knowledge, const argus_echoes_t *const echoes) {
-    const argus_ground_t ground = {knowledge, &echoes->grid};
-    return ground;
-}
-
 void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                        argus_echoes_t *const echoes) {
-    bool found = false;
+    bool heard = false;
     self->has_leg = false;
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i) &&
             knowledge->sonar[i].reading_mm <= REFUSED_NEAR_MM) {
             const argus_point_t echo = argus_echo_robot(knowledge, i);
             argus_grid_mark(&echoes->grid, argus_to_course(&knowledge->pose, echo), false);
-            found = true;
+            heard = true;
         }
     }
-    if (!found) {
+    if (!heard) {
         const argus_point_t ahead = {knowledge->robot->front_mm + REFUSED_AHEAD_MM, 0};
         argus_grid_mark(&echoes->grid, argus_to_course(&knowledge->pose, ahead), false);
     }
@@ -62,9 +59,9 @@ static void note_driven(argus_progress_t *const self, const int32_t to_go_mm) {
 }
 
 bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const knowledge,
-                       const argus_echoes_t *const echoes) {
+                       const argus_echoes_t *const echoes, const bool stopped) {
     ARGUS_ASSERT(self->next <= self->count);
-    const argus_ground_t ground = ground_of(knowledge, echoes);
+    const argus_ground_t ground = {knowledge, &echoes->grid, stopped};
     self->has_leg = self->next < self->count &&
                     argus_way_find(&self->wave, &ground, self->waypoint[self->next], &self->leg);
     self->progress.exhausted = self->progress.exhausted || !self->has_leg;
@@ -78,13 +75,14 @@ bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const 
 bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                        const argus_echoes_t *const echoes, const int32_t by_cdeg) {
     ARGUS_ASSERT(self->count <= ARGUS_WAYPOINTS_MAX);
-    const int32_t half_mm = argus_guard_straight_half_mm(knowledge->robot);
+    const int32_t half_mm = argus_robot_half_width_mm(knowledge->robot) + ESCAPE_BESIDE_MM;
     const int32_t heading_cdeg = argus_angle_wrap(knowledge->pose.heading_cdeg + by_cdeg);
     const int32_t free_mm = argus_echoes_clear_mm(echoes, knowledge, heading_cdeg, half_mm);
-    if (self->next >= self->count || free_mm < knowledge->robot->front_mm + ESCAPE_ROOM_MM) {
+    const int32_t way_mm = argus_min(ESCAPE_MM, free_mm - knowledge->robot->front_mm - ESCAPE_ROOM_MM);
+    if (self->next >= self->count || way_mm < ESCAPE_LEAST_MM) {
         return false;
     }
-    const argus_point_t ahead = {ESCAPE_MM, 0};
+    const argus_point_t ahead = {way_mm, 0};
     const argus_pose_t turned = {knowledge->pose.x_mm, knowledge->pose.y_mm, heading_cdeg};
     self->leg.to_go_mm += argus_task_leg_mm(self, knowledge);
     self->leg.to = argus_to_course(&turned, ahead);
@@ -97,7 +95,7 @@ bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const 
 
 void argus_task_keep(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                      const argus_echoes_t *const echoes) {
-    const argus_ground_t ground = ground_of(knowledge, echoes);
+    const argus_ground_t ground = {knowledge, &echoes->grid, false};
     const bool done = self->avoiding && argus_task_leg_mm(self, knowledge) <= LEG_DONE_MM;
     self->has_leg = self->has_leg && !done && argus_way_is_free(&ground, &self->leg);
 }

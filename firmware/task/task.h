@@ -40,12 +40,14 @@ bool argus_task_progress(argus_task_t *self, const argus_knowledge_t *knowledge,
 
 int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *knowledge);
 
-// An object stopped the robot: what is near ahead, or the place just ahead where nothing is heard, is taken as
-// occupied until beams pass there.
+// Something stopped the robot: what is heard near, or the place just ahead where nothing is, is taken as occupied
+// until beams pass there.
 void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge, argus_echoes_t *echoes);
 
-// Chooses the next leg: the first straight part of the way to the waypoint. False: no way. Cost: argus_way_find().
-bool argus_task_choose(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes);
+// Chooses the next leg: the first straight part of the way to the waypoint. `stopped`: something is so near that the
+// robot cannot go on ahead. False: no way. Cost: argus_way_find().
+bool argus_task_choose(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes,
+                       bool stopped);
 
 // Where the robot cannot turn: a leg ahead, but for so much of a turn, if the corridor there is free. False: no
 // way that way either.

@@ -21,6 +21,7 @@
 #define LEG_LEAST_MM 250
 #define CUT_SAMPLES 4 // a straight leg may have so many more narrow samples than the way itself
 #define AHEAD_MM 1000
+#define AHEAD_OF_BODY_MM 100
 
 static uint64_t bit(const int32_t x) {
     ARGUS_ASSERT(x >= 0 && x < CELLS);
@@ -127,6 +128,11 @@ static void survey(argus_wave_t *const wave, const argus_ground_t *const ground,
     uint64_t *const tight = wave->label[1];
     for (int y = 0; y < CELLS; y++) {
         occupied[y] = argus_grid_row(ground->grid, y);
+    }
+    if (ground->stopped) {
+        const argus_point_t ahead = {ground->knowledge->robot->front_mm + AHEAD_OF_BODY_MM, 0};
+        const argus_cell_t cell = cell_in(ground->grid, argus_to_course(&ground->knowledge->pose, ahead));
+        occupied[cell.y] |= is_within(cell) ? bit(cell.x) : 0;
     }
     grow(occupied, wave->wide, wide_mm(ground->knowledge));
     grow(occupied, wave->narrow, narrow_mm(ground->knowledge));

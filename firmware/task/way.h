@@ -23,6 +23,7 @@ typedef struct {
 typedef struct {
     const argus_knowledge_t *knowledge;
     const argus_grid_t *grid;
+    bool stopped; // something is so near that the robot cannot go on ahead
 } argus_ground_t;
 
 // The first leg of the way. What is not known is free. A waypoint outside the window is made for from that cell of

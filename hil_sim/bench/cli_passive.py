@@ -220,6 +220,6 @@ def _heading(verdicts: Iterable[Verdict]) -> str:
     return (
         f"The whole: {sum(f.in_time for f in faults)} of {len(faults)} found in time, "
         f"{sum(f.latency_s is not None for f in faults)} ever, {names} false names and "
-        f"{sum(len(verdict.disables) for verdict in verdicts)} false disables in {hours:.1f} h of driving; "
+        f"{sum(len(verdict.disables) for verdict in verdicts)} false disables in {hours:.1f} clock hours; "
         f"{constants} constants, {lines} lines.\n"
     )

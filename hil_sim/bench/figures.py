@@ -92,10 +92,10 @@ def figures(records: Sequence[Record]) -> dict[str, Any]:
     """Return the figures of one profile."""
     faults = _faults(records)
     free, tried = _free(records, True), _free(records, False)
-    hours = sum(record["driving_s"] for record in records) / 3600
+    hours = sum(record["t_s"] for record in records) / 3600
     result: dict[str, Any] = {
         "missions": len(records),
-        "driving_hours": round(hours, 3),
+        "clock_hours": round(hours, 3),
         "not_injected": sum(not record["faults"] for record in tried),
         "reached": {"fault-free": _reached(free), "with faults": _reached(tried)},
         "kinds": {kind: _detection(_of(faults, (kind,))) for kind in KINDS},
@@ -275,7 +275,7 @@ def _called(fault: Record) -> str:
 
 def _false(records: Sequence[Record], what: str = "false_disables") -> dict[str, Any]:
     count = sum(len(record[what]) for record in records)
-    hours = sum(record["driving_s"] for record in records) / 3600
+    hours = sum(record["t_s"] for record in records) / 3600
     return {
         "count": count,
         "hours": round(hours, 3),
@@ -293,7 +293,7 @@ def _rehabilitation(faults: Sequence[Record]) -> dict[str, Any]:
 
 
 def _verification(records: Sequence[Record]) -> dict[str, Any]:
-    hours = sum(record["driving_s"] for record in records) / 3600
+    hours = sum(record["t_s"] for record in records) / 3600
 
     def per_hour(name: str) -> float | None:
         return round(sum(record[name] for record in records) / hours, 2) if hours else None
@@ -337,7 +337,7 @@ def bars(figure: Record, faults: Sequence[Record]) -> list[Bar]:
     false = figure["false_disables"]
     rows.append(
         _at_most(
-            "false disables in 100 fault-free robot hours",
+            "false disables in 100 fault-free clock hours",
             false["per_100h"],
             false["per_100h_high"],
             false["missions"],

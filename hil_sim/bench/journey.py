@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from hil_sim.bench import plan
-from hil_sim.bench.journey_course import drift_course, length_mm
+from hil_sim.bench.journey_course import DRIFT_DEG_M, ROUGH_DRIFT_DEG_M, drift_course, length_mm
 from hil_sim.bench.journey_worlds import LIMIT_S, SETS, Place, place_of
 from hil_sim.bench.worlds import GENERATED
 from hil_sim.errors import SimError
@@ -117,6 +117,11 @@ class Row:
     def physics(self) -> str:
         """As for argus-sim."""
         return next((CONDITIONS[name].physics for name in self.conditions if CONDITIONS[name].physics), "")
+
+    @property
+    def drift_deg_m(self) -> float:
+        """What its courses are made for: a rough day has courses of its own."""
+        return ROUGH_DRIFT_DEG_M if self.physics else DRIFT_DEG_M
 
     @property
     def quirks(self) -> str:
@@ -249,12 +254,12 @@ def _rng(case: Case, purpose: str) -> Rng:
 
 
 @lru_cache(maxsize=16)
-def _place(world: str, split: str, seed: int) -> Place:
+def _place(world: str, split: str, seed: int, drift_deg_m: float) -> Place:
     if world in GENERATED or world in world_names() or world.endswith((".map", ".yaml", ".yml")):
         made, field, path = plan.world_of(world, split, seed)
         rng = _rng(Case("", split, "", world, seed), "course")
-        return Place(made, field, path, drift_course(made, field, rng), LIMIT_S)
-    return place_of(world, (plan.SPLITS[split], seed))
+        return Place(made, field, path, drift_course(made, field, rng, drift_deg_m), LIMIT_S)
+    return place_of(world, (plan.SPLITS[split], seed), drift_deg_m)
 
 
 def faults_of(case: Case) -> tuple[str, ...]:
@@ -262,7 +267,7 @@ def faults_of(case: Case) -> tuple[str, ...]:
     row = parse_row(case.row)
     if case.driver == IDEAL or not row.has_faults:
         return ()
-    place = _place(case.world, case.split, case.seed)
+    place = _place(case.world, case.split, case.seed, row.drift_deg_m)
     rng = _rng(case, "fault")
     onset = rng.uniform(*MIDWAY) * length_mm(place.begins[:2], place.course)
     turn = case.seed + zlib.crc32(case.world.encode())
@@ -283,7 +288,7 @@ def _begins(text: str, onset_mm: float) -> str:
 def mission_of(case: Case) -> Mission:
     """Return the mission of a case."""
     row = parse_row(case.row)
-    place = _place(case.world, case.split, case.seed)
+    place = _place(case.world, case.split, case.seed, row.drift_deg_m)
     return Mission(
         place.path,
         place.course,

@@ -9,6 +9,7 @@ from typing import Any, Final
 from hil_sim.bench.figures import Bar, judged_bar
 from hil_sim.bench.journey import parse_row
 from hil_sim.bench.journey_worlds import NO_WAY, SETS
+from hil_sim.bench.judge import BOUND_S
 from hil_sim.bench.stats import count_bound_high, share, share_bound_low
 
 Record = dict[str, Any]
@@ -84,11 +85,27 @@ def _wholes(own: Mapping[str, Record]) -> Iterator[Bar]:
     yield _at_most(
         "all rows: false disables in 100 clock hours", count * per, high, missions, _DISABLES_100H, ""
     )
-    found = [row["found"]["all"] for row in own.values() if "all" in row["found"]]
-    for part, least in _FOUND.items() if found else ():
-        hits, of = (sum(one[part][name] for one in found) for name in ("hits", "of"))
-        name = f"all rows: faults found {part.replace('_', ' ')}"
-        yield _share(name, f">= {100 * least:g} %", share(hits, of), least)
+    found = found_of_one(own.values()).get("all")
+    if found is None:
+        return
+    for part, least in _FOUND.items():
+        name = f"rows of one fault: found {part.replace('_', ' ')}"
+        yield _share(name, f">= {100 * least:g} %", found[part], least)
+
+
+def found_of_one(rows: Iterable[Record]) -> dict[str, Record]:
+    """Return the shares of faults found in time and ever, by kind, of the rows with one fault together."""
+    own = [row["found"] for row in rows if "one" in parse_row(row["row"]).conditions]
+    return {
+        kind: {
+            part: share(
+                *(sum(found[kind][part][name] for found in own if kind in found) for name in ("hits", "of"))
+            )
+            for part in _FOUND
+        }
+        for kind in ("all", *BOUND_S)
+        if any(kind in found for found in own)
+    }
 
 
 def _safety(own: Mapping[str, Record]) -> Iterator[Bar]:

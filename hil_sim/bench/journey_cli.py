@@ -15,8 +15,9 @@ from hil_sim.bench import journey as journeys
 from hil_sim.bench import plan, pool
 from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, Parser, jobs, say, seeds
 from hil_sim.bench.journey_report import write_report
-from hil_sim.bench.journey_track import RECORD_FORMAT, failed, work
+from hil_sim.bench.journey_track import RECORD_FORMAT, failed, run_case, work
 from hil_sim.bench.runner import fixed_core, keep
+from hil_sim.bench.show import timeline
 from hil_sim.bench.store import RESULTS, Store
 from hil_sim.errors import SimError
 
@@ -30,7 +31,7 @@ examples:
   argus-sim bench journey --rows rooms+mobilesim --worlds 'maps/*.map' --seeds 1-5 --out mine
   argus-sim bench journey --split judge --seeds 1-5 --out judge                the table that is published
   argus-sim bench journey --profiles argus,argus:caution=200 --rows rooms --out trade
-  argus-sim bench journey --one argus/tune/rooms+rough/office/7
+  argus-sim bench journey --one argus/tune/rooms+rough/office/7 --out one      time line and picture
   argus-sim bench journey --quick                                              the small one of the tests
 
 A row is where the robot drives and under which conditions, joined by +. Every mission is driven by each profile and by
@@ -81,7 +82,9 @@ def parser() -> argparse.ArgumentParser:
         default="tune",
         help="tune (default) to choose settings with, judge to publish: no mission is in both",
     )
-    what.add_argument("--one", metavar="ID", help="run one mission and print its record")
+    what.add_argument(
+        "--one", metavar="ID", help="run one mission and print its time line; with --out a picture"
+    )
     what.add_argument("--quick", action="store_true", help="a small fixed selection, less than a minute")
     how = result.add_argument_group("how")
     how.add_argument(
@@ -136,6 +139,24 @@ def _failures(records: Sequence[dict[str, Any]]) -> int:
     return EXIT_FAILED if wrong else 0
 
 
+def _one(case: journeys.Case, arguments: argparse.Namespace) -> int:
+    """The time line and the record of one mission; with --out its picture, too."""
+    record, outcome = run_case(case)
+    print(timeline(record, outcome), end="")
+    print(json.dumps(record), flush=True)
+    if arguments.out:
+        from hil_sim.bench.journey_plots import draw
+
+        try:
+            arguments.out.mkdir(parents=True, exist_ok=True)
+            draw(arguments.out, [record, run_case(case.ideal)[0]])
+        except OSError as error:
+            raise SimError(
+                f"{arguments.out}: cannot draw there ({error.strerror}); name another --out"
+            ) from error
+    return 0
+
+
 def _check(options: argparse.ArgumentParser, arguments: argparse.Namespace) -> None:
     """Refuse arguments that another one makes void."""
     fixed = [name for name in ("one", "quick") if getattr(arguments, name)]
@@ -153,11 +174,7 @@ def journey(argv: Sequence[str]) -> int:
     arguments = options.parse_args(argv)
     _check(options, arguments)
     if arguments.one:
-        record = work(journeys.parse_id(arguments.one).id)
-        if record["error"] is not None:
-            raise SimError(f"{record['id']}: {record['error']}")
-        print(json.dumps(record), flush=True)
-        return 0
+        return _one(journeys.parse_id(arguments.one), arguments)
     with tempfile.TemporaryDirectory(prefix="argus-journey-") as folder:
         spare = Path(folder) if arguments.quick else Path("bench-journey")
         return _run(arguments, _cases(arguments), arguments.out or spare)

@@ -43,41 +43,60 @@ def over_ideal(record: Record, ideal: Record) -> float | None:
 
 
 def _figures(row: str, driver: str, group: Sequence[Record], good: Mapping[str, Record]) -> Record:
-    hours = sum(record["t_s"] for record in group) / 3600
-    metres = sum(record["driven_mm"] for record in group) / 1000
-    hits = [record for record in group if record["collisions"]]
+    figures: Record = {"row": row, "driver": driver, "missions": len(group)}
+    return figures | _arrivals(group, good) | _price(group) | _safety(group) | {"found": _found(group)}
 
-    def total(name: str) -> float:
-        return float(sum(record[name] for record in group))
+
+def _total(group: Sequence[Record], name: str) -> float:
+    return float(sum(record[name] for record in group))
+
+
+def _per(value: float, whole: float) -> float | None:
+    return round(value / whole, 1) if whole else None
+
+
+def _arrivals(group: Sequence[Record], good: Mapping[str, Record]) -> Record:
+    by_word = [record for record in group if record["word"] == "reached"]
+    given_up = [record["t_s"] for record in group if record["word"] == "failed"]
+    return {
+        "speed_mm_s": _per(_total(group, "progress_mm"), _total(group, "t_s")),
+        "over_ideal": _over(group, good),
+        "truly": share(int(_total(group, "truly")), len(group)),
+        "word": share(len(by_word), len(group)),
+        "gave_up": share(len(given_up), len(group)),
+        "gave_up_s": quantile(given_up, 0.5),
+        "off_goal_mm": quantile([record["goal_mm"] for record in by_word], 0.5),
+        "odometry_off_mm": quantile([record["odometry_off_mm"] for record in group], 0.5),
+        "early_mm": _spread([record["early_mm"] for record in group]),
+    }
+
+
+def _price(group: Sequence[Record]) -> Record:
+    hours, metres = _total(group, "t_s") / 3600, _total(group, "driven_mm") / 1000
+
+    def counted(name: str) -> Record:
+        return rate(sum(len(record[name]) for record in group), hours)
 
     return {
-        "row": row,
-        "driver": driver,
-        "missions": len(group),
         "clock_hours": round(hours, 4),
         "metres": round(metres, 1),
-        "speed_mm_s": round(total("progress_mm") / (3600 * hours), 1) if hours else None,
-        "over_ideal": _over(group, good),
-        "truly": share(sum(record["truly"] for record in group), len(group)),
-        "word": share(sum(record["word"] == "reached" for record in group), len(group)),
-        "gave_up": share(sum(record["word"] == "failed" for record in group), len(group)),
-        "gave_up_s": quantile([record["t_s"] for record in group if record["word"] == "failed"], 0.5),
-        "off_goal_mm": quantile([r["goal_mm"] for r in group if r["word"] == "reached"], 0.5),
-        "odometry_off_mm": quantile([r["odometry_off_mm"] for r in group], 0.5),
-        "stops": rate(int(total("stops")), hours),
-        "looks": rate(int(total("looks")), hours),
-        "looking_s_per_hour": round(total("looking_s") / hours, 1) if hours else None,
-        "turned_deg_per_m": round(total("turned_deg") / metres, 1) if metres else None,
-        "energy_j_per_m": _per_progress(group),
-        "false_names": rate(sum(len(record["false_names"]) for record in group), hours),
-        "false_disables": rate(sum(len(record["false_disables"]) for record in group), hours),
-        "closest_mm": _spread([r["closest_mm"] for r in group if r["closest_mm"] is not None]),
-        "collisions": len(hits),
-        "attributable": sum(record["attributable"] for record in hits),
-        "struck": int(total("struck")),
-        "early_mm": _spread([record["early_mm"] for record in group]),
+        "stops": rate(int(_total(group, "stops")), hours),
+        "looks": rate(int(_total(group, "looks")), hours),
+        "looking_s_per_hour": _per(_total(group, "looking_s"), hours),
+        "turned_deg_per_m": _per(_total(group, "turned_deg"), metres),
+        "energy_j_per_m": _per(_total(group, "energy_j"), _total(group, "progress_mm") / 1000),
+        "false_names": counted("false_names"),
+        "false_disables": counted("false_disables"),
         "modes": _modes(group),
-        "found": _found(group),
+    }
+
+
+def _safety(group: Sequence[Record]) -> Record:
+    return {
+        "closest_mm": _spread([r["closest_mm"] for r in group if r["closest_mm"] is not None]),
+        "collisions": sum(bool(record["collisions"]) for record in group),
+        "attributable": int(_total(group, "attributable")),
+        "struck": int(_total(group, "struck")),
     }
 
 
@@ -113,11 +132,6 @@ def _ratio(rows: Any) -> Any:
     return sums[:, 0] / sums[:, 1] * sums[:, 3] / sums[:, 2]
 
 
-def _per_progress(group: Sequence[Record]) -> float | None:
-    way = sum(record["progress_mm"] for record in group) / 1000
-    return round(sum(record["energy_j"] for record in group) / way, 1) if way else None
-
-
 def _spread(values: Sequence[float]) -> Record:
     return {"n": len(values), "least": min(values, default=None), "median": quantile(values, 0.5)}
 
@@ -134,12 +148,12 @@ def _modes(group: Sequence[Record]) -> dict[str, float]:
 def _found(group: Sequence[Record]) -> Record:
     """Shares of the faults found in time and ever, of those that showed for as long as their bound."""
     faults = [fault for record in group for fault in record["faults"] if fault["apart"] is None]
-    kinds = {"all": faults} | {kind: [f for f in faults if f["kind"] == kind] for kind in BOUND_S}
+    kinds = {kind: [fault for fault in faults if fault["kind"] == kind] for kind in BOUND_S}
+    return {kind: _shares(some) for kind, some in {"all": faults, **kinds}.items() if some}
+
+
+def _shares(faults: Sequence[Record]) -> Record:
     return {
-        name: {
-            "in_time": share(sum(fault["found"] for fault in some), len(some)),
-            "ever": share(sum(fault["latency_s"] is not None for fault in some), len(some)),
-        }
-        for name, some in kinds.items()
-        if some
+        "in_time": share(sum(fault["found"] for fault in faults), len(faults)),
+        "ever": share(sum(fault["latency_s"] is not None for fault in faults), len(faults)),
     }

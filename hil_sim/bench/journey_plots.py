@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
-from hil_sim.bench.journey import mission_of, parse_id
-from hil_sim.bench.journey_figures import over_ideal
+from hil_sim.bench.journey import IDEAL, mission_of, parse_id
+from hil_sim.bench.journey_figures import speed_mm_s
 from hil_sim.bench.plots import picture
 from hil_sim.world.files import load_world
 
@@ -27,14 +27,17 @@ _IDEAL, _DRIVEN, _STOP, _LOOK, _HIT = "#999999", "#0072B2", "#E69F00", "#CC79A7"
 def differs_most(records: Sequence[Record]) -> list[tuple[Record, Record]]:
     """Return for each row and profile the mission that is slowest against its ideal, and that ideal."""
     good = {record["id"]: record for record in records if record["error"] is None}
-    worst: dict[tuple[str, str], tuple[float, Record, Record]] = {}
+    rows: dict[tuple[str, str], list[tuple[Record, Record]]] = {}
     for record in good.values():
-        ideal = good.get(record["ideal"])
-        ratio = over_ideal(record, ideal) if ideal is not None and ideal is not record else None
-        key = record["row"], record["driver"]
-        if ideal is not None and ratio is not None and (key not in worst or ratio < worst[key][0]):
-            worst[key] = ratio, record, ideal
-    return [(record, ideal) for _, record, ideal in worst.values()]
+        if record["driver"] != IDEAL and record["ideal"] in good:
+            rows.setdefault((record["row"], record["driver"]), []).append((record, good[record["ideal"]]))
+    return [min(pairs, key=_ratio) for pairs in rows.values()]
+
+
+def _ratio(pair: tuple[Record, Record]) -> float:
+    """As over_ideal, but also where the ideal did not get there."""
+    record, ideal = pair
+    return speed_mm_s(record, ideal) / max(speed_mm_s(ideal, None), 1e-9)
 
 
 def draw(folder: Path, records: Sequence[Record]) -> None:
@@ -99,11 +102,7 @@ def _ways(place: Axes, course: Any, record: Record, ideal: Record) -> None:
 
 
 def _title(record: Record, ideal: Record) -> str:
-    ratio = over_ideal(record, ideal)
-    arrived = (
-        "truly at its goal"
-        if record["truly"]
-        else f"{record['word']}, {record['goal_mm'] / 1000:.1f} m from its goal"
-    )
+    away = f"{record['word']}, {record['goal_mm'] / 1000:.1f} m from its goal"
+    arrived = "truly at its goal" if record["truly"] else away
     faults = f"\n{', '.join(record['faulty'])}" if record["faulty"] else ""
-    return f"{record['id']}: {0 if ratio is None else ratio:.2f} of the ideal's speed, {arrived}{faults}"
+    return f"{record['id']}: {_ratio((record, ideal)):.2f} of the ideal's speed, {arrived}{faults}"

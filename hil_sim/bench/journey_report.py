@@ -6,18 +6,21 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
-from hil_sim.bench.journey import parse_row
-from hil_sim.bench.journey_bars import bars
+from hil_sim.bench.journey import IDEAL, parse_row
+from hil_sim.bench.journey_bars import bars, found_of_one
 from hil_sim.bench.journey_figures import over_ideal, summarise
 from hil_sim.errors import SimError
 
 Record = dict[str, Any]
 NAME: Final = "journey"
+LISTED: Final = 12
+SLOW: Final = 0.8
+"""Missions below this part of the ideal's speed are listed."""
 _MISSION: Final = (
     "id", "driver", "split", "row", "world", "seed", "word", "truly", "goal_mm", "odometry_off_mm", "course_mm",
     "progress_mm", "driven_mm", "t_s", "driving_s", "stops", "looks", "looking_s", "turned_deg", "energy_j",
@@ -30,7 +33,7 @@ def write_report(folder: Path, records: Sequence[Record], meta: Record, *, plots
     """Write all files into the folder; return the Markdown."""
     errors = sum(record["error"] is not None for record in records)
     rows = summarise(records)
-    text = markdown(rows, meta | {"errors": errors})
+    text = markdown(rows, meta | {"errors": errors}) + "".join(f"{line}\n" for line in _listed(records))
     try:
         summary = {
             "meta": meta | {"errors": errors},
@@ -166,22 +169,52 @@ def _modes(row: Record) -> tuple[str, ...]:
 
 
 def _faults(rows: Sequence[Record]) -> list[str]:
-    """What was found of the faults in time and ever."""
-    found = [
-        (
-            row["row"],
-            row["driver"],
-            kind,
-            str(one["ever"]["of"]),
-            _percent(one["in_time"]),
-            _percent(one["ever"]),
-        )
-        for row in rows
-        for kind, one in row["found"].items()
+    """What was found of the faults in time and ever: by row, and by kind where one fails alone."""
+    lines = [(row["row"], row["driver"], "all", row["found"]["all"]) for row in rows if "all" in row["found"]]
+    for driver in dict.fromkeys(row["driver"] for row in rows):
+        kinds = found_of_one(row for row in rows if row["driver"] == driver)
+        lines += [("one fault", driver, kind, found) for kind, found in kinds.items()]
+    if not lines:
+        return []
+    head = ("row", "driver", "faults", "n", "found in time, %", "ever, %")
+    return [*_grid(head, [_fault(*line) for line in lines]), ""]
+
+
+def _fault(row: str, driver: str, kind: str, found: Record) -> tuple[str, ...]:
+    return row, driver, kind, str(found["ever"]["of"]), _percent(found["in_time"]), _percent(found["ever"])
+
+
+def _listed(records: Sequence[Record]) -> list[str]:
+    """The missions that are worth a look with --one, worst first."""
+    good = {record["id"]: record for record in records if record["error"] is None}
+    driven = [record for record in good.values() if record["driver"] != IDEAL]
+    hits = [(record["id"], "") for record in driven if record["attributable"]]
+    return [
+        *_list("Attributable collisions", hits),
+        *_list("By their word, but not truly there", _mistaken(driven)),
+        *_list("Slowest against their ideal", _slowest(driven, good)),
     ]
-    return (
-        [*_grid(("row", "driver", "faults", "n", "found in time, %", "ever, %"), found), ""] if found else []
-    )
+
+
+def _list(title: str, shown: Sequence[tuple[str, str]]) -> list[str]:
+    if not shown:
+        return []
+    lines = [f"- `{name}` {said}".rstrip() for name, said in shown[:LISTED]]
+    return ["", f"{title} ({len(shown)}):", "", *lines]
+
+
+def _mistaken(driven: Sequence[Record]) -> list[tuple[str, str]]:
+    wrong = [record for record in driven if record["word"] == "reached" and not record["truly"]]
+    return [(record["id"], f"{record['goal_mm']:.0f} mm off") for record in wrong]
+
+
+def _slowest(driven: Sequence[Record], good: Mapping[str, Record]) -> list[tuple[str, str]]:
+    ratios = [
+        (ratio, record["id"], f"{ratio:.2f}, {record['word']} after {record['t_s']:.0f} s")
+        for record in driven
+        if record["ideal"] in good and (ratio := over_ideal(record, good[record["ideal"]])) is not None
+    ]
+    return [(name, said) for ratio, name, said in sorted(ratios) if ratio < SLOW]
 
 
 def _grid(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:

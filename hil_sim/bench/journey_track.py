@@ -13,7 +13,7 @@ from hil_sim.bench.journey import Case, mission_of, parse_id
 from hil_sim.bench.journey_course import length_mm
 from hil_sim.bench.judge import Track, judge
 from hil_sim.bench.plan import without_faults
-from hil_sim.sil import Mission, Sighting, Sil, run
+from hil_sim.sil import Mission, Outcome, Sighting, Sil, run
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.body import BodyModel
 
@@ -119,8 +119,8 @@ class Diary:
         }
 
 
-def run_case(case: Case) -> Record:
-    """Run a case and return its record."""
+def run_case(case: Case) -> tuple[Record, Outcome]:
+    """Run a case; return its record and, for who wants more, all that came of it."""
     begin = time.perf_counter()
     mission = mission_of(case)
     diary = Diary()
@@ -136,7 +136,7 @@ def run_case(case: Case) -> Record:
     record["energy_j"] = round(sil.robot.energy.total_j, 1)
     record["faulty"] = list(mission.faults)
     record["limit_s"] = mission.limit_s
-    return head(case) | record | {"wall_s": round(time.perf_counter() - begin, 3)}
+    return head(case) | record | {"wall_s": round(time.perf_counter() - begin, 3)}, outcome
 
 
 def _arrival(sil: Sil, mission: Mission) -> Record:
@@ -184,7 +184,7 @@ def head(case: Case) -> Record:
 def work(case_id: str) -> Record:
     """Run the case of an id; never raises: a record with `error` tells what went wrong, so that the bench goes on."""
     try:
-        return run_case(parse_id(case_id))
+        return run_case(parse_id(case_id))[0]
     except Exception as error:  # whatever a mission does, the others must run
         return failed(case_id, f"{type(error).__name__}: {error}", traceback.format_exc())
 

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from hil_sim.bench.course import ROOM_MM, Field, Point, make_field
-from hil_sim.bench.journey_course import drift_course, length_mm
+from hil_sim.bench.journey_course import DRIFT_DEG_M, LEAST_MM, drift_at_goal_mm, drift_course, length_mm
 from hil_sim.bench.worlds import Plan
 from hil_sim.errors import SimError
 from hil_sim.tables.robot import robot_table
@@ -29,9 +29,9 @@ SET_LIMIT_S: Final = 300.0
 _TRIES: Final = 60
 _PLACES_LEAST: Final = 200
 """Cells of 50 mm where a waypoint may lie, or the plan is thrown away."""
-_COURSE_LEAST_MM: Final = 42_000.0
-"""A floor with a shorter course is thrown away."""
 _HALF_MM: Final = robot_table().body.half_mm
+_OFF_MM: Final = 90.0
+"""A floor where drift has the robot further from its goal is thrown away."""
 _PAIR_MM: Final = (3000.0, 11_000.0)
 _ICON: Final = '"" ICON'
 
@@ -136,8 +136,8 @@ def _desks(plan: Plan, rng: Rng, left: float, right: float, low: float, high: fl
         plan.boxes.append({"centre": [round(x), round(y)], "size": [round(width), round(depth)]})
 
 
-def _office(rng: Rng) -> Plan:
-    """Rooms on both sides of a corridor, each with a door of 1000 mm."""
+def _office(rng: Rng, door_mm: float) -> Plan:
+    """Rooms on both sides of a corridor, each with a door."""
     plan = Plan("Offices on both sides of a corridor.", 0.5)
     half, left, rooms = float(rng.uniform(800, 1100)), -2000.0, int(rng.integers(3, 5))
     ends = [left, *(left + np.cumsum(rng.uniform(3200, 4400, rooms))).round().tolist()]
@@ -147,8 +147,8 @@ def _office(rng: Rng) -> Plan:
         low, high = sorted((sign * half, sign * (half + depth)))
         for a, b in pairwise(ends):
             door = float(rng.uniform(a + 800, b - 800))
-            plan.wall((a, sign * half), (door - 500, sign * half))
-            plan.wall((door + 500, sign * half), (b, sign * half))
+            plan.wall((a, sign * half), (door - door_mm / 2, sign * half))
+            plan.wall((door + door_mm / 2, sign * half), (b, sign * half))
             _desks(plan, rng, a + 150, b - 150, low, high)
         for at in ends[1:-1]:
             plan.wall((at, low), (at, high))
@@ -197,12 +197,15 @@ SETS: Final[dict[str, Callable[[Rng], tuple[Plan, Point]]]] = {
     "bends": _bends,
     "dead-ends": _dead_ends,
     "closed": _closed,
-    "pairs": lambda rng: (_office(rng), (0.0, 0.0)),
+    "pairs": lambda rng: (_office(rng, 1000.0), (0.0, 0.0)),
 }
 """Obstacle sets: a plan and its goal; of the pairs, start and goal are drawn in the map."""
 NO_WAY: Final = "closed"
 """The set whose goals nobody reaches."""
-FLOORS: Final[dict[str, Callable[[Rng], Plan]]] = {"map-office": _office, "map-floor": _floor}
+FLOORS: Final[dict[str, Callable[[Rng], Plan]]] = {
+    "map-office": lambda rng: _office(rng, 1400.0),
+    "map-floor": _floor,
+}
 
 
 def set_of(name: str) -> str:
@@ -216,8 +219,11 @@ def _folder() -> tempfile.TemporaryDirectory[str]:
     return tempfile.TemporaryDirectory(prefix="argus-journey-")
 
 
-def place_of(name: str, key: tuple[int, int]) -> Place:
-    """Make the world of this name from a key of numbers, with its course. SimError when the name is unknown."""
+def place_of(name: str, key: tuple[int, int], drift_deg_m: float = DRIFT_DEG_M) -> Place:
+    """Make the world of this name from a key of numbers, with a course for this drift of the odometry.
+
+    SimError when the name is unknown.
+    """
     of = set_of(name)
     if not of and name not in FLOORS:
         raise SimError(f"no world '{name}' for a journey; --rows and --worlds say what there is")
@@ -227,22 +233,29 @@ def place_of(name: str, key: tuple[int, int]) -> Place:
         rng = np.random.default_rng([zlib.crc32(name.encode()), *key, attempt])
         plan, goal = SETS[of](rng) if of else (FLOORS[name](rng), (0.0, 0.0))
         path.write_text(_aria(plan) if suffix == "map" else plan.text(), encoding="utf-8")
-        place = _tried(str(path), of, goal, rng)
+        place = _tried(str(path), of, goal, (rng, drift_deg_m))
         if place is not None:
             return place
     raise SimError(f"world {name} of {key}: no plan has a way through it; choose another seed")
 
 
-def _tried(path: str, of: str, goal: Point, rng: Rng) -> Place | None:
+def _tried(path: str, of: str, goal: Point, drawn: tuple[Rng, float]) -> Place | None:
     """The place, or None when this plan is none."""
+    rng, drift_deg_m = drawn
     try:
         world = load_world(path)
         field = make_field(world)
         if not of:
             if len(field.places(ROOM_MM)) < _PLACES_LEAST:
                 return None
-            course = drift_course(world, field, rng)
-            whole = length_mm(world.start[:2], course) >= _COURSE_LEAST_MM
+            course = drift_course(world, field, rng, drift_deg_m)
+            # A rough day leaves no long course between the walls of an office: then its longest is good enough.
+            begin = world.start[:2]
+            good = (
+                length_mm(begin, course) >= LEAST_MM
+                and drift_at_goal_mm(begin, course, drift_deg_m) < _OFF_MM
+            )
+            whole = good or drift_deg_m > DRIFT_DEG_M
             return Place(world, field, path, course, LIMIT_S) if whole else None
     except SimError:
         return None

@@ -39,7 +39,7 @@ class Finding:
 
 @dataclass
 class Verdict:
-    """What came of one stream. names, disables: of healthy sonars, as times, sonar and kind."""
+    """What came of one stream. hours: by the clock. names, disables: of healthy sonars, as times, sonar and kind."""
 
     id: str
     people: bool
@@ -57,7 +57,7 @@ def judge_stream(stream: Stream, engine: Engine) -> Verdict:
 
 def judge_changes(stream: Stream, changes: Sequence[Change]) -> Verdict:
     """Judge the changes of health that a manager made of a stream."""
-    verdict = Verdict(stream.id, stream.people, stream.driving_s / 3600)
+    verdict = Verdict(stream.id, stream.people, stream.end_s / 3600)
     for truth in stream.truth:
         finding = _finding(stream, truth, [change for change in changes if change.sonar == truth.sonar])
         if finding is not None:

@@ -115,10 +115,10 @@ def _trade(folder: Path, profiles: Mapping[str, Record]) -> None:
         given_up.axvline(1.0, color="#888888", linewidth=0.8)
         given_up.set_xscale("symlog", linthresh=1.0)
         given_up.set(
-            xlabel="false disables in 100 fault-free robot hours", ylabel="share of all faults found in time"
+            xlabel="false disables in 100 fault-free clock hours", ylabel="share of all faults found in time"
         )
         given_up.set(ylim=(0, 1.02), xlim=(-0.1, None))
-        named.set(xlabel="false names in a fault-free robot hour", xscale="symlog", xlim=(0, None))
+        named.set(xlabel="false names in a fault-free clock hour", xscale="symlog", xlim=(0, None))
         _legend(named, 8, "lower left")  # where nothing is found there are no bars to hide
 
 

@@ -109,7 +109,7 @@ def markdown(summary: Record) -> str:
 
 def _profile(one: Record) -> list[str]:
     lines = [
-        f"{one['missions']} missions, {one['driving_hours']:.1f} h of driving; "
+        f"{one['missions']} missions, {one['clock_hours']:.1f} clock hours; "
         f"{one['not_injected']} missions ended before their fault began.",
         "",
     ]
@@ -224,7 +224,7 @@ def _other(one: Record) -> list[str]:
         f"- False disables, fault-free: {false['count']} in {false['hours']:.2f} h of {false['missions']} missions; "
         f"of healthy sonars in missions with faults: {hurt['count']} in {hurt['hours']:.2f} h",
         f"- A healthy sonar SUSPECT with a kind, fault-free: {named['count']} times in {named['hours']:.2f} h",
-        f"- Per hour of driving: {verify['stops_per_h']} stops, {verify['verifications_per_h']} verifications, "
+        f"- In a clock hour: {verify['stops_per_h']} stops, {verify['verifications_per_h']} verifications, "
         f"{verify['verifying_s_per_h']} s spent on them",
         f"- Repaired: {counts or 'none'}; s of driving until HEALTHY, median / p99: {_two(back['driving_s'], 1.0)}",
         f"- Missions with a collision: {hits['attributable']} attributable ({hits['undetected']} with a fault not yet "

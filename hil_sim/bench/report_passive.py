@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The figures of drive-bys: found in time and ever, by kind, and what was said wrongly in an hour of driving."""
+"""The figures of drive-bys: found in time and ever, by kind, and what was said wrongly in a clock hour."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def table(figures: dict[str, Any]) -> str:
             f"| {name} | {row['in_time']['of']} | {_percent(row['in_time'])} | {_percent(row['ever'])} "
             f"| {_percent(row['named_right'])} | {_seconds(row['median_s'])} / {_seconds(row['p99_s'])} |"
         )
-    lines += ["", "| an hour of driving | h | false names | false disables |", "|---|---|---|---|"]
+    lines += ["", "| in a clock hour | h | false names | false disables |", "|---|---|---|---|"]
     for name, row in figures["false"].items():
         lines.append(
             f"| {name} | {row['names']['hours']:.2f} | {_per_hour(row['names'])} | {_per_hour(row['disables'])} |"

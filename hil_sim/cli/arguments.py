@@ -36,6 +36,7 @@ examples:
   argus-sim --robots 3 --tcp 8101             three robots, on ports 8101 to 8103
   argus-sim --tcp 8101 --quirks mobilesim     with the answers of the vendor's emulator
   argus-sim bench diagnosis --help            how well faults are diagnosed, over many missions without a link
+  argus-sim bench journey --help              whether the robot gets there, and what the diagnosis costs
 
 The first line on standard output is the device path, HOST:PORT, or what argusd takes after can:, alone; with
 --robots one line for each. All else goes to standard error.

@@ -23,7 +23,7 @@ BARS = {
     "found: off, stuck, garbage, slow": ">= 99 %",
     "found: wrong, intermittent": ">= 97 %",
     "kind named correctly when found": ">= 95 %",
-    "false disables in 100 fault-free robot hours": "<= 1",
+    "false disables in 100 fault-free clock hours": "<= 1",
     "latency median in rooms: off, garbage, slow": "<= 2 s",
     "latency p99 in rooms: off, garbage, slow": "<= 10 s",
     "latency median in rooms: silent, stuck, wrong, intermittent": "<= 5 s",
@@ -282,3 +282,12 @@ def test_every_row_of_a_table_has_the_columns_of_its_head() -> None:
             columns = columns if before.startswith("|") else line.count("|")
             assert line.count("|") == columns, line
     assert tables == 4
+
+
+def test_an_hour_is_one_by_the_clock_standing_included() -> None:
+    named = [{"t_s": 1.0, "sonar": 2, "kind": "off"}]
+    one = summarise(free(2, driving_s=600.0, false_names=named, false_disables=named))["profiles"]["argus"]
+    assert one["clock_hours"] == 2.0
+    for what in ("false_names", "false_disables"):
+        assert (one[what]["hours"], one[what]["per_100h"]) == (2.0, 100.0), what
+    assert one["verification"]["verifications_per_h"] == 5.0

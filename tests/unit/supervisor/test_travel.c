@@ -150,9 +150,10 @@ void test_the_paper_stops_for_every_turn(void) {
     TEST_ASSERT_TRUE(slowest_round_a_corner(ARGUS_PROFILE_PAPER, 30) < 1);
 }
 
-// An echo within the swing circle, by a sonar behind: no HEAD until it is gone.
+// An echo within the swing circle, by a sonar behind: no HEAD while it drives. At rest it may turn by so little
+// that the body clears it.
 void test_it_does_not_turn_gently_with_the_swing_circle_blocked(void) {
-    const argus_point_t way[] = {{2000, 0}, {4000, 800}};
+    const argus_point_t way[] = {{2000, 0}, {4000, 1000}};
     start(ARGUS_PROFILE_ARGUS);
     hall(9000);
     TEST_ASSERT_TRUE(argus_set_course(&robot.argus, way, 2));
@@ -160,14 +161,16 @@ void test_it_does_not_turn_gently_with_the_swing_circle_blocked(void) {
     while (robot.x < 1200) {
         robot_tick(&robot);
     }
-    const int from = robot.commands;
     robot.fault[12] = ROBOT_VALUE;
     robot.fault_value[12] = 100;
     robot_run(&robot, 400); // until it has been read
-    const int blocked = robot.commands;
-    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_WAYPOINT, 10000));
-    robot_run(&robot, 1000);
-    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, blocked));
-    TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_MOVE, from) > 0);
+    int turns = robot_count_commands(&robot, ARCOS_CMD_HEAD, 0);
+    for (int i = 0; i < 600; i++) {
+        robot_tick(&robot);
+        const int now = robot_count_commands(&robot, ARCOS_CMD_HEAD, 0);
+        TEST_ASSERT_TRUE_MESSAGE(now == turns || robot.v < 1, "HEAD while it drives");
+        turns = now;
+    }
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_WAYPOINT, 0));
     finish();
 }

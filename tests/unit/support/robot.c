@@ -434,6 +434,34 @@ static double nearest_shown_mm(const robot_t *robot) {
     return nearest;
 }
 
+// Turned by so much, the body is at least this far from every echo shown by a sonar that is relied on; 0: it
+// would touch one.
+static double body_to_shown_mm(const robot_t *robot, double by) {
+    double nearest = 1e9;
+    for (int i = 0; i < 16 && i < ARGUS_SONARS; i++) {
+        const argus_sonar_pose_t *at = &argus_sonar_poses[i];
+        if (argus_is_out(&robot->argus.knowledge, i) || robot->shown[i] < 0 || robot->shown[i] >= 5000) {
+            continue;
+        }
+        const double ex = at->x_mm + robot->shown[i] * cos(at->heading_deg * DEG);
+        const double ey = at->y_mm + robot->shown[i] * sin(at->heading_deg * DEG);
+        const double x = ex * cos(by) + ey * sin(by);
+        const double y = ey * cos(by) - ex * sin(by);
+        nearest = fmin(nearest, hypot(fmax(fmax(x - 210, -301 - x), 0), fmax(fabs(y) - 212.5, 0)));
+    }
+    return nearest;
+}
+
+// S7: a turn so small that the body clears everything in it, where the profile lets it.
+static bool is_nudge(const robot_t *robot, int32_t to_deg) {
+    const double by = wrapped(robot->th0 + to_deg * DEG - robot->th);
+    bool clear = argus_rules(&robot->argus)->nudges && fabs(by) <= 21 * DEG;
+    for (int part = 0; part <= 20; part++) {
+        clear = clear && body_to_shown_mm(robot, by * part / 20) >= 30;
+    }
+    return clear;
+}
+
 static int nearest_ahead_mm(const robot_t *robot, unsigned blind) {
     int nearest = 5000;
     for (int i = 1; i <= 6; i++) {
@@ -554,7 +582,7 @@ static void watch_motion(robot_t *robot, const robot_command_t *sent) {
             complain(robot, "S7: HEAD with a bumper pressed", sent->argument);
         }
         const double margin_mm = robot->argus.config.profile == ARGUS_PROFILE_ARGUS ? 20 : 0;
-        if (nearest_shown_mm(robot) < SWING_MM + margin_mm - 2) {
+        if (nearest_shown_mm(robot) < SWING_MM + margin_mm - 2 && !is_nudge(robot, sent->argument)) {
             complain(robot, "S7: HEAD in a blocked swing circle", (int)nearest_shown_mm(robot));
         }
     }

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+"""Rule: what a record says of a journey is what the robot did, by its true pose and by the clock."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import pytest
+from bench.journeys import DEADLY, deadly
+
+from hil_sim.bench.journey import mission_of, parse_id
+from hil_sim.bench.journey_track import FREE, LOOKING, Diary, failed, head, run_case, work
+from hil_sim.bench.pool import run_here
+from hil_sim.sil import Sighting, Sil, run
+from hil_sim.tables.robot import robot_table
+from hil_sim.world.body import BodyModel
+
+CASE = "argus/tune/doors+one+start/doors-1/2"
+
+
+@dataclass
+class Watch:
+    """Notes everything the slow way."""
+
+    at: list[tuple[float, float]] = field(default_factory=list)
+    near: list[float] = field(default_factory=list)
+    looking: list[bool] = field(default_factory=list)
+    headings: list[float] = field(default_factory=list)
+    body: BodyModel | None = None
+
+    def __call__(self, sil: Sil, sighting: Sighting) -> None:
+        if self.body is None:
+            self.body = BodyModel(sil.world, None, robot_table().body)
+        self.at.append((sil.robot.chassis.x, sil.robot.chassis.y))
+        self.looking.append(sil.mode == LOOKING)
+        self.headings.append(sil.robot.chassis.th)
+        if sil.mode == FREE and sil.robot.drive.v > 5:
+            self.near.append(self.body.clearance_mm(sil.robot.chassis.pose))
+
+
+@pytest.fixture(scope="module")
+def both() -> tuple[dict[str, object], Watch]:
+    watch = Watch()
+    outcome = run(mission_of(parse_id(CASE)), trace=watch)
+    record = run_case(parse_id(CASE))[0]
+    assert record["digest"] == outcome.digest
+    return record, watch
+
+
+def test_the_closest_is_the_smallest_of_all(both: tuple[dict[str, object], Watch]) -> None:
+    record, watch = both
+    assert record["closest_mm"] == round(min(watch.near), 1)
+
+
+def test_turns_and_looks_are_counted(both: tuple[dict[str, object], Watch]) -> None:
+    record, watch = both
+    turned = sum(abs(b - a) for a, b in zip(watch.headings, watch.headings[1:], strict=False))
+    assert record["turned_deg"] == pytest.approx(turned, abs=0.1)
+    begun = sum(
+        now and not before for before, now in zip([False, *watch.looking], watch.looking, strict=False)
+    )
+    assert record["looks"] == begun
+
+
+def test_modes_make_up_the_clock(both: tuple[dict[str, object], Watch]) -> None:
+    record, _ = both
+    modes, t_s = record["modes_s"], record["t_s"]
+    assert isinstance(modes, dict)
+    assert isinstance(t_s, float)
+    assert abs(sum(modes.values()) - t_s) < 1.0
+    looking = record["looking_s"]
+    assert isinstance(looking, float)
+    assert abs(modes.get(LOOKING, 0.0) - looking) < 0.2 * (1 + len(record["looks_at"]))  # type: ignore[arg-type]
+
+
+def test_the_path_is_the_way(both: tuple[dict[str, object], Watch]) -> None:
+    record, watch = both
+    path = record["path"]
+    assert isinstance(path, list)
+    assert max(min(math.dist(spot, there) for there in path) for spot in watch.at) < 201
+    assert math.dist(path[0], watch.at[0]) < 1
+
+
+def test_a_robot_that_does_not_move_makes_no_way() -> None:
+    mission = mission_of(parse_id(CASE))
+    diary = Diary()
+    sil = Sil(type(mission)(mission.world, (), limit_s=5.0, stop_at_goal=False), trace=diary)
+    sil.run()
+    fields = diary.fields()
+    assert (fields["stops"], fields["turned_deg"], fields["closest_mm"], fields["early_mm"]) == (
+        0,
+        0,
+        None,
+        0,
+    )
+    assert len(fields["path"]) == 1
+
+
+def test_there_by_its_word_but_not_truly() -> None:
+    record = run_case(parse_id("ideal/tune/rooms/lab/1"))[0]
+    assert record["word"] == "reached"
+    assert record["progress_mm"] == record["course_mm"]
+    assert record["truly"] == (record["goal_mm"] <= 150)
+    # It thinks that it is within 60 mm of its goal: the rest is its odometry.
+    assert abs(record["goal_mm"] - record["odometry_off_mm"]) <= 61
+
+
+def test_work_never_raises() -> None:
+    record = work("argus/tune/rooms/mars/1")
+    assert "mars" in record["error"]
+    assert record["id"] == head(parse_id("argus/tune/rooms/mars/1"))["id"]
+
+
+def test_a_process_that_dies_costs_its_own_journey_only() -> None:
+    names = [f"argus/tune/rooms/lab/{seed}" for seed in range(1, 6)]
+    records = {record["id"]: record for record in run_here(names, 2, deadly, failed)}
+    assert set(records) == set(names)
+    assert [name for name in names if records[name]["error"]] == [DEADLY]
+    assert records[DEADLY]["ideal"] == "ideal/tune/rooms/lab/2"
