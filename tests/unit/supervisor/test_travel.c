@@ -161,6 +161,7 @@ void test_it_does_not_turn_gently_with_the_swing_circle_blocked(void) {
     while (robot.x < 1200) {
         robot_tick(&robot);
     }
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_PIN, 12); // or it would be found out
     robot.fault[12] = ROBOT_VALUE;
     robot.fault_value[12] = 100;
     robot_run(&robot, 400); // until it has been read
