@@ -42,7 +42,8 @@ static unsigned open_names(const argus_t *const self) {
 
 argus_mask_t argus_to_settle(const argus_t *const self) {
     const argus_guard_t guard = argus_guard(self);
-    return argus_guard_may_turn(&guard) && self->looks.settling < SETTLE_MOST ? argus_named(&self->knowledge) : 0;
+    return argus_guard_may_turn(&guard) && self->looks.settling < SETTLE_MOST ? argus_named(&self->knowledge)
+                                                                              : 0;
 }
 
 // Suspects ahead that have no neighbour who sees on the way what they may not.
@@ -64,7 +65,8 @@ void argus_count_loss(argus_t *const self) {
     const int32_t lost_mm_s = free_mm_s - argus_guard_speed_mm_s(&guard);
     const bool doubted = (open_names(self) & argus_robot_ahead(self->knowledge.robot)) != 0;
     ARGUS_ASSERT(free_mm_s > 0 && lost_mm_s >= 0);
-    self->looks.lost_ms = doubted ? self->looks.lost_ms + SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s : 0;
+    self->looks.lost_ms =
+        doubted ? self->looks.lost_ms + SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s : 0;
 }
 
 // To hire or to buy: a look is bought when what it costs has been lost, so both together are never more than

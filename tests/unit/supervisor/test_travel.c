@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: the robot drives as fast as what it sees ahead allows (S5), no faster than the robot itself
-// lets it, and turns while it drives only by angles that the sonars ahead see and with its swing circle free. The
-// paper's rules know neither.
+// Rule under attack: the robot drives as fast as what it sees ahead allows (S5), no faster than the robot
+// itself lets it, and turns while it drives only by angles that the sonars ahead see and with its swing
+// circle free. The paper's rules know neither.
 #include "supervisor/travel.h"
 
 #include <math.h>
@@ -150,8 +150,8 @@ void test_the_paper_stops_for_every_turn(void) {
     TEST_ASSERT_TRUE(slowest_round_a_corner(ARGUS_PROFILE_PAPER, 30) < 1);
 }
 
-// An echo within the swing circle, by a sonar behind: no HEAD while it drives. At rest it may turn by so little
-// that the body clears it.
+// An echo within the swing circle, by a sonar behind: no HEAD while it drives. At rest it may turn by so
+// little that the body clears it.
 void test_it_does_not_turn_gently_with_the_swing_circle_blocked(void) {
     const argus_point_t way[] = {{2000, 0}, {4000, 1000}};
     start(ARGUS_PROFILE_ARGUS);
