@@ -59,8 +59,25 @@ static int32_t seen_mm(const argus_guard_t *const self) {
     return shortest;
 }
 
+static bool is_seen_beside(const argus_guard_t *const self, const int sonar) {
+    return sonar >= 0 && argus_trusted(self->knowledge, sonar);
+}
+
+argus_mask_t argus_guard_alone(const argus_guard_t *const self) {
+    const argus_robot_t *const robot = self->knowledge->robot;
+    const unsigned named = argus_named(self->knowledge) & argus_robot_forward(robot);
+    unsigned mask = 0;
+    for (int i = 0; i < self->knowledge->sonars; i++) {
+        const argus_sonar_pose_t *const pose = argus_robot_pose(robot, i);
+        const bool seen = is_seen_beside(self, pose->left) || is_seen_beside(self, pose->right);
+        mask |= (named >> i & 1u) != 0 && !seen ? 1u << i : 0u;
+    }
+    return (argus_mask_t)mask;
+}
+
 bool argus_guard_is_blind(const argus_guard_t *const self) {
-    return (argus_out(self->knowledge) & argus_robot_forward(self->knowledge->robot)) != 0;
+    const unsigned out = argus_out(self->knowledge) & argus_robot_forward(self->knowledge->robot);
+    return (out | argus_guard_alone(self)) != 0;
 }
 
 int32_t argus_guard_seen_mm(const argus_guard_t *const self) {

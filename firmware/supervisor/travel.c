@@ -232,6 +232,9 @@ static argus_intent_t look_ahead(const argus_t *const self, argus_travel_t *cons
         const bool moves = self->motion.kind == ARGUS_MOTION_MOVE;
         return (argus_intent_t){.act = moves ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING};
     }
+    if (self->plan.disabled == 0) { // names that only a look can settle, and there is no room for it
+        return (argus_intent_t){.act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_TURN};
+    }
     return (argus_intent_t){.act = ARGUS_DO_SWEEP};
 }
 
