@@ -106,10 +106,10 @@ def can() -> str:
 
 
 def rules() -> str:
-    """Return the rules of the two profiles as a Markdown table."""
-    lines = ["| rule | `paper` | `argus` | meaning |", "|---|---|---|---|"]
-    for rule, paper, argus, *meaning in rows("knowledge/profile.h", "ARGUS_RULE_TABLE"):
-        lines.append(f"| {rule} | {paper} | {argus} | {_cell(meaning)} |")
+    """Return the rules of the two profiles, and of diagnosis = off, as a Markdown table."""
+    lines = ["| rule | `paper` | `argus` | `diagnosis = off` | meaning |", "|---|---|---|---|---|"]
+    for rule, paper, argus, trusting, *meaning in rows("knowledge/profile.h", "ARGUS_RULE_TABLE"):
+        lines.append(f"| {rule} | {paper} | {argus} | {trusting} | {_cell(meaning)} |")
     return "\n".join(lines)
 
 

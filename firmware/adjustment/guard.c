@@ -10,9 +10,9 @@
 #define SIP_MS 100u
 #define HOME_CDEG 200
 #define STRAIGHT_ROOM_MM 47
-#define SEEN_MOST_MM 1200 // of the way that others see: more would allow no higher speed
-#define SEEN_LEFT_MM 100  // of it that is left
-#define SPEED_STEP_MM_S 25 // the speed asked for changes by so much at a time
+#define SEEN_MOST_MM 1200   // of the way that others see: more would allow no higher speed
+#define SEEN_LEFT_MM 100    // of it that is left
+#define SPEED_STEP_MM_S 25  // the speed asked for changes by so much at a time
 #define SWING_TURNING_MM 10 // of the margin so much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
 #define BACKOFFS_MAX 3
@@ -20,7 +20,8 @@
 #define NUDGE_ROOM_MM 40 // an echo is anywhere in its cone: more than readings scatter
 #define NUDGE_PARTS 5
 #define ABEAM_LEAST_MM 97 // beside a way straight back: a P3-DX ends 77 mm beside the faces of those abeam,
-#define ABEAM_SLANT 2     // ... and a smooth wall that slants in by 25 degrees, half of the way, is heard by nobody
+#define ABEAM_SLANT \
+    2 // ... and a smooth wall that slants in by 25 degrees, half of the way, is heard by nobody
 #define BACK_MOST_MM 300
 #define BACK_LEFT_MM 150 // of what the rear reads clear
 #define BACK_STEP_MM 25
@@ -38,7 +39,6 @@ bool argus_guard_may_step(const argus_plan_t *const plan) {
 bool argus_guard_may_drive(const argus_guard_t *const self, const argus_plan_t *const plan) {
     return plan->disabled == 0 || (self->profile->drives_seen && argus_guard_may_step(plan));
 }
-
 
 bool argus_guard_may_translate(const argus_guard_t *const self) {
     ARGUS_ASSERT(self->knowledge->robot != NULL);
@@ -59,8 +59,25 @@ static int32_t seen_mm(const argus_guard_t *const self) {
     return shortest;
 }
 
+static bool is_seen_beside(const argus_guard_t *const self, const int sonar) {
+    return sonar >= 0 && argus_trusted(self->knowledge, sonar);
+}
+
+argus_mask_t argus_guard_alone(const argus_guard_t *const self) {
+    const argus_robot_t *const robot = self->knowledge->robot;
+    const unsigned named = argus_named(self->knowledge) & argus_robot_forward(robot);
+    unsigned mask = 0;
+    for (int i = 0; i < self->knowledge->sonars; i++) {
+        const argus_sonar_pose_t *const pose = argus_robot_pose(robot, i);
+        const bool seen = is_seen_beside(self, pose->left) || is_seen_beside(self, pose->right);
+        mask |= (named >> i & 1u) != 0 && !seen ? 1u << i : 0u;
+    }
+    return (argus_mask_t)mask;
+}
+
 bool argus_guard_is_blind(const argus_guard_t *const self) {
-    return (argus_out(self->knowledge) & argus_robot_forward(self->knowledge->robot)) != 0;
+    const unsigned out = argus_out(self->knowledge) & argus_robot_forward(self->knowledge->robot);
+    return (out | argus_guard_alone(self)) != 0;
 }
 
 int32_t argus_guard_seen_mm(const argus_guard_t *const self) {
@@ -68,7 +85,8 @@ int32_t argus_guard_seen_mm(const argus_guard_t *const self) {
         return INT32_MAX;
     }
     const int32_t half_mm = argus_guard_straight_half_mm(self->knowledge->robot);
-    return argus_max(0, argus_rays_seen_mm(self->rays, self->knowledge, half_mm, SEEN_MOST_MM) - SEEN_LEFT_MM);
+    return argus_max(0,
+                     argus_rays_seen_mm(self->rays, self->knowledge, half_mm, SEEN_MOST_MM) - SEEN_LEFT_MM);
 }
 
 int32_t argus_guard_ahead_mm(const argus_guard_t *const self) {
@@ -95,7 +113,8 @@ int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self) {
     const int32_t unseen_mm = argus_min(argus_guard_seen_mm(self), INT16_MAX) + SEEN_LEFT_MM;
     const int32_t range_mm = argus_max(argus_min(seen_mm(self), unseen_mm), config->object_range_mm);
     const int32_t safe_mm_s = argus_config_speed_mm_s(config, self->knowledge->robot, range_mm);
-    const int32_t most_mm_s = argus_min(safe_mm_s / SPEED_STEP_MM_S * SPEED_STEP_MM_S, config->speed_max_mm_s);
+    const int32_t most_mm_s =
+        argus_min(safe_mm_s / SPEED_STEP_MM_S * SPEED_STEP_MM_S, config->speed_max_mm_s);
     return argus_max(config->speed_mm_s, most_mm_s);
 }
 
@@ -173,13 +192,15 @@ bool argus_guard_may_nudge(const argus_guard_t *const self, const int32_t by_cde
         return false;
     }
     for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_usable(knowledge, i) && is_in_nudge(knowledge->robot, argus_echo_robot(knowledge, i), by_cdeg)) {
+        if (argus_usable(knowledge, i) &&
+            is_in_nudge(knowledge->robot, argus_echo_robot(knowledge, i), by_cdeg)) {
             return false;
         }
     }
     for (int i = 0; i < self->echoes->count; i++) {
         argus_point_t at;
-        if (argus_echoes_near(self->echoes, knowledge, i, &at) && is_in_nudge(knowledge->robot, at, by_cdeg)) {
+        if (argus_echoes_near(self->echoes, knowledge, i, &at) &&
+            is_in_nudge(knowledge->robot, at, by_cdeg)) {
             return false;
         }
     }
@@ -237,7 +258,9 @@ static int32_t rear_clear_mm(const argus_guard_t *const self, const int sonar) {
     ARGUS_ASSERT(self->config->rear_clear_mm > 0);
     const int32_t clear_mm = self->config->rear_clear_mm;
     const bool flank = (argus_robot_rear_flank(self->knowledge->robot) >> sonar & 1u) != 0;
-    return self->profile->passes_abeam && flank ? argus_min(ABEAM_LEAST_MM + self->config->backoff_mm / ABEAM_SLANT, clear_mm) : clear_mm;
+    return self->profile->passes_abeam && flank
+               ? argus_min(ABEAM_LEAST_MM + self->config->backoff_mm / ABEAM_SLANT, clear_mm)
+               : clear_mm;
 }
 
 bool argus_guard_rear_is_clear(const argus_guard_t *const self) {

@@ -31,13 +31,16 @@ typedef struct {
 
 // Ahead ----------------------------------------------------------------------------------------------------
 
-// S1: driving only with every bearing ahead in use or, where the profile lets it, as far as living sonars have
-// seen the way of the body; a step also while the others cover for those that are out.
+// S1: driving only with every bearing ahead in use or, where the profile lets it, as far as living sonars
+// have seen the way of the body; a step also while the others cover for those that are out.
 bool argus_guard_may_drive(const argus_guard_t *self, const argus_plan_t *plan);
 bool argus_guard_may_step(const argus_plan_t *plan);
 
-// A sonar that looks ahead is out; how far the way has been seen nonetheless, less some margin. INT32_MAX: none
-// is, or the profile does not ask.
+// Those ahead that have the name of a fault, and no neighbour that sees on the way what they may not.
+argus_mask_t argus_guard_alone(const argus_guard_t *self);
+
+// A sonar that looks ahead is out, or one of those; how far the way has been seen nonetheless, less some margin. INT32_MAX:
+// none is, or the profile does not ask.
 bool argus_guard_is_blind(const argus_guard_t *self);
 int32_t argus_guard_seen_mm(const argus_guard_t *self);
 
@@ -68,8 +71,8 @@ bool argus_guard_is_home(const argus_guard_t *self, int32_t base_cdeg);
 bool argus_guard_may_turn(const argus_guard_t *self);
 bool argus_guard_swing_is_blocked(const argus_guard_t *self);
 
-// S7, where the profile lets it: a turn of at most 20 degrees, from here, in which the body comes within 40 mm of
-// nothing that is seen or was seen a moment ago. Cost: six places of the body for each echo.
+// S7, where the profile lets it: a turn of at most 20 degrees, from here, in which the body comes within 40
+// mm of nothing that is seen or was seen a moment ago. Cost: six places of the body for each echo.
 bool argus_guard_may_nudge(const argus_guard_t *self, int32_t by_cdeg);
 
 // Nearest to the robot's centre, were it `back_mm` farther back: of what is seen, and, as the profile says,

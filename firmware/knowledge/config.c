@@ -79,8 +79,8 @@ int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *
     return report.travel_mm + report.brake_mm;
 }
 
-// Of v t + v^2 / 2a = s the greater root, v = sqrt((a t)^2 + 2 a s) - a t. What is rounded makes it slower, and
-// 1 mm is left, since the check wants less than the range.
+// Of v t + v^2 / 2a = s the greater root, v = sqrt((a t)^2 + 2 a s) - a t. What is rounded makes it slower,
+// and 1 mm is left, since the check wants less than the range.
 int32_t argus_config_speed_mm_s(const argus_config_t *config, const argus_robot_t *robot, int32_t range_mm) {
     ARGUS_ASSERT(range_mm <= INT16_MAX);
     const int32_t decel_mm_s2 = (int32_t)sure_decel_mm_s2(config, robot);

@@ -18,7 +18,8 @@ int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *
 int32_t argus_config_reach_mm(const argus_robot_t *robot, int32_t step_mm);
 
 // S5 solved for the speed: the highest, mm/s, from which the robot stands before an object of which it reads
-// `range_mm`, 0..INT16_MAX; never more, and at most 6 mm/s less. The settings must have passed argus_config_check().
+// `range_mm`, 0..INT16_MAX; never more, and at most 6 mm/s less. The settings must have passed
+// argus_config_check().
 int32_t argus_config_speed_mm_s(const argus_config_t *config, const argus_robot_t *robot, int32_t range_mm);
 
 #endif

@@ -94,9 +94,9 @@ argus_mask_t argus_disabled(const argus_knowledge_t *self);
 argus_mask_t argus_out(const argus_knowledge_t *self); // not used: DISABLED or on PROBATION
 bool argus_is_out(const argus_knowledge_t *self, int sonar);
 argus_mask_t argus_with_health(const argus_knowledge_t *self, argus_health_t health);
-argus_mask_t argus_named(const argus_knowledge_t *self); // SUSPECT, with the kind of a fault
+argus_mask_t argus_named(const argus_knowledge_t *self);      // SUSPECT, with the kind of a fault
 bool argus_trusted(const argus_knowledge_t *self, int sonar); // neither out nor named nor unheard
-bool argus_usable(const argus_knowledge_t *self, int sonar); // reported, not out, not 5000
+bool argus_usable(const argus_knowledge_t *self, int sonar);  // reported, not out, not 5000
 
 // The nearest echo, in mm, of the flank sonars, those that are out left aside; INT32_MAX: none.
 int32_t argus_flank_mm(const argus_knowledge_t *self);

@@ -21,7 +21,8 @@ static argus_mask_t find_suspects(argus_t *const self) {
     if (argus_rules(self)->evidence) {
         return (argus_mask_t)(argus_doubted(self) | argus_open_suspects(self));
     }
-    return argus_rules(self)->disparity ? argus_suspects(&self->awareness, &self->knowledge, &self->config) : 0;
+    return argus_rules(self)->disparity ? argus_suspects(&self->awareness, &self->knowledge, &self->config)
+                                        : 0;
 }
 
 // The paper verifies every suspect at once; elsewhere a look must pay.

@@ -58,10 +58,10 @@ static void say_plan(argus_t *const self) {
 // uncovered. One that is still to be verified is not: nothing moves ahead before it is.
 void argus_replan(argus_t *const self) {
     const argus_mask_t disabled = argus_out(&self->knowledge) & argus_robot_forward(self->knowledge.robot);
-    const unsigned open = argus_rules(self)->disparity ? argus_with_health(&self->knowledge, ARGUS_SUSPECT) : 0u;
-    const argus_mask_t blind =
-        (argus_mask_t)(disabled |
-                       (open & self->awareness.verified & argus_robot_forward(self->knowledge.robot)));
+    const unsigned open =
+        argus_rules(self)->disparity ? argus_with_health(&self->knowledge, ARGUS_SUSPECT) : 0u;
+    const argus_mask_t blind = (argus_mask_t)(disabled | (open & self->awareness.verified &
+                                                          argus_robot_forward(self->knowledge.robot)));
     const argus_failure_t failure = argus_failure_of(self->knowledge.robot, disabled);
     if (failure != self->failure) {
         self->failure = failure;

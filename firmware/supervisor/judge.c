@@ -11,7 +11,8 @@
 #define PROBATION_AGREED 4
 #define PROBATION_MS 4000u
 #define PROBATION_DOUBLINGS 4
-#define NAME_STANDS_MS 3000u // so long, six rounds, before a name is said: most for a healthy sonar pass sooner
+#define NAME_STANDS_MS \
+    3000u // so long, six rounds, before a name is said: most for a healthy sonar pass sooner
 
 static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
@@ -43,7 +44,8 @@ static void name(argus_t *const self, const int sonar) {
     if (named) {
         argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
     }
-    if (named && s->health == ARGUS_SUSPECT && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
+    if (named && s->health == ARGUS_SUSPECT &&
+        argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
         argus_evidence_note_name(&self->evidence, sonar, kind);
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
     }

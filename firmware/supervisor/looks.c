@@ -31,10 +31,6 @@ argus_mask_t argus_doubted(const argus_t *const self) {
     return (argus_mask_t)(mask & ~(unsigned)argus_out(&self->knowledge) & ~(unsigned)self->orders.pinned);
 }
 
-static bool is_trusted(const argus_t *const self, const int sonar) {
-    return sonar >= 0 && argus_trusted(&self->knowledge, sonar);
-}
-
 // Those in question: named, and not yet looked at here.
 static unsigned open_names(const argus_t *const self) {
     return argus_named(&self->knowledge) & argus_open_suspects(self);
@@ -42,17 +38,17 @@ static unsigned open_names(const argus_t *const self) {
 
 argus_mask_t argus_to_settle(const argus_t *const self) {
     const argus_guard_t guard = argus_guard(self);
-    return argus_guard_may_turn(&guard) && self->looks.settling < SETTLE_MOST ? argus_named(&self->knowledge) : 0;
+    return argus_guard_may_turn(&guard) && self->looks.settling < SETTLE_MOST ? argus_named(&self->knowledge)
+                                                                              : 0;
 }
 
-// Suspects ahead that have no neighbour who sees on the way what they may not.
+// Those ahead that nobody sees for, and that were not cleared a moment ago.
 static argus_mask_t alone(const argus_t *const self) {
-    const unsigned open = open_names(self) & argus_robot_forward(self->knowledge.robot);
+    const argus_guard_t guard = argus_guard(self);
+    const unsigned open = argus_guard_alone(&guard) & argus_open_suspects(self);
     unsigned mask = 0;
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        const argus_sonar_pose_t *const pose = argus_robot_pose(self->knowledge.robot, i);
-        const bool seen = is_trusted(self, pose->left) || is_trusted(self, pose->right);
-        mask |= (open >> i & 1u) != 0 && !seen && !is_held(self, i) ? 1u << i : 0u;
+        mask |= (open >> i & 1u) != 0 && !is_held(self, i) ? 1u << i : 0u;
     }
     return (argus_mask_t)mask;
 }
@@ -64,7 +60,8 @@ void argus_count_loss(argus_t *const self) {
     const int32_t lost_mm_s = free_mm_s - argus_guard_speed_mm_s(&guard);
     const bool doubted = (open_names(self) & argus_robot_ahead(self->knowledge.robot)) != 0;
     ARGUS_ASSERT(free_mm_s > 0 && lost_mm_s >= 0);
-    self->looks.lost_ms = doubted ? self->looks.lost_ms + SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s : 0;
+    self->looks.lost_ms =
+        doubted ? self->looks.lost_ms + SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s : 0;
 }
 
 // To hire or to buy: a look is bought when what it costs has been lost, so both together are never more than

@@ -14,7 +14,8 @@ void argus_count_loss(argus_t *self);
 // A look costs less than to go on without, or an operator has asked for it; and there is room to turn.
 bool argus_look_pays(const argus_t *self);
 
-// At the goal: what is named and open is settled there, where a look costs no way. 0: nothing, or no room to turn.
+// At the goal: what is named and open is settled there, where a look costs no way. 0: nothing, or no room to
+// turn.
 argus_mask_t argus_to_settle(const argus_t *self);
 
 // The looks are over: whoever was asked is acquitted, or left open.

@@ -54,6 +54,7 @@ bool argus_set_course(argus_t *const self, const argus_point_t *const points, co
     }
     self->mission = ARGUS_MISSION_RUNNING;
     self->travel.arriving = false;
+    self->looks.settling = 0;
     argus_say(self, ARGUS_EV_MISSION_START, ARGUS_NO_SONAR, count);
     if (self->mode == ARGUS_MODE_IDLE || self->waiting.why == ARGUS_WAIT_CATASTROPHIC) {
         check(self, true);

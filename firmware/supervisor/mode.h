@@ -36,33 +36,33 @@
     X(CLOSED, nobody, 0, 0, CLOSED, "over")
 
 // X(FROM, TO, when): every way from one mode to another. ANY: every mode in a session.
-#define ARGUS_WAY_TABLE(X)                                                        \
-    X(OFFLINE, CHECKING, "a session opens")                                       \
-    X(ANY, CHECKING, "reflex, conviction, order, end of a motion")                \
-    X(CHECKING, VERIFYING, "suspects, or a look is due")                          \
-    X(CHECKING, IDLE, "no course, or paused")                                     \
-    X(CHECKING, DRIVING, "every bearing ahead in use")                            \
-    X(CHECKING, SWEEPING, "a bearing is blind")                                   \
-    X(IDLE, VERIFYING, "suspects")                                                \
-    X(IDLE, DRIVING, "an operator's step")                                        \
-    X(IDLE, SWEEPING, "an operator's step, a bearing is blind")                   \
-    X(DRIVING, VERIFYING, "suspects, or a look is due")                           \
-    X(DRIVING, STEPPING, "an operator's step")                                    \
+#define ARGUS_WAY_TABLE(X)                                                         \
+    X(OFFLINE, CHECKING, "a session opens")                                        \
+    X(ANY, CHECKING, "reflex, conviction, order, end of a motion")                 \
+    X(CHECKING, VERIFYING, "suspects, or a look is due")                           \
+    X(CHECKING, IDLE, "no course, or paused")                                      \
+    X(CHECKING, DRIVING, "every bearing ahead in use")                             \
+    X(CHECKING, SWEEPING, "a bearing is blind")                                    \
+    X(IDLE, VERIFYING, "suspects")                                                 \
+    X(IDLE, DRIVING, "an operator's step")                                         \
+    X(IDLE, SWEEPING, "an operator's step, a bearing is blind")                    \
+    X(DRIVING, VERIFYING, "suspects, or a look is due")                            \
+    X(DRIVING, STEPPING, "an operator's step")                                     \
     X(DRIVING, SWEEPING, "a bearing is blind, and the way is not seen far enough") \
-    X(DRIVING, IDLE, "at the goal")                                               \
-    X(SWEEPING, VERIFYING, "suspects")                                            \
-    X(SWEEPING, STEPPING, "the sweep found nothing near")                         \
+    X(DRIVING, IDLE, "at the goal")                                                \
+    X(SWEEPING, VERIFYING, "suspects")                                             \
+    X(SWEEPING, STEPPING, "the sweep found nothing near")                          \
     X(SWEEPING, DRIVING, "the sweep has seen the way")                             \
-    X(SWEEPING, IDLE, "at the goal")                                              \
-    X(STEPPING, SWEEPING, "the step is done")                                     \
-    X(STEPPING, DRIVING, "... and every bearing is in use again")                 \
-    X(STEPPING, IDLE, "an operator's step is done")                               \
-    X(ANY, BACKING, "no room to turn, a bumper, or an operator's order")          \
-    X(ANY, WAITING, "bumper, motors off, no room to turn, no way, all ahead out") \
-    X(ANY, OFFLINE, "the link is lost")                                           \
-    X(ANY, CLOSING, "shutdown")                                                   \
-    X(OFFLINE, CLOSING, "shutdown while a session is being opened")               \
-    X(OFFLINE, CLOSED, "shutdown")                                                \
+    X(SWEEPING, IDLE, "at the goal")                                               \
+    X(STEPPING, SWEEPING, "the step is done")                                      \
+    X(STEPPING, DRIVING, "... and every bearing is in use again")                  \
+    X(STEPPING, IDLE, "an operator's step is done")                                \
+    X(ANY, BACKING, "no room to turn, a bumper, or an operator's order")           \
+    X(ANY, WAITING, "bumper, motors off, no room to turn, no way, all ahead out")  \
+    X(ANY, OFFLINE, "the link is lost")                                            \
+    X(ANY, CLOSING, "shutdown")                                                    \
+    X(OFFLINE, CLOSING, "shutdown while a session is being opened")                \
+    X(OFFLINE, CLOSED, "shutdown")                                                 \
     X(CLOSING, CLOSED, "the session is closed, or the link is lost")
 
 // Whether there is a way between the two, or they are one.

@@ -191,7 +191,8 @@ static void go_ahead(argus_t *const self, const argus_intent_t *const intent) {
         ARGUS_ASSERT(argus_guard_may_step(&self->plan));
         enter(self, ARGUS_MODE_STEPPING);
     } else {
-        ARGUS_ASSERT(argus_guard_may_drive(&guard, &self->plan) && intent->mm <= argus_guard_ahead_mm(&guard));
+        ARGUS_ASSERT(argus_guard_may_drive(&guard, &self->plan) &&
+                     intent->mm <= argus_guard_ahead_mm(&guard));
     }
     argus_move(self, intent->mm, intent->speed_mm_s);
     if (intent->moves_on) {

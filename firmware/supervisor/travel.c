@@ -6,11 +6,11 @@
 #include "supervisor/looks.h"
 #include "supervisor/state.h"
 
-#define AIM_CDEG 1000    // a bearing farther off than this is turned to at rest
-#define GENTLE_CDEG 4000 // ... a new leg up to here while it drives: what the front sonars see lies there
-#define AIMED_CDEG 200   // at rest, near enough
-#define STEER_CDEG 200   // while driving, corrected beyond this
-#define STEER_LEG_MM 250 // ... and only this far from the leg's end
+#define AIM_CDEG 1000     // a bearing farther off than this is turned to at rest
+#define GENTLE_CDEG 4000  // ... a new leg up to here while it drives: what the front sonars see lies there
+#define AIMED_CDEG 200    // at rest, near enough
+#define STEER_CDEG 200    // while driving, corrected beyond this
+#define STEER_LEG_MM 250  // ... and only this far from the leg's end
 #define WEAVE_CDEG 1000   // to either side of the way: half the pitch of the ring
 #define WOVEN_CDEG 300    // near enough
 #define WOVEN_SIPS 4      // there: a round of the array
@@ -119,7 +119,8 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
         return true;
     }
     const int sonar = argus_nearest_ahead(self);
-    const bool stopped = sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
+    const bool stopped =
+        sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
     if (!argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped)) {
         *intent = (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_WAY};
         return false;
@@ -132,12 +133,12 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
     return false;
 }
 
-// A leg that leads out of a place too narrow to turn in: straight ahead, but for a nudge. Not along a wall that is
-// so near that a slant could not be seen in time.
+// A leg that leads out of a place too narrow to turn in: straight ahead, but for a nudge. Not along a wall
+// that is so near that a slant could not be seen in time.
 static bool leads_out(const argus_t *const self, argus_travel_t *const mine, const int32_t by_cdeg) {
     const argus_guard_t guard = argus_guard(self);
-    const bool open = by_cdeg != 0 ? argus_guard_may_nudge(&guard, by_cdeg)
-                                   : argus_flank_mm(&self->knowledge) > FLANK_MM;
+    const bool open =
+        by_cdeg != 0 ? argus_guard_may_nudge(&guard, by_cdeg) : argus_flank_mm(&self->knowledge) > FLANK_MM;
     return open && argus_task_escape(&mine->task, &self->knowledge, &self->echoes, by_cdeg);
 }
 
@@ -160,9 +161,9 @@ static argus_intent_t turn_to_bearing(const argus_t *const self, argus_travel_t 
 // It drives and may turn on the way.
 static bool is_gentle(const argus_t *const self, const argus_travel_t *const mine) {
     const argus_guard_t guard = argus_guard(self);
-    return argus_rules(self)->adapts_speed && self->motion.kind == ARGUS_MOTION_MOVE && !self->motion.settled &&
-           mine->jog_mm == 0 && off_bearing(self, mine) <= GENTLE_CDEG && left_mm(self, mine) > STEER_LEG_MM &&
-           argus_guard_may_turn(&guard);
+    return argus_rules(self)->adapts_speed && self->motion.kind == ARGUS_MOTION_MOVE &&
+           !self->motion.settled && mine->jog_mm == 0 && off_bearing(self, mine) <= GENTLE_CDEG &&
+           left_mm(self, mine) > STEER_LEG_MM && argus_guard_may_turn(&guard);
 }
 
 // Turns to the leg's bearing at rest. True when the robot looks along it, else `intent` leads there.
@@ -230,6 +231,9 @@ static argus_intent_t look_ahead(const argus_t *const self, argus_travel_t *cons
     if (!self->motion.settled) {
         const bool moves = self->motion.kind == ARGUS_MOTION_MOVE;
         return (argus_intent_t){.act = moves ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING};
+    }
+    if (self->plan.disabled == 0) { // names that only a look can settle, and there is no room for it
+        return (argus_intent_t){.act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_TURN};
     }
     return (argus_intent_t){.act = ARGUS_DO_SWEEP};
 }
@@ -317,7 +321,8 @@ static argus_intent_t judge_sweep(const argus_t *const self, argus_travel_t *con
     if (argus_guard_seen_mm(&guard) >= SEEN_LEAST_MM && argus_rules(self)->drives_seen) {
         return (argus_intent_t){.base = ARGUS_BASE_DROP, .act = ARGUS_DO_DECIDE};
     }
-    if (argus_rules(self)->disparity && argus_open_suspects(self) != 0) { // S6: one that an operator wants looked at again
+    if (argus_rules(self)->disparity &&
+        argus_open_suspects(self) != 0) { // S6: one that an operator wants looked at again
         return check(false);
     }
     return step_ahead(self, mine);

@@ -129,7 +129,8 @@ static int32_t driving_at(const argus_robot_t *robot, int32_t speed_mm_s) {
     return robot->front_mm - robot->sonar_face_mm + argus_config_stop_mm(&at, robot);
 }
 
-// The check refuses a speed whose way reaches the range: what the law allows is not refused, and 6 mm/s more is.
+// The check refuses a speed whose way reaches the range: what the law allows is not refused, and 6 mm/s more
+// is.
 static void assert_law(const argus_robot_t *robot, int32_t range_mm, int32_t speed_mm_s) {
     snprintf(message, sizeof message, "range %d, decel %d, cycle %d, baud %d: %d mm/s", (int)range_mm,
              (int)config.decel_mm_s2, (int)config.sonar_cycle_ms, (int)config.baud, (int)speed_mm_s);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack (profile argus): a look must pay. None comes by the clock, for a doubt without a name, or for
-// a name that others see for; one comes at once where nobody does, when the time lost has reached what a look
-// costs and not before, and when an operator asks.
+// Rule under attack (profile argus): a look must pay. None comes by the clock, for a doubt without a name, or
+// for a name that others see for; one comes at once where nobody does, when the time lost has reached what a
+// look costs and not before, and when an operator asks.
 #include "supervisor/looks.h"
 
 #include <stdio.h>
@@ -208,8 +208,7 @@ void test_a_retest_brings_a_look(void) {
     for (int sonar = 0; sonar < ARGUS_SONARS; sonar += 3) {
         start_in_a_hall();
         drive_off();
-        TEST_ASSERT_TRUE(
-            argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_RETEST, sonar));
+        TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_RETEST, sonar));
         robot_drain(&robot);
         TEST_ASSERT_EQUAL(ARGUS_SUSPECT, robot.argus.knowledge.sonar[sonar].health);
         TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_VERIFYING, 8000));

@@ -139,8 +139,8 @@ static void check_s1_object_on_a_compensated_bearing_stops_the_next_step(void) {
     robot.world = robot_world_segments;
     const int from = robot.commands;
     TEST_ASSERT_TRUE(robot_goal(&robot, 2000, 0));
-    robot_until_event(&robot, profile == ARGUS_PROFILE_PAPER ? ARGUS_EV_OBJECT_CHECKED : ARGUS_EV_GOAL_REACHED,
-                      40000);
+    robot_until_event(
+        &robot, profile == ARGUS_PROFILE_PAPER ? ARGUS_EV_OBJECT_CHECKED : ARGUS_EV_GOAL_REACHED, 40000);
     if (profile == ARGUS_PROFILE_PAPER) {
         TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_OBJECT_CHECKED, 0));
         TEST_ASSERT_EQUAL(0, moves_ahead(from));
@@ -865,7 +865,8 @@ static bool reads_all_again(void) {
     return true;
 }
 
-// ... before a look, too, which begins on the heading where the robot stands: it comes as soon as there is room.
+// ... before a look, too, which begins on the heading where the robot stands: it comes as soon as there is
+// room.
 static void check_s7_one_echo_does_not_hold_up_a_look(void) {
     for (int phase = 0; phase < 16 * 24; phase++) {
         start_idle();

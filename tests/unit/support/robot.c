@@ -478,8 +478,8 @@ static bool trusts(const robot_t *robot, int sonar) {
     return s->health == ARGUS_HEALTHY || (s->health == ARGUS_SUSPECT && s->kind == ARGUS_KIND_NONE);
 }
 
-// Suspects with a name, ahead, in a place where nobody has looked at them, though there is room to, and beside
-// whom nobody is trusted; but those that were acquitted a moment ago.
+// Suspects with a name, ahead, in a place where nobody has looked at them, though there is room to, and
+// beside whom nobody is trusted; but those that were acquitted a moment ago.
 static unsigned unlooked(const robot_t *robot) {
     const argus_t *argus = &robot->argus;
     const unsigned open = argus_with_health(&argus->knowledge, ARGUS_SUSPECT) & ~argus->awareness.verified;
@@ -487,7 +487,9 @@ static unsigned unlooked(const robot_t *robot) {
     unsigned mask = 0;
     for (int i = 1; i <= 6 && argus_guard_may_turn(&guard); i++) {
         const bool alone = !trusts(robot, i - 1) && !trusts(robot, i + 1);
-        mask |= (open >> i & 1u) != 0 && !trusts(robot, i) && alone && argus->looks.hold[i].acquittals == 0 ? 1u << i : 0u;
+        mask |= (open >> i & 1u) != 0 && !trusts(robot, i) && alone && argus->looks.hold[i].acquittals == 0
+                    ? 1u << i
+                    : 0u;
     }
     return mask;
 }
@@ -495,7 +497,8 @@ static unsigned unlooked(const robot_t *robot) {
 // What the plan must cover for: all that are out, and with the paper's rules the suspects.
 static unsigned blind_ahead(const robot_t *robot) {
     const argus_knowledge_t *known = &robot->argus.knowledge;
-    const unsigned suspects = argus_rules(&robot->argus)->disparity ? argus_with_health(known, ARGUS_SUSPECT) : 0;
+    const unsigned suspects =
+        argus_rules(&robot->argus)->disparity ? argus_with_health(known, ARGUS_SUSPECT) : 0;
     return (argus_out(known) | suspects) & 0x7Eu;
 }
 

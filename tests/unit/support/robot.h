@@ -100,7 +100,7 @@ struct robot {
     bool swept;   // SWEEP since the last step ahead
     uint16_t bumpers_seen;
     int32_t speed_asked_mm_s; // the last SETV
-    double closest_mm; // of any segment to the body's edge
+    double closest_mm;        // of any segment to the body's edge
     char violation[256];
 };
 
