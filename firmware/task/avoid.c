@@ -2,7 +2,6 @@
 // Leg by leg round what stands in the way, and the end of trying.
 #include "task/task.h"
 
-#include "adjustment/guard.h"
 #include "knowledge/angle.h"
 
 #define LEG_DONE_MM 60

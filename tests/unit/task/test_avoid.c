@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: the way round: which heading is free, which side is kept, when there is none.
-#include "task/task.h"
-
-#include <stdio.h>
+// Rule under attack: leg by leg: when one is given up, where none can be had, and when the waypoint is.
 #include <stdlib.h>
-#include <string.h>
 
 #include "echo.h"
-#include "health.h"
+#include "floor.h"
 #include "knowledge/angle.h"
+#include "task/task.h"
 #include "unity.h"
 
 static argus_task_t t;
 static argus_echoes_t e;
 static argus_knowledge_t k;
+
+static void stand(const int x_mm, const int y_mm) {
+    k.pose.x_mm = x_mm;
+    k.pose.y_mm = y_mm;
+    k.fresh = 0;
+    argus_echoes_see(&e, &k, k.sip_ms);
+}
 
 void setUp(void) {
     argus_task_init(&t);
@@ -22,99 +26,230 @@ void setUp(void) {
     k.sip_ms = 100000;
     const argus_point_t goal = {5000, 0};
     TEST_ASSERT_TRUE(argus_task_set(&t, &goal, 1));
+    stand(0, 0);
 }
 
-static int32_t heading_chosen(void) {
-    return argus_task_bearing_cdeg(&t, &k);
+static bool chooses(void) {
+    return argus_task_choose(&t, &k, &e, false);
 }
 
-void test_far_from_the_start_nothing_overflows(void) {
-    k.pose.x_mm = 2000000;
-    k.pose.y_mm = -2000000;
-    see_echo(&e, &k, 3, 500);
-    TEST_ASSERT_EQUAL(0, e.count);
-    argus_echoes_clear_mm(&e, &k, 0, 305);
-    argus_task_choose(&t, &k, &e);
+static void wall(const int x1, const int y1, const int x2, const int y2) {
+    const argus_point_t from = {x1, y1};
+    const argus_point_t to = {x2, y2};
+    draw_wall(&e.grid, from, to);
 }
 
-void test_the_straight_way_until_something_stops_it(void) {
-    place_echo(&e, &k, 600, 0);
-    TEST_ASSERT_TRUE(argus_task_choose(&t, &k, &e));
-    TEST_ASSERT_EQUAL(0, heading_chosen());
+static void shut_in(void) {
+    wall(-800, -800, 800, -800);
+    wall(800, -800, 800, 800);
+    wall(800, 800, -800, 800);
+    wall(-800, 800, -800, -800);
 }
 
-void test_a_refused_heading_is_not_taken_again_here(void) {
-    argus_task_refuse(&t, &k);
-    TEST_ASSERT_TRUE(argus_task_choose(&t, &k, &e));
-    TEST_ASSERT_TRUE(argus_angle_abs_diff(heading_chosen(), 0) >= 1500);
-    k.pose.x_mm += 200; // moved on
-    argus_task_restart(&t);
-    TEST_ASSERT_TRUE(argus_task_choose(&t, &k, &e));
-    TEST_ASSERT_TRUE(argus_angle_abs_diff(heading_chosen(), 0) < 100);
-}
-
-static void flank_reads(int sonar, int mm) {
+static void hears(const int sonar, const int mm) {
     k.sonar[sonar].reported = true;
     k.sonar[sonar].health = ARGUS_HEALTHY;
     k.sonar[sonar].reading_mm = (uint16_t)mm;
 }
 
-static bool goes_straight_on(void) {
-    return argus_task_choose(&t, &k, &e) && argus_angle_abs_diff(heading_chosen(), 0) < 1500;
+void test_the_leg_is_the_waypoint_while_the_way_is_free(void) {
+    TEST_ASSERT_TRUE(chooses());
+    TEST_ASSERT_TRUE(t.has_leg);
+    TEST_ASSERT_FALSE(t.avoiding);
+    TEST_ASSERT_EQUAL(0, argus_task_bearing_cdeg(&t, &k));
+    TEST_ASSERT_EQUAL(5000, argus_task_leg_mm(&t, &k));
 }
 
-// Neither waiting nor a sonar that is given up takes a wall beside the way out of it.
-void test_a_slant_stays_refused_while_the_flank_reads_near(void) {
-    for (int sonar = 0; sonar <= 7; sonar += 7) {
-        setUp();
-        flank_reads(0, 5000);
-        flank_reads(7, 5000);
-        flank_reads(sonar, 150);
-        argus_task_refuse_slant(&t, &k);
-        argus_task_forgive(&t, &k);
-        TEST_ASSERT_FALSE(goes_straight_on());
-        argus_task_restart(&t);
-        TEST_ASSERT_FALSE(goes_straight_on());
-        TEST_ASSERT_TRUE(t.avoiding); // so that the detour ends, and the bearing is tried again
-        flank_reads(sonar, 351);
-        argus_task_forgive(&t, &k);
-        TEST_ASSERT_TRUE(goes_straight_on());
-    }
-}
-
-void test_a_slant_is_forgotten_when_the_robot_has_moved_on(void) {
-    flank_reads(7, 150);
-    argus_task_refuse_slant(&t, &k);
-    k.pose.x_mm -= 149;
-    TEST_ASSERT_FALSE(goes_straight_on());
-    k.pose.x_mm -= 1;
-    TEST_ASSERT_TRUE(goes_straight_on());
-}
-
-void test_the_detour_leads_past_the_obstacle(void) {
-    for (int y = -300; y <= 100; y += 100) {
-        place_echo(&e, &k, 450, y);
-    }
-    argus_task_refuse(&t, &k);
-    TEST_ASSERT_TRUE(argus_task_choose(&t, &k, &e));
+void test_a_detour_ends_and_the_waypoint_does_not(void) {
+    wall(1500, -1500, 1500, 1500);
+    TEST_ASSERT_TRUE(chooses());
     TEST_ASSERT_TRUE(t.avoiding);
-    TEST_ASSERT_TRUE(heading_chosen() > 0); // the left side is nearer
-    TEST_ASSERT_TRUE(argus_echoes_clear_mm(&e, &k, heading_chosen(), 305) >= 600);
+    argus_task_keep(&t, &k, &e);
+    TEST_ASSERT_TRUE(t.has_leg);
+    stand((int)t.leg.to.x_mm - 61, (int)t.leg.to.y_mm);
+    argus_task_keep(&t, &k, &e);
+    TEST_ASSERT_TRUE(t.has_leg);
+    stand((int)t.leg.to.x_mm - 60, (int)t.leg.to.y_mm);
+    argus_task_keep(&t, &k, &e);
+    TEST_ASSERT_FALSE(t.has_leg);
+    setUp();
+    TEST_ASSERT_TRUE(chooses());
+    stand(4990, 0);
+    argus_task_keep(&t, &k, &e);
+    TEST_ASSERT_TRUE(t.has_leg);
 }
 
-void test_no_way_when_every_heading_is_blocked(void) {
-    for (int a = 0; a < 36000; a += 1000) {
-        place_echo(&e, &k, 450 * argus_cos(a) / ARGUS_TRIG_ONE, 450 * argus_sin(a) / ARGUS_TRIG_ONE);
-    }
-    argus_task_refuse(&t, &k);
-    TEST_ASSERT_FALSE(argus_task_choose(&t, &k, &e));
+void test_a_leg_ends_when_something_shows_on_it(void) {
+    TEST_ASSERT_TRUE(chooses());
+    argus_task_keep(&t, &k, &e);
+    TEST_ASSERT_TRUE(t.has_leg);
+    wall(900, 0, 900, 100);
+    argus_task_keep(&t, &k, &e);
     TEST_ASSERT_FALSE(t.has_leg);
+}
+
+// What is heard near ahead of it, and where nothing is, what cannot be heard.
+void test_what_stopped_the_robot_is_remembered(void) {
+    const argus_point_t ahead = {310, 0};
+    TEST_ASSERT_TRUE(chooses());
+    hears(4, 350);
+    argus_task_refuse(&t, &k, &e);
+    TEST_ASSERT_FALSE(t.has_leg);
+    TEST_ASSERT_TRUE(argus_grid_is_occupied(&e.grid, argus_grid_cell(argus_echo_robot(&k, 4))));
+    TEST_ASSERT_FALSE(argus_grid_is_occupied(&e.grid, argus_grid_cell(ahead)));
+    setUp();
+    hears(4, 351);
+    hears(11, 200); // behind
+    argus_task_refuse(&t, &k, &e);
+    TEST_ASSERT_TRUE(argus_grid_is_occupied(&e.grid, argus_grid_cell(ahead)));
+    TEST_ASSERT_TRUE(chooses());
+    TEST_ASSERT_TRUE(t.avoiding);
+}
+
+// Ahead but for a nudge, as far as nothing was seen, less what an object stops it at.
+void test_escapes_where_the_way_ahead_is_free(void) {
+    for (int by = -2000; by <= 2000; by += 1000) {
+        setUp();
+        TEST_ASSERT_TRUE(argus_task_escape(&t, &k, &e, by));
+        TEST_ASSERT_TRUE(t.avoiding && t.has_leg);
+        TEST_ASSERT_INT32_WITHIN(2, 300, argus_task_leg_mm(&t, &k));
+        TEST_ASSERT_INT32_WITHIN(40, by, argus_task_bearing_cdeg(&t, &k));
+    }
+    setUp();
+    place_echo(&e, &k, 600, 100);
+    TEST_ASSERT_TRUE(argus_task_escape(&t, &k, &e, 0));
+    TEST_ASSERT_INT32_WITHIN(2, 140, argus_task_leg_mm(&t, &k));
+    setUp();
+    place_echo(&e, &k, 559, 100);
+    TEST_ASSERT_FALSE(argus_task_escape(&t, &k, &e, 0));
+    TEST_ASSERT_FALSE(t.has_leg);
+}
+
+// A second of SIPs. True: hopeless.
+static bool a_second(const bool drives) {
+    bool hopeless = false;
+    for (int i = 0; i < 10; i++) {
+        k.sip_ms += 100;
+        hopeless = argus_task_is_hopeless(&t, &k, drives);
+    }
+    return hopeless;
+}
+
+static int seconds_until_hopeless(const int most) {
+    for (int s = 1; s <= most; s++) {
+        if (a_second(true)) {
+            return s;
+        }
+    }
+    return -1;
+}
+
+void test_a_minute_of_driving_without_progress_is_hopeless(void) {
+    TEST_ASSERT_TRUE(chooses());
+    (void)argus_task_is_hopeless(&t, &k, true);
+    TEST_ASSERT_EQUAL(60, seconds_until_hopeless(100));
+}
+
+void test_so_is_a_minute_without_a_way(void) {
+    shut_in();
+    TEST_ASSERT_FALSE(chooses());
+    (void)argus_task_is_hopeless(&t, &k, true);
+    TEST_ASSERT_EQUAL(60, seconds_until_hopeless(100));
+}
+
+void test_what_does_not_count_as_driving(void) {
+    TEST_ASSERT_TRUE(chooses());
+    for (int s = 0; s < 200; s++) {
+        TEST_ASSERT_FALSE(a_second(false));
+    }
+    for (int i = 0; i < 200; i++) { // a link that stalls
+        k.sip_ms += 2000;
+        TEST_ASSERT_FALSE(argus_task_is_hopeless(&t, &k, true));
+    }
+    t.next = t.count;
+    TEST_ASSERT_EQUAL(-1, seconds_until_hopeless(100));
+}
+
+void test_progress_is_a_way_to_go_that_is_100_mm_shorter(void) {
+    for (int step = 99; step <= 100; step++) {
+        setUp();
+        TEST_ASSERT_TRUE(chooses());
+        int hopeless = 0;
+        for (int i = 1; i <= 3; i++) {
+            for (int s = 0; s < 45; s++) {
+                hopeless += a_second(true);
+            }
+            stand(i == 1 ? step : 2 * step, 0);
+        }
+        TEST_ASSERT_EQUAL(step == 99, hopeless > 0);
+    }
+}
+
+// What is found in the way makes the way longer, and the new way counts; but not for ever.
+void test_a_set_back_is_no_loss_of_time_but_there_are_only_so_many(void) {
+    TEST_ASSERT_TRUE(chooses());
+    wall(1500, -2500, 1500, 2500);
+    TEST_ASSERT_TRUE(chooses());
+    const int32_t to_go_mm = t.leg.to_go_mm + argus_task_leg_mm(&t, &k);
+    TEST_ASSERT_TRUE(to_go_mm > 6000);
+    for (int s = 0; s < 45; s++) {
+        TEST_ASSERT_FALSE(a_second(true));
+    }
+    stand((int)t.leg.to.x_mm, (int)t.leg.to.y_mm);
+    TEST_ASSERT_FALSE(a_second(true)); // nearer by the way round
+    for (int s = 0; s < 45; s++) {
+        TEST_ASSERT_FALSE(a_second(true));
+    }
+    int rounds = 0;
+    while (!a_second(true) && rounds < 1000) { // its way grows and shrinks
+        stand(rounds % 2 == 0 ? 0 : 4000, rounds % 2 == 0 ? 0 : 3000);
+        argus_grid_clear(&e.grid);
+        TEST_ASSERT_TRUE(chooses());
+        rounds++;
+    }
+    TEST_ASSERT_TRUE(rounds > 10 && rounds < 100);
+}
+
+// Once every way was tried, only what is nearer than ever is progress.
+void test_when_there_was_no_way_trying_again_gives_no_time(void) {
+    TEST_ASSERT_TRUE(chooses());
+    stand(1000, 0);
+    TEST_ASSERT_FALSE(a_second(true));
+    stand(0, 0);
+    shut_in();
+    TEST_ASSERT_FALSE(chooses());
+    for (int s = 0; s < 30; s++) {
+        TEST_ASSERT_FALSE(a_second(true));
+    }
+    argus_grid_clear(&e.grid);
+    int seconds = 30;
+    for (; seconds < 100; seconds++) {
+        stand(seconds % 2 == 0 ? 0 : 800, 0);
+        TEST_ASSERT_TRUE(chooses());
+        if (a_second(true)) {
+            break;
+        }
+    }
+    TEST_ASSERT_INT32_WITHIN(2, 60, seconds);
+}
+
+void test_a_new_course_begins_anew(void) {
+    TEST_ASSERT_TRUE(chooses());
+    for (int s = 0; s < 59; s++) {
+        TEST_ASSERT_FALSE(a_second(true));
+    }
+    const argus_point_t goal = {0, 5000};
+    TEST_ASSERT_TRUE(argus_task_set(&t, &goal, 1));
+    TEST_ASSERT_TRUE(chooses());
+    for (int s = 0; s < 59; s++) {
+        TEST_ASSERT_FALSE(a_second(true));
+    }
 }
 
 void test_many_refusals_are_survived(void) {
     for (int i = 0; i < 100; i++) {
         k.pose.heading_cdeg = argus_angle_wrap(i * 997);
-        argus_task_refuse(&t, &k);
-        argus_task_choose(&t, &k, &e);
+        argus_task_refuse(&t, &k, &e);
+        (void)chooses();
     }
 }

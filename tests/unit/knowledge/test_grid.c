@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: what the grid takes for occupied, for how long, and that it goes with the robot.
+#include "knowledge/grid.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "health.h"
+#include "knowledge/angle.h"
+#include "unity.h"
+
+static argus_grid_t g;
+static argus_knowledge_t k;
+static char text[48];
+
+void setUp(void) {
+    argus_grid_init(&g);
+    argus_knowledge_init(&k);
+    k.sip_ms = 100000;
+}
+
+// A SIP with one fresh reading, or none.
+static void reads(const int sonar, const int mm) {
+    k.fresh = 0;
+    if (sonar >= 0) {
+        k.sonar[sonar].reported = true;
+        k.sonar[sonar].reading_mm = (uint16_t)mm;
+        k.fresh = (argus_mask_t)(1u << sonar);
+    }
+    argus_grid_see(&g, &k);
+}
+
+static bool is_there(const argus_point_t at) {
+    return argus_grid_is_occupied(&g, argus_grid_cell(at));
+}
+
+static argus_point_t echo_of(const int sonar) {
+    return argus_to_course(&k.pose, argus_echo_robot(&k, sonar));
+}
+
+static int occupied(void) {
+    int count = 0;
+    for (int y = 0; y < ARGUS_GRID_CELLS; y++) {
+        for (uint64_t row = argus_grid_row(&g, y); row != 0; row &= row - 1) {
+            count++;
+        }
+    }
+    return count;
+}
+
+void test_two_near_echoes_occupy_the_cell_where_they_lie(void) {
+    k.pose.heading_cdeg = 9000;
+    reads(3, 800);
+    TEST_ASSERT_EQUAL(0, occupied()); // one may be crosstalk
+    reads(3, 800);
+    TEST_ASSERT_EQUAL(1, occupied());
+    TEST_ASSERT_TRUE(is_there(echo_of(3)));
+}
+
+void test_far_echoes_alone_occupy_nothing(void) {
+    for (int i = 0; i < 50; i++) {
+        reads(3, 1001);
+        reads(4, 1600);
+        reads(2, 4999);
+    }
+    TEST_ASSERT_EQUAL(0, occupied());
+}
+
+void test_who_does_not_tell(void) {
+    for (int i = 0; i < 10; i++) {
+        k.rotating = false;
+        put_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
+        reads(3, 500);
+        put_health(&k.sonar[4], ARGUS_SUSPECT, ARGUS_KIND_NONE, 0);
+        reads(4, 500);
+        k.rotating = true;
+        reads(5, 500);
+    }
+    TEST_ASSERT_EQUAL(0, occupied());
+}
+
+// A beam that passes lowers what it passes by one, at rest in the first second only: it tells nothing new.
+void test_beams_that_pass_take_back_what_is_not_there(void) {
+    reads(3, 400);
+    reads(3, 400);
+    const argus_point_t at = echo_of(3);
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_TRUE(is_there(at));
+        reads(3, 2000);
+    }
+    TEST_ASSERT_FALSE(is_there(at));
+    setUp();
+    reads(3, 400);
+    reads(3, 400);
+    k.still_sips = 11;
+    for (int i = 0; i < 10; i++) {
+        reads(3, 2000);
+    }
+    TEST_ASSERT_TRUE(is_there(at));
+}
+
+void test_silence_passes_less_far_than_an_echo(void) {
+    for (int silent = 0; silent < 2; silent++) {
+        setUp();
+        reads(3, 1000);
+        reads(3, 1000);
+        const argus_point_t at = echo_of(3);
+        for (int i = 0; i < 20; i++) {
+            reads(3, silent ? 5000 : 2000);
+        }
+        TEST_ASSERT_EQUAL(silent, is_there(at));
+    }
+}
+
+void test_what_is_marked_and_what_is_touched(void) {
+    const argus_point_t ahead = {350, 27}; // on the axis of sonar 3, nearly
+    for (int sure = 0; sure < 2; sure++) {
+        setUp();
+        reads(-1, 0);
+        argus_grid_mark(&g, ahead, sure != 0);
+        TEST_ASSERT_TRUE(is_there(ahead));
+        for (int i = 0; i < 20; i++) {
+            reads(3, 3000);
+        }
+        TEST_ASSERT_EQUAL(sure, is_there(ahead));
+        argus_grid_fade(&g);
+        argus_grid_fade(&g);
+        TEST_ASSERT_FALSE(is_there(ahead));
+    }
+}
+
+void test_where_the_robot_stands_nothing_is(void) {
+    const argus_point_t here = {0, 0};
+    reads(-1, 0);
+    argus_grid_mark(&g, here, true);
+    reads(-1, 0);
+    TEST_ASSERT_EQUAL(0, occupied());
+}
+
+// It is heard abeam only, and the next door is not part of it once a beam has passed there.
+void test_a_wall_beside_the_robot_goes_on(void) {
+    for (int side = 0; side < 2; side++) {
+        setUp();
+        const int sonar = side == 0 ? 0 : 7;
+        for (int x = 0; x <= 400; x += 100) {
+            k.pose.x_mm = x;
+            reads(sonar, 300);
+        }
+        const argus_point_t last = echo_of(sonar);
+        const argus_point_t on = {last.x_mm + 550, last.y_mm};
+        const argus_point_t beyond = {last.x_mm + 800, last.y_mm};
+        TEST_ASSERT_TRUE(is_there(on));
+        TEST_ASSERT_FALSE(is_there(beyond));
+        k.pose.x_mm = on.x_mm - 69; // where its axis passes
+        reads(sonar, 1500);
+        TEST_ASSERT_FALSE(is_there(on));
+    }
+}
+
+void test_two_echoes_that_are_no_wall_along_the_way_go_on_nowhere(void) {
+    reads(0, 300);
+    k.pose.x_mm = 20; // as good as no way
+    reads(0, 300);
+    k.pose.x_mm = 500; // another thing
+    reads(0, 300);
+    k.pose.x_mm = 520;
+    k.pose.y_mm = 200; // across the way
+    reads(0, 300);
+    TEST_ASSERT_TRUE(occupied() <= 1);
+}
+
+// Wherever it is: what stands within 3.5 m stays, what is farther than the window is gone when the robot returns.
+void test_the_window_goes_with_the_robot(void) {
+    srand(1);
+    for (int i = 0; i < 200; i++) {
+        setUp();
+        k.pose.x_mm = rand() % 4000000 - 2000000;
+        k.pose.y_mm = rand() % 4000000 - 2000000;
+        reads(-1, 0);
+        const argus_point_t at = {k.pose.x_mm + rand() % 1400 + 300, k.pose.y_mm + rand() % 1400 + 300};
+        argus_grid_mark(&g, at, true);
+        k.pose.x_mm -= 1500;
+        k.pose.y_mm -= 1500;
+        reads(-1, 0);
+        snprintf(text, sizeof text, "seed 1, round %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(1, occupied(), text);
+        TEST_ASSERT_TRUE_MESSAGE(is_there(at), text);
+        k.pose.x_mm -= ARGUS_GRID_CELLS * ARGUS_GRID_CELL_MM;
+        reads(-1, 0);
+        TEST_ASSERT_EQUAL_MESSAGE(0, occupied(), text);
+        k.pose.x_mm += ARGUS_GRID_CELLS * ARGUS_GRID_CELL_MM;
+        reads(-1, 0);
+        TEST_ASSERT_EQUAL_MESSAGE(0, occupied(), text);
+    }
+}
+
+void test_cells_are_rounded_down(void) {
+    for (int mm = -3 * ARGUS_GRID_CELL_MM; mm < 3 * ARGUS_GRID_CELL_MM; mm++) {
+        const argus_point_t at = {mm, -mm};
+        const argus_cell_t cell = argus_grid_cell(at);
+        const argus_point_t centre = argus_grid_centre(cell);
+        TEST_ASSERT_TRUE(mm >= cell.x * ARGUS_GRID_CELL_MM && mm < (cell.x + 1) * ARGUS_GRID_CELL_MM);
+        TEST_ASSERT_TRUE(-mm >= cell.y * ARGUS_GRID_CELL_MM && -mm < (cell.y + 1) * ARGUS_GRID_CELL_MM);
+        TEST_ASSERT_INT32_WITHIN(ARGUS_GRID_CELL_MM / 2 + 1, mm, centre.x_mm);
+    }
+}
