@@ -86,3 +86,10 @@ def test_what_is_found_is_judged_where_one_fails_alone() -> None:
     kinds = found_of_one(summarise(some))
     assert (kinds["slow"]["in_time"]["hits"], kinds["slow"]["ever"]["hits"]) == (0, 1)
     assert set(kinds) == {"all", "off", "slow"}
+
+
+def test_an_obstacle_set_is_judged_by_the_word_of_the_robot() -> None:
+    off = [journey(f"argus/judge/doors/doors-1/{k}", truly=False, goal_mm=300.0) for k in range(1, 101)]
+    assert verdicts(off)["doors: goals reached by its word"] == "pass"
+    lost = [one | {"word": "running"} for one in off]
+    assert verdicts(lost)["doors: goals reached by its word"] == "fail"
