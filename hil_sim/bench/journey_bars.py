@@ -119,10 +119,10 @@ def _safety(own: Mapping[str, Record]) -> Iterator[Bar]:
         "all rows: attributable collisions", "0 in 1000 missions", float(hits), None, "", missions, verdict
     )
     healthy = [row for name, row in own.items() if not parse_row(name).has_faults]
-    near = [row["closest_mm"]["least"] for row in healthy if row["closest_mm"]["least"] is not None]
+    near = [(row["closest_mm"]["least"], row["row"]) for row in healthy if row["closest_mm"]["n"]]
     if near:
-        least = min(near)
-        name = "healthy rows: closest to a wall in free driving"
+        least, where = min(near)
+        name = f"healthy rows: closest to a wall in free driving (in {where})"
         yield _at_least(name, least, least, _missions(healthy), _CLOSEST_MM, "mm")
 
 

@@ -61,7 +61,7 @@ def test_a_collision_by_a_fault_fails_whatever_the_row() -> None:
 
 
 def test_near_a_wall_counts_on_a_healthy_robot_only() -> None:
-    name = "healthy rows: closest to a wall in free driving"
+    name = "healthy rows: closest to a wall in free driving (in rooms)"
     assert verdicts(many("rooms", 2, closest_mm=49.0))[name] == "fail"
     fine = many("rooms", 2)
     assert verdicts([*fine, journey("argus/judge/rooms+one/lab/1", closest_mm=9.0)])[name] == "pass"
