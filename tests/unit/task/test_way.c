@@ -184,7 +184,7 @@ void test_one_that_was_stopped_does_not_go_on_ahead(void) {
 void test_a_leg_is_given_up_when_something_shows_on_it(void) {
     TEST_ASSERT_TRUE(finds(3000, 0));
     TEST_ASSERT_TRUE(argus_way_is_free(&ground, &leg));
-    wall(1300, -100, 1300, 100);
+    wall(1700, -100, 1700, 100);
     TEST_ASSERT_TRUE(argus_way_is_free(&ground, &leg)); // not within the next metre
     wall(1000, 350, 1000, 450);
     TEST_ASSERT_FALSE(argus_way_is_free(&ground, &leg)); // no room to turn any more
