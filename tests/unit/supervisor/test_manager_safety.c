@@ -140,9 +140,8 @@ static void check_s1_object_on_a_compensated_bearing_stops_the_next_step(void) {
     TEST_ASSERT_TRUE(robot_goal(&robot, 2000, 0));
     if (profile == ARGUS_PROFILE_PAPER) { // what is seen before a leg is chosen is gone round
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_SWEEPING, 20000));
-        robot_run(&robot, 400);
     }
-    robot_box(&robot, 330, 100, 500, 400); // ahead on the left, on the bearing of sonar 2 alone or nearly so
+    robot_box(&robot, 390, 180, 420, 230); // ahead on the left, on the bearing of sonar 2 alone
     robot_until_event(
         &robot, profile == ARGUS_PROFILE_PAPER ? ARGUS_EV_OBJECT_CHECKED : ARGUS_EV_GOAL_REACHED, 40000);
     if (profile == ARGUS_PROFILE_PAPER) {
