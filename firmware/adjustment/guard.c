@@ -75,9 +75,25 @@ argus_mask_t argus_guard_alone(const argus_guard_t *const self) {
     return (argus_mask_t)mask;
 }
 
-bool argus_guard_is_blind(const argus_guard_t *const self) {
+static unsigned blind(const argus_guard_t *const self) {
     const unsigned out = argus_out(self->knowledge) & argus_robot_forward(self->knowledge->robot);
-    return (out | argus_guard_alone(self)) != 0;
+    return out | argus_guard_alone(self);
+}
+
+bool argus_guard_is_blind(const argus_guard_t *const self) {
+    return blind(self) != 0;
+}
+
+int argus_guard_gap(const argus_guard_t *const self) {
+    const argus_robot_t *const robot = self->knowledge->robot;
+    const unsigned mask = blind(self);
+    int longest = 0;
+    int run = 0;
+    for (int k = 0; k < robot->forward_count; k++) {
+        run = (mask >> robot->forward[k] & 1u) != 0 ? run + 1 : 0;
+        longest = argus_max(longest, run);
+    }
+    return longest;
 }
 
 int32_t argus_guard_seen_mm(const argus_guard_t *const self) {

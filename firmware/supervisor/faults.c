@@ -54,26 +54,44 @@ static void say_plan(argus_t *const self) {
     }
 }
 
-// A suspect that no witness could judge is planned for as if it were disabled: its bearing counts as
-// uncovered. One that is still to be verified is not: nothing moves ahead before it is.
+// Suspects that are covered for like those that are out: under the paper those that no witness could judge, one
+// that is still to be verified is not, nothing moves ahead before it is; else names that nobody sees for.
+static argus_mask_t covered_suspects(const argus_t *const self) {
+    if (argus_rules(self)->evidence) {
+        const argus_guard_t guard = argus_guard(self);
+        return argus_guard_alone(&guard);
+    }
+    return (argus_mask_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->awareness.verified &
+                          argus_robot_forward(self->knowledge.robot));
+}
+
+static void take_plan(argus_t *const self, const argus_mask_t blind) {
+    const argus_robot_t *const robot = self->knowledge.robot;
+    self->plan = argus_plan(robot, (argus_policy_t)self->config.policy, blind);
+    ARGUS_ASSERT(self->plan.count <= ARGUS_ROTATIONS_MAX && self->plan.disabled == blind);
+}
+
+// Doubt never leaves the robot without a plan that it has without.
 void argus_replan(argus_t *const self) {
     const argus_mask_t disabled = argus_out(&self->knowledge) & argus_robot_forward(self->knowledge.robot);
-    const unsigned open =
-        argus_rules(self)->disparity ? argus_with_health(&self->knowledge, ARGUS_SUSPECT) : 0u;
-    const argus_mask_t blind = (argus_mask_t)(disabled | (open & self->awareness.verified &
-                                                          argus_robot_forward(self->knowledge.robot)));
+    const argus_mask_t blind = (argus_mask_t)(disabled | covered_suspects(self));
     const argus_failure_t failure = argus_failure_of(self->knowledge.robot, disabled);
+    const argus_mask_t before = self->plan.disabled;
     if (failure != self->failure) {
         self->failure = failure;
         argus_say(self, ARGUS_EV_FAILURE_STATE, ARGUS_NO_SONAR, argus_count_bits(disabled));
     }
-    if (blind == self->plan.disabled) {
+    if (blind == before) {
         return;
     }
-    self->plan = argus_plan(self->knowledge.robot, (argus_policy_t)self->config.policy, blind);
-    ARGUS_ASSERT(self->plan.count <= ARGUS_ROTATIONS_MAX && self->plan.disabled == blind);
-    say_plan(self);
-    argus_share_slots(self);
+    take_plan(self, blind);
+    if (!self->plan.complete && argus_rules(self)->evidence) {
+        take_plan(self, disabled);
+    }
+    if (self->plan.disabled != before) {
+        say_plan(self);
+        argus_share_slots(self);
+    }
 }
 
 void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {

@@ -48,6 +48,7 @@ static void name(argus_t *const self, const int sonar) {
         argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
         argus_evidence_note_name(&self->evidence, sonar, kind);
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
+        argus_replan(self);
     }
     const bool held = self->mode == ARGUS_MODE_VERIFYING || self->looks.asked ||
                       (argus_evidence_lost(&self->evidence) >> sonar & 1u) != 0;

@@ -11,7 +11,8 @@
 #define AIMED_CDEG 200    // at rest, near enough
 #define STEER_CDEG 200    // while driving, corrected beyond this
 #define STEER_LEG_MM 250  // ... and only this far from the leg's end
-#define WEAVE_CDEG 1000   // to either side of the way: half the pitch of the ring
+#define WEAVE_CDEG 1000   // to either side of the way for each sonar of a gap: half the pitch of the ring
+#define WEAVE_GAP 2       // a wider one is left to sweeps
 #define WOVEN_CDEG 300    // near enough
 #define WOVEN_SIPS 4      // there: a round of the array
 #define SEEN_LEAST_MM 200 // of the way; with less it stops to look
@@ -214,7 +215,9 @@ static bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
 // Swings the heading about the way while a bearing is blind, so that living sonars look along it: to one side
 // until they have had their turns there, then to the other.
 static int32_t weave_cdeg(const argus_t *const self, argus_travel_t *const mine) {
-    const int32_t to_cdeg = argus_angle_wrap(bearing(self, mine) + mine->weave * WEAVE_CDEG);
+    const argus_guard_t guard = argus_guard(self);
+    const int32_t swing_cdeg = argus_min(argus_guard_gap(&guard), WEAVE_GAP) * WEAVE_CDEG;
+    const int32_t to_cdeg = argus_angle_wrap(bearing(self, mine) + mine->weave * swing_cdeg);
     const bool there = argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, to_cdeg) <= WOVEN_CDEG;
     mine->woven_sips = there ? (uint8_t)(mine->woven_sips + 1) : 0;
     if (mine->weave != 0 && mine->woven_sips < WOVEN_SIPS) {
@@ -222,7 +225,7 @@ static int32_t weave_cdeg(const argus_t *const self, argus_travel_t *const mine)
     }
     mine->weave = mine->weave > 0 ? -1 : 1;
     mine->woven_sips = 0;
-    return argus_angle_wrap(bearing(self, mine) + mine->weave * WEAVE_CDEG);
+    return argus_angle_wrap(bearing(self, mine) + mine->weave * swing_cdeg);
 }
 
 // The way has not been seen far enough: a sweep, at rest.

@@ -236,11 +236,6 @@ def make_cases(
     return list(found)
 
 
-def find_worlds(globs: Sequence[str]) -> list[str]:
-    """Return the worlds that patterns match, for rows that drive through rooms and maps."""
-    return plan.find_worlds(globs)
-
-
 def _config(driver: str) -> Mapping[str, int | str]:
     return IDEAL_CONFIG if driver == IDEAL else plan.check_profile(driver)
 

@@ -19,9 +19,10 @@ _OVER: Final[Mapping[str, float]] = {"rooms": 0.9, "rooms+rough": 0.8, "rooms+pe
 _TRULY: Final[Mapping[str, tuple[str, float]]] = {
     "rooms": (">= 29 of 30", 29 / 30),
     "rooms+one": (">= 98 %", 0.98),
-    **{name: (">= 95 %", 0.95) for name in SETS if name != NO_WAY},
 }
 """Share of the goals truly reached."""
+_SETS: Final = 0.95
+"""Share of the goals of each obstacle set, by the robot's word: nothing cancels odometry's drift on the way round."""
 _LOOKING_S: Final[Mapping[str, float]] = {"rooms": 120.0, "rooms+rough": 300.0}
 _NAMES: Final[Mapping[str, float]] = {"rooms": 10.0, "rooms+people": 40.0, "rooms+front": 0.0}
 _DISABLES_100H: Final = 1.0
@@ -44,6 +45,9 @@ def _arrivals(own: Mapping[str, Record]) -> Iterator[Bar]:
     for name, (says, least) in _TRULY.items():
         if name in own:
             yield _share(f"{name}: goals truly reached", says, own[name]["truly"], least)
+    for name in SETS:
+        if name in own and name != NO_WAY:
+            yield _share(f"{name}: goals reached by its word", ">= 95 %", own[name]["word"], _SETS)
     if NO_WAY in own:
         yield _share(f"{NO_WAY}: says that there is no way", ">= 95 %", own[NO_WAY]["gave_up"], 0.95)
 
@@ -115,10 +119,10 @@ def _safety(own: Mapping[str, Record]) -> Iterator[Bar]:
         "all rows: attributable collisions", "0 in 1000 missions", float(hits), None, "", missions, verdict
     )
     healthy = [row for name, row in own.items() if not parse_row(name).has_faults]
-    near = [row["closest_mm"]["least"] for row in healthy if row["closest_mm"]["least"] is not None]
+    near = [(row["closest_mm"]["least"], row["row"]) for row in healthy if row["closest_mm"]["n"]]
     if near:
-        least = min(near)
-        name = "healthy rows: closest to a wall in free driving"
+        least, where = min(near)
+        name = f"healthy rows: closest to a wall in free driving (in {where})"
         yield _at_least(name, least, least, _missions(healthy), _CLOSEST_MM, "mm")
 
 

@@ -9,15 +9,18 @@ import traceback
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+import numpy as np
+
 from hil_sim.bench.journey import Case, mission_of, parse_id
 from hil_sim.bench.journey_course import length_mm
 from hil_sim.bench.judge import Track, judge
 from hil_sim.bench.plan import without_faults
-from hil_sim.sil import Mission, Outcome, Sighting, Sil, run
+from hil_sim.sil import Collision, Mission, Outcome, Sighting, Sil, run
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.body import BodyModel
+from hil_sim.world.model import World
 
-RECORD_FORMAT: Final = 1
+RECORD_FORMAT: Final = 2
 """Raised whenever a record gets another field: results of two formats do not mix."""
 ARRIVED_MM: Final = 150.0
 """The robot is truly at its goal when its centre is within this of it."""
@@ -28,7 +31,8 @@ FREE: Final = "DRIVING"
 """Modes: of looks, and of free driving."""
 _PATH_MM: Final = 200.0
 _RUNS_MM_S, _RESTS_MM_S = 50.0, 5.0
-_DIGITS: Final = 3
+_TOUCH_MM: Final = robot_table().body.reach_mm + 5.0
+"""No part of the body is further from its centre."""
 
 Record = dict[str, Any]
 Spot = tuple[int, int]
@@ -126,10 +130,13 @@ def run_case(case: Case) -> tuple[Record, Outcome]:
     diary = Diary()
     sil = Sil(mission, trace=diary)
     outcome = sil.run()
+    people = take_people(outcome, sil.world)
     twin = None
     if mission.faults and any(not hit.struck for hit in outcome.collisions):
         twin = run(without_faults(mission))
+        take_people(twin, sil.world)
     record = judge(outcome, diary.track, twin)
+    record["people_hit"] = people
     record["looking_s"] = record.pop("verifying_s")
     record["stop_commands"] = record.pop("stops")
     record |= _arrival(sil, mission) | diary.fields()
@@ -137,6 +144,24 @@ def run_case(case: Case) -> tuple[Record, Outcome]:
     record["faulty"] = list(mission.faults)
     record["limit_s"] = mission.limit_s
     return head(case) | record | {"wall_s": round(time.perf_counter() - begin, 3)}, outcome
+
+
+def take_people(outcome: Outcome, world: World) -> int:
+    """Take out the collisions of a driving robot with people, who are where no wall is, and return how many.
+
+    The same mission without the fault meets people elsewhere, so chance would say which are the fault's.
+    """
+    people = [hit for hit in outcome.collisions if not hit.struck and _from_walls_mm(world, hit) > _TOUCH_MM]
+    outcome.collisions = [hit for hit in outcome.collisions if hit not in people]
+    return len(people)
+
+
+def _from_walls_mm(world: World, hit: Collision) -> float:
+    """Distance of the robot's centre from what stands."""
+    x1, y1, x2, y2 = world.segments.T
+    dx, dy = x2 - x1, y2 - y1
+    along = np.clip(((hit.x - x1) * dx + (hit.y - y1) * dy) / (dx * dx + dy * dy), 0.0, 1.0)
+    return float(np.hypot(x1 + along * dx - hit.x, y1 + along * dy - hit.y).min())
 
 
 def _arrival(sil: Sil, mission: Mission) -> Record:

@@ -25,6 +25,7 @@ def journey(name: str = "argus/judge/rooms/lab/1", **more: Any) -> dict[str, Any
         "false_names": [],
         "collisions": [],
         "struck": 0,
+        "people_hit": 0,
         "attributable": False,
         "undetected": False,
         "verifications": 4,

@@ -28,9 +28,9 @@ from hil_sim.faults.kinds import SonarFault
 
 IDS = (
     "argus/tune/rooms+people/office/7",
-    "paper/judge/rooms+one/gen-room/3",
+    "paper/judge/rooms+one/lab/3",
     "argus:caution=200/tune/pairs+two+start/pairs-2/5",
-    "ideal/judge/maps+mobilesim/map-office/2",
+    "ideal/judge/doors+mobilesim/doors-4/2",
 )
 
 

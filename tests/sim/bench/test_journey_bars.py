@@ -61,7 +61,7 @@ def test_a_collision_by_a_fault_fails_whatever_the_row() -> None:
 
 
 def test_near_a_wall_counts_on_a_healthy_robot_only() -> None:
-    name = "healthy rows: closest to a wall in free driving"
+    name = "healthy rows: closest to a wall in free driving (in rooms)"
     assert verdicts(many("rooms", 2, closest_mm=49.0))[name] == "fail"
     fine = many("rooms", 2)
     assert verdicts([*fine, journey("argus/judge/rooms+one/lab/1", closest_mm=9.0)])[name] == "pass"
@@ -86,3 +86,10 @@ def test_what_is_found_is_judged_where_one_fails_alone() -> None:
     kinds = found_of_one(summarise(some))
     assert (kinds["slow"]["in_time"]["hits"], kinds["slow"]["ever"]["hits"]) == (0, 1)
     assert set(kinds) == {"all", "off", "slow"}
+
+
+def test_an_obstacle_set_is_judged_by_the_word_of_the_robot() -> None:
+    off = [journey(f"argus/judge/doors/doors-1/{k}", truly=False, goal_mm=300.0) for k in range(1, 101)]
+    assert verdicts(off)["doors: goals reached by its word"] == "pass"
+    lost = [one | {"word": "running"} for one in off]
+    assert verdicts(lost)["doors: goals reached by its word"] == "fail"

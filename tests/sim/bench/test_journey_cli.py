@@ -28,6 +28,7 @@ def bench(*words: str) -> int:
         return int(left.code or 0)
 
 
+@pytest.mark.soak
 def test_the_quick_selection(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert bench("journey", "--quick", "--out", str(tmp_path)) == 0
     out, _ = capfd.readouterr()

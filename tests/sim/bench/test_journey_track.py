@@ -8,13 +8,15 @@ from dataclasses import dataclass, field
 
 import pytest
 from bench.journeys import DEADLY, deadly
+from bench.missions import outcome
 
 from hil_sim.bench.journey import mission_of, parse_id
-from hil_sim.bench.journey_track import FREE, LOOKING, Diary, failed, head, run_case, work
+from hil_sim.bench.journey_track import FREE, LOOKING, Diary, failed, head, run_case, take_people, work
 from hil_sim.bench.pool import run_here
-from hil_sim.sil import Sighting, Sil, run
+from hil_sim.sil import Collision, Sighting, Sil, run
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.body import BodyModel
+from hil_sim.world.files import load_world
 
 CASE = "argus/tune/doors+one+start/doors-1/2"
 
@@ -42,9 +44,9 @@ class Watch:
 @pytest.fixture(scope="module")
 def both() -> tuple[dict[str, object], Watch]:
     watch = Watch()
-    outcome = run(mission_of(parse_id(CASE)), trace=watch)
+    same = run(mission_of(parse_id(CASE)), trace=watch)
     record = run_case(parse_id(CASE))[0]
-    assert record["digest"] == outcome.digest
+    assert record["digest"] == same.digest
     return record, watch
 
 
@@ -118,3 +120,11 @@ def test_a_process_that_dies_costs_its_own_journey_only() -> None:
     assert set(records) == set(names)
     assert [name for name in names if records[name]["error"]] == [DEADLY]
     assert records[DEADLY]["ideal"] == "ideal/tune/rooms/lab/2"
+
+
+def test_people_are_no_collision_with_a_wall() -> None:
+    wall, person = Collision(3.0, -1700.0, 0.0, False), Collision(4.0, 100.0, 100.0, False)
+    struck = Collision(5.0, 100.0, 100.0, True)
+    result = outcome(hits=[wall, person, struck])
+    assert take_people(result, load_world("lab")) == 1
+    assert result.collisions == [wall, struck]
