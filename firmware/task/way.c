@@ -18,7 +18,7 @@
 #define STEPS_MAX 1000
 #define IDLE_STEPS (NARROW_STEPS + 1) // without a new cell: nothing is on its way any more
 #define SAMPLE_MM 50
-#define LEG_LEAST_MM 250
+#define LEG_LEAST_MM 100 // a leg is done at 60
 #define CUT_SAMPLES 4 // a straight leg may have so many more narrow samples than the way itself
 #define AHEAD_MM 1000
 #define AHEAD_OF_BODY_MM 100

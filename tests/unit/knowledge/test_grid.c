@@ -147,7 +147,7 @@ void test_a_wall_beside_the_robot_goes_on(void) {
             reads(sonar, 300);
         }
         const argus_point_t last = echo_of(sonar);
-        const argus_point_t on = {last.x_mm + 550, last.y_mm};
+        const argus_point_t on = {last.x_mm + 480, last.y_mm};
         const argus_point_t beyond = {last.x_mm + 800, last.y_mm};
         TEST_ASSERT_TRUE(is_there(on));
         TEST_ASSERT_FALSE(is_there(beyond));
