@@ -142,7 +142,7 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     const argus_trail_t now = {.reading_mm = knowledge->sonar[sonar].reading_mm,
                                .x_mm = (uint16_t)((uint32_t)knowledge->pose.x_mm & 0xFFFFu),
                                .y_mm = (uint16_t)((uint32_t)knowledge->pose.y_mm & 0xFFFFu),
-                               .heading_cdeg = (int16_t)knowledge->pose.heading_cdeg,
+                               .heading_cdeg = (int16_t)argus_built_heading_cdeg(knowledge),
                                .steady = self->straight_sips >= STEADY_SIPS,
                                .rest = knowledge->still_sips >= REST_SIPS};
     argus_peers_take(self, knowledge, sonar);

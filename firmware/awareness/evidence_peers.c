@@ -337,7 +337,7 @@ int argus_peers_hollow(const argus_peers_t *const self, const int sonar, const i
 
 // Where the robot was when the pings of this SIP were sent, about: between its two last poses.
 static argus_pose_t pose_of_pings(const argus_peers_t *const self, const argus_knowledge_t *const knowledge) {
-    argus_pose_t pose = knowledge->pose;
+    argus_pose_t pose = argus_built_pose(knowledge);
     const uint32_t passed_ms = knowledge->sip_ms - self->before_ms;
     if (self->before_ms != 0 && passed_ms > 0 && passed_ms <= SIP_MOST_MS) {
         const int32_t span = (int32_t)passed_ms;
@@ -449,7 +449,7 @@ int16_t argus_faded(const int16_t score) {
 
 void argus_peers_sip(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
     argus_peers_t *const peers = &self->peers;
-    peers->before = knowledge->pose;
+    peers->before = argus_built_pose(knowledge);
     peers->before_ms = knowledge->sip_ms;
     if (knowledge->sip_ms - peers->faded_ms < FADE_MS) {
         return;

@@ -200,11 +200,12 @@ static void compare(argus_evidence_t *const self, const argus_knowledge_t *const
 static argus_view_t view_of(const argus_knowledge_t *const knowledge, const int sonar) {
     const argus_sonar_pose_t *const mount = &argus_sonar_pose[sonar];
     const argus_point_t robot = {mount->x_mm, mount->y_mm};
-    const argus_point_t at = argus_to_course(&knowledge->pose, robot);
+    const argus_pose_t pose = argus_built_pose(knowledge);
+    const argus_point_t at = argus_to_course(&pose, robot);
     const argus_view_t view = {.x_mm = at.x_mm,
                                .y_mm = at.y_mm,
                                .bearing_cdeg =
-                                   argus_angle_wrap(knowledge->pose.heading_cdeg + mount->heading_deg * 100),
+                                   argus_angle_wrap(pose.heading_cdeg + mount->heading_deg * 100),
                                .t_ms = knowledge->sip_ms,
                                .reading_mm = knowledge->sonar[sonar].reading_mm,
                                .rest = argus_at_rest(knowledge),
@@ -283,7 +284,7 @@ static int32_t cost_of_aim(const argus_evidence_t *const self, const argus_knowl
     const argus_point_t at = argus_to_course(&turned, robot);
     const argus_view_t there = {
         .x_mm = at.x_mm, .y_mm = at.y_mm, .bearing_cdeg = then->bearing_cdeg, .t_ms = knowledge->sip_ms};
-    const int32_t turn = argus_angle_abs_diff(heading, knowledge->pose.heading_cdeg);
+    const int32_t turn = argus_angle_abs_diff(heading, argus_built_heading_cdeg(knowledge));
     const bool telling = then->reading_mm >= AIM_NEAREST_MM && then->reading_mm <= AIM_FARTHEST_MM &&
                          turn >= SAME_BEARING_CDEG && turn <= AIM_TURN_CDEG &&
                          relate(&there, then).comparable;
@@ -300,7 +301,8 @@ bool argus_evidence_aim(const argus_evidence_t *const self, const argus_knowledg
             if (cost < least) {
                 least = cost;
                 *heading_cdeg =
-                    argus_angle_wrap(then->bearing_cdeg - argus_sonar_pose[sonar].heading_deg * 100);
+                    argus_angle_wrap(then->bearing_cdeg - argus_sonar_pose[sonar].heading_deg * 100 +
+                                     argus_robot_facing_cdeg(knowledge->robot));
             }
         }
     }

@@ -111,6 +111,12 @@ typedef struct {
     bool asked;        // an operator wants a look
 } argus_looks_t;
 
+// The last change of the leading end.
+typedef struct {
+    uint32_t odometer_mm;
+    bool done; // there was one
+} argus_reverse_t;
+
 // What operators and the configuration have settled.
 typedef struct {
     argus_mask_t pinned; // sonars whose health an operator has fixed
@@ -156,6 +162,7 @@ struct argus {
     argus_turning_t turning;
     argus_reflexes_t reflexes;
     argus_looks_t looks;
+    argus_reverse_t reverse;
     argus_orders_t orders;
     argus_history_t history;
     uint32_t ordered_ms; // the sonars fire in an order of ours, in this session, begun anew then

@@ -11,6 +11,7 @@
 #include "supervisor/motions.h"
 #include "supervisor/reflexes.h"
 #include "supervisor/resting.h"
+#include "supervisor/reverse.h"
 #include "supervisor/say.h"
 #include "supervisor/state.h"
 #include "supervisor/travel.h"
@@ -121,6 +122,10 @@ static argus_intent_t decide(argus_t *const self) {
     if (self->orders.passive || !wants) {
         enter_idle(self);
         return nothing();
+    }
+    if (!jogging && argus_should_turn_about(self)) {
+        argus_turn_about(self);
+        return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true};
     }
     if (!argus_guard_may_step(&self->plan)) { // all ahead are out, or suspects that no one can judge
         fail_mission(self);

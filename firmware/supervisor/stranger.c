@@ -10,7 +10,7 @@
 
 // Whose body it has is found out when its session opens; until then the one before holds.
 static void forget(argus_t *const self) {
-    const argus_robot_t *const before = self->knowledge.robot;
+    const argus_robot_t *const before = argus_robot_built(self->knowledge.robot);
     argus_knowledge_init(&self->knowledge);
     argus_body_is(&self->knowledge, before, self->now_ms);
     argus_echoes_init(&self->echoes);

@@ -95,7 +95,7 @@ void test_headings_go_out_in_whole_degrees_of_the_robots_own_frame(void) {
 }
 
 void test_a_move_is_given_time_to_begin(void) {
-    argus_motion_move(&m, &out, 150, 100, now_ms);
+    argus_motion_move(&m, &out, &k, 150, 100, now_ms);
     take(0, 0);
     take(0, 0);
     take(0, 0);
@@ -110,18 +110,18 @@ void test_a_move_is_given_time_to_begin(void) {
 }
 
 void test_the_speed_goes_before_the_move_when_it_differs(void) {
-    argus_motion_move(&m, &out, 150, 100, now_ms);
+    argus_motion_move(&m, &out, &k, 150, 100, now_ms);
     TEST_ASSERT_EQUAL(100, next(ARCOS_CMD_SETV));
     TEST_ASSERT_EQUAL(150, next(ARCOS_CMD_MOVE));
-    argus_motion_move(&m, &out, -90, 100, now_ms);
+    argus_motion_move(&m, &out, &k, -90, 100, now_ms);
     TEST_ASSERT_EQUAL(-90, next(ARCOS_CMD_MOVE));
-    argus_motion_move(&m, &out, 90, 200, now_ms);
+    argus_motion_move(&m, &out, &k, 90, 200, now_ms);
     TEST_ASSERT_EQUAL(200, next(ARCOS_CMD_SETV));
     TEST_ASSERT_EQUAL(90, next(ARCOS_CMD_MOVE));
 }
 
 void test_a_stop_overtakes_and_drops_motions(void) {
-    argus_motion_move(&m, &out, 1000, 200, now_ms);
+    argus_motion_move(&m, &out, &k, 1000, 200, now_ms);
     argus_motion_stop(&m, &out, now_ms);
     uint8_t packet[32];
     TEST_ASSERT_EQUAL(6, argus_outbox_fetch(&out, packet, sizeof packet));
