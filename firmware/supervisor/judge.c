@@ -64,8 +64,11 @@ static void name(argus_t *const self, const int sonar) {
     }
 }
 
-// An extreme is proved by way and time alone.
+// An extreme is proved by way and time alone, an array that has failed as a whole by what it heard before.
 static argus_fault_kind_t convicts(const argus_t *const self, const int sonar) {
+    if (argus_common_convicts(&self->common, &self->knowledge, sonar)) {
+        return ARGUS_KIND_OFF;
+    }
     const argus_fault_kind_t kind = argus_extremes_convicts(&self->extremes, sonar);
     return kind != ARGUS_KIND_NONE ? kind : argus_evidence_convicts(&self->evidence, sonar);
 }
@@ -75,7 +78,9 @@ static argus_intent_t judge_in(argus_t *const self, const int sonar) {
     if (kind != ARGUS_KIND_NONE) {
         return convict(self, sonar, kind);
     }
-    name(self, sonar);
+    if (!argus_common_excuses(&self->common, sonar)) {
+        name(self, sonar);
+    }
     return (argus_intent_t){0};
 }
 
@@ -116,8 +121,9 @@ static argus_intent_t judge_out(argus_t *const self, const int sonar) {
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = kind_of_out(self, sonar);
     const argus_fault_kind_t named = argus_evidence_relapses(&self->evidence, sonar);
-    const bool suspected =
-        argus_evidence_keeps_out(&self->evidence, sonar) || argus_extremes_keeps_out(&self->extremes, sonar);
+    const bool suspected = argus_evidence_keeps_out(&self->evidence, sonar) ||
+                           argus_extremes_keeps_out(&self->extremes, sonar) ||
+                           argus_common_convicts(&self->common, &self->knowledge, sonar);
     if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
     }

@@ -431,6 +431,10 @@ void argus_judge_all(argus_t *const self) {
     if (!argus_rules(self)->evidence) {
         return;
     }
+    const bool moves = argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE);
+    if (moves && argus_common_strikes(&self->common, argus_robot_forward(self->knowledge.robot))) {
+        argus_do(self, (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK, .full = true});
+    }
     for (int i = 0; i < self->knowledge.sonars && argus_mode_may(self->mode, ARGUS_MAY_JUDGE); i++) {
         argus_do(self, argus_judge(self, i));
     }

@@ -18,6 +18,7 @@ static void forget(argus_t *const self) {
     argus_evidence_init(&self->evidence);
     argus_evidence_set_caution(&self->evidence, self->config.caution);
     argus_extremes_init(&self->extremes);
+    argus_common_init(&self->common);
     argus_slip_restart(&self->slip);
     memset(&self->verifying, 0, sizeof self->verifying);
     memset(&self->looks, 0, sizeof self->looks);
