@@ -12,7 +12,9 @@
 #define TURNING_PER_MM 5 // ... until when the robot hardly turned: wheels that differ by less, for their distance, 11
                          // degrees/s
 #define NEAR_MM 2500   // a thing abeam that the others of that side cannot miss
-#define PASSED_MM 1500 // driven beside such things: proof
+#define APART_MM 400  // driven from one reading to the next, at most
+#define PASSED_MM 1500 // driven beside such things, both sides together: proof
+#define PASSED_LEAST_MM 400 // ... on either
 
 void argus_common_init(argus_common_t *const self) {
     memset(self, 0, sizeof *self);
@@ -53,30 +55,32 @@ static int lost_at_once(const argus_common_t *const self, const argus_knowledge_
     return lost;
 }
 
-// One abeam, of another array, that is relied on, has just been heard; whether it hears something near.
-typedef enum { BESIDE_UNKNOWN, BESIDE_NOTHING, BESIDE_SOMETHING } beside_t;
-static beside_t look_abeam(const argus_knowledge_t *const knowledge, const argus_mask_t sonars) {
-    const argus_robot_t *const robot = knowledge->robot;
-    const unsigned abeam = argus_robot_flank(robot) | argus_robot_rear_flank(robot);
-    const unsigned others = abeam & ~(unsigned)sonars & knowledge->fresh;
-    beside_t beside = BESIDE_UNKNOWN;
-    for (int i = 0; i < knowledge->sonars; i++) {
-        if ((others >> i & 1u) != 0 && argus_trusted(knowledge, i)) {
-            const bool near = knowledge->sonar[i].reading_mm <= NEAR_MM;
-            beside = near || beside == BESIDE_SOMETHING ? BESIDE_SOMETHING : BESIDE_NOTHING;
-        }
-    }
-    return beside;
+// One abeam, of another array, that is relied on: the way since it was heard last counts while it hears something near.
+static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowledge, const int sonar) {
+    argus_passed_t *const passed = &dark->passed[argus_robot_pose(knowledge->robot, sonar)->y_mm > 0];
+    const int32_t way_mm = (int32_t)(knowledge->odometer_mm - passed->odometer_mm);
+    const bool goes_on = passed->near && way_mm <= APART_MM;
+    passed->near = argus_trusted(knowledge, sonar) && knowledge->sonar[sonar].reading_mm <= NEAR_MM;
+    passed->mm += goes_on && passed->near ? way_mm : 0;
+    passed->odometer_mm = knowledge->odometer_mm;
 }
 
-static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowledge, const argus_mask_t sonars) {
-    const beside_t beside = look_abeam(knowledge, sonars);
-    if (beside == BESIDE_SOMETHING) {
-        dark->passed_mm += (int32_t)(knowledge->odometer_mm - dark->odometer_mm);
+static void pass_all(argus_dark_t *const dark, const argus_knowledge_t *const knowledge) {
+    const argus_robot_t *const robot = knowledge->robot;
+    const unsigned abeam = argus_robot_flank(robot) | argus_robot_rear_flank(robot);
+    const unsigned others = abeam & ~(unsigned)dark->sonars & knowledge->fresh;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((others >> i & 1u) != 0) {
+            pass(dark, knowledge, i);
+        }
     }
-    if (beside != BESIDE_UNKNOWN) {
-        dark->odometer_mm = knowledge->odometer_mm;
-    }
+}
+
+// On either side: what goes along on one may be a person.
+static bool has_passed(const argus_dark_t *const dark) {
+    const int32_t right_mm = dark->passed[0].mm;
+    const int32_t left_mm = dark->passed[1].mm;
+    return argus_min(right_mm, left_mm) >= PASSED_LEAST_MM && right_mm + left_mm >= PASSED_MM;
 }
 
 // Those of an array that has failed are out by now.
@@ -94,7 +98,7 @@ static void note_echoes(argus_common_t *const self, const argus_knowledge_t *con
     for (int i = 0; i < knowledge->sonars; i++) {
         straight = (fresh >> i & 1u) != 0 && self->none_run[i] == 0 ? !turns : straight;
     }
-    *dark = (argus_dark_t){.odometer_mm = knowledge->odometer_mm, .straight = straight};
+    *dark = (argus_dark_t){.straight = straight};
 }
 
 static void look_at(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int array) {
@@ -109,8 +113,8 @@ static void look_at(argus_common_t *const self, const argus_knowledge_t *const k
     dark->sonars = sonars;
     dark->at_once = was_dark ? dark->at_once : dark->straight && lost_at_once(self, knowledge, sonars) >= LEAST;
     dark->news = !was_dark && dark->at_once;
-    pass(dark, knowledge, sonars);
-    dark->proven = dark->proven || (dark->at_once && run >= PROOF_RUN) || dark->passed_mm >= PASSED_MM;
+    pass_all(dark, knowledge);
+    dark->proven = dark->proven || (dark->at_once && run >= PROOF_RUN) || has_passed(dark);
 }
 
 void argus_common_sip(argus_common_t *const self, const argus_knowledge_t *const knowledge) {

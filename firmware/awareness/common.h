@@ -8,12 +8,17 @@
 #define ARGUS_ARRAYS_MAX 4
 
 // An array is dark while none of its sonars that are in use hears anything. Its peers are no proof then: they are
-// suspects as well. That it has failed is proved by what its own sonars heard in the round before, or by a wall
-// that it passes and that those abeam of another array go on hearing.
+// suspects as well. That it has failed is proved by what its own sonars heard in the round before, or by walls on
+// either side that it passes and that those abeam of another array go on hearing.
 typedef struct {
-    uint32_t odometer_mm; // way driven when it was looked at last
-    int32_t passed_mm;    // driven beside something that others hear
-    argus_mask_t sonars;  // that are dark, 0: it is not
+    uint32_t odometer_mm; // way driven when one abeam of another array was heard last
+    int32_t mm;           // driven beside something near that it hears
+    bool near;            // it heard such
+} argus_passed_t;
+
+typedef struct {
+    argus_passed_t passed[2]; // right, left
+    argus_mask_t sonars;      // that are dark, 0: it is not
     bool straight; // the robot did not turn when it was heard last
     bool at_once;  // what it heard ended at one time, and the robot did not turn
     bool news;     // ... in this SIP
