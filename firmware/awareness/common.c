@@ -6,14 +6,15 @@
 
 #include "knowledge/angle.h"
 
-#define LEAST 4        // sonars in use that make an array, and of these had to hear something until then
-#define PROOF_RUN 3    // readings of each without an echo, before what ended at once is a proof
+#define LEAST 4         // sonars in use that make an array, and of these had to hear something until then
+#define PROOF_RUN 3     // readings of each without an echo, before what ended at once is a proof
 #define AT_ONCE_MS 450u // the echoes that it lost ended within a round and a SIP of each other
-#define TURNING_PER_MM 5 // ... until when the robot hardly turned: wheels that differ by less, for their distance, 11
-                         // degrees/s
-#define NEAR_MM 2500   // a thing abeam that the others of that side cannot miss
-#define APART_MM 400  // driven from one reading to the next, at most
-#define PASSED_MM 1500 // driven beside such things, both sides together: proof
+#define TURNING_PER_MM \
+    5 // ... until when the robot hardly turned: wheels that differ by less, for their distance, 11
+      // degrees/s
+#define NEAR_MM 2500        // a thing abeam that the others of that side cannot miss
+#define APART_MM 400        // driven from one reading to the next, at most
+#define PASSED_MM 1500      // driven beside such things, both sides together: proof
 #define PASSED_LEAST_MM 400 // ... on either
 
 void argus_common_init(argus_common_t *const self) {
@@ -55,7 +56,8 @@ static int lost_at_once(const argus_common_t *const self, const argus_knowledge_
     return lost;
 }
 
-// One abeam, of another array, that is relied on: the way since it was heard last counts while it hears something near.
+// One abeam, of another array, that is relied on: the way since it was heard last counts while it hears
+// something near.
 static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowledge, const int sonar) {
     argus_passed_t *const passed = &dark->passed[argus_robot_pose(knowledge->robot, sonar)->y_mm > 0];
     const int32_t way_mm = (int32_t)(knowledge->odometer_mm - passed->odometer_mm);
@@ -84,14 +86,15 @@ static bool has_passed(const argus_dark_t *const dark) {
 }
 
 // Those of an array that has failed are out by now.
-static argus_mask_t members(const argus_dark_t *const dark, const argus_knowledge_t *const knowledge, const int array) {
+static argus_mask_t members(const argus_dark_t *const dark, const argus_knowledge_t *const knowledge,
+                            const int array) {
     const unsigned in_use = argus_robot_array(knowledge->robot, array) & ~(unsigned)argus_out(knowledge);
     return dark->proven ? dark->sonars : (argus_mask_t)in_use;
 }
 
 // Straight: as of its last echo.
-static void note_echoes(argus_common_t *const self, const argus_knowledge_t *const knowledge, argus_dark_t *const dark,
-                        const argus_mask_t sonars) {
+static void note_echoes(argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                        argus_dark_t *const dark, const argus_mask_t sonars) {
     const unsigned fresh = sonars & knowledge->fresh;
     const bool turns = self->has_turned && knowledge->sip_ms - self->turned_ms <= AT_ONCE_MS;
     bool straight = dark->straight;
@@ -111,7 +114,8 @@ static void look_at(argus_common_t *const self, const argus_knowledge_t *const k
         return;
     }
     dark->sonars = sonars;
-    dark->at_once = was_dark ? dark->at_once : dark->straight && lost_at_once(self, knowledge, sonars) >= LEAST;
+    dark->at_once =
+        was_dark ? dark->at_once : dark->straight && lost_at_once(self, knowledge, sonars) >= LEAST;
     dark->news = !was_dark && dark->at_once;
     pass_all(dark, knowledge);
     dark->proven = dark->proven || (dark->at_once && run >= PROOF_RUN) || has_passed(dark);
@@ -142,7 +146,8 @@ bool argus_common_strikes(const argus_common_t *const self, const argus_mask_t s
     return false;
 }
 
-bool argus_common_convicts(const argus_common_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+bool argus_common_convicts(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                           const int sonar) {
     const int array = argus_robot_pose(knowledge->robot, sonar)->array;
     return array < ARGUS_ARRAYS_MAX && self->of[array].proven && (self->of[array].sonars >> sonar & 1u) != 0;
 }

@@ -7,9 +7,9 @@
 
 #define ARGUS_ARRAYS_MAX 4
 
-// An array is dark while none of its sonars that are in use hears anything. Its peers are no proof then: they are
-// suspects as well. That it has failed is proved by what its own sonars heard in the round before, or by walls on
-// either side that it passes and that those abeam of another array go on hearing.
+// An array is dark while none of its sonars that are in use hears anything. Its peers are no proof then: they
+// are suspects as well. That it has failed is proved by what its own sonars heard in the round before, or by
+// walls on either side that it passes and that those abeam of another array go on hearing.
 typedef struct {
     uint32_t odometer_mm; // way driven when one abeam of another array was heard last
     int32_t mm;           // driven beside something near that it hears
@@ -19,9 +19,9 @@ typedef struct {
 typedef struct {
     argus_passed_t passed[2]; // right, left
     argus_mask_t sonars;      // that are dark, 0: it is not
-    bool straight; // the robot did not turn when it was heard last
-    bool at_once;  // what it heard ended at one time, and the robot did not turn
-    bool news;     // ... in this SIP
+    bool straight;            // the robot did not turn when it was heard last
+    bool at_once;             // what it heard ended at one time, and the robot did not turn
+    bool news;                // ... in this SIP
     bool proven;
 } argus_dark_t;
 
@@ -45,7 +45,8 @@ bool argus_common_strikes(const argus_common_t *self, argus_mask_t sonars);
 // This sonar is of an array that is dark, and proved to have failed.
 bool argus_common_convicts(const argus_common_t *self, const argus_knowledge_t *knowledge, int sonar);
 
-// An array that it is not of is dark, and it is not known whether that has failed: disagreeing with it is no fault.
+// An array that it is not of is dark, and it is not known whether that has failed: disagreeing with it is no
+// fault.
 bool argus_common_excuses(const argus_common_t *self, int sonar);
 
 #endif

@@ -39,8 +39,8 @@ static int32_t turn_rate_cdeg_s(const argus_knowledge_t *const knowledge) {
 
 static int bin_of(const argus_knowledge_t *const knowledge, const int sonar) {
     const int32_t late = turn_rate_cdeg_s(knowledge) * LAG_MS / 1000;
-    const int32_t bearing =
-        argus_angle_wrap(argus_built_heading_cdeg(knowledge) - late + argus_sonar_pose[sonar].heading_deg * 100);
+    const int32_t bearing = argus_angle_wrap(argus_built_heading_cdeg(knowledge) - late +
+                                             argus_sonar_pose[sonar].heading_deg * 100);
     return (int)((bearing + 36000) / BIN_CDEG % ARGUS_SCAN_BINS);
 }
 

@@ -204,8 +204,7 @@ static argus_view_t view_of(const argus_knowledge_t *const knowledge, const int 
     const argus_point_t at = argus_to_course(&pose, robot);
     const argus_view_t view = {.x_mm = at.x_mm,
                                .y_mm = at.y_mm,
-                               .bearing_cdeg =
-                                   argus_angle_wrap(pose.heading_cdeg + mount->heading_deg * 100),
+                               .bearing_cdeg = argus_angle_wrap(pose.heading_cdeg + mount->heading_deg * 100),
                                .t_ms = knowledge->sip_ms,
                                .reading_mm = knowledge->sonar[sonar].reading_mm,
                                .rest = argus_at_rest(knowledge),

@@ -35,8 +35,8 @@ typedef struct {
     uint32_t from_ms;
 } argus_mark_t;
 
-// While the rear leads (`robot` is a row that is reversed) all of the robot is told as if its rear were its front:
-// heading, speeds of the wheels, bumpers, stalls, echoes in the robot's frame. The place is the same.
+// While the rear leads (`robot` is a row that is reversed) all of the robot is told as if its rear were its
+// front: heading, speeds of the wheels, bumpers, stalls, echoes in the robot's frame. The place is the same.
 typedef struct {
     const argus_robot_t *robot; // whose geometry holds, never NULL
     uint8_t sonars;             // argus_robot_sonars() of it: those beyond are absent
@@ -88,7 +88,8 @@ void argus_knowledge_sip(argus_knowledge_t *self, const argus_sip_t *sip, int32_
 void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um,
                               uint32_t now_ms);
 
-// The other end leads from now on: `robot` is argus_robot_other_end() of the present one. The robot is at rest.
+// The other end leads from now on: `robot` is argus_robot_other_end() of the present one. The robot is at
+// rest.
 void argus_knowledge_turn_about(argus_knowledge_t *self, const argus_robot_t *robot);
 
 // Of the robot as it is built, whichever end leads; what is said outside.

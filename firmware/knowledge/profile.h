@@ -24,7 +24,7 @@
     X(passes_abeam, 0, 1, 1, "S7: of the rear, who looks abeam need not read clear beyond 250 mm")          \
     X(drives_seen, 0, 1, 1, "S1: drives as far as living sonars have seen the way; stops only to see more") \
     X(adapts_speed, 0, 1, 1, "S5: as fast as what is seen ahead allows; turns gently while it drives")      \
-    X(may_reverse, 0, 1, 1, "drives on with the rear ahead when the front has failed and the rear has not")    \
+    X(may_reverse, 0, 1, 1, "drives on with the rear ahead when the front has failed and the rear has not") \
     X(leaves_ahead, 0, 1, 1, "S4: hemmed in, it goes on from the heading that it has")
 
 typedef struct {

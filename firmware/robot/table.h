@@ -18,8 +18,8 @@ typedef struct {
     int8_t right;
 } argus_sonar_pose_t;
 
-// One row of hil_sim/tables/robots, which has the source of each figure. A robot with a rear array has a second
-// row, the robot turned by 180 degrees: what holds while its rear leads.
+// One row of hil_sim/tables/robots, which has the source of each figure. A robot with a rear array has a
+// second row, the robot turned by 180 degrees: what holds while its rear leads.
 typedef struct {
     char name[ARGUS_ROBOT_NAME_MAX]; // the subclass that it announces at SYNC2
     int8_t other;                    // row of its other end, -1: none

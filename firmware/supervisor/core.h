@@ -146,7 +146,7 @@ struct argus {
     argus_awareness_t awareness;
     argus_evidence_t evidence; // profile argus
     argus_extremes_t extremes; // profile argus
-    argus_common_t common; // profile argus
+    argus_common_t common;     // profile argus
     argus_slip_t slip;
     argus_plan_t plan;
     argus_failure_t failure;

@@ -26,8 +26,8 @@ static argus_intent_t convict(argus_t *const self, const int sonar, const argus_
     const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
     argus_disable(self, sonar, kind);
     argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
-    const bool goes_on = argus_rules(self)->drives_seen && argus_guard_may_step(&self->plan) &&
-                         !argus_should_turn_about(self);
+    const bool goes_on =
+        argus_rules(self)->drives_seen && argus_guard_may_step(&self->plan) && !argus_should_turn_about(self);
     return ahead && !goes_on ? break_off(self) : (argus_intent_t){0};
 }
 

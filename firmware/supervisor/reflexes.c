@@ -94,8 +94,7 @@ static argus_intent_t sees_stall(const argus_t *const self, const argus_alarm_t 
     if (!stalls || said) {
         return nothing();
     }
-    argus_intent_t intent =
-        say(ARGUS_EV_STALL, ARGUS_NO_SONAR, argus_built_stalls(&self->knowledge));
+    argus_intent_t intent = say(ARGUS_EV_STALL, ARGUS_NO_SONAR, argus_built_stalls(&self->knowledge));
     intent.stop = ARGUS_STOP_STOP;
     intent.way = ARGUS_WAY_REFUSE;
     intent.unchecked = true;

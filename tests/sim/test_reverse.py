@@ -8,6 +8,7 @@ from __future__ import annotations
 import dataclasses
 
 import pytest
+
 from hil_sim.sil import Mission, Outcome, Sil
 
 COURSES = {

@@ -265,7 +265,8 @@ typedef enum {
     X(70, OPERATOR, OK, "operator", "an operator's command was taken; value: its number")                    \
     X(71, PASSIVE, OK, "operator", "reports only: commands no motion")                                       \
     X(72, ACTIVE, OK, "operator", "drives")                                                                  \
-    X(73, REVERSED, WARN, "drive", "the leading end changes, at rest; value: 1 the rear leads, 0 the front again") \
+    X(73, REVERSED, WARN, "drive",                                                                           \
+      "the leading end changes, at rest; value: 1 the rear leads, 0 the front again")                        \
     X(80, RECORD_IGNORED, WARN, "record",                                                                    \
       "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")            \
     X(81, EVENTS_LOST, ERROR, "events", "the event queue overflowed; value: events lost")                    \

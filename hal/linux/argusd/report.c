@@ -244,8 +244,8 @@ size_t report_status_plain(const view_t *view, char *line, size_t capacity) {
         return text.length;
     }
     text_add(&text, " %s%s%s at %d,%d mm %d deg", status->active ? "active" : "passive",
-             status->paused ? ", paused," : "", status->reversed ? ", rear ahead," : "", (int)status->pose.x_mm, (int)status->pose.y_mm,
-             (int)(status->pose.heading_cdeg / 100));
+             status->paused ? ", paused," : "", status->reversed ? ", rear ahead," : "",
+             (int)status->pose.x_mm, (int)status->pose.y_mm, (int)(status->pose.heading_cdeg / 100));
     if (status->waypoints > 0) {
         text_add(&text, " goal %d mm", (int)status->goal_mm);
     }

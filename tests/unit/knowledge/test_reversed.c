@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: while the rear leads all of the robot is told as if its rear were its front, about the same
-// place; what is said outside is as before.
+// Rule under attack: while the rear leads all of the robot is told as if its rear were its front, about the
+// same place; what is said outside is as before.
 #include "knowledge/knowledge.h"
 
 #include <stdlib.h>

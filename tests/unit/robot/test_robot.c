@@ -248,7 +248,8 @@ void test_a_build_manages_as_many_as_it_was_made_for(void) {
     TEST_ASSERT_EQUAL(ARGUS_SONARS, argus_count_bits(argus_robot_all(argus_robot_find("peoplebot-sh"))));
 }
 
-// The other end ------------------------------------------------------------------------------------------------
+// The other end
+// ------------------------------------------------------------------------------------------------
 
 static void is_turned(const argus_robot_t *robot, const argus_robot_t *end) {
     TEST_ASSERT_EQUAL_STRING(robot->name, end->name);
@@ -266,7 +267,8 @@ static void is_turned(const argus_robot_t *robot, const argus_robot_t *end) {
         TEST_ASSERT_EQUAL_MESSAGE(-a->x_mm, b->x_mm, robot->name);
         TEST_ASSERT_EQUAL_MESSAGE(-a->y_mm, b->y_mm, robot->name);
         TEST_ASSERT_EQUAL_MESSAGE(a->array, b->array, robot->name);
-        TEST_ASSERT_EQUAL_MESSAGE(18000, argus_angle_abs_diff(a->heading_deg * 100, b->heading_deg * 100), robot->name);
+        TEST_ASSERT_EQUAL_MESSAGE(18000, argus_angle_abs_diff(a->heading_deg * 100, b->heading_deg * 100),
+                                  robot->name);
     }
 }
 

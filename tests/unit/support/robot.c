@@ -564,7 +564,8 @@ static void watch_ahead(robot_t *robot, int32_t mm) {
 static void watch_back(robot_t *robot, int32_t mm) {
     const int first = rear_leads(robot) ? 0 : 8;
     for (int i = first; i < first + 8 && i < ARGUS_SONARS; i++) {
-        const bool abeam = robot->argus.config.profile == ARGUS_PROFILE_ARGUS && (i == first || i == first + 7);
+        const bool abeam =
+            robot->argus.config.profile == ARGUS_PROFILE_ARGUS && (i == first || i == first + 7);
         const int clear_mm = abeam ? 250 : robot->argus.config.rear_clear_mm;
         if (argus_is_out(&robot->argus.knowledge, i) || robot->shown[i] <= clear_mm) {
             complain(robot, "S7: MOVE back though a rear sonar does not read clear", i);
