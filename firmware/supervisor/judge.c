@@ -116,26 +116,34 @@ static bool is_silent(const argus_t *const self, const int sonar) {
     return argus_silent_ms(&self->knowledge, sonar) > (uint32_t)self->config.stale_ms;
 }
 
+static bool keeps_out(const argus_t *const self, const int sonar) {
+    return argus_evidence_keeps_out(&self->evidence, sonar) ||
+           argus_extremes_keeps_out(&self->extremes, sonar) ||
+           argus_common_convicts(&self->common, &self->knowledge, sonar);
+}
+
+static bool does_well(const argus_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const bool long_enough = self->now_ms - s->since_ms >= PROBATION_MS;
+    return long_enough && !is_silent(self, sonar) &&
+           argus_evidence_agreed(&self->evidence, sonar) >= agreements_wanted(s);
+}
+
 static argus_intent_t judge_out(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = kind_of_out(self, sonar);
     const argus_fault_kind_t named = argus_evidence_relapses(&self->evidence, sonar);
-    const bool suspected = argus_evidence_keeps_out(&self->evidence, sonar) ||
-                           argus_extremes_keeps_out(&self->extremes, sonar) ||
-                           argus_common_convicts(&self->common, &self->knowledge, sonar);
     if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
     }
-    if (suspected) {
+    if (keeps_out(self, sonar)) {
         if (s->health == ARGUS_PROBATION && named != ARGUS_KIND_NONE) {
             argus_disable(self, sonar, named);
         }
         return (argus_intent_t){0};
     }
-    const bool long_enough = self->now_ms - s->since_ms >= PROBATION_MS;
-    if (!long_enough || is_silent(self, sonar) ||
-        argus_evidence_agreed(&self->evidence, sonar) < agreements_wanted(s)) {
+    if (!does_well(self, sonar)) {
         return (argus_intent_t){0};
     }
     restore(self, sonar);

@@ -123,7 +123,7 @@ static argus_intent_t decide(argus_t *const self) {
         enter_idle(self);
         return nothing();
     }
-    if (!jogging && argus_should_turn_about(self)) {
+    if (argus_should_turn_about(self)) {
         argus_turn_about(self);
         return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true};
     }

@@ -48,7 +48,8 @@ static bool is_better(const argus_t *const self, const argus_robot_t *const othe
 
 bool argus_should_turn_about(const argus_t *const self) {
     const argus_robot_t *const other = argus_robot_other_end(self->knowledge.robot);
-    if (other == NULL || !argus_rules(self)->may_reverse || !argus_is_active(self) || !is_safe(self, other)) {
+    const bool may = argus_rules(self)->may_reverse && argus_is_active(self) && self->travel.jog_mm == 0;
+    if (other == NULL || !may || !is_safe(self, other)) {
         return false;
     }
     if (!argus_guard_may_step(&self->plan)) {
