@@ -2,6 +2,7 @@
 // Sees what calls for a STOP, or for an event, in one SIP.
 #include "supervisor/reflexes.h"
 
+#include "awareness/slant.h"
 #include "knowledge/angle.h"
 #include "supervisor/mode.h"
 #include "supervisor/state.h"
@@ -186,7 +187,6 @@ static argus_intent_t sees_object(const argus_t *const self, const argus_alarm_t
     argus_intent_t intent = say(ARGUS_EV_OBJECT, alarm->object_sonar, alarm->object_mm);
     intent.stop = ARGUS_STOP_STOP;
     intent.way = backing ? ARGUS_WAY_KEEP : ARGUS_WAY_REFUSE;
-    intent.doubted = alarm->object;
     intent.act = ARGUS_DO_CHECK;
     intent.full = true;
     return intent;
@@ -245,7 +245,8 @@ static argus_intent_t sees_flank(const argus_t *const self, const argus_alarm_t 
                             argus_robot_flank(self->knowledge.robot);
     const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((usable >> i & 1u) != 0 && argus_evidence_slants_in(&self->evidence, i, stop_mm)) {
+        if ((usable >> i & 1u) != 0 &&
+            argus_slants_in(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
             argus_intent_t intent = say(ARGUS_EV_OBJECT, i, self->knowledge.sonar[i].reading_mm);
             intent.stop = ARGUS_STOP_STOP;
             intent.way = ARGUS_WAY_REFUSE;

@@ -48,8 +48,8 @@ exit codes: 0 done, 1 a mission failed, 2 wrong argument or file, 130 interrupte
 _ABLATE: Final = """\
 examples:
   argus-sim bench ablate --seeds 1-2 --streams streams/tune --out ablation
-  argus-sim bench ablate --only scan,'peers*' --kinds off,wrong --seeds 1
-  argus-sim bench ablate --constants --only 'LATE_*' --streams streams/tune
+  argus-sim bench ablate --only stuck,'others*' --kinds off,wrong --seeds 1
+  argus-sim bench ablate --constants --only 'ARGUS_LATE_*' --streams streams/tune
 
 For each rule in hil_sim/bench/rules.toml a fault manager is built without it and judged on the same streams as the
 whole. A rule earns its place when without it fewer faults are found in time than chance explains, or more false

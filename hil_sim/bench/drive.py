@@ -161,9 +161,7 @@ def _cut_end(when: str) -> str:
     return start.partition("-")[0] + (f":{parameter}" if parameter else "")
 
 
-def record(
-    case: Case, physics: str = "", *, people: bool = False, speed_mm_s: float = SPEED_MM_S
-) -> Stream:
+def record(case: Case, physics: str = "", *, people: bool = False, speed_mm_s: float = SPEED_MM_S) -> Stream:
     """Drive one case and return its stream. people: also where the case has none."""
     planned = with_people(case) if people else mission_of(case)
     free = case.kind == "free"

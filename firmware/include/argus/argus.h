@@ -453,7 +453,7 @@ typedef enum {
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.
-#define ARGUS_STORAGE_BYTES (13700 + 1920 * ARGUS_SONARS)
+#define ARGUS_STORAGE_BYTES (13400 + 720 * ARGUS_SONARS)
 typedef union {
     uint64_t align;
     uint8_t bytes[ARGUS_STORAGE_BYTES];
