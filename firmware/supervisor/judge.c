@@ -11,7 +11,7 @@
 #define PROBATION_AGREED 4
 #define PROBATION_MS 4000u
 #define PROBATION_DOUBLINGS 4
-#define NAME_STANDS_MS 500u // more than a round, before a name is said: many for a healthy sonar pass sooner
+#define NAME_STANDS_MS 2000u // six rounds, before a name is said: many for a healthy sonar pass sooner
 
 static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
