@@ -68,13 +68,24 @@ static void advance_pose(argus_knowledge_t *const self, const int32_t dx_um, con
     self->odometer_mm += (uint32_t)carry_mm(&self->odometer_um, way_um);
 }
 
+static int32_t speed_or_none(const int32_t mm_s) {
+    return argus_odometry_is_speed(mm_s) ? mm_s : 0;
+}
+
+// What no odometry and no wheel shows.
+static bool is_odd(const argus_sip_t *const sip) {
+    return argus_abs(sip->heading_raw) > TURN_UNITS || !argus_odometry_is_speed(sip->vel_left_mm_s) ||
+           !argus_odometry_is_speed(sip->vel_right_mm_s);
+}
+
 // Since the last SIP, which is before this one's speeds are taken.
 static argus_span_t span_to(const argus_knowledge_t *const self, const argus_sip_t *const sip,
                             const uint32_t now_ms) {
-    const argus_span_t span = {.before = {self->vel_left_mm_s, self->vel_right_mm_s},
-                               .after = {sip->vel_left_mm_s, sip->vel_right_mm_s},
-                               .track_mm = self->robot->track_mm,
-                               .elapsed_ms = now_ms - self->moved_ms};
+    const argus_span_t span = {
+        .before = {speed_or_none(self->vel_left_mm_s), speed_or_none(self->vel_right_mm_s)},
+        .after = {speed_or_none(sip->vel_left_mm_s), speed_or_none(sip->vel_right_mm_s)},
+        .track_mm = self->robot->track_mm,
+        .elapsed_ms = now_ms - self->moved_ms};
     return span;
 }
 
@@ -98,8 +109,7 @@ static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, co
     const int32_t heading = argus_angle_wrap(raw_heading_cdeg(sip) + self->heading_offset_cdeg);
     const argus_way_turn_t moved = {argus_hypot(dx_um / 1000, dy_um / 1000),
                                     argus_angle_abs_diff(heading, self->pose.heading_cdeg)};
-    const bool heading_is = argus_abs(sip->heading_raw) <= TURN_UNITS;
-    if (!heading_is || !argus_odometry_may_be(&self->excess, span, &moved)) {
+    if (is_odd(sip) || !argus_odometry_may_be(&self->excess, span, &moved)) {
         self->leap_mm = moved.way_mm;
         self->leap_cdeg = moved.turn_cdeg;
         return false;
@@ -143,6 +153,7 @@ void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *
     if (self->leapt) {
         leave_out(self, sip, &span);
         self->leaps++;
+        self->leaps_unseen += argus_odometry_is_unseen(&span) ? 1u : 0u;
     }
     self->moved_ms = now_ms;
     self->x_raw = sip->x_raw;

@@ -53,6 +53,7 @@ typedef struct {
     bool origin_due;       // the robot may have set its odometry to zero, since these
     bool leapt;            // in the last SIP, as no robot moves: left out of the pose
     uint32_t leaps;        // monotonic
+    uint32_t leaps_unseen; // ... of these after a gap in which it moved: its place is lost
     int32_t leap_mm;
     int32_t leap_cdeg; // >= 0
     int16_t vel_left_mm_s;

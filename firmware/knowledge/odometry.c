@@ -12,6 +12,7 @@
 #define FASTEST_MM_S 2000   // no robot of the tables drives as fast
 #define DRIVES_MM_S 750     // the fastest that it is ever told to
 #define TURNS_CDEG_S 10000  // likewise
+#define TURNING_CDEG_S 500  // ... which straight wheels do not look like
 #define ACCEL_MM_S2 2000    // the hardest that wheels speed up or brake
 #define ACCEL_CDEG_S2 30000 // likewise
 #define ACCEL_MM 300        // in a gap they reach their speed
@@ -46,7 +47,8 @@ static int32_t turn_cdeg_s(const argus_wheels_t *const wheels, const int32_t tra
 static int32_t fastest_cdeg_s(const argus_span_t *const span) {
     const int32_t before = argus_abs(turn_cdeg_s(&span->before, span->track_mm));
     const int32_t after = argus_abs(turn_cdeg_s(&span->after, span->track_mm));
-    const int32_t gap = span->elapsed_ms > GAP_MS ? TURNS_CDEG_S : 0;
+    // It begins no turn by itself, but it ends one.
+    const int32_t gap = span->elapsed_ms > GAP_MS && before > TURNING_CDEG_S ? TURNS_CDEG_S : 0;
     return argus_max(gap, argus_max(before, after));
 }
 
@@ -57,6 +59,10 @@ static int32_t times_ms(const int32_t per_s, const int32_t ms) {
 
 static int32_t elapsed_ms(const argus_span_t *const span) {
     return (int32_t)(span->elapsed_ms < GAP_MAX_MS ? span->elapsed_ms : GAP_MAX_MS);
+}
+
+bool argus_odometry_is_speed(const int32_t mm_s) {
+    return argus_abs(mm_s) <= FASTEST_MM_S;
 }
 
 argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *const span) {
@@ -102,6 +108,10 @@ static bool builds_up(argus_excess_t *const self, const argus_span_t *const span
     self->turn_cdeg = build_up(self->turn_cdeg, moved->turn_cdeg, times_ms(cdeg_s, ms), SLACK_CDEG);
     return self->way_mm > EXCESS_MM + times_ms(mm_s, LOST_MS) ||
            self->turn_cdeg > EXCESS_CDEG + times_ms(cdeg_s, LOST_MS);
+}
+
+bool argus_odometry_is_unseen(const argus_span_t *const span) {
+    return span->elapsed_ms > GAP_MS && (span->before.left_mm_s != 0 || span->before.right_mm_s != 0);
 }
 
 bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *const span,
