@@ -66,6 +66,10 @@ class TruthRecord:
             self._say(f"{self._path}: the truth record ends here ({error.strerror}); the robot goes on")
             self.close()
 
+    def fileno(self) -> int:
+        """The descriptor that it is written to."""
+        return self._file.fileno()
+
     def close(self) -> None:
         """Close the file; later records are dropped."""
         self._file.close()

@@ -153,7 +153,7 @@ def _file_of(path: str | Path) -> Path:
         return file
     if str(path) not in scenario_names():
         raise SimError(
-            f"no scenario '{path}'; name one of {', '.join(scenario_names())}, or a file ending in .yaml"
+            f"no scenario {str(path)[:60]!r}; name one of {', '.join(scenario_names())}, or a file ending in .yaml"
         )
     return SCENARIO_DIR / f"{path}.yaml"
 
