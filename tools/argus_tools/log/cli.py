@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import argparse
 import gc
-import io
 import importlib
+import io
 import os
 import sys
 from collections.abc import Sequence

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: MIT
+"""Builds the vendor's programs outside of the checkout, runs them against ours, and prints what came of it."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import json
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+ROOT: Final = Path(__file__).resolve().parents[2]
+SIM: Final = ROOT / ".venv/bin/argus-sim"
+ARGUSD: Final = ROOT / "build/release/argusd"
+EXAMPLES: Final = ("wander", "demo", "gotoActionExample")
+LIMIT_S: Final = 45.0
+ESCAPE: Final = b"\x1b"
+ARROW_UP: Final = b"\x1b[A"
+DROVE_MM: Final = 300.0
+MAP: Final = "AMROffice.map"
+GOAL: Final = "800,0"
+
+
+@dataclass(frozen=True)
+class Peer:
+    """One run: who against whom, whether it did what it must, and what was seen."""
+
+    client: str
+    server: str
+    passed: bool
+    seen: str
+
+
+def cache(name: str, source: Path) -> Path:
+    """Return a copy of the sources to build in: theirs stay as they are, and nothing of them is in our tree."""
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    folder = home / "argus" / "peers" / name
+    if not folder.exists():
+        ignored = shutil.ignore_patterns("*.o", "*.a", "*.so", ".git")
+        shutil.copytree(source, folder, symlinks=True, ignore=ignored, ignore_dangling_symlinks=True)
+    return folder
+
+
+def make(folder: Path, *words: str) -> None:
+    """Run make; its output goes where ours goes."""
+    subprocess.run(["make", "-j2", *words], cwd=folder, check=True)
+
+
+def build_aria(source: Path) -> Path:
+    """Build the library and the examples; return the folder."""
+    folder = cache("aria", source)
+    make(folder, "lib/libAria.so", "lib/libAria.a")
+    make(folder, *(f"examples/{name}" for name in EXAMPLES))
+    return folder
+
+
+def build_mobilesim(source: Path, aria: Path) -> Path:
+    """Build the emulator without a screen, with the ARIA built before; return the folder."""
+    folder = cache("mobilesim", source)
+    make(folder, f"ARIA={aria}", "MobileSim")
+    return folder
+
+
+def free_port() -> int:
+    """Return a port that nobody listens on."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return int(server.getsockname()[1])
+
+
+@contextlib.contextmanager
+def started(words: Sequence[str | Path], **options: Any) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a program; it ends with the block."""
+    child = subprocess.Popen([str(word) for word in words], start_new_session=True, **options)
+    try:
+        yield child
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(child.pid, signal.SIGTERM)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            child.wait(10)
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(child.pid, signal.SIGKILL)
+        child.wait()
+
+
+def wait_port(port: int, limit_s: float = 30.0) -> bool:
+    """Wait until somebody listens; whoever looks is turned away by nobody's session."""
+    until = time.monotonic() + limit_s
+    hexed = f":{port:04X} "
+    while time.monotonic() < until:
+        rows = Path("/proc/net/tcp").read_text().splitlines()[1:]
+        if any(hexed in row and row.split()[3] == "0A" for row in rows):
+            return True
+        time.sleep(0.1)
+    return False
+
+
+def keys_of(name: str) -> list[tuple[float, bytes]]:
+    """What is pressed, after how many seconds: demo is driven by hand, the others drive by themselves."""
+    return [(4.0 + 0.2 * k, ARROW_UP) for k in range(40)] if name == "demo" else []
+
+
+def run_client(
+    words: Sequence[str], environment: Mapping[str, str], keys: Sequence[tuple[float, bytes]]
+) -> str:
+    """Run a client for LIMIT_S with these keys, then escape; return what it said."""
+    with (
+        tempfile.TemporaryFile() as said,
+        started(
+            words, stdin=subprocess.PIPE, stdout=said, stderr=subprocess.STDOUT, env=dict(environment)
+        ) as child,
+    ):
+        assert child.stdin is not None
+        start = time.monotonic()
+        for after_s, key in [*keys, (LIMIT_S, ESCAPE)]:
+            while time.monotonic() < start + after_s and child.poll() is None:
+                time.sleep(0.05)
+            with contextlib.suppress(OSError):
+                child.stdin.write(key)
+                child.stdin.flush()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            child.wait(10)
+        said.seek(0)
+        return said.read().decode("latin-1")
+
+
+def truth_of(path: Path) -> dict[str, Any]:
+    """What truly happened."""
+    records = [json.loads(line) for line in path.read_text().splitlines() if line.endswith("}")]
+    states = [r for r in records if r["type"] == "state"]
+    way = sum(
+        ((a["x_mm"] - b["x_mm"]) ** 2 + (a["y_mm"] - b["y_mm"]) ** 2) ** 0.5
+        for a, b in itertools.pairwise(states)
+    )
+    return {
+        "sessions": sum(r["type"] == "session" and r["state"] == "open" for r in records),
+        "way_mm": way,
+        "collisions": sum(r["type"] == "collision" for r in records),
+    }
+
+
+def aria_against_sim(aria: Path, name: str, folder: Path) -> Peer:
+    """One of the vendor's examples drives our robot."""
+    port = free_port()
+    truth = folder / f"{name}.jsonl"
+    environment = {**os.environ, "LD_LIBRARY_PATH": str(aria / "lib"), "ARIA": str(aria)}
+    words = [str(aria / "examples" / name), "-remoteHost", "127.0.0.1", "-remoteRobotTcpPort", str(port)]
+    with started([SIM, "--tcp", str(port), "--world", "hall", "--truth", truth], stdout=subprocess.DEVNULL):
+        wait_port(port)
+        run_client(words, environment, keys_of(name))
+    seen = truth_of(truth)
+    passed = seen["sessions"] > 0 and seen["way_mm"] > DROVE_MM
+    text = f"{seen['sessions']} session, {seen['way_mm']:.0f} mm in {LIMIT_S:.0f} s, {seen['collisions']} collisions"
+    return Peer(name, "argus-sim", passed, text)
+
+
+def argusd_against_mobilesim(mobilesim: Path, folder: Path) -> Peer:
+    """argusd drives the vendor's robot to a goal."""
+    port = free_port()
+    words = [
+        mobilesim / "MobileSim",
+        "--nogui",
+        "-m",
+        mobilesim / MAP,
+        "-r",
+        "p3dx",
+        "-p",
+        str(port),
+        "--nocrashdebug",
+    ]
+    log = (folder / "mobilesim.log").open("wb")
+    with log, started(words, stdout=log, stderr=subprocess.STDOUT, cwd=folder, stdin=subprocess.DEVNULL):
+        if not wait_port(port):
+            return Peer(
+                "argusd",
+                "MobileSim",
+                False,
+                "nobody listens: " + (folder / "mobilesim.log").read_text()[-200:],
+            )
+        course = [str(ARGUSD), "--link", f"tcp:127.0.0.1:{port}", "--active", "--goal", GOAL, "--json"]
+        done = subprocess.run(course, capture_output=True, check=False, timeout=300, stdin=subprocess.DEVNULL)
+    events = [json.loads(line) for line in done.stdout.splitlines()]
+    out = [e["name"] for e in events if e["event"] == "SONAR_DISABLED"]
+    reached = any(e["event"] == "GOAL_REACHED" for e in events)
+    sips = max((e["sips"] for e in events if e["event"] == "STATUS"), default=0)
+    text = f"goal {GOAL} {'reached' if reached else 'not reached'}, {sips} SIPs, sonars out: {', '.join(out) or 'none'}"
+    return Peer("argusd", "MobileSim", reached and done.returncode == 0, text)
+
+
+def main(words: Sequence[str]) -> int:
+    """Build and run what is given as NAME=FOLDER; 1 when something is not as it must be."""
+    given = {name: Path(folder) for name, _, folder in (word.partition("=") for word in words)}
+    peers: list[Peer] = []
+    aria = build_aria(given["ARIA_SOURCE"]) if "ARIA_SOURCE" in given else None
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        if aria is not None:
+            peers += [aria_against_sim(aria, example, folder) for example in EXAMPLES]
+        if aria is not None and "MOBILESIM_SOURCE" in given:
+            peers.append(argusd_against_mobilesim(build_mobilesim(given["MOBILESIM_SOURCE"], aria), folder))
+    for peer in peers:
+        print(f"{'ok' if peer.passed else 'FAILED':6} {peer.client} against {peer.server}: {peer.seen}")
+    if aria is None:
+        print("MobileSim is built with ARIA: give ARIA_SOURCE= as well")
+    return 0 if peers and all(peer.passed for peer in peers) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
