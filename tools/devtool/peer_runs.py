@@ -7,6 +7,8 @@ import contextlib
 import itertools
 import json
 import os
+import pty
+import select
 import shutil
 import signal
 import socket
@@ -17,7 +19,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import IO, Any, Final
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 SIM: Final = ROOT / ".venv/bin/argus-sim"
@@ -67,7 +69,12 @@ def build_aria(source: Path) -> Path:
 def build_mobilesim(source: Path, aria: Path) -> Path:
     """Build the emulator without a screen, with the ARIA built before; return the folder."""
     folder = cache("mobilesim", source)
-    make(folder, f"ARIA={aria}", "MobileSim")
+    loader = folder / "MapLoader.cc"
+    text = loader.read_text(encoding="latin-1")
+    # AriaCoda returns by value what ARIA returned by pointer.
+    loader.write_text(text.replace("getMapObjects()->", "getMapObjects()."), encoding="latin-1")
+    include = aria / "include"
+    make(folder, f"ARIA={aria}", f"ARIA_CFLAGS=-I{include} -I{include / 'Aria'}", "MobileSim")
     return folder
 
 
@@ -112,26 +119,30 @@ def keys_of(name: str) -> list[tuple[float, bytes]]:
 
 def run_client(
     words: Sequence[str], environment: Mapping[str, str], keys: Sequence[tuple[float, bytes]]
-) -> str:
-    """Run a client for LIMIT_S with these keys, then escape; return what it said."""
+) -> None:
+    """Run a client on a terminal for LIMIT_S with these keys, then escape."""
+    master, slave = pty.openpty()
     with (
-        tempfile.TemporaryFile() as said,
-        started(
-            words, stdin=subprocess.PIPE, stdout=said, stderr=subprocess.STDOUT, env=dict(environment)
-        ) as child,
+        os.fdopen(master, "wb", buffering=0) as terminal,
+        started(words, stdin=slave, stdout=slave, stderr=slave, env=dict(environment)) as child,
     ):
-        assert child.stdin is not None
+        os.close(slave)
+        os.set_blocking(master, False)
         start = time.monotonic()
         for after_s, key in [*keys, (LIMIT_S, ESCAPE)]:
             while time.monotonic() < start + after_s and child.poll() is None:
-                time.sleep(0.05)
+                drain(master)
             with contextlib.suppress(OSError):
-                child.stdin.write(key)
-                child.stdin.flush()
+                terminal.write(key)
         with contextlib.suppress(subprocess.TimeoutExpired):
-            child.wait(10)
-        said.seek(0)
-        return said.read().decode("latin-1")
+            child.wait(5)
+
+
+def drain(terminal: int) -> None:
+    """Let a program go on that writes to the terminal."""
+    with contextlib.suppress(OSError):
+        if select.select([terminal], [], [], 0.05)[0]:
+            sys.stdout.write(os.read(terminal, 4096).decode("latin-1"))
 
 
 def truth_of(path: Path) -> dict[str, Any]:
@@ -167,19 +178,39 @@ def aria_against_sim(aria: Path, name: str, folder: Path) -> Peer:
 def argusd_against_mobilesim(mobilesim: Path, folder: Path) -> Peer:
     """argusd drives the vendor's robot to a goal."""
     port = free_port()
-    words = [
+    words: list[str | Path] = [
         mobilesim / "MobileSim",
-        "--nogui",
+        "--noninteractive",
         "-m",
         mobilesim / MAP,
         "-r",
         "p3dx",
         "-p",
         str(port),
-        "--nocrashdebug",
+        "--no-crash-debug",
     ]
     log = (folder / "mobilesim.log").open("wb")
-    with log, started(words, stdout=log, stderr=subprocess.STDOUT, cwd=folder, stdin=subprocess.DEVNULL):
+    with log, screen() as display:
+        environment = {**os.environ, "DISPLAY": display, "MOBILESIM": str(mobilesim)}
+        return drive_there(words, log, environment, port, folder)
+
+
+@contextlib.contextmanager
+def screen() -> Iterator[str]:
+    """A screen in memory, since the emulator does not start without one; its name."""
+    reader, writer = os.pipe()
+    with started(["Xvfb", "-displayfd", str(writer), "-screen", "0", "640x480x24"], pass_fds=[writer]):
+        os.close(writer)
+        with os.fdopen(reader) as name:
+            yield f":{name.readline().strip()}"
+
+
+def drive_there(
+    words: Sequence[str | Path], log: IO[bytes], environment: Mapping[str, str], port: int, folder: Path
+) -> Peer:
+    """Start the emulator and drive its robot."""
+    options: dict[str, Any] = {"stdout": log, "stderr": subprocess.STDOUT, "stdin": subprocess.DEVNULL}
+    with started(words, cwd=folder, env=dict(environment), **options):
         if not wait_port(port):
             return Peer(
                 "argusd",
@@ -189,6 +220,11 @@ def argusd_against_mobilesim(mobilesim: Path, folder: Path) -> Peer:
             )
         course = [str(ARGUSD), "--link", f"tcp:127.0.0.1:{port}", "--active", "--goal", GOAL, "--json"]
         done = subprocess.run(course, capture_output=True, check=False, timeout=300, stdin=subprocess.DEVNULL)
+    return drive_of(done)
+
+
+def drive_of(done: subprocess.CompletedProcess[bytes]) -> Peer:
+    """What argusd said of its drive."""
     events = [json.loads(line) for line in done.stdout.splitlines()]
     out = [e["name"] for e in events if e["event"] == "SONAR_DISABLED"]
     reached = any(e["event"] == "GOAL_REACHED" for e in events)
