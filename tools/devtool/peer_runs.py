@@ -130,19 +130,19 @@ def run_client(
         os.set_blocking(master, False)
         start = time.monotonic()
         for after_s, key in [*keys, (LIMIT_S, ESCAPE)]:
-            while time.monotonic() < start + after_s and child.poll() is None:
-                drain(master)
+            drain_until(master, start + after_s, child)
             with contextlib.suppress(OSError):
                 terminal.write(key)
         with contextlib.suppress(subprocess.TimeoutExpired):
             child.wait(5)
 
 
-def drain(terminal: int) -> None:
+def drain_until(terminal: int, end: float, child: subprocess.Popen[bytes]) -> None:
     """Let a program go on that writes to the terminal."""
-    with contextlib.suppress(OSError):
-        if select.select([terminal], [], [], 0.05)[0]:
-            sys.stdout.write(os.read(terminal, 4096).decode("latin-1"))
+    while time.monotonic() < end and child.poll() is None:
+        with contextlib.suppress(OSError):
+            if select.select([terminal], [], [], 0.05)[0]:
+                sys.stdout.write(os.read(terminal, 4096).decode("latin-1"))
 
 
 def truth_of(path: Path) -> dict[str, Any]:
@@ -233,21 +233,25 @@ def drive_of(done: subprocess.CompletedProcess[bytes]) -> Peer:
     return Peer("argusd", "MobileSim", reached and done.returncode == 0, text)
 
 
+def run_peers(given: Mapping[str, Path], folder: Path) -> list[Peer]:
+    """Build and run what is given."""
+    if "ARIA_SOURCE" not in given:
+        print("MobileSim is built with ARIA: give ARIA_SOURCE= as well")
+        return []
+    aria = build_aria(given["ARIA_SOURCE"])
+    peers = [aria_against_sim(aria, example, folder) for example in EXAMPLES]
+    if "MOBILESIM_SOURCE" in given:
+        peers.append(argusd_against_mobilesim(build_mobilesim(given["MOBILESIM_SOURCE"], aria), folder))
+    return peers
+
+
 def main(words: Sequence[str]) -> int:
     """Build and run what is given as NAME=FOLDER; 1 when something is not as it must be."""
     given = {name: Path(folder) for name, _, folder in (word.partition("=") for word in words)}
-    peers: list[Peer] = []
-    aria = build_aria(given["ARIA_SOURCE"]) if "ARIA_SOURCE" in given else None
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        if aria is not None:
-            peers += [aria_against_sim(aria, example, folder) for example in EXAMPLES]
-        if aria is not None and "MOBILESIM_SOURCE" in given:
-            peers.append(argusd_against_mobilesim(build_mobilesim(given["MOBILESIM_SOURCE"], aria), folder))
+        peers = run_peers(given, Path(name))
     for peer in peers:
         print(f"{'ok' if peer.passed else 'FAILED':6} {peer.client} against {peer.server}: {peer.seen}")
-    if aria is None:
-        print("MobileSim is built with ARIA: give ARIA_SOURCE= as well")
     return 0 if peers and all(peer.passed for peer in peers) else 1
 
 
