@@ -34,7 +34,7 @@ static argus_intent_t distrust(const argus_t *const self, argus_reflexes_t *cons
     }
     const bool lost = mine->unsound == UNSOUND_MOST;
     argus_intent_t intent =
-        lost ? say(ARGUS_EV_ODOMETRY_LOST, ARGUS_NO_SONAR, UNSOUND_MOST) : say(event, ARGUS_NO_SONAR, value);
+        lost ? say(ARGUS_EV_ODOMETRY_LOST, ARGUS_NO_SONAR, value) : say(event, ARGUS_NO_SONAR, value);
     intent.stop = ARGUS_STOP_STOP;
     intent.unchecked = true;
     intent.base = ARGUS_BASE_DROP;
@@ -51,6 +51,11 @@ static argus_intent_t sees_leap(const argus_t *const self, const argus_alarm_t *
     mine->leaps = knowledge->leaps;
     if (!news) {
         return nothing();
+    }
+    if (knowledge->leaps_unseen != mine->unseen) { // at once: where it went meanwhile nobody can tell
+        mine->unseen = knowledge->leaps_unseen;
+        mine->unsound = UNSOUND_MOST - 1;
+        mine->unsound_ms = self->now_ms;
     }
     const bool position = knowledge->leap_mm * HEADING_ALONE_CDEG_MM >= knowledge->leap_cdeg;
     return position ? distrust(self, mine, ARGUS_EV_POSE_LEAP, knowledge->leap_mm)

@@ -9,6 +9,7 @@ from typing import Final
 
 from devtool.base import BUILD, CORES, ROOT, VENV, Command, Run
 from devtool.cmake import SOAK, build, build_and_test, ctest
+from devtool.peers import peers
 from devtool.real_time import hil_workers, run_in_real_time
 from devtool.stages import Stage
 
@@ -97,4 +98,9 @@ TEST_STAGES: Final = (
         ("can-utils",),
     ),
     Stage(SOAK, "C and Python tests that compute for long", soak_tests, ("release",)),
+    Stage(
+        "peers",
+        "the vendor's programs against ours, where ARIA_SOURCE= and MOBILESIM_SOURCE= are given",
+        peers,
+    ),
 )
