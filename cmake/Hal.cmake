@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The hardware layer for POSIX and Linux, and argusd, the onboard program.
-file(GLOB hal_sources CONFIGURE_DEPENDS hal/posix/*.c hal/linux/*.c hal/fake/*.c)
+# The hardware layer for POSIX and Linux, what boards share (for its tests), and argusd, the onboard program.
+file(GLOB hal_sources CONFIGURE_DEPENDS hal/posix/*.c hal/linux/*.c hal/fake/*.c hal/board/*.c)
 list(FILTER hal_sources EXCLUDE REGEX "/main\\.c$")
 file(GLOB argusd_sources CONFIGURE_DEPENDS hal/linux/argusd/*.c)
 list(FILTER argusd_sources EXCLUDE REGEX "/main\\.c$")
@@ -11,7 +11,7 @@ if(NOT hal_sources)
     set(hal_sources ${PROJECT_BINARY_DIR}/empty.c)
 endif()
 add_library(argus_hal STATIC ${hal_sources})
-target_include_directories(argus_hal PUBLIC ${PROJECT_SOURCE_DIR}/hal/include)
+target_include_directories(argus_hal PUBLIC ${PROJECT_SOURCE_DIR}/hal/include ${PROJECT_SOURCE_DIR}/hal)
 target_compile_options(argus_hal PRIVATE ${ARGUS_STRICT})
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
