@@ -33,7 +33,7 @@ static board_line_t begin(board_ring_t *ring, const argus_event_t *event, uint32
     board_line_seconds(&line, "t", t_ms);
     board_line_text(&line, "event", name);
     board_line_int(&line, "id", event->id);
-    board_line_int(&line, "level", event->id == 0 ? ARGUS_LEVEL_OK : argus_event_level(event->id));
+    board_line_int(&line, "level", (int32_t)argus_event_level(event->id));
     put_name(&line, event);
     board_line_int(&line, "value", event->value);
     board_line_text(&line, "state", argus_name(ARGUS_NAME_FAILURE, event->state));
