@@ -115,11 +115,14 @@ static const char *obey_set(const char *rest, argus_config_t *config) {
     }
     const board_config_answer_t answer =
         board_config_set(&changed, key.at, key.length, value.at, value.length);
-    if (answer == BOARD_CONFIG_TAKEN) {
-        *config = changed;
+    if (answer != BOARD_CONFIG_TAKEN) {
+        return board_config_explain(answer);
     }
-    return answer == BOARD_CONFIG_TAKEN ? "from the next start on, if it is saved"
-                                        : board_config_explain(answer);
+    if (memcmp(&changed, config, sizeof changed) == 0) {
+        return "it is so already";
+    }
+    *config = changed;
+    return "from the next start on, if it is saved";
 }
 
 static const char *obey_word(word_t word, const char *rest, argus_t *core, uint32_t now_ms,
