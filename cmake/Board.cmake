@@ -70,4 +70,6 @@ target_link_options(argus_image PRIVATE ${whole_program} ${call_graph} -nostartf
                     -Wl,--no-warn-rwx-segments)
 add_custom_command(TARGET argus_image POST_BUILD VERBATIM
     COMMAND ${CMAKE_OBJCOPY} -O ihex $<TARGET_FILE:argus_image> ${PROJECT_BINARY_DIR}/${image_name}.hex
-    COMMAND ${CMAKE_OBJCOPY} -O binary --gap-fill 0xFF $<TARGET_FILE:argus_image> ${PROJECT_BINARY_DIR}/${image_name}.bin)
+    COMMAND ${CMAKE_OBJCOPY} -O binary --gap-fill 0xFF $<TARGET_FILE:argus_image> ${PROJECT_BINARY_DIR}/${image_name}.bin
+    COMMAND ${CMAKE_OBJCOPY} -O binary -j .vectors $<TARGET_FILE:argus_image> ${PROJECT_BINARY_DIR}/${image_name}.vectors.bin
+    COMMAND ${CMAKE_OBJCOPY} -O binary -j .text -j .data $<TARGET_FILE:argus_image> ${PROJECT_BINARY_DIR}/${image_name}.body.bin)

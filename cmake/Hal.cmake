@@ -19,6 +19,11 @@ target_link_libraries(argus_hal PUBLIC argus Threads::Threads PRIVATE argus_flag
 # gnu11: the POSIX declarations are visible without a feature macro in every file.
 set_target_properties(argus_hal PROPERTIES C_EXTENSIONS ON)
 
+# What checks the settings that are compiled into a board's image.
+add_executable(board_config tools/board_config.c)
+target_compile_options(board_config PRIVATE ${ARGUS_STRICT})
+target_link_libraries(board_config PRIVATE argus_hal argus argus_flags)
+
 if(NOT EXISTS ${PROJECT_SOURCE_DIR}/hal/linux/argusd/main.c)
     return()
 endif()

@@ -14,7 +14,10 @@ import pytest
 from devtool import cmake, testing
 
 ROOT = Path(__file__).resolve().parents[2]
-COMMANDS = ("demo", "shell", "test", "build", "format", "lint", "coverage", "size", "bench", "clean")
+COMMANDS = (
+    "demo", "shell", "test", "build", "format", "lint", "coverage", "size", "bench", "clean",
+    "firmware", "hil", "flash",
+)  # fmt: skip
 
 
 def dev(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -48,6 +51,9 @@ def test_help_of_each_command(command: str) -> None:
         (["test", "--only", "nonsense"], "there are: tables release"),
         (["test", "--quick", "--only", "hil"], "there are: tables release"),
         (["test", "--nonsense"], "unrecognized arguments"),
+        (["firmware", "--board", "nonsense"], "invalid choice"),
+        (["firmware", "--config", "/no/such/file"], "no such file"),
+        (["flash", "--probe", "nonsense"], "invalid choice"),
     ],
 )
 def test_wrong_arguments(arguments: list[str], expected: str) -> None:

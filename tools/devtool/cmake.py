@@ -14,7 +14,9 @@ from devtool.base import BUILD, CORES, ROOT, Run
 from devtool.setup import alone
 
 PRESETS_FILE: Final = ROOT / "CMakePresets.json"
-WITHOUT_ARGUSD: Final = ("m32", "cortex-m4")
+BOARDS: Final = ("mps2-an386", "stm32f405")
+"""The presets that make an image of a microcontroller."""
+WITHOUT_ARGUSD: Final = ("m32", "cortex-m4", *BOARDS)
 SOAK: Final = "soak"
 """The label of the unit tests that compute for long; they are run once, in the release build."""
 
@@ -42,10 +44,12 @@ def configure(preset: str, run: Run) -> None:
     stamp.write_text(recipe)
 
 
-def build(preset: str, run: Run) -> None:
-    """Configure and build PRESET."""
+def build(preset: str, run: Run, settings: Sequence[str] = ()) -> None:
+    """Configure and build PRESET; SETTINGS of CMake (NAME=VALUE) are kept until others are given."""
     with alone():
         configure(preset, run)
+        if settings:
+            run(["cmake", BUILD / preset, *(f"-D{setting}" for setting in settings)])
         run(["cmake", "--build", "--preset", preset, "-j", str(CORES)])
 
 

@@ -106,6 +106,7 @@ NEEDS: Final = {
         ),
         lambda: ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi"],
     ),
+    "qemu-arm": command_need("qemu-system-arm", "qemu-system-arm"),
     "clang": command_need("clang", "clang"),
     "tshark": command_need("tshark", "tshark"),
     "g++": command_need("g++", "g++"),
@@ -114,7 +115,13 @@ NEEDS: Final = {
     "can-utils": command_need("candump", "can-utils"),
 }
 BASIC_NEEDS: Final = ("gcc", "libc", "cmake", "generator", "venv", "inih", "curses")
-PRESET_NEEDS: Final = {"m32": ("m32",), "cortex-m4": ("cortex-m4",), "clang": ("clang",)}
+PRESET_NEEDS: Final = {
+    "m32": ("m32",),
+    "cortex-m4": ("cortex-m4",),
+    "mps2-an386": ("cortex-m4",),
+    "stm32f405": ("cortex-m4",),
+    "clang": ("clang",),
+}
 
 
 def apt_prefix() -> list[str] | None:
