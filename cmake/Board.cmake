@@ -47,6 +47,15 @@ if(board_scripts)
     list(APPEND board_sources ${cortexm_sources})
 endif()
 
+# Telemetry and orders over CAN; only a port with a controller has can.c.
+if(ARGUS_CAN)
+    if(NOT EXISTS ${board_folder}/can.c)
+        message(FATAL_ERROR "ARGUS_CAN: hal/${ARGUS_BOARD} has no CAN controller")
+    endif()
+    list(APPEND board_sources hal/board/can/bus.c)
+    list(APPEND portable_sources hal/linux/can_telemetry.c hal/linux/gen_argus_dbc.c)
+endif()
+
 add_library(argus_board OBJECT ${board_sources} ${portable_sources} ${PROJECT_BINARY_DIR}/built_config.c)
 target_include_directories(argus_board PUBLIC hal hal/include)
 target_compile_definitions(argus_board PUBLIC HAL_STORE_RECORD_MAX=1536 ARGUS_VERSION="${PROJECT_VERSION}")

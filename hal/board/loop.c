@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "board/board.h"
+#include "board/bus.h"
 #include "board/config.h"
 #include "board/memory.h"
 #include "board/orders.h"
@@ -87,6 +88,7 @@ static void tell_events(void) {
     argus_event_t event;
     while ((self.out == NULL || board_ring_room(self.out) >= BOARD_EVENT_LINE_MAX) &&
            argus_next_event(self.core, &event)) {
+        board_bus_event(self.core, &event);
         board_report_event(self.out, &event, event.t_ms - self.start_ms);
         board_console_kick();
     }
@@ -234,6 +236,7 @@ static APART void begin(void) {
     self.telling = BOARD_CONFIG_COUNT;
     self.core = argus_init(&self.storage, &self.config, self.start_ms);
     board_memory_load(&self.memory, self.core);
+    board_bus_open(&self.config, self.start_ms);
     board_report_start(self.out, board_config_digest(&self.config), from[settings]);
     board_console_kick();
 }
@@ -248,6 +251,8 @@ void board_run(void) {
         transmit();
         tell_events();
         take_orders();
+        board_bus_process(self.core, board_now_ms());
+        transmit();
         tell_settings();
         tell_status();
         feed(began_ms);

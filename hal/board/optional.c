@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a port need not give: each of these yields to one of the same name that it does give.
 #include "board/board.h"
+#include "board/bus.h"
 #include "board/flash.h"
 
 #define OPTIONAL __attribute__((weak))
@@ -42,6 +43,21 @@ OPTIONAL uint32_t board_stack_left(void) {
 
 OPTIONAL const char *board_name(void) {
     return "unnamed";
+}
+
+OPTIONAL void board_bus_open(const argus_config_t *config, uint32_t now_ms) {
+    (void)config;
+    (void)now_ms;
+}
+
+OPTIONAL void board_bus_event(const argus_t *core, const argus_event_t *event) {
+    (void)core;
+    (void)event;
+}
+
+OPTIONAL void board_bus_process(argus_t *core, uint32_t now_ms) {
+    (void)core;
+    (void)now_ms;
 }
 
 OPTIONAL bool board_flash_erase(int slot) {

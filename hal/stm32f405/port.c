@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Argus on the STM32F405: USART2 is the robot's, USART1 the operator's and the boot loader's.
 #include "board/board.h"
+#include "board/bus.h"
 #include "cortexm/cortexm.h"
+#include "stm32f405/can.h"
 #include "stm32f405/clock.h"
 #include "stm32f405/registers.h"
 #include "stm32f405/usart.h"
@@ -10,6 +12,8 @@
 #define PIN_ALTERNATE 2u // in 2 bits of MODER
 #define PIN_PULL_UP 1u   // in 2 bits of PUPDR: an open line is at rest
 #define PIN_USART 7u     // in 4 bits of AFR
+#define PIN_CAN 9u
+#define RANDOM_TRIES 1000
 #define WATCHDOG_START 0xCCCCu
 #define WATCHDOG_UNLOCK 0x5555u
 #define WATCHDOG_FEED 0xAAAAu
@@ -97,6 +101,38 @@ void board_console_kick(void) {
 
 size_t board_console_read(uint8_t *bytes, size_t capacity) {
     return board_ring_take_some(&stm32_console.in, bytes, capacity);
+}
+
+bool board_can_open(uint16_t rx_id) {
+    STM32_RCC->ahb1enr |= STM32_RCC_AHB1_GPIOB;
+    STM32_RCC->apb1enr |= STM32_RCC_APB1_CAN1;
+    give_pin(STM32_GPIOB, 8, PIN_CAN);
+    give_pin(STM32_GPIOB, 9, PIN_CAN);
+    return stm32_can_open(rx_id);
+}
+
+bool board_can_send(uint16_t id, const uint8_t *data, uint8_t length) {
+    return stm32_can_send(id, data, length);
+}
+
+int board_can_receive(uint8_t data[8]) {
+    return stm32_can_receive(data);
+}
+
+static uint32_t random_word(void) {
+    for (int i = 0; i < RANDOM_TRIES; i++) {
+        if ((STM32_RNG->sr & STM32_RNG_READY) != 0) {
+            return STM32_RNG->dr;
+        }
+    }
+    return board_now_ms(); // it has failed: nonces begin as they did at some start before
+}
+
+uint64_t board_can_seed(void) {
+    STM32_RCC->ahb2enr |= STM32_RCC_AHB2_RNG;
+    STM32_RNG->cr = STM32_RNG_ON;
+    const uint64_t high = random_word();
+    return high << 32 | random_word();
 }
 
 // What the software left a note of is known best; the rest is as the chip says.

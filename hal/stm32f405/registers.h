@@ -39,6 +39,10 @@ typedef struct { // [21.4] independent watchdog
     stm32_register_t kr, pr, rlr, sr;
 } stm32_iwdg_t;
 
+typedef struct { // [24.4] random numbers
+    stm32_register_t cr, sr, dr;
+} stm32_rng_t;
+
 typedef struct { // [32.9.3] a mailbox of bxCAN, to send or received
     stm32_register_t ir, dtr, dlr, dhr;
 } stm32_can_mailbox_t;
@@ -65,8 +69,16 @@ typedef struct { // [32.9] bxCAN
 #define STM32_USART2 ((stm32_usart_t *)0x40004400u)
 #define STM32_TIM2 ((stm32_timer_t *)0x40000000u)
 #define STM32_IWDG ((stm32_iwdg_t *)0x40003000u)
+#define STM32_RNG ((stm32_rng_t *)0x50060800u)
 #define STM32_CAN1 ((stm32_can_t *)0x40006400u)
-#else // a test has them in its memory
+static inline uint32_t stm32_get(const stm32_register_t *at) {
+    return *at;
+}
+
+static inline void stm32_set(stm32_register_t *at, uint32_t value) {
+    *at = value;
+}
+#else // a test has them in its memory, and does what they do when they are read and written
 extern stm32_flash_t stm32_fake_flash;
 extern stm32_usart_t stm32_fake_usart[2];
 extern stm32_can_t stm32_fake_can;
@@ -74,6 +86,8 @@ extern stm32_can_t stm32_fake_can;
 #define STM32_USART1 (&stm32_fake_usart[0])
 #define STM32_USART2 (&stm32_fake_usart[1])
 #define STM32_CAN1 (&stm32_fake_can)
+uint32_t stm32_get(const stm32_register_t *at);
+void stm32_set(stm32_register_t *at, uint32_t value);
 #endif
 
 // RCC.
@@ -90,6 +104,7 @@ extern stm32_can_t stm32_fake_can;
 #define STM32_RCC_SWITCHED_PLL (2u << 2)
 #define STM32_RCC_AHB1_GPIOA (1u << 0)
 #define STM32_RCC_AHB1_GPIOB (1u << 1)
+#define STM32_RCC_AHB2_RNG (1u << 6)
 #define STM32_RCC_APB1_TIM2 (1u << 0)
 #define STM32_RCC_APB1_USART2 (1u << 17)
 #define STM32_RCC_APB1_CAN1 (1u << 25)
@@ -126,6 +141,10 @@ extern stm32_can_t stm32_fake_can;
 #define STM32_USART_SR_EMPTY (1u << 7)
 #define STM32_USART_CR1_ON (1u << 13 | 1u << 3 | 1u << 2 | 1u << 5) // both ways, interrupt of what arrives
 #define STM32_USART_CR1_EMPTY_INTERRUPT (1u << 7)
+
+// Random numbers.
+#define STM32_RNG_ON (1u << 2)
+#define STM32_RNG_READY 1u
 
 // bxCAN.
 #define STM32_CAN_MCR_INIT 1u
