@@ -82,3 +82,15 @@ add_custom_command(TARGET argus_image POST_BUILD VERBATIM
     COMMAND ${CMAKE_OBJCOPY} -O binary --gap-fill 0xFF $<TARGET_FILE:argus_image> ${PROJECT_BINARY_DIR}/${image_name}.bin
     COMMAND ${CMAKE_OBJCOPY} -O binary -j .vectors $<TARGET_FILE:argus_image> ${PROJECT_BINARY_DIR}/${image_name}.vectors.bin
     COMMAND ${CMAKE_OBJCOPY} -O binary -j .text -j .data $<TARGET_FILE:argus_image> ${PROJECT_BINARY_DIR}/${image_name}.body.bin)
+
+# The manager as in the image, played a tape by tests/target/replay.c; its clock is the MPS2 board's.
+if(ARGUS_BOARD STREQUAL "mps2_an386")
+    add_executable(replay tests/target/replay.c tests/target/vectors.c hal/board/config.c hal/posix/crc32.c)
+    set_target_properties(replay PROPERTIES SUFFIX .elf C_EXTENSIONS ON)
+    target_include_directories(replay PRIVATE hal hal/include)
+    target_compile_options(replay PRIVATE ${whole_program})
+    target_link_libraries(replay PRIVATE argus argus_flags)
+    target_link_options(replay PRIVATE ${whole_program} -specs=rdimon.specs -Wl,--gc-sections
+                        -Wl,-L${PROJECT_SOURCE_DIR}/tests/target -Wl,-T${PROJECT_SOURCE_DIR}/tests/target/mps2_an386.ld
+                        -Wl,--no-warn-rwx-segments)
+endif()
