@@ -16,6 +16,7 @@ uint32_t board_now_ms(void) {
 
 // Takes what the robot has sent. An interrupt puts bytes into a board_ring_t; this takes them out
 // (board_ring_take_some()).
+// NOLINTNEXTLINE(readability-non-const-parameter): yours writes there
 size_t board_receive(uint8_t *bytes, size_t capacity) {
     (void)bytes;
     (void)capacity;

@@ -16,6 +16,7 @@ OPTIONAL board_ring_t *board_console_out(void) {
 OPTIONAL void board_console_kick(void) {
 }
 
+// NOLINTNEXTLINE(readability-non-const-parameter): who has such a UART writes there
 OPTIONAL size_t board_console_read(uint8_t *bytes, size_t capacity) {
     (void)bytes;
     (void)capacity;

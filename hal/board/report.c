@@ -114,6 +114,9 @@ static const char *reason_name(board_reset_t reason) {
 
 bool board_report_start(board_ring_t *ring, uint32_t digest, const char *settings) {
     const board_note_t note = board_last_note();
+    if (ring != NULL) {
+        board_ring_put(ring, '\n'); // ends the line that the life before may have left open
+    }
     board_line_t line = begin_note(ring, 0, "START");
     board_line_text(&line, "board", board_name());
     board_line_text(&line, "version", ARGUS_VERSION);

@@ -117,6 +117,7 @@ def test_a_flooded_second_uart_holds_nothing_up(board: Machine) -> None:
 def test_noise_on_the_robots_line_is_skipped(board: Machine) -> None:
     board.wait_for("LINK_UP")
     before = board.wait_for("STATUS")["t"]
+    assert board.robot is not None
     board.robot.sendall(noise(4000))
     status = board.wait_for("STATUS")
     while status["skipped_bytes"] < 1000 and status["t"] < before + 30:
