@@ -126,7 +126,7 @@ def test_noise_on_the_robots_line_is_skipped(board: Machine) -> None:
     assert status["mode"] == "OFFLINE"
 
 
-def test_the_limits_of_the_images() -> None:
+def test_the_stack_of_the_images_is_large_enough() -> None:
     for name in ("mps2-an386", "stm32f405"):
         done = subprocess.run(
             ["python3", "tools/size_image.py", f"build/{name}"],
