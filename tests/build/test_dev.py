@@ -103,13 +103,13 @@ def test_every_c_test_is_run_optimised(commands: dict[str, list[list[str]]]) -> 
 
 
 def test_every_python_test_is_run(commands: dict[str, list[list[str]]]) -> None:
-    """Those that compute are in python or soak, the others in hil or can."""
+    """Those that compute are in python or soak, the others in hil, can or boards."""
     for stage, mark in (("python", "not soak"), ("soak", "soak")):
         (pytests,) = (run for run in commands[stage] if "pytest" in run)
         assert pytests[pytests.index("-m", 2) + 1] == mark
         assert "tests" in pytests
         ignored = {word for word in pytests if word.startswith("--ignore")}
-        assert ignored == {"--ignore=tests/hil", "--ignore=tests/can"}
+        assert ignored == {"--ignore=tests/hil", "--ignore=tests/can", "--ignore=tests/target"}
 
 
 def test_a_shell_finds_what_was_built() -> None:

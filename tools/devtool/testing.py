@@ -67,7 +67,7 @@ def boards(run: Run) -> None:
     """Build the images of all boards, and let QEMU run them, unit tests on them, and recorded missions."""
     for preset in ("release", *BOARDS):
         build(preset, run)
-    build("blank", run, ["ARGUS_BOARD=blank"])
+    build("blank", run)
     for board in BOARDS:
         run([sys.executable, "tools/size_image.py", BUILD / board])
         build_and_test(f"{board.split('-')[0]}-tests", run)
