@@ -10,7 +10,7 @@
 #define SUM_SHIFT 40
 #define HALF_DEG 180
 
-_Static_assert(ARGUS_OPTIONS_MAX <= SUM_SHIFT, "a bit for each turn");
+_Static_assert(ARGUS_TURNS_MAX <= SUM_SHIFT, "a bit for each turn");
 
 // The turns [from, to) of the list lie on the way of a sweep.
 typedef struct {
@@ -128,7 +128,7 @@ static void list(argus_plan_t *const plan, const argus_turns_t *const turns, con
 
 uint32_t argus_policy_cover(argus_plan_t *const plan, const argus_turns_t *const turns, const int32_t stop_cost,
                             const int32_t degree_cost) {
-    ARGUS_ASSERT(turns->count <= ARGUS_OPTIONS_MAX && turns->blinds > 0);
+    ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX && turns->blinds > 0);
     const int negative = count_negative(turns);
     table_t table = {.steps = 0};
     choice_t best = {.cost = INT32_MAX};

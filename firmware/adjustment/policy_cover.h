@@ -5,7 +5,7 @@
 
 #include "adjustment/turns.h"
 
-#define ARGUS_COVER_STEPS_MAX 100000u // for any robot known; 32,536 for a P3-DX
+#define ARGUS_COVER_STEPS_MAX 20000u // for any robot known; 7,533 for a P3-DX
 
 // The least stop_cost x stops + degree_cost x degrees turned in all; among equals the least stops, then the least
 // sum of the rotations, then the list that sorted ascending comes first. Visited negative side outward, then positive

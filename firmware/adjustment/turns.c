@@ -14,7 +14,7 @@ static void insert(argus_turns_t *const self, const int16_t deg) {
     if (deg == 0 || (at < self->count && self->deg[at] == deg)) {
         return;
     }
-    ARGUS_ASSERT(self->count < ARGUS_OPTIONS_MAX);
+    ARGUS_ASSERT(self->count < ARGUS_TURNS_MAX);
     memmove(&self->deg[at + 1], &self->deg[at], (size_t)(self->count - at) * sizeof self->deg[0]);
     self->deg[at] = deg;
     self->count++;
@@ -23,7 +23,7 @@ static void insert(argus_turns_t *const self, const int16_t deg) {
 static void insert_turns_onto(argus_turns_t *const self, const argus_plan_t *const plan, const int blind) {
     const int bearing_deg = argus_robot_pose(self->robot, blind)->heading_deg;
     for (int by = 0; by < argus_robot_sonars(self->robot); by++) {
-        if ((plan->looks >> by & 1u) != 0 && self->count < ARGUS_OPTIONS_MAX) {
+        if ((plan->looks >> by & 1u) != 0 && self->count < ARGUS_TURNS_MAX) {
             const int turn_deg = bearing_deg - argus_robot_pose(self->robot, by)->heading_deg;
             insert(self, (int16_t)(argus_angle_wrap(turn_deg * 100) / 100));
         }

@@ -5,15 +5,13 @@
 
 #include "adjustment/plan.h"
 
-#define ARGUS_OPTIONS_MAX 40 // turns of one sonar onto the bearing of a blind one; 28 is the most of any robot known
-
 typedef struct {
     const argus_robot_t *robot;
     uint8_t blind[ARGUS_FORWARD_MAX]; // sonar numbers
     uint8_t blinds;
     uint8_t count;
-    int16_t deg[ARGUS_OPTIONS_MAX];  // ascending, -179 to 180, never 0
-    uint8_t sees[ARGUS_OPTIONS_MAX]; // bit i: the bearing of blind[i]
+    int16_t deg[ARGUS_TURNS_MAX];  // ascending, -179 to 180, never 0
+    uint8_t sees[ARGUS_TURNS_MAX]; // bit i: the bearing of blind[i]
 } argus_turns_t;
 
 // All that there are for plan->disabled and plan->looks.
