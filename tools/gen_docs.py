@@ -115,7 +115,10 @@ def rules() -> str:
 
 def policies() -> str:
     """Return the planners as a Markdown table."""
-    lines = ["| policy | who may look | cost of a stop | of a degree | what it finds |", "|---|---|---|---|---|"]
+    lines = [
+        "| policy | who may look | cost of a stop | of a degree | what it finds |",
+        "|---|---|---|---|---|",
+    ]
     for _, name, walks, ring, stop, degree, *meaning in rows("adjustment/plan.h", "ARGUS_POLICY_TABLE"):
         who = "every living sonar" if ring == "1" else "those that face forward"
         costs = "- | -" if walks == "1" else f"{stop} | {degree}"
@@ -160,7 +163,13 @@ def modes() -> str:
 
 PARTS = {
     "SPEC.md": {"events": events, "config": config, "can": can},
-    "DESIGN.md": {"modes": modes, "reflexes": reflexes, "policies": policies, "rules": rules, "health": health},
+    "DESIGN.md": {
+        "modes": modes,
+        "reflexes": reflexes,
+        "policies": policies,
+        "rules": rules,
+        "health": health,
+    },
 }
 
 

@@ -21,11 +21,13 @@ typedef struct {
 
 void argus_sweep_begin(argus_drive_t *self, const argus_plan_t *plan, int32_t base_cdeg);
 
-// S1: the plan is no longer the one that the sweep began with, nor are the bearings to see or those that look.
+// S1: the plan is no longer the one that the sweep began with, nor are the bearings to see or those that
+// look.
 bool argus_sweep_is_outdated(const argus_drive_t *self, const argus_plan_t *plan);
 
 // Whose readings count where the sweep is: those of the rotation at work, nobody's on the way home.
-argus_mask_t argus_sweep_wants(const argus_drive_t *self, const argus_plan_t *plan, const argus_robot_t *robot);
+argus_mask_t argus_sweep_wants(const argus_drive_t *self, const argus_plan_t *plan,
+                               const argus_robot_t *robot);
 
 int32_t argus_sweep_heading_cdeg(const argus_drive_t *self, const argus_plan_t *plan);
 

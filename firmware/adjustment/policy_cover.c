@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// For each span of headings that a sweep may pass, the least stops by dynamic programming over the blind bearings.
+// For each span of headings that a sweep may pass, the least stops by dynamic programming over the blind
+// bearings.
 #include "adjustment/policy_cover.h"
 
 #include "knowledge/angle.h"
@@ -24,7 +25,8 @@ typedef struct {
     uint32_t steps;
 } table_t;
 
-// That of one stop. Prices of sets of equal size compare by sum, then by the lowest turn in which they differ.
+// That of one stop. Prices of sets of equal size compare by sum, then by the lowest turn in which they
+// differ.
 static uint64_t price(const argus_turns_t *const turns, const int k) {
     const uint64_t first = ((uint64_t)1 << SUM_SHIFT) - ((uint64_t)1 << (SUM_SHIFT - 1 - k));
     return ((uint64_t)1 << STOP_SHIFT) + ((uint64_t)argus_abs(turns->deg[k]) << SUM_SHIFT) + first;
@@ -93,12 +95,14 @@ static void try_span(choice_t *const best, table_t *const table, const argus_tur
 }
 
 // Bit k: a stop of the cheapest set.
-static uint64_t stops_of(const table_t *const table, const argus_turns_t *const turns, const span_t *const span) {
+static uint64_t stops_of(const table_t *const table, const argus_turns_t *const turns,
+                         const span_t *const span) {
     uint64_t stops = 0;
     unsigned set = argus_turns_open(turns);
     for (int k = span->from; k < span->to; k++) { // each is needed once, in whatever order
         const unsigned rest = set & ~(unsigned)turns->sees[k];
-        if (rest != set && table->least[rest] != NONE && table->least[set] == table->least[rest] + price(turns, k)) {
+        if (rest != set && table->least[rest] != NONE &&
+            table->least[set] == table->least[rest] + price(turns, k)) {
             stops |= (uint64_t)1 << k;
             set = rest;
         }
@@ -107,7 +111,8 @@ static uint64_t stops_of(const table_t *const table, const argus_turns_t *const 
     return stops;
 }
 
-static void add(argus_plan_t *const plan, const argus_turns_t *const turns, const uint64_t stops, const int k) {
+static void add(argus_plan_t *const plan, const argus_turns_t *const turns, const uint64_t stops,
+                const int k) {
     if ((stops >> k & 1u) != 0 && plan->count < ARGUS_ROTATIONS_MAX) {
         plan->rotation_deg[plan->count++] = turns->deg[k];
     }
@@ -126,8 +131,8 @@ static void list(argus_plan_t *const plan, const argus_turns_t *const turns, con
     }
 }
 
-uint32_t argus_policy_cover(argus_plan_t *const plan, const argus_turns_t *const turns, const int32_t stop_cost,
-                            const int32_t degree_cost) {
+uint32_t argus_policy_cover(argus_plan_t *const plan, const argus_turns_t *const turns,
+                            const int32_t stop_cost, const int32_t degree_cost) {
     ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX && turns->blinds > 0);
     const int negative = count_negative(turns);
     table_t table = {.steps = 0};

@@ -30,7 +30,8 @@ static void insert_turns_onto(argus_turns_t *const self, const argus_plan_t *con
     }
 }
 
-void argus_turns_of(argus_turns_t *const self, const argus_robot_t *const robot, const argus_plan_t *const plan) {
+void argus_turns_of(argus_turns_t *const self, const argus_robot_t *const robot,
+                    const argus_plan_t *const plan) {
     ARGUS_ASSERT(robot->forward_count <= ARGUS_FORWARD_MAX);
     memset(self, 0, sizeof *self);
     self->robot = robot;

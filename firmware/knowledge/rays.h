@@ -26,8 +26,8 @@ typedef struct {
 
 void argus_rays_init(argus_rays_t *self);
 
-// Logs the fresh readings of the sonars that look ahead or abeam and are trusted: neither out nor named. `others`:
-// sonars of a sweep, which look along blind bearings now.
+// Logs the fresh readings of the sonars that look ahead or abeam and are trusted: neither out nor named.
+// `others`: sonars of a sweep, which look along blind bearings now.
 void argus_rays_see(argus_rays_t *self, const argus_knowledge_t *knowledge, argus_mask_t others);
 
 // Takes back what a sonar has seen: it has failed. And all of it: the robot may have been carried.

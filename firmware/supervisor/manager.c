@@ -148,7 +148,8 @@ static argus_mask_t sweep_looks(const argus_t *const self) {
 }
 
 static bool is_on_its_way(const argus_t *const self) {
-    return self->mode == ARGUS_MODE_DRIVING || self->mode == ARGUS_MODE_SWEEPING || self->mode == ARGUS_MODE_STEPPING;
+    return self->mode == ARGUS_MODE_DRIVING || self->mode == ARGUS_MODE_SWEEPING ||
+           self->mode == ARGUS_MODE_STEPPING;
 }
 
 static void on_sip(argus_t *const self) {

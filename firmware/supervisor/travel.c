@@ -269,7 +269,8 @@ static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const 
     if (!is_heeded(self, mine)) {
         return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_MOTORS};
     }
-    const bool weaves = argus_guard_is_blind(&guard) && argus_wanted_sonars(self) != 0 && way_mm > STEER_LEG_MM;
+    const bool weaves =
+        argus_guard_is_blind(&guard) && argus_wanted_sonars(self) != 0 && way_mm > STEER_LEG_MM;
     const bool steers = weaves || (off_bearing(self, mine) > STEER_CDEG && way_mm > STEER_LEG_MM);
     return (argus_intent_t){.act = ARGUS_DO_DRIVE,
                             .mm = argus_min(way_mm, free_mm),

@@ -134,7 +134,9 @@ def judge(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def differing(judge: Path, policy: int, masks: list[int]) -> tuple[list[str], int]:
     """Return the masks at which planner and trial differ, and the most steps that the planner took."""
     given = " ".join(map(str, masks))
-    text = subprocess.run([str(judge), str(policy)], input=given, check=True, stdout=subprocess.PIPE, text=True)
+    text = subprocess.run(
+        [str(judge), str(policy)], input=given, check=True, stdout=subprocess.PIPE, text=True
+    )
     *lines, last = text.stdout.splitlines()
     return lines, int(last.split()[1])
 

@@ -102,14 +102,16 @@ void test_an_amigobot_plans_with_its_own_bearings(void) {
 
 void test_an_amigobots_plans_by_hand(void) {
     const argus_robot_t *amigo = argus_robot_find("amigo-sh");
-    const argus_plan_t one = argus_plan(amigo, ARGUS_POLICY_PAPER, 1u << 2, 0); // 41 - 26, nearer than -15 + 30
+    const argus_plan_t one =
+        argus_plan(amigo, ARGUS_POLICY_PAPER, 1u << 2, 0); // 41 - 26, nearer than -15 + 30
     TEST_ASSERT_EQUAL(1, one.count);
     TEST_ASSERT_EQUAL(-26, one.rotation_deg[0]);
     const argus_plan_t two = argus_plan(amigo, ARGUS_POLICY_PAPER, 1u << 2 | 1u << 3, 0); // and -41 + 26
     TEST_ASSERT_EQUAL(2, two.count);
     TEST_ASSERT_EQUAL(-26, two.rotation_deg[0]);
     TEST_ASSERT_EQUAL(26, two.rotation_deg[1]);
-    const argus_plan_t right = argus_plan(amigo, ARGUS_POLICY_FEWEST, 1u << 3 | 1u << 4, 0); // both by one turn
+    const argus_plan_t right =
+        argus_plan(amigo, ARGUS_POLICY_FEWEST, 1u << 3 | 1u << 4, 0); // both by one turn
     TEST_ASSERT_EQUAL(1, right.count);
     TEST_ASSERT_EQUAL(-56, right.rotation_deg[0]);
     const argus_plan_t others = argus_plan(amigo, ARGUS_POLICY_PAPER, 0xFFE1, 0);
@@ -151,11 +153,13 @@ void test_only_the_living_look(void) {
 }
 
 void test_once_around_where_that_is_less(void) {
-    const argus_plan_t plan = of_ring(ARGUS_POLICY_LEAST_TURN, 0x7E & ~(1u << 6)); // by 6 alone: all to the left
+    const argus_plan_t plan =
+        of_ring(ARGUS_POLICY_LEAST_TURN, 0x7E & ~(1u << 6)); // by 6 alone: all to the left
     TEST_ASSERT_EQUAL(5, plan.count);
     TEST_ASSERT_EQUAL(20, plan.rotation_deg[0]);
     TEST_ASSERT_EQUAL(100, plan.rotation_deg[4]);
-    const argus_plan_t around = of_ring(ARGUS_POLICY_ADAPTIVE, 0xFFFF & ~(1u << 11)); // by 11, which looks at -170
+    const argus_plan_t around =
+        of_ring(ARGUS_POLICY_ADAPTIVE, 0xFFFF & ~(1u << 11)); // by 11, which looks at -170
     TEST_ASSERT_EQUAL(6, around.count);
     for (int i = 1; i < around.count; i++) { // on and on to the left
         const int step = around.rotation_deg[i] - around.rotation_deg[i - 1];
