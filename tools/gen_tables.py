@@ -26,15 +26,6 @@ ARCOS_SHORT = {
     "flags": "FLAG",
     "timing": "TIMING",
 }
-P3DX_SOURCE = "robots/p3dx-sh"
-# What gen_p3dx.h has of the robot's table: the keys of each section.
-P3DX_MACROS = {
-    "body": "front_mm rear_mm width_mm swing_radius_mm sonar_face_mm tolerance_centre_mm front_bumpers",
-    "motion": "vel_max_mm_s vel_top_mm_s rotvel_max_deg_s rotvel_top_deg_s accel_mm_s2 decel_mm_s2 accel_top_mm_s2"
-    " rotaccel_deg_s2 rotdecel_deg_s2 rotaccel_top_deg_s2 track_mm ticks_per_mm",
-    "sonar": "cycle_ms min_mm no_echo_mm cone_deg transducers_per_array arrays",
-}
-P3DX_NAMES = {"front_bumpers": "bumper_segments"}
 HEX_SECTIONS = {"type": 2, "argument": 2, "flags": 4}
 HEX_KEYS = {"HEADER0": 2, "HEADER1": 2}
 POSE_KEYS = ("number", "x_mm", "y_mm", "heading_deg")
@@ -101,39 +92,6 @@ def header(guard: str, source: str, what: str, body: list[str]) -> str:
     )
 
 
-def p3dx_header(table: dict[str, Any]) -> str:
-    """Return the text of gen_p3dx.h."""
-    source = TABLES / f"{P3DX_SOURCE}.toml"
-    poses = table.get("sonar", {}).get("pose", [])
-    rows = []
-    for index, pose in enumerate(poses):
-        missing = [key for key in POSE_KEYS if not is_integer(pose.get(key))]
-        if missing:
-            raise TableError(f"{source}: sonar.pose {index}: {missing[0]} must be an integer")
-        if pose["number"] != index:
-            raise TableError(f"{source}: sonar.pose {index}: number must be {index}")
-        rows.append("    X({}, {}, {}, {})".format(*(pose[key] for key in POSE_KEYS)))
-    if not rows:
-        raise TableError(f"{source}: no [[sonar.pose]] entries; add one per sonar")
-    body: list[str] = []
-    for section, keys in P3DX_MACROS.items():
-        lines = []
-        for key in keys.split():
-            value = table.get(section, {}).get(key)
-            if not is_integer(value):
-                raise TableError(f"{source}: [{section}] {key} must be an integer")
-            name = c_name("ARGUS_P3DX", section, P3DX_NAMES.get(key, key))
-            lines.append(f"#define {name} {literal(value, None)}")
-        body += [f"// [{section}]", *lines, ""]
-    body += [
-        "// One X(number, x_mm, y_mm, heading_deg) for each sonar, in the order of their numbers.",
-        f"#define ARGUS_P3DX_SONAR_COUNT {len(rows)}",
-        "#define ARGUS_P3DX_SONAR_TABLE(X) \\",
-        " \\\n".join(rows),
-    ]
-    return header("ARGUS_GEN_P3DX_H", f"{P3DX_SOURCE}.toml", "P3-DX geometry, limits", body)
-
-
 def arcos_header(table: dict[str, Any]) -> str:
     """Return the text of gen_arcos.h."""
     body: list[str] = []
@@ -155,7 +113,7 @@ def arcos_header(table: dict[str, Any]) -> str:
 
 
 ROBOT_FIRST = "p3dx-sh"  # the robot that is assumed where none is known; the others follow by name
-ROTATIONS_MAX = 10  # of a plan: every set of them is tried
+TURNS_MAX = 24  # that a plan is made of
 FORWARD_MAX = 6
 NAME_BYTES = 16
 LAST_ASTERN_DEG = 140  # who looks farther astern than this sees what the robot backs into head-on
@@ -204,10 +162,10 @@ class Robot:
         at = row.index(sonar)
         return row[at - 1], row[at + 1]
 
-    def rotations(self) -> list[int]:
-        """Return the turns that put one forward-facing sonar on the bearing of another: small first, right first."""
-        turns = {self.bearing(a) - self.bearing(b) for a in self.forward for b in self.forward if a != b}
-        return sorted(turns, key=lambda turn: (abs(turn), turn))
+    def turns(self) -> set[int]:
+        """Return the turns that put any sonar on the bearing of one that faces forward, 1 to 359 degrees."""
+        every = range(len(self.poses))
+        return {(self.bearing(a) - self.bearing(b)) % 360 for a in self.forward for b in every} - {0}
 
     def derived(self) -> dict[str, int]:
         """Return the figures that follow from others."""
@@ -291,10 +249,10 @@ def read_robot(root: Path, name: str) -> Robot:
             f"{source}: [sonar] forward must name 2 to {FORWARD_MAX} of the sonars, left to right"
         )
     robot = Robot(name, figures, poses, forward)
-    if min(robot.spacings()) <= 0 or len(robot.rotations()) > ROTATIONS_MAX:
+    if min(robot.spacings()) <= 0 or len(robot.turns()) > TURNS_MAX:
         raise TableError(
-            f"{source}: [sonar] forward: bearings must fall from left to right, and have {ROTATIONS_MAX // 2} "
-            "different distances at most"
+            f"{source}: [sonar] forward: bearings must fall from left to right, and {TURNS_MAX} "
+            "different turns at most put a sonar on one of them"
         )
     if table.get("identity", {}).get("subclass") != name or len(name) >= NAME_BYTES:
         raise TableError(
@@ -316,14 +274,14 @@ def robots_header(root: Path) -> str:
         f"#define ARGUS_ROBOTS {len(robots)} // rows of argus_robots that are robots as they are built; more follow",
         f"#define ARGUS_ROBOT_NAME_MAX {NAME_BYTES} // the final 0 included",
         f"#define ARGUS_FORWARD_MAX {FORWARD_MAX} // forward-facing sonars of one robot, at most",
-        f"#define ARGUS_TURNS_MAX {ROTATIONS_MAX} // different turns of one onto the bearing of another",
+        f"#define ARGUS_TURNS_MAX {TURNS_MAX} // different turns of a sonar onto the bearing of one of these, at most",
     ]
     return header("ARGUS_GEN_SIZES_H", "robots/*.toml", "Which robots are known", body)
 
 
 def robot_rows(robot: Robot, first: str, other: int) -> list[str]:
     """Return the lines of one row of argus_robots; OTHER is the row of its other end, or -1."""
-    turns, count = robot.rotations(), len(robot.forward)
+    count = len(robot.forward)
     fields = {
         "name": f'"{robot.name}"',
         "other": other,
@@ -331,9 +289,7 @@ def robot_rows(robot: Robot, first: str, other: int) -> list[str]:
         "first_pose": first,
         "sonars": len(robot.poses),
         "forward_count": count,
-        "turns": len(turns),
         "forward": "{" + ", ".join(map(str, robot.forward)) + "}",
-        "turn_deg": "{" + ", ".join(map(str, turns)) + "}",
         "forward_mask": hex(sum(1 << sonar for sonar in robot.forward)) + "u",
         "ahead_mask": hex(robot.mask("ahead")) + "u",
         "astern_mask": hex(robot.mask("astern")) + "u",
@@ -392,7 +348,6 @@ def robots_source(root: Path) -> str:
 
 
 GENERATORS: dict[Path, Callable[[Path], str]] = {
-    Path("firmware/robot/gen_p3dx.h"): lambda root: p3dx_header(load(root, P3DX_SOURCE)),
     Path("firmware/robot/gen_sizes.h"): robots_header,
     Path("firmware/robot/gen_robots.c"): robots_source,
     Path("firmware/arcos/gen_arcos.h"): lambda root: arcos_header(load(root, "arcos")),

@@ -32,7 +32,9 @@ static bool has_driven(const argus_t *const self) {
 }
 
 static bool can_go_on(const argus_t *const self, const argus_robot_t *const end) {
-    const argus_plan_t plan = argus_plan(end, (argus_policy_t)self->config.policy, lost_of(self, end));
+    const argus_mask_t lost = lost_of(self, end);
+    const argus_mask_t living = (argus_mask_t)(argus_robot_forward(end) & ~(unsigned)lost);
+    const argus_plan_t plan = argus_plan(end, argus_policy(self), lost, living);
     return argus_guard_may_step(&plan);
 }
 
@@ -68,7 +70,7 @@ void argus_turn_about(argus_t *const self) {
     argus_slip_restart(&self->slip);
     self->base.taken = false;
     self->checked = false;
-    self->plan = argus_plan(other, (argus_policy_t)self->config.policy, 0);
+    self->plan = argus_plan(other, argus_policy(self), 0, 0);
     argus_say(self, ARGUS_EV_REVERSED, ARGUS_NO_SONAR, other->reversed ? 1 : 0);
     argus_replan(self);
 }

@@ -67,7 +67,8 @@ static void remember_at(int x_mm, int y_mm) {
 // Under argus also while the others can cover for those that are out: how far, it is asked apart.
 void test_s1_normal_driving_only_with_every_bearing_in_use(void) {
     for (unsigned disabled = 0; disabled <= 0x7Eu; disabled += 2) {
-        const argus_plan_t plan = argus_plan(argus_robot_default(), ARGUS_POLICY_PAPER, (uint16_t)disabled);
+        const argus_plan_t plan =
+            argus_plan(argus_robot_default(), ARGUS_POLICY_PAPER, (uint16_t)disabled, 0);
         use(ARGUS_PROFILE_PAPER);
         TEST_ASSERT_EQUAL(disabled == 0, argus_guard_may_drive(&g, &plan));
         use(ARGUS_PROFILE_ARGUS);
@@ -212,7 +213,8 @@ void test_s7_the_rear_is_clear_when_all_of_it_reads_clear(void) {
         for (int32_t profile = ARGUS_PROFILE_PAPER; profile <= ARGUS_PROFILE_ARGUS; profile++) {
             setUp();
             use(profile);
-            const int clear_mm = abeam && profile == ARGUS_PROFILE_ARGUS ? 97 + config.backoff_mm / 2 : config.rear_clear_mm;
+            const int clear_mm =
+                abeam && profile == ARGUS_PROFILE_ARGUS ? 97 + config.backoff_mm / 2 : config.rear_clear_mm;
             k.sonar[i].reading_mm = (uint16_t)clear_mm;
             TEST_ASSERT_FALSE(argus_guard_rear_is_clear(&g));
             k.sonar[i].reading_mm++;

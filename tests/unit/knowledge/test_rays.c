@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: the way counts as seen only where a trusted sonar has looked, lately, and no farther than it
-// heard nothing.
+// Rule under attack: the way counts as seen only where a trusted sonar has looked, lately, and no farther
+// than it heard nothing.
 #include "knowledge/rays.h"
 
 #include <string.h>
@@ -29,7 +29,7 @@ void setUp(void) {
 // All of `mask` are listed in one SIP.
 static void ping(unsigned mask) {
     k.fresh = (argus_mask_t)mask;
-    argus_rays_see(&rays, &k);
+    argus_rays_see(&rays, &k, 0);
 }
 
 static int32_t seen_mm(void) {
