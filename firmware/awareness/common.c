@@ -12,6 +12,7 @@
 #define TURNING_PER_MM \
     5 // ... until when the robot hardly turned: wheels that differ by less, for their distance, 11
       // degrees/s
+#define LASTING_MM 3500     // what is farther may go out of range, unless it comes nearer
 #define NEAR_MM 2500        // a thing abeam that the others of that side cannot miss
 #define APART_MM 400        // driven from one reading to the next, at most
 #define PASSED_MM 1500      // driven beside such things, both sides together: proof
@@ -22,9 +23,10 @@ void argus_common_init(argus_common_t *const self) {
 }
 
 static void take(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
-    if (knowledge->sonar[sonar].reading_mm < knowledge->robot->no_echo_mm) {
+    const uint16_t reading_mm = knowledge->sonar[sonar].reading_mm;
+    if (reading_mm < knowledge->robot->no_echo_mm) {
         self->none_run[sonar] = 0;
-        self->heard[sonar] = true;
+        self->heard[sonar] = reading_mm <= LASTING_MM || argus_robot_faces_forward(knowledge->robot, sonar);
         self->echo_ms[sonar] = knowledge->sip_ms;
     } else {
         self->none_run[sonar] = (uint8_t)argus_min(self->none_run[sonar] + 1, UINT8_MAX);

@@ -108,6 +108,16 @@ void test_echoes_that_end_one_after_the_other_are_no_proof(void) {
     TEST_ASSERT_TRUE_MESSAGE(argus_common_excuses(&c, 12), "it may have");
 }
 
+void test_a_wall_that_goes_out_of_range_is_no_proof(void) {
+    for (int i = 0; i < 16; i++) {
+        range_mm[i] = 4900;
+    }
+    drive(20, 200);
+    darken(REAR);
+    drive(60, 200);
+    TEST_ASSERT_EQUAL(0, convicted());
+}
+
 void test_where_nothing_was_heard_nothing_ends(void) {
     darken(0xFFFFu & ~6u);
     drive(20, 200);
