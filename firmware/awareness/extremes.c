@@ -18,6 +18,7 @@
 #define NEAR_MM 150         // what is nearer forbids to turn
 #define IMPOSSIBLE 16
 #define VISIT 10 // leaps near and away again at once: who walks across the beam may do so, once or twice
+#define ROW_STUCK 5
 #define LEVEL_CONVICTS 80
 #define LEVEL_KEEPS_OUT 40
 #define LEVEL_MAX 120
@@ -118,6 +119,7 @@ static void take(argus_extreme_t *const self, const argus_knowledge_t *const kno
     self->visited = !shortest && reading <= knowledge->robot->min_mm + NEAR_MM &&
                     self->before_mm > knowledge->robot->min_mm + LEAP_MM;
     self->before_mm = (uint16_t)reading;
+    self->row = (uint8_t)(shortest ? argus_min(self->row + 1, UINT8_MAX) : 0);
     if (shortest) {
         take_shortest(self, knowledge, sonar);
     } else {
@@ -144,7 +146,7 @@ argus_fault_kind_t argus_extremes_convicts(const argus_extremes_t *const self, c
     if (e->level < LEVEL_CONVICTS) {
         return ARGUS_KIND_NONE;
     }
-    return e->running ? ARGUS_KIND_STUCK : ARGUS_KIND_INTERMITTENT;
+    return e->row >= ROW_STUCK ? ARGUS_KIND_STUCK : ARGUS_KIND_INTERMITTENT;
 }
 
 bool argus_extremes_keeps_out(const argus_extremes_t *const self, const int sonar) {

@@ -13,6 +13,7 @@ typedef struct {
     int32_t from_cdeg;  // heading when it began
     int32_t away_mm;    // way that the transducer has gone from what it reads, since
     uint16_t before_mm;
+    uint8_t row;   // shortest readings, one after the other
     uint8_t level; // impossible readings of late, weighed
     bool visited;  // the reading before leapt near
     bool running;  // the reading before was a shortest one
