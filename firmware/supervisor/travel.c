@@ -131,6 +131,7 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
         return true;
     }
     *intent = say(ARGUS_EV_AVOIDING, ARGUS_NO_SONAR, bearing(self, mine) / 100);
+    intent->more = false; // one leg a SIP: the next one sees more
     return false;
 }
 
