@@ -57,7 +57,7 @@ bool argus_task_escape(argus_task_t *self, const argus_knowledge_t *knowledge, c
 // Gives up a leg that is done, or on which something is seen by now.
 void argus_task_keep(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes);
 
-// On each SIP: `drives`, or waits for a way. True: the waypoint cannot be reached; 60 s without progress.
+// On each SIP: `drives`, or waits for a way or for room. True: the waypoint cannot be reached; 60 s without progress.
 bool argus_task_is_hopeless(argus_task_t *self, const argus_knowledge_t *knowledge, bool drives);
 
 // The course was left (operator, reconnect): the next leg is chosen anew.
