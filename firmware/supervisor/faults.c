@@ -54,8 +54,8 @@ static void say_plan(argus_t *const self) {
     }
 }
 
-// Suspects that are covered for like those that are out: under the paper those that no witness could judge, one
-// that is still to be verified is not, nothing moves ahead before it is; else names that nobody sees for.
+// Suspects that are covered for like those that are out: under the paper those that no witness could judge,
+// one that is still to be verified is not, nothing moves ahead before it is; else names that nobody sees for.
 static argus_mask_t covered_suspects(const argus_t *const self) {
     if (argus_rules(self)->evidence) {
         const argus_guard_t guard = argus_guard(self);

@@ -212,7 +212,8 @@ void test_s7_the_rear_is_clear_when_all_of_it_reads_clear(void) {
         for (int32_t profile = ARGUS_PROFILE_PAPER; profile <= ARGUS_PROFILE_ARGUS; profile++) {
             setUp();
             use(profile);
-            const int clear_mm = abeam && profile == ARGUS_PROFILE_ARGUS ? 97 + config.backoff_mm / 2 : config.rear_clear_mm;
+            const int clear_mm =
+                abeam && profile == ARGUS_PROFILE_ARGUS ? 97 + config.backoff_mm / 2 : config.rear_clear_mm;
             k.sonar[i].reading_mm = (uint16_t)clear_mm;
             TEST_ASSERT_FALSE(argus_guard_rear_is_clear(&g));
             k.sonar[i].reading_mm++;

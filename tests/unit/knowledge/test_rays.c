@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: the way counts as seen only where a trusted sonar has looked, lately, and no farther than it
-// heard nothing.
+// Rule under attack: the way counts as seen only where a trusted sonar has looked, lately, and no farther
+// than it heard nothing.
 #include "knowledge/rays.h"
 
 #include <string.h>
