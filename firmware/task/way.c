@@ -310,6 +310,15 @@ static int32_t narrow_samples(const argus_wave_t *const wave, const argus_ground
     return narrow;
 }
 
+static bool is_better(const bool straight, const bool wide, const bool wide_end) {
+    return straight && (wide || !wide_end);
+}
+
+static void end_leg_at(argus_leg_t *const leg, const argus_point_t to, const int steps) {
+    leg->to = to;
+    leg->to_go_mm = steps * CELL_MM;
+}
+
 // The farthest cell of the way that can be driven straight to, best one on which the robot can turn.
 static void pull(const argus_wave_t *const wave, const argus_ground_t *const ground,
                  const argus_point_t waypoint, int steps, argus_leg_t *const leg) {
@@ -317,24 +326,22 @@ static void pull(const argus_wave_t *const wave, const argus_ground_t *const gro
     int32_t narrow = CUT_SAMPLES;
     bool wide_end = false;
     bool straight = true;
+    bool first = true; // a leg so short would be done at once
     leg->to = robot_at(ground);
-    while (straight && descend(wave, &at, &steps)) {
+    while ((straight || first) && descend(wave, &at, &steps)) {
         const argus_point_t centre = centre_of(ground->grid, at);
         const bool wide = has(wave->wide, at);
-        const bool first = between_mm(robot_at(ground), leg->to) < LEG_LEAST_MM;
         narrow += wide ? 0 : CELL_MM / SAMPLE_MM;
         straight = narrow_samples(wave, ground, centre) <= narrow;
-        if (first || (straight && (wide || !wide_end))) {
-            leg->to = centre;
-            leg->to_go_mm = steps * CELL_MM;
+        if (first || is_better(straight, wide, wide_end)) {
+            end_leg_at(leg, centre, steps);
             wide_end = wide;
         }
-        straight = straight || first;
+        first = between_mm(robot_at(ground), leg->to) < LEG_LEAST_MM;
     }
     leg->direct = straight && narrow_samples(wave, ground, waypoint) <= narrow;
     if (leg->direct) {
-        leg->to = waypoint;
-        leg->to_go_mm = 0;
+        end_leg_at(leg, waypoint, 0);
     }
 }
 
