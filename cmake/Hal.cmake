@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The hardware layer for POSIX and Linux, and argusd, the onboard program.
-file(GLOB hal_sources CONFIGURE_DEPENDS hal/posix/*.c hal/linux/*.c hal/fake/*.c)
+# The hardware layer for POSIX and Linux, what boards share (for its tests), and argusd, the onboard program.
+file(GLOB hal_sources CONFIGURE_DEPENDS hal/posix/*.c hal/linux/*.c hal/fake/*.c hal/board/*.c)
 list(FILTER hal_sources EXCLUDE REGEX "/main\\.c$")
 file(GLOB argusd_sources CONFIGURE_DEPENDS hal/linux/argusd/*.c)
 list(FILTER argusd_sources EXCLUDE REGEX "/main\\.c$")
@@ -11,13 +11,18 @@ if(NOT hal_sources)
     set(hal_sources ${PROJECT_BINARY_DIR}/empty.c)
 endif()
 add_library(argus_hal STATIC ${hal_sources})
-target_include_directories(argus_hal PUBLIC ${PROJECT_SOURCE_DIR}/hal/include)
+target_include_directories(argus_hal PUBLIC ${PROJECT_SOURCE_DIR}/hal/include ${PROJECT_SOURCE_DIR}/hal)
 target_compile_options(argus_hal PRIVATE ${ARGUS_STRICT})
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
 target_link_libraries(argus_hal PUBLIC argus Threads::Threads PRIVATE argus_flags)
 # gnu11: the POSIX declarations are visible without a feature macro in every file.
 set_target_properties(argus_hal PROPERTIES C_EXTENSIONS ON)
+
+# What checks the settings that are compiled into a board's image.
+add_executable(board_config tools/board_config.c)
+target_compile_options(board_config PRIVATE ${ARGUS_STRICT})
+target_link_libraries(board_config PRIVATE argus_hal argus argus_flags)
 
 if(NOT EXISTS ${PROJECT_SOURCE_DIR}/hal/linux/argusd/main.c)
     return()

@@ -148,10 +148,20 @@ def _scalar(node: yaml.Node) -> Any:
         return str(node.value)
 
 
-def read_text(path: str | Path) -> str:
-    """Return the text of a file, or refuse it in one line."""
+def read_text(path: str | Path, on_latin_1: Callable[[int], None] | None = None) -> str:
+    """Return the text of a file, or refuse it in one line.
+
+    on_latin_1: called with the first byte that is not UTF-8; the file is Latin-1 then. None refuses it.
+    """
     try:
-        return Path(path).read_text(encoding="utf-8")
+        data = Path(path).read_bytes()
+        try:
+            return data.decode("utf-8")
+        except UnicodeDecodeError as error:
+            if on_latin_1 is None or b"\0" in data:
+                raise
+            on_latin_1(error.start)
+            return data.decode("latin-1")
     except OSError as error:
         raise SimError(f"{path}: cannot be read ({error.strerror}); check the name") from None
     except UnicodeDecodeError as error:

@@ -26,15 +26,6 @@ ARCOS_SHORT = {
     "flags": "FLAG",
     "timing": "TIMING",
 }
-P3DX_SOURCE = "robots/p3dx-sh"
-# What gen_p3dx.h has of the robot's table: the keys of each section.
-P3DX_MACROS = {
-    "body": "front_mm rear_mm width_mm swing_radius_mm sonar_face_mm tolerance_centre_mm front_bumpers",
-    "motion": "vel_max_mm_s vel_top_mm_s rotvel_max_deg_s rotvel_top_deg_s accel_mm_s2 decel_mm_s2 accel_top_mm_s2"
-    " rotaccel_deg_s2 rotdecel_deg_s2 rotaccel_top_deg_s2 track_mm ticks_per_mm",
-    "sonar": "cycle_ms min_mm no_echo_mm cone_deg transducers_per_array arrays",
-}
-P3DX_NAMES = {"front_bumpers": "bumper_segments"}
 HEX_SECTIONS = {"type": 2, "argument": 2, "flags": 4}
 HEX_KEYS = {"HEADER0": 2, "HEADER1": 2}
 POSE_KEYS = ("number", "x_mm", "y_mm", "heading_deg")
@@ -99,39 +90,6 @@ def header(guard: str, source: str, what: str, body: list[str]) -> str:
             "",
         ]
     )
-
-
-def p3dx_header(table: dict[str, Any]) -> str:
-    """Return the text of gen_p3dx.h."""
-    source = TABLES / f"{P3DX_SOURCE}.toml"
-    poses = table.get("sonar", {}).get("pose", [])
-    rows = []
-    for index, pose in enumerate(poses):
-        missing = [key for key in POSE_KEYS if not is_integer(pose.get(key))]
-        if missing:
-            raise TableError(f"{source}: sonar.pose {index}: {missing[0]} must be an integer")
-        if pose["number"] != index:
-            raise TableError(f"{source}: sonar.pose {index}: number must be {index}")
-        rows.append("    X({}, {}, {}, {})".format(*(pose[key] for key in POSE_KEYS)))
-    if not rows:
-        raise TableError(f"{source}: no [[sonar.pose]] entries; add one per sonar")
-    body: list[str] = []
-    for section, keys in P3DX_MACROS.items():
-        lines = []
-        for key in keys.split():
-            value = table.get(section, {}).get(key)
-            if not is_integer(value):
-                raise TableError(f"{source}: [{section}] {key} must be an integer")
-            name = c_name("ARGUS_P3DX", section, P3DX_NAMES.get(key, key))
-            lines.append(f"#define {name} {literal(value, None)}")
-        body += [f"// [{section}]", *lines, ""]
-    body += [
-        "// One X(number, x_mm, y_mm, heading_deg) for each sonar, in the order of their numbers.",
-        f"#define ARGUS_P3DX_SONAR_COUNT {len(rows)}",
-        "#define ARGUS_P3DX_SONAR_TABLE(X) \\",
-        " \\\n".join(rows),
-    ]
-    return header("ARGUS_GEN_P3DX_H", f"{P3DX_SOURCE}.toml", "P3-DX geometry, limits", body)
 
 
 def arcos_header(table: dict[str, Any]) -> str:
@@ -346,7 +304,6 @@ def robots_source(root: Path) -> str:
 
 
 GENERATORS: dict[Path, Callable[[Path], str]] = {
-    Path("firmware/robot/gen_p3dx.h"): lambda root: p3dx_header(load(root, P3DX_SOURCE)),
     Path("firmware/robot/gen_sizes.h"): robots_header,
     Path("firmware/robot/gen_robots.c"): robots_source,
     Path("firmware/arcos/gen_arcos.h"): lambda root: arcos_header(load(root, "arcos")),

@@ -8,11 +8,13 @@ import argparse
 import dataclasses
 import re
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 EPILOG = """examples:
   tools/size_stack.py build/cortex-m4
   tools/size_stack.py build/cortex-m4 --root argus_receive --root argus_process
+  tools/size_stack.py FOLDER --root main --pointer slot_read --pointer slot_write
 
 exit codes: 0 bounded, 1 recursion, a call through a pointer, or a frame whose size is not fixed,
             2 no call graphs there"""
@@ -20,6 +22,7 @@ exit codes: 0 bounded, 1 recursion, a call through a pointer, or a frame whose s
 NODE = re.compile(r'node: \{ title: "(?P<title>[^"]+)" label: "(?P<label>[^"]*)"')
 EDGE = re.compile(r'edge: \{ sourcename: "(?P<source>[^"]+)" targetname: "(?P<target>[^"]+)"')
 FRAME = re.compile(r"(?P<bytes>\d+) bytes \((?P<kind>[^)]*)\)")
+SPECIALISED = re.compile(r"(\.(constprop|isra|part|cold|lto_priv)(\.\d+)?)+$")
 INDIRECT = "__indirect_call"
 
 
@@ -33,6 +36,21 @@ class Graph:
 
     frames: dict[str, int] = dataclasses.field(default_factory=dict)
     calls: dict[str, set[str]] = dataclasses.field(default_factory=dict)
+
+    def named(self, name: str) -> list[str]:
+        """Return the functions here of that own name."""
+        return sorted(title for title in self.frames if short(title) == name)
+
+    def point(self, names: Sequence[str]) -> None:
+        """Take all calls through pointers for calls of the functions NAMES; one that is not here is an error."""
+        targets = {title for name in names for title in self.named(name)}
+        missing = [name for name in names if not self.named(name)]
+        if missing:
+            raise Unbounded(f"no function '{missing[0]}' here, so it cannot be what a pointer leads to")
+        for called in self.calls.values():
+            if INDIRECT in called:
+                called.remove(INDIRECT)
+                called |= targets
 
     def add(self, text: str) -> None:
         """Add one call graph file."""
@@ -65,8 +83,8 @@ class Depth:
 
 
 def short(title: str) -> str:
-    """Return the function's own name."""
-    return title.rsplit(":", 1)[-1]
+    """Return the function's own name, without what gcc adds when it specialises it."""
+    return SPECIALISED.sub("", title.rsplit(":", 1)[-1])
 
 
 def deepest(graph: Graph, root: str, known: dict[str, Depth], above: tuple[str, ...] = ()) -> Depth:
@@ -121,9 +139,18 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument(
         "--root", action="append", default=[], help="function to start from (default: all public)"
     )
+    parser.add_argument(
+        "--pointer",
+        action="append",
+        default=[],
+        metavar="FUNCTION",
+        help="what a call through a pointer may reach",
+    )
     args = parser.parse_args(argv)
     try:
         graph = load(args.folder)
+        if args.pointer:
+            graph.point(args.pointer)
         missing = [root for root in args.root if root not in graph.frames]
         if missing:
             raise FileNotFoundError(f"{args.folder}: no function '{missing[0]}'")

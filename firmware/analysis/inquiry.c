@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "awareness/aim.h"
 #include "knowledge/angle.h"
 
 #define READINGS 2          // two that agree make a view
@@ -71,7 +72,7 @@ static bool is_unproved(const argus_inquiry_t *const self, const argus_knowledge
 static bool aim(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                 const argus_evidence_t *const evidence, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < knowledge->sonars && self->aims < AIMS_MAX);
-    self->aiming = argus_evidence_aim(evidence, knowledge, sonar, &self->aim_cdeg);
+    self->aiming = argus_aim(evidence, knowledge, sonar, &self->aim_cdeg);
     self->aimed = (uint8_t)sonar;
     self->aims = (uint8_t)(self->aims + (self->aiming ? 1 : 0));
     return self->aiming;

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "awareness/evidence_internal.h"
+#include "awareness/evidence.h"
 #include "knowledge/angle.h"
 
 #define VERSION 2
@@ -22,11 +22,9 @@
 #define V1_SONAR_BYTES 4 // health, kind, disabled_times lo hi
 #define V1_BYTES (V1_HEAD_BYTES + ARGUS_SONARS * V1_SONAR_BYTES + CHECK_BYTES)
 
-#define KEPT_TESTS ARGUS_TEST_PEERS // what the peers say is of the last seconds
-
 _Static_assert(ARGUS_RECORD_BYTES == HEAD_BYTES + ARGUS_SONARS * SONAR_BYTES + CHECK_BYTES,
                "length of the record");
-_Static_assert(AT_CALIBRATION == AT_SCORES + 2 * KEPT_TESTS, "scores");
+_Static_assert(AT_CALIBRATION == AT_SCORES + 2 * ARGUS_KEPT, "scores");
 _Static_assert(SONAR_BYTES == AT_SLOPES + SLOPE_BYTES * ARGUS_TRENDS, "slopes");
 
 static const uint8_t magic[4] = {'A', 'R', 'G', 'R'};
@@ -87,11 +85,9 @@ static void put_history(uint8_t *const at, const argus_sonar_t *const s) {
     at[4] = relapses_of(s);
 }
 
-// Only what makes a suspect is worth remembering, and the record changes less often.
-static void put_evidence(uint8_t *const at, const argus_case_t *const c) {
-    for (int i = 0; i < KEPT_TESTS; i++) {
-        const bool counts = c->score[i] >= argus_bounds[i].suspicious;
-        put16(at + AT_SCORES + 2 * i, counts ? (unsigned)c->score[i] : 0u);
+static void put_evidence(uint8_t *const at, const argus_evidence_t *const evidence, const int sonar) {
+    for (int i = 0; i < ARGUS_KEPT; i++) {
+        put16(at + AT_SCORES + 2 * i, (unsigned)argus_evidence_kept(evidence, sonar, (argus_kept_t)i));
     }
 }
 
@@ -120,12 +116,12 @@ size_t argus_record_encode(const argus_knowledge_t *const knowledge, const argus
     out[5] = ARGUS_SONARS;
     put16(out + 6, robot & 0xFFFFu);
     put16(out + 8, robot >> 16);
-    out[10] = KEPT_TESTS;
+    out[10] = ARGUS_KEPT;
     out[11] = ARGUS_TRENDS;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         uint8_t *const at = out + HEAD_BYTES + i * SONAR_BYTES;
         put_history(at, &knowledge->sonar[i]);
-        put_evidence(at, &evidence->of[i]);
+        put_evidence(at, evidence, i);
         put_trend(at, &evidence->trend.of[i]);
     }
     put16(out + ARGUS_RECORD_BYTES - CHECK_BYTES, crc16(out, ARGUS_RECORD_BYTES - CHECK_BYTES));
@@ -136,7 +132,7 @@ static bool is_known(const uint8_t *const record, const size_t length) {
     if (record[5] != ARGUS_SONARS || (record[4] != V1 && record[4] != VERSION)) {
         return false;
     }
-    return record[4] == V1 || length < HEAD_BYTES || (record[10] == KEPT_TESTS && record[11] == ARGUS_TRENDS);
+    return record[4] == V1 || length < HEAD_BYTES || (record[10] == ARGUS_KEPT && record[11] == ARGUS_TRENDS);
 }
 
 static argus_record_fault_t check(const uint8_t *const record, const size_t length) {
@@ -158,15 +154,11 @@ static void get_history(argus_sonar_t *const s, const uint8_t *const at) {
     s->disabled_before = get16(at + 2);
 }
 
-// Half counts, and the rest must come from what is seen in this mission: at most a suspicion of one that was
-// out, and less of any other.
-static void get_evidence(argus_case_t *const c, const uint8_t *const at, const bool out) {
-    for (int i = 0; i < KEPT_TESTS; i++) {
-        const int32_t score = argus_max(0, get_signed(at + AT_SCORES + 2 * i)) / 2;
-        const int32_t limit = (out ? argus_bounds[i].naming : argus_bounds[i].suspicious) - 1;
-        c->score[i] = (int16_t)argus_min(score, limit);
+static void get_evidence(argus_evidence_t *const evidence, const int sonar, const uint8_t *const at,
+                         const bool out) {
+    for (int i = 0; i < ARGUS_KEPT; i++) {
+        argus_evidence_restore(evidence, sonar, (argus_kept_t)i, get_signed(at + AT_SCORES + 2 * i), out);
     }
-    argus_lag_restore(c);
 }
 
 static void get_trend(argus_trend_sonar_t *const t, const uint8_t *const at) {
@@ -200,7 +192,7 @@ static void take(argus_knowledge_t *const knowledge, argus_evidence_t *const evi
         mask |= out ? 1u << i : 0u;
         get_history(&knowledge->sonar[i], at);
         knowledge->sonar[i].relapses = at[4];
-        get_evidence(&evidence->of[i], at, out);
+        get_evidence(evidence, i, at, out);
         get_trend(&evidence->trend.of[i], at);
     }
     note->out = (argus_mask_t)mask;

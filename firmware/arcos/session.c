@@ -113,6 +113,7 @@ static void open_robot(argus_session_t *self, uint32_t now_ms) {
     argus_outbox_int(&self->outbox, ARCOS_CMD_VEL, 0);
     argus_outbox_int(&self->outbox, ARCOS_CMD_RVEL, 0);
     argus_outbox_plain(&self->outbox, ARCOS_CMD_SETO);
+    self->origin_due = true;
     ask_config(self, now_ms);
     enter(self, now_ms, ARGUS_SESSION_OPENING);
 }
@@ -220,6 +221,7 @@ static unsigned finish_opening(argus_session_t *self, const argus_config_t *conf
     self->stalled = false;
     self->pause_ms = PAUSE_FIRST_MS;
     enter(self, now_ms, ARGUS_SESSION_OPEN);
+    self->origin_due = false;
     return ARGUS_SESSION_DID_OPEN | other;
 }
 

@@ -52,6 +52,7 @@ typedef struct {
     uint8_t differs;           // in which part it was not the one before, see argus_identity_meet()
     bool stalled;
     bool closed_said;
+    bool origin_due;      // a SETO is on its way since: positions may be counted from there
     uint32_t since_ms;    // entry into the state
     uint32_t tried_ms;    // last CONFIG sent
     uint32_t spoke_ms;    // last packet handed out

@@ -5,9 +5,8 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
-#include "robot/gen_p3dx.h"
 
-#define NO_ECHO_MM ARGUS_P3DX_SONAR_NO_ECHO_MM
+#define NO_ECHO_MM ARGUS_NO_ECHO_MM
 #define UNIT 16000  // a statistic of 1
 #define SPREAD 2000 // standard deviation of one residual, in parts of its limit
 #define FAST 6      // segments that the means look back on

@@ -14,7 +14,8 @@
 #define LISTS_ALL_COUNT (ARRAY - 1) // in one SIP: the firing schedule lists at most 3 at its default pace
 #define LISTS_ALL_WAIT_MS 460
 #define TURN_UNITS 4096
-#define GAP_MS 500 // without a SIP for longer, it was the link that was silent, not the sonars
+#define CDEG_PER_UNIT 20 // so much of a turn is like a unit of way
+#define GAP_MS 500       // without a SIP for longer, it was the link that was silent, not the sonars
 
 void argus_knowledge_init(argus_knowledge_t *const self) {
     memset(self, 0, sizeof *self);
@@ -24,6 +25,7 @@ void argus_knowledge_init(argus_knowledge_t *const self) {
 
 void argus_knowledge_reopen(argus_knowledge_t *const self, const uint32_t now_ms) {
     self->has_raw = false;
+    self->origin_due = false;
     self->still_sips = 0;
     self->lists_all = false;
     self->fresh = 0;
@@ -66,13 +68,24 @@ static void advance_pose(argus_knowledge_t *const self, const int32_t dx_um, con
     self->odometer_mm += (uint32_t)carry_mm(&self->odometer_um, way_um);
 }
 
+static int32_t speed_or_none(const int32_t mm_s) {
+    return argus_odometry_is_speed(mm_s) ? mm_s : 0;
+}
+
+// What no odometry and no wheel shows.
+static bool is_odd(const argus_sip_t *const sip) {
+    return argus_abs(sip->heading_raw) > TURN_UNITS || !argus_odometry_is_speed(sip->vel_left_mm_s) ||
+           !argus_odometry_is_speed(sip->vel_right_mm_s);
+}
+
 // Since the last SIP, which is before this one's speeds are taken.
 static argus_span_t span_to(const argus_knowledge_t *const self, const argus_sip_t *const sip,
                             const uint32_t now_ms) {
-    const argus_span_t span = {.before = {self->vel_left_mm_s, self->vel_right_mm_s},
-                               .after = {sip->vel_left_mm_s, sip->vel_right_mm_s},
-                               .track_mm = self->robot->track_mm,
-                               .elapsed_ms = now_ms - self->moved_ms};
+    const argus_span_t span = {
+        .before = {speed_or_none(self->vel_left_mm_s), speed_or_none(self->vel_right_mm_s)},
+        .after = {speed_or_none(sip->vel_left_mm_s), speed_or_none(sip->vel_right_mm_s)},
+        .track_mm = self->robot->track_mm,
+        .elapsed_ms = now_ms - self->moved_ms};
     return span;
 }
 
@@ -96,7 +109,7 @@ static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, co
     const int32_t heading = argus_angle_wrap(raw_heading_cdeg(sip) + self->heading_offset_cdeg);
     const argus_way_turn_t moved = {argus_hypot(dx_um / 1000, dy_um / 1000),
                                     argus_angle_abs_diff(heading, self->pose.heading_cdeg)};
-    if (!argus_odometry_may_be(&self->excess, span, &moved)) {
+    if (is_odd(sip) || !argus_odometry_may_be(&self->excess, span, &moved)) {
         self->leap_mm = moved.way_mm;
         self->leap_cdeg = moved.turn_cdeg;
         return false;
@@ -106,17 +119,41 @@ static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, co
     return true;
 }
 
+void argus_knowledge_origin_due(argus_knowledge_t *const self) {
+    self->origin_due = true;
+}
+
+// From the last SIP, or from zero, in one figure.
+static int32_t off(const argus_knowledge_t *const self, const argus_sip_t *const sip, const bool zero) {
+    const int32_t dx = raw_delta(sip->x_raw, zero ? 0 : self->x_raw);
+    const int32_t dy = raw_delta(sip->y_raw, zero ? 0 : self->y_raw);
+    const int32_t heading = zero ? 0 : argus_angle_wrap(self->pose.heading_cdeg - self->heading_offset_cdeg);
+    return argus_hypot(dx, dy) + argus_angle_abs_diff(raw_heading_cdeg(sip), heading) / CDEG_PER_UNIT;
+}
+
+static void take_zero(argus_knowledge_t *const self, const argus_sip_t *const sip) {
+    if (self->origin_due && off(self, sip, true) < off(self, sip, false)) {
+        self->x_raw = 0;
+        self->y_raw = 0;
+        self->heading_offset_cdeg = self->pose.heading_cdeg;
+    }
+}
+
 void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *const sip,
                               const int32_t distance_um, const uint32_t now_ms) {
     const argus_span_t span = span_to(self, sip, now_ms);
     self->leapt = false;
     if (!self->has_raw) {
         take_origin(self, sip);
-        self->excess = (argus_excess_t){0, 0};
-    } else if (!move(self, sip, distance_um, &span)) {
+        self->excess = (argus_excess_t){0};
+    } else {
+        take_zero(self, sip);
+        self->leapt = !move(self, sip, distance_um, &span);
+    }
+    if (self->leapt) {
         leave_out(self, sip, &span);
-        self->leapt = true;
         self->leaps++;
+        self->leaps_unseen += argus_odometry_is_unseen(&span) ? 1u : 0u;
     }
     self->moved_ms = now_ms;
     self->x_raw = sip->x_raw;

@@ -50,8 +50,10 @@ typedef struct {
     bool has_raw;
     uint32_t moved_ms;     // time of the SIP of these
     argus_excess_t excess; // beyond what the wheels say
+    bool origin_due;       // the robot may have set its odometry to zero, since these
     bool leapt;            // in the last SIP, as no robot moves: left out of the pose
     uint32_t leaps;        // monotonic
+    uint32_t leaps_unseen; // ... of these after a gap in which it moved: its place is lost
     int32_t leap_mm;
     int32_t leap_cdeg; // >= 0
     int16_t vel_left_mm_s;
@@ -85,6 +87,10 @@ void argus_knowledge_sip(argus_knowledge_t *self, const argus_sip_t *sip, int32_
 // Only the odometry of a SIP (a session that is about to be closed).
 void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um,
                               uint32_t now_ms);
+
+// The robot was told to set its odometry to zero; nobody knows whether it heard. SIPs that are nearer to zero
+// than to the last one are counted from there, until the session opens.
+void argus_knowledge_origin_due(argus_knowledge_t *self);
 
 // The robot is here: its wheels turned and it did not move.
 void argus_knowledge_set_back(argus_knowledge_t *self, argus_point_t to);

@@ -12,6 +12,7 @@
 #define FASTEST_MM_S 2000   // no robot of the tables drives as fast
 #define DRIVES_MM_S 750     // the fastest that it is ever told to
 #define TURNS_CDEG_S 10000  // likewise
+#define TURNING_CDEG_S 500  // ... which straight wheels do not look like
 #define ACCEL_MM_S2 2000    // the hardest that wheels speed up or brake
 #define ACCEL_CDEG_S2 30000 // likewise
 #define ACCEL_MM 300        // in a gap they reach their speed
@@ -24,6 +25,9 @@
 #define SLACK_PERCENT 110   // speeds are rounded and averaged
 #define SLACK_MM 2          // in each SIP
 #define SLACK_CDEG 30       // likewise
+#define SURE_PERCENT 70     // of what the wheels say is made for sure
+#define SHORT_MM 500        // what may be missing of it
+#define SHORT_CDEG 4500     // likewise
 #define CDEG_PER_RADIAN 5730
 
 static int32_t fastest_mm_s(const argus_span_t *const span) {
@@ -43,7 +47,8 @@ static int32_t turn_cdeg_s(const argus_wheels_t *const wheels, const int32_t tra
 static int32_t fastest_cdeg_s(const argus_span_t *const span) {
     const int32_t before = argus_abs(turn_cdeg_s(&span->before, span->track_mm));
     const int32_t after = argus_abs(turn_cdeg_s(&span->after, span->track_mm));
-    const int32_t gap = span->elapsed_ms > GAP_MS ? TURNS_CDEG_S : 0;
+    // It begins no turn by itself, but it ends one.
+    const int32_t gap = span->elapsed_ms > GAP_MS && before > TURNING_CDEG_S ? TURNS_CDEG_S : 0;
     return argus_max(gap, argus_max(before, after));
 }
 
@@ -54,6 +59,10 @@ static int32_t times_ms(const int32_t per_s, const int32_t ms) {
 
 static int32_t elapsed_ms(const argus_span_t *const span) {
     return (int32_t)(span->elapsed_ms < GAP_MAX_MS ? span->elapsed_ms : GAP_MAX_MS);
+}
+
+bool argus_odometry_is_speed(const int32_t mm_s) {
+    return argus_abs(mm_s) <= FASTEST_MM_S;
 }
 
 argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *const span) {
@@ -79,18 +88,40 @@ static int32_t build_up(const int32_t excess, const int32_t moved, const int32_t
     return argus_max(0, excess + moved - by_wheels * SLACK_PERCENT / 100 - slack);
 }
 
-bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *const span,
-                           const argus_way_turn_t *const moved) {
-    ARGUS_ASSERT(moved->way_mm >= 0 && moved->turn_cdeg >= 0);
+// Of what the wheels say the odometry shows nothing: a value that is frozen.
+static bool falls_short(argus_excess_t *const self, const argus_span_t *const span,
+                        const argus_way_turn_t *const moved) {
+    const argus_way_turn_t said = argus_odometry_by_wheels(span);
+    self->short_mm =
+        build_up(self->short_mm, argus_abs(said.way_mm) * SURE_PERCENT / 100, moved->way_mm, SLACK_MM);
+    self->short_cdeg = build_up(self->short_cdeg, argus_abs(said.turn_cdeg) * SURE_PERCENT / 100,
+                                moved->turn_cdeg, SLACK_CDEG);
+    return self->short_mm > SHORT_MM || self->short_cdeg > SHORT_CDEG;
+}
+
+static bool builds_up(argus_excess_t *const self, const argus_span_t *const span,
+                      const argus_way_turn_t *const moved) {
     const int32_t ms = argus_max(SIP_MS, elapsed_ms(span));
     const int32_t mm_s = fastest_mm_s(span);
     const int32_t cdeg_s = fastest_cdeg_s(span);
-    excess->way_mm = build_up(excess->way_mm, moved->way_mm, times_ms(mm_s, ms), SLACK_MM);
-    excess->turn_cdeg = build_up(excess->turn_cdeg, moved->turn_cdeg, times_ms(cdeg_s, ms), SLACK_CDEG);
-    if (may_be_alone(span, moved) && excess->way_mm <= EXCESS_MM + times_ms(mm_s, LOST_MS) &&
-        excess->turn_cdeg <= EXCESS_CDEG + times_ms(cdeg_s, LOST_MS)) {
+    self->way_mm = build_up(self->way_mm, moved->way_mm, times_ms(mm_s, ms), SLACK_MM);
+    self->turn_cdeg = build_up(self->turn_cdeg, moved->turn_cdeg, times_ms(cdeg_s, ms), SLACK_CDEG);
+    return self->way_mm > EXCESS_MM + times_ms(mm_s, LOST_MS) ||
+           self->turn_cdeg > EXCESS_CDEG + times_ms(cdeg_s, LOST_MS);
+}
+
+bool argus_odometry_is_unseen(const argus_span_t *const span) {
+    return span->elapsed_ms > GAP_MS && (span->before.left_mm_s != 0 || span->before.right_mm_s != 0);
+}
+
+bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *const span,
+                           const argus_way_turn_t *const moved) {
+    ARGUS_ASSERT(moved->way_mm >= 0 && moved->turn_cdeg >= 0);
+    const bool far = builds_up(excess, span, moved);
+    const bool frozen = falls_short(excess, span, moved);
+    if (!far && !frozen && may_be_alone(span, moved)) {
         return true;
     }
-    *excess = (argus_excess_t){0, 0};
+    *excess = (argus_excess_t){0};
     return false;
 }

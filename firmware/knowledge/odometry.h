@@ -25,18 +25,27 @@ typedef struct {
     int32_t turn_cdeg;
 } argus_way_turn_t;
 
-// What has built up of late beyond what the wheels say. All zero: nothing.
+// What has built up of late beyond what the wheels say, and what is missing of it. All zero: nothing.
 typedef struct {
     int32_t way_mm;
     int32_t turn_cdeg;
+    int32_t short_mm;
+    int32_t short_cdeg;
 } argus_excess_t;
+
+// Whether a wheel can turn so fast.
+bool argus_odometry_is_speed(int32_t mm_s);
 
 // What the wheels say that it has moved: ahead, and counter-clockwise.
 argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *span);
 
+// It was in motion when SIPs ceased to come: where it went in between the odometry alone can tell.
+bool argus_odometry_is_unseen(const argus_span_t *span);
+
 // Whether the robot can have moved by this, both >= 0, between the two SIPs: alone, and with what has built
-// up. False: what has built up is forgotten. SIPs come late, in bunches and not at all, wheels speed up and
-// brake in between: steps below some 150 mm and 15 degrees pass, one by one.
+// up; nor does it stand while its wheels turn. False: what has built up is forgotten. SIPs come late, in
+// bunches and not at all, wheels speed up and brake in between: steps below some 150 mm and 15 degrees pass,
+// one by one.
 bool argus_odometry_may_be(argus_excess_t *excess, const argus_span_t *span, const argus_way_turn_t *moved);
 
 #endif

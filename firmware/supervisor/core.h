@@ -81,6 +81,7 @@ typedef struct {
     uint16_t bumpers;     // bumper bits answered already, front << 8 | rear
     argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
     uint32_t leaps;       // of the odometry, answered already
+    uint32_t unseen;      // ... of these, where its place is lost
     uint32_t slips;       // likewise
     uint32_t unsound_ms;  // a leap or slip of the odometry, the last one
     uint8_t unsound;      // ... how many, one soon after the other

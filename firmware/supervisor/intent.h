@@ -68,7 +68,6 @@ typedef struct {
     argus_point_t at;
     argus_mask_t sonars;
     argus_mask_t silent;
-    argus_mask_t doubted; // their echoes are looked at before they are believed
 } argus_intent_t;
 
 #endif

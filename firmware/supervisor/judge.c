@@ -11,13 +11,11 @@
 #define PROBATION_AGREED 4
 #define PROBATION_MS 4000u
 #define PROBATION_DOUBLINGS 4
-#define NAME_STANDS_MS \
-    3000u // so long, six rounds, before a name is said: most for a healthy sonar pass sooner
+#define NAME_STANDS_MS 2000u // six rounds, before a name is said: many for a healthy sonar pass sooner
 
 static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
     argus_disable(self, sonar, kind);
-    argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
     const bool goes_on = argus_rules(self)->drives_seen && argus_guard_may_step(&self->plan);
     if (!ahead || goes_on || !argus_mode_may(self->mode, ARGUS_MAY_BREAK_OFF)) {
         return (argus_intent_t){0};
@@ -39,19 +37,16 @@ static bool stands(argus_t *const self, const int sonar, const argus_fault_kind_
 static void name(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    const argus_fault_kind_t kind = argus_evidence_renames(&self->evidence, sonar, s->kind);
+    const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
     const bool named = stands(self, sonar, kind);
     if (named) {
         argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
     }
-    if (named && s->health == ARGUS_SUSPECT &&
-        argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
-        argus_evidence_note_name(&self->evidence, sonar, kind);
+    if (named && s->health == ARGUS_SUSPECT && kind != s->kind) {
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
         argus_replan(self);
     }
-    const bool held = self->mode == ARGUS_MODE_VERIFYING || self->looks.asked ||
-                      (argus_evidence_lost(&self->evidence) >> sonar & 1u) != 0;
+    const bool held = self->mode == ARGUS_MODE_VERIFYING || self->looks.asked;
     if (s->health == ARGUS_SUSPECT && !argus_evidence_holds(&self->evidence, sonar) && !held) {
         argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, s->reading_mm);
         argus_replan(self);
@@ -97,7 +92,8 @@ static uint8_t agreements_wanted(const argus_sonar_t *const s) {
 // the truth, where nothing is in range, is the same value each time.
 static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar) {
     const argus_fault_kind_t convicted = convicts(self, sonar);
-    const bool stuck = self->knowledge.sonar[sonar].kind == ARGUS_KIND_STUCK;
+    const bool stuck = self->knowledge.sonar[sonar].kind == ARGUS_KIND_STUCK &&
+                       !argus_evidence_repeats(&self->evidence, sonar);
     return convicted == ARGUS_KIND_NONE && stuck ? argus_evidence_names(&self->evidence, sonar) : convicted;
 }
 
@@ -109,10 +105,10 @@ static void judge_out(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = kind_of_out(self, sonar);
-    const argus_fault_kind_t named = argus_evidence_relapses(&self->evidence, sonar);
+    const argus_fault_kind_t named = argus_evidence_names(&self->evidence, sonar);
     const bool suspected =
-        argus_evidence_keeps_out(&self->evidence, sonar) || argus_extremes_keeps_out(&self->extremes, sonar);
-    if (s->health == ARGUS_DISABLED && argus_evidence_replaces(&self->evidence, sonar, s->kind, kind)) {
+        argus_evidence_suspects(&self->evidence, sonar) || argus_extremes_keeps_out(&self->extremes, sonar);
+    if (s->health == ARGUS_DISABLED && kind != ARGUS_KIND_NONE && kind != s->kind) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
     }
     if (suspected) {

@@ -85,7 +85,6 @@ static void acquit(argus_t *const self, const int sonar) {
     }
     hold->acquittals = (uint8_t)argus_min(hold->acquittals + 1, UINT8_MAX);
     hold->odometer_mm = self->knowledge.odometer_mm;
-    argus_evidence_acquit(&self->evidence, &self->knowledge, sonar);
     if (s->health == ARGUS_SUSPECT) {
         argus_say_change(self, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, s->reading_mm);
     }
@@ -108,9 +107,7 @@ static void conclude(argus_t *const self, const int sonar) {
     if (argus_is_out(&self->knowledge, sonar)) {
         return;
     }
-    if (!asked && !argus_evidence_suspects(&self->evidence, sonar)) {
-        argus_evidence_acquit(&self->evidence, &self->knowledge, sonar); // it was looked at like the others
-    } else if (asked && argus_evidence_names(&self->evidence, sonar) == ARGUS_KIND_NONE) {
+    if (asked && argus_evidence_names(&self->evidence, sonar) == ARGUS_KIND_NONE) {
         acquit(self, sonar);
     } else if (suspect) {
         argus_leave_open(self, (argus_mask_t)(1u << sonar));

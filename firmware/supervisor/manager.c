@@ -144,6 +144,9 @@ static void take_slip(argus_t *const self) {
 static void on_sip(argus_t *const self) {
     const int32_t unit_um = argus_session_distance_um(&self->session, self->knowledge.robot->dist_conv_um);
     if (!argus_session_is_open(&self->session) || self->mode == ARGUS_MODE_CLOSED) {
+        if (self->session.origin_due) {
+            argus_knowledge_origin_due(&self->knowledge);
+        }
         argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
         return;
     }

@@ -291,7 +291,6 @@ static void prepare(argus_t *const self, const argus_intent_t *const intent) {
     if (intent->event != 0) {
         argus_say(self, (argus_event_id_t)intent->event, intent->sonar, intent->value);
     }
-    argus_evidence_note_jump(&self->evidence, intent->doubted);
     stop(self, (argus_stop_t)intent->stop);
     close_way(self, intent);
     self->checked = self->checked && !intent->unchecked;

@@ -2,6 +2,7 @@
 // Sees what calls for a STOP, or for an event, in one SIP.
 #include "supervisor/reflexes.h"
 
+#include "awareness/slant.h"
 #include "knowledge/angle.h"
 #include "supervisor/mode.h"
 #include "supervisor/state.h"
@@ -33,7 +34,7 @@ static argus_intent_t distrust(const argus_t *const self, argus_reflexes_t *cons
     }
     const bool lost = mine->unsound == UNSOUND_MOST;
     argus_intent_t intent =
-        lost ? say(ARGUS_EV_ODOMETRY_LOST, ARGUS_NO_SONAR, UNSOUND_MOST) : say(event, ARGUS_NO_SONAR, value);
+        lost ? say(ARGUS_EV_ODOMETRY_LOST, ARGUS_NO_SONAR, value) : say(event, ARGUS_NO_SONAR, value);
     intent.stop = ARGUS_STOP_STOP;
     intent.unchecked = true;
     intent.base = ARGUS_BASE_DROP;
@@ -50,6 +51,11 @@ static argus_intent_t sees_leap(const argus_t *const self, const argus_alarm_t *
     mine->leaps = knowledge->leaps;
     if (!news) {
         return nothing();
+    }
+    if (knowledge->leaps_unseen != mine->unseen) { // at once: where it went meanwhile nobody can tell
+        mine->unseen = knowledge->leaps_unseen;
+        mine->unsound = UNSOUND_MOST - 1;
+        mine->unsound_ms = self->now_ms;
     }
     const bool position = knowledge->leap_mm * HEADING_ALONE_CDEG_MM >= knowledge->leap_cdeg;
     return position ? distrust(self, mine, ARGUS_EV_POSE_LEAP, knowledge->leap_mm)
@@ -186,7 +192,6 @@ static argus_intent_t sees_object(const argus_t *const self, const argus_alarm_t
     argus_intent_t intent = say(ARGUS_EV_OBJECT, alarm->object_sonar, alarm->object_mm);
     intent.stop = ARGUS_STOP_STOP;
     intent.way = backing ? ARGUS_WAY_KEEP : ARGUS_WAY_REFUSE;
-    intent.doubted = alarm->object;
     intent.act = ARGUS_DO_CHECK;
     intent.full = true;
     return intent;
@@ -245,7 +250,8 @@ static argus_intent_t sees_flank(const argus_t *const self, const argus_alarm_t 
                             argus_robot_flank(self->knowledge.robot);
     const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((usable >> i & 1u) != 0 && argus_evidence_slants_in(&self->evidence, i, stop_mm)) {
+        if ((usable >> i & 1u) != 0 &&
+            argus_slants_in(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
             argus_intent_t intent = say(ARGUS_EV_OBJECT, i, self->knowledge.sonar[i].reading_mm);
             intent.stop = ARGUS_STOP_STOP;
             intent.way = ARGUS_WAY_REFUSE;

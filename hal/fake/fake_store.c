@@ -14,7 +14,7 @@ void hal_fake_store_power_on(hal_fake_store_t *self) {
     self->cut_after = UINT32_MAX;
 }
 
-static int slot_read(void *context, int slot, uint8_t *bytes, size_t capacity) {
+static int slot_read(void *context, int slot, size_t offset, uint8_t *bytes, size_t count) {
     const hal_fake_store_t *const self = context;
     if (self->off) {
         return HAL_STORE_IO;
@@ -22,26 +22,35 @@ static int slot_read(void *context, int slot, uint8_t *bytes, size_t capacity) {
     if (!self->exists[slot]) {
         return HAL_STORE_EMPTY;
     }
-    const size_t count = self->length[slot] < capacity ? self->length[slot] : capacity;
-    memcpy(bytes, self->bytes[slot], count);
-    return (int)count;
+    const size_t left = offset < self->length[slot] ? self->length[slot] - offset : 0;
+    const size_t got = left < count ? left : count;
+    memcpy(bytes, self->bytes[slot] + offset, got);
+    return (int)got;
 }
 
-static int slot_write(void *context, int slot, const uint8_t *bytes, size_t count) {
-    hal_fake_store_t *const self = context;
-    if (self->off || count > HAL_STORE_SLOT_MAX) {
-        return HAL_STORE_IO;
-    }
-    self->exists[slot] = true;
+static bool put(hal_fake_store_t *self, uint8_t *to, const uint8_t *bytes, size_t count) {
     for (size_t i = 0; i < count; i++) {
         if (self->written >= self->cut_after) {
             self->off = true;
-            return HAL_STORE_IO;
+            return false;
         }
-        self->bytes[slot][i] = bytes[i];
+        to[i] = bytes[i];
         self->written++;
     }
-    self->length[slot] = (uint16_t)count;
+    return true;
+}
+
+static int slot_write(void *context, int slot, const uint8_t *header, const uint8_t *record, size_t count) {
+    hal_fake_store_t *const self = context;
+    if (self->off || count > HAL_STORE_RECORD_MAX) {
+        return HAL_STORE_IO;
+    }
+    self->exists[slot] = true;
+    if (!put(self, self->bytes[slot], header, HAL_STORE_HEADER) ||
+        !put(self, self->bytes[slot] + HAL_STORE_HEADER, record, count)) {
+        return HAL_STORE_IO;
+    }
+    self->length[slot] = (uint16_t)(HAL_STORE_HEADER + count);
     return HAL_STORE_OK;
 }
 

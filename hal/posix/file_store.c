@@ -40,34 +40,29 @@ static const char *slot_path(hal_file_medium_t *self, int slot) {
     return self->target;
 }
 
-// Reads up to the end or the capacity; bytes read, or -1.
-static ssize_t read_all(int fd, uint8_t *bytes, size_t capacity) {
-    size_t count = 0;
+// Reads up to the end or the count; bytes read, or -1.
+static ssize_t read_all(int fd, size_t offset, uint8_t *bytes, size_t count) {
+    size_t done = 0;
     ssize_t got = 1;
-    while (got != 0 && count < capacity) {
-        got = read(fd, bytes + count, capacity - count);
+    while (got != 0 && done < count) {
+        got = pread(fd, bytes + done, count - done, (off_t)(offset + done));
         if (got > 0) {
-            count += (size_t)got;
+            done += (size_t)got;
         } else if (got < 0 && errno != EINTR) {
             return -1;
         }
     }
-    return (ssize_t)count;
+    return (ssize_t)done;
 }
 
-static int slot_read(void *context, int slot, uint8_t *bytes, size_t capacity) {
+static int slot_read(void *context, int slot, size_t offset, uint8_t *bytes, size_t count) {
     const int fd = open(slot_path(context, slot), O_RDONLY | O_CLOEXEC);
     if (fd < 0) {
         return errno == ENOENT ? HAL_STORE_EMPTY : (int)error_of(errno);
     }
-    uint8_t more = 0;
-    const ssize_t count = read_all(fd, bytes, capacity);
-    const bool longer = count == (ssize_t)capacity && read_all(fd, &more, 1) == 1;
+    const ssize_t got = read_all(fd, offset, bytes, count);
     close(fd);
-    if (count < 0) {
-        return HAL_STORE_IO;
-    }
-    return longer ? (int)HAL_STORE_DAMAGED : (int)count;
+    return got < 0 ? HAL_STORE_IO : (int)got;
 }
 
 static int write_all(int fd, const uint8_t *bytes, size_t count) {
@@ -81,7 +76,18 @@ static int write_all(int fd, const uint8_t *bytes, size_t count) {
             count -= (size_t)written;
         }
     }
-    return fsync(fd) == 0 ? HAL_STORE_OK : (int)error_of(errno);
+    return HAL_STORE_OK;
+}
+
+static int write_slot(int fd, const uint8_t *header, const uint8_t *record, size_t count) {
+    int result = write_all(fd, header, HAL_STORE_HEADER);
+    if (result == HAL_STORE_OK) {
+        result = write_all(fd, record, count);
+    }
+    if (result == HAL_STORE_OK && fsync(fd) != 0) {
+        result = error_of(errno);
+    }
+    return result;
 }
 
 // Without this the rename itself may be lost with the power.
@@ -101,14 +107,14 @@ static int sync_folder(hal_file_medium_t *self) {
     return result;
 }
 
-static int slot_write(void *context, int slot, const uint8_t *bytes, size_t count) {
+static int slot_write(void *context, int slot, const uint8_t *header, const uint8_t *record, size_t count) {
     hal_file_medium_t *const self = context;
     snprintf(self->scratch, sizeof self->scratch, "%s.tmp", self->path);
     const int fd = open(self->scratch, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (fd < 0) {
         return error_of(errno);
     }
-    int result = write_all(fd, bytes, count);
+    int result = write_slot(fd, header, record, count);
     if (close(fd) != 0 && result == HAL_STORE_OK) {
         result = error_of(errno);
     }

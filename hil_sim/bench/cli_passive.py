@@ -20,15 +20,18 @@ from argus_tools.core import library
 from hil_sim.bench import ablate as ablation
 from hil_sim.bench import plan, pool, variants
 from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, Parser, jobs, kinds, say, seeds
-from hil_sim.bench.drive import record_to
+from hil_sim.bench.drive import SPEED_MM_S, record_to
 from hil_sim.bench.passive import Verdict
 from hil_sim.bench.progress import Progress
 from hil_sim.bench.report_passive import summarise, table
 from hil_sim.bench.stream import missing, stream_path
 from hil_sim.errors import SimError
+from hil_sim.tables.robot import robot_table
 from hil_sim.world.physics import parse_physics
 
 _WORLDS: Final = "office,lab,corridor,smooth,hall,gen-*"
+_SLOWEST_MM_S: Final = 50
+_FASTEST_MM_S: Final = robot_table().motion["vel_max_mm_s"]
 _KINDS: Final = (*plan.FAULTS, "free")
 _DRIVE_BY: Final = """\
 examples:
@@ -45,8 +48,8 @@ exit codes: 0 done, 1 a mission failed, 2 wrong argument or file, 130 interrupte
 _ABLATE: Final = """\
 examples:
   argus-sim bench ablate --seeds 1-2 --streams streams/tune --out ablation
-  argus-sim bench ablate --only scan,'peers*' --kinds off,wrong --seeds 1
-  argus-sim bench ablate --constants --only 'LATE_*' --streams streams/tune
+  argus-sim bench ablate --only stuck,'others*' --kinds off,wrong --seeds 1
+  argus-sim bench ablate --constants --only 'ARGUS_LATE_*' --streams streams/tune
 
 For each rule in hil_sim/bench/rules.toml a fault manager is built without it and judged on the same streams as the
 whole. A rule earns its place when without it fewer faults are found in time than chance explains, or more false
@@ -55,6 +58,15 @@ How to read the table: docs/diagnosis.md.
 
 exit codes: 0 done, 1 a mission failed, 2 wrong argument or file, 130 interrupted
 """
+
+
+def speed(text: str) -> float:
+    """Return a speed that the robot can drive, mm/s."""
+    if not text.isdigit() or not _SLOWEST_MM_S <= int(text) <= _FASTEST_MM_S:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is no speed; write {_SLOWEST_MM_S} to {_FASTEST_MM_S}, in mm/s"
+        )
+    return float(text)
 
 
 def _parser(name: str, description: str, examples: str) -> Parser:
@@ -76,6 +88,8 @@ def _parser(name: str, description: str, examples: str) -> Parser:
     add("--seeds", type=seeds, default=range(1, 3), metavar="A-B", help="seeds (default 1-2)")
     add("--kinds", type=kinds, metavar="K,K", help=f"of {','.join(_KINDS)} (default: all)")
     add("--physics", default="", metavar="P", help="as for argus-sim (default: as the world says)")
+    add("--people", action="store_true", help="people walk about in every mission, beside faults too")
+    add("--speed", type=speed, default=SPEED_MM_S, metavar="MM_S", help="of the robot (default 200)")
     add("--streams", type=Path, metavar="DIR", help="where recordings are kept (default: nowhere)")
     add("--jobs", type=jobs, default=os.cpu_count() or 1, metavar="N", help="processes (default: cores)")
     return result
@@ -91,13 +105,21 @@ def _ids(arguments: argparse.Namespace) -> list[str]:
     return [case.id for case in plan.make_cases(["argus"], arguments.split, worlds, arguments.seeds, wanted)]
 
 
+def _conditions(arguments: argparse.Namespace) -> str:
+    """The folder of streams that are not of the usual conditions."""
+    parts = [arguments.physics.replace(",", "+")] if arguments.physics else []
+    parts += ["people"] if arguments.people else []
+    parts += [f"{arguments.speed:g}mm_s"] if arguments.speed != SPEED_MM_S else []
+    return "+".join(parts)
+
+
 @contextmanager
 def _recorded(arguments: argparse.Namespace) -> Iterator[tuple[list[Path], bool]]:
     """Record what is missing; yield the streams, and whether all of them are there."""
     ids = _ids(arguments)
     with tempfile.TemporaryDirectory(prefix="argus-streams-") as spare:
         folder = arguments.streams or Path(spare)
-        folder = folder / arguments.physics.replace(",", "+") if arguments.physics else folder
+        folder = folder / _conditions(arguments)
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -116,7 +138,13 @@ def _record(todo: Sequence[str], total: int, folder: Path, arguments: argparse.N
     if not todo:
         return
     progress = Progress(total, total - len(todo), sys.stderr)
-    work = functools.partial(record_to, folder=str(folder), physics=arguments.physics)
+    work = functools.partial(
+        record_to,
+        folder=str(folder),
+        physics=arguments.physics,
+        people=arguments.people,
+        speed_mm_s=arguments.speed,
+    )
     for record in pool.run_here(todo, min(arguments.jobs, len(todo)), work):
         progress.add(record)
         if record["error"]:

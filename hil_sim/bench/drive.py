@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from hil_sim.bench.plan import Case, mission_of, parse_id
+from hil_sim.bench.plan import Case, mission_of, parse_id, with_people
 from hil_sim.bench.stream import Stream, stream_path
 from hil_sim.bench.work import Record, failed, head
 from hil_sim.robot.interfaces import SonarReading
@@ -41,7 +41,10 @@ class DriveBy(Sil):
     It waits for people who stand in its way, and after a while goes on to the next point.
     """
 
-    def __init__(self, mission: Mission, course: tuple[tuple[float, float], ...]) -> None:
+    def __init__(
+        self, mission: Mission, course: tuple[tuple[float, float], ...], speed_mm_s: float = SPEED_MM_S
+    ) -> None:
+        self.speed_mm_s = speed_mm_s
         self.rows: list[tuple[int, int, int, int, int]] = []
         super().__init__(mission, trace=_note)
         self.traffic = []
@@ -95,8 +98,8 @@ class DriveBy(Sil):
         self._leg, self._turning = (self._leg + 1) % len(self._course), True
 
     def _speed(self, away_mm: float) -> float:
-        speed = min(SPEED_MM_S, max(_SLOWEST_MM_S, away_mm))
-        if self.mission.movers and self._nearest_ahead_mm() < _NEAR_MM:
+        speed = min(self.speed_mm_s, max(_SLOWEST_MM_S, away_mm))
+        if self.mission.movers and self._nearest_ahead_mm() < _NEAR_MM * self.speed_mm_s / SPEED_MM_S:
             self._waited_s += _STEER_MS / 1000
             if self._waited_s > _GIVE_UP_S:
                 self._waited_s = 0.0
@@ -158,9 +161,9 @@ def _cut_end(when: str) -> str:
     return start.partition("-")[0] + (f":{parameter}" if parameter else "")
 
 
-def record(case: Case, physics: str = "") -> Stream:
-    """Drive one case and return its stream."""
-    planned = mission_of(case)
+def record(case: Case, physics: str = "", *, people: bool = False, speed_mm_s: float = SPEED_MM_S) -> Stream:
+    """Drive one case and return its stream. people: also where the case has none."""
+    planned = with_people(case) if people else mission_of(case)
     free = case.kind == "free"
     mission = dataclasses.replace(
         planned,
@@ -171,17 +174,20 @@ def record(case: Case, physics: str = "") -> Stream:
         stop_at_goal=False,
         physics=physics,
     )
-    sil = DriveBy(mission, planned.course)
+    sil = DriveBy(mission, planned.course, speed_mm_s)
     while not sil.over and not sil.has_shown:
         sil.run_until(min(mission.limit_s, sil.now_ms / 1000 + 1))
     return sil.stream(case)
 
 
-def record_to(case_id: str, folder: str, physics: str) -> Record:
+def record_to(
+    case_id: str, folder: str, physics: str, people: bool = False, speed_mm_s: float = SPEED_MM_S
+) -> Record:
     """Record the case of an id into a folder; never raises: `error` tells what went wrong."""
     case = parse_id(case_id)
     try:
-        record(case, physics).save(stream_path(Path(folder), case_id))
+        stream = record(case, physics, people=people, speed_mm_s=speed_mm_s)
+        stream.save(stream_path(Path(folder), case_id))
     except Exception as error:  # whatever a mission does, the others must run
         return failed(case, f"{type(error).__name__}: {error}")
     return head(case)

@@ -295,6 +295,16 @@ def mission_of(case: Case) -> Mission:
     )
 
 
+def with_people(case: Case) -> Mission:
+    """Return the mission of a case with people about, also where the case has none."""
+    mission = mission_of(case)
+    if mission.movers:
+        return mission
+    world, field, _ = world_of(case.world, case.split, case.seed)
+    movers = people(field, (world.start.x_mm, world.start.y_mm), _rng(case, "people"))
+    return dataclasses.replace(mission, movers=movers)
+
+
 def people(field: Field, start: Point, rng: Rng) -> tuple[Person, ...]:
     """Return one to three people who walk back and forth where the robot drives, none of them near its start."""
     places = field.places(ROOM_MM)

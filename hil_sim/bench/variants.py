@@ -23,7 +23,22 @@ AWARENESS: Final = Path("firmware/awareness")
 _FLAGS: Final = ("-std=c11", "-O2", "-fPIC", "-w")
 _NUMBER: Final = r"\(?-?\d+u?\)?"
 _DEFINE: Final = re.compile(rf"^#define (?P<name>[A-Z]\w*) (?P<value>{_NUMBER})(?=\s|$)", re.MULTILINE)
-_CONSTANTS_IN: Final = ("evidence*.c", "evidence*.h", "trend.c")
+_CONSTANTS_IN: Final = tuple(
+    f"{name}.[ch]"
+    for name in (
+        "aim",
+        "clutter",
+        "evidence",
+        "facts",
+        "lag",
+        "levels",
+        "names",
+        "others",
+        "own",
+        "pings",
+        "trend",
+    )
+)
 _LEAST: Final = 3
 """Half or twice a smaller number is another rule, or the size of a memory."""
 

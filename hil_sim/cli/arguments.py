@@ -6,7 +6,8 @@ from __future__ import annotations
 import argparse
 import math
 import re
-from typing import NoReturn
+import sys
+from typing import Any, Final, NoReturn
 
 from hil_sim.arcos import BAUD
 from hil_sim.errors import SimError
@@ -22,6 +23,7 @@ from hil_sim.world.physics import LIMITS, SETS, Physics, parse_physics
 
 DEFAULT_TCP_HOST = "127.0.0.1"
 ROBOTS_MAX = 64
+_MINUS: Final = re.compile(r"-[0-9.]")
 _EXAMPLES = """\
 examples:
   argus-sim                                   one robot in the default world; prints the device to open
@@ -49,6 +51,14 @@ exit codes: 0 ended by a signal or --duration, 1 link cannot be opened or was lo
 class _Parser(argparse.ArgumentParser):
     """Reports a wrong argument in one line."""
 
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Take a place that begins with a minus for what it is, no option."""
+        words = list(sys.argv[1:] if args is None else args)
+        for k in range(len(words) - 1, 0, -1):
+            if words[k - 1] == "--start" and _MINUS.match(words[k]):
+                words[k - 1 : k + 1] = [f"--start={words[k]}"]
+        return super().parse_known_args(words, namespace)
+
     def error(self, message: str) -> NoReturn:
         """Print the line and leave with code 2."""
         self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
@@ -57,13 +67,15 @@ class _Parser(argparse.ArgumentParser):
 def _start(text: str) -> Pose:
     parts = text.split(",")
     try:
-        if len(parts) != 3:
+        if len(parts) not in (2, 3):
             raise ValueError
-        x, y, heading = (float(part) for part in parts)
+        x, y, heading = (float(part) for part in (*parts, "0")[:3])
         if not all(map(math.isfinite, (x, y, heading))):
             raise ValueError
     except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is not X,Y,DEG, for example 1000,500,90") from None
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is not X,Y or X,Y,DEG, for example 1000,-500,90"
+        ) from None
     return Pose(x, y, heading)
 
 
@@ -179,9 +191,13 @@ def parser() -> argparse.ArgumentParser:
     place.add_argument(
         "--world", metavar="NAME|FILE", help=f"a world of ours or a .map file (default {Scenario.world})"
     )
-    place.add_argument("--scenario", metavar="FILE", help="world, start, faults and more from a YAML file")
+    place.add_argument(
+        "--scenario", metavar="NAME|FILE", help="world, start, faults and more: one of ours or a YAML file"
+    )
     place.add_argument("--seed", type=_seed, metavar="N", help="seed of everything random (default 1)")
-    place.add_argument("--start", type=_start, metavar="X,Y,DEG", help="start pose, mm and degrees")
+    place.add_argument(
+        "--start", type=_start, metavar="X,Y[,DEG]", help="start pose, mm and degrees (default 0)"
+    )
     place.add_argument(
         "--bumpers", type=int, choices=(0, 5), help="front bumper segments (default: as the robot has)"
     )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import io
 import logging
 import os
 import sys
@@ -19,6 +20,8 @@ from hil_sim.world.files import world_names
 def main(argv: Sequence[str] | None = None) -> int:
     """Run `argus-sim`; return its exit code."""
     words = list(sys.argv[1:] if argv is None else argv)
+    if isinstance(sys.stdout, io.TextIOWrapper):  # a name may have letters that the terminal has not
+        sys.stdout.reconfigure(errors="backslashreplace")
     if words[:1] == ["bench"]:
         from hil_sim.bench.cli import main as bench
 

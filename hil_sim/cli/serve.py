@@ -78,7 +78,7 @@ def _loop(
     log: Log | None = None
     if arguments.truth:
         truth = numbered(Path(arguments.truth), index)
-        log = stack.enter_context(TruthRecord(truth, _meta(scenario, world, start)))
+        log = stack.enter_context(TruthRecord(truth, _meta(scenario, world, start), say))
     robot = build_robot(scenario, world, start, log, arguments.rear_bumpers)
     link, baud = link_of(arguments, index, scenario.seed)
     server = server_kind(arguments.quirks)(

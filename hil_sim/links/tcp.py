@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import socket
 from collections.abc import Iterable
 from typing import Any, Final
@@ -11,6 +12,22 @@ from hil_sim.errors import LinkError
 from hil_sim.links.base import Link
 
 _TX_LIMIT: Final = 65536
+
+
+_REASONS: Final = {
+    errno.EADDRINUSE: "another program listens there (ss -ltnp names it); end it or choose another port",
+    errno.EACCES: "ports below 1024 are for root; choose a higher one",
+    errno.EADDRNOTAVAIL: "no address of this machine; leave the host out, or give one that `ip address` shows",
+}
+
+
+def _why(error: OSError | OverflowError) -> str:
+    """What is wrong, and what to do."""
+    if isinstance(error, socket.gaierror):
+        return "no such host; leave it out, or give a name or address of this machine"
+    if isinstance(error, OSError) and error.errno in _REASONS:
+        return _REASONS[error.errno]
+    return f"{getattr(error, 'strerror', None) or error}; choose another host or port"
 
 
 class TcpLink(Link):
@@ -34,10 +51,7 @@ class TcpLink(Link):
             family = socket.getaddrinfo(self._host, self._port, type=socket.SOCK_STREAM)[0][0]
             listener = socket.create_server((self._host, self._port), family=family, backlog=1)
         except (OSError, OverflowError) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise LinkError(
-                f"--tcp {self._host}:{self._port}: {reason}; choose another host or port"
-            ) from error
+            raise LinkError(f"--tcp {self._host}:{self._port}: {_why(error)}") from error
         listener.setblocking(False)
         self._listener = listener
         self._port = listener.getsockname()[1]

@@ -3,11 +3,34 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Iterable
-from typing import Any
+from pathlib import Path
+from typing import Any, Final
 
 from hil_sim.errors import LinkError
 from hil_sim.links.base import Link
+
+_ADAPTERS: Final = ("serial/by-id/*", "ttyUSB*", "ttyACM*")
+
+
+def _adapters(folder: Path = Path("/dev")) -> str:
+    found = [str(path) for pattern in _ADAPTERS for path in sorted(folder.glob(pattern))]
+    return f"there is {', '.join(found)}" if found else "no serial adapter is there: is it plugged in?"
+
+
+def _why(error: OSError | ValueError, device: str) -> str:
+    """What is wrong, and what to do."""
+    number = getattr(error, "errno", None)
+    if number == errno.ENOENT:
+        return f"no such file; {_adapters()}"
+    if number == errno.EACCES:
+        return "no permission; join the group that `ls -l` shows for it, often dialout, and log in anew"
+    if number == errno.EISDIR or "configure port" in str(error):
+        return "no serial port; name a device such as /dev/ttyUSB0"
+    if number in (errno.EBUSY, errno.EAGAIN) or "lock port" in str(error):
+        return f"another program has it open (fuser {device} names it); end that one"
+    return f"{error}; check the device"
 
 
 class SerialLink(Link):
@@ -27,9 +50,7 @@ class SerialLink(Link):
         try:
             self._port = serial.Serial(self._device, self._baud, timeout=0, write_timeout=1, exclusive=True)
         except (OSError, ValueError) as error:
-            raise LinkError(
-                f"--serial {self._device}@{self._baud}: {error}; check the device and its rights"
-            ) from error
+            raise LinkError(f"--serial {self._device}@{self._baud}: {_why(error, self._device)}") from error
 
     @property
     def address(self) -> str:

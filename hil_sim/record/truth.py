@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from io import RawIOBase
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TextIO
+from typing import Any, Self
 
 from hil_sim.errors import SimError
 
@@ -23,21 +24,51 @@ class TruthRecord:
     after it was due). All but meta have `t_s`, seconds of robot time since the start.
     """
 
-    def __init__(self, path: str | Path, meta: dict[str, Any]) -> None:
+    def __init__(
+        self, path: str | Path, meta: dict[str, Any], say: Callable[[str], None] = lambda text: None
+    ) -> None:
+        """`say` is told once when the disk is full later on; at the beginning that is a SimError."""
+        self._path = path
+        self._began = False
         try:
-            self._file: TextIO = Path(path).open("w", encoding="utf-8")  # noqa: SIM115 (held until close)
+            # Unbuffered: each record is written whole, or not at all.
+            self._file: RawIOBase = Path(path).open("wb", buffering=0)  # noqa: SIM115 (held until close)
         except OSError as error:
             raise SimError(
                 f"{path}: cannot write the truth record ({error.strerror}); name another file"
             ) from error
+        self._say = say
+        self._full = False
+        self._error: str | None = None
         self("meta", meta)
+        if self._full:
+            self.close()
+            raise SimError(
+                f"{path}: cannot write the truth record ({self._error}); make room, or name another file"
+            )
+        self._began = True
 
     def __call__(self, kind: str, fields: dict[str, Any]) -> None:
         """Write one record and flush it, so that a reader or a crash finds it whole."""
         if self._file.closed:
             return
-        self._file.write(json.dumps({"type": kind, **fields}, separators=(",", ":")) + "\n")
-        self._file.flush()
+        line = json.dumps({"type": kind, **fields}, separators=(",", ":")) + "\n"
+        try:
+            self._file.write(line.encode())
+        except OSError as error:
+            self._lose(error)
+
+    def _lose(self, error: OSError) -> None:
+        """Tell once, and go on: the robot is served whatever becomes of the record."""
+        self._full = True
+        self._error = error.strerror
+        if self._began:
+            self._say(f"{self._path}: the truth record ends here ({error.strerror}); the robot goes on")
+            self.close()
+
+    def fileno(self) -> int:
+        """The descriptor that it is written to."""
+        return self._file.fileno()
 
     def close(self) -> None:
         """Close the file; later records are dropped."""

@@ -26,6 +26,8 @@ from hil_sim.world.moving import moving_solids
 from hil_sim.world.physics import Physics
 
 R = TypeVar("R", bound=Robot)
+OUTSIDE_MM = 1000.0
+"""Farther from all solids and the start of a world is outside of it."""
 
 
 def assemble(
@@ -45,15 +47,21 @@ def assemble(
     echoes: EchoModel | None = None,
     make_faults: Callable[[Sequence[Fault], np.random.Generator], FaultSet] = FaultSet,
 ) -> R:
-    """Return a robot, made by `make`, at `start`; SimError when a solid is there.
+    """Return a robot, made by `make`, at `start`; SimError when a solid is there, or nothing far and wide.
 
     physics: None is as the world says. movers: besides the world's own. echoes: a model of the same world, parameters
     and robot, to share what it has worked out.
     """
     moving = moving_solids((*world.movers, *movers), table.body)
     body = BodyModel(world, moving, table.body)
+    place = f"{start.x_mm:g},{start.y_mm:g},{start.heading_deg:g}"
+    x1, y1, x2, y2 = world.bounds
+    if not (
+        x1 - OUTSIDE_MM <= start.x_mm <= x2 + OUTSIDE_MM and y1 - OUTSIDE_MM <= start.y_mm <= y2 + OUTSIDE_MM
+    ):
+        size = f"x {x1:.0f} to {x2:.0f}, y {y1:.0f} to {y2:.0f} mm"
+        raise SimError(f"start {place}: outside of world {world.name} ({size}); choose another start")
     if body.contact(start, 0.0) is not None:
-        place = f"{start.x_mm:g},{start.y_mm:g},{start.heading_deg:g}"
         raise SimError(f"start {place}: a solid of world {world.name} is there; choose another start")
     # Streams of their own, so that one more draw in one place changes nothing elsewhere.
     injected = make_faults(faults, np.random.default_rng([seed, 1])) if faults else None

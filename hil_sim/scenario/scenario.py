@@ -149,7 +149,13 @@ def load_scenario(path: str | Path) -> Scenario:
 def _file_of(path: str | Path) -> Path:
     """A file, or one of our scenarios by its name."""
     file = Path(path)
-    return SCENARIO_DIR / f"{path}.yaml" if file.suffix == "" and not _exists(file) else file
+    if file.suffix != "" or _exists(file):
+        return file
+    if str(path) not in scenario_names():
+        raise SimError(
+            f"no scenario {str(path)[:60]!r}; name one of {', '.join(scenario_names())}, or a file ending in .yaml"
+        )
+    return SCENARIO_DIR / f"{path}.yaml"
 
 
 def _exists(path: Path) -> bool:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import re
 from pathlib import Path
@@ -18,7 +19,9 @@ from hil_sim.world.model import Pose, World
 POINT_MM: Final = 20.0
 """Side of the solid that stands for one DATA point of a map, and the grid onto which such points are thinned."""
 MAP_ROUGHNESS: Final = 0.5
+_LOG: Final = logging.getLogger("argus.sim")
 _HEADERS = ("2D-Map", "2D-Map-Ex", "2D-Map-Ex2")
+_NEWER = re.compile(r"2D-Map-Ex[0-9]+")
 _CAIRN = re.compile(r'(\S+)\s+(\S+)\s+(\S+)\s+(\S+)\s+"[^"]*"\s+\S+\s+"([^"]*)"\s*(.*)$')
 _SECTION = re.compile(r"(?:(?P<sensor>\S+)_)?(?P<what>LINES|DATA)")
 _COUNT = re.compile(r"(?P<what>\w*Num(?:Lines|Points)):(?P<count>.*)")
@@ -55,10 +58,9 @@ class _MapReader:
 
     def read(self) -> World:
         """Read the file and return its world."""
-        lines = read_text(self.path).splitlines()
+        lines = read_text(self.path, self.warn_of_latin_1).splitlines()
         self.number = 1
-        if not lines or lines[0].strip().lstrip("\ufeff") not in _HEADERS:
-            self.fail("not an ARIA map: the first line must be 2D-Map, 2D-Map-Ex or 2D-Map-Ex2")
+        self.check_form(lines[0].strip().lstrip("\ufeff") if lines else "")
         section = what = ""
         for self.number, raw in enumerate(lines[1:], 2):
             line = raw.strip()
@@ -74,6 +76,22 @@ class _MapReader:
         self.check_counts()
         self.add_points()
         return self.finish()
+
+    def warn(self, what: str) -> None:
+        """Tell of what is odd in the current line, and go on."""
+        _LOG.warning("%s:%d: %s", self.path, self.number, what)
+
+    def warn_of_latin_1(self, byte: int) -> None:
+        """Tell that names may come out wrong."""
+        _LOG.warning("%s: not UTF-8 (byte %d): read as Latin-1; save it as UTF-8", self.path, byte)
+
+    def check_form(self, form: str) -> None:
+        """Refuse what is no map; a newer form is read as the newest that is known."""
+        if form in _HEADERS:
+            return
+        if not _NEWER.fullmatch(form):
+            self.fail("not an ARIA map: the first line must be 2D-Map, 2D-Map-Ex or 2D-Map-Ex2")
+        self.warn(f"{form} is a form that is not known: read as {_HEADERS[-1]}")
 
     def take_header(self, line: str) -> None:
         """Use a line before the first section, if it matters here."""
@@ -91,14 +109,15 @@ class _MapReader:
         self.announced[what] = (int(count), self.number)
 
     def check_counts(self) -> None:
-        """Refuse a file that was cut short; more than announced is common after editing by hand, and harmless."""
+        """Tell of counts that do not fit, as after editing by hand; of what was announced something must be there."""
         for what, (count, line) in self.announced.items():
             found = self.counted.get(what, 0)
-            if found < count:
-                self.number = line
-                self.fail(
-                    f"{what} announces {count} but {found} follow; restore the file or correct the count"
-                )
+            self.number = line
+            if found == 0 < count:
+                self.fail(f"{what} announces {count} but none follow; restore the file or correct the count")
+            if found != count:
+                cut = "; was the file cut short?" if found < count else ""
+                self.warn(f"{what} announces {count} but {found} follow: those are read{cut}")
 
     def check_size(self) -> None:
         """Refuse a map too large to be simulated before it fills the memory."""

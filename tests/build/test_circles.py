@@ -14,8 +14,6 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 FIRMWARE = ROOT / "firmware"
 OBJECTS = ROOT / "build/release/CMakeFiles/argus.dir/firmware"
-# A folder whose circles are known and will go with its present model of evidence; every other one is free of them.
-REMAINDER = "awareness/"
 
 Graph = dict[str, set[str]]
 
@@ -89,10 +87,7 @@ def test_a_circle_is_found() -> None:
 
 @pytest.mark.parametrize("graph", [includes, calls, joined])
 def test_no_circles_between_files(graph: Callable[[], Graph]) -> None:
-    found = [sorted(circle) for circle in circles(graph())]
-    known = [circle for circle in found if all(file.startswith(REMAINDER) for file in circle)]
-    outside = [circle for circle in found if circle not in known]
-    assert outside == [], f"known remainder, to go with the evidence model: {known}"
+    assert [sorted(circle) for circle in circles(graph())] == []
 
 
 def test_every_source_calls_or_is_called() -> None:

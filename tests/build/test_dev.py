@@ -14,7 +14,10 @@ import pytest
 from devtool import cmake, testing
 
 ROOT = Path(__file__).resolve().parents[2]
-COMMANDS = ("demo", "shell", "test", "build", "format", "lint", "coverage", "size", "bench", "clean")
+COMMANDS = (
+    "demo", "shell", "test", "build", "format", "lint", "coverage", "size", "bench", "clean",
+    "firmware", "hil", "flash",
+)  # fmt: skip
 
 
 def dev(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -48,6 +51,9 @@ def test_help_of_each_command(command: str) -> None:
         (["test", "--only", "nonsense"], "there are: tables release"),
         (["test", "--quick", "--only", "hil"], "there are: tables release"),
         (["test", "--nonsense"], "unrecognized arguments"),
+        (["firmware", "--board", "nonsense"], "invalid choice"),
+        (["firmware", "--config", "/no/such/file"], "no such file"),
+        (["flash", "--probe", "nonsense"], "invalid choice"),
     ],
 )
 def test_wrong_arguments(arguments: list[str], expected: str) -> None:
@@ -97,13 +103,13 @@ def test_every_c_test_is_run_optimised(commands: dict[str, list[list[str]]]) -> 
 
 
 def test_every_python_test_is_run(commands: dict[str, list[list[str]]]) -> None:
-    """Those that compute are in python or soak, the others in hil or can."""
+    """Those that compute are in python or soak, the others in hil, can or boards."""
     for stage, mark in (("python", "not soak"), ("soak", "soak")):
         (pytests,) = (run for run in commands[stage] if "pytest" in run)
         assert pytests[pytests.index("-m", 2) + 1] == mark
         assert "tests" in pytests
         ignored = {word for word in pytests if word.startswith("--ignore")}
-        assert ignored == {"--ignore=tests/hil", "--ignore=tests/can"}
+        assert ignored == {"--ignore=tests/hil", "--ignore=tests/can", "--ignore=tests/target"}
 
 
 def test_a_shell_finds_what_was_built() -> None:

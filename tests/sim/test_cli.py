@@ -24,6 +24,7 @@ from hil_sim.cli.main import main
 from hil_sim.cli.serve import _lateness
 from hil_sim.links.loop import Loop
 from hil_sim.links.tcp import TcpLink
+from hil_sim.record.truth import TruthRecord
 from hil_sim.robot.report import sip
 from hil_sim.scenario.build import build_robot
 from hil_sim.scenario.scenario import Scenario
@@ -148,13 +149,17 @@ def test_the_duration_ends_it() -> None:
         (["--world", "nowhere"], "nowhere"),
         (["--world", "missing.map"], "missing.map"),
         (["--scenario", "missing.yaml"], "missing.yaml"),
-        (["--start", "1,2"], "X,Y,DEG"),
+        (["--start", "1"], "X,Y,DEG"),
         (["--start", "a,b,c"], "X,Y,DEG"),
         (["--start", "nan,0,0"], "X,Y,DEG"),
         (
             ["--world", WORLD, "--start", "1e9,0,0", "--truth", "/nonexistent/dir/file"],
             "/nonexistent/dir/file",
         ),
+        (["--start", "1,2,3,4"], "X,Y,DEG"),
+        (["--start", "-1,x"], "X,Y,DEG"),
+        (["--scenario", "nowhere"], "bad-day, box-ahead, demo"),
+        (["--world", WORLD, "--truth", "/dev/full"], "make room"),
         (["--tcp", "http"], "PORT"),
         (["--tcp", "99999"], "PORT"),
         (["--serial", "/dev/ttyUSB0"], "DEV@BAUD"),
@@ -193,7 +198,74 @@ def test_links_that_cannot_be_opened_exit_1(capsys: pytest.CaptureFixture[str]) 
     out, error = capsys.readouterr()
     assert out == ""
     assert error.count("\n") == 2
-    assert "/dev/nonexistent" in error
+    assert "another program listens there" in error
+    assert "/dev/nonexistent@9600: no such file; " in error
+
+
+@pytest.mark.parametrize(
+    ("device", "said"),
+    [("/dev/null", "no serial port"), ("/dev", "no serial port"), ("/etc/passwd", "no serial port")],
+)
+def test_what_is_no_uart_is_told(device: str, said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert code_of(["--world", WORLD, "--serial", f"{device}@9600"]) == 1
+    assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "start"),
+    [
+        (["--start", "-500,300"], [-500, 300, 0]),
+        (["--start", "-500,-300,-90"], [-500, -300, -90]),
+        (["--start=-500,300,45"], [-500, 300, 45]),
+        (["--start", "-.5,1"], [-0.5, 1, 0]),
+        (["--start", "200,-100"], [200, -100, 0]),
+    ],
+)
+def test_a_start_may_be_negative(words: list[str], start: list[float], tmp_path: Path) -> None:
+    truth = tmp_path / "truth"
+    assert code_of(["--world", "hall", *words, "--truth", str(truth), "--duration", "0.1"]) == 0
+    assert json.loads(truth.read_text().splitlines()[0])["start"] == start
+
+
+@pytest.mark.parametrize("start", ["99999,0", "-99999,0,90", "0,1e6", "0,-20000", "1e9,1e9,0"])
+def test_a_start_outside_of_the_world_is_refused(start: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert code_of(["--world", WORLD, f"--start={start}", "--duration", "0.1"]) == 2
+    assert f"outside of world {WORLD} (x " in capsys.readouterr().err
+
+
+def test_a_disk_that_fills_up_is_told_once_and_the_robot_goes_on(tmp_path: Path) -> None:
+    said: list[str] = []
+    record = TruthRecord(tmp_path / "truth", {"seed": 1}, said.append)
+    record("state", {"t_s": 0.1})
+    os.dup2(os.open("/dev/full", os.O_WRONLY), record.fileno())
+    for _ in range(3):
+        record("state", {"t_s": 0.2})
+    record.close()
+    assert len(said) == 1
+    assert "the truth record ends here (No space left on device); the robot goes on" in said[0]
+    assert [json.loads(line)["type"] for line in (tmp_path / "truth").read_text().splitlines()] == [
+        "meta",
+        "state",
+    ]
+
+
+@pytest.mark.parametrize(
+    "words", [["--help"], ["--list-worlds"], ["--list-faults"], ["--world", "demo"], ["bench"]]
+)
+def test_a_terminal_that_has_ascii_only(words: list[str]) -> None:
+    environment = {
+        "PATH": os.environ["PATH"],
+        "LANG": "C",
+        "LC_ALL": "C",
+        "PYTHONUTF8": "0",
+        "PYTHONIOENCODING": "ascii",
+    }
+    words = [*words, "--duration", "0.1"] if words[0] == "--world" else words
+    done = subprocess.run(
+        command(*words), cwd=ROOT, capture_output=True, env=environment, check=False, timeout=600
+    )
+    assert b"Traceback" not in done.stderr
+    assert done.returncode == (2 if words == ["bench"] else 0), done.stderr
 
 
 def test_help_and_lists() -> None:

@@ -304,12 +304,9 @@ BAD_MAP = {
     "count": ("2D-Map\nNumLines: many\n", "2: NumLines needs a whole number, not 'many'"),
     "negative count": ("2D-Map\nNumPoints: -1\n", "2: NumPoints needs a whole number"),
     "no count": ("2D-Map\nNumPoints:\n", "2: NumPoints needs a whole number"),
-    "cut short": ("2D-Map\nNumLines: 2\nLINES\n0 900 9 900\n", "2: NumLines announces 2 but 1 follow"),
-    "cut before": ("2D-Map\nResolution: 20\nNumPoints: 7\n", "3: NumPoints announces 7 but 0 follow"),
-    "cut in another": (
-        "2D-Map-Ex\nLaserNumPoints: 2\nLaser_DATA\n1 1\n",
-        "2: LaserNumPoints announces 2 but 1",
-    ),
+    "cut before": ("2D-Map\nResolution: 20\nNumPoints: 7\n", "3: NumPoints announces 7 but none follow"),
+    "cut in a line": ("2D-Map\nNumLines: 2\nLINES\n0 900 9 900\n0 8", "5: a line needs 4 numbers"),
+    "newer, but no map": ("2D-Map-Exotic\n", "1: not an ARIA map"),
     "cairn": ("2D-Map\nCairn: Goal 1 2\n", "2: expected Cairn: Goal X Y HEADING"),
     "cairn's place": ('2D-Map\nCairn: Goal 1 b 0 "" ICON "g"\n', "2: Cairn Goal needs 3 numbers"),
     "forbidden": ('2D-Map\nCairn: ForbiddenLine 0 0 0 "" ICON "" 1 2 3\n', "2: Cairn ForbiddenLine needs 4"),
@@ -323,6 +320,39 @@ def test_a_bad_map_is_one_line_with_its_place(
     text, expected = BAD_MAP[name]
     path = write(tmp_path / "bad.map", text)
     assert refused(path, capsys).startswith(expected)
+
+
+ODD_MAP = {
+    "short": ("2D-Map\nNumLines: 2\nLINES\n0 900 9 900\n", "2: NumLines announces 2 but 1 follow", 1),
+    "long": ("2D-Map\nNumLines: 0\nLINES\n0 900 9 900\n", "2: NumLines announces 0 but 1 follow", 1),
+    "short of another": (
+        "2D-Map-Ex\nLaserNumPoints: 2\nLaser_DATA\n1 1\n", "2: LaserNumPoints announces 2 but 1", 2,
+    ),
+    "newer": ("2D-Map-Ex3\nLINES\n0 900 9 900\n", "1: 2D-Map-Ex3 is a form that is not known", 1),
+    "much newer": ("2D-Map-Ex17\nLINES\n0 900 9 900\n", "1: 2D-Map-Ex17 is a form", 1),
+    "Latin-1": ('2D-Map\nCairn: Goal 1 2 0 "" ICON "Caf\udce9"\nLINES\n0 900 9 900\n', "not UTF-8 (byte 37)", 1),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ODD_MAP)
+def test_an_odd_map_is_read_with_a_warning(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, name: str
+) -> None:
+    text, expected, segments = ODD_MAP[name]
+    path = tmp_path / "odd.map"
+    path.write_bytes(text.encode("utf-8", "surrogateescape"))
+    world = load_map(path)
+    assert len(world.segments) == segments
+    assert [record.getMessage() for record in caplog.records] == [caplog.records[0].getMessage()]
+    assert expected in caplog.records[0].getMessage()
+    if name == "Latin-1":
+        assert list(world.goals) == ["Caf\u00e9"]
+
+
+def test_what_is_no_text_is_no_map(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "binary.map"
+    path.write_bytes(b"2D-Map\n\0\xff\xfe")
+    assert "not UTF-8 text" in refused(path, capsys)
 
 
 def test_a_map_whose_home_is_in_a_wall_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

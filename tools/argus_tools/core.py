@@ -49,7 +49,6 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_init": (ctypes.c_void_p, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32)),
     "argus_link_up": (None, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_link_lost": (None, (ctypes.c_void_p, ctypes.c_uint32)),
-    "argus_link_lost": (None, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_receive": (None, (ctypes.c_void_p, ctypes.c_uint32, ctypes.c_char_p, ctypes.c_size_t)),
     "argus_process": (ctypes.c_uint32, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_transmit": (ctypes.c_size_t, (ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t)),

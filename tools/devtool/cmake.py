@@ -14,7 +14,11 @@ from devtool.base import BUILD, CORES, ROOT, Run
 from devtool.setup import alone
 
 PRESETS_FILE: Final = ROOT / "CMakePresets.json"
-WITHOUT_ARGUSD: Final = ("m32", "cortex-m4")
+BOARDS: Final = ("mps2-an386", "stm32f405")
+"""The presets that make an image of a microcontroller."""
+ELSEWHERE: Final = ("blank", "mps2-tests", "stm32f405-tests", "big-endian")
+"""Those whose programs run on another machine."""
+WITHOUT_ARGUSD: Final = ("m32", "cortex-m4", *BOARDS, *ELSEWHERE)
 SOAK: Final = "soak"
 """The label of the unit tests that compute for long; they are run once, in the release build."""
 
@@ -30,7 +34,7 @@ def configure(preset: str, run: Run) -> None:
     """Configure PRESET if it is new, was configured elsewhere, or the presets changed."""
     folder = BUILD / preset
     cache, stamp = folder / "CMakeCache.txt", folder / "preset-digest"
-    inputs = [PRESETS_FILE, ROOT / "cmake/cortex-m4.cmake"]
+    inputs = [PRESETS_FILE, ROOT / "cmake/cortex-m4.cmake", ROOT / "cmake/s390x.cmake"]
     recipe = hashlib.sha256(b"".join(path.read_bytes() for path in inputs)).hexdigest()
     if cache.exists() and f"CMAKE_HOME_DIRECTORY:INTERNAL={ROOT}\n" not in cache.read_text():
         shutil.rmtree(folder)
@@ -42,10 +46,12 @@ def configure(preset: str, run: Run) -> None:
     stamp.write_text(recipe)
 
 
-def build(preset: str, run: Run) -> None:
-    """Configure and build PRESET."""
+def build(preset: str, run: Run, settings: Sequence[str] = ()) -> None:
+    """Configure and build PRESET; SETTINGS of CMake (NAME=VALUE) are kept until others are given."""
     with alone():
         configure(preset, run)
+        if settings:
+            run(["cmake", BUILD / preset, *(f"-D{setting}" for setting in settings)])
         run(["cmake", "--build", "--preset", preset, "-j", str(CORES)])
 
 

@@ -14,7 +14,7 @@ from devtool.setup import alone
 from devtool.stages import Stage
 
 C_FOLDERS: Final = ("examples", "firmware", "hal", "hil_sim", "tests", "tools")
-PROGRAMS: Final = ("tools/dev", "tools/with-can")
+PROGRAMS: Final = ("tools/dev", "tools/qemu-board", "tools/with-can")
 """Written in Python without being named so."""
 
 

@@ -106,6 +106,13 @@ NEEDS: Final = {
         ),
         lambda: ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi"],
     ),
+    "qemu-arm": command_need("qemu-system-arm", "qemu-system-arm"),
+    "s390x": Need(
+        "gcc for s390x",
+        lambda: quiet_ok(["s390x-linux-gnu-gcc", "-xc", "-E", "-include", "string.h", "/dev/null"]),
+        lambda: ["gcc-s390x-linux-gnu", "libc6-dev-s390x-cross"],
+    ),
+    "qemu-user": command_need("qemu-s390x", "qemu-user"),
     "clang": command_need("clang", "clang"),
     "tshark": command_need("tshark", "tshark"),
     "g++": command_need("g++", "g++"),
@@ -114,7 +121,17 @@ NEEDS: Final = {
     "can-utils": command_need("candump", "can-utils"),
 }
 BASIC_NEEDS: Final = ("gcc", "libc", "cmake", "generator", "venv", "inih", "curses")
-PRESET_NEEDS: Final = {"m32": ("m32",), "cortex-m4": ("cortex-m4",), "clang": ("clang",)}
+PRESET_NEEDS: Final = {
+    "m32": ("m32",),
+    "cortex-m4": ("cortex-m4",),
+    "mps2-an386": ("cortex-m4",),
+    "stm32f405": ("cortex-m4",),
+    "blank": ("cortex-m4",),
+    "mps2-tests": ("cortex-m4", "qemu-arm"),
+    "stm32f405-tests": ("cortex-m4", "qemu-arm"),
+    "big-endian": ("s390x", "qemu-user"),
+    "clang": ("clang",),
+}
 
 
 def apt_prefix() -> list[str] | None:

@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Final
 
 from devtool.base import BUILD, CORES, ROOT, VENV, Command, Run
-from devtool.cmake import SOAK, build, build_and_test, ctest
+from devtool.cmake import BOARDS, SOAK, build, build_and_test, ctest
+from devtool.peers import peers
 from devtool.real_time import hil_workers, run_in_real_time
 from devtool.stages import Stage
 
 PYTEST: Final = (VENV / "bin/python", "-m", "pytest", "-q")
-IN_REAL_TIME: Final = ("tests/hil", "tests/can")
+IN_REAL_TIME: Final = ("tests/hil", "tests/can", "tests/target")
 COMPUTING: Final = ("tests", *(f"--ignore={folder}" for folder in IN_REAL_TIME))
 # Some tests take a hundred times as long as others: who has done its own takes over what another has before it.
 SHARED_OUT: Final = ("-n", str(CORES), "--dist", "worksteal")
@@ -63,6 +64,18 @@ def cortex_m4(run: Run) -> None:
     run([sys.executable, "tools/size.py", "build/cortex-m4"])
 
 
+def boards(run: Run) -> None:
+    """Build the images of all boards, and let QEMU run them, unit tests on them, and recorded missions."""
+    for preset in ("release", *BOARDS):
+        build(preset, run)
+    build("blank", run)
+    for board in BOARDS:
+        run([sys.executable, "tools/size_image.py", BUILD / board])
+        build_and_test(f"{board.split('-')[0]}-tests", run)
+    run([VENV / "bin/python", "tools/board_time.py", "--check"])
+    run([*PYTEST, "tests/target", "-n", "3"])
+
+
 TABLES: Final = Stage(
     "tables",
     "generated headers agree with hil_sim/tables",
@@ -90,6 +103,19 @@ TEST_STAGES: Final = (
     CORTEX_M4,
     PYTHON,
     Stage(
+        "boards",
+        "images of microcontrollers, and unit tests on them, in QEMU",
+        boards,
+        ("release", *BOARDS),
+        ("qemu-arm",),
+    ),
+    Stage(
+        "big-endian",
+        "C unit tests on a big-endian processor, in QEMU",
+        lambda run: build_and_test("big-endian", run),
+        ("big-endian",),
+    ),
+    Stage(
         "can",
         "the same over CAN buses, in a guest kernel if need be",
         can_tests,
@@ -97,4 +123,9 @@ TEST_STAGES: Final = (
         ("can-utils",),
     ),
     Stage(SOAK, "C and Python tests that compute for long", soak_tests, ("release",)),
+    Stage(
+        "peers",
+        "the vendor's programs against ours, where ARIA_SOURCE= and MOBILESIM_SOURCE= are given",
+        peers,
+    ),
 )

@@ -260,8 +260,8 @@ typedef enum {
       "the ranges stay while the wheels turn: they slip, or are lifted: STOP sent, left out of the pose; "   \
       "value: mm")                                                                                           \
     X(69, ODOMETRY_LOST, ERROR, "drive",                                                                     \
-      "it leaps or slips again and again: where the robot is nobody knows, the course is given up; value: "  \
-      "times")                                                                                               \
+      "it leapt while nobody saw the robot move, or leaps or slips again and again: where the robot is "     \
+      "nobody knows, the course is given up; value: of the last leap or slip")                               \
     X(70, OPERATOR, OK, "operator", "an operator's command was taken; value: its number")                    \
     X(71, PASSIVE, OK, "operator", "reports only: commands no motion")                                       \
     X(72, ACTIVE, OK, "operator", "drives")                                                                  \
@@ -453,7 +453,7 @@ typedef enum {
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.
-#define ARGUS_STORAGE_BYTES (13700 + 1920 * ARGUS_SONARS)
+#define ARGUS_STORAGE_BYTES (13400 + 720 * ARGUS_SONARS)
 typedef union {
     uint64_t align;
     uint8_t bytes[ARGUS_STORAGE_BYTES];

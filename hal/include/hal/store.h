@@ -11,7 +11,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+// The longest record; a port with little memory may say less.
+#ifndef HAL_STORE_RECORD_MAX
 #define HAL_STORE_RECORD_MAX 4096
+#endif
 #define HAL_STORE_HEADER 16
 #define HAL_STORE_SLOT_MAX (HAL_STORE_HEADER + HAL_STORE_RECORD_MAX)
 #define HAL_STORE_SLOTS 2
@@ -30,10 +33,12 @@ const char *hal_store_error_text(int error);
 
 // Where slots are kept: files, flash, or the fake.
 typedef struct {
-    // Bytes read (at most capacity), HAL_STORE_EMPTY when the slot does not exist, or another error.
-    int (*read)(void *context, int slot, uint8_t *bytes, size_t capacity);
-    // HAL_STORE_OK only when the bytes will outlast a power cut.
-    int (*write)(void *context, int slot, const uint8_t *bytes, size_t count);
+    // Bytes read from `offset` on: as many as were asked for, or fewer where the slot ends;
+    // HAL_STORE_EMPTY when the slot does not exist, or another error.
+    int (*read)(void *context, int slot, size_t offset, uint8_t *bytes, size_t count);
+    // Replaces a slot by header and record. HAL_STORE_OK only when both will outlast a power cut.
+    int (*write)(void *context, int slot, const uint8_t header[HAL_STORE_HEADER], const uint8_t *record,
+                 size_t count);
 } hal_medium_ops_t;
 
 typedef struct {
@@ -44,13 +49,16 @@ typedef struct {
 typedef struct {
     hal_medium_t medium;
     bool scanned;
-    int8_t newest; // slot of the newest valid record, -1: none
+    int8_t newest;   // slot of the newest valid record, -1: none
+    uint16_t length; // of that
     uint32_t sequence;
     bool damaged[HAL_STORE_SLOTS]; // found by the last load: a slot that exists and is not valid
-    uint8_t slot[HAL_STORE_SLOT_MAX];
 } hal_store_t;
 
 void hal_store_init(hal_store_t *self, hal_medium_t medium);
+
+// Looks for the newest valid record: its slot and length. Otherwise as hal_store_load().
+hal_store_error_t hal_store_find(hal_store_t *self, int *slot, size_t *count);
 
 // Copies the newest valid record; `*count` is its length. With HAL_STORE_OK look at `damaged`: the other slot
 // may have been lost. HAL_STORE_TOO_LONG when `capacity` is too small.

@@ -48,7 +48,7 @@ def test_a_replay_is_what_the_manager_did_when_it_listened() -> None:
             faults=mission.faults,
             seed=mission.seed,
             config={**mission.config, "active": "off"},
-            limit_s=40.0,
+            limit_s=60.0,
             stop_at_goal=False,
         ),
         mission.course,
@@ -168,7 +168,7 @@ def test_wrong_arguments_give_one_line(
 
 
 def test_constants_are_chosen_by_name() -> None:
-    options = cli_passive.ablate_parser().parse_args(["--constants", "--only", "BENT_N*"])
+    options = cli_passive.ablate_parser().parse_args(["--constants", "--only", "ARGUS_BENT_N*"])
     names = [variant.name for variant in cli_passive.chosen(options)]
     assert names
-    assert all(name.startswith("BENT_N") for name in names)
+    assert all(name.startswith("ARGUS_BENT_N") for name in names)

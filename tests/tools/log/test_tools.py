@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import json
+import os
 import struct
+import subprocess
+import sys
 import xml.etree.ElementTree
 from pathlib import Path
 from typing import Any
@@ -235,3 +238,22 @@ def test_each_command_has_help_with_examples() -> None:
         text = run(name, "--help").stdout.decode()
         assert "examples:" in text
         assert "exit codes:" in text
+
+
+@pytest.mark.parametrize("command", [["stats"], ["decode"], ["faults"], ["faults", "--events"], ["--help"]])
+def test_where_only_ascii_can_be_printed(tmp_path: Path, command: list[str]) -> None:
+    """Under LANG=C a name with other letters and the bars of a histogram come out as ASCII."""
+    log = tmp_path / "Café.jsonl"
+    log.write_bytes(RAM.read_bytes())
+    environment = {"PATH": os.environ["PATH"], "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONIOENCODING": "ascii"}
+    words = [
+        sys.executable,
+        "-m",
+        "argus_tools.log.cli",
+        *command,
+        *([] if command == ["--help"] else [str(log)]),
+    ]
+    done = subprocess.run(words, env=environment, capture_output=True, check=False, timeout=600)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.isascii()
+    assert b"Traceback" not in done.stderr

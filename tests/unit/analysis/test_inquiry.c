@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "awareness/evidence_internal.h"
+#include "awareness/aim.h"
+#include "awareness/levels.h"
 #include "health.h"
 #include "knowledge/angle.h"
 #include "unity.h"
@@ -115,7 +116,8 @@ static bool looked_at(int32_t cdeg) {
 }
 
 static void suspect_openly(int sonar) {
-    e.of[sonar].score[ARGUS_TEST_VIEW] = argus_bounds[ARGUS_TEST_VIEW].suspicious;
+    e.of[sonar].score[ARGUS_TEST_PEERS] =
+        (int16_t)(argus_bounds[ARGUS_TEST_PEERS].naming * ARGUS_SUSPECT_PERCENT / 100);
 }
 
 void test_one_pitch_to_either_side_and_back(void) {
@@ -251,9 +253,9 @@ void test_it_ends_at_home_whatever_happens(void) {
             k.sonar[i].health = (argus_health_t)(rand() % 6);
             for (int test = 0; test < ARGUS_TESTS; test++) {
                 const argus_bounds_t *b = &argus_bounds[test];
-                e.of[i].score[test] = (int16_t)(b->floor + rand() % (b->ceiling - b->floor + 1));
+                e.of[i].score[test] = (int16_t)(b->floor + rand() % (ARGUS_CEILING - b->floor + 1));
             }
-            e.of[i].conflicts = (uint8_t)(rand() % 8);
+            e.of[i].against = (argus_mask_t)(rand() % 8);
         }
         const int32_t base = rand() % 36000 - 17999;
         inquire((uint16_t)rand(), (uint16_t)rand(), base);
@@ -265,19 +267,11 @@ void test_it_ends_at_home_whatever_happens(void) {
 
 // `sonar` has heard something at `mm` on the robot's heading `cdeg`.
 static void heard(int sonar, int32_t cdeg, int mm) {
-    const argus_sonar_pose_t *mount = &argus_sonar_poses[sonar];
     const argus_pose_t pose = {k.pose.x_mm, k.pose.y_mm, cdeg};
-    const argus_point_t robot = {mount->x_mm, mount->y_mm};
-    const argus_point_t at = argus_to_course(&pose, robot);
-    argus_case_t *c = &e.of[sonar];
-    c->view[c->view_next] = (argus_view_t){.x_mm = at.x_mm,
-                                           .y_mm = at.y_mm,
-                                           .bearing_cdeg = argus_angle_wrap(cdeg + mount->heading_deg * 100),
-                                           .t_ms = k.sip_ms,
-                                           .reading_mm = (uint16_t)mm,
-                                           .rest = true,
-                                           .valid = true};
-    c->view_next = (uint8_t)((c->view_next + 1) % ARGUS_VIEWS);
+    argus_ping_t at = argus_ping_from(k.robot, sonar, &pose);
+    at.t_ms = (uint16_t)(k.sip_ms & 0xFFFFu);
+    at.reading_mm = (uint16_t)mm;
+    argus_pings_note(&e.of[sonar].pings, at);
 }
 
 static void falls_silent(int sonar) {
@@ -289,7 +283,7 @@ static void falls_silent(int sonar) {
 // 3 hears nothing; on -20 degrees it would look where 4 has heard something, on +20 where 2 has.
 static void three_falls_silent(void) {
     setUp();
-    e.agreements = 10;
+    e.has_pairs = true;
     falls_silent(3);
     heard(4, 0, 1500);
 }
@@ -393,12 +387,11 @@ void test_an_aim_that_settles_it_ends_the_look(void) {
     TEST_ASSERT_TRUE(inquiry.returning);
 }
 
-// It stays silent where another heard something: that has been counted now, and is not aimed at again.
+// It stays silent where another heard something: it has looked there now, and is not turned there again.
 void test_an_aim_that_settles_nothing_is_followed_by_the_looks(void) {
     three_falls_silent();
     begin_on(1u << 3);
-    const argus_view_t *v = &e.of[4].view[0];
-    e.of[3].refuted[0] = (argus_refuted_t){v->x_mm, v->y_mm, v->bearing_cdeg, 4};
+    heard(3, -2000, 5000);
     unsigned seen = 0;
     for (int i = 0; inquiry.active && i < LOOKS_MAX; i++) {
         const int32_t to = next_heading();
@@ -423,7 +416,7 @@ void test_an_aim_that_leaves_the_suspect_open_is_followed_by_the_looks(void) {
 // While nobody has borne out anybody, the aims alone show too little: the looks follow in any case.
 void test_before_anybody_is_borne_out_the_aims_are_not_enough(void) {
     three_falls_silent();
-    e.agreements = 0;
+    e.has_pairs = false;
     begin_on(1u << 3);
     TEST_ASSERT_TRUE(inquiry.aiming);
     comes_back(3);
@@ -476,11 +469,11 @@ void test_an_aimed_sonar_that_yields_nothing_is_not_waited_for_long(void) {
 // Everybody hears nothing, and there is something to aim at for each, wherever the robot looks.
 static void all_fall_silent(void) {
     setUp();
-    e.agreements = 10;
+    e.has_pairs = true;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         falls_silent(i);
         e.of[i].none_run = 20;
-        for (int n = 0; n < ARGUS_VIEWS; n++) {
+        for (int n = 0; n < 8; n++) {
             heard(i, n * 2000, 1000 + 10 * i);
         }
     }
@@ -530,7 +523,7 @@ void test_suspects_come_before_those_that_are_none(void) {
         nobody_was_proved_of_late();
         begin_on(1u << suspect);
         TEST_ASSERT_TRUE(inquiry.aiming);
-        if (argus_evidence_aim(&e, &k, suspect, &to)) { // turning shifts some too far aside
+        if (argus_aim(&e, &k, suspect, &to)) { // turning shifts some too far aside
             TEST_ASSERT_EQUAL(suspect, inquiry.aimed);
             TEST_ASSERT_EQUAL_INT32(to, argus_inquiry_heading_cdeg(&inquiry));
             some++;
@@ -551,7 +544,7 @@ void test_who_is_contradicted_most_is_aimed_first(void) {
             }
             e.of[worst].score[ARGUS_TEST_PEERS] = 200;
             e.of[(worst + 5) % ARGUS_SONARS].score[ARGUS_TEST_PEERS] = 100;
-            const bool may = argus_evidence_aim(&e, &k, worst, &to);
+            const bool may = argus_aim(&e, &k, worst, &to);
             begin_on(asked == 0 ? 0 : 0xFFFF);
             TEST_ASSERT_TRUE(inquiry.aiming);
             if (may) {
@@ -587,7 +580,7 @@ static uint8_t byte(void) {
 static void any_state(unsigned seed) {
     srand(seed);
     setUp();
-    e.agreements = (uint32_t)(rand() % 2);
+    e.has_pairs = rand() % 2 != 0;
     mute = (unsigned)rand() & (unsigned)rand() & 0xFFFFu;
     wavers = (unsigned)rand() & 0xFFFFu;
     hears = (unsigned)rand() & 0xFFFFu;
@@ -600,7 +593,7 @@ static void any_state(unsigned seed) {
         if (rand() % 3 == 0) {
             e.of[i].score[rand() % ARGUS_TESTS] = (int16_t)(rand() % 2000);
         }
-        for (int n = rand() % (ARGUS_VIEWS + 1); n > 0; n--) {
+        for (int n = rand() % (8 + 1); n > 0; n--) {
             heard(i, rand() % 36000 - 17999, rand() % 5001);
         }
     }

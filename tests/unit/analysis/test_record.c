@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "awareness/evidence_internal.h"
+#include "awareness/levels.h"
 #include "health.h"
 #include "unity.h"
 
@@ -25,10 +25,10 @@ static size_t write_one(void) {
     k.sonar[5].disabled_times = 9;
     k.sonar[5].relapses = 3;
     k.sonar[9].kind_before = ARGUS_KIND_SILENT;
-    e.of[3].score[ARGUS_TEST_VIEW] = 2600;
-    e.of[3].score[ARGUS_TEST_LAG] = argus_bounds[ARGUS_TEST_LAG].suspicious;
+    e.of[3].score[ARGUS_TEST_STUCK] = 2600;
+    e.of[3].doubt[5].well = ARGUS_LATE_NAMING;
     e.of[6].score[ARGUS_TEST_DROPOUT] = 2200;
-    e.of[7].score[ARGUS_TEST_VIEW] = -150;
+    e.of[7].score[ARGUS_TEST_PEERS] = -150;
     e.trend.of[6].said = true;
     e.trend.of[6].residual_mm16 = -320;
     e.trend.of[6].residual_permille16 = -16000;
@@ -84,13 +84,14 @@ void test_old_evidence_neither_names_nor_convicts(void) {
             for (int test = 0; test < ARGUS_TESTS; test++) {
                 e.of[i].score[test] = (int16_t)score;
             }
+            e.of[i].doubt[3].well = (int16_t)score;
         }
         TEST_ASSERT_EQUAL(ARGUS_RECORD_OK,
                           read_back(record, argus_record_encode(&k, &e, 1, record, sizeof record)));
         for (int i = 0; i < ARGUS_SONARS; i++) {
             TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_names(&found, i));
             TEST_ASSERT_TRUE((note.out >> i & 1) != 0 || !argus_evidence_suspects(&found, i));
-            TEST_ASSERT_TRUE(found.of[i].score[ARGUS_TEST_LAG] >= 0);
+            TEST_ASSERT_TRUE(found.of[i].doubt[0].well >= 0);
         }
     }
     write_one();
@@ -99,21 +100,16 @@ void test_old_evidence_neither_names_nor_convicts(void) {
     TEST_ASSERT_TRUE(argus_evidence_suspects(&found, 3));
 }
 
-// What is known of a lag is not forgotten with the first readings.
-void test_old_lateness_stays_until_something_speaks_against_it(void) {
+// What was late may be of any lag.
+void test_old_lateness_is_of_any_lag(void) {
     write_one();
-    e.of[4].score[ARGUS_TEST_LAG] = argus_bounds[ARGUS_TEST_LAG].ceiling;
+    e.of[4].doubt[5].well = ARGUS_CEILING;
     TEST_ASSERT_EQUAL(ARGUS_RECORD_OK,
                       read_back(record, argus_record_encode(&k, &e, 1, record, sizeof record)));
-    argus_case_t *const c = &found.of[4];
-    const int before = c->score[ARGUS_TEST_LAG];
-    TEST_ASSERT_TRUE(before > argus_bounds[ARGUS_TEST_LAG].suspicious);
-    const argus_trail_t now = {.reading_mm = 1000, .steady = true};
-    c->trail[0] = now;
-    c->trail_next = 1;
-    c->trail_count = 1;
-    argus_lag_test(c, &now, false, 4);
-    TEST_ASSERT_INT_WITHIN(10, before, c->score[ARGUS_TEST_LAG]);
+    for (int i = 0; i < ARGUS_LAGS; i++) {
+        TEST_ASSERT_EQUAL(ARGUS_LATE_NAMING - 1, found.of[4].doubt[i].well);
+        TEST_ASSERT_EQUAL(0, found.of[5].doubt[i].well);
+    }
 }
 
 void test_a_mission_without_a_fault_makes_up_for_a_relapse(void) {

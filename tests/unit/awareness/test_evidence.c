@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "awareness/evidence_internal.h"
+#include "awareness/levels.h"
 #include "health.h"
 #include "scene.h"
 #include "unity.h"
@@ -30,18 +30,24 @@ static void start(unsigned seed) {
     scene_office(&s);
 }
 
-// The fault begins on the way; nobody else may be convicted beside it.
-static void convicts(argus_fault_kind_t kind, int value) {
+// The fault begins on the way and is named; nobody else may be convicted beside it.
+static void names(argus_fault_kind_t kind, int value) {
     static const int sonars[] = {2, 4, 11};
     for (unsigned seed = 1; seed <= SEEDS; seed++) {
         for (int i = 0; i < 3; i++) {
             start(seed * 16 + (unsigned)sonars[i]);
             scene_tour(&s, 2);
             scene_inject(&s, sonars[i], kind, value);
-            scene_tour(&s, LEGS);
+            bool named = false;
+            for (int leg = 0; leg < LEGS; leg++) {
+                scene_tour(&s, 1);
+                named =
+                    named || s.convicted[sonars[i]] == kind || argus_evidence_names(&s.e, sonars[i]) == kind;
+            }
+            TEST_ASSERT_TRUE_MESSAGE(named, told(argus_name(ARGUS_NAME_KIND, kind), sonars[i], seed));
             for (int k = 0; k < ARGUS_SONARS; k++) {
-                TEST_ASSERT_EQUAL_MESSAGE(k == sonars[i] ? kind : ARGUS_KIND_NONE, s.convicted[k],
-                                          told(argus_name(ARGUS_NAME_KIND, kind), sonars[i], seed));
+                TEST_ASSERT_TRUE_MESSAGE(k == sonars[i] || s.convicted[k] == ARGUS_KIND_NONE,
+                                         told(argus_name(ARGUS_NAME_KIND, kind), k, seed));
             }
             TEST_ASSERT_EQUAL_STRING("", s.broken);
         }
@@ -49,27 +55,31 @@ static void convicts(argus_fault_kind_t kind, int value) {
 }
 
 void test_off(void) {
-    convicts(ARGUS_KIND_OFF, 0);
+    names(ARGUS_KIND_OFF, 0);
 }
 
 void test_stuck(void) { // soak
-    convicts(ARGUS_KIND_STUCK, 0);
+    names(ARGUS_KIND_STUCK, 0);
 }
 
 void test_stuck_at_a_value_far_from_what_it_read(void) { // soak
-    convicts(ARGUS_KIND_STUCK, 1730);
+    names(ARGUS_KIND_STUCK, 1730);
 }
 
 void test_wrong_by_half(void) { // soak
-    convicts(ARGUS_KIND_WRONG, 50);
+    names(ARGUS_KIND_WRONG, 50);
 }
 
 void test_garbage(void) { // soak
-    convicts(ARGUS_KIND_GARBAGE, 0);
+    names(ARGUS_KIND_GARBAGE, 0);
+}
+
+void test_slow(void) { // soak
+    names(ARGUS_KIND_SLOW, 6);
 }
 
 void test_intermittent(void) { // soak
-    convicts(ARGUS_KIND_INTERMITTENT, 60);
+    names(ARGUS_KIND_INTERMITTENT, 60);
 }
 
 static void stays_quiet(const char *what, void (*prepare)(void), void (*each_leg)(void)) {
@@ -161,7 +171,7 @@ void test_off_shows_only_where_others_hear(void) {
     TEST_ASSERT_EQUAL_HEX16(0, s.named);
     scene_box(&s, s.x - 2500, s.y - 2500, s.x + 2500, s.y + 2500);
     scene_tour(&s, LEGS);
-    TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, s.convicted[3]);
+    TEST_ASSERT_TRUE(s.convicted[3] == ARGUS_KIND_OFF || argus_evidence_names(&s.e, 3) == ARGUS_KIND_OFF);
 }
 
 static void at_rest(uint32_t ms) {
@@ -204,7 +214,6 @@ void test_two_without_a_third_witness_name_nobody(void) {
             s.mute = ~(1u << pair[i][0] | 1u << pair[i][1]);
             s.fault[pair[i][liar]] = (scene_fault_t){ARGUS_KIND_WRONG, 50};
             scene_tour(&s, LEGS);
-            TEST_ASSERT_TRUE(s.e.disagreements > 0 || i == 3);
             TEST_ASSERT_EQUAL_HEX16_MESSAGE(0, s.named, told("named", pair[i][liar], (unsigned)(10 + i)));
             TEST_ASSERT_TRUE(scene_all_quiet(&s));
         }
@@ -219,31 +228,21 @@ static int score_sum(int sonar) {
     return sum;
 }
 
-static int score_sum_but_peers(int sonar) {
-    return score_sum(sonar) - s.e.of[sonar].score[ARGUS_TEST_PEERS];
-}
-
-void test_restart_forgets_the_trails_and_keeps_the_scores(void) {
+// What the others said goes with the readings that it was said of; what its own readings said stays.
+void test_restart_forgets_the_pings_and_keeps_the_other_scores(void) {
     start(3);
     s.fault[3] = (scene_fault_t){ARGUS_KIND_WRONG, 50};
     scene_look(&s);
     scene_look(&s);
-    int before[ARGUS_SONARS];
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        before[i] = score_sum_but_peers(i);
-    }
-    TEST_ASSERT_TRUE(s.e.of[3].score[ARGUS_TEST_VIEW] > 0);
+    TEST_ASSERT_TRUE(s.e.of[3].score[ARGUS_TEST_PEERS] > 0);
+    s.e.of[4].score[ARGUS_TEST_DROPOUT] = 300;
     argus_evidence_restart(&s.e);
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        TEST_ASSERT_EQUAL(before[i], score_sum_but_peers(i));
-        TEST_ASSERT_NULL(argus_trail_at(&s.e.of[i], 1));
+        TEST_ASSERT_EQUAL(0, s.e.of[i].score[ARGUS_TEST_PEERS]);
+        TEST_ASSERT_EQUAL(0, s.e.of[i].pings.count);
+        TEST_ASSERT_EQUAL(0, s.e.of[i].against);
     }
-    const uint32_t compared = s.e.agreements + s.e.disagreements;
-    scene_turn(&s, 20); // onto bearings that were seen before: there is nothing to compare them with
-    at_rest(1500);
-    TEST_ASSERT_EQUAL_UINT32(compared, s.e.agreements + s.e.disagreements);
-    scene_look(&s);
-    TEST_ASSERT_TRUE(s.e.agreements + s.e.disagreements > compared);
+    TEST_ASSERT_EQUAL(300, s.e.of[4].score[ARGUS_TEST_DROPOUT]);
 }
 
 void test_forgetting_one_sonar_leaves_the_others_alone(void) {
@@ -258,65 +257,9 @@ void test_forgetting_one_sonar_leaves_the_others_alone(void) {
     TEST_ASSERT_FALSE(argus_evidence_suspects(&s.e, 3));
 }
 
-// ---- pairs of views, by hand
-
 static int reading[ARGUS_SONARS];
 
-static void stand_at(double x, double y, double deg) {
-    s.x = x;
-    s.y = y;
-    s.th = deg * 3.14159265358979323846 / 180;
-}
-
-static void see(int sonar, int mm) {
-    reading[sonar] = mm;
-    for (int i = 0; i < 4; i++) {
-        scene_say(&s, 1u << sonar, reading);
-    }
-}
-
-static uint32_t compared_after(double x, double y, double deg, uint32_t wait_ms) {
-    scene_init(&s, 1, START_MS);
-    stand_at(0, 0, 0);
-    see(3, 1500); // on +10 degrees
-    const uint32_t before = s.e.agreements + s.e.disagreements;
-    TEST_ASSERT_EQUAL_UINT32(0, before);
-    s.t_ms += wait_ms;
-    stand_at(x, y, deg);
-    see(4, 1500); // on -10 degrees of its own heading
-    return s.e.agreements + s.e.disagreements;
-}
-
-void test_views_are_compared_on_one_bearing_from_one_place_only(void) {
-    TEST_ASSERT_TRUE(compared_after(0, 0, 20, 0) > 0); // the control: turned by the pitch of the ring
-    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 0, 40, 0));
-    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 0, -20, 0));
-    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 400, 20, 0));
-    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, -400, 20, 0));
-    TEST_ASSERT_EQUAL_UINT32(0, compared_after(1500, 0, 20, 0));
-    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 0, 20, 120000)); // long ago
-}
-
-void test_a_view_half_a_turn_away_is_of_another_bearing(void) {
-    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 0, -160, 0));
-    TEST_ASSERT_EQUAL_UINT32(0, compared_after(0, 0, 160, 0));
-}
-
-// One pair in one place is one piece of evidence, however often it is seen.
-void test_the_same_pair_in_the_same_place_counts_once(void) {
-    scene_init(&s, 1, START_MS);
-    for (int i = 0; i < 40; i++) {
-        stand_at(0, 0, 0);
-        see(3, 3000);
-        stand_at(0, 0, 20);
-        see(4, 1000);
-    }
-    TEST_ASSERT_TRUE(s.e.disagreements > 0);
-    TEST_ASSERT_EQUAL_HEX16(0, s.named);
-    TEST_ASSERT_TRUE(scene_all_quiet(&s));
-}
-
-// ---- the trail, by hand
+// ---- its own readings, by hand
 
 // Drives straight at a wall; what sonar 3 says is `of` the firing number.
 static void drive_at_wall(int count, int (*of)(int n)) {
@@ -421,7 +364,7 @@ static int two_missing(int n) {
 void test_gaps_in_one_trail_name_it_and_in_motion_convict_nobody(void) {
     drive_at_wall(20, one_missing);
     TEST_ASSERT_TRUE(s.e.of[3].score[ARGUS_TEST_DROPOUT] > 0);
-    TEST_ASSERT_FALSE(argus_evidence_suspects(&s.e, 3));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_names(&s.e, 3));
     drive_at_wall(20, two_missing);
     TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, argus_evidence_names(&s.e, 3));
     drive_at_wall(40, every_other_missing);
@@ -533,10 +476,11 @@ void test_twice_the_caution_takes_twice_the_evidence_and_half_of_it_half(void) {
     }
 }
 
-static int counts_until(argus_case_t *c, argus_test_t test, int32_t increment, int level) {
+static int counts_until(int sonar, argus_test_t test, int32_t increment, int level) {
+    argus_case_t *c = &s.e.of[sonar];
     c->score[test] = 0;
     for (int n = 1; n < 1000; n++) {
-        argus_score(c, test, increment);
+        argus_score(&s.e, sonar, test, increment);
         if (c->score[test] >= level) {
             return n;
         }
@@ -547,15 +491,14 @@ static int counts_until(argus_case_t *c, argus_test_t test, int32_t increment, i
 void test_caution_scales_the_evidence_of_every_test(void) {
     scene_init(&s, 1, START_MS);
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        argus_case_t *c = &s.e.of[i];
         for (int test = 0; test < ARGUS_TESTS; test++) {
             const int level = argus_bounds[test].convincing;
             argus_evidence_set_caution(&s.e, 100);
-            const int usual = counts_until(c, (argus_test_t)test, 40, level);
+            const int usual = counts_until(i, (argus_test_t)test, 40, level);
             argus_evidence_set_caution(&s.e, 200);
-            TEST_ASSERT_INT_WITHIN(1, 2 * usual, counts_until(c, (argus_test_t)test, 40, level));
+            TEST_ASSERT_INT_WITHIN(1, 2 * usual, counts_until(i, (argus_test_t)test, 40, level));
             argus_evidence_set_caution(&s.e, 50);
-            TEST_ASSERT_INT_WITHIN(1, usual / 2, counts_until(c, (argus_test_t)test, 40, level));
+            TEST_ASSERT_INT_WITHIN(1, usual / 2, counts_until(i, (argus_test_t)test, 40, level));
         }
     }
 }
@@ -566,13 +509,13 @@ void test_caution_scales_what_speaks_for_a_sonar_too(void) {
         scene_init(&s, 1, START_MS);
         argus_case_t *c = &s.e.of[3];
         c->out = out != 0;
-        c->score[ARGUS_TEST_VIEW] = 1000;
-        argus_score(c, ARGUS_TEST_VIEW, -60);
-        const int usual = 1000 - c->score[ARGUS_TEST_VIEW];
+        c->score[ARGUS_TEST_PEERS] = 1000;
+        argus_score(&s.e, 3, ARGUS_TEST_PEERS, -60);
+        const int usual = 1000 - c->score[ARGUS_TEST_PEERS];
         argus_evidence_set_caution(&s.e, 200);
-        c->score[ARGUS_TEST_VIEW] = 1000;
-        argus_score(c, ARGUS_TEST_VIEW, -60);
-        TEST_ASSERT_EQUAL(usual, 2 * (1000 - c->score[ARGUS_TEST_VIEW]));
+        c->score[ARGUS_TEST_PEERS] = 1000;
+        argus_score(&s.e, 3, ARGUS_TEST_PEERS, -60);
+        TEST_ASSERT_EQUAL(usual, 2 * (1000 - c->score[ARGUS_TEST_PEERS]));
     }
 }
 
@@ -582,7 +525,7 @@ void test_caution_outlives_forgetting_and_restart(void) {
     argus_evidence_forget(&s.e, 3);
     argus_evidence_restart(&s.e);
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        argus_score(&s.e.of[i], ARGUS_TEST_STUCK, 400);
+        argus_score(&s.e, i, ARGUS_TEST_STUCK, 400);
         TEST_ASSERT_EQUAL(100, s.e.of[i].score[ARGUS_TEST_STUCK]);
     }
 }
@@ -595,9 +538,9 @@ void test_no_caution_leads_out_of_the_bounds(void) {
         for (int i = 0; i < 200; i++) {
             c->out = i % 3 == 0;
             for (int test = 0; test < ARGUS_TESTS; test++) {
-                argus_score(c, (argus_test_t)test, i % 40 < 20 ? 430 : -300);
+                argus_score(&s.e, 3, (argus_test_t)test, i % 40 < 20 ? 430 : -300);
                 TEST_ASSERT_TRUE(c->score[test] >= argus_bounds[test].floor);
-                TEST_ASSERT_TRUE(c->score[test] <= argus_bounds[test].ceiling);
+                TEST_ASSERT_TRUE(c->score[test] <= ARGUS_CEILING);
             }
         }
     }
@@ -615,7 +558,7 @@ static void run_from(uint32_t start_ms, int32_t x_mm, int32_t y_mm) {
     scene_tour(&s, 5);
 }
 
-// The same tour elsewhere is the same tour: trails keep the place modulo 65,536 mm.
+// The same tour elsewhere is the same tour: pings keep the place modulo 65,536 mm.
 void test_the_place_changes_nothing(void) {
     static const int32_t places[][2] = {{32760, -32760}, {65530, 65530}, {-65530, 10}, {1000000, -1000000}};
     static argus_case_t want[ARGUS_SONARS];
@@ -648,7 +591,7 @@ static void shake(int i) {
         argus_evidence_restart(&s.e);
         break;
     case 1:
-        argus_evidence_acquit(&s.e, &s.k, sonar);
+        argus_evidence_retract(&s.e, sonar);
         break;
     case 2:
         argus_evidence_forget(&s.e, sonar);

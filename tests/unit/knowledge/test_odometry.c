@@ -204,6 +204,58 @@ void test_a_gap_in_motion_is_believed_and_a_leap_after_one_is_not(void) {
     TEST_ASSERT_EQUAL_INT(1, leaps);
 }
 
+void test_values_that_are_frozen_while_the_wheels_turn_are_told(void) {
+    deliver(100);
+    for (int i = 0; i < 60 && leaps == 0; i++) {
+        sip.vel_left_mm_s = sip.vel_right_mm_s = 200;
+        deliver(100);
+    }
+    TEST_ASSERT_EQUAL_INT(1, leaps);
+    setUp();
+    deliver(100);
+    for (int i = 0; i < 60 && leaps == 0; i++) {
+        sip.vel_left_mm_s = -150;
+        sip.vel_right_mm_s = 150;
+        deliver(100);
+    }
+    TEST_ASSERT_EQUAL_INT(1, leaps);
+}
+
+void test_a_heading_that_is_none_is_left_out(void) {
+    static const int none[] = {30000, -30000, 4097, -4097, 32767, -32768};
+    deliver(100);
+    for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
+        sip.x_raw = (uint16_t)(10 * i);
+        sip.heading_raw = (int16_t)none[i];
+        argus_knowledge_sip(&k, &sip, 1000, now_ms += 100);
+        TEST_ASSERT_TRUE(k.leapt);
+        TEST_ASSERT_EQUAL_INT32(0, k.pose.heading_cdeg);
+    }
+}
+
+// SETO was sent, and the cable was unplugged before anybody knows whether it came.
+void test_an_odometry_that_may_have_been_set_to_zero(void) {
+    for (int done = 0; done < 2; done++) {
+        setUp();
+        deliver(100);
+        drive(200, 200, 40); // 800 mm
+        drive(0, 0, 2);
+        argus_knowledge_origin_due(&k);
+        if (done) {
+            x = y = th = 0;
+        }
+        x += 60;
+        deliver(2000);
+        TEST_ASSERT_EQUAL_INT(0, leaps);
+        expect_pose(860, 0, 0);
+        x += 30;
+        deliver(100);
+        expect_pose(890, 0, 0);
+        argus_knowledge_reopen(&k, now_ms);
+        TEST_ASSERT_FALSE(k.origin_due);
+    }
+}
+
 // Turns at the fastest, to and fro.
 void test_turns_are_believed(void) {
     deliver(100);

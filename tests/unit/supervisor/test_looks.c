@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 #include "adjustment/guard.h"
-#include "awareness/evidence_internal.h"
+#include "awareness/levels.h"
 #include "robot.h"
 #include "supervisor/state.h"
 #include "unity.h"
@@ -95,20 +95,6 @@ void test_no_look_by_the_clock(void) {
     }
     TEST_ASSERT_EQUAL(0, looks());
     robot_run(&robot, 60000); // nor at rest
-    TEST_ASSERT_EQUAL(0, looks());
-    finish();
-}
-
-// Echoes lost or jumped, or none for long, are for the evidence to weigh on the way.
-void test_no_look_for_an_echo_that_is_lost_or_has_jumped(void) {
-    start_in_a_hall();
-    drive_off();
-    for (int i = 0; i < 100; i++) {
-        robot.argus.evidence.lost = robot.argus.evidence.jumped = 0x7Eu;
-        robot.argus.evidence.of[3].alive_odometer_mm = robot.argus.knowledge.odometer_mm - 3000;
-        robot_next_sip(&robot);
-        TEST_ASSERT_EQUAL(ARGUS_MODE_DRIVING, robot.argus.mode);
-    }
     TEST_ASSERT_EQUAL(0, looks());
     finish();
 }

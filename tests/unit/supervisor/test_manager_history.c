@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "awareness/evidence_internal.h"
+#include "awareness/levels.h"
 #include "health.h"
 #include "robot.h"
 #include "unity.h"
@@ -149,12 +149,12 @@ void test_a_damaged_record_is_said_and_changes_nothing(void) {
 
 void test_retest_of_one_in_use_makes_it_a_suspect_and_looks(void) {
     start_idle();
-    robot.argus.evidence.of[4].score[ARGUS_TEST_VIEW] = 250;
+    robot.argus.evidence.of[4].score[ARGUS_TEST_PEERS] = 250;
     const int from = robot.events;
     TEST_ASSERT_TRUE(argus_operator(&robot.argus, now(), ARGUS_OP_RETEST, 4));
     robot_drain(&robot);
     TEST_ASSERT_EQUAL(ARGUS_SUSPECT, sonar(4)->health);
-    TEST_ASSERT_EQUAL(0, robot.argus.evidence.of[4].score[ARGUS_TEST_VIEW]);
+    TEST_ASSERT_EQUAL(0, robot.argus.evidence.of[4].score[ARGUS_TEST_PEERS]);
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SONAR_VERIFYING, 8000));
     TEST_ASSERT_EQUAL(4, robot_last_event(&robot, ARGUS_EV_SONAR_VERIFYING)->sonar);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 60000));
@@ -191,9 +191,7 @@ void test_a_pinned_sonar_keeps_its_health(void) {
     for (int test = 0; test < ARGUS_TESTS; test++) {
         robot.argus.evidence.of[3].score[test] = 0;
     }
-    robot.argus.evidence.of[3].score[ARGUS_TEST_LAG] = argus_bounds[ARGUS_TEST_LAG].ceiling;
-    robot.argus.evidence.peers.of[3].told[5] = 1;
-    argus_lag_restore(&robot.argus.evidence.of[3]);
+    robot.argus.evidence.of[3].score[ARGUS_TEST_STUCK] = ARGUS_CEILING;
     ask(ARGUS_OP_UNPIN, 3);
     TEST_ASSERT_EQUAL(0, robot_last_event(&robot, ARGUS_EV_SONAR_PINNED)->value);
     robot_run(&robot, 1000);
@@ -224,9 +222,7 @@ void test_a_record_leaves_the_caution_alone(void) {
     config.caution = 200;
     robot_init(&robot, &config, 4711);
     TEST_ASSERT_TRUE(argus_record_load(&robot.argus, record, sizeof record));
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        TEST_ASSERT_EQUAL(200, robot.argus.evidence.of[i].caution);
-    }
+    TEST_ASSERT_EQUAL(200, robot.argus.evidence.caution);
 }
 
 void test_taken_out_by_hand_it_stays_out(void) {

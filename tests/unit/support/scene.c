@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "awareness/evidence_internal.h"
+#include "awareness/levels.h"
 #include "knowledge/angle.h"
 
 #define DEG (3.14159265358979323846 / 180.0)
@@ -175,12 +175,11 @@ static void note(scene_t *self) {
             self->convicted[i] = kind;
             self->convicted_ms[i] = self->t_ms;
             put_health(&self->k.sonar[i], ARGUS_DISABLED, kind, self->start_ms + self->t_ms);
-            argus_evidence_acquit(&self->e, &self->k, i);
         }
         self->named |= (uint16_t)(argus_evidence_names(&self->e, i) != ARGUS_KIND_NONE ? 1u << i : 0u);
         for (int test = 0; test < ARGUS_TESTS; test++) {
             const int score = self->e.of[i].score[test];
-            if (score < argus_bounds[test].floor || score > argus_bounds[test].ceiling) {
+            if (score < argus_bounds[test].floor || score > ARGUS_CEILING) {
                 snprintf(self->broken, sizeof self->broken, "sonar %d test %d score %d", i, test, score);
             }
         }

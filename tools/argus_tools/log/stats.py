@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import sys
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -26,6 +27,7 @@ BINS: Final = NO_ECHO_MM // BIN_MM
 GAP_CYCLES: Final = 3
 GAP_S: Final = GAP_CYCLES * TIMING["SIP_CYCLE_MS"] / 1000
 _BARS: Final = " ▁▂▃▄▅▆▇█"
+_ASCII_BARS: Final = " .:-=+*#@"
 
 
 @dataclass
@@ -210,7 +212,17 @@ def _cell(value: float | None, digits: int = 3) -> str:
 
 def _sparkline(counts: list[int]) -> str:
     top = max(counts) or 1
-    return "".join(_BARS[math.ceil(count * (len(_BARS) - 1) / top)] for count in counts)
+    bars = _bars()
+    return "".join(bars[math.ceil(count * (len(bars) - 1) / top)] for count in counts)
+
+
+def _bars() -> str:
+    """Blocks, or what stands for them where standard output has none."""
+    try:
+        _BARS.encode(sys.stdout.encoding or "ascii")
+    except UnicodeEncodeError:
+        return _ASCII_BARS
+    return _BARS
 
 
 def _text(summary: dict[str, Any]) -> str:

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// What the evidence knows of every sonar: its pings, the scores of its tests, what hypotheses explain it.
+#ifndef ARGUS_FACTS_H
+#define ARGUS_FACTS_H
+
+#include "awareness/pings.h"
+#include "awareness/trend.h"
+
+// One cumulative-sum test (Page 1954; its increments are log-likelihood ratios as in Wald's SPRT) for each
+// way in which a sonar can be seen to fail. Scores are hundredths of a nat, never below the floor of the
+// test.
+typedef enum {
+    ARGUS_TEST_STUCK,   // the same value again though the robot moved
+    ARGUS_TEST_GARBAGE, // readings that match none before them
+    ARGUS_TEST_DROPOUT, // no echo between two echoes of one thing (intermittent)
+    ARGUS_TEST_PEERS,   // other sonars saw something else
+    ARGUS_TESTS
+} argus_test_t;
+
+// Hypotheses that map a reading to the ping that a well sonar would have had: late by so many firings, bent
+// by so much.
+#define ARGUS_LEAST_LAG 2
+#define ARGUS_LAGS 8 // ... to 9 firings
+#define ARGUS_BENDS 6
+#define ARGUS_DOUBTS (ARGUS_LAGS + ARGUS_BENDS)
+typedef struct {
+    int16_t well; // so explained, and not well, hundredths of a nat
+    int16_t told; // ... and not faulty in another way
+} argus_doubt_t;
+
+typedef struct {
+    argus_pings_t pings;
+    int16_t score[ARGUS_TESTS];
+    argus_doubt_t doubt[ARGUS_DOUBTS];
+    uint8_t lag_run[ARGUS_LAGS]; // readings in a row that vary and equal the one so many before, up to 4
+    uint16_t last_mm;            // its last reading
+    int16_t drift_mm;            // at rest, what it differed from the one before
+    uint8_t none_run;            // readings in a row without an echo
+    uint8_t rest_gaps;           // at rest in this place, up to those that count
+    uint32_t rest_odometer_mm;   // where that place began
+    uint8_t taken;               // counts its readings, low bits
+    uint8_t echo_bits;           // bit i: of its last readings, the one i before had an echo
+    uint8_t agreed;              // counted readings in a row that others bore out
+    uint8_t hollow;              // bit i: of the contradicted readings, the one i before had no echo
+    uint8_t episodes;     // times at which it was contradicted, some seconds apart, since its score left 0
+    bool borne_out;       // an echo of it was, since then
+    argus_mask_t against; // sonars that contradicted it, since then
+    uint32_t episode_ms;
+    uint16_t verdicts;     // that the others gave on it, sixteenths, fading
+    uint16_t contradicted; // ... and of those, against it
+    bool out;              // its evidence is of whether it may come back: what speaks for it counts more
+    bool moved;            // something moved before it, at moved_ms
+    uint32_t moved_ms;
+    uint32_t counted_ms;
+    uint32_t alive_ms;
+    uint32_t agreed_ms; // when others bore it out last
+} argus_case_t;
+
+typedef struct {
+    argus_case_t of[ARGUS_SONARS];
+    argus_trend_t trend;
+    argus_pose_t before; // of the SIP before, at before_ms
+    uint32_t before_ms;
+    uint32_t faded_ms;
+    uint32_t crowded_ms; // the sonars contradicted each other as they do among people, last
+    bool crowded;
+    bool busy;             // ... or something moved before one, lately
+    uint8_t straight_sips; // SIPs in a row without a rotation
+    uint16_t caution;      // percent: so much of the tabled evidence a level takes
+    bool has_pairs;        // any two have ever borne each other out
+} argus_evidence_t;
+
+// Adds to a test's score, by caution and within its bounds; more of what speaks for a sonar that is out.
+void argus_score(argus_evidence_t *self, int sonar, argus_test_t test, int32_t increment);
+void argus_doubt(argus_evidence_t *self, int sonar, int doubt, int32_t well, int32_t told);
+
+typedef struct {
+    int16_t naming;     // a suspect with the name of its fault, not relied on
+    int16_t convincing; // DISABLED
+    int16_t floor;
+} argus_bounds_t;
+extern const argus_bounds_t argus_bounds[ARGUS_TESTS];
+
+#endif

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// Whether a sonar hands out its echoes some firings late: it repeats readings that it has given before.
+#ifndef ARGUS_LAG_H
+#define ARGUS_LAG_H
+
+#include "awareness/facts.h"
+
+// One more reading, not in the log yet, adds to the doubts of each lag.
+void argus_lag_take(argus_evidence_t *self, int sonar, uint16_t reading_mm);
+
+#endif

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// What the tests and hypotheses of a sonar amount to: a suspicion, a name, a conviction.
+#include "awareness/names.h"
+
+#include "awareness/levels.h"
+#include "awareness/others.h"
+#include "knowledge/angle.h"
+
+#define PARTNERS 2 // who is wrong takes a third
+#define OFF_RUN 5
+#define OFF_RUN_LONG 12 // what echoed before is named off after so many readings without an echo
+#define HOLLOW_OF 3
+#define FOLLOWED 3 // echoes, of so many readings, about on one bearing
+#define FOLLOWED_OF 5
+#define FOLLOWED_CDEG 1000
+#define EPISODES 10 // what moves about the robot does not contradict the same sonar again and again
+
+static int32_t suspicious(const int32_t naming) {
+    return naming * ARGUS_SUSPECT_PERCENT / 100;
+}
+
+static bool has_partners(const argus_case_t *const self) {
+    return argus_count_bits(self->against) >= PARTNERS;
+}
+
+static argus_doubt_t most_of(const argus_case_t *const self, const int from, const int to) {
+    argus_doubt_t most = {0, 0};
+    for (int i = from; i < to; i++) {
+        most = self->doubt[i].well > most.well ? self->doubt[i] : most;
+    }
+    return most;
+}
+
+static argus_doubt_t late_of(const argus_case_t *const self) {
+    return most_of(self, 0, ARGUS_LAGS);
+}
+
+static argus_doubt_t bent_of(const argus_case_t *const self) {
+    return most_of(self, ARGUS_LAGS, ARGUS_DOUBTS);
+}
+
+// Without a third who says so, only three readings in a row that it has given before are enough.
+static bool is_late(const argus_case_t *const self, const int32_t level) {
+    const argus_doubt_t late = late_of(self);
+    const int32_t wanted = has_partners(self) ? level : argus_max(level, ARGUS_LATE_ALONE);
+    return late.well >= wanted && late.told >= ARGUS_LATE_TOLD && self->score[ARGUS_TEST_PEERS] >= 0;
+}
+
+// In a turn a late sonar looks bent, and a bent one late: half as much that tells of a bend decides, since a
+// bend is told of once in a place, a lag by every reading.
+static bool is_bent(const argus_case_t *const self, const int32_t level) {
+    const argus_doubt_t bent = bent_of(self);
+    return bent.well >= level && bent.told >= ARGUS_BENT_TOLD && 2 * bent.told > late_of(self).told &&
+           has_partners(self) && self->score[ARGUS_TEST_PEERS] >= ARGUS_BENT_CONTRADICTED;
+}
+
+// Contradicted for silence only: off, unless they bore out an echo of it since they doubt it.
+static argus_fault_kind_t kind_of_peers(const argus_case_t *const self) {
+    const int hollow = argus_others_hollow(self, HOLLOW_OF);
+    if (hollow == HOLLOW_OF) {
+        return self->none_run >= (self->borne_out ? OFF_RUN_LONG : OFF_RUN) ? ARGUS_KIND_OFF
+                                                                            : ARGUS_KIND_INTERMITTENT;
+    }
+    if (hollow > 0 && self->score[ARGUS_TEST_DROPOUT] > 0) {
+        return ARGUS_KIND_INTERMITTENT;
+    }
+    return late_of(self).told >= ARGUS_LATE_TOLD ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
+}
+
+// The others heard something wherever it lately did not, and it has heard nothing for a while: less is wanted
+// than of one whose echoes might be of another thing.
+static bool is_mute(const argus_case_t *const self) {
+    return self->none_run >= OFF_RUN && !self->borne_out &&
+           self->score[ARGUS_TEST_PEERS] >= ARGUS_MUTE_CONTRADICTED &&
+           argus_others_hollow(self, HOLLOW_OF) == HOLLOW_OF && has_partners(self);
+}
+
+// It followed an echo when it fell silent.
+static bool has_followed(const argus_case_t *const self) {
+    int heard = 0;
+    const argus_ping_t *const now = argus_pings_at(&self->pings, 1);
+    for (int i = 0; i < FOLLOWED_OF; i++) {
+        const argus_ping_t *const then = argus_pings_before(&self->pings, 1, self->none_run + i);
+        heard += then != NULL && then->reading_mm < ARGUS_SURE_MM &&
+                 argus_ping_turned_cdeg(now, then) <= FOLLOWED_CDEG;
+    }
+    return heard >= FOLLOWED;
+}
+
+// ... lost it, and somebody else hears one there: what it did itself is the second voice.
+static bool has_lost(const argus_evidence_t *const self, const argus_case_t *const c) {
+    return c->none_run >= OFF_RUN - 1 && !c->borne_out && !self->busy && (c->hollow & 1u) != 0 &&
+           c->score[ARGUS_TEST_PEERS] >= ARGUS_LOST_CONTRADICTED && has_followed(c);
+}
+
+// What leaps, contradicted by the others, is garbage a leap before it is so by itself.
+static bool is_wild(const argus_case_t *const self) {
+    const int32_t naming = argus_bounds[ARGUS_TEST_GARBAGE].naming;
+    const bool contradicted =
+        self->score[ARGUS_TEST_PEERS] >= suspicious(argus_bounds[ARGUS_TEST_PEERS].naming);
+    return self->score[ARGUS_TEST_GARBAGE] >= (contradicted ? naming * ARGUS_WILD_PERCENT / 100 : naming);
+}
+
+// The more definite tests come first.
+argus_fault_kind_t argus_names_found(const argus_evidence_t *const self, const int sonar) {
+    const argus_case_t *const c = &self->of[sonar];
+    if (c->score[ARGUS_TEST_STUCK] >= argus_bounds[ARGUS_TEST_STUCK].naming) {
+        return ARGUS_KIND_STUCK;
+    }
+    if (is_wild(c)) {
+        return ARGUS_KIND_GARBAGE;
+    }
+    if (is_late(c, ARGUS_LATE_NAMING)) {
+        return ARGUS_KIND_SLOW;
+    }
+    if (c->score[ARGUS_TEST_DROPOUT] >= argus_bounds[ARGUS_TEST_DROPOUT].naming) {
+        return ARGUS_KIND_INTERMITTENT;
+    }
+    if (c->score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].naming && has_partners(c)) {
+        return kind_of_peers(c);
+    }
+    if (is_mute(c) || has_lost(self, c)) {
+        return ARGUS_KIND_OFF;
+    }
+    return is_bent(c, ARGUS_BENT_NAMING) ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;
+}
+
+static bool is_convicted_by(const argus_case_t *const self, const argus_test_t test) {
+    return self->score[test] >= argus_bounds[test].convincing;
+}
+
+// Who walks about contradicts; and by its own readings alone, however late they look, nobody is given up.
+argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, const int sonar) {
+    const argus_case_t *const c = &self->of[sonar];
+    if (is_convicted_by(c, ARGUS_TEST_STUCK)) {
+        return ARGUS_KIND_STUCK;
+    }
+    if (is_convicted_by(c, ARGUS_TEST_GARBAGE)) {
+        return ARGUS_KIND_GARBAGE;
+    }
+    if (is_convicted_by(c, ARGUS_TEST_DROPOUT)) {
+        return ARGUS_KIND_INTERMITTENT;
+    }
+    const bool again = c->episodes >= EPISODES && has_partners(c) && !self->busy;
+    if (again && is_late(c, ARGUS_LATE_CONVINCING)) {
+        return ARGUS_KIND_SLOW;
+    }
+    return again && is_convicted_by(c, ARGUS_TEST_PEERS) ? kind_of_peers(c) : ARGUS_KIND_NONE;
+}
+
+bool argus_names_suspects(const argus_evidence_t *const self, const int sonar) {
+    const argus_case_t *const c = &self->of[sonar];
+    for (int i = 0; i < ARGUS_TESTS; i++) {
+        if (c->score[i] >= suspicious(argus_bounds[i].naming)) {
+            return true;
+        }
+    }
+    return is_late(c, suspicious(ARGUS_LATE_NAMING)) || is_bent(c, suspicious(ARGUS_BENT_NAMING));
+}

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: MIT
+// What the other sonars say of each ping, as it stands and as each hypothesis maps it.
+#include "awareness/others.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "awareness/clutter.h"
+#include "awareness/levels.h"
+#include "knowledge/angle.h"
+
+#define FADE_EIGHTHS 7
+#define ALONE_CDEG 1000 // from one place a lag that turned less would have it look where it looks now
+#define BITS 8
+
+// FAINT: it misses an echo that the air may have swallowed, or the other way round; DIVIDED: some say so, and
+// some so; SAME: the map leaves it where it is.
+typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, FAINT, DIVIDED, SAME, SAYINGS } said_t;
+
+typedef struct {
+    uint8_t agree;
+    uint8_t differ;
+    uint8_t faint; // ... of those
+    uint8_t quiet;
+    bool excused;         // one of them heard the same a little aside
+    argus_mask_t against; // those that differ
+} tally_t;
+
+// Hundredths of a nat; DESIGN.md, Evidence, derives them. By the part of the other sonars' readings that is
+// contradicted at the time, in steps of 5 % from 5 %.
+#define PARTS 12
+static const int16_t contradicts[PARTS] = {277, 208, 167, 139, 116, 98, 83, 69, 58, 47, 37, 29};
+static const int16_t bears_out[PARTS] = {-93, -90, -87, -83, -79, -75, -70, -66, -60, -55, -48, -41};
+
+// What a verdict on a ping as it stands (rows) and as mapped (columns) says for the map: against well, and
+// against any other fault.
+typedef struct {
+    int16_t well[SAYINGS][SAYINGS];
+    int16_t told[SAYINGS][SAYINGS];
+} worth_t;
+
+static const worth_t late = {
+    .well = {[UNSEEN] = {[AGREED] = 50, [CONTRADICTED] = -200},
+             [QUIET] = {[CONTRADICTED] = -350},
+             [AGREED] = {[CONTRADICTED] = -400},
+             [CONTRADICTED] = {[QUIET] = 100, [AGREED] = 300, [CONTRADICTED] = -150, [SAME] = -150}},
+    .told = {[AGREED] = {[CONTRADICTED] = -390},
+             [CONTRADICTED] = {[QUIET] = 230, [AGREED] = 230, [CONTRADICTED] = -300, [SAME] = -150}},
+};
+
+static const worth_t bent = {
+    .well = {[AGREED] = {[AGREED] = 60, [CONTRADICTED] = -320},
+             [CONTRADICTED] = {[QUIET] = 40, [AGREED] = 150, [CONTRADICTED] = -190}},
+    .told = {[AGREED] = {[AGREED] = 30, [CONTRADICTED] = -300},
+             [CONTRADICTED] = {[QUIET] = 60, [AGREED] = 160, [CONTRADICTED] = -200}},
+};
+
+// A wall fills cones that are 6 degrees apart alike, so bends between these show as well.
+static const int16_t bend_cdeg[ARGUS_BENDS] = {-2400, -1800, -1200, 1200, 1800, 2400};
+
+static said_t compare_silence(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
+    if (now_mm >= ARGUS_NO_ECHO_MM && then_mm >= ARGUS_NO_ECHO_MM) {
+        return QUIET;
+    }
+    const int32_t expected = then_mm >= ARGUS_NO_ECHO_MM ? now_mm + along_mm : then_mm - along_mm;
+    if (expected < ARGUS_NEAREST_MM || expected > ARGUS_FARTHEST_MM) {
+        return UNSEEN;
+    }
+    return expected > ARGUS_SURE_MM ? FAINT : CONTRADICTED;
+}
+
+// What one reading says of another on its bearing, made `along_mm` ahead of it.
+static said_t compare(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
+    if (now_mm >= ARGUS_NO_ECHO_MM || then_mm >= ARGUS_NO_ECHO_MM) {
+        return compare_silence(now_mm, then_mm, along_mm);
+    }
+    const int32_t expected = then_mm - along_mm;
+    if (expected < ARGUS_NEAREST_MM) {
+        return UNSEEN;
+    }
+    const int32_t limit = ARGUS_AGREE_MM + argus_min(expected, now_mm) * ARGUS_AGREE_PERCENT / 100;
+    return argus_abs(expected - now_mm) <= limit ? AGREED : CONTRADICTED;
+}
+
+// A suspect that is contradicted at least as much itself says nothing of another: neither a liar of those
+// beside it, nor either of two that nobody else bears out.
+bool argus_others_is_witness(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                             const int sonar, const int of) {
+    const int32_t own = self->of[sonar].score[ARGUS_TEST_PEERS];
+    const int32_t suspicious = argus_bounds[ARGUS_TEST_PEERS].naming * ARGUS_SUSPECT_PERCENT / 100;
+    return sonar != of && !argus_is_out(knowledge, sonar) &&
+           (own < suspicious || own < self->of[of].score[ARGUS_TEST_PEERS]);
+}
+
+static void add(tally_t *const tally, const said_t said, const int from) {
+    const bool differs = said == CONTRADICTED || said == FAINT;
+    tally->agree = (uint8_t)(tally->agree + (said == AGREED));
+    tally->quiet = (uint8_t)(tally->quiet + (said == QUIET));
+    tally->faint = (uint8_t)(tally->faint + (said == FAINT));
+    tally->differ = (uint8_t)(tally->differ + differs);
+    tally->against |= differs ? (argus_mask_t)(1u << from) : 0u;
+}
+
+// One other sonar: its latest ping on the bearing decides. How far back that is, 0: it did not look there.
+static int ask(tally_t *const tally, const argus_pings_t *const pings, const argus_ping_t *const at,
+               const int from, const uint32_t now_ms) {
+    int latest = 0;
+    for (int back = 1; back <= pings->count; back++) {
+        const argus_ping_t *const then = argus_pings_at(pings, back);
+        if (!argus_ping_is_within(at, then, ARGUS_SAME_ALONG_MM)) {
+            continue;
+        }
+        const int32_t turned = argus_ping_turned_cdeg(at, then);
+        if (turned > ARGUS_BESIDE_CDEG) {
+            continue;
+        }
+        const argus_shift_t shift = argus_ping_shift(at, then);
+        if (shift.lateral_mm > ARGUS_SAME_LATERAL_MM) {
+            continue;
+        }
+        const said_t said = compare(at->reading_mm, then->reading_mm, shift.along_mm);
+        if (latest == 0 && turned <= ARGUS_SAME_CDEG) {
+            latest = back;
+            add(tally, said, from);
+        }
+        const bool lately = argus_ping_age_ms(then, now_ms) <= ARGUS_BESIDE_MS;
+        tally->excused = tally->excused || (lately && (said == AGREED || said == QUIET));
+    }
+    return latest;
+}
+
+static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar, const argus_ping_t *const at) {
+    tally_t tally = {.agree = 0};
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (argus_others_is_witness(self, knowledge, i, sonar)) {
+            ask(&tally, &self->of[i].pings, at, i, knowledge->sip_ms);
+        }
+    }
+    return tally;
+}
+
+static said_t verdict_of(const tally_t *const tally) {
+    const int differ = tally->differ - tally->faint;
+    if (tally->agree > 0) {
+        return tally->agree >= differ ? AGREED : DIVIDED;
+    }
+    if (differ > 0) {
+        return tally->quiet > 0 || tally->excused ? DIVIDED : CONTRADICTED;
+    }
+    return tally->quiet > 0 ? QUIET : UNSEEN;
+}
+
+// From one place and on one bearing, one reading counts.
+static bool is_news(const argus_case_t *const self, const argus_ping_t *const now) {
+    for (int i = 1; i <= self->pings.count; i++) {
+        const argus_ping_t *const then = argus_pings_at(&self->pings, i);
+        const int32_t apart_ms = (int16_t)(now->t_ms - then->t_ms);
+        if (apart_ms > ARGUS_PLACE_MS) {
+            break;
+        }
+        if (then->counted && argus_abs(apart_ms) < ARGUS_PLACE_MS &&
+            argus_ping_is_within(now, then, ARGUS_PLACE_MM) &&
+            argus_ping_turned_cdeg(now, then) < ARGUS_PLACE_CDEG) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// What moves about the robot makes healthy sonars disagree.
+static int32_t increment_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                            const int sonar, const bool odd) {
+    const int32_t twentieths = (argus_clutter_percent(self, knowledge, sonar) + 2) / 5;
+    const int32_t part = argus_max(0, argus_min(PARTS - 1, twentieths - 1));
+    const bool unrest = argus_clutter_beside(self, knowledge, -1, ARGUS_UNREST_MS);
+    return odd ? contradicts[part] * (unrest ? ARGUS_UNREST_PERCENT : 100) / 100 : bears_out[part];
+}
+
+static void note_contradicted(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                              const int sonar, const argus_ping_t *const at, const argus_mask_t against) {
+    argus_case_t *const c = &self->of[sonar];
+    const bool again = c->episodes > 0 && knowledge->sip_ms - c->episode_ms < ARGUS_EPISODE_MS;
+    if (!again && !self->crowded && !argus_clutter_beside(self, knowledge, -1, ARGUS_UNREST_MS)) {
+        c->episodes = (uint8_t)argus_min(c->episodes + 1, UINT8_MAX);
+        c->episode_ms = knowledge->sip_ms;
+    }
+    c->hollow = (uint8_t)((unsigned)c->hollow << 1 | (argus_ping_is_echo(at) ? 0u : 1u));
+    c->contradicted = (uint16_t)(c->contradicted + ARGUS_ONE_VERDICT);
+    c->against |= against;
+    c->agreed = 0;
+}
+
+static void begin_anew(argus_case_t *const self) {
+    self->against = 0;
+    self->episodes = 0;
+    self->borne_out = false;
+}
+
+// What it read before it was given up does not bring it back.
+static bool is_since(const argus_knowledge_t *const knowledge, const int sonar,
+                     const argus_ping_t *const at) {
+    const uint32_t age_ms = (uint32_t)argus_ping_age_ms(at, knowledge->sip_ms);
+    return age_ms <= knowledge->sip_ms - knowledge->sonar[sonar].since_ms;
+}
+
+static void count(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                  const argus_ping_t *const at, const argus_mask_t against) {
+    argus_case_t *const c = &self->of[sonar];
+    argus_score(self, sonar, ARGUS_TEST_PEERS, increment_of(self, knowledge, sonar, against != 0));
+    c->verdicts = (uint16_t)(c->verdicts + ARGUS_ONE_VERDICT);
+    if (against != 0) {
+        note_contradicted(self, knowledge, sonar, at, against);
+    } else if (argus_ping_is_echo(at) && is_since(knowledge, sonar, at)) {
+        c->agreed = (uint8_t)argus_min(c->agreed + 1, UINT8_MAX);
+        c->agreed_ms = knowledge->sip_ms;
+        c->alive_ms = knowledge->sip_ms;
+        self->has_pairs = true;
+    }
+    if (c->score[ARGUS_TEST_PEERS] <= 0) {
+        begin_anew(c);
+    }
+}
+
+static said_t as_late(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                      const int sonar, const int back, const int lag) {
+    const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, back);
+    const argus_ping_t *const then = argus_pings_before(&self->of[sonar].pings, back, lag);
+    if (then == NULL) {
+        return UNSEEN;
+    }
+    if (argus_ping_turned_cdeg(now, then) < ALONE_CDEG &&
+        argus_ping_is_within(now, then, ARGUS_SAME_ALONG_MM) &&
+        argus_ping_shift(now, then).lateral_mm <= ARGUS_SAME_LATERAL_MM) {
+        return SAME;
+    }
+    argus_ping_t mapped = *then;
+    mapped.reading_mm = now->reading_mm;
+    const tally_t tally = ask_all(self, knowledge, sonar, &mapped);
+    return verdict_of(&tally);
+}
+
+static said_t as_bent(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                      const int sonar, const argus_ping_t *const at, const int bend) {
+    argus_ping_t mapped = *at;
+    mapped.bearing_cdeg = (int16_t)argus_angle_wrap(at->bearing_cdeg + bend_cdeg[bend]);
+    const tally_t tally = ask_all(self, knowledge, sonar, &mapped);
+    return verdict_of(&tally);
+}
+
+// Every reading tells of a lag.
+static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar, const int back, const said_t verdict) {
+    for (int i = 0; i < ARGUS_LAGS; i++) {
+        if (verdict == CONTRADICTED || self->of[sonar].doubt[i].well > 0) {
+            const said_t mapped = as_late(self, knowledge, sonar, back, i + ARGUS_LEAST_LAG);
+            argus_doubt(self, sonar, i, late.well[verdict][mapped], late.told[verdict][mapped]);
+        }
+    }
+}
+
+// A wall fills the cones on both sides: of a bend one reading of a place tells. What is borne out never
+// speaks for a fault, whatever is seen aside.
+static void doubt_axis(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar, const argus_ping_t *const at, const said_t verdict,
+                       const int32_t increment) {
+    for (int i = 0; i < ARGUS_BENDS; i++) {
+        const int doubt = ARGUS_LAGS + i;
+        if (verdict == AGREED && self->of[sonar].doubt[doubt].well == 0) {
+            continue;
+        }
+        const said_t mapped = as_bent(self, knowledge, sonar, at, i);
+        const int32_t well = increment + bent.well[verdict][mapped];
+        argus_doubt(self, sonar, doubt, verdict == AGREED ? argus_min(0, well) : well,
+                    bent.told[verdict][mapped]);
+    }
+}
+
+// In the open nothing else bears one out: who made echoes up is not silent where others are, again and again.
+static void count_silence(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                          const int sonar, const argus_ping_t *const at) {
+    const argus_fault_kind_t kind = knowledge->sonar[sonar].kind;
+    argus_case_t *const c = &self->of[sonar];
+    if (argus_is_out(knowledge, sonar) && (kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE) &&
+        is_since(knowledge, sonar, at) && is_news(c, at)) {
+        c->agreed = (uint8_t)argus_min(c->agreed + 1, UINT8_MAX);
+    }
+}
+
+static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                  const int back, const tally_t *const tally, const bool fresh) {
+    argus_case_t *const c = &self->of[sonar];
+    argus_ping_t *const at = argus_pings_mark(&c->pings, back);
+    const said_t verdict = verdict_of(tally);
+    const bool agrees = tally->agree > 0 && tally->agree >= tally->differ;
+    const bool odd = tally->agree == 0 && tally->quiet == 0 && tally->differ > 0 && !tally->excused;
+    at->weighed = verdict != UNSEEN || tally->differ > 0;
+    if (verdict == QUIET && tally->differ == 0) {
+        count_silence(self, knowledge, sonar, at);
+    }
+    if ((odd || agrees) && is_news(c, at)) {
+        const int32_t increment = increment_of(self, knowledge, sonar, odd);
+        doubt_axis(self, knowledge, sonar, at, odd ? CONTRADICTED : AGREED, increment);
+        count(self, knowledge, sonar, at,
+              odd ? tally->against : 0); // after that: who is a witness depends on it
+        at->counted = 1;
+    }
+    if (fresh && agrees && argus_ping_is_echo(at) && c->score[ARGUS_TEST_PEERS] > 0) {
+        c->borne_out = true; // that it hears shows also where a silence of it has counted already
+    }
+    const bool stirred =
+        verdict == CONTRADICTED && argus_clutter_beside(self, knowledge, sonar, ARGUS_UNREST_MS);
+    if (verdict != DIVIDED && (fresh || verdict != UNSEEN) && !stirred) {
+        doubt_time(self, knowledge, sonar, back, verdict);
+    }
+}
+
+// What nobody could judge when it was read is judged by who looks there later.
+static void look_back(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                      const uint8_t *const latest) {
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (latest[i] > 0 && argus_others_is_witness(self, knowledge, sonar, i)) {
+            const argus_ping_t *const at = argus_pings_at(&self->of[i].pings, latest[i]);
+            if (!at->weighed) {
+                const tally_t tally = ask_all(self, knowledge, i, at);
+                weigh(self, knowledge, i, latest[i], &tally, false);
+            }
+        }
+    }
+}
+
+// Slow statistics take what counted.
+static void tell_trend(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar, const uint8_t *const latest) {
+    const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, 1);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const argus_ping_t *const then = argus_pings_at(&self->of[i].pings, latest[i]);
+        if (then != NULL && now->steady && then->steady) {
+            argus_trend_pair(&self->trend, knowledge, sonar, now->reading_mm, i, then->reading_mm,
+                             argus_ping_shift(now, then).along_mm);
+        }
+    }
+}
+
+void argus_others_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar) {
+    const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, 1);
+    uint8_t latest[ARGUS_SONARS] = {0};
+    tally_t tally = {.agree = 0};
+    for (int i = 0; i < knowledge->sonars; i++) {
+        tally_t unheard = {.agree = 0};
+        const bool witness = argus_others_is_witness(self, knowledge, i, sonar);
+        if (i != sonar) {
+            latest[i] =
+                (uint8_t)ask(witness ? &tally : &unheard, &self->of[i].pings, now, i, knowledge->sip_ms);
+        }
+    }
+    weigh(self, knowledge, sonar, 1, &tally, true);
+    if (now->counted && now->repeats == 0) {
+        tell_trend(self, knowledge, sonar, latest);
+    }
+    look_back(self, knowledge, sonar, latest);
+}
+
+// By a sixtieth, at least by one.
+static int16_t faded(const int16_t score) {
+    const int32_t by = score / ARGUS_FADES_S;
+    return (int16_t)(score - (by != 0 ? by : (score > 0) - (score < 0)));
+}
+
+void argus_others_fade(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+    for (int i = 0; i < knowledge->sonars; i++) {
+        argus_case_t *const c = &self->of[i];
+        c->verdicts = (uint16_t)(c->verdicts * FADE_EIGHTHS / 8);
+        c->contradicted = (uint16_t)(c->contradicted * FADE_EIGHTHS / 8);
+        c->score[ARGUS_TEST_PEERS] = faded(c->score[ARGUS_TEST_PEERS]);
+        if (c->score[ARGUS_TEST_PEERS] <= 0) {
+            begin_anew(c);
+        }
+        for (int d = 0; d < ARGUS_DOUBTS; d++) {
+            c->doubt[d].well = faded(c->doubt[d].well);
+            c->doubt[d].told = c->doubt[d].well > 0 ? c->doubt[d].told : (int16_t)0;
+        }
+    }
+}
+
+void argus_others_retract(argus_evidence_t *const self, const int sonar) {
+    const argus_mask_t bit = (argus_mask_t)(1u << sonar);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        argus_case_t *const c = &self->of[i];
+        if (c->against == bit) { // nobody else contradicts it: the whole of it
+            c->score[ARGUS_TEST_PEERS] = 0;
+            c->hollow = 0;
+            memset(c->doubt, 0, sizeof c->doubt);
+            begin_anew(c);
+        }
+        c->against &= (argus_mask_t)~bit;
+    }
+}
+
+int argus_others_hollow(const argus_case_t *const self, const int of_last) {
+    return argus_count_bits(self->hollow & ((1u << argus_min(of_last, BITS)) - 1u));
+}

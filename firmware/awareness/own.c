@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// The tests of a sonar's own readings: stuck, garbage, intermittent; the loss of an echo.
+#include "awareness/own.h"
+
+#include <stddef.h>
+
+#include "awareness/clutter.h"
+#include "awareness/lag.h"
+#include "awareness/levels.h"
+#include "knowledge/angle.h"
+
+#define COMPARED 2     // echoes that one is compared with
+#define LOOKED_BACK 10 // readings
+#define GAPS_MOST 3    // at rest of one place: at the edge of what is heard echoes come and go
+
+static void test_stuck(argus_evidence_t *const self, const int sonar, const argus_ping_t *const now,
+                       const argus_ping_t *const before) {
+    argus_case_t *const c = &self->of[sonar];
+    if (now->reading_mm != c->last_mm || !argus_ping_is_echo(now) || now->reading_mm <= ARGUS_CLIPPED_MM) {
+        c->score[ARGUS_TEST_STUCK] = 0;
+        return;
+    }
+    if (argus_ping_turned_cdeg(now, before) >= ARGUS_STILL_CDEG ||
+        argus_ping_moved_mm(now, before) >= ARGUS_STILL_MM) {
+        argus_score(self, sonar, ARGUS_TEST_STUCK, ARGUS_STUCK_MOVED);
+    }
+}
+
+static int32_t off_mm(const argus_ping_t *const now, const argus_ping_t *const then) {
+    return argus_abs(now->reading_mm - argus_ping_predict_mm(now, then));
+}
+
+static bool is_familiar(const argus_ping_t *const now, const argus_ping_t *const then) {
+    return argus_ping_is_echo(then) &&
+           off_mm(now, then) <= ARGUS_FAMILIAR_MM + argus_ping_moved_mm(now, then);
+}
+
+// What the last echoes on this bearing say to one more.
+typedef struct {
+    int comparable;
+    bool familiar;
+    bool novel;
+} likeness_t;
+
+static likeness_t liken(const argus_pings_t *const pings, const argus_ping_t *const now) {
+    likeness_t like = {0, false, true};
+    for (int i = 1; i <= LOOKED_BACK && like.comparable < COMPARED; i++) {
+        const argus_ping_t *const then = argus_pings_at(pings, i);
+        if (then == NULL) {
+            break;
+        }
+        if (argus_ping_is_echo(then) && then->steady &&
+            argus_ping_turned_cdeg(now, then) <= ARGUS_SAME_CDEG) {
+            like.comparable++;
+            like.familiar = like.familiar || is_familiar(now, then);
+            like.novel = like.novel && off_mm(now, then) > ARGUS_LEAP_MM;
+        }
+    }
+    return like;
+}
+
+// Readings between familiar and novel name nobody: so looks somebody who walks, too.
+static void test_garbage(argus_evidence_t *const self, const int sonar, const argus_ping_t *const now,
+                         const bool unrest) {
+    argus_case_t *const c = &self->of[sonar];
+    if (!argus_ping_is_echo(now)) {
+        if (c->out &&
+            c->none_run >= ARGUS_SILENT_RUN) { // who reads at random is not so often silent in a row
+            argus_score(self, sonar, ARGUS_TEST_GARBAGE, ARGUS_FAMILIAR);
+        }
+        return;
+    }
+    const likeness_t like = liken(&c->pings, now);
+    if (like.familiar) {
+        argus_score(self, sonar, ARGUS_TEST_GARBAGE, ARGUS_FAMILIAR);
+    } else if (like.comparable > 0 && like.novel && !unrest) {
+        argus_score(self, sonar, ARGUS_TEST_GARBAGE, ARGUS_NOVEL);
+    }
+}
+
+// What walks goes on the same way from one reading to the next, whatever the robot does.
+static void test_walker(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                        const int sonar, const argus_ping_t *const now, const argus_ping_t *const before) {
+    argus_case_t *const c = &self->of[sonar];
+    const bool comparable =
+        now->rest && before->rest && argus_ping_is_echo(now) && argus_ping_is_echo(before);
+    const int32_t drift = comparable ? now->reading_mm - before->reading_mm : 0;
+    const bool walks =
+        argus_abs(drift) >= ARGUS_WALK_MM + now->reading_mm / 50 && argus_abs(drift) <= ARGUS_LEAP_MM;
+    if (walks && c->drift_mm != 0 && (drift > 0) == (c->drift_mm > 0)) {
+        argus_clutter_note(self, knowledge, sonar);
+    }
+    c->drift_mm = (int16_t)(walks ? drift : 0);
+}
+
+// The echo before the run of none that ends now, all of it on this bearing; NULL: none.
+static const argus_ping_t *echo_before_gap(const argus_case_t *const self, const argus_ping_t *const now) {
+    for (int i = 1; i <= LOOKED_BACK; i++) {
+        const argus_ping_t *const then = argus_pings_at(&self->pings, i);
+        if (then == NULL || argus_ping_turned_cdeg(now, then) > ARGUS_SAME_CDEG) {
+            return NULL;
+        }
+        if (argus_ping_is_echo(then)) {
+            return i > 1 ? then : NULL;
+        }
+    }
+    return NULL;
+}
+
+// In motion an echo at the edge of what is heard comes and goes by itself: that alone convicts no one, nor
+// does one place.
+static void test_dropout(argus_evidence_t *const self, const int sonar, const argus_ping_t *const now,
+                         const bool unrest) {
+    argus_case_t *const c = &self->of[sonar];
+    if (!argus_ping_is_echo(now)) {
+        return;
+    }
+    const argus_ping_t *const then = echo_before_gap(c, now);
+    if (then == NULL || now->reading_mm >= ARGUS_SURE_MM || !is_familiar(now, then)) {
+        argus_score(self, sonar, ARGUS_TEST_DROPOUT, ARGUS_STEADY_ECHO);
+    } else if (unrest) {
+        return; // somebody may have stood in between
+    } else if (now->rest && then->rest) {
+        if (c->rest_gaps < GAPS_MOST) {
+            c->rest_gaps++;
+            argus_score(self, sonar, ARGUS_TEST_DROPOUT, ARGUS_DROPOUT);
+        }
+    } else {
+        const int32_t left = ARGUS_DROPOUT_MOVING_MAX - c->score[ARGUS_TEST_DROPOUT];
+        argus_score(self, sonar, ARGUS_TEST_DROPOUT, argus_max(0, argus_min(left, ARGUS_DROPOUT)));
+    }
+}
+
+static void count_echo(argus_case_t *const self, const argus_knowledge_t *const knowledge,
+                       const argus_ping_t *const now, const bool goes_on) {
+    const bool echo = argus_ping_is_echo(now);
+    self->none_run = echo ? 0 : (uint8_t)argus_min(self->none_run + 1, UINT8_MAX);
+    self->echo_bits = (uint8_t)((unsigned)self->echo_bits << 1 | (echo ? 1u : 0u));
+    if (echo && goes_on) {
+        self->alive_ms = knowledge->sip_ms;
+    }
+}
+
+static void run_tests(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                      const argus_ping_t *const now, const argus_ping_t *const before) {
+    argus_case_t *const c = &self->of[sonar];
+    const bool unrest = argus_clutter_beside(self, knowledge, sonar, ARGUS_UNREST_MS);
+    test_stuck(self, sonar, now, before);
+    argus_lag_take(self, sonar, now->reading_mm);
+    test_walker(self, knowledge, sonar, now, before);
+    if (knowledge->odometer_mm - c->rest_odometer_mm >= ARGUS_SAME_ALONG_MM) {
+        c->rest_odometer_mm = knowledge->odometer_mm;
+        c->rest_gaps = 0;
+    }
+    if (now->steady) {
+        test_garbage(self, sonar, now, unrest);
+        test_dropout(self, sonar, now, unrest);
+    }
+}
+
+void argus_own_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                    const argus_ping_t *const now) {
+    argus_case_t *const c = &self->of[sonar];
+    const argus_ping_t *const before = argus_pings_at(&c->pings, 1);
+    if (before == NULL) {
+        return;
+    }
+    run_tests(self, knowledge, sonar, now, before);
+    count_echo(c, knowledge, now, now->steady && argus_ping_goes_on(now, before));
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// The ping log: what each sonar lately heard, from where and on which bearing.
+#include "awareness/pings.h"
+
+#include <stddef.h>
+
+#include "awareness/levels.h"
+#include "knowledge/angle.h"
+
+#define ALIKE_PLACE_MM 5
+#define ALIKE_CDEG 30
+#define ALIKE_MM 30
+
+static int32_t offset_mm(const uint16_t now_mm, const uint16_t then_mm) {
+    const int32_t delta = (int32_t)((uint32_t)(now_mm - then_mm) & 0xFFFFu);
+    return delta > INT16_MAX ? delta - 0x10000 : delta;
+}
+
+static unsigned slot_of(const argus_pings_t *const self, const int back) {
+    return (self->next + ARGUS_PINGS - (unsigned)back) % ARGUS_PINGS;
+}
+
+const argus_ping_t *argus_pings_at(const argus_pings_t *const self, const int back) {
+    return back >= 1 && back <= self->count ? &self->ping[slot_of(self, back)] : NULL;
+}
+
+argus_ping_t *argus_pings_mark(argus_pings_t *const self, const int back) {
+    return &self->ping[slot_of(self, back)];
+}
+
+const argus_ping_t *argus_pings_before(const argus_pings_t *const self, const int back, const int firings) {
+    int left = firings;
+    for (int i = back; i <= self->count; i++) {
+        const argus_ping_t *const at = argus_pings_at(self, i);
+        if (left <= at->repeats) {
+            return at;
+        }
+        left -= at->repeats + 1;
+    }
+    return NULL;
+}
+
+int32_t argus_ping_age_ms(const argus_ping_t *const self, const uint32_t now_ms) {
+    return (int32_t)((now_ms - self->t_ms) & 0xFFFFu);
+}
+
+bool argus_ping_is_echo(const argus_ping_t *const self) {
+    return self->reading_mm < ARGUS_NO_ECHO_MM;
+}
+
+int32_t argus_ping_moved_mm(const argus_ping_t *const a, const argus_ping_t *const b) {
+    return argus_hypot(offset_mm(a->x_mm, b->x_mm), offset_mm(a->y_mm, b->y_mm));
+}
+
+int32_t argus_ping_turned_cdeg(const argus_ping_t *const a, const argus_ping_t *const b) {
+    const int32_t size = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
+    return size > 18000 ? 36000 - size : size;
+}
+
+argus_shift_t argus_ping_shift(const argus_ping_t *const now, const argus_ping_t *const then) {
+    const int32_t dx = offset_mm(now->x_mm, then->x_mm);
+    const int32_t dy = offset_mm(now->y_mm, then->y_mm);
+    const int32_t c = argus_cos(now->bearing_cdeg);
+    const int32_t s = argus_sin(now->bearing_cdeg);
+    const argus_shift_t shift = {.along_mm = (dx * c + dy * s) / ARGUS_TRIG_ONE,
+                                 .lateral_mm = argus_abs(dy * c - dx * s) / ARGUS_TRIG_ONE};
+    return shift;
+}
+
+int32_t argus_ping_predict_mm(const argus_ping_t *const now, const argus_ping_t *const then) {
+    return then->reading_mm - argus_ping_shift(now, then).along_mm;
+}
+
+// One unsigned comparison each: most of what a moving robot saw was seen from elsewhere.
+static bool is_close(const uint16_t a_mm, const uint16_t b_mm, const int32_t mm) {
+    return (uint16_t)((uint32_t)a_mm - b_mm + (uint32_t)mm) <= (uint32_t)(2 * mm);
+}
+
+bool argus_ping_is_within(const argus_ping_t *const a, const argus_ping_t *const b, const int32_t mm) {
+    return is_close(a->x_mm, b->x_mm, mm) && is_close(a->y_mm, b->y_mm, mm);
+}
+
+bool argus_ping_goes_on(const argus_ping_t *const now, const argus_ping_t *const then) {
+    if (!then->steady || argus_ping_turned_cdeg(now, then) > ARGUS_SAME_CDEG) {
+        return false;
+    }
+    if (!argus_ping_is_echo(now) || !argus_ping_is_echo(then)) {
+        return argus_ping_is_echo(now) == argus_ping_is_echo(then);
+    }
+    const int32_t limit =
+        ARGUS_SAME_LATERAL_MM + now->reading_mm * 3 / 100 + argus_ping_moved_mm(now, then) / 4;
+    return argus_abs(now->reading_mm - argus_ping_predict_mm(now, then)) <= limit;
+}
+
+static bool is_alike(const argus_ping_t *const a, const argus_ping_t *const b) {
+    return argus_ping_is_echo(a) == argus_ping_is_echo(b) &&
+           argus_abs(a->reading_mm - b->reading_mm) <= ALIKE_MM &&
+           argus_ping_turned_cdeg(a, b) <= ALIKE_CDEG && argus_ping_is_within(a, b, ALIKE_PLACE_MM);
+}
+
+void argus_pings_age(argus_pings_t *const self, const uint32_t now_ms) {
+    while (self->count > 0 &&
+           argus_ping_age_ms(&self->ping[slot_of(self, self->count)], now_ms) > (int32_t)ARGUS_PINGS_AGE_MS) {
+        self->count--;
+    }
+}
+
+void argus_pings_note(argus_pings_t *const self, const argus_ping_t now) {
+    argus_ping_t *const last = &self->ping[slot_of(self, 1)];
+    if (self->count > 0 && is_alike(&now, last)) {
+        last->t_ms = now.t_ms;
+        last->reading_mm = now.reading_mm;
+        last->repeats = (uint8_t)argus_min(last->repeats + 1, UINT8_MAX);
+        last->steady = now.steady;
+        last->rest = now.rest;
+        last->weighed = 0;
+        return;
+    }
+    self->ping[self->next] = now;
+    self->next = (uint8_t)((self->next + 1) % ARGUS_PINGS);
+    self->count = (uint8_t)argus_min(self->count + 1, ARGUS_PINGS);
+}
+
+argus_ping_t argus_ping_from(const argus_robot_t *const robot, const int sonar,
+                             const argus_pose_t *const pose) {
+    const argus_sonar_pose_t *const mount = argus_robot_pose(robot, sonar);
+    const argus_point_t at = argus_to_course(pose, (argus_point_t){mount->x_mm, mount->y_mm});
+    const int32_t bearing_cdeg = argus_angle_wrap(pose->heading_cdeg + mount->heading_deg * 100);
+    const argus_ping_t ping = {.x_mm = (uint16_t)((uint32_t)at.x_mm & 0xFFFFu),
+                               .y_mm = (uint16_t)((uint32_t)at.y_mm & 0xFFFFu),
+                               .bearing_cdeg = (int16_t)bearing_cdeg};
+    return ping;
+}

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// The ping log: what each sonar lately heard, from where and on which bearing.
+#ifndef ARGUS_PINGS_H
+#define ARGUS_PINGS_H
+
+#include "knowledge/knowledge.h"
+
+#define ARGUS_PINGS 32            // that are remembered of each sonar: some 20 s in motion, longer at rest
+#define ARGUS_PINGS_AGE_MS 40000u // what stands still stays where it was seen
+
+// One reading: where the transducer was and looked when its ping was sent, about, course frame. Time and
+// place modulo 65,536 ms and mm.
+typedef struct {
+    uint16_t t_ms;
+    uint16_t x_mm;
+    uint16_t y_mm;
+    int16_t bearing_cdeg;
+    uint16_t reading_mm; // ARGUS_NO_ECHO_MM: heard nothing
+    uint8_t repeats;     // further ones that were alike, from the same place, the last at t_ms
+    uint8_t steady : 1;  // the robot did not rotate in this SIP nor in the one before
+    uint8_t rest : 1;    // it stood
+    uint8_t weighed : 1; // others have judged it
+    uint8_t counted : 1; // ... and it was news
+} argus_ping_t;
+
+typedef struct {
+    argus_ping_t ping[ARGUS_PINGS];
+    uint8_t next;
+    uint8_t count;
+} argus_pings_t;
+
+// One more. What a robot at rest hears again and again is one ping, from the first place, of the last
+// reading.
+void argus_pings_note(argus_pings_t *self, argus_ping_t now);
+
+// Drops what is older than ARGUS_PINGS_AGE_MS; to be called at least every 20 s.
+void argus_pings_age(argus_pings_t *self, uint32_t now_ms);
+
+// The ping so far back (1: the last); the one a firing was so many firings before it. NULL: not so many.
+const argus_ping_t *argus_pings_at(const argus_pings_t *self, int back);
+const argus_ping_t *argus_pings_before(const argus_pings_t *self, int back, int firings);
+argus_ping_t *argus_pings_mark(argus_pings_t *self, int back); // 1 <= back <= count
+
+int32_t argus_ping_age_ms(const argus_ping_t *self, uint32_t now_ms); // 0 to 65535
+bool argus_ping_is_echo(const argus_ping_t *self);
+
+// From one to the other: way between the transducers, and turn, 0 to 18000.
+int32_t argus_ping_moved_mm(const argus_ping_t *a, const argus_ping_t *b);
+int32_t argus_ping_turned_cdeg(const argus_ping_t *a, const argus_ping_t *b);
+
+// How far ahead of `then` on its own bearing `now` was made, and how far beside it (no sign).
+typedef struct {
+    int32_t along_mm;
+    int32_t lateral_mm;
+} argus_shift_t;
+argus_shift_t argus_ping_shift(const argus_ping_t *now, const argus_ping_t *then);
+
+// What `then` would read from the place of `now`, of a thing that stands.
+int32_t argus_ping_predict_mm(const argus_ping_t *now, const argus_ping_t *then);
+
+// Both within `mm` of each other along x and along y.
+bool argus_ping_is_within(const argus_ping_t *a, const argus_ping_t *b, int32_t mm);
+
+// Whether the reading of `now` goes on from that of `then`, as a standing thing seen by a robot that does not
+// turn.
+bool argus_ping_goes_on(const argus_ping_t *now, const argus_ping_t *then);
+
+// The ping of a sonar from a pose of the robot, its reading left open.
+argus_ping_t argus_ping_from(const argus_robot_t *robot, int sonar, const argus_pose_t *pose);
+
+#endif

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+// Settings by name, from the firmware's table.
+#include "board/config.h"
+
+#include <string.h>
+
+#include "hal/crc32.h"
+
+#define SECTION "[argus]"
+#define PAIR_BYTES 8u
+
+typedef struct {
+    const char *key;
+    const char *choices;
+    int32_t minimum;
+    int32_t maximum;
+} row_t;
+
+static const row_t rows[BOARD_CONFIG_COUNT] = {
+#define ROW(key, def, min, max, unit, choices, meaning) {#key, choices, min, max},
+    ARGUS_CONFIG_TABLE(ROW)
+#undef ROW
+};
+
+_Static_assert(sizeof(argus_config_t) == BOARD_CONFIG_COUNT * sizeof(int32_t),
+               "the settings are one int32_t for each row of their table");
+
+const char *board_config_key(int row) {
+    return rows[row].key;
+}
+
+int32_t board_config_value(const argus_config_t *config, int row) {
+    int32_t value = 0;
+    memcpy(&value, (const char *)config + (size_t)row * sizeof value, sizeof value);
+    return value;
+}
+
+static void put_value(argus_config_t *config, int row, int32_t value) {
+    memcpy((char *)config + (size_t)row * sizeof value, &value, sizeof value);
+}
+
+static bool is_same(const char *name, const char *text, size_t length) {
+    return strlen(name) == length && memcmp(name, text, length) == 0;
+}
+
+static int row_of(const char *key, size_t length) {
+    for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
+        if (is_same(rows[row].key, key, length)) {
+            return row;
+        }
+    }
+    return -1;
+}
+
+// The value of one of "a|b|c", or -1.
+static int32_t choice_of(const char *choices, const char *text, size_t length) {
+    const char *at = choices;
+    for (int32_t value = 0; length > 0; value++) {
+        size_t size = 0;
+        while (at[size] != '\0' && at[size] != '|') {
+            size++;
+        }
+        if (size == length && memcmp(at, text, length) == 0) {
+            return value;
+        }
+        if (at[size] == '\0') {
+            break;
+        }
+        at += size + 1;
+    }
+    return -1;
+}
+
+// A whole number of at most 9 digits, which is more than any range has.
+static bool number_of(const char *text, size_t length, int32_t *value) {
+    const size_t sign = length > 0 && (text[0] == '-' || text[0] == '+') ? 1 : 0;
+    int32_t number = 0;
+    if (length == sign || length - sign > 9) {
+        return false;
+    }
+    for (size_t i = sign; i < length; i++) {
+        if (text[i] < '0' || text[i] > '9') {
+            return false;
+        }
+        number = number * 10 + (text[i] - '0');
+    }
+    *value = text[0] == '-' ? -number : number;
+    return true;
+}
+
+board_config_answer_t board_config_set(argus_config_t *config, const char *key, size_t key_length,
+                                       const char *value, size_t value_length) {
+    const int row = row_of(key, key_length);
+    int32_t number = 0;
+    if (row < 0) {
+        return BOARD_CONFIG_NO_KEY;
+    }
+    if (rows[row].choices[0] != '\0') {
+        number = choice_of(rows[row].choices, value, value_length);
+        if (number < 0) {
+            return BOARD_CONFIG_NO_VALUE;
+        }
+    } else if (!number_of(value, value_length, &number)) {
+        return BOARD_CONFIG_NO_VALUE;
+    }
+    if (number < rows[row].minimum || number > rows[row].maximum) {
+        return BOARD_CONFIG_NO_RANGE;
+    }
+    put_value(config, row, number);
+    return BOARD_CONFIG_TAKEN;
+}
+
+typedef struct {
+    const char *at;
+    size_t length;
+} piece_t;
+
+static bool is_blank(char character) {
+    return character == ' ' || character == '\t' || character == '\r';
+}
+
+static piece_t trimmed(const char *from, const char *to) {
+    while (from < to && is_blank(*from)) {
+        from++;
+    }
+    while (to > from && is_blank(to[-1])) {
+        to--;
+    }
+    return (piece_t){from, (size_t)(to - from)};
+}
+
+static const char *find(const char *from, const char *to, char character) {
+    while (from < to && *from != character) {
+        from++;
+    }
+    return from;
+}
+
+// A remark begins a line, or stands behind a blank.
+static const char *end_of_value(const char *from, const char *to) {
+    for (const char *at = from; at < to; at++) {
+        if (*at == ';' && at > from && is_blank(at[-1])) {
+            return at;
+        }
+    }
+    return to;
+}
+
+static board_config_answer_t take_line(argus_config_t *config, const char *from, const char *to) {
+    const piece_t line = trimmed(from, to);
+    if (line.length == 0 || line.at[0] == '#' || line.at[0] == ';' ||
+        is_same(SECTION, line.at, line.length)) {
+        return BOARD_CONFIG_TAKEN;
+    }
+    const char *const end = line.at + line.length;
+    const char *const equals = find(line.at, end, '=');
+    if (equals == end) {
+        return BOARD_CONFIG_NO_LINE;
+    }
+    const piece_t key = trimmed(line.at, equals);
+    const piece_t value = trimmed(equals + 1, end_of_value(equals + 1, end));
+    return board_config_set(config, key.at, key.length, value.at, value.length);
+}
+
+board_config_answer_t board_config_ini(argus_config_t *config, const char *text, unsigned *line) {
+    const char *const end = text + strlen(text);
+    *line = 0;
+    while (text < end) {
+        const char *const stop = find(text, end, '\n');
+        (*line)++;
+        const board_config_answer_t answer = take_line(config, text, stop);
+        if (answer != BOARD_CONFIG_TAKEN) {
+            return answer;
+        }
+        text = stop + 1;
+    }
+    return BOARD_CONFIG_TAKEN;
+}
+
+const char *board_config_explain(board_config_answer_t answer) {
+    static const char *const texts[] = {
+        [BOARD_CONFIG_TAKEN] = "taken",
+        [BOARD_CONFIG_NO_KEY] = "no such key",
+        [BOARD_CONFIG_NO_VALUE] = "neither a whole number nor one of its choices",
+        [BOARD_CONFIG_NO_RANGE] = "out of its range",
+        [BOARD_CONFIG_NO_LINE] = "write key = value",
+    };
+    return texts[answer];
+}
+
+const char *board_config_fault_text(argus_config_fault_t fault) {
+    static const char *const texts[] = {
+        [ARGUS_CONFIG_OK] = "ok",
+        [ARGUS_CONFIG_RANGE] = "a setting is out of its range",
+        [ARGUS_CONFIG_DRIVING] = "S5: lower speed_mm_s or raise object_range_mm",
+        [ARGUS_CONFIG_STEP] = "S5: lower step_mm or raise check_range_mm",
+    };
+    return texts[fault];
+}
+
+static void put32(uint8_t *bytes, uint32_t value) {
+    for (int i = 0; i < 4; i++) {
+        bytes[i] = (uint8_t)(value >> (8 * i));
+    }
+}
+
+static uint32_t get32(const uint8_t *bytes) {
+    return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+}
+
+uint32_t board_config_digest(const argus_config_t *config) {
+    uint32_t crc = 0;
+    for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
+        uint8_t bytes[4];
+        put32(bytes, (uint32_t)board_config_value(config, row));
+        crc = hal_crc32(crc, bytes, sizeof bytes);
+    }
+    return crc;
+}
+
+static uint32_t key_digest(int row) {
+    return hal_crc32(0, rows[row].key, strlen(rows[row].key));
+}
+
+size_t board_config_pack(const argus_config_t *base, const argus_config_t *config,
+                         uint8_t bytes[BOARD_CONFIG_PACKED_MAX]) {
+    uint16_t pairs = 0;
+    for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
+        const int32_t value = board_config_value(config, row);
+        if (value != board_config_value(base, row)) {
+            put32(bytes + 2 + PAIR_BYTES * pairs, key_digest(row));
+            put32(bytes + 2 + PAIR_BYTES * pairs + 4, (uint32_t)value);
+            pairs++;
+        }
+    }
+    bytes[0] = (uint8_t)pairs;
+    bytes[1] = (uint8_t)(pairs >> 8);
+    return 2 + PAIR_BYTES * pairs;
+}
+
+// One that the table has no more, or with another range, is left out.
+static void take_pair(argus_config_t *config, uint32_t key, int32_t value) {
+    for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
+        if (key_digest(row) == key && value >= rows[row].minimum && value <= rows[row].maximum) {
+            put_value(config, row, value);
+        }
+    }
+}
+
+size_t board_config_length(const uint8_t *bytes, size_t count) {
+    if (count < 2) {
+        return 0;
+    }
+    const size_t pairs = (size_t)bytes[0] | (size_t)bytes[1] << 8;
+    return pairs > (count - 2) / PAIR_BYTES ? 0 : 2 + PAIR_BYTES * pairs;
+}
+
+size_t board_config_unpack(argus_config_t *config, const uint8_t *bytes, size_t count) {
+    const size_t length = board_config_length(bytes, count);
+    for (size_t at = 2; at < length; at += PAIR_BYTES) {
+        take_pair(config, get32(bytes + at), (int32_t)get32(bytes + at + 4));
+    }
+    return length;
+}

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack (profile argus): a sonar is suspected, named and convicted by what its tests amount to
+// and by no less: a suspicion comes before a name, a name before a conviction, and the others say it twice.
+#include "awareness/names.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "awareness/evidence.h"
+#include "awareness/levels.h"
+#include "scene.h"
+#include "unity.h"
+
+#define SONAR 4
+#define OTHER 9
+
+static argus_evidence_t e;
+static argus_knowledge_t k;
+static argus_case_t *c;
+static char text[160];
+
+void setUp(void) {
+    scene_blank(&k, &e);
+    c = &e.of[SONAR];
+}
+
+static argus_fault_kind_t named(void) {
+    return argus_evidence_names(&e, SONAR);
+}
+
+static argus_fault_kind_t convicted(void) {
+    return argus_evidence_convicts(&e, SONAR);
+}
+
+// All that the others need beside a score, for a name and for a conviction.
+static void give_ground(void) {
+    c->against = 7;
+    c->episodes = UINT8_MAX;
+}
+
+static const argus_fault_kind_t kind_of[ARGUS_TESTS] = {[ARGUS_TEST_STUCK] = ARGUS_KIND_STUCK,
+                                                        [ARGUS_TEST_GARBAGE] = ARGUS_KIND_GARBAGE,
+                                                        [ARGUS_TEST_DROPOUT] = ARGUS_KIND_INTERMITTENT,
+                                                        [ARGUS_TEST_PEERS] = ARGUS_KIND_WRONG};
+
+void test_nothing_is_said_of_a_fresh_sonar(void) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        TEST_ASSERT_FALSE(argus_evidence_suspects(&e, i));
+        TEST_ASSERT_FALSE(argus_evidence_holds(&e, i));
+        TEST_ASSERT_FALSE(argus_evidence_is_unsteady(&e, i));
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_names(&e, i));
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_convicts(&e, i));
+    }
+}
+
+// The more a test says, the more is done about it: suspected, named, convicted, each once and of its kind.
+void test_suspicion_name_and_conviction_come_in_this_order(void) {
+    for (int test = 0; test < ARGUS_TESTS; test++) {
+        setUp();
+        give_ground();
+        int reached = 0;
+        for (int score = 0; score <= ARGUS_CEILING; score += 10) {
+            c->score[test] = (int16_t)score;
+            const bool suspect = argus_evidence_suspects(&e, SONAR);
+            const bool name = named() != ARGUS_KIND_NONE;
+            const bool conviction = convicted() != ARGUS_KIND_NONE;
+            snprintf(text, sizeof text, "test %d at %d", test, score);
+            TEST_ASSERT_TRUE_MESSAGE(!conviction || name, text);
+            TEST_ASSERT_TRUE_MESSAGE(!name || (suspect && argus_evidence_holds(&e, SONAR)), text);
+            TEST_ASSERT_TRUE_MESSAGE(!name || named() == kind_of[test], text);
+            TEST_ASSERT_TRUE_MESSAGE(!conviction || convicted() == kind_of[test], text);
+            TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, argus_evidence_names(&e, OTHER), text);
+            const int now = suspect + name + conviction;
+            TEST_ASSERT_TRUE_MESSAGE(now >= reached, text);
+            reached = now;
+        }
+        TEST_ASSERT_EQUAL(3, reached);
+    }
+}
+
+// Who is wrong takes a third: one other that contradicts it, however often, names nobody.
+void test_one_other_names_nobody(void) {
+    c->score[ARGUS_TEST_PEERS] = ARGUS_CEILING;
+    c->episodes = UINT8_MAX;
+    for (int other = 0; other < ARGUS_SONARS; other++) {
+        c->against = (argus_mask_t)(1u << other);
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named());
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, convicted());
+    }
+}
+
+// What others say convicts at several times only, and not while people are about; its own readings do.
+void test_others_convict_at_several_times_and_in_calm(void) {
+    for (int test = 0; test < ARGUS_TESTS; test++) {
+        for (int busy = 0; busy < 2; busy++) {
+            for (int once = 0; once < 2; once++) {
+                setUp();
+                give_ground();
+                c->score[test] = ARGUS_CEILING;
+                c->episodes = once != 0 ? 1 : UINT8_MAX;
+                e.busy = busy != 0;
+                const bool by_others = test == ARGUS_TEST_PEERS;
+                snprintf(text, sizeof text, "test %d, busy %d, once %d", test, busy, once);
+                TEST_ASSERT_EQUAL_MESSAGE(!by_others || (busy == 0 && once == 0),
+                                          convicted() != ARGUS_KIND_NONE, text);
+                TEST_ASSERT_EQUAL_MESSAGE(kind_of[test], named(), text);
+            }
+        }
+    }
+}
+
+// Contradicted for silence only it is off as long as it hears nothing, and has gaps once it is heard again.
+void test_silence_alone_is_off_or_gaps(void) {
+    give_ground();
+    c->score[ARGUS_TEST_PEERS] = 900;
+    c->hollow = 0xFF;
+    c->none_run = 30;
+    TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, named());
+    c->none_run = 0;
+    TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, named());
+    c->hollow = 0;
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, named());
+}
+
+// A silence that all contradict is off sooner than an echo is wrong, unless an echo of it was borne out.
+void test_a_silence_that_all_contradict_is_off_sooner(void) {
+    give_ground();
+    c->hollow = 0xFF;
+    c->none_run = 30;
+    int off = 0;
+    while (named() == ARGUS_KIND_NONE) {
+        c->score[ARGUS_TEST_PEERS] = (int16_t)++off;
+    }
+    TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, named());
+    c->borne_out = true;
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named());
+    TEST_ASSERT_TRUE(off < argus_bounds[ARGUS_TEST_PEERS].naming);
+}
+
+// A lag and a bend are names by themselves, each of its kind, and only where the others rather contradict it.
+void test_hypotheses_name_where_others_contradict(void) {
+    for (int d = 0; d < ARGUS_DOUBTS; d++) {
+        setUp();
+        give_ground();
+        c->doubt[d] = (argus_doubt_t){1500, 900};
+        c->score[ARGUS_TEST_PEERS] = 400;
+        snprintf(text, sizeof text, "hypothesis %d", d);
+        TEST_ASSERT_EQUAL_MESSAGE(d < ARGUS_LAGS ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG, named(), text);
+        TEST_ASSERT_TRUE_MESSAGE(argus_evidence_suspects(&e, SONAR), text);
+        c->score[ARGUS_TEST_PEERS] = -100;
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, named(), text);
+        c->score[ARGUS_TEST_PEERS] = 400;
+        c->doubt[d].told = 0;
+        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, named(), text);
+    }
+}
+
+// In a turn a late sonar looks bent: what tells more of the lag is late.
+void test_what_is_late_does_not_look_bent(void) {
+    give_ground();
+    c->score[ARGUS_TEST_PEERS] = 400;
+    c->doubt[ARGUS_LAGS] = (argus_doubt_t){1500, 400};
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, named());
+    c->doubt[0] = (argus_doubt_t){700, 900};
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named());
+    c->doubt[0].well = 1500;
+    TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, named());
+}
+
+// Leaps that the others contradict are garbage a leap sooner.
+void test_leaps_that_are_contradicted_are_garbage_sooner(void) {
+    give_ground();
+    c->score[ARGUS_TEST_GARBAGE] = 2 * ARGUS_NOVEL;
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named());
+    c->score[ARGUS_TEST_PEERS] = 600;
+    TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, named());
+}
+
+// Whoever was suspected is held until little is left of it.
+void test_a_suspicion_is_held_until_little_is_left(void) {
+    for (int score = ARGUS_CEILING; score >= 0; score -= 10) {
+        c->score[ARGUS_TEST_PEERS] = (int16_t)score;
+        TEST_ASSERT_TRUE(!argus_evidence_suspects(&e, SONAR) || argus_evidence_holds(&e, SONAR));
+    }
+    TEST_ASSERT_FALSE(argus_evidence_holds(&e, SONAR));
+}
+
+// What is kept of one mission names nobody in the next by itself, and suspects only one that was out.
+void test_what_is_kept_names_nobody_by_itself(void) {
+    for (int kept = 0; kept < ARGUS_KEPT; kept++) {
+        for (int out = 0; out < 2; out++) {
+            setUp();
+            give_ground();
+            argus_evidence_restore(&e, SONAR, (argus_kept_t)kept, INT16_MAX, out != 0);
+            snprintf(text, sizeof text, "kept %d, out %d", kept, out);
+            TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, named(), text);
+            TEST_ASSERT_TRUE_MESSAGE(out != 0 || !argus_evidence_suspects(&e, SONAR), text);
+            argus_evidence_restore(&e, SONAR, (argus_kept_t)kept, INT16_MIN, out != 0);
+            TEST_ASSERT_EQUAL_MESSAGE(0, argus_evidence_kept(&e, SONAR, (argus_kept_t)kept), text);
+        }
+    }
+}

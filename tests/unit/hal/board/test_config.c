@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: a board takes the settings that the table allows and no others, keeps what differs, and
+// never runs with half a setting.
+#include "board/config.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "unity.h"
+
+static argus_config_t config;
+static argus_config_t base;
+static uint8_t packed[BOARD_CONFIG_PACKED_MAX];
+
+void setUp(void) {
+    argus_config_default(&config);
+    argus_config_default(&base);
+}
+
+static board_config_answer_t set(const char *key, const char *value) {
+    return board_config_set(&config, key, strlen(key), value, strlen(value));
+}
+
+static board_config_answer_t read_ini(const char *text, unsigned wanted_line) {
+    unsigned line = 0;
+    const board_config_answer_t answer = board_config_ini(&config, text, &line);
+    TEST_ASSERT_EQUAL_UINT_MESSAGE(wanted_line, line, text);
+    return answer;
+}
+
+// Each key at its ends, and one step beyond.
+void test_ranges_of_the_table(void) {
+    char text[16];
+#define CHECK(key, def, min, max, unit, choices, meaning)                        \
+    if ((choices)[0] == '\0') {                                                  \
+        snprintf(text, sizeof text, "%d", (int)(min));                           \
+        TEST_ASSERT_EQUAL_MESSAGE(BOARD_CONFIG_TAKEN, set(#key, text), #key);    \
+        TEST_ASSERT_EQUAL_INT32(min, config.key);                                \
+        snprintf(text, sizeof text, "%d", (int)(max));                           \
+        TEST_ASSERT_EQUAL_MESSAGE(BOARD_CONFIG_TAKEN, set(#key, text), #key);    \
+        TEST_ASSERT_EQUAL_INT32(max, config.key);                                \
+        snprintf(text, sizeof text, "%d", (int)(max) + 1);                       \
+        TEST_ASSERT_EQUAL_MESSAGE(BOARD_CONFIG_NO_RANGE, set(#key, text), #key); \
+        snprintf(text, sizeof text, "%d", (int)(min) - 1);                       \
+        TEST_ASSERT_EQUAL_MESSAGE(BOARD_CONFIG_NO_RANGE, set(#key, text), #key); \
+        TEST_ASSERT_EQUAL_INT32(max, config.key);                                \
+    }
+    ARGUS_CONFIG_TABLE(CHECK)
+#undef CHECK
+}
+
+void test_choices_by_name_and_by_nothing_else(void) {
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_TAKEN, set("profile", "paper"));
+    TEST_ASSERT_EQUAL_INT32(ARGUS_PROFILE_PAPER, config.profile);
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_TAKEN, set("robot", "peoplebot-sh"));
+    TEST_ASSERT_EQUAL_INT32(4, config.robot);
+    static const char *const wrong[] = {"", "pape", "papers", "paper|argus", "0", "Paper", "|"};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        TEST_ASSERT_EQUAL_MESSAGE(BOARD_CONFIG_NO_VALUE, set("profile", wrong[i]), wrong[i]);
+    }
+}
+
+void test_what_is_no_number(void) {
+    static const char *const wrong[] = {"", "-", "+", "1.5", "1e3", "0x10", "12a", "a", "9999999999", "1 2"};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        TEST_ASSERT_EQUAL_MESSAGE(BOARD_CONFIG_NO_VALUE, set("step_mm", wrong[i]), wrong[i]);
+    }
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_NO_KEY, set("steps_mm", "100"));
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_NO_KEY, set("", "100"));
+    TEST_ASSERT_EQUAL_MEMORY(&base, &config, sizeof config);
+}
+
+void test_an_ini_text(void) {
+    TEST_ASSERT_EQUAL(
+        BOARD_CONFIG_TAKEN,
+        read_ini("# a remark\r\n[argus]\n\n ; another\nstep_mm=100\n\tspeed_mm_s =  150 ; slow\n"
+                 "profile = paper",
+                 7));
+    TEST_ASSERT_EQUAL_INT32(100, config.step_mm);
+    TEST_ASSERT_EQUAL_INT32(150, config.speed_mm_s);
+    TEST_ASSERT_EQUAL_INT32(ARGUS_PROFILE_PAPER, config.profile);
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_TAKEN, read_ini("", 0));
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_NO_LINE, read_ini("\nstep_mm 100\n", 2));
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_NO_LINE, read_ini("[other]\n", 1));
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_NO_KEY, read_ini("step_mm = 100\nstep = 1\n", 2));
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_NO_RANGE, read_ini("step_mm = 100000\n", 1));
+}
+
+void test_only_what_differs_is_kept_and_comes_back(void) {
+    argus_config_t back = base;
+    TEST_ASSERT_EQUAL_size_t(2, board_config_pack(&base, &config, packed));
+    set("step_mm", "120");
+    set("policy", "fewest");
+    const size_t count = board_config_pack(&base, &config, packed);
+    TEST_ASSERT_EQUAL_size_t(18, count);
+    TEST_ASSERT_EQUAL_size_t(count, board_config_unpack(&back, packed, count + 5));
+    TEST_ASSERT_EQUAL_MEMORY(&config, &back, sizeof config);
+}
+
+void test_a_packed_text_that_is_damaged_or_of_another_table(void) {
+    argus_config_t back = base;
+    set("step_mm", "120");
+    const size_t count = board_config_pack(&base, &config, packed);
+    for (size_t cut = 0; cut < count; cut++) {
+        TEST_ASSERT_EQUAL_size_t(0, board_config_unpack(&back, packed, cut));
+        TEST_ASSERT_EQUAL_MEMORY(&base, &back, sizeof back);
+    }
+    packed[2] ^= 1; // a key that there is no more
+    TEST_ASSERT_EQUAL_size_t(count, board_config_unpack(&back, packed, count));
+    TEST_ASSERT_EQUAL_MEMORY(&base, &back, sizeof back);
+    packed[2] ^= 1;
+    packed[9] = 0x7F; // out of its range
+    TEST_ASSERT_EQUAL_size_t(count, board_config_unpack(&back, packed, count));
+    TEST_ASSERT_EQUAL_MEMORY(&base, &back, sizeof back);
+}
+
+void test_the_digest_tells_any_setting_apart(void) {
+    const uint32_t digest = board_config_digest(&config);
+    for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
+        argus_config_t other = config;
+        int32_t value = board_config_value(&other, row) + 1;
+        memcpy((char *)&other + (size_t)row * sizeof value, &value, sizeof value);
+        TEST_ASSERT_NOT_EQUAL_MESSAGE(digest, board_config_digest(&other), board_config_key(row));
+    }
+}
