@@ -113,6 +113,19 @@ def rules() -> str:
     return "\n".join(lines)
 
 
+def policies() -> str:
+    """Return the planners as a Markdown table."""
+    lines = [
+        "| policy | who may look | cost of a stop | of a degree | what it finds |",
+        "|---|---|---|---|---|",
+    ]
+    for _, name, walks, ring, stop, degree, *meaning in rows("adjustment/plan.h", "ARGUS_POLICY_TABLE"):
+        who = "every living sonar" if ring == "1" else "those that face forward"
+        costs = "- | -" if walks == "1" else f"{stop} | {degree}"
+        lines.append(f"| `{name}` | {who} | {costs} | {_cell(meaning)} |")
+    return "\n".join(lines)
+
+
 def health() -> str:
     """Return what may happen to a sonar as a Markdown table."""
     states = {"U": "UNKNOWN", "H": "HEALTHY", "S": "SUSPECT", "D": "DISABLED", "P": "PROBATION"}
@@ -150,7 +163,13 @@ def modes() -> str:
 
 PARTS = {
     "SPEC.md": {"events": events, "config": config, "can": can},
-    "DESIGN.md": {"modes": modes, "reflexes": reflexes, "rules": rules, "health": health},
+    "DESIGN.md": {
+        "modes": modes,
+        "reflexes": reflexes,
+        "policies": policies,
+        "rules": rules,
+        "health": health,
+    },
 }
 
 

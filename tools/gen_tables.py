@@ -113,7 +113,7 @@ def arcos_header(table: dict[str, Any]) -> str:
 
 
 ROBOT_FIRST = "p3dx-sh"  # the robot that is assumed where none is known; the others follow by name
-ROTATIONS_MAX = 10  # of a plan: every set of them is tried
+TURNS_MAX = 24  # that a plan is made of
 FORWARD_MAX = 6
 NAME_BYTES = 16
 LAST_ASTERN_DEG = 140  # who looks farther astern than this sees what the robot backs into head-on
@@ -161,10 +161,10 @@ class Robot:
         at = row.index(sonar)
         return row[at - 1], row[at + 1]
 
-    def rotations(self) -> list[int]:
-        """Return the turns that put one forward-facing sonar on the bearing of another: small first, right first."""
-        turns = {self.bearing(a) - self.bearing(b) for a in self.forward for b in self.forward if a != b}
-        return sorted(turns, key=lambda turn: (abs(turn), turn))
+    def turns(self) -> set[int]:
+        """Return the turns that put any sonar on the bearing of one that faces forward, 1 to 359 degrees."""
+        every = range(len(self.poses))
+        return {(self.bearing(a) - self.bearing(b)) % 360 for a in self.forward for b in every} - {0}
 
     def derived(self) -> dict[str, int]:
         """Return the figures that follow from others."""
@@ -209,10 +209,10 @@ def read_robot(root: Path, name: str) -> Robot:
             f"{source}: [sonar] forward must name 2 to {FORWARD_MAX} of the sonars, left to right"
         )
     robot = Robot(name, figures, poses, forward)
-    if min(robot.spacings()) <= 0 or len(robot.rotations()) > ROTATIONS_MAX:
+    if min(robot.spacings()) <= 0 or len(robot.turns()) > TURNS_MAX:
         raise TableError(
-            f"{source}: [sonar] forward: bearings must fall from left to right, and have {ROTATIONS_MAX // 2} "
-            "different distances at most"
+            f"{source}: [sonar] forward: bearings must fall from left to right, and {TURNS_MAX} "
+            "different turns at most put a sonar on one of them"
         )
     if table.get("identity", {}).get("subclass") != name or len(name) >= NAME_BYTES:
         raise TableError(
@@ -234,22 +234,20 @@ def robots_header(root: Path) -> str:
         f"#define ARGUS_ROBOTS {len(robots)} // rows of argus_robots",
         f"#define ARGUS_ROBOT_NAME_MAX {NAME_BYTES} // the final 0 included",
         f"#define ARGUS_FORWARD_MAX {FORWARD_MAX} // forward-facing sonars of one robot, at most",
-        f"#define ARGUS_TURNS_MAX {ROTATIONS_MAX} // different turns of one onto the bearing of another",
+        f"#define ARGUS_TURNS_MAX {TURNS_MAX} // different turns of a sonar onto the bearing of one of these, at most",
     ]
     return header("ARGUS_GEN_SIZES_H", "robots/*.toml", "Which robots are known", body)
 
 
 def robot_rows(robot: Robot, first: str) -> list[str]:
     """Return the lines of one row of argus_robots."""
-    turns, count = robot.rotations(), len(robot.forward)
+    count = len(robot.forward)
     fields = {
         "name": f'"{robot.name}"',
         "first_pose": first,
         "sonars": len(robot.poses),
         "forward_count": count,
-        "turns": len(turns),
         "forward": "{" + ", ".join(map(str, robot.forward)) + "}",
-        "turn_deg": "{" + ", ".join(map(str, turns)) + "}",
         "forward_mask": hex(sum(1 << sonar for sonar in robot.forward)) + "u",
         "ahead_mask": hex(robot.mask("ahead")) + "u",
         "astern_mask": hex(robot.mask("astern")) + "u",

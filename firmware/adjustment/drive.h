@@ -10,6 +10,7 @@
 typedef struct {
     uint8_t index;       // rotation at work
     argus_mask_t covers; // the disabled sonars that its plan is for
+    argus_mask_t looks;  // ... and who may look along their bearings
     bool home;           // on the way back to the base heading
     bool done;           // back on it, all rotations read
     int32_t base_cdeg;
@@ -19,6 +20,15 @@ typedef struct {
 } argus_drive_t;
 
 void argus_sweep_begin(argus_drive_t *self, const argus_plan_t *plan, int32_t base_cdeg);
+
+// S1: the plan is no longer the one that the sweep began with, nor are the bearings to see or those that
+// look.
+bool argus_sweep_is_outdated(const argus_drive_t *self, const argus_plan_t *plan);
+
+// Whose readings count where the sweep is: those of the rotation at work, nobody's on the way home.
+argus_mask_t argus_sweep_wants(const argus_drive_t *self, const argus_plan_t *plan,
+                               const argus_robot_t *robot);
+
 int32_t argus_sweep_heading_cdeg(const argus_drive_t *self, const argus_plan_t *plan);
 
 // Call on each SIP while settled on that heading since `mark`. True when the wanted heading changed or it is

@@ -1,25 +1,38 @@
 // SPDX-License-Identifier: MIT
-// The policy library: rotations by which the healthy forward-facing sonars cover for the disabled ones
-// (paper: Tables IV and V).
+// The policies: how the rotations are found by which living sonars cover for the disabled ones that face
+// forward (paper: Tables IV and V).
 #ifndef ARGUS_PLAN_H
 #define ARGUS_PLAN_H
 
 #include "analysis/failure.h"
 #include "argus/argus.h"
 
-// `paper`: the walk of Algorithm 3, a tie goes to the negative rotation. `fewest`: least count, then least
-// sweep, then least sum, then the list that sorted ascending comes first; visited negative side outward, then
-// positive side outward. paper: Algorithm 3's lines 27 to 34 stop at 50 degrees and add a rotation twice that
-// covers two bearings; not so here.
-// Cost: at most 1,023 sets of rotations.
-argus_plan_t argus_plan(const argus_robot_t *robot, argus_policy_t policy, argus_mask_t disabled);
+// X(NAME, setting, walks, ring, stop, degree, meaning). `walks`: nearest to 0 first, back after each, else
+// the exact planner, one pass and one return; `ring`: every living sonar may look, not only those that face
+// forward; `stop`, `degree`: what one costs. A stop takes 1 s, in which the robot turns by 60 degrees.
+#define ARGUS_POLICY_TABLE(X)                                                                        \
+    X(PAPER, "paper", 1, 0, 0, 0, "Algorithm 3: nearest turn first, back after each")                \
+    X(FEWEST, "fewest", 0, 0, 1000, 1, "least stops, then least turning")                            \
+    X(LEAST_TURN, "least-turn", 0, 0, 1, 1000, "least turning, then least stops")                    \
+    X(RING, "ring", 0, 1, 1000, 1, "least stops, then least turning, abeam and rear look ahead too") \
+    X(ADAPTIVE, "adaptive", 0, 1, 60, 1, "least time, abeam and rear look ahead too")
 
-// Sonar that looks along the bearing of the disabled sonar `disabled` after a rotation, or -1 when none of
-// the healthy does.
+// `living`: sonars, facing forward or not, that may be relied on; a policy without the ring goes by
+// `disabled` alone. Complete under a policy with the ring whenever one of `living` is not disabled. `policy`:
+// a row of the table. Cost: below ARGUS_COVER_STEPS_MAX sums and comparisons; about 1 kB of stack.
+argus_plan_t argus_plan(const argus_robot_t *robot, argus_policy_t policy, argus_mask_t disabled,
+                        argus_mask_t living);
+
+// Whether others than those that face forward may look along a blind bearing.
+bool argus_plan_asks_ring(argus_policy_t policy);
+
+// Sonar that looks along the bearing of the disabled sonar `disabled` after a rotation, or -1 when none does
+// that may look.
 int argus_plan_cover(const argus_robot_t *robot, const argus_plan_t *plan, int16_t rotation_deg,
                      int disabled);
 
-// Healthy sonars whose readings count after a rotation, as a mask.
+// Sonars whose readings count after a rotation, and after any of the plan's, as a mask.
 argus_mask_t argus_plan_covering(const argus_robot_t *robot, const argus_plan_t *plan, int16_t rotation_deg);
+argus_mask_t argus_plan_needs(const argus_robot_t *robot, const argus_plan_t *plan);
 
 #endif

@@ -11,9 +11,20 @@ void argus_sweep_begin(argus_drive_t *const self, const argus_plan_t *const plan
     memset(self, 0, sizeof *self);
     self->base_cdeg = base_cdeg;
     self->covers = plan->disabled;
+    self->looks = plan->looks;
     self->smallest_mm = UINT16_MAX;
     self->smallest_of = -1;
     self->home = plan->count == 0;
+}
+
+bool argus_sweep_is_outdated(const argus_drive_t *const self, const argus_plan_t *const plan) {
+    return self->covers != plan->disabled || self->looks != plan->looks;
+}
+
+argus_mask_t argus_sweep_wants(const argus_drive_t *const self, const argus_plan_t *const plan,
+                               const argus_robot_t *const robot) {
+    const bool looks = !self->done && !self->home && self->index < plan->count;
+    return looks ? argus_plan_covering(robot, plan, plan->rotation_deg[self->index]) : 0;
 }
 
 int32_t argus_sweep_heading_cdeg(const argus_drive_t *const self, const argus_plan_t *const plan) {
@@ -54,8 +65,7 @@ bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan,
         self->done = self->index >= plan->count;
         return true;
     }
-    const argus_mask_t wanted = argus_plan_covering(knowledge->robot, plan, plan->rotation_deg[self->index]);
-    if (!argus_all_fresh_since(knowledge, wanted, mark)) {
+    if (!argus_all_fresh_since(knowledge, argus_sweep_wants(self, plan, knowledge->robot), mark)) {
         return false;
     }
     note_smallest(self, plan, knowledge);

@@ -24,6 +24,7 @@
     X(passes_abeam, 0, 1, 1,                                                                                \
       "S7: of the rear, who looks abeam need not read clear beyond what the way back asks for")             \
     X(drives_seen, 0, 1, 1, "S1: drives as far as living sonars have seen the way; stops only to see more") \
+    X(adapts_plan, 0, 1, 1, "S1: under policy adaptive any sonar may look ahead; else it stands for paper") \
     X(adapts_speed, 0, 1, 1, "S5: as fast as what is seen ahead allows; turns gently while it drives")      \
     X(leaves_ahead, 0, 1, 1, "S4: hemmed in, it goes on from the heading that it has")
 

@@ -58,8 +58,9 @@ static void see(argus_rays_t *const self, const argus_knowledge_t *const knowled
     add(self, &ray);
 }
 
-void argus_rays_see(argus_rays_t *const self, const argus_knowledge_t *const knowledge) {
-    const unsigned looks = argus_robot_ahead(knowledge->robot) | argus_robot_flank(knowledge->robot);
+void argus_rays_see(argus_rays_t *const self, const argus_knowledge_t *const knowledge,
+                    const argus_mask_t others) {
+    const unsigned looks = argus_robot_ahead(knowledge->robot) | argus_robot_flank(knowledge->robot) | others;
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool fresh = (knowledge->fresh & looks) >> i & 1u;
         if (fresh && argus_trusted(knowledge, i)) {

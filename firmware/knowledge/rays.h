@@ -27,7 +27,8 @@ typedef struct {
 void argus_rays_init(argus_rays_t *self);
 
 // Logs the fresh readings of the sonars that look ahead or abeam and are trusted: neither out nor named.
-void argus_rays_see(argus_rays_t *self, const argus_knowledge_t *knowledge);
+// `others`: sonars of a sweep, which look along blind bearings now.
+void argus_rays_see(argus_rays_t *self, const argus_knowledge_t *knowledge, argus_mask_t others);
 
 // Takes back what a sonar has seen: it has failed. And all of it: the robot may have been carried.
 void argus_rays_forget(argus_rays_t *self, int sonar);

@@ -7,7 +7,7 @@
 #define ARGUS_ROBOTS 4 // rows of argus_robots
 #define ARGUS_ROBOT_NAME_MAX 16 // the final 0 included
 #define ARGUS_FORWARD_MAX 6 // forward-facing sonars of one robot, at most
-#define ARGUS_TURNS_MAX 10 // different turns of one onto the bearing of another
+#define ARGUS_TURNS_MAX 24 // different turns of a sonar onto the bearing of one of these, at most
 // clang-format on
 
 #endif

@@ -27,10 +27,7 @@ typedef struct {
     uint8_t front_bumpers; // segments, 0: no bumper
     uint8_t rear_bumpers;
     uint8_t forward_count;
-    uint8_t turns;
     uint8_t forward[ARGUS_FORWARD_MAX]; // the forward-facing sonars, left to right; the paper's six
-    int16_t turn_deg[ARGUS_TURNS_MAX];  // that put one of them on the bearing of another: nearest to 0 first,
-                                        // of two the negative one
     uint32_t forward_mask;
     uint32_t ahead_mask; // who sees what the robot drives into, forward-facing or not
     uint32_t astern_mask;

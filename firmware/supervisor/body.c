@@ -40,7 +40,7 @@ static void change_to(argus_t *const self, const argus_robot_t *const robot) {
     argus_body_is(&self->knowledge, robot, self->now_ms);
     forget_sonars(self);
     argus_task_restart(&self->travel.task);
-    self->plan = argus_plan(robot, (argus_policy_t)self->config.policy, 0);
+    self->plan = argus_plan(robot, argus_policy(self), 0, 0);
     argus_replan(self);
 }
 

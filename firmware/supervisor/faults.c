@@ -2,6 +2,8 @@
 // Takes sonars out of use, flags suspects, and keeps failure state, plan and firing order in step.
 #include "supervisor/faults.h"
 
+#include <string.h>
+
 #include "knowledge/angle.h"
 #include "supervisor/say.h"
 #include "supervisor/state.h"
@@ -54,6 +56,21 @@ static void say_plan(argus_t *const self) {
     }
 }
 
+// Who may be relied on to look along another's bearing: nobody who is out, unheard or has the name of a
+// fault; where they are all that is left, those with a name may.
+static argus_mask_t living(const argus_t *const self) {
+    const argus_knowledge_t *const knowledge = &self->knowledge;
+    unsigned trusted = 0;
+    unsigned named = 0;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const bool late = argus_age_ms(knowledge, i, self->now_ms) > (uint32_t)self->config.stale_ms;
+        const bool heard = !late && knowledge->sonar[i].health != ARGUS_STALE && !argus_is_out(knowledge, i);
+        trusted |= heard && argus_trusted(knowledge, i) ? 1u << i : 0u;
+        named |= heard && !argus_trusted(knowledge, i) ? 1u << i : 0u;
+    }
+    return (argus_mask_t)(trusted != 0 ? trusted : named);
+}
+
 // Suspects that are covered for like those that are out: under the paper those that no witness could judge,
 // one that is still to be verified is not, nothing moves ahead before it is; else names that nobody sees for.
 static argus_mask_t covered_suspects(const argus_t *const self) {
@@ -66,32 +83,54 @@ static argus_mask_t covered_suspects(const argus_t *const self) {
 }
 
 static void take_plan(argus_t *const self, const argus_mask_t blind) {
-    const argus_robot_t *const robot = self->knowledge.robot;
-    self->plan = argus_plan(robot, (argus_policy_t)self->config.policy, blind);
+    self->plan = argus_plan(self->knowledge.robot, argus_policy(self), blind, living(self));
     ARGUS_ASSERT(self->plan.count <= ARGUS_ROTATIONS_MAX && self->plan.disabled == blind);
 }
 
-// Doubt never leaves the robot without a plan that it has without.
+static void tell_plan(argus_t *const self, const argus_plan_t *const before) {
+    const argus_plan_t *const now = &self->plan;
+    const bool others = before->disabled != now->disabled;
+    if (others || before->count != now->count ||
+        memcmp(before->rotation_deg, now->rotation_deg, sizeof now->rotation_deg) != 0) {
+        say_plan(self);
+    }
+    if (others) {
+        argus_share_slots(self);
+    }
+}
+
+// Doubt never leaves the robot without a plan that it has without. With the ring others may look by now.
 void argus_replan(argus_t *const self) {
     const argus_mask_t disabled = argus_out(&self->knowledge) & argus_robot_forward(self->knowledge.robot);
     const argus_mask_t blind = (argus_mask_t)(disabled | covered_suspects(self));
     const argus_failure_t failure = argus_failure_of(self->knowledge.robot, disabled);
-    const argus_mask_t before = self->plan.disabled;
+    const argus_plan_t before = self->plan;
     if (failure != self->failure) {
         self->failure = failure;
         argus_say(self, ARGUS_EV_FAILURE_STATE, ARGUS_NO_SONAR, argus_count_bits(disabled));
     }
-    if (blind == before) {
+    if (blind == before.disabled && (blind == 0 || !argus_plan_asks_ring(argus_policy(self)))) {
         return;
     }
     take_plan(self, blind);
     if (!self->plan.complete && argus_rules(self)->evidence) {
         take_plan(self, disabled);
     }
-    if (self->plan.disabled != before) {
-        say_plan(self);
-        argus_share_slots(self);
+    tell_plan(self, &before);
+}
+
+bool argus_keep_plan(argus_t *const self) {
+    if (self->plan.disabled == 0 || !argus_plan_asks_ring(argus_policy(self))) {
+        return true;
     }
+    const argus_plan_t before = self->plan;
+    const unsigned lives = living(self) & ~(unsigned)before.disabled;
+    const unsigned needs = argus_plan_needs(self->knowledge.robot, &before);
+    if ((needs & ~lives) != 0 || (!before.complete && lives != before.looks)) {
+        take_plan(self, before.disabled);
+        tell_plan(self, &before);
+    }
+    return self->plan.complete;
 }
 
 void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {

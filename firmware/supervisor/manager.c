@@ -141,6 +141,17 @@ static void take_slip(argus_t *const self) {
     }
 }
 
+// Who looks along a blind bearing, in a sweep.
+static argus_mask_t sweep_looks(const argus_t *const self) {
+    const bool looks = self->mode == ARGUS_MODE_SWEEPING && self->base.taken && self->motion.settled;
+    return looks ? argus_sweep_wants(&self->travel.drive, &self->plan, self->knowledge.robot) : 0;
+}
+
+static bool is_on_its_way(const argus_t *const self) {
+    return self->mode == ARGUS_MODE_DRIVING || self->mode == ARGUS_MODE_SWEEPING ||
+           self->mode == ARGUS_MODE_STEPPING;
+}
+
 static void on_sip(argus_t *const self) {
     const int32_t unit_um = argus_session_distance_um(&self->session, self->knowledge.robot->dist_conv_um);
     if (!argus_session_is_open(&self->session) || self->mode == ARGUS_MODE_CLOSED) {
@@ -161,8 +172,11 @@ static void on_sip(argus_t *const self) {
     take_slip(self);
     argus_react(self, &alarm); // it asks what was seen before this SIP
     argus_echoes_see(&self->echoes, &self->knowledge, self->now_ms);
-    argus_rays_see(&self->rays, &self->knowledge);
+    argus_rays_see(&self->rays, &self->knowledge, sweep_looks(self));
     argus_judge_all(self);
+    if (!argus_keep_plan(self) && is_on_its_way(self)) {
+        argus_do(self, (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK});
+    }
     argus_motion_sip(&self->motion, &self->session.outbox, &self->knowledge, self->now_ms);
     argus_run_mode(self);
 }

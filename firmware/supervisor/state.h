@@ -13,6 +13,9 @@ const argus_profile_t *argus_rules(const argus_t *self);
 // The safety rules, asked of the present state.
 argus_guard_t argus_guard(const argus_t *self);
 
+// Which planner: the paper's rules know no adaptive one.
+argus_policy_t argus_policy(const argus_t *self);
+
 bool argus_is_active(const argus_t *self);
 bool argus_is_open(const argus_t *self);
 

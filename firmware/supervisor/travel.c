@@ -206,6 +206,11 @@ static argus_intent_t blocked(argus_travel_t *const mine, const argus_event_id_t
     return intent;
 }
 
+// Where nobody looks ahead any more, all that counts was seen in sweeps.
+static int32_t reading_of(const argus_t *const self, const int sonar) {
+    return sonar < 0 ? self->knowledge.robot->no_echo_mm : self->knowledge.sonar[sonar].reading_mm;
+}
+
 static bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
     if (self->knowledge.still_sips == 0 || self->motion.kind != ARGUS_MOTION_MOVE || self->motion.settled) {
         mine->heeded_ms = self->now_ms;
@@ -251,7 +256,7 @@ static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const 
         return nothing(); // the MOVE at work ends by itself
     }
     const int sonar = argus_nearest_ahead(self);
-    const int32_t nearest_mm = sonar < 0 ? 0 : self->knowledge.sonar[sonar].reading_mm;
+    const int32_t nearest_mm = reading_of(self, sonar);
     if (nearest_mm <= self->config.object_range_mm) {
         return blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm);
     }
@@ -264,7 +269,8 @@ static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const 
     if (!is_heeded(self, mine)) {
         return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_MOTORS};
     }
-    const bool weaves = argus_guard_is_blind(&guard) && way_mm > STEER_LEG_MM;
+    const bool weaves =
+        argus_guard_is_blind(&guard) && argus_wanted_sonars(self) != 0 && way_mm > STEER_LEG_MM;
     const bool steers = weaves || (off_bearing(self, mine) > STEER_CDEG && way_mm > STEER_LEG_MM);
     return (argus_intent_t){.act = ARGUS_DO_DRIVE,
                             .mm = argus_min(way_mm, free_mm),
@@ -310,7 +316,7 @@ static argus_intent_t step_ahead(const argus_t *const self, const argus_travel_t
 // The sweep is done and the robot is back on its heading: the compensating and the direct readings decide.
 static argus_intent_t judge_sweep(const argus_t *const self, argus_travel_t *const mine) {
     const int direct = argus_nearest_ahead(self);
-    const int32_t direct_mm = direct < 0 ? 0 : self->knowledge.sonar[direct].reading_mm;
+    const int32_t direct_mm = reading_of(self, direct);
     if (!mine->swept) {
         mine->swept = true;
         return say(ARGUS_EV_SWEEP, mine->drive.smallest_of, mine->drive.smallest_mm);
@@ -347,8 +353,7 @@ static argus_intent_t sweep_on(const argus_t *const self, argus_travel_t *const 
     if (!self->motion.settled) {
         return nothing();
     }
-    if (mine->drive.covers !=
-        self->plan.disabled) { // S1: the plan has changed, and so have the bearings to see
+    if (argus_sweep_is_outdated(&mine->drive, &self->plan)) {
         return begin_sweep(self, mine);
     }
     if (mine->drive.done) {

@@ -117,7 +117,10 @@ def parser() -> argparse.ArgumentParser:
         help="faults, in the order in which they come",
     )
     result.add_argument(
-        "--policy", choices=("paper", "fewest"), default="paper", help="planner (default paper)"
+        "--policy",
+        choices=("paper", "fewest", "least-turn", "ring", "adaptive"),
+        default="adaptive",
+        help="planner (default adaptive)",
     )
     result.add_argument(
         "--profile",

@@ -79,11 +79,7 @@ def test_check_sees_every_changed_number(tree: Path) -> None:
         ),
         ("robots/amigo-sh", ('subclass = "amigo-sh"', 'subclass = "amigo"'), "must be the file's name"),
         ("robots/amigo-sh", ('role = "abeam"', 'role = "beside"'), "role must be one of"),
-        (
-            "robots/p3at-sh",
-            ("heading_deg = 30\n", "heading_deg = 31\n"),
-            "have 5 different distances at most",
-        ),
+        ("robots/p3at-sh", ("heading_deg = 30\n", "heading_deg = 31\n"), "24 different turns at most"),
         ("arcos", "[command]\nPULSE = 0\n", "section [type] is missing"),
         ("arcos", None, "no such table"),
     ],

@@ -6,6 +6,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from itertools import combinations
 from pathlib import Path
 
@@ -30,6 +31,7 @@ class Plan:
         return 2 * (max(0, *self.rotations) - min(0, *self.rotations))
 
 
+@cache
 def bearings() -> dict[int, int]:
     """Degrees at which each sonar is mounted."""
     with POSES.open("rb") as file:
@@ -78,6 +80,20 @@ def walk(disabled: frozenset[int]) -> Plan:
     return Plan(tuple(kept))
 
 
+def one_pass(rotations: Iterable[int]) -> Plan:
+    """Visited negative side outward, then positive side outward."""
+    left = sorted((r for r in rotations if r < 0), reverse=True)
+    return Plan((*left, *sorted(r for r in rotations if r > 0)))
+
+
+@cache
+def least_turn(disabled: frozenset[int]) -> Plan:
+    """Least sweep of every set that covers all, then least count, then least sum, then who comes first."""
+    turns = sorted(candidates(disabled))
+    sets = [c for n in range(1, len(turns) + 1) for c in combinations(turns, n) if covers_all(c, disabled)]
+    return one_pass(min(sets, key=lambda c: (Plan(c).swept_deg, len(c), sum(map(abs, c)), c)))
+
+
 def fewest(disabled: frozenset[int]) -> Plan:
     """Least count, then least sweep, then least sum, then the ascending list that comes first."""
     turns = candidates(disabled)
@@ -85,7 +101,5 @@ def fewest(disabled: frozenset[int]) -> Plan:
         complete = [c for c in combinations(sorted(turns), size) if covers_all(c, disabled)]
         if complete:
             best = min(complete, key=lambda c: (Plan(c).swept_deg, sum(map(abs, c)), c))
-            left = sorted((r for r in best if r < 0), reverse=True)
-            right = sorted(r for r in best if r > 0)
-            return Plan((*left, *right))
+            return one_pass(best)
     raise AssertionError(disabled)

@@ -15,6 +15,9 @@ from tests.core.planmodel import Plan
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = [
     "adjustment/plan.c",
+    "adjustment/policy_cover.c",
+    "adjustment/policy_walk.c",
+    "adjustment/turns.c",
     "analysis/failure.c",
     "knowledge/angle.c",
     "robot/robot.c",
@@ -24,10 +27,10 @@ PROGRAM = r"""
 #include <stdio.h>
 #include "adjustment/plan.h"
 int main(void) {
-    for (int policy = 0; policy <= 1; policy++) {
+    for (int policy = 0; policy <= 2; policy++) {
         for (unsigned mask = 0; mask < 128; mask += 2) {
             const argus_robot_t *const robot = argus_robot_default();
-            const argus_plan_t plan = argus_plan(robot, (argus_policy_t)policy, (uint16_t)mask);
+            const argus_plan_t plan = argus_plan(robot, (argus_policy_t)policy, (uint16_t)mask, 0);
             printf("%d %u %u %d %d", policy, mask, plan.disabled, plan.return_each, plan.complete);
             for (int i = 0; i < plan.count; i++) {
                 printf(" %d/%u", plan.rotation_deg[i], argus_plan_covering(robot, &plan, plan.rotation_deg[i]));
@@ -41,8 +44,13 @@ int main(void) {
     return 0;
 }
 """
-POLICIES = {"paper": 0, "fewest": 1}
-SUMS = {"paper": (158, 9920, 6320), "fewest": (128, 8520, 5960)}
+POLICIES = ("paper", "fewest", "least-turn")
+SUMS = {
+    "paper": (158, 9920, 6320),
+    "fewest": (128, 8520, 5960),
+    "least-turn": (128, 8520, 5960),
+}
+MODELS = {"paper": planmodel.walk, "fewest": planmodel.fewest, "least-turn": planmodel.least_turn}
 
 
 @dataclass(frozen=True)
@@ -93,7 +101,7 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> Table:
         policy, mask, own, each, complete, *stops = line.split()
         disabled = frozenset(d for d in planmodel.FORWARD if int(mask) >> d & 1)
         parts = [[int(part) for part in stop.split("/")] for stop in stops]
-        rows["paper" if policy == "0" else "fewest", disabled] = Row(
+        rows[POLICIES[int(policy)], disabled] = Row(
             plan=Plan(tuple(p[0] for p in parts)),
             map_in_plan=int(own),
             return_each=each == "1",
@@ -101,13 +109,13 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> Table:
             covering=tuple(p[1] for p in parts),
             cover=tuple(tuple(p[2:]) for p in parts),
         )
-    assert len(rows) == 128
+    assert len(rows) == 192
     return rows
 
 
 def expected(policy: str, disabled: frozenset[int]) -> Plan:
     """The model's plan."""
-    return planmodel.walk(disabled) if policy == "paper" else planmodel.fewest(disabled)
+    return MODELS[policy](disabled)
 
 
 def test_there_are_62_maps() -> None:

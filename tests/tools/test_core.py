@@ -55,7 +55,7 @@ def test_settings_are_those_of_the_table() -> None:
     assert setting_value("stale_ms", "2000") == 2000
     for key, text, part in (
         ("frob", "1", "no such setting"),
-        ("policy", "best", "give paper or fewest"),
+        ("policy", "best", "give paper or fewest or least-turn or ring or adaptive"),
         ("stale_ms", "soon", "whole number"),
     ):
         with pytest.raises(LogError, match=part):

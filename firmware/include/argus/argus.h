@@ -99,7 +99,8 @@ typedef uint16_t argus_mask_t;
     X(profile, 1, 0, 1, "", "paper|argus", "rule set of the diagnosis")                                      \
     X(diagnosis, 1, 0, 1, "", "off|on",                                                                      \
       "off: every sonar that reports is trusted, nothing is judged; for comparisons")                        \
-    X(policy, 0, 0, 1, "", "paper|fewest", "planner of the compensating rotations")                          \
+    X(policy, 4, 0, 4, "", "paper|fewest|least-turn|ring|adaptive",                                          \
+      "planner of the compensating rotations; with profile paper, adaptive stands for paper")                \
     X(robot, 0, 0, 4, "", "by-subclass|p3dx-sh|amigo-sh|p3at-sh|peoplebot-sh",                               \
       "whose body and sonars it has; by-subclass: as it says itself, and passive when that is not known")    \
     X(active, 1, 0, 1, "", "off|on", "off: diagnose and report, never command a motion")                     \
@@ -144,7 +145,13 @@ typedef struct {
 #undef ARGUS_CONFIG_FIELD
 } argus_config_t;
 
-typedef enum { ARGUS_POLICY_PAPER = 0, ARGUS_POLICY_FEWEST = 1 } argus_policy_t;
+typedef enum {
+    ARGUS_POLICY_PAPER,      // the walk of the paper's Algorithm 3
+    ARGUS_POLICY_FEWEST,     // least stops
+    ARGUS_POLICY_LEAST_TURN, // least turning
+    ARGUS_POLICY_RING,       // least stops, and any living sonar may look along a blind bearing
+    ARGUS_POLICY_ADAPTIVE    // least time, likewise
+} argus_policy_t;
 
 // What is wrong with a configuration; ARGUS_CONFIG_OK when nothing is.
 typedef enum {
@@ -333,9 +340,10 @@ typedef enum {
 
 typedef struct {
     argus_mask_t disabled; // the fault map it is for: forward-facing sonars only
+    argus_mask_t looks;    // who may look along their bearings
     uint8_t count;
     int16_t rotation_deg[ARGUS_ROTATIONS_MAX]; // in the order of visit, CCW positive
-    bool return_each; // back to the heading after each rotation's reading (policy paper), else one sweep
+    bool return_each; // back to the heading after each rotation's reading (policy paper), else one pass
     bool complete;    // every disabled bearing is covered
 } argus_plan_t;
 

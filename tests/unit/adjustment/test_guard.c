@@ -71,7 +71,8 @@ static void remember_at(int x_mm, int y_mm) {
 // Under argus also while the others can cover for those that are out: how far, it is asked apart.
 void test_s1_normal_driving_only_with_every_bearing_in_use(void) {
     for (unsigned disabled = 0; disabled <= 0x7Eu; disabled += 2) {
-        const argus_plan_t plan = argus_plan(argus_robot_default(), ARGUS_POLICY_PAPER, (uint16_t)disabled);
+        const argus_plan_t plan =
+            argus_plan(argus_robot_default(), ARGUS_POLICY_PAPER, (uint16_t)disabled, 0);
         use(ARGUS_PROFILE_PAPER);
         TEST_ASSERT_EQUAL(disabled == 0, argus_guard_may_drive(&g, &plan));
         use(ARGUS_PROFILE_ARGUS);

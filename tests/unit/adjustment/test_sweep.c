@@ -26,7 +26,7 @@ static void begin(argus_policy_t policy, uint16_t disabled) {
             k.sonar[i].reading_mm = 100; // a lie that must not count
         }
     }
-    plan = argus_plan(argus_robot_default(), policy, disabled);
+    plan = argus_plan(argus_robot_default(), policy, disabled, (argus_mask_t)~disabled);
     argus_sweep_begin(&drive, &plan, BASE);
 }
 
@@ -50,7 +50,7 @@ static void look(int rotation_deg, int mm) {
     settle();
     TEST_ASSERT_FALSE(step());
     const uint16_t covering = argus_plan_covering(argus_robot_default(), &plan, (int16_t)rotation_deg);
-    for (int i = 1; i <= 6; i++) {
+    for (int i = 0; i < 16; i++) {
         if ((covering >> i & 1u) != 0) {
             TEST_ASSERT_FALSE(step());
             read(i, mm);
@@ -116,4 +116,25 @@ void test_an_empty_plan_is_done_at_home(void) {
     home();
     TEST_ASSERT_TRUE(drive.done);
     TEST_ASSERT_EQUAL(UINT16_MAX, drive.smallest_mm);
+}
+
+void test_the_rear_reads_for_a_lost_front(void) {
+    begin(ARGUS_POLICY_RING, 0x7E);
+    TEST_ASSERT_EQUAL_HEX16(0x7E00, argus_sweep_wants(&drive, &plan, argus_robot_default()));
+    look(180, 600);
+    TEST_ASSERT_EQUAL_HEX16(0, argus_sweep_wants(&drive, &plan, argus_robot_default()));
+    home();
+    TEST_ASSERT_TRUE(drive.done);
+    TEST_ASSERT_EQUAL(600, drive.smallest_mm);
+    TEST_ASSERT_EQUAL(1, drive.smallest_of);
+}
+
+// S1: with another to look it is another sweep, though the bearings are the same.
+void test_a_sweep_is_outdated_by_who_looks(void) {
+    begin(ARGUS_POLICY_RING, 0x7E);
+    TEST_ASSERT_FALSE(argus_sweep_is_outdated(&drive, &plan));
+    const argus_plan_t fewer = argus_plan(argus_robot_default(), ARGUS_POLICY_RING, 0x7E, 0x8181);
+    TEST_ASSERT_TRUE(argus_sweep_is_outdated(&drive, &fewer));
+    const argus_plan_t other = argus_plan(argus_robot_default(), ARGUS_POLICY_RING, 0x7C, 0xFF83);
+    TEST_ASSERT_TRUE(argus_sweep_is_outdated(&drive, &other));
 }

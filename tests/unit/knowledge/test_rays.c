@@ -29,7 +29,7 @@ void setUp(void) {
 // All of `mask` are listed in one SIP.
 static void ping(unsigned mask) {
     k.fresh = (argus_mask_t)mask;
-    argus_rays_see(&rays, &k);
+    argus_rays_see(&rays, &k, 0);
 }
 
 static int32_t seen_mm(void) {

@@ -145,31 +145,6 @@ void test_neighbours_stand_side_by_side(void) {
     }
 }
 
-void test_turns_are_all_the_differences_of_bearings(void) {
-    for (int row = 0; row < ARGUS_ROBOTS; row++) {
-        const argus_robot_t *robot = robot_at(row);
-        for (int turn = -180; turn <= 180; turn++) {
-            bool wanted = false, listed = false;
-            for (int a = 0; a < robot->forward_count; a++) {
-                for (int b = 0; b < robot->forward_count; b++) {
-                    wanted = wanted ||
-                             (a != b &&
-                              bearing(robot, robot->forward[a]) - bearing(robot, robot->forward[b]) == turn);
-                }
-            }
-            for (int i = 0; i < robot->turns; i++) {
-                listed = listed || robot->turn_deg[i] == turn;
-            }
-            TEST_ASSERT_EQUAL_MESSAGE(wanted, listed, text);
-        }
-        for (int i = 0; i + 1 < robot->turns; i += 2) { // in pairs, the negative one first
-            TEST_ASSERT_TRUE_MESSAGE(robot->turn_deg[i] < 0 && robot->turn_deg[i + 1] == -robot->turn_deg[i],
-                                     text);
-            TEST_ASSERT_TRUE_MESSAGE(i == 0 || robot->turn_deg[i + 1] > robot->turn_deg[i - 1], text);
-        }
-    }
-}
-
 void test_the_tolerance_is_that_of_the_widest_neighbours(void) {
     static const struct {
         const char *name;

@@ -440,7 +440,7 @@ void test_a_conviction_that_leaves_nobody_is_answered_by_stop_in_the_same_call(v
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
     robot_run(&robot, 1500);
     const int from = robot.commands;
-    for (int sonar = 1; sonar <= 6; sonar++) {
+    for (int sonar = 0; sonar < 16; sonar++) {
         condemn(sonar);
     }
     robot_next_sip(&robot);

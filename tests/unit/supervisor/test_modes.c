@@ -175,7 +175,7 @@ void test_s1_a_plan_that_changes_under_a_sweep_begins_it_anew(void) {
         robot_tick(&robot);
     }
     memcpy(&copy, &robot.argus, sizeof copy);
-    copy.plan = argus_plan(copy.knowledge.robot, ARGUS_POLICY_PAPER, 1u << 2 | 1u << 3);
+    copy.plan = argus_plan(copy.knowledge.robot, ARGUS_POLICY_PAPER, 1u << 2 | 1u << 3, 0);
     copy.travel.drive.index = 1;
     const argus_intent_t intent = argus_run_sweeping(&copy, &copy.travel);
     TEST_ASSERT_EQUAL(ARGUS_DO_TURN, intent.act);

@@ -85,8 +85,10 @@ void test_refusals_name_the_line(void) {
     refused("step_mm = many\n", "a.conf:1: step_mm = 'many': give a whole number, 50 to 200 mm");
     refused("step_mm =\n", "a.conf:1: step_mm = '': give a whole number");
     refused("step_mm = 1e2\n", "a.conf:1: step_mm = '1e2': give a whole number");
-    refused("policy = best\n", "a.conf:1: policy = 'best': choose one of paper|fewest");
-    refused("policy = pap\n", "a.conf:1: policy = 'pap': choose one of paper|fewest");
+    refused("policy = best\n",
+            "a.conf:1: policy = 'best': choose one of paper|fewest|least-turn|ring|adaptive");
+    refused("policy = pap\n",
+            "a.conf:1: policy = 'pap': choose one of paper|fewest|least-turn|ring|adaptive");
     refused("policy =\n", "a.conf:1: policy = '': choose one of");
     refused("step_mm = 100\n\nstep_mm = 100\n", "a.conf:3: step_mm was given on line 1 already; keep one");
     refused("step_mm = 100\n  step_mm = 150\n", "a.conf:2: step_mm was given on line 1 already");
