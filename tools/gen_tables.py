@@ -136,6 +136,7 @@ class Robot:
     figures: dict[str, int]
     poses: list[dict[str, Any]]
     forward: list[int]
+    is_reversed: bool = False
 
     def mask(self, role: str, *, front: bool | None = None) -> int:
         """Return the sonars of a role as bits; front: only those whose faces are ahead of the centre, or are not."""
@@ -175,6 +176,45 @@ class Robot:
             "tolerance_excess": round(EXCESS_ONE * (1 / math.cos(math.radians(widest)) - 1)),
             "rear_overhang_mm": self.figures["rear_mm"] + max(astern, default=0),
         }
+
+
+def wrap_deg(angle: int) -> int:
+    """Return ANGLE within -179 to 180 degrees."""
+    return -((-angle + 179) % 360 - 179)
+
+
+def turned(pose: dict[str, Any]) -> dict[str, Any]:
+    """Return a sonar's pose turned by 180 degrees about the robot's centre."""
+    role = {"ahead": "astern", "astern": "ahead"}.get(pose["role"], pose["role"])
+    bearing = wrap_deg(pose["heading_deg"] + 180)
+    return {**pose, "x_mm": -pose["x_mm"], "y_mm": -pose["y_mm"], "heading_deg": bearing, "role": role}
+
+
+def rear_leading(robot: Robot) -> Robot | None:
+    """Return the robot as it is when its rear leads: whole turned by 180 degrees; None: its rear has no such sonars.
+
+    Those that face forward then are the ones that look ahead on the bearings of the robot's own.
+    """
+    poses = [turned(pose) for pose in robot.poses]
+    ahead = [pose for pose in poses if pose["role"] == "ahead"]
+    forward = [
+        next((pose["number"] for pose in ahead if pose["heading_deg"] == robot.bearing(sonar)), None)
+        for sonar in robot.forward
+    ]
+    numbers = [number for number in forward if number is not None]
+    if len(numbers) < len(forward):
+        return None
+    face_mm = max(poses[number]["x_mm"] for number in numbers)
+    figures = {
+        **robot.figures,
+        "front_mm": robot.figures["rear_mm"],
+        "rear_mm": robot.figures["front_mm"],
+        "front_bumpers": robot.figures["rear_bumpers"],
+        "rear_bumpers": robot.figures["front_bumpers"],
+        "sonar_face_mm": face_mm,
+        "tolerance_centre_mm": face_mm,
+    }
+    return Robot(robot.name, figures, poses, numbers, is_reversed=True)
 
 
 def check_poses(source: Path, poses: list[dict[str, Any]]) -> None:
@@ -231,7 +271,7 @@ def robots_header(root: Path) -> str:
     """Return the text of gen_sizes.h."""
     robots = read_robots(root)
     body = [
-        f"#define ARGUS_ROBOTS {len(robots)} // rows of argus_robots",
+        f"#define ARGUS_ROBOTS {len(robots)} // rows of argus_robots that are robots as they are built; more follow",
         f"#define ARGUS_ROBOT_NAME_MAX {NAME_BYTES} // the final 0 included",
         f"#define ARGUS_FORWARD_MAX {FORWARD_MAX} // forward-facing sonars of one robot, at most",
         f"#define ARGUS_TURNS_MAX {TURNS_MAX} // different turns of a sonar onto the bearing of one of these, at most",
@@ -239,11 +279,13 @@ def robots_header(root: Path) -> str:
     return header("ARGUS_GEN_SIZES_H", "robots/*.toml", "Which robots are known", body)
 
 
-def robot_rows(robot: Robot, first: str) -> list[str]:
-    """Return the lines of one row of argus_robots."""
+def robot_rows(robot: Robot, first: str, other: int) -> list[str]:
+    """Return the lines of one row of argus_robots; OTHER is the row of its other end, or -1."""
     count = len(robot.forward)
     fields = {
         "name": f'"{robot.name}"',
+        "other": other,
+        "reversed": str(robot.is_reversed).lower(),
         "first_pose": first,
         "sonars": len(robot.poses),
         "forward_count": count,
@@ -261,7 +303,7 @@ def robot_rows(robot: Robot, first: str) -> list[str]:
 
 def pose_rows(robot: Robot) -> list[str]:
     """Return one robot's rows of argus_sonar_poses."""
-    lines = [f"    // {robot.name}"]
+    lines = [f"    // {robot.name}{', its rear leading' if robot.is_reversed else ''}"]
     for pose in robot.poses:
         left, right = robot.neighbours(pose["number"])
         if pose["number"] >= POSE_BLOCK and pose["number"] % POSE_BLOCK == 0:
@@ -273,11 +315,15 @@ def pose_rows(robot: Robot) -> list[str]:
 
 def robots_source(root: Path) -> str:
     """Return the text of gen_robots.c."""
-    robots = read_robots(root)
+    built = read_robots(root)
+    ends = [(row, end) for row, robot in enumerate(built) if (end := rear_leading(robot)) is not None]
+    robots = [*built, *(end for _, end in ends)]
+    other = {row: len(built) + i for i, (row, _) in enumerate(ends)}
+    other |= {end: row for row, end in other.items()}
     rows: list[str] = []
     first = "0"
-    for robot in robots:
-        rows += robot_rows(robot, first)
+    for row, robot in enumerate(robots):
+        rows += robot_rows(robot, first, other.get(row, -1))
         first = f"{first} + MANAGED({len(robot.poses)})" if first != "0" else f"MANAGED({len(robot.poses)})"
     return "\n".join(
         [
@@ -288,7 +334,7 @@ def robots_source(root: Path) -> str:
             "// clang-format off",
             "#define MANAGED(sonars) ((sonars) < ARGUS_SONARS ? (sonars) : ARGUS_SONARS)",
             "",
-            "const argus_robot_t argus_robots[ARGUS_ROBOTS] = {",
+            "const argus_robot_t argus_robots[] = {",
             *rows,
             "};",
             "",

@@ -29,7 +29,7 @@ static void begin(argus_motion_t *const self, const argus_motion_kind_t kind, co
 
 // The robot takes headings in whole degrees of its own odometry frame.
 static int32_t robot_degrees(const argus_knowledge_t *const knowledge, const int32_t heading_cdeg) {
-    const int32_t own = argus_angle_wrap(heading_cdeg - knowledge->heading_offset_cdeg);
+    const int32_t own = argus_angle_wrap(heading_cdeg - argus_heading_offset_cdeg(knowledge));
     ARGUS_ASSERT(own > -18000 && own <= 18000);
     return (own + (own >= 0 ? 50 : -50)) / 100;
 }
@@ -39,7 +39,7 @@ void argus_motion_turn(argus_motion_t *const self, argus_outbox_t *const out,
                        const uint32_t now_ms) {
     const int32_t degrees = robot_degrees(knowledge, heading_cdeg);
     begin(self, ARGUS_MOTION_TURN, now_ms);
-    self->target_cdeg = argus_angle_wrap(degrees * 100 + knowledge->heading_offset_cdeg);
+    self->target_cdeg = argus_angle_wrap(degrees * 100 + argus_heading_offset_cdeg(knowledge));
     argus_outbox_int(out, ARCOS_CMD_HEAD, degrees);
 }
 
@@ -48,7 +48,8 @@ void argus_motion_steer(argus_outbox_t *const out, const argus_knowledge_t *cons
     argus_outbox_int(out, ARCOS_CMD_HEAD, robot_degrees(knowledge, heading_cdeg));
 }
 
-void argus_motion_move(argus_motion_t *const self, argus_outbox_t *const out, const int32_t distance_mm,
+void argus_motion_move(argus_motion_t *const self, argus_outbox_t *const out,
+                       const argus_knowledge_t *const knowledge, const int32_t distance_mm,
                        const int32_t speed_mm_s, const uint32_t now_ms) {
     ARGUS_ASSERT(speed_mm_s > 0);
     if (self->speed_mm_s != speed_mm_s) {
@@ -57,7 +58,7 @@ void argus_motion_move(argus_motion_t *const self, argus_outbox_t *const out, co
     }
     begin(self, ARGUS_MOTION_MOVE, now_ms);
     self->target_mm = distance_mm;
-    argus_outbox_int(out, ARCOS_CMD_MOVE, distance_mm);
+    argus_outbox_int(out, ARCOS_CMD_MOVE, knowledge->robot->reversed ? -distance_mm : distance_mm);
 }
 
 void argus_motion_stop(argus_motion_t *const self, argus_outbox_t *const out, const uint32_t now_ms) {

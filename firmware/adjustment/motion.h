@@ -17,7 +17,7 @@ typedef enum {
 typedef struct {
     argus_motion_kind_t kind;
     int32_t target_cdeg; // TURN: course frame, as commanded (whole degrees of the robot's own heading)
-    int32_t target_mm;   // MOVE: signed
+    int32_t target_mm;   // MOVE: signed, ahead is where the leading end is
     uint32_t issued_ms;
     uint8_t on_target;  // consecutive SIPs that meet the end condition
     uint8_t off_target; // consecutive SIPs at rest that do not
@@ -32,8 +32,8 @@ void argus_motion_init(argus_motion_t *self);
 void argus_motion_turn(argus_motion_t *self, argus_outbox_t *out, const argus_knowledge_t *knowledge,
                        int32_t heading_cdeg, uint32_t now_ms);
 // SETV goes before the MOVE when the speed differs from the last one.
-void argus_motion_move(argus_motion_t *self, argus_outbox_t *out, int32_t distance_mm, int32_t speed_mm_s,
-                       uint32_t now_ms);
+void argus_motion_move(argus_motion_t *self, argus_outbox_t *out, const argus_knowledge_t *knowledge,
+                       int32_t distance_mm, int32_t speed_mm_s, uint32_t now_ms);
 // Sends STOP and waits for rest.
 void argus_motion_stop(argus_motion_t *self, argus_outbox_t *out, uint32_t now_ms);
 // Waits for rest on whatever heading, without a command.

@@ -6,7 +6,8 @@
 
 #define MINOR_PARTS 3 // of all: so much of them is out in a minor failure
 
-argus_failure_t argus_failure_of(const argus_robot_t *const robot, const argus_mask_t disabled) {
+argus_failure_t argus_failure_of(const argus_robot_t *const any_end, const argus_mask_t disabled) {
+    const argus_robot_t *const robot = argus_robot_built(any_end);
     ARGUS_ASSERT(robot->forward_count <= ARGUS_FORWARD_MAX);
     const int out = argus_count_bits(disabled & argus_robot_forward(robot));
     if (out == 0) {

@@ -15,6 +15,7 @@
 #define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
 #define PING_AGE_MS 70  // a SIP lists pings 0 to 140 ms old
 #define SIP_MOST_MS 300u
+#define ABOUT_CDEG 12000 // no robot turns so far in a SIP: the other end leads since then
 #define STEADY_SIPS 2
 #define REST_SIPS 3
 #define FADE_MS 1000u
@@ -65,10 +66,11 @@ static argus_pose_t pose_of_pings(const argus_evidence_t *const self,
                                   const argus_knowledge_t *const knowledge) {
     argus_pose_t pose = knowledge->pose;
     const uint32_t passed_ms = knowledge->sip_ms - self->before_ms;
-    if (self->before_ms != 0 && passed_ms > 0 && passed_ms <= SIP_MOST_MS) {
+    const int32_t turn_cdeg = argus_angle_wrap(pose.heading_cdeg - self->before.heading_cdeg);
+    const bool other_end = argus_abs(turn_cdeg) > ABOUT_CDEG;
+    if (self->before_ms != 0 && passed_ms > 0 && passed_ms <= SIP_MOST_MS && !other_end) {
         const int32_t span = (int32_t)passed_ms;
         const int32_t ago = argus_min(PING_AGE_MS, span);
-        const int32_t turn_cdeg = argus_angle_wrap(pose.heading_cdeg - self->before.heading_cdeg);
         pose.x_mm -= (pose.x_mm - self->before.x_mm) * ago / span;
         pose.y_mm -= (pose.y_mm - self->before.y_mm) * ago / span;
         pose.heading_cdeg = argus_angle_wrap(pose.heading_cdeg - turn_cdeg * ago / span);

@@ -45,8 +45,16 @@ static int32_t raw_heading_cdeg(const argus_sip_t *const sip) {
     return argus_angle_wrap((int32_t)sip->heading_raw * 36000 / TURN_UNITS);
 }
 
+int32_t argus_built_heading_cdeg(const argus_knowledge_t *const self) {
+    return argus_angle_wrap(self->pose.heading_cdeg - argus_robot_facing_cdeg(self->robot));
+}
+
+int32_t argus_heading_offset_cdeg(const argus_knowledge_t *const self) {
+    return argus_angle_wrap(self->heading_offset_cdeg + argus_robot_facing_cdeg(self->robot));
+}
+
 static void take_origin(argus_knowledge_t *const self, const argus_sip_t *const sip) {
-    self->heading_offset_cdeg = argus_angle_wrap(self->pose.heading_cdeg - raw_heading_cdeg(sip));
+    self->heading_offset_cdeg = argus_angle_wrap(argus_built_heading_cdeg(self) - raw_heading_cdeg(sip));
     self->has_raw = true;
 }
 
@@ -68,6 +76,32 @@ static void advance_pose(argus_knowledge_t *const self, const int32_t dx_um, con
     self->odometer_mm += (uint32_t)carry_mm(&self->odometer_um, way_um);
 }
 
+// From the robot as it is built to the leading end, and back.
+static argus_wheels_t faced(const argus_robot_t *const robot, const argus_wheels_t wheels) {
+    const argus_wheels_t turned = {-wheels.right_mm_s, -wheels.left_mm_s};
+    return robot->reversed ? turned : wheels;
+}
+
+static argus_wheels_t wheels_of(const argus_robot_t *const robot, const argus_sip_t *const sip) {
+    return faced(robot, (argus_wheels_t){sip->vel_left_mm_s, sip->vel_right_mm_s});
+}
+
+argus_wheels_t argus_built_wheels(const argus_knowledge_t *const self) {
+    return faced(self->robot, (argus_wheels_t){self->vel_left_mm_s, self->vel_right_mm_s});
+}
+
+uint16_t argus_built_bumpers(const argus_knowledge_t *const self) {
+    const bool reversed = self->robot->reversed;
+    const unsigned front = reversed ? self->bumpers_rear : self->bumpers_front;
+    const unsigned rear = reversed ? self->bumpers_front : self->bumpers_rear;
+    return (uint16_t)(front << 8 | rear);
+}
+
+int32_t argus_built_stalls(const argus_knowledge_t *const self) {
+    const int32_t weight_left = self->robot->reversed ? 2 : 1;
+    return (self->stall_left ? weight_left : 0) + (self->stall_right ? 3 - weight_left : 0);
+}
+
 static int32_t speed_or_none(const int32_t mm_s) {
     return argus_odometry_is_speed(mm_s) ? mm_s : 0;
 }
@@ -81,9 +115,10 @@ static bool is_odd(const argus_sip_t *const sip) {
 // Since the last SIP, which is before this one's speeds are taken.
 static argus_span_t span_to(const argus_knowledge_t *const self, const argus_sip_t *const sip,
                             const uint32_t now_ms) {
+    const argus_wheels_t after = wheels_of(self->robot, sip);
     const argus_span_t span = {
         .before = {speed_or_none(self->vel_left_mm_s), speed_or_none(self->vel_right_mm_s)},
-        .after = {speed_or_none(sip->vel_left_mm_s), speed_or_none(sip->vel_right_mm_s)},
+        .after = {speed_or_none(after.left_mm_s), speed_or_none(after.right_mm_s)},
         .track_mm = self->robot->track_mm,
         .elapsed_ms = now_ms - self->moved_ms};
     return span;
@@ -106,7 +141,7 @@ static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, co
                  const argus_span_t *const span) {
     const int32_t dx_um = raw_delta(sip->x_raw, self->x_raw) * distance_um;
     const int32_t dy_um = raw_delta(sip->y_raw, self->y_raw) * distance_um;
-    const int32_t heading = argus_angle_wrap(raw_heading_cdeg(sip) + self->heading_offset_cdeg);
+    const int32_t heading = argus_angle_wrap(raw_heading_cdeg(sip) + argus_heading_offset_cdeg(self));
     const argus_way_turn_t moved = {argus_hypot(dx_um / 1000, dy_um / 1000),
                                     argus_angle_abs_diff(heading, self->pose.heading_cdeg)};
     if (is_odd(sip) || !argus_odometry_may_be(&self->excess, span, &moved)) {
@@ -160,6 +195,21 @@ void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *
     self->y_raw = sip->y_raw;
 }
 
+void argus_knowledge_turn_about(argus_knowledge_t *const self, const argus_robot_t *const robot) {
+    ARGUS_ASSERT(robot == argus_robot_other_end(self->robot));
+    const int16_t left = self->vel_left_mm_s;
+    const uint8_t front = self->bumpers_front;
+    const bool stall_left = self->stall_left;
+    self->robot = robot;
+    self->pose.heading_cdeg = argus_angle_wrap(self->pose.heading_cdeg + 18000);
+    self->vel_left_mm_s = (int16_t)-self->vel_right_mm_s;
+    self->vel_right_mm_s = (int16_t)-left;
+    self->bumpers_front = self->bumpers_rear;
+    self->bumpers_rear = front;
+    self->stall_left = self->stall_right;
+    self->stall_right = stall_left;
+}
+
 void argus_knowledge_set_back(argus_knowledge_t *const self, const argus_point_t to) {
     self->pose.x_mm = to.x_mm;
     self->pose.y_mm = to.y_mm;
@@ -168,10 +218,11 @@ void argus_knowledge_set_back(argus_knowledge_t *const self, const argus_point_t
 }
 
 static void take_motion(argus_knowledge_t *const self, const argus_sip_t *const sip) {
-    self->vel_left_mm_s = sip->vel_left_mm_s;
-    self->vel_right_mm_s = sip->vel_right_mm_s;
-    const int32_t left = sip->vel_left_mm_s;
-    const int32_t right = sip->vel_right_mm_s;
+    const argus_wheels_t wheels = wheels_of(self->robot, sip);
+    const int32_t left = wheels.left_mm_s;
+    const int32_t right = wheels.right_mm_s;
+    self->vel_left_mm_s = (int16_t)left;
+    self->vel_right_mm_s = (int16_t)right;
     self->rotating = argus_abs(left - right) > ROTATING_MM_S;
     if (argus_abs(left) > REST_MM_S || argus_abs(right) > REST_MM_S) {
         self->still_sips = 0;
@@ -182,10 +233,11 @@ static void take_motion(argus_knowledge_t *const self, const argus_sip_t *const 
 
 static void take_state(argus_knowledge_t *const self, const argus_sip_t *const sip) {
     self->flags = sip->flags;
-    self->bumpers_front = sip->bumpers_front;
-    self->bumpers_rear = sip->bumpers_rear;
-    self->stall_left = sip->stall_left;
-    self->stall_right = sip->stall_right;
+    const bool reversed = self->robot->reversed; // bit 1 is leftmost in front and rightmost in the rear
+    self->bumpers_front = reversed ? sip->bumpers_rear : sip->bumpers_front;
+    self->bumpers_rear = reversed ? sip->bumpers_front : sip->bumpers_rear;
+    self->stall_left = reversed ? sip->stall_right : sip->stall_left;
+    self->stall_right = reversed ? sip->stall_left : sip->stall_right;
     self->battery_dv = sip->has_battery_x10 ? (int16_t)sip->battery_x10_dv : (int16_t)sip->battery_dv;
 }
 

@@ -35,12 +35,14 @@ typedef struct {
     uint32_t from_ms;
 } argus_mark_t;
 
+// While the rear leads (`robot` is a row that is reversed) all of the robot is told as if its rear were its
+// front: heading, speeds of the wheels, bumpers, stalls, echoes in the robot's frame. The place is the same.
 typedef struct {
     const argus_robot_t *robot; // whose geometry holds, never NULL
     uint8_t sonars;             // argus_robot_sonars() of it: those beyond are absent
     argus_sonar_t sonar[ARGUS_SONARS];
     argus_pose_t pose;
-    int32_t heading_offset_cdeg; // pose heading - the robot's own
+    int32_t heading_offset_cdeg; // heading of the robot as it is built - what it says itself
     int32_t x_um;                // remainders of the pose, below a mm
     int32_t y_um;
     uint32_t odometer_mm; // way driven, monotonic
@@ -87,6 +89,19 @@ void argus_knowledge_sip(argus_knowledge_t *self, const argus_sip_t *sip, int32_
 // Only the odometry of a SIP (a session that is about to be closed).
 void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um,
                               uint32_t now_ms);
+
+// The other end leads from now on: `robot` is argus_robot_other_end() of the present one. The robot is at
+// rest.
+void argus_knowledge_turn_about(argus_knowledge_t *self, const argus_robot_t *robot);
+
+// Of the robot as it is built, whichever end leads; what is said outside.
+int32_t argus_built_heading_cdeg(const argus_knowledge_t *self);
+uint16_t argus_built_bumpers(const argus_knowledge_t *self); // front << 8 | rear
+int32_t argus_built_stalls(const argus_knowledge_t *self);   // 1 left, 2 right, 3 both
+argus_wheels_t argus_built_wheels(const argus_knowledge_t *self);
+
+// What must be added to the robot's own heading, as it says it, for the pose's heading.
+int32_t argus_heading_offset_cdeg(const argus_knowledge_t *self);
 
 // The robot was told to set its odometry to zero; nobody knows whether it heard. SIPs that are nearer to zero
 // than to the last one are counted from there, until the session opens.

@@ -26,6 +26,7 @@
     X(drives_seen, 0, 1, 1, "S1: drives as far as living sonars have seen the way; stops only to see more") \
     X(adapts_plan, 0, 1, 1, "S1: under policy adaptive any sonar may look ahead; else it stands for paper") \
     X(adapts_speed, 0, 1, 1, "S5: as fast as what is seen ahead allows; turns gently while it drives")      \
+    X(may_reverse, 0, 1, 1, "drives on with the rear ahead when the front has failed and the rear has not") \
     X(leaves_ahead, 0, 1, 1, "S4: hemmed in, it goes on from the heading that it has")
 
 typedef struct {

@@ -11,7 +11,8 @@ const argus_robot_t *argus_robot_default(void) {
 }
 
 const argus_robot_t *argus_robot_unknown(void) {
-    static const argus_robot_t unknown = {.front_mm = INT16_MAX,
+    static const argus_robot_t unknown = {.other = -1,
+                                          .front_mm = INT16_MAX,
                                           .rear_mm = INT16_MAX,
                                           .width_mm = INT16_MAX,
                                           .swing_radius_mm = INT16_MAX,
@@ -56,7 +57,22 @@ const argus_robot_t *argus_robot_chosen(const int32_t choice) {
 }
 
 uint8_t argus_robot_choice(const argus_robot_t *const self) {
-    return argus_robot_is_known(self) ? (uint8_t)(self - argus_robots + 1) : 0;
+    return argus_robot_is_known(self) ? (uint8_t)(argus_robot_built(self) - argus_robots + 1) : 0;
+}
+
+const argus_robot_t *argus_robot_other_end(const argus_robot_t *const self) {
+    const argus_robot_t *const other = self->other >= 0 ? &argus_robots[self->other] : NULL;
+    const bool managed_whole = other != NULL && argus_robot_forward(other) == other->forward_mask;
+    return managed_whole ? other : NULL;
+}
+
+const argus_robot_t *argus_robot_built(const argus_robot_t *const self) {
+    ARGUS_ASSERT(!self->reversed || self->other >= 0);
+    return self->reversed ? &argus_robots[self->other] : self;
+}
+
+int32_t argus_robot_facing_cdeg(const argus_robot_t *const self) {
+    return self->reversed ? 18000 : 0;
 }
 
 bool argus_robot_is_known(const argus_robot_t *const self) {

@@ -18,9 +18,12 @@ typedef struct {
     int8_t right;
 } argus_sonar_pose_t;
 
-// One row of hil_sim/tables/robots, which has the source of each figure.
+// One row of hil_sim/tables/robots, which has the source of each figure. A robot with a rear array has a
+// second row, the robot turned by 180 degrees: what holds while its rear leads.
 typedef struct {
     char name[ARGUS_ROBOT_NAME_MAX]; // the subclass that it announces at SYNC2
+    int8_t other;                    // row of its other end, -1: none
+    bool reversed;                   // the rear leads
     uint8_t first_pose;              // row of argus_sonar_poses
     uint8_t sonars;                  // that it has; argus_robot_sonars() of them are managed
     uint8_t arrays;
@@ -50,7 +53,7 @@ typedef struct {
     int16_t cone_deg;
 } argus_robot_t;
 
-extern const argus_robot_t argus_robots[ARGUS_ROBOTS];
+extern const argus_robot_t argus_robots[]; // ARGUS_ROBOTS as they are built, then their other ends
 extern const argus_sonar_pose_t argus_sonar_poses[];
 
 #endif

@@ -34,8 +34,12 @@ static void forget_sonars(argus_t *const self) {
 
 static void change_to(argus_t *const self, const argus_robot_t *const robot) {
     ARGUS_ASSERT(robot != NULL);
-    if (self->knowledge.robot == robot) {
+    const argus_robot_t *const before = argus_robot_built(self->knowledge.robot);
+    if (before == robot) {
         return;
+    }
+    if (before != self->knowledge.robot) {
+        argus_knowledge_turn_about(&self->knowledge, before);
     }
     argus_body_is(&self->knowledge, robot, self->now_ms);
     forget_sonars(self);

@@ -11,6 +11,7 @@
 #include "arcos/session.h"
 #include "argus/argus.h"
 #include "awareness/awareness.h"
+#include "awareness/common.h"
 #include "awareness/extremes.h"
 #include "awareness/slip.h"
 #include "knowledge/config.h"
@@ -112,6 +113,12 @@ typedef struct {
     bool asked;        // an operator wants a look
 } argus_looks_t;
 
+// The last change of the leading end.
+typedef struct {
+    uint32_t odometer_mm;
+    bool done; // there was one
+} argus_reverse_t;
+
 // What operators and the configuration have settled.
 typedef struct {
     argus_mask_t pinned; // sonars whose health an operator has fixed
@@ -140,6 +147,7 @@ struct argus {
     argus_awareness_t awareness;
     argus_evidence_t evidence; // profile argus
     argus_extremes_t extremes; // profile argus
+    argus_common_t common;     // profile argus
     argus_slip_t slip;
     argus_plan_t plan;
     argus_failure_t failure;
@@ -157,6 +165,7 @@ struct argus {
     argus_turning_t turning;
     argus_reflexes_t reflexes;
     argus_looks_t looks;
+    argus_reverse_t reverse;
     argus_orders_t orders;
     argus_history_t history;
     uint32_t ordered_ms; // the sonars fire in an order of ours, in this session, begun anew then

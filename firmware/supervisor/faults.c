@@ -103,11 +103,13 @@ static void tell_plan(argus_t *const self, const argus_plan_t *const before) {
 void argus_replan(argus_t *const self) {
     const argus_mask_t disabled = argus_out(&self->knowledge) & argus_robot_forward(self->knowledge.robot);
     const argus_mask_t blind = (argus_mask_t)(disabled | covered_suspects(self));
-    const argus_failure_t failure = argus_failure_of(self->knowledge.robot, disabled);
+    const argus_failure_t failure = argus_failure_of(self->knowledge.robot, argus_out(&self->knowledge));
     const argus_plan_t before = self->plan;
     if (failure != self->failure) {
         self->failure = failure;
-        argus_say(self, ARGUS_EV_FAILURE_STATE, ARGUS_NO_SONAR, argus_count_bits(disabled));
+        const argus_mask_t front = argus_robot_forward(argus_robot_built(self->knowledge.robot));
+        argus_say(self, ARGUS_EV_FAILURE_STATE, ARGUS_NO_SONAR,
+                  argus_count_bits(argus_out(&self->knowledge) & front));
     }
     if (blind == before.disabled && (blind == 0 || !argus_plan_asks_ring(argus_policy(self)))) {
         return;

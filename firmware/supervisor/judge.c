@@ -5,6 +5,7 @@
 #include "knowledge/angle.h"
 #include "supervisor/faults.h"
 #include "supervisor/mode.h"
+#include "supervisor/reverse.h"
 #include "supervisor/say.h"
 #include "supervisor/state.h"
 
@@ -13,14 +14,19 @@
 #define PROBATION_DOUBLINGS 4
 #define NAME_STANDS_MS 2000u // six rounds, before a name is said: many for a healthy sonar pass sooner
 
+// What changes the way ahead is answered by a check at rest.
+static argus_intent_t break_off(const argus_t *const self) {
+    const bool may = argus_mode_may(self->mode, ARGUS_MAY_BREAK_OFF);
+    const argus_intent_t check = {.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK};
+    return may ? check : (argus_intent_t){0};
+}
+
 static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
     argus_disable(self, sonar, kind);
-    const bool goes_on = argus_rules(self)->drives_seen && argus_guard_may_step(&self->plan);
-    if (!ahead || goes_on || !argus_mode_may(self->mode, ARGUS_MAY_BREAK_OFF)) {
-        return (argus_intent_t){0};
-    }
-    return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK};
+    const bool goes_on =
+        argus_rules(self)->drives_seen && argus_guard_may_step(&self->plan) && !argus_should_turn_about(self);
+    return ahead && !goes_on ? break_off(self) : (argus_intent_t){0};
 }
 
 // The name has stood for a while.
@@ -53,8 +59,11 @@ static void name(argus_t *const self, const int sonar) {
     }
 }
 
-// An extreme is proved by way and time alone.
+// An extreme is proved by way and time alone, an array that has failed as a whole by what it heard before.
 static argus_fault_kind_t convicts(const argus_t *const self, const int sonar) {
+    if (argus_common_convicts(&self->common, &self->knowledge, sonar)) {
+        return ARGUS_KIND_OFF;
+    }
     const argus_fault_kind_t kind = argus_extremes_convicts(&self->extremes, sonar);
     return kind != ARGUS_KIND_NONE ? kind : argus_evidence_convicts(&self->evidence, sonar);
 }
@@ -64,7 +73,9 @@ static argus_intent_t judge_in(argus_t *const self, const int sonar) {
     if (kind != ARGUS_KIND_NONE) {
         return convict(self, sonar, kind);
     }
-    name(self, sonar);
+    if (!argus_common_excuses(&self->common, sonar)) {
+        name(self, sonar);
+    }
     return (argus_intent_t){0};
 }
 
@@ -101,27 +112,38 @@ static bool is_silent(const argus_t *const self, const int sonar) {
     return argus_silent_ms(&self->knowledge, sonar) > (uint32_t)self->config.stale_ms;
 }
 
-static void judge_out(argus_t *const self, const int sonar) {
+static bool keeps_out(const argus_t *const self, const int sonar) {
+    return argus_evidence_suspects(&self->evidence, sonar) ||
+           argus_extremes_keeps_out(&self->extremes, sonar) ||
+           argus_common_convicts(&self->common, &self->knowledge, sonar);
+}
+
+static bool does_well(const argus_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const bool long_enough = self->now_ms - s->since_ms >= PROBATION_MS;
+    return long_enough && !is_silent(self, sonar) &&
+           argus_evidence_agreed(&self->evidence, sonar) >= agreements_wanted(s);
+}
+
+static argus_intent_t judge_out(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = kind_of_out(self, sonar);
     const argus_fault_kind_t named = argus_evidence_names(&self->evidence, sonar);
-    const bool suspected =
-        argus_evidence_suspects(&self->evidence, sonar) || argus_extremes_keeps_out(&self->extremes, sonar);
     if (s->health == ARGUS_DISABLED && kind != ARGUS_KIND_NONE && kind != s->kind) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
     }
-    if (suspected) {
+    if (keeps_out(self, sonar)) {
         if (s->health == ARGUS_PROBATION && named != ARGUS_KIND_NONE) {
             argus_disable(self, sonar, named);
         }
-        return;
+        return (argus_intent_t){0};
     }
-    const bool long_enough = self->now_ms - s->since_ms >= PROBATION_MS;
-    if (long_enough && !is_silent(self, sonar) &&
-        argus_evidence_agreed(&self->evidence, sonar) >= agreements_wanted(s)) {
-        restore(self, sonar);
+    if (!does_well(self, sonar)) {
+        return (argus_intent_t){0};
     }
+    restore(self, sonar);
+    return argus_should_turn_about(self) ? break_off(self) : (argus_intent_t){0};
 }
 
 // Its turn in a round comes late: each new order begins the round anew, so plans that change may pass it
@@ -145,8 +167,7 @@ argus_intent_t argus_judge(argus_t *const self, const int sonar) {
         return (argus_intent_t){0};
     }
     if (argus_is_out(&self->knowledge, sonar)) {
-        judge_out(self, sonar);
-        return (argus_intent_t){0};
+        return judge_out(self, sonar);
     }
     if (has_fallen_silent(self, sonar)) {
         argus_disable(self, sonar, ARGUS_KIND_SILENT);

@@ -37,6 +37,7 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     argus_evidence_init(&self->evidence);
     argus_evidence_set_caution(&self->evidence, self->config.caution);
     argus_extremes_init(&self->extremes);
+    argus_common_init(&self->common);
     argus_slip_init(&self->slip);
     argus_motion_init(&self->motion);
     argus_task_init(&self->travel.task);
@@ -100,6 +101,7 @@ static void on_open(argus_t *const self) {
     argus_evidence_restart(&self->evidence);
     argus_rays_forget_all(&self->rays);
     argus_extremes_restart(&self->extremes);
+    argus_common_init(&self->common);
     argus_slip_restart(&self->slip);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it
     self->reflexes.motors_said = false;
@@ -130,6 +132,7 @@ static void on_resume(argus_t *const self) {
     argus_awareness_restart(&self->awareness);
     argus_evidence_restart(&self->evidence);
     argus_extremes_restart(&self->extremes);
+    argus_common_init(&self->common);
     argus_slip_restart(&self->slip);
     check(self, true);
 }
@@ -168,6 +171,7 @@ static void on_sip(argus_t *const self) {
     if (argus_rules(self)->evidence) {
         argus_evidence_sip(&self->evidence, &self->knowledge);
         argus_extremes_sip(&self->extremes, &self->knowledge);
+        argus_common_sip(&self->common, &self->knowledge);
     }
     take_slip(self);
     argus_react(self, &alarm); // it asks what was seen before this SIP

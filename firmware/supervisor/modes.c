@@ -11,6 +11,7 @@
 #include "supervisor/motions.h"
 #include "supervisor/reflexes.h"
 #include "supervisor/resting.h"
+#include "supervisor/reverse.h"
 #include "supervisor/say.h"
 #include "supervisor/state.h"
 #include "supervisor/travel.h"
@@ -121,6 +122,10 @@ static argus_intent_t decide(argus_t *const self) {
     if (self->orders.passive || !wants) {
         enter_idle(self);
         return nothing();
+    }
+    if (argus_should_turn_about(self)) {
+        argus_turn_about(self);
+        return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true};
     }
     if (!argus_guard_may_step(&self->plan)) { // all ahead are out, or suspects that no one can judge
         fail_mission(self);
@@ -432,6 +437,10 @@ void argus_react(argus_t *const self, const argus_alarm_t *const alarm) {
 void argus_judge_all(argus_t *const self) {
     if (!argus_rules(self)->evidence) {
         return;
+    }
+    const bool moves = argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE);
+    if (moves && argus_common_strikes(&self->common, argus_robot_forward(self->knowledge.robot))) {
+        argus_do(self, (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK, .full = true});
     }
     for (int i = 0; i < self->knowledge.sonars && argus_mode_may(self->mode, ARGUS_MAY_JUDGE); i++) {
         argus_do(self, argus_judge(self, i));

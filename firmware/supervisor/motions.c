@@ -26,7 +26,7 @@ void argus_stop(argus_t *const self, const uint8_t command) {
         argus_outbox_urgent(&self->session.outbox, ARCOS_CMD_E_STOP);
     }
     self->stops++;
-    argus_say(self, ARGUS_EV_STOPPED, ARGUS_NO_SONAR, self->knowledge.pose.heading_cdeg);
+    argus_say(self, ARGUS_EV_STOPPED, ARGUS_NO_SONAR, argus_built_heading_cdeg(&self->knowledge));
 }
 
 static bool is_under_way(const argus_motion_t *const motion) {
@@ -62,7 +62,7 @@ void argus_move(argus_t *const self, const int32_t distance_mm, const int32_t sp
     ARGUS_ASSERT(!self->orders.passive);
     const argus_session_t *const session = &self->session;
     const int32_t top_mm_s = session->has_robot ? session->robot.vel_max_mm_s : 0; // its own ceiling
-    argus_motion_move(&self->motion, &self->session.outbox, distance_mm,
+    argus_motion_move(&self->motion, &self->session.outbox, &self->knowledge, distance_mm,
                       top_mm_s > 0 ? argus_min(speed_mm_s, top_mm_s) : speed_mm_s, self->now_ms);
 }
 

@@ -79,7 +79,9 @@ static void go_active(argus_t *const self) {
     check(self, true);
 }
 
-static void jog(argus_t *const self, const int32_t distance_mm) {
+// Ahead for the operator is where the robot is built to drive.
+static void jog(argus_t *const self, const int32_t built_mm) {
+    const int32_t distance_mm = self->knowledge.robot->reversed ? -argus_max(built_mm, -INT32_MAX) : built_mm;
     const argus_guard_t guard = argus_guard(self);
     if (self->mode != ARGUS_MODE_IDLE || !argus_guard_may_translate(&guard) || distance_mm == 0) {
         return;

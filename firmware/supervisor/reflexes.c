@@ -74,7 +74,7 @@ static argus_intent_t sees_slip(const argus_t *const self, const argus_alarm_t *
 static argus_intent_t sees_bumper(const argus_t *const self, const argus_alarm_t *const alarm,
                                   argus_reflexes_t *const mine) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
-    const uint16_t pressed = (uint16_t)(knowledge->bumpers_front << 8 | knowledge->bumpers_rear);
+    const uint16_t pressed = argus_built_bumpers(knowledge);
     const bool fresh = (pressed & ~(unsigned)mine->bumpers) != 0;
     const bool cleared = pressed == 0 && mine->bumpers != 0;
     (void)alarm;
@@ -100,8 +100,7 @@ static argus_intent_t sees_stall(const argus_t *const self, const argus_alarm_t 
     if (!stalls || said) {
         return nothing();
     }
-    argus_intent_t intent =
-        say(ARGUS_EV_STALL, ARGUS_NO_SONAR, self->knowledge.stall_left + 2 * self->knowledge.stall_right);
+    argus_intent_t intent = say(ARGUS_EV_STALL, ARGUS_NO_SONAR, argus_built_stalls(&self->knowledge));
     intent.stop = ARGUS_STOP_STOP;
     intent.way = ARGUS_WAY_REFUSE;
     intent.unchecked = true;

@@ -14,22 +14,31 @@ static void copy_sonars(const argus_t *const self, argus_status_t *const status)
         status->kind[i] = s->kind;
     }
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        status->bearing_deg[i] = argus_robot_pose(self->knowledge.robot, i)->heading_deg;
+        status->bearing_deg[i] = argus_robot_pose(argus_robot_built(self->knowledge.robot), i)->heading_deg;
     }
     status->sonars = self->knowledge.sonars;
     status->forward = argus_robot_forward(self->knowledge.robot);
 }
 
-static void copy_robot(const argus_knowledge_t *const from, argus_status_t *const status) {
+// Which end leads is our affair: outside, ahead is where the robot is built to drive.
+static void copy_motion(const argus_knowledge_t *const from, argus_status_t *const status) {
+    const argus_wheels_t wheels = argus_built_wheels(from);
+    const uint16_t bumpers = argus_built_bumpers(from);
+    status->reversed = from->robot->reversed;
     status->pose = from->pose;
+    status->pose.heading_cdeg = argus_built_heading_cdeg(from);
+    status->vel_left_mm_s = (int16_t)wheels.left_mm_s;
+    status->vel_right_mm_s = (int16_t)wheels.right_mm_s;
+    status->bumpers_front = (uint8_t)(bumpers >> 8);
+    status->bumpers_rear = (uint8_t)(bumpers & 0xFFu);
+}
+
+static void copy_robot(const argus_knowledge_t *const from, argus_status_t *const status) {
+    copy_motion(from, status);
     status->battery_dv = from->battery_dv;
-    status->vel_left_mm_s = from->vel_left_mm_s;
-    status->vel_right_mm_s = from->vel_right_mm_s;
     status->flags = from->flags;
     status->motors = (from->flags & ARCOS_FLAG_MOTORS) != 0;
     status->lists_all = from->lists_all;
-    status->bumpers_front = from->bumpers_front;
-    status->bumpers_rear = from->bumpers_rear;
     status->sips = from->sips;
 }
 

@@ -10,7 +10,7 @@
 
 // Whose body it has is found out when its session opens; until then the one before holds.
 static void forget(argus_t *const self) {
-    const argus_robot_t *const before = self->knowledge.robot;
+    const argus_robot_t *const before = argus_robot_built(self->knowledge.robot);
     argus_knowledge_init(&self->knowledge);
     argus_body_is(&self->knowledge, before, self->now_ms);
     argus_echoes_init(&self->echoes);
@@ -18,6 +18,7 @@ static void forget(argus_t *const self) {
     argus_evidence_init(&self->evidence);
     argus_evidence_set_caution(&self->evidence, self->config.caution);
     argus_extremes_init(&self->extremes);
+    argus_common_init(&self->common);
     argus_slip_restart(&self->slip);
     memset(&self->verifying, 0, sizeof self->verifying);
     memset(&self->looks, 0, sizeof self->looks);

@@ -272,6 +272,8 @@ typedef enum {
     X(70, OPERATOR, OK, "operator", "an operator's command was taken; value: its number")                    \
     X(71, PASSIVE, OK, "operator", "reports only: commands no motion")                                       \
     X(72, ACTIVE, OK, "operator", "drives")                                                                  \
+    X(73, REVERSED, WARN, "drive",                                                                           \
+      "the leading end changes, at rest; value: 1 the rear leads, 0 the front again")                        \
     X(80, RECORD_IGNORED, WARN, "record",                                                                    \
       "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")            \
     X(81, EVENTS_LOST, ERROR, "events", "the event queue overflowed; value: events lost")                    \
@@ -406,6 +408,7 @@ typedef struct {
     int32_t goal_mm;   // straight-line distance to the last waypoint, 0 without a course
     uint16_t waypoint; // next waypoint, from 0
     uint16_t waypoints;
+    bool reversed;      // the rear leads; all of the robot's frame is told as it is built nonetheless
     bool active;        // false: passive
     bool paused;        // by the operator's STOP
     bool open;          // there is a session with a robot
@@ -419,7 +422,7 @@ typedef struct {
     uint8_t bumpers_front; // bits 1..5, bit 1 leftmost
     uint8_t bumpers_rear;
     uint8_t sonars;                    // that are managed, from 0: those beyond are ABSENT
-    argus_mask_t forward;              // who faces forward: whom the plan covers for
+    argus_mask_t forward;              // who faces forward, of the leading end: whom the plan covers for
     int16_t bearing_deg[ARGUS_SONARS]; // whither each looks, robot frame
     uint16_t reading_mm[ARGUS_SONARS]; // as on the wire; 0: never reported, or so read
     uint32_t age_ms[ARGUS_SONARS];     // UINT32_MAX: never reported

@@ -152,6 +152,7 @@ static void put_robot(json_t *json, const view_t *view) {
     put_bool(json, "active", status->active);
     put_bool(json, "paused", status->paused);
     put_bool(json, "online", status->online);
+    put_bool(json, "reversed", status->reversed);
     put_int(json, "x_mm", status->pose.x_mm);
     put_int(json, "y_mm", status->pose.y_mm);
     put_int(json, "heading_cdeg", status->pose.heading_cdeg);
@@ -242,9 +243,9 @@ size_t report_status_plain(const view_t *view, char *line, size_t capacity) {
         text_add(&text, " no robot");
         return text.length;
     }
-    text_add(&text, " %s%s at %d,%d mm %d deg", status->active ? "active" : "passive",
-             status->paused ? ", paused," : "", (int)status->pose.x_mm, (int)status->pose.y_mm,
-             (int)(status->pose.heading_cdeg / 100));
+    text_add(&text, " %s%s%s at %d,%d mm %d deg", status->active ? "active" : "passive",
+             status->paused ? ", paused," : "", status->reversed ? ", rear ahead," : "",
+             (int)status->pose.x_mm, (int)status->pose.y_mm, (int)(status->pose.heading_cdeg / 100));
     if (status->waypoints > 0) {
         text_add(&text, " goal %d mm", (int)status->goal_mm);
     }

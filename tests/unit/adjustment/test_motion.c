@@ -94,8 +94,26 @@ void test_headings_go_out_in_whole_degrees_of_the_robots_own_frame(void) {
     }
 }
 
+void test_with_the_rear_ahead_moves_and_headings_go_out_for_the_robot_as_it_is_built(void) {
+    argus_knowledge_turn_about(&k, argus_robot_other_end(k.robot));
+    argus_motion_move(&m, &out, &k, 150, 100, now_ms);
+    TEST_ASSERT_EQUAL(100, next(ARCOS_CMD_SETV));
+    TEST_ASSERT_EQUAL(-150, next(ARCOS_CMD_MOVE));
+    argus_motion_move(&m, &out, &k, -90, 100, now_ms);
+    TEST_ASSERT_EQUAL(90, next(ARCOS_CMD_MOVE));
+    argus_motion_steer(&out, &k, -17000);
+    TEST_ASSERT_EQUAL(10, next(ARCOS_CMD_HEAD));
+    argus_motion_turn(&m, &out, &k, -16000, now_ms);
+    TEST_ASSERT_EQUAL(20, next(ARCOS_CMD_HEAD));
+    take(100, 50);
+    take(228, 5);
+    TEST_ASSERT_FALSE(m.settled);
+    take(228, 0);
+    TEST_ASSERT_TRUE(m.settled);
+}
+
 void test_a_move_is_given_time_to_begin(void) {
-    argus_motion_move(&m, &out, 150, 100, now_ms);
+    argus_motion_move(&m, &out, &k, 150, 100, now_ms);
     take(0, 0);
     take(0, 0);
     take(0, 0);
@@ -110,18 +128,18 @@ void test_a_move_is_given_time_to_begin(void) {
 }
 
 void test_the_speed_goes_before_the_move_when_it_differs(void) {
-    argus_motion_move(&m, &out, 150, 100, now_ms);
+    argus_motion_move(&m, &out, &k, 150, 100, now_ms);
     TEST_ASSERT_EQUAL(100, next(ARCOS_CMD_SETV));
     TEST_ASSERT_EQUAL(150, next(ARCOS_CMD_MOVE));
-    argus_motion_move(&m, &out, -90, 100, now_ms);
+    argus_motion_move(&m, &out, &k, -90, 100, now_ms);
     TEST_ASSERT_EQUAL(-90, next(ARCOS_CMD_MOVE));
-    argus_motion_move(&m, &out, 90, 200, now_ms);
+    argus_motion_move(&m, &out, &k, 90, 200, now_ms);
     TEST_ASSERT_EQUAL(200, next(ARCOS_CMD_SETV));
     TEST_ASSERT_EQUAL(90, next(ARCOS_CMD_MOVE));
 }
 
 void test_a_stop_overtakes_and_drops_motions(void) {
-    argus_motion_move(&m, &out, 1000, 200, now_ms);
+    argus_motion_move(&m, &out, &k, 1000, 200, now_ms);
     argus_motion_stop(&m, &out, now_ms);
     uint8_t packet[32];
     TEST_ASSERT_EQUAL(6, argus_outbox_fetch(&out, packet, sizeof packet));

@@ -222,3 +222,51 @@ void test_a_build_manages_as_many_as_it_was_made_for(void) {
     TEST_ASSERT_EQUAL(8, argus_robot_sonars(argus_robot_find("amigo-sh")));
     TEST_ASSERT_EQUAL(ARGUS_SONARS, argus_count_bits(argus_robot_all(argus_robot_find("peoplebot-sh"))));
 }
+
+// The other end
+// ------------------------------------------------------------------------------------------------
+
+static void is_turned(const argus_robot_t *robot, const argus_robot_t *end) {
+    TEST_ASSERT_EQUAL_STRING(robot->name, end->name);
+    TEST_ASSERT_EQUAL(robot->front_mm, end->rear_mm);
+    TEST_ASSERT_EQUAL(robot->rear_mm, end->front_mm);
+    TEST_ASSERT_EQUAL(robot->front_bumpers, end->rear_bumpers);
+    TEST_ASSERT_EQUAL(robot->swing_radius_mm, end->swing_radius_mm);
+    TEST_ASSERT_EQUAL(robot->ahead_mask, end->astern_mask);
+    TEST_ASSERT_EQUAL(robot->astern_mask, end->ahead_mask);
+    TEST_ASSERT_EQUAL(robot->flank_mask, end->rear_flank_mask);
+    TEST_ASSERT_EQUAL(robot->rear_flank_mask, end->flank_mask);
+    TEST_ASSERT_EQUAL(0, end->forward_mask & ~end->ahead_mask);
+    for (int i = 0; i < argus_robot_sonars(robot); i++) {
+        const argus_sonar_pose_t *a = argus_robot_pose(robot, i), *b = argus_robot_pose(end, i);
+        TEST_ASSERT_EQUAL_MESSAGE(-a->x_mm, b->x_mm, robot->name);
+        TEST_ASSERT_EQUAL_MESSAGE(-a->y_mm, b->y_mm, robot->name);
+        TEST_ASSERT_EQUAL_MESSAGE(a->array, b->array, robot->name);
+        TEST_ASSERT_EQUAL_MESSAGE(18000, argus_angle_abs_diff(a->heading_deg * 100, b->heading_deg * 100),
+                                  robot->name);
+    }
+}
+
+void test_the_other_end_is_the_robot_turned_by_180_degrees(void) {
+    int ends = 0;
+    for (int row = 0; row < ARGUS_ROBOTS; row++) {
+        const argus_robot_t *robot = robot_at(row), *end = argus_robot_other_end(robot);
+        TEST_ASSERT_FALSE(robot->reversed);
+        TEST_ASSERT_EQUAL_PTR(robot, argus_robot_built(robot));
+        if (end == NULL) {
+            continue;
+        }
+        ends++;
+        is_turned(robot, end);
+        TEST_ASSERT_TRUE(end->reversed);
+        TEST_ASSERT_EQUAL_PTR(robot, argus_robot_other_end(end));
+        TEST_ASSERT_EQUAL_PTR(robot, argus_robot_built(end));
+        TEST_ASSERT_EQUAL(argus_robot_choice(robot), argus_robot_choice(end));
+        TEST_ASSERT_EQUAL(robot->forward_count, end->forward_count);
+        for (int i = 0; i < end->forward_count; i++) {
+            TEST_ASSERT_EQUAL(bearing(robot, robot->forward[i]), bearing(end, end->forward[i]));
+        }
+    }
+    TEST_ASSERT_EQUAL(ARGUS_SONARS > 8 ? 3 : 0, ends); // the AmigoBot has two sonars astern
+    TEST_ASSERT_NULL(argus_robot_other_end(argus_robot_unknown()));
+}

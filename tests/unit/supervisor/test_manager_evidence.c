@@ -433,21 +433,45 @@ void test_a_conviction_in_motion_is_planned_for_in_the_same_call(void) {
     }
 }
 
-// S2: ... and stops it in the same call where nobody is left to see.
-void test_a_conviction_that_leaves_nobody_is_answered_by_stop_in_the_same_call(void) {
+// Returns where the commands after it begin.
+static int lose_on_the_way(int first, int last) {
     start_in_a_room();
     robot_goal(&robot, 2000, 0);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
     robot_run(&robot, 1500);
     const int from = robot.commands;
-    for (int sonar = 0; sonar < 16; sonar++) {
+    for (int sonar = first; sonar <= last; sonar++) {
         condemn(sonar);
     }
     robot_next_sip(&robot);
     TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_STOP, from) > 0);
     TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, from));
+    return from;
+}
+
+// S2: ... and stops it in the same call where nobody is left to see.
+void test_a_conviction_that_leaves_nobody_is_answered_by_stop_in_the_same_call(void) {
+    const int from = lose_on_the_way(0, 15);
     robot_run(&robot, 30000);
     TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, from));
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_REVERSED, 0));
+    finish();
+}
+
+// ... where nobody is left in front, until the rear leads.
+void test_with_the_front_convicted_the_robot_moves_with_its_rear_ahead_only(void) {
+    const int from = lose_on_the_way(1, 6);
+    robot_run(&robot, 8000);
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_REVERSED, 0));
+    TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_MOVE, from) > 0);
+    for (int i = from; i < robot.commands; i++) {
+        TEST_ASSERT_TRUE(robot.command[i].command != ARCOS_CMD_MOVE || robot.command[i].argument < 0);
+    }
+    argus_status_t status;
+    argus_status(&robot.argus, &status);
+    TEST_ASSERT_TRUE(status.reversed);
+    TEST_ASSERT_EQUAL(ARGUS_IS_CATASTROPHIC, status.failure);
+    TEST_ASSERT_INT_WITHIN(3, (int)robot_heading_deg(&robot), status.pose.heading_cdeg / 100);
     finish();
 }
 

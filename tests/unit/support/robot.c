@@ -462,9 +462,22 @@ static bool is_nudge(const robot_t *robot, int32_t to_deg) {
     return clear;
 }
 
+// Of the end that leads six sonars face ahead, from this one.
+static bool rear_leads(const robot_t *robot) {
+    return robot->argus.knowledge.robot->reversed;
+}
+
+static int first_ahead(const robot_t *robot) {
+    return rear_leads(robot) ? 9 : 1;
+}
+
+static unsigned all_ahead(const robot_t *robot) {
+    return 0x3Fu << first_ahead(robot);
+}
+
 static int nearest_ahead_mm(const robot_t *robot, unsigned blind) {
     int nearest = 5000;
-    for (int i = 1; i <= 6; i++) {
+    for (int i = first_ahead(robot); (all_ahead(robot) >> i & 1u) != 0; i++) {
         if ((blind >> i & 1u) == 0 && robot->shown[i] >= 0 && robot->shown[i] < nearest) {
             nearest = robot->shown[i];
         }
@@ -485,7 +498,7 @@ static unsigned unlooked(const robot_t *robot) {
     const unsigned open = argus_with_health(&argus->knowledge, ARGUS_SUSPECT) & ~argus->awareness.verified;
     const argus_guard_t guard = argus_guard(argus);
     unsigned mask = 0;
-    for (int i = 1; i <= 6 && argus_guard_may_turn(&guard); i++) {
+    for (int i = first_ahead(robot); (all_ahead(robot) >> i & 1u) != 0 && argus_guard_may_turn(&guard); i++) {
         const bool alone = !trusts(robot, i - 1) && !trusts(robot, i + 1);
         mask |= (open >> i & 1u) != 0 && !trusts(robot, i) && alone && argus->looks.hold[i].acquittals == 0
                     ? 1u << i
@@ -499,7 +512,7 @@ static unsigned blind_ahead(const robot_t *robot) {
     const argus_knowledge_t *known = &robot->argus.knowledge;
     const unsigned suspects =
         argus_rules(&robot->argus)->disparity ? argus_with_health(known, ARGUS_SUSPECT) : 0;
-    return (argus_out(known) | suspects) & 0x7Eu;
+    return (argus_out(known) | suspects) & all_ahead(robot);
 }
 
 // S1: a step after a sweep; or, where the profile lets it, as far as others have seen.
@@ -524,7 +537,7 @@ static void watch_blind_move(robot_t *robot, int32_t mm, unsigned blind) {
 // S5: no faster than the shortest reading ahead allows, but for the speed that the settings allow anyway.
 static void watch_speed(robot_t *robot) {
     const argus_config_t *config = &robot->argus.config;
-    const int range_mm = nearest_ahead_mm(robot, argus_out(&robot->argus.knowledge) & 0x7Eu);
+    const int range_mm = nearest_ahead_mm(robot, argus_out(&robot->argus.knowledge) & all_ahead(robot));
     const argus_robot_t *body = robot->argus.knowledge.robot;
     const int safe = argus_rules(&robot->argus)->adapts_speed && range_mm > 0
                          ? argus_config_speed_mm_s(config, body, range_mm)
@@ -548,8 +561,24 @@ static void watch_ahead(robot_t *robot, int32_t mm) {
     watch_speed(robot);
 }
 
-static void watch_move(robot_t *robot, int32_t mm) {
-    const argus_knowledge_t *known = &robot->argus.knowledge;
+static void watch_back(robot_t *robot, int32_t mm) {
+    const int first = rear_leads(robot) ? 0 : 8;
+    for (int i = first; i < first + 8 && i < ARGUS_SONARS; i++) {
+        const bool abeam =
+            robot->argus.config.profile == ARGUS_PROFILE_ARGUS && (i == first || i == first + 7);
+        const int clear_mm = abeam ? 250 : robot->argus.config.rear_clear_mm;
+        if (argus_is_out(&robot->argus.knowledge, i) || robot->shown[i] <= clear_mm) {
+            complain(robot, "S7: MOVE back though a rear sonar does not read clear", i);
+        }
+        if (!abeam && robot->shown[i] + mm < 150) {
+            complain(robot, "S7: MOVE back farther than the rear reads clear", mm);
+        }
+    }
+}
+
+// Ahead is where the end is that leads.
+static void watch_move(robot_t *robot, int32_t asked_mm) {
+    const int32_t mm = rear_leads(robot) ? -asked_mm : asked_mm;
     if (mm < -300 || mm > 5000 || mm == 0) {
         complain(robot, "MOVE out of range", mm);
     }
@@ -560,16 +589,7 @@ static void watch_move(robot_t *robot, int32_t mm) {
         complain(robot, "MOVE ahead with a bumper pressed", mm);
     }
     if (mm < 0) {
-        for (int i = 8; i < 16 && i < ARGUS_SONARS; i++) {
-            const bool abeam = robot->argus.config.profile == ARGUS_PROFILE_ARGUS && (i == 8 || i == 15);
-            const int clear_mm = abeam ? 250 : robot->argus.config.rear_clear_mm;
-            if (argus_is_out(known, i) || robot->shown[i] <= clear_mm) {
-                complain(robot, "S7: MOVE back though a rear sonar does not read clear", i);
-            }
-            if (!abeam && robot->shown[i] + mm < 150) {
-                complain(robot, "S7: MOVE back farther than the rear reads clear", mm);
-            }
-        }
+        watch_back(robot, mm);
     }
     robot->swept = robot->swept && mm < 0;
 }

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// Common cause: an array of which all sonars stop hearing anything at once, and whether that is a failure.
+#include "awareness/common.h"
+
+#include <string.h>
+
+#include "knowledge/angle.h"
+
+#define LEAST 4         // sonars in use that make an array, and of these had to hear something until then
+#define PROOF_RUN 3     // readings of each without an echo, before what ended at once is a proof
+#define AT_ONCE_MS 450u // the echoes that it lost ended within a round and a SIP of each other
+#define TURNING_PER_MM \
+    5 // ... until when the robot hardly turned: wheels that differ by less, for their distance, 11
+      // degrees/s
+#define NEAR_MM 2500        // a thing abeam that the others of that side cannot miss
+#define APART_MM 400        // driven from one reading to the next, at most
+#define PASSED_MM 1500      // driven beside such things, both sides together: proof
+#define PASSED_LEAST_MM 400 // ... on either
+
+void argus_common_init(argus_common_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+static void take(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    if (knowledge->sonar[sonar].reading_mm < knowledge->robot->no_echo_mm) {
+        self->none_run[sonar] = 0;
+        self->heard[sonar] = true;
+        self->echo_ms[sonar] = knowledge->sip_ms;
+    } else {
+        self->none_run[sonar] = (uint8_t)argus_min(self->none_run[sonar] + 1, UINT8_MAX);
+    }
+}
+
+static int least_run(const argus_common_t *const self, const argus_mask_t sonars) {
+    int least = UINT8_MAX;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        least = (sonars >> i & 1u) != 0 ? argus_min(least, self->none_run[i]) : least;
+    }
+    return least;
+}
+
+// How many heard something until the one moment. A robot that drives out of a door loses one after the other.
+static int lost_at_once(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                        const argus_mask_t sonars) {
+    uint32_t least_ms = UINT32_MAX; // since the last echo of all
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((sonars >> i & 1u) != 0 && self->heard[i] && knowledge->sip_ms - self->echo_ms[i] < least_ms) {
+            least_ms = knowledge->sip_ms - self->echo_ms[i];
+        }
+    }
+    int lost = 0;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const bool counts = (sonars >> i & 1u) != 0 && self->heard[i];
+        lost += counts && knowledge->sip_ms - self->echo_ms[i] - least_ms <= AT_ONCE_MS;
+    }
+    return lost;
+}
+
+// One abeam, of another array, that is relied on: the way since it was heard last counts while it hears
+// something near.
+static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowledge, const int sonar) {
+    argus_passed_t *const passed = &dark->passed[argus_robot_pose(knowledge->robot, sonar)->y_mm > 0];
+    const int32_t way_mm = (int32_t)(knowledge->odometer_mm - passed->odometer_mm);
+    const bool goes_on = passed->near && way_mm <= APART_MM;
+    passed->near = argus_trusted(knowledge, sonar) && knowledge->sonar[sonar].reading_mm <= NEAR_MM;
+    passed->mm += goes_on && passed->near ? way_mm : 0;
+    passed->odometer_mm = knowledge->odometer_mm;
+}
+
+static void pass_all(argus_dark_t *const dark, const argus_knowledge_t *const knowledge) {
+    const argus_robot_t *const robot = knowledge->robot;
+    const unsigned abeam = argus_robot_flank(robot) | argus_robot_rear_flank(robot);
+    const unsigned others = abeam & ~(unsigned)dark->sonars & knowledge->fresh;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((others >> i & 1u) != 0) {
+            pass(dark, knowledge, i);
+        }
+    }
+}
+
+// On either side: what goes along on one may be a person.
+static bool has_passed(const argus_dark_t *const dark) {
+    const int32_t right_mm = dark->passed[0].mm;
+    const int32_t left_mm = dark->passed[1].mm;
+    return argus_min(right_mm, left_mm) >= PASSED_LEAST_MM && right_mm + left_mm >= PASSED_MM;
+}
+
+// Those of an array that has failed are out by now.
+static argus_mask_t members(const argus_dark_t *const dark, const argus_knowledge_t *const knowledge,
+                            const int array) {
+    const unsigned in_use = argus_robot_array(knowledge->robot, array) & ~(unsigned)argus_out(knowledge);
+    return dark->proven ? dark->sonars : (argus_mask_t)in_use;
+}
+
+// Straight: as of its last echo.
+static void note_echoes(argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                        argus_dark_t *const dark, const argus_mask_t sonars) {
+    const unsigned fresh = sonars & knowledge->fresh;
+    const bool turns = self->has_turned && knowledge->sip_ms - self->turned_ms <= AT_ONCE_MS;
+    bool straight = dark->straight;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        straight = (fresh >> i & 1u) != 0 && self->none_run[i] == 0 ? !turns : straight;
+    }
+    *dark = (argus_dark_t){.straight = straight};
+}
+
+static void look_at(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int array) {
+    argus_dark_t *const dark = &self->of[array];
+    const argus_mask_t sonars = members(dark, knowledge, array);
+    const int run = argus_count_bits(sonars) >= LEAST ? least_run(self, sonars) : 0;
+    const bool was_dark = dark->sonars != 0;
+    if (run == 0) {
+        note_echoes(self, knowledge, dark, sonars);
+        return;
+    }
+    dark->sonars = sonars;
+    dark->at_once =
+        was_dark ? dark->at_once : dark->straight && lost_at_once(self, knowledge, sonars) >= LEAST;
+    dark->news = !was_dark && dark->at_once;
+    pass_all(dark, knowledge);
+    dark->proven = dark->proven || (dark->at_once && run >= PROOF_RUN) || has_passed(dark);
+}
+
+void argus_common_sip(argus_common_t *const self, const argus_knowledge_t *const knowledge) {
+    const int32_t differ_mm_s = argus_abs(knowledge->vel_right_mm_s - knowledge->vel_left_mm_s);
+    if (differ_mm_s * TURNING_PER_MM > knowledge->robot->track_mm) {
+        self->has_turned = true;
+        self->turned_ms = knowledge->sip_ms;
+    }
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((knowledge->fresh >> i & 1u) != 0) {
+            take(self, knowledge, i);
+        }
+    }
+    for (int array = 0; array < argus_min(knowledge->robot->arrays, ARGUS_ARRAYS_MAX); array++) {
+        look_at(self, knowledge, array);
+    }
+}
+
+bool argus_common_strikes(const argus_common_t *const self, const argus_mask_t sonars) {
+    for (int array = 0; array < ARGUS_ARRAYS_MAX; array++) {
+        if (self->of[array].news && (self->of[array].sonars & sonars) != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool argus_common_convicts(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                           const int sonar) {
+    const int array = argus_robot_pose(knowledge->robot, sonar)->array;
+    return array < ARGUS_ARRAYS_MAX && self->of[array].proven && (self->of[array].sonars >> sonar & 1u) != 0;
+}
+
+bool argus_common_excuses(const argus_common_t *const self, const int sonar) {
+    for (int array = 0; array < ARGUS_ARRAYS_MAX; array++) {
+        const argus_dark_t *const dark = &self->of[array];
+        if (dark->sonars != 0 && !dark->proven && (dark->sonars >> sonar & 1u) == 0) {
+            return true;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Common cause: an array of which all sonars stop hearing anything at once, and whether that is a failure.
+#ifndef ARGUS_COMMON_H
+#define ARGUS_COMMON_H
+
+#include "knowledge/knowledge.h"
+
+#define ARGUS_ARRAYS_MAX 4
+
+// An array is dark while none of its sonars that are in use hears anything. Its peers are no proof then: they
+// are suspects as well. That it has failed is proved by what its own sonars heard in the round before, or by
+// walls on either side that it passes and that those abeam of another array go on hearing.
+typedef struct {
+    uint32_t odometer_mm; // way driven when one abeam of another array was heard last
+    int32_t mm;           // driven beside something near that it hears
+    bool near;            // it heard such
+} argus_passed_t;
+
+typedef struct {
+    argus_passed_t passed[2]; // right, left
+    argus_mask_t sonars;      // that are dark, 0: it is not
+    bool straight;            // the robot did not turn when it was heard last
+    bool at_once;             // what it heard ended at one time, and the robot did not turn
+    bool news;                // ... in this SIP
+    bool proven;
+} argus_dark_t;
+
+typedef struct {
+    argus_dark_t of[ARGUS_ARRAYS_MAX];
+    uint32_t echo_ms[ARGUS_SONARS]; // of the last echo, and whether there was one
+    bool heard[ARGUS_SONARS];
+    uint8_t none_run[ARGUS_SONARS]; // readings in a row without an echo, up to 255
+    uint32_t turned_ms;             // the robot rotated last, if it has
+    bool has_turned;
+} argus_common_t;
+
+void argus_common_init(argus_common_t *self);
+
+// After each SIP. Cost: one pass over the sonars for each array.
+void argus_common_sip(argus_common_t *self, const argus_knowledge_t *knowledge);
+
+// What an array heard has just ended at once; one of `sonars` is of it.
+bool argus_common_strikes(const argus_common_t *self, argus_mask_t sonars);
+
+// This sonar is of an array that is dark, and proved to have failed.
+bool argus_common_convicts(const argus_common_t *self, const argus_knowledge_t *knowledge, int sonar);
+
+// An array that it is not of is dark, and it is not known whether that has failed: disagreeing with it is no
+// fault.
+bool argus_common_excuses(const argus_common_t *self, int sonar);
+
+#endif

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// Lets the rear lead while the front has failed, and the front again when it is whole.
+#include "supervisor/reverse.h"
+
+#include "knowledge/angle.h"
+#include "supervisor/faults.h"
+#include "supervisor/say.h"
+#include "supervisor/state.h"
+
+#define AGAIN_MM 2000u // driven since the last time
+#define MOST_PARTS 3   // two of three of those that face forward are most of them
+#define OTHER_LOST 1   // ... and so many the other end may have lost to be better than that
+
+// Of those of this end that face forward, who are not relied on.
+static argus_mask_t lost_of(const argus_t *const self, const argus_robot_t *const end) {
+    const argus_mask_t forward = argus_robot_forward(end);
+    unsigned lost = 0;
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        const bool counts = (forward >> i & 1u) != 0 && !argus_trusted(&self->knowledge, i);
+        lost |= counts ? 1u << i : 0u;
+    }
+    return (argus_mask_t)lost;
+}
+
+static bool is_safe(const argus_t *const self, const argus_robot_t *const end) {
+    return argus_config_check_for(&self->config, end).fault == ARGUS_CONFIG_OK;
+}
+
+static bool has_driven(const argus_t *const self) {
+    const argus_reverse_t *const mine = &self->reverse;
+    return !mine->done || self->knowledge.odometer_mm - mine->odometer_mm >= AGAIN_MM;
+}
+
+static bool can_go_on(const argus_t *const self, const argus_robot_t *const end) {
+    const argus_mask_t lost = lost_of(self, end);
+    const argus_mask_t living = (argus_mask_t)(argus_robot_forward(end) & ~(unsigned)lost);
+    const argus_plan_t plan = argus_plan(end, argus_policy(self), lost, living);
+    return argus_guard_may_step(&plan);
+}
+
+static bool is_better(const argus_t *const self, const argus_robot_t *const other) {
+    const argus_robot_t *const lead = self->knowledge.robot;
+    const int lost = argus_count_bits(lost_of(self, lead));
+    const int other_lost = argus_count_bits(lost_of(self, other));
+    if (lead->reversed && other_lost == 0) {
+        return true;
+    }
+    return lost * MOST_PARTS >= lead->forward_count * 2 && other_lost <= OTHER_LOST;
+}
+
+bool argus_should_turn_about(const argus_t *const self) {
+    const argus_robot_t *const other = argus_robot_other_end(self->knowledge.robot);
+    const bool may = argus_rules(self)->may_reverse && argus_is_active(self) && self->travel.jog_mm == 0;
+    if (other == NULL || !may || !is_safe(self, other)) {
+        return false;
+    }
+    if (!argus_guard_may_step(&self->plan)) {
+        return can_go_on(self, other);
+    }
+    return has_driven(self) && is_better(self, other);
+}
+
+void argus_turn_about(argus_t *const self) {
+    const argus_robot_t *const other = argus_robot_other_end(self->knowledge.robot);
+    ARGUS_ASSERT(other != NULL && argus_at_rest(&self->knowledge));
+    argus_knowledge_turn_about(&self->knowledge, other);
+    self->reverse = (argus_reverse_t){.odometer_mm = self->knowledge.odometer_mm, .done = true};
+    argus_awareness_init(&self->awareness);
+    argus_extremes_restart(&self->extremes);
+    argus_slip_restart(&self->slip);
+    self->base.taken = false;
+    self->checked = false;
+    self->plan = argus_plan(other, argus_policy(self), 0, 0);
+    argus_say(self, ARGUS_EV_REVERSED, ARGUS_NO_SONAR, other->reversed ? 1 : 0);
+    argus_replan(self);
+}

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: an array that goes dark at once has failed; one that drives out of a door has not.
+#include "awareness/common.h"
+
+#include <string.h>
+
+#include "unity.h"
+
+#define NONE 5000
+#define FRONT 0x00FFu
+#define REAR 0xFF00u
+
+static argus_common_t c;
+static argus_knowledge_t k;
+static argus_sip_t sip;
+static uint32_t now_ms;
+static int x_mm;
+static int strikes;
+static int range_mm[16];
+
+void setUp(void) {
+    argus_common_init(&c);
+    argus_knowledge_init(&k);
+    memset(&sip, 0, sizeof sip);
+    now_ms = 0xFFFFF000u;
+    x_mm = 0;
+    strikes = 0;
+    for (int i = 0; i < 16; i++) {
+        range_mm[i] = 1200 + 10 * i;
+        k.sonar[i].health = ARGUS_HEALTHY;
+    }
+}
+
+// Each SIP lists two of each array, so that each sonar comes every 400 ms.
+static void drive(int sips, int speed_mm_s) {
+    for (int i = 0; i < sips; i++) {
+        static int at;
+        now_ms += 100;
+        x_mm += speed_mm_s / 10;
+        sip.x_raw = (uint16_t)x_mm;
+        sip.vel_left_mm_s = sip.vel_right_mm_s = (int16_t)speed_mm_s;
+        sip.sonar_count = 0;
+        for (int j = 0; j < 4; j++) {
+            const int sonar = at % 4 * 2 + j % 2 + (j < 2 ? 0 : 8);
+            sip.sonar[sip.sonar_count].number = (uint8_t)sonar;
+            sip.sonar[sip.sonar_count++].range_mm = (uint16_t)range_mm[sonar];
+        }
+        at++;
+        argus_knowledge_sip(&k, &sip, 1000, now_ms);
+        argus_common_sip(&c, &k);
+        strikes += argus_common_strikes(&c, argus_robot_forward(k.robot));
+    }
+}
+
+static void darken(unsigned sonars) {
+    for (int i = 0; i < 16; i++) {
+        range_mm[i] = (sonars >> i & 1u) != 0 ? NONE : range_mm[i];
+    }
+}
+
+static unsigned convicted(void) {
+    unsigned mask = 0;
+    for (int i = 0; i < 16; i++) {
+        mask |= argus_common_convicts(&c, &k, i) ? 1u << i : 0u;
+    }
+    return mask;
+}
+
+void test_what_all_sonars_of_an_array_heard_ends_at_once(void) {
+    drive(20, 200);
+    darken(FRONT);
+    drive(5, 200);
+    TEST_ASSERT_EQUAL_MESSAGE(1, strikes, "within a round");
+    TEST_ASSERT_EQUAL(0, convicted());
+    TEST_ASSERT_TRUE(argus_common_excuses(&c, 12));
+    TEST_ASSERT_FALSE(argus_common_excuses(&c, 3));
+    drive(10, 0);
+    TEST_ASSERT_EQUAL_HEX(FRONT, convicted());
+    TEST_ASSERT_FALSE(argus_common_excuses(&c, 12));
+    TEST_ASSERT_EQUAL_MESSAGE(1, strikes, "news once");
+}
+
+void test_the_rear_array_likewise_but_it_does_not_stop_the_robot(void) {
+    drive(20, 200);
+    darken(REAR);
+    drive(20, 200);
+    TEST_ASSERT_EQUAL(0, strikes);
+    TEST_ASSERT_EQUAL_HEX(REAR, convicted());
+}
+
+void test_one_that_still_hears_speaks_for_all(void) {
+    drive(20, 200);
+    darken(FRONT & ~8u);
+    drive(60, 0);
+    TEST_ASSERT_EQUAL(0, convicted());
+    TEST_ASSERT_FALSE(argus_common_excuses(&c, 12));
+}
+
+void test_echoes_that_end_one_after_the_other_are_no_proof(void) {
+    drive(20, 200);
+    for (int i = 0; i < 4; i++) {
+        darken(1u << i | 1u << (7 - i));
+        drive(8, 200);
+    }
+    drive(20, 0);
+    TEST_ASSERT_EQUAL(0, convicted());
+    TEST_ASSERT_EQUAL(0, strikes);
+    TEST_ASSERT_TRUE_MESSAGE(argus_common_excuses(&c, 12), "it may have");
+}
+
+void test_where_nothing_was_heard_nothing_ends(void) {
+    darken(0xFFFFu & ~6u);
+    drive(20, 200);
+    darken(0xFFFFu);
+    drive(200, 200);
+    TEST_ASSERT_EQUAL(0, convicted());
+}
+
+void test_who_passes_a_wall_that_others_hear_is_convicted(void) {
+    darken(FRONT);
+    drive(30, 200);
+    TEST_ASSERT_EQUAL(0, convicted());
+    drive(30, 200);
+    TEST_ASSERT_EQUAL_HEX(FRONT, convicted());
+    TEST_ASSERT_EQUAL(0, strikes);
+}
+
+void test_what_goes_along_on_one_side_may_be_a_person(void) {
+    darken(FRONT | 0x0100u);
+    drive(200, 200);
+    TEST_ASSERT_EQUAL(0, convicted());
+}
+
+void test_standing_beside_a_wall_is_no_way_along_it(void) {
+    darken(FRONT);
+    drive(600, 0);
+    TEST_ASSERT_EQUAL(0, convicted());
+}
+
+void test_in_a_turn_anything_may_end(void) {
+    drive(20, 0);
+    for (int i = 0; i < 30; i++) {
+        sip.heading_raw = (int16_t)(sip.heading_raw + 68); // 60 degrees/s
+        now_ms += 100;
+        sip.vel_left_mm_s = -172;
+        sip.vel_right_mm_s = 172;
+        sip.sonar_count = 0;
+        for (int j = 0; j < 4; j++) {
+            const int sonar = i % 4 * 2 + j % 2 + (j < 2 ? 0 : 8);
+            sip.sonar[sip.sonar_count].number = (uint8_t)sonar;
+            sip.sonar[sip.sonar_count++].range_mm = (uint16_t)(i > 15 && sonar < 8 ? NONE : 900);
+        }
+        argus_knowledge_sip(&k, &sip, 1000, now_ms);
+        argus_common_sip(&c, &k);
+        TEST_ASSERT_FALSE(argus_common_strikes(&c, argus_robot_forward(k.robot)));
+    }
+    TEST_ASSERT_EQUAL(0, convicted());
+}
+
+void test_who_hears_again_is_left_to_the_evidence(void) {
+    drive(20, 200);
+    darken(FRONT);
+    drive(20, 0);
+    TEST_ASSERT_EQUAL_HEX(FRONT, convicted());
+    range_mm[3] = 800;
+    drive(5, 0);
+    TEST_ASSERT_EQUAL(0, convicted());
+}
