@@ -202,25 +202,30 @@ static bool is_in_nudge(const argus_robot_t *const robot, const argus_point_t at
     return false;
 }
 
-bool argus_guard_may_nudge(const argus_guard_t *const self, const int32_t by_cdeg) {
-    const argus_knowledge_t *const knowledge = self->knowledge;
-    if (!self->profile->nudges || !self->active || self->bumpers != 0 || argus_abs(by_cdeg) > NUDGE_CDEG) {
-        return false;
-    }
+static bool is_heard_in_nudge(const argus_knowledge_t *const knowledge, const int32_t by_cdeg) {
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_usable(knowledge, i) &&
             is_in_nudge(knowledge->robot, argus_echo_robot(knowledge, i), by_cdeg)) {
-            return false;
+            return true;
         }
     }
+    return false;
+}
+
+static bool is_remembered_in_nudge(const argus_guard_t *const self, const int32_t by_cdeg) {
     for (int i = 0; i < self->echoes->count; i++) {
         argus_point_t at;
-        if (argus_echoes_near(self->echoes, knowledge, i, &at) &&
-            is_in_nudge(knowledge->robot, at, by_cdeg)) {
-            return false;
+        if (argus_echoes_near(self->echoes, self->knowledge, i, &at) &&
+            is_in_nudge(self->knowledge->robot, at, by_cdeg)) {
+            return true;
         }
     }
-    return true;
+    return false;
+}
+
+bool argus_guard_may_nudge(const argus_guard_t *const self, const int32_t by_cdeg) {
+    return self->profile->nudges && self->active && self->bumpers == 0 && argus_abs(by_cdeg) <= NUDGE_CDEG &&
+           !is_heard_in_nudge(self->knowledge, by_cdeg) && !is_remembered_in_nudge(self, by_cdeg);
 }
 
 bool argus_guard_echo_blocks(const argus_guard_t *const self, const int sonar) {

@@ -39,11 +39,12 @@ bool argus_guard_may_step(const argus_plan_t *plan);
 // Those ahead that have the name of a fault, and no neighbour that sees on the way what they may not.
 argus_mask_t argus_guard_alone(const argus_guard_t *self);
 
-// A sonar that looks ahead is out, or one of those; how far the way has been seen nonetheless, less some margin. INT32_MAX:
-// none is, or the profile does not ask.
+// A sonar that looks ahead is out, or one of those; how far the way has been seen nonetheless, less some
+// margin. INT32_MAX: none is, or the profile does not ask.
 bool argus_guard_is_blind(const argus_guard_t *self);
 
-// The most of those side by side: by so many halves of a pitch the heading must swing for others to see there.
+// The most of those side by side: by so many halves of a pitch the heading must swing for others to see
+// there.
 int argus_guard_gap(const argus_guard_t *self);
 
 int32_t argus_guard_seen_mm(const argus_guard_t *self);

@@ -4,6 +4,7 @@
 #ifndef ARGUS_PLAN_H
 #define ARGUS_PLAN_H
 
+#include "adjustment/cover.h"
 #include "analysis/failure.h"
 #include "argus/argus.h"
 
@@ -25,14 +26,5 @@ argus_plan_t argus_plan(const argus_robot_t *robot, argus_policy_t policy, argus
 
 // Whether others than those that face forward may look along a blind bearing.
 bool argus_plan_asks_ring(argus_policy_t policy);
-
-// Sonar that looks along the bearing of the disabled sonar `disabled` after a rotation, or -1 when none does
-// that may look.
-int argus_plan_cover(const argus_robot_t *robot, const argus_plan_t *plan, int16_t rotation_deg,
-                     int disabled);
-
-// Sonars whose readings count after a rotation, and after any of the plan's, as a mask.
-argus_mask_t argus_plan_covering(const argus_robot_t *robot, const argus_plan_t *plan, int16_t rotation_deg);
-argus_mask_t argus_plan_needs(const argus_robot_t *robot, const argus_plan_t *plan);
 
 #endif

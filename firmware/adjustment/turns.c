@@ -15,7 +15,9 @@ static void insert(argus_turns_t *const self, const int16_t deg) {
         return;
     }
     ARGUS_ASSERT(self->count < ARGUS_TURNS_MAX);
-    memmove(&self->deg[at + 1], &self->deg[at], (size_t)(self->count - at) * sizeof self->deg[0]);
+    for (int k = self->count; k > at; k--) {
+        self->deg[k] = self->deg[k - 1];
+    }
     self->deg[at] = deg;
     self->count++;
 }

@@ -3,7 +3,7 @@
 #ifndef ARGUS_TURNS_H
 #define ARGUS_TURNS_H
 
-#include "adjustment/plan.h"
+#include "adjustment/cover.h"
 
 typedef struct {
     const argus_robot_t *robot;

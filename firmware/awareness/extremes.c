@@ -6,17 +6,19 @@
 
 #include "knowledge/angle.h"
 
-#define NOISE_MM 5       // the shortest readings end so far above the robot's least
-#define TURNED_CDEG 1000 // a turn beyond this may have put something else there
-#define AWAY_MM 200      // gone away from what stands within the shortest reading: it would read twice that
-#define ABEAM_MM 600     // gone past what its mate on the same side, which hears, does not see,
+#define NOISE_MM 5             // the shortest readings end so far above the robot's least
+#define TURNED_CDEG 1000       // a turn beyond this may have put something else there
+#define TURNED_ABEAM_CDEG 2500 // ... so near that its mate would still hear it
+#define AWAY_MM 200 // gone away from what stands within the shortest reading: it would read twice that
+// Gone past what its mate on the same side, which hears and sits no farther off, does not see,
+#define ABEAM_MM 250
 #define ABEAM_ALONE_MM 2000 // ... or that it has no such mate for: nobody drives so long so near a wall
 #define CLEAR_MM 300        // its mate reads so much more
-#define ABEAM_PART 4        // looks abeam: of a way it goes away from what it reads less than a fourth
 #define LEAP_MM 600         // nobody walks so far between two firings
 #define NEAR_MM 150         // what is nearer forbids to turn
 #define IMPOSSIBLE 16
 #define VISIT 10 // leaps near and away again at once: who walks across the beam may do so, once or twice
+#define ROW_STUCK 5
 #define LEVEL_CONVICTS 80
 #define LEVEL_KEEPS_OUT 40
 #define LEVEL_MAX 120
@@ -43,9 +45,9 @@ static bool is_shortest(const argus_knowledge_t *const knowledge, const int32_t 
 
 static void begin_run(argus_extreme_t *const self, const argus_pose_t *const pose) {
     self->at = (argus_point_t){pose->x_mm, pose->y_mm};
+    self->from = self->at;
     self->from_cdeg = pose->heading_cdeg;
     self->away_mm = 0;
-    self->abeam_mm = 0;
     self->running = true;
 }
 
@@ -72,23 +74,23 @@ static void go_on(argus_extreme_t *const self, const argus_knowledge_t *const kn
     const int32_t dx = pose->x_mm - self->at.x_mm;
     const int32_t dy = pose->y_mm - self->at.y_mm;
     const int32_t along = (dx * argus_cos(axis) + dy * argus_sin(axis)) / ARGUS_TRIG_ONE;
-    const int32_t way = argus_hypot(dx, dy);
     const int says = mate_says(knowledge, sonar);
     self->at = (argus_point_t){pose->x_mm, pose->y_mm};
     self->away_mm = argus_max(0, self->away_mm - along);
-    if (says < 0 || argus_abs(along) * ABEAM_PART > way) {
-        self->abeam_mm = 0;
-    } else {
-        self->abeam_mm += way;
+    if (says < 0) {
+        self->from = self->at;
     }
-    self->proved =
-        self->proved || self->away_mm >= AWAY_MM || self->abeam_mm >= (says > 0 ? ABEAM_MM : ABEAM_ALONE_MM);
+    const int32_t past_mm = argus_hypot(self->at.x_mm - self->from.x_mm, self->at.y_mm - self->from.y_mm);
+    const int32_t proves_mm = says > 0 ? ABEAM_MM : ABEAM_ALONE_MM;
+    self->proved = self->proved || self->away_mm >= AWAY_MM || past_mm >= proves_mm;
 }
 
 static void take_shortest(argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
                           const int sonar) {
-    const int32_t heading = knowledge->pose.heading_cdeg;
-    if (!self->running || argus_angle_abs_diff(heading, self->from_cdeg) > TURNED_CDEG) {
+    const int32_t turned = argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->from_cdeg);
+    const unsigned abeam = argus_robot_flank(knowledge->robot) | argus_robot_rear_flank(knowledge->robot);
+    const int32_t most = (abeam >> sonar & 1u) != 0 ? TURNED_ABEAM_CDEG : TURNED_CDEG;
+    if (!self->running || turned > most) {
         begin_run(self, &knowledge->pose);
         return;
     }
@@ -117,6 +119,7 @@ static void take(argus_extreme_t *const self, const argus_knowledge_t *const kno
     self->visited = !shortest && reading <= knowledge->robot->min_mm + NEAR_MM &&
                     self->before_mm > knowledge->robot->min_mm + LEAP_MM;
     self->before_mm = (uint16_t)reading;
+    self->row = (uint8_t)(shortest ? argus_min(self->row + 1, UINT8_MAX) : 0);
     if (shortest) {
         take_shortest(self, knowledge, sonar);
     } else {
@@ -143,7 +146,7 @@ argus_fault_kind_t argus_extremes_convicts(const argus_extremes_t *const self, c
     if (e->level < LEVEL_CONVICTS) {
         return ARGUS_KIND_NONE;
     }
-    return e->running ? ARGUS_KIND_STUCK : ARGUS_KIND_INTERMITTENT;
+    return e->row >= ROW_STUCK ? ARGUS_KIND_STUCK : ARGUS_KIND_INTERMITTENT;
 }
 
 bool argus_extremes_keeps_out(const argus_extremes_t *const self, const int sonar) {

@@ -8,11 +8,12 @@
 
 // Of one sonar. The shortest readings are all alike, so the tests of its trail leave them aside.
 typedef struct {
-    argus_point_t at;  // where the run of shortest readings is looked at from, course frame
-    int32_t from_cdeg; // heading when it began
-    int32_t away_mm;   // way that the transducer has gone from what it reads, since
-    int32_t abeam_mm;  // way past what it reads, since
+    argus_point_t at;   // where the run of shortest readings is looked at from, course frame
+    argus_point_t from; // where it began, or where its mate heard the same last
+    int32_t from_cdeg;  // heading when it began
+    int32_t away_mm;    // way that the transducer has gone from what it reads, since
     uint16_t before_mm;
+    uint8_t row;   // shortest readings, one after the other
     uint8_t level; // impossible readings of late, weighed
     bool visited;  // the reading before leapt near
     bool running;  // the reading before was a shortest one

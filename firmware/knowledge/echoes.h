@@ -48,8 +48,10 @@ bool argus_are_one_thing(argus_point_t a, argus_point_t b);
 bool argus_echoes_have_seen(const argus_echoes_t *self, const argus_knowledge_t *knowledge, argus_point_t at,
                             int32_t within_mm);
 
-// Whether this one was seen more than once, lately and near the robot; where, robot frame. 0 <= index < count.
-bool argus_echoes_near(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index, argus_point_t *at);
+// Whether this one was seen more than once, lately and near the robot; where, robot frame. 0 <= index <
+// count.
+bool argus_echoes_near(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index,
+                       argus_point_t *at);
 
 // Nearest to the robot's centre, were it `back_mm` farther back, of what was seen more than once in the last
 // seconds, also where no sonar sees it now; INT32_MAX without any. Cost: one pass over the points.

@@ -10,7 +10,7 @@
 #define CELL_MM ARGUS_GRID_CELL_MM
 #define MASK (CELLS - 1)
 #define SLACK_CELLS 4 // the robot may be so far from the middle before the window follows
-#define LEVEL_MAX 15 // touched: no beam takes that back
+#define LEVEL_MAX 15  // touched: no beam takes that back
 #define HEARD_MOST 14
 #define OCCUPIED 4 // two near echoes: one may be crosstalk
 #define MARKED 6   // three beams take it back
@@ -18,21 +18,22 @@
 #define FAR_MM 1600
 #define NEAR_RISE 3
 #define FAR_RISE 1
-#define FAR_MOST 3       // far echoes alone occupy nothing: they tell their place badly
-#define SHORT_MM 150     // a beam passes nothing so close to its echo
-#define PASSED_MM 1500   // ... nor beyond this, since it grows wide
-#define SILENT_MM 800    // ... nor beyond this, if nothing comes back: a smooth wall may have turned it away
-#define REST_SIPS 10     // at rest the beams of a check count,
-#define REST_EVERY 40    // ... and then of a quarter of the SIPs: they tell nothing new
-#define BODY_CELLS 1     // about its centre, where the robot stands
+#define FAR_MOST 3     // far echoes alone occupy nothing: they tell their place badly
+#define SHORT_MM 150   // a beam passes nothing so close to its echo
+#define PASSED_MM 1500 // ... nor beyond this, since it grows wide
+#define SILENT_MM 800  // ... nor beyond this, if nothing comes back: a smooth wall may have turned it away
+#define REST_SIPS 10   // at rest the beams of a check count,
+#define REST_EVERY 40  // ... and then of a quarter of the SIPs: they tell nothing new
+#define BODY_CELLS 1   // about its centre, where the robot stands
 
-#define BESIDE_MM 600 // of a flank's echoes the nearer ones tell of a wall along the way,
+#define BESIDE_MM 600     // of a flank's echoes the nearer ones tell of a wall along the way,
 #define APART_LEAST_MM 80 // ... two of them at such a distance,
 #define APART_MOST_MM 300
 #define ALONG_CDEG 3000 // ... within this of the heading
 #define GOES_ON_MM 600
 
-_Static_assert((CELLS & MASK) == 0 && CELLS == 64, "cells wrap around by a mask, and rows are words of 64 bits");
+_Static_assert((CELLS & MASK) == 0 && CELLS == 64,
+               "cells wrap around by a mask, and rows are words of 64 bits");
 
 void argus_grid_init(argus_grid_t *const self) {
     memset(self, 0, sizeof *self);
@@ -164,10 +165,10 @@ static void pass(argus_grid_t *const self, const argus_knowledge_t *const knowle
     }
 }
 
-// A wall that the robot drives along is heard abeam only. It is taken to go on as between its last two echoes; a
-// beam that passes there says otherwise.
-static void extend(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const argus_point_t echo,
-                   argus_point_t *const last) {
+// A wall that the robot drives along is heard abeam only. It is taken to go on as between its last two
+// echoes; a beam that passes there says otherwise.
+static void extend(argus_grid_t *const self, const argus_knowledge_t *const knowledge,
+                   const argus_point_t echo, argus_point_t *const last) {
     const int32_t dx = echo.x_mm - last->x_mm;
     const int32_t dy = echo.y_mm - last->y_mm;
     const bool near = argus_abs(dx) <= APART_MOST_MM && argus_abs(dy) <= APART_MOST_MM;

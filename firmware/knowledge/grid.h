@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An occupancy grid that goes with the robot: where echoes were heard, less where beams passed since (histogrammic
-// in-motion mapping: J. Borenstein, Y. Koren, IEEE Trans. Robotics and Automation 7(4), 1991).
+// An occupancy grid that goes with the robot: where echoes were heard, less where beams passed since
+// (histogrammic in-motion mapping: J. Borenstein, Y. Koren, IEEE Trans. Robotics and Automation 7(4), 1991).
 #ifndef ARGUS_GRID_H
 #define ARGUS_GRID_H
 
@@ -26,9 +26,10 @@ void argus_grid_init(argus_grid_t *self);
 // Everything is free again.
 void argus_grid_clear(argus_grid_t *self);
 
-// After each SIP: the window follows the robot, what enters it is free; every fresh reading of a sonar that is in
-// use and no suspect lowers the cells that its axis passed and raises the one of its echo. Readings taken in a
-// turn do not count. A wall beside the robot is taken to go on: nobody hears it ahead. Cost: 16 cells a reading.
+// After each SIP: the window follows the robot, what enters it is free; every fresh reading of a sonar that
+// is in use and no suspect lowers the cells that its axis passed and raises the one of its echo. Readings
+// taken in a turn do not count. A wall beside the robot is taken to go on: nobody hears it ahead. Cost: 16
+// cells a reading.
 void argus_grid_see(argus_grid_t *self, const argus_knowledge_t *knowledge);
 
 // Something is there: for sure, or until some beams have passed there.

@@ -21,7 +21,8 @@
     X(watches_flank, 0, 1, 1, "S2: a wall beside the robot that its way slants into: STOP")                 \
     X(backs_to_turn, 0, 1, 1,                                                                               \
       "S7: backs away as far as a turn asks for, at the driving speed where S5 lets it")                    \
-    X(passes_abeam, 0, 1, 1, "S7: of the rear, who looks abeam need not read clear beyond 250 mm")          \
+    X(passes_abeam, 0, 1, 1,                                                                                \
+      "S7: of the rear, who looks abeam need not read clear beyond what the way back asks for")             \
     X(drives_seen, 0, 1, 1, "S1: drives as far as living sonars have seen the way; stops only to see more") \
     X(adapts_plan, 0, 1, 1, "S1: under policy adaptive any sonar may look ahead; else it stands for paper") \
     X(adapts_speed, 0, 1, 1, "S5: as fast as what is seen ahead allows; turns gently while it drives")      \

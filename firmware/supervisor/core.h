@@ -101,7 +101,7 @@ typedef struct {
 // The kind that the evidence gives it, and since when.
 typedef struct {
     uint32_t since_ms;
-    uint8_t kind;
+    uint8_t named;
 } argus_naming_t;
 
 typedef struct {

@@ -32,8 +32,8 @@ static argus_intent_t convict(argus_t *const self, const int sonar, const argus_
 // The name has stood for a while.
 static bool stands(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     argus_naming_t *const naming = &self->looks.naming[sonar];
-    if (naming->kind != kind) {
-        naming->kind = (uint8_t)kind;
+    if (naming->named != kind) {
+        naming->named = (uint8_t)kind;
         naming->since_ms = self->now_ms;
     }
     return kind != ARGUS_KIND_NONE && self->now_ms - naming->since_ms >= NAME_STANDS_MS;

@@ -331,6 +331,26 @@ static argus_intent_t perform_motion(argus_t *const self, const argus_intent_t *
     return nothing();
 }
 
+static argus_intent_t perform_end(argus_t *const self, const argus_act_t act) {
+    switch (act) {
+    case ARGUS_DO_GIVE_UP:
+        fail_mission(self);
+        return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true};
+    case ARGUS_DO_GO_OFFLINE:
+        enter(self, self->orders.shutdown ? ARGUS_MODE_CLOSED : ARGUS_MODE_OFFLINE);
+        break;
+    case ARGUS_DO_LEAVE:
+        enter(self, ARGUS_MODE_CLOSING);
+        break;
+    case ARGUS_DO_END:
+        enter(self, ARGUS_MODE_CLOSED);
+        break;
+    default:
+        break;
+    }
+    return nothing();
+}
+
 static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *const intent) {
     ARGUS_ASSERT(intent->act >= ARGUS_DO_CHECK && intent->act <= ARGUS_DO_END);
     switch ((argus_act_t)intent->act) {
@@ -348,20 +368,8 @@ static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *
         break;
     case ARGUS_DO_DECIDE:
         return decide(self);
-    case ARGUS_DO_GIVE_UP:
-        fail_mission(self);
-        return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true};
-    case ARGUS_DO_GO_OFFLINE:
-        enter(self, self->orders.shutdown ? ARGUS_MODE_CLOSED : ARGUS_MODE_OFFLINE);
-        break;
-    case ARGUS_DO_LEAVE:
-        enter(self, ARGUS_MODE_CLOSING);
-        break;
-    case ARGUS_DO_END:
-        enter(self, ARGUS_MODE_CLOSED);
-        break;
     default:
-        break;
+        return perform_end(self, (argus_act_t)intent->act);
     }
     return nothing();
 }
@@ -490,10 +498,11 @@ static argus_intent_t run(argus_t *const self) {
     }
 }
 
-// It drives, or would if there were room or a way.
+// It drives, or would if there were room or a way; who has cut the motors is waited for.
 static bool is_under_way(const argus_t *const self) {
     const argus_wait_t why = self->waiting.why;
-    const bool waits = self->mode == ARGUS_MODE_WAITING && (why == ARGUS_WAIT_WAY || why == ARGUS_WAIT_TURN);
+    const bool waits = self->mode == ARGUS_MODE_WAITING &&
+                       (why == ARGUS_WAIT_WAY || why == ARGUS_WAIT_TURN || why == ARGUS_WAIT_BUMPER);
     return self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused && !self->orders.passive &&
            (waits || self->mode == ARGUS_MODE_CHECKING || argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE));
 }

@@ -8,8 +8,8 @@
 #include "knowledge/knowledge.h"
 #include "task/way.h"
 
-// Progress is a way to go that is shorter than it ever was. It may grow when something is found in the way, but
-// only so often.
+// Progress is a way to go that is shorter than it ever was. It may grow when something is found in the way,
+// but only so often.
 typedef struct {
     int32_t least_mm;  // way to go since it has grown last, 0: not known yet
     int32_t best_mm;   // ... ever
@@ -23,8 +23,8 @@ typedef struct {
     argus_point_t waypoint[ARGUS_WAYPOINTS_MAX];
     uint16_t count;
     uint16_t next;
-    bool avoiding;   // the leg does not end at the waypoint
-    bool has_leg;    // where the robot now heads for
+    bool avoiding; // the leg does not end at the waypoint
+    bool has_leg;  // where the robot now heads for
     argus_leg_t leg;
     argus_progress_t progress;
     argus_wave_t wave; // scratch
@@ -40,24 +40,25 @@ bool argus_task_progress(argus_task_t *self, const argus_knowledge_t *knowledge,
 
 int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *knowledge);
 
-// Something stopped the robot: what is heard near, or the place just ahead where nothing is, is taken as occupied
-// until beams pass there.
+// Something stopped the robot: what is heard near, or the place just ahead where nothing is, is taken as
+// occupied until beams pass there.
 void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge, argus_echoes_t *echoes);
 
-// Chooses the next leg: the first straight part of the way to the waypoint. `stopped`: something is so near that the
-// robot cannot go on ahead. False: no way. Cost: argus_way_find().
+// Chooses the next leg: the first straight part of the way to the waypoint. `stopped`: something is so near
+// that the robot cannot go on ahead. False: no way. Cost: argus_way_find().
 bool argus_task_choose(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes,
                        bool stopped);
 
-// Where the robot cannot turn: a leg ahead, but for so much of a turn, if the corridor there is free. False: no
-// way that way either.
+// Where the robot cannot turn: a leg ahead, but for so much of a turn, if the corridor there is free. False:
+// no way that way either.
 bool argus_task_escape(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes,
                        int32_t by_cdeg);
 
 // Gives up a leg that is done, or on which something is seen by now.
 void argus_task_keep(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes);
 
-// On each SIP: `drives`, or waits for a way. True: the waypoint cannot be reached; 60 s without progress.
+// On each SIP: `drives`, or waits for a way or for room. True: the waypoint cannot be reached; 60 s without
+// progress.
 bool argus_task_is_hopeless(argus_task_t *self, const argus_knowledge_t *knowledge, bool drives);
 
 // The course was left (operator, reconnect): the next leg is chosen anew.

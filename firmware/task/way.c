@@ -8,18 +8,19 @@
 
 #define CELLS ARGUS_GRID_CELLS
 #define CELL_MM ARGUS_GRID_CELL_MM
-#define WIDE_ROOM_MM 50    // beside the swing circle: room to turn anywhere (S7 wants 20 under `argus`)
-#define NARROW_ROOM_MM 110 // beside the body: what a sonar at 50 degrees stops at, for an object range of 250 mm
-#define OUT_MM 450         // about the robot and the waypoint less will do: it may have to get out of there
+#define WIDE_ROOM_MM 50 // beside the swing circle: room to turn anywhere (S7 wants 20 under `argus`)
+#define NARROW_ROOM_MM \
+    110            // beside the body: what a sonar at 50 degrees stops at, for an object range of 250 mm
+#define OUT_MM 450 // about the robot and the waypoint less will do: it may have to get out of there
 #define TIGHT_MM 200
 #define PLANES 4
-#define LABELS 15    // neighbours are at most seven steps of the wave apart
+#define LABELS 15      // neighbours are at most seven steps of the wave apart
 #define NARROW_STEPS 5 // that the wave takes to a cell where there is no room to turn; 1 to others
 #define STEPS_MAX 1000
 #define IDLE_STEPS (NARROW_STEPS + 1) // without a new cell: nothing is on its way any more
 #define SAMPLE_MM 50
 #define LEG_LEAST_MM 100 // a leg is done at 60
-#define CUT_SAMPLES 4 // a straight leg may have so many more narrow samples than the way itself
+#define CUT_SAMPLES 4    // a straight leg may have so many more narrow samples than the way itself
 #define AHEAD_MM 1000
 #define AHEAD_OF_BODY_MM 100
 
@@ -59,7 +60,8 @@ static int32_t between_mm(const argus_point_t a, const argus_point_t b) {
                        argus_max(-most, argus_min(most, a.y_mm - b.y_mm)));
 }
 
-// What is passable --------------------------------------------------------------------------------------------
+// What is passable
+// --------------------------------------------------------------------------------------------
 
 // Cells to either side in a row `dy` rows off that are within the radius; -1: none.
 static int reach(const int32_t radius_mm, const int dy) {
@@ -123,7 +125,8 @@ static int32_t wide_mm(const argus_knowledge_t *const knowledge) {
 }
 
 // The planes of the labels are free for it until the wave begins.
-static void survey(argus_wave_t *const wave, const argus_ground_t *const ground, const argus_point_t waypoint) {
+static void survey(argus_wave_t *const wave, const argus_ground_t *const ground,
+                   const argus_point_t waypoint) {
     uint64_t *const occupied = wave->label[0];
     uint64_t *const tight = wave->label[1];
     for (int y = 0; y < CELLS; y++) {
@@ -144,7 +147,8 @@ static void survey(argus_wave_t *const wave, const argus_ground_t *const ground,
     memset(wave->label, 0, sizeof wave->label);
 }
 
-// The wave ----------------------------------------------------------------------------------------------------
+// The wave
+// ----------------------------------------------------------------------------------------------------
 
 static uint64_t reached(const argus_wave_t *const wave, const int y) {
     return wave->label[0][y] | wave->label[1][y] | wave->label[2][y] | wave->label[3][y];
@@ -176,8 +180,8 @@ static unsigned label_at(const int step) {
     return 1u + (unsigned)step % LABELS;
 }
 
-// The cells beside those of a row, and of the rows above and below it; every other step of the wave corners count:
-// its front is an octagon.
+// The cells beside those of a row, and of the rows above and below it; every other step of the wave corners
+// count: its front is an octagon.
 static uint64_t beside(const uint64_t row, const uint64_t others, const bool corners) {
     return widened(row, 1) | (corners ? widened(others, 1) : others);
 }
@@ -263,7 +267,8 @@ static int flood(argus_wave_t *const wave, const argus_cell_t from, const argus_
     return -1;
 }
 
-// Back to the robot's first leg ---------------------------------------------------------------------------------
+// Back to the robot's first leg
+// ---------------------------------------------------------------------------------
 
 // The neighbour that the wave reached soonest; false at its source.
 static bool descend(const argus_wave_t *const wave, argus_cell_t *const at, int *const steps) {
@@ -305,36 +310,43 @@ static int32_t narrow_samples(const argus_wave_t *const wave, const argus_ground
     return narrow;
 }
 
+static bool is_better(const bool straight, const bool wide, const bool wide_end) {
+    return straight && (wide || !wide_end);
+}
+
+static void end_leg_at(argus_leg_t *const leg, const argus_point_t to, const int steps) {
+    leg->to = to;
+    leg->to_go_mm = steps * CELL_MM;
+}
+
 // The farthest cell of the way that can be driven straight to, best one on which the robot can turn.
-static void pull(const argus_wave_t *const wave, const argus_ground_t *const ground, const argus_point_t waypoint,
-                 int steps, argus_leg_t *const leg) {
+static void pull(const argus_wave_t *const wave, const argus_ground_t *const ground,
+                 const argus_point_t waypoint, int steps, argus_leg_t *const leg) {
     argus_cell_t at = cell_in(ground->grid, robot_at(ground));
     int32_t narrow = CUT_SAMPLES;
     bool wide_end = false;
     bool straight = true;
+    bool first = true; // a leg so short would be done at once
     leg->to = robot_at(ground);
-    while (straight && descend(wave, &at, &steps)) {
+    while ((straight || first) && descend(wave, &at, &steps)) {
         const argus_point_t centre = centre_of(ground->grid, at);
         const bool wide = has(wave->wide, at);
-        const bool first = between_mm(robot_at(ground), leg->to) < LEG_LEAST_MM;
         narrow += wide ? 0 : CELL_MM / SAMPLE_MM;
         straight = narrow_samples(wave, ground, centre) <= narrow;
-        if (first || (straight && (wide || !wide_end))) {
-            leg->to = centre;
-            leg->to_go_mm = steps * CELL_MM;
+        if (first || is_better(straight, wide, wide_end)) {
+            end_leg_at(leg, centre, steps);
             wide_end = wide;
         }
-        straight = straight || first;
+        first = between_mm(robot_at(ground), leg->to) < LEG_LEAST_MM;
     }
     leg->direct = straight && narrow_samples(wave, ground, waypoint) <= narrow;
     if (leg->direct) {
-        leg->to = waypoint;
-        leg->to_go_mm = 0;
+        end_leg_at(leg, waypoint, 0);
     }
 }
 
-bool argus_way_find(argus_wave_t *const wave, const argus_ground_t *const ground, const argus_point_t waypoint,
-                    argus_leg_t *const leg) {
+bool argus_way_find(argus_wave_t *const wave, const argus_ground_t *const ground,
+                    const argus_point_t waypoint, argus_leg_t *const leg) {
     const argus_cell_t robot = cell_in(ground->grid, robot_at(ground));
     const argus_cell_t goal = cell_in(ground->grid, waypoint);
     if (!is_within(robot)) {

@@ -154,7 +154,7 @@ def flaps(sil: MutatedSil, rng: random.Random) -> str:
         sil.wait(rng.uniform(0.02, 0.6))
         sil.plug()
         sil.wait(rng.uniform(0.02, 0.6))
-    sil.slack_mm += 100
+    sil.slack_mm += 75 * count  # a SIP unseen each time, at the fastest
     return f"{count} flaps"
 
 

@@ -64,7 +64,8 @@ def _drive(mission: Mission) -> End:
 
 def _set_mission(name: str, seed: int) -> Mission:
     place = place_of(f"{name}-{seed}", (SPLIT, seed))
-    return Mission(place.path, place.course, tuple(place.begins), seed=seed, limit_s=LIMIT_S)
+    x, y, heading = place.begins
+    return Mission(place.path, place.course, (x, y, heading), seed=seed, limit_s=LIMIT_S)
 
 
 def _drive_set(job: tuple[str, int]) -> End:

@@ -3,6 +3,9 @@
 // the other.
 #include "adjustment/guard.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "adjustment/plan.h"
@@ -18,6 +21,7 @@ static argus_knowledge_t k;
 static argus_echoes_t e;
 static argus_rays_t rays;
 static argus_guard_t g;
+static char text[64];
 
 static void use(int32_t profile) {
     config.profile = profile;
@@ -203,6 +207,60 @@ void test_s7_a_touch_in_a_turn_is_the_first_or_one_more(void) {
     k.sonar[7].reading_mm = k.sonar[0].reading_mm;
     TEST_ASSERT_EQUAL(ARGUS_TOUCH_FIRST, argus_guard_touch(&g, 7, &at, &left));
     TEST_ASSERT_FALSE(left);
+}
+
+// A turn of 20 degrees at most asks for what the body sweeps in it, under `argus`: beside a wall it may turn
+// away from it, not into it.
+void test_s7_a_nudge_asks_for_what_the_body_sweeps(void) {
+    use(ARGUS_PROFILE_ARGUS);
+    k.sonar[0].reading_mm = 150; // walls at 286 mm: 73 beside the body
+    k.sonar[15].reading_mm = 150;
+    TEST_ASSERT_FALSE(argus_guard_may_turn(&g));
+    TEST_ASSERT_TRUE(argus_guard_may_nudge(&g, -500));
+    TEST_ASSERT_FALSE(argus_guard_may_nudge(&g, -2000)); // the rear corner comes too near
+    TEST_ASSERT_FALSE(argus_guard_may_nudge(&g, 2000));  // the front one
+    k.sonar[15].reading_mm = 3000;
+    TEST_ASSERT_TRUE(argus_guard_may_nudge(&g, -2000));
+    TEST_ASSERT_FALSE(argus_guard_may_nudge(&g, -2001));
+    TEST_ASSERT_FALSE(argus_guard_may_nudge(&g, 2000));
+    remember_at(-230, 290);
+    TEST_ASSERT_FALSE(argus_guard_may_nudge(&g, -2000));
+}
+
+void test_s7_who_may_not_nudge(void) {
+    TEST_ASSERT_FALSE(argus_guard_may_nudge(&g, 500)); // the paper
+    use(ARGUS_PROFILE_ARGUS);
+    TEST_ASSERT_TRUE(argus_guard_may_nudge(&g, 500));
+    g.bumpers = 1;
+    TEST_ASSERT_FALSE(argus_guard_may_nudge(&g, 500));
+    g.bumpers = 0;
+    g.active = false;
+    TEST_ASSERT_FALSE(argus_guard_may_nudge(&g, 500));
+}
+
+// Whatever is near: a nudge that is allowed leaves 40 mm round the body all the way.
+void test_s7_no_nudge_brings_the_body_near_anything(void) {
+    use(ARGUS_PROFILE_ARGUS);
+    srand(1);
+    int allowed = 0;
+    for (int i = 0; i < 20000; i++) {
+        const int sonar = rand() % ARGUS_SONARS;
+        const int by = rand() % 4001 - 2000;
+        const uint16_t before = k.sonar[sonar].reading_mm;
+        k.sonar[sonar].reading_mm = (uint16_t)(100 + rand() % 400);
+        const argus_point_t at = argus_echo_robot(&k, sonar);
+        const bool may = argus_guard_may_nudge(&g, by);
+        allowed += may;
+        for (int part = 1; part <= 5 && may; part++) {
+            const double turned = by * part / 5 / 18000.0 * 3.14159265358979;
+            const double x = at.x_mm * cos(turned) + at.y_mm * sin(turned);
+            const double y = at.y_mm * cos(turned) - at.x_mm * sin(turned);
+            snprintf(text, sizeof text, "seed 1, %d: sonar %d, by %d", i, sonar, by);
+            TEST_ASSERT_TRUE_MESSAGE(x > 247 || x < -338 || fabs(y) > 249, text);
+        }
+        k.sonar[sonar].reading_mm = before;
+    }
+    TEST_ASSERT_TRUE(allowed > 5000 && allowed < 19000);
 }
 
 // S7: back -------------------------------------------------------------------------------------------------

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: Table IV, bits that are none of the six, and what covers what; all 62 lists: tests/core.
+#include "adjustment/plan.h"
+
 #include "adjustment/policy_cover.h"
 
 #include "unity.h"

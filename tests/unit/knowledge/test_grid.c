@@ -169,7 +169,8 @@ void test_two_echoes_that_are_no_wall_along_the_way_go_on_nowhere(void) {
     TEST_ASSERT_TRUE(occupied() <= 1);
 }
 
-// Wherever it is: what stands within 3.5 m stays, what is farther than the window is gone when the robot returns.
+// Wherever it is: what stands within 3.5 m stays, what is farther than the window is gone when the robot
+// returns.
 void test_the_window_goes_with_the_robot(void) {
     srand(1);
     for (int i = 0; i < 200; i++) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: the first leg of the way: it is free, it gets on, and there is none only where there is none.
+// Rule under attack: the first leg of the way: it is free, it gets on, and there is none only where there is
+// none.
 #include "task/way.h"
 
 #include <stdio.h>
