@@ -6,6 +6,6 @@
 #include "robot/robot.h"
 
 // `disabled`: bit mask over sonar numbers; only the forward-facing ones count.
-argus_failure_t argus_failure_of(const argus_robot_t *robot, argus_mask_t disabled);
+argus_failure_t argus_failure_of(const argus_robot_t *any_end, argus_mask_t disabled);
 
 #endif

@@ -96,6 +96,7 @@ typedef struct {
 typedef struct {
     uint32_t odometer_mm;
     uint8_t acquittals;
+    uint8_t borne_out; // looks in a row that left it its name
 } argus_hold_t;
 
 // The kind that the evidence gives it, and since when.

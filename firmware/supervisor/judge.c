@@ -54,6 +54,7 @@ static void name(argus_t *const self, const int sonar) {
     }
     const bool held = self->mode == ARGUS_MODE_VERIFYING || self->looks.asked;
     if (s->health == ARGUS_SUSPECT && !argus_evidence_holds(&self->evidence, sonar) && !held) {
+        self->looks.hold[sonar].borne_out = 0;
         argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, s->reading_mm);
         argus_replan(self);
     }

@@ -12,6 +12,7 @@
 #define HOLD_FORGET_MM 4000u // ... and forgotten after this one
 #define LOOK_COST_MS 9000u   // what a look takes: two turns aside, the way back, two rounds of readings each
 #define SIP_MS 100u
+#define PROOFS 2 // looks in a row that leave a sonar its name
 #define SETTLE_MOST 5 // looks at the goal: a verdict takes disagreements at more than one time
 
 static bool is_held(const argus_t *const self, const int sonar) {
@@ -83,6 +84,7 @@ static void acquit(argus_t *const self, const int sonar) {
     if (self->knowledge.odometer_mm - hold->odometer_mm > HOLD_FORGET_MM) {
         hold->acquittals = 0;
     }
+    hold->borne_out = 0;
     hold->acquittals = (uint8_t)argus_min(hold->acquittals + 1, UINT8_MAX);
     hold->odometer_mm = self->knowledge.odometer_mm;
     if (s->health == ARGUS_SUSPECT) {
@@ -100,6 +102,14 @@ void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
     }
 }
 
+// A name that looks do not clear, one after the other, while nothing moves about: others have looked along its
+// bearing for that alone, each time anew (paper: Algorithm 2).
+static bool is_proved(argus_t *const self, const int sonar) {
+    argus_hold_t *const hold = &self->looks.hold[sonar];
+    hold->borne_out = self->evidence.busy ? 0 : (uint8_t)argus_min(hold->borne_out + 1, PROOFS);
+    return hold->borne_out >= PROOFS;
+}
+
 // What the looks have shown of one sonar.
 static void conclude(argus_t *const self, const int sonar) {
     const bool suspect = self->knowledge.sonar[sonar].health == ARGUS_SUSPECT;
@@ -107,8 +117,11 @@ static void conclude(argus_t *const self, const int sonar) {
     if (argus_is_out(&self->knowledge, sonar)) {
         return;
     }
-    if (asked && argus_evidence_names(&self->evidence, sonar) == ARGUS_KIND_NONE) {
+    const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
+    if (asked && kind == ARGUS_KIND_NONE) {
         acquit(self, sonar);
+    } else if (suspect && kind == self->knowledge.sonar[sonar].kind && is_proved(self, sonar)) {
+        argus_disable(self, sonar, kind);
     } else if (suspect) {
         argus_leave_open(self, (argus_mask_t)(1u << sonar));
     }

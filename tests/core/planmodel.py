@@ -91,7 +91,9 @@ def least_turn(disabled: frozenset[int]) -> Plan:
     """Least sweep of every set that covers all, then least count, then least sum, then who comes first."""
     turns = sorted(candidates(disabled))
     sets = [c for n in range(1, len(turns) + 1) for c in combinations(turns, n) if covers_all(c, disabled)]
-    return one_pass(min(sets, key=lambda c: (Plan(c).swept_deg, len(c), sum(map(abs, c)), c)))
+    plans = [Plan(rotations) for rotations in sets]
+    best = min(plans, key=lambda p: (p.swept_deg, len(p.rotations), sum(map(abs, p.rotations)), p.rotations))
+    return one_pass(best.rotations)
 
 
 def fewest(disabled: frozenset[int]) -> Plan:

@@ -124,10 +124,9 @@ def judge(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "main.c").write_text(PROGRAM, encoding="utf-8")
     firmware = ROOT / "firmware"
     sources = [firmware / name for name in SOURCES]
-    include = ["-I", firmware, "-I", firmware / "include"]
-    subprocess.run(
-        ["gcc", "-std=c11", "-O2", *include, "-o", folder / "judge", folder / "main.c", *sources], check=True
-    )
+    include = ["-I", str(firmware), "-I", str(firmware / "include")]
+    output = ["-o", str(folder / "judge"), str(folder / "main.c"), *map(str, sources)]
+    subprocess.run(["gcc", "-std=c11", "-O2", *include, *output], check=True)
     return folder / "judge"
 
 

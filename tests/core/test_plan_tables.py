@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import subprocess
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from tests.core.planmodel import Plan
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = [
+    "adjustment/cover.c",
     "adjustment/plan.c",
     "adjustment/policy_cover.c",
     "adjustment/policy_walk.c",
@@ -50,7 +52,11 @@ SUMS = {
     "fewest": (128, 8520, 5960),
     "least-turn": (128, 8520, 5960),
 }
-MODELS = {"paper": planmodel.walk, "fewest": planmodel.fewest, "least-turn": planmodel.least_turn}
+MODELS: dict[str, Callable[[frozenset[int]], Plan]] = {
+    "paper": planmodel.walk,
+    "fewest": planmodel.fewest,
+    "least-turn": planmodel.least_turn,
+}
 
 
 @dataclass(frozen=True)
