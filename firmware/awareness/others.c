@@ -287,30 +287,54 @@ static void count_silence(argus_evidence_t *const self, const argus_knowledge_t 
     }
 }
 
+// Contradicted by who looked there, and by nothing excused.
+static bool is_odd(const tally_t *const tally) {
+    return tally->agree == 0 && tally->quiet == 0 && tally->differ > 0 && !tally->excused;
+}
+
+static bool is_borne_out(const tally_t *const tally) {
+    return tally->agree > 0 && tally->agree >= tally->differ;
+}
+
+// The axis first: who is a witness depends on what is counted.
+static void count_news(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar, argus_ping_t *const at, const tally_t *const tally) {
+    const bool odd = is_odd(tally);
+    const int32_t increment = increment_of(self, knowledge, sonar, odd);
+    doubt_axis(self, knowledge, sonar, at, odd ? CONTRADICTED : AGREED, increment);
+    count(self, knowledge, sonar, at, odd ? tally->against : 0);
+    at->counted = 1;
+}
+
+// Divided voices tell nothing of a lag, nor what is contradicted while something moves before it.
+static bool tells_of_time(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                          const int sonar, const said_t verdict, const bool fresh) {
+    const bool stirred =
+        verdict == CONTRADICTED && argus_clutter_beside(self, knowledge, sonar, ARGUS_UNREST_MS);
+    return verdict != DIVIDED && (fresh || verdict != UNSEEN) && !stirred;
+}
+
+// That it hears shows also where a silence of it has counted already.
+static void note_hearing(argus_case_t *const c, const argus_ping_t *const at) {
+    c->borne_out = c->borne_out || (argus_ping_is_echo(at) && c->score[ARGUS_TEST_PEERS] > 0);
+}
+
 static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const int back, const tally_t *const tally, const bool fresh) {
     argus_case_t *const c = &self->of[sonar];
     argus_ping_t *const at = argus_pings_mark(&c->pings, back);
     const said_t verdict = verdict_of(tally);
-    const bool agrees = tally->agree > 0 && tally->agree >= tally->differ;
-    const bool odd = tally->agree == 0 && tally->quiet == 0 && tally->differ > 0 && !tally->excused;
     at->weighed = verdict != UNSEEN || tally->differ > 0;
     if (verdict == QUIET && tally->differ == 0) {
         count_silence(self, knowledge, sonar, at);
     }
-    if ((odd || agrees) && is_news(c, at)) {
-        const int32_t increment = increment_of(self, knowledge, sonar, odd);
-        doubt_axis(self, knowledge, sonar, at, odd ? CONTRADICTED : AGREED, increment);
-        count(self, knowledge, sonar, at,
-              odd ? tally->against : 0); // after that: who is a witness depends on it
-        at->counted = 1;
+    if ((is_odd(tally) || is_borne_out(tally)) && is_news(c, at)) {
+        count_news(self, knowledge, sonar, at, tally);
     }
-    if (fresh && agrees && argus_ping_is_echo(at) && c->score[ARGUS_TEST_PEERS] > 0) {
-        c->borne_out = true; // that it hears shows also where a silence of it has counted already
+    if (fresh && is_borne_out(tally)) {
+        note_hearing(c, at);
     }
-    const bool stirred =
-        verdict == CONTRADICTED && argus_clutter_beside(self, knowledge, sonar, ARGUS_UNREST_MS);
-    if (verdict != DIVIDED && (fresh || verdict != UNSEEN) && !stirred) {
+    if (tells_of_time(self, knowledge, sonar, verdict, fresh)) {
         doubt_time(self, knowledge, sonar, back, verdict);
     }
 }

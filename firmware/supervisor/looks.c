@@ -12,7 +12,7 @@
 #define HOLD_FORGET_MM 4000u // ... and forgotten after this one
 #define LOOK_COST_MS 9000u   // what a look takes: two turns aside, the way back, two rounds of readings each
 #define SIP_MS 100u
-#define PROOFS 2 // looks in a row that leave a sonar its name
+#define PROOFS 2      // looks in a row that leave a sonar its name
 #define SETTLE_MOST 5 // looks at the goal: a verdict takes disagreements at more than one time
 
 static bool is_held(const argus_t *const self, const int sonar) {
@@ -102,8 +102,8 @@ void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
     }
 }
 
-// A name that looks do not clear, one after the other, while nothing moves about: others have looked along its
-// bearing for that alone, each time anew (paper: Algorithm 2).
+// A name that looks do not clear, one after the other, while nothing moves about: others have looked along
+// its bearing for that alone, each time anew (paper: Algorithm 2).
 static bool is_proved(argus_t *const self, const int sonar) {
     argus_hold_t *const hold = &self->looks.hold[sonar];
     hold->borne_out = self->evidence.busy ? 0 : (uint8_t)argus_min(hold->borne_out + 1, PROOFS);
