@@ -49,7 +49,8 @@ def test_open_floor_and_glass_take_echoes_away() -> None:
                 near = along_axis_mm(x, y, pose.heading_deg + mount.heading_deg) < NO_ECHO_MM
                 seen["echo" if echo else ("glass" if near else "open")] += 1
 
-    run(Mission("open-office", COURSE, sonar={"crosstalk": 0.0}, limit_s=60), trace=note)
+    there_and_back = (*COURSE, *reversed(COURSE[:-1]), (0.0, 0.0))
+    run(Mission("open-office", there_and_back, sonar={"crosstalk": 0.0}, limit_s=60), trace=note)
     total = sum(seen.values())
     assert seen["open"] >= 0.03 * total, seen
     assert seen["glass"] >= 0.03 * total, seen
