@@ -51,7 +51,8 @@ def test_the_commands_run_in_their_order(tmp_path: Path) -> None:
 
 def test_the_drive_shows_what_the_text_says() -> None:
     told = run("faults", SAMPLE).stdout.decode()
-    assert re.findall(r"^sonar/front/(\d\d) disabled", told, re.MULTILINE) == ["03", "06"]
+    found = re.findall(r"^sonar/front/(\d\d) (?:disabled as|suspect .*perhaps) (\w+)", told, re.MULTILINE)
+    assert found == [("03", "off"), ("06", "wrong")]
     assert f"```\n{told}```" in DOCS, f"docs/logs.md shows another result; it is now:\n{told}"
     assert any(line in DOCS for line in run("decode", SAMPLE).stdout.decode().splitlines()[1:])
     assert re.search(r"^ *3 +\d+ .* 64\.\d%", run("stats", SAMPLE).stdout.decode(), re.MULTILINE)

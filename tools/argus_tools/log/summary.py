@@ -68,10 +68,10 @@ class Summary:
         """Return the lines, of what the manager knows at the end and how many places of the file were not read."""
         health = status["health"]
         out = self._gone(health)
-        lasting = [
+        lasting = [  # a doubt without a name is not acted on, so it is not told either
             number
             for number, since in sorted(self._since.items())
-            if health[number] == SUSPECT and self._now - since >= LASTING_S
+            if health[number] == SUSPECT and status["kind"][number] and self._now - since >= LASTING_S
         ]
         out += self._suspects(lasting, status["kind"])
         out += [
@@ -123,9 +123,8 @@ class Summary:
             ]
         out = []
         for number in lasting:
-            kind = f", perhaps {kinds[number]}" if kinds[number] else ""
             held = f"for the last {self._now - self._since[number]:.0f} s"
-            out.append(f"{_name(number):<14} suspect {held}{kind}; not proven")
+            out.append(f"{_name(number):<14} suspect {held}, perhaps {kinds[number]}; not proven")
         return out
 
     def _counts(self, status: dict[str, Any], lasting: int, unread: int) -> str:
