@@ -12,8 +12,9 @@
 #define HOLD_FORGET_MM 4000u // ... and forgotten after this one
 #define LOOK_COST_MS 9000u   // what a look takes: two turns aside, the way back, two rounds of readings each
 #define SIP_MS 100u
-#define PROOFS 2      // looks in a row that leave a sonar its name
-#define SETTLE_MOST 5 // looks at the goal: a verdict takes disagreements at more than one time
+#define PROOFS 3         // looks in a row that leave a sonar its name,
+#define PROOFS_AT_GOAL 2 // ... where one follows at once upon the other
+#define SETTLE_MOST 5    // looks at the goal: a verdict takes disagreements at more than one time
 
 static bool is_held(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
@@ -103,11 +104,14 @@ void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
 }
 
 // A name that looks do not clear, one after the other, while nothing moves about: others have looked along
-// its bearing for that alone, each time anew (paper: Algorithm 2).
-static bool is_proved(argus_t *const self, const int sonar) {
+// its bearing for that alone, each time anew (paper: Algorithm 2). What its own readings tell, looks do not
+// prove.
+static bool is_proved(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     argus_hold_t *const hold = &self->looks.hold[sonar];
-    hold->borne_out = self->evidence.busy ? 0 : (uint8_t)argus_min(hold->borne_out + 1, PROOFS);
-    return hold->borne_out >= PROOFS;
+    const bool by_others = kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_WRONG;
+    const bool counts = by_others && kind == self->knowledge.sonar[sonar].kind && !self->evidence.busy;
+    hold->borne_out = counts ? (uint8_t)argus_min(hold->borne_out + 1, PROOFS) : 0;
+    return hold->borne_out >= (self->looks.settling > 0 ? PROOFS_AT_GOAL : PROOFS);
 }
 
 // What the looks have shown of one sonar.
@@ -120,7 +124,7 @@ static void conclude(argus_t *const self, const int sonar) {
     const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
     if (asked && kind == ARGUS_KIND_NONE) {
         acquit(self, sonar);
-    } else if (suspect && kind == self->knowledge.sonar[sonar].kind && is_proved(self, sonar)) {
+    } else if (suspect && is_proved(self, sonar, kind)) {
         argus_disable(self, sonar, kind);
     } else if (suspect) {
         argus_leave_open(self, (argus_mask_t)(1u << sonar));

@@ -19,7 +19,15 @@ from types import FrameType
 from typing import NoReturn
 
 from hil_sim.demo import picture, report
-from hil_sim.demo.judge import Injected, Task, Verdict, clock_offset_s, judge
+from hil_sim.demo.judge import (
+    PAPER_LIMIT_S,
+    TIME_LIMIT_S,
+    Injected,
+    Task,
+    Verdict,
+    clock_offset_s,
+    judge,
+)
 from hil_sim.demo.live import view
 from hil_sim.demo.runner import ENDING, Recording, Run, Setup
 from hil_sim.demo.scene import Drive
@@ -259,10 +267,12 @@ def _ended(number: int, _frame: FrameType | None) -> NoReturn:
 
 def _demonstrate(arguments: argparse.Namespace) -> int:
     scenario = _scenario(arguments)
-    task = Task(_goal(scenario, load_world(scenario.world)), arguments.fail)
+    limit_s = PAPER_LIMIT_S if arguments.profile == "paper" else TIME_LIMIT_S
+    task = Task(_goal(scenario, load_world(scenario.world)), arguments.fail, limit_s)
     setup = _prepare(arguments, scenario)
     if not arguments.json:
-        print(f"demo: the drive takes about two minutes; records in {arguments.out}", flush=True)
+        takes = "two minutes" if arguments.profile == "paper" else "half a minute"
+        print(f"demo: the drive takes about {takes}; records in {arguments.out}", flush=True)
     recording = _drive(arguments, setup)
     ended = time.monotonic()
     verdict = judge(recording.truth, recording.events, task)

@@ -22,7 +22,9 @@ Record = Mapping[str, Any]
 REACHED_MM: Final = 150.0
 FAULT_LEAD_MM: Final = 1500.0
 """A fault must come at least this much of the way before the goal, or the drive proves nothing."""
-TIME_LIMIT_S: Final = 120.0
+TIME_LIMIT_S: Final = 60.0
+PAPER_LIMIT_S: Final = 120.0
+"""The paper's method stops every 200 mm."""
 IDLE_FACTORS: Final = (0.5, 1.0, 2.0)
 KIND_NAME: Final = {1: "off", 2: "silent", 3: "stuck", 4: "wrong", 5: "garbage", 6: "slow", 7: "intermittent"}
 

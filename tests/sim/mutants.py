@@ -225,7 +225,8 @@ def impossible_value(sil: MutatedSil, rng: random.Random) -> str:
             ("right_vel", -32768), ("th", 30000), ("flags", 0), ("flags", 0xFFFF), ("control", -32768),
         )
     )  # fmt: skip
-    sil.lying.alter = lambda packet: dataclasses.replace(packet, **{field: value})
+    changed: dict[str, Any] = {field: value}
+    sil.lying.alter = lambda packet: dataclasses.replace(packet, **changed)
     sil.wait(rng.choice((0.1, 0.5, 3.0)))
     sil.lying.alter = None
     sil.slack_mm += 200

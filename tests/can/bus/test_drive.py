@@ -94,7 +94,7 @@ def test_heartbeat(frames: list[Frame]) -> None:
     assert text(beats[-1][1]["State"]) == "CLOSED"
     assert text(beats[-2][1]["Failure"]) == "IsMinor"
     assert beats[-2][1]["Disabled"] == 2
-    assert {text(beat["Mode"]) for _, beat in beats} >= {"DRIVING", "SWEEPING", "STEPPING"}
+    assert {text(beat["Mode"]) for _, beat in beats} >= {"CHECKING", "DRIVING", "VERIFYING"}
 
 
 def test_health_shows_the_failed_sonars(frames: list[Frame]) -> None:

@@ -19,11 +19,16 @@ static bool is_worn;      // a bit of the first word stays 0
 static bool cache_is_old; // since an erasure
 static unsigned erasures;
 
+static bool is_in_a_sector(const stm32_register_t *at) {
+    const stm32_register_t *const first = &stm32_fake_sector[0][0];
+    return at >= first && at < first + sizeof stm32_fake_sector / sizeof stm32_fake_sector[0][0];
+}
+
 uint32_t stm32_get(const stm32_register_t *at) {
     if (at == &stm32_fake_flash.sr) {
         return busy > 0 ? busy--, STM32_FLASH_SR_BUSY : 0;
     }
-    if (at >= stm32_fake_sector[0] && at < stm32_fake_sector[2]) {
+    if (is_in_a_sector(at)) {
         TEST_ASSERT_EQUAL_MESSAGE(0, busy, "flash is read while it is busy");
         TEST_ASSERT_FALSE_MESSAGE(cache_is_old, "flash is read through an old cache");
     }
@@ -63,7 +68,7 @@ void stm32_set(stm32_register_t *at, uint32_t value) {
         keys++;
     } else if (at == &stm32_fake_flash.cr) {
         command(value);
-    } else if (at >= stm32_fake_sector[0] && at < stm32_fake_sector[2]) {
+    } else if (is_in_a_sector(at)) {
         TEST_ASSERT_EQUAL_HEX32(STM32_FLASH_CR_WORDS | STM32_FLASH_CR_PROGRAM, stm32_fake_flash.cr);
         *at &= value;
         busy = 2;
