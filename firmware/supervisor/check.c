@@ -26,12 +26,8 @@ static argus_mask_t find_suspects(argus_t *const self) {
 }
 
 // The paper verifies every suspect at once; elsewhere a look must pay.
-static bool is_look_due(argus_t *const self, const argus_mask_t suspects) {
-    if (!argus_rules(self)->evidence) {
-        return suspects != 0;
-    }
-    argus_flag_suspects(self, suspects);
-    return argus_look_pays(self);
+static bool is_look_due(const argus_t *const self, const argus_mask_t suspects) {
+    return argus_rules(self)->evidence ? argus_look_pays(self) : suspects != 0;
 }
 
 static argus_intent_t verify(const argus_mask_t suspects) {
@@ -41,12 +37,11 @@ static argus_intent_t verify(const argus_mask_t suspects) {
 argus_intent_t argus_conclude_check(argus_t *const self) {
     ARGUS_ASSERT(self->mode == ARGUS_MODE_CHECKING);
     const argus_mask_t suspects = (argus_mask_t)(find_suspects(self) | argus_open_suspects(self));
-    const bool wanted = is_look_due(self, suspects);
+    argus_flag_suspects(self, suspects);
     self->looks.check_ms = self->now_ms;
-    if (wanted && !self->orders.passive && !self->orders.stay) {
+    if (is_look_due(self, suspects) && !self->orders.passive && !self->orders.stay) {
         return verify(suspects);
     }
-    argus_flag_suspects(self, suspects);
     declare_healthy(self);
     argus_replan(self);
     self->checked = true;
@@ -88,11 +83,9 @@ argus_intent_t argus_check_beside(argus_t *const self) {
     if (self->orders.passive && argus_rules(self)->disparity) {
         drop_suspicions(self);
     }
-    if (may_verify(self) && is_look_due(self, suspects)) {
-        return verify(suspects);
-    }
     argus_flag_suspects(self, suspects);
-    return (argus_intent_t){0};
+    const bool looks = may_verify(self) && is_look_due(self, suspects);
+    return looks ? verify(suspects) : (argus_intent_t){0};
 }
 
 static void say_witnesses(argus_t *const self) {

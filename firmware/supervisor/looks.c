@@ -57,13 +57,15 @@ static argus_mask_t alone(const argus_t *const self) {
 
 // Who is named ahead costs what the robot would drive faster without it.
 void argus_count_loss(argus_t *const self) {
+    if ((open_names(self) & argus_robot_ahead(self->knowledge.robot)) == 0) {
+        self->looks.lost_ms = 0;
+        return;
+    }
     const argus_guard_t guard = argus_guard(self);
     const int32_t free_mm_s = argus_guard_free_speed_mm_s(&guard);
-    const int32_t lost_mm_s = free_mm_s - argus_guard_speed_mm_s(&guard);
-    const bool doubted = (open_names(self) & argus_robot_ahead(self->knowledge.robot)) != 0;
+    const int32_t lost_mm_s = free_mm_s - self->config.speed_mm_s; // that of one who doubts
     ARGUS_ASSERT(free_mm_s > 0 && lost_mm_s >= 0);
-    self->looks.lost_ms =
-        doubted ? self->looks.lost_ms + SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s : 0;
+    self->looks.lost_ms += SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s;
 }
 
 // To hire or to buy: a look is bought when what it costs has been lost, so both together are never more than

@@ -248,14 +248,14 @@ static argus_intent_t look_ahead(const argus_t *const self, argus_travel_t *cons
 }
 
 // S3: a MOVE that ends where it should without us, renewed on each SIP.
-static argus_intent_t move_on(const argus_t *const self, argus_travel_t *const mine) {
+static argus_intent_t move_on(const argus_t *const self, argus_travel_t *const mine, const int32_t free_mm) {
     const argus_guard_t guard = argus_guard(self);
     const int32_t way_mm = left_mm(self, mine);
     const bool may_steer = way_mm > STEER_LEG_MM;
     const bool weaves = may_steer && argus_guard_is_blind(&guard) && argus_wanted_sonars(self) != 0;
     const bool steers = weaves || (may_steer && off_bearing(self, mine) > STEER_CDEG);
     return (argus_intent_t){.act = ARGUS_DO_DRIVE,
-                            .mm = argus_min(way_mm, argus_guard_ahead_mm(&guard)),
+                            .mm = argus_min(way_mm, free_mm),
                             .speed_mm_s = argus_guard_speed_mm_s(&guard),
                             .steers = steers && argus_guard_may_turn(&guard),
                             .cdeg = weaves ? weave_cdeg(self, mine) : bearing(self, mine),
@@ -275,13 +275,14 @@ static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const 
     if (argus_guard_seen_mm(&guard) < argus_min(left_mm(self, mine), SEEN_LEAST_MM)) {
         return look_ahead(self, mine);
     }
-    if (argus_guard_ahead_mm(&guard) == 0) {
+    const int32_t free_mm = argus_guard_ahead_mm(&guard);
+    if (free_mm == 0) {
         return nothing(); // a fresh reading will tell
     }
     if (!is_heeded(self, mine)) {
         return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_MOTORS};
     }
-    return move_on(self, mine);
+    return move_on(self, mine, free_mm);
 }
 
 static argus_intent_t step(const argus_t *const self, const int32_t way_mm) {

@@ -30,9 +30,14 @@ def seeds(text: str) -> range:
     return range(int(match[1]), int(match[2] or match[1]) + 1)
 
 
+def listed(text: str) -> list[str]:
+    """Return the parts of a list with commas."""
+    return [part for part in text.split(",") if part]
+
+
 def kinds(text: str) -> list[str]:
     """Return the kinds of a list with commas."""
-    found = [part for part in text.split(",") if part]
+    found = listed(text)
     for kind in found:
         if kind not in plan.KINDS:
             raise argparse.ArgumentTypeError(f"'{kind}' is no kind; there are {', '.join(plan.KINDS)}")

@@ -15,7 +15,17 @@ from typing import Any, Final
 from argus_tools.formats.base import LogError
 
 from hil_sim.bench import cli_passive, journey_cli, plan, pool, quick
-from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_USAGE, Parser, jobs, kinds, say, seeds
+from hil_sim.bench.arguments import (
+    EXIT_FAILED,
+    EXIT_INTERRUPTED,
+    EXIT_USAGE,
+    Parser,
+    jobs,
+    kinds,
+    listed,
+    say,
+    seeds,
+)
 from hil_sim.bench.figures import summarise
 from hil_sim.bench.judge import RECORD_FORMAT
 from hil_sim.bench.runner import fixed_core, keep
@@ -47,10 +57,6 @@ exit codes: 0 all missions ran (and with --quick, all is within the bounds),
 """
 
 
-def _profiles(text: str) -> list[str]:
-    return [part for part in text.split(",") if part]
-
-
 def parser() -> argparse.ArgumentParser:
     """Return the argument parser of the bench."""
     result = Parser(
@@ -70,7 +76,7 @@ def parser() -> argparse.ArgumentParser:
     what.add_argument("--seeds", type=seeds, metavar="A-B", help="seeds (default 1-10)")
     what.add_argument(
         "--profiles",
-        type=_profiles,
+        type=listed,
         metavar="P,P",
         help=f"profiles, each with settings if wanted: argus:step_mm=100 (default {_PROFILES})",
     )
@@ -112,7 +118,7 @@ def run_cases(cases: Sequence[plan.Case], store: Store, arguments: argparse.Name
 
 
 def _cases(arguments: argparse.Namespace) -> list[plan.Case]:
-    profiles = arguments.profiles or _profiles(_PROFILES)
+    profiles = arguments.profiles or listed(_PROFILES)
     for profile in profiles:
         plan.check_profile(profile)
     return plan.make_cases(

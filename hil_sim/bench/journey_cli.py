@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from hil_sim.bench import journey as journeys
 from hil_sim.bench import plan, pool
-from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, Parser, jobs, say, seeds
+from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, Parser, jobs, listed, say, seeds
 from hil_sim.bench.journey_report import write_report
 from hil_sim.bench.journey_track import RECORD_FORMAT, failed, run_case, work
 from hil_sim.bench.runner import fixed_core, keep
@@ -42,10 +42,6 @@ exit codes: 0 all missions ran, 1 a mission failed, 2 wrong argument or file, 13
 """
 
 
-def _list(text: str) -> list[str]:
-    return [part for part in text.split(",") if part]
-
-
 def parser() -> argparse.ArgumentParser:
     """Return the argument parser of the bench."""
     result = Parser(
@@ -59,7 +55,7 @@ def parser() -> argparse.ArgumentParser:
     what = result.add_argument_group("what is run")
     what.add_argument(
         "--rows",
-        type=_list,
+        type=listed,
         metavar="R,R",
         help=f"each one of {grounds}, with + and any of {conditions} (default: {','.join(journeys.DEFAULT_ROWS)})",
     )
@@ -72,7 +68,7 @@ def parser() -> argparse.ArgumentParser:
     what.add_argument("--seeds", type=seeds, metavar="A-B", help="seeds (default 1-5)")
     what.add_argument(
         "--profiles",
-        type=_list,
+        type=listed,
         metavar="P,P",
         help="profiles, each with settings if wanted: argus:caution=200 (default argus,paper)",
     )
