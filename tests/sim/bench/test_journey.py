@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import dataclasses
-import os
-import subprocess
-import sys
 
 import pytest
+from bench.processes import outputs
 
 from hil_sim.bench import journey, plan
 from hil_sim.bench.journey import (
@@ -52,16 +50,7 @@ def test_an_id_gives_the_same_mission_in_any_process() -> None:
         "    m = mission_of(parse_id(name))\n"
         "    print(m.course, m.start, m.faults, m.seed, m.movers, m.physics, m.quirks, dict(m.config))\n"
     )
-    runs = {
-        subprocess.run(
-            [sys.executable, "-c", program, *IDS],
-            env=dict(os.environ) | {"PYTHONHASHSEED": seed},
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
-        for seed in ("1", "2")
-    }
+    runs = outputs(program, IDS)
     assert len(runs) == 1
     for name, line in zip(IDS, runs.pop().splitlines(), strict=True):
         mission = mission_of(parse_id(name))

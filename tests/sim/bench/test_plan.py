@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from bench.processes import outputs
 
 from hil_sim.bench import plan
 from hil_sim.bench.plan import Case, faults_of, make_cases, mission_of, parse_id, world_of
@@ -39,16 +37,7 @@ def test_an_id_gives_the_same_mission_in_any_process() -> None:
         "    world = world_of(case.world, case.split, case.seed)[0]\n"
         "    print(mission.course, mission.faults, mission.seed, mission.movers, dict(mission.config), world.start)\n"
     )
-    runs = {
-        subprocess.run(
-            [sys.executable, "-c", program, *IDS],
-            env=dict(os.environ) | {"PYTHONHASHSEED": seed},
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
-        for seed in ("1", "2")
-    }
+    runs = outputs(program, IDS)
     assert len(runs) == 1
     lines = runs.pop().splitlines()
     for name, line in zip(IDS, lines, strict=True):
