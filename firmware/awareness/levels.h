@@ -48,7 +48,6 @@
 // Names
 // ------------------------------------------------------------------------------------------------------
 #define ARGUS_SUSPECT_PERCENT 75 // of a name's level: a look is called for
-#define ARGUS_WILD_PERCENT 70    // ... is enough for leaps that the others contradict
 #define ARGUS_BESIDE_MS 10000
 #define ARGUS_LATE_NAMING 800
 #define ARGUS_LATE_ALONE 1200
@@ -58,7 +57,6 @@
 #define ARGUS_BENT_TOLD 300
 #define ARGUS_BENT_CONTRADICTED 300
 #define ARGUS_MUTE_CONTRADICTED 380
-#define ARGUS_LOST_CONTRADICTED 300 // ... for a silence of one that had followed an echo
 #define ARGUS_HELD_PERCENT 25       // of a name's level: a suspect is cleared below
 
 #endif

@@ -30,7 +30,7 @@ int32_t argus_ln(const int32_t number) {
     while (number >> (power + 1) > 0) {
         power++;
     }
-    return 69 * power + 69 * (number - (1 << power)) / (1 << power);
+    return (693 * power + 693 * (number - (1 << power)) / (1 << power)) / 10;
 }
 
 int32_t argus_odds_permille(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,

@@ -5,7 +5,7 @@
 
 #include "awareness/facts.h"
 
-// ln of a number from 1 on, in hundredths: between powers of two a straight line, 6 off at the most.
+// ln of a number from 1 on, in hundredths: between powers of two a straight line, at most 7 off.
 int32_t argus_ln(int32_t number);
 
 // What a reading of a sonar that is odd for a test, or not, adds to its score, hundredths of a nat. Cost: one pass

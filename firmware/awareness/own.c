@@ -12,7 +12,7 @@
 
 #define COMPARED 2     // echoes that one is compared with
 #define LOOKED_BACK 10 // readings
-#define GAPS_MOST 3    // at rest of one place: at the edge of what is heard echoes come and go
+#define GAPS_MOST 3    // of one place
 
 static void score(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const argus_test_t test, const bool odd) {
@@ -117,11 +117,11 @@ static const argus_ping_t *echo_before_gap(const argus_case_t *const self, const
     return NULL;
 }
 
-// At the edge of what is heard an echo comes and goes by itself: of one place few gaps count.
+// At the edge of what is heard an echo comes and goes by itself: after a few gaps a place tells no more.
 static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                          const int sonar, const argus_ping_t *const now, const bool unrest) {
     argus_case_t *const c = &self->of[sonar];
-    if (!argus_ping_is_echo(now)) {
+    if (!argus_ping_is_echo(now) || c->gaps >= GAPS_MOST) {
         return;
     }
     const argus_ping_t *const then = echo_before_gap(c, now);
@@ -129,7 +129,7 @@ static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *
         score(self, knowledge, sonar, ARGUS_TEST_DROPOUT, false);
         return;
     }
-    if (unrest || c->gaps >= GAPS_MOST) {
+    if (unrest) {
         return; // somebody may have stood in between
     }
     c->gaps++;
