@@ -10,6 +10,7 @@
 #define ALIKE_PLACE_MM 5
 #define ALIKE_CDEG 30
 #define ALIKE_MM 30
+#define FULL_CDEG 36000u
 
 static int32_t offset_mm(const uint16_t now_mm, const uint16_t then_mm) {
     const int32_t delta = (int32_t)((uint32_t)(now_mm - then_mm) & 0xFFFFu);
@@ -78,6 +79,25 @@ static bool is_close(const uint16_t a_mm, const uint16_t b_mm, const int32_t mm)
 
 bool argus_ping_is_within(const argus_ping_t *const a, const argus_ping_t *const b, const int32_t mm) {
     return is_close(a->x_mm, b->x_mm, mm) && is_close(a->y_mm, b->y_mm, mm);
+}
+
+// Millions of pings a minute are asked, and few are near: bearings differ more often than places.
+static bool is_near(const argus_ping_t *const a, const argus_ping_t *const b) {
+    const int32_t turned = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
+    return (uint32_t)(turned - ARGUS_BESIDE_CDEG - 1) >= FULL_CDEG - 2 * ARGUS_BESIDE_CDEG - 1 &&
+           argus_ping_is_within(a, b, ARGUS_SAME_ALONG_MM);
+}
+
+int argus_pings_near(const argus_pings_t *const self, const int from, const argus_ping_t *const at) {
+    ARGUS_ASSERT(from >= 1);
+    int slot = (int)slot_of(self, from);
+    for (int back = from; back <= self->count; back++) {
+        if (is_near(at, &self->ping[slot])) {
+            return back;
+        }
+        slot = slot > 0 ? slot - 1 : ARGUS_PINGS - 1;
+    }
+    return 0;
 }
 
 bool argus_ping_goes_on(const argus_ping_t *const now, const argus_ping_t *const then) {
