@@ -25,6 +25,7 @@ typedef struct {
 
 typedef struct {
     argus_ping_t ping[ARGUS_PINGS];
+    uint16_t sectors; // in which they looked, if not more
     uint8_t next;
     uint8_t count;
 } argus_pings_t;
