@@ -47,7 +47,7 @@ bool argus_guard_may_translate(const argus_guard_t *const self) {
 }
 
 // What the shortest reading ahead says now, less the way driven since it was taken.
-static int32_t seen_mm(const argus_guard_t *const self) {
+static int32_t read_mm(const argus_guard_t *const self) {
     const argus_knowledge_t *const knowledge = self->knowledge;
     int32_t shortest = knowledge->robot->no_echo_mm;
     for (int i = 0; i < knowledge->sonars; i++) {
@@ -105,9 +105,9 @@ int32_t argus_guard_seen_mm(const argus_guard_t *const self) {
                      argus_rays_seen_mm(self->rays, self->knowledge, half_mm, SEEN_MOST_MM) - SEEN_LEFT_MM);
 }
 
-int32_t argus_guard_ahead_mm(const argus_guard_t *const self) {
-    const int32_t clear_mm = argus_max(0, seen_mm(self) - self->config->object_range_mm);
-    return argus_min(clear_mm, argus_guard_seen_mm(self));
+int32_t argus_guard_ahead_mm(const argus_guard_t *const self, const int32_t seen_mm) {
+    const int32_t clear_mm = argus_max(0, read_mm(self) - self->config->object_range_mm);
+    return argus_min(clear_mm, seen_mm);
 }
 
 // A sonar ahead has the name of a fault.
@@ -120,22 +120,22 @@ static bool may_hurry(const argus_guard_t *const self) {
     return self->profile->adapts_speed && argus_flank_mm(self->knowledge) > ARGUS_FLANK_NEAR_MM;
 }
 
-int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self) {
+int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self, const int32_t seen_mm) {
     const argus_config_t *const config = self->config;
     ARGUS_ASSERT(config->speed_mm_s > 0);
     if (!may_hurry(self)) {
         return config->speed_mm_s;
     }
-    const int32_t unseen_mm = argus_min(argus_guard_seen_mm(self), INT16_MAX) + SEEN_LEFT_MM;
-    const int32_t range_mm = argus_max(argus_min(seen_mm(self), unseen_mm), config->object_range_mm);
+    const int32_t unseen_mm = argus_min(seen_mm, INT16_MAX) + SEEN_LEFT_MM;
+    const int32_t range_mm = argus_max(argus_min(read_mm(self), unseen_mm), config->object_range_mm);
     const int32_t safe_mm_s = argus_config_speed_mm_s(config, self->knowledge->robot, range_mm);
     const int32_t most_mm_s =
         argus_min(safe_mm_s / SPEED_STEP_MM_S * SPEED_STEP_MM_S, config->speed_max_mm_s);
     return argus_max(config->speed_mm_s, most_mm_s);
 }
 
-int32_t argus_guard_speed_mm_s(const argus_guard_t *const self) {
-    return is_doubted_ahead(self) ? self->config->speed_mm_s : argus_guard_free_speed_mm_s(self);
+int32_t argus_guard_speed_mm_s(const argus_guard_t *const self, const int32_t seen_mm) {
+    return is_doubted_ahead(self) ? self->config->speed_mm_s : argus_guard_free_speed_mm_s(self, seen_mm);
 }
 
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {
