@@ -213,8 +213,7 @@ static bool is_swept(const argus_robot_t *const robot, const argus_point_t at, c
 
 static bool is_heard_in_nudge(const argus_knowledge_t *const knowledge, const nudge_t *const nudge) {
     for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_usable(knowledge, i) &&
-            is_swept(knowledge->robot, argus_echo_robot(knowledge, i), nudge)) {
+        if (argus_usable(knowledge, i) && is_swept(knowledge->robot, argus_echo_robot(knowledge, i), nudge)) {
             return true;
         }
     }

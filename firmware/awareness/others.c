@@ -105,8 +105,7 @@ static void add(tally_t *const tally, const said_t said, const int from) {
 static int ask(tally_t *const tally, const argus_pings_t *const pings, const argus_ping_t *const at,
                const int from, const uint32_t now_ms) {
     int latest = 0;
-    for (int back = argus_pings_near(pings, 1, at); back > 0;
-         back = argus_pings_near(pings, back + 1, at)) {
+    for (int back = argus_pings_near(pings, 1, at); back > 0; back = argus_pings_near(pings, back + 1, at)) {
         const argus_ping_t *const then = argus_pings_at(pings, back);
         const argus_shift_t shift = argus_ping_shift(at, then);
         if (shift.lateral_mm > ARGUS_SAME_LATERAL_MM) {

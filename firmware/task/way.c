@@ -195,8 +195,8 @@ static uint64_t ripened(const argus_wave_t *const wave, const int y, const int s
     return y >= 0 && y < CELLS ? reached(wave, y) & ~young : 0;
 }
 
-// Cells that the wave comes to in one row. Where it is narrow it comes later, from what is ripe, and of the row
-// below only what was there before this step.
+// Cells that the wave comes to in one row. Where it is narrow it comes later, from what is ripe, and of the
+// row below only what was there before this step.
 static uint64_t fresh_in(const argus_wave_t *const wave, const int y, const int step, const uint64_t next,
                          const uint64_t fresh_below) {
     const bool corners = step % 2 == 0;
@@ -237,8 +237,8 @@ static int32_t beyond(const argus_cell_t waypoint) {
     return argus_hypot(argus_min(outside(waypoint.x), 40000), argus_min(outside(waypoint.y), 40000));
 }
 
-// Of the cells of a row at the border of the window, those within a circle: `rest` is what the way across the rows
-// leaves of its radius squared.
+// Of the cells of a row at the border of the window, those within a circle: `rest` is what the way across the
+// rows leaves of its radius squared.
 static uint64_t border_within(const int y, const int32_t rest, const int32_t middle_x) {
     const int apart = y == 0 || y == CELLS - 1 ? 1 : CELLS - 1;
     uint64_t cells = 0;
