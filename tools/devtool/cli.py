@@ -97,6 +97,7 @@ def add_making(add: Add) -> None:
         "coverage",
     )
     add("size", commands.do_size, "print text, RAM per instance and worst stack on Cortex-M4", "size")
+    add("api", commands.do_api, "make the pages of the public header, build/api/index.html", "api")
     figures = add(
         "figures",
         commands.do_figures,

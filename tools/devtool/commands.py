@@ -112,6 +112,15 @@ def do_size(_args: argparse.Namespace) -> int:
     return 0
 
 
+def do_api(_args: argparse.Namespace) -> int:
+    """Make the pages of the public header."""
+    ensure([], ["doxygen"])
+    BUILD.mkdir(exist_ok=True)
+    run_visibly(["doxygen", "docs/Doxyfile"])
+    say(f"every name of argus/argus.h: {shown(BUILD / 'api/index.html')}")
+    return 0
+
+
 def do_figures(args: argparse.Namespace) -> int:
     """Write the figures of the result files into the documents, or compare them."""
     ensure([])

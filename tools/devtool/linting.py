@@ -101,6 +101,12 @@ LINT_STAGES: Final = (
         lambda run: run([VENV / "bin/python", "tools/figures.py", "--check"]),
     ),
     Stage(
+        "api",
+        "every name of the public header is documented",
+        lambda run: run(["doxygen", "docs/Doxyfile"]),
+        needs=("doxygen",),
+    ),
+    Stage(
         "commits",
         "subjects of commits",
         lambda run: run([VENV / "bin/python", "tools/commits.py"]),
