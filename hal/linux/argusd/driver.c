@@ -141,6 +141,9 @@ void driver_receive(driver_t *self) {
         self->bytes_in += (uint32_t)got;
         show(self, true, bytes, (size_t)got);
         argus_receive(self->core, now_ms(self), bytes, (size_t)got);
+        if (self->after.see != NULL) {
+            self->after.see(self->after.context, true, bytes, (size_t)got);
+        }
         driver_transmit(self);
     }
 }

@@ -6,6 +6,7 @@
 #include "argusd.h"
 #include "bus.h"
 #include "driver.h"
+#include "guards.h"
 #include "moment.h"
 #include "operator.h"
 #include "state.h"
@@ -26,6 +27,7 @@ typedef struct {
     state_t state;
     tape_t tape;
     bus_t bus; // off unless opened before
+    guards_t guards; // none unless opened before
     voice_t voice;
     operator_t operator;
     moment_t moment;

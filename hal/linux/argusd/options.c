@@ -19,6 +19,9 @@ enum {
     OPT_RECORD_MAX,
     OPT_ROBOT,
     OPT_CAN_TELEMETRY,
+    OPT_GUARD,
+    OPT_GUARD_READINGS,
+    OPT_GUARD_BEYOND,
     OPT_PASSIVE,
     OPT_ACTIVE,
     OPT_JSON,
@@ -43,6 +46,9 @@ static const struct option table[] = {
     {"record-max", required_argument, NULL, OPT_RECORD_MAX},
     {"robot", required_argument, NULL, OPT_ROBOT},
     {"can-telemetry", required_argument, NULL, OPT_CAN_TELEMETRY},
+    {"guard", required_argument, NULL, OPT_GUARD},
+    {"guard-readings", required_argument, NULL, OPT_GUARD_READINGS},
+    {"guard-beyond-loopback", no_argument, NULL, OPT_GUARD_BEYOND},
     {"passive", no_argument, NULL, OPT_PASSIVE},
     {"active", no_argument, NULL, OPT_ACTIVE},
     {"json", no_argument, NULL, OPT_JSON},
@@ -79,6 +85,14 @@ void options_help(FILE *out) {
         "  --robot NAME       whose body and sonars it has, where it does not say so itself: p3dx-sh, "
         "amigo-sh,\n"
         "                     p3at-sh, peoplebot-sh; one that is not known is never driven\n"
+        "  --guard PORT       pty:PATH or tcp:HOST:PORT, up to 4 times: there an ARCOS client (ARIA, p2os, ...)\n"
+        "                     finds the robot; its motion is bounded by what trusted sonars see "
+        "(docs/guardian.md)\n"
+        "  --guard-readings withhold|cover|pass\n"
+        "                     what it gets of sonars that are out: nothing (default), what others have heard\n"
+        "                     there lately, or what they say\n"
+        "  --guard-beyond-loopback\n"
+        "                     let a guard port listen where other machines reach it\n"
         "  --passive          diagnose and report, never command a motion\n"
         "  --active           drive; needed on a serial or can link, which starts passive\n"
         "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
@@ -106,6 +120,7 @@ void options_help(FILE *out) {
         "  argusd --link serial:/dev/ttyUSB0 --auto-baud\n"
         "  argusd --link serial:/dev/ttyUSB0@9600 --active --goal 3000,0 --config argusd.conf\n"
         "  argusd --link tcp:localhost --course course.csv --json\n"
+        "  argusd --link serial:/dev/ttyUSB0@9600 --guard tcp:127.0.0.1:8101 --guard pty:/run/argus/robot\n"
         "  argusd --link can:can0 --active --goal 3000,0\n"
         "  argusd --link serial:/dev/ttyUSB0@9600 --can-telemetry can0,robot=2\n"
         "\n"
@@ -186,6 +201,28 @@ static bool take_telemetry(options_t *options, const char *text, const message_t
     return true;
 }
 
+static bool take_guard(options_t *options, const char *text, const message_t *message) {
+    guards_options_t *const guards = &options->guards;
+    if (guards->count == GUARDS_MAX) {
+        return text_refuse(message->text, message->capacity, "--guard %s: %d ports are the most", text,
+                           GUARDS_MAX);
+    }
+    return guard_spec_parse(&guards->at[guards->count++], text, message->text, message->capacity);
+}
+
+static bool take_readings(options_t *options, const char *text, const message_t *message) {
+    static const char *const names[] = {"withhold", "cover", "pass"};
+    options->readings = text;
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(text, names[i]) == 0) {
+            options->guards.readings = (argus_readings_t)i;
+            return true;
+        }
+    }
+    return text_refuse(message->text, message->capacity,
+                       "--guard-readings %s: give withhold, cover or pass", text);
+}
+
 // What is kept as it was written.
 static bool take_text(options_t *options, int option) {
     switch (option) {
@@ -226,6 +263,9 @@ static bool take_flag(options_t *options, int option) {
     case OPT_AUTO_BAUD:
         options->auto_baud = true;
         return true;
+    case OPT_GUARD_BEYOND:
+        options->guards.beyond = true;
+        return true;
     default:
         return take_text(options, option);
     }
@@ -264,6 +304,10 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
         return take_telemetry(options, optarg, message);
     case OPT_RECORD_MAX:
         return take_record_max(options, optarg, message);
+    case OPT_GUARD:
+        return take_guard(options, optarg, message);
+    case OPT_GUARD_READINGS:
+        return take_readings(options, optarg, message);
     case ':':
         return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help",
                            argv[optind - 1]);
@@ -294,6 +338,10 @@ static bool agree(const options_t *options, const message_t *message) {
          "no link is given; add --link serial:/dev/ttyUSB0@9600, tcp:HOST:8101 or can:can0 (see --help)"},
         {options->action == OPTIONS_CHECK && options->telemetry.interface[0] != '\0',
          "--check only looks at the robot; leave out --can-telemetry"},
+        {options->action == OPTIONS_CHECK && options->guards.count > 0,
+         "--check only looks at the robot; leave out --guard"},
+        {options->guards.count == 0 && (options->readings != NULL || options->guards.beyond),
+         "--guard-readings and --guard-beyond-loopback are for --guard PORT; add it"},
         {options->record_max_bytes > 0 && options->record_path == NULL,
          "--record-max is for --record FILE; add it"},
         {options->auto_baud && !serial, "--auto-baud is for serial links; no other has a rate to look for"},

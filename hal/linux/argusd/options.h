@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "argus/argus.h"
+#include "guards.h"
 #include "hal/link_spec.h"
 
 typedef enum {
@@ -33,6 +34,8 @@ typedef struct {
     hal_can_spec_t telemetry; // interface "": not given
     bool no_telemetry;
     uint64_t record_max_bytes; // 0: not given
+    guards_options_t guards;
+    const char *readings; // of --guard-readings, NULL: not given
     argus_point_t goal;
     bool has_goal;
     bool passive;
