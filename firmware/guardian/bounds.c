@@ -53,6 +53,26 @@ static int32_t clear_mm(const argus_knowledge_t *const knowledge, const unsigned
     return shortest_mm;
 }
 
+// What was heard twice a moment ago and has left the cones is still there.
+static int32_t remembered_mm(const argus_t *const self, const bool rear) {
+    const argus_robot_t *const robot = self->knowledge.robot;
+    const int32_t half_mm = argus_robot_half_width_mm(robot) + BESIDE_MM;
+    int32_t nearest_mm = TRUST_MM;
+    for (int i = 0; i < self->echoes.count; i++) {
+        argus_point_t at;
+        if (argus_echoes_near(&self->echoes, &self->knowledge, i, &at) && argus_abs(at.y_mm) <= half_mm) {
+            const int32_t free_mm = rear ? -at.x_mm - robot->rear_mm : at.x_mm - robot->front_mm;
+            nearest_mm = free_mm >= 0 ? argus_min(nearest_mm, free_mm) : nearest_mm;
+        }
+    }
+    return nearest_mm;
+}
+
+static int32_t free_mm_of(const argus_t *const self, const unsigned looks, const bool rear) {
+    const int32_t heard_mm = clear_mm(&self->knowledge, looks, rear);
+    return argus_rules(self)->remembers ? argus_min(heard_mm, remembered_mm(self, rear)) : heard_mm;
+}
+
 static int32_t face_overhang_mm(const argus_robot_t *const robot) {
     return robot->front_mm - robot->sonar_face_mm;
 }
@@ -100,11 +120,11 @@ static argus_bound_t leading(const argus_t *const self, const argus_guard_t *con
     }
     const unsigned looks = argus_robot_ahead(knowledge->robot) | argus_robot_forward(knowledge->robot);
     const int32_t overhang_mm = face_overhang_mm(knowledge->robot);
-    argus_bound_t bound = by_clearance(guard, clear_mm(knowledge, looks, false), overhang_mm);
+    argus_bound_t bound = by_clearance(guard, free_mm_of(self, looks, false), overhang_mm);
     if (bound.speed_mm_s == 0) {
         return bound;
     }
-    const int32_t seen_mm = argus_min(argus_guard_seen_mm(guard), INT16_MAX);
+    const int32_t seen_mm = argus_min(argus_guard_seen_mm(guard), TRUST_MM);
     const int32_t seen_mm_s =
         argus_config_speed_mm_s(guard->config, knowledge->robot, seen_mm + SEEN_LEFT_MM);
     if (seen_mm == 0 || seen_mm_s < LEAST_MM_S) {
@@ -127,7 +147,7 @@ static argus_bound_t trailing(const argus_t *const self, const argus_guard_t *co
         return closed(ARGUS_BOUND_UNSEEN);
     }
     const unsigned looks = argus_robot_astern(knowledge->robot);
-    return by_clearance(guard, clear_mm(knowledge, looks, true), knowledge->robot->rear_overhang_mm);
+    return by_clearance(guard, free_mm_of(self, looks, true), knowledge->robot->rear_overhang_mm);
 }
 
 static bool may_move(const argus_t *const self, const argus_guard_t *const guard) {
