@@ -18,7 +18,7 @@
 #define DEVIATION_MOST_MM 400
 #define TURN_NEAR_MM 250    // beyond the circle that the body sweeps
 #define TURN_LEAST_DEG_S 10 // slower is steering
-#define TURN_ROOM_MM 40
+#define TURN_ROOM_MM 25
 #define TURN_NEARER_MM 3
 #define TURN_PART_CDEG 800
 #define TURN_MOST_CDEG 9000
@@ -182,7 +182,11 @@ static argus_bound_t trailing(const argus_t *const self, const argus_guard_t *co
         return closed(ARGUS_BOUND_UNSEEN);
     }
     const unsigned looks = argus_robot_astern(knowledge->robot);
-    return by_clearance(guard, free_mm_of(self, looks, true), knowledge->robot->rear_overhang_mm);
+    argus_bound_t bound =
+        by_clearance(guard, free_mm_of(self, looks, true), knowledge->robot->rear_overhang_mm);
+    // The manager itself backs no faster: beside the rear nobody hears a wall that slants in.
+    bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.speed_mm_s);
+    return bound;
 }
 
 // Between the sonars abeam and those of the ends a corner may hide, which a turn would sweep.
