@@ -12,7 +12,7 @@
 #define TRUST_MM 2000    // a thin thing beyond may give no echo
 #define SEEN_LEFT_MM 100 // what argus_guard_seen_mm() takes off for itself
 #define LEAST_MM_S 30    // slower than this it stands
-#define REACTION_MS 500 // about that of S5
+#define REACTION_MS 500  // about that of S5
 #define DEG_PER_RAD 57
 #define CURVE_MOST_CDEG 9000
 #define DEVIATION_MOST_MM 400
@@ -45,7 +45,8 @@ static int32_t deviation_mm(const argus_t *const self) {
     const int32_t mm_s = argus_abs(knowledge->vel_right_mm_s + knowledge->vel_left_mm_s) / 2;
     const int32_t way_mm = mm_s * REACTION_MS / 1000 + mm_s * mm_s / (2 * knowledge->robot->decel_mm_s2);
     const int32_t turn_cdeg = mm_s > 0 ? way_mm * turn_deg_s(self) * 100 / mm_s : 0;
-    return argus_min(way_mm * argus_min(turn_cdeg, CURVE_MOST_CDEG) / (2 * 100 * DEG_PER_RAD), DEVIATION_MOST_MM);
+    return argus_min(way_mm * argus_min(turn_cdeg, CURVE_MOST_CDEG) / (2 * 100 * DEG_PER_RAD),
+                     DEVIATION_MOST_MM);
 }
 
 static corridor_t corridor(const argus_t *const self, const bool rear) {
@@ -54,8 +55,8 @@ static corridor_t corridor(const argus_t *const self, const bool rear) {
                                    deviation_mm(self)};
 }
 
-// How far the leading end may go until it touches the nearest place at which the echo may lie; INT32_MAX: it lies
-// beside the way.
+// How far the leading end may go until it touches the nearest place at which the echo may lie; INT32_MAX: it
+// lies beside the way.
 static int32_t on_way_mm(const argus_robot_t *const robot, const int sonar, const int32_t reading_mm,
                          const corridor_t *const way) {
     const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
@@ -129,8 +130,7 @@ static argus_bound_t by_clearance(const argus_guard_t *const guard, const int32_
 }
 
 static bool slants(const argus_t *const self) {
-    const unsigned flank =
-        argus_robot_flank(self->knowledge.robot) & ~(unsigned)argus_out(&self->knowledge);
+    const unsigned flank = argus_robot_flank(self->knowledge.robot) & ~(unsigned)argus_out(&self->knowledge);
     const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((flank >> i & 1u) != 0 &&
@@ -192,8 +192,8 @@ static argus_bound_t trailing(const argus_t *const self, const argus_guard_t *co
 // Between the sonars abeam and those of the ends a corner may hide, which a turn would sweep.
 static argus_bound_t in_turn(const argus_t *const self, const argus_guard_t *const guard,
                              argus_bound_t bound) {
-    const bool near = argus_guard_nearest_mm(guard, 0) <=
-                      self->knowledge.robot->swing_radius_mm + TURN_NEAR_MM;
+    const bool near =
+        argus_guard_nearest_mm(guard, 0) <= self->knowledge.robot->swing_radius_mm + TURN_NEAR_MM;
     if (near && turn_deg_s(self) > TURN_LEAST_DEG_S) {
         bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.step_speed_mm_s);
     }

@@ -26,8 +26,8 @@ typedef struct {
 argus_bound_t argus_bound_way(const argus_t *self, bool ahead);
 
 // Whether the body comes upon nothing that is seen, or was a moment ago, in a turn by so much, at most a
-// quarter of one. What is close already only must not come closer: it must get away from there. Cost: a place of the
-// body per 8 degrees for each echo.
+// quarter of one. What is close already only must not come closer: it must get away from there. Cost: a place
+// of the body per 8 degrees for each echo.
 bool argus_bound_may_turn(const argus_t *self, int32_t by_cdeg);
 
 #endif

@@ -9,16 +9,16 @@
 #include "supervisor/say.h"
 #include "supervisor/state.h"
 
-#define STEP_MM_S 25     // by so much at least a speed is raised again
-#define DONE_MM 20       // of a MOVE: nothing is left
-#define MORE_MM 100      // that a MOVE is lengthened by at least
-#define LESS_MM 30       // ... and shortened: readings scatter
-#define DONE_DEG 2       // of a HEAD
-#define REACTION_MS 500  // from the reading to the command, of a turn
-#define TURN_DECEL 100   // deg/s2, the robot's own
-#define LOOK_CDEG 6000   // a HEAD is looked at so far ahead
-#define WEAVE_CDEG 1000  // to either side for each sonar of a gap: half the pitch of the ring
-#define WEAVE_GAP 2      // a wider one is not looked into
+#define STEP_MM_S 25    // by so much at least a speed is raised again
+#define DONE_MM 20      // of a MOVE: nothing is left
+#define MORE_MM 100     // that a MOVE is lengthened by at least
+#define LESS_MM 30      // ... and shortened: readings scatter
+#define DONE_DEG 2      // of a HEAD
+#define REACTION_MS 500 // from the reading to the command, of a turn
+#define TURN_DECEL 100  // deg/s2, the robot's own
+#define LOOK_CDEG 6000  // a HEAD is looked at so far ahead
+#define WEAVE_CDEG 1000 // to either side for each sonar of a gap: half the pitch of the ring
+#define WEAVE_GAP 2     // a wider one is not looked into
 #define WOVEN_CDEG 300
 #define WOVEN_SIPS 4
 #define FREE_SIPS 10
@@ -89,7 +89,8 @@ static void stand(argus_t *const core, argus_hold_client_t *const self, const bo
 }
 
 // As much of the speed as the bound lets, in steps; what is given stays while it may.
-static int32_t bounded(const argus_bound_t *const bound, const int32_t wanted_mm_s, const int32_t given_mm_s) {
+static int32_t bounded(const argus_bound_t *const bound, const int32_t wanted_mm_s,
+                       const int32_t given_mm_s) {
     const int32_t most_mm_s = bound->speed_mm_s;
     const int32_t wanted = argus_abs(wanted_mm_s);
     const bool same_way = (wanted_mm_s < 0) == (given_mm_s < 0);
@@ -126,8 +127,8 @@ static void give_pair(argus_t *const core, argus_hold_client_t *const self, cons
     argus_given_t *const given = &self->given;
     const int32_t track_mm = core->knowledge.robot->track_mm;
     int32_t mm_s = bounded(bound, wish->mm_s, given->mm_s);
-    int32_t half_mm_s = wish->mm_s != 0 ? wish->half_mm_s * argus_abs(mm_s) / argus_abs(wish->mm_s)
-                                        : wish->half_mm_s;
+    int32_t half_mm_s =
+        wish->mm_s != 0 ? wish->half_mm_s * argus_abs(mm_s) / argus_abs(wish->mm_s) : wish->half_mm_s;
     if (turns_into(core, half_mm_s * 2 * 57 / argus_max(1, track_mm))) {
         say_once(core, &given->turn_said, ARGUS_EV_GUARD_TURN_HELD, half_mm_s);
         given->free_sips = 0;
@@ -147,7 +148,8 @@ static void give_speed(argus_t *const core, argus_hold_client_t *const self, con
     argus_given_t *const given = &self->given;
     const int32_t mm_s = bounded(bound, self->wish.mm_s, given->moves ? 0 : given->mm_s);
     set_speed(core, self, self->setv_mm_s);
-    if ((anyway || given->moves || mm_s != given->mm_s) && argus_outbox_int(outbox(core), ARCOS_CMD_VEL, mm_s)) {
+    if ((anyway || given->moves || mm_s != given->mm_s) &&
+        argus_outbox_int(outbox(core), ARCOS_CMD_VEL, mm_s)) {
         given->mm_s = mm_s;
         given->rolls = mm_s != 0;
         given->moves = false;
@@ -186,7 +188,8 @@ static void give_move(argus_t *const core, argus_hold_client_t *const self, cons
         stand(core, self, anyway);
         return;
     }
-    const bool longer = argus_abs(given_mm) + DONE_MM < argus_abs(left_mm) && mm > argus_abs(given_mm) + MORE_MM;
+    const bool longer =
+        argus_abs(given_mm) + DONE_MM < argus_abs(left_mm) && mm > argus_abs(given_mm) + MORE_MM;
     const bool shorter = mm + LESS_MM < argus_abs(given_mm);
     const bool slower = given->moves && mm_s < given->setv_mm_s;
     if (anyway || !given->moves || longer || shorter || slower) {

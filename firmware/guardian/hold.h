@@ -9,22 +9,22 @@
 
 // What the robot was told last, and what was said of it.
 typedef struct {
-    int32_t mm_s;          // VEL, or the way of VEL2
-    int32_t half_mm_s;     // VEL2
-    bool rolls;            // it moves along by our word
-    bool moves;            // ... by MOVE
-    int32_t move_mm;       // MOVE, from there on
-    uint32_t odometer_mm;  // ... where it was given
-    int32_t setv_mm_s;     // SETV
-    bool turn_held;        // RVEL 0 in the place of a turn
-    int8_t weave;          // side that the heading swings to so that others see a blind bearing, +1 left
-    uint8_t woven_sips;    // that it has been there
-    int32_t base_cdeg;     // ... about this heading, course frame
-    uint16_t bumpers;      // pressed at the last SIP
-    bool slowed_said;      // since the last GUARD_FREE
+    int32_t mm_s;         // VEL, or the way of VEL2
+    int32_t half_mm_s;    // VEL2
+    bool rolls;           // it moves along by our word
+    bool moves;           // ... by MOVE
+    int32_t move_mm;      // MOVE, from there on
+    uint32_t odometer_mm; // ... where it was given
+    int32_t setv_mm_s;    // SETV
+    bool turn_held;       // RVEL 0 in the place of a turn
+    int8_t weave;         // side that the heading swings to so that others see a blind bearing, +1 left
+    uint8_t woven_sips;   // that it has been there
+    int32_t base_cdeg;    // ... about this heading, course frame
+    uint16_t bumpers;     // pressed at the last SIP
+    bool slowed_said;     // since the last GUARD_FREE
     bool held_said;
     bool turn_said;
-    uint8_t free_sips;     // without any bound, one after the other
+    uint8_t free_sips; // without any bound, one after the other
 } argus_given_t;
 
 typedef struct {

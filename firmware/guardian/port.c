@@ -104,8 +104,8 @@ static void take_sync(argus_t *const core, argus_port_t *const self, const argus
     const uint8_t sync = packet->data[0];
     if (sync == ARCOS_CMD_OPEN && self->phase == ARGUS_PORT_SYNC2) {
         open_session(core, self);
-    } else if (sync <= ARCOS_SYNC_SYNC2 && (sync == ARCOS_SYNC_SYNC0 || sync == self->phase ||
-                                            sync + 1 == self->phase)) {
+    } else if (sync <= ARCOS_SYNC_SYNC2 &&
+               (sync == ARCOS_SYNC_SYNC0 || sync == self->phase || sync + 1 == self->phase)) {
         self->phase = (uint8_t)(ARGUS_PORT_SYNC0 + sync);
         if (sync == ARCOS_SYNC_SYNC2) {
             answer_identity(core, self);
@@ -294,8 +294,8 @@ static void hear_client(argus_t *const core, argus_port_t *const self, const arg
         if (taken >= io->client_count) {
             return;
         }
-        taken += argus_parser_push(&self->from_client, core->now_ms, io->client + taken,
-                                   io->client_count - taken);
+        taken +=
+            argus_parser_push(&self->from_client, core->now_ms, io->client + taken, io->client_count - taken);
     }
 }
 
@@ -363,8 +363,8 @@ static bool hear_robot(argus_t *const core, argus_port_t *const self, const argu
         if (taken >= io->robot_count) {
             return news;
         }
-        taken += argus_parser_push(&self->from_robot, core->now_ms, io->robot + taken,
-                                   io->robot_count - taken);
+        taken +=
+            argus_parser_push(&self->from_robot, core->now_ms, io->robot + taken, io->robot_count - taken);
     }
 }
 
@@ -383,8 +383,8 @@ static void watch_client(argus_t *const core, argus_port_t *const self, const bo
 // A robot's own watchdog leaves the session open; so does this one.
 static void watch_silence(argus_t *const core, argus_port_t *const self) {
     const bool silent = core->now_ms - self->heard_ms >= watchdog_ms(core);
-    const bool wants = self->hold.wish.way != ARGUS_WISH_REST || self->hold.wish.turn != ARGUS_WISH_STRAIGHT ||
-                       self->hold.given.rolls;
+    const bool wants = self->hold.wish.way != ARGUS_WISH_REST ||
+                       self->hold.wish.turn != ARGUS_WISH_STRAIGHT || self->hold.given.rolls;
     if (self->phase == ARGUS_PORT_OPEN && self->drives && wants && silent) {
         argus_say(core, ARGUS_EV_GUARD_LOST, ARGUS_NO_SONAR, PARTED_SILENT);
         argus_outbox_urgent(&core->session.outbox, ARCOS_CMD_STOP);

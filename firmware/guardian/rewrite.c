@@ -43,9 +43,8 @@ int32_t argus_rewrite_cover_mm(const argus_t *const self, const int sonar) {
     int32_t nearest_mm = 0;
     for (int i = 0; i < self->rays.count; i++) {
         const argus_ray_t *const ray = &self->rays.at[i];
-        const int32_t mm = is_echo_of(self, ray)
-                               ? seen_mm(ray, from, bearing_cdeg, knowledge->robot->cone_deg)
-                               : 0;
+        const int32_t mm =
+            is_echo_of(self, ray) ? seen_mm(ray, from, bearing_cdeg, knowledge->robot->cone_deg) : 0;
         nearest_mm = mm > 0 && (nearest_mm == 0 || mm < nearest_mm) ? mm : nearest_mm;
     }
     return nearest_mm;
@@ -72,7 +71,8 @@ static size_t entry(const argus_t *const self, const argus_rewrite_t *const how,
     if (is_passed(self, how, from[0])) {
         return ENTRY;
     }
-    const int32_t cover_mm = how->readings == ARGUS_READINGS_COVER ? argus_rewrite_cover_mm(self, from[0]) : 0;
+    const int32_t cover_mm =
+        how->readings == ARGUS_READINGS_COVER ? argus_rewrite_cover_mm(self, from[0]) : 0;
     to[1] = (uint8_t)(cover_mm & 0xFF);
     to[2] = (uint8_t)(cover_mm >> 8);
     return cover_mm > 0 ? ENTRY : 0;

@@ -11,8 +11,8 @@
 #define SETRV_DEG_S 100
 #define TURN_ACCEL_DEG_S2 100
 
-static const uint8_t streams_of[] = {ARCOS_CMD_ENCODER,     ARCOS_CMD_IOREQUEST, ARCOS_CMD_JOYREQUEST,
-                                     ARCOS_CMD_GYRO,        ARCOS_CMD_IMUREQUEST, ARCOS_CMD_GRIPREQUEST};
+static const uint8_t streams_of[] = {ARCOS_CMD_ENCODER, ARCOS_CMD_IOREQUEST,  ARCOS_CMD_JOYREQUEST,
+                                     ARCOS_CMD_GYRO,    ARCOS_CMD_IMUREQUEST, ARCOS_CMD_GRIPREQUEST};
 
 bool argus_send_client(argus_port_t *const port, const uint8_t *const data, const size_t count) {
     const size_t total = ARCOS_FRAME_OVERHEAD + count + 2;

@@ -9,10 +9,10 @@ typedef enum { ARGUS_WISH_REST, ARGUS_WISH_VEL, ARGUS_WISH_MOVE } argus_wish_way
 typedef enum { ARGUS_WISH_STRAIGHT, ARGUS_WISH_RVEL, ARGUS_WISH_HEAD } argus_wish_turn_t;
 
 typedef struct {
-    uint8_t way;  // argus_wish_way_t
-    uint8_t turn; // argus_wish_turn_t
-    bool paired;  // both by VEL2, and neither by another command since
-    int32_t mm_s; // VEL and VEL2, ahead positive
+    uint8_t way;          // argus_wish_way_t
+    uint8_t turn;         // argus_wish_turn_t
+    bool paired;          // both by VEL2, and neither by another command since
+    int32_t mm_s;         // VEL and VEL2, ahead positive
     int32_t half_mm_s;    // VEL2: half of right less left
     int32_t left_mm;      // MOVE, from there on
     uint32_t odometer_mm; // ... where it was asked for
@@ -43,8 +43,7 @@ argus_topic_t argus_topic(uint8_t command);
 int32_t argus_wish_argument(const argus_packet_t *packet);
 
 // Takes a command of the topics WAY, TURN and BOTH. `raw_deg`: the robot's heading as it says it itself.
-void argus_wish_take(argus_wish_t *self, const argus_packet_t *packet, uint32_t odometer_mm,
-                     int32_t raw_deg);
+void argus_wish_take(argus_wish_t *self, const argus_packet_t *packet, uint32_t odometer_mm, int32_t raw_deg);
 
 // Whether the command, of those topics, asks for a motion at all.
 bool argus_wish_moves(const argus_packet_t *packet);

@@ -12,9 +12,9 @@ typedef enum { GUARD_TCP, GUARD_PTY } guard_kind_t;
 
 typedef struct {
     guard_kind_t kind;
-    const char *text;     // as it was written
-    char name[PATH_MAX];  // host, without brackets, or path
-    uint16_t port;        // TCP
+    const char *text;    // as it was written
+    char name[PATH_MAX]; // host, without brackets, or path
+    uint16_t port;       // TCP
 } guard_spec_t;
 
 // pty:PATH or tcp:HOST:PORT, IPv6 in brackets. False: `message` says what is wrong. `text` must outlive it.
@@ -23,8 +23,8 @@ bool guard_spec_parse(guard_spec_t *spec, const char *text, char *message, size_
 typedef struct {
     guard_spec_t spec;
     int listener; // TCP: accepts; pty: its master; -1: closed
-    int client;   // TCP: the client's socket, -1: none; pty: the master while somebody has the other side open
-    bool linked;  // the pty's name is there
+    int client;  // TCP: the client's socket, -1: none; pty: the master while somebody has the other side open
+    bool linked; // the pty's name is there
     bool refused; // it would have been open to other machines
 } guard_port_t;
 

@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #define READ_BYTES 512
-#define READS_PER_TURN 4     // a flood must not keep the robot waiting
-#define STALE_MS 10000u      // a client so long without a sign of life makes room for another
+#define READS_PER_TURN 4 // a flood must not keep the robot waiting
+#define STALE_MS 10000u  // a client so long without a sign of life makes room for another
 #define OUT_BYTES 1024
 
 argusd_exit_t guards_open(guards_t *self, const guards_options_t *options, driver_t *driver, char *message,
@@ -90,7 +90,8 @@ static void leave(guards_t *self, uint32_t now_ms) {
 }
 
 static bool is_stale(const guards_t *self, uint32_t now_ms) {
-    return now_ms - self->heard_ms >= STALE_MS || (self->held_count > 0 && now_ms - self->taken_ms >= STALE_MS);
+    return now_ms - self->heard_ms >= STALE_MS ||
+           (self->held_count > 0 && now_ms - self->taken_ms >= STALE_MS);
 }
 
 static void turn_away(guards_t *self, const guard_port_t *at) {

@@ -36,9 +36,10 @@ typedef struct {
     char notice[ARGUSD_MESSAGE_MAX];
 } guards_t;
 
-// OK; else `message` says why, and what was opened is closed again: LINK, or USAGE for a host beyond loopback.
+// OK; else `message` says why, and what was opened is closed again: LINK, or USAGE for a host beyond
+// loopback.
 argusd_exit_t guards_open(guards_t *self, const guards_options_t *options, driver_t *driver, char *message,
-                 size_t capacity);
+                          size_t capacity);
 
 // What to wait for, GUARDS_FDS places; those without use are -1.
 void guards_wait(const guards_t *self, struct pollfd *wait);

@@ -26,7 +26,7 @@ typedef struct {
     driver_t driver;
     state_t state;
     tape_t tape;
-    bus_t bus; // off unless opened before
+    bus_t bus;       // off unless opened before
     guards_t guards; // none unless opened before
     voice_t voice;
     operator_t operator;

@@ -85,11 +85,13 @@ void options_help(FILE *out) {
         "  --robot NAME       whose body and sonars it has, where it does not say so itself: p3dx-sh, "
         "amigo-sh,\n"
         "                     p3at-sh, peoplebot-sh; one that is not known is never driven\n"
-        "  --guard PORT       pty:PATH or tcp:HOST:PORT, up to 4 times: there an ARCOS client (ARIA, p2os, ...)\n"
+        "  --guard PORT       pty:PATH or tcp:HOST:PORT, up to 4 times: there an ARCOS client (ARIA, p2os, "
+        "...)\n"
         "                     finds the robot; its motion is bounded by what trusted sonars see "
         "(docs/guardian.md)\n"
         "  --guard-readings withhold|cover|pass\n"
-        "                     what it gets of sonars that are out: nothing (default), what others have heard\n"
+        "                     what it gets of sonars that are out: nothing (default), what others have "
+        "heard\n"
         "                     there lately, or what they say\n"
         "  --guard-beyond-loopback\n"
         "                     let a guard port listen where other machines reach it\n"
@@ -219,8 +221,8 @@ static bool take_readings(options_t *options, const char *text, const message_t 
             return true;
         }
     }
-    return text_refuse(message->text, message->capacity,
-                       "--guard-readings %s: give withhold, cover or pass", text);
+    return text_refuse(message->text, message->capacity, "--guard-readings %s: give withhold, cover or pass",
+                       text);
 }
 
 // What is kept as it was written.

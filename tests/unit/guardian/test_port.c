@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Attacks: a client at a guard port finds what it would find at the robot: the handshake, the identity, every
-// SIP, every other packet; what it must not do ends there; and when it goes, or goes silent, the robot stands.
+// SIP, every other packet; what it must not do ends there; and when it goes, or goes silent, the robot
+// stands.
 #include <string.h>
 
 #include "client.h"

@@ -68,7 +68,7 @@ struct robot {
                         size_t count); // other data, up to ROBOT_SIP_MAX, instead of the standard
     void (*after)(robot_t *robot, const uint8_t *bytes,
                   size_t count); // sees what the manager has taken; a client then drives, unwatched
-    bool host_asleep;                  // what it says waits in `late` for robot_wake()
+    bool host_asleep;            // what it says waits in `late` for robot_wake()
     uint8_t late[ROBOT_LATE_MAX];
     size_t late_count;
     bool sonar_on;
