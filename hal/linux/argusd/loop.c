@@ -322,9 +322,17 @@ static bool is_over(loop_t *self) {
     return false;
 }
 
+static void serve_guards(loop_t *self) {
+    char text[ARGUSD_MESSAGE_MAX];
+    guards_serve(&self->guards, self->moment.now_ms);
+    if (guards_notice(&self->guards, text, sizeof text)) {
+        voice_notice(&self->voice, text);
+    }
+}
+
 // The link comes first: what a SIP calls for is on the wire before anything else is looked at.
 static void wait_for_work(loop_t *self, uint32_t wait_ms) {
-    enum { LINK, SIGNALS, KEYS, OUT, ERR, BUS, COUNT };
+    enum { LINK, SIGNALS, KEYS, OUT, ERR, BUS, GUARDS, COUNT = GUARDS + GUARDS_FDS };
     struct pollfd wait[COUNT + CONTROL_POLL_MAX] = {
         [LINK] = {.fd = self->driver.up ? hal_link_fd(&self->driver.link) : -1, .events = POLLIN},
         [SIGNALS] = {.fd = signals_fd(), .events = POLLIN},
@@ -337,12 +345,14 @@ static void wait_for_work(loop_t *self, uint32_t wait_ms) {
     if (driver_wants_write(&self->driver)) {
         wait[LINK].events |= POLLOUT;
     }
+    guards_wait(&self->guards, &wait[GUARDS]);
     const int controls = control_poll(&self->control, wait + COUNT);
     poll(wait, (nfds_t)(COUNT + controls), (int)wait_ms);
     if (wait[LINK].revents != 0) {
         driver_receive(&self->driver);
     }
     take_time(self);
+    serve_guards(self);
     if (wait[SIGNALS].revents != 0) {
         (void)!read(signals_fd(), bytes, sizeof bytes);
     }
@@ -417,6 +427,7 @@ argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
     const argus_status_t status = status_of(self);
     control_close(&self->control);
     bus_close(&self->bus, &status, self->moment.now_ms);
+    guards_close(&self->guards, self->moment.now_ms);
     driver_close(&self->driver);
     tui_stop(&self->voice.tui);
     look(self);

@@ -7,6 +7,7 @@
 #include "bus.h"
 #include "control.h"
 #include "driver.h"
+#include "guards.h"
 #include "moment.h"
 #include "operator.h"
 #include "state.h"
@@ -29,6 +30,7 @@ typedef struct {
     bus_t bus;         // off unless opened before
     control_t control; // likewise
     inject_t inject;
+    guards_t guards; // none unless opened before
     voice_t voice;
     operator_t operator;
     moment_t moment;
