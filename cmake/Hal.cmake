@@ -48,7 +48,6 @@ target_include_directories(argusd_parts PUBLIC ${PROJECT_SOURCE_DIR}/hal/linux/a
 # --auto-baud reads and writes packets before there is a manager: the wire part of the firmware, which is usable alone.
 set_source_files_properties(hal/linux/argusd/probe.c PROPERTIES INCLUDE_DIRECTORIES ${PROJECT_SOURCE_DIR}/firmware)
 target_include_directories(argusd_parts SYSTEM PUBLIC ${INIH_INCLUDE_DIR})
-target_compile_definitions(argusd_parts PUBLIC ARGUS_VERSION="${PROJECT_VERSION}")
 target_compile_options(argusd_parts PRIVATE ${ARGUS_STRICT})
 target_link_libraries(argusd_parts PUBLIC argus_hal argus ${INIH_LIBRARY} PRIVATE argus_flags)
 if(ARGUS_TUI)

@@ -40,5 +40,13 @@ endif()
 install(FILES docs/man/argusd.1 docs/man/argus-sim.1 docs/man/argus-log.1
         DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 
+# Into a wheel, or where Python looks: beside the modules that load them.
+if(TARGET argus_shared)
+    install(FILES $<TARGET_FILE:argus_shared> DESTINATION argus_tools RENAME libargus.so COMPONENT python EXCLUDE_FROM_ALL
+            PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+    install(FILES $<TARGET_FILE:argus_sim> DESTINATION hil_sim/sonar COMPONENT python EXCLUDE_FROM_ALL
+            PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+endif()
+
 add_custom_target(uninstall COMMAND ${CMAKE_COMMAND} -DMANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt
                                     -P ${PROJECT_SOURCE_DIR}/cmake/Uninstall.cmake VERBATIM)

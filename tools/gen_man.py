@@ -220,9 +220,8 @@ def page(description: Page, version: str) -> str:
 
 def version() -> str:
     """Return the version of the project."""
-    found = re.search(
-        r"project\(argus VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
-    )
+    header = (ROOT / "firmware/include/argus/argus.h").read_text(encoding="utf-8")
+    found = re.search(r'^#define ARGUS_VERSION "(.+)"$', header, re.MULTILINE)
     assert found is not None
     return found[1]
 
