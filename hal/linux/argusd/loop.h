@@ -7,6 +7,7 @@
 #include "bus.h"
 #include "driver.h"
 #include "moment.h"
+#include "notify.h"
 #include "operator.h"
 #include "state.h"
 #include "tape.h"
@@ -27,6 +28,7 @@ typedef struct {
     tape_t tape;
     bus_t bus; // off unless opened before
     voice_t voice;
+    notify_t notify; // opened before
     operator_t operator;
     moment_t moment;
     bool met; // a robot has answered
