@@ -4,21 +4,35 @@
 from __future__ import annotations
 
 import argparse
+import configparser
+import datetime
+import email.utils
 import functools
+import os
 import platform
 import shutil
+import subprocess
+import zipfile
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Final
 
 from devtool.base import BUILD, CORES, EXIT_USAGE, ROOT, VENV, Run, Stop, say, shown
 from devtool.commands import quietly
-from devtool.setup import alone, ensure
+from devtool.setup import HEADER, alone, ensure
 
 DIST: Final = ROOT / "dist"
 WORK: Final = BUILD / "package"
 HERE: Final = platform.machine()
 ARCHITECTURES: Final = ("x86_64", "aarch64")
+SCRIPT: Final = """\
+#!/usr/bin/python3
+import sys
+
+from {module} import {function}
+
+sys.exit({function}())
+"""
 
 
 def toolchain(arch: str) -> Path:
@@ -57,15 +71,79 @@ def make_wheel(arch: str, run: Run) -> None:
         keep((raw / "tagged").glob("*.whl"))
 
 
+def stage_tools(wheel: Path, stage: Path) -> None:
+    """Unpack WHEEL as Debian has Python's modules: lib/ and bin/, with Debian's own interpreter."""
+    shutil.rmtree(stage, ignore_errors=True)
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(stage / "lib")
+    [info] = (stage / "lib").glob("*.dist-info")
+    (info / "RECORD").unlink()  # pip's own: dpkg has its list
+    (info / "INSTALLER").write_text("dpkg\n", encoding="utf-8")
+    points = configparser.ConfigParser()
+    points.read(info / "entry_points.txt", encoding="utf-8")
+    (stage / "bin").mkdir()
+    for name, target in points["console_scripts"].items():
+        module, _, function = target.partition(":")
+        script = stage / "bin" / name
+        script.write_text(SCRIPT.format(module=module, function=function), encoding="utf-8")
+        script.chmod(0o755)
+
+
+def release_time() -> int:
+    """Return the time that the packages say they are of, which makes them the same whenever they are made."""
+    given = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if given.isdigit():
+        return int(given)
+    done = subprocess.run(
+        ["git", "log", "-1", "--format=%ct"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    return int(done.stdout) if done.stdout.strip().isdigit() else int(HEADER.stat().st_mtime)
+
+
+def maintainer() -> str:
+    """Return who answers for the packages: whom Debian's own variables name, or nobody in particular."""
+    name = os.environ.get("DEBFULLNAME", "Argus contributors")
+    return f"{name} <{os.environ.get('DEBEMAIL', 'argus@users.noreply.argus.invalid')}>"
+
+
+def debian_flags() -> list[str]:
+    """Return the settings for CMake with which Debian compiles, all its hardening on."""
+    env = {**os.environ, "DEB_BUILD_MAINT_OPTIONS": "hardening=+all"}
+    flags = {}
+    for name in ("CFLAGS", "CPPFLAGS", "LDFLAGS"):
+        done = subprocess.run(
+            ["dpkg-buildflags", "--get", name], env=env, cwd=ROOT, capture_output=True, text=True, check=True
+        )
+        flags[name] = done.stdout.strip()
+    links = ("CMAKE_EXE_LINKER_FLAGS", "CMAKE_SHARED_LINKER_FLAGS")
+    return [
+        f"CMAKE_C_FLAGS={flags['CFLAGS']} {flags['CPPFLAGS']}",
+        *(f"{link}={flags['LDFLAGS']}" for link in links),
+    ]
+
+
 def make_deb(run: Run) -> None:
     """Build the Debian packages."""
+    make_wheel(HERE, run)
     raw = WORK / "deb"
-    shutil.rmtree(raw / "out", ignore_errors=True)
-    settings = ("CMAKE_BUILD_TYPE=Release", "CMAKE_INSTALL_PREFIX=/usr", "ARGUS_TESTS=OFF", "ARGUS_ARGUSD=ON")
+    epoch = release_time()
+    date = email.utils.format_datetime(datetime.datetime.fromtimestamp(epoch, datetime.UTC))
+    settings = (
+        *("CMAKE_BUILD_TYPE=Release", "CMAKE_C_FLAGS_RELEASE=-O2 -DNDEBUG", "CMAKE_INSTALL_PREFIX=/usr"),
+        *("ARGUS_TESTS=OFF", "ARGUS_WERROR=OFF", "ARGUS_ARGUSD=ON", "ARGUS_TUI=ON"),
+        *(f"ARGUS_DEB={raw / 'tools'}", f"ARGUS_DEB_DATE={date}", f"ARGUS_MAINTAINER={maintainer()}"),
+        *debian_flags(),
+    )
     with alone():
-        run(["cmake", "-S", ROOT, "-B", raw, *(f"-D{setting}" for setting in settings), "-DARGUS_TUI=ON"])
+        shutil.rmtree(raw / "out", ignore_errors=True)
+        [wheel] = (WORK / f"wheel-{HERE}").glob("*.whl")
+        stage_tools(wheel, raw / "tools")
+        libraries: list[Path] = sorted((raw / "tools").rglob("*.so"))
+        run(["strip", "--strip-unneeded", "-R", ".comment", *libraries])
+        run(["cmake", "-S", ROOT, "-B", raw, *(f"-D{setting}" for setting in settings)])
         run(["cmake", "--build", raw, "-j", str(CORES)])
-        run(["cpack", "-G", "DEB", "--config", raw / "CPackConfig.cmake", "-B", raw / "out"])
+        package = ["cpack", "-G", "DEB", "--config", raw / "CPackConfig.cmake", "-B", raw / "out"]
+        run(["env", f"SOURCE_DATE_EPOCH={epoch}", *package])
         keep((raw / "out").glob("*.deb"))
 
 
