@@ -127,6 +127,7 @@ NEEDS: Final = {
     "lintian": command_need("lintian", "lintian"),
     "systemd": command_need("systemd-analyze", "systemd"),
     "can-utils": command_need("candump", "can-utils"),
+    "doxygen": command_need("doxygen", "doxygen"),
 }
 BASIC_NEEDS: Final = ("gcc", "libc", "cmake", "generator", "venv", "inih", "curses")
 PRESET_NEEDS: Final = {
