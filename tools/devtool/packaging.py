@@ -138,11 +138,19 @@ def make_deb(run: Run) -> None:
         shutil.rmtree(raw / "out", ignore_errors=True)
         [wheel] = (WORK / f"wheel-{HERE}").glob("*.whl")
         stage_tools(wheel, raw / "tools")
-        libraries: list[Path] = sorted((raw / "tools").rglob("*.so"))
+        libraries = map(str, sorted((raw / "tools").rglob("*.so")))
         run(["strip", "--strip-unneeded", "-R", ".comment", *libraries])
         run(["cmake", "-S", ROOT, "-B", raw, *(f"-D{setting}" for setting in settings)])
         run(["cmake", "--build", raw, "-j", str(CORES)])
-        package = ["cpack", "-G", "DEB", "--config", raw / "CPackConfig.cmake", "-B", raw / "out"]
+        package: list[str | Path] = [
+            "cpack",
+            "-G",
+            "DEB",
+            "--config",
+            raw / "CPackConfig.cmake",
+            "-B",
+            raw / "out",
+        ]
         run(["env", f"SOURCE_DATE_EPOCH={epoch}", *package])
         keep((raw / "out").glob("*.deb"))
 
