@@ -44,6 +44,9 @@
 #ifndef ARGUS_ARGUS_H
 #define ARGUS_ARGUS_H
 
+// The one place where the version is written: all else reads it here.
+#define ARGUS_VERSION "0.1.0"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -124,6 +124,7 @@ static void end(loop_t *self, argusd_exit_t code) {
         self->ending = true;
         self->code = code;
         self->ending_ms = self->moment.now_ms;
+        notify_stopping(&self->notify);
         argus_shutdown(self->driver.core, self->moment.now_ms);
         driver_transmit(&self->driver);
     }
@@ -268,6 +269,19 @@ static void save(loop_t *self, bool now) {
         voice_notice(&self->voice, text);
         self->state.on = false; // once is enough
     }
+}
+
+// Returns the ms until the next sign of life is due.
+static uint32_t tell_service(loop_t *self) {
+    const argus_status_t status = status_of(self);
+    if (!self->ending) {
+        notify_robot(&self->notify, &status);
+    }
+    return notify_alive(&self->notify, self->moment.now_ms);
+}
+
+static uint32_t sooner(uint32_t a_ms, uint32_t b_ms) {
+    return a_ms < b_ms ? a_ms : b_ms;
 }
 
 static void watch_link(loop_t *self) {
@@ -416,11 +430,9 @@ argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
         if (is_over(self)) {
             break;
         }
-        const uint32_t bus_ms = tell_bus(self);
-        const uint32_t control_ms = control_tell(&self->control, &self->moment);
-        const uint32_t told_ms = bus_ms < control_ms ? bus_ms : control_ms;
-        wait_for_work(
-            self, voice_wait_ms(&self->voice, self->moment.now_ms, wait_ms < told_ms ? wait_ms : told_ms));
+        const uint32_t told_ms = sooner(sooner(tell_bus(self), tell_service(self)),
+                                        control_tell(&self->control, &self->moment));
+        wait_for_work(self, voice_wait_ms(&self->voice, self->moment.now_ms, sooner(wait_ms, told_ms)));
         say_events(self);
     }
     say_events(self);

@@ -9,6 +9,7 @@
 #include "driver.h"
 #include "guards.h"
 #include "moment.h"
+#include "notify.h"
 #include "operator.h"
 #include "state.h"
 #include "tape.h"
@@ -32,6 +33,7 @@ typedef struct {
     inject_t inject;
     guards_t guards; // none unless opened before
     voice_t voice;
+    notify_t notify; // opened before
     operator_t operator;
     moment_t moment;
     bool met; // a robot has answered
