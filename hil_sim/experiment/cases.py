@@ -36,6 +36,8 @@ WORLDS: Final = ("office", "lab", "corridor", "map-office", "map-floor", "demo")
 """The last two are drawn from the seed, written and read as ARIA maps."""
 HEALTHY: Final = "none"
 ARRAYS: Final = ("front", "rear")
+SPLIT: Final = "judge"
+"""Of the seeds: nothing was tuned on these."""
 LIMIT_S: Final = 900.0
 COURSE_MM: Final = (5000.0, 10_000.0)
 _TRIES: Final = 60
@@ -102,7 +104,7 @@ def make_cases(
     seeds: Iterable[int],
     dead: Sequence[str],
     *,
-    split: str = "judge",
+    split: str = SPLIT,
     day: str = "plain",
 ) -> list[Case]:
     """Return the cases, seed by seed, so that what is interrupted has covered everything equally."""

@@ -57,7 +57,7 @@ class Ground:
 
     def is_seen(self, points: Floats, now_ms: float) -> bool:
         """Whether each of these places lay in the cone of a living sonar, nearer than its echo."""
-        x, y, c, s, free, t_ms = self._rays[self._rays[:, 5] >= now_ms - LATELY_MS].T
+        x, y, c, s, free, _ = self._rays[self._rays[:, 5] >= now_ms - LATELY_MS].T
         dx, dy = points[:, :1] - x, points[:, 1:] - y
         along, beside = dx * c + dy * s, np.abs(dy * c - dx * s)
         shown = (along > 0) & (along < free) & (beside <= along * _CONE_SLOPE + _BESIDE_MM)

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil_sim.bench import pool
-from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, say
+from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED
 from hil_sim.bench.runner import fixed_core, keep
 from hil_sim.bench.store import RESULTS, Store
 from hil_sim.errors import SimError
-from hil_sim.experiment.cases import Case, make_cases, parse_dead, parse_id
+from hil_sim.experiment.cases import SPLIT, make_cases, parse_id
 from hil_sim.experiment.drive import RECORD_FORMAT, Record, failed, run_case, work
 
 COLUMNS: Final = (
@@ -23,39 +23,55 @@ COLUMNS: Final = (
     "turned_deg", "stops", "looking_s", "closest_mm", "collisions", "idle_s", "sonar_s", "wheel_m", "accel_j",
     "s1", "s4", "s5", "s7",
 )  # fmt: skip
-TABLE: Final = "journey.csv"
+TABLE: Final = "journeys.csv"
 _TEXT: Final = ("policy", "world", "dead", "day", "word")
 
 
-def cases_of(arguments: argparse.Namespace) -> list[Case]:
-    """Return the cases that the arguments ask for."""
-    return make_cases(
-        arguments.policies, arguments.worlds, arguments.seeds, parse_dead(arguments.masks), day=arguments.day
+class Interrupted(SimError):
+    """The study was broken off; what is done is kept."""
+
+    exit_code = EXIT_INTERRUPTED
+
+
+class NotAll(SimError):
+    """Journeys failed to run."""
+
+    exit_code = EXIT_FAILED
+
+
+def run_study(arguments: argparse.Namespace) -> list[Record]:
+    """Drive what has no result yet in --out; return all records that are there.
+
+    Interrupted when it was broken off, NotAll when a journey failed to run.
+    """
+    out = arguments.out
+    cases = make_cases(
+        arguments.policies, arguments.worlds, arguments.seeds, arguments.masks, day=arguments.day
     )
-
-
-def run_study(arguments: argparse.Namespace, out: Path) -> tuple[int, list[Record]]:
-    """Drive what has no result yet; return the exit code and all records that are there."""
-    cases = cases_of(arguments)
     with fixed_core() as digest:
-        meta = {"core": digest, "format": RECORD_FORMAT, "split": "judge"}
+        meta = {"core": digest, "format": RECORD_FORMAT, "split": SPLIT}
         with Store(out, meta, resume=arguments.resume, fresh=arguments.fresh) as store:
             todo = [case.id for case in cases if not store.done(case.id)]
             records = pool.run_here(todo, min(arguments.jobs, max(len(todo), 1)), work, failed)
             if not keep(records, store, len(cases), len(todo)):
-                say(f"interrupted; {len(store.records)} journeys are in {out / RESULTS}, --resume goes on")
-                return EXIT_INTERRUPTED, []
+                raise Interrupted(
+                    f"interrupted; {len(store.records)} journeys are in {out / RESULTS}, --resume goes on"
+                )
             found = list(store.records.values())
+    good = [record for record in found if record["error"] is None]
+    write_table(out / TABLE, good)
     wrong = [record for record in found if record["error"] is not None]
-    for record in wrong[:5]:
-        say(f"{record['id']}: {record['error']}")
-    write_table(out / TABLE, [record for record in found if record["error"] is None])
-    return EXIT_FAILED if wrong else 0, found
+    if wrong:
+        first = f"{wrong[0]['id']}: {wrong[0]['error']}"
+        raise NotAll(f"{len(wrong)} journeys failed to run, the first is {first}; --resume runs them again")
+    return good
 
 
 def write_table(path: Path, records: Sequence[Record]) -> None:
     """Write records as a table, one line each, in an order that the run does not change."""
-    rows = sorted(records, key=lambda record: [str(record[name]) for name in ("policy", "day", "dead", "world", "seed")])
+    rows = sorted(
+        records, key=lambda record: [str(record[name]) for name in ("policy", "day", "dead", "world", "seed")]
+    )
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
@@ -94,5 +110,7 @@ def show_one(text: str) -> str:
     """Run one journey and return its record and what broke a rule."""
     record, _, diary = run_case(parse_id(text))
     lines = [json.dumps(record)]
-    lines += [f"{b.rule} at {b.t_s:.2f} s, {b.x_mm:.0f},{b.y_mm:.0f}: {b.says}" for b in diary.safety.breaches]
+    lines += [
+        f"{b.rule} at {b.t_s:.2f} s, {b.x_mm:.0f},{b.y_mm:.0f}: {b.says}" for b in diary.safety.breaches
+    ]
     return "\n".join(lines) + "\n"

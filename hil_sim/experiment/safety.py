@@ -189,11 +189,7 @@ class Safety:
     def _out(self) -> list[int]:
         """Sonars of the leading end that the fault manager has taken out of use."""
         health = self._sil.health
-        return [
-            n
-            for n in self._forward()
-            if health[n] and health[n][-1][1] in ("DISABLED", "PROBATION")
-        ]
+        return [n for n in self._forward() if health[n] and health[n][-1][1] in ("DISABLED", "PROBATION")]
 
     def _is_checked(self, pose: Pose) -> bool:
         bearings = [pose.heading_deg + self._table.mounts[n].heading_deg for n in self._out()]

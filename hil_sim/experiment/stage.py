@@ -107,7 +107,9 @@ def _take_event(seen: Seen, event: dict[str, Any]) -> None:
     value, state = event.get("value"), str(event.get("state", ""))
     if event.get("event") != "STATUS":
         seen.events.append(
-            Event(float(event["t"]), str(event["event"]), number, value if isinstance(value, int) else 0, state)
+            Event(
+                float(event["t"]), str(event["event"]), number, value if isinstance(value, int) else 0, state
+            )
         )
 
 

@@ -120,4 +120,6 @@ def table(rows: list[Row]) -> str:
 def _cell(row: Row) -> str:
     if row.seen_by is None:
         return "not seen"
-    return f"{row.final_mm.get(row.sonar)}" + ("" if row.seen_by == row.sonar else f" (seen by {row.seen_by})")
+    return f"{row.final_mm.get(row.sonar)}" + (
+        "" if row.seen_by == row.sonar else f" (seen by {row.seen_by})"
+    )
