@@ -88,7 +88,7 @@ PAGES = (
         name="argus-sim",
         what="emulates an ARCOS robot with its world, sonars and faults",
         command=(sys.executable, "-m", "hil_sim.cli"),
-        synopsis=("[options]", "bench NAME [options]"),
+        synopsis=("[options]", "bench NAME [options]", "experiment NAME [options]"),
         description=(
             "argus-sim is a robot for programs that speak ARCOS: drive, odometry, sonars and bumpers in a world "
             "of walls, with faults of its sonars on demand.",

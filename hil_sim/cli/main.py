@@ -26,6 +26,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         from hil_sim.bench.cli import main as bench
 
         return bench(words[1:])
+    if words[:1] == ["experiment"]:
+        from hil_sim.experiment.cli import main as experiment
+
+        return experiment(words[1:])
     arguments = parser().parse_args(words)
     try:
         if arguments.list_worlds:
