@@ -71,6 +71,9 @@ class Orders:
             fault = parse_fault(found[1], self._robot.table)
             if not isinstance(fault, SonarFault):
                 raise SimError(f"fault '{found[1]}': orders break sonars only")
+            if fault.start is None and fault.end is None:  # else they would pile up, all hidden by the last
+                for number in fault.sonars:
+                    self._faults.mend(number)
             self._faults.inject(fault)
         elif found := _MEND.fullmatch(text):
             self._mend(found[1])
