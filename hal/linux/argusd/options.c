@@ -19,6 +19,10 @@ enum {
     OPT_RECORD_MAX,
     OPT_ROBOT,
     OPT_CAN_TELEMETRY,
+    OPT_CONTROL,
+    OPT_CONTROL_TOKEN,
+    OPT_CONTROL_BEYOND,
+    OPT_INJECT,
     OPT_PASSIVE,
     OPT_ACTIVE,
     OPT_JSON,
@@ -43,6 +47,10 @@ static const struct option table[] = {
     {"record-max", required_argument, NULL, OPT_RECORD_MAX},
     {"robot", required_argument, NULL, OPT_ROBOT},
     {"can-telemetry", required_argument, NULL, OPT_CAN_TELEMETRY},
+    {"control", required_argument, NULL, OPT_CONTROL},
+    {"control-token", required_argument, NULL, OPT_CONTROL_TOKEN},
+    {"control-beyond-loopback", no_argument, NULL, OPT_CONTROL_BEYOND},
+    {"inject", no_argument, NULL, OPT_INJECT},
     {"passive", no_argument, NULL, OPT_PASSIVE},
     {"active", no_argument, NULL, OPT_ACTIVE},
     {"json", no_argument, NULL, OPT_JSON},
@@ -85,6 +93,13 @@ void options_help(FILE *out) {
         "  --record FILE      append all bytes of the link, both directions, with their times (see "
         "argus-log)\n"
         "  --record-max MB    size at which FILE becomes FILE.1 and so on to FILE.4 (default 64)\n"
+        "  --control unix:PATH | tcp:127.0.0.1:PORT\n"
+        "                     a socket on which programs of this user watch and order (see argusctl)\n"
+        "  --control-token FILE\n"
+        "                     whoever connects must say its first line; needed with tcp\n"
+        "  --control-beyond-loopback\n"
+        "                     allow an address that other machines reach\n"
+        "  --inject           arm argusctl fail: faults of sonars made by argusd itself, for tests\n"
         "  --wait SECONDS     at start, how long to try for the port and for a robot's answer; or 'forever'\n"
         "                     (default: the port must be there, a robot has 30 s)\n"
         "  --check            connect, tell what is there, leave\n"
@@ -108,6 +123,7 @@ void options_help(FILE *out) {
         "  argusd --link tcp:localhost --course course.csv --json\n"
         "  argusd --link can:can0 --active --goal 3000,0\n"
         "  argusd --link serial:/dev/ttyUSB0@9600 --can-telemetry can0,robot=2\n"
+        "  argusd --link tcp:localhost --control unix:/tmp/argus.sock --inject\n"
         "\n"
         "exit codes:\n",
         out);
@@ -201,6 +217,9 @@ static bool take_text(options_t *options, int option) {
     case OPT_RECORD:
         options->record_path = optarg;
         return true;
+    case OPT_CONTROL_TOKEN:
+        options->token_path = optarg;
+        return true;
     case OPT_ROBOT:
         options->robot = optarg;
         return true;
@@ -225,6 +244,12 @@ static bool take_flag(options_t *options, int option) {
         return true;
     case OPT_AUTO_BAUD:
         options->auto_baud = true;
+        return true;
+    case OPT_CONTROL_BEYOND:
+        options->control_beyond_loopback = true;
+        return true;
+    case OPT_INJECT:
+        options->inject = true;
         return true;
     default:
         return take_text(options, option);
@@ -264,6 +289,8 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
         return take_telemetry(options, optarg, message);
     case OPT_RECORD_MAX:
         return take_record_max(options, optarg, message);
+    case OPT_CONTROL:
+        return control_spec_parse(&options->control, optarg, message->text, message->capacity);
     case ':':
         return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help",
                            argv[optind - 1]);
@@ -283,6 +310,7 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
 static bool agree(const options_t *options, const message_t *message) {
     const bool has_link = hal_link_spec_target(&options->link)[0] != '\0';
     const bool serial = options->link.scheme == HAL_SCHEME_SERIAL;
+    const int family = options->control.family;
     const struct {
         bool wrong;
         const char *problem;
@@ -296,6 +324,15 @@ static bool agree(const options_t *options, const message_t *message) {
          "--check only looks at the robot; leave out --can-telemetry"},
         {options->record_max_bytes > 0 && options->record_path == NULL,
          "--record-max is for --record FILE; add it"},
+        {options->action == OPTIONS_CHECK && family != 0,
+         "--check only looks at the robot; leave out --control"},
+        {family == 0 && options->token_path != NULL, "--control-token is for --control; add it"},
+        {family == 0 && options->inject, "--inject is for orders at --control; add it"},
+        {(family == AF_INET || family == AF_INET6) && options->token_path == NULL,
+         "whoever reaches --control tcp: could drive the robot; add --control-token FILE"},
+        {family != 0 && !options->control.loopback && !options->control_beyond_loopback,
+         "this address of --control is reached by other machines; take 127.0.0.1, or add "
+         "--control-beyond-loopback"},
         {options->auto_baud && !serial, "--auto-baud is for serial links; no other has a rate to look for"},
         {options->auto_baud && options->link.has_baud,
          "--auto-baud and a rate in --link contradict each other; leave out @BAUD"},
