@@ -36,6 +36,7 @@ examples:
   argus-sim --robot amigo-sh --world office   an AmigoBot with its eight sonars
   argus-sim --physics rough-day               sonars and wheels as on a bad day (docs/worlds.md)
   argus-sim --orders                          sonars broken and mended as it runs, by lines such as 'break off:3'
+  argus-sim --monitor --world lab             robot, argusd and a live page, in one command
   argus-sim --robots 3 --tcp 8101             three robots, on ports 8101 to 8103
   argus-sim --tcp 8101 --quirks mobilesim     with the answers of the vendor's emulator
   argus-sim bench diagnosis --help            how well faults are diagnosed, over many missions without a link
@@ -267,6 +268,11 @@ def parser() -> argparse.ArgumentParser:
         help="size at which FILE becomes FILE.1 and so on to FILE.4 (default 64)",
     )
     rest.add_argument("--duration", type=_seconds, metavar="S", help="end after S seconds")
+    rest.add_argument(
+        "--monitor",
+        action="store_true",
+        help="start argusd and a page in the browser as well: argus-monitor --sim (docs/monitor.md)",
+    )
     rest.add_argument(
         "--orders",
         action="store_true",

@@ -5,7 +5,7 @@ import { Link } from "/link.js";
 import { Events, SonarList, drawChosen, drawFigures, drawHead, drawPlan, legend, put } from "/panels.js";
 import { Stage } from "/stage.js";
 import { between } from "/geometry.js";
-import { KINDS, exists, failureText, lookOf } from "/words.js";
+import { KINDS, exists, failureText, isNamed } from "/words.js";
 
 const SAY_MS = 6000;
 const TRAIL_KEPT = 3000;
@@ -28,6 +28,7 @@ const link = new Link(take, (why) => take({ link: { up: false, why } }), askToke
 
 const TAKES = {
   about(about) {
+    forget(); // a story follows, from its beginning
     known.sim = about.sim;
     document.body.classList.toggle("sim", about.sim);
     stage.walls = about.walls ?? [];
@@ -39,6 +40,7 @@ const TAKES = {
   },
   link(up) {
     known.link = up;
+    if (!up.up) known.control = "none";
   },
   anew() {
     Object.assign(known, { state: null, readings: null, evidence: null });
@@ -83,8 +85,6 @@ function take(message) {
   if (message.event === "STATUS") takeState(message);
   else if ("event" in message) takeEvent(message);
   else for (const [name, value] of Object.entries(message)) TAKES[name]?.(value);
-  if (message.about) forget(); // a story follows, from its beginning
-  if (message.link && !message.link.up) known.control = "none";
   draw();
 }
 
@@ -102,7 +102,7 @@ function takeState(state) {
 /** Say how long a fault that was put in took to be found. */
 function tellFound(before, state) {
   for (const [k, since] of brokenAt) {
-    if (lookOf(before, k) !== "bad" && lookOf(state, k) === "bad") {
+    if (!isNamed(before, k) && isNamed(state, k)) {
       const after = ((performance.now() - since) / 1000).toFixed(1);
       say(`Found after ${after} s: sonar ${k}${state.kind[k] ? `, ${state.kind[k]}` : ""}.`, "good");
     }

@@ -2,8 +2,9 @@
 // The panels beside the picture: list of sonars, the chosen one, plan, events, figures of robot and link.
 
 import { eye, make } from "/stage.js";
-import { KINDS, LOOKS, conditionOf, eventText, exists, failureText, lookOf, metres, modeText, signed } from "/words.js";
+import { KINDS, LOOKS, conditionOf, eventText, exists, failureText, isNamed, lookOf, metres, modeText, signed, usable } from "/words.js";
 
+const TOLD_PERCENT = 20; // less is what any sonar has now and then
 const EVENTS_SHOWN = 120;
 const LEVELS = ["ok", "warn", "error", "stale"];
 const $ = (id) => document.getElementById(id);
@@ -79,18 +80,27 @@ export class SonarList {
       put(one.mm, !heard ? "–" : mm >= 5000 ? "no echo" : `${metres(mm)} m`);
       one.bar.style.width = heard ? `${Math.min(100, mm / 50)}%` : "0";
       const level = evidence?.level?.[k] ?? 0;
-      const leaning = level > 0 && !state?.kind?.[k] && evidence.kind[k] ? `, ${evidence.kind[k]}? ${level} %` : "";
-      put(one.what, `${conditionOf(state, k)}${leaning}${broken[k] ? ` (broken: ${broken[k]})` : ""}`);
+      put(one.what, told({ state, evidence, broken }, k));
       one.level.style.width = `${Math.min(100, level)}%`;
       one.row.setAttribute("aria-checked", String(k === chosen));
       one.row.tabIndex = k === chosen ? 0 : -1;
     });
     if (state) {
       const fitted = state.health.filter((_, k) => exists(state, k) && k < this.rows.length).length;
-      const bad = state.health.filter((_, k) => lookOf(state, k) === "bad").length;
-      put($("sonars-count"), `${fitted - bad} of ${fitted} in use`);
+      const used = state.health.filter((_, k) => usable(state, k) && k < this.rows.length).length;
+      put($("sonars-count"), `${used} of ${fitted} in use`);
     }
   }
+}
+
+/** A row's words: short, since what matters most must fit. */
+function told({ state, evidence, broken }, k) {
+  const level = evidence?.level?.[k] ?? 0;
+  const mark = broken[k] ? "↯ " : "";
+  if (isNamed(state, k)) return mark + conditionOf(state, k);
+  if (broken[k]) return `${mark}${broken[k]}, not found`;
+  if (level >= TOLD_PERCENT && evidence.kind[k] && !state?.kind?.[k]) return `${evidence.kind[k]}? ${level} %`;
+  return conditionOf(state, k);
 }
 
 export function drawChosen({ state, evidence, chosen, broken, robot, canBreak }) {
@@ -99,7 +109,7 @@ export function drawChosen({ state, evidence, chosen, broken, robot, canBreak })
   const kind = state.kind[chosen], deg = robot.sonars[chosen]?.deg ?? 0;
   const parts = [`Looks ${signed(deg)}: ${conditionOf(state, chosen)}${kind in KINDS ? `, it ${KINDS[kind]}` : ""}.`];
   const level = evidence?.level?.[chosen] ?? 0;
-  if (level > 0 && evidence.kind[chosen]) parts.push(`The evidence for ${evidence.kind[chosen]} is ${level} % of what a verdict takes.`);
+  if (level >= TOLD_PERCENT && evidence.kind[chosen]) parts.push(`The evidence for ${evidence.kind[chosen]} is ${level} % of what a verdict takes.`);
   const by = evidence?.seen_by?.[chosen];
   if (Array.isArray(by) && by.length) parts.push(`Contradicted by ${by.length > 1 ? "sonars" : "sonar"} ${by.join(", ")}.`);
   if (broken[chosen]) parts.push(`Broken on purpose: ${broken[chosen]}.`);
@@ -126,7 +136,7 @@ export function drawHead({ state, link }) {
 
 function sentence(state) {
   if (!state) return "Nothing is known of the robot yet.";
-  const bad = state.health.flatMap((_, k) => (lookOf(state, k) === "bad" ? [`${k}${state.kind[k] ? ` ${state.kind[k]}` : ""}`] : []));
+  const bad = state.health.flatMap((_, k) => (exists(state, k) && (isNamed(state, k) || lookOf(state, k) === "bad") ? [`${k}${state.kind[k] ? ` ${state.kind[k]}` : ""}`] : []));
   if (!bad.length) return "All eyes open.";
   const plan = state.plan_deg ?? [];
   const looks = plan.length ? ` Looks there by turning ${plan.map(signed).join(", ")}.` : "";

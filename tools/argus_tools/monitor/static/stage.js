@@ -8,6 +8,7 @@ const SVG = "http://www.w3.org/2000/svg";
 const NO_ECHO_MM = 5000;
 const BEAM_DEG = 8;
 const RING_PART = 0.215; // of half the picture: where the eyes sit
+const RING_MIN = 68; // pixels: eyes 20 degrees apart are then far enough from one another for a finger
 const SPANS_MM = [1500, 2000, 2600, 3300, 4200, 5400, 7000, 10000];
 const GLIDE_MS = 110;
 
@@ -48,7 +49,7 @@ export class Stage {
     this.canvas = document.querySelector("#ground");
     this.svg = document.querySelector("#robot");
     this.act = act;
-    this.span = 3;
+    this.span = 2;
     this.robot = null;
     this.state = null;
     this.readings = null;
@@ -61,12 +62,16 @@ export class Stage {
     this.goal = null;
     this.pose = { x: 0, y: 0, deg: 0 };
     this.glide = null;
+    this.eyes = new Map();
+    this.over = undefined;
     this.base = 0;
     this.waiting = false;
     this.drawn = () => {};
     this.still = matchMedia("(prefers-reduced-motion: reduce)");
     new ResizeObserver(() => this.redraw()).observe(this.box);
     this.box.addEventListener("click", (event) => this.#click(event));
+    this.box.addEventListener("pointermove", (event) => this.#hover(this.#eyeAt(...this.#place(event))));
+    this.box.addEventListener("pointerleave", () => this.#hover(undefined));
     this.box.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.zoom(Math.sign(event.deltaY));
@@ -232,8 +237,8 @@ export class Stage {
   #figure(width, height) {
     this.svg.setAttribute("viewBox", `${-width / 2} ${-height / 2} ${width} ${height}`);
     if (!this.robot) return;
-    this.ring = Math.max(RING_PART * this.half, (this.robot.swing_mm + 90) * this.scale);
-    this.r = Math.max(7, Math.min(13, this.half * 0.03));
+    this.ring = Math.max(RING_PART * this.half, RING_MIN, (this.robot.swing_mm + 90) * this.scale);
+    this.r = Math.max(8.5, Math.min(13, this.half * 0.03));
     const turned = make("g", { transform: `rotate(${-this.pose.deg})` });
     const upright = make("g");
     const angles = ringAngles(this.robot.sonars);
@@ -243,6 +248,7 @@ export class Stage {
       this.#plan(upright);
     }
     this.#body(turned);
+    this.eyes.clear();
     this.robot.sonars.forEach((_, k) => this.#eye(upright, k, angles[k]));
     this.svg.replaceChildren(turned, upright);
   }
@@ -343,7 +349,9 @@ export class Stage {
     if (this.state && !exists(this.state, k)) return;
     const look = lookOf(this.state, k);
     const [x, y] = polar(this.ring, angle + this.pose.deg);
-    const group = make("g", { class: `sonar ${look}${k === this.chosen ? " chosen" : ""}`, transform: `translate(${x} ${y})`, "data-sonar": k }, upright);
+    this.eyes.set(k, [x, y]);
+    const marks = `${k === this.chosen ? " chosen" : ""}${k === this.over ? " over" : ""}`;
+    const group = make("g", { class: `sonar ${look}${marks}`, transform: `translate(${x} ${y})`, "data-sonar": k }, upright);
     make("circle", { r: Math.max(12, this.r * 1.35), class: "target" }, group);
     const level = this.evidence?.level?.[k] ?? 0;
     if (level > 0) make("path", { d: arc(this.r * 1.5, -180 + 0.01, -180 + Math.min(359.9, 3.6 * level)), class: "gauge" }, group);
@@ -353,14 +361,31 @@ export class Stage {
     make("text", { x: nx, y: ny + 4, class: "number" }, group).textContent = k;
   }
 
+  #hover(sonar) {
+    if (this.over === sonar) return;
+    this.over = sonar;
+    this.box.style.cursor = sonar === undefined ? "" : "pointer";
+    this.redraw();
+  }
+
+  #place(event) {
+    const box = this.box.getBoundingClientRect();
+    return [event.clientX - box.left - box.width / 2, event.clientY - box.top - box.height / 2];
+  }
+
+  /** The sonar whose eye is there. By place, not by element: those are made anew while a button is held. */
+  #eyeAt(x, y) {
+    const near = [...this.eyes.entries()].map(([k, [ex, ey]]) => [Math.hypot(x - ex, y - ey), k]).sort((a, b) => a[0] - b[0]);
+    return near.length && near[0][0] <= Math.max(13, 1.4 * this.r) ? near[0][1] : undefined;
+  }
+
   #click(event) {
-    const sonar = event.target.closest("[data-sonar]");
-    if (sonar) {
-      this.act.sonar(Number(sonar.dataset.sonar));
+    const [across, down] = this.#place(event);
+    const sonar = this.#eyeAt(across, down);
+    if (sonar !== undefined) {
+      this.act.sonar(sonar);
       return;
     }
-    const box = this.box.getBoundingClientRect();
-    const across = event.clientX - box.left - box.width / 2, down = event.clientY - box.top - box.height / 2;
     if (Math.hypot(across, down) < this.ring + 2.5 * this.r) return; // the robot stands there
     this.act.floor(Math.round(this.pose.x - down / this.scale), Math.round(this.pose.y - across / this.scale));
   }

@@ -30,10 +30,11 @@ const MODES = {
 
 /** The key in LOOKS of a sonar of a state. */
 export function lookOf(state, k) {
-  const health = state?.health?.[k];
-  if (health === "SUSPECT" && state.kind?.[k]) return "bad";
-  return OF_HEALTH[health] ?? "quiet";
+  return OF_HEALTH[state?.health?.[k]] ?? "quiet";
 }
+
+/** Whether argusd has given its fault a name. */
+export const isNamed = (state, k) => (state?.kind?.[k] ?? "") in KINDS;
 
 /** Whether its readings are used: what the coverage ring counts on. */
 export const usable = (state, k) => state?.kind?.[k] === "" && ["HEALTHY", "SUSPECT"].includes(state?.health?.[k]);
