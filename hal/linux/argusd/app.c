@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "argusd.h"
+#include "attach.h"
 #include "check.h"
 #include "course.h"
 #include "loop.h"
@@ -294,13 +295,17 @@ static bool open_bus(const hal_clock_t *clock) {
     return true;
 }
 
+static voice_options_t voice_of_options(void) {
+    return (voice_options_t){.json = options.json,
+                             .plain = options.plain,
+                             .status_ms = options.has_status ? options.status_ms
+                                          : options.json     ? 500u
+                                                             : 2000u};
+}
+
 static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *notice) {
     const loop_options_t wishes = {
-        .voice = {.json = options.json,
-                  .plain = options.plain,
-                  .status_ms = options.has_status ? options.status_ms
-                               : options.json     ? 500u
-                                                  : 2000u},
+        .voice = voice_of_options(),
         .config = &settings.config,
         .answer_ms = options.has_wait ? options.wait_ms : ANSWER_MS,
         .notice = notice,
@@ -331,11 +336,32 @@ static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *no
     return loop_run(&loop, &wishes);
 }
 
+static argusd_exit_t run_attached(const hal_clock_t *clock) {
+    static attach_t attach;
+    const voice_options_t voice = voice_of_options();
+    control_token_t token = {.on = false};
+    if (options.token_path != NULL &&
+        !control_token_load(&token, options.token_path, message, sizeof message)) {
+        return complain(ARGUSD_EXIT_USAGE);
+    }
+    if (!signals_open()) {
+        text_refuse(message, sizeof message, "no pipe or signal handler could be had from the system");
+        return complain(ARGUSD_EXIT_INTERNAL);
+    }
+    if (!attach_open(&attach, &options.attach, &token, clock, message, sizeof message)) {
+        return complain(ARGUSD_EXIT_LINK);
+    }
+    return attach_run(&attach, &voice);
+}
+
 static argusd_exit_t run(int argc, char **argv) {
     const hal_clock_t clock = hal_clock_monotonic();
     hal_link_t link = {0};
     if (!options_parse(&options, argc, argv, message, sizeof message)) {
         return complain(ARGUSD_EXIT_USAGE);
+    }
+    if (options.action == OPTIONS_ATTACH) {
+        return run_attached(&clock);
     }
     if (options.action != OPTIONS_RUN && options.action != OPTIONS_CHECK) {
         return print_list(options.action);

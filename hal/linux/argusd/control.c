@@ -40,10 +40,10 @@ static void say_to(control_client_t *client, const char *line, size_t length) {
 // Control
 // ----------------------------------------------------------------------------------------------------
 
-// Who moved the robot by hand no longer can: it must not go on.
+// Who moves the robot by hand no longer can: it must not go on.
 static void lose_control(control_t *self) {
-    if (self->holder >= 0 && self->world.hands.by_hand) {
-        control_stop(&self->world.hands);
+    if (self->holder >= 0) {
+        control_let_go(&self->world.hands);
     }
     self->holder = -1;
     memset(self->grant, 0, sizeof self->grant);

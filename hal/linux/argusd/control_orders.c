@@ -26,8 +26,13 @@ static bool ask(control_hands_t *self, argus_op_t op, int32_t argument, control_
     return obstacle == OPERATOR_FREE || control_refuse(answer, "refused", "%s", words[obstacle]);
 }
 
-void control_stop(control_hands_t *self) {
-    operator_ask(self->op, ARGUS_OP_STOP, 0, self->now_ms);
+void control_let_go(control_hands_t *self) {
+    const argus_status_t status = status_of(self);
+    const bool rests =
+        status.mode == ARGUS_MODE_IDLE && status.vel_left_mm_s == 0 && status.vel_right_mm_s == 0;
+    if (self->by_hand && !rests) {
+        operator_ask(self->op, ARGUS_OP_STOP, 0, self->now_ms);
+    }
     self->by_hand = false;
 }
 

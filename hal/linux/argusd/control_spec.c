@@ -15,8 +15,8 @@
 static bool parse_unix(control_spec_t *spec, const char *path, char *message, size_t capacity) {
     struct sockaddr_un *const un = &spec->address.un;
     if (path[0] == '\0' || strlen(path) >= sizeof un->sun_path) {
-        return text_refuse(message, capacity, "--control unix:%s: the path is empty or longer than %d bytes",
-                           path, (int)sizeof un->sun_path - 1);
+        return text_refuse(message, capacity, "unix:%s: the path is empty or longer than %d bytes", path,
+                           (int)sizeof un->sun_path - 1);
     }
     un->sun_family = AF_UNIX;
     strcpy(un->sun_path, path);
@@ -55,8 +55,7 @@ static bool parse_tcp(control_spec_t *spec, const char *rest, char *message, siz
     int32_t port = -1;
     if (colon == NULL || (size_t)(colon - rest) >= sizeof host || !text_number(colon + 1, &port) ||
         port < 0 || port > 65535) {
-        return text_refuse(message, capacity, "--control tcp:%s: give tcp:127.0.0.1:PORT, PORT 0 to 65535",
-                           rest);
+        return text_refuse(message, capacity, "tcp:%s: give tcp:127.0.0.1:PORT, PORT 0 to 65535", rest);
     }
     memcpy(host, rest, (size_t)(colon - rest));
     const size_t length = strlen(host);
@@ -66,8 +65,7 @@ static bool parse_tcp(control_spec_t *spec, const char *rest, char *message, siz
     }
     if (!parse_host(spec, host + (bracketed ? 1 : 0), (uint16_t)port)) {
         return text_refuse(message, capacity,
-                           "--control tcp:%s: '%s' is no address; give 127.0.0.1, [::1] or localhost", rest,
-                           host);
+                           "tcp:%s: '%s' is no address; give 127.0.0.1, [::1] or localhost", rest, host);
     }
     return true;
 }
@@ -80,7 +78,7 @@ bool control_spec_parse(control_spec_t *spec, const char *text, char *message, s
     if (strncmp(text, "tcp:", 4) == 0) {
         return parse_tcp(spec, text + 4, message, capacity);
     }
-    return text_refuse(message, capacity, "--control %s: give unix:PATH or tcp:127.0.0.1:PORT", text);
+    return text_refuse(message, capacity, "%s: give unix:PATH or tcp:127.0.0.1:PORT", text);
 }
 
 // NULL: the file may hold a token.

@@ -23,6 +23,7 @@ enum {
     OPT_CONTROL_TOKEN,
     OPT_CONTROL_BEYOND,
     OPT_INJECT,
+    OPT_ATTACH,
     OPT_PASSIVE,
     OPT_ACTIVE,
     OPT_JSON,
@@ -51,6 +52,7 @@ static const struct option table[] = {
     {"control-token", required_argument, NULL, OPT_CONTROL_TOKEN},
     {"control-beyond-loopback", no_argument, NULL, OPT_CONTROL_BEYOND},
     {"inject", no_argument, NULL, OPT_INJECT},
+    {"attach", required_argument, NULL, OPT_ATTACH},
     {"passive", no_argument, NULL, OPT_PASSIVE},
     {"active", no_argument, NULL, OPT_ACTIVE},
     {"json", no_argument, NULL, OPT_JSON},
@@ -100,6 +102,7 @@ void options_help(FILE *out) {
         "  --control-beyond-loopback\n"
         "                     allow an address that other machines reach\n"
         "  --inject           arm argusctl fail: faults of sonars made by argusd itself, for tests\n"
+        "  --attach PLACE     no robot of its own: the screen of the argusd whose --control is at PLACE\n"
         "  --wait SECONDS     at start, how long to try for the port and for a robot's answer; or 'forever'\n"
         "                     (default: the port must be there, a robot has 30 s)\n"
         "  --check            connect, tell what is there, leave\n"
@@ -124,6 +127,7 @@ void options_help(FILE *out) {
         "  argusd --link can:can0 --active --goal 3000,0\n"
         "  argusd --link serial:/dev/ttyUSB0@9600 --can-telemetry can0,robot=2\n"
         "  argusd --link tcp:localhost --control unix:/tmp/argus.sock --inject\n"
+        "  argusd --attach unix:/tmp/argus.sock\n"
         "\n"
         "exit codes:\n",
         out);
@@ -200,6 +204,17 @@ static bool take_telemetry(options_t *options, const char *text, const message_t
         return text_refuse(message->text, message->capacity, "--can-telemetry: %s", problem);
     }
     return true;
+}
+
+static bool take_place(options_t *options, int option, const message_t *message) {
+    char problem[ARGUSD_MESSAGE_MAX / 2];
+    if (option == OPT_ATTACH) {
+        options->action = OPTIONS_ATTACH;
+    }
+    return control_spec_parse(option == OPT_ATTACH ? &options->attach : &options->control, optarg, problem,
+                              sizeof problem) ||
+           text_refuse(message->text, message->capacity, "%s %s",
+                       option == OPT_ATTACH ? "--attach" : "--control", problem);
 }
 
 // What is kept as it was written.
@@ -290,7 +305,8 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
     case OPT_RECORD_MAX:
         return take_record_max(options, optarg, message);
     case OPT_CONTROL:
-        return control_spec_parse(&options->control, optarg, message->text, message->capacity);
+    case OPT_ATTACH:
+        return take_place(options, option, message);
     case ':':
         return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help",
                            argv[optind - 1]);
@@ -326,7 +342,7 @@ static bool agree(const options_t *options, const message_t *message) {
          "--record-max is for --record FILE; add it"},
         {options->action == OPTIONS_CHECK && family != 0,
          "--check only looks at the robot; leave out --control"},
-        {family == 0 && options->token_path != NULL, "--control-token is for --control; add it"},
+        {family == 0 && options->token_path != NULL, "--control-token is for --control or --attach; add it"},
         {family == 0 && options->inject, "--inject is for orders at --control; add it"},
         {(family == AF_INET || family == AF_INET6) && options->token_path == NULL,
          "whoever reaches --control tcp: could drive the robot; add --control-token FILE"},
@@ -361,6 +377,11 @@ bool options_parse(options_t *options, int argc, char **argv, char *message_text
     }
     if (optind < argc) {
         return text_refuse(message_text, capacity, "'%s' is not an option; see argusd --help", argv[optind]);
+    }
+    if (options->action == OPTIONS_ATTACH &&
+        (hal_link_spec_target(&options->link)[0] != '\0' || options->control.family != 0)) {
+        return text_refuse(message_text, capacity,
+                           "--attach shows an argusd that runs already; leave out --link and --control");
     }
     const bool needs_link = options->action == OPTIONS_RUN || options->action == OPTIONS_CHECK;
     return !needs_link || agree(options, &message);

@@ -14,6 +14,7 @@
 typedef enum {
     OPTIONS_RUN,
     OPTIONS_CHECK,
+    OPTIONS_ATTACH,
     OPTIONS_HELP,
     OPTIONS_VERSION,
     OPTIONS_LIST_EVENTS,
@@ -31,7 +32,8 @@ typedef struct {
     const char *state_path;
     const char *record_path;
     const char *token_path;
-    control_spec_t control; // family 0: not given
+    control_spec_t control; // family 0: not given, like the next
+    control_spec_t attach;
     bool control_beyond_loopback;
     bool inject;
     const char *robot;        // a choice of the setting of that name

@@ -189,8 +189,28 @@ static void put_link(json_t *json, const view_t *view) {
     put_string(json, "subclass", view->subclass);
 }
 
+static void put_ring(json_t *json, const argus_status_t *status) {
+    put_int(json, "sonars", status->sonars);
+    json_name(json, "bearing_deg");
+    json_open(json, '[');
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        json_int(json, status->bearing_deg[i]);
+    }
+    json_close(json, ']');
+    json_name(json, "pinned");
+    json_open(json, '[');
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if ((status->pinned >> i & 1u) != 0) {
+            json_int(json, i);
+        }
+    }
+    json_close(json, ']');
+    put_bool(json, "motors", status->motors);
+}
+
 static void put_control(json_t *json, const view_t *view) {
     put_bool(json, "controlled", view->controlled);
+    put_bool(json, "inject", view->inject);
     json_name(json, "injected");
     json_open(json, '[');
     for (int i = 0; i < ARGUS_SONARS; i++) {
@@ -228,6 +248,7 @@ size_t report_status_json(const view_t *view, int64_t unix_ms, char *line, size_
     put_plan(&json, &view->status.plan);
     put_sonars(&json, &view->status);
     put_link(&json, view);
+    put_ring(&json, &view->status);
     put_control(&json, view);
     put_can(&json, view);
     return finish(&json);

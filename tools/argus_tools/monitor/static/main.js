@@ -93,7 +93,7 @@ function takeState(state) {
   known.state = state;
   const injected = Object.fromEntries((state.injected ?? []).flatMap((kind, k) => (kind ? [[k, kind]] : [])));
   if (!known.sim) TAKES.broken(injected);
-  known.canBreak = known.sim || Boolean(state.inject_armed ?? state.inject);
+  known.canBreak = known.sim || Boolean(state.inject);
   document.body.classList.toggle("armed", known.canBreak && !known.sim);
   stage.setState(state);
   if (before) tellFound(before, state);
