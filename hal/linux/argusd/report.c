@@ -210,13 +210,13 @@ static void put_ring(json_t *json, const argus_status_t *status) {
 
 static void put_control(json_t *json, const view_t *view) {
     put_bool(json, "controlled", view->controlled);
-    put_bool(json, "inject", view->inject);
     json_name(json, "injected");
     json_open(json, '[');
     for (int i = 0; i < ARGUS_SONARS; i++) {
         json_string(json, argus_name(ARGUS_NAME_KIND, view->injected[i]));
     }
     json_close(json, ']');
+    put_bool(json, "inject", view->inject);
 }
 
 static void put_can(json_t *json, const view_t *view) {
