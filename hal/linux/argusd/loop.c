@@ -100,6 +100,7 @@ static void look(loop_t *self) {
     view->course_mm = self->course_mm;
     view->sonar = self->operator.sonar;
     view->controlled = control_is_held(&self->control);
+    view->inject = self->inject.armed;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         view->injected[i] = (uint8_t)self->inject.of[i].kind;
     }
