@@ -46,6 +46,8 @@ def test_zephyr_module() -> None:
     recipe = (ROOT / "zephyr/CMakeLists.txt").read_text(encoding="utf-8")
     for place in re.findall(r"\$\{CMAKE_CURRENT_LIST_DIR\}/([^)*\s]+)", recipe):
         assert (ROOT / "zephyr" / place).exists(), place
-    options = re.findall(r"^config (\w+)", (ROOT / module["build"]["kconfig"]).read_text(encoding="utf-8"), re.MULTILINE)
+    options = re.findall(
+        r"^config (\w+)", (ROOT / module["build"]["kconfig"]).read_text(encoding="utf-8"), re.MULTILINE
+    )
     used = set(re.findall(r"CONFIG_(\w+)", recipe))
     assert used == set(options)

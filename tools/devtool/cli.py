@@ -97,6 +97,14 @@ def add_making(add: Add) -> None:
         "coverage",
     )
     add("size", commands.do_size, "print text, RAM per instance and worst stack on Cortex-M4", "size")
+    add("api", commands.do_api, "make the pages of the public header, build/api/index.html", "api")
+    figures = add(
+        "figures",
+        commands.do_figures,
+        "write the measured figures into the documents, from docs/figures",
+        "figures\nfigures --check",
+    )
+    figures.add_argument("--check", action="store_true", help="change nothing, exit 1 if out of date")
     bench = add(
         "bench", commands.do_bench, "run the benchmarks of tests/bench", "bench\nbench NAME\nbench --can"
     )

@@ -112,6 +112,23 @@ def do_size(_args: argparse.Namespace) -> int:
     return 0
 
 
+def do_api(_args: argparse.Namespace) -> int:
+    """Make the pages of the public header."""
+    ensure([], ["doxygen"])
+    BUILD.mkdir(exist_ok=True)
+    run_visibly(["doxygen", "docs/Doxyfile"])
+    say(f"every name of argus/argus.h: {shown(BUILD / 'api/index.html')}")
+    return 0
+
+
+def do_figures(args: argparse.Namespace) -> int:
+    """Write the figures of the result files into the documents, or compare them."""
+    ensure([])
+    check = ["--check"] if args.check else []
+    run_visibly([VENV / "bin/python", "tools/figures.py", *check])
+    return 0
+
+
 def benchmarks() -> dict[str, Command]:
     """Return the benchmarks that there are, by name."""
     built = [path for path in (BUILD / "release").glob("bench_*") if os.access(path, os.X_OK)]

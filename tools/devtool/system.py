@@ -119,6 +119,7 @@ NEEDS: Final = {
     "groff": command_need("groff", "groff-base"),
     "pkg-config": command_need("pkg-config", "pkg-config"),
     "can-utils": command_need("candump", "can-utils"),
+    "doxygen": command_need("doxygen", "doxygen"),
 }
 BASIC_NEEDS: Final = ("gcc", "libc", "cmake", "generator", "venv", "inih", "curses")
 PRESET_NEEDS: Final = {
