@@ -19,7 +19,7 @@ from hil_sim.errors import SimError
 from hil_sim.tables.robot import RobotTable, robot_table
 
 try:
-    from tf2_msgs.msg import TFMessage
+    from tf2_msgs.msg import TFMessage as TFMessage
 except ImportError:  # no part of the packages on PyPI; docs/ros.md says how it is made there
     TFMessage = None
 
@@ -86,6 +86,18 @@ class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
             self.refusal = str(error)
             return TransitionCallbackReturn.FAILURE
         return TransitionCallbackReturn.SUCCESS
+
+    def discard(self, part: Any) -> None:
+        """Destroy a publisher, subscription, service, timer or guard condition of this node."""
+        for destroy in (
+            self.destroy_publisher,
+            self.destroy_subscription,
+            self.destroy_service,
+            self.destroy_timer,
+            self.destroy_guard_condition,
+        ):
+            if destroy(part):
+                return
 
     refusal = ""
 

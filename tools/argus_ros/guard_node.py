@@ -138,7 +138,7 @@ class RangeGuard(ArgusLifecycleNode):
 
     def _drop(self) -> None:
         for part in self._parts:
-            part.destroy()
+            self.discard(part)
         self._parts.clear()
 
     # ---- what comes
