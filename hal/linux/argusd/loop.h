@@ -5,6 +5,7 @@
 
 #include "argusd.h"
 #include "bus.h"
+#include "control.h"
 #include "driver.h"
 #include "moment.h"
 #include "notify.h"
@@ -26,7 +27,9 @@ typedef struct {
     driver_t driver;
     state_t state;
     tape_t tape;
-    bus_t bus; // off unless opened before
+    bus_t bus;         // off unless opened before
+    control_t control; // likewise
+    inject_t inject;
     voice_t voice;
     notify_t notify; // opened before
     operator_t operator;
