@@ -88,12 +88,31 @@ PAGES = (
         name="argus-sim",
         what="emulates an ARCOS robot with its world, sonars and faults",
         command=(sys.executable, "-m", "hil_sim.cli"),
-        synopsis=("[options]", "bench NAME [options]"),
+        synopsis=("[options]", "bench NAME [options]", "experiment NAME [options]"),
         description=(
             "argus-sim is a robot for programs that speak ARCOS: drive, odometry, sonars and bumpers in a world "
             "of walls, with faults of its sonars on demand.",
         ),
-        also=("argusd", "argus-log"),
+        also=("argusd", "argus-log", "argus-monitor"),
+    ),
+    Page(
+        name="argus-monitor",
+        what="shows a robot, its sonars and their faults in the browser, and drives it from there",
+        command=(sys.executable, "-m", "argus_tools.monitor.cli"),
+        synopsis=("--connect ADDRESS [options]", "--sim [options]"),
+        description=(
+            "argus-monitor is a client of argusd's control socket and a web server on loopback: a page with the "
+            "robot from above, the beam and the health of every sonar, the rotations that cover for those that "
+            "failed, and the orders that an operator may give. Several may look on; argusd lets one order.",
+            "With --sim it starts an emulated robot and argusd first; a click on a sonar then breaks or mends it.",
+        ),
+        ends=(
+            (
+                "ENVIRONMENT",
+                (("ARGUS_ARGUSD", "with --sim: the argusd to run, unless --argusd names one"),),
+            ),
+        ),
+        also=("argusd", "argus-sim"),
     ),
     Page(
         name="argus-log",

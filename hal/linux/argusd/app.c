@@ -243,6 +243,14 @@ static void drop_tape(void) {
 static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     const uint32_t wait_ms = options.has_wait ? options.wait_ms : CHECK_ANSWER_MS;
     driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
+    const argusd_exit_t guarded =
+        guards_open(&loop.guards, &options.guards, &loop.driver, message, sizeof message);
+    if (guarded != ARGUSD_EXIT_OK) {
+        hal_link_close(&link);
+        drop_tape();
+        return complain(guarded);
+    }
+    loop.driver.after = guards_tap(&loop.guards);
     loop.driver.tap = tape_tap(&loop.tape);
     driver_attach(&loop.driver, link);
     message[0] = '\0';
@@ -333,6 +341,14 @@ static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *no
         drop_tape();
         return complain(ARGUSD_EXIT_LINK);
     }
+    const argusd_exit_t guarded =
+        guards_open(&loop.guards, &options.guards, &loop.driver, message, sizeof message);
+    if (guarded != ARGUSD_EXIT_OK) {
+        hal_link_close(&link);
+        drop_tape();
+        return complain(guarded);
+    }
+    loop.driver.after = guards_tap(&loop.guards);
     loop.driver.tap = tape_tap(&loop.tape);
     loop.driver.filter = inject_filter(&loop.inject);
     driver_attach(&loop.driver, link);

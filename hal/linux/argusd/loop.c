@@ -100,6 +100,7 @@ static void look(loop_t *self) {
     view->course_mm = self->course_mm;
     view->sonar = self->operator.sonar;
     view->controlled = control_is_held(&self->control);
+    view->inject = self->inject.armed;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         view->injected[i] = (uint8_t)self->inject.of[i].kind;
     }
@@ -336,9 +337,17 @@ static bool is_over(loop_t *self) {
     return false;
 }
 
+static void serve_guards(loop_t *self) {
+    char text[ARGUSD_MESSAGE_MAX];
+    guards_serve(&self->guards, self->moment.now_ms);
+    if (guards_notice(&self->guards, text, sizeof text)) {
+        voice_notice(&self->voice, text);
+    }
+}
+
 // The link comes first: what a SIP calls for is on the wire before anything else is looked at.
 static void wait_for_work(loop_t *self, uint32_t wait_ms) {
-    enum { LINK, SIGNALS, KEYS, OUT, ERR, BUS, COUNT };
+    enum { LINK, SIGNALS, KEYS, OUT, ERR, BUS, GUARDS, COUNT = GUARDS + GUARDS_FDS };
     struct pollfd wait[COUNT + CONTROL_POLL_MAX] = {
         [LINK] = {.fd = self->driver.up ? hal_link_fd(&self->driver.link) : -1, .events = POLLIN},
         [SIGNALS] = {.fd = signals_fd(), .events = POLLIN},
@@ -351,12 +360,14 @@ static void wait_for_work(loop_t *self, uint32_t wait_ms) {
     if (driver_wants_write(&self->driver)) {
         wait[LINK].events |= POLLOUT;
     }
+    guards_wait(&self->guards, &wait[GUARDS]);
     const int controls = control_poll(&self->control, wait + COUNT);
     poll(wait, (nfds_t)(COUNT + controls), (int)wait_ms);
     if (wait[LINK].revents != 0) {
         driver_receive(&self->driver);
     }
     take_time(self);
+    serve_guards(self);
     if (wait[SIGNALS].revents != 0) {
         (void)!read(signals_fd(), bytes, sizeof bytes);
     }
@@ -420,15 +431,16 @@ argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
         if (is_over(self)) {
             break;
         }
-        const uint32_t told_ms = sooner(tell_bus(self), control_tell(&self->control, &self->moment));
-        const uint32_t due_ms = sooner(told_ms, tell_service(self));
-        wait_for_work(self, voice_wait_ms(&self->voice, self->moment.now_ms, sooner(wait_ms, due_ms)));
+        const uint32_t told_ms = sooner(sooner(tell_bus(self), tell_service(self)),
+                                        control_tell(&self->control, &self->moment));
+        wait_for_work(self, voice_wait_ms(&self->voice, self->moment.now_ms, sooner(wait_ms, told_ms)));
         say_events(self);
     }
     say_events(self);
     const argus_status_t status = status_of(self);
     control_close(&self->control);
     bus_close(&self->bus, &status, self->moment.now_ms);
+    guards_close(&self->guards, self->moment.now_ms);
     driver_close(&self->driver);
     tui_stop(&self->voice.tui);
     look(self);

@@ -7,6 +7,7 @@
 #include "bus.h"
 #include "control.h"
 #include "driver.h"
+#include "guards.h"
 #include "moment.h"
 #include "notify.h"
 #include "operator.h"
@@ -30,6 +31,7 @@ typedef struct {
     bus_t bus;         // off unless opened before
     control_t control; // likewise
     inject_t inject;
+    guards_t guards; // none unless opened before
     voice_t voice;
     notify_t notify; // opened before
     operator_t operator;
