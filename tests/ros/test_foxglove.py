@@ -15,13 +15,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import harness
 import pytest
 import websockets
 from argus_tools.foxglove import SCHEMAS
-from harness import ROOT, Argusd, Sim
+from harness import ROOT
+from robots import emulated, minded
 
-harness.SIM = Path(sys.prefix) / "bin/argus-sim"  # type: ignore[misc]
 BRIDGE = Path(sys.prefix) / "bin/argus-foxglove"
 LAYOUT = ROOT / "docs/foxglove/argus.json"
 MESSAGE_DATA = 1
@@ -32,11 +31,8 @@ DEAD = 3
 @pytest.fixture
 def address(tmp_path: Path) -> Iterator[str]:
     """A robot whose sonar 3 gets stuck, argusd, and the bridge: its address."""
-    fault = ("--crosstalk", "0", "--world", "demo", "--fault", f"stuck:{DEAD}@2s:value=0")
-    sim = Sim(("--tcp", "127.0.0.1:0", *fault), tmp_path / "truth.jsonl", tmp_path / "sim.log")
-    link = sim.address if sim.address.startswith("tcp:") else f"tcp:{sim.address}"
-    place = f"unix:{tmp_path / 'argus.sock'}"
-    argusd = Argusd(["--link", link, "--json", "--passive", "--wait", "60", "--control", place])
+    sim, robot = emulated(tmp_path, "--world", "demo", "--fault", f"stuck:{DEAD}@2s:value=0")
+    argusd, place = minded(tmp_path, robot, "--passive")
     command = [str(BRIDGE), "--control", place, "--port", "0"]
     bridge = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert bridge.stdout is not None
