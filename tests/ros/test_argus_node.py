@@ -148,7 +148,7 @@ def test_topics_tell_what_argusd_knows(robot: Any) -> None:
 
 
 def test_no_echo_is_infinite_and_a_dead_sonar_is_what_the_parameter_says(robot: Any) -> None:
-    bot = robot("--world", "hall", "--fault", f"stuck:{DEAD}@2s:value=0", dead="nan")
+    bot = robot("--world", "hall", "--fault", f"stuck:{DEAD}@2s:value=0", dead="invalid")
     assert bot.await_("sonar/range_4").range == math.inf
     assert math.isnan(bot.await_(f"sonar/range_{DEAD}", lambda m: math.isnan(m.range)).range)
 
