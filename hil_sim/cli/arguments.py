@@ -41,6 +41,7 @@ examples:
   argus-sim --tcp 8101 --quirks mobilesim     with the answers of the vendor's emulator
   argus-sim bench diagnosis --help            how well faults are diagnosed, over many missions without a link
   argus-sim bench journey --help              whether the robot gets there, and what the diagnosis costs
+  argus-sim experiment --help                 the experiments of the paper, and the study that it lacks
 
 The first line on standard output is the device path, HOST:PORT, or what argusd takes after can:, alone; with
 --robots one line for each. All else goes to standard error, but for the answers to --orders.
