@@ -63,7 +63,7 @@ endif()
 if(TARGET argus_sim)
     install(TARGETS argus_sim COMPONENT emulator)
 endif()
-foreach(name IN ITEMS argus-sim argus-log argus-conformance)
+foreach(name IN ITEMS argus-sim argus-log argus-conformance argus-monitor)
     install_manual(${name} tools)
 endforeach()
 
