@@ -275,6 +275,7 @@ typedef enum {
     X(72, ACTIVE, OK, "operator", "drives")                                                                  \
     X(73, REVERSED, WARN, "drive",                                                                           \
       "the leading end changes, at rest; value: 1 the rear leads, 0 the front again")                        \
+    X(74, INJECTED, WARN, "sonar", "what it reports is altered for a test; value: fault kind, 0: no more")   \
     X(80, RECORD_IGNORED, WARN, "record",                                                                    \
       "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")            \
     X(81, EVENTS_LOST, ERROR, "events", "the event queue overflowed; value: events lost")                    \
@@ -471,6 +472,13 @@ typedef struct {
     uint16_t robot_sonar_cycle_ms; // between two pings of one array
 } argus_status_t;
 
+// How far the evidence against each sonar is on its way to a verdict (profile argus; else all is 0).
+typedef struct {
+    argus_fault_kind_t kind[ARGUS_SONARS]; // the fault that explains it best so far, NONE: none
+    uint8_t percent[ARGUS_SONARS];         // 100: a verdict
+    argus_mask_t against[ARGUS_SONARS];    // sonars that contradict it, a mask
+} argus_suspicions_t;
+
 // What argus_name() names.
 typedef enum {
     ARGUS_NAME_EVENT,   // argus_event_id_t: SONAR_DEAD
@@ -578,6 +586,9 @@ size_t argus_guard_port(argus_t *self, argus_port_storage_t *port, uint32_t now_
 
 // Cost: one copy of some 500 bytes.
 void argus_status(const argus_t *self, argus_status_t *status);
+
+// Apart from the status, so that only who shows it pays. Cost: some twenty comparisons for each sonar.
+void argus_suspicions(const argus_t *self, argus_suspicions_t *suspicions);
 
 // The persistent record: what is known of every sonar (SPEC.md). save returns its length, 0 if it does not
 // fit; ARGUS_RECORD_MAX is enough. load takes a record, before a session opens; under `argus` a sonar that

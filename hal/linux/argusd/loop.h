@@ -5,6 +5,7 @@
 
 #include "argusd.h"
 #include "bus.h"
+#include "control.h"
 #include "driver.h"
 #include "guards.h"
 #include "moment.h"
@@ -26,8 +27,10 @@ typedef struct {
     driver_t driver;
     state_t state;
     tape_t tape;
-    bus_t bus;       // off unless opened before
-    guards_t guards; // none unless opened before
+    bus_t bus;         // off unless opened before
+    guards_t guards;   // likewise
+    control_t control; // likewise
+    inject_t inject;
     voice_t voice;
     operator_t operator;
     moment_t moment;

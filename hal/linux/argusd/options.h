@@ -9,11 +9,13 @@
 
 #include "argus/argus.h"
 #include "guards.h"
+#include "control_spec.h"
 #include "hal/link_spec.h"
 
 typedef enum {
     OPTIONS_RUN,
     OPTIONS_CHECK,
+    OPTIONS_ATTACH,
     OPTIONS_HELP,
     OPTIONS_VERSION,
     OPTIONS_LIST_EVENTS,
@@ -30,6 +32,11 @@ typedef struct {
     const char *course_path;
     const char *state_path;
     const char *record_path;
+    const char *token_path;
+    control_spec_t control; // family 0: not given, like the next
+    control_spec_t attach;
+    bool control_beyond_loopback;
+    bool inject;
     const char *robot;        // a choice of the setting of that name
     hal_can_spec_t telemetry; // interface "": not given
     bool no_telemetry;
