@@ -37,7 +37,7 @@ endif()
 if(TARGET argus_sim)
     install(TARGETS argus_sim)
 endif()
-install(FILES docs/man/argusd.1 docs/man/argus-sim.1 docs/man/argus-log.1
+install(FILES docs/man/argusd.1 docs/man/argusctl.1 docs/man/argus-sim.1 docs/man/argus-log.1
         DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 
 add_custom_target(uninstall COMMAND ${CMAKE_COMMAND} -DMANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt
