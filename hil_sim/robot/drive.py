@@ -200,6 +200,11 @@ class Drive:
         rotation = self._head_left if self._head_mode else self._w_set
         return self.ahead != 0 or rotation != 0
 
+    @property
+    def turn_left(self) -> float:
+        """Degrees left of a HEAD, 0 without one."""
+        return self._head_left if self._head_mode else 0.0
+
     def wheel_speeds(self) -> tuple[float, float]:
         """Left and right, mm/s."""
         half = self.w * DEG * self._track_mm / 2

@@ -173,8 +173,10 @@ static hal_link_error_t open_link(const hal_clock_t *clock, hal_link_t *link) {
             told = error;
             hal_transport_explain(&options.link, error, message, sizeof message);
             fprintf(stderr, "argusd: %s; waiting for it\n", message);
+            notify_status(&loop.notify, message);
             message[0] = '\0';
         }
+        notify_alive(&loop.notify, hal_clock_now_ms(clock));
         pause_for(OPEN_RETRY_MS);
     }
 }
@@ -183,6 +185,7 @@ static argusd_exit_t find_baud(const hal_clock_t *clock) {
     const uint32_t start_ms = hal_clock_now_ms(clock);
     probe_t probe;
     do {
+        notify_alive(&loop.notify, hal_clock_now_ms(clock));
         probe = probe_baud(&transport.serial, clock, signals_fd());
     } while (probe.baud == 0 && probe.error == HAL_LINK_OK && !probe.cancelled &&
              is_time_left(clock, start_ms));
@@ -240,6 +243,14 @@ static void drop_tape(void) {
 static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     const uint32_t wait_ms = options.has_wait ? options.wait_ms : CHECK_ANSWER_MS;
     driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
+    const argusd_exit_t guarded =
+        guards_open(&loop.guards, &options.guards, &loop.driver, message, sizeof message);
+    if (guarded != ARGUSD_EXIT_OK) {
+        hal_link_close(&link);
+        drop_tape();
+        return complain(guarded);
+    }
+    loop.driver.after = guards_tap(&loop.guards);
     loop.driver.tap = tape_tap(&loop.tape);
     driver_attach(&loop.driver, link);
     message[0] = '\0';
@@ -330,6 +341,14 @@ static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *no
         drop_tape();
         return complain(ARGUSD_EXIT_LINK);
     }
+    const argusd_exit_t guarded =
+        guards_open(&loop.guards, &options.guards, &loop.driver, message, sizeof message);
+    if (guarded != ARGUSD_EXIT_OK) {
+        hal_link_close(&link);
+        drop_tape();
+        return complain(guarded);
+    }
+    loop.driver.after = guards_tap(&loop.guards);
     loop.driver.tap = tape_tap(&loop.tape);
     loop.driver.filter = inject_filter(&loop.inject);
     driver_attach(&loop.driver, link);
@@ -380,6 +399,13 @@ static argusd_exit_t run(int argc, char **argv) {
     if (!open_tape()) {
         control_close(&loop.control);
         return complain(ARGUSD_EXIT_USAGE);
+    }
+    // Whoever waits for a robot is up as well: what is waited for is told.
+    if (options.action == OPTIONS_RUN) {
+        if (!notify_open(&loop.notify, message, sizeof message)) {
+            complain(ARGUSD_EXIT_OK);
+        }
+        notify_ready(&loop.notify, hal_clock_now_ms(&clock), "opening the link");
     }
     message[0] = '\0';
     const argusd_exit_t connected = connect_robot(&clock, &link);

@@ -137,6 +137,9 @@ static void hand_over(driver_t *self, const uint8_t *bytes, size_t count) {
     if (count > 0) {
         show(self, true, bytes, count);
         argus_receive(self->core, now_ms(self), bytes, count);
+        if (self->after.see != NULL) {
+            self->after.see(self->after.context, true, bytes, count);
+        }
         driver_transmit(self);
     }
 }

@@ -100,6 +100,7 @@ static void look(loop_t *self) {
     view->course_mm = self->course_mm;
     view->sonar = self->operator.sonar;
     view->controlled = control_is_held(&self->control);
+    view->inject = self->inject.armed;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         view->injected[i] = (uint8_t)self->inject.of[i].kind;
     }
@@ -124,6 +125,7 @@ static void end(loop_t *self, argusd_exit_t code) {
         self->ending = true;
         self->code = code;
         self->ending_ms = self->moment.now_ms;
+        notify_stopping(&self->notify);
         argus_shutdown(self->driver.core, self->moment.now_ms);
         driver_transmit(&self->driver);
     }
@@ -270,6 +272,19 @@ static void save(loop_t *self, bool now) {
     }
 }
 
+// Returns the ms until the next sign of life is due.
+static uint32_t tell_service(loop_t *self) {
+    const argus_status_t status = status_of(self);
+    if (!self->ending) {
+        notify_robot(&self->notify, &status);
+    }
+    return notify_alive(&self->notify, self->moment.now_ms);
+}
+
+static uint32_t sooner(uint32_t a_ms, uint32_t b_ms) {
+    return a_ms < b_ms ? a_ms : b_ms;
+}
+
 static void watch_link(loop_t *self) {
     char text[ARGUSD_MESSAGE_MAX];
     if (driver_reason(&self->driver, text, sizeof text)) {
@@ -322,9 +337,17 @@ static bool is_over(loop_t *self) {
     return false;
 }
 
+static void serve_guards(loop_t *self) {
+    char text[ARGUSD_MESSAGE_MAX];
+    guards_serve(&self->guards, self->moment.now_ms);
+    if (guards_notice(&self->guards, text, sizeof text)) {
+        voice_notice(&self->voice, text);
+    }
+}
+
 // The link comes first: what a SIP calls for is on the wire before anything else is looked at.
 static void wait_for_work(loop_t *self, uint32_t wait_ms) {
-    enum { LINK, SIGNALS, KEYS, OUT, ERR, BUS, COUNT };
+    enum { LINK, SIGNALS, KEYS, OUT, ERR, BUS, GUARDS, COUNT = GUARDS + GUARDS_FDS };
     struct pollfd wait[COUNT + CONTROL_POLL_MAX] = {
         [LINK] = {.fd = self->driver.up ? hal_link_fd(&self->driver.link) : -1, .events = POLLIN},
         [SIGNALS] = {.fd = signals_fd(), .events = POLLIN},
@@ -337,12 +360,14 @@ static void wait_for_work(loop_t *self, uint32_t wait_ms) {
     if (driver_wants_write(&self->driver)) {
         wait[LINK].events |= POLLOUT;
     }
+    guards_wait(&self->guards, &wait[GUARDS]);
     const int controls = control_poll(&self->control, wait + COUNT);
     poll(wait, (nfds_t)(COUNT + controls), (int)wait_ms);
     if (wait[LINK].revents != 0) {
         driver_receive(&self->driver);
     }
     take_time(self);
+    serve_guards(self);
     if (wait[SIGNALS].revents != 0) {
         (void)!read(signals_fd(), bytes, sizeof bytes);
     }
@@ -406,17 +431,16 @@ argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
         if (is_over(self)) {
             break;
         }
-        const uint32_t bus_ms = tell_bus(self);
-        const uint32_t control_ms = control_tell(&self->control, &self->moment);
-        const uint32_t told_ms = bus_ms < control_ms ? bus_ms : control_ms;
-        wait_for_work(
-            self, voice_wait_ms(&self->voice, self->moment.now_ms, wait_ms < told_ms ? wait_ms : told_ms));
+        const uint32_t told_ms = sooner(sooner(tell_bus(self), tell_service(self)),
+                                        control_tell(&self->control, &self->moment));
+        wait_for_work(self, voice_wait_ms(&self->voice, self->moment.now_ms, sooner(wait_ms, told_ms)));
         say_events(self);
     }
     say_events(self);
     const argus_status_t status = status_of(self);
     control_close(&self->control);
     bus_close(&self->bus, &status, self->moment.now_ms);
+    guards_close(&self->guards, self->moment.now_ms);
     driver_close(&self->driver);
     tui_stop(&self->voice.tui);
     look(self);

@@ -24,6 +24,9 @@ enum {
     OPT_CONTROL_BEYOND,
     OPT_INJECT,
     OPT_ATTACH,
+    OPT_GUARD,
+    OPT_GUARD_READINGS,
+    OPT_GUARD_BEYOND,
     OPT_PASSIVE,
     OPT_ACTIVE,
     OPT_JSON,
@@ -53,6 +56,9 @@ static const struct option table[] = {
     {"control-beyond-loopback", no_argument, NULL, OPT_CONTROL_BEYOND},
     {"inject", no_argument, NULL, OPT_INJECT},
     {"attach", required_argument, NULL, OPT_ATTACH},
+    {"guard", required_argument, NULL, OPT_GUARD},
+    {"guard-readings", required_argument, NULL, OPT_GUARD_READINGS},
+    {"guard-beyond-loopback", no_argument, NULL, OPT_GUARD_BEYOND},
     {"passive", no_argument, NULL, OPT_PASSIVE},
     {"active", no_argument, NULL, OPT_ACTIVE},
     {"json", no_argument, NULL, OPT_JSON},
@@ -89,6 +95,16 @@ void options_help(FILE *out) {
         "  --robot NAME       whose body and sonars it has, where it does not say so itself: p3dx-sh, "
         "amigo-sh,\n"
         "                     p3at-sh, peoplebot-sh; one that is not known is never driven\n"
+        "  --guard PORT       pty:PATH or tcp:HOST:PORT, up to 4 times: there an ARCOS client (ARIA, p2os, "
+        "...)\n"
+        "                     finds the robot; its motion is bounded by what trusted sonars see "
+        "(docs/guardian.md)\n"
+        "  --guard-readings withhold|cover|pass\n"
+        "                     what it gets of sonars that are out: nothing (default), what others have "
+        "heard\n"
+        "                     there lately, or what they say\n"
+        "  --guard-beyond-loopback\n"
+        "                     let a guard port listen where other machines reach it\n"
         "  --passive          diagnose and report, never command a motion\n"
         "  --active           drive; needed on a serial or can link, which starts passive\n"
         "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
@@ -124,6 +140,7 @@ void options_help(FILE *out) {
         "  argusd --link serial:/dev/ttyUSB0 --auto-baud\n"
         "  argusd --link serial:/dev/ttyUSB0@9600 --active --goal 3000,0 --config argusd.conf\n"
         "  argusd --link tcp:localhost --course course.csv --json\n"
+        "  argusd --link serial:/dev/ttyUSB0@9600 --guard tcp:127.0.0.1:8101 --guard pty:/run/argus/robot\n"
         "  argusd --link can:can0 --active --goal 3000,0\n"
         "  argusd --link serial:/dev/ttyUSB0@9600 --can-telemetry can0,robot=2\n"
         "  argusd --link tcp:localhost --control unix:/tmp/argus.sock --inject\n"
@@ -217,6 +234,28 @@ static bool take_place(options_t *options, int option, const message_t *message)
                        option == OPT_ATTACH ? "--attach" : "--control", problem);
 }
 
+static bool take_guard(options_t *options, const char *text, const message_t *message) {
+    guards_options_t *const guards = &options->guards;
+    if (guards->count == GUARDS_MAX) {
+        return text_refuse(message->text, message->capacity, "--guard %s: %d ports are the most", text,
+                           GUARDS_MAX);
+    }
+    return guard_spec_parse(&guards->at[guards->count++], text, message->text, message->capacity);
+}
+
+static bool take_readings(options_t *options, const char *text, const message_t *message) {
+    static const char *const names[] = {"withhold", "cover", "pass"};
+    options->readings = text;
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(text, names[i]) == 0) {
+            options->guards.readings = (argus_readings_t)i;
+            return true;
+        }
+    }
+    return text_refuse(message->text, message->capacity, "--guard-readings %s: give withhold, cover or pass",
+                       text);
+}
+
 // What is kept as it was written.
 static bool take_text(options_t *options, int option) {
     switch (option) {
@@ -266,6 +305,9 @@ static bool take_flag(options_t *options, int option) {
     case OPT_INJECT:
         options->inject = true;
         return true;
+    case OPT_GUARD_BEYOND:
+        options->guards.beyond = true;
+        return true;
     default:
         return take_text(options, option);
     }
@@ -307,6 +349,10 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
     case OPT_CONTROL:
     case OPT_ATTACH:
         return take_place(options, option, message);
+    case OPT_GUARD:
+        return take_guard(options, optarg, message);
+    case OPT_GUARD_READINGS:
+        return take_readings(options, optarg, message);
     case ':':
         return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help",
                            argv[optind - 1]);
@@ -338,6 +384,10 @@ static bool agree(const options_t *options, const message_t *message) {
          "no link is given; add --link serial:/dev/ttyUSB0@9600, tcp:HOST:8101 or can:can0 (see --help)"},
         {options->action == OPTIONS_CHECK && options->telemetry.interface[0] != '\0',
          "--check only looks at the robot; leave out --can-telemetry"},
+        {options->action == OPTIONS_CHECK && options->guards.count > 0,
+         "--check only looks at the robot; leave out --guard"},
+        {options->guards.count == 0 && (options->readings != NULL || options->guards.beyond),
+         "--guard-readings and --guard-beyond-loopback are for --guard PORT; add it"},
         {options->record_max_bytes > 0 && options->record_path == NULL,
          "--record-max is for --record FILE; add it"},
         {options->action == OPTIONS_CHECK && family != 0,

@@ -9,6 +9,7 @@
 
 #include "argus/argus.h"
 #include "control_spec.h"
+#include "guards.h"
 #include "hal/link_spec.h"
 
 typedef enum {
@@ -40,6 +41,8 @@ typedef struct {
     hal_can_spec_t telemetry; // interface "": not given
     bool no_telemetry;
     uint64_t record_max_bytes; // 0: not given
+    guards_options_t guards;
+    const char *readings; // of --guard-readings, NULL: not given
     argus_point_t goal;
     bool has_goal;
     bool passive;

@@ -216,6 +216,7 @@ static void put_control(json_t *json, const view_t *view) {
         json_string(json, argus_name(ARGUS_NAME_KIND, view->injected[i]));
     }
     json_close(json, ']');
+    put_bool(json, "inject", view->inject);
 }
 
 static void put_can(json_t *json, const view_t *view) {
