@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Fill the generated parts of SPEC.md and DESIGN.md from the C headers and the DBC file that define them."""
+"""Fill the generated parts of the documents from the C headers and the DBC file that define them."""
 
 from __future__ import annotations
 
@@ -147,29 +147,30 @@ def reflexes() -> str:
 
 
 def modes() -> str:
-    """Return the modes as a Markdown table, then the ways between them as a Mermaid diagram."""
+    """Return the modes as a Markdown table."""
     flags = {"ARGUS_MAY_TURN": "turns", "ARGUS_MAY_TRANSLATE": "drives", "ARGUS_MAY_BREAK_OFF": "broken off"}
     lines = ["| mode | may | ends by itself | meaning |", "|---|---|---|---|"]
     for name, _, may, limit, after, *meaning in rows("supervisor/mode.h", "ARGUS_MODE_TABLE"):
         shown = ", ".join(word for flag, word in flags.items() if flag in may)
         end = "" if limit == "0" else f"after {limit} ms: {after}"
         lines.append(f"| {name} | {shown} | {end} | {_cell(meaning)} |")
+    return "\n".join(lines)
+
+
+def machine() -> str:
+    """Return the ways between the modes as a Mermaid diagram."""
     # ANY stands for itself: Mermaid draws no arrow from a state to one inside it.
     diagram = ["```mermaid", "stateDiagram-v2", "    [*] --> OFFLINE", "    ANY : any mode in a session"]
     for before, after, *when in rows("supervisor/mode.h", "ARGUS_WAY_TABLE"):
         diagram.append(f"    {before} --> {after} : {', '.join(when)}")
-    return "\n".join([*lines, "", *diagram, "    CLOSED --> [*]", "```"])
+    return "\n".join([*diagram, "    CLOSED --> [*]", "```"])
 
 
 PARTS = {
     "SPEC.md": {"events": events, "config": config, "can": can},
-    "DESIGN.md": {
-        "modes": modes,
-        "reflexes": reflexes,
-        "policies": policies,
-        "rules": rules,
-        "health": health,
-    },
+    "DESIGN.md": {"machine": machine},
+    "docs/manager.md": {"modes": modes, "reflexes": reflexes, "rules": rules, "health": health},
+    "docs/driving.md": {"policies": policies},
 }
 
 

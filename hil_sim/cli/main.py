@@ -26,6 +26,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         from hil_sim.bench.cli import main as bench
 
         return bench(words[1:])
+    if words[:1] == ["experiment"]:
+        from hil_sim.experiment.cli import main as experiment
+
+        return experiment(words[1:])
+    if "--monitor" in words:
+        from argus_tools.monitor.cli import main as monitor
+
+        return monitor(["--sim", *(word for word in words if word != "--monitor")])
     arguments = parser().parse_args(words)
     try:
         if arguments.list_worlds:

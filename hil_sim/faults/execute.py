@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from hil_sim.faults.kinds import BumperHit, Fault, FaultChange, LinkFault, SonarFault
+from hil_sim.faults.kinds import BumperHit, Fault, FaultChange, LinkFault, SonarFault, WheelFault
 from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM
 from hil_sim.world.model import Pose
 
@@ -22,6 +22,7 @@ class _State:
         self.ended = False
         self.told = False
         self.held: dict[int, int] = {}
+        self.mended: set[int] = set()
         self.since: float | None = None
         self.part = 1.0 if fault.ramp is None else 0.0
 
@@ -39,7 +40,12 @@ class _State:
         if self.on == self.told:
             return []
         self.told = self.on
-        return [FaultChange(now_ms, fault.kind, self.on, fault.text, sonar=number) for number in fault.sonars]
+        return [self.change(now_ms, number) for number in fault.sonars if number not in self.mended]
+
+    def change(self, now_ms: float, number: int) -> FaultChange:
+        """What is to be told of a sonar that has it now, or has it no longer."""
+        on = self.has(number)
+        return FaultChange(now_ms, self.fault.kind, on, self.fault.text, sonar=number)
 
     def _grow(self, now_ms: float, travelled_mm: float) -> None:
         """Let a fault with a ramp grow, from where it began."""
@@ -51,7 +57,11 @@ class _State:
 
     def has(self, number: int) -> bool:
         """Whether it is on and of this sonar."""
-        return self.on and number in self.fault.sonars
+        return self.on and number in self.fault.sonars and number not in self.mended
+
+    def may_have(self, number: int) -> bool:
+        """Whether it is of this sonar, or will be."""
+        return not self.ended and number in self.fault.sonars and number not in self.mended
 
     def hold(self, number: int, measured: int) -> None:
         """Keep the reading at onset of one that is stuck; also while another fault hides it."""
@@ -64,29 +74,80 @@ class _State:
         return self.started and not self.ended
 
     @property
+    def spent(self) -> bool:
+        """It is over for every sonar that it was of."""
+        return self.ended or self.mended.issuperset(self.fault.sonars)
+
+    @property
     def settled(self) -> bool:
         """It has ended, or is on for good: it does not change any more."""
         return self.ended or (self.on and self.fault.end is None and self.part >= 1.0)
 
 
+class _Wheel:
+    """How far one fault of a wheel has come."""
+
+    def __init__(self, fault: WheelFault) -> None:
+        self.fault = fault
+        self.started = self.ended = self.told = False
+
+    @property
+    def on(self) -> bool:
+        return self.started and not self.ended
+
+    def update(self, now_ms: float, pose: Pose, travelled_mm: float) -> list[FaultChange]:
+        """Begin or end; return the change."""
+        fault = self.fault
+        here = now_ms, pose, travelled_mm
+        self.started = self.started or fault.start is None or fault.start.met(*here)
+        self.ended = self.ended or (self.started and fault.end is not None and fault.end.met(*here))
+        if self.on == self.told:
+            return []
+        self.told = self.on
+        return [FaultChange(now_ms, "wheel", self.on, fault.text)]
+
+
 class FaultSet:
-    """Executes the sonar faults and bumper hits of a run; link faults among them are left to the link."""
+    """Executes the faults of sonars and wheels and the bumper hits of a run; link faults are left to the link."""
 
     def __init__(self, faults: Iterable[Fault] = (), rng: np.random.Generator | None = None) -> None:
         self.faults = list(faults)
         self._rng = rng if rng is not None else np.random.default_rng(0)
-        self._states = [_State(fault) for fault in self.faults if isinstance(fault, SonarFault)]
+        self._states: list[_State] = []
         self._hits = [fault for fault in self.faults if isinstance(fault, BumperHit)]
         self._pressed = [False] * len(self._hits)
-        self._waiting = list(self._states)
+        self._wheels = [_Wheel(fault) for fault in self.faults if isinstance(fault, WheelFault)]
+        self._waiting: list[_State] = []
         self._afflicted: set[int] = set()
-        slowest: dict[int, int] = {}
-        for state in self._states:
-            fault = state.fault
-            self._afflicted.update(fault.sonars)
-            for number in fault.sonars if fault.kind == "slow" else ():
-                slowest[number] = max(fault.n, slowest.get(number, 0))
-        self._echoes: dict[int, deque[int]] = {n: deque(maxlen=count + 1) for n, count in slowest.items()}
+        self._echoes: dict[int, deque[int]] = {}
+        self._mended: list[tuple[_State, int]] = []
+        for fault in self.faults:
+            if isinstance(fault, SonarFault):
+                self._take(fault)
+
+    def _take(self, fault: SonarFault) -> None:
+        state = _State(fault)
+        self._states.append(state)
+        self._waiting.append(state)
+        self._afflicted.update(fault.sonars)
+        for number in fault.sonars if fault.kind == "slow" else ():
+            kept = self._echoes.get(number, deque(maxlen=1))
+            self._echoes[number] = deque(kept, maxlen=max(fault.n + 1, kept.maxlen or 0))
+
+    def inject(self, fault: SonarFault) -> None:
+        """Take one fault more while the robot runs; as the last one written it wins."""
+        self.faults.append(fault)
+        self._take(fault)
+
+    def mend(self, number: int) -> bool:
+        """Take every fault from a sonar, those to come too; tell whether it had one."""
+        found = [state for state in self._states if state.may_have(number)]
+        self._mended += [(state, number) for state in found if state.told]
+        for state in found:
+            state.mended.add(number)
+        self._states = [state for state in self._states if not state.spent]
+        self._waiting = [state for state in self._waiting if not state.spent]
+        return bool(found)
 
     @property
     def link_faults(self) -> list[LinkFault]:
@@ -95,13 +156,20 @@ class FaultSet:
 
     def update(self, now_ms: float, pose: Pose, travelled_mm: float) -> list[FaultChange]:
         """Begin and end faults; return what changed. Call it before the ring fires."""
-        changes: list[FaultChange] = []
+        changes = [state.change(now_ms, number) for state, number in self._mended]
+        self._mended.clear()
+        for wheel in self._wheels:
+            changes += wheel.update(now_ms, pose, travelled_mm)
         if not self._waiting and not self._hits:
             return changes
-        for state in self._waiting:
-            changes += state.update(now_ms, pose, travelled_mm)
-        if changes:
+        begun = [change for state in self._waiting for change in state.update(now_ms, pose, travelled_mm)]
+        if begun:
             self._waiting = [state for state in self._waiting if not state.settled]
+        return changes + begun + self._press(now_ms)
+
+    def _press(self, now_ms: float) -> list[FaultChange]:
+        """Press and release bumpers."""
+        changes: list[FaultChange] = []
         for k, hit in enumerate(self._hits):
             pressed = hit.start_ms <= now_ms < hit.end_ms
             if pressed != self._pressed[k]:
@@ -168,6 +236,13 @@ class FaultSet:
 
     def note_ping(self, t_ms: float, number: int, true_mm: int, heard_mm: int, value: int | None) -> None:
         """Be told of a ping that a fault may have changed; for those who judge."""
+
+    def wheels(self) -> tuple[float, float]:
+        """Return the part that the left and the right wheel turn of what they are told."""
+        parts = {"left": 1.0, "right": 1.0}
+        for wheel in self._wheels:
+            parts[wheel.fault.side] *= wheel.fault.part if wheel.on else 1.0
+        return parts["left"], parts["right"]
 
     def bumper(self, now_ms: float) -> int:
         """Return the front bumper bits that hits press now: bit 1 leftmost to bit 5 rightmost."""

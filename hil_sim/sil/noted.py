@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -21,13 +21,30 @@ VISIBLE_PART: Final = 0.05
 
 
 class NotedRobot(Robot):
-    """The robot, with its SIPs and its collisions noted."""
+    """The robot, with its SIPs and its collisions noted.
+
+    watch: called after each sub-step with the readings that came in it.
+    """
 
     noted: tuple[SonarReading, ...] = ()
+    watch: Callable[[Sequence[SonarReading]], None] | None = None
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self.hits: list[Collision] = []
+        self._news: list[SonarReading] = []
+
+    def step(self) -> None:
+        """Let one sub-step pass, and tell who watches."""
+        super().step()
+        if self.watch is not None:
+            news, self._news = self._news, []
+            self.watch(news)
+
+    def _hear(self, readings: Sequence[SonarReading]) -> None:
+        super()._hear(readings)
+        if self.watch is not None:
+            self._news += readings
 
     def take_readings(self) -> list[SonarReading]:
         """Return the readings that go into a SIP, and note them."""

@@ -14,7 +14,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def version() -> str:
-    match = re.search(r"project\(argus VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))
+    header = (ROOT / "firmware/include/argus/argus.h").read_text(encoding="utf-8")
+    match = re.search(r'^#define ARGUS_VERSION "(.+)"$', header, re.MULTILINE)
     assert match is not None
     return match[1]
 
@@ -46,6 +47,8 @@ def test_zephyr_module() -> None:
     recipe = (ROOT / "zephyr/CMakeLists.txt").read_text(encoding="utf-8")
     for place in re.findall(r"\$\{CMAKE_CURRENT_LIST_DIR\}/([^)*\s]+)", recipe):
         assert (ROOT / "zephyr" / place).exists(), place
-    options = re.findall(r"^config (\w+)", (ROOT / module["build"]["kconfig"]).read_text(encoding="utf-8"), re.MULTILINE)
+    options = re.findall(
+        r"^config (\w+)", (ROOT / module["build"]["kconfig"]).read_text(encoding="utf-8"), re.MULTILINE
+    )
     used = set(re.findall(r"CONFIG_(\w+)", recipe))
     assert used == set(options)

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from devtool import commands, firmware
+from devtool import commands, firmware, packaging
 from devtool.base import Stop
 from devtool.cmake import presets
 from devtool.linting import LINT_STAGES, format_stages
@@ -97,6 +97,14 @@ def add_making(add: Add) -> None:
         "coverage",
     )
     add("size", commands.do_size, "print text, RAM per instance and worst stack on Cortex-M4", "size")
+    add("api", commands.do_api, "make the pages of the public header, build/api/index.html", "api")
+    figures = add(
+        "figures",
+        commands.do_figures,
+        "write the measured figures into the documents, from docs/figures",
+        "figures\nfigures --check",
+    )
+    figures.add_argument("--check", action="store_true", help="change nothing, exit 1 if out of date")
     bench = add(
         "bench", commands.do_bench, "run the benchmarks of tests/bench", "bench\nbench NAME\nbench --can"
     )
@@ -128,7 +136,7 @@ def make_parser() -> argparse.ArgumentParser:
         sub.set_defaults(action=action)
         return sub
 
-    for add_some in (add_running, add_checking, add_making, firmware.add_commands):
+    for add_some in (add_running, add_checking, add_making, firmware.add_commands, packaging.add_commands):
         add_some(add)
     return parser
 

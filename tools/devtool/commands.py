@@ -30,7 +30,7 @@ from devtool.cmake import build, build_and_test, presets
 from devtool.setup import ensure
 from devtool.stages import STAGE_LIMIT_S, StageFailed, logged_runner, tail_of
 
-CACHES: Final = (".mypy_cache", ".ruff_cache", ".pytest_cache", ".hypothesis", "argus_p3dx.egg-info")
+CACHES: Final = (".mypy_cache", ".ruff_cache", ".pytest_cache", ".hypothesis", "dist")
 
 
 def quietly(what: str, action: Callable[[Run], None]) -> None:
@@ -109,6 +109,23 @@ def do_size(_args: argparse.Namespace) -> int:
     ensure(["cortex-m4"])
     quietly("building for Cortex-M4", functools.partial(build, "cortex-m4"))
     run_visibly([sys.executable, "tools/size.py", "build/cortex-m4"])
+    return 0
+
+
+def do_api(_args: argparse.Namespace) -> int:
+    """Make the pages of the public header."""
+    ensure([], ["doxygen"])
+    BUILD.mkdir(exist_ok=True)
+    run_visibly(["doxygen", "docs/Doxyfile"])
+    say(f"every name of argus/argus.h: {shown(BUILD / 'api/index.html')}")
+    return 0
+
+
+def do_figures(args: argparse.Namespace) -> int:
+    """Write the figures of the result files into the documents, or compare them."""
+    ensure([])
+    check = ["--check"] if args.check else []
+    run_visibly([VENV / "bin/python", "tools/figures.py", *check])
     return 0
 
 

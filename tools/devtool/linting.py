@@ -89,4 +89,26 @@ LINT_STAGES: Final = (
     ),
     Stage("ruff", "defects and docstrings in Python", lambda run: run([VENV / "bin/ruff", "check", "."])),
     Stage("mypy", "types in Python", mypy),
+    Stage(
+        "prose",
+        "sentences, grade and links of the documents",
+        lambda run: run([VENV / "bin/python", "tools/prose.py"]),
+    ),
+    Stage("spelling", "spelling everywhere", lambda run: run([VENV / "bin/codespell"])),
+    Stage(
+        "figures",
+        "documents against the result files",
+        lambda run: run([VENV / "bin/python", "tools/figures.py", "--check"]),
+    ),
+    Stage(
+        "api",
+        "every name of the public header is documented",
+        lambda run: run(["doxygen", "docs/Doxyfile"]),
+        needs=("doxygen",),
+    ),
+    Stage(
+        "commits",
+        "subjects of commits",
+        lambda run: run([VENV / "bin/python", "tools/commits.py"]),
+    ),
 )

@@ -112,13 +112,22 @@ NEEDS: Final = {
         lambda: quiet_ok(["s390x-linux-gnu-gcc", "-xc", "-E", "-include", "string.h", "/dev/null"]),
         lambda: ["gcc-s390x-linux-gnu", "libc6-dev-s390x-cross"],
     ),
+    "aarch64": Need(
+        "gcc for aarch64",
+        lambda: quiet_ok(["aarch64-linux-gnu-gcc", "-xc", "-E", "-include", "string.h", "/dev/null"]),
+        lambda: ["gcc-aarch64-linux-gnu", "libc6-dev-arm64-cross"],
+    ),
     "qemu-user": command_need("qemu-s390x", "qemu-user"),
     "clang": command_need("clang", "clang"),
     "tshark": command_need("tshark", "tshark"),
     "g++": command_need("g++", "g++"),
     "groff": command_need("groff", "groff-base"),
     "pkg-config": command_need("pkg-config", "pkg-config"),
+    "dpkg-dev": command_need("dpkg-shlibdeps", "dpkg-dev"),
+    "lintian": command_need("lintian", "lintian"),
+    "systemd": command_need("systemd-analyze", "systemd"),
     "can-utils": command_need("candump", "can-utils"),
+    "doxygen": command_need("doxygen", "doxygen"),
 }
 BASIC_NEEDS: Final = ("gcc", "libc", "cmake", "generator", "venv", "inih", "curses")
 PRESET_NEEDS: Final = {

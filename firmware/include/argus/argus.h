@@ -44,6 +44,9 @@
 #ifndef ARGUS_ARGUS_H
 #define ARGUS_ARGUS_H
 
+// The one place where the version is written: all else reads it here.
+#define ARGUS_VERSION "0.1.0"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -139,6 +142,7 @@ typedef uint16_t argus_mask_t;
     X(link_lost_ms, 4000, 1000, 60000, "ms", "", "no SIP for this long: start the session again")            \
     X(retry_max_ms, 8000, 500, 60000, "ms", "", "longest pause between two attempts to reach the robot")
 
+// The settings, one int32_t for each row of the table.
 typedef struct {
 #define ARGUS_CONFIG_FIELD(key, def, min, max, unit, choices, meaning) int32_t key;
     ARGUS_CONFIG_TABLE(ARGUS_CONFIG_FIELD)
@@ -163,15 +167,15 @@ typedef enum {
 
 // The arithmetic of S5 (DESIGN.md, safety invariants), so that a refusal can show it.
 typedef struct {
-    argus_config_fault_t fault;
-    int32_t key;         // row of the table, for ARGUS_CONFIG_RANGE, else -1
-    int32_t overhang_mm; // body front ahead of the sonar faces
-    int32_t reaction_ms; // sonar refresh + SIP period + SIP and command on the wire
-    int32_t travel_mm;   // speed x reaction
-    int32_t brake_mm;    // speed^2 / (2 decel), decel at most the robot's own (300 mm/s2)
-    int32_t driving_mm;  // overhang + travel + brake: must be < object_range_mm
-    int32_t reach_mm;    // largest reading of a point that the body sweeps in one step
-    int32_t stepping_mm; // reach + 3 noise + 20: must be < check_range_mm
+    argus_config_fault_t fault; // the first that was found
+    int32_t key;                // row of the table, for ARGUS_CONFIG_RANGE, else -1
+    int32_t overhang_mm;        // body front ahead of the sonar faces
+    int32_t reaction_ms;        // sonar refresh + SIP period + SIP and command on the wire
+    int32_t travel_mm;          // speed x reaction
+    int32_t brake_mm;           // speed^2 / (2 decel), decel at most the robot's own (300 mm/s2)
+    int32_t driving_mm;         // overhang + travel + brake: must be < object_range_mm
+    int32_t reach_mm;           // largest reading of a point that the body sweeps in one step
+    int32_t stepping_mm;        // reach + 3 noise + 20: must be < check_range_mm
 } argus_config_report_t;
 
 // Events ---------------------------------------------------------------------------------------------------
@@ -274,18 +278,44 @@ typedef enum {
     X(72, ACTIVE, OK, "operator", "drives")                                                                  \
     X(73, REVERSED, WARN, "drive",                                                                           \
       "the leading end changes, at rest; value: 1 the rear leads, 0 the front again")                        \
+    X(74, INJECTED, WARN, "sonar", "what it reports is altered for a test; value: fault kind, 0: no more")   \
+    X(75, WHEEL_SHORT, WARN, "drive",                                                                        \
+      "ways straight ahead bend: a wheel turns less than it is told, and is countered by turning; value: "   \
+      "thousandths that it falls short, positive the left one, negative the right one")                      \
+    X(76, WHEEL_EVEN, OK, "drive", "ways straight ahead are straight again; value: 0")                       \
     X(80, RECORD_IGNORED, WARN, "record",                                                                    \
       "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")            \
     X(81, EVENTS_LOST, ERROR, "events", "the event queue overflowed; value: events lost")                    \
     X(90, INVARIANT, ERROR, "manager", "an internal invariant does not hold; value: its number")             \
-    X(91, STATUS, OK, "status", "periodic picture of all that is known")
+    X(91, STATUS, OK, "status", "periodic picture of all that is known")                                     \
+    X(100, GUARD_OPEN, OK, "guard", "a client opened its session at a guard port; value: 0")                 \
+    X(101, GUARD_CLOSED, OK, "guard", "the client closed its session; value: packets that it sent")          \
+    X(102, GUARD_LOST, ERROR, "guard",                                                                       \
+      "the client is gone without a word: STOP sent if it drove; value: 1 its connection closed, 2 silent "  \
+      "for as long as the robot's watchdog waits, 3 the robot's own session ended")                          \
+    X(103, GUARD_DRIVES, WARN, "guard",                                                                      \
+      "the client drives: passive, bounds its motion and reports; value: 0")                                 \
+    X(104, GUARD_SLOWED, WARN, "guard",                                                                      \
+      "slower than the client asks, to stand before what is seen (S5); value: mm/s")                         \
+    X(105, GUARD_HELD, WARN, "guard",                                                                        \
+      "not the way that the client asks; value: 1 an object (S2), 2 not seen (S1, S3, S7), 3 a bumper, "     \
+      "4 stopped by an operator, or a body that is not known")                                               \
+    X(106, GUARD_TURN_HELD, WARN, "guard",                                                                   \
+      "not the turn that the client asks: the body would meet what is seen (S7); value: degrees, or per s")  \
+    X(107, GUARD_FREE, OK, "guard", "the client's motion is not bounded any more; value: 0")                 \
+    X(108, GUARD_REFUSED, WARN, "guard", "a command of the client ends here; value: its number")             \
+    X(109, GUARD_LOOKS, OK, "guard",                                                                         \
+      "a bearing ahead is blind: the heading swings so that others see the way; value: degrees to each "     \
+      "side")
 
+// The events by number.
 typedef enum {
 #define ARGUS_EVENT_ENUM(id, name, level, subject, meaning) ARGUS_EV_##name = (id),
     ARGUS_EVENT_TABLE(ARGUS_EVENT_ENUM)
 #undef ARGUS_EVENT_ENUM
 } argus_event_id_t;
 
+// One event, as argus_next_event() gives it.
 typedef struct {
     uint32_t t_ms; // time of the call that raised it
     uint16_t id;   // argus_event_id_t
@@ -296,17 +326,20 @@ typedef struct {
 
 // State ----------------------------------------------------------------------------------------------------
 
+// A place in the frame of the course.
 typedef struct {
-    int32_t x_mm;
-    int32_t y_mm;
+    int32_t x_mm; // ahead of where the course starts
+    int32_t y_mm; // to the left of it
 } argus_point_t;
 
+// A place and a heading in that frame.
 typedef struct {
-    int32_t x_mm; // ahead and to the left of where the course starts
-    int32_t y_mm;
-    int32_t heading_cdeg;
+    int32_t x_mm;         // ahead of where the course starts
+    int32_t y_mm;         // to the left of it
+    int32_t heading_cdeg; // hundredths of a degree, counter-clockwise, above -18000 and up to 18000
 } argus_pose_t;
 
+// The health of a sonar. A program that only wants to know whether to use one looks at its kind.
 typedef enum {
     ARGUS_UNKNOWN,   // not judged yet
     ARGUS_HEALTHY,   // judged, no complaint
@@ -320,13 +353,13 @@ typedef enum {
 // After the failure words of PX4; the numbers are on the wire (SPEC.md, Events) and in the record.
 typedef enum {
     ARGUS_KIND_NONE = 0,
-    ARGUS_KIND_OFF = 1,
-    ARGUS_KIND_SILENT = 2,
-    ARGUS_KIND_STUCK = 3,
-    ARGUS_KIND_WRONG = 4,
-    ARGUS_KIND_GARBAGE = 5,
-    ARGUS_KIND_SLOW = 6,
-    ARGUS_KIND_INTERMITTENT = 7
+    ARGUS_KIND_OFF = 1,         // never an echo: reads 5000
+    ARGUS_KIND_SILENT = 2,      // yields no reading
+    ARGUS_KIND_STUCK = 3,       // one value again and again
+    ARGUS_KIND_WRONG = 4,       // too far, too near, or beside its axis
+    ARGUS_KIND_GARBAGE = 5,     // leaps
+    ARGUS_KIND_SLOW = 6,        // readings of some firings ago
+    ARGUS_KIND_INTERMITTENT = 7 // gaps
 } argus_fault_kind_t;
 
 // The failure state over the forward-facing sonars (paper: Fig. 6).
@@ -337,13 +370,13 @@ typedef enum {
     ARGUS_IS_CATASTROPHIC // all
 } argus_failure_t;
 
-// Rotations by which the healthy sonars cover for the disabled ones (paper: Tables IV and V).
 #define ARGUS_ROTATIONS_MAX 6
 
+// Rotations by which the healthy sonars cover for the disabled ones (paper: Tables IV and V).
 typedef struct {
-    argus_mask_t disabled; // the fault map it is for: forward-facing sonars only
-    argus_mask_t looks;    // who may look along their bearings
-    uint8_t count;
+    argus_mask_t disabled;                     // the fault map it is for: forward-facing sonars only
+    argus_mask_t looks;                        // those that may look along their bearings
+    uint8_t count;                             // rotations
     int16_t rotation_deg[ARGUS_ROTATIONS_MAX]; // in the order of visit, CCW positive
     bool return_each; // back to the heading after each rotation's reading (policy paper), else one pass
     bool complete;    // every disabled bearing is covered
@@ -364,6 +397,7 @@ typedef enum {
     ARGUS_MODE_CLOSED     // over
 } argus_mode_t;
 
+// How the course stands.
 typedef enum {
     ARGUS_MISSION_NONE,
     ARGUS_MISSION_RUNNING,
@@ -399,52 +433,59 @@ typedef enum {
 
 // A copy of everything a screen, a log or a test wants to see.
 typedef struct {
-    argus_mode_t mode;
-    argus_mission_t mission;
-    argus_wait_t wait; // why, in mode WAITING, else ARGUS_WAIT_NONE
-    argus_failure_t failure;
-    argus_plan_t plan;
-    argus_pose_t pose;
-    int32_t goal_mm;   // straight-line distance to the last waypoint, 0 without a course
-    uint16_t waypoint; // next waypoint, from 0
-    uint16_t waypoints;
-    bool reversed;      // the rear leads; all of the robot's frame is told as it is built nonetheless
-    bool active;        // false: passive
-    bool paused;        // by the operator's STOP
-    bool open;          // there is a session with a robot
-    bool online;        // ... and SIPs are coming
-    bool motors;        // on, as the robot says
-    bool lists_all;     // the server lists every sonar in every SIP
-    int16_t battery_dv; // decivolts
-    int16_t vel_left_mm_s;
-    int16_t vel_right_mm_s;
-    uint16_t flags;        // of the SIP
-    uint8_t bumpers_front; // bits 1..5, bit 1 leftmost
-    uint8_t bumpers_rear;
-    uint8_t sonars;                    // that are managed, from 0: those beyond are ABSENT
-    argus_mask_t forward;              // who faces forward, of the leading end: whom the plan covers for
-    int16_t bearing_deg[ARGUS_SONARS]; // whither each looks, robot frame
-    uint16_t reading_mm[ARGUS_SONARS]; // as on the wire; 0: never reported, or so read
-    uint32_t age_ms[ARGUS_SONARS];     // UINT32_MAX: never reported
-    uint32_t readings[ARGUS_SONARS];   // monotonic
-    argus_health_t health[ARGUS_SONARS];
-    argus_fault_kind_t kind[ARGUS_SONARS];
-    argus_mask_t pinned; // sonars whose health an operator has fixed, a mask
-    uint32_t packets;    // with a right checksum; monotonic counters, like what follows
-    uint32_t sips;
-    uint32_t bad_checksums;
-    uint32_t skipped_bytes;
-    uint32_t stops;
-    const char *robot_name; // identity from the SYNC2 reply, "" before; they live as long as the instance
-    const char *robot_class;
-    const char *robot_subclass;
-    const char *robot_body; // whose geometry holds: a choice of the setting `robot`, "" when it is not known
-    bool robot_told;        // its CONFIGpac came: what follows is its own word, else "" and 0
-    const char *robot_version;
-    const char *robot_serial;
-    uint16_t robot_watchdog_ms;
-    uint16_t robot_sonar_cycle_ms;
+    argus_mode_t mode;       // what it is doing
+    argus_mission_t mission; // how the course stands
+    argus_wait_t wait;       // why, in mode WAITING, else ARGUS_WAIT_NONE
+    argus_failure_t failure; // of the sonars that face forward
+    argus_plan_t plan;       // how the healthy ones cover for those
+    argus_pose_t pose;       // by odometry
+    int32_t goal_mm;         // straight-line distance to the last waypoint, 0 without a course
+    uint16_t waypoint;       // next waypoint, from 0
+    uint16_t waypoints;      // of the course
+    bool reversed;           // the rear leads; all of the robot's frame is told as it is built nonetheless
+    bool active;             // false: passive
+    bool paused;             // by the operator's STOP
+    bool open;               // there is a session with a robot
+    bool online;             // ... and SIPs are coming
+    bool motors;             // on, as the robot says
+    bool lists_all;          // the server lists every sonar in every SIP
+    int16_t battery_dv;      // decivolts
+    int16_t vel_left_mm_s;   // of the left wheel, as the robot says
+    int16_t vel_right_mm_s;  // of the right one
+    uint16_t flags;          // of the SIP
+    uint8_t bumpers_front;   // bits 1..5, bit 1 leftmost
+    uint8_t bumpers_rear;    // likewise
+    uint8_t sonars;          // that are managed, from 0: those beyond are ABSENT
+    argus_mask_t forward;    // those that face forward, of the leading end
+    int16_t bearing_deg[ARGUS_SONARS];     // whither each looks, robot frame
+    uint16_t reading_mm[ARGUS_SONARS];     // as on the wire; 0: never reported, or so read
+    uint32_t age_ms[ARGUS_SONARS];         // UINT32_MAX: never reported
+    uint32_t readings[ARGUS_SONARS];       // monotonic
+    argus_health_t health[ARGUS_SONARS];   // for people; a program looks at kind
+    argus_fault_kind_t kind[ARGUS_SONARS]; // ARGUS_KIND_NONE: to be used; else not
+    argus_mask_t pinned;                   // sonars whose health an operator has fixed, a mask
+    uint32_t packets;                      // with a right checksum; monotonic counters, like what follows
+    uint32_t sips;                         // of those
+    uint32_t bad_checksums;                // packets with a wrong one
+    uint32_t skipped_bytes;                // of no packet
+    uint32_t stops;                        // STOP and E_STOP that were sent
+    const char *robot_name;     // identity from the SYNC2 reply, "" before; they live as long as the instance
+    const char *robot_class;    // likewise
+    const char *robot_subclass; // likewise
+    const char *robot_body;     // whose geometry holds: a choice of the setting `robot`, "" if not known
+    bool robot_told;            // its CONFIGpac came: what follows is its own word, else "" and 0
+    const char *robot_version;  // of its firmware
+    const char *robot_serial;   // its serial number
+    uint16_t robot_watchdog_ms; // after so long a silence it stops by itself
+    uint16_t robot_sonar_cycle_ms; // between two pings of one array
 } argus_status_t;
+
+// How far the evidence against each sonar is on its way to a verdict (profile argus; else all is 0).
+typedef struct {
+    argus_fault_kind_t kind[ARGUS_SONARS]; // the fault that explains it best so far, NONE: none
+    uint8_t percent[ARGUS_SONARS];         // 100: a verdict
+    argus_mask_t against[ARGUS_SONARS];    // sonars that contradict it, a mask
+} argus_suspicions_t;
 
 // What argus_name() names.
 typedef enum {
@@ -462,15 +503,45 @@ typedef enum {
 
 // Instance -------------------------------------------------------------------------------------------------
 
+#define ARGUS_STORAGE_BYTES (12900 + 720 * ARGUS_SONARS)
+
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.
-#define ARGUS_STORAGE_BYTES (13400 + 720 * ARGUS_SONARS)
 typedef union {
-    uint64_t align;
-    uint8_t bytes[ARGUS_STORAGE_BYTES];
+    uint64_t align;                     // as strict as any member within
+    uint8_t bytes[ARGUS_STORAGE_BYTES]; // the library's own
 } argus_storage_t;
 
 typedef struct argus argus_t;
+
+// Guard port -----------------------------------------------------------------------------------------------
+
+// What a client gets of the readings of sonars that are out.
+typedef enum {
+    ARGUS_READINGS_WITHHOLD, // nothing: they are left out of the SIP's list
+    ARGUS_READINGS_COVER,    // what a trusted sonar has heard within the cone lately; else nothing
+    ARGUS_READINGS_PASS      // as they are
+} argus_readings_t;
+
+// What has come since the last pass, and room for what goes to the client.
+typedef struct {
+    argus_readings_t readings; // of sonars that are out
+    bool there;                // a client is at the port
+    const uint8_t *client;     // its bytes
+    size_t client_count;       // how many
+    const uint8_t *robot;      // the robot's, which argus_receive() has just taken
+    size_t robot_count;        // how many
+    uint8_t *out;              // where bytes for the client go
+    size_t capacity;           // how many fit
+} argus_port_io_t;
+
+#define ARGUS_PORT_BYTES 2600
+
+// Memory of one port, the caller's; all zero at the start.
+typedef union {
+    uint64_t align;                  // as strict as any member within
+    uint8_t bytes[ARGUS_PORT_BYTES]; // the library's own
+} argus_port_storage_t;
 
 // Functions ------------------------------------------------------------------------------------------------
 
@@ -515,8 +586,18 @@ bool argus_operator(argus_t *self, uint32_t now_ms, argus_op_t op, int32_t argum
 void argus_shutdown(argus_t *self, uint32_t now_ms);
 bool argus_closed(const argus_t *self);
 
+// A port at which another client of the robot is served as by the robot itself, bounded (SPEC.md, Guard
+// port). Call it after each argus_receive(), when the client has sent something, and after argus_process();
+// then argus_transmit(). Returns the bytes for the client; call again, with no bytes, until 0. Cost: one pass
+// over the bytes; for each SIP what argus_guard asks of the way, see bench guardian.
+size_t argus_guard_port(argus_t *self, argus_port_storage_t *port, uint32_t now_ms,
+                        const argus_port_io_t *io);
+
 // Cost: one copy of some 500 bytes.
 void argus_status(const argus_t *self, argus_status_t *status);
+
+// Apart from the status, so that only who shows it pays. Cost: some twenty comparisons for each sonar.
+void argus_suspicions(const argus_t *self, argus_suspicions_t *suspicions);
 
 // The persistent record: what is known of every sonar (SPEC.md). save returns its length, 0 if it does not
 // fit; ARGUS_RECORD_MAX is enough. load takes a record, before a session opens; under `argus` a sonar that

@@ -62,6 +62,19 @@ void test_single_options(void) {
     TEST_ASSERT_EQUAL_INT(OPTIONS_CHECK, options.action);
 }
 
+void test_control(void) {
+    TEST_ASSERT_TRUE(parse("--link tcp:a --control unix:/run/x --inject"));
+    TEST_ASSERT_EQUAL_INT(AF_UNIX, options.control.family);
+    TEST_ASSERT_TRUE(options.inject);
+    TEST_ASSERT_TRUE(
+        parse("--link tcp:a --control tcp:192.168.0.1:82 --control-token t --control-beyond-loopback"));
+    TEST_ASSERT_EQUAL_STRING("t", options.token_path);
+    TEST_ASSERT_FALSE(options.control.loopback);
+    TEST_ASSERT_TRUE(parse("--attach unix:/run/x --control-token t"));
+    TEST_ASSERT_EQUAL_INT(OPTIONS_ATTACH, options.action);
+    TEST_ASSERT_EQUAL_INT(AF_UNIX, options.attach.family);
+}
+
 void test_can(void) {
     TEST_ASSERT_TRUE_MESSAGE(parse("--link can:vcan0,robot=1 --active"), message);
     TEST_ASSERT_EQUAL_INT(HAL_SCHEME_CAN, options.link.scheme);
@@ -73,6 +86,24 @@ void test_can(void) {
     TEST_ASSERT_TRUE(parse("--link can:can0 --can-telemetry none"));
     TEST_ASSERT_TRUE(options.no_telemetry);
     TEST_ASSERT_EQUAL_STRING("", options.telemetry.interface);
+}
+
+void test_guards(void) {
+    TEST_ASSERT_TRUE_MESSAGE(parse("--link tcp:a --guard tcp:127.0.0.1:8101 --guard pty:/run/argus/robot"),
+                             message);
+    TEST_ASSERT_EQUAL_INT(2, options.guards.count);
+    TEST_ASSERT_EQUAL_INT(GUARD_TCP, options.guards.at[0].kind);
+    TEST_ASSERT_EQUAL_STRING("127.0.0.1", options.guards.at[0].name);
+    TEST_ASSERT_EQUAL_UINT16(8101, options.guards.at[0].port);
+    TEST_ASSERT_EQUAL_INT(GUARD_PTY, options.guards.at[1].kind);
+    TEST_ASSERT_EQUAL_STRING("/run/argus/robot", options.guards.at[1].name);
+    TEST_ASSERT_EQUAL_INT(ARGUS_READINGS_WITHHOLD, options.guards.readings);
+    TEST_ASSERT_FALSE(options.guards.beyond);
+    TEST_ASSERT_TRUE(
+        parse("--link tcp:a --guard tcp:[::1]:1 --guard-readings cover --guard-beyond-loopback"));
+    TEST_ASSERT_EQUAL_STRING("::1", options.guards.at[0].name);
+    TEST_ASSERT_EQUAL_INT(ARGUS_READINGS_COVER, options.guards.readings);
+    TEST_ASSERT_TRUE(options.guards.beyond);
 }
 
 void test_lists_need_no_link(void) {
@@ -102,6 +133,17 @@ void test_refusals(void) {
     refused("--link can:a,robot=8", "from 0 to 7");
     refused("--link can:a --check --can-telemetry a", "leave out --can-telemetry");
     refused("--link tcp:a --can-telemetry a,fd", "--can-telemetry: can:a,fd: 'fd' is not for the telemetry");
+    refused("--link tcp:a --guard serial:/dev/x", "give tcp:HOST:PORT");
+    refused("--link tcp:a --guard tcp:host", "give tcp:HOST:PORT");
+    refused("--link tcp:a --guard tcp:host:0", "give tcp:HOST:PORT");
+    refused("--link tcp:a --guard tcp::1", "give tcp:HOST:PORT");
+    refused("--link tcp:a --guard pty:", "or pty:PATH");
+    refused("--link tcp:a --guard pty:a --guard pty:b --guard pty:c --guard pty:d --guard pty:e",
+            "4 ports are the most");
+    refused("--link tcp:a --guard pty:a --guard-readings some", "give withhold, cover or pass");
+    refused("--link tcp:a --guard-readings cover", "for --guard PORT");
+    refused("--link tcp:a --guard-beyond-loopback", "for --guard PORT");
+    refused("--link tcp:a --check --guard pty:a", "leave out --guard");
     refused("--link tcp:a --frob", "unknown option --frob");
     refused("--link tcp:a -z", "unknown option");
     refused("--link tcp:a extra", "'extra' is not an option");
@@ -111,6 +153,15 @@ void test_refusals(void) {
     refused("--link tcp:a --active --passive", "contradict");
     refused("--link tcp:a --auto-baud", "for serial links");
     refused("--link serial:/dev/x@9600 --auto-baud", "leave out @BAUD");
+    refused("--link tcp:a --control /run/x", "--control /run/x: give unix:PATH or tcp:127.0.0.1:PORT");
+    refused("--link tcp:a --control tcp:127.0.0.1:82", "add --control-token FILE");
+    refused("--link tcp:a --control tcp:0.0.0.0:82 --control-token t", "--control-beyond-loopback");
+    refused("--link tcp:a --control-token t", "is for --control or --attach");
+    refused("--link tcp:a --inject", "--inject is for orders at --control");
+    refused("--link tcp:a --check --control unix:/x", "leave out --control");
+    refused("--link tcp:a --attach unix:/x", "leave out --link");
+    refused("--attach unix:/x --control unix:/y", "leave out --link and --control");
+    refused("--attach x", "--attach x: give unix:PATH");
     refused("--link tcp:a --wait 0", "1 to 86400");
     refused("--link tcp:a --wait soon", "or 'forever'");
     refused("--link tcp:a --status 49", "50 to 3600000");
@@ -123,10 +174,13 @@ void test_refusals(void) {
 void test_help_names_every_option_and_exit_code(void) {
     static char text[8192];
     static const char *const options_[] = {
-        "--link",   "--auto-baud",  "--config",        "--course",      "--goal",        "--passive",
-        "--active", "--state",      "--wait",          "--check",       "--json",        "--plain",
-        "--status", "--help",       "--version",       "--list-events", "--list-config", "--example-config",
-        "--record", "--record-max", "--can-telemetry", "examples:"};
+        "--link",          "--auto-baud",      "--config",         "--course",
+        "--goal",          "--passive",        "--active",         "--state",
+        "--wait",          "--check",          "--json",           "--plain",
+        "--status",        "--help",           "--version",        "--list-events",
+        "--list-config",   "--example-config", "--record",         "--record-max",
+        "--can-telemetry", "--guard",          "--guard-readings", "--guard-beyond-loopback",
+        "examples:"};
     FILE *const file = tmpfile();
     options_help(file);
     rewind(file);
