@@ -8,10 +8,11 @@
 #include "awareness/odds.h"
 #include "knowledge/angle.h"
 
-#define RUN 2        // readings given before, one after the other, tell something
+#define RUN 2 // readings given before, one after the other, tell something
 #define RUN_MOST 4
 
-// How much a stretch of the past varies that comes again; 0: not once, since what has been read since is alike.
+// How much a stretch of the past varies that comes again; 0: not once, since what has been read since is
+// alike.
 static int32_t known_again_mm(const argus_pings_t *const pings, const int32_t reading_mm, const int lag) {
     int32_t least = reading_mm;
     int32_t most = reading_mm;
@@ -26,8 +27,8 @@ static int32_t known_again_mm(const argus_pings_t *const pings, const int32_t re
     return reading_mm > ARGUS_CLIPPED_MM ? most - least : 0;
 }
 
-// When the lag begins it repeats as many readings as it is late. By chance a reading hits one value of so many
-// as often as one that stays repeats itself, and the less often the more it varies.
+// When the lag begins it repeats as many readings as it is late. By chance a reading hits one value of so
+// many as often as one that stays repeats itself, and the less often the more it varies.
 static int32_t replay_of(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                          const int sonar, const uint16_t reading_mm, const int index) {
     argus_case_t *const c = &self->of[sonar];

@@ -28,14 +28,14 @@
 // ------------------------------------------------------------------------------------------------
 #define ARGUS_UNREST_MS 8000u
 #define ARGUS_CALM_MS 30000u
-#define ARGUS_UNREST_PERCENT 25 // of what contradicts counts
+#define ARGUS_UNREST_PERCENT 25  // of what contradicts counts
 #define ARGUS_CROWD_PERMILLE 350 // of all readings contradicted: people are about
-#define ARGUS_WALK_MM 70        // between two readings at rest
+#define ARGUS_WALK_MM 70         // between two readings at rest
 
 // Bounds of the sums
 // -----------------------------------------------------------------------------------------
 #define ARGUS_CEILING 3000
-#define ARGUS_OUT_TIMES 4    // what speaks for a sonar that is out counts so often
+#define ARGUS_OUT_TIMES 4 // what speaks for a sonar that is out counts so often
 
 // A sonar's own readings
 // -------------------------------------------------------------------------------------
@@ -57,6 +57,6 @@
 #define ARGUS_BENT_TOLD 300
 #define ARGUS_BENT_CONTRADICTED 300
 #define ARGUS_MUTE_CONTRADICTED 380
-#define ARGUS_HELD_PERCENT 25       // of a name's level: a suspect is cleared below
+#define ARGUS_HELD_PERCENT 25 // of a name's level: a suspect is cleared below
 
 #endif

@@ -5,7 +5,7 @@
 #include "awareness/levels.h"
 #include "knowledge/angle.h"
 
-#define ONE 16 // reading, in the rates
+#define ONE 16    // reading, in the rates
 #define EARLIER 6 // readings are taken for granted at the start
 #define FADE_EIGHTHS 7
 #define THOUSAND 1000
@@ -56,8 +56,7 @@ int32_t argus_odds_of(const argus_evidence_t *const self, const argus_knowledge_
     return o->even > 0 ? argus_min(0, argus_ln(o->even) - argus_ln(THOUSAND - healthy)) : -ARGUS_CEILING;
 }
 
-void argus_odds_note(argus_evidence_t *const self, const int sonar, const argus_test_t test,
-                     const bool odd) {
+void argus_odds_note(argus_evidence_t *const self, const int sonar, const argus_test_t test, const bool odd) {
     argus_rate_t *const rate = &self->of[sonar].rate[test];
     rate->all = (uint16_t)(rate->all + ONE);
     rate->odd = (uint16_t)(rate->odd + (odd ? ONE : 0));

@@ -8,8 +8,8 @@
 // ln of a number from 1 on, in hundredths: between powers of two a straight line, at most 7 off.
 int32_t argus_ln(int32_t number);
 
-// What a reading of a sonar that is odd for a test, or not, adds to its score, hundredths of a nat. Cost: one pass
-// over the sonars.
+// What a reading of a sonar that is odd for a test, or not, adds to its score, hundredths of a nat. Cost: one
+// pass over the sonars.
 int32_t argus_odds_of(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
                       argus_test_t test, bool odd);
 

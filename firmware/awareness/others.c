@@ -263,8 +263,8 @@ static void doubt_axis(argus_evidence_t *const self, const argus_knowledge_t *co
     }
 }
 
-// What one that is out reads and its kind of fault cannot: an echo that goes on from the last as the robot moves, or
-// silence together with others of who made echoes up. Who is wrong or late needs the others.
+// What one that is out reads and its kind of fault cannot: an echo that goes on from the last as the robot
+// moves, or silence together with others of who made echoes up. Who is wrong or late needs the others.
 static bool is_beyond(const argus_fault_kind_t kind, const argus_ping_t *const now,
                       const argus_ping_t *const before, const said_t verdict) {
     const bool made_up = kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE;

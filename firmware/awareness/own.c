@@ -20,7 +20,8 @@ static void score(argus_evidence_t *const self, const argus_knowledge_t *const k
     argus_odds_note(self, sonar, test, odd);
 }
 
-// Of what goes on alike: how often the very same value comes again depends on noise and on the steps of range.
+// Of what goes on alike: how often the very same value comes again depends on noise and on the steps of
+// range.
 static void test_stuck(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const argus_ping_t *const now, const argus_ping_t *const before) {
     argus_case_t *const c = &self->of[sonar];
@@ -135,8 +136,8 @@ static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *
     c->gaps++;
     const int32_t adds = argus_odds_of(self, knowledge, sonar, ARGUS_TEST_DROPOUT, true);
     argus_odds_note(self, sonar, ARGUS_TEST_DROPOUT, true);
-    const int32_t left = now->rest && then->rest ? ARGUS_CEILING
-                                                 : ARGUS_DROPOUT_MOVING_MAX - c->score[ARGUS_TEST_DROPOUT];
+    const int32_t left =
+        now->rest && then->rest ? ARGUS_CEILING : ARGUS_DROPOUT_MOVING_MAX - c->score[ARGUS_TEST_DROPOUT];
     argus_score(self, sonar, ARGUS_TEST_DROPOUT, argus_max(0, argus_min(left, adds)));
 }
 

@@ -345,7 +345,9 @@ void test_a_silence_takes_garbage_back_of_one_that_is_out(void) {
             TEST_ASSERT_EQUAL(score, s.e.of[3].score[ARGUS_TEST_GARBAGE]);
         }
         scene_say(&s, 1u << 3, reading);
-        TEST_ASSERT_EQUAL(out != 0 ? score + 4 * argus_odds_of(&s.e, &s.k, 3, ARGUS_TEST_GARBAGE, false) : score, s.e.of[3].score[ARGUS_TEST_GARBAGE]);
+        TEST_ASSERT_EQUAL(out != 0 ? score + 4 * argus_odds_of(&s.e, &s.k, 3, ARGUS_TEST_GARBAGE, false)
+                                   : score,
+                          s.e.of[3].score[ARGUS_TEST_GARBAGE]);
         for (int n = 0; n < 12; n++) {
             scene_say(&s, 1u << 3, reading);
         }
@@ -443,8 +445,8 @@ void test_a_wall_along_the_way_is_not_stuck(void) {
     TEST_ASSERT_TRUE_MESSAGE(scene_all_quiet(&s), told("corridor", 0, 9));
 }
 
-// Readings in steps of 10 mm beside walls along the way: every other one repeats the last. Healthy ones are not stuck;
-// who never changes among them is.
+// Readings in steps of 10 mm beside walls along the way: every other one repeats the last. Healthy ones are
+// not stuck; who never changes among them is.
 void test_coarse_steps_beside_a_wall_are_not_stuck(void) {
     static const int beside[] = {0, 7, 8, 15};
     for (int stuck = 0; stuck < 2; stuck++) {
