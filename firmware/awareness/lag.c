@@ -42,6 +42,7 @@ static int32_t replay_of(uint8_t *const run, const argus_pings_t *const pings, c
 }
 
 void argus_lag_take(argus_evidence_t *const self, const int sonar, const uint16_t reading_mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     for (int i = 0; i < ARGUS_LAGS; i++) {
         const int32_t gain = replay_of(&c->lag_run[i], &c->pings, reading_mm, i + ARGUS_LEAST_LAG);

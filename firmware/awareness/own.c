@@ -15,6 +15,7 @@
 
 static void test_stuck(argus_evidence_t *const self, const int sonar, const argus_ping_t *const now,
                        const argus_ping_t *const before) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     if (now->reading_mm != c->last_mm || !argus_ping_is_echo(now) || now->reading_mm <= ARGUS_CLIPPED_MM) {
         c->score[ARGUS_TEST_STUCK] = 0;
@@ -62,6 +63,7 @@ static likeness_t liken(const argus_pings_t *const pings, const argus_ping_t *co
 // Readings between familiar and novel name nobody: so looks somebody who walks, too.
 static void test_garbage(argus_evidence_t *const self, const int sonar, const argus_ping_t *const now,
                          const bool unrest) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     if (!argus_ping_is_echo(now)) {
         if (c->out &&
@@ -81,6 +83,7 @@ static void test_garbage(argus_evidence_t *const self, const int sonar, const ar
 // What walks goes on the same way from one reading to the next, whatever the robot does.
 static void test_walker(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                         const int sonar, const argus_ping_t *const now, const argus_ping_t *const before) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     const bool comparable =
         now->rest && before->rest && argus_ping_is_echo(now) && argus_ping_is_echo(before);
@@ -111,6 +114,7 @@ static const argus_ping_t *echo_before_gap(const argus_case_t *const self, const
 // does one place.
 static void test_dropout(argus_evidence_t *const self, const int sonar, const argus_ping_t *const now,
                          const bool unrest) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     if (!argus_ping_is_echo(now)) {
         return;
@@ -143,6 +147,7 @@ static void count_echo(argus_case_t *const self, const argus_knowledge_t *const 
 
 static void run_tests(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const argus_ping_t *const now, const argus_ping_t *const before) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     const bool unrest = argus_clutter_beside(self, knowledge, sonar, ARGUS_UNREST_MS);
     test_stuck(self, sonar, now, before);
@@ -160,6 +165,7 @@ static void run_tests(argus_evidence_t *const self, const argus_knowledge_t *con
 
 void argus_own_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                     const argus_ping_t *const now) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     const argus_ping_t *const before = argus_pings_at(&c->pings, 1);
     if (before == NULL) {
