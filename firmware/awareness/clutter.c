@@ -7,12 +7,14 @@
 
 void argus_clutter_note(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                         const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     self->of[sonar].moved = true;
     self->of[sonar].moved_ms = knowledge->sip_ms;
 }
 
 bool argus_clutter_beside(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                           const int but, const uint32_t ms) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
         const argus_case_t *const c = &self->of[i];
         if (i != but && c->moved && knowledge->sip_ms - c->moved_ms < ms && !argus_is_out(knowledge, i)) {
@@ -23,6 +25,7 @@ bool argus_clutter_beside(const argus_evidence_t *const self, const argus_knowle
 }
 
 void argus_clutter_sip(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
         argus_case_t *const c = &self->of[i];
         c->moved = c->moved && knowledge->sip_ms - c->moved_ms < ARGUS_CALM_MS;

@@ -74,6 +74,7 @@ static bool is_mute(const argus_case_t *const self) {
 
 // The more definite tests come first.
 argus_fault_kind_t argus_names_found(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     if (c->score[ARGUS_TEST_STUCK] >= argus_bounds[ARGUS_TEST_STUCK].naming) {
         return ARGUS_KIND_STUCK;
@@ -97,11 +98,13 @@ argus_fault_kind_t argus_names_found(const argus_evidence_t *const self, const i
 }
 
 static bool is_convicted_by(const argus_case_t *const self, const argus_test_t test) {
+    ARGUS_ASSERT((unsigned)test < ARGUS_TESTS);
     return self->score[test] >= argus_bounds[test].convincing;
 }
 
 // Who walks about contradicts; and by its own readings alone, however late they look, nobody is given up.
 argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     if (is_convicted_by(c, ARGUS_TEST_STUCK)) {
         return ARGUS_KIND_STUCK;
@@ -120,6 +123,7 @@ argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, cons
 }
 
 bool argus_names_suspects(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     for (int i = 0; i < ARGUS_TESTS; i++) {
         if (c->score[i] >= suspicious(argus_bounds[i].naming)) {
@@ -149,6 +153,7 @@ static argus_fault_kind_t kind_of_test(const argus_case_t *const self, const int
 
 argus_fault_kind_t argus_names_best(const argus_evidence_t *const self, const int sonar,
                                     uint8_t *const percent) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     argus_fault_kind_t best = ARGUS_KIND_NONE;
     int32_t most = 0;

@@ -80,6 +80,7 @@ static said_t compare(const int32_t now_mm, const int32_t then_mm, const int32_t
 // beside it, nor either of two that nobody else bears out.
 bool argus_others_is_witness(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                              const int sonar, const int of) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t own = self->of[sonar].score[ARGUS_TEST_PEERS];
     const int32_t suspicious = argus_bounds[ARGUS_TEST_PEERS].naming * ARGUS_SUSPECT_PERCENT / 100;
     return sonar != of && !argus_is_out(knowledge, sonar) &&
@@ -118,6 +119,8 @@ static int ask(tally_t *const tally, const argus_pings_t *const pings, const arg
 
 static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const argus_ping_t *const at) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     tally_t tally = {.agree = 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_others_is_witness(self, knowledge, i, sonar)) {
@@ -158,6 +161,7 @@ static bool is_news(const argus_case_t *const self, const argus_ping_t *const no
 // What moves about the robot makes healthy sonars disagree.
 static int32_t worth_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                         const int sonar, const bool odd) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t adds = argus_odds_of(self, knowledge, sonar, ARGUS_TEST_PEERS, odd);
     const bool unrest = argus_clutter_beside(self, knowledge, -1, ARGUS_UNREST_MS);
     return odd && unrest ? adds * ARGUS_UNREST_PERCENT / 100 : adds;
@@ -165,6 +169,7 @@ static int32_t worth_of(const argus_evidence_t *const self, const argus_knowledg
 
 static void note_contradicted(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                               const int sonar, const argus_ping_t *const at, const argus_mask_t against) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     const bool again = c->episodes > 0 && knowledge->sip_ms - c->episode_ms < ARGUS_EPISODE_MS;
     if (!again && !self->crowded && !argus_clutter_beside(self, knowledge, -1, ARGUS_UNREST_MS)) {
@@ -185,12 +190,14 @@ static void begin_anew(argus_case_t *const self) {
 // What it read before it was given up does not bring it back.
 static bool is_since(const argus_knowledge_t *const knowledge, const int sonar,
                      const argus_ping_t *const at) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const uint32_t age_ms = (uint32_t)argus_ping_age_ms(at, knowledge->sip_ms);
     return age_ms <= knowledge->sip_ms - knowledge->sonar[sonar].since_ms;
 }
 
 static void count(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const argus_ping_t *const at, const argus_mask_t against) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     argus_score(self, sonar, ARGUS_TEST_PEERS, worth_of(self, knowledge, sonar, against != 0));
     argus_odds_note(self, sonar, ARGUS_TEST_PEERS, against != 0);
@@ -209,6 +216,8 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
 
 static said_t as_late(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                       const int sonar, const int back, const int lag) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(back >= 1);
     const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, back);
     const argus_ping_t *const then = argus_pings_before(&self->of[sonar].pings, back, lag);
     if (then == NULL) {
@@ -227,6 +236,7 @@ static said_t as_late(const argus_evidence_t *const self, const argus_knowledge_
 
 static said_t as_bent(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                       const int sonar, const argus_ping_t *const at, const int bend) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_ping_t mapped = *at;
     mapped.bearing_cdeg = (int16_t)argus_angle_wrap(at->bearing_cdeg + bend_cdeg[bend]);
     const tally_t tally = ask_all(self, knowledge, sonar, &mapped);
@@ -236,6 +246,7 @@ static said_t as_bent(const argus_evidence_t *const self, const argus_knowledge_
 // Every reading tells of a lag, a contradicted one no more than it tells at all.
 static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const int back, const said_t verdict) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t most = verdict == CONTRADICTED ? worth_of(self, knowledge, sonar, true) : ARGUS_CEILING;
     for (int i = 0; i < ARGUS_LAGS; i++) {
         if (verdict == CONTRADICTED || self->of[sonar].doubt[i].well > 0) {
@@ -251,6 +262,7 @@ static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *co
 static void doubt_axis(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const argus_ping_t *const at, const said_t verdict,
                        const int32_t increment) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     for (int i = 0; i < ARGUS_BENDS; i++) {
         const int doubt = ARGUS_LAGS + i;
         if (verdict == AGREED && self->of[sonar].doubt[doubt].well == 0) {
@@ -278,6 +290,7 @@ static bool is_beyond(const argus_fault_kind_t kind, const argus_ping_t *const n
 
 static void count_own(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const int back, const said_t verdict) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     argus_ping_t *const at = argus_pings_mark(&c->pings, back);
     const argus_ping_t *const before = argus_pings_at(&c->pings, back + 1);
@@ -302,6 +315,7 @@ static bool is_borne_out(const tally_t *const tally) {
 // The axis first: who is a witness depends on what is counted.
 static void count_news(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, argus_ping_t *const at, const tally_t *const tally) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const bool odd = is_odd(tally);
     const int32_t increment = worth_of(self, knowledge, sonar, odd);
     doubt_axis(self, knowledge, sonar, at, odd ? CONTRADICTED : AGREED, increment);
@@ -312,6 +326,7 @@ static void count_news(argus_evidence_t *const self, const argus_knowledge_t *co
 // Divided voices tell nothing of a lag, nor what is contradicted while something moves before it.
 static bool tells_of_time(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                           const int sonar, const said_t verdict, const bool fresh) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const bool stirred =
         verdict == CONTRADICTED && argus_clutter_beside(self, knowledge, sonar, ARGUS_UNREST_MS);
     return verdict != DIVIDED && (fresh || verdict != UNSEEN) && !stirred;
@@ -324,6 +339,8 @@ static void note_hearing(argus_case_t *const c, const argus_ping_t *const at) {
 
 static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const int back, const tally_t *const tally, const bool fresh) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(back >= 1);
     argus_case_t *const c = &self->of[sonar];
     argus_ping_t *const at = argus_pings_mark(&c->pings, back);
     const said_t verdict = verdict_of(tally);
@@ -345,6 +362,8 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
 // What nobody could judge when it was read is judged by who looks there later.
 static void look_back(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const uint8_t *const latest) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
         if (latest[i] > 0 && argus_others_is_witness(self, knowledge, sonar, i)) {
             const argus_ping_t *const at = argus_pings_at(&self->of[i].pings, latest[i]);
@@ -359,6 +378,8 @@ static void look_back(argus_evidence_t *const self, const argus_knowledge_t *con
 // Slow statistics take what counted.
 static void tell_trend(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const uint8_t *const latest) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, 1);
     for (int i = 0; i < knowledge->sonars; i++) {
         const argus_ping_t *const then = argus_pings_at(&self->of[i].pings, latest[i]);
@@ -371,6 +392,8 @@ static void tell_trend(argus_evidence_t *const self, const argus_knowledge_t *co
 
 void argus_others_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, 1);
     uint8_t latest[ARGUS_SONARS] = {0};
     tally_t tally = {.agree = 0};
@@ -396,6 +419,7 @@ static int16_t faded(const int16_t score) {
 }
 
 void argus_others_fade(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
         argus_case_t *const c = &self->of[i];
         c->score[ARGUS_TEST_PEERS] = faded(c->score[ARGUS_TEST_PEERS]);
@@ -410,6 +434,7 @@ void argus_others_fade(argus_evidence_t *const self, const argus_knowledge_t *co
 }
 
 void argus_others_retract(argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_mask_t bit = (argus_mask_t)(1u << sonar);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         argus_case_t *const c = &self->of[i];

@@ -16,6 +16,7 @@
 
 static void score(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const argus_test_t test, const bool odd) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_score(self, sonar, test, argus_odds_of(self, knowledge, sonar, test, odd));
     argus_odds_note(self, sonar, test, odd);
 }
@@ -24,6 +25,7 @@ static void score(argus_evidence_t *const self, const argus_knowledge_t *const k
 // range.
 static void test_stuck(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const argus_ping_t *const now, const argus_ping_t *const before) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     const bool tells = argus_ping_is_echo(now) && now->reading_mm > ARGUS_CLIPPED_MM;
     const int32_t changed_mm = argus_abs(now->reading_mm - c->last_mm);
@@ -73,6 +75,7 @@ static likeness_t liken(const argus_pings_t *const pings, const argus_ping_t *co
 // Readings between familiar and novel name nobody: so looks somebody who walks, too.
 static void test_garbage(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                          const int sonar, const argus_ping_t *const now, const bool unrest) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     if (!argus_ping_is_echo(now)) {
         if (c->out &&
@@ -92,6 +95,7 @@ static void test_garbage(argus_evidence_t *const self, const argus_knowledge_t *
 // What walks goes on the same way from one reading to the next, whatever the robot does.
 static void test_walker(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                         const int sonar, const argus_ping_t *const now, const argus_ping_t *const before) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     const bool comparable =
         now->rest && before->rest && argus_ping_is_echo(now) && argus_ping_is_echo(before);
@@ -121,6 +125,7 @@ static const argus_ping_t *echo_before_gap(const argus_case_t *const self, const
 // At the edge of what is heard an echo comes and goes by itself: after a few gaps a place tells no more.
 static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                          const int sonar, const argus_ping_t *const now, const bool unrest) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     if (!argus_ping_is_echo(now) || c->gaps >= GAPS_MOST) {
         return;
@@ -153,6 +158,7 @@ static void count_echo(argus_case_t *const self, const argus_knowledge_t *const 
 
 static void run_tests(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const argus_ping_t *const now, const argus_ping_t *const before) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     const bool unrest = argus_clutter_beside(self, knowledge, sonar, ARGUS_UNREST_MS);
     test_stuck(self, knowledge, sonar, now, before);
@@ -170,6 +176,7 @@ static void run_tests(argus_evidence_t *const self, const argus_knowledge_t *con
 
 void argus_own_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                     const argus_ping_t *const now) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     const argus_ping_t *const before = argus_pings_at(&c->pings, 1);
     if (before == NULL) {

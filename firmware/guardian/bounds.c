@@ -59,6 +59,8 @@ static corridor_t corridor(const argus_t *const self, const bool rear) {
 // lies beside the way.
 static int32_t on_way_mm(const argus_robot_t *const robot, const int sonar, const int32_t reading_mm,
                          const corridor_t *const way) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(reading_mm >= 0);
     const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
     int32_t nearest_mm = INT32_MAX;
     for (int k = -CONE_PLACES; k <= CONE_PLACES; k++) {
@@ -76,6 +78,7 @@ static int32_t on_way_mm(const argus_robot_t *const robot, const int sonar, cons
 // The shortest of these, less the way driven since.
 static int32_t clear_mm(const argus_knowledge_t *const knowledge, const unsigned looks,
                         const corridor_t *const way) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     int32_t shortest_mm = TRUST_MM;
     for (int i = 0; i < knowledge->sonars; i++) {
         if ((looks >> i & 1u) != 0 && argus_usable(knowledge, i)) {
@@ -130,6 +133,7 @@ static argus_bound_t by_clearance(const argus_guard_t *const guard, const int32_
 }
 
 static bool slants(const argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const unsigned flank = argus_robot_flank(self->knowledge.robot) & ~(unsigned)argus_out(&self->knowledge);
     const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
@@ -247,6 +251,7 @@ static bool is_met(const argus_robot_t *const robot, const argus_point_t at, con
 
 // An echo is anywhere in its cone.
 static bool meets_cone(const argus_knowledge_t *const knowledge, const int sonar, const int32_t by_cdeg) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_robot_t *const robot = knowledge->robot;
     const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
@@ -262,6 +267,7 @@ static bool meets_cone(const argus_knowledge_t *const knowledge, const int sonar
 }
 
 static bool meets_echo(const argus_knowledge_t *const knowledge, const int32_t by_cdeg) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_usable(knowledge, i) && meets_cone(knowledge, i, by_cdeg)) {
             return true;
