@@ -58,7 +58,7 @@ endif()
 
 add_library(argus_board OBJECT ${board_sources} ${portable_sources} ${PROJECT_BINARY_DIR}/built_config.c)
 target_include_directories(argus_board PUBLIC hal hal/include)
-target_compile_definitions(argus_board PUBLIC HAL_STORE_RECORD_MAX=1536 ARGUS_VERSION="${PROJECT_VERSION}")
+target_compile_definitions(argus_board PUBLIC HAL_STORE_RECORD_MAX=1536)
 target_compile_options(argus_board PRIVATE ${ARGUS_STRICT} -ffreestanding)
 target_link_libraries(argus_board PUBLIC argus PRIVATE argus_flags)
 set_target_properties(argus_board PROPERTIES C_EXTENSIONS ON)

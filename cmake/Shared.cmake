@@ -23,7 +23,7 @@ target_include_directories(argus_shared PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURC
                            PRIVATE firmware)
 target_compile_definitions(argus_shared PUBLIC ARGUS_SONARS=${ARGUS_SONARS})
 target_compile_options(argus_shared PRIVATE ${ARGUS_STRICT})
-target_link_options(argus_shared PRIVATE -Wl,--version-script=${PROJECT_BINARY_DIR}/argus.map)
+target_link_options(argus_shared PRIVATE -Wl,-z,relro,-z,now -Wl,--version-script=${PROJECT_BINARY_DIR}/argus.map)
 target_link_libraries(argus_shared PRIVATE $<BUILD_INTERFACE:argus_flags>)
 set_target_properties(argus_shared PROPERTIES OUTPUT_NAME argus VERSION ${PROJECT_VERSION}
                       SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} POSITION_INDEPENDENT_CODE ON
@@ -39,6 +39,7 @@ endif()
 add_library(argus_sim SHARED hil_sim/sonar/kernel.c)
 target_compile_options(argus_sim PRIVATE ${ARGUS_STRICT} -ffp-contract=off -fno-builtin-sin -fno-builtin-cos
                                          -fno-math-errno -fno-trapping-math $<$<CONFIG:Release>:-O3>)
+target_link_options(argus_sim PRIVATE -Wl,-z,relro,-z,now)
 target_link_libraries(argus_sim PRIVATE argus_flags m)
 set_target_properties(argus_sim PROPERTIES POSITION_INDEPENDENT_CODE ON C_VISIBILITY_PRESET default
                       LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})

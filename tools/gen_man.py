@@ -64,6 +64,8 @@ PAGES = (
                 "ENVIRONMENT",
                 (
                     ("NO_COLOR", "if set and not empty, nothing is coloured"),
+                    ("NOTIFY_SOCKET", "where systemd is told READY, STATUS and STOPPING (sd_notify(3))"),
+                    ("WATCHDOG_USEC", "... and WATCHDOG, twice in this time"),
                     ("TERM", "the terminal; where it cannot be drawn on, argusd does as with --plain"),
                 ),
             ),
@@ -71,7 +73,11 @@ PAGES = (
                 "FILES",
                 (
                     ("argusd.conf.example", "a config file with every setting, among the documentation"),
-                    ("argusd.service", "the unit for systemd"),
+                    (
+                        "argusd.service",
+                        "the unit for systemd: told when argusd is up, alive, and how it does",
+                    ),
+                    ("60-argus.rules", "the rules for udev: a fixed name for the robot's serial adapter"),
                     ("argus.dbc", "the CAN frames, for any tool that reads DBC files"),
                 ),
             ),
@@ -87,7 +93,26 @@ PAGES = (
             "argus-sim is a robot for programs that speak ARCOS: drive, odometry, sonars and bumpers in a world "
             "of walls, with faults of its sonars on demand.",
         ),
-        also=("argusd", "argus-log"),
+        also=("argusd", "argus-log", "argus-monitor"),
+    ),
+    Page(
+        name="argus-monitor",
+        what="shows a robot, its sonars and their faults in the browser, and drives it from there",
+        command=(sys.executable, "-m", "argus_tools.monitor.cli"),
+        synopsis=("--connect ADDRESS [options]", "--sim [options]"),
+        description=(
+            "argus-monitor is a client of argusd's control socket and a web server on loopback: a page with the "
+            "robot from above, the beam and the health of every sonar, the rotations that cover for those that "
+            "failed, and the orders that an operator may give. Several may look on; argusd lets one order.",
+            "With --sim it starts an emulated robot and argusd first; a click on a sonar then breaks or mends it.",
+        ),
+        ends=(
+            (
+                "ENVIRONMENT",
+                (("ARGUS_ARGUSD", "with --sim: the argusd to run, unless --argusd names one"),),
+            ),
+        ),
+        also=("argusd", "argus-sim"),
     ),
     Page(
         name="argus-log",
@@ -108,6 +133,17 @@ PAGES = (
                     ),
                 ),
             ),
+        ),
+        also=("argusd", "argus-sim"),
+    ),
+    Page(
+        name="argus-conformance",
+        what="checks an ARCOS server from outside",
+        command=(sys.executable, "-m", "hil_sim.conformance.cli"),
+        synopsis=("--target TARGET [options]",),
+        description=(
+            "argus-conformance connects to a robot, or to an emulator of one, as a client does, and checks what it "
+            "says and does against the protocol.",
         ),
         also=("argusd", "argus-sim"),
     ),
@@ -220,9 +256,8 @@ def page(description: Page, version: str) -> str:
 
 def version() -> str:
     """Return the version of the project."""
-    found = re.search(
-        r"project\(argus VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
-    )
+    header = (ROOT / "firmware/include/argus/argus.h").read_text(encoding="utf-8")
+    found = re.search(r'^#define ARGUS_VERSION "(.+)"$', header, re.MULTILINE)
     assert found is not None
     return found[1]
 

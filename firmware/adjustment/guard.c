@@ -47,7 +47,7 @@ bool argus_guard_may_translate(const argus_guard_t *const self) {
 }
 
 // What the shortest reading ahead says now, less the way driven since it was taken.
-static int32_t seen_mm(const argus_guard_t *const self) {
+static int32_t read_mm(const argus_guard_t *const self) {
     const argus_knowledge_t *const knowledge = self->knowledge;
     int32_t shortest = knowledge->robot->no_echo_mm;
     for (int i = 0; i < knowledge->sonars; i++) {
@@ -105,9 +105,9 @@ int32_t argus_guard_seen_mm(const argus_guard_t *const self) {
                      argus_rays_seen_mm(self->rays, self->knowledge, half_mm, SEEN_MOST_MM) - SEEN_LEFT_MM);
 }
 
-int32_t argus_guard_ahead_mm(const argus_guard_t *const self) {
-    const int32_t clear_mm = argus_max(0, seen_mm(self) - self->config->object_range_mm);
-    return argus_min(clear_mm, argus_guard_seen_mm(self));
+int32_t argus_guard_ahead_mm(const argus_guard_t *const self, const int32_t seen_mm) {
+    const int32_t clear_mm = argus_max(0, read_mm(self) - self->config->object_range_mm);
+    return argus_min(clear_mm, seen_mm);
 }
 
 // A sonar ahead has the name of a fault.
@@ -120,22 +120,22 @@ static bool may_hurry(const argus_guard_t *const self) {
     return self->profile->adapts_speed && argus_flank_mm(self->knowledge) > ARGUS_FLANK_NEAR_MM;
 }
 
-int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self) {
+int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self, const int32_t seen_mm) {
     const argus_config_t *const config = self->config;
     ARGUS_ASSERT(config->speed_mm_s > 0);
     if (!may_hurry(self)) {
         return config->speed_mm_s;
     }
-    const int32_t unseen_mm = argus_min(argus_guard_seen_mm(self), INT16_MAX) + SEEN_LEFT_MM;
-    const int32_t range_mm = argus_max(argus_min(seen_mm(self), unseen_mm), config->object_range_mm);
+    const int32_t unseen_mm = argus_min(seen_mm, INT16_MAX) + SEEN_LEFT_MM;
+    const int32_t range_mm = argus_max(argus_min(read_mm(self), unseen_mm), config->object_range_mm);
     const int32_t safe_mm_s = argus_config_speed_mm_s(config, self->knowledge->robot, range_mm);
     const int32_t most_mm_s =
         argus_min(safe_mm_s / SPEED_STEP_MM_S * SPEED_STEP_MM_S, config->speed_max_mm_s);
     return argus_max(config->speed_mm_s, most_mm_s);
 }
 
-int32_t argus_guard_speed_mm_s(const argus_guard_t *const self) {
-    return is_doubted_ahead(self) ? self->config->speed_mm_s : argus_guard_free_speed_mm_s(self);
+int32_t argus_guard_speed_mm_s(const argus_guard_t *const self, const int32_t seen_mm) {
+    return is_doubted_ahead(self) ? self->config->speed_mm_s : argus_guard_free_speed_mm_s(self, seen_mm);
 }
 
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {
@@ -183,40 +183,48 @@ bool argus_guard_may_turn(const argus_guard_t *const self) {
     return self->active && self->bumpers == 0 && !argus_guard_swing_is_blocked(self);
 }
 
-// Turned by so much, the body comes too near to a point, which is given in the robot's frame of now.
-static bool is_swept(const argus_robot_t *const robot, const argus_point_t at, const int32_t by_cdeg) {
-    const int32_t c = argus_cos(by_cdeg);
-    const int32_t s = argus_sin(by_cdeg);
-    const int32_t x_mm = (at.x_mm * c + at.y_mm * s) / ARGUS_TRIG_ONE;
-    const int32_t y_mm = (at.y_mm * c - at.x_mm * s) / ARGUS_TRIG_ONE;
-    return x_mm > -robot->rear_mm - NUDGE_ROOM_MM && x_mm < robot->front_mm + NUDGE_ROOM_MM &&
-           argus_abs(y_mm) < argus_robot_half_width_mm(robot) + NUDGE_ROOM_MM;
+// The parts of a nudge, as directions of the robot's frame of now.
+typedef struct {
+    int32_t c[NUDGE_PARTS];
+    int32_t s[NUDGE_PARTS];
+} nudge_t;
+
+static nudge_t nudge_of(const int32_t by_cdeg) {
+    nudge_t nudge;
+    for (int32_t i = 0; i < NUDGE_PARTS; i++) {
+        nudge.c[i] = argus_cos(by_cdeg * (i + 1) / NUDGE_PARTS);
+        nudge.s[i] = argus_sin(by_cdeg * (i + 1) / NUDGE_PARTS);
+    }
+    return nudge;
 }
 
-static bool is_in_nudge(const argus_robot_t *const robot, const argus_point_t at, const int32_t by_cdeg) {
-    for (int32_t part = 1; part <= NUDGE_PARTS; part++) {
-        if (is_swept(robot, at, by_cdeg * part / NUDGE_PARTS)) {
+// Turned so far, the body comes too near to a point, which is given in the robot's frame of now.
+static bool is_swept(const argus_robot_t *const robot, const argus_point_t at, const nudge_t *const nudge) {
+    for (int i = 0; i < NUDGE_PARTS; i++) {
+        const int32_t x_mm = (at.x_mm * nudge->c[i] + at.y_mm * nudge->s[i]) / ARGUS_TRIG_ONE;
+        const int32_t y_mm = (at.y_mm * nudge->c[i] - at.x_mm * nudge->s[i]) / ARGUS_TRIG_ONE;
+        if (x_mm > -robot->rear_mm - NUDGE_ROOM_MM && x_mm < robot->front_mm + NUDGE_ROOM_MM &&
+            argus_abs(y_mm) < argus_robot_half_width_mm(robot) + NUDGE_ROOM_MM) {
             return true;
         }
     }
     return false;
 }
 
-static bool is_heard_in_nudge(const argus_knowledge_t *const knowledge, const int32_t by_cdeg) {
+static bool is_heard_in_nudge(const argus_knowledge_t *const knowledge, const nudge_t *const nudge) {
     for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_usable(knowledge, i) &&
-            is_in_nudge(knowledge->robot, argus_echo_robot(knowledge, i), by_cdeg)) {
+        if (argus_usable(knowledge, i) && is_swept(knowledge->robot, argus_echo_robot(knowledge, i), nudge)) {
             return true;
         }
     }
     return false;
 }
 
-static bool is_remembered_in_nudge(const argus_guard_t *const self, const int32_t by_cdeg) {
+static bool is_remembered_in_nudge(const argus_guard_t *const self, const nudge_t *const nudge) {
     for (int i = 0; i < self->echoes->count; i++) {
         argus_point_t at;
         if (argus_echoes_near(self->echoes, self->knowledge, i, &at) &&
-            is_in_nudge(self->knowledge->robot, at, by_cdeg)) {
+            is_swept(self->knowledge->robot, at, nudge)) {
             return true;
         }
     }
@@ -224,8 +232,11 @@ static bool is_remembered_in_nudge(const argus_guard_t *const self, const int32_
 }
 
 bool argus_guard_may_nudge(const argus_guard_t *const self, const int32_t by_cdeg) {
-    return self->profile->nudges && self->active && self->bumpers == 0 && argus_abs(by_cdeg) <= NUDGE_CDEG &&
-           !is_heard_in_nudge(self->knowledge, by_cdeg) && !is_remembered_in_nudge(self, by_cdeg);
+    if (!self->profile->nudges || !self->active || self->bumpers != 0 || argus_abs(by_cdeg) > NUDGE_CDEG) {
+        return false;
+    }
+    const nudge_t nudge = nudge_of(by_cdeg);
+    return !is_heard_in_nudge(self->knowledge, &nudge) && !is_remembered_in_nudge(self, &nudge);
 }
 
 bool argus_guard_echo_blocks(const argus_guard_t *const self, const int sonar) {

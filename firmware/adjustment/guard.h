@@ -53,13 +53,15 @@ int32_t argus_guard_seen_mm(const argus_guard_t *self);
 bool argus_guard_may_translate(const argus_guard_t *self);
 
 // S3: the longest MOVE that normal driving may ask for now: shortest front reading, less the way driven since
-// it was taken, less the object range, and no farther than has been seen; never negative.
-int32_t argus_guard_ahead_mm(const argus_guard_t *self);
+// it was taken, less the object range, and no farther than has been seen (argus_guard_seen_mm(), which costs
+// more than all the rest); never negative.
+int32_t argus_guard_ahead_mm(const argus_guard_t *self, int32_t seen_mm);
 
 // S5: the speed for the way ahead: `speed_mm_s`; where the profile adapts it and nothing is doubted or close
 // beside, up to `speed_max_mm_s`, as the shortest front reading allows.
-int32_t argus_guard_speed_mm_s(const argus_guard_t *self);
-int32_t argus_guard_free_speed_mm_s(const argus_guard_t *self); // ... were nothing doubted
+int32_t argus_guard_speed_mm_s(const argus_guard_t *self, int32_t seen_mm);
+// ... and were nothing doubted.
+int32_t argus_guard_free_speed_mm_s(const argus_guard_t *self, int32_t seen_mm);
 
 // S3: every sonar in use that looks ahead has been refreshed within two rounds of its array.
 bool argus_guard_sees_ahead(const argus_guard_t *self);

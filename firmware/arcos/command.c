@@ -96,6 +96,11 @@ bool argus_outbox_string(argus_outbox_t *self, uint8_t command, const uint8_t *t
     return put(self, packet, argus_command_string(packet, sizeof packet, command, text, count));
 }
 
+bool argus_outbox_packet(argus_outbox_t *self, const uint8_t *data, size_t count) {
+    uint8_t packet[ARCOS_FRAME_SEND_TOTAL_MAX];
+    return put(self, packet, argus_frame_encode(packet, sizeof packet, data, count));
+}
+
 static bool is_motion(uint8_t command) {
     static const uint8_t motion[] = {ARCOS_CMD_MOVE,   ARCOS_CMD_VEL,  ARCOS_CMD_VEL2,  ARCOS_CMD_RVEL,
                                      ARCOS_CMD_ROTATE, ARCOS_CMD_HEAD, ARCOS_CMD_DHEAD, ARCOS_CMD_DCHEAD};

@@ -157,3 +157,38 @@ bool argus_names_suspects(const argus_evidence_t *const self, const int sonar) {
     }
     return is_late(c, suspicious(ARGUS_LATE_NAMING)) || is_bent(c, suspicious(ARGUS_BENT_NAMING));
 }
+
+// What is more, of what is `so_far` and a score of `level` of a verdict.
+static int32_t at_least(const int32_t so_far, const int32_t score, const int32_t level) {
+    return argus_max(so_far, score * 100 / level);
+}
+
+static argus_fault_kind_t kind_of_test(const argus_case_t *const self, const int test) {
+    switch (test) {
+    case ARGUS_TEST_STUCK:
+        return ARGUS_KIND_STUCK;
+    case ARGUS_TEST_GARBAGE:
+        return ARGUS_KIND_GARBAGE;
+    case ARGUS_TEST_DROPOUT:
+        return ARGUS_KIND_INTERMITTENT;
+    default:
+        return kind_of_peers(self);
+    }
+}
+
+argus_fault_kind_t argus_names_best(const argus_evidence_t *const self, const int sonar,
+                                    uint8_t *const percent) {
+    const argus_case_t *const c = &self->of[sonar];
+    argus_fault_kind_t best = ARGUS_KIND_NONE;
+    int32_t most = 0;
+    for (int i = 0; i < ARGUS_TESTS; i++) {
+        const int32_t now = at_least(most, c->score[i], argus_bounds[i].convincing);
+        best = now > most ? kind_of_test(c, i) : best;
+        most = now;
+    }
+    const int32_t late = at_least(most, late_of(c).well, ARGUS_LATE_CONVINCING);
+    best = late > most ? ARGUS_KIND_SLOW : best;
+    *percent = (uint8_t)argus_min(late, 100);
+    const argus_fault_kind_t found = argus_names_found(self, sonar);
+    return found != ARGUS_KIND_NONE ? found : best;
+}

@@ -12,4 +12,7 @@ bool argus_names_suspects(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_names_found(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_names_convicts(const argus_evidence_t *self, int sonar);
 
+// The fault that explains it best so far, and how far its evidence is to a conviction: 0 to 100 percent.
+argus_fault_kind_t argus_names_best(const argus_evidence_t *self, int sonar, uint8_t *percent);
+
 #endif

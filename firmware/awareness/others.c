@@ -105,21 +105,14 @@ static void add(tally_t *const tally, const said_t said, const int from) {
 static int ask(tally_t *const tally, const argus_pings_t *const pings, const argus_ping_t *const at,
                const int from, const uint32_t now_ms) {
     int latest = 0;
-    for (int back = 1; back <= pings->count; back++) {
+    for (int back = argus_pings_near(pings, 1, at); back > 0; back = argus_pings_near(pings, back + 1, at)) {
         const argus_ping_t *const then = argus_pings_at(pings, back);
-        if (!argus_ping_is_within(at, then, ARGUS_SAME_ALONG_MM)) {
-            continue;
-        }
-        const int32_t turned = argus_ping_turned_cdeg(at, then);
-        if (turned > ARGUS_BESIDE_CDEG) {
-            continue;
-        }
         const argus_shift_t shift = argus_ping_shift(at, then);
         if (shift.lateral_mm > ARGUS_SAME_LATERAL_MM) {
             continue;
         }
         const said_t said = compare(at->reading_mm, then->reading_mm, shift.along_mm);
-        if (latest == 0 && turned <= ARGUS_SAME_CDEG) {
+        if (latest == 0 && argus_ping_turned_cdeg(at, then) <= ARGUS_SAME_CDEG) {
             latest = back;
             add(tally, said, from);
         }

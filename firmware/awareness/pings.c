@@ -10,6 +10,9 @@
 #define ALIKE_PLACE_MM 5
 #define ALIKE_CDEG 30
 #define ALIKE_MM 30
+#define FULL_CDEG 36000
+#define SECTORS 16 // of the bearings
+#define SECTOR_CDEG (FULL_CDEG / SECTORS)
 
 static int32_t offset_mm(const uint16_t now_mm, const uint16_t then_mm) {
     const int32_t delta = (int32_t)((uint32_t)(now_mm - then_mm) & 0xFFFFu);
@@ -80,6 +83,35 @@ bool argus_ping_is_within(const argus_ping_t *const a, const argus_ping_t *const
     return is_close(a->x_mm, b->x_mm, mm) && is_close(a->y_mm, b->y_mm, mm);
 }
 
+static unsigned sector_of(const int32_t bearing_cdeg) {
+    return 1u << ((uint32_t)(bearing_cdeg + 2 * FULL_CDEG) / SECTOR_CDEG % SECTORS);
+}
+
+static unsigned sectors_beside(const argus_ping_t *const at) {
+    _Static_assert(2 * ARGUS_BESIDE_CDEG < SECTOR_CDEG, "what is beside a bearing lies in two sectors");
+    return sector_of(at->bearing_cdeg - ARGUS_BESIDE_CDEG) | sector_of(at->bearing_cdeg + ARGUS_BESIDE_CDEG);
+}
+
+static bool is_near(const argus_ping_t *const a, const argus_ping_t *const b) {
+    const int32_t turned = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
+    return (turned <= ARGUS_BESIDE_CDEG || turned >= FULL_CDEG - ARGUS_BESIDE_CDEG) &&
+           argus_ping_is_within(a, b, ARGUS_SAME_ALONG_MM);
+}
+
+// Tens of thousands of pings are asked for in one SIP, and few sonars have looked that way.
+int argus_pings_near(const argus_pings_t *const self, const int from, const argus_ping_t *const at) {
+    ARGUS_ASSERT(from >= 1);
+    if ((self->sectors & sectors_beside(at)) == 0) {
+        return 0;
+    }
+    for (int back = from; back <= self->count; back++) {
+        if (is_near(at, &self->ping[slot_of(self, back)])) {
+            return back;
+        }
+    }
+    return 0;
+}
+
 bool argus_ping_goes_on(const argus_ping_t *const now, const argus_ping_t *const then) {
     if (!then->steady || argus_ping_turned_cdeg(now, then) > ARGUS_SAME_CDEG) {
         return false;
@@ -105,6 +137,14 @@ void argus_pings_age(argus_pings_t *const self, const uint32_t now_ms) {
     }
 }
 
+static void note_sectors(argus_pings_t *const self) {
+    unsigned sectors = 0;
+    for (int back = 1; back <= self->count; back++) {
+        sectors |= sector_of(self->ping[slot_of(self, back)].bearing_cdeg);
+    }
+    self->sectors = (uint16_t)sectors;
+}
+
 void argus_pings_note(argus_pings_t *const self, const argus_ping_t now) {
     argus_ping_t *const last = &self->ping[slot_of(self, 1)];
     if (self->count > 0 && is_alike(&now, last)) {
@@ -119,6 +159,7 @@ void argus_pings_note(argus_pings_t *const self, const argus_ping_t now) {
     self->ping[self->next] = now;
     self->next = (uint8_t)((self->next + 1) % ARGUS_PINGS);
     self->count = (uint8_t)argus_min(self->count + 1, ARGUS_PINGS);
+    note_sectors(self);
 }
 
 argus_ping_t argus_ping_from(const argus_robot_t *const robot, const int sonar,

@@ -97,19 +97,41 @@ static int32_t sqrt_up(int32_t value) {
     return (int32_t)(root * root < (uint32_t)value ? root + 1 : root);
 }
 
-// Reading of the point (x2, y2), in half millimetres like everything here because the body is an odd number
-// wide.
-static int32_t reading_of(const argus_robot_t *robot, int32_t x2, int32_t y2) {
+// What one sonar hears of the line that the front of the body sweeps up to: from .. to across it. Half
+// millimetres like everything here, because the body is an odd number wide.
+typedef struct {
+    int32_t ahead2; // of the transducer
+    int32_t across2;
+    int32_t from2;
+    int32_t to2;
+} view_t;
+
+// Where a ray so far beside the axis meets the line, to half a millimetre.
+static int32_t edge_of(int32_t ahead2, int32_t cdeg) {
+    const int32_t c = argus_cos(cdeg);
+    ARGUS_ASSERT(c > 0 && ahead2 > 0);
+    return ahead2 * argus_sin(cdeg) / c;
+}
+
+static view_t view_of(const argus_robot_t *robot, const argus_sonar_pose_t *pose, int32_t front2) {
+    const int32_t half_cdeg = robot->cone_deg * 100 / 2;
+    view_t view = {.ahead2 = front2 - 2 * pose->x_mm, .across2 = 2 * pose->y_mm};
+    view.from2 = view.across2 + edge_of(view.ahead2, pose->heading_deg * 100 - half_cdeg);
+    view.to2 = view.across2 + edge_of(view.ahead2, pose->heading_deg * 100 + half_cdeg);
+    return view;
+}
+
+// Square of the reading of the place y2 on that line.
+static int32_t reading_of(const view_t *views, int count, int32_t y2) {
     int32_t seen = INT32_MAX;
     int32_t nearest = INT32_MAX;
-    for (int i = 0; i < robot->forward_count; i++) {
-        const argus_sonar_pose_t *pose = argus_robot_pose(robot, robot->forward[i]);
-        const int32_t dx = x2 - 2 * pose->x_mm;
-        const int32_t dy = y2 - 2 * pose->y_mm;
-        const int32_t distance = sqrt_up(dx * dx + dy * dy);
-        nearest = argus_min(nearest, distance);
-        if (argus_angle_abs_diff(argus_atan2(dy, dx), pose->heading_deg * 100) <= robot->cone_deg * 100 / 2) {
-            seen = argus_min(seen, distance);
+    for (int i = 0; i < count; i++) {
+        const view_t *view = &views[i];
+        const int32_t dy = y2 - view->across2;
+        const int32_t square = view->ahead2 * view->ahead2 + dy * dy;
+        nearest = argus_min(nearest, square);
+        if (y2 >= view->from2 && y2 <= view->to2) {
+            seen = argus_min(seen, square);
         }
     }
     return seen < INT32_MAX ? seen : nearest;
@@ -117,13 +139,17 @@ static int32_t reading_of(const argus_robot_t *robot, int32_t x2, int32_t y2) {
 
 int32_t argus_config_reach_mm(const argus_robot_t *robot, int32_t step_mm) {
     ARGUS_ASSERT(step_mm > 0 && robot->width_mm > 0);
+    view_t views[ARGUS_FORWARD_MAX];
     const int32_t front2 = 2 * (robot->front_mm + step_mm);
     const int32_t side2 = robot->width_mm;
-    int32_t reach2 = 0;
-    for (int32_t y2 = -side2; y2 <= side2; y2++) {
-        reach2 = argus_max(reach2, reading_of(robot, front2, y2));
+    int32_t square = 0;
+    for (int i = 0; i < robot->forward_count; i++) {
+        views[i] = view_of(robot, argus_robot_pose(robot, robot->forward[i]), front2);
     }
-    return (reach2 + 1) / 2;
+    for (int32_t y2 = -side2; y2 <= side2; y2++) {
+        square = argus_max(square, reading_of(views, robot->forward_count, y2));
+    }
+    return (sqrt_up(square) + 1) / 2;
 }
 
 argus_config_report_t argus_config_check(const argus_config_t *config) {

@@ -229,12 +229,16 @@ bool argus_grid_is_occupied(const argus_grid_t *const self, const argus_cell_t c
     return is_inside(self, cell) && level_at(self, place_of(cell)) >= OCCUPIED;
 }
 
+// Places in a row wrap around: what is in front of the window's first cell follows its last.
 uint64_t argus_grid_row(const argus_grid_t *const self, const int row) {
     ARGUS_ASSERT(row >= 0 && row < CELLS);
+    const uint8_t *const pairs = &self->level[((unsigned)(self->low.y + row) & MASK) * CELLS / 2];
+    const unsigned first = (unsigned)self->low.x & MASK;
     uint64_t bits = 0;
-    for (int32_t x = 0; x < CELLS; x++) {
-        const argus_cell_t cell = {self->low.x + x, self->low.y + row};
-        bits |= (uint64_t)(level_at(self, place_of(cell)) >= OCCUPIED) << x;
+    for (int i = CELLS / 2 - 1; i >= 0; i--) {
+        const unsigned even = (pairs[i] & LEVEL_MAX) >= OCCUPIED ? 1u : 0u;
+        const unsigned odd = pairs[i] >> 4 >= OCCUPIED ? 2u : 0u;
+        bits = bits << 2 | odd | even;
     }
-    return bits;
+    return bits >> first | bits << (CELLS - first) % CELLS;
 }

@@ -73,8 +73,11 @@ static bool shows(const argus_ray_t *const ray, const argus_point_t at) {
     const int32_t dx = at.x_mm - ray->x_mm;
     const int32_t dy = at.y_mm - ray->y_mm;
     const int32_t along_mm = (dx * ray->c + dy * ray->s) / ARGUS_TRIG_ONE;
+    if (along_mm <= 0 || along_mm >= ray->free_mm) {
+        return false;
+    }
     const int32_t beside_mm = argus_abs((dy * ray->c - dx * ray->s) / ARGUS_TRIG_ONE);
-    return along_mm > 0 && along_mm < ray->free_mm && beside_mm <= along_mm * CONE_SLOPE / 128 + NEAR_MM;
+    return beside_mm <= along_mm * CONE_SLOPE / 128 + NEAR_MM;
 }
 
 // The newest first: it is likeliest.

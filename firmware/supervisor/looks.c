@@ -62,7 +62,7 @@ void argus_count_loss(argus_t *const self) {
         return;
     }
     const argus_guard_t guard = argus_guard(self);
-    const int32_t free_mm_s = argus_guard_free_speed_mm_s(&guard);
+    const int32_t free_mm_s = argus_guard_free_speed_mm_s(&guard, argus_guard_seen_mm(&guard));
     const int32_t lost_mm_s = free_mm_s - self->config.speed_mm_s; // that of one who doubts
     ARGUS_ASSERT(free_mm_s > 0 && lost_mm_s >= 0);
     self->looks.lost_ms += SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s;

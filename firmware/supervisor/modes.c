@@ -197,7 +197,7 @@ static void go_ahead(argus_t *const self, const argus_intent_t *const intent) {
         enter(self, ARGUS_MODE_STEPPING);
     } else {
         ARGUS_ASSERT(argus_guard_may_drive(&guard, &self->plan) &&
-                     intent->mm <= argus_guard_ahead_mm(&guard));
+                     intent->mm <= argus_guard_ahead_mm(&guard, argus_guard_seen_mm(&guard)));
     }
     argus_move(self, intent->mm, intent->speed_mm_s);
     if (intent->moves_on) {

@@ -226,9 +226,12 @@ static argus_intent_t sees_swing(const argus_t *const self, const argus_alarm_t 
         mine->near[0].valid = mine->near[1].valid = false;
         return nothing();
     }
+    if (self->knowledge.fresh == 0 || argus_guard_may_nudge(&guard, left_cdeg)) {
+        return nothing();
+    }
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const bool fresh = (self->knowledge.fresh >> i & 1u) != 0 && argus_usable(&self->knowledge, i);
-        if (fresh && !argus_guard_may_nudge(&guard, left_cdeg) && note_near(self, mine, i, &at)) {
+        if (fresh && note_near(self, mine, i, &at)) {
             return (argus_intent_t){.act = ARGUS_DO_END_TURN, .at = at};
         }
     }

@@ -51,13 +51,12 @@ static bool is_better(const argus_t *const self, const argus_robot_t *const othe
 bool argus_should_turn_about(const argus_t *const self) {
     const argus_robot_t *const other = argus_robot_other_end(self->knowledge.robot);
     const bool may = argus_rules(self)->may_reverse && argus_is_active(self) && self->travel.jog_mm == 0;
-    if (other == NULL || !may || !is_safe(self, other)) {
+    if (other == NULL || !may) {
         return false;
     }
-    if (!argus_guard_may_step(&self->plan)) {
-        return can_go_on(self, other);
-    }
-    return has_driven(self) && is_better(self, other);
+    const bool pays = argus_guard_may_step(&self->plan) ? has_driven(self) && is_better(self, other)
+                                                        : can_go_on(self, other);
+    return pays && is_safe(self, other); // the costliest question last
 }
 
 void argus_turn_about(argus_t *const self) {

@@ -2,6 +2,7 @@
 // What the manager shows of itself: a status copy, and its invariants.
 #include <string.h>
 
+#include "awareness/names.h"
 #include "supervisor/state.h"
 
 static void copy_sonars(const argus_t *const self, argus_status_t *const status) {
@@ -76,6 +77,27 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
     status->pinned = self->orders.pinned;
     status->stops = self->stops;
     status->robot_body = self->knowledge.robot->name;
+}
+
+// Whoever is out has had its verdict, by the evidence or by something else.
+static void copy_suspicion(const argus_t *const self, const int sonar, argus_suspicions_t *const to) {
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    to->kind[sonar] = argus_names_best(&self->evidence, sonar, &to->percent[sonar]);
+    to->against[sonar] = self->evidence.of[sonar].against;
+    if (s->kind != ARGUS_KIND_NONE) {
+        to->kind[sonar] = s->kind;
+        to->percent[sonar] = s->health == ARGUS_DISABLED ? 100 : to->percent[sonar];
+    }
+}
+
+void argus_suspicions(const argus_t *const self, argus_suspicions_t *const suspicions) {
+    memset(suspicions, 0, sizeof *suspicions);
+    if (!argus_rules(self)->evidence) {
+        return;
+    }
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        copy_suspicion(self, i, suspicions);
+    }
 }
 
 static bool queues_hold(const argus_t *const self) {

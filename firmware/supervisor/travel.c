@@ -272,12 +272,13 @@ static void steer(const argus_t *const self, argus_travel_t *const mine, argus_i
 }
 
 // S3: a MOVE that ends where it should without us, renewed on each SIP.
-static argus_intent_t move_on(const argus_t *const self, argus_travel_t *const mine, const int32_t free_mm) {
+static argus_intent_t move_on(const argus_t *const self, argus_travel_t *const mine, const int32_t free_mm,
+                              const int32_t seen_mm) {
     const argus_guard_t guard = argus_guard(self);
     const int32_t way_mm = left_mm(self, mine);
     argus_intent_t intent = {.act = ARGUS_DO_DRIVE,
                              .mm = argus_min(way_mm, free_mm),
-                             .speed_mm_s = argus_guard_speed_mm_s(&guard),
+                             .speed_mm_s = argus_guard_speed_mm_s(&guard, seen_mm),
                              .moves_on = true};
     if (way_mm > STEER_LEG_MM) {
         steer(self, mine, &intent);
@@ -295,21 +296,31 @@ static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const 
     if (nearest_mm <= self->config.object_range_mm) {
         return blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm);
     }
-    if (argus_guard_seen_mm(&guard) < argus_min(left_mm(self, mine), SEEN_LEAST_MM)) {
+    const int32_t seen_mm = argus_guard_seen_mm(&guard);
+    if (seen_mm < argus_min(left_mm(self, mine), SEEN_LEAST_MM)) {
         return look_ahead(self, mine);
     }
-    const int32_t free_mm = argus_guard_ahead_mm(&guard);
+    const int32_t free_mm = argus_guard_ahead_mm(&guard, seen_mm);
     if (free_mm == 0) {
         return nothing(); // a fresh reading will tell
     }
     if (!is_heeded(self, mine)) {
         return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_MOTORS};
     }
-    return move_on(self, mine, free_mm);
+    return move_on(self, mine, free_mm, seen_mm);
 }
 
 static argus_intent_t step(const argus_t *const self, const int32_t way_mm) {
     return (argus_intent_t){.act = ARGUS_DO_STEP, .mm = way_mm, .speed_mm_s = self->config.step_speed_mm_s};
+}
+
+// One MOVE, then idle again.
+static argus_intent_t jog_on(const argus_t *const self, argus_travel_t *const mine) {
+    const argus_guard_t guard = argus_guard(self);
+    const int32_t seen_mm = argus_guard_seen_mm(&guard);
+    return seen_mm < mine->jog_mm
+               ? look_ahead(self, mine)
+               : step(self, argus_min(mine->jog_mm, argus_guard_ahead_mm(&guard, seen_mm)));
 }
 
 argus_intent_t argus_run_driving(const argus_t *const self, argus_travel_t *const mine) {
@@ -323,13 +334,7 @@ argus_intent_t argus_run_driving(const argus_t *const self, argus_travel_t *cons
     if (!has_way(self, mine, &intent) || !is_aimed(self, mine, &intent)) {
         return intent;
     }
-    if (mine->jog_mm > 0 && argus_guard_seen_mm(&guard) < mine->jog_mm) {
-        return look_ahead(self, mine);
-    }
-    if (mine->jog_mm > 0) { // one MOVE, then idle again
-        return step(self, argus_min(mine->jog_mm, argus_guard_ahead_mm(&guard)));
-    }
-    return drive_on(self, mine);
+    return mine->jog_mm > 0 ? jog_on(self, mine) : drive_on(self, mine);
 }
 
 static argus_intent_t step_ahead(const argus_t *const self, const argus_travel_t *const mine) {

@@ -189,32 +189,41 @@ static uint64_t beside(const uint64_t row, const uint64_t others, const bool cor
 // What the wave reached long enough ago to get on where it is narrow.
 static uint64_t ripened(const argus_wave_t *const wave, const int y, const int step) {
     uint64_t young = 0;
-    for (int ago = 1; ago < NARROW_STEPS && y < CELLS; ago++) {
+    for (int ago = 1; ago < NARROW_STEPS && y >= 0 && y < CELLS; ago++) {
         young |= labelled(wave, y, label_at(step + LABELS - ago));
     }
-    return y < CELLS ? reached(wave, y) & ~young : 0;
+    return y >= 0 && y < CELLS ? reached(wave, y) & ~young : 0;
+}
+
+// Cells that the wave comes to in one row. Where it is narrow it comes later, from what is ripe, and of the
+// row below only what was there before this step.
+static uint64_t fresh_in(const argus_wave_t *const wave, const int y, const int step, const uint64_t next,
+                         const uint64_t fresh_below) {
+    const bool corners = step % 2 == 0;
+    const uint64_t slow = next & wave->narrow[y] & ~wave->wide[y];
+    if (slow == 0) {
+        return next & wave->wide[y];
+    }
+    const uint64_t others = (ripened(wave, y - 1, step) & ~fresh_below) | ripened(wave, y + 1, step);
+    return (next & wave->wide[y]) | (beside(ripened(wave, y, step), others, corners) & slow);
 }
 
 // True: the wave has come to new cells.
 static bool advance(argus_wave_t *const wave, const int step) {
-    const bool corners = step % 2 == 0;
     uint64_t below = 0;
-    uint64_t below_ripe = 0;
+    uint64_t fresh = 0;
     uint64_t any = 0;
     uint64_t here = reached(wave, 0);
-    uint64_t ripe = ripened(wave, 0, step);
     for (int y = 0; y < CELLS; y++) {
         const uint64_t above = y + 1 < CELLS ? reached(wave, y + 1) : 0;
-        const uint64_t above_ripe = ripened(wave, y + 1, step);
-        const uint64_t fresh = ((beside(here, below | above, corners) & wave->wide[y]) |
-                                (beside(ripe, below_ripe | above_ripe, corners) & wave->narrow[y])) &
-                               ~here;
-        put_label(wave, y, fresh, label_at(step));
+        const uint64_t next = beside(here, below | above, step % 2 == 0) & ~here;
+        fresh = next != 0 ? fresh_in(wave, y, step, next, fresh) : 0;
+        if (fresh != 0) {
+            put_label(wave, y, fresh, label_at(step));
+        }
         any |= fresh;
         below = here;
-        below_ripe = ripe;
         here = above;
-        ripe = above_ripe;
     }
     return any != 0;
 }
@@ -228,23 +237,25 @@ static int32_t beyond(const argus_cell_t waypoint) {
     return argus_hypot(argus_min(outside(waypoint.x), 40000), argus_min(outside(waypoint.y), 40000));
 }
 
-static bool is_source(const argus_wave_t *const wave, const argus_cell_t cell, const argus_cell_t waypoint,
-                      const int32_t radius) {
-    const int32_t dx = cell.x - waypoint.x;
-    const int32_t dy = cell.y - waypoint.y;
-    return has(wave->narrow, cell) && label_of(wave, cell) == 0 && dx * dx + dy * dy <= radius * radius;
+// Of the cells of a row at the border of the window, those within a circle: `rest` is what the way across the
+// rows leaves of its radius squared.
+static uint64_t border_within(const int y, const int32_t rest, const int32_t middle_x) {
+    const int apart = y == 0 || y == CELLS - 1 ? 1 : CELLS - 1;
+    uint64_t cells = 0;
+    for (int x = 0; x < CELLS && rest >= 0; x += apart) {
+        const int32_t dx = x - middle_x;
+        cells |= dx * dx <= rest ? bit(x) : 0;
+    }
+    return cells;
 }
 
 // A wave from a waypoint outside comes to the border by and by. False: it has come to all of it.
 static bool come_in(argus_wave_t *const wave, const argus_cell_t waypoint, const int step) {
     const int32_t radius = beyond(waypoint) + step;
-    for (int32_t i = 0; i < CELLS; i++) {
-        const argus_cell_t border[] = {{i, 0}, {i, CELLS - 1}, {0, i}, {CELLS - 1, i}};
-        for (int k = 0; k < 4; k++) {
-            if (is_source(wave, border[k], waypoint, radius)) {
-                put_label(wave, (int)border[k].y, bit(border[k].x), label_at(step));
-            }
-        }
+    for (int y = 0; y < CELLS; y++) {
+        const int32_t dy = y - waypoint.y;
+        const uint64_t open = wave->narrow[y] & ~reached(wave, y);
+        put_label(wave, y, border_within(y, radius * radius - dy * dy, waypoint.x) & open, label_at(step));
     }
     return step < 3 * CELLS;
 }

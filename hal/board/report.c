@@ -8,10 +8,6 @@
 #define FRONT_SONARS 8
 #define SONAR_DIGITS_AT(front) ((front) ? 12u : 11u)
 
-#ifndef ARGUS_VERSION
-#define ARGUS_VERSION "unknown"
-#endif
-
 // "sonar/front/03", "sonar/rear/11", or the event's subject.
 static void put_name(board_line_t *line, const argus_event_t *event) {
     char name[] = "sonar/front/00";

@@ -35,6 +35,8 @@ examples:
   argus-sim --can can0                        on a CAN bus, each ARCOS packet an ISO-TP message (docs/can.md)
   argus-sim --robot amigo-sh --world office   an AmigoBot with its eight sonars
   argus-sim --physics rough-day               sonars and wheels as on a bad day (docs/worlds.md)
+  argus-sim --orders                          sonars broken and mended as it runs, by lines such as 'break off:3'
+  argus-sim --monitor --world lab             robot, argusd and a live page, in one command
   argus-sim --robots 3 --tcp 8101             three robots, on ports 8101 to 8103
   argus-sim --tcp 8101 --quirks mobilesim     with the answers of the vendor's emulator
   argus-sim bench diagnosis --help            how well faults are diagnosed, over many missions without a link
@@ -42,7 +44,7 @@ examples:
   argus-sim experiment --help                 the experiments of the paper, and the study that it lacks
 
 The first line on standard output is the device path, HOST:PORT, or what argusd takes after can:, alone; with
---robots one line for each. All else goes to standard error.
+--robots one line for each. All else goes to standard error, but for the answers to --orders.
 A pseudo-terminal takes 10 bit times a byte at the robot's rate and is garbled at any other.
 
 exit codes: 0 ended by a signal or --duration, 1 link cannot be opened or was lost, 2 wrong argument or file
@@ -267,6 +269,16 @@ def parser() -> argparse.ArgumentParser:
         help="size at which FILE becomes FILE.1 and so on to FILE.4 (default 64)",
     )
     rest.add_argument("--duration", type=_seconds, metavar="S", help="end after S seconds")
+    rest.add_argument(
+        "--monitor",
+        action="store_true",
+        help="start argusd and a page in the browser as well: argus-monitor --sim (docs/monitor.md)",
+    )
+    rest.add_argument(
+        "--orders",
+        action="store_true",
+        help="obey lines on standard input ('break off:3', 'mend 3', 'mend all') until it ends",
+    )
     rest.add_argument("--list-worlds", action="store_true", help="list our worlds and leave")
     rest.add_argument("--list-faults", action="store_true", help="list the fault kinds and leave")
     rest.add_argument(

@@ -30,6 +30,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         from hil_sim.experiment.cli import main as experiment
 
         return experiment(words[1:])
+    if "--monitor" in words:
+        from argus_tools.monitor.cli import main as monitor
+
+        return monitor(["--sim", *(word for word in words if word != "--monitor")])
     arguments = parser().parse_args(words)
     try:
         if arguments.list_worlds:

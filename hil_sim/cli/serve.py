@@ -15,11 +15,15 @@ from pathlib import Path
 from typing import Any
 
 from hil_sim.cli.choose import link_of, numbered, robot_name
+from hil_sim.errors import SimError
+from hil_sim.faults.execute import FaultSet
 from hil_sim.faults.link import LinkFaults
 from hil_sim.links.base import Link
 from hil_sim.links.loop import LATE_MS, Fleet, Loop
+from hil_sim.links.orders import Orders
 from hil_sim.record.recording import Recorder
 from hil_sim.record.truth import Log, TruthRecord
+from hil_sim.robot.robot import Robot
 from hil_sim.scenario.build import build_robot
 from hil_sim.scenario.scenario import SEED_MAX, Scenario
 from hil_sim.server.quirks import server_kind
@@ -79,7 +83,7 @@ def _loop(
     if arguments.truth:
         truth = numbered(Path(arguments.truth), index)
         log = stack.enter_context(TruthRecord(truth, _meta(scenario, world, start), say))
-    robot = build_robot(scenario, world, start, log, arguments.rear_bumpers)
+    robot = build_robot(scenario, world, start, log, arguments.rear_bumpers, arguments.orders)
     link, baud = link_of(arguments, index, scenario.seed)
     server = server_kind(arguments.quirks)(
         robot,
@@ -98,11 +102,19 @@ def _loop(
         record = numbered(Path(arguments.record), index)
         recorder = Recorder(record, f"argus-sim {link.address}", say, arguments.record_max)
         stack.callback(recorder.close)
-    return Loop(server, link, faults, recorder=recorder)
+    orders = _orders(robot) if arguments.orders else None
+    return Loop(server, link, faults, recorder=recorder, orders=orders)
+
+
+def _orders(robot: Robot) -> Orders:
+    assert isinstance(robot.faults, FaultSet)
+    return Orders(robot, robot.faults, sys.stdin.fileno(), sys.stdout.fileno())
 
 
 def serve(arguments: argparse.Namespace, scenario: Scenario) -> None:
     """Serve the robots of a scenario until a signal or the end of the time."""
+    if arguments.orders and arguments.robots > 1:
+        raise SimError(f"--robots {arguments.robots}: --orders are for one robot")
     with ExitStack() as stack:
         world = load_world(scenario.world)
         caught = stack.enter_context(_signals())

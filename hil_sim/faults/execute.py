@@ -22,6 +22,7 @@ class _State:
         self.ended = False
         self.told = False
         self.held: dict[int, int] = {}
+        self.mended: set[int] = set()
         self.since: float | None = None
         self.part = 1.0 if fault.ramp is None else 0.0
 
@@ -39,7 +40,12 @@ class _State:
         if self.on == self.told:
             return []
         self.told = self.on
-        return [FaultChange(now_ms, fault.kind, self.on, fault.text, sonar=number) for number in fault.sonars]
+        return [self.change(now_ms, number) for number in fault.sonars if number not in self.mended]
+
+    def change(self, now_ms: float, number: int) -> FaultChange:
+        """What is to be told of a sonar that has it now, or has it no longer."""
+        on = self.has(number)
+        return FaultChange(now_ms, self.fault.kind, on, self.fault.text, sonar=number)
 
     def _grow(self, now_ms: float, travelled_mm: float) -> None:
         """Let a fault with a ramp grow, from where it began."""
@@ -51,7 +57,11 @@ class _State:
 
     def has(self, number: int) -> bool:
         """Whether it is on and of this sonar."""
-        return self.on and number in self.fault.sonars
+        return self.on and number in self.fault.sonars and number not in self.mended
+
+    def may_have(self, number: int) -> bool:
+        """Whether it is of this sonar, or will be."""
+        return not self.ended and number in self.fault.sonars and number not in self.mended
 
     def hold(self, number: int, measured: int) -> None:
         """Keep the reading at onset of one that is stuck; also while another fault hides it."""
@@ -62,6 +72,11 @@ class _State:
     @property
     def on(self) -> bool:
         return self.started and not self.ended
+
+    @property
+    def spent(self) -> bool:
+        """It is over for every sonar that it was of."""
+        return self.ended or self.mended.issuperset(self.fault.sonars)
 
     @property
     def settled(self) -> bool:
@@ -92,30 +107,47 @@ class _Wheel:
         return [FaultChange(now_ms, "wheel", self.on, fault.text)]
 
 
-def _kept_echoes(faults: Iterable[SonarFault]) -> dict[int, deque[int]]:
-    """Room for the echoes that slow sonars report later."""
-    slowest: dict[int, int] = {}
-    for fault in faults:
-        for number in fault.sonars if fault.kind == "slow" else ():
-            slowest[number] = max(fault.n, slowest.get(number, 0))
-    return {number: deque(maxlen=count + 1) for number, count in slowest.items()}
-
-
 class FaultSet:
     """Executes the faults of sonars and wheels and the bumper hits of a run; link faults are left to the link."""
 
     def __init__(self, faults: Iterable[Fault] = (), rng: np.random.Generator | None = None) -> None:
         self.faults = list(faults)
         self._rng = rng if rng is not None else np.random.default_rng(0)
-        self._states = [_State(fault) for fault in self.faults if isinstance(fault, SonarFault)]
+        self._states: list[_State] = []
         self._hits = [fault for fault in self.faults if isinstance(fault, BumperHit)]
         self._pressed = [False] * len(self._hits)
         self._wheels = [_Wheel(fault) for fault in self.faults if isinstance(fault, WheelFault)]
-        self._waiting = list(self._states)
+        self._waiting: list[_State] = []
         self._afflicted: set[int] = set()
-        for state in self._states:
-            self._afflicted.update(state.fault.sonars)
-        self._echoes = _kept_echoes([state.fault for state in self._states])
+        self._echoes: dict[int, deque[int]] = {}
+        self._mended: list[tuple[_State, int]] = []
+        for fault in self.faults:
+            if isinstance(fault, SonarFault):
+                self._take(fault)
+
+    def _take(self, fault: SonarFault) -> None:
+        state = _State(fault)
+        self._states.append(state)
+        self._waiting.append(state)
+        self._afflicted.update(fault.sonars)
+        for number in fault.sonars if fault.kind == "slow" else ():
+            kept = self._echoes.get(number, deque(maxlen=1))
+            self._echoes[number] = deque(kept, maxlen=max(fault.n + 1, kept.maxlen or 0))
+
+    def inject(self, fault: SonarFault) -> None:
+        """Take one fault more while the robot runs; as the last one written it wins."""
+        self.faults.append(fault)
+        self._take(fault)
+
+    def mend(self, number: int) -> bool:
+        """Take every fault from a sonar, those to come too; tell whether it had one."""
+        found = [state for state in self._states if state.may_have(number)]
+        self._mended += [(state, number) for state in found if state.told]
+        for state in found:
+            state.mended.add(number)
+        self._states = [state for state in self._states if not state.spent]
+        self._waiting = [state for state in self._waiting if not state.spent]
+        return bool(found)
 
     @property
     def link_faults(self) -> list[LinkFault]:
@@ -124,7 +156,8 @@ class FaultSet:
 
     def update(self, now_ms: float, pose: Pose, travelled_mm: float) -> list[FaultChange]:
         """Begin and end faults; return what changed. Call it before the ring fires."""
-        changes: list[FaultChange] = []
+        changes = [state.change(now_ms, number) for state, number in self._mended]
+        self._mended.clear()
         for wheel in self._wheels:
             changes += wheel.update(now_ms, pose, travelled_mm)
         if not self._waiting and not self._hits:

@@ -11,6 +11,7 @@ from typing import Final
 
 from hil_sim.faults.link import LinkFaults
 from hil_sim.links.base import Link
+from hil_sim.links.orders import Orders
 from hil_sim.record.recording import Kind, Recorder
 from hil_sim.server.server import ArcosServer
 
@@ -36,12 +37,17 @@ class Loop:
         faults: LinkFaults | None = None,
         clock_ms: Callable[[], float] = _now_ms,
         recorder: Recorder | None = None,
+        orders: Orders | None = None,
     ) -> None:
-        """`recorder`: gets what is on the link, so after the faults towards the client, before the others."""
+        """`recorder`: gets what is on the link, so after the faults towards the client, before the others.
+
+        `orders`: obeyed as they come; their end is the end of the loop.
+        """
         self.server = server
         self.link = link
         self.faults = faults
         self.recorder = recorder
+        self.orders = orders
         self._clock_ms = clock_ms
         self._origin_ms = clock_ms() - server.robot.now_ms
         self._last_ms = float(server.robot.now_ms)
@@ -67,6 +73,8 @@ class Loop:
         """Do what is due; return how long the loop may then sleep, in ms."""
         now = self._begin_turn()
         server, link, faults = self.server, self.link, self.faults
+        if self.orders is not None:
+            self.orders.obey()
         if faults is not None:
             faults.update(now)
         for data in link.receive(now):
@@ -144,8 +152,10 @@ class Loop:
         return max(0.0, min(t for t in times if t is not None) - now)
 
     def run(self, stop: Callable[[], bool], duration_ms: float | None = None) -> None:
-        """Serve until `stop()` or for `duration_ms` of robot time."""
+        """Serve until `stop()`, the end of orders, or for `duration_ms` of robot time."""
         while not stop() and (duration_ms is None or self._last_ms < duration_ms):
+            if self.orders is not None and self.orders.ended:
+                break
             self.link.wait(self.turn())
 
 

@@ -45,6 +45,7 @@ class Kind(IntEnum):
     TO_ROBOT = 2
     CLOCK = 3
     LOST = 4
+    INJECTED = 5
 
 
 # As plain numbers, which compare faster.

@@ -46,11 +46,12 @@ def assemble(
     log: Log | None = None,
     echoes: EchoModel | None = None,
     make_faults: Callable[[Sequence[Fault], np.random.Generator], FaultSet] = FaultSet,
+    faults_to_come: bool = False,
 ) -> R:
     """Return a robot, made by `make`, at `start`; SimError when a solid is there, or nothing far and wide.
 
     physics: None is as the world says. movers: besides the world's own. echoes: a model of the same world, parameters
-    and robot, to share what it has worked out.
+    and robot, to share what it has worked out. faults_to_come: more may be injected while it runs.
     """
     moving = moving_solids((*world.movers, *movers), table.body)
     body = BodyModel(world, moving, table.body)
@@ -64,7 +65,7 @@ def assemble(
     if body.contact(start, 0.0) is not None:
         raise SimError(f"start {place}: a solid of world {world.name} is there; choose another start")
     # Streams of their own, so that one more draw in one place changes nothing elsewhere.
-    injected = make_faults(faults, np.random.default_rng([seed, 1])) if faults else None
+    injected = make_faults(faults, np.random.default_rng([seed, 1])) if faults or faults_to_come else None
     physics = world.physics if physics is None else physics
     rough = None
     if physics.on_sonars:
@@ -95,7 +96,12 @@ def assemble(
 
 
 def build_robot(
-    scenario: Scenario, world: World, start: Pose, log: Log | None, rear_bumpers: int | None = None
+    scenario: Scenario,
+    world: World,
+    start: Pose,
+    log: Log | None,
+    rear_bumpers: int | None = None,
+    faults_to_come: bool = False,
 ) -> Robot:
     """Return a robot at `start` in `world` with all that the scenario gives it."""
     return assemble(
@@ -111,4 +117,5 @@ def build_robot(
         bumpers=scenario.bumpers,
         rear_bumpers=rear_bumpers,
         log=log,
+        faults_to_come=faults_to_come,
     )

@@ -19,6 +19,7 @@ UNKNOWN_CELL: Final = -1
 _NO_MEMORY: Final = -2
 _ROOT: Final = Path(__file__).resolve().parents[2]
 _PLACES: Final = (
+    Path(__file__).with_name("libargus_sim.so"),  # in a package
     *(_ROOT / "build" / preset / "libargus_sim.so" for preset in ("release", "debug")),
     Path("/usr/local/lib/libargus_sim.so"),
     Path("/usr/lib/libargus_sim.so"),
@@ -70,7 +71,7 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
 
 @cache
 def library() -> ctypes.CDLL | None:
-    """Return libargus_sim.so: as ARGUS_SIM_KERNEL says, else of the build folder, else as installed; or None."""
+    """Return libargus_sim.so: as ARGUS_SIM_KERNEL says, else of our package, the build folder, the system; or None."""
     given = os.environ.get(LIBRARY_VARIABLE)
     if given == "off":
         return None

@@ -31,6 +31,9 @@ EXPECTED = {
     "share/man/man1/argusd.1",
     "share/man/man1/argus-sim.1",
     "share/man/man1/argus-log.1",
+    "share/man/man1/argus-conformance.1",
+    "share/bash-completion/completions/argusd",
+    "lib/udev/rules.d/60-argus.rules",
 }
 
 

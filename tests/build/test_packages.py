@@ -14,7 +14,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def version() -> str:
-    match = re.search(r"project\(argus VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))
+    header = (ROOT / "firmware/include/argus/argus.h").read_text(encoding="utf-8")
+    match = re.search(r'^#define ARGUS_VERSION "(.+)"$', header, re.MULTILINE)
     assert match is not None
     return match[1]
 

@@ -11,8 +11,7 @@ import select
 import struct
 import subprocess
 import termios
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Iterator, Sequence
 
 import pytest
 from harness import ARGUSD, BAUD, PATIENCE_S, Bench, wait_for
@@ -89,14 +88,14 @@ class Vt52:
 class Terminal:
     """argusd on a terminal of a given kind and width."""
 
-    def __init__(self, port: Path, kind: str, columns: int) -> None:
+    def __init__(self, arguments: Sequence[str], kind: str, columns: int) -> None:
         self._master, slave = pty.openpty()
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         self.before = termios.tcgetattr(slave)
         self._slave = slave
         environment = {key: value for key, value in os.environ.items() if key not in {"COLUMNS", "LINES"}}
         self.process = subprocess.Popen(
-            [str(ARGUSD), "--link", f"serial:{port}@{BAUD}"],
+            [str(ARGUSD), *arguments],
             stdin=slave, stdout=slave, stderr=slave, env=environment | {"TERM": kind}, start_new_session=True,
         )  # fmt: skip
         self.screen = Vt52(columns)
@@ -155,7 +154,7 @@ def test_keys_are_answered_and_the_terminal_comes_back(
     bench: Bench, terminals: list[Terminal], columns: int
 ) -> None:
     bench.sim(bench.world(**hall()))
-    terminal = Terminal(bench.port, "vt52", columns)
+    terminal = Terminal(["--link", f"serial:{bench.port}@{BAUD}"], "vt52", columns)
     terminals.append(terminal)
     terminal.wait_shown("IsNormal")
     terminal.wait_shown("HEALTHY")
@@ -183,7 +182,7 @@ def test_a_terminal_that_cannot_be_drawn_on_gets_lines(
     bench: Bench, terminals: list[Terminal], kind: str
 ) -> None:
     bench.sim(bench.world(**hall()))
-    terminal = Terminal(bench.port, kind, 80)
+    terminal = Terminal(["--link", f"serial:{bench.port}@{BAUD}"], kind, 80)
     terminals.append(terminal)
     terminal.wait("no screen can be drawn on this terminal")
     terminal.wait(r"session +SESSION_OPEN")

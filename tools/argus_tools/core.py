@@ -17,6 +17,7 @@ from argus_tools.formats.base import LogError
 LIBRARY_VARIABLE: Final = "ARGUS_CORE"
 _ROOT: Final = Path(__file__).resolve().parents[2]
 _PLACES: Final = (
+    Path(__file__).with_name("libargus.so"),  # in a package
     *(_ROOT / "build" / preset / "libargus.so" for preset in ("release", "debug")),
     Path("/usr/local/lib/libargus.so"),
     Path("/usr/lib/libargus.so"),
@@ -116,7 +117,7 @@ def load_library(path: Path) -> ctypes.CDLL:
 
 @cache
 def library() -> ctypes.CDLL:
-    """Return libargus.so: of ARGUS_CORE, else of the build folder, else as installed, else compiled now."""
+    """Return libargus.so: of ARGUS_CORE, else of our package, of the build folder, as installed, or compiled now."""
     return _load()
 
 

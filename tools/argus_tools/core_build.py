@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Compiles the fault manager into a shared library where none was built, from the sources that came with the tools."""
+"""Compiles the fault manager into a shared library where none was built, from the source tree."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import os
 import shutil
 import subprocess
 import sys
-import sysconfig
 import tempfile
 from pathlib import Path
 from typing import Final
@@ -16,7 +15,6 @@ from typing import Final
 from argus_tools.formats.base import LogError
 
 _TREE: Final = Path(__file__).resolve().parents[2]
-_INSTALLED: Final = Path(sysconfig.get_path("data")) / "share" / "argus"
 _SHIM: Final = "tools/core_shim.c"
 _FLAGS: Final = ("-std=c11", "-O2", "-fPIC", "-shared")
 _PATIENCE_S: Final = 300
@@ -24,10 +22,9 @@ HINT: Final = "set ARGUS_CORE to a libargus.so"
 
 
 def sources() -> Path:
-    """Return the folder that holds firmware/ and the shim: the source tree, or what pip installed."""
-    for place in (_TREE, _INSTALLED):
-        if (place / _SHIM).is_file() and (place / "firmware").is_dir():
-            return place
+    """Return the source tree, which holds firmware/ and the shim."""
+    if (_TREE / _SHIM).is_file() and (_TREE / "firmware").is_dir():
+        return _TREE
     raise LogError(f"libargus.so is not built, and its sources are not here: {HINT}")
 
 
@@ -39,17 +36,11 @@ def build(cache: Path | None = None) -> Path:
     digest = hashlib.sha256(" ".join(_FLAGS).encode())
     for file in (*files, *headers, root / _SHIM):
         digest.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes())
-    folder = cache or _cache(root)
+    folder = cache or root / "build" / "core"
     library = folder / f"libargus-{digest.hexdigest()[:16]}.so"
     if not library.exists():
         _compile(library, root, files)
     return library
-
-
-def _cache(root: Path) -> Path:
-    if root == _TREE:
-        return root / "build" / "core"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "argus"
 
 
 def _compile(library: Path, root: Path, files: list[Path]) -> None:

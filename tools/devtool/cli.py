@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from devtool import commands, firmware
+from devtool import commands, firmware, packaging
 from devtool.base import Stop
 from devtool.cmake import presets
 from devtool.linting import LINT_STAGES, format_stages
@@ -136,7 +136,7 @@ def make_parser() -> argparse.ArgumentParser:
         sub.set_defaults(action=action)
         return sub
 
-    for add_some in (add_running, add_checking, add_making, firmware.add_commands):
+    for add_some in (add_running, add_checking, add_making, firmware.add_commands, packaging.add_commands):
         add_some(add)
     return parser
 

@@ -30,7 +30,7 @@ from devtool.cmake import build, build_and_test, presets
 from devtool.setup import ensure
 from devtool.stages import STAGE_LIMIT_S, StageFailed, logged_runner, tail_of
 
-CACHES: Final = (".mypy_cache", ".ruff_cache", ".pytest_cache", ".hypothesis", "argus_p3dx.egg-info")
+CACHES: Final = (".mypy_cache", ".ruff_cache", ".pytest_cache", ".hypothesis", "dist")
 
 
 def quietly(what: str, action: Callable[[Run], None]) -> None:

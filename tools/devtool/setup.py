@@ -7,6 +7,7 @@ import contextlib
 import fcntl
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -18,6 +19,7 @@ from typing import IO, Final
 from devtool.base import BUILD, EXIT_SETUP, LOGS, ROOT, VENV, Command, Stop, line_of, quiet_ok, say, words
 from devtool.system import BASIC_NEEDS, PRESET_NEEDS, base_python, ensure_system
 
+HEADER: Final = ROOT / "firmware/include/argus/argus.h"
 LOCK: Final = ROOT / "requirements.lock"
 VENV_PROBE: Final = (
     "import importlib.util, numpy, pip, sys; sys.exit(importlib.util.find_spec('hil_sim') is None)"
@@ -29,11 +31,18 @@ def python_identity() -> str:
     return f"{base_python()} {sys.version} {VENV}".replace("\n", " ")
 
 
+def version() -> str:
+    """Return the version of the project."""
+    found = re.search(r'^#define ARGUS_VERSION "(.+)"$', HEADER.read_text(encoding="utf-8"), re.MULTILINE)
+    assert found is not None
+    return found[1]
+
+
 def python_content() -> str:
     """Return a digest of what is to be installed: the lock, and what pyproject.toml says about packages."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    parts = [project.get("project"), project.get("build-system"), project.get("tool", {}).get("setuptools")]
-    return hashlib.sha256(LOCK.read_bytes() + repr(parts).encode()).hexdigest()
+    parts = [project.get("project"), project.get("build-system"), project.get("tool", {}).get("scikit-build")]
+    return hashlib.sha256(LOCK.read_bytes() + repr([*parts, version()]).encode()).hexdigest()
 
 
 def install_steps(fresh: bool) -> list[Command]:

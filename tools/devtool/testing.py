@@ -11,10 +11,12 @@ from devtool.base import BUILD, CORES, ROOT, VENV, Command, Run
 from devtool.cmake import BOARDS, SOAK, build, build_and_test, ctest
 from devtool.peers import peers
 from devtool.real_time import hil_workers, run_in_real_time
+from devtool.ros import NEEDS as ROS_NEEDS
+from devtool.ros import ros_tests
 from devtool.stages import Stage
 
 PYTEST: Final = (VENV / "bin/python", "-m", "pytest", "-q")
-IN_REAL_TIME: Final = ("tests/hil", "tests/can", "tests/target")
+IN_REAL_TIME: Final = ("tests/hil", "tests/can", "tests/target", "tests/ros")
 COMPUTING: Final = ("tests", *(f"--ignore={folder}" for folder in IN_REAL_TIME))
 # Some tests take a hundred times as long as others: who has done its own takes over what another has before it.
 SHARED_OUT: Final = ("-n", str(CORES), "--dist", "worksteal")
@@ -122,6 +124,7 @@ TEST_STAGES: Final = (
         ("release",),
         ("can-utils",),
     ),
+    Stage("ros", "nodes of ROS 2, where its packages can be had", ros_tests, ("release",), ROS_NEEDS),
     Stage(SOAK, "C and Python tests that compute for long", soak_tests, ("release",)),
     Stage(
         "peers",

@@ -44,6 +44,9 @@
 #ifndef ARGUS_ARGUS_H
 #define ARGUS_ARGUS_H
 
+// The one place where the version is written: all else reads it here.
+#define ARGUS_VERSION "0.1.0"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -275,15 +278,35 @@ typedef enum {
     X(72, ACTIVE, OK, "operator", "drives")                                                                  \
     X(73, REVERSED, WARN, "drive",                                                                           \
       "the leading end changes, at rest; value: 1 the rear leads, 0 the front again")                        \
-    X(74, WHEEL_SHORT, WARN, "drive",                                                                        \
+    X(74, INJECTED, WARN, "sonar", "what it reports is altered for a test; value: fault kind, 0: no more")   \
+    X(75, WHEEL_SHORT, WARN, "drive",                                                                        \
       "ways straight ahead bend: a wheel turns less than it is told, and is countered by turning; value: "   \
       "thousandths that it falls short, positive the left one, negative the right one")                      \
-    X(75, WHEEL_EVEN, OK, "drive", "ways straight ahead are straight again; value: 0")                       \
+    X(76, WHEEL_EVEN, OK, "drive", "ways straight ahead are straight again; value: 0")                       \
     X(80, RECORD_IGNORED, WARN, "record",                                                                    \
       "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")            \
     X(81, EVENTS_LOST, ERROR, "events", "the event queue overflowed; value: events lost")                    \
     X(90, INVARIANT, ERROR, "manager", "an internal invariant does not hold; value: its number")             \
-    X(91, STATUS, OK, "status", "periodic picture of all that is known")
+    X(91, STATUS, OK, "status", "periodic picture of all that is known")                                     \
+    X(100, GUARD_OPEN, OK, "guard", "a client opened its session at a guard port; value: 0")                 \
+    X(101, GUARD_CLOSED, OK, "guard", "the client closed its session; value: packets that it sent")          \
+    X(102, GUARD_LOST, ERROR, "guard",                                                                       \
+      "the client is gone without a word: STOP sent if it drove; value: 1 its connection closed, 2 silent "  \
+      "for as long as the robot's watchdog waits, 3 the robot's own session ended")                          \
+    X(103, GUARD_DRIVES, WARN, "guard",                                                                      \
+      "the client drives: passive, bounds its motion and reports; value: 0")                                 \
+    X(104, GUARD_SLOWED, WARN, "guard",                                                                      \
+      "slower than the client asks, to stand before what is seen (S5); value: mm/s")                         \
+    X(105, GUARD_HELD, WARN, "guard",                                                                        \
+      "not the way that the client asks; value: 1 an object (S2), 2 not seen (S1, S3, S7), 3 a bumper, "     \
+      "4 stopped by an operator, or a body that is not known")                                               \
+    X(106, GUARD_TURN_HELD, WARN, "guard",                                                                   \
+      "not the turn that the client asks: the body would meet what is seen (S7); value: degrees, or per s")  \
+    X(107, GUARD_FREE, OK, "guard", "the client's motion is not bounded any more; value: 0")                 \
+    X(108, GUARD_REFUSED, WARN, "guard", "a command of the client ends here; value: its number")             \
+    X(109, GUARD_LOOKS, OK, "guard",                                                                         \
+      "a bearing ahead is blind: the heading swings so that others see the way; value: degrees to each "     \
+      "side")
 
 // The events by number.
 typedef enum {
@@ -457,6 +480,13 @@ typedef struct {
     uint16_t robot_sonar_cycle_ms; // between two pings of one array
 } argus_status_t;
 
+// How far the evidence against each sonar is on its way to a verdict (profile argus; else all is 0).
+typedef struct {
+    argus_fault_kind_t kind[ARGUS_SONARS]; // the fault that explains it best so far, NONE: none
+    uint8_t percent[ARGUS_SONARS];         // 100: a verdict
+    argus_mask_t against[ARGUS_SONARS];    // sonars that contradict it, a mask
+} argus_suspicions_t;
+
 // What argus_name() names.
 typedef enum {
     ARGUS_NAME_EVENT,   // argus_event_id_t: SONAR_DEAD
@@ -483,6 +513,35 @@ typedef union {
 } argus_storage_t;
 
 typedef struct argus argus_t;
+
+// Guard port -----------------------------------------------------------------------------------------------
+
+// What a client gets of the readings of sonars that are out.
+typedef enum {
+    ARGUS_READINGS_WITHHOLD, // nothing: they are left out of the SIP's list
+    ARGUS_READINGS_COVER,    // what a trusted sonar has heard within the cone lately; else nothing
+    ARGUS_READINGS_PASS      // as they are
+} argus_readings_t;
+
+// What has come since the last pass, and room for what goes to the client.
+typedef struct {
+    argus_readings_t readings; // of sonars that are out
+    bool there;                // a client is at the port
+    const uint8_t *client;     // its bytes
+    size_t client_count;       // how many
+    const uint8_t *robot;      // the robot's, which argus_receive() has just taken
+    size_t robot_count;        // how many
+    uint8_t *out;              // where bytes for the client go
+    size_t capacity;           // how many fit
+} argus_port_io_t;
+
+#define ARGUS_PORT_BYTES 2600
+
+// Memory of one port, the caller's; all zero at the start.
+typedef union {
+    uint64_t align;                  // as strict as any member within
+    uint8_t bytes[ARGUS_PORT_BYTES]; // the library's own
+} argus_port_storage_t;
 
 // Functions ------------------------------------------------------------------------------------------------
 
@@ -527,8 +586,18 @@ bool argus_operator(argus_t *self, uint32_t now_ms, argus_op_t op, int32_t argum
 void argus_shutdown(argus_t *self, uint32_t now_ms);
 bool argus_closed(const argus_t *self);
 
+// A port at which another client of the robot is served as by the robot itself, bounded (SPEC.md, Guard
+// port). Call it after each argus_receive(), when the client has sent something, and after argus_process();
+// then argus_transmit(). Returns the bytes for the client; call again, with no bytes, until 0. Cost: one pass
+// over the bytes; for each SIP what argus_guard asks of the way, see bench guardian.
+size_t argus_guard_port(argus_t *self, argus_port_storage_t *port, uint32_t now_ms,
+                        const argus_port_io_t *io);
+
 // Cost: one copy of some 500 bytes.
 void argus_status(const argus_t *self, argus_status_t *status);
+
+// Apart from the status, so that only who shows it pays. Cost: some twenty comparisons for each sonar.
+void argus_suspicions(const argus_t *self, argus_suspicions_t *suspicions);
 
 // The persistent record: what is known of every sonar (SPEC.md). save returns its length, 0 if it does not
 // fit; ARGUS_RECORD_MAX is enough. load takes a record, before a session opens; under `argus` a sonar that

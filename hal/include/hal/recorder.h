@@ -29,7 +29,8 @@ typedef enum {
     HAL_RECORD_FROM_ROBOT = 1,
     HAL_RECORD_TO_ROBOT = 2,
     HAL_RECORD_CLOCK = 3,
-    HAL_RECORD_LOST = 4
+    HAL_RECORD_LOST = 4,
+    HAL_RECORD_INJECTED = 5
 } hal_record_kind_t;
 
 typedef struct {

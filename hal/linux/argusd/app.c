@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "argusd.h"
+#include "attach.h"
 #include "check.h"
 #include "course.h"
 #include "loop.h"
@@ -172,8 +173,10 @@ static hal_link_error_t open_link(const hal_clock_t *clock, hal_link_t *link) {
             told = error;
             hal_transport_explain(&options.link, error, message, sizeof message);
             fprintf(stderr, "argusd: %s; waiting for it\n", message);
+            notify_status(&loop.notify, message);
             message[0] = '\0';
         }
+        notify_alive(&loop.notify, hal_clock_now_ms(clock));
         pause_for(OPEN_RETRY_MS);
     }
 }
@@ -182,6 +185,7 @@ static argusd_exit_t find_baud(const hal_clock_t *clock) {
     const uint32_t start_ms = hal_clock_now_ms(clock);
     probe_t probe;
     do {
+        notify_alive(&loop.notify, hal_clock_now_ms(clock));
         probe = probe_baud(&transport.serial, clock, signals_fd());
     } while (probe.baud == 0 && probe.error == HAL_LINK_OK && !probe.cancelled &&
              is_time_left(clock, start_ms));
@@ -239,6 +243,14 @@ static void drop_tape(void) {
 static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     const uint32_t wait_ms = options.has_wait ? options.wait_ms : CHECK_ANSWER_MS;
     driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
+    const argusd_exit_t guarded =
+        guards_open(&loop.guards, &options.guards, &loop.driver, message, sizeof message);
+    if (guarded != ARGUSD_EXIT_OK) {
+        hal_link_close(&link);
+        drop_tape();
+        return complain(guarded);
+    }
+    loop.driver.after = guards_tap(&loop.guards);
     loop.driver.tap = tape_tap(&loop.tape);
     driver_attach(&loop.driver, link);
     message[0] = '\0';
@@ -264,6 +276,21 @@ static bool open_state(void) {
     return state_save(&loop.state, loop.driver.core, message, sizeof message);
 }
 
+// Nobody is served before the loop runs, but a place that cannot be used is told before the robot is spoken
+// to.
+static bool open_control(void) {
+    static control_token_t token;
+    if (options.control.family == 0) {
+        return true;
+    }
+    if (options.token_path != NULL &&
+        !control_token_load(&token, options.token_path, message, sizeof message)) {
+        return false;
+    }
+    inject_init(&loop.inject, options.inject, (uint32_t)bus_seed());
+    return control_open(&loop.control, &options.control, &token, message, sizeof message);
+}
+
 // With a link over CAN the telemetry is on the same bus, for the same robot, unless something else is wanted.
 static bool open_bus(const hal_clock_t *clock) {
     const bool given = options.telemetry.interface[0] != '\0';
@@ -279,13 +306,17 @@ static bool open_bus(const hal_clock_t *clock) {
     return true;
 }
 
+static voice_options_t voice_of_options(void) {
+    return (voice_options_t){.json = options.json,
+                             .plain = options.plain,
+                             .status_ms = options.has_status ? options.status_ms
+                                          : options.json     ? 500u
+                                                             : 2000u};
+}
+
 static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *notice) {
     const loop_options_t wishes = {
-        .voice = {.json = options.json,
-                  .plain = options.plain,
-                  .status_ms = options.has_status ? options.status_ms
-                               : options.json     ? 500u
-                                                  : 2000u},
+        .voice = voice_of_options(),
         .config = &settings.config,
         .answer_ms = options.has_wait ? options.wait_ms : ANSWER_MS,
         .notice = notice,
@@ -293,23 +324,53 @@ static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *no
     driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
     if (options.state_path != NULL && !open_state()) {
         hal_link_close(&link);
+        control_close(&loop.control);
         drop_tape();
         return complain(ARGUSD_EXIT_USAGE);
     }
     if (course.count > 0 && !argus_set_course(loop.driver.core, course.point, course.count)) {
         hal_link_close(&link);
+        control_close(&loop.control);
         drop_tape();
         text_refuse(message, sizeof message, "the course does not fit the fault manager");
         return complain(ARGUSD_EXIT_INTERNAL);
     }
     if (!open_bus(&clock)) {
         hal_link_close(&link);
+        control_close(&loop.control);
         drop_tape();
         return complain(ARGUSD_EXIT_LINK);
     }
+    const argusd_exit_t guarded =
+        guards_open(&loop.guards, &options.guards, &loop.driver, message, sizeof message);
+    if (guarded != ARGUSD_EXIT_OK) {
+        hal_link_close(&link);
+        drop_tape();
+        return complain(guarded);
+    }
+    loop.driver.after = guards_tap(&loop.guards);
     loop.driver.tap = tape_tap(&loop.tape);
+    loop.driver.filter = inject_filter(&loop.inject);
     driver_attach(&loop.driver, link);
     return loop_run(&loop, &wishes);
+}
+
+static argusd_exit_t run_attached(const hal_clock_t *clock) {
+    static attach_t attach;
+    const voice_options_t voice = voice_of_options();
+    control_token_t token = {.on = false};
+    if (options.token_path != NULL &&
+        !control_token_load(&token, options.token_path, message, sizeof message)) {
+        return complain(ARGUSD_EXIT_USAGE);
+    }
+    if (!signals_open()) {
+        text_refuse(message, sizeof message, "no pipe or signal handler could be had from the system");
+        return complain(ARGUSD_EXIT_INTERNAL);
+    }
+    if (!attach_open(&attach, &options.attach, &token, clock, message, sizeof message)) {
+        return complain(ARGUSD_EXIT_LINK);
+    }
+    return attach_run(&attach, &voice);
 }
 
 static argusd_exit_t run(int argc, char **argv) {
@@ -317,6 +378,9 @@ static argusd_exit_t run(int argc, char **argv) {
     hal_link_t link = {0};
     if (!options_parse(&options, argc, argv, message, sizeof message)) {
         return complain(ARGUSD_EXIT_USAGE);
+    }
+    if (options.action == OPTIONS_ATTACH) {
+        return run_attached(&clock);
     }
     if (options.action != OPTIONS_RUN && options.action != OPTIONS_CHECK) {
         return print_list(options.action);
@@ -329,12 +393,24 @@ static argusd_exit_t run(int argc, char **argv) {
         text_refuse(message, sizeof message, "no pipe or signal handler could be had from the system");
         return complain(ARGUSD_EXIT_INTERNAL);
     }
-    if (!open_tape()) {
+    if (!open_control()) {
         return complain(ARGUSD_EXIT_USAGE);
+    }
+    if (!open_tape()) {
+        control_close(&loop.control);
+        return complain(ARGUSD_EXIT_USAGE);
+    }
+    // Whoever waits for a robot is up as well: what is waited for is told.
+    if (options.action == OPTIONS_RUN) {
+        if (!notify_open(&loop.notify, message, sizeof message)) {
+            complain(ARGUSD_EXIT_OK);
+        }
+        notify_ready(&loop.notify, hal_clock_now_ms(&clock), "opening the link");
     }
     message[0] = '\0';
     const argusd_exit_t connected = connect_robot(&clock, &link);
     if (connected != ARGUSD_EXIT_OK || message[0] != '\0') {
+        control_close(&loop.control);
         drop_tape();
         return complain(connected);
     }

@@ -3,6 +3,8 @@
 #ifndef ARGUSD_H
 #define ARGUSD_H
 
+#include "argus/argus.h" // has the version
+
 // X(NAME, code, meaning).
 #define ARGUSD_EXIT_TABLE(X)                                                               \
     X(OK, 0, "goal reached, check passed, or closed by the operator (q, SIGINT, SIGTERM)") \
@@ -21,9 +23,5 @@ typedef enum {
 
 // Room for every one-line message.
 #define ARGUSD_MESSAGE_MAX 1024
-
-#ifndef ARGUS_VERSION
-#define ARGUS_VERSION "0"
-#endif
 
 #endif

@@ -127,6 +127,23 @@ void driver_transmit(driver_t *self) {
     }
 }
 
+// The robot's bytes to the manager, by way of the filter if there is one.
+static void hand_over(driver_t *self, const uint8_t *bytes, size_t count) {
+    uint8_t altered[READ_BYTES + DRIVER_FILTER_HOLD];
+    if (self->filter.alter != NULL) {
+        count = self->filter.alter(self->filter.context, now_ms(self), bytes, count, altered);
+        bytes = altered;
+    }
+    if (count > 0) {
+        show(self, true, bytes, count);
+        argus_receive(self->core, now_ms(self), bytes, count);
+        if (self->after.see != NULL) {
+            self->after.see(self->after.context, true, bytes, count);
+        }
+        driver_transmit(self);
+    }
+}
+
 void driver_receive(driver_t *self) {
     uint8_t bytes[READ_BYTES];
     for (int i = 0; i < READS_PER_WAKE && self->up; i++) {
@@ -139,9 +156,7 @@ void driver_receive(driver_t *self) {
             return;
         }
         self->bytes_in += (uint32_t)got;
-        show(self, true, bytes, (size_t)got);
-        argus_receive(self->core, now_ms(self), bytes, (size_t)got);
-        driver_transmit(self);
+        hand_over(self, bytes, (size_t)got);
     }
 }
 
@@ -196,6 +211,9 @@ uint32_t driver_process(driver_t *self) {
         retry_ms = self->up && self->settles ? settle(self) : retry_ms;
     } else if (self->transport != NULL && !argus_closed(self->core)) {
         retry_ms = reopen(self);
+    }
+    if (self->up) {
+        hand_over(self, NULL, 0); // what a filter holds back too long
     }
     const uint32_t wait_ms = argus_process(self->core, now_ms(self));
     driver_transmit(self);

@@ -13,6 +13,14 @@ typedef struct {
     void *context;
 } driver_tap_t;
 
+// Changes the robot's bytes before anybody else sees them, when some came and now and then without; returns
+// how many there are at `out`, which has room for `count` and DRIVER_FILTER_HOLD more. Must not wait.
+#define DRIVER_FILTER_HOLD 512
+typedef struct {
+    size_t (*alter)(void *context, uint32_t now_ms, const uint8_t *bytes, size_t count, uint8_t *out);
+    void *context;
+} driver_filter_t; // alter NULL: none
+
 typedef struct {
     argus_storage_t memory;
     argus_t *core; // in `memory`
@@ -21,6 +29,8 @@ typedef struct {
     hal_transport_t *transport; // NULL: a link lost is not opened again
     hal_link_t link;
     driver_tap_t tap;
+    driver_filter_t filter;
+    driver_tap_t after; // sees what the robot sent once the manager has taken it, before answers go out
     bool up;
     int cancel_fd;          // becomes readable when opening is to be given up; -1: none
     hal_link_error_t error; // why the link is not up

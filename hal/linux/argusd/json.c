@@ -36,6 +36,11 @@ void json_bool(json_t *self, bool value) {
     text_add(&self->text, value ? "true" : "false");
 }
 
+void json_null(json_t *self) {
+    separate(self);
+    text_add(&self->text, "null");
+}
+
 void json_thousandths(json_t *self, int64_t value) {
     const uint64_t size = value < 0 ? 0u - (uint64_t)value : (uint64_t)value;
     separate(self);

@@ -20,6 +20,7 @@ void json_close(json_t *self, char bracket);
 void json_name(json_t *self, const char *name); // the next value's name
 void json_int(json_t *self, int64_t value);
 void json_bool(json_t *self, bool value);
+void json_null(json_t *self);
 void json_thousandths(json_t *self, int64_t value); // 1234 is written as 1.234
 void json_string(json_t *self, const char *value);  // bytes that are no UTF-8 become U+FFFD
 

@@ -35,14 +35,34 @@ static void say_stranger(loop_t *self, const argus_status_t *status) {
     voice_notice(&self->voice, text);
 }
 
+static void say_event(loop_t *self, const argus_status_t *status, const argus_event_t *event) {
+    bus_event(&self->bus, status, event);
+    voice_event(&self->voice, &self->moment, event);
+    control_event(&self->control, moment_of(&self->moment, event->t_ms), event);
+}
+
+// What argusd itself does to the sonars is told like what the manager finds.
+static void say_injections(loop_t *self, const argus_status_t *status) {
+    inject_change_t change;
+    while (inject_change(&self->inject, &change)) {
+        const argus_event_t event = {.t_ms = self->moment.now_ms,
+                                     .id = ARGUS_EV_INJECTED,
+                                     .sonar = (int8_t)change.sonar,
+                                     .state = (uint8_t)status->failure,
+                                     .value = (int32_t)change.kind};
+        tape_injected(&self->tape, change.sonar, change.kind, change.for_ms);
+        say_event(self, status, &event);
+    }
+}
+
 static void say_events(loop_t *self) {
     argus_event_t event;
     const argus_status_t status = status_of(self);
+    say_injections(self, &status);
     while (argus_next_event(self->driver.core, &event)) {
         self->closed =
             event.id == ARGUS_EV_SESSION_CLOSED || (self->closed && event.id != ARGUS_EV_SESSION_OPEN);
-        bus_event(&self->bus, &status, &event);
-        voice_event(&self->voice, &self->moment, &event);
+        say_event(self, &status, &event);
         if (event.id == ARGUS_EV_OTHER_ROBOT) {
             say_stranger(self, &status);
         }
@@ -79,7 +99,18 @@ static void look(loop_t *self) {
     view->reopened = driver->reopened;
     view->course_mm = self->course_mm;
     view->sonar = self->operator.sonar;
+    view->controlled = control_is_held(&self->control);
+    view->inject = self->inject.armed;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        view->injected[i] = (uint8_t)self->inject.of[i].kind;
+    }
     look_at_can(self, view);
+}
+
+static const view_t *look_for_control(void *context) {
+    loop_t *const self = context;
+    look(self);
+    return &self->view;
 }
 
 static void show(loop_t *self) {
@@ -94,6 +125,7 @@ static void end(loop_t *self, argusd_exit_t code) {
         self->ending = true;
         self->code = code;
         self->ending_ms = self->moment.now_ms;
+        notify_stopping(&self->notify);
         argus_shutdown(self->driver.core, self->moment.now_ms);
         driver_transmit(&self->driver);
     }
@@ -166,6 +198,23 @@ static void take_orders(loop_t *self) {
     }
 }
 
+static void take_control(loop_t *self) {
+    char text[ARGUSD_MESSAGE_MAX];
+    self->control.world.hands.ending = self->ending;
+    control_serve(&self->control, &self->moment);
+    if (control_is_quit(&self->control) && !self->ending) {
+        end(self, code_of_mission(self));
+    }
+    if (control_notice(&self->control, text, sizeof text)) {
+        voice_notice(&self->voice, text);
+    }
+}
+
+// A robot that comes back may be another one, or stand elsewhere: nothing is altered any more.
+static void watch_injection(loop_t *self) {
+    inject_expire(&self->inject, !self->driver.up || self->ending, self->moment.now_ms);
+}
+
 // Returns the ms until it has something to send.
 static uint32_t tell_bus(loop_t *self) {
     char text[ARGUSD_MESSAGE_MAX];
@@ -183,8 +232,9 @@ static uint32_t tell_bus(loop_t *self) {
 
 static void watch_mission(loop_t *self) {
     const argus_mission_t mission = status_of(self).mission;
-    // On a screen the operator says when it is over.
-    if (!self->voice.tui.on && (mission == ARGUS_MISSION_REACHED || mission == ARGUS_MISSION_FAILED)) {
+    // On a screen the operator says when it is over, and so does who gives orders at the control socket.
+    const bool operated = self->voice.tui.on || self->control.world.hands.ordered;
+    if (!operated && (mission == ARGUS_MISSION_REACHED || mission == ARGUS_MISSION_FAILED)) {
         end(self, code_of_mission(self));
     }
 }
@@ -220,6 +270,19 @@ static void save(loop_t *self, bool now) {
         voice_notice(&self->voice, text);
         self->state.on = false; // once is enough
     }
+}
+
+// Returns the ms until the next sign of life is due.
+static uint32_t tell_service(loop_t *self) {
+    const argus_status_t status = status_of(self);
+    if (!self->ending) {
+        notify_robot(&self->notify, &status);
+    }
+    return notify_alive(&self->notify, self->moment.now_ms);
+}
+
+static uint32_t sooner(uint32_t a_ms, uint32_t b_ms) {
+    return a_ms < b_ms ? a_ms : b_ms;
 }
 
 static void watch_link(loop_t *self) {
@@ -274,10 +337,18 @@ static bool is_over(loop_t *self) {
     return false;
 }
 
+static void serve_guards(loop_t *self) {
+    char text[ARGUSD_MESSAGE_MAX];
+    guards_serve(&self->guards, self->moment.now_ms);
+    if (guards_notice(&self->guards, text, sizeof text)) {
+        voice_notice(&self->voice, text);
+    }
+}
+
 // The link comes first: what a SIP calls for is on the wire before anything else is looked at.
 static void wait_for_work(loop_t *self, uint32_t wait_ms) {
-    enum { LINK, SIGNALS, KEYS, OUT, ERR, BUS, COUNT };
-    struct pollfd wait[COUNT] = {
+    enum { LINK, SIGNALS, KEYS, OUT, ERR, BUS, GUARDS, COUNT = GUARDS + GUARDS_FDS };
+    struct pollfd wait[COUNT + CONTROL_POLL_MAX] = {
         [LINK] = {.fd = self->driver.up ? hal_link_fd(&self->driver.link) : -1, .events = POLLIN},
         [SIGNALS] = {.fd = signals_fd(), .events = POLLIN},
         [KEYS] = {.fd = self->voice.tui.on ? self->voice.tui.fd : -1, .events = POLLIN},
@@ -289,11 +360,14 @@ static void wait_for_work(loop_t *self, uint32_t wait_ms) {
     if (driver_wants_write(&self->driver)) {
         wait[LINK].events |= POLLOUT;
     }
-    poll(wait, COUNT, (int)wait_ms);
+    guards_wait(&self->guards, &wait[GUARDS]);
+    const int controls = control_poll(&self->control, wait + COUNT);
+    poll(wait, (nfds_t)(COUNT + controls), (int)wait_ms);
     if (wait[LINK].revents != 0) {
         driver_receive(&self->driver);
     }
     take_time(self);
+    serve_guards(self);
     if (wait[SIGNALS].revents != 0) {
         (void)!read(signals_fd(), bytes, sizeof bytes);
     }
@@ -303,7 +377,25 @@ static void wait_for_work(loop_t *self, uint32_t wait_ms) {
     if (wait[BUS].revents != 0) {
         take_orders(self);
     }
+    take_control(self);
     voice_flush(&self->voice);
+}
+
+static void begin_control(loop_t *self) {
+    char where[ARGUSD_MESSAGE_MAX / 2];
+    char text[ARGUSD_MESSAGE_MAX];
+    const control_world_t world = {.hands = {.op = &self->operator, .inject = & self->inject },
+                                             .look = look_for_control,
+                                             .context = self};
+    if (!self->control.on) {
+        return;
+    }
+    control_begin(&self->control, &world);
+    control_port_describe(&self->control.port, where, sizeof where);
+    snprintf(text, sizeof text, "control socket at %s%s%s", where,
+             self->control.port.spec.loopback ? "" : ", which other machines reach, and hear what is said",
+             self->inject.armed ? "; faults can be injected" : "");
+    voice_notice(&self->voice, text);
 }
 
 static void begin(loop_t *self, const loop_options_t *options) {
@@ -315,6 +407,7 @@ static void begin(loop_t *self, const loop_options_t *options) {
     self->driver.cancel_fd = signals_fd();
     operator_init(&self->operator, & self->driver, options->config);
     voice_begin(&self->voice, &options->voice, &self->moment);
+    begin_control(self);
     if (options->notice != NULL) {
         voice_notice(&self->voice, options->notice);
     }
@@ -334,17 +427,20 @@ argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
         show(self);
         save(self, false);
         watch_tape(self);
+        watch_injection(self);
         if (is_over(self)) {
             break;
         }
-        const uint32_t bus_ms = tell_bus(self);
-        wait_for_work(self,
-                      voice_wait_ms(&self->voice, self->moment.now_ms, wait_ms < bus_ms ? wait_ms : bus_ms));
+        const uint32_t told_ms = sooner(sooner(tell_bus(self), tell_service(self)),
+                                        control_tell(&self->control, &self->moment));
+        wait_for_work(self, voice_wait_ms(&self->voice, self->moment.now_ms, sooner(wait_ms, told_ms)));
         say_events(self);
     }
     say_events(self);
     const argus_status_t status = status_of(self);
+    control_close(&self->control);
     bus_close(&self->bus, &status, self->moment.now_ms);
+    guards_close(&self->guards, self->moment.now_ms);
     driver_close(&self->driver);
     tui_stop(&self->voice.tui);
     look(self);

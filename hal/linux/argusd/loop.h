@@ -5,8 +5,11 @@
 
 #include "argusd.h"
 #include "bus.h"
+#include "control.h"
 #include "driver.h"
+#include "guards.h"
 #include "moment.h"
+#include "notify.h"
 #include "operator.h"
 #include "state.h"
 #include "tape.h"
@@ -25,8 +28,12 @@ typedef struct {
     driver_t driver;
     state_t state;
     tape_t tape;
-    bus_t bus; // off unless opened before
+    bus_t bus;         // off unless opened before
+    control_t control; // likewise
+    inject_t inject;
+    guards_t guards; // none unless opened before
     voice_t voice;
+    notify_t notify; // opened before
     operator_t operator;
     moment_t moment;
     bool met; // a robot has answered

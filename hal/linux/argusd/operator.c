@@ -55,36 +55,60 @@ static bool is_of_sonar(argus_op_t op) {
     return op >= ARGUS_OP_RETEST;
 }
 
-// NULL: nothing stands against it.
-static const char *why_no_motion(const argus_status_t *status, argus_op_t op) {
+static operator_obstacle_t obstacle_to_motion(const argus_status_t *status, argus_op_t op) {
     const bool drives = op == ARGUS_OP_MOVE || op == ARGUS_OP_TURN;
     if (!drives && op != ARGUS_OP_GO) {
-        return NULL;
+        return OPERATOR_FREE;
     }
     if (!status->active) {
-        return "not while passive; p makes it active";
+        return OPERATOR_PASSIVE;
     }
     if (!status->online) {
-        return "not without a robot";
+        return OPERATOR_NO_ROBOT;
     }
     if (op == ARGUS_OP_GO) {
-        return status->waypoints == 0 ? "there is no course" : NULL;
+        return status->waypoints == 0 ? OPERATOR_NO_COURSE : OPERATOR_FREE;
     }
-    return status->mode != ARGUS_MODE_IDLE ? "not while it is busy; space stops it" : NULL;
+    return status->mode != ARGUS_MODE_IDLE ? OPERATOR_BUSY : OPERATOR_FREE;
 }
 
-static const char *why_not(const operator_t *self, const argus_status_t *status, argus_op_t op) {
-    const bool pinned = (status->pinned >> self->sonar & 1) != 0;
+static operator_obstacle_t obstacle_to(const operator_t *self, const argus_status_t *status, argus_op_t op,
+                                       int sonar) {
     if (!is_of_sonar(op)) {
-        return why_no_motion(status, op);
+        return obstacle_to_motion(status, op);
     }
+    const bool pinned = (status->pinned >> sonar & 1) != 0;
     if (op == ARGUS_OP_RETEST) {
-        return !status->open ? "not without a robot" : pinned ? "it is pinned; k ends that" : NULL;
+        return !status->open ? OPERATOR_NO_ROBOT : pinned ? OPERATOR_PINNED : OPERATOR_FREE;
     }
     if (!self->judges) {
-        return "not with profile paper";
+        return OPERATOR_PAPER;
     }
-    return op == ARGUS_OP_DISABLE && pinned ? "it is pinned; k ends that" : NULL;
+    return op == ARGUS_OP_DISABLE && pinned ? OPERATOR_PINNED : OPERATOR_FREE;
+}
+
+operator_obstacle_t operator_ask(operator_t *self, argus_op_t op, int32_t argument, uint32_t now_ms) {
+    argus_status_t status;
+    self->now_ms = now_ms;
+    argus_status(self->driver->core, &status);
+    const operator_obstacle_t obstacle = obstacle_to(self, &status, op, argument);
+    if (obstacle != OPERATOR_FREE) {
+        return obstacle;
+    }
+    return ask(self, op, argument) ? OPERATOR_FREE : OPERATOR_REFUSED;
+}
+
+// In words for who has keys.
+static const char *words_of(operator_obstacle_t obstacle) {
+    static const char *const words[] = {[OPERATOR_FREE] = "",
+                                        [OPERATOR_PASSIVE] = "not while passive; p makes it active",
+                                        [OPERATOR_NO_ROBOT] = "not without a robot",
+                                        [OPERATOR_NO_COURSE] = "there is no course",
+                                        [OPERATOR_BUSY] = "not while it is busy; space stops it",
+                                        [OPERATOR_PINNED] = "it is pinned; k ends that",
+                                        [OPERATOR_PAPER] = "not with profile paper",
+                                        [OPERATOR_REFUSED] = "it was refused"};
+    return words[obstacle];
 }
 
 static const char *effect_of(tui_key_t key, argus_op_t op) {
@@ -144,11 +168,12 @@ void operator_key(operator_t *self, tui_key_t key, uint32_t now_ms, char *answer
     if (is_of_sonar(op)) {
         snprintf(whom, sizeof whom, "sonar %d: ", self->sonar);
     }
-    const char *const obstacle = why_not(self, &status, op);
+    operator_obstacle_t obstacle = obstacle_to(self, &status, op, self->sonar);
     const bool taken = ask(self, op, argument); // whatever is thought here, the manager decides
-    if (obstacle != NULL || !taken) {
+    obstacle = obstacle == OPERATOR_FREE && !taken ? OPERATOR_REFUSED : obstacle;
+    if (obstacle != OPERATOR_FREE) {
         snprintf(answer, capacity, "> %s: %s%s: %s", tui_keys_of(key), whom, effect_of(key, op),
-                 obstacle != NULL ? obstacle : "it was refused");
+                 words_of(obstacle));
     } else {
         snprintf(answer, capacity, "> %s: %s%s", tui_keys_of(key), whom, effect_of(key, op));
     }

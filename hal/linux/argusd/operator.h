@@ -23,6 +23,21 @@ void operator_init(operator_t *self, driver_t *driver, const argus_config_t *con
 // Not for TUI_QUIT and TUI_GONE, which are the loop's. `answer`: the key and what it does, or why not.
 void operator_key(operator_t *self, tui_key_t key, uint32_t now_ms, char *answer, size_t capacity);
 
+// What stands against a wish.
+typedef enum {
+    OPERATOR_FREE,
+    OPERATOR_PASSIVE,
+    OPERATOR_NO_ROBOT,
+    OPERATOR_NO_COURSE,
+    OPERATOR_BUSY,
+    OPERATOR_PINNED,
+    OPERATOR_PAPER,
+    OPERATOR_REFUSED // by the manager itself
+} operator_obstacle_t;
+
+// Asks the manager, if nothing stands against it.
+operator_obstacle_t operator_ask(operator_t *self, argus_op_t op, int32_t argument, uint32_t now_ms);
+
 // An order that was taken.
 void operator_order(operator_t *self, const hal_dbc_command_t *order, uint32_t now_ms);
 

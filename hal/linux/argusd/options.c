@@ -19,6 +19,14 @@ enum {
     OPT_RECORD_MAX,
     OPT_ROBOT,
     OPT_CAN_TELEMETRY,
+    OPT_CONTROL,
+    OPT_CONTROL_TOKEN,
+    OPT_CONTROL_BEYOND,
+    OPT_INJECT,
+    OPT_ATTACH,
+    OPT_GUARD,
+    OPT_GUARD_READINGS,
+    OPT_GUARD_BEYOND,
     OPT_PASSIVE,
     OPT_ACTIVE,
     OPT_JSON,
@@ -43,6 +51,14 @@ static const struct option table[] = {
     {"record-max", required_argument, NULL, OPT_RECORD_MAX},
     {"robot", required_argument, NULL, OPT_ROBOT},
     {"can-telemetry", required_argument, NULL, OPT_CAN_TELEMETRY},
+    {"control", required_argument, NULL, OPT_CONTROL},
+    {"control-token", required_argument, NULL, OPT_CONTROL_TOKEN},
+    {"control-beyond-loopback", no_argument, NULL, OPT_CONTROL_BEYOND},
+    {"inject", no_argument, NULL, OPT_INJECT},
+    {"attach", required_argument, NULL, OPT_ATTACH},
+    {"guard", required_argument, NULL, OPT_GUARD},
+    {"guard-readings", required_argument, NULL, OPT_GUARD_READINGS},
+    {"guard-beyond-loopback", no_argument, NULL, OPT_GUARD_BEYOND},
     {"passive", no_argument, NULL, OPT_PASSIVE},
     {"active", no_argument, NULL, OPT_ACTIVE},
     {"json", no_argument, NULL, OPT_JSON},
@@ -79,12 +95,30 @@ void options_help(FILE *out) {
         "  --robot NAME       whose body and sonars it has, where it does not say so itself: p3dx-sh, "
         "amigo-sh,\n"
         "                     p3at-sh, peoplebot-sh; one that is not known is never driven\n"
+        "  --guard PORT       pty:PATH or tcp:HOST:PORT, up to 4 times: there an ARCOS client (ARIA, p2os, "
+        "...)\n"
+        "                     finds the robot; its motion is bounded by what trusted sonars see "
+        "(docs/guardian.md)\n"
+        "  --guard-readings withhold|cover|pass\n"
+        "                     what it gets of sonars that are out: nothing (default), what others have "
+        "heard\n"
+        "                     there lately, or what they say\n"
+        "  --guard-beyond-loopback\n"
+        "                     let a guard port listen where other machines reach it\n"
         "  --passive          diagnose and report, never command a motion\n"
         "  --active           drive; needed on a serial or can link, which starts passive\n"
         "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
         "  --record FILE      append all bytes of the link, both directions, with their times (see "
         "argus-log)\n"
         "  --record-max MB    size at which FILE becomes FILE.1 and so on to FILE.4 (default 64)\n"
+        "  --control unix:PATH | tcp:127.0.0.1:PORT\n"
+        "                     a socket on which programs of this user watch and order (see argusctl)\n"
+        "  --control-token FILE\n"
+        "                     whoever connects must say its first line; needed with tcp\n"
+        "  --control-beyond-loopback\n"
+        "                     allow an address that other machines reach\n"
+        "  --inject           arm argusctl fail: faults of sonars made by argusd itself, for tests\n"
+        "  --attach PLACE     no robot of its own: the screen of the argusd whose --control is at PLACE\n"
         "  --wait SECONDS     at start, how long to try for the port and for a robot's answer; or 'forever'\n"
         "                     (default: the port must be there, a robot has 30 s)\n"
         "  --check            connect, tell what is there, leave\n"
@@ -106,8 +140,11 @@ void options_help(FILE *out) {
         "  argusd --link serial:/dev/ttyUSB0 --auto-baud\n"
         "  argusd --link serial:/dev/ttyUSB0@9600 --active --goal 3000,0 --config argusd.conf\n"
         "  argusd --link tcp:localhost --course course.csv --json\n"
+        "  argusd --link serial:/dev/ttyUSB0@9600 --guard tcp:127.0.0.1:8101 --guard pty:/run/argus/robot\n"
         "  argusd --link can:can0 --active --goal 3000,0\n"
         "  argusd --link serial:/dev/ttyUSB0@9600 --can-telemetry can0,robot=2\n"
+        "  argusd --link tcp:localhost --control unix:/tmp/argus.sock --inject\n"
+        "  argusd --attach unix:/tmp/argus.sock\n"
         "\n"
         "exit codes:\n",
         out);
@@ -186,6 +223,39 @@ static bool take_telemetry(options_t *options, const char *text, const message_t
     return true;
 }
 
+static bool take_place(options_t *options, int option, const message_t *message) {
+    char problem[ARGUSD_MESSAGE_MAX / 2];
+    if (option == OPT_ATTACH) {
+        options->action = OPTIONS_ATTACH;
+    }
+    return control_spec_parse(option == OPT_ATTACH ? &options->attach : &options->control, optarg, problem,
+                              sizeof problem) ||
+           text_refuse(message->text, message->capacity, "%s %s",
+                       option == OPT_ATTACH ? "--attach" : "--control", problem);
+}
+
+static bool take_guard(options_t *options, const char *text, const message_t *message) {
+    guards_options_t *const guards = &options->guards;
+    if (guards->count == GUARDS_MAX) {
+        return text_refuse(message->text, message->capacity, "--guard %s: %d ports are the most", text,
+                           GUARDS_MAX);
+    }
+    return guard_spec_parse(&guards->at[guards->count++], text, message->text, message->capacity);
+}
+
+static bool take_readings(options_t *options, const char *text, const message_t *message) {
+    static const char *const names[] = {"withhold", "cover", "pass"};
+    options->readings = text;
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(text, names[i]) == 0) {
+            options->guards.readings = (argus_readings_t)i;
+            return true;
+        }
+    }
+    return text_refuse(message->text, message->capacity, "--guard-readings %s: give withhold, cover or pass",
+                       text);
+}
+
 // What is kept as it was written.
 static bool take_text(options_t *options, int option) {
     switch (option) {
@@ -200,6 +270,9 @@ static bool take_text(options_t *options, int option) {
         return true;
     case OPT_RECORD:
         options->record_path = optarg;
+        return true;
+    case OPT_CONTROL_TOKEN:
+        options->token_path = optarg;
         return true;
     case OPT_ROBOT:
         options->robot = optarg;
@@ -225,6 +298,15 @@ static bool take_flag(options_t *options, int option) {
         return true;
     case OPT_AUTO_BAUD:
         options->auto_baud = true;
+        return true;
+    case OPT_CONTROL_BEYOND:
+        options->control_beyond_loopback = true;
+        return true;
+    case OPT_INJECT:
+        options->inject = true;
+        return true;
+    case OPT_GUARD_BEYOND:
+        options->guards.beyond = true;
         return true;
     default:
         return take_text(options, option);
@@ -264,6 +346,13 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
         return take_telemetry(options, optarg, message);
     case OPT_RECORD_MAX:
         return take_record_max(options, optarg, message);
+    case OPT_CONTROL:
+    case OPT_ATTACH:
+        return take_place(options, option, message);
+    case OPT_GUARD:
+        return take_guard(options, optarg, message);
+    case OPT_GUARD_READINGS:
+        return take_readings(options, optarg, message);
     case ':':
         return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help",
                            argv[optind - 1]);
@@ -283,6 +372,7 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
 static bool agree(const options_t *options, const message_t *message) {
     const bool has_link = hal_link_spec_target(&options->link)[0] != '\0';
     const bool serial = options->link.scheme == HAL_SCHEME_SERIAL;
+    const int family = options->control.family;
     const struct {
         bool wrong;
         const char *problem;
@@ -294,8 +384,21 @@ static bool agree(const options_t *options, const message_t *message) {
          "no link is given; add --link serial:/dev/ttyUSB0@9600, tcp:HOST:8101 or can:can0 (see --help)"},
         {options->action == OPTIONS_CHECK && options->telemetry.interface[0] != '\0',
          "--check only looks at the robot; leave out --can-telemetry"},
+        {options->action == OPTIONS_CHECK && options->guards.count > 0,
+         "--check only looks at the robot; leave out --guard"},
+        {options->guards.count == 0 && (options->readings != NULL || options->guards.beyond),
+         "--guard-readings and --guard-beyond-loopback are for --guard PORT; add it"},
         {options->record_max_bytes > 0 && options->record_path == NULL,
          "--record-max is for --record FILE; add it"},
+        {options->action == OPTIONS_CHECK && family != 0,
+         "--check only looks at the robot; leave out --control"},
+        {family == 0 && options->token_path != NULL, "--control-token is for --control or --attach; add it"},
+        {family == 0 && options->inject, "--inject is for orders at --control; add it"},
+        {(family == AF_INET || family == AF_INET6) && options->token_path == NULL,
+         "whoever reaches --control tcp: could drive the robot; add --control-token FILE"},
+        {family != 0 && !options->control.loopback && !options->control_beyond_loopback,
+         "this address of --control is reached by other machines; take 127.0.0.1, or add "
+         "--control-beyond-loopback"},
         {options->auto_baud && !serial, "--auto-baud is for serial links; no other has a rate to look for"},
         {options->auto_baud && options->link.has_baud,
          "--auto-baud and a rate in --link contradict each other; leave out @BAUD"},
@@ -324,6 +427,11 @@ bool options_parse(options_t *options, int argc, char **argv, char *message_text
     }
     if (optind < argc) {
         return text_refuse(message_text, capacity, "'%s' is not an option; see argusd --help", argv[optind]);
+    }
+    if (options->action == OPTIONS_ATTACH &&
+        (hal_link_spec_target(&options->link)[0] != '\0' || options->control.family != 0)) {
+        return text_refuse(message_text, capacity,
+                           "--attach shows an argusd that runs already; leave out --link and --control");
     }
     const bool needs_link = options->action == OPTIONS_RUN || options->action == OPTIONS_CHECK;
     return !needs_link || agree(options, &message);

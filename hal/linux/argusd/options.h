@@ -8,11 +8,14 @@
 #include <stdio.h>
 
 #include "argus/argus.h"
+#include "control_spec.h"
+#include "guards.h"
 #include "hal/link_spec.h"
 
 typedef enum {
     OPTIONS_RUN,
     OPTIONS_CHECK,
+    OPTIONS_ATTACH,
     OPTIONS_HELP,
     OPTIONS_VERSION,
     OPTIONS_LIST_EVENTS,
@@ -29,10 +32,17 @@ typedef struct {
     const char *course_path;
     const char *state_path;
     const char *record_path;
+    const char *token_path;
+    control_spec_t control; // family 0: not given, like the next
+    control_spec_t attach;
+    bool control_beyond_loopback;
+    bool inject;
     const char *robot;        // a choice of the setting of that name
     hal_can_spec_t telemetry; // interface "": not given
     bool no_telemetry;
     uint64_t record_max_bytes; // 0: not given
+    guards_options_t guards;
+    const char *readings; // of --guard-readings, NULL: not given
     argus_point_t goal;
     bool has_goal;
     bool passive;

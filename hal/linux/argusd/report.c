@@ -82,7 +82,9 @@ static const char *colour_of(argus_level_t level) {
 
 // "value" in words where a number alone says nothing, and only where the catalogue gives it a meaning.
 static void add_value(text_t *text, const argus_event_t *event) {
-    if (event->id == ARGUS_EV_SONAR_DISABLED) {
+    if (event->id == ARGUS_EV_INJECTED && event->value == ARGUS_KIND_NONE) {
+        text_add(text, " (over)");
+    } else if (event->id == ARGUS_EV_SONAR_DISABLED || event->id == ARGUS_EV_INJECTED) {
         text_add(text, " (%s)", argus_name(ARGUS_NAME_KIND, (int)event->value));
     } else if (event->id == ARGUS_EV_OPERATOR) {
         text_add(text, " %s", argus_name(ARGUS_NAME_OP, (int)event->value));
@@ -108,8 +110,8 @@ size_t report_event_plain(const argus_event_t *event, uint64_t t_ms, bool colour
     return text.cut ? 0 : text.length;
 }
 
-static void put_sonars(json_t *json, const argus_status_t *status) {
-    json_name(json, "reading_mm");
+void report_readings(json_t *json, const char *name, const argus_status_t *status) {
+    json_name(json, name);
     json_open(json, '[');
     for (int i = 0; i < ARGUS_SONARS; i++) {
         json_int(json, status->reading_mm[i]);
@@ -121,6 +123,10 @@ static void put_sonars(json_t *json, const argus_status_t *status) {
         json_int(json, status->age_ms[i] == UINT32_MAX ? -1 : (int64_t)status->age_ms[i]);
     }
     json_close(json, ']');
+}
+
+static void put_sonars(json_t *json, const argus_status_t *status) {
+    report_readings(json, "reading_mm", status);
     json_name(json, "health");
     json_open(json, '[');
     for (int i = 0; i < ARGUS_SONARS; i++) {
@@ -183,6 +189,36 @@ static void put_link(json_t *json, const view_t *view) {
     put_string(json, "subclass", view->subclass);
 }
 
+static void put_ring(json_t *json, const argus_status_t *status) {
+    put_int(json, "sonars", status->sonars);
+    json_name(json, "bearing_deg");
+    json_open(json, '[');
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        json_int(json, status->bearing_deg[i]);
+    }
+    json_close(json, ']');
+    json_name(json, "pinned");
+    json_open(json, '[');
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if ((status->pinned >> i & 1u) != 0) {
+            json_int(json, i);
+        }
+    }
+    json_close(json, ']');
+    put_bool(json, "motors", status->motors);
+}
+
+static void put_control(json_t *json, const view_t *view) {
+    put_bool(json, "controlled", view->controlled);
+    json_name(json, "injected");
+    json_open(json, '[');
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        json_string(json, argus_name(ARGUS_NAME_KIND, view->injected[i]));
+    }
+    json_close(json, ']');
+    put_bool(json, "inject", view->inject);
+}
+
 static void put_can(json_t *json, const view_t *view) {
     if (!view->has_can) {
         return;
@@ -212,8 +248,22 @@ size_t report_status_json(const view_t *view, int64_t unix_ms, char *line, size_
     put_plan(&json, &view->status.plan);
     put_sonars(&json, &view->status);
     put_link(&json, view);
+    put_ring(&json, &view->status);
+    put_control(&json, view);
     put_can(&json, view);
     return finish(&json);
+}
+
+// "injected: 3 stuck" where a reader must not take it for the robot's own.
+static void add_injected(text_t *text, const view_t *view) {
+    int count = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (view->injected[i] != 0) {
+            text_add(text, "%s %d %s", count == 0 ? " INJECTED:" : ",", i,
+                     argus_name(ARGUS_NAME_KIND, view->injected[i]));
+            count++;
+        }
+    }
 }
 
 static void add_readings(text_t *text, const char *title, const argus_status_t *status, int first) {
@@ -252,6 +302,7 @@ size_t report_status_plain(const view_t *view, char *line, size_t capacity) {
     text_add(&text, " %d.%d V", status->battery_dv / 10, status->battery_dv % 10);
     add_readings(&text, "front", status, 0);
     add_readings(&text, "rear", status, FRONT_SONARS);
+    add_injected(&text, view);
     return text.cut ? 0 : text.length;
 }
 

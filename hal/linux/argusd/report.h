@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "argus/argus.h"
+#include "json.h"
 #include "view.h"
 
 #define REPORT_LINE_MAX 4096
@@ -20,6 +21,9 @@ size_t report_event_plain(const argus_event_t *event, uint64_t t_ms, bool colour
                           size_t capacity);
 size_t report_status_json(const view_t *view, int64_t unix_ms, char *line, size_t capacity);
 size_t report_status_plain(const view_t *view, char *line, size_t capacity);
+
+// Adds the members `name`, readings in mm, and age_ms of all sonars.
+void report_readings(json_t *json, const char *name, const argus_status_t *status);
 
 // What came of it all, for people.
 size_t report_summary(const view_t *view, char *line, size_t capacity);

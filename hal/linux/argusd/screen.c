@@ -13,10 +13,11 @@
 #define RING_ROWS 13
 #define RING_COLUMNS 34
 #define RING_RANGE_MM 3000 // an echo at this distance lies on the rim
-#define RING_INNER 3       // columns from the centre where a reading of 0 lies
-#define RIGHT 36           // column of the tables
-#define RIGHT_ROWS 16      // below: the log
-#define RECENT 8           // lines of the log among which a repeated one counts
+#define INJECTED_COLUMN 63
+#define RING_INNER 3  // columns from the centre where a reading of 0 lies
+#define RIGHT 36      // column of the tables
+#define RIGHT_ROWS 16 // below: the log
+#define RECENT 8      // lines of the log among which a repeated one counts
 
 void screen_log_add(screen_log_t *self, const char *line, tone_t tone, uint16_t key) {
     unsigned times = 1;
@@ -168,6 +169,28 @@ static void draw_progress(canvas_t *canvas, const view_t *view, int row, int col
              (unsigned)status->waypoints);
 }
 
+static bool is_injected(const view_t *view) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (view->injected[i] != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Wherever there is room: nobody must take a made fault for a real one.
+static void draw_injected(canvas_t *canvas) {
+    static const char text[] = "INJECTED FAULT";
+    if (canvas->columns >= INJECTED_COLUMN + (int)sizeof text) {
+        put_text(canvas, 1, INJECTED_COLUMN, TONE_BAD, text);
+    } else {
+        for (int column = 0; column < canvas->columns; column++) {
+            put(canvas, 2, column, TONE_PLAIN, ' ');
+        }
+        put_text(canvas, 2, 1, TONE_BAD, text);
+    }
+}
+
 static void draw_mode(canvas_t *canvas, const view_t *view) {
     const argus_status_t *const status = &view->status;
     write_at(canvas, 1, 1, TONE_PLAIN, "%-9s", argus_name(ARGUS_NAME_MODE, (int)status->mode));
@@ -181,6 +204,9 @@ static void draw_mode(canvas_t *canvas, const view_t *view) {
         draw_progress(canvas, view, 2, 1);
     } else {
         put_text(canvas, 2, 1, TONE_DIM, "no course: drive by keys");
+    }
+    if (is_injected(view)) {
+        draw_injected(canvas);
     }
 }
 
@@ -283,8 +309,8 @@ static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row,
                  out ? argus_name(ARGUS_NAME_KIND, (int)status->kind[sonar])
                      : argus_name(ARGUS_NAME_HEALTH, (int)health));
     }
-    write_at(canvas, row, column, tone_of_health(health), "%2d%c%s %s%.10s", sonar, pinned ? '=' : ' ',
-             bearing, reading,
+    const char mark = view->injected[sonar] != 0 ? '*' : pinned ? '=' : ' ';
+    write_at(canvas, row, column, tone_of_health(health), "%2d%c%s %s%.10s", sonar, mark, bearing, reading,
              layout->health ? state
              : out          ? "!"
                             : "");

@@ -60,6 +60,15 @@ driver_tap_t tape_tap(tape_t *self) {
     return self->on ? (driver_tap_t){.see = see, .context = self} : (driver_tap_t){0};
 }
 
+void tape_injected(tape_t *self, int sonar, argus_fault_kind_t kind, uint32_t for_ms) {
+    const uint8_t bytes[] = {(uint8_t)sonar,           (uint8_t)kind,
+                             (uint8_t)(for_ms & 0xFF), (uint8_t)(for_ms >> 8 & 0xFF),
+                             (uint8_t)(for_ms >> 16),  (uint8_t)(for_ms >> 24)};
+    if (self->on) {
+        hal_recorder_note(&self->recorder, HAL_RECORD_INJECTED, bytes, sizeof bytes);
+    }
+}
+
 bool tape_problem(tape_t *self, char *message, size_t capacity) {
     const int problem = self->on ? atomic_load(&self->recorder.problem) : 0;
     if (problem == 0 || self->said) {

@@ -22,6 +22,9 @@ bool tape_open(tape_t *self, const char *path, const char *link, uint64_t max_by
 // What the driver is to show its bytes to; nobody when the tape is not open.
 driver_tap_t tape_tap(tape_t *self);
 
+// A sonar's reports are altered from here on; kind NONE: no more.
+void tape_injected(tape_t *self, int sonar, argus_fault_kind_t kind, uint32_t for_ms);
+
 // True when there is something to tell: the disk refuses, said once until it takes everything again.
 bool tape_problem(tape_t *self, char *message, size_t capacity);
 

@@ -22,11 +22,14 @@ typedef struct {
     uint32_t reopened;
     bool has_can; // the link or the telemetry is on a CAN bus
     uint32_t can_errors[HAL_ISOTP_ERRORS];
-    uint32_t can_sent;    // telemetry frames
-    uint32_t can_taken;   // orders
-    uint32_t can_refused; // ...
-    uint8_t sonar;        // the one that the operator has chosen
-    uint32_t course_mm;   // straight line from the start to the goal, 0 without a course
+    uint32_t can_sent;              // telemetry frames
+    uint32_t can_taken;             // orders
+    uint32_t can_refused;           // ...
+    uint8_t sonar;                  // the one that the operator has chosen
+    uint32_t course_mm;             // straight line from the start to the goal, 0 without a course
+    bool controlled;                // somebody at the control socket has control
+    uint8_t injected[ARGUS_SONARS]; // argus_fault_kind_t that argusd itself makes, 0: none
+    bool inject;                    // it may
 } view_t;
 
 #endif

@@ -106,21 +106,21 @@ void test_s3_free_way_is_the_shortest_usable_front_reading(void) {
     k.sonar[3].reading_mm = 100; // a lie that must not count
     k.sonar[0].reading_mm = k.sonar[7].reading_mm = k.sonar[12].reading_mm = 150;
     k.sonar[4].reading_mm = 900;
-    TEST_ASSERT_EQUAL(650, argus_guard_ahead_mm(&g));
+    TEST_ASSERT_EQUAL(650, argus_guard_ahead_mm(&g, argus_guard_seen_mm(&g)));
     k.sonar[4].reading_mm = 250;
-    TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g));
+    TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g, argus_guard_seen_mm(&g)));
     k.sonar[4].reading_mm = 100;
-    TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g));
+    TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g, argus_guard_seen_mm(&g)));
 }
 
 void test_s3_the_way_driven_since_a_reading_is_taken_off(void) {
     k.sonar[4].reading_mm = 900;
     k.odometer_mm = 60;
-    TEST_ASSERT_EQUAL(590, argus_guard_ahead_mm(&g));
+    TEST_ASSERT_EQUAL(590, argus_guard_ahead_mm(&g, argus_guard_seen_mm(&g)));
     k.sonar[4].odometer_mm = 60;
-    TEST_ASSERT_EQUAL(650, argus_guard_ahead_mm(&g));
+    TEST_ASSERT_EQUAL(650, argus_guard_ahead_mm(&g, argus_guard_seen_mm(&g)));
     k.odometer_mm = 5000;
-    TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g));
+    TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g, argus_guard_seen_mm(&g)));
 }
 
 void test_s3_a_sonar_unheard_for_two_rounds_is_blind(void) {

@@ -120,3 +120,45 @@ void test_a_shift_is_split_along_the_bearing_and_across_it(void) {
         TEST_ASSERT_INT_WITHIN(1, 40, (int)shift.lateral_mm);
     }
 }
+
+// ---- asked for those near another
+
+static int near_by_definition(const argus_ping_t *at, int from) {
+    for (int back = from; back <= log_.count; back++) {
+        const argus_ping_t *then = argus_pings_at(&log_, back);
+        if (argus_ping_turned_cdeg(at, then) <= 500 && argus_ping_is_within(at, then, 200)) {
+            return back;
+        }
+    }
+    return 0;
+}
+
+// Whatever the bearing, on both sides of the seam and of every sector: none that is near is left out.
+void test_all_that_is_near_is_found(void) {
+    int found = 0;
+    for (int bearing = -18000 + 37; bearing <= 18000; bearing += 37) {
+        const argus_ping_t at = ping(0, 65500, 100, bearing, 1000);
+        setUp();
+        for (int i = 0; i < ARGUS_PINGS + 5; i++) {
+            const int turned = bearing + (i * 97 - 1700) % 700;
+            const int wrapped = turned > 18000 ? turned - 36000 : turned <= -18000 ? turned + 36000 : turned;
+            argus_pings_note(&log_, ping((uint32_t)i, (65500 + 29 * i % 300) & 0xFFFF, 100, wrapped, 1000 + 40 * i));
+        }
+        for (int from = 1; from <= log_.count + 1; from++) {
+            snprintf(text, sizeof text, "bearing %d from %d", bearing, from);
+            TEST_ASSERT_EQUAL_MESSAGE(near_by_definition(&at, from), argus_pings_near(&log_, from, &at), text);
+            found += argus_pings_near(&log_, from, &at) > 0;
+        }
+    }
+    TEST_ASSERT_TRUE(found > 1000);
+}
+
+// A sonar that looked elsewhere all the time is not near, wherever it was.
+void test_another_bearing_is_never_near(void) {
+    for (int turn = 501; turn <= 36000 - 501; turn += 13) {
+        setUp();
+        argus_pings_note(&log_, ping(0, 0, 0, 0, 1000));
+        const argus_ping_t at = ping(1, 0, 0, turn > 18000 ? turn - 36000 : turn, 1000);
+        TEST_ASSERT_EQUAL(0, argus_pings_near(&log_, 1, &at));
+    }
+}

@@ -82,7 +82,7 @@ static void name(unsigned sonars) {
 
 static double free_speed(void) {
     const argus_guard_t guard = argus_guard(&robot.argus);
-    return argus_guard_free_speed_mm_s(&guard);
+    return argus_guard_free_speed_mm_s(&guard, argus_guard_seen_mm(&guard));
 }
 
 // ---- none
@@ -216,7 +216,10 @@ static double lost_until_look(int sonar) {
         robot_next_sip(&robot);
         const argus_guard_t guard = argus_guard(&robot.argus);
         const bool open = is_named(sonar) && robot.argus.mode == ARGUS_MODE_DRIVING;
-        lost_ms += open ? 100.0 * (free_speed() - argus_guard_speed_mm_s(&guard)) / free_speed() : 0;
+        lost_ms += open ? 100.0 *
+                              (free_speed() - argus_guard_speed_mm_s(&guard, argus_guard_seen_mm(&guard))) /
+                              free_speed()
+                        : 0;
         TEST_ASSERT_TRUE(looking() || robot.argus.looks.lost_ms < LOOK_COST_MS);
     }
     return lost_ms;

@@ -48,6 +48,7 @@ static void power_up(robot_t *robot) {
     robot->motors = false;
     robot->sonar_on = false;
     robot->moving = robot->turning = false;
+    robot->vel = robot->rvel = 0;
     robot->setv = 750;
     robot->accel = robot->decel = 300;
     robot->setrv = robot->setra = 100 * DEG;
@@ -189,7 +190,7 @@ static double toward(double now, double target, double most) {
 }
 
 static void translate(robot_t *robot) {
-    double target = 0;
+    double target = fmax(-robot->setv, fmin(robot->vel, robot->setv));
     if (robot->moving) {
         const double reach = sqrt(2 * robot->decel * fabs(robot->left_mm));
         target = copysign(fmin(robot->setv, reach), robot->left_mm);
@@ -204,7 +205,7 @@ static void translate(robot_t *robot) {
 }
 
 static void rotate(robot_t *robot) {
-    double target = 0;
+    double target = robot->rvel;
     const double error = wrapped(robot->heading - robot->th);
     if (robot->turning) {
         target = copysign(fmin(robot->setrv, sqrt(2 * robot->setra * fabs(error))), error);
@@ -333,24 +334,30 @@ static void set_polling(robot_t *robot, const uint8_t *list, size_t count) {
 static void obey_motion(robot_t *robot, uint8_t command, int32_t argument) {
     switch (command) {
     case ARCOS_CMD_MOVE:
+        robot->vel = 0;
         robot->moving = robot->motors;
         robot->left_mm = argument;
         break;
     case ARCOS_CMD_HEAD:
+        robot->rvel = 0;
         robot->turning = robot->motors;
         robot->heading = robot->th0 + argument * DEG;
         break;
     case ARCOS_CMD_VEL:
         robot->moving = false;
+        robot->vel = argument;
         break;
     case ARCOS_CMD_RVEL:
         robot->turning = false;
+        robot->rvel = argument * DEG;
         break;
     case ARCOS_CMD_STOP:
         robot->moving = robot->turning = false;
+        robot->vel = robot->rvel = 0;
         break;
     case ARCOS_CMD_E_STOP:
         robot->moving = robot->turning = false;
+        robot->vel = robot->rvel = 0;
         robot->v = robot->w = 0;
         robot->motors = robot->motors && !robot->e_stop_cuts_motors;
         break;
@@ -379,6 +386,7 @@ static void obey_setting(robot_t *robot, uint8_t command, int32_t argument) {
     case ARCOS_CMD_ENABLE:
         robot->motors = argument != 0 && !robot->stop_button && !robot->deny_motors;
         robot->moving = robot->turning = false;
+        robot->vel = robot->rvel = 0;
         break;
     case ARCOS_CMD_SETO:
         robot->x0 = robot->x;
@@ -641,7 +649,9 @@ static void take_packet(robot_t *robot, const uint8_t *packet, size_t length) {
     if (robot->commands < ROBOT_COMMANDS_MAX) {
         robot->command[robot->commands++] = sent;
     }
-    watch(robot, &sent);
+    if (robot->after == NULL) {
+        watch(robot, &sent);
+    }
     if (!robot->mute) {
         obey(robot, packet, &sent);
     }
@@ -693,6 +703,9 @@ void robot_deliver(robot_t *robot, const uint8_t *bytes, size_t count) {
         return;
     }
     argus_receive(&robot->argus, robot->start_ms + robot->t_ms, bytes, count);
+    if (robot->after != NULL) {
+        robot->after(robot, bytes, count);
+    }
 }
 
 static bool is_answered(const robot_t *robot, bool open) {

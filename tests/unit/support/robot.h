@@ -46,6 +46,7 @@ struct robot {
     double left_mm;  // of a MOVE, signed
     double heading;  // HEAD's target
     bool moving, turning;
+    double vel, rvel; // of VEL and RVEL, while neither MOVE nor HEAD
     double setv, accel, decel, setrv, setra;
     double x0, y0, th0; // odometry origin
     double unit_mm;     // per position unit
@@ -65,7 +66,9 @@ struct robot {
     void (*before_sip)(robot_t *robot);           // delivers other packets
     size_t (*alter_sip)(uint8_t *data,
                         size_t count); // other data, up to ROBOT_SIP_MAX, instead of the standard
-    bool host_asleep;                  // what it says waits in `late` for robot_wake()
+    void (*after)(robot_t *robot, const uint8_t *bytes,
+                  size_t count); // sees what the manager has taken; a client then drives, unwatched
+    bool host_asleep;            // what it says waits in `late` for robot_wake()
     uint8_t late[ROBOT_LATE_MAX];
     size_t late_count;
     bool sonar_on;

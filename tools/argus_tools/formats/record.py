@@ -42,6 +42,24 @@ _DIRECTION: Final[dict[int, Direction]] = {
 _KIND: Final = {direction: kind for kind, direction in _DIRECTION.items()}
 
 
+_FAULTS: Final = ("", "off", "silent", "stuck", "wrong", "garbage", "slow", "intermittent")
+
+
+def injected(payload: bytes) -> str:
+    """Say what argusd did to a sonar from here on.
+
+    >>> injected(bytes([3, 3]) + (30000).to_bytes(4, "little"))
+    "argusd injects 'stuck' into sonar 3 for 30 s: from here on its readings are made up"
+    """
+    if len(payload) != 6 or payload[1] >= len(_FAULTS):
+        return "argusd injects a fault of an unknown kind: readings from here on are made up"
+    if payload[1] == 0:
+        return f"argusd injects nothing into sonar {payload[0]} any more: its readings are its own again"
+    for_s = int.from_bytes(payload[2:], "little") / 1000
+    kind = _FAULTS[payload[1]]
+    return f"argusd injects '{kind}' into sonar {payload[0]} for {for_s:g} s: from here on its readings are made up"
+
+
 class RecordReader:
     """Reads a recording; `t` is in seconds since 1970."""
 
@@ -70,6 +88,8 @@ class RecordReader:
                 lost = int.from_bytes(record.payload, "little")
                 what = f"the recorder's disk was full: {lost} bytes of the link are missing"
                 self.damage.append(Damage(f"byte {record.place}", what))
+            elif record.kind == Kind.INJECTED:
+                self.damage.append(Damage(f"byte {record.place}", injected(record.payload)))
             elif record.kind == Kind.HEADER:
                 self._check_version(record)
 

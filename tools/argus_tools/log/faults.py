@@ -6,15 +6,15 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from typing import Any, Final, NamedTuple
 
 from argus_tools.core import Core, Event, kind_name, setting_value
 from argus_tools.formats.base import ROBOT_TO_CLIENT, LogError
 from argus_tools.log.common import Input, add_log_arguments, show_table, use_colour
+from argus_tools.log.opening import opened
 from argus_tools.log.packets import Row
 from argus_tools.log.summary import Summary
-from hil_sim.arcos import COMMAND, TIMING, Command, Sip, SyncEcho, SyncReply, Unframer, frame
+from hil_sim.arcos import TIMING, SyncReply
 
 SUMMARY: Final = "tell what the fault manager would have said from a log alone"
 EXAMPLES: Final = """\
@@ -26,8 +26,6 @@ EXAMPLES: Final = """\
 The manager only listens: it cannot turn the robot, so a suspect that only a turn could judge stays a suspect.
 A log without times is taken as one SIP each 100 ms.
 """
-_STEP_MS: Final = 10
-_OPENING_MS: Final = 10_000
 _SIP_MS: Final = TIMING["SIP_CYCLE_MS"]
 # SIPs that were on their way when the client closed the session.
 _SIPS_AFTER_CLOSE: Final = 5
@@ -103,21 +101,7 @@ class Listener:
 
     def _open(self, row: Row) -> Iterator[Said]:
         """Bring a new manager to where it has a session and nothing was read yet."""
-        core = Core(0, self._given)
-        robot = _Opening(self._identity, row.data)
-        core.link_up(0)
-        now_ms = 0
-        while not core.is_open:
-            now_ms += _STEP_MS
-            if now_ms > _OPENING_MS:
-                raise LogError("the fault manager does not open a session with this log")
-            core.process(now_ms)
-            for packet in core.transmit():
-                for answer in robot.answers(packet):
-                    core.receive(now_ms, answer)
-            for sip in robot.due(now_ms):
-                core.receive(now_ms, sip)
-        core.transmit()
+        core, now_ms = opened(self._given, self._identity, row.data)
         self.core = self._last = core
         self._now_ms = now_ms
         self._start_ms = self._clock_ms
@@ -144,35 +128,6 @@ class Listener:
             # What was said while the session was made up belongs to where the log begins.
             t = None if row.t is None else max(at_ms, self._start_ms) / 1000
             yield Said(t, row.offset, event)
-
-
-class _Opening:
-    """The robot that is made up to open a session with."""
-
-    def __init__(self, identity: SyncReply, sip: bytes) -> None:
-        self._identity = identity
-        self._sip = frame(replace(Sip.decode(sip), sonars=()).data)
-        self._unframer = Unframer()
-        self._is_synced = False
-        self._is_open = False
-
-    def answers(self, packet: bytes) -> Iterator[bytes]:
-        """Yield what the robot says to a packet of the manager."""
-        for data in self._unframer.feed(packet):
-            number = Command.decode(data).number
-            if self._is_open:
-                continue
-            if self._is_synced and number == COMMAND["OPEN"]:
-                self._is_open = True
-            elif number == COMMAND["CLOSE"]:
-                self._is_synced = True
-                yield frame(self._identity.data)
-            else:
-                yield frame(SyncEcho(number).data)
-
-    def due(self, now_ms: int) -> list[bytes]:
-        """Return the SIPs that are due."""
-        return [self._sip] if self._is_open and now_ms % _SIP_MS == 0 else []
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -75,6 +75,24 @@ void test_can(void) {
     TEST_ASSERT_EQUAL_STRING("", options.telemetry.interface);
 }
 
+void test_guards(void) {
+    TEST_ASSERT_TRUE_MESSAGE(parse("--link tcp:a --guard tcp:127.0.0.1:8101 --guard pty:/run/argus/robot"),
+                             message);
+    TEST_ASSERT_EQUAL_INT(2, options.guards.count);
+    TEST_ASSERT_EQUAL_INT(GUARD_TCP, options.guards.at[0].kind);
+    TEST_ASSERT_EQUAL_STRING("127.0.0.1", options.guards.at[0].name);
+    TEST_ASSERT_EQUAL_UINT16(8101, options.guards.at[0].port);
+    TEST_ASSERT_EQUAL_INT(GUARD_PTY, options.guards.at[1].kind);
+    TEST_ASSERT_EQUAL_STRING("/run/argus/robot", options.guards.at[1].name);
+    TEST_ASSERT_EQUAL_INT(ARGUS_READINGS_WITHHOLD, options.guards.readings);
+    TEST_ASSERT_FALSE(options.guards.beyond);
+    TEST_ASSERT_TRUE(
+        parse("--link tcp:a --guard tcp:[::1]:1 --guard-readings cover --guard-beyond-loopback"));
+    TEST_ASSERT_EQUAL_STRING("::1", options.guards.at[0].name);
+    TEST_ASSERT_EQUAL_INT(ARGUS_READINGS_COVER, options.guards.readings);
+    TEST_ASSERT_TRUE(options.guards.beyond);
+}
+
 void test_lists_need_no_link(void) {
     static const struct {
         const char *line;
@@ -102,6 +120,17 @@ void test_refusals(void) {
     refused("--link can:a,robot=8", "from 0 to 7");
     refused("--link can:a --check --can-telemetry a", "leave out --can-telemetry");
     refused("--link tcp:a --can-telemetry a,fd", "--can-telemetry: can:a,fd: 'fd' is not for the telemetry");
+    refused("--link tcp:a --guard serial:/dev/x", "give tcp:HOST:PORT");
+    refused("--link tcp:a --guard tcp:host", "give tcp:HOST:PORT");
+    refused("--link tcp:a --guard tcp:host:0", "give tcp:HOST:PORT");
+    refused("--link tcp:a --guard tcp::1", "give tcp:HOST:PORT");
+    refused("--link tcp:a --guard pty:", "or pty:PATH");
+    refused("--link tcp:a --guard pty:a --guard pty:b --guard pty:c --guard pty:d --guard pty:e",
+            "4 ports are the most");
+    refused("--link tcp:a --guard pty:a --guard-readings some", "give withhold, cover or pass");
+    refused("--link tcp:a --guard-readings cover", "for --guard PORT");
+    refused("--link tcp:a --guard-beyond-loopback", "for --guard PORT");
+    refused("--link tcp:a --check --guard pty:a", "leave out --guard");
     refused("--link tcp:a --frob", "unknown option --frob");
     refused("--link tcp:a -z", "unknown option");
     refused("--link tcp:a extra", "'extra' is not an option");
@@ -123,10 +152,13 @@ void test_refusals(void) {
 void test_help_names_every_option_and_exit_code(void) {
     static char text[8192];
     static const char *const options_[] = {
-        "--link",   "--auto-baud",  "--config",        "--course",      "--goal",        "--passive",
-        "--active", "--state",      "--wait",          "--check",       "--json",        "--plain",
-        "--status", "--help",       "--version",       "--list-events", "--list-config", "--example-config",
-        "--record", "--record-max", "--can-telemetry", "examples:"};
+        "--link",          "--auto-baud",      "--config",         "--course",
+        "--goal",          "--passive",        "--active",         "--state",
+        "--wait",          "--check",          "--json",           "--plain",
+        "--status",        "--help",           "--version",        "--list-events",
+        "--list-config",   "--example-config", "--record",         "--record-max",
+        "--can-telemetry", "--guard",          "--guard-readings", "--guard-beyond-loopback",
+        "examples:"};
     FILE *const file = tmpfile();
     options_help(file);
     rewind(file);

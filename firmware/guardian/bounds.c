@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: MIT
+// Bounds a client's motion by S1, S2, S5 and S7, for the end of the robot that would lead.
+#include "guardian/bounds.h"
+
+#include "awareness/slant.h"
+#include "knowledge/angle.h"
+#include "knowledge/config.h"
+#include "supervisor/state.h"
+
+#define BESIDE_MM 30     // from the body: readings scatter, and the heading does
+#define CONE_PLACES 2    // of a cone on either side of its axis
+#define TRUST_MM 2000    // a thin thing beyond may give no echo
+#define SEEN_LEFT_MM 100 // what argus_guard_seen_mm() takes off for itself
+#define LEAST_MM_S 30    // slower than this it stands
+#define REACTION_MS 500  // about that of S5
+#define DEG_PER_RAD 57
+#define CURVE_MOST_CDEG 9000
+#define DEVIATION_MOST_MM 400
+#define TURN_NEAR_MM 250    // beyond the circle that the body sweeps
+#define TURN_LEAST_DEG_S 10 // slower is steering
+#define TURN_ROOM_MM 25
+#define TURN_NEARER_MM 3
+#define TURN_PART_CDEG 800
+#define TURN_MOST_CDEG 9000
+
+static argus_bound_t closed(const argus_bound_why_t why) {
+    return (argus_bound_t){.speed_mm_s = 0, .way_mm = 0, .why = why};
+}
+
+// Which end goes, and within what on either side of its axis.
+typedef struct {
+    bool rear;
+    int32_t half_mm;
+} corridor_t;
+
+static int32_t turn_deg_s(const argus_t *const self) {
+    const argus_knowledge_t *const knowledge = &self->knowledge;
+    const int32_t across_mm_s = argus_abs(knowledge->vel_right_mm_s - knowledge->vel_left_mm_s);
+    return across_mm_s * DEG_PER_RAD / knowledge->robot->track_mm;
+}
+
+// In a curve the robot leaves its axis by s^2 w / 2 v until it stands.
+static int32_t deviation_mm(const argus_t *const self) {
+    const argus_knowledge_t *const knowledge = &self->knowledge;
+    const int32_t mm_s = argus_abs(knowledge->vel_right_mm_s + knowledge->vel_left_mm_s) / 2;
+    const int32_t way_mm = mm_s * REACTION_MS / 1000 + mm_s * mm_s / (2 * knowledge->robot->decel_mm_s2);
+    const int32_t turn_cdeg = mm_s > 0 ? way_mm * turn_deg_s(self) * 100 / mm_s : 0;
+    return argus_min(way_mm * argus_min(turn_cdeg, CURVE_MOST_CDEG) / (2 * 100 * DEG_PER_RAD),
+                     DEVIATION_MOST_MM);
+}
+
+static corridor_t corridor(const argus_t *const self, const bool rear) {
+    return (corridor_t){.rear = rear,
+                        .half_mm = argus_robot_half_width_mm(self->knowledge.robot) + BESIDE_MM +
+                                   deviation_mm(self)};
+}
+
+// How far the leading end may go until it touches the nearest place at which the echo may lie; INT32_MAX: it
+// lies beside the way.
+static int32_t on_way_mm(const argus_robot_t *const robot, const int sonar, const int32_t reading_mm,
+                         const corridor_t *const way) {
+    const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
+    int32_t nearest_mm = INT32_MAX;
+    for (int k = -CONE_PLACES; k <= CONE_PLACES; k++) {
+        const int32_t bearing = pose->heading_deg * 100 + robot->cone_deg * 100 * k / (2 * CONE_PLACES);
+        const int32_t x_mm = pose->x_mm + reading_mm * argus_cos(bearing) / ARGUS_TRIG_ONE;
+        const int32_t y_mm = pose->y_mm + reading_mm * argus_sin(bearing) / ARGUS_TRIG_ONE;
+        const int32_t free_mm = way->rear ? -x_mm - robot->rear_mm : x_mm - robot->front_mm;
+        if (argus_abs(y_mm) <= way->half_mm) {
+            nearest_mm = argus_min(nearest_mm, argus_max(free_mm, 0));
+        }
+    }
+    return nearest_mm;
+}
+
+// The shortest of these, less the way driven since.
+static int32_t clear_mm(const argus_knowledge_t *const knowledge, const unsigned looks,
+                        const corridor_t *const way) {
+    int32_t shortest_mm = TRUST_MM;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((looks >> i & 1u) != 0 && argus_usable(knowledge, i)) {
+            const int32_t since_mm = (int32_t)(knowledge->odometer_mm - knowledge->sonar[i].odometer_mm);
+            const int32_t free_mm =
+                on_way_mm(knowledge->robot, i, knowledge->sonar[i].reading_mm, way) - since_mm;
+            shortest_mm = argus_min(shortest_mm, argus_max(free_mm, 0));
+        }
+    }
+    return shortest_mm;
+}
+
+// What was heard twice a moment ago and has left the cones is still there.
+static int32_t remembered_mm(const argus_t *const self, const corridor_t *const way) {
+    const argus_robot_t *const robot = self->knowledge.robot;
+    int32_t nearest_mm = TRUST_MM;
+    for (int i = 0; i < self->echoes.count; i++) {
+        argus_point_t at;
+        if (argus_echoes_near(&self->echoes, &self->knowledge, i, &at) &&
+            argus_abs(at.y_mm) <= way->half_mm) {
+            const int32_t free_mm = way->rear ? -at.x_mm - robot->rear_mm : at.x_mm - robot->front_mm;
+            nearest_mm = free_mm >= 0 ? argus_min(nearest_mm, free_mm) : nearest_mm;
+        }
+    }
+    return nearest_mm;
+}
+
+static int32_t free_mm_of(const argus_t *const self, const unsigned looks, const bool rear) {
+    const corridor_t way = corridor(self, rear);
+    const int32_t heard_mm = clear_mm(&self->knowledge, looks, &way);
+    return argus_rules(self)->remembers ? argus_min(heard_mm, remembered_mm(self, &way)) : heard_mm;
+}
+
+static int32_t face_overhang_mm(const argus_robot_t *const robot) {
+    return robot->front_mm - robot->sonar_face_mm;
+}
+
+// The object range counts from the sonars' faces; `free_mm` from the body.
+static argus_bound_t by_clearance(const argus_guard_t *const guard, const int32_t free_mm,
+                                  const int32_t overhang_mm) {
+    const argus_robot_t *const robot = guard->knowledge->robot;
+    const int32_t way_mm = free_mm + overhang_mm - guard->config->object_range_mm;
+    if (way_mm <= 0) {
+        return closed(ARGUS_BOUND_OBJECT);
+    }
+    const int32_t speed_mm_s =
+        argus_config_speed_mm_s(guard->config, robot, free_mm + face_overhang_mm(robot));
+    if (speed_mm_s < LEAST_MM_S) {
+        return closed(ARGUS_BOUND_OBJECT);
+    }
+    return (argus_bound_t){.speed_mm_s = speed_mm_s, .way_mm = way_mm, .why = ARGUS_BOUND_FREE};
+}
+
+static bool slants(const argus_t *const self) {
+    const unsigned flank = argus_robot_flank(self->knowledge.robot) & ~(unsigned)argus_out(&self->knowledge);
+    const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
+    for (int i = 0; i < self->knowledge.sonars; i++) {
+        if ((flank >> i & 1u) != 0 &&
+            argus_slants_in(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// As where the manager drives itself: beside a wall, and where one ahead is doubted.
+static bool is_careful(const argus_t *const self) {
+    const unsigned ahead = argus_robot_ahead(self->knowledge.robot);
+    return argus_flank_mm(&self->knowledge) <= ARGUS_FLANK_NEAR_MM ||
+           (argus_named(&self->knowledge) & ahead) != 0;
+}
+
+static argus_bound_t leading(const argus_t *const self, const argus_guard_t *const guard) {
+    const argus_knowledge_t *const knowledge = &self->knowledge;
+    if (!argus_guard_sees_ahead(guard) || (argus_guard_is_blind(guard) && !guard->profile->drives_seen)) {
+        return closed(ARGUS_BOUND_UNSEEN);
+    }
+    const unsigned looks = argus_robot_ahead(knowledge->robot) | argus_robot_forward(knowledge->robot);
+    const int32_t overhang_mm = face_overhang_mm(knowledge->robot);
+    argus_bound_t bound = by_clearance(guard, free_mm_of(self, looks, false), overhang_mm);
+    if (bound.speed_mm_s == 0) {
+        return bound;
+    }
+    const int32_t seen_mm = argus_min(argus_guard_seen_mm(guard), TRUST_MM);
+    const int32_t seen_mm_s =
+        argus_config_speed_mm_s(guard->config, knowledge->robot, seen_mm + SEEN_LEFT_MM);
+    if (seen_mm == 0 || seen_mm_s < LEAST_MM_S) {
+        return closed(ARGUS_BOUND_UNSEEN);
+    }
+    if (slants(self)) {
+        return closed(ARGUS_BOUND_OBJECT);
+    }
+    bound.speed_mm_s = argus_min(bound.speed_mm_s, seen_mm_s);
+    bound.way_mm = argus_min(bound.way_mm, seen_mm);
+    if (is_careful(self)) {
+        bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.speed_mm_s);
+    }
+    return bound;
+}
+
+static argus_bound_t trailing(const argus_t *const self, const argus_guard_t *const guard) {
+    const argus_knowledge_t *const knowledge = &self->knowledge;
+    if (!argus_guard_rear_is_watched(guard)) {
+        return closed(ARGUS_BOUND_UNSEEN);
+    }
+    const unsigned looks = argus_robot_astern(knowledge->robot);
+    argus_bound_t bound =
+        by_clearance(guard, free_mm_of(self, looks, true), knowledge->robot->rear_overhang_mm);
+    // The manager itself backs no faster: beside the rear nobody hears a wall that slants in.
+    bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.speed_mm_s);
+    return bound;
+}
+
+// Between the sonars abeam and those of the ends a corner may hide, which a turn would sweep.
+static argus_bound_t in_turn(const argus_t *const self, const argus_guard_t *const guard,
+                             argus_bound_t bound) {
+    const bool near =
+        argus_guard_nearest_mm(guard, 0) <= self->knowledge.robot->swing_radius_mm + TURN_NEAR_MM;
+    if (near && turn_deg_s(self) > TURN_LEAST_DEG_S) {
+        bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.step_speed_mm_s);
+    }
+    return bound;
+}
+
+static bool may_move(const argus_t *const self, const argus_guard_t *const guard) {
+    return guard->linked && !self->orders.stay && !self->orders.locked && !self->orders.shutdown &&
+           argus_robot_is_known(self->knowledge.robot);
+}
+
+argus_bound_t argus_bound_way(const argus_t *const self, const bool ahead) {
+    const argus_guard_t guard = argus_guard(self);
+    const bool leads = ahead != self->knowledge.robot->reversed;
+    const unsigned pressed = leads ? self->knowledge.bumpers_front : self->knowledge.bumpers_rear;
+    if (!may_move(self, &guard)) {
+        return closed(ARGUS_BOUND_HALTED);
+    }
+    if (pressed != 0) {
+        return closed(ARGUS_BOUND_BUMPER);
+    }
+    return in_turn(self, &guard, leads ? leading(self, &guard) : trailing(self, &guard));
+}
+
+// Turning --------------------------------------------------------------------------------------------------
+
+// From the body, were it turned by so much, to a point in the robot's frame of now; negative within.
+static int32_t gap_mm(const argus_robot_t *const robot, const argus_point_t at, const int32_t by_cdeg) {
+    const int32_t c = argus_cos(by_cdeg);
+    const int32_t s = argus_sin(by_cdeg);
+    const int32_t x_mm = (at.x_mm * c + at.y_mm * s) / ARGUS_TRIG_ONE;
+    const int32_t y_mm = (at.y_mm * c - at.x_mm * s) / ARGUS_TRIG_ONE;
+    const int32_t along_mm = argus_max(x_mm - robot->front_mm, -robot->rear_mm - x_mm);
+    return argus_max(along_mm, argus_abs(y_mm) - argus_robot_half_width_mm(robot));
+}
+
+// What is nearer than the room already may stay so near, not come nearer.
+static bool is_met(const argus_robot_t *const robot, const argus_point_t at, const int32_t by_cdeg) {
+    const int32_t parts = argus_abs(by_cdeg) / TURN_PART_CDEG + 1;
+    const int32_t least_mm = argus_min(TURN_ROOM_MM, gap_mm(robot, at, 0) - TURN_NEARER_MM);
+    if (argus_hypot(at.x_mm, at.y_mm) > robot->swing_radius_mm + TURN_ROOM_MM) {
+        return false;
+    }
+    for (int32_t part = 1; part <= parts; part++) {
+        if (gap_mm(robot, at, by_cdeg * part / parts) < least_mm) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// An echo is anywhere in its cone.
+static bool meets_cone(const argus_knowledge_t *const knowledge, const int sonar, const int32_t by_cdeg) {
+    const argus_robot_t *const robot = knowledge->robot;
+    const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
+    const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
+    for (int k = -1; k <= 1; k++) {
+        const int32_t bearing = pose->heading_deg * 100 + robot->cone_deg * 50 * k;
+        const argus_point_t at = {pose->x_mm + reading_mm * argus_cos(bearing) / ARGUS_TRIG_ONE,
+                                  pose->y_mm + reading_mm * argus_sin(bearing) / ARGUS_TRIG_ONE};
+        if (is_met(robot, at, by_cdeg)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool meets_echo(const argus_knowledge_t *const knowledge, const int32_t by_cdeg) {
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (argus_usable(knowledge, i) && meets_cone(knowledge, i, by_cdeg)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool meets_memory(const argus_t *const self, const int32_t by_cdeg) {
+    for (int i = 0; i < self->echoes.count; i++) {
+        argus_point_t at;
+        if (argus_echoes_near(&self->echoes, &self->knowledge, i, &at) &&
+            is_met(self->knowledge.robot, at, by_cdeg)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool argus_bound_may_turn(const argus_t *const self, const int32_t by_cdeg) {
+    const argus_guard_t guard = argus_guard(self);
+    const int32_t cdeg = argus_max(-TURN_MOST_CDEG, argus_min(by_cdeg, TURN_MOST_CDEG));
+    const bool pressed = (self->knowledge.bumpers_front | self->knowledge.bumpers_rear) != 0;
+    return may_move(self, &guard) && !pressed && !meets_echo(&self->knowledge, cdeg) &&
+           !(guard.profile->remembers && meets_memory(self, cdeg));
+}

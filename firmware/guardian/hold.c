@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: MIT
+// VEL, MOVE, VEL2, RVEL and HEAD of a client under S1, S2, S5 and S7.
+#include "guardian/hold.h"
+
+#include <string.h>
+
+#include "adjustment/motion.h"
+#include "knowledge/angle.h"
+#include "supervisor/say.h"
+#include "supervisor/state.h"
+
+#define STEP_MM_S 25    // by so much at least a speed is raised again
+#define DONE_MM 20      // of a MOVE: nothing is left
+#define MORE_MM 100     // that a MOVE is lengthened by at least
+#define LESS_MM 30      // ... and shortened: readings scatter
+#define DONE_DEG 2      // of a HEAD
+#define REACTION_MS 500 // from the reading to the command, of a turn
+#define TURN_DECEL 100  // deg/s2, the robot's own
+#define LOOK_CDEG 6000  // a HEAD is looked at so far ahead
+#define WEAVE_CDEG 1000 // to either side for each sonar of a gap: half the pitch of the ring
+#define WEAVE_GAP 2     // a wider one is not looked into
+#define WOVEN_CDEG 300
+#define WOVEN_SIPS 4
+#define FREE_SIPS 10
+
+static argus_outbox_t *outbox(argus_t *const core) {
+    return &core->session.outbox;
+}
+
+void argus_hold_forget(argus_hold_client_t *const self) {
+    const argus_given_t before = self->given;
+    memset(&self->wish, 0, sizeof self->wish);
+    memset(&self->given, 0, sizeof self->given);
+    self->given.bumpers = before.bumpers;
+    self->given.setv_mm_s = before.setv_mm_s;
+}
+
+// Saying so ------------------------------------------------------------------------------------------------
+
+static void say_once(argus_t *const core, bool *const said, const argus_event_id_t event,
+                     const int32_t value) {
+    if (!*said) {
+        *said = true;
+        argus_say(core, event, ARGUS_NO_SONAR, value);
+    }
+}
+
+static void tell_way(argus_t *const core, argus_given_t *const given, const argus_bound_t *const bound,
+                     const int32_t wanted_mm_s) {
+    if (bound->speed_mm_s == 0) {
+        given->free_sips = 0;
+        say_once(core, &given->held_said, ARGUS_EV_GUARD_HELD, (int32_t)bound->why);
+    } else if (bound->speed_mm_s < argus_abs(wanted_mm_s)) {
+        given->free_sips = 0;
+        say_once(core, &given->slowed_said, ARGUS_EV_GUARD_SLOWED, bound->speed_mm_s);
+    }
+}
+
+// A bound that comes and goes is one.
+static void tell_free(argus_t *const core, argus_given_t *const given) {
+    if (!given->held_said && !given->slowed_said && !given->turn_said) {
+        return;
+    }
+    given->free_sips++;
+    if (given->free_sips >= FREE_SIPS) {
+        given->held_said = given->slowed_said = given->turn_said = false;
+        given->free_sips = 0;
+        argus_say(core, ARGUS_EV_GUARD_FREE, ARGUS_NO_SONAR, 0);
+    }
+}
+
+// The way --------------------------------------------------------------------------------------------------
+
+static void set_speed(argus_t *const core, argus_hold_client_t *const self, const int32_t mm_s) {
+    if (mm_s > 0 && mm_s != self->given.setv_mm_s && argus_outbox_int(outbox(core), ARCOS_CMD_SETV, mm_s)) {
+        self->given.setv_mm_s = mm_s;
+    }
+}
+
+static void stand(argus_t *const core, argus_hold_client_t *const self, const bool anyway) {
+    argus_given_t *const given = &self->given;
+    if (!given->rolls && !anyway) {
+        return;
+    }
+    if (argus_outbox_int(outbox(core), ARCOS_CMD_VEL, 0)) {
+        given->rolls = given->moves = false;
+        given->mm_s = given->half_mm_s = given->move_mm = 0;
+    }
+}
+
+// As much of the speed as the bound lets, in steps; what is given stays while it may.
+static int32_t bounded(const argus_bound_t *const bound, const int32_t wanted_mm_s,
+                       const int32_t given_mm_s) {
+    const int32_t most_mm_s = bound->speed_mm_s;
+    const int32_t wanted = argus_abs(wanted_mm_s);
+    const bool same_way = (wanted_mm_s < 0) == (given_mm_s < 0);
+    const int32_t given = same_way ? argus_abs(given_mm_s) : 0;
+    int32_t speed = argus_min(wanted, most_mm_s);
+    if (speed < wanted) {
+        speed = argus_max(speed / STEP_MM_S * STEP_MM_S, argus_min(speed, STEP_MM_S));
+        speed = given <= most_mm_s && given > speed ? given : speed;
+    }
+    return wanted_mm_s < 0 ? -speed : speed;
+}
+
+static int8_t in_units(const int32_t mm_s) {
+    return (int8_t)argus_max(-127, argus_min(mm_s / 20, 127));
+}
+
+static bool send_pair(argus_t *const core, const int32_t mm_s, const int32_t half_mm_s) {
+    const uint8_t right = (uint8_t)in_units(mm_s + half_mm_s);
+    const uint8_t left = (uint8_t)in_units(mm_s - half_mm_s);
+    const uint8_t data[] = {ARCOS_CMD_VEL2, ARCOS_ARG_POSITIVE, right, left};
+    return argus_outbox_packet(outbox(core), data, sizeof data);
+}
+
+static bool turns_into(const argus_t *const core, const int32_t deg_s) {
+    const int32_t speed = argus_abs(deg_s);
+    const int32_t ahead_cdeg = speed * REACTION_MS / 10 + speed * speed * 100 / (2 * TURN_DECEL);
+    return deg_s != 0 && !argus_bound_may_turn(core, deg_s < 0 ? -ahead_cdeg : ahead_cdeg);
+}
+
+// Both wheels slowed alike: the curve stays. A turn on the spot is a turn.
+static void give_pair(argus_t *const core, argus_hold_client_t *const self, const argus_bound_t *const bound,
+                      const bool anyway) {
+    const argus_wish_t *const wish = &self->wish;
+    argus_given_t *const given = &self->given;
+    const int32_t track_mm = core->knowledge.robot->track_mm;
+    int32_t mm_s = bounded(bound, wish->mm_s, given->mm_s);
+    int32_t half_mm_s =
+        wish->mm_s != 0 ? wish->half_mm_s * argus_abs(mm_s) / argus_abs(wish->mm_s) : wish->half_mm_s;
+    if (turns_into(core, half_mm_s * 2 * 57 / argus_max(1, track_mm))) {
+        say_once(core, &given->turn_said, ARGUS_EV_GUARD_TURN_HELD, half_mm_s);
+        given->free_sips = 0;
+        half_mm_s = 0;
+    }
+    if ((anyway || mm_s != given->mm_s || half_mm_s != given->half_mm_s) &&
+        send_pair(core, mm_s, half_mm_s)) {
+        given->mm_s = mm_s;
+        given->half_mm_s = half_mm_s;
+        given->rolls = mm_s != 0 || half_mm_s != 0;
+        given->moves = false;
+    }
+}
+
+static void give_speed(argus_t *const core, argus_hold_client_t *const self, const argus_bound_t *const bound,
+                       const bool anyway) {
+    argus_given_t *const given = &self->given;
+    const int32_t mm_s = bounded(bound, self->wish.mm_s, given->moves ? 0 : given->mm_s);
+    set_speed(core, self, self->setv_mm_s);
+    if ((anyway || given->moves || mm_s != given->mm_s) &&
+        argus_outbox_int(outbox(core), ARCOS_CMD_VEL, mm_s)) {
+        given->mm_s = mm_s;
+        given->rolls = mm_s != 0;
+        given->moves = false;
+    }
+}
+
+static int32_t left_of(const argus_t *const core, const int32_t mm, const uint32_t odometer_mm) {
+    const int32_t driven_mm = (int32_t)(core->knowledge.odometer_mm - odometer_mm);
+    return mm < 0 ? argus_min(0, mm + driven_mm) : argus_max(0, mm - driven_mm);
+}
+
+static void send_move(argus_t *const core, argus_hold_client_t *const self, const int32_t mm,
+                      const int32_t mm_s) {
+    argus_given_t *const given = &self->given;
+    set_speed(core, self, mm_s);
+    if (argus_outbox_int(outbox(core), ARCOS_CMD_MOVE, mm)) {
+        given->rolls = given->moves = true;
+        given->move_mm = mm;
+        given->odometer_mm = core->knowledge.odometer_mm;
+    }
+}
+
+// A MOVE ends where it should without us, and is lengthened as more is seen.
+static void give_move(argus_t *const core, argus_hold_client_t *const self, const argus_bound_t *const bound,
+                      const bool anyway) {
+    argus_given_t *const given = &self->given;
+    const int32_t left_mm = left_of(core, self->wish.left_mm, self->wish.odometer_mm);
+    const int32_t given_mm = given->moves ? left_of(core, given->move_mm, given->odometer_mm) : 0;
+    const int32_t mm = argus_min(argus_abs(left_mm), bound->way_mm);
+    const int32_t mm_s = argus_min(self->setv_mm_s, bound->speed_mm_s / STEP_MM_S * STEP_MM_S);
+    if (!anyway && argus_abs(left_mm) <= DONE_MM) {
+        self->wish.way = ARGUS_WISH_REST;
+        return;
+    }
+    if (mm_s <= 0 || mm <= 0) {
+        stand(core, self, anyway);
+        return;
+    }
+    const bool longer =
+        argus_abs(given_mm) + DONE_MM < argus_abs(left_mm) && mm > argus_abs(given_mm) + MORE_MM;
+    const bool shorter = mm + LESS_MM < argus_abs(given_mm);
+    const bool slower = given->moves && mm_s < given->setv_mm_s;
+    if (anyway || !given->moves || longer || shorter || slower) {
+        send_move(core, self, left_mm < 0 ? -mm : mm, mm_s);
+    }
+}
+
+static bool wants_ahead(const argus_t *const core, const argus_wish_t *const wish) {
+    return wish->way == ARGUS_WISH_MOVE ? left_of(core, wish->left_mm, wish->odometer_mm) > 0
+                                        : wish->mm_s > 0;
+}
+
+static void give_way(argus_t *const core, argus_hold_client_t *const self, const bool anyway) {
+    const argus_wish_t *const wish = &self->wish;
+    const bool moves = wish->way == ARGUS_WISH_MOVE;
+    if (wish->way == ARGUS_WISH_REST) { // the last of a MOVE the robot drives by itself
+        if (anyway) {
+            stand(core, self, true);
+        }
+        return;
+    }
+    const argus_bound_t bound = argus_bound_way(core, wants_ahead(core, wish));
+    if (moves || wish->mm_s != 0) {
+        tell_way(core, &self->given, &bound, moves ? self->setv_mm_s : wish->mm_s);
+    }
+    if (moves) {
+        give_move(core, self, &bound, anyway);
+    } else if (wish->paired) {
+        give_pair(core, self, &bound, anyway);
+    } else {
+        give_speed(core, self, &bound, anyway);
+    }
+}
+
+// The turn -------------------------------------------------------------------------------------------------
+
+static int32_t raw_cdeg(const argus_t *const core) {
+    return argus_angle_wrap(core->knowledge.pose.heading_cdeg - argus_heading_offset_cdeg(&core->knowledge));
+}
+
+static int32_t left_cdeg(const argus_t *const core, const argus_wish_t *const wish) {
+    return argus_angle_wrap(wish->heading_deg * 100 - raw_cdeg(core));
+}
+
+static bool is_turn_closed(const argus_t *const core, const argus_wish_t *const wish) {
+    if (wish->turn == ARGUS_WISH_RVEL) {
+        return turns_into(core, wish->deg_s);
+    }
+    const int32_t left = left_cdeg(core, wish);
+    const int32_t looked = argus_max(-LOOK_CDEG, argus_min(left, LOOK_CDEG));
+    return argus_abs(left) > DONE_DEG * 100 && !argus_bound_may_turn(core, looked);
+}
+
+static void send_turn(argus_t *const core, const argus_wish_t *const wish) {
+    if (wish->turn == ARGUS_WISH_HEAD) {
+        argus_outbox_int(outbox(core), ARCOS_CMD_HEAD, wish->heading_deg);
+    } else {
+        argus_outbox_int(outbox(core), ARCOS_CMD_RVEL, wish->turn == ARGUS_WISH_RVEL ? wish->deg_s : 0);
+    }
+}
+
+static void give_turn(argus_t *const core, argus_hold_client_t *const self, const bool anyway) {
+    argus_given_t *const given = &self->given;
+    const argus_wish_t *const wish = &self->wish;
+    const bool closed = wish->turn != ARGUS_WISH_STRAIGHT && is_turn_closed(core, wish);
+    if (closed) {
+        given->free_sips = 0;
+        say_once(core, &given->turn_said, ARGUS_EV_GUARD_TURN_HELD,
+                 wish->turn == ARGUS_WISH_RVEL ? wish->deg_s : left_cdeg(core, wish) / 100);
+    }
+    if (closed && (anyway || !given->turn_held)) {
+        argus_outbox_int(outbox(core), ARCOS_CMD_RVEL, 0);
+    } else if (!closed && (anyway || given->turn_held)) {
+        send_turn(core, wish);
+    }
+    given->turn_held = closed;
+}
+
+// Weaving --------------------------------------------------------------------------------------------------
+
+// Ahead with a bearing ahead blind, and nothing said of a turn: what nobody sees is never free, so the
+// heading swings, as when the manager drives itself.
+static bool should_weave(const argus_t *const core, const argus_wish_t *const wish) {
+    const argus_guard_t guard = argus_guard(core);
+    return wish->way != ARGUS_WISH_REST && wish->turn == ARGUS_WISH_STRAIGHT && !wish->paired &&
+           guard.profile->drives_seen && argus_guard_is_blind(&guard) && argus_wanted_sonars(core) != 0 &&
+           wants_ahead(core, wish) != core->knowledge.robot->reversed;
+}
+
+static int32_t swing_cdeg(const argus_t *const core) {
+    const argus_guard_t guard = argus_guard(core);
+    return argus_min(argus_guard_gap(&guard), WEAVE_GAP) * WEAVE_CDEG;
+}
+
+static int32_t woven_cdeg(argus_given_t *const given, const argus_t *const core) {
+    const int32_t to_cdeg = argus_angle_wrap(given->base_cdeg + given->weave * swing_cdeg(core));
+    const bool there = argus_angle_abs_diff(core->knowledge.pose.heading_cdeg, to_cdeg) <= WOVEN_CDEG;
+    given->woven_sips = there ? (uint8_t)(given->woven_sips + 1) : 0;
+    if (given->woven_sips < WOVEN_SIPS) {
+        return to_cdeg;
+    }
+    given->weave = (int8_t)-given->weave;
+    given->woven_sips = 0;
+    return argus_angle_wrap(given->base_cdeg + given->weave * swing_cdeg(core));
+}
+
+static void begin_weaving(argus_t *const core, argus_given_t *const given) {
+    given->weave = 1;
+    given->woven_sips = 0;
+    given->base_cdeg = core->knowledge.pose.heading_cdeg;
+    argus_say(core, ARGUS_EV_GUARD_LOOKS, ARGUS_NO_SONAR, swing_cdeg(core) / 100);
+}
+
+static void weave(argus_t *const core, argus_given_t *const given) {
+    if (given->weave == 0) {
+        begin_weaving(core, given);
+    }
+    const int32_t to_cdeg = woven_cdeg(given, core);
+    if (argus_bound_may_turn(core, argus_angle_wrap(to_cdeg - core->knowledge.pose.heading_cdeg))) {
+        argus_motion_steer(outbox(core), &core->knowledge, to_cdeg);
+    }
+}
+
+static void end_weaving(argus_t *const core, argus_hold_client_t *const self) {
+    if (self->given.weave != 0 && self->wish.turn == ARGUS_WISH_STRAIGHT && !self->wish.paired) {
+        argus_motion_steer(outbox(core), &core->knowledge, self->given.base_cdeg);
+    }
+    self->given.weave = 0;
+}
+
+// ----------------------------------------------------------------------------------------------------------
+
+void argus_hold_way(argus_t *const core, argus_hold_client_t *const self) {
+    give_way(core, self, true);
+}
+
+// RVEL 0, repeated, must not end the looks.
+void argus_hold_turn(argus_t *const core, argus_hold_client_t *const self) {
+    if (self->given.weave == 0 || self->wish.turn != ARGUS_WISH_STRAIGHT) {
+        give_turn(core, self, true);
+    }
+}
+
+void argus_hold_both(argus_t *const core, argus_hold_client_t *const self) {
+    give_way(core, self, true);
+}
+
+// S2: once for each contact; what the client wanted is over.
+static bool is_hit(argus_t *const core, argus_given_t *const given) {
+    const uint16_t pressed = argus_built_bumpers(&core->knowledge);
+    const bool fresh = (pressed & ~(unsigned)given->bumpers) != 0;
+    given->bumpers = pressed;
+    return fresh;
+}
+
+void argus_hold_watch(argus_t *const core, argus_hold_client_t *const self) {
+    if (is_hit(core, &self->given)) {
+        argus_outbox_urgent(outbox(core), ARCOS_CMD_E_STOP);
+        argus_hold_forget(self);
+        argus_say(core, ARGUS_EV_GUARD_HELD, ARGUS_NO_SONAR, (int32_t)ARGUS_BOUND_BUMPER);
+        return;
+    }
+    tell_free(core, &self->given);
+    give_way(core, self, false);
+    if (should_weave(core, &self->wish)) {
+        weave(core, &self->given);
+    } else {
+        end_weaving(core, self);
+        if (!self->wish.paired) {
+            give_turn(core, self, false);
+        }
+    }
+}

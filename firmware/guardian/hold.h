@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Gives the robot what a client wants of its wheels, within the bounds, and takes it back as they close.
+#ifndef ARGUS_HOLD_H
+#define ARGUS_HOLD_H
+
+#include "guardian/bounds.h"
+#include "guardian/wish.h"
+#include "supervisor/core.h"
+
+// What the robot was told last, and what was said of it.
+typedef struct {
+    int32_t mm_s;         // VEL, or the way of VEL2
+    int32_t half_mm_s;    // VEL2
+    bool rolls;           // it moves along by our word
+    bool moves;           // ... by MOVE
+    int32_t move_mm;      // MOVE, from there on
+    uint32_t odometer_mm; // ... where it was given
+    int32_t setv_mm_s;    // SETV
+    bool turn_held;       // RVEL 0 in the place of a turn
+    int8_t weave;         // side that the heading swings to so that others see a blind bearing, +1 left
+    uint8_t woven_sips;   // that it has been there
+    int32_t base_cdeg;    // ... about this heading, course frame
+    uint16_t bumpers;     // pressed at the last SIP
+    bool slowed_said;     // since the last GUARD_FREE
+    bool held_said;
+    bool turn_said;
+    uint8_t free_sips; // without any bound, one after the other
+} argus_given_t;
+
+typedef struct {
+    argus_wish_t wish;
+    argus_given_t given;
+    int32_t setv_mm_s; // the client's own SETV: what MOVE drives at, and VEL at most
+} argus_hold_client_t;
+
+// Nothing is wanted any more, and nothing is sent for that.
+void argus_hold_forget(argus_hold_client_t *self);
+
+// After a command about the way, the turn, or both: it is passed on as far as it may be.
+void argus_hold_way(argus_t *core, argus_hold_client_t *self);
+void argus_hold_turn(argus_t *core, argus_hold_client_t *self);
+void argus_hold_both(argus_t *core, argus_hold_client_t *self);
+
+// After each SIP, and when an operator stops the robot: what was given is taken back or given again.
+void argus_hold_watch(argus_t *core, argus_hold_client_t *self);
+
+#endif

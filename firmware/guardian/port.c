@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: MIT
+// The session of a guard port's client, and what passes either way.
+#include "guardian/port.h"
+
+#include <string.h>
+
+#include "guardian/rewrite.h"
+#include "guardian/send.h"
+#include "knowledge/angle.h"
+#include "supervisor/orders.h"
+#include "supervisor/say.h"
+
+#define WATCHDOG_MS 2000u // of a robot that has not told
+#define ALL_ARRAYS 0x0Fu
+#define ORIGIN_SIPS 3 // in which SETO shows
+#define PART_MS 3000u // after which the motors are cut, at rest or not
+#define PARTED_RESET 3
+#define PARTED_SILENT 2
+#define PARTED_CLOSED 1
+
+_Static_assert(sizeof(argus_port_t) <= sizeof(argus_port_storage_t), "ARGUS_PORT_BYTES is too small");
+
+static uint32_t watchdog_ms(const argus_t *const core) {
+    const uint32_t told_ms = core->session.has_robot ? core->session.robot.watchdog_ms : 0;
+    return told_ms > 0 ? told_ms : WATCHDOG_MS;
+}
+
+// The client goes -------------------------------------------------------------------------------------------
+
+// What it had the robot send beside the SIPs, and how it had it move, ends with it.
+static void give_back(argus_t *const core, argus_port_t *const self) {
+    argus_send_streams_off(core, self->streams);
+    self->streams = 0;
+    if (self->drives) {
+        argus_outbox_urgent(&core->session.outbox, ARCOS_CMD_STOP);
+        argus_send_own_settings(core);
+        self->parting = true;
+        self->parted_ms = core->now_ms;
+    }
+    self->drives = false;
+    argus_hold_forget(&self->hold);
+}
+
+static void close_session(argus_t *const core, argus_port_t *const self) {
+    if (self->phase == ARGUS_PORT_OPEN) {
+        argus_say(core, ARGUS_EV_GUARD_CLOSED, ARGUS_NO_SONAR, (int32_t)(self->packets & 0x7FFFFFFFu));
+        give_back(core, self);
+    }
+    self->phase = ARGUS_PORT_WAIT;
+}
+
+// Without a word.
+static void lose(argus_t *const core, argus_port_t *const self, const int32_t why) {
+    if (self->phase == ARGUS_PORT_OPEN) {
+        argus_say(core, ARGUS_EV_GUARD_LOST, ARGUS_NO_SONAR, why);
+        give_back(core, self);
+    }
+    self->phase = ARGUS_PORT_WAIT;
+    if (why != PARTED_SILENT) {
+        argus_parser_flush(&self->from_client);
+        self->out_length = 0;
+    }
+}
+
+// As at the end of a robot's own session, the motors go off; not if the manager drives by now.
+static void part(argus_t *const core, argus_port_t *const self) {
+    const bool due = argus_at_rest(&core->knowledge) || core->now_ms - self->parted_ms >= PART_MS;
+    if (!core->orders.passive || self->drives) {
+        self->parting = false;
+    } else if (due) {
+        self->parting = !argus_outbox_int(&core->session.outbox, ARCOS_CMD_ENABLE, 0);
+    }
+}
+
+// The client comes ------------------------------------------------------------------------------------------
+
+static void open_session(argus_t *const core, argus_port_t *const self) {
+    self->phase = ARGUS_PORT_OPEN;
+    self->arrays = ALL_ARRAYS;
+    self->packets = 0;
+    self->denied = false;
+    self->parting = false;
+    memset(&self->settings, 0, sizeof self->settings);
+    argus_hold_forget(&self->hold);
+    argus_say(core, ARGUS_EV_GUARD_OPEN, ARGUS_NO_SONAR, 0);
+}
+
+static void answer_identity(const argus_t *const core, argus_port_t *const self) {
+    const char *const texts[] = {core->session.name, core->session.robot_class, core->session.subclass};
+    uint8_t data[1 + 3 * ARGUS_NAME_MAX];
+    size_t count = 0;
+    data[count++] = ARCOS_SYNC_SYNC2;
+    for (int i = 0; i < 3; i++) {
+        for (const char *c = texts[i]; *c != '\0'; c++) {
+            data[count++] = (uint8_t)*c;
+        }
+        data[count++] = 0;
+    }
+    argus_send_client(self, data, count);
+}
+
+// The next SYNC or the same again; SYNC0 always begins anew, any other out of its order does, too.
+static void take_sync(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
+    const uint8_t sync = packet->data[0];
+    if (sync == ARCOS_CMD_OPEN && self->phase == ARGUS_PORT_SYNC2) {
+        open_session(core, self);
+    } else if (sync <= ARCOS_SYNC_SYNC2 &&
+               (sync == ARCOS_SYNC_SYNC0 || sync == self->phase || sync + 1 == self->phase)) {
+        self->phase = (uint8_t)(ARGUS_PORT_SYNC0 + sync);
+        if (sync == ARCOS_SYNC_SYNC2) {
+            answer_identity(core, self);
+        } else {
+            argus_send_client(self, packet->data, 1);
+        }
+    } else if (sync <= ARCOS_SYNC_SYNC2) {
+        self->phase = ARGUS_PORT_WAIT;
+    }
+}
+
+// Its commands ----------------------------------------------------------------------------------------------
+
+static void refuse(argus_t *const core, argus_port_t *const self, const uint8_t command) {
+    self->refused++;
+    argus_say(core, ARGUS_EV_GUARD_REFUSED, ARGUS_NO_SONAR, command);
+}
+
+// The first motion that it asks for ends the manager's own course; true: it may.
+static bool take_wheel(argus_t *const core, argus_port_t *const self) {
+    if (self->drives) {
+        return true;
+    }
+    if (self->denied) {
+        return false;
+    }
+    if (!core->orders.passive) {
+        argus_obey(core, ARGUS_OP_PASSIVE, 0);
+    }
+    self->drives = true;
+    self->parting = false;
+    argus_say(core, ARGUS_EV_GUARD_DRIVES, ARGUS_NO_SONAR, 0);
+    argus_send_settings(core, &self->settings);
+    self->hold.setv_mm_s = self->settings.setv_mm_s;
+    self->hold.given.setv_mm_s = self->settings.setv_mm_s;
+    return true;
+}
+
+static int32_t raw_deg(const argus_knowledge_t *const knowledge) {
+    const int32_t cdeg =
+        argus_angle_wrap(knowledge->pose.heading_cdeg - argus_heading_offset_cdeg(knowledge));
+    return (cdeg + (cdeg >= 0 ? 50 : -50)) / 100;
+}
+
+static void take_motion(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet,
+                        const argus_topic_t topic) {
+    if (!self->drives && !argus_wish_moves(packet)) {
+        return; // it stands as far as the client is concerned
+    }
+    if (!take_wheel(core, self)) {
+        refuse(core, self, packet->data[0]);
+        return;
+    }
+    argus_wish_take(&self->hold.wish, packet, core->knowledge.odometer_mm, raw_deg(&core->knowledge));
+    if (topic == ARGUS_TOPIC_TURN) {
+        argus_hold_turn(core, &self->hold);
+    } else if (topic == ARGUS_TOPIC_WAY) {
+        argus_hold_way(core, &self->hold);
+    } else {
+        argus_hold_both(core, &self->hold);
+    }
+}
+
+static void take_stop(argus_t *const core, argus_port_t *const self, const uint8_t command) {
+    if (!core->orders.passive) {
+        argus_obey(core, ARGUS_OP_STOP, 0); // whoever sees that it must stand is heard
+    }
+    argus_hold_forget(&self->hold);
+    argus_outbox_urgent(&core->session.outbox, command == ARCOS_CMD_STOP ? ARCOS_CMD_STOP : ARCOS_CMD_E_STOP);
+}
+
+static void take_enable(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
+    const bool on = argus_wish_argument(packet) != 0;
+    if (on && !take_wheel(core, self)) {
+        refuse(core, self, packet->data[0]);
+    } else if (on || self->drives) {
+        argus_hold_forget(&self->hold);
+        argus_send_robot(core, packet);
+    }
+}
+
+static void take_setting(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
+    argus_send_note(&self->settings, packet->data[0], argus_wish_argument(packet));
+    if (self->drives) {
+        argus_send_setting(core, packet->data[0], argus_wish_argument(packet));
+        self->hold.setv_mm_s = self->settings.setv_mm_s;
+        self->hold.given.setv_mm_s =
+            packet->data[0] == ARCOS_CMD_SETV ? self->settings.setv_mm_s : self->hold.given.setv_mm_s;
+    }
+}
+
+static void take_origin(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
+    if (!core->orders.passive) {
+        refuse(core, self, packet->data[0]); // the manager steers by it
+        return;
+    }
+    argus_knowledge_origin_due(&core->knowledge);
+    self->origin = true;
+    self->origin_sips = 0;
+    self->hold.wish.heading_taken = false;
+    argus_send_robot(core, packet);
+}
+
+// Twice the array, and 1 for on; array 0: all. The robot's own go on.
+static void take_sonar(argus_port_t *const self, const int32_t argument) {
+    const unsigned array = (unsigned)argument >> 1 & 7u;
+    const unsigned mask = array == 0 ? ALL_ARRAYS : 1u << (array - 1) & ALL_ARRAYS;
+    self->arrays = (uint8_t)((argument & 1) != 0 ? self->arrays | mask : self->arrays & ~mask);
+}
+
+static void take_rest(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet,
+                      const argus_topic_t topic) {
+    switch (topic) {
+    case ARGUS_TOPIC_SETTING:
+        take_setting(core, self, packet);
+        break;
+    case ARGUS_TOPIC_ORIGIN:
+        take_origin(core, self, packet);
+        break;
+    case ARGUS_TOPIC_SONAR:
+        take_sonar(self, argus_wish_argument(packet));
+        break;
+    case ARGUS_TOPIC_KEPT:
+        refuse(core, self, packet->data[0]);
+        break;
+    case ARGUS_TOPIC_STREAM:
+        self->streams |= argus_send_stream(packet->data[0], argus_wish_argument(packet));
+        argus_send_robot(core, packet);
+        break;
+    default:
+        argus_send_robot(core, packet);
+        break;
+    }
+}
+
+static void take_command(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
+    const uint8_t command = packet->data[0];
+    const argus_topic_t topic = argus_topic(command);
+    self->packets++;
+    switch (topic) {
+    case ARGUS_TOPIC_SESSION:
+        if (command == ARCOS_CMD_CLOSE || command == ARCOS_CMD_RESET) {
+            close_session(core, self);
+        }
+        break;
+    case ARGUS_TOPIC_WAY:
+    case ARGUS_TOPIC_TURN:
+    case ARGUS_TOPIC_BOTH:
+        take_motion(core, self, packet, topic);
+        break;
+    case ARGUS_TOPIC_STOP:
+        take_stop(core, self, command);
+        break;
+    case ARGUS_TOPIC_ENABLE:
+        take_enable(core, self, packet);
+        break;
+    default:
+        take_rest(core, self, packet, topic);
+        break;
+    }
+}
+
+static bool is_robot_there(const argus_t *const core) {
+    return argus_session_is_open(&core->session) && !core->orders.shutdown;
+}
+
+static void take_client(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
+    self->heard_ms = core->now_ms;
+    if (!is_robot_there(core)) {
+        return; // as a robot without power
+    }
+    if (self->phase == ARGUS_PORT_OPEN) {
+        take_command(core, self, packet);
+    } else {
+        take_sync(core, self, packet);
+    }
+}
+
+static void hear_client(argus_t *const core, argus_port_t *const self, const argus_port_io_t *const io) {
+    argus_packet_t packet;
+    size_t taken = 0;
+    for (;;) {
+        while (argus_parser_next(&self->from_client, core->now_ms, &packet)) {
+            take_client(core, self, &packet);
+        }
+        if (taken >= io->client_count) {
+            return;
+        }
+        taken +=
+            argus_parser_push(&self->from_client, core->now_ms, io->client + taken, io->client_count - taken);
+    }
+}
+
+// The robot's packets ---------------------------------------------------------------------------------------
+
+static bool is_for_client(const uint8_t type) {
+    return type > ARCOS_SYNC_SYNC2 && type != ARCOS_TYPE_RESET_NOTICE && type != ARCOS_TYPE_RESET_NOTICE2;
+}
+
+static bool is_sip(const uint8_t type) {
+    return type == ARCOS_TYPE_SIP_STATIONARY || type == ARCOS_TYPE_SIP_MOVING;
+}
+
+static void pass_sip(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet,
+                     const argus_readings_t readings) {
+    uint8_t data[ARCOS_FRAME_COUNT_MAX];
+    const argus_rewrite_t how = {.readings = readings, .arrays = self->arrays};
+    const size_t count = argus_rewrite_sip(core, &how, packet->data, packet->count, data);
+    if (count > 0 && argus_send_client(self, data, count)) {
+        self->sips++;
+    }
+}
+
+static void count_origin(argus_t *const core, argus_port_t *const self) {
+    self->origin_sips++;
+    if (self->origin && self->origin_sips > ORIGIN_SIPS) {
+        core->knowledge.origin_due = false;
+        self->origin = false;
+    }
+}
+
+// An operator has made the manager active: the robot is its own again.
+static void yield(argus_t *const core, argus_port_t *const self) {
+    if (self->drives && !core->orders.passive) {
+        self->drives = false;
+        self->denied = true;
+        argus_hold_forget(&self->hold);
+        argus_send_own_settings(core);
+    }
+}
+
+static void take_robot(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet,
+                       const argus_readings_t readings) {
+    const uint8_t type = packet->data[0];
+    if (self->phase != ARGUS_PORT_OPEN || !is_for_client(type)) {
+        return;
+    }
+    if (is_sip(type)) {
+        pass_sip(core, self, packet, readings);
+        count_origin(core, self);
+    } else {
+        argus_send_client(self, packet->data, packet->count);
+    }
+}
+
+static bool hear_robot(argus_t *const core, argus_port_t *const self, const argus_port_io_t *const io) {
+    argus_packet_t packet;
+    size_t taken = 0;
+    bool news = false;
+    for (;;) {
+        while (argus_parser_next(&self->from_robot, core->now_ms, &packet)) {
+            news = news || is_sip(packet.data[0]);
+            take_robot(core, self, &packet, io->readings);
+        }
+        if (taken >= io->robot_count) {
+            return news;
+        }
+        taken +=
+            argus_parser_push(&self->from_robot, core->now_ms, io->robot + taken, io->robot_count - taken);
+    }
+}
+
+// One pass --------------------------------------------------------------------------------------------------
+
+static void watch_client(argus_t *const core, argus_port_t *const self, const bool there) {
+    if (self->there && !there) {
+        lose(core, self, PARTED_CLOSED);
+    }
+    self->there = there;
+    if (self->phase == ARGUS_PORT_OPEN && !is_robot_there(core)) {
+        lose(core, self, PARTED_RESET);
+    }
+}
+
+// A robot's own watchdog leaves the session open; so does this one.
+static void watch_silence(argus_t *const core, argus_port_t *const self) {
+    const bool silent = core->now_ms - self->heard_ms >= watchdog_ms(core);
+    const bool wants = self->hold.wish.way != ARGUS_WISH_REST ||
+                       self->hold.wish.turn != ARGUS_WISH_STRAIGHT || self->hold.given.rolls;
+    if (self->phase == ARGUS_PORT_OPEN && self->drives && wants && silent) {
+        argus_say(core, ARGUS_EV_GUARD_LOST, ARGUS_NO_SONAR, PARTED_SILENT);
+        argus_outbox_urgent(&core->session.outbox, ARCOS_CMD_STOP);
+        argus_hold_forget(&self->hold);
+    }
+}
+
+static void watch_motion(argus_t *const core, argus_port_t *const self, const bool news) {
+    const bool stays = core->orders.stay && !self->stayed;
+    self->stayed = core->orders.stay;
+    yield(core, self);
+    if (self->phase == ARGUS_PORT_OPEN && self->drives && core->stalled) {
+        argus_hold_forget(&self->hold); // its own session sends VEL 0 and RVEL 0
+    } else if (self->phase == ARGUS_PORT_OPEN && self->drives && (news || stays)) {
+        argus_hold_watch(core, &self->hold);
+    }
+    if (self->parting && news) {
+        part(core, self);
+    }
+}
+
+static size_t hand_out(argus_port_t *const self, const argus_port_io_t *const io) {
+    const size_t count = self->out_length < io->capacity ? self->out_length : io->capacity;
+    if (count > 0) {
+        memcpy(io->out, self->out, count);
+        self->out_length = (uint16_t)(self->out_length - count);
+        memmove(self->out, self->out + count, self->out_length);
+    }
+    return count;
+}
+
+size_t argus_guard_port(argus_t *const core, argus_port_storage_t *const storage, const uint32_t now_ms,
+                        const argus_port_io_t *const io) {
+    argus_port_t *const self = (argus_port_t *)storage;
+    core->now_ms = now_ms;
+    watch_client(core, self, io->there);
+    hear_client(core, self, io);
+    const bool news = hear_robot(core, self, io);
+    watch_silence(core, self);
+    watch_motion(core, self, news);
+    return hand_out(self, io);
+}

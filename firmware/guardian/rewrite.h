@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// SIPs as a client gets them: without the readings of sonars that are out, or with what others heard there.
+#ifndef ARGUS_REWRITE_H
+#define ARGUS_REWRITE_H
+
+#include "supervisor/core.h"
+
+// What a client wants of a SIP.
+typedef struct {
+    argus_readings_t readings;
+    uint8_t arrays; // bit k: it wants the sonars of array k, from 0
+} argus_rewrite_t;
+
+// Data of a SIP to data for the client, which are never longer; returns how many, 0: it is no SIP that is
+// whole. Readings of sonars beyond those that are managed, and all else, stay as they are. Cost: one pass;
+// `cover`: one over the ray log for each reading that is covered.
+size_t argus_rewrite_sip(const argus_t *self, const argus_rewrite_t *how, const uint8_t *data, size_t count,
+                         uint8_t *out);
+
+// The reading that a sonar that is out is covered with: from its transducer to the nearest echo that a
+// trusted sonar heard within its cone in the last 2 s, and within 2 m of itself; 0: there is none.
+int32_t argus_rewrite_cover_mm(const argus_t *self, int sonar);
+
+#endif

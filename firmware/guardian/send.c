@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// Frames and sends what a guard port has to say.
+#include "guardian/send.h"
+
+#include <string.h>
+
+#include "knowledge/angle.h"
+
+#define SETV_MM_S 750 // a robot's own, where CONFIGpac has not told
+#define ACCEL_MM_S2 300
+#define SETRV_DEG_S 100
+#define TURN_ACCEL_DEG_S2 100
+
+static const uint8_t streams_of[] = {ARCOS_CMD_ENCODER, ARCOS_CMD_IOREQUEST,  ARCOS_CMD_JOYREQUEST,
+                                     ARCOS_CMD_GYRO,    ARCOS_CMD_IMUREQUEST, ARCOS_CMD_GRIPREQUEST};
+
+bool argus_send_client(argus_port_t *const port, const uint8_t *const data, const size_t count) {
+    const size_t total = ARCOS_FRAME_OVERHEAD + count + 2;
+    if (port->out_length + total > sizeof port->out || count + 2 > ARCOS_FRAME_COUNT_MAX) {
+        port->lost++;
+        return false;
+    }
+    uint8_t *const packet = port->out + port->out_length;
+    const uint16_t checksum = argus_frame_checksum(data, count);
+    packet[0] = ARCOS_FRAME_HEADER0;
+    packet[1] = ARCOS_FRAME_HEADER1;
+    packet[2] = (uint8_t)(count + 2);
+    memcpy(packet + ARCOS_FRAME_OVERHEAD, data, count);
+    packet[total - 2] = (uint8_t)(checksum >> 8);
+    packet[total - 1] = (uint8_t)(checksum & 0xFF);
+    port->out_length = (uint16_t)(port->out_length + total);
+    return true;
+}
+
+void argus_send_robot(argus_t *const core, const argus_packet_t *const packet) {
+    argus_outbox_packet(&core->session.outbox, packet->data, packet->count);
+}
+
+void argus_send_note(argus_port_settings_t *const settings, const uint8_t command, const int32_t argument) {
+    switch (command) {
+    case ARCOS_CMD_SETV:
+        settings->setv_mm_s = argus_abs(argument);
+        break;
+    case ARCOS_CMD_SETRV:
+        settings->setrv_deg_s = argus_abs(argument);
+        break;
+    case ARCOS_CMD_SETA:
+        *(argument < 0 ? &settings->decel_mm_s2 : &settings->accel_mm_s2) = argus_abs(argument);
+        break;
+    default:
+        *(argument < 0 ? &settings->turn_decel_deg_s2 : &settings->turn_accel_deg_s2) = argus_abs(argument);
+        break;
+    }
+}
+
+void argus_send_setting(argus_t *const core, const uint8_t command, const int32_t argument) {
+    const int32_t least = core->knowledge.robot->decel_mm_s2;
+    const bool brakes = command == ARCOS_CMD_SETA && argument < 0;
+    argus_outbox_int(&core->session.outbox, command, brakes ? argus_min(argument, -least) : argument);
+}
+
+static void fill(int32_t *const value, const int32_t told, const int32_t usual) {
+    if (*value == 0) {
+        *value = told > 0 ? told : usual;
+    }
+}
+
+static void send_all(argus_t *const core, const argus_port_settings_t *const settings) {
+    argus_send_setting(core, ARCOS_CMD_SETV, settings->setv_mm_s);
+    argus_send_setting(core, ARCOS_CMD_SETA, settings->accel_mm_s2);
+    argus_send_setting(core, ARCOS_CMD_SETA, -settings->decel_mm_s2);
+    argus_send_setting(core, ARCOS_CMD_SETRV, settings->setrv_deg_s);
+    argus_send_setting(core, ARCOS_CMD_SETRA, settings->turn_accel_deg_s2);
+    argus_send_setting(core, ARCOS_CMD_SETRA, -settings->turn_decel_deg_s2);
+}
+
+void argus_send_settings(argus_t *const core, argus_port_settings_t *const settings) {
+    const argus_configpac_t *const robot = &core->session.robot; // zero until it has told
+    fill(&settings->setv_mm_s, robot->vel_max_mm_s, SETV_MM_S);
+    fill(&settings->accel_mm_s2, robot->accel_mm_s2, ACCEL_MM_S2);
+    fill(&settings->decel_mm_s2, robot->decel_mm_s2, ACCEL_MM_S2);
+    fill(&settings->setrv_deg_s, robot->rotvel_max_deg_s, SETRV_DEG_S);
+    fill(&settings->turn_accel_deg_s2, 0, TURN_ACCEL_DEG_S2);
+    fill(&settings->turn_decel_deg_s2, 0, TURN_ACCEL_DEG_S2);
+    send_all(core, settings);
+}
+
+void argus_send_own_settings(argus_t *const core) {
+    const argus_config_t *const config = &core->config;
+    const argus_port_settings_t own = {.setv_mm_s = config->speed_mm_s,
+                                       .accel_mm_s2 = config->accel_mm_s2,
+                                       .decel_mm_s2 = config->decel_mm_s2,
+                                       .setrv_deg_s = config->turn_speed_deg_s,
+                                       .turn_accel_deg_s2 = config->turn_accel_deg_s2,
+                                       .turn_decel_deg_s2 = config->turn_accel_deg_s2};
+    send_all(core, &own);
+    core->motion.speed_mm_s = config->speed_mm_s;
+}
+
+uint8_t argus_send_stream(const uint8_t command, const int32_t argument) {
+    for (size_t i = 0; i < sizeof streams_of; i++) {
+        if (streams_of[i] == command && argument != 0) {
+            return (uint8_t)(1u << i);
+        }
+    }
+    return 0;
+}
+
+void argus_send_streams_off(argus_t *const core, const uint8_t streams) {
+    for (size_t i = 0; i < sizeof streams_of; i++) {
+        if ((streams >> i & 1u) != 0) {
+            argus_outbox_int(&core->session.outbox, streams_of[i], 0);
+        }
+    }
+}

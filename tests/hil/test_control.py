@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: MIT
+"""Rule: programs at the control socket watch and order, none of them ever holds up the robot, and what is injected
+is seen as such everywhere."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import socket
+import subprocess
+import time
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+from argus_tools.control import Client, ControlError, Refused
+from argus_tools.formats.base import ReadOptions
+from argus_tools.formats.record import FORMAT
+from harness import PATIENCE_S, ROOT, Argusd, Bench, wait_for
+from rules import assert_reached
+from test_screen import Terminal
+from worlds import hall
+
+ARGUSCTL = ROOT / ".venv/bin/argusctl"
+DOCS = ROOT / "docs/control.md"
+TOKEN = "a-token-that-nobody-logs-0123"
+
+
+def place_of(bench: Bench) -> str:
+    return f"unix:{bench.path}/control.sock"
+
+
+def start(bench: Bench, *more: str, **options: Any) -> Argusd:
+    argusd = bench.argusd("--control", place_of(bench), *more, **options)
+    argusd.wait("HEALTH_CHECK")
+    return argusd
+
+
+def ctl(bench: Bench, *words: str) -> subprocess.CompletedProcess[str]:
+    environment = os.environ | {"ARGUS_CONTROL": place_of(bench)}
+    return subprocess.run(
+        [str(ARGUSCTL), *words],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
+    )
+
+
+def test_an_injected_fault_is_diagnosed_told_everywhere_and_ends(bench: Bench) -> None:
+    tape = bench.path / "argusd.rec"
+    sim = bench.sim(bench.world(**hall()))
+    argusd = start(bench, "--inject", "--record", str(tape))
+    done = ctl(bench, "fail", "sonar", "3", "off", "--for", "4s")
+    assert (done.returncode, done.stderr) == (0, "")
+    begun = argusd.wait("INJECTED", name="sonar/front/03", value=1)
+    argusd.wait("SONAR_DISABLED", name="sonar/front/03")
+    argusd.wait("STATUS", injected=["", "", "", "off"] + [""] * 12)
+    ended = argusd.wait("INJECTED", name="sonar/front/03", value=0)
+    assert 3.9 < ended["t"] - begun["t"] < 60.0  # a busy host looks late, never early
+    argusd.wait("STATUS", injected=[""] * 16, after_t=ended["t"])
+    assert not [r for r in sim.read() if r["type"] == "fault"], "the robot itself is whole"
+    assert ctl(bench, "quit").returncode == 0
+    assert argusd.wait_exit() == 0
+    with tape.open("rb") as stream:
+        reader = FORMAT.reader(stream, ReadOptions(name=str(tape)))
+        assert list(reader)
+    told = [what for _, what in reader.damage]
+    assert len(told) == 2
+    assert told[0].startswith("argusd injects 'off' into sonar 3 for 4 s")
+    assert told[1].startswith("argusd injects nothing into sonar 3 any more")
+
+
+def test_without_inject_nothing_is_injected(bench: Bench) -> None:
+    bench.sim(bench.world(**hall()))
+    argusd = start(bench)
+    done = ctl(bench, "fail", "sonar", "3", "off")
+    assert done.returncode == 1
+    assert done.stderr == "argusctl: injection is not armed; start argusd with --inject (refused)\n"
+    assert not argusd.named("INJECTED")
+
+
+def _stalled(place: str) -> socket.socket:
+    """Return a connection that asks for everything and reads nothing."""
+    sock = socket.socket(socket.AF_UNIX)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    sock.connect(place.removeprefix("unix:"))
+    topics = ["events", "state", "readings", "evidence"]
+    sock.sendall(json.dumps({"do": "watch", "topics": topics, "period_ms": 50}).encode() + b"\n")
+    return sock
+
+
+def test_ten_stalled_readers_hold_up_nobody(bench: Bench) -> None:
+    sim = bench.sim(bench.world(**hall()))
+    argusd = start(bench)
+    with ExitStack() as stack:
+        for _ in range(10):
+            stack.enter_context(_stalled(place_of(bench)))
+        client = stack.enter_context(Client(place_of(bench)))
+        client.watch("readings", "state")
+        client.take()
+        client.order("goto", x_mm=900, y_mm=0)
+        sips: list[int] = []
+        missions: list[str] = []
+        until = time.monotonic() + PATIENCE_S
+        while "reached" not in missions and time.monotonic() < until:
+            message = client.message(PATIENCE_S)
+            assert "lost" not in message, "a reader that reads misses nothing"
+            if "readings" in message:
+                sips.append(message["readings"]["sip"])
+            else:
+                missions.append(message["mission"])
+        assert "reached" in missions
+        assert sips == list(range(sips[0], sips[0] + len(sips))), "a line for each SIP, in order"
+        assert len(sips) > 50
+        argusd.wait("GOAL_REACHED")
+    assert_reached(sim, 900)
+
+
+def test_one_at_a_time_orders_and_a_replay_moves_nothing(bench: Bench) -> None:
+    sim = bench.sim(bench.world(**hall()))
+    argusd = start(bench)
+    with Client(place_of(bench)) as first:
+        first.take()
+        done = ctl(bench, "turn", "40")
+        assert (done.returncode, "(taken)" in done.stderr) == (1, True)
+        assert ctl(bench, "stop").returncode == 0, "whoever may speak may stop it"
+        done = ctl(bench, "turn", "40", "--force")
+        assert (done.returncode, done.stderr) == (0, "")
+        turned_deg = sim.of("state")[-1]["heading_deg"]
+        assert 25 < turned_deg < 55
+        with pytest.raises(Refused) as refusal:
+            first.order("turn", deg=90)
+        assert refusal.value.why == "stale_grant"
+        assert not argusd.named("OPERATOR", value=5)[1:], "one turn was ordered"
+
+
+@pytest.fixture
+def token_file(bench: Bench) -> Path:
+    path = bench.path / "token"
+    path.write_text(TOKEN + "\n")
+    path.chmod(0o600)
+    return path
+
+
+def test_over_tcp_the_token_counts_and_is_told_to_nobody(bench: Bench, token_file: Path) -> None:
+    tape = bench.path / "argusd.rec"
+    bench.sim(bench.world(**hall()))
+    argusd = bench.argusd(
+        "--control", "tcp:127.0.0.1:0", "--control-token", str(token_file), "--record", str(tape)
+    )
+    argusd.wait("HEALTH_CHECK")
+    said = wait_for(
+        "it says where it listens", lambda: re.search(r"tcp:\S+", "\n".join(argusd.errors)), PATIENCE_S
+    )
+    assert said is not None
+    place = said.group().rstrip(";")
+    host, _, port = place.removeprefix("tcp:").rpartition(":")
+    request = f"GET /?t={TOKEN} HTTP/1.1\r\nHost: localhost:{port}\r\nOrigin: http://a.example\r\n\r\n"
+    with socket.create_connection((host, int(port))) as browser:
+        browser.settimeout(PATIENCE_S)
+        assert browser.recv(4096).startswith(b'{"control":1')
+        browser.sendall(request.encode())
+        with suppress(ConnectionResetError):
+            assert browser.recv(4096) == b""
+    with pytest.raises(ControlError, match="token"):
+        Client(place)
+    with pytest.raises(Refused, match="wrong"):
+        Client(place, TOKEN + "x")
+    with Client(place, TOKEN) as client:
+        assert client.request("status")["state"]["online"] is True
+        client.take()
+        client.order("quit")
+    assert argusd.wait_exit() == 0
+    assert any("1 wrong token" in line for line in argusd.errors)
+    assert TOKEN not in json.dumps(argusd.events) + "\n".join(argusd.errors)
+    assert TOKEN.encode() not in tape.read_bytes()
+
+
+def test_a_killed_argusd_leaves_a_place_that_the_next_one_takes(bench: Bench) -> None:
+    bench.sim(bench.world(**hall()))
+    first = start(bench)
+    first.process.kill()
+    first.process.wait()
+    with pytest.raises(ControlError, match="is argusd running there"):
+        Client(place_of(bench))
+    second = start(bench)
+    second.wait("SESSION_OPEN")
+    assert ctl(bench, "status").returncode == 0
+
+
+def test_a_screen_is_attached_and_leaves(bench: Bench) -> None:
+    bench.sim(bench.world(**hall()))
+    argusd = start(bench, "--inject", active=False)
+    terminal = Terminal(["--attach", place_of(bench)], "vt52", 80)
+    try:
+        terminal.wait_shown("IsNormal")
+        terminal.wait_shown("HEALTHY")
+        terminal.press("w")
+        terminal.wait_shown("it is passive; order active first")
+        terminal.press("nn")
+        terminal.wait_shown("> sonar 2 is chosen")
+        terminal.press(" ")
+        terminal.wait_shown("PAUSED")
+        with Client(place_of(bench)) as client:
+            client.take(force=True)
+            client.order("fail", sonar=5, kind="stuck", for_ms=60000)
+            terminal.wait_shown("another connection has taken control")
+            terminal.wait_shown("INJECTED FAULT")
+        terminal.press("q")
+        assert terminal.wait_exit() == 0
+        assert terminal.is_as_before()
+    finally:
+        terminal.close()
+    assert argusd.process.poll() is None
+
+
+def test_wrong_words_are_refused_in_one_line(bench: Bench) -> None:
+    for words, part in {
+        ("fail", "sonar", "3", "sad"): "invalid choice: 'sad'",
+        ("fail", "sonar", "99", "off"): "not a whole number from 0 to 31",
+        ("fail", "sonar", "3", "off", "--for", "1h"): "is no time from 1s to 600s",
+        ("turn", "200"): "not a whole number from -180 to 180",
+        ("goto", "1"): "is no point",
+        (): "required",
+    }.items():
+        done = ctl(bench, *words)
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+        assert part in done.stderr
+    done = ctl(bench, "status")
+    assert (done.returncode, done.stdout) == (3, "")
+    assert done.stderr.count("\n") == 1
+
+
+def test_the_commands_of_the_manual_work(bench: Bench, token_file: Path) -> None:
+    blocks = re.findall(r"(?:^    .*\n)+", DOCS.read_text(), re.MULTILINE)
+    commands = [line.strip() for line in blocks[1].splitlines()]
+    assert commands[0].startswith("export ARGUS_CONTROL=")
+    assert len(commands) > 8
+    bench.sim(bench.world(**hall()))
+    first = shlex.split(blocks[0].strip())
+    argusd = bench.argusd(*(place_of(bench) if word.startswith("unix:") else word for word in first[3:]))
+    argusd.wait("HEALTH_CHECK")
+    for command in commands[1:]:
+        words = shlex.split(command)
+        assert words[0] == "argusctl"
+        done = ctl(bench, *words[1:])
+        assert (done.returncode, done.stderr) == (0, ""), command
+    assert argusd.wait_exit() == 0
+    other = [line.strip() for block in blocks[2:] for line in block.splitlines()]
+    assert "argusctl fail sonar 3 stuck --for 30s" in other
+    for words in (shlex.split(line) for line in other if line.startswith("argusctl")):
+        assert ctl(bench, *words[1:]).returncode in (1, 3), "understood, but argusd is gone"

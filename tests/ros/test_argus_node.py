@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: MIT
+"""Rule: what argusd knows of a robot is on the topics of a ROS driver, and nothing of a sonar that it does not trust;
+what a service asks for is done, and who has control of argusd keeps it."""
+
+from __future__ import annotations
+
+import math
+import struct
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import harness
+import pytest
+from argus_ros.argus_node import ArgusNode
+from argus_tools.control import Client
+from diagnostic_msgs.msg import DiagnosticArray
+from harness import Argusd, Sim
+from nav_msgs.msg import Odometry
+from nodes import SEATS, Bench
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import BatteryState, PointCloud2, Range
+from std_srvs.srv import SetBool, Trigger
+from tf2_msgs.msg import TFMessage
+
+harness.SIM = Path(sys.prefix) / "bin/argus-sim"  # type: ignore[misc]
+DEAD = 3
+
+
+class Robot:
+    """An emulated robot, argusd, the node and a listener on all its topics."""
+
+    def __init__(
+        self, folder: Path, *simulated: str, argusd: tuple[str, ...] = ("--passive",), **given: Any
+    ) -> None:
+        arguments = ("--tcp", "127.0.0.1:0", "--crosstalk", "0", *simulated)
+        self.sim = Sim(arguments, folder / "truth.jsonl", folder / "sim.log")
+        self.socket = folder / "argus.sock"
+        place = f"unix:{self.socket}"
+        link = self.sim.address if self.sim.address.startswith("tcp:") else f"tcp:{self.sim.address}"
+        self.argusd = Argusd(["--link", link, "--json", "--wait", "60", "--control", place, *argusd])
+        harness.wait_for("the control socket", self.socket.exists, 60)
+        self.node = ArgusNode()
+        values = {"control": place, **given}
+        self.node.set_parameters([Parameter(key, value=value) for key, value in values.items()])
+        self.node.start()
+        self.bench = Bench(self.node)
+        for number in range(16):
+            self.bench.listen(Range, f"sonar/range_{number}")
+        for kind, topic in (
+            (PointCloud2, "sonar/cloud"),
+            (Odometry, "pose"),
+            (BatteryState, "battery_state"),
+            (DiagnosticArray, "/diagnostics"),
+            (TFMessage, "/tf"),
+        ):
+            self.bench.listen(kind, topic)
+        self.bench.listen(
+            TFMessage, "/tf_static", QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        )
+
+    def await_(self, topic: str, good: Any = lambda _: True, limit_s: float = 60) -> Any:
+        """The next message on a topic of which something holds."""
+        at = len(self.bench.heard)
+        found: list[Any] = []
+
+        def probe() -> bool:
+            nonlocal at
+            for heard, message in self.bench.heard[at:]:
+                at += 1
+                if heard == topic and good(message):
+                    found.append(message)
+                    return True
+            return False
+
+        assert self.bench.until(probe, limit_s), f"nothing of that kind on {topic}"
+        return found[0]
+
+    def call(self, kind: Any, name: str, **request: Any) -> Any:
+        """Call a service of the node."""
+        client = self.bench.listener.create_client(kind, name)
+        assert self.bench.until(client.service_is_ready)
+        future = client.call_async(kind.Request(**request))
+        assert self.bench.until(future.done)
+        return future.result()
+
+    def close(self) -> None:
+        self.bench.close()
+        self.node.destroy_node()
+        self.argusd.end()
+        self.sim.end()
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Iterator[Any]:
+    made: list[Robot] = []
+
+    def make(*simulated: str, **given: Any) -> Robot:
+        made.append(Robot(tmp_path, *simulated, **given))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+def status_of(array: Any, name: str) -> Any:
+    return next(status for status in array.status if status.name == name)
+
+
+def values_of(status: Any) -> dict[str, str]:
+    return {value.key: value.value for value in status.values}
+
+
+def test_topics_tell_what_argusd_knows(robot: Any) -> None:
+    bot = robot("--world", "demo", "--fault", f"stuck:{DEAD}@3s:value=0")
+    truth = harness.wait_for(
+        "a reading of each", lambda: [e for e in bot.argusd.named("STATUS") if e["sips"] > 5], 60
+    )[-1]
+    echo = bot.await_("sonar/range_0", lambda m: math.isfinite(m.range))
+    assert abs(echo.range - truth["reading_mm"][0] / 1000) < 0.1
+    assert (echo.header.frame_id, echo.radiation_type) == ("sonar_0", Range.ULTRASOUND)
+    assert (round(echo.min_range, 3), echo.max_range, round(echo.field_of_view, 4)) == (0.1, 5.0, 0.5236)
+    assert bot.await_("battery_state").voltage == pytest.approx(truth["battery_dv"] / 10)
+    place = bot.await_("pose")
+    assert (place.header.frame_id, place.child_frame_id) == ("odom", "base_link")
+    assert abs(place.pose.pose.position.x) < 0.01
+    assert bot.bench.until(lambda: any(topic == "/tf_static" for topic, _ in bot.bench.heard))
+    static = next(message for topic, message in bot.bench.heard if topic == "/tf_static")
+    frames = {transform.child_frame_id: transform for transform in static.transforms}
+    assert len(frames) == 16
+    seat, there = SEATS[5], frames["sonar_5"].transform
+    assert (there.translation.x, there.translation.y) == pytest.approx((seat.x, seat.y))
+    assert 2 * math.atan2(there.rotation.z, there.rotation.w) == pytest.approx(seat.yaw)
+    assert bot.await_("/tf").transforms[0].child_frame_id == "base_link"
+    # The sonar that is stuck: named in the diagnoses, and silent on its topic and in the cloud from then on.
+    name = f"argus: sonar/front/{DEAD:02d}"
+    said = bot.await_("/diagnostics", lambda m: len(m.status) > 1 and status_of(m, name).level == b"\x02")
+    assert status_of(said, name).message == "DISABLED stuck"
+    assert values_of(status_of(said, "argus: ring"))["not_trusted"] == str(DEAD)
+    assert status_of(said, "argus: ring").level == b"\x01"
+    bot.bench.take()
+    for _ in range(12):
+        cloud = bot.await_("sonar/cloud")
+        points = list(struct.iter_unpack("<fffBxxx", bytes(cloud.data)))
+        assert points
+        assert DEAD not in {number for *_, number in points}
+    heard = {topic for topic, _ in bot.bench.heard}
+    assert f"sonar/range_{DEAD}" not in heard
+    assert "sonar/range_2" in heard
+
+
+def test_no_echo_is_infinite_and_a_dead_sonar_is_what_the_parameter_says(robot: Any) -> None:
+    bot = robot("--world", "hall", "--fault", f"stuck:{DEAD}@2s:value=0", dead="nan")
+    assert bot.await_("sonar/range_4").range == math.inf
+    assert math.isnan(bot.await_(f"sonar/range_{DEAD}", lambda m: math.isnan(m.range)).range)
+
+
+def test_services_do_what_they_say_and_leave_control_to_who_has_it(robot: Any) -> None:
+    bot = robot("--world", "demo")
+    bot.await_("pose")
+    assert bot.call(SetBool, "sonar/pin_5", data=True).success
+    bot.argusd.wait("SONAR_PINNED", name="sonar/front/05")
+    assert bot.call(SetBool, "sonar/pin_5", data=False).success
+    assert bot.call(Trigger, "sonar/recheck").success
+    assert bot.call(Trigger, "sonar/retest_2").success
+    assert bot.call(SetBool, "passive", data=False).success
+    bot.argusd.wait("STATUS", active=True)
+    assert bot.call(SetBool, "passive", data=True).success
+    with Client(f"unix:{bot.socket}") as other:
+        other.take()
+        refused = bot.call(Trigger, "sonar/recheck")
+        assert not refused.success
+        assert "control" in refused.message
+        other.order("recheck")
+
+
+def test_argusd_that_goes_away_is_said_and_found_again(robot: Any) -> None:
+    bot = robot("--world", "demo")
+    bot.await_("pose")
+    bot.argusd.end()
+    gone = bot.await_("/diagnostics", lambda m: m.status[0].level == b"\x03")
+    assert "argus.sock" in values_of(gone.status[0])["argusd"]
+    bot.argusd = Argusd([*bot.argusd.command[1:]])
+    bot.bench.take()
+    bot.await_("pose")
+
+
+def test_a_lifecycle_manager_can_hold_it_back(robot: Any) -> None:
+    bot = robot("--world", "demo", autostart=False)
+    assert not bot.bench.until(lambda: bool(bot.bench.heard), 1.5)
+    bot.node.trigger_configure()
+    assert not bot.bench.until(lambda: any(topic == "pose" for topic, _ in bot.bench.heard), 1.5)
+    bot.node.trigger_activate()
+    bot.await_("pose")
+    bot.node.trigger_deactivate()
+    bot.bench.take()
+    assert not bot.bench.until(lambda: any(topic == "pose" for topic, _ in bot.bench.heard), 1.0)
+    bot.node.trigger_cleanup()
+    bot.node.trigger_configure()
+    bot.node.trigger_activate()
+    bot.await_("pose")

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Attacks: of a SIP nothing changes for the client but the readings of sonars that are out, and the length
+// and count that follow from that; a reading given instead of one was heard by a trusted sonar on that
+// bearing.
+#include "guardian/rewrite.h"
+
+#include <string.h>
+
+#include "client.h"
+#include "unity.h"
+
+static robot_t robot;
+static uint8_t out[256];
+
+static const uint8_t sip[] = {0x32, 1,    2,    3, 4,    5,    6, 7, 8,  9,    10, 127,  0,
+                              0,    0,    0,    7, 0,    0,    4, 2, 10, 0x01, 3,  0x88, 0x13,
+                              11,   0x88, 0x13, 4, 0x20, 0x03, 9, 8, 7,  6,    5};
+
+void setUp(void) {
+    const argus_config_t settings = robot_config_of(ARGUS_PROFILE_ARGUS);
+    robot_init(&robot, &settings, 1000);
+    robot.world = robot_world_segments;
+    robot.noise_mm = 6;
+    robot_box(&robot, -1500, -1500, 1200, 1500);
+    robot_run(&robot, 4000);
+}
+
+static size_t rewrite(argus_readings_t readings, uint8_t arrays) {
+    const argus_rewrite_t how = {.readings = readings, .arrays = arrays};
+    return argus_rewrite_sip(&robot.argus, &how, sip, sizeof sip, out);
+}
+
+static void take_out(int sonar) {
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_DISABLE, sonar));
+}
+
+void test_nothing_changes_while_all_are_in_use(void) {
+    for (int readings = ARGUS_READINGS_WITHHOLD; readings <= ARGUS_READINGS_PASS; readings++) {
+        TEST_ASSERT_EQUAL_size_t(sizeof sip, rewrite((argus_readings_t)readings, 15));
+        TEST_ASSERT_EQUAL_MEMORY(sip, out, sizeof sip);
+    }
+}
+
+void test_one_that_is_out_is_left_out_of_the_list(void) {
+    take_out(3);
+    TEST_ASSERT_EQUAL_size_t(sizeof sip - 3, rewrite(ARGUS_READINGS_WITHHOLD, 15));
+    TEST_ASSERT_EQUAL_UINT8(3, out[19]);
+    TEST_ASSERT_EQUAL_MEMORY(sip, out, 19);
+    TEST_ASSERT_EQUAL_MEMORY(sip + 20, out + 20, 3);
+    TEST_ASSERT_EQUAL_MEMORY(sip + 26, out + 23, sizeof sip - 26);
+    TEST_ASSERT_EQUAL_size_t(sizeof sip, rewrite(ARGUS_READINGS_PASS, 15));
+    TEST_ASSERT_EQUAL_MEMORY(sip, out, sizeof sip);
+}
+
+void test_an_array_that_the_client_put_off(void) {
+    TEST_ASSERT_EQUAL_size_t(sizeof sip - 9, rewrite(ARGUS_READINGS_PASS, 2));
+    TEST_ASSERT_EQUAL_UINT8(1, out[19]);
+    TEST_ASSERT_EQUAL_UINT8(11, out[20]);
+    TEST_ASSERT_EQUAL_UINT8(7 & ~2, out[16]);
+    TEST_ASSERT_EQUAL_size_t(sizeof sip - 12, rewrite(ARGUS_READINGS_PASS, 0));
+    TEST_ASSERT_EQUAL_UINT8(1, out[16]);
+}
+
+void test_a_list_that_is_longer_than_the_packet_is_no_sip(void) {
+    const argus_rewrite_t how = {.readings = ARGUS_READINGS_WITHHOLD, .arrays = 15};
+    for (size_t count = 0; count < 32; count++) {
+        TEST_ASSERT_EQUAL_size_t(0, argus_rewrite_sip(&robot.argus, &how, sip, count, out));
+    }
+    TEST_ASSERT_TRUE(argus_rewrite_sip(&robot.argus, &how, sip, 32, out) > 0);
+}
+
+// Then 2 looks along the bearing that 3 has when the robot has turned back.
+static void turn_away_and_back(void) {
+    for (int deg = 0; deg >= -20; deg -= 10) {
+        robot.th = deg * 3.14159265358979 / 180;
+        robot_run(&robot, 700);
+    }
+    robot.th = 0;
+    robot_run(&robot, 200);
+}
+
+void test_covered_by_what_a_neighbour_heard_there(void) {
+    take_out(3);
+    TEST_ASSERT_EQUAL_size_t(sizeof sip - 3, rewrite(ARGUS_READINGS_COVER, 15)); // nobody looks there
+    turn_away_and_back();
+    const int32_t cover_mm = argus_rewrite_cover_mm(&robot.argus, 3);
+    TEST_ASSERT_INT32_WITHIN(60, robot_world_segments(&robot, 3), cover_mm);
+    TEST_ASSERT_EQUAL_size_t(sizeof sip, rewrite(ARGUS_READINGS_COVER, 15));
+    TEST_ASSERT_EQUAL_INT32(cover_mm, out[24] | out[25] << 8);
+    TEST_ASSERT_EQUAL_UINT8(3, out[23]);
+    robot_run(&robot, 3000); // too long ago
+    TEST_ASSERT_EQUAL_INT32(0, argus_rewrite_cover_mm(&robot.argus, 3));
+}
+
+void test_what_was_heard_by_one_that_is_out_too_covers_nothing(void) {
+    take_out(3);
+    turn_away_and_back();
+    TEST_ASSERT_TRUE(argus_rewrite_cover_mm(&robot.argus, 3) > 0);
+    for (int i = 0; i < 16; i++) {
+        if (i != 3) {
+            take_out(i);
+        }
+    }
+    TEST_ASSERT_EQUAL_INT32(0, argus_rewrite_cover_mm(&robot.argus, 3));
+}

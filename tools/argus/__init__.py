@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+"""Argus from Python: the robot's protocol, missions in software, and logs judged by the fault manager itself.
+
+    argus.protocol      ARCOS packets from bytes and back
+    argus.sil           a mission of the fault manager on the emulated robot, in one process, under virtual time
+    argus.log           logs of a robot's link: read, decode, diagnose
+
+The names used most are here too:
+
+>>> import argus
+>>> argus.frame(argus.Command.integer(argus.COMMAND["VEL"], -300).data).hex(" ")
+'fa fb 06 0b 1b 2c 01 37 1c'
+
+docs/python.md has more examples. What is not in `__all__` of these modules may change without notice.
+"""
+
+from importlib.metadata import version as _version
+
+from argus import log, protocol, sil
+from argus.log import Diagnosis, LogError, LogPacket, diagnose, read
+from argus.protocol import COMMAND, Command, PacketError, Sip, Unframer, decode, frame
+from argus.sil import Mission, Outcome, Sil, run
+
+__version__ = _version("argus-p3dx")
+
+__all__ = [
+    "COMMAND",
+    "Command",
+    "Diagnosis",
+    "LogError",
+    "LogPacket",
+    "Mission",
+    "Outcome",
+    "PacketError",
+    "Sil",
+    "Sip",
+    "Unframer",
+    "__version__",
+    "decode",
+    "diagnose",
+    "frame",
+    "log",
+    "protocol",
+    "read",
+    "run",
+    "sil",
+]

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: MIT
+"""An emulated robot with argusd on it, as children of ours: started, ordered about, ended."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import ctypes
+import json
+import os
+import shutil
+import signal
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+from argus_tools.monitor.upstream import Address, Message
+
+BAUD: Final = 9600
+ARGUSD_VARIABLE: Final = "ARGUS_ARGUSD"
+START_WITHIN_S: Final = 60.0
+ANSWER_WITHIN_S: Final = 5.0
+END_WITHIN_S: Final = 6.0
+_ROOT: Final = Path(__file__).resolve().parents[3]
+_PR_SET_PDEATHSIG: Final = 1
+
+
+class SimulationError(Exception):
+    """The robot or its manager does not start, or ended; the message is one line."""
+
+
+def find_argusd(given: str | None) -> str:
+    """Return the argusd to run: the one GIVEN, that of ARGUS_ARGUSD, of the build folder, or in PATH."""
+    wanted = given or os.environ.get(ARGUSD_VARIABLE)
+    built = _ROOT / "build/release/argusd"
+    found = shutil.which(wanted) if wanted else str(built) if built.exists() else shutil.which("argusd")
+    if found is None:
+        raise SimulationError(
+            f"no program '{wanted}'" if wanted else "argusd is not found; build it, or name it with --argusd"
+        )
+    return found
+
+
+def _end_with_parent() -> None:
+    """Let the kernel end argusd when we are killed outright: it must not drive on unseen."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+class Simulation:
+    """argus-sim on a pseudo-terminal and argusd on that."""
+
+    def __init__(self, sim_arguments: Sequence[str], argusd: str, argusd_arguments: Sequence[str]) -> None:
+        self.broken: dict[str, str] = {}
+        self._sim_arguments = sim_arguments
+        self._argusd_path = argusd
+        self._argusd_arguments = argusd_arguments
+        self._folder = Path(tempfile.mkdtemp(prefix="argus-monitor-"))
+        self.address = Address(path=str(self._folder / "control"))
+        self._sim: asyncio.subprocess.Process | None = None
+        self._argusd: asyncio.subprocess.Process | None = None
+        self._turn = asyncio.Lock()
+
+    async def start(self) -> None:
+        """Start both; SimulationError when one of them does not."""
+        with (self._folder / "argus-sim.log").open("wb") as log:
+            self._sim = await asyncio.create_subprocess_exec(
+                *(sys.executable, "-m", "hil_sim.cli", "--orders", "--baud", str(BAUD)),
+                *self._sim_arguments,
+                stdin=asyncio.subprocess.PIPE,
+                stdout=asyncio.subprocess.PIPE,
+                stderr=log,
+                process_group=0,
+            )
+        device = await self._line(START_WITHIN_S)
+        arguments = ("--link", f"serial:{device}@{BAUD}", "--active", "--plain", "--control")
+        with (self._folder / "argusd.log").open("wb") as log:
+            self._argusd = await asyncio.create_subprocess_exec(
+                self._argusd_path,
+                *arguments,
+                f"unix:{self.address.path}",
+                *self._argusd_arguments,
+                stdin=asyncio.subprocess.DEVNULL,
+                stdout=asyncio.subprocess.DEVNULL,
+                stderr=log,
+                process_group=0,
+                preexec_fn=_end_with_parent,
+            )
+
+    async def _line(self, within_s: float) -> str:
+        assert self._sim is not None
+        assert self._sim.stdout is not None
+        try:
+            async with asyncio.timeout(within_s):
+                line = await self._sim.stdout.readline()
+        except (TimeoutError, ValueError):
+            line = b""
+        if not line:
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(1.0):
+                    await self._sim.wait()
+            raise SimulationError(self._last_words("argus-sim"))
+        return line.decode("utf-8", "replace").strip()
+
+    async def order(self, line: str) -> Message:
+        """Give the emulator an order and return its answer."""
+        async with self._turn:
+            try:
+                assert self._sim is not None
+                assert self._sim.stdin is not None
+                self._sim.stdin.write(line.encode() + b"\n")
+                await self._sim.stdin.drain()
+                answer: Message = json.loads(await self._line(ANSWER_WITHIN_S))
+            except (OSError, ValueError, SimulationError):
+                return {"ok": False, "why": "refused", "say": "the emulator does not answer"}
+            self.broken = dict(answer.get("broken", {}))
+            return answer
+
+    async def ended(self) -> str:
+        """Wait until one of them ends; return which, and its last words."""
+        assert self._sim is not None
+        assert self._argusd is not None
+        waiting = {
+            asyncio.create_task(self._sim.wait()): "argus-sim",
+            asyncio.create_task(self._argusd.wait()): "argusd",
+        }
+        try:
+            done, _ = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+            return self._last_words(waiting[done.pop()])
+        finally:
+            for task in waiting:
+                task.cancel()
+
+    def _last_words(self, name: str) -> str:
+        try:
+            lines = (self._folder / f"{name}.log").read_text(errors="replace").strip().splitlines()
+        except OSError:
+            lines = []
+        return f"{name} ended: {lines[-1].removeprefix(f'{name}: ') if lines else 'it said nothing'}"
+
+    async def close(self) -> None:
+        """End argusd first, so that it stops the robot, then the emulator."""
+        for process in (self._argusd, self._sim):
+            if process is not None and process.returncode is None:
+                process.send_signal(signal.SIGTERM)
+                try:
+                    async with asyncio.timeout(END_WITHIN_S):
+                        await process.wait()
+                except TimeoutError:
+                    process.kill()
+                    await process.wait()
+        shutil.rmtree(self._folder, ignore_errors=True)

@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: MIT
+"""`tools/dev package`: wheel and .deb, each into dist/."""
+
+from __future__ import annotations
+
+import argparse
+import configparser
+import datetime
+import email.utils
+import functools
+import os
+import platform
+import shutil
+import subprocess
+import zipfile
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Final
+
+from devtool.base import BUILD, CORES, EXIT_USAGE, ROOT, VENV, Run, Stop, say, shown
+from devtool.commands import quietly
+from devtool.setup import HEADER, alone, ensure
+
+DIST: Final = ROOT / "dist"
+WORK: Final = BUILD / "package"
+HERE: Final = platform.machine()
+ARCHITECTURES: Final = ("x86_64", "aarch64")
+SCRIPT: Final = """\
+#!/usr/bin/python3
+import sys
+
+from {module} import {function}
+
+sys.exit({function}())
+"""
+
+
+def toolchain(arch: str) -> Path:
+    """Return the toolchain file that builds for ARCH elsewhere."""
+    return ROOT / f"cmake/{arch}.cmake"
+
+
+def needs_of(arch: str) -> list[str]:
+    """Return what a machine must have to build for ARCH."""
+    if arch == HERE:
+        return []
+    if not toolchain(arch).exists():
+        raise Stop(f"nothing here builds for {arch} on {HERE}: build on such a machine", EXIT_USAGE)
+    return [arch]
+
+
+def make_wheel(arch: str, run: Run) -> None:
+    """Build the wheel for ARCH, and tag it with the oldest system that it runs on."""
+    raw = WORK / f"wheel-{arch}"
+    shutil.rmtree(raw, ignore_errors=True)
+    command: list[str | Path] = [
+        VENV / "bin/python",
+        "-m",
+        "pip",
+        "wheel",
+        "--no-deps",
+        "--no-build-isolation",
+    ]
+    if arch != HERE:
+        cross = [f"_PYTHON_HOST_PLATFORM=linux-{arch}", f"CMAKE_TOOLCHAIN_FILE={toolchain(arch)}"]
+        command = ["env", *cross, *command]
+    with alone():
+        run([*command, "--wheel-dir", raw, ROOT])
+        [built] = raw.glob("*.whl")
+        run([VENV / "bin/python", "-m", "auditwheel", "repair", "--wheel-dir", raw / "tagged", built])
+        keep((raw / "tagged").glob("*.whl"))
+
+
+def stage_tools(wheel: Path, stage: Path) -> None:
+    """Unpack WHEEL as Debian has Python's modules: lib/ and bin/, with Debian's own interpreter."""
+    shutil.rmtree(stage, ignore_errors=True)
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(stage / "lib")
+    [info] = (stage / "lib").glob("*.dist-info")
+    (info / "RECORD").unlink()  # pip's own: dpkg has its list
+    (info / "INSTALLER").write_text("dpkg\n", encoding="utf-8")
+    points = configparser.ConfigParser()
+    points.read(info / "entry_points.txt", encoding="utf-8")
+    (stage / "bin").mkdir()
+    for name, target in points["console_scripts"].items():
+        module, _, function = target.partition(":")
+        script = stage / "bin" / name
+        script.write_text(SCRIPT.format(module=module, function=function), encoding="utf-8")
+        script.chmod(0o755)
+
+
+def release_time() -> int:
+    """Return the time that the packages say they are of, which makes them the same whenever they are made."""
+    given = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if given.isdigit():
+        return int(given)
+    done = subprocess.run(
+        ["git", "log", "-1", "--format=%ct"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    return int(done.stdout) if done.stdout.strip().isdigit() else int(HEADER.stat().st_mtime)
+
+
+def maintainer() -> str:
+    """Return who answers for the packages: whom Debian's own variables name, or nobody in particular."""
+    name = os.environ.get("DEBFULLNAME", "Argus contributors")
+    return f"{name} <{os.environ.get('DEBEMAIL', 'argus@users.noreply.argus.invalid')}>"
+
+
+def debian_flags() -> list[str]:
+    """Return the settings for CMake with which Debian compiles, all its hardening on."""
+    env = {**os.environ, "DEB_BUILD_MAINT_OPTIONS": "hardening=+all"}
+    flags = {}
+    for name in ("CFLAGS", "CPPFLAGS", "LDFLAGS"):
+        done = subprocess.run(
+            ["dpkg-buildflags", "--get", name], env=env, cwd=ROOT, capture_output=True, text=True, check=True
+        )
+        flags[name] = done.stdout.strip()
+    links = ("CMAKE_EXE_LINKER_FLAGS", "CMAKE_SHARED_LINKER_FLAGS")
+    return [
+        f"CMAKE_C_FLAGS={flags['CFLAGS']} {flags['CPPFLAGS']}",
+        *(f"{link}={flags['LDFLAGS']}" for link in links),
+    ]
+
+
+def make_deb(run: Run) -> None:
+    """Build the Debian packages."""
+    make_wheel(HERE, run)
+    raw = WORK / "deb"
+    epoch = release_time()
+    date = email.utils.format_datetime(datetime.datetime.fromtimestamp(epoch, datetime.UTC))
+    settings = (
+        *("CMAKE_BUILD_TYPE=Release", "CMAKE_C_FLAGS_RELEASE=-O2 -DNDEBUG", "CMAKE_INSTALL_PREFIX=/usr"),
+        *("ARGUS_TESTS=OFF", "ARGUS_WERROR=OFF", "ARGUS_ARGUSD=ON", "ARGUS_TUI=ON"),
+        *(f"ARGUS_DEB={raw / 'tools'}", f"ARGUS_DEB_DATE={date}", f"ARGUS_MAINTAINER={maintainer()}"),
+        *debian_flags(),
+    )
+    with alone():
+        shutil.rmtree(raw / "out", ignore_errors=True)
+        [wheel] = (WORK / f"wheel-{HERE}").glob("*.whl")
+        stage_tools(wheel, raw / "tools")
+        libraries = map(str, sorted((raw / "tools").rglob("*.so")))
+        run(["strip", "--strip-unneeded", "-R", ".comment", *libraries])
+        run(["cmake", "-S", ROOT, "-B", raw, *(f"-D{setting}" for setting in settings)])
+        run(["cmake", "--build", raw, "-j", str(CORES)])
+        package: list[str | Path] = [
+            "cpack",
+            "-G",
+            "DEB",
+            "--config",
+            raw / "CPackConfig.cmake",
+            "-B",
+            raw / "out",
+        ]
+        run(["env", f"SOURCE_DATE_EPOCH={epoch}", *package])
+        keep((raw / "out").glob("*.deb"))
+
+
+def keep(made: Iterable[Path]) -> None:
+    """Put what was made into dist/, in place of an older one."""
+    DIST.mkdir(exist_ok=True)
+    for path in made:
+        shutil.copy2(path, DIST / path.name)
+        say(shown(DIST / path.name))
+
+
+def do_package(args: argparse.Namespace) -> int:
+    """Make what is asked for."""
+    if args.arch != HERE and args.kind != "wheel":
+        raise Stop(f"--arch {args.arch}: only the wheel is built for another machine than this", EXIT_USAGE)
+    needs = needs_of(args.arch) if args.kind == "wheel" else ["dpkg-dev"]
+    ensure([], needs)
+    make = functools.partial(make_wheel, args.arch) if args.kind == "wheel" else make_deb
+    quietly(f"building: {args.kind}, {args.arch}", make)
+    return 0
+
+
+Add = Callable[[str, Callable[[argparse.Namespace], int], str, str], argparse.ArgumentParser]
+
+
+def add_commands(add: Add) -> None:
+    """Add the command that packages."""
+    package = add(
+        "package",
+        do_package,
+        "make what is installed elsewhere, in dist/: a Python wheel, or Debian packages",
+        "package wheel\npackage wheel --arch aarch64\npackage deb",
+    )
+    package.add_argument(
+        "kind",
+        choices=("wheel", "deb"),
+        help="wheel: emulator, tools and compiled core for Python; deb: argusd with its unit, and the tools",
+    )
+    package.add_argument(
+        "--arch", choices=ARCHITECTURES, default=HERE, help="processor of the wheel (default: this machine's)"
+    )

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""The stage of the ROS nodes: an environment of its own, with the packages of the extras [ros] and [foxglove]."""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import tomllib
+from pathlib import Path
+from typing import Final
+
+from devtool.base import BUILD, LOGS, ROOT, Run, quiet_ok, say, words
+from devtool.cmake import build
+from devtool.setup import run_steps
+from devtool.system import base_python
+
+VENV_ROS: Final = BUILD / "venv-ros"
+TESTERS: Final = ("pytest>=8.0", "hypothesis>=6.98", "setuptools>=68")
+MAKER: Final = ROOT / "tools/argus_ros/make_messages.py"
+NEEDS: Final = ("g++",)
+
+
+def recipe() -> str:
+    """Return a digest of what the environment holds."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    parts = (project["dependencies"], project["optional-dependencies"], project["scripts"], TESTERS)
+    text = f"{base_python()} {VENV_ROS} {parts}"
+    return hashlib.sha256(text.encode() + MAKER.read_bytes()).hexdigest()
+
+
+def lacking() -> str | None:
+    """Make the environment unless it is there; return why it cannot be had, None when it can."""
+    stamp, python = VENV_ROS / "argus-recipe", VENV_ROS / "bin/python"
+    if (
+        stamp.exists()
+        and stamp.read_text() == recipe()
+        and quiet_ok([python, "-c", "import rclpy, tf2_msgs"])
+    ):
+        return None
+    say("making build/venv-ros (ROS from PyPI, about two minutes, once)")
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    pip: list[str | Path] = [python, "-m", "pip", "install", "--no-input", "--disable-pip-version-check"]
+    log = LOGS / "venv-ros.log"
+    run_steps([[base_python(), "-m", "venv", "--clear", VENV_ROS]], log)
+    with log.open("a") as file:
+        had = subprocess.run(
+            words([*pip, *extras["ros"], *extras["foxglove"]]), stdout=file, stderr=file, check=False
+        )
+    if had.returncode:
+        return f"skipped: the packages of ROS cannot be had here, see {log.relative_to(ROOT)}"
+    run_steps([[*pip, *TESTERS], [*pip, "-e", ROOT], [python, MAKER]], LOGS / "venv-ros-more.log")
+    stamp.write_text(recipe())
+    return None
+
+
+def ros_tests(run: Run) -> str | None:
+    """Run the tests of the nodes, where the packages of ROS can be had."""
+    build("release", run)
+    why = lacking()
+    if why is None:
+        run([VENV_ROS / "bin/python", "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/ros"])
+    return why
