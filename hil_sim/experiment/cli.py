@@ -65,7 +65,7 @@ def parser() -> argparse.ArgumentParser:
         metavar="FILE",
         help="with all: fill what was found into this page, between its marks",
     )
-    short = result.add_argument_group("table1, table4, fig9, fig10, firing")
+    short = result.add_argument_group("table1, table4, fig9, fig10")
     short.add_argument("--pty", action="store_true", help="with argusd on a pseudo-terminal, in real time")
     short.add_argument(
         "--argusd",
@@ -196,7 +196,7 @@ def _wheel(arguments: argparse.Namespace) -> Parts:
 def _firing(arguments: argparse.Namespace) -> Parts:
     from hil_sim.experiment import firing
 
-    return {"firing": firing.table(firing.run(_stage(arguments), arguments.seed))}
+    return {"firing": firing.table(firing.run(Stage(), arguments.seed))}
 
 
 PARTS: Final[Mapping[str, Callable[[argparse.Namespace], Parts]]] = {
