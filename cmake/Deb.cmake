@@ -80,7 +80,7 @@ set(CPACK_DEBIAN_ARGUSD_PACKAGE_CONTROL_EXTRA
     "${control}/conffiles;${deb_dir}/argusd/postinst;${deb_dir}/argusd/prerm;${deb_dir}/argusd/postrm")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
     "python3 (>= 3.11), python3-numpy, python3-yaml, python3-serial, python3-matplotlib, python3-rich")
-set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "argusd, python3-can")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "argusd, python3-can, python3-aiohttp")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_CONTROL_EXTRA "${deb_dir}/argus-tools/postinst;${deb_dir}/argus-tools/prerm")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libargus${abi} (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
