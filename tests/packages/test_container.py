@@ -43,6 +43,4 @@ def test_what_it_copies_is_all_that_its_build_reads(tmp_path: Path) -> None:
     options = re.findall(r"-D\S+", build)
     assert "-DARGUS_ARGUSD=ON" in options
     run("cmake", "-S", tmp_path / "src", "-B", tmp_path / "build", *options, cwd=tmp_path)
-    assert run("cmake", "--build", tmp_path / "build", "--target", "help")
-    listed = run("cmake", "--build", tmp_path / "build", "--target", "argusd", "--", "-n")
-    assert "argusd" in listed
+    assert "argusd" in run("cmake", "--build", tmp_path / "build", "--target", "help")
