@@ -126,4 +126,9 @@ def _pose(state: Mapping[str, Any]) -> tuple[float, float, float]:
 def _usable(state: Mapping[str, Any], number: int) -> bool:
     kinds: Sequence[str] = state.get("kind", ())
     health: Sequence[str] = state.get("health", ())
-    return number < len(kinds) and number < len(health) and not kinds[number] and health[number] in ("HEALTHY", "UNKNOWN")
+    return (
+        number < len(kinds)
+        and number < len(health)
+        and not kinds[number]
+        and health[number] in ("HEALTHY", "UNKNOWN")
+    )
