@@ -158,12 +158,17 @@ def run_beside_each_other(lines: list[str], ours: dict[str, str]) -> list[str]:
             line = line.replace(theirs, place)
         program, *arguments = shlex.split(line)
         path = ROOT / "build/release/argusd" if program == "argusd" else BIN / program
-        started.append(subprocess.Popen([str(path), *arguments], stdout=subprocess.DEVNULL, text=True))
+        started.append(subprocess.Popen([str(path), *arguments], stdout=subprocess.PIPE, text=True))
         programs.append(program)
         time.sleep(2.0 if len(lines) > 1 else 0.5)
     try:
+        guards = programs.count("argus-range-guard")
+        assert bench.until(lambda: bench.listener.get_node_names().count("range_guard") == guards, 60), lines
         if "argus-ros" in programs:
             assert bench.until(lambda: bool(bench.heard), 60), lines
+        if "argus-foxglove" in programs:
+            assert started[-1].stdout is not None
+            assert started[-1].stdout.readline().startswith("ws://")
         assert [process.poll() for process in started] == [None] * len(lines), lines
     finally:
         for process in reversed(started):
