@@ -163,7 +163,9 @@ def run_beside_each_other(lines: list[str], ours: dict[str, str]) -> list[str]:
         time.sleep(2.0 if len(lines) > 1 else 0.5)
     try:
         guards = programs.count("argus-range-guard")
-        assert bench.until(lambda: bench.listener.get_node_names().count("range_guard") == guards, 60), lines
+        assert bench.until(lambda: bench.listener.count_publishers("/sonar/cloud_guarded") == guards, 60), (
+            lines
+        )
         if "argus-ros" in programs:
             assert bench.until(lambda: bool(bench.heard), 60), lines
         if "argus-foxglove" in programs:
