@@ -98,9 +98,11 @@ install(FILES ${deb_dir}/argusd/default DESTINATION /etc/default RENAME argusd C
 # The tools, as pip would install them from the wheel.
 install(DIRECTORY ${ARGUS_DEB}/lib/ DESTINATION lib/python3/dist-packages COMPONENT tools)
 install(DIRECTORY ${ARGUS_DEB}/bin/ DESTINATION bin COMPONENT tools USE_SOURCE_PERMISSIONS)
+file(GLOB programs RELATIVE ${ARGUS_DEB}/bin ${ARGUS_DEB}/bin/*)
+list(REMOVE_ITEM programs argus-log)
 install(FILES tools/argus.bash-completion DESTINATION share/bash-completion/completions RENAME argus-log COMPONENT tools)
 file(MAKE_DIRECTORY ${made}/links)
-foreach(name IN ITEMS argus-sim argus-conformance argus-monitor)
+foreach(name IN LISTS programs)
     file(CREATE_LINK argus-log ${made}/links/${name} SYMBOLIC)
     install(FILES ${made}/links/${name} DESTINATION share/bash-completion/completions COMPONENT tools)
 endforeach()

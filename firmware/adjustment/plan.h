@@ -20,7 +20,7 @@
 
 // `living`: sonars, facing forward or not, that may be relied on; a policy without the ring goes by
 // `disabled` alone. Complete under a policy with the ring whenever one of `living` is not disabled. `policy`:
-// a row of the table. Cost: below ARGUS_COVER_STEPS_MAX sums and comparisons; about 1 kB of stack.
+// a row of the table. Cost: below ARGUS_COVER_STEPS_MAX sums and comparisons; some 400 bytes of stack.
 argus_plan_t argus_plan(const argus_robot_t *robot, argus_policy_t policy, argus_mask_t disabled,
                         argus_mask_t living);
 

@@ -6,12 +6,14 @@
 #include "knowledge/angle.h"
 
 #define SETS (1u << ARGUS_FORWARD_MAX)
-#define NONE UINT64_MAX
-#define STOP_SHIFT 56 // a price: stops, sum of the rotations, and who is first in the list of turns
-#define SUM_SHIFT 40
+#define NONE UINT16_MAX
+#define STOP_SHIFT 12 // a price: stops, and the sum of the rotations below them
 #define HALF_DEG 180
 
-_Static_assert(ARGUS_TURNS_MAX <= SUM_SHIFT, "a bit for each turn");
+_Static_assert(ARGUS_FORWARD_MAX *HALF_DEG < 1 << STOP_SHIFT,
+               "each stop sees a bearing more, so the sum has room");
+_Static_assert(ARGUS_FORWARD_MAX << STOP_SHIFT < NONE, "... and the number of stops");
+_Static_assert(ARGUS_TURNS_MAX <= 32, "a bit for each turn");
 
 // The turns [from, to) of the list lie on the way of a sweep.
 typedef struct {
@@ -21,15 +23,14 @@ typedef struct {
 } span_t;
 
 typedef struct {
-    uint64_t least[SETS]; // price at which a set of blind bearings is seen
+    uint16_t least[SETS]; // price at which a set of blind bearings is seen
     uint32_t steps;
 } table_t;
 
-// That of one stop. Prices of sets of equal size compare by sum, then by the lowest turn in which they
-// differ.
-static uint64_t price(const argus_turns_t *const turns, const int k) {
-    const uint64_t first = ((uint64_t)1 << SUM_SHIFT) - ((uint64_t)1 << (SUM_SHIFT - 1 - k));
-    return ((uint64_t)1 << STOP_SHIFT) + ((uint64_t)argus_abs(turns->deg[k]) << SUM_SHIFT) + first;
+// That of one stop.
+static uint16_t price(const argus_turns_t *const turns, const int k) {
+    ARGUS_ASSERT(k >= 0 && k < turns->count);
+    return (uint16_t)((1 << STOP_SHIFT) + argus_abs(turns->deg[k]));
 }
 
 static void fill(table_t *const table, const argus_turns_t *const turns, const span_t *const span) {
@@ -37,9 +38,9 @@ static void fill(table_t *const table, const argus_turns_t *const turns, const s
     for (unsigned set = 1; set <= argus_turns_open(turns); set++) {
         table->least[set] = NONE;
         for (int k = span->from; k < span->to; k++) {
-            const uint64_t rest = table->least[set & ~(unsigned)turns->sees[k]];
+            const uint16_t rest = table->least[set & ~(unsigned)turns->sees[k]];
             const bool helps = (turns->sees[k] & set) != 0 && rest != NONE;
-            const uint64_t sum = helps ? rest + price(turns, k) : NONE;
+            const uint16_t sum = helps ? (uint16_t)(rest + price(turns, k)) : NONE;
             table->least[set] = sum < table->least[set] ? sum : table->least[set];
             table->steps++;
         }
@@ -75,35 +76,26 @@ static bool is_wanted(const argus_turns_t *const turns, const span_t *const span
     return (all || span->sweep_deg < 2 * HALF_DEG) && sees_all(turns, span);
 }
 
+// Of those that cost the same in time the one of least price, and then that with the lowest turn in which
+// they differ.
 typedef struct {
     int32_t cost;
-    uint64_t price;
+    uint16_t price;
+    uint32_t stops; // bit k: turn k is one
     span_t span;
 } choice_t;
 
-static void try_span(choice_t *const best, table_t *const table, const argus_turns_t *const turns,
-                     const span_t span, const int32_t stop_cost, const int32_t degree_cost) {
-    if (!is_wanted(turns, &span)) {
-        return;
-    }
-    fill(table, turns, &span);
-    const uint64_t least = table->least[argus_turns_open(turns)];
-    const int32_t cost = (int32_t)(least >> STOP_SHIFT) * stop_cost + span.sweep_deg * degree_cost;
-    if (cost < best->cost || (cost == best->cost && least < best->price)) {
-        *best = (choice_t){.cost = cost, .price = least, .span = span};
-    }
-}
-
-// Bit k: a stop of the cheapest set.
-static uint64_t stops_of(const table_t *const table, const argus_turns_t *const turns,
+// The stops of the cheapest set. Of several that with the lowest turns: what a turn of a cheapest set leaves
+// is seen by the rest of it.
+static uint32_t stops_of(const table_t *const table, const argus_turns_t *const turns,
                          const span_t *const span) {
-    uint64_t stops = 0;
+    uint32_t stops = 0;
     unsigned set = argus_turns_open(turns);
     for (int k = span->from; k < span->to; k++) { // each is needed once, in whatever order
         const unsigned rest = set & ~(unsigned)turns->sees[k];
         if (rest != set && table->least[rest] != NONE &&
             table->least[set] == table->least[rest] + price(turns, k)) {
-            stops |= (uint64_t)1 << k;
+            stops |= (uint32_t)1 << k;
             set = rest;
         }
     }
@@ -111,14 +103,41 @@ static uint64_t stops_of(const table_t *const table, const argus_turns_t *const 
     return stops;
 }
 
-static void add(argus_plan_t *const plan, const argus_turns_t *const turns, const uint64_t stops,
+static bool is_cheaper(const choice_t *const a, const choice_t *const b) {
+    if (a->cost != b->cost) {
+        return a->cost < b->cost;
+    }
+    if (a->price != b->price) {
+        return a->price < b->price;
+    }
+    const uint32_t differ = a->stops ^ b->stops;
+    return (a->stops & differ & (~differ + 1u)) != 0;
+}
+
+static void try_span(choice_t *const best, table_t *const table, const argus_turns_t *const turns,
+                     const span_t span, const int32_t stop_cost, const int32_t degree_cost) {
+    if (!is_wanted(turns, &span)) {
+        return;
+    }
+    fill(table, turns, &span);
+    const uint16_t least = table->least[argus_turns_open(turns)];
+    const choice_t here = {.cost = (least >> STOP_SHIFT) * stop_cost + span.sweep_deg * degree_cost,
+                           .price = least,
+                           .stops = stops_of(table, turns, &span),
+                           .span = span};
+    if (is_cheaper(&here, best)) {
+        *best = here;
+    }
+}
+
+static void add(argus_plan_t *const plan, const argus_turns_t *const turns, const uint32_t stops,
                 const int k) {
     if ((stops >> k & 1u) != 0 && plan->count < ARGUS_ROTATIONS_MAX) {
         plan->rotation_deg[plan->count++] = turns->deg[k];
     }
 }
 
-static void list(argus_plan_t *const plan, const argus_turns_t *const turns, const uint64_t stops,
+static void list(argus_plan_t *const plan, const argus_turns_t *const turns, const uint32_t stops,
                  const int negative, const bool around) {
     for (int k = negative - 1; k >= 0 && !around; k--) {
         add(plan, turns, stops, k);
@@ -136,7 +155,7 @@ uint32_t argus_policy_cover(argus_plan_t *const plan, const argus_turns_t *const
     ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX && turns->blinds > 0);
     const int negative = count_negative(turns);
     table_t table = {.steps = 0};
-    choice_t best = {.cost = INT32_MAX};
+    choice_t best = {.cost = INT32_MAX, .price = NONE};
     for (int from = 0; from <= negative; from++) {
         for (int to = negative; to <= turns->count; to++) {
             try_span(&best, &table, turns, span_of(turns, from, to), stop_cost, degree_cost);
@@ -144,9 +163,7 @@ uint32_t argus_policy_cover(argus_plan_t *const plan, const argus_turns_t *const
     }
     plan->complete = best.cost < INT32_MAX;
     if (plan->complete) {
-        fill(&table, turns, &best.span);
-        const uint64_t stops = stops_of(&table, turns, &best.span);
-        list(plan, turns, stops, negative, best.span.sweep_deg == 2 * HALF_DEG);
+        list(plan, turns, best.stops, negative, best.span.sweep_deg == 2 * HALF_DEG);
     }
     ARGUS_ASSERT(table.steps <= ARGUS_COVER_STEPS_MAX);
     return table.steps;

@@ -6,12 +6,16 @@
 
 #include "knowledge/angle.h"
 
-#define TRUST_MM 2000u // no reading says more: a thin thing beyond may give no echo
+#define TRUST_BITS 0x7FFu
+#define SONAR_BITS 0x1Fu
+#define TRUST_MM 2000 // no reading says more: a thin thing beyond may give no echo
 #define LATELY_MS 5000u
 #define CONE_SLOPE 27 // tan 12 degrees, / 128: within 15 where the beam still tells
 #define NEAR_MM 40    // ... and so much beside the axis, close to the transducer
 #define STEP_MM 80
 #define ABREAST 3 // places on either side of the middle
+
+_Static_assert(TRUST_MM < 1 << 11 && ARGUS_SONARS <= 1 << 5, "a ray has so many bits for them");
 
 void argus_rays_init(argus_rays_t *const self) {
     memset(self, 0, sizeof *self);
@@ -30,8 +34,12 @@ void argus_rays_forget_all(argus_rays_t *const self) {
     self->next = 0;
 }
 
-static void add(argus_rays_t *const self, const argus_ray_t *const ray) {
+static void add(argus_rays_t *const self, const argus_ray_t *const ray, const uint32_t now_ms) {
     ARGUS_ASSERT(self->next < ARGUS_RAYS_MAX);
+    if (now_ms - self->newest_ms > LATELY_MS) {
+        argus_rays_forget_all(self);
+    }
+    self->newest_ms = now_ms;
     self->at[self->next] = *ray;
     self->next = (uint8_t)((self->next + 1) % ARGUS_RAYS_MAX);
     self->count = (uint8_t)argus_min(self->count + 1, ARGUS_RAYS_MAX);
@@ -48,14 +56,15 @@ static void see(argus_rays_t *const self, const argus_knowledge_t *const knowled
     if (!fits(from)) {
         return;
     }
+    const int32_t free_mm = argus_min(knowledge->sonar[sonar].reading_mm, TRUST_MM);
     const argus_ray_t ray = {.x_mm = (int16_t)from.x_mm,
                              .y_mm = (int16_t)from.y_mm,
                              .c = (int16_t)argus_cos(bearing_cdeg),
                              .s = (int16_t)argus_sin(bearing_cdeg),
-                             .free_mm = (uint16_t)argus_min(knowledge->sonar[sonar].reading_mm, TRUST_MM),
-                             .sonar = (uint8_t)sonar,
-                             .t_ms = knowledge->sip_ms};
-    add(self, &ray);
+                             .free_mm = (uint16_t)free_mm & TRUST_BITS,
+                             .sonar = (uint16_t)sonar & SONAR_BITS,
+                             .t_ms = (uint16_t)(knowledge->sip_ms & 0xFFFFu)};
+    add(self, &ray, knowledge->sip_ms);
 }
 
 void argus_rays_see(argus_rays_t *const self, const argus_knowledge_t *const knowledge,
@@ -82,9 +91,10 @@ static bool shows(const argus_ray_t *const ray, const argus_point_t at) {
 
 // The newest first: it is likeliest.
 static bool is_seen(const argus_rays_t *const self, const uint32_t now_ms, const argus_point_t at) {
-    for (int i = 1; i <= self->count; i++) {
+    const int count = now_ms - self->newest_ms > LATELY_MS ? 0 : self->count;
+    for (int i = 1; i <= count; i++) {
         const argus_ray_t *const ray = &self->at[(self->next + ARGUS_RAYS_MAX - i) % ARGUS_RAYS_MAX];
-        if (now_ms - ray->t_ms > LATELY_MS) {
+        if ((uint16_t)(now_ms - ray->t_ms) > LATELY_MS) {
             return false;
         }
         if (shows(ray, at)) {

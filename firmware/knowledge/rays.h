@@ -13,13 +13,14 @@ typedef struct {
     int16_t y_mm;
     int16_t c;
     int16_t s;
-    uint16_t free_mm;
-    uint8_t sonar;
-    uint32_t t_ms;
+    uint16_t free_mm : 11;
+    uint16_t sonar : 5;
+    uint16_t t_ms; // modulo 65,536: no ray lies longer before the one after it than it counts
 } argus_ray_t;
 
 typedef struct {
     argus_ray_t at[ARGUS_RAYS_MAX];
+    uint32_t newest_ms;
     uint8_t count;
     uint8_t next; // oldest, once full
 } argus_rays_t;

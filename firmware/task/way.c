@@ -145,26 +145,26 @@ static void survey(argus_wave_t *const wave, const argus_ground_t *const ground,
     let_out(wave, cell_in(ground->grid, robot_at(ground)), tight);
     let_out(wave, cell_in(ground->grid, waypoint), tight);
     memset(wave->label, 0, sizeof wave->label);
+    memset(wave->reached, 0, sizeof wave->reached);
 }
 
 // The wave
 // ----------------------------------------------------------------------------------------------------
 
-static uint64_t reached(const argus_wave_t *const wave, const int y) {
-    return wave->label[0][y] | wave->label[1][y] | wave->label[2][y] | wave->label[3][y];
-}
-
 static uint64_t labelled(const argus_wave_t *const wave, const int y, const unsigned label) {
     uint64_t row = ~(uint64_t)0;
     for (unsigned i = 0; i < PLANES; i++) {
-        row &= (label >> i & 1u) != 0 ? wave->label[i][y] : ~wave->label[i][y];
+        row &= wave->label[i][y] ^ ((uint64_t)(label >> i & 1u) - 1u); // the plane, or what is not in it
     }
     return row;
 }
 
 static void put_label(argus_wave_t *const wave, const int y, const uint64_t cells, const unsigned label) {
-    for (unsigned i = 0; i < PLANES; i++) {
-        wave->label[i][y] |= (label >> i & 1u) != 0 ? cells : 0;
+    wave->reached[y] |= cells;
+    uint64_t *row = &wave->label[0][y];
+    for (unsigned rest = label; rest != 0; rest >>= 1) {
+        *row |= (rest & 1u) != 0 ? cells : 0;
+        row += CELLS;
     }
 }
 
@@ -186,46 +186,59 @@ static uint64_t beside(const uint64_t row, const uint64_t others, const bool cor
     return widened(row, 1) | (corners ? widened(others, 1) : others);
 }
 
-// What the wave reached long enough ago to get on where it is narrow.
-static uint64_t ripened(const argus_wave_t *const wave, const int y, const int step) {
-    uint64_t young = 0;
-    for (int ago = 1; ago < NARROW_STEPS && y >= 0 && y < CELLS; ago++) {
-        young |= labelled(wave, y, label_at(step + LABELS - ago));
+// What the wave reached long enough ago to get on where it is narrow, of the rows about one: each is asked for
+// by up to three.
+typedef struct {
+    uint64_t cells[3];
+    uint64_t fresh_below;
+    int row[3];
+} ripe_t;
+
+static uint64_t ripened(ripe_t *const ripe, const argus_wave_t *const wave, const int y, const int step) {
+    if (y < 0 || y >= CELLS) {
+        return 0;
     }
-    return y >= 0 && y < CELLS ? reached(wave, y) & ~young : 0;
+    const int slot = y % 3;
+    if (ripe->row[slot] != y) {
+        uint64_t young = 0;
+        for (int ago = 1; ago < NARROW_STEPS; ago++) {
+            young |= labelled(wave, y, label_at(step + LABELS - ago));
+        }
+        ripe->row[slot] = y;
+        ripe->cells[slot] = wave->reached[y] & ~young;
+    }
+    return ripe->cells[slot];
 }
 
-// Cells that the wave comes to in one row. Where it is narrow it comes later, from what is ripe, and of the
-// row below only what was there before this step.
-static uint64_t fresh_in(const argus_wave_t *const wave, const int y, const int step, const uint64_t next,
-                         const uint64_t fresh_below) {
-    const bool corners = step % 2 == 0;
-    const uint64_t slow = next & wave->narrow[y] & ~wave->wide[y];
-    if (slow == 0) {
-        return next & wave->wide[y];
+// The cells of a row that the wave comes to, of those next to what it has reached. Of the row below counts what was
+// there before this step.
+static uint64_t come_on(argus_wave_t *const wave, ripe_t *const ripe, const int y, const uint64_t next,
+                        const int step) {
+    const uint64_t slow = next & ~wave->wide[y];
+    uint64_t fresh = next & wave->wide[y];
+    if (slow != 0) {
+        const uint64_t others =
+            (ripened(ripe, wave, y - 1, step) & ~ripe->fresh_below) | ripened(ripe, wave, y + 1, step);
+        fresh |= beside(ripened(ripe, wave, y, step), others, step % 2 == 0) & slow;
     }
-    const uint64_t others = (ripened(wave, y - 1, step) & ~fresh_below) | ripened(wave, y + 1, step);
-    return (next & wave->wide[y]) | (beside(ripened(wave, y, step), others, corners) & slow);
+    put_label(wave, y, fresh, label_at(step));
+    return fresh;
 }
 
 // True: the wave has come to new cells.
 static bool advance(argus_wave_t *const wave, const int step) {
+    ripe_t ripe = {.row = {-1, -1, -1}};
     uint64_t below = 0;
-    uint64_t fresh = 0;
-    uint64_t any = 0;
-    uint64_t here = reached(wave, 0);
+    bool any = false;
     for (int y = 0; y < CELLS; y++) {
-        const uint64_t above = y + 1 < CELLS ? reached(wave, y + 1) : 0;
-        const uint64_t next = beside(here, below | above, step % 2 == 0) & ~here;
-        fresh = next != 0 ? fresh_in(wave, y, step, next, fresh) : 0;
-        if (fresh != 0) {
-            put_label(wave, y, fresh, label_at(step));
-        }
-        any |= fresh;
+        const uint64_t here = wave->reached[y];
+        const uint64_t others = below | (y + 1 < CELLS ? wave->reached[y + 1] : 0);
+        const uint64_t next = beside(here, others, step % 2 == 0) & ~here & wave->narrow[y];
+        ripe.fresh_below = next != 0 ? come_on(wave, &ripe, y, next, step) : 0;
+        any = any || ripe.fresh_below != 0;
         below = here;
-        here = above;
     }
-    return any != 0;
+    return any;
 }
 
 static int32_t outside(const int32_t at) {
@@ -237,27 +250,56 @@ static int32_t beyond(const argus_cell_t waypoint) {
     return argus_hypot(argus_min(outside(waypoint.x), 40000), argus_min(outside(waypoint.y), 40000));
 }
 
-// Of the cells of a row at the border of the window, those within a circle: `rest` is what the way across the
-// rows leaves of its radius squared.
-static uint64_t border_within(const int y, const int32_t rest, const int32_t middle_x) {
-    const int apart = y == 0 || y == CELLS - 1 ? 1 : CELLS - 1;
-    uint64_t cells = 0;
-    for (int x = 0; x < CELLS && rest >= 0; x += apart) {
-        const int32_t dx = x - middle_x;
-        cells |= dx * dx <= rest ? bit(x) : 0;
+static int32_t square(const int32_t mm) {
+    return mm * mm;
+}
+
+static void come_to(argus_wave_t *const wave, const argus_cell_t cell, const int step) {
+    if (has(wave->narrow, cell) && !has(wave->reached, cell)) {
+        put_label(wave, (int)cell.y, bit(cell.x), label_at(step));
     }
-    return cells;
+}
+
+// A side of the window that is `apart` from the waypoint, whose foot on it is at `foot`.
+typedef struct {
+    int32_t apart;
+    int32_t foot;
+    int32_t at;
+    bool upright;
+} side_t;
+
+// The wave comes as a circle, in each step to what the step before left. False: it has come to all of the side.
+static bool come_to_side(argus_wave_t *const wave, const side_t *const side, const int32_t radius, const int step) {
+    const int32_t now = square(radius) - square(side->apart);
+    const int32_t before = step > 1 ? square(radius - 1) - square(side->apart) : -1;
+    bool more = false;
+    if (now < 0 || before >= argus_max(square(side->foot), square(CELLS - 1 - side->foot))) {
+        return now < 0; // not yet, or all of it before
+    }
+    for (int32_t i = 0; i < CELLS; i++) {
+        const int32_t off = square(i - side->foot);
+        if (off > now) {
+            more = true;
+        } else if (off > before) {
+            come_to(wave, side->upright ? (argus_cell_t){side->at, i} : (argus_cell_t){i, side->at}, step);
+        }
+    }
+    return more;
 }
 
 // A wave from a waypoint outside comes to the border by and by. False: it has come to all of it.
 static bool come_in(argus_wave_t *const wave, const argus_cell_t waypoint, const int step) {
     const int32_t radius = beyond(waypoint) + step;
-    for (int y = 0; y < CELLS; y++) {
-        const int32_t dy = y - waypoint.y;
-        const uint64_t open = wave->narrow[y] & ~reached(wave, y);
-        put_label(wave, y, border_within(y, radius * radius - dy * dy, waypoint.x) & open, label_at(step));
+    const int32_t end = CELLS - 1;
+    const side_t sides[] = {{waypoint.y, waypoint.x, 0, false},
+                            {end - waypoint.y, waypoint.x, end, false},
+                            {waypoint.x, waypoint.y, 0, true},
+                            {end - waypoint.x, waypoint.y, end, true}};
+    bool more = false;
+    for (int i = 0; i < 4; i++) {
+        more = come_to_side(wave, &sides[i], radius, step) || more;
     }
-    return step < 3 * CELLS;
+    return more;
 }
 
 // Steps that the wave takes from the waypoint to the robot; -1: it does not come.

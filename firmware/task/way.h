@@ -10,7 +10,8 @@
 typedef struct {
     uint64_t wide[ARGUS_GRID_CELLS];     // the robot may stand there and turn
     uint64_t narrow[ARGUS_GRID_CELLS];   // ... pass
-    uint64_t label[4][ARGUS_GRID_CELLS]; // when the wave came: 1 to 15 in turn, 0: not yet
+    uint64_t reached[ARGUS_GRID_CELLS];  // the wave has come
+    uint64_t label[4][ARGUS_GRID_CELLS]; // ... when: 1 to 15 in turn, 0: not yet
 } argus_wave_t;
 
 typedef struct {

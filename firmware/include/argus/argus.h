@@ -279,6 +279,10 @@ typedef enum {
     X(73, REVERSED, WARN, "drive",                                                                           \
       "the leading end changes, at rest; value: 1 the rear leads, 0 the front again")                        \
     X(74, INJECTED, WARN, "sonar", "what it reports is altered for a test; value: fault kind, 0: no more")   \
+    X(75, WHEEL_SHORT, WARN, "drive",                                                                        \
+      "ways straight ahead bend: a wheel turns less than it is told, and is countered by turning; value: "   \
+      "thousandths that it falls short, positive the left one, negative the right one")                      \
+    X(76, WHEEL_EVEN, OK, "drive", "ways straight ahead are straight again; value: 0")                       \
     X(80, RECORD_IGNORED, WARN, "record",                                                                    \
       "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")            \
     X(81, EVENTS_LOST, ERROR, "events", "the event queue overflowed; value: events lost")                    \
@@ -301,7 +305,8 @@ typedef enum {
     X(107, GUARD_FREE, OK, "guard", "the client's motion is not bounded any more; value: 0")                 \
     X(108, GUARD_REFUSED, WARN, "guard", "a command of the client ends here; value: its number")             \
     X(109, GUARD_LOOKS, OK, "guard",                                                                         \
-      "a bearing ahead is blind: the heading swings so that others see the way; value: degrees to each side")
+      "a bearing ahead is blind: the heading swings so that others see the way; value: degrees to each "     \
+      "side")
 
 // The events by number.
 typedef enum {
@@ -498,7 +503,7 @@ typedef enum {
 
 // Instance -------------------------------------------------------------------------------------------------
 
-#define ARGUS_STORAGE_BYTES (13400 + 720 * ARGUS_SONARS)
+#define ARGUS_STORAGE_BYTES (12900 + 720 * ARGUS_SONARS)
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.
@@ -520,21 +525,22 @@ typedef enum {
 
 // What has come since the last pass, and room for what goes to the client.
 typedef struct {
-    argus_readings_t readings;
-    bool there;            // a client is at the port
-    const uint8_t *client; // its bytes
-    size_t client_count;
-    const uint8_t *robot; // the robot's, which argus_receive() has just taken
-    size_t robot_count;
-    uint8_t *out;
-    size_t capacity;
+    argus_readings_t readings; // of sonars that are out
+    bool there;                // a client is at the port
+    const uint8_t *client;     // its bytes
+    size_t client_count;       // how many
+    const uint8_t *robot;      // the robot's, which argus_receive() has just taken
+    size_t robot_count;        // how many
+    uint8_t *out;              // where bytes for the client go
+    size_t capacity;           // how many fit
 } argus_port_io_t;
 
-// Memory of one port, the caller's; all zero at the start.
 #define ARGUS_PORT_BYTES 2600
+
+// Memory of one port, the caller's; all zero at the start.
 typedef union {
-    uint64_t align;
-    uint8_t bytes[ARGUS_PORT_BYTES];
+    uint64_t align;                  // as strict as any member within
+    uint8_t bytes[ARGUS_PORT_BYTES]; // the library's own
 } argus_port_storage_t;
 
 // Functions ------------------------------------------------------------------------------------------------

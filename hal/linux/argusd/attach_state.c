@@ -107,8 +107,8 @@ static void take_injected(const json_doc_t *doc, int token, int sonar, view_t *v
 
 static void take_pinned(const json_doc_t *doc, int token, int sonar, view_t *view) {
     (void)sonar;
-    const int32_t pinned = value_at(doc, token);
-    if (pinned >= 0 && pinned < ARGUS_SONARS) {
+    int64_t pinned = 0;
+    if (json_whole(doc, token, 0, ARGUS_SONARS - 1, &pinned)) {
         view->status.pinned = (argus_mask_t)(view->status.pinned | 1u << pinned);
     }
 }

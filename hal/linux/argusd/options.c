@@ -19,14 +19,14 @@ enum {
     OPT_RECORD_MAX,
     OPT_ROBOT,
     OPT_CAN_TELEMETRY,
+    OPT_GUARD,
+    OPT_GUARD_READINGS,
+    OPT_GUARD_BEYOND,
     OPT_CONTROL,
     OPT_CONTROL_TOKEN,
     OPT_CONTROL_BEYOND,
     OPT_INJECT,
     OPT_ATTACH,
-    OPT_GUARD,
-    OPT_GUARD_READINGS,
-    OPT_GUARD_BEYOND,
     OPT_PASSIVE,
     OPT_ACTIVE,
     OPT_JSON,
@@ -51,14 +51,14 @@ static const struct option table[] = {
     {"record-max", required_argument, NULL, OPT_RECORD_MAX},
     {"robot", required_argument, NULL, OPT_ROBOT},
     {"can-telemetry", required_argument, NULL, OPT_CAN_TELEMETRY},
+    {"guard", required_argument, NULL, OPT_GUARD},
+    {"guard-readings", required_argument, NULL, OPT_GUARD_READINGS},
+    {"guard-beyond-loopback", no_argument, NULL, OPT_GUARD_BEYOND},
     {"control", required_argument, NULL, OPT_CONTROL},
     {"control-token", required_argument, NULL, OPT_CONTROL_TOKEN},
     {"control-beyond-loopback", no_argument, NULL, OPT_CONTROL_BEYOND},
     {"inject", no_argument, NULL, OPT_INJECT},
     {"attach", required_argument, NULL, OPT_ATTACH},
-    {"guard", required_argument, NULL, OPT_GUARD},
-    {"guard-readings", required_argument, NULL, OPT_GUARD_READINGS},
-    {"guard-beyond-loopback", no_argument, NULL, OPT_GUARD_BEYOND},
     {"passive", no_argument, NULL, OPT_PASSIVE},
     {"active", no_argument, NULL, OPT_ACTIVE},
     {"json", no_argument, NULL, OPT_JSON},
@@ -223,17 +223,6 @@ static bool take_telemetry(options_t *options, const char *text, const message_t
     return true;
 }
 
-static bool take_place(options_t *options, int option, const message_t *message) {
-    char problem[ARGUSD_MESSAGE_MAX / 2];
-    if (option == OPT_ATTACH) {
-        options->action = OPTIONS_ATTACH;
-    }
-    return control_spec_parse(option == OPT_ATTACH ? &options->attach : &options->control, optarg, problem,
-                              sizeof problem) ||
-           text_refuse(message->text, message->capacity, "%s %s",
-                       option == OPT_ATTACH ? "--attach" : "--control", problem);
-}
-
 static bool take_guard(options_t *options, const char *text, const message_t *message) {
     guards_options_t *const guards = &options->guards;
     if (guards->count == GUARDS_MAX) {
@@ -254,6 +243,17 @@ static bool take_readings(options_t *options, const char *text, const message_t 
     }
     return text_refuse(message->text, message->capacity, "--guard-readings %s: give withhold, cover or pass",
                        text);
+}
+
+static bool take_place(options_t *options, int option, const message_t *message) {
+    char problem[ARGUSD_MESSAGE_MAX / 2];
+    if (option == OPT_ATTACH) {
+        options->action = OPTIONS_ATTACH;
+    }
+    return control_spec_parse(option == OPT_ATTACH ? &options->attach : &options->control, optarg, problem,
+                              sizeof problem) ||
+           text_refuse(message->text, message->capacity, "%s %s",
+                       option == OPT_ATTACH ? "--attach" : "--control", problem);
 }
 
 // What is kept as it was written.
@@ -299,14 +299,14 @@ static bool take_flag(options_t *options, int option) {
     case OPT_AUTO_BAUD:
         options->auto_baud = true;
         return true;
+    case OPT_GUARD_BEYOND:
+        options->guards.beyond = true;
+        return true;
     case OPT_CONTROL_BEYOND:
         options->control_beyond_loopback = true;
         return true;
     case OPT_INJECT:
         options->inject = true;
-        return true;
-    case OPT_GUARD_BEYOND:
-        options->guards.beyond = true;
         return true;
     default:
         return take_text(options, option);
@@ -346,13 +346,13 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
         return take_telemetry(options, optarg, message);
     case OPT_RECORD_MAX:
         return take_record_max(options, optarg, message);
-    case OPT_CONTROL:
-    case OPT_ATTACH:
-        return take_place(options, option, message);
     case OPT_GUARD:
         return take_guard(options, optarg, message);
     case OPT_GUARD_READINGS:
         return take_readings(options, optarg, message);
+    case OPT_CONTROL:
+    case OPT_ATTACH:
+        return take_place(options, option, message);
     case ':':
         return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help",
                            argv[optind - 1]);

@@ -143,6 +143,45 @@ static void finds(robot_fault_t fault, int value, argus_fault_kind_t kind, bool 
     }
 }
 
+static argus_suspicions_t suspicions(void) {
+    argus_suspicions_t now;
+    memset(&now, 0xAA, sizeof now);
+    argus_suspicions(&robot.argus, &now);
+    return now;
+}
+
+static bool is_half_convicted(int sonar) {
+    return suspicions().percent[sonar] >= 50;
+}
+
+// What is shown of the evidence rises before the verdict, names it, and stays low for the others.
+void test_a_suspicion_grows_to_a_verdict(void) {
+    start_in_a_room();
+    drive_until(never, 0, 12000);
+    TEST_ASSERT_TRUE(suspicions().percent[3] < 50);
+    robot.fault[3] = ROBOT_STUCK;
+    TEST_ASSERT_TRUE(drive_until(is_half_convicted, 3, 120000));
+    TEST_ASSERT_EQUAL_INT(ARGUS_KIND_STUCK, suspicions().kind[3]);
+    TEST_ASSERT_FALSE(is_disabled(3));
+    TEST_ASSERT_TRUE(drive_until(is_disabled, 3, 120000));
+    TEST_ASSERT_EQUAL_INT(100, suspicions().percent[3]);
+    TEST_ASSERT_EQUAL_INT(ARGUS_KIND_STUCK, suspicions().kind[3]);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(i == 3 || suspicions().percent[i] < 80, told("the others", i));
+        TEST_ASSERT_TRUE((suspicions().against[i] >> i & 1u) == 0);
+    }
+    finish();
+}
+
+void test_the_rules_of_the_paper_suspect_nothing(void) {
+    const argus_suspicions_t none = {.kind = {ARGUS_KIND_NONE}};
+    const argus_config_t config = robot_config();
+    robot_init(&robot, &config, 0);
+    robot_run(&robot, 3000);
+    const argus_suspicions_t now = suspicions();
+    TEST_ASSERT_EQUAL_MEMORY(&none, &now, sizeof none);
+}
+
 void test_off_is_found(void) {
     finds(ROBOT_OFF, 0, ARGUS_KIND_OFF, is_disabled);
 }
