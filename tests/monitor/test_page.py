@@ -35,28 +35,6 @@ def test_the_token_leaves_the_address_and_survives_a_reload(page: Browser, monit
     page.wait("live again", lambda: page.text("link") == "live")
 
 
-def test_a_sonar_broken_by_a_click_is_diagnosed_on_the_page_and_mended_by_another(page: Browser) -> None:
-    page.js("document.getElementById('fault').value = 'silent'")
-    page.point_sonar(3)
-    page.wait("it is marked as broken", lambda: page.known("broken") == {"3": "silent"})
-    page.wait("Argus finds it", lambda: page.known("state.kind")[3] == "silent")
-    page.wait("the list says so", lambda: page.row(3) == "↯ failed: silent")
-    page.wait("the headline says so", lambda: "3 silent" in page.text("stage-text"))
-    page.wait("so does the badge", lambda: page.text("failure") in ("Minor failure", "Major failure"))
-    page.wait("it tells how long it took", lambda: page.text("say").startswith("Found after "))
-    assert page.driver.find_elements(By.CSS_SELECTOR, "#robot .sonar.bad[data-sonar='3']")
-    assert "sonar 3disabled" in page.text("events").replace(" ", "").replace("sonar3", "sonar 3")
-    page.wait(
-        "a plan covers for it", lambda: page.js("return document.querySelectorAll('#robot .turn').length") > 0
-    )
-    assert page.js("return document.querySelectorAll('#plan .turn').length") > 0
-    assert page.js("return document.querySelectorAll('#robot .cover.turned').length") > 0
-    page.point_sonar(3)
-    page.wait("it is mended", lambda: page.known("broken") == {})
-    page.driver.find_element(By.CSS_SELECTOR, "[data-sonar-order=retest]").click()
-    page.wait("tested again it comes back", lambda: page.known("state.kind")[3] != "silent")
-
-
 def test_a_click_on_the_floor_drives_there_and_stop_stops(page: Browser) -> None:
     page.wait("all is well", lambda: page.known("state.mode") in ("IDLE", "DRIVING"))
     box = page.js(
@@ -239,3 +217,25 @@ def test_a_reading_is_on_the_screen_soon_after_its_sip(page: Browser) -> None:
         lambda: (got := page.js("return argusMonitor.latencies")) and len(got) > 20 and got,
     )
     assert 0 < statistics.median(latencies) < LATENCY_MS
+
+
+def test_a_sonar_broken_by_a_click_is_diagnosed_on_the_page_and_mended_by_another(page: Browser) -> None:
+    page.js("document.getElementById('fault').value = 'silent'")
+    page.point_sonar(3)
+    page.wait("it is marked as broken", lambda: page.known("broken") == {"3": "silent"})
+    page.wait("Argus finds it", lambda: page.known("state.kind")[3] == "silent")
+    page.wait("the list says so", lambda: page.row(3) == "↯ failed: silent")
+    page.wait("the headline says so", lambda: "3 silent" in page.text("stage-text"))
+    page.wait("so does the badge", lambda: page.text("failure") in ("Minor failure", "Major failure"))
+    page.wait("it tells how long it took", lambda: page.text("say").startswith("Found after "))
+    assert page.driver.find_elements(By.CSS_SELECTOR, "#robot .sonar.bad[data-sonar='3']")
+    assert "sonar 3disabled" in page.text("events").replace(" ", "").replace("sonar3", "sonar 3")
+    page.wait(
+        "a plan covers for it", lambda: page.js("return document.querySelectorAll('#robot .turn').length") > 0
+    )
+    assert page.js("return document.querySelectorAll('#plan .turn').length") > 0
+    assert page.js("return document.querySelectorAll('#robot .cover.turned').length") > 0
+    page.point_sonar(3)
+    page.wait("it is mended", lambda: page.known("broken") == {})
+    page.driver.find_element(By.CSS_SELECTOR, "[data-sonar-order=retest]").click()
+    page.wait("tested again it comes back", lambda: page.known("state.kind")[3] != "silent")
