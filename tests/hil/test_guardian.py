@@ -17,7 +17,7 @@ import pytest
 from harness import ROOT, Argusd, Bench, is_at_rest, run_argusd, wait_for
 from worlds import hall, hall_with_box
 
-from hil_sim.arcos import ConfigPac, EncoderPac, Sip
+from hil_sim.arcos import ConfigPac, EncoderPac
 from hil_sim.conformance.client import Client, Target, parse_target
 
 SPEED_MM_S: Final = 300
