@@ -80,7 +80,7 @@ set(CPACK_DEBIAN_ARGUSD_PACKAGE_CONTROL_EXTRA
     "${control}/conffiles;${deb_dir}/argusd/postinst;${deb_dir}/argusd/prerm;${deb_dir}/argusd/postrm")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
     "python3 (>= 3.11), python3-numpy, python3-yaml, python3-serial, python3-matplotlib, python3-rich")
-set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "argusd, python3-can")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "argusd, python3-can, python3-aiohttp")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_CONTROL_EXTRA "${deb_dir}/argus-tools/postinst;${deb_dir}/argus-tools/prerm")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libargus${abi} (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
@@ -98,9 +98,11 @@ install(FILES ${deb_dir}/argusd/default DESTINATION /etc/default RENAME argusd C
 # The tools, as pip would install them from the wheel.
 install(DIRECTORY ${ARGUS_DEB}/lib/ DESTINATION lib/python3/dist-packages COMPONENT tools)
 install(DIRECTORY ${ARGUS_DEB}/bin/ DESTINATION bin COMPONENT tools USE_SOURCE_PERMISSIONS)
+file(GLOB programs RELATIVE ${ARGUS_DEB}/bin ${ARGUS_DEB}/bin/*)
+list(REMOVE_ITEM programs argus-log)
 install(FILES tools/argus.bash-completion DESTINATION share/bash-completion/completions RENAME argus-log COMPONENT tools)
 file(MAKE_DIRECTORY ${made}/links)
-foreach(name IN ITEMS argus-sim argus-conformance)
+foreach(name IN LISTS programs)
     file(CREATE_LINK argus-log ${made}/links/${name} SYMBOLIC)
     install(FILES ${made}/links/${name} DESTINATION share/bash-completion/completions COMPONENT tools)
 endforeach()

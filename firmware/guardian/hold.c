@@ -45,24 +45,33 @@ static void say_once(argus_t *const core, bool *const said, const argus_event_id
     }
 }
 
+// Closed again after it was open for a while is news.
+static void tell_closed(argus_t *const core, argus_given_t *const given, const argus_bound_t *const bound) {
+    if (bound->speed_mm_s == 0) {
+        given->open_sips = 0;
+        say_once(core, &given->held_said, ARGUS_EV_GUARD_HELD, (int32_t)bound->why);
+    } else if (given->held_said) {
+        given->open_sips++;
+        given->held_said = given->open_sips < FREE_SIPS;
+    }
+}
+
 static void tell_way(argus_t *const core, argus_given_t *const given, const argus_bound_t *const bound,
                      const int32_t wanted_mm_s) {
-    if (bound->speed_mm_s == 0) {
-        given->free_sips = 0;
-        say_once(core, &given->held_said, ARGUS_EV_GUARD_HELD, (int32_t)bound->why);
-    } else if (bound->speed_mm_s < argus_abs(wanted_mm_s)) {
-        given->free_sips = 0;
+    tell_closed(core, given, bound);
+    if (bound->speed_mm_s >= argus_abs(wanted_mm_s)) {
+        return;
+    }
+    given->free_sips = 0;
+    if (bound->speed_mm_s > 0) {
         say_once(core, &given->slowed_said, ARGUS_EV_GUARD_SLOWED, bound->speed_mm_s);
     }
 }
 
 // A bound that comes and goes is one.
 static void tell_free(argus_t *const core, argus_given_t *const given) {
-    if (!given->held_said && !given->slowed_said && !given->turn_said) {
-        return;
-    }
-    given->free_sips++;
-    if (given->free_sips >= FREE_SIPS) {
+    given->free_sips = (uint8_t)argus_min(given->free_sips + 1, FREE_SIPS);
+    if ((given->held_said || given->slowed_said || given->turn_said) && given->free_sips >= FREE_SIPS) {
         given->held_said = given->slowed_said = given->turn_said = false;
         given->free_sips = 0;
         argus_say(core, ARGUS_EV_GUARD_FREE, ARGUS_NO_SONAR, 0);

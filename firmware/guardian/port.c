@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The session of a guard port's client, and what passes either way.
-#include "guardian/port.h"
+#include "guardian/client.h"
 
 #include <string.h>
 

@@ -113,6 +113,10 @@ static void greet(guards_t *self, int index, uint32_t now_ms) {
     int other = -1;
     guard_port_accept(at, &other);
     const bool came = !was_there && at->client >= 0;
+    if (self->served < 0 && at->client >= 0) { // also who had to wait at a pty
+        welcome(self, index, now_ms);
+        return;
+    }
     if (!came && other < 0) {
         return;
     }
@@ -165,14 +169,15 @@ static void ignore_others(guards_t *self) {
 }
 
 void guards_serve(guards_t *self, uint32_t now_ms) {
+    if (self->count == 0) {
+        return;
+    }
+    hear(self, now_ms); // whether it has gone, before the next one is turned away
     for (int i = 0; i < self->count; i++) {
         greet(self, i, now_ms);
     }
-    if (self->count > 0) {
-        hear(self, now_ms);
-        ignore_others(self);
-        driver_transmit(self->driver);
-    }
+    ignore_others(self);
+    driver_transmit(self->driver);
 }
 
 bool guards_notice(guards_t *self, char *text, size_t capacity) {
