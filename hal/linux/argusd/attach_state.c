@@ -2,8 +2,9 @@
 // Reads state and event lines back.
 #include "attach_state.h"
 
-#include <stdio.h>
 #include <string.h>
+
+#include "text.h"
 
 #define NAMES_MAX 32
 #define WORD_MAX 96
@@ -192,9 +193,9 @@ bool attach_read_state(const json_doc_t *doc, view_t *view) {
 
 // "sonar/front/03" is 3.
 static int8_t sonar_of(const char *name) {
-    unsigned sonar = 0;
+    int32_t sonar = -1;
     const char *const slash = strrchr(name, '/');
-    if (strncmp(name, "sonar/", 6) != 0 || slash == NULL || sscanf(slash + 1, "%2u", &sonar) != 1 ||
+    if (strncmp(name, "sonar/", 6) != 0 || slash == NULL || !text_number(slash + 1, &sonar) || sonar < 0 ||
         sonar >= ARGUS_SONARS) {
         return ARGUS_NO_SONAR;
     }

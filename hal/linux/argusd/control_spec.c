@@ -19,7 +19,7 @@ static bool parse_unix(control_spec_t *spec, const char *path, char *message, si
                            (int)sizeof un->sun_path - 1);
     }
     un->sun_family = AF_UNIX;
-    strcpy(un->sun_path, path);
+    memcpy(un->sun_path, path, strlen(path) + 1);
     spec->family = AF_UNIX;
     spec->loopback = true;
     spec->length = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + strlen(path) + 1);
@@ -138,7 +138,7 @@ bool control_token_load(control_token_t *self, const char *path, char *message, 
                            "blanks; for example: umask 077; openssl rand -hex 24 > %s",
                            path, CONTROL_TOKEN_MIN, CONTROL_TOKEN_MAX, path);
     }
-    strcpy(self->text, line);
+    memcpy(self->text, line, strlen(line) + 1);
     self->on = true;
     return true;
 }
