@@ -104,7 +104,7 @@ static bool is_convicted_by(const argus_case_t *const self, const argus_test_t t
 
 // Who walks about contradicts; and by its own readings alone, however late they look, nobody is given up.
 argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     if (is_convicted_by(c, ARGUS_TEST_STUCK)) {
         return ARGUS_KIND_STUCK;

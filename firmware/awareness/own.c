@@ -95,7 +95,7 @@ static void test_garbage(argus_evidence_t *const self, const argus_knowledge_t *
 // What walks goes on the same way from one reading to the next, whatever the robot does.
 static void test_walker(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                         const int sonar, const argus_ping_t *const now, const argus_ping_t *const before) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     const bool comparable =
         now->rest && before->rest && argus_ping_is_echo(now) && argus_ping_is_echo(before);

@@ -201,7 +201,7 @@ static bool is_passing(const argus_knowledge_t *const knowledge) {
 }
 
 static void take(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
     const bool silent = reading_mm >= knowledge->robot->no_echo_mm;
     if (is_passing(knowledge)) {
