@@ -138,7 +138,7 @@ PAGES = (
             ),
             (
                 "FILES",
-                (("/run/argus/control.sock", "where argusd is, when neither says"),),
+                (("/run/argus/control", "where argusd is, when neither says"),),
             ),
         ),
         also=("argusd", "argus-log"),
