@@ -245,6 +245,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser().error(f"--host {args.host}: others could look on; --beyond-loopback allows it")
     try:
         return run(args)
+    except KeyboardInterrupt:  # before or behind what run() guards
+        return 0
     except ControlError as error:
         print(f"argus-foxglove: {error}", file=sys.stderr)
         return EXIT_LINK
