@@ -17,7 +17,8 @@ from typing import Any
 
 import pytest
 import websockets
-from argus_tools.foxglove import SCHEMAS
+from argus_tools.control import Client
+from argus_tools.foxglove import SCHEMAS, TOPICS
 from harness import ROOT
 from robots import emulated, minded
 
@@ -29,15 +30,15 @@ DEAD = 3
 
 
 @pytest.fixture
-def address(tmp_path: Path) -> Iterator[str]:
-    """A robot whose sonar 3 gets stuck, argusd, and the bridge: its address."""
+def bridged(tmp_path: Path) -> Iterator[tuple[str, str]]:
+    """A robot whose sonar 3 gets stuck, argusd, and the bridge: its address, and argusd's control socket."""
     sim, robot = emulated(tmp_path, "--world", "demo", "--fault", f"stuck:{DEAD}@2s:value=0")
     argusd, place = minded(tmp_path, robot, "--passive")
     command = [str(BRIDGE), "--control", place, "--port", "0"]
     bridge = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert bridge.stdout is not None
     try:
-        yield bridge.stdout.readline().strip()
+        yield bridge.stdout.readline().strip(), place
     finally:
         bridge.send_signal(signal.SIGINT)
         out, err = bridge.communicate(timeout=30)
@@ -75,10 +76,23 @@ async def look(address: str, enough: Any, limit_s: float = 90) -> dict[str, list
     return heard
 
 
-def test_what_argusd_says_comes_out_of_the_websocket(address: str) -> None:
+def test_what_argusd_says_comes_out_of_the_websocket(bridged: tuple[str, str]) -> None:
+    address, place = bridged
+    pinned = False
+
     def enough(heard: dict[str, Any]) -> bool:
-        ring = heard.get("/ring", [("", {"fault": [""] * 16})])[-1][1]
-        return ring["fault"][DEAD] == "stuck" and "/sonar/beams" in heard and "/events" in heard
+        nonlocal pinned
+        if (
+            "/sonar/beams" not in heard
+            or heard.get("/ring", [("", {"fault": [""] * 16})])[-1][1]["fault"][DEAD] == ""
+        ):
+            return False
+        if not pinned:  # something that is said while somebody looks on
+            with Client(place) as argus:
+                argus.take()
+                argus.order("pin", sonar=9)
+            pinned = True
+        return any("SONAR_PINNED" in message["message"] for _, message in heard.get("/events", []))
 
     heard = asyncio.run(look(address, enough))
     assert {"/sonar/00", "/sonar/15", "/odometry", "/tf", "/robot/state", "/ring", "/events"} <= heard.keys()
@@ -89,7 +103,7 @@ def test_what_argusd_says_comes_out_of_the_websocket(address: str) -> None:
     assert all(0.4 < value < 0.9 for value in readings), readings
     ring = heard["/ring"][-1][1]
     assert (ring["trusted"], ring["failure"], ring["online"]) == (15, "IsMinor", True)
-    assert any("SONAR_DISABLED" in message["message"] for _, message in heard["/events"])
+    assert any("SONAR_PINNED sonar/rear/09" in message["message"] for _, message in heard["/events"])
     name, beams = heard["/sonar/beams"][-1]
     assert name == "foxglove.SceneUpdate"
     assert len(beams["entities"]) == 16
@@ -117,26 +131,14 @@ def paths_of(value: Any) -> Iterator[str]:
             yield from paths_of(item)
 
 
-SCHEMA_OF = {
-    "/sonar/beams": "foxglove.SceneUpdate",
-    "/odometry": "foxglove.PoseInFrame",
-    "/tf": "foxglove.FrameTransform",
-    "/robot/state": "argus.RobotState",
-    "/ring": "argus.Ring",
-    "/events": "foxglove.Log",
-}
-
-
 def test_the_layout_fits_the_topics() -> None:
     layout = json.loads(LAYOUT.read_text())
     named = list(paths_of(layout["configById"]))
     assert len(named) > 15
     for path in named:
         topic, *fields = re.split(r"\.", path)
-        known = SCHEMA_OF.get(topic) or (
-            "argus.SonarRange" if re.fullmatch(r"/sonar/(0\d|1[0-5])", topic) else None
-        )
-        assert known, path
+        assert topic in TOPICS, path
+        known = TOPICS[topic]
         if fields:
             assert re.sub(r"\[.*\]", "", fields[0]) in SCHEMAS[known]["properties"], path
     panels = set(re.findall(r'"([A-Za-z0-9]+![a-z0-9]+)"', json.dumps(layout["layout"])))

@@ -231,15 +231,27 @@ class Sonars:
         }
 
 
+def sonar_topic(number: int) -> str:
+    """Return the topic of a sonar."""
+    return f"/sonar/{number:02d}"
+
+
+TOPICS: Final = {
+    BEAMS: "foxglove.SceneUpdate",
+    ODOMETRY: "foxglove.PoseInFrame",
+    TF: "foxglove.FrameTransform",
+    STATE: "argus.RobotState",
+    EVENTS: "foxglove.Log",
+    RING: "argus.Ring",
+    **{sonar_topic(number): "argus.SonarRange" for number in range(16)},
+}
+"""All topics of a live robot, with their schemas."""
+
+
 @cache
 def sonars_of(subclass: str) -> Sonars:
     """Return the sonars of a robot; of one that is not known, those of a P3-DX."""
     return Sonars(subclass if subclass in robots() else DEFAULT_ROBOT)
-
-
-def sonar_topic(number: int) -> str:
-    """Return the topic of a sonar."""
-    return f"/sonar/{number:02d}"
 
 
 def stamp_of(t_ns: int) -> dict[str, int]:

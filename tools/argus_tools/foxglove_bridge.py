@@ -23,6 +23,7 @@ from argus_tools.foxglove import (
     SCHEMAS,
     STATE,
     TF,
+    TOPICS,
     WARNING,
     places,
     sonar_topic,
@@ -130,7 +131,7 @@ class Translator:
 
 
 class Server:
-    """The WebSocket server, with a channel for each topic that is used."""
+    """The WebSocket server, with a channel for each topic from the start: who looks on misses no first message."""
 
     def __init__(self, host: str, port: int) -> None:
         try:
@@ -138,11 +139,14 @@ class Server:
         except ImportError as error:
             raise ControlError(f"{error}: pip install 'argus-p3dx[foxglove]'") from error
         self._foxglove = foxglove
-        self._channels: dict[str, Any] = {}
+        self._channels = {topic: self._channel(topic, schema) for topic, schema in TOPICS.items()}
         try:
             self._server = foxglove.start_server(name="argus", host=host, port=port)
         except Exception as error:  # the library names no class for it
             raise ControlError(f"{host}:{port} cannot be served: {error}") from error
+
+    def _channel(self, topic: str, schema: str) -> Any:
+        return self._foxglove.Channel(topic, schema=SCHEMAS[schema], message_encoding="json")
 
     @property
     def port(self) -> int:
@@ -151,11 +155,7 @@ class Server:
 
     def put(self, topic: str, schema: str, t_ns: int, message: dict[str, Any]) -> None:
         """Send one message to all who look."""
-        rules = SCHEMAS[schema]
-        if topic not in self._channels:
-            described = {**rules, "title": schema}
-            self._channels[topic] = self._foxglove.Channel(topic, schema=described, message_encoding="json")
-        stamp = {"timestamp": stamp_of(t_ns)} if "timestamp" in rules["properties"] else {}
+        stamp = {"timestamp": stamp_of(t_ns)} if "timestamp" in SCHEMAS[schema]["properties"] else {}
         self._channels[topic].log({**stamp, **message}, log_time=t_ns)
 
     def stop(self) -> None:
@@ -245,6 +245,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser().error(f"--host {args.host}: others could look on; --beyond-loopback allows it")
     try:
         return run(args)
+    except KeyboardInterrupt:  # before or behind what run() guards
+        return 0
     except ControlError as error:
         print(f"argus-foxglove: {error}", file=sys.stderr)
         return EXIT_LINK
