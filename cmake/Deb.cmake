@@ -92,7 +92,11 @@ set(CPACK_DEBIAN_LIB_PACKAGE_CONTROL_EXTRA "${control}/shlibs;${control}/trigger
 
 # What the operator may change: dpkg asks before it replaces such a file.
 file(WRITE ${control}/conffiles "/etc/argus/argusd.conf\n/etc/default/argusd\n")
-install(FILES docs/argusd.conf.example DESTINATION /etc/argus RENAME argusd.conf COMPONENT argusd)
+# Every setting is there and is a remark: one that is written, as the rate of the line, outdoes what a link says.
+file(READ docs/argusd.conf.example settings)
+string(REGEX REPLACE "\n([a-z])" "\n#\\1" settings "${settings}")
+file(CONFIGURE OUTPUT ${made}/argusd.conf CONTENT "${settings}" @ONLY)
+install(FILES ${made}/argusd.conf DESTINATION /etc/argus COMPONENT argusd)
 install(FILES ${deb_dir}/argusd/default DESTINATION /etc/default RENAME argusd COMPONENT argusd)
 
 # The tools, as pip would install them from the wheel.

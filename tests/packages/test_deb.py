@@ -73,9 +73,11 @@ def test_the_packages_and_their_files(debs: dict[str, Path], unpacked: Path) -> 
 def test_what_the_operator_may_change_is_kept(debs: dict[str, Path], unpacked: Path, tmp_path: Path) -> None:
     kept = (scripts(debs["argusd"], tmp_path / "control") / "conffiles").read_text().split()
     assert {f"/{name}" for name in EXPECTED if name.startswith("etc/")} == set(kept)
-    # They are the defaults, which argusd takes.
+    # Every setting as a remark, so that a link at another rate contradicts none.
     example = run(unpacked / "usr/bin/argusd", "--example-config")
-    assert (unpacked / "etc/argus/argusd.conf").read_text() == example
+    held = (unpacked / "etc/argus/argusd.conf").read_text()
+    assert re.sub(r"^#(?=[a-z])", "", held, flags=re.MULTILINE) == example
+    assert not re.search(r"^[a-z]", held, re.MULTILINE)
     assert 'ARGUSD_OPTIONS="--config /etc/argus/argusd.conf"' in (unpacked / "etc/default/argusd").read_text()
 
 
@@ -162,7 +164,9 @@ def test_the_service_tells_how_it_does(unpacked: Path, tmp_path: Path) -> None:
     assert "Type=notify\n" in unit_of(unpacked)
     port = str(tmp_path / "robot")
     words = start[1].replace("/var/lib/argus", str(tmp_path)).replace("/run/argus", str(tmp_path))
-    words = words.replace("${ARGUSD_LINK}", f"serial:{port}@115200").replace("$ARGUSD_OPTIONS", "")
+    words = words.replace("${ARGUSD_LINK}", f"serial:{port}@115200").replace(
+        "$ARGUSD_OPTIONS", f"--config {unpacked}/etc/argus/argusd.conf"
+    )
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
         manager.bind(str(tmp_path / "notify"))
         manager.settimeout(PATIENCE_S)
