@@ -17,11 +17,8 @@ from hil_sim.faults.grammar import fault_help
 from hil_sim.world.files import world_names
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run `argus-sim`; return its exit code."""
-    words = list(sys.argv[1:] if argv is None else argv)
-    if isinstance(sys.stdout, io.TextIOWrapper):  # a name may have letters that the terminal has not
-        sys.stdout.reconfigure(errors="backslashreplace")
+def _elsewhere(words: Sequence[str]) -> int | None:
+    """Run what has a command line of its own; None: nothing of that was asked for."""
     if words[:1] == ["bench"]:
         from hil_sim.bench.cli import main as bench
 
@@ -34,6 +31,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         from argus_tools.monitor.cli import main as monitor
 
         return monitor(["--sim", *(word for word in words if word != "--monitor")])
+    return None
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run `argus-sim`; return its exit code."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    if isinstance(sys.stdout, io.TextIOWrapper):  # a name may have letters that the terminal has not
+        sys.stdout.reconfigure(errors="backslashreplace")
+    code = _elsewhere(words)
+    if code is not None:
+        return code
     arguments = parser().parse_args(words)
     try:
         if arguments.list_worlds:
