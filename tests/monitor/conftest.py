@@ -41,6 +41,8 @@ def page(monitor: Monitor, chromium: Browser) -> Iterator[Browser]:
     chromium.open(monitor.url)
     chromium.complaints()
     yield chromium
+    if not chromium.driver.current_url.startswith(monitor.url.split("#")[0]):
+        chromium.open(monitor.url)
     for sonar in chromium.known("broken") or {}:
         chromium.js(f"argusMonitor.mend({sonar})")
     chromium.js("argusMonitor.stop()")
