@@ -134,10 +134,11 @@ static bool follow(control_hands_t *self, const control_request_t *request, cont
     const int list = json_member(doc, 0, "points");
     uint16_t count = 0;
     for (int at = json_first(doc, list); at >= 0; at = json_next(doc, list, at)) {
-        if (count == ARGUS_WAYPOINTS_MAX || !read_point(doc, at, &points[count++])) {
+        if (count == ARGUS_WAYPOINTS_MAX || !read_point(doc, at, &points[count])) {
             count = 0;
             break;
         }
+        count++;
     }
     if (count == 0) {
         return control_refuse(answer, "bad_argument",
