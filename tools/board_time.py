@@ -120,6 +120,18 @@ def hostile(profile: str) -> Mission:
     )
 
 
+def far(profile: str) -> Mission:
+    """Return a drive past posts to a goal far outside the map, one sonar dead: most of a search for a way."""
+    return Mission(
+        "posts",
+        ((10000.0, 1000.0),),
+        seed=24,
+        faults=("off:2@10s",),
+        config={"profile": profile},
+        limit_s=90.0,
+    )
+
+
 @dataclasses.dataclass(frozen=True)
 class Played:
     """What came of a tape: decisions, one line each, and instructions by call."""
@@ -185,6 +197,7 @@ def measure(folder: Path) -> dict[str, dict[str, int]]:
         drives = [
             (f"demo-{profile}", demo(1, PAIRS[0], profile=profile)),
             (f"hostile-{profile}", hostile(profile)),
+            (f"far-{profile}", far(profile)),
         ]
         result[profile] = all_calls([play(name, mission, folder) for name, mission in drives])
     return result

@@ -138,7 +138,7 @@ PAGES = (
             ),
             (
                 "FILES",
-                (("/run/argus/control.sock", "where argusd is, when neither says"),),
+                (("/run/argus/control", "where argusd is, when neither says"),),
             ),
         ),
         also=("argusd", "argus-log"),
@@ -164,6 +164,18 @@ PAGES = (
             ),
         ),
         also=("argusd", "argus-sim"),
+    ),
+    Page(
+        name="argus-foxglove",
+        what="shows live in Foxglove what argusd knows of a robot",
+        command=(sys.executable, "-m", "argus_tools.foxglove_bridge"),
+        synopsis=("[options]",),
+        description=(
+            "argus-foxglove is a client of argusd's control socket and a WebSocket server on loopback, for "
+            "Foxglove. It only shows; argusd may come and go meanwhile.",
+        ),
+        ends=(("ENVIRONMENT", (("ARGUS_CONTROL", "the control socket, unless --control names one"),)),),
+        also=("argusd", "argus-log", "argus-monitor"),
     ),
     Page(
         name="argus-conformance",

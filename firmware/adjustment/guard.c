@@ -37,6 +37,7 @@ bool argus_guard_may_step(const argus_plan_t *const plan) {
 }
 
 bool argus_guard_may_drive(const argus_guard_t *const self, const argus_plan_t *const plan) {
+    ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
     return plan->disabled == 0 || (self->profile->drives_seen && argus_guard_may_step(plan));
 }
 
@@ -165,6 +166,7 @@ static int32_t swing_mm(const argus_guard_t *const self) {
 }
 
 static int32_t remembered_mm(const argus_guard_t *const self, const int32_t back_mm) {
+    ARGUS_ASSERT(back_mm >= 0);
     return argus_echoes_nearest_mm(self->echoes, self->knowledge, back_mm);
 }
 
@@ -212,6 +214,7 @@ static bool is_swept(const argus_robot_t *const robot, const argus_point_t at, c
 }
 
 static bool is_heard_in_nudge(const argus_knowledge_t *const knowledge, const nudge_t *const nudge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_usable(knowledge, i) && is_swept(knowledge->robot, argus_echo_robot(knowledge, i), nudge)) {
             return true;
@@ -264,6 +267,7 @@ argus_touch_t argus_guard_touch(const argus_guard_t *const self, const int sonar
 
 // What has failed, or has the name of a fault, does not read clear: nobody looks there in its place.
 static bool is_relied_on(const argus_guard_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_t *const s = &self->knowledge->sonar[sonar];
     const bool named = s->health == ARGUS_SUSPECT && s->kind != ARGUS_KIND_NONE;
     return argus_age_ms(self->knowledge, sonar, self->now_ms) <= (uint32_t)self->config->stale_ms && !named &&
@@ -271,6 +275,7 @@ static bool is_relied_on(const argus_guard_t *const self, const int sonar) {
 }
 
 static bool looks_back(const argus_guard_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_robot_t *const robot = self->knowledge->robot;
     return ((argus_robot_astern(robot) | argus_robot_rear_flank(robot)) >> sonar & 1u) != 0;
 }
@@ -287,6 +292,7 @@ bool argus_guard_rear_is_watched(const argus_guard_t *const self) {
 
 // Those that look abeam see what the robot passes by, not what it backs into.
 static int32_t rear_clear_mm(const argus_guard_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(self->config->rear_clear_mm > 0);
     const int32_t clear_mm = self->config->rear_clear_mm;
     const bool flank = (argus_robot_rear_flank(self->knowledge->robot) >> sonar & 1u) != 0;

@@ -76,6 +76,7 @@ static bool started(const argus_motion_t *const self, const uint32_t now_ms) {
 
 static bool on_target(const argus_motion_t *const self, const argus_knowledge_t *const knowledge,
                       const uint32_t now_ms) {
+    ARGUS_ASSERT(self->kind != ARGUS_MOTION_NONE);
     if (knowledge->still_sips == 0 || !started(self, now_ms)) {
         return false;
     }
@@ -97,6 +98,7 @@ static void again(argus_motion_t *const self, argus_outbox_t *const out,
 
 void argus_motion_sip(argus_motion_t *const self, argus_outbox_t *const out,
                       const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
+    ARGUS_ASSERT(self->tries <= TRIES_MAX && self->on_target <= SETTLED_SIPS);
     if (self->kind == ARGUS_MOTION_NONE || self->settled || self->failed) {
         return;
     }

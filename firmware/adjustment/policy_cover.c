@@ -34,6 +34,7 @@ static uint16_t price(const argus_turns_t *const turns, const int k) {
 }
 
 static void fill(table_t *const table, const argus_turns_t *const turns, const span_t *const span) {
+    ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     table->least[0] = 0;
     for (unsigned set = 1; set <= argus_turns_open(turns); set++) {
         table->least[set] = NONE;
@@ -48,6 +49,7 @@ static void fill(table_t *const table, const argus_turns_t *const turns, const s
 }
 
 static bool sees_all(const argus_turns_t *const turns, const span_t *const span) {
+    ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     unsigned seen = 0;
     for (int k = span->from; k < span->to; k++) {
         seen |= turns->sees[k];
@@ -57,12 +59,14 @@ static bool sees_all(const argus_turns_t *const turns, const span_t *const span)
 
 // Who sweeps more than half around comes round sooner going on.
 static span_t span_of(const argus_turns_t *const turns, const int from, const int to) {
+    ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     const int low = from < turns->count ? argus_min(0, turns->deg[from]) : 0;
     const int high = to > 0 ? argus_max(0, turns->deg[to - 1]) : 0;
     return (span_t){.from = from, .to = to, .sweep_deg = 2 * argus_min(high - low, HALF_DEG)};
 }
 
 static int count_negative(const argus_turns_t *const turns) {
+    ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     int negative = 0;
     while (negative < turns->count && turns->deg[negative] < 0) {
         negative++;
@@ -72,6 +76,7 @@ static int count_negative(const argus_turns_t *const turns) {
 
 // One way round sees all that there is.
 static bool is_wanted(const argus_turns_t *const turns, const span_t *const span) {
+    ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     const bool all = span->from == 0 && span->to == turns->count;
     return (all || span->sweep_deg < 2 * HALF_DEG) && sees_all(turns, span);
 }
@@ -89,6 +94,7 @@ typedef struct {
 // is seen by the rest of it.
 static uint32_t stops_of(const table_t *const table, const argus_turns_t *const turns,
                          const span_t *const span) {
+    ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     uint32_t stops = 0;
     unsigned set = argus_turns_open(turns);
     for (int k = span->from; k < span->to; k++) { // each is needed once, in whatever order
@@ -132,6 +138,8 @@ static void try_span(choice_t *const best, table_t *const table, const argus_tur
 
 static void add(argus_plan_t *const plan, const argus_turns_t *const turns, const uint32_t stops,
                 const int k) {
+    ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
+    ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     if ((stops >> k & 1u) != 0 && plan->count < ARGUS_ROTATIONS_MAX) {
         plan->rotation_deg[plan->count++] = turns->deg[k];
     }
@@ -139,6 +147,7 @@ static void add(argus_plan_t *const plan, const argus_turns_t *const turns, cons
 
 static void list(argus_plan_t *const plan, const argus_turns_t *const turns, const uint32_t stops,
                  const int negative, const bool around) {
+    ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     for (int k = negative - 1; k >= 0 && !around; k--) {
         add(plan, turns, stops, k);
     }

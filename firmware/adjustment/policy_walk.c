@@ -6,6 +6,7 @@
 
 // The next one outward from `last_deg`, or -1.
 static int next_outward(const argus_turns_t *const turns, const int last_deg) {
+    ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     int next = -1;
     for (int k = 0; k < turns->count; k++) {
         const int deg = turns->deg[k];
@@ -18,6 +19,8 @@ static int next_outward(const argus_turns_t *const turns, const int last_deg) {
 }
 
 void argus_policy_walk(argus_plan_t *const plan, const argus_turns_t *const turns) {
+    ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
+    ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     unsigned open = argus_turns_open(turns);
     int next = next_outward(turns, 0);
     for (int tries = 0; tries < turns->count && next >= 0 && open != 0; tries++) {

@@ -18,22 +18,26 @@ void argus_sweep_begin(argus_drive_t *const self, const argus_plan_t *const plan
 }
 
 bool argus_sweep_is_outdated(const argus_drive_t *const self, const argus_plan_t *const plan) {
+    ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
     return self->covers != plan->disabled || self->looks != plan->looks;
 }
 
 argus_mask_t argus_sweep_wants(const argus_drive_t *const self, const argus_plan_t *const plan,
                                const argus_robot_t *const robot) {
+    ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
     const bool looks = !self->done && !self->home && self->index < plan->count;
     return looks ? argus_plan_covering(robot, plan, plan->rotation_deg[self->index]) : 0;
 }
 
 int32_t argus_sweep_heading_cdeg(const argus_drive_t *const self, const argus_plan_t *const plan) {
+    ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
     const int32_t rotation = self->home || self->index >= plan->count ? 0 : plan->rotation_deg[self->index];
     return argus_angle_wrap(self->base_cdeg + rotation * 100);
 }
 
 static void note_smallest(argus_drive_t *const self, const argus_plan_t *const plan,
                           const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->robot->forward_count <= ARGUS_FORWARD_MAX);
     ARGUS_ASSERT(self->index < plan->count);
     const int16_t rotation = plan->rotation_deg[self->index];
     const argus_robot_t *const robot = knowledge->robot;
@@ -56,6 +60,7 @@ static void next_rotation(argus_drive_t *const self, const argus_plan_t *const p
 
 bool argus_sweep_step(argus_drive_t *const self, const argus_plan_t *const plan,
                       const argus_knowledge_t *const knowledge, const argus_mark_t *const mark) {
+    ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
     ARGUS_ASSERT(self->index <= ARGUS_ROTATIONS_MAX);
     if (self->done) {
         return false;

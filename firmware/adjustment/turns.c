@@ -23,6 +23,8 @@ static void insert(argus_turns_t *const self, const int16_t deg) {
 }
 
 static void insert_turns_onto(argus_turns_t *const self, const argus_plan_t *const plan, const int blind) {
+    ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
+    ARGUS_ASSERT(self->count <= ARGUS_TURNS_MAX);
     const int bearing_deg = argus_robot_pose(self->robot, blind)->heading_deg;
     for (int by = 0; by < argus_robot_sonars(self->robot); by++) {
         if ((plan->looks >> by & 1u) != 0 && self->count < ARGUS_TURNS_MAX) {
@@ -52,6 +54,7 @@ void argus_turns_of(argus_turns_t *const self, const argus_robot_t *const robot,
 }
 
 unsigned argus_turns_open(const argus_turns_t *const self) {
+    ARGUS_ASSERT(self->count <= ARGUS_TURNS_MAX);
     ARGUS_ASSERT(self->blinds <= ARGUS_FORWARD_MAX);
     return (1u << self->blinds) - 1u;
 }

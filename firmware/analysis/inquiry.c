@@ -49,6 +49,7 @@ static argus_mask_t around(const argus_robot_t *const robot, const argus_mask_t 
 
 // Hears nothing, and is not named yet.
 static bool is_silent(const argus_evidence_t *const evidence, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_evidence_silent_run(evidence, sonar) >= SILENT_RUN &&
            argus_evidence_names(evidence, sonar) == ARGUS_KIND_NONE;
 }
@@ -56,12 +57,14 @@ static bool is_silent(const argus_evidence_t *const evidence, const int sonar) {
 // No suspect yet, perhaps, but others contradict it.
 static bool is_accused(const argus_knowledge_t *const knowledge, const argus_evidence_t *const evidence,
                        const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return !argus_is_out(knowledge, sonar) && argus_evidence_accused(evidence, sonar) >= ACCUSED;
 }
 
 // Neither suspect nor proved of late, by an echo that goes on or by another sonar: a look is the occasion.
 static bool is_unproved(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                         const argus_evidence_t *const evidence, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const bool quiet = argus_evidence_silent_run(evidence, sonar) >= QUIET_RUN &&
                        argus_evidence_alive_age_ms(evidence, knowledge, sonar) >= QUIET_MS;
     const bool alone = argus_evidence_agreed_age_ms(evidence, knowledge, sonar) >= ALONE_MS;
@@ -107,6 +110,7 @@ static bool aim_at_one_of(argus_inquiry_t *const self, const argus_knowledge_t *
 // Suspects first, then whom the others contradict. False: nothing to aim at, or often enough.
 static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                      const argus_evidence_t *const evidence) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     self->aiming = false;
     if (self->aims >= AIMS_MAX) {
         return false;
@@ -163,6 +167,7 @@ int32_t argus_inquiry_heading_cdeg(const argus_inquiry_t *const self) {
 
 static void mark_settled(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                          const argus_evidence_t *const evidence) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     self->marked = true;
     self->aimed_from = argus_evidence_taken(evidence, self->aimed);
     self->settled_ms = knowledge->sip_ms;
@@ -184,6 +189,7 @@ static bool has_aimed_enough(const argus_inquiry_t *const self, const argus_evid
 
 static bool has_seen_enough(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                             const argus_evidence_t *const evidence) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     if (knowledge->sip_ms - self->settled_ms >= LOOK_MS) {
         return true;
     }
@@ -201,6 +207,7 @@ static bool has_seen_enough(const argus_inquiry_t *const self, const argus_knowl
 }
 
 static bool is_open(const argus_evidence_t *const evidence, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_evidence_suspects(evidence, sonar) &&
            argus_evidence_names(evidence, sonar) == ARGUS_KIND_NONE;
 }
@@ -216,6 +223,7 @@ static bool is_resolved(const argus_inquiry_t *const self, const argus_evidence_
 
 // A whole array that hears nothing cannot clear itself: another one must look.
 static bool is_one_deaf(const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     int arrays = 0;
     int deaf = 0;
     for (int array = 0; array < knowledge->robot->arrays; array++) {

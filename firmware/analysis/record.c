@@ -86,6 +86,7 @@ static void put_history(uint8_t *const at, const argus_sonar_t *const s) {
 }
 
 static void put_evidence(uint8_t *const at, const argus_evidence_t *const evidence, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     for (int i = 0; i < ARGUS_KEPT; i++) {
         put16(at + AT_SCORES + 2 * i, (unsigned)argus_evidence_kept(evidence, sonar, (argus_kept_t)i));
     }
@@ -156,6 +157,7 @@ static void get_history(argus_sonar_t *const s, const uint8_t *const at) {
 
 static void get_evidence(argus_evidence_t *const evidence, const int sonar, const uint8_t *const at,
                          const bool out) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     for (int i = 0; i < ARGUS_KEPT; i++) {
         argus_evidence_restore(evidence, sonar, (argus_kept_t)i, get_signed(at + AT_SCORES + 2 * i), out);
     }

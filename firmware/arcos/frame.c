@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "argus/argus.h"
+
 #define HEADER_BYTES ARCOS_FRAME_OVERHEAD // FA FB COUNT
 #define PACKET_MIN (ARCOS_FRAME_COUNT_MIN + ARCOS_FRAME_OVERHEAD)
 #define CHECKSUM_BYTES 2
@@ -43,6 +45,7 @@ size_t argus_frame_seal(uint8_t *packet, size_t capacity, size_t count) {
     }
     const size_t total = HEADER_BYTES + count + CHECKSUM_BYTES;
     const uint16_t checksum = argus_frame_checksum(packet + HEADER_BYTES, count);
+    ARGUS_ASSERT(total <= capacity && total <= ARCOS_FRAME_SEND_TOTAL_MAX);
     packet[0] = ARCOS_FRAME_HEADER0;
     packet[1] = ARCOS_FRAME_HEADER1;
     packet[2] = (uint8_t)(count + CHECKSUM_BYTES);
@@ -64,10 +67,12 @@ void argus_parser_init(argus_parser_t *self) {
 }
 
 static size_t end_of(const argus_parser_t *self) {
+    ARGUS_ASSERT(self->first + self->length <= ARGUS_PARSER_BYTES);
     return (size_t)self->first + self->length;
 }
 
 static void advance(argus_parser_t *self, size_t count) {
+    ARGUS_ASSERT(count <= self->length);
     self->first = (uint16_t)(self->first + count);
     self->length = (uint16_t)(self->length - count);
     self->since_ms = self->last_byte_ms;
@@ -86,10 +91,12 @@ void argus_parser_flush(argus_parser_t *self) {
 }
 
 static bool starts_packet(const uint8_t *at, size_t available) {
+    ARGUS_ASSERT(available > 0);
     return at[0] == ARCOS_FRAME_HEADER0 && (available < 2 || at[1] == ARCOS_FRAME_HEADER1);
 }
 
 static bool checksum_holds(const uint8_t *packet) {
+    ARGUS_ASSERT(packet[2] >= ARCOS_FRAME_COUNT_MIN);
     const size_t count = (size_t)packet[2] - CHECKSUM_BYTES;
     const uint8_t *sent = packet + HEADER_BYTES + count;
     return argus_frame_checksum(packet + HEADER_BYTES, count) == (uint16_t)(sent[0] << 8 | sent[1]);
@@ -118,6 +125,7 @@ static void make_room(argus_parser_t *self) {
     memcpy(self->held, self->held + self->first, self->length);
     self->searched = (uint16_t)(self->searched > self->first ? self->searched - self->first : 0);
     self->first = 0;
+    ARGUS_ASSERT(self->searched <= self->length);
 }
 
 static size_t skip_noise(argus_parser_t *self, const uint8_t *bytes, size_t count) {
@@ -132,6 +140,7 @@ static size_t skip_noise(argus_parser_t *self, const uint8_t *bytes, size_t coun
 static size_t append(argus_parser_t *self, const uint8_t *bytes, size_t count) {
     const size_t wanted = owed(self);
     const size_t taken = count < wanted ? count : wanted;
+    ARGUS_ASSERT(end_of(self) + taken <= ARGUS_PARSER_BYTES);
     memcpy(self->held + end_of(self), bytes, taken);
     self->length = (uint16_t)(self->length + taken);
     return taken;
@@ -166,6 +175,7 @@ static void seek(argus_parser_t *self) {
 }
 
 static bool hand_out(argus_parser_t *self, argus_packet_t *packet) {
+    ARGUS_ASSERT(self->held[self->first + 2] + ARCOS_FRAME_OVERHEAD <= self->length);
     const uint8_t *frame = self->held + self->first;
     packet->data = frame + HEADER_BYTES;
     packet->count = (uint8_t)(frame[2] - CHECKSUM_BYTES);
@@ -215,6 +225,7 @@ static bool is_whole_at(const argus_parser_t *self, size_t at) {
 }
 
 static bool find_inside(argus_parser_t *self, argus_packet_t *packet) {
+    ARGUS_ASSERT(self->length > 0);
     for (size_t at = (size_t)self->first + 1; at + PACKET_MIN <= end_of(self); at++) {
         if (is_whole_at(self, at)) {
             skip(self, at - self->first);

@@ -78,7 +78,12 @@ static unsigned lose(argus_session_t *self, uint32_t now_ms) {
     return ARGUS_SESSION_DID_LOSE;
 }
 
+static bool is_syncing(const argus_session_t *self) {
+    return self->state >= ARGUS_SESSION_SYNC0 && self->state <= ARGUS_SESSION_SYNC2;
+}
+
 static unsigned dislodge(argus_session_t *self, uint32_t now_ms) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_LISTEN || is_syncing(self));
     argus_outbox_clear(&self->outbox);
     if (self->dislodged >= DISLODGE_MAX) {
         return fail(self, now_ms);
@@ -92,6 +97,7 @@ static unsigned dislodge(argus_session_t *self, uint32_t now_ms) {
 }
 
 static void send_sync(argus_session_t *self, uint32_t now_ms, uint8_t sync) {
+    ARGUS_ASSERT(sync <= ARCOS_SYNC_SYNC2);
     argus_outbox_clear(&self->outbox);
     argus_outbox_plain(&self->outbox, sync);
     enter(self, now_ms, (argus_session_state_t)(ARGUS_SESSION_SYNC0 + sync));
@@ -103,6 +109,7 @@ static void ask_config(argus_session_t *self, uint32_t now_ms) {
 }
 
 static void open_robot(argus_session_t *self, uint32_t now_ms) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_SYNC2);
     argus_outbox_clear(&self->outbox);
     memset(&self->robot, 0, sizeof self->robot);
     self->has_robot = false;
@@ -119,6 +126,7 @@ static void open_robot(argus_session_t *self, uint32_t now_ms) {
 }
 
 static void set_up(argus_session_t *self, const argus_config_t *config) {
+    ARGUS_ASSERT(config->decel_mm_s2 > 0 && config->sonar_cycle_ms > 0);
     argus_outbox_t *outbox = &self->outbox;
     argus_outbox_int(outbox, ARCOS_CMD_SETV, config->speed_mm_s);
     argus_outbox_int(outbox, ARCOS_CMD_SETA, config->accel_mm_s2);
@@ -133,10 +141,12 @@ static void set_up(argus_session_t *self, const argus_config_t *config) {
 }
 
 static bool is_sip(const argus_packet_t *packet) {
+    ARGUS_ASSERT(packet->count > 0);
     return packet->data[0] == ARCOS_TYPE_SIP_STATIONARY || packet->data[0] == ARCOS_TYPE_SIP_MOVING;
 }
 
 static bool is_reset_notice(const argus_packet_t *packet) {
+    ARGUS_ASSERT(packet->count > 0);
     return packet->data[0] == ARCOS_TYPE_RESET_NOTICE || packet->data[0] == ARCOS_TYPE_RESET_NOTICE2;
 }
 
@@ -152,6 +162,7 @@ static bool take_sip(argus_session_t *self, uint32_t now_ms, const argus_packet_
 }
 
 static void take_identity(argus_session_t *self, const argus_packet_t *packet) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_SYNC2);
     size_t offset = 1;
     self->name[0] = self->robot_class[0] = self->subclass[0] = '\0';
     if (argus_packet_string(packet, &offset, self->name) &&
@@ -161,6 +172,7 @@ static void take_identity(argus_session_t *self, const argus_packet_t *packet) {
 }
 
 static void take_config(argus_session_t *self, const argus_packet_t *packet) {
+    ARGUS_ASSERT(packet->data[0] == ARCOS_TYPE_CONFIGPAC);
     argus_configpac_t robot;
     if (!argus_configpac_decode(&robot, packet)) {
         self->unknown_packets++;
@@ -182,6 +194,7 @@ static unsigned on_old_session(argus_session_t *self, uint32_t now_ms, const arg
 }
 
 static unsigned on_sync(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
+    ARGUS_ASSERT(is_syncing(self));
     const int step = (int)self->state - (int)ARGUS_SESSION_SYNC0;
     if (is_sip(packet)) {
         return on_old_session(self, now_ms, packet);
@@ -212,6 +225,7 @@ static unsigned meet(argus_session_t *self) {
 }
 
 static unsigned finish_opening(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_OPENING && self->opening_sips <= OPENING_SIPS);
     if (self->opening_sips < OPENING_SIPS ||
         (!self->has_robot && in_state_ms(self, now_ms) < CONFIG_WAIT_MS)) {
         return 0;
@@ -227,6 +241,7 @@ static unsigned finish_opening(argus_session_t *self, const argus_config_t *conf
 
 static unsigned on_opening(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
                            const argus_packet_t *packet) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_OPENING);
     unsigned got = 0;
     if (is_sip(packet)) {
         got = take_sip(self, now_ms, packet) ? ARGUS_SESSION_GOT_SIP : 0;
@@ -245,6 +260,7 @@ static unsigned on_opening(argus_session_t *self, const argus_config_t *config, 
 }
 
 static unsigned resume(argus_session_t *self, uint32_t gap_ms) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_OPEN);
     self->stalled = false;
     self->gap_ms = gap_ms;
     self->zeros_due = 2;
@@ -255,6 +271,7 @@ static unsigned resume(argus_session_t *self, uint32_t gap_ms) {
 // A gap may also end before any timer saw it: when it was our own host that stood still.
 static unsigned on_open_sip(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
                             const argus_packet_t *packet) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_OPEN && is_sip(packet));
     const uint32_t gap_ms = elapsed_ms(now_ms, self->heard_ms);
     if (!take_sip(self, now_ms, packet)) {
         return 0;
@@ -270,6 +287,7 @@ static unsigned on_open_sip(argus_session_t *self, const argus_config_t *config,
 
 static unsigned on_open(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
                         const argus_packet_t *packet) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_OPEN);
     const uint8_t type = packet->data[0];
     if (is_sip(packet)) {
         return on_open_sip(self, config, now_ms, packet);
@@ -326,6 +344,7 @@ unsigned argus_session_receive(argus_session_t *self, const argus_config_t *conf
         *taken += argus_parser_push(&self->parser, now_ms, bytes + *taken, count - *taken);
         bits = drain(self, config, now_ms);
     }
+    ARGUS_ASSERT(*taken <= count);
     return bits;
 }
 
@@ -340,6 +359,7 @@ static void pulse(argus_session_t *self, const argus_config_t *config, uint32_t 
 }
 
 static unsigned pause_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_PAUSE && config->retry_max_ms > 0);
     const uint32_t longest_ms = (uint32_t)config->retry_max_ms;
     if (in_state_ms(self, now_ms) < self->pause_ms && in_state_ms(self, now_ms) < longest_ms) {
         return 0;
@@ -350,6 +370,7 @@ static unsigned pause_timer(argus_session_t *self, const argus_config_t *config,
 }
 
 static unsigned quiet_timer(argus_session_t *self, uint32_t now_ms, uint32_t wait_ms) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_LISTEN || self->state == ARGUS_SESSION_DISLODGE);
     if (in_state_ms(self, now_ms) >= wait_ms) {
         argus_parser_flush(&self->parser);
         send_sync(self, now_ms, ARCOS_SYNC_SYNC0);
@@ -358,6 +379,7 @@ static unsigned quiet_timer(argus_session_t *self, uint32_t now_ms, uint32_t wai
 }
 
 static unsigned opening_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_OPENING);
     const uint32_t waited_ms = in_state_ms(self, now_ms);
     if (elapsed_ms(now_ms, self->heard_ms) >= (uint32_t)config->link_lost_ms) {
         return fail(self, now_ms);
@@ -371,6 +393,7 @@ static unsigned opening_timer(argus_session_t *self, const argus_config_t *confi
 }
 
 static unsigned open_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    ARGUS_ASSERT(config->link_stall_ms > 0 && config->link_lost_ms > 0);
     const uint32_t silent_ms = elapsed_ms(now_ms, self->heard_ms);
     if (silent_ms >= (uint32_t)config->link_lost_ms) {
         self->gap_ms = silent_ms;
@@ -386,6 +409,7 @@ static unsigned open_timer(argus_session_t *self, const argus_config_t *config, 
 }
 
 static unsigned leaving_timer(argus_session_t *self, uint32_t now_ms) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_LEAVING);
     const uint32_t waited_ms = in_state_ms(self, now_ms);
     const bool drained = self->outbox.length == 0 && elapsed_ms(now_ms, self->spoke_ms) >= LEAVE_MS;
     if (waited_ms >= LEAVE_MAX_MS || (drained && waited_ms >= LEAVE_MS)) {
@@ -401,10 +425,6 @@ static unsigned say_closed(argus_session_t *self) {
     }
     self->closed_said = true;
     return ARGUS_SESSION_DID_CLOSE;
-}
-
-static bool is_syncing(const argus_session_t *self) {
-    return self->state >= ARGUS_SESSION_SYNC0 && self->state <= ARGUS_SESSION_SYNC2;
 }
 
 static unsigned run_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
@@ -456,6 +476,7 @@ static bool is_mute(const argus_session_t *self) {
 
 // VEL 0 and RVEL 0 after a gap. They are not in the outbox, because STOP would overtake or drop them there.
 static size_t fetch_zero(argus_session_t *self, uint8_t *packet, size_t capacity) {
+    ARGUS_ASSERT(self->zeros_due <= 2);
     if (self->zeros_due == 0 || self->state != ARGUS_SESSION_OPEN ||
         argus_outbox_first(&self->outbox) == ARCOS_CMD_E_STOP) {
         return 0;
@@ -475,6 +496,7 @@ size_t argus_session_transmit(argus_session_t *self, uint32_t now_ms, uint8_t *p
     if (length == 0) {
         length = argus_outbox_fetch(&self->outbox, packet, capacity);
     }
+    ARGUS_ASSERT(length <= capacity);
     if (length > 0) {
         self->spoke_ms = now_ms;
     }

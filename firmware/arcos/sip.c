@@ -2,6 +2,8 @@
 // Decodes the standard SIP, whichever of its tail groups are there.
 #include "arcos/sip.h"
 
+#include "argus/argus.h"
+
 // Offsets of the tables count from the header; those of a packet's data from its type.
 #define DATA_OFFSET(offset) ((offset) - ARCOS_SIP_OFFSET_TYPE)
 #define AFTER_SONAR(name) ((size_t)ARCOS_SIP_AFTER_SONAR_##name)
@@ -33,6 +35,7 @@ static void decode_fixed(argus_sip_t *sip, const uint8_t *data) {
 }
 
 static void decode_sonar(argus_sip_t *sip, const uint8_t *data) {
+    ARGUS_ASSERT(sip->sonar_count <= sizeof sip->sonar / sizeof sip->sonar[0]);
     for (size_t i = 0; i < sip->sonar_count; i++) {
         const uint8_t *reading = data + i * ARCOS_SIP_SONAR_BYTES;
         sip->sonar[i].number = reading[0];
@@ -50,6 +53,7 @@ static void decode_tail(argus_sip_t *sip, const uint8_t *tail, size_t count) {
 }
 
 bool argus_sip_decode(argus_sip_t *sip, const argus_packet_t *packet) {
+    ARGUS_ASSERT(packet->count > 0);
     const uint8_t *data = packet->data;
     const size_t sonar_offset = DATA_OFFSET(ARCOS_SIP_OFFSET_SONAR);
     if (packet->count < sonar_offset ||

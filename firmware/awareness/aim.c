@@ -12,6 +12,7 @@
 // It has lately looked there itself.
 static bool has_looked(const argus_pings_t *const pings, const argus_ping_t *const there,
                        const uint32_t now_ms) {
+    ARGUS_ASSERT(pings->count <= ARGUS_PINGS && pings->next < ARGUS_PINGS);
     for (int back = 1; back <= pings->count; back++) {
         const argus_ping_t *const then = argus_pings_at(pings, back);
         if (argus_ping_age_ms(then, now_ms) <= ARGUS_BESIDE_MS &&
@@ -27,6 +28,7 @@ static bool has_looked(const argus_pings_t *const pings, const argus_ping_t *con
 // it is no use.
 static int32_t cost_of_aim(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                            const int sonar, const argus_ping_t *const then) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_pose_t *const mount = argus_robot_pose(knowledge->robot, sonar);
     argus_pose_t turned = knowledge->pose;
     turned.heading_cdeg = argus_angle_wrap(then->bearing_cdeg - mount->heading_deg * 100);
@@ -44,6 +46,7 @@ static int32_t cost_of_aim(const argus_evidence_t *const self, const argus_knowl
 
 bool argus_aim(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                int32_t *const heading_cdeg) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     int32_t least = INT32_MAX;
     for (int other = 0; other < knowledge->sonars; other++) {
         if (other == sonar || argus_is_out(knowledge, other) || argus_names_suspects(self, other)) {

@@ -27,6 +27,7 @@ void argus_awareness_moved(argus_awareness_t *const self) {
 
 void argus_awareness_cleared(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
                              const int sonar, const int32_t difference_mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_disparate_t *const d = &self->of[sonar];
     d->held = true;
     d->held_odometer_mm = knowledge->odometer_mm;
@@ -40,6 +41,7 @@ void argus_awareness_cleared(argus_awareness_t *const self, const argus_knowledg
 // while it is turned away counts neither for nor against.
 static void count_disparity(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
                             const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_disparate_t *const d = &self->of[sonar];
     const bool repeated = knowledge->lists_all && knowledge->sip_ms - d->counted_ms < REFRESH_MS;
     if (self->away || repeated) {
@@ -58,6 +60,7 @@ static void count_disparity(argus_awareness_t *const self, const argus_knowledge
 }
 
 static bool looks_along_motion(const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t speed = (knowledge->vel_left_mm_s + knowledge->vel_right_mm_s) / 2;
     const unsigned ahead = speed > MOVING_MM_S ? argus_robot_ahead(knowledge->robot) : 0u;
     const unsigned behind = speed < -MOVING_MM_S ? argus_robot_astern(knowledge->robot) : 0u;
@@ -65,6 +68,7 @@ static bool looks_along_motion(const argus_knowledge_t *const knowledge, const i
 }
 
 static void see_object(argus_alarm_t *const alarm, const int sonar, const uint16_t reading_mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     alarm->object |= (argus_mask_t)(1u << sonar);
     if (alarm->object_sonar == -1 || reading_mm < alarm->object_mm) {
         alarm->object_sonar = (int8_t)sonar;
@@ -74,6 +78,7 @@ static void see_object(argus_alarm_t *const alarm, const int sonar, const uint16
 
 static void judge_fresh(argus_alarm_t *const alarm, const argus_knowledge_t *const knowledge,
                         const argus_config_t *const config, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_t *const s = &knowledge->sonar[sonar];
     const bool forward = argus_robot_faces_forward(knowledge->robot, sonar);
     if (argus_is_out(knowledge, sonar)) {
@@ -90,11 +95,13 @@ static void judge_fresh(argus_alarm_t *const alarm, const argus_knowledge_t *con
 
 static bool is_silent(const argus_knowledge_t *const knowledge, const argus_config_t *const config,
                       const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return !argus_is_out(knowledge, sonar) && argus_silent_ms(knowledge, sonar) > (uint32_t)config->stale_ms;
 }
 
 argus_alarm_t argus_awareness_sip(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
                                   const argus_config_t *const config) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     argus_alarm_t alarm = {.object_sonar = -1};
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool forward = argus_robot_faces_forward(knowledge->robot, i);
@@ -115,6 +122,7 @@ argus_alarm_t argus_awareness_sip(argus_awareness_t *const self, const argus_kno
 
 static bool has_changed(const argus_disparate_t *const d, const argus_knowledge_t *const knowledge,
                         const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t tr = argus_tolerance_mm(knowledge->robot, knowledge->sonar[sonar].reading_mm);
     return argus_abs(d->difference_mm - d->held_difference_mm) > 2 * tr;
 }
@@ -122,6 +130,7 @@ static bool has_changed(const argus_disparate_t *const d, const argus_knowledge_
 // The hold-off ends after a way, a turn, or a clear change of the disparity.
 static bool hold_ends(const argus_disparate_t *const d, const argus_knowledge_t *const knowledge,
                       const argus_config_t *const config, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return knowledge->odometer_mm - d->held_odometer_mm >= (uint32_t)config->holdoff_mm ||
            argus_angle_abs_diff(knowledge->pose.heading_cdeg, d->held_heading_cdeg) >=
                config->holdoff_deg * 100 ||
@@ -130,6 +139,7 @@ static bool hold_ends(const argus_disparate_t *const d, const argus_knowledge_t 
 
 static bool is_suspect(argus_awareness_t *const self, const argus_knowledge_t *const knowledge,
                        const argus_config_t *const config, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_disparate_t *const d = &self->of[sonar];
     if (argus_is_out(knowledge, sonar) || d->in_a_row < config->suspect_readings) {
         return false;

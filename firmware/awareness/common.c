@@ -23,6 +23,7 @@ void argus_common_init(argus_common_t *const self) {
 }
 
 static void take(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const uint16_t reading_mm = knowledge->sonar[sonar].reading_mm;
     if (reading_mm < knowledge->robot->no_echo_mm) {
         self->none_run[sonar] = 0;
@@ -44,6 +45,7 @@ static int least_run(const argus_common_t *const self, const argus_mask_t sonars
 // How many heard something until the one moment. A robot that drives out of a door loses one after the other.
 static int lost_at_once(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
                         const argus_mask_t sonars) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     uint32_t least_ms = UINT32_MAX; // since the last echo of all
     for (int i = 0; i < knowledge->sonars; i++) {
         if ((sonars >> i & 1u) != 0 && self->heard[i] && knowledge->sip_ms - self->echo_ms[i] < least_ms) {
@@ -61,6 +63,7 @@ static int lost_at_once(const argus_common_t *const self, const argus_knowledge_
 // One abeam, of another array, that is relied on: the way since it was heard last counts while it hears
 // something near.
 static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_passed_t *const passed = &dark->passed[argus_robot_pose(knowledge->robot, sonar)->y_mm > 0];
     const int32_t way_mm = (int32_t)(knowledge->odometer_mm - passed->odometer_mm);
     const bool goes_on = passed->near && way_mm <= APART_MM;
@@ -70,6 +73,7 @@ static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowle
 }
 
 static void pass_all(argus_dark_t *const dark, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const argus_robot_t *const robot = knowledge->robot;
     const unsigned abeam = argus_robot_flank(robot) | argus_robot_rear_flank(robot);
     const unsigned others = abeam & ~(unsigned)dark->sonars & knowledge->fresh;
@@ -97,6 +101,7 @@ static argus_mask_t members(const argus_dark_t *const dark, const argus_knowledg
 // Straight: as of its last echo.
 static void note_echoes(argus_common_t *const self, const argus_knowledge_t *const knowledge,
                         argus_dark_t *const dark, const argus_mask_t sonars) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const unsigned fresh = sonars & knowledge->fresh;
     const bool turns = self->has_turned && knowledge->sip_ms - self->turned_ms <= AT_ONCE_MS;
     bool straight = dark->straight;
@@ -124,6 +129,7 @@ static void look_at(argus_common_t *const self, const argus_knowledge_t *const k
 }
 
 void argus_common_sip(argus_common_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const int32_t differ_mm_s = argus_abs(knowledge->vel_right_mm_s - knowledge->vel_left_mm_s);
     if (differ_mm_s * TURNING_PER_MM > knowledge->robot->track_mm) {
         self->has_turned = true;
@@ -150,11 +156,13 @@ bool argus_common_strikes(const argus_common_t *const self, const argus_mask_t s
 
 bool argus_common_convicts(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
                            const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int array = argus_robot_pose(knowledge->robot, sonar)->array;
     return array < ARGUS_ARRAYS_MAX && self->of[array].proven && (self->of[array].sonars >> sonar & 1u) != 0;
 }
 
 bool argus_common_excuses(const argus_common_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     for (int array = 0; array < ARGUS_ARRAYS_MAX; array++) {
         const argus_dark_t *const dark = &self->of[array];
         if (dark->sonars != 0 && !dark->proven && (dark->sonars >> sonar & 1u) == 0) {

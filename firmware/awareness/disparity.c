@@ -8,6 +8,7 @@
 #define EXCESS_ONE INT64_C(10000000000)
 
 int32_t argus_tolerance_mm(const argus_robot_t *const robot, const int32_t reading_mm) {
+    ARGUS_ASSERT(reading_mm >= 0);
     const int64_t scaled = (int64_t)(reading_mm + robot->tolerance_centre_mm) * robot->tolerance_excess;
     return (int32_t)((scaled + EXCESS_ONE / 2) / EXCESS_ONE);
 }
@@ -18,11 +19,13 @@ static int usable(const argus_knowledge_t *const knowledge, const int sonar) {
 }
 
 static int32_t reading(const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return knowledge->sonar[sonar].reading_mm;
 }
 
 argus_verdict_t argus_disparity(const argus_knowledge_t *const knowledge, const int sonar,
                                 int32_t *const difference_mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_pose_t *const pose = argus_robot_pose(knowledge->robot, sonar);
     const int left = usable(knowledge, pose->left);
     const int right = usable(knowledge, pose->right);

@@ -8,6 +8,7 @@
 #include "awareness/clutter.h"
 #include "awareness/levels.h"
 #include "awareness/names.h"
+#include "awareness/odds.h"
 #include "awareness/others.h"
 #include "awareness/own.h"
 #include "knowledge/angle.h"
@@ -30,6 +31,7 @@ void argus_evidence_set_caution(argus_evidence_t *const self, const int32_t perc
 }
 
 void argus_evidence_forget(argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     memset(&self->of[sonar], 0, sizeof self->of[sonar]);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         self->of[i].against &= (argus_mask_t) ~(1u << sonar);
@@ -47,9 +49,8 @@ static void restart_case(argus_case_t *const self) {
     self->hollow = 0;
     self->borne_out = false;
     self->none_run = 0;
-    self->rest_gaps = 0;
-    self->verdicts = 0;
-    self->contradicted = 0;
+    self->gaps = 0;
+    memset(self->rate, 0, sizeof self->rate);
 }
 
 void argus_evidence_restart(argus_evidence_t *const self) {
@@ -80,6 +81,7 @@ static argus_pose_t pose_of_pings(const argus_evidence_t *const self,
 
 static argus_ping_t ray_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                            const argus_pose_t *const pose, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_ping_t ping = argus_ping_from(knowledge->robot, sonar, pose);
     ping.t_ms = (uint16_t)(knowledge->sip_ms & 0xFFFFu);
     ping.reading_mm = knowledge->sonar[sonar].reading_mm;
@@ -99,6 +101,7 @@ static void note_out(argus_case_t *const self, const bool out) {
 
 static void take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                  const argus_pose_t *const pose, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     if (knowledge->lists_all && knowledge->sip_ms - c->counted_ms < REFRESH_MS) {
         return;
@@ -115,6 +118,7 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
 }
 
 static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     if (knowledge->sip_ms - self->before_ms > ARGUS_PINGS_AGE_MS) { // their clock has gone round unseen
         for (int i = 0; i < ARGUS_SONARS; i++) {
             self->of[i].pings.count = 0;
@@ -123,6 +127,7 @@ static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *cons
     if (knowledge->sip_ms - self->faded_ms >= FADE_MS) {
         self->faded_ms = knowledge->sip_ms;
         argus_others_fade(self, knowledge);
+        argus_odds_fade(self);
         for (int i = 0; i < knowledge->sonars; i++) {
             argus_pings_age(&self->of[i].pings, knowledge->sip_ms);
         }
@@ -130,6 +135,7 @@ static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *cons
 }
 
 void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     self->straight_sips = knowledge->rotating ? 0 : (uint8_t)argus_min(self->straight_sips + 1, UINT8_MAX);
     grow_old(self, knowledge);
     const argus_pose_t pose = pose_of_pings(self, knowledge);
@@ -145,10 +151,12 @@ void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *c
 }
 
 bool argus_evidence_suspects(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_names_suspects(self, sonar);
 }
 
 bool argus_evidence_holds(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     int32_t most = c->score[ARGUS_TEST_PEERS] * 100 / argus_bounds[ARGUS_TEST_PEERS].naming;
     for (int i = 0; i < ARGUS_LAGS; i++) {
@@ -158,6 +166,7 @@ bool argus_evidence_holds(const argus_evidence_t *const self, const int sonar) {
 }
 
 bool argus_evidence_is_unsteady(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     for (int i = ARGUS_TEST_GARBAGE; i <= ARGUS_TEST_DROPOUT; i++) {
         const argus_bounds_t *const b = &argus_bounds[i];
@@ -169,10 +178,12 @@ bool argus_evidence_is_unsteady(const argus_evidence_t *const self, const int so
 }
 
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_names_found(self, sonar);
 }
 
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_names_convicts(self, sonar);
 }
 
@@ -182,10 +193,13 @@ static const int8_t test_of[ARGUS_KEPT] = {
     [ARGUS_KEPT_DROPOUT] = ARGUS_TEST_DROPOUT, [ARGUS_KEPT_LATE] = -1};
 
 static int32_t naming_of(const argus_kept_t kept) {
+    ARGUS_ASSERT((unsigned)kept < ARGUS_KEPT);
     return test_of[kept] >= 0 ? argus_bounds[test_of[kept]].naming : ARGUS_LATE_NAMING;
 }
 
 int16_t argus_evidence_kept(const argus_evidence_t *const self, const int sonar, const argus_kept_t kept) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT((unsigned)kept < ARGUS_KEPT);
     const argus_case_t *const c = &self->of[sonar];
     int32_t most = test_of[kept] >= 0 ? c->score[test_of[kept]] : 0;
     for (int i = 0; kept == ARGUS_KEPT_LATE && i < ARGUS_LAGS; i++) {
@@ -196,6 +210,8 @@ int16_t argus_evidence_kept(const argus_evidence_t *const self, const int sonar,
 
 void argus_evidence_restore(argus_evidence_t *const self, const int sonar, const argus_kept_t kept,
                             const int16_t score, const bool out) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT((unsigned)kept < ARGUS_KEPT);
     argus_case_t *const c = &self->of[sonar];
     const bool whole = out && kept != ARGUS_KEPT_WRONG; // together with others it would name
     const int32_t limit = naming_of(kept) * (whole ? 100 : ARGUS_SUSPECT_PERCENT) / 100 - 1;
@@ -209,14 +225,17 @@ void argus_evidence_restore(argus_evidence_t *const self, const int sonar, const
 }
 
 void argus_evidence_retract(argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_others_retract(self, sonar);
 }
 
 uint8_t argus_evidence_agreed(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->of[sonar].agreed;
 }
 
 void argus_evidence_agree_anew(argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     self->of[sonar].agreed = 0;
 }
 
@@ -225,36 +244,44 @@ bool argus_evidence_has_pairs(const argus_evidence_t *const self) {
 }
 
 bool argus_evidence_repeats(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->of[sonar].score[ARGUS_TEST_STUCK] > 0;
 }
 
 bool argus_evidence_shows_gaps(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->of[sonar].score[ARGUS_TEST_DROPOUT] > 0;
 }
 
 uint8_t argus_evidence_silent_run(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->of[sonar].none_run;
 }
 
 int32_t argus_evidence_accused(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->of[sonar].score[ARGUS_TEST_PEERS];
 }
 
 uint32_t argus_evidence_alive_age_ms(const argus_evidence_t *const self,
                                      const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return knowledge->sip_ms - self->of[sonar].alive_ms;
 }
 
 uint32_t argus_evidence_agreed_age_ms(const argus_evidence_t *const self,
                                       const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return knowledge->sip_ms - self->of[sonar].agreed_ms;
 }
 
 uint8_t argus_evidence_taken(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->of[sonar].taken;
 }
 
 uint8_t argus_evidence_echo_bits(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->of[sonar].echo_bits;
 }
 
@@ -266,5 +293,6 @@ int argus_evidence_news(argus_evidence_t *const self, const argus_knowledge_t *c
 }
 
 void argus_evidence_forget_trend(argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_trend_forget(&self->trend, sonar);
 }

@@ -40,6 +40,7 @@ void argus_extremes_restart(argus_extremes_t *const self) {
 }
 
 static bool is_shortest(const argus_knowledge_t *const knowledge, const int32_t reading_mm) {
+    ARGUS_ASSERT(reading_mm >= 0);
     return reading_mm <= knowledge->robot->min_mm + NOISE_MM;
 }
 
@@ -54,6 +55,8 @@ static void begin_run(argus_extreme_t *const self, const argus_pose_t *const pos
 // Another sonar on the same side hears the wall that this one claims to be beside, or something farther off.
 // 1: farther, 0: it cannot tell, -1: the wall.
 static int mate_says(const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const argus_robot_t *const robot = knowledge->robot;
     const unsigned abeam = argus_robot_flank(robot) | argus_robot_rear_flank(robot);
     const argus_sonar_pose_t *const mine = argus_robot_pose(robot, sonar);
@@ -69,6 +72,7 @@ static int mate_says(const argus_knowledge_t *const knowledge, const int sonar) 
 
 // What stands still is as far off as the robot went away from it, at least.
 static void go_on(argus_extreme_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_pose_t *const pose = &knowledge->pose;
     const int32_t axis = pose->heading_cdeg + argus_robot_pose(knowledge->robot, sonar)->heading_deg * 100;
     const int32_t dx = pose->x_mm - self->at.x_mm;
@@ -87,6 +91,7 @@ static void go_on(argus_extreme_t *const self, const argus_knowledge_t *const kn
 
 static void take_shortest(argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
                           const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t turned = argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->from_cdeg);
     const unsigned abeam = argus_robot_flank(knowledge->robot) | argus_robot_rear_flank(knowledge->robot);
     const int32_t most = (abeam >> sonar & 1u) != 0 ? TURNED_ABEAM_CDEG : TURNED_CDEG;
@@ -100,6 +105,7 @@ static void take_shortest(argus_extreme_t *const self, const argus_knowledge_t *
 // How little a reading can be true after those before it; 0: it may well be.
 static int doubt(const argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
                  const int32_t reading_mm) {
+    ARGUS_ASSERT(reading_mm >= 0);
     const int32_t far_mm = knowledge->robot->min_mm + LEAP_MM;
     if (reading_mm < knowledge->robot->min_mm) {
         return IMPOSSIBLE;
@@ -111,6 +117,7 @@ static int doubt(const argus_extreme_t *const self, const argus_knowledge_t *con
 }
 
 static void take(argus_extreme_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t reading = knowledge->sonar[sonar].reading_mm;
     const bool shortest = is_shortest(knowledge, reading);
     const int doubted = doubt(self, knowledge, reading);

@@ -10,9 +10,6 @@
 #define OFF_RUN 5
 #define OFF_RUN_LONG 12 // what echoed before is named off after so many readings without an echo
 #define HOLLOW_OF 3
-#define FOLLOWED 3 // echoes, of so many readings, about on one bearing
-#define FOLLOWED_OF 5
-#define FOLLOWED_CDEG 1000
 #define EPISODES 10 // what moves about the robot does not contradict the same sonar again and again
 
 static int32_t suspicious(const int32_t naming) {
@@ -75,39 +72,14 @@ static bool is_mute(const argus_case_t *const self) {
            argus_others_hollow(self, HOLLOW_OF) == HOLLOW_OF && has_partners(self);
 }
 
-// It followed an echo when it fell silent.
-static bool has_followed(const argus_case_t *const self) {
-    int heard = 0;
-    const argus_ping_t *const now = argus_pings_at(&self->pings, 1);
-    for (int i = 0; i < FOLLOWED_OF; i++) {
-        const argus_ping_t *const then = argus_pings_before(&self->pings, 1, self->none_run + i);
-        heard += then != NULL && then->reading_mm < ARGUS_SURE_MM &&
-                 argus_ping_turned_cdeg(now, then) <= FOLLOWED_CDEG;
-    }
-    return heard >= FOLLOWED;
-}
-
-// ... lost it, and somebody else hears one there: what it did itself is the second voice.
-static bool has_lost(const argus_evidence_t *const self, const argus_case_t *const c) {
-    return c->none_run >= OFF_RUN - 1 && !c->borne_out && !self->busy && (c->hollow & 1u) != 0 &&
-           c->score[ARGUS_TEST_PEERS] >= ARGUS_LOST_CONTRADICTED && has_followed(c);
-}
-
-// What leaps, contradicted by the others, is garbage a leap before it is so by itself.
-static bool is_wild(const argus_case_t *const self) {
-    const int32_t naming = argus_bounds[ARGUS_TEST_GARBAGE].naming;
-    const bool contradicted =
-        self->score[ARGUS_TEST_PEERS] >= suspicious(argus_bounds[ARGUS_TEST_PEERS].naming);
-    return self->score[ARGUS_TEST_GARBAGE] >= (contradicted ? naming * ARGUS_WILD_PERCENT / 100 : naming);
-}
-
 // The more definite tests come first.
 argus_fault_kind_t argus_names_found(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     if (c->score[ARGUS_TEST_STUCK] >= argus_bounds[ARGUS_TEST_STUCK].naming) {
         return ARGUS_KIND_STUCK;
     }
-    if (is_wild(c)) {
+    if (c->score[ARGUS_TEST_GARBAGE] >= argus_bounds[ARGUS_TEST_GARBAGE].naming) {
         return ARGUS_KIND_GARBAGE;
     }
     if (is_late(c, ARGUS_LATE_NAMING)) {
@@ -119,18 +91,20 @@ argus_fault_kind_t argus_names_found(const argus_evidence_t *const self, const i
     if (c->score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].naming && has_partners(c)) {
         return kind_of_peers(c);
     }
-    if (is_mute(c) || has_lost(self, c)) {
+    if (is_mute(c)) {
         return ARGUS_KIND_OFF;
     }
     return is_bent(c, ARGUS_BENT_NAMING) ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;
 }
 
 static bool is_convicted_by(const argus_case_t *const self, const argus_test_t test) {
+    ARGUS_ASSERT((unsigned)test < ARGUS_TESTS);
     return self->score[test] >= argus_bounds[test].convincing;
 }
 
 // Who walks about contradicts; and by its own readings alone, however late they look, nobody is given up.
 argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     if (is_convicted_by(c, ARGUS_TEST_STUCK)) {
         return ARGUS_KIND_STUCK;
@@ -149,6 +123,7 @@ argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, cons
 }
 
 bool argus_names_suspects(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     for (int i = 0; i < ARGUS_TESTS; i++) {
         if (c->score[i] >= suspicious(argus_bounds[i].naming)) {
@@ -178,6 +153,7 @@ static argus_fault_kind_t kind_of_test(const argus_case_t *const self, const int
 
 argus_fault_kind_t argus_names_best(const argus_evidence_t *const self, const int sonar,
                                     uint8_t *const percent) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     argus_fault_kind_t best = ARGUS_KIND_NONE;
     int32_t most = 0;

@@ -20,18 +20,24 @@ static int32_t offset_mm(const uint16_t now_mm, const uint16_t then_mm) {
 }
 
 static unsigned slot_of(const argus_pings_t *const self, const int back) {
+    ARGUS_ASSERT(back >= 1);
+    ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
     return (self->next + ARGUS_PINGS - (unsigned)back) % ARGUS_PINGS;
 }
 
 const argus_ping_t *argus_pings_at(const argus_pings_t *const self, const int back) {
+    ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
     return back >= 1 && back <= self->count ? &self->ping[slot_of(self, back)] : NULL;
 }
 
 argus_ping_t *argus_pings_mark(argus_pings_t *const self, const int back) {
+    ARGUS_ASSERT(back >= 1);
     return &self->ping[slot_of(self, back)];
 }
 
 const argus_ping_t *argus_pings_before(const argus_pings_t *const self, const int back, const int firings) {
+    ARGUS_ASSERT(back >= 1);
+    ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
     int left = firings;
     for (int i = back; i <= self->count; i++) {
         const argus_ping_t *const at = argus_pings_at(self, i);
@@ -57,6 +63,7 @@ int32_t argus_ping_moved_mm(const argus_ping_t *const a, const argus_ping_t *con
 
 int32_t argus_ping_turned_cdeg(const argus_ping_t *const a, const argus_ping_t *const b) {
     const int32_t size = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
+    ARGUS_ASSERT(size < FULL_CDEG);
     return size > 18000 ? 36000 - size : size;
 }
 
@@ -100,6 +107,7 @@ static bool is_near(const argus_ping_t *const a, const argus_ping_t *const b) {
 
 // Tens of thousands of pings are asked for in one SIP, and few sonars have looked that way.
 int argus_pings_near(const argus_pings_t *const self, const int from, const argus_ping_t *const at) {
+    ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
     ARGUS_ASSERT(from >= 1);
     if ((self->sectors & sectors_beside(at)) == 0) {
         return 0;
@@ -131,6 +139,7 @@ static bool is_alike(const argus_ping_t *const a, const argus_ping_t *const b) {
 }
 
 void argus_pings_age(argus_pings_t *const self, const uint32_t now_ms) {
+    ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
     while (self->count > 0 &&
            argus_ping_age_ms(&self->ping[slot_of(self, self->count)], now_ms) > (int32_t)ARGUS_PINGS_AGE_MS) {
         self->count--;
@@ -138,6 +147,7 @@ void argus_pings_age(argus_pings_t *const self, const uint32_t now_ms) {
 }
 
 static void note_sectors(argus_pings_t *const self) {
+    ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
     unsigned sectors = 0;
     for (int back = 1; back <= self->count; back++) {
         sectors |= sector_of(self->ping[slot_of(self, back)].bearing_cdeg);
@@ -146,6 +156,7 @@ static void note_sectors(argus_pings_t *const self) {
 }
 
 void argus_pings_note(argus_pings_t *const self, const argus_ping_t now) {
+    ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
     argus_ping_t *const last = &self->ping[slot_of(self, 1)];
     if (self->count > 0 && is_alike(&now, last)) {
         last->t_ms = now.t_ms;
@@ -164,6 +175,7 @@ void argus_pings_note(argus_pings_t *const self, const argus_ping_t now) {
 
 argus_ping_t argus_ping_from(const argus_robot_t *const robot, const int sonar,
                              const argus_pose_t *const pose) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_pose_t *const mount = argus_robot_pose(robot, sonar);
     const argus_point_t at = argus_to_course(pose, (argus_point_t){mount->x_mm, mount->y_mm});
     const int32_t bearing_cdeg = argus_angle_wrap(pose->heading_cdeg + mount->heading_deg * 100);

@@ -16,16 +16,19 @@
 
 // Where its corner would touch, the body goes beyond the sonar's face by these.
 static int32_t beyond_mm(const argus_robot_t *const robot, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_robot_half_width_mm(robot) - argus_abs(argus_robot_pose(robot, sonar)->y_mm);
 }
 
 static int32_t ahead_mm(const argus_robot_t *const robot, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return robot->front_mm - argus_robot_pose(robot, sonar)->x_mm;
 }
 
 // The way of the robot ahead from one reading of a sonar that looks abeam to a later one.
 static int32_t way_mm(const argus_robot_t *const robot, const int sonar, const argus_ping_t *const now,
                       const argus_ping_t *const then) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_ping_t along = *now;
     along.bearing_cdeg =
         (int16_t)argus_angle_wrap(now->bearing_cdeg - argus_robot_pose(robot, sonar)->heading_deg * 100);
@@ -35,6 +38,7 @@ static int32_t way_mm(const argus_robot_t *const robot, const int sonar, const a
 // The latest ping on this bearing from far enough back that shows a fall; NULL: none.
 static const argus_ping_t *slant_since(const argus_robot_t *const robot, const int sonar,
                                        const argus_pings_t *const pings, const argus_ping_t *const now) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     for (int i = 2; i <= LOOKED_BACK; i++) {
         const argus_ping_t *const then = argus_pings_at(pings, i);
         if (then == NULL || argus_ping_turned_cdeg(now, then) > ARGUS_SAME_CDEG) {
@@ -55,6 +59,7 @@ static const argus_ping_t *echo_before(const argus_pings_t *const pings) {
 
 bool argus_slants_in(const argus_pings_t *const pings, const argus_robot_t *const robot, const int sonar,
                      const int32_t stop_mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_ping_t *const now = argus_pings_at(pings, 1);
     const argus_ping_t *const then = now != NULL ? slant_since(robot, sonar, pings, now) : NULL;
     const argus_ping_t *const before = then != NULL ? echo_before(pings) : NULL;

@@ -34,18 +34,22 @@ static void begin(argus_slip_t *const self, const argus_knowledge_t *const knowl
 }
 
 static int32_t bearing_cdeg(const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_robot_pose(knowledge->robot, sonar)->heading_deg * 100;
 }
 
 // Whether it looks where the robot goes to (true) or comes from.
 static bool looks(const argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const bool to) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t way_cdeg = self->ahead == to ? 0 : 18000;
     return argus_angle_abs_diff(bearing_cdeg(knowledge, sonar), way_cdeg) <= ALONG_CDEG;
 }
 
 // The nearest that a sonar hears on the side to which this one looks.
 static int32_t beside_mm(const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const bool left = argus_sin(bearing_cdeg(knowledge, sonar)) > 0;
     int32_t nearest = INT32_MAX;
     for (int i = 0; i < knowledge->sonars; i++) {
@@ -60,11 +64,13 @@ static int32_t beside_mm(const argus_knowledge_t *const knowledge, const int son
 
 // Along a wall the edge of the cone hears the wall, always as far off.
 static bool may_be_wall_beside(const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t aside = knowledge->sonar[sonar].reading_mm * argus_sin(WALL_CDEG) / ARGUS_TRIG_ONE;
     return aside + STAYS_MM >= beside_mm(knowledge, sonar);
 }
 
 static void note_beginnings(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const unsigned news = knowledge->fresh & ~(unsigned)self->read;
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool counts = (news >> i & 1u) != 0 && argus_usable(knowledge, i) &&
@@ -85,6 +91,7 @@ typedef struct {
 
 static void ask(const argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                 const int32_t way_mm, witnesses_t *const of) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const bool to = looks(self, knowledge, sonar, true);
     if ((!to && !looks(self, knowledge, sonar, false)) || self->reading_mm[sonar] == 0 ||
         !argus_usable(knowledge, sonar)) {
@@ -100,6 +107,7 @@ static void ask(const argus_slip_t *const self, const argus_knowledge_t *const k
 }
 
 static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int32_t way_mm) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     witnesses_t of = {0, 0, 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         ask(self, knowledge, i, way_mm, &of);

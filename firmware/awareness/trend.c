@@ -49,6 +49,7 @@ void argus_trend_init(argus_trend_t *const self) {
 }
 
 void argus_trend_forget(argus_trend_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     memset(&self->of[sonar], 0, sizeof self->of[sonar]);
 }
 
@@ -64,6 +65,7 @@ void argus_trend_restart(argus_trend_t *const self) {
 
 static void add(argus_trend_sonar_t *const self, const argus_trend_kind_t kind, const uint32_t odometer_mm,
                 const int32_t value) {
+    ARGUS_ASSERT((unsigned)kind < ARGUS_TRENDS);
     if (self->count[kind] == 0) {
         self->from_mm[kind] = odometer_mm;
         self->sum[kind] = 0;
@@ -76,6 +78,7 @@ static void add(argus_trend_sonar_t *const self, const argus_trend_kind_t kind, 
 
 static bool goes_on(const argus_trend_sonar_t *const self, const argus_knowledge_t *const knowledge,
                     const int32_t reading_mm) {
+    ARGUS_ASSERT(reading_mm >= 0);
     const int32_t way_mm = (int32_t)((knowledge->odometer_mm - self->echo_odometer_mm) & 0xFFFFu);
     const int32_t limit = GOES_ON_MM + reading_mm * GOES_ON_PERCENT / 100 + way_mm;
     return argus_abs(reading_mm - self->echo_mm) <= limit;
@@ -98,6 +101,7 @@ static void take_echo(argus_trend_sonar_t *const self, const argus_knowledge_t *
 
 void argus_trend_reading(argus_trend_t *const self, const argus_knowledge_t *const knowledge,
                          const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_trend_sonar_t *const s = &self->of[sonar];
     const uint16_t reading_mm = knowledge->sonar[sonar].reading_mm;
     const bool turned = argus_angle_abs_diff(knowledge->pose.heading_cdeg, s->echo_heading_cdeg) > SAME_CDEG;
@@ -128,6 +132,7 @@ static void calibrate(argus_trend_sonar_t *const self, const int32_t residual_mm
 
 static void take_residual(argus_trend_sonar_t *const self, const uint32_t odometer_mm,
                           const int32_t reading_mm, const int32_t expected_mm) {
+    ARGUS_ASSERT(reading_mm >= 0);
     const int32_t residual_mm = reading_mm - expected_mm;
     const int32_t limit_mm = AGREE_MM + argus_min(reading_mm, expected_mm) * AGREE_PERCENT / 100;
     if (expected_mm <= 0 || argus_abs(residual_mm) > limit_mm) {
@@ -139,6 +144,7 @@ static void take_residual(argus_trend_sonar_t *const self, const uint32_t odomet
 
 static void take_far(argus_trend_sonar_t *const self, const uint32_t odometer_mm, const int32_t reading_mm,
                      const int32_t expected_mm) {
+    ARGUS_ASSERT(reading_mm >= 0);
     if (expected_mm >= FAR_FROM_MM && expected_mm <= FAR_TO_MM) {
         add(self, ARGUS_TREND_RANGE, odometer_mm, reading_mm >= NO_ECHO_MM ? UNIT : 0);
     }
@@ -146,6 +152,7 @@ static void take_far(argus_trend_sonar_t *const self, const uint32_t odometer_mm
 
 static void take_view(argus_trend_sonar_t *const self, const uint32_t odometer_mm, const int32_t reading_mm,
                       const int32_t expected_mm) {
+    ARGUS_ASSERT(reading_mm >= 0);
     if (reading_mm < NO_ECHO_MM) {
         take_residual(self, odometer_mm, reading_mm, expected_mm);
     }
@@ -155,6 +162,9 @@ static void take_view(argus_trend_sonar_t *const self, const uint32_t odometer_m
 void argus_trend_pair(argus_trend_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const int32_t reading_mm, const int other, const int32_t other_mm,
                       const int32_t along_mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(other >= 0 && other < ARGUS_SONARS);
+    ARGUS_ASSERT(reading_mm >= 0);
     const uint32_t odometer_mm = knowledge->odometer_mm;
     if (other_mm < NO_ECHO_MM && !argus_is_out(knowledge, other)) {
         take_view(&self->of[sonar], odometer_mm, reading_mm, other_mm - along_mm);
@@ -231,6 +241,8 @@ static void judge_slope(argus_slope_t *const self, const rule_t *const rule, con
 
 // What the others show of late, the median: the surroundings are the same for all.
 static int32_t usual_of(const argus_trend_t *const self, const int kind, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(kind >= 0 && kind < ARGUS_TRENDS);
     int32_t sorted[ARGUS_SONARS];
     int count = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
@@ -249,6 +261,8 @@ static int32_t usual_of(const argus_trend_t *const self, const int kind, const i
 
 static void step(argus_trend_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                  const int kind) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(kind >= 0 && kind < ARGUS_TRENDS);
     argus_trend_sonar_t *const s = &self->of[sonar];
     const rule_t *const rule = &rules[kind];
     const uint32_t length_mm = knowledge->odometer_mm - s->from_mm[kind];
@@ -292,6 +306,7 @@ static int32_t horizon_of(const argus_slope_t *const self, const rule_t *const r
 }
 
 int32_t argus_trend_horizon_m(const argus_trend_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     int32_t nearest = 0;
     for (int kind = 0; kind < ARGUS_TRENDS; kind++) {
         const int32_t metres = horizon_of(&self->of[sonar].slope[kind], &rules[kind]);
@@ -312,6 +327,7 @@ static bool is_calm(const argus_trend_sonar_t *const self) {
 
 // A bias shows in both of a pair: it is laid to the one that differs most from all.
 static bool is_chief(const argus_trend_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t mine = argus_abs(self->of[sonar].slope[ARGUS_TREND_BIAS].fast);
     for (int i = 0; mine >= rules[ARGUS_TREND_BIAS].least && i < ARGUS_SONARS; i++) {
         if (argus_abs(self->of[i].slope[ARGUS_TREND_BIAS].fast) > mine) {

@@ -59,6 +59,8 @@ static corridor_t corridor(const argus_t *const self, const bool rear) {
 // lies beside the way.
 static int32_t on_way_mm(const argus_robot_t *const robot, const int sonar, const int32_t reading_mm,
                          const corridor_t *const way) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(reading_mm >= 0);
     const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
     int32_t nearest_mm = INT32_MAX;
     for (int k = -CONE_PLACES; k <= CONE_PLACES; k++) {
@@ -76,6 +78,7 @@ static int32_t on_way_mm(const argus_robot_t *const robot, const int sonar, cons
 // The shortest of these, less the way driven since.
 static int32_t clear_mm(const argus_knowledge_t *const knowledge, const unsigned looks,
                         const corridor_t *const way) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     int32_t shortest_mm = TRUST_MM;
     for (int i = 0; i < knowledge->sonars; i++) {
         if ((looks >> i & 1u) != 0 && argus_usable(knowledge, i)) {
@@ -130,6 +133,7 @@ static argus_bound_t by_clearance(const argus_guard_t *const guard, const int32_
 }
 
 static bool slants(const argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const unsigned flank = argus_robot_flank(self->knowledge.robot) & ~(unsigned)argus_out(&self->knowledge);
     const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
@@ -176,9 +180,23 @@ static argus_bound_t leading(const argus_t *const self, const argus_guard_t *con
     return bound;
 }
 
+// Each of those that look astern is trusted, and has reported within two rounds.
+static bool sees_astern(const argus_t *const self) {
+    const argus_knowledge_t *const knowledge = &self->knowledge;
+    const uint32_t limit_ms = argus_guard_two_rounds_ms(&self->config);
+    const unsigned looks = argus_robot_astern(knowledge->robot);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((looks >> i & 1u) != 0 &&
+            (!argus_trusted(knowledge, i) || argus_age_ms(knowledge, i, self->now_ms) > limit_ms)) {
+            return false;
+        }
+    }
+    return looks != 0;
+}
+
 static argus_bound_t trailing(const argus_t *const self, const argus_guard_t *const guard) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
-    if (!argus_guard_rear_is_watched(guard)) {
+    if (!sees_astern(self)) {
         return closed(ARGUS_BOUND_UNSEEN);
     }
     const unsigned looks = argus_robot_astern(knowledge->robot);
@@ -247,6 +265,7 @@ static bool is_met(const argus_robot_t *const robot, const argus_point_t at, con
 
 // An echo is anywhere in its cone.
 static bool meets_cone(const argus_knowledge_t *const knowledge, const int sonar, const int32_t by_cdeg) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_robot_t *const robot = knowledge->robot;
     const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
@@ -262,6 +281,7 @@ static bool meets_cone(const argus_knowledge_t *const knowledge, const int sonar
 }
 
 static bool meets_echo(const argus_knowledge_t *const knowledge, const int32_t by_cdeg) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_usable(knowledge, i) && meets_cone(knowledge, i, by_cdeg)) {
             return true;

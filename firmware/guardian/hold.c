@@ -181,27 +181,26 @@ static void send_move(argus_t *const core, argus_hold_client_t *const self, cons
     }
 }
 
+// Whether the MOVE that the robot has is not the one that it may have now.
+static bool is_other(const argus_t *const core, const argus_hold_client_t *const self, const int32_t left_mm,
+                     const int32_t mm, const int32_t mm_s) {
+    const argus_given_t *const given = &self->given;
+    const int32_t has_mm = argus_abs(left_of(core, given->move_mm, given->odometer_mm));
+    const bool longer = has_mm + DONE_MM < argus_abs(left_mm) && mm > has_mm + MORE_MM;
+    return !given->moves || longer || mm + LESS_MM < has_mm || mm_s < given->setv_mm_s;
+}
+
 // A MOVE ends where it should without us, and is lengthened as more is seen.
 static void give_move(argus_t *const core, argus_hold_client_t *const self, const argus_bound_t *const bound,
                       const bool anyway) {
-    argus_given_t *const given = &self->given;
     const int32_t left_mm = left_of(core, self->wish.left_mm, self->wish.odometer_mm);
-    const int32_t given_mm = given->moves ? left_of(core, given->move_mm, given->odometer_mm) : 0;
     const int32_t mm = argus_min(argus_abs(left_mm), bound->way_mm);
     const int32_t mm_s = argus_min(self->setv_mm_s, bound->speed_mm_s / STEP_MM_S * STEP_MM_S);
     if (!anyway && argus_abs(left_mm) <= DONE_MM) {
         self->wish.way = ARGUS_WISH_REST;
-        return;
-    }
-    if (mm_s <= 0 || mm <= 0) {
+    } else if (mm_s <= 0 || mm <= 0) {
         stand(core, self, anyway);
-        return;
-    }
-    const bool longer =
-        argus_abs(given_mm) + DONE_MM < argus_abs(left_mm) && mm > argus_abs(given_mm) + MORE_MM;
-    const bool shorter = mm + LESS_MM < argus_abs(given_mm);
-    const bool slower = given->moves && mm_s < given->setv_mm_s;
-    if (anyway || !given->moves || longer || shorter || slower) {
+    } else if (anyway || is_other(core, self, left_mm, mm, mm_s)) {
         send_move(core, self, left_mm < 0 ? -mm : mm, mm_s);
     }
 }

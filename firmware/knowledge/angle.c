@@ -2,6 +2,8 @@
 // Integer trigonometry: a quarter-wave table with linear interpolation, and CORDIC for directions.
 #include "knowledge/angle.h"
 
+#include "argus/argus.h"
+
 #define QUARTER 9000
 #define HALF 18000
 #define FULL 36000
@@ -32,7 +34,9 @@ int32_t argus_angle_wrap(const int32_t cdeg) {
     if (rest > HALF) {
         return rest - FULL;
     }
-    return rest <= -HALF ? rest + FULL : rest;
+    const int32_t wrapped = rest <= -HALF ? rest + FULL : rest;
+    ARGUS_ASSERT(wrapped > -HALF && wrapped <= HALF);
+    return wrapped;
 }
 
 int32_t argus_angle_abs_diff(const int32_t a_cdeg, const int32_t b_cdeg) {
@@ -41,6 +45,7 @@ int32_t argus_angle_abs_diff(const int32_t a_cdeg, const int32_t b_cdeg) {
 
 // 0 <= cdeg <= 9000
 static int32_t quarter_sine(const int32_t cdeg) {
+    ARGUS_ASSERT(cdeg >= 0 && cdeg <= QUARTER);
     const int32_t degree = cdeg / 100;
     const int32_t part = cdeg % 100;
     const int32_t low = sine[degree];
@@ -51,6 +56,7 @@ int32_t argus_sin(const int32_t cdeg) {
     const int32_t a = argus_angle_wrap(cdeg);
     const int32_t size = argus_abs(a);
     const int32_t value = quarter_sine(size > QUARTER ? HALF - size : size);
+    ARGUS_ASSERT(value >= 0 && value <= ARGUS_TRIG_ONE);
     return a < 0 ? -value : value;
 }
 
@@ -61,6 +67,7 @@ int32_t argus_cos(const int32_t cdeg) {
 // Direction in thousandths of a degree for x > 0, by CORDIC; the vector is scaled up so that small ones keep
 // their angle.
 static int32_t cordic_mdeg(int32_t x, int32_t y) {
+    ARGUS_ASSERT(x > 0 || y != 0);
     static const int32_t step_mdeg[] = {45000, 26565, 14036, 7125, 3576, 1790, 895,
                                         448,   224,   112,   56,   28,   14,   7};
     int32_t angle = 0;
@@ -98,6 +105,7 @@ uint32_t argus_sqrt(const uint32_t value) {
             root >>= 1;
         }
     }
+    ARGUS_ASSERT(root <= UINT16_MAX && root * root <= value);
     return root;
 }
 

@@ -70,6 +70,7 @@ static void work_out_driving(argus_config_report_t *report, const argus_config_t
     report->travel_mm = (int32_t)(travel_um / 1000);
     report->driving_mm = report->overhang_mm + (int32_t)((travel_um + brake_um) / 1000);
     report->brake_mm = report->driving_mm - report->overhang_mm - report->travel_mm;
+    ARGUS_ASSERT(report->travel_mm >= 0 && report->brake_mm >= 0);
 }
 
 int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *robot) {

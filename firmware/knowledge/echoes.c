@@ -57,6 +57,7 @@ static bool is_seen_again(const argus_echo_t *const seen, const argus_point_t *c
 // ... of something at most so far from there.
 static bool has_seen(const argus_echoes_t *const self, const argus_point_t *const at, const uint32_t now_ms,
                      const argus_point_t *const from, const int32_t within_mm) {
+    ARGUS_ASSERT(within_mm > 0);
     for (uint16_t i = 0; i < self->count; i++) {
         const argus_echo_t *const seen = &self->at[i];
         if (is_seen_again(seen, at, now_ms) &&
@@ -91,6 +92,7 @@ static void remember(argus_echoes_t *const self, const argus_point_t at, const u
 
 void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                       const uint32_t now_ms) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     argus_grid_see(&self->grid, knowledge);
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool fresh = (knowledge->fresh >> i & 1u) != 0;

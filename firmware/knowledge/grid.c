@@ -77,6 +77,7 @@ static void put(argus_grid_t *const self, const argus_cell_t cell, const unsigne
     const unsigned place = place_of(cell);
     const unsigned shift = place % 2 * 4;
     const unsigned others = self->level[place / 2] & ~((unsigned)LEVEL_MAX << shift);
+    ARGUS_ASSERT(place / 2 < sizeof self->level);
     self->level[place / 2] = (uint8_t)(others | level << shift);
 }
 
@@ -116,6 +117,7 @@ static int32_t lowest(const int32_t low, const int32_t robot) {
 }
 
 static void enter_column(argus_grid_t *const self, const int32_t x) {
+    ARGUS_ASSERT(x >= self->low.x - 1 && x < self->low.x + CELLS);
     for (int32_t y = 0; y < CELLS; y++) {
         const argus_cell_t cell = {x, y};
         put(self, cell, 0);
@@ -156,6 +158,7 @@ static void clear_body(argus_grid_t *const self, const argus_cell_t robot) {
 
 static void pass(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                  const int32_t way_mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_pose_t *const at = argus_robot_pose(knowledge->robot, sonar);
     const int32_t c = argus_cos(at->heading_deg * 100);
     const int32_t s = argus_sin(at->heading_deg * 100);
@@ -188,6 +191,7 @@ static void extend(argus_grid_t *const self, const argus_knowledge_t *const know
 }
 
 static bool tells(const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return (knowledge->fresh >> sonar & 1u) != 0 && !argus_is_out(knowledge, sonar) &&
            knowledge->sonar[sonar].health != ARGUS_SUSPECT;
 }
@@ -197,6 +201,7 @@ static bool is_passing(const argus_knowledge_t *const knowledge) {
 }
 
 static void take(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
     const bool silent = reading_mm >= knowledge->robot->no_echo_mm;
     if (is_passing(knowledge)) {
@@ -214,6 +219,7 @@ static void take(argus_grid_t *const self, const argus_knowledge_t *const knowle
 }
 
 void argus_grid_see(argus_grid_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const argus_point_t centre = {knowledge->pose.x_mm, knowledge->pose.y_mm};
     const argus_cell_t robot = argus_grid_cell(centre);
     follow(self, robot);

@@ -20,6 +20,7 @@ static const row_t *row_of(const argus_change_t change) {
 }
 
 bool argus_health_may(const argus_knowledge_t *const self, const int sonar, const argus_change_t change) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     static const char initial[] = {'U', 'H', 'S', 'D', 'P', 'T', 'A'};
     const char *from = row_of(change)->from;
     const char now = initial[self->sonar[sonar].health];
@@ -39,6 +40,8 @@ static void count_failure(argus_sonar_t *const s) {
 
 argus_event_t argus_health_set(argus_knowledge_t *const self, const int sonar, const argus_change_t change,
                                const argus_fault_kind_t kind, const int32_t value, const uint32_t now_ms) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT((unsigned)kind <= ARGUS_KIND_INTERMITTENT);
     argus_sonar_t *const s = &self->sonar[sonar];
     const row_t *const row = row_of(change);
     const bool same = change == ARGUS_CHANGE_NAMED || change == ARGUS_CHANGE_RENAMED; // it is known better

@@ -139,6 +139,7 @@ static void leave_out(argus_knowledge_t *const self, const argus_sip_t *const si
 // True: the robot can have moved so.
 static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, const int32_t distance_um,
                  const argus_span_t *const span) {
+    ARGUS_ASSERT(distance_um > 0);
     const int32_t dx_um = raw_delta(sip->x_raw, self->x_raw) * distance_um;
     const int32_t dy_um = raw_delta(sip->y_raw, self->y_raw) * distance_um;
     const int32_t heading = argus_angle_wrap(raw_heading_cdeg(sip) + argus_heading_offset_cdeg(self));
@@ -176,6 +177,7 @@ static void take_zero(argus_knowledge_t *const self, const argus_sip_t *const si
 
 void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *const sip,
                               const int32_t distance_um, const uint32_t now_ms) {
+    ARGUS_ASSERT(distance_um > 0);
     const argus_span_t span = span_to(self, sip, now_ms);
     self->leapt = false;
     if (!self->has_raw) {
@@ -283,6 +285,7 @@ void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const
 }
 
 argus_mask_t argus_with_health(const argus_knowledge_t *const self, const argus_health_t health) {
+    ARGUS_ASSERT(self->sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(health <= ARGUS_ABSENT);
     unsigned mask = 0;
     for (int i = 0; i < self->sonars; i++) {
@@ -306,6 +309,7 @@ argus_mask_t argus_out(const argus_knowledge_t *const self) {
 }
 
 argus_mask_t argus_named(const argus_knowledge_t *const self) {
+    ARGUS_ASSERT(self->sonars <= ARGUS_SONARS);
     unsigned mask = 0;
     for (int i = 0; i < self->sonars; i++) {
         const argus_sonar_t *const s = &self->sonar[i];
@@ -328,6 +332,7 @@ bool argus_usable(const argus_knowledge_t *const self, const int sonar) {
 }
 
 int32_t argus_flank_mm(const argus_knowledge_t *const self) {
+    ARGUS_ASSERT(self->sonars <= ARGUS_SONARS);
     const argus_mask_t flank = argus_robot_flank(self->robot);
     int32_t nearest = INT32_MAX;
     for (int i = 0; i < self->sonars; i++) {
@@ -352,6 +357,7 @@ bool argus_fresh_since(const argus_knowledge_t *const self, const int sonar, con
 
 bool argus_all_fresh_since(const argus_knowledge_t *const self, const argus_mask_t sonars,
                            const argus_mark_t *const mark) {
+    ARGUS_ASSERT(self->sonars <= ARGUS_SONARS);
     for (int i = 0; i < self->sonars; i++) {
         if ((sonars >> i & 1u) != 0 && !argus_fresh_since(self, i, mark)) {
             return false;
@@ -395,12 +401,15 @@ argus_point_t argus_to_course(const argus_pose_t *const pose, const argus_point_
 }
 
 int32_t argus_echo_to_centre_mm(const argus_knowledge_t *const self, const int sonar, const int32_t back_mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(back_mm >= 0);
     const argus_point_t echo = argus_echo_robot(self, sonar);
     return argus_usable(self, sonar) ? argus_hypot(echo.x_mm + back_mm, echo.y_mm) : INT32_MAX;
 }
 
 int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *const self, const int32_t back_mm) {
+    ARGUS_ASSERT(self->sonars <= ARGUS_SONARS);
+    ARGUS_ASSERT(back_mm >= 0);
     int32_t nearest = INT32_MAX;
     for (int i = 0; i < self->sonars; i++) {
         nearest = argus_min(nearest, argus_echo_to_centre_mm(self, i, back_mm));

@@ -34,6 +34,7 @@ static int32_t fastest_mm_s(const argus_span_t *const span) {
     const int32_t before = argus_max(argus_abs(span->before.left_mm_s), argus_abs(span->before.right_mm_s));
     const int32_t after = argus_max(argus_abs(span->after.left_mm_s), argus_abs(span->after.right_mm_s));
     const int32_t gap = span->elapsed_ms > GAP_MS ? DRIVES_MM_S : 0;
+    ARGUS_ASSERT(before >= 0 && after >= 0);
     return argus_min(FASTEST_MM_S, argus_max(gap, argus_max(before, after)));
 }
 
@@ -54,6 +55,7 @@ static int32_t fastest_cdeg_s(const argus_span_t *const span) {
 
 // Of a speed, within a time up to some seconds.
 static int32_t times_ms(const int32_t per_s, const int32_t ms) {
+    ARGUS_ASSERT(ms >= 0);
     return (int32_t)((int64_t)per_s * ms / 1000);
 }
 
@@ -66,6 +68,7 @@ bool argus_odometry_is_speed(const int32_t mm_s) {
 }
 
 argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *const span) {
+    ARGUS_ASSERT(span->track_mm > 0);
     const int32_t ms = argus_min(elapsed_ms(span), SIP_MS);
     const argus_wheels_t mean = {(span->before.left_mm_s + span->after.left_mm_s) / 2,
                                  (span->before.right_mm_s + span->after.right_mm_s) / 2};
@@ -85,6 +88,7 @@ static bool may_be_alone(const argus_span_t *const span, const argus_way_turn_t 
 
 static int32_t build_up(const int32_t excess, const int32_t moved, const int32_t by_wheels,
                         const int32_t slack) {
+    ARGUS_ASSERT(excess >= 0 && slack >= 0);
     return argus_max(0, excess + moved - by_wheels * SLACK_PERCENT / 100 - slack);
 }
 

@@ -50,6 +50,7 @@ static bool fits(const argus_point_t at) {
 }
 
 static void see(argus_rays_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_pose_t *const pose = argus_robot_pose(knowledge->robot, sonar);
     const argus_point_t from = argus_to_course(&knowledge->pose, (argus_point_t){pose->x_mm, pose->y_mm});
     const int32_t bearing_cdeg = knowledge->pose.heading_cdeg + pose->heading_deg * 100;
@@ -69,6 +70,7 @@ static void see(argus_rays_t *const self, const argus_knowledge_t *const knowled
 
 void argus_rays_see(argus_rays_t *const self, const argus_knowledge_t *const knowledge,
                     const argus_mask_t others) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const unsigned looks = argus_robot_ahead(knowledge->robot) | argus_robot_flank(knowledge->robot) | others;
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool fresh = (knowledge->fresh & looks) >> i & 1u;
@@ -79,6 +81,7 @@ void argus_rays_see(argus_rays_t *const self, const argus_knowledge_t *const kno
 }
 
 static bool shows(const argus_ray_t *const ray, const argus_point_t at) {
+    ARGUS_ASSERT(ray->free_mm <= TRUST_MM);
     const int32_t dx = at.x_mm - ray->x_mm;
     const int32_t dy = at.y_mm - ray->y_mm;
     const int32_t along_mm = (dx * ray->c + dy * ray->s) / ARGUS_TRIG_ONE;
@@ -106,6 +109,7 @@ static bool is_seen(const argus_rays_t *const self, const uint32_t now_ms, const
 
 static bool is_line_seen(const argus_rays_t *const self, const argus_knowledge_t *const knowledge,
                          const int32_t half_mm, const int32_t ahead_mm) {
+    ARGUS_ASSERT(half_mm > 0);
     for (int k = -ABREAST; k <= ABREAST; k++) {
         const argus_point_t at = {knowledge->robot->front_mm + ahead_mm, half_mm * k / ABREAST};
         if (!is_seen(self, knowledge->sip_ms, argus_to_course(&knowledge->pose, at))) {

@@ -137,6 +137,7 @@ argus_mask_t argus_robot_polled(const argus_robot_t *const self) {
 }
 
 bool argus_robot_faces_forward(const argus_robot_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return (argus_robot_forward(self) >> sonar & 1u) != 0;
 }
 

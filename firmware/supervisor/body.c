@@ -23,6 +23,7 @@ static void say_beyond(argus_t *const self, const argus_robot_t *const robot) {
 
 // What was found out about the sonars of another body says nothing of this one's, but what its record says.
 static void forget_sonars(argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((self->history.recorded >> i & 1u) == 0 &&
             argus_health_may(&self->knowledge, i, ARGUS_CHANGE_FORGOTTEN)) {

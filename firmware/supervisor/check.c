@@ -9,6 +9,7 @@
 #include "supervisor/state.h"
 
 static void declare_healthy(argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
         if (s->reported && (s->health == ARGUS_UNKNOWN || s->health == ARGUS_STALE)) {
@@ -56,6 +57,7 @@ static bool is_due(const argus_t *const self) {
 
 // Who may not turn cannot verify: there a suspicion lasts as long as the disparity.
 static void drop_suspicions(argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(self->orders.passive);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if (argus_robot_faces_forward(self->knowledge.robot, i) &&

@@ -11,6 +11,7 @@
 // The forward-facing sonars in use, and every other one of the rest of their arrays: these watch the swing
 // circle.
 static size_t add_half(const argus_t *const self, const int half, uint8_t *const order) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(half == 0 || half == 1);
     const argus_robot_t *const robot = self->knowledge.robot;
     const unsigned others = argus_robot_polled(robot) & ~(unsigned)argus_robot_forward(robot);
@@ -31,6 +32,7 @@ static size_t add_half(const argus_t *const self, const int half, uint8_t *const
 
 // In failure mode the slots of the sonars that are out go to those that look ahead.
 void argus_share_slots(argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     if (!argus_is_active(self) || !argus_is_open(self)) {
         return;
     }
@@ -88,6 +90,7 @@ static void take_plan(argus_t *const self, const argus_mask_t blind) {
 }
 
 static void tell_plan(argus_t *const self, const argus_plan_t *const before) {
+    ARGUS_ASSERT(before->count <= ARGUS_ROTATIONS_MAX);
     const argus_plan_t *const now = &self->plan;
     const bool others = before->disabled != now->disabled;
     if (others || before->count != now->count ||
@@ -136,6 +139,7 @@ bool argus_keep_plan(argus_t *const self) {
 }
 
 void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(kind != ARGUS_KIND_NONE);
     const argus_event_t said =
         argus_health_set(&self->knowledge, sonar, ARGUS_CHANGE_DISABLED, kind, (int32_t)kind, self->now_ms);
@@ -149,6 +153,8 @@ void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_
 }
 
 void argus_lose(argus_t *const self, const argus_mask_t dead, const argus_mask_t silent) {
+    ARGUS_ASSERT((((unsigned)dead | silent) & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(((dead | silent) & argus_out(&self->knowledge)) == 0);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((dead >> i & 1u) != 0) {
@@ -163,6 +169,7 @@ void argus_lose(argus_t *const self, const argus_mask_t dead, const argus_mask_t
 }
 
 void argus_watch(argus_t *const self, const argus_mask_t sonars) {
+    ARGUS_ASSERT((sonars & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
     ARGUS_ASSERT((sonars & argus_robot_forward(self->knowledge.robot)) == 0);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((sonars >> i & 1u) == 0) {
@@ -179,6 +186,8 @@ void argus_watch(argus_t *const self, const argus_mask_t sonars) {
 }
 
 void argus_flag_suspects(argus_t *const self, const argus_mask_t suspects) {
+    ARGUS_ASSERT((suspects & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT((suspects & argus_out(&self->knowledge)) == 0);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((suspects >> i & 1u) != 0 && self->knowledge.sonar[i].health != ARGUS_SUSPECT) {

@@ -19,6 +19,7 @@ size_t argus_record_save(const argus_t *const self, uint8_t *const buffer, const
 // What failed last time may have been repaired: it comes back on evidence, like one that failed in this
 // mission.
 static void put_on_probation(argus_t *const self, const argus_mask_t sonars) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(argus_rules(self)->evidence);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
@@ -39,6 +40,7 @@ static void refuse(argus_t *const self, const argus_record_fault_t fault) {
 
 // The robot was not known when the record was read.
 static void take_back(argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(self->history.loaded);
     argus_record_forget(&self->knowledge, &self->evidence);
     for (int i = 0; i < self->knowledge.sonars; i++) {

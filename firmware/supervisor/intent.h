@@ -70,4 +70,9 @@ typedef struct {
     argus_mask_t silent;
 } argus_intent_t;
 
+argus_intent_t argus_to_nothing(void);
+argus_intent_t argus_to_check(bool full);
+argus_intent_t argus_to_turn(int32_t heading_cdeg);
+argus_intent_t argus_to_wait(argus_wait_t why);
+
 #endif

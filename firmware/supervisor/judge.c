@@ -12,7 +12,7 @@
 #define PROBATION_AGREED 4
 #define PROBATION_MS 4000u
 #define PROBATION_DOUBLINGS 4
-#define NAME_STANDS_MS 2000u // six rounds, before a name is said: many for a healthy sonar pass sooner
+#define NAME_STANDS_MS 1000u // three rounds, before a name is said: many for a healthy sonar pass sooner
 
 // What changes the way ahead is answered by a check at rest.
 static argus_intent_t break_off(const argus_t *const self) {
@@ -22,6 +22,8 @@ static argus_intent_t break_off(const argus_t *const self) {
 }
 
 static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT((unsigned)kind <= ARGUS_KIND_INTERMITTENT);
     const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
     argus_disable(self, sonar, kind);
     const bool goes_on =
@@ -31,6 +33,8 @@ static argus_intent_t convict(argus_t *const self, const int sonar, const argus_
 
 // The name has stood for a while.
 static bool stands(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT((unsigned)kind <= ARGUS_KIND_INTERMITTENT);
     argus_naming_t *const naming = &self->looks.naming[sonar];
     if (naming->named != kind) {
         naming->named = (uint8_t)kind;
@@ -62,6 +66,7 @@ static void name(argus_t *const self, const int sonar) {
 
 // An extreme is proved by way and time alone, an array that has failed as a whole by what it heard before.
 static argus_fault_kind_t convicts(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     if (argus_common_convicts(&self->common, &self->knowledge, sonar)) {
         return ARGUS_KIND_OFF;
     }
@@ -70,6 +75,7 @@ static argus_fault_kind_t convicts(const argus_t *const self, const int sonar) {
 }
 
 static argus_intent_t judge_in(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_fault_kind_t kind = convicts(self, sonar);
     if (kind != ARGUS_KIND_NONE) {
         return convict(self, sonar, kind);
@@ -103,6 +109,7 @@ static uint8_t agreements_wanted(const argus_sonar_t *const s) {
 // What repeated one value, and shows another one now, was not stuck: a name is enough to say what it is. Half
 // the truth, where nothing is in range, is the same value each time.
 static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_fault_kind_t convicted = convicts(self, sonar);
     const bool stuck = self->knowledge.sonar[sonar].kind == ARGUS_KIND_STUCK &&
                        !argus_evidence_repeats(&self->evidence, sonar);
@@ -110,16 +117,19 @@ static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar
 }
 
 static bool is_silent(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_silent_ms(&self->knowledge, sonar) > (uint32_t)self->config.stale_ms;
 }
 
 static bool keeps_out(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_evidence_suspects(&self->evidence, sonar) ||
            argus_extremes_keeps_out(&self->extremes, sonar) ||
            argus_common_convicts(&self->common, &self->knowledge, sonar);
 }
 
 static bool does_well(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const bool long_enough = self->now_ms - s->since_ms >= PROBATION_MS;
     return long_enough && !is_silent(self, sonar) &&
@@ -150,6 +160,7 @@ static argus_intent_t judge_out(argus_t *const self, const int sonar) {
 // Its turn in a round comes late: each new order begins the round anew, so plans that change may pass it
 // over.
 static bool is_passed_over(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_robot_t *const robot = self->knowledge.robot;
     const bool late =
         (argus_robot_polled(robot) >> sonar & 1u) != 0 && !argus_robot_faces_forward(robot, sonar);
@@ -158,6 +169,7 @@ static bool is_passed_over(const argus_t *const self, const int sonar) {
 
 // Those that do not face forward yield to the same tests; one that yields nothing is out as well.
 static bool has_fallen_silent(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const bool other = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) == 0;
     return other && is_silent(self, sonar) && !is_passed_over(self, sonar);
 }

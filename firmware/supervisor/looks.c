@@ -25,6 +25,7 @@ static bool is_held(const argus_t *const self, const int sonar) {
 }
 
 argus_mask_t argus_doubted(const argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(argus_rules(self)->evidence);
     unsigned mask = 0;
     for (int i = 0; i < self->knowledge.sonars; i++) {
@@ -46,6 +47,7 @@ argus_mask_t argus_to_settle(const argus_t *const self) {
 
 // Those ahead that nobody sees for, and that were not cleared a moment ago.
 static argus_mask_t alone(const argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const argus_guard_t guard = argus_guard(self);
     const unsigned open = argus_guard_alone(&guard) & argus_open_suspects(self);
     unsigned mask = 0;
@@ -96,6 +98,7 @@ static void acquit(argus_t *const self, const int sonar) {
 }
 
 void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
+    ARGUS_ASSERT((sonars & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
     ARGUS_ASSERT((sonars & argus_out(&self->knowledge)) == 0);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((sonars >> i & 1u) != 0) {
@@ -109,6 +112,8 @@ void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
 // its bearing for that alone, each time anew (paper: Algorithm 2). What its own readings tell, looks do not
 // prove, nor anything of one at the end of an array.
 static bool is_proved(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT((unsigned)kind <= ARGUS_KIND_INTERMITTENT);
     argus_hold_t *const hold = &self->looks.hold[sonar];
     const bool beset = argus_robot_faces_forward(self->knowledge.robot, sonar); // neighbours on either side
     const bool by_others = beset && (kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_WRONG);
@@ -119,6 +124,7 @@ static bool is_proved(argus_t *const self, const int sonar, const argus_fault_ki
 
 // What the looks have shown of one sonar.
 static void conclude(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const bool suspect = self->knowledge.sonar[sonar].health == ARGUS_SUSPECT;
     const bool asked = suspect || (self->verifying.inquiry.suspects >> sonar & 1u) != 0;
     if (argus_is_out(&self->knowledge, sonar)) {
@@ -135,6 +141,7 @@ static void conclude(argus_t *const self, const int sonar) {
 }
 
 void argus_conclude_looks(argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(!self->verifying.inquiry.active);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         conclude(self, i);

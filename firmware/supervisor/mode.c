@@ -30,6 +30,7 @@ static const row_t *row_of(const argus_mode_t mode) {
 }
 
 bool argus_mode_may(const argus_mode_t mode, const unsigned what) {
+    ARGUS_ASSERT((unsigned)mode <= ARGUS_MODE_CLOSED);
     return (row_of(mode)->may & what) == what;
 }
 
@@ -49,5 +50,6 @@ bool argus_mode_may_follow(const argus_mode_t from, const argus_mode_t to) {
 }
 
 uint32_t argus_mode_limit_ms(const argus_mode_t mode) {
+    ARGUS_ASSERT((unsigned)mode <= ARGUS_MODE_CLOSED);
     return row_of(mode)->limit_ms;
 }

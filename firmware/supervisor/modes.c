@@ -36,6 +36,7 @@ static void enter(argus_t *const self, const argus_mode_t mode) {
 
 // At rest on the base heading.
 static void enter_checking(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     ARGUS_ASSERT(self->config.suspect_readings > 0);
     argus_checking_t *const mine = &self->checking;
     const uint8_t rounds = mine->rounds; // of a check under way
@@ -57,6 +58,7 @@ static void enter_checking(argus_t *const self, const argus_intent_t *const inte
 }
 
 static void enter_verifying(argus_t *const self, const argus_mask_t suspects) {
+    ARGUS_ASSERT((suspects & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
     ARGUS_ASSERT(!self->orders.passive);
     argus_flag_suspects(self, suspects);
     self->awareness.verified &= (argus_mask_t) ~(unsigned)suspects;
@@ -98,14 +100,6 @@ static void enter_idle(argus_t *const self) {
     enter(self, ARGUS_MODE_IDLE);
 }
 
-static argus_intent_t wait_for(const argus_wait_t why) {
-    return (argus_intent_t){.act = ARGUS_DO_WAIT, .why = (uint8_t)why};
-}
-
-static argus_intent_t nothing(void) {
-    return (argus_intent_t){.act = ARGUS_DO_NOTHING};
-}
-
 static void fail_mission(argus_t *const self) {
     if (self->mission == ARGUS_MISSION_RUNNING) {
         self->mission = ARGUS_MISSION_FAILED;
@@ -121,24 +115,24 @@ static argus_intent_t decide(argus_t *const self) {
     const bool wants = jogging || (self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused);
     if (self->orders.passive || !wants) {
         enter_idle(self);
-        return nothing();
+        return argus_to_nothing();
     }
     if (argus_should_turn_about(self)) {
         argus_turn_about(self);
-        return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true};
+        return argus_to_check(true);
     }
     if (!argus_guard_may_step(&self->plan)) { // all ahead are out, or suspects that no one can judge
         fail_mission(self);
-        return wait_for(ARGUS_WAIT_CATASTROPHIC);
+        return argus_to_wait(ARGUS_WAIT_CATASTROPHIC);
     }
     if (guard.bumpers != 0) {
-        return wait_for(ARGUS_WAIT_BUMPER);
+        return argus_to_wait(ARGUS_WAIT_BUMPER);
     }
     if (!argus_guard_may_translate(&guard)) {
-        return wait_for(ARGUS_WAIT_MOTORS);
+        return argus_to_wait(ARGUS_WAIT_MOTORS);
     }
     enter_travel(self);
-    return nothing();
+    return argus_to_nothing();
 }
 
 // Carrying out
@@ -153,7 +147,7 @@ static argus_intent_t turn(argus_t *const self, const int32_t heading_cdeg) {
         waiting->last = waiting->last == ARGUS_WAIT_TURN ? ARGUS_WAIT_NONE : waiting->last;
         argus_turn_to(self, heading_cdeg);
         self->turning.again = false;
-        return nothing();
+        return argus_to_nothing();
     }
     const argus_intent_t instead = argus_instead_of_turn(self);
     self->turning.again = false;
@@ -165,6 +159,7 @@ static argus_intent_t turn(argus_t *const self, const int32_t heading_cdeg) {
 }
 
 static void back(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     ARGUS_ASSERT(intent->mm > 0 && intent->speed_mm_s > 0);
     const argus_guard_t guard = argus_guard(self);
     if (!guard.active || !argus_guard_rear_is_clear(&guard)) {
@@ -190,6 +185,7 @@ static void move_on(argus_t *const self) {
 }
 
 static void go_ahead(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     const argus_guard_t guard = argus_guard(self);
     ARGUS_ASSERT(argus_guard_may_translate(&guard));
     if (intent->act == ARGUS_DO_STEP) {
@@ -218,6 +214,7 @@ static argus_intent_t end_turn(argus_t *const self, const argus_point_t at) {
 }
 
 static argus_intent_t begin_looks(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(self->mode == ARGUS_MODE_VERIFYING && self->verifying.inquiry.active);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((intent->sonars >> i & 1u) != 0) {
@@ -231,6 +228,7 @@ static argus_intent_t begin_looks(argus_t *const self, const argus_intent_t *con
 }
 
 static argus_intent_t lose(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     ARGUS_ASSERT((intent->sonars | intent->silent) != 0);
     argus_lose(self, intent->sonars, intent->silent);
     const bool stays = self->mode == ARGUS_MODE_WAITING || self->mode == ARGUS_MODE_CLOSING;
@@ -264,6 +262,7 @@ static void stop(argus_t *const self, const argus_stop_t how) {
 }
 
 static void close_way(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     ARGUS_ASSERT(intent->way <= ARGUS_WAY_FORGIVE);
     if (intent->bumped) {
         argus_echoes_bumped(&self->echoes, &self->knowledge, self->now_ms);
@@ -293,6 +292,7 @@ static void take_base(argus_t *const self, const argus_base_do_t what) {
 }
 
 static void prepare(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     if (intent->event != 0) {
         argus_say(self, (argus_event_id_t)intent->event, intent->sonar, intent->value);
     }
@@ -328,14 +328,14 @@ static argus_intent_t perform_motion(argus_t *const self, const argus_intent_t *
     default:
         break;
     }
-    return nothing();
+    return argus_to_nothing();
 }
 
 static argus_intent_t perform_end(argus_t *const self, const argus_act_t act) {
     switch (act) {
     case ARGUS_DO_GIVE_UP:
         fail_mission(self);
-        return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true};
+        return argus_to_check(true);
     case ARGUS_DO_GO_OFFLINE:
         enter(self, self->orders.shutdown ? ARGUS_MODE_CLOSED : ARGUS_MODE_OFFLINE);
         break;
@@ -348,7 +348,7 @@ static argus_intent_t perform_end(argus_t *const self, const argus_act_t act) {
     default:
         break;
     }
-    return nothing();
+    return argus_to_nothing();
 }
 
 static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *const intent) {
@@ -371,7 +371,7 @@ static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *
     default:
         return perform_end(self, (argus_act_t)intent->act);
     }
-    return nothing();
+    return argus_to_nothing();
 }
 
 static argus_intent_t perform_judgement(argus_t *const self, const argus_intent_t *const intent) {
@@ -388,10 +388,10 @@ static argus_intent_t perform_judgement(argus_t *const self, const argus_intent_
         return begin_looks(self, intent);
     case ARGUS_DO_LOOKED:
         argus_conclude_looks(self);
-        return (argus_intent_t){.act = ARGUS_DO_CHECK};
+        return argus_to_check(false);
     case ARGUS_DO_LEAVE_OPEN:
         argus_leave_open(self, intent->sonars);
-        return (argus_intent_t){.act = ARGUS_DO_CHECK};
+        return argus_to_check(false);
     case ARGUS_DO_LOSE:
         return lose(self, intent);
     case ARGUS_DO_WATCH:
@@ -402,10 +402,11 @@ static argus_intent_t perform_judgement(argus_t *const self, const argus_intent_
     default:
         break;
     }
-    return nothing();
+    return argus_to_nothing();
 }
 
 static argus_intent_t perform(argus_t *const self, const argus_intent_t *const intent) {
+    ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     if (intent->act <= ARGUS_DO_END_TURN) {
         return perform_motion(self, intent);
     }
@@ -435,6 +436,7 @@ void argus_react(argus_t *const self, const argus_alarm_t *const alarm) {
 }
 
 void argus_judge_all(argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     if (!argus_rules(self)->evidence) {
         return;
     }
@@ -450,7 +452,7 @@ void argus_judge_all(argus_t *const self) {
 
 static argus_intent_t run_nobody(argus_t *const self) {
     (void)self;
-    return nothing();
+    return argus_to_nothing();
 }
 
 static argus_intent_t run_checking(argus_t *const self) {
@@ -494,7 +496,7 @@ static argus_intent_t run(argus_t *const self) {
         ARGUS_MODE_TABLE(RUN) // NOLINT(bugprone-branch-clone)
 #undef RUN
     default:
-        return nothing();
+        return argus_to_nothing();
     }
 }
 

@@ -173,6 +173,7 @@ static bool may_serve(const argus_t *const self, const argus_op_t op, const int3
 }
 
 static void retest(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     self->orders.stay = false; // the others order no motion
     if (argus_rules(self)->evidence) {
         begin_retest(self, sonar);
@@ -190,6 +191,7 @@ static void pin(argus_t *const self, const int sonar, const bool on) {
 }
 
 static void take_out(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     if (self->knowledge.sonar[sonar].health != ARGUS_DISABLED) {
         argus_disable(self, sonar, ARGUS_KIND_WRONG);
     }
@@ -198,6 +200,7 @@ static void take_out(argus_t *const self, const int sonar) {
 }
 
 static void obey_for_one(argus_t *const self, const argus_op_t op, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     if (op == ARGUS_OP_RETEST) {
         retest(self, sonar);
     } else if (op == ARGUS_OP_DISABLE) {

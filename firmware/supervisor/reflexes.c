@@ -15,11 +15,8 @@
 #define UNSOUND_MOST 3
 #define HEADING_ALONE_CDEG_MM 10 // it is the heading that leapt where there are more for each mm
 
-static argus_intent_t nothing(void) {
-    return (argus_intent_t){.act = ARGUS_DO_NOTHING};
-}
-
 static argus_intent_t say(const argus_event_id_t event, const int sonar, const int32_t value) {
+    ARGUS_ASSERT(sonar >= ARGUS_NO_SONAR && sonar < ARGUS_SONARS);
     return (argus_intent_t){.event = (uint16_t)event, .sonar = (int8_t)sonar, .value = value};
 }
 
@@ -30,7 +27,7 @@ static argus_intent_t distrust(const argus_t *const self, argus_reflexes_t *cons
     mine->unsound = (uint8_t)(again ? argus_min(mine->unsound + 1, UNSOUND_MOST + 1) : 1);
     mine->unsound_ms = self->now_ms;
     if (mine->unsound > UNSOUND_MOST) {
-        return nothing(); // all is said and done
+        return argus_to_nothing(); // all is said and done
     }
     const bool lost = mine->unsound == UNSOUND_MOST;
     argus_intent_t intent =
@@ -50,7 +47,7 @@ static argus_intent_t sees_leap(const argus_t *const self, const argus_alarm_t *
     (void)alarm;
     mine->leaps = knowledge->leaps;
     if (!news) {
-        return nothing();
+        return argus_to_nothing();
     }
     if (knowledge->leaps_unseen != mine->unseen) { // at once: where it went meanwhile nobody can tell
         mine->unseen = knowledge->leaps_unseen;
@@ -67,7 +64,7 @@ static argus_intent_t sees_slip(const argus_t *const self, const argus_alarm_t *
     const bool news = self->slip.slips != mine->slips;
     (void)alarm;
     mine->slips = self->slip.slips;
-    return news ? distrust(self, mine, ARGUS_EV_SLIP, self->slip.slipped_mm) : nothing();
+    return news ? distrust(self, mine, ARGUS_EV_SLIP, self->slip.slipped_mm) : argus_to_nothing();
 }
 
 // New contact only: bits already answered are let be until they clear.
@@ -80,7 +77,7 @@ static argus_intent_t sees_bumper(const argus_t *const self, const argus_alarm_t
     (void)alarm;
     mine->bumpers = pressed;
     if (!fresh) {
-        return cleared ? say(ARGUS_EV_BUMPER_CLEAR, ARGUS_NO_SONAR, 0) : nothing();
+        return cleared ? say(ARGUS_EV_BUMPER_CLEAR, ARGUS_NO_SONAR, 0) : argus_to_nothing();
     }
     argus_intent_t intent = say(ARGUS_EV_BUMPER, ARGUS_NO_SONAR, pressed);
     intent.stop = ARGUS_STOP_E_STOP;
@@ -98,7 +95,7 @@ static argus_intent_t sees_stall(const argus_t *const self, const argus_alarm_t 
     const bool said = mine->stall_said;
     mine->stall_said = alarm->stall;
     if (!stalls || said) {
-        return nothing();
+        return argus_to_nothing();
     }
     argus_intent_t intent = say(ARGUS_EV_STALL, ARGUS_NO_SONAR, argus_built_stalls(&self->knowledge));
     intent.stop = ARGUS_STOP_STOP;
@@ -113,6 +110,7 @@ static argus_intent_t sees_stall(const argus_t *const self, const argus_alarm_t 
 // on.
 static argus_intent_t sees_others(const argus_t *const self, const argus_alarm_t *const alarm,
                                   argus_reflexes_t *const mine) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     unsigned changed = 0;
     (void)alarm;
     (void)mine;
@@ -140,7 +138,7 @@ static argus_intent_t sees_battery(const argus_t *const self, const argus_alarm_
     mine->battery_low = (uint8_t)(is_low ? argus_min(mine->battery_low + 1, BATTERY_SIPS) : 0);
     const bool holds = mine->battery_low >= BATTERY_SIPS;
     mine->battery_said = holds || (said && now_dv <= low_dv + HYSTERESIS_DV);
-    return holds && !said ? say(ARGUS_EV_BATTERY_LOW, ARGUS_NO_SONAR, now_dv) : nothing();
+    return holds && !said ? say(ARGUS_EV_BATTERY_LOW, ARGUS_NO_SONAR, now_dv) : argus_to_nothing();
 }
 
 // The motors may be cut by the robot's own button or E-stop at any time; a bumper's own stop is answered
@@ -152,7 +150,7 @@ static argus_intent_t sees_motors(const argus_t *const self, const argus_alarm_t
     const bool busy = self->waiting.why == ARGUS_WAIT_BUMPER;
     (void)alarm;
     if (!argus_is_active(self) || busy || off == mine->motors_said || (off && !settled_in)) {
-        return nothing();
+        return argus_to_nothing();
     }
     mine->motors_said = off;
     argus_intent_t intent =
@@ -171,7 +169,7 @@ static argus_intent_t sees_dead(const argus_t *const self, const argus_alarm_t *
     (void)self;
     (void)mine;
     if ((alarm->dead | alarm->silent) == 0) {
-        return nothing();
+        return argus_to_nothing();
     }
     return (argus_intent_t){
         .stop = ARGUS_STOP_STOP, .act = ARGUS_DO_LOSE, .sonars = alarm->dead, .silent = alarm->silent};
@@ -186,7 +184,7 @@ static argus_intent_t sees_object(const argus_t *const self, const argus_alarm_t
     (void)mine;
     if (alarm->object == 0 || !argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE) ||
         self->motion.kind == ARGUS_MOTION_STOP) {
-        return nothing();
+        return argus_to_nothing();
     }
     argus_intent_t intent = say(ARGUS_EV_OBJECT, alarm->object_sonar, alarm->object_mm);
     intent.stop = ARGUS_STOP_STOP;
@@ -200,6 +198,7 @@ static argus_intent_t sees_object(const argus_t *const self, const argus_alarm_t
 // place is not.
 static bool note_near(const argus_t *const self, argus_reflexes_t *const mine, const int sonar,
                       argus_point_t *const at) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(argus_rules(self)->watches_turn);
     const argus_guard_t guard = argus_guard(self);
     bool left = false;
@@ -217,6 +216,7 @@ static bool note_near(const argus_t *const self, argus_reflexes_t *const mine, c
 // S7 holds through the turn: what comes into view within the swing circle ends it.
 static argus_intent_t sees_swing(const argus_t *const self, const argus_alarm_t *const alarm,
                                  argus_reflexes_t *const mine) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const bool turning = self->motion.kind == ARGUS_MOTION_TURN && !self->motion.settled;
     const argus_guard_t guard = argus_guard(self);
     const int32_t left_cdeg = argus_angle_wrap(self->motion.target_cdeg - self->knowledge.pose.heading_cdeg);
@@ -224,10 +224,10 @@ static argus_intent_t sees_swing(const argus_t *const self, const argus_alarm_t 
     (void)alarm;
     if (!argus_rules(self)->watches_turn || !turning) {
         mine->near[0].valid = mine->near[1].valid = false;
-        return nothing();
+        return argus_to_nothing();
     }
     if (self->knowledge.fresh == 0 || argus_guard_may_nudge(&guard, left_cdeg)) {
-        return nothing();
+        return argus_to_nothing();
     }
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const bool fresh = (self->knowledge.fresh >> i & 1u) != 0 && argus_usable(&self->knowledge, i);
@@ -235,18 +235,19 @@ static argus_intent_t sees_swing(const argus_t *const self, const argus_alarm_t 
             return (argus_intent_t){.act = ARGUS_DO_END_TURN, .at = at};
         }
     }
-    return nothing();
+    return argus_to_nothing();
 }
 
 // A smooth wall that the robot slants into is heard by the sonar that looks abeam alone.
 static argus_intent_t sees_flank(const argus_t *const self, const argus_alarm_t *const alarm,
                                  argus_reflexes_t *const mine) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const bool ahead = argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE) && self->mode != ARGUS_MODE_BACKING;
     (void)alarm;
     (void)mine;
     if (!argus_rules(self)->watches_flank || !ahead || self->motion.kind != ARGUS_MOTION_MOVE ||
         self->motion.settled) {
-        return nothing();
+        return argus_to_nothing();
     }
     const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge) &
                             argus_robot_flank(self->knowledge.robot);
@@ -262,7 +263,7 @@ static argus_intent_t sees_flank(const argus_t *const self, const argus_alarm_t 
             return intent;
         }
     }
-    return nothing();
+    return argus_to_nothing();
 }
 
 argus_intent_t argus_reflex(const argus_reflex_t reflex, const argus_t *const self,
@@ -275,7 +276,7 @@ argus_intent_t argus_reflex(const argus_reflex_t reflex, const argus_t *const se
 #undef SEES
     case ARGUS_REFLEXES:
     default:
-        return nothing();
+        return argus_to_nothing();
     }
 }
 

@@ -9,19 +9,8 @@
 #define RETRY_MS 1000u
 #define SAY_EVERY_S 10u
 
-static argus_intent_t nothing(void) {
-    return (argus_intent_t){.act = ARGUS_DO_NOTHING};
-}
-
-static argus_intent_t check(const bool full) {
-    return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = full};
-}
-
-static argus_intent_t turn(const int32_t heading_cdeg) {
-    return (argus_intent_t){.act = ARGUS_DO_TURN, .cdeg = heading_cdeg};
-}
-
 static argus_mask_t in_use(const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     unsigned mask = 0;
     for (int i = 0; i < knowledge->sonars; i++) {
         mask |= knowledge->sonar[i].reported && !argus_is_out(knowledge, i) ? 1u << i : 0u;
@@ -64,6 +53,7 @@ argus_intent_t argus_run_checking(const argus_t *const self, argus_checking_t *c
 }
 
 static int next_suspect(const argus_t *const self) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const unsigned open = (unsigned)argus_open_suspects(self) & argus_robot_forward(self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((open >> i & 1u) != 0) {
@@ -97,15 +87,15 @@ static argus_intent_t verify(const argus_t *const self, argus_verify_t *const mi
         return begin_verification(self, mine);
     }
     if (self->motion.failed) {
-        return check(false);
+        return argus_to_check(false);
     }
     if (!self->motion.settled || !argus_verify_step(mine, &self->knowledge, &self->motion.mark)) {
-        return nothing();
+        return argus_to_nothing();
     }
     if (mine->phase == ARGUS_VERIFY_DONE) {
         return (argus_intent_t){.act = ARGUS_DO_VERDICT};
     }
-    return turn(argus_verify_heading_cdeg(mine));
+    return argus_to_turn(argus_verify_heading_cdeg(mine));
 }
 
 static argus_intent_t begin_looks(const argus_t *const self, argus_inquiry_t *const mine) {
@@ -127,16 +117,17 @@ static argus_intent_t look(const argus_t *const self, argus_inquiry_t *const min
         return argus_turn_failed(self);
     }
     if (!self->motion.settled) {
-        return nothing();
+        return argus_to_nothing();
     }
     if (!mine->active) {
         return begin_looks(self, mine);
     }
     mine->watched &= (argus_mask_t) ~(unsigned)argus_out(&self->knowledge);
     if (!argus_inquiry_step(mine, &self->knowledge, &self->evidence)) {
-        return nothing();
+        return argus_to_nothing();
     }
-    return mine->active ? turn(argus_inquiry_heading_cdeg(mine)) : (argus_intent_t){.act = ARGUS_DO_LOOKED};
+    return mine->active ? argus_to_turn(argus_inquiry_heading_cdeg(mine))
+                        : (argus_intent_t){.act = ARGUS_DO_LOOKED};
 }
 
 argus_intent_t argus_run_verifying(const argus_t *const self, argus_verifying_t *const mine) {
@@ -157,31 +148,32 @@ static argus_intent_t leave_bumper(const argus_t *const self) {
     const bool motors = (self->knowledge.flags & ARCOS_FLAG_MOTORS) != 0;
     const bool button = (self->knowledge.flags & ARCOS_FLAG_ESTOP) != 0;
     if (self->orders.paused) {
-        return nothing(); // an operator has the robot
+        return argus_to_nothing(); // an operator has the robot
     }
     if (!motors && !button) {
         return (argus_intent_t){.act = ARGUS_DO_ENABLE};
     }
     if (motors && guard.bumpers == 0 && !argus_guard_rear_is_clear(&guard)) {
-        return check(true); // freed, or a stall: no need to back away
+        return argus_to_check(true); // freed, or a stall: no need to back away
     }
     if (motors && self->knowledge.bumpers_rear == 0 && argus_at_rest(&self->knowledge)) {
         return (argus_intent_t){
             .act = ARGUS_DO_BACK, .mm = self->config.backoff_mm, .speed_mm_s = self->config.step_speed_mm_s};
     }
-    return nothing();
+    return argus_to_nothing();
 }
 
 static argus_intent_t leave_waiting(const argus_t *const self, const argus_wait_t why) {
-    argus_intent_t intent = check(true);
+    ARGUS_ASSERT((unsigned)why <= ARGUS_WAIT_CATASTROPHIC);
+    argus_intent_t intent = argus_to_check(true);
     switch (why) {
     case ARGUS_WAIT_BUMPER:
         if (!self->orders.passive) {
             return leave_bumper(self);
         }
-        return self->reflexes.bumpers == 0 ? intent : nothing();
+        return self->reflexes.bumpers == 0 ? intent : argus_to_nothing();
     case ARGUS_WAIT_MOTORS:
-        return self->reflexes.motors_said ? nothing() : intent;
+        return self->reflexes.motors_said ? argus_to_nothing() : intent;
     case ARGUS_WAIT_TURN:
     case ARGUS_WAIT_WAY:
         intent.way = ARGUS_WAY_FORGIVE;
@@ -189,14 +181,14 @@ static argus_intent_t leave_waiting(const argus_t *const self, const argus_wait_
     case ARGUS_WAIT_NONE:
     case ARGUS_WAIT_CATASTROPHIC:
     default:
-        return nothing();
+        return argus_to_nothing();
     }
 }
 
 argus_intent_t argus_run_waiting(const argus_t *const self, argus_waiting_t *const mine) {
     const uint32_t pause_ms = mine->why == ARGUS_WAIT_BUMPER ? RETRY_MS / 2 : RETRY_MS * 3;
     if (self->now_ms - mine->tried_ms < pause_ms) {
-        return nothing();
+        return argus_to_nothing();
     }
     mine->tried_ms = self->now_ms;
     return leave_waiting(self, mine->why);
@@ -205,7 +197,7 @@ argus_intent_t argus_run_waiting(const argus_t *const self, argus_waiting_t *con
 argus_intent_t argus_go_on_waiting(const argus_t *const self, argus_waiting_t *const mine) {
     const uint32_t waited_s = (self->now_ms - mine->since_ms) / 1000u;
     if (self->mode != ARGUS_MODE_WAITING || waited_s < mine->said_s + SAY_EVERY_S) {
-        return nothing();
+        return argus_to_nothing();
     }
     mine->said_s = waited_s;
     return (argus_intent_t){.event = mine->why == ARGUS_WAIT_WAY ? ARGUS_EV_NO_WAY : ARGUS_EV_WAITING,
@@ -219,7 +211,7 @@ argus_intent_t argus_run_backing(const argus_t *const self) {
         const bool watched = argus_guard_rear_is_watched(&guard);
         return (argus_intent_t){.stop = watched ? ARGUS_STOP_NONE : ARGUS_STOP_HALT};
     }
-    argus_intent_t intent = check(argus_rules(self)->disparity);
+    argus_intent_t intent = argus_to_check(argus_rules(self)->disparity);
     intent.base = ARGUS_BASE_DROP;
     intent.all_round = argus_rules(self)->evidence;
     if (guard.bumpers != 0) {

@@ -13,6 +13,7 @@
 
 // Of those of this end that face forward, who are not relied on.
 static argus_mask_t lost_of(const argus_t *const self, const argus_robot_t *const end) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const argus_mask_t forward = argus_robot_forward(end);
     unsigned lost = 0;
     for (int i = 0; i < self->knowledge.sonars; i++) {

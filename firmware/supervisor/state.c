@@ -124,6 +124,7 @@ static bool is_steady(const argus_t *const self, const int sonar) {
 }
 
 static bool only_steady_forbid_to_turn(const argus_t *const self, const argus_guard_t *const guard) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if (argus_guard_echo_blocks(guard, i) && !is_steady(self, i)) {
             return false;

@@ -6,6 +6,7 @@
 #include "supervisor/state.h"
 
 static void copy_sonars(const argus_t *const self, argus_status_t *const status) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
         status->reading_mm[i] = s->reported ? s->reading_mm : 0;
@@ -81,6 +82,7 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
 
 // Whoever is out has had its verdict, by the evidence or by something else.
 static void copy_suspicion(const argus_t *const self, const int sonar, argus_suspicions_t *const to) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     to->kind[sonar] = argus_names_best(&self->evidence, sonar, &to->percent[sonar]);
     to->against[sonar] = self->evidence.of[sonar].against;
@@ -91,6 +93,7 @@ static void copy_suspicion(const argus_t *const self, const int sonar, argus_sus
 }
 
 void argus_suspicions(const argus_t *const self, argus_suspicions_t *const suspicions) {
+    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     memset(suspicions, 0, sizeof *suspicions);
     if (!argus_rules(self)->evidence) {
         return;

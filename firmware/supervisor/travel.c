@@ -19,18 +19,6 @@
 #define FLANK_MM 130
 #define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
 
-static argus_intent_t nothing(void) {
-    return (argus_intent_t){.act = ARGUS_DO_NOTHING};
-}
-
-static argus_intent_t check(const bool full) {
-    return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = full};
-}
-
-static argus_intent_t turn(const int32_t heading_cdeg) {
-    return (argus_intent_t){.act = ARGUS_DO_TURN, .cdeg = heading_cdeg};
-}
-
 // The SIP is not used up yet.
 static argus_intent_t say(const argus_event_id_t event, const int sonar, const int32_t value) {
     return (argus_intent_t){.event = (uint16_t)event, .sonar = (int8_t)sonar, .value = value, .more = true};
@@ -61,7 +49,7 @@ static argus_intent_t arrive(const argus_t *const self, argus_travel_t *const mi
         return (argus_intent_t){.act = ARGUS_DO_BRAKE};
     }
     if (!self->motion.settled) {
-        return nothing();
+        return argus_to_nothing();
     }
     const argus_mask_t open = argus_rules(self)->evidence ? argus_to_settle(self) : 0;
     return (argus_intent_t){.act = open != 0 ? ARGUS_DO_VERIFY : ARGUS_DO_REACH, .sonars = open};
@@ -100,7 +88,7 @@ static bool is_called_away(const argus_t *const self, argus_travel_t *const mine
 }
 
 static argus_intent_t cannot_move(void) {
-    argus_intent_t intent = check(true);
+    argus_intent_t intent = argus_to_check(true);
     intent.stop = ARGUS_STOP_STOP;
     return intent;
 }
@@ -154,10 +142,10 @@ static argus_intent_t turn_to_bearing(const argus_t *const self, argus_travel_t 
     for (int i = 0; i < (int)(sizeof tries_cdeg / sizeof tries_cdeg[0]) && hemmed; i++) {
         const int32_t by_cdeg = left ? tries_cdeg[i] : -tries_cdeg[i];
         if (leads_out(self, mine, by_cdeg)) {
-            return by_cdeg != 0 ? turn(argus_angle_wrap(now_cdeg + by_cdeg)) : nothing();
+            return by_cdeg != 0 ? argus_to_turn(argus_angle_wrap(now_cdeg + by_cdeg)) : argus_to_nothing();
         }
     }
-    return turn(to_cdeg);
+    return argus_to_turn(to_cdeg);
 }
 
 // It drives and may turn on the way.
@@ -170,7 +158,7 @@ static bool is_gentle(const argus_t *const self, const argus_travel_t *const min
 
 // Turns to the leg's bearing at rest. True when the robot looks along it, else `intent` leads there.
 static bool is_aimed(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
-    *intent = nothing();
+    *intent = argus_to_nothing();
     mine->aimed = mine->aimed || is_gentle(self, mine);
     if (mine->aimed) {
         return true;
@@ -195,8 +183,9 @@ static bool is_aimed(const argus_t *const self, argus_travel_t *const mine, argu
 // The event, a stop if it moves, and another heading after a full check.
 static argus_intent_t blocked(argus_travel_t *const mine, const argus_event_id_t event, const int sonar,
                               const int32_t reading_mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(reading_mm >= 0);
-    argus_intent_t intent = check(true);
+    argus_intent_t intent = argus_to_check(true);
     intent.event = (uint16_t)event;
     intent.sonar = (int8_t)sonar;
     intent.value = reading_mm;
@@ -208,6 +197,7 @@ static argus_intent_t blocked(argus_travel_t *const mine, const argus_event_id_t
 
 // Where nobody looks ahead any more, all that counts was seen in sweeps.
 static int32_t reading_of(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= ARGUS_NO_SONAR && sonar < ARGUS_SONARS);
     return sonar < 0 ? self->knowledge.robot->no_echo_mm : self->knowledge.sonar[sonar].reading_mm;
 }
 
@@ -242,7 +232,7 @@ static argus_intent_t look_ahead(const argus_t *const self, argus_travel_t *cons
         return (argus_intent_t){.act = moves ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING};
     }
     if (self->plan.disabled == 0) { // names that only a look can settle, and there is no room for it
-        return (argus_intent_t){.act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_TURN};
+        return argus_to_wait(ARGUS_WAIT_TURN);
     }
     return (argus_intent_t){.act = ARGUS_DO_SWEEP};
 }
@@ -289,7 +279,7 @@ static argus_intent_t move_on(const argus_t *const self, argus_travel_t *const m
 static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const mine) {
     const argus_guard_t guard = argus_guard(self);
     if (!argus_guard_sees_ahead(&guard)) {
-        return nothing(); // the MOVE at work ends by itself
+        return argus_to_nothing(); // the MOVE at work ends by itself
     }
     const int sonar = argus_nearest_ahead(self);
     const int32_t nearest_mm = reading_of(self, sonar);
@@ -302,7 +292,7 @@ static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const 
     }
     const int32_t free_mm = argus_guard_ahead_mm(&guard, seen_mm);
     if (free_mm == 0) {
-        return nothing(); // a fresh reading will tell
+        return argus_to_nothing(); // a fresh reading will tell
     }
     if (!is_heeded(self, mine)) {
         return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_MOTORS};
@@ -366,7 +356,7 @@ static argus_intent_t judge_sweep(const argus_t *const self, argus_travel_t *con
     }
     if (argus_rules(self)->disparity &&
         argus_open_suspects(self) != 0) { // S6: one that an operator wants looked at again
-        return check(false);
+        return argus_to_check(false);
     }
     return step_ahead(self, mine);
 }
@@ -374,17 +364,17 @@ static argus_intent_t judge_sweep(const argus_t *const self, argus_travel_t *con
 static argus_intent_t begin_sweep(const argus_t *const self, argus_travel_t *const mine) {
     argus_sweep_begin(&mine->drive, &self->plan, argus_base_cdeg(self));
     mine->swept = false;
-    argus_intent_t intent = turn(argus_sweep_heading_cdeg(&mine->drive, &self->plan));
+    argus_intent_t intent = argus_to_turn(argus_sweep_heading_cdeg(&mine->drive, &self->plan));
     intent.base = ARGUS_BASE_TAKE;
     return intent;
 }
 
 static argus_intent_t sweep_on(const argus_t *const self, argus_travel_t *const mine) {
     if (self->motion.failed) {
-        return check(true);
+        return argus_to_check(true);
     }
     if (!self->motion.settled) {
-        return nothing();
+        return argus_to_nothing();
     }
     if (argus_sweep_is_outdated(&mine->drive, &self->plan)) {
         return begin_sweep(self, mine);
@@ -392,13 +382,13 @@ static argus_intent_t sweep_on(const argus_t *const self, argus_travel_t *const 
     if (mine->drive.done) {
         const bool read =
             argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->motion.mark);
-        return read ? judge_sweep(self, mine) : nothing();
+        return read ? judge_sweep(self, mine) : argus_to_nothing();
     }
     if (argus_sweep_step(&mine->drive, &self->plan, &self->knowledge, &self->motion.mark) &&
         !mine->drive.done) {
-        return turn(argus_sweep_heading_cdeg(&mine->drive, &self->plan));
+        return argus_to_turn(argus_sweep_heading_cdeg(&mine->drive, &self->plan));
     }
-    return nothing();
+    return argus_to_nothing();
 }
 
 argus_intent_t argus_run_sweeping(const argus_t *const self, argus_travel_t *const mine) {
@@ -422,7 +412,7 @@ argus_intent_t argus_run_sweeping(const argus_t *const self, argus_travel_t *con
 
 argus_intent_t argus_run_stepping(const argus_t *const self, argus_travel_t *const mine) {
     if (!self->motion.settled) {
-        return nothing();
+        return argus_to_nothing();
     }
     mine->jog_mm = 0;
     return (argus_intent_t){.base = ARGUS_BASE_DROP, .act = ARGUS_DO_DECIDE};

@@ -19,6 +19,7 @@
 
 void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const knowledge,
                        argus_echoes_t *const echoes) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     bool heard = false;
     self->has_leg = false;
     for (int i = 0; i < knowledge->sonars; i++) {

@@ -65,6 +65,8 @@ static int32_t between_mm(const argus_point_t a, const argus_point_t b) {
 
 // Cells to either side in a row `dy` rows off that are within the radius; -1: none.
 static int reach(const int32_t radius_mm, const int dy) {
+    ARGUS_ASSERT(radius_mm >= 0);
+    ARGUS_ASSERT(radius_mm > 0);
     const int32_t most = radius_mm * radius_mm / (CELL_MM * CELL_MM) - dy * dy;
     int wide = -1;
     while ((wide + 1) * (wide + 1) <= most) {
@@ -74,6 +76,7 @@ static int reach(const int32_t radius_mm, const int dy) {
 }
 
 static uint64_t widened(const uint64_t row, const int by) {
+    ARGUS_ASSERT(by >= 0 && by < CELLS);
     uint64_t wide = row;
     for (int i = 1; i <= by; i++) {
         wide |= row << i | row >> i;
@@ -83,6 +86,7 @@ static uint64_t widened(const uint64_t row, const int by) {
 
 // What lies within the radius of what is set.
 static void grow(const uint64_t *const from, uint64_t *const to, const int32_t radius_mm) {
+    ARGUS_ASSERT(radius_mm > 0);
     const int most = radius_mm / CELL_MM;
     memset(to, 0, CELLS * sizeof *to);
     for (int dy = -most; dy <= most; dy++) {
@@ -152,6 +156,7 @@ static void survey(argus_wave_t *const wave, const argus_ground_t *const ground,
 // ----------------------------------------------------------------------------------------------------
 
 static uint64_t labelled(const argus_wave_t *const wave, const int y, const unsigned label) {
+    ARGUS_ASSERT(y >= 0 && y < CELLS);
     uint64_t row = ~(uint64_t)0;
     for (unsigned i = 0; i < PLANES; i++) {
         row &= wave->label[i][y] ^ ((uint64_t)(label >> i & 1u) - 1u); // the plane, or what is not in it
@@ -160,6 +165,8 @@ static uint64_t labelled(const argus_wave_t *const wave, const int y, const unsi
 }
 
 static void put_label(argus_wave_t *const wave, const int y, const uint64_t cells, const unsigned label) {
+    ARGUS_ASSERT(label >= 1 && label <= LABELS);
+    ARGUS_ASSERT(y >= 0 && y < CELLS);
     wave->reached[y] |= cells;
     uint64_t *row = &wave->label[0][y];
     for (unsigned rest = label; rest != 0; rest >>= 1) {
@@ -186,8 +193,8 @@ static uint64_t beside(const uint64_t row, const uint64_t others, const bool cor
     return widened(row, 1) | (corners ? widened(others, 1) : others);
 }
 
-// What the wave reached long enough ago to get on where it is narrow, of the rows about one: each is asked for
-// by up to three.
+// What the wave reached long enough ago to get on where it is narrow, of the rows about one: each is asked
+// for by up to three.
 typedef struct {
     uint64_t cells[3];
     uint64_t fresh_below;
@@ -195,6 +202,8 @@ typedef struct {
 } ripe_t;
 
 static uint64_t ripened(ripe_t *const ripe, const argus_wave_t *const wave, const int y, const int step) {
+    ARGUS_ASSERT(step >= 1);
+    ARGUS_ASSERT(y >= 0 && y < CELLS);
     if (y < 0 || y >= CELLS) {
         return 0;
     }
@@ -210,10 +219,13 @@ static uint64_t ripened(ripe_t *const ripe, const argus_wave_t *const wave, cons
     return ripe->cells[slot];
 }
 
-// The cells of a row that the wave comes to, of those next to what it has reached. Of the row below counts what was
-// there before this step.
+// The cells of a row that the wave comes to, of those next to what it has reached. Of the row below counts
+// what was there before this step.
 static uint64_t come_on(argus_wave_t *const wave, ripe_t *const ripe, const int y, const uint64_t next,
                         const int step) {
+    ARGUS_ASSERT(next != 0 && (next & wave->reached[y]) == 0);
+    ARGUS_ASSERT(step >= 1);
+    ARGUS_ASSERT(y >= 0 && y < CELLS);
     const uint64_t slow = next & ~wave->wide[y];
     uint64_t fresh = next & wave->wide[y];
     if (slow != 0) {
@@ -227,6 +239,7 @@ static uint64_t come_on(argus_wave_t *const wave, ripe_t *const ripe, const int 
 
 // True: the wave has come to new cells.
 static bool advance(argus_wave_t *const wave, const int step) {
+    ARGUS_ASSERT(step >= 1);
     ripe_t ripe = {.row = {-1, -1, -1}};
     uint64_t below = 0;
     bool any = false;
@@ -255,6 +268,7 @@ static int32_t square(const int32_t mm) {
 }
 
 static void come_to(argus_wave_t *const wave, const argus_cell_t cell, const int step) {
+    ARGUS_ASSERT(step >= 1);
     if (has(wave->narrow, cell) && !has(wave->reached, cell)) {
         put_label(wave, (int)cell.y, bit(cell.x), label_at(step));
     }
@@ -268,8 +282,12 @@ typedef struct {
     bool upright;
 } side_t;
 
-// The wave comes as a circle, in each step to what the step before left. False: it has come to all of the side.
-static bool come_to_side(argus_wave_t *const wave, const side_t *const side, const int32_t radius, const int step) {
+// The wave comes as a circle, in each step to what the step before left. False: it has come to all of the
+// side.
+static bool come_to_side(argus_wave_t *const wave, const side_t *const side, const int32_t radius,
+                         const int step) {
+    ARGUS_ASSERT(radius >= 0 && step >= 1);
+    ARGUS_ASSERT(step >= 1);
     const int32_t now = square(radius) - square(side->apart);
     const int32_t before = step > 1 ? square(radius - 1) - square(side->apart) : -1;
     bool more = false;
@@ -289,6 +307,7 @@ static bool come_to_side(argus_wave_t *const wave, const side_t *const side, con
 
 // A wave from a waypoint outside comes to the border by and by. False: it has come to all of it.
 static bool come_in(argus_wave_t *const wave, const argus_cell_t waypoint, const int step) {
+    ARGUS_ASSERT(step >= 1);
     const int32_t radius = beyond(waypoint) + step;
     const int32_t end = CELLS - 1;
     const side_t sides[] = {{waypoint.y, waypoint.x, 0, false},
@@ -368,6 +387,7 @@ static bool is_better(const bool straight, const bool wide, const bool wide_end)
 }
 
 static void end_leg_at(argus_leg_t *const leg, const argus_point_t to, const int steps) {
+    ARGUS_ASSERT(steps >= 0);
     leg->to = to;
     leg->to_go_mm = steps * CELL_MM;
 }
@@ -417,6 +437,7 @@ bool argus_way_find(argus_wave_t *const wave, const argus_ground_t *const ground
 }
 
 static bool is_clear(const argus_ground_t *const ground, const argus_cell_t about, const int32_t radius_mm) {
+    ARGUS_ASSERT(radius_mm > 0);
     const int most = (int)(radius_mm / CELL_MM);
     for (int dy = -most; dy <= most; dy++) {
         const int by = reach(radius_mm, dy);

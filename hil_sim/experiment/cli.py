@@ -30,6 +30,7 @@ examples:
   argus-sim experiment journey --out study --resume     the whole study, 19,800 journeys; interrupt it as you like
   argus-sim experiment journey --results docs/samples/journeys.csv    tables and pictures of results that are there
   argus-sim experiment journey --one adaptive/judge/office/3/1+2/plain
+  argus-sim experiment firing                           how often living sonars are heard when others are dead
   argus-sim experiment wheel                            wheels that are short by 1, 5 and 10 %, named and countered
   argus-sim experiment all --results docs/samples/journeys.csv --doc docs/experiments.md
 
@@ -192,12 +193,19 @@ def _wheel(arguments: argparse.Namespace) -> Parts:
     return {"wheel": wheel.table(wheel.run(arguments.seed))}
 
 
+def _firing(arguments: argparse.Namespace) -> Parts:
+    from hil_sim.experiment import firing
+
+    return {"firing": firing.table(firing.run(Stage(), arguments.seed))}
+
+
 PARTS: Final[Mapping[str, Callable[[argparse.Namespace], Parts]]] = {
     "table1": _table1,
     "table4": _table4,
     "fig9": _fig9,
     "fig10": _fig10,
     "journey": _journey,
+    "firing": _firing,
     "wheel": _wheel,
 }
 

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import json
+import os
+import re
 import signal
 import socket
 import subprocess
@@ -17,11 +20,12 @@ import pytest
 from harness import ROOT, Argusd, Bench, is_at_rest, run_argusd, wait_for
 from worlds import hall, hall_with_box
 
-from hil_sim.arcos import ConfigPac, EncoderPac, Sip
+from hil_sim.arcos import ConfigPac, EncoderPac
 from hil_sim.conformance.client import Client, Target, parse_target
 
 SPEED_MM_S: Final = 300
 NEAR_MM: Final = 700
+TEXT: Final = (ROOT / "docs/guardian.md").read_text(encoding="utf-8")
 LOOKS: Final = 3
 """The sonar that the client of these tests goes by."""
 
@@ -218,3 +222,47 @@ def test_it_listens_where_it_may(tmp_path: Path) -> None:
             done = run_argusd("--link", link, "--guard", guard)
             assert (done.returncode, say in done.stderr) == (code, True), done.stderr
     assert taken.read_text() == "mine"
+
+
+def test_the_commands_of_the_page(tmp_path: Path) -> None:
+    (script,) = re.findall(r"```sh\n(.*?)```", TEXT, re.DOTALL)
+    for port in ("8201", "8202"):
+        script = script.replace(port, str(free_port()))
+    path = os.pathsep.join([str(ROOT / ".venv/bin"), str(ROOT / "build/release"), os.environ["PATH"]])
+    done = subprocess.run(
+        ["bash", "-c", f"set -m\n{script}"],
+        cwd=tmp_path,
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    events = [json.loads(line)["event"] for line in (tmp_path / "events.jsonl").read_text().splitlines()]
+    assert "GUARD_OPEN" in events, done.stderr
+    assert re.search(r"pass\s+handshake/three-syncs", done.stdout), done.stdout
+    assert re.search(r"pass\s+packets/config", done.stdout), done.stdout
+
+
+def test_the_first_command_of_the_page(bench: Bench) -> None:
+    (line,) = re.findall(r"^    argusd (.*)$", TEXT, re.MULTILINE)
+    bench.sim(bench.world(**hall()))
+    name = bench.path / "ports"
+    name.mkdir()
+    known = {"/dev/ttyUSB0": str(bench.port), "8101": str(free_port()), "/run/argus": str(name)}
+    for word, there in known.items():
+        assert word in line
+        line = line.replace(word, there)
+    argusd = Argusd([*line.split(), "--json"])
+    bench.daemons.append(argusd)
+    argusd.wait("HEALTH_CHECK")
+    for target in (f"tcp:127.0.0.1:{known['8101']}", f"serial:{name}/robot"):
+        with session(parse_target(target), motors=False) as client:
+            client.sips(5)
+
+
+def test_every_event_of_the_guard_is_on_the_page() -> None:
+    header = (ROOT / "firmware/include/argus/argus.h").read_text(encoding="utf-8")
+    names = set(re.findall(r"X\(\d+, (GUARD_\w+),", header))
+    assert len(names) == 10
+    assert names - set(re.findall(r"GUARD_\w+", TEXT)) <= {"GUARD_OPEN", "GUARD_CLOSED"}

@@ -33,7 +33,7 @@ FLAGS: Final = (
     "--disable-sync",
 )
 # A guard against what hangs, not a rule: a busy host needs long for a browser.
-PATIENCE_S: Final = 60.0
+PATIENCE_S: Final = 90.0
 T = TypeVar("T")
 
 

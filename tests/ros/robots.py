@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import socket
 import sys
 from pathlib import Path
 
@@ -26,3 +27,10 @@ def minded(folder: Path, address: str, *arguments: str) -> tuple[Argusd, str]:
     argusd = Argusd(given)
     harness.wait_for("the control socket", socket.exists, 60)
     return argusd, f"unix:{socket}"
+
+
+def free_port() -> int:
+    """Return a port that nobody listens on."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

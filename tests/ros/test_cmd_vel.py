@@ -14,7 +14,9 @@ from argus_ros.argus_node import ArgusNode
 from geometry_msgs.msg import Twist
 from nodes import Bench
 from rclpy.parameter import Parameter
-from robots import emulated
+from robots import emulated, free_port, minded
+
+from hil_sim.arcos import FLAG
 
 MOVING_MM_S = 20
 
@@ -22,10 +24,15 @@ MOVING_MM_S = 20
 class Driven:
     """An emulated robot, the node on its port, and somebody who sends cmd_vel."""
 
-    def __init__(self, folder: Path, **given: Any) -> None:
-        self.sim, address = emulated(folder, "--world", "hall")
+    def __init__(self, folder: Path, *simulated: str, guard_port: int | None = None, **given: Any) -> None:
+        self.sim, address = emulated(folder, *(simulated or ("--world", "hall")))
+        self.argusd, place = None, f"unix:{folder}/none.sock"
+        if guard_port is not None:
+            guard = f"127.0.0.1:{guard_port}"
+            self.argusd, place = minded(folder, address, "--guard", f"tcp:{guard}")
+            address = guard
         self.node = ArgusNode()
-        values = {"control": f"unix:{folder}/none.sock", "guard": address, **given}
+        values = {"control": place, "guard": address, **given}
         self.node.set_parameters([Parameter(key, value=value) for key, value in values.items()])
         self.node.start()
         self.bench = Bench(self.node)
@@ -57,6 +64,8 @@ class Driven:
     def close(self) -> None:
         self.bench.close()
         self.node.destroy_node()
+        if self.argusd is not None:
+            self.argusd.end()
         self.sim.end()
 
 
@@ -64,8 +73,8 @@ class Driven:
 def driven(tmp_path: Path) -> Iterator[Any]:
     made: list[Driven] = []
 
-    def make(**given: Any) -> Driven:
-        made.append(Driven(tmp_path, **given))
+    def make(*simulated: str, **given: Any) -> Driven:
+        made.append(Driven(tmp_path, *simulated, **given))
         return made[-1]
 
     yield make
@@ -123,6 +132,21 @@ def test_motors_are_left_alone_before_the_first_order(driven: Any) -> None:
     robot = driven()
     robot.spin(1.0)
     assert robot.wheels._said is None
-    assert not any(
-        record["type"] == "command" and record.get("name") == "ENABLE" for record in robot.sim.read()
-    )
+    assert not robot.wheels.last.flags & FLAG["MOTORS"]
+    robot.drive(0.1, 0.0, 1.0)
+    assert robot.wheels.last.flags & FLAG["MOTORS"]
+
+
+def test_through_the_guard_a_wall_is_not_run_into_with_a_sonar_dead(driven: Any) -> None:
+    # Whoever sends cmd_vel goes on ordering 0.3 m/s; what becomes of that without the guard is shown below.
+    robot = driven("--world", "box-ahead", "--fault", "off:3@1s", guard_port=free_port())
+    robot.drive(0.3, 0.0, 12)
+    robot.sim.assert_no_collision()
+    assert robot.sim.now["x_mm"] > 100
+    robot.sim.wait_rest()
+
+
+def test_without_the_guard_it_is(driven: Any) -> None:
+    robot = driven("--world", "box-ahead", "--fault", "off:3@1s")
+    robot.drive(0.3, 0.0, 12)
+    assert robot.sim.of("collision")

@@ -8,6 +8,7 @@ import shlex
 import signal
 import subprocess
 import sys
+import time
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -19,7 +20,7 @@ from argus_ros.parameters import ARGUS, RANGE_GUARD
 from harness import ROOT
 from nodes import Bench
 from rcl_interfaces.srv import GetParameters
-from robots import emulated, minded
+from robots import emulated, free_port, minded
 from sensor_msgs.msg import Range
 
 BIN = Path(sys.prefix) / "bin"
@@ -137,17 +138,61 @@ def test_help_needs_no_ros() -> None:
         assert "examples:" in done.stdout
 
 
-def test_every_command_of_the_page_is_one_that_there_is() -> None:
+def blocks_of_the_page() -> list[list[str]]:
     text = (ROOT / "docs/ros.md").read_text()
-    blocks = re.findall(r"```sh\n(.*?)```", text, re.S)
-    lines = [line for block in blocks for line in block.replace("\\\n", " ").splitlines() if line.strip()]
-    assert len(lines) > 8
+    return [block.splitlines() for block in re.findall(r"```sh\n(.*?)```", text, re.S)]
+
+
+FOREIGN = ("pip", "python", "ros2")
+"""Programs of the page that are not of this project; launch files and make_messages have tests of their own."""
+
+
+def run_beside_each_other(lines: list[str], ours: dict[str, str]) -> list[str]:
+    """Run the commands of a block, and end them as by Ctrl-C; return which programs those were."""
+    bench = Bench()
+    bench.listen(Range, "sonar/range_0")
+    started: list[subprocess.Popen[str]] = []
+    programs = []
     for line in lines:
-        words = shlex.split(line, comments=True)
-        program = next(word for word in words if "=" not in word)
-        if program.startswith("argus"):
-            installed = BIN / program if program != "argusd" else ROOT / "build/release/argusd"
-            assert installed.exists(), line
-        for word in words:
-            for name in re.findall(r"^(\w+):=", word) if "--ros-args" in words else []:
-                assert any(name in table for table in TABLES.values()), line
+        for theirs, place in ours.items():
+            line = line.replace(theirs, place)
+        program, *arguments = shlex.split(line)
+        path = ROOT / "build/release/argusd" if program == "argusd" else BIN / program
+        started.append(subprocess.Popen([str(path), *arguments], stdout=subprocess.PIPE, text=True))
+        programs.append(program)
+        time.sleep(2.0 if len(lines) > 1 else 0.5)
+    try:
+        guards = programs.count("argus-range-guard")
+        assert bench.until(lambda: bench.listener.count_publishers("/sonar/cloud_guarded") == guards, 60), (
+            lines
+        )
+        if "argus-ros" in programs:
+            assert bench.until(lambda: bool(bench.heard), 60), lines
+        if "argus-foxglove" in programs:
+            assert started[-1].stdout is not None
+            assert started[-1].stdout.readline().startswith("ws://")
+        assert [process.poll() for process in started] == [None] * len(lines), lines
+    finally:
+        for process in reversed(started):
+            process.send_signal(signal.SIGINT)
+            process.wait(60)
+        bench.close()
+    assert {process.returncode for process in started} <= {0}, lines
+    return programs
+
+
+def test_every_command_of_the_page_runs(tmp_path: Path) -> None:
+    # As the page has them, one beside the other; for a robot's serial line, ports and places those of this test.
+    sim, address = emulated(tmp_path, "--world", "demo")
+    ours = {
+        "serial:/dev/ttyUSB0@9600": f"tcp:{address}",
+        "8101": str(free_port()),
+        "8102": str(free_port()),
+        "/tmp/argus.sock": str(tmp_path / "argus.sock"),
+    }
+    programs: list[str] = []
+    for block in blocks_of_the_page():
+        lines = [line for line in block if line.split()[0] not in FOREIGN]
+        programs += run_beside_each_other(lines, ours)
+    sim.end()
+    assert {"argusd", "argus-sim", "argus-ros", "argus-range-guard", "argus-foxglove"} == set(programs)

@@ -63,12 +63,13 @@ class _Ring:
 class ArgusNode(ArgusLifecycleNode):
     """The node."""
 
+    _watcher: Watcher | None = None
+    _wheels: Wheels | None = None
+
     def __init__(self) -> None:
         super().__init__("argus", parameters.ARGUS)
         self._active = False
         self._parts: list[Any] = []
-        self._watcher: Watcher | None = None
-        self._wheels: Wheels | None = None
         self._ring: _Ring | None = None
         self._state: dict[str, Any] = {}
         self._told: list[Verdict] = []
@@ -178,8 +179,10 @@ class ArgusNode(ArgusLifecycleNode):
         self._parts.clear()
 
     def destroy_node(self) -> None:
-        """End the threads, then the node."""
-        self._drop()
+        """End the threads, then the node; it may be one that was not made whole."""
+        for thread in (self._watcher, self._wheels):
+            if thread is not None:
+                thread.close()
         super().destroy_node()
 
     # ---- what comes

@@ -110,6 +110,8 @@ def run_node(make: Callable[[], ArgusLifecycleNode], arguments: Sequence[str]) -
         print(f"{error}; see --help", file=sys.stderr)
         rclpy.try_shutdown()
         return EXIT_USAGE
+    except KeyboardInterrupt:
+        return 0
     try:
         node.start()
         executor = SingleThreadedExecutor()

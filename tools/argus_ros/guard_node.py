@@ -218,6 +218,8 @@ class RangeGuard(ArgusLifecycleNode):
         hardware = self._robot.subclass
         failure = self._ring.failure if self._now_s > -math.inf else None
         mapped = [v if k in self._sonars else Verdict("ABSENT") for k, v in enumerate(verdicts)]
+        if failure is not None and len(self._sonars) < self._robot.sonars:
+            failure = ""  # that of the fault manager counts sonars that this ring has not got
         counts = {"topics": len(self._sonars), "restarts": self._ring.restarts}
         statuses = [messages.ring_status(OWNER, failure, mapped, hardware, counts)]
         for number, sonar in self._sonars.items():

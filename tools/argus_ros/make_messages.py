@@ -116,7 +116,10 @@ def make(names: Sequence[str], prefix: Path) -> None:
         raise Failed(f"{' and '.join(lacking)} needed: install cmake, ninja-build and g++")
     environment = {**os.environ, "AMENT_PREFIX_PATH": str(prefix)}
     environment["PATH"] = f"{prefix / 'bin'}{os.pathsep}{environment.get('PATH', '')}"
-    run([sys.executable, "-m", "pip", "install", "--quiet", "--no-input", *GENERATORS], environment)
+    run(
+        [sys.executable, "-m", "pip", "install", "--quiet", "--no-input", "--no-compile", *GENERATORS],
+        environment,
+    )
     correct_paths(prefix)
     for name in names:
         print(f"make_messages: building {name}", flush=True)

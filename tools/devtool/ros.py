@@ -33,7 +33,15 @@ def lacking() -> str | None:
     """Make the environment unless it is there; return why it cannot be had, None when it can."""
     stamp, python = VENV_ROS / "argus-recipe", VENV_ROS / "bin/python"
     packages, programs = recipe()
-    pip: list[str | Path] = [python, "-m", "pip", "install", "--no-input", "--disable-pip-version-check"]
+    pip: list[str | Path] = [
+        python,
+        "-m",
+        "pip",
+        "install",
+        "--no-input",
+        "--no-compile",
+        "--disable-pip-version-check",
+    ]
     ourselves = [*pip, "--no-deps", "-e", ROOT]
     recorded = stamp.read_text().split() if stamp.exists() else []
     if recorded[:1] == [packages] and quiet_ok([python, "-c", "import rclpy, tf2_msgs"]):

@@ -2,8 +2,9 @@
 // Reads state and event lines back.
 #include "attach_state.h"
 
-#include <stdio.h>
 #include <string.h>
+
+#include "text.h"
 
 #define NAMES_MAX 32
 #define WORD_MAX 96
@@ -23,25 +24,24 @@ static void word(const json_doc_t *doc, const char *name, char *text, size_t cap
     }
 }
 
-// "12.345" is 12345; 0 when it is no such number.
+static bool is_digit(char character) {
+    return character >= '0' && character <= '9';
+}
+
+// "12.345" is 12345; 0 when it is no number with three places, as all times are.
 static uint64_t thousandths(const json_doc_t *doc, const char *name) {
     const int token = json_member(doc, 0, name);
     uint64_t value = 0;
-    int places = -1;
     if (!json_is(doc, token, JSON_NUMBER)) {
         return 0;
     }
     const char *const text = doc->text + doc->token[token].at;
-    for (int i = 0; i < doc->token[token].length && places < 3; i++) {
-        if (text[i] == '.') {
-            places = 0;
-        } else if (text[i] >= '0' && text[i] <= '9' && value < UINT64_MAX / 100000) {
-            value = value * 10 + (uint64_t)(text[i] - '0');
-            places += places >= 0 ? 1 : 0;
-        }
+    const int length = doc->token[token].length;
+    if (length < 5 || length > 18 || text[length - 4] != '.') {
+        return 0;
     }
-    for (places = places < 0 ? 0 : places; places < 3; places++) {
-        value *= 10;
+    for (int i = 0; i < length; i++) {
+        value = is_digit(text[i]) ? value * 10 + (uint64_t)(text[i] - '0') : value;
     }
     return value;
 }
@@ -193,9 +193,9 @@ bool attach_read_state(const json_doc_t *doc, view_t *view) {
 
 // "sonar/front/03" is 3.
 static int8_t sonar_of(const char *name) {
-    unsigned sonar = 0;
+    int32_t sonar = -1;
     const char *const slash = strrchr(name, '/');
-    if (strncmp(name, "sonar/", 6) != 0 || slash == NULL || sscanf(slash + 1, "%2u", &sonar) != 1 ||
+    if (strncmp(name, "sonar/", 6) != 0 || slash == NULL || !text_number(slash + 1, &sonar) || sonar < 0 ||
         sonar >= ARGUS_SONARS) {
         return ARGUS_NO_SONAR;
     }

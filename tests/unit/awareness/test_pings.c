@@ -142,11 +142,13 @@ void test_all_that_is_near_is_found(void) {
         for (int i = 0; i < ARGUS_PINGS + 5; i++) {
             const int turned = bearing + (i * 97 - 1700) % 700;
             const int wrapped = turned > 18000 ? turned - 36000 : turned <= -18000 ? turned + 36000 : turned;
-            argus_pings_note(&log_, ping((uint32_t)i, (65500 + 29 * i % 300) & 0xFFFF, 100, wrapped, 1000 + 40 * i));
+            argus_pings_note(&log_,
+                             ping((uint32_t)i, (65500 + 29 * i % 300) & 0xFFFF, 100, wrapped, 1000 + 40 * i));
         }
         for (int from = 1; from <= log_.count + 1; from++) {
             snprintf(text, sizeof text, "bearing %d from %d", bearing, from);
-            TEST_ASSERT_EQUAL_MESSAGE(near_by_definition(&at, from), argus_pings_near(&log_, from, &at), text);
+            TEST_ASSERT_EQUAL_MESSAGE(near_by_definition(&at, from), argus_pings_near(&log_, from, &at),
+                                      text);
             found += argus_pings_near(&log_, from, &at) > 0;
         }
     }
