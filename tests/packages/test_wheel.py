@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import subprocess
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -43,7 +44,8 @@ def entries(wheel: Path) -> dict[str, str]:
 def test_it_holds_all_modules_and_data_and_nothing_else(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         held = {name for name in archive.namelist() if ".dist-info/" not in name and not name.endswith("/")}
-    tracked = run("git", "ls-files", "hil_sim", "tools/argus", "tools/argus_tools").splitlines()
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["scikit-build"]
+    tracked = run("git", "ls-files", *settings["wheel"]["packages"]).splitlines()
     expected = {name.removeprefix("tools/") for name in tracked}
     assert held - expected == {"argus_tools/libargus.so", "hil_sim/sonar/libargus_sim.so"}
     missing = {name for name in expected - held if (ROOT / name).exists() or (ROOT / "tools" / name).exists()}
