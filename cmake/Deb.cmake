@@ -80,7 +80,7 @@ set(CPACK_DEBIAN_ARGUSD_PACKAGE_CONTROL_EXTRA
     "${control}/conffiles;${deb_dir}/argusd/postinst;${deb_dir}/argusd/prerm;${deb_dir}/argusd/postrm")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
     "python3 (>= 3.11), python3-numpy, python3-yaml, python3-serial, python3-matplotlib, python3-rich")
-set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "argusd, python3-can")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "argusd, python3-can, python3-aiohttp")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_CONTROL_EXTRA "${deb_dir}/argus-tools/postinst;${deb_dir}/argus-tools/prerm")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libargus${abi} (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
@@ -92,15 +92,21 @@ set(CPACK_DEBIAN_LIB_PACKAGE_CONTROL_EXTRA "${control}/shlibs;${control}/trigger
 
 # What the operator may change: dpkg asks before it replaces such a file.
 file(WRITE ${control}/conffiles "/etc/argus/argusd.conf\n/etc/default/argusd\n")
-install(FILES docs/argusd.conf.example DESTINATION /etc/argus RENAME argusd.conf COMPONENT argusd)
+# Every setting is there and is a remark: one that is written, as the rate of the line, outdoes what a link says.
+file(READ docs/argusd.conf.example settings)
+string(REGEX REPLACE "\n([a-z])" "\n#\\1" settings "${settings}")
+file(CONFIGURE OUTPUT ${made}/argusd.conf CONTENT "${settings}" @ONLY)
+install(FILES ${made}/argusd.conf DESTINATION /etc/argus COMPONENT argusd)
 install(FILES ${deb_dir}/argusd/default DESTINATION /etc/default RENAME argusd COMPONENT argusd)
 
 # The tools, as pip would install them from the wheel.
 install(DIRECTORY ${ARGUS_DEB}/lib/ DESTINATION lib/python3/dist-packages COMPONENT tools)
 install(DIRECTORY ${ARGUS_DEB}/bin/ DESTINATION bin COMPONENT tools USE_SOURCE_PERMISSIONS)
+file(GLOB programs RELATIVE ${ARGUS_DEB}/bin ${ARGUS_DEB}/bin/*)
+list(REMOVE_ITEM programs argus-log)
 install(FILES tools/argus.bash-completion DESTINATION share/bash-completion/completions RENAME argus-log COMPONENT tools)
 file(MAKE_DIRECTORY ${made}/links)
-foreach(name IN ITEMS argus-sim argus-conformance)
+foreach(name IN LISTS programs)
     file(CREATE_LINK argus-log ${made}/links/${name} SYMBOLIC)
     install(FILES ${made}/links/${name} DESTINATION share/bash-completion/completions COMPONENT tools)
 endforeach()

@@ -19,3 +19,14 @@ class LinkError(SimError):
     """A device or socket that cannot be opened or was lost for good."""
 
     exit_code = 1
+
+
+_PACKAGES = {"can": "python-can", "isotp": "can-isotp", "mcap": "mcap", "matplotlib": "matplotlib"}
+
+
+def missing_package(error: ModuleNotFoundError) -> str:
+    """Return the line for who lacks a package that not every installation has; of another one it is our fault."""
+    top = (error.name or "").partition(".")[0]
+    if top not in _PACKAGES:
+        raise error
+    return f"this needs the Python package {_PACKAGES[top]}, which is not installed: pip install {_PACKAGES[top]}"

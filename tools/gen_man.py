@@ -82,7 +82,7 @@ PAGES = (
                 ),
             ),
         ),
-        also=("argus-log", "argus-sim"),
+        also=("argusctl", "argus-log", "argus-sim"),
     ),
     Page(
         name="argus-sim",
@@ -115,6 +115,35 @@ PAGES = (
         also=("argusd", "argus-sim"),
     ),
     Page(
+        name="argusctl",
+        what="asks, watches and orders a running argusd",
+        command=(sys.executable, "-m", "argus_tools.control.cli"),
+        synopsis=("[--socket PLACE] [--token FILE] COMMAND [options]",),
+        description=(
+            "argusctl speaks to an argusd that was started with --control: it tells its state, follows its events, "
+            "drives the robot and, where argusd was started with --inject, makes a sonar fail for a test.",
+            "An order takes control and gives it back. step and turn wait until the robot stands; when they are "
+            "interrupted, the robot is stopped.",
+        ),
+        has_commands=True,
+        ends=(
+            (
+                "ENVIRONMENT",
+                (
+                    (
+                        "ARGUS_CONTROL",
+                        "where argusd is, when --socket does not say: unix:PATH or tcp:HOST:PORT",
+                    ),
+                ),
+            ),
+            (
+                "FILES",
+                (("/run/argus/control", "where argusd is, when neither says"),),
+            ),
+        ),
+        also=("argusd", "argus-log"),
+    ),
+    Page(
         name="argus-log",
         what="decodes, checks, converts, draws and replays logs of a robot's link",
         command=(sys.executable, "-m", "argus_tools.log.cli"),
@@ -135,6 +164,18 @@ PAGES = (
             ),
         ),
         also=("argusd", "argus-sim"),
+    ),
+    Page(
+        name="argus-foxglove",
+        what="shows live in Foxglove what argusd knows of a robot",
+        command=(sys.executable, "-m", "argus_tools.foxglove_bridge"),
+        synopsis=("[options]",),
+        description=(
+            "argus-foxglove is a client of argusd's control socket and a WebSocket server on loopback, for "
+            "Foxglove. It only shows; argusd may come and go meanwhile.",
+        ),
+        ends=(("ENVIRONMENT", (("ARGUS_CONTROL", "the control socket, unless --control names one"),)),),
+        also=("argusd", "argus-log", "argus-monitor"),
     ),
     Page(
         name="argus-conformance",

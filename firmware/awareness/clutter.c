@@ -3,6 +3,7 @@
 #include "awareness/clutter.h"
 
 #include "awareness/levels.h"
+#include "awareness/odds.h"
 
 void argus_clutter_note(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                         const int sonar) {
@@ -23,26 +24,13 @@ bool argus_clutter_beside(const argus_evidence_t *const self, const argus_knowle
     return false;
 }
 
-int32_t argus_clutter_percent(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                              const int but) {
-    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    int32_t all = 6 * ARGUS_ONE_VERDICT;
-    int32_t contradicted = all / 20 + 1;
-    for (int i = 0; i < knowledge->sonars; i++) {
-        const bool counts = i != but && !argus_is_out(knowledge, i);
-        all += counts ? self->of[i].verdicts : 0;
-        contradicted += counts ? self->of[i].contradicted : 0;
-    }
-    return contradicted * 100 / all;
-}
-
 void argus_clutter_sip(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
         argus_case_t *const c = &self->of[i];
         c->moved = c->moved && knowledge->sip_ms - c->moved_ms < ARGUS_CALM_MS;
     }
-    if (argus_clutter_percent(self, knowledge, -1) > ARGUS_CROWD_PERCENT) {
+    if (argus_odds_permille(self, knowledge, -1, ARGUS_TEST_PEERS) > ARGUS_CROWD_PERMILLE) {
         self->crowded = true;
         self->crowded_ms = knowledge->sip_ms;
     }

@@ -15,8 +15,4 @@ void argus_clutter_sip(argus_evidence_t *self, const argus_knowledge_t *knowledg
 bool argus_clutter_beside(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int but,
                           uint32_t ms);
 
-// Which part of the readings of those in use, but this one (-1: of all), is contradicted of late; a twentieth
-// at the start.
-int32_t argus_clutter_percent(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int but);
-
 #endif

@@ -8,6 +8,7 @@
 #include "awareness/clutter.h"
 #include "awareness/levels.h"
 #include "awareness/names.h"
+#include "awareness/odds.h"
 #include "awareness/others.h"
 #include "awareness/own.h"
 #include "knowledge/angle.h"
@@ -48,9 +49,8 @@ static void restart_case(argus_case_t *const self) {
     self->hollow = 0;
     self->borne_out = false;
     self->none_run = 0;
-    self->rest_gaps = 0;
-    self->verdicts = 0;
-    self->contradicted = 0;
+    self->gaps = 0;
+    memset(self->rate, 0, sizeof self->rate);
 }
 
 void argus_evidence_restart(argus_evidence_t *const self) {
@@ -127,6 +127,7 @@ static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *cons
     if (knowledge->sip_ms - self->faded_ms >= FADE_MS) {
         self->faded_ms = knowledge->sip_ms;
         argus_others_fade(self, knowledge);
+        argus_odds_fade(self);
         for (int i = 0; i < knowledge->sonars; i++) {
             argus_pings_age(&self->of[i].pings, knowledge->sip_ms);
         }

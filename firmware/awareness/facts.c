@@ -6,10 +6,10 @@
 #include "knowledge/angle.h"
 
 const argus_bounds_t argus_bounds[ARGUS_TESTS] = {
-    [ARGUS_TEST_STUCK] = {1050, 1470, 0},
+    [ARGUS_TEST_STUCK] = {1300, 1800, 0},
     [ARGUS_TEST_GARBAGE] = {500, 2800, 0},
-    [ARGUS_TEST_DROPOUT] = {500, 2700, 0},
-    [ARGUS_TEST_PEERS] = {650, 2200, -150},
+    [ARGUS_TEST_DROPOUT] = {800, 2700, 0},
+    [ARGUS_TEST_PEERS] = {750, 2200, -150},
 };
 
 static int32_t scaled(const argus_evidence_t *const self, const int sonar, const int32_t increment) {

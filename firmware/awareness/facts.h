@@ -28,6 +28,12 @@ typedef struct {
     int16_t told; // ... and not faulty in another way
 } argus_doubt_t;
 
+// Readings of late that a test took, and the odd ones of them, sixteenths, fading.
+typedef struct {
+    uint16_t all;
+    uint16_t odd;
+} argus_rate_t;
+
 typedef struct {
     argus_pings_t pings;
     int16_t score[ARGUS_TESTS];
@@ -36,8 +42,8 @@ typedef struct {
     uint16_t last_mm;            // its last reading
     int16_t drift_mm;            // at rest, what it differed from the one before
     uint8_t none_run;            // readings in a row without an echo
-    uint8_t rest_gaps;           // at rest in this place, up to those that count
-    uint32_t rest_odometer_mm;   // where that place began
+    uint8_t gaps;                // at rest in this place, up to those that count
+    uint32_t place_odometer_mm;  // where that place began
     uint8_t taken;               // counts its readings, low bits
     uint8_t echo_bits;           // bit i: of its last readings, the one i before had an echo
     uint8_t agreed;              // counted readings in a row that others bore out
@@ -46,10 +52,9 @@ typedef struct {
     bool borne_out;       // an echo of it was, since then
     argus_mask_t against; // sonars that contradicted it, since then
     uint32_t episode_ms;
-    uint16_t verdicts;     // that the others gave on it, sixteenths, fading
-    uint16_t contradicted; // ... and of those, against it
-    bool out;              // its evidence is of whether it may come back: what speaks for it counts more
-    bool moved;            // something moved before it, at moved_ms
+    argus_rate_t rate[ARGUS_TESTS];
+    bool out;   // its evidence is of whether it may come back: what speaks for it counts more
+    bool moved; // something moved before it, at moved_ms
     uint32_t moved_ms;
     uint32_t counted_ms;
     uint32_t alive_ms;

@@ -6,6 +6,7 @@
 #include "awareness/facts.h"
 
 // One more reading, not in the log yet, adds to the doubts of each lag.
-void argus_lag_take(argus_evidence_t *self, int sonar, uint16_t reading_mm);
+void argus_lag_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
+                    uint16_t reading_mm);
 
 #endif

@@ -18,7 +18,7 @@
 #define ARGUS_STILL_CDEG 150
 
 // Independence: one place and one moment are one piece of evidence ------------------------------------------
-#define ARGUS_PLACE_MM 100
+#define ARGUS_PLACE_MM 200
 #define ARGUS_PLACE_CDEG 800
 #define ARGUS_PLACE_MS 4000
 #define ARGUS_EPISODE_MS 6000u
@@ -28,32 +28,26 @@
 // ------------------------------------------------------------------------------------------------
 #define ARGUS_UNREST_MS 8000u
 #define ARGUS_CALM_MS 30000u
-#define ARGUS_UNREST_PERCENT 25 // of what contradicts counts
-#define ARGUS_CROWD_PERCENT 35  // of all readings contradicted: people are about
-#define ARGUS_WALK_MM 70        // between two readings at rest
+#define ARGUS_UNREST_PERCENT 25  // of what contradicts counts
+#define ARGUS_CROWD_PERMILLE 350 // of all readings contradicted: people are about
+#define ARGUS_WALK_MM 70         // between two readings at rest
 
 // Bounds of the sums
 // -----------------------------------------------------------------------------------------
 #define ARGUS_CEILING 3000
-#define ARGUS_OUT_TIMES 4    // what speaks for a sonar that is out counts so often
-#define ARGUS_ONE_VERDICT 16 // in the counts of verdicts, which fade
+#define ARGUS_OUT_TIMES 4 // what speaks for a sonar that is out counts so often
 
 // A sonar's own readings
 // -------------------------------------------------------------------------------------
 #define ARGUS_CLIPPED_MM 105 // the shortest readings are all alike
 #define ARGUS_FAMILIAR_MM 100
 #define ARGUS_SILENT_RUN 4
-#define ARGUS_STUCK_MOVED 210
-#define ARGUS_NOVEL 180
-#define ARGUS_FAMILIAR (-300)
-#define ARGUS_DROPOUT 350
+#define ARGUS_ALIKE_MM 20
 #define ARGUS_DROPOUT_MOVING_MAX 1100
-#define ARGUS_STEADY_ECHO (-12)
 
 // Names
 // ------------------------------------------------------------------------------------------------------
-#define ARGUS_SUSPECT_PERCENT 80 // of a name's level: a look is called for
-#define ARGUS_WILD_PERCENT 70    // ... is enough for leaps that the others contradict
+#define ARGUS_SUSPECT_PERCENT 75 // of a name's level: a look is called for
 #define ARGUS_BESIDE_MS 10000
 #define ARGUS_LATE_NAMING 800
 #define ARGUS_LATE_ALONE 1200
@@ -63,7 +57,6 @@
 #define ARGUS_BENT_TOLD 300
 #define ARGUS_BENT_CONTRADICTED 300
 #define ARGUS_MUTE_CONTRADICTED 380
-#define ARGUS_LOST_CONTRADICTED 200 // ... for a silence of one that had followed an echo
-#define ARGUS_HELD_PERCENT 25       // of a name's level: a suspect is cleared below
+#define ARGUS_HELD_PERCENT 25 // of a name's level: a suspect is cleared below
 
 #endif

@@ -10,9 +10,6 @@
 #define OFF_RUN 5
 #define OFF_RUN_LONG 12 // what echoed before is named off after so many readings without an echo
 #define HOLLOW_OF 3
-#define FOLLOWED 3 // echoes, of so many readings, about on one bearing
-#define FOLLOWED_OF 5
-#define FOLLOWED_CDEG 1000
 #define EPISODES 10 // what moves about the robot does not contradict the same sonar again and again
 
 static int32_t suspicious(const int32_t naming) {
@@ -75,32 +72,6 @@ static bool is_mute(const argus_case_t *const self) {
            argus_others_hollow(self, HOLLOW_OF) == HOLLOW_OF && has_partners(self);
 }
 
-// It followed an echo when it fell silent.
-static bool has_followed(const argus_case_t *const self) {
-    int heard = 0;
-    const argus_ping_t *const now = argus_pings_at(&self->pings, 1);
-    for (int i = 0; i < FOLLOWED_OF; i++) {
-        const argus_ping_t *const then = argus_pings_before(&self->pings, 1, self->none_run + i);
-        heard += then != NULL && then->reading_mm < ARGUS_SURE_MM &&
-                 argus_ping_turned_cdeg(now, then) <= FOLLOWED_CDEG;
-    }
-    return heard >= FOLLOWED;
-}
-
-// ... lost it, and somebody else hears one there: what it did itself is the second voice.
-static bool has_lost(const argus_evidence_t *const self, const argus_case_t *const c) {
-    return c->none_run >= OFF_RUN - 1 && !c->borne_out && !self->busy && (c->hollow & 1u) != 0 &&
-           c->score[ARGUS_TEST_PEERS] >= ARGUS_LOST_CONTRADICTED && has_followed(c);
-}
-
-// What leaps, contradicted by the others, is garbage a leap before it is so by itself.
-static bool is_wild(const argus_case_t *const self) {
-    const int32_t naming = argus_bounds[ARGUS_TEST_GARBAGE].naming;
-    const bool contradicted =
-        self->score[ARGUS_TEST_PEERS] >= suspicious(argus_bounds[ARGUS_TEST_PEERS].naming);
-    return self->score[ARGUS_TEST_GARBAGE] >= (contradicted ? naming * ARGUS_WILD_PERCENT / 100 : naming);
-}
-
 // The more definite tests come first.
 argus_fault_kind_t argus_names_found(const argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -108,7 +79,7 @@ argus_fault_kind_t argus_names_found(const argus_evidence_t *const self, const i
     if (c->score[ARGUS_TEST_STUCK] >= argus_bounds[ARGUS_TEST_STUCK].naming) {
         return ARGUS_KIND_STUCK;
     }
-    if (is_wild(c)) {
+    if (c->score[ARGUS_TEST_GARBAGE] >= argus_bounds[ARGUS_TEST_GARBAGE].naming) {
         return ARGUS_KIND_GARBAGE;
     }
     if (is_late(c, ARGUS_LATE_NAMING)) {
@@ -120,7 +91,7 @@ argus_fault_kind_t argus_names_found(const argus_evidence_t *const self, const i
     if (c->score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].naming && has_partners(c)) {
         return kind_of_peers(c);
     }
-    if (is_mute(c) || has_lost(self, c)) {
+    if (is_mute(c)) {
         return ARGUS_KIND_OFF;
     }
     return is_bent(c, ARGUS_BENT_NAMING) ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;

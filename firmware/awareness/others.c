@@ -7,9 +7,9 @@
 
 #include "awareness/clutter.h"
 #include "awareness/levels.h"
+#include "awareness/odds.h"
 #include "knowledge/angle.h"
 
-#define FADE_EIGHTHS 7
 #define ALONE_CDEG 1000 // from one place a lag that turned less would have it look where it looks now
 #define BITS 8
 
@@ -25,12 +25,6 @@ typedef struct {
     bool excused;         // one of them heard the same a little aside
     argus_mask_t against; // those that differ
 } tally_t;
-
-// Hundredths of a nat; DESIGN.md, Evidence, derives them. By the part of the other sonars' readings that is
-// contradicted at the time, in steps of 5 % from 5 %.
-#define PARTS 12
-static const int16_t contradicts[PARTS] = {277, 208, 167, 139, 116, 98, 83, 69, 58, 47, 37, 29};
-static const int16_t bears_out[PARTS] = {-93, -90, -87, -83, -79, -75, -70, -66, -60, -55, -48, -41};
 
 // What a verdict on a ping as it stands (rows) and as mapped (columns) says for the map: against well, and
 // against any other fault.
@@ -165,13 +159,12 @@ static bool is_news(const argus_case_t *const self, const argus_ping_t *const no
 }
 
 // What moves about the robot makes healthy sonars disagree.
-static int32_t increment_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                            const int sonar, const bool odd) {
+static int32_t worth_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                        const int sonar, const bool odd) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const int32_t twentieths = (argus_clutter_percent(self, knowledge, sonar) + 2) / 5;
-    const int32_t part = argus_max(0, argus_min(PARTS - 1, twentieths - 1));
+    const int32_t adds = argus_odds_of(self, knowledge, sonar, ARGUS_TEST_PEERS, odd);
     const bool unrest = argus_clutter_beside(self, knowledge, -1, ARGUS_UNREST_MS);
-    return odd ? contradicts[part] * (unrest ? ARGUS_UNREST_PERCENT : 100) / 100 : bears_out[part];
+    return odd && unrest ? adds * ARGUS_UNREST_PERCENT / 100 : adds;
 }
 
 static void note_contradicted(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
@@ -184,7 +177,6 @@ static void note_contradicted(argus_evidence_t *const self, const argus_knowledg
         c->episode_ms = knowledge->sip_ms;
     }
     c->hollow = (uint8_t)((unsigned)c->hollow << 1 | (argus_ping_is_echo(at) ? 0u : 1u));
-    c->contradicted = (uint16_t)(c->contradicted + ARGUS_ONE_VERDICT);
     c->against |= against;
     c->agreed = 0;
 }
@@ -207,8 +199,8 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
                   const argus_ping_t *const at, const argus_mask_t against) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
-    argus_score(self, sonar, ARGUS_TEST_PEERS, increment_of(self, knowledge, sonar, against != 0));
-    c->verdicts = (uint16_t)(c->verdicts + ARGUS_ONE_VERDICT);
+    argus_score(self, sonar, ARGUS_TEST_PEERS, worth_of(self, knowledge, sonar, against != 0));
+    argus_odds_note(self, sonar, ARGUS_TEST_PEERS, against != 0);
     if (against != 0) {
         note_contradicted(self, knowledge, sonar, at, against);
     } else if (argus_ping_is_echo(at) && is_since(knowledge, sonar, at)) {
@@ -251,15 +243,16 @@ static said_t as_bent(const argus_evidence_t *const self, const argus_knowledge_
     return verdict_of(&tally);
 }
 
-// Every reading tells of a lag.
+// Every reading tells of a lag, a contradicted one no more than it tells at all.
 static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const int back, const said_t verdict) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    ARGUS_ASSERT(back >= 1);
+    const int32_t most = verdict == CONTRADICTED ? worth_of(self, knowledge, sonar, true) : ARGUS_CEILING;
     for (int i = 0; i < ARGUS_LAGS; i++) {
         if (verdict == CONTRADICTED || self->of[sonar].doubt[i].well > 0) {
             const said_t mapped = as_late(self, knowledge, sonar, back, i + ARGUS_LEAST_LAG);
-            argus_doubt(self, sonar, i, late.well[verdict][mapped], late.told[verdict][mapped]);
+            argus_doubt(self, sonar, i, argus_min(most, late.well[verdict][mapped]),
+                        late.told[verdict][mapped]);
         }
     }
 }
@@ -282,15 +275,31 @@ static void doubt_axis(argus_evidence_t *const self, const argus_knowledge_t *co
     }
 }
 
-// In the open nothing else bears one out: who made echoes up is not silent where others are, again and again.
-static void count_silence(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                          const int sonar, const argus_ping_t *const at) {
+// What one that is out reads and its kind of fault cannot: an echo that goes on from the last as the robot
+// moves, or silence together with others of who made echoes up. Who is wrong or late needs the others.
+static bool is_beyond(const argus_fault_kind_t kind, const argus_ping_t *const now,
+                      const argus_ping_t *const before, const said_t verdict) {
+    const bool made_up = kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE;
+    if (!argus_ping_is_echo(now)) {
+        return made_up && verdict == QUIET;
+    }
+    const bool own = kind != ARGUS_KIND_WRONG && kind != ARGUS_KIND_SLOW;
+    return own && verdict == UNSEEN && before != NULL && now->reading_mm != before->reading_mm &&
+           argus_ping_goes_on(now, before);
+}
+
+static void count_own(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                      const int back, const said_t verdict) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_fault_kind_t kind = knowledge->sonar[sonar].kind;
     argus_case_t *const c = &self->of[sonar];
-    if (argus_is_out(knowledge, sonar) && (kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE) &&
+    argus_ping_t *const at = argus_pings_mark(&c->pings, back);
+    const argus_ping_t *const before = argus_pings_at(&c->pings, back + 1);
+    if (argus_is_out(knowledge, sonar) && is_beyond(knowledge->sonar[sonar].kind, at, before, verdict) &&
         is_since(knowledge, sonar, at) && is_news(c, at)) {
+        const int32_t adds = argus_odds_of(self, knowledge, sonar, ARGUS_TEST_PEERS, false);
+        argus_score(self, sonar, ARGUS_TEST_PEERS, adds);
         c->agreed = (uint8_t)argus_min(c->agreed + 1, UINT8_MAX);
+        at->counted = 1;
     }
 }
 
@@ -308,7 +317,7 @@ static void count_news(argus_evidence_t *const self, const argus_knowledge_t *co
                        const int sonar, argus_ping_t *const at, const tally_t *const tally) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const bool odd = is_odd(tally);
-    const int32_t increment = increment_of(self, knowledge, sonar, odd);
+    const int32_t increment = worth_of(self, knowledge, sonar, odd);
     doubt_axis(self, knowledge, sonar, at, odd ? CONTRADICTED : AGREED, increment);
     count(self, knowledge, sonar, at, odd ? tally->against : 0);
     at->counted = 1;
@@ -336,8 +345,8 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     argus_ping_t *const at = argus_pings_mark(&c->pings, back);
     const said_t verdict = verdict_of(tally);
     at->weighed = verdict != UNSEEN || tally->differ > 0;
-    if (verdict == QUIET && tally->differ == 0) {
-        count_silence(self, knowledge, sonar, at);
+    if (tally->differ == 0) {
+        count_own(self, knowledge, sonar, back, verdict);
     }
     if ((is_odd(tally) || is_borne_out(tally)) && is_news(c, at)) {
         count_news(self, knowledge, sonar, at, tally);
@@ -413,8 +422,6 @@ void argus_others_fade(argus_evidence_t *const self, const argus_knowledge_t *co
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
         argus_case_t *const c = &self->of[i];
-        c->verdicts = (uint16_t)(c->verdicts * FADE_EIGHTHS / 8);
-        c->contradicted = (uint16_t)(c->contradicted * FADE_EIGHTHS / 8);
         c->score[ARGUS_TEST_PEERS] = faded(c->score[ARGUS_TEST_PEERS]);
         if (c->score[ARGUS_TEST_PEERS] <= 0) {
             begin_anew(c);

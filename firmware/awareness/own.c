@@ -7,23 +7,35 @@
 #include "awareness/clutter.h"
 #include "awareness/lag.h"
 #include "awareness/levels.h"
+#include "awareness/odds.h"
 #include "knowledge/angle.h"
 
 #define COMPARED 2     // echoes that one is compared with
 #define LOOKED_BACK 10 // readings
-#define GAPS_MOST 3    // at rest of one place: at the edge of what is heard echoes come and go
+#define GAPS_MOST 3    // of one place
 
-static void test_stuck(argus_evidence_t *const self, const int sonar, const argus_ping_t *const now,
-                       const argus_ping_t *const before) {
+static void score(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                  const argus_test_t test, const bool odd) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    argus_score(self, sonar, test, argus_odds_of(self, knowledge, sonar, test, odd));
+    argus_odds_note(self, sonar, test, odd);
+}
+
+// Of what goes on alike: how often the very same value comes again depends on noise and on the steps of
+// range.
+static void test_stuck(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar, const argus_ping_t *const now, const argus_ping_t *const before) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
-    if (now->reading_mm != c->last_mm || !argus_ping_is_echo(now) || now->reading_mm <= ARGUS_CLIPPED_MM) {
+    const bool tells = argus_ping_is_echo(now) && now->reading_mm > ARGUS_CLIPPED_MM;
+    const int32_t changed_mm = argus_abs(now->reading_mm - c->last_mm);
+    if (!tells || changed_mm > 0) {
         c->score[ARGUS_TEST_STUCK] = 0;
-        return;
     }
-    if (argus_ping_turned_cdeg(now, before) >= ARGUS_STILL_CDEG ||
-        argus_ping_moved_mm(now, before) >= ARGUS_STILL_MM) {
-        argus_score(self, sonar, ARGUS_TEST_STUCK, ARGUS_STUCK_MOVED);
+    const bool moved = argus_ping_turned_cdeg(now, before) >= ARGUS_STILL_CDEG ||
+                       argus_ping_moved_mm(now, before) >= ARGUS_STILL_MM;
+    if (tells && moved && changed_mm <= ARGUS_ALIKE_MM) {
+        score(self, knowledge, sonar, ARGUS_TEST_STUCK, changed_mm == 0);
     }
 }
 
@@ -61,22 +73,22 @@ static likeness_t liken(const argus_pings_t *const pings, const argus_ping_t *co
 }
 
 // Readings between familiar and novel name nobody: so looks somebody who walks, too.
-static void test_garbage(argus_evidence_t *const self, const int sonar, const argus_ping_t *const now,
-                         const bool unrest) {
+static void test_garbage(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                         const int sonar, const argus_ping_t *const now, const bool unrest) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     if (!argus_ping_is_echo(now)) {
         if (c->out &&
             c->none_run >= ARGUS_SILENT_RUN) { // who reads at random is not so often silent in a row
-            argus_score(self, sonar, ARGUS_TEST_GARBAGE, ARGUS_FAMILIAR);
+            score(self, knowledge, sonar, ARGUS_TEST_GARBAGE, false);
         }
         return;
     }
     const likeness_t like = liken(&c->pings, now);
     if (like.familiar) {
-        argus_score(self, sonar, ARGUS_TEST_GARBAGE, ARGUS_FAMILIAR);
+        score(self, knowledge, sonar, ARGUS_TEST_GARBAGE, false);
     } else if (like.comparable > 0 && like.novel && !unrest) {
-        argus_score(self, sonar, ARGUS_TEST_GARBAGE, ARGUS_NOVEL);
+        score(self, knowledge, sonar, ARGUS_TEST_GARBAGE, true);
     }
 }
 
@@ -110,29 +122,28 @@ static const argus_ping_t *echo_before_gap(const argus_case_t *const self, const
     return NULL;
 }
 
-// In motion an echo at the edge of what is heard comes and goes by itself: that alone convicts no one, nor
-// does one place.
-static void test_dropout(argus_evidence_t *const self, const int sonar, const argus_ping_t *const now,
-                         const bool unrest) {
+// At the edge of what is heard an echo comes and goes by itself: after a few gaps a place tells no more.
+static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                         const int sonar, const argus_ping_t *const now, const bool unrest) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
-    if (!argus_ping_is_echo(now)) {
+    if (!argus_ping_is_echo(now) || c->gaps >= GAPS_MOST) {
         return;
     }
     const argus_ping_t *const then = echo_before_gap(c, now);
     if (then == NULL || now->reading_mm >= ARGUS_SURE_MM || !is_familiar(now, then)) {
-        argus_score(self, sonar, ARGUS_TEST_DROPOUT, ARGUS_STEADY_ECHO);
-    } else if (unrest) {
-        return; // somebody may have stood in between
-    } else if (now->rest && then->rest) {
-        if (c->rest_gaps < GAPS_MOST) {
-            c->rest_gaps++;
-            argus_score(self, sonar, ARGUS_TEST_DROPOUT, ARGUS_DROPOUT);
-        }
-    } else {
-        const int32_t left = ARGUS_DROPOUT_MOVING_MAX - c->score[ARGUS_TEST_DROPOUT];
-        argus_score(self, sonar, ARGUS_TEST_DROPOUT, argus_max(0, argus_min(left, ARGUS_DROPOUT)));
+        score(self, knowledge, sonar, ARGUS_TEST_DROPOUT, false);
+        return;
     }
+    if (unrest) {
+        return; // somebody may have stood in between
+    }
+    c->gaps++;
+    const int32_t adds = argus_odds_of(self, knowledge, sonar, ARGUS_TEST_DROPOUT, true);
+    argus_odds_note(self, sonar, ARGUS_TEST_DROPOUT, true);
+    const int32_t left =
+        now->rest && then->rest ? ARGUS_CEILING : ARGUS_DROPOUT_MOVING_MAX - c->score[ARGUS_TEST_DROPOUT];
+    argus_score(self, sonar, ARGUS_TEST_DROPOUT, argus_max(0, argus_min(left, adds)));
 }
 
 static void count_echo(argus_case_t *const self, const argus_knowledge_t *const knowledge,
@@ -150,16 +161,16 @@ static void run_tests(argus_evidence_t *const self, const argus_knowledge_t *con
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     const bool unrest = argus_clutter_beside(self, knowledge, sonar, ARGUS_UNREST_MS);
-    test_stuck(self, sonar, now, before);
-    argus_lag_take(self, sonar, now->reading_mm);
+    test_stuck(self, knowledge, sonar, now, before);
+    argus_lag_take(self, knowledge, sonar, now->reading_mm);
     test_walker(self, knowledge, sonar, now, before);
-    if (knowledge->odometer_mm - c->rest_odometer_mm >= ARGUS_SAME_ALONG_MM) {
-        c->rest_odometer_mm = knowledge->odometer_mm;
-        c->rest_gaps = 0;
+    if (knowledge->odometer_mm - c->place_odometer_mm >= ARGUS_SAME_ALONG_MM) {
+        c->place_odometer_mm = knowledge->odometer_mm;
+        c->gaps = 0;
     }
     if (now->steady) {
-        test_garbage(self, sonar, now, unrest);
-        test_dropout(self, sonar, now, unrest);
+        test_garbage(self, knowledge, sonar, now, unrest);
+        test_dropout(self, knowledge, sonar, now, unrest);
     }
 }
 

@@ -180,9 +180,23 @@ static argus_bound_t leading(const argus_t *const self, const argus_guard_t *con
     return bound;
 }
 
+// Each of those that look astern is trusted, and has reported within two rounds.
+static bool sees_astern(const argus_t *const self) {
+    const argus_knowledge_t *const knowledge = &self->knowledge;
+    const uint32_t limit_ms = argus_guard_two_rounds_ms(&self->config);
+    const unsigned looks = argus_robot_astern(knowledge->robot);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((looks >> i & 1u) != 0 &&
+            (!argus_trusted(knowledge, i) || argus_age_ms(knowledge, i, self->now_ms) > limit_ms)) {
+            return false;
+        }
+    }
+    return looks != 0;
+}
+
 static argus_bound_t trailing(const argus_t *const self, const argus_guard_t *const guard) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
-    if (!argus_guard_rear_is_watched(guard)) {
+    if (!sees_astern(self)) {
         return closed(ARGUS_BOUND_UNSEEN);
     }
     const unsigned looks = argus_robot_astern(knowledge->robot);

@@ -45,24 +45,33 @@ static void say_once(argus_t *const core, bool *const said, const argus_event_id
     }
 }
 
+// Closed again after it was open for a while is news.
+static void tell_closed(argus_t *const core, argus_given_t *const given, const argus_bound_t *const bound) {
+    if (bound->speed_mm_s == 0) {
+        given->open_sips = 0;
+        say_once(core, &given->held_said, ARGUS_EV_GUARD_HELD, (int32_t)bound->why);
+    } else if (given->held_said) {
+        given->open_sips++;
+        given->held_said = given->open_sips < FREE_SIPS;
+    }
+}
+
 static void tell_way(argus_t *const core, argus_given_t *const given, const argus_bound_t *const bound,
                      const int32_t wanted_mm_s) {
-    if (bound->speed_mm_s == 0) {
-        given->free_sips = 0;
-        say_once(core, &given->held_said, ARGUS_EV_GUARD_HELD, (int32_t)bound->why);
-    } else if (bound->speed_mm_s < argus_abs(wanted_mm_s)) {
-        given->free_sips = 0;
+    tell_closed(core, given, bound);
+    if (bound->speed_mm_s >= argus_abs(wanted_mm_s)) {
+        return;
+    }
+    given->free_sips = 0;
+    if (bound->speed_mm_s > 0) {
         say_once(core, &given->slowed_said, ARGUS_EV_GUARD_SLOWED, bound->speed_mm_s);
     }
 }
 
 // A bound that comes and goes is one.
 static void tell_free(argus_t *const core, argus_given_t *const given) {
-    if (!given->held_said && !given->slowed_said && !given->turn_said) {
-        return;
-    }
-    given->free_sips++;
-    if (given->free_sips >= FREE_SIPS) {
+    given->free_sips = (uint8_t)argus_min(given->free_sips + 1, FREE_SIPS);
+    if ((given->held_said || given->slowed_said || given->turn_said) && given->free_sips >= FREE_SIPS) {
         given->held_said = given->slowed_said = given->turn_said = false;
         given->free_sips = 0;
         argus_say(core, ARGUS_EV_GUARD_FREE, ARGUS_NO_SONAR, 0);
@@ -172,27 +181,26 @@ static void send_move(argus_t *const core, argus_hold_client_t *const self, cons
     }
 }
 
+// Whether the MOVE that the robot has is not the one that it may have now.
+static bool is_other(const argus_t *const core, const argus_hold_client_t *const self, const int32_t left_mm,
+                     const int32_t mm, const int32_t mm_s) {
+    const argus_given_t *const given = &self->given;
+    const int32_t has_mm = argus_abs(left_of(core, given->move_mm, given->odometer_mm));
+    const bool longer = has_mm + DONE_MM < argus_abs(left_mm) && mm > has_mm + MORE_MM;
+    return !given->moves || longer || mm + LESS_MM < has_mm || mm_s < given->setv_mm_s;
+}
+
 // A MOVE ends where it should without us, and is lengthened as more is seen.
 static void give_move(argus_t *const core, argus_hold_client_t *const self, const argus_bound_t *const bound,
                       const bool anyway) {
-    argus_given_t *const given = &self->given;
     const int32_t left_mm = left_of(core, self->wish.left_mm, self->wish.odometer_mm);
-    const int32_t given_mm = given->moves ? left_of(core, given->move_mm, given->odometer_mm) : 0;
     const int32_t mm = argus_min(argus_abs(left_mm), bound->way_mm);
     const int32_t mm_s = argus_min(self->setv_mm_s, bound->speed_mm_s / STEP_MM_S * STEP_MM_S);
     if (!anyway && argus_abs(left_mm) <= DONE_MM) {
         self->wish.way = ARGUS_WISH_REST;
-        return;
-    }
-    if (mm_s <= 0 || mm <= 0) {
+    } else if (mm_s <= 0 || mm <= 0) {
         stand(core, self, anyway);
-        return;
-    }
-    const bool longer =
-        argus_abs(given_mm) + DONE_MM < argus_abs(left_mm) && mm > argus_abs(given_mm) + MORE_MM;
-    const bool shorter = mm + LESS_MM < argus_abs(given_mm);
-    const bool slower = given->moves && mm_s < given->setv_mm_s;
-    if (anyway || !given->moves || longer || shorter || slower) {
+    } else if (anyway || is_other(core, self, left_mm, mm, mm_s)) {
         send_move(core, self, left_mm < 0 ? -mm : mm, mm_s);
     }
 }

@@ -24,6 +24,7 @@ typedef struct {
     bool slowed_said;     // since the last GUARD_FREE
     bool held_said;
     bool turn_said;
+    uint8_t open_sips; // the way was not closed, one after the other
     uint8_t free_sips; // without any bound, one after the other
 } argus_given_t;
 

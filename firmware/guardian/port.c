@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The session of a guard port's client, and what passes either way.
-#include "guardian/port.h"
+#include "guardian/client.h"
 
 #include <string.h>
 
@@ -396,9 +396,10 @@ static void watch_motion(argus_t *const core, argus_port_t *const self, const bo
     const bool stays = core->orders.stay && !self->stayed;
     self->stayed = core->orders.stay;
     yield(core, self);
-    if (self->phase == ARGUS_PORT_OPEN && self->drives && core->stalled) {
+    const bool drives = self->phase == ARGUS_PORT_OPEN && self->drives;
+    if (drives && core->stalled) {
         argus_hold_forget(&self->hold); // its own session sends VEL 0 and RVEL 0
-    } else if (self->phase == ARGUS_PORT_OPEN && self->drives && (news || stays)) {
+    } else if (drives && (news || stays)) {
         argus_hold_watch(core, &self->hold);
     }
     if (self->parting && news) {

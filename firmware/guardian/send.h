@@ -3,7 +3,7 @@
 #ifndef ARGUS_SEND_H
 #define ARGUS_SEND_H
 
-#include "guardian/port.h"
+#include "guardian/client.h"
 
 // To the client; false, and counted, when it has no room. At most ARCOS_FRAME_COUNT_MAX - 2 bytes of data.
 bool argus_send_client(argus_port_t *port, const uint8_t *data, size_t count);

@@ -6,11 +6,13 @@
 #include "adjustment/drive.h"
 #include "adjustment/motion.h"
 #include "adjustment/plan.h"
+#include "adjustment/trim.h"
 #include "analysis/inquiry.h"
 #include "analysis/verify.h"
 #include "arcos/session.h"
 #include "argus/argus.h"
 #include "awareness/awareness.h"
+#include "awareness/bend.h"
 #include "awareness/common.h"
 #include "awareness/extremes.h"
 #include "awareness/slip.h"
@@ -150,6 +152,8 @@ struct argus {
     argus_extremes_t extremes; // profile argus
     argus_common_t common;     // profile argus
     argus_slip_t slip;
+    argus_bend_t bend;
+    argus_wheel_t wheel;
     argus_plan_t plan;
     argus_failure_t failure;
     argus_motion_t motion;

@@ -12,7 +12,7 @@
 #define PROBATION_AGREED 4
 #define PROBATION_MS 4000u
 #define PROBATION_DOUBLINGS 4
-#define NAME_STANDS_MS 2000u // six rounds, before a name is said: many for a healthy sonar pass sooner
+#define NAME_STANDS_MS 1000u // three rounds, before a name is said: many for a healthy sonar pass sooner
 
 // What changes the way ahead is answered by a check at rest.
 static argus_intent_t break_off(const argus_t *const self) {

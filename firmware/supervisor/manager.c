@@ -39,6 +39,8 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     argus_extremes_init(&self->extremes);
     argus_common_init(&self->common);
     argus_slip_init(&self->slip);
+    argus_bend_init(&self->bend);
+    argus_wheel_init(&self->wheel);
     argus_motion_init(&self->motion);
     argus_task_init(&self->travel.task);
     argus_events_init(&self->events);
@@ -144,6 +146,21 @@ static void take_slip(argus_t *const self) {
     }
 }
 
+// A second effector by the same layers: awareness sees a way bend, analysis sizes it, adjustment counters it.
+static void take_bend(argus_t *const self) {
+    const argus_motion_t *const motion = &self->motion;
+    const bool straight = motion->kind == ARGUS_MOTION_MOVE && !motion->settled && motion->target_mm > 0;
+    argus_way_turn_t piece;
+    if (self->config.diagnosis == 0 || !argus_bend_sip(&self->bend, &self->knowledge, straight, &piece)) {
+        return;
+    }
+    const argus_wheel_news_t news = argus_wheel_judge(&self->wheel, &self->knowledge, &piece);
+    if (news != ARGUS_WHEEL_SAME) {
+        argus_say(self, news == ARGUS_WHEEL_NAMED ? ARGUS_EV_WHEEL_SHORT : ARGUS_EV_WHEEL_EVEN,
+                  ARGUS_NO_SONAR, self->wheel.short_pm);
+    }
+}
+
 // Who looks along a blind bearing, in a sweep.
 static argus_mask_t sweep_looks(const argus_t *const self) {
     const bool looks = self->mode == ARGUS_MODE_SWEEPING && self->base.taken && self->motion.settled;
@@ -174,6 +191,7 @@ static void on_sip(argus_t *const self) {
         argus_common_sip(&self->common, &self->knowledge);
     }
     take_slip(self);
+    take_bend(self);
     argus_react(self, &alarm); // it asks what was seen before this SIP
     argus_echoes_see(&self->echoes, &self->knowledge, self->now_ms);
     argus_rays_see(&self->rays, &self->knowledge, sweep_looks(self));

@@ -54,6 +54,7 @@ void argus_come_to_rest(argus_t *const self) {
 
 void argus_turn_to(argus_t *const self, const int32_t heading_cdeg) {
     ARGUS_ASSERT(!self->orders.passive);
+    argus_bend_ordered(&self->bend, heading_cdeg, self->now_ms);
     argus_motion_turn(&self->motion, &self->session.outbox, &self->knowledge, heading_cdeg, self->now_ms);
 }
 
@@ -67,6 +68,7 @@ void argus_move(argus_t *const self, const int32_t distance_mm, const int32_t sp
 }
 
 void argus_steer(argus_t *const self, const int32_t heading_cdeg) {
+    argus_bend_ordered(&self->bend, heading_cdeg, self->now_ms);
     argus_motion_steer(&self->session.outbox, &self->knowledge, heading_cdeg);
 }
 

@@ -237,20 +237,43 @@ static argus_intent_t look_ahead(const argus_t *const self, argus_travel_t *cons
     return (argus_intent_t){.act = ARGUS_DO_SWEEP};
 }
 
+// A short wheel is countered on each SIP, by less than what S7 calls a nudge.
+static bool counters(const argus_t *const self, const argus_guard_t *const guard, const int32_t to_cdeg) {
+    const int32_t by_cdeg = argus_angle_wrap(to_cdeg - self->knowledge.pose.heading_cdeg);
+    return argus_trim_is_due(&self->wheel, &self->knowledge) &&
+           (argus_guard_may_turn(guard) || argus_guard_may_nudge(guard, by_cdeg));
+}
+
+// The heading on the way: swung about it, or led against a short wheel, or the bearing when it is off that.
+static void steer(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
+    const argus_guard_t guard = argus_guard(self);
+    const int32_t to_cdeg = bearing(self, mine);
+    const int32_t trim_cdeg = argus_angle_wrap(to_cdeg + argus_trim_cdeg(&self->wheel, &self->knowledge));
+    intent->steers = argus_guard_may_turn(&guard);
+    intent->cdeg = to_cdeg;
+    if (argus_guard_is_blind(&guard) && argus_wanted_sonars(self) != 0) {
+        intent->cdeg = weave_cdeg(self, mine);
+    } else if (counters(self, &guard, trim_cdeg)) {
+        intent->cdeg = trim_cdeg;
+        intent->steers = true;
+    } else {
+        intent->steers = intent->steers && off_bearing(self, mine) > STEER_CDEG;
+    }
+}
+
 // S3: a MOVE that ends where it should without us, renewed on each SIP.
 static argus_intent_t move_on(const argus_t *const self, argus_travel_t *const mine, const int32_t free_mm,
                               const int32_t seen_mm) {
     const argus_guard_t guard = argus_guard(self);
     const int32_t way_mm = left_mm(self, mine);
-    const bool may_steer = way_mm > STEER_LEG_MM;
-    const bool weaves = may_steer && argus_guard_is_blind(&guard) && argus_wanted_sonars(self) != 0;
-    const bool steers = weaves || (may_steer && off_bearing(self, mine) > STEER_CDEG);
-    return (argus_intent_t){.act = ARGUS_DO_DRIVE,
-                            .mm = argus_min(way_mm, free_mm),
-                            .speed_mm_s = argus_guard_speed_mm_s(&guard, seen_mm),
-                            .steers = steers && argus_guard_may_turn(&guard),
-                            .cdeg = weaves ? weave_cdeg(self, mine) : bearing(self, mine),
-                            .moves_on = true};
+    argus_intent_t intent = {.act = ARGUS_DO_DRIVE,
+                             .mm = argus_min(way_mm, free_mm),
+                             .speed_mm_s = argus_guard_speed_mm_s(&guard, seen_mm),
+                             .moves_on = true};
+    if (way_mm > STEER_LEG_MM) {
+        steer(self, mine, &intent);
+    }
+    return intent;
 }
 
 static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const mine) {

@@ -33,6 +33,7 @@ _CONSTANTS_IN: Final = tuple(
         "lag",
         "levels",
         "names",
+        "odds",
         "others",
         "own",
         "pings",

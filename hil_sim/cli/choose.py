@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil_sim.arcos import BAUD
-from hil_sim.errors import SimError
+from hil_sim.errors import SimError, missing_package
 from hil_sim.faults.grammar import parse_fault
 from hil_sim.links.base import Link
 from hil_sim.links.pty import PtyLink
@@ -79,8 +79,10 @@ def _serial(arguments: argparse.Namespace, index: int) -> tuple[Link, int]:
 
 def _can(arguments: argparse.Namespace, index: int) -> tuple[Link, int]:
     _refuse_pty_options(arguments, "leave them out with --can")
-    from hil_sim.links.can import CanLink
-
+    try:
+        from hil_sim.links.can import CanLink
+    except ModuleNotFoundError as error:
+        raise SimError(f"--can: {missing_package(error)}") from error
     return CanLink(arguments.can.of_robot(index)), BAUD["B9600"]
 
 

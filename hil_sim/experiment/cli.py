@@ -14,7 +14,7 @@ from argus_tools.formats.base import LogError
 
 from hil_sim.bench.arguments import EXIT_USAGE, Parser, jobs, listed, say, seeds
 from hil_sim.errors import SimError
-from hil_sim.experiment import doc, journey, study
+from hil_sim.experiment import doc, journey, study_tables
 from hil_sim.experiment.cases import ARRAYS, HEALTHY, POLICIES, WORLDS, parse_dead
 from hil_sim.experiment.stage import Stage
 from hil_sim.world.physics import SETS
@@ -30,6 +30,8 @@ examples:
   argus-sim experiment journey --out study --resume     the whole study, 19,800 journeys; interrupt it as you like
   argus-sim experiment journey --results docs/samples/journeys.csv    tables and pictures of results that are there
   argus-sim experiment journey --one adaptive/judge/office/3/1+2/plain
+  argus-sim experiment firing                           how often living sonars are heard when others are dead
+  argus-sim experiment wheel                            wheels that are short by 1, 5 and 10 %, named and countered
   argus-sim experiment all --results docs/samples/journeys.csv --doc docs/experiments.md
 
 What each of them shows, and what came of it: docs/experiments.md.
@@ -177,12 +179,24 @@ def _journey(arguments: argparse.Namespace) -> Parts:
     records = journey.read_table(arguments.results) if arguments.results else journey.run_study(arguments)
     study_pictures.draw(arguments.out, records)
     return {
-        "coverage": study.coverage(records),
-        "bars": study.bars_table(records),
-        "goals": study.goals_table(records),
-        "prices": study.price_table(records),
-        "safety": study.safety_table(records),
+        "coverage": study_tables.coverage(records),
+        "bars": study_tables.bars(records),
+        "goals": study_tables.goals(records),
+        "prices": study_tables.prices(records),
+        "safety": study_tables.safety(records),
     }
+
+
+def _wheel(arguments: argparse.Namespace) -> Parts:
+    from hil_sim.experiment import wheel
+
+    return {"wheel": wheel.table(wheel.run(arguments.seed))}
+
+
+def _firing(arguments: argparse.Namespace) -> Parts:
+    from hil_sim.experiment import firing
+
+    return {"firing": firing.table(firing.run(Stage(), arguments.seed))}
 
 
 PARTS: Final[Mapping[str, Callable[[argparse.Namespace], Parts]]] = {
@@ -191,6 +205,8 @@ PARTS: Final[Mapping[str, Callable[[argparse.Namespace], Parts]]] = {
     "fig9": _fig9,
     "fig10": _fig10,
     "journey": _journey,
+    "firing": _firing,
+    "wheel": _wheel,
 }
 
 

@@ -33,6 +33,7 @@ class Home:
         self._rests: list[float] = []
         self._mode = ""
         self._looked_from: float | None = None
+        self._begins = False
         self._turned_deg = 0.0
         self._plan: list[int] = []
 
@@ -44,6 +45,7 @@ class Home:
             self._plan.append(value)
         elif name in _FORGIVES:
             self._looked_from = None
+            self._begins = False
             self._rests.clear()
         elif name == "SWEEP":
             return self._after_sweep(heading)
@@ -56,11 +58,16 @@ class Home:
         if mode in _NEXT and before != _SWEEPS and self._looked_from is not None:
             wrong = self._judge([self._looked_from], heading, "after looks")
             self._looked_from = None
-        if mode == _LOOKS and self._looked_from is None and before != _SWEEPS:
-            self._looked_from = heading
+        self._begins = mode == _LOOKS and self._looked_from is None and before != _SWEEPS
         if mode in (_SWEEPS, _LOOKS):
             self._rests, self._turned_deg = [heading], 0.0
         return wrong
+
+    def still(self, heading: float) -> None:
+        """The robot stands: looks begin from here, not from where it was while it braked."""
+        if self._begins:
+            self._looked_from = heading
+            self._begins = False
 
     def rest(self, heading: float) -> None:
         """A turn on the spot has ended."""

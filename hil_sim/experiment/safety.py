@@ -92,6 +92,8 @@ class Safety:
         if mode != self._mode:
             self._ask_home(self._home.change(mode, chassis.th))
             self._mode = mode
+        if drive.v == 0 and drive.w == 0:
+            self._home.still(chassis.th)
         self._ask_turn(drive.v, drive.w)
         if abs(drive.v) > DRIVES_MM_S:
             self._ask_way(drive.v)

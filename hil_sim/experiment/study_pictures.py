@@ -39,17 +39,10 @@ def draw_main(path: Path, records: Sequence[Record]) -> None:
         for k, policy in enumerate(("paper", "adaptive")):
             own = [_of(records, policy, group) for group in _COUNTS]
             at = np.arange(len(_COUNTS)) + (k - 0.5) * 0.4
-            shares = [100 * sum(map(arrived, r)) / len(r) if r else 0.0 for r in own]
-            label = "the paper's method" if policy == "paper" else "argus, adaptive"
-            style = {"color": COLOURS[policy], "hatch": _HATCH[policy], "edgecolor": "white", "label": label}
-            left.bar(at, shares, 0.4, **style)
-            times = [[r["t_s"] for r in rs if arrived(r)] for rs in own]
-            right.bar(at, [median(t) if t else 0.0 for t in times], 0.4, **style)
-            for x, found in zip(at, times, strict=True):
-                if not found:
-                    right.text(
-                        x, 2, "none", ha="center", va="bottom", rotation=90, fontsize=7, color=COLOURS[policy]
-                    )
+            _bars(left, policy, at, [_percent(rs) for rs in own])
+            times = [_median([r["t_s"] for r in rs if arrived(r)]) for rs in own]
+            _bars(right, policy, at, times)
+            _say_none(right, policy, at, times)
         for place, title in ((left, "goals truly reached, %"), (right, "median time to the goal, s")):
             place.set_xticks(range(len(_LABELS)), _LABELS)
             place.set_xlabel("dead front sonars, from the start")
@@ -57,6 +50,25 @@ def draw_main(path: Path, records: Sequence[Record]) -> None:
             place.grid(axis="x", visible=False)
         left.set_ylim(0, 105)
         right.legend(fontsize=8, loc="upper left")
+
+
+def _say_none(place: Axes, policy: str, at: Any, heights: Sequence[float]) -> None:
+    for x, height in zip(at, heights, strict=True):
+        if not height:
+            place.text(x, 2, "none", ha="center", rotation=90, fontsize=7, color=COLOURS[policy])
+
+
+def _bars(place: Axes, policy: str, at: Any, heights: Sequence[float]) -> None:
+    label = "the paper's method" if policy == "paper" else "argus, adaptive"
+    place.bar(at, heights, 0.4, color=COLOURS[policy], hatch=_HATCH[policy], edgecolor="white", label=label)
+
+
+def _percent(records: Sequence[Record]) -> float:
+    return 100 * sum(map(arrived, records)) / len(records) if records else 0.0
+
+
+def _median(values: Sequence[float]) -> float:
+    return median(values) if values else 0.0
 
 
 def draw_price(path: Path, records: Sequence[Record]) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from hil_sim.faults.kinds import BumperHit, Fault, FaultChange, LinkFault, SonarFault
+from hil_sim.faults.kinds import BumperHit, Fault, FaultChange, LinkFault, SonarFault, WheelFault
 from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM
 from hil_sim.world.model import Pose
 
@@ -84,8 +84,31 @@ class _State:
         return self.ended or (self.on and self.fault.end is None and self.part >= 1.0)
 
 
+class _Wheel:
+    """How far one fault of a wheel has come."""
+
+    def __init__(self, fault: WheelFault) -> None:
+        self.fault = fault
+        self.started = self.ended = self.told = False
+
+    @property
+    def on(self) -> bool:
+        return self.started and not self.ended
+
+    def update(self, now_ms: float, pose: Pose, travelled_mm: float) -> list[FaultChange]:
+        """Begin or end; return the change."""
+        fault = self.fault
+        here = now_ms, pose, travelled_mm
+        self.started = self.started or fault.start is None or fault.start.met(*here)
+        self.ended = self.ended or (self.started and fault.end is not None and fault.end.met(*here))
+        if self.on == self.told:
+            return []
+        self.told = self.on
+        return [FaultChange(now_ms, "wheel", self.on, fault.text)]
+
+
 class FaultSet:
-    """Executes the sonar faults and bumper hits of a run; link faults among them are left to the link."""
+    """Executes the faults of sonars and wheels and the bumper hits of a run; link faults are left to the link."""
 
     def __init__(self, faults: Iterable[Fault] = (), rng: np.random.Generator | None = None) -> None:
         self.faults = list(faults)
@@ -93,6 +116,7 @@ class FaultSet:
         self._states: list[_State] = []
         self._hits = [fault for fault in self.faults if isinstance(fault, BumperHit)]
         self._pressed = [False] * len(self._hits)
+        self._wheels = [_Wheel(fault) for fault in self.faults if isinstance(fault, WheelFault)]
         self._waiting: list[_State] = []
         self._afflicted: set[int] = set()
         self._echoes: dict[int, deque[int]] = {}
@@ -134,12 +158,18 @@ class FaultSet:
         """Begin and end faults; return what changed. Call it before the ring fires."""
         changes = [state.change(now_ms, number) for state, number in self._mended]
         self._mended.clear()
+        for wheel in self._wheels:
+            changes += wheel.update(now_ms, pose, travelled_mm)
         if not self._waiting and not self._hits:
             return changes
-        for state in self._waiting:
-            changes += state.update(now_ms, pose, travelled_mm)
-        if changes:
+        begun = [change for state in self._waiting for change in state.update(now_ms, pose, travelled_mm)]
+        if begun:
             self._waiting = [state for state in self._waiting if not state.settled]
+        return changes + begun + self._press(now_ms)
+
+    def _press(self, now_ms: float) -> list[FaultChange]:
+        """Press and release bumpers."""
+        changes: list[FaultChange] = []
         for k, hit in enumerate(self._hits):
             pressed = hit.start_ms <= now_ms < hit.end_ms
             if pressed != self._pressed[k]:
@@ -206,6 +236,13 @@ class FaultSet:
 
     def note_ping(self, t_ms: float, number: int, true_mm: int, heard_mm: int, value: int | None) -> None:
         """Be told of a ping that a fault may have changed; for those who judge."""
+
+    def wheels(self) -> tuple[float, float]:
+        """Return the part that the left and the right wheel turn of what they are told."""
+        parts = {"left": 1.0, "right": 1.0}
+        for wheel in self._wheels:
+            parts[wheel.fault.side] *= wheel.fault.part if wheel.on else 1.0
+        return parts["left"], parts["right"]
 
     def bumper(self, now_ms: float) -> int:
         """Return the front bumper bits that hits press now: bit 1 leftmost to bit 5 rightmost."""

@@ -13,11 +13,13 @@ from hil_sim.faults.kinds import (
     DIRECTIONS,
     LINK_KINDS,
     SONAR_KINDS,
+    WHEEL_KINDS,
     BumperHit,
     Fault,
     LinkFault,
     Ramp,
     SonarFault,
+    WheelFault,
     When,
 )
 from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM
@@ -27,6 +29,8 @@ _BUMPER_SEGMENTS: Final = 5
 WIRE_MAX: Final = 65535
 """The largest range that a SIP can carry."""
 _SLOW_MAX: Final = 100
+_WHEELS: Final = ("left", "right")
+_WHEEL_LEAST: Final = 0.5
 _FAR: Final = 1e7
 """Seconds or mm: no run gets there, so a bound beyond it is a slip."""
 _FORM = re.compile(r"(?P<kind>[a-z-]+)(?::(?P<target>[^@:]*))?(?:@(?P<when>[^:]*))?(?P<rest>(?::[^:]*)*)")
@@ -41,6 +45,7 @@ _PARAMETERS: Final = {
     "slow": ("n",),
     "intermittent": ("p", "beyond", "ramp", "value"),
     "bumper": (),
+    "wheel": (),
     "link-drop": ("p", "dir"),
     "link-corrupt": ("p", "dir"),
     "link-delay": ("ms", "dir"),
@@ -63,11 +68,12 @@ _WHOLE: Final = ("value", "n", "beyond", "low", "high")
 
 def fault_help() -> str:
     """Return the list of faults with their grammar, for people."""
-    kinds = [f"  {kind:<13} {what}" for kind, what in (SONAR_KINDS | LINK_KINDS).items()]
+    kinds = [f"  {kind:<13} {what}" for kind, what in (SONAR_KINDS | WHEEL_KINDS | LINK_KINDS).items()]
     return "\n".join(
         [
             "KIND:TARGET[@FROM[-TO]][:NAME=VALUE...]   a fault of sonars; TARGET 3, 3+6, front, rear or all",
             "bumper:SEGMENT@FROM[-TO]                  front bumper segment 1 (left) to 5, 0.5 s unless TO is given",
+            "wheel:SIDE[@FROM[-TO]]:PART               a wheel, left or right, that turns PART of what it is told",
             "link-KIND[@FROM[-TO]][:NAME=VALUE...]     a fault of the link, times only; dir=both, to_client, to_robot",
             "",
             "FROM and TO are times (12s) or places: x>2000, x<0, y>500, y<500, travelled>1500 (mm, true pose).",
@@ -82,6 +88,7 @@ def fault_help() -> str:
             "examples: off:3@12s   wrong:6@x>2000:scale=0.5   stuck:2@10s-20s:value=400   silent:rear@travelled>1500",
             "          intermittent:front@5s:p=0.3   bumper:3@8s-9s   link-corrupt@3s-9s:p=0.2:dir=to_client",
             "          wrong:3@20s:offset=-400:ramp=30000   intermittent:2:p=1:beyond=2000:ramp=300s",
+            "          wheel:left:0.95   wheel:right@10s-20s:0.9",
         ]
     )
 
@@ -99,6 +106,8 @@ def parse_fault(text: str, robot: RobotTable | None = None) -> Fault:
     if kind.startswith("link-"):
         return _link_fault(text, kind, match)
     target = match["target"]
+    if kind == "wheel":
+        return _wheel(text, target, match["when"], match["rest"])
     values = _parameters(text, kind, match["rest"])
     if not target:
         raise SimError(f"fault '{text}': which one? write {kind}:3 for number 3")
@@ -221,6 +230,18 @@ def _bumper(text: str, target: str, when: str | None) -> BumperHit:
         raise SimError(f"fault '{text}': when? write bumper:{target}@8s or bumper:{target}@8s-9s")
     start, end = _times(text, when)
     return BumperHit(text.strip(), int(target), start, start + 500 if end is None else end)
+
+
+def _wheel(text: str, side: str | None, when: str | None, rest: str) -> WheelFault:
+    if side not in _WHEELS:
+        raise SimError(f"fault '{text}': which wheel? write wheel:left:0.95 or wheel:right:0.95")
+    part = float(rest[1:]) if re.fullmatch(r":\d+(\.\d+)?", rest) else 0.0
+    if not _WHEEL_LEAST <= part <= 1:
+        raise SimError(
+            f"fault '{text}': it ends with the part that is left, {_WHEEL_LEAST:g} to 1, as in :0.95"
+        )
+    start, end = _bounds(text, when)
+    return WheelFault(text.strip(), side, part, start, end)
 
 
 def _link_fault(text: str, kind: str, match: re.Match[str]) -> LinkFault:

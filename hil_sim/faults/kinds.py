@@ -17,6 +17,9 @@ SONAR_KINDS: Final = {
     "slow": "reports the echo of n=COUNT firings ago (default 5)",
     "intermittent": "each reading is value=5000 with probability p=P (default 0.5); beyond=MM: farther echoes only",
 }
+WHEEL_KINDS: Final = {
+    "wheel": "left or right turns PART of what it is told, 0.5 to 1, e.g. wheel:left:0.95; its encoder sees it",
+}
 LINK_KINDS: Final = {
     "link-drop": "loses packets with probability p=P (default 1)",
     "link-corrupt": "damages packets with probability p=P (default 1)",
@@ -92,6 +95,16 @@ class BumperHit(Fault):
     segment: int
     start_ms: float
     end_ms: float
+
+
+@dataclass(frozen=True)
+class WheelFault(Fault):
+    """A wheel that turns less than it is told: `part` of it, from `start` to `end`; None: all the time."""
+
+    side: str
+    part: float
+    start: When | None = None
+    end: When | None = None
 
 
 @dataclass(frozen=True)

@@ -69,11 +69,13 @@ class Step(NamedTuple):
 class Drive:
     """Two channels, translation and rotation, each with a speed or a place as its set point.
 
-    v, w: speeds now, mm/s and deg/s. motors: powered; without power commands are not taken.
+    v, w: speeds now, mm/s and deg/s. motors: powered; without power commands are not taken. wheels: the part that the
+    left and the right one turn of what they are told.
     """
 
     def __init__(self, chassis: Chassis, table: RobotTable) -> None:
         self._chassis = chassis
+        self.wheels = (1.0, 1.0)
         self._motion = table.motion
         self._track_mm = table.motion["track_mm"]
         self.settings = flash_settings(table)
@@ -208,7 +210,17 @@ class Drive:
     def wheel_speeds(self) -> tuple[float, float]:
         """Left and right, mm/s."""
         half = self.w * DEG * self._track_mm / 2
-        return self.v - half, self.v + half
+        left, right = self.wheels
+        return (self.v - half) * left, (self.v + half) * right
+
+    def _as_wheels_turn(self, ds: float, dth: float) -> tuple[float, float]:
+        """What is made of a step by wheels that turn less than they are told: the encoders see it so as well."""
+        left, right = self.wheels
+        if left == right == 1.0:
+            return ds, dth
+        half = dth * DEG * self._track_mm / 2
+        made_left, made_right = (ds - half) * left, (ds + half) * right
+        return (made_left + made_right) / 2, (made_right - made_left) / self._track_mm / DEG
 
     # ---- time
 
@@ -223,7 +235,8 @@ class Drive:
     def _brake(self, decel: float, rdecel: float) -> Step:
         v_old, w_old = self.v, self.w
         self.v, self.w = ramp(v_old, 0.0, 0.0, decel), ramp(w_old, 0.0, 0.0, rdecel)
-        return Step((v_old + self.v) / 2 * STEP_S, (w_old + self.w) / 2 * STEP_S, False, False)
+        ds, dth = self._as_wheels_turn((v_old + self.v) / 2 * STEP_S, (w_old + self.w) / 2 * STEP_S)
+        return Step(ds, dth, False, False)
 
     def follow(self) -> Step:
         """A sub-step towards the set points."""
@@ -244,11 +257,14 @@ class Drive:
             self.w = ramp(w_old, target, settings.raccel, settings.rdecel)
         ds = self._move_left if moved else (v_old + self.v) / 2 * STEP_S
         dth = self._head_left if turned else (w_old + self.w) / 2 * STEP_S
-        return Step(ds, dth, moved, turned)
+        return Step(*self._as_wheels_turn(ds, dth), moved, turned)
 
     def done(self, step: Step, part: float) -> None:
-        """Account for the part of a step that was possible."""
+        """Account for the part of a step that was possible, by the encoders.
+
+        A HEAD that is done stays done: what turns the robot on its way afterwards is not held against.
+        """
         if self._move_mode:
             self._move_left = 0.0 if step.moved and part == 1 else self._move_left - step.ds_mm * part
-        if self._head_mode:
+        if self._head_mode and self._head_left:
             self._head_left = 0.0 if step.turned and part == 1 else self._head_left - step.dth_deg * part

@@ -92,5 +92,8 @@ class Faults(Protocol):
     def update(self, now_ms: float, pose: Pose, travelled_mm: float) -> Sequence[FaultChange]:
         """Switch faults on and off; return the changes."""
 
+    def wheels(self) -> tuple[float, float]:
+        """Return the part that the left and the right wheel turn of what they are told."""
+
     def bumper(self, now_ms: float) -> int:
         """Return the front bumper bits that a fault presses."""

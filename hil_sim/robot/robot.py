@@ -308,6 +308,7 @@ class Robot:
     def _update_faults(self, faults: Faults) -> None:
         changes = faults.update(self.now_ms, self.pose, self.chassis.travelled_mm)
         self.fault_bumpers = faults.bumper(self.now_ms)
+        self.drive.wheels = faults.wheels()
         if self.log is not None:
             for change in changes:
                 self.log("fault", {"t_s": self.now_ms / 1000, **_fault_fields(change)})

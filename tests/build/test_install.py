@@ -31,7 +31,9 @@ EXPECTED = {
     "share/man/man1/argusd.1",
     "share/man/man1/argus-sim.1",
     "share/man/man1/argus-log.1",
+    "share/man/man1/argusctl.1",
     "share/man/man1/argus-conformance.1",
+    "share/man/man1/argus-monitor.1",
     "share/bash-completion/completions/argusd",
     "lib/udev/rules.d/60-argus.rules",
 }

@@ -118,6 +118,7 @@ def test_layers_point_one_way() -> None:
         "adjustment",
         "task",
         "supervisor",
+        "guardian",
     ]
     firmware = ROOT / "firmware"
     assert {path.parent.name for path in firmware.glob("*/*.c")} <= set(order)

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 import struct
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,16 +15,16 @@ import pytest
 from argus_ros.argus_node import ArgusNode
 from argus_tools.control import Client
 from diagnostic_msgs.msg import DiagnosticArray
-from harness import Argusd, Sim
+from harness import Argusd
 from nav_msgs.msg import Odometry
 from nodes import SEATS, Bench
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from robots import emulated, minded
 from sensor_msgs.msg import BatteryState, PointCloud2, Range
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
-harness.SIM = Path(sys.prefix) / "bin/argus-sim"  # type: ignore[misc]
 DEAD = 3
 
 
@@ -35,13 +34,9 @@ class Robot:
     def __init__(
         self, folder: Path, *simulated: str, argusd: tuple[str, ...] = ("--passive",), **given: Any
     ) -> None:
-        arguments = ("--tcp", "127.0.0.1:0", "--crosstalk", "0", *simulated)
-        self.sim = Sim(arguments, folder / "truth.jsonl", folder / "sim.log")
-        self.socket = folder / "argus.sock"
-        place = f"unix:{self.socket}"
-        link = self.sim.address if self.sim.address.startswith("tcp:") else f"tcp:{self.sim.address}"
-        self.argusd = Argusd(["--link", link, "--json", "--wait", "60", "--control", place, *argusd])
-        harness.wait_for("the control socket", self.socket.exists, 60)
+        self.sim, address = emulated(folder, *simulated)
+        self.argusd, place = minded(folder, address, *argusd)
+        self.place = place
         self.node = ArgusNode()
         values = {"control": place, **given}
         self.node.set_parameters([Parameter(key, value=value) for key, value in values.items()])
@@ -153,7 +148,7 @@ def test_topics_tell_what_argusd_knows(robot: Any) -> None:
 
 
 def test_no_echo_is_infinite_and_a_dead_sonar_is_what_the_parameter_says(robot: Any) -> None:
-    bot = robot("--world", "hall", "--fault", f"stuck:{DEAD}@2s:value=0", dead="nan")
+    bot = robot("--world", "hall", "--fault", f"stuck:{DEAD}@2s:value=0", dead="invalid")
     assert bot.await_("sonar/range_4").range == math.inf
     assert math.isnan(bot.await_(f"sonar/range_{DEAD}", lambda m: math.isnan(m.range)).range)
 
@@ -169,7 +164,7 @@ def test_services_do_what_they_say_and_leave_control_to_who_has_it(robot: Any) -
     assert bot.call(SetBool, "passive", data=False).success
     bot.argusd.wait("STATUS", active=True)
     assert bot.call(SetBool, "passive", data=True).success
-    with Client(f"unix:{bot.socket}") as other:
+    with Client(bot.place) as other:
         other.take()
         refused = bot.call(Trigger, "sonar/recheck")
         assert not refused.success

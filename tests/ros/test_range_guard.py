@@ -226,7 +226,7 @@ def test_nan_stands_for_a_dead_sonar_where_that_is_asked_for(guarded: Any) -> No
     mission = Mission(world="demo", course=ROUND, faults=(f"stuck:{DEAD}@5s:value=0",), limit_s=9)
     values = [
         (told.t_s, message.range)
-        for told, _, heard in guarded(dead="nan").run(mission)
+        for told, _, heard in guarded(dead="invalid").run(mission)
         for number, message in ranges_of(heard)
         if number == DEAD
     ]

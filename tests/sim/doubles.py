@@ -107,6 +107,9 @@ class FakeFaults:
         """No changes."""
         return []
 
+    def wheels(self) -> tuple[float, float]:
+        return 1.0, 1.0
+
     def bumper(self, now_ms: float) -> int:
         """The bits set."""
         return self.bits

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from hil_sim.cli.main import main
 from hil_sim.errors import SimError
 from hil_sim.faults.grammar import fault_help, parse_fault
-from hil_sim.faults.kinds import LINK_KINDS, SONAR_KINDS, LinkFault
+from hil_sim.faults.kinds import LINK_KINDS, SONAR_KINDS, WHEEL_KINDS, LinkFault
 from hil_sim.scenario.scenario import _SONAR_LIMITS, SEED_MAX, Scenario, load_scenario, scenario_names
 from hil_sim.sonar.params import SonarParams
 from hil_sim.tables import robots
@@ -249,7 +249,7 @@ def test_the_examples_in_the_scenario_document_are_true(tmp_path: Path) -> None:
     parsed = [parse_fault(line.split("#")[0].strip()) for line in faults]
     assert any(isinstance(fault, LinkFault) for fault in parsed)
     used = {line.split(":")[0].split("@")[0].split("#")[0].strip() for line in faults}
-    assert used == {*SONAR_KINDS, *LINK_KINDS, "bumper"}
+    assert used == {*SONAR_KINDS, *WHEEL_KINDS, *LINK_KINDS, "bumper"}
 
 
 def test_the_scenario_document_names_every_key_kind_and_parameter(tmp_path: Path) -> None:

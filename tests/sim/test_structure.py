@@ -25,6 +25,7 @@ ROOMS = (
     ("links", "scenario"),
     ("sil",),
     ("bench", "demo", "conformance"),
+    ("experiment",),
     ("cli",),
 )
 

@@ -6,11 +6,15 @@ from __future__ import annotations
 import doctest
 import importlib
 import re
+import sys
 from pathlib import Path
 from types import FunctionType
 
 import argus
 import pytest
+from argus_tools.log.cli import main as log_cli
+
+from hil_sim.errors import missing_package
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "docs/samples/two-failing-sonars.rec.gz"
@@ -80,3 +84,16 @@ def test_a_manager_that_reads_a_log_is_passive() -> None:
         argus.diagnose(SAMPLE, config={"active": "on"})
     with pytest.raises(argus.LogError, match="no such setting"):
         argus.diagnose(SAMPLE, config={"no_such": 1})
+
+
+def test_a_package_that_is_not_installed_is_named(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "mcap", None)
+        patch.setitem(sys.modules, "mcap.writer", None)
+        patch.delitem(sys.modules, "argus_tools.log.mcap_out", raising=False)
+        assert log_cli(["convert", str(SAMPLE), str(tmp_path / "x.mcap")]) == 2
+    assert capsys.readouterr().err == (
+        "argus-log: this needs the Python package mcap, which is not installed: pip install mcap\n"
+    )
+    with pytest.raises(ModuleNotFoundError):
+        missing_package(ModuleNotFoundError("No module named 'argus_tolls'", name="argus_tolls"))

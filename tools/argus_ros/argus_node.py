@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,8 +17,8 @@ from rclpy.duration import Duration
 from sensor_msgs.msg import BatteryState, PointCloud2, Range
 from std_srvs.srv import SetBool, Trigger
 
-from argus_ros import messages
-from argus_ros.base import LATCHED, REPAIR, ArgusLifecycleNode, Refused, TFMessage, run_node
+from argus_ros import messages, parameters
+from argus_ros.base import LATCHED, ArgusLifecycleNode, Refused, SonarArray, TFMessage
 from argus_ros.repair import Limits, Policy, Verdict, bearings, neighbours
 from argus_ros.ring import Motion
 from argus_ros.watcher import Watcher
@@ -29,42 +28,6 @@ from hil_sim.tables.robot import DEFAULT_ROBOT, RobotTable, robot_table
 
 OWNER: Final = "argus"
 SONARS: Final = 16
-PARAMETERS: Final[dict[str, tuple[Any, str]]] = {
-    **REPAIR,
-    "control": (
-        "",
-        "argusd's control socket, unix:PATH or tcp:HOST:PORT; empty: ARGUS_CONTROL, or that of its unit",
-    ),
-    "token_file": ("", "file whose first line is the token of a tcp: control socket"),
-    "period_ms": (100, "time between two states of argusd, and so of odometry and battery"),
-    "cloud_age_s": (0.5, "an echo older than this is not in the cloud"),
-    "diagnostics_s": (1.0, "time between two diagnoses; a change of a sonar is told at once"),
-    "odom_frame_id": ("odom", "frame of the odometry"),
-    "base_link_frame_id": ("base_link", "frame of the robot"),
-    "sonar_frame_prefix": ("sonar_", "the frame of sonar N is this and N"),
-    "sonar_z_m": (0.0, "height of the sonars above the robot's frame"),
-    "publish_tf": (True, "whether /tf and /tf_static carry the frames of robot and sonars"),
-    "guard": ("", "HOST:PORT of argusd's guard, which takes cmd_vel; empty: cmd_vel is not taken"),
-    "cmd_vel_timeout_s": (0.5, "without a cmd_vel for so long the robot is stopped"),
-    "max_speed_m_s": (0.75, "cmd_vel is bounded to this"),
-    "max_turn_rad_s": (1.5, "cmd_vel is bounded to this"),
-    "autostart": (True, "configure and activate at start; false: another node does it"),
-}
-USAGE: Final = """\
-usage: argus-ros [--ros-args ARGUMENTS]
-
-The node of a robot that argusd minds: a topic for each sonar, cloud, diagnoses, odometry, battery and frames
-from argusd's control socket; cmd_vel goes to its guard.
-
-examples:
-  argusd --link serial:/dev/ttyUSB0@9600 --control unix:/tmp/argus.sock --guard tcp:127.0.0.1:8101
-  argus-ros --ros-args -p control:=unix:/tmp/argus.sock
-  argus-ros --ros-args -p control:=unix:/tmp/argus.sock -p guard:=127.0.0.1:8101
-  argus-ros --ros-args --params-file argus.yaml
-  ros2 service call /sonar/recheck std_srvs/srv/Trigger
-
-docs/ros.md explains the parameters; ros2 param describe argus NAME tells each.
-"""
 _COVER_AGE_S: Final = 1.0
 
 
@@ -100,12 +63,13 @@ class _Ring:
 class ArgusNode(ArgusLifecycleNode):
     """The node."""
 
+    _watcher: Watcher | None = None
+    _wheels: Wheels | None = None
+
     def __init__(self) -> None:
-        super().__init__("argus", PARAMETERS)
+        super().__init__("argus", parameters.ARGUS)
         self._active = False
         self._parts: list[Any] = []
-        self._watcher: Watcher | None = None
-        self._wheels: Wheels | None = None
         self._ring: _Ring | None = None
         self._state: dict[str, Any] = {}
         self._told: list[Verdict] = []
@@ -154,7 +118,10 @@ class ArgusNode(ArgusLifecycleNode):
         self._battery = self.create_publisher(BatteryState, "battery_state", 10)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._parts += [*self._ranges, self._cloud, self._odometry, self._battery, self._diagnostics]
-        self._tf = self._tf_static = None
+        self._array = self._tf = self._tf_static = None
+        if SonarArray is not None:
+            self._array = self.create_publisher(SonarArray, "sonar", 10)
+            self._parts.append(self._array)
         if self.value("publish_tf"):
             if TFMessage is None:
                 self.get_logger().warning("no tf: the package tf2_msgs is not here (docs/ros.md)")
@@ -212,8 +179,10 @@ class ArgusNode(ArgusLifecycleNode):
         self._parts.clear()
 
     def destroy_node(self) -> None:
-        """End the threads, then the node."""
-        self._drop()
+        """End the threads, then the node; it may be one that was not made whole."""
+        for thread in (self._watcher, self._wheels):
+            if thread is not None:
+                thread.close()
         super().destroy_node()
 
     # ---- what comes
@@ -328,6 +297,11 @@ class ArgusNode(ArgusLifecycleNode):
                 age_ms = ring.age_ms[k] if is_fresh else 0
                 self._publish_range(k, (now - Duration(nanoseconds=age_ms * 1_000_000)).to_msg())
         self._publish_cloud(now.to_msg())
+        if self._array is not None:
+            values = [ring.value(k, self._policy) for k in range(ring.table.sonars)]
+            known = [math.nan if value is None else value for value in values]
+            at = messages.header(now.to_msg(), self.value("base_link_frame_id"))
+            self._array.publish(SonarArray(header=at, ranges_count=len(known), ranges=known))
 
     # ---- what goes
 
@@ -392,12 +366,3 @@ class ArgusNode(ArgusLifecycleNode):
                 for k in range(ring.table.sonars)
             ]
         self._diagnostics.publish(messages.diagnostics(self._now(), statuses))
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the node."""
-    return run_node(ArgusNode, USAGE, arguments)
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

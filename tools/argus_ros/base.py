@@ -10,6 +10,7 @@ from typing import Any, Final
 import rclpy
 from argus_tools.formats.base import LogError
 from rcl_interfaces.msg import ParameterDescriptor
+from rclpy.exceptions import ParameterException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -22,15 +23,13 @@ try:
     from tf2_msgs.msg import TFMessage as TFMessage
 except ImportError:  # no part of the packages on PyPI; docs/ros.md says how it is made there
     TFMessage = None
+try:
+    from p2os_msgs.msg import SonarArray as SonarArray
+except ImportError:  # a package of p2os2, where that driver is
+    SonarArray = None
 
 EXIT_USAGE: Final = 2
 LATCHED: Final = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-REPAIR: Final[dict[str, tuple[Any, str]]] = {
-    "dead": ("withhold", "what is published of a sonar that is not trusted: withhold, nan, cover"),
-    "no_echo": ("inf", "what stands for nothing seen: inf (REP 117), or max (the greatest range)"),
-    "trust": ("named", "which sonars are trusted: named (all without the name of a fault), or healthy only"),
-}
 
 
 class Refused(Exception):
@@ -102,22 +101,17 @@ class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
     refusal = ""
 
 
-def run_node(
-    make: Callable[[], ArgusLifecycleNode], usage: str, arguments: Sequence[str] | None = None
-) -> int:
+def run_node(make: Callable[[], ArgusLifecycleNode], arguments: Sequence[str]) -> int:
     """Run a node to its end; return the exit code."""
-    given = list(sys.argv[1:] if arguments is None else arguments)
-    if "--help" in given or "-h" in given:
-        print(usage)
-        return 0
-    known = given.index("--ros-args") if "--ros-args" in given else len(given)
-    if known:
-        print(
-            f"unknown argument '{given[0]}': parameters come behind --ros-args; see --help", file=sys.stderr
-        )
+    rclpy.init(args=[sys.argv[0], *arguments])
+    try:
+        node = make()
+    except ParameterException as error:
+        print(f"{error}; see --help", file=sys.stderr)
+        rclpy.try_shutdown()
         return EXIT_USAGE
-    rclpy.init(args=[sys.argv[0], *given])
-    node = make()
+    except KeyboardInterrupt:
+        return 0
     try:
         node.start()
         executor = SingleThreadedExecutor()

@@ -14,40 +14,12 @@ from rclpy.qos import qos_profile_sensor_data
 from rclpy.time import Time
 from sensor_msgs.msg import PointCloud2, Range
 
-from argus_ros import messages
-from argus_ros.base import REPAIR, ArgusLifecycleNode, Refused, run_node
+from argus_ros import messages, parameters
+from argus_ros.base import ArgusLifecycleNode, Refused
 from argus_ros.repair import Limits, Verdict, bearings, neighbours
 from argus_ros.ring import Motion, Ring
 
 OWNER: Final = "range_guard"
-PARAMETERS: Final[dict[str, tuple[Any, str]]] = {
-    **REPAIR,
-    "robot": ("p3dx-sh", "whose sonars these are: p3dx-sh, p3at-sh, amigo-sh, peoplebot-sh"),
-    "topics": ([f"sonar/range_{k}" for k in range(16)], "the driver's topics of sensor_msgs/Range"),
-    "sonars": ([-1], "the sonar of the robot whose place each of them has; [-1]: in the order of the topics"),
-    "odometry": ("pose", "the driver's topic of nav_msgs/Odometry"),
-    "suffix": ("/guarded", "what is added to a topic for the repaired one"),
-    "cloud": ("sonar/cloud_guarded", "topic of the echoes of trusted sonars as sensor_msgs/PointCloud2"),
-    "cloud_age_s": (0.5, "an echo older than this is not in the cloud"),
-    "base_frame": ("base_link", "frame of the cloud"),
-    "settings": ([""], "settings of the fault manager, as suspect_readings=5"),
-    "diagnostics_s": (1.0, "time between two diagnoses; a change of a sonar is told at once"),
-    "autostart": (True, "configure and activate at start; false: another node does it"),
-}
-USAGE: Final = """\
-usage: argus-range-guard [--ros-args ARGUMENTS]
-
-Takes the sensor_msgs/Range topics and the odometry of any driver, runs the fault manager on them,
-and publishes each repaired as TOPIC/guarded, with /diagnostics and a cloud of trusted echoes.
-
-examples:
-  argus-range-guard
-  argus-range-guard --ros-args -p dead:=cover -p no_echo:=max
-  argus-range-guard --ros-args -p "topics:=[front_left, front_right]" -p "sonars:=[2, 5]" -p odometry:=odom
-  argus-range-guard --ros-args --params-file range_guard.yaml
-
-docs/ros.md explains the parameters; ros2 param describe range_guard NAME tells each.
-"""
 _COVER_AGE_S: Final = 1.0
 _COVER_PERIOD_S: Final = 0.25
 
@@ -72,7 +44,7 @@ class RangeGuard(ArgusLifecycleNode):
     """The node."""
 
     def __init__(self) -> None:
-        super().__init__("range_guard", PARAMETERS)
+        super().__init__("range_guard", parameters.RANGE_GUARD)
         self._active = False
         self._parts: list[Any] = []
         self._told: list[Verdict] = []
@@ -246,6 +218,8 @@ class RangeGuard(ArgusLifecycleNode):
         hardware = self._robot.subclass
         failure = self._ring.failure if self._now_s > -math.inf else None
         mapped = [v if k in self._sonars else Verdict("ABSENT") for k, v in enumerate(verdicts)]
+        if failure is not None and len(self._sonars) < self._robot.sonars:
+            failure = ""  # that of the fault manager counts sonars that this ring has not got
         counts = {"topics": len(self._sonars), "restarts": self._ring.restarts}
         statuses = [messages.ring_status(OWNER, failure, mapped, hardware, counts)]
         for number, sonar in self._sonars.items():
@@ -255,12 +229,3 @@ class RangeGuard(ArgusLifecycleNode):
             verdict = verdicts[number]
             statuses.append(messages.sonar_status(OWNER, number, verdict, reading_mm, age_ms, hardware))
         self._diagnostics.publish(messages.diagnostics(self.get_clock().now().to_msg(), statuses))
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the node."""
-    return run_node(RangeGuard, USAGE, arguments)
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

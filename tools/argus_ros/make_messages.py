@@ -51,10 +51,10 @@ class Failed(Exception):
     """A step failed; the text is one line."""
 
 
-def missing() -> list[str]:
-    """Return the packages that cannot be imported here."""
+def missing(names: Sequence[str]) -> list[str]:
+    """Return those of the packages that cannot be imported here."""
     probe = "import importlib.util, sys; sys.exit(importlib.util.find_spec(sys.argv[1]) is None)"
-    return [name for name in PACKAGES if subprocess.call([sys.executable, "-c", probe, name])]
+    return [name for name in names if subprocess.call([sys.executable, "-c", probe, name])]
 
 
 def write(folder: Path, name: str) -> None:
@@ -116,7 +116,10 @@ def make(names: Sequence[str], prefix: Path) -> None:
         raise Failed(f"{' and '.join(lacking)} needed: install cmake, ninja-build and g++")
     environment = {**os.environ, "AMENT_PREFIX_PATH": str(prefix)}
     environment["PATH"] = f"{prefix / 'bin'}{os.pathsep}{environment.get('PATH', '')}"
-    run([sys.executable, "-m", "pip", "install", "--quiet", "--no-input", *GENERATORS], environment)
+    run(
+        [sys.executable, "-m", "pip", "install", "--quiet", "--no-input", "--no-compile", *GENERATORS],
+        environment,
+    )
     correct_paths(prefix)
     for name in names:
         print(f"make_messages: building {name}", flush=True)
@@ -136,19 +139,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
         prog="python -m argus_ros.make_messages",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="example:\n  python -m argus_ros.make_messages     takes about a minute, once for each environment",
+        epilog="examples:\n"
+        "  python -m argus_ros.make_messages              tf2_msgs; takes about a minute, once for each environment\n"
+        "  python -m argus_ros.make_messages p2os_msgs    for the topic `sonar` of p2os2's own type",
     )
-    parser.parse_args(arguments)
+    parser.add_argument("package", nargs="*", default=["tf2_msgs"], help=f"of {', '.join(PACKAGES)}")
+    wanted = parser.parse_args(arguments).package
+    if unknown := [name for name in wanted if name not in PACKAGES]:
+        parser.error(f"'{unknown[0]}' is none of {', '.join(PACKAGES)}")
     if sys.prefix == sys.base_prefix:
         parser.error("run this by the Python of a virtual environment: packages are installed into it")
-    names = missing()
+    names = missing(wanted)
     try:
         if names:
             make(names, Path(sys.prefix))
     except Failed as error:
         print(f"make_messages: {error}", file=sys.stderr)
         return EXIT_FAILED
-    print(f"make_messages: {' and '.join(PACKAGES)} are here")
+    print(f"make_messages: {' and '.join(wanted)} can be imported")
     return 0
 
 

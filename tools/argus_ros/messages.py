@@ -171,15 +171,15 @@ def sonar_status(
 def ring_status(
     owner: str, failure: str | None, verdicts: Sequence[Verdict], hardware: str, more: Mapping[str, Any]
 ) -> Any:
-    """Return the diagnosis of the whole ring; `failure` None: nothing is known of the robot."""
+    """Return the diagnosis of the whole ring; `failure` None: nothing is known of the robot; empty: of no use."""
     present = [verdict for verdict in verdicts if verdict.health != "ABSENT"]
     out = [number for number, verdict in enumerate(verdicts) if verdict.kind]
     bad = len(out)
     words = f"{len(present) - bad} of {len(present)} sonars to be trusted"
     if failure is None:
         return _status(STALE, f"{owner}: ring", "no robot", hardware, more)
-    level = max(_FAILURE_LEVEL.get(failure, ERROR), WARN if bad else OK)
-    values = {"failure_state": failure, "not_trusted": " ".join(map(str, out)) or "none", **more}
+    level = max(_FAILURE_LEVEL.get(failure, ERROR) if failure else OK, WARN if bad else OK)
+    values = {"failure_state": failure or "unknown", "not_trusted": " ".join(map(str, out)) or "none", **more}
     return _status(level, f"{owner}: ring", words, hardware, values)
 
 

@@ -16,17 +16,17 @@ COVER_DEG: Final = 45.0
 
 
 class Dead(Enum):
-    """What becomes of a reading that is not to be trusted."""
+    """What becomes of a reading that is not to be trusted; `nan` would be read as a number on a command line."""
 
     WITHHOLD = "withhold"
-    NAN = "nan"
+    INVALID = "invalid"
     COVER = "cover"
 
 
 class NoEcho(Enum):
     """What stands for "nothing seen": +inf as REP 117 says, or the greatest range."""
 
-    INF = "inf"
+    REP117 = "rep117"
     MAX = "max"
 
 
@@ -66,7 +66,7 @@ class Policy:
     """How readings are repaired."""
 
     dead: Dead = Dead.WITHHOLD
-    no_echo: NoEcho = NoEcho.INF
+    no_echo: NoEcho = NoEcho.REP117
     trust: Trust = Trust.NAMED
 
     def good(self, range_m: float, limits: Limits) -> float:
@@ -74,7 +74,7 @@ class Policy:
         if math.isnan(range_m):
             return range_m
         if range_m >= limits.greatest_m:
-            return math.inf if self.no_echo is NoEcho.INF else limits.greatest_m
+            return math.inf if self.no_echo is NoEcho.REP117 else limits.greatest_m
         return range_m if range_m >= limits.least_m else -math.inf
 
     def bad(self, covering_m: Sequence[float], limits: Limits) -> float | None:
@@ -83,7 +83,7 @@ class Policy:
         covering_m: the last readings of those that stand in for it. The nearest echo counts; without one of them
         nothing is known there, and nothing is said.
         """
-        if self.dead is Dead.NAN:
+        if self.dead is Dead.INVALID:
             return math.nan
         if self.dead is Dead.WITHHOLD or not covering_m:
             return None

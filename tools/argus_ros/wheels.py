@@ -43,7 +43,7 @@ class Wheels:
         self._sent_s = self._heard_s = 0.0
         self._ended = threading.Event()
         self.connected = False
-        self.sips = 0
+        self.sips, self.last = 0, Sip()
         self._thread = threading.Thread(target=self._run, name="wheels", daemon=True)
         self._thread.start()
 
@@ -127,7 +127,7 @@ class Wheels:
         now = time.monotonic()
         for packet in self._packets(_TICK_S):
             if isinstance(packet, Sip):
-                self.sips += 1
+                self.sips, self.last = self.sips + 1, packet
                 self._heard_s = now
         if now - self._heard_s > _SILENT_S:
             raise Lost("the robot has become silent")

@@ -24,7 +24,10 @@ from devtool.setup import HEADER, alone, ensure
 DIST: Final = ROOT / "dist"
 WORK: Final = BUILD / "package"
 HERE: Final = platform.machine()
-ARCHITECTURES: Final = ("x86_64", "aarch64")
+ARM: Final = "aarch64"
+ARCHITECTURES: Final = ("x86_64", ARM)
+NEEDS: Final = ("dpkg-dev", "lintian", "systemd", *((ARM, "qemu-user") if HERE == "x86_64" else ()))
+"""What the tests of the packages take."""
 SCRIPT: Final = """\
 #!/usr/bin/python3
 import sys
@@ -123,8 +126,7 @@ def debian_flags() -> list[str]:
 
 
 def make_deb(run: Run) -> None:
-    """Build the Debian packages."""
-    make_wheel(HERE, run)
+    """Build the Debian packages, with the tools of the wheel that was made before."""
     raw = WORK / "deb"
     epoch = release_time()
     date = email.utils.format_datetime(datetime.datetime.fromtimestamp(epoch, datetime.UTC))
@@ -169,9 +171,22 @@ def do_package(args: argparse.Namespace) -> int:
         raise Stop(f"--arch {args.arch}: only the wheel is built for another machine than this", EXIT_USAGE)
     needs = needs_of(args.arch) if args.kind == "wheel" else ["dpkg-dev"]
     ensure([], needs)
-    make = functools.partial(make_wheel, args.arch) if args.kind == "wheel" else make_deb
-    quietly(f"building: {args.kind}, {args.arch}", make)
+    quietly(f"building the wheel, {args.arch}", functools.partial(make_wheel, args.arch))
+    if args.kind == "deb":
+        quietly("building the Debian packages", make_deb)
     return 0
+
+
+def package_tests(run: Run) -> str | None:
+    """Make all packages anew, and test them; tell which tests the machine kept from running."""
+    shutil.rmtree(DIST, ignore_errors=True)
+    make_wheel(HERE, run)
+    if HERE != ARM and toolchain(ARM).exists():
+        make_wheel(ARM, run)
+    make_deb(run)
+    run([VENV / "bin/python", "-m", "pytest", "-q", "tests/packages"])
+    chroot = os.environ.get("ARGUS_CHROOT")
+    return None if chroot else "not installed in a clean Debian: ARGUS_CHROOT= names none"
 
 
 Add = Callable[[str, Callable[[argparse.Namespace], int], str, str], argparse.ArgumentParser]

@@ -29,6 +29,8 @@ LIMIT_S: Final = 45.0
 ESCAPE: Final = b"\x1b"
 ARROW_UP: Final = b"\x1b[A"
 DROVE_MM: Final = 300.0
+SETTLE_S: Final = 4.0
+"""Until argusd has met the robot."""
 MAP: Final = "AMROffice.map"
 GOAL: Final = "800,0"
 
@@ -175,6 +177,40 @@ def aria_against_sim(aria: Path, name: str, folder: Path) -> Peer:
     return Peer(name, "argus-sim", passed, text)
 
 
+def aria_behind_guard(aria: Path, folder: Path) -> Peer:
+    """The vendor's wander drives a robot whose sonar 3 is dead, by a guard port of argusd: it must meet nothing."""
+    robot, guard = free_port(), free_port()
+    truth = folder / "guarded.jsonl"
+    said = folder / "guarded.events"
+    environment = {**os.environ, "LD_LIBRARY_PATH": str(aria / "lib"), "ARIA": str(aria)}
+    client = [str(aria / "examples/wander"), "-remoteHost", "127.0.0.1", "-remoteRobotTcpPort", str(guard)]
+    sim: list[str | Path] = [
+        SIM,
+        "--tcp",
+        str(robot),
+        "--world",
+        "office",
+        "--fault",
+        "silent:3",
+        "--truth",
+        truth,
+    ]
+    argusd = [str(ARGUSD), "--link", f"tcp:127.0.0.1:{robot}", "--wait", "60", "--json"]
+    argusd += ["--guard", f"tcp:127.0.0.1:{guard}", "--guard-readings", "cover"]
+    with started(sim, stdout=subprocess.DEVNULL), said.open("wb") as events:
+        wait_port(robot)
+        with started(argusd, stdout=events, stdin=subprocess.DEVNULL):
+            wait_port(guard)
+            time.sleep(SETTLE_S)
+            run_client(client, environment, [])
+    seen = truth_of(truth)
+    held = sum(b'"GUARD_' in line for line in said.read_bytes().splitlines())
+    passed = seen["sessions"] > 0 and seen["way_mm"] > DROVE_MM and seen["collisions"] == 0
+    drove = f"{seen['way_mm']:.0f} mm in {LIMIT_S:.0f} s, {seen['collisions']} collisions"
+    text = f"sonar 3 dead: {drove}, {held} guard events"
+    return Peer("wander", "argusd --guard", passed, text)
+
+
 def argusd_against_mobilesim(mobilesim: Path, folder: Path) -> Peer:
     """argusd drives the vendor's robot to a goal."""
     port = free_port()
@@ -240,6 +276,7 @@ def run_peers(given: Mapping[str, Path], folder: Path) -> list[Peer]:
         return []
     aria = build_aria(given["ARIA_SOURCE"])
     peers = [aria_against_sim(aria, example, folder) for example in EXAMPLES]
+    peers.append(aria_behind_guard(aria, folder))
     if "MOBILESIM_SOURCE" in given:
         peers.append(argusd_against_mobilesim(build_mobilesim(given["MOBILESIM_SOURCE"], aria), folder))
     return peers

@@ -15,41 +15,54 @@ from devtool.setup import run_steps
 from devtool.system import base_python
 
 VENV_ROS: Final = BUILD / "venv-ros"
-TESTERS: Final = ("pytest>=8.0", "hypothesis>=6.98", "setuptools>=68")
+TESTERS: Final = ("pytest>=8.0", "hypothesis>=6.98", "setuptools>=68", "websockets>=13")
 MAKER: Final = ROOT / "tools/argus_ros/make_messages.py"
 NEEDS: Final = ("g++",)
 
 
-def recipe() -> str:
-    """Return a digest of what the environment holds."""
+def recipe() -> tuple[str, str]:
+    """Return digests of what the environment holds: packages, and the programs of this project."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    parts = (project["dependencies"], project["optional-dependencies"], project["scripts"], TESTERS)
-    text = f"{base_python()} {VENV_ROS} {parts}"
-    return hashlib.sha256(text.encode() + MAKER.read_bytes()).hexdigest()
+    extras = project["optional-dependencies"]
+    packages = (base_python(), VENV_ROS, project["dependencies"], extras["ros"], extras["foxglove"], TESTERS)
+    found = hashlib.sha256(repr(packages).encode() + MAKER.read_bytes())
+    return found.hexdigest(), hashlib.sha256(repr(project["scripts"]).encode()).hexdigest()
 
 
 def lacking() -> str | None:
     """Make the environment unless it is there; return why it cannot be had, None when it can."""
     stamp, python = VENV_ROS / "argus-recipe", VENV_ROS / "bin/python"
-    if (
-        stamp.exists()
-        and stamp.read_text() == recipe()
-        and quiet_ok([python, "-c", "import rclpy, tf2_msgs"])
-    ):
+    packages, programs = recipe()
+    pip: list[str | Path] = [
+        python,
+        "-m",
+        "pip",
+        "install",
+        "--no-input",
+        "--no-compile",
+        "--disable-pip-version-check",
+    ]
+    ourselves = [*pip, "--no-deps", "-e", ROOT]
+    recorded = stamp.read_text().split() if stamp.exists() else []
+    if recorded[:1] == [packages] and quiet_ok([python, "-c", "import rclpy, tf2_msgs"]):
+        if recorded[1:] != [programs]:
+            run_steps([ourselves], LOGS / "venv-ros.log")
+            stamp.write_text(f"{packages} {programs}")
         return None
     say("making build/venv-ros (ROS from PyPI, about two minutes, once)")
-    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    pip: list[str | Path] = [python, "-m", "pip", "install", "--no-input", "--disable-pip-version-check"]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     log = LOGS / "venv-ros.log"
     run_steps([[base_python(), "-m", "venv", "--clear", VENV_ROS]], log)
+    extras = project["optional-dependencies"]
     with log.open("a") as file:
-        had = subprocess.run(
-            words([*pip, *extras["ros"], *extras["foxglove"]]), stdout=file, stderr=file, check=False
-        )
+        command = words([*pip, *extras["ros"], *extras["foxglove"]])
+        had = subprocess.run(command, stdout=file, stderr=file, check=False)
     if had.returncode:
         return f"skipped: the packages of ROS cannot be had here, see {log.relative_to(ROOT)}"
-    run_steps([[*pip, *TESTERS], [*pip, "-e", ROOT], [python, MAKER]], LOGS / "venv-ros-more.log")
-    stamp.write_text(recipe())
+    run_steps(
+        [[*pip, *project["dependencies"], *TESTERS], ourselves, [python, MAKER]], LOGS / "venv-ros-more.log"
+    )
+    stamp.write_text(f"{packages} {programs}")
     return None
 
 

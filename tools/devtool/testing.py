@@ -8,7 +8,10 @@ from pathlib import Path
 from typing import Final
 
 from devtool.base import BUILD, CORES, ROOT, VENV, Command, Run
+from devtool.browser import monitor_tests
 from devtool.cmake import BOARDS, SOAK, build, build_and_test, ctest
+from devtool.packaging import NEEDS as PACKAGE_NEEDS
+from devtool.packaging import package_tests
 from devtool.peers import peers
 from devtool.real_time import hil_workers, run_in_real_time
 from devtool.ros import NEEDS as ROS_NEEDS
@@ -16,8 +19,9 @@ from devtool.ros import ros_tests
 from devtool.stages import Stage
 
 PYTEST: Final = (VENV / "bin/python", "-m", "pytest", "-q")
-IN_REAL_TIME: Final = ("tests/hil", "tests/can", "tests/target", "tests/ros")
-COMPUTING: Final = ("tests", *(f"--ignore={folder}" for folder in IN_REAL_TIME))
+IN_REAL_TIME: Final = ("tests/hil", "tests/can", "tests/target", "tests/monitor", "tests/ros")
+BY_THEMSELVES: Final = (*IN_REAL_TIME, "tests/packages")
+COMPUTING: Final = ("tests", *(f"--ignore={folder}" for folder in BY_THEMSELVES))
 # Some tests take a hundred times as long as others: who has done its own takes over what another has before it.
 SHARED_OUT: Final = ("-n", str(CORES), "--dist", "worksteal")
 
@@ -125,6 +129,13 @@ TEST_STAGES: Final = (
         ("can-utils",),
     ),
     Stage("ros", "nodes of ROS 2, where its packages can be had", ros_tests, ("release",), ROS_NEEDS),
+    Stage("packages", "wheels and Debian packages, installed", package_tests, (), PACKAGE_NEEDS),
+    Stage(
+        "monitor",
+        "the page of argus-monitor in a real Chromium, where one can be had",
+        monitor_tests,
+        ("release",),
+    ),
     Stage(SOAK, "C and Python tests that compute for long", soak_tests, ("release",)),
     Stage(
         "peers",

@@ -279,6 +279,10 @@ typedef enum {
     X(73, REVERSED, WARN, "drive",                                                                           \
       "the leading end changes, at rest; value: 1 the rear leads, 0 the front again")                        \
     X(74, INJECTED, WARN, "sonar", "what it reports is altered for a test; value: fault kind, 0: no more")   \
+    X(75, WHEEL_SHORT, WARN, "drive",                                                                        \
+      "ways straight ahead bend: a wheel turns less than it is told, and is countered by turning; value: "   \
+      "thousandths that it falls short, positive the left one, negative the right one")                      \
+    X(76, WHEEL_EVEN, OK, "drive", "ways straight ahead are straight again; value: 0")                       \
     X(80, RECORD_IGNORED, WARN, "record",                                                                    \
       "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")            \
     X(81, EVENTS_LOST, ERROR, "events", "the event queue overflowed; value: events lost")                    \

@@ -314,6 +314,29 @@ static voice_options_t voice_of_options(void) {
                                                              : 2000u};
 }
 
+// Before anything was recorded or anybody served.
+static argusd_exit_t give_up(hal_link_t *link, argusd_exit_t code) {
+    hal_link_close(link);
+    control_close(&loop.control);
+    drop_tape();
+    return complain(code);
+}
+
+// What the loop needs besides the link; `message` says what is wrong.
+static argusd_exit_t prepare_loop(const hal_clock_t *clock) {
+    if (options.state_path != NULL && !open_state()) {
+        return ARGUSD_EXIT_USAGE;
+    }
+    if (course.count > 0 && !argus_set_course(loop.driver.core, course.point, course.count)) {
+        text_refuse(message, sizeof message, "the course does not fit the fault manager");
+        return ARGUSD_EXIT_INTERNAL;
+    }
+    if (!open_bus(clock)) {
+        return ARGUSD_EXIT_LINK;
+    }
+    return guards_open(&loop.guards, &options.guards, &loop.driver, message, sizeof message);
+}
+
 static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *notice) {
     const loop_options_t wishes = {
         .voice = voice_of_options(),
@@ -322,31 +345,9 @@ static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *no
         .notice = notice,
     };
     driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
-    if (options.state_path != NULL && !open_state()) {
-        hal_link_close(&link);
-        control_close(&loop.control);
-        drop_tape();
-        return complain(ARGUSD_EXIT_USAGE);
-    }
-    if (course.count > 0 && !argus_set_course(loop.driver.core, course.point, course.count)) {
-        hal_link_close(&link);
-        control_close(&loop.control);
-        drop_tape();
-        text_refuse(message, sizeof message, "the course does not fit the fault manager");
-        return complain(ARGUSD_EXIT_INTERNAL);
-    }
-    if (!open_bus(&clock)) {
-        hal_link_close(&link);
-        control_close(&loop.control);
-        drop_tape();
-        return complain(ARGUSD_EXIT_LINK);
-    }
-    const argusd_exit_t guarded =
-        guards_open(&loop.guards, &options.guards, &loop.driver, message, sizeof message);
-    if (guarded != ARGUSD_EXIT_OK) {
-        hal_link_close(&link);
-        drop_tape();
-        return complain(guarded);
+    const argusd_exit_t prepared = prepare_loop(&clock);
+    if (prepared != ARGUSD_EXIT_OK) {
+        return give_up(&link, prepared);
     }
     loop.driver.after = guards_tap(&loop.guards);
     loop.driver.tap = tape_tap(&loop.tape);
@@ -373,18 +374,16 @@ static argusd_exit_t run_attached(const hal_clock_t *clock) {
     return attach_run(&attach, &voice);
 }
 
-static argusd_exit_t run(int argc, char **argv) {
-    const hal_clock_t clock = hal_clock_monotonic();
+// Whoever waits for a robot is up as well: what is waited for is told.
+static void tell_service(const hal_clock_t *clock) {
+    if (!notify_open(&loop.notify, message, sizeof message)) {
+        complain(ARGUSD_EXIT_OK);
+    }
+    notify_ready(&loop.notify, hal_clock_now_ms(clock), "opening the link");
+}
+
+static argusd_exit_t run_robot(hal_clock_t clock) {
     hal_link_t link = {0};
-    if (!options_parse(&options, argc, argv, message, sizeof message)) {
-        return complain(ARGUSD_EXIT_USAGE);
-    }
-    if (options.action == OPTIONS_ATTACH) {
-        return run_attached(&clock);
-    }
-    if (options.action != OPTIONS_RUN && options.action != OPTIONS_CHECK) {
-        return print_list(options.action);
-    }
     if (!load_files()) {
         return complain(ARGUSD_EXIT_USAGE);
     }
@@ -393,19 +392,12 @@ static argusd_exit_t run(int argc, char **argv) {
         text_refuse(message, sizeof message, "no pipe or signal handler could be had from the system");
         return complain(ARGUSD_EXIT_INTERNAL);
     }
-    if (!open_control()) {
-        return complain(ARGUSD_EXIT_USAGE);
-    }
-    if (!open_tape()) {
+    if (!open_control() || !open_tape()) {
         control_close(&loop.control);
         return complain(ARGUSD_EXIT_USAGE);
     }
-    // Whoever waits for a robot is up as well: what is waited for is told.
     if (options.action == OPTIONS_RUN) {
-        if (!notify_open(&loop.notify, message, sizeof message)) {
-            complain(ARGUSD_EXIT_OK);
-        }
-        notify_ready(&loop.notify, hal_clock_now_ms(&clock), "opening the link");
+        tell_service(&clock);
     }
     message[0] = '\0';
     const argusd_exit_t connected = connect_robot(&clock, &link);
@@ -415,6 +407,22 @@ static argusd_exit_t run(int argc, char **argv) {
         return complain(connected);
     }
     return options.action == OPTIONS_CHECK ? run_check(link, clock) : run_loop(link, clock, notice);
+}
+
+static argusd_exit_t run(int argc, char **argv) {
+    const hal_clock_t clock = hal_clock_monotonic();
+    if (!options_parse(&options, argc, argv, message, sizeof message)) {
+        return complain(ARGUSD_EXIT_USAGE);
+    }
+    switch (options.action) {
+    case OPTIONS_RUN:
+    case OPTIONS_CHECK:
+        return run_robot(clock);
+    case OPTIONS_ATTACH:
+        return run_attached(&clock);
+    default:
+        return print_list(options.action);
+    }
 }
 
 int app_main(int argc, char **argv) {

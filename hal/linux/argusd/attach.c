@@ -60,28 +60,43 @@ __attribute__((format(printf, 2, 3))) static void say(attach_t *self, const char
 // Keys
 // ---------------------------------------------------------------------------------------------------------
 
-static void write_order(attach_t *self, tui_key_t key, char *order, size_t capacity) {
-    const argus_status_t *const status = &self->view.status;
-    const int sonar = self->view.sonar;
-    const bool pinned = (status->pinned >> sonar & 1u) != 0;
-    const char *const of_sonar = key == TUI_RETEST     ? "retest"
-                                 : key == TUI_TAKE_OUT ? "out"
-                                 : key != TUI_PIN      ? NULL
-                                 : pinned              ? "unpin"
-                                                       : "pin";
-    if (of_sonar != NULL) {
-        snprintf(order, capacity, "\"%s\",\"sonar\":%d", of_sonar, sonar);
-    } else if (key == TUI_AHEAD || key == TUI_BACK) {
-        snprintf(order, capacity, "\"step\",\"way\":\"%s\"", key == TUI_AHEAD ? "ahead" : "back");
-    } else if (key == TUI_LEFT || key == TUI_RIGHT) {
-        snprintf(order, capacity, "\"turn\",\"deg\":%d", key == TUI_LEFT ? TURN_DEG : -TURN_DEG);
+// The order of a key; NULL: it depends on the state.
+static const char *fixed_order(tui_key_t key) {
+    switch (key) {
+    case TUI_AHEAD:
+        return "\"step\",\"way\":\"ahead\"";
+    case TUI_BACK:
+        return "\"step\",\"way\":\"back\"";
+    case TUI_GO:
+        return "\"go\"";
+    case TUI_RECHECK:
+        return "\"recheck\"";
+    case TUI_STOP:
+        return "\"stop\"";
+    default:
+        return NULL;
+    }
+}
+
+static const char *sonar_order(const attach_t *self, tui_key_t key) {
+    const bool pinned = (self->view.status.pinned >> self->view.sonar & 1u) != 0;
+    if (key == TUI_PIN) {
+        return pinned ? "unpin" : "pin";
+    }
+    return key == TUI_RETEST ? "retest" : key == TUI_TAKE_OUT ? "out" : NULL;
+}
+
+static void write_order(const attach_t *self, tui_key_t key, char *order, size_t capacity) {
+    const char *const fixed = fixed_order(key);
+    const char *const of_sonar = sonar_order(self, key);
+    if (fixed != NULL) {
+        snprintf(order, capacity, "%s", fixed);
+    } else if (of_sonar != NULL) {
+        snprintf(order, capacity, "\"%s\",\"sonar\":%d", of_sonar, self->view.sonar);
+    } else if (key == TUI_PASSIVE) {
+        snprintf(order, capacity, "\"%s\"", self->view.status.active ? "passive" : "active");
     } else {
-        snprintf(order, capacity, "\"%s\"",
-                 key == TUI_GO        ? "go"
-                 : key == TUI_RECHECK ? "recheck"
-                 : key == TUI_STOP    ? "stop"
-                 : status->active     ? "passive"
-                                      : "active");
+        snprintf(order, capacity, "\"turn\",\"deg\":%d", key == TUI_LEFT ? TURN_DEG : -TURN_DEG);
     }
 }
 

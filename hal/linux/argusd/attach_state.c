@@ -23,25 +23,24 @@ static void word(const json_doc_t *doc, const char *name, char *text, size_t cap
     }
 }
 
-// "12.345" is 12345; 0 when it is no such number.
+static bool is_digit(char character) {
+    return character >= '0' && character <= '9';
+}
+
+// "12.345" is 12345; 0 when it is no number with three places, as all times are.
 static uint64_t thousandths(const json_doc_t *doc, const char *name) {
     const int token = json_member(doc, 0, name);
     uint64_t value = 0;
-    int places = -1;
     if (!json_is(doc, token, JSON_NUMBER)) {
         return 0;
     }
     const char *const text = doc->text + doc->token[token].at;
-    for (int i = 0; i < doc->token[token].length && places < 3; i++) {
-        if (text[i] == '.') {
-            places = 0;
-        } else if (text[i] >= '0' && text[i] <= '9' && value < UINT64_MAX / 100000) {
-            value = value * 10 + (uint64_t)(text[i] - '0');
-            places += places >= 0 ? 1 : 0;
-        }
+    const int length = doc->token[token].length;
+    if (length < 5 || length > 18 || text[length - 4] != '.') {
+        return 0;
     }
-    for (places = places < 0 ? 0 : places; places < 3; places++) {
-        value *= 10;
+    for (int i = 0; i < length; i++) {
+        value = is_digit(text[i]) ? value * 10 + (uint64_t)(text[i] - '0') : value;
     }
     return value;
 }
@@ -107,8 +106,8 @@ static void take_injected(const json_doc_t *doc, int token, int sonar, view_t *v
 
 static void take_pinned(const json_doc_t *doc, int token, int sonar, view_t *view) {
     (void)sonar;
-    const int32_t pinned = value_at(doc, token);
-    if (pinned >= 0 && pinned < ARGUS_SONARS) {
+    int64_t pinned = 0;
+    if (json_whole(doc, token, 0, ARGUS_SONARS - 1, &pinned)) {
         view->status.pinned = (argus_mask_t)(view->status.pinned | 1u << pinned);
     }
 }

@@ -49,21 +49,32 @@ static bool parse_host(control_spec_t *spec, const char *host, uint16_t port) {
     return false;
 }
 
+// Takes the brackets of an address away.
+static char *bare(char *host) {
+    const size_t length = strlen(host);
+    if (length < 3 || host[0] != '[' || host[length - 1] != ']') {
+        return host;
+    }
+    host[length - 1] = '\0';
+    return host + 1;
+}
+
+static bool parse_port(const char *text, uint16_t *port) {
+    int32_t value = -1;
+    const bool taken = text_number(text, &value) && value >= 0 && value <= UINT16_MAX;
+    *port = (uint16_t)value;
+    return taken;
+}
+
 static bool parse_tcp(control_spec_t *spec, const char *rest, char *message, size_t capacity) {
     const char *const colon = strrchr(rest, ':');
     char host[INET6_ADDRSTRLEN + 2] = "";
-    int32_t port = -1;
-    if (colon == NULL || (size_t)(colon - rest) >= sizeof host || !text_number(colon + 1, &port) ||
-        port < 0 || port > 65535) {
+    uint16_t port = 0;
+    if (colon == NULL || (size_t)(colon - rest) >= sizeof host || !parse_port(colon + 1, &port)) {
         return text_refuse(message, capacity, "tcp:%s: give tcp:127.0.0.1:PORT, PORT 0 to 65535", rest);
     }
     memcpy(host, rest, (size_t)(colon - rest));
-    const size_t length = strlen(host);
-    const bool bracketed = length > 2 && host[0] == '[' && host[length - 1] == ']';
-    if (bracketed) {
-        host[length - 1] = '\0';
-    }
-    if (!parse_host(spec, host + (bracketed ? 1 : 0), (uint16_t)port)) {
+    if (!parse_host(spec, bare(host), port)) {
         return text_refuse(message, capacity,
                            "tcp:%s: '%s' is no address; give 127.0.0.1, [::1] or localhost", rest, host);
     }

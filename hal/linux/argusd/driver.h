@@ -29,8 +29,8 @@ typedef struct {
     hal_transport_t *transport; // NULL: a link lost is not opened again
     hal_link_t link;
     driver_tap_t tap;
-    driver_filter_t filter;
     driver_tap_t after; // sees what the robot sent once the manager has taken it, before answers go out
+    driver_filter_t filter;
     bool up;
     int cancel_fd;          // becomes readable when opening is to be given up; -1: none
     hal_link_error_t error; // why the link is not up

@@ -138,6 +138,11 @@ static bool name_pty(guard_port_t *self) {
         ptsname_r(self->listener, device, sizeof device) != 0) {
         return false;
     }
+    // A master hangs up only after its other side was open once.
+    const int other_side = open(device, O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (other_side >= 0) {
+        close(other_side);
+    }
     self->linked = clear_name(self->spec.name) && symlink(device, self->spec.name) == 0;
     return self->linked;
 }

@@ -106,33 +106,42 @@ static void welcome(guards_t *self, int index, uint32_t now_ms) {
     self->taken_ms = now_ms;
 }
 
-// One that came by a pty cannot be closed; it is not heard until the first one has gone.
-static void greet(guards_t *self, int index, uint32_t now_ms) {
-    guard_port_t *const at = &self->at[index];
-    const bool was_there = at->client >= 0;
-    int other = -1;
-    guard_port_accept(at, &other);
-    const bool came = !was_there && at->client >= 0;
-    if (!came && other < 0) {
-        return;
-    }
+// One that has given no sign of life for long makes room.
+static void make_room(guards_t *self, uint32_t now_ms) {
     if (self->served >= 0 && is_stale(self, now_ms)) {
         guard_port_drop(&self->at[self->served]);
         leave(self, now_ms);
     }
-    if (other >= 0 && at->client < 0) {
-        at->client = other;
-        other = -1;
-    }
-    if (self->served < 0) {
-        welcome(self, index, now_ms);
-        return;
-    }
+}
+
+// One at a port whose first client is still there, or at another port than the one that is served. One that
+// came by a pty cannot be closed; it is not heard until the first one has gone.
+static void take_second(guards_t *self, guard_port_t *at, int other) {
     turn_away(self, at);
     if (other >= 0) {
         close(other);
     } else if (at->spec.kind == GUARD_TCP) {
         guard_port_drop(at);
+    }
+}
+
+static void greet(guards_t *self, int index, uint32_t now_ms) {
+    guard_port_t *const at = &self->at[index];
+    const bool was_there = at->client >= 0;
+    int other = -1;
+    guard_port_accept(at, &other);
+    const bool came = other >= 0 || (!was_there && at->client >= 0);
+    if (came) {
+        make_room(self, now_ms);
+    }
+    if (at->client < 0) {
+        at->client = other;
+        other = -1;
+    }
+    if (self->served < 0 && at->client >= 0) { // also who had to wait at a pty
+        welcome(self, index, now_ms);
+    } else if (came) {
+        take_second(self, at, other);
     }
 }
 
@@ -165,14 +174,15 @@ static void ignore_others(guards_t *self) {
 }
 
 void guards_serve(guards_t *self, uint32_t now_ms) {
+    if (self->count == 0) {
+        return;
+    }
+    hear(self, now_ms); // whether it has gone, before the next one is turned away
     for (int i = 0; i < self->count; i++) {
         greet(self, i, now_ms);
     }
-    if (self->count > 0) {
-        hear(self, now_ms);
-        ignore_others(self);
-        driver_transmit(self->driver);
-    }
+    ignore_others(self);
+    driver_transmit(self->driver);
 }
 
 bool guards_notice(guards_t *self, char *text, size_t capacity) {

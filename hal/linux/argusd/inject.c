@@ -185,22 +185,21 @@ static size_t pass_byte(inject_t *self, uint8_t *out) {
     return 1;
 }
 
-// Whether the bytes held may still become a SIP whose two counts agree; what cannot is not waited for.
+// Whether the bytes held may still begin a SIP.
+static bool has_head(const uint8_t *h, size_t used) {
+    return h[0] == ARCOS_FRAME_HEADER0 && (used < 2 || h[1] == ARCOS_FRAME_HEADER1) &&
+           (used < 3 || h[2] >= ARCOS_SIP_OFFSET_SONAR + 2 - HEADER) &&
+           (used < 4 || h[HEADER] == ARCOS_TYPE_SIP_STATIONARY || h[HEADER] == ARCOS_TYPE_SIP_MOVING);
+}
+
+// ... whose two counts agree; what cannot become one is not waited for.
 static bool may_be_sip(const inject_t *self) {
     const uint8_t *const h = self->held;
-    const size_t used = self->used;
-    if (h[0] != ARCOS_FRAME_HEADER0 || (used > 1 && h[1] != ARCOS_FRAME_HEADER1) ||
-        (used > 2 && h[2] < ARCOS_SIP_OFFSET_SONAR + 2 - HEADER)) {
+    if (!has_head(h, self->used)) {
         return false;
-    }
-    if (used > HEADER && h[HEADER] != ARCOS_TYPE_SIP_STATIONARY && h[HEADER] != ARCOS_TYPE_SIP_MOVING) {
-        return false;
-    }
-    if (used <= ARCOS_SIP_OFFSET_SONAR_COUNT) {
-        return true;
     }
     const size_t end = (size_t)h[2] + HEADER - 2;
-    return tail_of(h) <= end && end - tail_of(h) <= TAIL_MAX;
+    return self->used <= ARCOS_SIP_OFFSET_SONAR_COUNT || (tail_of(h) <= end && end - tail_of(h) <= TAIL_MAX);
 }
 
 // Passes on what can be decided of the bytes held; 0: more are needed.

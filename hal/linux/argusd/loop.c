@@ -431,8 +431,8 @@ argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
         if (is_over(self)) {
             break;
         }
-        const uint32_t told_ms = sooner(sooner(tell_bus(self), tell_service(self)),
-                                        control_tell(&self->control, &self->moment));
+        const uint32_t told_ms =
+            sooner(sooner(tell_bus(self), tell_service(self)), control_tell(&self->control, &self->moment));
         wait_for_work(self, voice_wait_ms(&self->voice, self->moment.now_ms, sooner(wait_ms, told_ms)));
         say_events(self);
     }

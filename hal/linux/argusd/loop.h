@@ -29,9 +29,9 @@ typedef struct {
     state_t state;
     tape_t tape;
     bus_t bus;         // off unless opened before
+    guards_t guards;   // likewise
     control_t control; // likewise
     inject_t inject;
-    guards_t guards; // none unless opened before
     voice_t voice;
     notify_t notify; // opened before
     operator_t operator;

@@ -75,84 +75,6 @@ static const struct option table[] = {
     {NULL, 0, NULL, 0},
 };
 
-void options_help(FILE *out) {
-    fputs(
-        "argusd " ARGUS_VERSION ": keeps a Pioneer P3-DX seeing and driving safely when its sonars fail\n"
-        "\n"
-        "usage: argusd --link LINK [options]\n"
-        "\n"
-        "  --link LINK        serial:PATH[@BAUD] (default 9600), tcp:HOST[:PORT] (default 8101), or\n"
-        "                     can:IFACE[,robot=K][,tx=ID][,rx=ID][,pad=BYTE|none][,stmin=MS][,bs=N][,fd]:\n"
-        "                     ISO-TP (default robot=0, tx=0x640+K, rx=0x648+K, pad=0xCC, stmin=0, bs=0)\n"
-        "  --can-telemetry IFACE[,robot=K] | none\n"
-        "                     health and readings as CAN frames, orders from there (tools/argus.dbc); with "
-        "a\n"
-        "                     can link its interface is the default\n"
-        "  --auto-baud        serial: try 9600 38400 115200 19200 57600 and say what was found\n"
-        "  --config FILE      settings (see --list-config)\n"
-        "  --course FILE      drive this course: x_mm,y_mm per line, # comments\n"
-        "  --goal X,Y         drive to this one point; mm, x ahead and y left of where the robot stands\n"
-        "  --robot NAME       whose body and sonars it has, where it does not say so itself: p3dx-sh, "
-        "amigo-sh,\n"
-        "                     p3at-sh, peoplebot-sh; one that is not known is never driven\n"
-        "  --guard PORT       pty:PATH or tcp:HOST:PORT, up to 4 times: there an ARCOS client (ARIA, p2os, "
-        "...)\n"
-        "                     finds the robot; its motion is bounded by what trusted sonars see "
-        "(docs/guardian.md)\n"
-        "  --guard-readings withhold|cover|pass\n"
-        "                     what it gets of sonars that are out: nothing (default), what others have "
-        "heard\n"
-        "                     there lately, or what they say\n"
-        "  --guard-beyond-loopback\n"
-        "                     let a guard port listen where other machines reach it\n"
-        "  --passive          diagnose and report, never command a motion\n"
-        "  --active           drive; needed on a serial or can link, which starts passive\n"
-        "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
-        "  --record FILE      append all bytes of the link, both directions, with their times (see "
-        "argus-log)\n"
-        "  --record-max MB    size at which FILE becomes FILE.1 and so on to FILE.4 (default 64)\n"
-        "  --control unix:PATH | tcp:127.0.0.1:PORT\n"
-        "                     a socket on which programs of this user watch and order (see argusctl)\n"
-        "  --control-token FILE\n"
-        "                     whoever connects must say its first line; needed with tcp\n"
-        "  --control-beyond-loopback\n"
-        "                     allow an address that other machines reach\n"
-        "  --inject           arm argusctl fail: faults of sonars made by argusd itself, for tests\n"
-        "  --attach PLACE     no robot of its own: the screen of the argusd whose --control is at PLACE\n"
-        "  --wait SECONDS     at start, how long to try for the port and for a robot's answer; or 'forever'\n"
-        "                     (default: the port must be there, a robot has 30 s)\n"
-        "  --check            connect, tell what is there, leave\n"
-        "  --json             one JSON object per line on standard output\n"
-        "  --plain            no screen on a terminal, a line per event instead\n"
-        "  --status MS        time between status lines, 0 for none (default 500 with --json, else 2000)\n"
-        "  --list-events      the event catalogue\n"
-        "  --list-config      every setting: type, range, default, unit, meaning\n"
-        "  --example-config   a config file with every setting\n"
-        "  --version          print the version\n"
-        "  --help             print this\n"
-        "\n"
-        "keys on the screen: arrows or w a s d drive, space stops, g goes on, r checks again, p "
-        "passive/active,\n  n b choose a sonar, t re-tests it, k pins it or ends that, x takes it out; q "
-        "ends\n"
-        "\n"
-        "examples:\n"
-        "  argusd --link serial:/dev/ttyUSB0@9600 --check\n"
-        "  argusd --link serial:/dev/ttyUSB0 --auto-baud\n"
-        "  argusd --link serial:/dev/ttyUSB0@9600 --active --goal 3000,0 --config argusd.conf\n"
-        "  argusd --link tcp:localhost --course course.csv --json\n"
-        "  argusd --link serial:/dev/ttyUSB0@9600 --guard tcp:127.0.0.1:8101 --guard pty:/run/argus/robot\n"
-        "  argusd --link can:can0 --active --goal 3000,0\n"
-        "  argusd --link serial:/dev/ttyUSB0@9600 --can-telemetry can0,robot=2\n"
-        "  argusd --link tcp:localhost --control unix:/tmp/argus.sock --inject\n"
-        "  argusd --attach unix:/tmp/argus.sock\n"
-        "\n"
-        "exit codes:\n",
-        out);
-#define EXIT_LINE(name, code, meaning) fprintf(out, "  %d  %s\n", code, meaning);
-    ARGUSD_EXIT_TABLE(EXIT_LINE)
-#undef EXIT_LINE
-}
-
 typedef struct {
     char *text;
     size_t capacity;
@@ -223,15 +145,19 @@ static bool take_telemetry(options_t *options, const char *text, const message_t
     return true;
 }
 
-static bool take_place(options_t *options, int option, const message_t *message) {
+static bool take_place(control_spec_t *spec, const char *option, const char *text, const message_t *message) {
     char problem[ARGUSD_MESSAGE_MAX / 2];
-    if (option == OPT_ATTACH) {
-        options->action = OPTIONS_ATTACH;
-    }
-    return control_spec_parse(option == OPT_ATTACH ? &options->attach : &options->control, optarg, problem,
-                              sizeof problem) ||
-           text_refuse(message->text, message->capacity, "%s %s",
-                       option == OPT_ATTACH ? "--attach" : "--control", problem);
+    return control_spec_parse(spec, text, problem, sizeof problem) ||
+           text_refuse(message->text, message->capacity, "%s %s", option, problem);
+}
+
+static bool take_control(options_t *options, const char *text, const message_t *message) {
+    return take_place(&options->control, "--control", text, message);
+}
+
+static bool take_attach(options_t *options, const char *text, const message_t *message) {
+    options->action = OPTIONS_ATTACH;
+    return take_place(&options->attach, "--attach", text, message);
 }
 
 static bool take_guard(options_t *options, const char *text, const message_t *message) {
@@ -332,35 +258,34 @@ static options_action_t action_of(int option) {
     }
 }
 
+// What has a value that is read at once.
+static const struct {
+    int option;
+    bool (*take)(options_t *options, const char *text, const message_t *message);
+} valued[] = {
+    {OPT_LINK, take_link},
+    {OPT_GOAL, take_goal},
+    {OPT_WAIT, take_seconds},
+    {OPT_STATUS, take_status},
+    {OPT_CAN_TELEMETRY, take_telemetry},
+    {OPT_RECORD_MAX, take_record_max},
+    {OPT_CONTROL, take_control},
+    {OPT_ATTACH, take_attach},
+    {OPT_GUARD, take_guard},
+    {OPT_GUARD_READINGS, take_readings},
+};
+
 static bool take(options_t *options, int option, char **argv, const message_t *message) {
-    switch (option) {
-    case OPT_LINK:
-        return take_link(options, optarg, message);
-    case OPT_GOAL:
-        return take_goal(options, optarg, message);
-    case OPT_WAIT:
-        return take_seconds(options, optarg, message);
-    case OPT_STATUS:
-        return take_status(options, optarg, message);
-    case OPT_CAN_TELEMETRY:
-        return take_telemetry(options, optarg, message);
-    case OPT_RECORD_MAX:
-        return take_record_max(options, optarg, message);
-    case OPT_CONTROL:
-    case OPT_ATTACH:
-        return take_place(options, option, message);
-    case OPT_GUARD:
-        return take_guard(options, optarg, message);
-    case OPT_GUARD_READINGS:
-        return take_readings(options, optarg, message);
-    case ':':
-        return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help",
+    if (option == ':' || option == '?') {
+        return text_refuse(message->text, message->capacity,
+                           option == ':' ? "%s needs a value; see argusd --help"
+                                         : "unknown option %s; see argusd --help",
                            argv[optind - 1]);
-    case '?':
-        return text_refuse(message->text, message->capacity, "unknown option %s; see argusd --help",
-                           argv[optind - 1]);
-    default:
-        break;
+    }
+    for (size_t i = 0; i < sizeof valued / sizeof valued[0]; i++) {
+        if (valued[i].option == option) {
+            return valued[i].take(options, optarg, message);
+        }
     }
     if (!take_flag(options, option)) {
         options->action = action_of(option);
@@ -369,29 +294,53 @@ static bool take(options_t *options, int option, char **argv, const message_t *m
 }
 
 // What contradicts, or is missing.
-static bool agree(const options_t *options, const message_t *message) {
+typedef struct {
+    bool wrong;
+    const char *problem;
+} rule_t;
+
+static bool keeps(const rule_t *rules, size_t count, const message_t *message) {
+    for (size_t i = 0; i < count; i++) {
+        if (rules[i].wrong) {
+            return text_refuse(message->text, message->capacity, "%s", rules[i].problem);
+        }
+    }
+    return true;
+}
+
+static bool agree_on_link(const options_t *options, const message_t *message) {
     const bool has_link = hal_link_spec_target(&options->link)[0] != '\0';
     const bool serial = options->link.scheme == HAL_SCHEME_SERIAL;
-    const int family = options->control.family;
-    const struct {
-        bool wrong;
-        const char *problem;
-    } rules[] = {
+    const rule_t rules[] = {
         {options->passive && options->active, "--passive and --active contradict each other; give one"},
         {options->course_path != NULL && options->has_goal,
          "--course and --goal contradict each other; give one"},
         {!has_link,
          "no link is given; add --link serial:/dev/ttyUSB0@9600, tcp:HOST:8101 or can:can0 (see --help)"},
-        {options->action == OPTIONS_CHECK && options->telemetry.interface[0] != '\0',
-         "--check only looks at the robot; leave out --can-telemetry"},
-        {options->action == OPTIONS_CHECK && options->guards.count > 0,
-         "--check only looks at the robot; leave out --guard"},
-        {options->guards.count == 0 && (options->readings != NULL || options->guards.beyond),
-         "--guard-readings and --guard-beyond-loopback are for --guard PORT; add it"},
         {options->record_max_bytes > 0 && options->record_path == NULL,
          "--record-max is for --record FILE; add it"},
-        {options->action == OPTIONS_CHECK && family != 0,
-         "--check only looks at the robot; leave out --control"},
+        {options->auto_baud && !serial, "--auto-baud is for serial links; no other has a rate to look for"},
+        {options->auto_baud && options->link.has_baud,
+         "--auto-baud and a rate in --link contradict each other; leave out @BAUD"},
+    };
+    return keeps(rules, sizeof rules / sizeof rules[0], message);
+}
+
+static bool agree_on_check(const options_t *options, const message_t *message) {
+    const rule_t rules[] = {
+        {options->telemetry.interface[0] != '\0',
+         "--check only looks at the robot; leave out --can-telemetry"},
+        {options->guards.count > 0, "--check only looks at the robot; leave out --guard"},
+        {options->control.family != 0, "--check only looks at the robot; leave out --control"},
+    };
+    return options->action != OPTIONS_CHECK || keeps(rules, sizeof rules / sizeof rules[0], message);
+}
+
+static bool agree_on_ports(const options_t *options, const message_t *message) {
+    const int family = options->control.family;
+    const rule_t rules[] = {
+        {options->guards.count == 0 && (options->readings != NULL || options->guards.beyond),
+         "--guard-readings and --guard-beyond-loopback are for --guard PORT; add it"},
         {family == 0 && options->token_path != NULL, "--control-token is for --control or --attach; add it"},
         {family == 0 && options->inject, "--inject is for orders at --control; add it"},
         {(family == AF_INET || family == AF_INET6) && options->token_path == NULL,
@@ -399,16 +348,25 @@ static bool agree(const options_t *options, const message_t *message) {
         {family != 0 && !options->control.loopback && !options->control_beyond_loopback,
          "this address of --control is reached by other machines; take 127.0.0.1, or add "
          "--control-beyond-loopback"},
-        {options->auto_baud && !serial, "--auto-baud is for serial links; no other has a rate to look for"},
-        {options->auto_baud && options->link.has_baud,
-         "--auto-baud and a rate in --link contradict each other; leave out @BAUD"},
     };
-    for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
-        if (rules[i].wrong) {
-            return text_refuse(message->text, message->capacity, "%s", rules[i].problem);
-        }
+    return keeps(rules, sizeof rules / sizeof rules[0], message);
+}
+
+static bool agree_on_attach(const options_t *options, const message_t *message) {
+    const rule_t rule = {hal_link_spec_target(&options->link)[0] != '\0' || options->control.family != 0,
+                         "--attach shows an argusd that runs already; leave out --link and --control"};
+    return keeps(&rule, 1, message);
+}
+
+static bool agree(const options_t *options, const message_t *message) {
+    if (options->action == OPTIONS_ATTACH) {
+        return agree_on_attach(options, message);
     }
-    return true;
+    if (options->action != OPTIONS_RUN && options->action != OPTIONS_CHECK) {
+        return true;
+    }
+    return agree_on_link(options, message) && agree_on_check(options, message) &&
+           agree_on_ports(options, message);
 }
 
 bool options_parse(options_t *options, int argc, char **argv, char *message_text, size_t capacity) {
@@ -428,11 +386,5 @@ bool options_parse(options_t *options, int argc, char **argv, char *message_text
     if (optind < argc) {
         return text_refuse(message_text, capacity, "'%s' is not an option; see argusd --help", argv[optind]);
     }
-    if (options->action == OPTIONS_ATTACH &&
-        (hal_link_spec_target(&options->link)[0] != '\0' || options->control.family != 0)) {
-        return text_refuse(message_text, capacity,
-                           "--attach shows an argusd that runs already; leave out --link and --control");
-    }
-    const bool needs_link = options->action == OPTIONS_RUN || options->action == OPTIONS_CHECK;
-    return !needs_link || agree(options, &message);
+    return agree(options, &message);
 }

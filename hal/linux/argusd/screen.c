@@ -289,10 +289,16 @@ static void put_bearing(char *text, size_t capacity, const argus_status_t *statu
     }
 }
 
+static char mark_of(const view_t *view, int sonar) {
+    if (view->injected[sonar] != 0) {
+        return '*';
+    }
+    return (view->status.pinned >> sonar & 1) != 0 ? '=' : ' ';
+}
+
 static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row, int column,
                        const layout_t *layout) {
     const argus_status_t *const status = &view->status;
-    const bool pinned = (status->pinned >> sonar & 1) != 0;
     const argus_health_t health = status->health[sonar];
     const bool out = health == ARGUS_DISABLED;
     char bearing[8] = "";
@@ -309,8 +315,8 @@ static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row,
                  out ? argus_name(ARGUS_NAME_KIND, (int)status->kind[sonar])
                      : argus_name(ARGUS_NAME_HEALTH, (int)health));
     }
-    const char mark = view->injected[sonar] != 0 ? '*' : pinned ? '=' : ' ';
-    write_at(canvas, row, column, tone_of_health(health), "%2d%c%s %s%.10s", sonar, mark, bearing, reading,
+    write_at(canvas, row, column, tone_of_health(health), "%2d%c%s %s%.10s", sonar, mark_of(view, sonar),
+             bearing, reading,
              layout->health ? state
              : out          ? "!"
                             : "");

@@ -97,6 +97,8 @@ def home(*steps: tuple[str, float]) -> list[str]:
     for word, heading in steps:
         if word == "rest":
             asked.rest(heading)
+        elif word == "still":
+            asked.still(heading)
         elif word in ("SWEEP", "BACKING"):
             wrong.append(asked.hear(word, 0, heading))
         else:
@@ -112,10 +114,42 @@ def home(*steps: tuple[str, float]) -> list[str]:
         # The leg's bearing comes first.
         ([("SWEEPING", 5.0), ("rest", 95.0), ("rest", 75.0), ("rest", 95.0), ("SWEEP", 95.0)], False),
         ([("SWEEPING", 5.0), ("rest", 95.0), ("rest", 75.0), ("rest", 5.0), ("SWEEP", 5.0)], True),
-        ([("DRIVING", 0.0), ("VERIFYING", 0.0), ("rest", 40.0), ("CHECKING", 0.5), ("DRIVING", 0.5)], False),
-        ([("DRIVING", 0.0), ("VERIFYING", 0.0), ("rest", 40.0), ("CHECKING", 40.0), ("DRIVING", 40.0)], True),
-        ([("VERIFYING", 0.0), ("BACKING", 40.0), ("CHECKING", 40.0), ("DRIVING", 40.0)], False),
-        ([("DRIVING", 179.5), ("VERIFYING", 179.5), ("CHECKING", -179.5), ("DRIVING", -179.5)], False),
+        (
+            [
+                ("DRIVING", 0.0),
+                ("VERIFYING", 3.0),
+                ("still", 0.0),
+                ("rest", 40.0),
+                ("CHECKING", 0.5),
+                ("DRIVING", 0.5),
+            ],
+            False,
+        ),
+        (
+            [
+                ("DRIVING", 0.0),
+                ("VERIFYING", 3.0),
+                ("still", 0.0),
+                ("rest", 40.0),
+                ("CHECKING", 40.0),
+                ("DRIVING", 40.0),
+            ],
+            True,
+        ),
+        (
+            [("VERIFYING", 0.0), ("still", 0.0), ("BACKING", 40.0), ("CHECKING", 40.0), ("DRIVING", 40.0)],
+            False,
+        ),
+        (
+            [
+                ("DRIVING", 179.5),
+                ("VERIFYING", 179.5),
+                ("still", 179.5),
+                ("CHECKING", -179.5),
+                ("DRIVING", -179.5),
+            ],
+            False,
+        ),
     ],
 )
 def test_s4_knows_the_heading_to_return_to(steps: list[tuple[str, float]], broken: bool) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from hil_sim.errors import SimError
-from hil_sim.experiment import study, study_pictures
+from hil_sim.experiment import study, study_pictures, study_tables
 from hil_sim.experiment.journey import COLUMNS, read_table, write_table
 from hil_sim.tables import load
 
@@ -60,7 +60,7 @@ def test_energy_is_idle_sonar_wheels_and_acceleration() -> None:
     power = load("energy")["power"]
     one = record("paper", "3")
     rest = 100 * power["sonar_w"] + 15 * power["wheel_j_per_m"] + 8
-    for factor in study.IDLE_FACTORS:
+    for factor in study_tables.IDLE_FACTORS:
         assert study.energy_j(one, factor) == pytest.approx(100 * power["idle_w"] * factor + rest)
 
 
@@ -75,13 +75,13 @@ def test_one_dead_over_the_healthy_journey() -> None:
 def test_tables_tell_what_was_run() -> None:
     rows = [record("paper", "3", word="failed"), record("adaptive", "3"), record("adaptive", "front", s1=2),
             record("adaptive", "none", day="rough-day", collisions=1)]  # fmt: skip
-    assert "| `paper` | 0/1 | - |" in study.goals_table(rows)
-    assert "| `adaptive` | 1/1 | 1/1 |" in study.goals_table(rows)
-    assert "| `adaptive` | 3 | 0.1 | 1 | 1 | 0 | 0 | 0 | 250 |" in study.safety_table(rows)
-    assert "| collisions, all policies | 0 | 1 in 4 journeys |" in study.bars_table(rows)
-    assert "| goals reached, 1 to 5 of six dead | >= 99 % | 1 of 1, 100.0 % |" in study.bars_table(rows)
-    assert "`adaptive` | rough-day | 1 of 66" in study.coverage(rows)
-    assert "not run" in study.bars_table(rows[:1])
+    assert "| `paper` | 0/1 | - |" in study_tables.goals(rows)
+    assert "| `adaptive` | 1/1 | 1/1 |" in study_tables.goals(rows)
+    assert "| `adaptive` | 3 | 0.1 | 1 | 1 | 0 | 0 | 0 | 250 |" in study_tables.safety(rows)
+    assert "| collisions, all policies | 0 | 1 in 4 journeys |" in study_tables.bars(rows)
+    assert "| goals reached, 1 to 5 of six dead | >= 99 % | 1 of 1, 100.0 % |" in study_tables.bars(rows)
+    assert "`adaptive` | rough-day | 1 of 66" in study_tables.coverage(rows)
+    assert "not run" in study_tables.bars(rows[:1])
 
 
 def test_a_table_comes_back_as_it_was(tmp_path: Path) -> None:

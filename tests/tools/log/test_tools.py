@@ -114,6 +114,8 @@ def test_mcap_has_poses_validity_odometry_and_events(tmp_path: Path) -> None:
         ]
     for name, _, _, message in messages:
         assert set(message) <= set(schemas[name]["properties"])
+    beams = [message["entities"] for _, topic, _, message in messages if topic == "/sonar/beams"]
+    assert [len(entities) for entities in beams] == [len(row["sonar"]) for row in sips if row["sonar"]]
     ranges = [(at, message) for _, topic, at, message in messages if topic == "/sonar/03"]
     assert [message["range_mm"] for _, message in ranges] == [row["sonar"]["3"] for row in sips]
     assert [at for at, _ in ranges] == [round(row["t"] * 1e9) for row in sips]
@@ -129,6 +131,7 @@ def conflicts(value: Any, schema: dict[str, Any], where: str = "") -> list[str]:
     """Where a value is not what its schema, of the kinds used here, says."""
     kinds: dict[str, Any] = {
         "object": dict,
+        "array": list,
         "string": str,
         "boolean": bool,
         "integer": int,
@@ -137,6 +140,9 @@ def conflicts(value: Any, schema: dict[str, Any], where: str = "") -> list[str]:
     kind = kinds[schema["type"]]
     if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
         return [f"{where}: {value!r} is no {schema['type']}"]
+    if isinstance(value, list):
+        item = schema.get("items")
+        return [] if item is None else [c for one in value for c in conflicts(one, item, f"{where}[]")]
     if not isinstance(value, dict):
         return [] if value >= schema.get("minimum", value) else [f"{where}: {value!r} is too small"]
     known = schema["properties"]
@@ -151,8 +157,9 @@ FOXGLOVE = {
     "foxglove.Log": {"timestamp", "level", "message", "name", "file", "line"},
     "foxglove.PoseInFrame": {"timestamp", "frame_id", "pose"},
     "foxglove.FrameTransform": {"timestamp", "parent_frame_id", "child_frame_id", "translation", "rotation"},
+    "foxglove.SceneUpdate": {"deletions", "entities"},
 }
-OPTIONAL = {"range_m", "pose"}
+OPTIONAL = {"range_m", "pose", "age_ms", "health", "fault"}
 
 
 @pytest.mark.parametrize("path", sorted(CAPTURES.glob("*.jsonl")), ids=lambda path: path.stem)
@@ -167,13 +174,15 @@ def test_every_message_of_an_mcap_is_as_its_schema_says(path: Path, tmp_path: Pa
             rules, value = json.loads(schema.data), json.loads(message.data)
             assert conflicts(value, rules, channel.topic) == []
             assert rules["properties"].keys() - value.keys() <= OPTIONAL
-            assert value["timestamp"] == dict(
+            stamped = value["entities"][0] if schema.name == "foxglove.SceneUpdate" else value
+            assert stamped["timestamp"] == dict(
                 zip(("sec", "nsec"), divmod(message.log_time, 10**9), strict=True)
             )
             if schema.name.startswith("foxglove."):
                 assert value.keys() == FOXGLOVE[schema.name]
             seen.add(schema.name)
-    assert seen >= FOXGLOVE.keys() | {"argus.RobotState"}
+    # One of the captures is of a robot without sonars.
+    assert seen | {"foxglove.SceneUpdate"} >= FOXGLOVE.keys() | {"argus.RobotState"}
 
 
 def test_diff_names_the_field_that_differs(tmp_path: Path) -> None:

@@ -167,15 +167,6 @@ void test_what_is_late_does_not_look_bent(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, named());
 }
 
-// Leaps that the others contradict are garbage a leap sooner.
-void test_leaps_that_are_contradicted_are_garbage_sooner(void) {
-    give_ground();
-    c->score[ARGUS_TEST_GARBAGE] = 2 * ARGUS_NOVEL;
-    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named());
-    c->score[ARGUS_TEST_PEERS] = 600;
-    TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, named());
-}
-
 // Whoever was suspected is held until little is left of it.
 void test_a_suspicion_is_held_until_little_is_left(void) {
     for (int score = ARGUS_CEILING; score >= 0; score -= 10) {

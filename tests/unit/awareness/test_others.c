@@ -256,7 +256,7 @@ void test_one_place_and_bearing_counts_once_in_a_while(void) {
     TEST_ASSERT_EQUAL(0, again(300, 50, 0));
     TEST_ASSERT_EQUAL(0, again(300, -50, 0));
     TEST_ASSERT_EQUAL(0, again(300, 10, 500));
-    TEST_ASSERT_TRUE(again(300, 150, 0) > 0);
+    TEST_ASSERT_TRUE(again(300, ARGUS_PLACE_MM + 50, 0) > 0);
     TEST_ASSERT_TRUE(again(300, 10, 1000) > 0);
     TEST_ASSERT_TRUE(again(ARGUS_PLACE_MS + 100, 50, 0) > 0);
 }
@@ -291,9 +291,8 @@ void test_where_many_are_contradicted_it_means_less(void) {
     int before = INT16_MAX;
     for (int percent = 5; percent <= 60; percent += 5) {
         setUp();
-        e.of[7].verdicts = 16000;
-        e.of[7].contradicted = (uint16_t)(160 * percent);
-        e.of[ME].verdicts = e.of[ME].contradicted = 6000;
+        e.of[7].rate[ARGUS_TEST_PEERS] = (argus_rate_t){16000, (uint16_t)(160 * percent)};
+        e.of[ME].rate[ARGUS_TEST_PEERS] = (argus_rate_t){6000, 6000};
         heard(WITNESS, 3000);
         const int worth = reads(1000);
         TEST_ASSERT_TRUE(worth > 0 && worth < before);
@@ -305,11 +304,10 @@ void test_where_many_are_contradicted_it_means_less(void) {
 void test_a_crowd_is_told_by_the_part_that_is_contradicted(void) {
     argus_clutter_sip(&e, &k);
     TEST_ASSERT_FALSE(e.crowded || e.busy);
-    e.of[7].verdicts = 1600;
-    e.of[7].contradicted = 800;
+    e.of[7].rate[ARGUS_TEST_PEERS] = (argus_rate_t){1600, 800};
     argus_clutter_sip(&e, &k);
     TEST_ASSERT_TRUE(e.crowded && e.busy);
-    e.of[7].contradicted = 0;
+    e.of[7].rate[ARGUS_TEST_PEERS].odd = 0;
     k.sip_ms += ARGUS_CALM_MS - 1;
     argus_clutter_sip(&e, &k);
     TEST_ASSERT_TRUE(e.crowded);
@@ -426,6 +424,27 @@ void test_the_way_back_is_of_echoes_that_are_borne_out(void) {
     heard(WITNESS, 3000);
     reads(1000);
     TEST_ASSERT_EQUAL(0, e.of[ME].agreed);
+}
+
+// Where nobody looks, echoes that go on as the robot moves are the way back of whom its kind of fault forbids
+// them; one value again and again is no proof of life.
+void test_its_own_echoes_bring_back_who_could_not_have_had_them(void) {
+    for (int kind = ARGUS_KIND_OFF; kind <= ARGUS_KIND_INTERMITTENT; kind++) {
+        for (int same = 0; same < 2; same++) {
+            setUp();
+            k.sonar[ME].health = ARGUS_DISABLED;
+            k.sonar[ME].kind = (argus_fault_kind_t)kind;
+            e.of[ME].score[ARGUS_TEST_PEERS] = 2000;
+            k.pose.heading_cdeg = 9000 - argus_robot_pose(k.robot, ME)->heading_deg * 100; // along a wall
+            for (int n = 0; n < 3; n++) {
+                k.pose.x_mm += ARGUS_PLACE_MM + 50;
+                reads(same != 0 ? 1000 : 1000 + 10 * n);
+            }
+            const bool others_only = kind == ARGUS_KIND_WRONG || kind == ARGUS_KIND_SLOW;
+            TEST_ASSERT_EQUAL(others_only || same != 0 ? 0 : 2, e.of[ME].agreed);
+            TEST_ASSERT_EQUAL(e.of[ME].agreed > 0, score_of(ME) < 2000);
+        }
+    }
 }
 
 // In the open silence together is the way back of who made echoes up, of nobody else.

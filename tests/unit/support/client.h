@@ -3,7 +3,7 @@
 #ifndef TEST_CLIENT_H
 #define TEST_CLIENT_H
 
-#include "guardian/port.h"
+#include "guardian/client.h"
 #include "robot.h"
 
 typedef struct {

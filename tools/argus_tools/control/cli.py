@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Final, NoReturn
 
 from argus_tools.control.client import DEFAULT_PLACE, Client, ControlError, Message, Refused, read_token
-from argus_tools.control.words import event_line, readings_line, status_text
+from argus_tools.control.words import event_line, evidence_line, readings_line, status_text
 
 EXIT_OK, EXIT_REFUSED, EXIT_USAGE, EXIT_UNREACHABLE, EXIT_INTERRUPTED = 0, 1, 2, 3, 130
 KINDS: Final = ("off", "silent", "stuck", "wrong", "garbage", "slow", "delayed", "intermittent", "ok")
@@ -104,6 +104,8 @@ def _line_of(message: Message, as_json: bool) -> str:
         return f"-- {message.get('count', '')} lines were lost: this reader is too slow".replace("  ", " ")
     if "readings" in message:
         return readings_line(message["readings"])
+    if "evidence" in message:
+        return evidence_line(message["evidence"])
     if message.get("event") == "STATUS":
         return status_text(message)
     return event_line(message) if "event" in message else json.dumps(message)

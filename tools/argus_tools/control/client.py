@@ -12,7 +12,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Final, Self
 
-DEFAULT_PLACE: Final = "unix:/run/argus/control.sock"
+DEFAULT_PLACE: Final = "unix:/run/argus/control"
 LINE_MAX: Final = 16384
 VERSION: Final = 1
 
@@ -68,7 +68,7 @@ def _connect(place: str, timeout_s: float) -> socket.socket:
 class Client:
     """A connection to argusd; a context manager.
 
-    with Client("unix:/run/argus/control.sock") as argus:
+    with Client("unix:/run/argus/control") as argus:
         print(argus.request("status")["state"]["mode"])
         argus.take()
         argus.order("turn", deg=90)

@@ -31,6 +31,24 @@ def readings_line(readings: dict[str, Any]) -> str:
     return f"{readings['t']:9.3f} sip {readings['sip']}: {values}"
 
 
+def evidence_line(evidence: dict[str, Any]) -> str:
+    """Return what the evidence is so far as one line.
+
+    >>> evidence_line({"t": 5.0, "kind": ["", "stuck"], "level": [0, 60], "seen_by": [[], [0]]})
+    '    5.000 sonar 1: stuck 60 %, contradicted by 0'
+    >>> evidence_line({"t": 5.0, "kind": [""], "level": [0], "seen_by": [[]]})
+    '    5.000 no evidence against any sonar'
+    """
+    parts = []
+    for k, (kind, level, voices) in enumerate(
+        zip(evidence["kind"], evidence["level"], evidence["seen_by"], strict=True)
+    ):
+        if level > 0:
+            by = f", contradicted by {' '.join(map(str, voices))}" if voices else ""
+            parts.append(f"sonar {k}: {kind} {level} %{by}")
+    return f"{evidence['t']:9.3f} {'; '.join(parts) or 'no evidence against any sonar'}"
+
+
 def _sonars(state: dict[str, Any], numbers: Sequence[int]) -> str:
     cells = []
     for k in numbers:

@@ -14,7 +14,7 @@ from typing import Final, Protocol
 
 from argus_tools.formats import LogError, formats
 from argus_tools.log.common import EXIT_CODES, EXIT_READ, EXIT_UNUSABLE, Parser
-from hil_sim.errors import SimError
+from hil_sim.errors import SimError, missing_package
 
 # Each module has SUMMARY, EXAMPLES, add_arguments(parser) and run(args) -> exit code.
 COMMANDS: Final = ("decode", "stats", "faults", "plot", "convert", "replay", "diff")
@@ -84,6 +84,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         return code
     except (LogError, SimError) as error:
         print(f"argus-log: {error}", file=sys.stderr)
+        return EXIT_UNUSABLE
+    except ModuleNotFoundError as error:
+        print(f"argus-log: {missing_package(error)}", file=sys.stderr)
         return EXIT_UNUSABLE
     except BrokenPipeError:
         # The reader has seen enough; Python must not try to write the rest at its end.

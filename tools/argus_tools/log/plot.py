@@ -205,8 +205,17 @@ def _ranges(args: argparse.Namespace, drive: Drive) -> Figure:
             handles += [Patch(color=_COLOUR[kind], alpha=0.4, label=_LABEL[kind]) for kind in (DEAD, SUSPECT)]
         title = f"{Path(args.log).name}: sonar readings over time" + (" (not judged)" if note else "")
         figure.suptitle(title, fontsize=11, color=_INK)
-        figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
+        _legend(figure, handles, 4)
     return figure
+
+
+def _legend(figure: Figure, handles: list[Any], columns: int) -> None:
+    """Add a legend below all panels; an older matplotlib, as Debian 12 has it, must be told to leave it room."""
+    try:
+        figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
+    except ValueError:
+        figure.get_layout_engine().set(rect=(0, 0.06, 1, 0.94))  # type: ignore[union-attr, call-arg]
+        figure.legend(handles=handles, loc="lower center", ncols=columns, frameon=False)
 
 
 def _one_sonar(axes: Any, number: int, series: Series, zero: float) -> None:
@@ -343,7 +352,7 @@ def _draw_ring(name: str, moment: float, since: float, last: dict[int, tuple[flo
             Patch(color=_COLOUR[DEAD], alpha=0.3, label="no echo"),
             Patch(color=_LINE, alpha=0.2, label=f"older than {FRESH_S} s"),
         ]
-        figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
+        _legend(figure, handles, 3)
     return figure
 
 

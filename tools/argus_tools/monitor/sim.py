@@ -74,7 +74,8 @@ class Simulation:
                 process_group=0,
             )
         device = await self._line(START_WITHIN_S)
-        arguments = ("--link", f"serial:{device}@{BAUD}", "--active", "--plain", "--control")
+        mode = () if "--passive" in self._argusd_arguments else ("--active",)
+        arguments = ("--link", f"serial:{device}@{BAUD}", *mode, "--plain", "--control")
         with (self._folder / "argusd.log").open("wb") as log:
             self._argusd = await asyncio.create_subprocess_exec(
                 self._argusd_path,

@@ -304,4 +304,4 @@ wire();
 setTheme(THEMES.includes(localStorage.getItem("argus-monitor-theme")) ? localStorage.getItem("argus-monitor-theme") : "auto");
 draw();
 link.open();
-window.argusMonitor = { known, latencies, stage };
+window.argusMonitor = { known, latencies, stage, stop, mend: (sonar) => ask({ do: "mend", sonar }) }; // for tests

@@ -62,6 +62,19 @@ void test_single_options(void) {
     TEST_ASSERT_EQUAL_INT(OPTIONS_CHECK, options.action);
 }
 
+void test_control(void) {
+    TEST_ASSERT_TRUE(parse("--link tcp:a --control unix:/run/x --inject"));
+    TEST_ASSERT_EQUAL_INT(AF_UNIX, options.control.family);
+    TEST_ASSERT_TRUE(options.inject);
+    TEST_ASSERT_TRUE(
+        parse("--link tcp:a --control tcp:192.168.0.1:82 --control-token t --control-beyond-loopback"));
+    TEST_ASSERT_EQUAL_STRING("t", options.token_path);
+    TEST_ASSERT_FALSE(options.control.loopback);
+    TEST_ASSERT_TRUE(parse("--attach unix:/run/x --control-token t"));
+    TEST_ASSERT_EQUAL_INT(OPTIONS_ATTACH, options.action);
+    TEST_ASSERT_EQUAL_INT(AF_UNIX, options.attach.family);
+}
+
 void test_can(void) {
     TEST_ASSERT_TRUE_MESSAGE(parse("--link can:vcan0,robot=1 --active"), message);
     TEST_ASSERT_EQUAL_INT(HAL_SCHEME_CAN, options.link.scheme);
@@ -140,6 +153,15 @@ void test_refusals(void) {
     refused("--link tcp:a --active --passive", "contradict");
     refused("--link tcp:a --auto-baud", "for serial links");
     refused("--link serial:/dev/x@9600 --auto-baud", "leave out @BAUD");
+    refused("--link tcp:a --control /run/x", "--control /run/x: give unix:PATH or tcp:127.0.0.1:PORT");
+    refused("--link tcp:a --control tcp:127.0.0.1:82", "add --control-token FILE");
+    refused("--link tcp:a --control tcp:0.0.0.0:82 --control-token t", "--control-beyond-loopback");
+    refused("--link tcp:a --control-token t", "is for --control or --attach");
+    refused("--link tcp:a --inject", "--inject is for orders at --control");
+    refused("--link tcp:a --check --control unix:/x", "leave out --control");
+    refused("--link tcp:a --attach unix:/x", "leave out --link");
+    refused("--attach unix:/x --control unix:/y", "leave out --link and --control");
+    refused("--attach x", "--attach x: give unix:PATH");
     refused("--link tcp:a --wait 0", "1 to 86400");
     refused("--link tcp:a --wait soon", "or 'forever'");
     refused("--link tcp:a --status 49", "50 to 3600000");

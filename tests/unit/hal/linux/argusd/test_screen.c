@@ -301,3 +301,15 @@ void test_narrow_screens_drop_columns_and_cut_no_word(void) {
     draw(24, 20);
     TEST_ASSERT_NOT_EQUAL(-1, find(" 6  1006  14  1014"));
 }
+
+void test_an_injected_fault_is_not_taken_for_a_real_one(void) {
+    draw(24, 80);
+    TEST_ASSERT_EQUAL_INT(-1, find("INJECTED"));
+    view.injected[3] = ARGUS_KIND_STUCK;
+    for (int columns = 20; columns <= 120; columns += 5) {
+        draw(24, columns);
+        TEST_ASSERT_TRUE(find("INJECTED FAULT") >= 0);
+        TEST_ASSERT_TRUE(find(" 3*") >= 0);
+        TEST_ASSERT_EQUAL_INT(-1, find(" 2*"));
+    }
+}

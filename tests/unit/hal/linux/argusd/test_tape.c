@@ -124,6 +124,7 @@ void test_a_tape_holds_what_the_tap_shows(void) {
     TEST_ASSERT_TRUE_MESSAGE(tape_open(&tape, path, "/dev/x", 0, message, sizeof message), message);
     const driver_tap_t tap = tape_tap(&tape);
     tap.see(tap.context, true, (const uint8_t *)"from the robot", 14);
+    tape_injected(&tape, 3, ARGUS_KIND_STUCK, 0x01020304);
     tap.see(tap.context, false, (const uint8_t *)"to the robot", 12);
     TEST_ASSERT_FALSE_MESSAGE(tape_close(&tape, message, sizeof message), message);
     char content[512];
@@ -136,6 +137,9 @@ void test_a_tape_holds_what_the_tap_shows(void) {
     TEST_ASSERT_NOT_NULL(first);
     TEST_ASSERT_NOT_NULL(second);
     TEST_ASSERT_TRUE(first < second);
+    const char *const between = find(content, size, "\3\3\4\3\2\1");
+    TEST_ASSERT_TRUE(first < between && between < second);
+    TEST_ASSERT_EQUAL_UINT8(HAL_RECORD_INJECTED, between[-7]);
     TEST_ASSERT_EQUAL_UINT8(HAL_RECORD_FROM_ROBOT, first[-7]);
     TEST_ASSERT_EQUAL_UINT8(HAL_RECORD_TO_ROBOT, second[-7]);
 }

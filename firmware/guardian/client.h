@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A guard port's client: its session, its packets, what goes to it. argus_guard_port() is all that is called.
-#ifndef ARGUS_PORT_H
-#define ARGUS_PORT_H
+// What is kept of the client of a guard port: its session, its wishes, what waits for it.
+#ifndef ARGUS_CLIENT_H
+#define ARGUS_CLIENT_H
 
 #include "guardian/hold.h"
 

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Sizes what a wheel falls short by: a way with a bend of k radians a mm has wheels apart by k times the
+// track.
+#include "analysis/wheel.h"
+
+#include <string.h>
+
+#include "knowledge/angle.h"
+
+#define CDEG_PER_RADIAN 5730
+#define LEAST_PM 5
+#define ALIKE_PM 10 // two sizes differ by this, or a third, at most
+#define TURN_MOST_CDEG 9000
+#define NEW_PARTS 4 // of the size each piece after the first two makes one
+
+void argus_wheel_init(argus_wheel_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+// The faster wheel makes the way and half of the difference.
+static int32_t size_pm(const argus_knowledge_t *const knowledge, const argus_way_turn_t *const piece) {
+    ARGUS_ASSERT(piece->way_mm > 0);
+    const int32_t turn_cdeg = argus_max(-TURN_MOST_CDEG, argus_min(TURN_MOST_CDEG, piece->turn_cdeg));
+    const int32_t apart_um = turn_cdeg * knowledge->robot->track_mm * 100 / (CDEG_PER_RADIAN / 10);
+    const int32_t pm = apart_um / (piece->way_mm + argus_abs(apart_um) / 2000);
+    return knowledge->robot->reversed ? -pm : pm;
+}
+
+static bool are_alike(const int32_t a, const int32_t b) {
+    const int32_t room = argus_max(ALIKE_PM, argus_max(argus_abs(a), argus_abs(b)) / 3);
+    return argus_abs(a) >= LEAST_PM && argus_abs(b) >= LEAST_PM && argus_abs(a - b) <= room &&
+           (a > 0) == (b > 0);
+}
+
+static argus_wheel_news_t name(argus_wheel_t *const self, const int32_t pm) {
+    const bool named = self->kind == ARGUS_KIND_WRONG;
+    const int32_t before = named ? self->short_pm : self->suspect_pm;
+    const int32_t parts = named ? NEW_PARTS : 2;
+    self->short_pm = (int16_t)(before + (pm - before) / parts);
+    self->health = ARGUS_SUSPECT;
+    self->kind = ARGUS_KIND_WRONG;
+    return named ? ARGUS_WHEEL_SAME : ARGUS_WHEEL_NAMED;
+}
+
+static argus_wheel_news_t clear(argus_wheel_t *const self) {
+    const bool named = self->kind == ARGUS_KIND_WRONG;
+    self->health = ARGUS_HEALTHY;
+    self->kind = ARGUS_KIND_NONE;
+    self->short_pm = 0;
+    return named ? ARGUS_WHEEL_CLEARED : ARGUS_WHEEL_SAME;
+}
+
+argus_wheel_news_t argus_wheel_judge(argus_wheel_t *const self, const argus_knowledge_t *const knowledge,
+                                     const argus_way_turn_t *const piece) {
+    const int32_t pm = size_pm(knowledge, piece);
+    const int32_t before = self->suspect_pm;
+    argus_wheel_news_t news = ARGUS_WHEEL_SAME;
+    self->suspect_pm = (int16_t)argus_max(-INT16_MAX, argus_min(INT16_MAX, pm));
+    self->odometer_mm = knowledge->odometer_mm;
+    if (argus_abs(pm) > ARGUS_WHEEL_MOST_PM) {
+        return news;
+    }
+    if (argus_abs(pm) < LEAST_PM) {
+        return argus_abs(before) < LEAST_PM || self->kind == ARGUS_KIND_NONE ? clear(self) : news;
+    }
+    if (self->kind == ARGUS_KIND_NONE) {
+        self->health = ARGUS_SUSPECT;
+    }
+    if (are_alike(pm, before)) {
+        news = name(self, pm);
+    }
+    return news;
+}

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// What a reading tells of its sonar, by how odd the readings of all the others are of late.
+#include "awareness/odds.h"
+
+#include "awareness/levels.h"
+#include "knowledge/angle.h"
+
+#define ONE 16    // reading, in the rates
+#define EARLIER 6 // readings are taken for granted at the start
+#define FADE_EIGHTHS 7
+#define THOUSAND 1000
+
+// Permille of the readings: odd ones of a healthy sonar at the least; odd ones, and those that go on, of a
+// faulty one. What is neither tells nothing.
+typedef struct {
+    int16_t usual;
+    int16_t odd;
+    int16_t even;
+} odds_t;
+
+static const odds_t odds[ARGUS_TESTS] = {
+    [ARGUS_TEST_STUCK] = {60, 1000, 0},
+    [ARGUS_TEST_GARBAGE] = {100, 600, 50},
+    [ARGUS_TEST_DROPOUT] = {10, 250, 750},
+    [ARGUS_TEST_PEERS] = {50, 800, 370},
+};
+
+int32_t argus_ln(const int32_t number) {
+    int32_t power = 0;
+    while (number >> (power + 1) > 0) {
+        power++;
+    }
+    return (693 * power + 693 * (number - (1 << power)) / (1 << power)) / 10;
+}
+
+int32_t argus_odds_permille(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                            const int but, const argus_test_t test) {
+    int32_t all = EARLIER * ONE;
+    int32_t odd = all * odds[test].usual / THOUSAND + 1;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const bool counts = i != but && !argus_is_out(knowledge, i);
+        all += counts ? self->of[i].rate[test].all : 0;
+        odd += counts ? self->of[i].rate[test].odd : 0;
+    }
+    return odd * THOUSAND / all;
+}
+
+int32_t argus_odds_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                      const int sonar, const argus_test_t test, const bool odd) {
+    const odds_t *const o = &odds[test];
+    const int32_t share = argus_odds_permille(self, knowledge, sonar, test);
+    const int32_t healthy = argus_max(o->usual, argus_min(o->odd * 3 / 4, share));
+    if (odd) {
+        return argus_ln(o->odd) - argus_ln(healthy);
+    }
+    return o->even > 0 ? argus_min(0, argus_ln(o->even) - argus_ln(THOUSAND - healthy)) : -ARGUS_CEILING;
+}
+
+void argus_odds_note(argus_evidence_t *const self, const int sonar, const argus_test_t test, const bool odd) {
+    argus_rate_t *const rate = &self->of[sonar].rate[test];
+    rate->all = (uint16_t)(rate->all + ONE);
+    rate->odd = (uint16_t)(rate->odd + (odd ? ONE : 0));
+}
+
+void argus_odds_fade(argus_evidence_t *const self) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        for (int test = 0; test < ARGUS_TESTS; test++) {
+            argus_rate_t *const rate = &self->of[i].rate[test];
+            rate->all = (uint16_t)(rate->all * FADE_EIGHTHS / 8);
+            rate->odd = (uint16_t)(rate->odd * FADE_EIGHTHS / 8);
+        }
+    }
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// argusd --help.
+#include "argusd.h"
+#include "options.h"
+
+static void print_options(FILE *out) {
+    fputs(
+        "argusd " ARGUS_VERSION ": keeps a Pioneer P3-DX seeing and driving safely when its sonars fail\n"
+        "\n"
+        "usage: argusd --link LINK [options]\n"
+        "\n"
+        "  --link LINK        serial:PATH[@BAUD] (default 9600), tcp:HOST[:PORT] (default 8101), or\n"
+        "                     can:IFACE[,robot=K][,tx=ID][,rx=ID][,pad=BYTE|none][,stmin=MS][,bs=N][,fd]:\n"
+        "                     ISO-TP (default robot=0, tx=0x640+K, rx=0x648+K, pad=0xCC, stmin=0, bs=0)\n"
+        "  --can-telemetry IFACE[,robot=K] | none\n"
+        "                     health and readings as CAN frames, orders from there (tools/argus.dbc); with "
+        "a\n"
+        "                     can link its interface is the default\n"
+        "  --auto-baud        serial: try 9600 38400 115200 19200 57600 and say what was found\n"
+        "  --config FILE      settings (see --list-config)\n"
+        "  --course FILE      drive this course: x_mm,y_mm per line, # comments\n"
+        "  --goal X,Y         drive to this one point; mm, x ahead and y left of where the robot stands\n"
+        "  --robot NAME       whose body and sonars it has, where it does not say so itself: p3dx-sh, "
+        "amigo-sh,\n"
+        "                     p3at-sh, peoplebot-sh; one that is not known is never driven\n"
+        "  --guard PORT       pty:PATH or tcp:HOST:PORT, up to 4 times: there an ARCOS client (ARIA, p2os, "
+        "...)\n"
+        "                     finds the robot; its motion is bounded by what trusted sonars see "
+        "(docs/guardian.md)\n"
+        "  --guard-readings withhold|cover|pass\n"
+        "                     what it gets of sonars that are out: nothing (default), what others have "
+        "heard\n"
+        "                     there lately, or what they say\n"
+        "  --guard-beyond-loopback\n"
+        "                     let a guard port listen where other machines reach it\n"
+        "  --passive          diagnose and report, never command a motion\n"
+        "  --active           drive; needed on a serial or can link, which starts passive\n"
+        "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
+        "  --record FILE      append all bytes of the link, both directions, with their times (see "
+        "argus-log)\n"
+        "  --record-max MB    size at which FILE becomes FILE.1 and so on to FILE.4 (default 64)\n"
+        "  --control unix:PATH | tcp:127.0.0.1:PORT\n"
+        "                     a socket on which programs of this user watch and order (see argusctl)\n"
+        "  --control-token FILE\n"
+        "                     whoever connects must say its first line; needed with tcp\n"
+        "  --control-beyond-loopback\n"
+        "                     allow an address that other machines reach\n"
+        "  --inject           arm argusctl fail: faults of sonars made by argusd itself, for tests\n"
+        "  --attach PLACE     no robot of its own: the screen of the argusd whose --control is at PLACE\n"
+        "  --wait SECONDS     at start, how long to try for the port and for a robot's answer; or 'forever'\n"
+        "                     (default: the port must be there, a robot has 30 s)\n"
+        "  --check            connect, tell what is there, leave\n"
+        "  --json             one JSON object per line on standard output\n"
+        "  --plain            no screen on a terminal, a line per event instead\n"
+        "  --status MS        time between status lines, 0 for none (default 500 with --json, else 2000)\n"
+        "  --list-events      the event catalogue\n"
+        "  --list-config      every setting: type, range, default, unit, meaning\n"
+        "  --example-config   a config file with every setting\n"
+        "  --version          print the version\n"
+        "  --help             print this\n"
+        "\n",
+        out);
+}
+
+static void print_examples(FILE *out) {
+    fputs("keys on the screen: arrows or w a s d drive, space stops, g goes on, r checks again, p "
+          "passive/active,\n  n b choose a sonar, t re-tests it, k pins it or ends that, x takes it out; q "
+          "ends\n"
+          "\n"
+          "examples:\n"
+          "  argusd --link serial:/dev/ttyUSB0@9600 --check\n"
+          "  argusd --link serial:/dev/ttyUSB0 --auto-baud\n"
+          "  argusd --link serial:/dev/ttyUSB0@9600 --active --goal 3000,0 --config argusd.conf\n"
+          "  argusd --link tcp:localhost --course course.csv --json\n"
+          "  argusd --link serial:/dev/ttyUSB0@9600 --guard tcp:127.0.0.1:8101 --guard pty:/run/argus/robot\n"
+          "  argusd --link can:can0 --active --goal 3000,0\n"
+          "  argusd --link serial:/dev/ttyUSB0@9600 --can-telemetry can0,robot=2\n"
+          "  argusd --link tcp:localhost --control unix:/tmp/argus.sock --inject\n"
+          "  argusd --attach unix:/tmp/argus.sock\n"
+          "\n"
+          "exit codes:\n",
+          out);
+}
+
+void options_help(FILE *out) {
+    print_options(out);
+    print_examples(out);
+#define EXIT_LINE(name, code, meaning) fprintf(out, "  %d  %s\n", code, meaning);
+    ARGUSD_EXIT_TABLE(EXIT_LINE)
+#undef EXIT_LINE
+}

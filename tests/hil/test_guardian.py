@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: MIT
+"""Rule: a client at a guard port finds the robot, drives it, hits nothing that a sonar sees, and is outlived safely."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+import pytest
+from harness import ROOT, Argusd, Bench, is_at_rest, run_argusd, wait_for
+from worlds import hall, hall_with_box
+
+from hil_sim.arcos import ConfigPac, EncoderPac
+from hil_sim.conformance.client import Client, Target, parse_target
+
+SPEED_MM_S: Final = 300
+NEAR_MM: Final = 700
+TEXT: Final = (ROOT / "docs/guardian.md").read_text(encoding="utf-8")
+LOOKS: Final = 3
+"""The sonar that the client of these tests goes by."""
+
+
+def free_port() -> int:
+    """Return a port that nobody listens on."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return int(server.getsockname()[1])
+
+
+def guarded(bench: Bench, *arguments: str, config: dict[str, Any] | None = None) -> tuple[Argusd, Target]:
+    """Start argusd with a guard port; return where that is once the robot is checked."""
+    port = free_port()
+    words = ["--guard", f"tcp:127.0.0.1:{port}", *arguments]
+    argusd = bench.argusd(*words, config={"profile": "argus", **(config or {})}, active=False)
+    argusd.wait("HEALTH_CHECK")
+    return argusd, parse_target(f"tcp:127.0.0.1:{port}")
+
+
+@contextmanager
+def session(target: Target, motors: bool = True) -> Iterator[Client]:
+    """A client in a session."""
+    client = Client(target)
+    try:
+        client.start(motors=motors)
+        yield client
+    finally:
+        client.close()
+
+
+def drive_by_one_sonar(client: Client, seconds: float) -> None:
+    """Ahead until the one sonar that it goes by reads something near."""
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        client.command("VEL", SPEED_MM_S)
+        for sip in client.sips(5):
+            if any(number == LOOKS and reading < NEAR_MM for number, reading in sip.sonars):
+                client.command("VEL", 0)
+                client.sips(10)
+                return
+
+
+def test_the_robot_shows_itself_as_it_is(bench: Bench) -> None:
+    bench.sim(bench.world(**hall()))
+    argusd, target = guarded(bench)
+    with session(target) as client:
+        assert client.identity is not None
+        assert client.identity.name.decode() == argusd.status["robot"]
+        assert client.identity.subclass.decode() == argusd.status["subclass"]
+        client.command("CONFIG", 1)
+        assert isinstance(client.answer(ConfigPac), ConfigPac)
+        client.command("ENCODER", 1)
+        assert isinstance(client.answer(EncoderPac), EncoderPac)
+        client.command("MOVE", 400)
+        client.until("the way is driven", lambda sip: sip.x > 390, 60)
+    argusd.wait("GUARD_CLOSED")
+    assert not argusd.named("GUARD_SLOWED", "GUARD_HELD", "GUARD_REFUSED", "GUARD_LOST")
+
+
+def test_with_its_sonar_dead_the_client_hits_the_box(bench: Bench) -> None:
+    # What the guard is for: the same client at the robot itself.
+    sim = bench.sim(bench.world(**hall_with_box(1700, LOOKS)), f"silent:{LOOKS}")
+    with session(parse_target(f"serial:{bench.port}")) as client:
+        drive_by_one_sonar(client, 10.0)
+    assert sim.of("collision")
+
+
+@pytest.mark.parametrize("readings", ["withhold", "cover"])
+@pytest.mark.parametrize("fault", ["silent", "off"])
+def test_with_the_guard_it_does_not(bench: Bench, fault: str, readings: str) -> None:
+    sim = bench.sim(bench.world(**hall_with_box(1700, LOOKS)), f"{fault}:{LOOKS}")
+    argusd, target = guarded(bench, "--guard-readings", readings)
+    with session(target) as client:
+        drive_by_one_sonar(client, 25.0)
+        client.command("VEL", 0)
+        sim.wait_rest()
+    assert sim.now["x_mm"] > 600  # it was let on as far as the way is seen
+    sim.assert_no_collision()
+    assert argusd.named("GUARD_HELD", "GUARD_SLOWED", "GUARD_LOOKS")
+
+
+def test_a_wall_ahead_and_one_behind(bench: Bench) -> None:
+    sim = bench.sim(bench.world(**hall()))
+    argusd, target = guarded(bench)
+    with session(target) as client:
+        for speed in (600, -400):
+            argusd.events.clear()
+            for _ in range(90):
+                client.command("VEL", speed)
+                client.sips(2)
+            argusd.wait("GUARD_HELD", value=1)
+            assert is_at_rest(sim.now)
+    sim.assert_no_collision()
+
+
+def test_a_client_that_is_killed_in_motion(bench: Bench) -> None:
+    sim = bench.sim(bench.world(**hall(length_mm=9000)))
+    argusd, target = guarded(bench)
+    script = (
+        "import sys; from hil_sim.conformance.client import Client, parse_target\n"
+        "client = Client(parse_target(sys.argv[1])); client.start(motors=True)\n"
+        "while True: client.command('VEL', 300); client.sips(3)\n"
+    )
+    target_text = f"tcp:{target.host}:{target.port}"
+    child = subprocess.Popen([sys.executable, "-c", script, target_text], cwd=ROOT)
+    try:
+        sim.wait("it drives", lambda state: state["v_mm_s"] > 290)
+    finally:
+        child.send_signal(signal.SIGKILL)
+        child.wait()
+    killed_s = sim.robot_time(time.time())
+    lost = argusd.wait("GUARD_LOST")
+    assert lost["value"] == 1
+    rest = sim.wait_rest()
+    # 300 mm/s at 600 mm/s2 take 0.5 s; the robot's own watchdog would have waited for 2.
+    assert rest["t_s"] - killed_s < 2.0
+
+
+def test_a_client_that_goes_silent(bench: Bench) -> None:
+    sim = bench.sim(bench.world(**hall(length_mm=9000)))
+    argusd, target = guarded(bench)
+    with session(target) as client:
+        client.command("VEL", 300)
+        sim.wait("it drives", lambda state: state["v_mm_s"] > 290)
+        client.pulses = False
+        lost = argusd.wait("GUARD_LOST")
+        assert lost["value"] == 2
+        sim.wait_rest()
+        client.sips(10)  # which still come
+        client.pulses = True
+        client.hear(2.0)
+        assert is_at_rest(sim.now)  # nothing moves before it says so
+
+
+def test_a_second_client_is_turned_away(bench: Bench) -> None:
+    bench.sim(bench.world(**hall()))
+    name = bench.path / "guard"
+    argusd, target = guarded(bench, "--guard", f"pty:{name}")
+    with session(target, motors=False) as client:
+        with socket.create_connection((target.host, target.port), 5) as second:
+            second.settimeout(20)
+            assert second.recv(10) == b""
+        wait_for("it is said", lambda: any("turned away" in line for line in argusd.errors), 20)
+        client.sips(5)
+    argusd.wait("GUARD_CLOSED")
+    argusd.events.clear()
+    with session(parse_target(f"serial:{name}")) as client:  # the other port, the first one gone
+        client.sips(5)
+        assert client.identity is not None
+    argusd.wait("GUARD_CLOSED")
+    argusd.end()
+    assert not name.is_symlink()
+
+
+def test_a_pty_that_is_closed_stops_the_robot(bench: Bench) -> None:
+    sim = bench.sim(bench.world(**hall(length_mm=9000)))
+    name = bench.path / "guard"
+    argusd, _ = guarded(bench, "--guard", f"pty:{name}")
+    client = Client(parse_target(f"serial:{name}"))
+    client.start(motors=True)
+    client.command("VEL", 300)
+    sim.wait("it drives", lambda state: state["v_mm_s"] > 200)
+    client.in_session = False  # without a word
+    client.close()
+    assert argusd.wait("GUARD_LOST")["value"] == 1
+    sim.wait_rest()
+
+
+def test_every_sip_and_no_other_reaches_the_client(bench: Bench) -> None:
+    sim = bench.sim(bench.world(**hall()))
+    argusd, target = guarded(bench)
+    with session(target) as client:
+        heard = [sip.x for sip in client.sips(100)]
+        assert len(heard) == 100
+        assert client.damaged == 0
+        statuses = argusd.named("STATUS")
+        assert statuses[-1]["bad_checksums"] == 0
+    assert sim.process.poll() is None
+
+
+def test_it_listens_where_it_may(tmp_path: Path) -> None:
+    far = run_argusd("--link", "tcp:127.0.0.1:1", "--guard", "tcp:0.0.0.0:18999", "--wait", "1")
+    assert far.returncode == 3  # no robot: the guard is not asked yet
+    taken = tmp_path / "file"
+    taken.write_text("mine")
+    with socket.create_server(("127.0.0.1", 0)) as robot:
+        link = f"tcp:127.0.0.1:{robot.getsockname()[1]}"
+        for guard, code, say in (
+            ("tcp:0.0.0.0:18999", 2, "--guard-beyond-loopback"),
+            (f"pty:{taken}", 3, "it stays"),
+            (f"pty:{tmp_path}/no/such", 3, "No such file"),
+            (f"tcp:127.0.0.1:{robot.getsockname()[1]}", 3, "in use"),
+        ):
+            done = run_argusd("--link", link, "--guard", guard)
+            assert (done.returncode, say in done.stderr) == (code, True), done.stderr
+    assert taken.read_text() == "mine"
+
+
+def test_the_commands_of_the_page(tmp_path: Path) -> None:
+    (script,) = re.findall(r"```sh\n(.*?)```", TEXT, re.DOTALL)
+    for port in ("8201", "8202"):
+        script = script.replace(port, str(free_port()))
+    path = os.pathsep.join([str(ROOT / ".venv/bin"), str(ROOT / "build/release"), os.environ["PATH"]])
+    done = subprocess.run(
+        ["bash", "-c", f"set -m\n{script}"],
+        cwd=tmp_path,
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    events = [json.loads(line)["event"] for line in (tmp_path / "events.jsonl").read_text().splitlines()]
+    assert "GUARD_OPEN" in events, done.stderr
+    assert re.search(r"pass\s+handshake/three-syncs", done.stdout), done.stdout
+    assert re.search(r"pass\s+packets/config", done.stdout), done.stdout
+
+
+def test_the_first_command_of_the_page(bench: Bench) -> None:
+    (line,) = re.findall(r"^    argusd (.*)$", TEXT, re.MULTILINE)
+    bench.sim(bench.world(**hall()))
+    name = bench.path / "ports"
+    name.mkdir()
+    known = {"/dev/ttyUSB0": str(bench.port), "8101": str(free_port()), "/run/argus": str(name)}
+    for word, there in known.items():
+        assert word in line
+        line = line.replace(word, there)
+    argusd = Argusd([*line.split(), "--json"])
+    bench.daemons.append(argusd)
+    argusd.wait("HEALTH_CHECK")
+    for target in (f"tcp:127.0.0.1:{known['8101']}", f"serial:{name}/robot"):
+        with session(parse_target(target), motors=False) as client:
+            client.sips(5)
+
+
+def test_every_event_of_the_guard_is_on_the_page() -> None:
+    header = (ROOT / "firmware/include/argus/argus.h").read_text(encoding="utf-8")
+    names = set(re.findall(r"X\(\d+, (GUARD_\w+),", header))
+    assert len(names) == 10
+    assert names - set(re.findall(r"GUARD_\w+", TEXT)) <= {"GUARD_OPEN", "GUARD_CLOSED"}

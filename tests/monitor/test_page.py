@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: MIT
+"""Rule: what happens to the robot is on the page, and what is done on the page happens to the robot."""
+
+from __future__ import annotations
+
+import http.server
+import statistics
+import threading
+from pathlib import Path
+
+from page_browser import Browser, By, Keys, Monitor, wait_for
+
+LATENCY_MS = 1500.0
+"""Far above what tests/bench/monitor.py measures: a test host is busy."""
+
+
+def test_the_page_shows_the_robot_and_its_console_is_silent(page: Browser) -> None:
+    assert page.driver.title == "Argus monitor"
+    assert page.text("failure") not in ("", "Not connected")
+    # On a busy host one or another may be doubted for a while; that it is said is no fault of the page.
+    page.wait("all sonars are listed", lambda: page.text("sonars-count").endswith(" of 16 in use"))
+    assert len(page.driver.find_elements(By.CSS_SELECTOR, ".sonar-row")) == 16
+    assert page.js("return argusMonitor.stage.eyes.size") == 16
+    page.wait("echoes are drawn", lambda: page.js("return argusMonitor.stage.echoes.length") > 3)
+    assert len(page.driver.find_elements(By.CSS_SELECTOR, "#robot .beam")) == 16
+    figures = page.text("figures")
+    assert "Battery12." in figures
+    page.wait("SIPs are counted", lambda: page.known("state.sips") > 20)
+    assert page.complaints() == []
+
+
+def test_the_token_leaves_the_address_and_survives_a_reload(page: Browser, monitor: Monitor) -> None:
+    assert page.driver.current_url == monitor.url.split("#")[0]
+    page.driver.refresh()
+    page.wait("live again", lambda: page.text("link") == "live")
+
+
+def test_a_click_on_the_floor_drives_there_and_stop_stops(page: Browser) -> None:
+    page.wait("all is well", lambda: page.known("state.mode") in ("IDLE", "DRIVING"))
+    box = page.js(
+        "const b = argusMonitor.stage.box.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]"
+    )
+    before = page.known("state")
+    page.point(box[0], box[1] - 200)
+    page.wait("it is on its way", lambda: abs(page.known("state.vel_left_mm_s")) > 20)
+    assert page.text("control") == "In control"
+    page.click("stop")
+    page.wait("it says that it is paused", lambda: page.text("mode").endswith(", paused"))
+    page.wait(
+        "it stands", lambda: page.known("state.vel_left_mm_s") == page.known("state.vel_right_mm_s") == 0
+    )
+    after = page.known("state")
+    assert (after["x_mm"], after["y_mm"]) != (before["x_mm"], before["y_mm"])
+    assert page.js("return argusMonitor.stage.goal") is not None
+
+
+def test_the_keyboard_drives_chooses_breaks_and_stops(page: Browser) -> None:
+    page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
+    page.focus_stage()
+    chosen = page.known("chosen")
+    page.keys("n", "n", "b")
+    assert page.known("chosen") == (chosen + 1) % 16
+    before = page.known("state.heading_cdeg")
+    page.keys(Keys.ARROW_LEFT)
+    page.wait("it turns left", lambda: page.known("state.heading_cdeg") - before > 1500)
+    page.wait("and has turned", lambda: page.known("state.mode") == "IDLE")
+    page.keys("p")
+    page.wait("it is passive", lambda: page.text("active") == "Passive")
+    page.keys("p")
+    page.wait("it is active", lambda: page.text("active") == "Active")
+    page.keys("f")
+    page.wait("the chosen one is broken", lambda: str(page.known("chosen")) in page.known("broken"))
+    page.keys("f")
+    page.wait("and mended", lambda: page.known("broken") == {})
+    stops = page.text("say")
+    page.keys(Keys.SPACE)
+    page.wait("Space stops", lambda: page.text("say") != stops and page.text("say").startswith("Stopped."))
+
+
+def test_every_control_is_reached_by_tab_and_the_list_by_arrows(page: Browser) -> None:
+    page.driver.find_element(By.CSS_SELECTOR, ".skip").send_keys("")
+    reached = []
+    for _ in range(60):
+        page.keys(Keys.TAB)
+        active = page.driver.switch_to.active_element
+        name = (
+            active.get_attribute("id")
+            or active.get_attribute("data-order")
+            or active.text
+            or active.get_attribute("name")
+        )
+        reached.append(name)
+        if name == "events":
+            break
+    wanted = {
+        "control",
+        "theme",
+        "stage",
+        "zoom-in",
+        "stop",
+        "turn",
+        "step",
+        "go",
+        "recheck",
+        "active",
+        "fault",
+        "break",
+    }
+    assert wanted <= set(reached), sorted(wanted - set(reached))
+    row = page.driver.find_element(By.CSS_SELECTOR, ".sonar-row[tabindex='0']")
+    row.send_keys(Keys.ARROW_DOWN)
+    active = page.driver.switch_to.active_element
+    assert active.get_attribute("role") == "radio"
+    page.wait("the focus is on the chosen one", lambda: active.get_attribute("aria-checked") == "true")
+
+
+def test_keys_do_nothing_in_fields_and_letters_nothing_outside_of_the_picture(page: Browser) -> None:
+    page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
+    field = page.driver.find_element(By.NAME, "x")
+    field.send_keys("1 p")
+    assert field.get_attribute("value") == "1 p"
+    page.js("document.activeElement.blur()")
+    page.driver.find_element(By.TAG_NAME, "body").send_keys("p")
+    page.js("return new Promise((done) => setTimeout(done, 600))")
+    assert page.text("active") == "Active"
+
+
+def test_one_of_two_pages_is_in_control(page: Browser, monitor: Monitor) -> None:
+    page.click("control")
+    page.wait("in control", lambda: page.text("control") == "In control")
+    first = page.driver.current_window_handle
+    page.driver.switch_to.new_window("tab")
+    try:
+        page.open(monitor.url)
+        page.wait("there are two", lambda: page.text("viewers") == "2 viewers")
+        page.wait("another has control", lambda: page.text("control") == "Take over")
+        page.driver.find_element(By.CSS_SELECTOR, "[data-order=recheck]").click()
+        page.wait("it is refused", lambda: "Somebody else is in control" in page.text("say"))
+        page.click("control")
+        page.wait("taken over", lambda: page.text("control") == "In control")
+    finally:
+        page.driver.close()
+        page.driver.switch_to.window(first)
+    page.wait("the first was told", lambda: page.text("say") == "Somebody else has taken control.")
+    page.wait("nobody is in control", lambda: page.text("control") == "Take control")
+
+
+def test_without_the_secret_the_page_asks_for_it(page: Browser, monitor: Monitor) -> None:
+    first = page.driver.current_window_handle
+    page.driver.switch_to.new_window("tab")
+    try:
+        page.driver.get(monitor.url.split("#")[0])
+        page.wait("it asks", lambda: page.js("return document.getElementById('ask').open"))
+        page.driver.find_element(By.ID, "token").send_keys("wrong-wrong-wrong-wrong" + Keys.ENTER)
+        page.wait("it asks again", lambda: page.text("link") == "the secret was refused")
+        page.wait("the dialog is back", lambda: page.js("return document.getElementById('ask').open"))
+        page.js("document.getElementById('token').value = ''")
+        page.driver.find_element(By.ID, "token").send_keys(monitor.url.split("#")[1] + Keys.ENTER)
+        page.wait("live", lambda: page.text("link") == "live")
+    finally:
+        page.driver.close()
+        page.driver.switch_to.window(first)
+
+
+def test_the_page_comes_back_by_itself(page: Browser, monitor: Monitor, folder: Path) -> None:
+    """A second server on the same argusd, ended and started again on its port, with the same secret."""
+    secret = folder / "secret"
+    secret.write_text("a-secret-that-stays-the-same\n")
+    secret.chmod(0o600)
+    arguments = ["--connect", f"unix:{monitor.control}", "--page-token", str(secret), "--port"]
+    other = Monitor([*arguments, "0"], folder)
+    try:
+        assert "#" not in other.url
+        page.driver.get("about:blank")
+        page.open(f"{other.url}#{secret.read_text().strip()}")
+        other.end()
+        page.wait("it says so", lambda: page.text("link") == "argus-monitor is away")
+        other = Monitor([*arguments, str(other.port)], folder)
+        page.wait("it is back", lambda: page.text("link") == "live")
+    finally:
+        other.end()
+
+
+def test_another_site_gets_nothing(page: Browser, monitor: Monitor, folder: Path) -> None:
+    token = monitor.url.split("#")[1]
+    (folder / "index.html").write_text(
+        f"""<script>
+        window.found = {{}};
+        const socket = new WebSocket("ws://127.0.0.1:{monitor.port}/live");
+        socket.onopen = () => {{ window.found.socket = "open"; socket.send('{{"token":"{token}"}}'); }};
+        socket.onerror = () => window.found.socket ??= "refused";
+        fetch("http://127.0.0.1:{monitor.port}/main.js").then(() => window.found.fetch = "read",
+            () => window.found.fetch = "refused");
+        </script>"""
+    )
+
+    class Quiet(http.server.SimpleHTTPRequestHandler):
+        def log_message(self, *_arguments: object) -> None:
+            """Say nothing."""
+
+    with http.server.ThreadingHTTPServer(
+        ("127.0.0.1", 0), lambda *a: Quiet(*a, directory=str(folder))
+    ) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        page.driver.get(f"http://127.0.0.1:{server.server_address[1]}/")
+        found = wait_for(
+            "both are answered",
+            lambda: len(page.js("return window.found")) == 2 and page.js("return window.found"),
+        )
+        server.shutdown()
+    assert found == {"socket": "refused", "fetch": "refused"}
+
+
+def test_a_reading_is_on_the_screen_soon_after_its_sip(page: Browser) -> None:
+    latencies = page.wait(
+        "readings have come",
+        lambda: (got := page.js("return argusMonitor.latencies")) and len(got) > 20 and got,
+    )
+    assert 0 < statistics.median(latencies) < LATENCY_MS
+
+
+def test_a_sonar_broken_by_a_click_is_diagnosed_on_the_page_and_mended_by_another(page: Browser) -> None:
+    page.js("document.getElementById('fault').value = 'silent'")
+    page.point_sonar(3)
+    page.wait("it is marked as broken", lambda: page.known("broken") == {"3": "silent"})
+    page.wait("Argus finds it", lambda: page.known("state.kind")[3] == "silent")
+    page.wait("the list says so", lambda: page.row(3) == "↯ failed: silent")
+    page.wait("the headline says so", lambda: "3 silent" in page.text("stage-text"))
+    page.wait("so does the badge", lambda: page.text("failure") in ("Minor failure", "Major failure"))
+    page.wait("it tells how long it took", lambda: page.text("say").startswith("Found after "))
+    assert page.driver.find_elements(By.CSS_SELECTOR, "#robot .sonar.bad[data-sonar='3']")
+    assert "sonar 3disabled" in page.text("events").replace(" ", "").replace("sonar3", "sonar 3")
+    page.wait(
+        "a plan covers for it", lambda: page.js("return document.querySelectorAll('#robot .turn').length") > 0
+    )
+    assert page.js("return document.querySelectorAll('#plan .turn').length") > 0
+    assert page.js("return document.querySelectorAll('#robot .cover.turned').length") > 0
+    page.point_sonar(3)
+    page.wait("it is mended", lambda: page.known("broken") == {})
+    page.driver.find_element(By.CSS_SELECTOR, "[data-sonar-order=retest]").click()
+    page.wait("tested again it comes back", lambda: page.known("state.kind")[3] != "silent")

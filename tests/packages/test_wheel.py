@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""Rule: the wheel alone, in a clean environment, gives every command and example; the C core comes compiled with it."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import zipfile
+from pathlib import Path
+
+import argus
+import pytest
+from packages_help import DIST, ROOT, run
+
+EXAMPLE = """
+import doctest, sys
+import argus, argus.sil
+from argus_tools import core, core_build
+from hil_sim.sonar import kernel
+
+def refuse(*arguments):
+    raise AssertionError("the core is compiled here")
+
+core.build = refuse
+assert core.library()._name.startswith(sys.prefix), core.library()._name
+assert kernel.library()._name.startswith(sys.prefix), kernel.library()._name
+result = doctest.testfile(sys.argv[1], module_relative=False)
+assert result.attempted > 20 and not result.failed
+print(argus.__version__)
+"""
+
+
+def entries(wheel: Path) -> dict[str, str]:
+    """The console scripts that a wheel brings."""
+    with zipfile.ZipFile(wheel) as archive:
+        [name] = [name for name in archive.namelist() if name.endswith("/entry_points.txt")]
+        text = archive.read(name).decode()
+    return dict(re.findall(r"^(\S+) *= *(\S+)$", text, re.MULTILINE))
+
+
+def test_it_holds_all_modules_and_data_and_nothing_else(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        held = {name for name in archive.namelist() if ".dist-info/" not in name and not name.endswith("/")}
+    tracked = run("git", "ls-files", "hil_sim", "tools/argus", "tools/argus_tools").splitlines()
+    expected = {name.removeprefix("tools/") for name in tracked}
+    assert held - expected == {"argus_tools/libargus.so", "hil_sim/sonar/libargus_sim.so"}
+    missing = {name for name in expected - held if (ROOT / name).exists() or (ROOT / "tools" / name).exists()}
+    assert not missing
+
+
+def test_its_name_says_where_it_runs(wheel: Path) -> None:
+    found = re.fullmatch(rf"argus_p3dx-{re.escape(argus.__version__)}-py3-none-(\S+)\.whl", wheel.name)
+    assert found
+    assert set(found[1].split(".")) == {
+        f"manylinux2014_{os.uname().machine}",
+        f"manylinux_2_17_{os.uname().machine}",
+    }
+
+
+def test_each_command_answers(wheel: Path, clean_venv: Path) -> None:
+    names = entries(wheel)
+    assert {"argus-sim", "argus-log"} <= set(names)
+    for name in names:
+        told = run(clean_venv / "bin" / name, "--help", cwd="/")
+        assert told.startswith(f"usage: {name}")
+        assert "examples:" in told
+
+
+def test_the_examples_run_with_the_libraries_of_the_wheel(clean_venv: Path) -> None:
+    env = {key: value for key, value in os.environ.items() if not key.startswith(("ARGUS_", "PYTHON"))}
+    told = run(clean_venv / "bin/python", "-I", "-c", EXAMPLE, ROOT / "docs/python.md", env=env)
+    assert told.splitlines()[-1] == argus.__version__
+
+
+def test_a_log_is_judged_from_the_command_line(clean_venv: Path) -> None:
+    sample = ROOT / "docs/samples/two-failing-sonars.rec.gz"
+    told = run(clean_venv / "bin/argus-log", "faults", sample, cwd="/", env={"PATH": "/nonexistent"})
+    assert told.startswith("sonar/front/03 suspect")
+
+
+@pytest.mark.skipif(
+    not shutil.which("aarch64-linux-gnu-gcc") or not shutil.which("qemu-aarch64"),
+    reason="gcc-aarch64-linux-gnu and qemu-user are not installed",
+)
+def test_the_wheel_for_aarch64_holds_libraries_that_run_there(tmp_path: Path) -> None:
+    [wheel] = DIST.glob("argus_p3dx-*_aarch64.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path)
+        library = tmp_path / "argus_tools/libargus.so"
+    program = tmp_path / "embed"
+    sources = [ROOT / "examples/embed/main.c", ROOT / "examples/embed/robot.c"]
+    include = f"-I{ROOT / 'firmware/include'}"
+    # By its soname, as the linker notes it.
+    soname = re.search(r"SONAME.*\[(\S+)\]", run("readelf", "-d", library))
+    assert soname
+    library.rename(tmp_path / soname[1])
+    run("aarch64-linux-gnu-gcc", "-std=c11", include, *sources, tmp_path / soname[1], "-o", program)
+    emulator = ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", "-E", f"LD_LIBRARY_PATH={tmp_path}"]
+    done = subprocess.run([*emulator, str(program)], capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"SONAR_SILENT +sonar  3 ", done.stdout)

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: MIT
+"""Rule: who opens the WebSocket of argus-foxglove gets what argusd says, in the form that each channel declares; and
+the layout names no topic and no field that there is not."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+import signal
+import struct
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import websockets
+from argus_tools.foxglove import SCHEMAS
+from harness import ROOT
+from robots import emulated, minded
+
+BRIDGE = Path(sys.prefix) / "bin/argus-foxglove"
+LAYOUT = ROOT / "docs/foxglove/argus.json"
+MESSAGE_DATA = 1
+HEAD = struct.Struct("<BIQ")
+DEAD = 3
+
+
+@pytest.fixture
+def address(tmp_path: Path) -> Iterator[str]:
+    """A robot whose sonar 3 gets stuck, argusd, and the bridge: its address."""
+    sim, robot = emulated(tmp_path, "--world", "demo", "--fault", f"stuck:{DEAD}@2s:value=0")
+    argusd, place = minded(tmp_path, robot, "--passive")
+    command = [str(BRIDGE), "--control", place, "--port", "0"]
+    bridge = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert bridge.stdout is not None
+    try:
+        yield bridge.stdout.readline().strip()
+    finally:
+        bridge.send_signal(signal.SIGINT)
+        out, err = bridge.communicate(timeout=30)
+        argusd.end()
+        sim.end()
+        assert bridge.returncode == 0, err
+        assert out == ""
+
+
+async def look(address: str, enough: Any, limit_s: float = 90) -> dict[str, list[tuple[str, dict[str, Any]]]]:
+    """Subscribe to all channels as Foxglove does; return what came on each topic, with its schema's name."""
+    heard: dict[str, list[tuple[str, dict[str, Any]]]] = {}
+    channels: dict[int, dict[str, Any]] = {}
+    async with (
+        asyncio.timeout(limit_s),
+        websockets.connect(address, subprotocols=["foxglove.sdk.v1"]) as socket,
+    ):
+        while not enough(heard):
+            data = await socket.recv()
+            if isinstance(data, str):
+                said = json.loads(data)
+                new = said["channels"] if said["op"] == "advertise" else []
+                for channel in new:
+                    channels[channel["id"]] = channel
+                asked = [{"id": channel["id"], "channelId": channel["id"]} for channel in new]
+                if asked:
+                    await socket.send(json.dumps({"op": "subscribe", "subscriptions": asked}))
+                continue
+            kind, subscription, _ = HEAD.unpack_from(data)
+            if kind == MESSAGE_DATA:
+                channel = channels[subscription]
+                assert (channel["encoding"], channel["schemaEncoding"]) == ("json", "jsonschema")
+                message = json.loads(data[HEAD.size :])
+                heard.setdefault(channel["topic"], []).append((channel["schemaName"], message))
+    return heard
+
+
+def test_what_argusd_says_comes_out_of_the_websocket(address: str) -> None:
+    def enough(heard: dict[str, Any]) -> bool:
+        ring = heard.get("/ring", [("", {"fault": [""] * 16})])[-1][1]
+        return ring["fault"][DEAD] == "stuck" and "/sonar/beams" in heard and "/events" in heard
+
+    heard = asyncio.run(look(address, enough))
+    assert {"/sonar/00", "/sonar/15", "/odometry", "/tf", "/robot/state", "/ring", "/events"} <= heard.keys()
+    for messages in heard.values():
+        for name, message in messages:
+            assert message.keys() <= SCHEMAS[name]["properties"].keys()
+    readings = [message["range_m"] for _, message in heard["/sonar/00"]]
+    assert all(0.4 < value < 0.9 for value in readings), readings
+    ring = heard["/ring"][-1][1]
+    assert (ring["trusted"], ring["failure"], ring["online"]) == (15, "IsMinor", True)
+    assert any("SONAR_DISABLED" in message["message"] for _, message in heard["/events"])
+    name, beams = heard["/sonar/beams"][-1]
+    assert name == "foxglove.SceneUpdate"
+    assert len(beams["entities"]) == 16
+
+
+def test_bad_arguments_are_told_in_a_line() -> None:
+    for arguments, word in ((["--host", "0.0.0.0"], "--beyond-loopback"), (["--port", "70000"], "65535")):
+        done = subprocess.run([BRIDGE, *arguments], capture_output=True, text=True, check=False)
+        assert done.returncode == 2
+        assert word in done.stderr
+
+
+def paths_of(value: Any) -> Iterator[str]:
+    """All message paths and topics that a layout names."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            if key in ("topicPath", "value", "path") and isinstance(item, str) and item.startswith("/"):
+                yield item
+            elif key == "topics" and isinstance(item, dict):
+                yield from item
+            else:
+                yield from paths_of(item)
+    elif isinstance(value, list):
+        for item in value:
+            yield from paths_of(item)
+
+
+SCHEMA_OF = {
+    "/sonar/beams": "foxglove.SceneUpdate",
+    "/odometry": "foxglove.PoseInFrame",
+    "/tf": "foxglove.FrameTransform",
+    "/robot/state": "argus.RobotState",
+    "/ring": "argus.Ring",
+    "/events": "foxglove.Log",
+}
+
+
+def test_the_layout_fits_the_topics() -> None:
+    layout = json.loads(LAYOUT.read_text())
+    named = list(paths_of(layout["configById"]))
+    assert len(named) > 15
+    for path in named:
+        topic, *fields = re.split(r"\.", path)
+        known = SCHEMA_OF.get(topic) or (
+            "argus.SonarRange" if re.fullmatch(r"/sonar/(0\d|1[0-5])", topic) else None
+        )
+        assert known, path
+        if fields:
+            assert re.sub(r"\[.*\]", "", fields[0]) in SCHEMAS[known]["properties"], path
+    panels = set(re.findall(r'"([A-Za-z0-9]+![a-z0-9]+)"', json.dumps(layout["layout"])))
+    assert panels == set(layout["configById"])

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: what is odd in the readings of one sonar accuses it by how rarely all the others in use
+// read as oddly, and by nothing that it, or who is out, read itself.
+#include "awareness/odds.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "awareness/levels.h"
+#include "unity.h"
+
+#define ME 3
+
+static argus_evidence_t e;
+static argus_knowledge_t k;
+
+void setUp(void) {
+    argus_evidence_t *const self = &e;
+    memset(self, 0, sizeof *self);
+    memset(&k, 0, sizeof k);
+    k.sonars = ARGUS_SONARS < 16 ? ARGUS_SONARS : 16;
+    for (int i = 0; i < k.sonars; i++) {
+        k.sonar[i].health = ARGUS_HEALTHY;
+    }
+}
+
+static void note(int sonar, argus_test_t test, int odd, int even) {
+    for (int i = 0; i < odd + even; i++) {
+        argus_odds_note(&e, sonar, test, i < odd);
+    }
+}
+
+static int worth(argus_test_t test, bool odd) {
+    return argus_odds_of(&e, &k, ME, test, odd);
+}
+
+void test_the_logarithm_is_one(void) {
+    for (int32_t n = 1; n < 100000; n += 1 + n / 40) {
+        TEST_ASSERT_INT_WITHIN(8 + n / 10000, lround(100 * log(n)), argus_ln(n));
+    }
+    for (int32_t n = 1; n < 3000; n++) {
+        TEST_ASSERT_TRUE(argus_ln(n + 1) >= argus_ln(n));
+    }
+}
+
+void test_the_oftener_all_others_read_oddly_the_less_it_says(void) {
+    for (int test = 0; test < ARGUS_TESTS; test++) {
+        int before = INT16_MAX;
+        int first = 0;
+        for (int odd = 0; odd <= 100; odd += 5) {
+            setUp();
+            note(5, (argus_test_t)test, odd, 100 - odd);
+            const int now = worth((argus_test_t)test, true);
+            first = odd == 0 ? now : first;
+            TEST_ASSERT_TRUE(now > 0 && now <= before);
+            TEST_ASSERT_TRUE(worth((argus_test_t)test, false) <= 0);
+            before = now;
+        }
+        TEST_ASSERT_TRUE(before < first / 2);
+    }
+}
+
+void test_neither_its_own_readings_count_nor_those_of_who_is_out(void) {
+    const int usual = worth(ARGUS_TEST_DROPOUT, true);
+    note(ME, ARGUS_TEST_DROPOUT, 60, 40);
+    TEST_ASSERT_EQUAL(usual, worth(ARGUS_TEST_DROPOUT, true));
+    note(5, ARGUS_TEST_DROPOUT, 60, 40);
+    TEST_ASSERT_TRUE(worth(ARGUS_TEST_DROPOUT, true) < usual);
+    k.sonar[5].health = ARGUS_DISABLED;
+    TEST_ASSERT_EQUAL(usual, worth(ARGUS_TEST_DROPOUT, true));
+    TEST_ASSERT_TRUE(argus_odds_permille(&e, &k, -1, ARGUS_TEST_DROPOUT) > 400);
+}
+
+void test_another_test_is_another_rate(void) {
+    const int usual = worth(ARGUS_TEST_GARBAGE, true);
+    note(5, ARGUS_TEST_STUCK, 100, 0);
+    TEST_ASSERT_EQUAL(usual, worth(ARGUS_TEST_GARBAGE, true));
+}
+
+// One value that changes ends what repeated.
+void test_what_its_fault_cannot_read_is_enough(void) {
+    TEST_ASSERT_EQUAL(-ARGUS_CEILING, worth(ARGUS_TEST_STUCK, false));
+}
+
+void test_what_was_odd_is_forgotten(void) {
+    const int usual = worth(ARGUS_TEST_PEERS, true);
+    note(5, ARGUS_TEST_PEERS, 80, 20);
+    TEST_ASSERT_TRUE(worth(ARGUS_TEST_PEERS, true) < usual / 2);
+    for (int seconds = 0; seconds < 60; seconds++) {
+        argus_odds_fade(&e);
+    }
+    TEST_ASSERT_INT_WITHIN(usual / 10, usual, worth(ARGUS_TEST_PEERS, true));
+}

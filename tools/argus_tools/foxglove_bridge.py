@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: MIT
+"""`argus-foxglove`: what argusd knows, live in Foxglove: a client of the control socket that serves a WebSocket."""
+
+from __future__ import annotations
+
+import argparse
+import ipaddress
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from argus_tools.control import Client, ControlError, Refused
+from argus_tools.control.client import default_place, read_token
+from argus_tools.foxglove import (
+    BEAMS,
+    ERROR,
+    EVENTS,
+    INFO,
+    ODOMETRY,
+    RING,
+    SCHEMAS,
+    STATE,
+    TF,
+    WARNING,
+    places,
+    sonar_topic,
+    sonars_of,
+    stamp_of,
+)
+
+EXIT_USAGE, EXIT_LINK = 2, 3
+PORT: Final = 8765
+_PAUSE_S: Final = 1.0
+_LEVELS: Final = (INFO, WARNING, ERROR, WARNING)
+_MOTORS_BIT: Final = 1
+_MOVING_MM_S: Final = 5
+
+Put = Callable[[str, str, int, dict[str, Any]], None]
+"""Topic, name of the schema, time, message."""
+
+EPILOG: Final = """\
+examples:
+  argus-foxglove                                        argusd at its usual place, port 8765
+  argus-foxglove --control unix:/tmp/argus.sock
+  argus-foxglove --control tcp:127.0.0.1:8102 --token FILE --port 9000
+
+In Foxglove: open a connection to ws://localhost:8765, then import the layout docs/foxglove/argus.json.
+It only shows: nothing that comes over the WebSocket reaches the robot.
+"""
+
+
+class Translator:
+    """Makes messages for Foxglove of what the control socket streams."""
+
+    def __init__(self, put: Put) -> None:
+        self._put = put
+        self._sonars = sonars_of("")
+        self._health: list[str] = []
+        self._fault: list[str] = []
+
+    def take(self, message: dict[str, Any], t_ns: int) -> None:
+        """Take one object of a stream."""
+        if "readings" in message:
+            self._readings(message["readings"], t_ns)
+        elif message.get("event") == "STATUS":
+            self._state(message, t_ns)
+        elif "event" in message:
+            self._event(message, t_ns)
+
+    def _readings(self, readings: dict[str, Any], t_ns: int) -> None:
+        seen = {
+            k: (mm, age_ms)
+            for k, (mm, age_ms) in enumerate(zip(readings["mm"], readings["age_ms"], strict=True))
+            if age_ms >= 0
+        }
+        for k, (mm, age_ms) in seen.items():
+            reading = {**self._sonars.reading(k, mm), "age_ms": age_ms}
+            if k < len(self._health):
+                reading |= {"health": self._health[k], "fault": self._fault[k]}
+            self._put(sonar_topic(k), "argus.SonarRange", t_ns, reading)
+        ranges = {k: mm for k, (mm, _) in seen.items()}
+        scene = self._sonars.beams(stamp_of(t_ns), ranges, self._health, self._fault)
+        self._put(BEAMS, "foxglove.SceneUpdate", t_ns, scene)
+
+    def _state(self, state: dict[str, Any], t_ns: int) -> None:
+        self._sonars = sonars_of(str(state.get("subclass") or ""))
+        self._health, self._fault = state["health"], state["kind"]
+        heading_deg = state["heading_cdeg"] / 100
+        place, transform = places(state["x_mm"], state["y_mm"], heading_deg)
+        self._put(ODOMETRY, "foxglove.PoseInFrame", t_ns, place)
+        self._put(TF, "foxglove.FrameTransform", t_ns, transform)
+        same = (
+            "x_mm",
+            "y_mm",
+            "vel_left_mm_s",
+            "vel_right_mm_s",
+            "bumpers_front",
+            "bumpers_rear",
+            "flags",
+        )
+        moving = max(abs(state["vel_left_mm_s"]), abs(state["vel_right_mm_s"])) > _MOVING_MM_S
+        robot = {key: state[key] for key in same} | {
+            "heading_deg": heading_deg,
+            "battery_v": state["battery_dv"] / 10,
+            "moving": moving,
+            "motors": bool(state["flags"] & _MOTORS_BIT),
+        }
+        self._put(STATE, "argus.RobotState", t_ns, robot)
+        ring = {
+            "mode": state["mode"],
+            "mission": state["mission"],
+            "failure": state["state"],
+            "active": bool(state["active"]),
+            "online": bool(state["online"]),
+            "trusted": sum(not kind for kind in self._fault),
+            "health": self._health,
+            "fault": self._fault,
+            "injected": state.get("injected", []),
+            "plan_deg": state["plan_deg"],
+        }
+        self._put(RING, "argus.Ring", t_ns, ring)
+
+    def _event(self, event: dict[str, Any], t_ns: int) -> None:
+        level = _LEVELS[min(int(event["level"]), len(_LEVELS) - 1)]
+        words = f"{event['event']} {event['name']} {event['value']}"
+        log = {"level": level, "message": words, "name": event["name"], "file": "", "line": 0}
+        self._put(EVENTS, "foxglove.Log", t_ns, log)
+
+
+class Server:
+    """The WebSocket server, with a channel for each topic that is used."""
+
+    def __init__(self, host: str, port: int) -> None:
+        try:
+            import foxglove
+        except ImportError as error:
+            raise ControlError(f"{error}: pip install 'argus-p3dx[foxglove]'") from error
+        self._foxglove = foxglove
+        self._channels: dict[str, Any] = {}
+        try:
+            self._server = foxglove.start_server(name="argus", host=host, port=port)
+        except Exception as error:  # the library names no class for it
+            raise ControlError(f"{host}:{port} cannot be served: {error}") from error
+
+    @property
+    def port(self) -> int:
+        """The port that is served."""
+        return int(self._server.port)
+
+    def put(self, topic: str, schema: str, t_ns: int, message: dict[str, Any]) -> None:
+        """Send one message to all who look."""
+        rules = SCHEMAS[schema]
+        if topic not in self._channels:
+            described = {**rules, "title": schema}
+            self._channels[topic] = self._foxglove.Channel(topic, schema=described, message_encoding="json")
+        stamp = {"timestamp": stamp_of(t_ns)} if "timestamp" in rules["properties"] else {}
+        self._channels[topic].log({**stamp, **message}, log_time=t_ns)
+
+    def stop(self) -> None:
+        """End all connections."""
+        self._server.stop()
+
+
+def follow(place: str, token: str | None, server: Server, period_ms: int) -> None:
+    """Translate what one connection brings, until it ends."""
+    translator = Translator(server.put)
+    with Client(place, token) as argus:
+        print(f"argus-foxglove: {place}: connected", file=sys.stderr, flush=True)
+        argus.watch("events", "state", "readings", period_ms=period_ms)
+        while True:
+            translator.take(argus.message(), time.time_ns())
+
+
+def run(args: argparse.Namespace) -> int:
+    """Serve until the end; argusd may come and go."""
+    token = read_token(args.token) if args.token else None
+    server = Server(args.host, args.port)
+    print(f"ws://{args.host}:{server.port}", flush=True)
+    told = ""
+    try:
+        while True:
+            try:
+                follow(args.control, token, server, args.period)
+            except (ControlError, Refused) as error:
+                if str(error) != told:
+                    print(f"argus-foxglove: {error}", file=sys.stderr, flush=True)
+                told = str(error)
+            time.sleep(_PAUSE_S)
+    except KeyboardInterrupt:
+        return 0
+    finally:
+        server.stop()
+
+
+def is_loopback(host: str) -> bool:
+    """Whether a host is this machine only.
+
+    >>> is_loopback("127.0.0.1"), is_loopback("0.0.0.0")
+    (True, False)
+    """
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    made = argparse.ArgumentParser(
+        prog="argus-foxglove",
+        description="Show live in Foxglove what argusd knows.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=EPILOG,
+    )
+    made.add_argument(
+        "--control",
+        default=default_place(),
+        metavar="PLACE",
+        help="argusd's control socket, unix:PATH or tcp:HOST:PORT (default: %(default)s)",
+    )
+    made.add_argument("--token", type=Path, metavar="FILE", help="file with the token of a tcp: socket")
+    made.add_argument("--host", default="127.0.0.1", help="address to serve on (default: %(default)s)")
+    made.add_argument(
+        "--port", type=int, default=PORT, help="port to serve on, 0: any (default: %(default)s)"
+    )
+    made.add_argument(
+        "--beyond-loopback", action="store_true", help="allow a --host that other machines can reach"
+    )
+    made.add_argument(
+        "--period", type=int, default=100, metavar="MS", help="between two states, 50 to 10000 (default: 100)"
+    )
+    return made
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the program."""
+    args = parser().parse_args(arguments)
+    if not 0 <= args.port <= 65535:
+        parser().error(f"--port {args.port}: give 0 to 65535")
+    if not 50 <= args.period <= 10_000:
+        parser().error(f"--period {args.period}: give 50 to 10000")
+    if not args.beyond_loopback and not is_loopback(args.host):
+        parser().error(f"--host {args.host}: others could look on; --beyond-loopback allows it")
+    try:
+        return run(args)
+    except ControlError as error:
+        print(f"argus-foxglove: {error}", file=sys.stderr)
+        return EXIT_LINK
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
