@@ -53,7 +53,6 @@ static void decode_tail(argus_sip_t *sip, const uint8_t *tail, size_t count) {
 }
 
 bool argus_sip_decode(argus_sip_t *sip, const argus_packet_t *packet) {
-    ARGUS_ASSERT(packet->count > 0);
     const uint8_t *data = packet->data;
     const size_t sonar_offset = DATA_OFFSET(ARCOS_SIP_OFFSET_SONAR);
     if (packet->count < sonar_offset ||

@@ -203,7 +203,7 @@ typedef struct {
 
 static uint64_t ripened(ripe_t *const ripe, const argus_wave_t *const wave, const int y, const int step) {
     ARGUS_ASSERT(step >= 1);
-    ARGUS_ASSERT(y >= 0 && y < CELLS);
+    ARGUS_ASSERT(y >= -1 && y <= CELLS);
     if (y < 0 || y >= CELLS) {
         return 0;
     }
