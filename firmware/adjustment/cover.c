@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Finds who looks where after a rotation.
+// Finds which sonar looks where after a rotation.
 #include "adjustment/cover.h"
 
 #include "knowledge/angle.h"

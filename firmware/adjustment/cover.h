@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Who looks along a blind bearing after a rotation of a plan.
+// Which sonars look along a blind bearing after a rotation of a plan.
 #ifndef ARGUS_COVER_H
 #define ARGUS_COVER_H
 

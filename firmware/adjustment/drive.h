@@ -10,7 +10,7 @@
 typedef struct {
     uint8_t index;       // rotation at work
     argus_mask_t covers; // the disabled sonars that its plan is for
-    argus_mask_t looks;  // ... and who may look along their bearings
+    argus_mask_t looks;  // ... and those that may look along their bearings
     bool home;           // on the way back to the base heading
     bool done;           // back on it, all rotations read
     int32_t base_cdeg;

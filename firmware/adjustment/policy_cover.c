@@ -57,7 +57,7 @@ static bool sees_all(const argus_turns_t *const turns, const span_t *const span)
     return seen == argus_turns_open(turns);
 }
 
-// Who sweeps more than half around comes round sooner going on.
+// A sweep of more than half around comes round sooner going on.
 static span_t span_of(const argus_turns_t *const turns, const int from, const int to) {
     ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     const int low = from < turns->count ? argus_min(0, turns->deg[from]) : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the turns of a robot show: which blind bearings somebody who may look sees after each.
+// What the turns of a robot show: which blind bearings are seen after each, by sonars that may look.
 #ifndef ARGUS_TURNS_H
 #define ARGUS_TURNS_H
 

@@ -22,7 +22,7 @@
 #define QUIET_MS 2500u
 #define ALONE_MS 8000u
 
-// In pitches of the ring; who looks abeam is two off its neighbour. Half a turn lets another array see.
+// In pitches of the ring; one that looks abeam is two off its neighbour. Half a turn lets another array see.
 static const int8_t looks[] = {-1, 1, 0, -2, 2};
 #define LOOK_BEHIND ((uint8_t)(sizeof looks / sizeof looks[0]))
 #define LOOKS (LOOK_BEHIND + 1)
@@ -107,7 +107,7 @@ static bool aim_at_one_of(argus_inquiry_t *const self, const argus_knowledge_t *
     return false;
 }
 
-// Suspects first, then whom the others contradict. False: nothing to aim at, or often enough.
+// Suspects first, then those that the others contradict. False: nothing to aim at, or often enough.
 static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                      const argus_evidence_t *const evidence) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);

@@ -90,7 +90,7 @@ static argus_ping_t ray_of(const argus_evidence_t *const self, const argus_knowl
     return ping;
 }
 
-// Who comes back into use was mended.
+// A sonar that comes back into use was mended.
 static void note_out(argus_case_t *const self, const bool out) {
     if (self->out && !out) {
         memset(self->doubt, 0, sizeof self->doubt);

@@ -6,7 +6,7 @@
 #include "awareness/others.h"
 #include "knowledge/angle.h"
 
-#define PARTNERS 2 // who is wrong takes a third
+#define PARTNERS 2 // which one is wrong takes a third
 #define OFF_RUN 5
 #define OFF_RUN_LONG 12 // what echoed before is named off after so many readings without an echo
 #define HOLLOW_OF 3
@@ -36,7 +36,7 @@ static argus_doubt_t bent_of(const argus_case_t *const self) {
     return most_of(self, ARGUS_LAGS, ARGUS_DOUBTS);
 }
 
-// Without a third who says so, only three readings in a row that it has given before are enough.
+// Without a third that says so, only three readings in a row that it has given before are enough.
 static bool is_late(const argus_case_t *const self, const int32_t level) {
     const argus_doubt_t late = late_of(self);
     const int32_t wanted = has_partners(self) ? level : argus_max(level, ARGUS_LATE_ALONE);
@@ -102,7 +102,8 @@ static bool is_convicted_by(const argus_case_t *const self, const argus_test_t t
     return self->score[test] >= argus_bounds[test].convincing;
 }
 
-// Who walks about contradicts; and by its own readings alone, however late they look, nobody is given up.
+// People who walk about contradict; and by its own readings alone, however late they look, nobody is given
+// up.
 argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];

@@ -276,7 +276,8 @@ static void doubt_axis(argus_evidence_t *const self, const argus_knowledge_t *co
 }
 
 // What one that is out reads and its kind of fault cannot: an echo that goes on from the last as the robot
-// moves, or silence together with others of who made echoes up. Who is wrong or late needs the others.
+// moves, or silence together with others of one that made echoes up. One that is wrong or late needs the
+// others.
 static bool is_beyond(const argus_fault_kind_t kind, const argus_ping_t *const now,
                       const argus_ping_t *const before, const said_t verdict) {
     const bool made_up = kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE;
@@ -303,7 +304,7 @@ static void count_own(argus_evidence_t *const self, const argus_knowledge_t *con
     }
 }
 
-// Contradicted by who looked there, and by nothing excused.
+// Contradicted by those that looked there, and by nothing excused.
 static bool is_odd(const tally_t *const tally) {
     return tally->agree == 0 && tally->quiet == 0 && tally->differ > 0 && !tally->excused;
 }
@@ -312,7 +313,7 @@ static bool is_borne_out(const tally_t *const tally) {
     return tally->agree > 0 && tally->agree >= tally->differ;
 }
 
-// The axis first: who is a witness depends on what is counted.
+// The axis first: which sonar is a witness depends on what is counted.
 static void count_news(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, argus_ping_t *const at, const tally_t *const tally) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -359,7 +360,7 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     }
 }
 
-// What nobody could judge when it was read is judged by who looks there later.
+// What nobody could judge when it was read is judged by those that look there later.
 static void look_back(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const uint8_t *const latest) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);

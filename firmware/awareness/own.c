@@ -79,7 +79,7 @@ static void test_garbage(argus_evidence_t *const self, const argus_knowledge_t *
     argus_case_t *const c = &self->of[sonar];
     if (!argus_ping_is_echo(now)) {
         if (c->out &&
-            c->none_run >= ARGUS_SILENT_RUN) { // who reads at random is not so often silent in a row
+            c->none_run >= ARGUS_SILENT_RUN) { // one that reads at random is not so often silent in a row
             score(self, knowledge, sonar, ARGUS_TEST_GARBAGE, false);
         }
         return;

@@ -11,7 +11,7 @@
     X(dead_reading, 1, 0, 0, "5000 on a sonar that looks ahead is a dead reading: STOP, DISABLED (S2)")     \
     X(disparity, 1, 0, 0, "Algorithm 1 finds suspects, Algorithm 2 verifies them; DISABLED is for good")    \
     X(evidence, 0, 1, 0,                                                                                    \
-      "evidence judges every reading of every sonar; looks settle it; who does well returns")               \
+      "evidence judges every reading of every sonar; looks settle it; one that does well returns")          \
     X(swing_margin_mm, 0, 20, 20, "S7: room wanted beyond the circle that the body sweeps in a turn")       \
     X(remembers, 0, 1, 1, "S7: what was seen a moment ago, twice, and has left the cones, is still there")  \
     X(reads_again, 0, 1, 1, "S7: one echo of a steady sonar is read once more before it forbids a turn")    \
@@ -22,7 +22,7 @@
     X(backs_to_turn, 0, 1, 1,                                                                               \
       "S7: backs away as far as a turn asks for, at the driving speed where S5 lets it")                    \
     X(passes_abeam, 0, 1, 1,                                                                                \
-      "S7: of the rear, who looks abeam need not read clear beyond what the way back asks for")             \
+      "S7: of the rear, one that looks abeam need not read clear beyond what the way back asks for")        \
     X(drives_seen, 0, 1, 1, "S1: drives as far as living sonars have seen the way; stops only to see more") \
     X(adapts_plan, 0, 1, 1, "S1: under policy adaptive any sonar may look ahead; else it stands for paper") \
     X(adapts_speed, 0, 1, 1, "S5: as fast as what is seen ahead allows; turns gently while it drives")      \

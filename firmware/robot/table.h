@@ -8,7 +8,7 @@
 
 _Static_assert(ARGUS_SONARS % 8 == 0 && ARGUS_SONARS >= 8 && ARGUS_SONARS <= 32, "8, 16, 24 or 32");
 
-// Where and whither a sonar looks, robot frame, and who is mounted beside it.
+// Where and whither a sonar looks, robot frame, and which are mounted beside it.
 typedef struct {
     int16_t x_mm;
     int16_t y_mm;
@@ -32,9 +32,9 @@ typedef struct {
     uint8_t forward_count;
     uint8_t forward[ARGUS_FORWARD_MAX]; // the forward-facing sonars, left to right; the paper's six
     uint32_t forward_mask;
-    uint32_t ahead_mask; // who sees what the robot drives into, forward-facing or not
+    uint32_t ahead_mask; // those that see what the robot drives into
     uint32_t astern_mask;
-    uint32_t flank_mask;      // who looks abeam from ahead of the centre
+    uint32_t flank_mask;      // those that look abeam from ahead of the centre
     uint32_t rear_flank_mask; // ... from behind it
     int16_t front_mm;         // from the centre of rotation to the ends of the body
     int16_t rear_mm;

@@ -55,7 +55,7 @@ static bool is_due(const argus_t *const self) {
            self->now_ms - self->looks.check_ms >= (uint32_t)self->config.health_check_ms;
 }
 
-// Who may not turn cannot verify: there a suspicion lasts as long as the disparity.
+// A robot that may not turn cannot verify: there a suspicion lasts as long as the disparity.
 static void drop_suspicions(argus_t *const self) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(self->orders.passive);

@@ -11,7 +11,7 @@ void argus_disable(argus_t *self, int sonar, argus_fault_kind_t kind);
 // Those that read dead, and those whose slots yield nothing.
 void argus_lose(argus_t *self, argus_mask_t dead, argus_mask_t silent);
 
-// Of these, that do not face forward, who is STALE reports again; the others yield nothing any more.
+// Of these, that do not face forward, those that are STALE report again; the others yield nothing any more.
 void argus_watch(argus_t *self, argus_mask_t sonars);
 
 void argus_flag_suspects(argus_t *self, argus_mask_t suspects);

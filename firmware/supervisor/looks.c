@@ -57,7 +57,7 @@ static argus_mask_t alone(const argus_t *const self) {
     return (argus_mask_t)mask;
 }
 
-// Who is named ahead costs what the robot would drive faster without it.
+// A sonar that is named ahead costs what the robot would drive faster without it.
 void argus_count_loss(argus_t *const self) {
     if ((open_names(self) & argus_robot_ahead(self->knowledge.robot)) == 0) {
         self->looks.lost_ms = 0;
@@ -65,7 +65,7 @@ void argus_count_loss(argus_t *const self) {
     }
     const argus_guard_t guard = argus_guard(self);
     const int32_t free_mm_s = argus_guard_free_speed_mm_s(&guard, argus_guard_seen_mm(&guard));
-    const int32_t lost_mm_s = free_mm_s - self->config.speed_mm_s; // that of one who doubts
+    const int32_t lost_mm_s = free_mm_s - self->config.speed_mm_s; // the speed of doubt
     ARGUS_ASSERT(free_mm_s > 0 && lost_mm_s >= 0);
     self->looks.lost_ms += SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s;
 }

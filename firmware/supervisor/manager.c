@@ -161,7 +161,7 @@ static void take_bend(argus_t *const self) {
     }
 }
 
-// Who looks along a blind bearing, in a sweep.
+// The sonars that look along a blind bearing, in a sweep.
 static argus_mask_t sweep_looks(const argus_t *const self) {
     const bool looks = self->mode == ARGUS_MODE_SWEEPING && self->base.taken && self->motion.settled;
     return looks ? argus_sweep_wants(&self->travel.drive, &self->plan, self->knowledge.robot) : 0;

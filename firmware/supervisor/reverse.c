@@ -11,7 +11,7 @@
 #define MOST_PARTS 3   // two of three of those that face forward are most of them
 #define OTHER_LOST 1   // ... and so many the other end may have lost to be better than that
 
-// Of those of this end that face forward, who are not relied on.
+// Those of this end that face forward and are not relied on.
 static argus_mask_t lost_of(const argus_t *const self, const argus_robot_t *const end) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const argus_mask_t forward = argus_robot_forward(end);

@@ -133,8 +133,8 @@ static bool only_steady_forbid_to_turn(const argus_t *const self, const argus_gu
     return true;
 }
 
-// All that forbids to turn is an echo of now, of who would hear it again were something there. Once for each
-// try, since echoes that jump are never remembered as of one thing.
+// All that forbids to turn is an echo of now, of a sonar that would hear it again were something there. Once
+// for each try, since echoes that jump are never remembered as of one thing.
 static bool may_be_crosstalk(const argus_t *const self, const argus_guard_t *const guard) {
     return guard->profile->reads_again && !self->turning.again && guard->bumpers == 0 &&
            !argus_guard_memory_blocks(guard) && only_steady_forbid_to_turn(self, guard);
