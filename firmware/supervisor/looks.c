@@ -108,17 +108,19 @@ void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
     }
 }
 
-// A name that looks do not clear, one after the other, while nothing moves about: others have looked along
-// its bearing for that alone, each time anew (paper: Algorithm 2). What its own readings tell, looks do not
-// prove, nor anything of one at the end of an array.
+// A name that looks do not clear, while nothing moves about: others have looked along its bearing for that
+// alone, each time anew (paper: Algorithm 2). What its own readings tell, looks do not prove, nor anything of
+// one at the end of an array. A look that leaves it another name neither proves nor clears.
 static bool is_proved(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT((unsigned)kind <= ARGUS_KIND_INTERMITTENT);
     argus_hold_t *const hold = &self->looks.hold[sonar];
     const bool beset = argus_robot_faces_forward(self->knowledge.robot, sonar); // neighbours on either side
     const bool by_others = beset && (kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_WRONG);
-    const bool counts = by_others && kind == self->knowledge.sonar[sonar].kind && !self->evidence.busy;
-    hold->borne_out = counts ? (uint8_t)argus_min(hold->borne_out + 1, PROOFS) : 0;
+    if (!by_others || kind != self->knowledge.sonar[sonar].kind || self->evidence.busy) {
+        return false;
+    }
+    hold->borne_out = (uint8_t)argus_min(hold->borne_out + 1, PROOFS);
     return hold->borne_out >= (self->looks.settling > 0 ? PROOFS_AT_GOAL : PROOFS);
 }
 

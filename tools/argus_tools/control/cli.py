@@ -7,6 +7,7 @@ import argparse
 import json
 import os
 import sys
+import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final, NoReturn
@@ -18,6 +19,7 @@ EXIT_OK, EXIT_REFUSED, EXIT_USAGE, EXIT_UNREACHABLE, EXIT_INTERRUPTED = 0, 1, 2,
 KINDS: Final = ("off", "silent", "stuck", "wrong", "garbage", "slow", "delayed", "intermittent", "ok")
 TOPICS: Final = ("events", "state", "readings", "evidence")
 MOTION_S: Final = 60.0
+CHECK_S: Final = 10.0
 RESTING: Final = ("IDLE", "WAITING", "OFFLINE", "CLOSED")
 
 _EPILOG: Final = f"""\
@@ -138,15 +140,32 @@ def _wait_for_rest(client: Client) -> None:
             return
 
 
+def _order_once_checked(client: Client, name: str, members: Message) -> None:
+    """Order a motion; a check of the sonars, as after each stop, is waited for."""
+    until = time.monotonic() + CHECK_S
+    while True:
+        try:
+            client.order(name, **members)
+        except Refused:
+            mode = client.request("status").get("state", {}).get("mode")
+            if mode != "CHECKING" or time.monotonic() > until:
+                raise
+            time.sleep(0.1)
+        else:
+            return
+
+
 def _order(
     name: str, members: Callable[[argparse.Namespace], Message]
 ) -> Callable[[Client, argparse.Namespace], int]:
     def act(client: Client, args: argparse.Namespace) -> int:
         if name != "stop":
             client.take(force=args.force)
-        client.order(name, **members(args))
         if name in ("step", "turn"):
+            _order_once_checked(client, name, members(args))
             _wait_for_rest(client)
+        else:
+            client.order(name, **members(args))
         return EXIT_OK
 
     return act
