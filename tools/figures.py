@@ -74,7 +74,7 @@ def readme(found: Summary) -> str:
         row, ideal = rows[name, "argus"], rows.get((name, "ideal"), rows["rooms", "ideal"])
         ratio = row["over_ideal"]["ratio"]
         over = "-" if ratio is None else f"{ratio:.2f}"
-        cells = (words, _share(row["truly"]), _share(ideal["truly"]), over, str(row["attributable"]))
+        cells = (words, _share(row["truly"]), _share(ideal["truly"]), over, str(row["collisions"]))
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
 
