@@ -16,6 +16,7 @@ bool argus_shim_is_open(const argus_t *core);
 bool argus_shim_event(argus_t *core, int32_t *fields);
 const char *argus_shim_event_field(uint32_t field);
 const char *argus_shim_event_meaning(uint16_t id);
+int argus_shim_event_level(uint16_t id);
 const char *argus_shim_status_field(uint32_t field);
 const char *argus_shim_sonar_field(uint32_t field);
 void argus_shim_status(const argus_t *core, int64_t *fields, int64_t *sonars);
@@ -105,6 +106,10 @@ bool argus_shim_event(argus_t *core, int32_t *fields) {
     EVENT_TABLE(PUT)
 #undef PUT
     return true;
+}
+
+int argus_shim_event_level(const uint16_t id) {
+    return (int)argus_event_level(id);
 }
 
 const char *argus_shim_event_meaning(uint16_t id) {

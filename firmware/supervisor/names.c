@@ -28,14 +28,6 @@ static int row_of(const int id) {
     return -1;
 }
 
-argus_level_t argus_event_level(const uint16_t id) {
-#define LEVEL(number, name, level, subject, meaning) ARGUS_LEVEL_##level,
-    static const uint8_t levels[] = {ARGUS_EVENT_TABLE(LEVEL)};
-#undef LEVEL
-    const int row = row_of(id);
-    return row >= 0 ? (argus_level_t)levels[row] : ARGUS_LEVEL_ERROR;
-}
-
 static const char *event_name(const int id) {
 #define NAME(number, name, level, subject, meaning) #name "\0"
     return nth(ARGUS_EVENT_TABLE(NAME), row_of(id));

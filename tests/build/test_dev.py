@@ -88,7 +88,7 @@ def commands(monkeypatch: pytest.MonkeyPatch) -> dict[str, list[list[str]]]:
     for module in (cmake, testing):
         monkeypatch.setattr(module, "build", lambda preset, run: None)
     for stage in testing.TEST_STAGES:
-        if stage.name not in {"hil", "can"}:
+        if stage.name not in {"hil", "can", "ros", "packages", "monitor"}:
             runs: list[list[str]] = found.setdefault(stage.name, [])
             stage.action(lambda command, runs=runs: runs.append([str(word) for word in command]))  # type: ignore[misc]
     return found
@@ -109,7 +109,8 @@ def test_every_python_test_is_run(commands: dict[str, list[list[str]]]) -> None:
         assert pytests[pytests.index("-m", 2) + 1] == mark
         assert "tests" in pytests
         ignored = {word for word in pytests if word.startswith("--ignore")}
-        assert ignored == {"--ignore=tests/hil", "--ignore=tests/can", "--ignore=tests/target"}
+        folders = ("hil", "can", "target", "ros", "monitor", "packages")
+        assert ignored == {f"--ignore=tests/{folder}" for folder in folders}
 
 
 def test_a_shell_finds_what_was_built() -> None:

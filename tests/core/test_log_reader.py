@@ -75,6 +75,8 @@ def _compiled() -> ctypes.CDLL:
             firmware,
             "-o",
             made,
+            "-I",
+            firmware / "include",
             firmware / "arcos/frame.c",
         ]
         subprocess.run(command, check=True, timeout=600)

@@ -34,9 +34,8 @@ def assert_silent_at_first(machine: Machine) -> None:
 
 def test_it_says_what_it_is_and_runs_with(board: Machine, tmp_path: Path) -> None:
     start = board.wait_for("START")
-    version = re.search(
-        r"VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8").partition("project(")[2]
-    )
+    header = (ROOT / "firmware/include/argus/argus.h").read_text(encoding="utf-8")
+    version = re.search(r'#define ARGUS_VERSION "([^"]+)"', header)
     assert version is not None
     assert start["board"] == "mps2-an386"
     assert start["version"] == version[1]

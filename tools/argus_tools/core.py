@@ -54,7 +54,7 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_process": (ctypes.c_uint32, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_transmit": (ctypes.c_size_t, (ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t)),
     "argus_name": (ctypes.c_char_p, (ctypes.c_int, ctypes.c_int)),
-    "argus_event_level": (ctypes.c_int, (ctypes.c_uint16,)),
+    "argus_shim_event_level": (ctypes.c_int, (ctypes.c_uint16,)),
     "argus_shim_core_size": (ctypes.c_size_t, ()),
     "argus_shim_config_size": (ctypes.c_size_t, ()),
     "argus_shim_config_key": (ctypes.c_char_p, (ctypes.c_uint32,)),
@@ -180,7 +180,7 @@ class Event(NamedTuple):
     @property
     def level(self) -> int:
         """0 OK, 1 WARN, 2 ERROR, 3 STALE."""
-        return int(library().argus_event_level(self.id))
+        return int(library().argus_shim_event_level(self.id))
 
     @property
     def level_name(self) -> str:

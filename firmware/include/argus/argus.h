@@ -503,7 +503,7 @@ typedef enum {
 
 // Instance -------------------------------------------------------------------------------------------------
 
-#define ARGUS_STORAGE_BYTES (12900 + 720 * ARGUS_SONARS)
+#define ARGUS_STORAGE_BYTES (12760 + 728 * ARGUS_SONARS)
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.
@@ -614,7 +614,18 @@ int argus_invariants_broken(const argus_t *self);
 // of events and the table of settings hold a program can build from their X-macros. Cost: one pass over a
 // table.
 const char *argus_name(argus_name_of_t of, int number);
-argus_level_t argus_event_level(uint16_t id);
+
+static inline argus_level_t argus_event_level(uint16_t id) {
+#define ARGUS_EVENT_LEVEL(number, name, level, subject, meaning) \
+    case (number):                                               \
+        return ARGUS_LEVEL_##level;
+    switch (id) {
+        ARGUS_EVENT_TABLE(ARGUS_EVENT_LEVEL)
+    default:
+        return ARGUS_LEVEL_ERROR;
+    }
+#undef ARGUS_EVENT_LEVEL
+}
 
 #ifdef __cplusplus
 }

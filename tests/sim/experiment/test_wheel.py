@@ -48,9 +48,10 @@ def test_a_wheel_that_is_mended_is_cleared(hall: str) -> None:
     assert "GOAL_REACHED" in [event.name for event in outcome.events]
 
 
-def test_with_the_rear_ahead_it_is_the_same_wheel(hall: str) -> None:
+def test_with_the_rear_ahead_it_is_the_same_wheel() -> None:
+    # Where walls are heard abeam: in the open nobody contradicts an array that hears nothing.
     faults = ("off:front", "wheel:right@8s:0.93")
-    outcome = run_mission(Mission(hall, ((5500.0, 0.0), (0.0, 0.0)), faults=faults, limit_s=120))
+    outcome = run_mission(Mission("corridor", ((5500.0, 0.0), (0.0, 0.0)), faults=faults, limit_s=120))
     assert [event.value for event in outcome.events if event.name == "REVERSED"] == [1]
     assert told(outcome), "never named"
     assert -85 < told(outcome)[0][2] < -55, told(outcome)
