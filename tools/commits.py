@@ -12,7 +12,7 @@ from typing import Final
 
 ROOT: Final = Path(__file__).resolve().parent.parent
 LONGEST: Final = 72
-SINCE: Final = "2026-11-25T14:00:00Z"
+SINCE: Final = "2026-11-25T16:30:00Z"
 """Earlier subjects are as they are."""
 
 EPILOG: Final = """examples:

@@ -163,7 +163,7 @@ class Browser:
     def point(self, x: float, y: float) -> None:
         """Click a place of the page with the mouse."""
         action = ActionBuilder(self.driver)
-        action.pointer_action.move_to_location(round(x), round(y)).click()
+        action.pointer_action.move_to_location(round(x), round(y)).click()  # type: ignore[no-untyped-call]
         action.perform()
 
     def point_sonar(self, sonar: int) -> None:
@@ -187,7 +187,8 @@ class Browser:
 
     def complaints(self) -> list[str]:
         """What the console has complained of since the last call."""
-        return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
+        said = self.driver.get_log("browser")  # type: ignore[no-untyped-call]
+        return [entry["message"] for entry in said if entry["level"] == "SEVERE"]
 
     def close(self) -> None:
         """End the browser."""

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import pytest
-from axe_core_python.selenium import Axe
+from axe_core_python.selenium import Axe  # type: ignore[import-untyped]
 from page_browser import Browser, Monitor
 
 SIZES = ((1280, 860), (768, 1024), (360, 740))

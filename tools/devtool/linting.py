@@ -61,7 +61,13 @@ def clang_tidy(run: Run) -> None:
     files = [
         path.relative_to(ROOT) for path in c_files(".c", folders=("firmware", "hal", "hil_sim", "tools"))
     ]
-    tidy: list[str | Path] = [VENV / "bin/clang-tidy", "-p", "build/debug", "--quiet"]
+    tidy: list[str | Path] = [
+        VENV / "bin/clang-tidy",
+        "-p",
+        "build/debug",
+        "--quiet",
+        f"--extra-arg=-I{ROOT}/hal",
+    ]
     batches = [files[start::CORES] for start in range(CORES) if files[start::CORES]]
     with concurrent.futures.ThreadPoolExecutor(CORES) as pool:
         failures = [job.exception() for job in [pool.submit(run, [*tidy, *batch]) for batch in batches]]

@@ -590,7 +590,7 @@ bool argus_closed(const argus_t *self);
 // port). Call it after each argus_receive(), when the client has sent something, and after argus_process();
 // then argus_transmit(). Returns the bytes for the client; call again, with no bytes, until 0. Cost: one pass
 // over the bytes; for each SIP what argus_guard asks of the way, see bench guardian.
-size_t argus_guard_port(argus_t *self, argus_port_storage_t *port, uint32_t now_ms,
+size_t argus_guard_port(argus_t *core, argus_port_storage_t *storage, uint32_t now_ms,
                         const argus_port_io_t *io);
 
 // Cost: one copy of some 500 bytes.
@@ -616,15 +616,18 @@ int argus_invariants_broken(const argus_t *self);
 const char *argus_name(argus_name_of_t of, int number);
 
 static inline argus_level_t argus_event_level(uint16_t id) {
-#define ARGUS_EVENT_LEVEL(number, name, level, subject, meaning) \
-    case (number):                                               \
-        return ARGUS_LEVEL_##level;
-    switch (id) {
-        ARGUS_EVENT_TABLE(ARGUS_EVENT_LEVEL)
-    default:
-        return ARGUS_LEVEL_ERROR;
-    }
+#define ARGUS_EVENT_LEVEL(number, name, level, subject, meaning) {(number), ARGUS_LEVEL_##level},
+    static const struct {
+        uint16_t id;
+        uint8_t level;
+    } rows[] = {ARGUS_EVENT_TABLE(ARGUS_EVENT_LEVEL)};
 #undef ARGUS_EVENT_LEVEL
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        if (rows[i].id == id) {
+            return (argus_level_t)rows[i].level;
+        }
+    }
+    return ARGUS_LEVEL_ERROR;
 }
 
 #ifdef __cplusplus

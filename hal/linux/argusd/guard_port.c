@@ -63,11 +63,16 @@ bool guard_spec_parse(guard_spec_t *spec, const char *text, char *message, size_
 
 static bool is_loopback(const struct sockaddr *address) {
     if (address->sa_family == AF_INET) {
-        const struct sockaddr_in *const in = (const struct sockaddr_in *)(const void *)address;
-        return ntohl(in->sin_addr.s_addr) >> 24 == 127;
+        struct sockaddr_in in;
+        memcpy(&in, address, sizeof in);
+        return ntohl(in.sin_addr.s_addr) >> 24 == 127;
     }
-    const struct sockaddr_in6 *const in6 = (const struct sockaddr_in6 *)(const void *)address;
-    return address->sa_family == AF_INET6 && IN6_IS_ADDR_LOOPBACK(&in6->sin6_addr);
+    if (address->sa_family == AF_INET6) {
+        struct sockaddr_in6 in6;
+        memcpy(&in6, address, sizeof in6);
+        return IN6_IS_ADDR_LOOPBACK(&in6.sin6_addr);
+    }
+    return false;
 }
 
 static bool listen_at(guard_port_t *self, const struct addrinfo *where) {

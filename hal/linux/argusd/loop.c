@@ -347,7 +347,8 @@ static void serve_guards(loop_t *self) {
 
 // The link comes first: what a SIP calls for is on the wire before anything else is looked at.
 static void wait_for_work(loop_t *self, uint32_t wait_ms) {
-    enum { LINK, SIGNALS, KEYS, OUT, ERR, BUS, GUARDS, COUNT = GUARDS + GUARDS_FDS };
+    enum { LINK, SIGNALS, KEYS, OUT, ERR, BUS, GUARDS };
+    enum { COUNT = GUARDS + GUARDS_FDS };
     struct pollfd wait[COUNT + CONTROL_POLL_MAX] = {
         [LINK] = {.fd = self->driver.up ? hal_link_fd(&self->driver.link) : -1, .events = POLLIN},
         [SIGNALS] = {.fd = signals_fd(), .events = POLLIN},
@@ -362,7 +363,7 @@ static void wait_for_work(loop_t *self, uint32_t wait_ms) {
     }
     guards_wait(&self->guards, &wait[GUARDS]);
     const int controls = control_poll(&self->control, wait + COUNT);
-    poll(wait, (nfds_t)(COUNT + controls), (int)wait_ms);
+    poll(wait, (nfds_t)COUNT + (nfds_t)controls, (int)wait_ms);
     if (wait[LINK].revents != 0) {
         driver_receive(&self->driver);
     }

@@ -293,7 +293,7 @@ static char mark_of(const view_t *view, int sonar) {
     if (view->injected[sonar] != 0) {
         return '*';
     }
-    return (view->status.pinned >> sonar & 1) != 0 ? '=' : ' ';
+    return ((unsigned)view->status.pinned >> (unsigned)sonar & 1u) != 0 ? '=' : ' ';
 }
 
 static void draw_sonar(canvas_t *canvas, const view_t *view, int sonar, int row, int column,
