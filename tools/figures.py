@@ -9,6 +9,7 @@ documents is made of it. To publish a new run, copy its JSON there and run this 
 from __future__ import annotations
 
 import argparse
+import functools
 import json
 import re
 import sys
@@ -18,6 +19,9 @@ from typing import Any, Final
 
 ROOT: Final = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
+sys.path.insert(0, str(ROOT / "tools"))
+
+import marked  # noqa: E402
 
 from hil_sim.bench import journey_report, report, report_passive  # noqa: E402
 
@@ -102,17 +106,18 @@ def load(name: str) -> Summary:
     return found
 
 
+def _table(file: str, make: Callable[[Summary], str]) -> str:
+    """Return the table of a result file."""
+    try:
+        return make(load(file))
+    except (KeyError, TypeError) as error:
+        sys.exit(f"docs/figures/{file}: of another version of the bench ({error}); run it anew")
+
+
 def filled(name: str, text: str) -> str:
     """Return the text of a document with its figures renewed."""
     for mark, (file, make) in PARTS[name].items():
-        pattern = rf"(<!-- {mark}: [^\n]*-->\n).*?(<!-- /{mark} -->)"
-        if not re.search(pattern, text, flags=re.DOTALL):
-            sys.exit(f"{name} has no part {mark}: put <!-- {mark}: --> and <!-- /{mark} --> where it belongs")
-        try:
-            table = make(load(file))
-        except (KeyError, TypeError) as error:
-            sys.exit(f"docs/figures/{file}: of another version of the bench ({error}); run it anew")
-        text = re.sub(pattern, lambda m, t=table: f"{m[1]}{t}\n{m[2]}", text, flags=re.DOTALL)  # type: ignore[misc]
+        text = marked.renewed(name, text, mark, functools.partial(_table, file, make))
     return text
 
 
@@ -123,18 +128,7 @@ def main() -> int:
     )
     parser.add_argument("--check", action="store_true", help="change nothing; exit 1 when out of date")
     arguments = parser.parse_args()
-    stale = []
-    for name in PARTS:
-        path = ROOT / name
-        old = path.read_text(encoding="utf-8")
-        new = filled(name, old)
-        if new != old:
-            stale.append(name)
-            if not arguments.check:
-                path.write_text(new, encoding="utf-8")
-    if arguments.check and stale:
-        print(f"{', '.join(stale)}: out of date, run tools/dev figures", file=sys.stderr)
-    return int(arguments.check and bool(stale))
+    return marked.update(ROOT, PARTS, filled, arguments.check, "tools/dev figures")
 
 
 if __name__ == "__main__":

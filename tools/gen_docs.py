@@ -9,6 +9,8 @@ import re
 import sys
 from pathlib import Path
 
+import marked
+
 ROOT = Path(__file__).resolve().parent.parent
 HEADERS = ROOT / "firmware"
 
@@ -177,11 +179,7 @@ PARTS = {
 def filled(name: str, text: str) -> str:
     """Return the text of a document with its generated parts renewed."""
     for mark, part in PARTS[name].items():
-        pattern = rf"(<!-- {mark}: [^\n]*-->\n).*?(<!-- /{mark} -->)"
-        if not re.search(pattern, text, flags=re.DOTALL):
-            sys.exit(f"{name} has no part {mark}: put <!-- {mark}: --> and <!-- /{mark} --> where it belongs")
-        table = part()
-        text = re.sub(pattern, lambda m, t=table: f"{m[1]}{t}\n{m[2]}", text, flags=re.DOTALL)  # type: ignore[misc]
+        text = marked.renewed(name, text, mark, part)
     return text
 
 
@@ -192,18 +190,7 @@ def main() -> int:
         "--check", action="store_true", help="change nothing; exit 1 when a document is out of date"
     )
     arguments = parser.parse_args()
-    stale = []
-    for name in PARTS:
-        path = ROOT / name
-        old = path.read_text(encoding="utf-8")
-        new = filled(name, old)
-        if new != old:
-            stale.append(name)
-        if not arguments.check:
-            path.write_text(new, encoding="utf-8")
-    if arguments.check and stale:
-        print(f"{', '.join(stale)}: out of date, run tools/gen_docs.py", file=sys.stderr)
-    return int(arguments.check and bool(stale))
+    return marked.update(ROOT, PARTS, filled, arguments.check, "tools/gen_docs.py")
 
 
 if __name__ == "__main__":
