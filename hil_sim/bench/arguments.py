@@ -6,20 +6,14 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from typing import Final, NoReturn
+from typing import Final
 
+from hil_sim.arguments import EXIT_USAGE as EXIT_USAGE
+from hil_sim.arguments import Parser as Parser
 from hil_sim.bench import plan
 
-EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
+EXIT_FAILED, EXIT_INTERRUPTED = 1, 130
 _JOBS_MOST: Final = 4096
-
-
-class Parser(argparse.ArgumentParser):
-    """Ends with one line and the code of a wrong argument."""
-
-    def error(self, message: str) -> NoReturn:
-        """Say what is wrong and exit."""
-        self.exit(EXIT_USAGE, f"{self.prog}: {message}; see {self.prog} --help\n")
 
 
 def seeds(text: str) -> range:

@@ -7,9 +7,10 @@ import argparse
 import math
 import re
 import sys
-from typing import Any, Final, NoReturn
+from typing import Any, Final
 
 from hil_sim.arcos import BAUD
+from hil_sim.arguments import Parser
 from hil_sim.errors import SimError
 from hil_sim.links.can_spec import CanSpec, parse_spec
 from hil_sim.record.recording import MAX_BYTES
@@ -51,8 +52,8 @@ exit codes: 0 ended by a signal or --duration, 1 link cannot be opened or was lo
 """
 
 
-class _Parser(argparse.ArgumentParser):
-    """Reports a wrong argument in one line."""
+class _Parser(Parser):
+    """Knows a place that begins with a minus."""
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Take a place that begins with a minus for what it is, no option."""
@@ -61,10 +62,6 @@ class _Parser(argparse.ArgumentParser):
             if words[k - 1] == "--start" and _MINUS.match(words[k]):
                 words[k - 1 : k + 1] = [f"--start={words[k]}"]
         return super().parse_known_args(words, namespace)
-
-    def error(self, message: str) -> NoReturn:
-        """Print the line and leave with code 2."""
-        self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
 
 
 def _start(text: str) -> Pose:

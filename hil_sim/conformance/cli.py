@@ -11,8 +11,9 @@ import time
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from typing import Final, NoReturn
+from typing import Final
 
+from hil_sim.arguments import Parser
 from hil_sim.conformance.check import Check
 from hil_sim.conformance.checks import CHECKS, GROUPS
 from hil_sim.conformance.client import Client, Failed, NotApplicable, Target, parse_target
@@ -114,17 +115,9 @@ def _may_move(arguments: argparse.Namespace, checks: Sequence[Check]) -> bool:
     return sys.stdin.readline().strip().lower() in ("y", "yes")
 
 
-class _Parser(argparse.ArgumentParser):
-    """Reports a wrong argument in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        """Print the line and leave with code 2."""
-        self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
-
-
 def parser() -> argparse.ArgumentParser:
     """Return the argument parser."""
-    result = _Parser(
+    result = Parser(
         prog="argus-conformance",
         description="Check an ARCOS server, robot or emulator, from outside.",
         epilog=_EXAMPLES,

@@ -18,6 +18,7 @@ from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
+from hil_sim.arguments import Parser
 from hil_sim.demo import picture, report
 from hil_sim.demo.judge import (
     PAPER_LIMIT_S,
@@ -65,12 +66,6 @@ class _Ended(BaseException):
         self.number = number
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        """Print one line and leave with code 2."""
-        self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
-
-
 def _faults(text: str) -> tuple[Injected, ...]:
     """`off:A,wrong:B`: one or two faults of different sonars of 1..6."""
     faults = []
@@ -106,7 +101,7 @@ def _seconds(text: str) -> float:
 
 def parser() -> argparse.ArgumentParser:
     """Return the argument parser of the demonstration."""
-    result = _Parser(
+    result = Parser(
         prog="tools/dev demo",
         description=__doc__,
         epilog=_EXAMPLES,

@@ -10,12 +10,13 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, Final, NoReturn
+from typing import Any, Final
 
 from argus_tools.control.client import DEFAULT_PLACE, Client, ControlError, Message, Refused, read_token
 from argus_tools.control.words import event_line, evidence_line, readings_line, status_text
+from hil_sim.arguments import Parser, whole
 
-EXIT_OK, EXIT_REFUSED, EXIT_USAGE, EXIT_UNREACHABLE, EXIT_INTERRUPTED = 0, 1, 2, 3, 130
+EXIT_OK, EXIT_REFUSED, EXIT_UNREACHABLE, EXIT_INTERRUPTED = 0, 1, 3, 130
 KINDS: Final = ("off", "silent", "stuck", "wrong", "garbage", "slow", "delayed", "intermittent", "ok")
 TOPICS: Final = ("events", "state", "readings", "evidence")
 MOTION_S: Final = 60.0
@@ -36,29 +37,6 @@ examples:
 
 The socket is --socket, else the environment's ARGUS_CONTROL, else {DEFAULT_PLACE}.
 exit codes: 0 done, 1 argusd refuses, 2 wrong argument, 3 argusd cannot be reached, 130 Ctrl-C"""
-
-
-class Parser(argparse.ArgumentParser):
-    """Reports a wrong argument in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        """Print the line and leave with code 2."""
-        self.exit(EXIT_USAGE, f"{self.prog}: {message}; see {self.prog} --help\n")
-
-
-def whole(low: int, high: int) -> Callable[[str], int]:
-    """Return an argument type: a whole number from `low` to `high`."""
-
-    def parse(text: str) -> int:
-        try:
-            value = int(text)
-        except ValueError:
-            value = low - 1
-        if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {low} to {high}")
-        return value
-
-    return parse
 
 
 def duration_ms(text: str) -> int:

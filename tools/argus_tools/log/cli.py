@@ -13,7 +13,8 @@ from collections.abc import Sequence
 from typing import Final, Protocol
 
 from argus_tools.formats import LogError, formats
-from argus_tools.log.common import EXIT_CODES, EXIT_READ, EXIT_UNUSABLE, Parser
+from argus_tools.log.common import EXIT_CODES, EXIT_READ, EXIT_UNUSABLE
+from hil_sim.arguments import Parser
 from hil_sim.errors import SimError, missing_package
 
 # Each module has SUMMARY, EXAMPLES, add_arguments(parser) and run(args) -> exit code.

@@ -7,7 +7,7 @@ import argparse
 import math
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, NoReturn
@@ -15,6 +15,7 @@ from typing import Any, Final, NoReturn
 from argus_tools.formats import Chunk, Log, LogError, ReadOptions, formats
 from argus_tools.formats.base import CLIENT_TO_ROBOT, EXPECTED, ROBOT_TO_CLIENT
 from argus_tools.log.packets import Row, packets
+from hil_sim.arguments import whole
 
 EXIT_READ, EXIT_DAMAGE, EXIT_UNUSABLE = 0, 1, 2
 EXIT_CODES: Final = (
@@ -26,29 +27,6 @@ HOPELESS_BYTES: Final = 16 << 20
 HOPELESS_ROWS: Final = 20_000
 BULK_BYTES: Final = 1 << 18
 PROGRESS_BYTES: Final = 8 << 20
-
-
-class Parser(argparse.ArgumentParser):
-    """Reports a wrong argument in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        """Print the line and leave with code 2."""
-        self.exit(EXIT_UNUSABLE, f"{self.prog}: {message}; see {self.prog} --help\n")
-
-
-def whole(low: int, high: int) -> Callable[[str], int]:
-    """Return an argument type: an integer from `low` to `high`."""
-
-    def parse(text: str) -> int:
-        try:
-            value = int(text)
-        except ValueError:
-            value = low - 1
-        if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"'{text}' is not a number from {low} to {high}")
-        return value
-
-    return parse
 
 
 def seconds(text: str) -> tuple[bool, float]:
@@ -93,10 +71,10 @@ def add_log_arguments(parser: argparse.ArgumentParser, follow: bool = False) -> 
     parser.add_argument("--format", choices=names, help="its format (default: seen from the contents)")
     parser.add_argument("--dir", choices=DIRECTIONS, help="read this direction only; of a .bin: what it is")
     parser.add_argument(
-        "--port", type=whole(1, 65535), help="the robot's TCP port in a capture (default: found)"
+        "--port", type=whole(1, 65535, "number"), help="the robot's TCP port in a capture (default: found)"
     )
     parser.add_argument(
-        "--robot", type=whole(0, 7), help="the robot's number on a CAN bus (default: the first)"
+        "--robot", type=whole(0, 7, "number"), help="the robot's number on a CAN bus (default: the first)"
     )
     parser.add_argument("--strict", action="store_true", help="exit with 1 if anything in the log is damaged")
     if follow:

@@ -15,18 +15,18 @@ import stat
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final, NoReturn
+from typing import Any, Final
 
 from argus_tools.monitor.geometry import walls_of
 from argus_tools.monitor.hub import Hub
 from argus_tools.monitor.sim import Simulation, SimulationError, find_argusd
 from argus_tools.monitor.upstream import Address, parse_address
+from hil_sim.arguments import EXIT_USAGE, Parser
 from hil_sim.cli.arguments import parser as sim_parser
 from hil_sim.cli.choose import scenario_of
 from hil_sim.errors import SimError
 from hil_sim.world.files import load_world
 
-EXIT_USAGE: Final = 2
 EXIT_START: Final = 3
 PORT: Final = 8642
 TOKEN_FORM: Final = re.compile(r"[!-~]{16,128}")
@@ -51,14 +51,6 @@ class UsageError(Exception):
     """A wrong argument or file; the message is one line."""
 
 
-class _Parser(argparse.ArgumentParser):
-    """Reports a wrong argument in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        """Print the line and leave with code 2."""
-        self.exit(EXIT_USAGE, f"{self.prog}: {message}; see {self.prog} --help\n")
-
-
 def _port(text: str) -> int:
     if not text.isdigit() or int(text) > 65535:
         raise argparse.ArgumentTypeError(f"'{text}' is not a port of 0 to 65535")
@@ -67,7 +59,7 @@ def _port(text: str) -> int:
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    result = _Parser(
+    result = Parser(
         prog="argus-monitor",
         description="Show a robot, its sonars and their faults on a page in the browser, and drive it from there.",
         epilog=_EXAMPLES,
