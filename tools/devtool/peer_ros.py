@@ -43,7 +43,7 @@ FOR_PLAYER: Final = " ".join(
         for name in ("", "client_libs", *_LIBRARIES)
     ]
     + [f"-L/peers/build-player/{name} -Wl,-rpath,/peers/build-player/{name}" for name in _LIBRARIES]
-    + ["-lplayerc++ -lplayerc -lplayerinterface -lplayercommon"]
+    + ["-I/usr/include/tirpc -lplayerc++ -lplayerc -lplayerinterface -lplayercommon -lplayerjpeg -lplayerwkb"]
 )
 START_S: Final = 8.0
 
