@@ -2,7 +2,7 @@
 // Bounds a client's motion by S1, S2, S5 and S7, for the end of the robot that would lead.
 #include "guardian/bounds.h"
 
-#include "awareness/slant.h"
+#include "awareness/grazing.h"
 #include "knowledge/angle.h"
 #include "knowledge/config.h"
 #include "supervisor/state.h"
@@ -138,7 +138,7 @@ static bool slants(const argus_t *const self) {
     const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((flank >> i & 1u) != 0 &&
-            argus_slants_in(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
+            argus_grazing_wall(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
             return true;
         }
     }
