@@ -77,7 +77,7 @@ static verdict_t compare(const int32_t now_mm, const int32_t then_mm, const int3
 }
 
 // A suspect that is contradicted at least as much itself says nothing of another: neither a liar of those
-// beside it, nor either of two that nobody else bears out.
+// beside it, nor either of two that no third bears out.
 bool argus_crosscheck_is_witness(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                                  const int sonar, const int of) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -360,7 +360,7 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     }
 }
 
-// What nobody could judge when it was read is judged by those that look there later.
+// What no other could judge when it was read is judged by those that look there later.
 static void look_back(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const uint8_t *const latest) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -440,7 +440,7 @@ void argus_crosscheck_retract(argus_evidence_t *const self, const int sonar) {
     const argus_mask_t bit = (argus_mask_t)(1u << sonar);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         argus_case_t *const c = &self->of[i];
-        if (c->against == bit) { // nobody else contradicts it: the whole of it
+        if (c->against == bit) { // no other contradicts it: the whole of it
             c->score[ARGUS_TEST_PEERS] = 0;
             c->silent_bits = 0;
             memset(c->hypothesis, 0, sizeof c->hypothesis);

@@ -12,8 +12,8 @@
 #define ARGUS_AGREE_PERCENT 5  // ... and by this part of the range
 #define ARGUS_NEAREST_MM 150   // what would be nearer tells nothing
 #define ARGUS_SURE_MM 4000     // from here on the air decides whether an echo is heard,
-#define ARGUS_FARTHEST_MM 4600 // ... beyond nobody need hear it
-#define ARGUS_LEAP_MM 450      // nobody walks so far between two firings
+#define ARGUS_FARTHEST_MM 4600 // ... beyond no sonar need hear it
+#define ARGUS_LEAP_MM 450      // no person walks so far between two firings
 #define ARGUS_STILL_MM 12      // less way and turn than this may leave a reading as it is
 #define ARGUS_STILL_CDEG 150
 

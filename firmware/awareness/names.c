@@ -104,7 +104,7 @@ static bool is_convicted_by(const argus_case_t *const self, const argus_test_t t
     return self->score[test] >= argus_bounds[test].convincing;
 }
 
-// People who walk about contradict; and by its own readings alone, however late they look, nobody is given
+// People who walk about contradict; and by its own readings alone, however late they look, no sonar is given
 // up.
 argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);

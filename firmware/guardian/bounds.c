@@ -202,7 +202,7 @@ static argus_bound_t trailing(const argus_t *const self, const argus_guard_t *co
     const unsigned looks = argus_robot_astern(knowledge->robot);
     argus_bound_t bound =
         by_clearance(guard, free_mm_of(self, looks, true), knowledge->robot->rear_overhang_mm);
-    // The manager itself backs no faster: beside the rear nobody hears a wall that slants in.
+    // The manager itself backs no faster: beside the rear no sonar hears a wall that slants in.
     bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.speed_mm_s);
     return bound;
 }

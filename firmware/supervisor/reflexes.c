@@ -49,7 +49,7 @@ static argus_intent_t sees_leap(const argus_t *const self, const argus_alarm_t *
     if (!news) {
         return argus_to_nothing();
     }
-    if (knowledge->leaps_unseen != mine->unseen) { // at once: where it went meanwhile nobody can tell
+    if (knowledge->leaps_unseen != mine->unseen) { // at once: where it went meanwhile is not known
         mine->unseen = knowledge->leaps_unseen;
         mine->unsound = UNSOUND_MOST - 1;
         mine->unsound_ms = self->now_ms;
