@@ -48,9 +48,10 @@ typedef struct {
     double us[TIMES];
 } side_t;
 
-static side_t side[SIDES] = {{.name = "alone", .client = -1},
-                             {.name = "ten stalled", .stalled = true, .client = -1},
-                             {.name = "ten stalled, guarded", .stalled = true, .guarded = true, .client = -1}};
+static side_t side[SIDES] = {
+    {.name = "alone", .client = -1},
+    {.name = "ten stalled", .stalled = true, .client = -1},
+    {.name = "ten stalled, guarded", .stalled = true, .guarded = true, .client = -1}};
 
 __attribute__((noreturn)) static void fail(const char *const what) {
     fprintf(stderr, "control: %s\n", what);
@@ -329,7 +330,8 @@ int main(int argc, char **argv) {
         slow = slows(&side[i], without) || slow;
     }
     for (int i = 0; i < SIDES; i++) {
-        if (side[i].guarded && (side[i].client_bytes == 0 || side[i].robot.commands[ARCOS_CMD_VEL] < TIMES / 10)) {
+        if (side[i].guarded &&
+            (side[i].client_bytes == 0 || side[i].robot.commands[ARCOS_CMD_VEL] < TIMES / 10)) {
             fail("the guarded client was not served");
         }
         stop(&side[i]);

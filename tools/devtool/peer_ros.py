@@ -35,6 +35,8 @@ _LIBRARIES: Final = (
     "client_libs/libplayerc",
     "libplayerinterface",
     "libplayercommon",
+    "libplayerjpeg",
+    "libplayerwkb",
 )
 FOR_PLAYER: Final = " ".join(
     [
@@ -42,9 +44,11 @@ FOR_PLAYER: Final = " ".join(
         for tree in ("player", "build-player")
         for name in ("", "client_libs", *_LIBRARIES)
     ]
-    + [f"-L/peers/build-player/{name} -Wl,-rpath,/peers/build-player/{name}" for name in _LIBRARIES]
+    + [f"-L/peers/build-player/{name}" for name in _LIBRARIES]
     + ["-I/usr/include/tirpc -lplayerc++ -lplayerc -lplayerinterface -lplayercommon -lplayerjpeg -lplayerwkb"]
 )
+FLAGS: Final = "-include boost/bind.hpp -DBOOST_BIND_GLOBAL_PLACEHOLDERS"
+"""What rosaria's sources take for granted of an older Boost."""
 START_S: Final = 8.0
 
 
@@ -55,6 +59,9 @@ class Debian:
         self.root = root
         self.peers = root / "peers"
         self.peers.mkdir(exist_ok=True)
+        hosts = root / "etc/hosts"
+        if not hosts.exists():  # one of debootstrap's has none
+            hosts.write_text("127.0.0.1 localhost\n")
 
     def words(self, line: str) -> list[str]:
         """The command that runs a line of shell there, with devices and processes, and leaves no mount behind."""
@@ -82,7 +89,7 @@ def build_catkin(debian: Debian, source: Path, packages: Mapping[str, str], **va
             path.parent for path in folder.rglob("package.xml") if f"<name>{name}</name>" in path.read_text()
         ]
         at = f"/{found.relative_to(debian.root)}"
-        environment = " ".join(f"{key}={value}" for key, value in variables.items())
+        environment = " ".join(f"{key}={shlex.quote(value)}" for key, value in variables.items())
         debian.run(
             f"mkdir -p /peers/build-{name} && cd /peers/build-{name} && "
             f"{environment} cmake {at} -DCATKIN_DEVEL_PREFIX={DEVEL} -DCMAKE_PREFIX_PATH={DEVEL} && "
@@ -140,8 +147,9 @@ def player(debian: Debian) -> Client:
         port = free_port()
         config = debian.peers / f"player-{port}.cfg"
         config.write_text(PLAYER_CONFIG.format(port=place.port))
-        server = f"cd /peers/build-player; exec server/player -p {port} /peers/{config.name}"
-        client = f"exec timeout {place.seconds} {EXAMPLE} -p {port}"
+        paths = "export LD_LIBRARY_PATH=$(find /peers/build-player/ -name 'lib*.so' -printf '%h:')"
+        server = f"{paths}; exec /peers/build-player/server/player -p {port} /peers/{config.name}"
+        client = f"{paths}; exec timeout {place.seconds} {EXAMPLE} -p {port}"
         try:
             with started(debian.words(server)):
                 wait_port(port)
@@ -165,7 +173,7 @@ def clients(given: Mapping[str, Path], debian: Debian, aria: Path) -> list[Clien
         if not target.exists():
             shutil.copytree(aria, target, ignore=shutil.ignore_patterns("obj", "docs"))
         first = "rosaria_generate_messages rosaria_gencfg"
-        build_catkin(debian, given["ROSARIA_SOURCE"], {"rosaria": first}, ARIA="/peers/aria")
+        build_catkin(debian, given["ROSARIA_SOURCE"], {"rosaria": first}, ARIA="/peers/aria", CXXFLAGS=FLAGS)
         node = f"env LD_LIBRARY_PATH=/peers/aria/lib {DEVEL}/lib/rosaria/RosAria _port:=127.0.0.1:{{at.port}}"
         found.append(wander(debian, "rosaria", node))
     if "PLAYER_SOURCE" in given:
