@@ -115,7 +115,7 @@ PANELS: Final[Mapping[str, Rule]] = {
         {**dict.fromkeys(("minYValue", "maxYValue", "followingViewWidth"), number), **TITLES},
     ),
     "StateTransitions": record(
-        {"isSynced": truth, "paths": list_of(_SERIES)}, {"showPoints": truth, **TITLES}
+        {"isSynced": truth, "paths": list_of(_STATES)}, {"showPoints": truth, **TITLES}
     ),
     "RawMessages": record(
         {

@@ -11,6 +11,7 @@ const RING_PART = 0.215; // of half the picture: where the eyes sit
 const RING_MIN = 68; // pixels: eyes 20 degrees apart are then far enough from one another for a finger
 const SPANS_MM = [1500, 2000, 2600, 3300, 4200, 5400, 7000, 10000];
 const GLIDE_MS = 110;
+const GLIDE_FRAME_MS = 30;
 
 export function make(name, attributes = {}, parent = null) {
   const node = document.createElementNS(SVG, name);
@@ -73,6 +74,7 @@ export class Stage {
     this.base = 0;
     this.waiting = false;
     this.stale = true; // the robot is to be drawn anew, not only to be moved
+    this.last = 0;
     this.colours = null;
     this.drawn = () => {};
     this.still = matchMedia("(prefers-reduced-motion: reduce)");
@@ -122,6 +124,11 @@ export class Stage {
 
   #frame(now) {
     this.waiting = false;
+    if (!this.stale && now - this.last < GLIDE_FRAME_MS) { // between two states; what is new is drawn at once
+      this.#ask();
+      return;
+    }
+    this.last = now;
     const { deg } = this.pose;
     if (this.glide) {
       const part = Math.min(1, (now - this.glide.since) / GLIDE_MS);
