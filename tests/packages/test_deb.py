@@ -107,6 +107,13 @@ def test_completion_knows_the_options(unpacked: Path) -> None:
     assert run("bash", "-c", ask, env=env).splitlines() == ["--robot", "p3at-sh p3dx-sh"]
 
 
+def test_each_command_that_has_a_completion_is_named_in_it(unpacked: Path) -> None:
+    folder = unpacked / "usr/share/bash-completion/completions"
+    for path in folder.iterdir():
+        done = run("bash", "-c", f"source {path}; complete -p {path.name}")
+        assert "-F _argus" in done, path.name
+
+
 @pytest.mark.skipif(not shutil.which("lintian"), reason="lintian is not installed")
 def test_lintian_finds_nothing(debs: dict[str, Path]) -> None:
     assert run("lintian", "--allow-root", "--fail-on", "warning", *debs.values()) == ""
