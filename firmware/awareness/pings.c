@@ -67,14 +67,20 @@ int32_t argus_ping_turned_cdeg(const argus_ping_t *const a, const argus_ping_t *
     return size > 18000 ? 36000 - size : size;
 }
 
+argus_line_t argus_ping_line(const argus_ping_t *const self) {
+    return (argus_line_t){self, argus_cos(self->bearing_cdeg), argus_sin(self->bearing_cdeg)};
+}
+
+argus_shift_t argus_line_shift(const argus_line_t *const line, const argus_ping_t *const then) {
+    const int32_t dx = offset_mm(line->ping->x_mm, then->x_mm);
+    const int32_t dy = offset_mm(line->ping->y_mm, then->y_mm);
+    return (argus_shift_t){.along_mm = (dx * line->cos + dy * line->sin) / ARGUS_TRIG_ONE,
+                           .lateral_mm = argus_abs(dy * line->cos - dx * line->sin) / ARGUS_TRIG_ONE};
+}
+
 argus_shift_t argus_ping_shift(const argus_ping_t *const now, const argus_ping_t *const then) {
-    const int32_t dx = offset_mm(now->x_mm, then->x_mm);
-    const int32_t dy = offset_mm(now->y_mm, then->y_mm);
-    const int32_t c = argus_cos(now->bearing_cdeg);
-    const int32_t s = argus_sin(now->bearing_cdeg);
-    const argus_shift_t shift = {.along_mm = (dx * c + dy * s) / ARGUS_TRIG_ONE,
-                                 .lateral_mm = argus_abs(dy * c - dx * s) / ARGUS_TRIG_ONE};
-    return shift;
+    const argus_line_t line = argus_ping_line(now);
+    return argus_line_shift(&line, then);
 }
 
 int32_t argus_ping_predict_mm(const argus_ping_t *const now, const argus_ping_t *const then) {

@@ -60,6 +60,15 @@ typedef struct {
 } argus_shift_t;
 argus_shift_t argus_ping_shift(const argus_ping_t *now, const argus_ping_t *then);
 
+// The same of one ping beside many: its direction is worked out once.
+typedef struct {
+    const argus_ping_t *ping;
+    int32_t cos;
+    int32_t sin;
+} argus_line_t;
+argus_line_t argus_ping_line(const argus_ping_t *self);
+argus_shift_t argus_line_shift(const argus_line_t *line, const argus_ping_t *then);
+
 // What `then` would read from the place of `now`, of a thing that stands.
 int32_t argus_ping_predict_mm(const argus_ping_t *now, const argus_ping_t *then);
 

@@ -12,7 +12,7 @@
 #define LEG_LEAST_MM 100 // a leg is done at 60
 #define CUT_SAMPLES 4    // a straight leg may have so many more narrow samples than the way itself
 #define AHEAD_MM 1000
-#define WORK_MOST 3000  // in one SIP, in units of some 100 instructions of a Cortex-M4
+#define WORK_MOST 2600  // in one SIP, in units of some 100 instructions of a Cortex-M4
 #define BEGIN_WORK 1000 // a survey of what is passable,
 #define DESCENT_WORK 8  // ... a cell on the way back,
 #define SAMPLE_WORK 1   // ... and a place of a straight line
