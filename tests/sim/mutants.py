@@ -144,6 +144,7 @@ def restart(sil: MutatedSil, rng: random.Random) -> str:
     lost = rng.random() < 0.5
     if lost:
         sil.lose()
+        sil.wait(rng.uniform(0.0, 1.8))  # it drives on unseen until its watchdog stops it
     sil.power_cycle()
     if lost:
         sil.wait(rng.uniform(0.1, 3.0))
