@@ -24,6 +24,7 @@ import serial
 import yaml
 
 from hil_sim.arcos import COMMAND, Command, Unframer
+from hil_sim.demo.runner import make_punctual
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 PYTHON: Final = ROOT / ".venv/bin/python"
@@ -84,6 +85,7 @@ class Sim:
             self.process = subprocess.Popen(
                 self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=errors
             )
+        make_punctual(self.process.pid)
         self.address = self._first_line()
 
     def _first_line(self) -> str:
@@ -188,6 +190,7 @@ class Argusd:
         self.process = subprocess.Popen(
             self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
         )
+        make_punctual(self.process.pid)
         self.started_unix_s = time.time()
         self._threads = [
             threading.Thread(target=self._read, args=(self.process.stdout, self._event), daemon=True),

@@ -271,8 +271,8 @@ typedef enum {
       "the ranges stay while the wheels turn: they slip, or are lifted: STOP sent, left out of the pose; "   \
       "value: mm")                                                                                           \
     X(69, ODOMETRY_LOST, ERROR, "drive",                                                                     \
-      "it leapt while nobody saw the robot move, or leaps or slips again and again: where the robot is "     \
-      "nobody knows, the course is given up; value: of the last leap or slip")                               \
+      "it leapt or restarted while nobody saw the robot move, or leaps or slips again and again: where the " \
+      "robot is nobody knows, the course is given up; value: of the last leap or slip")                      \
     X(70, OPERATOR, OK, "operator", "an operator's command was taken; value: its number")                    \
     X(71, PASSIVE, OK, "operator", "reports only: commands no motion")                                       \
     X(72, ACTIVE, OK, "operator", "drives")                                                                  \
