@@ -33,7 +33,9 @@
       "away from a pressed bumper or a blocked swing circle")                                             \
     X(WAITING, waiting, ARGUS_IN_SESSION, 0, WAITING, "cannot go on by itself")                           \
     X(CLOSING, nobody, 0, 1500, CLOSED, "comes to rest, then the session is closed")                      \
-    X(CLOSED, nobody, 0, 0, CLOSED, "over")
+    X(CLOSED, nobody, 0, 0, CLOSED, "over")                                                               \
+    X(CREEPING, creeping, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF,  \
+      0, CREEPING, "no sonar sees the way: slowly, on the bumpers alone")
 
 // X(FROM, TO, when): every way from one mode to another. ANY: every mode in a session.
 #define ARGUS_WAY_TABLE(X)                                                         \
@@ -43,9 +45,11 @@
     X(CHECKING, IDLE, "no course, or paused")                                      \
     X(CHECKING, DRIVING, "every bearing ahead in use")                             \
     X(CHECKING, SWEEPING, "a bearing is blind")                                    \
+    X(CHECKING, CREEPING, "no sonar sees the way, and the operator lets it creep") \
     X(IDLE, VERIFYING, "suspects")                                                 \
     X(IDLE, DRIVING, "an operator's step")                                         \
     X(IDLE, SWEEPING, "an operator's step, a bearing is blind")                    \
+    X(IDLE, CREEPING, "an operator's step, likewise")                              \
     X(DRIVING, VERIFYING, "suspects, or a look is due")                            \
     X(DRIVING, STEPPING, "an operator's step")                                     \
     X(DRIVING, SWEEPING, "a bearing is blind, and the way is not seen far enough") \
@@ -57,6 +61,8 @@
     X(STEPPING, SWEEPING, "the step is done")                                      \
     X(STEPPING, DRIVING, "... and every bearing is in use again")                  \
     X(STEPPING, IDLE, "an operator's step is done")                                \
+    X(CREEPING, VERIFYING, "suspects")                                             \
+    X(CREEPING, IDLE, "at the goal, or an operator's step is done")                \
     X(ANY, BACKING, "no room to turn, a bumper, or an operator's order")           \
     X(ANY, WAITING, "bumper, motors off, no room to turn, no way, all ahead out")  \
     X(ANY, OFFLINE, "the link is lost")                                            \

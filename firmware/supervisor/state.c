@@ -23,8 +23,13 @@ bool argus_is_open(const argus_t *const self) {
     return argus_session_is_open(&self->session);
 }
 
+bool argus_is_unseen(const argus_t *const self, const argus_guard_t *const guard) {
+    const bool touched = self->reflexes.touched_unheard && !argus_guard_is_heard(guard);
+    return touched || !argus_guard_may_step(&self->plan);
+}
+
 argus_guard_t argus_guard(const argus_t *const self) {
-    const argus_guard_t guard = {.config = &self->config,
+    argus_guard_t guard = {.config = &self->config,
                                  .profile = argus_rules(self),
                                  .knowledge = &self->knowledge,
                                  .echoes = &self->echoes,
@@ -35,6 +40,7 @@ argus_guard_t argus_guard(const argus_t *const self) {
                                  .active = argus_is_active(self),
                                  .linked = argus_is_open(self) && !self->stalled,
                                  .checked = self->checked};
+    guard.creeps = self->config.creep_mm_s > 0 && argus_is_unseen(self, &guard);
     return guard;
 }
 

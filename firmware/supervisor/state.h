@@ -13,6 +13,10 @@ const argus_profile_t *argus_rules(const argus_t *self);
 // The safety rules, asked of the present state.
 argus_guard_t argus_guard(const argus_t *self);
 
+// No sonar sees the way: none is left that could look, or the robot touched something while none had ever
+// heard an echo.
+bool argus_is_unseen(const argus_t *self, const argus_guard_t *guard);
+
 // Which planner: the paper's rules know no adaptive one.
 argus_policy_t argus_policy(const argus_t *self);
 
