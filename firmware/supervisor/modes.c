@@ -165,15 +165,12 @@ static argus_intent_t decide(argus_t *const self) {
         enter_idle(self);
         return argus_to_nothing();
     }
-    const argus_mask_t unheard = argus_to_try(self);
-    if (unheard != 0) {
-        return try_ahead(self, unheard);
-    }
-    if (argus_should_turn_about(self)) {
+    if (argus_should_turn_about(self)) { // also to the end that has been heard
         argus_turn_about(self);
         return argus_to_check(true);
     }
-    return set_off(self);
+    const argus_mask_t unheard = argus_to_try(self);
+    return unheard != 0 ? try_ahead(self, unheard) : set_off(self);
 }
 
 // Carrying out
