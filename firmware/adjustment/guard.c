@@ -51,7 +51,7 @@ bool argus_guard_is_heard(const argus_guard_t *const self) {
     const argus_knowledge_t *const knowledge = self->knowledge;
     const unsigned used = argus_robot_all(knowledge->robot) & ~(unsigned)argus_out(knowledge);
     const unsigned ahead = used & argus_robot_forward(knowledge->robot);
-    return !self->profile->asks_echo || (knowledge->heard & (ahead != 0 ? ahead : used)) != 0;
+    return !self->profile->asks_echo || used == 0 || (knowledge->heard & (ahead != 0 ? ahead : used)) != 0;
 }
 
 bool argus_guard_may_creep(const argus_guard_t *const self) {
