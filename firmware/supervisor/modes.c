@@ -551,9 +551,9 @@ static argus_intent_t run(argus_t *const self) {
 // It drives, or would if there were room or a way; an operator who has cut the motors is waited for.
 static bool is_under_way(const argus_t *const self) {
     const argus_wait_t why = self->waiting.why;
-    const bool waits = self->mode == ARGUS_MODE_WAITING &&
-                       (why == ARGUS_WAIT_WAY || why == ARGUS_WAIT_TURN || why == ARGUS_WAIT_BUMPER ||
-                        why == ARGUS_WAIT_ECHO);
+    const bool waits =
+        self->mode == ARGUS_MODE_WAITING && (why == ARGUS_WAIT_WAY || why == ARGUS_WAIT_TURN ||
+                                             why == ARGUS_WAIT_BUMPER || why == ARGUS_WAIT_ECHO);
     return self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused && !self->orders.passive &&
            (waits || self->mode == ARGUS_MODE_CHECKING || argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE));
 }

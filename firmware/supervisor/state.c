@@ -30,16 +30,16 @@ bool argus_is_unseen(const argus_t *const self, const argus_guard_t *const guard
 
 argus_guard_t argus_guard(const argus_t *const self) {
     argus_guard_t guard = {.config = &self->config,
-                                 .profile = argus_rules(self),
-                                 .knowledge = &self->knowledge,
-                                 .echoes = &self->echoes,
-                                 .rays = &self->rays,
-                                 .now_ms = self->now_ms,
-                                 .bumpers = self->reflexes.bumpers,
-                                 .backed = self->turning.backed,
-                                 .active = argus_is_active(self),
-                                 .linked = argus_is_open(self) && !self->stalled,
-                                 .checked = self->checked};
+                           .profile = argus_rules(self),
+                           .knowledge = &self->knowledge,
+                           .echoes = &self->echoes,
+                           .rays = &self->rays,
+                           .now_ms = self->now_ms,
+                           .bumpers = self->reflexes.bumpers,
+                           .backed = self->turning.backed,
+                           .active = argus_is_active(self),
+                           .linked = argus_is_open(self) && !self->stalled,
+                           .checked = self->checked};
     guard.creeps = self->config.creep_mm_s > 0 && argus_is_unseen(self, &guard);
     return guard;
 }

@@ -122,7 +122,7 @@ typedef uint16_t argus_mask_t;
     X(creep_mm_s, 0, 0, 100, "mm/s", "",                                                                     \
       "where no sonar sees the way: creep on at this speed, told by the bumpers alone; 0: stand and wait")   \
     X(speed_mm_s, 200, 30, 750, "mm/s", "",                                                                  \
-      "speed of normal driving; profile argus: where something is near or a sonar is doubted")               \
+      "speed of normal driving; profile argus: where something is near, or others do not see far enough")    \
     X(speed_max_mm_s, 500, 30, 750, "mm/s", "",                                                              \
       "profile argus: the most where the way ahead is seen to be free")                                      \
     X(accel_mm_s2, 300, 50, 2000, "mm/s2", "", "acceleration asked of the robot")                            \
@@ -418,8 +418,8 @@ typedef enum {
     ARGUS_WAIT_NONE,
     ARGUS_WAIT_BUMPER,
     ARGUS_WAIT_MOTORS,
-    ARGUS_WAIT_TURN,        // the swing circle is blocked (S7)
-    ARGUS_WAIT_WAY,         // every heading is blocked
+    ARGUS_WAIT_TURN,         // the swing circle is blocked (S7)
+    ARGUS_WAIT_WAY,          // every heading is blocked
     ARGUS_WAIT_CATASTROPHIC, // all forward-facing sonars are disabled
     ARGUS_WAIT_ECHO          // it touched something while no sonar ahead had ever heard an echo
 } argus_wait_t;

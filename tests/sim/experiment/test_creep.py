@@ -51,7 +51,9 @@ class Speeds:
 
 
 def drive(world: str, fault: str, goal: float, **config: int) -> tuple[Sil, Outcome, Speeds]:
-    sil = Sil(Mission(world, ((goal, 0.0),), faults=(fault,), config=config, seed=3, limit_s=150, stop_at_goal=True))
+    sil = Sil(
+        Mission(world, ((goal, 0.0),), faults=(fault,), config=config, seed=3, limit_s=150, stop_at_goal=True)
+    )
     speeds = Speeds(sil)
     return sil, sil.run(), speeds
 
@@ -63,17 +65,21 @@ def names(sil: Sil) -> list[str]:
 @pytest.mark.parametrize("kind", ["silent", "off"])
 def test_all_sixteen_lost_on_the_way_stop_it_for_good(room: str, kind: str) -> None:
     sil, outcome, _ = drive(room, f"{kind}:{ALL}@5s", 3500)
-    assert sil.state_of_mission == "failed" and not outcome.collisions
-    assert names(sil).count("MISSION_FAILED") == 1 and "CREEPING" not in names(sil)
+    assert sil.state_of_mission == "failed"
+    assert not outcome.collisions
+    assert names(sil).count("MISSION_FAILED") == 1
+    assert "CREEPING" not in names(sil)
     failed = next(event for event in sil.events if event.name == "MISSION_FAILED")
     assert failed.t_s < 20
-    assert abs(sil.robot.drive.v) < 1 and sil.robot.chassis.x < 3000
+    assert abs(sil.robot.drive.v) < 1
+    assert sil.robot.chassis.x < 3000
 
 
 @pytest.mark.parametrize("kind", ["silent", "off"])
 def test_with_leave_it_creeps_to_a_near_goal(room: str, kind: str) -> None:
     sil, outcome, speeds = drive(room, f"{kind}:{ALL}@5s", 3500, creep_mm_s=CREEP_MM_S)
-    assert outcome.reached and not outcome.collisions
+    assert outcome.reached
+    assert not outcome.collisions
     assert "CREEPING" in names(sil)
     assert CREEP_MM_S / 2 < speeds.most_mm_s <= CREEP_MM_S + 1
     assert not any(speeds.safety.counts.values()), speeds.safety.breaches
@@ -83,7 +89,8 @@ def test_it_stops_and_backs_off_at_a_bumper(blocked: str) -> None:
     """The post is met soon after the sonars are lost, and the goal lies behind it."""
     sil, outcome, speeds = drive(blocked, f"silent:{ALL}@2.2s", 3000, creep_mm_s=CREEP_MM_S)
     said = names(sil)
-    assert outcome.collisions and "BUMPER" in said
+    assert outcome.collisions
+    assert "BUMPER" in said
     assert said.index("CREEPING") < said.index("BUMPER") < said.index("BACKING")
     touched, backed = (next(e.t_s for e in sil.events if e.name == name) for name in ("BUMPER", "BACKING"))
     assert backed - touched < 5
@@ -92,7 +99,9 @@ def test_it_stops_and_backs_off_at_a_bumper(blocked: str) -> None:
 
 
 def test_faster_than_allowed_is_found_out(room: str) -> None:
-    sil = Sil(Mission(room, ((3500.0, 0.0),), faults=(f"silent:{ALL}@5s",), config={"creep_mm_s": 40}, limit_s=60))
+    sil = Sil(
+        Mission(room, ((3500.0, 0.0),), faults=(f"silent:{ALL}@5s",), config={"creep_mm_s": 40}, limit_s=60)
+    )
     safety = watch(sil)
     while sil.mode != "CREEPING" or abs(sil.robot.drive.v) < 20:
         sil.step()
@@ -109,7 +118,11 @@ def test_faster_than_allowed_is_found_out(room: str) -> None:
 @pytest.mark.parametrize(("creep", "most"), [(0, 100), (CREEP_MM_S, CREEP_MM_S)])
 def test_a_ring_that_was_never_heard_is_driven_slowly(creep: int, most: int) -> None:
     """All 16 off from the start look like an open hall: at the speed of a step at most, whatever the way is like."""
-    sil = Sil(Mission("lab", ((1700.0, 0.0), (1700.0, 1550.0)), faults=(f"off:{ALL}",), config={"creep_mm_s": creep}))
+    sil = Sil(
+        Mission(
+            "lab", ((1700.0, 0.0), (1700.0, 1550.0)), faults=(f"off:{ALL}",), config={"creep_mm_s": creep}
+        )
+    )
     fastest = 0.0
     while not sil.over and sil.now_ms < 60_000:
         sil.step()
@@ -121,12 +134,15 @@ def test_a_ring_that_was_never_heard_is_driven_slowly(creep: int, most: int) -> 
 
 def test_in_a_hall_it_hurries_as_soon_as_one_has_heard(room: str) -> None:
     sil, outcome, _ = drive(room, f"off:{ALL}@0s-6s", 3500)
-    assert outcome.reached and outcome.t_s < 30
+    assert outcome.reached
+    assert outcome.t_s < 30
     assert names(sil).count("NO_ECHO") == 1
 
 
 def test_a_front_that_was_never_heard_does_not_lead(room: str) -> None:
     sil, outcome, _ = drive(room, "off:front", 3000)
     first = next(event for event in sil.events if event.name == "REVERSED")
-    assert first.value == 1 and first.t_s < 3
-    assert outcome.reached and not outcome.collisions
+    assert first.value == 1
+    assert first.t_s < 3
+    assert outcome.reached
+    assert not outcome.collisions
