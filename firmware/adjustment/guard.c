@@ -12,6 +12,7 @@
 #define STRAIGHT_ROOM_MM 47
 #define SEEN_MOST_MM 1200   // of the way that others see: more would allow no higher speed
 #define SEEN_LEFT_MM 100    // of it that is left
+#define SEEN_DOUBTED_MM 200 // of it, where one is doubted: with less it goes at the speed of a step
 #define SPEED_STEP_MM_S 25  // the speed asked for changes by so much at a time
 #define SWING_TURNING_MM 10 // of the margin so much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
@@ -159,8 +160,10 @@ int32_t argus_guard_speed_mm_s(const argus_guard_t *const self, const int32_t se
     if (!argus_guard_is_heard(self)) {
         return argus_guard_unseen_mm_s(self);
     }
-    const bool asks = argus_guard_is_doubted(self) && seen_mm == INT32_MAX && may_hurry(self);
-    return argus_guard_free_speed_mm_s(self, asks ? seen_by_rays_mm(self) : seen_mm);
+    const bool asks = argus_guard_is_doubted(self) && seen_mm == INT32_MAX && self->profile->drives_seen;
+    const int32_t others_mm = asks ? seen_by_rays_mm(self) : seen_mm;
+    return asks && others_mm < SEEN_DOUBTED_MM ? argus_min(self->config->speed_mm_s, self->config->step_speed_mm_s)
+                                               : argus_guard_free_speed_mm_s(self, others_mm);
 }
 
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {

@@ -139,7 +139,8 @@ static argus_intent_t turn_to_bearing(const argus_t *const self, argus_travel_t 
     const int32_t to_cdeg = bearing(self, mine);
     const int32_t now_cdeg = self->knowledge.pose.heading_cdeg;
     const bool left = argus_angle_wrap(to_cdeg - now_cdeg) > 0;
-    const bool hemmed = argus_guard_swing_is_blocked(&guard) && mine->jog_mm == 0;
+    const bool hemmed = argus_guard_swing_is_blocked(&guard) && mine->jog_mm == 0 &&
+                        !argus_may_be_crosstalk(self, &guard); // that is read again first
     for (int i = 0; i < (int)(sizeof tries_cdeg / sizeof tries_cdeg[0]) && hemmed; i++) {
         const int32_t by_cdeg = left ? tries_cdeg[i] : -tries_cdeg[i];
         if (leads_out(self, mine, by_cdeg)) {
