@@ -89,6 +89,10 @@ static void try_mode(void) {
         argus_run_stepping(&copy, &copy.travel);
         expect_nothing_else(&copy.travel, sizeof copy.travel, "stepping");
         break;
+    case ARGUS_MODE_CREEPING:
+        argus_run_creeping(&copy, &copy.travel);
+        expect_nothing_else(&copy.travel, sizeof copy.travel, "creeping");
+        break;
     default:
         break;
     }

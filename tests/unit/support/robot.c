@@ -568,10 +568,26 @@ static void watch_speed(robot_t *robot) {
     }
 }
 
+// With nothing to see by: only where the setting lets it, slowly, in short ways.
+static void watch_creep(robot_t *robot, int32_t mm) {
+    const argus_guard_t guard = argus_guard(&robot->argus);
+    const int32_t most_mm_s = robot->argus.config.creep_mm_s;
+    if (most_mm_s == 0 || !argus_is_unseen(&robot->argus, &guard)) {
+        complain(robot, "S1: creeps without leave, or while a sonar sees", mm);
+    }
+    if (robot->speed_asked_mm_s > most_mm_s || mm > 150) {
+        complain(robot, "S1: creeps too fast or too far", (int)robot->speed_asked_mm_s);
+    }
+}
+
 static void watch_ahead(robot_t *robot, int32_t mm) {
     const unsigned blind = blind_ahead(robot);
     if (!robot->checked) {
         complain(robot, "S3/S6: MOVE ahead before a health check", mm);
+    }
+    if (robot->argus.mode == ARGUS_MODE_CREEPING) {
+        watch_creep(robot, mm);
+        return;
     }
     if (blind != 0) {
         watch_blind_move(robot, mm, blind);
@@ -584,6 +600,13 @@ static void watch_ahead(robot_t *robot, int32_t mm) {
 
 static void watch_back(robot_t *robot, int32_t mm) {
     const int first = rear_leads(robot) ? 0 : 8;
+    const argus_guard_t guard = argus_guard(&robot->argus);
+    if (guard.creeps && !argus_guard_rear_is_watched(&guard)) { // from what it has touched
+        if (robot->speed_asked_mm_s > robot->argus.config.creep_mm_s || robot->bumpers_rear != 0) {
+            complain(robot, "S7: creeps back too fast, or against a bumper", (int)robot->speed_asked_mm_s);
+        }
+        return;
+    }
     for (int i = first; i < first + 8 && i < ARGUS_SONARS; i++) {
         const bool abeam =
             robot->argus.config.profile == ARGUS_PROFILE_ARGUS && (i == first || i == first + 7);
