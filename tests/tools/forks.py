@@ -233,12 +233,11 @@ class Server:
 
     def hear(self, timeout_s: float) -> None:
         """Take what the server has to tell, waiting for TIMEOUT_S at most."""
-        with self._lock:
-            with selectors.DefaultSelector() as ready:
-                ready.register(self._socket, selectors.EVENT_READ)
-                while ready.select(timeout_s):
-                    self._take()
-                    timeout_s = 0
+        with self._lock, selectors.DefaultSelector() as ready:
+            ready.register(self._socket, selectors.EVENT_READ)
+            while ready.select(timeout_s):
+                self._take()
+                timeout_s = 0
 
     def _take(self) -> int:
         """Take one message; return the process it tells of."""
@@ -334,13 +333,23 @@ def run(
     """Run TARGET to its end with GIVEN as its input; return what it said and its exit code."""
     stdin = subprocess.DEVNULL if given is None else subprocess.PIPE
     pipe = subprocess.PIPE
-    forked = start(target, *arguments, stdin=stdin, stdout=pipe, stderr=pipe, env=env, cwd=cwd, preload=preload)
+    forked = start(
+        target, *arguments, stdin=stdin, stdout=pipe, stderr=pipe, env=env, cwd=cwd, preload=preload
+    )
     try:
         out, err = forked.communicate(given, timeout)
     except subprocess.TimeoutExpired:
         forked.kill()
         raise
     return subprocess.CompletedProcess(forked.args, forked.wait(), out, err)
+
+
+def run_text(
+    target: str, *arguments: str | Path, env: Mapping[str, str] | None = None, cwd: Path | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run TARGET to its end; return what it said as text."""
+    done = run(target, *arguments, env=env, cwd=cwd)
+    return subprocess.CompletedProcess(done.args, done.returncode, done.stdout.decode(), done.stderr.decode())
 
 
 if __name__ == "__main__":

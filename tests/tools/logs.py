@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import forks
-
 from argus_tools.formats import MODULES
 from argus_tools.log.cli import COMMANDS
+
 from hil_sim.arcos import COMMAND, Command, Sip, frame
 
 ROOT = Path(__file__).resolve().parents[2]
