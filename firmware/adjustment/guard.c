@@ -21,7 +21,7 @@
 #define NUDGE_PARTS 5
 #define ABEAM_LEAST_MM 97 // beside a way straight back: a P3-DX ends 77 mm beside the faces of those abeam,
 #define ABEAM_SLANT \
-    2 // ... and a smooth wall that slants in by 25 degrees, half of the way, is heard by nobody
+    2 // ... and a smooth wall that slants in by 25 degrees, half of the way, is heard by no sonar
 #define BACK_MOST_MM 300
 #define BACK_LEFT_MM 150 // of what the rear reads clear
 #define BACK_STEP_MM 25
@@ -265,7 +265,7 @@ argus_touch_t argus_guard_touch(const argus_guard_t *const self, const int sonar
                                                                                  : ARGUS_TOUCH_FIRST;
 }
 
-// What has failed, or has the name of a fault, does not read clear: nobody looks there in its place.
+// What has failed, or has the name of a fault, does not read clear: no other looks there in its place.
 static bool is_relied_on(const argus_guard_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_t *const s = &self->knowledge->sonar[sonar];
@@ -280,7 +280,7 @@ static bool looks_back(const argus_guard_t *const self, const int sonar) {
     return ((argus_robot_astern(robot) | argus_robot_rear_flank(robot)) >> sonar & 1u) != 0;
 }
 
-// A robot of which nobody looks back never backs away.
+// A robot of which no sonar looks back never backs away.
 bool argus_guard_rear_is_watched(const argus_guard_t *const self) {
     for (int i = 0; i < self->knowledge->sonars; i++) {
         if (looks_back(self, i) && !is_relied_on(self, i)) {
@@ -326,7 +326,7 @@ static int32_t abeam_mm(const argus_guard_t *const self) {
 }
 
 // What the rear reads clear less some room; no farther than usual past what was seen beside the way, since a
-// smooth wall that slants in by 15 to 25 degrees is heard by nobody.
+// smooth wall that slants in by 15 to 25 degrees is heard by no sonar.
 static int32_t most_back_mm(const argus_guard_t *const self) {
     const int32_t beside_mm = (abeam_mm(self) - ABEAM_LEAST_MM) * ABEAM_SLANT;
     const int32_t clear_mm =

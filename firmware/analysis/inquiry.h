@@ -12,7 +12,7 @@ typedef struct {
     bool active;
     bool returning;     // the last turn, back to the base heading
     bool marked;        // settled on the present heading
-    bool all;           // nobody has borne out anybody yet: aims are not enough
+    bool all;           // no sonar has borne out another yet: aims are not enough
     bool aiming;        // one suspect that hears nothing at what another has heard
     uint8_t aims;       // so often
     uint8_t aimed;      // that suspect

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Who answers: the robot of the session before, or another one behind the same wire.
+// Which robot answers: the one of the session before, or another one behind the same wire.
 #ifndef ARGUS_IDENTITY_H
 #define ARGUS_IDENTITY_H
 

@@ -203,7 +203,7 @@ static unsigned on_sync(argus_session_t *self, uint32_t now_ms, const argus_pack
         self->unknown_packets++;
         return 0;
     }
-    self->pause_ms = PAUSE_FIRST_MS; // somebody is there
+    self->pause_ms = PAUSE_FIRST_MS; // a robot is there
     if (self->state == ARGUS_SESSION_SYNC2) {
         take_identity(self, packet);
         open_robot(self, now_ms);

@@ -79,8 +79,8 @@ void argus_session_link_down(argus_session_t *self);
 // packets can be complete. With OPEN go VEL 0, RVEL 0, SETO and CONFIG. The second SIP after that, whose
 // position is counted from SETO, together with CONFIGpac (waited for at most 1 s) completes the set-up: SETV,
 // SETA +-, SETRV, SETRA +-, SONAR 1, SONAR_CYCLE when it is not known to be the robot's. The motors are
-// enabled by who knows the robot. Before ARGUS_SESSION_DID_OPEN no SIP is reported but the one of an old
-// session that is found when listening.
+// enabled by the code that knows the robot. Before ARGUS_SESSION_DID_OPEN no SIP is reported but the one of
+// an old session that is found when listening.
 unsigned argus_session_receive(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
                                const uint8_t *bytes, size_t count, size_t *taken);
 

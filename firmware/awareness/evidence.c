@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "awareness/clutter.h"
+#include "awareness/crosscheck.h"
 #include "awareness/levels.h"
 #include "awareness/names.h"
 #include "awareness/odds.h"
-#include "awareness/others.h"
 #include "awareness/own.h"
 #include "knowledge/angle.h"
 
@@ -41,12 +41,12 @@ void argus_evidence_forget(argus_evidence_t *const self, const int sonar) {
 // What others said, and what it was said of, is of the readings that are forgotten.
 static void restart_case(argus_case_t *const self) {
     memset(&self->pings, 0, sizeof self->pings);
-    memset(self->doubt, 0, sizeof self->doubt);
+    memset(self->hypothesis, 0, sizeof self->hypothesis);
     memset(self->lag_run, 0, sizeof self->lag_run);
     self->score[ARGUS_TEST_PEERS] = 0;
     self->against = 0;
     self->episodes = 0;
-    self->hollow = 0;
+    self->silent_bits = 0;
     self->borne_out = false;
     self->none_run = 0;
     self->gaps = 0;
@@ -93,7 +93,7 @@ static argus_ping_t ray_of(const argus_evidence_t *const self, const argus_knowl
 // A sonar that comes back into use was mended.
 static void note_out(argus_case_t *const self, const bool out) {
     if (self->out && !out) {
-        memset(self->doubt, 0, sizeof self->doubt);
+        memset(self->hypothesis, 0, sizeof self->hypothesis);
         memset(&self->pings, 0, sizeof self->pings);
     }
     self->out = out;
@@ -114,7 +114,7 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     argus_own_take(self, knowledge, sonar, &now);
     c->last_mm = now.reading_mm;
     argus_pings_note(&c->pings, now);
-    argus_others_take(self, knowledge, sonar);
+    argus_crosscheck_take(self, knowledge, sonar);
 }
 
 static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
@@ -126,7 +126,7 @@ static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *cons
     }
     if (knowledge->sip_ms - self->faded_ms >= FADE_MS) {
         self->faded_ms = knowledge->sip_ms;
-        argus_others_fade(self, knowledge);
+        argus_crosscheck_fade(self, knowledge);
         argus_odds_fade(self);
         for (int i = 0; i < knowledge->sonars; i++) {
             argus_pings_age(&self->of[i].pings, knowledge->sip_ms);
@@ -160,7 +160,7 @@ bool argus_evidence_holds(const argus_evidence_t *const self, const int sonar) {
     const argus_case_t *const c = &self->of[sonar];
     int32_t most = c->score[ARGUS_TEST_PEERS] * 100 / argus_bounds[ARGUS_TEST_PEERS].naming;
     for (int i = 0; i < ARGUS_LAGS; i++) {
-        most = argus_max(most, c->doubt[i].well * 100 / ARGUS_LATE_NAMING);
+        most = argus_max(most, c->hypothesis[i].over_healthy * 100 / ARGUS_LATE_NAMING);
     }
     return argus_names_suspects(self, sonar) || most > ARGUS_HELD_PERCENT;
 }
@@ -203,7 +203,7 @@ int16_t argus_evidence_kept(const argus_evidence_t *const self, const int sonar,
     const argus_case_t *const c = &self->of[sonar];
     int32_t most = test_of[kept] >= 0 ? c->score[test_of[kept]] : 0;
     for (int i = 0; kept == ARGUS_KEPT_LATE && i < ARGUS_LAGS; i++) {
-        most = argus_max(most, c->doubt[i].well);
+        most = argus_max(most, c->hypothesis[i].over_healthy);
     }
     return (int16_t)(most >= naming_of(kept) * ARGUS_SUSPECT_PERCENT / 100 ? most : 0);
 }
@@ -220,13 +220,13 @@ void argus_evidence_restore(argus_evidence_t *const self, const int sonar, const
         c->score[test_of[kept]] = half;
     }
     for (int i = 0; kept == ARGUS_KEPT_LATE && i < ARGUS_LAGS; i++) {
-        c->doubt[i].well = half; // it may be of any lag
+        c->hypothesis[i].over_healthy = half; // it may be of any lag
     }
 }
 
 void argus_evidence_retract(argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    argus_others_retract(self, sonar);
+    argus_crosscheck_retract(self, sonar);
 }
 
 uint8_t argus_evidence_agreed(const argus_evidence_t *const self, const int sonar) {

@@ -12,12 +12,13 @@
 #define AWAY_MM 200 // gone away from what stands within the shortest reading: it would read twice that
 // Gone past what its mate on the same side, which hears and sits no farther off, does not see,
 #define ABEAM_MM 250
-#define ABEAM_ALONE_MM 2000 // ... or that it has no such mate for: nobody drives so long so near a wall
+#define ABEAM_ALONE_MM 2000 // ... or that it has no such mate for: no robot drives so long so near a wall
 #define CLEAR_MM 300        // its mate reads so much more
-#define LEAP_MM 600         // nobody walks so far between two firings
+#define LEAP_MM 600         // no person walks so far between two firings
 #define NEAR_MM 150         // what is nearer forbids to turn
 #define IMPOSSIBLE 16
-#define VISIT 10 // leaps near and away again at once: who walks across the beam may do so, once or twice
+#define VISIT \
+    10 // leaps near and away again at once: a person who walks across the beam may do so, once or twice
 #define ROW_STUCK 5
 #define LEVEL_CONVICTS 80
 #define LEVEL_KEEPS_OUT 40

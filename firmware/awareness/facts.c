@@ -30,11 +30,11 @@ void argus_score(argus_evidence_t *const self, const int sonar, const argus_test
     *score = limited(*score + scaled(self, sonar, increment), argus_bounds[test].floor);
 }
 
-void argus_doubt(argus_evidence_t *const self, const int sonar, const int doubt, const int32_t well,
-                 const int32_t told) {
+void argus_hypothesis_add(argus_evidence_t *const self, const int sonar, const int hypothesis,
+                          const int32_t over_healthy, const int32_t over_other) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    ARGUS_ASSERT(doubt >= 0 && doubt < ARGUS_DOUBTS);
-    argus_doubt_t *const d = &self->of[sonar].doubt[doubt];
-    d->well = limited(d->well + scaled(self, sonar, well), 0);
-    d->told = d->well > 0 ? limited(d->told + scaled(self, sonar, told), 0) : 0;
+    ARGUS_ASSERT(hypothesis >= 0 && hypothesis < ARGUS_HYPOTHESES);
+    argus_hypothesis_t *const d = &self->of[sonar].hypothesis[hypothesis];
+    d->over_healthy = limited(d->over_healthy + scaled(self, sonar, over_healthy), 0);
+    d->over_other = d->over_healthy > 0 ? limited(d->over_other + scaled(self, sonar, over_other), 0) : 0;
 }

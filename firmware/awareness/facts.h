@@ -17,16 +17,16 @@ typedef enum {
     ARGUS_TESTS
 } argus_test_t;
 
-// Hypotheses that map a reading to the ping that a well sonar would have had: late by so many firings, bent
-// by so much.
+// Hypotheses that map a reading to the ping that a healthy sonar would have had: late by so many firings, or
+// with its axis offset by so much.
 #define ARGUS_LEAST_LAG 2
 #define ARGUS_LAGS 8 // ... to 9 firings
-#define ARGUS_BENDS 6
-#define ARGUS_DOUBTS (ARGUS_LAGS + ARGUS_BENDS)
+#define ARGUS_OFFSETS 6
+#define ARGUS_HYPOTHESES (ARGUS_LAGS + ARGUS_OFFSETS)
 typedef struct {
-    int16_t well; // so explained, and not well, hundredths of a nat
-    int16_t told; // ... and not faulty in another way
-} argus_doubt_t;
+    int16_t over_healthy; // so explained, against healthy, hundredths of a nat
+    int16_t over_other;   // ... against faulty in another way
+} argus_hypothesis_t;
 
 // Readings of late that a test took, and the odd ones of them, sixteenths, fading.
 typedef struct {
@@ -37,7 +37,7 @@ typedef struct {
 typedef struct {
     argus_pings_t pings;
     int16_t score[ARGUS_TESTS];
-    argus_doubt_t doubt[ARGUS_DOUBTS];
+    argus_hypothesis_t hypothesis[ARGUS_HYPOTHESES];
     uint8_t lag_run[ARGUS_LAGS]; // readings in a row that vary and equal the one so many before, up to 4
     uint16_t last_mm;            // its last reading
     int16_t drift_mm;            // at rest, what it differed from the one before
@@ -47,7 +47,7 @@ typedef struct {
     uint8_t taken;               // counts its readings, low bits
     uint8_t echo_bits;           // bit i: of its last readings, the one i before had an echo
     uint8_t agreed;              // counted readings in a row that others bore out
-    uint8_t hollow;              // bit i: of the contradicted readings, the one i before had no echo
+    uint8_t silent_bits;         // bit i: of the contradicted readings, the one i before had no echo
     uint8_t episodes;     // times at which it was contradicted, some seconds apart, since its score left 0
     bool borne_out;       // an echo of it was, since then
     argus_mask_t against; // sonars that contradicted it, since then
@@ -77,7 +77,8 @@ typedef struct {
 
 // Adds to a test's score, by caution and within its bounds; more of what speaks for a sonar that is out.
 void argus_score(argus_evidence_t *self, int sonar, argus_test_t test, int32_t increment);
-void argus_doubt(argus_evidence_t *self, int sonar, int doubt, int32_t well, int32_t told);
+void argus_hypothesis_add(argus_evidence_t *self, int sonar, int hypothesis, int32_t over_healthy,
+                          int32_t over_other);
 
 typedef struct {
     int16_t naming;     // a suspect with the name of its fault, not relied on

@@ -54,6 +54,6 @@ void argus_lag_take(argus_evidence_t *const self, const argus_knowledge_t *const
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     for (int i = 0; i < ARGUS_LAGS; i++) {
         const int32_t gain = replay_of(self, knowledge, sonar, reading_mm, i);
-        argus_doubt(self, sonar, i, gain, gain);
+        argus_hypothesis_add(self, sonar, i, gain, gain);
     }
 }

@@ -5,7 +5,7 @@
 
 #include "awareness/facts.h"
 
-// One more reading, not in the log yet, adds to the doubts of each lag.
+// One more reading, not in the log yet, adds to the hypothesis of each lag.
 void argus_lag_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
                     uint16_t reading_mm);
 

@@ -12,8 +12,8 @@
 #define ARGUS_AGREE_PERCENT 5  // ... and by this part of the range
 #define ARGUS_NEAREST_MM 150   // what would be nearer tells nothing
 #define ARGUS_SURE_MM 4000     // from here on the air decides whether an echo is heard,
-#define ARGUS_FARTHEST_MM 4600 // ... beyond nobody need hear it
-#define ARGUS_LEAP_MM 450      // nobody walks so far between two firings
+#define ARGUS_FARTHEST_MM 4600 // ... beyond no sonar need hear it
+#define ARGUS_LEAP_MM 450      // no person walks so far between two firings
 #define ARGUS_STILL_MM 12      // less way and turn than this may leave a reading as it is
 #define ARGUS_STILL_CDEG 150
 
@@ -52,10 +52,10 @@
 #define ARGUS_LATE_NAMING 800
 #define ARGUS_LATE_ALONE 1200
 #define ARGUS_LATE_CONVINCING 2200
-#define ARGUS_LATE_TOLD 430
-#define ARGUS_BENT_NAMING 1100
-#define ARGUS_BENT_TOLD 300
-#define ARGUS_BENT_CONTRADICTED 300
+#define ARGUS_LATE_OVER_OTHER 430
+#define ARGUS_OFFSET_NAMING 1100
+#define ARGUS_OFFSET_OVER_OTHER 300
+#define ARGUS_OFFSET_CONTRADICTED 300
 #define ARGUS_MUTE_CONTRADICTED 380
 #define ARGUS_HELD_PERCENT 25 // of a name's level: a suspect is cleared below
 

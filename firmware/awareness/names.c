@@ -2,14 +2,14 @@
 // What the tests and hypotheses of a sonar amount to: a suspicion, a name, a conviction.
 #include "awareness/names.h"
 
+#include "awareness/crosscheck.h"
 #include "awareness/levels.h"
-#include "awareness/others.h"
 #include "knowledge/angle.h"
 
 #define PARTNERS 2 // which one is wrong takes a third
 #define OFF_RUN 5
 #define OFF_RUN_LONG 12 // what echoed before is named off after so many readings without an echo
-#define HOLLOW_OF 3
+#define SILENT_OF 3
 #define EPISODES 10 // what moves about the robot does not contradict the same sonar again and again
 
 static int32_t suspicious(const int32_t naming) {
@@ -20,48 +20,50 @@ static bool has_partners(const argus_case_t *const self) {
     return argus_count_bits(self->against) >= PARTNERS;
 }
 
-static argus_doubt_t most_of(const argus_case_t *const self, const int from, const int to) {
-    argus_doubt_t most = {0, 0};
+static argus_hypothesis_t most_of(const argus_case_t *const self, const int from, const int to) {
+    argus_hypothesis_t most = {0, 0};
     for (int i = from; i < to; i++) {
-        most = self->doubt[i].well > most.well ? self->doubt[i] : most;
+        most = self->hypothesis[i].over_healthy > most.over_healthy ? self->hypothesis[i] : most;
     }
     return most;
 }
 
-static argus_doubt_t late_of(const argus_case_t *const self) {
+static argus_hypothesis_t late_of(const argus_case_t *const self) {
     return most_of(self, 0, ARGUS_LAGS);
 }
 
-static argus_doubt_t bent_of(const argus_case_t *const self) {
-    return most_of(self, ARGUS_LAGS, ARGUS_DOUBTS);
+static argus_hypothesis_t offset_of(const argus_case_t *const self) {
+    return most_of(self, ARGUS_LAGS, ARGUS_HYPOTHESES);
 }
 
 // Without a third that says so, only three readings in a row that it has given before are enough.
 static bool is_late(const argus_case_t *const self, const int32_t level) {
-    const argus_doubt_t late = late_of(self);
+    const argus_hypothesis_t late = late_of(self);
     const int32_t wanted = has_partners(self) ? level : argus_max(level, ARGUS_LATE_ALONE);
-    return late.well >= wanted && late.told >= ARGUS_LATE_TOLD && self->score[ARGUS_TEST_PEERS] >= 0;
+    return late.over_healthy >= wanted && late.over_other >= ARGUS_LATE_OVER_OTHER &&
+           self->score[ARGUS_TEST_PEERS] >= 0;
 }
 
-// In a turn a late sonar looks bent, and a bent one late: half as much that tells of a bend decides, since a
-// bend is told of once in a place, a lag by every reading.
-static bool is_bent(const argus_case_t *const self, const int32_t level) {
-    const argus_doubt_t bent = bent_of(self);
-    return bent.well >= level && bent.told >= ARGUS_BENT_TOLD && 2 * bent.told > late_of(self).told &&
-           has_partners(self) && self->score[ARGUS_TEST_PEERS] >= ARGUS_BENT_CONTRADICTED;
+// In a turn a late sonar looks as if its axis were offset, and the other way round. Half as much decides for
+// the offset: it shows once in a place, a lag in every reading.
+static bool is_offset(const argus_case_t *const self, const int32_t level) {
+    const argus_hypothesis_t offset = offset_of(self);
+    return offset.over_healthy >= level && offset.over_other >= ARGUS_OFFSET_OVER_OTHER &&
+           2 * offset.over_other > late_of(self).over_other && has_partners(self) &&
+           self->score[ARGUS_TEST_PEERS] >= ARGUS_OFFSET_CONTRADICTED;
 }
 
-// Contradicted for silence only: off, unless they bore out an echo of it since they doubt it.
+// Contradicted for silence only: off, unless they bore out an echo of it since they contradict it.
 static argus_fault_kind_t kind_of_peers(const argus_case_t *const self) {
-    const int hollow = argus_others_hollow(self, HOLLOW_OF);
-    if (hollow == HOLLOW_OF) {
+    const int silent = argus_crosscheck_silences(self, SILENT_OF);
+    if (silent == SILENT_OF) {
         return self->none_run >= (self->borne_out ? OFF_RUN_LONG : OFF_RUN) ? ARGUS_KIND_OFF
                                                                             : ARGUS_KIND_INTERMITTENT;
     }
-    if (hollow > 0 && self->score[ARGUS_TEST_DROPOUT] > 0) {
+    if (silent > 0 && self->score[ARGUS_TEST_DROPOUT] > 0) {
         return ARGUS_KIND_INTERMITTENT;
     }
-    return late_of(self).told >= ARGUS_LATE_TOLD ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
+    return late_of(self).over_other >= ARGUS_LATE_OVER_OTHER ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
 }
 
 // The others heard something wherever it lately did not, and it has heard nothing for a while: less is wanted
@@ -69,7 +71,7 @@ static argus_fault_kind_t kind_of_peers(const argus_case_t *const self) {
 static bool is_mute(const argus_case_t *const self) {
     return self->none_run >= OFF_RUN && !self->borne_out &&
            self->score[ARGUS_TEST_PEERS] >= ARGUS_MUTE_CONTRADICTED &&
-           argus_others_hollow(self, HOLLOW_OF) == HOLLOW_OF && has_partners(self);
+           argus_crosscheck_silences(self, SILENT_OF) == SILENT_OF && has_partners(self);
 }
 
 // The more definite tests come first.
@@ -94,7 +96,7 @@ argus_fault_kind_t argus_names_found(const argus_evidence_t *const self, const i
     if (is_mute(c)) {
         return ARGUS_KIND_OFF;
     }
-    return is_bent(c, ARGUS_BENT_NAMING) ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;
+    return is_offset(c, ARGUS_OFFSET_NAMING) ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;
 }
 
 static bool is_convicted_by(const argus_case_t *const self, const argus_test_t test) {
@@ -102,7 +104,7 @@ static bool is_convicted_by(const argus_case_t *const self, const argus_test_t t
     return self->score[test] >= argus_bounds[test].convincing;
 }
 
-// People who walk about contradict; and by its own readings alone, however late they look, nobody is given
+// People who walk about contradict; and by its own readings alone, however late they look, no sonar is given
 // up.
 argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);
@@ -131,7 +133,7 @@ bool argus_names_suspects(const argus_evidence_t *const self, const int sonar) {
             return true;
         }
     }
-    return is_late(c, suspicious(ARGUS_LATE_NAMING)) || is_bent(c, suspicious(ARGUS_BENT_NAMING));
+    return is_late(c, suspicious(ARGUS_LATE_NAMING)) || is_offset(c, suspicious(ARGUS_OFFSET_NAMING));
 }
 
 // What is more, of what is `so_far` and a score of `level` of a verdict.
@@ -163,7 +165,7 @@ argus_fault_kind_t argus_names_best(const argus_evidence_t *const self, const in
         best = now > most ? kind_of_test(c, i) : best;
         most = now;
     }
-    const int32_t late = at_least(most, late_of(c).well, ARGUS_LATE_CONVINCING);
+    const int32_t late = at_least(most, late_of(c).over_healthy, ARGUS_LATE_CONVINCING);
     best = late > most ? ARGUS_KIND_SLOW : best;
     *percent = (uint8_t)argus_min(late, 100);
     const argus_fault_kind_t found = argus_names_found(self, sonar);

@@ -72,7 +72,7 @@ static likeness_t liken(const argus_pings_t *const pings, const argus_ping_t *co
     return like;
 }
 
-// Readings between familiar and novel name nobody: so looks somebody who walks, too.
+// Readings between familiar and novel name nothing: a person who walks looks the same.
 static void test_garbage(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                          const int sonar, const argus_ping_t *const now, const bool unrest) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -136,7 +136,7 @@ static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *
         return;
     }
     if (unrest) {
-        return; // somebody may have stood in between
+        return; // a person may have stood in between
     }
     c->gaps++;
     const int32_t adds = argus_odds_of(self, knowledge, sonar, ARGUS_TEST_DROPOUT, true);

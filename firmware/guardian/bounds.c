@@ -2,7 +2,7 @@
 // Bounds a client's motion by S1, S2, S5 and S7, for the end of the robot that would lead.
 #include "guardian/bounds.h"
 
-#include "awareness/slant.h"
+#include "awareness/grazing.h"
 #include "knowledge/angle.h"
 #include "knowledge/config.h"
 #include "supervisor/state.h"
@@ -138,7 +138,7 @@ static bool slants(const argus_t *const self) {
     const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((flank >> i & 1u) != 0 &&
-            argus_slants_in(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
+            argus_grazing_wall(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
             return true;
         }
     }
@@ -202,7 +202,7 @@ static argus_bound_t trailing(const argus_t *const self, const argus_guard_t *co
     const unsigned looks = argus_robot_astern(knowledge->robot);
     argus_bound_t bound =
         by_clearance(guard, free_mm_of(self, looks, true), knowledge->robot->rear_overhang_mm);
-    // The manager itself backs no faster: beside the rear nobody hears a wall that slants in.
+    // The manager itself backs no faster: beside the rear no sonar hears a wall that slants in.
     bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.speed_mm_s);
     return bound;
 }

@@ -25,7 +25,7 @@ typedef struct {
     int32_t turn_decel_deg_s2;
 } argus_port_settings_t;
 
-// All zero: nobody was ever there.
+// All zero: no client was ever there.
 typedef struct {
     argus_parser_t from_client;
     argus_parser_t from_robot;

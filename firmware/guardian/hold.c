@@ -278,7 +278,7 @@ static void give_turn(argus_t *const core, argus_hold_client_t *const self, cons
 
 // Weaving --------------------------------------------------------------------------------------------------
 
-// Ahead with a bearing ahead blind, and nothing said of a turn: what nobody sees is never free, so the
+// Ahead with a bearing ahead blind, and nothing said of a turn: what no sonar sees is never free, so the
 // heading swings, as when the manager drives itself.
 static bool should_weave(const argus_t *const core, const argus_wish_t *const wish) {
     const argus_guard_t guard = argus_guard(core);

@@ -10,7 +10,7 @@
 #include "supervisor/orders.h"
 #include "supervisor/say.h"
 
-#define WATCHDOG_MS 2000u // of a robot that has not told
+#define WATCHDOG_MS 2000u // where CONFIGpac has not come
 #define ALL_ARRAYS 0x0Fu
 #define ORIGIN_SIPS 3 // in which SETO shows
 #define PART_MS 3000u // after which the motors are cut, at rest or not
@@ -21,8 +21,8 @@
 _Static_assert(sizeof(argus_port_t) <= sizeof(argus_port_storage_t), "ARGUS_PORT_BYTES is too small");
 
 static uint32_t watchdog_ms(const argus_t *const core) {
-    const uint32_t told_ms = core->session.has_robot ? core->session.robot.watchdog_ms : 0;
-    return told_ms > 0 ? told_ms : WATCHDOG_MS;
+    const uint32_t configured_ms = core->session.has_robot ? core->session.robot.watchdog_ms : 0;
+    return configured_ms > 0 ? configured_ms : WATCHDOG_MS;
 }
 
 // The client goes -------------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@
 
 #include "knowledge/angle.h"
 
-#define SETV_MM_S 750 // a robot's own, where CONFIGpac has not told
+#define SETV_MM_S 750 // a robot's own, where CONFIGpac has not come
 #define ACCEL_MM_S2 300
 #define SETRV_DEG_S 100
 #define TURN_ACCEL_DEG_S2 100
@@ -59,9 +59,9 @@ void argus_send_setting(argus_t *const core, const uint8_t command, const int32_
     argus_outbox_int(&core->session.outbox, command, brakes ? argus_min(argument, -least) : argument);
 }
 
-static void fill(int32_t *const value, const int32_t told, const int32_t usual) {
+static void fill(int32_t *const value, const int32_t configured, const int32_t usual) {
     if (*value == 0) {
-        *value = told > 0 ? told : usual;
+        *value = configured > 0 ? configured : usual;
     }
 }
 
@@ -75,7 +75,7 @@ static void send_all(argus_t *const core, const argus_port_settings_t *const set
 }
 
 void argus_send_settings(argus_t *const core, argus_port_settings_t *const settings) {
-    const argus_configpac_t *const robot = &core->session.robot; // zero until it has told
+    const argus_configpac_t *const robot = &core->session.robot; // zero until it has come
     fill(&settings->setv_mm_s, robot->vel_max_mm_s, SETV_MM_S);
     fill(&settings->accel_mm_s2, robot->accel_mm_s2, ACCEL_MM_S2);
     fill(&settings->decel_mm_s2, robot->decel_mm_s2, ACCEL_MM_S2);

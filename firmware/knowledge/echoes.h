@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Echoes of the last minute as points of the course frame: what stands about the robot, also where nobody
+// Echoes of the last minute as points of the course frame: what stands about the robot, also where no sonar
 // looks now.
 #ifndef ARGUS_ECHOES_H
 #define ARGUS_ECHOES_H

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The health of every sonar: what may happen to it, where that leads, and which event says so. Nobody else
+// The health of every sonar: what may happen to it, where that leads, and which event says so. No other file
 // writes it.
 #ifndef ARGUS_HEALTH_H
 #define ARGUS_HEALTH_H

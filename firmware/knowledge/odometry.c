@@ -7,7 +7,7 @@
 
 #define SIP_MS 100          // SIPs that come in a bunch were made so long apart
 #define LATE_MS 150         // ... and one that comes in time may follow one that came late
-#define GAP_MS 500u         // without a SIP for longer nobody knows what the wheels did
+#define GAP_MS 500u         // without a SIP for longer it is not known what the wheels did
 #define GAP_MAX_MS 4000u    // ... but the robot's watchdog has stopped them
 #define FASTEST_MM_S 2000   // no robot of the tables drives as fast
 #define DRIVES_MM_S 750     // the fastest that it is ever told to

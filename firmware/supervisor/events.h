@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The queue of events that nobody has taken yet.
+// The queue of events that were not taken yet.
 #ifndef ARGUS_EVENTS_H
 #define ARGUS_EVENTS_H
 

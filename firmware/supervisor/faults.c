@@ -58,7 +58,7 @@ static void say_plan(argus_t *const self) {
     }
 }
 
-// Who may be relied on to look along another's bearing: nobody who is out, unheard or has the name of a
+// Which may be relied on to look along another's bearing: none that is out, unheard or has the name of a
 // fault; where they are all that is left, those with a name may.
 static argus_mask_t living(const argus_t *const self) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
@@ -74,7 +74,8 @@ static argus_mask_t living(const argus_t *const self) {
 }
 
 // Suspects that are covered for like those that are out: under the paper those that no witness could judge,
-// one that is still to be verified is not, nothing moves ahead before it is; else names that nobody sees for.
+// one that is still to be verified is not, nothing moves ahead before it is; else names that no other sonar
+// sees for.
 static argus_mask_t covered_suspects(const argus_t *const self) {
     if (argus_rules(self)->evidence) {
         const argus_guard_t guard = argus_guard(self);

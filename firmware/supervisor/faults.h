@@ -20,7 +20,7 @@ void argus_flag_suspects(argus_t *self, argus_mask_t suspects);
 void argus_replan(argus_t *self);
 
 // After each SIP: a plan whose sonars may be relied on no more is made anew, and one that leaves a bearing
-// open where others may look now. False: nobody is left to look along a blind bearing.
+// open where others may look now. False: no sonar is left to look along a blind bearing.
 bool argus_keep_plan(argus_t *self);
 
 // POLLING for the present plan; again in each new session.

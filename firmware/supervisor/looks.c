@@ -45,7 +45,7 @@ argus_mask_t argus_to_settle(const argus_t *const self) {
                                                                               : 0;
 }
 
-// Those ahead that nobody sees for, and that were not cleared a moment ago.
+// Those ahead that no other sonar sees for, and that were not cleared a moment ago.
 static argus_mask_t alone(const argus_t *const self) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const argus_guard_t guard = argus_guard(self);
@@ -71,7 +71,7 @@ void argus_count_loss(argus_t *const self) {
 }
 
 // To hire or to buy: a look is bought when what it costs has been lost, so both together are never more than
-// twice the cheaper one. Where nobody sees what a suspect may not, it is bought at once.
+// twice the cheaper one. Where no other sonar sees what a suspect may not, it is bought at once.
 bool argus_look_pays(const argus_t *const self) {
     const argus_looks_t *const looks = &self->looks;
     const bool pays = looks->asked || alone(self) != 0 || looks->lost_ms >= LOOK_COST_MS;

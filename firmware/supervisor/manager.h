@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The loop of the fault manager, for who has the memory of an argus_t already.
+// The loop of the fault manager, for code that has the memory of an argus_t already.
 #ifndef ARGUS_MANAGER_H
 #define ARGUS_MANAGER_H
 

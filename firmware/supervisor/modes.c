@@ -492,7 +492,7 @@ static argus_intent_t run(argus_t *const self) {
 #define RUN(name, run, may, limit, then, meaning) \
     case ARGUS_MODE_##name:                       \
         return run_##run(self);
-        // Modes in which nobody acts stand side by side in the table.
+        // Modes in which nothing acts stand side by side in the table.
         ARGUS_MODE_TABLE(RUN) // NOLINT(bugprone-branch-clone)
 #undef RUN
     default:
@@ -500,7 +500,7 @@ static argus_intent_t run(argus_t *const self) {
     }
 }
 
-// It drives, or would if there were room or a way; who has cut the motors is waited for.
+// It drives, or would if there were room or a way; an operator who has cut the motors is waited for.
 static bool is_under_way(const argus_t *const self) {
     const argus_wait_t why = self->waiting.why;
     const bool waits = self->mode == ARGUS_MODE_WAITING &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Carries out intents and changes the mode; nobody else does.
+// Carries out intents and changes the mode; no other file does.
 #ifndef ARGUS_MODES_H
 #define ARGUS_MODES_H
 

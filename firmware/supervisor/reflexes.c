@@ -2,7 +2,7 @@
 // Sees what calls for a STOP, or for an event, in one SIP.
 #include "supervisor/reflexes.h"
 
-#include "awareness/slant.h"
+#include "awareness/grazing.h"
 #include "knowledge/angle.h"
 #include "supervisor/mode.h"
 #include "supervisor/state.h"
@@ -49,7 +49,7 @@ static argus_intent_t sees_leap(const argus_t *const self, const argus_alarm_t *
     if (!news) {
         return argus_to_nothing();
     }
-    if (knowledge->leaps_unseen != mine->unseen) { // at once: where it went meanwhile nobody can tell
+    if (knowledge->leaps_unseen != mine->unseen) { // at once: where it went meanwhile is not known
         mine->unseen = knowledge->leaps_unseen;
         mine->unsound = UNSOUND_MOST - 1;
         mine->unsound_ms = self->now_ms;
@@ -254,7 +254,7 @@ static argus_intent_t sees_flank(const argus_t *const self, const argus_alarm_t 
     const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((usable >> i & 1u) != 0 &&
-            argus_slants_in(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
+            argus_grazing_wall(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
             argus_intent_t intent = say(ARGUS_EV_OBJECT, i, self->knowledge.sonar[i].reading_mm);
             intent.stop = ARGUS_STOP_STOP;
             intent.way = ARGUS_WAY_REFUSE;

@@ -52,7 +52,7 @@ static void copy_session(const argus_session_t *const from, argus_status_t *cons
     status->robot_name = from->name;
     status->robot_class = from->robot_class;
     status->robot_subclass = from->subclass;
-    status->robot_told = from->has_robot;
+    status->has_configpac = from->has_robot;
     status->robot_version = from->robot.version;
     status->robot_serial = from->robot.serial;
     status->robot_watchdog_ms = from->robot.watchdog_ms;

@@ -195,7 +195,7 @@ static argus_intent_t blocked(argus_travel_t *const mine, const argus_event_id_t
     return intent;
 }
 
-// Where nobody looks ahead any more, all that counts was seen in sweeps.
+// Where no sonar looks ahead any more, all that counts was seen in sweeps.
 static int32_t reading_of(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= ARGUS_NO_SONAR && sonar < ARGUS_SONARS);
     return sonar < 0 ? self->knowledge.robot->no_echo_mm : self->knowledge.sonar[sonar].reading_mm;

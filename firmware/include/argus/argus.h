@@ -473,7 +473,7 @@ typedef struct {
     const char *robot_class;    // likewise
     const char *robot_subclass; // likewise
     const char *robot_body;     // whose geometry holds: a choice of the setting `robot`, "" if not known
-    bool robot_told;            // its CONFIGpac came: what follows is its own word, else "" and 0
+    bool has_configpac;         // its CONFIGpac came: what follows is its own word, else "" and 0
     const char *robot_version;  // of its firmware
     const char *robot_serial;   // its serial number
     uint16_t robot_watchdog_ms; // after so long a silence it stops by itself
@@ -596,7 +596,8 @@ size_t argus_guard_port(argus_t *core, argus_port_storage_t *storage, uint32_t n
 // Cost: one copy of some 500 bytes.
 void argus_status(const argus_t *self, argus_status_t *status);
 
-// Apart from the status, so that only who shows it pays. Cost: some twenty comparisons for each sonar.
+// Apart from the status, so that only a caller that shows it pays. Cost: some twenty comparisons for each
+// sonar.
 void argus_suspicions(const argus_t *self, argus_suspicions_t *suspicions);
 
 // The persistent record: what is known of every sonar (SPEC.md). save returns its length, 0 if it does not

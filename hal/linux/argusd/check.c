@@ -94,7 +94,7 @@ static void tell_plain(const driver_t *driver, const argus_status_t *status, FIL
     fprintf(out, "robot     name '%s', class '%s', subclass '%s'%s\n", status->robot_name,
             status->robot_class, status->robot_subclass,
             status->robot_body[0] != '\0' ? "" : " (its body is not known: name it with --robot)");
-    if (status->robot_told) {
+    if (status->has_configpac) {
         fprintf(out, "firmware  version '%s', serial number '%s', watchdog %u ms, sonar cycle %u ms\n",
                 status->robot_version, status->robot_serial, (unsigned)status->robot_watchdog_ms,
                 (unsigned)status->robot_sonar_cycle_ms);

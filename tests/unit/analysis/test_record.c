@@ -26,7 +26,7 @@ static size_t write_one(void) {
     k.sonar[5].relapses = 3;
     k.sonar[9].kind_before = ARGUS_KIND_SILENT;
     e.of[3].score[ARGUS_TEST_STUCK] = 2600;
-    e.of[3].doubt[5].well = ARGUS_LATE_NAMING;
+    e.of[3].hypothesis[5].over_healthy = ARGUS_LATE_NAMING;
     e.of[6].score[ARGUS_TEST_DROPOUT] = 2200;
     e.of[7].score[ARGUS_TEST_PEERS] = -150;
     e.trend.of[6].said = true;
@@ -84,14 +84,14 @@ void test_old_evidence_neither_names_nor_convicts(void) {
             for (int test = 0; test < ARGUS_TESTS; test++) {
                 e.of[i].score[test] = (int16_t)score;
             }
-            e.of[i].doubt[3].well = (int16_t)score;
+            e.of[i].hypothesis[3].over_healthy = (int16_t)score;
         }
         TEST_ASSERT_EQUAL(ARGUS_RECORD_OK,
                           read_back(record, argus_record_encode(&k, &e, 1, record, sizeof record)));
         for (int i = 0; i < ARGUS_SONARS; i++) {
             TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_names(&found, i));
             TEST_ASSERT_TRUE((note.out >> i & 1) != 0 || !argus_evidence_suspects(&found, i));
-            TEST_ASSERT_TRUE(found.of[i].doubt[0].well >= 0);
+            TEST_ASSERT_TRUE(found.of[i].hypothesis[0].over_healthy >= 0);
         }
     }
     write_one();
@@ -103,12 +103,12 @@ void test_old_evidence_neither_names_nor_convicts(void) {
 // What was late may be of any lag.
 void test_old_lateness_is_of_any_lag(void) {
     write_one();
-    e.of[4].doubt[5].well = ARGUS_CEILING;
+    e.of[4].hypothesis[5].over_healthy = ARGUS_CEILING;
     TEST_ASSERT_EQUAL(ARGUS_RECORD_OK,
                       read_back(record, argus_record_encode(&k, &e, 1, record, sizeof record)));
     for (int i = 0; i < ARGUS_LAGS; i++) {
-        TEST_ASSERT_EQUAL(ARGUS_LATE_NAMING - 1, found.of[4].doubt[i].well);
-        TEST_ASSERT_EQUAL(0, found.of[5].doubt[i].well);
+        TEST_ASSERT_EQUAL(ARGUS_LATE_NAMING - 1, found.of[4].hypothesis[i].over_healthy);
+        TEST_ASSERT_EQUAL(0, found.of[5].hypothesis[i].over_healthy);
     }
 }
 

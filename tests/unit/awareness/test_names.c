@@ -113,19 +113,19 @@ void test_others_convict_at_several_times_and_in_calm(void) {
 void test_silence_alone_is_off_or_gaps(void) {
     give_ground();
     c->score[ARGUS_TEST_PEERS] = 900;
-    c->hollow = 0xFF;
+    c->silent_bits = 0xFF;
     c->none_run = 30;
     TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, named());
     c->none_run = 0;
     TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, named());
-    c->hollow = 0;
+    c->silent_bits = 0;
     TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, named());
 }
 
 // A silence that all contradict is off sooner than an echo is wrong, unless an echo of it was borne out.
 void test_a_silence_that_all_contradict_is_off_sooner(void) {
     give_ground();
-    c->hollow = 0xFF;
+    c->silent_bits = 0xFF;
     c->none_run = 30;
     int off = 0;
     while (named() == ARGUS_KIND_NONE) {
@@ -137,12 +137,13 @@ void test_a_silence_that_all_contradict_is_off_sooner(void) {
     TEST_ASSERT_TRUE(off < argus_bounds[ARGUS_TEST_PEERS].naming);
 }
 
-// A lag and a bend are names by themselves, each of its kind, and only where the others rather contradict it.
+// A lag and an axis offset are names by themselves, each of its kind, and only where the others rather
+// contradict it.
 void test_hypotheses_name_where_others_contradict(void) {
-    for (int d = 0; d < ARGUS_DOUBTS; d++) {
+    for (int d = 0; d < ARGUS_HYPOTHESES; d++) {
         setUp();
         give_ground();
-        c->doubt[d] = (argus_doubt_t){1500, 900};
+        c->hypothesis[d] = (argus_hypothesis_t){1500, 900};
         c->score[ARGUS_TEST_PEERS] = 400;
         snprintf(text, sizeof text, "hypothesis %d", d);
         TEST_ASSERT_EQUAL_MESSAGE(d < ARGUS_LAGS ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG, named(), text);
@@ -150,20 +151,20 @@ void test_hypotheses_name_where_others_contradict(void) {
         c->score[ARGUS_TEST_PEERS] = -100;
         TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, named(), text);
         c->score[ARGUS_TEST_PEERS] = 400;
-        c->doubt[d].told = 0;
+        c->hypothesis[d].over_other = 0;
         TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, named(), text);
     }
 }
 
-// In a turn a late sonar looks bent: what tells more of the lag is late.
+// In a turn a late sonar looks as if its axis were offset: what tells more of the lag is late.
 void test_what_is_late_does_not_look_bent(void) {
     give_ground();
     c->score[ARGUS_TEST_PEERS] = 400;
-    c->doubt[ARGUS_LAGS] = (argus_doubt_t){1500, 400};
+    c->hypothesis[ARGUS_LAGS] = (argus_hypothesis_t){1500, 400};
     TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, named());
-    c->doubt[0] = (argus_doubt_t){700, 900};
+    c->hypothesis[0] = (argus_hypothesis_t){700, 900};
     TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named());
-    c->doubt[0].well = 1500;
+    c->hypothesis[0].over_healthy = 1500;
     TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, named());
 }
 

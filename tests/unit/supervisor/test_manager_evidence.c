@@ -779,7 +779,7 @@ void test_off_that_is_heard_again_is_renamed(void) {
     argus_case_t *const c = &robot.argus.evidence.of[3];
     c->score[ARGUS_TEST_PEERS] = 900;
     c->against = 3;
-    c->hollow = 0xFF;
+    c->silent_bits = 0xFF;
     c->none_run = 20;
     judge_for_a_while();
     TEST_ASSERT_EQUAL(ARGUS_KIND_OFF, s->kind);

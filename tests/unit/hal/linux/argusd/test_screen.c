@@ -147,7 +147,7 @@ void test_any_size_and_any_contents_are_drawn(void) {
         status->sonars = (uint8_t)(rand() % (ARGUS_SONARS + 1));
         view.sonar = (uint8_t)(rand() % ARGUS_SONARS);
         status->paused = status->open = status->motors = status->lists_all = (round & 2) != 0;
-        status->robot_told = view.has_can = (round & 4) != 0;
+        status->has_configpac = view.has_can = (round & 4) != 0;
         status->mode = ARGUS_MODE_CLOSED;
         status->mission = ARGUS_MISSION_FAILED;
         status->failure = ARGUS_IS_CATASTROPHIC;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): a reading counts against a sonar only where another one, that is relied
 // on, lately heard something else on the same bearing from the same place; once, less where something moves.
-#include "awareness/others.h"
+#include "awareness/crosscheck.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -54,7 +54,7 @@ static int takes(int sonar, argus_ping_t at, int mm) {
     const int before = score_of(sonar);
     at.reading_mm = (uint16_t)mm;
     argus_pings_note(&e.of[sonar].pings, at);
-    argus_others_take(&e, &k, sonar);
+    argus_crosscheck_take(&e, &k, sonar);
     return score_of(sonar) - before;
 }
 
@@ -320,44 +320,44 @@ void test_a_crowd_is_told_by_the_part_that_is_contradicted(void) {
 void test_what_the_others_say_fades(void) {
     e.of[ME].score[ARGUS_TEST_PEERS] = 900;
     e.of[ME].against = 6;
-    e.of[ME].doubt[2] = (argus_doubt_t){500, 400};
+    e.of[ME].hypothesis[2] = (argus_hypothesis_t){500, 400};
     e.of[ME].score[ARGUS_TEST_STUCK] = 900;
     int seconds = 0;
     for (int was = 900; score_of(ME) > 0; was = score_of(ME)) {
-        argus_others_fade(&e, &k);
+        argus_crosscheck_fade(&e, &k);
         TEST_ASSERT_TRUE(score_of(ME) < was);
-        TEST_ASSERT_TRUE(e.of[ME].doubt[2].well > 0 || e.of[ME].doubt[2].told == 0);
+        TEST_ASSERT_TRUE(e.of[ME].hypothesis[2].over_healthy > 0 || e.of[ME].hypothesis[2].over_other == 0);
         seconds++;
     }
     TEST_ASSERT_TRUE(seconds > 100 && seconds < 600);
     TEST_ASSERT_EQUAL(0, e.of[ME].against);
-    TEST_ASSERT_EQUAL(0, e.of[ME].doubt[2].well);
+    TEST_ASSERT_EQUAL(0, e.of[ME].hypothesis[2].over_healthy);
     TEST_ASSERT_EQUAL(900, e.of[ME].score[ARGUS_TEST_STUCK]);
 }
 
 // ---- hypotheses
 
-// A bearing that is another one's tells of that bend; the doubts of a reading that is borne out grow by
-// nothing.
+// A bearing that is another one's tells of that axis offset; the hypotheses of a reading that is borne out
+// grow by nothing.
 void test_what_another_heard_aside_speaks_for_that_bend(void) {
-    static const int bend_cdeg[ARGUS_BENDS] = {-2400, -1800, -1200, 1200, 1800, 2400};
-    for (int b = 0; b < ARGUS_BENDS; b++) {
+    static const int offset_cdeg[ARGUS_OFFSETS] = {-2400, -1800, -1200, 1200, 1800, 2400};
+    for (int b = 0; b < ARGUS_OFFSETS; b++) {
         setUp();
         argus_ping_t *aside = heard(THIRD, 1000);
-        aside->bearing_cdeg = (int16_t)argus_angle_wrap(aside->bearing_cdeg + bend_cdeg[b]);
+        aside->bearing_cdeg = (int16_t)argus_angle_wrap(aside->bearing_cdeg + offset_cdeg[b]);
         heard(WITNESS, 3000);
         reads(1000);
-        for (int i = 0; i < ARGUS_BENDS; i++) {
-            const argus_doubt_t *d = &e.of[ME].doubt[ARGUS_LAGS + i];
-            TEST_ASSERT_TRUE(i == b || d->well < e.of[ME].doubt[ARGUS_LAGS + b].well);
-            TEST_ASSERT_EQUAL(i == b, d->told > 0);
+        for (int i = 0; i < ARGUS_OFFSETS; i++) {
+            const argus_hypothesis_t *d = &e.of[ME].hypothesis[ARGUS_LAGS + i];
+            TEST_ASSERT_TRUE(i == b || d->over_healthy < e.of[ME].hypothesis[ARGUS_LAGS + b].over_healthy);
+            TEST_ASSERT_EQUAL(i == b, d->over_other > 0);
         }
         const argus_case_t before = e.of[ME];
         k.pose.x_mm += 500;
         heard(WITNESS, 1000);
         reads(1000);
-        for (int i = 0; i < ARGUS_DOUBTS; i++) {
-            TEST_ASSERT_TRUE(e.of[ME].doubt[i].well <= before.doubt[i].well);
+        for (int i = 0; i < ARGUS_HYPOTHESES; i++) {
+            TEST_ASSERT_TRUE(e.of[ME].hypothesis[i].over_healthy <= before.hypothesis[i].over_healthy);
         }
     }
 }
@@ -380,11 +380,12 @@ void test_what_others_heard_where_it_looked_speaks_for_that_lag(void) {
         heard(WITNESS, 3000);
         reads(1000);
         for (int i = 0; i < ARGUS_LAGS; i++) {
-            snprintf(text, sizeof text, "lag %d, doubt %d", lag, i);
-            TEST_ASSERT_EQUAL_MESSAGE(i + ARGUS_LEAST_LAG == lag + 1, e.of[ME].doubt[i].well > 0, text);
+            snprintf(text, sizeof text, "lag %d, hypothesis %d", lag, i);
+            TEST_ASSERT_EQUAL_MESSAGE(i + ARGUS_LEAST_LAG == lag + 1, e.of[ME].hypothesis[i].over_healthy > 0,
+                                      text);
         }
         if (lag + 1 < ARGUS_LEAST_LAG + ARGUS_LAGS) {
-            TEST_ASSERT_TRUE(e.of[ME].doubt[lag + 1 - ARGUS_LEAST_LAG].told > 0);
+            TEST_ASSERT_TRUE(e.of[ME].hypothesis[lag + 1 - ARGUS_LEAST_LAG].over_other > 0);
         }
     }
 }
@@ -399,13 +400,13 @@ void test_what_a_liar_said_is_taken_back_when_it_is_out(void) {
         c->score[ARGUS_TEST_PEERS] = 700;
         c->against = (argus_mask_t)(1u << WITNESS | (other != 0 ? 1u : 0u));
         c->borne_out = true;
-        c->hollow = 1;
-        c->doubt[5] = (argus_doubt_t){900, 900};
-        argus_others_retract(&e, WITNESS);
+        c->silent_bits = 1;
+        c->hypothesis[5] = (argus_hypothesis_t){900, 900};
+        argus_crosscheck_retract(&e, WITNESS);
         TEST_ASSERT_EQUAL(other != 0 ? 700 : 0, score_of(ME));
         TEST_ASSERT_EQUAL(other, c->borne_out);
-        TEST_ASSERT_EQUAL(other, argus_others_hollow(c, 8));
-        TEST_ASSERT_EQUAL(other * 900, c->doubt[5].well);
+        TEST_ASSERT_EQUAL(other, argus_crosscheck_silences(c, 8));
+        TEST_ASSERT_EQUAL(other * 900, c->hypothesis[5].over_healthy);
         TEST_ASSERT_EQUAL_HEX(other, c->against);
     }
 }

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: MIT
 // What the other sonars say of each ping, as it stands and as each hypothesis maps it.
-#ifndef ARGUS_OTHERS_H
-#define ARGUS_OTHERS_H
+#ifndef ARGUS_CROSSCHECK_H
+#define ARGUS_CROSSCHECK_H
 
 #include "awareness/facts.h"
 
 // The newest ping of this sonar against those of the others from its place on its bearing, as it stands and
-// as its hypotheses map it; then it answers for those of the others that nobody has judged. Cost: one pass
+// as its hypotheses map it; then it answers for those of the others that are not judged yet. Cost: one pass
 // over the pings of the others (480), fourteen more where it is contradicted, and the same for each that it
 // answers.
-void argus_others_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
+void argus_crosscheck_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
 
 // Once a second what was said fades.
-void argus_others_fade(argus_evidence_t *self, const argus_knowledge_t *knowledge);
+void argus_crosscheck_fade(argus_evidence_t *self, const argus_knowledge_t *knowledge);
 
 // A sonar was given up: what it alone has said against others is taken back. Or it is forgotten.
-void argus_others_retract(argus_evidence_t *self, int sonar);
+void argus_crosscheck_retract(argus_evidence_t *self, int sonar);
 
 // Of its last contradicted readings, up to 8: how many were without an echo.
-int argus_others_hollow(const argus_case_t *self, int of_last);
+int argus_crosscheck_silences(const argus_case_t *self, int of_last);
 
 // Whether what this one says of another counts.
-bool argus_others_is_witness(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
-                             int of);
+bool argus_crosscheck_is_witness(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
+                                 int of);
 
 #endif

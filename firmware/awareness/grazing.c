@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A wall beside the way: whether the robot slants into one that the sonars ahead do not hear.
-#include "awareness/slant.h"
+#include "awareness/grazing.h"
 
 #include <stddef.h>
 
@@ -57,8 +57,8 @@ static const argus_ping_t *echo_before(const argus_pings_t *const pings) {
     return argus_ping_is_echo(before) ? before : argus_pings_at(pings, 3);
 }
 
-bool argus_slants_in(const argus_pings_t *const pings, const argus_robot_t *const robot, const int sonar,
-                     const int32_t stop_mm) {
+bool argus_grazing_wall(const argus_pings_t *const pings, const argus_robot_t *const robot, const int sonar,
+                        const int32_t stop_mm) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_ping_t *const now = argus_pings_at(pings, 1);
     const argus_ping_t *const then = now != NULL ? slant_since(robot, sonar, pings, now) : NULL;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the other sonars say of each ping, as it stands and as each hypothesis maps it.
-#include "awareness/others.h"
+#include "awareness/crosscheck.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 
 // FAINT: it misses an echo that the air may have swallowed, or the other way round; DIVIDED: some say so, and
 // some so; SAME: the map leaves it where it is.
-typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, FAINT, DIVIDED, SAME, SAYINGS } said_t;
+typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, FAINT, DIVIDED, SAME, SAYINGS } verdict_t;
 
 typedef struct {
     uint8_t agree;
@@ -26,33 +26,33 @@ typedef struct {
     argus_mask_t against; // those that differ
 } tally_t;
 
-// What a verdict on a ping as it stands (rows) and as mapped (columns) says for the map: against well, and
-// against any other fault.
+// What a verdict on a ping as it stands (rows) and as mapped (columns) says for the map: against a healthy
+// sonar, and against any other fault.
 typedef struct {
-    int16_t well[SAYINGS][SAYINGS];
-    int16_t told[SAYINGS][SAYINGS];
+    int16_t over_healthy[SAYINGS][SAYINGS];
+    int16_t over_other[SAYINGS][SAYINGS];
 } worth_t;
 
-static const worth_t late = {
-    .well = {[UNSEEN] = {[AGREED] = 50, [CONTRADICTED] = -200},
-             [QUIET] = {[CONTRADICTED] = -350},
-             [AGREED] = {[CONTRADICTED] = -400},
-             [CONTRADICTED] = {[QUIET] = 100, [AGREED] = 300, [CONTRADICTED] = -150, [SAME] = -150}},
-    .told = {[AGREED] = {[CONTRADICTED] = -390},
-             [CONTRADICTED] = {[QUIET] = 230, [AGREED] = 230, [CONTRADICTED] = -300, [SAME] = -150}},
+static const worth_t lag_worth = {
+    .over_healthy = {[UNSEEN] = {[AGREED] = 50, [CONTRADICTED] = -200},
+                     [QUIET] = {[CONTRADICTED] = -350},
+                     [AGREED] = {[CONTRADICTED] = -400},
+                     [CONTRADICTED] = {[QUIET] = 100, [AGREED] = 300, [CONTRADICTED] = -150, [SAME] = -150}},
+    .over_other = {[AGREED] = {[CONTRADICTED] = -390},
+                   [CONTRADICTED] = {[QUIET] = 230, [AGREED] = 230, [CONTRADICTED] = -300, [SAME] = -150}},
 };
 
-static const worth_t bent = {
-    .well = {[AGREED] = {[AGREED] = 60, [CONTRADICTED] = -320},
-             [CONTRADICTED] = {[QUIET] = 40, [AGREED] = 150, [CONTRADICTED] = -190}},
-    .told = {[AGREED] = {[AGREED] = 30, [CONTRADICTED] = -300},
-             [CONTRADICTED] = {[QUIET] = 60, [AGREED] = 160, [CONTRADICTED] = -200}},
+static const worth_t offset_worth = {
+    .over_healthy = {[AGREED] = {[AGREED] = 60, [CONTRADICTED] = -320},
+                     [CONTRADICTED] = {[QUIET] = 40, [AGREED] = 150, [CONTRADICTED] = -190}},
+    .over_other = {[AGREED] = {[AGREED] = 30, [CONTRADICTED] = -300},
+                   [CONTRADICTED] = {[QUIET] = 60, [AGREED] = 160, [CONTRADICTED] = -200}},
 };
 
-// A wall fills cones that are 6 degrees apart alike, so bends between these show as well.
-static const int16_t bend_cdeg[ARGUS_BENDS] = {-2400, -1800, -1200, 1200, 1800, 2400};
+// A wall fills cones that are 6 degrees apart alike, so offsets between these show as well.
+static const int16_t offset_cdeg[ARGUS_OFFSETS] = {-2400, -1800, -1200, 1200, 1800, 2400};
 
-static said_t compare_silence(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
+static verdict_t compare_silence(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
     if (now_mm >= ARGUS_NO_ECHO_MM && then_mm >= ARGUS_NO_ECHO_MM) {
         return QUIET;
     }
@@ -64,7 +64,7 @@ static said_t compare_silence(const int32_t now_mm, const int32_t then_mm, const
 }
 
 // What one reading says of another on its bearing, made `along_mm` ahead of it.
-static said_t compare(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
+static verdict_t compare(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
     if (now_mm >= ARGUS_NO_ECHO_MM || then_mm >= ARGUS_NO_ECHO_MM) {
         return compare_silence(now_mm, then_mm, along_mm);
     }
@@ -77,9 +77,9 @@ static said_t compare(const int32_t now_mm, const int32_t then_mm, const int32_t
 }
 
 // A suspect that is contradicted at least as much itself says nothing of another: neither a liar of those
-// beside it, nor either of two that nobody else bears out.
-bool argus_others_is_witness(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                             const int sonar, const int of) {
+// beside it, nor either of two that no third bears out.
+bool argus_crosscheck_is_witness(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                                 const int sonar, const int of) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t own = self->of[sonar].score[ARGUS_TEST_PEERS];
     const int32_t suspicious = argus_bounds[ARGUS_TEST_PEERS].naming * ARGUS_SUSPECT_PERCENT / 100;
@@ -87,7 +87,7 @@ bool argus_others_is_witness(const argus_evidence_t *const self, const argus_kno
            (own < suspicious || own < self->of[of].score[ARGUS_TEST_PEERS]);
 }
 
-static void add(tally_t *const tally, const said_t said, const int from) {
+static void add(tally_t *const tally, const verdict_t said, const int from) {
     const bool differs = said == CONTRADICTED || said == FAINT;
     tally->agree = (uint8_t)(tally->agree + (said == AGREED));
     tally->quiet = (uint8_t)(tally->quiet + (said == QUIET));
@@ -106,7 +106,7 @@ static int ask(tally_t *const tally, const argus_pings_t *const pings, const arg
         if (shift.lateral_mm > ARGUS_SAME_LATERAL_MM) {
             continue;
         }
-        const said_t said = compare(at->reading_mm, then->reading_mm, shift.along_mm);
+        const verdict_t said = compare(at->reading_mm, then->reading_mm, shift.along_mm);
         if (latest == 0 && argus_ping_turned_cdeg(at, then) <= ARGUS_SAME_CDEG) {
             latest = back;
             add(tally, said, from);
@@ -123,14 +123,14 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     tally_t tally = {.agree = 0};
     for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_others_is_witness(self, knowledge, i, sonar)) {
+        if (argus_crosscheck_is_witness(self, knowledge, i, sonar)) {
             ask(&tally, &self->of[i].pings, at, i, knowledge->sip_ms);
         }
     }
     return tally;
 }
 
-static said_t verdict_of(const tally_t *const tally) {
+static verdict_t verdict_of(const tally_t *const tally) {
     const int differ = tally->differ - tally->faint;
     if (tally->agree > 0) {
         return tally->agree >= differ ? AGREED : DIVIDED;
@@ -176,7 +176,7 @@ static void note_contradicted(argus_evidence_t *const self, const argus_knowledg
         c->episodes = (uint8_t)argus_min(c->episodes + 1, UINT8_MAX);
         c->episode_ms = knowledge->sip_ms;
     }
-    c->hollow = (uint8_t)((unsigned)c->hollow << 1 | (argus_ping_is_echo(at) ? 0u : 1u));
+    c->silent_bits = (uint8_t)((unsigned)c->silent_bits << 1 | (argus_ping_is_echo(at) ? 0u : 1u));
     c->against |= against;
     c->agreed = 0;
 }
@@ -214,8 +214,8 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     }
 }
 
-static said_t as_late(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                      const int sonar, const int back, const int lag) {
+static verdict_t as_late(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                         const int sonar, const int back, const int lag) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(back >= 1);
     const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, back);
@@ -234,44 +234,44 @@ static said_t as_late(const argus_evidence_t *const self, const argus_knowledge_
     return verdict_of(&tally);
 }
 
-static said_t as_bent(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                      const int sonar, const argus_ping_t *const at, const int bend) {
+static verdict_t as_offset(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                           const int sonar, const argus_ping_t *const at, const int offset) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_ping_t mapped = *at;
-    mapped.bearing_cdeg = (int16_t)argus_angle_wrap(at->bearing_cdeg + bend_cdeg[bend]);
+    mapped.bearing_cdeg = (int16_t)argus_angle_wrap(at->bearing_cdeg + offset_cdeg[offset]);
     const tally_t tally = ask_all(self, knowledge, sonar, &mapped);
     return verdict_of(&tally);
 }
 
 // Every reading tells of a lag, a contradicted one no more than it tells at all.
-static void doubt_time(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                       const int sonar, const int back, const said_t verdict) {
+static void weigh_lags(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar, const int back, const verdict_t verdict) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t most = verdict == CONTRADICTED ? worth_of(self, knowledge, sonar, true) : ARGUS_CEILING;
     for (int i = 0; i < ARGUS_LAGS; i++) {
-        if (verdict == CONTRADICTED || self->of[sonar].doubt[i].well > 0) {
-            const said_t mapped = as_late(self, knowledge, sonar, back, i + ARGUS_LEAST_LAG);
-            argus_doubt(self, sonar, i, argus_min(most, late.well[verdict][mapped]),
-                        late.told[verdict][mapped]);
+        if (verdict == CONTRADICTED || self->of[sonar].hypothesis[i].over_healthy > 0) {
+            const verdict_t mapped = as_late(self, knowledge, sonar, back, i + ARGUS_LEAST_LAG);
+            argus_hypothesis_add(self, sonar, i, argus_min(most, lag_worth.over_healthy[verdict][mapped]),
+                                 lag_worth.over_other[verdict][mapped]);
         }
     }
 }
 
-// A wall fills the cones on both sides: of a bend one reading of a place tells. What is borne out never
-// speaks for a fault, whatever is seen aside.
-static void doubt_axis(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                       const int sonar, const argus_ping_t *const at, const said_t verdict,
-                       const int32_t increment) {
+// A wall fills the cones on both sides: of an axis offset one reading of a place tells. What is borne out
+// never speaks for a fault, whatever is seen aside.
+static void weigh_offsets(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                          const int sonar, const argus_ping_t *const at, const verdict_t verdict,
+                          const int32_t increment) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    for (int i = 0; i < ARGUS_BENDS; i++) {
-        const int doubt = ARGUS_LAGS + i;
-        if (verdict == AGREED && self->of[sonar].doubt[doubt].well == 0) {
+    for (int i = 0; i < ARGUS_OFFSETS; i++) {
+        const int hypothesis = ARGUS_LAGS + i;
+        if (verdict == AGREED && self->of[sonar].hypothesis[hypothesis].over_healthy == 0) {
             continue;
         }
-        const said_t mapped = as_bent(self, knowledge, sonar, at, i);
-        const int32_t well = increment + bent.well[verdict][mapped];
-        argus_doubt(self, sonar, doubt, verdict == AGREED ? argus_min(0, well) : well,
-                    bent.told[verdict][mapped]);
+        const verdict_t mapped = as_offset(self, knowledge, sonar, at, i);
+        const int32_t well = increment + offset_worth.over_healthy[verdict][mapped];
+        argus_hypothesis_add(self, sonar, hypothesis, verdict == AGREED ? argus_min(0, well) : well,
+                             offset_worth.over_other[verdict][mapped]);
     }
 }
 
@@ -279,7 +279,7 @@ static void doubt_axis(argus_evidence_t *const self, const argus_knowledge_t *co
 // moves, or silence together with others of one that made echoes up. One that is wrong or late needs the
 // others.
 static bool is_beyond(const argus_fault_kind_t kind, const argus_ping_t *const now,
-                      const argus_ping_t *const before, const said_t verdict) {
+                      const argus_ping_t *const before, const verdict_t verdict) {
     const bool made_up = kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE;
     if (!argus_ping_is_echo(now)) {
         return made_up && verdict == QUIET;
@@ -290,7 +290,7 @@ static bool is_beyond(const argus_fault_kind_t kind, const argus_ping_t *const n
 }
 
 static void count_own(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
-                      const int back, const said_t verdict) {
+                      const int back, const verdict_t verdict) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
     argus_ping_t *const at = argus_pings_mark(&c->pings, back);
@@ -319,18 +319,18 @@ static void count_news(argus_evidence_t *const self, const argus_knowledge_t *co
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const bool odd = is_odd(tally);
     const int32_t increment = worth_of(self, knowledge, sonar, odd);
-    doubt_axis(self, knowledge, sonar, at, odd ? CONTRADICTED : AGREED, increment);
+    weigh_offsets(self, knowledge, sonar, at, odd ? CONTRADICTED : AGREED, increment);
     count(self, knowledge, sonar, at, odd ? tally->against : 0);
     at->counted = 1;
 }
 
 // Divided voices tell nothing of a lag, nor what is contradicted while something moves before it.
 static bool tells_of_time(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                          const int sonar, const said_t verdict, const bool fresh) {
+                          const int sonar, const verdict_t verdict, const bool fresh) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const bool stirred =
+    const bool disturbed =
         verdict == CONTRADICTED && argus_clutter_beside(self, knowledge, sonar, ARGUS_UNREST_MS);
-    return verdict != DIVIDED && (fresh || verdict != UNSEEN) && !stirred;
+    return verdict != DIVIDED && (fresh || verdict != UNSEEN) && !disturbed;
 }
 
 // That it hears shows also where a silence of it has counted already.
@@ -344,7 +344,7 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     ARGUS_ASSERT(back >= 1);
     argus_case_t *const c = &self->of[sonar];
     argus_ping_t *const at = argus_pings_mark(&c->pings, back);
-    const said_t verdict = verdict_of(tally);
+    const verdict_t verdict = verdict_of(tally);
     at->weighed = verdict != UNSEEN || tally->differ > 0;
     if (tally->differ == 0) {
         count_own(self, knowledge, sonar, back, verdict);
@@ -356,17 +356,17 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
         note_hearing(c, at);
     }
     if (tells_of_time(self, knowledge, sonar, verdict, fresh)) {
-        doubt_time(self, knowledge, sonar, back, verdict);
+        weigh_lags(self, knowledge, sonar, back, verdict);
     }
 }
 
-// What nobody could judge when it was read is judged by those that look there later.
+// What no other could judge when it was read is judged by those that look there later.
 static void look_back(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const uint8_t *const latest) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
-        if (latest[i] > 0 && argus_others_is_witness(self, knowledge, sonar, i)) {
+        if (latest[i] > 0 && argus_crosscheck_is_witness(self, knowledge, sonar, i)) {
             const argus_ping_t *const at = argus_pings_at(&self->of[i].pings, latest[i]);
             if (!at->weighed) {
                 const tally_t tally = ask_all(self, knowledge, i, at);
@@ -391,8 +391,8 @@ static void tell_trend(argus_evidence_t *const self, const argus_knowledge_t *co
     }
 }
 
-void argus_others_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                       const int sonar) {
+void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                           const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, 1);
@@ -400,7 +400,7 @@ void argus_others_take(argus_evidence_t *const self, const argus_knowledge_t *co
     tally_t tally = {.agree = 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         tally_t unheard = {.agree = 0};
-        const bool witness = argus_others_is_witness(self, knowledge, i, sonar);
+        const bool witness = argus_crosscheck_is_witness(self, knowledge, i, sonar);
         if (i != sonar) {
             latest[i] =
                 (uint8_t)ask(witness ? &tally : &unheard, &self->of[i].pings, now, i, knowledge->sip_ms);
@@ -419,7 +419,7 @@ static int16_t faded(const int16_t score) {
     return (int16_t)(score - (by != 0 ? by : (score > 0) - (score < 0)));
 }
 
-void argus_others_fade(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+void argus_crosscheck_fade(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
         argus_case_t *const c = &self->of[i];
@@ -427,28 +427,29 @@ void argus_others_fade(argus_evidence_t *const self, const argus_knowledge_t *co
         if (c->score[ARGUS_TEST_PEERS] <= 0) {
             begin_anew(c);
         }
-        for (int d = 0; d < ARGUS_DOUBTS; d++) {
-            c->doubt[d].well = faded(c->doubt[d].well);
-            c->doubt[d].told = c->doubt[d].well > 0 ? c->doubt[d].told : (int16_t)0;
+        for (int d = 0; d < ARGUS_HYPOTHESES; d++) {
+            c->hypothesis[d].over_healthy = faded(c->hypothesis[d].over_healthy);
+            c->hypothesis[d].over_other =
+                c->hypothesis[d].over_healthy > 0 ? c->hypothesis[d].over_other : (int16_t)0;
         }
     }
 }
 
-void argus_others_retract(argus_evidence_t *const self, const int sonar) {
+void argus_crosscheck_retract(argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_mask_t bit = (argus_mask_t)(1u << sonar);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         argus_case_t *const c = &self->of[i];
-        if (c->against == bit) { // nobody else contradicts it: the whole of it
+        if (c->against == bit) { // no other contradicts it: the whole of it
             c->score[ARGUS_TEST_PEERS] = 0;
-            c->hollow = 0;
-            memset(c->doubt, 0, sizeof c->doubt);
+            c->silent_bits = 0;
+            memset(c->hypothesis, 0, sizeof c->hypothesis);
             begin_anew(c);
         }
         c->against &= (argus_mask_t)~bit;
     }
 }
 
-int argus_others_hollow(const argus_case_t *const self, const int of_last) {
-    return argus_count_bits(self->hollow & ((1u << argus_min(of_last, BITS)) - 1u));
+int argus_crosscheck_silences(const argus_case_t *const self, const int of_last) {
+    return argus_count_bits(self->silent_bits & ((1u << argus_min(of_last, BITS)) - 1u));
 }

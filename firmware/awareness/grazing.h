@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A wall beside the way: whether the robot slants into one that the sonars ahead do not hear.
-#ifndef ARGUS_SLANT_H
-#define ARGUS_SLANT_H
+#ifndef ARGUS_GRAZING_H
+#define ARGUS_GRAZING_H
 
 #include "awareness/pings.h"
 
 // Whether the last pings of a sonar that looks abeam show a wall that the robot slants into, so near that the
 // body would touch it within `stop_mm` of way. False also when they were not made on a way straight ahead of
 // 80 mm or more.
-bool argus_slants_in(const argus_pings_t *pings, const argus_robot_t *robot, int sonar, int32_t stop_mm);
+bool argus_grazing_wall(const argus_pings_t *pings, const argus_robot_t *robot, int sonar, int32_t stop_mm);
 
 #endif
