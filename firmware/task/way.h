@@ -24,7 +24,6 @@ typedef struct {
 } argus_pull_t;
 
 typedef struct {
-    argus_wave_t wave;
     argus_point_t robot; // where it began
     argus_point_t waypoint;
     argus_pull_t pull;
@@ -34,6 +33,7 @@ typedef struct {
     bool stopped;
     bool is_on;
     bool is_there; // the wave has come to the robot
+    argus_wave_t wave;
 } argus_search_t;
 
 typedef enum { ARGUS_SEARCH_NO_WAY, ARGUS_SEARCH_FOUND, ARGUS_SEARCH_GOES_ON } argus_search_news_t;
