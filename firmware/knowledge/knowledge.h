@@ -52,6 +52,7 @@ typedef struct {
     uint32_t moved_ms;     // time of the SIP of these
     argus_excess_t excess; // beyond what the wheels say
     bool origin_due;       // the robot may have set its odometry to zero, since these
+    bool under_way;        // a motion was asked for, and no SIP came since
     bool leapt;            // in the last SIP, as no robot moves: left out of the pose
     uint32_t leaps;        // monotonic
     uint32_t leaps_unseen; // ... of these after a gap in which it moved: its place is lost
@@ -71,6 +72,7 @@ typedef struct {
     uint32_t sips;
     uint32_t sip_ms;    // time of the last SIP
     argus_mask_t fresh; // sonars listed in the last SIP
+    argus_mask_t heard; // sonars that have heard an echo since the session opened
     uint32_t online_ms; // when SIPs began to come, or came again after a gap
     argus_sonar_t sonar[ARGUS_SONARS];
 } argus_knowledge_t;

@@ -77,6 +77,7 @@ static void go_offline(argus_t *const self) {
     self->checked = false;
     self->stalled = false;
     self->travel.jog_mm = 0;
+    self->knowledge.under_way |= self->motion.kind != ARGUS_MOTION_NONE && !self->motion.settled;
     argus_motion_init(&self->motion);
     argus_do(self, &(argus_intent_t){.event = ARGUS_EV_LINK_LOST,
                                     .sonar = ARGUS_NO_SONAR,
@@ -107,6 +108,9 @@ static void on_open(argus_t *const self) {
     argus_slip_restart(&self->slip);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it
     self->reflexes.motors_said = false;
+    self->reflexes.touched_unheard = false;
+    self->looks.tried = false;
+    self->looks.unheard_said = false;
     self->stalled = false;
     self->base.taken = false;
     self->ordered = false;
@@ -169,7 +173,7 @@ static argus_mask_t sweep_looks(const argus_t *const self) {
 
 static bool is_on_its_way(const argus_t *const self) {
     return self->mode == ARGUS_MODE_DRIVING || self->mode == ARGUS_MODE_SWEEPING ||
-           self->mode == ARGUS_MODE_STEPPING;
+           self->mode == ARGUS_MODE_STEPPING; // while it creeps there is no plan to keep
 }
 
 static void on_sip(argus_t *const self) {
