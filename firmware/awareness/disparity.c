@@ -8,7 +8,8 @@
 int32_t argus_tolerance_mm(const argus_robot_t *const robot, const int32_t reading_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
     const uint64_t half = UINT64_C(1) << 31;
-    const uint64_t scaled = (uint64_t)(uint32_t)(reading_mm + robot->tolerance_centre_mm) * robot->tolerance_excess;
+    const uint64_t scaled =
+        (uint64_t)(uint32_t)(reading_mm + robot->tolerance_centre_mm) * robot->tolerance_excess;
     return (int32_t)((scaled + half) >> 32);
 }
 

@@ -144,7 +144,8 @@ typedef struct {
     bool loaded;           // a record was taken whose robot is not compared yet
 } argus_history_t;
 
-// What is small and asked for everywhere comes first: Cortex-M reaches 4 KB from a pointer in one instruction.
+// What is small and asked for everywhere comes first: Cortex-M reaches 4 KB from a pointer in one
+// instruction.
 struct argus {
     argus_mission_t mission;
     argus_mode_t mode;

@@ -80,10 +80,10 @@ static void go_offline(argus_t *const self) {
     self->knowledge.under_way |= self->motion.kind != ARGUS_MOTION_NONE && !self->motion.settled;
     argus_motion_init(&self->motion);
     argus_do(self, &(argus_intent_t){.event = ARGUS_EV_LINK_LOST,
-                                    .sonar = ARGUS_NO_SONAR,
-                                    .value = (int32_t)(silence_ms & 0x7FFFFFFFu),
-                                    .base = ARGUS_BASE_DROP,
-                                    .act = ARGUS_DO_GO_OFFLINE});
+                                     .sonar = ARGUS_NO_SONAR,
+                                     .value = (int32_t)(silence_ms & 0x7FFFFFFFu),
+                                     .base = ARGUS_BASE_DROP,
+                                     .act = ARGUS_DO_GO_OFFLINE});
 }
 
 void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
@@ -124,12 +124,12 @@ static void on_open(argus_t *const self) {
 static void on_stall(argus_t *const self) {
     self->stalled = true;
     argus_do(self, &(argus_intent_t){.event = ARGUS_EV_LINK_STALLED,
-                                    .sonar = ARGUS_NO_SONAR,
-                                    .value = self->config.link_stall_ms,
-                                    .stop = ARGUS_STOP_STOP,
-                                    .unchecked = true,
-                                    .act = ARGUS_DO_CHECK,
-                                    .full = true});
+                                     .sonar = ARGUS_NO_SONAR,
+                                     .value = self->config.link_stall_ms,
+                                     .stop = ARGUS_STOP_STOP,
+                                     .unchecked = true,
+                                     .act = ARGUS_DO_CHECK,
+                                     .full = true});
 }
 
 static void on_resume(argus_t *const self) {

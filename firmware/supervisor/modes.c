@@ -564,10 +564,10 @@ static void watch_course(argus_t *const self) {
     argus_task_t *const task = &self->travel.task;
     if (argus_task_is_hopeless(task, &self->knowledge, is_under_way(self))) {
         argus_do(self, &(argus_intent_t){.event = ARGUS_EV_NO_WAY,
-                                        .sonar = ARGUS_NO_SONAR,
-                                        .value = (int32_t)(task->progress.vain_ms / 1000u),
-                                        .stop = ARGUS_STOP_HALT,
-                                        .act = ARGUS_DO_GIVE_UP});
+                                         .sonar = ARGUS_NO_SONAR,
+                                         .value = (int32_t)(task->progress.vain_ms / 1000u),
+                                         .stop = ARGUS_STOP_HALT,
+                                         .act = ARGUS_DO_GIVE_UP});
     }
 }
 

@@ -93,8 +93,8 @@ static void jog(argus_t *const self, const int32_t built_mm) {
     }
     if (distance_mm < 0) {
         argus_do(self, &(argus_intent_t){.act = ARGUS_DO_BACK,
-                                        .mm = -argus_max(distance_mm, -self->config.backoff_mm),
-                                        .speed_mm_s = self->config.step_speed_mm_s});
+                                         .mm = -argus_max(distance_mm, -self->config.backoff_mm),
+                                         .speed_mm_s = self->config.step_speed_mm_s});
         return;
     }
     self->travel.jog_mm = argus_min(distance_mm, self->config.step_mm);

@@ -126,8 +126,7 @@ static argus_intent_t look(const argus_t *const self, argus_inquiry_t *const min
     if (!argus_inquiry_step(mine, &self->knowledge, &self->evidence)) {
         return argus_to_nothing();
     }
-    return mine->active ? argus_to_turn(argus_inquiry_heading_cdeg(mine))
-                        : argus_to(ARGUS_DO_LOOKED);
+    return mine->active ? argus_to_turn(argus_inquiry_heading_cdeg(mine)) : argus_to(ARGUS_DO_LOOKED);
 }
 
 argus_intent_t argus_run_verifying(const argus_t *const self, argus_verifying_t *const mine) {

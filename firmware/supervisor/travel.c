@@ -111,8 +111,7 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
     const int sonar = argus_nearest_ahead(self);
     const bool stopped =
         sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
-    const argus_search_news_t news =
-        argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
+    const argus_search_news_t news = argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
     if (news == ARGUS_SEARCH_GOES_ON) { // what drives ends by itself
         *intent = argus_to_nothing();
         return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A wave from a waypoint to the robot through what is free (the distance transform: R. A. Jarvis, 1984; C. Y. Lee,
-// 1961), a step at a time.
+// A wave from a waypoint to the robot through what is free (the distance transform: R. A. Jarvis, 1984; C. Y.
+// Lee, 1961), a step at a time.
 #ifndef ARGUS_WAVE_H
 #define ARGUS_WAVE_H
 
@@ -8,8 +8,9 @@
 
 #define ARGUS_WAVE_LABELS 15 // neighbours are at most seven steps of the wave apart
 #define ARGUS_WAVE_PLANES 4
-#define ARGUS_WAVE_OUT_MM 450 // about the robot and the waypoint less room will do: it may have to get out there
-#define ARGUS_WAVE_MEMORY 8   // steps after which a row where nothing new came is at rest
+#define ARGUS_WAVE_OUT_MM \
+    450 // about the robot and the waypoint less room will do: it may have to get out there
+#define ARGUS_WAVE_MEMORY 8 // steps after which a row where nothing new came is at rest
 
 typedef struct {
     const argus_knowledge_t *knowledge;

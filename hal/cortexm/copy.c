@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the compiler calls to copy, fill and compare memory, for size: a word at a time where both sides allow it.
+// What the compiler calls to copy, fill and compare memory, for size: a word at a time where both sides allow
+// it.
 //
-// Compiled apart from the rest (cmake/Board.cmake): the optimiser of the whole program may still need these after it
-// has looked, and must not make calls to themselves of their loops.
+// Compiled apart from the rest (cmake/Board.cmake): the optimiser of the whole program may still need these
+// after it has looked, and must not make calls to themselves of their loops.
 #include <stddef.h>
 #include <stdint.h>
 
