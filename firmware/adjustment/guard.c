@@ -12,6 +12,7 @@
 #define STRAIGHT_ROOM_MM 47
 #define SEEN_MOST_MM 1200   // of the way that others see: more would allow no higher speed
 #define SEEN_LEFT_MM 100    // of it that is left
+#define SEEN_DOUBTED_MM 200 // of it, where one is doubted: with less it goes at the speed of a step
 #define SPEED_STEP_MM_S 25  // the speed asked for changes by so much at a time
 #define SWING_TURNING_MM 10 // of the margin so much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
@@ -45,6 +46,25 @@ bool argus_guard_may_translate(const argus_guard_t *const self) {
     ARGUS_ASSERT(self->knowledge->robot != NULL);
     const bool motors = (self->knowledge->flags & ARCOS_FLAG_MOTORS) != 0;
     return self->active && self->linked && motors && self->checked && self->bumpers == 0;
+}
+
+bool argus_guard_is_heard(const argus_guard_t *const self) {
+    const argus_knowledge_t *const knowledge = self->knowledge;
+    const unsigned used = argus_robot_all(knowledge->robot) & ~(unsigned)argus_out(knowledge);
+    const unsigned ahead = used & argus_robot_forward(knowledge->robot);
+    return !self->profile->asks_echo || used == 0 || (knowledge->heard & (ahead != 0 ? ahead : used)) != 0;
+}
+
+bool argus_guard_may_creep(const argus_guard_t *const self) {
+    ARGUS_ASSERT(!self->creeps || self->config->creep_mm_s > 0);
+    return self->creeps && argus_guard_may_translate(self);
+}
+
+int32_t argus_guard_unseen_mm_s(const argus_guard_t *const self) {
+    ARGUS_ASSERT(self->config->step_speed_mm_s > 0 && self->config->creep_mm_s >= 0);
+    const int32_t step_mm_s = self->config->step_speed_mm_s;
+    const int32_t creep_mm_s = self->config->creep_mm_s;
+    return creep_mm_s > 0 ? argus_min(creep_mm_s, step_mm_s) : step_mm_s;
 }
 
 // What the shortest reading ahead says now, less the way driven since it was taken.
@@ -97,13 +117,14 @@ int argus_guard_gap(const argus_guard_t *const self) {
     return longest;
 }
 
-int32_t argus_guard_seen_mm(const argus_guard_t *const self) {
-    if (!self->profile->drives_seen || !argus_guard_is_blind(self)) {
-        return INT32_MAX;
-    }
+static int32_t seen_by_rays_mm(const argus_guard_t *const self) {
     const int32_t half_mm = argus_guard_straight_half_mm(self->knowledge->robot);
     return argus_max(0,
                      argus_rays_seen_mm(self->rays, self->knowledge, half_mm, SEEN_MOST_MM) - SEEN_LEFT_MM);
+}
+
+int32_t argus_guard_seen_mm(const argus_guard_t *const self) {
+    return self->profile->drives_seen && argus_guard_is_blind(self) ? seen_by_rays_mm(self) : INT32_MAX;
 }
 
 int32_t argus_guard_ahead_mm(const argus_guard_t *const self, const int32_t seen_mm) {
@@ -111,8 +132,7 @@ int32_t argus_guard_ahead_mm(const argus_guard_t *const self, const int32_t seen
     return argus_min(clear_mm, seen_mm);
 }
 
-// A sonar ahead has the name of a fault.
-static bool is_doubted_ahead(const argus_guard_t *const self) {
+bool argus_guard_is_doubted(const argus_guard_t *const self) {
     return (argus_named(self->knowledge) & argus_robot_ahead(self->knowledge->robot)) != 0;
 }
 
@@ -135,8 +155,15 @@ int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self, const int32
     return argus_max(config->speed_mm_s, most_mm_s);
 }
 
+// What is doubted is not counted on: as fast as the others have seen.
 int32_t argus_guard_speed_mm_s(const argus_guard_t *const self, const int32_t seen_mm) {
-    return is_doubted_ahead(self) ? self->config->speed_mm_s : argus_guard_free_speed_mm_s(self, seen_mm);
+    if (!argus_guard_is_heard(self)) {
+        return argus_guard_unseen_mm_s(self);
+    }
+    const bool asks = argus_guard_is_doubted(self) && seen_mm == INT32_MAX && self->profile->drives_seen;
+    const int32_t others_mm = asks ? seen_by_rays_mm(self) : seen_mm;
+    return asks && others_mm < SEEN_DOUBTED_MM ? argus_min(self->config->speed_mm_s, self->config->step_speed_mm_s)
+                                               : argus_guard_free_speed_mm_s(self, others_mm);
 }
 
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {
@@ -310,9 +337,13 @@ bool argus_guard_rear_is_clear(const argus_guard_t *const self) {
     return argus_guard_rear_is_watched(self);
 }
 
+bool argus_guard_may_back(const argus_guard_t *const self) {
+    const bool feels = self->creeps && !argus_guard_rear_is_watched(self);
+    return argus_guard_rear_is_clear(self) || (feels && self->knowledge->bumpers_rear == 0);
+}
+
 bool argus_guard_may_back_off(const argus_guard_t *const self) {
-    return self->active && self->bumpers == 0 && self->backed < BACKOFFS_MAX &&
-           argus_guard_rear_is_clear(self);
+    return self->active && self->bumpers == 0 && self->backed < BACKOFFS_MAX && argus_guard_may_back(self);
 }
 
 static int32_t abeam_mm(const argus_guard_t *const self) {
@@ -343,7 +374,7 @@ static int32_t most_back_mm(const argus_guard_t *const self) {
 int32_t argus_guard_back_mm(const argus_guard_t *const self) {
     ARGUS_ASSERT(self->config->backoff_mm > 0);
     const int32_t usual_mm = self->config->backoff_mm;
-    if (!self->profile->backs_to_turn) {
+    if (!self->profile->backs_to_turn || self->creeps) {
         return usual_mm;
     }
     const int32_t most_mm = most_back_mm(self);
@@ -356,6 +387,9 @@ int32_t argus_guard_back_mm(const argus_guard_t *const self) {
 }
 
 int32_t argus_guard_back_speed_mm_s(const argus_guard_t *const self) {
+    if (self->creeps) {
+        return argus_guard_unseen_mm_s(self);
+    }
     const argus_config_t *const config = self->config;
     const argus_robot_t *const robot = self->knowledge->robot;
     const bool stops_in_time =

@@ -27,6 +27,7 @@ typedef struct {
     bool active;      // it may command motions: neither passive nor leaving
     bool linked;      // a session is open and SIPs come
     bool checked;     // a full health check has passed since then
+    bool creeps;      // no sonar sees the way, and the operator lets it creep
 } argus_guard_t;
 
 // Ahead ----------------------------------------------------------------------------------------------------
@@ -52,13 +53,26 @@ int32_t argus_guard_seen_mm(const argus_guard_t *self);
 // S2, S3, S6: motors on, a link that lives, a full check behind it, no bumper pressed.
 bool argus_guard_may_translate(const argus_guard_t *self);
 
+// S5: of the sonars in use that look ahead, or of the ring where none does, one has heard an echo in this
+// session; or the profile does not ask. Where nothing was ever heard a free way and a dead ring look alike.
+bool argus_guard_is_heard(const argus_guard_t *self);
+
+// No sonar sees the way, and the operator lets it creep, told by its bumpers alone.
+bool argus_guard_may_creep(const argus_guard_t *self);
+
+// Where what lies ahead may be touched: the speed of creeping or, without leave for that, of a step.
+int32_t argus_guard_unseen_mm_s(const argus_guard_t *self);
+
 // S3: the longest MOVE that normal driving may ask for now: shortest front reading, less the way driven since
 // it was taken, less the object range, and no farther than has been seen (argus_guard_seen_mm(), which costs
 // more than all the rest); never negative.
 int32_t argus_guard_ahead_mm(const argus_guard_t *self, int32_t seen_mm);
 
-// S5: the speed for the way ahead: `speed_mm_s`; where the profile adapts it and nothing is doubted or close
-// beside, up to `speed_max_mm_s`, as the shortest front reading allows.
+// A sonar ahead has the name of a fault.
+bool argus_guard_is_doubted(const argus_guard_t *self);
+
+// S5: the speed for the way ahead: `speed_mm_s`; where the profile adapts it and nothing is close beside, up
+// to `speed_max_mm_s`, as the shortest front reading allows, and what others have seen where one is doubted.
 int32_t argus_guard_speed_mm_s(const argus_guard_t *self, int32_t seen_mm);
 // ... and were nothing doubted.
 int32_t argus_guard_free_speed_mm_s(const argus_guard_t *self, int32_t seen_mm);
@@ -101,6 +115,9 @@ argus_touch_t argus_guard_touch(const argus_guard_t *self, int sonar, argus_poin
 // clear.
 bool argus_guard_rear_is_watched(const argus_guard_t *self);
 bool argus_guard_rear_is_clear(const argus_guard_t *self);
+
+// The rear is clear; or, while it creeps and the rear is not watched, no bumper there is pressed.
+bool argus_guard_may_back(const argus_guard_t *self);
 
 // S7: it may back away to make room for a turn; how far, and how fast S5 allows it with the rear's overhang.
 bool argus_guard_may_back_off(const argus_guard_t *self);

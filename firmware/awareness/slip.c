@@ -9,6 +9,7 @@
 
 #define STRETCH_MM 500
 #define BEGIN_MM 150    // a reading of the beginning is made within this
+#define END_MM 250      // ... and one of the end: who fell silent on the way tells nothing of it
 #define TURNED_CDEG 500 // a straight way turns less
 #define ALONG_CDEG 1600 // so far off the way one still looks along it
 #define WALL_CDEG 2500  // ... and hears this far aside, at the edge of its cone
@@ -93,6 +94,9 @@ static void ask(const argus_slip_t *const self, const argus_knowledge_t *const k
                 const int32_t way_mm, witnesses_t *const of) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const bool to = looks(self, knowledge, sonar, true);
+    if (knowledge->odometer_mm - knowledge->sonar[sonar].odometer_mm > END_MM) {
+        return;
+    }
     if ((!to && !looks(self, knowledge, sonar, false)) || self->reading_mm[sonar] == 0 ||
         !argus_usable(knowledge, sonar)) {
         return;

@@ -29,6 +29,7 @@ void argus_knowledge_reopen(argus_knowledge_t *const self, const uint32_t now_ms
     self->still_sips = 0;
     self->lists_all = false;
     self->fresh = 0;
+    self->heard = 0;
     self->online_ms = now_ms;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         self->sonar[i].reported = false;
@@ -268,6 +269,7 @@ static void take_reading(argus_knowledge_t *const self, const argus_sip_sonar_t 
     sonar->odometer_mm = self->odometer_mm;
     sonar->readings++;
     self->fresh |= (argus_mask_t)(1u << from->number);
+    self->heard |= (argus_mask_t)(from->range_mm < self->robot->no_echo_mm ? 1u << from->number : 0u);
 }
 
 static void take_readings(argus_knowledge_t *const self, const argus_sip_t *const sip) {

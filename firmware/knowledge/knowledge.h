@@ -73,6 +73,7 @@ typedef struct {
     uint32_t sips;
     uint32_t sip_ms;    // time of the last SIP
     argus_mask_t fresh; // sonars listed in the last SIP
+    argus_mask_t heard; // sonars that have heard an echo since the session opened
     uint32_t online_ms; // when SIPs began to come, or came again after a gap
 } argus_knowledge_t;
 

@@ -27,7 +27,8 @@
     X(adapts_plan, 0, 1, 1, "S1: under policy adaptive any sonar may look ahead; else it stands for paper") \
     X(adapts_speed, 0, 1, 1, "S5: as fast as what is seen ahead allows; turns gently while it drives")      \
     X(may_reverse, 0, 1, 1, "drives on with the rear ahead when the front has failed and the rear has not") \
-    X(leaves_ahead, 0, 1, 1, "S4: hemmed in, it goes on from the heading that it has")
+    X(leaves_ahead, 0, 1, 1, "S4: hemmed in, it goes on from the heading that it has")                      \
+    X(asks_echo, 0, 1, 0, "S5: slow until a sonar ahead has heard an echo: silence is no proof of a free way")
 
 typedef struct {
 #define ARGUS_RULE_FIELD(rule, paper, argus, trusting, meaning) uint8_t rule;

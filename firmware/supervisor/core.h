@@ -42,7 +42,7 @@ typedef struct {
     argus_inquiry_t inquiry;
 } argus_verifying_t;
 
-// DRIVING, SWEEPING and STEPPING: the course and the way along it.
+// DRIVING, SWEEPING, STEPPING and CREEPING: the course and the way along it.
 typedef struct {
     argus_task_t task;
     argus_drive_t drive; // the sweep
@@ -89,6 +89,7 @@ typedef struct {
     uint32_t unsound_ms;  // a leap or slip of the odometry, the last one
     uint8_t unsound;      // ... how many, one soon after the other
     uint8_t battery_low;  // SIPs in a row
+    bool touched_unheard; // something, while no sonar ahead had heard an echo: they do not live
     bool motors_said;     // off
     bool battery_said;
     bool stall_said;
@@ -114,6 +115,8 @@ typedef struct {
     uint32_t lost_ms;  // what doubt has cost since the last look: time, against the speed without
     uint8_t settling;  // looks at the goal
     bool asked;        // an operator wants a look
+    bool tried;        // in this session, since those ahead had heard nothing and others had
+    bool unheard_said; // likewise
 } argus_looks_t;
 
 // The last change of the leading end.

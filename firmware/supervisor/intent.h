@@ -13,7 +13,8 @@ typedef enum {
     ARGUS_DO_TURN,     // to `cdeg`; where S7 forbids it: read again, back away or wait
     ARGUS_DO_DRIVE,    // `mm` ahead at the driving speed, and if `steers` the bearing `cdeg`
     ARGUS_DO_STEP,     // STEPPING: `mm` ahead at the speed of a step
-    ARGUS_DO_BACK,     // BACKING: `mm` at `speed_mm_s`, if the rear is clear
+    ARGUS_DO_CREEP,    // CREEPING: `mm` ahead at its speed, and if `steers` the bearing `cdeg`
+    ARGUS_DO_BACK,     // BACKING: `mm` at `speed_mm_s`, if it may back away
     ARGUS_DO_ENABLE,   // motors on
     ARGUS_DO_END_TURN, // something is in the way at `at`: remembered, STOP, then a full check
     // modes
@@ -58,7 +59,7 @@ typedef struct {
     bool full;
     bool all_round; // CHECK: a round of all sonars, not only of those that look ahead
     bool again;     // CHECK: it is an echo that is read once more before a turn
-    bool moves_on;  // DRIVE, STEP: the robot will stand somewhere else
+    bool moves_on;  // DRIVE, STEP, CREEP: the robot will stand somewhere else
     bool steers;
     bool more;     // the mode has more to do in this SIP
     int32_t value; // of the event

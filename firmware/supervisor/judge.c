@@ -54,6 +54,7 @@ static void name(argus_t *const self, const int sonar) {
     }
     if (named && s->health == ARGUS_SUSPECT && kind != s->kind) {
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
+        argus_rays_forget(&self->rays, sonar); // nothing that it has seen is counted on
         argus_replan(self);
     }
     const bool held = self->mode == ARGUS_MODE_VERIFYING || self->looks.asked;

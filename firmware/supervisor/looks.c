@@ -45,6 +45,14 @@ argus_mask_t argus_to_settle(const argus_t *const self) {
                                                                               : 0;
 }
 
+argus_mask_t argus_to_try(const argus_t *const self) {
+    const argus_guard_t guard = argus_guard(self);
+    const bool others = (self->knowledge.heard & ~(unsigned)argus_out(&self->knowledge)) != 0;
+    const bool may = argus_rules(self)->evidence && argus_guard_may_turn(&guard) && !self->orders.stay;
+    const bool due = others && !self->looks.tried && !argus_guard_is_heard(&guard);
+    return may && due ? argus_wanted_sonars(self) : 0;
+}
+
 // Those ahead that no other sonar sees for, and that were not cleared a moment ago.
 static argus_mask_t alone(const argus_t *const self) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
@@ -64,8 +72,9 @@ void argus_count_loss(argus_t *const self) {
         return;
     }
     const argus_guard_t guard = argus_guard(self);
-    const int32_t free_mm_s = argus_guard_free_speed_mm_s(&guard, argus_guard_seen_mm(&guard));
-    const int32_t lost_mm_s = free_mm_s - self->config.speed_mm_s; // the speed of doubt
+    const int32_t seen_mm = argus_guard_seen_mm(&guard);
+    const int32_t free_mm_s = argus_guard_free_speed_mm_s(&guard, seen_mm);
+    const int32_t lost_mm_s = free_mm_s - argus_guard_speed_mm_s(&guard, seen_mm);
     ARGUS_ASSERT(free_mm_s > 0 && lost_mm_s >= 0);
     self->looks.lost_ms += SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s;
 }

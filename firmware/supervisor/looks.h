@@ -14,6 +14,10 @@ void argus_count_loss(argus_t *self);
 // A look costs less than to go on without, or an operator has asked for it; and there is room to turn.
 bool argus_look_pays(const argus_t *self);
 
+// Where no sonar ahead has heard an echo and others have: those that a look is to try, once in a session; 0:
+// no look.
+argus_mask_t argus_to_try(const argus_t *self);
+
 // At the goal: what is named and open is settled there, where a look costs no way. 0: nothing, or no room to
 // turn.
 argus_mask_t argus_to_settle(const argus_t *self);

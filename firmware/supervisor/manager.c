@@ -108,6 +108,9 @@ static void on_open(argus_t *const self) {
     argus_slip_restart(&self->slip);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it
     self->reflexes.motors_said = false;
+    self->reflexes.touched_unheard = false;
+    self->looks.tried = false;
+    self->looks.unheard_said = false;
     self->stalled = false;
     self->base.taken = false;
     self->ordered = false;
@@ -170,7 +173,7 @@ static argus_mask_t sweep_looks(const argus_t *const self) {
 
 static bool is_on_its_way(const argus_t *const self) {
     return self->mode == ARGUS_MODE_DRIVING || self->mode == ARGUS_MODE_SWEEPING ||
-           self->mode == ARGUS_MODE_STEPPING;
+           self->mode == ARGUS_MODE_STEPPING; // while it creeps there is no plan to keep
 }
 
 static void on_sip(argus_t *const self) {

@@ -16,24 +16,26 @@
 // X(NAME, run, may, limit_ms, then, meaning): `run`: what says on each SIP what is to be done (modes.c);
 // `limit_ms`: after which the mode ends by itself, in the mode `then`; 0: no limit but that of its motions
 // (adjustment/motion.h).
-#define ARGUS_MODE_TABLE(X)                                                                               \
-    X(OFFLINE, nobody, 0, 0, OFFLINE, "no session with a robot")                                          \
-    X(CHECKING, checking, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_BREAK_OFF, 0, CHECKING,           \
-      "at rest: every forward-facing sonar reports before anything moves")                                \
-    X(VERIFYING, verifying, ARGUS_IN_SESSION | ARGUS_MAY_TURN, 0, VERIFYING,                              \
-      "neighbours turn onto a suspect's bearing, or the robot looks round")                               \
-    X(IDLE, idle, ARGUS_IN_SESSION | ARGUS_MAY_BREAK_OFF, 0, IDLE, "nothing to do")                       \
-    X(DRIVING, driving, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF, 0, \
-      DRIVING, "drives, every bearing ahead in use")                                                      \
-    X(SWEEPING, sweeping, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_BREAK_OFF, 0, SWEEPING,           \
-      "failure mode, at rest: turns through the plan's rotations")                                        \
-    X(STEPPING, stepping, ARGUS_IN_SESSION | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF, 0, STEPPING,      \
-      "one step ahead")                                                                                   \
-    X(BACKING, backing, ARGUS_IN_SESSION | ARGUS_MAY_TRANSLATE, 0, BACKING,                               \
-      "away from a pressed bumper or a blocked swing circle")                                             \
-    X(WAITING, waiting, ARGUS_IN_SESSION, 0, WAITING, "cannot go on by itself")                           \
-    X(CLOSING, nobody, 0, 1500, CLOSED, "comes to rest, then the session is closed")                      \
-    X(CLOSED, nobody, 0, 0, CLOSED, "over")
+#define ARGUS_MODE_TABLE(X)                                                                                 \
+    X(OFFLINE, nobody, 0, 0, OFFLINE, "no session with a robot")                                            \
+    X(CHECKING, checking, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_BREAK_OFF, 0, CHECKING,             \
+      "at rest: every forward-facing sonar reports before anything moves")                                  \
+    X(VERIFYING, verifying, ARGUS_IN_SESSION | ARGUS_MAY_TURN, 0, VERIFYING,                                \
+      "neighbours turn onto a suspect's bearing, or the robot looks round")                                 \
+    X(IDLE, idle, ARGUS_IN_SESSION | ARGUS_MAY_BREAK_OFF, 0, IDLE, "nothing to do")                         \
+    X(DRIVING, driving, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF, 0,   \
+      DRIVING, "drives, every bearing ahead in use")                                                        \
+    X(SWEEPING, sweeping, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_BREAK_OFF, 0, SWEEPING,             \
+      "failure mode, at rest: turns through the plan's rotations")                                          \
+    X(STEPPING, stepping, ARGUS_IN_SESSION | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF, 0, STEPPING,        \
+      "one step ahead")                                                                                     \
+    X(BACKING, backing, ARGUS_IN_SESSION | ARGUS_MAY_TRANSLATE, 0, BACKING,                                 \
+      "away from a pressed bumper or a blocked swing circle")                                               \
+    X(WAITING, waiting, ARGUS_IN_SESSION, 0, WAITING, "cannot go on by itself")                             \
+    X(CLOSING, nobody, 0, 1500, CLOSED, "comes to rest, then the session is closed")                        \
+    X(CLOSED, nobody, 0, 0, CLOSED, "over")                                                                 \
+    X(CREEPING, creeping, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF, 0, \
+      CREEPING, "no sonar sees the way: slowly, on the bumpers alone")
 
 // X(FROM, TO, when): every way from one mode to another. ANY: every mode in a session.
 #define ARGUS_WAY_TABLE(X)                                                         \
@@ -43,9 +45,11 @@
     X(CHECKING, IDLE, "no course, or paused")                                      \
     X(CHECKING, DRIVING, "every bearing ahead in use")                             \
     X(CHECKING, SWEEPING, "a bearing is blind")                                    \
+    X(CHECKING, CREEPING, "no sonar sees the way, and the operator lets it creep") \
     X(IDLE, VERIFYING, "suspects")                                                 \
     X(IDLE, DRIVING, "an operator's step")                                         \
     X(IDLE, SWEEPING, "an operator's step, a bearing is blind")                    \
+    X(IDLE, CREEPING, "an operator's step, likewise")                              \
     X(DRIVING, VERIFYING, "suspects, or a look is due")                            \
     X(DRIVING, STEPPING, "an operator's step")                                     \
     X(DRIVING, SWEEPING, "a bearing is blind, and the way is not seen far enough") \
@@ -57,6 +61,8 @@
     X(STEPPING, SWEEPING, "the step is done")                                      \
     X(STEPPING, DRIVING, "... and every bearing is in use again")                  \
     X(STEPPING, IDLE, "an operator's step is done")                                \
+    X(CREEPING, VERIFYING, "suspects")                                             \
+    X(CREEPING, IDLE, "at the goal, or an operator's step is done")                \
     X(ANY, BACKING, "no room to turn, a bumper, or an operator's order")           \
     X(ANY, WAITING, "bumper, motors off, no room to turn, no way, all ahead out")  \
     X(ANY, OFFLINE, "the link is lost")                                            \

@@ -85,12 +85,25 @@ static void enter_waiting(argus_t *const self, const argus_wait_t why) {
     enter(self, ARGUS_MODE_WAITING);
 }
 
+static void say_unheard(argus_t *const self, const argus_guard_t *const guard) {
+    if (!argus_guard_is_heard(guard) && !self->looks.unheard_said) {
+        self->looks.unheard_said = true;
+        argus_say(self, ARGUS_EV_NO_ECHO, ARGUS_NO_SONAR, argus_guard_unseen_mm_s(guard));
+    }
+}
+
 static void enter_travel(argus_t *const self) {
-    ARGUS_ASSERT(self->checked && argus_guard_may_step(&self->plan));
+    const argus_guard_t guard = argus_guard(self);
+    say_unheard(self, &guard);
+    ARGUS_ASSERT(self->checked && (guard.creeps || argus_guard_may_step(&self->plan)));
     argus_begin_travel(&self->travel);
     self->base.taken = false;
-    const argus_guard_t guard = argus_guard(self);
-    enter(self, argus_guard_may_drive(&guard, &self->plan) ? ARGUS_MODE_DRIVING : ARGUS_MODE_SWEEPING);
+    if (guard.creeps) {
+        argus_say(self, ARGUS_EV_CREEPING, ARGUS_NO_SONAR, argus_guard_unseen_mm_s(&guard));
+        enter(self, ARGUS_MODE_CREEPING);
+    } else {
+        enter(self, argus_guard_may_drive(&guard, &self->plan) ? ARGUS_MODE_DRIVING : ARGUS_MODE_SWEEPING);
+    }
 }
 
 static void enter_idle(argus_t *const self) {
@@ -108,22 +121,31 @@ static void fail_mission(argus_t *const self) {
     }
 }
 
-static argus_intent_t decide(argus_t *const self) {
-    ARGUS_ASSERT(self->mode != ARGUS_MODE_CLOSING && self->mode != ARGUS_MODE_CLOSED);
-    const argus_guard_t guard = argus_guard(self);
-    const bool jogging = self->travel.jog_mm > 0;
-    const bool wants = jogging || (self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused);
-    if (self->orders.passive || !wants) {
-        enter_idle(self);
-        return argus_to_nothing();
-    }
-    if (argus_should_turn_about(self)) {
-        argus_turn_about(self);
+// No sonar ahead has heard an echo yet, others have: a look lets them.
+static argus_intent_t try_ahead(argus_t *const self, const argus_mask_t sonars) {
+    ARGUS_ASSERT(sonars != 0 && !self->looks.tried);
+    if (self->mode != ARGUS_MODE_CHECKING) {
         return argus_to_check(true);
     }
-    if (!argus_guard_may_step(&self->plan)) { // all ahead are out, or suspects that no one can judge
-        fail_mission(self);
-        return argus_to_wait(ARGUS_WAIT_CATASTROPHIC);
+    self->looks.tried = true;
+    return (argus_intent_t){.act = ARGUS_DO_VERIFY, .sonars = sonars};
+}
+
+// No sonar sees the way: all that could are out, or suspects that no one can judge; or a touch has shown it.
+static argus_intent_t stand(argus_t *const self) {
+    ARGUS_ASSERT(self->config.creep_mm_s == 0);
+    self->travel.jog_mm = 0;
+    if (argus_guard_may_step(&self->plan)) {
+        return argus_to_wait(ARGUS_WAIT_ECHO);
+    }
+    fail_mission(self);
+    return argus_to_wait(ARGUS_WAIT_CATASTROPHIC);
+}
+
+static argus_intent_t set_off(argus_t *const self) {
+    const argus_guard_t guard = argus_guard(self);
+    if (argus_is_unseen(self, &guard) && !guard.creeps) {
+        return stand(self);
     }
     if (guard.bumpers != 0) {
         return argus_to_wait(ARGUS_WAIT_BUMPER);
@@ -133,6 +155,22 @@ static argus_intent_t decide(argus_t *const self) {
     }
     enter_travel(self);
     return argus_to_nothing();
+}
+
+static argus_intent_t decide(argus_t *const self) {
+    ARGUS_ASSERT(self->mode != ARGUS_MODE_CLOSING && self->mode != ARGUS_MODE_CLOSED);
+    const bool jogging = self->travel.jog_mm > 0;
+    const bool wants = jogging || (self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused);
+    if (self->orders.passive || !wants) {
+        enter_idle(self);
+        return argus_to_nothing();
+    }
+    if (argus_should_turn_about(self)) { // also to the end that has been heard
+        argus_turn_about(self);
+        return argus_to_check(true);
+    }
+    const argus_mask_t unheard = argus_to_try(self);
+    return unheard != 0 ? try_ahead(self, unheard) : set_off(self);
 }
 
 // Carrying out
@@ -162,11 +200,12 @@ static void back(argus_t *const self, const argus_intent_t *const intent) {
     ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     ARGUS_ASSERT(intent->mm > 0 && intent->speed_mm_s > 0);
     const argus_guard_t guard = argus_guard(self);
-    if (!guard.active || !argus_guard_rear_is_clear(&guard)) {
+    if (!guard.active || !argus_guard_may_back(&guard)) {
         return;
     }
+    const int32_t most_mm_s = guard.creeps ? argus_guard_unseen_mm_s(&guard) : intent->speed_mm_s;
     argus_say(self, ARGUS_EV_BACKING, ARGUS_NO_SONAR, intent->mm);
-    argus_move(self, -intent->mm, intent->speed_mm_s);
+    argus_move(self, -intent->mm, argus_min(intent->speed_mm_s, most_mm_s));
     enter(self, ARGUS_MODE_BACKING);
 }
 
@@ -188,14 +227,18 @@ static void go_ahead(argus_t *const self, const argus_intent_t *const intent) {
     ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     const argus_guard_t guard = argus_guard(self);
     ARGUS_ASSERT(argus_guard_may_translate(&guard));
+    int32_t speed_mm_s = intent->speed_mm_s;
     if (intent->act == ARGUS_DO_STEP) {
         ARGUS_ASSERT(argus_guard_may_step(&self->plan));
         enter(self, ARGUS_MODE_STEPPING);
+    } else if (intent->act == ARGUS_DO_CREEP) {
+        ARGUS_ASSERT(argus_guard_may_creep(&guard));
+        speed_mm_s = argus_guard_unseen_mm_s(&guard);
     } else {
         ARGUS_ASSERT(argus_guard_may_drive(&guard, &self->plan) &&
                      intent->mm <= argus_guard_ahead_mm(&guard, argus_guard_seen_mm(&guard)));
     }
-    argus_move(self, intent->mm, intent->speed_mm_s);
+    argus_move(self, intent->mm, speed_mm_s);
     if (intent->moves_on) {
         move_on(self);
     }
@@ -315,6 +358,7 @@ static argus_intent_t perform_motion(argus_t *const self, const argus_intent_t *
         return turn(self, intent->cdeg);
     case ARGUS_DO_DRIVE:
     case ARGUS_DO_STEP:
+    case ARGUS_DO_CREEP:
         go_ahead(self, intent);
         break;
     case ARGUS_DO_BACK:
@@ -479,6 +523,10 @@ static argus_intent_t run_stepping(argus_t *const self) {
     return argus_run_stepping(self, &self->travel);
 }
 
+static argus_intent_t run_creeping(argus_t *const self) {
+    return argus_run_creeping(self, &self->travel);
+}
+
 static argus_intent_t run_backing(argus_t *const self) {
     return argus_run_backing(self);
 }
@@ -503,8 +551,9 @@ static argus_intent_t run(argus_t *const self) {
 // It drives, or would if there were room or a way; an operator who has cut the motors is waited for.
 static bool is_under_way(const argus_t *const self) {
     const argus_wait_t why = self->waiting.why;
-    const bool waits = self->mode == ARGUS_MODE_WAITING &&
-                       (why == ARGUS_WAIT_WAY || why == ARGUS_WAIT_TURN || why == ARGUS_WAIT_BUMPER);
+    const bool waits =
+        self->mode == ARGUS_MODE_WAITING && (why == ARGUS_WAIT_WAY || why == ARGUS_WAIT_TURN ||
+                                             why == ARGUS_WAIT_BUMPER || why == ARGUS_WAIT_ECHO);
     return self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused && !self->orders.passive &&
            (waits || self->mode == ARGUS_MODE_CHECKING || argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE));
 }

@@ -47,11 +47,11 @@ static const char *words_of(const argus_name_of_t of) {
         return "OK\0WARN\0ERROR\0STALE\0";
     case ARGUS_NAME_MODE:
         return "OFFLINE\0CHECKING\0VERIFYING\0IDLE\0DRIVING\0SWEEPING\0STEPPING\0BACKING\0WAITING\0CLOSING\0C"
-               "LOSED\0";
+               "LOSED\0CREEPING\0";
     case ARGUS_NAME_MISSION:
         return "none\0running\0reached\0failed\0";
     case ARGUS_NAME_WAIT:
-        return "none\0bumper\0motors\0turn\0way\0catastrophic\0";
+        return "none\0bumper\0motors\0turn\0way\0catastrophic\0echo\0";
     case ARGUS_NAME_FAILURE:
         return "IsNormal\0IsMinor\0IsMajor\0IsCatastrophic\0";
     case ARGUS_NAME_HEALTH:

@@ -67,6 +67,12 @@ static argus_intent_t sees_slip(const argus_t *const self, const argus_alarm_t *
     return news ? distrust(self, mine, ARGUS_EV_SLIP, self->slip.slipped_mm) : argus_to_nothing();
 }
 
+// What is touched is in range of those ahead: if they have never heard anything they do not live.
+static void note_touch(const argus_t *const self, argus_reflexes_t *const mine) {
+    const argus_guard_t guard = argus_guard(self);
+    mine->touched_unheard = mine->touched_unheard || !argus_guard_is_heard(&guard);
+}
+
 // New contact only: bits already answered are let be until they clear.
 static argus_intent_t sees_bumper(const argus_t *const self, const argus_alarm_t *const alarm,
                                   argus_reflexes_t *const mine) {
@@ -79,6 +85,7 @@ static argus_intent_t sees_bumper(const argus_t *const self, const argus_alarm_t
     if (!fresh) {
         return cleared ? say(ARGUS_EV_BUMPER_CLEAR, ARGUS_NO_SONAR, 0) : argus_to_nothing();
     }
+    note_touch(self, mine);
     argus_intent_t intent = say(ARGUS_EV_BUMPER, ARGUS_NO_SONAR, pressed);
     intent.stop = ARGUS_STOP_E_STOP;
     intent.bumped = true;
@@ -97,6 +104,7 @@ static argus_intent_t sees_stall(const argus_t *const self, const argus_alarm_t 
     if (!stalls || said) {
         return argus_to_nothing();
     }
+    note_touch(self, mine);
     argus_intent_t intent = say(ARGUS_EV_STALL, ARGUS_NO_SONAR, argus_built_stalls(&self->knowledge));
     intent.stop = ARGUS_STOP_STOP;
     intent.way = ARGUS_WAY_REFUSE;

@@ -153,7 +153,7 @@ static argus_intent_t leave_bumper(const argus_t *const self) {
     if (!motors && !button) {
         return (argus_intent_t){.act = ARGUS_DO_ENABLE};
     }
-    if (motors && guard.bumpers == 0 && !argus_guard_rear_is_clear(&guard)) {
+    if (motors && guard.bumpers == 0 && !argus_guard_may_back(&guard)) {
         return argus_to_check(true); // freed, or a stall: no need to back away
     }
     if (motors && self->knowledge.bumpers_rear == 0 && argus_at_rest(&self->knowledge)) {
@@ -164,7 +164,8 @@ static argus_intent_t leave_bumper(const argus_t *const self) {
 }
 
 static argus_intent_t leave_waiting(const argus_t *const self, const argus_wait_t why) {
-    ARGUS_ASSERT((unsigned)why <= ARGUS_WAIT_CATASTROPHIC);
+    ARGUS_ASSERT((unsigned)why <= ARGUS_WAIT_ECHO);
+    const argus_guard_t guard = argus_guard(self);
     argus_intent_t intent = argus_to_check(true);
     switch (why) {
     case ARGUS_WAIT_BUMPER:
@@ -178,6 +179,8 @@ static argus_intent_t leave_waiting(const argus_t *const self, const argus_wait_
     case ARGUS_WAIT_WAY:
         intent.way = ARGUS_WAY_FORGIVE;
         return intent;
+    case ARGUS_WAIT_ECHO:
+        return argus_guard_is_heard(&guard) ? intent : argus_to_nothing();
     case ARGUS_WAIT_NONE:
     case ARGUS_WAIT_CATASTROPHIC:
     default:
@@ -208,7 +211,7 @@ argus_intent_t argus_go_on_waiting(const argus_t *const self, argus_waiting_t *c
 argus_intent_t argus_run_backing(const argus_t *const self) {
     const argus_guard_t guard = argus_guard(self);
     if (!self->motion.settled) {
-        const bool watched = argus_guard_rear_is_watched(&guard);
+        const bool watched = guard.creeps || argus_guard_rear_is_watched(&guard);
         return (argus_intent_t){.stop = watched ? ARGUS_STOP_NONE : ARGUS_STOP_HALT};
     }
     argus_intent_t intent = argus_to_check(argus_rules(self)->disparity);

@@ -11,10 +11,13 @@
 #define MOST_PARTS 3   // two of three of those that face forward are most of them
 #define OTHER_LOST 1   // ... and so many the other end may have lost to be better than that
 
-// Those of this end that face forward and are not relied on.
+// Those of this end that face forward and are not relied on; all while none of them has ever heard an echo.
 static argus_mask_t lost_of(const argus_t *const self, const argus_robot_t *const end) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const argus_mask_t forward = argus_robot_forward(end);
+    if (argus_rules(self)->asks_echo && (self->knowledge.heard & forward) == 0) {
+        return forward;
+    }
     unsigned lost = 0;
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const bool counts = (forward >> i & 1u) != 0 && !argus_trusted(&self->knowledge, i);

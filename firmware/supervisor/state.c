@@ -23,18 +23,24 @@ bool argus_is_open(const argus_t *const self) {
     return argus_session_is_open(&self->session);
 }
 
+bool argus_is_unseen(const argus_t *const self, const argus_guard_t *const guard) {
+    const bool touched = self->reflexes.touched_unheard && !argus_guard_is_heard(guard);
+    return touched || !argus_guard_may_step(&self->plan);
+}
+
 argus_guard_t argus_guard(const argus_t *const self) {
-    const argus_guard_t guard = {.config = &self->config,
-                                 .profile = argus_rules(self),
-                                 .knowledge = &self->knowledge,
-                                 .echoes = &self->echoes,
-                                 .rays = &self->rays,
-                                 .now_ms = self->now_ms,
-                                 .bumpers = self->reflexes.bumpers,
-                                 .backed = self->turning.backed,
-                                 .active = argus_is_active(self),
-                                 .linked = argus_is_open(self) && !self->stalled,
-                                 .checked = self->checked};
+    argus_guard_t guard = {.config = &self->config,
+                           .profile = argus_rules(self),
+                           .knowledge = &self->knowledge,
+                           .echoes = &self->echoes,
+                           .rays = &self->rays,
+                           .now_ms = self->now_ms,
+                           .bumpers = self->reflexes.bumpers,
+                           .backed = self->turning.backed,
+                           .active = argus_is_active(self),
+                           .linked = argus_is_open(self) && !self->stalled,
+                           .checked = self->checked};
+    guard.creeps = self->config.creep_mm_s > 0 && argus_is_unseen(self, &guard);
     return guard;
 }
 
@@ -133,9 +139,8 @@ static bool only_steady_forbid_to_turn(const argus_t *const self, const argus_gu
     return true;
 }
 
-// All that forbids to turn is an echo of now, of a sonar that would hear it again were something there. Once
-// for each try, since echoes that jump are never remembered as of one thing.
-static bool may_be_crosstalk(const argus_t *const self, const argus_guard_t *const guard) {
+// Once for each try, since echoes that jump are never remembered as of one thing.
+bool argus_may_be_crosstalk(const argus_t *const self, const argus_guard_t *const guard) {
     return guard->profile->reads_again && !self->turning.again && guard->bumpers == 0 &&
            !argus_guard_memory_blocks(guard) && only_steady_forbid_to_turn(self, guard);
 }
@@ -144,7 +149,7 @@ static bool may_be_crosstalk(const argus_t *const self, const argus_guard_t *con
 argus_intent_t argus_instead_of_turn(const argus_t *const self) {
     ARGUS_ASSERT(argus_is_active(self));
     const argus_guard_t guard = argus_guard(self);
-    if (may_be_crosstalk(self, &guard)) {
+    if (argus_may_be_crosstalk(self, &guard)) {
         return (argus_intent_t){.act = ARGUS_DO_CHECK, .again = true};
     }
     const int32_t nearest_mm = argus_guard_nearest_mm(&guard, 0);

@@ -13,6 +13,10 @@ const argus_profile_t *argus_rules(const argus_t *self);
 // The safety rules, asked of the present state.
 argus_guard_t argus_guard(const argus_t *self);
 
+// No sonar sees the way: none is left that could look, or the robot touched something while none had ever
+// heard an echo.
+bool argus_is_unseen(const argus_t *self, const argus_guard_t *guard);
+
 // Which planner: the paper's rules know no adaptive one.
 argus_policy_t argus_policy(const argus_t *self);
 
@@ -39,6 +43,10 @@ bool argus_is_home(const argus_t *self, bool again, argus_intent_t *intent);
 
 // A turn was commanded several times and not executed.
 argus_intent_t argus_turn_failed(const argus_t *self);
+
+// All that forbids to turn is an echo of now, of a sonar that would hear it again were something there: it is
+// to be read once more.
+bool argus_may_be_crosstalk(const argus_t *self, const argus_guard_t *guard);
 
 // What is done instead of a turn that S7 forbids.
 argus_intent_t argus_instead_of_turn(const argus_t *self);

@@ -124,10 +124,13 @@ static bool plan_holds(const argus_t *const self) {
 static bool driving_holds(const argus_t *const self) {
     const bool driving = self->mode == ARGUS_MODE_DRIVING;
     const bool stepping = self->mode == ARGUS_MODE_STEPPING;
+    const argus_guard_t guard = argus_guard(self);
+    if (self->mode == ARGUS_MODE_CREEPING) {
+        return self->checked && self->config.creep_mm_s > 0 && !self->orders.passive;
+    }
     if (!driving && !stepping) {
         return true;
     }
-    const argus_guard_t guard = argus_guard(self);
     return self->checked && !self->orders.passive &&
            (stepping ? argus_guard_may_step(&self->plan) : argus_guard_may_drive(&guard, &self->plan));
 }

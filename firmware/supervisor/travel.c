@@ -17,6 +17,7 @@
 #define WOVEN_SIPS 4      // there: a round of the array
 #define SEEN_LEAST_MM 200 // of the way; with less it stops to look
 #define FLANK_MM 130
+#define CREEP_MM 150      // of a MOVE: what it still does when the link fails
 #define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
 
 // The SIP is not used up yet.
@@ -110,7 +111,13 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
     const int sonar = argus_nearest_ahead(self);
     const bool stopped =
         sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
-    if (!argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped)) {
+    const argus_search_news_t news =
+        argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
+    if (news == ARGUS_SEARCH_GOES_ON) { // what drives ends by itself
+        *intent = argus_to_nothing();
+        return false;
+    }
+    if (news == ARGUS_SEARCH_NO_WAY) {
         *intent = (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_WAY};
         return false;
     }
@@ -138,7 +145,8 @@ static argus_intent_t turn_to_bearing(const argus_t *const self, argus_travel_t 
     const int32_t to_cdeg = bearing(self, mine);
     const int32_t now_cdeg = self->knowledge.pose.heading_cdeg;
     const bool left = argus_angle_wrap(to_cdeg - now_cdeg) > 0;
-    const bool hemmed = argus_guard_swing_is_blocked(&guard) && mine->jog_mm == 0;
+    const bool hemmed = argus_guard_swing_is_blocked(&guard) && mine->jog_mm == 0 &&
+                        !argus_may_be_crosstalk(self, &guard); // that is read again first
     for (int i = 0; i < (int)(sizeof tries_cdeg / sizeof tries_cdeg[0]) && hemmed; i++) {
         const int32_t by_cdeg = left ? tries_cdeg[i] : -tries_cdeg[i];
         if (leads_out(self, mine, by_cdeg)) {
@@ -416,4 +424,36 @@ argus_intent_t argus_run_stepping(const argus_t *const self, argus_travel_t *con
     }
     mine->jog_mm = 0;
     return (argus_intent_t){.base = ARGUS_BASE_DROP, .act = ARGUS_DO_DECIDE};
+}
+
+// A short MOVE, renewed on each SIP; only a bumper tells of what is in the way.
+static argus_intent_t creep_on(const argus_t *const self, argus_travel_t *const mine) {
+    const argus_guard_t guard = argus_guard(self);
+    const int32_t way_mm = left_mm(self, mine);
+    if (!is_heeded(self, mine)) {
+        return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_MOTORS};
+    }
+    return (argus_intent_t){.act = ARGUS_DO_CREEP,
+                            .mm = argus_min(way_mm, CREEP_MM),
+                            .steers = way_mm > STEER_LEG_MM && off_bearing(self, mine) > STEER_CDEG &&
+                                      argus_guard_may_turn(&guard),
+                            .cdeg = bearing(self, mine),
+                            .moves_on = true};
+}
+
+argus_intent_t argus_run_creeping(const argus_t *const self, argus_travel_t *const mine) {
+    const argus_guard_t guard = argus_guard(self);
+    argus_intent_t intent = cannot_move();
+    if (!argus_guard_may_creep(&guard) || is_called_away(self, mine, &intent)) {
+        return intent; // a sonar sees again, too
+    }
+    if (mine->jog_mm > 0 && mine->aimed && self->motion.settled) { // an operator's step is done
+        mine->jog_mm = 0;
+        return (argus_intent_t){.base = ARGUS_BASE_DROP, .act = ARGUS_DO_DECIDE};
+    }
+    end_leg(self, mine);
+    if (!has_way(self, mine, &intent) || !is_aimed(self, mine, &intent)) {
+        return intent;
+    }
+    return creep_on(self, mine);
 }

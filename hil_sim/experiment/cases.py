@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
@@ -15,7 +16,7 @@ import numpy as np
 
 from hil_sim.bench import plan
 from hil_sim.bench.course import Point, make_course
-from hil_sim.bench.journey_course import length_mm
+from hil_sim.bench.journey_course import ROUGH_DRIFT_DEG_M, drift_at_goal_mm, length_mm
 from hil_sim.bench.journey_worlds import FLOORS, place_of
 from hil_sim.bench.plan import SPLITS
 from hil_sim.errors import SimError
@@ -41,6 +42,10 @@ SPLIT: Final = "judge"
 LIMIT_S: Final = 900.0
 COURSE_MM: Final = (5000.0, 10_000.0)
 _TRIES: Final = 60
+_DRIFT_OFF_MM: Final = 80.0
+"""A rough day's courses are those at whose goal drift has the robot no farther off: else none is truly reached."""
+_BACK_MM: Final = 2550.0
+"""... or, where no other is found, there and back, so far each way."""
 
 Rng = np.random.Generator
 
@@ -142,7 +147,7 @@ def _rng(case: Case, purpose: str) -> Rng:
 
 
 @lru_cache(maxsize=16)
-def _course(world: str, split: str, seed: int) -> tuple[str, Pose, tuple[Point, ...]]:
+def _course(world: str, split: str, seed: int, day: str) -> tuple[str, Pose, tuple[Point, ...]]:
     """World, start and way of 5 to 10 m."""
     if world in FLOORS:
         place = place_of(world, (SPLITS[split], seed))
@@ -151,16 +156,43 @@ def _course(world: str, split: str, seed: int) -> tuple[str, Pose, tuple[Point, 
         made, field, path = plan.world_of(world, split, seed)
     rng = _rng(Case("", split, world, seed, "", ""), "course")
     begins = (made.start.x_mm, made.start.y_mm)
+    fallback: tuple[Point, ...] = ()
     for _ in range(_TRIES):
         course = make_course(made, field, float(rng.uniform(COURSE_MM[0], COURSE_MM[1] - 2000)), rng)
         if COURSE_MM[0] <= length_mm(begins, course) <= COURSE_MM[1]:
-            return path, made.start, course
+            if day == "plain" or _drift_mm(begins, course) <= _DRIFT_OFF_MM:
+                return path, made.start, course
+            fallback = fallback or there_and_back(begins, course, _BACK_MM)
+    if fallback:
+        return path, made.start, fallback
     raise SimError(f"world {world}, seed {seed}: no course of 5 to 10 m; choose another seed")
+
+
+def _drift_mm(begins: Point, course: tuple[Point, ...]) -> float:
+    """How far the drift of a rough day has the robot from its goal, either way."""
+    return max(drift_at_goal_mm(begins, course, by) for by in (-ROUGH_DRIFT_DEG_M, ROUGH_DRIFT_DEG_M))
+
+
+def there_and_back(begins: Point, course: Sequence[Point], way_mm: float) -> tuple[Point, ...]:
+    """Return the first part of a course, so far, and the way back.
+
+    >>> there_and_back((0.0, 0.0), ((1000.0, 0.0), (1000.0, 5000.0)), 3000.0)
+    ((1000.0, 0.0), (1000.0, 2000.0), (1000.0, 0.0), (0.0, 0.0))
+    """
+    out, left = [begins], way_mm
+    for end in course:
+        leg = math.dist(out[-1], end)
+        part = min(1.0, left / leg)
+        out.append((out[-1][0] + (end[0] - out[-1][0]) * part, out[-1][1] + (end[1] - out[-1][1]) * part))
+        left -= leg
+        if left <= 0:
+            break
+    return (*out[1:], *reversed(out[:-1]))
 
 
 def mission_of(case: Case) -> Mission:
     """Return the mission of a case."""
-    path, _, course = _course(case.world, case.split, case.seed)
+    path, _, course = _course(case.world, case.split, case.seed, case.day)
     return Mission(
         path,
         course,
@@ -174,5 +206,5 @@ def mission_of(case: Case) -> Mission:
 
 def course_mm(case: Case) -> float:
     """Return the length of the way of a case."""
-    _, start, course = _course(case.world, case.split, case.seed)
+    _, start, course = _course(case.world, case.split, case.seed, case.day)
     return length_mm((start.x_mm, start.y_mm), course)

@@ -18,6 +18,7 @@ from hil_sim.world.body import BodyModel
 from hil_sim.world.model import Pose
 
 RULES: Final = ("S1", "S4", "S5", "S7")
+CREEPS: Final = "CREEPING"
 DRIVES_MM_S: Final = 5.0
 TURNS_DEG_S: Final = 1.0
 STEP_MM: Final = 200.0
@@ -52,7 +53,8 @@ class Safety:
     S1: with a sonar ahead out of use the leading end moves only over ground that a living sonar has looked at, or
     within a step of a place where living sonars looked along every blind bearing. S4: after sweeps and looks the
     heading is the one before. S5: the way that braking takes is free. S7: what a turn on the spot sweeps is free, and
-    no bumper is pressed. breaches: the first of them; counts: of each rule.
+    no bumper is pressed. While it creeps, which an operator must allow, nothing is seen: then S5 asks for no more than
+    that speed. breaches: the first of them; counts: of each rule.
     """
 
     def __init__(self, sil: Sil) -> None:
@@ -174,6 +176,10 @@ class Safety:
 
     def _ask_braking(self, pose: Pose, v: float, clear_mm: float) -> None:
         """S5."""
+        if self._mode == CREEPS:
+            if abs(v) > float(self._sil.mission.config.get("creep_mm_s", 0)) + DRIVES_MM_S:
+                self._breach("S5", f"creeps at {abs(v):.0f} mm/s")
+            return
         brake = v * v / (2 * BRAKE_MM_S2)
         if clear_mm > brake:
             return
@@ -199,6 +205,8 @@ class Safety:
 
     def _ask_seen(self, pose: Pose) -> None:
         """S1."""
+        if self._mode == CREEPS:
+            return
         out = self._out()
         if out != self._known_out:
             self._known_out, self._out_ms = out, self._robot.now_ms

@@ -119,8 +119,10 @@ typedef uint16_t argus_mask_t;
       "in failure mode, a reading at or below this stops the next step")                                     \
     X(step_mm, 200, 50, 200, "mm", "", "length of one step in failure mode")                                 \
     X(step_speed_mm_s, 100, 30, 300, "mm/s", "", "speed of a step")                                          \
+    X(creep_mm_s, 0, 0, 100, "mm/s", "",                                                                     \
+      "where no sonar sees the way: creep on at this speed, told by the bumpers alone; 0: stand and wait")   \
     X(speed_mm_s, 200, 30, 750, "mm/s", "",                                                                  \
-      "speed of normal driving; profile argus: where something is near or a sonar is doubted")               \
+      "speed of normal driving; profile argus: where something is near, or others do not see far enough")    \
     X(speed_max_mm_s, 500, 30, 750, "mm/s", "",                                                              \
       "profile argus: the most where the way ahead is seen to be free")                                      \
     X(accel_mm_s2, 300, 50, 2000, "mm/s2", "", "acceleration asked of the robot")                            \
@@ -283,6 +285,11 @@ typedef enum {
       "ways straight ahead bend: a wheel turns less than it is told, and is countered by turning; value: "   \
       "thousandths that it falls short, positive the left one, negative the right one")                      \
     X(76, WHEEL_EVEN, OK, "drive", "ways straight ahead are straight again; value: 0")                       \
+    X(77, CREEPING, WARN, "drive",                                                                           \
+      "no sonar sees the way, and the operator lets it: creeps on, told by the bumpers alone; value: mm/s")  \
+    X(78, NO_ECHO, WARN, "drive",                                                                            \
+      "no sonar ahead has heard an echo in this session, so nothing shows that one lives: slow until one "   \
+      "has; value: mm/s")                                                                                    \
     X(80, RECORD_IGNORED, WARN, "record",                                                                    \
       "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")            \
     X(81, EVENTS_LOST, ERROR, "events", "the event queue overflowed; value: events lost")                    \
@@ -394,7 +401,8 @@ typedef enum {
     ARGUS_MODE_BACKING,   // backs away from a pressed bumper or a blocked swing circle
     ARGUS_MODE_WAITING,   // cannot go on by itself: bumper, motors off, no way, catastrophic
     ARGUS_MODE_CLOSING,   // shutdown: stopping, then closing the session
-    ARGUS_MODE_CLOSED     // over
+    ARGUS_MODE_CLOSED,    // over
+    ARGUS_MODE_CREEPING   // no sonar sees the way: slowly, on the bumpers alone
 } argus_mode_t;
 
 // How the course stands.
@@ -410,9 +418,10 @@ typedef enum {
     ARGUS_WAIT_NONE,
     ARGUS_WAIT_BUMPER,
     ARGUS_WAIT_MOTORS,
-    ARGUS_WAIT_TURN,        // the swing circle is blocked (S7)
-    ARGUS_WAIT_WAY,         // every heading is blocked
-    ARGUS_WAIT_CATASTROPHIC // all forward-facing sonars are disabled
+    ARGUS_WAIT_TURN,         // the swing circle is blocked (S7)
+    ARGUS_WAIT_WAY,          // every heading is blocked
+    ARGUS_WAIT_CATASTROPHIC, // all forward-facing sonars are disabled
+    ARGUS_WAIT_ECHO          // it touched something while no sonar ahead had ever heard an echo
 } argus_wait_t;
 
 // What an operator may ask. The argument is mm for MOVE, degrees for TURN, a sonar (0..15) for RETEST and
@@ -503,7 +512,7 @@ typedef enum {
 
 // Instance -------------------------------------------------------------------------------------------------
 
-#define ARGUS_STORAGE_BYTES (12760 + 728 * ARGUS_SONARS)
+#define ARGUS_STORAGE_BYTES (12920 + 792 * ARGUS_SONARS)
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.

@@ -8,6 +8,7 @@
 
 #include "adjustment/guard.h"
 #include "awareness/levels.h"
+#include "knowledge/config.h"
 #include "robot.h"
 #include "supervisor/state.h"
 #include "unity.h"
@@ -115,8 +116,19 @@ void test_doubt_without_a_name_costs_nothing(void) {
     finish();
 }
 
-// A name ahead beside one that is trusted stops nothing; it caps the speed.
-void test_a_name_that_others_see_for_slows_down_and_stops_nothing(void) {
+// S5 by what the others have seen of the way, in the steps that the speed is asked in.
+static int32_t speed_by_others(void) {
+    const argus_t *argus = &robot.argus;
+    const int32_t half_mm = argus_guard_straight_half_mm(argus->knowledge.robot);
+    const int32_t seen_mm = argus_rays_seen_mm(&argus->rays, &argus->knowledge, half_mm, 1200);
+    const int32_t range_mm = seen_mm < 250 ? 250 : seen_mm;
+    const int32_t safe_mm_s = argus_config_speed_mm_s(&argus->config, argus->knowledge.robot, range_mm);
+    const int32_t asked_mm_s = safe_mm_s / 25 * 25;
+    return asked_mm_s < argus->config.speed_mm_s ? argus->config.speed_mm_s : asked_mm_s;
+}
+
+// A name ahead beside one that is trusted stops nothing; what it has seen is not counted on.
+void test_a_name_that_others_see_for_stops_nothing(void) {
     for (int sonar = 1; sonar <= 6; sonar++) {
         start_in_a_hall();
         drive_off();
@@ -127,9 +139,13 @@ void test_a_name_that_others_see_for_slows_down_and_stops_nothing(void) {
             hold(1u << sonar, 60);
             robot_next_sip(&robot);
             TEST_ASSERT_EQUAL(ARGUS_MODE_DRIVING, robot.argus.mode);
+            TEST_ASSERT_TRUE(robot.speed_asked_mm_s <= speed_by_others());
         }
         TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_STOP, from));
-        TEST_ASSERT_EQUAL(robot.argus.config.speed_mm_s, robot.speed_asked_mm_s);
+        for (int i = 0; i < robot.argus.rays.count; i++) {
+            const argus_ray_t *ray = &robot.argus.rays.at[i];
+            TEST_ASSERT_TRUE(ray->sonar != sonar || ray->free_mm == 0);
+        }
         TEST_ASSERT_EQUAL(0, looks());
         finish();
     }
@@ -208,14 +224,15 @@ void test_a_retest_brings_a_look(void) {
 
 // ---- to hire or to buy
 
-// Drives with a name until a look comes; what that has cost by this count, in ms.
-static double lost_until_look(int sonar) {
+// Drives with two names side by side, the way between them unseen, until a look comes; what that has cost by
+// this count, in ms.
+static double lost_until_look(unsigned two) {
     double lost_ms = 0;
     for (int i = 0; i < 1200 && !looking(); i++) {
-        hold(1u << sonar, 60);
+        hold(two, 60);
         robot_next_sip(&robot);
         const argus_guard_t guard = argus_guard(&robot.argus);
-        const bool open = is_named(sonar) && robot.argus.mode == ARGUS_MODE_DRIVING;
+        const bool open = argus_named(&robot.argus.knowledge) != 0 && robot.argus.mode == ARGUS_MODE_DRIVING;
         lost_ms += open ? 100.0 *
                               (free_speed() - argus_guard_speed_mm_s(&guard, argus_guard_seen_mm(&guard))) /
                               free_speed()
@@ -226,10 +243,10 @@ static double lost_until_look(int sonar) {
 }
 
 void test_a_look_comes_when_the_time_lost_is_what_it_costs(void) {
-    for (int sonar = 1; sonar <= 6; sonar += 2) {
+    for (int sonar = 2; sonar <= 4; sonar++) {
         start_in_a_hall();
         drive_off();
-        const double lost_ms = lost_until_look(sonar);
+        const double lost_ms = lost_until_look(3u << sonar);
         TEST_ASSERT_TRUE(looking());
         snprintf(text, sizeof text, "sonar %d: %.0f ms lost", sonar, lost_ms);
         TEST_ASSERT_TRUE_MESSAGE(lost_ms >= LOOK_COST_MS - 300 && lost_ms <= LOOK_COST_MS + 300, text);
@@ -240,23 +257,24 @@ void test_a_look_comes_when_the_time_lost_is_what_it_costs(void) {
 
 // What was lost before a look, or before the doubt went, does not count for the next.
 void test_the_loss_begins_anew(void) {
+    const unsigned two = 3u << 3;
     start_in_a_hall();
     drive_off();
-    name(1u << 3);
-    for (int i = 0; i < 30; i++) {
-        hold(1u << 3, 60);
+    name(two);
+    for (int i = 0; i < 40; i++) {
+        hold(two, 60);
         robot_next_sip(&robot);
     }
     TEST_ASSERT_TRUE(robot.argus.looks.lost_ms > 1000);
-    for (int i = 0; i < 30; i++) { // it does well again
-        hold(1u << 3, -argus_bounds[ARGUS_TEST_DROPOUT].naming);
+    for (int i = 0; i < 30; i++) { // they do well again
+        hold(two, -argus_bounds[ARGUS_TEST_DROPOUT].naming);
         robot_next_sip(&robot);
     }
     TEST_ASSERT_EQUAL(ARGUS_HEALTHY, robot.argus.knowledge.sonar[3].health);
     TEST_ASSERT_EQUAL(0, robot.argus.looks.lost_ms);
-    lost_until_look(3);
+    lost_until_look(two);
     TEST_ASSERT_TRUE(looking());
-    hold(1u << 3, -argus_bounds[ARGUS_TEST_DROPOUT].naming);
+    hold(two, -argus_bounds[ARGUS_TEST_DROPOUT].naming);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 60000));
     TEST_ASSERT_EQUAL(0, robot.argus.looks.lost_ms);
     TEST_ASSERT_EQUAL(ARGUS_HEALTHY, robot.argus.knowledge.sonar[3].health);

@@ -19,7 +19,7 @@ static const row_t rows[] = {
 
 // One row for each mode, in the order of the enumeration: the row is found by its number.
 void test_every_mode_has_its_row(void) {
-    TEST_ASSERT_EQUAL(ARGUS_MODE_CLOSED + 1, MODES);
+    TEST_ASSERT_EQUAL(ARGUS_MODE_CREEPING + 1, MODES);
     for (int i = 0; i < MODES; i++) {
         TEST_ASSERT_EQUAL(i, rows[i].mode);
         TEST_ASSERT_EQUAL(rows[i].limit_ms, argus_mode_limit_ms(rows[i].mode));
@@ -40,6 +40,7 @@ void test_nothing_translates_from_offline_waiting_or_verifying(void) {
     for (size_t i = 0; i < sizeof from / sizeof from[0]; i++) {
         TEST_ASSERT_FALSE(argus_mode_may_follow(from[i], ARGUS_MODE_DRIVING));
         TEST_ASSERT_FALSE(argus_mode_may_follow(from[i], ARGUS_MODE_STEPPING));
+        TEST_ASSERT_FALSE(argus_mode_may_follow(from[i], ARGUS_MODE_CREEPING));
     }
 }
 
@@ -54,7 +55,7 @@ void test_what_moves_is_watched(void) {
 
 // From OFFLINE to the end, over every mode between.
 void test_every_mode_is_reached_and_left(void) {
-    bool reached[ARGUS_MODE_CLOSED + 1] = {[ARGUS_MODE_OFFLINE] = true};
+    bool reached[ARGUS_MODE_CREEPING + 1] = {[ARGUS_MODE_OFFLINE] = true};
     for (int round = 0; round < MODES; round++) {
         for (int from = 0; from < MODES; from++) {
             for (int to = 0; reached[from] && to < MODES; to++) {

@@ -15,9 +15,9 @@ static void expect(argus_name_of_t of, int first, int last, const char *name_of_
 
 void test_every_enumeration_is_named_from_end_to_end(void) {
     expect(ARGUS_NAME_LEVEL, ARGUS_LEVEL_OK, ARGUS_LEVEL_STALE, "STALE");
-    expect(ARGUS_NAME_MODE, ARGUS_MODE_OFFLINE, ARGUS_MODE_CLOSED, "CLOSED");
+    expect(ARGUS_NAME_MODE, ARGUS_MODE_OFFLINE, ARGUS_MODE_CREEPING, "CREEPING");
     expect(ARGUS_NAME_MISSION, ARGUS_MISSION_NONE, ARGUS_MISSION_FAILED, "failed");
-    expect(ARGUS_NAME_WAIT, ARGUS_WAIT_NONE, ARGUS_WAIT_CATASTROPHIC, "catastrophic");
+    expect(ARGUS_NAME_WAIT, ARGUS_WAIT_NONE, ARGUS_WAIT_ECHO, "echo");
     expect(ARGUS_NAME_FAILURE, ARGUS_IS_NORMAL, ARGUS_IS_CATASTROPHIC, "IsCatastrophic");
     expect(ARGUS_NAME_HEALTH, ARGUS_UNKNOWN, ARGUS_ABSENT, "ABSENT");
     expect(ARGUS_NAME_KIND, ARGUS_KIND_NONE, ARGUS_KIND_INTERMITTENT, "intermittent");

@@ -123,6 +123,19 @@ int robot_world_segments(const robot_t *robot, int sonar) {
     return best > 5000 ? 5000 : (int)lround(best);
 }
 
+int robot_world_smooth(const robot_t *r, int sonar) {
+    const argus_sonar_pose_t *at = &argus_sonar_poses[sonar];
+    const double c = cos(r->th), s = sin(r->th);
+    const double *w = r->segment[0];
+    const double length = hypot(w[2] - w[0], w[3] - w[1]);
+    const double nx = (w[3] - w[1]) / length, ny = -(w[2] - w[0]) / length;
+    const double x = r->x + at->x_mm * c - at->y_mm * s, y = r->y + at->x_mm * s + at->y_mm * c;
+    const double distance = (w[0] - x) * nx + (w[1] - y) * ny;
+    const double bearing = r->th + at->heading_deg * DEG;
+    const double square = (cos(bearing) * nx + sin(bearing) * ny) * (distance < 0 ? -1 : 1);
+    return square > cos(25 * DEG) ? (int)lround(fabs(distance) / square) : 5000;
+}
+
 static int clip(int mm) {
     return mm < 100 ? 100 : mm > 5000 ? 5000 : mm;
 }
@@ -555,10 +568,26 @@ static void watch_speed(robot_t *robot) {
     }
 }
 
+// With nothing to see by: only where the setting lets it, slowly, in short ways.
+static void watch_creep(robot_t *robot, int32_t mm) {
+    const argus_guard_t guard = argus_guard(&robot->argus);
+    const int32_t most_mm_s = robot->argus.config.creep_mm_s;
+    if (most_mm_s == 0 || !argus_is_unseen(&robot->argus, &guard)) {
+        complain(robot, "S1: creeps without leave, or while a sonar sees", mm);
+    }
+    if (robot->speed_asked_mm_s > most_mm_s || mm > 150) {
+        complain(robot, "S1: creeps too fast or too far", (int)robot->speed_asked_mm_s);
+    }
+}
+
 static void watch_ahead(robot_t *robot, int32_t mm) {
     const unsigned blind = blind_ahead(robot);
     if (!robot->checked) {
         complain(robot, "S3/S6: MOVE ahead before a health check", mm);
+    }
+    if (robot->argus.mode == ARGUS_MODE_CREEPING) {
+        watch_creep(robot, mm);
+        return;
     }
     if (blind != 0) {
         watch_blind_move(robot, mm, blind);
@@ -571,6 +600,13 @@ static void watch_ahead(robot_t *robot, int32_t mm) {
 
 static void watch_back(robot_t *robot, int32_t mm) {
     const int first = rear_leads(robot) ? 0 : 8;
+    const argus_guard_t guard = argus_guard(&robot->argus);
+    if (guard.creeps && !argus_guard_rear_is_watched(&guard)) { // from what it has touched
+        if (robot->speed_asked_mm_s > robot->argus.config.creep_mm_s || robot->bumpers_rear != 0) {
+            complain(robot, "S7: creeps back too fast, or against a bumper", (int)robot->speed_asked_mm_s);
+        }
+        return;
+    }
     for (int i = first; i < first + 8 && i < ARGUS_SONARS; i++) {
         const bool abeam =
             robot->argus.config.profile == ARGUS_PROFILE_ARGUS && (i == first || i == first + 7);

@@ -26,6 +26,7 @@ const FAILURES = {
 const MODES = {
   OFFLINE: "Offline", CHECKING: "Checking its sonars", VERIFYING: "Verifying a suspect", IDLE: "Idle", DRIVING: "Driving",
   SWEEPING: "Sweeping", STEPPING: "One step ahead", BACKING: "Backing away", WAITING: "Waiting", CLOSING: "Closing", CLOSED: "Closed",
+  CREEPING: "Creeping on its bumpers",
 };
 
 /** The key in LOOKS of a sonar of a state. */
