@@ -179,7 +179,8 @@ static bool take_zero(argus_knowledge_t *const self, const argus_sip_t *const si
     return true;
 }
 
-// Its counters restarted. If it was in motion then, and some SIPs are missing, nobody knows how far it got before.
+// Its counters restarted. If it was in motion then, and some SIPs are missing, nobody knows how far it got
+// before.
 static bool loses_way(argus_knowledge_t *const self, const argus_span_t *const span) {
     const bool lost = argus_odometry_is_unseen(span, self->under_way);
     if (lost) {
@@ -212,7 +213,8 @@ void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *
         take_origin(self, sip);
         self->excess = (argus_excess_t){0};
     } else {
-        self->leapt = (take_zero(self, sip) && loses_way(self, &span)) || !move(self, sip, distance_um, &span);
+        self->leapt =
+            (take_zero(self, sip) && loses_way(self, &span)) || !move(self, sip, distance_um, &span);
     }
     if (self->leapt) {
         leave_out(self, sip, &span);

@@ -39,8 +39,8 @@ bool argus_odometry_is_speed(int32_t mm_s);
 // What the wheels say that it has moved: ahead, and counter-clockwise.
 argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *span);
 
-// It was in motion, or asked to be, and more than a SIP is missing: how far it got in between the odometry alone can
-// tell. And the farthest that this can be.
+// It was in motion, or asked to be, and more than a SIP is missing: how far it got in between the odometry
+// alone can tell. And the farthest that this can be.
 bool argus_odometry_is_unseen(const argus_span_t *span, bool under_way);
 int32_t argus_odometry_unseen_mm(const argus_span_t *span);
 
