@@ -13,6 +13,7 @@ from hypothesis import settings
 def pytest_configure(config: pytest.Config) -> None:
     """Make the marks known that any test may carry."""
     config.addinivalue_line("markers", "soak: computes for long; tools/dev test --quick leaves it out")
+    config.addinivalue_line("markers", "wide: a sweep that takes minutes of CPU; tools/dev soak runs it")
 
 
 settings.register_profile("repeatable", derandomize=True, print_blob=True)

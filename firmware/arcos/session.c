@@ -7,6 +7,8 @@
 #define LISTEN_MS 250
 #define FLUSH_MS 100
 #define STEP_MS 500
+#define HALT_MAX_MS 3000
+#define REST_MM_S 5
 #define CONFIG_REPEAT_MS 300
 #define CONFIG_WAIT_MS 1000
 #define PAUSE_FIRST_MS 500
@@ -82,15 +84,19 @@ static bool is_syncing(const argus_session_t *self) {
     return self->state >= ARGUS_SESSION_SYNC0 && self->state <= ARGUS_SESSION_SYNC2;
 }
 
+static void stop_wheels(argus_session_t *self) {
+    argus_outbox_int(&self->outbox, ARCOS_CMD_VEL, 0);
+    argus_outbox_int(&self->outbox, ARCOS_CMD_RVEL, 0);
+}
+
 static unsigned dislodge(argus_session_t *self, uint32_t now_ms) {
-    ARGUS_ASSERT(self->state == ARGUS_SESSION_LISTEN || is_syncing(self));
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_LISTEN || self->state == ARGUS_SESSION_HALT || is_syncing(self));
     argus_outbox_clear(&self->outbox);
     if (self->dislodged >= DISLODGE_MAX) {
         return fail(self, now_ms);
     }
     self->dislodged++;
-    argus_outbox_int(&self->outbox, ARCOS_CMD_VEL, 0);
-    argus_outbox_int(&self->outbox, ARCOS_CMD_RVEL, 0);
+    stop_wheels(self);
     argus_outbox_plain(&self->outbox, ARCOS_CMD_CLOSE);
     enter(self, now_ms, ARGUS_SESSION_DISLODGE);
     return ARGUS_SESSION_DID_DISLODGE;
@@ -117,8 +123,7 @@ static void open_robot(argus_session_t *self, uint32_t now_ms) {
     self->zeros_due = 0;
     self->heard_ms = now_ms;
     argus_outbox_plain(&self->outbox, ARCOS_CMD_OPEN);
-    argus_outbox_int(&self->outbox, ARCOS_CMD_VEL, 0);
-    argus_outbox_int(&self->outbox, ARCOS_CMD_RVEL, 0);
+    stop_wheels(self);
     argus_outbox_plain(&self->outbox, ARCOS_CMD_SETO);
     self->origin_due = true;
     ask_config(self, now_ms);
@@ -187,10 +192,25 @@ static void take_config(argus_session_t *self, const argus_packet_t *packet) {
     }
 }
 
-// The old session's SIP still tells where the robot has got to.
+static bool turns(int32_t mm_s) {
+    return mm_s > REST_MM_S || mm_s < -REST_MM_S;
+}
+
+// The old session's SIPs still tell where the robot gets to: it ends when the robot rests, or after some time.
 static unsigned on_old_session(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
     const unsigned got = take_sip(self, now_ms, packet) ? ARGUS_SESSION_GOT_SIP : 0;
-    return dislodge(self, now_ms) | got;
+    if (got == 0 || (!turns(self->sip.vel_left_mm_s) && !turns(self->sip.vel_right_mm_s))) {
+        return dislodge(self, now_ms) | got;
+    }
+    const bool again = self->state == ARGUS_SESSION_HALT;
+    if (!again || elapsed_ms(now_ms, self->spoke_ms) >= STEP_MS) { // the first one may have got lost
+        argus_outbox_clear(&self->outbox);
+        stop_wheels(self);
+    }
+    if (!again) {
+        enter(self, now_ms, ARGUS_SESSION_HALT);
+    }
+    return got;
 }
 
 static unsigned on_sync(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
@@ -309,6 +329,7 @@ static unsigned on_packet(argus_session_t *self, const argus_config_t *config, u
                           const argus_packet_t *packet) {
     switch (self->state) {
     case ARGUS_SESSION_LISTEN:
+    case ARGUS_SESSION_HALT:
         return is_sip(packet) ? on_old_session(self, now_ms, packet) : 0;
     case ARGUS_SESSION_SYNC0:
     case ARGUS_SESSION_SYNC1:
@@ -436,6 +457,8 @@ static unsigned run_timer(argus_session_t *self, const argus_config_t *config, u
         return pause_timer(self, config, now_ms);
     case ARGUS_SESSION_LISTEN:
         return quiet_timer(self, now_ms, LISTEN_MS);
+    case ARGUS_SESSION_HALT:
+        return in_state_ms(self, now_ms) >= HALT_MAX_MS ? dislodge(self, now_ms) : 0;
     case ARGUS_SESSION_DISLODGE:
         return quiet_timer(self, now_ms, FLUSH_MS);
     case ARGUS_SESSION_OPENING:
@@ -461,7 +484,8 @@ void argus_session_leave(argus_session_t *self, uint32_t now_ms) {
     if (self->state != ARGUS_SESSION_DISLODGE) { // that one's CLOSE must still go out
         argus_outbox_clear(&self->outbox);
     }
-    if (self->state == ARGUS_SESSION_OPENING || self->state == ARGUS_SESSION_OPEN) {
+    if (self->state == ARGUS_SESSION_HALT || self->state == ARGUS_SESSION_OPENING ||
+        self->state == ARGUS_SESSION_OPEN) {
         argus_outbox_int(&self->outbox, ARCOS_CMD_SONAR, 0);
         argus_outbox_plain(&self->outbox, ARCOS_CMD_STOP);
         argus_outbox_int(&self->outbox, ARCOS_CMD_ENABLE, 0);

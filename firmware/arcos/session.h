@@ -14,6 +14,7 @@ typedef enum {
     ARGUS_SESSION_DOWN,     // no transport
     ARGUS_SESSION_PAUSE,    // waits before the next attempt
     ARGUS_SESSION_LISTEN,   // 250 ms, each attempt begins so: is an old session still reporting?
+    ARGUS_SESSION_HALT,     // VEL 0, RVEL 0 sent; the old session tells where the robot comes to rest, 3 s at most
     ARGUS_SESSION_DISLODGE, // VEL 0, RVEL 0, CLOSE sent; 100 ms of flushing
     ARGUS_SESSION_SYNC0,
     ARGUS_SESSION_SYNC1,

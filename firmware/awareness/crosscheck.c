@@ -97,12 +97,13 @@ static void add(tally_t *const tally, const verdict_t said, const int from) {
 }
 
 // One other sonar: its latest ping on the bearing decides. How far back that is, 0: it did not look there.
-static int ask(tally_t *const tally, const argus_pings_t *const pings, const argus_ping_t *const at,
+static int ask(tally_t *const tally, const argus_pings_t *const pings, const argus_line_t *const line,
                const int from, const uint32_t now_ms) {
+    const argus_ping_t *const at = line->ping;
     int latest = 0;
     for (int back = argus_pings_near(pings, 1, at); back > 0; back = argus_pings_near(pings, back + 1, at)) {
         const argus_ping_t *const then = argus_pings_at(pings, back);
-        const argus_shift_t shift = argus_ping_shift(at, then);
+        const argus_shift_t shift = argus_line_shift(line, then);
         if (shift.lateral_mm > ARGUS_SAME_LATERAL_MM) {
             continue;
         }
@@ -121,10 +122,11 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
                        const int sonar, const argus_ping_t *const at) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    const argus_line_t line = argus_ping_line(at);
     tally_t tally = {.agree = 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_crosscheck_is_witness(self, knowledge, i, sonar)) {
-            ask(&tally, &self->of[i].pings, at, i, knowledge->sip_ms);
+            ask(&tally, &self->of[i].pings, &line, i, knowledge->sip_ms);
         }
     }
     return tally;
@@ -396,6 +398,7 @@ void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, 1);
+    const argus_line_t line = argus_ping_line(now);
     uint8_t latest[ARGUS_SONARS] = {0};
     tally_t tally = {.agree = 0};
     for (int i = 0; i < knowledge->sonars; i++) {
@@ -403,7 +406,7 @@ void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t
         const bool witness = argus_crosscheck_is_witness(self, knowledge, i, sonar);
         if (i != sonar) {
             latest[i] =
-                (uint8_t)ask(witness ? &tally : &unheard, &self->of[i].pings, now, i, knowledge->sip_ms);
+                (uint8_t)ask(witness ? &tally : &unheard, &self->of[i].pings, &line, i, knowledge->sip_ms);
         }
     }
     weigh(self, knowledge, sonar, 1, &tally, true);

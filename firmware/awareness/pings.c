@@ -11,8 +11,8 @@
 #define ALIKE_CDEG 30
 #define ALIKE_MM 30
 #define FULL_CDEG 36000
-#define SECTORS 16 // of the bearings
-#define SECTOR_CDEG (FULL_CDEG / SECTORS)
+#define SECTOR_CDEG (FULL_CDEG / ARGUS_PING_SECTORS)
+#define LAST 0x80000000u // of the bits of a log: the last ping
 
 static int32_t offset_mm(const uint16_t now_mm, const uint16_t then_mm) {
     const int32_t delta = (int32_t)((uint32_t)(now_mm - then_mm) & 0xFFFFu);
@@ -67,14 +67,20 @@ int32_t argus_ping_turned_cdeg(const argus_ping_t *const a, const argus_ping_t *
     return size > 18000 ? 36000 - size : size;
 }
 
+argus_line_t argus_ping_line(const argus_ping_t *const self) {
+    return (argus_line_t){self, argus_cos(self->bearing_cdeg), argus_sin(self->bearing_cdeg)};
+}
+
+argus_shift_t argus_line_shift(const argus_line_t *const line, const argus_ping_t *const then) {
+    const int32_t dx = offset_mm(line->ping->x_mm, then->x_mm);
+    const int32_t dy = offset_mm(line->ping->y_mm, then->y_mm);
+    return (argus_shift_t){.along_mm = (dx * line->cos + dy * line->sin) / ARGUS_TRIG_ONE,
+                           .lateral_mm = argus_abs(dy * line->cos - dx * line->sin) / ARGUS_TRIG_ONE};
+}
+
 argus_shift_t argus_ping_shift(const argus_ping_t *const now, const argus_ping_t *const then) {
-    const int32_t dx = offset_mm(now->x_mm, then->x_mm);
-    const int32_t dy = offset_mm(now->y_mm, then->y_mm);
-    const int32_t c = argus_cos(now->bearing_cdeg);
-    const int32_t s = argus_sin(now->bearing_cdeg);
-    const argus_shift_t shift = {.along_mm = (dx * c + dy * s) / ARGUS_TRIG_ONE,
-                                 .lateral_mm = argus_abs(dy * c - dx * s) / ARGUS_TRIG_ONE};
-    return shift;
+    const argus_line_t line = argus_ping_line(now);
+    return argus_line_shift(&line, then);
 }
 
 int32_t argus_ping_predict_mm(const argus_ping_t *const now, const argus_ping_t *const then) {
@@ -91,12 +97,16 @@ bool argus_ping_is_within(const argus_ping_t *const a, const argus_ping_t *const
 }
 
 static unsigned sector_of(const int32_t bearing_cdeg) {
-    return 1u << ((uint32_t)(bearing_cdeg + 2 * FULL_CDEG) / SECTOR_CDEG % SECTORS);
+    return (unsigned)(bearing_cdeg + 2 * FULL_CDEG) / SECTOR_CDEG % ARGUS_PING_SECTORS;
 }
 
-static unsigned sectors_beside(const argus_ping_t *const at) {
+// Where the pings lie that may be beside a bearing, a bit each: the highest is the last one.
+static uint32_t those_beside(const argus_pings_t *const self, const argus_ping_t *const at) {
     _Static_assert(2 * ARGUS_BESIDE_CDEG < SECTOR_CDEG, "what is beside a bearing lies in two sectors");
-    return sector_of(at->bearing_cdeg - ARGUS_BESIDE_CDEG) | sector_of(at->bearing_cdeg + ARGUS_BESIDE_CDEG);
+    _Static_assert(ARGUS_PINGS == 32, "a bit for each");
+    const uint32_t slots = self->looked[sector_of(at->bearing_cdeg - ARGUS_BESIDE_CDEG)] |
+                           self->looked[sector_of(at->bearing_cdeg + ARGUS_BESIDE_CDEG)];
+    return slots >> self->next | slots << (ARGUS_PINGS - self->next) % ARGUS_PINGS;
 }
 
 static bool is_near(const argus_ping_t *const a, const argus_ping_t *const b) {
@@ -105,17 +115,19 @@ static bool is_near(const argus_ping_t *const a, const argus_ping_t *const b) {
            argus_ping_is_within(a, b, ARGUS_SAME_ALONG_MM);
 }
 
-// Tens of thousands of pings are asked for in one SIP, and few sonars have looked that way.
+// Tens of thousands of pings are asked for in one SIP, and few of them looked that way.
 int argus_pings_near(const argus_pings_t *const self, const int from, const argus_ping_t *const at) {
     ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
     ARGUS_ASSERT(from >= 1);
-    if ((self->sectors & sectors_beside(at)) == 0) {
+    if (from > self->count) {
         return 0;
     }
-    for (int back = from; back <= self->count; back++) {
-        if (is_near(at, &self->ping[slot_of(self, back)])) {
+    int back = from;
+    for (uint32_t left = those_beside(self, at) << (from - 1); left != 0 && back <= self->count; left <<= 1) {
+        if ((left & LAST) != 0 && is_near(at, &self->ping[slot_of(self, back)])) {
             return back;
         }
+        back++;
     }
     return 0;
 }
@@ -146,13 +158,12 @@ void argus_pings_age(argus_pings_t *const self, const uint32_t now_ms) {
     }
 }
 
-static void note_sectors(argus_pings_t *const self) {
-    ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
-    unsigned sectors = 0;
-    for (int back = 1; back <= self->count; back++) {
-        sectors |= sector_of(self->ping[slot_of(self, back)].bearing_cdeg);
+static void note_sector(argus_pings_t *const self, const unsigned slot, const int32_t bearing_cdeg) {
+    ARGUS_ASSERT(slot < ARGUS_PINGS);
+    for (int i = 0; i < ARGUS_PING_SECTORS; i++) {
+        self->looked[i] &= ~((uint32_t)1 << slot);
     }
-    self->sectors = (uint16_t)sectors;
+    self->looked[sector_of(bearing_cdeg)] |= (uint32_t)1 << slot;
 }
 
 void argus_pings_note(argus_pings_t *const self, const argus_ping_t now) {
@@ -167,10 +178,10 @@ void argus_pings_note(argus_pings_t *const self, const argus_ping_t now) {
         last->weighed = 0;
         return;
     }
+    note_sector(self, self->next, now.bearing_cdeg);
     self->ping[self->next] = now;
     self->next = (uint8_t)((self->next + 1) % ARGUS_PINGS);
     self->count = (uint8_t)argus_min(self->count + 1, ARGUS_PINGS);
-    note_sectors(self);
 }
 
 argus_ping_t argus_ping_from(const argus_robot_t *const robot, const int sonar,

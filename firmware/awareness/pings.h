@@ -6,6 +6,7 @@
 #include "knowledge/knowledge.h"
 
 #define ARGUS_PINGS 32            // that are remembered of each sonar: some 20 s in motion, longer at rest
+#define ARGUS_PING_SECTORS 16     // of the bearings
 #define ARGUS_PINGS_AGE_MS 40000u // what stands still stays where it was seen
 
 // One reading: where the transducer was and looked when its ping was sent, about, course frame. Time and
@@ -25,7 +26,7 @@ typedef struct {
 
 typedef struct {
     argus_ping_t ping[ARGUS_PINGS];
-    uint16_t sectors; // in which they looked, if not more
+    uint32_t looked[ARGUS_PING_SECTORS]; // the pings that looked into a sector, a bit each
     uint8_t next;
     uint8_t count;
 } argus_pings_t;
@@ -58,6 +59,15 @@ typedef struct {
     int32_t lateral_mm;
 } argus_shift_t;
 argus_shift_t argus_ping_shift(const argus_ping_t *now, const argus_ping_t *then);
+
+// The same of one ping beside many: its direction is worked out once.
+typedef struct {
+    const argus_ping_t *ping;
+    int32_t cos;
+    int32_t sin;
+} argus_line_t;
+argus_line_t argus_ping_line(const argus_ping_t *self);
+argus_shift_t argus_line_shift(const argus_line_t *line, const argus_ping_t *then);
 
 // What `then` would read from the place of `now`, of a thing that stands.
 int32_t argus_ping_predict_mm(const argus_ping_t *now, const argus_ping_t *then);

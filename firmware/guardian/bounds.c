@@ -170,7 +170,9 @@ static argus_bound_t leading(const argus_t *const self, const argus_guard_t *con
         return closed(ARGUS_BOUND_UNSEEN);
     }
     if (slants(self)) {
-        return closed(ARGUS_BOUND_OBJECT);
+        bound = closed(ARGUS_BOUND_OBJECT);
+        bound.slants = true;
+        return bound;
     }
     bound.speed_mm_s = argus_min(bound.speed_mm_s, seen_mm_s);
     bound.way_mm = argus_min(bound.way_mm, seen_mm);

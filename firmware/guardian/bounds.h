@@ -19,6 +19,7 @@ typedef struct {
     int32_t speed_mm_s; // S5: from it the robot stands before what is seen on the way; 0: closed
     int32_t way_mm;     // up to the object range
     argus_bound_why_t why;
+    bool slants; // closed by a wall beside that the way slants into: seen by having driven along it
 } argus_bound_t;
 
 // Where the robot is built to drive, or back. Cost: one pass over the sonars, five places of a cone each;

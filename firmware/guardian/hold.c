@@ -22,6 +22,8 @@
 #define WOVEN_CDEG 300
 #define WOVEN_SIPS 4
 #define FREE_SIPS 10
+#define SLANT_MM 80u   // driven, back or another way, it is another place
+#define SLANT_CDEG 300 // turned, it is another way
 
 static argus_outbox_t *outbox(argus_t *const core) {
     return &core->session.outbox;
@@ -32,6 +34,9 @@ void argus_hold_forget(argus_hold_client_t *const self) {
     memset(&self->wish, 0, sizeof self->wish);
     memset(&self->given, 0, sizeof self->given);
     self->given.bumpers = before.bumpers;
+    self->given.slanted = before.slanted;
+    self->given.slant_cdeg = before.slant_cdeg;
+    self->given.slant_mm = before.slant_mm;
     self->given.setv_mm_s = before.setv_mm_s;
 }
 
@@ -210,6 +215,28 @@ static bool wants_ahead(const argus_t *const core, const argus_wish_t *const wis
                                         : wish->mm_s > 0;
 }
 
+static bool is_where_it_slanted(const argus_t *const core, const argus_given_t *const given) {
+    const argus_knowledge_t *const knowledge = &core->knowledge;
+    return given->slanted && knowledge->odometer_mm - given->slant_mm < SLANT_MM &&
+           argus_angle_abs_diff(knowledge->pose.heading_cdeg, given->slant_cdeg) <= SLANT_CDEG;
+}
+
+// A wall that only driving along it shows is forgotten by a robot that stands before it, but has not gone.
+static argus_bound_t way_of(const argus_t *const core, argus_given_t *const given, const bool ahead) {
+    argus_bound_t bound = argus_bound_way(core, ahead);
+    if (!ahead) {
+        return bound;
+    }
+    if (bound.slants) {
+        given->slant_cdeg = core->knowledge.pose.heading_cdeg;
+        given->slant_mm = core->knowledge.odometer_mm;
+    } else if (bound.speed_mm_s > 0 && is_where_it_slanted(core, given)) {
+        bound = (argus_bound_t){.speed_mm_s = 0, .why = ARGUS_BOUND_OBJECT};
+    }
+    given->slanted = bound.slants || is_where_it_slanted(core, given);
+    return bound;
+}
+
 static void give_way(argus_t *const core, argus_hold_client_t *const self, const bool anyway) {
     const argus_wish_t *const wish = &self->wish;
     const bool moves = wish->way == ARGUS_WISH_MOVE;
@@ -219,7 +246,7 @@ static void give_way(argus_t *const core, argus_hold_client_t *const self, const
         }
         return;
     }
-    const argus_bound_t bound = argus_bound_way(core, wants_ahead(core, wish));
+    const argus_bound_t bound = way_of(core, &self->given, wants_ahead(core, wish));
     if (moves || wish->mm_s != 0) {
         tell_way(core, &self->given, &bound, moves ? self->setv_mm_s : wish->mm_s);
     }

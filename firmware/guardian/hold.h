@@ -21,6 +21,9 @@ typedef struct {
     uint8_t woven_sips;   // that it has been there
     int32_t base_cdeg;    // ... about this heading, course frame
     uint16_t bumpers;     // pressed at the last SIP
+    bool slanted;         // the way ahead slanted into a wall beside
+    int32_t slant_cdeg;   // ... at this heading, course frame
+    uint32_t slant_mm;    // ... and this odometer
     bool slowed_said;     // since the last GUARD_FREE
     bool held_said;
     bool turn_said;

@@ -57,7 +57,7 @@ argus_point_t argus_grid_centre(const argus_cell_t cell) {
     return at;
 }
 
-static bool is_inside(const argus_grid_t *const self, const argus_cell_t cell) {
+bool argus_grid_is_inside(const argus_grid_t *const self, const argus_cell_t cell) {
     const int32_t x = cell.x - self->low.x;
     const int32_t y = cell.y - self->low.y;
     return x >= 0 && x < CELLS && y >= 0 && y < CELLS;
@@ -82,7 +82,7 @@ static void put(argus_grid_t *const self, const argus_cell_t cell, const unsigne
 }
 
 static void rise(argus_grid_t *const self, const argus_cell_t cell, const unsigned by, const unsigned most) {
-    if (!is_inside(self, cell)) {
+    if (!argus_grid_is_inside(self, cell)) {
         return;
     }
     const unsigned level = level_at(self, place_of(cell));
@@ -92,7 +92,7 @@ static void rise(argus_grid_t *const self, const argus_cell_t cell, const unsign
 }
 
 static void lower(argus_grid_t *const self, const argus_cell_t cell) {
-    const unsigned level = is_inside(self, cell) ? level_at(self, place_of(cell)) : 0;
+    const unsigned level = argus_grid_is_inside(self, cell) ? level_at(self, place_of(cell)) : 0;
     if (level > 0 && level < LEVEL_MAX) {
         put(self, cell, level - 1);
     }
@@ -144,7 +144,7 @@ static void follow(argus_grid_t *const self, const argus_cell_t robot) {
         enter_row(self, up ? self->low.y : self->low.y - 1);
         self->low.y += up ? 1 : -1;
     }
-    ARGUS_ASSERT(is_inside(self, robot));
+    ARGUS_ASSERT(argus_grid_is_inside(self, robot));
 }
 
 static void clear_body(argus_grid_t *const self, const argus_cell_t robot) {
@@ -232,8 +232,20 @@ void argus_grid_see(argus_grid_t *const self, const argus_knowledge_t *const kno
 }
 
 bool argus_grid_is_occupied(const argus_grid_t *const self, const argus_cell_t cell) {
-    return is_inside(self, cell) && level_at(self, place_of(cell)) >= OCCUPIED;
+    return argus_grid_is_inside(self, cell) && level_at(self, place_of(cell)) >= OCCUPIED;
 }
+
+// Eight cells of a row, two to a byte, to a bit each: bits 2 and 3 of a level say OCCUPIED.
+static uint32_t occupied_in(const uint8_t *const pairs) {
+    const uint32_t levels = (uint32_t)pairs[0] | (uint32_t)pairs[1] << 8 | (uint32_t)pairs[2] << 16 |
+                            (uint32_t)pairs[3] << 24;
+    uint32_t bits = (levels >> 2 | levels >> 3) & 0x11111111u;
+    bits = (bits | bits >> 3) & 0x03030303u; // cells draw together: by two, ...
+    bits = (bits | bits >> 6) & 0x000F000Fu;
+    return (bits | bits >> 12) & 0xFFu;
+}
+
+_Static_assert(OCCUPIED == 4 && LEVEL_MAX == 15, "what bits 2 and 3 of a level say");
 
 // Places in a row wrap around: what is in front of the window's first cell follows its last.
 uint64_t argus_grid_row(const argus_grid_t *const self, const int row) {
@@ -241,10 +253,8 @@ uint64_t argus_grid_row(const argus_grid_t *const self, const int row) {
     const uint8_t *const pairs = &self->level[((unsigned)(self->low.y + row) & MASK) * CELLS / 2];
     const unsigned first = (unsigned)self->low.x & MASK;
     uint64_t bits = 0;
-    for (int i = CELLS / 2 - 1; i >= 0; i--) {
-        const unsigned even = (pairs[i] & LEVEL_MAX) >= OCCUPIED ? 1u : 0u;
-        const unsigned odd = pairs[i] >> 4 >= OCCUPIED ? 2u : 0u;
-        bits = bits << 2 | odd | even;
+    for (int i = CELLS / 2 - 4; i >= 0; i -= 4) {
+        bits = bits << 8 | occupied_in(&pairs[i]);
     }
     return bits >> first | bits << (CELLS - first) % CELLS;
 }

@@ -41,6 +41,9 @@ void argus_grid_fade(argus_grid_t *self);
 argus_cell_t argus_grid_cell(argus_point_t at);
 argus_point_t argus_grid_centre(argus_cell_t cell);
 
+// Whether a cell is in the window.
+bool argus_grid_is_inside(const argus_grid_t *self, argus_cell_t cell);
+
 // Whether something stands there; false outside the window. A whole row of the window, bit x for the cell
 // low.x + x; 0 <= row < ARGUS_GRID_CELLS.
 bool argus_grid_is_occupied(const argus_grid_t *self, argus_cell_t cell);

@@ -168,11 +168,38 @@ static int32_t off(const argus_knowledge_t *const self, const argus_sip_t *const
     return argus_hypot(dx, dy) + argus_angle_abs_diff(raw_heading_cdeg(sip), heading) / CDEG_PER_UNIT;
 }
 
-static void take_zero(argus_knowledge_t *const self, const argus_sip_t *const sip) {
-    if (self->origin_due && off(self, sip, true) < off(self, sip, false)) {
-        self->x_raw = 0;
-        self->y_raw = 0;
-        self->heading_offset_cdeg = self->pose.heading_cdeg;
+// True: it counts from zero now.
+static bool take_zero(argus_knowledge_t *const self, const argus_sip_t *const sip) {
+    if (!self->origin_due || off(self, sip, true) >= off(self, sip, false)) {
+        return false;
+    }
+    self->x_raw = 0;
+    self->y_raw = 0;
+    self->heading_offset_cdeg = self->pose.heading_cdeg;
+    return true;
+}
+
+// Its counters restarted. If it was in motion then, and some SIPs are missing, nobody knows how far it got before.
+static bool loses_way(argus_knowledge_t *const self, const argus_span_t *const span) {
+    const bool lost = argus_odometry_is_hidden(span, self->under_way);
+    if (lost) {
+        self->leap_mm = argus_odometry_hidden_mm(span);
+        self->leap_cdeg = 0;
+    }
+    return lost;
+}
+
+static void take_motion(argus_knowledge_t *const self, const argus_sip_t *const sip) {
+    const argus_wheels_t wheels = wheels_of(self->robot, sip);
+    const int32_t left = wheels.left_mm_s;
+    const int32_t right = wheels.right_mm_s;
+    self->vel_left_mm_s = (int16_t)left;
+    self->vel_right_mm_s = (int16_t)right;
+    self->rotating = argus_abs(left - right) > ROTATING_MM_S;
+    if (argus_abs(left) > REST_MM_S || argus_abs(right) > REST_MM_S) {
+        self->still_sips = 0;
+    } else if (self->still_sips < UINT16_MAX) {
+        self->still_sips++;
     }
 }
 
@@ -180,22 +207,27 @@ void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *
                               const int32_t distance_um, const uint32_t now_ms) {
     ARGUS_ASSERT(distance_um > 0);
     const argus_span_t span = span_to(self, sip, now_ms);
+    bool lost = false;
     self->leapt = false;
     if (!self->has_raw) {
+        lost = loses_way(self, &span);
+        self->leapt = lost;
         take_origin(self, sip);
         self->excess = (argus_excess_t){0};
     } else {
-        take_zero(self, sip);
-        self->leapt = !move(self, sip, distance_um, &span);
+        lost = take_zero(self, sip) && loses_way(self, &span);
+        self->leapt = lost || !move(self, sip, distance_um, &span);
     }
     if (self->leapt) {
         leave_out(self, sip, &span);
         self->leaps++;
-        self->leaps_unseen += argus_odometry_is_unseen(&span) ? 1u : 0u;
+        self->leaps_unseen += lost || argus_odometry_is_unseen(&span) ? 1u : 0u;
     }
     self->moved_ms = now_ms;
     self->x_raw = sip->x_raw;
     self->y_raw = sip->y_raw;
+    self->under_way = false;
+    take_motion(self, sip);
 }
 
 void argus_knowledge_turn_about(argus_knowledge_t *const self, const argus_robot_t *const robot) {
@@ -218,20 +250,6 @@ void argus_knowledge_set_back(argus_knowledge_t *const self, const argus_point_t
     self->pose.y_mm = to.y_mm;
     self->x_um = 0;
     self->y_um = 0;
-}
-
-static void take_motion(argus_knowledge_t *const self, const argus_sip_t *const sip) {
-    const argus_wheels_t wheels = wheels_of(self->robot, sip);
-    const int32_t left = wheels.left_mm_s;
-    const int32_t right = wheels.right_mm_s;
-    self->vel_left_mm_s = (int16_t)left;
-    self->vel_right_mm_s = (int16_t)right;
-    self->rotating = argus_abs(left - right) > ROTATING_MM_S;
-    if (argus_abs(left) > REST_MM_S || argus_abs(right) > REST_MM_S) {
-        self->still_sips = 0;
-    } else if (self->still_sips < UINT16_MAX) {
-        self->still_sips++;
-    }
 }
 
 static void take_state(argus_knowledge_t *const self, const argus_sip_t *const sip) {
@@ -281,7 +299,6 @@ void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const
     self->sips++;
     self->sip_ms = now_ms;
     argus_knowledge_odometry(self, sip, distance_um, now_ms);
-    take_motion(self, sip);
     take_state(self, sip);
     take_readings(self, sip);
 }

@@ -53,6 +53,7 @@ typedef struct {
     uint32_t moved_ms;     // time of the SIP of these
     argus_excess_t excess; // beyond what the wheels say
     bool origin_due;       // the robot may have set its odometry to zero, since these
+    bool under_way;        // a motion was asked for, and no SIP came since
     bool leapt;            // in the last SIP, as no robot moves: left out of the pose
     uint32_t leaps;        // monotonic
     uint32_t leaps_unseen; // ... of these after a gap in which it moved: its place is lost

@@ -12,6 +12,7 @@
 #define FASTEST_MM_S 2000   // no robot of the tables drives as fast
 #define DRIVES_MM_S 750     // the fastest that it is ever told to
 #define TURNS_CDEG_S 10000  // likewise
+#define REST_MM_S 5         // encoders tremble
 #define TURNING_CDEG_S 500  // ... which straight wheels do not look like
 #define ACCEL_MM_S2 2000    // the hardest that wheels speed up or brake
 #define ACCEL_CDEG_S2 30000 // likewise
@@ -116,6 +117,19 @@ static bool builds_up(argus_excess_t *const self, const argus_span_t *const span
 
 bool argus_odometry_is_unseen(const argus_span_t *const span) {
     return span->elapsed_ms > GAP_MS && (span->before.left_mm_s != 0 || span->before.right_mm_s != 0);
+}
+
+static bool was_moving(const argus_wheels_t *const wheels) {
+    return argus_abs(wheels->left_mm_s) > REST_MM_S || argus_abs(wheels->right_mm_s) > REST_MM_S;
+}
+
+bool argus_odometry_is_hidden(const argus_span_t *const span, const bool under_way) {
+    return (under_way || was_moving(&span->before)) && span->elapsed_ms > SIP_MS + LATE_MS;
+}
+
+int32_t argus_odometry_hidden_mm(const argus_span_t *const span) {
+    ARGUS_ASSERT(span->track_mm > 0);
+    return times_ms(fastest_mm_s(span), elapsed_ms(span));
 }
 
 bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *const span,

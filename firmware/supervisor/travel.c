@@ -111,7 +111,13 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
     const int sonar = argus_nearest_ahead(self);
     const bool stopped =
         sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
-    if (!argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped)) {
+    const argus_search_news_t news =
+        argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
+    if (news == ARGUS_SEARCH_GOES_ON) { // what drives ends by itself
+        *intent = argus_to_nothing();
+        return false;
+    }
+    if (news == ARGUS_SEARCH_NO_WAY) {
         *intent = (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_WAY};
         return false;
     }

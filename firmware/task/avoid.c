@@ -58,18 +58,21 @@ static void note_driven(argus_progress_t *const self, const int32_t to_go_mm) {
     }
 }
 
-bool argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const knowledge,
-                       const argus_echoes_t *const echoes, const bool stopped) {
+argus_search_news_t argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const knowledge,
+                                      const argus_echoes_t *const echoes, const bool stopped) {
     ARGUS_ASSERT(self->next <= self->count);
     const argus_ground_t ground = {knowledge, &echoes->grid, stopped};
-    self->has_leg = self->next < self->count &&
-                    argus_way_find(&self->wave, &ground, self->waypoint[self->next], &self->leg);
-    self->progress.exhausted = self->progress.exhausted || !self->has_leg;
+    const argus_search_news_t news =
+        self->next < self->count ? argus_way_find(&self->search, &ground, self->waypoint[self->next])
+                                 : ARGUS_SEARCH_NO_WAY;
+    self->has_leg = news == ARGUS_SEARCH_FOUND;
+    self->progress.exhausted = self->progress.exhausted || news == ARGUS_SEARCH_NO_WAY;
     if (self->has_leg) {
+        self->leg = self->search.leg;
         self->avoiding = !self->leg.direct;
         note_way(&self->progress, self->leg.to_go_mm + argus_task_leg_mm(self, knowledge));
     }
-    return self->has_leg;
+    return news;
 }
 
 bool argus_task_escape(argus_task_t *const self, const argus_knowledge_t *const knowledge,

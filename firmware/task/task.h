@@ -27,7 +27,7 @@ typedef struct {
     bool has_leg;  // where the robot now heads for
     argus_leg_t leg;
     argus_progress_t progress;
-    argus_wave_t wave; // scratch
+    argus_search_t search;
 } argus_task_t;
 
 void argus_task_init(argus_task_t *self);
@@ -45,9 +45,9 @@ int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *kn
 void argus_task_refuse(argus_task_t *self, const argus_knowledge_t *knowledge, argus_echoes_t *echoes);
 
 // Chooses the next leg: the first straight part of the way to the waypoint. `stopped`: something is so near
-// that the robot cannot go on ahead. False: no way. Cost: argus_way_find().
-bool argus_task_choose(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_echoes_t *echoes,
-                       bool stopped);
+// that the robot cannot go on ahead. There is a leg only when it is FOUND. Cost: argus_way_find().
+argus_search_news_t argus_task_choose(argus_task_t *self, const argus_knowledge_t *knowledge,
+                                      const argus_echoes_t *echoes, bool stopped);
 
 // Where the robot cannot turn: a leg ahead, but for so much of a turn, if the corridor there is free. False:
 // no way that way either.

@@ -42,6 +42,8 @@ ROOT = Path(__file__).resolve().parents[2]
 SCENARIOS = Path(__file__).resolve().parents[1] / "scenarios"
 WORLDS = ("open-office", "demo", "smooth")
 FIRST_FAULT_MM, NEXT_FAULT_MM = 600, 800
+TRIES, TOO_LATE_MS = 3, 250.0
+"""A drive that fails while the host is as late as that says nothing of Argus: so many are driven at most."""
 TIMEOUT_S, LONGEST_S = 180.0, 3600.0
 
 _EXAMPLES = """\
@@ -264,18 +266,33 @@ def _demonstrate(arguments: argparse.Namespace) -> int:
     scenario = _scenario(arguments)
     limit_s = PAPER_LIMIT_S if arguments.profile == "paper" else TIME_LIMIT_S
     task = Task(_goal(scenario, load_world(scenario.world)), arguments.fail, limit_s)
-    setup = _prepare(arguments, scenario)
-    if not arguments.json:
-        takes = "two minutes" if arguments.profile == "paper" else "half a minute"
-        print(f"demo: the drive takes about {takes}; records in {arguments.out}", flush=True)
-    recording = _drive(arguments, setup)
-    ended = time.monotonic()
-    verdict = judge(recording.truth, recording.events, task)
+    for drive in range(1, TRIES + 1):
+        setup = _prepare(arguments, scenario)
+        if not arguments.json:
+            takes = "two minutes" if arguments.profile == "paper" else "half a minute"
+            print(f"demo: the drive takes about {takes}; records in {arguments.out}", flush=True)
+        recording = _drive(arguments, setup)
+        ended = time.monotonic()
+        verdict = judge(recording.truth, recording.events, task)
+        if verdict.passed or drive == TRIES or not is_too_late(verdict):
+            break
+        print(f"demo: {_again(verdict, drive)}", file=sys.stderr, flush=True)
     _conclude(arguments, scenario, recording, verdict)
     if not arguments.json:
         print(f"report and picture took {time.monotonic() - ended:.1f} s")
     sys.stdout.flush()
     return 0 if verdict.passed else 1
+
+
+def is_too_late(verdict: Verdict) -> bool:
+    """Whether the host, not Argus, may have failed the drive."""
+    return max(verdict.host_late_ms, default=0.0) > TOO_LATE_MS
+
+
+def _again(verdict: Verdict, drive: int) -> str:
+    failed = ", ".join(rule.name for rule in verdict.rules if not rule.holds)
+    late = f"the host was up to {max(verdict.host_late_ms):.0f} ms late"
+    return f"not held: {failed}; but {late}, so it is driven again ({drive + 1} of {TRIES})"
 
 
 @contextmanager

@@ -12,21 +12,30 @@ from pathlib import Path
 from typing import Final
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "monitor"))
-from page_browser import Browser, Monitor, missing
+from page_browser import Browser, Keys, Monitor, missing
 
 GOAL_MS: Final = 150.0
 
 
+def drive(browser: Browser) -> None:
+    """Keep the robot on its way, so that all of the picture moves: a turn wherever it stands."""
+    if browser.known("state.mode") == "IDLE":
+        browser.focus_stage()
+        browser.keys(Keys.ARROW_LEFT)
+
+
 def measure(seconds: float, folder: Path) -> list[float]:
     """Return the age of each painted reading, ms."""
-    monitor = Monitor(["--sim", "--port", "0"], folder)
+    monitor = Monitor(["--sim", "--world", "open-office", "--port", "0"], folder)
     browser = Browser(folder / "profile")
     try:
         browser.open(monitor.url)
-        time.sleep(2)
+        browser.wait("it stands", lambda: browser.known("state.mode") == "IDLE")
+        browser.js("argusMonitor.latencies.splice(0)")  # of a page that was still loading
         found: list[float] = []
         until = time.monotonic() + seconds
         while time.monotonic() < until:
+            drive(browser)
             time.sleep(1)
             found += browser.js("return argusMonitor.latencies.splice(0)")
         return found
@@ -36,7 +45,7 @@ def measure(seconds: float, folder: Path) -> list[float]:
 
 
 def main() -> int:
-    """Print the figures."""
+    """Print the figures; 1 when a reading was painted later than it must be."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=20.0, help="how long (default 20)")
     seconds = parser.parse_args().seconds
@@ -50,7 +59,7 @@ def main() -> int:
     print(f"monitor: {len(found)} readings painted in {seconds:.0f} s")
     print(f"SIP to screen: median {parts[49]:.0f} ms, 95 % {parts[94]:.0f} ms, most {max(found):.0f} ms")
     print(f"within {GOAL_MS:.0f} ms: {within:.1f} %")
-    return 0
+    return int(within < 100)
 
 
 if __name__ == "__main__":

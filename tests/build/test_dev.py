@@ -3,26 +3,44 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
+from unittest import mock
 
 import lizard
 import pytest
-from devtool import cmake, testing
+from devtool import cli, cmake, testing
 
 ROOT = Path(__file__).resolve().parents[2]
 COMMANDS = (
-    "demo", "shell", "test", "build", "format", "lint", "coverage", "size", "bench", "clean",
+    "demo", "shell", "test", "soak", "build", "format", "lint", "coverage", "size", "bench", "clean",
     "firmware", "hil", "flash",
 )  # fmt: skip
 
 
 def dev(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run tools/dev as a program."""
     command = [sys.executable, str(ROOT / "tools/dev"), *arguments]
     return subprocess.run(command, check=False, capture_output=True, text=True, timeout=600)
+
+
+def dev_here(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run tools/dev in this process: as long as it starts nothing, it says the same."""
+    with (
+        contextlib.redirect_stdout(io.StringIO()) as out,
+        contextlib.redirect_stderr(io.StringIO()) as err,
+        mock.patch.object(cli, "leave_venv"),
+    ):
+        try:
+            code = cli.main(arguments)
+        except SystemExit as left:
+            code = int(left.code or 0)
+    return subprocess.CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
 
 
 def test_help_names_every_command() -> None:
@@ -35,7 +53,7 @@ def test_help_names_every_command() -> None:
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_help_of_each_command(command: str) -> None:
-    done = dev(command, "--help")
+    done = dev_here(command, "--help")
     assert done.returncode == 0
     assert "examples:" in done.stdout
     assert f"  tools/dev {command}" in done.stdout
@@ -57,28 +75,29 @@ def test_help_of_each_command(command: str) -> None:
     ],
 )
 def test_wrong_arguments(arguments: list[str], expected: str) -> None:
-    done = dev(*arguments)
+    done = dev_here(*arguments)
     assert done.returncode == 2
     assert expected in done.stderr
     assert "Traceback" not in done.stderr
 
 
-@pytest.mark.parametrize("command", ["test", "lint", "format"])
+@pytest.mark.parametrize("command", ["test", "soak", "lint", "format"])
 def test_list_prints_the_stages_and_does_nothing(command: str) -> None:
-    done = dev(command, "--list")
+    done = dev_here(command, "--list")
     assert done.returncode == 0
     assert len(done.stdout.splitlines()) >= 2
     assert "dev:" not in done.stdout
 
 
 def stages_of(*arguments: str) -> list[str]:
-    return [line.split()[0] for line in dev(*arguments, "--list").stdout.splitlines()]
+    return [line.split()[0] for line in dev_here(*arguments, "--list").stdout.splitlines()]
 
 
 def test_the_quick_stages_are_some_of_all() -> None:
     quick, everything = stages_of("test", "--quick"), stages_of("test")
     assert set(quick) < set(everything)
-    assert not {"hil", "can", "soak"} & set(quick)
+    assert not {"hil", "can", "soak", "wide"} & set(quick)
+    assert set(stages_of("soak")) - set(everything) == {"wide"}
 
 
 @pytest.fixture
@@ -87,7 +106,7 @@ def commands(monkeypatch: pytest.MonkeyPatch) -> dict[str, list[list[str]]]:
     found: dict[str, list[list[str]]] = {}
     for module in (cmake, testing):
         monkeypatch.setattr(module, "build", lambda preset, run: None)
-    for stage in testing.TEST_STAGES:
+    for stage in {*testing.TEST_STAGES, *testing.SOAK_STAGES}:
         if stage.name not in {"hil", "can", "ros", "packages", "monitor"}:
             runs: list[list[str]] = found.setdefault(stage.name, [])
             stage.action(lambda command, runs=runs: runs.append([str(word) for word in command]))  # type: ignore[misc]
@@ -95,16 +114,21 @@ def commands(monkeypatch: pytest.MonkeyPatch) -> dict[str, list[list[str]]]:
 
 
 def test_every_c_test_is_run_optimised(commands: dict[str, list[list[str]]]) -> None:
-    """The fast ones in the stage of the release build, those that compute for long in that of their own."""
-    for stage, choice in (("release", ["-LE", "soak"]), ("soak", ["-L", "soak"])):
-        (ctest,) = (run for run in commands[stage] if run[0] == "ctest")
+    """The fast ones in the stage of the release build, those that compute for long in those of their own."""
+    for stage, choice in (
+        ("release", ["-LE", "soak|wide"]),
+        ("soak", ["-L", "soak"]),
+        ("wide", ["-L", "wide"]),
+    ):
+        ctest = next(run for run in commands[stage] if run[0] == "ctest")
         assert ctest[1:3] == ["--preset", "release"]
         assert ctest[-2:] == choice
 
 
 def test_every_python_test_is_run(commands: dict[str, list[list[str]]]) -> None:
-    """Those that compute are in python or soak, the others in hil, can or boards."""
-    for stage, mark in (("python", "not soak"), ("soak", "soak")):
+    """Those that compute are in python, soak or wide, the others in hil, can or boards."""
+    marks = {"python": "not soak and not wide", "soak": "soak and not wide", "wide": "wide"}
+    for stage, mark in marks.items():
         (pytests,) = (run for run in commands[stage] if "pytest" in run)
         assert pytests[pytests.index("-m", 2) + 1] == mark
         assert "tests" in pytests

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import cantools.database
+import forks
 import pytest
 from cantools.database.can import Database, Message
 
@@ -34,8 +35,7 @@ import gen_dbc  # noqa: E402
 
 
 def generate(root: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, str(ROOT / "tools/gen_dbc.py"), "--root", str(root), *arguments]
-    return subprocess.run(command, check=False, capture_output=True, text=True)
+    return forks.run_text("gen_dbc:main", "--root", root, *arguments)
 
 
 @pytest.fixture

@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
+import os
+import socket
 import subprocess
 from pathlib import Path
 
 import pytest
-from devtool import peer_runs, peers
-from devtool.base import Command
+from devtool import peer_base, peer_runs, peer_wander, peer_wire, peers
+from devtool.base import Command as Words
+
+from hil_sim.arcos import COMMAND, Command, Sip, frame
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -21,7 +25,7 @@ def run_with(monkeypatch: pytest.MonkeyPatch, **given: str) -> tuple[str | None,
     for name, value in given.items():
         monkeypatch.setenv(name, value)
 
-    def run(command: Command) -> None:
+    def run(command: Words) -> None:
         done.append([str(word) for word in command])
 
     return peers.peers(run), done
@@ -30,7 +34,7 @@ def run_with(monkeypatch: pytest.MonkeyPatch, **given: str) -> tuple[str | None,
 def test_without_sources_it_is_skipped_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     note, done = run_with(monkeypatch)
     assert note is not None
-    assert "ARIA_SOURCE=FOLDER and MOBILESIM_SOURCE=FOLDER" in note
+    assert all(f"{name}=FOLDER" in note for name in peers.SOURCES)
     assert not done
 
 
@@ -39,9 +43,9 @@ def test_what_is_given_is_run_and_the_rest_told(monkeypatch: pytest.MonkeyPatch)
     assert words[1:] == [str(ROOT / "tools/devtool/peer_runs.py"), "ARIA_SOURCE=/a"]
     assert note is not None
     assert "MOBILESIM_SOURCE=FOLDER" in note
-    assert "ARIA_SOURCE" not in note
-    note, (words,) = run_with(monkeypatch, ARIA_SOURCE="/a", MOBILESIM_SOURCE="/m")
-    assert words[2:] == ["ARIA_SOURCE=/a", "MOBILESIM_SOURCE=/m"]
+    assert " ARIA_SOURCE" not in note
+    note, (words,) = run_with(monkeypatch, **{name: f"/{name[0]}" for name in peers.SOURCES})
+    assert words[2:] == [f"{name}=/{name[0]}" for name in peers.SOURCES]
     assert note is None
 
 
@@ -50,13 +54,61 @@ def test_mobilesim_alone_is_told_to_need_aria(capsys: pytest.CaptureFixture[str]
     assert "give ARIA_SOURCE= as well" in capsys.readouterr().out
 
 
+def test_those_of_ros_1_are_told_to_need_a_debian(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("ROS1_ROOT", raising=False)
+    assert peer_runs.main(["ARIA_SOURCE=/nowhere", "P2OS_SOURCE=/nowhere"]) == 1
+    assert "give ROS1_ROOT= as well" in capsys.readouterr().out
+
+
+def test_a_sip_that_is_lost_on_the_wire_is_counted() -> None:
+    robot = [k / 10 for k in range(50)]
+    client = [at + 0.002 for at in robot[10:40]]
+    assert peer_wire.lost(robot, client) == 0
+    assert peer_wire.lost(robot, client[:5] + client[7:]) == 2
+    assert peer_wire.lost(robot, []) == len(robot)
+
+
+@pytest.mark.parametrize("terminal", [False, True], ids=["port", "terminal"])
+def test_a_wire_passes_all_and_counts_it(terminal: bool) -> None:
+    packet = frame(Sip(0x32, 0, 0, 0, 0, 0, 127, 0, 0, 0, 0x1F, 0, ((3, 812),)).data)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        wire = peer_wire.Wire(lambda: peer_wire.to_port(server.getsockname()[1]), terminal)
+        with peer_wire.to_terminal(wire.path) if terminal else peer_wire.to_port(wire.port) as client:
+            os.write(client, frame(Command.integer(COMMAND["VEL"], 200).data))
+            robot, _ = server.accept()
+            with robot:
+                assert robot.recv(100) == frame(Command.integer(COMMAND["VEL"], 200).data)
+                robot.sendall(b"noise" + packet * 2)
+                heard = b""
+                while len(heard) < 5 + 2 * len(packet):
+                    heard += os.read(client, 100)
+        wire.close()
+    assert heard == b"noise" + packet * 2
+    assert (len(wire.sip_s), wire.damaged, wire.commands) == (2, 5, 1)
+
+
+def test_who_wanders_turns_from_what_is_near_and_stands_without_readings() -> None:
+    wander = peer_wander.Wander()
+    assert wander.speeds() == (0.0, 0.0)
+    wander.hear([5.0] * 16)
+    assert wander.speeds() == (peer_wander.SPEED_M_S, 0.0)
+    wander.hear([5.0, 5.0, 5.0, 0.5, 0.7, 1.0, 1.0, 1.0])
+    assert wander.speeds() == (0.0, peer_wander.TURN_RAD_S)
+    wander.hear([1.0, 1.0, 1.0, 0.7, 0.7, 1.0, 5.0, 5.0])
+    assert wander.speeds() == (0.0, peer_wander.TURN_RAD_S), "the turn goes on until the way is free"
+    wander.hear([1.0] * 8)
+    assert wander.speeds() == (peer_wander.SPEED_M_S, 0.0)
+
+
 def test_sources_are_built_in_a_copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     source = tmp_path / "source"
     source.mkdir()
     (source / "Makefile").write_text("all:\n")
     (source / "old.o").write_text("")
-    copy = peer_runs.cache("aria", source)
+    copy = peer_base.cache("aria", source)
     assert copy.is_relative_to(tmp_path / "cache")
     assert [path.name for path in copy.iterdir()] == ["Makefile"]
 

@@ -41,6 +41,7 @@ def runner(folder: Path) -> str:
 def test_each_function_runs_once(tmp_path: Path) -> None:
     configure(tmp_path, "void test_a(void);\nvoid test_a(void) {\n}\n\nvoid test_b_2(void)\n{\n}\n")
     text = runner(tmp_path)
+    assert f'#include "{tmp_path}/unit/arcos/test_probe.c"' in text
     assert text.count('UnityDefaultTestRun(test_a, "test_a"') == 1
     assert text.count('UnityDefaultTestRun(test_b_2, "test_b_2"') == 1
     assert "void setUp(void)\n{" in text
@@ -49,7 +50,7 @@ def test_each_function_runs_once(tmp_path: Path) -> None:
 
 def test_own_hooks_are_used(tmp_path: Path) -> None:
     configure(tmp_path, "void setUp(void) {\n}\n\nvoid test_a(void) {\n}\n")
-    assert "void setUp(void);" in runner(tmp_path)
+    assert "void setUp(void)" not in runner(tmp_path)
     assert "void tearDown(void)\n{" in runner(tmp_path)
 
 
@@ -59,7 +60,7 @@ def test_own_hooks_are_used(tmp_path: Path) -> None:
         ("void test_a(void) {\n}\nstatic void test_b(void) {\n}\n", "would never run"),
         ("void test_a(void) {\n}\nvoid test_b() {\n}\n", "would never run"),
         ("void test_a(void) {\n}\nint test_b(int x) {\n    return x;\n}\n", "would never run"),
-        ("void test_a(void) { // soaks\n}\n", "'soak' is the one known"),
+        ("void test_a(void) { // soaks\n}\n", "'soak' and 'wide' are known"),
         ("int helper(void) {\n    return 0;\n}\n", "no 'void test_name(void)'"),
     ],
 )
@@ -71,11 +72,11 @@ def test_a_test_that_would_not_run_stops_the_build(tmp_path: Path, source: str, 
 
 
 def test_who_computes_for_long_is_run_apart(tmp_path: Path) -> None:
-    configure(tmp_path, "void test_a(void);\nvoid test_a(void) { // soak\n}\n\nvoid test_b(void) {\n}\n")
+    configure(tmp_path, "void test_a(void);\nvoid test_a(void) { // soak\n}\n\nvoid test_b(void) {\n}\nvoid test_c(void) { // wide\n}\n")
     lines = [line.strip() for line in runner(tmp_path).splitlines()]
-    for name, kind in (("test_a", "soak"), ("test_b", "short")):
+    for name, kind in (("test_a", "soak"), ("test_b", "short"), ("test_c", "wide")):
         at = lines.index(f'UnityDefaultTestRun({name}, "{name}", __LINE__);')
-        assert lines[at - 1] == f'if (wanted(argc, argv, "{kind}"))'
+        assert lines[at - 1] == f'if (unity_wants(argc, argv, "{kind}"))'
 
 
 @pytest.mark.parametrize(
@@ -83,6 +84,7 @@ def test_who_computes_for_long_is_run_apart(tmp_path: Path) -> None:
     [
         ("void test_a(void) {\n}\n", "arcos.test_probe"),
         ("void test_a(void) { // soak\n}\n", "arcos.test_probe.soak"),
+        ("void test_a(void) { // wide\n}\n", "arcos.test_probe.wide"),
         (
             "void test_a(void) { // soak\n}\nvoid test_b(void) {\n}\n",
             "arcos.test_probe arcos.test_probe.soak",

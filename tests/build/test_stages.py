@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from devtool import stages
 from devtool.base import Run, Stop
-from devtool.stages import Stage, StageFailed, logged_runner, run_stages, tail_of
+from devtool.stages import Spent, Stage, StageFailed, logged_runner, making, run_stages, tail_of
 
 FAIL = [sys.executable, "-c", "print('what went wrong'); raise SystemExit(7)"]
 PASS = [sys.executable, "-c", "print('fine')"]
@@ -32,6 +32,10 @@ def passing(run: Run) -> None:
     run(PASS)
 
 
+def spinning(run: Run) -> None:
+    run([sys.executable, "-c", "import time\nwhile time.process_time() < 0.3: pass"])
+
+
 def failing(run: Run) -> None:
     run(FAIL)
 
@@ -48,7 +52,8 @@ def test_all_run_and_the_end_lists_what_failed(logs: Path, capfd: pytest.Capture
     assert "not run" not in said
     table, _, failed = said.rpartition("\nfailed: a, c\n")
     for name, word in (("a", "FAILED"), ("b", "ok"), ("c", "FAILED"), ("d", "ok"), ("total", "FAILED")):
-        assert re.search(rf"^  {name} +{word} +\d+\.\d s +\d+\.\d s of CPU$", table, re.MULTILINE), table
+        times = r"\d+\.\d s  CPU +\d+\.\d s = +\d+\.\d s tests \+ +\d+\.\d s building"
+        assert re.search(rf"^  {name} +{word} +{times}$", table, re.MULTILINE), table
     first, second = failed.splitlines()
     assert first.split()[:2] == ["a", f"{logs / 'a.log'}:"]
     assert "exit code 7" in first
@@ -101,8 +106,28 @@ def test_the_tail_is_of_the_last_command_and_without_what_went_well(tmp_path: Pa
 
 
 def test_the_cpu_time_of_a_stage_is_that_of_its_children(logs: Path) -> None:
-    spin = "import time\nwhile time.process_time() < 0.3: pass"
-    result = stages.run_stage(stage("a", lambda run: run([sys.executable, "-c", spin])), verbose=False)
+    result = stages.run_stage(stage("a", spinning), verbose=False)
     assert result.passed
-    assert result.cpu_s >= 0.3
+    assert result.spent.cpu_s >= 0.3
+    assert result.made == Spent()
     assert result.log == logs / "a.log"
+
+
+def test_what_building_takes_is_told_apart(capfd: pytest.CaptureFixture[str]) -> None:
+    def build_and_test(run: Run) -> None:
+        with making():
+            spinning(run)
+        run(PASS)
+
+    assert run_stages([stage("a", build_and_test)], True, False, Spent(50.0, 20.0)) == 0
+    rows = {
+        line.split()[0]: [float(number) for number in re.findall(r"(\d+\.\d) s", line)]
+        for line in capfd.readouterr().out.splitlines()
+        if " building" in line
+    }
+    assert rows["set-up"] == [50.0, 20.0, 0.0, 20.0]
+    assert rows["a"][3] >= 0.3
+    assert rows["a"][2] < rows["a"][1] - 0.2
+    assert rows["total"] == pytest.approx(
+        [mine + others for mine, others in zip(rows["a"], rows["set-up"], strict=True)], abs=0.11
+    )

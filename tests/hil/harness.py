@@ -22,8 +22,10 @@ from typing import IO, Any, Final, TypeVar
 
 import serial
 import yaml
+from forks import Forked, start
 
 from hil_sim.arcos import COMMAND, Command, Unframer
+from hil_sim.demo.runner import make_punctual
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 PYTHON: Final = ROOT / ".venv/bin/python"
@@ -58,7 +60,7 @@ def wait_for(what: str, probe: Callable[[], T], timeout_s: float) -> T:
         time.sleep(POLL_S)
 
 
-def terminate(process: subprocess.Popen[bytes], grace_s: float = 60.0) -> None:
+def terminate(process: subprocess.Popen[bytes] | Forked, grace_s: float = 60.0) -> None:
     """End a process of ours, by force if it must be."""
     if process.poll() is None:
         process.send_signal(signal.SIGCONT)
@@ -81,9 +83,10 @@ class Sim:
         self._rest = b""
         self._file: IO[bytes] | None = None
         with log.open("wb") as errors:
-            self.process = subprocess.Popen(
-                self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=errors
+            self.process = start(
+                "hil_sim.cli.main:main", *self.command[1:], stdout=subprocess.PIPE, stderr=errors
             )
+        make_punctual(self.process.pid)
         self.address = self._first_line()
 
     def _first_line(self) -> str:
@@ -188,6 +191,7 @@ class Argusd:
         self.process = subprocess.Popen(
             self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
         )
+        make_punctual(self.process.pid)
         self.started_unix_s = time.time()
         self._threads = [
             threading.Thread(target=self._read, args=(self.process.stdout, self._event), daemon=True),

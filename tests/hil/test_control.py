@@ -25,6 +25,7 @@ from test_screen import Terminal
 from worlds import hall
 
 ARGUSCTL = ROOT / ".venv/bin/argusctl"
+MONITOR = ROOT / ".venv/bin/argus-monitor"
 DOCS = ROOT / "docs/control.md"
 TOKEN = "a-token-that-nobody-logs-0123"
 
@@ -219,6 +220,22 @@ def test_a_screen_is_attached_and_leaves(bench: Bench) -> None:
     assert argusd.process.poll() is None
 
 
+def test_the_monitor_shows_that_screen_in_the_place_of_its_page(bench: Bench) -> None:
+    bench.sim(bench.world(**hall()))
+    argusd = start(bench, active=False)
+    for arguments in (["--connect", place_of(bench)], ["--sim", "--world", "hall"]):
+        terminal = Terminal([*arguments, "--tui"], "vt52", 80, MONITOR)
+        try:
+            terminal.wait_shown("IsNormal")
+            terminal.wait_shown("HEALTHY")
+            terminal.press("q")
+            assert terminal.wait_exit() == 0
+            assert terminal.is_as_before()
+        finally:
+            terminal.close()
+    assert argusd.process.poll() is None
+
+
 def test_wrong_words_are_refused_in_one_line(bench: Bench) -> None:
     for words, part in {
         ("fail", "sonar", "3", "sad"): "invalid choice: 'sad'",
@@ -255,3 +272,87 @@ def test_the_commands_of_the_manual_work(bench: Bench, token_file: Path) -> None
     assert "argusctl fail sonar 3 stuck --for 30s" in other
     for words in (shlex.split(line) for line in other if line.startswith("argusctl")):
         assert ctl(bench, *words[1:]).returncode in (1, 3), "understood, but argusd is gone"
+
+
+def block_with(word: str) -> list[str]:
+    """The commands of the manual's block that has a word."""
+    (block,) = (
+        found for found in re.findall(r"(?:^    .*\n)+", DOCS.read_text(), re.MULTILINE) if word in found
+    )
+    return [line.strip() for line in block.splitlines()]
+
+
+def test_the_commands_of_the_manual_with_a_token_work(bench: Bench) -> None:
+    make, serve, ask = block_with("--control-token")
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = str(probe.getsockname()[1])
+    subprocess.run(["sh", "-c", make], cwd=bench.path, check=True)
+    bench.sim(bench.world(**hall()))
+    words = [str(bench.path / "token") if word == "token" else word for word in shlex.split(serve)]
+    assert words[:3] == ["argusd", "--link", "tcp:localhost"]
+    argusd = bench.argusd(*(word.replace("8200", port) for word in words[3:]), active=False)
+    argusd.wait("HEALTH_CHECK")
+    program, *words = shlex.split(ask.replace("8200", port))
+    assert program == "argusctl"
+    done = subprocess.run(
+        [str(ARGUSCTL), *words],
+        cwd=bench.path,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "IDLE" in done.stdout
+    token = (bench.path / "token").read_text().strip()
+    assert not any(token in str(event) for event in argusd.events)
+    assert not any(token in line for line in argusd.errors)
+
+
+def test_the_program_of_the_manual_and_its_screen_work(bench: Bench) -> None:
+    (program,) = re.findall(r"```python\n(.*?)```", DOCS.read_text(), re.DOTALL)
+    bench.sim(bench.world(**hall()))
+    start(bench)
+    done = subprocess.run(
+        [str(ROOT / ".venv/bin/python"), "-c", program.replace("unix:/tmp/argus.sock", place_of(bench))],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("IDLE\n")
+    name, *words = shlex.split(block_with("--attach")[0].replace("unix:/tmp/argus.sock", place_of(bench)))
+    assert name == "argusd"
+    terminal = Terminal(words, "vt52", 80)
+    try:
+        terminal.wait_shown("IsNormal")
+        terminal.press("q")
+        assert terminal.wait_exit() == 0
+    finally:
+        terminal.close()
+
+
+def test_nothing_listens_beyond_this_machine(bench: Bench) -> None:
+    # All ports that argusd can open, as the manuals have them; the kernel says where each listens.
+    bench.sim(bench.world(**hall()))
+    with ExitStack() as probes:
+        found = [probes.enter_context(socket.create_server(("127.0.0.1", 0))) for _ in range(2)]
+        control, guard = (probe.getsockname()[1] for probe in found)
+    secret = bench.path / "secret"
+    secret.write_text(f"{TOKEN}\n")
+    secret.chmod(0o600)
+    words = ["--control", f"tcp:localhost:{control}", "--control-token", str(secret)]
+    argusd = bench.argusd(*words, "--guard", f"tcp:localhost:{guard}", active=False)
+    argusd.wait("HEALTH_CHECK")
+    rows = [
+        line.split()
+        for name in ("tcp", "tcp6")
+        for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]
+    ]
+    at = {int(row[1].split(":")[1], 16): row[1].split(":")[0] for row in rows if row[3] == "0A"}
+    loopback = {"0100007F", "00000000000000000000000001000000"}
+    assert {at[control], at[guard]} <= loopback
+    sockets = {str(link.readlink()) for link in Path(f"/proc/{argusd.process.pid}/fd").iterdir()}
+    ours = {row[9] for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in sockets}
+    assert len(ours) == 2, "and it listens nowhere else"

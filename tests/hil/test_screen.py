@@ -12,6 +12,7 @@ import struct
 import subprocess
 import termios
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import pytest
 from harness import ARGUSD, BAUD, PATIENCE_S, Bench, wait_for
@@ -88,14 +89,14 @@ class Vt52:
 class Terminal:
     """argusd on a terminal of a given kind and width."""
 
-    def __init__(self, arguments: Sequence[str], kind: str, columns: int) -> None:
+    def __init__(self, arguments: Sequence[str], kind: str, columns: int, program: Path = ARGUSD) -> None:
         self._master, slave = pty.openpty()
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         self.before = termios.tcgetattr(slave)
         self._slave = slave
         environment = {key: value for key, value in os.environ.items() if key not in {"COLUMNS", "LINES"}}
         self.process = subprocess.Popen(
-            [str(ARGUSD), *arguments],
+            [str(program), *arguments],
             stdin=slave, stdout=slave, stderr=slave, env=environment | {"TERM": kind}, start_new_session=True,
         )  # fmt: skip
         self.screen = Vt52(columns)

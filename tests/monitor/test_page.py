@@ -4,21 +4,24 @@
 from __future__ import annotations
 
 import http.server
+import math
 import statistics
 import threading
+from collections.abc import Sequence
 from pathlib import Path
 
 from page_browser import Browser, By, Keys, Monitor, wait_for
 
-LATENCY_MS = 1500.0
-"""Far above what tests/bench/monitor.py measures: a test host is busy."""
+ARRIVED_MM = 80.0
+"""A goal counts as reached within 60 mm; a robot that brakes rolls a little."""
+LATENCY_MS = 150.0
+"""From the SIP to the screen, in the median: a test host is busy. tests/bench/monitor.py asks it of each one."""
 
 
 def test_the_page_shows_the_robot_and_its_console_is_silent(page: Browser) -> None:
     assert page.driver.title == "Argus monitor"
     assert page.text("failure") not in ("", "Not connected")
-    # On a busy host one or another may be doubted for a while; that it is said is no fault of the page.
-    page.wait("all sonars are listed", lambda: page.text("sonars-count").endswith(" of 16 in use"))
+    page.wait("all sonars are in use", lambda: page.text("sonars-count") == "16 of 16 in use")
     assert len(page.driver.find_elements(By.CSS_SELECTOR, ".sonar-row")) == 16
     assert page.js("return argusMonitor.stage.eyes.size") == 16
     page.wait("echoes are drawn", lambda: page.js("return argusMonitor.stage.echoes.length") > 3)
@@ -35,23 +38,54 @@ def test_the_token_leaves_the_address_and_survives_a_reload(page: Browser, monit
     page.wait("live again", lambda: page.text("link") == "live")
 
 
-def test_a_click_on_the_floor_drives_there_and_stop_stops(page: Browser) -> None:
-    page.wait("all is well", lambda: page.known("state.mode") in ("IDLE", "DRIVING"))
-    box = page.js(
-        "const b = argusMonitor.stage.box.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]"
+def distance_to(page: Browser, goal: Sequence[float]) -> float:
+    """How far the robot is from a point, mm."""
+    here = page.known("state")
+    return math.dist((here["x_mm"], here["y_mm"]), goal)
+
+
+def click_ahead(page: Browser, pixels: int) -> tuple[float, float]:
+    """Click the floor ahead of the robot, which looks as it did at its start; return where that is, mm."""
+    x, y, scale = page.js(
+        "const b = argusMonitor.stage.box.getBoundingClientRect();"
+        "return [b.x + b.width / 2, b.y + b.height / 2, argusMonitor.stage.scale]"
     )
-    before = page.known("state")
-    page.point(box[0], box[1] - 200)
-    page.wait("it is on its way", lambda: abs(page.known("state.vel_left_mm_s")) > 20)
+    here = page.known("state")
+    page.point(x, y - pixels)
+    return here["x_mm"] + pixels / scale, here["y_mm"]
+
+
+def test_a_click_on_the_floor_drives_there(page: Browser) -> None:
+    page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
+    wanted = click_ahead(page, 140)
+    page.wait("the goal is set", lambda: page.js("return argusMonitor.stage.goal") is not None)
+    goal = page.js("return argusMonitor.stage.goal")
+    assert math.dist(goal, wanted) < 2 / page.js("return argusMonitor.stage.scale"), "a pixel or two"
     assert page.text("control") == "In control"
+    page.wait("it is there", lambda: page.text("say") == "The goal is reached.")
+    page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
+    assert distance_to(page, goal) < ARRIVED_MM
+
+
+def test_the_form_drives_there_stop_stops_on_the_way_and_go_on_goes_on(page: Browser) -> None:
+    page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
+    goal = (0, 0) if distance_to(page, (0, 0)) > 700 else (1000, 0)
+    for name, mm in zip(("x", "y"), goal, strict=True):
+        page.driver.find_element(By.NAME, name).send_keys(
+            str(mm / 1000) + (Keys.ENTER if name == "y" else "")
+        )
+    page.wait("it is on its way", lambda: page.known("state.vel_left_mm_s") > 100)
+    assert page.js("return argusMonitor.stage.goal") == list(goal)
     page.click("stop")
     page.wait("it says that it is paused", lambda: page.text("mode").endswith(", paused"))
     page.wait(
         "it stands", lambda: page.known("state.vel_left_mm_s") == page.known("state.vel_right_mm_s") == 0
     )
-    after = page.known("state")
-    assert [after[key] - before[key] for key in ("x_mm", "y_mm", "heading_cdeg")] != [0, 0, 0]
-    assert page.js("return argusMonitor.stage.goal") is not None
+    assert distance_to(page, goal) > ARRIVED_MM
+    page.driver.find_element(By.CSS_SELECTOR, "[data-order=go]").click()
+    page.wait("it is there", lambda: page.text("say") == "The goal is reached.")
+    page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
+    assert distance_to(page, goal) < ARRIVED_MM
 
 
 def test_the_keyboard_drives_chooses_breaks_and_stops(page: Browser) -> None:
@@ -62,7 +96,9 @@ def test_the_keyboard_drives_chooses_breaks_and_stops(page: Browser) -> None:
     assert page.known("chosen") == (chosen + 1) % 16
     before = page.known("state.heading_cdeg")
     page.keys(Keys.ARROW_LEFT)
-    page.wait("it turns left", lambda: page.known("state.heading_cdeg") - before > 1500)
+    page.wait(
+        "it turns left", lambda: (page.known("state.heading_cdeg") - before) % 36000 in range(1500, 3000)
+    )
     page.wait("and has turned", lambda: page.known("state.mode") == "IDLE")
     page.keys("p")
     page.wait("it is passive", lambda: page.text("active") == "Passive")
@@ -222,9 +258,11 @@ def test_a_sonar_broken_by_a_click_is_diagnosed_on_the_page_and_mended_by_anothe
     page.point_sonar(3)
     page.wait("it is marked as broken", lambda: page.known("broken") == {"3": "silent"})
     page.wait("Argus finds it", lambda: page.known("state.kind")[3] == "silent")
+    page.wait("it is out", lambda: page.known("state.health")[3] == "DISABLED")
+    page.wait("the others stay in use", lambda: page.text("sonars-count") == "15 of 16 in use")
     page.wait("the list says so", lambda: page.row(3) == "↯ failed: silent")
     page.wait("the headline says so", lambda: "3 silent" in page.text("stage-text"))
-    page.wait("so does the badge", lambda: page.text("failure") in ("Minor failure", "Major failure"))
+    page.wait("so does the badge", lambda: page.text("failure") == "Minor failure")
     page.wait("it tells how long it took", lambda: page.text("say").startswith("Found after "))
     assert page.driver.find_elements(By.CSS_SELECTOR, "#robot .sonar.bad[data-sonar='3']")
     assert "sonar 3disabled" in page.text("events").replace(" ", "").replace("sonar3", "sonar 3")
@@ -236,4 +274,6 @@ def test_a_sonar_broken_by_a_click_is_diagnosed_on_the_page_and_mended_by_anothe
     page.point_sonar(3)
     page.wait("it is mended", lambda: page.known("broken") == {})
     page.driver.find_element(By.CSS_SELECTOR, "[data-sonar-order=retest]").click()
-    page.wait("tested again it comes back", lambda: page.known("state.kind")[3] != "silent")
+    page.wait("tested again it comes back", lambda: page.known("state.health")[3] in ("PROBATION", "HEALTHY"))
+    # Standing still it may stay on probation for long: the manager wants to see it agree with the others.
+    page.wait("and the list says so", lambda: page.row(3) in ("probation: silent", "healthy"))

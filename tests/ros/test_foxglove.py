@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import layout_rules
 import pytest
 import websockets
 from argus_tools.control import Client
@@ -143,3 +144,23 @@ def test_the_layout_fits_the_topics() -> None:
             assert re.sub(r"\[.*\]", "", fields[0]) in SCHEMAS[known]["properties"], path
     panels = set(re.findall(r'"([A-Za-z0-9]+![a-z0-9]+)"', json.dumps(layout["layout"])))
     assert panels == set(layout["configById"])
+
+
+def test_each_panel_is_told_what_it_knows() -> None:
+    layout = json.loads(LAYOUT.read_text())
+    assert layout_rules.LAYOUT(layout)
+    wrong = [
+        name
+        for name, config in layout["configById"].items()
+        if not layout_rules.PANELS[name.partition("!")[0]](config)
+    ]
+    assert wrong == []
+
+
+def test_a_panel_that_is_told_something_else_is_found() -> None:
+    config = json.loads(LAYOUT.read_text())["configById"]["Plot!front"]
+    plot = layout_rules.PANELS["Plot"]
+    assert not plot({**config, "title": "?"}), "a member that there is not"
+    assert not plot({**config, "legendDisplay": "right"})
+    assert not plot({key: item for key, item in config.items() if key != "isSynced"})
+    assert not plot({**config, "paths": [{"value": "/ring.trusted"}]})

@@ -337,3 +337,35 @@ def test_a_reader_that_goes_away_leaves_nothing_behind(tmp_path: Path, idle_argu
         demo.kill()
         demo.wait()
     wait_for(lambda: users_of(tmp_path) == [], 5.0)
+
+
+@pytest.mark.parametrize(
+    ("late_ms", "lasts", "drives", "code"),
+    [(900.0, 1, 2, 0), (900.0, 9, program.TRIES, 1), (120.0, 9, 1, 1), (0.0, 9, 1, 1)],
+    ids=["late-once", "late-always", "late-a-little", "punctual"],
+)
+def test_what_fails_while_the_host_is_late_is_driven_again(
+    played: type[Played],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    late_ms: float,
+    lasts: int,
+    drives: int,
+    code: int,
+) -> None:
+    driven = 0
+
+    def doctor(truth: list[Record], events: list[Record]) -> None:
+        nonlocal driven
+        driven += 1
+        if driven <= lasts:
+            miss(truth, events)
+            if late_ms:
+                truth.insert(2, {"type": "late", "t_s": truth[1].get("t_s", 0.0), "late_ms": late_ms})
+
+    played.doctor = staticmethod(doctor)
+    assert run(*ROOM, "--no-live", "--out", str(tmp_path)) == code
+    assert driven == drives
+    told = capsys.readouterr().err
+    assert told.count("so it is driven again") == drives - 1
+    assert ("diagnosis equals injection" in told) == (drives > 1)

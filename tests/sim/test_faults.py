@@ -458,7 +458,7 @@ PIECES = st.sampled_from(
 )
 
 
-@settings(max_examples=1500, deadline=None)
+@settings(max_examples=400, deadline=None)
 @example("off:٣@1s")
 @example("slow:3:n=" + "9" * 5000)
 @example("off:3\n")

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from mutants import MutatedSil
 
 from hil_sim.sil import Mission, Outcome, Sil
 
@@ -19,6 +20,8 @@ walls:
 """
 GOAL_MM = 3000
 NEAR_MM = 150
+SEEN_MM = 60
+"""What is left of the way to the goal where nothing was unseen."""
 Act = Callable[[Sil], None]
 
 
@@ -117,6 +120,62 @@ def lifted(
         chassis = sil.robot.chassis
         chassis.place(at[0], at[1], chassis.th)
     return sil.outcome()
+
+
+def behind_the_cable(
+    world: str, at_s: float, unseen_s: float, gone_s: float, *, restarts: bool
+) -> MutatedSil:
+    """The cable is out for a while in which the robot drives on by itself, and perhaps restarts."""
+    sil = MutatedSil(Mission(world, ((GOAL_MM, 0),), sonar={"crosstalk": 0.0}, limit_s=60))
+    sil.wait(at_s)
+    sil.lose()
+    sil.wait(unseen_s)
+    if restarts:
+        sil.power_cycle()
+    sil.wait(gone_s)
+    sil.plug()
+    sil.wait(math.inf)
+    assert not sil.robot.hits
+    return sil
+
+
+@pytest.mark.parametrize(
+    ("at_s", "unseen_s", "gone_s"),
+    [(4.0, 0.0, 0.1), (5.0, 0.4, 0.3), (6.0, 1.5, 0.02), (7.0, 0.8, 3.0), (8.0, 1.8, 1.0)],
+)
+def test_one_that_restarts_in_motion_unseen_ends_the_course(
+    corridor: str, at_s: float, unseen_s: float, gone_s: float
+) -> None:
+    told = [e.name for e in behind_the_cable(corridor, at_s, unseen_s, gone_s, restarts=True).events]
+    assert told.count("ODOMETRY_LOST") == 1
+    assert "MISSION_FAILED" in told
+    assert "GOAL_REACHED" not in told
+
+
+@pytest.mark.parametrize(
+    ("at_s", "gone_s"), [(4.0, 0.02), (5.0, 0.3), (6.0, 0.6), (7.0, 1.2), (8.0, 2.0), (6.5, 5.0)]
+)
+def test_one_that_only_drove_on_unseen_knows_where_it_is(corridor: str, at_s: float, gone_s: float) -> None:
+    sil = behind_the_cable(corridor, at_s, 0.0, gone_s, restarts=False)
+    assert "GOAL_REACHED" in [e.name for e in sil.events]
+    assert sil.outcome().goal_mm < SEEN_MM
+
+
+def test_one_that_restarts_at_rest_keeps_its_course(corridor: str) -> None:
+    sil = MutatedSil(Mission(corridor, ((GOAL_MM, 0),), sonar={"crosstalk": 0.0}, limit_s=90))
+    sil.wait(5.0)
+    sil.lose()
+    sil.wait(5.0)  # its watchdog has stopped it
+    sil.plug()
+    while not any(e.name == "SESSION_DISLODGED" for e in sil.events):
+        sil.wait(0.02)  # then its old session has told where it rests
+    sil.lose()
+    sil.power_cycle()
+    sil.plug()
+    sil.wait(math.inf)
+    assert "ODOMETRY_LOST" not in [e.name for e in sil.events]
+    assert "GOAL_REACHED" in [e.name for e in sil.events]
+    assert sil.outcome().goal_mm < SEEN_MM
 
 
 BOX = """about: A robot between a box ahead and a wall behind.

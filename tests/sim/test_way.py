@@ -7,8 +7,6 @@
 from __future__ import annotations
 
 import math
-from concurrent.futures import ProcessPoolExecutor
-from functools import cache
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -20,7 +18,8 @@ from hil_sim.bench.worlds import make_world
 from hil_sim.sil import Mission, Sil
 
 SETS: Final = ("doors", "corridors", "bends", "dead-ends", "pairs")
-EACH: Final = 8
+EACH: Final = 4
+MANY: Final = 8
 SPLIT: Final = 30
 """No bench has its worlds."""
 LIMIT_S: Final = 1200.0
@@ -31,8 +30,10 @@ REST_MM: Final = 1.0
 REASONS: Final = ("NO_WAY", "WAITING", "FAILURE_STATE", "ODOMETRY_LOST")
 NEAR: Final = 4
 """Events before the end, among which is its reason."""
-MISSED: Final = 2
-"""So many of EACH at most; the bench of journeys has the shares."""
+FEW_GOALS: Final = 16
+SHARDS: Final = 8
+MISSED: Final = 4
+"""One in so many at most; the bench of journeys has the shares."""
 
 
 class End(NamedTuple):
@@ -68,23 +69,14 @@ def _set_mission(name: str, seed: int) -> Mission:
     return Mission(place.path, place.course, (x, y, heading), seed=seed, limit_s=LIMIT_S)
 
 
-def _drive_set(job: tuple[str, int]) -> End:
-    return _drive(_set_mission(*job))
+def _ends(name: str, count: int) -> list[End]:
+    return [_drive(_set_mission(name, seed)) for seed in range(count)]
 
 
-@cache
-def _sets() -> dict[str, list[End]]:
-    jobs = [(name, seed) for name in (*SETS, NO_WAY) for seed in range(EACH)]
-    with ProcessPoolExecutor(2) as pool:
-        ends = dict(zip(jobs, pool.map(_drive_set, jobs), strict=True))
-    return {name: [ends[name, seed] for seed in range(EACH)] for name in (*SETS, NO_WAY)}
-
-
-def _drive_goal(job: tuple[int, str]) -> End:
+def _drive_goal(seed: int, folder: Path) -> End:
     """A goal anywhere in a small world, also in a wall or where nobody gets to; every fourth with a dead sonar."""
-    seed, folder = job
     rng = np.random.default_rng([SPLIT, seed])
-    world, _, path = make_world(WORLDS[seed % len(WORLDS)], (SPLIT, seed), Path(folder))
+    world, _, path = make_world(WORLDS[seed % len(WORLDS)], (SPLIT, seed), folder)
     low_x, low_y, high_x, high_y = world.bounds
     goal = (float(rng.uniform(low_x, high_x)), float(rng.uniform(low_y, high_y)))
     faults = (f"off:{int(rng.integers(1, 7))}@3s",) if seed % 4 == 3 else ()
@@ -98,31 +90,31 @@ def _check(end: End, which: str) -> None:
 
 
 def _check_goals(seeds: range, folder: Path) -> None:
-    jobs = [(seed, str(folder)) for seed in seeds]
-    with ProcessPoolExecutor(2) as pool:
-        for seed, end in zip(seeds, pool.map(_drive_goal, jobs), strict=True):
-            _check(end, f"goal {seed}")
+    for seed in seeds:
+        _check(_drive_goal(seed, folder), f"goal {seed}")
 
 
+@pytest.mark.parametrize("count", [EACH, pytest.param(MANY, marks=pytest.mark.wide)])
 @pytest.mark.parametrize("name", SETS)
-def test_the_robot_gets_round_what_stands_in_the_way(name: str) -> None:
-    ends = _sets()[name]
+def test_the_robot_gets_round_what_stands_in_the_way(name: str, count: int) -> None:
+    ends = _ends(name, count)
     for seed, end in enumerate(ends):
         _check(end, f"{name} {seed}")
     reached = sum(end.what == "GOAL_REACHED" for end in ends)
-    assert reached >= EACH - MISSED, f"{name}: {[end.what for end in ends]}"
+    assert reached >= count - count // MISSED, f"{name}: {[end.what for end in ends]}"
 
 
 def test_a_goal_behind_walls_is_given_up() -> None:
-    for seed, end in enumerate(_sets()[NO_WAY]):
+    for seed, end in enumerate(_ends(NO_WAY, EACH)):
         _check(end, f"{NO_WAY} {seed}")
         assert (end.what, end.reason) == ("MISSION_FAILED", "NO_WAY"), f"{NO_WAY} {seed}: {end}"
 
 
 def test_every_random_goal_ends(tmp_path: Path) -> None:
-    _check_goals(range(24), tmp_path)
+    _check_goals(range(FEW_GOALS), tmp_path)
 
 
-@pytest.mark.soak
-def test_a_thousand_random_goals_end(tmp_path: Path) -> None:
-    _check_goals(range(24, 1000), tmp_path)
+@pytest.mark.wide
+@pytest.mark.parametrize("shard", range(SHARDS))
+def test_a_thousand_random_goals_end(tmp_path: Path, shard: int) -> None:
+    _check_goals(range(FEW_GOALS + shard, 1000, SHARDS), tmp_path)

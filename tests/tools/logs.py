@@ -6,26 +6,41 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
+
+import forks
+from argus_tools.formats import MODULES
+from argus_tools.log.cli import COMMANDS
 
 from hil_sim.arcos import COMMAND, Command, Sip, frame
 
 ROOT = Path(__file__).resolve().parents[2]
 CAPTURES = ROOT / "tests" / "data" / "captures"
+ARGUS_LOG = "argus_tools.log.cli:main"
+
+
+def preload(arguments: Sequence[str | Path]) -> list[str]:
+    """Return what argus-log imports late for these arguments; what draws is large, so only where it is to be had."""
+    late = [f"argus_tools.log.{name}" for name in COMMANDS if name != "plot" or name in arguments]
+    return [*late, *(f"argus_tools.formats.{name}" for name in MODULES)]
 
 
 def run(*arguments: str | Path, stdin: bytes | None = None) -> subprocess.CompletedProcess[bytes]:
     """Run argus-log; any traceback fails the test."""
-    environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'tools'}", "COLUMNS": "120"}
-    command = [sys.executable, "-m", "argus_tools.log.cli", *map(str, arguments)]
-    done = subprocess.run(
-        command, input=stdin, capture_output=True, env=environment, timeout=600, check=False
-    )
+    env = {**os.environ, "COLUMNS": "120"}
+    done = forks.run(ARGUS_LOG, *arguments, given=stdin, env=env, preload=preload(arguments))
     assert b"Traceback" not in done.stderr, done.stderr.decode()
     return done
+
+
+def start(*arguments: str | Path) -> forks.Forked:
+    """Start argus-log with a pipe at each of its three descriptors."""
+    pipe = subprocess.PIPE
+    return forks.start(
+        ARGUS_LOG, *arguments, stdin=pipe, stdout=pipe, stderr=pipe, preload=preload(arguments)
+    )
 
 
 def decode(*arguments: str | Path, stdin: bytes | None = None) -> list[dict[str, Any]]:

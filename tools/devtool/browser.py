@@ -8,6 +8,7 @@ from typing import Final
 
 from devtool.base import VENV, Run, Stop
 from devtool.cmake import build
+from devtool.stages import making
 from devtool.system import apt_install
 
 PROGRAMS: Final = ("chromium", "chromedriver")
@@ -28,7 +29,8 @@ def lacking() -> str | None:
 def monitor_tests(run: Run) -> str | None:
     """Run the tests in the browser, one after another: they look at one robot."""
     build("release", run)
-    why = lacking()
+    with making():
+        why = lacking()
     if why is None:
         run([VENV / "bin/python", "-m", "pytest", "-q", "tests/monitor"])
     return why

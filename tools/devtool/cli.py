@@ -14,7 +14,7 @@ from devtool.cmake import presets
 from devtool.linting import LINT_STAGES, format_stages
 from devtool.setup import leave_venv
 from devtool.stages import add_stage_options, staged_command
-from devtool.testing import QUICK_STAGES, TEST_STAGES
+from devtool.testing import QUICK_STAGES, SOAK_STAGES, TEST_STAGES
 
 WHAT: Final = (
     "The one command of the project: sets everything up, then demonstrates, tests, builds or measures Argus."
@@ -31,6 +31,11 @@ Add = Callable[[str, Action, str, str], argparse.ArgumentParser]
 def do_test(args: argparse.Namespace) -> int:
     """Run all tests, or the quick ones."""
     return staged_command(args, QUICK_STAGES if args.quick else TEST_STAGES)
+
+
+def do_soak(args: argparse.Namespace) -> int:
+    """Run what computes for long, with the sweeps that no change waits for."""
+    return staged_command(args, SOAK_STAGES)
 
 
 def do_format(args: argparse.Namespace) -> int:
@@ -75,6 +80,13 @@ def add_checking(add: Add) -> None:
         "--quick", action="store_true", help="only those that take seconds and need no robot in real time"
     )
     add_stage_options(test)
+    soak = add(
+        "soak",
+        do_soak,
+        "run the tests that compute for long, with the wide sweeps that `test` leaves out",
+        "soak\nsoak --only wide",
+    )
+    add_stage_options(soak)
     formatter = add("format", do_format, "lay out all C and Python sources", "format\nformat --check")
     formatter.add_argument(
         "--check", action="store_true", help="change nothing, exit 1 if something would change"

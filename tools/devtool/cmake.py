@@ -12,6 +12,7 @@ from typing import Final
 
 from devtool.base import BUILD, CORES, ROOT, Run
 from devtool.setup import alone
+from devtool.stages import making
 
 PRESETS_FILE: Final = ROOT / "CMakePresets.json"
 BOARDS: Final = ("mps2-an386", "stm32f405")
@@ -21,6 +22,8 @@ ELSEWHERE: Final = ("blank", "mps2-tests", "stm32f405-tests", "big-endian")
 WITHOUT_ARGUSD: Final = ("m32", "cortex-m4", *BOARDS, *ELSEWHERE)
 SOAK: Final = "soak"
 """The label of the unit tests that compute for long; they are run once, in the release build."""
+WIDE: Final = "wide"
+"""The label of sweeps that take minutes of CPU; `tools/dev soak` runs them."""
 
 
 @functools.cache
@@ -48,7 +51,7 @@ def configure(preset: str, run: Run) -> None:
 
 def build(preset: str, run: Run, settings: Sequence[str] = ()) -> None:
     """Configure and build PRESET; SETTINGS of CMake (NAME=VALUE) are kept until others are given."""
-    with alone():
+    with alone(), making():
         configure(preset, run)
         if settings:
             run(["cmake", BUILD / preset, *(f"-D{setting}" for setting in settings)])
@@ -60,7 +63,7 @@ def ctest(preset: str, run: Run, *options: str) -> None:
     run(["ctest", "--preset", preset, "-j", str(CORES), *options])
 
 
-def build_and_test(preset: str, run: Run, options: Sequence[str] = ("-LE", SOAK)) -> None:
-    """Build PRESET and run its C unit tests, but those that the soak stage runs."""
+def build_and_test(preset: str, run: Run, options: Sequence[str] = ("-LE", f"{SOAK}|{WIDE}")) -> None:
+    """Build PRESET and run its C unit tests, but those that compute for long."""
     build(preset, run)
     ctest(preset, run, *options)

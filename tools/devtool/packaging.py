@@ -20,6 +20,7 @@ from typing import Final
 from devtool.base import BUILD, CORES, EXIT_USAGE, ROOT, VENV, Run, Stop, say, shown
 from devtool.commands import quietly
 from devtool.setup import HEADER, alone, ensure
+from devtool.stages import making
 
 DIST: Final = ROOT / "dist"
 WORK: Final = BUILD / "package"
@@ -180,10 +181,11 @@ def do_package(args: argparse.Namespace) -> int:
 def package_tests(run: Run) -> str | None:
     """Make all packages anew, and test them; tell which tests the machine kept from running."""
     shutil.rmtree(DIST, ignore_errors=True)
-    make_wheel(HERE, run)
-    if HERE != ARM and toolchain(ARM).exists():
-        make_wheel(ARM, run)
-    make_deb(run)
+    with making():
+        make_wheel(HERE, run)
+        if HERE != ARM and toolchain(ARM).exists():
+            make_wheel(ARM, run)
+        make_deb(run)
     run([VENV / "bin/python", "-m", "pytest", "-q", "tests/packages"])
     chroot = os.environ.get("ARGUS_CHROOT")
     return None if chroot else "not installed in a clean Debian: ARGUS_CHROOT= names none"

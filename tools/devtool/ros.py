@@ -12,6 +12,7 @@ from typing import Final
 from devtool.base import BUILD, LOGS, ROOT, Run, quiet_ok, say, words
 from devtool.cmake import build
 from devtool.setup import run_steps
+from devtool.stages import making
 from devtool.system import base_python
 
 VENV_ROS: Final = BUILD / "venv-ros"
@@ -69,7 +70,8 @@ def lacking() -> str | None:
 def ros_tests(run: Run) -> str | None:
     """Run the tests of the nodes, where the packages of ROS can be had."""
     build("release", run)
-    why = lacking()
+    with making():
+        why = lacking()
     if why is None:
         run([VENV_ROS / "bin/python", "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/ros"])
     return why

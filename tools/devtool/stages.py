@@ -59,12 +59,26 @@ class Stage:
 
 
 @dataclasses.dataclass(frozen=True)
+class Spent:
+    """Time that was spent: by the clock, and of CPU."""
+
+    seconds: float = 0.0
+    cpu_s: float = 0.0
+
+    def __add__(self, other: Spent) -> Spent:
+        return Spent(self.seconds + other.seconds, self.cpu_s + other.cpu_s)
+
+    def __sub__(self, other: Spent) -> Spent:
+        return Spent(self.seconds - other.seconds, self.cpu_s - other.cpu_s)
+
+
+@dataclasses.dataclass(frozen=True)
 class Result:
-    """How a stage ended: why it failed, if it did, the time it took, and what is to be told."""
+    """How a stage ended: why it failed, if it did, what it took, what of that its building took, and what to tell."""
 
     failure: str | None
-    seconds: float
-    cpu_s: float
+    spent: Spent
+    made: Spent
     log: Path
     note: str | None = None
 
@@ -78,6 +92,25 @@ def children_cpu_s() -> float:
     """Return the CPU time of all children that have ended, and theirs."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
+
+
+def now() -> Spent:
+    """Return the clock, and the CPU time of our children."""
+    return Spent(time.monotonic(), children_cpu_s())
+
+
+_made = Spent()
+
+
+@contextmanager
+def making() -> Iterator[None]:
+    """Count what is spent in here as building: it is told apart from what the tests take."""
+    global _made
+    start = now()
+    try:
+        yield
+    finally:
+        _made += now() - start
 
 
 @contextmanager
@@ -135,7 +168,7 @@ def run_stage(stage: Stage, verbose: bool) -> Result:
     log = LOGS / f"{stage.name}.log"
     log.write_text("")
     say(f"{stage.name}: {stage.what}")
-    start, start_cpu_s = time.monotonic(), children_cpu_s()
+    start, made = now(), _made
     failure = note = None
     try:
         note = stage.action(logged_runner(log, verbose, STAGE_LIMIT_S))
@@ -144,7 +177,7 @@ def run_stage(stage: Stage, verbose: bool) -> Result:
         if not verbose:
             print(tail_of(log), flush=True)
         say(paint(f"{stage.name} FAILED: {failure} (log: {shown(log)})", "31"))
-    return Result(failure, time.monotonic() - start, children_cpu_s() - start_cpu_s, log, note)
+    return Result(failure, now() - start, _made - made, log, note)
 
 
 def verdict(good: bool) -> str:
@@ -152,23 +185,33 @@ def verdict(good: bool) -> str:
     return paint("ok    ", "32") if good else paint("FAILED", "31")
 
 
-def table_lines(stages: Sequence[Stage], results: Mapping[str, Result]) -> Iterator[str]:
-    """Yield a line for each of STAGES, and their sum."""
+def table_line(name: str, good: bool, spent: Spent, made: Spent) -> str:
+    """Return a line of the table: by the clock, of CPU, and what of that the building took."""
+    tests = spent - made
+    return (
+        f"  {name:<14} {verdict(good)} {spent.seconds:7.1f} s  CPU {spent.cpu_s:7.1f} s"
+        f" = {tests.cpu_s:6.1f} s tests + {made.cpu_s:6.1f} s building"
+    )
+
+
+def table_lines(
+    stages: Sequence[Stage], results: Mapping[str, Result], set_up: Spent | None = None
+) -> Iterator[str]:
+    """Yield a line for what was set up, for each of STAGES, and their sum."""
+    set_up = set_up or Spent()
+    yield table_line("set-up", True, set_up, set_up)
     for stage in stages:
         result = results.get(stage.name)
         if result is None:
             yield f"  {stage.name:<14} not run"
             continue
-        yield (
-            f"  {stage.name:<14} {verdict(result.passed)} {result.seconds:7.1f} s {result.cpu_s:7.1f} s of CPU"
-        )
+        yield table_line(stage.name, result.passed, result.spent, result.made)
         if result.note:
             yield paint(f"  {'':<14} {result.note}", "33")
     good = len(results) == len(stages) and all(result.passed for result in results.values())
-    total_s, total_cpu_s = (sum(values) for values in zip(
-        *((result.seconds, result.cpu_s) for result in results.values()), strict=True
-    ))  # fmt: skip
-    yield f"  {'total':<14} {verdict(good)} {total_s:7.1f} s {total_cpu_s:7.1f} s of CPU"
+    spent = sum((result.spent for result in results.values()), set_up)
+    made = sum((result.made for result in results.values()), set_up)
+    yield table_line("total", good, spent, made)
 
 
 def failed_lines(results: Mapping[str, Result]) -> Iterator[str]:
@@ -180,7 +223,7 @@ def failed_lines(results: Mapping[str, Result]) -> Iterator[str]:
         yield f"  {name:<14} {shown(result.log)}: {result.failure}"
 
 
-def run_stages(stages: Sequence[Stage], keep_going: bool, verbose: bool) -> int:
+def run_stages(stages: Sequence[Stage], keep_going: bool, verbose: bool, set_up: Spent | None = None) -> int:
     """Run STAGES one after another, print the summary, and return the exit code.
 
     Robots run in real time: nothing runs beside them.
@@ -191,7 +234,7 @@ def run_stages(stages: Sequence[Stage], keep_going: bool, verbose: bool) -> int:
         if not results[stage.name].passed and not keep_going:
             break
     print()
-    for line in (*table_lines(stages, results), *failed_lines(results)):
+    for line in (*table_lines(stages, results, set_up), *failed_lines(results)):
         print(line, flush=True)
     return 0 if all(result.passed for result in results.values()) else EXIT_FAILED
 
@@ -227,8 +270,9 @@ def staged_command(args: argparse.Namespace, stages: Sequence[Stage]) -> int:
             print(f"{stage.name:<14} {stage.what}")
         return 0
     todo = chosen(stages, args.only)
+    start = now()
     ensure(
         [preset for stage in todo for preset in stage.presets],
         [need for stage in todo for need in stage.needs],
     )
-    return run_stages(todo, args.keep_going, args.verbose)
+    return run_stages(todo, args.keep_going, args.verbose, now() - start)

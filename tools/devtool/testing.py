@@ -9,14 +9,14 @@ from typing import Final
 
 from devtool.base import BUILD, CORES, ROOT, VENV, Command, Run
 from devtool.browser import monitor_tests
-from devtool.cmake import BOARDS, SOAK, build, build_and_test, ctest
+from devtool.cmake import BOARDS, SOAK, WIDE, build, build_and_test, ctest
 from devtool.packaging import NEEDS as PACKAGE_NEEDS
 from devtool.packaging import package_tests
 from devtool.peers import peers
 from devtool.real_time import hil_workers, run_in_real_time
 from devtool.ros import NEEDS as ROS_NEEDS
 from devtool.ros import ros_tests
-from devtool.stages import Stage
+from devtool.stages import Stage, making
 
 PYTEST: Final = (VENV / "bin/python", "-m", "pytest", "-q")
 IN_REAL_TIME: Final = ("tests/hil", "tests/can", "tests/target", "tests/monitor", "tests/ros")
@@ -35,14 +35,23 @@ def python_tests(run: Run) -> None:
     """Run the Python tests that compute."""
     build("release", run)
     build("cortex-m4", run)
-    run([*PYTEST, *COMPUTING, "-m", f"not {SOAK}", *SHARED_OUT])
+    run([*PYTEST, *COMPUTING, "-m", f"not {SOAK} and not {WIDE}", *SHARED_OUT])
 
 
 def soak_tests(run: Run) -> None:
     """Run what computes for long, in C and in Python: once, and optimised."""
     build("release", run)
     ctest("release", run, "-L", SOAK)
-    run([*PYTEST, *COMPUTING, "-m", SOAK, *SHARED_OUT])
+    run([*PYTEST, *COMPUTING, "-m", f"{SOAK} and not {WIDE}", *SHARED_OUT])
+
+
+def wide_tests(run: Run) -> None:
+    """Run the sweeps over many seeds, and what computes for long in C under the sanitizers, too."""
+    for preset in ("release", "sanitize"):
+        build(preset, run)
+    ctest("release", run, "-L", WIDE)
+    ctest("sanitize", run, "-L", f"{SOAK}|{WIDE}")
+    run([*PYTEST, *COMPUTING, "-m", WIDE, *SHARED_OUT])
 
 
 def hil_tests(run: Run) -> str | None:
@@ -56,7 +65,8 @@ def can_tests(run: Run) -> str | None:
     """Run the tests on a real CAN bus: those of what provides it, then, in one boot, those that use it."""
     build("release", run)
     with_can: list[str | Path] = [sys.executable, ROOT / "tools/with-can", "--timeout", "0"]
-    run([*with_can, "--prepare"])
+    with making():
+        run([*with_can, "--prepare"])
     run([*PYTEST, "tests/can/test_with_can.py", "-n", "3"])
     run([*with_can, "--guest", *PYTEST, "tests/can/guest"])
     # A worker for each file: they wait for one another's robots no more than those of tests/hil do.
@@ -98,6 +108,16 @@ PYTHON: Final = Stage(
     ("release", "cortex-m4"),
     ("tshark", "groff", "pkg-config", "g++"),
 )
+SOAKING: Final = Stage(SOAK, "C and Python tests that compute for long", soak_tests, ("release",))
+SOAK_STAGES: Final = (
+    SOAKING,
+    Stage(
+        WIDE,
+        "sweeps over many seeds, and the long C tests under the sanitizers",
+        wide_tests,
+        ("release", "sanitize"),
+    ),
+)
 QUICK_STAGES: Final = (TABLES, RELEASE, CORTEX_M4, PYTHON)
 TEST_STAGES: Final = (
     TABLES,
@@ -136,7 +156,7 @@ TEST_STAGES: Final = (
         monitor_tests,
         ("release",),
     ),
-    Stage(SOAK, "C and Python tests that compute for long", soak_tests, ("release",)),
+    SOAKING,
     Stage(
         "peers",
         "the vendor's programs against ours, where ARIA_SOURCE= and MOBILESIM_SOURCE= are given",

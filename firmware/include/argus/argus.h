@@ -273,8 +273,8 @@ typedef enum {
       "the ranges stay while the wheels turn: they slip, or are lifted: STOP sent, left out of the pose; "   \
       "value: mm")                                                                                           \
     X(69, ODOMETRY_LOST, ERROR, "drive",                                                                     \
-      "it leapt while nobody saw the robot move, or leaps or slips again and again: where the robot is "     \
-      "nobody knows, the course is given up; value: of the last leap or slip")                               \
+      "it leapt or restarted while nobody saw the robot move, or leaps or slips again and again: where the " \
+      "robot is nobody knows, the course is given up; value: of the last leap or slip")                      \
     X(70, OPERATOR, OK, "operator", "an operator's command was taken; value: its number")                    \
     X(71, PASSIVE, OK, "operator", "reports only: commands no motion")                                       \
     X(72, ACTIVE, OK, "operator", "drives")                                                                  \
@@ -512,7 +512,7 @@ typedef enum {
 
 // Instance -------------------------------------------------------------------------------------------------
 
-#define ARGUS_STORAGE_BYTES (12760 + 728 * ARGUS_SONARS)
+#define ARGUS_STORAGE_BYTES (12920 + 792 * ARGUS_SONARS)
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.

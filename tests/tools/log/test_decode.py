@@ -8,8 +8,6 @@ import gzip
 import json
 import random
 import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -18,7 +16,7 @@ from argus_tools.formats import Chunk, open_log
 from argus_tools.log.common import BULK_BYTES
 from argus_tools.log.fields import Decoder
 from argus_tools.log.packets import packets
-from logs import CAPTURES, ROOT, command, decode, jsonl, run, sip
+from logs import CAPTURES, command, decode, jsonl, run, sip, start
 
 from hil_sim.arcos import Command, EncoderPac, GyroPac, IoPac, SyncReply, frame
 
@@ -229,9 +227,7 @@ def test_a_cut_gzip_gives_what_is_there(tmp_path: Path) -> None:
 def test_follow_shows_what_is_appended(tmp_path: Path) -> None:
     path = tmp_path / "live.jsonl"
     path.write_bytes(jsonl([(0.0, "r2c", sip(x=1))]))
-    command_line = [sys.executable, "-m", "argus_tools.log.cli", "decode", "--json", "--follow", str(path)]
-    environment = {"PYTHONPATH": f"{ROOT}:{ROOT / 'tools'}", "PATH": "/usr/bin:/bin"}
-    with subprocess.Popen(command_line, stdout=subprocess.PIPE, env=environment) as process:
+    with start("decode", "--json", "--follow", path) as process:
         assert process.stdout is not None
         assert json.loads(process.stdout.readline())["x_mm"] == 1
         with path.open("ab") as file:
@@ -248,11 +244,7 @@ def test_follow_shows_what_is_appended(tmp_path: Path) -> None:
 def test_follow_goes_on_when_the_file_begins_anew(way: str, tmp_path: Path) -> None:
     path = tmp_path / "live.jsonl"
     path.write_bytes(jsonl([(0.0, "r2c", sip(x=1)), (0.1, "r2c", sip(x=2))]))
-    command_line = [sys.executable, "-m", "argus_tools.log.cli", "decode", "--json", "--follow", str(path)]
-    environment = {"PYTHONPATH": f"{ROOT}:{ROOT / 'tools'}", "PATH": "/usr/bin:/bin"}
-    with subprocess.Popen(
-        command_line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
-    ) as process:
+    with start("decode", "--json", "--follow", path) as process:
         assert process.stdout is not None
         assert process.stderr is not None
         assert [json.loads(process.stdout.readline())["x_mm"] for _ in range(2)] == [1, 2]

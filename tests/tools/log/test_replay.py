@@ -7,8 +7,6 @@ import itertools
 import os
 import select
 import socket
-import subprocess
-import sys
 import termios
 import time
 from collections.abc import Iterator
@@ -20,6 +18,8 @@ from argus_tools.formats.base import Chunk
 from argus_tools.log.cli import main
 from argus_tools.log.packets import Row, packets
 from argus_tools.log.replay import Identity, Player, again
+from forks import Forked
+from logs import start
 
 from hil_sim.arcos import COMMAND, ConfigPac, Sip, SyncReply, Unframer, decode, frame
 
@@ -162,14 +162,11 @@ def test_damage_is_played_as_it_was(tmp_path: Path) -> None:
     assert b"".join(it.outgoing()) == b"".join(row.wire for row in played(path))
 
 
-def start(*arguments: str) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "argus_tools.log.cli", "replay", str(CAPTURE), *arguments]
-    return subprocess.Popen(
-        command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
+def replaying(*arguments: str) -> Forked:
+    return start("replay", CAPTURE, *arguments)
 
 
-def address(process: subprocess.Popen[bytes]) -> str:
+def address(process: Forked) -> str:
     assert process.stdout is not None
     assert select.select([process.stdout], [], [], PATIENCE_S)[0]
     return process.stdout.readline().decode().strip()
@@ -197,7 +194,7 @@ def converse(fd: int) -> None:
 
 
 def test_over_tcp() -> None:
-    process = start("--tcp", "0", "--speed", "50")
+    process = replaying("--tcp", "0", "--speed", "50")
     host, _, port = address(process).rpartition(":")
     with socket.create_connection((host, int(port)), PATIENCE_S) as client:
         converse(client.fileno())
@@ -209,7 +206,7 @@ def test_over_tcp() -> None:
 
 
 def test_keys_let_sips_through() -> None:
-    process = start("--tcp", "0", "--step")
+    process = replaying("--tcp", "0", "--step")
     host, _, port = address(process).rpartition(":")
     assert process.stdin is not None
     with socket.create_connection((host, int(port)), PATIENCE_S) as client:
@@ -231,7 +228,7 @@ def test_keys_let_sips_through() -> None:
 
 def test_over_a_pty_and_its_name_is_removed(tmp_path: Path) -> None:
     name = tmp_path / "robot"
-    process = start("--link-name", str(name), "--baud", "115200", "--speed", "2")
+    process = replaying("--link-name", str(name), "--baud", "115200", "--speed", "2")
     assert address(process).startswith("/dev/")
     fd = os.open(name, os.O_RDWR | os.O_NOCTTY)
     settings = termios.tcgetattr(fd)

@@ -41,6 +41,7 @@ def one_line(capsys: pytest.CaptureFixture[str]) -> str:
         (["--connect", "unix:/x", "--world", "lab"], "unknown option '--world'"),
         (["--connect", "unix:/x", "--argusd", "/bin/true"], "--argusd goes with --sim"),
         (["--connect", "unix:/x", "--token", "/does/not/exist"], "/does/not/exist: No such file"),
+        (["--connect", "unix:/x", "--tui"], "--tui needs a terminal"),
         (["--sim", "--tcp", "8101"], "--tcp does not go with --sim"),
         (["--sim", "--list-worlds"], "--list-worlds does not go with --sim"),
         (["--sim", "--robots", "2"], "one page shows one robot"),

@@ -42,7 +42,7 @@ static argus_ping_t *heard(int by, int mm) {
     at.weighed = 1; // it is not the one that is judged
     argus_pings_t *log = &e.of[by].pings;
     argus_pings_note(log, at);
-    log->sectors = UINT16_MAX; // some of them are turned aside afterwards
+    memset(log->looked, 0xFF, sizeof log->looked); // some of them are turned aside afterwards
     return argus_pings_mark(log, 1);
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Attacks: whatever a client asks of the wheels, the body meets nothing that a trusted sonar sees (S2, S5,
 // S7), goes nowhere that nobody sees (S1), and does what was asked where nothing is in the way.
+#include <math.h>
+#include <string.h>
+
 #include "client.h"
 #include "unity.h"
 
@@ -206,6 +209,38 @@ void test_sonars_that_do_not_report_close_the_way(void) {
     robot.sonar_on = false;
     run(4000);
     TEST_ASSERT_TRUE(robot.v == 0.0);
+}
+
+// A smooth wall that the way slants into: only the sonar abeam hears it, and only driving shows the slant.
+static void drive_into_smooth_wall(int slant_deg) {
+    const double slant = tan(slant_deg * 0.0174533);
+    const double beside = 300 + 1500 * slant;
+    const double wall[4] = {-4000, beside + 4000 * slant, 8000, beside - 8000 * slant};
+    begin(20000, 20000, 20000);
+    robot.world = robot_world_smooth;
+    robot.segments = 1;
+    memcpy(robot.segment[0], wall, sizeof wall);
+    client_say(&client, ARCOS_CMD_VEL, 300);
+    run(12000);
+}
+
+void test_a_wall_that_the_way_slants_into_is_not_forgotten(void) {
+    for (int slant_deg = 6; slant_deg <= 18; slant_deg += 4) {
+        drive_into_smooth_wall(slant_deg);
+        TEST_ASSERT_TRUE_MESSAGE(robot.v == 0.0, "it drives into the wall");
+        const double x = robot.x;
+        run(180000); // much longer than what was heard is kept
+        TEST_ASSERT_TRUE_MESSAGE(fabs(robot.x - x) < 5, "it creeps on");
+        TEST_ASSERT_TRUE_MESSAGE(robot.closest_mm > 0, "it met the wall");
+        client_say(&client, ARCOS_CMD_VEL, -200); // back, and away from it
+        run(8000);
+        client_say(&client, ARCOS_CMD_VEL, 0);
+        client_say(&client, ARCOS_CMD_HEAD, -40);
+        run(5000);
+        client_say(&client, ARCOS_CMD_VEL, 300);
+        run(3000);
+        TEST_ASSERT_TRUE_MESSAGE(robot.v > 50, "it does not get away");
+    }
 }
 
 void test_a_weak_brake_is_not_passed(void) {

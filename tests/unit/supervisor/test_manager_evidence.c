@@ -620,27 +620,13 @@ void test_hemmed_in_on_another_heading_it_goes_on_from_there(void) {
     finish();
 }
 
-// A smooth wall: heard where it is looked at squarely, and not otherwise.
-static int smooth_wall(const robot_t *r, int sonar) {
-    const argus_sonar_pose_t *at = &argus_sonar_poses[sonar];
-    const double c = cos(r->th), s = sin(r->th);
-    const double *w = r->segment[0];
-    const double length = hypot(w[2] - w[0], w[3] - w[1]);
-    const double nx = (w[3] - w[1]) / length, ny = -(w[2] - w[0]) / length;
-    const double x = r->x + at->x_mm * c - at->y_mm * s, y = r->y + at->x_mm * s + at->y_mm * c;
-    const double distance = (w[0] - x) * nx + (w[1] - y) * ny;
-    const double bearing = r->th + at->heading_deg * RAD;
-    const double square = (cos(bearing) * nx + sin(bearing) * ny) * (distance < 0 ? -1 : 1);
-    return square > cos(25 * RAD) ? (int)lround(fabs(distance) / square) : 5000;
-}
-
 // S2: the sonars ahead hear nothing of a smooth wall that the robot slants into; the one abeam does. And a
 // sonar that loses the wall in each look does not keep the robot looking for it.
 void test_a_smooth_wall_beside_the_way_is_not_touched(void) {
     for (int side = -1; side <= 1; side += 2) {
         for (int slant = 6; slant <= 20; slant += 2) {
             start();
-            robot.world = smooth_wall;
+            robot.world = robot_world_smooth;
             robot.segments = 1;
             const double beside = 420 + 600 * tan(slant * RAD); // at the start, where it looks round
             const double wall[4] = {-4000, side * (beside + 4000 * tan(slant * RAD)), 4000,

@@ -123,6 +123,19 @@ int robot_world_segments(const robot_t *robot, int sonar) {
     return best > 5000 ? 5000 : (int)lround(best);
 }
 
+int robot_world_smooth(const robot_t *r, int sonar) {
+    const argus_sonar_pose_t *at = &argus_sonar_poses[sonar];
+    const double c = cos(r->th), s = sin(r->th);
+    const double *w = r->segment[0];
+    const double length = hypot(w[2] - w[0], w[3] - w[1]);
+    const double nx = (w[3] - w[1]) / length, ny = -(w[2] - w[0]) / length;
+    const double x = r->x + at->x_mm * c - at->y_mm * s, y = r->y + at->x_mm * s + at->y_mm * c;
+    const double distance = (w[0] - x) * nx + (w[1] - y) * ny;
+    const double bearing = r->th + at->heading_deg * DEG;
+    const double square = (cos(bearing) * nx + sin(bearing) * ny) * (distance < 0 ? -1 : 1);
+    return square > cos(25 * DEG) ? (int)lround(fabs(distance) / square) : 5000;
+}
+
 static int clip(int mm) {
     return mm < 100 ? 100 : mm > 5000 ? 5000 : mm;
 }

@@ -131,5 +131,6 @@ void robot_wake(robot_t *robot); // the host reads in one go what came while it 
 // Worlds.
 int robot_world_far(const robot_t *robot, int sonar); // 2600 mm whatever the bearing: too far to tell slip by
 int robot_world_segments(const robot_t *robot, int sonar); // rays to the segments
+int robot_world_smooth(const robot_t *r, int sonar); // the first segment: heard where looked at squarely
 
 #endif

@@ -73,13 +73,13 @@ void test_several_waypoints_at_once(void) {
 void test_without_a_course_nothing_is_reached(void) {
     TEST_ASSERT_FALSE(at(0, 0));
     TEST_ASSERT_EQUAL(0, argus_task_goal_mm(&t, &k));
-    TEST_ASSERT_FALSE(argus_task_choose(&t, &k, &echoes, false));
+    TEST_ASSERT_EQUAL(ARGUS_SEARCH_NO_WAY, argus_task_choose(&t, &k, &echoes, false));
 }
 
 void test_bearing_and_distance_of_the_leg(void) {
     const argus_point_t goal = {1000, 1000};
     TEST_ASSERT_TRUE(argus_task_set(&t, &goal, 1));
-    TEST_ASSERT_TRUE(argus_task_choose(&t, &k, &echoes, false));
+    TEST_ASSERT_EQUAL(ARGUS_SEARCH_FOUND, argus_task_choose(&t, &k, &echoes, false));
     TEST_ASSERT_INT32_WITHIN(6, 4500, argus_task_bearing_cdeg(&t, &k));
     TEST_ASSERT_INT32_WITHIN(1, 1414, argus_task_leg_mm(&t, &k));
 }

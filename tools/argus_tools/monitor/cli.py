@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from argus_tools.monitor import tui
 from argus_tools.monitor.geometry import walls_of
 from argus_tools.monitor.hub import Hub
 from argus_tools.monitor.sim import Simulation, SimulationError, find_argusd
@@ -39,6 +40,7 @@ examples:
   argus-sim --monitor --world office                       the same
   argus-monitor --connect unix:/run/argus/control          the robot of an argusd that runs with --control
   argus-monitor --connect tcp:127.0.0.1:8100 --token FILE  over TCP; FILE holds the token of argusd
+  argus-monitor --connect unix:/run/argus/control --tui    argusd's screen on this terminal, no page
 
 The first line on standard output is the address to open in a browser, with the secret that lets it in after the #.
 It listens on 127.0.0.1 only; from elsewhere: ssh -L 8642:127.0.0.1:8642 ROBOT
@@ -99,6 +101,11 @@ def parser() -> argparse.ArgumentParser:
         "--page-token",
         metavar="FILE",
         help="take the page's secret from FILE (mode 0600) instead of making one; it is then not printed",
+    )
+    result.add_argument(
+        "--tui",
+        action="store_true",
+        help="no page: show argusd's screen on this terminal (argusd --attach), until q",
     )
     return result
 
@@ -162,6 +169,25 @@ async def _until_ended(simulation: Simulation | None, caught: asyncio.Event) -> 
     return "" if waiting[0] in done else done.pop().result()
 
 
+async def _run_screen(arguments: argparse.Namespace, words: Sequence[str]) -> int:
+    simulation, _ = _simulation(arguments, words)
+    try:
+        await simulation.start()
+        return await tui.beside(simulation, arguments.argusd)
+    finally:
+        await simulation.close()
+
+
+def _show_screen(arguments: argparse.Namespace, words: Sequence[str]) -> int:
+    """Show argusd's screen; with --connect this process goes on as that screen."""
+    if not sys.stdout.isatty():
+        raise UsageError("--tui needs a terminal")
+    if arguments.sim:
+        return asyncio.run(_run_screen(arguments, words))
+    tui.become(tui.screen(arguments.argusd, str(_address(arguments)), arguments.token))
+    return EXIT_START
+
+
 async def _run(arguments: argparse.Namespace, words: Sequence[str], page_token: str) -> None:
     from argus_tools.monitor.server import Server
 
@@ -202,6 +228,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             raise UsageError(f"unknown option '{words[0]}'; see argus-monitor --help")
         if not arguments.sim and (arguments.argusd or arguments.argusd_option):
             raise UsageError("--argusd goes with --sim")
+        if arguments.tui:
+            return _show_screen(arguments, words)
         page_token = read_token(arguments.page_token) if arguments.page_token else secrets.token_urlsafe(24)
         asyncio.run(_run(arguments, words, page_token))
         return 0

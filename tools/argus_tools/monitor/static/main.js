@@ -269,7 +269,7 @@ function setTheme(theme) {
   localStorage.setItem("argus-monitor-theme", theme);
   document.documentElement.dataset.theme = theme;
   put($("theme"), `Theme: ${theme}`);
-  stage.redraw();
+  stage.recolour();
 }
 
 function wire() {
@@ -295,7 +295,7 @@ function wire() {
     if (Number.isFinite(x) && Number.isFinite(y)) goTo(Math.round(x * 1000), Math.round(y * 1000));
     else say("Give x (ahead of the start) and y (left of it) in metres.", "warn");
   });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => stage.redraw());
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => stage.recolour());
 }
 
 $("fault").replaceChildren(...Object.keys(KINDS).map((kind) => new Option(kind, kind)));

@@ -11,6 +11,7 @@ const RING_PART = 0.215; // of half the picture: where the eyes sit
 const RING_MIN = 68; // pixels: eyes 20 degrees apart are then far enough from one another for a finger
 const SPANS_MM = [1500, 2000, 2600, 3300, 4200, 5400, 7000, 10000];
 const GLIDE_MS = 110;
+const GLIDE_FRAME_MS = 30;
 
 export function make(name, attributes = {}, parent = null) {
   const node = document.createElementNS(SVG, name);
@@ -42,6 +43,12 @@ function arc(r, from, to) {
   return `M${x1} ${y1}A${r} ${r} 0 ${to - from > 180 ? 1 : 0} 0 ${x2} ${y2}`;
 }
 
+/** Those of the floor, by name; the robot's are in the style sheet. */
+function colours(box) {
+  const style = getComputedStyle(box);
+  return Object.fromEntries(["grid", "wall", "way", "echo", "doubted", "goal"].map((name) => [name, style.getPropertyValue(`--${name}`)]));
+}
+
 export class Stage {
   /** act: { floor(x_mm, y_mm), sonar(k) } hear of clicks. */
   constructor(act) {
@@ -66,6 +73,9 @@ export class Stage {
     this.over = undefined;
     this.base = 0;
     this.waiting = false;
+    this.stale = true; // the robot is to be drawn anew, not only to be moved
+    this.last = 0;
+    this.colours = null;
     this.drawn = () => {};
     this.still = matchMedia("(prefers-reduced-motion: reduce)");
     new ResizeObserver(() => this.redraw()).observe(this.box);
@@ -87,13 +97,25 @@ export class Stage {
     const to = { x: state.x_mm, y: state.y_mm, deg: state.heading_cdeg / 100 };
     const leap = Math.hypot(to.x - this.pose.x, to.y - this.pose.y) > 500;
     const from = leap || this.still.matches || !this.state ? to : this.pose;
-    this.glide = { from, to, since: performance.now() };
+    this.glide = from.x === to.x && from.y === to.y && from.deg === to.deg ? null : { from, to, since: performance.now() };
+    if (!this.glide) this.pose = to;
     if (state.mode !== "SWEEPING" || this.state?.mode !== "SWEEPING") this.base = to.deg;
     this.state = state;
     this.redraw();
   }
 
   redraw() {
+    this.stale = true;
+    this.#ask();
+  }
+
+  /** After a change of the theme. */
+  recolour() {
+    this.colours = null;
+    this.redraw();
+  }
+
+  #ask() {
     if (!this.waiting) {
       this.waiting = true;
       requestAnimationFrame((now) => this.#frame(now));
@@ -102,6 +124,12 @@ export class Stage {
 
   #frame(now) {
     this.waiting = false;
+    if (!this.stale && now - this.last < GLIDE_FRAME_MS) { // between two states; what is new is drawn at once
+      this.#ask();
+      return;
+    }
+    this.last = now;
+    const { deg } = this.pose;
     if (this.glide) {
       const part = Math.min(1, (now - this.glide.since) / GLIDE_MS);
       const { from, to } = this.glide;
@@ -111,14 +139,17 @@ export class Stage {
         deg: from.deg + between(from.deg, to.deg) * part,
       };
       if (part === 1) this.glide = null;
-      else this.redraw();
+      else this.#ask();
     }
     const { clientWidth: width, clientHeight: height } = this.box;
     if (!width || !height) return;
     this.half = Math.min(width, height) / 2;
     this.scale = this.half / SPANS_MM[this.span];
     this.#ground(width, height);
-    this.#figure(width, height);
+    // While it glides straight on the robot looks as before: to build it anew sixty times a second costs what the
+    // next reading then waits for.
+    if (this.stale || this.pose.deg !== deg) this.#figure(width, height);
+    this.stale = false;
     this.drawn();
   }
 
@@ -136,8 +167,8 @@ export class Stage {
       this.canvas.height = Math.round(height * ratio);
     }
     const pen = this.canvas.getContext("2d");
-    const style = getComputedStyle(this.box);
-    const colour = (name) => style.getPropertyValue(`--${name}`);
+    this.colours ??= colours(this.box);
+    const colour = (name) => this.colours[name];
     pen.setTransform(ratio, 0, 0, ratio, (width * ratio) / 2, (height * ratio) / 2);
     pen.clearRect(-width / 2, -height / 2, width, height);
     this.#grid(pen, width, height, colour("grid"));

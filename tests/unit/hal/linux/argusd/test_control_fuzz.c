@@ -218,6 +218,10 @@ void test_a_few_messages(void) {
     fuzz(FEW, 1);
 }
 
-void test_a_million_messages(void) { // soak
+void test_many_messages(void) { // soak
+    fuzz(MANY / 10, 3);
+}
+
+void test_a_million_messages(void) { // wide
     fuzz(MANY, 2);
 }

@@ -168,12 +168,13 @@ void test_an_error_while_writing_is_a_lost_link_too(void) {
 }
 
 void test_no_translation_after_reconnecting_before_a_full_check(void) {
+    static const argus_point_t again = {3000, 0};
     drive();
     fake.fail_read_at = fake.reads + 1;
     driver_receive(&driver);
     const uint32_t moves = robot.commands[ARCOS_CMD_MOVE];
     hal_fake_link_init(&fake, 2, &clock_);
-    robot_init(&robot);
+    robot_init(&robot); // it restarted in motion, so the course is given up
     driver_attach(&driver, hal_fake_link(&fake));
     TEST_ASSERT_FALSE(driver.core->checked);
     for (int i = 0; i < 100 && !driver.core->checked; i++) {
@@ -181,6 +182,9 @@ void test_no_translation_after_reconnecting_before_a_full_check(void) {
         run(50);
     }
     TEST_ASSERT_TRUE(driver.core->checked);
+    run(2000);
+    TEST_ASSERT_EQUAL_INT(ARGUS_MISSION_FAILED, driver.core->mission);
+    TEST_ASSERT_TRUE(argus_set_course(driver.core, &again, 1));
     run(2000);
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_MOVE]);
     TEST_ASSERT_GREATER_THAN_UINT32(0, moves);
