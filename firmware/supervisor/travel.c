@@ -52,6 +52,11 @@ static argus_intent_t arrive(const argus_t *const self, argus_travel_t *const mi
     if (!self->motion.settled) {
         return argus_to_nothing();
     }
+    if (argus_task_goal_mm(&mine->task, &self->knowledge) > self->config.waypoint_radius_mm) {
+        mine->arriving = false;
+        argus_task_return(&mine->task);
+        return argus_to_nothing();
+    }
     const argus_mask_t open = argus_rules(self)->evidence ? argus_to_settle(self) : 0;
     return (argus_intent_t){.act = open != 0 ? ARGUS_DO_VERIFY : ARGUS_DO_REACH, .sonars = open};
 }
@@ -111,8 +116,7 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
     const int sonar = argus_nearest_ahead(self);
     const bool stopped =
         sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
-    const argus_search_news_t news =
-        argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
+    const argus_search_news_t news = argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
     if (news == ARGUS_SEARCH_GOES_ON) { // what drives ends by itself
         *intent = argus_to_nothing();
         return false;
