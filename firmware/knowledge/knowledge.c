@@ -188,9 +188,9 @@ static bool take_zero(argus_knowledge_t *const self, const argus_sip_t *const si
 // Its counters restarted. If it was in motion then, and some SIPs are missing, nobody knows how far it got
 // before.
 static bool loses_way(argus_knowledge_t *const self, const argus_span_t *const span) {
-    const bool lost = argus_odometry_is_hidden(span, self->under_way);
+    const bool lost = argus_odometry_is_unseen(span, self->under_way);
     if (lost) {
-        self->leap_mm = argus_odometry_hidden_mm(span);
+        self->leap_mm = argus_odometry_unseen_mm(span);
         self->leap_cdeg = 0;
     }
     return lost;
@@ -214,21 +214,18 @@ void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *
                               const int32_t distance_um, const uint32_t now_ms) {
     ARGUS_ASSERT(distance_um > 0);
     const argus_span_t span = span_to(self, sip, now_ms);
-    bool lost = false;
-    self->leapt = false;
     if (!self->has_raw) {
-        lost = loses_way(self, &span);
-        self->leapt = lost;
+        self->leapt = loses_way(self, &span);
         take_origin(self, sip);
         self->excess = (argus_excess_t){0};
     } else {
-        lost = take_zero(self, sip) && loses_way(self, &span);
-        self->leapt = lost || !move(self, sip, distance_um, &span);
+        self->leapt =
+            (take_zero(self, sip) && loses_way(self, &span)) || !move(self, sip, distance_um, &span);
     }
     if (self->leapt) {
         leave_out(self, sip, &span);
         self->leaps++;
-        self->leaps_unseen += lost || argus_odometry_is_unseen(&span) ? 1u : 0u;
+        self->leaps_unseen += argus_odometry_is_unseen(&span, self->under_way) ? 1u : 0u;
     }
     self->moved_ms = now_ms;
     self->x_raw = sip->x_raw;

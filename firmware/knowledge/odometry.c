@@ -116,19 +116,15 @@ static bool builds_up(argus_excess_t *const self, const argus_span_t *const span
            self->turn_cdeg > EXCESS_CDEG + times_ms(cdeg_s, LOST_MS);
 }
 
-bool argus_odometry_is_unseen(const argus_span_t *const span) {
-    return span->elapsed_ms > GAP_MS && (span->before.left_mm_s != 0 || span->before.right_mm_s != 0);
-}
-
 static bool was_moving(const argus_wheels_t *const wheels) {
     return argus_abs(wheels->left_mm_s) > REST_MM_S || argus_abs(wheels->right_mm_s) > REST_MM_S;
 }
 
-bool argus_odometry_is_hidden(const argus_span_t *const span, const bool under_way) {
+bool argus_odometry_is_unseen(const argus_span_t *const span, const bool under_way) {
     return (under_way || was_moving(&span->before)) && span->elapsed_ms > SIP_MS + LATE_MS;
 }
 
-int32_t argus_odometry_hidden_mm(const argus_span_t *const span) {
+int32_t argus_odometry_unseen_mm(const argus_span_t *const span) {
     ARGUS_ASSERT(span->track_mm > 0);
     return times_ms(fastest_mm_s(span), elapsed_ms(span));
 }

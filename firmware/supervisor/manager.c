@@ -77,7 +77,7 @@ static void go_offline(argus_t *const self) {
     self->checked = false;
     self->stalled = false;
     self->travel.jog_mm = 0;
-    self->knowledge.under_way |= self->motion.kind != ARGUS_MOTION_NONE && !self->motion.settled;
+    self->knowledge.under_way |= argus_motion_is_under_way(&self->motion);
     argus_motion_init(&self->motion);
     argus_do(self, &(argus_intent_t){.event = ARGUS_EV_LINK_LOST,
                                      .sonar = ARGUS_NO_SONAR,
