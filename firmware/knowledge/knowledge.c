@@ -67,12 +67,18 @@ static int32_t carry_mm(int32_t *const rest_um, const int32_t more_um) {
     return whole;
 }
 
+// Whole parts and the rest apart, so that 32 bits will do.
+static int32_t rotated_um(const int32_t x_um, const int32_t c, const int32_t y_um, const int32_t s) {
+    const int32_t one = ARGUS_TRIG_ONE;
+    return x_um / one * c + y_um / one * s + (x_um % one * c + y_um % one * s) / one;
+}
+
 // Rotates a displacement of the robot's odometry frame into the course frame.
 static void advance_pose(argus_knowledge_t *const self, const int32_t dx_um, const int32_t dy_um) {
-    const int64_t c = argus_cos(self->heading_offset_cdeg);
-    const int64_t s = argus_sin(self->heading_offset_cdeg);
-    self->pose.x_mm += carry_mm(&self->x_um, (int32_t)((dx_um * c - dy_um * s) / ARGUS_TRIG_ONE));
-    self->pose.y_mm += carry_mm(&self->y_um, (int32_t)((dx_um * s + dy_um * c) / ARGUS_TRIG_ONE));
+    const int32_t c = argus_cos(self->heading_offset_cdeg);
+    const int32_t s = argus_sin(self->heading_offset_cdeg);
+    self->pose.x_mm += carry_mm(&self->x_um, rotated_um(dx_um, c, dy_um, -s));
+    self->pose.y_mm += carry_mm(&self->y_um, rotated_um(dx_um, s, dy_um, c));
     const int32_t way_um = (int32_t)argus_hypot(dx_um / 16, dy_um / 16) * 16;
     self->odometer_mm += (uint32_t)carry_mm(&self->odometer_um, way_um);
 }

@@ -27,6 +27,7 @@ from worlds import hall
 ARGUSCTL = ROOT / ".venv/bin/argusctl"
 MONITOR = ROOT / ".venv/bin/argus-monitor"
 DOCS = ROOT / "docs/control.md"
+MONITOR_DOCS = ROOT / "docs/monitor.md"
 TOKEN = "a-token-that-nobody-logs-0123"
 
 
@@ -223,8 +224,9 @@ def test_a_screen_is_attached_and_leaves(bench: Bench) -> None:
 def test_the_monitor_shows_that_screen_in_the_place_of_its_page(bench: Bench) -> None:
     bench.sim(bench.world(**hall()))
     argusd = start(bench, active=False)
-    for arguments in (["--connect", place_of(bench)], ["--sim", "--world", "hall"]):
-        terminal = Terminal([*arguments, "--tui"], "vt52", 80, MONITOR)
+    (line,) = re.findall(r"^    argus-monitor (.* --tui)$", MONITOR_DOCS.read_text(), re.MULTILINE)
+    for words in (line.replace("unix:/tmp/argus.sock", place_of(bench)), "--sim --world hall --tui"):
+        terminal = Terminal(shlex.split(words), "vt52", 80, MONITOR)
         try:
             terminal.wait_shown("IsNormal")
             terminal.wait_shown("HEALTHY")

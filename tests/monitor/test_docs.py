@@ -21,7 +21,13 @@ BLOCKS = [
     [line.strip() for line in block.strip().splitlines()]
     for block in re.findall(r"(?:^    .+\n)+", TEXT, re.MULTILINE)
 ]
-ALONE = [line for block in BLOCKS for line in block if not any(" --control " in other for other in block)]
+ALONE = [
+    line
+    for block in BLOCKS
+    for line in block
+    if " --tui" not in line and not any(" --control " in other for other in block)
+]
+"""What shows no page but a screen is run by tests/hil/test_control.py."""
 TOGETHER = [block for block in BLOCKS if any(" --control " in line for line in block)]
 
 

@@ -58,7 +58,7 @@ def click_ahead(page: Browser, pixels: int) -> tuple[float, float]:
 def test_a_click_on_the_floor_drives_there(page: Browser) -> None:
     page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
     wanted = click_ahead(page, 140)
-    page.wait("the goal is set", lambda: page.js("return argusMonitor.stage.goal") is not None)
+    page.wait("the order is told", lambda: page.text("say") == "On its way.")
     goal = page.js("return argusMonitor.stage.goal")
     assert math.dist(goal, wanted) < 2 / page.js("return argusMonitor.stage.scale"), "a pixel or two"
     assert page.text("control") == "In control"

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import importlib.util
 import re
 import shlex
 import signal
 import subprocess
 import sys
 import time
+import tomllib
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -144,7 +146,21 @@ def blocks_of_the_page() -> list[list[str]]:
 
 
 FOREIGN = ("pip", "python", "ros2")
-"""Programs of the page that are not of this project; launch files and make_messages have tests of their own."""
+"""Programs of the page that are not of this project: test_launch.py has ros2."""
+
+
+def test_what_the_page_installs_and_makes_is_there() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    lines = [line for block in blocks_of_the_page() for line in block if line.split()[0] in ("pip", "python")]
+    named = {extra for line in lines for extra in re.findall(r"argus-p3dx\[(\w+)\]", line)}
+    assert named == {"ros", "foxglove"} <= extras.keys()
+    (make,) = (line for line in lines if line.startswith("python "))
+    # This environment was made so (tools/devtool/ros.py); once more it finds what it made.
+    done = subprocess.run(
+        [sys.executable, *shlex.split(make)[1:]], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert importlib.util.find_spec("tf2_msgs")
 
 
 def run_beside_each_other(lines: list[str], ours: dict[str, str]) -> list[str]:
