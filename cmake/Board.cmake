@@ -45,6 +45,12 @@ file(GLOB board_scripts CONFIGURE_DEPENDS ${board_folder}/*.ld)
 if(board_scripts)
     file(GLOB cortexm_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/hal/cortexm/*.c)
     list(APPEND board_sources ${cortexm_sources})
+    # Called by what the optimiser makes of the rest, so it is no part of that; its loops stay loops.
+    set(apart -fno-lto -fno-tree-loop-distribute-patterns)
+    if(ARGUS_STACK_USAGE)
+        list(APPEND apart -fcallgraph-info=su,da)
+    endif()
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/hal/cortexm/copy.c PROPERTIES COMPILE_OPTIONS "${apart}")
 endif()
 
 # Telemetry and orders over CAN; only a port with a controller has can.c.

@@ -34,7 +34,7 @@ PAIRS: Final = ("off:3,wrong:6", "off:2,wrong:5", "wrong:4,off:1")
 EPILOG: Final = """examples:
   .venv/bin/python tools/board_time.py              measure, and print the table
   .venv/bin/python tools/board_time.py --write      ... and put it into docs/flash.md
-  .venv/bin/python tools/board_time.py --check      fail when a row has grown by more than 5 %
+  .venv/bin/python tools/board_time.py --check      fail when a row has grown by more than 5 %, or a SIP is too long
   .venv/bin/python tools/board_time.py --same       play five seeds and three pairs of faults, compare decisions
 
 It needs the builds release and mps2-an386 (tools/dev build release, tools/dev firmware --board mps2-an386).
@@ -250,7 +250,9 @@ def write(figures: dict[str, dict[str, int]]) -> None:
 
 
 def check(figures: dict[str, dict[str, int]]) -> None:
-    """Fail when something has grown, where the compiler is the one of the document."""
+    """Fail when a SIP takes too long, or something has grown where the compiler is the one of the document."""
+    if (worst := max(figures[profile]["receive_sip"] for profile in figures)) > SIP_AIM:
+        raise Failed(f"a SIP takes {worst} instructions; {SIP_AIM} are the most that it may")
     version, _ = noted()
     if version.split(".")[0] != compiler().split(".")[0]:
         print(f"the table of docs/flash.md is of gcc {version}, this is {compiler()}: growth is not judged")

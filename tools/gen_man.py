@@ -178,6 +178,18 @@ PAGES = (
         also=("argusd", "argus-log", "argus-monitor"),
     ),
     Page(
+        name="argus-flash-check",
+        what="checks whether the image that was flashed into a board runs as it should",
+        command=(sys.executable, "-m", "argus_tools.flash_check"),
+        synopsis=("DEVICE [options]",),
+        description=(
+            "argus-flash-check listens at the operator's UART of a board, orders it to restart, and looks at what "
+            "it then says: what it is and runs with, why it started, whether its link comes up, and how much of "
+            "its stack was never used. It commands no motion.",
+        ),
+        also=("argusd", "argus-sim"),
+    ),
+    Page(
         name="argus-conformance",
         what="checks an ARCOS server from outside",
         command=(sys.executable, "-m", "hil_sim.conformance.cli"),

@@ -117,7 +117,7 @@ TURNS_MAX = 24  # that a plan is made of
 FORWARD_MAX = 6
 NAME_BYTES = 16
 LAST_ASTERN_DEG = 140  # who looks farther astern than this sees what the robot backs into head-on
-EXCESS_ONE = 10_000_000_000
+EXCESS_ONE = 1 << 32
 POSE_BLOCK = 8  # sonars of which a build manages all or none
 ROLES = ("ahead", "astern", "abeam", "none")
 ROBOT_FIGURES = {
@@ -347,9 +347,30 @@ def robots_source(root: Path) -> str:
     )
 
 
+def likelihoods_header(root: Path) -> str:
+    """Return the tables of what verdicts tell of a hypothesis, as initializers of one row for each verdict."""
+    table = load(root, "likelihoods")
+    source = root / TABLES / "likelihoods.toml"
+    size = len(table.get("verdicts", ()))
+    body = []
+    for name in ("lag", "offset"):
+        for over in ("healthy", "other"):
+            try:
+                rows = table[name]["over"][over]["rows"]
+            except (KeyError, TypeError):
+                raise TableError(f"{source}: [{name}.over.{over}] has no rows") from None
+            if len(rows) != size or any(len(row) != size or not all(map(is_integer, row)) for row in rows):
+                raise TableError(f"{source}: [{name}.over.{over}] is not {size} rows of {size} whole numbers")
+            cells = ", ".join("{" + ", ".join(map(str, row)) + "}" for row in rows)
+            body.append(f"#define ARGUS_{name.upper()}_OVER_{over.upper()} {{{cells}}}")
+    what = "Likelihood ratios of pairs of verdicts, hundredths of a nat"
+    return header("ARGUS_GEN_LIKELIHOODS_H", "likelihoods.toml", what, body)
+
+
 GENERATORS: dict[Path, Callable[[Path], str]] = {
     Path("firmware/robot/gen_sizes.h"): robots_header,
     Path("firmware/robot/gen_robots.c"): robots_source,
+    Path("firmware/awareness/gen_likelihoods.h"): likelihoods_header,
     Path("firmware/arcos/gen_arcos.h"): lambda root: arcos_header(load(root, "arcos")),
 }
 

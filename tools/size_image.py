@@ -26,6 +26,8 @@ IN_RAM: Final = (".stack", ".noinit", ".data", ".bss")
 START: Final = "cortexm_start"
 POINTED_AT: Final = ("slot_read", "slot_write")
 """What is called through a pointer in an image: the store's medium (hal/board/flash.c)."""
+APART: Final = "copy.c*.ci"
+"""The call graph of what is no part of the whole program (hal/cortexm/copy.c)."""
 VECTORS: Final = "vectors"
 EXCEPTION_BYTES: Final = 36
 """What the processor itself puts on the stack: 8 words, and one to align it (ARM DDI 0403, B1.5.7)."""
@@ -78,7 +80,7 @@ def measure(folder: Path) -> Sizes:
     image = image_in(folder)
     size = sections(image)
     graph = size_stack.Graph()
-    for file in folder.glob("*.ltrans*.ci"):
+    for file in [*folder.glob("*.ltrans*.ci"), *folder.rglob(APART)]:
         graph.add(file.read_text(encoding="utf-8"))
     graph.point(POINTED_AT)
     starts = graph.named(START)

@@ -96,6 +96,11 @@ static void again(argus_motion_t *const self, argus_outbox_t *const out,
     self->tries = (uint8_t)(tries + 1);
 }
 
+bool argus_motion_is_under_way(const argus_motion_t *const self) {
+    ARGUS_ASSERT(self->kind <= ARGUS_MOTION_STOP);
+    return (self->kind == ARGUS_MOTION_TURN || self->kind == ARGUS_MOTION_MOVE) && !self->settled;
+}
+
 void argus_motion_sip(argus_motion_t *const self, argus_outbox_t *const out,
                       const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
     ARGUS_ASSERT(self->tries <= TRIES_MAX && self->on_target <= SETTLED_SIPS);

@@ -42,6 +42,9 @@ void argus_motion_hold(argus_motion_t *self, uint32_t now_ms);
 // While translating: a heading correction that is not waited for.
 void argus_motion_steer(argus_outbox_t *out, const argus_knowledge_t *knowledge, int32_t heading_cdeg);
 
+// A turn or a move was asked for and has not settled.
+bool argus_motion_is_under_way(const argus_motion_t *self);
+
 // After each SIP. Settled: two consecutive SIPs with |L|, |R| <= 5 mm/s (a turn: heading within 1 degree of
 // the target). A turn at rest off its target is commanded again, three times at most, then it failed.
 void argus_motion_sip(argus_motion_t *self, argus_outbox_t *out, const argus_knowledge_t *knowledge,

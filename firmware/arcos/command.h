@@ -19,11 +19,11 @@ size_t argus_command_string(uint8_t *packet, size_t capacity, uint8_t command, c
 // Whole packets, first in first out. STOP and E_STOP overtake: they go first and drop every waiting motion
 // command.
 typedef struct {
-    uint8_t bytes[ARGUS_OUTBOX_BYTES]; // a ring
     uint16_t head;                     // where the next packet starts
     uint16_t length;                   // bytes waiting
     uint32_t sent;                     // packets fetched, monotonic
     uint32_t refused;                  // packets that did not fit, monotonic
+    uint8_t bytes[ARGUS_OUTBOX_BYTES]; // a ring
 } argus_outbox_t;
 
 void argus_outbox_init(argus_outbox_t *self);

@@ -8,11 +8,6 @@
 
 // Fields missing at the end of a short packet read as 0.
 typedef struct {
-    char robot_class[ARGUS_NAME_MAX];
-    char robot_subclass[ARGUS_NAME_MAX];
-    char serial[ARGUS_NAME_MAX];
-    char name[ARGUS_NAME_MAX];
-    char version[ARGUS_NAME_MAX];
     uint16_t rotvel_top_deg_s;
     uint16_t vel_top_mm_s;
     uint16_t rotaccel_top_deg_s2;
@@ -32,6 +27,11 @@ typedef struct {
     uint8_t front_bumpers; // segments
     uint8_t rear_bumpers;
     bool complete; // everything up to VERSION was there
+    char robot_class[ARGUS_NAME_MAX];
+    char robot_subclass[ARGUS_NAME_MAX];
+    char serial[ARGUS_NAME_MAX];
+    char name[ARGUS_NAME_MAX];
+    char version[ARGUS_NAME_MAX];
 } argus_configpac_t;
 
 // False when the type is not 0x20 or the packet ends inside its first three strings.

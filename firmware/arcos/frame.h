@@ -40,7 +40,6 @@ typedef struct {
 // position may look like a packet (x = -1030 mm is FA FB). What is owed longer than its COUNT takes at 9600
 // baud + 100 ms is given up once the line is silent.
 typedef struct {
-    uint8_t held[ARGUS_PARSER_BYTES];
     uint16_t first;    // the bytes held begin here
     uint16_t length;   // bytes held
     uint16_t searched; // every packet inside the first one that ends up to here has been found bad
@@ -52,6 +51,7 @@ typedef struct {
     uint32_t bad_counts;
     uint32_t skipped_bytes; // bytes that belong to no accepted packet
     uint32_t timeouts;
+    uint8_t held[ARGUS_PARSER_BYTES];
 } argus_parser_t;
 
 void argus_parser_init(argus_parser_t *self);

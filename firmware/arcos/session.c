@@ -90,7 +90,8 @@ static void stop_wheels(argus_session_t *self) {
 }
 
 static unsigned dislodge(argus_session_t *self, uint32_t now_ms) {
-    ARGUS_ASSERT(self->state == ARGUS_SESSION_LISTEN || self->state == ARGUS_SESSION_HALT || is_syncing(self));
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_LISTEN || self->state == ARGUS_SESSION_HALT ||
+                 is_syncing(self));
     argus_outbox_clear(&self->outbox);
     if (self->dislodged >= DISLODGE_MAX) {
         return fail(self, now_ms);
@@ -196,7 +197,8 @@ static bool turns(int32_t mm_s) {
     return mm_s > REST_MM_S || mm_s < -REST_MM_S;
 }
 
-// The old session's SIPs still tell where the robot gets to: it ends when the robot rests, or after some time.
+// The old session's SIPs still tell where the robot gets to: it ends when the robot rests, or after some
+// time.
 static unsigned on_old_session(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
     const unsigned got = take_sip(self, now_ms, packet) ? ARGUS_SESSION_GOT_SIP : 0;
     if (got == 0 || (!turns(self->sip.vel_left_mm_s) && !turns(self->sip.vel_right_mm_s))) {

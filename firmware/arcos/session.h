@@ -14,7 +14,8 @@ typedef enum {
     ARGUS_SESSION_DOWN,     // no transport
     ARGUS_SESSION_PAUSE,    // waits before the next attempt
     ARGUS_SESSION_LISTEN,   // 250 ms, each attempt begins so: is an old session still reporting?
-    ARGUS_SESSION_HALT,     // VEL 0, RVEL 0 sent; the old session tells where the robot comes to rest, 3 s at most
+    ARGUS_SESSION_HALT,     // VEL 0, RVEL 0 sent; the old session tells where the robot comes to rest, 3 s at
+                            // most
     ARGUS_SESSION_DISLODGE, // VEL 0, RVEL 0, CLOSE sent; 100 ms of flushing
     ARGUS_SESSION_SYNC0,
     ARGUS_SESSION_SYNC1,
@@ -41,16 +42,8 @@ enum {
 
 typedef struct {
     argus_session_state_t state;
-    argus_parser_t parser;
-    argus_outbox_t outbox;
-    argus_sip_t sip;         // the last one
-    argus_configpac_t robot; // zero until a CONFIGpac came
     bool has_robot;
-    char name[ARGUS_NAME_MAX]; // from the SYNC2 reply
-    char robot_class[ARGUS_NAME_MAX];
-    char subclass[ARGUS_NAME_MAX];
-    argus_identity_t identity; // of the last robot met
-    uint8_t differs;           // in which part it was not the one before, see argus_identity_meet()
+    uint8_t differs; // in which part it was not the one before, see argus_identity_meet()
     bool stalled;
     bool closed_said;
     bool origin_due;      // a SETO is on its way since: positions may be counted from there
@@ -66,7 +59,15 @@ typedef struct {
     uint8_t zeros_due;    // 2: VEL 0 and RVEL 0 are to be sent, 1: RVEL 0
     uint32_t sips;        // monotonic counters
     uint32_t unknown_packets;
-    uint32_t bad_sips; // right checksum, wrong inside
+    uint32_t bad_sips;         // right checksum, wrong inside
+    argus_identity_t identity; // of the last robot met
+    argus_sip_t sip;           // the last one
+    argus_outbox_t outbox;
+    char name[ARGUS_NAME_MAX]; // from the SYNC2 reply
+    char robot_class[ARGUS_NAME_MAX];
+    char subclass[ARGUS_NAME_MAX];
+    argus_configpac_t robot; // zero until a CONFIGpac came
+    argus_parser_t parser;
 } argus_session_t;
 
 void argus_session_init(argus_session_t *self);

@@ -31,9 +31,9 @@ typedef struct {
 } argus_disparate_t;
 
 typedef struct {
-    argus_disparate_t of[ARGUS_SONARS];
     bool away; // turned away to look: what is read there is no verdict on the sonars' own bearings
     argus_mask_t verified; // sonars verified since the robot last drove: not again in this place
+    argus_disparate_t of[ARGUS_SONARS];
 } argus_awareness_t;
 
 void argus_awareness_init(argus_awareness_t *self);

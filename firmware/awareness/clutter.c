@@ -30,7 +30,7 @@ void argus_clutter_sip(argus_evidence_t *const self, const argus_knowledge_t *co
         argus_case_t *const c = &self->of[i];
         c->moved = c->moved && knowledge->sip_ms - c->moved_ms < ARGUS_CALM_MS;
     }
-    if (argus_odds_permille(self, knowledge, -1, ARGUS_TEST_PEERS) > ARGUS_CROWD_PERMILLE) {
+    if (argus_odds_common_permille(self, knowledge, ARGUS_TEST_PEERS) > ARGUS_CROWD_PERMILLE) {
         self->crowded = true;
         self->crowded_ms = knowledge->sip_ms;
     }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "awareness/clutter.h"
+#include "awareness/gen_likelihoods.h"
 #include "awareness/levels.h"
 #include "awareness/odds.h"
 #include "knowledge/angle.h"
@@ -33,21 +34,9 @@ typedef struct {
     int16_t over_other[SAYINGS][SAYINGS];
 } worth_t;
 
-static const worth_t lag_worth = {
-    .over_healthy = {[UNSEEN] = {[AGREED] = 50, [CONTRADICTED] = -200},
-                     [QUIET] = {[CONTRADICTED] = -350},
-                     [AGREED] = {[CONTRADICTED] = -400},
-                     [CONTRADICTED] = {[QUIET] = 100, [AGREED] = 300, [CONTRADICTED] = -150, [SAME] = -150}},
-    .over_other = {[AGREED] = {[CONTRADICTED] = -390},
-                   [CONTRADICTED] = {[QUIET] = 230, [AGREED] = 230, [CONTRADICTED] = -300, [SAME] = -150}},
-};
-
-static const worth_t offset_worth = {
-    .over_healthy = {[AGREED] = {[AGREED] = 60, [CONTRADICTED] = -320},
-                     [CONTRADICTED] = {[QUIET] = 40, [AGREED] = 150, [CONTRADICTED] = -190}},
-    .over_other = {[AGREED] = {[AGREED] = 30, [CONTRADICTED] = -300},
-                   [CONTRADICTED] = {[QUIET] = 60, [AGREED] = 160, [CONTRADICTED] = -200}},
-};
+// Measured: `argus-sim bench likelihoods`.
+static const worth_t lag_worth = {ARGUS_LAG_OVER_HEALTHY, ARGUS_LAG_OVER_OTHER};
+static const worth_t offset_worth = {ARGUS_OFFSET_OVER_HEALTHY, ARGUS_OFFSET_OVER_OTHER};
 
 // A wall fills cones that are 6 degrees apart alike, so offsets between these show as well.
 static const int16_t offset_cdeg[ARGUS_OFFSETS] = {-2400, -1800, -1200, 1200, 1800, 2400};

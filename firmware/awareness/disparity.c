@@ -5,12 +5,12 @@
 #include "knowledge/angle.h"
 
 // tr = (a1 + a2) (1 / cos 20 - 1). With fewer digits some readings round to the wrong side.
-#define EXCESS_ONE INT64_C(10000000000)
-
 int32_t argus_tolerance_mm(const argus_robot_t *const robot, const int32_t reading_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
-    const int64_t scaled = (int64_t)(reading_mm + robot->tolerance_centre_mm) * robot->tolerance_excess;
-    return (int32_t)((scaled + EXCESS_ONE / 2) / EXCESS_ONE);
+    const uint64_t half = UINT64_C(1) << 31;
+    const uint64_t scaled =
+        (uint64_t)(uint32_t)(reading_mm + robot->tolerance_centre_mm) * robot->tolerance_excess;
+    return (int32_t)((scaled + half) >> 32);
 }
 
 // A sonar that may be compared with, or -1.

@@ -35,9 +35,7 @@ typedef struct {
 } argus_rate_t;
 
 typedef struct {
-    argus_pings_t pings;
     int16_t score[ARGUS_TESTS];
-    argus_hypothesis_t hypothesis[ARGUS_HYPOTHESES];
     uint8_t lag_run[ARGUS_LAGS]; // readings in a row that vary and equal the one so many before, up to 4
     uint16_t last_mm;            // its last reading
     int16_t drift_mm;            // at rest, what it differed from the one before
@@ -52,18 +50,18 @@ typedef struct {
     bool borne_out;       // an echo of it was, since then
     argus_mask_t against; // sonars that contradicted it, since then
     uint32_t episode_ms;
-    argus_rate_t rate[ARGUS_TESTS];
     bool out;   // its evidence is of whether it may come back: what speaks for it counts more
     bool moved; // something moved before it, at moved_ms
     uint32_t moved_ms;
     uint32_t counted_ms;
     uint32_t alive_ms;
     uint32_t agreed_ms; // when others bore it out last
+    argus_rate_t rate[ARGUS_TESTS];
+    argus_hypothesis_t hypothesis[ARGUS_HYPOTHESES];
+    argus_pings_t pings;
 } argus_case_t;
 
 typedef struct {
-    argus_case_t of[ARGUS_SONARS];
-    argus_trend_t trend;
     argus_pose_t before; // of the SIP before, at before_ms
     uint32_t before_ms;
     uint32_t faded_ms;
@@ -73,6 +71,8 @@ typedef struct {
     uint8_t straight_sips; // SIPs in a row without a rotation
     uint16_t caution;      // percent: so much of the tabled evidence a level takes
     bool has_pairs;        // any two have ever borne each other out
+    argus_trend_t trend;
+    argus_case_t of[ARGUS_SONARS];
 } argus_evidence_t;
 
 // Adds to a test's score, by caution and within its bounds; more of what speaks for a sonar that is out.

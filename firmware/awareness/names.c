@@ -40,7 +40,7 @@ static argus_hypothesis_t offset_of(const argus_case_t *const self) {
 static bool is_late(const argus_case_t *const self, const int32_t level) {
     const argus_hypothesis_t late = late_of(self);
     const int32_t wanted = has_partners(self) ? level : argus_max(level, ARGUS_LATE_ALONE);
-    return late.over_healthy >= wanted && late.over_other >= ARGUS_LATE_OVER_OTHER &&
+    return late.over_healthy >= wanted && late.over_other >= ARGUS_LATE_LEAD &&
            self->score[ARGUS_TEST_PEERS] >= 0;
 }
 
@@ -48,7 +48,7 @@ static bool is_late(const argus_case_t *const self, const int32_t level) {
 // the offset: it shows once in a place, a lag in every reading.
 static bool is_offset(const argus_case_t *const self, const int32_t level) {
     const argus_hypothesis_t offset = offset_of(self);
-    return offset.over_healthy >= level && offset.over_other >= ARGUS_OFFSET_OVER_OTHER &&
+    return offset.over_healthy >= level && offset.over_other >= ARGUS_OFFSET_LEAD &&
            2 * offset.over_other > late_of(self).over_other && has_partners(self) &&
            self->score[ARGUS_TEST_PEERS] >= ARGUS_OFFSET_CONTRADICTED;
 }
@@ -63,7 +63,7 @@ static argus_fault_kind_t kind_of_peers(const argus_case_t *const self) {
     if (silent > 0 && self->score[ARGUS_TEST_DROPOUT] > 0) {
         return ARGUS_KIND_INTERMITTENT;
     }
-    return late_of(self).over_other >= ARGUS_LATE_OVER_OTHER ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
+    return late_of(self).over_other >= ARGUS_LATE_LEAD ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
 }
 
 // The others heard something wherever it lately did not, and it has heard nothing for a while: less is wanted

@@ -9,6 +9,7 @@
 #define EARLIER 6 // readings are taken for granted at the start
 #define FADE_EIGHTHS 7
 #define THOUSAND 1000
+#define LIARS 2 // sonars that are odd by themselves
 
 // Permille of the readings: odd ones of a healthy sonar at the least; odd ones, and those that go on, of a
 // faulty one. What is neither tells nothing.
@@ -33,16 +34,43 @@ int32_t argus_ln(const int32_t number) {
     return (693 * power + 693 * (number - (1 << power)) / (1 << power)) / 10;
 }
 
-int32_t argus_odds_permille(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                            const int but, const argus_test_t test) {
+static int32_t permille_but(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                            const argus_mask_t but, const argus_test_t test) {
     int32_t all = EARLIER * ONE;
     int32_t odd = all * odds[test].usual / THOUSAND + 1;
     for (int i = 0; i < knowledge->sonars; i++) {
-        const bool counts = i != but && !argus_is_out(knowledge, i);
+        const bool counts = (but >> i & 1u) == 0 && !argus_is_out(knowledge, i);
         all += counts ? self->of[i].rate[test].all : 0;
         odd += counts ? self->of[i].rate[test].odd : 0;
     }
     return odd * THOUSAND / all;
+}
+
+int32_t argus_odds_permille(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                            const int but, const argus_test_t test) {
+    return permille_but(self, knowledge, but < 0 ? 0 : (argus_mask_t)(1u << but), test);
+}
+
+// Odd readings of a sonar beyond those that a healthy one has.
+static int32_t excess_of(const argus_rate_t *const rate, const argus_test_t test) {
+    return rate->odd - rate->all * odds[test].usual / THOUSAND;
+}
+
+int32_t argus_odds_common_permille(const argus_evidence_t *const self,
+                                   const argus_knowledge_t *const knowledge, const argus_test_t test) {
+    argus_mask_t left = 0;
+    for (int n = 0; n < LIARS; n++) {
+        int worst = -1;
+        for (int i = 0; i < knowledge->sonars; i++) {
+            const bool counts = (left >> i & 1u) == 0 && !argus_is_out(knowledge, i);
+            if (counts && (worst < 0 || excess_of(&self->of[i].rate[test], test) >
+                                            excess_of(&self->of[worst].rate[test], test))) {
+                worst = i;
+            }
+        }
+        left |= worst >= 0 ? (argus_mask_t)(1u << worst) : 0u;
+    }
+    return permille_but(self, knowledge, left, test);
 }
 
 int32_t argus_odds_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,

@@ -20,6 +20,10 @@ void argus_odds_note(argus_evidence_t *self, int sonar, argus_test_t test, bool 
 int32_t argus_odds_permille(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int but,
                             argus_test_t test);
 
+// Likewise of all but the two oddest: what more than two of them have in common.
+int32_t argus_odds_common_permille(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
+                                   argus_test_t test);
+
 // Once a second the rates fade.
 void argus_odds_fade(argus_evidence_t *self);
 

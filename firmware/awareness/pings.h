@@ -25,10 +25,10 @@ typedef struct {
 } argus_ping_t;
 
 typedef struct {
-    argus_ping_t ping[ARGUS_PINGS];
-    uint32_t looked[ARGUS_PING_SECTORS]; // the pings that looked into a sector, a bit each
     uint8_t next;
     uint8_t count;
+    uint32_t looked[ARGUS_PING_SECTORS]; // the pings that looked into a sector, a bit each
+    argus_ping_t ping[ARGUS_PINGS];
 } argus_pings_t;
 
 // One more. What a robot at rest hears again and again is one ping, from the first place, of the last

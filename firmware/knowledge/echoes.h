@@ -19,9 +19,9 @@ typedef struct {
 } argus_echo_t;
 
 typedef struct {
-    argus_echo_t at[ARGUS_POINTS_MAX];
     uint16_t count;
     uint16_t next; // oldest, once full
+    argus_echo_t at[ARGUS_POINTS_MAX];
     argus_grid_t grid;
 } argus_echoes_t;
 

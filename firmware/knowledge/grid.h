@@ -16,9 +16,9 @@ typedef struct {
 } argus_cell_t;
 
 typedef struct {
-    uint8_t level[ARGUS_GRID_CELLS * ARGUS_GRID_CELLS / 2]; // two cells to a byte, 0 to 15
     argus_cell_t low;                                       // of the window, whose middle the robot is near
     argus_point_t abeam[2];                                 // the last echo of a flank, right and left
+    uint8_t level[ARGUS_GRID_CELLS * ARGUS_GRID_CELLS / 2]; // two cells to a byte, 0 to 15
 } argus_grid_t;
 
 void argus_grid_init(argus_grid_t *self);

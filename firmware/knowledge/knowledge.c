@@ -67,12 +67,18 @@ static int32_t carry_mm(int32_t *const rest_um, const int32_t more_um) {
     return whole;
 }
 
+// Whole parts and the rest apart, so that 32 bits will do.
+static int32_t rotated_um(const int32_t x_um, const int32_t c, const int32_t y_um, const int32_t s) {
+    const int32_t one = ARGUS_TRIG_ONE;
+    return x_um / one * c + y_um / one * s + (x_um % one * c + y_um % one * s) / one;
+}
+
 // Rotates a displacement of the robot's odometry frame into the course frame.
 static void advance_pose(argus_knowledge_t *const self, const int32_t dx_um, const int32_t dy_um) {
-    const int64_t c = argus_cos(self->heading_offset_cdeg);
-    const int64_t s = argus_sin(self->heading_offset_cdeg);
-    self->pose.x_mm += carry_mm(&self->x_um, (int32_t)((dx_um * c - dy_um * s) / ARGUS_TRIG_ONE));
-    self->pose.y_mm += carry_mm(&self->y_um, (int32_t)((dx_um * s + dy_um * c) / ARGUS_TRIG_ONE));
+    const int32_t c = argus_cos(self->heading_offset_cdeg);
+    const int32_t s = argus_sin(self->heading_offset_cdeg);
+    self->pose.x_mm += carry_mm(&self->x_um, rotated_um(dx_um, c, dy_um, -s));
+    self->pose.y_mm += carry_mm(&self->y_um, rotated_um(dx_um, s, dy_um, c));
     const int32_t way_um = (int32_t)argus_hypot(dx_um / 16, dy_um / 16) * 16;
     self->odometer_mm += (uint32_t)carry_mm(&self->odometer_um, way_um);
 }
@@ -179,11 +185,12 @@ static bool take_zero(argus_knowledge_t *const self, const argus_sip_t *const si
     return true;
 }
 
-// Its counters restarted. If it was in motion then, and some SIPs are missing, nobody knows how far it got before.
+// Its counters restarted. If it was in motion then, and some SIPs are missing, nobody knows how far it got
+// before.
 static bool loses_way(argus_knowledge_t *const self, const argus_span_t *const span) {
-    const bool lost = argus_odometry_is_hidden(span, self->under_way);
+    const bool lost = argus_odometry_is_unseen(span, self->under_way);
     if (lost) {
-        self->leap_mm = argus_odometry_hidden_mm(span);
+        self->leap_mm = argus_odometry_unseen_mm(span);
         self->leap_cdeg = 0;
     }
     return lost;
@@ -207,21 +214,18 @@ void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *
                               const int32_t distance_um, const uint32_t now_ms) {
     ARGUS_ASSERT(distance_um > 0);
     const argus_span_t span = span_to(self, sip, now_ms);
-    bool lost = false;
-    self->leapt = false;
     if (!self->has_raw) {
-        lost = loses_way(self, &span);
-        self->leapt = lost;
+        self->leapt = loses_way(self, &span);
         take_origin(self, sip);
         self->excess = (argus_excess_t){0};
     } else {
-        lost = take_zero(self, sip) && loses_way(self, &span);
-        self->leapt = lost || !move(self, sip, distance_um, &span);
+        self->leapt =
+            (take_zero(self, sip) && loses_way(self, &span)) || !move(self, sip, distance_um, &span);
     }
     if (self->leapt) {
         leave_out(self, sip, &span);
         self->leaps++;
-        self->leaps_unseen += lost || argus_odometry_is_unseen(&span) ? 1u : 0u;
+        self->leaps_unseen += argus_odometry_is_unseen(&span, self->under_way) ? 1u : 0u;
     }
     self->moved_ms = now_ms;
     self->x_raw = sip->x_raw;

@@ -40,7 +40,6 @@ typedef struct {
 typedef struct {
     const argus_robot_t *robot; // whose geometry holds, never NULL
     uint8_t sonars;             // argus_robot_sonars() of it: those beyond are absent
-    argus_sonar_t sonar[ARGUS_SONARS];
     argus_pose_t pose;
     int32_t heading_offset_cdeg; // heading of the robot as it is built - what it says itself
     int32_t x_um;                // remainders of the pose, below a mm
@@ -75,6 +74,7 @@ typedef struct {
     argus_mask_t fresh; // sonars listed in the last SIP
     argus_mask_t heard; // sonars that have heard an echo since the session opened
     uint32_t online_ms; // when SIPs began to come, or came again after a gap
+    argus_sonar_t sonar[ARGUS_SONARS];
 } argus_knowledge_t;
 
 // Nothing is known but that the robot is the default one.

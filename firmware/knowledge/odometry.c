@@ -30,6 +30,7 @@
 #define SHORT_MM 500        // what may be missing of it
 #define SHORT_CDEG 4500     // likewise
 #define CDEG_PER_RADIAN 5730
+#define PER_S_MAX 500000 // of what is multiplied by milliseconds: it fits 32 bits for 4 s
 
 static int32_t fastest_mm_s(const argus_span_t *const span) {
     const int32_t before = argus_max(argus_abs(span->before.left_mm_s), argus_abs(span->before.right_mm_s));
@@ -56,8 +57,8 @@ static int32_t fastest_cdeg_s(const argus_span_t *const span) {
 
 // Of a speed, within a time up to some seconds.
 static int32_t times_ms(const int32_t per_s, const int32_t ms) {
-    ARGUS_ASSERT(ms >= 0);
-    return (int32_t)((int64_t)per_s * ms / 1000);
+    ARGUS_ASSERT(ms >= 0 && ms <= (int32_t)GAP_MAX_MS + LATE_MS && argus_abs(per_s) <= PER_S_MAX);
+    return per_s * ms / 1000;
 }
 
 static int32_t elapsed_ms(const argus_span_t *const span) {
@@ -115,19 +116,15 @@ static bool builds_up(argus_excess_t *const self, const argus_span_t *const span
            self->turn_cdeg > EXCESS_CDEG + times_ms(cdeg_s, LOST_MS);
 }
 
-bool argus_odometry_is_unseen(const argus_span_t *const span) {
-    return span->elapsed_ms > GAP_MS && (span->before.left_mm_s != 0 || span->before.right_mm_s != 0);
-}
-
 static bool was_moving(const argus_wheels_t *const wheels) {
     return argus_abs(wheels->left_mm_s) > REST_MM_S || argus_abs(wheels->right_mm_s) > REST_MM_S;
 }
 
-bool argus_odometry_is_hidden(const argus_span_t *const span, const bool under_way) {
+bool argus_odometry_is_unseen(const argus_span_t *const span, const bool under_way) {
     return (under_way || was_moving(&span->before)) && span->elapsed_ms > SIP_MS + LATE_MS;
 }
 
-int32_t argus_odometry_hidden_mm(const argus_span_t *const span) {
+int32_t argus_odometry_unseen_mm(const argus_span_t *const span) {
     ARGUS_ASSERT(span->track_mm > 0);
     return times_ms(fastest_mm_s(span), elapsed_ms(span));
 }

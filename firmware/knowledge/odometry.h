@@ -39,13 +39,10 @@ bool argus_odometry_is_speed(int32_t mm_s);
 // What the wheels say that it has moved: ahead, and counter-clockwise.
 argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *span);
 
-// It was in motion when SIPs ceased to come: where it went in between the odometry alone can tell.
-bool argus_odometry_is_unseen(const argus_span_t *span);
-
-// Its counters restarted between the two: it was in motion, or asked to be, and more than a SIP is missing. And the
-// farthest that it can have got unseen.
-bool argus_odometry_is_hidden(const argus_span_t *span, bool under_way);
-int32_t argus_odometry_hidden_mm(const argus_span_t *span);
+// It was in motion, or asked to be, and more than a SIP is missing: how far it got in between the odometry
+// alone can tell. And the farthest that this can be.
+bool argus_odometry_is_unseen(const argus_span_t *span, bool under_way);
+int32_t argus_odometry_unseen_mm(const argus_span_t *span);
 
 // Whether the robot can have moved by this, both >= 0, between the two SIPs: alone, and with what has built
 // up; nor does it stand while its wheels turn. False: what has built up is forgotten. SIPs come late, in

@@ -19,10 +19,10 @@ typedef struct {
 } argus_ray_t;
 
 typedef struct {
-    argus_ray_t at[ARGUS_RAYS_MAX];
     uint32_t newest_ms;
     uint8_t count;
     uint8_t next; // oldest, once full
+    argus_ray_t at[ARGUS_RAYS_MAX];
 } argus_rays_t;
 
 void argus_rays_init(argus_rays_t *self);

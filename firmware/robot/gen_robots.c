@@ -35,7 +35,7 @@ const argus_robot_t argus_robots[] = {
         .cone_deg = 30,
         .arrays = 2,
         .pitch_deg = 20,
-        .tolerance_excess = 641777725,
+        .tolerance_excess = 275641434,
         .rear_overhang_mm = 64,
     },
     {
@@ -67,7 +67,7 @@ const argus_robot_t argus_robots[] = {
         .cone_deg = 30,
         .arrays = 1,
         .pitch_deg = 27,
-        .tolerance_excess = 1547005384,
+        .tolerance_excess = 664433753,
         .rear_overhang_mm = 24,
     },
     {
@@ -99,7 +99,7 @@ const argus_robot_t argus_robots[] = {
         .cone_deg = 30,
         .arrays = 2,
         .pitch_deg = 20,
-        .tolerance_excess = 641777725,
+        .tolerance_excess = 275641434,
         .rear_overhang_mm = 90,
     },
     {
@@ -131,7 +131,7 @@ const argus_robot_t argus_robots[] = {
         .cone_deg = 30,
         .arrays = 4,
         .pitch_deg = 20,
-        .tolerance_excess = 641777725,
+        .tolerance_excess = 275641434,
         .rear_overhang_mm = 53,
     },
     {
@@ -163,7 +163,7 @@ const argus_robot_t argus_robots[] = {
         .cone_deg = 30,
         .arrays = 2,
         .pitch_deg = 20,
-        .tolerance_excess = 641777725,
+        .tolerance_excess = 275641434,
         .rear_overhang_mm = 62,
     },
     {
@@ -195,7 +195,7 @@ const argus_robot_t argus_robots[] = {
         .cone_deg = 30,
         .arrays = 2,
         .pitch_deg = 20,
-        .tolerance_excess = 641777725,
+        .tolerance_excess = 275641434,
         .rear_overhang_mm = 86,
     },
     {
@@ -227,7 +227,7 @@ const argus_robot_t argus_robots[] = {
         .cone_deg = 30,
         .arrays = 4,
         .pitch_deg = 20,
-        .tolerance_excess = 641777725,
+        .tolerance_excess = 275641434,
         .rear_overhang_mm = 199,
     },
 };

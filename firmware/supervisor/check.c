@@ -47,7 +47,7 @@ argus_intent_t argus_conclude_check(argus_t *const self) {
     argus_replan(self);
     self->checked = true;
     argus_say(self, ARGUS_EV_HEALTH_CHECK, ARGUS_NO_SONAR, argus_count_bits(argus_out(&self->knowledge)));
-    return (argus_intent_t){.act = ARGUS_DO_DECIDE};
+    return argus_to(ARGUS_DO_DECIDE);
 }
 
 static bool is_due(const argus_t *const self) {

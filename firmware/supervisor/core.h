@@ -44,7 +44,6 @@ typedef struct {
 
 // DRIVING, SWEEPING, STEPPING and CREEPING: the course and the way along it.
 typedef struct {
-    argus_task_t task;
     argus_drive_t drive; // the sweep
     int32_t jog_mm;      // the operator's step, 0: the course decides
     uint32_t heeded_ms;  // since then the robot has stood, one MOVE after the other
@@ -55,6 +54,7 @@ typedef struct {
     bool aimed;          // the leg's bearing was turned to
     bool arriving;       // at the goal, stopping
     bool swept;          // the end of this sweep is said
+    argus_task_t task;
 } argus_travel_t;
 
 // WAITING; what it waited for last counts on until the robot has driven.
@@ -109,14 +109,14 @@ typedef struct {
 } argus_naming_t;
 
 typedef struct {
-    argus_hold_t hold[ARGUS_SONARS];
-    argus_naming_t naming[ARGUS_SONARS];
     uint32_t check_ms; // a health check
     uint32_t lost_ms;  // what doubt has cost since the last look: time, against the speed without
     uint8_t settling;  // looks at the goal
     bool asked;        // an operator wants a look
     bool tried;        // in this session, since those ahead had heard nothing and others had
     bool unheard_said; // likewise
+    argus_hold_t hold[ARGUS_SONARS];
+    argus_naming_t naming[ARGUS_SONARS];
 } argus_looks_t;
 
 // The last change of the leading end.
@@ -144,44 +144,46 @@ typedef struct {
     bool loaded;           // a record was taken whose robot is not compared yet
 } argus_history_t;
 
+// What is small and asked for everywhere comes first: Cortex-M reaches 4 KB from a pointer in one
+// instruction.
 struct argus {
-    argus_config_t config;
-    argus_session_t session;
-    argus_knowledge_t knowledge;
-    argus_echoes_t echoes;
-    argus_rays_t rays;
-    argus_awareness_t awareness;
-    argus_evidence_t evidence; // profile argus
-    argus_extremes_t extremes; // profile argus
-    argus_common_t common;     // profile argus
-    argus_slip_t slip;
-    argus_bend_t bend;
-    argus_wheel_t wheel;
-    argus_plan_t plan;
-    argus_failure_t failure;
-    argus_motion_t motion;
-    argus_events_t events;
     argus_mission_t mission;
     argus_mode_t mode;
-    uint32_t now_ms;
-    uint32_t since_ms; // entry into the mode
-    argus_base_t base;
-    argus_checking_t checking;
-    argus_verifying_t verifying;
-    argus_travel_t travel;
-    argus_waiting_t waiting;
-    argus_turning_t turning;
-    argus_reflexes_t reflexes;
-    argus_looks_t looks;
-    argus_reverse_t reverse;
-    argus_orders_t orders;
-    argus_history_t history;
-    uint32_t ordered_ms; // the sonars fire in an order of ours, in this session, begun anew then
-    uint32_t stops;      // STOP and E_STOP sent, monotonic
-    bool ordered;
+    bool ordered; // the sonars fire in an order of ours, in this session, begun anew at ordered_ms
     bool stalled; // the link: no SIPs for a while
     bool checked; // a full health check has passed since the session opened or resumed (S3, S6)
     uint8_t invariant_said;
+    argus_failure_t failure;
+    argus_turning_t turning;
+    argus_orders_t orders;
+    uint32_t now_ms;
+    uint32_t since_ms; // entry into the mode
+    uint32_t ordered_ms;
+    uint32_t stops; // STOP and E_STOP sent, monotonic
+    argus_plan_t plan;
+    argus_motion_t motion;
+    argus_base_t base;
+    argus_checking_t checking;
+    argus_waiting_t waiting;
+    argus_config_t config;
+    argus_reverse_t reverse;
+    argus_history_t history;
+    argus_reflexes_t reflexes;
+    argus_wheel_t wheel;
+    argus_bend_t bend;
+    argus_slip_t slip;
+    argus_verifying_t verifying;
+    argus_knowledge_t knowledge;
+    argus_looks_t looks;
+    argus_common_t common;     // profile argus
+    argus_extremes_t extremes; // profile argus
+    argus_awareness_t awareness;
+    argus_travel_t travel;
+    argus_session_t session;
+    argus_events_t events;
+    argus_rays_t rays;
+    argus_echoes_t echoes;
+    argus_evidence_t evidence; // profile argus
 };
 
 #endif

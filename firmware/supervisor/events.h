@@ -8,11 +8,11 @@
 // A first-in first-out queue; when full the newest event is dropped and counted.
 #define ARGUS_EVENT_QUEUE 64
 typedef struct {
-    argus_event_t slot[ARGUS_EVENT_QUEUE];
     uint16_t head;
     uint16_t count;
     uint32_t lost; // monotonic
     uint32_t lost_said;
+    argus_event_t slot[ARGUS_EVENT_QUEUE];
 } argus_events_t;
 
 void argus_events_init(argus_events_t *self);

@@ -2,8 +2,12 @@
 // The intents that most modes come to.
 #include "supervisor/intent.h"
 
+argus_intent_t argus_to(const argus_act_t act) {
+    return (argus_intent_t){.act = (uint8_t)act};
+}
+
 argus_intent_t argus_to_nothing(void) {
-    return (argus_intent_t){.act = ARGUS_DO_NOTHING};
+    return argus_to(ARGUS_DO_NOTHING);
 }
 
 argus_intent_t argus_to_check(const bool full) {

@@ -71,9 +71,17 @@ typedef struct {
     argus_mask_t silent;
 } argus_intent_t;
 
-argus_intent_t argus_to_nothing(void);
-argus_intent_t argus_to_check(bool full);
-argus_intent_t argus_to_turn(int32_t heading_cdeg);
-argus_intent_t argus_to_wait(argus_wait_t why);
+// Dozens make one of these: calls are smaller than copies.
+#ifdef __GNUC__
+#define ARGUS_APART __attribute__((noinline))
+#else
+#define ARGUS_APART
+#endif
+
+ARGUS_APART argus_intent_t argus_to(argus_act_t act); // and nothing else
+ARGUS_APART argus_intent_t argus_to_nothing(void);
+ARGUS_APART argus_intent_t argus_to_check(bool full);
+ARGUS_APART argus_intent_t argus_to_turn(int32_t heading_cdeg);
+ARGUS_APART argus_intent_t argus_to_wait(argus_wait_t why);
 
 #endif

@@ -44,11 +44,11 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     argus_motion_init(&self->motion);
     argus_task_init(&self->travel.task);
     argus_events_init(&self->events);
-    argus_do(self, (argus_intent_t){.act = ARGUS_DO_GO_OFFLINE});
+    argus_do(self, &(argus_intent_t){.act = ARGUS_DO_GO_OFFLINE});
 }
 
 static void check(argus_t *const self, const bool full) {
-    argus_do(self, (argus_intent_t){.act = ARGUS_DO_CHECK, .full = full});
+    argus_do(self, &(argus_intent_t){.act = ARGUS_DO_CHECK, .full = full});
 }
 
 bool argus_set_course(argus_t *const self, const argus_point_t *const points, const uint16_t count) {
@@ -77,13 +77,13 @@ static void go_offline(argus_t *const self) {
     self->checked = false;
     self->stalled = false;
     self->travel.jog_mm = 0;
-    self->knowledge.under_way |= self->motion.kind != ARGUS_MOTION_NONE && !self->motion.settled;
+    self->knowledge.under_way |= argus_motion_is_under_way(&self->motion);
     argus_motion_init(&self->motion);
-    argus_do(self, (argus_intent_t){.event = ARGUS_EV_LINK_LOST,
-                                    .sonar = ARGUS_NO_SONAR,
-                                    .value = (int32_t)(silence_ms & 0x7FFFFFFFu),
-                                    .base = ARGUS_BASE_DROP,
-                                    .act = ARGUS_DO_GO_OFFLINE});
+    argus_do(self, &(argus_intent_t){.event = ARGUS_EV_LINK_LOST,
+                                     .sonar = ARGUS_NO_SONAR,
+                                     .value = (int32_t)(silence_ms & 0x7FFFFFFFu),
+                                     .base = ARGUS_BASE_DROP,
+                                     .act = ARGUS_DO_GO_OFFLINE});
 }
 
 void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
@@ -123,13 +123,13 @@ static void on_open(argus_t *const self) {
 
 static void on_stall(argus_t *const self) {
     self->stalled = true;
-    argus_do(self, (argus_intent_t){.event = ARGUS_EV_LINK_STALLED,
-                                    .sonar = ARGUS_NO_SONAR,
-                                    .value = self->config.link_stall_ms,
-                                    .stop = ARGUS_STOP_STOP,
-                                    .unchecked = true,
-                                    .act = ARGUS_DO_CHECK,
-                                    .full = true});
+    argus_do(self, &(argus_intent_t){.event = ARGUS_EV_LINK_STALLED,
+                                     .sonar = ARGUS_NO_SONAR,
+                                     .value = self->config.link_stall_ms,
+                                     .stop = ARGUS_STOP_STOP,
+                                     .unchecked = true,
+                                     .act = ARGUS_DO_CHECK,
+                                     .full = true});
 }
 
 static void on_resume(argus_t *const self) {
@@ -201,7 +201,7 @@ static void on_sip(argus_t *const self) {
     argus_rays_see(&self->rays, &self->knowledge, sweep_looks(self));
     argus_judge_all(self);
     if (!argus_keep_plan(self) && is_on_its_way(self)) {
-        argus_do(self, (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK});
+        argus_do(self, &(argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK});
     }
     argus_motion_sip(&self->motion, &self->session.outbox, &self->knowledge, self->now_ms);
     argus_run_mode(self);
@@ -238,7 +238,7 @@ static void handle(argus_t *const self, const unsigned bits) {
     }
     if ((bits & ARGUS_SESSION_DID_CLOSE) != 0) {
         argus_say(self, ARGUS_EV_SESSION_CLOSED, ARGUS_NO_SONAR, 0);
-        argus_do(self, (argus_intent_t){.act = ARGUS_DO_END});
+        argus_do(self, &(argus_intent_t){.act = ARGUS_DO_END});
     }
 }
 
@@ -311,12 +311,12 @@ void argus_shutdown(argus_t *const self, const uint32_t now_ms) {
     }
     self->orders.shutdown = true;
     if (argus_is_open(self)) {
-        argus_do(self, (argus_intent_t){.stop = ARGUS_STOP_STOP, .act = ARGUS_DO_LEAVE});
+        argus_do(self, &(argus_intent_t){.stop = ARGUS_STOP_STOP, .act = ARGUS_DO_LEAVE});
         return;
     }
     argus_session_leave(&self->session, now_ms); // one that is only being opened is closed again
     const bool leaving = self->session.state == ARGUS_SESSION_LEAVING;
-    argus_do(self, (argus_intent_t){.act = leaving ? ARGUS_DO_LEAVE : ARGUS_DO_END});
+    argus_do(self, &(argus_intent_t){.act = leaving ? ARGUS_DO_LEAVE : ARGUS_DO_END});
 }
 
 bool argus_closed(const argus_t *const self) {

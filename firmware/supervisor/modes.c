@@ -283,7 +283,7 @@ static argus_intent_t reach(argus_t *const self) {
     self->mission = ARGUS_MISSION_REACHED;
     argus_say(self, ARGUS_EV_GOAL_REACHED, ARGUS_NO_SONAR,
               argus_task_goal_mm(&self->travel.task, &self->knowledge));
-    return (argus_intent_t){.act = ARGUS_DO_DECIDE};
+    return argus_to(ARGUS_DO_DECIDE);
 }
 
 static void stop(argus_t *const self, const argus_stop_t how) {
@@ -457,7 +457,8 @@ static argus_intent_t perform(argus_t *const self, const argus_intent_t *const i
     return intent->act <= ARGUS_DO_END ? perform_change(self, intent) : perform_judgement(self, intent);
 }
 
-void argus_do(argus_t *const self, argus_intent_t intent) {
+void argus_do(argus_t *const self, const argus_intent_t *const wanted) {
+    argus_intent_t intent = *wanted;
     for (int i = 0; i < FOLLOW_MOST; i++) {
         prepare(self, &intent);
         if (intent.act == ARGUS_DO_NOTHING) {
@@ -474,7 +475,7 @@ void argus_react(argus_t *const self, const argus_alarm_t *const alarm) {
     bool goes_on = argus_mode_may(self->mode, ARGUS_MAY_REACT);
     for (int i = 0; i < ARGUS_REFLEXES && goes_on; i++) {
         const argus_intent_t intent = argus_reflex((argus_reflex_t)i, self, alarm, &self->reflexes);
-        argus_do(self, intent);
+        argus_do(self, &intent);
         goes_on = intent.act == ARGUS_DO_NOTHING || !argus_reflex_is_last((argus_reflex_t)i);
     }
 }
@@ -486,10 +487,11 @@ void argus_judge_all(argus_t *const self) {
     }
     const bool moves = argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE);
     if (moves && argus_common_strikes(&self->common, argus_robot_forward(self->knowledge.robot))) {
-        argus_do(self, (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK, .full = true});
+        argus_do(self, &(argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK, .full = true});
     }
     for (int i = 0; i < self->knowledge.sonars && argus_mode_may(self->mode, ARGUS_MAY_JUDGE); i++) {
-        argus_do(self, argus_judge(self, i));
+        const argus_intent_t intent = argus_judge(self, i);
+        argus_do(self, &intent);
     }
     argus_foretell(self);
 }
@@ -561,11 +563,11 @@ static bool is_under_way(const argus_t *const self) {
 static void watch_course(argus_t *const self) {
     argus_task_t *const task = &self->travel.task;
     if (argus_task_is_hopeless(task, &self->knowledge, is_under_way(self))) {
-        argus_do(self, (argus_intent_t){.event = ARGUS_EV_NO_WAY,
-                                        .sonar = ARGUS_NO_SONAR,
-                                        .value = (int32_t)(task->progress.vain_ms / 1000u),
-                                        .stop = ARGUS_STOP_HALT,
-                                        .act = ARGUS_DO_GIVE_UP});
+        argus_do(self, &(argus_intent_t){.event = ARGUS_EV_NO_WAY,
+                                         .sonar = ARGUS_NO_SONAR,
+                                         .value = (int32_t)(task->progress.vain_ms / 1000u),
+                                         .stop = ARGUS_STOP_HALT,
+                                         .act = ARGUS_DO_GIVE_UP});
     }
 }
 
@@ -574,7 +576,7 @@ void argus_run_mode(argus_t *const self) {
     for (int i = 0; i < MORE_MOST && more; i++) {
         const argus_mode_t mode = self->mode;
         const argus_intent_t intent = run(self);
-        argus_do(self, intent);
+        argus_do(self, &intent);
         more = intent.more && self->mode == mode;
     }
     ARGUS_ASSERT(!more);
@@ -595,5 +597,6 @@ void argus_process_mode(argus_t *const self) {
     if (self->mode == ARGUS_MODE_CLOSING) {
         close_when_at_rest(self);
     }
-    argus_do(self, argus_go_on_waiting(self, &self->waiting));
+    const argus_intent_t intent = argus_go_on_waiting(self, &self->waiting);
+    argus_do(self, &intent);
 }

@@ -16,12 +16,12 @@ static argus_act_t check_if_open(const argus_t *const self) {
 }
 
 static void check(argus_t *const self, const bool full) {
-    argus_do(self, (argus_intent_t){.act = (uint8_t)check_if_open(self), .full = full});
+    argus_do(self, &(argus_intent_t){.act = (uint8_t)check_if_open(self), .full = full});
 }
 
 static void stop_and_check(argus_t *const self, const bool full) {
     argus_do(self,
-             (argus_intent_t){.stop = ARGUS_STOP_STOP, .act = (uint8_t)check_if_open(self), .full = full});
+             &(argus_intent_t){.stop = ARGUS_STOP_STOP, .act = (uint8_t)check_if_open(self), .full = full});
 }
 
 static void enable_motors(argus_t *const self) {
@@ -58,7 +58,7 @@ static void recheck(argus_t *const self) {
 }
 
 static void go_passive(argus_t *const self) {
-    argus_do(self, (argus_intent_t){.stop = ARGUS_STOP_STOP});
+    argus_do(self, &(argus_intent_t){.stop = ARGUS_STOP_STOP});
     self->orders.passive = true;
     self->orders.barred = false;
     argus_say(self, ARGUS_EV_PASSIVE, ARGUS_NO_SONAR, 0);
@@ -92,13 +92,13 @@ static void jog(argus_t *const self, const int32_t built_mm) {
         return;
     }
     if (distance_mm < 0) {
-        argus_do(self, (argus_intent_t){.act = ARGUS_DO_BACK,
-                                        .mm = -argus_max(distance_mm, -self->config.backoff_mm),
-                                        .speed_mm_s = self->config.step_speed_mm_s});
+        argus_do(self, &(argus_intent_t){.act = ARGUS_DO_BACK,
+                                         .mm = -argus_max(distance_mm, -self->config.backoff_mm),
+                                         .speed_mm_s = self->config.step_speed_mm_s});
         return;
     }
     self->travel.jog_mm = argus_min(distance_mm, self->config.step_mm);
-    argus_do(self, (argus_intent_t){.act = ARGUS_DO_DECIDE});
+    argus_do(self, &(argus_intent_t){.act = ARGUS_DO_DECIDE});
 }
 
 // The check that follows turns to the base heading first.
@@ -107,7 +107,7 @@ static void jog_turn(argus_t *const self, const int32_t degrees) {
         self->base.cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + degrees % 360 * 100);
         self->base.taken = true;
         argus_awareness_moved(&self->awareness);
-        argus_do(self, (argus_intent_t){.act = ARGUS_DO_CHECK});
+        argus_do(self, &(argus_intent_t){.act = ARGUS_DO_CHECK});
     }
 }
 

@@ -93,7 +93,7 @@ static argus_intent_t verify(const argus_t *const self, argus_verify_t *const mi
         return argus_to_nothing();
     }
     if (mine->phase == ARGUS_VERIFY_DONE) {
-        return (argus_intent_t){.act = ARGUS_DO_VERDICT};
+        return argus_to(ARGUS_DO_VERDICT);
     }
     return argus_to_turn(argus_verify_heading_cdeg(mine));
 }
@@ -126,8 +126,7 @@ static argus_intent_t look(const argus_t *const self, argus_inquiry_t *const min
     if (!argus_inquiry_step(mine, &self->knowledge, &self->evidence)) {
         return argus_to_nothing();
     }
-    return mine->active ? argus_to_turn(argus_inquiry_heading_cdeg(mine))
-                        : (argus_intent_t){.act = ARGUS_DO_LOOKED};
+    return mine->active ? argus_to_turn(argus_inquiry_heading_cdeg(mine)) : argus_to(ARGUS_DO_LOOKED);
 }
 
 argus_intent_t argus_run_verifying(const argus_t *const self, argus_verifying_t *const mine) {
@@ -139,7 +138,7 @@ argus_intent_t argus_run_idle(const argus_t *const self) {
     if (!self->motion.settled && self->motion.kind == ARGUS_MOTION_NONE) {
         return (argus_intent_t){.act = ARGUS_DO_HOLD, .more = true};
     }
-    return (argus_intent_t){.act = ARGUS_DO_CHECK_BESIDE};
+    return argus_to(ARGUS_DO_CHECK_BESIDE);
 }
 
 // A bumper: E_STALL may have cut the motors; then back off, or wait for the way behind to clear.
@@ -151,7 +150,7 @@ static argus_intent_t leave_bumper(const argus_t *const self) {
         return argus_to_nothing(); // an operator has the robot
     }
     if (!motors && !button) {
-        return (argus_intent_t){.act = ARGUS_DO_ENABLE};
+        return argus_to(ARGUS_DO_ENABLE);
     }
     if (motors && guard.bumpers == 0 && !argus_guard_may_back(&guard)) {
         return argus_to_check(true); // freed, or a stall: no need to back away

@@ -28,15 +28,16 @@ static void forget(argus_t *const self) {
 }
 
 void argus_meet_stranger(argus_t *const self) {
-    argus_do(self, (argus_intent_t){.event = ARGUS_EV_OTHER_ROBOT,
-                                    .sonar = ARGUS_NO_SONAR,
-                                    .value = self->session.differs,
-                                    .stop = ARGUS_STOP_STOP}); // it may still do what an earlier client asked
+    argus_do(self,
+             &(argus_intent_t){.event = ARGUS_EV_OTHER_ROBOT,
+                               .sonar = ARGUS_NO_SONAR,
+                               .value = self->session.differs,
+                               .stop = ARGUS_STOP_STOP}); // it may still do what an earlier client asked
     self->orders.passive = true;
     self->orders.paused = true;
     self->orders.stay = true;
     self->orders.barred = false;
     forget(self);
     argus_replan(self);
-    argus_do(self, (argus_intent_t){.act = ARGUS_DO_CHECK, .full = true});
+    argus_do(self, &(argus_intent_t){.act = ARGUS_DO_CHECK, .full = true});
 }

@@ -47,7 +47,7 @@ static int32_t left_mm(const argus_t *const self, const argus_travel_t *const mi
 static argus_intent_t arrive(const argus_t *const self, argus_travel_t *const mine) {
     if (!mine->arriving) {
         mine->arriving = true;
-        return (argus_intent_t){.act = ARGUS_DO_BRAKE};
+        return argus_to(ARGUS_DO_BRAKE);
     }
     if (!self->motion.settled) {
         return argus_to_nothing();
@@ -111,8 +111,7 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
     const int sonar = argus_nearest_ahead(self);
     const bool stopped =
         sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
-    const argus_search_news_t news =
-        argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
+    const argus_search_news_t news = argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
     if (news == ARGUS_SEARCH_GOES_ON) { // what drives ends by itself
         *intent = argus_to_nothing();
         return false;
@@ -242,7 +241,7 @@ static argus_intent_t look_ahead(const argus_t *const self, argus_travel_t *cons
     if (self->plan.disabled == 0) { // names that only a look can settle, and there is no room for it
         return argus_to_wait(ARGUS_WAIT_TURN);
     }
-    return (argus_intent_t){.act = ARGUS_DO_SWEEP};
+    return argus_to(ARGUS_DO_SWEEP);
 }
 
 // A short wheel is countered on each SIP, by less than what S7 calls a nudge.

@@ -20,13 +20,13 @@ typedef struct {
 } argus_progress_t;
 
 typedef struct {
-    argus_point_t waypoint[ARGUS_WAYPOINTS_MAX];
     uint16_t count;
     uint16_t next;
     bool avoiding; // the leg does not end at the waypoint
     bool has_leg;  // where the robot now heads for
     argus_leg_t leg;
     argus_progress_t progress;
+    argus_point_t waypoint[ARGUS_WAYPOINTS_MAX];
     argus_search_t search;
 } argus_task_t;
 

@@ -12,14 +12,14 @@
 #define PLANES ARGUS_WAVE_PLANES
 #define WIDE_ROOM_MM 50 // beside the swing circle: room to turn anywhere (S7 wants 20 under `argus`)
 #define NARROW_ROOM_MM \
-    110            // beside the body: what a sonar at 50 degrees stops at, for an object range of 250 mm
+    110 // beside the body: what a sonar at 50 degrees stops at, for an object range of 250 mm
 #define TIGHT_MM 200
 #define NARROW_STEPS 5 // that the wave takes to a cell where there is no room to turn; 1 to others
 #define STEPS_MAX 1000
-#define ROW_WORK 1    // a row that is not at rest,
-#define SLOW_WORK 5   // ... and one where it is narrow,
-#define FRESH_WORK 1  // ... and new cells in it, beside it,
-#define STEP_WORK 10  // ... and whatever the rows
+#define ROW_WORK 1   // a row that is not at rest,
+#define SLOW_WORK 5  // ... and one where it is narrow,
+#define FRESH_WORK 1 // ... and new cells in it, beside it,
+#define STEP_WORK 10 // ... and whatever the rows
 #define FAR_MOST 40000
 #define AHEAD_OF_BODY_MM 100
 

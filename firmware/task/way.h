@@ -24,7 +24,6 @@ typedef struct {
 } argus_pull_t;
 
 typedef struct {
-    argus_wave_t wave;
     argus_point_t robot; // where it began
     argus_point_t waypoint;
     argus_pull_t pull;
@@ -34,15 +33,17 @@ typedef struct {
     bool stopped;
     bool is_on;
     bool is_there; // the wave has come to the robot
+    argus_wave_t wave;
 } argus_search_t;
 
 typedef enum { ARGUS_SEARCH_NO_WAY, ARGUS_SEARCH_FOUND, ARGUS_SEARCH_GOES_ON } argus_search_news_t;
 
-// Looks for the first leg of the way. What is not known is free. A waypoint outside the window is made for from
-// that cell of its border from which the whole way is shortest. GOES_ON: to be called on the next SIP again; a
-// call for another waypoint, or after a SIP without one, begins anew. Cost: at most some 300,000 instructions of a
-// Cortex-M4 a call; most ways are found by one or two, a maze takes 20.
-argus_search_news_t argus_way_find(argus_search_t *self, const argus_ground_t *ground, argus_point_t waypoint);
+// Looks for the first leg of the way. What is not known is free. A waypoint outside the window is made for
+// from that cell of its border from which the whole way is shortest. GOES_ON: to be called on the next SIP
+// again; a call for another waypoint, or after a SIP without one, begins anew. Cost: at most some 290,000
+// instructions of a Cortex-M4 a call; a straight way takes one, most others two or three.
+argus_search_news_t argus_way_find(argus_search_t *self, const argus_ground_t *ground,
+                                   argus_point_t waypoint);
 
 // Whether what is known by now leaves the next metre of a leg free. Cost: at most 11 places of 37 cells.
 bool argus_way_is_free(const argus_ground_t *ground, const argus_leg_t *leg);

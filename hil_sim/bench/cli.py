@@ -206,6 +206,7 @@ def main(argv: Sequence[str]) -> int:
         "journey": journey_cli.journey,
         "drive-by": cli_passive.drive_by,
         "ablate": cli_passive.ablate,
+        "likelihoods": cli_passive.likelihoods,
     }
     if not argv or argv[0] not in names:
         if argv and argv[0] in ("-h", "--help"):

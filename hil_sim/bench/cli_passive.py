@@ -18,6 +18,7 @@ from typing import Any, Final
 from argus_tools.core import library
 
 from hil_sim.bench import ablate as ablation
+from hil_sim.bench import likelihoods as counting
 from hil_sim.bench import plan, pool, variants
 from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, Parser, jobs, kinds, say, seeds
 from hil_sim.bench.drive import SPEED_MM_S, record_to
@@ -57,6 +58,18 @@ names or false disables come. --constants takes each hand-set number halved and 
 How to read the table: docs/diagnosis.md.
 
 exit codes: 0 done, 1 a mission failed, 2 wrong argument or file, 130 interrupted
+"""
+_LIKELIHOODS: Final = """\
+examples:
+  argus-sim bench likelihoods --streams streams/tune                   print what is measured
+  argus-sim bench likelihoods --streams streams/tune --write           and make it the table; then tools/gen_tables.py
+  argus-sim bench likelihoods --check --worlds office --seeds 1 --kinds slow,wrong
+
+How often each verdict on a ping comes together with each verdict on the ping as a hypothesis maps it: of healthy
+sonars, of those that the hypothesis holds for, and of those with another fault. The logarithms of these shares are what
+the evidence adds up (docs/evidence.md, Hypotheses). --write needs the sources.
+
+exit codes: 0 done, 1 a mission failed or --check found a difference, 2 wrong argument or file, 130 interrupted
 """
 
 
@@ -251,3 +264,35 @@ def _heading(verdicts: Iterable[Verdict]) -> str:
         f"{sum(len(verdict.disables) for verdict in verdicts)} false disables in {hours:.1f} clock hours; "
         f"{constants} constants, {lines} lines.\n"
     )
+
+
+def likelihoods(argv: Sequence[str]) -> int:
+    """Run `argus-sim bench likelihoods ARGV`; return the exit code."""
+    options = _parser(
+        "likelihoods", "Count the verdicts that the tables of likelihoods are made of.", _LIKELIHOODS
+    )
+    options.set_defaults(kinds=list(_KINDS))
+    what = options.add_mutually_exclusive_group()
+    what.add_argument("--write", action="store_true", help="write hil_sim/tables/likelihoods.toml")
+    what.add_argument("--check", action="store_true", help="compare with it; exit 1 if it is not borne out")
+    arguments = options.parse_args(argv)
+    known = counting.from_toml(counting.FILE.read_text(encoding="utf-8")) if arguments.check else None
+    try:
+        with _recorded(arguments) as (paths, whole):
+            tally = counting.observe(paths)
+    except KeyboardInterrupt:
+        return _interrupted()
+    if known is not None:
+        found = counting.differences(tally, known)
+        for difference in found:
+            say(difference)
+        return EXIT_FAILED if found or not whole else 0
+    kept = ["--streams", "--write", str(arguments.streams)]
+    text = counting.to_toml(
+        tally, " ".join(["argus-sim bench likelihoods", *(w for w in argv if w not in kept)])
+    )
+    if arguments.write:
+        _write(counting.FILE, text)
+    else:
+        print(text, end="")
+    return 0 if whole else EXIT_FAILED

@@ -16,7 +16,7 @@ import numpy as np
 
 from hil_sim.bench import plan
 from hil_sim.bench.course import Point, make_course
-from hil_sim.bench.journey_course import ROUGH_DRIFT_DEG_M, drift_at_goal_mm, length_mm
+from hil_sim.bench.journey_course import ROUGH_DRIFT_DEG_M, SCALE, drift_at_goal_mm, length_mm
 from hil_sim.bench.journey_worlds import FLOORS, place_of
 from hil_sim.bench.plan import SPLITS
 from hil_sim.errors import SimError
@@ -43,7 +43,7 @@ LIMIT_S: Final = 900.0
 COURSE_MM: Final = (5000.0, 10_000.0)
 _TRIES: Final = 60
 _DRIFT_OFF_MM: Final = 80.0
-"""A rough day's courses are those at whose goal drift has the robot no farther off: else none is truly reached."""
+"""A rough day's courses are those at whose goal odometry has the robot no farther off: else none is truly reached."""
 _BACK_MM: Final = 2550.0
 """... or, where no other is found, there and back, so far each way."""
 
@@ -160,7 +160,7 @@ def _course(world: str, split: str, seed: int, day: str) -> tuple[str, Pose, tup
     for _ in range(_TRIES):
         course = make_course(made, field, float(rng.uniform(COURSE_MM[0], COURSE_MM[1] - 2000)), rng)
         if COURSE_MM[0] <= length_mm(begins, course) <= COURSE_MM[1]:
-            if day == "plain" or _drift_mm(begins, course) <= _DRIFT_OFF_MM:
+            if day == "plain" or _off_mm(begins, course) <= _DRIFT_OFF_MM:
                 return path, made.start, course
             fallback = fallback or there_and_back(begins, course, _BACK_MM)
     if fallback:
@@ -168,9 +168,10 @@ def _course(world: str, split: str, seed: int, day: str) -> tuple[str, Pose, tup
     raise SimError(f"world {world}, seed {seed}: no course of 5 to 10 m; choose another seed")
 
 
-def _drift_mm(begins: Point, course: tuple[Point, ...]) -> float:
-    """How far the drift of a rough day has the robot from its goal, either way."""
-    return max(drift_at_goal_mm(begins, course, by) for by in (-ROUGH_DRIFT_DEG_M, ROUGH_DRIFT_DEG_M))
+def _off_mm(begins: Point, course: tuple[Point, ...]) -> float:
+    """How far drift, either way, and scale of a rough day have the robot from its goal."""
+    drift = max(drift_at_goal_mm(begins, course, by) for by in (-ROUGH_DRIFT_DEG_M, ROUGH_DRIFT_DEG_M))
+    return drift + SCALE * math.dist(begins, course[-1])
 
 
 def there_and_back(begins: Point, course: Sequence[Point], way_mm: float) -> tuple[Point, ...]:

@@ -96,12 +96,29 @@ def test_killed_in_motion_and_a_second_argusd_goes_on(bench: Bench) -> None:
     assert_reached(sim, rest["x_mm"] + 400)
 
 
-def test_emulator_killed_and_started_again(bench: Bench) -> None:
+def test_a_robot_that_restarts_in_motion_ends_the_course(bench: Bench) -> None:
+    """How far it rolled before it restarted nobody knows, so a goal by its figures may be none."""
     world = bench.world(**hall())
     sim = bench.sim(world)
     argusd = bench.argusd("--goal", f"{GOAL_MM},0")
     cruise(sim)
     sim.kill()
+    lost = argusd.wait("LINK_LOST")
+    again = bench.sim(world)
+    argusd.wait("ODOMETRY_LOST", after_t=lost["t"])
+    assert argusd.process.wait(PATIENCE_S) == 1
+    assert argusd.named("MISSION_FAILED")
+    assert not argusd.named("GOAL_REACHED")
+    assert all(abs(state["x_mm"]) < 5 for state in again.of("state"))
+
+
+def test_emulator_killed_at_rest_and_started_again(bench: Bench) -> None:
+    world = bench.world(**hall())
+    sim = bench.sim(world)
+    argusd = bench.argusd("--goal", f"{GOAL_MM},0")
+    argusd.wait("SESSION_OPEN")  # and now it stands and checks its sonars
+    sim.kill()
+    assert sim.of("state")[-1]["v_mm_s"] == 0
     lost = argusd.wait("LINK_LOST")
     again = bench.sim(world)
     argusd.wait("LINK_UP", after_t=lost["t"])

@@ -16,6 +16,11 @@ start: [0, 0, 0]
 walls:
   - {points: [[-1500, -2000], [6000, -2000], [6000, 2000], [-1500, 2000]], closed: true}
 """
+CORRIDOR = """about: Rough corridor, a wall within four metres of every sonar.
+start: [0, 0, 0]
+walls:
+  - {points: [[-1500, -1200], [3500, -1200], [3500, 1200], [-1500, 1200]], closed: true}
+"""
 FOUND_S = 60.0
 STUCK = [
     (0, 100),
@@ -108,3 +113,20 @@ def test_a_wall_right_beside_it_is_no_fault(tmp_path: Path, side: int) -> None:
     )
     outcome = run(Mission(str(path), ((4000, 0),), limit_s=60, stop_at_goal=False))
     assert not [e for e in outcome.events if e.name == "SONAR_DISABLED" and e.sonar in (0, 15, 7, 8)]
+
+
+@pytest.mark.parametrize(("sonar", "value"), [(1, 100), (3, 0), (3, 100), (6, 50)])
+def test_the_papers_method_gives_up_where_a_reading_at_the_least_forbids_to_turn(
+    tmp_path: Path, sonar: int, value: int
+) -> None:
+    """It has no rule for extremes (docs/paper-profile.md): no verdict, and an end with its reason."""
+    path = tmp_path / "corridor.yaml"
+    path.write_text(CORRIDOR)
+    faults = (f"stuck:{sonar}:value={value}",)
+    outcome = run(Mission(str(path), ((2000, 0),), faults=faults, config={"profile": "paper"}, limit_s=200))
+    told = [event.name for event in outcome.events]
+    assert sonar not in [e.sonar for e in outcome.events if e.name == "SONAR_DISABLED"]
+    assert "TURN_BLOCKED" in told
+    assert "MISSION_FAILED" in told
+    assert not outcome.reached
+    assert not outcome.collisions

@@ -80,6 +80,23 @@ def test_a_leap_is_told_and_left_out(corridor: str, to: tuple[float, float, floa
     assert outcome.goal_mm < NEAR_MM
 
 
+@pytest.mark.parametrize("silent_s", [0.4, 0.5, 0.9])
+def test_a_leap_within_a_silence_in_motion_ends_the_course(corridor: str, silent_s: float) -> None:
+    """Where it went in the silence no odometry tells, so a goal by its figures may be none."""
+    at_s = 6.0
+    fault = f"link-cut@{at_s}s-{at_s + silent_s}s"
+    sil = Sil(Mission(corridor, ((GOAL_MM, 0),), faults=(fault,), sonar={"crosstalk": 0.0}, limit_s=60))
+    while sil.now_ms < (at_s + silent_s) * 1000 - 50:
+        sil.step()
+    assert sil.robot.drive.v > 0
+    odometry(0, 0, 0)(sil)
+    while not sil.over:
+        sil.step()
+    told = names(sil.outcome())
+    assert "ODOMETRY_LOST" in told
+    assert "GOAL_REACHED" not in told
+
+
 def test_what_leaps_all_the_time_ends_the_course(corridor: str) -> None:
     k = 0
 

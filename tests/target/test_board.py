@@ -3,10 +3,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
+import os
+import pty
 import re
+import select
+import socket
 import subprocess
+import sys
+import threading
 import time
+import tty
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -135,3 +143,56 @@ def test_the_stack_of_the_images_is_large_enough() -> None:
             text=True,
         )
         assert done.returncode == 0, done.stdout + done.stderr
+
+
+@contextlib.contextmanager
+def as_serial_line(end: socket.socket) -> Iterator[str]:
+    """Give the other side of a board's UART a device, as an adapter has one."""
+    inside, outside = pty.openpty()
+    tty.setraw(outside)
+    done = threading.Event()
+
+    def carry() -> None:
+        while not done.is_set():
+            ready, _, _ = select.select([inside, end], [], [], 0.05)
+            if inside in ready:
+                end.sendall(os.read(inside, 4096))
+            if end in ready:
+                os.write(inside, end.recv(4096))
+
+    thread = threading.Thread(target=carry)
+    thread.start()
+    try:
+        yield os.ttyname(outside)
+    finally:
+        done.set()
+        thread.join()
+        os.close(inside)
+        os.close(outside)
+
+
+def flash_check(device: str, *options: str) -> subprocess.CompletedProcess[str]:
+    """Run argus-flash-check."""
+    return subprocess.run(
+        [sys.executable, "-m", "argus_tools.flash_check", device, "--wait", "60", *options],
+        cwd=ROOT,
+        check=False,
+        capture_output=True,
+        text=True,
+    )
+
+
+def test_the_check_of_what_was_flashed(board: Machine, tmp_path: Path) -> None:
+    board.wait_for("START")
+    with as_serial_line(board.console) as device:
+        config = digest_of("", tmp_path)
+        good = flash_check(device, "--board", "mps2-an386", "--config", config)
+        assert good.returncode == 0, good.stdout + good.stderr
+        assert "reset     order" in good.stdout
+        other = flash_check(device, "--board", "stm32f405", "--config", "00000000")
+        assert other.returncode == 1
+        assert other.stdout.count("FAIL") == 2
+        board.patch(UNDEFINED)
+        fault = flash_check(device, "--listen")
+        assert fault.returncode == 1, fault.stdout + fault.stderr
+        assert "FAIL reset     fault, pc " in fault.stdout

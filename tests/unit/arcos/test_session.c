@@ -167,7 +167,8 @@ static void robot_reports(void) {
     uint8_t data[32];
     if (robot.state == OPENED && (int32_t)(time_ms - robot.sip_due_ms) >= 0) {
         robot.sip_due_ms += 100;
-        robot.speed_mm_s = (int16_t)(robot.speed_mm_s - (robot.braking ? (robot.speed_mm_s > 0 ? 20 : -20) : 0));
+        robot.speed_mm_s =
+            (int16_t)(robot.speed_mm_s - (robot.braking ? (robot.speed_mm_s > 0 ? 20 : -20) : 0));
         robot.braking = robot.braking && robot.speed_mm_s != 0;
         robot_says(data, sip_data(data, ++robot.sips));
     }

@@ -300,8 +300,10 @@ void test_where_many_are_contradicted_it_means_less(void) {
     }
 }
 
-// The part is told as a crowd, and for a while after it is over.
-void test_a_crowd_is_told_by_the_part_that_is_contradicted(void) {
+// The part that is contradicted is a crowd, and for a while after it is over. Two sonars alone are none.
+void test_a_crowd_is_more_than_two_sonars_that_are_contradicted(void) {
+    e.of[5].rate[ARGUS_TEST_PEERS] = (argus_rate_t){1600, 1600};
+    e.of[6].rate[ARGUS_TEST_PEERS] = (argus_rate_t){1600, 1600};
     argus_clutter_sip(&e, &k);
     TEST_ASSERT_FALSE(e.crowded || e.busy);
     e.of[7].rate[ARGUS_TEST_PEERS] = (argus_rate_t){1600, 800};
@@ -339,7 +341,7 @@ void test_what_the_others_say_fades(void) {
 
 // A bearing that is another one's tells of that axis offset; the hypotheses of a reading that is borne out
 // grow by nothing.
-void test_what_another_heard_aside_speaks_for_that_bend(void) {
+void test_what_another_heard_aside_speaks_for_that_offset(void) {
     static const int offset_cdeg[ARGUS_OFFSETS] = {-2400, -1800, -1200, 1200, 1800, 2400};
     for (int b = 0; b < ARGUS_OFFSETS; b++) {
         setUp();

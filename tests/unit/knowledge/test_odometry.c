@@ -202,6 +202,26 @@ void test_a_gap_in_motion_is_believed_and_a_leap_after_one_is_not(void) {
     x += 9000;
     deliver(3000);
     TEST_ASSERT_EQUAL_INT(1, leaps);
+    TEST_ASSERT_EQUAL_UINT32(0, k.leaps_unseen); // it was at rest before
+}
+
+// A restart of the counters that comes with SIPs missing: what the robot made before it is in no figure.
+void test_a_leap_with_sips_missing_in_motion_is_unseen(void) {
+    static const struct {
+        uint32_t ms;
+        int speed;
+        unsigned unseen;
+    } cases[] = {{100, 500, 0}, {250, 500, 0}, {300, 500, 1}, {520, 500, 1}, {2500, 300, 1}, {520, 0, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        setUp();
+        deliver(100);
+        drive(500, 500, 20);
+        drive(cases[i].speed, cases[i].speed, 5);
+        x = -3000;
+        deliver(cases[i].ms);
+        TEST_ASSERT_EQUAL_INT(1, leaps);
+        TEST_ASSERT_EQUAL_UINT32(cases[i].unseen, k.leaps_unseen);
+    }
 }
 
 void test_values_that_are_frozen_while_the_wheels_turn_are_told(void) {

@@ -152,8 +152,8 @@ void test_the_tolerance_is_that_of_the_widest_neighbours(void) {
     } widest[] = {{"p3dx-sh", 20}, {"p3at-sh", 20}, {"amigo-sh", 30}, {"peoplebot-sh", 20}};
     for (size_t i = 0; i < sizeof widest / sizeof widest[0]; i++) {
         const double excess = 1 / cos(widest[i].apart * DEG) - 1;
-        TEST_ASSERT_EQUAL_MESSAGE(lround(excess * 1e10), argus_robot_find(widest[i].name)->tolerance_excess,
-                                  widest[i].name);
+        TEST_ASSERT_EQUAL_MESSAGE(lround(excess * 4294967296.0),
+                                  argus_robot_find(widest[i].name)->tolerance_excess, widest[i].name);
     }
 }
 

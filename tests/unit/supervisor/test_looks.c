@@ -151,6 +151,27 @@ void test_a_name_that_others_see_for_stops_nothing(void) {
     }
 }
 
+// Both in the middle are doubted, so the way itself is seen by nobody: no faster than a step.
+void test_what_nobody_sees_is_driven_at_the_speed_of_a_step(void) {
+    const unsigned two = 3u << 3;
+    start_in_a_hall();
+    drive_off();
+    name(two);
+    int slow = 0;
+    for (int i = 0; i < 60 && !looking(); i++) {
+        hold(two, 60);
+        robot_next_sip(&robot);
+        const int32_t half_mm = argus_guard_straight_half_mm(robot.argus.knowledge.robot);
+        const int32_t seen_mm = argus_rays_seen_mm(&robot.argus.rays, &robot.argus.knowledge, half_mm, 1200);
+        if (robot.argus.mode == ARGUS_MODE_DRIVING && seen_mm < 300) {
+            TEST_ASSERT_TRUE(robot.speed_asked_mm_s <= robot.argus.config.step_speed_mm_s);
+            slow++;
+        }
+    }
+    TEST_ASSERT_TRUE(slow > 20);
+    finish();
+}
+
 // One behind, or a wall close beside, costs no time that a look could save.
 void test_what_a_look_would_not_save_is_not_counted(void) {
     start_in_a_hall();

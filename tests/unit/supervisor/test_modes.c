@@ -165,7 +165,7 @@ void test_the_empty_intent_does_nothing(void) {
     begin(2);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 20000));
     memcpy(&copy, &robot.argus, sizeof copy);
-    argus_do(&copy, (argus_intent_t){0});
+    argus_do(&copy, &(argus_intent_t){0});
     TEST_ASSERT_EQUAL_MEMORY(&robot.argus, &copy, sizeof copy);
 }
 
@@ -175,7 +175,7 @@ void test_a_turn_that_s7_forbids_is_not_commanded(void) {
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 20000));
     memcpy(&copy, &robot.argus, sizeof copy);
     copy.knowledge.sonar[0].reading_mm = 200;
-    argus_do(&copy, (argus_intent_t){.act = ARGUS_DO_TURN, .cdeg = 9000});
+    argus_do(&copy, &(argus_intent_t){.act = ARGUS_DO_TURN, .cdeg = 9000});
     TEST_ASSERT_NOT_EQUAL(ARGUS_MOTION_TURN, copy.motion.kind);
     TEST_ASSERT_TRUE(copy.mode == ARGUS_MODE_BACKING || copy.mode == ARGUS_MODE_WAITING);
 }

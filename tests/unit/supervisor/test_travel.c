@@ -178,3 +178,35 @@ void test_it_does_not_turn_gently_with_the_swing_circle_blocked(void) {
     TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_WAYPOINT, 0));
     finish();
 }
+
+// ---- a place too narrow to turn in
+
+// One echo within the swing circle may be crosstalk: it is read again before a way out is looked for ahead,
+// where the wall is.
+void test_s7_one_echo_is_read_again_before_a_way_out(void) {
+    start(ARGUS_PROFILE_ARGUS);
+    hall(2100);
+    const argus_point_t course[] = {{1500, 0}, {1500, 1500}};
+    TEST_ASSERT_TRUE(argus_set_course(&robot.argus, course, 2));
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_WAYPOINT, 30000));
+    while (robot.v > 0.5) {
+        robot_tick(&robot);
+    }
+    const double x = robot.x;
+    robot.fault[6] = ROBOT_VALUE;
+    robot.fault_value[6] = 196;
+    const uint32_t readings = robot.argus.knowledge.sonar[6].readings;
+    while (robot.argus.knowledge.sonar[6].readings == readings) {
+        robot_tick(&robot);
+    }
+    robot.fault[6] = ROBOT_OK;
+    double most = x;
+    for (int i = 0; i < 1500 && robot.y < 300; i++) {
+        robot_tick(&robot);
+        most = fmax(most, robot.x);
+    }
+    snprintf(text, sizeof text, "went %.0f mm on towards the wall", most - x);
+    TEST_ASSERT_TRUE_MESSAGE(robot.y >= 300, "it does not go on");
+    TEST_ASSERT_TRUE_MESSAGE(most - x < 40, text);
+    finish();
+}

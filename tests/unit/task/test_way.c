@@ -13,6 +13,7 @@
 #define P3DX_HALF_MM 213
 
 #define SIPS_MOST 40
+#define WORK_MOST 3200 // in one SIP: what a search may take, and its last step
 
 static argus_search_t search;
 static int sips; // that the last search took
@@ -42,6 +43,7 @@ static bool finds(const int x_mm, const int y_mm) {
         TEST_ASSERT_TRUE(sips < SIPS_MOST);
         k.sips++;
         news = argus_way_find(&search, &ground, to);
+        TEST_ASSERT_TRUE(search.work <= WORK_MOST);
     }
     leg = search.leg;
     return news == ARGUS_SEARCH_FOUND;
@@ -201,6 +203,59 @@ void test_a_leg_is_given_up_when_something_shows_on_it(void) {
     TEST_ASSERT_FALSE(argus_way_is_free(&ground, &leg)); // no room to turn any more
     TEST_ASSERT_TRUE(finds(3000, 0));
     TEST_ASSERT_TRUE(argus_way_is_free(&ground, &leg));
+}
+
+// The way round by the far end of a long wall.
+static void long_wall(void) {
+    wall(1500, -3900, 1500, 3000);
+    wall(-2000, -1500, 1500, -1500);
+}
+
+static argus_search_news_t searches(const int x_mm, const int y_mm) {
+    const argus_point_t to = {x_mm, y_mm};
+    k.sips++;
+    return argus_way_find(&search, &ground, to);
+}
+
+void test_what_is_too_much_for_one_sip_goes_on_with_the_next(void) {
+    long_wall();
+    TEST_ASSERT_EQUAL(ARGUS_SEARCH_GOES_ON, searches(3000, -1000));
+    stand(80, 0); // it drives on meanwhile
+    TEST_ASSERT_TRUE(finds(3000, -1000));
+    TEST_ASSERT_TRUE(leg.to.y_mm > 0);
+    TEST_ASSERT_TRUE(sips < 6);
+}
+
+void test_a_search_for_another_waypoint_begins_anew(void) {
+    long_wall();
+    TEST_ASSERT_EQUAL(ARGUS_SEARCH_GOES_ON, searches(3000, -1000));
+    TEST_ASSERT_EQUAL(ARGUS_SEARCH_FOUND, searches(-1000, 0));
+    TEST_ASSERT_TRUE(search.leg.direct);
+    TEST_ASSERT_EQUAL(-1000, search.leg.to.x_mm);
+}
+
+// What the grid was then says nothing any more.
+void test_a_search_that_was_left_for_a_sip_begins_anew(void) {
+    long_wall();
+    TEST_ASSERT_EQUAL(ARGUS_SEARCH_GOES_ON, searches(3000, -1000));
+    argus_grid_clear(&g);
+    k.sips++;
+    TEST_ASSERT_EQUAL(ARGUS_SEARCH_FOUND, searches(3000, -1000));
+    TEST_ASSERT_TRUE(search.leg.direct);
+}
+
+// ... and something ahead counts at once; that it comes and goes does not keep a search from its end.
+void test_a_search_ends_though_something_ahead_comes_and_goes(void) {
+    long_wall();
+    TEST_ASSERT_EQUAL(ARGUS_SEARCH_GOES_ON, searches(3000, -1000));
+    argus_search_news_t news = ARGUS_SEARCH_GOES_ON;
+    for (int i = 0; news == ARGUS_SEARCH_GOES_ON; i++) {
+        TEST_ASSERT_TRUE(i < 8);
+        ground.stopped = i % 2 == 0;
+        news = searches(3000, -1000);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_SEARCH_FOUND, news);
+    TEST_ASSERT_TRUE(argus_abs(argus_atan2(search.leg.to.y_mm, search.leg.to.x_mm)) > 2000);
 }
 
 // In random rooms: each way that is found is free and ends.

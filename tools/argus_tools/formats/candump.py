@@ -139,7 +139,7 @@ class CandumpReader:
         date, t, bus, can_id, bracket, length, shown = match.groups()
         # Braces hold the length's code, which is above 8 for 8 bytes, too.
         size = min(int(length, 16), _FRAME_BYTES) if bracket == b"{" else _decimal(length)
-        digits = _screen_digits(shown, size)
+        digits = _screen_digits(shown.split(b" ::", 1)[0], size)  # behind :: stands what cantools decode adds
         if digits is None:
             self.damage.append(Damage(f"line {number}", f"a frame that has not the {size} bytes it tells of"))
             return None

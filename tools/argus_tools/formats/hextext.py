@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 from binascii import unhexlify
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from io import BufferedReader
@@ -174,6 +174,12 @@ class HextextReader:
         for name in marked:
             found[name] = CLIENT_TO_ROBOT if (name in _TO_ROBOT) != turned else ROBOT_TO_CLIENT
         return found
+
+
+def bytes_of_lines(lines: Iterable[bytes]) -> bytes:
+    """Return what these lines hold as text of this form, whatever the direction."""
+    times = _Times()
+    return b"".join(_parse(line, True, times).data or b"" for line in lines)
 
 
 def _sniff(head: bytes) -> bool:

@@ -148,6 +148,25 @@ _OTHERS: Final = (
         "tshark -i can0 -w can0.pcapng",
     ),
     _Other(
+        "tshark-json",
+        _lines(rb'\s*"_index": ?"packets|\{"timestamp":"\d+","layers"'),
+        "what tshark -T json or -T ek prints",
+        "give the capture that it was made from, or tshark -i any -w robot.pcapng",
+    ),
+    _Other(
+        "isotpdump",
+        _lines(rb" *\S+ +[0-9A-Fa-f]{3,8} +\[\d\] +\[(?:SF|FF|CF|FC)\]", 2),
+        "what isotpdump prints",
+        _CANDUMP,
+    ),
+    _Other("uuencode", _lines(rb"begin [0-7]{3,4} \S"), "uuencoded", "uudecode -o drive.bin FILE"),
+    _Other(
+        "cat-v",
+        _lines(rb".*M-zM-\{"),
+        "what cat -v or less shows of a robot's link",
+        _RECORD,
+    ),
+    _Other(
         "strace",
         _lines(rb"(?:\[pid +\d+\] |\d+ +)?(?:[\d:.]+ )?(?:read|write|recvfrom|sendto|openat)\(\d*.*\) += "),
         "what strace prints",
