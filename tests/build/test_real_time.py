@@ -167,6 +167,7 @@ def test_is_never_begun(broken):
 """
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("workers", ["0", "2"])
 def test_who_failed_is_reported_with_how_late_the_host_was(tmp_path: Path, workers: str) -> None:
     report = tmp_path / "new/host-late.json"

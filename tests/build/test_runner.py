@@ -72,7 +72,11 @@ def test_a_test_that_would_not_run_stops_the_build(tmp_path: Path, source: str, 
 
 
 def test_who_computes_for_long_is_run_apart(tmp_path: Path) -> None:
-    configure(tmp_path, "void test_a(void);\nvoid test_a(void) { // soak\n}\n\nvoid test_b(void) {\n}\nvoid test_c(void) { // wide\n}\n")
+    configure(
+        tmp_path,
+        "void test_a(void);\nvoid test_a(void) { // soak\n}\n\nvoid test_b(void) {\n}\n"
+        "void test_c(void) { // wide\n}\n",
+    )
     lines = [line.strip() for line in runner(tmp_path).splitlines()]
     for name, kind in (("test_a", "soak"), ("test_b", "short"), ("test_c", "wide")):
         at = lines.index(f'UnityDefaultTestRun({name}, "{name}", __LINE__);')

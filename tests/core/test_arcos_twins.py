@@ -37,8 +37,7 @@ ROOT = Path(__file__).resolve().parents[2]
 CAPTURES = sorted((ROOT / "tests/data/captures").glob("*.jsonl"))
 SOURCES = ["arcos/frame.c", "arcos/sip.c", "arcos/configpac.c", "arcos/command.c"]
 SEED = int(os.environ.get("ARGUS_SEED", "20240501"))
-PACKETS = 100_000
-FEW_PACKETS = 10_000
+FEW_PACKETS, PACKETS = 15_000, 100_000
 PAUSES_MS = (0, 0, 0, 1, 5, 20, 29, 30, 31, 60, 101, 140, 250, 400)
 NAME_MAX = 32
 

@@ -136,7 +136,8 @@ def read(pieces: list[bytes], at_once: bool) -> list[Row]:
 
 
 @pytest.mark.parametrize(
-    "part", [part if part < FEW_PARTS else pytest.param(part, marks=pytest.mark.wide) for part in range(PARTS)]
+    "part",
+    [part if part < FEW_PARTS else pytest.param(part, marks=pytest.mark.wide) for part in range(PARTS)],
 )
 def test_agrees_with_the_firmware_on_mutated_streams(part: int) -> None:
     parser = Parser()

@@ -94,7 +94,9 @@ def _check_goals(seeds: range, folder: Path) -> None:
         _check(_drive_goal(seed, folder), f"goal {seed}")
 
 
-@pytest.mark.parametrize("count", [EACH, pytest.param(MANY, marks=pytest.mark.wide)])
+@pytest.mark.parametrize(
+    "count", [pytest.param(EACH, marks=pytest.mark.soak), pytest.param(MANY, marks=pytest.mark.wide)]
+)
 @pytest.mark.parametrize("name", SETS)
 def test_the_robot_gets_round_what_stands_in_the_way(name: str, count: int) -> None:
     ends = _ends(name, count)
@@ -104,6 +106,7 @@ def test_the_robot_gets_round_what_stands_in_the_way(name: str, count: int) -> N
     assert reached >= count - count // MISSED, f"{name}: {[end.what for end in ends]}"
 
 
+@pytest.mark.soak
 def test_a_goal_behind_walls_is_given_up() -> None:
     for seed, end in enumerate(_ends(NO_WAY, EACH)):
         _check(end, f"{NO_WAY} {seed}")

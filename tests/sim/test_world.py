@@ -175,7 +175,7 @@ def test_too_many_solids_are_refused(
     )
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     st.dictionaries(
         st.sampled_from(["about", "start", "goals", "roughness", "walls", "boxes", "posts", "x"]),

@@ -78,6 +78,7 @@ def test_a_library_that_is_none_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp
         core._load()
 
 
+@pytest.mark.soak
 def test_without_a_library_it_is_compiled_once(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

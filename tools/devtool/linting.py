@@ -4,13 +4,19 @@
 from __future__ import annotations
 
 import concurrent.futures
-from collections.abc import Callable, Sequence
+import functools
+import hashlib
+import json
+import os
+import shlex
+import subprocess
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from devtool.base import CORES, ROOT, VENV, Run
+from devtool.base import BUILD, CORES, ROOT, VENV, Run
 from devtool.cmake import configure
-from devtool.setup import alone
+from devtool.setup import LOCK, alone
 from devtool.stages import Stage
 
 C_FOLDERS: Final = ("examples", "firmware", "hal", "hil_sim", "tests", "tools")
@@ -68,12 +74,50 @@ def clang_tidy(run: Run) -> None:
         "--quiet",
         f"--extra-arg=-I{ROOT}/hal",
     ]
-    batches = [files[start::CORES] for start in range(CORES) if files[start::CORES]]
     with concurrent.futures.ThreadPoolExecutor(CORES) as pool:
-        failures = [job.exception() for job in [pool.submit(run, [*tidy, *batch]) for batch in batches]]
-    for failure in failures:
-        if failure is not None:
-            raise failure
+        stamps = dict(
+            zip(files, pool.map(functools.partial(tidy_stamp, compile_commands()), files), strict=True)
+        )
+        todo = [path for path, stamp in stamps.items() if not stamp.exists()]
+        jobs = {path: pool.submit(run, [*tidy, path]) for path in todo}
+    for path, job in jobs.items():
+        if job.exception() is None:
+            stamps[path].parent.mkdir(exist_ok=True)
+            stamps[path].touch()
+    for job in jobs.values():
+        job.result()
+
+
+def compile_commands() -> dict[str, list[str]]:
+    """Return how each C file is compiled, by its path."""
+    found = json.loads((BUILD / "debug/compile_commands.json").read_text(encoding="utf-8"))
+    return {one["file"]: shlex.split(one["command"]) for one in found}
+
+
+def preprocessing(command: Sequence[str]) -> list[str]:
+    """Return COMMAND as what prints the text that it compiles, comments included, and writes no file."""
+    kept, words = list[str](), iter(command)
+    for word in words:
+        if word in ("-o", "-MF", "-MT"):
+            next(words)
+        elif word not in ("-c", "-MD"):
+            kept.append(word)
+    return [*kept, "-E", "-C", "-o", "-"] if kept else []
+
+
+def tidy_stamp(commands: Mapping[str, list[str]], path: Path) -> Path:
+    """Return the file that tells that PATH was found clean: its name is all that clang-tidy sees of it.
+
+    A file that is not compiled here, or does not compile, is looked at each time.
+    """
+    command = preprocessing(commands.get(str(ROOT / path), []))
+    try:
+        seen = subprocess.run(command, cwd=BUILD / "debug", capture_output=True, check=True).stdout
+    except (OSError, IndexError, subprocess.CalledProcessError):
+        seen = os.urandom(16)
+    digest = hashlib.sha256(LOCK.read_bytes() + (ROOT / ".clang-tidy").read_bytes())
+    digest.update(str(path).encode() + (ROOT / path).read_bytes() + seen)
+    return BUILD / "tidy" / digest.hexdigest()
 
 
 def mypy(run: Run) -> None:
@@ -81,9 +125,21 @@ def mypy(run: Run) -> None:
     run([VENV / "bin/mypy"])
     for program in PROGRAMS:
         run([VENV / "bin/mypy", program])
-    # One folder at a time: two of them may hold test files of the same name.
-    for folder in sorted({path.parent.relative_to(ROOT) for path in (ROOT / "tests").rglob("*.py")}):
-        run([VENV / "bin/mypy", *sorted((ROOT / folder).glob("*.py"))])
+    for group in apart(sorted((ROOT / "tests").rglob("*.py"))):
+        run([VENV / "bin/mypy", *group])
+
+
+def apart(files: Sequence[Path]) -> list[list[Path]]:
+    """Return FILES in as few groups as can be: mypy takes two of the same name, as test folders have, for one."""
+    groups: list[dict[str, Path]] = []
+    for path in files:
+        for group in groups:
+            if path.name not in group:
+                group[path.name] = path
+                break
+        else:
+            groups.append({path.name: path})
+    return [list(group.values()) for group in groups]
 
 
 LINT_STAGES: Final = (

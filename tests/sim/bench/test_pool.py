@@ -21,10 +21,7 @@ from hil_sim.bench.store import RESULTS, read_results
 from hil_sim.bench.work import core_digest, work, world_files
 from hil_sim.world.files import WORLD_DIR
 
-IDS = [
-    case.id
-    for case in make_cases(["argus"], "tune", ["lab"], range(1, 4), ["off", "garbage", "slow", "pair"])
-]
+IDS = [case.id for case in make_cases(["argus"], "tune", ["lab"], range(1, 3), ["garbage", "pair"])]
 
 distributed: Any = importlib.import_module("distributed")
 pytestmark = pytest.mark.soak
@@ -114,24 +111,25 @@ def test_the_command_runs_on_a_cluster_and_resumes(
         "--worlds",
         "lab",
         "--kinds",
-        "off,pair",
+        "pair",
         "--profiles",
         "argus",
         "--no-plots",
     ]
-    words += ["--seeds", "1-3", "--scheduler", cluster, "--out", str(tmp_path)]
+    words += ["--seeds", "1-2", "--scheduler", cluster, "--out", str(tmp_path)]
     from hil_sim.cli.main import main as argus_sim
 
     assert argus_sim(words) == 0, capfd.readouterr().err
     path = tmp_path / RESULTS
     whole = path.read_bytes()
-    wanted = [name for name in IDS if parse_id(name).kind in ("off", "pair")]
+    wanted = [name for name in IDS if parse_id(name).kind == "pair"]
+    assert len(wanted) == 2
     assert timeless(read_results(path)[0]) == {name: alone[name] for name in wanted}
 
     lines = whole.splitlines(keepends=True)
-    path.write_bytes(b"".join(lines[:3]))
+    path.write_bytes(b"".join(lines[:-1]))
     assert argus_sim([*words, "--resume"]) == 0
-    assert path.read_bytes().startswith(b"".join(lines[:3]))
+    assert path.read_bytes().startswith(b"".join(lines[:-1]))
     assert len(path.read_bytes().splitlines()) == len(lines)
     assert timeless(read_results(path)[0]) == {name: alone[name] for name in wanted}
 
