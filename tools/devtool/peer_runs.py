@@ -167,6 +167,11 @@ def run_peers(given: Mapping[str, Path], folder: Path, seconds: float) -> Iterat
         yield argusd_against_mobilesim(build_mobilesim(given["MOBILESIM_SOURCE"], aria), folder)
 
 
+def line_of(peer: Peer) -> str:
+    """A run in one line."""
+    return f"{'ok' if peer.passed else 'FAILED':6} {peer.client} against {peer.server}: {peer.seen}"
+
+
 def main(words: Sequence[str]) -> int:
     """Build and run what is given as NAME=FOLDER; 1 when something is not as it must be."""
     given = {name: Path(folder) for name, _, folder in (word.partition("=") for word in words)}
@@ -175,10 +180,8 @@ def main(words: Sequence[str]) -> int:
     with tempfile.TemporaryDirectory() as name:
         for peer in run_peers(given, Path(name), seconds):
             peers.append(peer)
-            print(
-                f"{'ok' if peer.passed else 'FAILED':6} {peer.client} against {peer.server}: {peer.seen}",
-                flush=True,
-            )
+            print(line_of(peer), flush=True)
+    print("", *map(line_of, peers), sep="\n")  # once more, below what the clients have written
     return 0 if peers and all(peer.passed for peer in peers) else 1
 
 
