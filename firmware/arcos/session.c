@@ -450,19 +450,24 @@ static unsigned say_closed(argus_session_t *self) {
     return ARGUS_SESSION_DID_CLOSE;
 }
 
+// What comes before SYNC0.
+static unsigned old_session_timer(argus_session_t *self, uint32_t now_ms) {
+    if (self->state == ARGUS_SESSION_HALT) {
+        return in_state_ms(self, now_ms) >= HALT_MAX_MS ? dislodge(self, now_ms) : 0;
+    }
+    return quiet_timer(self, now_ms, self->state == ARGUS_SESSION_LISTEN ? LISTEN_MS : FLUSH_MS);
+}
+
 static unsigned run_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
     if (is_syncing(self)) {
         return in_state_ms(self, now_ms) >= STEP_MS ? fail(self, now_ms) : 0;
     }
+    if (self->state >= ARGUS_SESSION_LISTEN && self->state <= ARGUS_SESSION_DISLODGE) {
+        return old_session_timer(self, now_ms);
+    }
     switch (self->state) {
     case ARGUS_SESSION_PAUSE:
         return pause_timer(self, config, now_ms);
-    case ARGUS_SESSION_LISTEN:
-        return quiet_timer(self, now_ms, LISTEN_MS);
-    case ARGUS_SESSION_HALT:
-        return in_state_ms(self, now_ms) >= HALT_MAX_MS ? dislodge(self, now_ms) : 0;
-    case ARGUS_SESSION_DISLODGE:
-        return quiet_timer(self, now_ms, FLUSH_MS);
     case ARGUS_SESSION_OPENING:
         return opening_timer(self, config, now_ms);
     case ARGUS_SESSION_OPEN:

@@ -52,6 +52,11 @@ static argus_intent_t arrive(const argus_t *const self, argus_travel_t *const mi
     if (!self->motion.settled) {
         return argus_to_nothing();
     }
+    if (argus_task_goal_mm(&mine->task, &self->knowledge) > self->config.waypoint_radius_mm) {
+        mine->arriving = false;
+        argus_task_return(&mine->task);
+        return argus_to_nothing();
+    }
     const argus_mask_t open = argus_rules(self)->evidence ? argus_to_settle(self) : 0;
     return (argus_intent_t){.act = open != 0 ? ARGUS_DO_VERIFY : ARGUS_DO_REACH, .sonars = open};
 }

@@ -62,9 +62,9 @@ argus_search_news_t argus_task_choose(argus_task_t *const self, const argus_know
                                       const argus_echoes_t *const echoes, const bool stopped) {
     ARGUS_ASSERT(self->next <= self->count);
     const argus_ground_t ground = {knowledge, &echoes->grid, stopped};
-    const argus_search_news_t news =
-        self->next < self->count ? argus_way_find(&self->search, &ground, self->waypoint[self->next])
-                                 : ARGUS_SEARCH_NO_WAY;
+    const argus_search_news_t news = self->next < self->count
+                                         ? argus_way_find(&self->search, &ground, self->waypoint[self->next])
+                                         : ARGUS_SEARCH_NO_WAY;
     self->has_leg = news == ARGUS_SEARCH_FOUND;
     self->progress.exhausted = self->progress.exhausted || news == ARGUS_SEARCH_NO_WAY;
     if (self->has_leg) {

@@ -65,6 +65,12 @@ bool argus_task_progress(argus_task_t *const self, const argus_knowledge_t *cons
     return self->count > 0 && self->next == self->count;
 }
 
+void argus_task_return(argus_task_t *const self) {
+    ARGUS_ASSERT(self->count > 0 && self->next == self->count);
+    self->next--;
+    argus_task_restart(self);
+}
+
 int32_t argus_task_bearing_cdeg(const argus_task_t *const self, const argus_knowledge_t *const knowledge) {
     return argus_atan2(self->leg.to.y_mm - knowledge->pose.y_mm, self->leg.to.x_mm - knowledge->pose.x_mm);
 }

@@ -38,6 +38,9 @@ bool argus_task_set(argus_task_t *self, const argus_point_t *points, uint16_t co
 bool argus_task_progress(argus_task_t *self, const argus_knowledge_t *knowledge, const argus_config_t *config,
                          int *passed);
 
+// The robot has been moved away from its goal since, to make room for a turn: it is to go there again.
+void argus_task_return(argus_task_t *self);
+
 int32_t argus_task_goal_mm(const argus_task_t *self, const argus_knowledge_t *knowledge);
 
 // Something stopped the robot: what is heard near, or the place just ahead where nothing is, is taken as

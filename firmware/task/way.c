@@ -96,8 +96,8 @@ static void begin_pull(argus_search_t *const self) {
     self->is_there = true;
 }
 
-// One cell more towards the waypoint. A leg ends at the farthest cell of the way that can be driven straight to,
-// best one on which the robot can turn. False: it is pulled.
+// One cell more towards the waypoint. A leg ends at the farthest cell of the way that can be driven straight
+// to, best one on which the robot can turn. False: it is pulled.
 static bool pull_on(argus_search_t *const self) {
     argus_pull_t *const pull = &self->pull;
     if ((!pull->straight && !pull->first) || !descend(&self->wave, pull)) {
@@ -207,7 +207,8 @@ static bool is_clear(const argus_ground_t *const ground, const argus_cell_t abou
 
 bool argus_way_is_free(const argus_ground_t *const ground, const argus_leg_t *const leg) {
     const argus_point_t to = leg->to;
-    const int32_t radius_mm = leg->narrow ? argus_wave_narrow_mm(ground->knowledge) : argus_wave_wide_mm(ground->knowledge);
+    const int32_t radius_mm =
+        leg->narrow ? argus_wave_narrow_mm(ground->knowledge) : argus_wave_wide_mm(ground->knowledge);
     const argus_point_t from = robot_at(ground);
     const int32_t dx = argus_max(-40000, argus_min(40000, to.x_mm - from.x_mm));
     const int32_t dy = argus_max(-40000, argus_min(40000, to.y_mm - from.y_mm));

@@ -7,7 +7,7 @@ import signal
 import time
 
 import pytest
-from harness import BAUD, Argusd, Bench, is_translating
+from harness import BAUD, PATIENCE_S, Argusd, Bench, is_translating, wait_for
 from rules import cruise
 from worlds import hall
 
@@ -75,3 +75,25 @@ def test_an_adapter_with_a_new_number_is_said_once(bench: Bench) -> None:
     argusd.signal(signal.SIGTERM)
     assert argusd.wait_exit() == 0
     sim.assert_no_collision()
+
+
+def test_an_adapter_that_comes_back_later_under_another_name_is_said(bench: Bench) -> None:
+    """What stands beside the reason is news, too, and is said once."""
+    bench.sim(bench.world(**hall()))
+    first, second = (bench.path / f"ttyUSB{number}" for number in (0, 1))
+    tap = bench.tap()
+    first.symlink_to(tap.address)
+    argusd = bench.argusd(link=f"serial:{first}@{BAUD}", active=False)
+    argusd.wait("SESSION_OPEN")
+    first.unlink()
+    bench.taps.remove(tap)
+    tap.close()
+    argusd.wait("LINK_LOST")
+    wait_for("the file is said to be gone", lambda: told(argusd, "no such file"), PATIENCE_S)
+    assert not told(argusd, str(second))
+    second.symlink_to(bench.tap().address)
+    wait_for("the other one is named", lambda: told(argusd, str(second)), PATIENCE_S)
+    time.sleep(5.0)
+    assert len(told(argusd, "no such file")) == 2
+    argusd.signal(signal.SIGTERM)
+    argusd.wait_exit()

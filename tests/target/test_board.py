@@ -154,10 +154,10 @@ def as_serial_line(end: socket.socket) -> Iterator[str]:
 
     def carry() -> None:
         while not done.is_set():
-            ready, _, _ = select.select([inside, end], [], [], 0.05)
+            ready, _, _ = select.select([inside, end.fileno()], [], [], 0.05)
             if inside in ready:
                 end.sendall(os.read(inside, 4096))
-            if end in ready:
+            if end.fileno() in ready:
                 os.write(inside, end.recv(4096))
 
     thread = threading.Thread(target=carry)
@@ -171,28 +171,28 @@ def as_serial_line(end: socket.socket) -> Iterator[str]:
         os.close(outside)
 
 
-def flash_check(device: str, *options: str) -> subprocess.CompletedProcess[str]:
-    """Run argus-flash-check."""
-    return subprocess.run(
-        [sys.executable, "-m", "argus_tools.flash_check", device, "--wait", "60", *options],
-        cwd=ROOT,
-        check=False,
-        capture_output=True,
-        text=True,
-    )
+def flash_check(device: str, *options: str) -> subprocess.Popen[str]:
+    """Start argus-flash-check."""
+    command = [sys.executable, "-m", "argus_tools.flash_check", device, "--wait", "60", *options]
+    return subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
 def test_the_check_of_what_was_flashed(board: Machine, tmp_path: Path) -> None:
     board.wait_for("START")
     with as_serial_line(board.console) as device:
-        config = digest_of("", tmp_path)
-        good = flash_check(device, "--board", "mps2-an386", "--config", config)
-        assert good.returncode == 0, good.stdout + good.stderr
-        assert "reset     order" in good.stdout
-        other = flash_check(device, "--board", "stm32f405", "--config", "00000000")
-        assert other.returncode == 1
-        assert other.stdout.count("FAIL") == 2
-        board.patch(UNDEFINED)
-        fault = flash_check(device, "--listen")
-        assert fault.returncode == 1, fault.stdout + fault.stderr
-        assert "FAIL reset     fault, pc " in fault.stdout
+        with flash_check(device, "--board", "mps2-an386", "--config", digest_of("", tmp_path)) as good:
+            said, _ = good.communicate()
+        assert good.returncode == 0, said
+        assert "reset     order" in said
+        with flash_check(device, "--board", "stm32f405", "--config", "00000000") as other:
+            said, _ = other.communicate()
+        assert (other.returncode, said.count("FAIL")) == (1, 2), said
+        with flash_check(device, "--listen") as listening:
+            while listening.poll() is None:  # a restart before it listens is not seen
+                board.patch(UNDEFINED)
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    listening.wait(10)
+            assert listening.stdout is not None
+            said = listening.stdout.read()
+        assert listening.returncode == 1, said
+        assert "FAIL reset     fault, pc " in said

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "argusd.h"
+#include "hal/crc32.h"
 
 #define READ_BYTES 512
 #define READS_PER_WAKE 8 // a flood must not keep time from passing
@@ -65,6 +66,7 @@ hal_link_error_t driver_open(driver_t *self, int timeout_ms) {
     hal_link_t link = {0};
     self->error = hal_transport_open(self->transport, &self->spec, timeout_ms, self->cancel_fd, &link);
     self->failed = self->error != HAL_LINK_OK && self->error != HAL_LINK_CANCELLED;
+    self->tried = self->tried || self->failed;
     if (self->error == HAL_LINK_OK) {
         driver_attach(self, link);
     } else {
@@ -250,9 +252,23 @@ static hal_link_error_t reason_now(const driver_t *self) {
     return self->failed ? self->error : self->told;
 }
 
+// What stands beside the reason may change, too: the adapter has come back under another name.
+static bool has_changed(driver_t *self, const hal_link_error_t reason) {
+    char why[ARGUSD_MESSAGE_MAX];
+    if (reason == self->told && (reason == HAL_LINK_OK || reason == HAL_LINK_CLOSED || !self->tried)) {
+        return false;
+    }
+    self->tried = false;
+    hal_transport_explain(&self->spec, reason, why, sizeof why);
+    const uint32_t sum = hal_crc32(0, why, strlen(why));
+    const bool changed = reason != self->told || sum != self->told_sum;
+    self->told_sum = sum;
+    return changed;
+}
+
 bool driver_reason(driver_t *self, char *text, size_t capacity) {
     const hal_link_error_t reason = reason_now(self);
-    if (reason == self->told || self->transport == NULL) {
+    if (self->transport == NULL || !has_changed(self, reason)) {
         return false;
     }
     self->told = reason;

@@ -35,6 +35,8 @@ typedef struct {
     int cancel_fd;          // becomes readable when opening is to be given up; -1: none
     hal_link_error_t error; // why the link is not up
     bool failed;            // ... since an attempt to open it failed
+    bool tried;             // to open it, since a reason was looked for
+    uint32_t told_sum;      // of the words told last
     hal_link_error_t told;  // the reason told last; HAL_LINK_OK: none is to be told as over
     uint32_t heard;         // bytes_in when the link came up
     uint32_t fruitless;     // times in a row that the link closed at once and nothing was heard

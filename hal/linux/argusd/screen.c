@@ -8,6 +8,7 @@
 
 #include "tui_key.h"
 
+#define NARROW 60 // columns
 #define FRONT_SONARS 8
 #define RING_TOP 3
 #define RING_ROWS 13
@@ -363,6 +364,20 @@ static void draw_numbers(canvas_t *canvas, const view_t *view, int row, int colu
              (unsigned)status->bad_checksums, (unsigned)status->skipped_bytes);
 }
 
+// Of an event on a narrow screen its time and level are left out; its colour tells the level.
+static const char *narrowed(const canvas_t *canvas, const char *text) {
+    const size_t pad = strspn(text, " ");
+    if (canvas->columns >= NARROW || text[pad] < '0' || text[pad] > '9') {
+        return text;
+    }
+    const char *rest = text + pad;
+    for (int word = 0; word < 2; word++) {
+        rest += strcspn(rest, " ");
+        rest += strspn(rest, " ");
+    }
+    return rest;
+}
+
 static void draw_log(canvas_t *canvas, const screen_log_t *log, int top, int bottom) {
     const int room = bottom - top;
     const int shown = log->count < room ? log->count : room;
@@ -373,7 +388,8 @@ static void draw_log(canvas_t *canvas, const screen_log_t *log, int top, int bot
             snprintf(times, sizeof times, " (%u times)", (unsigned)line->times);
         }
         const int width = canvas->columns - 1 - (int)strlen(times);
-        const int length = put_words(canvas, top + i, 1, width, (tone_t)line->tone, line->text);
+        const int length =
+            put_words(canvas, top + i, 1, width, (tone_t)line->tone, narrowed(canvas, line->text));
         put_text(canvas, top + i, 1 + length, (tone_t)line->tone, times);
     }
 }

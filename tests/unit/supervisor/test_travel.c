@@ -210,3 +210,22 @@ void test_s7_one_echo_is_read_again_before_a_way_out(void) {
     TEST_ASSERT_TRUE_MESSAGE(most - x < 40, text);
     finish();
 }
+
+// ---- the goal
+
+// Carried back from it before it was said, as when the robot makes room for a look: it goes there again.
+void test_a_goal_is_not_reached_from_afar(void) {
+    start(ARGUS_PROFILE_ARGUS);
+    hall(6000);
+    TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_WAYPOINT, 30000));
+    robot.argus.knowledge.pose.x_mm -= 180;
+    robot.x -= 180; // its odometry goes on as if nothing had happened
+    robot.x0 -= 180;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 30000));
+    const int32_t off_mm = robot_last_event(&robot, ARGUS_EV_GOAL_REACHED)->value;
+    snprintf(text, sizeof text, "%d mm off by its word, truly at %.0f", (int)off_mm, robot.x);
+    TEST_ASSERT_TRUE_MESSAGE(off_mm <= robot.argus.config.waypoint_radius_mm, text);
+    TEST_ASSERT_TRUE_MESSAGE(fabs(robot.x - 1500) < 110, text);
+    finish();
+}

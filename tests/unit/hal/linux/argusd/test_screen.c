@@ -265,6 +265,17 @@ static bool is_a_word(const char *wide, const char *word) {
     return strstr(wide, framed) != NULL;
 }
 
+void test_a_narrow_screen_tells_which_event_it_was(void) {
+    screen_log_add(&log_, "   12.345 WARN  drive          STOPPED 0: STOP sent", TONE_WARN, 0);
+    screen_log_add(&log_, " > g: go on with the course", TONE_PLAIN, 0);
+    draw(24, 40);
+    TEST_ASSERT_NOT_EQUAL(-1, find("drive          STOPPED 0: STOP sent"));
+    TEST_ASSERT_EQUAL(-1, find("WARN"));
+    TEST_ASSERT_NOT_EQUAL(-1, find("> g: go on with the course"));
+    draw(24, 80);
+    TEST_ASSERT_NOT_EQUAL(-1, find("12.345 WARN  drive"));
+}
+
 void test_narrow_screens_drop_columns_and_cut_no_word(void) {
     static char wide[SCREEN_ROWS_MAX * (SCREEN_COLUMNS_MAX + 2)];
     char text[SCREEN_COLUMNS_MAX + 1];
