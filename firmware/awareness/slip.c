@@ -90,15 +90,18 @@ typedef struct {
     int fits; // whose range changed as the odometry says
 } witnesses_t;
 
+// It reads, and has read here.
+static bool can_tell(const argus_slip_t *const self, const argus_knowledge_t *const knowledge,
+                     const int sonar) {
+    const uint32_t since_mm = knowledge->odometer_mm - knowledge->sonar[sonar].odometer_mm;
+    return since_mm <= END_MM && self->reading_mm[sonar] != 0 && argus_usable(knowledge, sonar);
+}
+
 static void ask(const argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                 const int32_t way_mm, witnesses_t *const of) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const bool to = looks(self, knowledge, sonar, true);
-    if (knowledge->odometer_mm - knowledge->sonar[sonar].odometer_mm > END_MM) {
-        return;
-    }
-    if ((!to && !looks(self, knowledge, sonar, false)) || self->reading_mm[sonar] == 0 ||
-        !argus_usable(knowledge, sonar)) {
+    if ((!to && !looks(self, knowledge, sonar, false)) || !can_tell(self, knowledge, sonar)) {
         return;
     }
     const int32_t change = knowledge->sonar[sonar].reading_mm - self->reading_mm[sonar];

@@ -162,16 +162,21 @@ static argus_intent_t leave_bumper(const argus_t *const self) {
     return argus_to_nothing();
 }
 
+// Passive, it moves for nothing: somebody else has to free it.
+static argus_intent_t leave_touch(const argus_t *const self) {
+    if (!self->orders.passive) {
+        return leave_bumper(self);
+    }
+    return self->reflexes.bumpers == 0 ? argus_to_check(true) : argus_to_nothing();
+}
+
 static argus_intent_t leave_waiting(const argus_t *const self, const argus_wait_t why) {
     ARGUS_ASSERT((unsigned)why <= ARGUS_WAIT_ECHO);
     const argus_guard_t guard = argus_guard(self);
     argus_intent_t intent = argus_to_check(true);
     switch (why) {
     case ARGUS_WAIT_BUMPER:
-        if (!self->orders.passive) {
-            return leave_bumper(self);
-        }
-        return self->reflexes.bumpers == 0 ? intent : argus_to_nothing();
+        return leave_touch(self);
     case ARGUS_WAIT_MOTORS:
         return self->reflexes.motors_said ? argus_to_nothing() : intent;
     case ARGUS_WAIT_TURN:
