@@ -19,6 +19,6 @@ argus_intent_t argus_to_turn(const int32_t heading_cdeg) {
 }
 
 argus_intent_t argus_to_wait(const argus_wait_t why) {
-    ARGUS_ASSERT(why > ARGUS_WAIT_NONE && why <= ARGUS_WAIT_CATASTROPHIC);
+    ARGUS_ASSERT(why > ARGUS_WAIT_NONE && why <= ARGUS_WAIT_ECHO);
     return (argus_intent_t){.act = ARGUS_DO_WAIT, .why = (uint8_t)why};
 }

@@ -22,6 +22,7 @@ void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const 
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     bool heard = false;
     self->has_leg = false;
+    self->refused = true;
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i) &&
             knowledge->sonar[i].reading_mm <= REFUSED_NEAR_MM) {

@@ -5,6 +5,9 @@
 #include "knowledge/angle.h"
 #include "task/task.h"
 
+// A waypoint is a place to pass: where something stopped the robot before it, so near is near enough.
+#define PASSED_MM 200
+
 void argus_task_init(argus_task_t *const self) {
     memset(self, 0, sizeof *self);
 }
@@ -36,6 +39,7 @@ bool argus_task_set(argus_task_t *const self, const argus_point_t *const points,
 void argus_task_restart(argus_task_t *const self) {
     self->has_leg = false;
     self->avoiding = false;
+    self->refused = false;
     memset(&self->progress, 0, sizeof self->progress);
 }
 
@@ -54,8 +58,10 @@ bool argus_task_progress(argus_task_t *const self, const argus_knowledge_t *cons
     *passed = 0;
     while (self->next < self->count) {
         const bool last = self->next + 1 == self->count;
-        const int32_t radius = last ? config->goal_radius_mm : config->waypoint_radius_mm;
-        if (distance_mm(knowledge, &self->waypoint[self->next]) > radius) {
+        const int32_t passing_mm =
+            self->refused ? argus_max(PASSED_MM, config->waypoint_radius_mm) : config->waypoint_radius_mm;
+        const int32_t radius_mm = last ? config->goal_radius_mm : passing_mm;
+        if (distance_mm(knowledge, &self->waypoint[self->next]) > radius_mm) {
             break;
         }
         self->next++;

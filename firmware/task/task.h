@@ -24,6 +24,7 @@ typedef struct {
     uint16_t next;
     bool avoiding; // the leg does not end at the waypoint
     bool has_leg;  // where the robot now heads for
+    bool refused;  // something has stopped the robot on its way to this waypoint
     argus_leg_t leg;
     argus_progress_t progress;
     argus_point_t waypoint[ARGUS_WAYPOINTS_MAX];

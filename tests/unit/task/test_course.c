@@ -70,6 +70,22 @@ void test_several_waypoints_at_once(void) {
     TEST_ASSERT_EQUAL(3, passed);
 }
 
+// Something stands before a waypoint: it is passed within 200 mm, the goal is not.
+void test_a_waypoint_that_is_refused_is_passed_from_farther(void) {
+    const argus_point_t course[] = {{1000, 0}, {2000, 0}};
+    TEST_ASSERT_TRUE(argus_task_set(&t, course, 2));
+    TEST_ASSERT_FALSE(at(810, 0));
+    TEST_ASSERT_EQUAL(0, passed);
+    argus_task_refuse(&t, &k, &echoes);
+    TEST_ASSERT_FALSE(at(790, 0));
+    TEST_ASSERT_EQUAL(0, passed);
+    TEST_ASSERT_FALSE(at(810, 0));
+    TEST_ASSERT_EQUAL(1, passed);
+    argus_task_refuse(&t, &k, &echoes);
+    TEST_ASSERT_FALSE(at(1810, 0));
+    TEST_ASSERT_EQUAL(0, passed);
+}
+
 void test_without_a_course_nothing_is_reached(void) {
     TEST_ASSERT_FALSE(at(0, 0));
     TEST_ASSERT_EQUAL(0, argus_task_goal_mm(&t, &k));
