@@ -162,8 +162,9 @@ int32_t argus_guard_speed_mm_s(const argus_guard_t *const self, const int32_t se
     }
     const bool asks = argus_guard_is_doubted(self) && seen_mm == INT32_MAX && self->profile->drives_seen;
     const int32_t others_mm = asks ? seen_by_rays_mm(self) : seen_mm;
-    return asks && others_mm < SEEN_DOUBTED_MM ? argus_min(self->config->speed_mm_s, self->config->step_speed_mm_s)
-                                               : argus_guard_free_speed_mm_s(self, others_mm);
+    return asks && others_mm < SEEN_DOUBTED_MM
+               ? argus_min(self->config->speed_mm_s, self->config->step_speed_mm_s)
+               : argus_guard_free_speed_mm_s(self, others_mm);
 }
 
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {

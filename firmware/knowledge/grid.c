@@ -237,8 +237,8 @@ bool argus_grid_is_occupied(const argus_grid_t *const self, const argus_cell_t c
 
 // Eight cells of a row, two to a byte, to a bit each: bits 2 and 3 of a level say OCCUPIED.
 static uint32_t occupied_in(const uint8_t *const pairs) {
-    const uint32_t levels = (uint32_t)pairs[0] | (uint32_t)pairs[1] << 8 | (uint32_t)pairs[2] << 16 |
-                            (uint32_t)pairs[3] << 24;
+    const uint32_t levels =
+        (uint32_t)pairs[0] | (uint32_t)pairs[1] << 8 | (uint32_t)pairs[2] << 16 | (uint32_t)pairs[3] << 24;
     uint32_t bits = (levels >> 2 | levels >> 3) & 0x11111111u;
     bits = (bits | bits >> 3) & 0x03030303u; // cells draw together: by two, ...
     bits = (bits | bits >> 6) & 0x000F000Fu;
