@@ -168,7 +168,7 @@ def test_wrong_arguments_give_one_line(
 
 
 def test_constants_are_chosen_by_name() -> None:
-    options = cli_passive.ablate_parser().parse_args(["--constants", "--only", "ARGUS_BENT_N*"])
+    options = cli_passive.ablate_parser().parse_args(["--constants", "--only", "ARGUS_OFFSET_N*"])
     names = [variant.name for variant in cli_passive.chosen(options)]
     assert names
-    assert all(name.startswith("ARGUS_BENT_N") for name in names)
+    assert all(name.startswith("ARGUS_OFFSET_N") for name in names)
