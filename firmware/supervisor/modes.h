@@ -7,7 +7,7 @@
 #include "supervisor/intent.h"
 
 // The intent and what follows from it.
-void argus_do(argus_t *self, const argus_intent_t *intent);
+void argus_do(argus_t *self, const argus_intent_t *wanted);
 
 // One SIP: what must happen at once; what the evidence says; what the present mode wants.
 void argus_react(argus_t *self, const argus_alarm_t *alarm);

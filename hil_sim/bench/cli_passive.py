@@ -266,6 +266,25 @@ def _heading(verdicts: Iterable[Verdict]) -> str:
     )
 
 
+def _differs(tally: counting.Tally, known: counting.Tally) -> bool:
+    """Say where the counts do not bear out those of the table; return whether there is such a place."""
+    found = counting.differences(tally, known)
+    for difference in found:
+        say(difference)
+    return bool(found)
+
+
+def _give(tally: counting.Tally, argv: Sequence[str], arguments: argparse.Namespace) -> None:
+    """Write the table, with the command that makes it, or print it."""
+    kept = ["--streams", "--write", str(arguments.streams)]
+    command = " ".join(["argus-sim bench likelihoods", *(word for word in argv if word not in kept)])
+    text = counting.to_toml(tally, command)
+    if arguments.write:
+        _write(counting.FILE, text)
+    else:
+        print(text, end="")
+
+
 def likelihoods(argv: Sequence[str]) -> int:
     """Run `argus-sim bench likelihoods ARGV`; return the exit code."""
     options = _parser(
@@ -282,17 +301,8 @@ def likelihoods(argv: Sequence[str]) -> int:
             tally = counting.observe(paths)
     except KeyboardInterrupt:
         return _interrupted()
-    if known is not None:
-        found = counting.differences(tally, known)
-        for difference in found:
-            say(difference)
-        return EXIT_FAILED if found or not whole else 0
-    kept = ["--streams", "--write", str(arguments.streams)]
-    text = counting.to_toml(
-        tally, " ".join(["argus-sim bench likelihoods", *(w for w in argv if w not in kept)])
-    )
-    if arguments.write:
-        _write(counting.FILE, text)
-    else:
-        print(text, end="")
+    if known is None:
+        _give(tally, argv, arguments)
+    elif _differs(tally, known):
+        return EXIT_FAILED
     return 0 if whole else EXIT_FAILED

@@ -176,7 +176,7 @@ def test_who_failed_is_reported_with_how_late_the_host_was(tmp_path: Path, worke
         "from pathlib import Path\nfrom lateness import HostWatch\n"
         f"def pytest_configure(config):\n    config.pluginmanager.register(HostWatch(Path({str(report)!r})))\n"
     )
-    paths = os.pathsep.join(str(path) for path in (ROOT, ROOT / "tests/hil"))
+    paths = os.pathsep.join(str(path) for path in (ROOT, ROOT / "tests/hil", ROOT / "tests/tools"))
     done = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-n", workers, "--rootdir", str(tmp_path), "test_all.py"],
         cwd=tmp_path, env=os.environ | {"PYTHONPATH": paths}, capture_output=True, text=True, check=False,

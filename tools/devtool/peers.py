@@ -28,5 +28,5 @@ def peers(run: Run) -> str | None:
         return note
     build("release", run)
     words = [f"{name}={path}" for name, path in sources.items()]
-    run([VENV / "bin/python", Path(__file__).with_name("peer_runs.py"), *words])
+    run([VENV / "bin/python", Path(__file__).parents[1] / "peers/runs.py", *words])
     return note if missing else None

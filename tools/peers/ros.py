@@ -15,8 +15,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-from devtool.peer_base import cache, free_port, started, wait_port
-from devtool.peer_guard import Client, Place
+from peers.base import cache, free_port, started, wait_port
+from peers.guard import Client, Place
 
 SOURCES: Final = ("P2OS_SOURCE", "ROSARIA_SOURCE", "PLAYER_SOURCE")
 DEVEL: Final = "/peers/devel"
@@ -129,12 +129,12 @@ def ros_master(debian: Debian) -> Iterator[str]:
 
 def wander(debian: Debian, driver: str, node: str) -> Client:
     """A driver of ROS 1 with a node of ours that wanders by its sonars."""
-    shutil.copy2(Path(__file__).with_name("peer_wander.py"), debian.peers)
+    shutil.copy2(Path(__file__).with_name("wander.py"), debian.peers)
 
     def run(place: Place) -> None:
         with ros_master(debian) as line, started(debian.words(f"{line}; exec {node.format(at=place)}")):
             time.sleep(START_S)
-            words = debian.words(f"{line}; exec python3 /peers/peer_wander.py {driver} {place.seconds}")
+            words = debian.words(f"{line}; exec python3 /peers/wander.py {driver} {place.seconds}")
             subprocess.run(words, check=True, timeout=place.seconds + 60)
 
     return Client(f"{driver}, wander.py", run, terminal=driver == "p2os")

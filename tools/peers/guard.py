@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from devtool.peer_base import ARGUSD, SIM, Peer, free_port, run_client, started, truth_of, wait_port
-from devtool.peer_wire import Wire, lost, to_port, to_terminal
+from peers.base import ARGUSD, SIM, Peer, free_port, run_client, started, truth_of, wait_port
+from peers.wire import Wire, lost, to_port, to_terminal
 
 WORLD: Final = ("--world", "office")
 FAULT: Final = ("--fault", "off:3")

@@ -16,8 +16,8 @@ from typing import IO, Any, Final
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from devtool import peer_ros
-from devtool.peer_base import (
+from peers import ros
+from peers.base import (
     ARGUSD,
     SIM,
     Peer,
@@ -29,7 +29,7 @@ from devtool.peer_base import (
     truth_of,
     wait_port,
 )
-from devtool.peer_guard import DROVE_MM, Client, Place, at_robot, by_command, by_guard
+from peers.guard import DROVE_MM, Client, Place, at_robot, by_command, by_guard
 
 EXAMPLES: Final = ("wander", "demo", "gotoActionExample")
 LIMIT_S: Final = 45.0
@@ -150,8 +150,8 @@ def run_peers(given: Mapping[str, Path], folder: Path, seconds: float) -> Iterat
     if "ARIA_SOURCE" not in given:
         print("MobileSim and rosaria are built with ARIA: give ARIA_SOURCE= as well")
         return
-    root = peer_ros.debian()
-    if root is None and given.keys() & set(peer_ros.SOURCES):
+    root = ros.debian()
+    if root is None and given.keys() & set(ros.SOURCES):
         print("p2os, rosaria and Player are built in a Debian with ROS 1: give ROS1_ROOT= as well")
         return
     aria = build_aria(given["ARIA_SOURCE"])
@@ -159,7 +159,7 @@ def run_peers(given: Mapping[str, Path], folder: Path, seconds: float) -> Iterat
         yield aria_against_sim(aria, example, folder)
     clients = [wander_of(aria)]
     if root is not None:
-        clients += peer_ros.clients(given, root, aria)
+        clients += ros.clients(given, root, aria)
     for number, client in enumerate(clients):
         yield at_robot(client, seconds, folder / f"{number}-robot")
         yield by_guard(client, seconds, folder / f"{number}-guard")
