@@ -138,7 +138,7 @@ bool argus_guard_is_doubted(const argus_guard_t *const self) {
 
 // A wall close beside may slant in.
 static bool may_hurry(const argus_guard_t *const self) {
-    return self->profile->adapts_speed && argus_flank_mm(self->knowledge) > ARGUS_FLANK_NEAR_MM;
+    return self->profile->adapts_speed && argus_flank_mm(self->knowledge, 0) > ARGUS_FLANK_NEAR_MM;
 }
 
 int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self, const int32_t seen_mm) {

@@ -49,9 +49,9 @@
 // ------------------------------------------------------------------------------------------------------
 #define ARGUS_SUSPECT_PERCENT 75 // of a name's level: a look is called for
 #define ARGUS_BESIDE_MS 10000
-#define ARGUS_LATE_NAMING 800
-#define ARGUS_LATE_ALONE 1200
-#define ARGUS_LATE_CONVINCING 2200
+#define ARGUS_LATE_NAMING 500
+#define ARGUS_LATE_ALONE 750
+#define ARGUS_LATE_CONVINCING 1375
 #define ARGUS_LATE_LEAD 430
 #define ARGUS_OFFSET_NAMING 1100
 #define ARGUS_OFFSET_LEAD 300

@@ -148,7 +148,7 @@ static bool slants(const argus_t *const self) {
 // As where the manager drives itself: beside a wall, and where one ahead is doubted.
 static bool is_careful(const argus_t *const self) {
     const unsigned ahead = argus_robot_ahead(self->knowledge.robot);
-    return argus_flank_mm(&self->knowledge) <= ARGUS_FLANK_NEAR_MM ||
+    return argus_flank_mm(&self->knowledge, 0) <= ARGUS_FLANK_NEAR_MM ||
            (argus_named(&self->knowledge) & ahead) != 0;
 }
 

@@ -354,9 +354,9 @@ bool argus_usable(const argus_knowledge_t *const self, const int sonar) {
     return s->reported && !argus_is_out(self, sonar) && s->reading_mm < self->robot->no_echo_mm;
 }
 
-int32_t argus_flank_mm(const argus_knowledge_t *const self) {
+int32_t argus_flank_mm(const argus_knowledge_t *const self, const argus_mask_t except) {
     ARGUS_ASSERT(self->sonars <= ARGUS_SONARS);
-    const argus_mask_t flank = argus_robot_flank(self->robot);
+    const unsigned flank = argus_robot_flank(self->robot) & ~(unsigned)except;
     int32_t nearest = INT32_MAX;
     for (int i = 0; i < self->sonars; i++) {
         if ((flank >> i & 1u) != 0 && argus_usable(self, i)) {

@@ -121,8 +121,8 @@ argus_mask_t argus_named(const argus_knowledge_t *self);      // SUSPECT, with t
 bool argus_trusted(const argus_knowledge_t *self, int sonar); // neither out nor named nor unheard
 bool argus_usable(const argus_knowledge_t *self, int sonar);  // reported, not out, not 5000
 
-// The nearest echo, in mm, of the flank sonars, those that are out left aside; INT32_MAX: none.
-int32_t argus_flank_mm(const argus_knowledge_t *self);
+// The nearest echo, in mm, of the flank sonars, those that are out and `except` left aside; INT32_MAX: none.
+int32_t argus_flank_mm(const argus_knowledge_t *self, argus_mask_t except);
 
 argus_mark_t argus_mark_now(const argus_knowledge_t *self);
 bool argus_fresh_since(const argus_knowledge_t *self, int sonar, const argus_mark_t *mark);

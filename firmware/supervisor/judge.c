@@ -112,8 +112,11 @@ static uint8_t agreements_wanted(const argus_sonar_t *const s) {
 static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_fault_kind_t convicted = convicts(self, sonar);
-    const bool stuck = self->knowledge.sonar[sonar].kind == ARGUS_KIND_STUCK &&
-                       !argus_evidence_repeats(&self->evidence, sonar);
+    const argus_fault_kind_t known = self->knowledge.sonar[sonar].kind;
+    if (known == ARGUS_KIND_GARBAGE && convicted == ARGUS_KIND_WRONG) {
+        return known; // what is anywhere is contradicted too: `wrong` says less
+    }
+    const bool stuck = known == ARGUS_KIND_STUCK && !argus_evidence_repeats(&self->evidence, sonar);
     return convicted == ARGUS_KIND_NONE && stuck ? argus_evidence_names(&self->evidence, sonar) : convicted;
 }
 

@@ -135,11 +135,13 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
 }
 
 // A leg that leads out of a place too narrow to turn in: straight ahead, but for a nudge. Not along a wall
-// that is so near that a slant could not be seen in time.
+// that is so near that a slant could not be seen in time; a suspect's word alone is no wall, or it would hold
+// the robot for ever where no look can be had.
 static bool leads_out(const argus_t *const self, argus_travel_t *const mine, const int32_t by_cdeg) {
     const argus_guard_t guard = argus_guard(self);
-    const bool open =
-        by_cdeg != 0 ? argus_guard_may_nudge(&guard, by_cdeg) : argus_flank_mm(&self->knowledge) > FLANK_MM;
+    const argus_mask_t doubted = argus_open_suspects(self);
+    const bool open = by_cdeg != 0 ? argus_guard_may_nudge(&guard, by_cdeg)
+                                   : argus_flank_mm(&self->knowledge, doubted) > FLANK_MM;
     return open && argus_task_escape(&mine->task, &self->knowledge, &self->echoes, by_cdeg);
 }
 

@@ -32,8 +32,9 @@ HYPOTHESES: Final = len(LAGS) + len(OFFSETS_DEG)
 _SHAPE: Final = (2, HYPOTHESES, len(VERDICTS), len(VERDICTS))
 _NEAR_DEG: Final = 4.0
 """A hypothesis of an axis offset holds for a fault that is at most so far from it."""
-TELLING: Final = ("QUIET", "AGREED", "CONTRADICTED", "SAME")
-"""Verdicts on a mapped ping that tell something of the hypothesis: the others say that no sonar looked there."""
+TELLING: Final = ("QUIET", "AGREED", "CONTRADICTED")
+"""Verdicts on a mapped ping that tell something of the hypothesis. The others say that no sonar looked there, or
+that the map leaves it where it is, which it does as the robot moves, not as the sonar fails."""
 LEAST: Final = 30
 RARE: Final = 5.0
 """Pings, added to those that came and to those that were to be expected: a rare cell tells little."""

@@ -252,7 +252,8 @@ void test_sonars_beyond_the_robots_are_absent_and_not_heard(void) {
     }
     TEST_ASSERT_EQUAL_HEX16(0xFF, k.fresh);
     TEST_ASSERT_EQUAL_HEX16(0, argus_out(&k));
-    TEST_ASSERT_EQUAL(300, argus_flank_mm(&k));
+    TEST_ASSERT_EQUAL(300, argus_flank_mm(&k, 0));
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_flank_mm(&k, 0xFF));
     argus_body_is(&k, argus_robot_default(), now_ms);
     TEST_ASSERT_EQUAL_HEX16(0xFFFF, argus_with_health(&k, ARGUS_UNKNOWN));
     argus_body_is(&k, argus_robot_unknown(), now_ms);
