@@ -26,11 +26,11 @@ typedef struct {
 } argus_dark_t;
 
 typedef struct {
+    bool has_turned;
+    uint32_t turned_ms; // the robot rotated last, if it has
+    argus_dark_t of[ARGUS_ARRAYS_MAX];
     bool heard[ARGUS_SONARS];
     uint8_t none_run[ARGUS_SONARS]; // readings in a row without an echo, up to 255
-    uint32_t turned_ms;             // the robot rotated last, if it has
-    bool has_turned;
-    argus_dark_t of[ARGUS_ARRAYS_MAX];
     uint32_t echo_ms[ARGUS_SONARS]; // of the last echo, and whether it was near enough to last
 } argus_common_t;
 

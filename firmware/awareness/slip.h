@@ -7,14 +7,14 @@
 
 // One stretch of straight way, and what each sonar read where it began; 0: nothing that counts.
 typedef struct {
-    argus_pose_t from; // where the robot still is when it has slipped
-    uint16_t reading_mm[ARGUS_SONARS];
-    argus_mask_t read;  // sonars that have been listed since
+    bool begun;
+    bool ahead;         // the way goes
     uint8_t stretches;  // one after the other, on which those ahead alone stayed
+    argus_mask_t read;  // sonars that have been listed since
+    argus_pose_t from;  // where the robot still is when it has slipped
     uint32_t slips;     // monotonic
     int32_t slipped_mm; // the last one
-    bool begun;
-    bool ahead; // the way goes
+    uint16_t reading_mm[ARGUS_SONARS];
 } argus_slip_t;
 
 void argus_slip_init(argus_slip_t *self);
