@@ -119,6 +119,46 @@ void test_the_forms_are_all_told_and_fit_any_room(void) {
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(forms, " or "), forms);
 }
 
+// What is not certain to be this machine may have a robot behind it.
+void test_only_tcp_to_this_machine_stays_here(void) {
+    static const char *const here[] = {
+        "tcp:127.0.0.1:8101", "tcp:127.0.0.1",  "tcp:127.255.255.254:1", "tcp:localhost",
+        "tcp:LocalHost:8101", "tcp:[::1]:8101", "tcp:[0:0::1]",
+    };
+    static const char *const away[] = {
+        "serial:/dev/ttyUSB0",
+        "serial:/tmp/p3dx@9600",
+        "serial:localhost",
+        "can:can0",
+        "can:vcan0,robot=1",
+        "tcp:robot:8101",
+        "tcp:192.168.1.20",
+        "tcp:10.0.0.1:8101",
+        "tcp:0.0.0.0",
+        "tcp:128.0.0.1",
+        "tcp:126.255.255.255",
+        "tcp:1.0.0.127",
+        "tcp:[::]",
+        "tcp:[fe80::1]",
+        "tcp:[::2]",
+        "tcp:[::ffff:10.0.0.1]",
+        "tcp:localhost.lan",
+        "tcp:localhostile",
+        "tcp:127.0.0.1.lan",
+        "tcp:127.0.0.1 ",
+        "tcp:local",
+        "tcp:127.example.org",
+    };
+    for (size_t i = 0; i < sizeof here / sizeof here[0]; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(parse(here[i]), message);
+        TEST_ASSERT_TRUE_MESSAGE(hal_link_spec_stays_here(&spec), here[i]);
+    }
+    for (size_t i = 0; i < sizeof away / sizeof away[0]; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(parse(away[i]), message);
+        TEST_ASSERT_FALSE_MESSAGE(hal_link_spec_stays_here(&spec), away[i]);
+    }
+}
+
 void test_refusals_say_what_to_write(void) {
     refused("", "unknown scheme");
     refused("udp:robot:1", "unknown scheme; write serial:/dev/ttyUSB0@9600, tcp:HOST:8101");
