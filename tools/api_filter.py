@@ -44,7 +44,19 @@ def events(header: str) -> list[str]:
     return found
 
 
-TABLES: Final = {"ARGUS_CONFIG_TABLE": settings, "ARGUS_EVENT_TABLE": events}
+def kinds(header: str) -> list[str]:
+    """Return the enumerators of the kinds of faults."""
+    found = []
+    for name, number, word, *meaning in gen_docs.rows(header, "ARGUS_FAULT_KIND_TABLE"):
+        found += [f"    /// `{word}`: {', '.join(meaning)}.", f"    ARGUS_KIND_{name} = {number},"]
+    return found
+
+
+TABLES: Final = {
+    "ARGUS_CONFIG_TABLE": settings,
+    "ARGUS_EVENT_TABLE": events,
+    "ARGUS_FAULT_KIND_TABLE": kinds,
+}
 PLAIN: Final = re.compile(r"^(\s*)// ")
 BEHIND: Final = re.compile(r"^(\s*[^/\s][^\"]*?[;,{\w]) +// ")
 

@@ -64,8 +64,9 @@ def _share(found: Summary) -> str:
 def readme(found: Summary) -> str:
     """Return what a newcomer wants to know of the journeys: one line for each condition."""
     lines = [
-        "| 45 m through rooms | arrives | the same robot, healthy and without diagnosis | speed over that | hits |",
-        "|---|---|---|---|---|",
+        "| 45 m through rooms | arrives | reference: healthy, diagnosis off | speed / reference | hits"
+        " | people hit, reference | healthy sonars named, an hour |",
+        "|---|---|---|---|---|---|---|",
     ]
     said = {
         "rooms": "healthy",
@@ -78,7 +79,17 @@ def readme(found: Summary) -> str:
         row, ideal = rows[name, "argus"], rows.get((name, "ideal"), rows["rooms", "ideal"])
         ratio = row["over_ideal"]["ratio"]
         over = "-" if ratio is None else f"{ratio:.2f}"
-        cells = (words, _share(row["truly"]), _share(ideal["truly"]), over, str(row["collisions"]))
+        people = f"{row['people_hit']}, {ideal['people_hit']}" if "people" in name else "-"
+        named = f"{row['false_names']['rate']:.0f}"
+        cells = (
+            words,
+            _share(row["truly"]),
+            _share(ideal["truly"]),
+            over,
+            str(row["collisions"]),
+            people,
+            named,
+        )
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
 

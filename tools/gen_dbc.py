@@ -43,7 +43,6 @@ ENUMS = {
         lambda name: "Is" + name.capitalize(),
     ),
     "Health": ("include/argus/argus.h", "argus_health_t", "ARGUS_", str.upper),
-    "Fault": ("include/argus/argus.h", "argus_fault_kind_t", "ARGUS_KIND_", str.lower),
     "Level": ("include/argus/argus.h", "argus_level_t", "ARGUS_LEVEL_", str.upper),
 }
 # Value tables of signals whose name, behind a sonar's number, is not that of a table.
@@ -81,6 +80,8 @@ def header_tables() -> dict[str, dict[int, str]]:
         for table, (header, name, prefix, form) in ENUMS.items()
     }
     tables["Event"] = {int(row[0]): row[1] for row in rows("include/argus/argus.h", "ARGUS_EVENT_TABLE")}
+    kinds = rows("include/argus/argus.h", "ARGUS_FAULT_KIND_TABLE")
+    tables["Fault"] = {0: "none"} | {int(row[1]): row[2] for row in kinds}
     return tables
 
 

@@ -52,8 +52,8 @@ PAGES = (
         synopsis=("--link LINK [options]",),
         description=(
             "argusd talks to the microcontroller of a Pioneer P3-DX, judges every sonar, works round those that "
-            "failed, and drives a course under its safety rules. On a serial or CAN link it starts passive: it "
-            "reports and commands no motion until --active is given.",
+            "failed, and drives a course under its safety rules. Only a TCP link to this machine drives at once; "
+            "every other link only watches until you give --active. Watching, argusd reports and commands no motion.",
             "On a terminal it shows a screen; with --plain or --json, or where there is none, it writes a line "
             "for each event on standard output. Errors and what an operator should know go to standard error.",
             "SIGINT, SIGTERM and SIGHUP stop the robot and close the session; signals within a second count as "

@@ -151,7 +151,7 @@ static argus_record_fault_t check(const uint8_t *const record, const size_t leng
 }
 
 static void get_history(argus_sonar_t *const s, const uint8_t *const at) {
-    s->kind_before = (argus_fault_kind_t)(at[1] <= ARGUS_KIND_INTERMITTENT ? at[1] : 0);
+    s->kind_before = (argus_fault_kind_t)(at[1] < ARGUS_KINDS ? at[1] : 0);
     s->disabled_before = get16(at + 2);
 }
 

@@ -41,7 +41,7 @@ static void count_failure(argus_sonar_t *const s) {
 argus_event_t argus_health_set(argus_knowledge_t *const self, const int sonar, const argus_change_t change,
                                const argus_fault_kind_t kind, const int32_t value, const uint32_t now_ms) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    ARGUS_ASSERT((unsigned)kind <= ARGUS_KIND_INTERMITTENT);
+    ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
     argus_sonar_t *const s = &self->sonar[sonar];
     const row_t *const row = row_of(change);
     const bool same = change == ARGUS_CHANGE_NAMED || change == ARGUS_CHANGE_RENAMED; // it is known better

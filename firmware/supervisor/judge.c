@@ -23,7 +23,7 @@ static argus_intent_t break_off(const argus_t *const self) {
 
 static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    ARGUS_ASSERT((unsigned)kind <= ARGUS_KIND_INTERMITTENT);
+    ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
     const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
     argus_disable(self, sonar, kind);
     const bool goes_on =
@@ -34,7 +34,7 @@ static argus_intent_t convict(argus_t *const self, const int sonar, const argus_
 // The name has stood for a while.
 static bool stands(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    ARGUS_ASSERT((unsigned)kind <= ARGUS_KIND_INTERMITTENT);
+    ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
     argus_naming_t *const naming = &self->looks.naming[sonar];
     if (naming->named != kind) {
         naming->named = (uint8_t)kind;

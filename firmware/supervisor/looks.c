@@ -122,7 +122,7 @@ void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
 // one at the end of an array. A look that leaves it another name neither proves nor clears.
 static bool is_proved(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    ARGUS_ASSERT((unsigned)kind <= ARGUS_KIND_INTERMITTENT);
+    ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
     argus_hold_t *const hold = &self->looks.hold[sonar];
     const bool beset = argus_robot_faces_forward(self->knowledge.robot, sonar); // neighbours on either side
     const bool by_others = beset && (kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_WRONG);

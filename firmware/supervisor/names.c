@@ -66,6 +66,8 @@ static const char *event_subject(const int id) {
 #undef SUBJECT
 }
 
+#define WORD(name, number, word, meaning) word "\0"
+
 // Of an enumeration, from its first constant on.
 static const char *words_of(const argus_name_of_t of) {
     switch (of) {
@@ -83,7 +85,7 @@ static const char *words_of(const argus_name_of_t of) {
     case ARGUS_NAME_HEALTH:
         return "UNKNOWN\0HEALTHY\0SUSPECT\0DISABLED\0PROBATION\0STALE\0ABSENT\0";
     case ARGUS_NAME_KIND:
-        return "off\0silent\0stuck\0wrong\0garbage\0slow\0intermittent\0";
+        return ARGUS_FAULT_KIND_TABLE(WORD);
     case ARGUS_NAME_OP:
         return "STOP\0GO\0RECHECK\0MOVE\0TURN\0PASSIVE\0ACTIVE\0RETEST\0PIN\0UNPIN\0DISABLE\0";
     default:

@@ -18,7 +18,7 @@ void argus_say(argus_t *const self, const argus_event_id_t id, const int sonar, 
 
 void argus_say_change(argus_t *const self, const int sonar, const argus_change_t change,
                       const argus_fault_kind_t kind, const int32_t value) {
-    ARGUS_ASSERT((unsigned)kind <= ARGUS_KIND_INTERMITTENT);
+    ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
     ARGUS_ASSERT(argus_health_may(&self->knowledge, sonar, change));
     argus_say_event(self, argus_health_set(&self->knowledge, sonar, change, kind, value, self->now_ms));
 }

@@ -32,9 +32,8 @@ HYPOTHESES: Final = len(LAGS) + len(OFFSETS_DEG)
 _SHAPE: Final = (2, HYPOTHESES, len(VERDICTS), len(VERDICTS))
 _NEAR_DEG: Final = 4.0
 """A hypothesis of an axis offset holds for a fault that is at most so far from it."""
-TELLING: Final = ("QUIET", "AGREED", "CONTRADICTED")
-"""Verdicts on a mapped ping that tell something of the hypothesis. The others say that no sonar looked there, or
-that the map leaves it where it is, which it does as the robot moves, not as the sonar fails."""
+TELLING: Final = ("QUIET", "AGREED", "CONTRADICTED", "SAME")
+"""Verdicts on a mapped ping that tell something of the hypothesis: the others say that no sonar looked there."""
 LEAST: Final = 30
 RARE: Final = 5.0
 """Pings, added to those that came and to those that were to be expected: a rare cell tells little."""
@@ -199,12 +198,15 @@ def _parts(stream: Stream) -> Iterator[tuple[str, slice, list[int] | None]]:
 def log_ratio(one: Counts, other: Counts) -> npt.NDArray[np.int64]:
     """Return ln of what came over what was to be expected, hundredths of a nat, of each cell, given its row.
 
-    0 in the columns of mapped pings that no sonar can judge, and in rows with fewer than LEAST pings.
+    0 in the columns of mapped pings that no sonar can judge, and in rows with fewer than LEAST pings. Whether the
+    map leaves a ping in its place comes of how the robot moves, so that tells nothing; but one that is contradicted
+    there is not explained by the hypothesis.
     """
     expected = other * (one.sum(axis=1) / np.maximum(other.sum(axis=1), 1))[:, None]
     ratio = np.log((one + RARE) / (expected + RARE))
     enough = np.minimum(one.sum(axis=1), other.sum(axis=1)) >= LEAST
     told = np.outer(enough, [name in TELLING for name in VERDICTS])
+    told[[name != "CONTRADICTED" for name in VERDICTS], VERDICTS.index("SAME")] = False
     return np.where(told, np.clip(np.rint(100 * ratio), -MOST, MOST), 0).astype(np.int64)
 
 

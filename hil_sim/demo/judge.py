@@ -15,6 +15,7 @@ from itertools import pairwise
 from typing import Any, Final
 
 from hil_sim.errors import SimError
+from hil_sim.faults.kinds import SONAR_KINDS
 from hil_sim.tables import load
 
 Record = Mapping[str, Any]
@@ -26,7 +27,7 @@ TIME_LIMIT_S: Final = 60.0
 PAPER_LIMIT_S: Final = 120.0
 """The paper's method stops every 200 mm."""
 IDLE_FACTORS: Final = (0.5, 1.0, 2.0)
-KIND_NAME: Final = {1: "off", 2: "silent", 3: "stuck", 4: "wrong", 5: "garbage", 6: "slow", 7: "intermittent"}
+KIND_NAME: Final = dict(enumerate(SONAR_KINDS, 1))
 
 _REST_MM_S: Final = 1.0
 _REST_DEG_S: Final = 0.5

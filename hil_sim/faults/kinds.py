@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from hil_sim.world.model import Pose
+if TYPE_CHECKING:  # argusctl reads the words: it need not wait for numpy
+    from hil_sim.world.model import Pose
 
 SONAR_KINDS: Final = {
     "off": "reads 5000 in each of its slots",

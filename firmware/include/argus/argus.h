@@ -355,16 +355,25 @@ typedef enum {
     ARGUS_ABSENT     // this robot has not got it: neither judged nor planned with
 } argus_health_t;
 
-// After the failure words of PX4; the numbers are on the wire (SPEC.md, Events) and in the record.
+// Kinds of faults, after the failure words of PX4. The numbers are on the wire (SPEC.md, Events) and in the
+// record; they follow each other from 1 on. A row: name, number, word, what the sonar does.
+#define ARGUS_FAULT_KIND_TABLE(X)                                 \
+    X(OFF, 1, "off", "never an echo: reads 5000")                 \
+    X(SILENT, 2, "silent", "yields no reading")                   \
+    X(STUCK, 3, "stuck", "one value again and again")             \
+    X(WRONG, 4, "wrong", "too far, too near, or beside its axis") \
+    X(GARBAGE, 5, "garbage", "leaps")                             \
+    X(SLOW, 6, "slow", "readings of some firings ago")            \
+    X(INTERMITTENT, 7, "intermittent", "gaps")
+
+// A constant for each row of that table, and NONE: no fault. ARGUS_KINDS is how many there are, NONE
+// included.
 typedef enum {
     ARGUS_KIND_NONE = 0,
-    ARGUS_KIND_OFF = 1,         // never an echo: reads 5000
-    ARGUS_KIND_SILENT = 2,      // yields no reading
-    ARGUS_KIND_STUCK = 3,       // one value again and again
-    ARGUS_KIND_WRONG = 4,       // too far, too near, or beside its axis
-    ARGUS_KIND_GARBAGE = 5,     // leaps
-    ARGUS_KIND_SLOW = 6,        // readings of some firings ago
-    ARGUS_KIND_INTERMITTENT = 7 // gaps
+#define ARGUS_FAULT_KIND_NUMBER(name, number, word, meaning) ARGUS_KIND_##name = (number),
+    ARGUS_FAULT_KIND_TABLE(ARGUS_FAULT_KIND_NUMBER)
+#undef ARGUS_FAULT_KIND_NUMBER
+        ARGUS_KINDS
 } argus_fault_kind_t;
 
 // The failure state over the forward-facing sonars (paper: Fig. 6).

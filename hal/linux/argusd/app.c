@@ -10,6 +10,7 @@
 #include "attach.h"
 #include "check.h"
 #include "course.h"
+#include "hal/serial.h"
 #include "loop.h"
 #include "options.h"
 #include "probe.h"
@@ -22,7 +23,6 @@
 #define OPEN_RETRY_MS 250
 #define ANSWER_MS 30000u
 #define CHECK_ANSWER_MS 10000u
-#define CAN_AS_BAUD 115200 // bytes in ISO-TP at 500 kbit/s take less time than so
 
 // Static, not allocated: argusd never asks for memory.
 static options_t options;
@@ -63,9 +63,8 @@ static argusd_exit_t print_list(options_action_t action) {
 static bool settle_baud(void) {
     int32_t *const baud = &settings.config.baud;
     const int line = settings.line[SETTINGS_baud];
-    if (options.link.scheme != HAL_SCHEME_SERIAL) {
-        const int32_t usual = options.link.scheme == HAL_SCHEME_CAN ? CAN_AS_BAUD : 0;
-        *baud = line != 0 ? *baud : usual;
+    if (!hal_link_spec_has_rate(&options.link)) {
+        *baud = line != 0 ? *baud : options.link.scheme->as_baud;
         return true;
     }
     if (line != 0 && !hal_baud_is_known((uint32_t)*baud)) {
@@ -86,20 +85,19 @@ static bool settle_baud(void) {
 
 // NULL, or why the manager starts passive although nobody asked for that.
 static const char *settle_activity(void) {
-    static const char on_serial[] =
-        "passive, since a real robot may be at the end of a serial link: it reports "
-        "and commands no motion; give --active to let it drive";
-    static const char on_can[] =
-        "passive, since a real robot may be on the CAN bus: it reports and commands no "
-        "motion; give --active to let it drive";
+    static char why[ARGUSD_MESSAGE_MAX];
     int32_t *const active = &settings.config.active;
     if (options.passive || options.action == OPTIONS_CHECK) {
         *active = 0;
     } else if (options.active) {
         *active = 1;
-    } else if (options.link.scheme != HAL_SCHEME_TCP) {
+    } else if (!hal_link_spec_stays_here(&options.link)) {
         *active = 0;
-        return options.link.scheme == HAL_SCHEME_CAN ? on_can : on_serial;
+        snprintf(why, sizeof why,
+                 "passive, since a real robot may be %s: it reports and commands no motion; give --active to "
+                 "let it drive",
+                 options.link.scheme->robot_place);
+        return why;
     }
     return NULL;
 }
@@ -181,12 +179,12 @@ static hal_link_error_t open_link(const hal_clock_t *clock, hal_link_t *link) {
     }
 }
 
-static argusd_exit_t find_baud(const hal_clock_t *clock) {
+static argusd_exit_t find_baud(const hal_clock_t *clock, const hal_link_t *link) {
     const uint32_t start_ms = hal_clock_now_ms(clock);
     probe_t probe;
     do {
         notify_alive(&loop.notify, hal_clock_now_ms(clock));
-        probe = probe_baud(&transport.serial, clock, signals_fd());
+        probe = probe_baud(&transport, link, clock, signals_fd());
     } while (probe.baud == 0 && probe.error == HAL_LINK_OK && !probe.cancelled &&
              is_time_left(clock, start_ms));
     if (probe.baud != 0) {
@@ -203,7 +201,7 @@ static argusd_exit_t find_baud(const hal_clock_t *clock) {
     }
     text_refuse(
         message, sizeof message, "%s: no robot answered at any of " HAL_BAUD_LIST "; %u bytes were heard; %s",
-        options.link.path, (unsigned)probe.bytes,
+        options.link.target, (unsigned)probe.bytes,
         probe.bytes == 0 ? "is the robot on and connected?" : "the line is noisy or this is no robot");
     return ARGUSD_EXIT_NO_ROBOT;
 }
@@ -219,7 +217,7 @@ static argusd_exit_t connect_robot(const hal_clock_t *clock, hal_link_t *link) {
         hal_transport_explain(&options.link, error, message, sizeof message);
         return ARGUSD_EXIT_LINK;
     }
-    const argusd_exit_t found = options.auto_baud ? find_baud(clock) : ARGUSD_EXIT_OK;
+    const argusd_exit_t found = options.auto_baud ? find_baud(clock, link) : ARGUSD_EXIT_OK;
     if (found != ARGUSD_EXIT_OK) {
         hal_link_close(link);
     }
@@ -294,13 +292,13 @@ static bool open_control(void) {
 // With a link over CAN the telemetry is on the same bus, for the same robot, unless something else is wanted.
 static bool open_bus(const hal_clock_t *clock) {
     const bool given = options.telemetry.interface[0] != '\0';
-    if (options.no_telemetry || (!given && options.link.scheme != HAL_SCHEME_CAN)) {
+    const hal_can_spec_t *const spec = given ? &options.telemetry : hal_link_spec_bus(&options.link);
+    if (options.no_telemetry || spec == NULL) {
         return true;
     }
     char problem[ARGUSD_MESSAGE_MAX / 2];
-    if (!bus_open(&loop.bus, given ? &options.telemetry : &options.link.can, &hal_can_sys,
-                  (uint32_t)settings.config.stale_ms, bus_seed(), hal_clock_now_ms(clock), problem,
-                  sizeof problem)) {
+    if (!bus_open(&loop.bus, spec, &hal_can_sys, (uint32_t)settings.config.stale_ms, bus_seed(),
+                  hal_clock_now_ms(clock), problem, sizeof problem)) {
         return text_refuse(message, sizeof message, "telemetry: %s", problem);
     }
     return true;

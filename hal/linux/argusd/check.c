@@ -13,21 +13,15 @@
 static void explain_silence(const driver_t *driver, uint32_t waited_ms, char *text, size_t capacity) {
     argus_status_t status;
     argus_status(driver->core, &status);
-    const bool serial = driver->spec.scheme == HAL_SCHEME_SERIAL;
+    const hal_scheme_t *const scheme = driver->spec.scheme;
     text_t line = text_in(text, capacity);
     text_add(&line, "%s: no robot answered in %u s: ", hal_link_describe(&driver->link),
              (unsigned)(waited_ms / 1000u));
     if (driver->bytes_in == 0) {
-        text_add(&line, "nothing was received; is the robot on and connected?%s",
-                 serial ? " At another rate it is silent too: try --auto-baud"
-                 : driver->spec.scheme == HAL_SCHEME_TCP ? " Is another client using it?"
-                                                         : "");
+        text_add(&line, "nothing was received; is the robot on and connected?%s", scheme->if_silent);
     } else if (status.packets == 0) {
-        text_add(
-            &line, "%u bytes of garbage were received, no packet among them; %s", (unsigned)driver->bytes_in,
-            serial                                  ? "the rate is wrong or it is no robot: try --auto-baud"
-            : driver->spec.scheme == HAL_SCHEME_CAN ? "this is no robot that speaks ARCOS: check the two ids"
-                                                    : "this is no ARCOS server: check the port");
+        text_add(&line, "%u bytes of garbage were received, no packet among them; %s",
+                 (unsigned)driver->bytes_in, scheme->if_garbage);
     } else {
         text_add(&line,
                  "%u packets and %u bad checksums were received, but no session opened; another client may "
@@ -88,7 +82,7 @@ static void put_seen(FILE *out, const argus_status_t *status, bool wanted) {
 
 static void tell_plain(const driver_t *driver, const argus_status_t *status, FILE *out) {
     fprintf(out, "port      %s\n", hal_link_describe(&driver->link));
-    if (driver->spec.scheme == HAL_SCHEME_SERIAL) {
+    if (driver->spec.baud != 0) {
         fprintf(out, "rate      %u bit/s\n", (unsigned)driver->spec.baud);
     }
     fprintf(out, "robot     name '%s', class '%s', subclass '%s'%s\n", status->robot_name,
@@ -119,7 +113,7 @@ static void tell_json(const driver_t *driver, const argus_status_t *status, FILE
     json_name(&json, "port");
     json_string(&json, hal_link_describe(&driver->link));
     json_name(&json, "baud"); // 0: no rate, as over TCP
-    json_int(&json, driver->spec.scheme == HAL_SCHEME_SERIAL ? (int64_t)driver->spec.baud : 0);
+    json_int(&json, (int64_t)driver->spec.baud);
     json_name(&json, "name");
     json_string(&json, status->robot_name);
     json_name(&json, "class");

@@ -184,9 +184,10 @@ static bool fail(control_hands_t *self, const control_request_t *request, contro
         return false;
     }
     if (!inject_kind(word, &kind)) {
-        return control_refuse(
-            answer, "bad_argument",
-            "kind must be off, silent, stuck, wrong, garbage, slow, delayed, intermittent or ok");
+#define WORD(name, number, text, meaning) text ", "
+        return control_refuse(answer, "bad_argument",
+                              "kind must be " ARGUS_FAULT_KIND_TABLE(WORD) "delayed or ok");
+#undef WORD
     }
     if (kind != ARGUS_KIND_NONE &&
         !control_request_whole(request, "for_ms", INJECT_MIN_MS, INJECT_MAX_MS, &for_ms, answer)) {

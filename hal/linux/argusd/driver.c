@@ -16,10 +16,6 @@
 #define LOOK_MS 1000u
 #define AT_ONCE_MS 1000u
 #define FRUITLESS_MIN 2
-// A robot that was sending to nobody waits up to 1 s for flow control before its next SIP (N_Bs of ISO-TP).
-// Until a SIP could have come, SYNC0 may be a PULSE to an old session, on which the robot takes up its old
-// motion.
-#define CAN_SETTLE_MS 1150u
 
 static uint32_t now_ms(const driver_t *self) {
     return hal_clock_now_ms(&self->clock);
@@ -45,7 +41,7 @@ void driver_attach(driver_t *self, hal_link_t link) {
     self->up_ms = now_ms(self);
     self->heard = self->bytes_in;
     self->failed = false;
-    self->settles = self->spec.scheme == HAL_SCHEME_CAN;
+    self->settles = self->spec.scheme->settle_ms > 0;
     if (!self->settles) {
         argus_link_up(self->core, self->up_ms);
     }
@@ -54,8 +50,8 @@ void driver_attach(driver_t *self, hal_link_t link) {
 // The ms until the manager is told that the link is up; what arrives before is read and dropped.
 static uint32_t settle(driver_t *self) {
     const uint32_t passed_ms = now_ms(self) - self->up_ms;
-    if (passed_ms < CAN_SETTLE_MS) {
-        return CAN_SETTLE_MS - passed_ms;
+    if (passed_ms < self->spec.scheme->settle_ms) {
+        return self->spec.scheme->settle_ms - passed_ms;
     }
     self->settles = false;
     argus_link_up(self->core, now_ms(self));
@@ -190,7 +186,7 @@ static void look_where_it_leads(driver_t *self) {
         return;
     }
     self->looked_ms = now_ms(self);
-    if (hal_transport_moved(self->transport, &self->spec)) {
+    if (hal_transport_moved(self->transport)) {
         lose(self, HAL_LINK_GONE);
     }
 }
@@ -225,15 +221,10 @@ uint32_t driver_process(driver_t *self) {
 }
 
 void driver_explain_turned_away(const driver_t *self, char *text, size_t capacity) {
-    const bool tcp = self->spec.scheme == HAL_SCHEME_TCP;
-    char port[16] = "";
-    if (tcp) {
-        snprintf(port, sizeof port, " port %u", (unsigned)self->spec.port);
-    }
-    snprintf(text, capacity, "%s%s: the other end accepts and closes at once, %u times so far: %s",
-             hal_link_spec_target(&self->spec), port, (unsigned)self->fruitless,
-             tcp ? "another client may be using the robot; end that one, or check the port"
-                 : "is the device in order, and is nobody else at it?");
+    char name[HAL_LINK_NAME_MAX];
+    hal_link_spec_name(&self->spec, name, sizeof name);
+    snprintf(text, capacity, "%s: the other end accepts and closes at once, %u times so far: %s", name,
+             (unsigned)self->fruitless, self->spec.scheme->if_turned_away);
 }
 
 bool driver_is_turned_away(const driver_t *self) {

@@ -5,7 +5,7 @@
 
 #include "argus/argus.h"
 #include "hal/clock.h"
-#include "hal/link_spec.h"
+#include "hal/links.h"
 
 // Sees all bytes that pass, from the robot or to it. Must not wait.
 typedef struct {
@@ -55,7 +55,7 @@ typedef struct {
 void driver_init(driver_t *self, const argus_config_t *config, hal_clock_t clock, const hal_link_spec_t *spec,
                  hal_transport_t *transport);
 
-// One attempt, at most `timeout_ms` long for a TCP link.
+// One attempt, at most `timeout_ms` long where opening has to wait for the other end.
 hal_link_error_t driver_open(driver_t *self, int timeout_ms);
 
 // Takes a link that is open already.

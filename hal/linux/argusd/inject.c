@@ -22,10 +22,11 @@ bool inject_kind(const char *word, argus_fault_kind_t *kind) {
     static const struct {
         const char *word;
         argus_fault_kind_t kind;
-    } words[] = {
-        {"ok", ARGUS_KIND_NONE},     {"off", ARGUS_KIND_OFF},      {"silent", ARGUS_KIND_SILENT},
-        {"stuck", ARGUS_KIND_STUCK}, {"wrong", ARGUS_KIND_WRONG},  {"garbage", ARGUS_KIND_GARBAGE},
-        {"slow", ARGUS_KIND_SLOW},   {"delayed", ARGUS_KIND_SLOW}, {"intermittent", ARGUS_KIND_INTERMITTENT},
+    } words[] = {{"ok", ARGUS_KIND_NONE},
+                 {"delayed", ARGUS_KIND_SLOW}, // PX4's word
+#define ROW(name, number, text, meaning) {text, ARGUS_KIND_##name},
+                 ARGUS_FAULT_KIND_TABLE(ROW)
+#undef ROW
     };
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
         if (strcmp(words[i].word, word) == 0) {

@@ -70,15 +70,16 @@ static void say_events(loop_t *self) {
     voice_losses(&self->voice, &self->moment, status.failure);
 }
 
-static bool is_link_can(const driver_t *driver) {
-    return driver->spec.scheme == HAL_SCHEME_CAN && driver->transport != NULL;
+// NULL: the link is none over CAN.
+static const hal_isotp_t *isotp_of(const driver_t *driver) {
+    return driver->transport == NULL ? NULL : hal_transport_isotp(driver->transport);
 }
 
 static void look_at_can(const loop_t *self, view_t *view) {
-    const bool link = is_link_can(&self->driver);
-    view->has_can = link || self->bus.on;
-    if (link) {
-        memcpy(view->can_errors, self->driver.transport->isotp.errors, sizeof view->can_errors);
+    const hal_isotp_t *const link = isotp_of(&self->driver);
+    view->has_can = link != NULL || self->bus.on;
+    if (link != NULL) {
+        memcpy(view->can_errors, link->errors, sizeof view->can_errors);
     }
     view->can_sent = self->bus.raw.sent;
     view->can_taken = self->bus.telemetry.verdicts[HAL_TELEMETRY_TAKEN];
@@ -223,8 +224,8 @@ static uint32_t tell_bus(loop_t *self) {
     if (bus_notice(&self->bus, text, sizeof text)) {
         voice_notice(&self->voice, text);
     }
-    if (is_link_can(&self->driver) &&
-        bus_link_notice(&self->bus, &self->driver.transport->isotp, self->moment.now_ms, text, sizeof text)) {
+    const hal_isotp_t *const link = isotp_of(&self->driver);
+    if (link != NULL && bus_link_notice(&self->bus, link, self->moment.now_ms, text, sizeof text)) {
         voice_notice(&self->voice, text);
     }
     return wait_ms;

@@ -310,16 +310,19 @@ static bool keeps(const rule_t *rules, size_t count, const message_t *message) {
 
 static bool agree_on_link(const options_t *options, const message_t *message) {
     const bool has_link = hal_link_spec_target(&options->link)[0] != '\0';
-    const bool serial = options->link.scheme == HAL_SCHEME_SERIAL;
+    const bool has_rate = hal_link_spec_has_rate(&options->link);
+    char forms[ARGUSD_MESSAGE_MAX / 2];
+    char none[ARGUSD_MESSAGE_MAX];
+    hal_scheme_forms(forms, sizeof forms);
+    snprintf(none, sizeof none, "no link is given; add --link %s (see --help)", forms);
     const rule_t rules[] = {
         {options->passive && options->active, "--passive and --active contradict each other; give one"},
         {options->course_path != NULL && options->has_goal,
          "--course and --goal contradict each other; give one"},
-        {!has_link,
-         "no link is given; add --link serial:/dev/ttyUSB0@9600, tcp:HOST:8101 or can:can0 (see --help)"},
+        {!has_link, none},
         {options->record_max_bytes > 0 && options->record_path == NULL,
          "--record-max is for --record FILE; add it"},
-        {options->auto_baud && !serial, "--auto-baud is for serial links; no other has a rate to look for"},
+        {options->auto_baud && !has_rate, "--auto-baud is for serial links; no other has a rate to look for"},
         {options->auto_baud && options->link.has_baud,
          "--auto-baud and a rate in --link contradict each other; leave out @BAUD"},
     };

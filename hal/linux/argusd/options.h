@@ -10,7 +10,7 @@
 #include "argus/argus.h"
 #include "control_spec.h"
 #include "guards.h"
-#include "hal/link_spec.h"
+#include "hal/links.h"
 
 typedef enum {
     OPTIONS_RUN,

@@ -3,15 +3,33 @@
 #include "argusd.h"
 #include "options.h"
 
+#define INDENT "                     "
+
+// All forms of a link, one below the other.
+static void print_links(FILE *out) {
+    for (size_t i = 0; hal_scheme_at(i) != NULL; i++) {
+        const char *const after = hal_scheme_at(i + 1) == NULL   ? ""
+                                  : hal_scheme_at(i + 2) == NULL ? ", or"
+                                                                 : ",";
+        fputs(i == 0 ? "  --link LINK        " : INDENT, out);
+        for (const char *at = hal_scheme_at(i)->help; *at != '\0'; at++) {
+            fputc(*at, out);
+            fputs(*at == '\n' ? INDENT : "", out);
+        }
+        fprintf(out, "%s\n", after);
+    }
+}
+
+static void print_head(FILE *out) {
+    fputs("argusd " ARGUS_VERSION ": keeps a Pioneer P3-DX seeing and driving safely when its sonars fail\n"
+          "\n"
+          "usage: argusd --link LINK [options]\n"
+          "\n",
+          out);
+}
+
 static void print_options(FILE *out) {
     fputs(
-        "argusd " ARGUS_VERSION ": keeps a Pioneer P3-DX seeing and driving safely when its sonars fail\n"
-        "\n"
-        "usage: argusd --link LINK [options]\n"
-        "\n"
-        "  --link LINK        serial:PATH[@BAUD] (default 9600), tcp:HOST[:PORT] (default 8101), or\n"
-        "                     can:IFACE[,robot=K][,tx=ID][,rx=ID][,pad=BYTE|none][,stmin=MS][,bs=N][,fd]:\n"
-        "                     ISO-TP (default robot=0, tx=0x640+K, rx=0x648+K, pad=0xCC, stmin=0, bs=0)\n"
         "  --can-telemetry IFACE[,robot=K] | none\n"
         "                     health and readings as CAN frames, orders from there (tools/argus.dbc); with "
         "a\n"
@@ -34,7 +52,8 @@ static void print_options(FILE *out) {
         "  --guard-beyond-loopback\n"
         "                     let a guard port listen where other machines reach it\n"
         "  --passive          diagnose and report, never command a motion\n"
-        "  --active           drive; needed on a serial or can link, which starts passive\n"
+        "  --active           drive. Only a TCP link to this machine drives at once; every other link only\n"
+        "                     watches until you give --active\n"
         "  --state FILE       keep the sonars' history over restarts in FILE.a and FILE.b\n"
         "  --record FILE      append all bytes of the link, both directions, with their times (see "
         "argus-log)\n"
@@ -83,6 +102,8 @@ static void print_examples(FILE *out) {
 }
 
 void options_help(FILE *out) {
+    print_head(out);
+    print_links(out);
     print_options(out);
     print_examples(out);
 #define EXIT_LINE(name, code, meaning) fprintf(out, "  %d  %s\n", code, meaning);

@@ -4,7 +4,7 @@
 #define ARGUSD_PROBE_H
 
 #include "hal/clock.h"
-#include "hal/serial.h"
+#include "hal/links.h"
 
 typedef struct {
     uint32_t baud;  // found, or 0
@@ -14,8 +14,9 @@ typedef struct {
     uint32_t bytes; // heard over all rates
 } probe_t;
 
-// Tries each rate of an open port: listens, then asks with SYNC0. At most about 1 s a rate; gives up when
+// Tries each rate of an open link: listens, then asks with SYNC0. At most about 1 s a rate; gives up when
 // `cancel_fd` becomes readable. A robot that is found is left at SYNC, which the next SYNC0 starts anew.
-probe_t probe_baud(hal_serial_t *port, const hal_clock_t *clock, int cancel_fd);
+probe_t probe_baud(hal_transport_t *transport, const hal_link_t *link, const hal_clock_t *clock,
+                   int cancel_fd);
 
 #endif

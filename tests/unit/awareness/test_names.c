@@ -157,12 +157,12 @@ void test_hypotheses_name_where_others_contradict(void) {
 }
 
 // In a turn a late sonar looks as if its axis were offset: what tells more of the lag is late.
-void test_what_is_late_does_not_look_bent(void) {
+void test_what_is_late_does_not_look_offset(void) {
     give_ground();
     c->score[ARGUS_TEST_PEERS] = 400;
     c->hypothesis[ARGUS_LAGS] = (argus_hypothesis_t){1500, 400};
     TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, named());
-    c->hypothesis[0] = (argus_hypothesis_t){700, 900};
+    c->hypothesis[0] = (argus_hypothesis_t){ARGUS_LATE_NAMING - 100, 900};
     TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named());
     c->hypothesis[0].over_healthy = 1500;
     TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, named());

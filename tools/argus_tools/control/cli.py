@@ -15,9 +15,10 @@ from typing import Any, Final
 from argus_tools.control.client import DEFAULT_PLACE, Client, ControlError, Message, Refused, read_token
 from argus_tools.control.words import event_line, evidence_line, readings_line, status_text
 from hil_sim.arguments import Parser, whole
+from hil_sim.faults.kinds import SONAR_KINDS
 
 EXIT_OK, EXIT_REFUSED, EXIT_UNREACHABLE, EXIT_INTERRUPTED = 0, 1, 3, 130
-KINDS: Final = ("off", "silent", "stuck", "wrong", "garbage", "slow", "delayed", "intermittent", "ok")
+KINDS: Final = (*SONAR_KINDS, "delayed", "ok")
 TOPICS: Final = ("events", "state", "readings", "evidence")
 MOTION_S: Final = 60.0
 CHECK_S: Final = 10.0

@@ -19,6 +19,7 @@ from argus_tools.formats.base import (
     Offsets,
     ReadOptions,
 )
+from hil_sim.faults.kinds import SONAR_KINDS
 from hil_sim.record.recording import (
     CLOCK_US,
     MAGIC,
@@ -42,7 +43,7 @@ _DIRECTION: Final[dict[int, Direction]] = {
 _KIND: Final = {direction: kind for kind, direction in _DIRECTION.items()}
 
 
-_FAULTS: Final = ("", "off", "silent", "stuck", "wrong", "garbage", "slow", "intermittent")
+_FAULTS: Final = ("", *SONAR_KINDS)
 
 
 def injected(payload: bytes) -> str:

@@ -11,6 +11,7 @@ from typing import Any, Final, Protocol
 
 from argus_tools.monitor.hub import Hub
 from argus_tools.monitor.upstream import Message, Upstream, UpstreamError
+from hil_sim.faults.kinds import SONAR_KINDS
 
 ORDERS: Final[Mapping[str, tuple[str, ...]]] = {
     "stop": (),
@@ -27,14 +28,8 @@ ORDERS: Final[Mapping[str, tuple[str, ...]]] = {
     "out": ("sonar",),
 }
 """Orders that a page may give, with their members; argusd checks the values."""
-FAULTS: Final[Mapping[str, str]] = {
-    "off": "off:{}",
-    "silent": "silent:{}",
-    "stuck": "stuck:{}",
-    "wrong": "wrong:{}:scale=0.5",
-    "garbage": "garbage:{}",
-    "slow": "slow:{}",
-    "intermittent": "intermittent:{}",
+FAULTS: Final[Mapping[str, str]] = {kind: f"{kind}:{{}}" for kind in SONAR_KINDS} | {
+    "wrong": "wrong:{}:scale=0.5"
 }
 """Faults that a page may inject, as the emulator has them."""
 INJECTED_FOR_MS: Final = 60_000

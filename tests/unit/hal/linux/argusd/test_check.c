@@ -12,7 +12,7 @@ static hal_fake_clock_t time_;
 static hal_fake_link_t fake;
 static char text[512];
 
-static void start(hal_scheme_t scheme) {
+static void start(const hal_scheme_t *scheme) {
     argus_config_t config;
     argus_config_default(&config);
     const hal_link_spec_t spec = {.scheme = scheme};
@@ -34,25 +34,34 @@ static void explained(const char *part) {
 }
 
 void test_silence(void) {
-    start(HAL_SCHEME_SERIAL);
+    start(&hal_serial_scheme);
     explained("fake: no robot answered in 10 s: nothing was received");
     explained("--auto-baud");
-    start(HAL_SCHEME_TCP);
+    start(&hal_tcp_scheme);
     explained("nothing was received");
+    explained("Is another client using it?");
     TEST_ASSERT_NULL(strstr(text, "--auto-baud"));
+    start(&hal_can_scheme);
+    explained("is the robot on and connected?");
+    TEST_ASSERT_NULL(strstr(text, "connected? "));
 }
 
 void test_garbage(void) {
-    start(HAL_SCHEME_SERIAL);
+    start(&hal_serial_scheme);
     hear("\x01\x02\x03\x04\x05", 5);
     explained("5 bytes of garbage were received, no packet among them; the rate is wrong");
-    start(HAL_SCHEME_TCP);
+    start(&hal_tcp_scheme);
     hear("HTTP/1.1 400\r\n", 14);
     explained("this is no ARCOS server");
+    start(&hal_can_scheme);
+    time_.now_ms += 2000;
+    driver_process(&driver);
+    hear("\x01\x02\x03", 3);
+    explained("check the two ids");
 }
 
 void test_packets_that_lead_nowhere(void) {
-    start(HAL_SCHEME_SERIAL);
+    start(&hal_serial_scheme);
     hear("\xFA\xFB\x03\x00\x00\x00", 6);
     explained("1 packets and 0 bad checksums were received, but no session opened");
 }

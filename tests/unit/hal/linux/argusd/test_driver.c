@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <pty.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/socket.h>
@@ -32,10 +33,20 @@ void setUp(void) {
     time_ = (hal_fake_clock_t){.now_ms = UINT32_MAX - 5000}; // the clock wraps in every test
     clock_ = hal_fake_clock(&time_);
     hal_fake_link_init(&fake, 1, &clock_);
-    memset(&spec, 0, sizeof spec);
+    spec = (hal_link_spec_t){.scheme = &hal_serial_scheme};
     hal_transport_init(&transport);
     driver_init(&driver, &config, clock_, &spec, NULL);
     robot_init(&robot);
+}
+
+__attribute__((format(printf, 1, 2))) static void parse(const char *format, ...) {
+    char text[128];
+    char message[256];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    TEST_ASSERT_TRUE_MESSAGE(hal_link_spec_parse(&spec, text, message, sizeof message), message);
 }
 
 static void exchange(void) {
@@ -96,7 +107,7 @@ void test_stop_leaves_in_the_wake_up_that_reads_the_sip(void) {
 
 // A robot on CAN may wait a second for flow control: what is said before could wake its old motion.
 void test_on_can_nothing_is_said_before_a_sip_could_have_come(void) {
-    driver.spec.scheme = HAL_SCHEME_CAN;
+    driver.spec.scheme = &hal_can_scheme;
     driver_attach(&driver, hal_fake_link(&fake));
     run(1100);
     TEST_ASSERT_EQUAL_UINT32(0, hal_link_counters(&driver.link).bytes_out);
@@ -215,7 +226,7 @@ void test_a_tcp_link_that_closes_is_opened_again_with_pauses(void) {
     int server = -1;
     argus_config_t config;
     argus_config_default(&config);
-    spec = (hal_link_spec_t){.scheme = HAL_SCHEME_TCP, .port = listen_here(&server), .host = "127.0.0.1"};
+    parse("tcp:127.0.0.1:%u", (unsigned)listen_here(&server));
     driver_init(&driver, &config, clock_, &spec, &transport);
     TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 1000));
     close(accept(server, NULL, NULL));
@@ -233,7 +244,8 @@ void test_a_tcp_link_that_closes_is_opened_again_with_pauses(void) {
         TEST_ASSERT_FALSE(driver.up);
     }
     TEST_ASSERT_EQUAL_UINT32(5, attempts);
-    driver.spec.port = listen_here(&server);
+    parse("tcp:127.0.0.1:%u", (unsigned)listen_here(&server));
+    driver.spec = spec;
     time_.now_ms += 4000;
     driver_process(&driver);
     TEST_ASSERT_TRUE(driver.up);
@@ -273,15 +285,14 @@ void test_why_a_link_stays_away_is_told_once_and_again_when_it_changes(void) {
     TEST_ASSERT_NOT_NULL(mkdtemp(folder));
     TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, device, NULL, NULL));
     fcntl(master, F_SETFL, O_NONBLOCK);
-    spec = (hal_link_spec_t){.scheme = HAL_SCHEME_SERIAL, .baud = 9600};
-    snprintf(spec.path, sizeof spec.path, "%s/ttyUSB0", folder);
+    parse("serial:%s/ttyUSB0@9600", folder);
     snprintf(other, sizeof other, "%s/ttyUSB1", folder);
-    TEST_ASSERT_EQUAL_INT(0, symlink(device, spec.path));
+    TEST_ASSERT_EQUAL_INT(0, symlink(device, spec.target));
     driver_init(&driver, &config, clock_, &spec, &transport);
     TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 0));
     TEST_ASSERT_EQUAL_INT(0, reasons(""));
     // The adapter comes back under the next number.
-    unlink(spec.path);
+    unlink(spec.target);
     TEST_ASSERT_EQUAL_INT(0, symlink(device, other));
     close(master);
     pass(10000);
@@ -291,20 +302,20 @@ void test_why_a_link_stays_away_is_told_once_and_again_when_it_changes(void) {
     pass(10000);
     TEST_ASSERT_EQUAL_INT(0, reasons(""));
     // Something else is wrong now.
-    TEST_ASSERT_EQUAL_INT(0, symlink("/dev/null", spec.path));
+    TEST_ASSERT_EQUAL_INT(0, symlink("/dev/null", spec.target));
     pass(5000);
     TEST_ASSERT_EQUAL_INT(1, reasons("not a serial port"));
-    unlink(spec.path);
+    unlink(spec.target);
     close(slave);
     TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, device, NULL, NULL));
-    TEST_ASSERT_EQUAL_INT(0, symlink(device, spec.path));
+    TEST_ASSERT_EQUAL_INT(0, symlink(device, spec.target));
     pass(5000);
     TEST_ASSERT_TRUE(driver.up);
     TEST_ASSERT_EQUAL_INT(1, reasons("open again"));
     driver_close(&driver);
     close(master);
     close(slave);
-    unlink(spec.path);
+    unlink(spec.target);
     unlink(other);
     rmdir(folder);
 }
@@ -314,7 +325,7 @@ void test_a_server_that_closes_at_once_is_told_once_and_asked_less_often(void) {
     int accepted = 0;
     argus_config_t config;
     argus_config_default(&config);
-    spec = (hal_link_spec_t){.scheme = HAL_SCHEME_TCP, .port = listen_here(&server), .host = "127.0.0.1"};
+    parse("tcp:127.0.0.1:%u", (unsigned)listen_here(&server));
     fcntl(server, F_SETFL, O_NONBLOCK);
     driver_init(&driver, &config, clock_, &spec, &transport);
     TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 1000));
@@ -355,17 +366,16 @@ void test_a_name_that_leads_elsewhere_is_followed_while_no_robot_answers(void) {
     argus_config_t config;
     argus_config_default(&config);
     TEST_ASSERT_NOT_NULL(mkdtemp(folder));
-    spec = (hal_link_spec_t){.scheme = HAL_SCHEME_SERIAL, .baud = 9600};
-    snprintf(spec.path, sizeof spec.path, "%s/port", folder);
+    parse("serial:%s/port@9600", folder);
     for (int i = 0; i < 2; i++) {
         TEST_ASSERT_EQUAL_INT(0, openpty(&master[i], &slave[i], device[i], NULL, NULL));
         fcntl(master[i], F_SETFL, O_NONBLOCK);
     }
-    TEST_ASSERT_EQUAL_INT(0, symlink(device[0], spec.path));
+    TEST_ASSERT_EQUAL_INT(0, symlink(device[0], spec.target));
     driver_init(&driver, &config, clock_, &spec, &transport);
     TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 0));
-    unlink(spec.path);
-    TEST_ASSERT_EQUAL_INT(0, symlink(device[1], spec.path));
+    unlink(spec.target);
+    TEST_ASSERT_EQUAL_INT(0, symlink(device[1], spec.target));
     for (int i = 0; i < 300; i++) {
         time_.now_ms += 10;
         driver_process(&driver);
@@ -378,7 +388,7 @@ void test_a_name_that_leads_elsewhere_is_followed_while_no_robot_answers(void) {
         close(master[i]);
         close(slave[i]);
     }
-    unlink(spec.path);
+    unlink(spec.target);
     rmdir(folder);
 }
 

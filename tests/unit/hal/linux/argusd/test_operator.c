@@ -14,7 +14,7 @@ static char answer[256];
 
 static void begin(int32_t profile, int32_t active) {
     argus_config_t config;
-    const hal_link_spec_t spec = {.scheme = HAL_SCHEME_TCP};
+    const hal_link_spec_t spec = {.scheme = &hal_tcp_scheme};
     argus_config_default(&config);
     config.profile = profile;
     config.active = active;

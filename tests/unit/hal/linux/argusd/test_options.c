@@ -37,7 +37,7 @@ void test_everything_at_once(void) {
     TEST_ASSERT_TRUE_MESSAGE(
         parse("--link tcp:h:1 --config c --course d --state s --active --json --wait 5 --status 0"), message);
     TEST_ASSERT_EQUAL_INT(OPTIONS_RUN, options.action);
-    TEST_ASSERT_EQUAL_STRING("h", options.link.host);
+    TEST_ASSERT_EQUAL_STRING("h", options.link.target);
     TEST_ASSERT_EQUAL_STRING("c", options.config_path);
     TEST_ASSERT_EQUAL_STRING("d", options.course_path);
     TEST_ASSERT_EQUAL_STRING("s", options.state_path);
@@ -77,7 +77,7 @@ void test_control(void) {
 
 void test_can(void) {
     TEST_ASSERT_TRUE_MESSAGE(parse("--link can:vcan0,robot=1 --active"), message);
-    TEST_ASSERT_EQUAL_INT(HAL_SCHEME_CAN, options.link.scheme);
+    TEST_ASSERT_EQUAL_PTR(&hal_can_scheme, options.link.scheme);
     TEST_ASSERT_EQUAL_STRING("", options.telemetry.interface);
     TEST_ASSERT_FALSE(options.no_telemetry);
     TEST_ASSERT_TRUE(parse("--link serial:/dev/x --can-telemetry can1,robot=6"));

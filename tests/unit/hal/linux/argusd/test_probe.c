@@ -5,6 +5,8 @@
 #include <poll.h>
 #include <pty.h>
 #include <signal.h>
+#include <stdio.h>
+#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,7 +14,8 @@
 #include "unity.h"
 #include "wire_robot.h"
 
-static hal_serial_t port;
+static hal_transport_t transport;
+static hal_link_t port;
 static int master;
 static int slave;
 static char name[64];
@@ -20,13 +23,17 @@ static pid_t child;
 
 void setUp(void) {
     TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, name, NULL, NULL));
-    hal_serial_init(&port);
-    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_serial_open(&port, name, 9600));
+    char text[80];
+    char message[256];
+    hal_link_spec_t spec;
+    snprintf(text, sizeof text, "serial:%s@9600", name);
+    TEST_ASSERT_TRUE(hal_link_spec_parse(&spec, text, message, sizeof message));
+    hal_transport_init(&transport);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_transport_open(&transport, &spec, 0, -1, &port));
 }
 
 void tearDown(void) {
-    const hal_link_t link = hal_serial_link(&port);
-    hal_link_close(&link);
+    hal_link_close(&port);
     if (child > 0) {
         kill(child, SIGKILL);
         waitpid(child, NULL, 0);
@@ -72,13 +79,13 @@ static probe_t probe_robot(speed_t speed, bool reporting) {
     if (child == 0) {
         serve(speed, reporting);
     }
-    return probe_baud(&port, &clock, -1);
+    return probe_baud(&transport, &port, &clock, -1);
 }
 
 void test_a_robot_at_the_third_rate(void) {
     const probe_t probe = probe_robot(B115200, false);
     TEST_ASSERT_EQUAL_UINT32(115200, probe.baud);
-    TEST_ASSERT_EQUAL_UINT32(115200, port.baud);
+    TEST_ASSERT_NOT_NULL(strstr(hal_link_describe(&port), "@115200"));
     TEST_ASSERT_FALSE(probe.reporting);
 }
 
@@ -90,7 +97,7 @@ void test_a_robot_that_still_reports(void) {
 
 void test_nobody_there(void) {
     const hal_clock_t clock = hal_clock_monotonic();
-    const probe_t probe = probe_baud(&port, &clock, -1);
+    const probe_t probe = probe_baud(&transport, &port, &clock, -1);
     TEST_ASSERT_EQUAL_UINT32(0, probe.baud);
     TEST_ASSERT_EQUAL_UINT32(0, probe.bytes);
     TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, probe.error);
@@ -105,11 +112,11 @@ void test_a_port_that_dies_and_one_who_gives_up(void) {
     int cancel[2];
     TEST_ASSERT_EQUAL_INT(0, pipe(cancel));
     TEST_ASSERT_EQUAL_INT(1, write(cancel[1], "x", 1));
-    TEST_ASSERT_TRUE(probe_baud(&port, &clock, cancel[0]).cancelled);
+    TEST_ASSERT_TRUE(probe_baud(&transport, &port, &clock, cancel[0]).cancelled);
     close(cancel[0]);
     close(cancel[1]);
     close(master);
-    const probe_t probe = probe_baud(&port, &clock, -1);
+    const probe_t probe = probe_baud(&transport, &port, &clock, -1);
     TEST_ASSERT_EQUAL_UINT32(0, probe.baud);
     TEST_ASSERT_NOT_EQUAL(HAL_LINK_OK, probe.error);
     master = open("/dev/null", O_RDONLY);

@@ -80,7 +80,7 @@ static void run(uint32_t ms) {
 
 void test_the_tap_sees_every_byte(void) {
     argus_config_t config;
-    const hal_link_spec_t spec = {0};
+    const hal_link_spec_t spec = {.scheme = &hal_serial_scheme};
     const hal_clock_t clock = hal_fake_clock(&time_);
     argus_config_default(&config);
     hal_fake_link_init(&fake, 1, &clock);

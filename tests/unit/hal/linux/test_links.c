@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "hal/link_spec.h"
+#include "hal/links.h"
 #include "unity.h"
 
 static hal_transport_t transport;
@@ -64,5 +64,34 @@ void test_can_spec_opens_the_interface_or_says_what_to_load(void) {
     TEST_ASSERT_NULL(link.ops);
     explained(missing, "modprobe");
     explained(HAL_LINK_DOWN, "ip link set no-such-if up");
-    TEST_ASSERT_FALSE(hal_transport_moved(&transport, &spec));
+    TEST_ASSERT_FALSE(hal_transport_moved(&transport));
+}
+
+// argusd has one transport: what one scheme left in it is not another's.
+void test_one_memory_serves_one_scheme_after_the_other(void) {
+    char name[64];
+    char text[96];
+    int master = -1;
+    int slave = -1;
+    hal_link_t link = {0};
+    parse("serial:/dev/null");
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_BAD_BAUD, hal_transport_set_baud(&transport, 9600));
+    TEST_ASSERT_NULL(hal_transport_isotp(&transport));
+    TEST_ASSERT_FALSE(hal_transport_moved(&transport));
+    memset(transport.state.bytes, 0xA5, sizeof transport.state.bytes);
+    TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, name, NULL, NULL));
+    snprintf(text, sizeof text, "serial:%s@38400", name);
+    TEST_ASSERT_TRUE(hal_link_spec_parse(&spec, text, message, sizeof message));
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_transport_open(&transport, &spec, 100, -1, &link));
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_transport_set_baud(&transport, 9600));
+    TEST_ASSERT_FALSE(hal_transport_moved(&transport));
+    hal_link_close(&link);
+    TEST_ASSERT_TRUE(hal_link_spec_parse(&spec, "tcp:127.0.0.1:1", message, sizeof message));
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_REFUSED, hal_transport_open(&transport, &spec, 100, -1, &link));
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_BAD_BAUD, hal_transport_set_baud(&transport, 9600));
+    TEST_ASSERT_TRUE(hal_link_spec_parse(&spec, "can:no-such-if", message, sizeof message));
+    TEST_ASSERT_TRUE(hal_transport_open(&transport, &spec, 100, -1, &link) != HAL_LINK_OK);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_transport_isotp(&transport)->errors[0]);
+    close(master);
+    close(slave);
 }
