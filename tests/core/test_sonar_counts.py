@@ -13,6 +13,7 @@ SUPPORT = ROOT / "tests/unit/support"
 HAS = {"p3dx-sh": 16, "p3at-sh": 16, "amigo-sh": 8, "peoplebot-sh": 32}
 
 
+@pytest.mark.soak
 # The sanitizers treble what compiling takes: the least and the most show what leaves an array.
 @pytest.mark.parametrize(
     ("most", "sanitized"),
