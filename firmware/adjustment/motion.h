@@ -16,16 +16,16 @@ typedef enum {
 
 typedef struct {
     argus_motion_kind_t kind;
-    int32_t target_cdeg; // TURN: course frame, as commanded (whole degrees of the robot's own heading)
-    int32_t target_mm;   // MOVE: signed, ahead is where the leading end is
-    uint32_t issued_ms;
+    bool settled;
+    bool failed;        // the robot does not do it
     uint8_t on_target;  // consecutive SIPs that meet the end condition
     uint8_t off_target; // consecutive SIPs at rest that do not
     uint8_t tries;
+    int32_t target_cdeg; // TURN: course frame, as commanded (whole degrees of the robot's own heading)
+    int32_t target_mm;   // MOVE: signed, ahead is where the leading end is
+    uint32_t issued_ms;
     int32_t speed_mm_s; // last SETV, 0: the robot's own
-    bool settled;
-    bool failed;       // the robot does not do it
-    argus_mark_t mark; // when it settled
+    argus_mark_t mark;  // when it settled
 } argus_motion_t;
 
 void argus_motion_init(argus_motion_t *self);

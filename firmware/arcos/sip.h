@@ -13,26 +13,26 @@ typedef struct {
 } argus_sip_sonar_t;
 
 typedef struct {
-    bool moving;    // type 0x33
-    uint16_t x_raw; // position, raw: 15 or 16 bits, in units of the robot's distance factor
-    uint16_t y_raw;
-    int16_t heading_raw; // 4096 per turn
-    int16_t vel_left_mm_s;
-    int16_t vel_right_mm_s;
+    bool moving;        // type 0x33
     uint8_t battery_dv; // decivolts
     bool stall_left;
     bool stall_right;
     uint8_t bumpers_front; // bits 1..7 (a P3-DX has 1..5), bit 1 leftmost; bit 0 clear
     uint8_t bumpers_rear;  // bits 1..7, bit 1 rightmost; bit 0 clear
-    uint16_t flags;        // ARCOS_FLAG_*
     uint8_t sonar_count;   // entries of `sonar` used
-    argus_sip_sonar_t sonar[ARGUS_SIP_SONARS_MAX];
     bool has_battery_x10;
-    uint16_t battery_x10_dv;
     bool has_rotvel;
-    int16_t rotvel_ddeg_s; // 0.1 deg/s, CCW positive
     bool has_faultflags;
+    uint16_t x_raw; // position, raw: 15 or 16 bits, in units of the robot's distance factor
+    uint16_t y_raw;
+    int16_t heading_raw; // 4096 per turn
+    int16_t vel_left_mm_s;
+    int16_t vel_right_mm_s;
+    uint16_t flags; // ARCOS_FLAG_*
+    uint16_t battery_x10_dv;
+    int16_t rotvel_ddeg_s; // 0.1 deg/s, CCW positive
     uint16_t faultflags;
+    argus_sip_sonar_t sonar[ARGUS_SIP_SONARS_MAX];
 } argus_sip_t;
 
 // False when the packet is no SIP (type 0x32 or 0x33) or is shorter than its own sonar count says; tails may

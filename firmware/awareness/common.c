@@ -28,6 +28,7 @@ static void take(argus_common_t *const self, const argus_knowledge_t *const know
     if (reading_mm < knowledge->robot->no_echo_mm) {
         self->none_run[sonar] = 0;
         self->heard[sonar] = reading_mm <= LASTING_MM || argus_robot_faces_forward(knowledge->robot, sonar);
+        self->echoed[sonar] = true;
         self->echo_ms[sonar] = knowledge->sip_ms;
     } else {
         self->none_run[sonar] = (uint8_t)argus_min(self->none_run[sonar] + 1, UINT8_MAX);
@@ -46,9 +47,9 @@ static int least_run(const argus_common_t *const self, const argus_mask_t sonars
 static int lost_at_once(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
                         const argus_mask_t sonars) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    uint32_t least_ms = UINT32_MAX; // since the last echo of all
+    uint32_t least_ms = UINT32_MAX; // since the last echo of all, of one that may go out of range, too
     for (int i = 0; i < knowledge->sonars; i++) {
-        if ((sonars >> i & 1u) != 0 && self->heard[i] && knowledge->sip_ms - self->echo_ms[i] < least_ms) {
+        if ((sonars >> i & 1u) != 0 && self->echoed[i] && knowledge->sip_ms - self->echo_ms[i] < least_ms) {
             least_ms = knowledge->sip_ms - self->echo_ms[i];
         }
     }

@@ -26,12 +26,13 @@ typedef struct {
 } argus_dark_t;
 
 typedef struct {
-    bool heard[ARGUS_SONARS];
-    uint8_t none_run[ARGUS_SONARS]; // readings in a row without an echo, up to 255
-    uint32_t turned_ms;             // the robot rotated last, if it has
     bool has_turned;
+    uint32_t turned_ms; // the robot rotated last, if it has
     argus_dark_t of[ARGUS_ARRAYS_MAX];
-    uint32_t echo_ms[ARGUS_SONARS]; // of the last echo, and whether it was near enough to last
+    bool heard[ARGUS_SONARS];       // its last echo was near enough to last
+    bool echoed[ARGUS_SONARS];      // it has heard one
+    uint8_t none_run[ARGUS_SONARS]; // readings in a row without an echo, up to 255
+    uint32_t echo_ms[ARGUS_SONARS]; // of its last echo
 } argus_common_t;
 
 void argus_common_init(argus_common_t *self);

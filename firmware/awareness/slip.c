@@ -16,7 +16,9 @@
 #define NEAR_MM 2500    // echoes from farther off come and go
 #define STAYS_MM 100    // less than a change: of 500
 #define FITS_MM 200     // off what the odometry says
-#define ALONE 3         // stretches on which those ahead alone stay
+#define PROOF 6         // of stretches one after the other:
+#define BOTH_WAYS 3     // ... on which one ahead and one that looks back stay, so two of these,
+#define AHEAD_ALONE 2   // ... or two ahead: somebody may walk in front
 
 void argus_slip_init(argus_slip_t *const self) {
     memset(self, 0, sizeof *self);
@@ -119,13 +121,18 @@ static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowl
     for (int i = 0; i < knowledge->sonars; i++) {
         ask(self, knowledge, i, way_mm, &of);
     }
-    const bool alone = of.fits == 0 && of.to >= 2;
-    self->stretches = (uint8_t)(alone ? self->stretches + 1 : 0);
-    if (of.fits > 0 || !((of.to > 0 && of.back > 0) || self->stretches >= ALONE)) {
+    const bool both = of.to > 0 && of.back > 0;
+    const bool stays = of.fits == 0 && (both || of.to >= 2);
+    if (!stays || self->proof == 0) {
+        self->first = self->from;
+        self->slipped_mm = 0;
+    }
+    self->proof = (uint8_t)(stays ? self->proof + (both ? BOTH_WAYS : AHEAD_ALONE) : 0);
+    self->slipped_mm += way_mm;
+    if (self->proof < PROOF) {
         return false;
     }
-    self->stretches = 0;
-    self->slipped_mm = way_mm;
+    self->proof = 0;
     self->slips++;
     return true;
 }
@@ -139,7 +146,7 @@ static bool is_straight(const argus_slip_t *const self, const argus_knowledge_t 
 bool argus_slip_sip(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->robot != NULL);
     if (!self->begun || !is_straight(self, knowledge)) {
-        self->stretches = 0;
+        self->proof = 0;
         begin(self, knowledge);
         return false;
     }
@@ -154,8 +161,8 @@ bool argus_slip_sip(argus_slip_t *const self, const argus_knowledge_t *const kno
     const bool slipped = judge(self, knowledge, way_mm);
     begin(self, knowledge);
     if (slipped) {
-        self->from.x_mm = from.x_mm;
-        self->from.y_mm = from.y_mm;
+        self->from.x_mm = self->first.x_mm;
+        self->from.y_mm = self->first.y_mm;
     }
     return slipped;
 }

@@ -7,14 +7,15 @@
 
 // One stretch of straight way, and what each sonar read where it began; 0: nothing that counts.
 typedef struct {
-    argus_pose_t from; // where the robot still is when it has slipped
-    uint16_t reading_mm[ARGUS_SONARS];
+    bool begun;
+    bool ahead;         // the way goes
+    uint8_t proof;      // what the stretches that began at `first` are worth
     argus_mask_t read;  // sonars that have been listed since
-    uint8_t stretches;  // one after the other, on which those ahead alone stayed
+    argus_pose_t from;  // where the robot still is when it has slipped
+    argus_pose_t first; // where the stretches began of which each says so
     uint32_t slips;     // monotonic
     int32_t slipped_mm; // the last one
-    bool begun;
-    bool ahead; // the way goes
+    uint16_t reading_mm[ARGUS_SONARS];
 } argus_slip_t;
 
 void argus_slip_init(argus_slip_t *self);
@@ -23,8 +24,9 @@ void argus_slip_init(argus_slip_t *self);
 void argus_slip_restart(argus_slip_t *self);
 
 // One SIP. True: the wheels made `slipped_mm` of way and the robot did not, it is at `from`. False: no sonar
-// can tell. It takes one that looks along the way and one that looks back, or two that look along it through
-// three stretches (somebody may walk in front), and none whose range changes as the odometry says.
+// can tell. It takes one that looks along the way and one that looks back through two stretches of half a
+// metre, or two that look along it through three (somebody may walk in front), and none whose range changes
+// as the odometry says.
 bool argus_slip_sip(argus_slip_t *self, const argus_knowledge_t *knowledge);
 
 #endif

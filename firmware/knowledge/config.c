@@ -16,27 +16,29 @@
 #define NOISE_SIGMAS 3
 #define STEP_MARGIN_MM 20
 
-typedef struct {
-    size_t offset;
-    int32_t minimum;
-    int32_t maximum;
-} row_t;
+// A column of the table as it fits: few settings need more than 16 bits.
+#define DEFAULT(key, def, min, max, unit, choices, meaning) (def),
+#define MINIMUM(key, def, min, max, unit, choices, meaning) (min),
+#define MAXIMUM(key, def, min, max, unit, choices, meaning) (max),
+static const int16_t defaults[] = {ARGUS_CONFIG_TABLE(DEFAULT)};
+static const int16_t minima[] = {ARGUS_CONFIG_TABLE(MINIMUM)};
+static const int32_t maxima[] = {ARGUS_CONFIG_TABLE(MAXIMUM)};
+#define ROWS (sizeof defaults / sizeof defaults[0])
+_Static_assert(sizeof(argus_config_t) == ROWS * sizeof(int32_t), "the settings are one int32_t for each row");
 
 void argus_config_default(argus_config_t *config) {
-#define DEFAULT(key, def, min, max, unit, choices, meaning) config->key = (def);
-    ARGUS_CONFIG_TABLE(DEFAULT)
-#undef DEFAULT
+    for (size_t i = 0; i < ROWS; i++) {
+        const int32_t value = defaults[i];
+        memcpy((uint8_t *)config + i * sizeof value, &value, sizeof value);
+    }
 }
 
 // The number of the first row out of range, or -1.
 static int32_t row_out_of_range(const argus_config_t *config) {
-#define ROW(key, def, min, max, unit, choices, meaning) {offsetof(argus_config_t, key), (min), (max)},
-    static const row_t rows[] = {ARGUS_CONFIG_TABLE(ROW)};
-#undef ROW
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0; i < ROWS; i++) {
         int32_t value;
-        memcpy(&value, (const uint8_t *)config + rows[i].offset, sizeof value);
-        if (value < rows[i].minimum || value > rows[i].maximum) {
+        memcpy(&value, (const uint8_t *)config + i * sizeof value, sizeof value);
+        if (value < minima[i] || value > maxima[i]) {
             return (int32_t)i;
         }
     }

@@ -14,18 +14,18 @@
 typedef struct {
     uint16_t reading_mm;
     bool reported;
-    bool steady;          // taken while the robot did not rotate
-    uint32_t sip;         // index of the SIP that listed it last
-    uint32_t heard_ms;    // time of that SIP
-    uint32_t odometer_mm; // way driven by then
-    uint32_t readings;    // monotonic
+    bool steady; // taken while the robot did not rotate
     argus_health_t health;
     argus_fault_kind_t kind;
-    uint32_t since_ms;        // entry into `health`
-    uint16_t disabled_times;  // this mission
-    uint16_t disabled_before; // earlier missions, from the record
-    argus_fault_kind_t kind_before;
-    uint8_t relapses; // disabled again, less missions without a fault
+    argus_fault_kind_t kind_before; // in an earlier mission, from the record
+    uint8_t relapses;               // disabled again, less missions without a fault
+    uint16_t disabled_times;        // this mission
+    uint16_t disabled_before;       // earlier missions, from the record
+    uint32_t sip;                   // index of the SIP that listed it last
+    uint32_t heard_ms;              // time of that SIP
+    uint32_t odometer_mm;           // way driven by then
+    uint32_t readings;              // monotonic
+    uint32_t since_ms;              // entry into `health`
 } argus_sonar_t;
 
 // A moment after which readings count: those listed in later SIPs, and no earlier than `from_ms` where a
@@ -40,40 +40,40 @@ typedef struct {
 typedef struct {
     const argus_robot_t *robot; // whose geometry holds, never NULL
     uint8_t sonars;             // argus_robot_sonars() of it: those beyond are absent
+    bool lists_all;             // the server lists every sonar in every SIP
+    bool rotating;
+    bool has_raw;
+    bool origin_due; // the robot may have set its odometry to zero, since these
+    bool under_way;  // a motion was asked for, and no SIP came since
+    bool leapt;      // in the last SIP, as no robot moves: left out of the pose
+    bool stall_left;
+    bool stall_right;
+    uint8_t bumpers_front;
+    uint8_t bumpers_rear;
+    uint16_t still_sips; // consecutive SIPs at rest
+    uint16_t flags;
+    int16_t vel_left_mm_s;
+    int16_t vel_right_mm_s;
+    int16_t battery_dv;
+    uint16_t x_raw;
+    uint16_t y_raw;
+    argus_mask_t fresh; // sonars listed in the last SIP
+    argus_mask_t heard; // sonars that have heard an echo since the session opened
     argus_pose_t pose;
+    uint32_t odometer_mm; // way driven, monotonic
+    uint32_t sips;
+    uint32_t sip_ms;             // time of the last SIP
+    uint32_t online_ms;          // when SIPs began to come, or came again after a gap
     int32_t heading_offset_cdeg; // heading of the robot as it is built - what it says itself
     int32_t x_um;                // remainders of the pose, below a mm
     int32_t y_um;
-    uint32_t odometer_mm; // way driven, monotonic
     int32_t odometer_um;
-    uint16_t x_raw;
-    uint16_t y_raw;
-    bool has_raw;
-    uint32_t moved_ms;     // time of the SIP of these
+    uint32_t moved_ms;     // time of the SIP of x_raw, y_raw
     argus_excess_t excess; // beyond what the wheels say
-    bool origin_due;       // the robot may have set its odometry to zero, since these
-    bool under_way;        // a motion was asked for, and no SIP came since
-    bool leapt;            // in the last SIP, as no robot moves: left out of the pose
     uint32_t leaps;        // monotonic
     uint32_t leaps_unseen; // ... of these after a gap in which it moved: its place is lost
     int32_t leap_mm;
     int32_t leap_cdeg; // >= 0
-    int16_t vel_left_mm_s;
-    int16_t vel_right_mm_s;
-    bool rotating;
-    uint16_t still_sips; // consecutive SIPs at rest
-    uint16_t flags;
-    uint8_t bumpers_front;
-    uint8_t bumpers_rear;
-    bool stall_left;
-    bool stall_right;
-    int16_t battery_dv;
-    bool lists_all; // the server lists every sonar in every SIP
-    uint32_t sips;
-    uint32_t sip_ms;    // time of the last SIP
-    argus_mask_t fresh; // sonars listed in the last SIP
-    argus_mask_t heard; // sonars that have heard an echo since the session opened
-    uint32_t online_ms; // when SIPs began to come, or came again after a gap
     argus_sonar_t sonar[ARGUS_SONARS];
 } argus_knowledge_t;
 

@@ -44,16 +44,16 @@ typedef struct {
 
 // DRIVING, SWEEPING, STEPPING and CREEPING: the course and the way along it.
 typedef struct {
-    argus_drive_t drive; // the sweep
-    int32_t jog_mm;      // the operator's step, 0: the course decides
-    uint32_t heeded_ms;  // since then the robot has stood, one MOVE after the other
-    uint32_t beside_sip; // the SIP in which the health check beside the task was made
-    uint16_t unsaid;     // waypoints passed and not said
     int8_t weave;        // side that the heading swings to while a bearing is blind, +1 left
     uint8_t woven_sips;  // that it has been there
     bool aimed;          // the leg's bearing was turned to
     bool arriving;       // at the goal, stopping
     bool swept;          // the end of this sweep is said
+    uint16_t unsaid;     // waypoints passed and not said
+    int32_t jog_mm;      // the operator's step, 0: the course decides
+    uint32_t heeded_ms;  // since then the robot has stood, one MOVE after the other
+    uint32_t beside_sip; // the SIP in which the health check beside the task was made
+    argus_drive_t drive; // the sweep
     argus_task_t task;
 } argus_travel_t;
 
@@ -81,18 +81,18 @@ typedef struct {
 
 // What the reflexes remember.
 typedef struct {
-    uint16_t bumpers;     // bumper bits answered already, front << 8 | rear
-    argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
-    uint32_t leaps;       // of the odometry, answered already
-    uint32_t unseen;      // ... of these, where its place is lost
-    uint32_t slips;       // likewise
-    uint32_t unsound_ms;  // a leap or slip of the odometry, the last one
-    uint8_t unsound;      // ... how many, one soon after the other
+    uint8_t unsound;      // leaps and slips of the odometry, one soon after the other
     uint8_t battery_low;  // SIPs in a row
     bool touched_unheard; // something, while no sonar ahead had heard an echo: they do not live
     bool motors_said;     // off
     bool battery_said;
     bool stall_said;
+    uint16_t bumpers;     // bumper bits answered already, front << 8 | rear
+    uint32_t leaps;       // of the odometry, answered already
+    uint32_t unseen;      // ... of these, where its place is lost
+    uint32_t slips;       // likewise
+    uint32_t unsound_ms;  // a leap or slip of the odometry, the last one
+    argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
 } argus_reflexes_t;
 
 // Looks (profile argus) and checks. After an acquittal a sonar is not looked at again for a while.
@@ -156,12 +156,12 @@ struct argus {
     argus_failure_t failure;
     argus_turning_t turning;
     argus_orders_t orders;
+    argus_motion_t motion;
     uint32_t now_ms;
     uint32_t since_ms; // entry into the mode
     uint32_t ordered_ms;
     uint32_t stops; // STOP and E_STOP sent, monotonic
     argus_plan_t plan;
-    argus_motion_t motion;
     argus_base_t base;
     argus_checking_t checking;
     argus_waiting_t waiting;

@@ -34,9 +34,35 @@ static const char *event_name(const int id) {
 #undef NAME
 }
 
+// What events are about, each once: most are about the same few.
+#define SUBJECTS(X) \
+    X(battery)      \
+    X(bumper)       \
+    X(drive)        \
+    X(events)       \
+    X(guard)        \
+    X(health)       \
+    X(link)         \
+    X(manager)      \
+    X(object)       \
+    X(operator)     \
+    X(plan)         \
+    X(record)       \
+    X(session)      \
+    X(sonar)        \
+    X(status)       \
+    X(task)
+#define NUMBER(subject) ABOUT_##subject,
+enum { SUBJECTS(NUMBER) };
+#undef NUMBER
+
 static const char *event_subject(const int id) {
-#define SUBJECT(number, name, level, subject, meaning) subject "\0"
-    return nth(ARGUS_EVENT_TABLE(SUBJECT), row_of(id));
+#define WORD(subject) #subject "\0"
+#define SUBJECT(number, name, level, subject, meaning) ABOUT_##subject,
+    static const uint8_t about[] = {ARGUS_EVENT_TABLE(SUBJECT)};
+    const int row = row_of(id);
+    return nth(SUBJECTS(WORD), row < 0 ? row : about[row]);
+#undef WORD
 #undef SUBJECT
 }
 

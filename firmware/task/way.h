@@ -24,15 +24,15 @@ typedef struct {
 } argus_pull_t;
 
 typedef struct {
+    bool stopped;
+    bool is_on;
+    bool is_there;       // the wave has come to the robot
     argus_point_t robot; // where it began
     argus_point_t waypoint;
     argus_pull_t pull;
     argus_leg_t leg; // found when the news says so
     int32_t work;    // in this SIP
     uint32_t sip;    // the last one that it went on in
-    bool stopped;
-    bool is_on;
-    bool is_there; // the wave has come to the robot
     argus_wave_t wave;
 } argus_search_t;
 

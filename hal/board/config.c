@@ -9,24 +9,28 @@
 #define SECTION "[argus]"
 #define PAIR_BYTES 8u
 
-typedef struct {
-    const char *key;
-    const char *choices;
-    int32_t minimum;
-    int32_t maximum;
-} row_t;
-
-static const row_t rows[BOARD_CONFIG_COUNT] = {
-#define ROW(key, def, min, max, unit, choices, meaning) {#key, choices, min, max},
-    ARGUS_CONFIG_TABLE(ROW)
-#undef ROW
-};
+// Texts in a row and numbers as they fit: a table of pointers would take half as much again.
+#define KEY(key, def, min, max, unit, choices, meaning) #key "\0"
+#define CHOICES(key, def, min, max, unit, choices, meaning) choices "\0"
+#define MINIMUM(key, def, min, max, unit, choices, meaning) (min),
+#define MAXIMUM(key, def, min, max, unit, choices, meaning) (max),
+static const char keys[] = ARGUS_CONFIG_TABLE(KEY);
+static const char choices_of[] = ARGUS_CONFIG_TABLE(CHOICES);
+static const int16_t minima[BOARD_CONFIG_COUNT] = {ARGUS_CONFIG_TABLE(MINIMUM)};
+static const int32_t maxima[BOARD_CONFIG_COUNT] = {ARGUS_CONFIG_TABLE(MAXIMUM)};
 
 _Static_assert(sizeof(argus_config_t) == BOARD_CONFIG_COUNT * sizeof(int32_t),
                "the settings are one int32_t for each row of their table");
 
+static const char *nth(const char *texts, int row) {
+    for (; row > 0; row--) {
+        texts += strlen(texts) + 1;
+    }
+    return texts;
+}
+
 const char *board_config_key(int row) {
-    return rows[row].key;
+    return nth(keys, row);
 }
 
 int32_t board_config_value(const argus_config_t *config, int row) {
@@ -45,7 +49,7 @@ static bool is_same(const char *name, const char *text, size_t length) {
 
 static int row_of(const char *key, size_t length) {
     for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
-        if (is_same(rows[row].key, key, length)) {
+        if (is_same(board_config_key(row), key, length)) {
             return row;
         }
     }
@@ -95,15 +99,16 @@ board_config_answer_t board_config_set(argus_config_t *config, const char *key, 
     if (row < 0) {
         return BOARD_CONFIG_NO_KEY;
     }
-    if (rows[row].choices[0] != '\0') {
-        number = choice_of(rows[row].choices, value, value_length);
+    const char *const choices = nth(choices_of, row);
+    if (choices[0] != '\0') {
+        number = choice_of(choices, value, value_length);
         if (number < 0) {
             return BOARD_CONFIG_NO_VALUE;
         }
     } else if (!number_of(value, value_length, &number)) {
         return BOARD_CONFIG_NO_VALUE;
     }
-    if (number < rows[row].minimum || number > rows[row].maximum) {
+    if (number < minima[row] || number > maxima[row]) {
         return BOARD_CONFIG_NO_RANGE;
     }
     put_value(config, row, number);
@@ -219,7 +224,8 @@ uint32_t board_config_digest(const argus_config_t *config) {
 }
 
 static uint32_t key_digest(int row) {
-    return hal_crc32(0, rows[row].key, strlen(rows[row].key));
+    const char *const key = board_config_key(row);
+    return hal_crc32(0, key, strlen(key));
 }
 
 size_t board_config_pack(const argus_config_t *base, const argus_config_t *config,
@@ -241,7 +247,7 @@ size_t board_config_pack(const argus_config_t *base, const argus_config_t *confi
 // One that the table has no more, or with another range, is left out.
 static void take_pair(argus_config_t *config, uint32_t key, int32_t value) {
     for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
-        if (key_digest(row) == key && value >= rows[row].minimum && value <= rows[row].maximum) {
+        if (key_digest(row) == key && value >= minima[row] && value <= maxima[row]) {
             put_value(config, row, value);
         }
     }

@@ -193,125 +193,123 @@ typedef enum {
 // X(id, NAME, level, subject, meaning). Ids are stable: never reuse one. `subject` is what the event is
 // about; "sonar" events carry the sonar's number. `meaning` says what `value` is.
 #define ARGUS_EVENT_TABLE(X)                                                                                 \
-    X(10, LINK_UP, OK, "link", "the transport is open")                                                      \
-    X(11, LINK_LOST, ERROR, "link",                                                                          \
+    X(10, LINK_UP, OK, link, "the transport is open")                                                        \
+    X(11, LINK_LOST, ERROR, link,                                                                            \
       "the transport is gone, or no SIP came for link_lost_ms; value: ms without a SIP")                     \
-    X(12, LINK_STALLED, WARN, "link", "no SIP for link_stall_ms: standing; value: ms without a SIP")         \
-    X(13, LINK_RESUMED, OK, "link", "SIPs come again; value: length of the gap in ms")                       \
-    X(14, SESSION_NO_ANSWER, WARN, "session", "nobody answers SYNC; value: attempts so far")                 \
-    X(15, SESSION_OPEN, OK, "session", "the robot answered and reports; value: attempts it took")            \
-    X(16, SESSION_CLOSED, OK, "session", "orderly end: SONAR 0, STOP, CLOSE sent")                           \
-    X(17, SESSION_DISLODGED, WARN, "session", "the robot was still in an old session, which was closed")     \
-    X(18, SUBCLASS_UNKNOWN, WARN, "session",                                                                 \
+    X(12, LINK_STALLED, WARN, link, "no SIP for link_stall_ms: standing; value: ms without a SIP")           \
+    X(13, LINK_RESUMED, OK, link, "SIPs come again; value: length of the gap in ms")                         \
+    X(14, SESSION_NO_ANSWER, WARN, session, "nobody answers SYNC; value: attempts so far")                   \
+    X(15, SESSION_OPEN, OK, session, "the robot answered and reports; value: attempts it took")              \
+    X(16, SESSION_CLOSED, OK, session, "orderly end: SONAR 0, STOP, CLOSE sent")                             \
+    X(17, SESSION_DISLODGED, WARN, session, "the robot was still in an old session, which was closed")       \
+    X(18, SUBCLASS_UNKNOWN, WARN, session,                                                                   \
       "a robot whose body is not known: passive until the setting `robot` says which it is")                 \
-    X(19, ROBOT_UNSAFE, ERROR, "session",                                                                    \
+    X(19, ROBOT_UNSAFE, ERROR, session,                                                                      \
       "the settings are unsafe for this robot (S5): passive; value: mm that S5 needs")                       \
-    X(20, MOTORS_OFF, ERROR, "drive",                                                                        \
+    X(20, MOTORS_OFF, ERROR, drive,                                                                          \
       "the motors are off (button or E-stop): enable them to go on; value: SIP flags")                       \
-    X(21, MOTORS_ON, OK, "drive", "the motors are on; value: SIP flags")                                     \
-    X(22, BUMPER, ERROR, "bumper",                                                                           \
+    X(21, MOTORS_ON, OK, drive, "the motors are on; value: SIP flags")                                       \
+    X(22, BUMPER, ERROR, bumper,                                                                             \
       "a bumper was hit: E_STOP sent; value: front segments << 8 | rear segments")                           \
-    X(23, BUMPER_CLEAR, OK, "bumper", "no bumper is pressed any more")                                       \
-    X(24, STALL, ERROR, "drive", "a wheel stalls: STOP sent; value: 1 left, 2 right, 3 both")                \
-    X(25, BATTERY_LOW, WARN, "battery", "battery low; value: decivolts")                                     \
-    X(26, SONARS_BEYOND, WARN, "session",                                                                    \
+    X(23, BUMPER_CLEAR, OK, bumper, "no bumper is pressed any more")                                         \
+    X(24, STALL, ERROR, drive, "a wheel stalls: STOP sent; value: 1 left, 2 right, 3 both")                  \
+    X(25, BATTERY_LOW, WARN, battery, "battery low; value: decivolts")                                       \
+    X(26, SONARS_BEYOND, WARN, session,                                                                      \
       "it has more sonars than this build manages, those beyond are left out; value: how many it has")       \
-    X(27, OTHER_ROBOT, ERROR, "session",                                                                     \
+    X(27, OTHER_ROBOT, ERROR, session,                                                                       \
       "another robot answers than before: passive, the course is paused, until an operator says active and " \
       "go; value: what differs, 1 name, 2 class, 3 subclass, 4 serial number")                               \
-    X(30, SONAR_DEAD, ERROR, "sonar", "dead reading: STOP sent; value: the reading in mm")                   \
-    X(31, SONAR_SILENT, ERROR, "sonar",                                                                      \
+    X(30, SONAR_DEAD, ERROR, sonar, "dead reading: STOP sent; value: the reading in mm")                     \
+    X(31, SONAR_SILENT, ERROR, sonar,                                                                        \
       "its slot yields no reading: STOP sent; value: age of its last reading in ms")                         \
-    X(32, SONAR_SUSPECT, WARN, "sonar",                                                                      \
+    X(32, SONAR_SUSPECT, WARN, sonar,                                                                        \
       "disparate to its neighbours (Algorithm 1); value: the disparity in mm")                               \
-    X(33, SONAR_VERIFYING, OK, "sonar",                                                                      \
+    X(33, SONAR_VERIFYING, OK, sonar,                                                                        \
       "neighbours turn onto its bearing (Algorithm 2); value: its reading in mm")                            \
-    X(34, SONAR_WITNESS, OK, "sonar", "a neighbour saw on its bearing; value: that reading in mm")           \
-    X(35, SONAR_CLEARED, OK, "sonar", "the witnesses agree with it; value: mean of the witnesses in mm")     \
-    X(36, SUSPICION_DROPPED, OK, "sonar", "no longer disparate at rest; value: the disparity in mm")         \
-    X(37, SONAR_DISABLED, ERROR, "sonar", "not used any more; value: fault kind")                            \
-    X(38, SONAR_HEALTHY, OK, "sonar", "judged healthy; value: its reading in mm")                            \
-    X(39, SONAR_UNPROVEN, WARN, "sonar", "no usable witness: it stays a suspect; value: its reading in mm")  \
-    X(40, FAILURE_STATE, WARN, "health",                                                                     \
+    X(34, SONAR_WITNESS, OK, sonar, "a neighbour saw on its bearing; value: that reading in mm")             \
+    X(35, SONAR_CLEARED, OK, sonar, "the witnesses agree with it; value: mean of the witnesses in mm")       \
+    X(36, SUSPICION_DROPPED, OK, sonar, "no longer disparate at rest; value: the disparity in mm")           \
+    X(37, SONAR_DISABLED, ERROR, sonar, "not used any more; value: fault kind")                              \
+    X(38, SONAR_HEALTHY, OK, sonar, "judged healthy; value: its reading in mm")                              \
+    X(39, SONAR_UNPROVEN, WARN, sonar, "no usable witness: it stays a suspect; value: its reading in mm")    \
+    X(40, FAILURE_STATE, WARN, health,                                                                       \
       "the failure state changed; value: number of disabled forward-facing sonars")                          \
-    X(41, PLAN, WARN, "plan", "rotations that cover the disabled bearings; value: how many")                 \
-    X(42, PLAN_ROTATION, OK, "plan", "one rotation of the plan; value: degrees, CCW positive")               \
-    X(43, HEALTH_CHECK, OK, "health",                                                                        \
+    X(41, PLAN, WARN, plan, "rotations that cover the disabled bearings; value: how many")                   \
+    X(42, PLAN_ROTATION, OK, plan, "one rotation of the plan; value: degrees, CCW positive")                 \
+    X(43, HEALTH_CHECK, OK, health,                                                                          \
       "all front sonars have reported and no suspect is open; value: disabled")                              \
-    X(44, SONAR_STALE, STALE, "sonar",                                                                       \
+    X(44, SONAR_STALE, STALE, sonar,                                                                         \
       "a sonar that does not face forward yields no reading; value: ms without one")                         \
-    X(45, SONAR_NAMED, WARN, "sonar", "a suspect: the evidence so far names this fault; value: fault kind")  \
-    X(46, SONAR_PROBATION, WARN, "sonar",                                                                    \
+    X(45, SONAR_NAMED, WARN, sonar, "a suspect: the evidence so far names this fault; value: fault kind")    \
+    X(46, SONAR_PROBATION, WARN, sonar,                                                                      \
       "not used yet: does well again, or failed in the last mission; value: its reading in mm")              \
-    X(47, SONAR_KIND, WARN, "sonar", "its fault is known better now; value: fault kind")                     \
-    X(48, SONAR_PINNED, WARN, "sonar", "keeps its health until unpinned; value: 1 pinned, 0 unpinned")       \
-    X(49, SONAR_DEGRADING, WARN, "sonar", "gets worse; value: metres of driving until it will have failed")  \
-    X(50, OBJECT, WARN, "object",                                                                            \
+    X(47, SONAR_KIND, WARN, sonar, "its fault is known better now; value: fault kind")                       \
+    X(48, SONAR_PINNED, WARN, sonar, "keeps its health until unpinned; value: 1 pinned, 0 unpinned")         \
+    X(49, SONAR_DEGRADING, WARN, sonar, "gets worse; value: metres of driving until it will have failed")    \
+    X(50, OBJECT, WARN, object,                                                                              \
       "an object in range, or (0, 7) a wall that the way slants into: STOP sent; value: the reading in mm")  \
-    X(51, OBJECT_CHECKED, WARN, "object",                                                                    \
-      "a check in failure mode finds an object; value: the reading in mm")                                   \
-    X(52, AVOIDING, OK, "task", "goes round an obstacle; value: heading chosen, degrees")                    \
-    X(53, NO_WAY, WARN, "task", "no way, or no progress on it: waits, or gives up; value: seconds so far")   \
-    X(54, STEP, OK, "drive", "one step in failure mode; value: mm commanded")                                \
-    X(55, SWEEP, OK, "drive", "a sweep of the planned rotations is done; value: smallest reading in mm")     \
-    X(56, STOPPED, WARN, "drive", "STOP sent; value: heading in hundredths of a degree")                     \
-    X(57, BACKING, WARN, "drive", "backs away; value: mm")                                                   \
-    X(58, TURN_BLOCKED, WARN, "drive",                                                                       \
+    X(51, OBJECT_CHECKED, WARN, object, "a check in failure mode finds an object; value: the reading in mm") \
+    X(52, AVOIDING, OK, task, "goes round an obstacle; value: heading chosen, degrees")                      \
+    X(53, NO_WAY, WARN, task, "no way, or no progress on it: waits, or gives up; value: seconds so far")     \
+    X(54, STEP, OK, drive, "one step in failure mode; value: mm commanded")                                  \
+    X(55, SWEEP, OK, drive, "a sweep of the planned rotations is done; value: smallest reading in mm")       \
+    X(56, STOPPED, WARN, drive, "STOP sent; value: heading in hundredths of a degree")                       \
+    X(57, BACKING, WARN, drive, "backs away; value: mm")                                                     \
+    X(58, TURN_BLOCKED, WARN, drive,                                                                         \
       "the swing circle is not free: no turn; value: the nearest point in mm")                               \
-    X(59, WAITING, WARN, "drive", "cannot go on by itself; value: seconds waited")                           \
-    X(60, MISSION_START, OK, "task", "a course starts; value: waypoints")                                    \
-    X(61, WAYPOINT, OK, "task", "a waypoint was passed; value: its number, from 1")                          \
-    X(62, GOAL_REACHED, OK, "task", "at rest at the goal; value: distance to it in mm")                      \
-    X(63, MISSION_FAILED, ERROR, "task", "the course was given up; value: distance to the goal in mm")       \
-    X(64, TURN_FAILED, WARN, "drive", "a turn did not settle in time; value: degrees off")                   \
-    X(65, LOOK, OK, "drive", "looks round to try all sonars; value: 0")                                      \
-    X(66, POSE_LEAP, WARN, "drive",                                                                          \
+    X(59, WAITING, WARN, drive, "cannot go on by itself; value: seconds waited")                             \
+    X(60, MISSION_START, OK, task, "a course starts; value: waypoints")                                      \
+    X(61, WAYPOINT, OK, task, "a waypoint was passed; value: its number, from 1")                            \
+    X(62, GOAL_REACHED, OK, task, "at rest at the goal; value: distance to it in mm")                        \
+    X(63, MISSION_FAILED, ERROR, task, "the course was given up; value: distance to the goal in mm")         \
+    X(64, TURN_FAILED, WARN, drive, "a turn did not settle in time; value: degrees off")                     \
+    X(65, LOOK, OK, drive, "looks round to try all sonars; value: 0")                                        \
+    X(66, POSE_LEAP, WARN, drive,                                                                            \
       "the position stepped as no robot moves: STOP sent, left out of the pose; value: mm")                  \
-    X(67, HEADING_LEAP, WARN, "drive",                                                                       \
+    X(67, HEADING_LEAP, WARN, drive,                                                                         \
       "the heading stepped as no robot turns: STOP sent, left out of the pose; value: degrees")              \
-    X(68, SLIP, WARN, "drive",                                                                               \
+    X(68, SLIP, WARN, drive,                                                                                 \
       "the ranges stay while the wheels turn: they slip, or are lifted: STOP sent, left out of the pose; "   \
       "value: mm")                                                                                           \
-    X(69, ODOMETRY_LOST, ERROR, "drive",                                                                     \
+    X(69, ODOMETRY_LOST, ERROR, drive,                                                                       \
       "it leapt or restarted while nobody saw the robot move, or leaps or slips again and again: where the " \
       "robot is nobody knows, the course is given up; value: of the last leap or slip")                      \
-    X(70, OPERATOR, OK, "operator", "an operator's command was taken; value: its number")                    \
-    X(71, PASSIVE, OK, "operator", "reports only: commands no motion")                                       \
-    X(72, ACTIVE, OK, "operator", "drives")                                                                  \
-    X(73, REVERSED, WARN, "drive",                                                                           \
+    X(70, OPERATOR, OK, operator, "an operator's command was taken; value: its number")                      \
+    X(71, PASSIVE, OK, operator, "reports only: commands no motion")                                         \
+    X(72, ACTIVE, OK, operator, "drives")                                                                    \
+    X(73, REVERSED, WARN, drive,                                                                             \
       "the leading end changes, at rest; value: 1 the rear leads, 0 the front again")                        \
-    X(74, INJECTED, WARN, "sonar", "what it reports is altered for a test; value: fault kind, 0: no more")   \
-    X(75, WHEEL_SHORT, WARN, "drive",                                                                        \
+    X(74, INJECTED, WARN, sonar, "what it reports is altered for a test; value: fault kind, 0: no more")     \
+    X(75, WHEEL_SHORT, WARN, drive,                                                                          \
       "ways straight ahead bend: a wheel turns less than it is told, and is countered by turning; value: "   \
       "thousandths that it falls short, positive the left one, negative the right one")                      \
-    X(76, WHEEL_EVEN, OK, "drive", "ways straight ahead are straight again; value: 0")                       \
-    X(77, CREEPING, WARN, "drive",                                                                           \
+    X(76, WHEEL_EVEN, OK, drive, "ways straight ahead are straight again; value: 0")                         \
+    X(77, CREEPING, WARN, drive,                                                                             \
       "no sonar sees the way, and the operator lets it: creeps on, told by the bumpers alone; value: mm/s")  \
-    X(78, NO_ECHO, WARN, "drive",                                                                            \
+    X(78, NO_ECHO, WARN, drive,                                                                              \
       "no sonar ahead has heard an echo in this session, so nothing shows that one lives: slow until one "   \
       "has; value: mm/s")                                                                                    \
-    X(80, RECORD_IGNORED, WARN, "record",                                                                    \
+    X(80, RECORD_IGNORED, WARN, record,                                                                      \
       "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")            \
-    X(81, EVENTS_LOST, ERROR, "events", "the event queue overflowed; value: events lost")                    \
-    X(90, INVARIANT, ERROR, "manager", "an internal invariant does not hold; value: its number")             \
-    X(91, STATUS, OK, "status", "periodic picture of all that is known")                                     \
-    X(100, GUARD_OPEN, OK, "guard", "a client opened its session at a guard port; value: 0")                 \
-    X(101, GUARD_CLOSED, OK, "guard", "the client closed its session; value: packets that it sent")          \
-    X(102, GUARD_LOST, ERROR, "guard",                                                                       \
+    X(81, EVENTS_LOST, ERROR, events, "the event queue overflowed; value: events lost")                      \
+    X(90, INVARIANT, ERROR, manager, "an internal invariant does not hold; value: its number")               \
+    X(91, STATUS, OK, status, "periodic picture of all that is known")                                       \
+    X(100, GUARD_OPEN, OK, guard, "a client opened its session at a guard port; value: 0")                   \
+    X(101, GUARD_CLOSED, OK, guard, "the client closed its session; value: packets that it sent")            \
+    X(102, GUARD_LOST, ERROR, guard,                                                                         \
       "the client is gone without a word: STOP sent if it drove; value: 1 its connection closed, 2 silent "  \
       "for as long as the robot's watchdog waits, 3 the robot's own session ended")                          \
-    X(103, GUARD_DRIVES, WARN, "guard",                                                                      \
-      "the client drives: passive, bounds its motion and reports; value: 0")                                 \
-    X(104, GUARD_SLOWED, WARN, "guard",                                                                      \
+    X(103, GUARD_DRIVES, WARN, guard, "the client drives: passive, bounds its motion and reports; value: 0") \
+    X(104, GUARD_SLOWED, WARN, guard,                                                                        \
       "slower than the client asks, to stand before what is seen (S5); value: mm/s")                         \
-    X(105, GUARD_HELD, WARN, "guard",                                                                        \
+    X(105, GUARD_HELD, WARN, guard,                                                                          \
       "not the way that the client asks; value: 1 an object (S2), 2 not seen (S1, S3, S7), 3 a bumper, "     \
       "4 stopped by an operator, or a body that is not known")                                               \
-    X(106, GUARD_TURN_HELD, WARN, "guard",                                                                   \
+    X(106, GUARD_TURN_HELD, WARN, guard,                                                                     \
       "not the turn that the client asks: the body would meet what is seen (S7); value: degrees, or per s")  \
-    X(107, GUARD_FREE, OK, "guard", "the client's motion is not bounded any more; value: 0")                 \
-    X(108, GUARD_REFUSED, WARN, "guard", "a command of the client ends here; value: its number")             \
-    X(109, GUARD_LOOKS, OK, "guard",                                                                         \
+    X(107, GUARD_FREE, OK, guard, "the client's motion is not bounded any more; value: 0")                   \
+    X(108, GUARD_REFUSED, WARN, guard, "a command of the client ends here; value: its number")               \
+    X(109, GUARD_LOOKS, OK, guard,                                                                           \
       "a bearing ahead is blind: the heading swings so that others see the way; value: degrees to each "     \
       "side")
 
@@ -635,15 +633,15 @@ int argus_invariants_broken(const argus_t *self);
 const char *argus_name(argus_name_of_t of, int number);
 
 static inline argus_level_t argus_event_level(uint16_t id) {
-#define ARGUS_EVENT_LEVEL(number, name, level, subject, meaning) {(number), ARGUS_LEVEL_##level},
-    static const struct {
-        uint16_t id;
-        uint8_t level;
-    } rows[] = {ARGUS_EVENT_TABLE(ARGUS_EVENT_LEVEL)};
+#define ARGUS_EVENT_ID(number, name, level, subject, meaning) (number),
+#define ARGUS_EVENT_LEVEL(number, name, level, subject, meaning) ARGUS_LEVEL_##level,
+    static const uint16_t ids[] = {ARGUS_EVENT_TABLE(ARGUS_EVENT_ID)};
+    static const uint8_t levels[] = {ARGUS_EVENT_TABLE(ARGUS_EVENT_LEVEL)};
+#undef ARGUS_EVENT_ID
 #undef ARGUS_EVENT_LEVEL
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        if (rows[i].id == id) {
-            return (argus_level_t)rows[i].level;
+    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
+        if (ids[i] == id) {
+            return (argus_level_t)levels[i];
         }
     }
     return ARGUS_LEVEL_ERROR;

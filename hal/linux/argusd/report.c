@@ -339,7 +339,7 @@ size_t report_summary(const view_t *view, char *line, size_t capacity) {
 void report_list_events(FILE *out) {
     fprintf(out, "%-3s %-18s %-6s %-9s %s\n", "ID", "EVENT", "LEVEL", "ABOUT", "MEANING");
 #define EVENT_LINE(id, name, level, subject, meaning) \
-    fprintf(out, "%-3d %-18s %-6s %-9s %s\n", id, #name, #level, subject, meaning);
+    fprintf(out, "%-3d %-18s %-6s %-9s %s\n", id, #name, #level, #subject, meaning);
     ARGUS_EVENT_TABLE(EVENT_LINE)
 #undef EVENT_LINE
 }

@@ -118,6 +118,18 @@ void test_a_wall_that_goes_out_of_range_is_no_proof(void) {
     TEST_ASSERT_EQUAL(0, convicted());
 }
 
+// Those ahead lost theirs some time ago, as in a turn; one abeam drives away from what it still heard.
+void test_the_last_of_them_may_lose_a_far_echo(void) {
+    range_mm[0] = 4900;
+    drive(20, 200);
+    darken(FRONT & ~1u);
+    drive(20, 200);
+    darken(FRONT);
+    drive(20, 200);
+    TEST_ASSERT_EQUAL(0, convicted());
+    TEST_ASSERT_EQUAL(0, strikes);
+}
+
 void test_where_nothing_was_heard_nothing_ends(void) {
     darken(0xFFFFu & ~6u);
     drive(20, 200);

@@ -53,7 +53,7 @@ void test_an_overflow_drops_the_newest_and_counts(void) {
     TEST_ASSERT_EQUAL(5, out.value);
 }
 
-#define ROW(id, NAME, level, subject, meaning) {id, #NAME, ARGUS_LEVEL_##level, subject, meaning},
+#define ROW(id, NAME, level, subject, meaning) {id, #NAME, ARGUS_LEVEL_##level, #subject, meaning},
 static const struct {
     unsigned id;
     const char *name;

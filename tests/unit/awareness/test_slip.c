@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: wheels that turn while nothing changes along the way are told, and the pose goes back to
+// where that began; one stretch is chance, and one range that changes as it should acquits.
+#include "awareness/slip.h"
+
+#include <string.h>
+
+#include "unity.h"
+
+#define SIP_MM 20
+#define STRETCH_SIPS 25 // 500 mm
+#define AHEAD 3
+#define BACK 12
+
+static argus_slip_t slip;
+static argus_knowledge_t k;
+
+void setUp(void) {
+    argus_slip_init(&slip);
+    argus_knowledge_init(&k);
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        k.sonar[i].health = ARGUS_HEALTHY;
+        k.sonar[i].reported = true;
+        k.sonar[i].reading_mm = 5000;
+    }
+    k.vel_left_mm_s = 200;
+    k.vel_right_mm_s = 200;
+}
+
+void tearDown(void) {
+}
+
+// SIPs of straight way by the odometry; ranges ahead and back change by so much in each. The SIP that says
+// it, or -1.
+static int drive(int sips, int ahead_mm, int back_mm) {
+    for (int sip = 0; sip < sips; sip++) {
+        k.pose.x_mm += SIP_MM;
+        k.odometer_mm += SIP_MM;
+        k.fresh = UINT16_MAX;
+        for (int i = 0; i < ARGUS_SONARS; i++) {
+            k.sonar[i].odometer_mm = k.odometer_mm;
+        }
+        k.sonar[AHEAD].reading_mm = (uint16_t)(k.sonar[AHEAD].reading_mm + ahead_mm);
+        k.sonar[BACK].reading_mm = (uint16_t)(k.sonar[BACK].reading_mm + back_mm);
+        if (argus_slip_sip(&slip, &k)) {
+            return sip;
+        }
+    }
+    return -1;
+}
+
+static void walls(void) {
+    k.sonar[AHEAD].reading_mm = 2000;
+    k.sonar[BACK].reading_mm = 1500;
+}
+
+void test_what_stays_ahead_and_behind_for_two_stretches_is_slip(void) {
+    walls();
+    TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS + 2, 0, 0));
+    TEST_ASSERT_NOT_EQUAL(-1, drive(STRETCH_SIPS + 4, 0, 0));
+    TEST_ASSERT_EQUAL(1, slip.slips);
+    TEST_ASSERT_INT_WITHIN(100, 1000, slip.slipped_mm);
+    TEST_ASSERT_INT_WITHIN(2 * SIP_MM, 0, slip.from.x_mm);
+}
+
+void test_one_stretch_is_chance(void) {
+    walls();
+    TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS + 2, 0, 0));
+    TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS, -SIP_MM, SIP_MM));
+    walls();
+    TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS - 4, 0, 0));
+}
+
+void test_a_range_that_changes_as_it_should_acquits(void) {
+    walls();
+    TEST_ASSERT_EQUAL(-1, drive(4 * STRETCH_SIPS, 0, SIP_MM));
+    TEST_ASSERT_EQUAL(0, slip.slips);
+}
+
+void test_one_ahead_alone_may_follow_somebody(void) {
+    k.sonar[AHEAD].reading_mm = 2000;
+    TEST_ASSERT_EQUAL(-1, drive(8 * STRETCH_SIPS, 0, 0));
+}
+
+void test_two_ahead_alone_take_three_stretches(void) {
+    k.sonar[AHEAD].reading_mm = 2000;
+    k.sonar[AHEAD + 1].reading_mm = 1900;
+    TEST_ASSERT_EQUAL(-1, drive(2 * STRETCH_SIPS + 2, 0, 0));
+    TEST_ASSERT_NOT_EQUAL(-1, drive(STRETCH_SIPS + 6, 0, 0));
+}
+
+void test_a_restart_begins_anew(void) {
+    walls();
+    TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS + 2, 0, 0));
+    argus_slip_restart(&slip);
+    TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS + 2, 0, 0));
+}
