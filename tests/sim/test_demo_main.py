@@ -60,7 +60,7 @@ def played(monkeypatch: pytest.MonkeyPatch) -> type[Played]:
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Drawing takes most of what a made-up drive takes; whoever asks nothing of the picture gets none."""
-    monkeypatch.setattr(program.picture, "draw", lambda drive, path: None)
+    monkeypatch.setattr("hil_sim.demo.picture.draw", lambda drive, path: None)
 
 
 def run(*arguments: str) -> int:
