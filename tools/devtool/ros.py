@@ -18,7 +18,7 @@ from devtool.system import base_python
 VENV_ROS: Final = BUILD / "venv-ros"
 TESTERS: Final = ("pytest>=8.0", "hypothesis>=6.98", "setuptools>=68", "websockets>=13")
 MAKER: Final = ROOT / "tools/argus_ros/make_messages.py"
-NEEDS: Final = ("g++",)
+NEEDS: Final = ("g++", "python-dev")
 
 
 def recipe() -> tuple[str, str]:

@@ -78,6 +78,11 @@ def command_need(command: str, package: str) -> Need:
     return Need(command, lambda: shutil.which(command) is not None, lambda: [package])
 
 
+PYTHON_H_PROBE: Final = """
+import pathlib, sys, sysconfig
+sys.exit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())
+"""
+
 NEEDS: Final = {
     "gcc": Need("gcc", has_gcc, lambda: ["gcc", "libc6-dev"]),
     "libc": Need("headers of the C library (libc6-dev)", has_libc, lambda: ["libc6-dev"]),
@@ -121,6 +126,11 @@ NEEDS: Final = {
     "clang": command_need("clang", "clang"),
     "tshark": command_need("tshark", "tshark"),
     "g++": command_need("g++", "g++"),
+    "python-dev": Need(
+        "headers of python3",
+        lambda: quiet_ok([base_python(), "-c", PYTHON_H_PROBE]),
+        lambda: ["python3-dev"],
+    ),
     "groff": command_need("groff", "groff-base"),
     "pkg-config": command_need("pkg-config", "pkg-config"),
     "dpkg-dev": command_need("dpkg-shlibdeps", "dpkg-dev"),
