@@ -62,7 +62,7 @@ bool argus_guard_may_creep(const argus_guard_t *const self) {
 
 int32_t argus_guard_unseen_mm_s(const argus_guard_t *const self) {
     ARGUS_ASSERT(self->config->step_speed_mm_s > 0 && self->config->creep_mm_s >= 0);
-    const int32_t step_mm_s = self->config->step_speed_mm_s;
+    const int32_t step_mm_s = argus_min(self->config->step_speed_mm_s, self->config->speed_mm_s);
     const int32_t creep_mm_s = self->config->creep_mm_s;
     return creep_mm_s > 0 ? argus_min(creep_mm_s, step_mm_s) : step_mm_s;
 }
@@ -338,9 +338,19 @@ bool argus_guard_rear_is_clear(const argus_guard_t *const self) {
     return argus_guard_rear_is_watched(self);
 }
 
+// Where not all that look back are left: what these read, and the way that it came.
+static bool may_feel_back(const argus_guard_t *const self) {
+    for (int i = 0; i < self->knowledge->sonars; i++) {
+        if (looks_back(self, i) && is_relied_on(self, i) &&
+            self->knowledge->sonar[i].reading_mm <= rear_clear_mm(self, i)) {
+            return false;
+        }
+    }
+    return self->creeps && !argus_guard_rear_is_watched(self) && self->knowledge->bumpers_rear == 0;
+}
+
 bool argus_guard_may_back(const argus_guard_t *const self) {
-    const bool feels = self->creeps && !argus_guard_rear_is_watched(self);
-    return argus_guard_rear_is_clear(self) || (feels && self->knowledge->bumpers_rear == 0);
+    return argus_guard_rear_is_clear(self) || may_feel_back(self);
 }
 
 bool argus_guard_may_back_off(const argus_guard_t *const self) {

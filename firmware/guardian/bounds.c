@@ -145,7 +145,7 @@ static bool slants(const argus_t *const self) {
     return false;
 }
 
-// As where the manager drives itself: beside a wall, and where one ahead is doubted.
+// Beside a wall, and where one ahead is named.
 static bool is_careful(const argus_t *const self) {
     const unsigned ahead = argus_robot_ahead(self->knowledge.robot);
     return argus_flank_mm(&self->knowledge, 0) <= ARGUS_FLANK_NEAR_MM ||
@@ -154,7 +154,9 @@ static bool is_careful(const argus_t *const self) {
 
 static argus_bound_t leading(const argus_t *const self, const argus_guard_t *const guard) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
-    if (!argus_guard_sees_ahead(guard) || (argus_guard_is_blind(guard) && !guard->profile->drives_seen)) {
+    const bool heard = argus_guard_is_heard(guard);
+    if ((!heard && self->reflexes.touched_unheard) || !argus_guard_sees_ahead(guard) ||
+        (argus_guard_is_blind(guard) && !guard->profile->drives_seen)) {
         return closed(ARGUS_BOUND_UNSEEN);
     }
     const unsigned looks = argus_robot_ahead(knowledge->robot) | argus_robot_forward(knowledge->robot);
@@ -178,6 +180,9 @@ static argus_bound_t leading(const argus_t *const self, const argus_guard_t *con
     bound.way_mm = argus_min(bound.way_mm, seen_mm);
     if (is_careful(self)) {
         bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.speed_mm_s);
+    }
+    if (!heard) {
+        bound.speed_mm_s = argus_min(bound.speed_mm_s, argus_guard_unseen_mm_s(guard));
     }
     return bound;
 }

@@ -224,7 +224,7 @@ static bool is_where_it_slanted(const argus_t *const core, const argus_given_t *
 // A wall that only driving along it shows is forgotten by a robot that stands before it, but has not gone.
 static argus_bound_t way_of(const argus_t *const core, argus_given_t *const given, const bool ahead) {
     argus_bound_t bound = argus_bound_way(core, ahead);
-    if (!ahead) {
+    if (ahead == core->knowledge.robot->reversed) { // only the end that leads sees such a wall
         return bound;
     }
     if (bound.slants) {

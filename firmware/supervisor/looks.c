@@ -50,7 +50,7 @@ argus_mask_t argus_to_try(const argus_t *const self) {
     const bool others = (self->knowledge.heard & ~(unsigned)argus_out(&self->knowledge)) != 0;
     const bool may = argus_rules(self)->evidence && argus_guard_may_turn(&guard) && !self->orders.stay;
     const bool due = others && !self->looks.tried && !argus_guard_is_heard(&guard);
-    return may && due ? argus_wanted_sonars(self) : 0;
+    return may && due ? (argus_mask_t)(argus_wanted_sonars(self) & ~(unsigned)self->orders.pinned) : 0;
 }
 
 // Those ahead that no other sonar sees for, and that were not cleared a moment ago.

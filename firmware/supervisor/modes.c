@@ -133,7 +133,6 @@ static argus_intent_t try_ahead(argus_t *const self, const argus_mask_t sonars) 
 
 // No sonar sees the way: all that could are out, or suspects that no one can judge; or a touch has shown it.
 static argus_intent_t stand(argus_t *const self) {
-    ARGUS_ASSERT(self->config.creep_mm_s == 0);
     self->travel.jog_mm = 0;
     if (argus_guard_may_step(&self->plan)) {
         return argus_to_wait(ARGUS_WAIT_ECHO);

@@ -68,9 +68,9 @@ static argus_intent_t sees_slip(const argus_t *const self, const argus_alarm_t *
 }
 
 // What is touched is in range of those ahead: if they have never heard anything they do not live.
-static void note_touch(const argus_t *const self, argus_reflexes_t *const mine) {
+static void note_touch(const argus_t *const self, argus_reflexes_t *const mine, const bool ahead) {
     const argus_guard_t guard = argus_guard(self);
-    mine->touched_unheard = mine->touched_unheard || !argus_guard_is_heard(&guard);
+    mine->touched_unheard = mine->touched_unheard || (ahead && !argus_guard_is_heard(&guard));
 }
 
 // New contact only: bits already answered are let be until they clear.
@@ -85,7 +85,7 @@ static argus_intent_t sees_bumper(const argus_t *const self, const argus_alarm_t
     if (!fresh) {
         return cleared ? say(ARGUS_EV_BUMPER_CLEAR, ARGUS_NO_SONAR, 0) : argus_to_nothing();
     }
-    note_touch(self, mine);
+    note_touch(self, mine, knowledge->bumpers_front != 0);
     argus_intent_t intent = say(ARGUS_EV_BUMPER, ARGUS_NO_SONAR, pressed);
     intent.stop = ARGUS_STOP_E_STOP;
     intent.bumped = true;
@@ -104,7 +104,7 @@ static argus_intent_t sees_stall(const argus_t *const self, const argus_alarm_t 
     if (!stalls || said) {
         return argus_to_nothing();
     }
-    note_touch(self, mine);
+    note_touch(self, mine, self->motion.kind == ARGUS_MOTION_MOVE && self->motion.target_mm > 0);
     argus_intent_t intent = say(ARGUS_EV_STALL, ARGUS_NO_SONAR, argus_built_stalls(&self->knowledge));
     intent.stop = ARGUS_STOP_STOP;
     intent.way = ARGUS_WAY_REFUSE;

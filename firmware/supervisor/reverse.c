@@ -11,19 +11,23 @@
 #define MOST_PARTS 3   // two of three of those that face forward are most of them
 #define OTHER_LOST 1   // ... and so many the other end may have lost to be better than that
 
-// Those of this end that face forward and are not relied on; all while none of them has ever heard an echo.
+// Those of this end that face forward and are not relied on.
 static argus_mask_t lost_of(const argus_t *const self, const argus_robot_t *const end) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const argus_mask_t forward = argus_robot_forward(end);
-    if (argus_rules(self)->asks_echo && (self->knowledge.heard & forward) == 0) {
-        return forward;
-    }
     unsigned lost = 0;
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const bool counts = (forward >> i & 1u) != 0 && !argus_trusted(&self->knowledge, i);
         lost |= counts ? 1u << i : 0u;
     }
     return (argus_mask_t)lost;
+}
+
+// How many; all while none of them has heard an echo in this session.
+static int lost_count(const argus_t *const self, const argus_robot_t *const end) {
+    const argus_mask_t forward = argus_robot_forward(end);
+    const bool unheard = argus_rules(self)->asks_echo && (self->knowledge.heard & forward) == 0;
+    return argus_count_bits(unheard ? forward : lost_of(self, end));
 }
 
 static bool is_safe(const argus_t *const self, const argus_robot_t *const end) {
@@ -44,8 +48,8 @@ static bool can_go_on(const argus_t *const self, const argus_robot_t *const end)
 
 static bool is_better(const argus_t *const self, const argus_robot_t *const other) {
     const argus_robot_t *const lead = self->knowledge.robot;
-    const int lost = argus_count_bits(lost_of(self, lead));
-    const int other_lost = argus_count_bits(lost_of(self, other));
+    const int lost = lost_count(self, lead);
+    const int other_lost = lost_count(self, other);
     if (lead->reversed && other_lost == 0) {
         return true;
     }

@@ -40,7 +40,8 @@ argus_guard_t argus_guard(const argus_t *const self) {
                            .active = argus_is_active(self),
                            .linked = argus_is_open(self) && !self->stalled,
                            .checked = self->checked};
-    guard.creeps = self->config.creep_mm_s > 0 && argus_is_unseen(self, &guard);
+    guard.creeps = self->config.creep_mm_s > 0 && self->knowledge.robot->front_bumpers > 0 &&
+                   argus_is_unseen(self, &guard);
     return guard;
 }
 

@@ -22,6 +22,8 @@ static void forget(argus_t *const self) {
     argus_slip_restart(&self->slip);
     memset(&self->verifying, 0, sizeof self->verifying);
     memset(&self->looks, 0, sizeof self->looks);
+    self->reflexes.unseen = 0;
+    self->reflexes.touched_unheard = false;
     self->orders.pinned = 0;
     self->history.recorded = 0;
     argus_task_restart(&self->travel.task);

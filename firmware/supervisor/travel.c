@@ -52,7 +52,8 @@ static argus_intent_t arrive(const argus_t *const self, argus_travel_t *const mi
     if (!self->motion.settled) {
         return argus_to_nothing();
     }
-    if (argus_task_goal_mm(&mine->task, &self->knowledge) > self->config.waypoint_radius_mm) {
+    const int32_t away_mm = argus_max(self->config.goal_radius_mm, self->config.waypoint_radius_mm);
+    if (argus_task_goal_mm(&mine->task, &self->knowledge) > away_mm) {
         mine->arriving = false;
         argus_task_return(&mine->task);
         return argus_to_nothing();
@@ -108,6 +109,13 @@ static void end_leg(const argus_t *const self, argus_travel_t *const mine) {
     mine->aimed = mine->aimed && !missed;
 }
 
+// The MOVE at work was begun before the robot saw what it sees now (S5).
+static bool is_too_fast(const argus_t *const self) {
+    const argus_guard_t guard = argus_guard(self);
+    return self->motion.kind == ARGUS_MOTION_MOVE && !self->motion.settled &&
+           self->motion.speed_mm_s > argus_guard_speed_mm_s(&guard, argus_guard_seen_mm(&guard));
+}
+
 // A leg to drive. False: `intent` is what the SIP calls for.
 static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
     if (mine->jog_mm > 0 || mine->task.has_leg) {
@@ -117,8 +125,8 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
     const bool stopped =
         sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
     const argus_search_news_t news = argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
-    if (news == ARGUS_SEARCH_GOES_ON) { // what drives ends by itself
-        *intent = argus_to_nothing();
+    if (news == ARGUS_SEARCH_GOES_ON) {
+        *intent = argus_to(is_too_fast(self) ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING); // a MOVE ends by itself
         return false;
     }
     if (news == ARGUS_SEARCH_NO_WAY) {
@@ -139,7 +147,7 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
 // the robot for ever where no look can be had.
 static bool leads_out(const argus_t *const self, argus_travel_t *const mine, const int32_t by_cdeg) {
     const argus_guard_t guard = argus_guard(self);
-    const argus_mask_t doubted = argus_open_suspects(self);
+    const argus_mask_t doubted = argus_with_health(&self->knowledge, ARGUS_SUSPECT);
     const bool open = by_cdeg != 0 ? argus_guard_may_nudge(&guard, by_cdeg)
                                    : argus_flank_mm(&self->knowledge, doubted) > FLANK_MM;
     return open && argus_task_escape(&mine->task, &self->knowledge, &self->echoes, by_cdeg);
@@ -440,7 +448,7 @@ static argus_intent_t creep_on(const argus_t *const self, argus_travel_t *const 
         return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_MOTORS};
     }
     return (argus_intent_t){.act = ARGUS_DO_CREEP,
-                            .mm = argus_min(way_mm, CREEP_MM),
+                            .mm = mine->jog_mm > 0 ? way_mm : argus_min(way_mm, CREEP_MM),
                             .steers = way_mm > STEER_LEG_MM && off_bearing(self, mine) > STEER_CDEG &&
                                       argus_guard_may_turn(&guard),
                             .cdeg = bearing(self, mine),
@@ -461,5 +469,6 @@ argus_intent_t argus_run_creeping(const argus_t *const self, argus_travel_t *con
     if (!has_way(self, mine, &intent) || !is_aimed(self, mine, &intent)) {
         return intent;
     }
-    return creep_on(self, mine);
+    const bool steps = mine->jog_mm > 0 && !self->motion.settled; // one MOVE, not renewed
+    return steps ? argus_to_nothing() : creep_on(self, mine);
 }

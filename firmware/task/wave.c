@@ -119,7 +119,9 @@ static void survey(argus_wave_t *const self, const argus_ground_t *const ground)
     if (ground->stopped) {
         const argus_point_t ahead = {ground->knowledge->robot->front_mm + AHEAD_OF_BODY_MM, 0};
         const argus_cell_t cell = cell_in(self, argus_to_course(&ground->knowledge->pose, ahead));
-        occupied[cell.y] |= argus_wave_is_within(cell) ? bit(cell.x) : 0;
+        if (argus_wave_is_within(cell)) {
+            occupied[cell.y] |= bit(cell.x);
+        }
     }
     grow(occupied, self->wide, argus_wave_wide_mm(ground->knowledge));
     grow(occupied, self->narrow, argus_wave_narrow_mm(ground->knowledge));

@@ -111,9 +111,12 @@ def run(command: Sequence[str | Path], environment: dict[str, str]) -> None:
 
 def make(names: Sequence[str], prefix: Path) -> None:
     """Build and install packages into the environment that this Python runs in."""
-    lacking = [tool for tool in ("cmake", "ninja", "gcc", "g++") if shutil.which(tool) is None]
+    lacking = [tool for tool in ("cmake", "gcc", "g++") if shutil.which(tool) is None]
+    generator = "Ninja" if shutil.which("ninja") else "Unix Makefiles"
+    if generator != "Ninja" and shutil.which("make") is None:
+        lacking.append("make")
     if lacking:
-        raise Failed(f"{' and '.join(lacking)} needed: install cmake, ninja-build and g++")
+        raise Failed(f"{' and '.join(lacking)} needed: install cmake, make and g++")
     environment = {**os.environ, "AMENT_PREFIX_PATH": str(prefix)}
     environment["PATH"] = f"{prefix / 'bin'}{os.pathsep}{environment.get('PATH', '')}"
     run(
@@ -128,8 +131,8 @@ def make(names: Sequence[str], prefix: Path) -> None:
             write(source, name)
             python = [f"-D{key}_EXECUTABLE={sys.executable}" for key in ("Python3", "PYTHON")]
             places = [f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_INSTALL_PREFIX={prefix}"]
-            run(["cmake", "-S", source, "-B", build, "-G", "Ninja", *python, *places], environment)
-            run(["cmake", "--build", build], environment)
+            run(["cmake", "-S", source, "-B", build, "-G", generator, *python, *places], environment)
+            run(["cmake", "--build", build, "--parallel"], environment)
             run(["cmake", "--install", build], environment)
 
 

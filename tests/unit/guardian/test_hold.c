@@ -221,7 +221,7 @@ static void drive_into_smooth_wall(int slant_deg) {
     robot.segments = 1;
     memcpy(robot.segment[0], wall, sizeof wall);
     client_say(&client, ARCOS_CMD_VEL, 300);
-    run(12000);
+    run(30000); // no faster than a step, where nothing ahead has been heard
 }
 
 void test_a_wall_that_the_way_slants_into_is_not_forgotten(void) {

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "knowledge/body.h"
 #include "robot.h"
 #include "supervisor/state.h"
 #include "unity.h"
@@ -198,6 +199,48 @@ void test_what_it_touches_then_shows_that_it_is_blind(void) {
     robot_run(&robot, 8000);
     TEST_ASSERT_EQUAL(ARGUS_WAIT_NONE, robot.argus.waiting.why);
     finish();
+}
+
+// A touch behind says nothing of those ahead.
+void test_a_touch_behind_does_not_show_that(void) {
+    start_unheard(0);
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 20000));
+    robot.bumpers_rear = 1u << 3;
+    robot_run(&robot, 1000);
+    robot.bumpers_rear = 0;
+    const double x = robot.x;
+    robot_run(&robot, 20000);
+    TEST_ASSERT_NOT_EQUAL(ARGUS_WAIT_ECHO, robot.argus.waiting.why);
+    TEST_ASSERT_TRUE(robot.x > x + 300);
+    finish();
+}
+
+// One MOVE, and it is done.
+void test_an_operators_step_ends(void) {
+    start(ARGUS_PROFILE_ARGUS, CREEP_MM_S);
+    lose_all_on_the_way(ROBOT_SILENT);
+    TEST_ASSERT_TRUE(until_blind(30000));
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_STOP, 0);
+    robot_run(&robot, 3000);
+    const double x = robot.x;
+    const int from = robot.commands;
+    argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_MOVE, 100);
+    robot_run(&robot, 20000);
+    TEST_ASSERT_EQUAL(1, robot_count_commands(&robot, ARCOS_CMD_MOVE, from));
+    TEST_ASSERT_TRUE(robot.x > x + 80 && robot.x < x + 130);
+    TEST_ASSERT_EQUAL(ARGUS_MODE_IDLE, robot.argus.mode);
+    finish();
+}
+
+// With no bumper on the end that leads there is nothing to creep by.
+void test_without_a_bumper_it_stands(void) {
+    argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    config.creep_mm_s = CREEP_MM_S;
+    robot_init(&robot, &config, 0);
+    robot.argus.reflexes.touched_unheard = true;
+    TEST_ASSERT_TRUE(argus_guard(&robot.argus).creeps);
+    argus_body_is(&robot.argus.knowledge, argus_robot_find("amigo-sh"), 0);
+    TEST_ASSERT_FALSE(argus_guard(&robot.argus).creeps);
 }
 
 void test_with_leave_it_creeps_from_there(void) {
