@@ -171,7 +171,7 @@ def test_argus_sim_names_the_module_or_does_without_it() -> None:
     script = f"{SIM} --can vcan0,stack=kernel; echo $?; {SIM} --can vcan0 --duration 1; echo $?"
     done = with_can("--without-isotp", "sh", "-c", script)
     assert done.stdout.split() == ["1", "vcan0", "0"], done.stderr
-    first, second = done.stderr.strip().splitlines()
+    first, second = (line for line in done.stderr.strip().splitlines() if "the host was late" not in line)
     assert "module can-isotp" in first
     assert "sudo modprobe can-isotp" in first
     assert "stack in user space" in second

@@ -26,6 +26,12 @@ def healthy() -> Outcome:
     return run(mission())
 
 
+@lru_cache(maxsize=1)
+def failed() -> Outcome:
+    """Return a mission in which a sonar fails: what comes before it is repaired, or is not."""
+    return run(mission("off:3@travelled>3000", limit_s=200.0))
+
+
 def said(outcome: Outcome, name: str, sonar: int) -> list[float]:
     return [event.t_s for event in outcome.events if (event.name, event.sonar) == (name, sonar)]
 
@@ -58,9 +64,8 @@ def test_what_grows_is_announced_once_and_before_it_convicts(sonar: int, fault: 
 
 @pytest.mark.parametrize("repaired", [True, False])
 def test_what_had_failed_starts_on_probation(repaired: bool) -> None:
-    failed = run(mission("off:3@travelled>3000", limit_s=200.0))
-    assert failed.final[3] == ("DISABLED", "off")
-    after = run(mission(*([] if repaired else ["off:3"]), record=failed.record, limit_s=200.0))
+    assert failed().final[3] == ("DISABLED", "off")
+    after = run(mission(*([] if repaired else ["off:3"]), record=failed().record, limit_s=200.0))
     assert after.health[3][0][1:] == ("PROBATION", "off")
     assert ("HEALTHY" in [health for _, health, _ in after.health[3]]) == repaired
     assert after.reached or not after.collisions

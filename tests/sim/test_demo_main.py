@@ -57,6 +57,12 @@ def played(monkeypatch: pytest.MonkeyPatch) -> type[Played]:
     return Fresh
 
 
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Drawing takes most of what a made-up drive takes; whoever asks nothing of the picture gets none."""
+    monkeypatch.setattr("hil_sim.demo.picture.draw", lambda drive, path: None)
+
+
 def run(*arguments: str) -> int:
     """Run the command in this process; return its exit code."""
     try:
@@ -172,6 +178,7 @@ def test_a_good_drive_ends_with_0_and_leaves_its_files(
     assert "\033[" not in said.out
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_bad_drive_ends_with_1(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], played: type[Played]
 ) -> None:
@@ -181,6 +188,7 @@ def test_a_bad_drive_ends_with_1(
     assert json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))["passed"] is False
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("bad", [False, True])
 def test_json_is_one_object_and_nothing_else(
     bad: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str], played: type[Played]
@@ -201,6 +209,7 @@ def test_json_is_one_object_and_nothing_else(
     assert said.err == ""
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_argusd_is_told_neither_scenario_nor_seed_nor_faults(tmp_path: Path, played: type[Played]) -> None:
     run("--json", "--out", str(tmp_path), "--seed", "77", "--fail", "off:2,wrong:4", "--policy", "fewest")
     given = played.setup.course.read_text(encoding="utf-8") + played.setup.config.read_text(encoding="utf-8")
@@ -231,6 +240,7 @@ def test_a_drive_that_ends_before_its_time(
     assert said.err.count("\n") == 1
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_signal_handlers_are_given_back(tmp_path: Path, played: type[Played]) -> None:
     before = [signal.getsignal(number) for number in ENDING]
     run("--json", "--out", str(tmp_path))
@@ -339,6 +349,7 @@ def test_a_reader_that_goes_away_leaves_nothing_behind(tmp_path: Path, idle_argu
     wait_for(lambda: users_of(tmp_path) == [], 5.0)
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(
     ("late_ms", "lasts", "drives", "code"),
     [(900.0, 1, 2, 0), (900.0, 9, program.TRIES, 1), (120.0, 9, 1, 1), (0.0, 9, 1, 1)],

@@ -61,10 +61,16 @@ def tshark(path: Path, *arguments: str) -> str:
     return done.stdout
 
 
-def field(path: Path, name: str, where: str = "arcos") -> list[str]:
+def fields(path: Path, *names: str, where: str = "arcos") -> list[list[list[str]]]:
+    """The values of some fields, for each frame."""
+    wanted = [word for name in names for word in ("-e", name)]
+    lines = tshark(path, "-Y", where, "-T", "fields", *wanted).splitlines()
+    return [[[value for value in part.split(",") if value] for part in line.split("\t")] for line in lines]
+
+
+def field(path: Path, name: str) -> list[str]:
     """All values of one field, in order."""
-    lines = tshark(path, "-Y", where, "-T", "fields", "-e", name).splitlines()
-    return [value for line in lines for value in line.split(",") if value]
+    return [value for (values,) in fields(path, name) for value in values]
 
 
 def layers(path: Path) -> list[dict[str, Any]]:
@@ -93,8 +99,12 @@ def test_the_packets_are_those_of_argus_log(path: Path, size: int, tmp_path: Pat
     rows = [row for row in packets(chunks) if row.ok]
     pcap = write(tmp_path / "a.pcap", cut(chunks, size))
     robot, client = ([row.type for row in rows if row.dir == name] for name in ("r2c", "c2r"))
-    assert field(pcap, "arcos.name", "arcos.to_robot == 0") == robot
-    assert field(pcap, "arcos.name", "arcos.to_robot == 1") == client
+    found: dict[str, list[str]] = {"0": [], "1": []}
+    for to_robot, names in fields(pcap, "arcos.to_robot", "arcos.name"):
+        assert len(set(to_robot)) == bool(names), "a frame has one direction"
+        for name in names:
+            found[to_robot[0]].append(name)
+    assert found == {"0": robot, "1": client}
 
 
 def gathered(chunks: Iterable[Chunk], size: int) -> list[Chunk]:
@@ -119,14 +129,15 @@ def test_many_packets_in_a_segment_and_some_over_its_edge(name: str, tmp_path: P
     over_edges = cut(gathered(chunks, 1 << 20), 1000)
     for segments in (full, over_edges):
         pcap = write(tmp_path / "a.pcap", segments)
-        assert field(pcap, "arcos.name") == [row.type for row in rows]
+        found = fields(pcap, "arcos.name", "arcos.sonar.range")
+        assert [name for names, _ in found for name in names] == [row.type for row in rows]
         ranges = [
             str(int.from_bytes(row.data[at + 1 : at + 3], "little"))
             for row in rows
             if row.type == "SIP"
             for at in range(20, 20 + 3 * row.data[19], 3)
         ]
-        assert field(pcap, "arcos.sonar.range") == ranges
+        assert [value for _, values in found for value in values] == ranges
 
 
 SIP = Sip(
@@ -197,8 +208,9 @@ def test_every_field_of_a_sip(tmp_path: Path) -> None:
         "arcos.sip.flag.motors",
         "arcos.sip.flag.estop",
     ]
-    for number, range_mm in SIP.sonars:
-        assert field(pcap, f"arcos.sonar.s{number}") == [str(range_mm)]
+    found = fields(pcap, *(f"arcos.sonar.s{number}" for number, _ in SIP.sonars))
+    of_each = ([value for values in column for value in values] for column in zip(*found, strict=True))
+    assert list(of_each) == [[str(range_mm)] for _, range_mm in SIP.sonars]
 
 
 def test_units_and_the_summary(tmp_path: Path) -> None:

@@ -85,6 +85,9 @@ def environment() -> dict[str, str]:
     env = dict(os.environ)
     env["PATH"] = f"{VENV / 'bin'}{os.pathsep}{env.get('PATH', '')}"
     env.pop("PYTHONHOME", None)
+    # Where this is set each start of Python compiles what it imports. What it asks for is kept: none beside sources.
+    if env.pop("PYTHONDONTWRITEBYTECODE", "") and "PYTHONPYCACHEPREFIX" not in env:
+        env["PYTHONPYCACHEPREFIX"] = str(BUILD / "pycache")
     if "CMAKE_GENERATOR" not in env and shutil.which("ninja"):
         env["CMAKE_GENERATOR"] = "Ninja"
     env.setdefault("PIP_DISABLE_PIP_VERSION_CHECK", "1")

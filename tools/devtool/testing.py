@@ -26,6 +26,17 @@ COMPUTING: Final = ("tests", *(f"--ignore={folder}" for folder in BY_THEMSELVES)
 SHARED_OUT: Final = ("-n", str(CORES), "--dist", "worksteal")
 
 
+def files_with(mark: str) -> list[str]:
+    """Return the files that have tests of MARK: reading in all others takes longer than some of those tests."""
+    files = [path.relative_to(ROOT) for path in sorted((ROOT / "tests").rglob("test_*.py"))]
+    return [
+        str(file)
+        for file in files
+        if not any(file.is_relative_to(folder) for folder in BY_THEMSELVES)
+        and f"mark.{mark}" in (ROOT / file).read_text(encoding="utf-8")
+    ]
+
+
 def ctest_stage(preset: str, what: str) -> Stage:
     """Return the stage that builds PRESET and runs its unit tests."""
     return Stage(preset, what, lambda run: build_and_test(preset, run), (preset,))
@@ -42,7 +53,7 @@ def soak_tests(run: Run) -> None:
     """Run what computes for long, in C and in Python: once, and optimised."""
     build("release", run)
     ctest("release", run, "-L", SOAK)
-    run([*PYTEST, *COMPUTING, "-m", f"{SOAK} and not {WIDE}", *SHARED_OUT])
+    run([*PYTEST, *files_with(SOAK), "-m", f"{SOAK} and not {WIDE}", *SHARED_OUT])
 
 
 def wide_tests(run: Run) -> None:
@@ -51,7 +62,7 @@ def wide_tests(run: Run) -> None:
         build(preset, run)
     ctest("release", run, "-L", WIDE)
     ctest("sanitize", run, "-L", f"{SOAK}|{WIDE}")
-    run([*PYTEST, *COMPUTING, "-m", WIDE, *SHARED_OUT])
+    run([*PYTEST, *files_with(WIDE), "-m", WIDE, *SHARED_OUT])
 
 
 def hil_tests(run: Run) -> str | None:

@@ -120,8 +120,7 @@ def strip(line: str) -> dict[str, object]:
     return {name: value for name, value in json.loads(line).items() if name != "wall_s"}
 
 
-@pytest.mark.parametrize("jobs", ["1", "2"])
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize(("jobs", "number"), [("1", signal.SIGTERM), ("2", signal.SIGINT)])
 def test_an_interrupt_keeps_what_is_done_and_ends_with_130(tmp_path: Path, jobs: str, number: int) -> None:
     command = [sys.executable, "-m", "hil_sim.cli", "bench", "diagnosis", *TINY, "--seeds", "1-400"]
     command += ["--jobs", jobs]

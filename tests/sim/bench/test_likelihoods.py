@@ -132,6 +132,7 @@ def test_a_fault_is_of_its_hypotheses(text: str, lags: list[int], offsets: list[
     assert likelihoods.right_offsets(truth) == offsets
 
 
+@pytest.mark.soak
 def test_a_small_run_bears_the_tables_out() -> None:
     assert (
         main(

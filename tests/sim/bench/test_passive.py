@@ -121,6 +121,7 @@ def test_a_rule_that_is_gone_is_an_error() -> None:
         edit.apply("something")
 
 
+@pytest.mark.soak
 def test_two_rules_on_three_streams(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ("--worlds", "lab", "--seeds", "1", "--kinds", "stuck,garbage,wrong", "--jobs", "1")
     kept = ("--streams", str(tmp_path / "streams"))

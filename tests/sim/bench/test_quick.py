@@ -15,8 +15,28 @@ from hil_sim.bench.plan import parse_id
 from hil_sim.bench.quick import broken, cases, load_bounds
 from hil_sim.errors import SimError
 
+SOME = {"argus": ("office", "gen-corridor"), "paper": ("lab",)}
+
 
 @pytest.mark.soak
+def test_two_worlds_are_within_the_bounds_of_all(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    some = [
+        case
+        for case in cases()
+        if case.world in SOME[case.profile] and (case.profile == "argus" or case.kind in ("off", "silent"))
+    ]
+    bounds = load_bounds()
+    # Two missions of a kind are no rate: of the kinds, the bound of all of them together holds.
+    argus = {name: value for name, value in bounds["argus"].items() if name != "found"} | {"missions": 18}
+    paper = {"missions": 2, **{name: bounds["paper"][name] for name in ("found", "attributable")}}
+    monkeypatch.setattr(quick, "cases", lambda: some)
+    monkeypatch.setattr(quick, "load_bounds", lambda: {"argus": argus, "paper": paper})
+    assert main(["diagnosis", "--quick", "--no-plots"]) == 0, capfd.readouterr().err
+
+
+@pytest.mark.wide
 def test_the_quick_bench_is_within_its_bounds(capfd: pytest.CaptureFixture[str]) -> None:
     code = main(["diagnosis", "--quick", "--no-plots"])
     out, err = capfd.readouterr()
