@@ -14,7 +14,7 @@
 #define SIP_MS 100u
 #define PROOFS 3         // looks in a row that leave a sonar its name,
 #define PROOFS_AT_GOAL 2 // ... where one follows at once upon the other
-#define SETTLE_MOST 5    // looks at the goal: a verdict takes disagreements at more than one time
+#define SETTLE_MOST 8    // looks at the goal: a verdict takes disagreements at more than one time
 
 static bool is_held(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
