@@ -8,6 +8,7 @@ import fnmatch
 import functools
 import json
 import os
+import shlex
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
@@ -67,7 +68,8 @@ examples:
 
 How often each verdict on a ping comes together with each verdict on the ping as a hypothesis maps it: of healthy
 sonars, of those that the hypothesis holds for, and of those with another fault. The logarithms of these shares are what
-the evidence adds up (docs/evidence.md, Hypotheses). --write needs the sources.
+the evidence adds up (docs/evidence.md, Hypotheses). A fault manager that counts is built for it: that needs a
+checkout and a C compiler. --write writes nothing when a mission failed.
 
 exit codes: 0 done, 1 a mission failed or --check found a difference, 2 wrong argument or file, 130 interrupted
 """
@@ -274,11 +276,23 @@ def _differs(tally: counting.Tally, known: counting.Tally) -> bool:
     return bool(found)
 
 
-def _give(tally: counting.Tally, argv: Sequence[str], arguments: argparse.Namespace) -> None:
+def command_of(arguments: argparse.Namespace) -> str:
+    """Return the command that counts the same anywhere: without what is of this machine alone."""
+    words = ["argus-sim", "bench", "likelihoods"]
+    words += ["--split", arguments.split] if arguments.split != "tune" else []
+    for world in arguments.worlds or []:
+        words += ["--worlds", ",".join(Path(name).name for name in world.split(","))]
+    seen = arguments.seeds
+    words += ["--seeds", f"{seen[0]}-{seen[-1]}", "--kinds", ",".join(arguments.kinds)]
+    words += ["--physics", arguments.physics] if arguments.physics else []
+    words += ["--people"] if arguments.people else []
+    words += ["--speed", f"{arguments.speed:g}"] if arguments.speed != SPEED_MM_S else []
+    return shlex.join(words)
+
+
+def _give(tally: counting.Tally, arguments: argparse.Namespace) -> None:
     """Write the table, with the command that makes it, or print it."""
-    kept = ["--streams", "--write", str(arguments.streams)]
-    command = " ".join(["argus-sim bench likelihoods", *(word for word in argv if word not in kept)])
-    text = counting.to_toml(tally, command)
+    text = counting.to_toml(tally, command_of(arguments))
     if arguments.write:
         _write(counting.FILE, text)
     else:
@@ -295,14 +309,18 @@ def likelihoods(argv: Sequence[str]) -> int:
     what.add_argument("--write", action="store_true", help="write hil_sim/tables/likelihoods.toml")
     what.add_argument("--check", action="store_true", help="compare with it; exit 1 if it is not borne out")
     arguments = options.parse_args(argv)
+    variants.must_build()
     known = counting.from_toml(counting.FILE.read_text(encoding="utf-8")) if arguments.check else None
     try:
         with _recorded(arguments) as (paths, whole):
+            if arguments.write and not whole:
+                say(f"a mission failed: {counting.FILE.name} stays as it is")
+                return EXIT_FAILED
             tally = counting.observe(paths)
     except KeyboardInterrupt:
         return _interrupted()
     if known is None:
-        _give(tally, argv, arguments)
+        _give(tally, arguments)
     elif _differs(tally, known):
         return EXIT_FAILED
     return 0 if whole else EXIT_FAILED

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ctypes
+import json
 import math
 import tempfile
 import tomllib
@@ -48,6 +49,10 @@ CLASSES: Final = ("healthy", "fault", "other")
 TABLES: Final = ("lag", "offset")
 
 _OBSERVER: Final = f"""
+_Static_assert(ARGUS_LEAST_LAG == {LAGS.start}, "the least lag");
+_Static_assert(ARGUS_LAGS == {len(LAGS)}, "the number of lags");
+_Static_assert(ARGUS_OFFSETS == {len(OFFSETS_DEG)}, "the number of offsets");
+_Static_assert(SAYINGS == {len(VERDICTS)}, "the number of verdicts");
 __attribute__((visibility("default"))) int32_t argus_observed{"".join(f"[{n}]" for n in _SHAPE)};
 __attribute__((visibility("default"))) int32_t argus_observe_sonar;
 __attribute__((visibility("default"))) uint32_t argus_observe_from_ms;
@@ -152,7 +157,8 @@ class Observer:
         """
         self._sonar.value, from_s, to_s = -1, 0.0, stream.end_s
         for truth in stream.truth:
-            self._sonar.value, from_s = truth.sonar, truth.first_visible_s or stream.end_s
+            visible_s = truth.first_visible_s
+            self._sonar.value, from_s = truth.sonar, stream.end_s if visible_s is None else visible_s
             to_s = truth.end_s if truth.end_s is not None else stream.end_s
         self._from_ms.value, self._to_ms.value = int(from_s * 1000), int(to_s * 1000)
         ctypes.memset(self._observed, 0, ctypes.sizeof(self._observed))
@@ -229,7 +235,7 @@ def to_toml(tally: Tally, command: str) -> str:
         "# SPDX-License-Identifier: MIT",
         "# Verdicts on pings with a fault and without, counted by the command below; not to be edited.",
         "# Rows: the verdict on a ping as it stands; columns: on the ping as a hypothesis maps it.",
-        f'command = "{command}"',
+        f"command = {json.dumps(command, ensure_ascii=False)}",
         f"verdicts = {list(VERDICTS)}".replace("'", '"'),
     ]
     for table in TABLES:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from argus_tools.core_build import sources
+from argus_tools.formats.base import LogError
 
 from hil_sim.errors import SimError
 
@@ -113,15 +114,27 @@ def hand_set() -> tuple[int, int]:
     )
 
 
+def _compiler() -> list[str]:
+    return shlex.split(os.environ.get("CC", "")) or [next(filter(shutil.which, ("cc", "gcc", "clang")), "cc")]
+
+
+def must_build() -> None:
+    """SimError when variants cannot be built here: better said before hours of recording."""
+    try:
+        sources()
+    except LogError:
+        raise SimError("the sources of the fault manager are not here; run it in a checkout") from None
+    if shutil.which(_compiler()[0]) is None:
+        raise SimError(f"no C compiler ({_compiler()[0]}); install gcc, or set CC")
+
+
 class Workshop:
     """Builds variants in a folder: what a variant does not change is compiled once."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.root = sources()
-        self._compiler = shlex.split(os.environ.get("CC", "")) or [
-            next(filter(shutil.which, ("cc", "gcc", "clang")), "cc")
-        ]
+        self._compiler = _compiler()
         self._sources = [*sorted((self.root / "firmware").rglob("*.c")), self.root / "tools/core_shim.c"]
 
     def _run(self, words: Sequence[str]) -> None:

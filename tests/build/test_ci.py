@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Rule: .ci/run runs all of its steps whatever fails, tells which failed, and fails with them."""
+"""Rule: .ci/run runs all of its steps whatever fails, tells which failed, and fails with them; in the nightly runs
+what computes for long and nothing else, and no push ends it."""
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -30,3 +32,18 @@ def test_all_steps_run(tmp_path: Path, failing: str, code: int, said: str) -> No
     dev.chmod(0o755)
     done = subprocess.run([tmp_path / ".ci/run"], cwd="/", capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr, done.returncode) == ("test\nlint\n", said, code)
+
+
+def test_the_nightly_is_apart_from_what_a_push_starts() -> None:
+    text = (ROOT / ".github/workflows/ci.yml").read_text(encoding="utf-8")
+    head, _, tail = text.partition("\njobs:\n")
+    assert re.search(r"^  group: .*\$\{\{ github\.event_name \}\}", head, re.MULTILINE)
+    jobs = re.split(r"^  (\w+):\n", tail, flags=re.MULTILINE)[1:]
+    conditions = {
+        name: re.findall(r"^    if: (.*)$", body, re.MULTILINE)
+        for name, body in zip(jobs[::2], jobs[1::2], strict=True)
+    }
+    nightly = conditions.pop("soak")
+    assert nightly == ["github.event_name == 'schedule'"]
+    assert conditions
+    assert all(found == ["github.event_name != 'schedule'"] for found in conditions.values()), conditions

@@ -46,6 +46,7 @@ def test_the_same_text_is_looked_at_once(tree: Path) -> None:
         ("a.c", FILES["a.c"] + "// NOLINT\n"),
         ("a.h", "#define A 2\n"),
         ("a.h", "// NOLINTBEGIN\n" + FILES["a.h"]),
+        ("a.h", FILES["a.h"] + "#define NOT_USED(x) x + 1\n"),
         (".clang-tidy", "Checks: '-*'\n"),
         ("requirements.lock", "clang-tidy==20\n"),
     ],
@@ -59,6 +60,13 @@ def test_whatever_clang_tidy_sees_counts(tree: Path, name: str, text: str) -> No
 def test_the_settings_count(tree: Path) -> None:
     (tree / "a.c").write_text("#ifdef B\nint b;\n#endif\nint a;\n")
     assert stamp(tree) != stamp(tree, "-DB")
+
+
+def test_how_it_is_looked_at_counts(tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = stamp(tree)
+    assert stamp(tree, "-Wshadow") != before, "it changes no text"
+    monkeypatch.setattr(linting, "VENV", tree / "another")
+    assert stamp(tree) != before
 
 
 def test_what_is_not_compiled_is_looked_at_each_time(tree: Path) -> None:

@@ -4,14 +4,19 @@
 from __future__ import annotations
 
 import os
+import shutil
 import socket
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from devtool import peers as stage
+from devtool import testing
 from devtool.base import Command as Words
-from peers import base, runs, wander, wire
+from peers import base, ros, runs, wander, wire
+from peers.guard import Client
 
 from hil_sim.arcos import COMMAND, Command, Sip, frame
 
@@ -21,7 +26,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def run_with(monkeypatch: pytest.MonkeyPatch, **given: str) -> tuple[str | None, list[list[str]]]:
     done: list[list[str]] = []
     monkeypatch.setattr(stage, "build", lambda preset, run: None)
-    for name in stage.SOURCES:
+    for name in (*stage.SOURCES, "ROS1_ROOT"):
         monkeypatch.delenv(name, raising=False)
     for name, value in given.items():
         monkeypatch.setenv(name, value)
@@ -45,22 +50,96 @@ def test_what_is_given_is_run_and_the_rest_told(monkeypatch: pytest.MonkeyPatch)
     assert note is not None
     assert "MOBILESIM_SOURCE=FOLDER" in note
     assert " ARIA_SOURCE" not in note
-    note, (words,) = run_with(monkeypatch, **{name: f"/{name[0]}" for name in stage.SOURCES})
+    note, (words,) = run_with(monkeypatch, **{name: f"/{name[0]}" for name in (*stage.SOURCES, "ROS1_ROOT")})
     assert words[2:] == [f"{name}=/{name[0]}" for name in stage.SOURCES]
     assert note is None
 
 
-def test_mobilesim_alone_is_told_to_need_aria(capsys: pytest.CaptureFixture[str]) -> None:
-    assert runs.main(["MOBILESIM_SOURCE=/nowhere"]) == 1
-    assert "give ARIA_SOURCE= as well" in capsys.readouterr().out
+def test_a_debian_that_is_missing_is_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    note, _ = run_with(monkeypatch, **{name: f"/{name[0]}" for name in stage.SOURCES})
+    assert note == "skipped what needs ROS1_ROOT=FOLDER (docs/peers.md)"
 
 
-def test_those_of_ros_1_are_told_to_need_a_debian(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+def test_the_help_of_the_stage_names_all_sources() -> None:
+    (told,) = [entry.what for entry in testing.TEST_STAGES if entry.name == "peers"]
+    assert all(f"{name}=" in told for name in stage.SOURCES)
+    assert {*runs.NEEDS, "ARIA_SOURCE"} == {*stage.SOURCES}
+    assert ros.ROOT_VARIABLE == stage.ROOT_VARIABLE
+
+
+@pytest.mark.parametrize(
+    ("given", "root", "lacks"),
+    [
+        (["MOBILESIM"], False, {"MOBILESIM": "ARIA_SOURCE="}),
+        (["P2OS", "PLAYER"], False, {"P2OS": "ROS1_ROOT=", "PLAYER": "ROS1_ROOT="}),
+        (["ROSARIA"], False, {"ROSARIA": "ARIA_SOURCE= and ROS1_ROOT="}),
+        (["ROSARIA", "P2OS"], True, {"ROSARIA": "ARIA_SOURCE="}),
+        (["ARIA", "ROSARIA", "P2OS", "PLAYER", "MOBILESIM"], True, {}),
+    ],
+)
+def test_what_lacks_something_is_skipped_and_the_rest_is_run(
+    given: list[str],
+    root: bool,
+    lacks: dict[str, str],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.delenv("ROS1_ROOT", raising=False)
-    assert runs.main(["ARIA_SOURCE=/nowhere", "P2OS_SOURCE=/nowhere"]) == 1
-    assert "give ROS1_ROOT= as well" in capsys.readouterr().out
+    if root:
+        (tmp_path / "etc").mkdir()
+        monkeypatch.setenv("ROS1_ROOT", str(tmp_path))
+    client = Client("it", lambda place: None)
+    for name in ("at_robot", "by_guard", "aria_against_sim", "argusd_against_mobilesim"):
+        monkeypatch.setattr(runs, name, lambda *words: base.Peer("it", "ours", True, "it drove"))
+    for name in ("build_aria", "build_mobilesim"):
+        monkeypatch.setattr(runs, name, lambda *folders: folders[0])
+    built: list[str] = []
+
+    def makes(name: str) -> Callable[..., Client]:
+        def make(*words: object) -> Client:
+            built.append(name)
+            return client
+
+        return make
+
+    for name in ("p2os", "rosaria", "player"):
+        monkeypatch.setattr(ros, name, makes(name))
+    assert runs.main([f"{name}_SOURCE=/{name}" for name in given]) == 0
+    said = capsys.readouterr().out
+    assert said.count("skipped") == len(lacks)
+    for name, needs in lacks.items():
+        assert f"skipped {name}_SOURCE: give {needs} as well" in said
+    of_ros = [name.lower() for name in ("P2OS", "ROSARIA", "PLAYER") if name in given]
+    assert built == [name for name in of_ros if name.upper() not in lacks]
+
+
+def test_one_that_fails_has_not_passed_and_keeps_no_other_from_running(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "etc").mkdir()
+    monkeypatch.setenv("ROS1_ROOT", str(tmp_path))
+
+    def fails(*words: object) -> Client:
+        raise subprocess.CalledProcessError(2, ["make"])
+
+    ran = []
+
+    def by_guard(client: Client, *words: object) -> base.Peer:
+        ran.append(client.name)
+        return base.Peer(client.name, "argusd", True, "it drove")
+
+    monkeypatch.setattr(ros, "p2os", fails)
+    monkeypatch.setattr(ros, "player", lambda *words: Client("Player", lambda place: None))
+    monkeypatch.setattr(runs, "build_aria", fails)
+    monkeypatch.setattr(runs, "at_robot", fails)
+    monkeypatch.setattr(runs, "by_guard", by_guard)
+    assert runs.main([f"{name}_SOURCE=/{name}" for name in ("ARIA", "P2OS", "PLAYER")]) == 1
+    said = capsys.readouterr().out
+    assert "FAILED AriaCoda against its compiler" in said
+    assert "FAILED p2os against its compiler" in said
+    assert "FAILED Player against argus-sim, sonar 3 dead" in said
+    assert ran == ["Player"]
 
 
 def test_a_sip_that_is_lost_on_the_wire_is_counted() -> None:
@@ -112,6 +191,38 @@ def test_sources_are_built_in_a_copy(tmp_path: Path, monkeypatch: pytest.MonkeyP
     copy = base.cache("aria", source)
     assert copy.is_relative_to(tmp_path / "cache")
     assert [path.name for path in copy.iterdir()] == ["Makefile"]
+
+
+def test_a_copy_that_was_cut_off_is_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    source = tmp_path / "source"
+    source.mkdir()
+    (source / "Makefile").write_text("all:\n")
+    real = shutil.copytree
+
+    def cut(*words: Any, **options: Any) -> None:
+        real(*words, **options)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(shutil, "copytree", cut)
+    with pytest.raises(KeyboardInterrupt):
+        base.cache("aria", source)
+    assert not list(base.home().iterdir())
+    monkeypatch.setattr(shutil, "copytree", real)
+    assert (base.cache("aria", source) / "Makefile").exists()
+
+
+def test_the_folder_of_a_client_has_a_name_of_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "root/etc").mkdir(parents=True)
+    debian = ros.Debian(tmp_path / "root")
+    source = tmp_path / "build-p2os_driver"
+    source.mkdir()
+    for name in ("p2os_msgs", "p2os_driver"):
+        (source / name).mkdir()
+        (source / name / "package.xml").write_text(f"<name>{name}</name>")
+    monkeypatch.setattr(ros.Debian, "run", lambda self, line: None)
+    ros.p2os(debian, source)
+    assert sorted(path.name for path in debian.peers.iterdir()) == ["p2os", "wander.py"]
 
 
 def test_nothing_of_the_vendors_is_kept_here() -> None:

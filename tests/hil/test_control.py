@@ -8,6 +8,7 @@ import json
 import os
 import re
 import shlex
+import signal
 import socket
 import subprocess
 import time
@@ -236,6 +237,17 @@ def test_the_monitor_shows_that_screen_in_the_place_of_its_page(bench: Bench) ->
         finally:
             terminal.close()
     assert argusd.process.poll() is None
+
+
+def test_a_signal_to_the_monitor_gives_the_terminal_back() -> None:
+    terminal = Terminal(["--sim", "--world", "hall", "--tui"], "vt52", 80, MONITOR)
+    try:
+        terminal.wait_shown("IsNormal")
+        terminal.process.send_signal(signal.SIGTERM)
+        assert terminal.wait_exit() == 0
+        assert terminal.is_as_before()
+    finally:
+        terminal.close()
 
 
 def test_wrong_words_are_refused_in_one_line(bench: Bench) -> None:

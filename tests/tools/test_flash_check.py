@@ -8,11 +8,15 @@ import json
 import os
 import pty
 import threading
+import time
 import tty
 from collections.abc import Iterator
 from typing import Any, Final
+from unittest import mock
 
 import pytest
+import serial
+from argus_tools import flash_check
 from argus_tools.flash_check import main
 
 START: Final = {
@@ -46,10 +50,21 @@ def told(*lines: dict[str, Any]) -> bytes:
 
 
 @contextlib.contextmanager
-def board(answer: bytes, before: bytes = b"", hangs_up: bool = False) -> Iterator[str]:
-    """Play a board that goes on with BEFORE, and ANSWER when it is ordered to restart."""
+def board(answer: bytes, before: bytes = b"", hangs_up: bool = False, queued: bytes = b"") -> Iterator[str]:
+    """Play a board that goes on with BEFORE, and ANSWER when it is ordered to restart.
+
+    QUEUED comes when the line is opened, before any order.
+    """
     inside, outside = pty.openpty()
     tty.setraw(outside)
+    opened = serial.serial_for_url
+
+    def open_with_queue(url: str, **options: Any) -> Any:
+        port = opened(url, **options)
+        os.write(inside, queued)
+        while port.in_waiting < len(queued):
+            time.sleep(0.01)
+        return port
 
     def play() -> None:
         heard = b""
@@ -64,7 +79,8 @@ def board(answer: bytes, before: bytes = b"", hangs_up: bool = False) -> Iterato
     thread = threading.Thread(target=play, daemon=True)
     thread.start()
     try:
-        yield os.ttyname(outside)
+        with mock.patch.object(serial, "serial_for_url", open_with_queue):
+            yield os.ttyname(outside)
     finally:
         with contextlib.suppress(OSError):
             os.close(inside)
@@ -157,6 +173,33 @@ def test_a_line_that_goes_away(capsys: pytest.CaptureFixture[str]) -> None:
     with board(told(START), hangs_up=True) as device:
         assert main([device, "--wait", "3"]) in (1, 3)
     assert "Traceback" not in capsys.readouterr().err
+
+
+def test_what_came_before_the_order_is_no_answer(capsys: pytest.CaptureFixture[str]) -> None:
+    refusal = {"event": "ORDER", "what": "restart", "text": "not while it moves; stop it first"}
+    for old in (told(START | {"version": "0.0.9"}, LINK), told(refusal), told(STATUS)[:-20]):
+        with board(told(START, LINK, STATUS), queued=old) as device:
+            assert main([device, "--firmware", "0.1.0", "--wait", "5"]) == 0, old
+        assert "FAIL" not in capsys.readouterr().out
+
+
+def test_the_line_is_ours_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    with board(told(START, LINK, STATUS)) as device, serial.Serial(device, exclusive=True):
+        assert main([device, "--wait", "1"]) == 3
+    assert "lock" in capsys.readouterr().err
+
+
+def test_an_interruption_has_its_exit_code(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(console: object, args: object) -> Iterator[None]:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(flash_check, "looks", interrupted)
+    with board(b"") as device:
+        assert main([device]) == 130
+    assert capsys.readouterr().err == "argus-flash-check: interrupted\n"
+    assert "130 interrupted" in flash_check.EPILOG
 
 
 def test_a_device_that_is_not_there(capsys: pytest.CaptureFixture[str]) -> None:

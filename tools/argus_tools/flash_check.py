@@ -16,13 +16,14 @@ import serial
 
 from hil_sim.arguments import Parser, whole
 
-EXIT_CHECKS, EXIT_LINE = 1, 3
+EXIT_CHECKS, EXIT_LINE, EXIT_INTERRUPTED = 1, 3, 130
 BAUD: Final = 115_200
 STACK_LEAST: Final = 256
 ARCOS_HEADER: Final = b"\xfa\xfb"
 LIFE_ENDED_BADLY: Final = ("watchdog", "fault", "brownout")
 LINE_MOST: Final = 4096
 _POLL_S: Final = 0.1
+_DRAIN_MOST_S: Final = 1.0
 _SHOWN: Final = 60
 
 EPILOG: Final = """\
@@ -35,7 +36,8 @@ examples:
 The board is ordered to restart, which it refuses while the robot moves. A board as it is flashed is passive: it
 moves nothing. `build/release/board_config board.ini` prints the digest of a settings file.
 
-exit codes: 0 all is well, 1 a check has failed, 2 wrong arguments, 3 the line cannot be opened or says nothing
+exit codes: 0 all is well, 1 a check has failed, 2 wrong arguments, 3 the line cannot be opened or says nothing,
+130 interrupted
 """
 
 
@@ -58,7 +60,7 @@ class Console:
     def __init__(self, device: str, baud: int) -> None:
         """Open DEVICE."""
         try:
-            self._port = serial.serial_for_url(device, baudrate=baud, timeout=_POLL_S)
+            self._port = serial.serial_for_url(device, baudrate=baud, timeout=_POLL_S, exclusive=True)
         except (serial.SerialException, ValueError, OSError) as error:
             raise LineError(f"{device}: {error}") from None
         self._rest = b""
@@ -77,8 +79,16 @@ class Console:
         except (serial.SerialException, OSError) as error:
             raise LineError(f"the line is gone: {error}") from None
 
-    def _take(self) -> None:
-        """Read what has come; a line that is no object with an event, or is cut, is passed over."""
+    def drain(self) -> None:
+        """Pass over what came until now, on its way in an adapter included: it answers no order to come."""
+        until = time.monotonic() + _DRAIN_MOST_S
+        while self._take() and time.monotonic() < until:
+            pass
+        self._values.clear()
+        self._rest = b""
+
+    def _take(self) -> bool:
+        """Read what has come, if anything; a line that is no object with an event, or is cut, is passed over."""
         try:
             data = self._port.read(max(1, self._port.in_waiting))
         except (serial.SerialException, OSError) as error:
@@ -93,6 +103,7 @@ class Console:
                 continue
             if isinstance(value, dict) and isinstance(value.get("event"), str):
                 self._values.append(value)
+        return bool(data)
 
     def next(self) -> dict[str, Any] | None:
         """Return the next object that has come, None if there is none yet."""
@@ -135,6 +146,7 @@ def silence(console: Console) -> LineError:
 def found_start(console: Console, listen: bool, wait_s: float) -> dict[str, Any]:
     """Return START."""
     if not listen:
+        console.drain()
         console.order("restart")
     start = wait_for(console, is_start_or_refusal, wait_s)
     if start is None:
@@ -245,7 +257,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return EXIT_LINE
     except KeyboardInterrupt:
         print("argus-flash-check: interrupted", file=sys.stderr)
-        return EXIT_LINE
+        return EXIT_INTERRUPTED
 
 
 if __name__ == "__main__":

@@ -60,6 +60,11 @@ def format_stages(check: bool) -> tuple[Stage, ...]:
     )
 
 
+def tidy_command() -> list[str | Path]:
+    """Return the command that looks at the files named after it."""
+    return [VENV / "bin/clang-tidy", "-p", "build/debug", "--quiet", f"--extra-arg=-I{ROOT}/hal"]
+
+
 def clang_tidy(run: Run) -> None:
     """Run clang-tidy on every C file of firmware/, hal/, hil_sim/ and tools/."""
     with alone():
@@ -67,13 +72,7 @@ def clang_tidy(run: Run) -> None:
     files = [
         path.relative_to(ROOT) for path in c_files(".c", folders=("firmware", "hal", "hil_sim", "tools"))
     ]
-    tidy: list[str | Path] = [
-        VENV / "bin/clang-tidy",
-        "-p",
-        "build/debug",
-        "--quiet",
-        f"--extra-arg=-I{ROOT}/hal",
-    ]
+    tidy = tidy_command()
     with concurrent.futures.ThreadPoolExecutor(CORES) as pool:
         stamps = dict(
             zip(files, pool.map(functools.partial(tidy_stamp, compile_commands()), files), strict=True)
@@ -95,28 +94,31 @@ def compile_commands() -> dict[str, list[str]]:
 
 
 def preprocessing(command: Sequence[str]) -> list[str]:
-    """Return COMMAND as what prints the text that it compiles, comments included, and writes no file."""
+    """Return COMMAND as what prints the text that it compiles, comments and macros included, and writes no file."""
     kept, words = list[str](), iter(command)
     for word in words:
         if word in ("-o", "-MF", "-MT"):
             next(words)
         elif word not in ("-c", "-MD"):
             kept.append(word)
-    return [*kept, "-E", "-C", "-o", "-"] if kept else []
+    return [*kept, "-E", "-C", "-dD", "-o", "-"] if kept else []
 
 
 def tidy_stamp(commands: Mapping[str, list[str]], path: Path) -> Path:
-    """Return the file that tells that PATH was found clean: its name is all that clang-tidy sees of it.
+    """Return the file that tells that PATH was found clean: its name is all that clang-tidy sees of it, and how.
 
     A file that is not compiled here, or does not compile, is looked at each time.
     """
-    command = preprocessing(commands.get(str(ROOT / path), []))
+    command = commands.get(str(ROOT / path), [])
     try:
-        seen = subprocess.run(command, cwd=BUILD / "debug", capture_output=True, check=True).stdout
+        seen = subprocess.run(
+            preprocessing(command), cwd=BUILD / "debug", capture_output=True, check=True
+        ).stdout
     except (OSError, IndexError, subprocess.CalledProcessError):
         seen = os.urandom(16)
     digest = hashlib.sha256(LOCK.read_bytes() + (ROOT / ".clang-tidy").read_bytes())
-    digest.update(str(path).encode() + (ROOT / path).read_bytes() + seen)
+    digest.update(shlex.join(map(str, [*tidy_command(), path, *command])).encode())
+    digest.update((ROOT / path).read_bytes() + seen)
     return BUILD / "tidy" / digest.hexdigest()
 
 

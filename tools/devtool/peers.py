@@ -12,6 +12,8 @@ from devtool.cmake import build
 
 SOURCES: Final = ("ARIA_SOURCE", "MOBILESIM_SOURCE", "P2OS_SOURCE", "ROSARIA_SOURCE", "PLAYER_SOURCE")
 """Folders with the sources of AriaCoda, MobileSim, p2os, rosaria and Player; nothing of them is kept here."""
+ROOT_VARIABLE: Final = "ROS1_ROOT"
+"""The folder of the Debian in which p2os, rosaria and Player are built."""
 
 
 def given() -> dict[str, Path]:
@@ -22,7 +24,7 @@ def given() -> dict[str, Path]:
 def peers(run: Run) -> str | None:
     """Build and run the peers whose sources are given; tell of those that are not."""
     sources = given()
-    missing = [name for name in SOURCES if name not in sources]
+    missing = [name for name in (*SOURCES, ROOT_VARIABLE) if not os.environ.get(name)]
     note = f"skipped what needs {', '.join(f'{name}=FOLDER' for name in missing)} (docs/peers.md)"
     if not sources:
         return note

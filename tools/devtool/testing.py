@@ -12,7 +12,7 @@ from devtool.browser import monitor_tests
 from devtool.cmake import BOARDS, SOAK, WIDE, build, build_and_test, ctest
 from devtool.packaging import NEEDS as PACKAGE_NEEDS
 from devtool.packaging import package_tests
-from devtool.peers import peers
+from devtool.peers import SOURCES, peers
 from devtool.real_time import hil_workers, run_in_real_time
 from devtool.ros import NEEDS as ROS_NEEDS
 from devtool.ros import ros_tests
@@ -170,7 +170,7 @@ TEST_STAGES: Final = (
     SOAKING,
     Stage(
         "peers",
-        "the vendor's programs against ours, where ARIA_SOURCE= and MOBILESIM_SOURCE= are given",
+        f"the vendor's programs against ours, where {', '.join(f'{name}=' for name in SOURCES)} are given",
         peers,
     ),
 )

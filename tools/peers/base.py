@@ -14,8 +14,9 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -24,6 +25,10 @@ ROOT: Final = Path(__file__).resolve().parents[2]
 SIM: Final = ROOT / ".venv/bin/argus-sim"
 ARGUSD: Final = ROOT / "build/release/argusd"
 ESCAPE: Final = b"\x1b"
+
+
+FAILURES: Final = (OSError, subprocess.SubprocessError, ValueError, LookupError)
+"""What a program of others that fails to build or to run comes back as."""
 
 
 @dataclass(frozen=True)
@@ -36,18 +41,34 @@ class Peer:
     seen: str
 
 
+def tried(client: str, server: str, run: Callable[[], Peer]) -> Peer:
+    """Return what a run gives; one that fails has not passed, and is no reason to leave out the others."""
+    try:
+        return run()
+    except FAILURES as error:
+        return Peer(client, server, False, f"{type(error).__name__}: {error}")
+
+
 def home() -> Path:
     """The folder in which peers are built."""
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "argus" / "peers"
 
 
+def copied(source: Path, target: Path, *ignored: str) -> Path:
+    """Copy a folder, unless that was done before: what stands under the name is whole, whatever ends us."""
+    if not target.exists():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=target.parent, prefix=f".{target.name}-") as folder:
+            part = Path(folder) / target.name
+            patterns = shutil.ignore_patterns(*ignored)
+            shutil.copytree(source, part, symlinks=True, ignore=patterns, ignore_dangling_symlinks=True)
+            part.rename(target)
+    return target
+
+
 def cache(name: str, source: Path, folder: Path | None = None) -> Path:
     """Return a copy of the sources to build in: theirs stay as they are, and nothing of them is in our tree."""
-    copy = (folder or home()) / name
-    if not copy.exists():
-        ignored = shutil.ignore_patterns("*.o", "*.a", "*.so", ".git")
-        shutil.copytree(source, copy, symlinks=True, ignore=ignored, ignore_dangling_symlinks=True)
-    return copy
+    return copied(source, (folder or home()) / name, "*.o", "*.a", "*.so", ".git")
 
 
 def make(folder: Path, *words: str) -> None:

@@ -10,15 +10,17 @@ import shlex
 import shutil
 import subprocess
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Final
 
-from peers.base import cache, free_port, started, wait_port
+from peers.base import cache, copied, free_port, started, wait_port
 from peers.guard import Client, Place
 
 SOURCES: Final = ("P2OS_SOURCE", "ROSARIA_SOURCE", "PLAYER_SOURCE")
+ROOT_VARIABLE: Final = "ROS1_ROOT"
 DEVEL: Final = "/peers/devel"
 PLAYER_CONFIG: Final = """driver
 (
@@ -81,9 +83,11 @@ class Debian:
         subprocess.run(self.words(line), check=True)
 
 
-def build_catkin(debian: Debian, source: Path, packages: Mapping[str, str], **variables: str) -> None:
+def build_catkin(
+    debian: Debian, key: str, source: Path, packages: Mapping[str, str], **variables: str
+) -> None:
     """Build packages of catkin, each in the order given: name, and the targets that come before all."""
-    folder = cache(source.name, source, debian.peers)
+    folder = cache(key, source, debian.peers)
     for name, first in packages.items():
         [found] = [
             path.parent for path in folder.rglob("package.xml") if f"<name>{name}</name>" in path.read_text()
@@ -140,8 +144,9 @@ def wander(debian: Debian, driver: str, node: str) -> Client:
     return Client(f"{driver}, wander.py", run, terminal=driver == "p2os")
 
 
-def player(debian: Debian) -> Client:
-    """Player's server with its driver p2os, and its example that avoids by sonar."""
+def player(debian: Debian, source: Path) -> Client:
+    """Build Player; return its server with its driver p2os, and its example that avoids by sonar."""
+    build_player(debian, source)
 
     def run(place: Place) -> None:
         port = free_port()
@@ -161,28 +166,34 @@ def player(debian: Debian) -> Client:
     return Client("Player, sonarobstacleavoid", run)
 
 
-def clients(given: Mapping[str, Path], debian: Debian, aria: Path) -> list[Client]:
-    """Build what is given; return the clients."""
-    found = []
+def p2os(debian: Debian, source: Path) -> Client:
+    """Build p2os; return it with what drives it."""
+    build_catkin(debian, "p2os", source, {"p2os_msgs": "all", "p2os_driver": "all"})
+    node = f"{DEVEL}/lib/p2os_driver/p2os_driver _port:={{at.path}} _use_sonar:=true _pulse:=1.0"
+    return wander(debian, "p2os", node)
+
+
+def rosaria(debian: Debian, source: Path, aria: Path) -> Client:
+    """Build rosaria with the ARIA built before; return it with what drives it."""
+    copied(aria, debian.peers / "aria", "obj", "docs")
+    first = "rosaria_generate_messages rosaria_gencfg"
+    build_catkin(debian, "rosaria", source, {"rosaria": first}, ARIA="/peers/aria", CXXFLAGS=FLAGS)
+    node = f"env LD_LIBRARY_PATH=/peers/aria/lib {DEVEL}/lib/rosaria/RosAria _port:=127.0.0.1:{{at.port}}"
+    return wander(debian, "rosaria", node)
+
+
+def clients(given: Mapping[str, Path], debian: Debian, aria: Path | None) -> dict[str, Callable[[], Client]]:
+    """By its name, what builds each client that is given."""
+    found: dict[str, Callable[[], Client]] = {}
     if "P2OS_SOURCE" in given:
-        build_catkin(debian, given["P2OS_SOURCE"], {"p2os_msgs": "all", "p2os_driver": "all"})
-        node = f"{DEVEL}/lib/p2os_driver/p2os_driver _port:={{at.path}} _use_sonar:=true _pulse:=1.0"
-        found.append(wander(debian, "p2os", node))
-    if "ROSARIA_SOURCE" in given:
-        target = debian.peers / "aria"
-        if not target.exists():
-            shutil.copytree(aria, target, ignore=shutil.ignore_patterns("obj", "docs"))
-        first = "rosaria_generate_messages rosaria_gencfg"
-        build_catkin(debian, given["ROSARIA_SOURCE"], {"rosaria": first}, ARIA="/peers/aria", CXXFLAGS=FLAGS)
-        node = f"env LD_LIBRARY_PATH=/peers/aria/lib {DEVEL}/lib/rosaria/RosAria _port:=127.0.0.1:{{at.port}}"
-        found.append(wander(debian, "rosaria", node))
+        found["p2os"] = partial(p2os, debian, given["P2OS_SOURCE"])
+    if "ROSARIA_SOURCE" in given and aria is not None:
+        found["rosaria"] = partial(rosaria, debian, given["ROSARIA_SOURCE"], aria)
     if "PLAYER_SOURCE" in given:
-        build_player(debian, given["PLAYER_SOURCE"])
-        found.append(player(debian))
+        found["Player"] = partial(player, debian, given["PLAYER_SOURCE"])
     return found
 
 
-def debian() -> Debian | None:
-    """The Debian with ROS 1, where the environment names one."""
-    root = os.environ.get("ROS1_ROOT")
-    return Debian(Path(root)) if root else None
+def debian() -> Debian:
+    """The Debian with ROS 1 that the environment names."""
+    return Debian(Path(os.environ[ROOT_VARIABLE]))

@@ -9,7 +9,8 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import IO, Any, Final
 
@@ -19,6 +20,7 @@ if __name__ == "__main__":
 from peers import ros
 from peers.base import (
     ARGUSD,
+    FAILURES,
     SIM,
     Peer,
     cache,
@@ -26,12 +28,20 @@ from peers.base import (
     make,
     run_client,
     started,
+    tried,
     truth_of,
     wait_port,
 )
 from peers.guard import DROVE_MM, Client, Place, at_robot, by_command, by_guard
 
 EXAMPLES: Final = ("wander", "demo", "gotoActionExample")
+NEEDS: Final = {
+    "MOBILESIM_SOURCE": ("ARIA_SOURCE",),
+    "ROSARIA_SOURCE": ("ARIA_SOURCE", ros.ROOT_VARIABLE),
+    "P2OS_SOURCE": (ros.ROOT_VARIABLE,),
+    "PLAYER_SOURCE": (ros.ROOT_VARIABLE,),
+}
+"""What each is built with, and in."""
 LIMIT_S: Final = 45.0
 ARROW_UP: Final = b"\x1b[A"
 MAP: Final = "AMROffice.map"
@@ -145,26 +155,61 @@ def drive_of(done: subprocess.CompletedProcess[bytes]) -> Peer:
     return Peer("argusd", "MobileSim", reached and done.returncode == 0, text)
 
 
+def complete(given: Mapping[str, Path]) -> dict[str, Path]:
+    """Return of the sources those that all they are built with is there for; say of the others what lacks."""
+    there = {*given, *(name for name in (ros.ROOT_VARIABLE,) if os.environ.get(name))}
+    found = {}
+    for name, folder in given.items():
+        lacking = [need for need in NEEDS.get(name, ()) if need not in there]
+        if lacking:
+            print(f"skipped {name}: give {' and '.join(f'{need}=' for need in lacking)} as well")
+        else:
+            found[name] = folder
+    return found
+
+
 def run_peers(given: Mapping[str, Path], folder: Path, seconds: float) -> Iterator[Peer]:
-    """Build and run what is given."""
-    if "ARIA_SOURCE" not in given:
-        print("MobileSim and rosaria are built with ARIA: give ARIA_SOURCE= as well")
+    """Build and run what is given and has what it needs."""
+    aria = None
+    if "ARIA_SOURCE" in given:
+        try:
+            aria = build_aria(given["ARIA_SOURCE"])
+        except FAILURES as error:
+            yield Peer("AriaCoda", "its compiler", False, str(error))
+            given = {name: source for name, source in given.items() if name != "ARIA_SOURCE"}
+    given = complete(given)
+    if aria is not None:
+        for example in EXAMPLES:
+            yield tried(example, "argus-sim", partial(aria_against_sim, aria, example, folder))
+        yield from by_wire("wander", lambda: wander_of(aria), seconds, folder)
+    if given.keys() & set(ros.SOURCES):
+        try:
+            makers = ros.clients(given, ros.debian(), aria)
+        except FAILURES as error:
+            makers = {}
+            yield Peer("clients of ROS 1", f"{ros.ROOT_VARIABLE}=", False, str(error))
+        for name, made in makers.items():
+            yield from by_wire(name, made, seconds, folder)
+    if "MOBILESIM_SOURCE" in given and aria is not None:
+        source = given["MOBILESIM_SOURCE"]
+        yield tried(
+            "argusd",
+            "MobileSim",
+            lambda: argusd_against_mobilesim(build_mobilesim(source, aria), folder),
+        )
+
+
+def by_wire(name: str, made: Callable[[], Client], seconds: float, folder: Path) -> Iterator[Peer]:
+    """Build a client; run it at the robot and by a guard port."""
+    try:
+        client = made()
+    except FAILURES as error:
+        yield Peer(name, "its compiler", False, str(error))
         return
-    root = ros.debian()
-    if root is None and given.keys() & set(ros.SOURCES):
-        print("p2os, rosaria and Player are built in a Debian with ROS 1: give ROS1_ROOT= as well")
-        return
-    aria = build_aria(given["ARIA_SOURCE"])
-    for example in EXAMPLES:
-        yield aria_against_sim(aria, example, folder)
-    clients = [wander_of(aria)]
-    if root is not None:
-        clients += ros.clients(given, root, aria)
-    for number, client in enumerate(clients):
-        yield at_robot(client, seconds, folder / f"{number}-robot")
-        yield by_guard(client, seconds, folder / f"{number}-guard")
-    if "MOBILESIM_SOURCE" in given:
-        yield argusd_against_mobilesim(build_mobilesim(given["MOBILESIM_SOURCE"], aria), folder)
+    yield tried(name, "argus-sim, sonar 3 dead", partial(at_robot, client, seconds, folder / f"{name}-robot"))
+    yield tried(
+        name, "argusd --guard, sonar 3 dead", partial(by_guard, client, seconds, folder / f"{name}-guard")
+    )
 
 
 def line_of(peer: Peer) -> str:
@@ -182,7 +227,7 @@ def main(words: Sequence[str]) -> int:
             peers.append(peer)
             print(line_of(peer), flush=True)
     print("", *map(line_of, peers), sep="\n")  # once more, below what the clients have written
-    return 0 if peers and all(peer.passed for peer in peers) else 1
+    return 0 if all(peer.passed for peer in peers) else 1
 
 
 if __name__ == "__main__":

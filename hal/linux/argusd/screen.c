@@ -364,18 +364,27 @@ static void draw_numbers(canvas_t *canvas, const view_t *view, int row, int colu
              (unsigned)status->bad_checksums, (unsigned)status->skipped_bytes);
 }
 
-// Of an event on a narrow screen its time and level are left out; its colour tells the level.
+static const char *after_word(const char *text) {
+    text += strcspn(text, " ");
+    return text + strspn(text, " ");
+}
+
+// As report_event_plain writes it. A notice may begin with an address.
+static bool is_time(const char *text) {
+    static const char digits[] = "0123456789";
+    const size_t seconds = strspn(text, digits);
+    return seconds > 0 && text[seconds] == '.' && strspn(text + seconds + 1, digits) == 3 &&
+           text[seconds + 4] == ' ';
+}
+
+// Of an event on a narrow screen its time is left out, and its level where a colour tells it.
 static const char *narrowed(const canvas_t *canvas, const char *text) {
-    const size_t pad = strspn(text, " ");
-    if (canvas->columns >= NARROW || text[pad] < '0' || text[pad] > '9') {
+    const char *const first = text + strspn(text, " ");
+    if (canvas->columns >= NARROW || !is_time(first)) {
         return text;
     }
-    const char *rest = text + pad;
-    for (int word = 0; word < 2; word++) {
-        rest += strcspn(rest, " ");
-        rest += strspn(rest, " ");
-    }
-    return rest;
+    const char *const level = after_word(first);
+    return canvas->colourless ? level : after_word(level);
 }
 
 static void draw_log(canvas_t *canvas, const screen_log_t *log, int top, int bottom) {

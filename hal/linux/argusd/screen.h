@@ -3,6 +3,7 @@
 #ifndef ARGUSD_SCREEN_H
 #define ARGUSD_SCREEN_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "view.h"
@@ -22,6 +23,7 @@ typedef struct {
 typedef struct {
     int rows;
     int columns;
+    bool colourless; // words tell what colours would; canvas_clear leaves it
     cell_t cell[SCREEN_ROWS_MAX][SCREEN_COLUMNS_MAX];
 } canvas_t;
 

@@ -102,10 +102,11 @@ static void on_resize(int number) {
     resized_ = 1;
 }
 
-static void set_colours(void) {
+// False where there are none.
+static bool set_colours(void) {
     const char *const none = getenv("NO_COLOR");
     if ((none != NULL && none[0] != '\0') || !has_colors()) {
-        return;
+        return false;
     }
     start_color();
     use_default_colors();
@@ -113,6 +114,7 @@ static void set_colours(void) {
     init_pair(TONE_WARN, COLOR_YELLOW, -1);
     init_pair(TONE_BAD, COLOR_RED, -1);
     init_pair(TONE_OPERATOR, COLOR_CYAN, -1);
+    return true;
 }
 
 static chtype attributes(uint8_t tone) {
@@ -235,7 +237,7 @@ static void run_screen(int fd) {
     nodelay(stdscr, TRUE);
     set_escdelay(25);
     curs_set(0);
-    set_colours();
+    screen.canvas.colourless = !set_colours();
     watch_signals();
     while (alive) {
         struct pollfd wait[2] = {{.fd = fd, .events = POLLIN}, {.fd = STDIN_FILENO, .events = POLLIN}};

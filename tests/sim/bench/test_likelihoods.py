@@ -6,10 +6,22 @@ The counts are made up from the seed that a test prints; one test records two dr
 
 from __future__ import annotations
 
+import argparse
+import ctypes
+import dataclasses
+import re
+import shutil
+import subprocess
+import tomllib
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from hil_sim.bench import likelihoods
+from hil_sim.bench import cli_passive, likelihoods
 from hil_sim.bench.likelihoods import CLASSES, FILE, TABLES, VERDICTS, Tally
 from hil_sim.cli.main import main
 from hil_sim.errors import SimError
@@ -27,6 +39,14 @@ def made(seed: int) -> Tally:
         for name in CLASSES:
             tally.add(table, name, [rng.integers(0, 3000, (SIZE, SIZE))])
     return tally
+
+
+def recorded(whole: bool) -> Callable[[argparse.Namespace], AbstractContextManager[tuple[list[Path], bool]]]:
+    @contextmanager
+    def there(arguments: argparse.Namespace) -> Iterator[tuple[list[Path], bool]]:
+        yield [], whole
+
+    return there
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -130,3 +150,103 @@ def test_wrong_words_are_refused(words: list[str], capsys: pytest.CaptureFixture
         code = int(left.code or 0)
     assert code == 2
     assert capsys.readouterr().err
+
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.mark.parametrize(
+    ("file", "number"),
+    [
+        ("facts.h", ""),
+        ("facts.h", "#define ARGUS_LEAST_LAG "),
+        ("facts.h", "#define ARGUS_LAGS "),
+        ("facts.h", "#define ARGUS_OFFSETS "),
+        ("crosscheck.c", "SAME, "),
+    ],
+)
+def test_counts_of_another_size_are_not_compiled(file: str, number: str, tmp_path: Path) -> None:
+    tree = tmp_path / "firmware"
+    shutil.copytree(ROOT / "firmware", tree)
+    source = tree / "awareness/crosscheck.c"
+    for edit in likelihoods.OBSERVED.edits:
+        source.write_text(edit.apply(source.read_text()))
+    changed = tree / "awareness" / file
+    text = re.sub(
+        f"{number}([0-9]+|(?=SAYINGS))",
+        f"{number}1\\g<1>" if file == "facts.h" else "SAME, A_NEW_ONE, ",
+        changed.read_text(),
+        count=1,
+    )
+    changed.write_text(text if number else changed.read_text())
+    words = ["cc", "-std=c11", "-w", "-fsyntax-only", f"-I{tree}", f"-I{tree / 'include'}", str(source)]
+    said = subprocess.run(words, capture_output=True, text=True, check=False).stderr
+    assert ("static assertion failed" in said) == bool(number), said
+
+
+def test_a_fault_that_shows_from_the_start_is_counted_from_there() -> None:
+    truth = dataclasses.replace(FaultTruth("off", 3, "off:3", 0.0, 0.0), first_visible_s=0.0)
+    observer = likelihoods.Observer.__new__(likelihoods.Observer)
+    shape = (2, likelihoods.HYPOTHESES, SIZE, SIZE)
+    observer._observed = (ctypes.c_int32 * int(np.prod(shape)))()
+    observer._sonar, observer._from_ms, observer._to_ms = (
+        ctypes.c_int32(),
+        ctypes.c_uint32(),
+        ctypes.c_uint32(),
+    )
+    observer._engine = SimpleNamespace(replay=lambda *_: None)  # type: ignore[assignment]
+    none = np.zeros(0, dtype=np.uint32)
+    stream = SimpleNamespace(truth=(truth,), end_s=60.0, times_ms=none, lengths=none, data=b"")
+    observer.count(stream)  # type: ignore[arg-type]
+    assert (observer._from_ms.value, observer._to_ms.value) == (0, 60_000)
+
+
+def test_the_command_is_that_of_the_arguments_and_names_no_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[str] = []
+    monkeypatch.setattr(cli_passive, "_recorded", recorded(whole=True))
+    monkeypatch.setattr(likelihoods, "observe", lambda paths: made(7))
+    monkeypatch.setattr(cli_passive, "_write", lambda path, text: written.append(text))
+    words = [
+        f"--streams={tmp_path}",
+        "--write",
+        "--jobs=1",
+        "--kinds",
+        "slow,off",
+        "--worlds",
+        f"{tmp_path}/a,gen-*",
+    ]
+    assert cli_passive.likelihoods([*words, "--physics=rough-day"]) == 0
+    assert tomllib.loads(written[0])["command"] == (
+        "argus-sim bench likelihoods --worlds 'a,gen-*' --seeds 1-2 --kinds slow,off --physics rough-day"
+    )
+    likelihoods.from_toml(written[0])
+
+
+def test_nothing_is_written_when_a_mission_failed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written: list[Path] = []
+    monkeypatch.setattr(cli_passive, "_recorded", recorded(whole=False))
+    monkeypatch.setattr(likelihoods, "observe", lambda paths: made(8))
+    monkeypatch.setattr(cli_passive, "_write", lambda path, text: written.append(path))
+    assert cli_passive.likelihoods(["--write"]) == 1
+    assert not written
+    assert "likelihoods.toml stays as it is" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("mode", [[], ["--write"], ["--check"]])
+@pytest.mark.parametrize("missing", ["sources", "compiler"])
+def test_what_it_is_built_with_is_asked_for_before_anything_is_recorded(
+    mode: list[str], missing: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(cli_passive, "_recorded", lambda arguments: pytest.fail("it records"))
+    if missing == "sources":
+        monkeypatch.setattr("argus_tools.core_build._TREE", ROOT / "nowhere")
+    else:
+        monkeypatch.setenv("CC", "/no/such/compiler")
+    assert main(["bench", "likelihoods", *mode]) == 2
+    error = capsys.readouterr().err
+    assert ("run it in a checkout" if missing == "sources" else "no C compiler") in error
+    assert error.count("\n") == 1

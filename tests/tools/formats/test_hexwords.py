@@ -4,10 +4,11 @@ is not taken for a log."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from argus_tools.formats import find_format, open_log
+from argus_tools.formats import find_format, hexwords, open_log
 from forms import CLIENT, COMMANDS, ROBOT, SIPS, joined, rows, shown
 
 
@@ -99,3 +100,56 @@ def test_a_damaged_line_costs_its_packet_alone(tmp_path: Path) -> None:
     data = joined(open_log(str(path)), "r2c")
     assert SIPS[4] not in data
     assert all(sip in data for n, sip in enumerate(SIPS) if n != 4)
+
+
+LONG = ROBOT * (1 + 100_000 // len(ROBOT))
+
+
+@pytest.mark.parametrize("count", [1, 8, 20], ids=lambda n: f"{n} times")
+@pytest.mark.parametrize("way", ["literal", "numbers", "brackets", "prefixed brackets"])
+def test_a_long_line_is_read_whole(way: str, count: int, tmp_path: Path) -> None:
+    data = LONG[: count * 5_000]
+    text = {
+        "literal": f"read {data!r} all\n",
+        "numbers": f"12.250 {list(data)}\n",
+        "brackets": "rx: " + "".join(f"[{byte:02x}]" for byte in data) + "\n",
+        "prefixed brackets": "rx: " + "".join(f"[0x{byte:02x}]" for byte in data) + "\n",
+    }[way]
+    path = tmp_path / "a.txt"
+    path.write_text(text * 2)
+    log = open_log(str(path))
+    assert joined(log, "r2c") == data * 2
+    assert (log.format.name, log.damage) == ("hexwords", [])
+
+
+@pytest.mark.parametrize("opening", ["b'", "["])
+def test_what_does_not_end_is_damage(opening: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hexwords, "CARRIED_MOST", 1 << 15)
+    first = f"{SIPS[0]!r}\n" if opening == "b'" else f"{list(SIPS[0])}\n"
+    path = tmp_path / "a.txt"
+    for length in (100, 20_000, 100_000):
+        path.write_text(first * 3 + opening + "1, " * length + "\n" + first)
+        log = open_log(str(path))
+        assert joined(log, "r2c") == SIPS[0] * 4
+        assert [damage.place for damage in log.damage] == ["line 4"], length
+
+
+@pytest.mark.parametrize(
+    ("form", "odd"), [(repr, "b'\\x0g'"), (repr, "b'\xe9'"), (lambda sip: str(list(sip)), "[250, 256]")]
+)
+def test_one_that_is_odd_costs_no_other(form: Callable[[bytes], str], odd: str, tmp_path: Path) -> None:
+    lines = [f"{form(sip)}\n" for sip in SIPS]
+    lines[3] = f"{odd} {form(SIPS[3])} {odd}\n"
+    path = tmp_path / "a.txt"
+    path.write_text("".join(lines))
+    log = open_log(str(path))
+    assert joined(log, "r2c") == ROBOT
+    assert [damage.place for damage in log.damage] == ["line 4"]
+
+
+def test_an_apostrophe_is_no_damage(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text(FORMS["Python"] + "Bob's robot\n[12] of [3]\n")
+    log = open_log(str(path))
+    assert joined(log, "r2c") == ROBOT
+    assert log.damage == []

@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+import asyncio
+import os
+import pty
+import signal
 import socket
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
-from argus_tools.monitor import cli
+from argus_tools.monitor import cli, tui
 from argus_tools.monitor.cli import main, read_token
-from argus_tools.monitor.sim import SimulationError, find_argusd
+from argus_tools.monitor.sim import Simulation, SimulationError, find_argusd
 
 from hil_sim.cli.main import main as sim_main
 
@@ -39,9 +44,10 @@ def one_line(capsys: pytest.CaptureFixture[str]) -> str:
     [
         (["--connect", "nonsense"], "'nonsense' is not unix:PATH or tcp:HOST:PORT"),
         (["--connect", "unix:/x", "--world", "lab"], "unknown option '--world'"),
-        (["--connect", "unix:/x", "--argusd", "/bin/true"], "--argusd goes with --sim"),
+        (["--connect", "unix:/x", "--argusd", "/bin/true"], "--argusd goes with --sim or --tui"),
+        (["--connect", "unix:/x", "--argusd-option=-v"], "--argusd-option goes with --sim"),
+        (["--connect", "unix:/x", "--tui"], "--port does not go with --tui"),
         (["--connect", "unix:/x", "--token", "/does/not/exist"], "/does/not/exist: No such file"),
-        (["--connect", "unix:/x", "--tui"], "--tui needs a terminal"),
         (["--sim", "--tcp", "8101"], "--tcp does not go with --sim"),
         (["--sim", "--list-worlds"], "--list-worlds does not go with --sim"),
         (["--sim", "--robots", "2"], "one page shows one robot"),
@@ -51,6 +57,21 @@ def one_line(capsys: pytest.CaptureFixture[str]) -> str:
 )
 def test_wrong_arguments(words: list[str], says: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*words, "--port", "0"]) == 2
+    assert says in one_line(capsys)
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ([], "--tui needs a terminal"),
+        (["--argusd", "/bin/true"], "--tui needs a terminal"),
+        (["--page-token", "/x"], "--page-token does not go with --tui"),
+    ],
+)
+def test_wrong_arguments_of_the_screen(
+    words: list[str], says: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["--connect", "unix:/x", "--tui", *words]) == 2
     assert says in one_line(capsys)
 
 
@@ -109,32 +130,98 @@ def test_an_argusd_that_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert f"no program '{tmp_path / 'none'}'" in one_line(capsys)
 
 
-def test_an_argusd_that_ends_at_once_ends_all(tmp_path: Path) -> None:
-    argusd = tmp_path / "argusd"
-    argusd.write_text("#!/bin/sh\necho 'argusd: no such day' >&2\nexit 2\n")
+def fake_argusd(folder: Path, script: str) -> Path:
+    argusd = folder / "argusd"
+    argusd.write_text(f"#!/bin/sh\n{script}\n")
     argusd.chmod(0o755)
-    command = [
-        sys.executable,
-        "-m",
-        "argus_tools.monitor.cli",
-        "--sim",
-        "--port",
-        "0",
-        "--argusd",
-        str(argusd),
-    ]
-    done = subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        cwd=ROOT,
-        env={"PYTHONPATH": f"{ROOT}:{ROOT / 'tools'}", "PATH": "/usr/bin:/bin", "TMPDIR": str(tmp_path)},
-        check=False,
-    )
+    return argusd
+
+
+def command(*words: str | Path) -> list[str]:
+    return [sys.executable, "-m", "argus_tools.monitor.cli", *map(str, words)]
+
+
+def environment(folder: Path) -> dict[str, str]:
+    return {"PYTHONPATH": f"{ROOT}:{ROOT / 'tools'}", "PATH": "/usr/bin:/bin", "TMPDIR": str(folder)}
+
+
+@pytest.mark.parametrize("shown", [["--port", "0"], ["--tui"]], ids=["page", "screen"])
+def test_an_argusd_that_ends_at_once_ends_all(shown: list[str], tmp_path: Path) -> None:
+    argusd = fake_argusd(tmp_path, "echo 'argusd: no such day' >&2\nexit 2")
+    terminal, ours = pty.openpty()
+    with os.fdopen(terminal), os.fdopen(ours) as stdout:
+        done = subprocess.run(
+            command("--sim", *shown, "--argusd", argusd),
+            stdout=stdout,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=300,
+            cwd=ROOT,
+            env=environment(tmp_path),
+            check=False,
+        )
     assert done.returncode == 3
     assert done.stderr.strip().splitlines() == ["argus-monitor: argusd ended: no such day"]
     assert [path.name for path in tmp_path.iterdir()] == ["argusd"], "the folder of the socket is removed"
+
+
+def test_an_argusd_without_a_control_socket(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tui, "CONTROL_WITHIN_S", 0.2)
+    argusd = fake_argusd(tmp_path, "exec sleep 60")
+
+    async def beside() -> None:
+        simulation = Simulation(["--world", "hall"], str(argusd), [])
+        try:
+            await tui.beside(simulation, str(argusd))
+        finally:
+            await simulation.close()
+
+    with pytest.raises(SimulationError, match="argusd opened no control socket"):
+        asyncio.run(beside())
+
+
+SCREEN = """
+[ "$1" != --attach ] || { echo $$ > "$TMPDIR/shown"; exec sleep 60; }
+while [ "$1" != --control ]; do shift; done
+: > "${2#unix:}"
+exec sleep 60"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_a_simulation_with_its_screen(number: signal.Signals, tmp_path: Path) -> None:
+    argusd, mark = fake_argusd(tmp_path, SCREEN), tmp_path / "shown"
+    terminal, ours = pty.openpty()
+    with os.fdopen(terminal), os.fdopen(ours) as stdout:
+        child = subprocess.Popen(
+            command("--sim", "--tui", "--argusd", argusd),
+            stdout=stdout,
+            stderr=subprocess.PIPE,
+            text=True,
+            cwd=ROOT,
+            env=environment(tmp_path),
+        )
+        until = time.monotonic() + 120
+        while not (mark.exists() and mark.read_text()):
+            assert time.monotonic() < until
+            assert child.poll() is None
+            time.sleep(0.05)
+        child.send_signal(number)
+        _, said = child.communicate(timeout=120)
+    assert (child.returncode, said) == (0, "")
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(mark.read_text()), 0)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["argusd", "shown"]
+
+
+def test_an_argusd_that_cannot_be_run_is_no_matter_of_the_port(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    argusd = tmp_path / "argusd"
+    argusd.write_bytes(b"\x7fELF of another machine")
+    argusd.chmod(0o755)
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    assert main(["--connect", "unix:/x", "--tui", "--argusd", str(argusd)]) == 3
+    assert one_line(capsys) == "argus-monitor: Exec format error"
 
 
 def test_argusd_is_found_by_option_variable_and_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

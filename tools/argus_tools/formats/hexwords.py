@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from io import BufferedReader
-from typing import Final
+from typing import Final, NamedTuple
 
-from argus_tools.formats.base import Chunk, DamageList, Format, Offsets, ReadOptions
+from argus_tools.formats.base import Chunk, Damage, DamageList, Format, Offsets, ReadOptions
 from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.hextext import bytes_of_lines
 from argus_tools.formats.source import HEAD_BYTES
@@ -29,49 +29,124 @@ _PREFIXED: Final = re.compile(rb"(?<![0-9A-Za-z])0[xX]([0-9A-Fa-f]{2})(?![0-9A-Z
 _RUN: Final = re.compile(rb"(?<![0-9A-Za-z.])[0-9A-Fa-f]{2}(?:[,:;-]?[ ]{0,2}[0-9A-Fa-f]{2})*(?![0-9A-Za-z])")
 _NUMBERS: Final = re.compile(rb"\[\s*\d{1,3}(?:\s*,\s*\d{1,3})+\s*\]")
 _NO_DIGITS: Final = b" ,:;-"
+# What a literal and a list begin with, as far as they can be read.
+_LITERAL_BEGUN: Final = re.compile(
+    rb"""(?<![0-9A-Za-z_])b(?:'(?:[^'\\]|\\x[0-9A-Fa-f]{2}|\\[^x])*|"(?:[^"\\]|\\x[0-9A-Fa-f]{2}|\\[^x])*)"""
+)
+_NUMBERS_BEGUN: Final = re.compile(rb"\[\s*\d{1,3}(?:\s*,\s*\d{1,3})*(?=\s*,)")
+_BRACKET_BEGUN: Final = re.compile(rb"[\[<({](?:0[xX]?)?[0-9A-Fa-f]{0,2}\Z")
+CARRIED_MOST: Final = 1 << 20
+"""Bytes of a literal or a list that a line may go on with: all of it is held."""
+_OPEN: Final = "a literal or a list that holds no bytes, or does not end"
 
 
-def _literals(line: bytes) -> bytes:
+def _literal(text: bytes) -> bytes | None:
     try:
-        return b"".join(ast.literal_eval(text.decode("latin-1")) for text in _LITERAL.findall(line))
+        return bytes(ast.literal_eval(text.decode("latin-1")))
     except (SyntaxError, ValueError):
-        return b""
+        return None
 
 
-def _bracketed(line: bytes) -> bytes:
-    return bytes.fromhex(b"".join(_BRACKETED.findall(line)).decode())
+def _literals(line: bytes) -> list[bytes | None]:
+    return [_literal(text) for text in _LITERAL.findall(line)]
 
 
-def _prefixed(line: bytes) -> bytes:
-    return bytes.fromhex(b"".join(_PREFIXED.findall(line)).decode())
+def _bracketed(line: bytes) -> list[bytes | None]:
+    return [bytes.fromhex(b"".join(_BRACKETED.findall(line)).decode())]
 
 
-def _run(line: bytes) -> bytes:
+def _prefixed(line: bytes) -> list[bytes | None]:
+    return [bytes.fromhex(b"".join(_PREFIXED.findall(line)).decode())]
+
+
+def _run(line: bytes) -> list[bytes | None]:
     """The last run that is not much shorter than the longest: times and addresses stand before, and are short."""
     found = [
         run.translate(None, _NO_DIGITS) for run in _RUN.findall(_FRAME.sub(b"|", _MIDDLE.sub(b" ", line)))
     ]
     long = [run for run in found if 2 * len(run) >= max(map(len, found))]
-    return bytes.fromhex(long[-1].decode()) if long else b""
+    return [bytes.fromhex(long[-1].decode())] if long else []
 
 
-def _numbers(line: bytes) -> bytes:
-    values = [int(text) for found in _NUMBERS.findall(line) for text in found.strip(b"[]").split(b",")]
-    return bytes(values) if values and max(values) <= _BYTE_MAX else b""
+def _list(text: bytes) -> bytes | None:
+    values = [int(number) for number in text.strip(b"[]").split(b",")]
+    return bytes(values) if max(values) <= _BYTE_MAX else None
 
 
-_Way = Callable[[bytes], bytes]
-_WAYS: Final[tuple[_Way, ...]] = (_literals, _bracketed, _prefixed, _run, _numbers)
+def _numbers(line: bytes) -> list[bytes | None]:
+    return [_list(text) for text in _NUMBERS.findall(line)]
+
+
+class _Way(NamedTuple):
+    """A way in which bytes stand in a line."""
+
+    take: Callable[[bytes], list[bytes | None]]
+    """Returns what is there; None is of what looks like it and holds no bytes."""
+    whole: re.Pattern[bytes] | None = None
+    begun: re.Pattern[bytes] | None = None
+    """What a cut line may leave open; it begins behind all that is whole."""
+    tells: bool = False
+    """A line with such a beginning should hold bytes."""
+
+    def open_in(self, line: bytes) -> re.Match[bytes] | None:
+        """Return what is not whole."""
+        if self.whole is None or self.begun is None:
+            return None
+        ends = [found.end() for found in self.whole.finditer(line)]
+        return self.begun.search(line, ends[-1] if ends else 0)
+
+    def closed(self, line: bytes) -> bytes:
+        """Return a line that is cut with an end to what the cut has left open."""
+        found = self.open_in(line)
+        if found is None or not self.tells:
+            return line
+        return line[: found.end()] + (b"]" if found[0].startswith(b"[") else found[0][1:2])
+
+
+_BY_RUNS: Final = _Way(_run)
+_WAYS: Final = (
+    _Way(_literals, _LITERAL, _LITERAL_BEGUN, tells=True),
+    _Way(_bracketed, _BRACKETED, _BRACKET_BEGUN),
+    _Way(_prefixed),
+    _BY_RUNS,
+    _Way(_numbers, _NUMBERS, _NUMBERS_BEGUN, tells=True),
+)
+
+
+def _joined(parts: Iterable[bytes | None]) -> bytes:
+    return b"".join(part for part in parts if part is not None)
 
 
 def _holds_packets(data: bytes, least: int = _PACKETS) -> bool:
     return sum(len(packet) > 1 for packet in Unframer().feed(data)) >= least
 
 
-def _way(lines: Iterable[bytes]) -> _Way | None:
-    """In which of these ways the lines hold packets, if in any."""
-    kept = list(lines)
-    return next((way for way in _WAYS if _holds_packets(b"".join(map(way, kept)))), None)
+def _way(lines: Sequence[bytes]) -> _Way | None:
+    """In which of these ways the lines hold packets, if in any; the last one may be cut."""
+    return next((way for way in _WAYS if _holds_packets(_bytes_of(lines, way))), None)
+
+
+def _bytes_of(lines: Sequence[bytes], way: _Way) -> bytes:
+    whole = [*lines[:-1], *map(way.closed, lines[-1:])]
+    return b"".join(_joined(way.take(line)) for line in whole)
+
+
+def _lines(stream: BufferedReader, way: _Way) -> Iterator[tuple[int, bytes]]:
+    """Yield line number and bytes; what a piece of a long line leaves open goes on with the next."""
+    held, is_comment = b"", False
+    number = 0
+    for number, text, begins in pieces(stream):
+        text = text.removeprefix(BOM)
+        is_comment = text.startswith(b"#") if begins else is_comment
+        if is_comment:
+            continue
+        text, held = held + text, b""
+        found = None if text.endswith(b"\n") else way.open_in(text)
+        if found is not None and len(text) - found.start() <= CARRIED_MOST:
+            text, held = text[: found.start()], text[found.start() :]
+        yield number, text
+    if held:
+        yield number, held
 
 
 class HexwordsReader:
@@ -85,11 +160,13 @@ class HexwordsReader:
     def __iter__(self) -> Iterator[Chunk]:
         offsets = Offsets()
         head = first_lines(self._stream.peek(HEAD_BYTES), _LINES)
-        way = _way(head) or _run
-        usual = self._direction or guess_direction(b"".join(map(way, head)))
-        for _, text, _ in pieces(self._stream):
-            line = text.removeprefix(BOM)
-            if data := b"" if line.startswith(b"#") else way(line):
+        way = _way(head) or _BY_RUNS
+        usual = self._direction or guess_direction(_bytes_of(head, way))
+        for number, line in _lines(self._stream, way):
+            parts = way.take(line)
+            if None in parts or (way.tells and not parts and way.open_in(line)):
+                self.damage.append(Damage(f"line {number}", _OPEN))
+            if data := _joined(parts):
                 tells = self._direction is None and _holds_packets(data, 1)
                 yield offsets.chunk(None, guess_direction(data) if tells else usual, data)
 

@@ -15,7 +15,7 @@ import stat
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from argus_tools.monitor import tui
 from argus_tools.monitor.geometry import walls_of
@@ -27,6 +27,9 @@ from hil_sim.cli.arguments import parser as sim_parser
 from hil_sim.cli.choose import scenario_of
 from hil_sim.errors import SimError
 from hil_sim.world.files import load_world
+
+if TYPE_CHECKING:
+    from argus_tools.monitor.server import Server
 
 EXIT_START: Final = 3
 PORT: Final = 8642
@@ -51,6 +54,10 @@ exit codes: 0 ended by a signal, 2 wrong argument or file, 3 the port is taken, 
 
 class UsageError(Exception):
     """A wrong argument or file; the message is one line."""
+
+
+class PortError(Exception):
+    """The page has no port to listen on; the message is one line."""
 
 
 def _port(text: str) -> int:
@@ -85,7 +92,7 @@ def parser() -> argparse.ArgumentParser:
     result.add_argument(
         "--argusd",
         metavar="PROGRAM",
-        help="with --sim: the argusd to run (default: the one built, or in PATH)",
+        help="with --sim or --tui: the argusd to run (default: the one built, or in PATH)",
     )
     result.add_argument(
         "--argusd-option",
@@ -95,7 +102,7 @@ def parser() -> argparse.ArgumentParser:
         help="with --sim: passed on to argusd, e.g. --argusd-option=--profile=paper; repeatable",
     )
     result.add_argument(
-        "--port", type=_port, default=PORT, metavar="N", help=f"of the page (default {PORT}; 0: any free one)"
+        "--port", type=_port, metavar="N", help=f"of the page (default {PORT}; 0: any free one)"
     )
     result.add_argument(
         "--page-token",
@@ -169,11 +176,27 @@ async def _until_ended(simulation: Simulation | None, caught: asyncio.Event) -> 
     return "" if waiting[0] in done else done.pop().result()
 
 
+def _caught() -> asyncio.Event:
+    """Return what is set when a signal asks us to end."""
+    caught = asyncio.Event()
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        asyncio.get_running_loop().add_signal_handler(number, caught.set)
+    return caught
+
+
 async def _run_screen(arguments: argparse.Namespace, words: Sequence[str]) -> int:
+    caught = _caught()
     simulation, _ = _simulation(arguments, words)
     try:
-        await simulation.start()
-        return await tui.beside(simulation, arguments.argusd)
+        shown = asyncio.create_task(tui.beside(simulation, arguments.argusd))
+        asked = asyncio.create_task(caught.wait())
+        await asyncio.wait([shown, asked], return_when=asyncio.FIRST_COMPLETED)
+        asked.cancel()
+        if shown.done():
+            return shown.result()
+        shown.cancel()
+        await asyncio.wait([shown])
+        return 0
     finally:
         await simulation.close()
 
@@ -188,12 +211,17 @@ def _show_screen(arguments: argparse.Namespace, words: Sequence[str]) -> int:
     return EXIT_START
 
 
+async def _listen(server: Server, port: int) -> int:
+    try:
+        return await server.start(port)
+    except OSError as error:
+        raise PortError(f"port {port}: {error.strerror}; choose another with --port") from None
+
+
 async def _run(arguments: argparse.Namespace, words: Sequence[str], page_token: str) -> None:
     from argus_tools.monitor.server import Server
 
-    caught = asyncio.Event()
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        asyncio.get_running_loop().add_signal_handler(number, caught.set)
+    caught = _caught()
     simulation, about = _simulation(arguments, words) if arguments.sim else (None, {})
     async with contextlib.AsyncExitStack() as stack:
         if simulation is not None:
@@ -205,7 +233,7 @@ async def _run(arguments: argparse.Namespace, words: Sequence[str], page_token: 
         )
         server = Server(hub, page_token)
         stack.push_async_callback(server.stop)
-        port = await server.start(arguments.port)
+        port = await _listen(server, PORT if arguments.port is None else arguments.port)
         if simulation is not None:
             await simulation.start()
         watching = asyncio.create_task(hub.run())
@@ -217,6 +245,18 @@ async def _run(arguments: argparse.Namespace, words: Sequence[str], page_token: 
             raise SimulationError(why)
 
 
+def _check_together(arguments: argparse.Namespace) -> None:
+    """Refuse what would be passed over."""
+    if not arguments.sim and arguments.argusd_option:
+        raise UsageError("--argusd-option goes with --sim")
+    if not arguments.sim and not arguments.tui and arguments.argusd:
+        raise UsageError("--argusd goes with --sim or --tui")
+    if arguments.tui and arguments.port is not None:
+        raise UsageError("--port does not go with --tui: there is no page; leave it out")
+    if arguments.tui and arguments.page_token:
+        raise UsageError("--page-token does not go with --tui: there is no page; leave it out")
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run `argus-monitor`; return its exit code."""
     arguments, words = parser().parse_known_args(sys.argv[1:] if argv is None else list(argv))
@@ -226,8 +266,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         if words and not arguments.sim:
             raise UsageError(f"unknown option '{words[0]}'; see argus-monitor --help")
-        if not arguments.sim and (arguments.argusd or arguments.argusd_option):
-            raise UsageError("--argusd goes with --sim")
+        _check_together(arguments)
         if arguments.tui:
             return _show_screen(arguments, words)
         page_token = read_token(arguments.page_token) if arguments.page_token else secrets.token_urlsafe(24)
@@ -235,14 +274,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 0
     except UsageError as error:
         why = str(error)
-    except SimulationError as error:
+    except (SimulationError, PortError) as error:
         why, code = str(error), EXIT_START
     except ModuleNotFoundError as error:
         if error.name != "aiohttp":
             raise
         why, code = "aiohttp is missing; install argus-p3dx[monitor]", EXIT_START
     except OSError as error:
-        why, code = f"port {arguments.port}: {error.strerror}; choose another with --port", EXIT_START
+        why, code = ": ".join(map(str, filter(None, (error.filename, error.strerror or error)))), EXIT_START
     print(f"argus-monitor: {why}", file=sys.stderr)
     return code
 

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-from argus_tools.monitor.sim import Simulation, find_argusd
+from argus_tools.monitor.sim import Simulation, SimulationError, find_argusd
 
 CONTROL_WITHIN_S: Final = 10.0
 _POLL_S: Final = 0.05
@@ -26,10 +27,31 @@ def become(words: Sequence[str]) -> None:
     os.execv(words[0], list(words))
 
 
+async def _control_socket(simulation: Simulation) -> None:
+    """Wait for the control socket of a simulation; SimulationError when one of the two ends before, or none comes."""
+    ended = asyncio.create_task(simulation.ended())
+    try:
+        async with asyncio.timeout(CONTROL_WITHIN_S):
+            while not Path(simulation.address.path).exists():
+                if (await asyncio.wait([ended], timeout=_POLL_S))[0]:
+                    raise SimulationError(ended.result())
+    except TimeoutError:
+        raise SimulationError("argusd opened no control socket") from None
+    finally:
+        ended.cancel()
+
+
 async def beside(simulation: Simulation, argusd: str | None) -> int:
-    """Show the screen of a simulation until its user leaves; return its exit code."""
-    async with asyncio.timeout(CONTROL_WITHIN_S):
-        while not Path(simulation.address.path).exists():
-            await asyncio.sleep(_POLL_S)
+    """Start a simulation and show its screen until its user leaves; return its exit code.
+
+    A screen that is given up is ended before this returns: it gives the terminal back.
+    """
+    await simulation.start()
+    await _control_socket(simulation)
     shown = await asyncio.create_subprocess_exec(*screen(argusd, str(simulation.address), None))
-    return await shown.wait()
+    try:
+        return await shown.wait()
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            shown.terminate()
+        await shown.wait()

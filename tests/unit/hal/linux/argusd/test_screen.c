@@ -38,6 +38,7 @@ void setUp(void) {
     memset(&view, 0, sizeof view);
     memcpy(view.status.bearing_deg, bearings, sizeof bearings);
     memset(&log_, 0, sizeof log_);
+    canvas.colourless = false;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         view.status.reading_mm[i] = (uint16_t)(1000 + i);
         view.status.health[i] = ARGUS_HEALTHY;
@@ -274,6 +275,26 @@ void test_a_narrow_screen_tells_which_event_it_was(void) {
     TEST_ASSERT_NOT_EQUAL(-1, find("> g: go on with the course"));
     draw(24, 80);
     TEST_ASSERT_NOT_EQUAL(-1, find("12.345 WARN  drive"));
+}
+
+void test_a_narrow_screen_without_colours_tells_the_level(void) {
+    screen_log_add(&log_, "   12.345 WARN  drive          STOPPED 0: STOP sent", TONE_WARN, 0);
+    canvas.colourless = true;
+    draw(24, 45);
+    TEST_ASSERT_NOT_EQUAL(-1, find("WARN  drive          STOPPED 0: STOP sent"));
+    TEST_ASSERT_EQUAL(-1, find("12.345"));
+}
+
+void test_a_notice_that_begins_with_digits_loses_nothing_on_a_narrow_screen(void) {
+    static const char *const notices[] = {"127.0.0.1 port 81: no answer", "3 orders lost", "12.3456 of it",
+                                          "12.34 of it", "12.345"};
+    for (size_t i = 0; i < sizeof notices / sizeof notices[0]; i++) {
+        screen_log_add(&log_, notices[i], TONE_WARN, 0);
+    }
+    draw(24, 40);
+    for (size_t i = 0; i < sizeof notices / sizeof notices[0]; i++) {
+        TEST_ASSERT_NOT_EQUAL_MESSAGE(-1, find(notices[i]), notices[i]);
+    }
 }
 
 void test_narrow_screens_drop_columns_and_cut_no_word(void) {
