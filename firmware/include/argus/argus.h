@@ -370,10 +370,14 @@ typedef enum {
 // included.
 typedef enum {
     ARGUS_KIND_NONE = 0,
+// clang-format off
 #define ARGUS_FAULT_KIND_NUMBER(name, number, word, meaning) ARGUS_KIND_##name = (number),
+#define ARGUS_FAULT_KIND_ONE(name, number, word, meaning) +1
     ARGUS_FAULT_KIND_TABLE(ARGUS_FAULT_KIND_NUMBER)
+    ARGUS_KINDS = 1 ARGUS_FAULT_KIND_TABLE(ARGUS_FAULT_KIND_ONE)
 #undef ARGUS_FAULT_KIND_NUMBER
-        ARGUS_KINDS
+#undef ARGUS_FAULT_KIND_ONE
+    // clang-format on
 } argus_fault_kind_t;
 
 // The failure state over the forward-facing sonars (paper: Fig. 6).
