@@ -363,7 +363,7 @@ def likelihoods_header(root: Path) -> str:
                 raise TableError(f"{source}: [{name}.over.{over}] is not {size} rows of {size} whole numbers")
             cells = ", ".join("{" + ", ".join(map(str, row)) + "}" for row in rows)
             body.append(f"#define ARGUS_{name.upper()}_OVER_{over.upper()} {{{cells}}}")
-    what = "Likelihood ratios of pairs of verdicts, hundredths of a nat"
+    what = "Log-ratios of verdicts, 0.01 nat"
     return header("ARGUS_GEN_LIKELIHOODS_H", "likelihoods.toml", what, body)
 
 

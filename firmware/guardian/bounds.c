@@ -152,11 +152,24 @@ static bool is_careful(const argus_t *const self) {
            (argus_named(&self->knowledge) & ahead) != 0;
 }
 
+// The way ahead is seen, or may be: what was touched while none had heard anything shows that they are blind.
+static bool may_see(const argus_t *const self, const argus_guard_t *const guard) {
+    const bool blind = argus_guard_is_blind(guard) && !guard->profile->drives_seen;
+    const bool lives = argus_guard_is_heard(guard) || !self->reflexes.touched_unheard;
+    return lives && !blind && argus_guard_sees_ahead(guard);
+}
+
+// As fast as is careful beside a wall, where one ahead is named, and until one has heard an echo.
+static int32_t careful_mm_s(const argus_t *const self, const argus_guard_t *const guard) {
+    if (!argus_guard_is_heard(guard)) {
+        return argus_guard_unseen_mm_s(guard);
+    }
+    return is_careful(self) ? self->config.speed_mm_s : INT32_MAX;
+}
+
 static argus_bound_t leading(const argus_t *const self, const argus_guard_t *const guard) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
-    const bool heard = argus_guard_is_heard(guard);
-    if ((!heard && self->reflexes.touched_unheard) || !argus_guard_sees_ahead(guard) ||
-        (argus_guard_is_blind(guard) && !guard->profile->drives_seen)) {
+    if (!may_see(self, guard)) {
         return closed(ARGUS_BOUND_UNSEEN);
     }
     const unsigned looks = argus_robot_ahead(knowledge->robot) | argus_robot_forward(knowledge->robot);
@@ -176,14 +189,8 @@ static argus_bound_t leading(const argus_t *const self, const argus_guard_t *con
         bound.slants = true;
         return bound;
     }
-    bound.speed_mm_s = argus_min(bound.speed_mm_s, seen_mm_s);
+    bound.speed_mm_s = argus_min(bound.speed_mm_s, argus_min(seen_mm_s, careful_mm_s(self, guard)));
     bound.way_mm = argus_min(bound.way_mm, seen_mm);
-    if (is_careful(self)) {
-        bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.speed_mm_s);
-    }
-    if (!heard) {
-        bound.speed_mm_s = argus_min(bound.speed_mm_s, argus_guard_unseen_mm_s(guard));
-    }
     return bound;
 }
 

@@ -66,6 +66,10 @@ static const char *event_subject(const int id) {
 #undef SUBJECT
 }
 
+#define IN_ORDER(name, number, word, meaning) \
+    _Static_assert(ARGUS_KIND_##name == (number), "rows follow each other");
+ARGUS_FAULT_KIND_TABLE(IN_ORDER)
+
 #define WORD(name, number, word, meaning) word "\0"
 
 // Of an enumeration, from its first constant on.

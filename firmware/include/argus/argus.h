@@ -370,14 +370,10 @@ typedef enum {
 // included.
 typedef enum {
     ARGUS_KIND_NONE = 0,
-// clang-format off
-#define ARGUS_FAULT_KIND_NUMBER(name, number, word, meaning) ARGUS_KIND_##name = (number),
-#define ARGUS_FAULT_KIND_ONE(name, number, word, meaning) +1
-    ARGUS_FAULT_KIND_TABLE(ARGUS_FAULT_KIND_NUMBER)
-    ARGUS_KINDS = 1 ARGUS_FAULT_KIND_TABLE(ARGUS_FAULT_KIND_ONE)
-#undef ARGUS_FAULT_KIND_NUMBER
-#undef ARGUS_FAULT_KIND_ONE
-    // clang-format on
+#define ARGUS_FAULT_KIND_CONSTANT(name, number, word, meaning) ARGUS_KIND_##name,
+    ARGUS_FAULT_KIND_TABLE(ARGUS_FAULT_KIND_CONSTANT)
+#undef ARGUS_FAULT_KIND_CONSTANT
+        ARGUS_KINDS
 } argus_fault_kind_t;
 
 // The failure state over the forward-facing sonars (paper: Fig. 6).
