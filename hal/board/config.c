@@ -100,7 +100,7 @@ board_config_answer_t board_config_set(argus_config_t *config, const char *key, 
         return BOARD_CONFIG_NO_KEY;
     }
     const char *const choices = nth(choices_of, row);
-    if (choices[0] != '\0') {
+    if (strlen(choices) > 0) {
         number = choice_of(choices, value, value_length);
         if (number < 0) {
             return BOARD_CONFIG_NO_VALUE;
