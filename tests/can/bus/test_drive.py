@@ -91,9 +91,9 @@ def test_heartbeat(frames: list[Frame]) -> None:
     uptimes = [beat["Uptime"] for _, beat in beats]
     assert uptimes == sorted(uptimes)
     assert len({beat["Nonce"] for _, beat in beats}) == len(beats), "a nonce comes twice"
-    assert text(beats[-1][1]["State"]) == "CLOSED"
-    assert text(beats[-2][1]["Failure"]) == "IsMinor"
-    assert beats[-2][1]["Disabled"] == 2
+    # The verdicts may come in the second before the end, so the last beat has to tell of them.
+    last = beats[-1][1]
+    assert (text(last["State"]), text(last["Failure"]), last["Disabled"]) == ("CLOSED", "IsMinor", 2)
     assert {text(beat["Mode"]) for _, beat in beats} >= {"CHECKING", "DRIVING", "VERIFYING"}
 
 
