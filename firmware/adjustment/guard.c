@@ -60,11 +60,17 @@ bool argus_guard_may_creep(const argus_guard_t *const self) {
     return self->creeps && argus_guard_may_translate(self);
 }
 
+// At a step's speed, and never faster than usual.
+static int32_t slow_mm_s(const argus_config_t *const config) {
+    ARGUS_ASSERT(config->step_speed_mm_s > 0);
+    return argus_min(config->step_speed_mm_s, config->speed_mm_s);
+}
+
 int32_t argus_guard_unseen_mm_s(const argus_guard_t *const self) {
-    ARGUS_ASSERT(self->config->step_speed_mm_s > 0 && self->config->creep_mm_s >= 0);
-    const int32_t step_mm_s = argus_min(self->config->step_speed_mm_s, self->config->speed_mm_s);
+    ARGUS_ASSERT(self->config->creep_mm_s >= 0);
     const int32_t creep_mm_s = self->config->creep_mm_s;
-    return creep_mm_s > 0 ? argus_min(creep_mm_s, step_mm_s) : step_mm_s;
+    const int32_t most_mm_s = slow_mm_s(self->config);
+    return creep_mm_s > 0 ? argus_min(creep_mm_s, most_mm_s) : most_mm_s;
 }
 
 // What the shortest reading ahead says now, less the way driven since it was taken.
@@ -162,9 +168,8 @@ int32_t argus_guard_speed_mm_s(const argus_guard_t *const self, const int32_t se
     }
     const bool asks = argus_guard_is_doubted(self) && seen_mm == INT32_MAX && self->profile->drives_seen;
     const int32_t others_mm = asks ? seen_by_rays_mm(self) : seen_mm;
-    return asks && others_mm < SEEN_DOUBTED_MM
-               ? argus_min(self->config->speed_mm_s, self->config->step_speed_mm_s)
-               : argus_guard_free_speed_mm_s(self, others_mm);
+    return asks && others_mm < SEEN_DOUBTED_MM ? slow_mm_s(self->config)
+                                               : argus_guard_free_speed_mm_s(self, others_mm);
 }
 
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {
@@ -329,28 +334,25 @@ static int32_t rear_clear_mm(const argus_guard_t *const self, const int sonar) {
                : clear_mm;
 }
 
-bool argus_guard_rear_is_clear(const argus_guard_t *const self) {
-    for (int i = 0; i < self->knowledge->sonars; i++) {
-        if (looks_back(self, i) && self->knowledge->sonar[i].reading_mm <= rear_clear_mm(self, i)) {
-            return false;
-        }
-    }
-    return argus_guard_rear_is_watched(self);
-}
-
-// Where not all that look back are left: what these read, and the way that it came.
-static bool may_feel_back(const argus_guard_t *const self) {
+// What those that look back and are relied on read.
+static bool rear_reads_clear(const argus_guard_t *const self) {
     for (int i = 0; i < self->knowledge->sonars; i++) {
         if (looks_back(self, i) && is_relied_on(self, i) &&
             self->knowledge->sonar[i].reading_mm <= rear_clear_mm(self, i)) {
             return false;
         }
     }
-    return self->creeps && !argus_guard_rear_is_watched(self) && self->knowledge->bumpers_rear == 0;
+    return true;
 }
 
+bool argus_guard_rear_is_clear(const argus_guard_t *const self) {
+    return argus_guard_rear_is_watched(self) && rear_reads_clear(self);
+}
+
+// Where not all that look back are left, a robot that creeps takes the way that it came.
 bool argus_guard_may_back(const argus_guard_t *const self) {
-    return argus_guard_rear_is_clear(self) || may_feel_back(self);
+    const bool feels = self->creeps && self->knowledge->bumpers_rear == 0;
+    return rear_reads_clear(self) && (feels || argus_guard_rear_is_watched(self));
 }
 
 bool argus_guard_may_back_off(const argus_guard_t *const self) {

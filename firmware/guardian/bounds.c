@@ -152,11 +152,10 @@ static bool is_careful(const argus_t *const self) {
            (argus_named(&self->knowledge) & ahead) != 0;
 }
 
-// The way ahead is seen, or may be: what was touched while none had heard anything shows that they are blind.
+// The way ahead is seen, or may be.
 static bool may_see(const argus_t *const self, const argus_guard_t *const guard) {
     const bool blind = argus_guard_is_blind(guard) && !guard->profile->drives_seen;
-    const bool lives = argus_guard_is_heard(guard) || !self->reflexes.touched_unheard;
-    return lives && !blind && argus_guard_sees_ahead(guard);
+    return !argus_is_shown_blind(self, guard) && !blind && argus_guard_sees_ahead(guard);
 }
 
 // As fast as is careful beside a wall, where one ahead is named, and until one has heard an echo.

@@ -23,9 +23,12 @@ bool argus_is_open(const argus_t *const self) {
     return argus_session_is_open(&self->session);
 }
 
+bool argus_is_shown_blind(const argus_t *const self, const argus_guard_t *const guard) {
+    return self->reflexes.touched_unheard && !argus_guard_is_heard(guard);
+}
+
 bool argus_is_unseen(const argus_t *const self, const argus_guard_t *const guard) {
-    const bool touched = self->reflexes.touched_unheard && !argus_guard_is_heard(guard);
-    return touched || !argus_guard_may_step(&self->plan);
+    return argus_is_shown_blind(self, guard) || !argus_guard_may_step(&self->plan);
 }
 
 argus_guard_t argus_guard(const argus_t *const self) {

@@ -13,8 +13,10 @@ const argus_profile_t *argus_rules(const argus_t *self);
 // The safety rules, asked of the present state.
 argus_guard_t argus_guard(const argus_t *self);
 
-// No sonar sees the way: none is left that could look, or the robot touched something while none had ever
-// heard an echo.
+// The robot touched something while no sonar ahead had heard an echo, and none has since.
+bool argus_is_shown_blind(const argus_t *self, const argus_guard_t *guard);
+
+// No sonar sees the way: none is left that could look, or they are shown to be blind.
 bool argus_is_unseen(const argus_t *self, const argus_guard_t *guard);
 
 // Which planner: the paper's rules know no adaptive one.
