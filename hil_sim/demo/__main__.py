@@ -18,6 +18,8 @@ from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
+from argus_tools.core import setting_value
+from argus_tools.formats.base import LogError
 from hil_sim.arguments import Parser
 from hil_sim.demo import picture, report
 from hil_sim.demo.judge import (
@@ -83,6 +85,15 @@ def _faults(text: str) -> tuple[Injected, ...]:
     return tuple(faults)
 
 
+def _policy(text: str) -> str:
+    """A word of the core's own list."""
+    try:
+        setting_value("policy", text)
+    except LogError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+    return text
+
+
 def _seed(text: str) -> int:
     if not re.fullmatch(r"\d{1,19}", text) or int(text) > SEED_MAX:
         raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from 0 to {SEED_MAX}")
@@ -123,9 +134,10 @@ def parser() -> argparse.ArgumentParser:
     )
     result.add_argument(
         "--policy",
-        choices=("paper", "fewest", "least-turn", "ring", "adaptive"),
+        type=_policy,
         default="adaptive",
-        help="planner (default adaptive)",
+        metavar="NAME",
+        help="planner, as argusd --list-config has them (default adaptive)",
     )
     result.add_argument(
         "--profile",

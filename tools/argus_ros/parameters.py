@@ -35,7 +35,7 @@ ARGUS: Final[Table] = {
 }
 RANGE_GUARD: Final[Table] = {
     **REPAIR,
-    "robot": ("p3dx-sh", "whose sonars these are: p3dx-sh, p3at-sh, amigo-sh, peoplebot-sh"),
+    "robot": ("p3dx-sh", "whose sonars these are: a word of the setting robot (argusd --list-config)"),
     "topics": ([f"sonar/range_{k}" for k in range(16)], "the driver's topics of sensor_msgs/Range"),
     "sonars": ([-1], "the sonar of the robot whose place each of them has; [-1]: in the order of the topics"),
     "odometry": ("pose", "the driver's topic of nav_msgs/Odometry"),
