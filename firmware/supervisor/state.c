@@ -31,6 +31,13 @@ bool argus_is_unseen(const argus_t *const self, const argus_guard_t *const guard
     return argus_is_shown_blind(self, guard) || !argus_guard_may_step(&self->plan);
 }
 
+// Segments on the end that leads, by CONFIGpac: bumpers are an accessory, and a table knows not which robot has one.
+static bool leads_with_bumper(const argus_t *const self) {
+    const argus_configpac_t *const told = &self->session.robot; // zero until it has come
+    const argus_robot_t *const robot = self->knowledge.robot;
+    return robot->front_bumpers > 0 && (robot->reversed ? told->rear_bumpers : told->front_bumpers) > 0;
+}
+
 argus_guard_t argus_guard(const argus_t *const self) {
     argus_guard_t guard = {.config = &self->config,
                            .profile = argus_rules(self),
@@ -43,8 +50,7 @@ argus_guard_t argus_guard(const argus_t *const self) {
                            .active = argus_is_active(self),
                            .linked = argus_is_open(self) && !self->stalled,
                            .checked = self->checked};
-    guard.creeps = self->config.creep_mm_s > 0 && self->knowledge.robot->front_bumpers > 0 &&
-                   argus_is_unseen(self, &guard);
+    guard.creeps = self->config.creep_mm_s > 0 && leads_with_bumper(self) && argus_is_unseen(self, &guard);
     return guard;
 }
 

@@ -4,6 +4,7 @@
 // session it goes no faster than a step, and what it then touches shows that it is blind.
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "knowledge/body.h"
 #include "robot.h"
@@ -16,11 +17,25 @@
 static robot_t robot;
 static char text[120];
 
+// A CONFIGpac of zeros but for its three strings and its bumpers: 11 bytes of ceilings, an empty name, 14 of
+// equipment, 33 of motion stand before these (SPEC.md, CONFIGpac).
+static void fit_bumpers(uint8_t front, uint8_t rear) {
+    static const char strings[] = "\x20"
+                                  "Pioneer\0p3dx-sh\0SERIAL-1";
+    static uint8_t config[sizeof strings + 11 + 1 + 14 + 33 + 2];
+    memcpy(config, strings, sizeof strings);
+    config[sizeof config - 2] = front;
+    config[sizeof config - 1] = rear;
+    robot.config = config;
+    robot.config_count = sizeof config;
+}
+
 static void start(int32_t profile, int32_t creep_mm_s) {
     argus_config_t config = robot_config_of(profile);
     config.creep_mm_s = creep_mm_s;
     robot_init(&robot, &config, 0xFFFF8000u);
     robot.noise_mm = 5;
+    fit_bumpers(5, 0);
     robot_box(&robot, -2500, -2500, 4900, 2500); // the rules of the paper take 5000 for a dead sonar
     robot.world = robot_world_segments;
 }
@@ -232,15 +247,29 @@ void test_an_operators_step_ends(void) {
     finish();
 }
 
-// With no bumper on the end that leads there is nothing to creep by.
+// With no bumper on the end that leads there is nothing to creep by. The robot says what it has; until it has
+// said so it has none.
 void test_without_a_bumper_it_stands(void) {
-    argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
-    config.creep_mm_s = CREEP_MM_S;
-    robot_init(&robot, &config, 0);
+    start_unheard(CREEP_MM_S);
     robot.argus.reflexes.touched_unheard = true;
+    TEST_ASSERT_FALSE(argus_guard(&robot.argus).creeps);
+    robot_run(&robot, 2000);
+    robot.argus.reflexes.touched_unheard = true;
+    TEST_ASSERT_EQUAL(5, robot.argus.session.robot.front_bumpers);
     TEST_ASSERT_TRUE(argus_guard(&robot.argus).creeps);
     argus_body_is(&robot.argus.knowledge, argus_robot_find("amigo-sh"), 0);
     TEST_ASSERT_FALSE(argus_guard(&robot.argus).creeps);
+}
+
+void test_a_robot_that_says_it_has_no_bumper_stands(void) {
+    start(ARGUS_PROFILE_ARGUS, CREEP_MM_S);
+    fit_bumpers(0, 5);
+    lose_all_on_the_way(ROBOT_SILENT);
+    TEST_ASSERT_TRUE(until_blind(30000));
+    robot_run(&robot, 20000);
+    TEST_ASSERT_EQUAL(ARGUS_WAIT_CATASTROPHIC, robot.argus.waiting.why);
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_CREEPING, 0));
+    finish();
 }
 
 void test_with_leave_it_creeps_from_there(void) {
