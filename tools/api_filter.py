@@ -57,8 +57,20 @@ TABLES: Final = {
     "ARGUS_EVENT_TABLE": events,
     "ARGUS_FAULT_KIND_TABLE": kinds,
 }
-PLAIN: Final = re.compile(r"^(\s*)// ")
-BEHIND: Final = re.compile(r"^(\s*[^/\s][^\"]*?[;,{\w]) +// ")
+FIRST_PAGE: Final = """
+/** @mainpage The public header
+ *
+ * How to use it, and every name: @ref argus.h
+ */
+"""
+LICENCE: Final = "// SPDX-License-Identifier:"
+"""The first line; behind it stands what the header is."""
+RULER: Final = re.compile(r"^// .*-{9,}$")
+"""The title of a section, which says nothing of the name below it."""
+HELPER: Final = re.compile(r"^#(define ARGUS_\w*(FIELD|ENUM|CONSTANT|EVENT_ID|EVENT_LEVEL)\(|undef )")
+"""What makes one row of a table into a name: of no use to a reader of the pages."""
+PLAIN: Final = re.compile(r"^(\s*)//(?= |$)")
+BEHIND: Final = re.compile(r"^(\s*[^/\s][^\"]*?[;,{)\w]) +// ")
 
 
 def filtered(header: str, text: str) -> str:
@@ -66,6 +78,14 @@ def filtered(header: str, text: str) -> str:
     lines: list[str] = []
     behind = False
     for line in text.splitlines():
+        if line.startswith(LICENCE):
+            lines.append("/// @file")
+            continue
+        if RULER.match(line):
+            lines.append(line)
+            continue
+        if HELPER.match(line):
+            continue
         used = re.match(r"\s*(ARGUS_\w+_TABLE)\(\w+\)$", line)
         if used and used[1] in TABLES:
             lines += TABLES[used[1]](header)
@@ -76,7 +96,7 @@ def filtered(header: str, text: str) -> str:
             continue
         # What follows a comment behind a name, on lines of its own further right, goes on with it.
         going_on = behind and re.match(r"^\s{12,}// ", line)
-        lines.append(PLAIN.sub(r"\1///< " if going_on else r"\1/// ", line))
+        lines.append(PLAIN.sub(r"\1///<" if going_on else r"\1///", line))
         behind = bool(going_on)
     return "\n".join(lines) + "\n"
 
@@ -93,7 +113,7 @@ def main() -> int:
         name = path.relative_to(gen_docs.HEADERS).as_posix()
     except (OSError, ValueError) as error:
         parser.error(f"{path}: {error}")
-    sys.stdout.write(filtered(name, text))
+    sys.stdout.write(filtered(name, text) + FIRST_PAGE)
     return 0
 
 

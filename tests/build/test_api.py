@@ -52,3 +52,15 @@ def test_every_row_of_the_tables_is_a_name_with_its_meaning() -> None:
 )
 def test_comments(text: str, expected: str) -> None:
     assert api_filter.filtered("include/argus/argus.h", text) == expected + "\n"
+
+
+def test_the_header_is_a_file_that_doxygen_documents() -> None:
+    """Without @file it leaves out every function; a section's title belongs to no name."""
+    text = "// SPDX-License-Identifier: MIT\n// What it is.\n//\n// More.\n\n// Bounds ----------\n\n#define A 1 // one"
+    expected = "/// @file\n/// What it is.\n///\n/// More.\n\n// Bounds ----------\n\n#define A 1 ///< one\n"
+    assert api_filter.filtered("include/argus/argus.h", text) == expected
+
+
+def test_the_makers_of_names_are_left_out() -> None:
+    text = "#define ARGUS_EVENT_ID(number, name) (number),\n#undef ARGUS_EVENT_ID\nint a;"
+    assert api_filter.filtered("include/argus/argus.h", text) == "int a;\n"

@@ -57,7 +57,7 @@ extern "C" {
 
 // Build ----------------------------------------------------------------------------------------------------
 
-// Checks of what must be true inside the library, and of its callers. Whoever builds the library may define
+// Checks of what must be true inside the library, and of its callers. The builder of the library may define
 // it, for example as -D'ARGUS_ASSERT(condition)=((condition) ? (void)0 : board_reset())'; it must then be a
 // void expression. Else it costs nothing, unless ARGUS_ASSERTS is defined (as in every test build): then it
 // traps, with no call to anything. The condition has no side effects.
@@ -76,24 +76,24 @@ extern "C" {
 #ifndef ARGUS_SONARS
 #define ARGUS_SONARS 16
 #endif
-#define ARGUS_NO_SONAR ((int8_t)-1)
-// Masks over sonar numbers.
+#define ARGUS_NO_SONAR ((int8_t)-1) // where an event is about no sonar
+// A mask over sonar numbers: bit K is sonar K.
 #if ARGUS_SONARS > 16
 typedef uint32_t argus_mask_t;
 #else
 typedef uint16_t argus_mask_t;
 #endif
-#define ARGUS_NO_ECHO_MM 5000 // a reading of this or more: nothing was heard
-#define ARGUS_NAME_MAX 32     // identity strings, cut to 31 characters and a NUL
-#define ARGUS_WAYPOINTS_MAX 64
-#define ARGUS_COURSE_LIMIT_MM 30000
+#define ARGUS_NO_ECHO_MM 5000                     // a reading of this or more: nothing was heard
+#define ARGUS_NAME_MAX 32                         // identity strings, cut to 31 characters and a NUL
+#define ARGUS_WAYPOINTS_MAX 64                    // points of a course
+#define ARGUS_COURSE_LIMIT_MM 30000               // of a point's x and y, either way
 #define ARGUS_PACKET_MAX 200                      // the longest packet that is ever sent
 #define ARGUS_RECORD_MAX (64 + 60 * ARGUS_SONARS) // the longest record that is ever saved
 
 // Settings -------------------------------------------------------------------------------------------------
 
-#define ARGUS_PROFILE_PAPER 0
-#define ARGUS_PROFILE_ARGUS 1
+#define ARGUS_PROFILE_PAPER 0 // the setting profile: the rules of the source paper
+#define ARGUS_PROFILE_ARGUS 1 // evidence while driving, and all that goes beyond the paper; the default
 
 // X(key, default, minimum, maximum, unit, choices, meaning). `choices` names the values 0, 1, ... of a
 // setting that is picked by name ("" for a number). A front end builds its parser and its help from this
@@ -120,7 +120,7 @@ typedef uint16_t argus_mask_t;
     X(step_mm, 200, 50, 200, "mm", "", "length of one step in failure mode")                                 \
     X(step_speed_mm_s, 100, 30, 300, "mm/s", "", "speed of a step")                                          \
     X(creep_mm_s, 0, 0, 100, "mm/s", "",                                                                     \
-      "where no sonar sees the way: creep on at this speed, told by the bumpers alone; 0: stand and wait")   \
+      "where no sonar sees the way: creep on at this speed, guided by the bumpers alone; 0: stand and wait") \
     X(speed_mm_s, 200, 30, 750, "mm/s", "",                                                                  \
       "speed of normal driving; profile argus: where something is near, or others do not see far enough")    \
     X(speed_max_mm_s, 500, 30, 750, "mm/s", "",                                                              \
@@ -151,6 +151,7 @@ typedef struct {
 #undef ARGUS_CONFIG_FIELD
 } argus_config_t;
 
+// Planners of the compensating rotations, values of the setting policy.
 typedef enum {
     ARGUS_POLICY_PAPER,      // the walk of the paper's Algorithm 3
     ARGUS_POLICY_FEWEST,     // least stops
@@ -198,7 +199,7 @@ typedef enum {
       "the transport is gone, or no SIP came for link_lost_ms; value: ms without a SIP")                     \
     X(12, LINK_STALLED, WARN, link, "no SIP for link_stall_ms: standing; value: ms without a SIP")           \
     X(13, LINK_RESUMED, OK, link, "SIPs come again; value: length of the gap in ms")                         \
-    X(14, SESSION_NO_ANSWER, WARN, session, "nobody answers SYNC; value: attempts so far")                   \
+    X(14, SESSION_NO_ANSWER, WARN, session, "no robot answers SYNC; value: attempts so far")                 \
     X(15, SESSION_OPEN, OK, session, "the robot answered and reports; value: attempts it took")              \
     X(16, SESSION_CLOSED, OK, session, "orderly end: SONAR 0, STOP, CLOSE sent")                             \
     X(17, SESSION_DISLODGED, WARN, session, "the robot was still in an old session, which was closed")       \
@@ -223,9 +224,8 @@ typedef enum {
     X(31, SONAR_SILENT, ERROR, sonar,                                                                        \
       "its slot yields no reading: STOP sent; value: age of its last reading in ms")                         \
     X(32, SONAR_SUSPECT, WARN, sonar,                                                                        \
-      "disparate to its neighbours (Algorithm 1); value: the disparity in mm")                               \
-    X(33, SONAR_VERIFYING, OK, sonar,                                                                        \
-      "neighbours turn onto its bearing (Algorithm 2); value: its reading in mm")                            \
+      "evidence against it (under `paper`: Algorithm 1); value: its disparity to its neighbours in mm")      \
+    X(33, SONAR_VERIFYING, OK, sonar, "a look: neighbours turn onto its bearing; value: its reading in mm")  \
     X(34, SONAR_WITNESS, OK, sonar, "a neighbour saw on its bearing; value: that reading in mm")             \
     X(35, SONAR_CLEARED, OK, sonar, "the witnesses agree with it; value: mean of the witnesses in mm")       \
     X(36, SUSPICION_DROPPED, OK, sonar, "no longer disparate at rest; value: the disparity in mm")           \
@@ -281,11 +281,12 @@ typedef enum {
       "the leading end changes, at rest; value: 1 the rear leads, 0 the front again")                        \
     X(74, INJECTED, WARN, sonar, "what it reports is altered for a test; value: fault kind, 0: no more")     \
     X(75, WHEEL_SHORT, WARN, drive,                                                                          \
-      "ways straight ahead bend: a wheel turns less than it is told, and is countered by turning; value: "   \
+      "ways straight ahead bend: a wheel turns less than ordered, and is countered by turning; value: "      \
       "thousandths that it falls short, positive the left one, negative the right one")                      \
     X(76, WHEEL_EVEN, OK, drive, "ways straight ahead are straight again; value: 0")                         \
     X(77, CREEPING, WARN, drive,                                                                             \
-      "no sonar sees the way, and the operator lets it: creeps on, told by the bumpers alone; value: mm/s")  \
+      "no sonar sees the way, and the operator lets it: creeps on, guided by the bumpers alone; value: "     \
+      "mm/s")                                                                                                \
     X(78, NO_ECHO, WARN, drive,                                                                              \
       "no sonar ahead has heard an echo in this session, so nothing shows that one lives: slow until one "   \
       "has; value: mm/s")                                                                                    \
@@ -303,7 +304,8 @@ typedef enum {
     X(104, GUARD_SLOWED, WARN, guard,                                                                        \
       "slower than the client asks, to stand before what is seen (S5); value: mm/s")                         \
     X(105, GUARD_HELD, WARN, guard,                                                                          \
-      "not the way that the client asks; value: 1 an object (S2), 2 not seen (S1, S3, S7), 3 a bumper, "     \
+      "not the way that the client asks; value: 1 an object (S2), 2 a way that is not seen (S1), 3 a "       \
+      "bumper, "                                                                                             \
       "4 stopped by an operator, or a body that is not known")                                               \
     X(106, GUARD_TURN_HELD, WARN, guard,                                                                     \
       "not the turn that the client asks: the body would meet what is seen (S7); value: degrees, or per s")  \
@@ -384,7 +386,7 @@ typedef enum {
     ARGUS_IS_CATASTROPHIC // all
 } argus_failure_t;
 
-#define ARGUS_ROTATIONS_MAX 6
+#define ARGUS_ROTATIONS_MAX 6 // of one plan: one for each forward-facing sonar
 
 // Rotations by which the healthy sonars cover for the disabled ones (paper: Tables IV and V).
 typedef struct {
@@ -400,7 +402,7 @@ typedef struct {
 typedef enum {
     ARGUS_MODE_OFFLINE,   // no session with a robot
     ARGUS_MODE_CHECKING,  // at rest: every forward-facing sonar must report before anything moves (S6)
-    ARGUS_MODE_VERIFYING, // Algorithm 2 turns neighbours onto a suspect's bearing
+    ARGUS_MODE_VERIFYING, // a look: turns neighbours onto a suspect's bearing
     ARGUS_MODE_IDLE,      // healthy enough, nothing to do
     ARGUS_MODE_DRIVING,   // normal driving
     ARGUS_MODE_SWEEPING,  // failure mode, at rest: turns through the plan's rotations
@@ -458,7 +460,7 @@ typedef struct {
     int32_t goal_mm;         // straight-line distance to the last waypoint, 0 without a course
     uint16_t waypoint;       // next waypoint, from 0
     uint16_t waypoints;      // of the course
-    bool reversed;           // the rear leads; all of the robot's frame is told as it is built nonetheless
+    bool reversed;           // the rear leads; what is in the robot's frame is as it is built nonetheless
     bool active;             // false: passive
     bool paused;             // by the operator's STOP
     bool open;               // there is a session with a robot
@@ -519,6 +521,7 @@ typedef enum {
 
 // Instance -------------------------------------------------------------------------------------------------
 
+// Bytes of one manager.
 #define ARGUS_STORAGE_BYTES (12920 + 792 * ARGUS_SONARS)
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
@@ -528,6 +531,7 @@ typedef union {
     uint8_t bytes[ARGUS_STORAGE_BYTES]; // the library's own
 } argus_storage_t;
 
+// One manager, inside the storage given to argus_init(). Its members are the library's own.
 typedef struct argus argus_t;
 
 // Guard port -----------------------------------------------------------------------------------------------
@@ -551,6 +555,7 @@ typedef struct {
     size_t capacity;           // how many fit
 } argus_port_io_t;
 
+// Bytes of one guard port.
 #define ARGUS_PORT_BYTES 2600
 
 // Memory of one port, the caller's; all zero at the start.
@@ -561,6 +566,7 @@ typedef union {
 
 // Functions ------------------------------------------------------------------------------------------------
 
+// Every setting at its default. Cost: one copy.
 void argus_config_default(argus_config_t *config);
 
 // Ranges first, then the two S5 inequalities, for the robot that the setting `robot` names (by-subclass: for
@@ -569,37 +575,46 @@ void argus_config_default(argus_config_t *config);
 argus_config_report_t argus_config_check(const argus_config_t *config);
 
 // Starts from nothing: no robot, every sonar UNKNOWN, no course. `config` is copied; it should have passed
-// argus_config_check(), otherwise the manager starts passive and stays so. The result is in `storage`.
+// argus_config_check(), otherwise the manager starts passive and stays so. The result is in `storage`. Cost:
+// the storage is cleared once.
 argus_t *argus_init(argus_storage_t *storage, const argus_config_t *config, uint32_t now_ms);
 
 // The course: 1..ARGUS_WAYPOINTS_MAX points in the frame of the robot's odometry at connection (x ahead, y
 // left, mm, each |v| <= ARGUS_COURSE_LIMIT_MM). False, and nothing changed, when it does not fit. Driving
-// starts by itself when active and checked.
+// starts by itself when active and checked. Cost: one copy of the points.
 bool argus_set_course(argus_t *self, const argus_point_t *points, uint16_t count);
 
-// The wire is open / is gone.
+// The wire is open: the manager looks for a robot on it. Cost: constant.
 void argus_link_up(argus_t *self, uint32_t now_ms);
+
+// The wire is gone: what waits to be sent is dropped, and the session with it. Cost: constant.
 void argus_link_lost(argus_t *self, uint32_t now_ms);
 
 // Takes any number of received bytes, none too. A STOP that they call for is ready in argus_transmit() when
-// this returns.
+// this returns. Cost: one pass over the bytes, and for each SIP in them the diagnosis: at most some 660,000
+// instructions of a Cortex-M4 (docs/flash.md).
 void argus_receive(argus_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count);
 
-// Does what time alone makes due; returns the ms (1..100) after which it wants to be called again.
+// Does what time alone makes due; returns the ms (1..100) after which it wants to be called again. Cost: much
+// less than a SIP.
 uint32_t argus_process(argus_t *self, uint32_t now_ms);
 
 // Next packet to write, whole, at most ARGUS_PACKET_MAX bytes; 0 when there is none. A buffer too small: 0.
+// Cost: one copy of the packet.
 size_t argus_transmit(argus_t *self, uint8_t *buffer, size_t capacity);
 
-// The oldest event that was not taken yet; false: none. What does not fit the queue is counted and told.
+// The oldest event that was not taken yet; false: none. What does not fit the queue is counted,
+// and an event says how many. Cost: constant.
 bool argus_next_event(argus_t *self, argus_event_t *event);
 
 // False, and no event, when it cannot be done now: after argus_shutdown(), for a sonar that there is not or
-// that is pinned (or not), for what the profile has not.
+// that is pinned (or not), for what the profile has not. Cost: at most one search for a way.
 bool argus_operator(argus_t *self, uint32_t now_ms, argus_op_t op, int32_t argument);
 
-// Stop the robot, then SONAR 0, STOP, CLOSE; argus_closed() tells when the last byte is out (within 3 s).
+// Stops the robot, then sends SONAR 0, STOP, CLOSE. Cost: constant.
 void argus_shutdown(argus_t *self, uint32_t now_ms);
+
+// True when the last byte after argus_shutdown() is out, within 3 s of it. Cost: constant.
 bool argus_closed(const argus_t *self);
 
 // A port at which another client of the robot is served as by the robot itself, bounded (SPEC.md, Guard
@@ -616,15 +631,17 @@ void argus_status(const argus_t *self, argus_status_t *status);
 // sonar.
 void argus_suspicions(const argus_t *self, argus_suspicions_t *suspicions);
 
-// The persistent record: what is known of every sonar (SPEC.md). save returns its length, 0 if it does not
-// fit; ARGUS_RECORD_MAX is enough. load takes a record, before a session opens; under `argus` a sonar that
-// was out in it starts on PROBATION. A damaged or foreign one is said by an event and ignored; one of another
-// robot is, and taken back, once a session is open.
+// Writes the persistent record: what is known of every sonar (SPEC.md). Returns its length, 0 if it does not
+// fit; ARGUS_RECORD_MAX is enough. Cost: one pass over the sonars and a checksum.
 size_t argus_record_save(const argus_t *self, uint8_t *buffer, size_t capacity);
+
+// Takes a record, before a session opens; under `argus` a sonar that was out in it starts on PROBATION. False
+// for a damaged or foreign one, which an event tells of. A record of another robot is taken back once a
+// session is open. Cost: one pass and a checksum.
 bool argus_record_load(argus_t *self, const uint8_t *record, size_t length);
 
 // 0 when every internal invariant holds, else the number of the first that does not. For supervisors, tests,
-// fuzzers.
+// fuzzers. Cost: one pass over the sonars.
 int argus_invariants_broken(const argus_t *self);
 
 // Names and levels are static data; an unknown number is "?" and ARGUS_LEVEL_ERROR. What else the catalogue
@@ -632,6 +649,7 @@ int argus_invariants_broken(const argus_t *self);
 // table.
 const char *argus_name(argus_name_of_t of, int number);
 
+// The level of an event. Cost: one pass over the catalogue.
 static inline argus_level_t argus_event_level(uint16_t id) {
 #define ARGUS_EVENT_ID(number, name, level, subject, meaning) (number),
 #define ARGUS_EVENT_LEVEL(number, name, level, subject, meaning) ARGUS_LEVEL_##level,
