@@ -20,6 +20,7 @@ from typing import NoReturn
 
 from argus_tools.core import setting_value
 from argus_tools.formats.base import LogError
+
 from hil_sim.arguments import Parser
 from hil_sim.demo import picture, report
 from hil_sim.demo.judge import (
