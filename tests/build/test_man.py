@@ -75,3 +75,11 @@ def test_pages_are_sound(page: Path) -> None:
     assert {"NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXAMPLES", "SEE ALSO"} <= set(
         re.findall(r'^\.SH "?([A-Z ]+?)"?$', page.read_text(encoding="utf-8"), re.MULTILINE)
     )
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
+def test_a_heading_is_no_sentence(page: Path) -> None:
+    """A paragraph that ends in a heading's words on the same line would become one."""
+    headings = re.findall(r'^\.S[HS] "?([^"\n]+)"?$', page.read_text(encoding="utf-8"), re.MULTILINE)
+    assert headings
+    assert [heading for heading in headings if "." in heading or len(heading) > 60] == []

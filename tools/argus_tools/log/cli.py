@@ -29,8 +29,10 @@ examples:
 
 formats:
 {formats}
-They are told apart by their contents and may be gzipped. Of what else is given, the name is told and the command that
-makes one of these of it. {codes}
+They are told apart by their contents and may be gzipped. For other forms it prints the name, and the command that
+converts them.
+
+{codes}
 """
 
 
