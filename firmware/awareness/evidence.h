@@ -70,7 +70,7 @@ bool argus_evidence_shows_gaps(const argus_evidence_t *self, int sonar);
 
 // Readings in a row without an echo; that others contradict it, hundredths of a nat.
 uint8_t argus_evidence_silent_run(const argus_evidence_t *self, int sonar);
-int32_t argus_evidence_accused(const argus_evidence_t *self, int sonar);
+int32_t argus_evidence_contradicted(const argus_evidence_t *self, int sonar);
 
 // Since it proved alive by an echo that went on; since another bore it out.
 uint32_t argus_evidence_alive_age_ms(const argus_evidence_t *self, const argus_knowledge_t *knowledge,

@@ -98,7 +98,7 @@ typedef struct {
 // Looks (profile argus) and checks. After an acquittal a sonar is not looked at again for a while.
 typedef struct {
     uint32_t odometer_mm;
-    uint8_t acquittals;
+    uint8_t cleared;
     uint8_t borne_out; // looks in a row that left it its name
 } argus_hold_t;
 

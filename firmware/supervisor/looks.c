@@ -19,8 +19,8 @@
 static bool is_held(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
     const argus_hold_t *const hold = &self->looks.hold[sonar];
-    const int32_t doublings = argus_min(hold->acquittals - 1, HOLD_DOUBLINGS);
-    return hold->acquittals > 0 &&
+    const int32_t doublings = argus_min(hold->cleared - 1, HOLD_DOUBLINGS);
+    return hold->cleared > 0 &&
            self->knowledge.odometer_mm - hold->odometer_mm < HOLD_MM << (unsigned)argus_max(0, doublings);
 }
 
@@ -91,15 +91,15 @@ bool argus_look_pays(const argus_t *const self) {
     return argus_guard_may_turn(&guard);
 }
 
-static void acquit(argus_t *const self, const int sonar) {
+static void clear(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
     argus_hold_t *const hold = &self->looks.hold[sonar];
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     if (self->knowledge.odometer_mm - hold->odometer_mm > HOLD_FORGET_MM) {
-        hold->acquittals = 0;
+        hold->cleared = 0;
     }
     hold->borne_out = 0;
-    hold->acquittals = (uint8_t)argus_min(hold->acquittals + 1, UINT8_MAX);
+    hold->cleared = (uint8_t)argus_min(hold->cleared + 1, UINT8_MAX);
     hold->odometer_mm = self->knowledge.odometer_mm;
     if (s->health == ARGUS_SUSPECT) {
         argus_say_change(self, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, s->reading_mm);
@@ -143,7 +143,7 @@ static void conclude(argus_t *const self, const int sonar) {
     }
     const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
     if (asked && kind == ARGUS_KIND_NONE) {
-        acquit(self, sonar);
+        clear(self, sonar);
     } else if (suspect && is_proved(self, sonar, kind)) {
         argus_disable(self, sonar, kind);
     } else if (suspect) {
@@ -162,7 +162,7 @@ void argus_conclude_looks(argus_t *const self) {
     argus_replan(self);
 }
 
-void argus_forget_acquittals(argus_t *const self, const int sonar) {
+void argus_forget_cleared(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
-    self->looks.hold[sonar].acquittals = 0;
+    self->looks.hold[sonar].cleared = 0;
 }

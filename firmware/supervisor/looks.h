@@ -29,6 +29,6 @@ void argus_conclude_looks(argus_t *self);
 void argus_leave_open(argus_t *self, argus_mask_t sonars);
 
 // An operator wants it looked at: its acquittals are forgotten.
-void argus_forget_acquittals(argus_t *self, int sonar);
+void argus_forget_cleared(argus_t *self, int sonar);
 
 #endif

@@ -151,7 +151,7 @@ static void begin_retest(argus_t *const self, const int sonar) {
     argus_evidence_forget(&self->evidence, sonar);
     argus_extremes_forget(&self->extremes, sonar);
     argus_evidence_forget_trend(&self->evidence, sonar);
-    argus_forget_acquittals(self, sonar);
+    argus_forget_cleared(self, sonar);
     self->awareness.verified &= (argus_mask_t) ~(unsigned)bit;
     if (argus_is_out(&self->knowledge, sonar)) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RETESTED, s->kind, s->reading_mm);

@@ -204,13 +204,13 @@ void test_a_name_that_nobody_sees_for_is_looked_at_at_once(void) {
 }
 
 // ... but not again within the distance of its acquittal.
-void test_whoever_was_acquitted_here_is_not_looked_at_again(void) {
+void test_what_was_cleared_here_is_not_looked_at_again(void) {
     start_in_a_hall();
     drive_off();
     uint32_t before = 0;
     for (int i = 0; i < 60 && !are_named(7u << 2); i++) {
         for (int k = 0; k < ARGUS_SONARS; k++) {
-            robot.argus.looks.hold[k].acquittals = 1;
+            robot.argus.looks.hold[k].cleared = 1;
             robot.argus.looks.hold[k].odometer_mm = before = robot.argus.knowledge.odometer_mm;
         }
         hold(7u << 2, 60);

@@ -521,7 +521,7 @@ static unsigned unlooked(const robot_t *robot) {
     unsigned mask = 0;
     for (int i = first_ahead(robot); (all_ahead(robot) >> i & 1u) != 0 && argus_guard_may_turn(&guard); i++) {
         const bool alone = !trusts(robot, i - 1) && !trusts(robot, i + 1);
-        mask |= (open >> i & 1u) != 0 && !trusts(robot, i) && alone && argus->looks.hold[i].acquittals == 0
+        mask |= (open >> i & 1u) != 0 && !trusts(robot, i) && alone && argus->looks.hold[i].cleared == 0
                     ? 1u << i
                     : 0u;
     }
