@@ -66,8 +66,8 @@ static argus_fault_kind_t kind_of_peers(const argus_case_t *const self) {
     return late_of(self).over_other >= ARGUS_LATE_LEAD ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
 }
 
-// The others heard something wherever it lately did not, and it has heard nothing for a while: less is wanted
-// than of one whose echoes might be of another thing.
+// It has heard nothing for a while, and wherever it lately did not, the others heard something. So less is
+// wanted than where echoes are contradicted, which might be of another thing.
 static bool is_silent(const argus_case_t *const self) {
     return self->none_run >= OFF_RUN && !self->borne_out &&
            self->score[ARGUS_TEST_PEERS] >= ARGUS_SILENT_CONTRADICTED &&

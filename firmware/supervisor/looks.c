@@ -7,8 +7,8 @@
 #include "supervisor/say.h"
 #include "supervisor/state.h"
 
-#define HOLD_MM 400u         // an acquitted sonar is not looked at again before this distance,
-#define HOLD_DOUBLINGS 2     // ... doubled with each acquittal so often
+#define HOLD_MM 400u         // a cleared sonar is not looked at again before this distance,
+#define HOLD_DOUBLINGS 2     // ... doubled each time it is cleared, so often
 #define HOLD_FORGET_MM 4000u // ... and forgotten after this one
 #define LOOK_COST_MS 9000u   // what a look takes: two turns aside, the way back, two rounds of readings each
 #define SIP_MS 100u
@@ -79,8 +79,8 @@ void argus_count_loss(argus_t *const self) {
     self->looks.lost_ms += SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s;
 }
 
-// To hire or to buy: a look is bought when what it costs has been lost, so both together are never more than
-// twice the cheaper one. Where no other sonar sees what a suspect may not, it is bought at once.
+// To hire or to buy: a look is bought when its cost has been lost to the doubt. So both together are never
+// more than twice the cheaper one. Where no other sonar sees what a suspect may not, it is bought at once.
 bool argus_look_pays(const argus_t *const self) {
     const argus_looks_t *const looks = &self->looks;
     const bool pays = looks->asked || alone(self) != 0 || looks->lost_ms >= LOOK_COST_MS;
@@ -117,9 +117,9 @@ void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
     }
 }
 
-// A name that looks do not clear, while nothing moves about: others have looked along its bearing for that
-// alone, each time anew (paper: Algorithm 2). What its own readings tell, looks do not prove, nor anything of
-// one at the end of an array. A look that leaves it another name neither proves nor clears.
+// A name that looks do not clear while nothing moves about. For that alone others have looked along its
+// bearing, each time anew (paper: Algorithm 2). What its own readings tell, looks do not prove, nor anything
+// of one at the end of an array. A look that leaves it another name neither proves nor clears.
 static bool is_proved(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);

@@ -142,8 +142,8 @@ static void obey_for_all(argus_t *const self, const argus_op_t op, const int32_t
 
 // One sonar ------------------------------------------------------------------------------------------------
 
-// One in use becomes a suspect that the next health check looks at; one that is out begins its probation
-// anew, with its relapses forgiven, since nothing but evidence brings it back.
+// One in use becomes a suspect that the next health check looks at. One that is out begins its probation
+// anew, its relapses forgiven, since nothing but evidence brings it back.
 static void begin_retest(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(argus_rules(self)->evidence && (self->orders.pinned >> sonar & 1u) == 0);
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];

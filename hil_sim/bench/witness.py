@@ -62,8 +62,8 @@ def contradicted(sightings: Sequence[Sighting], sonar: int, begin_s: float, end_
 
 
 def _seen(sightings: Sequence[Sighting], begin_s: float, end_s: float) -> Sequence[Sighting]:
-    """Those that may list what was made from begin to end: a SIP comes up to half a second after it, and the last
-    before tells where the robot was."""
+    """Those that may list what was made from begin to end. A SIP comes up to half a second after it, and the last
+    one before shows where the robot was."""
     times = [one.t_s for one in sightings]
     first = bisect_left(times, begin_s)
     return sightings[max(0, first - 1) : bisect_right(times, end_s + _LISTED_S)]
