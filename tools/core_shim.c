@@ -191,10 +191,10 @@ void argus_shim_brief(const argus_t *core, uint8_t *bytes) {
     }
 }
 
-// A whole recording at once, for who judges many: the packets of a robot, `length[i]` of `bytes` each at
-// t_ms[i] (rising), into a manager that was just made at 0 ms. What it says and sends is thrown away.
-// `changes` gets four values for each change of a sonar, as far as there is room: ms, sonar, health, kind.
-// Returns how many there were.
+// A whole recording at once, for programs that judge many. The packets of a robot, `length[i]` of `bytes`
+// each at t_ms[i] (rising), go into a manager that was just made at 0 ms. What it says and sends is thrown
+// away. `changes` gets four values for each change of a sonar, as far as there is room: ms, sonar, health,
+// kind. Returns how many there were.
 
 typedef struct {
     argus_t *core;

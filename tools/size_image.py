@@ -66,7 +66,7 @@ def sections(image: Path) -> dict[str, int]:
 
 
 def handlers(graph: size_stack.Graph, known: dict[str, size_stack.Depth]) -> int:
-    """Return the stack of the deepest interrupt: functions that nobody calls, but start-up and faults.
+    """Return the stack of the deepest interrupt: functions that no other calls, but start-up and faults.
 
     All have one priority, so one runs at a time; faults take a stack of their own.
     """

@@ -32,7 +32,7 @@ class Unbounded(Exception):
 
 @dataclasses.dataclass
 class Graph:
-    """Frames (bytes) of the functions defined here, and who calls whom."""
+    """Frames (bytes) of the functions defined here, and which calls which."""
 
     frames: dict[str, int] = dataclasses.field(default_factory=dict)
     calls: dict[str, set[str]] = dataclasses.field(default_factory=dict)

@@ -11,7 +11,7 @@
 int argus_plan_cover(const argus_robot_t *robot, const argus_plan_t *plan, int16_t rotation_deg,
                      int disabled);
 
-// Sonars whose readings count after a rotation, and after any of the plan's, as a mask.
+// The sonars that count after a rotation, and after any of the plan's, as a mask.
 argus_mask_t argus_plan_covering(const argus_robot_t *robot, const argus_plan_t *plan, int16_t rotation_deg);
 argus_mask_t argus_plan_needs(const argus_robot_t *robot, const argus_plan_t *plan);
 

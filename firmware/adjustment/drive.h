@@ -15,7 +15,7 @@ typedef struct {
     bool done;           // back on it, all rotations read
     int32_t base_cdeg;
     uint16_t smallest_mm; // smallest compensating reading so far
-    int8_t smallest_of;   // the disabled sonar whose bearing showed it
+    int8_t smallest_of;   // the disabled sonar that it was seen for
     uint8_t smallest_at;  // rotation index
 } argus_drive_t;
 
@@ -25,7 +25,7 @@ void argus_sweep_begin(argus_drive_t *self, const argus_plan_t *plan, int32_t ba
 // look.
 bool argus_sweep_is_outdated(const argus_drive_t *self, const argus_plan_t *plan);
 
-// Whose readings count where the sweep is: those of the rotation at work, nobody's on the way home.
+// The sonars that count where the sweep is: those of the rotation at work, none on the way home.
 argus_mask_t argus_sweep_wants(const argus_drive_t *self, const argus_plan_t *plan,
                                const argus_robot_t *robot);
 

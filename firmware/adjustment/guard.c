@@ -369,8 +369,8 @@ static int32_t abeam_mm(const argus_guard_t *const self) {
     return nearest_mm;
 }
 
-// What the rear reads clear less some room; no farther than usual past what was seen beside the way, since a
-// smooth wall that slants in by 15 to 25 degrees is heard by no sonar.
+// What the rear reads clear less some room. Past what was seen beside the way it goes no farther than usual.
+// No sonar hears a smooth wall that slants in by 15 to 25 degrees.
 static int32_t most_back_mm(const argus_guard_t *const self) {
     const int32_t beside_mm = (abeam_mm(self) - ABEAM_LEAST_MM) * ABEAM_SLANT;
     const int32_t clear_mm =

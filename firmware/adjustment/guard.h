@@ -32,8 +32,8 @@ typedef struct {
 
 // Ahead ----------------------------------------------------------------------------------------------------
 
-// S1: driving only with every bearing ahead in use or, where the profile lets it, as far as living sonars
-// have seen the way of the body; a step also while the others cover for those that are out.
+// S1: it drives with every bearing ahead in use. Where the profile lets it, it drives as far as living sonars
+// have seen the way of the body. It may step while the others cover for those that are out.
 bool argus_guard_may_drive(const argus_guard_t *self, const argus_plan_t *plan);
 bool argus_guard_may_step(const argus_plan_t *plan);
 
@@ -50,34 +50,36 @@ int argus_guard_gap(const argus_guard_t *self);
 
 int32_t argus_guard_seen_mm(const argus_guard_t *self);
 
-// S2, S3, S6: motors on, a link that lives, a full check behind it, no bumper pressed.
+// S2, S6: motors on, SIPs come, a full check has passed, no bumper is pressed.
 bool argus_guard_may_translate(const argus_guard_t *self);
 
-// S5: of the sonars in use that look ahead, or of the ring where none does, one has heard an echo in this
-// session; or the profile does not ask. Where nothing was ever heard a free way and a dead ring look alike.
+// S5: one of the sonars in use that look ahead has heard an echo in this session, or the profile does not
+// ask. Where none looks ahead, the whole ring counts. Where nothing was ever heard a free way and a dead ring
+// look alike.
 bool argus_guard_is_heard(const argus_guard_t *self);
 
-// No sonar sees the way, and the operator lets it creep, told by its bumpers alone.
+// No sonar sees the way, and the operator lets it creep on its bumpers alone.
 bool argus_guard_may_creep(const argus_guard_t *self);
 
 // Where what lies ahead may be touched: the speed of creeping or, without leave for that, of a step.
 int32_t argus_guard_unseen_mm_s(const argus_guard_t *self);
 
-// S3: the longest MOVE that normal driving may ask for now: shortest front reading, less the way driven since
-// it was taken, less the object range, and no farther than has been seen (argus_guard_seen_mm(), which costs
-// more than all the rest); never negative.
+// S1, S5: the longest MOVE that normal driving may ask for now, never negative. It is the shortest front
+// reading less the way driven since and less the object range, but no farther than `seen_mm`. That is of
+// argus_guard_seen_mm(), which costs more than all the rest.
 int32_t argus_guard_ahead_mm(const argus_guard_t *self, int32_t seen_mm);
 
 // A sonar ahead has the name of a fault.
 bool argus_guard_is_doubted(const argus_guard_t *self);
 
-// S5: the speed for the way ahead: `speed_mm_s`; where the profile adapts it and nothing is close beside, up
-// to `speed_max_mm_s`, as the shortest front reading allows, and what others have seen where one is doubted.
+// S5: the speed for the way ahead, `speed_mm_s`. Where the profile adapts it and nothing is close beside, it
+// is what the shortest front reading allows, up to `speed_max_mm_s`. Where a sonar is doubted, what others
+// have seen limits it, too.
 int32_t argus_guard_speed_mm_s(const argus_guard_t *self, int32_t seen_mm);
 // ... and were nothing doubted.
 int32_t argus_guard_free_speed_mm_s(const argus_guard_t *self, int32_t seen_mm);
 
-// S3: every sonar in use that looks ahead has been refreshed within two rounds of its array.
+// S2: every sonar in use that looks ahead has been refreshed within two rounds of its array.
 bool argus_guard_sees_ahead(const argus_guard_t *self);
 
 // In which each sonar of an array has been listed twice.
@@ -92,12 +94,12 @@ bool argus_guard_is_home(const argus_guard_t *self, int32_t base_cdeg);
 bool argus_guard_may_turn(const argus_guard_t *self);
 bool argus_guard_swing_is_blocked(const argus_guard_t *self);
 
-// S7, where the profile lets it: a turn of at most 20 degrees, from here, in which the body comes within 40
-// mm of nothing that is seen or was seen a moment ago. Cost: six places of the body for each echo.
+// S7, where the profile lets it: a turn of at most 20 degrees from here. In it the body keeps 40 mm from all
+// that is seen or was seen a moment ago. Cost: six places of the body for each echo.
 bool argus_guard_may_nudge(const argus_guard_t *self, int32_t by_cdeg);
 
-// Nearest to the robot's centre, were it `back_mm` farther back: of what is seen, and, as the profile says,
-// of what was seen a moment ago. INT32_MAX: nothing.
+// The distance of what would be nearest to the robot's centre, were it `back_mm` farther back. It counts what
+// is seen and, where the profile says so, what was seen a moment ago. INT32_MAX: nothing.
 int32_t argus_guard_nearest_mm(const argus_guard_t *self, int32_t back_mm);
 
 // The echo that this sonar hears now forbids to turn. What is remembered does.

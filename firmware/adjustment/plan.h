@@ -8,9 +8,9 @@
 #include "analysis/failure.h"
 #include "argus/argus.h"
 
-// X(NAME, setting, walks, ring, stop, degree, meaning). `walks`: nearest to 0 first, back after each, else
-// the exact planner, one pass and one return; `ring`: every living sonar may look, not only those that face
-// forward; `stop`, `degree`: what one costs. A stop takes 1 s, in which the robot turns by 60 degrees.
+// X(NAME, setting, walks, ring, stop, degree, meaning). `walks`: nearest to 0 first, back after each; else
+// the exact planner, one pass and one return. `ring`: every living sonar may look, not only those that face
+// forward. `stop`, `degree`: what one costs. A stop takes 1 s, in which the robot turns by 60 degrees.
 #define ARGUS_POLICY_TABLE(X)                                                                        \
     X(PAPER, "paper", 1, 0, 0, 0, "Algorithm 3: nearest turn first, back after each")                \
     X(FEWEST, "fewest", 0, 0, 1000, 1, "least stops, then least turning")                            \

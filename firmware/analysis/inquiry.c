@@ -12,9 +12,9 @@
 #define LOOK_MS 2600u       // a sonar that yields nothing is not waited for longer
 #define FIRST_LOOKS 2
 #define SILENT_RUN 2
-#define ACCUSED 100  // of a silent one, by the others, in hundredths of a nat: it is worth an aim
-#define AIMS_MAX 4   // turns of a suspect onto what another has heard
-#define AIMS_ASIDE 2 // ... and, while that lasts, of one that is none
+#define CONTRADICTED 100 // of a silent one, by the others, in hundredths of a nat: it is worth an aim
+#define AIMS_MAX 4       // turns of a suspect onto what another has heard
+#define AIMS_ASIDE 2     // ... and, while that lasts, of one that is none
 #define AIMED_SILENT 2
 #define AIMED_HEARD 3
 #define AIMED_MOST 7
@@ -55,10 +55,10 @@ static bool is_silent(const argus_evidence_t *const evidence, const int sonar) {
 }
 
 // No suspect yet, perhaps, but others contradict it.
-static bool is_accused(const argus_knowledge_t *const knowledge, const argus_evidence_t *const evidence,
-                       const int sonar) {
+static bool is_contradicted(const argus_knowledge_t *const knowledge, const argus_evidence_t *const evidence,
+                            const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return !argus_is_out(knowledge, sonar) && argus_evidence_accused(evidence, sonar) >= ACCUSED;
+    return !argus_is_out(knowledge, sonar) && argus_evidence_contradicted(evidence, sonar) >= CONTRADICTED;
 }
 
 // Neither suspect nor proved of late, by an echo that goes on or by another sonar: a look is the occasion.
@@ -87,8 +87,8 @@ static int most_contradicted(const argus_evidence_t *const evidence, const unsig
     int worst = -1;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         const bool counts = (mask >> i & 1u) != 0;
-        if (counts &&
-            (worst < 0 || argus_evidence_accused(evidence, i) > argus_evidence_accused(evidence, worst))) {
+        if (counts && (worst < 0 || argus_evidence_contradicted(evidence, i) >
+                                        argus_evidence_contradicted(evidence, worst))) {
             worst = i;
         }
     }
@@ -116,17 +116,17 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
         return false;
     }
     unsigned silent = 0;
-    unsigned accused = 0;
+    unsigned contradicted = 0;
     unsigned unproved = 0;
     for (int i = 0; i < knowledge->sonars; i++) {
         silent |= is_silent(evidence, i) ? 1u << i : 0u;
-        accused |= is_accused(knowledge, evidence, i) ? 1u << i : 0u;
+        contradicted |= is_contradicted(knowledge, evidence, i) ? 1u << i : 0u;
         unproved |= is_unproved(self, knowledge, evidence, i) ? 1u << i : 0u;
     }
     // Where there are suspects, some aims are theirs.
     const bool aside = self->suspects == 0 || self->aims < AIMS_ASIDE;
     return aim_at_one_of(self, knowledge, evidence, silent & self->suspects) ||
-           (aside && aim_at_one_of(self, knowledge, evidence, silent & accused)) ||
+           (aside && aim_at_one_of(self, knowledge, evidence, silent & contradicted)) ||
            aim_at_one_of(self, knowledge, evidence, unproved);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Active verification (profile argus): turns that let a sonar look at what another has heard, then looks to
-// either side, which show every sonar the bearings of its neighbours.
+// Active verification (profile argus). First come turns that let a sonar look at what another has heard. Then
+// come looks to either side, which show every sonar the bearings of its neighbours.
 #ifndef ARGUS_INQUIRY_H
 #define ARGUS_INQUIRY_H
 
@@ -21,7 +21,7 @@ typedef struct {
     int32_t aim_cdeg;
     int32_t look_cdeg;          // of the present look, from the base heading
     argus_mask_t suspects;      // what it is held for; empty: a look at all
-    argus_mask_t watched;       // sonars whose readings are waited for
+    argus_mask_t watched;       // sonars that are waited for
     uint8_t needed;             // ... so many of each
     uint8_t seen[ARGUS_SONARS]; // low bits of their counters when the robot had settled
     int32_t base_cdeg;

@@ -31,8 +31,8 @@ void argus_verify_begin(argus_verify_t *const self, const argus_robot_t *const r
     }
 }
 
-// paper: the listing turns the edge sonars by Table I's sign and never turns back; here the left neighbour
-// gets onto the bearing by a turn to the right (-20), the right one to the left (+20), and RETURN ends on the
+// paper: the listing turns the edge sonars by Table I's sign and never turns back. Here a turn to the right
+// (-20) puts the left neighbour on the bearing, one to the left (+20) the right neighbour. RETURN ends on the
 // base heading.
 int32_t argus_verify_heading_cdeg(const argus_verify_t *const self) {
     switch (self->phase) {

@@ -22,8 +22,8 @@ typedef enum {
     ARGUS_RESULT_UNPROVEN // no usable witness
 } argus_result_t;
 
-// A state machine that never blocks: it says which heading it wants, is told when the robot has settled
-// there, and waits for a reading fired after that.
+// A state machine that never blocks. It says which heading it wants, learns when the robot has settled there,
+// and waits for a reading fired after that.
 typedef struct {
     argus_verify_phase_t phase;
     int8_t sonar;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which wheel turns less than it is told, and by how much, from pieces of way that bend.
+// Which wheel turns less than it should, and by how much, from pieces of way that bend.
 #ifndef ARGUS_WHEEL_H
 #define ARGUS_WHEEL_H
 
@@ -7,8 +7,9 @@
 
 #define ARGUS_WHEEL_MOST_PM 150 // a wheel that is shorter is no matter of alignment
 
-// The health record of the drive. short_pm: so many parts of a thousand that the left wheel, of the robot as
-// it is built, falls short; negative: the right one; 0: neither does, or it is not known.
+// The health record of the drive. short_pm: permille by which a wheel, of the robot as it is built, falls
+// short. It is positive for the left one, negative for the right one, and 0 where neither does or it is not
+// known.
 typedef struct {
     argus_health_t health; // UNKNOWN, HEALTHY, SUSPECT: a piece bends; kind WRONG: named
     argus_fault_kind_t kind;

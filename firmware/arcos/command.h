@@ -35,7 +35,7 @@ void argus_outbox_drop_motion(argus_outbox_t *self);
 bool argus_outbox_plain(argus_outbox_t *self, uint8_t command);
 bool argus_outbox_int(argus_outbox_t *self, uint8_t command, int32_t argument);
 bool argus_outbox_string(argus_outbox_t *self, uint8_t command, const uint8_t *text, size_t count);
-// A packet of somebody else's; at most 195 bytes of data.
+// A packet of another program; at most 195 bytes of data.
 bool argus_outbox_packet(argus_outbox_t *self, const uint8_t *data, size_t count);
 // Drops the motion commands and an older `command` that wait, then puts `command` (STOP or E_STOP, nothing
 // else) first.

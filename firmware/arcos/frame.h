@@ -33,12 +33,12 @@ typedef struct {
 #define ARGUS_PARSER_BYTES (2 * ARGUS_FRAME_TOTAL_MAX)
 
 // Finds packets in a stream of any bytes. After a bad checksum or an impossible COUNT it goes on one byte
-// after the rejected header, so an intact packet behind a damaged one is never lost. A packet that is
-// incomplete and doubtful loses to a complete one with a good checksum inside it, so a false COUNT delays the
-// next SIP by at most one. Doubtful is: a SIP whose COUNT does not fit its sonar count; any other packet
-// longer than its type ever is, or broken off for 30 ms. A SIP whose two counts agree is never doubted, for a
-// position may look like a packet (x = -1030 mm is FA FB). What is owed longer than its COUNT takes at 9600
-// baud + 100 ms is given up once the line is silent.
+// after the rejected header. So an intact packet behind a damaged one is never lost. A packet that is
+// incomplete and doubtful loses to a complete one with a good checksum inside it. So a false COUNT delays the
+// next SIP by at most one. A SIP is doubtful when its COUNT does not fit its sonar count. Any other packet is
+// when it is longer than its type ever is, or broken off for 30 ms. A SIP in which both counts agree is never
+// doubted, for a position may look like a packet (x = -1030 mm is FA FB). What is owed longer than its COUNT
+// takes at 9600 baud + 100 ms is given up once the line is silent.
 typedef struct {
     uint16_t first;    // the bytes held begin here
     uint16_t length;   // bytes held
@@ -58,9 +58,9 @@ void argus_parser_init(argus_parser_t *self);
 // Drops what is held; the counters go on.
 void argus_parser_flush(argus_parser_t *self);
 
-// Offers bytes; takes as many as it can use before a packet is complete and returns how many it took (0 when
-// a packet is waiting to be fetched first). Loop: push, then fetch with argus_parser_next() until false,
-// until all bytes are taken.
+// Offers bytes. It takes as many as it can use before a packet is complete, and returns how many. That is 0
+// when a packet waits to be fetched first. Loop: push, then fetch with argus_parser_next() until false, until
+// all bytes are taken.
 size_t argus_parser_push(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count);
 
 // The next complete packet, or false. Also applies the time rules: call it from the periodic process too.

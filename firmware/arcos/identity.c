@@ -39,7 +39,7 @@ int argus_identity_meet(argus_identity_t *self, const char *const texts[ARGUS_ID
         self->part[i] = now;
     }
     if (first == 0 && self->part[ARGUS_IDENTITY_SERIAL] == 0) {
-        self->part[ARGUS_IDENTITY_SERIAL] = serial; // not told this time, but still its own
+        self->part[ARGUS_IDENTITY_SERIAL] = serial; // not given this time, but still its own
     }
     self->met = true;
     ARGUS_ASSERT(first >= 0 && first <= ARGUS_IDENTITY_PARTS);

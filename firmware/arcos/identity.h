@@ -16,13 +16,13 @@ typedef enum {
 } argus_identity_part_t;
 
 typedef struct {
-    uint32_t part[ARGUS_IDENTITY_PARTS]; // 0: not told
+    uint32_t part[ARGUS_IDENTITY_PARTS]; // 0: not given
     bool met;
 } argus_identity_t;
 
-// Takes what the robot that answers says of itself, NULL or "" for nothing. The number of the first part in
-// which it differs from the robot met before, from 1, or 0 for the same or the first robot. A serial number
-// counts only when both have told one. Cost: one pass over the texts.
+// Takes what the robot that answers says of itself, NULL or "" for nothing. Returns the number, from 1, of
+// the first part that differs from the robot met before; 0 for the same or the first robot. A serial number
+// counts only when both have given one. Cost: one pass over the texts.
 int argus_identity_meet(argus_identity_t *self, const char *const texts[ARGUS_IDENTITY_PARTS]);
 
 #endif

@@ -501,7 +501,7 @@ void argus_session_leave(argus_session_t *self, uint32_t now_ms) {
     enter(self, now_ms, self->outbox.length > 0 ? ARGUS_SESSION_LEAVING : ARGUS_SESSION_CLOSED);
 }
 
-static bool is_mute(const argus_session_t *self) {
+static bool is_silent(const argus_session_t *self) {
     return is_deaf(self) || self->state == ARGUS_SESSION_PAUSE || self->state == ARGUS_SESSION_LISTEN;
 }
 
@@ -519,7 +519,7 @@ static size_t fetch_zero(argus_session_t *self, uint8_t *packet, size_t capacity
 }
 
 size_t argus_session_transmit(argus_session_t *self, uint32_t now_ms, uint8_t *packet, size_t capacity) {
-    if (is_mute(self)) {
+    if (is_silent(self)) {
         argus_outbox_clear(&self->outbox);
         return 0;
     }

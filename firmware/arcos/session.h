@@ -77,12 +77,12 @@ void argus_session_link_up(argus_session_t *self, uint32_t now_ms);
 void argus_session_link_down(argus_session_t *self);
 
 // Takes bytes until the first packet that sets a bit, so that no SIP is overwritten unseen; `*taken` says how
-// many. Call again with the rest, which may be none, until all bytes are taken and no bit is set: several
-// packets can be complete. With OPEN go VEL 0, RVEL 0, SETO and CONFIG. The second SIP after that, whose
-// position is counted from SETO, together with CONFIGpac (waited for at most 1 s) completes the set-up: SETV,
-// SETA +-, SETRV, SETRA +-, SONAR 1, SONAR_CYCLE when it is not known to be the robot's. The motors are
-// enabled by the code that knows the robot. Before ARGUS_SESSION_DID_OPEN no SIP is reported but the one of
-// an old session that is found when listening.
+// many. Several packets can be complete. So call again with the rest, which may be none, until all bytes are
+// taken and no bit is set. With OPEN go VEL 0, RVEL 0, SETO and CONFIG. The second SIP after that counts its
+// position from SETO. With it and CONFIGpac, which is waited for at most 1 s, the rest of the set-up goes
+// out. That is SETV, SETA +-, SETRV, SETRA +-, SONAR 1, and SONAR_CYCLE when it is not known to be the
+// robot's. The motors are enabled by the code that knows the robot. Before ARGUS_SESSION_DID_OPEN no SIP is
+// reported but the one of an old session that is found when listening.
 unsigned argus_session_receive(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
                                const uint8_t *bytes, size_t count, size_t *taken);
 

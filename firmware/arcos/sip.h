@@ -35,7 +35,7 @@ typedef struct {
     argus_sip_sonar_t sonar[ARGUS_SIP_SONARS_MAX];
 } argus_sip_t;
 
-// False when the packet is no SIP (type 0x32 or 0x33) or is shorter than its own sonar count says; tails may
+// False when the packet is no SIP (type 0x32 or 0x33) or is shorter than its own sonar count says. Tails may
 // be absent at any group boundary or longer than known. `sip` is whole on true, unspecified on false. Cost:
 // one pass.
 bool argus_sip_decode(argus_sip_t *sip, const argus_packet_t *packet);

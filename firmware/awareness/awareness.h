@@ -47,7 +47,7 @@ argus_alarm_t argus_awareness_sip(argus_awareness_t *self, const argus_knowledge
 argus_mask_t argus_suspects(argus_awareness_t *self, const argus_knowledge_t *knowledge,
                             const argus_config_t *config);
 
-// Algorithm 2 cleared the sonar, whose disparity at rest was `difference_mm`: hold off. / The robot stands
+// Algorithm 2 cleared the sonar; its disparity at rest was `difference_mm`: hold off. / The robot stands
 // somewhere new. / The readings begin anew.
 void argus_awareness_cleared(argus_awareness_t *self, const argus_knowledge_t *knowledge, int sonar,
                              int32_t difference_mm);

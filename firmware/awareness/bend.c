@@ -24,7 +24,7 @@ void argus_bend_ordered(argus_bend_t *const self, const int32_t heading_cdeg, co
     self->begun = false;
 }
 
-// An order to turn is under way: what the robot turns now it was told to.
+// An order to turn is under way: what the robot turns now it was ordered to.
 static bool is_turning(argus_bend_t *const self, const argus_knowledge_t *const knowledge) {
     const bool there = argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->ordered_cdeg) <= THERE_CDEG;
     self->turning = self->turning && !there;

@@ -8,8 +8,8 @@
 #define ARGUS_ARRAYS_MAX 4
 
 // An array is dark while none of its sonars that are in use hears anything. Its peers are no proof then: they
-// are suspects as well. That it has failed is proved by what its own sonars heard in the round before, or by
-// walls on either side that it passes and that those abeam of another array go on hearing.
+// are suspects as well. Two things prove that it has failed. Its own sonars heard something in the round
+// before; or it passes walls on either side that those abeam of another array go on hearing.
 typedef struct {
     uint32_t odometer_mm; // way driven when one abeam of another array was heard last
     int32_t mm;           // driven beside something near that it hears

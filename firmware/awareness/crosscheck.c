@@ -14,8 +14,8 @@
 #define ALONE_CDEG 1000 // from one place a lag that turned less would have it look where it looks now
 #define BITS 8
 
-// FAINT: it misses an echo that the air may have swallowed, or the other way round; DIVIDED: some say so, and
-// some so; SAME: the map leaves it where it is.
+// FAINT: it misses an echo that the air may have swallowed, or the other way round. DIVIDED: the others
+// contradict each other. SAME: the map leaves it where it is.
 typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, FAINT, DIVIDED, SAME, SAYINGS } verdict_t;
 
 typedef struct {
@@ -27,8 +27,8 @@ typedef struct {
     argus_mask_t against; // those that differ
 } tally_t;
 
-// What a verdict on a ping as it stands (rows) and as mapped (columns) says for the map: against a healthy
-// sonar, and against any other fault.
+// What two verdicts say for the map: on a ping as it stands (rows) and as mapped (columns). It is said
+// against a healthy sonar, and against any other fault.
 typedef struct {
     int16_t over_healthy[SAYINGS][SAYINGS];
     int16_t over_other[SAYINGS][SAYINGS];
@@ -65,8 +65,8 @@ static verdict_t compare(const int32_t now_mm, const int32_t then_mm, const int3
     return argus_abs(expected - now_mm) <= limit ? AGREED : CONTRADICTED;
 }
 
-// A suspect that is contradicted at least as much itself says nothing of another: neither a liar of those
-// beside it, nor either of two that no third bears out.
+// A suspect that is contradicted at least as much itself says nothing of another. So a faulty sonar does not
+// drag down those beside it, and of two that no third bears out neither is named.
 bool argus_crosscheck_is_witness(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                                  const int sonar, const int of) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -266,9 +266,9 @@ static void weigh_offsets(argus_evidence_t *const self, const argus_knowledge_t 
     }
 }
 
-// What one that is out reads and its kind of fault cannot: an echo that goes on from the last as the robot
-// moves, or silence together with others of one that made echoes up. One that is wrong or late needs the
-// others.
+// A sonar that is out reads what its kind of fault cannot. That is an echo that goes on from the last as the
+// robot moves. For one that made echoes up, it is silence together with others. One that is wrong or late
+// needs the others.
 static bool is_beyond(const argus_fault_kind_t kind, const argus_ping_t *const now,
                       const argus_ping_t *const before, const verdict_t verdict) {
     const bool made_up = kind == ARGUS_KIND_STUCK || kind == ARGUS_KIND_GARBAGE;

@@ -5,10 +5,10 @@
 
 #include "awareness/facts.h"
 
-// The newest ping of this sonar against those of the others from its place on its bearing, as it stands and
-// as its hypotheses map it; then it answers for those of the others that are not judged yet. Cost: one pass
-// over the pings of the others (480), fourteen more where it is contradicted, and the same for each that it
-// answers.
+// Compares the newest ping of this sonar, as it stands and as its hypotheses map it, with those of the others
+// from that place on that bearing. Then that ping answers for those of the others that are not judged yet.
+// Cost: one pass over the pings of the others (480), fourteen more where it is contradicted, and the same for
+// each that it answers.
 void argus_crosscheck_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar);
 
 // Once a second what was said fades.

@@ -258,7 +258,7 @@ uint8_t argus_evidence_silent_run(const argus_evidence_t *const self, const int 
     return self->of[sonar].none_run;
 }
 
-int32_t argus_evidence_accused(const argus_evidence_t *const self, const int sonar) {
+int32_t argus_evidence_contradicted(const argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->of[sonar].score[ARGUS_TEST_PEERS];
 }

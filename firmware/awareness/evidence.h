@@ -16,8 +16,8 @@ void argus_evidence_set_caution(argus_evidence_t *self, int32_t percent);
 // said; the other scores stay.
 void argus_evidence_restart(argus_evidence_t *self);
 
-// After each SIP. Cost: for each fresh sonar one pass over the pings of the others (480), fourteen more where
-// they contradict it, and the same for each of those that it answers.
+// After each SIP. Cost, for each fresh sonar: one pass over the pings of the others (480) and fourteen more
+// where they contradict it. Each ping that it answers costs the same.
 void argus_evidence_sip(argus_evidence_t *self, const argus_knowledge_t *knowledge);
 
 // Whether a look is called for; the kind that the evidence names, or convicts of (NONE: not so far). A name
@@ -25,7 +25,7 @@ void argus_evidence_sip(argus_evidence_t *self, const argus_knowledge_t *knowled
 // again at another time.
 bool argus_evidence_suspects(const argus_evidence_t *self, int sonar);
 
-// Whether what made a suspect is not gone yet: the levels that clear are below those that accuse.
+// Whether what made a suspect is not gone yet: the levels that clear are below those that make one.
 bool argus_evidence_holds(const argus_evidence_t *self, int sonar);
 
 // It does not agree with itself: more of its readings at rest would tell.
@@ -47,8 +47,8 @@ typedef enum {
     ARGUS_KEPT
 } argus_kept_t;
 
-// 0: not enough for a suspicion. Half of what was kept counts, and the rest must come from what is seen in
-// this mission: at most a suspicion of one that was out, and less of any other.
+// 0: not enough for a suspicion. Half of what was kept counts: at most a suspicion of one that was out, and
+// less of any other. The rest must come from what is seen in this mission.
 int16_t argus_evidence_kept(const argus_evidence_t *self, int sonar, argus_kept_t kept);
 void argus_evidence_restore(argus_evidence_t *self, int sonar, argus_kept_t kept, int16_t score, bool out);
 
@@ -68,9 +68,9 @@ bool argus_evidence_has_pairs(const argus_evidence_t *self);
 bool argus_evidence_repeats(const argus_evidence_t *self, int sonar);
 bool argus_evidence_shows_gaps(const argus_evidence_t *self, int sonar);
 
-// Readings in a row without an echo; that others contradict it, hundredths of a nat.
+// Readings in a row without an echo; how much the others contradict it, hundredths of a nat.
 uint8_t argus_evidence_silent_run(const argus_evidence_t *self, int sonar);
-int32_t argus_evidence_accused(const argus_evidence_t *self, int sonar);
+int32_t argus_evidence_contradicted(const argus_evidence_t *self, int sonar);
 
 // Since it proved alive by an echo that went on; since another bore it out.
 uint32_t argus_evidence_alive_age_ms(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
@@ -82,8 +82,8 @@ uint32_t argus_evidence_agreed_age_ms(const argus_evidence_t *self, const argus_
 uint8_t argus_evidence_taken(const argus_evidence_t *self, int sonar);
 uint8_t argus_evidence_echo_bits(const argus_evidence_t *self, int sonar);
 
-// The sonar whose growing weakness is new and worth saying now, -1: none. `metres`: of driving until it will
-// have failed. And all of it forgotten.
+// The sonar with a growing weakness that is new and worth saying now, -1: none. `metres`: of driving until it
+// will have failed. And all of it forgotten.
 int argus_evidence_news(argus_evidence_t *self, const argus_knowledge_t *knowledge, int32_t *metres);
 void argus_evidence_forget_trend(argus_evidence_t *self, int sonar);
 

@@ -6,9 +6,9 @@
 #include "awareness/pings.h"
 #include "awareness/trend.h"
 
-// One cumulative-sum test (Page 1954; its increments are log-likelihood ratios as in Wald's SPRT) for each
-// way in which a sonar can be seen to fail. Scores are hundredths of a nat, never below the floor of the
-// test.
+// For each way in which a sonar can be seen to fail there is one cumulative-sum test (Page 1954). Its
+// increments are log-likelihood ratios as in Wald's SPRT. Scores are hundredths of a nat, never below the
+// floor of the test.
 typedef enum {
     ARGUS_TEST_STUCK,   // the same value again though the robot moved
     ARGUS_TEST_GARBAGE, // readings that match none before them
@@ -17,8 +17,8 @@ typedef enum {
     ARGUS_TESTS
 } argus_test_t;
 
-// Hypotheses that map a reading to the ping that a healthy sonar would have had: late by so many firings, or
-// with its axis offset by so much.
+// Hypotheses map a reading to the ping that a healthy sonar would have had. It is late by so many firings, or
+// its axis is offset by so much.
 #define ARGUS_LEAST_LAG 2
 #define ARGUS_LAGS 8 // ... to 9 firings
 #define ARGUS_OFFSETS 6

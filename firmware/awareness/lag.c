@@ -27,8 +27,8 @@ static int32_t known_again_mm(const argus_pings_t *const pings, const int32_t re
     return reading_mm > ARGUS_CLIPPED_MM ? most - least : 0;
 }
 
-// When the lag begins it repeats as many readings as it is late. By chance a reading hits one value of so
-// many as often as one that stays repeats itself, and the less often the more it varies.
+// When the lag begins it repeats as many readings as it is late. A repeat by chance is as likely as in the
+// test of one value, and the less likely the more the readings vary.
 static int32_t replay_of(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                          const int sonar, const uint16_t reading_mm, const int index) {
     argus_case_t *const c = &self->of[sonar];

@@ -56,7 +56,7 @@
 #define ARGUS_OFFSET_NAMING 1100
 #define ARGUS_OFFSET_LEAD 300
 #define ARGUS_OFFSET_CONTRADICTED 300
-#define ARGUS_MUTE_CONTRADICTED 380
+#define ARGUS_SILENT_CONTRADICTED 380
 #define ARGUS_HELD_PERCENT 25 // of a name's level: a suspect is cleared below
 
 #endif

@@ -66,11 +66,11 @@ static argus_fault_kind_t kind_of_peers(const argus_case_t *const self) {
     return late_of(self).over_other >= ARGUS_LATE_LEAD ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
 }
 
-// The others heard something wherever it lately did not, and it has heard nothing for a while: less is wanted
-// than of one whose echoes might be of another thing.
-static bool is_mute(const argus_case_t *const self) {
+// It has heard nothing for a while, and wherever it lately did not, the others heard something. So less is
+// wanted than where echoes are contradicted, which might be of another thing.
+static bool is_silent(const argus_case_t *const self) {
     return self->none_run >= OFF_RUN && !self->borne_out &&
-           self->score[ARGUS_TEST_PEERS] >= ARGUS_MUTE_CONTRADICTED &&
+           self->score[ARGUS_TEST_PEERS] >= ARGUS_SILENT_CONTRADICTED &&
            argus_crosscheck_silences(self, SILENT_OF) == SILENT_OF && has_partners(self);
 }
 
@@ -93,7 +93,7 @@ argus_fault_kind_t argus_names_found(const argus_evidence_t *const self, const i
     if (c->score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].naming && has_partners(c)) {
         return kind_of_peers(c);
     }
-    if (is_mute(c)) {
+    if (is_silent(c)) {
         return ARGUS_KIND_OFF;
     }
     return is_offset(c, ARGUS_OFFSET_NAMING) ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;

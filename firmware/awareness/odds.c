@@ -9,7 +9,7 @@
 #define EARLIER 6 // readings are taken for granted at the start
 #define FADE_EIGHTHS 7
 #define THOUSAND 1000
-#define LIARS 2 // sonars that are odd by themselves
+#define OUTLIERS 2 // sonars that are odd by themselves
 
 // Permille of the readings: odd ones of a healthy sonar at the least; odd ones, and those that go on, of a
 // faulty one. What is neither tells nothing.
@@ -59,7 +59,7 @@ static int32_t excess_of(const argus_rate_t *const rate, const argus_test_t test
 int32_t argus_odds_common_permille(const argus_evidence_t *const self,
                                    const argus_knowledge_t *const knowledge, const argus_test_t test) {
     argus_mask_t left = 0;
-    for (int n = 0; n < LIARS; n++) {
+    for (int n = 0; n < OUTLIERS; n++) {
         int worst = -1;
         for (int i = 0; i < knowledge->sonars; i++) {
             const bool counts = (left >> i & 1u) == 0 && !argus_is_out(knowledge, i);

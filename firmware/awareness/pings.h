@@ -41,8 +41,8 @@ void argus_pings_age(argus_pings_t *self, uint32_t now_ms);
 // The ping so far back (1: the last); the one a firing was so many firings before it. NULL: not so many.
 const argus_ping_t *argus_pings_at(const argus_pings_t *self, int back);
 const argus_ping_t *argus_pings_before(const argus_pings_t *self, int back, int firings);
-// The last ping, so far back (from 1) or farther, that is on the bearing of another or beside it
-// (BESIDE_CDEG) and from about its place (SAME_ALONG_MM); 0: none.
+// The last ping on the bearing of another or beside it (BESIDE_CDEG), and from about its place
+// (SAME_ALONG_MM). It lies so far back (from 1) or farther; 0: none.
 int argus_pings_near(const argus_pings_t *self, int from, const argus_ping_t *at);
 argus_ping_t *argus_pings_mark(argus_pings_t *self, int back); // 1 <= back <= count
 

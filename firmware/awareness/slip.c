@@ -9,7 +9,7 @@
 
 #define STRETCH_MM 500
 #define BEGIN_MM 150    // a reading of the beginning is made within this
-#define END_MM 250      // ... and one of the end: who fell silent on the way tells nothing of it
+#define END_MM 250      // ... and one of the end: what fell silent on the way tells nothing of it
 #define TURNED_CDEG 500 // a straight way turns less
 #define ALONG_CDEG 1600 // so far off the way one still looks along it
 #define WALL_CDEG 2500  // ... and hears this far aside, at the edge of its cone
@@ -18,7 +18,7 @@
 #define FITS_MM 200     // off what the odometry says
 #define PROOF 6         // of stretches one after the other:
 #define BOTH_WAYS 3     // ... on which one ahead and one that looks back stay, so two of these,
-#define AHEAD_ALONE 2   // ... or two ahead: somebody may walk in front
+#define AHEAD_ALONE 2   // ... or two ahead: a person may walk in front
 
 void argus_slip_init(argus_slip_t *const self) {
     memset(self, 0, sizeof *self);
@@ -89,7 +89,7 @@ static void note_beginnings(argus_slip_t *const self, const argus_knowledge_t *c
 typedef struct {
     int to;   // those that look along the way and stayed,
     int back; // ... and back
-    int fits; // whose range changed as the odometry says
+    int fits; // those that changed as the odometry says
 } witnesses_t;
 
 // It reads, and has read here.

@@ -23,10 +23,9 @@ void argus_slip_init(argus_slip_t *self);
 // A session opened, or SIPs come again: the robot may have moved since.
 void argus_slip_restart(argus_slip_t *self);
 
-// One SIP. True: the wheels made `slipped_mm` of way and the robot did not, it is at `from`. False: no sonar
-// can tell. It takes one that looks along the way and one that looks back through two stretches of half a
-// metre, or two that look along it through three (somebody may walk in front), and none whose range changes
-// as the odometry says.
+// One SIP. True: the wheels made `slipped_mm` of way and the robot did not; it is at `from`. False: no sonar
+// can tell. Proof takes one sonar ahead and one back that stay through two stretches of half a metre. Two
+// ahead must stay through three, as a person may walk in front. No range may change as the odometry says.
 bool argus_slip_sip(argus_slip_t *self, const argus_knowledge_t *knowledge);
 
 #endif

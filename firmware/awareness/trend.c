@@ -37,7 +37,7 @@ typedef struct {
     bool is_signed;
 } rule_t;
 
-// Sixteenths of a permille; see DESIGN.md, Knowledge across missions, trends.
+// Sixteenths of a permille; see docs/manager.md, Trends.
 static const rule_t rules[ARGUS_TRENDS] = {
     [ARGUS_TREND_DROPOUT] = {2000, 20, 192, 128, 1600, 1920, 6, 3, false},
     [ARGUS_TREND_BIAS] = {3000, 8, 1440, 640, 4800, 1600, 6, 3, true},
@@ -199,9 +199,8 @@ typedef struct {
     int32_t usual; // what the others show
 } segment_t;
 
-// Whether a difference between means is beyond what chance makes of it: 2.6 standard deviations of the fast
-// mean (one is 0.3 of that of a segment), times the root of `eighths` / 5. Segments in a row are asked for
-// besides.
+// Whether a difference between means is beyond chance: 2.6 standard deviations of the fast mean, times the
+// root of `eighths` / 5. One of them is 0.3 of that of a segment. Segments in a row are asked for besides.
 static bool is_significant(const int64_t difference, const argus_slope_t *const slope,
                            const segment_t *const segment, const bool is_signed, const int32_t eighths) {
     const int64_t share = argus_max(slope->slow, segment->usual);
@@ -286,8 +285,8 @@ void argus_trend_sip(argus_trend_t *const self, const argus_knowledge_t *const k
     }
 }
 
-// Segments by which the fast mean is ahead of the slow one. They are 26 once a growth has lasted; of one that
-// has just begun the slow mean shows little yet, and how little tells the number.
+// Segments by which the fast mean is ahead of the slow one. They are 26 once a growth has lasted. When it has
+// just begun the slow mean shows little of it, and how little tells the number.
 static int32_t lead_segments(const argus_slope_t *const self, const rule_t *const rule) {
     const int32_t most = argus_max(1, lag_of(self->segments, SLOW) - lag_of(self->segments, FAST));
     const int32_t fast = argus_max(1, size_of(self->fast, rule->is_signed));

@@ -13,8 +13,8 @@ typedef enum {
     ARGUS_TRENDS
 } argus_trend_kind_t;
 
-// Two exponentially weighted means over segments of the way, sixteenths of a permille: how far the fast one
-// is ahead of the slow one tells how steep a statistic grows.
+// Two exponentially weighted means over segments of the way, in sixteenths of a permille. How far the fast
+// one is ahead of the slow one tells how steeply a statistic grows.
 typedef struct {
     int16_t fast;
     int16_t slow;
@@ -66,8 +66,8 @@ void argus_trend_sip(argus_trend_t *self, const argus_knowledge_t *knowledge);
 #define ARGUS_TREND_HORIZON_M 500
 int32_t argus_trend_horizon_m(const argus_trend_t *self, int sonar);
 
-// The sonar whose growth is new and worth saying now, -1: none. It counts as said from then on, until the
-// growth is over.
+// The sonar with a growth that is new and worth saying now, -1: none. It counts as said from then on, until
+// the growth is over.
 int argus_trend_news(argus_trend_t *self, const argus_knowledge_t *knowledge);
 
 #endif

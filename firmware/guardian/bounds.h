@@ -10,7 +10,7 @@
 typedef enum {
     ARGUS_BOUND_FREE,
     ARGUS_BOUND_OBJECT, // S2: a thing on the way, within the object range
-    ARGUS_BOUND_UNSEEN, // S1, S3, S7: the way is not seen, or not lately
+    ARGUS_BOUND_UNSEEN, // S1, S2, S7: the way is not seen, or not lately
     ARGUS_BOUND_BUMPER, // S2: pressed at the end that would lead
     ARGUS_BOUND_HALTED  // an operator's stop, no session, an unknown body
 } argus_bound_why_t;
@@ -26,9 +26,9 @@ typedef struct {
 // where a bearing ahead is blind that of argus_rays_seen_mm().
 argus_bound_t argus_bound_way(const argus_t *self, bool ahead);
 
-// Whether the body comes upon nothing that is seen, or was a moment ago, in a turn by so much, at most a
-// quarter of one. What is close already only must not come closer: it must get away from there. Cost: a place
-// of the body per 8 degrees for each echo.
+// Whether a turn by so much, at most a quarter of one, is free of all that is seen or was a moment ago. What
+// is close already only must not come closer: it must get away from there. Cost: a place of the body per 8
+// degrees for each echo.
 bool argus_bound_may_turn(const argus_t *self, int32_t by_cdeg);
 
 #endif

@@ -39,7 +39,7 @@ typedef struct {
     bool parting; // it is gone: the motors are cut at rest
     bool origin;  // it has sent SETO; SIPs since
     uint8_t origin_sips;
-    uint8_t arrays;  // whose sonars it wants
+    uint8_t arrays;  // of sonars that it wants
     uint8_t streams; // that it asked for, in the order of the table in port.c
     argus_port_settings_t settings;
     argus_hold_client_t hold;

@@ -305,8 +305,8 @@ static void give_turn(argus_t *const core, argus_hold_client_t *const self, cons
 
 // Weaving --------------------------------------------------------------------------------------------------
 
-// Ahead with a bearing ahead blind, and nothing said of a turn: what no sonar sees is never free, so the
-// heading swings, as when the manager drives itself.
+// It goes ahead with a bearing ahead blind, and nothing is said of a turn. What no sonar sees is never free,
+// so the heading swings, as when the manager drives itself.
 static bool should_weave(const argus_t *const core, const argus_wish_t *const wish) {
     const argus_guard_t guard = argus_guard(core);
     return wish->way != ARGUS_WISH_REST && wish->turn == ARGUS_WISH_STRAIGHT && !wish->paired &&

@@ -7,7 +7,7 @@
 #include "guardian/wish.h"
 #include "supervisor/core.h"
 
-// What the robot was told last, and what was said of it.
+// What the robot was ordered last, and what was said of it.
 typedef struct {
     int32_t mm_s;         // VEL, or the way of VEL2
     int32_t half_mm_s;    // VEL2

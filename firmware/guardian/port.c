@@ -171,7 +171,7 @@ static void take_motion(argus_t *const core, argus_port_t *const self, const arg
 
 static void take_stop(argus_t *const core, argus_port_t *const self, const uint8_t command) {
     if (!core->orders.passive) {
-        argus_obey(core, ARGUS_OP_STOP, 0); // whoever sees that it must stand is heard
+        argus_obey(core, ARGUS_OP_STOP, 0); // any client that sees that it must stand is heard
     }
     argus_hold_forget(&self->hold);
     argus_outbox_urgent(&core->session.outbox, command == ARCOS_CMD_STOP ? ARCOS_CMD_STOP : ARCOS_CMD_E_STOP);

@@ -17,8 +17,8 @@ typedef struct {
 size_t argus_rewrite_sip(const argus_t *self, const argus_rewrite_t *how, const uint8_t *data, size_t count,
                          uint8_t *out);
 
-// The reading that a sonar that is out is covered with: from its transducer to the nearest echo that a
-// trusted sonar heard within its cone in the last 2 s, and within 2 m of itself; 0: there is none.
+// The reading that covers for a sonar that is out: from its transducer to the nearest echo within its cone. A
+// trusted sonar heard that in the last 2 s, within 2 m of itself. 0: there is none.
 int32_t argus_rewrite_cover_mm(const argus_t *self, int sonar);
 
 #endif

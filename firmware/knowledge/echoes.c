@@ -107,7 +107,7 @@ void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const
 void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     uint16_t kept = 0;
-    argus_grid_clear(&self->grid); // what it put there cannot be told from what the others did
+    argus_grid_clear(&self->grid); // it cannot be separated from what the others put there
     for (uint16_t i = 0; i < self->count; i++) {
         if (self->at[i].sonar != sonar) {
             self->at[kept++] = self->at[i];

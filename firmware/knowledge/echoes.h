@@ -27,8 +27,8 @@ typedef struct {
 
 void argus_echoes_init(argus_echoes_t *self);
 
-// Remembers the fresh echoes of sonars not DISABLED and no suspects; forgets those of a sonar; marks what the
-// bumpers touch, or a place where something is, course frame, whoever found it.
+// Remembers the fresh echoes of sonars not DISABLED and no suspects; forgets those of a sonar. Marks what the
+// bumpers touch, or a place in the course frame where something is, however it was found.
 void argus_echoes_see(argus_echoes_t *self, const argus_knowledge_t *knowledge, uint32_t now_ms);
 void argus_echoes_forget(argus_echoes_t *self, int sonar);
 void argus_echoes_bumped(argus_echoes_t *self, const argus_knowledge_t *knowledge, uint32_t now_ms);
@@ -42,9 +42,9 @@ int32_t argus_echoes_clear_mm(const argus_echoes_t *self, const argus_knowledge_
 // Whether two echoes may be of one thing: at most 150 mm apart along x and along y.
 bool argus_are_one_thing(argus_point_t a, argus_point_t b);
 
-// Whether an echo there, course frame, `within_mm` of the robot's centre, would be the second one of a thing
-// that was seen within them as well: 150 mm from there in the last 5 s, or known by two echoes in the last
-// minute, 80 mm from there. Cost: one pass over the points.
+// Whether an echo there, course frame, would be the second one of a thing. Both lie `within_mm` of the
+// robot's centre. The first one is of the last 5 s and at most 150 mm from there. Or two echoes of the last
+// minute lie at most 80 mm from there. Cost: one pass over the points.
 bool argus_echoes_have_seen(const argus_echoes_t *self, const argus_knowledge_t *knowledge, argus_point_t at,
                             int32_t within_mm);
 
@@ -53,8 +53,9 @@ bool argus_echoes_have_seen(const argus_echoes_t *self, const argus_knowledge_t 
 bool argus_echoes_near(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index,
                        argus_point_t *at);
 
-// Nearest to the robot's centre, were it `back_mm` farther back, of what was seen more than once in the last
-// seconds, also where no sonar sees it now; INT32_MAX without any. Cost: one pass over the points.
+// The distance of what would be nearest to the robot's centre, were it `back_mm` farther back. What was seen
+// more than once in the last seconds counts, also where no sonar sees it now. INT32_MAX: nothing. Cost: one
+// pass over the points.
 int32_t argus_echoes_nearest_mm(const argus_echoes_t *self, const argus_knowledge_t *knowledge,
                                 int32_t back_mm);
 

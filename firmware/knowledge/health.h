@@ -8,8 +8,8 @@
 #include "knowledge/knowledge.h"
 
 // X(NAME, from, to, event, meaning): what may happen to a sonar. `from`: the states in which it may, U
-// UNKNOWN, H HEALTHY, S SUSPECT, D DISABLED, P PROBATION, T STALE, A ABSENT; `event`: what says so, NONE:
-// nobody needs to know.
+// UNKNOWN, H HEALTHY, S SUSPECT, D DISABLED, P PROBATION, T STALE, A ABSENT. `event`: what says so; NONE:
+// nothing is said.
 #define ARGUS_CHANGE_TABLE(X)                                                                               \
     X(JUDGED, "UT", HEALTHY, SONAR_HEALTHY, "a full check at rest found no complaint")                      \
     X(RESTORED, "P", HEALTHY, SONAR_HEALTHY, "its probation is over")                                       \
@@ -35,9 +35,8 @@ typedef enum {
         ARGUS_CHANGES
 } argus_change_t;
 
-// Makes the change and returns the event to say, its id 0 when there is none; time and failure state are the
-// caller's to fill in. `kind`: of the fault, ARGUS_KIND_NONE where the new state has none. `value`: of the
-// event.
+// Makes the change and returns the event to say, its id 0 when there is none. The caller fills in time and
+// failure state. `kind`: of the fault, ARGUS_KIND_NONE where the new state has none. `value`: of the event.
 argus_event_t argus_health_set(argus_knowledge_t *self, int sonar, argus_change_t change,
                                argus_fault_kind_t kind, int32_t value, uint32_t now_ms);
 

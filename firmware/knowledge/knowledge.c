@@ -185,8 +185,8 @@ static bool take_zero(argus_knowledge_t *const self, const argus_sip_t *const si
     return true;
 }
 
-// Its counters restarted. If it was in motion then, and some SIPs are missing, nobody knows how far it got
-// before.
+// Its counters restarted. If it was in motion then, and some SIPs are missing, how far it got before is
+// unknown.
 static bool loses_way(argus_knowledge_t *const self, const argus_span_t *const span) {
     const bool lost = argus_odometry_is_unseen(span, self->under_way);
     if (lost) {

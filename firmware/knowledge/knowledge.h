@@ -35,10 +35,10 @@ typedef struct {
     uint32_t from_ms;
 } argus_mark_t;
 
-// While the rear leads (`robot` is a row that is reversed) all of the robot is told as if its rear were its
-// front: heading, speeds of the wheels, bumpers, stalls, echoes in the robot's frame. The place is the same.
+// While the rear leads (`robot` is a row that is reversed) the rear counts as the front. That goes for
+// heading, speeds of the wheels, bumpers, stalls, and echoes in the robot's frame. The place is the same.
 typedef struct {
-    const argus_robot_t *robot; // whose geometry holds, never NULL
+    const argus_robot_t *robot; // its geometry holds, never NULL
     uint8_t sonars;             // argus_robot_sonars() of it: those beyond are absent
     bool lists_all;             // the server lists every sonar in every SIP
     bool rotating;
@@ -105,7 +105,7 @@ argus_wheels_t argus_built_wheels(const argus_knowledge_t *self);
 // What must be added to the robot's own heading, as it says it, for the pose's heading.
 int32_t argus_heading_offset_cdeg(const argus_knowledge_t *self);
 
-// The robot was told to set its odometry to zero; nobody knows whether it heard. SIPs that are nearer to zero
+// The robot was ordered to set its odometry to zero, and may not have heard it. SIPs that are nearer to zero
 // than to the last one are counted from there, until the session opens.
 void argus_knowledge_origin_due(argus_knowledge_t *self);
 

@@ -10,7 +10,7 @@
 #define GAP_MS 500u         // without a SIP for longer it is not known what the wheels did
 #define GAP_MAX_MS 4000u    // ... but the robot's watchdog has stopped them
 #define FASTEST_MM_S 2000   // no robot of the tables drives as fast
-#define DRIVES_MM_S 750     // the fastest that it is ever told to
+#define DRIVES_MM_S 750     // the fastest that it is ever ordered
 #define TURNS_CDEG_S 10000  // likewise
 #define REST_MM_S 5         // encoders tremble
 #define TURNING_CDEG_S 500  // ... which straight wheels do not look like

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a robot can have moved between two SIPs, by its wheels and the time: a step of its position or heading
-// beyond that is none.
+// How far a robot can have moved between two SIPs, by its wheels and the time. A step of its position or
+// heading beyond that is no motion.
 #ifndef ARGUS_ODOMETRY_H
 #define ARGUS_ODOMETRY_H
 
@@ -39,15 +39,15 @@ bool argus_odometry_is_speed(int32_t mm_s);
 // What the wheels say that it has moved: ahead, and counter-clockwise.
 argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *span);
 
-// It was in motion, or asked to be, and more than a SIP is missing: how far it got in between the odometry
-// alone can tell. And the farthest that this can be.
+// It was in motion, or asked to be, and more than a SIP is missing. Only the odometry can tell how far it got
+// in between. And the farthest that this can be.
 bool argus_odometry_is_unseen(const argus_span_t *span, bool under_way);
 int32_t argus_odometry_unseen_mm(const argus_span_t *span);
 
-// Whether the robot can have moved by this, both >= 0, between the two SIPs: alone, and with what has built
-// up; nor does it stand while its wheels turn. False: what has built up is forgotten. SIPs come late, in
-// bunches and not at all, wheels speed up and brake in between: steps below some 150 mm and 15 degrees pass,
-// one by one.
+// Whether the robot can have moved by this, both >= 0, between the two SIPs, alone and with what has built
+// up. It cannot stand while its wheels turn. False: what has built up is forgotten. SIPs come late, in
+// bunches and not at all, and wheels speed up and brake in between. So steps below some 150 mm and 15 degrees
+// pass, one by one.
 bool argus_odometry_may_be(argus_excess_t *excess, const argus_span_t *span, const argus_way_turn_t *moved);
 
 #endif

@@ -45,7 +45,7 @@ typedef struct {
     int16_t pitch_deg;           // between two neighbours of the forward-facing ones, mean
     int16_t tolerance_centre_mm; // a2 of the paper's eq. 2
     uint32_t tolerance_excess;   // 1 / cos of the widest angle between neighbours, less 1, in 2^-32
-    int16_t decel_mm_s2;         // that the robot brakes with unless told otherwise
+    int16_t decel_mm_s2;         // that the robot brakes with unless set otherwise
     int16_t track_mm;
     int16_t dist_conv_um; // what one unit of position is
     int16_t min_mm;       // readings are from here to no_echo_mm, which says that nothing was heard

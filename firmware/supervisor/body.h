@@ -5,8 +5,8 @@
 
 #include "supervisor/core.h"
 
-// A session is open: the geometry of its robot holds from now on; one that is unknown, or for which the
-// settings are unsafe, is passive.
+// A session is open, and the geometry of its robot holds from now on. A robot that is unknown, or for which
+// the settings are unsafe, is passive.
 void argus_meet_body(argus_t *self);
 
 // Says why the robot at hand may not be driven; false: it may.

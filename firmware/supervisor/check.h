@@ -6,7 +6,7 @@
 #include "supervisor/core.h"
 #include "supervisor/intent.h"
 
-// At rest, all have reported: suspects are to be verified; without any, whoever reported is healthy.
+// At rest, all have reported. Suspects are to be verified; without any, each sonar that reported is healthy.
 argus_intent_t argus_conclude_check(argus_t *self);
 
 // The periodic one beside the main task. Nothing to do: ARGUS_DO_NOTHING.

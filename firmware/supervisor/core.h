@@ -95,10 +95,10 @@ typedef struct {
     argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
 } argus_reflexes_t;
 
-// Looks (profile argus) and checks. After an acquittal a sonar is not looked at again for a while.
+// Looks (profile argus) and checks. A sonar that was cleared is not looked at again for a while.
 typedef struct {
     uint32_t odometer_mm;
-    uint8_t acquittals;
+    uint8_t cleared;
     uint8_t borne_out; // looks in a row that left it its name
 } argus_hold_t;
 
@@ -127,7 +127,7 @@ typedef struct {
 
 // What operators and the configuration have settled.
 typedef struct {
-    argus_mask_t pinned; // sonars whose health an operator has fixed
+    argus_mask_t pinned; // sonars with a health that an operator has fixed
     bool locked;         // the configuration is unsafe: never active
     bool barred;         // would be active, but not with this robot: unknown, or unsafe with these settings
     bool passive;
@@ -141,7 +141,7 @@ typedef struct {
     uint32_t
         robot; // identity (analysis/record.h) of the robot, or of the record before a session; 0: unknown
     argus_mask_t recorded; // sonars on PROBATION by the record
-    bool loaded;           // a record was taken whose robot is not compared yet
+    bool loaded;           // a record was taken, its robot is not compared yet
 } argus_history_t;
 
 // What is small and asked for everywhere comes first: Cortex-M reaches 4 KB from a pointer in one
@@ -151,7 +151,7 @@ struct argus {
     argus_mode_t mode;
     bool ordered; // the sonars fire in an order of ours, in this session, begun anew at ordered_ms
     bool stalled; // the link: no SIPs for a while
-    bool checked; // a full health check has passed since the session opened or resumed (S3, S6)
+    bool checked; // a full health check has passed since the session opened or resumed (S6)
     uint8_t invariant_said;
     argus_failure_t failure;
     argus_turning_t turning;

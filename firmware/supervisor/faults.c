@@ -58,8 +58,8 @@ static void say_plan(argus_t *const self) {
     }
 }
 
-// Which may be relied on to look along another's bearing: none that is out, unheard or has the name of a
-// fault; where they are all that is left, those with a name may.
+// Which may be relied on to look along another's bearing: none that is out or unheard. One with the name of a
+// fault may only where no other is left.
 static argus_mask_t living(const argus_t *const self) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
     unsigned trusted = 0;
@@ -73,9 +73,9 @@ static argus_mask_t living(const argus_t *const self) {
     return (argus_mask_t)(trusted != 0 ? trusted : named);
 }
 
-// Suspects that are covered for like those that are out: under the paper those that no witness could judge,
-// one that is still to be verified is not, nothing moves ahead before it is; else names that no other sonar
-// sees for.
+// Suspects that are covered for like those that are out. Under profile argus these are the named ones that no
+// other sonar sees for. Under paper they are those that no witness could judge. One that is still to be
+// verified needs none, as nothing moves ahead before it is.
 static argus_mask_t covered_suspects(const argus_t *const self) {
     if (argus_rules(self)->evidence) {
         const argus_guard_t guard = argus_guard(self);

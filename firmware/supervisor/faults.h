@@ -8,7 +8,7 @@
 
 void argus_disable(argus_t *self, int sonar, argus_fault_kind_t kind);
 
-// Those that read dead, and those whose slots yield nothing.
+// Those that read dead, and those that yield nothing in their slots.
 void argus_lose(argus_t *self, argus_mask_t dead, argus_mask_t silent);
 
 // Of these, that do not face forward, those that are STALE report again; the others yield nothing any more.
@@ -19,8 +19,8 @@ void argus_flag_suspects(argus_t *self, argus_mask_t suspects);
 // Failure state and plan for the present fault map.
 void argus_replan(argus_t *self);
 
-// After each SIP: a plan whose sonars may be relied on no more is made anew, and one that leaves a bearing
-// open where others may look now. False: no sonar is left to look along a blind bearing.
+// After each SIP. A plan is made anew when one of its sonars may be relied on no more. So is one that leaves
+// a bearing open which others may look along now. False: no sonar is left to look along a blind bearing.
 bool argus_keep_plan(argus_t *self);
 
 // POLLING for the present plan; again in each new session.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What outlives a mission: the record, and whose it is.
+// What outlives a mission: the record, and the robot that it is of.
 #ifndef ARGUS_HISTORY_H
 #define ARGUS_HISTORY_H
 

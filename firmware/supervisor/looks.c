@@ -7,8 +7,8 @@
 #include "supervisor/say.h"
 #include "supervisor/state.h"
 
-#define HOLD_MM 400u         // an acquitted sonar is not looked at again before this distance,
-#define HOLD_DOUBLINGS 2     // ... doubled with each acquittal so often
+#define HOLD_MM 400u         // a cleared sonar is not looked at again before this distance,
+#define HOLD_DOUBLINGS 2     // ... doubled each time it is cleared, so often
 #define HOLD_FORGET_MM 4000u // ... and forgotten after this one
 #define LOOK_COST_MS 9000u   // what a look takes: two turns aside, the way back, two rounds of readings each
 #define SIP_MS 100u
@@ -19,8 +19,8 @@
 static bool is_held(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
     const argus_hold_t *const hold = &self->looks.hold[sonar];
-    const int32_t doublings = argus_min(hold->acquittals - 1, HOLD_DOUBLINGS);
-    return hold->acquittals > 0 &&
+    const int32_t doublings = argus_min(hold->cleared - 1, HOLD_DOUBLINGS);
+    return hold->cleared > 0 &&
            self->knowledge.odometer_mm - hold->odometer_mm < HOLD_MM << (unsigned)argus_max(0, doublings);
 }
 
@@ -79,8 +79,8 @@ void argus_count_loss(argus_t *const self) {
     self->looks.lost_ms += SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s;
 }
 
-// To hire or to buy: a look is bought when what it costs has been lost, so both together are never more than
-// twice the cheaper one. Where no other sonar sees what a suspect may not, it is bought at once.
+// To hire or to buy: a look is bought when its cost has been lost to the doubt. So both together are never
+// more than twice the cheaper one. Where no other sonar sees what a suspect may not, it is bought at once.
 bool argus_look_pays(const argus_t *const self) {
     const argus_looks_t *const looks = &self->looks;
     const bool pays = looks->asked || alone(self) != 0 || looks->lost_ms >= LOOK_COST_MS;
@@ -91,15 +91,15 @@ bool argus_look_pays(const argus_t *const self) {
     return argus_guard_may_turn(&guard);
 }
 
-static void acquit(argus_t *const self, const int sonar) {
+static void clear(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
     argus_hold_t *const hold = &self->looks.hold[sonar];
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     if (self->knowledge.odometer_mm - hold->odometer_mm > HOLD_FORGET_MM) {
-        hold->acquittals = 0;
+        hold->cleared = 0;
     }
     hold->borne_out = 0;
-    hold->acquittals = (uint8_t)argus_min(hold->acquittals + 1, UINT8_MAX);
+    hold->cleared = (uint8_t)argus_min(hold->cleared + 1, UINT8_MAX);
     hold->odometer_mm = self->knowledge.odometer_mm;
     if (s->health == ARGUS_SUSPECT) {
         argus_say_change(self, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, s->reading_mm);
@@ -117,9 +117,9 @@ void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
     }
 }
 
-// A name that looks do not clear, while nothing moves about: others have looked along its bearing for that
-// alone, each time anew (paper: Algorithm 2). What its own readings tell, looks do not prove, nor anything of
-// one at the end of an array. A look that leaves it another name neither proves nor clears.
+// A name that looks do not clear while nothing moves about. For that alone others have looked along its
+// bearing, each time anew (paper: Algorithm 2). What its own readings tell, looks do not prove, nor anything
+// of one at the end of an array. A look that leaves it another name neither proves nor clears.
 static bool is_proved(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
@@ -143,7 +143,7 @@ static void conclude(argus_t *const self, const int sonar) {
     }
     const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
     if (asked && kind == ARGUS_KIND_NONE) {
-        acquit(self, sonar);
+        clear(self, sonar);
     } else if (suspect && is_proved(self, sonar, kind)) {
         argus_disable(self, sonar, kind);
     } else if (suspect) {
@@ -162,7 +162,7 @@ void argus_conclude_looks(argus_t *const self) {
     argus_replan(self);
 }
 
-void argus_forget_acquittals(argus_t *const self, const int sonar) {
+void argus_forget_cleared(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
-    self->looks.hold[sonar].acquittals = 0;
+    self->looks.hold[sonar].cleared = 0;
 }

@@ -22,13 +22,13 @@ argus_mask_t argus_to_try(const argus_t *self);
 // turn.
 argus_mask_t argus_to_settle(const argus_t *self);
 
-// The looks are over: whoever was asked is acquitted, or left open.
+// The looks are over: each sonar that was asked is cleared, given up or left open.
 void argus_conclude_looks(argus_t *self);
 
 // They are not to be looked at in this place, and covered for like those that are out.
 void argus_leave_open(argus_t *self, argus_mask_t sonars);
 
-// An operator wants it looked at: its acquittals are forgotten.
-void argus_forget_acquittals(argus_t *self, int sonar);
+// An operator wants it looked at: that it was cleared is forgotten.
+void argus_forget_cleared(argus_t *self, int sonar);
 
 #endif

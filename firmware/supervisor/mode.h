@@ -13,8 +13,8 @@
 #define ARGUS_MAY_BREAK_OFF 16u // a loss or a conviction ahead leads to a check
 #define ARGUS_IN_SESSION (ARGUS_MAY_REACT | ARGUS_MAY_JUDGE)
 
-// X(NAME, run, may, limit_ms, then, meaning): `run`: what says on each SIP what is to be done (modes.c);
-// `limit_ms`: after which the mode ends by itself, in the mode `then`; 0: no limit but that of its motions
+// X(NAME, run, may, limit_ms, then, meaning): `run`: says on each SIP what is to be done (modes.c).
+// `limit_ms`: after it the mode ends by itself, in the mode `then`. 0: no limit but that of its motions
 // (adjustment/motion.h).
 #define ARGUS_MODE_TABLE(X)                                                                                 \
     X(OFFLINE, nobody, 0, 0, OFFLINE, "no session with a robot")                                            \

@@ -2,8 +2,8 @@
 // Names of what the manager says: look-ups in the event catalogue and in the enumerations.
 #include "argus/argus.h"
 
-// Words in a row, an empty one at the end: a table of pointers would be initialized data in a
-// position-independent build, one of texts of equal size mostly padding.
+// Words in a row, an empty one at the end. A table of pointers would be initialized data in a
+// position-independent build. One of texts of equal size would be mostly padding.
 static const char *nth(const char *words, int number) {
     while (number > 0 && words[0] != '\0') {
         while (words[0] != '\0') {

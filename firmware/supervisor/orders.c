@@ -142,8 +142,8 @@ static void obey_for_all(argus_t *const self, const argus_op_t op, const int32_t
 
 // One sonar ------------------------------------------------------------------------------------------------
 
-// One in use becomes a suspect that the next health check looks at; one that is out begins its probation
-// anew, with its relapses forgiven, since nothing but evidence brings it back.
+// One in use becomes a suspect that the next health check looks at. One that is out begins its probation
+// anew, its relapses forgiven, since nothing but evidence brings it back.
 static void begin_retest(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(argus_rules(self)->evidence && (self->orders.pinned >> sonar & 1u) == 0);
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
@@ -151,7 +151,7 @@ static void begin_retest(argus_t *const self, const int sonar) {
     argus_evidence_forget(&self->evidence, sonar);
     argus_extremes_forget(&self->extremes, sonar);
     argus_evidence_forget_trend(&self->evidence, sonar);
-    argus_forget_acquittals(self, sonar);
+    argus_forget_cleared(self, sonar);
     self->awareness.verified &= (argus_mask_t) ~(unsigned)bit;
     if (argus_is_out(&self->knowledge, sonar)) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RETESTED, s->kind, s->reading_mm);

@@ -18,8 +18,8 @@ static argus_mask_t in_use(const argus_knowledge_t *const knowledge) {
     return (argus_mask_t)mask;
 }
 
-// Those ahead have been read again; before a turn that S7 forbade the others as well, for two rounds at most:
-// one of them may have fallen silent.
+// Those ahead have been read again. After S7 forbade a turn, the others are waited for as well. That is for
+// two rounds at most, as one of them may have fallen silent.
 static bool has_round(const argus_t *const self, const argus_checking_t *const mine) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
     const bool waits =
@@ -162,7 +162,7 @@ static argus_intent_t leave_bumper(const argus_t *const self) {
     return argus_to_nothing();
 }
 
-// Passive, it moves for nothing: somebody else has to free it.
+// Passive, it moves for nothing: a person has to free it.
 static argus_intent_t leave_touch(const argus_t *const self) {
     if (!self->orders.passive) {
         return leave_bumper(self);

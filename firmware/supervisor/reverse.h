@@ -5,9 +5,9 @@
 
 #include "supervisor/core.h"
 
-// The other end would do better: the one that leads cannot go on, or has lost most of its sonars, or is the
-// rear though the front is whole. Not twice within 2 m of driving unless it cannot go on; never for an
-// operator's step. Cost: one plan.
+// The other end would do better. The one that leads cannot go on, has lost most of its sonars, or is the rear
+// though the front is whole. Not twice within 2 m of driving unless it cannot go on; never for an operator's
+// step. Cost: one plan.
 bool argus_should_turn_about(const argus_t *self);
 
 // At rest: the other end leads from now on; nothing translates before a full check. The way to its heading is

@@ -46,8 +46,8 @@ bool argus_is_home(const argus_t *self, bool again, argus_intent_t *intent);
 // A turn was commanded several times and not executed.
 argus_intent_t argus_turn_failed(const argus_t *self);
 
-// All that forbids to turn is an echo of now, of a sonar that would hear it again were something there: it is
-// to be read once more.
+// One new echo is all that forbids to turn. The sonar would hear it again were something there, so it is read
+// once more.
 bool argus_may_be_crosstalk(const argus_t *self, const argus_guard_t *guard);
 
 // What is done instead of a turn that S7 forbids.

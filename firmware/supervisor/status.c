@@ -80,7 +80,7 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
     status->robot_body = self->knowledge.robot->name;
 }
 
-// Whoever is out has had its verdict, by the evidence or by something else.
+// A sonar that is out has had its verdict, by the evidence or by something else.
 static void copy_suspicion(const argus_t *const self, const int sonar, argus_suspicions_t *const to) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];

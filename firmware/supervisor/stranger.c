@@ -8,7 +8,7 @@
 #include "supervisor/faults.h"
 #include "supervisor/modes.h"
 
-// Whose body it has is found out when its session opens; until then the one before holds.
+// Which body it has is found out when its session opens; until then the one before holds.
 static void forget(argus_t *const self) {
     const argus_robot_t *const before = argus_robot_built(self->knowledge.robot);
     argus_knowledge_init(&self->knowledge);

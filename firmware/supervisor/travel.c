@@ -142,9 +142,9 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
     return false;
 }
 
-// A leg that leads out of a place too narrow to turn in: straight ahead, but for a nudge. Not along a wall
-// that is so near that a slant could not be seen in time; a suspect's word alone is no wall, or it would hold
-// the robot for ever where no look can be had.
+// A leg that leads out of a place too narrow to turn in: straight ahead, but for a nudge. Not along a wall so
+// near that a slant could not be seen in time. A suspect's reading alone is no wall: it would hold the robot
+// for ever where no look can be had.
 static bool leads_out(const argus_t *const self, argus_travel_t *const mine, const int32_t by_cdeg) {
     const argus_guard_t guard = argus_guard(self);
     const argus_mask_t doubted = argus_with_health(&self->knowledge, ARGUS_SUSPECT);
@@ -230,8 +230,8 @@ static bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
     return self->now_ms - mine->heeded_ms < UNHEEDED_MS;
 }
 
-// Swings the heading about the way while a bearing is blind, so that living sonars look along it: to one side
-// until they have had their turns there, then to the other.
+// Swings the heading about the way while a bearing is blind, so that living sonars look along it. It swings
+// to one side until they have had their turns there, then to the other.
 static int32_t weave_cdeg(const argus_t *const self, argus_travel_t *const mine) {
     const argus_guard_t guard = argus_guard(self);
     const int32_t swing_cdeg = argus_min(argus_guard_gap(&guard), WEAVE_GAP) * WEAVE_CDEG;
@@ -283,7 +283,7 @@ static void steer(const argus_t *const self, argus_travel_t *const mine, argus_i
     }
 }
 
-// S3: a MOVE that ends where it should without us, renewed on each SIP.
+// A MOVE is renewed on each SIP, and ends where it should when we say nothing more.
 static argus_intent_t move_on(const argus_t *const self, argus_travel_t *const mine, const int32_t free_mm,
                               const int32_t seen_mm) {
     const argus_guard_t guard = argus_guard(self);

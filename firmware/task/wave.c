@@ -176,15 +176,15 @@ unsigned argus_wave_label(const argus_wave_t *const self, const argus_cell_t cel
     return label;
 }
 
-// The cells beside those of a row, and of the rows above and below it; every other step of the wave corners
-// count: its front is an octagon.
+// The cells beside those of a row, and of the rows above and below it. Corners count in every other step, so
+// the front of the wave is an octagon.
 static uint64_t beside(const uint64_t row, const uint64_t others, const bool corners) {
     const uint64_t across = corners ? row | others : row;
     return others | row | across << 1 | across >> 1;
 }
 
-// What the wave reached long enough ago to get on where it is narrow, of the rows about one: each is asked
-// for by up to three.
+// Of the rows about one, what the wave reached long enough ago to get on where it is narrow. Up to three rows
+// ask for each.
 typedef struct {
     uint64_t cells[3];
     uint64_t fresh_below;

@@ -26,7 +26,7 @@ static void separate(board_line_t *self) {
     self->comma = true;
 }
 
-// What would need an escape, or is no ASCII, is a question mark: it is of no use to anybody here.
+// What would need an escape, or is no ASCII, is a question mark: it is of no use here.
 static void add_quoted(board_line_t *self, const char *text) {
     add(self, '"');
     for (; *text != '\0'; text++) {

@@ -7,8 +7,8 @@
 #include "board/ring.h"
 
 typedef struct {
-    board_ring_t *ring; // NULL: nobody reads
-    uint16_t at;        // where the next byte goes, not yet to be seen by who takes
+    board_ring_t *ring; // NULL: no reader
+    uint16_t at;        // where the next byte goes, not yet to be seen by the taker
     uint16_t end;       // first place that is not free
     bool cut;           // there was no room
     bool comma;

@@ -2,8 +2,8 @@
 // What the compiler calls to copy, fill and compare memory, for size: a word at a time where both sides allow
 // it.
 //
-// Compiled apart from the rest (cmake/Board.cmake): the optimiser of the whole program may still need these
-// after it has looked, and must not make calls to themselves of their loops.
+// Compiled apart from the rest (cmake/Board.cmake). The optimiser of the whole program may need these after
+// it has looked for them. Nor must it turn their loops into calls to themselves.
 #include <stddef.h>
 #include <stdint.h>
 

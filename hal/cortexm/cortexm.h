@@ -34,7 +34,7 @@ void cortexm_initial_stack(void); // the same place as a vector: it is no functi
 void cortexm_reset(void);
 void cortexm_fault(void);
 void cortexm_watchdog(void);   // for a watchdog that warns before it resets
-void cortexm_unexpected(void); // an interrupt that nobody has asked for: as a fault
+void cortexm_unexpected(void); // an interrupt that was not asked for: as a fault
 
 // Called by cortexm_reset() before anything else runs, with no stack to speak of: clocks.
 void cortexm_board_start(void);

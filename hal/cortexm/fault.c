@@ -46,7 +46,7 @@ board_note_t board_last_note(void) {
 static void keep(board_reset_t why) {
     kept.magic = MAGIC;
     kept.reason = (uint32_t)why;
-    __asm volatile("dsb" ::: "memory"); // it is in memory, whoever seems to read it or not
+    __asm volatile("dsb" ::: "memory"); // it is in memory, whether it seems to be read or not
 }
 
 static void restart(void) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From reset to main(): memory is laid out, the stack is painted so that its use can be told.
+// From reset to main(): memory is laid out, the stack is painted so that its use can be measured.
 #include "cortexm/cortexm.h"
 
 #define PAINT 0xC0DEC0DE

@@ -4,9 +4,9 @@
 
 #include "hal/links.h"
 
-// A robot that was sending to nobody waits up to 1 s for flow control before its next SIP (N_Bs of ISO-TP).
-// Until a SIP could have come, SYNC0 may be a PULSE to an old session, on which the robot takes up its old
-// motion.
+// A robot that was sending without a receiver waits up to 1 s for flow control before its next SIP (N_Bs of
+// ISO-TP). Until a SIP could have come, SYNC0 may be a PULSE to an old session, on which the robot takes up
+// its old motion.
 #define SETTLE_MS 1150u
 
 #define AS_BAUD 115200 // bytes in ISO-TP at 500 kbit/s take less time than so

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The vector table, and which interrupt is whose.
+// The vector table, and the handler of each interrupt.
 #include "cortexm/cortexm.h"
 #include "mps2_an386/registers.h"
 #include "mps2_an386/uart.h"

@@ -85,7 +85,7 @@ static void name(const hal_link_spec_t *spec, char *text, size_t capacity) {
 }
 
 // A box that joins Ethernet and a serial line looks like an emulator, but is another machine. Of names only
-// localhost is believed, since who answers for any other may change.
+// localhost is believed, since what answers for any other may change.
 static bool stays_here(const hal_link_spec_t *spec) {
     struct in_addr v4;
     struct in6_addr v6;

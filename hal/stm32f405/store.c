@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The store's slots are sectors 1 and 2 of the flash, 16 KB each: of all sectors they are erased soonest.
 //
-// The processor stands still while flash is erased (0.25 s, at most 0.5 s: DS8626, table 40), since it runs
-// from the same flash; bytes of the robot are lost meanwhile. The loop saves at rest only.
+// The processor runs from the same flash, so it stands still while that is erased (0.25 s, at most 0.5 s:
+// DS8626, table 40). Bytes of the robot are lost meanwhile. The loop saves at rest only.
 #include "board/flash.h"
 #include "stm32f405/registers.h"
 

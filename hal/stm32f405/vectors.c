@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The vector table, and which interrupt is whose.
+// The vector table, and the handler of each interrupt.
 #include "cortexm/cortexm.h"
 #include "stm32f405/registers.h"
 #include "stm32f405/usart.h"

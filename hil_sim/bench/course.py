@@ -119,8 +119,8 @@ def _flood(free: npt.NDArray[np.bool_], x: float, y: float) -> npt.NDArray[np.bo
 def make_course(world: World, field: Field, length_mm: float, rng: np.random.Generator) -> tuple[Point, ...]:
     """Return waypoints of a random course of at least this length, or of `WAYPOINTS` legs; the last is the goal.
 
-    Each next place is the one of many random ones that is furthest from where the robot has been; legs that are
-    clear on the body's whole circle are preferred, so doors are passed, but not sought.
+    Of many random places the next one is that furthest from where the robot has been. Legs that are clear on
+    the body's whole circle are preferred, so doors are passed, but not sought.
     """
     places = field.places(ROOM_MM)
     if len(places) < 20:

@@ -202,8 +202,9 @@ def _spread_of(faults: Sequence[Record], what: str) -> dict[str, Any]:
 def readings_wanted(window_s: float, crosstalk: float, fired: int | None = None) -> int:
     """Return how many readings of a window must be off before a fault is sure, by this count alone.
 
-    Smallest count that 16 healthy sonars, each with `fired` readings (default: as often as all take turns), reach by
-    crosstalk (share of the readings, 0 to 1) in less than one of the successive windows of 100 h.
+    It is the smallest count that crosstalk brings 16 healthy sonars to in less than one of the successive windows of
+    100 h. `crosstalk`: share of the readings, 0 to 1. `fired`: readings of each sonar; default: as often as all take
+    turns.
     """
     fired = int(window_s / REFRESH_S) if fired is None else fired
     windows = SONARS * 100 * 3600 / window_s

@@ -29,7 +29,7 @@ def summarise(records: Iterable[Record]) -> list[Record]:
 def speed_mm_s(record: Record, ideal: Record | None) -> float:
     """Return the way made along the course by the clock.
 
-    Who gave up is counted with the time that the ideal took, at least: to give up soon is no speed.
+    A run that gave up is counted with the time that the ideal took, at least: to give up soon is no speed.
     """
     t_s = record["t_s"]
     if ideal is not None and record["word"] == "failed":

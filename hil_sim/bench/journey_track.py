@@ -124,7 +124,7 @@ class Diary:
 
 
 def run_case(case: Case) -> tuple[Record, Outcome]:
-    """Run a case; return its record and, for who wants more, all that came of it."""
+    """Run a case; return its record and, for callers that want more, all that came of it."""
     begin = time.perf_counter()
     mission = mission_of(case)
     diary = Diary()

@@ -25,7 +25,7 @@ from hil_sim.world.model import Pose, World
 Rng = np.random.Generator
 LIMIT_S: Final = 900.0
 SET_LIMIT_S: Final = 300.0
-"""The limit of an obstacle set, whose courses are some 10 m long."""
+"""The limit of an obstacle set; its courses are some 10 m long."""
 _TRIES: Final = 60
 _PLACES_LEAST: Final = 200
 """Cells of 50 mm where a waypoint may lie, or the plan is thrown away."""
@@ -115,7 +115,7 @@ def _dead_ends(rng: Rng) -> tuple[Plan, Point]:
 
 
 def _closed(rng: Rng) -> tuple[Plan, Point]:
-    """A room without a door, and the goal in it: nobody gets there."""
+    """A room without a door, and the goal in it: it cannot be reached."""
     plan = Plan("A goal behind walls on all sides.", round(float(rng.uniform(0.4, 0.9)), 2))
     x, y, half = float(rng.uniform(3000, 4500)), float(rng.uniform(-800, 800)), float(rng.uniform(600, 900))
     plan.outline(-1500, -3000, x + 2500, 3000)
@@ -201,7 +201,7 @@ SETS: Final[dict[str, Callable[[Rng], tuple[Plan, Point]]]] = {
 }
 """Obstacle sets: a plan and its goal; of the pairs, start and goal are drawn in the map."""
 NO_WAY: Final = "closed"
-"""The set whose goals nobody reaches."""
+"""The set with goals that cannot be reached."""
 FLOORS: Final[dict[str, Callable[[Rng], Plan]]] = {
     "map-office": lambda rng: _office(rng, 1400.0),
     "map-floor": _floor,

@@ -27,7 +27,7 @@ BOUND_S: Final[Mapping[str, float]] = {
 }
 """Within this time from the first visible reading a fault must be found: the p99 bounds."""
 SHOWN_READINGS: Final = 3
-"""A fault with fewer visible readings in its whole life could not show: nobody tells one or two from crosstalk.
+"""A fault with fewer visible readings in its whole life could not show: one or two look like crosstalk.
 
 A sonar that is DISABLED fires no more, so the rule sets none apart that was DISABLED while it failed.
 """
@@ -199,7 +199,7 @@ def _in_time(truth: FaultTruth, end_s: float) -> tuple[float, float]:
 
 
 def _visible_in_time(truth: FaultTruth, track: Track, end_s: float) -> int:
-    """The visible readings while there is time to find the fault: nobody has more to find it by."""
+    """The visible readings while there is time to find the fault: there is no more to find it by."""
     if truth.first_visible_s is None:
         return 0
     return _visible_count(truth, track, _in_time(truth, end_s)[1])

@@ -42,7 +42,7 @@ MOST: Final = 400
 """Hundredths of a nat, of one cell: rarer things happen for reasons that no stream has."""
 SMALL: Final = 500
 FAR: Final = 0.25
-"""A row of at least SMALL pings of a small run may have shares so far from those of the large one: pings of one
+"""A row of at least SMALL pings of a small run may have shares so far from those of the large one. Pings of one
 stream are alike."""
 FILE: Final = Path(__file__).parents[1] / "tables" / "likelihoods.toml"
 CLASSES: Final = ("healthy", "fault", "other")
@@ -205,8 +205,8 @@ def log_ratio(one: Counts, other: Counts) -> npt.NDArray[np.int64]:
     """Return ln of what came over what was to be expected, hundredths of a nat, of each cell, given its row.
 
     0 in the columns of mapped pings that no sonar can judge, and in rows with fewer than LEAST pings. Whether the
-    map leaves a ping in its place comes of how the robot moves, so that tells nothing; but one that is contradicted
-    there is not explained by the hypothesis.
+    map leaves a ping in its place comes of how the robot moves, so that tells nothing. But the hypothesis does not
+    explain one that is contradicted there.
     """
     expected = other * (one.sum(axis=1) / np.maximum(other.sum(axis=1), 1))[:, None]
     ratio = np.log((one + RARE) / (expected + RARE))

@@ -71,7 +71,7 @@ def _end_s(stream: Stream, truth: FaultTruth) -> float:
 
 
 def _finding(stream: Stream, truth: FaultTruth, changes: Sequence[Change]) -> Finding | None:
-    """None: nobody could have found it, since it did not show, or not for as long as its bound."""
+    """None: it could not have been found, since it did not show, or not for as long as its bound."""
     first, end_s = truth.first_visible_s, _end_s(stream, truth)
     rows = stream.readings
     fired_s = rows[:, _FIRED] / 1000

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pictures of a bench: latencies, who is taken for whom, trade-offs and sensitivity, as PNG and SVG."""
+"""Pictures of a bench: latencies, kinds taken for others, trade-offs and sensitivity, as PNG and SVG."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ def _end(pool: ProcessPoolExecutor) -> None:
     pool.shutdown(wait=False, cancel_futures=True)
     for process in processes:
         process.kill()
-    # The pool's own thread reaps them too, and whoever comes second cannot tell that they are gone. With a limit: it
+    # The pool's own thread reaps them too, and the second to reap cannot tell that they are gone. With a limit: it
     # reads from them, and what died in the middle of a record never ends it.
     if manager is not None:
         manager.join(_END_S)
@@ -122,7 +122,7 @@ def run_cluster(
     """Yield the record of each id as it comes from the workers of a Dask scheduler.
 
     A mission whose worker dies goes to another one. core: digest of the fault manager that the workers must have.
-    LinkError when nobody answers at the address.
+    LinkError when no scheduler answers at the address.
     """
     try:
         # Any: the package is optional, and its types are not complete.

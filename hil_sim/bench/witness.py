@@ -55,34 +55,34 @@ def contradicted(sightings: Sequence[Sighting], sonar: int, begin_s: float, end_
     Both from one place on one bearing, at most 40 s apart, in whichever order, and both made by `end_s`. `sightings`:
     of the whole mission in order of time. Cost: the product of both counts, about 100 by 3,500 for 30 s.
     """
-    own, others = _glimpses(_seen(sightings, begin_s - AGE_S, end_s), sonar)
+    own, others = _pings(_seen(sightings, begin_s - AGE_S, end_s), sonar)
     own = own[(own[:, _T] >= begin_s) & (own[:, _T] <= end_s)]
     others = others[others[:, _T] <= end_s]
-    return sum(bool(_contradicts(glimpse, others).any()) for glimpse in own)
+    return sum(bool(_contradicts(ping, others).any()) for ping in own)
 
 
 def _seen(sightings: Sequence[Sighting], begin_s: float, end_s: float) -> Sequence[Sighting]:
-    """Those that may list what was made from begin to end: a SIP comes up to half a second after it, and the last
-    before tells where the robot was."""
+    """Those that may list what was made from begin to end. A SIP comes up to half a second after it, and the last
+    one before shows where the robot was."""
     times = [one.t_s for one in sightings]
     first = bisect_left(times, begin_s)
     return sightings[max(0, first - 1) : bisect_right(times, end_s + _LISTED_S)]
 
 
-def _glimpses(sightings: Sequence[Sighting], sonar: int) -> tuple[Table, Table]:
+def _pings(sightings: Sequence[Sighting], sonar: int) -> tuple[Table, Table]:
     """The visible readings of a faulty sonar, and the sound ones of the others: time, place, bearing, range."""
     own, others = [], []
     for before, now in pairwise(sightings):
         for reading in now.readings:
             if reading.number == sonar:
                 if reading.fault is not None and is_visible(reading):
-                    own.append(_glimpse(reading, before, now))
+                    own.append(_ping(reading, before, now))
             elif reading.fault is None:
-                others.append(_glimpse(reading, before, now))
+                others.append(_ping(reading, before, now))
     return np.array(own).reshape(-1, 5), np.array(others).reshape(-1, 5)
 
 
-def _glimpse(reading: SonarReading, before: Sighting, now: Sighting) -> tuple[float, ...]:
+def _ping(reading: SonarReading, before: Sighting, now: Sighting) -> tuple[float, ...]:
     at = transducer_pose(robot_table().mounts[reading.number], _between(before, now, reading.t_ms / 1000))
     return reading.t_ms / 1000, at.x_mm, at.y_mm, at.heading_deg, reading.range_mm
 
@@ -100,7 +100,7 @@ def _between(before: Sighting, now: Sighting, t_s: float) -> Pose:
 
 
 def _contradicts(own: Table, others: Table) -> npt.NDArray[np.bool_]:
-    """Which of the others saw something else than one glimpse says, from its place and on its bearing."""
+    """Which of the others saw something else than one ping says, from its place and on its bearing."""
     bearing = math.radians(own[_BEARING])
     dx, dy = own[_X] - others[:, _X], own[_Y] - others[:, _Y]
     along = dx * math.cos(bearing) + dy * math.sin(bearing)

@@ -24,7 +24,7 @@ Record = dict[str, Any]
 
 
 def run_case(case: Case) -> tuple[Record, Outcome]:
-    """Run a case; return its record and, for who wants more, all that came of it."""
+    """Run a case; return its record and, for callers that want more, all that came of it."""
     begin = time.perf_counter()
     mission = mission_of(case)
     track = Track()

@@ -254,7 +254,7 @@ class Client:
                 self.open()
 
     def halt(self) -> None:
-        """Let the robot stand, whatever it was told before."""
+        """Let the robot stand, whatever it was ordered before."""
         self.pulses = True
         if self.in_session and self.connected:
             self.command("VEL", 0)

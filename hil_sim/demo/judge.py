@@ -185,11 +185,11 @@ def clock_offset_s(truth: Sequence[Record], events: Sequence[Record]) -> float:
     """What to add to argusd's time to get robot time.
 
     Best: the reader of both streams noted the wall clock beside each line (`wall_s`). A line can only be read after
-    it was written, so in each stream the smallest (wall - own time) is the one read with the least delay; with
-    thousands of lines that delay is a few ms, and the difference of the two minima is the offset. Without them, the
-    calendar time that both programs write themselves does as well, unless somebody set the clock (`unix_s` in the
-    emulator's clock record, `unix` in argusd's status). Last: argusd's SESSION_OPEN is taken to be simultaneous with
-    the emulator's; it is up to 0.3 s later, so a diagnosis may then seem to come before its fault.
+    it was written. So in each stream the smallest (wall - own time) is that of the line read with the least delay.
+    With thousands of lines that delay is a few ms, and the difference of the two minima is the offset. Next: the
+    calendar time that both programs write themselves, `unix_s` in the emulator's clock record and `unix` in argusd's
+    status. It does as well unless a person set the clock. Last: argusd's SESSION_OPEN is taken to be simultaneous
+    with the emulator's. It is up to 0.3 s later, so a diagnosis may then seem to come before its fault.
     """
     for wall_truth, wall_events in (("wall_s", "wall_s"), ("unix_s", "unix")):
         of_truth, of_events = _least(truth, wall_truth, "t_s"), _least(events, wall_events, "t")

@@ -32,7 +32,7 @@ POLICIES: Final[Mapping[str, Mapping[str, str]]] = {
     "ring": {"profile": "paper", "policy": "ring"},
     "adaptive": {"profile": "argus", "policy": "adaptive"},
 }
-"""The first four differ in their planner alone; the last one is what argusd does unless told otherwise."""
+"""The first four differ in their planner alone; the last one is what argusd does by default."""
 WORLDS: Final = ("office", "lab", "corridor", "map-office", "map-floor", "demo")
 """The last two are drawn from the seed, written and read as ARIA maps."""
 HEALTHY: Final = "none"

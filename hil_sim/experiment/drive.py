@@ -50,7 +50,7 @@ class Diary:
 
 
 def run_case(case: Case) -> tuple[Record, Outcome, Diary]:
-    """Run a case; return its record and, for who wants more, all that came of it."""
+    """Run a case; return its record and, for callers that want more, all that came of it."""
     sil = Sil(mission_of(case))
     diary = Diary(sil)
     outcome = sil.run()

@@ -22,7 +22,7 @@ _BESIDE_MM: Final = 40.0
 _RAYS: Final = 1024
 _SAME_PLACE_MM: Final = 40.0
 _ALONG_DEG: Final = 4.0
-"""Who looks within this of a bearing looks along it."""
+"""A sonar that looks within this of a bearing looks along it."""
 
 Floats = npt.NDArray[np.float64]
 

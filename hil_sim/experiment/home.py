@@ -25,7 +25,7 @@ def off_deg(a: float, b: float) -> float:
 class Home:
     """Follows headings at rest through sweeps and looks; each question returns what is wrong, or nothing.
 
-    A sweep may begin with a turn to the leg's bearing, which is no part of it: the first turn of the sweep itself is
+    A sweep may begin with a turn to the leg's bearing, which is no part of it. The first turn of the sweep itself is
     the first rotation of the plan.
     """
 

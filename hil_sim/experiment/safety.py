@@ -25,7 +25,7 @@ STEP_MM: Final = 200.0
 OVER_MM: Final = 20.0
 """A step ends a little late, and odometry is off by a part of it."""
 BRAKE_MM_S2: Final = 300.0
-"""S5 counts on no harder braking, though a robot that was told so brakes harder."""
+"""S5 counts on no harder braking, though a robot that is set so brakes harder."""
 ANSWER_MS: Final = 200
 """From the verdict to the STOP that it calls for: a SIP and what the wire takes."""
 _RECHECK_MM: Final = 20.0
@@ -50,10 +50,10 @@ class Breach(NamedTuple):
 class Safety:
     """Watches one mission.
 
-    S1: with a sonar ahead out of use the leading end moves only over ground that a living sonar has looked at, or
-    within a step of a place where living sonars looked along every blind bearing. S4: after sweeps and looks the
+    S1: with a sonar ahead out of use the leading end moves only over ground that a living sonar has looked at. Or it
+    stays within a step of a place where living sonars looked along every blind bearing. S4: after sweeps and looks the
     heading is the one before. S5: the way that braking takes is free. S7: what a turn on the spot sweeps is free, and
-    no bumper is pressed. While it creeps, which an operator must allow, nothing is seen: then S5 asks for no more than
+    no bumper is pressed. While it creeps, which an operator must allow, nothing is seen. Then S5 asks for no more than
     that speed. breaches: the first of them; counts: of each rule.
     """
 

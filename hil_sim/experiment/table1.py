@@ -34,7 +34,8 @@ _TURNED_DEG: Final = 1.0
 
 @dataclass(frozen=True)
 class Row:
-    """One drive: who was to see the object, who did, and the last reading of each of the six before anything else."""
+    """One drive: which sonars were to see the object, which did, and the last reading of each of the six before
+    anything else."""
 
     sonar: int
     bearing_deg: int

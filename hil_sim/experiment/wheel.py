@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""More than sonar: a wheel that turns less than it is told, named with its size and countered."""
+"""More than sonar: a wheel that turns less than it should, named with its size and countered."""
 
 from __future__ import annotations
 

@@ -235,10 +235,10 @@ class FaultSet:
         return measured if not lost else NO_ECHO_MM if fault.value is None else fault.value
 
     def note_ping(self, t_ms: float, number: int, true_mm: int, heard_mm: int, value: int | None) -> None:
-        """Be told of a ping that a fault may have changed; for those who judge."""
+        """Note a ping that a fault may have changed; for those that judge by it."""
 
     def wheels(self) -> tuple[float, float]:
-        """Return the part that the left and the right wheel turn of what they are told."""
+        """Return the part that the left and the right wheel turn of what they should."""
         parts = {"left": 1.0, "right": 1.0}
         for wheel in self._wheels:
             parts[wheel.fault.side] *= wheel.fault.part if wheel.on else 1.0

@@ -100,7 +100,7 @@ class BumperHit(Fault):
 
 @dataclass(frozen=True)
 class WheelFault(Fault):
-    """A wheel that turns less than it is told: `part` of it, from `start` to `end`; None: all the time."""
+    """A wheel that turns less than it should: `part` of it, from `start` to `end`; None: all the time."""
 
     side: str
     part: float

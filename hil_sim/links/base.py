@@ -26,7 +26,7 @@ class Link(ABC):
 
     @abstractmethod
     def send(self, packet: bytes, now_ms: float) -> None:
-        """Take a packet to send; it may be lost if nobody listens."""
+        """Take a packet to send; it may be lost if no client listens."""
 
     @abstractmethod
     def transmit(self, now_ms: float) -> None:

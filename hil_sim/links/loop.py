@@ -176,7 +176,7 @@ class Fleet:
         return min(self._due_ms) - self._clock_ms()
 
     def wait(self, timeout_ms: float) -> None:
-        """Sleep until input or the timeout; who has input is due."""
+        """Sleep until input or the timeout; a port with input is due."""
         owner = {reader: k for k, loop in enumerate(self.loops) for reader in loop.link.readers()}
         with contextlib.suppress(InterruptedError):
             ready, _, _ = select.select(list(owner), [], [], max(0.0, timeout_ms) / 1000)

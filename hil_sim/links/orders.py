@@ -23,7 +23,7 @@ _MEND: Final = re.compile(r"mend\s+(all|\d{1,2})")
 class Orders:
     """Reads orders from a file descriptor, obeys them at once, and answers with a JSON object a line.
 
-    An answer that nobody takes is dropped: the robot waits for no reader.
+    An answer that is not taken is dropped: the robot waits for no reader.
     """
 
     def __init__(self, robot: Robot, faults: FaultSet, source: int, answers: int) -> None:
@@ -33,7 +33,7 @@ class Orders:
         self._answers = answers
         self._rest = b""
         self.ended = False
-        """Nobody can give orders any more."""
+        """No orders can be given any more."""
 
     def obey(self) -> None:
         """Obey all that has arrived; never waits."""

@@ -102,9 +102,9 @@ class PtyLink(Link):
     def _probe(self, now_ms: float) -> None:
         """See whether a client has the device open.
 
-        The kernel tells (POLLHUP) only while nobody else holds the client's side, so our own hold, which
-        keeps the settings reachable, is let go for a moment. A client's exclusive mode would lock us out (and
-        everyone, after the client's death): it is lifted and put back.
+        The kernel tells (POLLHUP) only while no other program holds the client's side. So our own hold, which
+        keeps the settings reachable, is let go for a moment. A client's exclusive mode would lock us out, and
+        after its death all others: it is lifted and put back.
         """
         exclusive = self._let_go()
         hung_up = any(event & select.POLLHUP for _, event in self._poll.poll(0))
@@ -118,7 +118,7 @@ class PtyLink(Link):
         self._probe_ms = now_ms + (100.0 if self._present else 20.0)
 
     def _forget(self, now_ms: float) -> None:
-        """The client has gone: what nobody will read must not greet the next one; a UART forgets it too."""
+        """The client has gone: what it left unread must not greet the next one; a UART forgets it too."""
         self._drain_master(now_ms)
         if self._keeper >= 0:
             termios.tcflush(self._keeper, termios.TCIFLUSH)

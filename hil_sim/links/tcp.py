@@ -31,7 +31,7 @@ def _why(error: OSError | OverflowError) -> str:
 
 
 class TcpLink(Link):
-    """A TCP port, one client at a time: a second one is turned away, or finds nobody listening (`deaf`)."""
+    """A TCP port, one client at a time: a second one is turned away, or finds no listener (`deaf`)."""
 
     def __init__(self, host: str, port: int, deaf: bool = False) -> None:
         self._deaf = deaf
@@ -114,7 +114,7 @@ class TcpLink(Link):
             self._accept()
 
     def send(self, packet: bytes, now_ms: float) -> None:  # noqa: ARG002 (Link's shape)
-        """Send, or drop if nobody is connected."""
+        """Send, or drop if no client is connected."""
         if self._client is not None:
             self._pending += packet
 

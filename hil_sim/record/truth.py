@@ -19,15 +19,15 @@ Log = Callable[[str, dict[str, Any]], None]
 class TruthRecord:
     """Writes truth records to a file; callable as a `Log`.
 
-    Types: meta, clock, state (each 100 ms), sonar, fault, collision, struck (a solid met the robot at
-    rest), bumper, watchdog, link, session, late (the host served the robot `late_ms`, more than 100,
-    after it was due). All but meta have `t_s`, seconds of robot time since the start.
+    Types: meta, clock, state (each 100 ms), sonar, fault, collision, struck (a solid met the robot at rest),
+    bumper, watchdog, link, session, late. `late`: the host served the robot `late_ms`, more than 100, after
+    it was due. All but meta have `t_s`, seconds of robot time since the start.
     """
 
     def __init__(
         self, path: str | Path, meta: dict[str, Any], say: Callable[[str], None] = lambda text: None
     ) -> None:
-        """`say` is told once when the disk is full later on; at the beginning that is a SimError."""
+        """`say` is called once when the disk is full later on; at the beginning that is a SimError."""
         self._path = path
         self._began = False
         try:

@@ -77,7 +77,7 @@ class Chassis:
         self._swing_mm = table.body.swing_mm
         self._track_mm = table.motion["track_mm"]
         self._moving = moving
-        # While the nearest solid cannot have arrived nobody needs to look; of `dynamic` alone nothing is known.
+        # While the nearest solid cannot have arrived no look is needed; of `dynamic` alone nothing is known.
         self._knows_free = moving or not dynamic
         self._on_hit = on_hit
         rng = random.Random(f"odometry {seed}")

@@ -70,7 +70,7 @@ class Drive:
     """Two channels, translation and rotation, each with a speed or a place as its set point.
 
     v, w: speeds now, mm/s and deg/s. motors: powered; without power commands are not taken. wheels: the part that the
-    left and the right one turn of what they are told.
+    left and the right one turn of what they should.
     """
 
     def __init__(self, chassis: Chassis, table: RobotTable) -> None:
@@ -214,7 +214,7 @@ class Drive:
         return (self.v - half) * left, (self.v + half) * right
 
     def _as_wheels_turn(self, ds: float, dth: float) -> tuple[float, float]:
-        """What is made of a step by wheels that turn less than they are told: the encoders see it so as well."""
+        """What is made of a step by wheels that turn less than they should: the encoders see it so as well."""
         left, right = self.wheels
         if left == right == 1.0:
             return ds, dth

@@ -93,7 +93,7 @@ class Faults(Protocol):
         """Switch faults on and off; return the changes."""
 
     def wheels(self) -> tuple[float, float]:
-        """Return the part that the left and the right wheel turn of what they are told."""
+        """Return the part that the left and the right wheel turn of what they should."""
 
     def bumper(self, now_ms: float) -> int:
         """Return the front bumper bits that a fault presses."""

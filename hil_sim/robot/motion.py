@@ -25,7 +25,7 @@ def ramp(speed: float, target: float, accel: float, decel: float) -> float:
 def approach(speed: float, left: float, top: float, accel: float, decel: float) -> tuple[float, bool]:
     """One sub-step towards a point `left` ahead; returns the new speed and whether the point is reached.
 
-    The new speed is the highest from which the rest can still be braked away, so a trapezoid ends at rest on
+    The new speed is the highest from which the rest can still be braked away. So a trapezoid ends at rest on
     the point, and a point that is moved ahead in time leaves the speed as it is.
     """
     if left < 0:

@@ -52,8 +52,8 @@ _CONFIG_ZERO: Final = (
 class MobileSimServer(ArcosServer):
     """Speaks ARCOS as MobileSim does.
 
-    A session begins at SYNC2 in whatever order the SYNCs come, with all sonars on; SIPs begin at OPEN and
-    hold the readings of all sonars; the watchdog only warns; CLOSE, RESET and a lost connection end session and
+    A session begins at SYNC2 in whatever order the SYNCs come, with all sonars on. SIPs begin at OPEN and hold
+    the readings of all sonars. The watchdog only warns. CLOSE, RESET and a lost connection end session and
     connection.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whose habits the emulator has: the robot's, or those of the vendor's emulator."""
+"""Which habits the emulator has: the robot's, or those of the vendor's emulator."""
 
 from __future__ import annotations
 

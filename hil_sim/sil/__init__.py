@@ -2,7 +2,7 @@
 """Software in the loop: the C fault manager and the emulated robot in one process, under virtual time.
 
 Nothing sleeps and no thread runs. The robot is the one that `argus-sim` serves, the fault manager the one that
-argusd runs; between them the bytes take the time that a serial line would need. The same mission gives the same
+argusd runs. Between them the bytes take the time that a serial line would need. The same mission gives the same
 run, to the byte.
 
 >>> mission = Mission("demo", ((1700, 0),), faults=("off:3@2s",), limit_s=3.0)

@@ -35,7 +35,7 @@ class NotedRobot(Robot):
         self._news: list[SonarReading] = []
 
     def step(self) -> None:
-        """Let one sub-step pass, and tell who watches."""
+        """Let one sub-step pass, and tell the watcher."""
         super().step()
         if self.watch is not None:
             news, self._news = self._news, []

@@ -32,8 +32,8 @@ class Collision(NamedTuple):
 class FaultTruth:
     """One fault of one sonar as it was injected; `driven` is the true way driven until then.
 
-    first_visible_s: the first reading that it changed by more than max(100 mm, 5 %), or took away; None while
-    none was (then it could not be seen by anyone).
+    first_visible_s: the first reading that it changed by more than max(100 mm, 5 %), or took away. None while
+    there was none: then the fault could not be seen.
     """
 
     kind: str

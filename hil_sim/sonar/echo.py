@@ -35,7 +35,7 @@ class EchoModel:
         *,
         in_c: bool = True,
     ) -> None:
-        """`robot`: whose sonars they are; None is the one that is emulated by default."""
+        """`robot`: the one with these sonars; None is the one that is emulated by default."""
         self.params = params
         self._mounts = (robot if robot is not None else robot_table()).mounts
         self._segments = world.segments

@@ -336,7 +336,7 @@ static double corner_loss_db(const model_t *const model, const patch_t *const pa
     return into && patch->retro[k] > 0 ? model->corner_db : model->tip_db;
 }
 
-// The first of these segments that is met on the way to a corner; what lies beyond `nearest` is not told.
+// The first of these segments that is met on the way to a corner; what lies beyond `nearest` is left out.
 static hit_t cast_at_corner(const scene_t *const scene, const double dx, const double dy, const double far,
                             const double nearest, const double touch) {
     const hit_t hit = cast(scene->nearer, scene->nearer_count, dx, dy, touch);
@@ -352,8 +352,8 @@ static double beam_db(const model_t *const model, const double off) {
     return off > 1 && model->side_lobe_db > 0 ? model->side_lobe_db : model->edge_db * off * off;
 }
 
-// Where sound comes back from when sent to a corner within the cone; INFINITY when it is not seen, not heard,
-// or no nearer than `nearest`.
+// Where sound comes back from when sent to a corner within the cone. INFINITY: it is not seen, not heard, or
+// no nearer than `nearest`.
 static double hear_corner(const model_t *const model, const scene_t *const scene, const view_t view,
                           const patch_t *const patch, const int32_t k, const double nearest) {
     double dx = patch->corner_x[k] - view.x, dy = patch->corner_y[k] - view.y;

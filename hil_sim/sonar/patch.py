@@ -45,7 +45,7 @@ class Patch:
 def find_corners(segments: Floats) -> Floats:
     """Ends of segments, each once: x, y, the inverse of the matrix of its two arms, 1 when it can send sound back.
 
-    An inner corner of about a right angle returns sound the way it came to whoever looks into it.
+    An inner corner of about a right angle returns sound the way it came to a sonar that looks into it.
     """
     arms: dict[tuple[float, float], list[tuple[float, float]]] = {}
     for x1, y1, x2, y2 in segments.tolist():

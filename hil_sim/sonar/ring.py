@@ -35,7 +35,7 @@ class SonarFaults(Protocol):
         """Return the reading after faults (None: the slot stays silent) and the kind that changed it."""
 
     def note_ping(self, t_ms: float, number: int, true_mm: int, heard_mm: int, value: int | None) -> None:
-        """Be told of a ping that a fault may have changed: what it would have read, and what it reports.
+        """Note a ping that a fault may have changed: what it would have read, and what it reports.
 
         heard_mm: with noise and crosstalk, without the fault. value: None for a silent slot.
         """
@@ -110,11 +110,11 @@ class SonarRing:
         moving: MovingSolids | None = None,
         rough: Roughness | None = None,
     ) -> None:
-        """`robot`: whose sonars they are; None is the one that is emulated by default.
+        """`robot`: the one with these sonars; None is the one that is emulated by default.
 
         `echoes`: a model of the same world, parameters and robot, to share what it has worked out.
 
-        `rough`: departures from the plain model. `moving`: what else is in the way; whoever owns it lets it move.
+        `rough`: departures from the plain model. `moving`: what else is in the way; its owner lets it move.
         """
         self._table = robot if robot is not None else robot_table()
         self._fitted = len(self._table.orders)
@@ -161,9 +161,9 @@ class SonarRing:
     def set_polling(self, numbers: Sequence[int]) -> None:
         """Take a POLLING string: transducers 1 to 32 in firing order.
 
-        An array that is not mentioned keeps its order; in a mentioned one, transducers left out do not fire, and
-        repeated ones fire more often (at most 16 entries an array, the rest is dropped). Numbers outside 1 to 32 are
-        passed over. An empty string silences all until the next string that is not empty.
+        An array that is not mentioned keeps its order. In a mentioned one, transducers left out do not fire, and
+        repeated ones fire more often. An array takes at most 16 entries; the rest is dropped. Numbers outside 1 to
+        32 are passed over. An empty string silences all until the next string that is not empty.
         """
         named = [number - 1 for number in numbers if 1 <= number <= ARRAYS * PER_ARRAY]
         self._quiet = not named

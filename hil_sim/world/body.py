@@ -16,7 +16,7 @@ _BUMPER_DEPTH_MM: Final = 60.0
 """How far back along the sides the front and rear bumpers reach: a contact further from the end presses none."""
 _CELL_MM: Final = 500.0
 _SEARCH_MM: Final = 3000.0
-"""Clearances beyond this are reported as this: nobody needs them, and it bounds the search."""
+"""Clearances beyond this are reported as this: none is needed, and it bounds the search."""
 
 Segment: TypeAlias = tuple[float, float, float, float]
 """x1, y1, x2, y2 in mm."""

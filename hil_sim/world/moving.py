@@ -17,7 +17,7 @@ from hil_sim.world.movers import Door, Mover, Person
 from hil_sim.world.step import STEP_MS, STEP_S
 
 AHEAD_MM: Final = 400.0
-"""A person waits while the robot's body is within this of where he walks."""
+"""A person waits while the robot's body is within this of their way."""
 LEAF_MM: Final = 100.0
 """A door waits while the robot's body is this near to the leaf, or to where the leaf comes next."""
 _LEAF_AHEAD_MM: Final = 200.0
@@ -49,7 +49,7 @@ class _Walker:
     def __init__(self, person: Person, body: BodyShape) -> None:
         self._body, self._robot_reach_mm = body, body.reach_mm
         angles = [2 * math.pi * (k + 0.5) / POST_SIDES for k in range(POST_SIDES)]
-        # Corners outside the circle, so that the sides touch it: nobody is thinner than he says.
+        # Corners outside the circle, so that the sides touch it: a person is no thinner than the file says.
         outer = person.radius / math.cos(math.pi / POST_SIDES)
         points = [(outer * math.cos(a), outer * math.sin(a)) for a in angles]
         ends = zip(points, points[1:] + points[:1], strict=True)
@@ -131,7 +131,7 @@ class _Walker:
         return gap <= 0
 
     def _steps_until(self, gap_mm: float) -> int:
-        """Nobody closes such a gap sooner: the next look can wait."""
+        """Return sub-steps in which such a gap cannot close: the next look can wait."""
         return int(gap_mm / ((_ROBOT_MM_S + self.person.speed) * STEP_S))
 
 

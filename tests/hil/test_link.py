@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rule (S3): without link or program the robot stands in time, and drives on only after a full check."""
+"""Rule (S3, S6): without link or program the robot stands in time, and drives on only after a full check."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def assert_covered(outcome: Outcome, sonar: int, *kinds: str, within_s: float = 
     assert out[0].t_s <= within_s
     assert outcome.final[sonar][0] in ("DISABLED", "PROBATION")
     assert outcome.final[sonar][1] in kinds
-    # Whoever is covered for holds nobody up: the robot gets ahead.
+    # A sonar that is covered for holds nothing up: the robot gets ahead.
     assert outcome.driven_mm > 1000, outcome.mission.to_json()
 
 

@@ -75,8 +75,8 @@ def test_the_faults_are_told_and_the_goal_is_reached(seed: int) -> None:
 
 def _told(job: tuple[int, int, int, str]) -> tuple[tuple[int, int, int, str], bool, str]:
     """Drive once; whether exactly the two faults were told within 60 s, and what must never be."""
-    dead, liar, seed, physics = job
-    faults = (f"off:{dead}@travelled>600", f"wrong:{liar}@travelled>1400:scale=0.5")
+    dead, wrong, seed, physics = job
+    faults = (f"off:{dead}@travelled>600", f"wrong:{wrong}@travelled>1400:scale=0.5")
     seen = run(
         Mission(
             "open-office",
@@ -89,8 +89,8 @@ def _told(job: tuple[int, int, int, str]) -> tuple[tuple[int, int, int, str], bo
         )
     )
     out = {number: state for number, state in enumerate(seen.final) if state[0] == "DISABLED"}
-    told = out == {dead: ("DISABLED", "off"), liar: ("DISABLED", "wrong")}
-    healthy = [n for n, states in enumerate(seen.health) if n not in (dead, liar) and _ever_out(states)]
+    told = out == {dead: ("DISABLED", "off"), wrong: ("DISABLED", "wrong")}
+    healthy = [n for n, states in enumerate(seen.health) if n not in (dead, wrong) and _ever_out(states)]
     worst = f"{job}: hit {len(seen.collisions)}, healthy ones given up: {healthy}"
     return job, told and seen.reached and seen.t_s < 60.0, worst if seen.collisions or healthy else ""
 

@@ -50,7 +50,7 @@ class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
         return self.get_parameter(key).value
 
     def start(self) -> None:
-        """Configure and activate, unless somebody else is to do it."""
+        """Configure and activate, unless another node is to do it."""
         if not self.value("autostart"):
             return
         if self.trigger_configure() != TransitionCallbackReturn.SUCCESS:

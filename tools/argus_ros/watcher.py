@@ -17,7 +17,7 @@ _ROOM: Final = 1000
 
 
 class Watcher:
-    """Puts each message of the streams into a queue, and wakes the one who reads it.
+    """Puts each message of the streams into a queue, and wakes its reader.
 
     connected: whether the socket stands now. `why_not`: why not, one line.
     """

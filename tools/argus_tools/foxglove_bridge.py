@@ -131,7 +131,7 @@ class Translator:
 
 
 class Server:
-    """The WebSocket server, with a channel for each topic from the start: who looks on misses no first message."""
+    """The WebSocket server, with a channel for each topic from the start: a viewer misses no first message."""
 
     def __init__(self, host: str, port: int) -> None:
         try:
@@ -154,7 +154,7 @@ class Server:
         return int(self._server.port)
 
     def put(self, topic: str, schema: str, t_ns: int, message: dict[str, Any]) -> None:
-        """Send one message to all who look."""
+        """Send one message to all viewers."""
         stamp = {"timestamp": stamp_of(t_ns)} if "timestamp" in SCHEMAS[schema]["properties"] else {}
         self._channels[topic].log({**stamp, **message}, log_time=t_ns)
 

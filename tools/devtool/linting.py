@@ -171,7 +171,7 @@ LINT_STAGES: Final = (
     Stage("mypy", "types in Python", mypy),
     Stage(
         "prose",
-        "sentences, grade and links of the documents",
+        "sentences of documents and comments; grade, links and size of documents",
         lambda run: run([VENV / "bin/python", "tools/prose.py"]),
     ),
     Stage("spelling", "spelling everywhere", lambda run: run([VENV / "bin/codespell"])),

@@ -24,7 +24,8 @@ ALONE: Final = (1, 1, 1)
 
 @dataclasses.dataclass(frozen=True)
 class Lateness:
-    """What tests/hil/lateness.py found: who failed, and how late the host was meanwhile; 0 if it was punctual."""
+    """What tests/hil/lateness.py found: failed tests, and how late the host was meanwhile; 0 if it was
+    punctual."""
 
     exit_code: int
     failed: Mapping[str, int]

@@ -95,7 +95,7 @@ def ensure_python() -> None:
 
 
 def holder_of(file: IO[str]) -> str:
-    """Return who wrote into the lock that it holds it, empty when that is not there yet."""
+    """Return the process that wrote into the lock that it holds it, empty when that is not there yet."""
     file.seek(0)
     number, _, command = file.read().strip().partition(" ")
     return f": process {number}, {command}" if number.isdigit() else ""
@@ -103,7 +103,7 @@ def holder_of(file: IO[str]) -> str:
 
 @contextlib.contextmanager
 def alone() -> Iterator[None]:
-    """Let one set-up or build happen at a time in this folder; who waits is told for whom."""
+    """Let one set-up or build happen at a time in this folder; one that waits says for what."""
     BUILD.mkdir(exist_ok=True)
     with (BUILD / ".dev-lock").open("a+") as file:
         try:

@@ -53,7 +53,7 @@ class Stage:
     name: str
     what: str
     action: Callable[[Run], str | None]
-    """Raises StageFailed, or returns what is to be told although all is well."""
+    """Raises StageFailed, or returns what is to be said although all is well."""
     presets: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
 

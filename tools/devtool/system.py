@@ -42,7 +42,7 @@ def has_gcc() -> bool:
 
 
 def has_libc() -> bool:
-    """Tell whether programs of the C library can be built; without a compiler nobody knows."""
+    """Tell whether programs of the C library can be built; without a compiler that is unknown."""
     return not has_gcc() or compiles("#include <stdio.h>\n" + MAIN)
 
 

@@ -22,7 +22,8 @@ PYTEST: Final = (VENV / "bin/python", "-m", "pytest", "-q")
 IN_REAL_TIME: Final = ("tests/hil", "tests/can", "tests/target", "tests/monitor", "tests/ros")
 BY_THEMSELVES: Final = (*IN_REAL_TIME, "tests/packages")
 COMPUTING: Final = ("tests", *(f"--ignore={folder}" for folder in BY_THEMSELVES))
-# Some tests take a hundred times as long as others: who has done its own takes over what another has before it.
+# Some tests take a hundred times as long as others: a worker that has done its own takes over what another has
+# before it.
 SHARED_OUT: Final = ("-n", str(CORES), "--dist", "worksteal")
 
 

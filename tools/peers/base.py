@@ -33,7 +33,7 @@ FAILURES: Final = (OSError, subprocess.SubprocessError, ValueError, LookupError)
 
 @dataclass(frozen=True)
 class Peer:
-    """One run: who against whom, whether it did what it must, and what was seen."""
+    """One run: which programs met, whether it did what it must, and what was seen."""
 
     client: str
     server: str
@@ -77,7 +77,7 @@ def make(folder: Path, *words: str) -> None:
 
 
 def free_port() -> int:
-    """Return a port that nobody listens on."""
+    """Return a port that no program listens on."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         return int(server.getsockname()[1])
 
@@ -99,7 +99,7 @@ def started(words: Sequence[str | Path], **options: Any) -> Iterator[subprocess.
 
 
 def wait_port(port: int, limit_s: float = 30.0) -> bool:
-    """Wait until somebody listens; whoever looks is turned away by nobody's session."""
+    """Wait until a program listens; the look disturbs no session."""
     until = time.monotonic() + limit_s
     hexed = f":{port:04X} "
     while time.monotonic() < until:

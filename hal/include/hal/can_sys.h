@@ -23,8 +23,8 @@ typedef struct {
 
 extern const hal_can_sys_t hal_can_sys;
 
-// Index of a CAN interface that is up, or a negative link error: NOT_FOUND, NOT_CAN, DOWN, NO_FD (when
-// `wants_fd` and the interface is not set up for CAN FD).
+// Index of a CAN interface that is up, or a negative link error: NOT_FOUND, NOT_CAN, DOWN or NO_FD. NO_FD:
+// `wants_fd` is set and the interface is not set up for CAN FD.
 int hal_can_interface(const hal_can_sys_t *sys, int fd, const char *name, int wants_fd);
 
 // The link error that -errno of socket() or bind() means.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What Argus tells the rest of the vehicle over CAN, and the orders it takes from there (SPEC.md, CAN).
 //
-// Pure: frames go out and in as bytes, time comes in; a socket is somebody else's business.
+// Pure: frames go out and in as bytes, time comes in; sockets are the caller's business.
 #ifndef HAL_CAN_TELEMETRY_H
 #define HAL_CAN_TELEMETRY_H
 
@@ -111,7 +111,7 @@ void hal_telemetry_event(hal_telemetry_t *self, const argus_status_t *status, co
 bool hal_telemetry_next(hal_telemetry_t *self, const argus_status_t *status, uint32_t now_ms,
                         hal_telemetry_frame_t *frame);
 
-// A last heartbeat, whose state says that argusd ends.
+// A last heartbeat; its state says that argusd ends.
 void hal_telemetry_farewell(hal_telemetry_t *self, const argus_status_t *status, uint32_t now_ms,
                             hal_telemetry_frame_t *frame);
 

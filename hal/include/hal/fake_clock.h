@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A clock that stands until it is told to go on.
+// A clock that stands until it is moved on.
 #ifndef HAL_FAKE_CLOCK_H
 #define HAL_FAKE_CLOCK_H
 

@@ -16,7 +16,7 @@ typedef struct {
     uint16_t drop_permille;
     uint16_t corrupt_permille; // one bit of the byte is flipped
     uint32_t delay_ms;         // of every byte; needs a clock
-    bool cut;                  // nothing passes, and nobody is told
+    bool cut;                  // nothing passes, and neither end learns of it
 } hal_fake_faults_t;
 
 typedef struct {

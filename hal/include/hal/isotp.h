@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // ARCOS over CAN as a link: one packet per PDU of the kernel's ISO-TP (ISO 15765-2), both directions.
 //
-// Nothing here waits, except that closing a socket in the middle of a transfer can take the kernel 1 s; that
-// happens only when argusd ends, or when the interface was removed. Without CAN_ISOTP_WAIT_TX_DONE, since
-// with it send() would wait for the robot: a transfer that fails is told by a later read, as an error that is
-// counted there, and the link goes on.
+// Nothing here waits, except that closing a socket in the middle of a transfer can take the kernel 1 s. That
+// happens only when argusd ends, or when the interface was removed. CAN_ISOTP_WAIT_TX_DONE is not set, since
+// with it send() would wait for the robot. So a later read reports a transfer that failed. It is counted
+// there as an error, and the link goes on.
 #ifndef HAL_ISOTP_H
 #define HAL_ISOTP_H
 

@@ -3,8 +3,8 @@
 // Recording).
 //
 // The caller's side never waits: records go into a ring of fixed size, and a thread of their own takes them
-// to the disk. What the ring has no room for, because the disk is full or stuck, is counted and said in the
-// file as soon as it can be.
+// to the disk. When the disk is full or stuck, the ring has no room. What is lost then is counted, and the
+// file says so as soon as it can.
 #ifndef HAL_RECORDER_H
 #define HAL_RECORDER_H
 
@@ -79,7 +79,7 @@ hal_recorder_ops_t hal_recorder_ops(void);
 
 // Opens FILE to append to it; a file that holds something else than a recording is not touched. 0, or an
 // errno: EEXIST for such a file, EBUSY when another program records there, EINVAL when it is no regular file.
-// `source` is written into the file: who records what.
+// `source` is written into the file: what records what.
 int hal_recorder_open(hal_recorder_t *self, const char *path, const char *source, uint64_t max_bytes,
                       hal_recorder_ops_t ops);
 

@@ -47,7 +47,7 @@ bool hal_serial_moved(const hal_serial_t *self);
 hal_link_t hal_serial_link(hal_serial_t *self);
 
 // What to do about an error of hal_serial_open(), on one line: which ports there are, which group is missing,
-// who holds the port. Cost: may scan /proc and /dev, so for start-up only.
+// which program holds the port. Cost: may scan /proc and /dev, so for start-up only.
 void hal_serial_explain(hal_link_error_t error, const char *path, char *text, size_t capacity);
 
 #endif

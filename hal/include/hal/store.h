@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A store for one small record that survives a power cut at any byte: two slots, the newest valid one counts.
 //
-// A slot is a header and the record (SPEC.md, Store): "ARG1", sequence number, length, CRC-32 over sequence
-// number, length and record; numbers little-endian, 4 bytes each. A save goes to the slot that does not hold
-// the newest record.
+// A slot is a header and the record (SPEC.md, Store). The header is "ARG1", sequence number, length, and the
+// CRC-32 over sequence number, length and record. Numbers are little-endian, 4 bytes each. A save goes to the
+// slot that does not hold the newest record.
 #ifndef HAL_STORE_H
 #define HAL_STORE_H
 
@@ -33,8 +33,8 @@ const char *hal_store_error_text(int error);
 
 // Where slots are kept: files, flash, or the fake.
 typedef struct {
-    // Bytes read from `offset` on: as many as were asked for, or fewer where the slot ends;
-    // HAL_STORE_EMPTY when the slot does not exist, or another error.
+    // Bytes read from `offset` on: as many as were asked for, or fewer where the slot ends. HAL_STORE_EMPTY
+    // when the slot does not exist, or another error.
     int (*read)(void *context, int slot, size_t offset, uint8_t *bytes, size_t count);
     // Replaces a slot by header and record. HAL_STORE_OK only when both will outlast a power cut.
     int (*write)(void *context, int slot, const uint8_t header[HAL_STORE_HEADER], const uint8_t *record,

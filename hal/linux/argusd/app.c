@@ -83,7 +83,7 @@ static bool settle_baud(void) {
     return true;
 }
 
-// NULL, or why the manager starts passive although nobody asked for that.
+// NULL, or why the manager starts passive although that was not asked for.
 static const char *settle_activity(void) {
     static char why[ARGUSD_MESSAGE_MAX];
     int32_t *const active = &settings.config.active;
@@ -274,8 +274,8 @@ static bool open_state(void) {
     return state_save(&loop.state, loop.driver.core, message, sizeof message);
 }
 
-// Nobody is served before the loop runs, but a place that cannot be used is told before the robot is spoken
-// to.
+// No client is served before the loop runs, but a place that cannot be used is told before the robot is
+// spoken to.
 static bool open_control(void) {
     static control_token_t token;
     if (options.control.family == 0) {
@@ -312,7 +312,7 @@ static voice_options_t voice_of_options(void) {
                                                              : 2000u};
 }
 
-// Before anything was recorded or anybody served.
+// Before anything was recorded or a client served.
 static argusd_exit_t give_up(hal_link_t *link, argusd_exit_t code) {
     hal_link_close(link);
     control_close(&loop.control);
@@ -372,7 +372,7 @@ static argusd_exit_t run_attached(const hal_clock_t *clock) {
     return attach_run(&attach, &voice);
 }
 
-// Whoever waits for a robot is up as well: what is waited for is told.
+// An argusd that waits for a robot is up as well: it says what it waits for.
 static void tell_service(const hal_clock_t *clock) {
     if (!notify_open(&loop.notify, message, sizeof message)) {
         complain(ARGUSD_EXIT_OK);

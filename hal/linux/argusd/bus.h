@@ -33,7 +33,7 @@ bool bus_open(bus_t *self, const hal_can_spec_t *spec, const hal_can_sys_t *sys,
 // A number that differs from start to start.
 uint64_t bus_seed(void);
 
-// Call with each event, before it is shown to anybody.
+// Call with each event, before it is shown.
 void bus_event(bus_t *self, const argus_status_t *status, const argus_event_t *event);
 
 // Sends what is due, as far as the interface takes it; returns the ms until it wants to be called again.

@@ -40,7 +40,7 @@ static void say_to(control_client_t *client, const char *line, size_t length) {
 // Control
 // ----------------------------------------------------------------------------------------------------
 
-// Who moves the robot by hand no longer can: it must not go on.
+// The client that moves the robot by hand no longer can: it must not go on.
 static void lose_control(control_t *self) {
     if (self->holder >= 0) {
         control_let_go(&self->world.hands);
@@ -90,7 +90,7 @@ static bool release(control_t *self, int place, control_answer_t *answer) {
     return true;
 }
 
-// Whether the order is of the one who has control, and none that was heard before.
+// Whether the order is of the client that has control, and none that was heard before.
 static bool is_entitled(control_t *self, int place, control_answer_t *answer) {
     char grant[sizeof self->grant];
     int64_t seq = 0;
@@ -282,7 +282,8 @@ static void drop(control_t *self, int place) {
     control_client_close(&self->client[place]);
 }
 
-// A place for a newcomer: a free one, else that of who has not said the token for the longest time.
+// A place for a new client: a free one, else that of the client that has not said the token for the longest
+// time.
 static int find_place(control_t *self) {
     int oldest = -1;
     for (int i = 0; i < CONTROL_CLIENTS; i++) {
@@ -418,8 +419,8 @@ static size_t evidence_line(control_t *self) {
                                  sizeof self->line);
 }
 
-// To those whose period is over; the line is written once for all of them. Returns the ms until it is over
-// for somebody.
+// To the clients that have a period that is over; the line is written once for all of them. Returns the ms
+// until the next one is over.
 static uint32_t tell_periodic(control_t *self, control_topic_t topic) {
     uint32_t wait_ms = UINT32_MAX;
     size_t length = 0;

@@ -29,10 +29,10 @@ typedef struct {
     control_token_t token;
     control_world_t world;
     moment_t moment;
-    int holder; // who has control, -1: nobody
+    int holder; // the client that has control, -1: none
     char grant[2 * CONTROL_GRANT_BYTES + 1];
     int64_t seq; // of the last order of this grant, -1: none yet
-    int first;   // who is looked at first in the next round
+    int first;   // the client that is looked at first in the next round
     uint32_t sips;
     uint32_t wrong_tokens;
     uint32_t wrong_said;
@@ -42,7 +42,7 @@ typedef struct {
     control_client_t client[CONTROL_CLIENTS];
 } control_t;
 
-// Listens; nobody is served before control_begin(). `token` on: who connects must say it. False: `message`
+// Listens; no client is served before control_begin(). `token` on: a client must say it. False: `message`
 // says why not.
 bool control_open(control_t *self, const control_spec_t *spec, const control_token_t *token, char *message,
                   size_t capacity);
@@ -54,7 +54,7 @@ int control_poll(const control_t *self, struct pollfd *wait);
 // Lets in, reads, carries out, writes; a few requests of all clients together.
 void control_serve(control_t *self, const moment_t *moment);
 
-// To those who watch events.
+// To the clients that watch events.
 void control_event(control_t *self, uint64_t t_ms, const argus_event_t *event);
 
 // Streams what is due; returns the ms until something is.

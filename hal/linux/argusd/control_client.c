@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lines of one client, neither of whose directions ever waits.
+// Lines of one client; neither direction ever waits.
 #include "control_client.h"
 
 #include <errno.h>

@@ -20,7 +20,7 @@ typedef struct {
 // Carries out the order that the request names. False: `answer` says why not.
 bool control_order(control_hands_t *self, const control_request_t *request, control_answer_t *answer);
 
-// Nobody leads it any more: a motion by hand that goes on is stopped.
+// No client leads it any more: a motion by hand that goes on is stopped.
 void control_let_go(control_hands_t *self);
 
 #endif

@@ -18,7 +18,7 @@
 #define BACKLOG 16
 #define SEND_BUFFER 65536 // what lies in the system's hands is old when a slow reader gets it
 
-// Whether somebody serves the socket file: then connecting works, or would, but for its full queue.
+// Whether a program serves the socket file: then connecting works, or would, but for its full queue.
 static bool is_served(const control_spec_t *spec) {
     const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     const bool served = fd < 0 || connect(fd, &spec->address.any, spec->length) == 0 || errno != ECONNREFUSED;
@@ -50,7 +50,7 @@ static bool clear_path(const control_spec_t *spec, char *message, size_t capacit
     return true;
 }
 
-// The mode of the file is settled before there is one, so that nobody can be quicker.
+// The mode of the file is settled before there is one, so that no other user can be quicker.
 static bool bind_unix(control_port_t *self) {
     struct stat about;
     if (fchmod(self->fd, 0600) != 0 || bind(self->fd, &self->spec.address.any, self->spec.length) != 0) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The listening end of the control socket: opened so that nobody else can reach it, and who connects.
+// The listening end of the control socket: opened so that no other user can reach it, and the clients that
+// connect.
 #ifndef ARGUSD_CONTROL_PORT_H
 #define ARGUSD_CONTROL_PORT_H
 
@@ -17,7 +18,8 @@ typedef struct {
 // Listens. False: `message` says why not.
 bool control_port_open(control_port_t *self, const control_spec_t *spec, char *message, size_t capacity);
 
-// Who waits to be let in, as a socket that never waits; -1: nobody. A peer of another user is turned away.
+// The client that waits to be let in, as a socket that never waits; -1: none. A peer of another user is
+// turned away.
 int control_port_accept(const control_port_t *self);
 
 // The address as it would be given, with the port that the system chose.

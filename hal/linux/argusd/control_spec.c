@@ -26,7 +26,7 @@ static bool parse_unix(control_spec_t *spec, const char *path, char *message, si
     return true;
 }
 
-// A name that a server of names answers for could be anybody's, so only numbers are taken.
+// A name that a server of names answers for could be of any machine, so only numbers are taken.
 static bool parse_host(control_spec_t *spec, const char *host, uint16_t port) {
     struct sockaddr_in *const in = &spec->address.in;
     struct sockaddr_in6 *const in6 = &spec->address.in6;

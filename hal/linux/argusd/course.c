@@ -56,7 +56,8 @@ static bool read_line(course_t *course, char *line, char *message, size_t capaci
     return true;
 }
 
-// Reads to the end of the line; its length, -1 at the end of the file, -2 when it holds a NUL or is too long.
+// Reads to the end of the line and returns its length: -1 at the end of the file, -2 when it holds a NUL or
+// is too long.
 static int fetch_line(FILE *file, char *line, size_t capacity) {
     size_t length = 0;
     int byte = getc(file);

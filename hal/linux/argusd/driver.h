@@ -9,11 +9,11 @@
 
 // Sees all bytes that pass, from the robot or to it. Must not wait.
 typedef struct {
-    void (*see)(void *context, bool from_robot, const uint8_t *bytes, size_t count); // NULL: nobody looks
+    void (*see)(void *context, bool from_robot, const uint8_t *bytes, size_t count); // NULL: none
     void *context;
 } driver_tap_t;
 
-// Changes the robot's bytes before anybody else sees them, when some came and now and then without; returns
+// Changes the robot's bytes before any other part sees them, when some came and now and then without. Returns
 // how many there are at `out`, which has room for `count` and DRIVER_FILTER_HOLD more. Must not wait.
 #define DRIVER_FILTER_HOLD 512
 typedef struct {
@@ -77,7 +77,7 @@ bool driver_reason(driver_t *self, char *text, size_t capacity);
 // One line about that, see below.
 void driver_explain_turned_away(const driver_t *self, char *text, size_t capacity);
 
-// Whether whoever is at the other end takes the link and closes it at once, time and again.
+// Whether the other end takes the link and closes it at once, time and again.
 bool driver_is_turned_away(const driver_t *self);
 
 bool driver_wants_write(const driver_t *self);

@@ -172,7 +172,7 @@ static bool open_pty(guard_port_t *self, char *message, size_t capacity) {
                        why == EEXIST ? "; it is no name of a pty, so it stays" : "");
 }
 
-// Nobody has the other side open: the master hangs up.
+// No program has the other side open: the master hangs up.
 static bool is_pty_free(const guard_port_t *self) {
     struct pollfd wait = {.fd = self->listener, .events = POLLIN};
     return poll(&wait, 1, 0) > 0 && (wait.revents & POLLHUP) != 0;

@@ -23,12 +23,12 @@ bool guard_spec_parse(guard_spec_t *spec, const char *text, char *message, size_
 typedef struct {
     guard_spec_t spec;
     int listener; // TCP: accepts; pty: its master; -1: closed
-    int client;  // TCP: the client's socket, -1: none; pty: the master while somebody has the other side open
-    bool linked; // the pty's name is there
+    int client;   // TCP: the client's socket, -1: none; pty: the master while the other side is open
+    bool linked;  // the pty's name is there
     bool refused; // it would have been open to other machines
 } guard_port_t;
 
-// Listens; nobody is there yet. `beyond`: a TCP host that is not loopback is allowed.
+// Listens; no client is there yet. `beyond`: a TCP host that is not loopback is allowed.
 bool guard_port_open(guard_port_t *self, const guard_spec_t *spec, bool beyond, char *message,
                      size_t capacity);
 

@@ -82,7 +82,7 @@ driver_tap_t guards_tap(guards_t *self) {
     return (driver_tap_t){.see = see_robot, .context = self};
 }
 
-// Whom it was serving is gone: said to the manager before anybody else is heard.
+// The client it was serving is gone: said to the manager before another is heard.
 static void leave(guards_t *self, uint32_t now_ms) {
     self->served = -1;
     self->held_count = 0;
@@ -114,8 +114,8 @@ static void make_room(guards_t *self, uint32_t now_ms) {
     }
 }
 
-// One at a port whose first client is still there, or at another port than the one that is served. One that
-// came by a pty cannot be closed; it is not heard until the first one has gone.
+// One at a port where the first client is still there, or at another port than the one that is served. One
+// that came by a pty cannot be closed; it is not heard until the first one has gone.
 static void take_second(guards_t *self, guard_port_t *at, int other) {
     turn_away(self, at);
     if (other >= 0) {
@@ -138,7 +138,7 @@ static void greet(guards_t *self, int index, uint32_t now_ms) {
         at->client = other;
         other = -1;
     }
-    if (self->served < 0 && at->client >= 0) { // also who had to wait at a pty
+    if (self->served < 0 && at->client >= 0) { // also one that had to wait at a pty
         welcome(self, index, now_ms);
     } else if (came) {
         take_second(self, at, other);

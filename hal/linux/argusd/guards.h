@@ -25,7 +25,7 @@ typedef struct {
 typedef struct {
     guard_port_t at[GUARDS_MAX];
     int count;
-    int served; // whose client it is; -1: none
+    int served; // the port of its client; -1: none
     argus_readings_t readings;
     driver_t *driver;
     argus_port_storage_t port;

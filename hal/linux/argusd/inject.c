@@ -193,7 +193,7 @@ static bool has_head(const uint8_t *h, size_t used) {
            (used < 4 || h[HEADER] == ARCOS_TYPE_SIP_STATIONARY || h[HEADER] == ARCOS_TYPE_SIP_MOVING);
 }
 
-// ... whose two counts agree; what cannot become one is not waited for.
+// ... with two counts that agree; what cannot become one is not waited for.
 static bool may_be_sip(const inject_t *self) {
     const uint8_t *const h = self->held;
     if (!has_head(h, self->used)) {

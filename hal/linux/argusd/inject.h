@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Faults that argusd itself makes, for a test on a real robot: readings are altered on their way from the
+// Faults that argusd itself makes, for a test on a real robot. Readings are altered on their way from the
 // wire to the manager, for a time that always ends.
 #ifndef ARGUSD_INJECT_H
 #define ARGUSD_INJECT_H

@@ -36,8 +36,8 @@ typedef struct {
     json_token_t token[JSON_TOKENS_MAX];
 } json_doc_t;
 
-// False: the text is not one JSON object and blanks, goes deeper or is longer than the bounds, or has a name
-// twice in an object. Names are written without escapes. `text` must outlive `self`.
+// False: the text is not one JSON object and blanks, or is deeper or longer than the bounds. Or an object has
+// a name twice. Names are written without escapes. `text` must outlive `self`.
 bool json_read(json_doc_t *self, const char *text, size_t length);
 
 // The value of a member of the object `of`; -1: it has none of that name.

@@ -153,7 +153,7 @@ static void take_signals(loop_t *self) {
     }
 }
 
-// Whoever watched can no longer stop it by hand.
+// The client that watched can no longer stop it by hand.
 static void lose_screen(loop_t *self) {
     tui_stop(&self->voice.tui);
     voice_notice(&self->voice, "the screen is gone: stopping");
@@ -233,7 +233,8 @@ static uint32_t tell_bus(loop_t *self) {
 
 static void watch_mission(loop_t *self) {
     const argus_mission_t mission = status_of(self).mission;
-    // On a screen the operator says when it is over, and so does who gives orders at the control socket.
+    // On a screen the operator says when it is over, and so does a client that gives orders at the control
+    // socket.
     const bool operated = self->voice.tui.on || self->control.world.hands.ordered;
     if (!operated && (mission == ARGUS_MISSION_REACHED || mission == ARGUS_MISSION_FAILED)) {
         end(self, code_of_mission(self));

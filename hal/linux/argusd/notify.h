@@ -12,7 +12,7 @@
 #define NOTIFY_STATUS_MAX 256
 
 typedef struct {
-    bool on; // somebody wants to know
+    bool on; // a service manager wants to know
     int fd;
     bool ready;
     uint32_t period_ms; // between signs of life, 0: none are wanted

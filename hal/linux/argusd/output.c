@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// O_NONBLOCK on the descriptor that we were given would hit everybody who shares it, a shell for one; a
+// O_NONBLOCK on the descriptor that we were given would hit every program that shares it, such as a shell. A
 // second opening of the same pipe or terminal has flags of its own.
 static void open_own(output_t *self, int fd) {
     char path[32];

@@ -14,7 +14,7 @@ typedef struct {
     int fd;
     bool own; // fd is our own opening, non-blocking without touching what others share
     bool is_socket;
-    bool is_file;     // never makes anyone wait
+    bool is_file;     // never makes a writer wait
     bool broken;      // the reader is gone
     uint32_t dropped; // lines, monotonic
     size_t used;

@@ -19,7 +19,7 @@ typedef struct {
 bool tape_open(tape_t *self, const char *path, const char *link, uint64_t max_bytes, char *message,
                size_t capacity);
 
-// What the driver is to show its bytes to; nobody when the tape is not open.
+// What the driver is to show its bytes to; none when the tape is not open.
 driver_tap_t tape_tap(tape_t *self);
 
 // A sonar's reports are altered from here on; kind NONE: no more.

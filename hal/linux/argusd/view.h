@@ -27,7 +27,7 @@ typedef struct {
     uint32_t can_refused;           // ...
     uint8_t sonar;                  // the one that the operator has chosen
     uint32_t course_mm;             // straight line from the start to the goal, 0 without a course
-    bool controlled;                // somebody at the control socket has control
+    bool controlled;                // a client at the control socket has control
     uint8_t injected[ARGUS_SONARS]; // argus_fault_kind_t that argusd itself makes, 0: none
     bool inject;                    // it may
 } view_t;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rule (S3): a bus that goes away in motion makes the robot stand, and it drives on only after a full check."""
+"""Rule (S3, S6): a bus that goes away in motion makes the robot stand, and it drives on only after a full check."""
 
 from __future__ import annotations
 

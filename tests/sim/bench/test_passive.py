@@ -130,7 +130,7 @@ def test_two_rules_on_three_streams(tmp_path: Path, capsys: pytest.CaptureFixtur
     rows = {row["name"]: row for row in json.loads((tmp_path / "ablation.json").read_text(encoding="utf-8"))}
     assert rows["stuck"]["changed"] > 0, "without its test nothing changed"
     assert rows["stuck"]["lost"] == 1
-    assert rows["trend"]["changed"] == 0, "slopes name nobody"
+    assert rows["trend"]["changed"] == 0, "slopes name none"
     assert bench("drive-by", *words, *kept, "--json", str(tmp_path / "f.json")) == 0
     figures = json.loads((tmp_path / "f.json").read_text(encoding="utf-8"))
     assert figures["found"]["stuck"]["in_time"]["hits"] == 1

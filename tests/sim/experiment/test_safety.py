@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rule: S1, S4, S5 and S7 hold by the truth at every tick of whatever is driven; who breaks one is found out."""
+"""Rule: S1, S4, S5 and S7 hold by the truth at every tick of whatever is driven; a breach is found out."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_a_step_that_does_not_end_breaks_s1() -> None:
     until_mode(sil, "STEPPING")
     assert safety.counts["S1"] == 0
     sil.robot.drive.move(900)
-    sil.robot.chassis.place(5300, 3300, 180)  # nobody has looked there
+    sil.robot.chassis.place(5300, 3300, 180)  # no sonar has looked there
     sil.run_until(sil.now_ms / 1000 + 7)
     assert safety.counts["S1"] > 0, told(sil, safety)
 

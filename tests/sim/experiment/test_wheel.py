@@ -49,7 +49,7 @@ def test_a_wheel_that_is_mended_is_cleared(hall: str) -> None:
 
 
 def test_with_the_rear_ahead_it_is_the_same_wheel() -> None:
-    # Where walls are heard abeam: in the open nobody contradicts an array that hears nothing.
+    # Where walls are heard abeam: in the open nothing contradicts an array that hears nothing.
     faults = ("off:front", "wheel:right@8s:0.93")
     outcome = run_mission(Mission("corridor", ((5500.0, 0.0), (0.0, 0.0)), faults=faults, limit_s=120))
     assert [event.value for event in outcome.events if event.name == "REVERSED"] == [1]

@@ -81,7 +81,7 @@ void test_s1_normal_driving_only_with_every_bearing_in_use(void) {
     }
 }
 
-// S2, S3, S6 -----------------------------------------------------------------------------------------------
+// S2, S5, S6 -----------------------------------------------------------------------------------------------
 
 void test_s6_nothing_translates_unless_all_allow_it(void) {
     TEST_ASSERT_TRUE(argus_guard_may_translate(&g));
@@ -101,7 +101,7 @@ void test_s6_nothing_translates_unless_all_allow_it(void) {
     TEST_ASSERT_FALSE(argus_guard_may_translate(&g));
 }
 
-void test_s3_free_way_is_the_shortest_usable_front_reading(void) {
+void test_s5_free_way_is_the_shortest_usable_front_reading(void) {
     put_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, 0);
     k.sonar[3].reading_mm = 100; // a lie that must not count
     k.sonar[0].reading_mm = k.sonar[7].reading_mm = k.sonar[12].reading_mm = 150;
@@ -113,7 +113,7 @@ void test_s3_free_way_is_the_shortest_usable_front_reading(void) {
     TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g, argus_guard_seen_mm(&g)));
 }
 
-void test_s3_the_way_driven_since_a_reading_is_taken_off(void) {
+void test_s5_the_way_driven_since_a_reading_is_taken_off(void) {
     k.sonar[4].reading_mm = 900;
     k.odometer_mm = 60;
     TEST_ASSERT_EQUAL(590, argus_guard_ahead_mm(&g, argus_guard_seen_mm(&g)));
@@ -123,7 +123,7 @@ void test_s3_the_way_driven_since_a_reading_is_taken_off(void) {
     TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g, argus_guard_seen_mm(&g)));
 }
 
-void test_s3_a_sonar_unheard_for_two_rounds_is_blind(void) {
+void test_s2_a_sonar_unheard_for_two_rounds_is_blind(void) {
     for (int i = 1; i <= 6; i++) {
         k.sonar[i].heard_ms = NOW_MS - argus_guard_two_rounds_ms(&config);
         TEST_ASSERT_TRUE(argus_guard_sees_ahead(&g));

@@ -145,7 +145,7 @@ void test_any_one_of_the_ring_is_enough(void) {
     }
 }
 
-// Who is neither disabled nor living is not asked, and is not covered for.
+// A sonar that is neither disabled nor living is not asked, and is not covered for.
 void test_only_the_living_look(void) {
     const argus_plan_t plan = argus_plan(argus_robot_default(), ARGUS_POLICY_ADAPTIVE, 1u << 3, 1u << 0);
     TEST_ASSERT_EQUAL_HEX16(1u << 0, plan.looks);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack (S4, active verification): first whoever hears nothing is turned onto what another heard,
-// a few times at most; then looks to either side of the heading, as many as are needed and no more, half a
-// turn when one array is deaf, and back to the heading in the end.
+// Rule under attack (S4, active verification): first a sonar that hears nothing is turned onto what another
+// heard, a few times at most; then looks to either side of the heading, as many as are needed and no more,
+// half a turn when one array is deaf, and back to the heading in the end.
 #include "analysis/inquiry.h"
 
 #include <stdlib.h>
@@ -233,7 +233,7 @@ void test_more_suspects_may_be_taken_in_under_way(void) {
     TEST_ASSERT_EQUAL(0, inquiry.watched >> 13 & 1u);
 }
 
-// The arrays do not look into each other's sectors: who is watched is of the suspect's own array.
+// The arrays do not look into each other's sectors: those watched are of the suspect's own array.
 void test_neighbours_are_of_the_same_array(void) {
     for (int sonar = 0; sonar < ARGUS_SONARS; sonar++) {
         argus_inquiry_begin(&inquiry, &k, &e, (uint16_t)(1u << sonar), 0);
@@ -329,7 +329,7 @@ static void is_contradicted(int sonar, int by) {
     e.of[sonar].score[ARGUS_TEST_PEERS] = (int16_t)by;
 }
 
-// Others hear what it does not: it is turned there whoever is suspected, or nobody.
+// Others hear what it does not: it is turned there whichever is suspected, or none.
 void test_who_is_silent_and_contradicted_is_turned_though_no_suspect(void) {
     for (int by = 99; by <= 100; by++) {
         three_falls_silent();
@@ -413,7 +413,7 @@ void test_an_aim_that_leaves_the_suspect_open_is_followed_by_the_looks(void) {
     TEST_ASSERT_FALSE(inquiry.aiming || inquiry.returning);
 }
 
-// While nobody has borne out anybody, the aims alone show too little: the looks follow in any case.
+// While none has borne out another, the aims alone show too little: the looks follow in any case.
 void test_before_anybody_is_borne_out_the_aims_are_not_enough(void) {
     three_falls_silent();
     e.has_pairs = false;
@@ -559,7 +559,7 @@ void test_who_is_contradicted_most_is_aimed_first(void) {
 void test_who_is_out_is_not_aimed_unasked(void) {
     all_fall_silent();
     nobody_was_proved_of_late();
-    inquire(0, 0x7FFF, 0); // 15 alone is left, and nobody to bear it out
+    inquire(0, 0x7FFF, 0); // 15 alone is left, and none to bear it out
     TEST_ASSERT_EQUAL(0, aims);
     for (int i = 0; i < 40; i++) {
         all_fall_silent();
@@ -599,7 +599,7 @@ static void any_state(unsigned seed) {
     }
 }
 
-// Whatever was heard and whoever hears: few aims, no heading that is none, and home in the end.
+// Whatever was heard and whichever hears: few aims, no heading that is none, and home in the end.
 void test_aims_are_few_and_lead_home_whatever_the_state(void) {
     int aimed_at_all = 0;
     for (unsigned seed = 1; seed <= 1500; seed++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: Algorithm 2: which way it turns, whom it hears, what it concludes, and that it always
-// turns back.
+// Rule under attack: Algorithm 2: which way it turns, which sonars it hears, what it concludes, and that it
+// always turns back.
 #include "analysis/verify.h"
 
 #include <string.h>
@@ -207,7 +207,7 @@ void test_idle_does_nothing(void) {
     TEST_ASSERT_EQUAL(ARGUS_VERIFY_IDLE, v.phase);
 }
 
-// The AmigoBot's 2 looks at 15 degrees, between 41 and -15: who stands left turns by -26 onto its bearing.
+// The AmigoBot's 2 looks at 15 degrees, between 41 and -15: the left one turns by -26 onto its bearing.
 void test_an_amigobot_turns_by_its_own_bearings(void) {
     argus_body_is(&k, argus_robot_find("amigo-sh"), 0);
     settle();

@@ -309,7 +309,7 @@ void test_a_waiting_robot_is_opened_in_the_right_order(void) {
     TEST_ASSERT_EQUAL(0, seen & ~(unsigned)(ARGUS_SESSION_DID_OPEN | ARGUS_SESSION_GOT_SIP));
 }
 
-// Who may be driven is decided by who knows the body.
+// Which robot may be driven is decided by what knows the body.
 void test_the_set_up_never_enables_the_motors(void) {
     connect();
     run_until(3000);

@@ -85,7 +85,7 @@ void test_echoes_agree_within_the_tolerance_only(void) {
     }
 }
 
-// Silence contradicts an echo that must be heard, on either side; beyond, the air decides; nearest, nobody.
+// Silence contradicts an echo that must be heard, on either side; beyond, the air decides; nearest, neither.
 void test_silence_contradicts_what_must_be_heard(void) {
     TEST_ASSERT_EQUAL(AGAINST, compared(1500, NONE_MM));
     TEST_ASSERT_EQUAL(AGAINST, compared(NONE_MM, 1500));
@@ -143,7 +143,7 @@ void test_the_latest_of_a_witness_decides(void) {
     TEST_ASSERT_EQUAL(NOTHING, verdict(1000));
 }
 
-// Beside a step a reading may be of either side: what anybody relied on heard there lately excuses it.
+// Beside a step a reading may be of either side: what any sonar relied on heard there lately excuses it.
 void test_what_was_heard_a_little_aside_lately_excuses(void) {
     for (int late = 0; late < 2; late++) {
         for (int out = 0; out < 2; out++) {
@@ -192,7 +192,7 @@ void test_who_is_out_is_no_witness(void) {
     }
 }
 
-// A witness that is contradicted as much itself says nothing: the liar accuses nobody.
+// A witness that is contradicted as much itself says nothing: a faulty sonar drags down no other.
 void test_a_witness_that_is_contradicted_as_much_says_nothing(void) {
     static const int score[] = {0, 300, 700, 2000};
     for (int w = 0; w < 4; w++) {
@@ -210,7 +210,7 @@ void test_a_witness_that_is_contradicted_as_much_says_nothing(void) {
 
 // ---- when
 
-// What nobody had heard when it was read is judged by who looks there later, once.
+// What no other had heard when it was read is judged by what looks there later, once.
 void test_what_is_read_is_judged_by_who_looks_there_later(void) {
     static const struct {
         int mine, theirs;
@@ -318,7 +318,7 @@ void test_a_crowd_is_more_than_two_sonars_that_are_contradicted(void) {
     TEST_ASSERT_FALSE(e.crowded || e.busy);
 }
 
-// What was said fades to nothing, and with it who said it.
+// What was said fades to nothing, and with it which sonar said it.
 void test_what_the_others_say_fades(void) {
     e.of[ME].score[ARGUS_TEST_PEERS] = 900;
     e.of[ME].against = 6;
@@ -394,8 +394,8 @@ void test_what_others_heard_where_it_looked_speaks_for_that_lag(void) {
 
 // ---- after
 
-// What a sonar that is out has said of others is taken back: the whole where nobody else says so.
-void test_what_a_liar_said_is_taken_back_when_it_is_out(void) {
+// What a sonar that is out has said of others is taken back: the whole where no other says so.
+void test_what_a_faulty_sonar_said_is_taken_back_when_it_is_out(void) {
     for (int other = 0; other < 2; other++) {
         setUp();
         argus_case_t *c = &e.of[ME];
@@ -429,8 +429,8 @@ void test_the_way_back_is_of_echoes_that_are_borne_out(void) {
     TEST_ASSERT_EQUAL(0, e.of[ME].agreed);
 }
 
-// Where nobody looks, echoes that go on as the robot moves are the way back of whom its kind of fault forbids
-// them; one value again and again is no proof of life.
+// Where none looks, echoes that go on as the robot moves are the way back of one that its kind of fault
+// forbids them; one value again and again is no proof of life.
 void test_its_own_echoes_bring_back_who_could_not_have_had_them(void) {
     for (int kind = ARGUS_KIND_OFF; kind <= ARGUS_KIND_INTERMITTENT; kind++) {
         for (int same = 0; same < 2; same++) {
@@ -450,7 +450,7 @@ void test_its_own_echoes_bring_back_who_could_not_have_had_them(void) {
     }
 }
 
-// In the open silence together is the way back of who made echoes up, of nobody else.
+// In the open silence together is the way back of one that made echoes up, of no other.
 void test_silence_together_brings_back_who_made_echoes_up(void) {
     for (int kind = ARGUS_KIND_OFF; kind <= ARGUS_KIND_INTERMITTENT; kind++) {
         setUp();

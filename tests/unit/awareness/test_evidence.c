@@ -31,7 +31,7 @@ static void start(unsigned seed) {
     scene_office(&s);
 }
 
-// The fault begins on the way and is named; nobody else may be convicted beside it.
+// The fault begins on the way and is named; no other may be convicted beside it.
 static void names(argus_fault_kind_t kind, int value) {
     static const int sonars[] = {2, 4, 11};
     for (unsigned seed = 1; seed <= SEEDS; seed++) {
@@ -113,7 +113,7 @@ static void much_crosstalk(void) {
     s.crosstalk_permille = 30;
 }
 
-// Somebody walks across the way again and again, nearer than every wall.
+// A person walks across the way again and again, nearer than every wall.
 static void walk_across(void) {
     const double side = scene_random(&s, 2) == 0 ? 1 : -1;
     const double ahead = 700 + scene_random(&s, 900);
@@ -146,7 +146,7 @@ void test_healthy_while_somebody_walks_about(void) {
     stays_quiet("person", as_it_is, walk_across);
 }
 
-// 5000 everywhere says nothing against anyone: not a name, not even with somebody who comes and goes.
+// 5000 everywhere says nothing against any: not a name, not even with a person who comes and goes.
 void test_an_open_hall_convicts_nobody(void) {
     for (int person = 0; person < 2; person++) {
         scene_init(&s, 5, START_MS);
@@ -161,8 +161,8 @@ void test_an_open_hall_convicts_nobody(void) {
     }
 }
 
-// Who hears nothing at all where all others hear nothing either is not suspected of it; from a hall into a
-// room the same sonar is.
+// A sonar that hears nothing at all where all others hear nothing either is not suspected of it; from a hall
+// into a room the same sonar is.
 void test_off_shows_only_where_others_hear(void) {
     scene_init(&s, 7, START_MS);
     s.noise_mm = 5;
@@ -191,7 +191,7 @@ void test_one_look_at_rest_convicts_nobody(void) {
     }
 }
 
-// Of those that see one bearing the odd one is named, and nobody beside it.
+// Of those that see one bearing the odd one is named, and none beside it.
 void test_the_odd_one_of_three_is_named(void) {
     for (int sonar = 2; sonar <= 5; sonar++) {
         start((unsigned)sonar);
@@ -205,17 +205,17 @@ void test_the_odd_one_of_three_is_named(void) {
     }
 }
 
-// Two that disagree, and nobody else: neither is named, however often and wherever they do.
+// Two that disagree, and no other: neither is named, however often and wherever they do.
 void test_two_without_a_third_witness_name_nobody(void) {
     static const int pair[][2] = {{3, 4}, {7, 8}, {0, 15}, {1, 2}};
     for (int i = 0; i < 4; i++) {
-        for (int liar = 0; liar < 2; liar++) {
+        for (int wrong = 0; wrong < 2; wrong++) {
             start((unsigned)(10 + i));
             s.crosstalk_permille = 0;
             s.mute = ~(1u << pair[i][0] | 1u << pair[i][1]);
-            s.fault[pair[i][liar]] = (scene_fault_t){ARGUS_KIND_WRONG, 50};
+            s.fault[pair[i][wrong]] = (scene_fault_t){ARGUS_KIND_WRONG, 50};
             scene_tour(&s, LEGS);
-            TEST_ASSERT_EQUAL_HEX16_MESSAGE(0, s.named, told("named", pair[i][liar], (unsigned)(10 + i)));
+            TEST_ASSERT_EQUAL_HEX16_MESSAGE(0, s.named, told("named", pair[i][wrong], (unsigned)(10 + i)));
             TEST_ASSERT_TRUE(scene_all_quiet(&s));
         }
     }
@@ -446,7 +446,7 @@ void test_a_wall_along_the_way_is_not_stuck(void) {
 }
 
 // Readings in steps of 10 mm beside walls along the way: every other one repeats the last. Healthy ones are
-// not stuck; who never changes among them is.
+// not stuck; one that never changes among them is.
 void test_coarse_steps_beside_a_wall_are_not_stuck(void) {
     static const int beside[] = {0, 7, 8, 15};
     for (int stuck = 0; stuck < 2; stuck++) {
@@ -527,7 +527,7 @@ void test_caution_scales_the_evidence_of_every_test(void) {
     }
 }
 
-// What speaks for a sonar is scaled alike: more caution does not acquit sooner.
+// What speaks for a sonar is scaled alike: more caution does not clear sooner.
 void test_caution_scales_what_speaks_for_a_sonar_too(void) {
     for (int out = 0; out < 2; out++) {
         scene_init(&s, 1, START_MS);

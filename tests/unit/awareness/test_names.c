@@ -78,7 +78,7 @@ void test_suspicion_name_and_conviction_come_in_this_order(void) {
     }
 }
 
-// Who is wrong takes a third: one other that contradicts it, however often, names nobody.
+// A wrong one takes a third: one other that contradicts it, however often, names neither.
 void test_one_other_names_nobody(void) {
     c->score[ARGUS_TEST_PEERS] = ARGUS_CEILING;
     c->episodes = UINT8_MAX;
@@ -168,7 +168,7 @@ void test_what_is_late_does_not_look_offset(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, named());
 }
 
-// Whoever was suspected is held until little is left of it.
+// A suspect is held until little is left of it.
 void test_a_suspicion_is_held_until_little_is_left(void) {
     for (int score = ARGUS_CEILING; score >= 0; score -= 10) {
         c->score[ARGUS_TEST_PEERS] = (int16_t)score;
@@ -177,7 +177,7 @@ void test_a_suspicion_is_held_until_little_is_left(void) {
     TEST_ASSERT_FALSE(argus_evidence_holds(&e, SONAR));
 }
 
-// What is kept of one mission names nobody in the next by itself, and suspects only one that was out.
+// What is kept of one mission names none in the next by itself, and suspects only one that was out.
 void test_what_is_kept_names_nobody_by_itself(void) {
     for (int kept = 0; kept < ARGUS_KEPT; kept++) {
         for (int out = 0; out < 2; out++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: what is odd in the readings of one sonar accuses it by how rarely all the others in use
-// read as oddly, and by nothing that it, or who is out, read itself.
+// Rule under attack: what is odd in the readings of one sonar counts against it by how rarely all the others
+// in use read as oddly, and by nothing that it, or one that is out, read itself.
 #include "awareness/odds.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: wheels that turn while nothing changes along the way are told, and the pose goes back to
-// where that began; one stretch is chance, and one range that changes as it should acquits.
+// where that began; one stretch is chance, and one range that changes as it should clears.
 #include "awareness/slip.h"
 
 #include <string.h>
@@ -71,7 +71,7 @@ void test_one_stretch_is_chance(void) {
     TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS - 4, 0, 0));
 }
 
-void test_a_range_that_changes_as_it_should_acquits(void) {
+void test_a_range_that_changes_as_it_should_clears(void) {
     walls();
     TEST_ASSERT_EQUAL(-1, drive(4 * STRETCH_SIPS, 0, SIP_MM));
     TEST_ASSERT_EQUAL(0, slip.slips);

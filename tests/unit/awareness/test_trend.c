@@ -157,7 +157,7 @@ void test_shrinking_range_is_foretold(void) {
     TEST_ASSERT_TRUE_MESSAGE(news.metres > truth / 3 && news.metres < truth * 3, text);
 }
 
-// Who is out is no witness.
+// A sonar that is out is no witness.
 void test_one_that_is_out_biases_no_other(void) {
     put_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_WRONG, 0);
     TEST_ASSERT_EQUAL(-1, drive_bias(4, 150, 0, 300).sonar);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Attacks: whatever a client asks of the wheels, the body meets nothing that a trusted sonar sees (S2, S5,
-// S7), goes nowhere that nobody sees (S1), and does what was asked where nothing is in the way.
+// S7), goes nowhere that no sonar sees (S1), and does what was asked where nothing is in the way.
 #include <math.h>
 #include <string.h>
 

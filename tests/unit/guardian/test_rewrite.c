@@ -81,7 +81,7 @@ static void turn_away_and_back(void) {
 
 void test_covered_by_what_a_neighbour_heard_there(void) {
     take_out(3);
-    TEST_ASSERT_EQUAL_size_t(sizeof sip - 3, rewrite(ARGUS_READINGS_COVER, 15)); // nobody looks there
+    TEST_ASSERT_EQUAL_size_t(sizeof sip - 3, rewrite(ARGUS_READINGS_COVER, 15)); // none looks there
     turn_away_and_back();
     const int32_t cover_mm = argus_rewrite_cover_mm(&robot.argus, 3);
     TEST_ASSERT_INT32_WITHIN(60, robot_world_segments(&robot, 3), cover_mm);

@@ -50,7 +50,7 @@ void test_nothing_is_seen_where_nobody_looked(void) {
     TEST_ASSERT_EQUAL_INT32(0, seen_mm());
     ping(FRONT);
     TEST_ASSERT_TRUE(seen_mm() > 1000);
-    k.pose.heading_cdeg = 18000; // nobody looked there
+    k.pose.heading_cdeg = 18000; // none looked there
     TEST_ASSERT_EQUAL_INT32(0, seen_mm());
 }
 

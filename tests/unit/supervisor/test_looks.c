@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): a look must pay. None comes by the clock, for a doubt without a name, or
-// for a name that others see for; one comes at once where nobody does, when the time lost has reached what a
+// for a name that others see for; one comes at once where none does, when the time lost has reached what a
 // look costs and not before, and when an operator asks.
 #include "supervisor/looks.h"
 
@@ -151,7 +151,7 @@ void test_a_name_that_others_see_for_stops_nothing(void) {
     }
 }
 
-// Both in the middle are doubted, so the way itself is seen by nobody: no faster than a step.
+// Both in the middle are doubted, so no sonar sees the way itself: no faster than a step.
 void test_what_nobody_sees_is_driven_at_the_speed_of_a_step(void) {
     const unsigned two = 3u << 3;
     start_in_a_hall();
@@ -203,14 +203,14 @@ void test_a_name_that_nobody_sees_for_is_looked_at_at_once(void) {
     }
 }
 
-// ... but not again within the distance of its acquittal.
-void test_whoever_was_acquitted_here_is_not_looked_at_again(void) {
+// ... but not again within the distance in which it was cleared.
+void test_what_was_cleared_here_is_not_looked_at_again(void) {
     start_in_a_hall();
     drive_off();
     uint32_t before = 0;
     for (int i = 0; i < 60 && !are_named(7u << 2); i++) {
         for (int k = 0; k < ARGUS_SONARS; k++) {
-            robot.argus.looks.hold[k].acquittals = 1;
+            robot.argus.looks.hold[k].cleared = 1;
             robot.argus.looks.hold[k].odometer_mm = before = robot.argus.knowledge.odometer_mm;
         }
         hold(7u << 2, 60);
@@ -302,7 +302,7 @@ void test_the_loss_begins_anew(void) {
     finish();
 }
 
-// A suspect that nobody looks at does not keep a robot that must sweep from its step.
+// A suspect that is not looked at does not keep a robot that must sweep from its step.
 void test_a_name_behind_does_not_hold_up_a_sweep(void) {
     start_in(-2500, -2300, 3300, 2500);
     robot.fault[2] = robot.fault[3] = robot.fault[4] = ROBOT_SILENT;

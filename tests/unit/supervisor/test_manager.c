@@ -301,7 +301,7 @@ void test_passive_reports_and_never_moves(void) {
     robot_run(&robot, 5000);
     TEST_ASSERT_EQUAL(ARGUS_DISABLED, robot.argus.knowledge.sonar[2].health);
     TEST_ASSERT_EQUAL(ARGUS_SUSPECT,
-                      robot.argus.knowledge.sonar[5].health); // who may not turn cannot prove it
+                      robot.argus.knowledge.sonar[5].health); // a robot that may not turn cannot prove it
     robot.bumpers_front = 8;
     robot_run(&robot, 3000);
     robot.bumpers_front = 0;

@@ -92,7 +92,7 @@ static bool ask_for_a_look(int sonar) {
     return taken;
 }
 
-static void accuse(int sonar) {
+static void contradict(int sonar) {
     robot.argus.evidence.of[sonar].score[ARGUS_TEST_PEERS] = argus_bounds[ARGUS_TEST_PEERS].naming;
 }
 
@@ -262,7 +262,7 @@ void test_a_look_begins_and_ends_on_one_heading_and_place(void) {
     finish();
 }
 
-// No metre is preceded by a look that nobody needs.
+// No metre is preceded by a look that is not needed.
 void test_the_first_metre_is_driven_without_a_look(void) {
     start_in_a_room();
     TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
@@ -320,7 +320,7 @@ void test_a_repaired_sonar_comes_back_over_probation(void) {
     }
 }
 
-// Time alone clears nobody.
+// Time alone clears no sonar.
 void test_nobody_comes_back_by_standing_still(void) {
     start_in_a_room();
     break_and_repair(3);
@@ -488,7 +488,7 @@ static int lose_on_the_way(int first, int last) {
     return from;
 }
 
-// S2: ... and stops it in the same call where nobody is left to see.
+// S2: ... and stops it in the same call where no sonar is left to see.
 void test_a_conviction_that_leaves_nobody_is_answered_by_stop_in_the_same_call(void) {
     const int from = lose_on_the_way(0, 15);
     robot_run(&robot, 30000);
@@ -497,7 +497,7 @@ void test_a_conviction_that_leaves_nobody_is_answered_by_stop_in_the_same_call(v
     finish();
 }
 
-// ... where nobody is left in front, until the rear leads.
+// ... where none is left in front, until the rear leads.
 void test_with_the_front_convicted_the_robot_moves_with_its_rear_ahead_only(void) {
     const int from = lose_on_the_way(1, 6);
     robot_run(&robot, 8000);
@@ -514,7 +514,7 @@ void test_with_the_front_convicted_the_robot_moves_with_its_rear_ahead_only(void
     finish();
 }
 
-// S6: an operator's step waits for a look where nobody sees in the place of one that has a name; while the
+// S6: an operator's step waits for a look where none sees in the place of one that has a name; while the
 // course is paused there is none before.
 void test_a_jog_does_not_outrun_a_name(void) {
     start_in_a_room();
@@ -533,7 +533,7 @@ void test_a_jog_does_not_outrun_a_name(void) {
     TEST_ASSERT_TRUE_MESSAGE(robot_until_event(&robot, ARGUS_EV_SONAR_VERIFYING, 20000), told("jog", 3));
     TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0));
     robot_run(&robot, 20000);
-    finish(); // the watch: no MOVE ahead beside a name that nobody sees for
+    finish(); // the watch: no MOVE ahead beside a name that no other sees for
 }
 
 // S7: what is not relied on does not read clear, however far it reads.
@@ -592,7 +592,7 @@ void test_hemmed_in_it_goes_on_with_a_suspect_behind(void) {
     for (int sonar = 9; sonar <= 14; sonar++) {
         hem_in_by(sonar);
         const int from = robot.commands;
-        accuse(sonar);
+        contradict(sonar);
         robot_run(&robot, 30000);
         TEST_ASSERT_TRUE_MESSAGE(robot_count_events(&robot, ARGUS_EV_GOAL_REACHED, 0) > 0,
                                  told("waits", sonar));
@@ -756,7 +756,8 @@ static void judge_for_a_while(void) {
     }
 }
 
-// Who was called off and is heard again has gaps: what is found for a while takes the place of a name.
+// A sonar that was called off and is heard again has gaps: what is found for a while takes the place of a
+// name.
 void test_off_that_is_heard_again_is_renamed(void) {
     start_in_a_room();
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
@@ -796,8 +797,8 @@ void test_who_is_passed_over_by_new_orders_is_not_silent(void) {
     }
 }
 
-// Who was given up as stuck and shows another value is what the evidence names; who is out for anything else
-// keeps that until another conviction.
+// A sonar that was given up as stuck and shows another value is what the evidence names; one that is out for
+// anything else keeps that until another conviction.
 void test_stuck_that_shows_another_value_is_renamed(void) {
     static const argus_fault_kind_t kinds[] = {ARGUS_KIND_STUCK, ARGUS_KIND_OFF, ARGUS_KIND_GARBAGE};
     for (int i = 0; i < 3; i++) {

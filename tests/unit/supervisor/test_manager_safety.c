@@ -370,7 +370,7 @@ void test_s2_bumper_is_answered_by_e_stop_in_the_same_call(void) {
     in_both_profiles(check_s2_bumper_is_answered_by_e_stop_in_the_same_call);
 }
 
-static void check_s3_move_is_bounded_by_the_shortest_reading(void) {
+static void check_s5_move_is_bounded_by_the_shortest_reading(void) {
     start_driving();
     robot.fault[4] = ROBOT_VALUE;
     robot.fault_value[4] = 700;
@@ -380,12 +380,12 @@ static void check_s3_move_is_bounded_by_the_shortest_reading(void) {
     finish();
 }
 
-void test_s3_move_is_bounded_by_the_shortest_reading(void) {
-    in_both_profiles(check_s3_move_is_bounded_by_the_shortest_reading);
+void test_s5_move_is_bounded_by_the_shortest_reading(void) {
+    in_both_profiles(check_s5_move_is_bounded_by_the_shortest_reading);
 }
 
 // "fresh": a reading that is not renewed must not renew the way ahead.
-static void check_s3_a_silent_sonar_does_not_renew_its_move(void) {
+static void check_s2_a_silent_sonar_does_not_renew_its_move(void) {
     start_driving();
     for (int i = 3; i <= 5; i++) {
         robot.fault[i] = ROBOT_VALUE;
@@ -400,11 +400,11 @@ static void check_s3_a_silent_sonar_does_not_renew_its_move(void) {
     finish();
 }
 
-void test_s3_a_silent_sonar_does_not_renew_its_move(void) {
-    in_both_profiles(check_s3_a_silent_sonar_does_not_renew_its_move);
+void test_s2_a_silent_sonar_does_not_renew_its_move(void) {
+    in_both_profiles(check_s2_a_silent_sonar_does_not_renew_its_move);
 }
 
-static void check_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move(void) {
+static void check_s6_stall_in_motion_leads_to_a_full_check_before_the_next_move(void) {
     start_driving();
     const int from = robot.commands;
     robot.mute = true;
@@ -424,12 +424,12 @@ static void check_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move(
     finish();
 }
 
-void test_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move(void) {
-    in_both_profiles(check_s3_stall_in_motion_leads_to_a_full_check_before_the_next_move);
+void test_s6_stall_in_motion_leads_to_a_full_check_before_the_next_move(void) {
+    in_both_profiles(check_s6_stall_in_motion_leads_to_a_full_check_before_the_next_move);
 }
 
 // A sonar that dies in the middle of it does not cut the full check short.
-static void check_s3_the_check_after_a_stall_stays_a_full_one(void) {
+static void check_s6_the_check_after_a_stall_stays_a_full_one(void) {
     start_driving();
     robot.mute = true;
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_STALLED, 2000));
@@ -444,11 +444,11 @@ static void check_s3_the_check_after_a_stall_stays_a_full_one(void) {
     finish();
 }
 
-void test_s3_the_check_after_a_stall_stays_a_full_one(void) {
-    with_profile(ARGUS_PROFILE_PAPER, check_s3_the_check_after_a_stall_stays_a_full_one);
+void test_s6_the_check_after_a_stall_stays_a_full_one(void) {
+    with_profile(ARGUS_PROFILE_PAPER, check_s6_the_check_after_a_stall_stays_a_full_one);
 }
 
-static void check_s3_link_cut_and_restored_leads_to_a_full_check(void) {
+static void check_s6_link_cut_and_restored_leads_to_a_full_check(void) {
     start_driving();
     argus_link_lost(&robot.argus, robot.start_ms + robot.t_ms);
     robot_drain(&robot);
@@ -467,8 +467,8 @@ static void check_s3_link_cut_and_restored_leads_to_a_full_check(void) {
     finish();
 }
 
-void test_s3_link_cut_and_restored_leads_to_a_full_check(void) {
-    in_both_profiles(check_s3_link_cut_and_restored_leads_to_a_full_check);
+void test_s6_link_cut_and_restored_leads_to_a_full_check(void) {
+    in_both_profiles(check_s6_link_cut_and_restored_leads_to_a_full_check);
 }
 
 static void check_s3_velocity_is_never_used_to_drive(void) {

@@ -512,8 +512,8 @@ static bool trusts(const robot_t *robot, int sonar) {
     return s->health == ARGUS_HEALTHY || (s->health == ARGUS_SUSPECT && s->kind == ARGUS_KIND_NONE);
 }
 
-// Suspects with a name, ahead, in a place where nobody has looked at them, though there is room to, and
-// beside whom nobody is trusted; but those that were acquitted a moment ago.
+// Suspects with a name, ahead, in a place where none has looked at them, though there is room to, and
+// with no trusted sonar beside them; but not those that were cleared a moment ago.
 static unsigned unlooked(const robot_t *robot) {
     const argus_t *argus = &robot->argus;
     const unsigned open = argus_with_health(&argus->knowledge, ARGUS_SUSPECT) & ~argus->awareness.verified;
@@ -521,7 +521,7 @@ static unsigned unlooked(const robot_t *robot) {
     unsigned mask = 0;
     for (int i = first_ahead(robot); (all_ahead(robot) >> i & 1u) != 0 && argus_guard_may_turn(&guard); i++) {
         const bool alone = !trusts(robot, i - 1) && !trusts(robot, i + 1);
-        mask |= (open >> i & 1u) != 0 && !trusts(robot, i) && alone && argus->looks.hold[i].acquittals == 0
+        mask |= (open >> i & 1u) != 0 && !trusts(robot, i) && alone && argus->looks.hold[i].cleared == 0
                     ? 1u << i
                     : 0u;
     }
@@ -583,7 +583,7 @@ static void watch_creep(robot_t *robot, int32_t mm) {
 static void watch_ahead(robot_t *robot, int32_t mm) {
     const unsigned blind = blind_ahead(robot);
     if (!robot->checked) {
-        complain(robot, "S3/S6: MOVE ahead before a health check", mm);
+        complain(robot, "S6: MOVE ahead before a health check", mm);
     }
     if (robot->argus.mode == ARGUS_MODE_CREEPING) {
         watch_creep(robot, mm);
@@ -593,7 +593,7 @@ static void watch_ahead(robot_t *robot, int32_t mm) {
         watch_blind_move(robot, mm, blind);
     }
     if (argus_rules(&robot->argus)->evidence && unlooked(robot) != 0) {
-        complain(robot, "S6: MOVE ahead with a suspect beside whom nobody is trusted", (int)unlooked(robot));
+        complain(robot, "S6: MOVE ahead with a suspect and no trusted sonar beside it", (int)unlooked(robot));
     }
     watch_speed(robot);
 }

@@ -31,7 +31,7 @@ typedef struct {
     scene_fault_t coming; // begins 200 mm into the next drive
     int coming_to;
     int bent_deg[ARGUS_SONARS];
-    unsigned mute; // sonars whose slots yield nothing
+    unsigned mute; // sonars that yield nothing in their slots
     uint32_t seed;
     // inside
     int next;
@@ -55,7 +55,7 @@ void scene_drive(scene_t *self, double mm); // at 200 mm/s, but not into a wall
 void scene_inject(scene_t *self, int sonar, argus_fault_kind_t kind, int value); // in the next drive
 void scene_tour(scene_t *self, int legs);
 void scene_say(scene_t *self, unsigned sonars, const int *reading_mm); // one SIP by hand
-bool scene_all_quiet(const scene_t *self);                             // nobody was ever convicted
+bool scene_all_quiet(const scene_t *self);                             // none was ever convicted
 void scene_blank(argus_knowledge_t *k, argus_evidence_t *e);           // all HEALTHY, nothing seen
 uint32_t scene_random(scene_t *self, uint32_t below);
 const char *scene_text(const scene_t *self); // seed and convictions, for a message

@@ -31,9 +31,9 @@ __all__ = [
 # Of text that comes through a pipe so much is waited for before it is taken for raw bytes.
 _TEXT_HEAD_BYTES: Final = 1 << 12
 
-# In the order in which they are tried on a file: first what begins with a mark of its own, then text, at last
-# hexadecimal text, as that may hold anything; "bin" takes whatever no other form claims.
-# Each module has a FORMAT, or FORMATS where several are alike.
+# In the order in which they are tried on a file: first what begins with a mark of its own, then text.
+# Hexadecimal text may hold anything, so it comes after. "bin" takes whatever no other form claims. Each
+# module has a FORMAT, or FORMATS where several are alike.
 MODULES: Final = (
     "record", "pcapng", "pcap", "canlog", "recoded", "jsonl", "candump", "canlines", "cancsv",
     "others", "hexdump", "hexwords", "hextext", "bin",

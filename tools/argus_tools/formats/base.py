@@ -76,7 +76,7 @@ class ReadOptions:
 class Reader(Protocol):
     """Iterates the chunks of one log, in order, without ever holding the whole of it.
 
-    What it had to skip it appends to `damage` before it yields the next chunk; it raises LogError only when
+    What it had to skip it appends to `damage` before it yields the next chunk. It raises LogError only when
     nothing can be read at all.
     """
 

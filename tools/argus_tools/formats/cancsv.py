@@ -35,7 +35,7 @@ _LONG: Final = re.compile(r"ext(ended)?|is[ _]extended([ _]id)?|ide")
 _KIND: Final = re.compile(r"type|frame ?type")
 _FLAG: Final = re.compile(r"remote|error|rtr")
 _UNITS: Final = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}
-# SavvyCAN counts microseconds; so does whoever writes times without a point under this heading.
+# SavvyCAN counts microseconds; so does each program that writes times without a point under this heading.
 _MICROSECONDS: Final = 1e-6
 _TRUE: Final = ("1", "true", "yes", "x", "ext", "extended")
 _NO_DATA_KINDS: Final = ("rtr", "remote", "error", "errorframe", "rr", "er", "ec", "st")

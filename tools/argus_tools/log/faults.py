@@ -48,8 +48,8 @@ class Said(NamedTuple):
 class Listener:
     """Feeds a log into passive managers: a new one for each session that the log holds.
 
-    A manager opens its session by itself, with a robot that is made up before the first SIP: it gives the
-    answers that the log has not, or gave to another client, and SIPs without readings.
+    A manager opens its session by itself, with a robot that is made up before the first SIP. That robot gives
+    SIPs without readings, and the answers that the log lacks or has for another client.
     """
 
     def __init__(self, given: Mapping[str, int], subclass: str | None = None) -> None:

@@ -79,8 +79,8 @@ class _Layout(NamedTuple):
 class Decoder:
     """Reads the rows of one log, in their order.
 
-    `track` must see every row, printed or not: the position is unwrapped from SIP to SIP, and its unit is that
-    of the subclass which the robot named.
+    `track` must see every row, printed or not: the position is unwrapped from SIP to SIP. Its unit is that of
+    the subclass which the robot named.
     """
 
     def __init__(self, subclass: str | None = None) -> None:

@@ -104,8 +104,8 @@ class _Tracer(Unframer):
 class Scanner:
     """Finds the packets in one direction, exactly those that the robot's and Argus' own parsers find.
 
-    Whole packets that follow each other are taken at once; from the first byte that is something else until the
-    next such packet the bytes go through the Unframer.
+    Whole packets that follow each other are taken at once. From the first byte that is something else, bytes go
+    through the Unframer until the next such packet.
     """
 
     def __init__(self, direction: Direction) -> None:

@@ -43,7 +43,7 @@ _REPLAYED_NAME: Final = b"replay"
 
 
 class Identity:
-    """Who the robot of a log is, as far as the log tells; the rest is a P3-DX without accessories."""
+    """What the robot of a log is, as far as the log tells; the rest is a P3-DX without accessories."""
 
     def __init__(self, rows: Iterator[Row], subclass: str | None) -> None:
         name = (subclass or "p3dx-sh").encode("latin-1", "replace")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The web server on loopback: the page's files, its websocket, and who is turned away."""
+"""The web server on loopback: the page's files, its websocket, and the requests that are turned away."""
 
 from __future__ import annotations
 
