@@ -80,7 +80,9 @@ def main() -> None:
     """Run the benchmark."""
     parser = argparse.ArgumentParser(description=__doc__, epilog="exit code: 0 measured")
     parser.add_argument("--seeds", type=int, default=20, metavar="N", help="seeds of the demo's own pair")
-    parser.add_argument("--paper-seeds", type=int, default=6, metavar="N", help="seeds of each pair of `paper`")
+    parser.add_argument(
+        "--paper-seeds", type=int, default=6, metavar="N", help="seeds of each pair of `paper`"
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures here, too")
     arguments = parser.parse_args()
     found = measure(arguments.seeds, arguments.paper_seeds)
