@@ -148,7 +148,8 @@ static void greet(guards_t *self, int index, uint32_t now_ms) {
     }
 }
 
-// A page in a browser of this machine can reach a TCP port: HTTP and TLS begin with other bytes than a packet.
+// A page in a browser of this machine can reach a TCP port: HTTP and TLS begin with other bytes than a
+// packet.
 static bool is_foreign(guards_t *self, uint8_t first) {
     const bool foreign = !self->spoken && first != ARCOS_FRAME_HEADER0;
     self->spoken = !foreign;
