@@ -13,6 +13,7 @@
 #define ARRAY ARCOS_TIMING_TRANSDUCERS_PER_ARRAY
 #define LISTS_ALL_COUNT (ARRAY - 1) // in one SIP: the firing schedule lists at most 3 at its default pace
 #define LISTS_ALL_WAIT_MS 460
+#define FAR_MM 30000 // of a step: its components in another frame fit 32 bits
 #define TURN_UNITS 4096
 #define CDEG_PER_UNIT 20 // so much of a turn is like a unit of way
 #define GAP_MS 500       // without a SIP for longer, it was the link that was silent, not the sonars
@@ -131,16 +132,35 @@ static argus_span_t span_to(const argus_knowledge_t *const self, const argus_sip
     return span;
 }
 
-// The robot moved as its wheels say; where it is now is the origin of its odometry.
+// The robot moved as its wheels say, also where steps were wrong before but small; where it is now is the
+// origin of its odometry.
 static void leave_out(argus_knowledge_t *const self, const argus_sip_t *const sip,
                       const argus_span_t *const span) {
     const argus_way_turn_t moved = argus_odometry_by_wheels(span);
     const int32_t heading = self->pose.heading_cdeg + moved.turn_cdeg / 2;
-    self->pose.x_mm += moved.way_mm * argus_cos(heading) / ARGUS_TRIG_ONE;
-    self->pose.y_mm += moved.way_mm * argus_sin(heading) / ARGUS_TRIG_ONE;
+    const int32_t way_mm = moved.way_mm - self->excess.out_mm;
+    self->pose.x_mm += way_mm * argus_cos(heading) / ARGUS_TRIG_ONE;
+    self->pose.y_mm += way_mm * argus_sin(heading) / ARGUS_TRIG_ONE;
     self->odometer_mm += (uint32_t)argus_abs(moved.way_mm);
-    self->pose.heading_cdeg = argus_angle_wrap(self->pose.heading_cdeg + moved.turn_cdeg);
+    self->pose.heading_cdeg =
+        argus_angle_wrap(self->pose.heading_cdeg + moved.turn_cdeg - self->excess.out_cdeg);
     take_origin(self, sip);
+    self->excess.out_mm = 0;
+    self->excess.out_cdeg = 0;
+}
+
+// A step of the odometry in the frame of the leading end, which looks half way between both headings.
+static argus_moved_t moved_of(const argus_knowledge_t *const self, const argus_sip_t *const sip,
+                              const argus_point_t step_mm, const int32_t heading_cdeg) {
+    const int32_t turn_cdeg = argus_angle_wrap(heading_cdeg - self->pose.heading_cdeg);
+    const int32_t x = argus_max(-FAR_MM, argus_min(FAR_MM, step_mm.x_mm));
+    const int32_t y = argus_max(-FAR_MM, argus_min(FAR_MM, step_mm.y_mm));
+    const int32_t facing_cdeg = raw_heading_cdeg(sip) + argus_robot_facing_cdeg(self->robot) - turn_cdeg / 2;
+    const int32_t c = argus_cos(argus_angle_wrap(facing_cdeg));
+    const int32_t s = argus_sin(argus_angle_wrap(facing_cdeg));
+    const argus_moved_t moved = {(x * c + y * s) / ARGUS_TRIG_ONE, (y * c - x * s) / ARGUS_TRIG_ONE,
+                                 turn_cdeg};
+    return moved;
 }
 
 // True: the robot can have moved so.
@@ -150,11 +170,11 @@ static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, co
     const int32_t dx_um = raw_delta(sip->x_raw, self->x_raw) * distance_um;
     const int32_t dy_um = raw_delta(sip->y_raw, self->y_raw) * distance_um;
     const int32_t heading = argus_angle_wrap(raw_heading_cdeg(sip) + argus_heading_offset_cdeg(self));
-    const argus_way_turn_t moved = {argus_hypot(dx_um / 1000, dy_um / 1000),
-                                    argus_angle_abs_diff(heading, self->pose.heading_cdeg)};
+    const argus_moved_t moved = moved_of(self, sip, (argus_point_t){dx_um / 1000, dy_um / 1000}, heading);
     if (is_odd(sip) || !argus_odometry_may_be(&self->excess, span, &moved)) {
-        self->leap_mm = moved.way_mm;
-        self->leap_cdeg = moved.turn_cdeg;
+        const argus_way_turn_t said = argus_odometry_by_wheels(span);
+        self->leap_mm = argus_hypot(moved.ahead_mm - said.way_mm, moved.aside_mm);
+        self->leap_cdeg = argus_abs(moved.turn_cdeg - said.turn_cdeg);
         return false;
     }
     advance_pose(self, dx_um, dy_um);

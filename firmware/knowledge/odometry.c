@@ -5,54 +5,37 @@
 #include "argus/argus.h"
 #include "knowledge/angle.h"
 
-#define SIP_MS 100          // SIPs that come in a bunch were made so long apart
-#define LATE_MS 150         // ... and one that comes in time may follow one that came late
-#define GAP_MS 500u         // without a SIP for longer it is not known what the wheels did
-#define GAP_MAX_MS 4000u    // ... but the robot's watchdog has stopped them
-#define FASTEST_MM_S 2000   // no robot of the tables drives as fast
-#define DRIVES_MM_S 750     // the fastest that it is ever ordered
-#define TURNS_CDEG_S 10000  // likewise
-#define REST_MM_S 5         // encoders tremble
-#define TURNING_CDEG_S 500  // ... which straight wheels do not look like
-#define ACCEL_MM_S2 2000    // the hardest that wheels speed up or brake
-#define ACCEL_CDEG_S2 30000 // likewise
-#define ACCEL_MM 300        // in a gap they reach their speed
-#define ACCEL_CDEG 3000     // likewise
-#define ROOM_MM 100         // for what is not modelled
-#define ROOM_CDEG 400       // likewise
-#define EXCESS_MM 250       // what may build up
-#define EXCESS_CDEG 3000    // likewise
-#define LOST_MS 300         // ... and of SIPs that were lost in a bunch
-#define SLACK_PERCENT 110   // speeds are rounded and averaged
-#define SLACK_MM 2          // in each SIP
-#define SLACK_CDEG 30       // likewise
-#define SURE_PERCENT 70     // of what the wheels say is made for sure
-#define SHORT_MM 500        // what may be missing of it
-#define SHORT_CDEG 4500     // likewise
+#define SIP_MS 100            // SIPs that come in a bunch were made so long apart
+#define LATE_MS 150           // one that comes in time may follow one that came late
+#define FADES_MS 5            // of the time in hand with each SIP
+#define GAP_MS 500u           // without a SIP for longer it is not known what the wheels did
+#define GAP_MAX_MS 4000u      // ... but the robot's watchdog has stopped them
+#define FASTEST_MM_S 2000     // no robot of the tables drives as fast
+#define DRIVES_MM_S 750       // the fastest that it is ever ordered
+#define TURNS_CDEG_S 10000    // likewise
+#define REST_MM_S 5           // encoders tremble
+#define TURNING_CDEG_S 500    // ... which straight wheels do not look like
+#define ACCEL_MM_S2 2000      // the hardest that wheels speed up or brake
+#define ACCEL_CDEG_S2 30000   // likewise
+#define ACCEL_MM 300          // in a gap they reach their speed
+#define ACCEL_CDEG 3000       // likewise
+#define SLACK_PERCENT 5       // speeds are rounded and averaged
+#define TURN_SLACK_PERCENT 50 // ... and wheels that skid turn the body less than their track says
+#define SLACK_MM 2            // in each SIP
+#define SLACK_CDEG 30         // likewise
+#define ROOM_MM 50            // in one step, for what is not modelled,
+#define ROOM_CDEG 200         // likewise
+#define ROOM_MS 100           // ... and of the speed
+#define BUILD_MM 80          // what may build up
+#define BUILD_CDEG 3000       // likewise
 #define CDEG_PER_RADIAN 5730
 #define PER_S_MAX 500000 // of what is multiplied by milliseconds: it fits 32 bits for 4 s
-
-static int32_t fastest_mm_s(const argus_span_t *const span) {
-    const int32_t before = argus_max(argus_abs(span->before.left_mm_s), argus_abs(span->before.right_mm_s));
-    const int32_t after = argus_max(argus_abs(span->after.left_mm_s), argus_abs(span->after.right_mm_s));
-    const int32_t gap = span->elapsed_ms > GAP_MS ? DRIVES_MM_S : 0;
-    ARGUS_ASSERT(before >= 0 && after >= 0);
-    return argus_min(FASTEST_MM_S, argus_max(gap, argus_max(before, after)));
-}
 
 static int32_t turn_cdeg_s(const argus_wheels_t *const wheels, const int32_t track_mm) {
     ARGUS_ASSERT(track_mm > 0);
     const int32_t most = 2 * FASTEST_MM_S;
     const int32_t apart = wheels->right_mm_s - wheels->left_mm_s;
     return argus_max(-most, argus_min(most, apart)) * CDEG_PER_RADIAN / track_mm;
-}
-
-static int32_t fastest_cdeg_s(const argus_span_t *const span) {
-    const int32_t before = argus_abs(turn_cdeg_s(&span->before, span->track_mm));
-    const int32_t after = argus_abs(turn_cdeg_s(&span->after, span->track_mm));
-    // It begins no turn by itself, but it ends one.
-    const int32_t gap = span->elapsed_ms > GAP_MS && before > TURNING_CDEG_S ? TURNS_CDEG_S : 0;
-    return argus_max(gap, argus_max(before, after));
 }
 
 // Of a speed, within a time up to some seconds.
@@ -80,40 +63,93 @@ argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *const span) {
     return moved;
 }
 
-static bool may_be_alone(const argus_span_t *const span, const argus_way_turn_t *const moved) {
-    const int32_t ms = elapsed_ms(span) + LATE_MS;
-    const int32_t sped_mm = argus_min(ACCEL_MM, times_ms(times_ms(ACCEL_MM_S2, ms), ms) / 2);
-    const int32_t sped_cdeg = argus_min(ACCEL_CDEG, times_ms(times_ms(ACCEL_CDEG_S2, ms), ms) / 2);
-    return moved->way_mm <= times_ms(fastest_mm_s(span), ms) + sped_mm + ROOM_MM &&
-           moved->turn_cdeg <= times_ms(fastest_cdeg_s(span), ms) + sped_cdeg + ROOM_CDEG;
+// Within a step a speed lies between those of its ends, for a time between these; in a gap it may be any.
+typedef struct {
+    int32_t least;
+    int32_t most;
+    int32_t least_ms;
+    int32_t most_ms;
+} range_t;
+
+static range_t range_of(const argus_span_t *const span, const int32_t credit_ms, const int32_t before,
+                        const int32_t after, const int32_t gap) {
+    const int32_t ms = elapsed_ms(span);
+    ARGUS_ASSERT(gap >= 0 && credit_ms >= 0);
+    const int32_t any = span->elapsed_ms > GAP_MS ? gap : 0;
+    return (range_t){.least = argus_min(argus_min(before, after), any > 0 ? -any : INT32_MAX),
+                     .most = argus_max(argus_max(before, after), any > 0 ? any : INT32_MIN),
+                     .least_ms = argus_min(SIP_MS, ms),
+                     .most_ms = argus_max(ms, argus_min((int32_t)GAP_MAX_MS, SIP_MS + credit_ms))};
 }
 
-static int32_t build_up(const int32_t excess, const int32_t moved, const int32_t by_wheels,
-                        const int32_t slack) {
-    ARGUS_ASSERT(excess >= 0 && slack >= 0);
-    return argus_max(0, excess + moved - by_wheels * SLACK_PERCENT / 100 - slack);
+// What a change of speed may add that no SIP shows: half of the time faster, half slower.
+static int32_t sped(const range_t *const range, const int32_t accel, const int32_t most) {
+    const int32_t ms = argus_max(0, range->most_ms - SIP_MS);
+    return argus_min(most, times_ms(times_ms(accel, ms), ms) / 4);
 }
 
-// Of what the wheels say the odometry shows nothing: a value that is frozen.
-static bool falls_short(argus_excess_t *const self, const argus_span_t *const span,
-                        const argus_way_turn_t *const moved) {
-    const argus_way_turn_t said = argus_odometry_by_wheels(span);
-    self->short_mm =
-        build_up(self->short_mm, argus_abs(said.way_mm) * SURE_PERCENT / 100, moved->way_mm, SLACK_MM);
-    self->short_cdeg = build_up(self->short_cdeg, argus_abs(said.turn_cdeg) * SURE_PERCENT / 100,
-                                moved->turn_cdeg, SLACK_CDEG);
-    return self->short_mm > SHORT_MM || self->short_cdeg > SHORT_CDEG;
+// By how much a step is farther than the range allows, and by how much it falls short; neither is negative.
+typedef struct {
+    int32_t over;
+    int32_t under;
+} beyond_t;
+
+static int32_t slack_of(const int32_t value, const int32_t percent) {
+    return argus_abs(value) * percent / 100;
 }
 
-static bool builds_up(argus_excess_t *const self, const argus_span_t *const span,
-                      const argus_way_turn_t *const moved) {
-    const int32_t ms = argus_max(SIP_MS, elapsed_ms(span));
-    const int32_t mm_s = fastest_mm_s(span);
-    const int32_t cdeg_s = fastest_cdeg_s(span);
-    self->way_mm = build_up(self->way_mm, moved->way_mm, times_ms(mm_s, ms), SLACK_MM);
-    self->turn_cdeg = build_up(self->turn_cdeg, moved->turn_cdeg, times_ms(cdeg_s, ms), SLACK_CDEG);
-    return self->way_mm > EXCESS_MM + times_ms(mm_s, LOST_MS) ||
-           self->turn_cdeg > EXCESS_CDEG + times_ms(cdeg_s, LOST_MS);
+static beyond_t beyond(const range_t *const range, const int32_t moved, const int32_t percent,
+                       const int32_t slack) {
+    const int32_t most = times_ms(range->most, range->most > 0 ? range->most_ms : range->least_ms);
+    const int32_t least = times_ms(range->least, range->least > 0 ? range->least_ms : range->most_ms);
+    ARGUS_ASSERT(slack >= 0);
+    return (beyond_t){moved - most - slack_of(most, percent) - slack,
+                      least - moved - slack_of(least, percent) - slack};
+}
+
+static int32_t build_up(const int32_t sum, const int32_t more) {
+    ARGUS_ASSERT(sum >= 0);
+    return argus_max(0, sum + more);
+}
+
+// Steps one by one, and what builds up.
+static bool takes(int32_t *const over, int32_t *const under, const beyond_t step, const int32_t room,
+                  const int32_t most) {
+    *over = build_up(*over, step.over);
+    *under = build_up(*under, step.under);
+    return step.over <= room && step.under <= room && *over <= most && *under <= most;
+}
+
+static int32_t fastest(const range_t *const range) {
+    return argus_max(argus_abs(range->most), argus_abs(range->least));
+}
+
+static bool way_may_be(argus_excess_t *const self, const argus_span_t *const span,
+                       const argus_moved_t *const moved) {
+    const range_t range =
+        range_of(span, self->credit_ms, (span->before.left_mm_s + span->before.right_mm_s) / 2,
+                 (span->after.left_mm_s + span->after.right_mm_s) / 2, DRIVES_MM_S);
+    const int32_t slack = SLACK_MM + sped(&range, ACCEL_MM_S2, ACCEL_MM);
+    const int32_t near = times_ms(fastest(&range), ROOM_MS);
+    // A turn bends the way; what is aside of it is no way.
+    const int32_t aside = argus_abs(moved->aside_mm) - argus_abs(moved->ahead_mm) / 4 - slack;
+    return takes(&self->ahead_mm, &self->back_mm, beyond(&range, moved->ahead_mm, SLACK_PERCENT, slack),
+                 ROOM_MM + near, BUILD_MM + near) &&
+           takes(&self->aside_mm, &self->aside_mm, (beyond_t){aside, 0}, ROOM_MM + near, BUILD_MM + near);
+}
+
+static bool turn_may_be(argus_excess_t *const self, const argus_span_t *const span,
+                        const argus_moved_t *const moved) {
+    const int32_t before = turn_cdeg_s(&span->before, span->track_mm);
+    const int32_t after = turn_cdeg_s(&span->after, span->track_mm);
+    // It begins no turn by itself, but it ends one.
+    const int32_t gap = argus_abs(before) > TURNING_CDEG_S ? TURNS_CDEG_S : 0;
+    const range_t range = range_of(span, self->credit_ms, before, after, gap);
+    const int32_t slack = SLACK_CDEG + sped(&range, ACCEL_CDEG_S2, ACCEL_CDEG);
+    const int32_t near = times_ms(fastest(&range), ROOM_MS);
+    return takes(&self->left_cdeg, &self->right_cdeg,
+                 beyond(&range, moved->turn_cdeg, TURN_SLACK_PERCENT, slack), ROOM_CDEG + near,
+                 BUILD_CDEG + near);
 }
 
 static bool was_moving(const argus_wheels_t *const wheels) {
@@ -125,18 +161,26 @@ bool argus_odometry_is_unseen(const argus_span_t *const span, const bool under_w
 }
 
 int32_t argus_odometry_unseen_mm(const argus_span_t *const span) {
-    ARGUS_ASSERT(span->track_mm > 0);
-    return times_ms(fastest_mm_s(span), elapsed_ms(span));
+    const int32_t before = argus_max(argus_abs(span->before.left_mm_s), argus_abs(span->before.right_mm_s));
+    const int32_t after = argus_max(argus_abs(span->after.left_mm_s), argus_abs(span->after.right_mm_s));
+    const int32_t gap = span->elapsed_ms > GAP_MS ? DRIVES_MM_S : 0;
+    ARGUS_ASSERT(before >= 0 && after >= 0);
+    return times_ms(argus_min(FASTEST_MM_S, argus_max(gap, argus_max(before, after))), elapsed_ms(span));
 }
 
 bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *const span,
-                           const argus_way_turn_t *const moved) {
-    ARGUS_ASSERT(moved->way_mm >= 0 && moved->turn_cdeg >= 0);
-    const bool far = builds_up(excess, span, moved);
-    const bool frozen = falls_short(excess, span, moved);
-    if (!far && !frozen && may_be_alone(span, moved)) {
+                           const argus_moved_t *const moved) {
+    ARGUS_ASSERT(span->track_mm > 0 && excess->credit_ms >= 0);
+    const int32_t credit_ms = excess->credit_ms + elapsed_ms(span) - SIP_MS - FADES_MS;
+    excess->credit_ms = argus_max(0, argus_min((int32_t)GAP_MAX_MS, credit_ms));
+    const argus_excess_t was = *excess;
+    const bool way = way_may_be(excess, span, moved);
+    const bool turn = turn_may_be(excess, span, moved);
+    if (way && turn) {
         return true;
     }
-    *excess = (argus_excess_t){0};
+    *excess = (argus_excess_t){.credit_ms = excess->credit_ms,
+                               .out_mm = was.ahead_mm - was.back_mm,
+                               .out_cdeg = was.left_cdeg - was.right_cdeg};
     return false;
 }

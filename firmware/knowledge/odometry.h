@@ -25,12 +25,23 @@ typedef struct {
     int32_t turn_cdeg;
 } argus_way_turn_t;
 
-// What has built up of late beyond what the wheels say, and what is missing of it. All zero: nothing.
+// A step as the odometry says it, in the robot's frame.
 typedef struct {
-    int32_t way_mm;
+    int32_t ahead_mm;
+    int32_t aside_mm; // to the left
     int32_t turn_cdeg;
-    int32_t short_mm;
-    int32_t short_cdeg;
+} argus_moved_t;
+
+// What has built up of late beyond what the wheels say, one way and the other. All zero: nothing.
+typedef struct {
+    int32_t ahead_mm;
+    int32_t back_mm;
+    int32_t aside_mm; // either side
+    int32_t left_cdeg;
+    int32_t right_cdeg;
+    int32_t out_mm;    // what was built up, ahead positive, when a step could not be;
+    int32_t out_cdeg;  // ... to the left positive
+    int32_t credit_ms; // time without a SIP: those that come in a bunch after it make up for it
 } argus_excess_t;
 
 // Whether a wheel can turn so fast.
@@ -44,10 +55,11 @@ argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *span);
 bool argus_odometry_is_unseen(const argus_span_t *span, bool under_way);
 int32_t argus_odometry_unseen_mm(const argus_span_t *span);
 
-// Whether the robot can have moved by this, both >= 0, between the two SIPs, alone and with what has built
-// up. It cannot stand while its wheels turn. False: what has built up is forgotten. SIPs come late, in
-// bunches and not at all, and wheels speed up and brake in between. So steps below some 150 mm and 15 degrees
-// pass, one by one.
-bool argus_odometry_may_be(argus_excess_t *excess, const argus_span_t *span, const argus_way_turn_t *moved);
+// Whether the robot can have moved by this between the two SIPs, alone and with what has built up. The wheels
+// say how far, whither, and within which time; it cannot stand while they turn. SIPs come late, in bunches
+// and not at all, and wheels speed up and brake in between. So single steps of some 60 mm and 3 degrees at
+// rest, and 100 mm at half a metre a second, pass. False: what has built up is in `out_mm` and `out_cdeg`,
+// and begins anew.
+bool argus_odometry_may_be(argus_excess_t *excess, const argus_span_t *span, const argus_moved_t *moved);
 
 #endif

@@ -25,8 +25,8 @@ void setUp(void) {
 static void take(int heading_raw, int speed) {
     now_ms += 100;
     sip.heading_raw = (int16_t)heading_raw;
-    sip.vel_left_mm_s = (int16_t)speed;
-    sip.vel_right_mm_s = (int16_t)-speed;
+    sip.vel_left_mm_s = (int16_t)-speed;
+    sip.vel_right_mm_s = (int16_t)speed;
     argus_knowledge_sip(&k, &sip, 1000, now_ms);
     argus_motion_sip(&m, &out, &k, now_ms);
 }
@@ -42,7 +42,7 @@ static int32_t next(uint8_t command) {
 void test_a_turn_settles_after_two_sips_at_rest_on_target(void) {
     argus_motion_turn(&m, &out, &k, 2000, now_ms);
     TEST_ASSERT_EQUAL(20, next(ARCOS_CMD_HEAD));
-    take(100, 50);
+    take(100, 260);
     take(228, 6); // 20.04 degrees, but not at rest
     TEST_ASSERT_FALSE(m.settled);
     take(228, 5);
@@ -57,7 +57,7 @@ void test_a_turn_settles_after_two_sips_at_rest_on_target(void) {
 
 void test_a_turn_beside_its_target_is_not_settled(void) {
     argus_motion_turn(&m, &out, &k, 2000, now_ms);
-    take(107, 100);
+    take(107, 300);
     take(214, 0); // 18.8 degrees
     take(214, 0);
     take(214, 0);
@@ -105,7 +105,7 @@ void test_with_the_rear_ahead_moves_and_headings_go_out_for_the_robot_as_it_is_b
     TEST_ASSERT_EQUAL(10, next(ARCOS_CMD_HEAD));
     argus_motion_turn(&m, &out, &k, -16000, now_ms);
     TEST_ASSERT_EQUAL(20, next(ARCOS_CMD_HEAD));
-    take(100, 50);
+    take(100, 260);
     take(228, 5);
     TEST_ASSERT_FALSE(m.settled);
     take(228, 0);

@@ -4,6 +4,7 @@
 // bearing.
 #include "guardian/rewrite.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "client.h"
@@ -70,12 +71,20 @@ void test_a_list_that_is_longer_than_the_packet_is_no_sip(void) {
 }
 
 // Then 2 looks along the bearing that 3 has when the robot has turned back.
+static void turn_to(double deg) {
+    const double to = deg * 3.14159265358979 / 180;
+    while (fabs(robot.th - to) > 1e-9) { // in steps that no wheel speed need show
+        robot.th += fmax(-0.03, fmin(0.03, to - robot.th));
+        robot_run(&robot, 100);
+    }
+}
+
 static void turn_away_and_back(void) {
     for (int deg = 0; deg >= -20; deg -= 10) {
-        robot.th = deg * 3.14159265358979 / 180;
-        robot_run(&robot, 700);
+        turn_to(deg);
+        robot_run(&robot, 600);
     }
-    robot.th = 0;
+    turn_to(0);
     robot_run(&robot, 200);
 }
 

@@ -283,10 +283,9 @@ void test_turned_aside_in_motion_it_stops_and_aims_anew(void) {
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 5000));
     robot_run(&robot, 2000);
     const int from = robot.commands;
-    for (int i = 0; i < 5; i++) { // pushed, as fast as wheels follow
-        robot.th += 0.1;
-        robot_run(&robot, 100);
-    }
+    robot.pushed_w = 1;
+    robot_run(&robot, 500);
+    robot.pushed_w = 0;
     robot_run(&robot, 500);
     TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_STOP, from) > 0);
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 60000));

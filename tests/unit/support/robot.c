@@ -238,7 +238,7 @@ static void drive(robot_t *robot) {
     }
     translate(robot);
     rotate(robot);
-    robot->th += robot->w * TICK_S;
+    robot->th += (robot->w + robot->pushed_w) * TICK_S;
     robot->x += robot->v * TICK_S * cos(robot->th);
     robot->y += robot->v * TICK_S * sin(robot->th);
 }
@@ -288,8 +288,8 @@ static size_t build_sip(robot_t *robot, uint8_t *packet) {
     put16(data + 1, lround((ox * c - oy * s) / robot->unit_mm) & robot->position_mask);
     put16(data + 3, lround((ox * s + oy * c) / robot->unit_mm) & robot->position_mask);
     put16(data + 5, lround(wrapped(robot->th - robot->th0) / (360 * DEG) * 4096));
-    put16(data + 7, lround(robot->v - robot->w * TRACK_MM / 2));
-    put16(data + 9, lround(robot->v + robot->w * TRACK_MM / 2));
+    put16(data + 7, lround(robot->v - (robot->w + robot->pushed_w) * TRACK_MM / 2));
+    put16(data + 9, lround(robot->v + (robot->w + robot->pushed_w) * TRACK_MM / 2));
     data[11] = 126;
     data[12] = (uint8_t)(robot->bumpers_rear | (robot->stall ? 1 : 0));
     data[13] = robot->bumpers_front;

@@ -43,6 +43,7 @@ struct robot {
     // body
     double x, y, th; // mm, radians
     double v, w;     // mm/s, rad/s
+    double pushed_w; // rad/s: somebody turns it, and its wheels follow
     double left_mm;  // of a MOVE, signed
     double heading;  // HEAD's target
     bool moving, turning;
