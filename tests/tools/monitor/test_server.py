@@ -180,9 +180,30 @@ def test_files_of_the_page_and_no_other(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "first", ['{"token":"wrong"}', "{}", "[]", "not json", "", '{"token":1}', '{"token":"ü"}', "[" * 4000]
+    "first",
+    [
+        '{"token":"wrong"}',
+        "{}",
+        "[]",
+        "not json",
+        "",
+        '{"token":1}',
+        '{"token":"ü"}',
+        '{"token":"\\ud800"}',
+        '{"token":"\\u0000"}',
+        '{"token":null}',
+        '{"token":[{"token":""}]}',
+        '{"token":NaN}',
+        '{"token":1e999}',
+        '"token"',
+        "-Infinity",
+        "1" * 4090,
+        "[" * 4000,
+    ],
 )
-def test_without_the_token_nothing_is_told(tmp_path: Path, first: str) -> None:
+def test_without_the_token_nothing_is_told(
+    tmp_path: Path, first: str, caplog: pytest.LogCaptureFixture
+) -> None:
     async def act(site: Site) -> None:
         socket = await site.connect()
         await socket.send_str(first)
@@ -192,6 +213,7 @@ def test_without_the_token_nothing_is_told(tmp_path: Path, first: str) -> None:
         assert site.hub.viewers == 0
 
     on_site(tmp_path, act)
+    assert [record for record in caplog.records if record.exc_info or record.levelno >= logging.ERROR] == []
 
 
 def test_a_page_that_says_nothing_is_closed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -370,6 +392,13 @@ def test_release_gives_control_back(tmp_path: Path) -> None:
         '{"do":"break","sonar":"3","kind":"off"}',
         '{"do":"mend","sonar":true}',
         '{"do":"mend","sonar":16}',
+        '{"do":"mend","sonar":1e999}',
+        '{"do":"break","sonar":3,"kind":"\\ud800"}',
+        '{"do":"\\ud800"}',
+        '{"do":"order","order":"turn","deg":1e999}',
+        '{"do":"order","order":"turn","deg":NaN}',
+        '{"do":"order","order":"step","way":"\\ud800"}',
+        '{"do":"order","order":"goto","x_mm":[0],"y_mm":{"a":0}}',
     ],
 )
 def test_what_no_page_may_ask_is_refused_and_the_page_stays(tmp_path: Path, text: str) -> None:

@@ -40,6 +40,15 @@ class Refused(Exception):
     """A request that is not carried out; the message is one sentence for the person at the page."""
 
 
+def _plain(value: Any) -> int | str:
+    """Return a member that argusd can read: a line with an endless number or half a character has no reply."""
+    if isinstance(value, int) and not isinstance(value, bool) and abs(value) < 1 << 31:
+        return value
+    if isinstance(value, str) and value.isascii() and value.isprintable():
+        return value
+    raise Refused("an order's members are whole numbers and plain words")
+
+
 class Page(Protocol):
     """What a viewer tells its page."""
 
@@ -146,7 +155,7 @@ class Viewer:
             raise Refused("a page may not give that order")
         if order == "stop":  # whoever looks on may
             return await self._hub.ask("order", order="stop")
-        members = {name: request[name] for name in ORDERS[order] if name in request}
+        members = {name: _plain(request[name]) for name in ORDERS[order] if name in request}
         answer = await self.control.order(order, **members)
         if order == "goto" and answer.get("ok"):
             self._hub.set_goal([members["x_mm"], members["y_mm"]])
