@@ -70,6 +70,11 @@ def test_each_command_answers(wheel: Path, clean_venv: Path) -> None:
         assert "examples:" in told
 
 
+def test_the_layout_for_foxglove_comes_along(clean_venv: Path) -> None:
+    told = run(clean_venv / "bin/argus-foxglove", "--layout", cwd="/")
+    assert told == (ROOT / "tools/argus_tools/foxglove_layout.json").read_text(encoding="utf-8")
+
+
 def test_the_examples_run_with_the_libraries_of_the_wheel(clean_venv: Path) -> None:
     env = {key: value for key, value in os.environ.items() if not key.startswith(("ARGUS_", "PYTHON"))}
     told = run(clean_venv / "bin/python", "-I", "-c", EXAMPLE, ROOT / "docs/python.md", env=env)
