@@ -123,7 +123,7 @@ PAGES = (
             "argusctl speaks to an argusd that was started with --control: it tells its state, follows its events, "
             "drives the robot and, where argusd was started with --inject, makes a sonar fail for a test.",
             "An order takes control and gives it back. step and turn wait until the robot stands; when they are "
-            "interrupted, the robot is stopped.",
+            "interrupted, the robot is stopped. When another stops it before it is done, they say so and end with 1.",
         ),
         has_commands=True,
         ends=(
