@@ -178,6 +178,31 @@ PAGES = (
         also=("argusd", "argus-log", "argus-monitor"),
     ),
     Page(
+        name="argus-ros",
+        what="is the ROS 2 node of a robot that argusd minds",
+        command=(sys.executable, "-m", "argus_ros.programs", "argus-ros"),
+        synopsis=("[--ros-args ARGUMENTS]",),
+        description=(
+            "argus-ros tells on the topics of a driver what argusd knows: a range for each sonar, a cloud of echoes, "
+            "diagnoses, odometry, battery and frames. With the parameter guard it takes cmd_vel, which argusd's guard "
+            "bounds. It needs rclpy, of a ROS 2 installation or from PyPI.",
+        ),
+        ends=(("ENVIRONMENT", (("ARGUS_CONTROL", "the control socket, unless control names one"),)),),
+        also=("argusd", "argus-range-guard", "argus-foxglove"),
+    ),
+    Page(
+        name="argus-range-guard",
+        what="is a ROS 2 node that repairs the sonar ranges of any driver",
+        command=(sys.executable, "-m", "argus_ros.programs", "argus-range-guard"),
+        synopsis=("[--ros-args ARGUMENTS]",),
+        description=(
+            "argus-range-guard runs the fault manager on the sensor_msgs/Range topics and the odometry of any driver, "
+            "and publishes each repaired as TOPIC/guarded. It needs no argusd, and commands no motion. It needs rclpy, "
+            "of a ROS 2 installation or from PyPI.",
+        ),
+        also=("argus-ros", "argusd"),
+    ),
+    Page(
         name="argus-flash-check",
         what="checks whether the image that was flashed into a board runs as it should",
         command=(sys.executable, "-m", "argus_tools.flash_check"),

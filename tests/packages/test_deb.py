@@ -35,6 +35,10 @@ EXPECTED = {
     "usr/share/bash-completion/completions/argus-sim",
     "usr/share/man/man1/argusd.1.gz",
     "usr/share/man/man1/argus-log.1.gz",
+    "usr/share/man/man1/argus-ros.1.gz",
+    "usr/share/man/man1/argus-range-guard.1.gz",
+    "usr/lib/python3/dist-packages/argus_tools/foxglove_layout.json",
+    "usr/lib/python3/dist-packages/argus_ros/launch/argus.launch.xml",
     *(f"usr/share/doc/{name}/copyright" for name in PACKAGES),
 }
 EXPOSURE_MAX = 2.5
