@@ -29,11 +29,16 @@ class FakeBreaker:
 
     def __init__(self) -> None:
         self.broken: dict[str, str] = {}
+        self.changed: Callable[[], None] = lambda: None
         self.lines: list[str] = []
+
+    def turn(self, broken: dict[str, str]) -> None:
+        self.broken = broken
+        self.changed()
 
     async def order(self, line: str) -> Message:
         self.lines.append(line)
-        self.broken = {"3": "off"} if line.startswith("break") else {}
+        self.turn({"3": "off"} if line.startswith("break") else {})
         return {"ok": True, "broken": self.broken}
 
 
@@ -440,6 +445,21 @@ def test_in_simulation_faults_go_to_the_emulator(tmp_path: Path) -> None:
         assert {"broken": {}} in page.got
         assert breaker.lines == ["break wrong:3:scale=0.5", "mend 3"]
         assert site.fake.orders == []
+
+    on_site(tmp_path, act, breaker)
+
+
+def test_a_fault_that_begins_and_ends_by_itself_is_told(tmp_path: Path) -> None:
+    breaker = FakeBreaker()
+    breaker.broken = {"5": "stuck"}
+
+    async def act(site: Site) -> None:
+        page = await site.page()
+        assert {"broken": {"5": "stuck"}} in page.got, "what is broken from the start"
+        breaker.turn({"5": "stuck", "3": "off"})
+        await page.until(lambda message: message == {"broken": {"5": "stuck", "3": "off"}})
+        breaker.turn({"5": "stuck"})
+        await page.until(lambda message: message == {"broken": {"5": "stuck"}})
 
     on_site(tmp_path, act, breaker)
 
