@@ -285,6 +285,10 @@ function wire() {
   for (const button of document.querySelectorAll("[data-sonar-order]")) {
     button.addEventListener("click", () => chosenOrder(button.dataset.sonarOrder));
   }
+  $("more").addEventListener("click", (event) => {
+    const open = document.querySelector(".orders").classList.toggle("unfolded");
+    event.currentTarget.setAttribute("aria-expanded", String(open));
+  });
   $("active").addEventListener("click", toggleActive);
   $("control").addEventListener("click", control);
   $("zoom-in").addEventListener("click", () => stage.zoom(-1));
