@@ -70,8 +70,16 @@ foreach(page IN LISTS pages)
     install_manual(${name} tools)
 endforeach()
 
-# Into a wheel: beside the modules that load them.
+# Into a wheel: beside the modules that load them, or run it.
 if(TARGET argus_shared)
+    add_custom_target(wheel_parts DEPENDS argus_shared argus_sim)
+    if(TARGET argusd)
+        add_dependencies(wheel_parts argusd)
+        install(TARGETS argusd RUNTIME DESTINATION argus_tools COMPONENT python EXCLUDE_FROM_ALL)
+        if(ARGUS_STATIC)
+            install(FILES cmake/argusd-licences.txt DESTINATION argus_tools COMPONENT python EXCLUDE_FROM_ALL)
+        endif()
+    endif()
     install(FILES $<TARGET_FILE:argus_shared> DESTINATION argus_tools RENAME libargus.so COMPONENT python EXCLUDE_FROM_ALL
             PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
     install(FILES $<TARGET_FILE:argus_sim> DESTINATION hil_sim/sonar COMPONENT python EXCLUDE_FROM_ALL

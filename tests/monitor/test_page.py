@@ -164,6 +164,7 @@ def is_shown(page: Browser, selector: str) -> bool:
 @pytest.mark.parametrize("width", [320, 360, 700])
 def test_on_a_narrow_page_the_form_and_the_keys_are_folded_out(page: Browser, width: int) -> None:
     page.size(width, 740)
+    page.wait("no notice is in the way", lambda: not page.driver.find_elements(By.CSS_SELECTOR, "#say.shown"))
     assert not is_shown(page, ".hint")
     assert page.driver.find_element(By.ID, "more").get_attribute("aria-expanded") == "false"
     page.click("more")

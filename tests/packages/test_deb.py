@@ -66,6 +66,8 @@ def test_the_packages_and_their_files(debs: dict[str, Path], unpacked: Path) -> 
     assert set(debs) == PACKAGES
     held = {path.relative_to(unpacked).as_posix() for path in unpacked.rglob("*") if not path.is_dir()}
     assert held >= EXPECTED
+    ours = "usr/lib/python3/dist-packages/argus_tools/argusd"
+    assert not [name for name in held if name.startswith(ours)], "argusd is a package of its own"
     assert not [name for name in held if "__pycache__" in name or name.startswith("usr/local")]
     for deb in debs.values():
         assert field(deb, "Version") == argus.__version__

@@ -24,6 +24,12 @@ START_WITHIN_S: Final = 60.0
 ANSWER_WITHIN_S: Final = 5.0
 END_WITHIN_S: Final = 6.0
 _ROOT: Final = Path(__file__).resolve().parents[3]
+_BROUGHT: Final = Path(__file__).resolve().parents[1] / "argusd"
+"""Where a wheel has it."""
+_NO_ARGUSD: Final = (
+    "argusd is not found: install the Debian package argusd, or build it (tools/dev build release, in the sources) "
+    "and name it with --argusd"
+)
 _PR_SET_PDEATHSIG: Final = 1
 
 
@@ -32,14 +38,15 @@ class SimulationError(Exception):
 
 
 def find_argusd(given: str | None) -> str:
-    """Return the argusd to run: the one GIVEN, that of ARGUS_ARGUSD, of the build folder, or in PATH."""
+    """Return the argusd to run: the one GIVEN, that of ARGUS_ARGUSD, of the build folder, beside us, or in PATH."""
     wanted = given or os.environ.get(ARGUSD_VARIABLE)
-    built = _ROOT / "build/release/argusd"
-    found = shutil.which(wanted) if wanted else str(built) if built.exists() else shutil.which("argusd")
+    if wanted:
+        found = shutil.which(wanted)
+    else:
+        near = (path for path in (_ROOT / "build/release/argusd", _BROUGHT) if os.access(path, os.X_OK))
+        found = next(map(str, near), None) or shutil.which("argusd")
     if found is None:
-        raise SimulationError(
-            f"no program '{wanted}'" if wanted else "argusd is not found; build it, or name it with --argusd"
-        )
+        raise SimulationError(f"no program '{wanted}'" if wanted else _NO_ARGUSD)
     return found
 
 
