@@ -50,7 +50,7 @@ add_library(argusd_parts STATIC ${argusd_sources})
 target_include_directories(argusd_parts PUBLIC ${PROJECT_SOURCE_DIR}/hal/linux/argusd)
 # --auto-baud reads and writes packets before there is a manager, --inject rewrites those that go to it: both use the wire
 # part of the firmware, which is usable alone.
-set_source_files_properties(hal/linux/argusd/probe.c hal/linux/argusd/inject.c PROPERTIES INCLUDE_DIRECTORIES ${PROJECT_SOURCE_DIR}/firmware)
+set_source_files_properties(hal/linux/argusd/guards.c hal/linux/argusd/probe.c hal/linux/argusd/inject.c PROPERTIES INCLUDE_DIRECTORIES ${PROJECT_SOURCE_DIR}/firmware)
 target_include_directories(argusd_parts SYSTEM PUBLIC ${INIH_INCLUDE_DIR})
 target_compile_options(argusd_parts PRIVATE ${ARGUS_STRICT})
 target_link_libraries(argusd_parts PUBLIC argus_hal argus ${INIH_LIBRARY} PRIVATE argus_flags)

@@ -3,17 +3,20 @@
 """Write the measured figures into the documents, from the result files in docs/figures.
 
 A bench leaves its figures as JSON. The file that is published lies in docs/figures, and every table of the
-documents is made of it. To publish a new run, copy its JSON there and run this tool.
+documents is made of it. To publish a new run, copy its JSON there and run this tool. What a program prints without
+leaving a file is entered in docs/figures/measured.json by hand, with the command and the day. Two pictures are drawn of
+the files, too; each holds a digest of what it shows.
 """
 
 from __future__ import annotations
 
 import argparse
 import functools
+import hashlib
 import json
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,8 +25,9 @@ sys.path.insert(0, str(ROOT))
 sys.path.insert(0, str(ROOT / "tools"))
 
 import marked  # noqa: E402
+from PIL import Image  # noqa: E402
 
-from hil_sim.bench import journey_report, report, report_passive  # noqa: E402
+from hil_sim.bench import journey_report, overview, report, report_passive  # noqa: E402
 
 FOLDER: Final = ROOT / "docs/figures"
 Summary = dict[str, Any]
@@ -53,8 +57,65 @@ def diagnosis(found: Summary) -> str:
 
 
 def drive_by(found: Summary) -> str:
-    """Return the tables of `bench drive-by`."""
-    return report_passive.table(found).rstrip("\n")
+    """Return the tables of `bench drive-by`, after a line that says of which build and how many drives they are."""
+    build = f"fault manager {found['core'][:12]}" if "core" in found else "fault manager not noted"
+    about = f"{found['streams']} recorded drives, split {found['split']}, {build}."
+    return f"{about}\n\n{report_passive.table(found)}".rstrip("\n")
+
+
+def _grid(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a Markdown table."""
+    lines = [columns, ["---"] * len(columns), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def measured(name: str, found: Summary) -> str:
+    """Return a table of figures that were entered by hand, after a line that says how and when they came about."""
+    entry = found[name]
+    command = f" by `{entry['command']}`" if "command" in entry else ""
+    host = f" ({entry['host']})" if "host" in entry else ""
+    if any(len(row) != len(entry["columns"]) for row in entry["rows"]):
+        raise KeyError(f"{name}: a row has not as many cells as there are columns")
+    return f"Measured on {entry['date']}{command}{host}:\n\n{_grid(entry['columns'], entry['rows'])}"
+
+
+def _counts(ends: dict[str, int]) -> tuple[str, str]:
+    """Return how many drives ended right, and what became of the others."""
+    others = ", ".join(f"{n} {word}" for word, n in sorted(ends.items()) if word != "yes")
+    return f"{ends.get('yes', 0)} of {sum(ends.values())}", others or "-"
+
+
+def pairs_argus(found: Summary) -> str:
+    """Return what profile `argus` makes of the demo's pairs of faults."""
+    rows = []
+    for day, words in (("plain", ""), ("rough", ", on a rough day")):
+        for key, what in (
+            ("demo_pair", "the pair of the demo, one drive for each seed"),
+            ("pairs", "all pairs, seed 1"),
+        ):
+            rows.append((f"{what}{words}", *_counts(found["argus"][day][key])))
+    return f"{_pairs_origin(found)}\n\n{_grid(('drives', 'end right', 'others'), rows)}"
+
+
+def pairs_paper(found: Summary) -> str:
+    """Return what profile `paper` makes of each pair."""
+    sonars = list(found["paper"])
+    rows = [[dead, *(found["paper"][dead].get(liar, "") for liar in sonars)] for dead in sonars]
+    return f"{_pairs_origin(found)}\n\n{_grid(['off A', *(f'B = {liar}' for liar in sonars)], rows)}"
+
+
+def pairs_told(found: Summary) -> str:
+    """Return in a sentence how many pairs profile `paper` tells."""
+    cells = [cell for row in found["paper"].values() for cell in row.values()]
+    return (
+        f"Of the {len(cells)} pairs (sonar A dead, later sonar B reads half the truth) in that world `paper` tells "
+        f"{cells.count('yes')} right with every seed ([demo](demo.md#what-each-profile-can-tell))."
+    )
+
+
+def _pairs_origin(found: Summary) -> str:
+    meta = found["meta"]
+    return f"Measured on {meta['date']} by `tools/dev bench pairs`, fault manager {meta['core'][:12]}:"
 
 
 def _share(found: Summary) -> str:
@@ -101,8 +162,19 @@ PARTS: Final[dict[str, dict[str, tuple[str, Callable[[Summary], str]]]]] = {
         "drive-by": ("drive-by.json", drive_by),
         "diagnosis": ("diagnosis.json", diagnosis),
     },
+    "docs/demo.md": {"pairs": ("pairs.json", pairs_argus), "paper-pairs": ("pairs.json", pairs_paper)},
+    "docs/paper-profile.md": {"pairs": ("pairs.json", pairs_told)},
+    "docs/guardian.md": {"measured": ("measured.json", functools.partial(measured, "guardian"))},
+    "docs/monitor.md": {"measured": ("measured.json", functools.partial(measured, "monitor"))},
+    "docs/peers.md": {"measured": ("measured.json", functools.partial(measured, "peers"))},
 }
 """Document, part of it, the file that its figures come from and what makes a table of them."""
+
+PICTURES: Final[dict[str, tuple[tuple[str, ...], Callable[..., None]]]] = {
+    "docs/img/journey.png": (("journey.json",), overview.draw_journeys),
+    "docs/img/diagnosis.png": (("drive-by.json", "diagnosis.json"), overview.draw_found),
+}
+"""Picture, the files whose figures it shows and what draws it."""
 
 
 def load(name: str) -> Summary:
@@ -132,6 +204,30 @@ def filled(name: str, text: str) -> str:
     return text
 
 
+def _digest(files: Sequence[str]) -> str:
+    """Return what stands for the contents of result files."""
+    return hashlib.sha256(b"".join((FOLDER / name).read_bytes() for name in files)).hexdigest()
+
+
+def is_current(path: Path, files: Sequence[str]) -> bool:
+    """Return whether a picture shows the figures of these files, by the digest that it holds."""
+    if not path.is_file():
+        return False
+    with Image.open(path) as image:
+        return bool(image.info.get("Source") == _digest(files))
+
+
+def draw_pictures(check: bool) -> int:
+    """Draw the pictures whose figures have changed; with `check` return 1 if there is one."""
+    stale = [name for name, (files, _) in PICTURES.items() if not is_current(ROOT / name, files)]
+    for name in stale if not check else ():
+        files, draw = PICTURES[name]
+        draw(ROOT / name, _digest(files), *map(load, files))
+    if check and stale:
+        print(f"{', '.join(stale)}: out of date, run tools/dev figures", file=sys.stderr)
+    return int(check and bool(stale))
+
+
 def main() -> int:
     """Write the documents, or with --check compare them."""
     parser = argparse.ArgumentParser(
@@ -139,7 +235,8 @@ def main() -> int:
     )
     parser.add_argument("--check", action="store_true", help="change nothing; exit 1 when out of date")
     arguments = parser.parse_args()
-    return marked.update(ROOT, PARTS, filled, arguments.check, "tools/dev figures")
+    documents = marked.update(ROOT, PARTS, filled, arguments.check, "tools/dev figures")
+    return max(documents, draw_pictures(arguments.check))
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ static void test_stuck(argus_evidence_t *const self, const argus_knowledge_t *co
         c->score[ARGUS_TEST_STUCK] = 0;
     }
     const bool moved = argus_ping_turned_cdeg(now, before) >= ARGUS_STILL_CDEG ||
-                       argus_ping_moved_mm(now, before) >= ARGUS_STILL_MM;
+                       argus_abs(argus_ping_shift(now, before).along_mm) >= ARGUS_STILL_MM;
     if (tells && moved && changed_mm <= ARGUS_ALIKE_MM) {
         score(self, knowledge, sonar, ARGUS_TEST_STUCK, changed_mm == 0);
     }

@@ -31,7 +31,8 @@ bool argus_is_unseen(const argus_t *const self, const argus_guard_t *const guard
     return argus_is_shown_blind(self, guard) || !argus_guard_may_step(&self->plan);
 }
 
-// Segments on the end that leads, by CONFIGpac: bumpers are an accessory, and a table knows not which robot has one.
+// Segments on the end that leads, by CONFIGpac: bumpers are an accessory, and a table knows not which robot
+// has one.
 static bool leads_with_bumper(const argus_t *const self) {
     const argus_configpac_t *const told = &self->session.robot; // zero until it has come
     const argus_robot_t *const robot = self->knowledge.robot;

@@ -265,11 +265,12 @@ static void fill_heartbeat(const hal_telemetry_t *self, const argus_status_t *st
     hal_dbc_heartbeat_pack(data, &heartbeat);
 }
 
-static void fill_health(const argus_status_t *status, int first, uint8_t *data) {
+static void fill_health(const hal_telemetry_t *self, const argus_status_t *status, int first, uint8_t *data) {
     hal_dbc_health_t health = {0};
     for (int i = 0; i < ARRAY && first + i < ARGUS_SONARS; i++) {
         health.health[i] = (uint8_t)status->health[first + i];
         health.fault[i] = (uint8_t)status->kind[first + i];
+        health.injected[i] = self->injected >> (first + i) & 1u;
     }
     hal_dbc_health_pack(data, &health);
 }
@@ -341,7 +342,7 @@ static bool has_news(const hal_telemetry_t *self, const argus_status_t *status, 
 static uint32_t fill(hal_telemetry_t *self, const argus_status_t *status, int slot, uint8_t *data) {
     const uint8_t *const last = self->sent[slot].data;
     if (slot == HAL_TELEMETRY_HEALTH_FRONT || slot == HAL_TELEMETRY_HEALTH_REAR) {
-        fill_health(status, slot == HAL_TELEMETRY_HEALTH_FRONT ? 0 : ARRAY, data);
+        fill_health(self, status, slot == HAL_TELEMETRY_HEALTH_FRONT ? 0 : ARRAY, data);
     } else if (slot == HAL_TELEMETRY_PLAN) {
         fill_plan(status, self->plan_roll, data);
     } else if (slot >= HAL_TELEMETRY_READINGS) {

@@ -41,20 +41,28 @@ void hal_dbc_health_pack(uint8_t data[HAL_DBC_LENGTH], const hal_dbc_health_t *f
     uint64_t bits = 0;
     bits |= at_most(from->health[0], 7u) << 0;
     bits |= at_most(from->fault[0], 7u) << 3;
+    bits |= at_most(from->injected[0], 1u) << 6;
     bits |= at_most(from->health[1], 7u) << 8;
     bits |= at_most(from->fault[1], 7u) << 11;
+    bits |= at_most(from->injected[1], 1u) << 14;
     bits |= at_most(from->health[2], 7u) << 16;
     bits |= at_most(from->fault[2], 7u) << 19;
+    bits |= at_most(from->injected[2], 1u) << 22;
     bits |= at_most(from->health[3], 7u) << 24;
     bits |= at_most(from->fault[3], 7u) << 27;
+    bits |= at_most(from->injected[3], 1u) << 30;
     bits |= at_most(from->health[4], 7u) << 32;
     bits |= at_most(from->fault[4], 7u) << 35;
+    bits |= at_most(from->injected[4], 1u) << 38;
     bits |= at_most(from->health[5], 7u) << 40;
     bits |= at_most(from->fault[5], 7u) << 43;
+    bits |= at_most(from->injected[5], 1u) << 46;
     bits |= at_most(from->health[6], 7u) << 48;
     bits |= at_most(from->fault[6], 7u) << 51;
+    bits |= at_most(from->injected[6], 1u) << 54;
     bits |= at_most(from->health[7], 7u) << 56;
     bits |= at_most(from->fault[7], 7u) << 59;
+    bits |= at_most(from->injected[7], 1u) << 62;
     store(data, bits);
 }
 

@@ -27,6 +27,7 @@ from hil_sim.bench.passive import Verdict
 from hil_sim.bench.progress import Progress
 from hil_sim.bench.report_passive import summarise, table
 from hil_sim.bench.stream import missing, stream_path
+from hil_sim.bench.work import core_digest
 from hil_sim.errors import SimError
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.physics import parse_physics
@@ -191,7 +192,8 @@ def drive_by(argv: Sequence[str]) -> int:
     figures = summarise(verdicts)
     print(table(figures), end="")
     if arguments.json:
-        _write(arguments.json, {"split": arguments.split, "physics": arguments.physics} | figures)
+        origin = {"split": arguments.split, "physics": arguments.physics, "core": core_digest()}
+        _write(arguments.json, origin | figures)
     return 0 if whole else EXIT_FAILED
 
 

@@ -117,9 +117,10 @@ def _trade(folder: Path, profiles: Mapping[str, Record]) -> None:
         given_up.set(
             xlabel="false disables in 100 fault-free clock hours", ylabel="share of all faults found in time"
         )
-        given_up.set(ylim=(0, 1.02), xlim=(-0.1, None))
+        lows = [one["all"]["interval"][0] for one in profiles.values() if one["all"]["rate"] is not None]
+        given_up.set(ylim=(max(0.0, min(lows, default=0.0) - 0.05), 1.02), xlim=(-0.1, None))
         named.set(xlabel="false names in a fault-free clock hour", xscale="symlog", xlim=(0, None))
-        _legend(named, 8, "lower left")  # where nothing is found there are no bars to hide
+        _legend(named, 8, "lower left")
 
 
 def _trade_point(place: Axes, k: int, profile: str, one: Record, false: str, hours: int) -> None:

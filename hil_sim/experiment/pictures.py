@@ -45,8 +45,8 @@ def picture(path: Path, size: tuple[float, float]) -> Iterator[Figure]:
 
 def draw_fig9(path: Path, plans: Mapping[str, Sequence[Plan]]) -> None:
     """Draw rotations and degrees for each of the 62 sets, the paper's walk beside the default policy."""
-    with picture(path, (11.0, 6.0)) as figure:
-        above, below = figure.subplots(2, 1, sharex=True)
+    with picture(path, (9.0, 13.5)) as figure:
+        left, right = figure.subplots(1, 2, sharey=True)
         names = [plan.dead.replace("+", "") for plan in plans["paper"]]
         at = np.arange(len(names))
         shown = [name for name in ("paper", "fewest", "adaptive") if name in plans]
@@ -56,15 +56,17 @@ def draw_fig9(path: Path, plans: Mapping[str, Sequence[Plan]]) -> None:
             counts = [len(plan.rotations) for plan in plans[policy]]
             degrees = [plan.turned_deg for plan in plans[policy]]
             label = f"{policy}: {sum(counts)} rotations, {sum(degrees)} degrees"
-            above.bar(at + off, counts, width, color=COLOURS[policy], label=label)
-            below.bar(at + off, degrees, width, color=COLOURS[policy])
-        above.set_ylabel("rotations at each stop")
-        above.legend(loc="upper left", fontsize=9)
-        below.set_ylabel("degrees turned at each stop")
-        below.set_xticks(at, names, rotation=90, fontsize=7)
-        below.set_xlabel("dead sonars of 1 to 6")
-        below.set_xlim(-0.8, len(names) - 0.2)
-        above.set_title("What covering for dead sonars takes at each stop, all 62 sets", fontsize=10)
+            left.barh(at + off, counts, width, color=COLOURS[policy], label=label)
+            right.barh(at + off, degrees, width, color=COLOURS[policy])
+        left.set_xlabel("rotations at each stop")
+        right.set_xlabel("degrees turned at each stop")
+        left.set_yticks(at, [" ".join(name) for name in names], fontsize=9)
+        left.set_ylabel("dead sonars of 1 to 6")
+        left.set_ylim(len(names) - 0.2, -0.8)
+        for place in (left, right):
+            place.grid(axis="y", visible=False)
+        left.legend(loc="upper right", fontsize=9)
+        figure.suptitle("What covering for dead sonars takes at each stop, all 62 sets", fontsize=11)
 
 
 def draw_fig10(path: Path, drive: Drive) -> None:

@@ -18,6 +18,8 @@ from hil_sim.experiment.study import arrived, energy_j, group_of
 Record = dict[str, Any]
 _COUNTS: Final = (HEALTHY, "1", "2", "3", "4", "5", "6", ARRAYS[0])
 _LABELS: Final = ("0", "1", "2", "3", "4", "5", "6", "front\narray")
+_APART: Final = len(_COUNTS) - 1.5
+"""Left of here a place is a number of dead sonars; the lost array is another case and no step of that scale."""
 _HATCH: Final = {"paper": "//", "adaptive": ""}
 
 
@@ -87,6 +89,8 @@ def draw_price(path: Path, records: Sequence[Record]) -> None:
             place.set_title(title, fontsize=10)
             place.set_ylim(bottom=0)
             place.set_xticks(range(len(_LABELS)), _LABELS, fontsize=8)
+            place.axvline(_APART, color="#bbbbbb", linewidth=0.8)
+            place.grid(axis="x", visible=False)
         places[-1].axis("off")
         handles, labels = places[0].get_legend_handles_labels()
         places[-1].legend(
@@ -96,15 +100,19 @@ def draw_price(path: Path, records: Sequence[Record]) -> None:
 
 def _lines(place: Axes, records: Sequence[Record], quantity: Callable[[Record], float | None]) -> None:
     marks = dict(zip(POLICIES, "so^vD", strict=True))
-    for policy in POLICIES:
+    for n, policy in enumerate(POLICIES):
+        aside = 0.13 * (n - (len(POLICIES) - 1) / 2)  # policies that take the same are both seen
         points = []
         for k, group in enumerate(_COUNTS):
             values = [quantity(r) for r in _of(records, policy, group) if arrived(r)]
             known = [value for value in values if value is not None]
             if known:
                 points.append((k, median(known)))
-        if points:
-            xs, ys = zip(*points, strict=True)
-            place.plot(
-                xs, ys, marker=marks[policy], color=COLOURS[policy], label=policy, linewidth=1.3, markersize=5
-            )
+        style: dict[str, Any] = {"marker": marks[policy], "color": COLOURS[policy], "markersize": 5}
+        for part, label in (
+            ([point for point in points if point[0] < _APART], policy),
+            ([point for point in points if point[0] > _APART], None),
+        ):
+            if part:
+                xs, ys = zip(*part, strict=True)
+                place.plot([x + aside for x in xs], ys, label=label, linewidth=1.3, **style)

@@ -65,7 +65,9 @@ def test_an_injected_fault_is_diagnosed_told_everywhere_and_ends(bench: Bench) -
     argusd.wait("STATUS", injected=["", "", "", "off"] + [""] * 12)
     ended = argusd.wait("INJECTED", name="sonar/front/03", value=0)
     assert 3.9 < ended["t"] - begun["t"] < 60.0  # a busy host looks late, never early
-    argusd.wait("STATUS", injected=[""] * 16, after_t=ended["t"])
+    after = argusd.wait("STATUS", after_t=ended["t"])
+    assert after["health"][3] == "DISABLED"
+    assert after["injected"][3] == "off", "what was found of it is not marked any more"
     assert not [r for r in sim.read() if r["type"] == "fault"], "the robot itself is whole"
     assert ctl(bench, "quit").returncode == 0
     assert argusd.wait_exit() == 0
@@ -76,6 +78,19 @@ def test_an_injected_fault_is_diagnosed_told_everywhere_and_ends(bench: Bench) -
     assert len(told) == 2
     assert told[0].startswith("argusd injects 'off' into sonar 3 for 4 s")
     assert told[1].startswith("argusd injects nothing into sonar 3 any more")
+
+
+def test_an_injected_fault_is_no_history_of_the_sonar(bench: Bench) -> None:
+    bench.sim(bench.world(**hall()))
+    state = ("--state", str(bench.path / "state"))
+    argusd = start(bench, "--inject", *state)
+    assert any("read, not written" in line for line in argusd.errors)
+    assert ctl(bench, "fail", "sonar", "3", "off", "--for", "3s").returncode == 0
+    argusd.wait("SONAR_DISABLED", name="sonar/front/03")
+    argusd.end()
+    later = start(bench, *state)
+    later.wait("HEALTH_CHECK")
+    assert not later.named("SONAR_PROBATION", "SONAR_DISABLED")
 
 
 def test_without_inject_nothing_is_injected(bench: Bench) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -21,12 +22,16 @@ import pytest
 from harness import ROOT, Argusd, Bench, is_at_rest, run_argusd, wait_for
 from worlds import hall, hall_with_box
 
-from hil_sim.arcos import ConfigPac, EncoderPac
+from hil_sim.arcos import COMMAND, Command, ConfigPac, EncoderPac, frame
 from hil_sim.conformance.client import Client, Target, parse_target
 
 SPEED_MM_S: Final = 300
 NEAR_MM: Final = 700
 TEXT: Final = (ROOT / "docs/guardian.md").read_text(encoding="utf-8")
+PAGE_SAYS: Final = (
+    Command.none(0), Command.none(1), Command.none(2), Command.none(COMMAND["OPEN"]),
+    Command.integer(COMMAND["ENABLE"], 1), Command.integer(COMMAND["RVEL"], 30),
+)  # fmt: skip
 LOOKS: Final = 3
 """The sonar that the client of these tests goes by."""
 
@@ -179,6 +184,34 @@ def test_a_second_client_is_turned_away(bench: Bench) -> None:
     argusd.wait("GUARD_CLOSED")
     argusd.end()
     assert not name.is_symlink()
+
+
+@pytest.mark.parametrize(
+    "greeting",
+    [
+        b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://evil.example\r\n\r\n",
+        b"GET / HTTP/1.1\r\nUpgrade: websocket\r\n\r\n",
+        b"\x16\x03\x01\x02\x00\x01\x00",
+        b"\x00",
+    ],
+    ids=["post", "websocket", "tls", "nul"],
+)
+def test_a_web_page_cannot_take_the_robot(bench: Bench, greeting: bytes) -> None:
+    """A page may send packets of ARCOS as the body of a request to any port of this machine."""
+    sim = bench.sim(bench.world(**hall()))
+    argusd, target = guarded(bench, "--active", "--goal", "2000,0")
+    argusd.wait("SESSION_OPEN")
+    sim.wait("it drives by itself", lambda state: state["v_mm_s"] > 100)
+    body = b"".join(frame(command.data) for command in PAGE_SAYS)
+    with socket.create_connection((target.host, target.port), 5) as page:
+        page.settimeout(20)
+        with contextlib.suppress(ConnectionError):
+            page.sendall(greeting + body)
+            assert page.recv(100) == b""
+    wait_for("it is said", lambda: any("not ARCOS" in line for line in argusd.errors), 20)
+    argusd.wait("GOAL_REACHED")
+    assert not argusd.named("GUARD_OPEN", "GUARD_DRIVES", "PASSIVE")
+    assert argusd.wait_exit() == 0
 
 
 def test_a_pty_that_is_closed_stops_the_robot(bench: Bench) -> None:

@@ -10,6 +10,7 @@ import re
 import resource
 import signal
 import subprocess
+import textwrap
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -40,6 +41,10 @@ PROGRESS: Final = re.compile(
     r"\[ *\d+[/%].*\] (Building|Linking|Built) |tests/.*:PASS$| +Start +\d+: | *\d+/\d+ Test .* Passed "
 )
 SHOWN_LINES: Final = 150
+
+
+LINE_MOST: Final = 160
+"""Characters of a command in a message: that of clang-format names every C file."""
 
 
 class StageFailed(Exception):
@@ -141,7 +146,7 @@ def logged_runner(log: Path, verbose: bool, limit_s: float) -> Run:
     deadline = time.monotonic() + limit_s
 
     def run(command: Command) -> None:
-        line = line_of(command)
+        line = textwrap.shorten(line_of(command), LINE_MOST, placeholder=" ...")
         try:
             with process_group(command, log, verbose) as child:
                 code = child.wait(timeout=max(1.0, deadline - time.monotonic()))

@@ -62,6 +62,7 @@ typedef struct {
 typedef struct {
     uint8_t health[8];
     uint8_t fault[8];
+    uint8_t injected[8];
 } hal_dbc_health_t;
 
 typedef struct {

@@ -263,7 +263,8 @@ static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     return code;
 }
 
-// Saves once at the start: a place that cannot be written is better known now than after the mission.
+// Saves once at the start: a place that cannot be written is better known now than after the mission. Faults
+// that are injected are no history of the sonars: then nothing is saved later.
 static bool open_state(void) {
     if (!state_open(&loop.state, options.state_path, loop.driver.core, message, sizeof message)) {
         return false;
@@ -271,7 +272,14 @@ static bool open_state(void) {
     if (message[0] != '\0') {
         complain(ARGUSD_EXIT_OK);
     }
-    return state_save(&loop.state, loop.driver.core, message, sizeof message);
+    const bool saved = state_save(&loop.state, loop.driver.core, message, sizeof message);
+    if (saved && options.inject) {
+        loop.state.on = false;
+        snprintf(message, sizeof message, "--state %s: read, not written, for faults may be injected",
+                 options.state_path);
+        complain(ARGUSD_EXIT_OK);
+    }
+    return saved;
 }
 
 // No client is served before the loop runs, but a place that cannot be used is told before the robot is

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "arcos/gen_arcos.h"
+
 #define READ_BYTES 512
 #define READS_PER_TURN 4 // a flood must not keep the robot waiting
 #define STALE_MS 10000u  // a client so long without a sign of life makes room for another
@@ -54,7 +56,7 @@ static void flush(guards_t *self, uint32_t now_ms) {
 static void pass(guards_t *self, uint32_t now_ms, argus_port_io_t io) {
     uint8_t out[OUT_BYTES];
     io.readings = self->readings;
-    io.there = self->served >= 0;
+    io.there = self->served >= 0 && self->spoken;
     io.out = out;
     for (;;) {
         const size_t room = sizeof self->held - self->held_count;
@@ -102,6 +104,7 @@ static void turn_away(guards_t *self, const guard_port_t *at) {
 
 static void welcome(guards_t *self, int index, uint32_t now_ms) {
     self->served = index;
+    self->spoken = self->at[index].spec.kind == GUARD_PTY;
     self->heard_ms = now_ms;
     self->taken_ms = now_ms;
 }
@@ -145,11 +148,27 @@ static void greet(guards_t *self, int index, uint32_t now_ms) {
     }
 }
 
+// A page in a browser of this machine can reach a TCP port: HTTP and TLS begin with other bytes than a
+// packet.
+static bool is_foreign(guards_t *self, uint8_t first) {
+    const bool foreign = !self->spoken && first != ARCOS_FRAME_HEADER0;
+    self->spoken = !foreign;
+    if (foreign) {
+        snprintf(self->notice, sizeof self->notice,
+                 "guard %s: what came is not ARCOS (a page in a browser?) and was turned away",
+                 self->at[self->served].spec.text);
+    }
+    return foreign;
+}
+
 static void hear(guards_t *self, uint32_t now_ms) {
     uint8_t bytes[READ_BYTES];
     const int index = self->served;
     for (int i = 0; i < READS_PER_TURN && self->served >= 0; i++) {
         const size_t got = guard_port_read(&self->at[index], bytes, sizeof bytes);
+        if (got > 0 && is_foreign(self, bytes[0])) {
+            guard_port_drop(&self->at[index]);
+        }
         if (self->at[index].client < 0) {
             leave(self, now_ms);
             return;

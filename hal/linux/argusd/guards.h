@@ -25,7 +25,8 @@ typedef struct {
 typedef struct {
     guard_port_t at[GUARDS_MAX];
     int count;
-    int served; // the port of its client; -1: none
+    int served;  // the port of its client; -1: none
+    bool spoken; // it has begun with the first byte of a packet
     argus_readings_t readings;
     driver_t *driver;
     argus_port_storage_t port;

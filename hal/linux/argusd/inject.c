@@ -51,6 +51,7 @@ void inject_set(inject_t *self, int sonar, argus_fault_kind_t kind, uint32_t for
         return;
     }
     of->kind = kind;
+    of->mark = kind != ARGUS_KIND_NONE ? kind : of->mark;
     of->since_ms = now_ms;
     of->for_ms = kind == ARGUS_KIND_NONE ? 0 : for_ms;
     of->has_stuck = false;
@@ -74,6 +75,24 @@ bool inject_change(inject_t *self, inject_change_t *change) {
     self->changes--;
     memmove(self->change, self->change + 1, self->changes * sizeof self->change[0]);
     return true;
+}
+
+void inject_settle(inject_t *self, const argus_status_t *status, uint32_t now_ms) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        inject_sonar_t *const of = &self->of[i];
+        if (of->kind == ARGUS_KIND_NONE && status->kind[i] == ARGUS_KIND_NONE &&
+            now_ms - of->since_ms >= INJECT_SETTLE_MS) {
+            of->mark = ARGUS_KIND_NONE;
+        }
+    }
+}
+
+uint32_t inject_marked(const inject_t *self) {
+    uint32_t mask = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        mask |= self->of[i].mark != ARGUS_KIND_NONE ? 1u << i : 0u;
+    }
+    return mask;
 }
 
 bool inject_is_on(const inject_t *self) {

@@ -9,12 +9,14 @@
 
 #define INJECT_MIN_MS 1000u
 #define INJECT_MAX_MS 600000u
-#define INJECT_FIRINGS 5 // so late is one that is slow
+#define INJECT_SETTLE_MS 5000u // after the end, until what was heard before names nothing any more
+#define INJECT_FIRINGS 5       // so late is one that is slow
 #define INJECT_PACKET_MAX 258
 
 typedef struct {
     argus_fault_kind_t kind; // NONE: nothing
-    uint32_t since_ms;
+    argus_fault_kind_t mark; // what it is, or was while the sonar is not in use again; NONE: its own readings
+    uint32_t since_ms;       // begun, or ended
     uint32_t for_ms;
     bool has_stuck;
     uint16_t stuck_mm;
@@ -55,6 +57,12 @@ void inject_expire(inject_t *self, bool all, uint32_t now_ms);
 
 // What began or ended since, oldest first; false: nothing more.
 bool inject_change(inject_t *self, inject_change_t *change);
+
+// An end is not enough: what the manager found of an injected fault stays marked until the sonar is in use
+// again.
+void inject_settle(inject_t *self, const argus_status_t *status, uint32_t now_ms);
+
+uint32_t inject_marked(const inject_t *self); // a mask
 
 bool inject_is_on(const inject_t *self);
 

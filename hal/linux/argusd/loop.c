@@ -103,7 +103,7 @@ static void look(loop_t *self) {
     view->controlled = control_is_held(&self->control);
     view->inject = self->inject.armed;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        view->injected[i] = (uint8_t)self->inject.of[i].kind;
+        view->injected[i] = (uint8_t)self->inject.of[i].mark;
     }
     look_at_can(self, view);
 }
@@ -213,13 +213,16 @@ static void take_control(loop_t *self) {
 
 // A robot that comes back may be another one, or stand elsewhere: nothing is altered any more.
 static void watch_injection(loop_t *self) {
+    const argus_status_t status = status_of(self);
     inject_expire(&self->inject, !self->driver.up || self->ending, self->moment.now_ms);
+    inject_settle(&self->inject, &status, self->moment.now_ms);
 }
 
 // Returns the ms until it has something to send.
 static uint32_t tell_bus(loop_t *self) {
     char text[ARGUSD_MESSAGE_MAX];
     const argus_status_t status = status_of(self);
+    self->bus.telemetry.injected = (uint16_t)inject_marked(&self->inject);
     const uint32_t wait_ms = bus_process(&self->bus, &status, self->moment.now_ms);
     if (bus_notice(&self->bus, text, sizeof text)) {
         voice_notice(&self->voice, text);
@@ -278,7 +281,7 @@ static void save(loop_t *self, bool now) {
 static uint32_t tell_service(loop_t *self) {
     const argus_status_t status = status_of(self);
     if (!self->ending) {
-        notify_robot(&self->notify, &status);
+        notify_robot(&self->notify, &status, inject_marked(&self->inject));
     }
     return notify_alive(&self->notify, self->moment.now_ms);
 }

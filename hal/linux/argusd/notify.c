@@ -107,7 +107,7 @@ void notify_status(notify_t *self, const char *status) {
     tell(self, text);
 }
 
-void notify_robot(notify_t *self, const argus_status_t *status) {
+void notify_robot(notify_t *self, const argus_status_t *status, uint32_t injected) {
     char text[NOTIFY_STATUS_MAX];
     int well = 0;
     if (!status->open) {
@@ -117,10 +117,10 @@ void notify_robot(notify_t *self, const argus_status_t *status) {
     for (int i = 0; i < status->sonars; i++) {
         well += status->health[i] == ARGUS_HEALTHY;
     }
-    snprintf(text, sizeof text, "%s (%s): %s, %d of %d sonars healthy, %s, mission %s", status->robot_name,
-             status->robot_subclass, argus_name(ARGUS_NAME_FAILURE, (int)status->failure), well,
-             status->sonars, status->active ? "active" : "passive",
-             argus_name(ARGUS_NAME_MISSION, (int)status->mission));
+    snprintf(text, sizeof text, "%s%s (%s): %s, %d of %d sonars healthy, %s, mission %s",
+             injected != 0 ? "INJECTED FAULT; " : "", status->robot_name, status->robot_subclass,
+             argus_name(ARGUS_NAME_FAILURE, (int)status->failure), well, status->sonars,
+             status->active ? "active" : "passive", argus_name(ARGUS_NAME_MISSION, (int)status->mission));
     notify_status(self, text);
 }
 

@@ -27,9 +27,10 @@ bool notify_open(notify_t *self, char *message, size_t capacity);
 // Up, and about this: call it when all that the operator gave is taken, whether or not a robot is there.
 void notify_ready(notify_t *self, uint32_t now_ms, const char *status);
 
-// One line for `systemctl status`; sent when it is another than the last.
+// One line for `systemctl status`; sent when it is another than the last. `injected`: a mask of sonars whose
+// fault is made for a test.
 void notify_status(notify_t *self, const char *status);
-void notify_robot(notify_t *self, const argus_status_t *status);
+void notify_robot(notify_t *self, const argus_status_t *status, uint32_t injected);
 
 // Says that the caller is alive, when that is due; returns the ms until it is due again. Only what shows that
 // work is done may call it: that is the watchdog's use.

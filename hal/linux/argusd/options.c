@@ -152,6 +152,9 @@ static bool take_place(control_spec_t *spec, const char *option, const char *tex
 }
 
 static bool take_control(options_t *options, const char *text, const message_t *message) {
+    if (options->control.family != 0) {
+        return text_refuse(message->text, message->capacity, "--control is given twice; keep one");
+    }
     return take_place(&options->control, "--control", text, message);
 }
 

@@ -17,6 +17,7 @@ from hil_sim.bench.drive import DriveBy, record
 from hil_sim.bench.passive import SETTINGS, judge_changes
 from hil_sim.bench.plan import mission_of, parse_id
 from hil_sim.bench.stream import Stream, load_stream, stream_path
+from hil_sim.bench.work import core_digest
 from hil_sim.cli.main import main
 from hil_sim.errors import SimError
 
@@ -134,6 +135,7 @@ def test_two_rules_on_three_streams(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert bench("drive-by", *words, *kept, "--json", str(tmp_path / "f.json")) == 0
     figures = json.loads((tmp_path / "f.json").read_text(encoding="utf-8"))
     assert figures["found"]["stuck"]["in_time"]["hits"] == 1
+    assert figures["core"] == core_digest()
 
 
 def test_worth() -> None:

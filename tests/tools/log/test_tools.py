@@ -13,9 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from argus_tools.log import plot
 from argus_tools.log.plot import POINTS_MAX, Series
 from argus_tools.log.spans import Happening, Span, spans
 from logs import CAPTURES, capture_bytes, command, decode, jsonl, run, sip
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from mcap.reader import make_reader
 
 from hil_sim.tables import load
@@ -229,6 +231,27 @@ def test_pictures_are_drawn(tmp_path: Path, view: str, ending: str) -> None:
         width, height = struct.unpack(">II", data[16:24])
         assert data.startswith(b"\x89PNG")
         assert min(width, height) > 500
+
+
+@pytest.mark.parametrize("range_mm", [0, 400, 1300, 4900, 5000])
+def test_no_label_of_the_ring_lies_on_another_or_on_an_arc(range_mm: int) -> None:
+    last = {number: (0.0, range_mm + number) for number in plot.POSES}
+    figure = plot._draw_ring("drive.rec", 1795590244.5, 59.9, last)
+    canvas: Any = FigureCanvasAgg(figure)
+    renderer = canvas.get_renderer()
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    boxes = [text.get_window_extent(renderer) for text in axes.texts]
+    assert len(boxes) == len(plot.POSES)
+    arcs = [axes.transData.transform(line.get_xydata()) for line in axes.lines]
+    for at, box in enumerate(boxes):
+        assert not [other for other in boxes[at + 1 :] if box.overlaps(other)], axes.texts[at].get_text()
+        assert not [point for arc in arcs for point in arc if box.contains(*point)], axes.texts[at].get_text()
+
+
+def test_times_on_pictures_are_those_that_people_read() -> None:
+    assert "2026-11-25 07:04:04 UTC" in plot.ring_title("a.rec", 1795590244.5, 59.9)
+    assert "UTC" not in plot.ring_title("a.rec", 59.9, 59.9)
 
 
 @pytest.mark.soak

@@ -445,10 +445,10 @@ void test_a_wall_along_the_way_is_not_stuck(void) {
     TEST_ASSERT_TRUE_MESSAGE(scene_all_quiet(&s), told("corridor", 0, 9));
 }
 
-// Readings in steps of 10 mm beside walls along the way: every other one repeats the last. Healthy ones are
-// not stuck; one that never changes among them is.
+// Readings in steps of 10 mm of walls that go along with the robot: every other one repeats the last. Healthy
+// sonars are not stuck; one that never changes among them is.
 void test_coarse_steps_beside_a_wall_are_not_stuck(void) {
-    static const int beside[] = {0, 7, 8, 15};
+    static const int aslant[] = {1, 6, 9, 14};
     for (int stuck = 0; stuck < 2; stuck++) {
         scene_init(&s, 1, START_MS);
         s.v_mm_s = 200;
@@ -456,13 +456,33 @@ void test_coarse_steps_beside_a_wall_are_not_stuck(void) {
         for (int n = 0; n < 600; n++) {
             for (int i = 0; i < 4; i++) {
                 random = random * 1103515245u + 12345u;
-                reading[beside[i]] = 600 + 10 * (int)(random >> 16 & 1u);
+                reading[aslant[i]] = 600 + 10 * (int)(random >> 16 & 1u);
             }
-            reading[7] = stuck != 0 ? 600 : reading[7];
+            reading[6] = stuck != 0 ? 600 : reading[6];
             s.x += 60;
-            scene_say(&s, 1u << 0 | 1u << 7 | 1u << 8 | 1u << 15, reading);
+            scene_say(&s, 1u << 1 | 1u << 6 | 1u << 9 | 1u << 14, reading);
         }
-        TEST_ASSERT_EQUAL_HEX16(stuck != 0 ? 1u << 7 : 0u, s.named);
+        TEST_ASSERT_EQUAL_HEX16(stuck != 0 ? 1u << 6 : 0u, s.named);
+    }
+}
+
+// Without noise a wall along the way gives the very same range abeam, to that sonar alone. Only way along its
+// own axis changes a range, or a turn.
+void test_a_wall_without_noise_is_not_stuck_abeam(void) {
+    static const int others[] = {1, 6, 9, 14};
+    for (int abeam = 0; abeam < 2; abeam++) {
+        const int same = abeam != 0 ? 7 : 6;
+        scene_init(&s, 1, START_MS);
+        s.v_mm_s = 200;
+        for (int n = 0; n < 600; n++) {
+            for (int i = 0; i < 4; i++) {
+                reading[others[i]] = 600 + 10 * (n >> i & 1);
+            }
+            reading[same] = 600;
+            s.x += 60;
+            scene_say(&s, 1u << 1 | 1u << 6 | 1u << 9 | 1u << 14 | 1u << same, reading);
+        }
+        TEST_ASSERT_EQUAL_HEX16(abeam != 0 ? 0u : 1u << 6, s.named);
     }
 }
 

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import argparse
+import datetime
 import math
 import sys
 from array import array
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -48,6 +50,12 @@ _STYLE: Final[Any] = {
 }
 # A reading this much older than the moment shown is drawn pale.
 FRESH_S: Final = 0.5
+# Times from here on count from 1970: those of a clock that counts from its own start are smaller.
+CALENDAR_S: Final = 1e9
+# The picture of the ring: how far it reaches, and half of a letter's width and height in its text, all in mm.
+RING_MM: Final = NO_ECHO_MM + 1500
+HALF_LETTER_MM: Final = (70.0, 130.0)
+Box = tuple[float, float, float, float]
 
 
 @dataclass
@@ -155,6 +163,17 @@ def _read(args: argparse.Namespace, source: Input) -> Drive:
     return drive
 
 
+def _calendar(t: float) -> str:
+    """Return a time as people read it; empty if it is of a clock that does not know the day.
+
+    >>> _calendar(1795590184.578)
+    '2026-11-25 07:03:04 UTC'
+    """
+    if t < CALENDAR_S:
+        return ""
+    return f"{datetime.datetime.fromtimestamp(t, datetime.UTC):%Y-%m-%d %H:%M:%S} UTC"
+
+
 def _figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), facecolor="white", layout="constrained")
 
@@ -174,7 +193,7 @@ def _ranges(args: argparse.Namespace, drive: Drive) -> Figure:
     # The time axis begins at 0, as clocks that count from 1970 have too many digits for one.
     zero = drive.start
     with rc_context(_STYLE):
-        figure = _figure(12 if columns == 2 else 9, 1.2 + 1.15 * rows)
+        figure = _figure(12 if columns == 2 else 9, 1.2 + 1.3 * rows)
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         for at, number in enumerate(numbers):
             axes = grid[at % rows][at // rows]
@@ -187,7 +206,7 @@ def _ranges(args: argparse.Namespace, drive: Drive) -> Figure:
             axes.set_visible(False)
         for column in range(columns):
             shown = [grid[row][column] for row in range(rows) if grid[row][column].get_visible()]
-            shown[-1].set_xlabel(f"s since t = {zero:.3f}" if zero else "s")
+            shown[-1].set_xlabel("s since the first SIP shown")
             shown[-1].tick_params(labelbottom=True)
         handles: list[Any] = [
             Line2D([], [], color=_LINE, linewidth=1, label="reading, mm"),
@@ -201,9 +220,15 @@ def _ranges(args: argparse.Namespace, drive: Drive) -> Figure:
                 label=f"no echo ({NO_ECHO_MM})",
             ),
         ]
-        if not note:
-            handles += [Patch(color=_COLOUR[kind], alpha=0.4, label=_LABEL[kind]) for kind in (DEAD, SUSPECT)]
+        occurring = {span.kind for span in spans if span.sonar in numbers}
+        handles += [
+            Patch(color=_COLOUR[kind], alpha=0.4, label=_LABEL[kind])
+            for kind in (DEAD, SUSPECT)
+            if kind in occurring
+        ]
         title = f"{Path(args.log).name}: sonar readings over time" + (" (not judged)" if note else "")
+        if _calendar(zero):
+            title += f", from {_calendar(zero)} on"
         figure.suptitle(title, fontsize=11, color=_INK)
         _legend(figure, handles, 4)
     return figure
@@ -227,8 +252,8 @@ def _one_sonar(axes: Any, number: int, series: Series, zero: float) -> None:
     axes.plot(none, np.full(len(none), NO_ECHO_MM), color=_INK, linestyle="none", marker="|", markersize=4,
               markeredgewidth=0.6)  # fmt: skip
     pose = POSES.get(number)
-    axes.set_ylabel(f"{number}" + (f"\n{pose['heading_deg']:+d}°" if pose else ""), rotation=0, labelpad=5, va="center",
-                    ha="right")  # fmt: skip
+    name = f"sonar {number}" + (f" at {pose['heading_deg']:+d}°" if pose else "")
+    axes.set_title(name, loc="left", fontsize=9, pad=3, color=_INK)
     axes.set_ylim(0, NO_ECHO_MM * 1.06)
     axes.set_yticks([0, 2500, NO_ECHO_MM])
     axes.grid(color=_GRID, linewidth=0.5)
@@ -306,12 +331,24 @@ def _ring(args: argparse.Namespace, source: Input) -> Figure:
     return _draw_ring(Path(args.log).name, moment, moment - first, last)
 
 
+def ring_title(name: str, moment: float, since: float) -> str:
+    """Return the title of the ring: which log, how long after its beginning, and the time of day if known.
+
+    >>> ring_title("drive.rec", 12.5, 12.5)
+    'drive.rec: the sonar ring, up is ahead\\n12.5 s after the first SIP'
+    """
+    day = f", {_calendar(moment)}" if _calendar(moment) else ""
+    return f"{name}: the sonar ring, up is ahead\n{since:.1f} s after the first SIP{day}"
+
+
 def _draw_ring(name: str, moment: float, since: float, last: dict[int, tuple[float, int]]) -> Figure:
     half = math.radians(_SONAR["cone_deg"]) / 2
     with rc_context(_STYLE):
         figure = _figure(8, 8.2)
         axes: Any = figure.add_subplot(projection="polar")
         axes.set_theta_zero_location("N")
+        shown: list[tuple[float, float, str]] = []
+        points: list[tuple[float, float]] = []
         for number, (t, range_mm) in sorted(last.items()):
             if number not in POSES:
                 continue
@@ -324,29 +361,25 @@ def _draw_ring(name: str, moment: float, since: float, last: dict[int, tuple[flo
             axes.bar(turn, range_mm, width=2 * width, bottom=stand, color=colour,
                      alpha=alpha if is_echo else alpha * 0.35, linewidth=0)  # fmt: skip
             edge = stand + range_mm
-            arc = np.linspace(turn - width, turn + width, 9)
-            axes.plot(arc, np.full(9, edge), color=colour, linewidth=2.2, alpha=min(1.0, alpha + 0.4))
-            text = f"{number}: {range_mm}" if is_echo else f"{number}: no echo"
-            axes.text(
-                turn,
-                min(edge + 330 + 180 * abs(math.sin(turn)), NO_ECHO_MM + 550),
-                text,
-                ha="center",
-                va="center",
-                fontsize=8,
-                color=_INK,
-            )
+            arc = np.linspace(turn - width, turn + width, 25)
+            axes.plot(arc, np.full(25, edge), color=colour, linewidth=2.2, alpha=min(1.0, alpha + 0.4))
+            points += [_across(angle, edge) for angle in arc]
+            shown.append((turn, edge, f"{number}: {range_mm}" if is_echo else f"{number}: no echo"))
+        taken: list[Box] = []
+        for turn, edge, text in shown:
+            at, box = _place(turn, edge, text, taken, points)
+            taken.append(box)
+            axes.text(turn, at, text, ha="center", va="center", fontsize=8, color=_INK)
         _draw_body(axes)
-        axes.set_ylim(0, NO_ECHO_MM + 1100)
+        axes.set_ylim(0, RING_MM)
         axes.set_yticks(
             range(1000, NO_ECHO_MM + 1, 1000), [f"{metres} m" for metres in range(1, 6)], color="#888888"
         )
-        axes.set_rlabel_position(180)
+        axes.set_rlabel_position(110)  # no sonar looks there
         axes.set_thetagrids(range(0, 360, 30), [f"{a if a <= 180 else a - 360}°" for a in range(0, 360, 30)])
         axes.grid(color=_GRID, linewidth=0.6)
         axes.set_axisbelow(True)
-        shown = f"t = {moment:.3f} s" + (f" (+{since:.1f} s)" if abs(since - moment) > 0.05 else "")
-        axes.set_title(f"{name}: the sonar ring at {shown}; up is ahead", fontsize=11, color=_INK, pad=18)
+        axes.set_title(ring_title(name, moment, since), fontsize=11, color=_INK, pad=18)
         handles = [
             Patch(color=_LINE, alpha=0.6, label="echo"),
             Patch(color=_COLOUR[DEAD], alpha=0.3, label="no echo"),
@@ -354,6 +387,30 @@ def _draw_ring(name: str, moment: float, since: float, last: dict[int, tuple[flo
         ]
         _legend(figure, handles, 3)
     return figure
+
+
+def _across(turn: float, distance: float) -> tuple[float, float]:
+    """Return a place of the ring in mm to the right and up of its middle."""
+    return -distance * math.sin(turn), distance * math.cos(turn)
+
+
+def _place(
+    turn: float, edge: float, text: str, taken: Sequence[Box], points: Sequence[tuple[float, float]]
+) -> tuple[float, Box]:
+    """Return how far out a label stands so that it is on no arc and no other label, and its box."""
+    wide, high = HALF_LETTER_MM[0] * len(text), HALF_LETTER_MM[1]
+    at = edge + 100 + wide * abs(math.sin(turn)) + high * abs(math.cos(turn))
+    while True:
+        x, y = _across(turn, at)
+        box = (x - wide, y - high, x + wide, y + high)
+        on_label = any(
+            box[0] < other[2] and other[0] < box[2] and box[1] < other[3] and other[1] < box[3]
+            for other in taken
+        )
+        on_arc = any(box[0] < px < box[2] and box[1] < py < box[3] for px, py in points)
+        if at >= RING_MM or not (on_label or on_arc):
+            return at, box
+        at += 40
 
 
 def _wedge(number: int, half: float) -> tuple[float, float]:

@@ -105,8 +105,10 @@ void test_packing_agrees_with_another_implementation(void) {
     uint8_t data[8];
     hal_dbc_heartbeat_pack(data, &(hal_dbc_heartbeat_t){4, 2, 1, 1, 5, 2, 9, 14, 3, 12, 0x1234, 0xABCD});
     packed_is("6455e9c33412cdab", data);
-    hal_dbc_health_pack(data, &(hal_dbc_health_t){{0, 1, 2, 3, 4, 5, 0, 1}, {7, 6, 5, 4, 3, 2, 1, 0}});
-    packed_is("38312a231c150801", data);
+    hal_dbc_health_pack(
+        data,
+        &(hal_dbc_health_t){{0, 1, 2, 3, 4, 5, 0, 1}, {7, 6, 5, 4, 3, 2, 1, 0}, {1, 0, 0, 1, 0, 0, 0, 1}});
+    packed_is("78312a631c150841", data);
     hal_dbc_readings_pack(data, &(hal_dbc_readings_t){{150, 5000, 8191, 4097}, {1, 2, 0, 4}});
     packed_is("96208853ff1f0190", data);
     hal_dbc_plan_pack(data, &(hal_dbc_plan_t){5, 1, 0, {1, 0, 1, 1, 0, 1}, 11, {-20, 20, -128, 127, -1, 0}});

@@ -143,6 +143,33 @@ void test_every_fault_ends(void) {
     TEST_ASSERT_FALSE(inject_change(&inject, &change));
 }
 
+// A verdict outlives the fault that it is about: nobody may take it for the sonar's own.
+void test_a_mark_stays_until_the_sonar_is_in_use_again(void) {
+    argus_status_t status = {0};
+    inject_set(&inject, 3, ARGUS_KIND_SILENT, 3000, 1000);
+    status.kind[3] = ARGUS_KIND_SILENT;
+    inject_expire(&inject, false, 4000);
+    TEST_ASSERT_FALSE(inject_is_on(&inject));
+    inject_settle(&inject, &status, 90000);
+    TEST_ASSERT_EQUAL_HEX32(1u << 3, inject_marked(&inject));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_SILENT, inject.of[3].mark);
+    status.kind[3] = ARGUS_KIND_NONE;
+    inject_settle(&inject, &status, 90000);
+    TEST_ASSERT_EQUAL_HEX32(0, inject_marked(&inject));
+}
+
+// What was heard during the fault may name it shortly after its end.
+void test_a_mark_stays_for_some_time_in_any_case(void) {
+    const argus_status_t status = {0};
+    inject_set(&inject, 3, ARGUS_KIND_OFF, 3000, 1000);
+    inject_settle(&inject, &status, 3500);
+    inject_expire(&inject, false, 4000);
+    inject_settle(&inject, &status, 4000 + INJECT_SETTLE_MS - 1);
+    TEST_ASSERT_EQUAL_HEX32(1u << 3, inject_marked(&inject));
+    inject_settle(&inject, &status, 4000 + INJECT_SETTLE_MS);
+    TEST_ASSERT_EQUAL_HEX32(0, inject_marked(&inject));
+}
+
 void test_nothing_is_armed_without_the_option(void) {
     inject_init(&inject, false, 1);
     TEST_ASSERT_NULL(inject_filter(&inject).alter);

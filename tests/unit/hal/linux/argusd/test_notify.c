@@ -124,15 +124,17 @@ void test_the_status_of_a_robot(void) {
     argus_status_t status = {.open = false, .sonars = 16, .robot_name = "Bob", .robot_subclass = "p3dx-sh"};
     listen_at(path);
     open_it();
-    notify_robot(&notify, &status);
+    notify_robot(&notify, &status, 0);
     TEST_ASSERT_EQUAL_STRING("STATUS=no robot answers", heard());
     status.open = true;
     for (int i = 0; i < status.sonars; i++) {
         status.health[i] = i == 3 ? ARGUS_DISABLED : ARGUS_HEALTHY;
     }
-    notify_robot(&notify, &status);
+    notify_robot(&notify, &status, 0);
     const char *const told = heard();
     TEST_ASSERT_NOT_NULL(strstr(told, "STATUS=Bob (p3dx-sh): IsNormal, 15 of 16 sonars healthy, passive"));
+    notify_robot(&notify, &status, 1u << 3);
+    TEST_ASSERT_NOT_NULL(strstr(heard(), "STATUS=INJECTED FAULT; Bob"));
 }
 
 // Half of what is allowed, so that a late one is still in time; the clock wraps.

@@ -129,6 +129,7 @@ void test_refusals(void) {
     refused("--link foo", "unknown scheme");
     refused("--link tcp:a --link tcp:b", "given twice");
     refused("--link can:a --link can:b", "given twice");
+    refused("--link tcp:a --control unix:/tmp/a --control unix:/tmp/b", "--control is given twice; keep one");
     refused("--link can:a --auto-baud", "for serial links");
     refused("--link can:a,robot=8", "from 0 to 7");
     refused("--link can:a --check --can-telemetry a", "leave out --can-telemetry");
