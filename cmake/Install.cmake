@@ -86,6 +86,17 @@ if(TARGET argus_shared)
             PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
 endif()
 
+if(DEFINED SKBUILD_DATA_DIR) # ... and where ros2 launch looks, below each folder of AMENT_PREFIX_PATH
+    set(share ${SKBUILD_DATA_DIR}/share)
+    configure_file(cmake/ros/package.xml.in ${PROJECT_BINARY_DIR}/ros/package.xml @ONLY)
+    file(WRITE ${PROJECT_BINARY_DIR}/ros/argus_ros "")
+    install(FILES ${PROJECT_BINARY_DIR}/ros/argus_ros DESTINATION ${share}/ament_index/resource_index/packages
+            COMPONENT python EXCLUDE_FROM_ALL)
+    install(FILES ${PROJECT_BINARY_DIR}/ros/package.xml DESTINATION ${share}/argus_ros COMPONENT python EXCLUDE_FROM_ALL)
+    install(DIRECTORY tools/argus_ros/launch tools/argus_ros/config DESTINATION ${share}/argus_ros
+            COMPONENT python EXCLUDE_FROM_ALL)
+endif()
+
 if(ARGUS_DEB)
     include(cmake/Deb.cmake)
 endif()

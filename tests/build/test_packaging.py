@@ -17,12 +17,13 @@ HELD = {
     "argus_tools/argusd": "a program",
     "argus_tools/argusd-licences.txt": "words",
     "argus_tools/libargus.so": "a library",
+    "argus-1.data/data/share/argus_ros/launch/argus.launch.xml": "<launch/>",
     "argus-1.dist-info/RECORD": "",
     "argus-1.dist-info/entry_points.txt": "[console_scripts]\nargusctl = argus_tools.control.cli:main\n",
 }
 
 
-def test_argusd_of_the_wheel_is_not_among_the_debian_tools(tmp_path: Path) -> None:
+def test_the_debian_tools_are_those_of_the_wheel_without_argusd(tmp_path: Path) -> None:
     wheel = tmp_path / "argus-1-py3-none-any.whl"
     with zipfile.ZipFile(wheel, "w") as archive:
         for name, text in HELD.items():
@@ -34,6 +35,7 @@ def test_argusd_of_the_wheel_is_not_among_the_debian_tools(tmp_path: Path) -> No
         "bin/argusctl",
         "lib/argus_tools/__init__.py",
         "lib/argus_tools/libargus.so",
+        "share/argus_ros/launch/argus.launch.xml",
         "lib/argus-1.dist-info/INSTALLER",
         "lib/argus-1.dist-info/entry_points.txt",
     }

@@ -38,7 +38,10 @@ EXPECTED = {
     "usr/share/man/man1/argus-ros.1.gz",
     "usr/share/man/man1/argus-range-guard.1.gz",
     "usr/lib/python3/dist-packages/argus_tools/foxglove_layout.json",
-    "usr/lib/python3/dist-packages/argus_ros/launch/argus.launch.xml",
+    "usr/share/ament_index/resource_index/packages/argus_ros",
+    "usr/share/argus_ros/config/argus.yaml",
+    "usr/share/argus_ros/launch/argus.launch.xml",
+    "usr/share/argus_ros/package.xml",
     *(f"usr/share/doc/{name}/copyright" for name in PACKAGES),
 }
 EXPOSURE_MAX = 2.5

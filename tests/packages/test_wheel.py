@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import time
 import tomllib
+import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
 
@@ -47,7 +48,13 @@ def test_it_holds_all_modules_and_data_and_nothing_else(wheel: Path) -> None:
         held = {name for name in archive.namelist() if ".dist-info/" not in name and not name.endswith("/")}
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["scikit-build"]
     tracked = run("git", "ls-files", *settings["wheel"]["packages"]).splitlines()
-    expected = {name.removeprefix("tools/") for name in tracked}
+    for_ros = {
+        name.removeprefix("tools/") for name in tracked if re.match(r"tools/argus_ros/(launch|config)/", name)
+    }
+    expected = {name.removeprefix("tools/") for name in tracked} - for_ros
+    share = {name.partition(".data/data/share/")[2] for name in held if ".data/" in name}
+    assert share == {*for_ros, "argus_ros/package.xml", "ament_index/resource_index/packages/argus_ros"}
+    held = {name for name in held if ".data/" not in name}
     assert held - expected == {
         "argus_tools/argusd",
         "argus_tools/argusd-licences.txt",
@@ -97,6 +104,19 @@ def test_argusd_comes_along_and_needs_nothing_of_the_system(clean_venv: Path, tm
                 child.terminate()
         finally:
             sim.terminate()
+
+
+def test_ros_finds_the_launch_files(clean_venv: Path) -> None:
+    """As ament does: the index names the package, its share folder holds the files, each with its parameters."""
+    share = clean_venv / "share"
+    assert (share / "ament_index/resource_index/packages/argus_ros").exists()
+    assert ET.parse(share / "argus_ros/package.xml").findtext("version") == argus.__version__
+    for name in ("argus", "range_guard"):
+        launch = share / f"argus_ros/launch/{name}.launch.xml"
+        [given] = [
+            arg.get("default", "") for arg in ET.parse(launch).iter("arg") if arg.get("name") == "params"
+        ]
+        assert Path(given.replace("$(dirname)", str(launch.parent))).exists()
 
 
 def test_the_layout_for_foxglove_comes_along(clean_venv: Path) -> None:

@@ -84,11 +84,14 @@ def make_wheel(arch: str, run: Run) -> None:
 
 
 def stage_tools(wheel: Path, stage: Path) -> None:
-    """Unpack WHEEL as Debian has Python's modules: lib/ and bin/, with Debian's own interpreter."""
+    """Unpack WHEEL as Debian has it: modules in lib/, programs for Debian's own Python in bin/, data in share/."""
     shutil.rmtree(stage, ignore_errors=True)
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(stage / "lib")
     [info] = (stage / "lib").glob("*.dist-info")
+    for data in (stage / "lib").glob("*.data"):
+        (data / "data/share").rename(stage / "share")
+        shutil.rmtree(data)
     (info / "RECORD").unlink()  # pip's own: dpkg has its list
     for name in BROUGHT:  # a package of its own has it
         (stage / "lib/argus_tools" / name).unlink(missing_ok=True)
