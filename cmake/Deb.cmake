@@ -102,6 +102,7 @@ install(FILES ${deb_dir}/argusd/default DESTINATION /etc/default RENAME argusd C
 # The tools, as pip would install them from the wheel.
 install(DIRECTORY ${ARGUS_DEB}/lib/ DESTINATION lib/python3/dist-packages COMPONENT tools)
 install(DIRECTORY ${ARGUS_DEB}/bin/ DESTINATION bin COMPONENT tools USE_SOURCE_PERMISSIONS)
+install(DIRECTORY ${ARGUS_DEB}/share/ DESTINATION share COMPONENT tools)
 file(GLOB programs RELATIVE ${ARGUS_DEB}/bin ${ARGUS_DEB}/bin/*)
 list(REMOVE_ITEM programs argus-log)
 install(FILES tools/argus.bash-completion DESTINATION share/bash-completion/completions RENAME argus-log COMPONENT tools)

@@ -70,12 +70,31 @@ foreach(page IN LISTS pages)
     install_manual(${name} tools)
 endforeach()
 
-# Into a wheel: beside the modules that load them.
+# Into a wheel: beside the modules that load them, or run it.
 if(TARGET argus_shared)
+    add_custom_target(wheel_parts DEPENDS argus_shared argus_sim)
+    if(TARGET argusd)
+        add_dependencies(wheel_parts argusd)
+        install(TARGETS argusd RUNTIME DESTINATION argus_tools COMPONENT python EXCLUDE_FROM_ALL)
+        if(ARGUS_STATIC)
+            install(FILES cmake/argusd-licences.txt DESTINATION argus_tools COMPONENT python EXCLUDE_FROM_ALL)
+        endif()
+    endif()
     install(FILES $<TARGET_FILE:argus_shared> DESTINATION argus_tools RENAME libargus.so COMPONENT python EXCLUDE_FROM_ALL
             PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
     install(FILES $<TARGET_FILE:argus_sim> DESTINATION hil_sim/sonar COMPONENT python EXCLUDE_FROM_ALL
             PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+endif()
+
+if(DEFINED SKBUILD_DATA_DIR) # ... and where ros2 launch looks, below each folder of AMENT_PREFIX_PATH
+    set(share ${SKBUILD_DATA_DIR}/share)
+    configure_file(cmake/ros/package.xml.in ${PROJECT_BINARY_DIR}/ros/package.xml @ONLY)
+    file(WRITE ${PROJECT_BINARY_DIR}/ros/argus_ros "")
+    install(FILES ${PROJECT_BINARY_DIR}/ros/argus_ros DESTINATION ${share}/ament_index/resource_index/packages
+            COMPONENT python EXCLUDE_FROM_ALL)
+    install(FILES ${PROJECT_BINARY_DIR}/ros/package.xml DESTINATION ${share}/argus_ros COMPONENT python EXCLUDE_FROM_ALL)
+    install(DIRECTORY tools/argus_ros/launch tools/argus_ros/config DESTINATION ${share}/argus_ros
+            COMPONENT python EXCLUDE_FROM_ALL)
 endif()
 
 if(ARGUS_DEB)

@@ -123,7 +123,7 @@ PAGES = (
             "argusctl speaks to an argusd that was started with --control: it tells its state, follows its events, "
             "drives the robot and, where argusd was started with --inject, makes a sonar fail for a test.",
             "An order takes control and gives it back. step and turn wait until the robot stands; when they are "
-            "interrupted, the robot is stopped.",
+            "interrupted, the robot is stopped. When another stops it before it is done, they say so and end with 1.",
         ),
         has_commands=True,
         ends=(
@@ -176,6 +176,31 @@ PAGES = (
         ),
         ends=(("ENVIRONMENT", (("ARGUS_CONTROL", "the control socket, unless --control names one"),)),),
         also=("argusd", "argus-log", "argus-monitor"),
+    ),
+    Page(
+        name="argus-ros",
+        what="is the ROS 2 node of a robot that argusd minds",
+        command=(sys.executable, "-m", "argus_ros.programs", "argus-ros"),
+        synopsis=("[--ros-args ARGUMENTS]",),
+        description=(
+            "argus-ros tells on the topics of a driver what argusd knows: a range for each sonar, a cloud of echoes, "
+            "diagnoses, odometry, battery and frames. With the parameter guard it takes cmd_vel, which argusd's guard "
+            "bounds. It needs rclpy, of a ROS 2 installation or from PyPI.",
+        ),
+        ends=(("ENVIRONMENT", (("ARGUS_CONTROL", "the control socket, unless control names one"),)),),
+        also=("argusd", "argus-range-guard", "argus-foxglove"),
+    ),
+    Page(
+        name="argus-range-guard",
+        what="is a ROS 2 node that repairs the sonar ranges of any driver",
+        command=(sys.executable, "-m", "argus_ros.programs", "argus-range-guard"),
+        synopsis=("[--ros-args ARGUMENTS]",),
+        description=(
+            "argus-range-guard runs the fault manager on the sensor_msgs/Range topics and the odometry of any driver, "
+            "and publishes each repaired as TOPIC/guarded. It needs no argusd, and commands no motion. It needs rclpy, "
+            "of a ROS 2 installation or from PyPI.",
+        ),
+        also=("argus-ros", "argusd"),
     ),
     Page(
         name="argus-flash-check",

@@ -274,7 +274,7 @@ def parser() -> argparse.ArgumentParser:
     rest.add_argument(
         "--orders",
         action="store_true",
-        help="obey lines on standard input ('break off:3', 'mend 3', 'mend all') until it ends",
+        help="obey lines on standard input ('break off:3', 'mend 3', 'mend all', 'watch') until it ends",
     )
     rest.add_argument("--list-worlds", action="store_true", help="list our worlds and leave")
     rest.add_argument("--list-faults", action="store_true", help="list the fault kinds and leave")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Orders to a running emulator, a line each on standard input: break a sonar, mend it; each is answered."""
+"""Orders to a running emulator, a line each on standard input: break a sonar, mend it, watch; each is answered."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ _MEND: Final = re.compile(r"mend\s+(all|\d{1,2})")
 class Orders:
     """Reads orders from a file descriptor, obeys them at once, and answers with a JSON object a line.
 
-    An answer that is not taken is dropped: the robot waits for no reader.
+    An answer that is not taken is dropped: the robot waits for no reader. After the order `watch` a line
+    also tells each time that another sonar is broken, or one no longer is: faults begin and end by themselves, too.
     """
 
     def __init__(self, robot: Robot, faults: FaultSet, source: int, answers: int) -> None:
@@ -32,6 +33,8 @@ class Orders:
         self._source = source
         self._answers = answers
         self._rest = b""
+        self._watched = False
+        self._told: dict[str, str] = {}
         self.ended = False
         """No orders can be given any more."""
 
@@ -47,22 +50,37 @@ class Orders:
                 self._answer(rest)
                 rest = b""
             self._rest = rest
+        if self._watched and self._broken() != self._told:
+            self._say({"t_s": self._now_s})
+
+    @property
+    def _now_s(self) -> float:
+        return round(self._robot.now_ms / 1000, 3)
+
+    def _broken(self) -> dict[str, str]:
+        """Return what is broken now."""
+        return {
+            str(number): fault.kind
+            for number in range(self._robot.table.sonars)
+            if (fault := self._faults.active(number)) is not None
+        }
+
+    def _say(self, message: dict[str, Any]) -> None:
+        """Write a line with what is broken, unless nobody takes it."""
+        broken = self._broken()
+        if select.select([], [self._answers], [], 0)[1]:
+            os.write(self._answers, json.dumps(message | {"broken": broken}).encode() + b"\n")
+            self._told = broken
 
     def _answer(self, line: bytes) -> None:
         text = line.decode("utf-8", "replace").strip()
-        answer: dict[str, Any] = {"order": text[:_LINE_MAX], "t_s": round(self._robot.now_ms / 1000, 3)}
+        answer: dict[str, Any] = {"order": text[:_LINE_MAX], "t_s": self._now_s}
         try:
             self._do(text)
             answer["ok"] = True
         except SimError as error:
             answer |= {"ok": False, "say": str(error)}
-        answer["broken"] = {
-            str(number): fault.kind
-            for number in range(self._robot.table.sonars)
-            if (fault := self._faults.active(number)) is not None
-        }
-        if select.select([], [self._answers], [], 0)[1]:
-            os.write(self._answers, json.dumps(answer).encode() + b"\n")
+        self._say(answer)
 
     def _do(self, text: str) -> None:
         if len(text) > _LINE_MAX:
@@ -77,8 +95,10 @@ class Orders:
             self._faults.inject(fault)
         elif found := _MEND.fullmatch(text):
             self._mend(found[1])
+        elif text == "watch":
+            self._watched = True
         else:
-            raise SimError(f"'{text[:40]}' is no order; write 'break off:3', 'mend 3' or 'mend all'")
+            raise SimError(f"'{text[:40]}' is no order; write 'break off:3', 'mend 3', 'mend all' or 'watch'")
 
     def _mend(self, target: str) -> None:
         sonars = self._robot.table.sonars

@@ -34,6 +34,8 @@ EXPECTED = {
     "share/man/man1/argusctl.1",
     "share/man/man1/argus-conformance.1",
     "share/man/man1/argus-monitor.1",
+    "share/man/man1/argus-ros.1",
+    "share/man/man1/argus-range-guard.1",
     "share/bash-completion/completions/argusd",
     "lib/udev/rules.d/60-argus.rules",
 }

@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import forks
@@ -58,6 +59,13 @@ def test_options_of_help_are_in_the_page_and_no_other(page: gen_man.Page) -> Non
     }
     assert declared
     assert tagged == declared
+
+
+def test_each_program_that_is_installed_has_a_page() -> None:
+    scripts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["scripts"]
+    assert {path.stem for path in PAGES} == {"argusd", *scripts}
+    excused = [path for path in (ROOT / "cmake/deb").iterdir() if path.suffix == ".lintian-overrides"]
+    assert [path.name for path in excused if "no-manual-page" in path.read_text(encoding="utf-8")] == []
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: path.name)

@@ -157,6 +157,18 @@ def test_one_at_a_time_orders_and_a_replay_moves_nothing(bench: Bench) -> None:
         assert not argusd.named("OPERATOR", value=5)[1:], "one turn was ordered"
 
 
+def test_a_turn_that_another_stops_is_no_success(bench: Bench) -> None:
+    bench.sim(bench.world(**hall()))
+    argusd = start(bench)
+    words = [str(ARGUSCTL), "--socket", place_of(bench), "turn", "170"]
+    with subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as turning:
+        argusd.wait("OPERATOR", value=5)
+        assert ctl(bench, "stop").returncode == 0
+        _, said = turning.communicate(timeout=PATIENCE_S)
+    assert turning.returncode == 1
+    assert said == "argusctl: another order stopped the robot before it was done (stopped)\n"
+
+
 @pytest.fixture
 def token_file(bench: Bench) -> Path:
     path = bench.path / "token"

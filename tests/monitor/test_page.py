@@ -10,6 +10,7 @@ import threading
 from collections.abc import Sequence
 from pathlib import Path
 
+import pytest
 from page_browser import Browser, By, Keys, Monitor, wait_for
 
 ARRIVED_MM = 80.0
@@ -150,6 +151,45 @@ def test_every_control_is_reached_by_tab_and_the_list_by_arrows(page: Browser) -
     page.wait("the focus is on the chosen one", lambda: active.get_attribute("aria-checked") == "true")
 
 
+def is_shown(page: Browser, selector: str) -> bool:
+    """Whether the element can be seen, whole within the width of the page."""
+    box = page.js(
+        "const b = document.querySelector(arguments[0]).getBoundingClientRect(); return [b.left, b.right, b.height]",
+        selector,
+    )
+    width: int = page.js("return document.documentElement.clientWidth")
+    return bool(box[2] > 0 and box[0] >= 0 and box[1] <= width)
+
+
+@pytest.mark.parametrize("width", [320, 360, 700])
+def test_on_a_narrow_page_the_form_and_the_keys_are_folded_out(page: Browser, width: int) -> None:
+    page.size(width, 740)
+    page.wait("no notice is in the way", lambda: not page.driver.find_elements(By.CSS_SELECTOR, "#say.shown"))
+    assert not is_shown(page, ".hint")
+    assert page.driver.find_element(By.ID, "more").get_attribute("aria-expanded") == "false"
+    page.click("more")
+    assert is_shown(page, ".hint")
+    assert is_shown(page, "#goto")
+    assert is_shown(page, "#goto button")
+    assert page.driver.find_element(By.ID, "more").get_attribute("aria-expanded") == "true"
+    assert page.js("return document.documentElement.scrollWidth") <= width
+    page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
+    here = page.known("state")
+    for name, mm in (("x", here["x_mm"] + 700), ("y", here["y_mm"])):
+        page.driver.find_element(By.CSS_SELECTOR, f"#goto [name={name}]").send_keys(str(round(mm / 1000, 2)))
+    page.driver.find_element(By.CSS_SELECTOR, "#goto button").click()
+    page.wait("it is on its way", lambda: page.known("state.mode") == "DRIVING", 30)
+    page.click("stop")
+    page.click("more")
+    assert not is_shown(page, ".hint")
+
+
+def test_on_a_wide_page_nothing_is_folded_away(page: Browser) -> None:
+    assert not is_shown(page, "#more")
+    assert is_shown(page, ".hint")
+    assert is_shown(page, "#goto button")
+
+
 def test_keys_do_nothing_in_fields_and_letters_nothing_outside_of_the_picture(page: Browser) -> None:
     page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
     field = page.driver.find_element(By.NAME, "x")
@@ -277,3 +317,20 @@ def test_a_sonar_broken_by_a_click_is_diagnosed_on_the_page_and_mended_by_anothe
     page.wait("tested again it comes back", lambda: page.known("state.health")[3] in ("PROBATION", "HEALTHY"))
     # Standing still it may stay on probation for long: the manager wants to see it agree with the others.
     page.wait("and the list says so", lambda: page.row(3) in ("probation: silent", "healthy"))
+
+
+def test_what_an_option_breaks_is_marked_from_the_start(chromium: Browser, folder: Path) -> None:
+    words = ["--sim", "--world", "hall", "--port", "0", "--fault", "off:3", "--fault", "silent:6@20s"]
+    monitor = Monitor(words, folder)
+    try:
+        chromium.open(monitor.url)
+        chromium.wait("it is marked", lambda: chromium.row(3).startswith("↯ "))
+        chromium.wait("so is one that its time breaks", lambda: chromium.row(6).startswith("↯ "))
+        assert not chromium.row(4).startswith("↯")
+        assert set(chromium.known("broken")) == {"3", "6"}
+        bolts = "#robot .sonar[data-sonar='3'] .bolt"
+        chromium.wait(
+            "so it is on the picture", lambda: chromium.driver.find_elements(By.CSS_SELECTOR, bolts)
+        )
+    finally:
+        monitor.end()

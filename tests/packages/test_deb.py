@@ -35,6 +35,13 @@ EXPECTED = {
     "usr/share/bash-completion/completions/argus-sim",
     "usr/share/man/man1/argusd.1.gz",
     "usr/share/man/man1/argus-log.1.gz",
+    "usr/share/man/man1/argus-ros.1.gz",
+    "usr/share/man/man1/argus-range-guard.1.gz",
+    "usr/lib/python3/dist-packages/argus_tools/foxglove_layout.json",
+    "usr/share/ament_index/resource_index/packages/argus_ros",
+    "usr/share/argus_ros/config/argus.yaml",
+    "usr/share/argus_ros/launch/argus.launch.xml",
+    "usr/share/argus_ros/package.xml",
     *(f"usr/share/doc/{name}/copyright" for name in PACKAGES),
 }
 EXPOSURE_MAX = 2.5
@@ -62,6 +69,8 @@ def test_the_packages_and_their_files(debs: dict[str, Path], unpacked: Path) -> 
     assert set(debs) == PACKAGES
     held = {path.relative_to(unpacked).as_posix() for path in unpacked.rglob("*") if not path.is_dir()}
     assert held >= EXPECTED
+    ours = "usr/lib/python3/dist-packages/argus_tools/argusd"
+    assert not [name for name in held if name.startswith(ours)], "argusd is a package of its own"
     assert not [name for name in held if "__pycache__" in name or name.startswith("usr/local")]
     for deb in debs.values():
         assert field(deb, "Version") == argus.__version__

@@ -7,7 +7,9 @@ import os
 import re
 import shutil
 import subprocess
+import time
 import tomllib
+import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
 
@@ -46,8 +48,19 @@ def test_it_holds_all_modules_and_data_and_nothing_else(wheel: Path) -> None:
         held = {name for name in archive.namelist() if ".dist-info/" not in name and not name.endswith("/")}
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["scikit-build"]
     tracked = run("git", "ls-files", *settings["wheel"]["packages"]).splitlines()
-    expected = {name.removeprefix("tools/") for name in tracked}
-    assert held - expected == {"argus_tools/libargus.so", "hil_sim/sonar/libargus_sim.so"}
+    for_ros = {
+        name.removeprefix("tools/") for name in tracked if re.match(r"tools/argus_ros/(launch|config)/", name)
+    }
+    expected = {name.removeprefix("tools/") for name in tracked} - for_ros
+    share = {name.partition(".data/data/share/")[2] for name in held if ".data/" in name}
+    assert share == {*for_ros, "argus_ros/package.xml", "ament_index/resource_index/packages/argus_ros"}
+    held = {name for name in held if ".data/" not in name}
+    assert held - expected == {
+        "argus_tools/argusd",
+        "argus_tools/argusd-licences.txt",
+        "argus_tools/libargus.so",
+        "hil_sim/sonar/libargus_sim.so",
+    }
     missing = {name for name in expected - held if (ROOT / name).exists() or (ROOT / "tools" / name).exists()}
     assert not missing
 
@@ -68,6 +81,47 @@ def test_each_command_answers(wheel: Path, clean_venv: Path) -> None:
         told = run(clean_venv / "bin" / name, "--help", cwd="/")
         assert told.startswith(f"usage: {name}")
         assert "examples:" in told
+
+
+def test_argusd_comes_along_and_needs_nothing_of_the_system(clean_venv: Path, tmp_path: Path) -> None:
+    find = "from argus_tools.monitor.sim import find_argusd; print(find_argusd(None))"
+    env = {"PATH": "/usr/bin:/bin"}
+    argusd = Path(run(clean_venv / "bin/python", "-I", "-c", find, cwd="/", env=env).strip())
+    assert argusd.is_relative_to(clean_venv)
+    assert "NEEDED" not in run("readelf", "-d", argusd)
+    assert run(argusd, "--version", cwd="/", env=env).strip() == f"argusd {argus.__version__}"
+    robot = tmp_path / "robot"
+    with subprocess.Popen([clean_venv / "bin/argus-sim", "--link-name", robot, "--baud", "115200"]) as sim:
+        try:
+            until = time.monotonic() + 60
+            while not robot.is_symlink() and time.monotonic() < until:
+                time.sleep(0.05)
+            link = f"serial:{robot}@115200"
+            command = [str(argusd), "--link", link, "--passive", "--plain", "--wait", "30"]
+            with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=env) as child:
+                assert child.stdout is not None
+                assert any("SESSION_OPEN" in line for line in child.stdout), "it reaches the robot"
+                child.terminate()
+        finally:
+            sim.terminate()
+
+
+def test_ros_finds_the_launch_files(clean_venv: Path) -> None:
+    """As ament does: the index names the package, its share folder holds the files, each with its parameters."""
+    share = clean_venv / "share"
+    assert (share / "ament_index/resource_index/packages/argus_ros").exists()
+    assert ET.parse(share / "argus_ros/package.xml").findtext("version") == argus.__version__
+    for name in ("argus", "range_guard"):
+        launch = share / f"argus_ros/launch/{name}.launch.xml"
+        [given] = [
+            arg.get("default", "") for arg in ET.parse(launch).iter("arg") if arg.get("name") == "params"
+        ]
+        assert Path(given.replace("$(dirname)", str(launch.parent))).exists()
+
+
+def test_the_layout_for_foxglove_comes_along(clean_venv: Path) -> None:
+    told = run(clean_venv / "bin/argus-foxglove", "--layout", cwd="/")
+    assert told == (ROOT / "tools/argus_tools/foxglove_layout.json").read_text(encoding="utf-8")
 
 
 def test_the_examples_run_with_the_libraries_of_the_wheel(clean_venv: Path) -> None:

@@ -147,6 +147,23 @@ def test_topics_tell_what_argusd_knows(robot: Any) -> None:
     assert "sonar/range_2" in heard
 
 
+def test_what_argusd_injects_is_told_of_the_sonar_and_of_the_ring(robot: Any) -> None:
+    bot = robot("--world", "demo", argusd=("--passive", "--inject"))
+    bot.await_("pose")
+    with Client(bot.place) as argus:
+        argus.take()
+        for number, kind in ((DEAD, "off"), (9, "stuck")):
+            argus.order("fail", sonar=number, kind=kind, for_ms=60_000)
+
+    def told(array: Any) -> bool:
+        ring = next(status for status in array.status if status.name == "argus: ring")
+        return values_of(ring).get("injected") == f"{DEAD}: off, 9: stuck"
+
+    said = bot.await_("/diagnostics", told)
+    each = [values_of(status)["injected"] for status in said.status if "sonar/" in status.name]
+    assert each == ["off" if k == DEAD else "stuck" if k == 9 else "none" for k in range(16)]
+
+
 def test_no_echo_is_infinite_and_a_dead_sonar_is_what_the_parameter_says(robot: Any) -> None:
     bot = robot("--world", "hall", "--fault", f"stuck:{DEAD}@2s:value=0", dead="invalid")
     assert bot.await_("sonar/range_4").range == math.inf

@@ -8,6 +8,7 @@ import asyncio
 import json
 import re
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -24,7 +25,7 @@ from harness import ROOT
 from robots import emulated, minded
 
 BRIDGE = Path(sys.prefix) / "bin/argus-foxglove"
-LAYOUT = ROOT / "docs/foxglove/argus.json"
+LAYOUT = ROOT / "tools/argus_tools/foxglove_layout.json"
 MESSAGE_DATA = 1
 HEAD = struct.Struct("<BIQ")
 DEAD = 3
@@ -110,8 +111,39 @@ def test_what_argusd_says_comes_out_of_the_websocket(bridged: tuple[str, str]) -
     assert len(beams["entities"]) == 16
 
 
+async def status_for(address: str, origin: str | None) -> int:
+    """What the bridge answers to a page of that origin: 101 lets it in."""
+    try:
+        async with websockets.connect(
+            address, subprotocols=["foxglove.sdk.v1"], origin=websockets.Origin(origin) if origin else None
+        ):
+            return 101
+    except websockets.InvalidStatus as error:
+        return int(error.response.status_code)
+
+
+def test_pages_of_other_sites_do_not_look_on(bridged: tuple[str, str]) -> None:
+    address, _ = bridged
+    for status, origin in (
+        (101, None),
+        (101, "https://app.foxglove.dev"),
+        (101, "http://localhost:8080"),
+        (403, "https://evil.example"),
+        (403, "null"),
+    ):
+        assert asyncio.run(status_for(address, origin)) == status, origin
+    host, port = re.findall(r"ws://(.*):(\d+)", address)[0]
+    with socket.create_connection((host, int(port)), 30) as caller:  # a name that is led here
+        caller.sendall(b"GET / HTTP/1.1\r\nHost: evil.example\r\nUpgrade: websocket\r\n\r\n")
+        assert caller.recv(100).startswith(b"HTTP/1.1 403 ")
+
+
 def test_bad_arguments_are_told_in_a_line() -> None:
-    for arguments, word in ((["--host", "0.0.0.0"], "--beyond-loopback"), (["--port", "70000"], "65535")):
+    for arguments, word in (
+        (["--host", "0.0.0.0"], "--beyond-loopback"),
+        (["--port", "70000"], "65535"),
+        (["--allow-origin", "*"], "no origin"),
+    ):
         done = subprocess.run([BRIDGE, *arguments], capture_output=True, text=True, check=False)
         assert done.returncode == 2
         assert word in done.stderr

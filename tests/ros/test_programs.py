@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import doctest
 import importlib.util
 import re
 import shlex
@@ -18,6 +19,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from argus_ros import parameters
 from argus_ros.parameters import ARGUS, RANGE_GUARD
 from harness import ROOT
 from nodes import Bench
@@ -138,6 +140,9 @@ def test_help_needs_no_ros() -> None:
         done = run(program, "--help")
         assert (done.returncode, done.stderr) == (0, "")
         assert "examples:" in done.stdout
+        table = {"argus-ros": ARGUS, "argus-range-guard": RANGE_GUARD}[program]
+        assert [name for name in table if f"\n  {name}:=" not in done.stdout] == []
+    assert doctest.testmod(parameters).failed == 0
 
 
 def blocks_of_the_page() -> list[list[str]]:

@@ -161,6 +161,22 @@ def test_a_reader_that_takes_no_answers_does_not_stop_the_robot(desk: Desk) -> N
     assert desk.faults.active(1) is not None
 
 
+def test_who_watches_is_told_of_faults_that_begin_and_end_by_themselves(desk: Desk) -> None:
+    desk.faults.inject(fault("stuck:2"))
+    desk.faults.inject(fault("off:3@0.1s-0.2s"))
+    assert desk.give(b"") == [], "nobody watches yet"
+    (answer,) = desk.give(b"watch\n")
+    assert (answer["ok"], answer["broken"]) == (True, {"2": "stuck"}), "what is broken from the start"
+    told = []
+    while desk.robot.now_ms < 300:
+        told += desk.give(b"")
+    assert [line["broken"] for line in told] == [{"2": "stuck", "3": "off"}, {"2": "stuck"}]
+    assert all("order" not in line for line in told), "they are no answers"
+    assert 0.1 <= told[0]["t_s"] < 0.15 < told[1]["t_s"] < 0.25
+    assert len(desk.give(b"mend all\n")) == 1, "what an answer has told is not told again"
+    assert desk.give(b"") == []
+
+
 @settings(max_examples=25, deadline=None)
 @given(st.binary(max_size=200))
 def test_any_bytes_get_an_answer_a_line(data: bytes) -> None:

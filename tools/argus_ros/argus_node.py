@@ -347,22 +347,21 @@ class ArgusNode(ArgusLifecycleNode):
             statuses = [messages.ring_status(OWNER, None, [], "", {"argusd": why})]
         else:
             self._told = ring.verdicts
-            hardware = str(state.get("robot") or ring.table.subclass)
-            failure = (
-                str(state["failure"] if "failure" in state else state["state"])
-                if state.get("online")
-                else None
-            )
-            more = {
-                key: state.get(key, "")
-                for key in ("mode", "mission", "active", "link", "sips", "bad_checksums")
-            }
-            more["injected"] = " ".join(filter(None, state.get("injected", []))) or "none"
-            statuses = [messages.ring_status(OWNER, failure, ring.verdicts, hardware, more)]
-            statuses += [
-                messages.sonar_status(
-                    OWNER, k, ring.verdicts[k], ring.reading_mm[k], ring.age_ms[k], hardware
-                )
-                for k in range(ring.table.sonars)
-            ]
+            statuses = self._statuses(ring, state)
         self._diagnostics.publish(messages.diagnostics(self._now(), statuses))
+
+    def _statuses(self, ring: _Ring, state: dict[str, Any]) -> list[Any]:
+        """Return the diagnoses of the ring and of each sonar."""
+        hardware = str(state.get("robot") or ring.table.subclass)
+        failure = str(state.get("failure", state["state"])) if state.get("online") else None
+        keys = ("mode", "mission", "active", "link", "sips", "bad_checksums")
+        more = {key: state.get(key, "") for key in keys}
+        injected = list(state.get("injected", []))
+        more["injected"] = messages.injected_words(injected)
+        injected += [""] * (ring.table.sonars - len(injected))
+        statuses = [messages.ring_status(OWNER, failure, ring.verdicts, hardware, more)]
+        for k in range(ring.table.sonars):
+            own = {"injected": injected[k] or "none"}
+            verdict, mm, age_ms = ring.verdicts[k], ring.reading_mm[k], ring.age_ms[k]
+            statuses.append(messages.sonar_status(OWNER, k, verdict, mm, age_ms, hardware, own))
+        return statuses

@@ -154,9 +154,10 @@ def sonar_status(
     reading_mm: int,
     age_ms: int,
     hardware: str,
+    more: Mapping[str, Any] | None = None,
     stale_ms: int = 1000,
 ) -> Any:
-    """Return the diagnosis of one sonar."""
+    """Return the diagnosis of one sonar; `more`: keys besides those that each has."""
     level = sonar_level(verdict, age_ms, stale_ms)
     words = f"{verdict.health} {verdict.kind}".strip() if level != STALE else "not reporting"
     values = {
@@ -164,6 +165,7 @@ def sonar_status(
         "fault": verdict.kind or "none",
         "reading_mm": reading_mm,
         "age_ms": age_ms,
+        **(more or {}),
     }
     return _status(level, f"{owner}: {sonar_name(number)}", words, hardware, values)
 
@@ -181,6 +183,15 @@ def ring_status(
     level = max(_FAILURE_LEVEL.get(failure, ERROR) if failure else OK, WARN if bad else OK)
     values = {"failure_state": failure or "unknown", "not_trusted": " ".join(map(str, out)) or "none", **more}
     return _status(level, f"{owner}: ring", words, hardware, values)
+
+
+def injected_words(kinds: Sequence[str]) -> str:
+    """Return which sonars argusd itself makes fail, and how.
+
+    >>> injected_words(["", "", "", "off", "", "stuck"]), injected_words(["", ""])
+    ('3: off, 5: stuck', 'none')
+    """
+    return ", ".join(f"{number}: {kind}" for number, kind in enumerate(kinds) if kind) or "none"
 
 
 def diagnostics(stamp: Any, statuses: Sequence[Any]) -> Any:

@@ -47,11 +47,37 @@ RANGE_GUARD: Final[Table] = {
     "diagnostics_s": (1.0, "time between two diagnoses; a change of a sonar is told at once"),
     "autostart": (True, "configure and activate at start; false: another node does it"),
 }
-ARGUS_USAGE: Final = """\
+
+
+def listed(table: Table) -> str:
+    """Return the parameters as --help lists them.
+
+    >>> print(listed({"dead": ("withhold", "what is said"), "sonars": ([0, 1, 2], "which")}))
+      dead:=withhold                what is said
+      sonars:=[0, ...]              which
+    """
+    lines = []
+    for name, (default, meaning) in table.items():
+        shown = f"[{default[0]}, ...]" if isinstance(default, list) and len(default) > 1 else default
+        text = str(shown).lower() if isinstance(shown, bool) else str(shown).replace("['']", "[]")
+        lines.append(f"  {f'{name}:={text}':<28}  {meaning}")
+    return "\n".join(lines)
+
+
+_OPTIONS: Final = """\
+options:
+  -h, --help                    show this help message and exit
+  --ros-args ARGUMENTS          what follows is for ROS: -p NAME:=VALUE, --params-file FILE, -r FROM:=TO
+"""
+ARGUS_USAGE: Final = f"""\
 usage: argus-ros [--ros-args ARGUMENTS]
 
 The node of a robot that argusd minds: a topic for each sonar, cloud, diagnoses, odometry, battery and frames
 from argusd's control socket; cmd_vel goes to its guard.
+
+{_OPTIONS}
+parameters with their defaults:
+{listed(ARGUS)}
 
 examples:
   argusd --link serial:/dev/ttyUSB0@9600 --control unix:/tmp/argus.sock --guard tcp:127.0.0.1:8101
@@ -59,20 +85,20 @@ examples:
   argus-ros --ros-args -p control:=unix:/tmp/argus.sock -p guard:=127.0.0.1:8101
   argus-ros --ros-args --params-file argus.yaml
   ros2 service call /sonar/recheck std_srvs/srv/Trigger
-
-docs/ros.md explains the parameters; ros2 param describe argus NAME tells each.
 """
-RANGE_GUARD_USAGE: Final = """\
+RANGE_GUARD_USAGE: Final = f"""\
 usage: argus-range-guard [--ros-args ARGUMENTS]
 
 Takes the sensor_msgs/Range topics and the odometry of any driver, runs the fault manager on them,
 and publishes each repaired as TOPIC/guarded, with /diagnostics and a cloud of trusted echoes.
+
+{_OPTIONS}
+parameters with their defaults:
+{listed(RANGE_GUARD)}
 
 examples:
   argus-range-guard
   argus-range-guard --ros-args -p dead:=cover -p no_echo:=max
   argus-range-guard --ros-args -p "topics:=[front_left, front_right]" -p "sonars:=[2, 5]" -p odometry:=odom
   argus-range-guard --ros-args --params-file range_guard.yaml
-
-docs/ros.md explains the parameters; ros2 param describe range_guard NAME tells each.
 """

@@ -53,3 +53,17 @@ def range_guard(arguments: Sequence[str] | None = None) -> int:
     from argus_ros.guard_node import RangeGuard
 
     return run_node(RangeGuard, given)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the program that the first argument names: python -m argus_ros.programs argus-ros."""
+    programs = {"argus-ros": argus_ros, "argus-range-guard": range_guard}
+    name, *rest = [*(sys.argv[1:] if arguments is None else arguments), ""]
+    if name not in programs:
+        print(f"'{name}' is no program: give {' or '.join(programs)}", file=sys.stderr)
+        return EXIT_USAGE
+    return programs[name](rest[:-1])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

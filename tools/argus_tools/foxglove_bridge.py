@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import argparse
-import ipaddress
+import re
 import sys
 import time
 from collections.abc import Callable, Sequence
+from importlib import resources
 from pathlib import Path
 from typing import Any, Final
 
@@ -30,6 +31,7 @@ from argus_tools.foxglove import (
     sonars_of,
     stamp_of,
 )
+from argus_tools.foxglove_front import FOXGLOVE, Front, Gate, hidden_host, is_loopback
 
 EXIT_USAGE, EXIT_LINK = 2, 3
 PORT: Final = 8765
@@ -46,10 +48,17 @@ examples:
   argus-foxglove                                        argusd at its usual place, port 8765
   argus-foxglove --control unix:/tmp/argus.sock
   argus-foxglove --control tcp:127.0.0.1:8102 --token FILE --port 9000
+  argus-foxglove --layout > argus-layout.json           a layout for Foxglove, to import there
 
-In Foxglove: open a connection to ws://localhost:8765, then import the layout docs/foxglove/argus.json.
-It only shows: nothing that comes over the WebSocket reaches the robot.
+In Foxglove: open a connection to ws://localhost:8765, then import the layout.
+It only shows: nothing that comes over the WebSocket reaches the robot. It lets in programs, Foxglove's own page, and
+pages of localhost; not those of other sites, unless --allow-origin names them.
 """
+
+
+def layout() -> str:
+    """Return the layout that shows all topics in Foxglove."""
+    return (resources.files("argus_tools") / "foxglove_layout.json").read_text(encoding="utf-8")
 
 
 class Translator:
@@ -131,9 +140,12 @@ class Translator:
 
 
 class Server:
-    """The WebSocket server, with a channel for each topic from the start: a viewer misses no first message."""
+    """The WebSocket server, with a channel for each topic from the start: a viewer misses no first message.
 
-    def __init__(self, host: str, port: int) -> None:
+    That of the SDK lets everybody in, so it listens where nobody looks for it, behind a port that asks who comes.
+    """
+
+    def __init__(self, host: str, port: int, origins: Sequence[str] = ()) -> None:
         try:
             import foxglove
         except ImportError as error:
@@ -141,9 +153,16 @@ class Server:
         self._foxglove = foxglove
         self._channels = {topic: self._channel(topic, schema) for topic, schema in TOPICS.items()}
         try:
-            self._server = foxglove.start_server(name="argus", host=host, port=port)
+            self._front = Front(host, port, Gate(host, origins))
+        except OSError as error:
+            raise ControlError(f"{host}:{port} cannot be served: {error.strerror or error}") from error
+        hidden = hidden_host()
+        try:
+            self._server = foxglove.start_server(name="argus", host=hidden, port=0)
         except Exception as error:  # the library names no class for it
-            raise ControlError(f"{host}:{port} cannot be served: {error}") from error
+            self._front.stop()
+            raise ControlError(f"{hidden} cannot be served: {error}") from error
+        self._front.start(hidden, int(self._server.port))
 
     def _channel(self, topic: str, schema: str) -> Any:
         return self._foxglove.Channel(topic, schema=SCHEMAS[schema], message_encoding="json")
@@ -151,7 +170,7 @@ class Server:
     @property
     def port(self) -> int:
         """The port that is served."""
-        return int(self._server.port)
+        return self._front.port
 
     def put(self, topic: str, schema: str, t_ns: int, message: dict[str, Any]) -> None:
         """Send one message to all viewers."""
@@ -160,6 +179,7 @@ class Server:
 
     def stop(self) -> None:
         """End all connections."""
+        self._front.stop()
         self._server.stop()
 
 
@@ -176,8 +196,9 @@ def follow(place: str, token: str | None, server: Server, period_ms: int) -> Non
 def run(args: argparse.Namespace) -> int:
     """Serve until the end; argusd may come and go."""
     token = read_token(args.token) if args.token else None
-    server = Server(args.host, args.port)
-    print(f"ws://{args.host}:{server.port}", flush=True)
+    server = Server(args.host, args.port, args.allow_origin)
+    host = f"[{args.host}]" if ":" in args.host else args.host
+    print(f"ws://{host}:{server.port}", flush=True)
     told = ""
     try:
         while True:
@@ -194,16 +215,16 @@ def run(args: argparse.Namespace) -> int:
         server.stop()
 
 
-def is_loopback(host: str) -> bool:
-    """Whether a host is this machine only.
+def origin(text: str) -> str:
+    """Return the origin of a page.
 
-    >>> is_loopback("127.0.0.1"), is_loopback("0.0.0.0")
-    (True, False)
+    >>> origin("https://viewer.example:8443/")
+    'https://viewer.example:8443'
     """
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
+    found = re.fullmatch(r"(https?://[A-Za-z0-9.:\[\]_-]+)/?", text)
+    if found is None:
+        raise argparse.ArgumentTypeError(f"'{text}' is no origin: give https://HOST or https://HOST:PORT")
+    return found[1]
 
 
 def parser() -> argparse.ArgumentParser:
@@ -220,6 +241,7 @@ def parser() -> argparse.ArgumentParser:
         metavar="PLACE",
         help="argusd's control socket, unix:PATH or tcp:HOST:PORT (default: %(default)s)",
     )
+    made.add_argument("--layout", action="store_true", help="print a layout to import in Foxglove, and end")
     made.add_argument("--token", type=Path, metavar="FILE", help="file with the token of a tcp: socket")
     made.add_argument("--host", default="127.0.0.1", help="address to serve on (default: %(default)s)")
     made.add_argument(
@@ -227,6 +249,15 @@ def parser() -> argparse.ArgumentParser:
     )
     made.add_argument(
         "--beyond-loopback", action="store_true", help="allow a --host that other machines can reach"
+    )
+    made.add_argument(
+        "--allow-origin",
+        action="append",
+        default=[],
+        type=origin,
+        metavar="ORIGIN",
+        help="let pages of this origin look on too, as https://HOST[:PORT]; repeatable "
+        f"(always: {FOXGLOVE[0]}, pages of localhost, programs)",
     )
     made.add_argument(
         "--period", type=int, default=100, metavar="MS", help="between two states, 50 to 10000 (default: 100)"
@@ -237,6 +268,9 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program."""
     args = parser().parse_args(arguments)
+    if args.layout:
+        sys.stdout.write(layout())
+        return 0
     if not 0 <= args.port <= 65535:
         parser().error(f"--port {args.port}: give 0 to 65535")
     if not 50 <= args.period <= 10_000:

@@ -29,6 +29,8 @@ ARM: Final = "aarch64"
 ARCHITECTURES: Final = ("x86_64", ARM)
 NEEDS: Final = ("dpkg-dev", "lintian", "systemd", *((ARM, "qemu-user") if HERE == "x86_64" else ()))
 """What the tests of the packages take."""
+BROUGHT: Final = ("argusd", "argusd-licences.txt")
+"""What only a wheel has among the tools."""
 SCRIPT: Final = """\
 #!/usr/bin/python3
 import sys
@@ -64,7 +66,13 @@ def make_wheel(arch: str, run: Run) -> None:
         "wheel",
         "--no-deps",
         "--no-build-isolation",
+        "--config-settings=cmake.define.ARGUS_STATIC=ON",
     ]
+    if arch == HERE:  # where inih and curses are; elsewhere argusd comes along if they are there for it, too
+        command += [
+            "--config-settings=cmake.define.ARGUS_ARGUSD=ON",
+            "--config-settings=cmake.define.ARGUS_TUI=ON",
+        ]
     if arch != HERE:
         cross = [f"_PYTHON_HOST_PLATFORM=linux-{arch}", f"CMAKE_TOOLCHAIN_FILE={toolchain(arch)}"]
         command = ["env", *cross, *command]
@@ -76,12 +84,17 @@ def make_wheel(arch: str, run: Run) -> None:
 
 
 def stage_tools(wheel: Path, stage: Path) -> None:
-    """Unpack WHEEL as Debian has Python's modules: lib/ and bin/, with Debian's own interpreter."""
+    """Unpack WHEEL as Debian has it: modules in lib/, programs for Debian's own Python in bin/, data in share/."""
     shutil.rmtree(stage, ignore_errors=True)
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(stage / "lib")
     [info] = (stage / "lib").glob("*.dist-info")
+    for data in (stage / "lib").glob("*.data"):
+        (data / "data/share").rename(stage / "share")
+        shutil.rmtree(data)
     (info / "RECORD").unlink()  # pip's own: dpkg has its list
+    for name in BROUGHT:  # a package of its own has it
+        (stage / "lib/argus_tools" / name).unlink(missing_ok=True)
     (info / "INSTALLER").write_text("dpkg\n", encoding="utf-8")
     points = configparser.ConfigParser()
     points.read(info / "entry_points.txt", encoding="utf-8")

@@ -6,6 +6,7 @@ from __future__ import annotations
 import asyncio
 import os
 import pty
+import shutil
 import signal
 import socket
 import subprocess
@@ -238,6 +239,26 @@ def test_argusd_is_found_by_option_variable_and_path(tmp_path: Path, monkeypatch
     monkeypatch.setattr("argus_tools.monitor.sim._ROOT", tmp_path / "elsewhere")
     monkeypatch.setenv("PATH", str(tmp_path))
     assert find_argusd(None) == str(program)
+    brought = tmp_path / "argus_tools/argusd"
+    monkeypatch.setattr("argus_tools.monitor.sim._BROUGHT", brought)
+    assert find_argusd(None) == str(program), "a wheel may have none"
+    brought.parent.mkdir()
+    shutil.copy(program, brought)
+    assert find_argusd(None) == str(brought), "that of the wheel is of the same version as the page"
+
+
+def test_where_no_argusd_is_it_says_how_to_get_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("ARGUS_ARGUSD", raising=False)
+    monkeypatch.setattr("argus_tools.monitor.sim._ROOT", tmp_path)
+    monkeypatch.setattr("argus_tools.monitor.sim._BROUGHT", tmp_path / "argusd")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert main(["--sim", "--port", "0"]) == 3
+    said = one_line(capsys)
+    assert "Debian package argusd" in said
+    assert "tools/dev build release" in said
+    assert "--argusd" in said
 
 
 def test_without_aiohttp_it_says_what_to_install(

@@ -29,11 +29,16 @@ class FakeBreaker:
 
     def __init__(self) -> None:
         self.broken: dict[str, str] = {}
+        self.changed: Callable[[], None] = lambda: None
         self.lines: list[str] = []
+
+    def turn(self, broken: dict[str, str]) -> None:
+        self.broken = broken
+        self.changed()
 
     async def order(self, line: str) -> Message:
         self.lines.append(line)
-        self.broken = {"3": "off"} if line.startswith("break") else {}
+        self.turn({"3": "off"} if line.startswith("break") else {})
         return {"ok": True, "broken": self.broken}
 
 
@@ -180,9 +185,30 @@ def test_files_of_the_page_and_no_other(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "first", ['{"token":"wrong"}', "{}", "[]", "not json", "", '{"token":1}', '{"token":"ü"}', "[" * 4000]
+    "first",
+    [
+        '{"token":"wrong"}',
+        "{}",
+        "[]",
+        "not json",
+        "",
+        '{"token":1}',
+        '{"token":"ü"}',
+        '{"token":"\\ud800"}',
+        '{"token":"\\u0000"}',
+        '{"token":null}',
+        '{"token":[{"token":""}]}',
+        '{"token":NaN}',
+        '{"token":1e999}',
+        '"token"',
+        "-Infinity",
+        "1" * 4090,
+        "[" * 4000,
+    ],
 )
-def test_without_the_token_nothing_is_told(tmp_path: Path, first: str) -> None:
+def test_without_the_token_nothing_is_told(
+    tmp_path: Path, first: str, caplog: pytest.LogCaptureFixture
+) -> None:
     async def act(site: Site) -> None:
         socket = await site.connect()
         await socket.send_str(first)
@@ -192,6 +218,7 @@ def test_without_the_token_nothing_is_told(tmp_path: Path, first: str) -> None:
         assert site.hub.viewers == 0
 
     on_site(tmp_path, act)
+    assert [record for record in caplog.records if record.exc_info or record.levelno >= logging.ERROR] == []
 
 
 def test_a_page_that_says_nothing_is_closed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -370,6 +397,13 @@ def test_release_gives_control_back(tmp_path: Path) -> None:
         '{"do":"break","sonar":"3","kind":"off"}',
         '{"do":"mend","sonar":true}',
         '{"do":"mend","sonar":16}',
+        '{"do":"mend","sonar":1e999}',
+        '{"do":"break","sonar":3,"kind":"\\ud800"}',
+        '{"do":"\\ud800"}',
+        '{"do":"order","order":"turn","deg":1e999}',
+        '{"do":"order","order":"turn","deg":NaN}',
+        '{"do":"order","order":"step","way":"\\ud800"}',
+        '{"do":"order","order":"goto","x_mm":[0],"y_mm":{"a":0}}',
     ],
 )
 def test_what_no_page_may_ask_is_refused_and_the_page_stays(tmp_path: Path, text: str) -> None:
@@ -411,6 +445,21 @@ def test_in_simulation_faults_go_to_the_emulator(tmp_path: Path) -> None:
         assert {"broken": {}} in page.got
         assert breaker.lines == ["break wrong:3:scale=0.5", "mend 3"]
         assert site.fake.orders == []
+
+    on_site(tmp_path, act, breaker)
+
+
+def test_a_fault_that_begins_and_ends_by_itself_is_told(tmp_path: Path) -> None:
+    breaker = FakeBreaker()
+    breaker.broken = {"5": "stuck"}
+
+    async def act(site: Site) -> None:
+        page = await site.page()
+        assert {"broken": {"5": "stuck"}} in page.got, "what is broken from the start"
+        breaker.turn({"5": "stuck", "3": "off"})
+        await page.until(lambda message: message == {"broken": {"5": "stuck", "3": "off"}})
+        breaker.turn({"5": "stuck"})
+        await page.until(lambda message: message == {"broken": {"5": "stuck"}})
 
     on_site(tmp_path, act, breaker)
 

@@ -23,6 +23,10 @@ TOPICS: Final = ("events", "state", "readings", "evidence")
 MOTION_S: Final = 60.0
 CHECK_S: Final = 10.0
 RESTING: Final = ("IDLE", "WAITING", "OFFLINE", "CLOSED")
+BY_HAND: Final = {"step": 4, "turn": 5}
+"""Motions by hand, with what their event OPERATOR says (argus_op_t)."""
+STOPPING: Final = (1, 6)
+"""What OPERATOR says of stop and of passive."""
 
 _EPILOG: Final = f"""\
 examples:
@@ -37,7 +41,8 @@ examples:
   argusctl fail sonar 3 ok                 ... and its end
 
 The socket is --socket, else the environment's ARGUS_CONTROL, else {DEFAULT_PLACE}.
-exit codes: 0 done, 1 argusd refuses, 2 wrong argument, 3 argusd cannot be reached, 130 Ctrl-C"""
+exit codes: 0 done, 1 argusd refuses, or another stopped the step or turn, 2 wrong argument,
+3 argusd cannot be reached, 130 Ctrl-C"""
 
 
 def duration_ms(text: str) -> int:
@@ -103,20 +108,44 @@ def watch(client: Client, args: argparse.Namespace) -> int:
         print(_line_of(message, args.json), flush=True)
 
 
-def _wait_for_rest(client: Client) -> None:
-    """Wait until a motion by hand is over; going away before would stop it."""
-    client.watch("state", period_ms=100)
-    began: float | None = None
-    moved = False
-    while True:
-        state = client.message(timeout_s=MOTION_S)
-        if state.get("event") != "STATUS":
-            continue
-        began = state["t"] if began is None else began
-        moved = moved or state["mode"] not in RESTING
-        waited = state["t"] - began
-        if (state["mode"] in RESTING and (moved or waited > 1.0)) or waited > MOTION_S:
-            return
+class _Motion:
+    """Follows a motion by hand in what is streamed; what came before argusd told of the order is of no matter."""
+
+    def __init__(self, order: str) -> None:
+        self._own = BY_HAND[order]
+        self._ordered = False
+        self._began: float | None = None
+        self._moved = False
+
+    def _stopped(self, message: Message) -> bool:
+        """Whether another stops it."""
+        if message.get("event") != "OPERATOR":
+            return False
+        self._ordered = self._ordered or message["value"] == self._own
+        return self._ordered and message["value"] in STOPPING
+
+    def _rests(self, state: Message) -> bool:
+        self._began = state["t"] if self._began is None else self._began
+        self._moved = self._moved or state["mode"] not in RESTING
+        waited = state["t"] - self._began
+        return (state["mode"] in RESTING and (self._moved or waited > 1.0)) or waited > MOTION_S
+
+    def is_over(self, message: Message) -> bool:
+        """Take a message; tell whether the motion is over. Refused when another ended it."""
+        if message.get("lost") == "control":
+            raise Refused("stopped", "another took control and stopped the robot before it was done")
+        if self._stopped(message):
+            raise Refused("stopped", "another order stopped the robot before it was done")
+        return self._ordered and message.get("event") == "STATUS" and self._rests(message)
+
+
+def _move(client: Client, order: str, members: Message) -> None:
+    """Order a motion by hand and wait until it is over; going away before would stop it."""
+    client.watch("events", "state", period_ms=100)
+    _order_once_checked(client, order, members)
+    motion = _Motion(order)
+    while not motion.is_over(client.message(timeout_s=MOTION_S)):
+        pass
 
 
 def _order_once_checked(client: Client, name: str, members: Message) -> None:
@@ -140,9 +169,8 @@ def _order(
     def act(client: Client, args: argparse.Namespace) -> int:
         if name != "stop":
             client.take(force=args.force)
-        if name in ("step", "turn"):
-            _order_once_checked(client, name, members(args))
-            _wait_for_rest(client)
+        if name in BY_HAND:
+            _move(client, name, members(args))
         else:
             client.order(name, **members(args))
         return EXIT_OK

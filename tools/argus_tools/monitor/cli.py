@@ -92,7 +92,7 @@ def parser() -> argparse.ArgumentParser:
     result.add_argument(
         "--argusd",
         metavar="PROGRAM",
-        help="with --sim or --tui: the argusd to run (default: the one built, or in PATH)",
+        help="with --sim or --tui: the argusd to run (default: the one built, of the wheel, or in PATH)",
     )
     result.add_argument(
         "--argusd-option",

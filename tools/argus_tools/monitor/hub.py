@@ -6,6 +6,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from collections import deque
+from collections.abc import Callable
 from typing import Any, Final, Protocol
 
 from argus_tools.monitor.geometry import robot_message
@@ -21,6 +22,8 @@ class Breaker(Protocol):
     """Breaks and mends sonars: an emulator that runs beside us."""
 
     broken: dict[str, str]
+    changed: Callable[[], None]
+    """Called when another sonar is broken, or one no longer is."""
 
     async def order(self, line: str) -> Message:
         """Give an order; the answer has ok, and say where it was refused."""
@@ -71,6 +74,8 @@ class Hub:
         self.why = "connecting"
         self._boxes: set[Outbox] = set()
         self._upstream: Upstream | None = None
+        if breaker is not None:
+            breaker.changed = self.tell_broken
 
     # ---- pages
 
@@ -111,6 +116,11 @@ class Hub:
     def tell_viewers(self) -> None:
         """Tell how many look on."""
         self.tell({"viewers": len(self._boxes)})
+
+    def tell_broken(self) -> None:
+        """Tell which sonars the emulator has broken."""
+        if self.breaker is not None:
+            self.tell({"broken": self.breaker.broken})
 
     def _link(self) -> Message:
         return {"link": {"up": self._upstream is not None, "why": self.why}}

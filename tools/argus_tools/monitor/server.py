@@ -148,7 +148,10 @@ class Server:
         except (TimeoutError, ValueError, RecursionError):
             return False
         token = said.get("token") if isinstance(said, dict) else None
-        return isinstance(token, str) and hmac.compare_digest(token.encode(), self._token)
+        # Half a surrogate pair is no UTF-8: it is told from the token like any other wrong text.
+        return isinstance(token, str) and hmac.compare_digest(
+            token.encode("utf-8", "surrogatepass"), self._token
+        )
 
     async def _serve(self, socket: web.WebSocketResponse) -> None:
         box = self._hub.join()

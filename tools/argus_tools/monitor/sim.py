@@ -12,7 +12,7 @@ import shutil
 import signal
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -24,6 +24,12 @@ START_WITHIN_S: Final = 60.0
 ANSWER_WITHIN_S: Final = 5.0
 END_WITHIN_S: Final = 6.0
 _ROOT: Final = Path(__file__).resolve().parents[3]
+_BROUGHT: Final = Path(__file__).resolve().parents[1] / "argusd"
+"""Where a wheel has it."""
+_NO_ARGUSD: Final = (
+    "argusd is not found: install the Debian package argusd, or build it (tools/dev build release, in the sources) "
+    "and name it with --argusd"
+)
 _PR_SET_PDEATHSIG: Final = 1
 
 
@@ -32,14 +38,15 @@ class SimulationError(Exception):
 
 
 def find_argusd(given: str | None) -> str:
-    """Return the argusd to run: the one GIVEN, that of ARGUS_ARGUSD, of the build folder, or in PATH."""
+    """Return the argusd to run: the one GIVEN, that of ARGUS_ARGUSD, of the build folder, beside us, or in PATH."""
     wanted = given or os.environ.get(ARGUSD_VARIABLE)
-    built = _ROOT / "build/release/argusd"
-    found = shutil.which(wanted) if wanted else str(built) if built.exists() else shutil.which("argusd")
+    if wanted:
+        found = shutil.which(wanted)
+    else:
+        near = (path for path in (_ROOT / "build/release/argusd", _BROUGHT) if os.access(path, os.X_OK))
+        found = next(map(str, near), None) or shutil.which("argusd")
     if found is None:
-        raise SimulationError(
-            f"no program '{wanted}'" if wanted else "argusd is not found; build it, or name it with --argusd"
-        )
+        raise SimulationError(f"no program '{wanted}'" if wanted else _NO_ARGUSD)
     return found
 
 
@@ -48,11 +55,18 @@ def _end_with_parent() -> None:
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
+def _nobody() -> None:
+    """Nobody wants to know."""
+
+
 class Simulation:
     """argus-sim on a pseudo-terminal and argusd on that."""
 
     def __init__(self, sim_arguments: Sequence[str], argusd: str, argusd_arguments: Sequence[str]) -> None:
         self.broken: dict[str, str] = {}
+        """The kind of fault of each sonar that is broken now, however it came to be."""
+        self.changed: Callable[[], None] = _nobody
+        """Called when another sonar is broken, or one no longer is."""
         self._sim_arguments = sim_arguments
         self._argusd_path = argusd
         self._argusd_arguments = argusd_arguments
@@ -61,6 +75,8 @@ class Simulation:
         self._sim: asyncio.subprocess.Process | None = None
         self._argusd: asyncio.subprocess.Process | None = None
         self._turn = asyncio.Lock()
+        self._answers: asyncio.Queue[Message] = asyncio.Queue()
+        self._listening: asyncio.Task[None] | None = None
 
     async def start(self) -> None:
         """Start both; SimulationError when one of them does not."""
@@ -73,7 +89,9 @@ class Simulation:
                 stderr=log,
                 process_group=0,
             )
-        device = await self._line(START_WITHIN_S)
+        device = await self._first_line()
+        self._listening = asyncio.create_task(self._listen())
+        await self.order("watch")
         mode = () if "--passive" in self._argusd_arguments else ("--active",)
         arguments = ("--link", f"serial:{device}@{BAUD}", *mode, "--plain", "--control")
         with (self._folder / "argusd.log").open("wb") as log:
@@ -89,11 +107,11 @@ class Simulation:
                 preexec_fn=_end_with_parent,
             )
 
-    async def _line(self, within_s: float) -> str:
+    async def _first_line(self) -> str:
         assert self._sim is not None
         assert self._sim.stdout is not None
         try:
-            async with asyncio.timeout(within_s):
+            async with asyncio.timeout(START_WITHIN_S):
                 line = await self._sim.stdout.readline()
         except (TimeoutError, ValueError):
             line = b""
@@ -104,6 +122,21 @@ class Simulation:
             raise SimulationError(self._last_words("argus-sim"))
         return line.decode("utf-8", "replace").strip()
 
+    async def _listen(self) -> None:
+        """Take what the emulator says: answers to orders, and faults that begin and end by themselves."""
+        assert self._sim is not None
+        assert self._sim.stdout is not None
+        with contextlib.suppress(OSError, ValueError):
+            while line := await self._sim.stdout.readline():
+                self._hear(json.loads(line))
+
+    def _hear(self, message: Message) -> None:
+        before, self.broken = self.broken, dict(message.get("broken", {}))
+        if "order" in message:
+            self._answers.put_nowait(message)
+        if self.broken != before:
+            self.changed()
+
     async def order(self, line: str) -> Message:
         """Give the emulator an order and return its answer."""
         async with self._turn:
@@ -112,11 +145,16 @@ class Simulation:
                 assert self._sim.stdin is not None
                 self._sim.stdin.write(line.encode() + b"\n")
                 await self._sim.stdin.drain()
-                answer: Message = json.loads(await self._line(ANSWER_WITHIN_S))
-            except (OSError, ValueError, SimulationError):
+                async with asyncio.timeout(ANSWER_WITHIN_S):
+                    return await self._answer_to(line)
+            except (OSError, TimeoutError):
                 return {"ok": False, "why": "refused", "say": "the emulator does not answer"}
-            self.broken = dict(answer.get("broken", {}))
-            return answer
+
+    async def _answer_to(self, line: str) -> Message:
+        """Return the answer to this order; one that came too late for an order before it is passed over."""
+        while (answer := await self._answers.get()).get("order") != line:
+            pass
+        return answer
 
     async def ended(self) -> str:
         """Wait until one of them ends; return which, and its last words."""
@@ -142,6 +180,8 @@ class Simulation:
 
     async def close(self) -> None:
         """End argusd first, so that it stops the robot, then the emulator."""
+        if self._listening is not None:
+            self._listening.cancel()
         for process in (self._argusd, self._sim):
             if process is not None and process.returncode is None:
                 process.send_signal(signal.SIGTERM)

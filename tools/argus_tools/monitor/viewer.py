@@ -40,6 +40,15 @@ class Refused(Exception):
     """A request that is not carried out; the message is one sentence for the person at the page."""
 
 
+def _plain(value: Any) -> int | str:
+    """Return a member that argusd can read: a line with an endless number or half a character has no reply."""
+    if isinstance(value, int) and not isinstance(value, bool) and abs(value) < 1 << 31:
+        return value
+    if isinstance(value, str) and value.isascii() and value.isprintable():
+        return value
+    raise Refused("an order's members are whole numbers and plain words")
+
+
 class Page(Protocol):
     """What a viewer tells its page."""
 
@@ -146,7 +155,7 @@ class Viewer:
             raise Refused("a page may not give that order")
         if order == "stop":  # whoever looks on may
             return await self._hub.ask("order", order="stop")
-        members = {name: request[name] for name in ORDERS[order] if name in request}
+        members: Message = {name: _plain(request[name]) for name in ORDERS[order] if name in request}
         answer = await self.control.order(order, **members)
         if order == "goto" and answer.get("ok"):
             self._hub.set_goal([members["x_mm"], members["y_mm"]])
@@ -171,9 +180,7 @@ class Viewer:
         if not self.control.held:
             return {"ok": False, "why": "not_in_control", "say": "take control first"}
         line = f"mend {sonar}" if kind == "ok" else f"break {FAULTS[kind].format(sonar)}"
-        answer = await breaker.order(line)
-        self._hub.tell({"broken": breaker.broken})
-        return answer
+        return await breaker.order(line)
 
     async def close(self) -> None:
         """End with the page; what it drove by hand stops."""

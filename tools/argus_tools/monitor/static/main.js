@@ -17,6 +17,7 @@ const known = { state: null, readings: null, evidence: null, robot: null, broken
   sim: false, canBreak: false, control: "none" };
 const latencies = [];
 const brokenAt = new Map();
+let brokenKnown = false;
 let sipAt = null;
 
 const stage = new Stage({ floor: (x, y) => goTo(x, y), sonar: (k) => onSonar(k) });
@@ -29,6 +30,7 @@ const link = new Link(take, (why) => take({ link: { up: false, why } }), askToke
 const TAKES = {
   about(about) {
     forget(); // a story follows, from its beginning
+    brokenKnown = false;
     known.sim = about.sim;
     document.body.classList.toggle("sim", about.sim);
     stage.walls = about.walls ?? [];
@@ -63,9 +65,11 @@ const TAKES = {
     known.evidence = stage.evidence = evidence;
   },
   broken(broken) {
-    for (const k of Object.keys(broken)) if (known.broken[k] !== broken[k]) brokenAt.set(Number(k), performance.now());
+    // What was broken before this page came is not timed: nobody here knows since when.
+    for (const k of Object.keys(broken)) if (brokenKnown && known.broken[k] !== broken[k]) brokenAt.set(Number(k), performance.now());
     for (const k of brokenAt.keys()) if (!(k in broken)) brokenAt.delete(k);
     known.broken = stage.broken = broken;
+    brokenKnown = true;
   },
   viewers(count) {
     put($("viewers"), count === 1 ? "1 viewer" : `${count} viewers`);
@@ -281,6 +285,10 @@ function wire() {
   for (const button of document.querySelectorAll("[data-sonar-order]")) {
     button.addEventListener("click", () => chosenOrder(button.dataset.sonarOrder));
   }
+  $("more").addEventListener("click", (event) => {
+    const open = document.querySelector(".orders").classList.toggle("unfolded");
+    event.currentTarget.setAttribute("aria-expanded", String(open));
+  });
   $("active").addEventListener("click", toggleActive);
   $("control").addEventListener("click", control);
   $("zoom-in").addEventListener("click", () => stage.zoom(-1));

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""Rule: argusctl says what became of a motion that it ordered: done, or ended by another, which is no success."""
+
+from __future__ import annotations
+
+import json
+import socket
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from argus_tools.control.cli import EXIT_OK, EXIT_REFUSED, main, make_parser
+
+Message = dict[str, Any]
+GREETING = {"control": 1, "argus": "0.1.0", "auth": "none"}
+STOP, MOVE, TURN, PASSIVE = 1, 4, 5, 6
+
+
+def operator(value: int) -> Message:
+    return {"t": 1.0, "event": "OPERATOR", "level": 0, "name": "operator", "value": value}
+
+
+def status(t: float, mode: str) -> Message:
+    return {"t": t, "event": "STATUS", "mode": mode}
+
+
+def argusd(folder: Path, before: list[Message], after: list[Message]) -> str:
+    """One that obeys every order; it streams BEFORE ahead of its reply to the order, and AFTER behind it."""
+    path = folder / "s"
+    listening = socket.socket(socket.AF_UNIX)
+    listening.bind(str(path))
+    listening.listen()
+
+    def run() -> None:
+        near, _ = listening.accept()
+        with near, listening, near.makefile("rw", encoding="utf-8") as lines:
+
+            def say(*messages: Message) -> None:
+                lines.writelines(json.dumps(message) + "\n" for message in messages)
+                lines.flush()
+
+            say(GREETING)
+            for line in lines:
+                asked = json.loads(line)
+                reply = {"re": asked["id"], "ok": True, "grant": "g"}
+                if asked["do"] == "order":
+                    say(*before, reply, *after)
+                else:
+                    say(reply)
+
+    threading.Thread(target=run, daemon=True).start()
+    return f"unix:{path}"
+
+
+@pytest.fixture
+def ordered(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str]]:
+    """Give an order to such an argusd; return the exit code and what is said on standard error."""
+
+    def run(words: list[str], before: list[Message], after: list[Message]) -> tuple[int, str]:
+        code = main(["--socket", argusd(tmp_path, before, after), *words])
+        out, err = capsys.readouterr()
+        assert out == ""
+        return code, err
+
+    return run
+
+
+@pytest.mark.parametrize(("words", "own"), [(["turn", "90"], TURN), (["step", "ahead"], MOVE)])
+def test_a_motion_that_is_done(ordered: Any, words: list[str], own: int) -> None:
+    after = [operator(own), status(1.1, "TURNING"), status(1.2, "IDLE")]
+    assert ordered(words, [], after) == (EXIT_OK, "")
+
+
+@pytest.mark.parametrize("by", [STOP, PASSIVE])
+@pytest.mark.parametrize(("words", "own"), [(["turn", "90"], TURN), (["step", "back"], MOVE)])
+def test_a_motion_that_another_stops(ordered: Any, words: list[str], own: int, by: int) -> None:
+    after = [status(1.1, "TURNING"), operator(by), status(1.2, "IDLE")]
+    code, said = ordered(words, [operator(own)], after)
+    assert code == EXIT_REFUSED
+    assert said == "argusctl: another order stopped the robot before it was done (stopped)\n"
+
+
+def test_a_motion_that_ends_because_another_takes_control(ordered: Any) -> None:
+    after = [operator(TURN), {"lost": "control"}, operator(STOP), status(1.2, "IDLE")]
+    code, said = ordered(["turn", "90"], [], after)
+    assert code == EXIT_REFUSED
+    assert said == "argusctl: another took control and stopped the robot before it was done (stopped)\n"
+
+
+def test_what_was_before_the_order_is_of_no_matter(ordered: Any) -> None:
+    before = [operator(STOP), status(0.1, "CHECKING"), status(0.2, "IDLE"), operator(TURN)]
+    after = [status(1.1, "TURNING"), operator(STOP)]
+    code, _ = ordered(["turn", "90"], before, after)
+    assert code == EXIT_REFUSED, "it had not ended before it began"
+
+
+def test_help_tells_the_code() -> None:
+    assert "1 argusd refuses, or another stopped the step or turn" in make_parser().format_help()
