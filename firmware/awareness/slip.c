@@ -11,14 +11,13 @@
 #define BEGIN_MM 150    // a reading of the beginning is made within this
 #define END_MM 250      // ... and one of the end: what fell silent on the way tells nothing of it
 #define TURNED_CDEG 500 // a straight way turns less
-#define ALONG_CDEG 1600 // so far off the way one still looks along it
-#define WALL_CDEG 2500  // ... and hears this far aside, at the edge of its cone
-#define NEAR_MM 2500    // echoes from farther off come and go
+#define ALONG_CDEG 3100 // so far off the way a range still changes with it
+#define NEAR_MM 4000    // echoes from farther off come and go
 #define STAYS_MM 100    // less than a change: of 500
 #define FITS_MM 200     // off what the odometry says
 #define PROOF 6         // of stretches one after the other:
 #define BOTH_WAYS 3     // ... on which one ahead and one that looks back stay, so two of these,
-#define AHEAD_ALONE 2   // ... or two ahead: a person may walk in front
+#define ONE_WAY 2       // ... or two that look one way: a person may walk there
 
 void argus_slip_init(argus_slip_t *const self) {
     memset(self, 0, sizeof *self);
@@ -68,7 +67,9 @@ static int32_t beside_mm(const argus_knowledge_t *const knowledge, const int son
 // Along a wall the edge of the cone hears the wall, always as far off.
 static bool may_be_wall_beside(const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const int32_t aside = knowledge->sonar[sonar].reading_mm * argus_sin(WALL_CDEG) / ARGUS_TRIG_ONE;
+    const int32_t off_way_cdeg = argus_abs(bearing_cdeg(knowledge, sonar));
+    const int32_t edge_cdeg = argus_min(off_way_cdeg, 18000 - off_way_cdeg) + knowledge->robot->cone_deg * 50;
+    const int32_t aside = knowledge->sonar[sonar].reading_mm * argus_sin(edge_cdeg) / ARGUS_TRIG_ONE;
     return aside + STAYS_MM >= beside_mm(knowledge, sonar);
 }
 
@@ -122,12 +123,12 @@ static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowl
         ask(self, knowledge, i, way_mm, &of);
     }
     const bool both = of.to > 0 && of.back > 0;
-    const bool stays = of.fits == 0 && (both || of.to >= 2);
+    const bool stays = of.fits == 0 && (both || of.to >= 2 || of.back >= 2);
     if (!stays || self->proof == 0) {
         self->first = self->from;
         self->slipped_mm = 0;
     }
-    self->proof = (uint8_t)(stays ? self->proof + (both ? BOTH_WAYS : AHEAD_ALONE) : 0);
+    self->proof = (uint8_t)(stays ? self->proof + (both ? BOTH_WAYS : ONE_WAY) : 0);
     self->slipped_mm += way_mm;
     if (self->proof < PROOF) {
         return false;

@@ -283,7 +283,8 @@ static void take_state(argus_knowledge_t *const self, const argus_sip_t *const s
     self->bumpers_rear = reversed ? sip->bumpers_front : sip->bumpers_rear;
     self->stall_left = reversed ? sip->stall_right : sip->stall_left;
     self->stall_right = reversed ? sip->stall_left : sip->stall_right;
-    self->battery_dv = sip->has_battery_x10 ? (int16_t)sip->battery_x10_dv : (int16_t)sip->battery_dv;
+    const bool finer = sip->has_battery_x10 && sip->battery_x10_dv != 0; // not every server fills it in
+    self->battery_dv = finer ? (int16_t)sip->battery_x10_dv : (int16_t)sip->battery_dv;
 }
 
 static void take_reading(argus_knowledge_t *const self, const argus_sip_sonar_t *const from) {

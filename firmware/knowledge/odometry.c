@@ -26,7 +26,7 @@
 #define ROOM_MM 50            // in one step, for what is not modelled,
 #define ROOM_CDEG 200         // likewise
 #define ROOM_MS 100           // ... and of the speed
-#define BUILD_MM 80          // what may build up
+#define BUILD_MM 80           // what may build up
 #define BUILD_CDEG 3000       // likewise
 #define CDEG_PER_RADIAN 5730
 #define PER_S_MAX 500000 // of what is multiplied by milliseconds: it fits 32 bits for 4 s

@@ -83,6 +83,7 @@ typedef struct {
 typedef struct {
     uint8_t unsound;      // leaps and slips of the odometry, one soon after the other
     uint8_t battery_low;  // SIPs in a row
+    uint8_t battery_odd;  // likewise: a voltage that no battery of a robot has
     bool touched_unheard; // something, while no sonar ahead had heard an echo: they do not live
     bool motors_said;     // off
     bool battery_said;

@@ -9,6 +9,8 @@
 
 #define LOW_BATTERY_DV 115 // where CONFIGpac names none
 #define HYSTERESIS_DV 2
+#define LEAST_BATTERY_DV 60 // with less no robot would be running,
+#define MOST_BATTERY_DV 300 // ... and none charges to more
 #define SETTLED_IN_MS 1500u
 #define BATTERY_SIPS 5 // one reading of it may be anything
 #define UNSOUND_MS 60000u
@@ -140,9 +142,14 @@ static argus_intent_t sees_battery(const argus_t *const self, const argus_alarm_
     const int32_t stated_dv = session->has_robot ? session->robot.low_battery_dv : 0;
     const int32_t low_dv = stated_dv > 0 ? stated_dv : LOW_BATTERY_DV;
     const int32_t now_dv = self->knowledge.battery_dv;
-    const bool is_low = now_dv > 0 && now_dv <= low_dv;
+    const bool is_odd = now_dv < LEAST_BATTERY_DV || now_dv > MOST_BATTERY_DV;
+    const bool is_low = !is_odd && now_dv <= low_dv;
     const bool said = mine->battery_said;
     (void)alarm;
+    mine->battery_odd = (uint8_t)(is_odd ? argus_min(mine->battery_odd + 1, BATTERY_SIPS + 1) : 0);
+    if (mine->battery_odd == BATTERY_SIPS) {
+        return say(ARGUS_EV_BATTERY_ODD, ARGUS_NO_SONAR, now_dv);
+    }
     mine->battery_low = (uint8_t)(is_low ? argus_min(mine->battery_low + 1, BATTERY_SIPS) : 0);
     const bool holds = mine->battery_low >= BATTERY_SIPS;
     mine->battery_said = holds || (said && now_dv <= low_dv + HYSTERESIS_DV);

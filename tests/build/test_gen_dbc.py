@@ -89,7 +89,7 @@ def test_check_sees_a_change(tree: Path) -> None:
         ("SG_ Uptime : 32|16@1+ (1,0)", "SG_ Uptime : 32|16@1+ (0.5,0)", "ArgusHeartbeat.Uptime: must be"),
         ("SG_ Rotation0 : 16|8@1-", "SG_ Rotation0 : 16|7@1-", "a signed signal must have 8, 16 or 32 bits"),
         ("BO_ 512 ArgusCommand: 8", "BO_ 512 ArgusCommand: 9", "only plain 8-byte messages"),
-        ("SG_ S08_Fault : 3|3", "SG_ S08_Fault : 4|3", "share a C type, but not their layout"),
+        ("SG_ S08_Injected : 6|1", "SG_ S08_Injected : 7|1", "share a C type, but not their layout"),
         ("BO_ 1280 ArgusHeartbeat: 8 ARGUS", "BO_ 1280 ArgusHeartbeat 8 ARGUS", "tools/argus.dbc: "),
     ],
 )

@@ -4,6 +4,7 @@ robot makes is told and left out of the pose, wheels that slip are told, and a g
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -95,6 +96,43 @@ def test_a_leap_within_a_silence_in_motion_ends_the_course(corridor: str, silent
     told = names(sil.outcome())
     assert "ODOMETRY_LOST" in told
     assert "GOAL_REACHED" not in told
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "deg"),
+    [(160, 0, 0), (-160, 0, 0), (-300, 0, 0), (0, 160, 0), (0, 0, 6), (0, 0, -12)],
+)
+@pytest.mark.parametrize("at_s", [5.0, 8.3])
+def test_a_short_step_is_told_as_a_long_one_is(
+    corridor: str, x: float, y: float, deg: float, at_s: float
+) -> None:
+    """Less than the robot could drive in the time, but not what its wheels say; at speed and near the goal."""
+    sil = Sil(Mission(corridor, ((GOAL_MM, 0),), sonar={"crosstalk": 0.0}, limit_s=60))
+    while sil.now_ms < at_s * 1000:
+        sil.step()
+    chassis = sil.robot.chassis
+    odometry(chassis.odo_x + x, chassis.odo_y + y, chassis.odo_th + deg)(sil)
+    while not sil.over:
+        sil.step()
+    told = names(sil.outcome())
+    assert {"POSE_LEAP", "HEADING_LEAP"} & set(told), told
+    assert "GOAL_REACHED" in told
+    assert sil.outcome().goal_mm <= NEAR_MM
+
+
+@pytest.mark.parametrize(
+    ("battery", "x10", "odd"),
+    [(0, 0, True), (255, 255, False), (127, 65535, True), (127, 400, True), (127, 30, True), (127, 0, False)],
+)
+def test_a_voltage_that_no_battery_has_is_told_once(corridor: str, battery: int, x10: int, odd: bool) -> None:
+    sil = MutatedSil(Mission(corridor, ((GOAL_MM, 0),), sonar={"crosstalk": 0.0}, limit_s=60))
+    sil.lying.alter = lambda packet: dataclasses.replace(packet, battery=battery, battery_x10=x10)
+    while not sil.over:
+        sil.step()
+    told = names(sil.outcome())
+    assert told.count("BATTERY_ODD") == odd
+    assert "BATTERY_LOW" not in told
+    assert "GOAL_REACHED" in told
 
 
 def test_what_leaps_all_the_time_ends_the_course(corridor: str) -> None:
@@ -215,6 +253,14 @@ def test_lifted_wheels_are_told_and_end_the_course(
     assert "ODOMETRY_LOST" in names(outcome)
     assert "GOAL_REACHED" not in names(outcome)
     assert "MISSION_FAILED" in names(outcome)
+
+
+@pytest.mark.parametrize("world", ["lab", "office", "posts", "box-ahead"])
+def test_lifted_wheels_are_told_in_the_worlds_that_are_there(world: str) -> None:
+    """Where something within 4 m of the way ahead or behind can tell; in a hall nothing can."""
+    outcome = lifted(world, (0, 0))
+    assert "SLIP" in names(outcome)
+    assert "GOAL_REACHED" not in names(outcome)
 
 
 @pytest.mark.parametrize("seed", range(1, 6))

@@ -220,6 +220,8 @@ typedef enum {
     X(27, OTHER_ROBOT, ERROR, session,                                                                       \
       "another robot answers than before: passive, the course is paused, until an operator says active and " \
       "go; value: what differs, 1 name, 2 class, 3 subclass, 4 serial number")                               \
+    X(28, BATTERY_ODD, WARN, battery,                                                                        \
+      "a voltage that no battery of a robot has: not judged; value: decivolts")                              \
     X(30, SONAR_DEAD, ERROR, sonar, "dead reading: STOP sent; value: the reading in mm")                     \
     X(31, SONAR_SILENT, ERROR, sonar,                                                                        \
       "its slot yields no reading: STOP sent; value: age of its last reading in ms")                         \

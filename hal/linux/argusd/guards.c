@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "arcos/gen_arcos.h"
+#include "arcos/frame.h"
 
 #define READ_BYTES 512
 #define READS_PER_TURN 4 // a flood must not keep the robot waiting
