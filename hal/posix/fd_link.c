@@ -18,6 +18,7 @@ hal_link_error_t hal_link_error_of(int error_number) {
     } table[] = {
         {ENOENT, HAL_LINK_NOT_FOUND},
         {ENOTDIR, HAL_LINK_NOT_FOUND},
+        {ELOOP, HAL_LINK_NOT_FOUND},
         {EACCES, HAL_LINK_DENIED},
         {EPERM, HAL_LINK_DENIED},
         {EBUSY, HAL_LINK_BUSY},

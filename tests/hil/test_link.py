@@ -171,3 +171,13 @@ def test_a_noisy_cable_delays_but_does_not_mislead(bench: Bench) -> None:
     assert last["bad_checksums"] + last["skipped_bytes"] > 0, "the noise did not arrive"
     assert_only(argusd)
     assert_reached(sim, 1200)
+
+
+def test_an_end_that_the_robot_may_not_have_heard_is_no_orderly_one(bench: Bench) -> None:
+    """What is written into a dead cable is not said: the exit code is that of an unclean end."""
+    bench.sim(bench.world(**hall()), "link-cut@3s-60s")
+    argusd = bench.argusd()
+    argusd.wait("LINK_STALLED")
+    argusd.signal(signal.SIGINT)
+    assert argusd.wait_exit() == 6
+    assert any("may not have heard the end" in line for line in argusd.errors)

@@ -2,6 +2,7 @@
 // argusd's start: arguments, files, the link; then the loop.
 #include "app.h"
 
+#include <errno.h>
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
@@ -259,6 +260,10 @@ static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     }
     if (tape_close(&loop.tape, message, sizeof message)) {
         complain(code);
+    }
+    if (fflush(stdout) != 0 || ferror(stdout) != 0) {
+        snprintf(message, sizeof message, "standard output: %s", strerror(errno));
+        return complain(ARGUSD_EXIT_INTERNAL);
     }
     return code;
 }

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "check.h"
+#include "settings.h"
 #include "signals.h"
 
 #define SAVE_MS 5000u
@@ -55,6 +56,19 @@ static void say_injections(loop_t *self, const argus_status_t *status) {
     }
 }
 
+// The arithmetic of the refusal, for the body that was met: the event tells one figure of it.
+static void say_unsafe(loop_t *self, const argus_status_t *status) {
+    settings_t met = {.config = *self->config};
+    char name[ARGUSD_MESSAGE_MAX / 4];
+    char why[ARGUSD_MESSAGE_MAX / 2];
+    char text[ARGUSD_MESSAGE_MAX];
+    if (settings_choose(&met, SETTINGS_robot, status->robot_body, "robot", name, sizeof name) &&
+        !settings_check(&met, why, sizeof why)) {
+        snprintf(text, sizeof text, "%s: %s", status->robot_body, why);
+        voice_notice(&self->voice, text);
+    }
+}
+
 static void say_events(loop_t *self) {
     argus_event_t event;
     const argus_status_t status = status_of(self);
@@ -65,6 +79,8 @@ static void say_events(loop_t *self) {
         say_event(self, &status, &event);
         if (event.id == ARGUS_EV_OTHER_ROBOT) {
             say_stranger(self, &status);
+        } else if (event.id == ARGUS_EV_ROBOT_UNSAFE) {
+            say_unsafe(self, &status);
         }
     }
     voice_losses(&self->voice, &self->moment, status.failure);
@@ -126,6 +142,7 @@ static void end(loop_t *self, argusd_exit_t code) {
         self->ending = true;
         self->code = code;
         self->ending_ms = self->moment.now_ms;
+        self->heard = status_of(self).online;
         notify_stopping(&self->notify);
         argus_shutdown(self->driver.core, self->moment.now_ms);
         driver_transmit(&self->driver);
@@ -328,6 +345,8 @@ static bool is_over(loop_t *self) {
     if (argus_closed(self->driver.core) && !driver_wants_write(&self->driver)) {
         if (self->met && !self->closed) {
             say_unclean(self, self->driver.up ? "since no robot answered" : "since the link was down");
+        } else if (self->met && !self->heard) {
+            say_unclean(self, "since the robot had gone silent, and may not have heard the end");
         }
         return true;
     }
@@ -405,6 +424,7 @@ static void begin_control(loop_t *self) {
 }
 
 static void begin(loop_t *self, const loop_options_t *options) {
+    self->config = options->config;
     const int32_t goal_mm = status_of(self).goal_mm;
     self->options = *options;
     self->moment.now_ms = hal_clock_now_ms(&self->driver.clock);

@@ -36,7 +36,8 @@ typedef struct {
     notify_t notify; // opened before
     operator_t operator;
     moment_t moment;
-    bool met; // a robot has answered
+    const argus_config_t *config; // as in the options
+    bool met;                     // a robot has answered
     bool ending;
     argusd_exit_t code;
     uint32_t start_ms;
@@ -46,6 +47,7 @@ typedef struct {
     int wishes;         // to end; what comes within a second of one is the same
     uint32_t wished_ms; // when the last one came
     bool closed;        // the session was closed in order
+    bool heard;         // SIPs came until the end was asked for
     uint32_t course_mm;
     view_t view;
 } loop_t;

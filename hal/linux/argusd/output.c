@@ -59,6 +59,7 @@ void output_flush(output_t *self) {
     while (self->used > 0 && !self->broken) {
         const ssize_t written = put(self);
         if (written < 0) {
+            self->problem = errno;
             self->broken = errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR;
             return;
         }

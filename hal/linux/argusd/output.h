@@ -15,7 +15,8 @@ typedef struct {
     bool own; // fd is our own opening, non-blocking without touching what others share
     bool is_socket;
     bool is_file;     // never makes a writer wait
-    bool broken;      // the reader is gone
+    bool broken;      // nothing can be written any more,
+    int problem;      // ... for this errno
     uint32_t dropped; // lines, monotonic
     size_t used;
     char backlog[OUTPUT_BACKLOG];

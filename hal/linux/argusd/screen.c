@@ -8,6 +8,8 @@
 
 #include "tui_key.h"
 
+#define PAUSED "PAUSED: g goes on"
+#define PAUSED_COLUMN 44
 #define NARROW 60 // columns
 #define FRONT_SONARS 8
 #define RING_TOP 3
@@ -136,7 +138,7 @@ static void draw_title(canvas_t *canvas, const view_t *view) {
     const char *const activity = status->active ? "ACTIVE" : "PASSIVE";
     const char *const name = view->name[0] != '\0' ? view->name : "no robot";
     char right[2][40];
-    char left[2][96];
+    char left[2][SCREEN_COLUMNS_MAX + 1];
     for (int column = 0; column < canvas->columns; column++) {
         put(canvas, 0, column, TONE_TITLE, ' ');
     }
@@ -147,7 +149,7 @@ static void draw_title(canvas_t *canvas, const view_t *view) {
     const char *const shown = first_that_fits(rights, canvas->columns);
     const int room = canvas->columns - (int)strlen(shown);
     put_text(canvas, 0, room, TONE_TITLE, shown);
-    snprintf(left[0], sizeof left[0], " argus  %.40s  %.16s", view->link, name);
+    snprintf(left[0], sizeof left[0], " argus  %s  %.16s", view->link, name);
     snprintf(left[1], sizeof left[1], " argus  %.16s", name);
     const char *const lefts[] = {left[0], left[1], " argus", ""};
     put_text(canvas, 0, 0, TONE_TITLE, first_that_fits(lefts, room));
@@ -197,9 +199,13 @@ static void draw_mode(canvas_t *canvas, const view_t *view) {
     write_at(canvas, 1, 1, TONE_PLAIN, "%-9s", argus_name(ARGUS_NAME_MODE, (int)status->mode));
     write_at(canvas, 1, 11, tone_of_failure(status->failure), "%s",
              argus_name(ARGUS_NAME_FAILURE, (int)status->failure));
-    write_at(canvas, 1, 27, TONE_PLAIN, "mission %s", argus_name(ARGUS_NAME_MISSION, (int)status->mission));
+    if (!status->paused || canvas->columns >= PAUSED_COLUMN + (int)sizeof PAUSED) {
+        write_at(canvas, 1, 27, TONE_PLAIN, "mission %s",
+                 argus_name(ARGUS_NAME_MISSION, (int)status->mission));
+    }
     if (status->paused) {
-        put_text(canvas, 1, 44, TONE_OPERATOR, "PAUSED: g goes on");
+        const bool wide = canvas->columns >= PAUSED_COLUMN + (int)sizeof PAUSED;
+        put_text(canvas, 1, wide ? PAUSED_COLUMN : 27, TONE_OPERATOR, wide ? PAUSED : "PAUSED");
     }
     if (status->waypoints > 0) {
         draw_progress(canvas, view, 2, 1);
@@ -377,14 +383,28 @@ static bool is_time(const char *text) {
            text[seconds + 4] == ' ';
 }
 
-// Of an event on a narrow screen its time is left out, and its level where a colour tells it.
-static const char *narrowed(const canvas_t *canvas, const char *text) {
+// Of the answer to a key what it does, and why not, if there is no room for its name.
+static const char *without_key(const canvas_t *canvas, const char *text) {
     const char *const first = text + strspn(text, " ");
-    if (canvas->columns >= NARROW || !is_time(first)) {
-        return text;
+    const char *const colon = strncmp(first, "> ", 2) == 0 ? strstr(first, ": ") : NULL;
+    return colon != NULL && (int)strlen(text) >= canvas->columns ? colon + 2 : text;
+}
+
+// Of an event on a narrow screen its time is left out, its level where a colour tells it, and what only fills
+// a column.
+static void narrow(const canvas_t *canvas, const char *text, char *shown, size_t capacity) {
+    const char *const first = text + strspn(text, " ");
+    const char *from = without_key(canvas, text);
+    if (is_time(first)) {
+        from = canvas->colourless ? after_word(first) : after_word(after_word(first));
     }
-    const char *const level = after_word(first);
-    return canvas->colourless ? level : after_word(level);
+    size_t used = 0;
+    for (; *from != '\0' && used + 1 < capacity; from++) {
+        if (*from != ' ' || used == 0 || shown[used - 1] != ' ') {
+            shown[used++] = *from;
+        }
+    }
+    shown[used] = '\0';
 }
 
 static void draw_log(canvas_t *canvas, const screen_log_t *log, int top, int bottom) {
@@ -397,8 +417,12 @@ static void draw_log(canvas_t *canvas, const screen_log_t *log, int top, int bot
             snprintf(times, sizeof times, " (%u times)", (unsigned)line->times);
         }
         const int width = canvas->columns - 1 - (int)strlen(times);
-        const int length =
-            put_words(canvas, top + i, 1, width, (tone_t)line->tone, narrowed(canvas, line->text));
+        char narrowed[SCREEN_COLUMNS_MAX + 1];
+        if (canvas->columns < NARROW) {
+            narrow(canvas, line->text, narrowed, sizeof narrowed);
+        }
+        const int length = put_words(canvas, top + i, 1, width, (tone_t)line->tone,
+                                     canvas->columns < NARROW ? narrowed : line->text);
         put_text(canvas, top + i, 1 + length, (tone_t)line->tone, times);
     }
 }

@@ -2,6 +2,7 @@
 // Chooses between the screen and the streams, and keeps their times.
 #include "voice.h"
 
+#include <errno.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,7 +72,9 @@ static tone_t tone_of(const argus_event_t *event) {
 // thing.
 static uint16_t key_of(const argus_event_t *event) {
     const uint16_t id = event->id == ARGUS_EV_SUSPICION_DROPPED ? ARGUS_EV_SONAR_SUSPECT : event->id;
-    return (uint16_t)((unsigned)id << 5 | ((unsigned)event->sonar & 0x1Fu));
+    const int which =
+        event->id == ARGUS_EV_OPERATOR ? event->value : event->sonar; // each order is a thing apart
+    return (uint16_t)((unsigned)id << 5 | ((unsigned)which & 0x1Fu));
 }
 
 // Returns the length of the line, for people.
@@ -114,7 +117,11 @@ void voice_losses(voice_t *self, const moment_t *moment, argus_failure_t failure
     }
     if (self->out.broken && !self->reader_said) {
         self->reader_said = true;
-        voice_notice(self, "nobody reads standard output any more; going on without");
+        char text[128];
+        const bool gone = self->out.problem == 0 || self->out.problem == EPIPE;
+        snprintf(text, sizeof text, "standard output: %s; going on without",
+                 gone ? "nobody reads it any more" : strerror(self->out.problem));
+        voice_notice(self, text);
     }
     if (self->out.broken || self->out.used > OUTPUT_BACKLOG / 2) {
         return;

@@ -270,7 +270,7 @@ void test_a_narrow_screen_tells_which_event_it_was(void) {
     screen_log_add(&log_, "   12.345 WARN  drive          STOPPED 0: STOP sent", TONE_WARN, 0);
     screen_log_add(&log_, " > g: go on with the course", TONE_PLAIN, 0);
     draw(24, 40);
-    TEST_ASSERT_NOT_EQUAL(-1, find("drive          STOPPED 0: STOP sent"));
+    TEST_ASSERT_NOT_EQUAL(-1, find("drive STOPPED 0: STOP sent"));
     TEST_ASSERT_EQUAL(-1, find("WARN"));
     TEST_ASSERT_NOT_EQUAL(-1, find("> g: go on with the course"));
     draw(24, 80);
@@ -281,8 +281,30 @@ void test_a_narrow_screen_without_colours_tells_the_level(void) {
     screen_log_add(&log_, "   12.345 WARN  drive          STOPPED 0: STOP sent", TONE_WARN, 0);
     canvas.colourless = true;
     draw(24, 45);
-    TEST_ASSERT_NOT_EQUAL(-1, find("WARN  drive          STOPPED 0: STOP sent"));
+    TEST_ASSERT_NOT_EQUAL(-1, find("WARN drive STOPPED 0: STOP sent"));
     TEST_ASSERT_EQUAL(-1, find("12.345"));
+}
+
+void test_a_narrow_screen_keeps_the_name_of_what_it_counts(void) {
+    for (int i = 0; i < 2; i++) {
+        screen_log_add(&log_, "   12.345 OK    health         HEALTH_CHECK 0: all front sonars have reported",
+                       TONE_PLAIN, 77);
+    }
+    draw(24, 40);
+    TEST_ASSERT_NOT_EQUAL(-1, find("health HEALTH_CHECK 0"));
+    TEST_ASSERT_NOT_EQUAL(-1, find("(2 times)"));
+}
+
+void test_a_narrow_screen_says_why_a_key_had_no_effect(void) {
+    screen_log_add(&log_, " > up, w: one step ahead: not while passive", TONE_WARN, 0);
+    draw(24, 40);
+    TEST_ASSERT_NOT_EQUAL(-1, find("one step ahead: not while passive"));
+}
+
+void test_a_narrow_screen_says_that_it_is_paused(void) {
+    view.status.paused = true;
+    draw(24, 40);
+    TEST_ASSERT_NOT_EQUAL(-1, find("PAUSED"));
 }
 
 void test_a_notice_that_begins_with_digits_loses_nothing_on_a_narrow_screen(void) {
