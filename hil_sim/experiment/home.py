@@ -36,11 +36,13 @@ class Home:
         self._begins = False
         self._turned_deg = 0.0
         self._plan: list[int] = []
+        self._replanned = False
 
     def hear(self, name: str, value: int, heading: float) -> str | None:
         """Take an event of the fault manager."""
         if name == "PLAN":
             self._plan = []
+            self._replanned = self._mode == _SWEEPS
         elif name == "PLAN_ROTATION":
             self._plan.append(value)
         elif name in _FORGIVES:
@@ -77,8 +79,11 @@ class Home:
 
     def _after_sweep(self, heading: float) -> str | None:
         rests, self._rests = self._rests, [heading]
+        replanned, self._replanned = self._replanned, False
         if len(rests) < 2 or not self._plan:
             return None
+        if replanned:  # it began with a turn that is no rotation of the present plan
+            return self._judge(rests[:2], heading, "after a sweep")
         first = self._plan[0]
         starts = [k for k in (0, 1) if k + 1 < len(rests) and self._is_turn(rests[k], rests[k + 1], first)]
         return self._judge([rests[k] for k in starts] or [rests[0]], heading, "after a sweep")

@@ -101,6 +101,9 @@ def home(*steps: tuple[str, float]) -> list[str]:
             asked.still(heading)
         elif word in ("SWEEP", "BACKING"):
             wrong.append(asked.hear(word, 0, heading))
+        elif word == "PLAN":  # another one: its first rotation is 40 degrees
+            asked.hear("PLAN", 1, heading)
+            asked.hear("PLAN_ROTATION", 40, heading)
         else:
             wrong.append(asked.change(word, heading))
     return [text for text in wrong if text is not None]
@@ -114,6 +117,30 @@ def home(*steps: tuple[str, float]) -> list[str]:
         # The leg's bearing comes first.
         ([("SWEEPING", 5.0), ("rest", 95.0), ("rest", 75.0), ("rest", 95.0), ("SWEEP", 95.0)], False),
         ([("SWEEPING", 5.0), ("rest", 95.0), ("rest", 75.0), ("rest", 5.0), ("SWEEP", 5.0)], True),
+        # One more sonar is lost in the sweep, and the new plan's first rotation is made from where it is.
+        (
+            [
+                ("SWEEPING", 5.0),
+                ("rest", -35.0),
+                ("PLAN", -35.0),
+                ("rest", 5.0),
+                ("rest", 45.0),
+                ("rest", 5.0),
+                ("SWEEP", 5.0),
+            ],
+            False,
+        ),
+        (
+            [
+                ("SWEEPING", 5.0),
+                ("rest", -35.0),
+                ("PLAN", -35.0),
+                ("rest", 5.0),
+                ("rest", 45.0),
+                ("SWEEP", 45.0),
+            ],
+            True,
+        ),
         (
             [
                 ("DRIVING", 0.0),
