@@ -12,7 +12,7 @@
 #define END_MM 250      // ... and one of the end: what fell silent on the way tells nothing of it
 #define TURNED_CDEG 500 // a straight way turns less
 #define ALONG_CDEG 3100 // so far off the way a range still changes with it
-#define NEAR_MM 4000    // echoes from farther off come and go
+#define NEAR_MM 2500    // echoes from farther off come and go
 #define STAYS_MM 100    // less than a change: of 500
 #define FITS_MM 200     // off what the odometry says
 #define PROOF 6         // of stretches one after the other:
