@@ -163,7 +163,7 @@ def test_keys_are_answered_and_the_terminal_comes_back(
         "w": "one step ahead: not while passive",
         "z": "> no such key",
         "n": "> n: sonar 1 is",
-        " ": "> space: stop, and stay",
+        " ": "stop, and stay",
     }.items():
         terminal.press(key)
         terminal.wait_shown(answer)
