@@ -11,6 +11,7 @@
 #define READ_BYTES 512
 #define READS_PER_TURN 4 // a flood must not keep the robot waiting
 #define STALE_MS 10000u  // a client so long without a sign of life makes room for another
+#define SAY_MS 10000u    // between two lines about what is no client
 #define OUT_BYTES 1024
 
 argusd_exit_t guards_open(guards_t *self, const guards_options_t *options, driver_t *driver, char *message,
@@ -150,10 +151,13 @@ static void greet(guards_t *self, int index, uint32_t now_ms) {
 
 // A page in a browser of this machine can reach a TCP port: HTTP and TLS begin with other bytes than a
 // packet.
-static bool is_foreign(guards_t *self, uint8_t first) {
+static bool is_foreign(guards_t *self, uint8_t first, uint32_t now_ms) {
     const bool foreign = !self->spoken && first != ARCOS_FRAME_HEADER0;
     self->spoken = !foreign;
-    if (foreign) {
+    if (foreign &&
+        (!self->foreign_said || now_ms - self->foreign_ms >= SAY_MS)) { // a page tries again and again
+        self->foreign_said = true;
+        self->foreign_ms = now_ms;
         snprintf(self->notice, sizeof self->notice,
                  "guard %s: what came is not ARCOS (a page in a browser?) and was turned away",
                  self->at[self->served].spec.text);
@@ -166,7 +170,7 @@ static void hear(guards_t *self, uint32_t now_ms) {
     const int index = self->served;
     for (int i = 0; i < READS_PER_TURN && self->served >= 0; i++) {
         const size_t got = guard_port_read(&self->at[index], bytes, sizeof bytes);
-        if (got > 0 && is_foreign(self, bytes[0])) {
+        if (got > 0 && is_foreign(self, bytes[0], now_ms)) {
             guard_port_drop(&self->at[index]);
         }
         if (self->at[index].client < 0) {

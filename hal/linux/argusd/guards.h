@@ -32,8 +32,10 @@ typedef struct {
     argus_port_storage_t port;
     uint8_t held[GUARDS_HELD];
     size_t held_count;
-    uint32_t heard_ms; // something of the client, last
-    uint32_t taken_ms; // it took bytes, last
+    uint32_t foreign_ms; // what is no client was said last,
+    bool foreign_said;   // ... if ever
+    uint32_t heard_ms;   // something of the client, last
+    uint32_t taken_ms;   // it took bytes, last
     char notice[ARGUSD_MESSAGE_MAX];
 } guards_t;
 
