@@ -228,6 +228,11 @@ PAGES = (
 )
 
 
+def lines_of(text: str) -> list[str]:
+    """Return the lines of a help text as Python 3.13 writes them: a value behind the last form of an option only."""
+    return re.sub(r"^( +-\w) (\S+), (--[\w-]+ \2)", r"\1, \3", text, flags=re.MULTILINE).splitlines()
+
+
 def help_of(command: tuple[str, ...]) -> list[str]:
     """Return the lines that a program prints for --help."""
     path = os.pathsep.join(str(ROOT / folder) for folder in (".", "tools"))
@@ -238,7 +243,7 @@ def help_of(command: tuple[str, ...]) -> list[str]:
         )
     except (OSError, subprocess.CalledProcessError) as error:
         raise ManError(f"{' '.join(command)} --help fails ({error}); run tools/dev build release") from error
-    return done.stdout.splitlines()
+    return lines_of(done.stdout)
 
 
 def escaped(text: str) -> str:

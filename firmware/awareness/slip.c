@@ -12,6 +12,7 @@
 #define END_MM 250      // ... and one of the end: what fell silent on the way tells nothing of it
 #define TURNED_CDEG 500 // a straight way turns less
 #define ALONG_CDEG 3100 // so far off the way a range still changes with it
+#define STEEP_CDEG 3000 // an edge of the cone that looks farther aside takes a wall there for given
 #define NEAR_MM 2500    // echoes from farther off come and go
 #define STAYS_MM 100    // less than a change: of 500
 #define FITS_MM 200     // off what the odometry says
@@ -70,7 +71,10 @@ static bool may_be_wall_beside(const argus_knowledge_t *const knowledge, const i
     const int32_t off_way_cdeg = argus_abs(bearing_cdeg(knowledge, sonar));
     const int32_t edge_cdeg = argus_min(off_way_cdeg, 18000 - off_way_cdeg) + knowledge->robot->cone_deg * 50;
     const int32_t aside = knowledge->sonar[sonar].reading_mm * argus_sin(edge_cdeg) / ARGUS_TRIG_ONE;
-    return aside + STAYS_MM >= beside_mm(knowledge, sonar);
+    const int32_t beside = beside_mm(knowledge, sonar);
+    const bool unheard =
+        beside >= ARGUS_NO_ECHO_MM && edge_cdeg > STEEP_CDEG; // a wall may turn the echo away
+    return unheard || aside + STAYS_MM >= beside;
 }
 
 static void note_beginnings(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {

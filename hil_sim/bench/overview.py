@@ -74,6 +74,15 @@ def _share(found: Record, value: str) -> Share:
     return found[value], found["low"], found["high"]
 
 
+def _by_drive(kinds: Record) -> dict[float, Share]:
+    """Return the shares of the kinds of which there were faults."""
+    return {
+        float(at): (kinds[kind]["rate"], *kinds[kind]["interval"])
+        for at, kind in enumerate(KINDS)
+        if kinds[kind]["rate"] is not None
+    }
+
+
 def draw_found(path: Path, source: str, listening: Record, driving: Record) -> None:
     """Draw for each kind which part of the faults was found in time: by listening alone, and by a robot that drives."""
     heard = {kind: row["in_time"] for kind, row in listening["found"].items() if kind in KINDS}
@@ -84,12 +93,7 @@ def draw_found(path: Path, source: str, listening: Record, driving: Record) -> N
         by_ear = {float(at): _share(heard[kind], "share") for at, kind in enumerate(KINDS) if kind in heard}
         _dots(left, by_ear, "", _ARGUS)
         _named(left, [f"{kind} ({heard[kind]['of'] if kind in heard else 0})" for kind in KINDS])
-        by_drive = {
-            float(at): (kinds[kind]["rate"], *kinds[kind]["interval"])
-            for at, kind in enumerate(KINDS)
-            if kinds[kind]["rate"] is not None
-        }
-        _dots(right, by_drive, "", _ARGUS)
+        _dots(right, _by_drive(kinds), "", _ARGUS)
         _named(right, [f"{kind} ({kinds[kind]['judged']})" for kind in KINDS])
         left.set_title("by listening alone (bench drive-by)", fontsize=10)
         right.set_title("by a robot that drives itself (bench diagnosis)", fontsize=10)

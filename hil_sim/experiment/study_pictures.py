@@ -98,16 +98,24 @@ def draw_price(path: Path, records: Sequence[Record]) -> None:
         )
 
 
+def _medians(
+    records: Sequence[Record], policy: str, quantity: Callable[[Record], float | None]
+) -> list[tuple[int, float]]:
+    """Return the median of a quantity for each number of dead sonars of which journeys arrived."""
+    points = []
+    for k, group in enumerate(_COUNTS):
+        values = [quantity(r) for r in _of(records, policy, group) if arrived(r)]
+        known = [value for value in values if value is not None]
+        if known:
+            points.append((k, median(known)))
+    return points
+
+
 def _lines(place: Axes, records: Sequence[Record], quantity: Callable[[Record], float | None]) -> None:
     marks = dict(zip(POLICIES, "so^vD", strict=True))
     for n, policy in enumerate(POLICIES):
         aside = 0.13 * (n - (len(POLICIES) - 1) / 2)  # policies that take the same are both seen
-        points = []
-        for k, group in enumerate(_COUNTS):
-            values = [quantity(r) for r in _of(records, policy, group) if arrived(r)]
-            known = [value for value in values if value is not None]
-            if known:
-                points.append((k, median(known)))
+        points = _medians(records, policy, quantity)
         style: dict[str, Any] = {"marker": marks[policy], "color": COLOURS[policy], "markersize": 5}
         for part, label in (
             ([point for point in points if point[0] < _APART], policy),

@@ -30,7 +30,7 @@ def help_of(command: tuple[str, ...]) -> list[str]:
     env = {**os.environ, "COLUMNS": gen_man.WIDE}
     done = forks.run_text(f"{module}:main", *command[3:], "--help", env=env)
     assert done.returncode == 0, done.stderr
-    return done.stdout.splitlines()
+    return gen_man.lines_of(done.stdout)
 
 
 def test_pages_are_current(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -61,11 +61,18 @@ def tshark(path: Path, *arguments: str) -> str:
     return done.stdout
 
 
+TRUTH = {"False": "0", "True": "1"}
+"""As tshark writes them before 4.4, and since."""
+
+
 def fields(path: Path, *names: str, where: str = "arcos") -> list[list[list[str]]]:
     """The values of some fields, for each frame."""
     wanted = [word for name in names for word in ("-e", name)]
     lines = tshark(path, "-Y", where, "-T", "fields", *wanted).splitlines()
-    return [[[value for value in part.split(",") if value] for part in line.split("\t")] for line in lines]
+    return [
+        [[TRUTH.get(value, value) for value in part.split(",") if value] for part in line.split("\t")]
+        for line in lines
+    ]
 
 
 def field(path: Path, name: str) -> list[str]:

@@ -91,18 +91,20 @@ void test_two_ahead_alone_take_three_stretches(void) {
 
 void test_two_that_look_back_take_three_stretches(void) {
     k.sonar[BACK].reading_mm = 1300;
-    k.sonar[BACK + 1].reading_mm = 1250;
+    k.sonar[11].reading_mm = 1250;
     TEST_ASSERT_EQUAL(-1, drive(2 * STRETCH_SIPS + 2, 0, 0));
     TEST_ASSERT_NOT_EQUAL(-1, drive(STRETCH_SIPS + 6, 0, 0));
 }
 
 // 30 degrees off the way a wall that goes along with it stays as far off, too.
 void test_a_wall_beside_the_way_tells_nothing_to_those_that_look_aslant(void) {
-    for (int beside = 0; beside < 2; beside++) {
+    static const uint16_t abeam_mm[] = {2000, 850,
+                                        5000}; // one that hears nothing may be turned away by a wall
+    for (int beside = 0; beside < 3; beside++) {
         setUp();
         k.sonar[2].reading_mm = 1200; // 848 mm aside at the edge of its cone
         k.sonar[13].reading_mm = 1200;
-        k.sonar[0].reading_mm = k.sonar[15].reading_mm = beside != 0 ? 850 : 2000;
+        k.sonar[0].reading_mm = k.sonar[15].reading_mm = abeam_mm[beside];
         const int said = drive(3 * STRETCH_SIPS, 0, 0);
         TEST_ASSERT_EQUAL(beside != 0, said == -1);
     }
