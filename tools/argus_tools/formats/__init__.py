@@ -36,7 +36,7 @@ _TEXT_HEAD_BYTES: Final = 1 << 12
 # module has a FORMAT, or FORMATS where several are alike.
 MODULES: Final = (
     "record", "pcapng", "pcap", "canlog", "recoded", "jsonl", "candump", "canlines", "cancsv",
-    "others", "hexdump", "hexwords", "hextext", "bin",
+    "framedump", "numdump", "others", "hexdump", "hexwords", "hextext", "bin",
 )  # fmt: skip
 
 
