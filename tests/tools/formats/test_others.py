@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import base64
 import gzip
+import io
 import quopri
 import random
 import sqlite3
@@ -14,7 +15,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from argus_tools.formats import LogError, find_format, formats, forms, open_log
+from argus_tools.formats import Chunk, LogError, ReadOptions, find_format, formats, forms, open_log
+from argus_tools.formats.base import copy
 from forms import ROBOT, hexdump_c, joined, od, xxd
 from logs import CAPTURES, run, sip
 
@@ -134,6 +136,37 @@ def test_recoded_bytes_are_told_and_what_gets_them_back(name: str, tmp_path: Pat
         command = next(part for part in message.split("; ") if "iconv" in part).partition(" gets ")[0]
         subprocess.run(command, shell=True, cwd=tmp_path, check=True)
         assert ROBOT in (tmp_path / "drive.bin").read_bytes()
+
+
+@pytest.mark.parametrize("name", ["bin", "record", "pcap", "pcapng", "blf"])
+def test_bytes_that_a_text_transfer_changed_are_told(name: str, tmp_path: Path) -> None:
+    sips = [sip(x=n, th=10 * n, sonars=((1, 0x0A0A), (2, 2570 + n))) for n in range(40)]
+    data = b"".join(sips)
+    if name != "bin":
+        form, out = formats().get(name), io.BytesIO()
+        if form is None or form.writer is None:
+            data = b"LOGG" + data
+        else:
+            copy(
+                [Chunk(float(n), "r2c", part, 0) for n, part in enumerate(sips)],
+                form.writer(out, ReadOptions()),
+            )
+            data = out.getvalue()
+    path = tmp_path / "a b.bin"
+    path.write_bytes(data.replace(b"\n", b"\r\n"))
+    log = open_log(str(path))
+    what = log.damage[0].what
+    assert "recoded by a text transfer (LF became CRLF): send it as binary" in what
+    command = what.split("; ")[1].removesuffix(" gets most of it back").split(": ")[-1]
+    subprocess.run(command, shell=True, cwd=tmp_path, check=True)
+    assert (tmp_path / "drive.bin").read_bytes() == data
+    path.write_bytes(data)
+    assert not any("text transfer" in entry.what for entry in open_log(str(path)).damage)
+
+
+def test_text_with_carriage_returns_is_none_of_it(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_bytes(hexdump_c(ROBOT).replace("\n", "\r\n").encode())
+    assert open_log(str(tmp_path / "a.txt")).damage == []
 
 
 @pytest.mark.parametrize(
