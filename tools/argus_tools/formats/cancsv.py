@@ -105,13 +105,16 @@ def _in_their_base(columns: _Columns, head: bytes) -> _Columns:
     """Say in which base a table is whose headings do not tell it: its ids are a robot's in that base alone."""
     rows = [_cells(line, columns) for line in head.splitlines()[1:_ROWS_LOOKED_AT]]
     cells = [_Cells(columns, row) for row in rows if row]
-    ids = [cell.id_text() for cell in cells]
-    is_decimal = columns.is_decimal or _are_decimal(ids)
+    is_decimal = columns.is_decimal or _are_decimal([cell.id_text() for cell in cells])
     data = [text for cell in cells for text in cell.one_texts()]
-    has_decimal_data = any(len(text) > 2 and text.isdigit() for text in data) or (
-        is_decimal and bool(data) and all(map(str.isdigit, data))
-    )
-    return replace(columns, is_decimal=is_decimal, has_decimal_data=has_decimal_data)
+    return replace(columns, is_decimal=is_decimal, has_decimal_data=_is_decimal_data(data, is_decimal))
+
+
+def _is_decimal_data(texts: list[str], with_decimal_ids: bool) -> bool:
+    """A number of three digits is no byte in hexadecimal; without one, bytes are written as the ids are."""
+    if any(len(text) > 2 and text.isdigit() for text in texts):
+        return True
+    return with_decimal_ids and bool(texts) and all(map(str.isdigit, texts))
 
 
 def _are_decimal(ids: list[str]) -> bool:

@@ -181,22 +181,29 @@ def _plan(head: bytes) -> _Plan | None:
     if words is None:
         return None
     full = [line for line in full if words.fits(line.words)]
-    is_swapped = False
-    if words.size > 1:
-        natural, swapped = (
-            likeness(b"".join(words.decode(line.words, turn) for line in full)) for turn in (False, True)
-        )
-        is_swapped = swapped > natural
-    every = (_parse(text, column) for text in first_lines(head, _LINES_PLANNED))
+    is_swapped = words.size > 1 and _is_swapped(words, full)
+    samples = _samples(first_lines(head, _LINES_PLANNED), column, words, is_swapped)
+    return _Plan(words, _base(lines, words), is_swapped, samples, column)
+
+
+def _is_swapped(words: _Words, lines: list[_Line]) -> bool:
+    """Whether these are more like a link's bytes with those of each word turned round."""
+    natural, swapped = (
+        likeness(b"".join(words.decode(line.words, turn) for line in lines)) for turn in (False, True)
+    )
+    return swapped > natural
+
+
+def _samples(texts: list[bytes], column: int | None, words: _Words, is_swapped: bool) -> dict[bool, bytes]:
+    """Return the bytes of these lines, apart for those that are indented where there are two kinds."""
     samples: dict[bytes, bytes] = {}
-    for line in every:
+    for text in texts:
+        line = _parse(text, column)
         if line and line.words and words.fits(line.words):
             samples[line.indent] = samples.get(line.indent, b"") + words.decode(line.words, is_swapped)
     if len(samples) == 2 and b"" in samples:
-        keyed = {bool(indent): data for indent, data in samples.items()}
-    else:
-        keyed = {False: b"".join(samples.values())}
-    return _Plan(words, _base(lines, words), is_swapped, keyed, column)
+        return {bool(indent): data for indent, data in samples.items()}
+    return {False: b"".join(samples.values())}
 
 
 def likeness(data: bytes) -> tuple[int, int]:

@@ -176,14 +176,18 @@ class HexwordsReader:
         way = _way(head) or _BY_RUNS
         usual = self._direction or guess_direction(_bytes_of(head, way))
         for number, line in _lines(self._stream, way):
-            parts = way.take(line)
             if stamp := times.take(line.lstrip()):
                 t = stamp.t
-            if None in parts or (way.tells and not parts and way.open_in(line)):
-                self.damage.append(Damage(f"line {number}", _OPEN))
-            if data := _joined(parts):
+            if data := self._bytes(number, line, way):
                 tells = self._direction is None and _holds_packets(data, 1)
                 yield offsets.chunk(t, guess_direction(data) if tells else usual, data)
+
+    def _bytes(self, number: int, line: bytes, way: _Way) -> bytes:
+        """Return the bytes of a line; tell of what looks like some and holds none."""
+        parts = way.take(line)
+        if None in parts or (way.tells and not parts and way.open_in(line)):
+            self.damage.append(Damage(f"line {number}", _OPEN))
+        return _joined(parts)
 
 
 def _sniff(head: bytes) -> bool:
