@@ -7,18 +7,20 @@ import argparse
 import math
 import re
 import sys
-from typing import Any, Final
+from typing import Any, Final, NoReturn
 
 from hil_sim.arcos import BAUD
 from hil_sim.arguments import Parser
 from hil_sim.errors import SimError
 from hil_sim.links.can_spec import CanSpec, parse_spec
 from hil_sim.record.recording import MAX_BYTES
-from hil_sim.scenario.scenario import SEED_MAX, Scenario, sonar_value
+from hil_sim.scenario.scenario import SEED_MAX, Scenario, scenario_names, sonar_value
 from hil_sim.server.quirks import QUIRKS
 from hil_sim.server.server import SIP_CYCLE_MS
 from hil_sim.tables import robots
 from hil_sim.tables.robot import DEFAULT_ROBOT
+from hil_sim.version import add_version
+from hil_sim.world.files import world_names
 from hil_sim.world.model import Pose
 from hil_sim.world.physics import LIMITS, SETS, Physics, parse_physics
 
@@ -52,8 +54,18 @@ exit codes: 0 ended by a signal or --duration, 1 link cannot be opened or was lo
 """
 
 
+_NAMES: Final = {"scenario": scenario_names, "world": world_names}
+
+
 class _Parser(Parser):
-    """Knows a place that begins with a minus."""
+    """Knows a place that begins with a minus, and the names that an option without one wants."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print the line, with the names that may stand there, and leave with code 2."""
+        for option, names in _NAMES.items():
+            if message.startswith(f"argument --{option}: expected one argument"):
+                message += f": {', '.join(names())}, or a file"
+        super().error(message)
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Take a place that begins with a minus for what it is, no option."""
@@ -192,7 +204,9 @@ def parser() -> argparse.ArgumentParser:
         "--world", metavar="NAME|FILE", help=f"a world of ours or a .map file (default {Scenario.world})"
     )
     place.add_argument(
-        "--scenario", metavar="NAME|FILE", help="world, start, faults and more: one of ours or a YAML file"
+        "--scenario",
+        metavar="NAME|FILE",
+        help=f"world, start, faults and more: one of ours ({', '.join(scenario_names())}) or a YAML file",
     )
     place.add_argument("--seed", type=_seed, metavar="N", help="seed of everything random (default 1)")
     place.add_argument(
@@ -208,7 +222,11 @@ def parser() -> argparse.ArgumentParser:
         "--robot", choices=robots(), metavar="NAME", help=f"{', '.join(robots())} (default {DEFAULT_ROBOT})"
     )
     place.add_argument("--name", type=_label, help="the robot's name (default: as its table says)")
-    place.add_argument("--subclass", type=_label, help="the subclass it announces (default: the robot's)")
+    place.add_argument(
+        "--subclass",
+        type=_label,
+        help="the subclass it announces (default: the robot's); one of --robot is that robot unless --robot is given",
+    )
     place.add_argument(
         "--robots", type=_robots, default=1, metavar="N", help="serve N robots, each in a world of its own"
     )
@@ -281,4 +299,5 @@ def parser() -> argparse.ArgumentParser:
     rest.add_argument(
         "-v", "--verbose", action="count", default=0, help="say more on standard error; -vv: every command"
     )
+    add_version(rest)
     return result

@@ -18,6 +18,7 @@ from hil_sim.links.tcp import TcpLink
 from hil_sim.links.uart import SerialLink
 from hil_sim.scenario.scenario import Scenario, load_scenario
 from hil_sim.server.mobilesim import NAME as MOBILESIM_NAME
+from hil_sim.tables import robots
 from hil_sim.tables.robot import robot_table
 
 
@@ -36,6 +37,9 @@ def scenario_of(arguments: argparse.Namespace) -> Scenario:
         )
         if value is not None
     }
+    # Who says that it is an AmigoBot has its body, too.
+    if arguments.robot is None and arguments.subclass in robots():
+        changes["robot"] = arguments.subclass
     sonar = dict(arguments.sonar)
     if arguments.crosstalk is not None:
         sonar["crosstalk"] = arguments.crosstalk

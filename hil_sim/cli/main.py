@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import io
 import logging
-import os
 import sys
 from collections.abc import Sequence
 
@@ -14,6 +13,7 @@ from hil_sim.cli.choose import scenario_of
 from hil_sim.cli.serve import say, serve
 from hil_sim.errors import SimError
 from hil_sim.faults.grammar import fault_help
+from hil_sim.output import guarded
 from hil_sim.world.files import world_names
 
 
@@ -37,6 +37,10 @@ def _elsewhere(words: Sequence[str]) -> int | None:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run `argus-sim`; return its exit code."""
     words = list(sys.argv[1:] if argv is None else argv)
+    return guarded("argus-sim", lambda: _run(words), SimError.exit_code, 0)
+
+
+def _run(words: Sequence[str]) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):  # a name may have letters that the terminal has not
         sys.stdout.reconfigure(errors="backslashreplace")
     code = _elsewhere(words)
@@ -56,7 +60,4 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SimError as error:
         say(str(error))
         return error.exit_code
-    except BrokenPipeError:
-        # Nobody reads our output; the interpreter would complain once more while it closes it.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return 0

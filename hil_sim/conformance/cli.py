@@ -18,6 +18,7 @@ from hil_sim.conformance.check import Check
 from hil_sim.conformance.checks import CHECKS, GROUPS
 from hil_sim.conformance.client import Client, Failed, NotApplicable, Target, parse_target
 from hil_sim.errors import SimError
+from hil_sim.version import add_version
 
 PASS, FAIL, NOT_APPLICABLE = "pass", "fail", "not applicable"
 _COLOURS: Final = {PASS: "32", FAIL: "31", NOT_APPLICABLE: "33"}
@@ -133,6 +134,7 @@ def parser() -> argparse.ArgumentParser:
     )
     result.add_argument("--json", action="store_true", help="one JSON object per check instead of the table")
     result.add_argument("--list", action="store_true", help="list the checks and leave")
+    add_version(result)
     return result
 
 

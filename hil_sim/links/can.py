@@ -19,6 +19,7 @@ from hil_sim.arcos import FRAME
 from hil_sim.errors import LinkError
 from hil_sim.links.base import BACKLOG_MS, Link
 from hil_sim.links.can_spec import ID_MAX, CanSpec
+from hil_sim.links.root import as_root
 
 PACKET_MAX: Final = FRAME["COUNT_MAX"] + FRAME["OVERHEAD"]
 PDU_MAX: Final = 4095
@@ -225,14 +226,14 @@ def explain(spec: CanSpec, fault: Fault) -> str:
     name = spec.interface
     if fault.number in (errno.EAFNOSUPPORT, errno.ESOCKTNOSUPPORT) or not _has_can():
         text = "this kernel has no CAN (modules can, can-raw)"
-        text += "; load them: sudo modprobe -a can-raw can-isotp, or run it under tools/with-can"
+        text += f"; load them: {as_root('modprobe -a can-raw can-isotp')}, or run it under tools/with-can"
     elif fault.number == errno.EPROTONOSUPPORT:
         text = "this kernel has no ISO-TP (module can-isotp)"
-        text += "; load it: sudo modprobe can-isotp, or leave stack=kernel out"
+        text += f"; load it: {as_root('modprobe can-isotp')}, or leave stack=kernel out"
     elif not _exists(name):
         text = f"there is no interface {name}; "
         if name.startswith("vcan"):
-            text += f"make it: sudo ip link add {name} type vcan && sudo ip link set {name} up"
+            text += f"make it: {as_root(f'ip link add {name} type vcan && ip link set {name} up')}"
         else:
             text += "plug the adapter in, then: ip -br link"
     elif fault.number in (errno.ENODEV, errno.ENXIO):
@@ -278,8 +279,9 @@ class CanLink(Link):
         if self.spec.fd and _mtu(self.spec.interface) == _CLASSIC_MTU:
             name = self.spec.interface
             raise LinkError(
-                f"--can {name},fd: the interface carries classic CAN only; leave fd out, or: sudo ip link set {name} "
-                "down mtu 72, then up (an adapter: ip link set ... type can ... dbitrate N fd on)"
+                f"--can {name},fd: the interface carries classic CAN only; leave fd out, or: "
+                f"{as_root(f'ip link set {name} down mtu 72')}, then up "
+                "(an adapter: ip link set ... type can ... dbitrate N fd on)"
             )
         try:
             self._connect()
@@ -294,7 +296,8 @@ class CanLink(Link):
                 raise
             self._stack = UserStack(self.spec)
             self._kind = UserStack
-            _log.warning("this kernel has no ISO-TP (sudo modprobe can-isotp); using a stack in user space")
+            load = as_root("modprobe can-isotp")
+            _log.warning("this kernel has no ISO-TP (%s); using a stack in user space", load)
 
     @property
     def address(self) -> str:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Callable
 from io import RawIOBase
@@ -39,6 +40,7 @@ class TruthRecord:
             ) from error
         self._say = say
         self._full = False
+        self._whole = 0
         self._error: str | None = None
         self("meta", meta)
         if self._full:
@@ -53,9 +55,16 @@ class TruthRecord:
         if self._file.closed:
             return
         line = json.dumps({"type": kind, **fields}, separators=(",", ":")) + "\n"
+        data = line.encode()
         try:
-            self._file.write(line.encode())
+            written = 0
+            while written < len(data):
+                written += self._file.write(data[written:]) or 0
+            self._whole += written
         except OSError as error:
+            # Half a line would be none of a record; a pipe cannot be cut.
+            with contextlib.suppress(OSError):
+                self._file.truncate(self._whole)
             self._lose(error)
 
     def _lose(self, error: OSError) -> None:

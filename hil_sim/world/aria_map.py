@@ -25,6 +25,7 @@ _NEWER = re.compile(r"2D-Map-Ex[0-9]+")
 _CAIRN = re.compile(r'(\S+)\s+(\S+)\s+(\S+)\s+(\S+)\s+"[^"]*"\s+\S+\s+"([^"]*)"\s*(.*)$')
 _SECTION = re.compile(r"(?:(?P<sensor>\S+)_)?(?P<what>LINES|DATA)")
 _COUNT = re.compile(r"(?P<what>\w*Num(?:Lines|Points)):(?P<count>.*)")
+_NUMBERS = re.compile(r"[-+0-9.]+[\s,]")
 _AREAS = ("ForbiddenLine", "ForbiddenArea", "Sim.BoxObstacle")
 
 
@@ -39,8 +40,9 @@ class _MapReader:
         self.start: Pose | None = None
         self.goals: dict[str, Pose] = {}
         self.forbidden: list[tuple[float, float, float, float]] = []
-        self.announced: dict[str, tuple[int, int]] = {}
+        self.announced: dict[str, tuple[str, int]] = {}
         self.counted: dict[str, int] = {}
+        self.told: set[str] = set()
 
     def fail(self, what: str) -> NoReturn:
         """Refuse the current line."""
@@ -63,7 +65,7 @@ class _MapReader:
         self.check_form(lines[0].strip().lstrip("\ufeff") if lines else "")
         section = what = ""
         for self.number, raw in enumerate(lines[1:], 2):
-            line = raw.strip()
+            line = self.without_comment(raw.strip())
             if match := _SECTION.fullmatch(line):
                 section = match["what"]
                 what = (match["sensor"] or "") + ("NumLines" if section == "LINES" else "NumPoints")
@@ -80,6 +82,19 @@ class _MapReader:
     def warn(self, what: str) -> None:
         """Tell of what is odd in the current line, and go on."""
         _LOG.warning("%s:%d: %s", self.path, self.number, what)
+
+    def warn_once(self, what: str) -> None:
+        """Tell of what may be odd in many lines, at the first of them."""
+        if what not in self.told:
+            self.told.add(what)
+            self.warn(what)
+
+    def without_comment(self, line: str) -> str:
+        """Return a line as far as it is of a map; a name of a Cairn may have the mark of a comment in it."""
+        if "#" not in line or not (line.startswith("#") or _NUMBERS.match(line)):
+            return line
+        self.warn_once("a comment (#), which a map has not: passed over, here and below")
+        return line.partition("#")[0].rstrip()
 
     def warn_of_latin_1(self, byte: int) -> None:
         """Tell that names may come out wrong."""
@@ -103,21 +118,31 @@ class _MapReader:
             self.fail(f"'{line[:40]}' is neither a header line nor LINES or DATA; correct or remove it")
 
     def take_count(self, what: str, count: str) -> None:
-        """Note how many entries the header announces."""
-        if not re.fullmatch("[0-9]{1,9}", count):
-            self.fail(f"{what} needs a whole number, not '{count[:60]}'; correct or remove the line")
-        self.announced[what] = (int(count), self.number)
+        """Note how many entries the header announces, whatever stands there."""
+        self.announced[what] = (count, self.number)
 
     def check_counts(self) -> None:
         """Tell of counts that do not fit, as after editing by hand; of what was announced something must be there."""
-        for what, (count, line) in self.announced.items():
+        for what, (text, line) in self.announced.items():
             found = self.counted.get(what, 0)
             self.number = line
+            if not re.fullmatch("[0-9]{1,9}", text):
+                self.check_no_count(what, text[:60], found)
+                continue
+            count = int(text)
             if found == 0 < count:
                 self.fail(f"{what} announces {count} but none follow; restore the file or correct the count")
             if found != count:
                 cut = "; was the file cut short?" if found < count else ""
                 self.warn(f"{what} announces {count} but {found} follow: those are read{cut}")
+
+    def check_no_count(self, what: str, text: str, found: int) -> None:
+        """Tell of a count that is no number; the entries themselves say how many they are."""
+        if not found:
+            self.fail(
+                f"{what} needs a whole number, not '{text}', and none follow; correct or remove the line"
+            )
+        self.warn(f"{what} needs a whole number, not '{text}': the {found} that follow are read")
 
     def check_size(self) -> None:
         """Refuse a map too large to be simulated before it fills the memory."""
@@ -126,6 +151,9 @@ class _MapReader:
 
     def take_entry(self, section: str, line: str) -> None:
         """Add a line, or note a DATA point on a grid of POINT_MM."""
+        if "," in line:
+            self.warn_once("commas between the numbers, which a map has not: read as spaces, here and below")
+            line = line.replace(",", " ")
         if section == "LINES":
             x1, y1, x2, y2 = self.values(line, 4, "a line")
             self.build.line([(x1, y1), (x2, y2)], MAP_ROUGHNESS)

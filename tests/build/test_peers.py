@@ -15,6 +15,7 @@ import pytest
 from devtool import peers as stage
 from devtool import testing
 from devtool.base import Command as Words
+from devtool.base import Stop
 from peers import base, ros, runs, wander, wire
 from peers.guard import Client
 
@@ -44,19 +45,53 @@ def test_without_sources_it_is_skipped_and_says_so(monkeypatch: pytest.MonkeyPat
     assert not done
 
 
-def test_what_is_given_is_run_and_the_rest_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    note, (words,) = run_with(monkeypatch, ARIA_SOURCE="/a")
-    assert words[1:] == [str(ROOT / "tools/peers/runs.py"), "ARIA_SOURCE=/a"]
+def sources(folder: Path) -> dict[str, str]:
+    """A folder for each that has what such sources are known by."""
+    for name, marks in stage.MARKS.items():
+        mark = folder / name / marks[0]
+        mark.parent.mkdir(parents=True)
+        mark.touch()
+    return {name: str(folder / name) for name in stage.SOURCES}
+
+
+def test_what_is_given_is_run_and_the_rest_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = sources(tmp_path)
+    note, (words,) = run_with(monkeypatch, ARIA_SOURCE=made["ARIA_SOURCE"])
+    assert words[1:] == [str(ROOT / "tools/peers/runs.py"), f"ARIA_SOURCE={made['ARIA_SOURCE']}"]
     assert note is not None
     assert "MOBILESIM_SOURCE=FOLDER" in note
     assert " ARIA_SOURCE" not in note
-    note, (words,) = run_with(monkeypatch, **{name: f"/{name[0]}" for name in (*stage.SOURCES, "ROS1_ROOT")})
-    assert words[2:] == [f"{name}=/{name[0]}" for name in stage.SOURCES]
+    note, (words,) = run_with(monkeypatch, **made, ROS1_ROOT="/r")
+    assert words[2:] == [f"{name}={made[name]}" for name in stage.SOURCES]
     assert note is None
 
 
-def test_a_debian_that_is_missing_is_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
-    note, _ = run_with(monkeypatch, **{name: f"/{name[0]}" for name in stage.SOURCES})
+@pytest.mark.parametrize("name", stage.SOURCES)
+@pytest.mark.parametrize("kind", ["missing", "empty", "other", "file"])
+def test_what_is_no_such_source_is_refused_before_anything_is_copied(
+    name: str, kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "given"
+    if kind == "file":
+        folder.write_text("")
+    elif kind != "missing":
+        folder.mkdir()
+    if kind == "other":
+        (folder / "big").write_text("of somebody else")
+        (folder / "Makefile").write_text("all:\n")
+    monkeypatch.setattr(stage, "build", lambda preset, run: pytest.fail("built before the look"))
+    monkeypatch.setenv(name, str(folder))
+    for other in set(stage.SOURCES) - {name}:
+        monkeypatch.delenv(other, raising=False)
+    with pytest.raises(Stop) as refused:
+        stage.peers(lambda command: pytest.fail(f"ran {command}"))
+    why = "no such folder" if kind in ("missing", "file") else "is not there"
+    assert str(refused.value).startswith(f"{name}={folder}: ")
+    assert why in str(refused.value)
+
+
+def test_a_debian_that_is_missing_is_told_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    note, _ = run_with(monkeypatch, **sources(tmp_path))
     assert note == "skipped what needs ROS1_ROOT=FOLDER (docs/peers.md)"
 
 

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import re
+import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -131,3 +133,70 @@ def test_what_building_takes_is_told_apart(capfd: pytest.CaptureFixture[str]) ->
     assert rows["total"] == pytest.approx(
         [mine + others for mine, others in zip(rows["a"], rows["set-up"], strict=True)], abs=0.11
     )
+
+
+ENDING = """
+import sys, time
+from pathlib import Path
+sys.path.insert(0, {tools!r})
+from devtool.base import leave_at_sigterm
+from devtool.stages import Stage, run_stage
+import devtool.stages as stages
+stages.LOGS = Path({logs!r})
+leave_at_sigterm()
+run_stage(Stage("a", "runs for ever", lambda run: run([sys.executable, "-c", {child!r}])), verbose=False)
+"""
+CHILD = """
+import sys
+sys.path.insert(0, {tools!r})
+from devtool.base import leave_at_sigterm
+from peers.base import started
+leave_at_sigterm()
+with started([sys.executable, "-c", {robot!r}]) as robot:
+    robot.wait()
+"""
+ROBOT = """
+import os, time
+from pathlib import Path
+Path({pids!r}).write_text(f"{{os.getppid()}} {{os.getpid()}}")
+time.sleep(600)
+"""
+
+
+def lives(process: int) -> bool:
+    """Whether a process runs; one that has ended and waits to be fetched does not."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_all_that_a_stage_has_started(number: int, tmp_path: Path) -> None:
+    """The robot is in a session of its own, as the peers' runs start it."""
+    tools, pids = str(Path(__file__).parents[2] / "tools"), tmp_path / "pids"
+    child = CHILD.format(tools=tools, robot=ROBOT.format(pids=str(pids)))
+    words = [sys.executable, "-c", ENDING.format(tools=tools, logs=str(tmp_path / "logs"), child=child)]
+    dev = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    until = time.monotonic() + 300
+    while not (pids.exists() and pids.read_text().count(" ")) and time.monotonic() < until:
+        time.sleep(0.05)
+    started = list(map(int, pids.read_text().split()))
+    assert all(map(lives, started))
+    dev.send_signal(number)
+    assert dev.wait(timeout=300) != 0
+    while any(map(lives, started)) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not any(map(lives, started))
+
+
+def test_one_that_does_not_heed_the_signal_is_killed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stages, "GRACE_S", 0.2)
+    deaf = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print(flush=True); time.sleep(600)"
+    words = [sys.executable, "-c", deaf]
+    child = subprocess.Popen(words, stdout=subprocess.PIPE, start_new_session=True)
+    assert child.stdout is not None
+    child.stdout.readline()
+    stages.end_group(child)
+    child.stdout.close()
+    assert child.returncode == -signal.SIGKILL

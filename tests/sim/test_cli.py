@@ -20,6 +20,8 @@ import pytest
 from doubles import Port, cmd, connect, make_robot, sips
 
 from hil_sim.arcos import ConfigPac, Packet, Sip, Unframer, decode
+from hil_sim.cli.arguments import parser
+from hil_sim.cli.choose import scenario_of
 from hil_sim.cli.main import main
 from hil_sim.cli.serve import _lateness
 from hil_sim.links.loop import Loop
@@ -27,9 +29,9 @@ from hil_sim.links.tcp import TcpLink
 from hil_sim.record.truth import TruthRecord
 from hil_sim.robot.report import sip
 from hil_sim.scenario.build import build_robot
-from hil_sim.scenario.scenario import Scenario
+from hil_sim.scenario.scenario import Scenario, scenario_names
 from hil_sim.server.server import ArcosServer
-from hil_sim.world.files import load_world
+from hil_sim.world.files import load_world, world_names
 
 ROOT = Path(__file__).parents[2]
 WORLD = "demo"
@@ -225,6 +227,40 @@ def test_a_start_may_be_negative(words: list[str], start: list[float], tmp_path:
     truth = tmp_path / "truth"
     assert code_of(["--world", "hall", *words, "--truth", str(truth), "--duration", "0.1"]) == 0
     assert json.loads(truth.read_text().splitlines()[0])["start"] == start
+
+
+@pytest.mark.parametrize(
+    ("words", "robot"),
+    [
+        (["--subclass", "amigo-sh"], "amigo-sh"),
+        (["--subclass", "p3at-sh"], "p3at-sh"),
+        (["--subclass", "peoplebot-sh", "--scenario", "demo"], "peoplebot-sh"),
+        (["--subclass", "amigo-sh", "--robot", "p3dx-sh"], "p3dx-sh"),
+        (["--subclass", "powerbot-sh"], "p3dx-sh"),
+        (["--subclass", "p3dx"], "p3dx-sh"),
+    ],
+)
+def test_a_known_subclass_is_that_robot_unless_another_is_asked_for(words: list[str], robot: str) -> None:
+    scenario = scenario_of(parser().parse_args(words))
+    assert scenario.robot == robot
+
+
+def test_an_amigobot_by_its_subclass_has_its_own_sonars_and_name(tmp_path: Path) -> None:
+    truth = tmp_path / "truth"
+    words = ["--world", "hall", "--subclass", "amigo-sh", "--truth", str(truth), "--duration", "0.1"]
+    assert code_of(words) == 0
+    assert json.loads(truth.read_text().splitlines()[0])["robot"] == "amigo-sh"
+
+
+def test_an_option_without_its_name_says_which_there_are(capsys: pytest.CaptureFixture[str]) -> None:
+    for option, names in (("--scenario", scenario_names()), ("--world", world_names())):
+        assert code_of([option]) == 2
+        line = capsys.readouterr().err
+        assert "expected one argument: " + ", ".join(names) in line
+        assert line.count("\n") == 1
+    assert code_of(["--help"]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert all(name in told for name in scenario_names())
 
 
 @pytest.mark.parametrize("start", ["99999,0", "-99999,0,90", "0,1e6", "0,-20000", "1e9,1e9,0"])

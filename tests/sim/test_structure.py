@@ -14,7 +14,7 @@ LINES_MAX = 500
 COMPLEXITY_MAX = 10
 # From the bottom to the top: a room uses those before it only.
 ROOMS = (
-    ("arguments", "errors"),
+    ("arguments", "errors", "output", "version"),
     ("document", "tables"),
     ("arcos", "record"),
     ("world",),

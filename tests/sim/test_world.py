@@ -301,7 +301,12 @@ BAD_MAP = {
     "NaN": ("2D-Map\nLINES\n1 2 3 nan\n", "3: a line needs 4 numbers"),
     "infinite": ("2D-Map\nDATA\n1e999 0\n", "3: a DATA point needs 2 numbers"),
     "word in data": ("2D-Map\nDATA\n1 2\nx y\n", "4: a DATA point needs 2 numbers"),
-    "count": ("2D-Map\nNumLines: many\n", "2: NumLines needs a whole number, not 'many'"),
+    "count": ("2D-Map\nNumLines: many\n", "2: NumLines needs a whole number, not 'many', and none follow"),
+    "decimal commas": ("2D-Map\nLINES\n0,5 900,5 9,5 900,5\n", "3: a line needs 4 numbers"),
+    "commented out": (
+        "2D-Map\nNumLines: 1\nLINES\n# 0 900 9 900\n",
+        "2: NumLines announces 1 but none follow",
+    ),
     "negative count": ("2D-Map\nNumPoints: -1\n", "2: NumPoints needs a whole number"),
     "no count": ("2D-Map\nNumPoints:\n", "2: NumPoints needs a whole number"),
     "cut before": ("2D-Map\nResolution: 20\nNumPoints: 7\n", "3: NumPoints announces 7 but none follow"),
@@ -328,6 +333,18 @@ ODD_MAP = {
     "short of another": (
         "2D-Map-Ex\nLaserNumPoints: 2\nLaser_DATA\n1 1\n", "2: LaserNumPoints announces 2 but 1", 2,
     ),
+    "negative count": ("2D-Map\nNumLines: -1\nLINES\n0 900 9 900\n", "2: NumLines needs a whole number, not '-1'", 1),
+    "count in words": ("2D-Map\nNumLines: four\nLINES\n0 900 9 900\n", "not 'four': the 1 that follow are read", 1),
+    "no count": ("2D-Map\nNumPoints:\nDATA\n5000 900\n", "2: NumPoints needs a whole number, not ''", 2),
+    "count with a unit": ("2D-Map\nNumLines: 1 line\nLINES\n0 900 9 900\n", "not '1 line'", 1),
+    "decimal count": ("2D-Map\nNumLines: 1.0\nLINES\n0 900 9 900\n", "not '1.0'", 1),
+    "comment": ("2D-Map\nLINES\n# a wall\n0 900 9 900\n# and more\n0 800 9 800\n", "3: a comment (#)", 2),
+    "comment in the header": ("2D-Map\n# of Monday\nNumLines: 1\nLINES\n0 900 9 900\n", "2: a comment (#)", 1),
+    "comment behind numbers": ("2D-Map\nNumLines: 1\nLINES\n0 900 9 900 # wall\n", "4: a comment (#)", 1),
+    "comment in DATA": ("2D-Map\nNumPoints: 1\nDATA\n#\n5000 900\n", "4: a comment (#)", 2),
+    "commas": ("2D-Map\nLINES\n0, 900, 9, 900\n0,800,9,800\n", "3: commas between the numbers", 2),
+    "comma at the end": ("2D-Map\nLINES\n0 900 9 900,\n", "3: commas between the numbers", 1),
+    "commas in DATA": ("2D-Map\nDATA\n5000,900\n", "3: commas between the numbers", 2),
     "newer": ("2D-Map-Ex3\nLINES\n0 900 9 900\n", "1: 2D-Map-Ex3 is a form that is not known", 1),
     "much newer": ("2D-Map-Ex17\nLINES\n0 900 9 900\n", "1: 2D-Map-Ex17 is a form", 1),
     "Latin-1": ('2D-Map\nCairn: Goal 1 2 0 "" ICON "Caf\udce9"\nLINES\n0 900 9 900\n', "not UTF-8 (byte 37)", 1),
@@ -347,6 +364,12 @@ def test_an_odd_map_is_read_with_a_warning(
     assert expected in caplog.records[0].getMessage()
     if name == "Latin-1":
         assert list(world.goals) == ["Caf\u00e9"]
+
+
+def test_a_name_may_have_the_mark_of_a_comment(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    text = '2D-Map\nCairn: Goal 1 2 0 "" ICON "desk #3"\nLINES\n0 900 9 900\n'
+    assert list(load_map(write(tmp_path / "a.map", text)).goals) == ["desk #3"]
+    assert not caplog.records
 
 
 def test_what_is_no_text_is_no_map(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -15,6 +15,7 @@ from typing import Any, Final
 import serial
 
 from hil_sim.arguments import Parser, whole
+from hil_sim.version import add_version
 
 EXIT_CHECKS, EXIT_LINE, EXIT_INTERRUPTED = 1, 3, 130
 BAUD: Final = 115_200
@@ -230,6 +231,7 @@ def parser() -> argparse.ArgumentParser:
         metavar="S",
         help="for each answer (default: %(default)s s)",
     )
+    add_version(result)
     return result
 
 

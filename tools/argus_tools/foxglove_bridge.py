@@ -32,6 +32,7 @@ from argus_tools.foxglove import (
     stamp_of,
 )
 from argus_tools.foxglove_front import FOXGLOVE, Front, Gate, hidden_host, is_loopback
+from hil_sim.version import add_version
 
 EXIT_USAGE, EXIT_LINK = 2, 3
 PORT: Final = 8765
@@ -262,6 +263,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--period", type=int, default=100, metavar="MS", help="between two states, 50 to 10000 (default: 100)"
     )
+    add_version(made)
     return made
 
 

@@ -6,11 +6,13 @@ from __future__ import annotations
 import os
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Final, NoReturn
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 BUILD: Final = ROOT / "build"
@@ -19,6 +21,7 @@ VENV: Final = ROOT / ".venv"
 CORES: Final = os.cpu_count() or 1
 
 EXIT_FAILED, EXIT_USAGE, EXIT_SETUP = 1, 2, 3
+EXIT_SIGNAL: Final = 128
 
 Command = Sequence[str | Path]
 Run = Callable[[Command], None]
@@ -30,6 +33,18 @@ class Stop(Exception):
     def __init__(self, message: str, code: int = EXIT_FAILED) -> None:
         super().__init__(message)
         self.code = code
+
+
+def leave_at_sigterm() -> None:
+    """Let SIGTERM end this program as an exception does, so that what it has started ends before it."""
+
+    def leave(number: int, _frame: object) -> NoReturn:
+        # A second one must not break off what the first has begun.
+        signal.signal(number, signal.SIG_IGN)
+        raise SystemExit(EXIT_SIGNAL + number)
+
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, leave)
 
 
 def paint(text: str, code: str) -> str:

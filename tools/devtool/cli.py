@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 from devtool import commands, firmware, packaging
-from devtool.base import Stop
+from devtool.base import Stop, leave_at_sigterm
 from devtool.cmake import presets
 from devtool.linting import LINT_STAGES, format_stages
 from devtool.setup import leave_venv
@@ -168,6 +168,7 @@ def main(argv: Sequence[str]) -> int:
     """Run the command line and return its exit code."""
     args = parse(argv)
     leave_venv()
+    leave_at_sigterm()
     action: Action = args.action
     try:
         return action(args)

@@ -13,7 +13,7 @@ import subprocess
 import textwrap
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
@@ -36,6 +36,9 @@ from devtool.setup import ensure
 
 STAGE_LIMIT_S: Final = 5400.0
 """A guard against what hangs: many times what a stage takes, so that no busy host trips it."""
+
+GRACE_S: Final = 15.0
+"""So long a program may take to end what it has started."""
 
 PROGRESS: Final = re.compile(
     r"\[ *\d+[/%].*\] (Building|Linking|Built) |tests/.*:PASS$| +Start +\d+: | *\d+/\d+ Test .* Passed "
@@ -136,9 +139,19 @@ def process_group(command: Command, log: Path, verbose: bool) -> Iterator[subpro
         try:
             yield child
         except BaseException:
-            os.killpg(child.pid, signal.SIGKILL)
-            child.wait()
+            end_group(child)
             raise
+
+
+def end_group(child: subprocess.Popen[bytes]) -> None:
+    """End a program with all of its group; it may end first what it has started in groups of their own."""
+    with suppress(ProcessLookupError):
+        os.killpg(child.pid, signal.SIGTERM)
+    with suppress(subprocess.TimeoutExpired):
+        child.wait(GRACE_S)
+    with suppress(ProcessLookupError):
+        os.killpg(child.pid, signal.SIGKILL)
+    child.wait()
 
 
 def logged_runner(log: Path, verbose: bool, limit_s: float) -> Run:

@@ -17,6 +17,8 @@ from typing import IO, Any, Final
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from devtool.base import leave_at_sigterm
+
 from peers import ros
 from peers.base import (
     ARGUSD,
@@ -219,6 +221,7 @@ def line_of(peer: Peer) -> str:
 
 def main(words: Sequence[str]) -> int:
     """Build and run what is given as NAME=FOLDER; 1 when something is not as it must be."""
+    leave_at_sigterm()
     given = {name: Path(folder) for name, _, folder in (word.partition("=") for word in words)}
     seconds = float(os.environ.get("PEER_SECONDS", LIMIT_S))
     peers = []

@@ -218,3 +218,15 @@ def test_a_broken_message_is_a_row_that_is_not_ok(tmp_path: Path) -> None:
     rows = decode(path)
     assert [(row["type"], row["ok"]) for row in rows] == [("SIP", True), ("SIP", False), ("SIP", True)]
     assert rows[1]["offset"] == len(sip(x=1))
+
+
+@pytest.mark.parametrize("before", ["can0 ", "vcan0robot  ", "", "  can0  "])
+@pytest.mark.parametrize("separator", ["", "."])
+def test_frames_without_times_as_cansend_takes_them(before: str, separator: str, tmp_path: Path) -> None:
+    lines = []
+    for text in message(SIP):
+        digits = text.strip().partition("#")[2]
+        shown = separator.join(digits[at : at + 2] for at in range(0, len(digits), 2))
+        lines.append(f"{before}648#{shown}\n")
+    chunks, damage = read(tmp_path, *lines)
+    assert (sent(chunks), damage, {chunk.t for chunk in chunks}) == (SIP, [], {None})

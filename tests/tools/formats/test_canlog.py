@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -61,6 +62,11 @@ def lines(form: Callable[[int, CanFrame], str], head: str = "", end: str = "\n")
     return head + "".join(form(n, frame) + end for n, frame in enumerate(frames(), start=1))
 
 
+def before(n: int) -> float:
+    """The time of the frame before the one with this number, counted from 1."""
+    return frames()[n - 2].t if n > 1 else START_S
+
+
 def ms(frame: CanFrame) -> float:
     return (frame.t - START_S) * 1000
 
@@ -69,6 +75,8 @@ TRC_11 = ";$FILEVERSION=1.1\n;$STARTTIME=45987.2769384156\n;\n;   Message Number
 TRC_13 = ";$FILEVERSION=1.3\n;$STARTTIME=45987.2769384156\n;\n"
 TRC_20 = ";$FILEVERSION=2.0\n;$STARTTIME=45987.2769384156\n;$COLUMNS=N,O,T,I,d,l,D\n;\n"
 TRC_21 = ";$FILEVERSION=2.1\n;$STARTTIME=45987.2769384156\n;$COLUMNS=N,O,T,B,I,d,R,L,D\n;\n"
+TRC_12 = TRC_13.replace("1.3", "1.2")
+KVASER = "Time,Channel,ID,Flags,DLC,Data0,Data1,Data2,Data3,Data4,Data5,Data6,Data7,Counter,AbsTime\n"
 ASC = "date Wed Nov 25 06:38:47.479 am 2026\nbase hex  timestamps absolute\n"
 TEXTS = {
     "trc 1.0": (
@@ -82,6 +90,15 @@ TEXTS = {
     "trc 1.3": (
         "trc",
         lines(lambda n, f: f"{n:>6}) {ms(f):10.1f} 1  Rx    {f.can_id:04X} -  8  {hexed(f)}", TRC_13),
+    ),
+    "trc 1.2": (
+        "trc",
+        lines(lambda n, f: f"{n:>6}) {ms(f):10.1f} 1  Rx        {f.can_id:04X}  8  {hexed(f)} ", TRC_12),
+    ),
+    "trc 1.2, carriage returns and a remote frame": (
+        "trc",
+        lines(lambda n, f: f"{n:>6}) {ms(f):10.1f} 1  Tx        {f.can_id:04X}  8  {hexed(f)}\r", TRC_12)
+        + "   999)      999.9 1  Rx        0123  8  RTR\r\n",
     ),
     "trc 2.0": (
         "trc",
@@ -129,6 +146,104 @@ TEXTS = {
             + "   0.000000 Start of measurement\n",
         )
         + "End TriggerBlock\n",
+    ),
+    "asc, without a header": (
+        "asc",
+        lines(lambda n, f: f"{f.t - START_S:9.6f} 1  {f.can_id:X}             Rx   d 8 {hexed(f)}"),
+    ),
+    "asc, decimal without a header": (
+        "asc",
+        lines(
+            lambda n, f: (
+                f"{f.t - START_S:9.6f} 1  {f.can_id}             Rx   d 8 {' '.join(map(str, f.data))}"
+            )
+        ),
+    ),
+    "asc, a header without what is logged": (
+        "asc",
+        lines(lambda n, f: f"{f.t - START_S:9.6f} 1  {f.can_id:X}             Rx   d 8 {hexed(f)}", ASC),
+    ),
+    "asc, a mark and one line of header": (
+        "asc",
+        lines(
+            lambda n, f: f"{f.t - START_S:9.6f} 1  {f.can_id:X}             Rx   d 8 {hexed(f)}",
+            "\ufeff" + ASC.splitlines(keepends=True)[0],
+        ),
+    ),
+    "asc, CAN FD without a header": (
+        "asc",
+        lines(
+            lambda n, f: (
+                f"{f.t - START_S:9.6f} CANFD   1 Rx        {f.can_id:X}                 0 0 8  8 {hexed(f)} "
+                "0 0 0 0 0 0 0 0"
+            )
+        ),
+    ),
+    **{
+        f"asc, relative, {name}": (
+            "asc",
+            lines(
+                lambda n, f: f"{f.t - before(n):9.6f} 1  {f.can_id:X}             Rx   d 8 {hexed(f)}",
+                ASC.replace("absolute", "relative") + head,
+            ),
+        )
+        for name, head in {
+            "plain": "",
+            "with what is logged": "no internal events logged\n",
+            "behind a start": "no internal events logged\n   0.000000 Start of measurement\n",
+        }.items()
+    },
+    "asc, relative, other frames between": (
+        "asc",
+        lines(
+            lambda n, f: (
+                f"{(f.t - before(n)) / 2:9.6f} 1  123             Rx   d 1 00\n"
+                f"{(f.t - before(n)) / 2:9.6f} 1  {f.can_id:X}             Rx   d 8 {hexed(f)}"
+            ),
+            ASC.replace("absolute", "relative"),
+        ),
+    ),
+    "asc, relative, decimal": (
+        "asc",
+        lines(
+            lambda n, f: (
+                f"{f.t - before(n):9.6f} 1  {f.can_id}             Rx   d 8 {' '.join(map(str, f.data))}"
+            ),
+            ASC.replace("absolute", "relative").replace("hex", "dec"),
+        ),
+    ),
+    "Kvaser, decimal": (
+        "can-csv",
+        lines(
+            lambda n, f: f"{ms(f) / 1000:.6f},0,{f.can_id},0,8,{','.join(map(str, f.data))},{n},2026-11-25",
+            KVASER,
+        ),
+    ),
+    "Kvaser, hexadecimal": (
+        "can-csv",
+        lines(lambda n, f: f"{ms(f) / 1000:.6f},0,{f.can_id:X},0,8,{hexed(f, ',')},{n},2026-11-25", KVASER),
+    ),
+    "decimal ids by the heading": (
+        "can-csv",
+        lines(lambda n, f: f"{ms(f) / 1000:.6f};{f.can_id};{hexed(f)}", "Time;ID (dec);Data\n"),
+    ),
+    "decimal ids by themselves": (
+        "can-csv",
+        lines(lambda n, f: f"{ms(f) / 1000:.6f};{f.can_id};{hexed(f)}", "Time;ID;Data\n"),
+    ),
+    "decimal ids and single hexadecimal bytes": (
+        "can-csv",
+        lines(
+            lambda n, f: f"{ms(f) / 1000:.6f},{f.can_id},{hexed(f, ',')}", "Time,ID,D0,D1,D2,D3,D4,D5,D6,D7\n"
+        ),
+    ),
+    "Vehicle Spy": (
+        "can-csv",
+        lines(
+            lambda n, f: f"{n},{f.t:.6f},0.0,0,F,F,x,HS CAN,,{f.can_id:X},F,F,{hexed(f, ',')},,,",
+            "Line,Abs Time(Sec),Rel Time (Sec),Status,Er,Tx,Description,Network,Node,Arb ID,Remote,Xtd,"
+            "B1,B2,B3,B4,B5,B6,B7,B8,Value,Trigger,Signals\n",
+        ),
     ),
     "SavvyCAN": (
         "can-csv",
@@ -207,7 +322,20 @@ def test_every_analysers_text(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["trc 1.1", "trc 2.1", "asc", "SavvyCAN", "PCAN", "Cabana", "BUSMASTER", "CRTD"]
+    "name",
+    [
+        "trc 1.1",
+        "trc 1.2",
+        "trc 2.1",
+        "asc",
+        "asc, without a header",
+        "Kvaser, decimal",
+        "SavvyCAN",
+        "PCAN",
+        "Cabana",
+        "BUSMASTER",
+        "CRTD",
+    ],
 )
 @pytest.mark.parametrize("at", [0.3, 0.7])
 def test_a_line_that_is_none_costs_nothing_behind_it(name: str, at: float, tmp_path: Path) -> None:
@@ -215,7 +343,7 @@ def test_a_line_that_is_none_costs_nothing_behind_it(name: str, at: float, tmp_p
     parts = text.splitlines(keepends=True)
     # A copy of a good line whose id is spoilt.
     cut = int(len(parts) * at)
-    spoilt = parts[cut].replace("648", "6Z8").replace("640", "6Z0")
+    spoilt = re.sub(r"64(?=[08])|,160(?=[08])", "6Z", parts[cut])
     path = tmp_path / "a.txt"
     path.write_text("".join([*parts[:cut], spoilt, *parts[cut:]]))
     log = open_log(str(path))
@@ -245,3 +373,22 @@ def test_a_log_of_another_bus_is_told_with_its_ids(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("Time,ID,Data\n0.1,123,00\n")
     with pytest.raises(LogError, match=r"no CAN frame is of a robot's link.*there are 0x123"):
         list(open_log(str(tmp_path / "a.csv")))
+
+
+@pytest.mark.parametrize(
+    ("extended", "shown"),
+    [("true", "0x00000640 (29 bits)"), ("false", "0x123"), ("true", "0x18DA4806 (29 bits)")],
+)
+def test_a_long_id_is_shown_as_one(extended: str, shown: str, tmp_path: Path) -> None:
+    number = shown.partition(" ")[0].removeprefix("0x")
+    (tmp_path / "a.csv").write_text(f"Time,ID,Extended,Data\n0.1,{number},{extended},00\n")
+    with pytest.raises(LogError) as caught:
+        list(open_log(str(tmp_path / "a.csv")))
+    assert str(caught.value).endswith(f"whose ids of 11 bits are 0x640 to 0x64F; there are {shown}")
+
+
+@pytest.mark.parametrize("version", ["0.9", "1.4", "3.0"])
+def test_another_version_of_trc_is_told_with_the_remedy(version: str, tmp_path: Path) -> None:
+    (tmp_path / "a.trc").write_text(f";$FILEVERSION={version}\n 1) 1.0 1 Rx 0648 8 00 00\n")
+    with pytest.raises(LogError, match=rf"version {version}, which is not read; .* 1\.2, .*PEAK-Converter"):
+        list(open_log(str(tmp_path / "a.trc")))

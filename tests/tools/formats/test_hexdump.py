@@ -136,6 +136,57 @@ def test_an_offset_beyond_all_reason_fills_nothing(tmp_path: Path) -> None:
     assert "are missing" in log.damage[0].what
 
 
+def test_a_mark_of_utf_8_before_carriage_returns_costs_no_line(tmp_path: Path) -> None:
+    text = "\ufeff" + hexdump_c(ODD).replace("\n", "\r\n")
+    log = read(tmp_path / "a.txt", text)
+    assert (joined(list(log), "r2c"), log.damage) == (ODD, [])
+
+
+PREAMBLE = (
+    "\n"
+    + "=" * 67
+    + "\nFollow: tcp,hex\nFilter: tcp.stream eq 0\nNode 0: 10.0.0.2:8101\nNode 1: 10.0.0.1:4000\n"
+)
+
+
+def tshark(data: bytes, indent: str, start: int = 0) -> list[str]:
+    """A message of one side as `tshark -z follow,tcp,hex` has it: two spaces before the characters, one within."""
+    lines = []
+    for at, part in rows(data):
+        left, right = part[:8].hex(" "), part[8:].hex(" ")
+        text = " ".join(filter(None, (shown(part[:8]), shown(part[8:]))))
+        lines.append(f"{indent}{start + at:08X}  {left + '  ' + right:<48}  {text}")
+    return lines
+
+
+def followed(first: bytes, second: bytes, preamble: str) -> str:
+    lines: list[str] = []
+    for at in range(0, max(len(first), len(second)), 100):
+        lines += tshark(first[at : at + 100], "", at)
+        lines += tshark(second[at : at + 100], "\t", at)
+    return preamble + "\n".join(lines) + "\n" + ("=" * 67 + "\n" if preamble else "")
+
+
+@pytest.mark.parametrize("preamble", [PREAMBLE, ""])
+@pytest.mark.parametrize(
+    ("first", "second"), [(CLIENT, ROBOT), (ROBOT, CLIENT), (ROBOT, b""), (CLIENT, b""), (b"", ROBOT)]
+)
+def test_follow_stream_of_tshark(preamble: str, first: bytes, second: bytes, tmp_path: Path) -> None:
+    log = read(tmp_path / "a.txt", followed(first, second, preamble))
+    chunks = list(log)
+    expected = {joined(chunks, "c2r"), joined(chunks, "r2c")}
+    assert expected == {first, second}
+    assert joined(chunks, "r2c") == (ROBOT if ROBOT in (first, second) else b"")
+    assert log.damage == []
+
+
+def test_the_other_side_may_begin_late(tmp_path: Path) -> None:
+    robot = ROBOT * 4
+    lines = [*tshark(robot, ""), *tshark(CLIENT, "\t"), *tshark(ROBOT, "", len(robot))]
+    chunks = list(read(tmp_path / "a.txt", "\n".join(lines) + "\n"))
+    assert (joined(chunks, "c2r"), joined(chunks, "r2c")) == (CLIENT, robot + ROBOT)
+
+
 def test_both_directions_of_wiresharks_follow_stream(tmp_path: Path) -> None:
     def dump(data: bytes, indent: str) -> list[str]:
         return [

@@ -75,6 +75,8 @@ def clock(t: float, form: str) -> str:
 
 
 DAY_S = START_S % 86400
+# Of a date without a year: since the beginning of one.
+YEAR_S = START_S - datetime(2026, 1, 1, tzinfo=UTC).timestamp()
 MILLIS = 1e-3
 STAMPS: dict[str, tuple[Callable[[float], str], float, float]] = {
     "grabserial": (lambda t: f"[{t - START_S:.6f} 0.002000]", 0.0, 1e-6),
@@ -94,6 +96,26 @@ STAMPS: dict[str, tuple[Callable[[float], str], float, float]] = {
     "American date": (lambda t: clock(t, "%m/%d/%Y %I:%M:%S.%f %p"), START_S, 1e-5),
     "time and an arrow": (lambda t: clock(t, "%H:%M:%S.%f") + " >", DAY_S, 1e-5),
     "whole seconds": (lambda t: clock(t, "%H:%M:%S") + " |", DAY_S, 1.0),
+    "ts of moreutils": (lambda t: clock(t, "%b %d %H:%M:%S"), YEAR_S, 1.0),
+    "syslog before the tenth": (lambda t: clock(t - 20 * 86400, "%b %e %H:%M:%S"), YEAR_S - 20 * 86400, 1.0),
+    "ts with fractions": (lambda t: clock(t, "%b %d %H:%M:%S.%f"), YEAR_S, 1e-5),
+    "logcat": (lambda t: clock(t, "%m-%d %H:%M:%S.%f")[:-3], YEAR_S, MILLIS),
+    "ctime": (lambda t: clock(t, "%a %b %d %H:%M:%S %Y"), START_S, 1.0),
+    "ctime in brackets": (lambda t: clock(t, "[%a %b %d %H:%M:%S %Y]"), START_S, 1.0),
+    "date": (lambda t: clock(t, "%a %d %b %Y %I:%M:%S %p UTC"), START_S, 1.0),
+    "day, month, year": (lambda t: clock(t, "%d %b %Y %H:%M:%S"), START_S, 1.0),
+    "of a web server": (lambda t: clock(t - 3600, "[%d/%b/%Y:%H:%M:%S -0100]"), START_S, 1.0),
+    "ISO, Z": (lambda t: clock(t, "%Y-%m-%dT%H:%M:%S.%fZ"), START_S, 1e-5),
+    "ISO, zone apart": (lambda t: clock(t + 3600, "%Y-%m-%d %H:%M:%S.%f +0100"), START_S, 1e-5),
+    "ISO, hours of the zone": (lambda t: clock(t + 3600, "%Y-%m-%dT%H:%M:%S.%f+01"), START_S, 1e-5),
+    "ISO, basic": (lambda t: clock(t, "%Y%m%dT%H%M%S.%fZ"), START_S, 1e-5),
+    "UTC": (lambda t: clock(t, "%Y-%m-%d %H:%M:%S.%f UTC"), START_S, 1e-5),
+    "slashes": (lambda t: clock(t, "%Y/%m/%d %H:%M:%S.%f"), START_S, 1e-5),
+    "year of two digits": (lambda t: clock(t, "%d.%m.%y %H:%M:%S"), START_S, 1.0),
+    "dmesg": (lambda t: f"[{t - START_S:13.6f}]", 0.0, 1e-6),
+    "seconds since 1970 in whole": (lambda t: f"{int(t)}", START_S, 1.0),
+    "milliseconds since 1970": (lambda t: f"{int(t * 1000)}", START_S, MILLIS),
+    "microseconds since 1970": (lambda t: f"[{int(t * 1e6)}]", START_S, 1e-5),
 }
 
 
@@ -106,6 +128,80 @@ def test_every_time_before_the_bytes(name: str, tmp_path: Path) -> None:
     chunks = list(log)
     assert (log.format.name, log.damage, b"".join(c.data for c in chunks)) == ("hextext", [], ROBOT)
     assert [chunk.t for chunk in chunks] == pytest.approx([start + 0.1 * n for n in range(12)], abs=near)
+
+
+@pytest.mark.parametrize("name", STAMPS)
+@pytest.mark.parametrize("form", [lambda data: data.hex(" ").upper(), bytes.hex])
+def test_a_sample_of_one_line(name: str, form: Callable[[bytes], str], tmp_path: Path) -> None:
+    stamp, start, near = STAMPS[name]
+    (chunk,) = read(tmp_path / "a.txt", f"{stamp(START_S)} {form(SIPS[0])}\n")
+    assert chunk.data == SIPS[0]
+    assert chunk.t == pytest.approx(start, abs=near)
+
+
+def test_a_date_without_a_year_goes_on_at_new_year(tmp_path: Path) -> None:
+    stamps = ["Dec 31 23:59:59", "Jan  1 00:00:01", "Jan  2 00:00:01"]
+    text = "".join(f"{at} {data.hex(' ')}\n" for at, data in zip(stamps, SIPS, strict=False))
+    times = [chunk.t for chunk in read(tmp_path / "a.txt", text)]
+    assert [round(t - (times[0] or 0)) for t in times if t] == [0, 2, 86402]
+
+
+def test_the_last_of_february_is_a_day(tmp_path: Path) -> None:
+    stamps = ["Feb 28 23:59:59", "Feb 29 00:00:00", "Feb 29 23:59:59", "Mar  1 00:00:00"]
+    text = "".join(f"{at} {data.hex(' ')}\n" for at, data in zip(stamps, SIPS, strict=False))
+    times = [chunk.t for chunk in read(tmp_path / "a.txt", text)]
+    assert [round(t - (times[0] or 0)) for t in times if t] == [0, 1, 86400, 86401]
+
+
+NUMBERS = {
+    "decimal": lambda part: " ".join(map(str, part)),
+    "decimal, filled up": lambda part: " ".join(f"{byte:03d}" for byte in part),
+    "decimal, commas": lambda part: ", ".join(map(str, part)) + ",",
+    "decimal, semicolons": lambda part: ";".join(map(str, part)),
+    "decimal, signed": lambda part: "".join(f"{byte - 256 * (byte > 127):5d}" for byte in part),
+    "octal": lambda part: " " + " ".join(f"{byte:03o}" for byte in part),
+}
+
+
+@pytest.mark.parametrize("stamp", ["", "07:03:04.500 ", "Nov 25 07:03:04 "])
+@pytest.mark.parametrize("name", NUMBERS)
+def test_bytes_in_other_numbers(name: str, stamp: str, tmp_path: Path) -> None:
+    log = read(tmp_path / "a.txt", in_lines(lambda part: stamp + NUMBERS[name](part)))
+    chunks = list(log)
+    assert (joined(chunks, "r2c"), log.damage, log.format.name) == (ROBOT, [], "hextext")
+    assert (chunks[0].t is None) == (not stamp)
+
+
+def test_a_number_above_a_byte_is_told(tmp_path: Path) -> None:
+    line = " ".join(map(str, ROBOT))
+    log = read(tmp_path / "a.txt", f"{line}\n250 251 300\n{line}\n")
+    assert joined(list(log), "r2c") == ROBOT * 2
+    assert [entry.place for entry in log.damage] == ["line 2"]
+
+
+@pytest.mark.parametrize("indented", ["client", "robot"])
+@pytest.mark.parametrize(
+    "preamble", ["", "=" * 67 + "\nFollow: tcp,raw\nFilter: tcp.stream eq 0\nNode 0: a:1\n"]
+)
+def test_follow_stream_of_tshark_in_raw_form(indented: str, preamble: str, tmp_path: Path) -> None:
+    pairs = zip(COMMANDS, SIPS, strict=True)
+    marks = ("\t", "") if indented == "client" else ("", "\t")
+    text = preamble + "".join(f"{marks[0]}{c.hex()}\n{marks[1]}{s.hex()}\n" for c, s in pairs)
+    log = read(tmp_path / "a.txt", text)
+    chunks = list(log)
+    assert (joined(chunks, "c2r"), joined(chunks, "r2c"), log.damage) == (CLIENT, ROBOT, [])
+
+
+@pytest.mark.parametrize("robot", [0, 1])
+def test_follow_stream_of_wireshark_as_arrays_of_c(robot: int, tmp_path: Path) -> None:
+    text = ""
+    for n, pair in enumerate(zip(COMMANDS, SIPS, strict=True)):
+        for side, data in zip((1 - robot, robot), pair, strict=True):
+            body = ", \n".join(", ".join(f"0x{byte:02x}" for byte in part) for part in lines(data, 8))
+            text += f"char peer{side}_{n}[] = {{ /* Packet {n} */\n{body} }};\n"
+    log = read(tmp_path / "a.txt", text)
+    chunks = list(log)
+    assert (joined(chunks, "c2r"), joined(chunks, "r2c"), log.damage) == (CLIENT, ROBOT, [])
 
 
 def test_a_clock_without_a_date_goes_on_at_midnight(tmp_path: Path) -> None:

@@ -4,22 +4,25 @@
 from __future__ import annotations
 
 import base64
+import gzip
+import io
+import quopri
 import random
 import sqlite3
 import subprocess
 import tarfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from argus_tools.formats import LogError, find_format, formats, forms, open_log
+from argus_tools.formats import Chunk, LogError, ReadOptions, find_format, formats, forms, open_log
+from argus_tools.formats.base import copy
 from forms import ROBOT, hexdump_c, joined, od, xxd
 from logs import CAPTURES, run, sip
 
 SEVEN = bytes(byte & 0x7F for byte in ROBOT)
-OD_C = "".join(
-    f"{at:07o} " + " ".join(r" \0" if byte == 0 else f"{byte:03o}" for byte in ROBOT[at : at + 16]) + "\n"
-    for at in range(0, len(ROBOT), 16)
-)
+OD_A = "0000000   z   {   6   2 nul nul soh stx  sp   P   3   D  ff  cr\n" * 3
+OD_F = "0000000     3.65899e-40  -2.5961484e+36   2.3510613e-38\n0000014   8.6289866e+14    5.587976e-08\n"
 OTHERS: dict[str, tuple[bytes, str, str]] = {
     "mf4": (b"MDF     4.11    ", "MDF measurement", "candump -L"),
     "mcap": (b"\x89MCAP0\r\n", "MCAP", "made from"),
@@ -48,8 +51,14 @@ OTHERS: dict[str, tuple[bytes, str, str]] = {
     "slcan": (b"t64080606FAFB03000000\rt64880606FAFB03000000\r", "slcan", "candump -L"),
     "Intel HEX": (b":10000000FAFB0300000000\n:00000001FF\n", "Intel HEX", "objcopy"),
     "S-records": (b"S1130000FAFB03000000\nS9030000FC\n", "S-records", "objcopy"),
-    "od -c": (OD_C.encode(), "od -c", "od -v -t x1"),
-    "od -t d1": (b"0000000   -6   -5    3    0\n0000004   -6   -5    3    0\n", "decimal", "od -v -t x1"),
+    "od -a": (OD_A.encode(), "od -a", "od -v -t x1"),
+    "od -t f4": (OD_F.encode(), "no bytes", "od -v -t x1"),
+    "gzip in gzip": (gzip.compress(gzip.compress(ROBOT)), "gzip file in a gzip file", "gzip -dc"),
+    "follow stream, ASCII": (b"\n====\nFollow: tcp,ascii\nFilter: x\n...2..\n", "follow stream", "tcp,hex,0"),
+    "follow stream, YAML": (b"peers:\n  - peer: 0\n    host: 127.0.0.1\n", "follow stream", "tcp,hex,0"),
+    "question marks": (bytes(b if b < 128 else 63 for b in ROBOT), "question marks", "save as binary"),
+    "no zeros": (ROBOT.replace(b"\0", b""), "without its zeros", "save as binary"),
+    "quoted-printable": (quopri.encodestring(ROBOT), "quoted-printable", "quopri -d"),
     "argus-log decode": (
         b"           t    offset  dir  type         content\n",
         "argus-log decode",
@@ -89,9 +98,10 @@ def test_an_sqlite_database_and_a_tar_archive(tmp_path: Path) -> None:
     assert "tar -xOf" in refusal(tmp_path / "a.tar")
 
 
-def test_the_remedy_can_be_pasted(tmp_path: Path) -> None:
+@pytest.mark.parametrize("encode", [base64.encodebytes, quopri.encodestring])
+def test_the_remedy_can_be_pasted(encode: Callable[[bytes], bytes], tmp_path: Path) -> None:
     path = tmp_path / "it's mine.txt"
-    path.write_bytes(base64.encodebytes(ROBOT))
+    path.write_bytes(encode(ROBOT))
     command = refusal(path).rpartition("; ")[2].strip()
     subprocess.run(command, shell=True, cwd=tmp_path, check=True)
     assert (tmp_path / "drive.bin").read_bytes() == ROBOT
@@ -126,6 +136,37 @@ def test_recoded_bytes_are_told_and_what_gets_them_back(name: str, tmp_path: Pat
         command = next(part for part in message.split("; ") if "iconv" in part).partition(" gets ")[0]
         subprocess.run(command, shell=True, cwd=tmp_path, check=True)
         assert ROBOT in (tmp_path / "drive.bin").read_bytes()
+
+
+@pytest.mark.parametrize("name", ["bin", "record", "pcap", "pcapng", "blf"])
+def test_bytes_that_a_text_transfer_changed_are_told(name: str, tmp_path: Path) -> None:
+    sips = [sip(x=n, th=10 * n, sonars=((1, 0x0A0A), (2, 2570 + n))) for n in range(40)]
+    data = b"".join(sips)
+    if name != "bin":
+        form, out = formats().get(name), io.BytesIO()
+        if form is None or form.writer is None:
+            data = b"LOGG" + data
+        else:
+            copy(
+                [Chunk(float(n), "r2c", part, 0) for n, part in enumerate(sips)],
+                form.writer(out, ReadOptions()),
+            )
+            data = out.getvalue()
+    path = tmp_path / "a b.bin"
+    path.write_bytes(data.replace(b"\n", b"\r\n"))
+    log = open_log(str(path))
+    what = log.damage[0].what
+    assert "recoded by a text transfer (LF became CRLF): send it as binary" in what
+    command = what.split("; ")[1].removesuffix(" gets most of it back").split(": ")[-1]
+    subprocess.run(command, shell=True, cwd=tmp_path, check=True)
+    assert (tmp_path / "drive.bin").read_bytes() == data
+    path.write_bytes(data)
+    assert not any("text transfer" in entry.what for entry in open_log(str(path)).damage)
+
+
+def test_text_with_carriage_returns_is_none_of_it(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_bytes(hexdump_c(ROBOT).replace("\n", "\r\n").encode())
+    assert open_log(str(tmp_path / "a.txt")).damage == []
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -16,8 +15,10 @@ from argus_tools.control.client import DEFAULT_PLACE, Client, ControlError, Mess
 from argus_tools.control.words import event_line, evidence_line, readings_line, status_text
 from hil_sim.arguments import Parser, whole
 from hil_sim.faults.kinds import SONAR_KINDS
+from hil_sim.output import guarded
+from hil_sim.version import add_version
 
-EXIT_OK, EXIT_REFUSED, EXIT_UNREACHABLE, EXIT_INTERRUPTED = 0, 1, 3, 130
+EXIT_OK, EXIT_REFUSED, EXIT_UNWRITABLE, EXIT_UNREACHABLE, EXIT_INTERRUPTED = 0, 1, 2, 3, 130
 KINDS: Final = (*SONAR_KINDS, "delayed", "ok")
 TOPICS: Final = ("events", "state", "readings", "evidence")
 MOTION_S: Final = 60.0
@@ -41,8 +42,8 @@ examples:
   argusctl fail sonar 3 ok                 ... and its end
 
 The socket is --socket, else the environment's ARGUS_CONTROL, else {DEFAULT_PLACE}.
-exit codes: 0 done, 1 argusd refuses, or another stopped the step or turn, 2 wrong argument,
-3 argusd cannot be reached, 130 Ctrl-C"""
+exit codes: 0 done, 1 argusd refuses, or another stopped the step or turn, 2 wrong argument, or output
+that cannot be written, 3 argusd cannot be reached, 130 Ctrl-C"""
 
 
 def duration_ms(text: str) -> int:
@@ -296,6 +297,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--token", metavar="FILE", type=Path, help="file with the token, where one is asked for"
     )
+    add_version(parser)
     commands = Commands(parser)
     _add_watching(commands)
     _add_driving(commands)
@@ -312,6 +314,10 @@ def _run(args: argparse.Namespace) -> int:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command; return its exit code."""
+    return guarded("argusctl", lambda: _main(argv), EXIT_UNWRITABLE, EXIT_OK)
+
+
+def _main(argv: Sequence[str] | None) -> int:
     args = make_parser().parse_args(argv)
     try:
         return _run(args)
@@ -323,9 +329,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         return EXIT_UNREACHABLE
     except KeyboardInterrupt:
         return EXIT_INTERRUPTED
-    except BrokenPipeError:  # whoever read us has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return EXIT_OK
 
 
 if __name__ == "__main__":

@@ -20,6 +20,8 @@ from argus_tools.formats.base import (
     ReadOptions,
     Writer,
 )
+from argus_tools.formats.quoted import Unquoted, unquoted
+from argus_tools.formats.recoded import crlf_damage
 from argus_tools.formats.source import BLOCK_BYTES, Source
 from argus_tools.formats.text import is_text
 
@@ -36,7 +38,7 @@ _TEXT_HEAD_BYTES: Final = 1 << 12
 # module has a FORMAT, or FORMATS where several are alike.
 MODULES: Final = (
     "record", "pcapng", "pcap", "canlog", "recoded", "jsonl", "candump", "canlines", "cancsv",
-    "others", "hexdump", "hexwords", "hextext", "bin",
+    "framedump", "numdump", "others", "hexdump", "hexwords", "hextext", "bin",
 )  # fmt: skip
 
 
@@ -92,7 +94,20 @@ class Log:
             raise LogError(f"{path}: {what}")
         self.format = formats()[format_name] if format_name else find_format(self.source.head)
         stream: BufferedReader = BufferedReader(self.source, BLOCK_BYTES)
+        if format_name is None and (inner := self._quoted()):
+            self.format = inner
+            stream = BufferedReader(Unquoted(stream), BLOCK_BYTES)
+        if explained := crlf_damage(self.source.head, path):
+            self.source.damage.append(explained)
         self._reader = self.format.reader(stream, self.options)
+
+    def _quoted(self) -> Format | None:
+        """Return the form of what a mail quotes; a ">" alone may also be a terminal program's mark of direction."""
+        head = unquoted(self.source.head)
+        if head is None:
+            return None
+        inner = find_format(head)
+        return None if inner.name in ("bin", "hextext", "hexwords", self.format.name) else inner
 
     @property
     def damage(self) -> list[Damage]:

@@ -14,6 +14,11 @@ ROBOT_TO_CLIENT: Final[Direction] = "r2c"
 CLIENT_TO_ROBOT: Final[Direction] = "c2r"
 
 
+def other_direction(direction: Direction) -> Direction:
+    """Return the way back."""
+    return ROBOT_TO_CLIENT if direction == CLIENT_TO_ROBOT else CLIENT_TO_ROBOT
+
+
 # What every refusal of a file says that it should have been.
 EXPECTED: Final = "a log of a robot's link (argus-log --help lists the forms)"
 

@@ -8,21 +8,23 @@ import re
 from base64 import b64decode
 from binascii import Error as Base64Error
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import BufferedReader
 from typing import Final
 
 from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, ReadOptions
-from argus_tools.formats.isotp import CanLink
+from argus_tools.formats.isotp import CanLink, is_robot_id
+from argus_tools.formats.source import HEAD_BYTES
 from argus_tools.formats.text import BOM, first_lines
 
 _LINE_MAX: Final = 4096
 _HEADING_LINES: Final = 40
 _SEPARATORS: Final = (",", ";", "\t")
 _BYTES_MAX: Final = 64
+_ROWS_LOOKED_AT: Final = 1 << 10
 _SHORT_ID_MAX: Final = 0x7FF
 _ID: Final = re.compile(
-    r"(can |message |msg |arbitration |frame )?(id|identifier|addr(?:ess)?)( ?[(\[]?(hex|dec)[)\]]?)?"
+    r"(can |message |msg |arb(?:itration)? |frame )?(id|identifier|addr(?:ess)?)( ?[(\[]?(hex|dec)[)\]]?)?"
 )
 _TIME: Final = re.compile(
     r"(time ?(stamp|offset)?|abs(olute)? ?time|t)( ?[(\[]?(s|sec|seconds|ms|us|µs|ns)[)\]]?)?"
@@ -30,14 +32,14 @@ _TIME: Final = re.compile(
 _SIZE: Final = re.compile(r"len|length|dlc?|dl|data ?length( code)?|size|bytes")
 _DATA: Final = re.compile(r"(data|payload)( ?(bytes|field))?( ?[(\[]?hex[)\]]?)?")
 _ONE: Final = re.compile(r"(?:d|b|db|data|byte|data ?byte)[ _]?\[?(\d{1,2})\]?")
-_BUS: Final = re.compile(r"bus|channel|chn?|interface")
-_LONG: Final = re.compile(r"ext(ended)?|is[ _]extended([ _]id)?|ide")
+_BUS: Final = re.compile(r"bus|channel|chn?|interface|network")
+_LONG: Final = re.compile(r"e?xt(ended|d)?|is[ _]extended([ _]id)?|ide")
 _KIND: Final = re.compile(r"type|frame ?type")
-_FLAG: Final = re.compile(r"remote|error|rtr")
+_FLAG: Final = re.compile(r"remote|error|rtr|er")
 _UNITS: Final = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}
 # SavvyCAN counts microseconds; so does each program that writes times without a point under this heading.
 _MICROSECONDS: Final = 1e-6
-_TRUE: Final = ("1", "true", "yes", "x", "ext", "extended")
+_TRUE: Final = ("1", "t", "true", "yes", "x", "ext", "extended")
 _NO_DATA_KINDS: Final = ("rtr", "remote", "error", "errorframe", "rr", "er", "ec", "st")
 
 
@@ -57,7 +59,9 @@ class _Columns:
     kinds: tuple[int, ...]
     flags: tuple[int, ...]
     is_base64: bool
+    # Base of the ids, and of the bytes.
     is_decimal: bool
+    has_decimal_data: bool = False
 
 
 def _columns(line: bytes) -> _Columns | None:
@@ -97,6 +101,39 @@ def _understand(separator: str, names: list[str]) -> _Columns | None:
     )
 
 
+def _in_their_base(columns: _Columns, head: bytes) -> _Columns:
+    """Say in which base a table is whose headings do not tell it: its ids are a robot's in that base alone."""
+    rows = [_cells(line, columns) for line in head.splitlines()[1:_ROWS_LOOKED_AT]]
+    cells = [_Cells(columns, row) for row in rows if row]
+    is_decimal = columns.is_decimal or _are_decimal([cell.id_text() for cell in cells])
+    data = [text for cell in cells for text in cell.one_texts()]
+    return replace(columns, is_decimal=is_decimal, has_decimal_data=_is_decimal_data(data, is_decimal))
+
+
+def _is_decimal_data(texts: list[str], with_decimal_ids: bool) -> bool:
+    """A number of three digits is no byte in hexadecimal; without one, bytes are written as the ids are."""
+    if any(len(text) > 2 and text.isdigit() for text in texts):
+        return True
+    return with_decimal_ids and bool(texts) and all(map(str.isdigit, texts))
+
+
+def _are_decimal(ids: list[str]) -> bool:
+    numbers = [text for text in ids if text.isdigit()]
+    # One in ten may be spoilt.
+    if 10 * len(numbers) < 9 * len(ids):
+        return False
+    return any(is_robot_id(int(one)) for one in numbers) and not any(
+        is_robot_id(int(one, 16)) for one in numbers
+    )
+
+
+def _cells(line: bytes, columns: _Columns) -> list[str]:
+    try:
+        return next(csv.reader([line.decode("latin-1")], delimiter=columns.separator))
+    except (csv.Error, StopIteration):
+        return []
+
+
 @dataclass(frozen=True)
 class _Row:
     t: float | None
@@ -115,6 +152,14 @@ class _Cells:
 
     def _at(self, column: int | None) -> str:
         return self._cells[column] if column is not None and column < len(self._cells) else ""
+
+    def id_text(self) -> str:
+        """The cell of the id."""
+        return self._at(self._columns.can_id)
+
+    def one_texts(self) -> list[str]:
+        """The cells of single bytes that are not empty."""
+        return [text for at in self._columns.ones if (text := self._at(at))]
 
     def row(self) -> _Row | None:
         """Return the frame; None if it has no data; ValueError if the row is none."""
@@ -143,9 +188,11 @@ class _Cells:
         size = int(size_text) if size_text else None
         if columns.is_base64:
             data = b64decode(self._at(columns.data), validate=True)
+        elif columns.ones and columns.has_decimal_data:
+            data = bytes(map(int, self.one_texts()))
         elif columns.ones:
-            cells = [self._at(at) for at in columns.ones]
-            data = bytes.fromhex("".join(c.lower().removeprefix("0x").rjust(2, "0") for c in cells if c))
+            texts = self.one_texts()
+            data = bytes.fromhex("".join(text.lower().removeprefix("0x").rjust(2, "0") for text in texts))
         else:
             # Unquoted bytes may have cells of their own behind the last heading.
             assert columns.data is not None
@@ -180,6 +227,8 @@ class CanCsvReader:
             number += 1
             if columns is None:
                 columns = _columns(line)
+                if columns is not None:
+                    columns = _in_their_base(columns, line + self._stream.peek(HEAD_BYTES))
                 if columns is None and number >= _HEADING_LINES:
                     break
                 continue

@@ -30,9 +30,10 @@ _FRAME_BYTES: Final = 8
 _LINE_MAX: Final = 4096
 _ID: Final = rb"([0-9A-Fa-f]{3}|[0-9A-Fa-f]{8})"
 _LINE: Final = re.compile(
-    rb"\s*\((\d{1,12}\.\d{1,9})\)\s+(\S+)\s+" + _ID + rb"#"
+    rb"\s*(?:\((\d{1,12}\.\d{1,9})\)\s+)?(?:([^\s#()\[\]{}]+)\s+)?" + _ID + rb"#"
     rb"(?:R[0-9A-Fa-f_]*|(?:#[0-9A-Fa-f])?([0-9A-Fa-f.]*))(?:\s+[RTX])*\s*"
 )
+# Time and interface may be missing: as cansend takes it, "640#06.FA.FB".
 _USUAL: Final = re.compile(rb"\((\d{1,12}\.\d{1,9})\) (\S+) ([0-9A-Fa-f]{3})#([0-9A-Fa-f]{2,16})\n")
 # What candump prints without -L: time by -t, marks by -x, length in braces by -8.
 _SCREEN: Final = re.compile(
@@ -128,7 +129,7 @@ class CandumpReader:
         line = _COLOUR.sub(b"", line)
         if match := _LINE.fullmatch(line):
             t, bus, can_id, digits = match.groups()
-            return t, bus, can_id, digits
+            return t, bus or b"", can_id, digits
         if match := _SCREEN.fullmatch(line):
             return self._screen(match, line, number)
         if line.strip() and not line.startswith((b"#", b"\t")):

@@ -13,7 +13,7 @@ from io import BufferedReader
 from typing import Any, Final
 
 from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, Reader, ReadOptions
-from argus_tools.formats.isotp import CanLink
+from argus_tools.formats.isotp import CanLink, is_robot_id
 from argus_tools.formats.text import BOM, first_lines
 
 # What python-can's readers raise at a line or an object that they do not understand.
@@ -47,25 +47,44 @@ _TRC_LINE: Final = re.compile(
     rb"\s*\d+\)?\s+\d+\.\d+\s+(?:\d+\s+)?(?:(?:DT|Rx|Tx)\s+)[0-9A-Fa-f]{3,8}\s|\s*\d+\)\s+\d+\s+[0-9A-Fa-f]{4,8}\s+\d\s"
 )
 _VERSION: Final = re.compile(r"\s*;\$FILEVERSION\s*=\s*(\S+)")
-_TRC_VERSIONS: Final = ("1.0", "1.1", "1.3", "2.0", "2.1")
+_TRC_VERSIONS: Final = ("1.0", "1.1", "1.2", "1.3", "2.0", "2.1")
+# Version 1.2 has all that 1.3 has, but for the column that is reserved there.
+_TRC_12: Final = re.compile(r"(\s*\d+\)\s+\d+(?:\.\d+)?\s+\d+\s+\w+\s+[0-9A-Fa-f]+)(\s+\d+\b.*)", re.DOTALL)
+_ASC_RELATIVE: Final = re.compile(r"\s*base\s+\w+\s+timestamps\s+relative\b", re.IGNORECASE)
+_ASC_TIME: Final = re.compile(r"\s*(\d+\.\d+)\s")
+_ASC_FRAME: Final = re.compile(
+    r"\s*\d+\.\d+\s+\d+\s+([0-9A-Fa-f]+)\s+(?:Rx|Tx)\s+d\s+\d+\s+([0-9A-Fa-f ]+)", re.IGNORECASE
+)
+# python-can takes the line behind the header for its end, whatever it is; this one is.
+_ASC_END: Final = "no internal events logged\n"
+_ASC_DECIMAL: Final = "base dec  timestamps absolute\n"
 
 
 class _Lines:
     """The lines of a log as python-can wants them; they can be begun anew behind a line that it did not understand."""
 
-    def __init__(self, stream: BufferedReader, is_header: Callable[[str], bool]) -> None:
+    def __init__(self, stream: BufferedReader, kind: str, name: str) -> None:
         self._stream = stream
-        self._is_header = is_header
+        self._is_asc = kind == "asc"
+        self._is_header = _asc_header if self._is_asc else _trc_header
+        self._name = name
         self._header: list[str] = []
         self._in_header = True
         self._again: Iterator[str] = iter(())
+        self._version = ""
+        self._is_relative = False
+        self._elapsed = 0.0
         self.number = 0
         self.is_over = False
+
+    def time(self, t: float) -> float:
+        """Return the time of the line that was read last: of relative times all are added up."""
+        return self._elapsed if self._is_relative else t
 
     def rewind(self) -> None:
         """Give the lines of the header once more, then go on."""
         self._in_header = False
-        self._again = iter(self._header)
+        self._again = iter([*self._header, _ASC_END] if self._is_asc else self._header)
 
     def __iter__(self) -> Iterator[str]:
         return self
@@ -80,11 +99,52 @@ class _Lines:
         if not self.number:
             data = data.removeprefix(BOM)
         self.number += 1
-        line = data.decode("latin-1")
+        line = self._usual(data.decode("latin-1"))
         if self._in_header and len(self._header) < _HEADER_LINES and self._is_header(line):
             self._header.append(line)
+        elif self._in_header and self._is_asc:
+            return self._end_header(line)
         else:
             self._in_header = False
+        return line
+
+    def _end_header(self, line: str) -> str:
+        """Return what must stand before the first line of a frame; that comes next."""
+        self._in_header = False
+        missing = [_ASC_END]
+        if not any("base" in one.lower() for one in self._header) and self._is_decimal(line):
+            missing.insert(0, _ASC_DECIMAL)
+        self._header += missing[:-1]
+        self._again = iter([*missing[1:], line])
+        return missing[0]
+
+    def _is_decimal(self, first: str) -> bool:
+        """Whether a log that does not tell its base has a robot's ids in decimal numbers alone."""
+        lines = [first, *self._stream.peek(_LINE_MAX).decode("latin-1").splitlines()]
+        frames = [match for line in lines if (match := _ASC_FRAME.match(line))]
+        if any(re.search("[A-Fa-f]", match[1] + match[2]) for match in frames):
+            return False
+        return any(is_robot_id(int(match[1])) for match in frames) and not any(
+            is_robot_id(int(match[1], 16)) for match in frames
+        )
+
+    def _usual(self, line: str) -> str:
+        """Return a line as python-can knows it; LogError for a version that nobody here knows."""
+        if self._is_asc:
+            self._is_relative |= bool(_ASC_RELATIVE.match(line))
+            if self._is_relative and (match := _ASC_TIME.match(line)):
+                self._elapsed = round(self._elapsed + float(match[1]), 9)
+            return line
+        if match := _VERSION.match(line):
+            self._version = match[1]
+            if self._version not in _TRC_VERSIONS:
+                raise LogError(
+                    f"{self._name}: a TRC file of version {self._version}, which is not read; expected one of "
+                    f"{', '.join(_TRC_VERSIONS)}; save it as one of these with PEAK-Converter"
+                )
+            return line.replace("1.2", "1.3") if self._version == "1.2" else line
+        if self._version == "1.2" and (match := _TRC_12.fullmatch(line)):
+            return f"{match[1]} -{match[2]}"
         return line
 
     def close(self) -> None:
@@ -124,13 +184,14 @@ class _Messages:
         finally:
             logger.removeHandler(told)
 
-    def _take(self, message: Any, place: int) -> Iterator[Chunk]:
+    def _take(self, message: Any, place: int, t: float | None = None) -> Iterator[Chunk]:
         if message.is_error_frame or message.is_remote_frame:
             return
         bus = "" if message.channel is None else str(message.channel)
         direction = self._link.direction(bus, message.arbitration_id, message.is_extended_id, place)
         if direction is not None:
-            yield from self._link.take(round(message.timestamp, 9), direction, bytes(message.data), place)
+            t = message.timestamp if t is None else t
+            yield from self._link.take(round(t, 9), direction, bytes(message.data), place)
 
 
 class TextReader(_Messages):
@@ -138,7 +199,7 @@ class TextReader(_Messages):
 
     def __init__(self, stream: BufferedReader, options: ReadOptions, kind: str) -> None:
         super().__init__(options, "line")
-        self._lines = _Lines(stream, _asc_header if kind == "asc" else _trc_header)
+        self._lines = _Lines(stream, kind, options.name)
         self._kind = kind
         self._name = options.name
 
@@ -147,7 +208,8 @@ class TextReader(_Messages):
             while not self._lines.is_over:
                 try:
                     for message in self._reader():
-                        yield from self._take(message, self._lines.number)
+                        t = self._lines.time(message.timestamp)
+                        yield from self._take(message, self._lines.number, t)
                 except _FAILURES as error:
                     self._tell(self._lines.number, f"no line of {self._kind.upper()} ({_brief(error)})")
                     self._lines.rewind()

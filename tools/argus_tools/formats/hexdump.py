@@ -15,8 +15,6 @@ from itertools import pairwise
 from typing import Final
 
 from argus_tools.formats.base import (
-    CLIENT_TO_ROBOT,
-    ROBOT_TO_CLIENT,
     Chunk,
     Damage,
     DamageList,
@@ -25,10 +23,11 @@ from argus_tools.formats.base import (
     LogError,
     Offsets,
     ReadOptions,
+    other_direction,
 )
 from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.source import HEAD_BYTES
-from argus_tools.formats.text import first_lines
+from argus_tools.formats.text import BOM, first_lines, is_passed
 from hil_sim.arcos import Unframer
 
 HEADER: Final = b"\xfa\xfb"
@@ -37,7 +36,7 @@ _REPEATED_MAX: Final = 1 << 24
 _PIECE: Final = 1 << 16
 _LINE_MAX: Final = 4096
 _LINE: Final = re.compile(rb"([ \t]*)([0-9A-Fa-f]{4,16})(:?)(?:[ \t]+(\S.*?))?\s*", re.DOTALL)
-_REPEATED: Final = b"*"
+REPEATED: Final = b"*"
 # Of a single line, shorter digits may be anything.
 _OFFSET_MIN: Final = 6
 # Where the characters of a line begin: Wireshark puts three spaces before them, the others a mark.
@@ -45,11 +44,17 @@ _COLUMN: Final = re.compile(rb"\s+[|>]|\s{3}|\t")
 _MARK: Final = re.compile(rb"\s+[|>]")
 # hexdump -x has gaps of its own between the words.
 _WIDE: Final = re.compile(rb"[0-9A-Fa-f]+\s{4}\S")
+# hexdump -C and "follow stream" of tshark have sixteen bytes in 48 columns, whatever stands behind them.
+_SIXTEEN: Final = re.compile(rb"[0-9A-Fa-f]{2}(?: {1,2}[0-9A-Fa-f]{2}){0,15} *")
+_SIXTEEN_WIDTH: Final = 48
+_SIXTEEN_GAP: Final = re.compile(rb"[0-9A-Fa-f]{8}  (?! )")
 # xxd puts them behind two spaces, in the same column in each line.
 _XXD: Final = re.compile(rb"\s*[0-9A-Fa-f]+: \S+(?: \S+)*?  ")
 
 
 _HEX: Final = 16
+# The other direction may begin late.
+_LINES_PLANNED: Final = 1 << 12
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,14 @@ class _Words:
     def size_of(self, word: bytes) -> int:
         """xxd and hexdump -C end in a shorter word."""
         return self.size if len(word) == self.digits else max(1, len(word) // 2)
+
+    def fits(self, words: list[bytes]) -> bool:
+        """Whether these are such words; the last of a line may be short."""
+        if not _DIGITS[self.base].fullmatch(b"".join(words)):
+            return False
+        if any(len(word) != self.digits for word in words[:-1]) or len(words[-1]) > self.digits:
+            return False
+        return self.base != _HEX or not len(words[-1]) & 1
 
     def count(self, words: list[bytes]) -> int:
         return sum(map(self.size_of, words))
@@ -113,7 +126,10 @@ def _parse(line: bytes, column: int | None) -> _Line | None:
     if colon:
         words = line[match.end(3) : column].split()
     else:
-        words = (_MARK if _WIDE.match(line) else _COLUMN).split(rest or b"", maxsplit=1)[0].split()
+        words = (
+            _sixteen(line, match)
+            or (_MARK if _WIDE.match(line) else _COLUMN).split(rest or b"", maxsplit=1)[0].split()
+        )
     if not words:
         return _Line(indent, offset, words)
     if not _DIGITS[_HEX].fullmatch(b"".join(words)) or (
@@ -126,6 +142,15 @@ def _parse(line: bytes, column: int | None) -> _Line | None:
     return _Line(indent, offset, words)
 
 
+def _sixteen(line: bytes, match: re.Match[bytes]) -> list[bytes]:
+    """Return the bytes of a line that has them in fixed columns, with any characters behind."""
+    rest = line[match.start(4) :] if match[4] else b""
+    body, behind = rest[:_SIXTEEN_WIDTH], rest[_SIXTEEN_WIDTH:]
+    if not behind.startswith(b"  ") or not _SIXTEEN_GAP.match(line, match.start(2)):
+        return []
+    return body.split() if _SIXTEEN.fullmatch(body) else []
+
+
 @dataclass
 class _Plan:
     """What the first lines tell of all of them."""
@@ -133,9 +158,16 @@ class _Plan:
     words: _Words
     base: int
     is_swapped: bool
-    two_indents: bool
-    sample: bytes
+    samples: dict[bool, bytes]
     column: int | None
+
+    @property
+    def two_indents(self) -> bool:
+        return len(self.samples) > 1
+
+    def key(self, line: _Line) -> bool:
+        """Which of two directions a line is of: the other side's lines are indented."""
+        return bool(line.indent) and self.two_indents
 
 
 def _plan(head: bytes) -> _Plan | None:
@@ -148,18 +180,33 @@ def _plan(head: bytes) -> _Plan | None:
     words = _words(full)
     if words is None:
         return None
-    is_swapped = False
-    if words.size > 1:
-        natural, swapped = (
-            _likeness(b"".join(words.decode(line.words, turn) for line in full)) for turn in (False, True)
-        )
-        is_swapped = swapped > natural
-    sample = b"".join(words.decode(line.words, is_swapped) for line in full)
-    indents = {line.indent for line in full}
-    return _Plan(words, _base(lines, words), is_swapped, len(indents) == 2, sample, column)
+    full = [line for line in full if words.fits(line.words)]
+    is_swapped = words.size > 1 and _is_swapped(words, full)
+    samples = _samples(first_lines(head, _LINES_PLANNED), column, words, is_swapped)
+    return _Plan(words, _base(lines, words), is_swapped, samples, column)
 
 
-def _likeness(data: bytes) -> tuple[int, int]:
+def _is_swapped(words: _Words, lines: list[_Line]) -> bool:
+    """Whether these are more like a link's bytes with those of each word turned round."""
+    natural, swapped = (
+        likeness(b"".join(words.decode(line.words, turn) for line in lines)) for turn in (False, True)
+    )
+    return swapped > natural
+
+
+def _samples(texts: list[bytes], column: int | None, words: _Words, is_swapped: bool) -> dict[bool, bytes]:
+    """Return the bytes of these lines, apart for those that are indented where there are two kinds."""
+    samples: dict[bytes, bytes] = {}
+    for text in texts:
+        line = _parse(text, column)
+        if line and line.words and words.fits(line.words):
+            samples[line.indent] = samples.get(line.indent, b"") + words.decode(line.words, is_swapped)
+    if len(samples) == 2 and b"" in samples:
+        return {bool(indent): data for indent, data in samples.items()}
+    return {False: b"".join(samples.values())}
+
+
+def likeness(data: bytes) -> tuple[int, int]:
     """How much these bytes are like a link's: whole packets, then headers."""
     return sum(1 for _ in Unframer().feed(data)), data.count(HEADER)
 
@@ -192,7 +239,7 @@ def _base(lines: list[_Line], words: _Words) -> int:
 
 
 @dataclass
-class _Stream:
+class DumpStream:
     """One direction; a line waits for the next one's offset, which says how many bytes are really in it."""
 
     direction: Direction
@@ -203,6 +250,7 @@ class _Stream:
     damage: list[str] = field(default_factory=list)
 
     def take(self, offset: int, data: bytes) -> Iterator[bytes]:
+        """Take the bytes of the next line; yield those of the line before."""
         if self.expected is not None:
             yield from self._release(offset)
         self.held = data
@@ -212,6 +260,7 @@ class _Stream:
         self.expected = offset + len(data)
 
     def finish(self) -> bytes:
+        """Return the bytes of the last line."""
         data, self.held = self.held, b""
         return data
 
@@ -252,17 +301,18 @@ class HexdumpReader:
         number = 0
         while text := self._stream.readline(_LINE_MAX):
             number += 1
-            if text.strip() == _REPEATED:
+            if number == 1:
+                text = text.removeprefix(BOM)
+            if text.strip() == REPEATED:
                 last.is_repeated = bool(last.full)
                 continue
             line = _parse(text, plan.column)
             data = None if line is None else self._bytes(plan, line)
             if line is None or data is None:
-                if text.strip() and not text.startswith(b"#"):
+                if text.strip() and not is_passed(text):
                     self.damage.append(Damage(f"line {number}", "no line of a dump"))
                 continue
-            key = bool(line.indent) and plan.two_indents
-            last = streams[key]
+            last = streams[plan.key(line)]
             for part in last.take(int(line.offset, plan.base), data):
                 if part:
                     yield offsets.chunk(None, last.direction, part)
@@ -274,21 +324,17 @@ class HexdumpReader:
                 yield offsets.chunk(None, stream.direction, data)
 
     def _bytes(self, plan: _Plan, line: _Line) -> bytes | None:
-        words = line.words
-        if words and (
-            len(words[0]) > plan.words.digits or not _DIGITS[plan.words.base].fullmatch(b"".join(words))
-        ):
-            return None
-        if plan.words.base == _HEX and any(len(word) & 1 for word in (words[:1] + words[-1:])):
+        if line.words and not plan.words.fits(line.words):
             return None
         if not _DIGITS[plan.base].fullmatch(line.offset):
             return None
         return plan.words.decode(line.words, plan.is_swapped)
 
-    def _streams(self, plan: _Plan) -> dict[bool, _Stream]:
+    def _streams(self, plan: _Plan) -> dict[bool, DumpStream]:
+        outer = guess_direction(plan.samples[False])
         if plan.two_indents:
-            return {False: _Stream(CLIENT_TO_ROBOT), True: _Stream(ROBOT_TO_CLIENT)}
-        return {False: _Stream(self._options.direction or guess_direction(plan.sample))}
+            return {False: DumpStream(outer), True: DumpStream(other_direction(outer))}
+        return {False: DumpStream(self._options.direction or outer)}
 
 
 def _sniff(head: bytes) -> bool:
@@ -302,7 +348,10 @@ def _sniff(head: bytes) -> bool:
         return False
     pairs = [(a, b) for a, b in pairwise(parsed) if a.words and b.words and a.indent == b.indent]
     if not pairs:
-        return plan.column is not None or len(parsed[0].offset) > _OFFSET_MIN
+        # A count of seconds since 1970 is as long, but does not begin so.
+        return plan.column is not None or (
+            len(parsed[0].offset) > _OFFSET_MIN and parsed[0].offset.startswith(b"0")
+        )
     try:
         steps = [
             int(b.offset, plan.base) - int(a.offset, plan.base) == plan.words.count(a.words) for a, b in pairs

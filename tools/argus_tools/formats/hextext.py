@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import re
 from binascii import unhexlify
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from io import BufferedReader
 from typing import Final, NamedTuple
 
@@ -24,27 +23,15 @@ from argus_tools.formats.base import (
 )
 from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.source import HEAD_BYTES
-from argus_tools.formats.text import BOM, first_lines, pieces
+from argus_tools.formats.stamps import Times
+from argus_tools.formats.text import BOM, first_lines, is_passed, pieces
+from hil_sim.arcos import Unframer
 
 _HEADER: Final = b"\xfa\xfb"
 _REPEATED: Final = "a * stands for lines that are not in the file; dump it again with -v, or with offsets"
 _SNIFF_BYTES: Final = 6
-_DAY_S: Final = 86400.0
-_DATES: Final = ("%Y-%m-%d", "%Y/%m/%d", "%Y.%m.%d", "%d.%m.%Y", "%m/%d/%Y", "%d/%m/%Y")
-# [2026-11-25T06:38:47.479+01:00], (06:38:47:479), 06:38:47, and the time since the line before, which some add.
-_CLOCK: Final = (
-    rb"(?:(?P<date>\d{4}([-/.])\d\d?\2\d\d?|\d\d?([-/.])\d\d?\3\d{4})[ T,]+)?"
-    rb"(?P<hour>\d\d?):(?P<minute>\d\d):(?P<second>\d\d)(?:[.,:](?P<fraction>\d{1,9}))?"
-    rb"(?:[ ]?(?P<half>[AaPp][Mm]))?(?:Z|(?P<zone>[+-]\d\d:?\d\d))?"
-)
-_SINCE: Final = rb"(?P<since>[+]?\d{1,12}\.\d{1,9})(?:[ ]?s)?"
-_TIME: Final = re.compile(
-    rb"[\[({]?[ ]*(?:"
-    + _CLOCK
-    + rb"|"
-    + _SINCE
-    + rb")(?:[ ]+[+]?\d{1,9}\.\d{1,9})?[ ]*[\])}]?[ \t]*(?:[:;,|-]?(?:[ \t]+|\Z)|[,;])"
-)
+_LINES: Final = 1 << 12
+_BYTE_MIN, _BYTE_MAX = -128, 255
 _MARK: Final = re.compile(
     rb"[\[(<]?(?P<mark>RXD?|TXD?|RECV|SENT|SEND|RECEIVED|READ|WRITE|WRITTEN|IN|OUT|RCV|SND|-+>|<-+|<<|>>|<|>)[\])>]?"
     rb"[ \t]*[:=|-]?(?:[ \t]+|\Z)",
@@ -61,6 +48,10 @@ _RUN: Final = re.compile(
 _BEHIND: Final = tuple(map(re.compile, (rb"\Z", rb"\s*[|\t]", rb"\s{3}", rb"\s{2}", rb"\s[;<>\"'(]", rb",,")))
 # What socat and jpnevulator write into a line of its own before the bytes, and between two of them.
 _HEADING: Final = re.compile(rb"length=\d|/dev/|--\Z")
+# "Follow stream" of Wireshark as arrays of C, or raw: the side that spoke first, and the other.
+_PEER: Final = re.compile(rb"char peer([01])_\d+\[\d*\] = \{")
+_PEERS: Final = (b">", b"<")
+_RAW: Final = re.compile(rb"\t?(?:[0-9A-Fa-f]{2})+\s*")
 _PREFIXES: Final = re.compile(rb"0[xX]|\\x")
 _NO_DIGITS: Final = b" ,;:-hH$"
 
@@ -75,60 +66,72 @@ class _Piece(NamedTuple):
     is_strange: bool = False
 
 
-@dataclass
-class _Times:
-    """Makes one rising time of clocks without a date, which begin anew at midnight."""
+@dataclass(frozen=True)
+class _Digits:
+    """A base in which bytes are written: how a run of them looks, and how it is read."""
 
-    days_s: float = 0.0
-    last: float = 0.0
-
-    def at(self, match: re.Match[bytes]) -> float:
-        if match["since"]:
-            return float(match["since"])
-        hour = int(match["hour"])
-        if match["half"]:
-            hour = hour % 12 + 12 * (match["half"].lower() == b"pm")
-        t = hour * 3600.0 + int(match["minute"]) * 60 + int(match["second"])
-        t += float(b"0." + (match["fraction"] or b"0"))
-        if match["date"]:
-            return _midnight(match["date"].decode()) + t - _zone_s(match["zone"])
-        if t + self.days_s < self.last - _DAY_S / 2:
-            self.days_s += _DAY_S
-        self.last = t + self.days_s
-        return self.last
+    run: re.Pattern[bytes]
+    read: Callable[[bytes], bytes | None]
 
 
-def _zone_s(zone: bytes | None) -> float:
-    if not zone:
-        return 0.0
-    hours, minutes = int(zone[1:3]), int(zone[-2:])
-    return (hours * 3600.0 + minutes * 60.0) * (-1 if zone[:1] == b"-" else 1)
+def _hexadecimal(run: bytes) -> bytes:
+    return unhexlify(_PREFIXES.sub(b"", run).translate(None, _NO_DIGITS))
 
 
-def _midnight(date: str) -> float:
-    for form in _DATES:
-        try:
-            return datetime.strptime(date, form).replace(tzinfo=UTC).timestamp()
-        except ValueError:
-            continue
-    return 0.0
+def _decimal(run: bytes) -> bytes | None:
+    values = [int(number) for number in re.findall(rb"-?\d+", run)]
+    if not all(_BYTE_MIN <= value <= _BYTE_MAX for value in values):
+        return None
+    return bytes(value & _BYTE_MAX for value in values)
 
 
-def _parse(line: bytes, begins: bool, times: _Times) -> _Piece:
+def _octal(run: bytes) -> bytes | None:
+    values = [int(number, 8) for number in re.findall(rb"\d+", run)]
+    return bytes(values) if max(values) <= _BYTE_MAX else None
+
+
+def _numbers(digits: bytes) -> re.Pattern[bytes]:
+    return re.compile(rb"(?P<run>" + digits + rb"(?:[,;]?[ ]+" + digits + rb"|[,;]" + digits + rb")*)[,;]?")
+
+
+_HEX: Final = _Digits(_RUN, _hexadecimal)
+_OTHER_DIGITS: Final = (
+    _Digits(_numbers(rb"-?\d{1,3}"), _decimal),
+    _Digits(_numbers(rb"\\?[0-3][0-7]{2}"), _octal),
+)
+
+
+def _parse(line: bytes, begins: bool, times: Times, digits: _Digits = _HEX) -> _Piece:
     t = mark = None
     rest = line.strip()
     if begins:
         for _ in range(2):
-            if t is None and (match := _TIME.match(rest)):
-                t, rest = times.at(match), rest[match.end() :]
+            if t is None and (stamp := times.take(rest)):
+                t, rest = stamp
             if mark is None and (match := _MARK.match(rest)):
                 mark, rest = match["mark"].upper().replace(b"-", b""), rest[match.end() :]
     for behind in _BEHIND:
         # Words that begin as bytes do, and bytes that are cut, are none.
-        if match := _RUN.fullmatch(behind.split(rest, maxsplit=1)[0]):
-            text = _PREFIXES.sub(b"", match["run"])
-            return _Piece(t, mark, unhexlify(text.translate(None, _NO_DIGITS)))
+        if match := digits.run.fullmatch(behind.split(rest, maxsplit=1)[0]):
+            data = digits.read(match["run"])
+            if data is not None:
+                return _Piece(t, mark, data)
+    if match := _PEER.match(rest):
+        return _Piece(t, _PEERS[match[1] == b"1"], None)
     return _Piece(t, mark, None, bool(rest) and not _HEADING.match(rest))
+
+
+def _digits(lines: Sequence[bytes]) -> _Digits:
+    """Return the base in which the lines hold packets; it is 16 unless they hold some in another alone."""
+    if _HEADER in _bytes_of(lines, _HEX):
+        return _HEX
+    holding = (other for other in _OTHER_DIGITS if any(Unframer().feed(_bytes_of(lines, other))))
+    return next(holding, _HEX)
+
+
+def _bytes_of(lines: Iterable[bytes], digits: _Digits) -> bytes:
+    times = Times()
+    return b"".join(_parse(line, True, times, digits).data or b"" for line in lines)
 
 
 class HextextReader:
@@ -140,29 +143,33 @@ class HextextReader:
         self._asked = options.direction
 
     def __iter__(self) -> Iterator[Chunk]:
-        offsets, times = Offsets(), _Times()
-        directions = self._directions(self._stream.peek(HEAD_BYTES))
+        offsets, times = Offsets(), Times()
+        head = first_lines(self._stream.peek(HEAD_BYTES), _LINES)
+        digits = _digits(head)
+        is_follow = _is_follow(head)
+        directions = self._directions(head, digits, is_follow)
         t: float | None = None
         mark = b""
         for number, text, begins in pieces(self._stream):
-            piece = _parse(text.removeprefix(BOM), begins, times)
+            text = text.removeprefix(BOM)
+            piece = _parse(text, begins, times, digits)
             t = t if piece.t is None else piece.t
-            mark = mark if piece.mark is None else piece.mark
+            mark = _mark(mark, piece, text, is_follow and begins)
             if piece.data:
                 direction = directions.get(mark) or directions[b""]
                 yield offsets.chunk(t, direction, piece.data)
-            elif piece.is_strange and not text.startswith(b"#"):
+            elif piece.is_strange and not is_passed(text):
                 self.damage.append(
                     Damage(f"line {number}", _REPEATED if text.strip() == b"*" else "no hexadecimal bytes")
                 )
 
-    def _directions(self, head: bytes) -> dict[bytes, Direction]:
+    def _directions(self, head: Sequence[bytes], digits: _Digits, is_follow: bool) -> dict[bytes, Direction]:
         """Say which direction each mark is; what a client calls sent goes to the robot, if the bytes do not deny it."""
         samples: dict[bytes, bytearray] = {}
-        times, mark = _Times(), b""
-        for line in first_lines(head, 1 << 12):
-            piece = _parse(line, True, times)
-            mark = mark if piece.mark is None else piece.mark
+        times, mark = Times(), b""
+        for line in head:
+            piece = _parse(line, True, times, digits)
+            mark = _mark(mark, piece, line, is_follow)
             if piece.data:
                 samples.setdefault(mark, bytearray()).extend(piece.data)
         everything = b"".join(samples.values())
@@ -176,17 +183,29 @@ class HextextReader:
         return found
 
 
-def bytes_of_lines(lines: Iterable[bytes]) -> bytes:
+def _is_follow(lines: Sequence[bytes]) -> bool:
+    """Whether these are "follow stream" in raw form, where the lines of one side begin with a tab."""
+    indents = {line.startswith(b"\t") for line in lines if _RAW.fullmatch(line)}
+    return len(indents) > 1 and all(_RAW.fullmatch(line) for line in lines)
+
+
+def _mark(last: bytes, piece: _Piece, line: bytes, is_follow: bool) -> bytes:
+    """Return the mark of a line, which is that of the line before if it has none."""
+    if is_follow and piece.data:
+        return _PEERS[line.startswith(b"\t")]
+    return last if piece.mark is None else piece.mark
+
+
+def bytes_of_lines(lines: Sequence[bytes]) -> bytes:
     """Return what these lines hold as text of this form, whatever the direction."""
-    times = _Times()
-    return b"".join(_parse(line, True, times).data or b"" for line in lines)
+    return _bytes_of(lines, _digits(lines))
 
 
 def _sniff(head: bytes) -> bool:
     """Most of the first lines are such bytes, some of them at least, or the header of a packet is among them."""
     lines = first_lines(head)
-    times = _Times()
-    parsed = [_parse(line, True, times) for line in lines]
+    times, digits = Times(), _digits(lines)
+    parsed = [_parse(line, True, times, digits) for line in lines]
     data = b"".join(piece.data for piece in parsed if piece.data)
     with_data = sum(piece.data is not None for piece in parsed)
     with_more = sum(piece.t is not None or piece.mark is not None for piece in parsed if piece.data is None)
@@ -197,7 +216,7 @@ def _sniff(head: bytes) -> bool:
 
 FORMAT: Final = Format(
     name="hextext",
-    help="hexadecimal text of a terminal program, with or without times",
+    help="hexadecimal, decimal or octal text of a terminal program, with or without times",
     sniff=_sniff,
     reader=HextextReader,
 )

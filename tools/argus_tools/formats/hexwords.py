@@ -13,11 +13,13 @@ from argus_tools.formats.base import Chunk, Damage, DamageList, Format, Offsets,
 from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.hextext import bytes_of_lines
 from argus_tools.formats.source import HEAD_BYTES
+from argus_tools.formats.stamps import Times
 from argus_tools.formats.text import BOM, first_lines, pieces
 from hil_sim.arcos import Unframer
 
 _PACKETS: Final = 2
 """So many whole packets with the right checksum are no chance."""
+_FEW_LINES: Final = 3
 _BYTE_MAX: Final = 255
 _LINES: Final = 1 << 12
 # What some draw between columns, and in the middle of one.
@@ -27,6 +29,8 @@ _LITERAL: Final = re.compile(rb"""b(?:'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*")""")
 _BRACKETED: Final = re.compile(rb"(?:\[|<|\(|\{)(?:0[xX])?([0-9A-Fa-f]{2})(?:\]|>|\)|\})")
 _PREFIXED: Final = re.compile(rb"(?<![0-9A-Za-z])0[xX]([0-9A-Fa-f]{2})(?![0-9A-Za-z])")
 _RUN: Final = re.compile(rb"(?<![0-9A-Za-z.])[0-9A-Fa-f]{2}(?:[,:;-]?[ ]{0,2}[0-9A-Fa-f]{2})*(?![0-9A-Za-z])")
+# A time is no run of bytes, and none that one stands before.
+_CLOCK: Final = re.compile(rb"(?<![0-9A-Fa-f:.-])\d\d:\d\d:\d\d(?:[.,]\d{1,9})?(?![0-9A-Fa-f:.-])")
 _NUMBERS: Final = re.compile(rb"\[\s*\d{1,3}(?:\s*,\s*\d{1,3})+\s*\]")
 _NO_DIGITS: Final = b" ,:;-"
 # What a literal and a list begin with, as far as they can be read.
@@ -61,8 +65,11 @@ def _prefixed(line: bytes) -> list[bytes | None]:
 
 def _run(line: bytes) -> list[bytes | None]:
     """The last run that is not much shorter than the longest: times and addresses stand before, and are short."""
+    if stamp := Times().take(line.lstrip()):
+        line = stamp.rest
     found = [
-        run.translate(None, _NO_DIGITS) for run in _RUN.findall(_FRAME.sub(b"|", _MIDDLE.sub(b" ", line)))
+        run.translate(None, _NO_DIGITS)
+        for run in _RUN.findall(_FRAME.sub(b"|", _MIDDLE.sub(b" ", _CLOCK.sub(b"|", line))))
     ]
     long = [run for run in found if 2 * len(run) >= max(map(len, found))]
     return [bytes.fromhex(long[-1].decode())] if long else []
@@ -123,7 +130,12 @@ def _holds_packets(data: bytes, least: int = _PACKETS) -> bool:
 
 def _way(lines: Sequence[bytes]) -> _Way | None:
     """In which of these ways the lines hold packets, if in any; the last one may be cut."""
-    return next((way for way in _WAYS if _holds_packets(_bytes_of(lines, way))), None)
+    return next((way for way in _WAYS if _holds_packets(_bytes_of(lines, way), _least(lines))), None)
+
+
+def _least(lines: Sequence[bytes]) -> int:
+    """How many packets tell: of a sample of a line or two there is no more than one."""
+    return 1 if len(lines) <= _FEW_LINES else _PACKETS
 
 
 def _bytes_of(lines: Sequence[bytes], way: _Way) -> bytes:
@@ -150,7 +162,7 @@ def _lines(stream: BufferedReader, way: _Way) -> Iterator[tuple[int, bytes]]:
 
 
 class HexwordsReader:
-    """Takes the bytes out of each line; what else stands there is passed over."""
+    """Takes the bytes out of each line, and the time at its beginning; what else stands there is passed over."""
 
     def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
         self.damage = DamageList()
@@ -158,22 +170,31 @@ class HexwordsReader:
         self._direction = options.direction
 
     def __iter__(self) -> Iterator[Chunk]:
-        offsets = Offsets()
+        offsets, times = Offsets(), Times()
+        t: float | None = None
         head = first_lines(self._stream.peek(HEAD_BYTES), _LINES)
         way = _way(head) or _BY_RUNS
         usual = self._direction or guess_direction(_bytes_of(head, way))
         for number, line in _lines(self._stream, way):
-            parts = way.take(line)
-            if None in parts or (way.tells and not parts and way.open_in(line)):
-                self.damage.append(Damage(f"line {number}", _OPEN))
-            if data := _joined(parts):
+            if stamp := times.take(line.lstrip()):
+                t = stamp.t
+            if data := self._bytes(number, line, way):
                 tells = self._direction is None and _holds_packets(data, 1)
-                yield offsets.chunk(None, guess_direction(data) if tells else usual, data)
+                yield offsets.chunk(t, guess_direction(data) if tells else usual, data)
+
+    def _bytes(self, number: int, line: bytes, way: _Way) -> bytes:
+        """Return the bytes of a line; tell of what looks like some and holds none."""
+        parts = way.take(line)
+        if None in parts or (way.tells and not parts and way.open_in(line)):
+            self.damage.append(Damage(f"line {number}", _OPEN))
+        return _joined(parts)
 
 
 def _sniff(head: bytes) -> bool:
     lines = first_lines(head, _LINES)
-    return bool(lines) and not _holds_packets(bytes_of_lines(lines)) and _way(lines) is not None
+    if not lines or _holds_packets(bytes_of_lines(lines), _least(lines)):
+        return False
+    return _way(lines) is not None
 
 
 FORMAT: Final = Format(

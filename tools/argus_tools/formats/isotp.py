@@ -66,7 +66,7 @@ class CanLink:
         self._is_asked = options.robot is not None
         self._bus: str | None = None
         self._others: set[int | str] = set()
-        self._strange: dict[int, None] = {}
+        self._strange: dict[str, None] = {}
         self._robots: set[int] = set()
         self._torn: set[Direction] = set()
         self._offsets = Offsets()
@@ -84,7 +84,7 @@ class CanLink:
     def _new_direction(self, bus: str, can_id: int, is_long_id: bool, place: int) -> Direction | None:
         if is_long_id or not is_robot_id(can_id):
             if len(self._strange) < _IDS_SHOWN:
-                self._strange[can_id] = None
+                self._strange[f"0x{can_id:08X} (29 bits)" if is_long_id else f"0x{can_id:03X}"] = None
             return None
         robot = can_id & (ROBOTS - 1)
         self._robots.add(robot)
@@ -139,9 +139,9 @@ class CanLink:
         if self._robots:
             there = ", ".join(map(str, sorted(self._robots)))
             raise LogError(f"{self._name}: holds no frame of robot {self._robot}; give --robot {there}")
-        some = ", ".join(f"0x{can_id:03X}" for can_id in self._strange)
+        some = ", ".join(self._strange)
         raise LogError(
-            f"{self._name}: no CAN frame is of a robot's link, whose ids are 0x{ID_TO_ROBOT:03X} to "
+            f"{self._name}: no CAN frame is of a robot's link, whose ids of 11 bits are 0x{ID_TO_ROBOT:03X} to "
             f"0x{ID_FROM_ROBOT + ROBOTS - 1:03X}; there are {some}{'' if len(self._strange) < _IDS_SHOWN else ' ...'}"
         )
 

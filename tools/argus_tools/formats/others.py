@@ -43,6 +43,12 @@ class _Other:
     remedy: str
 
 
+def _unlike_hexdump(pattern: bytes) -> Callable[[bytes], bool]:
+    """Recognise a dump of another kind, whose words may look like hexadecimal ones."""
+    is_like = _lines(pattern, 2)
+    return lambda head: is_like(head) and not HEXDUMP.sniff(head)
+
+
 def _begins(*starts: bytes) -> Callable[[bytes], bool]:
     return lambda head: head.startswith(starts)
 
@@ -67,8 +73,26 @@ def _is_seven_bit(head: bytes) -> bool:
     """A chain of packets whose header lost its high bits, as a line of seven bits or a terminal makes it."""
     if _HEADER in head or not re.search(rb"[\x00-\x06]", head):
         return False
-    header = bytes(byte & 0x7F for byte in _HEADER)
-    for match in re.finditer(header, head[:_SNIFFED]):
+    return _chain(head, bytes(byte & 0x7F for byte in _HEADER))
+
+
+def _is_gzip(head: bytes) -> bool:
+    """Gzip inside of gzip: the outer one is unzipped already."""
+    return head.startswith(b"\x1f\x8b\x08")
+
+
+def _is_follow_text(head: bytes) -> bool:
+    """Characters instead of bytes; the line of headings is none of the lines otherwise."""
+    return bool(re.search(rb"^(?:Follow: \w+,(?!hex|raw)\w|peers:\s*$)", head[:_SNIFFED], re.MULTILINE))
+
+
+def _is_quoted_printable(head: bytes) -> bool:
+    return bool(re.search(rb"=FA=FB(?:=[0-9A-F]{2}|[!-<>-~ ])", head[:_SNIFFED]))
+
+
+def _chain(head: bytes, header: bytes) -> bool:
+    """Whether packets with this header follow each other as their lengths say."""
+    for match in re.finditer(re.escape(header), head[:_SNIFFED]):
         at, chain = match.start(), 0
         while head[at : at + 2] == header and at + 2 < len(head) and chain < _SEVEN_BIT_PACKETS:
             at, chain = at + 3 + head[at + 2], chain + 1
@@ -77,8 +101,18 @@ def _is_seven_bit(head: bytes) -> bool:
     return False
 
 
-def _is_decimal_dump(head: bytes) -> bool:
-    return _lines(rb"[0-9A-Fa-f]{7}(?: +-?\d{1,5})+\s*$", 2)(head) and not HEXDUMP.sniff(head)
+def _is_questioned(head: bytes) -> bool:
+    """Bytes above 127 that became question marks."""
+    sample = head[:_SNIFFED]
+    return not any(byte & 0x80 for byte in sample) and b"\0" in sample and _chain(head, b"??")
+
+
+def _is_without_zeros(head: bytes) -> bool:
+    """Headers without one whole packet, and not one of the zeros that each packet has."""
+    sample = head[:_SNIFFED]
+    if b"\0" in sample or sample.count(_HEADER) < _SEVEN_BIT_PACKETS:
+        return False
+    return not any(len(packet) > 1 for packet in Unframer().feed(sample))
 
 
 def _is_tar(head: bytes) -> bool:
@@ -105,6 +139,7 @@ _OTHERS: Final = (
         "give the log that it was made from",
     ),
     _Other("rosbag", _begins(b"#ROSBAG V"), "a ROS bag", _RECORD),
+    _Other("gzip", _is_gzip, "a gzip file in a gzip file", "gzip -dc FILE | argus-log decode -"),
     _Other("zip", _begins(b"PK\x03\x04"), "a ZIP archive", "unzip -p FILE | argus-log decode -"),
     _Other("xz", _begins(b"\xfd7zXZ\0"), "an xz file", "xz -dc FILE | argus-log decode -"),
     _Other("bzip2", _begins(b"BZh"), "a bzip2 file", "bzip2 -dc FILE | argus-log decode -"),
@@ -146,6 +181,12 @@ _OTHERS: Final = (
         _lines(rb" *\d+ +\d+\.\d+ +(?:\S+ +)?(?:\xe2\x86\x92|->) +(?:\S+ +)?[A-Z]"),
         "what tshark prints on the screen, without the bytes",
         "tshark -i can0 -w can0.pcapng",
+    ),
+    _Other(
+        "follow-text",
+        _is_follow_text,
+        'what "follow stream" prints as characters or YAML',
+        "take the bytes: tshark -r CAPTURE -q -z follow,tcp,hex,0, or give the capture itself",
     ),
     _Other(
         "tshark-json",
@@ -194,16 +235,19 @@ _OTHERS: Final = (
         "objcopy -I srec -O binary FILE drive.bin",
     ),
     _Other(
-        "octal-dump",
-        _lines(rb"[0-7]{7}(?: {2,3}(?:\\[0abtnvfr]|[0-7]{3}|\S))+\s*$", 2),
-        "what od -c or hexdump -c prints",
-        "dump it as numbers: od -v -t x1, which argus-log reads",
+        "named-dump",
+        _unlike_hexdump(
+            rb"[0-7]{7}(?: +(?:\S|nul|soh|stx|etx|eot|enq|ack|bel|bs|ht|nl|vt|ff|cr|so|si|dle|dc[1-4]|nak|syn|etb"
+            rb"|can|em|sub|esc|fs|gs|rs|us|sp|del))+\s*$",
+        ),
+        "what od -a prints, without the highest bit of each byte",
+        "dump the log itself as numbers: od -v -t x1 LOG",
     ),
     _Other(
         "decimal-dump",
-        _is_decimal_dump,
-        "a dump in decimal numbers",
-        "dump it in hexadecimal ones: od -v -t x1, which argus-log reads",
+        _unlike_hexdump(rb"[0-9A-Fa-f]{7}(?: +-?[0-9.]{1,30}(?:e[+-]\d+)?)+\s*$"),
+        "a dump in numbers that are no bytes",
+        "dump the log itself as bytes: od -v -t x1 LOG",
     ),
     _Other(
         "decoded-table",
@@ -218,6 +262,24 @@ _OTHERS: Final = (
         "give the log that it was made from",
     ),
     _Other("base64", _is_base64, "base64 of a robot's link", "base64 -d FILE > drive.bin"),
+    _Other(
+        "quoted-printable",
+        _is_quoted_printable,
+        "quoted-printable text of a mail",
+        "python3 -m quopri -d FILE > drive.bin",
+    ),
+    _Other(
+        "questioned",
+        _is_questioned,
+        "a robot's link whose bytes above 127 became question marks, which loses them",
+        "save as binary (raw) in the terminal program, or " + _RECORD,
+    ),
+    _Other(
+        "without-zeros",
+        _is_without_zeros,
+        "a robot's link without its zeros, which a terminal or a paste leaves out",
+        "save as binary (raw) in the terminal program, or " + _RECORD,
+    ),
     _Other(
         "seven-bit",
         _is_seven_bit,

@@ -11,6 +11,7 @@ from typing import Final
 from argus_tools.formats.base import (
     EXPECTED,
     Chunk,
+    Damage,
     DamageList,
     Format,
     LogError,
@@ -19,7 +20,7 @@ from argus_tools.formats.base import (
     shell_name,
 )
 from argus_tools.formats.source import HEAD_BYTES
-from argus_tools.formats.text import BOM
+from argus_tools.formats.text import BOM, is_text
 from hil_sim.arcos import Unframer
 
 _HEADER: Final = b"\xfa\xfb"
@@ -33,6 +34,18 @@ _REPLACED: Final = "\ufffd".encode()
 _REPLACED_MIN: Final = 2
 _MARKS: Final = {codecs.BOM_UTF16_LE: "utf-16-le", codecs.BOM_UTF16_BE: "utf-16-be"}
 _SAMPLE: Final = 1 << 14
+# So many ends of lines in bytes that are no text are all behind a CR by no chance.
+_ENDS_MIN: Final = 6
+
+
+def crlf_damage(head: bytes, name: str) -> Damage | None:
+    """Say that a transfer as text put a CR before each LF of these bytes; None if it did not."""
+    ends = head.count(b"\n")
+    if ends < _ENDS_MIN or is_text(head) or head.count(b"\r\n") != ends:
+        return None
+    back = f"LC_ALL=C sed 's/\\r$//' {shell_name(name)} > drive.bin"
+    what = f"recoded by a text transfer (LF became CRLF): send it as binary; {back} gets most of it back"
+    return Damage("byte 0", what)
 
 
 def _utf16(head: bytes) -> str | None:

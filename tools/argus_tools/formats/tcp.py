@@ -93,7 +93,7 @@ class _Half:
     """One direction of a connection."""
 
     next_seq: int | None = None
-    held: dict[int, tuple[float, bytes]] = field(default_factory=dict)
+    held: dict[int, tuple[float | None, bytes]] = field(default_factory=dict)
 
 
 @dataclass
@@ -113,7 +113,7 @@ class Streams:
         """Whether a robot was found."""
         return self.robot is not None
 
-    def take(self, t: float, number: int, segment: Segment) -> Iterator[Chunk]:
+    def take(self, t: float | None, number: int, segment: Segment) -> Iterator[Chunk]:
         """Take the next segment, from frame `number` of the file."""
         key = (segment.source, segment.target)
         if segment.flags & _SYN:

@@ -15,6 +15,13 @@ _BEGINNING: Final = 1 << 8
 # Control characters that no text has; ESC is of colours.
 _BINARY: Final = re.compile(rb"[\x00-\x06\x0e-\x1a\x1c-\x1f\x7f]")
 _WORD_END: Final = re.compile(rb"[\s,;](?=[^\s,;]*\Z)")
+# What "follow stream" of tshark writes before the bytes, and behind them.
+_FOLLOW: Final = re.compile(rb"={20,}\s*\Z|(?:Follow|Filter|Node [01]): ")
+
+
+def is_passed(line: bytes) -> bool:
+    """Whether a line of text is a comment, or a line of headings that some tool writes round the bytes."""
+    return line.startswith(b"#") or bool(_FOLLOW.match(line))
 
 
 def is_text(head: bytes) -> bool:
@@ -28,9 +35,9 @@ def first_lines(head: bytes, count: int = _FIRST_LINES) -> list[bytes]:
         return []
     lines = head.removeprefix(BOM).splitlines()
     # Further on there may be zeros that a power cut left.
-    return [
-        line for line in lines[: 4 * count] if line.strip() and not line.startswith(b"#") and is_text(line)
-    ][:count]
+    return [line for line in lines[: 4 * count] if line.strip() and not is_passed(line) and is_text(line)][
+        :count
+    ]
 
 
 def pieces(stream: BufferedReader) -> Iterator[tuple[int, bytes, bool]]:

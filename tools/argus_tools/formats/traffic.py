@@ -14,8 +14,8 @@ from argus_tools.formats.tcp import IP_LINKS, Streams, parse
 
 LINK_CAN: Final = 227
 # "Linux cooked" captures of any interface: bytes of the header, where in it the protocol stands, and the interface.
-_COOKED: Final = {113: (16, 14, None), 276: (20, 0, 4)}
-_CAN_PROTOCOLS: Final = (0x000C, 0x000D)
+COOKED: Final = {113: (16, 14, None), 276: (20, 0, 4)}
+CAN_PROTOCOLS: Final = (0x000C, 0x000D)
 _CAN_HEADER: Final = 8
 _LONG_ID, _REMOTE, _ERROR = 1 << 31, 1 << 30, 1 << 29
 _LONG_ID_MASK: Final = (1 << 29) - 1
@@ -47,7 +47,7 @@ _LINKS: Final = {
 class Captured:
     """One frame of a capture: its time in s, number in the file, link type, and its interface where that is told."""
 
-    t: float
+    t: float | None
     number: int
     link: int
     data: bytes
@@ -64,15 +64,17 @@ class Traffic:
         self._can = CanLink(options, damage, "frame")
         self._others: dict[int, int] = {}
         self._is_read = False
+        self._is_empty = True
 
     def take(self, frame: Captured) -> Iterator[Chunk]:
         """Take the next frame."""
+        self._is_empty = False
         link = frame.link
         if link == LINK_CAN:
             yield from self._take_can(frame, frame.data, frame.interface)
-        elif link in _COOKED:
-            head, kind_at, index_at = _COOKED[link]
-            if int.from_bytes(frame.data[kind_at : kind_at + 2], "big") in _CAN_PROTOCOLS:
+        elif link in COOKED:
+            head, kind_at, index_at = COOKED[link]
+            if int.from_bytes(frame.data[kind_at : kind_at + 2], "big") in CAN_PROTOCOLS:
                 name = frame.interface
                 if index_at is not None:
                     name = f"number {int.from_bytes(frame.data[index_at : index_at + 4], 'big')}"
@@ -86,6 +88,8 @@ class Traffic:
 
     def finish(self) -> Iterator[Chunk]:
         """Yield what waited; LogError if the capture is of a kind that is not read."""
+        if self._is_empty and not self._damage:
+            raise LogError(f"{self._options.name}: a capture that holds no frames; {_IP_REMEDY}")
         yield from self._streams.finish()
         if not self._is_read and self._others:
             link = max(self._others, key=lambda number: self._others[number])

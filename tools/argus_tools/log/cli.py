@@ -7,7 +7,6 @@ import argparse
 import gc
 import importlib
 import io
-import os
 import sys
 from collections.abc import Sequence
 from typing import Final, Protocol
@@ -16,6 +15,8 @@ from argus_tools.formats import LogError, formats
 from argus_tools.log.common import EXIT_CODES, EXIT_READ, EXIT_UNUSABLE
 from hil_sim.arguments import Parser
 from hil_sim.errors import SimError, missing_package
+from hil_sim.output import guarded, is_of_output
+from hil_sim.version import add_version
 
 # Each module has SUMMARY, EXAMPLES, add_arguments(parser) and run(args) -> exit code.
 COMMANDS: Final = ("decode", "stats", "faults", "plot", "convert", "replay", "diff")
@@ -58,6 +59,7 @@ def _parser(chosen: str | None) -> argparse.ArgumentParser:
         epilog=_EPILOG.format(formats=known, codes=EXIT_CODES),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    add_version(parser)
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=Parser)
     for name in [chosen] if chosen in COMMANDS else COMMANDS:
         command: Command = importlib.import_module(f"argus_tools.log.{name}")
@@ -76,6 +78,10 @@ def _parser(chosen: str | None) -> argparse.ArgumentParser:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     given = list(sys.argv[1:] if argv is None else argv)
+    return guarded("argus-log", lambda: _run(given), EXIT_UNUSABLE, EXIT_READ)
+
+
+def _run(given: Sequence[str]) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):  # a name may have letters that the terminal has not
         sys.stdout.reconfigure(errors="backslashreplace")
     # Millions of rows come and go here, none of them in a cycle.
@@ -85,19 +91,19 @@ def main(argv: Sequence[str] | None = None) -> int:
         code: int = args.run(args)
         sys.stdout.flush()
         return code
+    except BrokenPipeError:
+        raise
     except (LogError, SimError) as error:
         print(f"argus-log: {error}", file=sys.stderr)
         return EXIT_UNUSABLE
     except ModuleNotFoundError as error:
         print(f"argus-log: {missing_package(error)}", file=sys.stderr)
         return EXIT_UNUSABLE
-    except BrokenPipeError:
-        # The reader has seen enough; Python must not try to write the rest at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return EXIT_READ
     except KeyboardInterrupt:
         return EXIT_READ
     except OSError as error:
+        if is_of_output(error):
+            raise
         print(f"argus-log: {error.filename or 'output'}: {error.strerror}", file=sys.stderr)
         return EXIT_UNUSABLE
 

@@ -68,7 +68,12 @@ def add_log_arguments(parser: argparse.ArgumentParser, follow: bool = False) -> 
     """Add the arguments that say which log is read, and how."""
     parser.add_argument("log", metavar="LOG", help="the file, gzip or not; - is standard input")
     names = list(formats())
-    parser.add_argument("--format", choices=names, help="its format (default: seen from the contents)")
+    parser.add_argument(
+        "--format",
+        choices=names,
+        metavar="NAME",
+        help=f"its format (default: seen from the contents): {', '.join(names)}",
+    )
     parser.add_argument("--dir", choices=DIRECTIONS, help="read this direction only; of a .bin: what it is")
     parser.add_argument(
         "--port", type=whole(1, 65535, "number"), help="the robot's TCP port in a capture (default: found)"

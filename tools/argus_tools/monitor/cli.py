@@ -26,6 +26,7 @@ from hil_sim.arguments import EXIT_USAGE, Parser
 from hil_sim.cli.arguments import parser as sim_parser
 from hil_sim.cli.choose import scenario_of
 from hil_sim.errors import SimError
+from hil_sim.version import add_version
 from hil_sim.world.files import load_world
 
 if TYPE_CHECKING:
@@ -114,6 +115,7 @@ def parser() -> argparse.ArgumentParser:
         action="store_true",
         help="no page: show argusd's screen on this terminal (argusd --attach), until q",
     )
+    add_version(result)
     return result
 
 
