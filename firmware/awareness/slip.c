@@ -120,19 +120,26 @@ static void ask(const argus_slip_t *const self, const argus_knowledge_t *const k
     }
 }
 
+static bool looks_both_ways(const witnesses_t *const of) {
+    return of->to > 0 && of->back > 0;
+}
+
+static bool is_held(const witnesses_t *const of) {
+    return of->fits == 0 && (looks_both_ways(of) || of->to >= 2 || of->back >= 2);
+}
+
 static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int32_t way_mm) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     witnesses_t of = {0, 0, 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         ask(self, knowledge, i, way_mm, &of);
     }
-    const bool both = of.to > 0 && of.back > 0;
-    const bool stays = of.fits == 0 && (both || of.to >= 2 || of.back >= 2);
+    const bool stays = is_held(&of);
     if (!stays || self->proof == 0) {
         self->first = self->from;
         self->slipped_mm = 0;
     }
-    self->proof = (uint8_t)(stays ? self->proof + (both ? BOTH_WAYS : ONE_WAY) : 0);
+    self->proof = (uint8_t)(stays ? self->proof + (looks_both_ways(&of) ? BOTH_WAYS : ONE_WAY) : 0);
     self->slipped_mm += way_mm;
     if (self->proof < PROOF) {
         return false;

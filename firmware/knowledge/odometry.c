@@ -88,7 +88,8 @@ static int32_t sped(const range_t *const range, const int32_t accel, const int32
     return argus_min(most, times_ms(times_ms(accel, ms), ms) / 4);
 }
 
-// By how much a step is farther than the range allows, and by how much it falls short; neither is negative.
+// By how much a step is farther than the range allows, and by how much it falls short. Negative: it is
+// within, and what has built up fades by as much.
 typedef struct {
     int32_t over;
     int32_t under;

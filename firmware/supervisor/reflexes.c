@@ -136,21 +136,28 @@ static argus_intent_t sees_others(const argus_t *const self, const argus_alarm_t
                             .sonars = (argus_mask_t)changed};
 }
 
+// SIPs in a row, counted up to one more than the one that says it.
+static uint8_t in_a_row(const uint8_t before, const bool more) {
+    return (uint8_t)(more ? argus_min(before + 1, BATTERY_SIPS + 1) : 0);
+}
+
+static bool is_voltage(const int32_t now_dv) {
+    return now_dv >= LEAST_BATTERY_DV && now_dv <= MOST_BATTERY_DV;
+}
+
 static argus_intent_t sees_battery(const argus_t *const self, const argus_alarm_t *const alarm,
                                    argus_reflexes_t *const mine) {
     const argus_session_t *const session = &self->session;
     const int32_t stated_dv = session->has_robot ? session->robot.low_battery_dv : 0;
     const int32_t low_dv = stated_dv > 0 ? stated_dv : LOW_BATTERY_DV;
     const int32_t now_dv = self->knowledge.battery_dv;
-    const bool is_odd = now_dv < LEAST_BATTERY_DV || now_dv > MOST_BATTERY_DV;
-    const bool is_low = !is_odd && now_dv <= low_dv;
     const bool said = mine->battery_said;
     (void)alarm;
-    mine->battery_odd = (uint8_t)(is_odd ? argus_min(mine->battery_odd + 1, BATTERY_SIPS + 1) : 0);
+    mine->battery_odd = in_a_row(mine->battery_odd, !is_voltage(now_dv));
     if (mine->battery_odd == BATTERY_SIPS) {
         return say(ARGUS_EV_BATTERY_ODD, ARGUS_NO_SONAR, now_dv);
     }
-    mine->battery_low = (uint8_t)(is_low ? argus_min(mine->battery_low + 1, BATTERY_SIPS) : 0);
+    mine->battery_low = in_a_row(mine->battery_low, is_voltage(now_dv) && now_dv <= low_dv);
     const bool holds = mine->battery_low >= BATTERY_SIPS;
     mine->battery_said = holds || (said && now_dv <= low_dv + HYSTERESIS_DV);
     return holds && !said ? say(ARGUS_EV_BATTERY_LOW, ARGUS_NO_SONAR, now_dv) : argus_to_nothing();

@@ -338,16 +338,21 @@ static void say_unclean(loop_t *self, const char *why) {
     }
 }
 
+// All is written; whether the robot can have heard it is another matter.
+static void judge_end(loop_t *self) {
+    if (self->met && !self->closed) {
+        say_unclean(self, self->driver.up ? "since no robot answered" : "since the link was down");
+    } else if (self->met && !self->heard) {
+        say_unclean(self, "since the robot had gone silent, and may not have heard the end");
+    }
+}
+
 static bool is_over(loop_t *self) {
     if (!self->ending) {
         return false;
     }
     if (argus_closed(self->driver.core) && !driver_wants_write(&self->driver)) {
-        if (self->met && !self->closed) {
-            say_unclean(self, self->driver.up ? "since no robot answered" : "since the link was down");
-        } else if (self->met && !self->heard) {
-            say_unclean(self, "since the robot had gone silent, and may not have heard the end");
-        }
+        judge_end(self);
         return true;
     }
     if (self->moment.now_ms - self->ending_ms >= CLOSE_MAX_MS) {
