@@ -213,7 +213,12 @@ class Port:
 
 
 def connect(port: Port) -> None:
-    """Handshake and OPEN."""
+    """Handshake and OPEN. SYNC0 is sent again, as clients do: a pty drops what comes before its opening is seen."""
+    for _ in range(5):
+        port.send(cmd("PULSE"))
+        if port.read(1, 1):
+            break
+    port.read(0.2)
     for name, kind in (("PULSE", SyncEcho), ("OPEN", SyncEcho), ("CLOSE", SyncReply)):
         port.send(cmd(name))
         assert [type(packet) for packet in port.read(5, 1)] == [kind]

@@ -90,3 +90,9 @@ def test_a_full_disk_leaves_whole_lines_of_truth(room: int, tmp_path: Path) -> N
     assert len(text.splitlines()) == 1 + room // LINE
     assert len(said) == 1
     assert "the truth record ends here (File too large)" in said[0]
+
+
+def test_a_closed_input_is_told_in_one_line() -> None:
+    done = run(("argus_tools.log.cli", "decode", "-"), "<&-")
+    assert done.returncode == 2
+    assert done.stderr == "argus-log: -: standard input is closed; give a log file, or pipe one in\n"

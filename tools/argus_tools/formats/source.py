@@ -90,7 +90,8 @@ class Source(io.RawIOBase):
         """Close the file, but never standard input."""
         # One that could not be opened is closed as well, by the interpreter.
         file = getattr(self, "_file", None)
-        if not self.closed and file is not None and file is not sys.stdin.buffer:
+        standard = getattr(sys.stdin, "buffer", None)  # None where it was closed before the start
+        if not self.closed and file is not None and file is not standard:
             file.close()
         super().close()
 
@@ -110,7 +111,7 @@ class Source(io.RawIOBase):
 
     def _is_renewed(self) -> bool:
         """At the end of a followed file: whether it began anew, because it was rotated or emptied."""
-        if not self.is_regular or self._file is sys.stdin.buffer:
+        if not self.is_regular or self._file is getattr(sys.stdin, "buffer", None):
             return False
         try:
             there = os.stat(self.name)  # noqa: PTH116
@@ -162,6 +163,8 @@ class Source(io.RawIOBase):
 
 def _open(path: str) -> IO[bytes]:
     if path == "-":
+        if sys.stdin is None:
+            raise LogError("-: standard input is closed; give a log file, or pipe one in")
         return sys.stdin.buffer
     try:
         if Path(path).is_dir():
