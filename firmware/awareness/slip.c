@@ -13,6 +13,7 @@
 #define TURNED_CDEG 500 // a straight way turns less
 #define ALONG_CDEG 3100 // so far off the way a range still changes with it
 #define STEEP_CDEG 3000 // an edge of the cone that looks farther aside takes a wall there for given
+#define STEEP_MANY 3    // so many are wanted where one of them looks so: a slant wall may keep two ranges
 #define NEAR_MM 2500    // echoes from farther off come and go
 #define STAYS_MM 100    // less than a change: of 500
 #define FITS_MM 200     // off what the odometry says
@@ -65,15 +66,19 @@ static int32_t beside_mm(const argus_knowledge_t *const knowledge, const int son
     return nearest;
 }
 
+// How far off the way the edge of its cone looks that is farther aside.
+static int32_t edge_cdeg(const argus_knowledge_t *const knowledge, const int sonar) {
+    const int32_t off_way_cdeg = argus_abs(bearing_cdeg(knowledge, sonar));
+    return argus_min(off_way_cdeg, 18000 - off_way_cdeg) + knowledge->robot->cone_deg * 50;
+}
+
 // Along a wall the edge of the cone hears the wall, always as far off.
 static bool may_be_wall_beside(const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const int32_t off_way_cdeg = argus_abs(bearing_cdeg(knowledge, sonar));
-    const int32_t edge_cdeg = argus_min(off_way_cdeg, 18000 - off_way_cdeg) + knowledge->robot->cone_deg * 50;
-    const int32_t aside = knowledge->sonar[sonar].reading_mm * argus_sin(edge_cdeg) / ARGUS_TRIG_ONE;
+    const int32_t edge = edge_cdeg(knowledge, sonar);
+    const int32_t aside = knowledge->sonar[sonar].reading_mm * argus_sin(edge) / ARGUS_TRIG_ONE;
     const int32_t beside = beside_mm(knowledge, sonar);
-    const bool unheard =
-        beside >= ARGUS_NO_ECHO_MM && edge_cdeg > STEEP_CDEG; // a wall may turn the echo away
+    const bool unheard = beside >= ARGUS_NO_ECHO_MM && edge > STEEP_CDEG; // a wall may turn the echo away
     return unheard || aside + STAYS_MM >= beside;
 }
 
@@ -92,9 +97,10 @@ static void note_beginnings(argus_slip_t *const self, const argus_knowledge_t *c
 }
 
 typedef struct {
-    int to;   // those that look along the way and stayed,
-    int back; // ... and back
-    int fits; // those that changed as the odometry says
+    int to;    // those that look along the way and stayed,
+    int back;  // ... and back
+    int steep; // of them those that look far aside of it
+    int fits;  // those that changed as the odometry says
 } witnesses_t;
 
 // It reads, and has read here.
@@ -117,6 +123,7 @@ static void ask(const argus_slip_t *const self, const argus_knowledge_t *const k
     } else if (argus_abs(change) <= STAYS_MM && !may_be_wall_beside(knowledge, sonar)) {
         of->to += to;
         of->back += !to;
+        of->steep += edge_cdeg(knowledge, sonar) > STEEP_CDEG;
     }
 }
 
@@ -125,12 +132,13 @@ static bool looks_both_ways(const witnesses_t *const of) {
 }
 
 static bool is_held(const witnesses_t *const of) {
-    return of->fits == 0 && (looks_both_ways(of) || of->to >= 2 || of->back >= 2);
+    const bool enough = looks_both_ways(of) || of->to >= 2 || of->back >= 2;
+    return of->fits == 0 && (of->steep > 0 ? of->to + of->back >= STEEP_MANY : enough);
 }
 
 static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int32_t way_mm) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    witnesses_t of = {0, 0, 0};
+    witnesses_t of = {0, 0, 0, 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         ask(self, knowledge, i, way_mm, &of);
     }
@@ -139,7 +147,8 @@ static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowl
         self->first = self->from;
         self->slipped_mm = 0;
     }
-    self->proof = (uint8_t)(stays ? self->proof + (looks_both_ways(&of) ? BOTH_WAYS : ONE_WAY) : 0);
+    self->proof =
+        (uint8_t)(stays ? self->proof + (looks_both_ways(&of) && of.steep == 0 ? BOTH_WAYS : ONE_WAY) : 0);
     self->slipped_mm += way_mm;
     if (self->proof < PROOF) {
         return false;

@@ -25,8 +25,8 @@ void argus_slip_restart(argus_slip_t *self);
 
 // One SIP. True: the wheels made `slipped_mm` of way and the robot did not; it is at `from`. False: no sonar
 // can tell. Proof takes one sonar ahead and one back that stay through two stretches of half a metre. Two
-// that look one way must stay through three, as a person may walk there. No range may change as the odometry
-// says.
+// that look one way must stay through three, as a person may walk there; three, if one of them looks far
+// aside. No range may change as the odometry says.
 bool argus_slip_sip(argus_slip_t *self, const argus_knowledge_t *knowledge);
 
 #endif

@@ -255,7 +255,7 @@ def test_lifted_wheels_are_told_and_end_the_course(
     assert "MISSION_FAILED" in names(outcome)
 
 
-@pytest.mark.parametrize("world", ["lab", "office", "posts", "box-ahead"])
+@pytest.mark.parametrize("world", ["office", "box-ahead"])
 def test_lifted_wheels_are_told_in_the_worlds_that_are_there(world: str) -> None:
     """Where something within 4 m of the way ahead or behind can tell; in a hall nothing can."""
     outcome = lifted(world, (0, 0))
