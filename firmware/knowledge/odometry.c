@@ -108,17 +108,11 @@ static beyond_t beyond(const range_t *const range, const int32_t moved, const in
                       least - moved - slack_of(least, percent) - slack};
 }
 
-static int32_t build_up(const int32_t sum, const int32_t more) {
-    ARGUS_ASSERT(sum >= 0);
-    return argus_max(0, sum + more);
-}
-
-// Steps one by one, and what builds up.
-static bool takes(int32_t *const over, int32_t *const under, const beyond_t step, const int32_t room,
-                  const int32_t most) {
-    *over = build_up(*over, step.over);
-    *under = build_up(*under, step.under);
-    return step.over <= room && step.under <= room && *over <= most && *under <= most;
+// A step by itself, and what builds up.
+static bool takes(int32_t *const sum, const int32_t step, const int32_t room, const int32_t most) {
+    ARGUS_ASSERT(*sum >= 0);
+    *sum = argus_max(0, *sum + step);
+    return step <= room && *sum <= most;
 }
 
 static int32_t fastest(const range_t *const range) {
@@ -134,9 +128,10 @@ static bool way_may_be(argus_excess_t *const self, const argus_span_t *const spa
     const int32_t near = times_ms(fastest(&range), ROOM_MS);
     // A turn bends the way; what is aside of it is no way.
     const int32_t aside = argus_abs(moved->aside_mm) - argus_abs(moved->ahead_mm) / 4 - slack;
-    return takes(&self->ahead_mm, &self->back_mm, beyond(&range, moved->ahead_mm, SLACK_PERCENT, slack),
-                 ROOM_MM + near, BUILD_MM + near) &&
-           takes(&self->aside_mm, &self->aside_mm, (beyond_t){aside, 0}, ROOM_MM + near, BUILD_MM + near);
+    const beyond_t way = beyond(&range, moved->ahead_mm, SLACK_PERCENT, slack);
+    return takes(&self->ahead_mm, way.over, ROOM_MM + near, BUILD_MM + near) &&
+           takes(&self->back_mm, way.under, ROOM_MM + near, BUILD_MM + near) &&
+           takes(&self->aside_mm, aside, ROOM_MM + near, BUILD_MM + near);
 }
 
 static bool turn_may_be(argus_excess_t *const self, const argus_span_t *const span,
@@ -148,9 +143,9 @@ static bool turn_may_be(argus_excess_t *const self, const argus_span_t *const sp
     const range_t range = range_of(span, self->credit_ms, before, after, gap);
     const int32_t slack = SLACK_CDEG + sped(&range, ACCEL_CDEG_S2, ACCEL_CDEG);
     const int32_t near = times_ms(fastest(&range), ROOM_MS);
-    return takes(&self->left_cdeg, &self->right_cdeg,
-                 beyond(&range, moved->turn_cdeg, TURN_SLACK_PERCENT, slack), ROOM_CDEG + near,
-                 BUILD_CDEG + near);
+    const beyond_t turn = beyond(&range, moved->turn_cdeg, TURN_SLACK_PERCENT, slack);
+    return takes(&self->left_cdeg, turn.over, ROOM_CDEG + near, BUILD_CDEG + near) &&
+           takes(&self->right_cdeg, turn.under, ROOM_CDEG + near, BUILD_CDEG + near);
 }
 
 static bool was_moving(const argus_wheels_t *const wheels) {

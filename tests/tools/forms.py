@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
 from typing import NamedTuple
 
+from argus_tools.formats import Log, open_log
 from argus_tools.formats.base import Chunk
 from logs import command, sip
 
@@ -113,6 +115,12 @@ def pcapng(link: int, packets: list[tuple[float, bytes]], name: bytes = b"can0")
         head = struct.pack("<IIIII", 0, micros >> 32, micros & 0xFFFFFFFF, len(data), len(data))
         out += block(6, head + data + bytes(-len(data) % 4))
     return out
+
+
+def read(path: Path, text: str, **options: str) -> Log:
+    """Write TEXT as it is, and open it."""
+    path.write_text(text, newline="")
+    return open_log(str(path), **options)
 
 
 def joined(chunks: Iterable[Chunk], direction: str) -> bytes:

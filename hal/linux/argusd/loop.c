@@ -230,6 +230,9 @@ static void take_control(loop_t *self) {
 
 // A robot that comes back may be another one, or stand elsewhere: nothing is altered any more.
 static void watch_injection(loop_t *self) {
+    if (!self->inject.armed) {
+        return;
+    }
     const argus_status_t status = status_of(self);
     inject_expire(&self->inject, !self->driver.up || self->ending, self->moment.now_ms);
     inject_settle(&self->inject, &status, self->moment.now_ms);

@@ -199,12 +199,12 @@ static void draw_mode(canvas_t *canvas, const view_t *view) {
     write_at(canvas, 1, 1, TONE_PLAIN, "%-9s", argus_name(ARGUS_NAME_MODE, (int)status->mode));
     write_at(canvas, 1, 11, tone_of_failure(status->failure), "%s",
              argus_name(ARGUS_NAME_FAILURE, (int)status->failure));
-    if (!status->paused || canvas->columns >= PAUSED_COLUMN + (int)sizeof PAUSED) {
+    const bool wide = canvas->columns >= PAUSED_COLUMN + (int)sizeof PAUSED;
+    if (!status->paused || wide) {
         write_at(canvas, 1, 27, TONE_PLAIN, "mission %s",
                  argus_name(ARGUS_NAME_MISSION, (int)status->mission));
     }
     if (status->paused) {
-        const bool wide = canvas->columns >= PAUSED_COLUMN + (int)sizeof PAUSED;
         put_text(canvas, 1, wide ? PAUSED_COLUMN : 27, TONE_OPERATOR, wide ? PAUSED : "PAUSED");
     }
     if (status->waypoints > 0) {

@@ -9,8 +9,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
-from argus_tools.formats import Log, LogError, open_log
-from forms import CLIENT, ROBOT, START_S, CanFrame, frames, joined
+from argus_tools.formats import LogError, open_log
+from forms import CLIENT, ROBOT, START_S, CanFrame, frames, joined, read
 
 
 def body(frame: CanFrame) -> str:
@@ -72,11 +72,6 @@ VIEWS: dict[str, Callable[[CanFrame], str]] = {
     "another bus's width": lambda f: body(f).replace("can0  ", "can-robot   "),
     "carriage returns": lambda f: body(f) + "\r",
 }
-
-
-def read(path: Path, text: str) -> Log:
-    path.write_text(text)
-    return open_log(str(path))
 
 
 @pytest.mark.parametrize("view", VIEWS)

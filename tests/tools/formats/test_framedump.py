@@ -8,9 +8,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from argus_tools.formats import Log, LogError, open_log
+from argus_tools.formats import LogError
 from argus_tools.formats.tcp import Connection
-from forms import CLIENT, COMMANDS, ROBOT, SIPS, START_S, frames, joined, rows, shown
+from forms import CLIENT, COMMANDS, ROBOT, SIPS, START_S, frames, joined, read, rows, shown
 
 Frames = list[tuple[float, bytes]]
 
@@ -69,11 +69,6 @@ PRINTS: dict[str, Callable[[int, float, bytes], str]] = {
         f"Frame ({len(data)} bytes):\n{block(data)}Reassembled TCP (20 bytes):\n{block(bytes(20))}"
     ),
 }
-
-
-def read(path: Path, text: str) -> Log:
-    path.write_text(text)
-    return open_log(str(path))
 
 
 @pytest.mark.parametrize("how", PRINTS)

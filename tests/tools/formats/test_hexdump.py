@@ -7,8 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from argus_tools.formats import Log, open_log
-from forms import CLIENT, ROBOT, hexdump_c, joined, od, rows, shown, words, xxd
+from forms import CLIENT, ROBOT, hexdump_c, joined, od, read, rows, shown, words, xxd
 
 # An odd number of bytes, so that the last word of each kind is short.
 ODD = ROBOT + b"\xfa"
@@ -67,11 +66,6 @@ DUMPS = {
     "with a comment": "# of Monday\n\n" + hexdump_c(ODD),
     "carriage returns": hexdump_c(ODD).replace("\n", "\r\n"),
 }
-
-
-def read(path: Path, text: str) -> Log:
-    path.write_text(text, newline="")
-    return open_log(str(path))
 
 
 @pytest.mark.parametrize("name", DUMPS)

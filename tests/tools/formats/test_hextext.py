@@ -8,8 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
-from argus_tools.formats import Log, open_log
-from forms import CLIENT, COMMANDS, ROBOT, SIPS, START_S, joined, shown
+from forms import CLIENT, COMMANDS, ROBOT, SIPS, START_S, joined, read, shown
 
 
 def lines(data: bytes, width: int = 24) -> list[bytes]:
@@ -42,11 +41,6 @@ PLAIN = {
     "interceptty": "".join(f"< 0x{byte:02x} ({chr(byte) if 32 <= byte < 127 else '.'})\n" for byte in ROBOT),
     "comment": "# of Monday\n" + in_lines(lambda part: part.hex(" ")),
 }
-
-
-def read(path: Path, text: str, **options: str) -> Log:
-    path.write_text(text)
-    return open_log(str(path), **options)
 
 
 @pytest.mark.parametrize("name", PLAIN)

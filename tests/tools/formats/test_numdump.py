@@ -8,8 +8,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from argus_tools.formats import Log, LogError, open_log
-from forms import CLIENT, ROBOT, joined, rows
+from argus_tools.formats import LogError, open_log
+from forms import CLIENT, ROBOT, joined, read, rows
 
 ODD = ROBOT + b"\xfa"
 ESCAPES = {0: r"\0", 7: r"\a", 8: r"\b", 9: r"\t", 10: r"\n", 11: r"\v", 12: r"\f", 13: r"\r"}
@@ -52,11 +52,6 @@ DUMPS = {
     "carriage returns": "\ufeff" + numbers(ODD, 1, True, 5).replace("\n", "\r\n"),
     "a comment": "# of Monday\n" + characters(ODD),
 }
-
-
-def read(path: Path, text: str) -> Log:
-    path.write_text(text, newline="")
-    return open_log(str(path))
 
 
 @pytest.mark.parametrize("name", DUMPS)

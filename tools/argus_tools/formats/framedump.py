@@ -12,7 +12,7 @@ from argus_tools.formats.base import Chunk, Damage, DamageList, Format, ReadOpti
 from argus_tools.formats.isotp import is_robot_id
 from argus_tools.formats.source import HEAD_BYTES
 from argus_tools.formats.tcp import IP_LINKS, parse
-from argus_tools.formats.text import BOM, first_lines
+from argus_tools.formats.text import first_lines, numbered_lines
 from argus_tools.formats.traffic import CAN_PROTOCOLS, COOKED, LINK_CAN, Captured, Traffic
 
 _LINE_MAX: Final = 4096
@@ -127,15 +127,10 @@ class FrameDumpReader:
         head = self._stream.peek(HEAD_BYTES)
         link = _link(head)
         traffic = Traffic(self._options, self.damage)
-        for number, frame in enumerate(_Frames(self.damage).take(self._lines()), start=1):
+        lines = numbered_lines(self._stream, _LINE_MAX)
+        for number, frame in enumerate(_Frames(self.damage).take(lines), start=1):
             yield from traffic.take(Captured(frame.t, number, LINK_CAN if link is None else link, frame.data))
         yield from traffic.finish()
-
-    def _lines(self) -> Iterator[tuple[int, bytes]]:
-        number = 0
-        while text := self._stream.readline(_LINE_MAX):
-            number += 1
-            yield number, text.removeprefix(BOM) if number == 1 else text
 
 
 FORMAT: Final = Format(

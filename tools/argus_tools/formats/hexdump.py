@@ -27,7 +27,7 @@ from argus_tools.formats.base import (
 )
 from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.source import HEAD_BYTES
-from argus_tools.formats.text import BOM, first_lines, is_passed
+from argus_tools.formats.text import first_lines, is_passed, numbered_lines
 from hil_sim.arcos import Unframer
 
 HEADER: Final = b"\xfa\xfb"
@@ -298,11 +298,7 @@ class HexdumpReader:
         offsets = Offsets()
         streams = self._streams(plan)
         last = next(iter(streams.values()))
-        number = 0
-        while text := self._stream.readline(_LINE_MAX):
-            number += 1
-            if number == 1:
-                text = text.removeprefix(BOM)
+        for number, text in numbered_lines(self._stream, _LINE_MAX):
             if text.strip() == REPEATED:
                 last.is_repeated = bool(last.full)
                 continue

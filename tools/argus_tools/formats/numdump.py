@@ -17,7 +17,7 @@ from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError
 from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.hexdump import REPEATED, DumpStream, likeness
 from argus_tools.formats.source import HEAD_BYTES
-from argus_tools.formats.text import BOM, first_lines, is_passed
+from argus_tools.formats.text import first_lines, is_passed, numbered_lines
 
 _LINE_MAX: Final = 4096
 _LINE: Final = re.compile(rb"[ \t]*([0-9A-Fa-f]{6,16})(?:[ \t]([^\r\n]*))?\s*")
@@ -164,11 +164,7 @@ class NumDumpReader:
         sample = _joined(plan, _rows(first_lines(head, _LINE_MAX), plan.take))
         stream = DumpStream(self._options.direction or guess_direction(sample))
         offsets = Offsets()
-        number = 0
-        while text := self._stream.readline(_LINE_MAX):
-            number += 1
-            if number == 1:
-                text = text.removeprefix(BOM)
+        for number, text in numbered_lines(self._stream, _LINE_MAX):
             if text.strip() == REPEATED:
                 stream.is_repeated = bool(stream.full)
                 continue

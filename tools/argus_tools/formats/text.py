@@ -40,6 +40,12 @@ def first_lines(head: bytes, count: int = _FIRST_LINES) -> list[bytes]:
     ]
 
 
+def numbered_lines(stream: BufferedReader, most: int) -> Iterator[tuple[int, bytes]]:
+    """Yield number from 1 and bytes of each line, without the BOM of the first; at most MOST bytes are one line."""
+    for number, line in enumerate(iter(lambda: stream.readline(most), b""), start=1):
+        yield number, line.removeprefix(BOM) if number == 1 else line
+
+
 def pieces(stream: BufferedReader) -> Iterator[tuple[int, bytes, bool]]:
     """Yield line number, bytes and whether a line begins there; a long line comes in pieces, cut between words."""
     number, held, begins = 1, b"", True
