@@ -4,6 +4,7 @@
 
 #include "knowledge/angle.h"
 #include "supervisor/faults.h"
+#include "supervisor/looks.h"
 #include "supervisor/mode.h"
 #include "supervisor/reverse.h"
 #include "supervisor/say.h"
@@ -47,19 +48,21 @@ static bool stands(argus_t *const self, const int sonar, const argus_fault_kind_
 static void name(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
+    const argus_fault_kind_t kind = argus_named_kind(self, sonar);
     const bool named = stands(self, sonar, kind);
     if (named) {
         argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
     }
     if (named && s->health == ARGUS_SUSPECT && kind != s->kind) {
+        argus_looks_t *const looks = &self->looks;
+        looks->hold[sonar].lawless |= s->kind == ARGUS_KIND_SLOW && kind == ARGUS_KIND_WRONG;
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
         argus_rays_forget(&self->rays, sonar); // nothing that it has seen is counted on
         argus_replan(self);
     }
     const bool held = self->mode == ARGUS_MODE_VERIFYING || self->looks.asked;
     if (s->health == ARGUS_SUSPECT && !argus_evidence_holds(&self->evidence, sonar) && !held) {
-        self->looks.hold[sonar].borne_out = 0;
+        argus_forget_name(self, sonar);
         argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, s->reading_mm);
         argus_replan(self);
     }

@@ -91,6 +91,19 @@ bool argus_look_pays(const argus_t *const self) {
     return argus_guard_may_turn(&guard);
 }
 
+// A law of its readings that was found and given up again is none: what stays is that others contradict it.
+argus_fault_kind_t argus_named_kind(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
+    const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
+    return kind == ARGUS_KIND_SLOW && self->looks.hold[sonar].lawless ? ARGUS_KIND_WRONG : kind;
+}
+
+void argus_forget_name(argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
+    self->looks.hold[sonar].borne_out = 0;
+    self->looks.hold[sonar].lawless = false;
+}
+
 static void clear(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
     argus_hold_t *const hold = &self->looks.hold[sonar];
@@ -98,7 +111,7 @@ static void clear(argus_t *const self, const int sonar) {
     if (self->knowledge.odometer_mm - hold->odometer_mm > HOLD_FORGET_MM) {
         hold->cleared = 0;
     }
-    hold->borne_out = 0;
+    argus_forget_name(self, sonar);
     hold->cleared = (uint8_t)argus_min(hold->cleared + 1, UINT8_MAX);
     hold->odometer_mm = self->knowledge.odometer_mm;
     if (s->health == ARGUS_SUSPECT) {
@@ -141,7 +154,7 @@ static void conclude(argus_t *const self, const int sonar) {
     if (argus_is_out(&self->knowledge, sonar)) {
         return;
     }
-    const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
+    const argus_fault_kind_t kind = argus_named_kind(self, sonar);
     if (asked && kind == ARGUS_KIND_NONE) {
         clear(self, sonar);
     } else if (suspect && is_proved(self, sonar, kind)) {

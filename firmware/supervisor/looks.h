@@ -22,6 +22,12 @@ argus_mask_t argus_to_try(const argus_t *self);
 // turn.
 argus_mask_t argus_to_settle(const argus_t *self);
 
+// The kind that the evidence gives it (NONE: none): `wrong` where a law of its readings was named and given up.
+argus_fault_kind_t argus_named_kind(const argus_t *self, int sonar);
+
+// It is no suspect any more: what names and looks have shown of it is forgotten.
+void argus_forget_name(argus_t *self, int sonar);
+
 // The looks are over: each sonar that was asked is cleared, given up or left open.
 void argus_conclude_looks(argus_t *self);
 

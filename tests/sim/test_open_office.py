@@ -60,12 +60,21 @@ def test_open_floor_and_glass_take_echoes_away() -> None:
     assert seen["glass"] >= 0.03 * total, seen
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
-def test_the_faults_are_told_and_the_goal_is_reached(seed: int) -> None:
-    seen = run(
-        Mission("open-office", COURSE, faults=FAULTS, seed=seed, sonar={"crosstalk": 0.0}, limit_s=120)
+@pytest.mark.parametrize(("seed", "physics"), [(1, ""), (2, ""), (105, "rough-day"), (107, "rough-day")])
+def test_the_faults_are_told_and_the_goal_is_reached(seed: int, physics: str) -> None:
+    """Of the demonstration's 60 s a fifth stays in hand: sonar 6 looks late in one turn and wrong in the next."""
+    mission = Mission(
+        "open-office",
+        COURSE,
+        faults=FAULTS,
+        seed=seed,
+        sonar={"crosstalk": 0.0},
+        physics=physics,
+        limit_s=120,
     )
+    seen = run(mission)
     assert seen.reached
+    assert seen.t_s < 48.0
     assert not seen.collisions
     out = {number: state for number, state in enumerate(seen.final) if state[0] == "DISABLED"}
     assert out == {3: ("DISABLED", "off"), 6: ("DISABLED", "wrong")}

@@ -314,3 +314,35 @@ void test_a_name_behind_does_not_hold_up_a_sweep(void) {
     TEST_ASSERT_EQUAL_MESSAGE(ARGUS_MISSION_REACHED, robot.argus.mission, "the way is not gone");
     finish();
 }
+
+// ---- names
+
+// Two others contradict it; `late`: its readings are better explained as late ones.
+static argus_fault_kind_t kind_after(int sonar, bool late, int sips) {
+    argus_case_t *c = &robot.argus.evidence.of[sonar];
+    for (int i = 0; i < sips; i++) {
+        c->against = (argus_mask_t)(1u << 2 | 1u << 5);
+        c->score[ARGUS_TEST_PEERS] = (int16_t)(argus_bounds[ARGUS_TEST_PEERS].naming + 60);
+        c->hypothesis[0].over_healthy = late ? ARGUS_LATE_NAMING + 60 : 0;
+        c->hypothesis[0].over_other = late ? ARGUS_LATE_LEAD + 60 : 0;
+        robot_next_sip(&robot);
+    }
+    return (argus_fault_kind_t)robot.argus.knowledge.sonar[sonar].kind;
+}
+
+// Half the truth looks late in one turn and wrong in the next: looks that each leave it another name would
+// prove nothing for ever. A law that was given up is not said again until the sonar is cleared.
+void test_a_law_that_was_given_up_is_not_said_again(void) {
+    start_in_a_hall();
+    drive_off();
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, kind_after(3, false, 15));
+    TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_SLOW, kind_after(3, true, 15), "first wrong, then late: it is late");
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, kind_after(3, false, 15));
+    TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_WRONG, kind_after(3, true, 15), "no law holds");
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, argus_named_kind(&robot.argus, 3));
+    argus_evidence_forget(&robot.argus.evidence, 3);
+    robot_run(&robot, 1000);
+    TEST_ASSERT_EQUAL(ARGUS_HEALTHY, robot.argus.knowledge.sonar[3].health);
+    TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_SLOW, kind_after(3, true, 15), "cleared since then");
+    finish();
+}
