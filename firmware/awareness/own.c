@@ -32,10 +32,15 @@ static void test_stuck(argus_evidence_t *const self, const argus_knowledge_t *co
     if (!tells || changed_mm > 0) {
         c->score[ARGUS_TEST_STUCK] = 0;
     }
-    const bool moved = argus_ping_turned_cdeg(now, before) >= ARGUS_STILL_CDEG ||
-                       argus_abs(argus_ping_shift(now, before).along_mm) >= ARGUS_STILL_MM;
-    if (tells && moved && changed_mm <= ARGUS_ALIKE_MM) {
+    if (!tells || changed_mm > ARGUS_ALIKE_MM) {
+        return;
+    }
+    // Along a wall on the way a healthy one repeats itself, too: that tells how often, and nothing of it.
+    const bool turned = argus_ping_turned_cdeg(now, before) >= ARGUS_STILL_CDEG;
+    if (turned || argus_abs(argus_ping_shift(now, before).along_mm) >= ARGUS_STILL_MM) {
         score(self, knowledge, sonar, ARGUS_TEST_STUCK, changed_mm == 0);
+    } else if (argus_ping_moved_mm(now, before) >= ARGUS_STILL_MM) {
+        argus_odds_note(self, sonar, ARGUS_TEST_STUCK, changed_mm == 0);
     }
 }
 

@@ -466,6 +466,23 @@ void test_coarse_steps_beside_a_wall_are_not_stuck(void) {
     }
 }
 
+// Those abeam cannot be judged by their way along a wall, but they tell how often a steady view repeats itself.
+void test_those_abeam_tell_how_coarse_the_steps_are(void) {
+    static const int abeam[] = {0, 7, 8, 15};
+    scene_init(&s, 1, START_MS);
+    s.v_mm_s = 200;
+    unsigned random = 12345;
+    for (int n = 0; n < 1200; n++) {
+        for (int i = 0; i < 5; i++) {
+            random = random * 1103515245u + 12345u;
+            reading[i < 4 ? abeam[i] : 14] = 600 + 10 * (int)(random >> 16 & 1u);
+        }
+        s.x += 60;
+        scene_say(&s, 1u << 0 | 1u << 7 | 1u << 8 | 1u << 14 | 1u << 15, reading);
+    }
+    TEST_ASSERT_EQUAL_HEX16(0, s.named);
+}
+
 // Without noise a wall along the way gives the very same range abeam, to that sonar alone. Only way along its
 // own axis changes a range, or a turn.
 void test_a_wall_without_noise_is_not_stuck_abeam(void) {
