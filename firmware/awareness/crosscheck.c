@@ -66,13 +66,14 @@ static verdict_t compare(const int32_t now_mm, const int32_t then_mm, const int3
 }
 
 // A suspect that is contradicted at least as much itself says nothing of another. So a faulty sonar does not
-// drag down those beside it, and of two that no third bears out neither is named.
+// drag down those beside it, and of two that no third bears out neither is named. Nor does one whose ranges
+// do not change as the way does.
 bool argus_crosscheck_is_witness(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                                  const int sonar, const int of) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t own = self->of[sonar].score[ARGUS_TEST_PEERS];
     const int32_t suspicious = argus_bounds[ARGUS_TEST_PEERS].naming * ARGUS_SUSPECT_PERCENT / 100;
-    return sonar != of && !argus_is_out(knowledge, sonar) &&
+    return sonar != of && !argus_is_out(knowledge, sonar) && (self->off_scale >> sonar & 1u) == 0 &&
            (own < suspicious || own < self->of[of].score[ARGUS_TEST_PEERS]);
 }
 

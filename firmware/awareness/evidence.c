@@ -11,6 +11,7 @@
 #include "awareness/names.h"
 #include "awareness/odds.h"
 #include "awareness/own.h"
+#include "awareness/scale.h"
 #include "knowledge/angle.h"
 
 #define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
@@ -112,6 +113,10 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     argus_trend_reading(&self->trend, knowledge, sonar);
     const argus_ping_t now = ray_of(self, knowledge, pose, sonar);
     argus_own_take(self, knowledge, sonar, &now);
+    const argus_ping_t *const before = argus_pings_at(&c->pings, 1);
+    if (before != NULL) {
+        argus_scale_take(self, knowledge, sonar, &now, before);
+    }
     c->last_mm = now.reading_mm;
     argus_pings_note(&c->pings, now);
     argus_crosscheck_take(self, knowledge, sonar);

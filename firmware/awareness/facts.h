@@ -34,6 +34,15 @@ typedef struct {
     uint16_t odd;
 } argus_rate_t;
 
+// A stretch of way along its bearing, and by how much its range came nearer on it; measures of that.
+typedef struct {
+    int16_t way_mm;
+    int16_t nearer_mm;
+    uint8_t off; // in a row that the odometry contradicts to one side
+    bool more;   // that side: more than the way
+    bool keeps;  // the last one fits
+} argus_scale_t;
+
 typedef struct {
     int16_t score[ARGUS_TESTS];
     uint8_t lag_run[ARGUS_LAGS]; // readings in a row that vary and equal the one so many before, up to 4
@@ -58,6 +67,7 @@ typedef struct {
     uint32_t agreed_ms; // when others bore it out last
     argus_rate_t rate[ARGUS_TESTS];
     argus_hypothesis_t hypothesis[ARGUS_HYPOTHESES];
+    argus_scale_t scale;
     argus_pings_t pings;
 } argus_case_t;
 
@@ -71,6 +81,7 @@ typedef struct {
     uint8_t straight_sips; // SIPs in a row without a rotation
     uint16_t caution;      // percent: so much of the tabled evidence a level takes
     bool has_pairs;        // any two have ever borne each other out
+    argus_mask_t off_scale; // ranges do not change as the way does: no witnesses
     argus_trend_t trend;
     argus_case_t of[ARGUS_SONARS];
 } argus_evidence_t;

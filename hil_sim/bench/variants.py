@@ -38,6 +38,7 @@ _CONSTANTS_IN: Final = tuple(
         "odds",
         "own",
         "pings",
+        "scale",
         "trend",
     )
 )

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// Holds the ranges along the way against the odometry, and finds an array that is off as a whole.
+#include "awareness/scale.h"
+
+#include "awareness/crosscheck.h"
+#include "awareness/levels.h"
+#include "knowledge/angle.h"
+
+#define STRETCH_MM 400 // of way makes a measure
+#define ASIDE 4        // the way may lie so little aside of the bearing: by a part of it
+#define FITS_PERCENT 10
+#define OFF_RUN 4   // measures in a row that are off to one side: what is slant or round is short, too
+#define LEAST_OFF 2 // sonars of an array, before it is taken for off as a whole
+
+// Of another thing, or no measure: in a turn, or aside.
+static bool goes_on(const argus_ping_t *const now, const argus_ping_t *const before,
+                    const argus_shift_t *const shift) {
+    const bool echoes = argus_ping_is_echo(now) && argus_ping_is_echo(before) &&
+                        argus_min(now->reading_mm, before->reading_mm) > ARGUS_NEAREST_MM &&
+                        argus_max(now->reading_mm, before->reading_mm) < ARGUS_SURE_MM;
+    const int32_t way_mm = argus_abs(shift->along_mm);
+    const int32_t off_mm = argus_abs(now->reading_mm - (before->reading_mm - shift->along_mm));
+    return echoes && argus_ping_turned_cdeg(now, before) <= ARGUS_STILL_CDEG &&
+           shift->lateral_mm * ASIDE <= way_mm + ARGUS_STILL_MM &&
+           off_mm <= ARGUS_AGREE_MM + way_mm * 2 / 5;
+}
+
+static void measure(argus_scale_t *const self) {
+    const int32_t fits_mm = argus_abs(self->way_mm) * FITS_PERCENT / 100;
+    const int32_t more_mm = argus_abs(self->nearer_mm) - argus_abs(self->way_mm);
+    const bool fits = argus_abs(more_mm) <= fits_mm;
+    self->off = (uint8_t)(!fits && self->more == (more_mm > 0) ? argus_min(self->off + 1, UINT8_MAX) : !fits);
+    self->more = more_mm > 0;
+    self->keeps = fits;
+}
+
+// Two that are off beside others of their array that contradict them are two; where none of it does, it is
+// the array.
+static argus_mask_t off_of(const argus_evidence_t *const self, const argus_mask_t array) {
+    unsigned off = 0;
+    unsigned against = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if ((array >> i & 1u) != 0 && self->of[i].scale.off >= OFF_RUN) {
+            off |= 1u << i;
+            against |= self->of[i].against;
+        }
+    }
+    const bool whole = argus_count_bits(off) >= LEAST_OFF && (against & array) == 0;
+    return (argus_mask_t)(whole ? array : off);
+}
+
+// Where no other array keeps to the way, the odometry may be what is off.
+static bool another_keeps(const argus_evidence_t *const self, const argus_mask_t array) {
+    bool keeps = false;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        keeps = keeps || ((array >> i & 1u) == 0 && self->of[i].scale.keeps);
+    }
+    return keeps;
+}
+
+static void doubt(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    unsigned off = 0;
+    for (int array = 0; array < knowledge->robot->arrays; array++) {
+        const argus_mask_t its = argus_robot_array(knowledge->robot, array);
+        off |= another_keeps(self, its) ? off_of(self, its) : 0u;
+    }
+    const unsigned news = off & ~(unsigned)self->off_scale;
+    self->off_scale = (argus_mask_t)off;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((news >> i & 1u) != 0) {
+            argus_crosscheck_retract(self, i);
+        }
+    }
+}
+
+void argus_scale_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                      const argus_ping_t *const now, const argus_ping_t *const before) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    argus_scale_t *const scale = &self->of[sonar].scale;
+    const argus_shift_t shift = argus_ping_shift(now, before);
+    if (!goes_on(now, before, &shift)) {
+        scale->way_mm = 0;
+        scale->nearer_mm = 0;
+        return;
+    }
+    scale->way_mm = (int16_t)(scale->way_mm + shift.along_mm);
+    scale->nearer_mm = (int16_t)(scale->nearer_mm + before->reading_mm - now->reading_mm);
+    if (argus_abs(scale->way_mm) >= STRETCH_MM) {
+        measure(scale);
+        doubt(self, knowledge);
+        scale->way_mm = 0;
+        scale->nearer_mm = 0;
+    }
+}
