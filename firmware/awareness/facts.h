@@ -77,10 +77,10 @@ typedef struct {
     uint32_t faded_ms;
     uint32_t crowded_ms; // the sonars contradicted each other as they do among people, last
     bool crowded;
-    bool busy;             // ... or something moved before one, lately
-    uint8_t straight_sips; // SIPs in a row without a rotation
-    uint16_t caution;      // percent: so much of the tabled evidence a level takes
-    bool has_pairs;        // any two have ever borne each other out
+    bool busy;              // ... or something moved before one, lately
+    uint8_t straight_sips;  // SIPs in a row without a rotation
+    uint16_t caution;       // percent: so much of the tabled evidence a level takes
+    bool has_pairs;         // any two have ever borne each other out
     argus_mask_t off_scale; // ranges do not change as the way does: no witnesses
     argus_trend_t trend;
     argus_case_t of[ARGUS_SONARS];

@@ -21,8 +21,7 @@ static bool goes_on(const argus_ping_t *const now, const argus_ping_t *const bef
     const int32_t way_mm = argus_abs(shift->along_mm);
     const int32_t off_mm = argus_abs(now->reading_mm - (before->reading_mm - shift->along_mm));
     return echoes && argus_ping_turned_cdeg(now, before) <= ARGUS_STILL_CDEG &&
-           shift->lateral_mm * ASIDE <= way_mm + ARGUS_STILL_MM &&
-           off_mm <= ARGUS_AGREE_MM + way_mm * 2 / 5;
+           shift->lateral_mm * ASIDE <= way_mm + ARGUS_STILL_MM && off_mm <= ARGUS_AGREE_MM + way_mm * 2 / 5;
 }
 
 static void measure(argus_scale_t *const self) {

@@ -22,7 +22,8 @@ argus_mask_t argus_to_try(const argus_t *self);
 // turn.
 argus_mask_t argus_to_settle(const argus_t *self);
 
-// The kind that the evidence gives it (NONE: none): `wrong` where a law of its readings was named and given up.
+// The kind that the evidence gives it (NONE: none): `wrong` where a law of its readings was named and given
+// up.
 argus_fault_kind_t argus_named_kind(const argus_t *self, int sonar);
 
 // It is no suspect any more: what names and looks have shown of it is forgotten.

@@ -466,7 +466,8 @@ void test_coarse_steps_beside_a_wall_are_not_stuck(void) {
     }
 }
 
-// Those abeam cannot be judged by their way along a wall, but they tell how often a steady view repeats itself.
+// Those abeam cannot be judged by their way along a wall, but they tell how often a steady view repeats
+// itself.
 void test_those_abeam_tell_how_coarse_the_steps_are(void) {
     static const int abeam[] = {0, 7, 8, 15};
     scene_init(&s, 1, START_MS);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: an array whose ranges along the way do not change as the way does is no witness, whatever
-// its sonars say together; one slant thing, a turn, or an odometry that is off itself takes no witness away.
+// Rule under attack: an array whose ranges along the way do not change as the way does is no witness,
+// whatever its sonars say together; one slant thing, a turn, or an odometry that is off itself takes no
+// witness away.
 #include "awareness/scale.h"
 
 #include "awareness/crosscheck.h"
