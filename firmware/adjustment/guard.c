@@ -27,6 +27,7 @@
 #define BACK_LEFT_MM 150 // of what the rear reads clear
 #define BACK_STEP_MM 25
 #define ASTERN_MM 50 // beyond the rear end
+#define ASIDE_ROOM_MM 20
 
 int32_t argus_guard_straight_half_mm(const argus_robot_t *const robot) {
     return argus_robot_half_width_mm(robot) + STRAIGHT_ROOM_MM;
@@ -334,15 +335,45 @@ static int32_t rear_clear_mm(const argus_guard_t *const self, const int sonar) {
                : clear_mm;
 }
 
+static bool is_near_behind(const argus_guard_t *const self, const int sonar) {
+    return looks_back(self, sonar) && is_relied_on(self, sonar) &&
+           self->knowledge->sonar[sonar].reading_mm <= rear_clear_mm(self, sonar);
+}
+
+// One that looks aslant sees the post of a door beside the way back, and a wall along it. An echo is anywhere
+// in its cone: at the edge next to the way, it must lie beside the body, or far enough behind it.
+static bool is_beside_way(const argus_guard_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const argus_robot_t *const robot = self->knowledge->robot;
+    const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
+    const int32_t edge_cdeg = 18000 - argus_abs(pose->heading_deg) * 100 - robot->cone_deg * 50;
+    const bool flank = (argus_robot_rear_flank(robot) >> sonar & 1u) != 0;
+    if (!self->profile->passes_abeam || flank || edge_cdeg <= 0) {
+        return false;
+    }
+    const int32_t range_mm = self->knowledge->sonar[sonar].reading_mm;
+    const int32_t aside_mm = argus_abs(pose->y_mm) + range_mm * argus_sin(edge_cdeg) / ARGUS_TRIG_ONE;
+    const int32_t behind_mm = range_mm * argus_cos(edge_cdeg) / ARGUS_TRIG_ONE - pose->x_mm - robot->rear_mm;
+    return aside_mm >= argus_robot_half_width_mm(robot) + ASIDE_ROOM_MM ||
+           behind_mm >= self->config->backoff_mm + BACK_LEFT_MM;
+}
+
 // What those that look back and are relied on read.
 static bool rear_reads_clear(const argus_guard_t *const self) {
     for (int i = 0; i < self->knowledge->sonars; i++) {
-        if (looks_back(self, i) && is_relied_on(self, i) &&
-            self->knowledge->sonar[i].reading_mm <= rear_clear_mm(self, i)) {
+        if (is_near_behind(self, i) && !is_beside_way(self, i)) {
             return false;
         }
     }
     return true;
+}
+
+static bool is_any_near_behind(const argus_guard_t *const self) {
+    bool near = false;
+    for (int i = 0; i < self->knowledge->sonars; i++) {
+        near = near || is_near_behind(self, i);
+    }
+    return near;
 }
 
 bool argus_guard_rear_is_clear(const argus_guard_t *const self) {
@@ -380,7 +411,8 @@ static int32_t most_back_mm(const argus_guard_t *const self) {
                                                   argus_guard_straight_half_mm(self->knowledge->robot));
     const bool is_free = free_mm >= self->knowledge->robot->rear_mm + clear_mm + ASTERN_MM;
     const bool again = self->backed > 1; // far once is far enough
-    return is_free && !again ? clear_mm : argus_min(clear_mm, self->config->backoff_mm);
+    return is_free && !again && !is_any_near_behind(self) ? clear_mm
+                                                          : argus_min(clear_mm, self->config->backoff_mm);
 }
 
 // The least way back, up to the most, after which a turn is free; where none is, the usual one.
