@@ -39,6 +39,8 @@ set(whole_program -flto -flto-partition=one -g)
 list(APPEND whole_program -fno-caller-saves -fno-guess-branch-probability -fno-if-conversion -fno-ipa-sra
                           -fno-move-loop-invariants -fno-reorder-blocks -fno-schedule-insns2 -fno-ssa-phiopt
                           -fno-tree-dominator-opts -fno-tree-forwprop -fno-tree-loop-optimize)
+# A call costs what its own instructions take: else functions are copied that are shorter called.
+list(APPEND whole_program --param=uninlined-function-insns=0)
 set(call_graph "")
 if(ARGUS_STACK_USAGE)
     set(call_graph -fstack-usage -fcallgraph-info=su,da)
