@@ -48,7 +48,7 @@ void argus_conclude_check(argus_t *const self, argus_intent_t *const intent) {
     declare_healthy(self);
     argus_replan(self);
     self->checked = true;
-    argus_say(self, ARGUS_EV_HEALTH_CHECK, ARGUS_NO_SONAR, argus_count_bits(argus_out(&self->knowledge)));
+    argus_tell(self, ARGUS_EV_HEALTH_CHECK, argus_count_bits(argus_out(&self->knowledge)));
     intent->act = ARGUS_DO_DECIDE;
 }
 

@@ -4,6 +4,7 @@
 #define ARGUS_INTENT_H
 
 #include "argus/argus.h"
+#include "knowledge/apart.h"
 
 typedef enum {
     ARGUS_DO_NOTHING, // go on as it is
@@ -72,7 +73,7 @@ typedef struct {
 } argus_intent_t;
 
 // One is begun as nothing and filled in where it lies: dozens are made, and each copy of one costs code.
-void argus_to_check(argus_intent_t *intent, bool full);
+ARGUS_APART void argus_to_check(argus_intent_t *intent, bool full);
 void argus_to_turn(argus_intent_t *intent, int32_t heading_cdeg);
 void argus_to_wait(argus_intent_t *intent, argus_wait_t why);
 void argus_to_say(argus_intent_t *intent, argus_event_id_t event, int sonar, int32_t value);

@@ -78,7 +78,7 @@ static void enter_waiting(argus_t *const self, const argus_wait_t why) {
         mine->last = why;
         mine->since_ms = self->now_ms;
         mine->said_s = 0;
-        argus_say(self, why == ARGUS_WAIT_WAY ? ARGUS_EV_NO_WAY : ARGUS_EV_WAITING, ARGUS_NO_SONAR, 0);
+        argus_tell(self, why == ARGUS_WAIT_WAY ? ARGUS_EV_NO_WAY : ARGUS_EV_WAITING, 0);
     }
     mine->why = why;
     mine->tried_ms = self->now_ms;
@@ -88,7 +88,7 @@ static void enter_waiting(argus_t *const self, const argus_wait_t why) {
 static void say_unheard(argus_t *const self, const argus_guard_t *const guard) {
     if (!argus_guard_is_heard(guard) && !self->looks.unheard_said) {
         self->looks.unheard_said = true;
-        argus_say(self, ARGUS_EV_NO_ECHO, ARGUS_NO_SONAR, argus_guard_unseen_mm_s(guard));
+        argus_tell(self, ARGUS_EV_NO_ECHO, argus_guard_unseen_mm_s(guard));
     }
 }
 
@@ -99,7 +99,7 @@ static void enter_travel(argus_t *const self) {
     argus_begin_travel(&self->travel);
     self->base.taken = false;
     if (guard.creeps) {
-        argus_say(self, ARGUS_EV_CREEPING, ARGUS_NO_SONAR, argus_guard_unseen_mm_s(&guard));
+        argus_tell(self, ARGUS_EV_CREEPING, argus_guard_unseen_mm_s(&guard));
         enter(self, ARGUS_MODE_CREEPING);
     } else {
         enter(self, argus_guard_may_drive(&guard, &self->plan) ? ARGUS_MODE_DRIVING : ARGUS_MODE_SWEEPING);
@@ -116,8 +116,7 @@ static void enter_idle(argus_t *const self) {
 static void fail_mission(argus_t *const self) {
     if (self->mission == ARGUS_MISSION_RUNNING) {
         self->mission = ARGUS_MISSION_FAILED;
-        argus_say(self, ARGUS_EV_MISSION_FAILED, ARGUS_NO_SONAR,
-                  argus_task_goal_mm(&self->travel.task, &self->knowledge));
+        argus_tell(self, ARGUS_EV_MISSION_FAILED, argus_task_goal_mm(&self->travel.task, &self->knowledge));
     }
 }
 
@@ -206,7 +205,7 @@ static void back(argus_t *const self, const argus_intent_t *const intent) {
         return;
     }
     const int32_t most_mm_s = guard.creeps ? argus_guard_unseen_mm_s(&guard) : intent->speed_mm_s;
-    argus_say(self, ARGUS_EV_BACKING, ARGUS_NO_SONAR, intent->mm);
+    argus_tell(self, ARGUS_EV_BACKING, intent->mm);
     argus_move(self, -intent->mm, argus_min(intent->speed_mm_s, most_mm_s));
     enter(self, ARGUS_MODE_BACKING);
 }
@@ -254,7 +253,7 @@ static void end_turn(argus_t *const self, const argus_point_t at, argus_intent_t
     ARGUS_ASSERT(self->motion.kind == ARGUS_MOTION_TURN);
     const argus_guard_t guard = argus_guard(self);
     argus_echoes_touched(&self->echoes, at, self->now_ms);
-    argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, argus_guard_nearest_mm(&guard, 0));
+    argus_tell(self, ARGUS_EV_TURN_BLOCKED, argus_guard_nearest_mm(&guard, 0));
     argus_to_check(next, true);
     next->stop = ARGUS_STOP_STOP;
 }
@@ -268,7 +267,7 @@ static void begin_looks(argus_t *const self, const argus_intent_t *const intent,
         }
     }
     if (intent->sonars == 0) {
-        argus_say(self, ARGUS_EV_LOOK, ARGUS_NO_SONAR, 0);
+        argus_tell(self, ARGUS_EV_LOOK, 0);
     }
     turn(self, intent->cdeg, next);
 }
@@ -284,8 +283,7 @@ static void lose(argus_t *const self, const argus_intent_t *const intent, argus_
 static void reach(argus_t *const self, argus_intent_t *const next) {
     ARGUS_ASSERT(self->mission == ARGUS_MISSION_RUNNING);
     self->mission = ARGUS_MISSION_REACHED;
-    argus_say(self, ARGUS_EV_GOAL_REACHED, ARGUS_NO_SONAR,
-              argus_task_goal_mm(&self->travel.task, &self->knowledge));
+    argus_tell(self, ARGUS_EV_GOAL_REACHED, argus_task_goal_mm(&self->travel.task, &self->knowledge));
     next->act = ARGUS_DO_DECIDE;
 }
 
@@ -488,6 +486,10 @@ void argus_do(argus_t *const self, const argus_intent_t *const wanted) {
     ARGUS_ASSERT(intent.act == ARGUS_DO_NOTHING && intent.event == 0);
 }
 
+void argus_stop_and_do(argus_t *const self, const argus_stop_t stop, const argus_act_t act, const bool full) {
+    argus_do(self, &(argus_intent_t){.stop = (uint8_t)stop, .act = (uint8_t)act, .full = full});
+}
+
 // One SIP --------------------------------------------------------------------------------------------------
 
 void argus_react(argus_t *const self, const argus_alarm_t *const alarm) {
@@ -507,7 +509,7 @@ void argus_judge_all(argus_t *const self) {
     }
     const bool moves = argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE);
     if (moves && argus_common_strikes(&self->common, argus_robot_forward(self->knowledge.robot))) {
-        argus_do(self, &(argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK, .full = true});
+        argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_CHECK, true);
     }
     for (int i = 0; i < self->knowledge.sonars && argus_mode_may(self->mode, ARGUS_MAY_JUDGE); i++) {
         argus_intent_t intent = {0};

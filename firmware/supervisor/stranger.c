@@ -41,5 +41,5 @@ void argus_meet_stranger(argus_t *const self) {
     self->orders.barred = false;
     forget(self);
     argus_replan(self);
-    argus_do(self, &(argus_intent_t){.act = ARGUS_DO_CHECK, .full = true});
+    argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, true);
 }
