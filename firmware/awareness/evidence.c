@@ -33,6 +33,7 @@ void argus_evidence_set_caution(argus_evidence_t *const self, const int32_t perc
 void argus_evidence_forget(argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     memset(&self->of[sonar], 0, sizeof self->of[sonar]);
+    memset(&self->pings[sonar], 0, sizeof self->pings[sonar]);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         self->of[i].against &= (argus_mask_t) ~(1u << sonar);
     }
@@ -40,7 +41,6 @@ void argus_evidence_forget(argus_evidence_t *const self, const int sonar) {
 
 // What others said, and what it was said of, is of the readings that are forgotten.
 static void restart_case(argus_case_t *const self) {
-    memset(&self->pings, 0, sizeof self->pings);
     memset(self->hypothesis, 0, sizeof self->hypothesis);
     memset(self->lag_run, 0, sizeof self->lag_run);
     self->score[ARGUS_TEST_PEERS] = 0;
@@ -57,6 +57,7 @@ void argus_evidence_restart(argus_evidence_t *const self) {
     self->straight_sips = 0;
     self->before_ms = 0;
     argus_trend_restart(&self->trend);
+    memset(self->pings, 0, sizeof self->pings);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         restart_case(&self->of[i]);
     }
@@ -91,12 +92,14 @@ static argus_ping_t ray_of(const argus_evidence_t *const self, const argus_knowl
 }
 
 // A sonar that comes back into use was mended.
-static void note_out(argus_case_t *const self, const bool out) {
-    if (self->out && !out) {
-        memset(self->hypothesis, 0, sizeof self->hypothesis);
-        memset(&self->pings, 0, sizeof self->pings);
+static void note_out(argus_evidence_t *const self, const int sonar, const bool out) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    argus_case_t *const c = &self->of[sonar];
+    if (c->out && !out) {
+        memset(c->hypothesis, 0, sizeof c->hypothesis);
+        memset(&self->pings[sonar], 0, sizeof self->pings[sonar]);
     }
-    self->out = out;
+    c->out = out;
 }
 
 static void take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
@@ -108,12 +111,12 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     }
     c->counted_ms = knowledge->sip_ms;
     c->taken++;
-    note_out(c, argus_is_out(knowledge, sonar));
+    note_out(self, sonar, argus_is_out(knowledge, sonar));
     argus_trend_reading(&self->trend, knowledge, sonar);
     const argus_ping_t now = ray_of(self, knowledge, pose, sonar);
     argus_own_take(self, knowledge, sonar, &now);
     c->last_mm = now.reading_mm;
-    argus_pings_note(&c->pings, now);
+    argus_pings_note(&self->pings[sonar], now);
     argus_crosscheck_take(self, knowledge, sonar);
 }
 
@@ -121,7 +124,7 @@ static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *cons
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     if (knowledge->sip_ms - self->before_ms > ARGUS_PINGS_AGE_MS) { // their clock has gone round unseen
         for (int i = 0; i < ARGUS_SONARS; i++) {
-            self->of[i].pings.count = 0;
+            self->pings[i].count = 0;
         }
     }
     if (knowledge->sip_ms - self->faded_ms >= FADE_MS) {
@@ -129,7 +132,7 @@ static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *cons
         argus_crosscheck_fade(self, knowledge);
         argus_odds_fade(self);
         for (int i = 0; i < knowledge->sonars; i++) {
-            argus_pings_age(&self->of[i].pings, knowledge->sip_ms);
+            argus_pings_age(&self->pings[i], knowledge->sip_ms);
         }
     }
 }

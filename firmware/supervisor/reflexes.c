@@ -273,7 +273,7 @@ static void sees_flank(const argus_t *const self, const argus_alarm_t *const ala
     const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((usable >> i & 1u) != 0 &&
-            argus_grazing_wall(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
+            argus_grazing_wall(&self->evidence.pings[i], self->knowledge.robot, i, stop_mm)) {
             argus_to_say(intent, ARGUS_EV_OBJECT, i, self->knowledge.sonar[i].reading_mm);
             intent->stop = ARGUS_STOP_STOP;
             intent->way = ARGUS_WAY_REFUSE;
