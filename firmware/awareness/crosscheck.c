@@ -164,7 +164,7 @@ static void note_contradicted(argus_evidence_t *const self, const argus_knowledg
     argus_case_t *const c = &self->of[sonar];
     const bool again = c->episodes > 0 && knowledge->sip_ms - c->episode_ms < ARGUS_EPISODE_MS;
     if (!again && !self->crowded && !argus_clutter_beside(self, knowledge, -1, ARGUS_UNREST_MS)) {
-        c->episodes = (uint8_t)argus_min(c->episodes + 1, UINT8_MAX);
+        c->episodes = argus_one_more(c->episodes);
         c->episode_ms = knowledge->sip_ms;
     }
     c->silent_bits = (uint8_t)((unsigned)c->silent_bits << 1 | (argus_ping_is_echo(at) ? 0u : 1u));
@@ -195,7 +195,7 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     if (against != 0) {
         note_contradicted(self, knowledge, sonar, at, against);
     } else if (argus_ping_is_echo(at) && is_since(knowledge, sonar, at)) {
-        c->agreed = (uint8_t)argus_min(c->agreed + 1, UINT8_MAX);
+        c->agreed = argus_one_more(c->agreed);
         c->agreed_ms = knowledge->sip_ms;
         c->alive_ms = knowledge->sip_ms;
         self->has_pairs = true;
@@ -290,7 +290,7 @@ static void count_own(argus_evidence_t *const self, const argus_knowledge_t *con
         is_since(knowledge, sonar, at) && is_news(&self->pings[sonar], at)) {
         const int32_t adds = argus_odds_of(self, knowledge, sonar, ARGUS_TEST_PEERS, false);
         argus_score(self, sonar, ARGUS_TEST_PEERS, adds);
-        c->agreed = (uint8_t)argus_min(c->agreed + 1, UINT8_MAX);
+        c->agreed = argus_one_more(c->agreed);
         at->counted = 1;
     }
 }

@@ -139,7 +139,7 @@ static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *cons
 
 void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    self->straight_sips = knowledge->rotating ? 0 : (uint8_t)argus_min(self->straight_sips + 1, UINT8_MAX);
+    self->straight_sips = knowledge->rotating ? 0 : argus_one_more(self->straight_sips);
     grow_old(self, knowledge);
     const argus_pose_t pose = pose_of_pings(self, knowledge);
     for (int i = 0; i < knowledge->sonars; i++) {

@@ -149,7 +149,7 @@ static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *
 static void count_echo(argus_case_t *const self, const argus_knowledge_t *const knowledge,
                        const argus_ping_t *const now, const bool goes_on) {
     const bool echo = argus_ping_is_echo(now);
-    self->none_run = echo ? 0 : (uint8_t)argus_min(self->none_run + 1, UINT8_MAX);
+    self->none_run = echo ? 0 : argus_one_more(self->none_run);
     self->echo_bits = (uint8_t)((unsigned)self->echo_bits << 1 | (echo ? 1u : 0u));
     if (echo && goes_on) {
         self->alive_ms = knowledge->sip_ms;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
+#include "knowledge/apart.h"
 #include "knowledge/odometry.h"
 
 #define REST_MM_S 5
@@ -38,7 +39,7 @@ void argus_knowledge_reopen(argus_knowledge_t *const self, const uint32_t now_ms
 }
 
 // The raw position counts in 15 or 16 bits: the low 15 are right in both.
-static int32_t raw_delta(const uint16_t now, const uint16_t before) {
+static ARGUS_APART int32_t raw_delta(const uint16_t now, const uint16_t before) {
     const int32_t delta = (int32_t)((uint32_t)(now - before) & 0x7FFFu);
     return delta > 0x3FFF ? delta - 0x8000 : delta;
 }
@@ -69,7 +70,8 @@ static int32_t carry_mm(int32_t *const rest_um, const int32_t more_um) {
 }
 
 // Whole parts and the rest apart, so that 32 bits will do.
-static int32_t rotated_um(const int32_t x_um, const int32_t c, const int32_t y_um, const int32_t s) {
+static ARGUS_APART int32_t rotated_um(const int32_t x_um, const int32_t c, const int32_t y_um,
+                                      const int32_t s) {
     const int32_t one = ARGUS_TRIG_ONE;
     return x_um / one * c + y_um / one * s + (x_um % one * c + y_um % one * s) / one;
 }

@@ -79,11 +79,9 @@ static void go_offline(argus_t *const self) {
     self->travel.jog_mm = 0;
     self->knowledge.under_way |= argus_motion_is_under_way(&self->motion);
     argus_motion_init(&self->motion);
-    argus_do(self, &(argus_intent_t){.event = ARGUS_EV_LINK_LOST,
-                                     .sonar = ARGUS_NO_SONAR,
-                                     .value = (int32_t)(silence_ms & 0x7FFFFFFFu),
-                                     .base = ARGUS_BASE_DROP,
-                                     .act = ARGUS_DO_GO_OFFLINE});
+    argus_tell(self, ARGUS_EV_LINK_LOST, (int32_t)(silence_ms & 0x7FFFFFFFu));
+    self->base.taken = false;
+    argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_GO_OFFLINE, false);
 }
 
 void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
@@ -123,13 +121,9 @@ static void on_open(argus_t *const self) {
 
 static void on_stall(argus_t *const self) {
     self->stalled = true;
-    argus_do(self, &(argus_intent_t){.event = ARGUS_EV_LINK_STALLED,
-                                     .sonar = ARGUS_NO_SONAR,
-                                     .value = self->config.link_stall_ms,
-                                     .stop = ARGUS_STOP_STOP,
-                                     .unchecked = true,
-                                     .act = ARGUS_DO_CHECK,
-                                     .full = true});
+    self->checked = false;
+    argus_tell(self, ARGUS_EV_LINK_STALLED, self->config.link_stall_ms);
+    argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_CHECK, true);
 }
 
 static void on_resume(argus_t *const self) {

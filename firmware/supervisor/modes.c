@@ -473,17 +473,19 @@ static void perform(argus_t *const self, const argus_intent_t *const intent, arg
 }
 
 void argus_do(argus_t *const self, const argus_intent_t *const wanted) {
-    argus_intent_t intent = *wanted;
+    argus_intent_t following[2];
+    const argus_intent_t *intent = wanted;
     for (int i = 0; i < FOLLOW_MOST; i++) {
-        prepare(self, &intent);
-        if (intent.act == ARGUS_DO_NOTHING) {
+        argus_intent_t *const next = &following[i % 2];
+        prepare(self, intent);
+        if (intent->act == ARGUS_DO_NOTHING) {
             return;
         }
-        const argus_intent_t now = intent;
-        intent = (argus_intent_t){0};
-        perform(self, &now, &intent);
+        *next = (argus_intent_t){0};
+        perform(self, intent, next);
+        intent = next;
     }
-    ARGUS_ASSERT(intent.act == ARGUS_DO_NOTHING && intent.event == 0);
+    ARGUS_ASSERT(intent->act == ARGUS_DO_NOTHING && intent->event == 0);
 }
 
 void argus_stop_and_do(argus_t *const self, const argus_stop_t stop, const argus_act_t act, const bool full) {
@@ -587,11 +589,8 @@ static bool is_under_way(const argus_t *const self) {
 static void watch_course(argus_t *const self) {
     argus_task_t *const task = &self->travel.task;
     if (argus_task_is_hopeless(task, &self->knowledge, is_under_way(self))) {
-        argus_do(self, &(argus_intent_t){.event = ARGUS_EV_NO_WAY,
-                                         .sonar = ARGUS_NO_SONAR,
-                                         .value = (int32_t)(task->progress.vain_ms / 1000u),
-                                         .stop = ARGUS_STOP_HALT,
-                                         .act = ARGUS_DO_GIVE_UP});
+        argus_tell(self, ARGUS_EV_NO_WAY, (int32_t)(task->progress.vain_ms / 1000u));
+        argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_GIVE_UP, false);
     }
 }
 

@@ -4,11 +4,12 @@
 #define ARGUS_STATE_H
 
 #include "adjustment/guard.h"
+#include "knowledge/apart.h"
 #include "supervisor/core.h"
 #include "supervisor/intent.h"
 
 // Which rules run.
-const argus_profile_t *argus_rules(const argus_t *self);
+ARGUS_APART const argus_profile_t *argus_rules(const argus_t *self);
 
 // The safety rules, asked of the present state.
 argus_guard_t argus_guard(const argus_t *self);
