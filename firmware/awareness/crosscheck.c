@@ -17,6 +17,7 @@
 // FAINT: it misses an echo that the air may have swallowed, or the other way round. DIVIDED: the others
 // contradict each other. SAME: the map leaves it where it is.
 typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, FAINT, DIVIDED, SAME, SAYINGS } verdict_t;
+#define TELLING (CONTRADICTED + 1) // verdicts on a ping as it stands that tell of a fault at all
 
 typedef struct {
     uint8_t agree;
@@ -30,8 +31,8 @@ typedef struct {
 // What two verdicts say for the map: on a ping as it stands (rows) and as mapped (columns). It is said
 // against a healthy sonar, and against any other fault.
 typedef struct {
-    int16_t over_healthy[SAYINGS][SAYINGS];
-    int16_t over_other[SAYINGS][SAYINGS];
+    int16_t over_healthy[TELLING][SAYINGS];
+    int16_t over_other[TELLING][SAYINGS];
 } worth_t;
 
 // Measured: `argus-sim bench likelihoods`.
@@ -237,7 +238,7 @@ static verdict_t as_offset(const argus_evidence_t *const self, const argus_knowl
 // Every reading tells of a lag, a contradicted one no more than it tells at all.
 static void weigh_lags(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const int back, const verdict_t verdict) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS && verdict < TELLING);
     const int32_t most = verdict == CONTRADICTED ? worth_of(self, knowledge, sonar, true) : ARGUS_CEILING;
     for (int i = 0; i < ARGUS_LAGS; i++) {
         if (verdict == CONTRADICTED || self->of[sonar].hypothesis[i].over_healthy > 0) {
