@@ -114,10 +114,9 @@ static void end_leg(const argus_t *const self, argus_travel_t *const mine) {
 }
 
 // The MOVE at work was begun before the robot saw what it sees now (S5).
-static bool is_too_fast(const argus_t *const self) {
-    const argus_guard_t guard = argus_guard(self);
+static bool is_too_fast(const argus_t *const self, const argus_guard_t *const guard) {
     return self->motion.kind == ARGUS_MOTION_MOVE && !self->motion.settled &&
-           self->motion.speed_mm_s > argus_guard_speed_mm_s(&guard, argus_guard_seen_mm(&guard));
+           self->motion.speed_mm_s > argus_guard_speed_mm_s(guard, argus_guard_seen_mm(guard));
 }
 
 static void halt_to_wait(const argus_wait_t why, argus_intent_t *const intent) {
@@ -126,7 +125,8 @@ static void halt_to_wait(const argus_wait_t why, argus_intent_t *const intent) {
 }
 
 // A leg to drive. False: `intent` is what the SIP calls for.
-static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
+static bool has_way(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                    argus_intent_t *const intent) {
     if (mine->jog_mm > 0 || mine->task.has_leg) {
         return true;
     }
@@ -135,7 +135,7 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
         sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
     const argus_search_news_t news = argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
     if (news == ARGUS_SEARCH_GOES_ON) {
-        intent->act = is_too_fast(self) ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING; // a MOVE ends by itself
+        intent->act = is_too_fast(self, guard) ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING; // a MOVE ends by itself
         return false;
     }
     if (news == ARGUS_SEARCH_NO_WAY) {
@@ -153,26 +153,25 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
 // A leg that leads out of a place too narrow to turn in: straight ahead, but for a nudge. Not along a wall so
 // near that a slant could not be seen in time. A suspect's reading alone is no wall: it would hold the robot
 // for ever where no look can be had.
-static bool leads_out(const argus_t *const self, argus_travel_t *const mine, const int32_t by_cdeg) {
-    const argus_guard_t guard = argus_guard(self);
+static bool leads_out(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                      const int32_t by_cdeg) {
     const argus_mask_t doubted = argus_with_health(&self->knowledge, ARGUS_SUSPECT);
-    const bool open = by_cdeg != 0 ? argus_guard_may_nudge(&guard, by_cdeg)
+    const bool open = by_cdeg != 0 ? argus_guard_may_nudge(guard, by_cdeg)
                                    : argus_flank_mm(&self->knowledge, doubted) > FLANK_MM;
     return open && argus_task_escape(&mine->task, &self->knowledge, &self->echoes, by_cdeg);
 }
 
-static void turn_to_bearing(const argus_t *const self, argus_travel_t *const mine,
-                            argus_intent_t *const intent) {
+static void turn_to_bearing(const argus_t *const self, const argus_guard_t *const guard,
+                            argus_travel_t *const mine, argus_intent_t *const intent) {
     static const int16_t tries_cdeg[] = {2000, 1500, 1000, 500, 0, -500, -1000, -1500, -2000};
-    const argus_guard_t guard = argus_guard(self);
     const int32_t to_cdeg = bearing(self, mine);
     const int32_t now_cdeg = self->knowledge.pose.heading_cdeg;
     const bool left = argus_angle_wrap(to_cdeg - now_cdeg) > 0;
-    const bool hemmed = argus_guard_swing_is_blocked(&guard) && mine->jog_mm == 0 &&
-                        !argus_may_be_crosstalk(self, &guard); // that is read again first
+    const bool hemmed = argus_guard_swing_is_blocked(guard) && mine->jog_mm == 0 &&
+                        !argus_may_be_crosstalk(self, guard); // that is read again first
     for (int i = 0; i < (int)(sizeof tries_cdeg / sizeof tries_cdeg[0]) && hemmed; i++) {
         const int32_t by_cdeg = left ? tries_cdeg[i] : -tries_cdeg[i];
-        if (leads_out(self, mine, by_cdeg)) {
+        if (leads_out(self, guard, mine, by_cdeg)) {
             if (by_cdeg != 0) {
                 argus_to_turn(intent, argus_angle_wrap(now_cdeg + by_cdeg));
             }
@@ -183,16 +182,17 @@ static void turn_to_bearing(const argus_t *const self, argus_travel_t *const min
 }
 
 // It drives and may turn on the way.
-static bool is_gentle(const argus_t *const self, const argus_travel_t *const mine) {
-    const argus_guard_t guard = argus_guard(self);
+static bool is_gentle(const argus_t *const self, const argus_guard_t *const guard,
+                      const argus_travel_t *const mine) {
     return argus_rules(self)->adapts_speed && self->motion.kind == ARGUS_MOTION_MOVE &&
            !self->motion.settled && mine->jog_mm == 0 && off_bearing(self, mine) <= GENTLE_CDEG &&
-           left_mm(self, mine) > STEER_LEG_MM && argus_guard_may_turn(&guard);
+           left_mm(self, mine) > STEER_LEG_MM && argus_guard_may_turn(guard);
 }
 
 // Turns to the leg's bearing at rest. True when the robot looks along it, else `intent` leads there.
-static bool is_aimed(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
-    mine->aimed = mine->aimed || is_gentle(self, mine);
+static bool is_aimed(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                     argus_intent_t *const intent) {
+    mine->aimed = mine->aimed || is_gentle(self, guard, mine);
     if (mine->aimed) {
         return true;
     }
@@ -206,7 +206,7 @@ static bool is_aimed(const argus_t *const self, argus_travel_t *const mine, argu
         return false;
     }
     if (off_bearing(self, mine) > AIMED_CDEG) {
-        turn_to_bearing(self, mine, intent);
+        turn_to_bearing(self, guard, mine, intent);
         return false;
     }
     mine->aimed = argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->motion.mark);
@@ -214,12 +214,13 @@ static bool is_aimed(const argus_t *const self, argus_travel_t *const mine, argu
 }
 
 // It looks along its way. Else `intent` is what the SIP calls for first.
-static bool is_ready(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
+static bool is_ready(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                     argus_intent_t *const intent) {
     if (is_called_away(self, mine, intent)) {
         return false;
     }
     end_leg(self, mine);
-    return has_way(self, mine, intent) && is_aimed(self, mine, intent);
+    return has_way(self, guard, mine, intent) && is_aimed(self, guard, mine, intent);
 }
 
 // The event, a stop if it moves, and another heading after a full check.
@@ -249,9 +250,9 @@ static bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
 
 // Swings the heading about the way while a bearing is blind, so that living sonars look along it. It swings
 // to one side until they have had their turns there, then to the other.
-static int32_t weave_cdeg(const argus_t *const self, argus_travel_t *const mine) {
-    const argus_guard_t guard = argus_guard(self);
-    const int32_t swing_cdeg = argus_min(argus_guard_gap(&guard), WEAVE_GAP) * WEAVE_CDEG;
+static int32_t weave_cdeg(const argus_t *const self, const argus_guard_t *const guard,
+                          argus_travel_t *const mine) {
+    const int32_t swing_cdeg = argus_min(argus_guard_gap(guard), WEAVE_GAP) * WEAVE_CDEG;
     const int32_t to_cdeg = argus_angle_wrap(bearing(self, mine) + mine->weave * swing_cdeg);
     const bool there = argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, to_cdeg) <= WOVEN_CDEG;
     mine->woven_sips = there ? (uint8_t)(mine->woven_sips + 1) : 0;
@@ -283,15 +284,15 @@ static bool counters(const argus_t *const self, const argus_guard_t *const guard
 }
 
 // The heading on the way: swung about it, or led against a short wheel, or the bearing when it is off that.
-static void steer(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
-    const argus_guard_t guard = argus_guard(self);
+static void steer(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                  argus_intent_t *const intent) {
     const int32_t to_cdeg = bearing(self, mine);
     const int32_t trim_cdeg = argus_angle_wrap(to_cdeg + argus_trim_cdeg(&self->wheel, &self->knowledge));
-    intent->steers = argus_guard_may_turn(&guard);
+    intent->steers = argus_guard_may_turn(guard);
     intent->cdeg = to_cdeg;
-    if (argus_guard_is_blind(&guard) && argus_wanted_sonars(self) != 0) {
-        intent->cdeg = weave_cdeg(self, mine);
-    } else if (counters(self, &guard, trim_cdeg)) {
+    if (argus_guard_is_blind(guard) && argus_wanted_sonars(self) != 0) {
+        intent->cdeg = weave_cdeg(self, guard, mine);
+    } else if (counters(self, guard, trim_cdeg)) {
         intent->cdeg = trim_cdeg;
         intent->steers = true;
     } else {
@@ -300,22 +301,21 @@ static void steer(const argus_t *const self, argus_travel_t *const mine, argus_i
 }
 
 // A MOVE is renewed on each SIP, and ends where it should when we say nothing more.
-static void move_on(const argus_t *const self, argus_travel_t *const mine, const int32_t free_mm,
-                    const int32_t seen_mm, argus_intent_t *const intent) {
-    const argus_guard_t guard = argus_guard(self);
+static void move_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                    const int32_t free_mm, const int32_t seen_mm, argus_intent_t *const intent) {
     const int32_t way_mm = left_mm(self, mine);
     intent->act = ARGUS_DO_DRIVE;
     intent->mm = argus_min(way_mm, free_mm);
-    intent->speed_mm_s = argus_guard_speed_mm_s(&guard, seen_mm);
+    intent->speed_mm_s = argus_guard_speed_mm_s(guard, seen_mm);
     intent->moves_on = true;
     if (way_mm > STEER_LEG_MM) {
-        steer(self, mine, intent);
+        steer(self, guard, mine, intent);
     }
 }
 
-static void drive_on(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
-    const argus_guard_t guard = argus_guard(self);
-    if (!argus_guard_sees_ahead(&guard)) {
+static void drive_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                     argus_intent_t *const intent) {
+    if (!argus_guard_sees_ahead(guard)) {
         return; // the MOVE at work ends by itself
     }
     const int sonar = argus_nearest_ahead(self);
@@ -324,12 +324,12 @@ static void drive_on(const argus_t *const self, argus_travel_t *const mine, argu
         blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm, intent);
         return;
     }
-    const int32_t seen_mm = argus_guard_seen_mm(&guard);
+    const int32_t seen_mm = argus_guard_seen_mm(guard);
     if (seen_mm < argus_min(left_mm(self, mine), SEEN_LEAST_MM)) {
         look_ahead(self, mine, intent);
         return;
     }
-    const int32_t free_mm = argus_guard_ahead_mm(&guard, seen_mm);
+    const int32_t free_mm = argus_guard_ahead_mm(guard, seen_mm);
     if (free_mm == 0) {
         return; // a fresh reading will tell
     }
@@ -337,7 +337,7 @@ static void drive_on(const argus_t *const self, argus_travel_t *const mine, argu
         halt_to_wait(ARGUS_WAIT_MOTORS, intent);
         return;
     }
-    move_on(self, mine, free_mm, seen_mm, intent);
+    move_on(self, guard, mine, free_mm, seen_mm, intent);
 }
 
 static void step(const argus_t *const self, const int32_t way_mm, argus_intent_t *const intent) {
@@ -347,13 +347,13 @@ static void step(const argus_t *const self, const int32_t way_mm, argus_intent_t
 }
 
 // One MOVE, then idle again.
-static void jog_on(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
-    const argus_guard_t guard = argus_guard(self);
-    const int32_t seen_mm = argus_guard_seen_mm(&guard);
+static void jog_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                   argus_intent_t *const intent) {
+    const int32_t seen_mm = argus_guard_seen_mm(guard);
     if (seen_mm < mine->jog_mm) {
         look_ahead(self, mine, intent);
     } else {
-        step(self, argus_min(mine->jog_mm, argus_guard_ahead_mm(&guard, seen_mm)), intent);
+        step(self, argus_min(mine->jog_mm, argus_guard_ahead_mm(guard, seen_mm)), intent);
     }
 }
 
@@ -362,11 +362,11 @@ void argus_run_driving(const argus_t *const self, argus_travel_t *const mine, ar
     const argus_guard_t guard = argus_guard(self);
     if (!argus_guard_may_translate(&guard)) {
         cannot_move(intent);
-    } else if (is_ready(self, mine, intent)) {
+    } else if (is_ready(self, &guard, mine, intent)) {
         if (mine->jog_mm > 0) {
-            jog_on(self, mine, intent);
+            jog_on(self, &guard, mine, intent);
         } else {
-            drive_on(self, mine, intent);
+            drive_on(self, &guard, mine, intent);
         }
     }
 }
@@ -384,7 +384,8 @@ static void end_way(argus_intent_t *const intent) {
 }
 
 // The sweep is done and the robot is back on its heading: the compensating and the direct readings decide.
-static void judge_sweep(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
+static void judge_sweep(const argus_t *const self, const argus_guard_t *const guard,
+                        argus_travel_t *const mine, argus_intent_t *const intent) {
     const int direct = argus_nearest_ahead(self);
     const int32_t direct_mm = reading_of(self, direct);
     if (!mine->swept) {
@@ -400,8 +401,7 @@ static void judge_sweep(const argus_t *const self, argus_travel_t *const mine, a
         blocked(mine, ARGUS_EV_OBJECT, direct, direct_mm, intent);
         return;
     }
-    const argus_guard_t guard = argus_guard(self);
-    if (argus_guard_seen_mm(&guard) >= SEEN_LEAST_MM && argus_rules(self)->drives_seen) {
+    if (argus_guard_seen_mm(guard) >= SEEN_LEAST_MM && argus_rules(self)->drives_seen) {
         end_way(intent);
     } else if (argus_rules(self)->disparity &&
                argus_open_suspects(self) != 0) { // S6: one that an operator wants looked at again
@@ -418,7 +418,8 @@ static void begin_sweep(const argus_t *const self, argus_travel_t *const mine, a
     intent->base = ARGUS_BASE_TAKE;
 }
 
-static void sweep_on(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
+static void sweep_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                     argus_intent_t *const intent) {
     const argus_mark_t *const mark = &self->motion.mark;
     if (self->motion.failed) {
         argus_to_check(intent, true);
@@ -428,7 +429,7 @@ static void sweep_on(const argus_t *const self, argus_travel_t *const mine, argu
         begin_sweep(self, mine, intent);
     } else if (mine->drive.done) {
         if (argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), mark)) {
-            judge_sweep(self, mine, intent);
+            judge_sweep(self, guard, mine, intent);
         }
     } else if (argus_sweep_step(&mine->drive, &self->plan, &self->knowledge, mark) && !mine->drive.done) {
         argus_to_turn(intent, argus_sweep_heading_cdeg(&mine->drive, &self->plan));
@@ -440,8 +441,8 @@ void argus_run_sweeping(const argus_t *const self, argus_travel_t *const mine, a
     if (!argus_guard_may_translate(&guard)) {
         cannot_move(intent);
     } else if (self->base.taken) {
-        sweep_on(self, mine, intent);
-    } else if (is_ready(self, mine, intent)) {
+        sweep_on(self, &guard, mine, intent);
+    } else if (is_ready(self, &guard, mine, intent)) {
         begin_sweep(self, mine, intent);
     }
 }
@@ -454,8 +455,8 @@ void argus_run_stepping(const argus_t *const self, argus_travel_t *const mine, a
 }
 
 // A short MOVE, renewed on each SIP; only a bumper tells of what is in the way.
-static void creep_on(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
-    const argus_guard_t guard = argus_guard(self);
+static void creep_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                     argus_intent_t *const intent) {
     const int32_t way_mm = left_mm(self, mine);
     if (!is_heeded(self, mine)) {
         halt_to_wait(ARGUS_WAIT_MOTORS, intent);
@@ -464,7 +465,7 @@ static void creep_on(const argus_t *const self, argus_travel_t *const mine, argu
     intent->act = ARGUS_DO_CREEP;
     intent->mm = mine->jog_mm > 0 ? way_mm : argus_min(way_mm, CREEP_MM);
     intent->steers =
-        way_mm > STEER_LEG_MM && off_bearing(self, mine) > STEER_CDEG && argus_guard_may_turn(&guard);
+        way_mm > STEER_LEG_MM && off_bearing(self, mine) > STEER_CDEG && argus_guard_may_turn(guard);
     intent->cdeg = bearing(self, mine);
     intent->moves_on = true;
 }
@@ -485,7 +486,7 @@ void argus_run_creeping(const argus_t *const self, argus_travel_t *const mine, a
     }
     end_leg(self, mine);
     const bool steps = mine->jog_mm > 0 && !self->motion.settled; // one MOVE, not renewed
-    if (has_way(self, mine, intent) && is_aimed(self, mine, intent) && !steps) {
-        creep_on(self, mine, intent);
+    if (has_way(self, &guard, mine, intent) && is_aimed(self, &guard, mine, intent) && !steps) {
+        creep_on(self, &guard, mine, intent);
     }
 }
