@@ -40,8 +40,10 @@ list(APPEND whole_program -flive-range-shrinkage -fno-caller-saves -fno-early-in
                           -fno-guess-branch-probability -fno-if-conversion -fno-ipa-sra -fno-move-loop-invariants
                           -fno-reorder-blocks -fno-schedule-insns2 -fno-ssa-phiopt -fno-tree-dominator-opts
                           -fno-tree-forwprop -fno-tree-loop-optimize -fno-tree-tail-merge)
-# A call costs what its own instructions take: else functions are copied that are shorter called.
-list(APPEND whole_program --param=uninlined-function-insns=0)
+# A call costs what its own instructions take: else functions are copied that are shorter called. Nor is anything copied into
+# one that is long already, whose registers are all in use.
+list(APPEND whole_program --param=uninlined-function-insns=0 --param=large-function-insns=2000
+                          --param=large-function-growth=0)
 set(call_graph "")
 if(ARGUS_STACK_USAGE)
     set(call_graph -fstack-usage -fcallgraph-info=su,da)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is asked for at dozens of places: calls are smaller than copies, which a compiler does not see.
+// What many places ask for, or what takes many registers: calls are smaller than copies, which a compiler
+// does not see.
 #ifndef ARGUS_APART_H
 #define ARGUS_APART_H
 
