@@ -348,7 +348,10 @@ def robots_source(root: Path) -> str:
 
 
 def likelihoods_header(root: Path) -> str:
-    """Return the tables of what verdicts tell of a hypothesis, as initializers of one row for each verdict."""
+    """Return the tables of what verdicts tell of a hypothesis, as initializers of one row for each verdict.
+
+    The last verdicts, which tell nothing, have no rows: in an image each would take its bytes.
+    """
     table = load(root, "likelihoods")
     source = root / TABLES / "likelihoods.toml"
     size = len(table.get("verdicts", ()))
@@ -361,7 +364,8 @@ def likelihoods_header(root: Path) -> str:
                 raise TableError(f"{source}: [{name}.over.{over}] has no rows") from None
             if len(rows) != size or any(len(row) != size or not all(map(is_integer, row)) for row in rows):
                 raise TableError(f"{source}: [{name}.over.{over}] is not {size} rows of {size} whole numbers")
-            cells = ", ".join("{" + ", ".join(map(str, row)) + "}" for row in rows)
+            telling = max((i for i, row in enumerate(rows, 1) if any(row)), default=1)
+            cells = ", ".join("{" + ", ".join(map(str, row)) + "}" for row in rows[:telling])
             body.append(f"#define ARGUS_{name.upper()}_OVER_{over.upper()} {{{cells}}}")
     what = "Log-ratios of verdicts, 0.01 nat"
     return header("ARGUS_GEN_LIKELIHOODS_H", "likelihoods.toml", what, body)

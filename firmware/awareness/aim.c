@@ -40,7 +40,7 @@ static int32_t cost_of_aim(const argus_evidence_t *const self, const argus_knowl
                          argus_ping_age_ms(then, knowledge->sip_ms) <= ARGUS_BESIDE_MS &&
                          argus_ping_is_within(&there, then, ARGUS_SAME_ALONG_MM) &&
                          argus_ping_shift(&there, then).lateral_mm <= ARGUS_SAME_LATERAL_MM &&
-                         !has_looked(&self->of[sonar].pings, &there, knowledge->sip_ms);
+                         !has_looked(&self->pings[sonar], &there, knowledge->sip_ms);
     return telling ? turn + then->reading_mm : INT32_MAX;
 }
 
@@ -52,8 +52,8 @@ bool argus_aim(const argus_evidence_t *const self, const argus_knowledge_t *cons
         if (other == sonar || argus_is_out(knowledge, other) || argus_names_suspects(self, other)) {
             continue;
         }
-        for (int back = 1; back <= self->of[other].pings.count; back++) {
-            const argus_ping_t *const then = argus_pings_at(&self->of[other].pings, back);
+        for (int back = 1; back <= self->pings[other].count; back++) {
+            const argus_ping_t *const then = argus_pings_at(&self->pings[other], back);
             const int32_t cost = cost_of_aim(self, knowledge, sonar, then);
             if (cost < least) {
                 least = cost;

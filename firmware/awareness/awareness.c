@@ -56,7 +56,7 @@ static void count_disparity(argus_awareness_t *const self, const argus_knowledge
         return;
     }
     d->difference_mm = difference;
-    d->in_a_row = (uint8_t)argus_min(d->in_a_row + 1, UINT8_MAX);
+    d->in_a_row = argus_one_more(d->in_a_row);
 }
 
 static bool looks_along_motion(const argus_knowledge_t *const knowledge, const int sonar) {

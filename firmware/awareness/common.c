@@ -31,7 +31,7 @@ static void take(argus_common_t *const self, const argus_knowledge_t *const know
         self->echoed[sonar] = true;
         self->echo_ms[sonar] = knowledge->sip_ms;
     } else {
-        self->none_run[sonar] = (uint8_t)argus_min(self->none_run[sonar] + 1, UINT8_MAX);
+        self->none_run[sonar] = argus_one_more(self->none_run[sonar]);
     }
 }
 

@@ -17,6 +17,7 @@
 // FAINT: it misses an echo that the air may have swallowed, or the other way round. DIVIDED: the others
 // contradict each other. SAME: the map leaves it where it is.
 typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, FAINT, DIVIDED, SAME, SAYINGS } verdict_t;
+#define TELLING (CONTRADICTED + 1) // verdicts on a ping as it stands that tell of a fault at all
 
 typedef struct {
     uint8_t agree;
@@ -30,8 +31,8 @@ typedef struct {
 // What two verdicts say for the map: on a ping as it stands (rows) and as mapped (columns). It is said
 // against a healthy sonar, and against any other fault.
 typedef struct {
-    int16_t over_healthy[SAYINGS][SAYINGS];
-    int16_t over_other[SAYINGS][SAYINGS];
+    int16_t over_healthy[TELLING][SAYINGS];
+    int16_t over_other[TELLING][SAYINGS];
 } worth_t;
 
 // Measured: `argus-sim bench likelihoods`.
@@ -116,7 +117,7 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
     tally_t tally = {.agree = 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_crosscheck_is_witness(self, knowledge, i, sonar)) {
-            ask(&tally, &self->of[i].pings, &line, i, knowledge->sip_ms);
+            ask(&tally, &self->pings[i], &line, i, knowledge->sip_ms);
         }
     }
     return tally;
@@ -134,9 +135,9 @@ static verdict_t verdict_of(const tally_t *const tally) {
 }
 
 // From one place and on one bearing, one reading counts.
-static bool is_news(const argus_case_t *const self, const argus_ping_t *const now) {
-    for (int i = 1; i <= self->pings.count; i++) {
-        const argus_ping_t *const then = argus_pings_at(&self->pings, i);
+static bool is_news(const argus_pings_t *const pings, const argus_ping_t *const now) {
+    for (int i = 1; i <= pings->count; i++) {
+        const argus_ping_t *const then = argus_pings_at(pings, i);
         const int32_t apart_ms = (int16_t)(now->t_ms - then->t_ms);
         if (apart_ms > ARGUS_PLACE_MS) {
             break;
@@ -165,7 +166,7 @@ static void note_contradicted(argus_evidence_t *const self, const argus_knowledg
     argus_case_t *const c = &self->of[sonar];
     const bool again = c->episodes > 0 && knowledge->sip_ms - c->episode_ms < ARGUS_EPISODE_MS;
     if (!again && !self->crowded && !argus_clutter_beside(self, knowledge, -1, ARGUS_UNREST_MS)) {
-        c->episodes = (uint8_t)argus_min(c->episodes + 1, UINT8_MAX);
+        c->episodes = argus_one_more(c->episodes);
         c->episode_ms = knowledge->sip_ms;
     }
     c->silent_bits = (uint8_t)((unsigned)c->silent_bits << 1 | (argus_ping_is_echo(at) ? 0u : 1u));
@@ -196,7 +197,7 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     if (against != 0) {
         note_contradicted(self, knowledge, sonar, at, against);
     } else if (argus_ping_is_echo(at) && is_since(knowledge, sonar, at)) {
-        c->agreed = (uint8_t)argus_min(c->agreed + 1, UINT8_MAX);
+        c->agreed = argus_one_more(c->agreed);
         c->agreed_ms = knowledge->sip_ms;
         c->alive_ms = knowledge->sip_ms;
         self->has_pairs = true;
@@ -210,8 +211,8 @@ static verdict_t as_late(const argus_evidence_t *const self, const argus_knowled
                          const int sonar, const int back, const int lag) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(back >= 1);
-    const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, back);
-    const argus_ping_t *const then = argus_pings_before(&self->of[sonar].pings, back, lag);
+    const argus_ping_t *const now = argus_pings_at(&self->pings[sonar], back);
+    const argus_ping_t *const then = argus_pings_before(&self->pings[sonar], back, lag);
     if (then == NULL) {
         return UNSEEN;
     }
@@ -238,7 +239,7 @@ static verdict_t as_offset(const argus_evidence_t *const self, const argus_knowl
 // Every reading tells of a lag, a contradicted one no more than it tells at all.
 static void weigh_lags(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const int back, const verdict_t verdict) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS && verdict < TELLING);
     const int32_t most = verdict == CONTRADICTED ? worth_of(self, knowledge, sonar, true) : ARGUS_CEILING;
     for (int i = 0; i < ARGUS_LAGS; i++) {
         if (verdict == CONTRADICTED || self->of[sonar].hypothesis[i].over_healthy > 0) {
@@ -285,13 +286,13 @@ static void count_own(argus_evidence_t *const self, const argus_knowledge_t *con
                       const int back, const verdict_t verdict) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
-    argus_ping_t *const at = argus_pings_mark(&c->pings, back);
-    const argus_ping_t *const before = argus_pings_at(&c->pings, back + 1);
+    argus_ping_t *const at = argus_pings_mark(&self->pings[sonar], back);
+    const argus_ping_t *const before = argus_pings_at(&self->pings[sonar], back + 1);
     if (argus_is_out(knowledge, sonar) && is_beyond(knowledge->sonar[sonar].kind, at, before, verdict) &&
-        is_since(knowledge, sonar, at) && is_news(c, at)) {
+        is_since(knowledge, sonar, at) && is_news(&self->pings[sonar], at)) {
         const int32_t adds = argus_odds_of(self, knowledge, sonar, ARGUS_TEST_PEERS, false);
         argus_score(self, sonar, ARGUS_TEST_PEERS, adds);
-        c->agreed = (uint8_t)argus_min(c->agreed + 1, UINT8_MAX);
+        c->agreed = argus_one_more(c->agreed);
         at->counted = 1;
     }
 }
@@ -335,13 +336,13 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(back >= 1);
     argus_case_t *const c = &self->of[sonar];
-    argus_ping_t *const at = argus_pings_mark(&c->pings, back);
+    argus_ping_t *const at = argus_pings_mark(&self->pings[sonar], back);
     const verdict_t verdict = verdict_of(tally);
     at->weighed = verdict != UNSEEN || tally->differ > 0;
     if (tally->differ == 0) {
         count_own(self, knowledge, sonar, back, verdict);
     }
-    if ((is_odd(tally) || is_borne_out(tally)) && is_news(c, at)) {
+    if ((is_odd(tally) || is_borne_out(tally)) && is_news(&self->pings[sonar], at)) {
         count_news(self, knowledge, sonar, at, tally);
     }
     if (fresh && is_borne_out(tally)) {
@@ -359,7 +360,7 @@ static void look_back(argus_evidence_t *const self, const argus_knowledge_t *con
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
         if (latest[i] > 0 && argus_crosscheck_is_witness(self, knowledge, sonar, i)) {
-            const argus_ping_t *const at = argus_pings_at(&self->of[i].pings, latest[i]);
+            const argus_ping_t *const at = argus_pings_at(&self->pings[i], latest[i]);
             if (!at->weighed) {
                 const tally_t tally = ask_all(self, knowledge, i, at);
                 weigh(self, knowledge, i, latest[i], &tally, false);
@@ -373,9 +374,9 @@ static void tell_trend(argus_evidence_t *const self, const argus_knowledge_t *co
                        const int sonar, const uint8_t *const latest) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, 1);
+    const argus_ping_t *const now = argus_pings_at(&self->pings[sonar], 1);
     for (int i = 0; i < knowledge->sonars; i++) {
-        const argus_ping_t *const then = argus_pings_at(&self->of[i].pings, latest[i]);
+        const argus_ping_t *const then = argus_pings_at(&self->pings[i], latest[i]);
         if (then != NULL && now->steady && then->steady) {
             argus_trend_pair(&self->trend, knowledge, sonar, now->reading_mm, i, then->reading_mm,
                              argus_ping_shift(now, then).along_mm);
@@ -387,7 +388,7 @@ void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t
                            const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    const argus_ping_t *const now = argus_pings_at(&self->of[sonar].pings, 1);
+    const argus_ping_t *const now = argus_pings_at(&self->pings[sonar], 1);
     const argus_line_t line = argus_ping_line(now);
     uint8_t latest[ARGUS_SONARS] = {0};
     tally_t tally = {.agree = 0};
@@ -396,7 +397,7 @@ void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t
         const bool witness = argus_crosscheck_is_witness(self, knowledge, i, sonar);
         if (i != sonar) {
             latest[i] =
-                (uint8_t)ask(witness ? &tally : &unheard, &self->of[i].pings, &line, i, knowledge->sip_ms);
+                (uint8_t)ask(witness ? &tally : &unheard, &self->pings[i], &line, i, knowledge->sip_ms);
         }
     }
     weigh(self, knowledge, sonar, 1, &tally, true);

@@ -34,6 +34,7 @@ void argus_evidence_set_caution(argus_evidence_t *const self, const int32_t perc
 void argus_evidence_forget(argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     memset(&self->of[sonar], 0, sizeof self->of[sonar]);
+    memset(&self->pings[sonar], 0, sizeof self->pings[sonar]);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         self->of[i].against &= (argus_mask_t) ~(1u << sonar);
     }
@@ -41,7 +42,6 @@ void argus_evidence_forget(argus_evidence_t *const self, const int sonar) {
 
 // What others said, and what it was said of, is of the readings that are forgotten.
 static void restart_case(argus_case_t *const self) {
-    memset(&self->pings, 0, sizeof self->pings);
     memset(self->hypothesis, 0, sizeof self->hypothesis);
     memset(self->lag_run, 0, sizeof self->lag_run);
     self->score[ARGUS_TEST_PEERS] = 0;
@@ -58,6 +58,7 @@ void argus_evidence_restart(argus_evidence_t *const self) {
     self->straight_sips = 0;
     self->before_ms = 0;
     argus_trend_restart(&self->trend);
+    memset(self->pings, 0, sizeof self->pings);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         restart_case(&self->of[i]);
     }
@@ -92,12 +93,14 @@ static argus_ping_t ray_of(const argus_evidence_t *const self, const argus_knowl
 }
 
 // A sonar that comes back into use was mended.
-static void note_out(argus_case_t *const self, const bool out) {
-    if (self->out && !out) {
-        memset(self->hypothesis, 0, sizeof self->hypothesis);
-        memset(&self->pings, 0, sizeof self->pings);
+static void note_out(argus_evidence_t *const self, const int sonar, const bool out) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    argus_case_t *const c = &self->of[sonar];
+    if (c->out && !out) {
+        memset(c->hypothesis, 0, sizeof c->hypothesis);
+        memset(&self->pings[sonar], 0, sizeof self->pings[sonar]);
     }
-    self->out = out;
+    c->out = out;
 }
 
 static void take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
@@ -109,16 +112,13 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     }
     c->counted_ms = knowledge->sip_ms;
     c->taken++;
-    note_out(c, argus_is_out(knowledge, sonar));
+    note_out(self, sonar, argus_is_out(knowledge, sonar));
     argus_trend_reading(&self->trend, knowledge, sonar);
     const argus_ping_t now = ray_of(self, knowledge, pose, sonar);
     argus_own_take(self, knowledge, sonar, &now);
-    const argus_ping_t *const before = argus_pings_at(&c->pings, 1);
-    if (before != NULL) {
-        argus_scale_take(self, knowledge, sonar, &now, before);
-    }
+    argus_scale_take(self, knowledge, sonar, &now);
     c->last_mm = now.reading_mm;
-    argus_pings_note(&c->pings, now);
+    argus_pings_note(&self->pings[sonar], now);
     argus_crosscheck_take(self, knowledge, sonar);
 }
 
@@ -126,7 +126,7 @@ static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *cons
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     if (knowledge->sip_ms - self->before_ms > ARGUS_PINGS_AGE_MS) { // their clock has gone round unseen
         for (int i = 0; i < ARGUS_SONARS; i++) {
-            self->of[i].pings.count = 0;
+            self->pings[i].count = 0;
         }
     }
     if (knowledge->sip_ms - self->faded_ms >= FADE_MS) {
@@ -134,14 +134,14 @@ static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *cons
         argus_crosscheck_fade(self, knowledge);
         argus_odds_fade(self);
         for (int i = 0; i < knowledge->sonars; i++) {
-            argus_pings_age(&self->of[i].pings, knowledge->sip_ms);
+            argus_pings_age(&self->pings[i], knowledge->sip_ms);
         }
     }
 }
 
 void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    self->straight_sips = knowledge->rotating ? 0 : (uint8_t)argus_min(self->straight_sips + 1, UINT8_MAX);
+    self->straight_sips = knowledge->rotating ? 0 : argus_one_more(self->straight_sips);
     grow_old(self, knowledge);
     const argus_pose_t pose = pose_of_pings(self, knowledge);
     for (int i = 0; i < knowledge->sonars; i++) {

@@ -127,7 +127,7 @@ static void take(argus_extreme_t *const self, const argus_knowledge_t *const kno
     self->visited = !shortest && reading <= knowledge->robot->min_mm + NEAR_MM &&
                     self->before_mm > knowledge->robot->min_mm + LEAP_MM;
     self->before_mm = (uint16_t)reading;
-    self->row = (uint8_t)(shortest ? argus_min(self->row + 1, UINT8_MAX) : 0);
+    self->row = shortest ? argus_one_more(self->row) : 0;
     if (shortest) {
         take_shortest(self, knowledge, sonar);
     } else {

@@ -31,15 +31,15 @@ static int32_t known_again_mm(const argus_pings_t *const pings, const int32_t re
 // test of one value, and the less likely the more the readings vary.
 static int32_t replay_of(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                          const int sonar, const uint16_t reading_mm, const int index) {
-    argus_case_t *const c = &self->of[sonar];
     const int lag = index + ARGUS_LEAST_LAG;
-    uint8_t *const run = &c->lag_run[index];
-    const argus_ping_t *const then = argus_pings_before(&c->pings, 1, lag - 1);
+    uint8_t *const run = &self->of[sonar].lag_run[index];
+    const argus_pings_t *const pings = &self->pings[sonar];
+    const argus_ping_t *const then = argus_pings_before(pings, 1, lag - 1);
     if (then == NULL || reading_mm >= ARGUS_NO_ECHO_MM || then->reading_mm != reading_mm) {
         *run = 0;
         return 0;
     }
-    const int32_t varies_mm = *run < lag ? known_again_mm(&c->pings, reading_mm, lag) : 0;
+    const int32_t varies_mm = *run < lag ? known_again_mm(pings, reading_mm, lag) : 0;
     if (varies_mm == 0) {
         return 0;
     }

@@ -89,7 +89,7 @@ static void test_garbage(argus_evidence_t *const self, const argus_knowledge_t *
         }
         return;
     }
-    const likeness_t like = liken(&c->pings, now);
+    const likeness_t like = liken(&self->pings[sonar], now);
     if (like.familiar) {
         score(self, knowledge, sonar, ARGUS_TEST_GARBAGE, false);
     } else if (like.comparable > 0 && like.novel && !unrest) {
@@ -114,9 +114,9 @@ static void test_walker(argus_evidence_t *const self, const argus_knowledge_t *c
 }
 
 // The echo before the run of none that ends now, all of it on this bearing; NULL: none.
-static const argus_ping_t *echo_before_gap(const argus_case_t *const self, const argus_ping_t *const now) {
+static const argus_ping_t *echo_before_gap(const argus_pings_t *const pings, const argus_ping_t *const now) {
     for (int i = 1; i <= LOOKED_BACK; i++) {
-        const argus_ping_t *const then = argus_pings_at(&self->pings, i);
+        const argus_ping_t *const then = argus_pings_at(pings, i);
         if (then == NULL || argus_ping_turned_cdeg(now, then) > ARGUS_SAME_CDEG) {
             return NULL;
         }
@@ -135,7 +135,7 @@ static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *
     if (!argus_ping_is_echo(now) || c->gaps >= GAPS_MOST) {
         return;
     }
-    const argus_ping_t *const then = echo_before_gap(c, now);
+    const argus_ping_t *const then = echo_before_gap(&self->pings[sonar], now);
     if (then == NULL || now->reading_mm >= ARGUS_SURE_MM || !is_familiar(now, then)) {
         score(self, knowledge, sonar, ARGUS_TEST_DROPOUT, false);
         return;
@@ -154,7 +154,7 @@ static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *
 static void count_echo(argus_case_t *const self, const argus_knowledge_t *const knowledge,
                        const argus_ping_t *const now, const bool goes_on) {
     const bool echo = argus_ping_is_echo(now);
-    self->none_run = echo ? 0 : (uint8_t)argus_min(self->none_run + 1, UINT8_MAX);
+    self->none_run = echo ? 0 : argus_one_more(self->none_run);
     self->echo_bits = (uint8_t)((unsigned)self->echo_bits << 1 | (echo ? 1u : 0u));
     if (echo && goes_on) {
         self->alive_ms = knowledge->sip_ms;
@@ -183,7 +183,7 @@ void argus_own_take(argus_evidence_t *const self, const argus_knowledge_t *const
                     const argus_ping_t *const now) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
-    const argus_ping_t *const before = argus_pings_at(&c->pings, 1);
+    const argus_ping_t *const before = argus_pings_at(&self->pings[sonar], 1);
     if (before == NULL) {
         return;
     }

@@ -172,7 +172,7 @@ void argus_pings_note(argus_pings_t *const self, const argus_ping_t now) {
     if (self->count > 0 && is_alike(&now, last)) {
         last->t_ms = now.t_ms;
         last->reading_mm = now.reading_mm;
-        last->repeats = (uint8_t)argus_min(last->repeats + 1, UINT8_MAX);
+        last->repeats = argus_one_more(last->repeats);
         last->steady = now.steady;
         last->rest = now.rest;
         last->weighed = 0;

@@ -28,7 +28,7 @@ static void measure(argus_scale_t *const self) {
     const int32_t fits_mm = argus_abs(self->way_mm) * FITS_PERCENT / 100;
     const int32_t more_mm = argus_abs(self->nearer_mm) - argus_abs(self->way_mm);
     const bool fits = argus_abs(more_mm) <= fits_mm;
-    self->off = (uint8_t)(!fits && self->more == (more_mm > 0) ? argus_min(self->off + 1, UINT8_MAX) : !fits);
+    self->off = !fits && self->more == (more_mm > 0) ? argus_one_more(self->off) : (uint8_t)!fits;
     self->more = more_mm > 0;
     self->keeps = fits;
 }
@@ -39,7 +39,7 @@ static argus_mask_t off_of(const argus_evidence_t *const self, const argus_mask_
     unsigned off = 0;
     unsigned against = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        if ((array >> i & 1u) != 0 && self->of[i].scale.off >= OFF_RUN) {
+        if ((array >> i & 1u) != 0 && self->scale[i].off >= OFF_RUN) {
             off |= 1u << i;
             against |= self->of[i].against;
         }
@@ -52,7 +52,7 @@ static argus_mask_t off_of(const argus_evidence_t *const self, const argus_mask_
 static bool another_keeps(const argus_evidence_t *const self, const argus_mask_t array) {
     bool keeps = false;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        keeps = keeps || ((array >> i & 1u) == 0 && self->of[i].scale.keeps);
+        keeps = keeps || ((array >> i & 1u) == 0 && self->scale[i].keeps);
     }
     return keeps;
 }
@@ -74,9 +74,13 @@ static void doubt(argus_evidence_t *const self, const argus_knowledge_t *const k
 }
 
 void argus_scale_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
-                      const argus_ping_t *const now, const argus_ping_t *const before) {
+                      const argus_ping_t *const now) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    argus_scale_t *const scale = &self->of[sonar].scale;
+    argus_scale_t *const scale = &self->scale[sonar];
+    const argus_ping_t *const before = argus_pings_at(&self->pings[sonar], 1);
+    if (before == NULL) {
+        return;
+    }
     const argus_shift_t shift = argus_ping_shift(now, before);
     if (!goes_on(now, before, &shift)) {
         scale->way_mm = 0;

@@ -5,9 +5,9 @@
 
 #include "awareness/facts.h"
 
-// A ping, before it is logged, and the one before. A sonar that looks along the way is measured by stretches.
+// A ping, before it is logged. A sonar that looks along the way is measured by stretches.
 // Cost: four products; one pass over the sonars at the end of a stretch.
 void argus_scale_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
-                      const argus_ping_t *now, const argus_ping_t *before);
+                      const argus_ping_t *now);
 
 #endif

@@ -138,7 +138,7 @@ static bool slants(const argus_t *const self) {
     const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((flank >> i & 1u) != 0 &&
-            argus_grazing_wall(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
+            argus_grazing_wall(&self->evidence.pings[i], self->knowledge.robot, i, stop_mm)) {
             return true;
         }
     }

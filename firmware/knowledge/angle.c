@@ -122,3 +122,7 @@ int argus_count_bits(const uint32_t mask) {
     }
     return count;
 }
+
+uint8_t argus_one_more(const uint8_t count) {
+    return (uint8_t)argus_min(count + 1, UINT8_MAX);
+}

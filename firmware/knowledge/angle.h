@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+#include "knowledge/apart.h"
+
 #define ARGUS_TRIG_ONE 16384 // argus_sin() and argus_cos() are scaled by this
 
 // Any angle reduced to -18000 < a <= 18000.
@@ -24,9 +26,12 @@ uint32_t argus_sqrt(uint32_t value);
 // Length of (x, y), |x|, |y| <= 40,000.
 int32_t argus_hypot(int32_t x, int32_t y);
 
-int32_t argus_abs(int32_t value);
+ARGUS_APART int32_t argus_abs(int32_t value);
 int32_t argus_min(int32_t a, int32_t b);
 int32_t argus_max(int32_t a, int32_t b);
 int argus_count_bits(uint32_t mask);
+
+// A count of one more, up to 255.
+ARGUS_APART uint8_t argus_one_more(uint8_t count);
 
 #endif

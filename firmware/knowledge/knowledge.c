@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
+#include "knowledge/apart.h"
 #include "knowledge/odometry.h"
 
 #define REST_MM_S 5
@@ -38,7 +39,7 @@ void argus_knowledge_reopen(argus_knowledge_t *const self, const uint32_t now_ms
 }
 
 // The raw position counts in 15 or 16 bits: the low 15 are right in both.
-static int32_t raw_delta(const uint16_t now, const uint16_t before) {
+static ARGUS_APART int32_t raw_delta(const uint16_t now, const uint16_t before) {
     const int32_t delta = (int32_t)((uint32_t)(now - before) & 0x7FFFu);
     return delta > 0x3FFF ? delta - 0x8000 : delta;
 }
@@ -69,7 +70,8 @@ static int32_t carry_mm(int32_t *const rest_um, const int32_t more_um) {
 }
 
 // Whole parts and the rest apart, so that 32 bits will do.
-static int32_t rotated_um(const int32_t x_um, const int32_t c, const int32_t y_um, const int32_t s) {
+static ARGUS_APART int32_t rotated_um(const int32_t x_um, const int32_t c, const int32_t y_um,
+                                      const int32_t s) {
     const int32_t one = ARGUS_TRIG_ONE;
     return x_um / one * c + y_um / one * s + (x_um % one * c + y_um % one * s) / one;
 }
@@ -137,10 +139,12 @@ static argus_span_t span_to(const argus_knowledge_t *const self, const argus_sip
 static void leave_out(argus_knowledge_t *const self, const argus_sip_t *const sip,
                       const argus_span_t *const span) {
     const argus_way_turn_t moved = argus_odometry_by_wheels(span);
-    const int32_t heading = self->pose.heading_cdeg + moved.turn_cdeg / 2;
-    const int32_t way_mm = moved.way_mm - self->excess.out_mm;
-    self->pose.x_mm += way_mm * argus_cos(heading) / ARGUS_TRIG_ONE;
-    self->pose.y_mm += way_mm * argus_sin(heading) / ARGUS_TRIG_ONE;
+    const argus_pose_t half_way = {self->pose.x_mm, self->pose.y_mm,
+                                   self->pose.heading_cdeg + moved.turn_cdeg / 2};
+    const argus_point_t at =
+        argus_to_course(&half_way, (argus_point_t){moved.way_mm - self->excess.out_mm, 0});
+    self->pose.x_mm = at.x_mm;
+    self->pose.y_mm = at.y_mm;
     self->odometer_mm += (uint32_t)argus_abs(moved.way_mm);
     self->pose.heading_cdeg =
         argus_angle_wrap(self->pose.heading_cdeg + moved.turn_cdeg - self->excess.out_cdeg);
@@ -431,9 +435,8 @@ argus_point_t argus_echo_robot(const argus_knowledge_t *const self, const int so
     ARGUS_ASSERT(sonar >= 0 && sonar < self->sonars);
     const argus_sonar_pose_t *const at = argus_robot_pose(self->robot, sonar);
     const int32_t range = self->sonar[sonar].reading_mm;
-    const argus_point_t echo = {at->x_mm + range * argus_cos(at->heading_deg * 100) / ARGUS_TRIG_ONE,
-                                at->y_mm + range * argus_sin(at->heading_deg * 100) / ARGUS_TRIG_ONE};
-    return echo;
+    const argus_pose_t mount = {at->x_mm, at->y_mm, at->heading_deg * 100};
+    return argus_to_course(&mount, (argus_point_t){range, 0});
 }
 
 argus_point_t argus_to_course(const argus_pose_t *const pose, const argus_point_t robot) {

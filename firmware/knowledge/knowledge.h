@@ -6,6 +6,7 @@
 
 #include "arcos/sip.h"
 #include "argus/argus.h"
+#include "knowledge/apart.h"
 #include "knowledge/odometry.h"
 #include "robot/robot.h"
 
@@ -128,8 +129,8 @@ argus_mark_t argus_mark_now(const argus_knowledge_t *self);
 bool argus_fresh_since(const argus_knowledge_t *self, int sonar, const argus_mark_t *mark);
 bool argus_all_fresh_since(const argus_knowledge_t *self, argus_mask_t sonars, const argus_mark_t *mark);
 
-uint32_t argus_age_ms(const argus_knowledge_t *self, int sonar,
-                      uint32_t now_ms); // UINT32_MAX: never reported
+ARGUS_APART uint32_t argus_age_ms(const argus_knowledge_t *self, int sonar,
+                                  uint32_t now_ms); // UINT32_MAX: never reported
 uint32_t argus_silent_ms(const argus_knowledge_t *self,
                          int sonar);               // how long it has missed its slots, as of the last SIP
 bool argus_at_rest(const argus_knowledge_t *self); // two consecutive SIPs within 5 mm/s

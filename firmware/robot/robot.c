@@ -88,35 +88,35 @@ const argus_sonar_pose_t *argus_robot_pose(const argus_robot_t *const self, cons
     return &argus_sonar_poses[self->first_pose + sonar];
 }
 
-static argus_mask_t managed(const argus_robot_t *const self, const uint32_t mask) {
-    const int count = argus_robot_sonars(self);
-    const uint32_t all = count == 0 ? 0u : UINT32_MAX >> (32 - count);
-    ARGUS_ASSERT(count <= ARGUS_SONARS);
-    return (argus_mask_t)(mask & all);
+// No row has a bit for a sonar that its robot has not.
+static argus_mask_t managed(const uint32_t mask) {
+    return (argus_mask_t)(mask & UINT32_MAX >> (32 - ARGUS_SONARS));
 }
 
 argus_mask_t argus_robot_all(const argus_robot_t *const self) {
-    return managed(self, UINT32_MAX);
+    const int count = argus_robot_sonars(self);
+    ARGUS_ASSERT(count <= ARGUS_SONARS);
+    return (argus_mask_t)(count == 0 ? 0u : UINT32_MAX >> (32 - count));
 }
 
 argus_mask_t argus_robot_forward(const argus_robot_t *const self) {
-    return managed(self, self->forward_mask);
+    return managed(self->forward_mask);
 }
 
 argus_mask_t argus_robot_ahead(const argus_robot_t *const self) {
-    return managed(self, self->ahead_mask);
+    return managed(self->ahead_mask);
 }
 
 argus_mask_t argus_robot_astern(const argus_robot_t *const self) {
-    return managed(self, self->astern_mask);
+    return managed(self->astern_mask);
 }
 
 argus_mask_t argus_robot_flank(const argus_robot_t *const self) {
-    return managed(self, self->flank_mask);
+    return managed(self->flank_mask);
 }
 
 argus_mask_t argus_robot_rear_flank(const argus_robot_t *const self) {
-    return managed(self, self->rear_flank_mask);
+    return managed(self->rear_flank_mask);
 }
 
 argus_mask_t argus_robot_array(const argus_robot_t *const self, const int array) {

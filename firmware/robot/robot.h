@@ -3,6 +3,7 @@
 #ifndef ARGUS_ROBOT_H
 #define ARGUS_ROBOT_H
 
+#include "knowledge/apart.h"
 #include "robot/table.h"
 
 // The robot that is assumed while none is known (p3dx-sh), and one of which nothing is known: no sonars.
@@ -33,7 +34,7 @@ int32_t argus_robot_facing_cdeg(const argus_robot_t *self);
 int argus_robot_sonars(const argus_robot_t *self);
 
 // 0 <= sonar < argus_robot_sonars().
-const argus_sonar_pose_t *argus_robot_pose(const argus_robot_t *self, int sonar);
+ARGUS_APART const argus_sonar_pose_t *argus_robot_pose(const argus_robot_t *self, int sonar);
 
 // Masks over the sonars that are managed.
 argus_mask_t argus_robot_all(const argus_robot_t *self);

@@ -13,9 +13,9 @@ typedef struct {
     int16_t x_mm;
     int16_t y_mm;
     int16_t heading_deg; // counter-clockwise, 0 = ahead
-    int8_t array;        // that fires it, from 0
-    int8_t left;         // neighbours of one that faces forward: sonar numbers, -1: none
-    int8_t right;
+    uint16_t array : 4;  // that fires it, from 0
+    int16_t left : 6;    // neighbours of one that faces forward: sonar numbers, -1: none
+    int16_t right : 6;
 } argus_sonar_pose_t;
 
 // One row of hil_sim/tables/robots, which has the source of each figure. A robot with a rear array has a

@@ -17,7 +17,7 @@ static const argus_robot_t *robot_met(const argus_t *const self) {
 
 static void say_beyond(argus_t *const self, const argus_robot_t *const robot) {
     if (robot->sonars > ARGUS_SONARS) {
-        argus_say(self, ARGUS_EV_SONARS_BEYOND, ARGUS_NO_SONAR, robot->sonars);
+        argus_tell(self, ARGUS_EV_SONARS_BEYOND, robot->sonars);
     }
 }
 
@@ -51,14 +51,13 @@ static void change_to(argus_t *const self, const argus_robot_t *const robot) {
 
 bool argus_say_barred(argus_t *const self) {
     if (!argus_robot_is_known(self->knowledge.robot)) {
-        argus_say(self, ARGUS_EV_SUBCLASS_UNKNOWN, ARGUS_NO_SONAR, 0);
+        argus_tell(self, ARGUS_EV_SUBCLASS_UNKNOWN, 0);
         return true;
     }
     const argus_config_report_t report = argus_config_check_for(&self->config, self->knowledge.robot);
     if (report.fault != ARGUS_CONFIG_OK) {
         const bool driving = report.fault == ARGUS_CONFIG_DRIVING;
-        argus_say(self, ARGUS_EV_ROBOT_UNSAFE, ARGUS_NO_SONAR,
-                  driving ? report.driving_mm : report.stepping_mm);
+        argus_tell(self, ARGUS_EV_ROBOT_UNSAFE, driving ? report.driving_mm : report.stepping_mm);
     }
     return report.fault != ARGUS_CONFIG_OK;
 }

@@ -31,23 +31,25 @@ static bool is_look_due(const argus_t *const self, const argus_mask_t suspects) 
     return argus_rules(self)->evidence ? argus_look_pays(self) : suspects != 0;
 }
 
-static argus_intent_t verify(const argus_mask_t suspects) {
-    return (argus_intent_t){.act = ARGUS_DO_VERIFY, .sonars = suspects};
+static void verify(const argus_mask_t suspects, argus_intent_t *const intent) {
+    intent->act = ARGUS_DO_VERIFY;
+    intent->sonars = suspects;
 }
 
-argus_intent_t argus_conclude_check(argus_t *const self) {
+void argus_conclude_check(argus_t *const self, argus_intent_t *const intent) {
     ARGUS_ASSERT(self->mode == ARGUS_MODE_CHECKING);
     const argus_mask_t suspects = (argus_mask_t)(find_suspects(self) | argus_open_suspects(self));
     argus_flag_suspects(self, suspects);
     self->looks.check_ms = self->now_ms;
     if (is_look_due(self, suspects) && !self->orders.passive && !self->orders.stay) {
-        return verify(suspects);
+        verify(suspects, intent);
+        return;
     }
     declare_healthy(self);
     argus_replan(self);
     self->checked = true;
-    argus_say(self, ARGUS_EV_HEALTH_CHECK, ARGUS_NO_SONAR, argus_count_bits(argus_out(&self->knowledge)));
-    return argus_to(ARGUS_DO_DECIDE);
+    argus_tell(self, ARGUS_EV_HEALTH_CHECK, argus_count_bits(argus_out(&self->knowledge)));
+    intent->act = ARGUS_DO_DECIDE;
 }
 
 static bool is_due(const argus_t *const self) {
@@ -72,10 +74,10 @@ static bool may_verify(const argus_t *const self) {
     return !self->orders.passive && !(self->orders.paused && self->mode == ARGUS_MODE_IDLE);
 }
 
-argus_intent_t argus_check_beside(argus_t *const self) {
+void argus_check_beside(argus_t *const self, argus_intent_t *const intent) {
     ARGUS_ASSERT(self->mode != ARGUS_MODE_VERIFYING && self->mode != ARGUS_MODE_CHECKING);
     if (!is_due(self)) {
-        return (argus_intent_t){0};
+        return;
     }
     self->looks.check_ms = self->now_ms;
     const argus_mask_t suspects = find_suspects(self);
@@ -86,8 +88,9 @@ argus_intent_t argus_check_beside(argus_t *const self) {
         drop_suspicions(self);
     }
     argus_flag_suspects(self, suspects);
-    const bool looks = may_verify(self) && is_look_due(self, suspects);
-    return looks ? verify(suspects) : (argus_intent_t){0};
+    if (may_verify(self) && is_look_due(self, suspects)) {
+        verify(suspects, intent);
+    }
 }
 
 static void say_witnesses(argus_t *const self) {

@@ -7,10 +7,10 @@
 #include "supervisor/intent.h"
 
 // At rest, all have reported. Suspects are to be verified; without any, each sonar that reported is healthy.
-argus_intent_t argus_conclude_check(argus_t *self);
+void argus_conclude_check(argus_t *self, argus_intent_t *intent);
 
 // The periodic one beside the main task. Nothing to do: ARGUS_DO_NOTHING.
-argus_intent_t argus_check_beside(argus_t *self);
+void argus_check_beside(argus_t *self, argus_intent_t *intent);
 
 // Says what the witnesses saw and applies the verdict.
 void argus_apply_verdict(argus_t *self);

@@ -163,6 +163,7 @@ struct argus {
     uint32_t since_ms; // entry into the mode
     uint32_t ordered_ms;
     uint32_t stops; // STOP and E_STOP sent, monotonic
+    argus_knowledge_t knowledge;
     argus_plan_t plan;
     argus_base_t base;
     argus_checking_t checking;
@@ -175,7 +176,6 @@ struct argus {
     argus_bend_t bend;
     argus_slip_t slip;
     argus_verifying_t verifying;
-    argus_knowledge_t knowledge;
     argus_looks_t looks;
     argus_common_t common;     // profile argus
     argus_extremes_t extremes; // profile argus

@@ -52,9 +52,9 @@ void argus_share_slots(argus_t *const self) {
 
 static void say_plan(argus_t *const self) {
     ARGUS_ASSERT(self->plan.count <= ARGUS_ROTATIONS_MAX);
-    argus_say(self, ARGUS_EV_PLAN, ARGUS_NO_SONAR, self->plan.count);
+    argus_tell(self, ARGUS_EV_PLAN, self->plan.count);
     for (int i = 0; i < self->plan.count; i++) {
-        argus_say(self, ARGUS_EV_PLAN_ROTATION, ARGUS_NO_SONAR, self->plan.rotation_deg[i]);
+        argus_tell(self, ARGUS_EV_PLAN_ROTATION, self->plan.rotation_deg[i]);
     }
 }
 
@@ -112,8 +112,7 @@ void argus_replan(argus_t *const self) {
     if (failure != self->failure) {
         self->failure = failure;
         const argus_mask_t front = argus_robot_forward(argus_robot_built(self->knowledge.robot));
-        argus_say(self, ARGUS_EV_FAILURE_STATE, ARGUS_NO_SONAR,
-                  argus_count_bits(argus_out(&self->knowledge) & front));
+        argus_tell(self, ARGUS_EV_FAILURE_STATE, argus_count_bits(argus_out(&self->knowledge) & front));
     }
     if (blind == before.disabled && (blind == 0 || !argus_plan_asks_ring(argus_policy(self)))) {
         return;

@@ -35,7 +35,7 @@ static void put_on_probation(argus_t *const self, const argus_mask_t sonars) {
 
 static void refuse(argus_t *const self, const argus_record_fault_t fault) {
     ARGUS_ASSERT(fault != ARGUS_RECORD_OK);
-    argus_say(self, ARGUS_EV_RECORD_IGNORED, ARGUS_NO_SONAR, (int32_t)fault);
+    argus_tell(self, ARGUS_EV_RECORD_IGNORED, (int32_t)fault);
 }
 
 // The robot was not known when the record was read.

@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: MIT
-// The intents that most modes come to.
+// What most intents are filled in with.
 #include "supervisor/intent.h"
 
-argus_intent_t argus_to(const argus_act_t act) {
-    return (argus_intent_t){.act = (uint8_t)act};
+void argus_to_check(argus_intent_t *const intent, const bool full) {
+    intent->act = ARGUS_DO_CHECK;
+    intent->full = full;
 }
 
-argus_intent_t argus_to_nothing(void) {
-    return argus_to(ARGUS_DO_NOTHING);
+void argus_to_turn(argus_intent_t *const intent, const int32_t heading_cdeg) {
+    intent->act = ARGUS_DO_TURN;
+    intent->cdeg = heading_cdeg;
 }
 
-argus_intent_t argus_to_check(const bool full) {
-    return (argus_intent_t){.act = ARGUS_DO_CHECK, .full = full};
-}
-
-argus_intent_t argus_to_turn(const int32_t heading_cdeg) {
-    return (argus_intent_t){.act = ARGUS_DO_TURN, .cdeg = heading_cdeg};
-}
-
-argus_intent_t argus_to_wait(const argus_wait_t why) {
+void argus_to_wait(argus_intent_t *const intent, const argus_wait_t why) {
     ARGUS_ASSERT(why > ARGUS_WAIT_NONE && why <= ARGUS_WAIT_ECHO);
-    return (argus_intent_t){.act = ARGUS_DO_WAIT, .why = (uint8_t)why};
+    intent->act = ARGUS_DO_WAIT;
+    intent->why = (uint8_t)why;
+}
+
+void argus_to_say(argus_intent_t *const intent, const argus_event_id_t event, const int sonar,
+                  const int32_t value) {
+    ARGUS_ASSERT(sonar >= ARGUS_NO_SONAR && sonar < ARGUS_SONARS);
+    intent->event = (uint16_t)event;
+    intent->sonar = (int8_t)sonar;
+    intent->value = value;
 }

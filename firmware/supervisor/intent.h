@@ -4,6 +4,7 @@
 #define ARGUS_INTENT_H
 
 #include "argus/argus.h"
+#include "knowledge/apart.h"
 
 typedef enum {
     ARGUS_DO_NOTHING, // go on as it is
@@ -71,17 +72,10 @@ typedef struct {
     argus_mask_t silent;
 } argus_intent_t;
 
-// Dozens make one of these: calls are smaller than copies.
-#ifdef __GNUC__
-#define ARGUS_APART __attribute__((noinline))
-#else
-#define ARGUS_APART
-#endif
-
-ARGUS_APART argus_intent_t argus_to(argus_act_t act); // and nothing else
-ARGUS_APART argus_intent_t argus_to_nothing(void);
-ARGUS_APART argus_intent_t argus_to_check(bool full);
-ARGUS_APART argus_intent_t argus_to_turn(int32_t heading_cdeg);
-ARGUS_APART argus_intent_t argus_to_wait(argus_wait_t why);
+// One is begun as nothing and filled in where it lies: dozens are made, and each copy of one costs code.
+ARGUS_APART void argus_to_check(argus_intent_t *intent, bool full);
+void argus_to_turn(argus_intent_t *intent, int32_t heading_cdeg);
+void argus_to_wait(argus_intent_t *intent, argus_wait_t why);
+void argus_to_say(argus_intent_t *intent, argus_event_id_t event, int sonar, int32_t value);
 
 #endif

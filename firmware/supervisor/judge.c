@@ -16,20 +16,24 @@
 #define NAME_STANDS_MS 1000u // three rounds, before a name is said: many for a healthy sonar pass sooner
 
 // What changes the way ahead is answered by a check at rest.
-static argus_intent_t break_off(const argus_t *const self) {
-    const bool may = argus_mode_may(self->mode, ARGUS_MAY_BREAK_OFF);
-    const argus_intent_t check = {.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK};
-    return may ? check : (argus_intent_t){0};
+static void break_off(const argus_t *const self, argus_intent_t *const intent) {
+    if (argus_mode_may(self->mode, ARGUS_MAY_BREAK_OFF)) {
+        intent->stop = ARGUS_STOP_HALT;
+        intent->act = ARGUS_DO_CHECK;
+    }
 }
 
-static argus_intent_t convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+static void convict(argus_t *const self, const int sonar, const argus_fault_kind_t kind,
+                    argus_intent_t *const intent) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
     const bool ahead = (argus_robot_forward(self->knowledge.robot) >> sonar & 1u) != 0;
     argus_disable(self, sonar, kind);
     const bool goes_on =
         argus_rules(self)->drives_seen && argus_guard_may_step(&self->plan) && !argus_should_turn_about(self);
-    return ahead && !goes_on ? break_off(self) : (argus_intent_t){0};
+    if (ahead && !goes_on) {
+        break_off(self, intent);
+    }
 }
 
 // The name has stood for a while.
@@ -78,16 +82,14 @@ static argus_fault_kind_t convicts(const argus_t *const self, const int sonar) {
     return kind != ARGUS_KIND_NONE ? kind : argus_evidence_convicts(&self->evidence, sonar);
 }
 
-static argus_intent_t judge_in(argus_t *const self, const int sonar) {
+static void judge_in(argus_t *const self, const int sonar, argus_intent_t *const intent) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_fault_kind_t kind = convicts(self, sonar);
     if (kind != ARGUS_KIND_NONE) {
-        return convict(self, sonar, kind);
-    }
-    if (!argus_common_excuses(&self->common, sonar)) {
+        convict(self, sonar, kind, intent);
+    } else if (!argus_common_excuses(&self->common, sonar)) {
         name(self, sonar);
     }
-    return (argus_intent_t){0};
 }
 
 // One that is DISABLED goes on PROBATION, one on PROBATION is healthy.
@@ -143,7 +145,7 @@ static bool does_well(const argus_t *const self, const int sonar) {
            argus_evidence_agreed(&self->evidence, sonar) >= agreements_wanted(s);
 }
 
-static argus_intent_t judge_out(argus_t *const self, const int sonar) {
+static void judge_out(argus_t *const self, const int sonar, argus_intent_t *const intent) {
     ARGUS_ASSERT(argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = kind_of_out(self, sonar);
@@ -155,13 +157,12 @@ static argus_intent_t judge_out(argus_t *const self, const int sonar) {
         if (s->health == ARGUS_PROBATION && named != ARGUS_KIND_NONE) {
             argus_disable(self, sonar, named);
         }
-        return (argus_intent_t){0};
+    } else if (does_well(self, sonar)) {
+        restore(self, sonar);
+        if (argus_should_turn_about(self)) {
+            break_off(self, intent);
+        }
     }
-    if (!does_well(self, sonar)) {
-        return (argus_intent_t){0};
-    }
-    restore(self, sonar);
-    return argus_should_turn_about(self) ? break_off(self) : (argus_intent_t){0};
 }
 
 // Its turn in a round comes late: each new order begins the round anew, so plans that change may pass it
@@ -181,19 +182,18 @@ static bool has_fallen_silent(const argus_t *const self, const int sonar) {
     return other && is_silent(self, sonar) && !is_passed_over(self, sonar);
 }
 
-argus_intent_t argus_judge(argus_t *const self, const int sonar) {
+void argus_judge(argus_t *const self, const int sonar, argus_intent_t *const intent) {
     ARGUS_ASSERT(argus_rules(self)->evidence && sonar < self->knowledge.sonars);
     if ((self->orders.pinned >> sonar & 1u) != 0) {
-        return (argus_intent_t){0};
+        return;
     }
     if (argus_is_out(&self->knowledge, sonar)) {
-        return judge_out(self, sonar);
-    }
-    if (has_fallen_silent(self, sonar)) {
+        judge_out(self, sonar, intent);
+    } else if (has_fallen_silent(self, sonar)) {
         argus_disable(self, sonar, ARGUS_KIND_SILENT);
-        return (argus_intent_t){0};
+    } else {
+        judge_in(self, sonar, intent);
     }
-    return judge_in(self, sonar);
 }
 
 void argus_foretell(argus_t *const self) {

@@ -7,7 +7,7 @@
 #include "supervisor/intent.h"
 
 // One sonar. A conviction ahead of the robot calls for a check at rest.
-argus_intent_t argus_judge(argus_t *self, int sonar);
+void argus_judge(argus_t *self, int sonar, argus_intent_t *intent);
 
 // Says which sonar gets worse.
 void argus_foretell(argus_t *self);

@@ -112,7 +112,7 @@ static void clear(argus_t *const self, const int sonar) {
         hold->cleared = 0;
     }
     argus_forget_name(self, sonar);
-    hold->cleared = (uint8_t)argus_min(hold->cleared + 1, UINT8_MAX);
+    hold->cleared = argus_one_more(hold->cleared);
     hold->odometer_mm = self->knowledge.odometer_mm;
     if (s->health == ARGUS_SUSPECT) {
         argus_say_change(self, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, s->reading_mm);

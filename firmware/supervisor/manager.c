@@ -44,11 +44,11 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     argus_motion_init(&self->motion);
     argus_task_init(&self->travel.task);
     argus_events_init(&self->events);
-    argus_do(self, &(argus_intent_t){.act = ARGUS_DO_GO_OFFLINE});
+    argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_GO_OFFLINE, false);
 }
 
 static void check(argus_t *const self, const bool full) {
-    argus_do(self, &(argus_intent_t){.act = ARGUS_DO_CHECK, .full = full});
+    argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, full);
 }
 
 bool argus_set_course(argus_t *const self, const argus_point_t *const points, const uint16_t count) {
@@ -58,7 +58,7 @@ bool argus_set_course(argus_t *const self, const argus_point_t *const points, co
     self->mission = ARGUS_MISSION_RUNNING;
     self->travel.arriving = false;
     self->looks.settling = 0;
-    argus_say(self, ARGUS_EV_MISSION_START, ARGUS_NO_SONAR, count);
+    argus_tell(self, ARGUS_EV_MISSION_START, count);
     if (self->mode == ARGUS_MODE_IDLE || self->waiting.why == ARGUS_WAIT_CATASTROPHIC) {
         check(self, true);
     }
@@ -68,7 +68,7 @@ bool argus_set_course(argus_t *const self, const argus_point_t *const points, co
 void argus_link_up(argus_t *const self, const uint32_t now_ms) {
     self->now_ms = now_ms;
     argus_session_link_up(&self->session, now_ms);
-    argus_say(self, ARGUS_EV_LINK_UP, ARGUS_NO_SONAR, 0);
+    argus_tell(self, ARGUS_EV_LINK_UP, 0);
 }
 
 static void go_offline(argus_t *const self) {
@@ -79,11 +79,9 @@ static void go_offline(argus_t *const self) {
     self->travel.jog_mm = 0;
     self->knowledge.under_way |= argus_motion_is_under_way(&self->motion);
     argus_motion_init(&self->motion);
-    argus_do(self, &(argus_intent_t){.event = ARGUS_EV_LINK_LOST,
-                                     .sonar = ARGUS_NO_SONAR,
-                                     .value = (int32_t)(silence_ms & 0x7FFFFFFFu),
-                                     .base = ARGUS_BASE_DROP,
-                                     .act = ARGUS_DO_GO_OFFLINE});
+    argus_tell(self, ARGUS_EV_LINK_LOST, (int32_t)(silence_ms & 0x7FFFFFFFu));
+    self->base.taken = false;
+    argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_GO_OFFLINE, false);
 }
 
 void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
@@ -94,7 +92,7 @@ void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
 
 static void on_open(argus_t *const self) {
     ARGUS_ASSERT(argus_is_open(self));
-    argus_say(self, ARGUS_EV_SESSION_OPEN, ARGUS_NO_SONAR, self->session.attempts);
+    argus_tell(self, ARGUS_EV_SESSION_OPEN, self->session.attempts);
     argus_meet_body(self);
     if (!self->orders.passive) {
         argus_enable_motors(self);
@@ -123,18 +121,14 @@ static void on_open(argus_t *const self) {
 
 static void on_stall(argus_t *const self) {
     self->stalled = true;
-    argus_do(self, &(argus_intent_t){.event = ARGUS_EV_LINK_STALLED,
-                                     .sonar = ARGUS_NO_SONAR,
-                                     .value = self->config.link_stall_ms,
-                                     .stop = ARGUS_STOP_STOP,
-                                     .unchecked = true,
-                                     .act = ARGUS_DO_CHECK,
-                                     .full = true});
+    self->checked = false;
+    argus_tell(self, ARGUS_EV_LINK_STALLED, self->config.link_stall_ms);
+    argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_CHECK, true);
 }
 
 static void on_resume(argus_t *const self) {
     self->stalled = false;
-    argus_say(self, ARGUS_EV_LINK_RESUMED, ARGUS_NO_SONAR, (int32_t)self->session.gap_ms);
+    argus_tell(self, ARGUS_EV_LINK_RESUMED, (int32_t)self->session.gap_ms);
     argus_awareness_restart(&self->awareness);
     argus_evidence_restart(&self->evidence);
     argus_extremes_restart(&self->extremes);
@@ -160,8 +154,8 @@ static void take_bend(argus_t *const self) {
     }
     const argus_wheel_news_t news = argus_wheel_judge(&self->wheel, &self->knowledge, &piece);
     if (news != ARGUS_WHEEL_SAME) {
-        argus_say(self, news == ARGUS_WHEEL_NAMED ? ARGUS_EV_WHEEL_SHORT : ARGUS_EV_WHEEL_EVEN,
-                  ARGUS_NO_SONAR, self->wheel.short_pm);
+        argus_tell(self, news == ARGUS_WHEEL_NAMED ? ARGUS_EV_WHEEL_SHORT : ARGUS_EV_WHEEL_EVEN,
+                   self->wheel.short_pm);
     }
 }
 
@@ -201,7 +195,7 @@ static void on_sip(argus_t *const self) {
     argus_rays_see(&self->rays, &self->knowledge, sweep_looks(self));
     argus_judge_all(self);
     if (!argus_keep_plan(self) && is_on_its_way(self)) {
-        argus_do(self, &(argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK});
+        argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_CHECK, false);
     }
     argus_motion_sip(&self->motion, &self->session.outbox, &self->knowledge, self->now_ms);
     argus_run_mode(self);
@@ -209,10 +203,10 @@ static void on_sip(argus_t *const self) {
 
 static void handle_link(argus_t *const self, const unsigned bits) {
     if ((bits & ARGUS_SESSION_NO_ANSWER) != 0) {
-        argus_say(self, ARGUS_EV_SESSION_NO_ANSWER, ARGUS_NO_SONAR, self->session.attempts);
+        argus_tell(self, ARGUS_EV_SESSION_NO_ANSWER, self->session.attempts);
     }
     if ((bits & ARGUS_SESSION_DID_DISLODGE) != 0) {
-        argus_say(self, ARGUS_EV_SESSION_DISLODGED, ARGUS_NO_SONAR, 0);
+        argus_tell(self, ARGUS_EV_SESSION_DISLODGED, 0);
     }
     if ((bits & ARGUS_SESSION_DID_STALL) != 0) {
         on_stall(self);
@@ -237,8 +231,8 @@ static void handle(argus_t *const self, const unsigned bits) {
         on_sip(self);
     }
     if ((bits & ARGUS_SESSION_DID_CLOSE) != 0) {
-        argus_say(self, ARGUS_EV_SESSION_CLOSED, ARGUS_NO_SONAR, 0);
-        argus_do(self, &(argus_intent_t){.act = ARGUS_DO_END});
+        argus_tell(self, ARGUS_EV_SESSION_CLOSED, 0);
+        argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_END, false);
     }
 }
 
@@ -263,7 +257,7 @@ static void check_invariants(argus_t *const self) {
     const int broken = argus_invariants_broken(self);
     if (broken != 0 && self->invariant_said == 0) {
         self->invariant_said = (uint8_t)broken;
-        argus_say(self, ARGUS_EV_INVARIANT, ARGUS_NO_SONAR, broken);
+        argus_tell(self, ARGUS_EV_INVARIANT, broken);
     }
 }
 
@@ -293,8 +287,7 @@ bool argus_next_event(argus_t *const self, argus_event_t *const event) {
     if (events->lost == events->lost_said) {
         return false;
     }
-    argus_say(self, ARGUS_EV_EVENTS_LOST, ARGUS_NO_SONAR,
-              (int32_t)((events->lost - events->lost_said) & 0x7FFFFFFFu));
+    argus_tell(self, ARGUS_EV_EVENTS_LOST, (int32_t)((events->lost - events->lost_said) & 0x7FFFFFFFu));
     events->lost_said = events->lost;
     return argus_events_pop(events, event);
 }
@@ -311,12 +304,12 @@ void argus_shutdown(argus_t *const self, const uint32_t now_ms) {
     }
     self->orders.shutdown = true;
     if (argus_is_open(self)) {
-        argus_do(self, &(argus_intent_t){.stop = ARGUS_STOP_STOP, .act = ARGUS_DO_LEAVE});
+        argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_LEAVE, false);
         return;
     }
     argus_session_leave(&self->session, now_ms); // one that is only being opened is closed again
     const bool leaving = self->session.state == ARGUS_SESSION_LEAVING;
-    argus_do(self, &(argus_intent_t){.act = leaving ? ARGUS_DO_LEAVE : ARGUS_DO_END});
+    argus_stop_and_do(self, ARGUS_STOP_NONE, leaving ? ARGUS_DO_LEAVE : ARGUS_DO_END, false);
 }
 
 bool argus_closed(const argus_t *const self) {

@@ -78,7 +78,7 @@ static void enter_waiting(argus_t *const self, const argus_wait_t why) {
         mine->last = why;
         mine->since_ms = self->now_ms;
         mine->said_s = 0;
-        argus_say(self, why == ARGUS_WAIT_WAY ? ARGUS_EV_NO_WAY : ARGUS_EV_WAITING, ARGUS_NO_SONAR, 0);
+        argus_tell(self, why == ARGUS_WAIT_WAY ? ARGUS_EV_NO_WAY : ARGUS_EV_WAITING, 0);
     }
     mine->why = why;
     mine->tried_ms = self->now_ms;
@@ -88,7 +88,7 @@ static void enter_waiting(argus_t *const self, const argus_wait_t why) {
 static void say_unheard(argus_t *const self, const argus_guard_t *const guard) {
     if (!argus_guard_is_heard(guard) && !self->looks.unheard_said) {
         self->looks.unheard_said = true;
-        argus_say(self, ARGUS_EV_NO_ECHO, ARGUS_NO_SONAR, argus_guard_unseen_mm_s(guard));
+        argus_tell(self, ARGUS_EV_NO_ECHO, argus_guard_unseen_mm_s(guard));
     }
 }
 
@@ -99,7 +99,7 @@ static void enter_travel(argus_t *const self) {
     argus_begin_travel(&self->travel);
     self->base.taken = false;
     if (guard.creeps) {
-        argus_say(self, ARGUS_EV_CREEPING, ARGUS_NO_SONAR, argus_guard_unseen_mm_s(&guard));
+        argus_tell(self, ARGUS_EV_CREEPING, argus_guard_unseen_mm_s(&guard));
         enter(self, ARGUS_MODE_CREEPING);
     } else {
         enter(self, argus_guard_may_drive(&guard, &self->plan) ? ARGUS_MODE_DRIVING : ARGUS_MODE_SWEEPING);
@@ -116,66 +116,70 @@ static void enter_idle(argus_t *const self) {
 static void fail_mission(argus_t *const self) {
     if (self->mission == ARGUS_MISSION_RUNNING) {
         self->mission = ARGUS_MISSION_FAILED;
-        argus_say(self, ARGUS_EV_MISSION_FAILED, ARGUS_NO_SONAR,
-                  argus_task_goal_mm(&self->travel.task, &self->knowledge));
+        argus_tell(self, ARGUS_EV_MISSION_FAILED, argus_task_goal_mm(&self->travel.task, &self->knowledge));
     }
 }
 
 // No sonar ahead has heard an echo yet, others have: a look lets them.
-static argus_intent_t try_ahead(argus_t *const self, const argus_mask_t sonars) {
+static void try_ahead(argus_t *const self, const argus_mask_t sonars, argus_intent_t *const next) {
     ARGUS_ASSERT(sonars != 0 && !self->looks.tried);
     if (self->mode != ARGUS_MODE_CHECKING) {
-        return argus_to_check(true);
+        argus_to_check(next, true);
+        return;
     }
     self->looks.tried = true;
-    return (argus_intent_t){.act = ARGUS_DO_VERIFY, .sonars = sonars};
+    next->act = ARGUS_DO_VERIFY;
+    next->sonars = sonars;
 }
 
 // No sonar sees the way: all that could are out, or suspects that no one can judge; or a touch has shown it.
-static argus_intent_t stand(argus_t *const self) {
+static void stand(argus_t *const self, argus_intent_t *const next) {
     self->travel.jog_mm = 0;
-    if (argus_guard_may_step(&self->plan)) {
-        return argus_to_wait(ARGUS_WAIT_ECHO);
+    argus_to_wait(next, ARGUS_WAIT_ECHO);
+    if (!argus_guard_may_step(&self->plan)) {
+        fail_mission(self);
+        argus_to_wait(next, ARGUS_WAIT_CATASTROPHIC);
     }
-    fail_mission(self);
-    return argus_to_wait(ARGUS_WAIT_CATASTROPHIC);
 }
 
-static argus_intent_t set_off(argus_t *const self) {
+static void set_off(argus_t *const self, argus_intent_t *const next) {
     const argus_guard_t guard = argus_guard(self);
     if (argus_is_unseen(self, &guard) && !guard.creeps) {
-        return stand(self);
+        stand(self, next);
+    } else if (guard.bumpers != 0) {
+        argus_to_wait(next, ARGUS_WAIT_BUMPER);
+    } else if (!argus_guard_may_translate(&guard)) {
+        argus_to_wait(next, ARGUS_WAIT_MOTORS);
+    } else {
+        enter_travel(self);
     }
-    if (guard.bumpers != 0) {
-        return argus_to_wait(ARGUS_WAIT_BUMPER);
-    }
-    if (!argus_guard_may_translate(&guard)) {
-        return argus_to_wait(ARGUS_WAIT_MOTORS);
-    }
-    enter_travel(self);
-    return argus_to_nothing();
 }
 
-static argus_intent_t decide(argus_t *const self) {
+static void decide(argus_t *const self, argus_intent_t *const next) {
     ARGUS_ASSERT(self->mode != ARGUS_MODE_CLOSING && self->mode != ARGUS_MODE_CLOSED);
     const bool jogging = self->travel.jog_mm > 0;
     const bool wants = jogging || (self->mission == ARGUS_MISSION_RUNNING && !self->orders.paused);
     if (self->orders.passive || !wants) {
         enter_idle(self);
-        return argus_to_nothing();
+        return;
     }
     if (argus_should_turn_about(self)) { // also to the end that has been heard
         argus_turn_about(self);
-        return argus_to_check(true);
+        argus_to_check(next, true);
+        return;
     }
     const argus_mask_t unheard = argus_to_try(self);
-    return unheard != 0 ? try_ahead(self, unheard) : set_off(self);
+    if (unheard != 0) {
+        try_ahead(self, unheard, next);
+    } else {
+        set_off(self, next);
+    }
 }
 
 // Carrying out
 // -----------------------------------------------------------------------------------------------
 
-static argus_intent_t turn(argus_t *const self, const int32_t heading_cdeg) {
+static void turn(argus_t *const self, const int32_t heading_cdeg, argus_intent_t *const next) {
     ARGUS_ASSERT(!self->orders.passive && !self->orders.shutdown);
     const argus_guard_t guard = argus_guard(self);
     const int32_t by_cdeg = argus_angle_wrap(heading_cdeg - self->knowledge.pose.heading_cdeg);
@@ -184,15 +188,13 @@ static argus_intent_t turn(argus_t *const self, const int32_t heading_cdeg) {
         waiting->last = waiting->last == ARGUS_WAIT_TURN ? ARGUS_WAIT_NONE : waiting->last;
         argus_turn_to(self, heading_cdeg);
         self->turning.again = false;
-        return argus_to_nothing();
+        return;
     }
-    const argus_intent_t instead = argus_instead_of_turn(self);
+    argus_instead_of_turn(self, next);
     self->turning.again = false;
-    if (instead.act == ARGUS_DO_BACK) { // far once counts twice
-        self->turning.backed =
-            (uint8_t)(self->turning.backed + (instead.mm > self->config.backoff_mm ? 2 : 1));
+    if (next->act == ARGUS_DO_BACK) { // far once counts twice
+        self->turning.backed = (uint8_t)(self->turning.backed + (next->mm > self->config.backoff_mm ? 2 : 1));
     }
-    return instead;
 }
 
 static void back(argus_t *const self, const argus_intent_t *const intent) {
@@ -203,7 +205,7 @@ static void back(argus_t *const self, const argus_intent_t *const intent) {
         return;
     }
     const int32_t most_mm_s = guard.creeps ? argus_guard_unseen_mm_s(&guard) : intent->speed_mm_s;
-    argus_say(self, ARGUS_EV_BACKING, ARGUS_NO_SONAR, intent->mm);
+    argus_tell(self, ARGUS_EV_BACKING, intent->mm);
     argus_move(self, -intent->mm, argus_min(intent->speed_mm_s, most_mm_s));
     enter(self, ARGUS_MODE_BACKING);
 }
@@ -247,15 +249,16 @@ static void go_ahead(argus_t *const self, const argus_intent_t *const intent) {
 }
 
 // The point is remembered, or the rest of the turn would be tried at once.
-static argus_intent_t end_turn(argus_t *const self, const argus_point_t at) {
+static void end_turn(argus_t *const self, const argus_point_t at, argus_intent_t *const next) {
     ARGUS_ASSERT(self->motion.kind == ARGUS_MOTION_TURN);
     const argus_guard_t guard = argus_guard(self);
     argus_echoes_touched(&self->echoes, at, self->now_ms);
-    argus_say(self, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, argus_guard_nearest_mm(&guard, 0));
-    return (argus_intent_t){.stop = ARGUS_STOP_STOP, .act = ARGUS_DO_CHECK, .full = true};
+    argus_tell(self, ARGUS_EV_TURN_BLOCKED, argus_guard_nearest_mm(&guard, 0));
+    argus_to_check(next, true);
+    next->stop = ARGUS_STOP_STOP;
 }
 
-static argus_intent_t begin_looks(argus_t *const self, const argus_intent_t *const intent) {
+static void begin_looks(argus_t *const self, const argus_intent_t *const intent, argus_intent_t *const next) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(self->mode == ARGUS_MODE_VERIFYING && self->verifying.inquiry.active);
     for (int i = 0; i < self->knowledge.sonars; i++) {
@@ -264,25 +267,24 @@ static argus_intent_t begin_looks(argus_t *const self, const argus_intent_t *con
         }
     }
     if (intent->sonars == 0) {
-        argus_say(self, ARGUS_EV_LOOK, ARGUS_NO_SONAR, 0);
+        argus_tell(self, ARGUS_EV_LOOK, 0);
     }
-    return turn(self, intent->cdeg);
+    turn(self, intent->cdeg, next);
 }
 
-static argus_intent_t lose(argus_t *const self, const argus_intent_t *const intent) {
+static void lose(argus_t *const self, const argus_intent_t *const intent, argus_intent_t *const next) {
     ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     ARGUS_ASSERT((intent->sonars | intent->silent) != 0);
     argus_lose(self, intent->sonars, intent->silent);
     const bool stays = self->mode == ARGUS_MODE_WAITING || self->mode == ARGUS_MODE_CLOSING;
-    return (argus_intent_t){.act = stays ? ARGUS_DO_NOTHING : ARGUS_DO_CHECK};
+    next->act = stays ? ARGUS_DO_NOTHING : ARGUS_DO_CHECK;
 }
 
-static argus_intent_t reach(argus_t *const self) {
+static void reach(argus_t *const self, argus_intent_t *const next) {
     ARGUS_ASSERT(self->mission == ARGUS_MISSION_RUNNING);
     self->mission = ARGUS_MISSION_REACHED;
-    argus_say(self, ARGUS_EV_GOAL_REACHED, ARGUS_NO_SONAR,
-              argus_task_goal_mm(&self->travel.task, &self->knowledge));
-    return argus_to(ARGUS_DO_DECIDE);
+    argus_tell(self, ARGUS_EV_GOAL_REACHED, argus_task_goal_mm(&self->travel.task, &self->knowledge));
+    next->act = ARGUS_DO_DECIDE;
 }
 
 static void stop(argus_t *const self, const argus_stop_t how) {
@@ -344,7 +346,8 @@ static void prepare(argus_t *const self, const argus_intent_t *const intent) {
     take_base(self, (argus_base_do_t)intent->base);
 }
 
-static argus_intent_t perform_motion(argus_t *const self, const argus_intent_t *const intent) {
+static void perform_motion(argus_t *const self, const argus_intent_t *const intent,
+                           argus_intent_t *const next) {
     ARGUS_ASSERT(intent->act != ARGUS_DO_NOTHING);
     switch ((argus_act_t)intent->act) {
     case ARGUS_DO_HOLD:
@@ -354,7 +357,8 @@ static argus_intent_t perform_motion(argus_t *const self, const argus_intent_t *
         argus_brake(self);
         break;
     case ARGUS_DO_TURN:
-        return turn(self, intent->cdeg);
+        turn(self, intent->cdeg, next);
+        break;
     case ARGUS_DO_DRIVE:
     case ARGUS_DO_STEP:
     case ARGUS_DO_CREEP:
@@ -367,18 +371,19 @@ static argus_intent_t perform_motion(argus_t *const self, const argus_intent_t *
         argus_enable_motors(self);
         break;
     case ARGUS_DO_END_TURN:
-        return end_turn(self, intent->at);
+        end_turn(self, intent->at, next);
+        break;
     default:
         break;
     }
-    return argus_to_nothing();
 }
 
-static argus_intent_t perform_end(argus_t *const self, const argus_act_t act) {
+static void perform_end(argus_t *const self, const argus_act_t act, argus_intent_t *const next) {
     switch (act) {
     case ARGUS_DO_GIVE_UP:
         fail_mission(self);
-        return argus_to_check(true);
+        argus_to_check(next, true);
+        break;
     case ARGUS_DO_GO_OFFLINE:
         enter(self, self->orders.shutdown ? ARGUS_MODE_CLOSED : ARGUS_MODE_OFFLINE);
         break;
@@ -391,10 +396,10 @@ static argus_intent_t perform_end(argus_t *const self, const argus_act_t act) {
     default:
         break;
     }
-    return argus_to_nothing();
 }
 
-static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *const intent) {
+static void perform_change(argus_t *const self, const argus_intent_t *const intent,
+                           argus_intent_t *const next) {
     ARGUS_ASSERT(intent->act >= ARGUS_DO_CHECK && intent->act <= ARGUS_DO_END);
     switch ((argus_act_t)intent->act) {
     case ARGUS_DO_CHECK:
@@ -410,62 +415,81 @@ static argus_intent_t perform_change(argus_t *const self, const argus_intent_t *
         enter_waiting(self, (argus_wait_t)intent->why);
         break;
     case ARGUS_DO_DECIDE:
-        return decide(self);
+        decide(self, next);
+        break;
     default:
-        return perform_end(self, (argus_act_t)intent->act);
+        perform_end(self, (argus_act_t)intent->act, next);
+        break;
     }
-    return argus_to_nothing();
 }
 
-static argus_intent_t perform_judgement(argus_t *const self, const argus_intent_t *const intent) {
+static void perform_judgement(argus_t *const self, const argus_intent_t *const intent,
+                              argus_intent_t *const next) {
     ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     switch ((argus_act_t)intent->act) {
     case ARGUS_DO_CHECK_BESIDE:
-        return argus_check_beside(self);
+        argus_check_beside(self, next);
+        break;
     case ARGUS_DO_CONCLUDE:
-        return argus_conclude_check(self);
+        argus_conclude_check(self, next);
+        break;
     case ARGUS_DO_VERDICT:
         argus_apply_verdict(self);
         break;
     case ARGUS_DO_LOOK:
-        return begin_looks(self, intent);
+        begin_looks(self, intent, next);
+        break;
     case ARGUS_DO_LOOKED:
         argus_conclude_looks(self);
-        return argus_to_check(false);
+        argus_to_check(next, false);
+        break;
     case ARGUS_DO_LEAVE_OPEN:
         argus_leave_open(self, intent->sonars);
-        return argus_to_check(false);
+        argus_to_check(next, false);
+        break;
     case ARGUS_DO_LOSE:
-        return lose(self, intent);
+        lose(self, intent, next);
+        break;
     case ARGUS_DO_WATCH:
         argus_watch(self, intent->sonars);
         break;
     case ARGUS_DO_REACH:
-        return reach(self);
+        reach(self, next);
+        break;
     default:
         break;
     }
-    return argus_to_nothing();
 }
 
-static argus_intent_t perform(argus_t *const self, const argus_intent_t *const intent) {
+static void perform(argus_t *const self, const argus_intent_t *const intent, argus_intent_t *const next) {
     ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     if (intent->act <= ARGUS_DO_END_TURN) {
-        return perform_motion(self, intent);
+        perform_motion(self, intent, next);
+    } else if (intent->act <= ARGUS_DO_END) {
+        perform_change(self, intent, next);
+    } else {
+        perform_judgement(self, intent, next);
     }
-    return intent->act <= ARGUS_DO_END ? perform_change(self, intent) : perform_judgement(self, intent);
 }
 
 void argus_do(argus_t *const self, const argus_intent_t *const wanted) {
-    argus_intent_t intent = *wanted;
+    argus_intent_t following[2];
+    const argus_intent_t *intent = wanted;
     for (int i = 0; i < FOLLOW_MOST; i++) {
-        prepare(self, &intent);
-        if (intent.act == ARGUS_DO_NOTHING) {
+        argus_intent_t *const next = &following[i % 2];
+        prepare(self, intent);
+        if (intent->act == ARGUS_DO_NOTHING) {
             return;
         }
-        intent = perform(self, &intent);
+        *next = (argus_intent_t){0};
+        perform(self, intent, next);
+        intent = next;
     }
-    ARGUS_ASSERT(intent.act == ARGUS_DO_NOTHING && intent.event == 0);
+    ARGUS_ASSERT(intent->act == ARGUS_DO_NOTHING && intent->event == 0);
+}
+
+void argus_stop_and_do(argus_t *const self, const argus_stop_t stop, const argus_act_t act, const bool full) {
+    argus_do(self, &(argus_intent_t){.stop = (uint8_t)stop, .act = (uint8_t)act, .full = full});
 }
 
 // One SIP --------------------------------------------------------------------------------------------------
@@ -473,7 +497,8 @@ void argus_do(argus_t *const self, const argus_intent_t *const wanted) {
 void argus_react(argus_t *const self, const argus_alarm_t *const alarm) {
     bool goes_on = argus_mode_may(self->mode, ARGUS_MAY_REACT);
     for (int i = 0; i < ARGUS_REFLEXES && goes_on; i++) {
-        const argus_intent_t intent = argus_reflex((argus_reflex_t)i, self, alarm, &self->reflexes);
+        argus_intent_t intent = {0};
+        argus_reflex((argus_reflex_t)i, self, alarm, &self->reflexes, &intent);
         argus_do(self, &intent);
         goes_on = intent.act == ARGUS_DO_NOTHING || !argus_reflex_is_last((argus_reflex_t)i);
     }
@@ -486,66 +511,68 @@ void argus_judge_all(argus_t *const self) {
     }
     const bool moves = argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE);
     if (moves && argus_common_strikes(&self->common, argus_robot_forward(self->knowledge.robot))) {
-        argus_do(self, &(argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_CHECK, .full = true});
+        argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_CHECK, true);
     }
     for (int i = 0; i < self->knowledge.sonars && argus_mode_may(self->mode, ARGUS_MAY_JUDGE); i++) {
-        const argus_intent_t intent = argus_judge(self, i);
+        argus_intent_t intent = {0};
+        argus_judge(self, i, &intent);
         argus_do(self, &intent);
     }
     argus_foretell(self);
 }
 
-static argus_intent_t run_nobody(argus_t *const self) {
+static void run_nobody(argus_t *const self, argus_intent_t *const intent) {
     (void)self;
-    return argus_to_nothing();
+    (void)intent;
 }
 
-static argus_intent_t run_checking(argus_t *const self) {
-    return argus_run_checking(self, &self->checking);
+static void run_checking(argus_t *const self, argus_intent_t *const intent) {
+    argus_run_checking(self, &self->checking, intent);
 }
 
-static argus_intent_t run_verifying(argus_t *const self) {
-    return argus_run_verifying(self, &self->verifying);
+static void run_verifying(argus_t *const self, argus_intent_t *const intent) {
+    argus_run_verifying(self, &self->verifying, intent);
 }
 
-static argus_intent_t run_idle(argus_t *const self) {
-    return argus_run_idle(self);
+static void run_idle(argus_t *const self, argus_intent_t *const intent) {
+    argus_run_idle(self, intent);
 }
 
-static argus_intent_t run_driving(argus_t *const self) {
-    return argus_run_driving(self, &self->travel);
+static void run_driving(argus_t *const self, argus_intent_t *const intent) {
+    argus_run_driving(self, &self->travel, intent);
 }
 
-static argus_intent_t run_sweeping(argus_t *const self) {
-    return argus_run_sweeping(self, &self->travel);
+static void run_sweeping(argus_t *const self, argus_intent_t *const intent) {
+    argus_run_sweeping(self, &self->travel, intent);
 }
 
-static argus_intent_t run_stepping(argus_t *const self) {
-    return argus_run_stepping(self, &self->travel);
+static void run_stepping(argus_t *const self, argus_intent_t *const intent) {
+    argus_run_stepping(self, &self->travel, intent);
 }
 
-static argus_intent_t run_creeping(argus_t *const self) {
-    return argus_run_creeping(self, &self->travel);
+static void run_creeping(argus_t *const self, argus_intent_t *const intent) {
+    argus_run_creeping(self, &self->travel, intent);
 }
 
-static argus_intent_t run_backing(argus_t *const self) {
-    return argus_run_backing(self);
+static void run_backing(argus_t *const self, argus_intent_t *const intent) {
+    argus_run_backing(self, intent);
 }
 
-static argus_intent_t run_waiting(argus_t *const self) {
-    return argus_run_waiting(self, &self->waiting);
+static void run_waiting(argus_t *const self, argus_intent_t *const intent) {
+    argus_run_waiting(self, &self->waiting, intent);
 }
 
-static argus_intent_t run(argus_t *const self) {
+static void run(argus_t *const self, argus_intent_t *const intent) {
     switch (self->mode) {
 #define RUN(name, run, may, limit, then, meaning) \
     case ARGUS_MODE_##name:                       \
-        return run_##run(self);
+        run_##run(self, intent);                  \
+        break;
         // Modes in which nothing acts stand side by side in the table.
         ARGUS_MODE_TABLE(RUN) // NOLINT(bugprone-branch-clone)
 #undef RUN
     default:
-        return argus_to_nothing();
+        break;
     }
 }
 
@@ -562,11 +589,8 @@ static bool is_under_way(const argus_t *const self) {
 static void watch_course(argus_t *const self) {
     argus_task_t *const task = &self->travel.task;
     if (argus_task_is_hopeless(task, &self->knowledge, is_under_way(self))) {
-        argus_do(self, &(argus_intent_t){.event = ARGUS_EV_NO_WAY,
-                                         .sonar = ARGUS_NO_SONAR,
-                                         .value = (int32_t)(task->progress.vain_ms / 1000u),
-                                         .stop = ARGUS_STOP_HALT,
-                                         .act = ARGUS_DO_GIVE_UP});
+        argus_tell(self, ARGUS_EV_NO_WAY, (int32_t)(task->progress.vain_ms / 1000u));
+        argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_GIVE_UP, false);
     }
 }
 
@@ -574,7 +598,8 @@ void argus_run_mode(argus_t *const self) {
     bool more = true;
     for (int i = 0; i < MORE_MOST && more; i++) {
         const argus_mode_t mode = self->mode;
-        const argus_intent_t intent = run(self);
+        argus_intent_t intent = {0};
+        run(self, &intent);
         argus_do(self, &intent);
         more = intent.more && self->mode == mode;
     }
@@ -596,6 +621,7 @@ void argus_process_mode(argus_t *const self) {
     if (self->mode == ARGUS_MODE_CLOSING) {
         close_when_at_rest(self);
     }
-    const argus_intent_t intent = argus_go_on_waiting(self, &self->waiting);
+    argus_intent_t intent = {0};
+    argus_go_on_waiting(self, &self->waiting, &intent);
     argus_do(self, &intent);
 }

@@ -26,7 +26,7 @@ void argus_stop(argus_t *const self, const uint8_t command) {
         argus_outbox_urgent(&self->session.outbox, ARCOS_CMD_E_STOP);
     }
     self->stops++;
-    argus_say(self, ARGUS_EV_STOPPED, ARGUS_NO_SONAR, argus_built_heading_cdeg(&self->knowledge));
+    argus_tell(self, ARGUS_EV_STOPPED, argus_built_heading_cdeg(&self->knowledge));
 }
 
 static bool is_under_way(const argus_motion_t *const motion) {

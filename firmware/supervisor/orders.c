@@ -16,12 +16,11 @@ static argus_act_t check_if_open(const argus_t *const self) {
 }
 
 static void check(argus_t *const self, const bool full) {
-    argus_do(self, &(argus_intent_t){.act = (uint8_t)check_if_open(self), .full = full});
+    argus_stop_and_do(self, ARGUS_STOP_NONE, check_if_open(self), full);
 }
 
 static void stop_and_check(argus_t *const self, const bool full) {
-    argus_do(self,
-             &(argus_intent_t){.stop = ARGUS_STOP_STOP, .act = (uint8_t)check_if_open(self), .full = full});
+    argus_stop_and_do(self, ARGUS_STOP_STOP, check_if_open(self), full);
 }
 
 static void enable_motors(argus_t *const self) {
@@ -58,10 +57,10 @@ static void recheck(argus_t *const self) {
 }
 
 static void go_passive(argus_t *const self) {
-    argus_do(self, &(argus_intent_t){.stop = ARGUS_STOP_STOP});
+    argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_NOTHING, false);
     self->orders.passive = true;
     self->orders.barred = false;
-    argus_say(self, ARGUS_EV_PASSIVE, ARGUS_NO_SONAR, 0);
+    argus_tell(self, ARGUS_EV_PASSIVE, 0);
     check(self, false);
 }
 
@@ -71,7 +70,7 @@ static void go_active(argus_t *const self) {
     }
     self->orders.passive = false;
     self->reflexes.motors_said = false;
-    argus_say(self, ARGUS_EV_ACTIVE, ARGUS_NO_SONAR, 0);
+    argus_tell(self, ARGUS_EV_ACTIVE, 0);
     enable_motors(self);
     if (self->plan.disabled != 0 || self->ordered) { // the plan may have gone while nothing was commanded
         argus_share_slots(self);
@@ -98,7 +97,7 @@ static void jog(argus_t *const self, const int32_t built_mm) {
         return;
     }
     self->travel.jog_mm = argus_min(distance_mm, self->config.step_mm);
-    argus_do(self, &(argus_intent_t){.act = ARGUS_DO_DECIDE});
+    argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_DECIDE, false);
 }
 
 // The check that follows turns to the base heading first.
@@ -107,7 +106,7 @@ static void jog_turn(argus_t *const self, const int32_t degrees) {
         self->base.cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + degrees % 360 * 100);
         self->base.taken = true;
         argus_awareness_moved(&self->awareness);
-        argus_do(self, &(argus_intent_t){.act = ARGUS_DO_CHECK});
+        argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, false);
     }
 }
 
@@ -215,7 +214,7 @@ bool argus_obey(argus_t *const self, const argus_op_t op, const int32_t argument
     if (self->orders.shutdown || (for_one && !may_serve(self, op, argument))) {
         return false;
     }
-    argus_say(self, ARGUS_EV_OPERATOR, ARGUS_NO_SONAR, (int32_t)op);
+    argus_tell(self, ARGUS_EV_OPERATOR, (int32_t)op);
     if (for_one) {
         obey_for_one(self, op, argument);
     } else {

@@ -17,39 +17,32 @@
 #define UNSOUND_MOST 3
 #define HEADING_ALONE_CDEG_MM 10 // it is the heading that leapt where there are more for each mm
 
-static argus_intent_t say(const argus_event_id_t event, const int sonar, const int32_t value) {
-    ARGUS_ASSERT(sonar >= ARGUS_NO_SONAR && sonar < ARGUS_SONARS);
-    return (argus_intent_t){.event = (uint16_t)event, .sonar = (int8_t)sonar, .value = value};
-}
-
 // The pose has gone on without it. Again and again, and it is not known where the robot is.
-static argus_intent_t distrust(const argus_t *const self, argus_reflexes_t *const mine,
-                               const argus_event_id_t event, const int32_t value) {
+static void distrust(const argus_t *const self, argus_reflexes_t *const mine, const argus_event_id_t event,
+                     const int32_t value, argus_intent_t *const intent) {
     const bool again = mine->unsound > 0 && self->now_ms - mine->unsound_ms < UNSOUND_MS;
     mine->unsound = (uint8_t)(again ? argus_min(mine->unsound + 1, UNSOUND_MOST + 1) : 1);
     mine->unsound_ms = self->now_ms;
     if (mine->unsound > UNSOUND_MOST) {
-        return argus_to_nothing(); // all is said and done
+        return; // all is said and done
     }
     const bool lost = mine->unsound == UNSOUND_MOST;
-    argus_intent_t intent =
-        lost ? say(ARGUS_EV_ODOMETRY_LOST, ARGUS_NO_SONAR, value) : say(event, ARGUS_NO_SONAR, value);
-    intent.stop = ARGUS_STOP_STOP;
-    intent.unchecked = true;
-    intent.base = ARGUS_BASE_DROP;
-    intent.act = lost ? ARGUS_DO_GIVE_UP : ARGUS_DO_CHECK;
-    intent.full = true;
-    return intent;
+    argus_to_say(intent, lost ? ARGUS_EV_ODOMETRY_LOST : event, ARGUS_NO_SONAR, value);
+    intent->stop = ARGUS_STOP_STOP;
+    intent->unchecked = true;
+    intent->base = ARGUS_BASE_DROP;
+    intent->act = lost ? ARGUS_DO_GIVE_UP : ARGUS_DO_CHECK;
+    intent->full = true;
 }
 
-static argus_intent_t sees_leap(const argus_t *const self, const argus_alarm_t *const alarm,
-                                argus_reflexes_t *const mine) {
+static void sees_leap(const argus_t *const self, const argus_alarm_t *const alarm,
+                      argus_reflexes_t *const mine, argus_intent_t *const intent) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
     const bool news = (int32_t)(knowledge->leaps - mine->leaps) > 0;
     (void)alarm;
     mine->leaps = knowledge->leaps;
     if (!news) {
-        return argus_to_nothing();
+        return;
     }
     if (knowledge->leaps_unseen != mine->unseen) { // at once: where it went meanwhile is not known
         mine->unseen = knowledge->leaps_unseen;
@@ -57,16 +50,18 @@ static argus_intent_t sees_leap(const argus_t *const self, const argus_alarm_t *
         mine->unsound_ms = self->now_ms;
     }
     const bool position = knowledge->leap_mm * HEADING_ALONE_CDEG_MM >= knowledge->leap_cdeg;
-    return position ? distrust(self, mine, ARGUS_EV_POSE_LEAP, knowledge->leap_mm)
-                    : distrust(self, mine, ARGUS_EV_HEADING_LEAP, knowledge->leap_cdeg / 100);
+    distrust(self, mine, position ? ARGUS_EV_POSE_LEAP : ARGUS_EV_HEADING_LEAP,
+             position ? knowledge->leap_mm : knowledge->leap_cdeg / 100, intent);
 }
 
-static argus_intent_t sees_slip(const argus_t *const self, const argus_alarm_t *const alarm,
-                                argus_reflexes_t *const mine) {
+static void sees_slip(const argus_t *const self, const argus_alarm_t *const alarm,
+                      argus_reflexes_t *const mine, argus_intent_t *const intent) {
     const bool news = self->slip.slips != mine->slips;
     (void)alarm;
     mine->slips = self->slip.slips;
-    return news ? distrust(self, mine, ARGUS_EV_SLIP, self->slip.slipped_mm) : argus_to_nothing();
+    if (news) {
+        distrust(self, mine, ARGUS_EV_SLIP, self->slip.slipped_mm, intent);
+    }
 }
 
 // What is touched is in range of those ahead: if they have never heard anything they do not live.
@@ -76,50 +71,49 @@ static void note_touch(const argus_t *const self, argus_reflexes_t *const mine, 
 }
 
 // New contact only: bits already answered are let be until they clear.
-static argus_intent_t sees_bumper(const argus_t *const self, const argus_alarm_t *const alarm,
-                                  argus_reflexes_t *const mine) {
+static void sees_bumper(const argus_t *const self, const argus_alarm_t *const alarm,
+                        argus_reflexes_t *const mine, argus_intent_t *const intent) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
     const uint16_t pressed = argus_built_bumpers(knowledge);
     const bool fresh = (pressed & ~(unsigned)mine->bumpers) != 0;
     const bool cleared = pressed == 0 && mine->bumpers != 0;
     (void)alarm;
     mine->bumpers = pressed;
+    if (cleared) {
+        argus_to_say(intent, ARGUS_EV_BUMPER_CLEAR, ARGUS_NO_SONAR, 0);
+    }
     if (!fresh) {
-        return cleared ? say(ARGUS_EV_BUMPER_CLEAR, ARGUS_NO_SONAR, 0) : argus_to_nothing();
+        return;
     }
     note_touch(self, mine, knowledge->bumpers_front != 0);
-    argus_intent_t intent = say(ARGUS_EV_BUMPER, ARGUS_NO_SONAR, pressed);
-    intent.stop = ARGUS_STOP_E_STOP;
-    intent.bumped = true;
-    intent.way = ARGUS_WAY_REFUSE;
-    intent.unchecked = true;
-    intent.act = ARGUS_DO_WAIT;
-    intent.why = ARGUS_WAIT_BUMPER;
-    return intent;
+    argus_to_say(intent, ARGUS_EV_BUMPER, ARGUS_NO_SONAR, pressed);
+    intent->stop = ARGUS_STOP_E_STOP;
+    intent->bumped = true;
+    intent->way = ARGUS_WAY_REFUSE;
+    intent->unchecked = true;
+    argus_to_wait(intent, ARGUS_WAIT_BUMPER);
 }
 
-static argus_intent_t sees_stall(const argus_t *const self, const argus_alarm_t *const alarm,
-                                 argus_reflexes_t *const mine) {
+static void sees_stall(const argus_t *const self, const argus_alarm_t *const alarm,
+                       argus_reflexes_t *const mine, argus_intent_t *const intent) {
     const bool stalls = alarm->stall && mine->bumpers == 0;
     const bool said = mine->stall_said;
     mine->stall_said = alarm->stall;
     if (!stalls || said) {
-        return argus_to_nothing();
+        return;
     }
     note_touch(self, mine, self->motion.kind == ARGUS_MOTION_MOVE && self->motion.target_mm > 0);
-    argus_intent_t intent = say(ARGUS_EV_STALL, ARGUS_NO_SONAR, argus_built_stalls(&self->knowledge));
-    intent.stop = ARGUS_STOP_STOP;
-    intent.way = ARGUS_WAY_REFUSE;
-    intent.unchecked = true;
-    intent.act = ARGUS_DO_WAIT;
-    intent.why = ARGUS_WAIT_BUMPER;
-    return intent;
+    argus_to_say(intent, ARGUS_EV_STALL, ARGUS_NO_SONAR, argus_built_stalls(&self->knowledge));
+    intent->stop = ARGUS_STOP_STOP;
+    intent->way = ARGUS_WAY_REFUSE;
+    intent->unchecked = true;
+    argus_to_wait(intent, ARGUS_WAIT_BUMPER);
 }
 
 // The others (0, 7, the rear array) are not judged, but one that yields nothing any more must not be relied
 // on.
-static argus_intent_t sees_others(const argus_t *const self, const argus_alarm_t *const alarm,
-                                  argus_reflexes_t *const mine) {
+static void sees_others(const argus_t *const self, const argus_alarm_t *const alarm,
+                        argus_reflexes_t *const mine, argus_intent_t *const intent) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     unsigned changed = 0;
     (void)alarm;
@@ -132,8 +126,8 @@ static argus_intent_t sees_others(const argus_t *const self, const argus_alarm_t
         changed |= other && news ? 1u << i : 0u;
     }
     const bool counts = argus_rules(self)->disparity && changed != 0;
-    return (argus_intent_t){.act = counts ? ARGUS_DO_WATCH : ARGUS_DO_NOTHING,
-                            .sonars = (argus_mask_t)changed};
+    intent->act = counts ? ARGUS_DO_WATCH : ARGUS_DO_NOTHING;
+    intent->sonars = (argus_mask_t)changed;
 }
 
 // SIPs in a row, counted up to one more than the one that says it.
@@ -145,8 +139,8 @@ static bool is_voltage(const int32_t now_dv) {
     return now_dv >= LEAST_BATTERY_DV && now_dv <= MOST_BATTERY_DV;
 }
 
-static argus_intent_t sees_battery(const argus_t *const self, const argus_alarm_t *const alarm,
-                                   argus_reflexes_t *const mine) {
+static void sees_battery(const argus_t *const self, const argus_alarm_t *const alarm,
+                         argus_reflexes_t *const mine, argus_intent_t *const intent) {
     const argus_session_t *const session = &self->session;
     const int32_t stated_dv = session->has_robot ? session->robot.low_battery_dv : 0;
     const int32_t low_dv = stated_dv > 0 ? stated_dv : LOW_BATTERY_DV;
@@ -155,65 +149,67 @@ static argus_intent_t sees_battery(const argus_t *const self, const argus_alarm_
     (void)alarm;
     mine->battery_odd = in_a_row(mine->battery_odd, !is_voltage(now_dv));
     if (mine->battery_odd == BATTERY_SIPS) {
-        return say(ARGUS_EV_BATTERY_ODD, ARGUS_NO_SONAR, now_dv);
+        argus_to_say(intent, ARGUS_EV_BATTERY_ODD, ARGUS_NO_SONAR, now_dv);
+        return;
     }
     mine->battery_low = in_a_row(mine->battery_low, is_voltage(now_dv) && now_dv <= low_dv);
     const bool holds = mine->battery_low >= BATTERY_SIPS;
     mine->battery_said = holds || (said && now_dv <= low_dv + HYSTERESIS_DV);
-    return holds && !said ? say(ARGUS_EV_BATTERY_LOW, ARGUS_NO_SONAR, now_dv) : argus_to_nothing();
+    if (holds && !said) {
+        argus_to_say(intent, ARGUS_EV_BATTERY_LOW, ARGUS_NO_SONAR, now_dv);
+    }
 }
 
 // The motors may be cut by the robot's own button or E-stop at any time; a bumper's own stop is answered
 // elsewhere.
-static argus_intent_t sees_motors(const argus_t *const self, const argus_alarm_t *const alarm,
-                                  argus_reflexes_t *const mine) {
+static void sees_motors(const argus_t *const self, const argus_alarm_t *const alarm,
+                        argus_reflexes_t *const mine, argus_intent_t *const intent) {
     const bool off = (self->knowledge.flags & ARCOS_FLAG_MOTORS) == 0;
     const bool settled_in = self->now_ms - self->knowledge.online_ms > SETTLED_IN_MS;
     const bool busy = self->waiting.why == ARGUS_WAIT_BUMPER;
     (void)alarm;
     if (!argus_is_active(self) || busy || off == mine->motors_said || (off && !settled_in)) {
-        return argus_to_nothing();
+        return;
     }
     mine->motors_said = off;
-    argus_intent_t intent =
-        say(off ? ARGUS_EV_MOTORS_OFF : ARGUS_EV_MOTORS_ON, ARGUS_NO_SONAR, self->knowledge.flags);
-    intent.stop = ARGUS_STOP_STOP;
-    intent.unchecked = true;
-    intent.act = off ? ARGUS_DO_WAIT : ARGUS_DO_CHECK;
-    intent.why = ARGUS_WAIT_MOTORS;
-    intent.full = true;
-    return intent;
+    argus_to_say(intent, off ? ARGUS_EV_MOTORS_OFF : ARGUS_EV_MOTORS_ON, ARGUS_NO_SONAR,
+                 self->knowledge.flags);
+    intent->stop = ARGUS_STOP_STOP;
+    intent->unchecked = true;
+    intent->act = off ? ARGUS_DO_WAIT : ARGUS_DO_CHECK;
+    intent->why = ARGUS_WAIT_MOTORS;
+    intent->full = true;
 }
 
-static argus_intent_t sees_dead(const argus_t *const self, const argus_alarm_t *const alarm,
-                                argus_reflexes_t *const mine) {
+static void sees_dead(const argus_t *const self, const argus_alarm_t *const alarm,
+                      argus_reflexes_t *const mine, argus_intent_t *const intent) {
     ARGUS_ASSERT((alarm->dead & alarm->silent & argus_out(&self->knowledge)) == 0);
     (void)self;
     (void)mine;
     if ((alarm->dead | alarm->silent) == 0) {
-        return argus_to_nothing();
+        return;
     }
-    return (argus_intent_t){
-        .stop = ARGUS_STOP_STOP, .act = ARGUS_DO_LOSE, .sonars = alarm->dead, .silent = alarm->silent};
+    intent->stop = ARGUS_STOP_STOP;
+    intent->act = ARGUS_DO_LOSE;
+    intent->sonars = alarm->dead;
+    intent->silent = alarm->silent;
 }
 
 // An object is looked at again at rest, with Algorithm 1, before it is believed: a sonar that lies low is
 // found there.
-static argus_intent_t sees_object(const argus_t *const self, const argus_alarm_t *const alarm,
-                                  argus_reflexes_t *const mine) {
+static void sees_object(const argus_t *const self, const argus_alarm_t *const alarm,
+                        argus_reflexes_t *const mine, argus_intent_t *const intent) {
     ARGUS_ASSERT(alarm->object == 0 || alarm->object_sonar >= 0);
     const bool backing = self->mode == ARGUS_MODE_BACKING;
     (void)mine;
     if (alarm->object == 0 || !argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE) ||
         self->motion.kind == ARGUS_MOTION_STOP) {
-        return argus_to_nothing();
+        return;
     }
-    argus_intent_t intent = say(ARGUS_EV_OBJECT, alarm->object_sonar, alarm->object_mm);
-    intent.stop = ARGUS_STOP_STOP;
-    intent.way = backing ? ARGUS_WAY_KEEP : ARGUS_WAY_REFUSE;
-    intent.act = ARGUS_DO_CHECK;
-    intent.full = true;
-    return intent;
+    argus_to_say(intent, ARGUS_EV_OBJECT, alarm->object_sonar, alarm->object_mm);
+    intent->stop = ARGUS_STOP_STOP;
+    intent->way = backing ? ARGUS_WAY_KEEP : ARGUS_WAY_REFUSE;
+    argus_to_check(intent, true);
 }
 
 // True: for the second time. One echo within the swing circle may be crosstalk, the second one of the same
@@ -236,8 +232,8 @@ static bool note_near(const argus_t *const self, argus_reflexes_t *const mine, c
 }
 
 // S7 holds through the turn: what comes into view within the swing circle ends it.
-static argus_intent_t sees_swing(const argus_t *const self, const argus_alarm_t *const alarm,
-                                 argus_reflexes_t *const mine) {
+static void sees_swing(const argus_t *const self, const argus_alarm_t *const alarm,
+                       argus_reflexes_t *const mine, argus_intent_t *const intent) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const bool turning = self->motion.kind == ARGUS_MOTION_TURN && !self->motion.settled;
     const argus_guard_t guard = argus_guard(self);
@@ -246,59 +242,59 @@ static argus_intent_t sees_swing(const argus_t *const self, const argus_alarm_t 
     (void)alarm;
     if (!argus_rules(self)->watches_turn || !turning) {
         mine->near[0].valid = mine->near[1].valid = false;
-        return argus_to_nothing();
+        return;
     }
     if (self->knowledge.fresh == 0 || argus_guard_may_nudge(&guard, left_cdeg)) {
-        return argus_to_nothing();
+        return;
     }
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const bool fresh = (self->knowledge.fresh >> i & 1u) != 0 && argus_usable(&self->knowledge, i);
         if (fresh && note_near(self, mine, i, &at)) {
-            return (argus_intent_t){.act = ARGUS_DO_END_TURN, .at = at};
+            intent->act = ARGUS_DO_END_TURN;
+            intent->at = at;
+            return;
         }
     }
-    return argus_to_nothing();
 }
 
 // A smooth wall that the robot slants into is heard by the sonar that looks abeam alone.
-static argus_intent_t sees_flank(const argus_t *const self, const argus_alarm_t *const alarm,
-                                 argus_reflexes_t *const mine) {
+static void sees_flank(const argus_t *const self, const argus_alarm_t *const alarm,
+                       argus_reflexes_t *const mine, argus_intent_t *const intent) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const bool ahead = argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE) && self->mode != ARGUS_MODE_BACKING;
     (void)alarm;
     (void)mine;
     if (!argus_rules(self)->watches_flank || !ahead || self->motion.kind != ARGUS_MOTION_MOVE ||
         self->motion.settled) {
-        return argus_to_nothing();
+        return;
     }
     const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge) &
                             argus_robot_flank(self->knowledge.robot);
     const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((usable >> i & 1u) != 0 &&
-            argus_grazing_wall(&self->evidence.of[i].pings, self->knowledge.robot, i, stop_mm)) {
-            argus_intent_t intent = say(ARGUS_EV_OBJECT, i, self->knowledge.sonar[i].reading_mm);
-            intent.stop = ARGUS_STOP_STOP;
-            intent.way = ARGUS_WAY_REFUSE;
-            intent.act = ARGUS_DO_CHECK;
-            intent.full = true;
-            return intent;
+            argus_grazing_wall(&self->evidence.pings[i], self->knowledge.robot, i, stop_mm)) {
+            argus_to_say(intent, ARGUS_EV_OBJECT, i, self->knowledge.sonar[i].reading_mm);
+            intent->stop = ARGUS_STOP_STOP;
+            intent->way = ARGUS_WAY_REFUSE;
+            argus_to_check(intent, true);
+            return;
         }
     }
-    return argus_to_nothing();
 }
 
-argus_intent_t argus_reflex(const argus_reflex_t reflex, const argus_t *const self,
-                            const argus_alarm_t *const alarm, argus_reflexes_t *const mine) {
+void argus_reflex(const argus_reflex_t reflex, const argus_t *const self, const argus_alarm_t *const alarm,
+                  argus_reflexes_t *const mine, argus_intent_t *const intent) {
     switch (reflex) {
-#define SEES(name, last, meaning) \
-    case ARGUS_REFLEX_##name:     \
-        return sees_##name(self, alarm, mine);
+#define SEES(name, last, meaning)               \
+    case ARGUS_REFLEX_##name:                   \
+        sees_##name(self, alarm, mine, intent); \
+        break;
         ARGUS_REFLEX_TABLE(SEES)
 #undef SEES
     case ARGUS_REFLEXES:
     default:
-        return argus_to_nothing();
+        break;
     }
 }
 

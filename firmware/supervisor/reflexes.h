@@ -28,8 +28,8 @@ typedef enum {
 } argus_reflex_t;
 
 // What the reflex wants done; it writes what the reflexes remember, and nothing else.
-argus_intent_t argus_reflex(argus_reflex_t reflex, const argus_t *self, const argus_alarm_t *alarm,
-                            argus_reflexes_t *mine);
+void argus_reflex(argus_reflex_t reflex, const argus_t *self, const argus_alarm_t *alarm,
+                  argus_reflexes_t *mine, argus_intent_t *intent);
 bool argus_reflex_is_last(argus_reflex_t reflex);
 
 #endif

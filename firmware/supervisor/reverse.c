@@ -78,6 +78,6 @@ void argus_turn_about(argus_t *const self) {
     self->base.taken = false;
     self->checked = false;
     self->plan = argus_plan(other, argus_policy(self), 0, 0);
-    argus_say(self, ARGUS_EV_REVERSED, ARGUS_NO_SONAR, other->reversed ? 1 : 0);
+    argus_tell(self, ARGUS_EV_REVERSED, other->reversed ? 1 : 0);
     argus_replan(self);
 }

@@ -16,6 +16,10 @@ void argus_say(argus_t *const self, const argus_event_id_t id, const int sonar, 
     argus_say_event(self, (argus_event_t){.id = (uint16_t)id, .sonar = (int8_t)sonar, .value = value});
 }
 
+void argus_tell(argus_t *const self, const argus_event_id_t id, const int32_t value) {
+    argus_say(self, id, ARGUS_NO_SONAR, value);
+}
+
 void argus_say_change(argus_t *const self, const int sonar, const argus_change_t change,
                       const argus_fault_kind_t kind, const int32_t value) {
     ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);

@@ -7,6 +7,7 @@
 #include "supervisor/core.h"
 
 void argus_say(argus_t *self, argus_event_id_t id, int sonar, int32_t value);
+void argus_tell(argus_t *self, argus_event_id_t id, int32_t value); // about no sonar
 
 // Its time and failure state are filled in; id 0: nothing is said.
 void argus_say_event(argus_t *self, argus_event_t event);

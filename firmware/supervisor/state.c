@@ -93,25 +93,21 @@ int argus_nearest_ahead(const argus_t *const self) {
     return nearest;
 }
 
-argus_intent_t argus_turn_failed(const argus_t *const self) {
+void argus_turn_failed(const argus_t *const self, argus_intent_t *const intent) {
     ARGUS_ASSERT(self->motion.failed);
     const int32_t off_cdeg =
         argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, self->motion.target_cdeg);
-    return (argus_intent_t){.event = ARGUS_EV_TURN_FAILED,
-                            .sonar = ARGUS_NO_SONAR,
-                            .value = off_cdeg / 100,
-                            .act = ARGUS_DO_WAIT,
-                            .why = ARGUS_WAIT_MOTORS};
+    argus_to_say(intent, ARGUS_EV_TURN_FAILED, ARGUS_NO_SONAR, off_cdeg / 100);
+    argus_to_wait(intent, ARGUS_WAIT_MOTORS);
 }
 
 bool argus_is_home(const argus_t *const self, const bool again, argus_intent_t *const intent) {
     ARGUS_ASSERT(intent != NULL);
-    *intent = (argus_intent_t){0};
     if (self->orders.passive) {
         return true;
     }
     if (self->motion.failed) {
-        *intent = argus_turn_failed(self);
+        argus_turn_failed(self, intent);
         return false;
     }
     if (!self->motion.settled) {
@@ -127,8 +123,7 @@ bool argus_is_home(const argus_t *const self, const bool again, argus_intent_t *
         return true;
     }
     if (!self->turning.again || again) {
-        intent->act = ARGUS_DO_TURN;
-        intent->cdeg = argus_base_cdeg(self);
+        argus_to_turn(intent, argus_base_cdeg(self));
     }
     return false;
 }
@@ -157,22 +152,20 @@ bool argus_may_be_crosstalk(const argus_t *const self, const argus_guard_t *cons
 }
 
 // A few times backing away may help.
-argus_intent_t argus_instead_of_turn(const argus_t *const self) {
+void argus_instead_of_turn(const argus_t *const self, argus_intent_t *const intent) {
     ARGUS_ASSERT(argus_is_active(self));
     const argus_guard_t guard = argus_guard(self);
     if (argus_may_be_crosstalk(self, &guard)) {
-        return (argus_intent_t){.act = ARGUS_DO_CHECK, .again = true};
+        intent->act = ARGUS_DO_CHECK;
+        intent->again = true;
+        return;
     }
     const int32_t nearest_mm = argus_guard_nearest_mm(&guard, 0);
-    argus_intent_t intent = {.event = ARGUS_EV_TURN_BLOCKED,
-                             .sonar = ARGUS_NO_SONAR,
-                             .value = nearest_mm == INT32_MAX ? 0 : nearest_mm,
-                             .act = ARGUS_DO_WAIT,
-                             .why = ARGUS_WAIT_TURN};
+    argus_to_say(intent, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, nearest_mm == INT32_MAX ? 0 : nearest_mm);
+    argus_to_wait(intent, ARGUS_WAIT_TURN);
     if (argus_guard_may_back_off(&guard)) {
-        intent.act = ARGUS_DO_BACK;
-        intent.mm = argus_guard_back_mm(&guard);
-        intent.speed_mm_s = argus_guard_back_speed_mm_s(&guard);
+        intent->act = ARGUS_DO_BACK;
+        intent->mm = argus_guard_back_mm(&guard);
+        intent->speed_mm_s = argus_guard_back_speed_mm_s(&guard);
     }
-    return intent;
 }

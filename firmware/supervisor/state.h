@@ -4,11 +4,12 @@
 #define ARGUS_STATE_H
 
 #include "adjustment/guard.h"
+#include "knowledge/apart.h"
 #include "supervisor/core.h"
 #include "supervisor/intent.h"
 
 // Which rules run.
-const argus_profile_t *argus_rules(const argus_t *self);
+ARGUS_APART const argus_profile_t *argus_rules(const argus_t *self);
 
 // The safety rules, asked of the present state.
 argus_guard_t argus_guard(const argus_t *self);
@@ -44,13 +45,13 @@ int argus_nearest_ahead(const argus_t *self);
 bool argus_is_home(const argus_t *self, bool again, argus_intent_t *intent);
 
 // A turn was commanded several times and not executed.
-argus_intent_t argus_turn_failed(const argus_t *self);
+void argus_turn_failed(const argus_t *self, argus_intent_t *intent);
 
 // One new echo is all that forbids to turn. The sonar would hear it again were something there, so it is read
 // once more.
 bool argus_may_be_crosstalk(const argus_t *self, const argus_guard_t *guard);
 
 // What is done instead of a turn that S7 forbids.
-argus_intent_t argus_instead_of_turn(const argus_t *self);
+void argus_instead_of_turn(const argus_t *self, argus_intent_t *intent);
 
 #endif

@@ -7,6 +7,7 @@
 #include "knowledge/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/modes.h"
+#include "supervisor/say.h"
 
 // Which body it has is found out when its session opens; until then the one before holds.
 static void forget(argus_t *const self) {
@@ -30,16 +31,14 @@ static void forget(argus_t *const self) {
 }
 
 void argus_meet_stranger(argus_t *const self) {
-    argus_do(self,
-             &(argus_intent_t){.event = ARGUS_EV_OTHER_ROBOT,
-                               .sonar = ARGUS_NO_SONAR,
-                               .value = self->session.differs,
-                               .stop = ARGUS_STOP_STOP}); // it may still do what an earlier client asked
+    argus_tell(self, ARGUS_EV_OTHER_ROBOT, self->session.differs);
+    // It may still do what an earlier client asked.
+    argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_NOTHING, false);
     self->orders.passive = true;
     self->orders.paused = true;
     self->orders.stay = true;
     self->orders.barred = false;
     forget(self);
     argus_replan(self);
-    argus_do(self, &(argus_intent_t){.act = ARGUS_DO_CHECK, .full = true});
+    argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, true);
 }

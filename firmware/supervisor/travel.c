@@ -21,8 +21,10 @@
 #define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
 
 // The SIP is not used up yet.
-static argus_intent_t say(const argus_event_id_t event, const int sonar, const int32_t value) {
-    return (argus_intent_t){.event = (uint16_t)event, .sonar = (int8_t)sonar, .value = value, .more = true};
+static void say(argus_intent_t *const intent, const argus_event_id_t event, const int sonar,
+                const int32_t value) {
+    argus_to_say(intent, event, sonar, value);
+    intent->more = true;
 }
 
 void argus_begin_travel(argus_travel_t *const mine) {
@@ -44,22 +46,24 @@ static int32_t left_mm(const argus_t *const self, const argus_travel_t *const mi
     return mine->jog_mm > 0 ? mine->jog_mm : argus_task_leg_mm(&mine->task, &self->knowledge);
 }
 
-static argus_intent_t arrive(const argus_t *const self, argus_travel_t *const mine) {
+static void arrive(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
     if (!mine->arriving) {
         mine->arriving = true;
-        return argus_to(ARGUS_DO_BRAKE);
+        intent->act = ARGUS_DO_BRAKE;
+        return;
     }
     if (!self->motion.settled) {
-        return argus_to_nothing();
+        return;
     }
     const int32_t away_mm = argus_max(self->config.goal_radius_mm, self->config.waypoint_radius_mm);
     if (argus_task_goal_mm(&mine->task, &self->knowledge) > away_mm) {
         mine->arriving = false;
         argus_task_return(&mine->task);
-        return argus_to_nothing();
+        return;
     }
     const argus_mask_t open = argus_rules(self)->evidence ? argus_to_settle(self) : 0;
-    return (argus_intent_t){.act = open != 0 ? ARGUS_DO_VERIFY : ARGUS_DO_REACH, .sonars = open};
+    intent->act = open != 0 ? ARGUS_DO_VERIFY : ARGUS_DO_REACH;
+    intent->sonars = open;
 }
 
 // Waypoints and the goal. True: `intent` is what the SIP calls for.
@@ -69,12 +73,12 @@ static bool makes_progress(const argus_t *const self, argus_travel_t *const mine
     const bool arrived = argus_task_progress(&mine->task, &self->knowledge, &self->config, &passed);
     mine->unsaid = (uint16_t)(mine->unsaid + passed);
     if (mine->unsaid > 0) {
-        *intent = say(ARGUS_EV_WAYPOINT, ARGUS_NO_SONAR, mine->task.next - mine->unsaid + 1);
+        say(intent, ARGUS_EV_WAYPOINT, ARGUS_NO_SONAR, mine->task.next - mine->unsaid + 1);
         mine->unsaid--;
         return true;
     }
     if (arrived) {
-        *intent = arrive(self, mine);
+        arrive(self, mine, intent);
     }
     return arrived;
 }
@@ -90,14 +94,14 @@ static bool is_called_away(const argus_t *const self, argus_travel_t *const mine
         return false;
     }
     mine->beside_sip = self->knowledge.sips;
-    *intent = (argus_intent_t){.act = ARGUS_DO_CHECK_BESIDE, .more = true};
+    intent->act = ARGUS_DO_CHECK_BESIDE;
+    intent->more = true;
     return true;
 }
 
-static argus_intent_t cannot_move(void) {
-    argus_intent_t intent = argus_to_check(true);
-    intent.stop = ARGUS_STOP_STOP;
-    return intent;
+static void cannot_move(argus_intent_t *const intent) {
+    argus_to_check(intent, true);
+    intent->stop = ARGUS_STOP_STOP;
 }
 
 static void end_leg(const argus_t *const self, argus_travel_t *const mine) {
@@ -110,14 +114,19 @@ static void end_leg(const argus_t *const self, argus_travel_t *const mine) {
 }
 
 // The MOVE at work was begun before the robot saw what it sees now (S5).
-static bool is_too_fast(const argus_t *const self) {
-    const argus_guard_t guard = argus_guard(self);
+static bool is_too_fast(const argus_t *const self, const argus_guard_t *const guard) {
     return self->motion.kind == ARGUS_MOTION_MOVE && !self->motion.settled &&
-           self->motion.speed_mm_s > argus_guard_speed_mm_s(&guard, argus_guard_seen_mm(&guard));
+           self->motion.speed_mm_s > argus_guard_speed_mm_s(guard, argus_guard_seen_mm(guard));
+}
+
+static void halt_to_wait(const argus_wait_t why, argus_intent_t *const intent) {
+    intent->stop = ARGUS_STOP_HALT;
+    argus_to_wait(intent, why);
 }
 
 // A leg to drive. False: `intent` is what the SIP calls for.
-static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
+static bool has_way(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                    argus_intent_t *const intent) {
     if (mine->jog_mm > 0 || mine->task.has_leg) {
         return true;
     }
@@ -126,67 +135,69 @@ static bool has_way(const argus_t *const self, argus_travel_t *const mine, argus
         sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
     const argus_search_news_t news = argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
     if (news == ARGUS_SEARCH_GOES_ON) {
-        *intent = argus_to(is_too_fast(self) ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING); // a MOVE ends by itself
+        intent->act = is_too_fast(self, guard) ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING; // a MOVE ends by itself
         return false;
     }
     if (news == ARGUS_SEARCH_NO_WAY) {
-        *intent = (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_WAY};
+        halt_to_wait(ARGUS_WAIT_WAY, intent);
         return false;
     }
     mine->aimed = false;
     if (!mine->task.avoiding) {
         return true;
     }
-    *intent = say(ARGUS_EV_AVOIDING, ARGUS_NO_SONAR, bearing(self, mine) / 100);
-    intent->more = false; // one leg a SIP: the next one sees more
-    return false;
+    argus_to_say(intent, ARGUS_EV_AVOIDING, ARGUS_NO_SONAR, bearing(self, mine) / 100);
+    return false; // one leg a SIP: the next one sees more
 }
 
 // A leg that leads out of a place too narrow to turn in: straight ahead, but for a nudge. Not along a wall so
 // near that a slant could not be seen in time. A suspect's reading alone is no wall: it would hold the robot
 // for ever where no look can be had.
-static bool leads_out(const argus_t *const self, argus_travel_t *const mine, const int32_t by_cdeg) {
-    const argus_guard_t guard = argus_guard(self);
+static bool leads_out(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                      const int32_t by_cdeg) {
     const argus_mask_t doubted = argus_with_health(&self->knowledge, ARGUS_SUSPECT);
-    const bool open = by_cdeg != 0 ? argus_guard_may_nudge(&guard, by_cdeg)
+    const bool open = by_cdeg != 0 ? argus_guard_may_nudge(guard, by_cdeg)
                                    : argus_flank_mm(&self->knowledge, doubted) > FLANK_MM;
     return open && argus_task_escape(&mine->task, &self->knowledge, &self->echoes, by_cdeg);
 }
 
-static argus_intent_t turn_to_bearing(const argus_t *const self, argus_travel_t *const mine) {
+static void turn_to_bearing(const argus_t *const self, const argus_guard_t *const guard,
+                            argus_travel_t *const mine, argus_intent_t *const intent) {
     static const int16_t tries_cdeg[] = {2000, 1500, 1000, 500, 0, -500, -1000, -1500, -2000};
-    const argus_guard_t guard = argus_guard(self);
     const int32_t to_cdeg = bearing(self, mine);
     const int32_t now_cdeg = self->knowledge.pose.heading_cdeg;
     const bool left = argus_angle_wrap(to_cdeg - now_cdeg) > 0;
-    const bool hemmed = argus_guard_swing_is_blocked(&guard) && mine->jog_mm == 0 &&
-                        !argus_may_be_crosstalk(self, &guard); // that is read again first
+    const bool hemmed = argus_guard_swing_is_blocked(guard) && mine->jog_mm == 0 &&
+                        !argus_may_be_crosstalk(self, guard); // that is read again first
     for (int i = 0; i < (int)(sizeof tries_cdeg / sizeof tries_cdeg[0]) && hemmed; i++) {
         const int32_t by_cdeg = left ? tries_cdeg[i] : -tries_cdeg[i];
-        if (leads_out(self, mine, by_cdeg)) {
-            return by_cdeg != 0 ? argus_to_turn(argus_angle_wrap(now_cdeg + by_cdeg)) : argus_to_nothing();
+        if (leads_out(self, guard, mine, by_cdeg)) {
+            if (by_cdeg != 0) {
+                argus_to_turn(intent, argus_angle_wrap(now_cdeg + by_cdeg));
+            }
+            return;
         }
     }
-    return argus_to_turn(to_cdeg);
+    argus_to_turn(intent, to_cdeg);
 }
 
 // It drives and may turn on the way.
-static bool is_gentle(const argus_t *const self, const argus_travel_t *const mine) {
-    const argus_guard_t guard = argus_guard(self);
+static bool is_gentle(const argus_t *const self, const argus_guard_t *const guard,
+                      const argus_travel_t *const mine) {
     return argus_rules(self)->adapts_speed && self->motion.kind == ARGUS_MOTION_MOVE &&
            !self->motion.settled && mine->jog_mm == 0 && off_bearing(self, mine) <= GENTLE_CDEG &&
-           left_mm(self, mine) > STEER_LEG_MM && argus_guard_may_turn(&guard);
+           left_mm(self, mine) > STEER_LEG_MM && argus_guard_may_turn(guard);
 }
 
 // Turns to the leg's bearing at rest. True when the robot looks along it, else `intent` leads there.
-static bool is_aimed(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
-    *intent = argus_to_nothing();
-    mine->aimed = mine->aimed || is_gentle(self, mine);
+static bool is_aimed(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                     argus_intent_t *const intent) {
+    mine->aimed = mine->aimed || is_gentle(self, guard, mine);
     if (mine->aimed) {
         return true;
     }
     if (self->motion.failed) {
-        *intent = argus_turn_failed(self);
+        argus_turn_failed(self, intent);
         return false;
     }
     if (!argus_at_rest(&self->knowledge) || !self->motion.settled) {
@@ -195,26 +206,33 @@ static bool is_aimed(const argus_t *const self, argus_travel_t *const mine, argu
         return false;
     }
     if (off_bearing(self, mine) > AIMED_CDEG) {
-        *intent = turn_to_bearing(self, mine);
+        turn_to_bearing(self, guard, mine, intent);
         return false;
     }
     mine->aimed = argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->motion.mark);
     return mine->aimed;
 }
 
+// It looks along its way. Else `intent` is what the SIP calls for first.
+static bool is_ready(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                     argus_intent_t *const intent) {
+    if (is_called_away(self, mine, intent)) {
+        return false;
+    }
+    end_leg(self, mine);
+    return has_way(self, guard, mine, intent) && is_aimed(self, guard, mine, intent);
+}
+
 // The event, a stop if it moves, and another heading after a full check.
-static argus_intent_t blocked(argus_travel_t *const mine, const argus_event_id_t event, const int sonar,
-                              const int32_t reading_mm) {
+static void blocked(argus_travel_t *const mine, const argus_event_id_t event, const int sonar,
+                    const int32_t reading_mm, argus_intent_t *const intent) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(reading_mm >= 0);
-    argus_intent_t intent = argus_to_check(true);
-    intent.event = (uint16_t)event;
-    intent.sonar = (int8_t)sonar;
-    intent.value = reading_mm;
-    intent.stop = ARGUS_STOP_HALT;
-    intent.way = ARGUS_WAY_REFUSE;
+    argus_to_say(intent, event, sonar, reading_mm);
+    argus_to_check(intent, true);
+    intent->stop = ARGUS_STOP_HALT;
+    intent->way = ARGUS_WAY_REFUSE;
     mine->jog_mm = 0;
-    return intent;
 }
 
 // Where no sonar looks ahead any more, all that counts was seen in sweeps.
@@ -232,9 +250,9 @@ static bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
 
 // Swings the heading about the way while a bearing is blind, so that living sonars look along it. It swings
 // to one side until they have had their turns there, then to the other.
-static int32_t weave_cdeg(const argus_t *const self, argus_travel_t *const mine) {
-    const argus_guard_t guard = argus_guard(self);
-    const int32_t swing_cdeg = argus_min(argus_guard_gap(&guard), WEAVE_GAP) * WEAVE_CDEG;
+static int32_t weave_cdeg(const argus_t *const self, const argus_guard_t *const guard,
+                          argus_travel_t *const mine) {
+    const int32_t swing_cdeg = argus_min(argus_guard_gap(guard), WEAVE_GAP) * WEAVE_CDEG;
     const int32_t to_cdeg = argus_angle_wrap(bearing(self, mine) + mine->weave * swing_cdeg);
     const bool there = argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, to_cdeg) <= WOVEN_CDEG;
     mine->woven_sips = there ? (uint8_t)(mine->woven_sips + 1) : 0;
@@ -247,16 +265,15 @@ static int32_t weave_cdeg(const argus_t *const self, argus_travel_t *const mine)
 }
 
 // The way has not been seen far enough: a sweep, at rest.
-static argus_intent_t look_ahead(const argus_t *const self, argus_travel_t *const mine) {
+static void look_ahead(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
     mine->aimed = mine->jog_mm > 0;
     if (!self->motion.settled) {
-        const bool moves = self->motion.kind == ARGUS_MOTION_MOVE;
-        return (argus_intent_t){.act = moves ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING};
+        intent->act = self->motion.kind == ARGUS_MOTION_MOVE ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING;
+    } else if (self->plan.disabled == 0) { // names that only a look can settle, and there is no room for it
+        argus_to_wait(intent, ARGUS_WAIT_TURN);
+    } else {
+        intent->act = ARGUS_DO_SWEEP;
     }
-    if (self->plan.disabled == 0) { // names that only a look can settle, and there is no room for it
-        return argus_to_wait(ARGUS_WAIT_TURN);
-    }
-    return argus_to(ARGUS_DO_SWEEP);
 }
 
 // A short wheel is countered on each SIP, by less than what S7 calls a nudge.
@@ -267,15 +284,15 @@ static bool counters(const argus_t *const self, const argus_guard_t *const guard
 }
 
 // The heading on the way: swung about it, or led against a short wheel, or the bearing when it is off that.
-static void steer(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
-    const argus_guard_t guard = argus_guard(self);
+static void steer(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                  argus_intent_t *const intent) {
     const int32_t to_cdeg = bearing(self, mine);
     const int32_t trim_cdeg = argus_angle_wrap(to_cdeg + argus_trim_cdeg(&self->wheel, &self->knowledge));
-    intent->steers = argus_guard_may_turn(&guard);
+    intent->steers = argus_guard_may_turn(guard);
     intent->cdeg = to_cdeg;
-    if (argus_guard_is_blind(&guard) && argus_wanted_sonars(self) != 0) {
-        intent->cdeg = weave_cdeg(self, mine);
-    } else if (counters(self, &guard, trim_cdeg)) {
+    if (argus_guard_is_blind(guard) && argus_wanted_sonars(self) != 0) {
+        intent->cdeg = weave_cdeg(self, guard, mine);
+    } else if (counters(self, guard, trim_cdeg)) {
         intent->cdeg = trim_cdeg;
         intent->steers = true;
     } else {
@@ -284,191 +301,192 @@ static void steer(const argus_t *const self, argus_travel_t *const mine, argus_i
 }
 
 // A MOVE is renewed on each SIP, and ends where it should when we say nothing more.
-static argus_intent_t move_on(const argus_t *const self, argus_travel_t *const mine, const int32_t free_mm,
-                              const int32_t seen_mm) {
-    const argus_guard_t guard = argus_guard(self);
+static void move_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                    const int32_t free_mm, const int32_t seen_mm, argus_intent_t *const intent) {
     const int32_t way_mm = left_mm(self, mine);
-    argus_intent_t intent = {.act = ARGUS_DO_DRIVE,
-                             .mm = argus_min(way_mm, free_mm),
-                             .speed_mm_s = argus_guard_speed_mm_s(&guard, seen_mm),
-                             .moves_on = true};
+    intent->act = ARGUS_DO_DRIVE;
+    intent->mm = argus_min(way_mm, free_mm);
+    intent->speed_mm_s = argus_guard_speed_mm_s(guard, seen_mm);
+    intent->moves_on = true;
     if (way_mm > STEER_LEG_MM) {
-        steer(self, mine, &intent);
+        steer(self, guard, mine, intent);
     }
-    return intent;
 }
 
-static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const mine) {
-    const argus_guard_t guard = argus_guard(self);
-    if (!argus_guard_sees_ahead(&guard)) {
-        return argus_to_nothing(); // the MOVE at work ends by itself
+static void drive_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                     argus_intent_t *const intent) {
+    if (!argus_guard_sees_ahead(guard)) {
+        return; // the MOVE at work ends by itself
     }
     const int sonar = argus_nearest_ahead(self);
     const int32_t nearest_mm = reading_of(self, sonar);
     if (nearest_mm <= self->config.object_range_mm) {
-        return blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm);
+        blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm, intent);
+        return;
     }
-    const int32_t seen_mm = argus_guard_seen_mm(&guard);
+    const int32_t seen_mm = argus_guard_seen_mm(guard);
     if (seen_mm < argus_min(left_mm(self, mine), SEEN_LEAST_MM)) {
-        return look_ahead(self, mine);
+        look_ahead(self, mine, intent);
+        return;
     }
-    const int32_t free_mm = argus_guard_ahead_mm(&guard, seen_mm);
+    const int32_t free_mm = argus_guard_ahead_mm(guard, seen_mm);
     if (free_mm == 0) {
-        return argus_to_nothing(); // a fresh reading will tell
+        return; // a fresh reading will tell
     }
     if (!is_heeded(self, mine)) {
-        return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_MOTORS};
+        halt_to_wait(ARGUS_WAIT_MOTORS, intent);
+        return;
     }
-    return move_on(self, mine, free_mm, seen_mm);
+    move_on(self, guard, mine, free_mm, seen_mm, intent);
 }
 
-static argus_intent_t step(const argus_t *const self, const int32_t way_mm) {
-    return (argus_intent_t){.act = ARGUS_DO_STEP, .mm = way_mm, .speed_mm_s = self->config.step_speed_mm_s};
+static void step(const argus_t *const self, const int32_t way_mm, argus_intent_t *const intent) {
+    intent->act = ARGUS_DO_STEP;
+    intent->mm = way_mm;
+    intent->speed_mm_s = self->config.step_speed_mm_s;
 }
 
 // One MOVE, then idle again.
-static argus_intent_t jog_on(const argus_t *const self, argus_travel_t *const mine) {
-    const argus_guard_t guard = argus_guard(self);
-    const int32_t seen_mm = argus_guard_seen_mm(&guard);
-    return seen_mm < mine->jog_mm
-               ? look_ahead(self, mine)
-               : step(self, argus_min(mine->jog_mm, argus_guard_ahead_mm(&guard, seen_mm)));
+static void jog_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                   argus_intent_t *const intent) {
+    const int32_t seen_mm = argus_guard_seen_mm(guard);
+    if (seen_mm < mine->jog_mm) {
+        look_ahead(self, mine, intent);
+    } else {
+        step(self, argus_min(mine->jog_mm, argus_guard_ahead_mm(guard, seen_mm)), intent);
+    }
 }
 
-argus_intent_t argus_run_driving(const argus_t *const self, argus_travel_t *const mine) {
+void argus_run_driving(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
     ARGUS_ASSERT(mine->unsaid <= ARGUS_WAYPOINTS_MAX);
     const argus_guard_t guard = argus_guard(self);
-    argus_intent_t intent = cannot_move();
-    if (!argus_guard_may_translate(&guard) || is_called_away(self, mine, &intent)) {
-        return intent;
+    if (!argus_guard_may_translate(&guard)) {
+        cannot_move(intent);
+    } else if (is_ready(self, &guard, mine, intent)) {
+        if (mine->jog_mm > 0) {
+            jog_on(self, &guard, mine, intent);
+        } else {
+            drive_on(self, &guard, mine, intent);
+        }
     }
-    end_leg(self, mine);
-    if (!has_way(self, mine, &intent) || !is_aimed(self, mine, &intent)) {
-        return intent;
-    }
-    return mine->jog_mm > 0 ? jog_on(self, mine) : drive_on(self, mine);
 }
 
-static argus_intent_t step_ahead(const argus_t *const self, const argus_travel_t *const mine) {
-    argus_intent_t intent = step(self, argus_min(left_mm(self, mine), self->config.step_mm));
-    intent.event = ARGUS_EV_STEP;
-    intent.sonar = ARGUS_NO_SONAR;
-    intent.value = intent.mm;
-    intent.moves_on = true;
-    return intent;
+static void step_ahead(const argus_t *const self, const argus_travel_t *const mine,
+                       argus_intent_t *const intent) {
+    step(self, argus_min(left_mm(self, mine), self->config.step_mm), intent);
+    argus_to_say(intent, ARGUS_EV_STEP, ARGUS_NO_SONAR, intent->mm);
+    intent->moves_on = true;
+}
+
+static void end_way(argus_intent_t *const intent) {
+    intent->base = ARGUS_BASE_DROP;
+    intent->act = ARGUS_DO_DECIDE;
 }
 
 // The sweep is done and the robot is back on its heading: the compensating and the direct readings decide.
-static argus_intent_t judge_sweep(const argus_t *const self, argus_travel_t *const mine) {
+static void judge_sweep(const argus_t *const self, const argus_guard_t *const guard,
+                        argus_travel_t *const mine, argus_intent_t *const intent) {
     const int direct = argus_nearest_ahead(self);
     const int32_t direct_mm = reading_of(self, direct);
     if (!mine->swept) {
         mine->swept = true;
-        return say(ARGUS_EV_SWEEP, mine->drive.smallest_of, mine->drive.smallest_mm);
+        say(intent, ARGUS_EV_SWEEP, mine->drive.smallest_of, mine->drive.smallest_mm);
+        return;
     }
     if (mine->drive.smallest_mm <= self->config.check_range_mm) {
-        return blocked(mine, ARGUS_EV_OBJECT_CHECKED, mine->drive.smallest_of, mine->drive.smallest_mm);
+        blocked(mine, ARGUS_EV_OBJECT_CHECKED, mine->drive.smallest_of, mine->drive.smallest_mm, intent);
+        return;
     }
     if (direct_mm <= self->config.check_range_mm) {
-        return blocked(mine, ARGUS_EV_OBJECT, direct, direct_mm);
+        blocked(mine, ARGUS_EV_OBJECT, direct, direct_mm, intent);
+        return;
     }
-    const argus_guard_t guard = argus_guard(self);
-    if (argus_guard_seen_mm(&guard) >= SEEN_LEAST_MM && argus_rules(self)->drives_seen) {
-        return (argus_intent_t){.base = ARGUS_BASE_DROP, .act = ARGUS_DO_DECIDE};
+    if (argus_guard_seen_mm(guard) >= SEEN_LEAST_MM && argus_rules(self)->drives_seen) {
+        end_way(intent);
+    } else if (argus_rules(self)->disparity &&
+               argus_open_suspects(self) != 0) { // S6: one that an operator wants looked at again
+        argus_to_check(intent, false);
+    } else {
+        step_ahead(self, mine, intent);
     }
-    if (argus_rules(self)->disparity &&
-        argus_open_suspects(self) != 0) { // S6: one that an operator wants looked at again
-        return argus_to_check(false);
-    }
-    return step_ahead(self, mine);
 }
 
-static argus_intent_t begin_sweep(const argus_t *const self, argus_travel_t *const mine) {
+static void begin_sweep(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
     argus_sweep_begin(&mine->drive, &self->plan, argus_base_cdeg(self));
     mine->swept = false;
-    argus_intent_t intent = argus_to_turn(argus_sweep_heading_cdeg(&mine->drive, &self->plan));
-    intent.base = ARGUS_BASE_TAKE;
-    return intent;
+    argus_to_turn(intent, argus_sweep_heading_cdeg(&mine->drive, &self->plan));
+    intent->base = ARGUS_BASE_TAKE;
 }
 
-static argus_intent_t sweep_on(const argus_t *const self, argus_travel_t *const mine) {
+static void sweep_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                     argus_intent_t *const intent) {
+    const argus_mark_t *const mark = &self->motion.mark;
     if (self->motion.failed) {
-        return argus_to_check(true);
+        argus_to_check(intent, true);
+    } else if (!self->motion.settled) {
+        return;
+    } else if (argus_sweep_is_outdated(&mine->drive, &self->plan)) {
+        begin_sweep(self, mine, intent);
+    } else if (mine->drive.done) {
+        if (argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), mark)) {
+            judge_sweep(self, guard, mine, intent);
+        }
+    } else if (argus_sweep_step(&mine->drive, &self->plan, &self->knowledge, mark) && !mine->drive.done) {
+        argus_to_turn(intent, argus_sweep_heading_cdeg(&mine->drive, &self->plan));
     }
-    if (!self->motion.settled) {
-        return argus_to_nothing();
-    }
-    if (argus_sweep_is_outdated(&mine->drive, &self->plan)) {
-        return begin_sweep(self, mine);
-    }
-    if (mine->drive.done) {
-        const bool read =
-            argus_all_fresh_since(&self->knowledge, argus_wanted_sonars(self), &self->motion.mark);
-        return read ? judge_sweep(self, mine) : argus_to_nothing();
-    }
-    if (argus_sweep_step(&mine->drive, &self->plan, &self->knowledge, &self->motion.mark) &&
-        !mine->drive.done) {
-        return argus_to_turn(argus_sweep_heading_cdeg(&mine->drive, &self->plan));
-    }
-    return argus_to_nothing();
 }
 
-argus_intent_t argus_run_sweeping(const argus_t *const self, argus_travel_t *const mine) {
+void argus_run_sweeping(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
     const argus_guard_t guard = argus_guard(self);
-    argus_intent_t intent = cannot_move();
     if (!argus_guard_may_translate(&guard)) {
-        return intent;
+        cannot_move(intent);
+    } else if (self->base.taken) {
+        sweep_on(self, &guard, mine, intent);
+    } else if (is_ready(self, &guard, mine, intent)) {
+        begin_sweep(self, mine, intent);
     }
-    if (self->base.taken) {
-        return sweep_on(self, mine);
-    }
-    if (is_called_away(self, mine, &intent)) {
-        return intent;
-    }
-    end_leg(self, mine);
-    if (!has_way(self, mine, &intent) || !is_aimed(self, mine, &intent)) {
-        return intent;
-    }
-    return begin_sweep(self, mine);
 }
 
-argus_intent_t argus_run_stepping(const argus_t *const self, argus_travel_t *const mine) {
-    if (!self->motion.settled) {
-        return argus_to_nothing();
+void argus_run_stepping(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
+    if (self->motion.settled) {
+        mine->jog_mm = 0;
+        end_way(intent);
     }
-    mine->jog_mm = 0;
-    return (argus_intent_t){.base = ARGUS_BASE_DROP, .act = ARGUS_DO_DECIDE};
 }
 
 // A short MOVE, renewed on each SIP; only a bumper tells of what is in the way.
-static argus_intent_t creep_on(const argus_t *const self, argus_travel_t *const mine) {
-    const argus_guard_t guard = argus_guard(self);
+static void creep_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
+                     argus_intent_t *const intent) {
     const int32_t way_mm = left_mm(self, mine);
     if (!is_heeded(self, mine)) {
-        return (argus_intent_t){.stop = ARGUS_STOP_HALT, .act = ARGUS_DO_WAIT, .why = ARGUS_WAIT_MOTORS};
+        halt_to_wait(ARGUS_WAIT_MOTORS, intent);
+        return;
     }
-    return (argus_intent_t){.act = ARGUS_DO_CREEP,
-                            .mm = mine->jog_mm > 0 ? way_mm : argus_min(way_mm, CREEP_MM),
-                            .steers = way_mm > STEER_LEG_MM && off_bearing(self, mine) > STEER_CDEG &&
-                                      argus_guard_may_turn(&guard),
-                            .cdeg = bearing(self, mine),
-                            .moves_on = true};
+    intent->act = ARGUS_DO_CREEP;
+    intent->mm = mine->jog_mm > 0 ? way_mm : argus_min(way_mm, CREEP_MM);
+    intent->steers =
+        way_mm > STEER_LEG_MM && off_bearing(self, mine) > STEER_CDEG && argus_guard_may_turn(guard);
+    intent->cdeg = bearing(self, mine);
+    intent->moves_on = true;
 }
 
-argus_intent_t argus_run_creeping(const argus_t *const self, argus_travel_t *const mine) {
+void argus_run_creeping(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
     const argus_guard_t guard = argus_guard(self);
-    argus_intent_t intent = cannot_move();
-    if (!argus_guard_may_creep(&guard) || is_called_away(self, mine, &intent)) {
-        return intent; // a sonar sees again, too
+    if (!argus_guard_may_creep(&guard)) { // a sonar sees again, too
+        cannot_move(intent);
+        return;
+    }
+    if (is_called_away(self, mine, intent)) {
+        return;
     }
     if (mine->jog_mm > 0 && mine->aimed && self->motion.settled) { // an operator's step is done
         mine->jog_mm = 0;
-        return (argus_intent_t){.base = ARGUS_BASE_DROP, .act = ARGUS_DO_DECIDE};
+        end_way(intent);
+        return;
     }
     end_leg(self, mine);
-    if (!has_way(self, mine, &intent) || !is_aimed(self, mine, &intent)) {
-        return intent;
-    }
     const bool steps = mine->jog_mm > 0 && !self->motion.settled; // one MOVE, not renewed
-    return steps ? argus_to_nothing() : creep_on(self, mine);
+    if (has_way(self, &guard, mine, intent) && is_aimed(self, &guard, mine, intent) && !steps) {
+        creep_on(self, &guard, mine, intent);
+    }
 }

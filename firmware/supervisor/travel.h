@@ -8,10 +8,10 @@
 #include "supervisor/intent.h"
 
 // Each says on every SIP what is to be done, and writes the state of the travel alone.
-argus_intent_t argus_run_driving(const argus_t *self, argus_travel_t *mine);
-argus_intent_t argus_run_sweeping(const argus_t *self, argus_travel_t *mine);
-argus_intent_t argus_run_stepping(const argus_t *self, argus_travel_t *mine);
-argus_intent_t argus_run_creeping(const argus_t *self, argus_travel_t *mine);
+void argus_run_driving(const argus_t *self, argus_travel_t *mine, argus_intent_t *intent);
+void argus_run_sweeping(const argus_t *self, argus_travel_t *mine, argus_intent_t *intent);
+void argus_run_stepping(const argus_t *self, argus_travel_t *mine, argus_intent_t *intent);
+void argus_run_creeping(const argus_t *self, argus_travel_t *mine, argus_intent_t *intent);
 
 // A way begins: DRIVING, SWEEPING or CREEPING is entered.
 void argus_begin_travel(argus_travel_t *mine);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
+#include "knowledge/apart.h"
 
 #define CELLS ARGUS_GRID_CELLS
 #define CELL_MM ARGUS_GRID_CELL_MM
@@ -25,7 +26,7 @@
 
 _Static_assert(ARGUS_WAVE_MEMORY > NARROW_STEPS + 2, "what is at rest has nothing on its way any more");
 
-static uint64_t bit(const int32_t x) {
+static ARGUS_APART uint64_t bit(const int32_t x) {
     ARGUS_ASSERT(x >= 0 && x < CELLS);
     return (uint64_t)1 << x;
 }

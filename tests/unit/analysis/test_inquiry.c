@@ -271,7 +271,7 @@ static void heard(int sonar, int32_t cdeg, int mm) {
     argus_ping_t at = argus_ping_from(k.robot, sonar, &pose);
     at.t_ms = (uint16_t)(k.sip_ms & 0xFFFFu);
     at.reading_mm = (uint16_t)mm;
-    argus_pings_note(&e.of[sonar].pings, at);
+    argus_pings_note(&e.pings[sonar], at);
 }
 
 static void falls_silent(int sonar) {

@@ -20,8 +20,8 @@ static argus_ping_t *heard(int sonar, int mm, uint32_t age_ms) {
     argus_ping_t at = argus_ping_from(k.robot, sonar, &k.pose);
     at.t_ms = (uint16_t)((k.sip_ms - age_ms) & 0xFFFFu);
     at.reading_mm = (uint16_t)mm;
-    argus_pings_note(&e.of[sonar].pings, at);
-    return argus_pings_mark(&e.of[sonar].pings, 1);
+    argus_pings_note(&e.pings[sonar], at);
+    return argus_pings_mark(&e.pings[sonar], 1);
 }
 
 static bool aims(int sonar) {

@@ -40,7 +40,7 @@ static argus_ping_t *heard(int by, int mm) {
     argus_ping_t at = here(ME);
     at.reading_mm = (uint16_t)mm;
     at.weighed = 1; // it is not the one that is judged
-    argus_pings_t *log = &e.of[by].pings;
+    argus_pings_t *log = &e.pings[by];
     argus_pings_note(log, at);
     memset(log->looked, 0xFF, sizeof log->looked); // some of them are turned aside afterwards
     return argus_pings_mark(log, 1);
@@ -53,7 +53,7 @@ static int score_of(int sonar) {
 static int takes(int sonar, argus_ping_t at, int mm) {
     const int before = score_of(sonar);
     at.reading_mm = (uint16_t)mm;
-    argus_pings_note(&e.of[sonar].pings, at);
+    argus_pings_note(&e.pings[sonar], at);
     argus_crosscheck_take(&e, &k, sonar);
     return score_of(sonar) - before;
 }
@@ -247,7 +247,7 @@ static int again(uint32_t after_ms, int dx_mm, int32_t turn_cdeg) {
     argus_ping_t theirs = at;
     theirs.reading_mm = 3000;
     theirs.weighed = 1;
-    argus_pings_note(&e.of[WITNESS].pings, theirs);
+    argus_pings_note(&e.pings[WITNESS], theirs);
     return takes(ME, at, 1000);
 }
 
@@ -372,13 +372,13 @@ void test_what_others_heard_where_it_looked_speaks_for_that_lag(void) {
             argus_ping_t at = here(ME);
             at.reading_mm = 4700;
             at.weighed = 1;
-            argus_pings_note(&e.of[ME].pings, at);
+            argus_pings_note(&e.pings[ME], at);
             if (i == 0) {
                 heard(WITNESS, 1000);
             }
             k.pose.heading_cdeg = argus_angle_wrap(k.pose.heading_cdeg + 2000);
         }
-        argus_pings_mark(&e.of[ME].pings, 1)->bearing_cdeg = 17000; // the last one before is nowhere near
+        argus_pings_mark(&e.pings[ME], 1)->bearing_cdeg = 17000; // the last one before is nowhere near
         heard(WITNESS, 3000);
         reads(1000);
         for (int i = 0; i < ARGUS_LAGS; i++) {

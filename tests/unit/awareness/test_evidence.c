@@ -240,7 +240,7 @@ void test_restart_forgets_the_pings_and_keeps_the_other_scores(void) {
     argus_evidence_restart(&s.e);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         TEST_ASSERT_EQUAL(0, s.e.of[i].score[ARGUS_TEST_PEERS]);
-        TEST_ASSERT_EQUAL(0, s.e.of[i].pings.count);
+        TEST_ASSERT_EQUAL(0, s.e.pings[i].count);
         TEST_ASSERT_EQUAL(0, s.e.of[i].against);
     }
     TEST_ASSERT_EQUAL(300, s.e.of[4].score[ARGUS_TEST_DROPOUT]);

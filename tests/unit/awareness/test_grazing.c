@@ -31,7 +31,7 @@ static void read_at(int sonar, double range_mm) {
     argus_ping_t now = argus_ping_from(k.robot, sonar, &pose);
     now.reading_mm = (uint16_t)lround(fmax(100, range_mm));
     now.steady = 1;
-    argus_pings_note(&e.of[sonar].pings, now);
+    argus_pings_note(&e.pings[sonar], now);
 }
 
 // How far beyond the sonar's face a wall at `slant` degrees is when the front corner touches it, on the
@@ -60,7 +60,7 @@ static double left_when_told(int sonar, double slant_deg, double from_mm, double
         const bool lost = lost_each > 0 && ++readings % lost_each == 0;
         read_at(sonar, lost ? 5000 : range + (way_mm > 0 ? odd_mm : 0));
         odd_mm = -odd_mm;
-        if (argus_grazing_wall(&e.of[sonar].pings, k.robot, sonar, STOP_MM)) {
+        if (argus_grazing_wall(&e.pings[sonar], k.robot, sonar, STOP_MM)) {
             return (range - touches_at(slant_deg)) / slope;
         }
         way_mm += STEP_MM;
@@ -111,7 +111,7 @@ void test_along_a_wall_or_away_from_it_nothing_is_told(void) {
             setUp();
             for (int i = 0; i < 14; i++) {
                 read_at(0, range - tan(slant * RAD) * way_mm + (i % 2 == 0 ? 5 : -5));
-                TEST_ASSERT_FALSE(argus_grazing_wall(&e.of[0].pings, k.robot, 0, STOP_MM));
+                TEST_ASSERT_FALSE(argus_grazing_wall(&e.pings[0], k.robot, 0, STOP_MM));
                 way_mm += STEP_MM;
             }
         }
@@ -124,7 +124,7 @@ void test_one_odd_reading_is_no_slant(void) {
         setUp();
         for (int i = 0; i < 20; i++) {
             read_at(7, i % 5 == 4 ? odd : 240);
-            TEST_ASSERT_FALSE(argus_grazing_wall(&e.of[7].pings, k.robot, 7, STOP_MM));
+            TEST_ASSERT_FALSE(argus_grazing_wall(&e.pings[7], k.robot, 7, STOP_MM));
             way_mm += STEP_MM;
         }
     }
@@ -133,13 +133,13 @@ void test_one_odd_reading_is_no_slant(void) {
 void test_no_slant_without_way_and_none_over_a_turn(void) {
     for (int i = 0; i < 14; i++) { // somebody comes near while the robot stands
         read_at(0, 230 - 10 * i);
-        TEST_ASSERT_FALSE(argus_grazing_wall(&e.of[0].pings, k.robot, 0, STOP_MM));
+        TEST_ASSERT_FALSE(argus_grazing_wall(&e.pings[0], k.robot, 0, STOP_MM));
     }
     setUp();
     for (int i = 0; i < 14; i++) {
         read_at(0, 230 - 10 * i);
-        argus_pings_mark(&e.of[0].pings, 1)->bearing_cdeg = (int16_t)(9000 + 400 * i);
-        TEST_ASSERT_FALSE(argus_grazing_wall(&e.of[0].pings, k.robot, 0, STOP_MM));
+        argus_pings_mark(&e.pings[0], 1)->bearing_cdeg = (int16_t)(9000 + 400 * i);
+        TEST_ASSERT_FALSE(argus_grazing_wall(&e.pings[0], k.robot, 0, STOP_MM));
         way_mm += STEP_MM;
     }
 }
@@ -152,18 +152,18 @@ void test_a_stop_in_between_does_not_hide_it(void) {
     }
     way_mm += 20;
     read_at(0, 136);
-    TEST_ASSERT_TRUE(argus_grazing_wall(&e.of[0].pings, k.robot, 0, STOP_MM));
+    TEST_ASSERT_TRUE(argus_grazing_wall(&e.pings[0], k.robot, 0, STOP_MM));
 }
 
 void test_no_readings_no_slant(void) {
     for (int i = 0; i < 3; i++) {
-        TEST_ASSERT_FALSE(argus_grazing_wall(&e.of[0].pings, k.robot, 0, STOP_MM));
+        TEST_ASSERT_FALSE(argus_grazing_wall(&e.pings[0], k.robot, 0, STOP_MM));
         read_at(0, 120 - 20 * i);
     }
     setUp();
     for (int i = 0; i < 14; i++) {
         read_at(0, FAR_MM - 20 * i);
-        TEST_ASSERT_FALSE(argus_grazing_wall(&e.of[0].pings, k.robot, 0, STOP_MM));
+        TEST_ASSERT_FALSE(argus_grazing_wall(&e.pings[0], k.robot, 0, STOP_MM));
         way_mm += STEP_MM;
     }
 }

@@ -31,11 +31,8 @@ static void read_at(int sonar, int range_mm) {
     const argus_pose_t pose = {.x_mm = way_mm, .heading_cdeg = heading_cdeg};
     argus_ping_t now = argus_ping_from(k.robot, sonar, &pose);
     now.reading_mm = (uint16_t)range_mm;
-    const argus_ping_t *before = argus_pings_at(&e.of[sonar].pings, 1);
-    if (before != NULL) {
-        argus_scale_take(&e, &k, sonar, &now, before);
-    }
-    argus_pings_note(&e.of[sonar].pings, now);
+    argus_scale_take(&e, &k, sonar, &now);
+    argus_pings_note(&e.pings[sonar], now);
 }
 
 // Drives up to a wall, and again; ranges ahead and back come to so many percent of what they should.

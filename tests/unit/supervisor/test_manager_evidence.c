@@ -425,7 +425,7 @@ void test_a_link_that_stalls_during_a_look(void) {
     const int from = robot.commands;
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_LINK_RESUMED, 2000));
     for (int i = 0; i < ARGUS_SONARS; i++) { // whoever moved the robot in the gap: the pings begin anew
-        TEST_ASSERT_TRUE(robot.argus.evidence.of[i].pings.count <= 1);
+        TEST_ASSERT_TRUE(robot.argus.evidence.pings[i].count <= 1);
     }
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 60000));
     TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, from));

@@ -55,43 +55,44 @@ static void expect_nothing_else(const void *at, size_t size, const char *who) {
 }
 
 static void try_mode(void) {
+    argus_intent_t intent = {0};
     memcpy(&copy, &robot.argus, sizeof copy);
     switch ((int)robot.argus.mode) {
     case ARGUS_MODE_CHECKING:
-        argus_run_checking(&copy, &copy.checking);
+        argus_run_checking(&copy, &copy.checking, &intent);
         expect_nothing_else(&copy.checking, sizeof copy.checking, "checking");
         break;
     case ARGUS_MODE_VERIFYING:
-        argus_run_verifying(&copy, &copy.verifying);
+        argus_run_verifying(&copy, &copy.verifying, &intent);
         expect_nothing_else(&copy.verifying, sizeof copy.verifying, "verifying");
         break;
     case ARGUS_MODE_IDLE:
-        argus_run_idle(&copy);
+        argus_run_idle(&copy, &intent);
         expect_nothing_else(&copy, 0, "idle");
         break;
     case ARGUS_MODE_BACKING:
-        argus_run_backing(&copy);
+        argus_run_backing(&copy, &intent);
         expect_nothing_else(&copy, 0, "backing");
         break;
     case ARGUS_MODE_WAITING:
-        argus_run_waiting(&copy, &copy.waiting);
-        argus_go_on_waiting(&copy, &copy.waiting);
+        argus_run_waiting(&copy, &copy.waiting, &intent);
+        argus_go_on_waiting(&copy, &copy.waiting, &intent);
         expect_nothing_else(&copy.waiting, sizeof copy.waiting, "waiting");
         break;
     case ARGUS_MODE_DRIVING:
-        argus_run_driving(&copy, &copy.travel);
+        argus_run_driving(&copy, &copy.travel, &intent);
         expect_nothing_else(&copy.travel, sizeof copy.travel, "driving");
         break;
     case ARGUS_MODE_SWEEPING:
-        argus_run_sweeping(&copy, &copy.travel);
+        argus_run_sweeping(&copy, &copy.travel, &intent);
         expect_nothing_else(&copy.travel, sizeof copy.travel, "sweeping");
         break;
     case ARGUS_MODE_STEPPING:
-        argus_run_stepping(&copy, &copy.travel);
+        argus_run_stepping(&copy, &copy.travel, &intent);
         expect_nothing_else(&copy.travel, sizeof copy.travel, "stepping");
         break;
     case ARGUS_MODE_CREEPING:
-        argus_run_creeping(&copy, &copy.travel);
+        argus_run_creeping(&copy, &copy.travel, &intent);
         expect_nothing_else(&copy.travel, sizeof copy.travel, "creeping");
         break;
     default:
@@ -108,7 +109,7 @@ static void try_all_reflexes(void) {
                                  .stall = true};
     memcpy(&copy, &robot.argus, sizeof copy);
     for (int i = 0; i < ARGUS_REFLEXES; i++) {
-        argus_reflex((argus_reflex_t)i, &copy, &alarm, &copy.reflexes);
+        argus_reflex((argus_reflex_t)i, &copy, &alarm, &copy.reflexes, &(argus_intent_t){0});
         expect_nothing_else(&copy.reflexes, sizeof copy.reflexes, "reflex");
     }
 }
@@ -148,15 +149,15 @@ void test_a_bumper_comes_first(void) {
     begin(1);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 20000));
     robot.argus.knowledge.bumpers_front = 1u << 2;
-    const argus_intent_t intent =
-        argus_reflex(ARGUS_REFLEX_bumper, &robot.argus, &alarm, &robot.argus.reflexes);
+    argus_intent_t intent = {0};
+    argus_reflex(ARGUS_REFLEX_bumper, &robot.argus, &alarm, &robot.argus.reflexes, &intent);
     TEST_ASSERT_EQUAL(ARGUS_DO_WAIT, intent.act);
     TEST_ASSERT_EQUAL(ARGUS_STOP_E_STOP, intent.stop);
     TEST_ASSERT_TRUE(intent.unchecked && intent.bumped);
     TEST_ASSERT_TRUE(argus_reflex_is_last(ARGUS_REFLEX_bumper));
     TEST_ASSERT_EQUAL(0, ARGUS_REFLEX_bumper);
-    const argus_intent_t again =
-        argus_reflex(ARGUS_REFLEX_bumper, &robot.argus, &alarm, &robot.argus.reflexes);
+    argus_intent_t again = {0};
+    argus_reflex(ARGUS_REFLEX_bumper, &robot.argus, &alarm, &robot.argus.reflexes, &again);
     TEST_ASSERT_EQUAL(ARGUS_DO_NOTHING, again.act); // answered already
 }
 
@@ -191,7 +192,8 @@ void test_s1_a_plan_that_changes_under_a_sweep_begins_it_anew(void) {
     memcpy(&copy, &robot.argus, sizeof copy);
     copy.plan = argus_plan(copy.knowledge.robot, ARGUS_POLICY_PAPER, 1u << 2 | 1u << 3, 0);
     copy.travel.drive.index = 1;
-    const argus_intent_t intent = argus_run_sweeping(&copy, &copy.travel);
+    argus_intent_t intent = {0};
+    argus_run_sweeping(&copy, &copy.travel, &intent);
     TEST_ASSERT_EQUAL(ARGUS_DO_TURN, intent.act);
     TEST_ASSERT_EQUAL(copy.base.cdeg + copy.plan.rotation_deg[0] * 100, intent.cdeg);
     TEST_ASSERT_EQUAL(0, copy.travel.drive.index);

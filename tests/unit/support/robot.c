@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "adjustment/guard.h"
@@ -598,6 +599,22 @@ static void watch_ahead(robot_t *robot, int32_t mm) {
     watch_speed(robot);
 }
 
+// Wherever in its cone that is, the body passes it by on the usual way back, or does not come to it.
+static bool stands_beside_way(const robot_t *robot, int sonar) {
+    const argus_robot_t *built = robot->argus.knowledge.robot;
+    const argus_sonar_pose_t *pose = argus_robot_pose(built, sonar);
+    const int off_deg = 180 - abs(pose->heading_deg);
+    for (int deg = off_deg - 15; deg <= off_deg + 15; deg++) {
+        const double x = robot->shown[sonar] * cos(deg * 3.14159265358979 / 180) - pose->x_mm;
+        const double y = robot->shown[sonar] * sin(deg * 3.14159265358979 / 180) + abs(pose->y_mm);
+        if (y < argus_robot_half_width_mm(built) + 15 &&
+            x < built->rear_mm + robot->argus.config.backoff_mm + 100) {
+            return false;
+        }
+    }
+    return robot->argus.config.profile == ARGUS_PROFILE_ARGUS && off_deg > 15;
+}
+
 static void watch_back(robot_t *robot, int32_t mm) {
     const int first = rear_leads(robot) ? 0 : 8;
     const argus_guard_t guard = argus_guard(&robot->argus);
@@ -611,7 +628,8 @@ static void watch_back(robot_t *robot, int32_t mm) {
         const bool abeam =
             robot->argus.config.profile == ARGUS_PROFILE_ARGUS && (i == first || i == first + 7);
         const int clear_mm = abeam ? 250 : robot->argus.config.rear_clear_mm;
-        if (argus_is_out(&robot->argus.knowledge, i) || robot->shown[i] <= clear_mm) {
+        const bool near = robot->shown[i] <= clear_mm && (abeam || !stands_beside_way(robot, i));
+        if (argus_is_out(&robot->argus.knowledge, i) || near) {
             complain(robot, "S7: MOVE back though a rear sonar does not read clear", i);
         }
         if (!abeam && robot->shown[i] + mm < 150) {
