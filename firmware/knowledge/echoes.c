@@ -45,22 +45,23 @@ bool argus_are_one_thing(const argus_point_t a, const argus_point_t b) {
 }
 
 // A second echo of one thing, lately; a wall gives one a little farther on, as far as the robot drove
-// meanwhile. What was seen twice before stays so for as long as it is remembered.
-static bool is_seen_again(const argus_echo_t *const seen, const argus_point_t *const at,
+// meanwhile. An echo from far off is put on the axis, but comes from anywhere across a wide cone: it does not
+// tell where a thing is. What was seen twice before stays so for as long as it is remembered.
+static bool is_seen_again(const argus_echo_t *const seen, const argus_point_t *const at, const bool near,
                           const uint32_t now_ms) {
     const uint32_t age_ms = now_ms - seen->seen_ms;
     const argus_point_t there = {seen->x_mm, seen->y_mm};
-    return (argus_are_one_thing(there, *at) && age_ms <= LATELY_MS) ||
+    return (near && argus_are_one_thing(there, *at) && age_ms <= LATELY_MS) ||
            (seen->again && age_ms <= FORGET_MS && same_place(seen, at));
 }
 
 // ... of something at most so far from there.
-static bool has_seen(const argus_echoes_t *const self, const argus_point_t *const at, const uint32_t now_ms,
-                     const argus_point_t *const from, const int32_t within_mm) {
+static bool has_seen(const argus_echoes_t *const self, const argus_point_t *const at, const bool near,
+                     const uint32_t now_ms, const argus_point_t *const from, const int32_t within_mm) {
     ARGUS_ASSERT(within_mm > 0);
     for (uint16_t i = 0; i < self->count; i++) {
         const argus_echo_t *const seen = &self->at[i];
-        if (is_seen_again(seen, at, now_ms) &&
+        if (is_seen_again(seen, at, near, now_ms) &&
             argus_hypot(seen->x_mm - from->x_mm, seen->y_mm - from->y_mm) <= within_mm) {
             return true;
         }
@@ -72,16 +73,16 @@ bool argus_echoes_have_seen(const argus_echoes_t *const self, const argus_knowle
                             const argus_point_t at, const int32_t within_mm) {
     ARGUS_ASSERT(within_mm > 0);
     const argus_point_t centre = {knowledge->pose.x_mm, knowledge->pose.y_mm};
-    return has_seen(self, &at, knowledge->sip_ms, &centre, within_mm);
+    return has_seen(self, &at, true, knowledge->sip_ms, &centre, within_mm);
 }
 
-static void remember(argus_echoes_t *const self, const argus_point_t at, const uint8_t sonar,
+static void remember(argus_echoes_t *const self, const argus_point_t at, const uint8_t sonar, const bool near,
                      const uint32_t now_ms) {
     ARGUS_ASSERT(sonar < ARGUS_SONARS || sonar == BY_TOUCH);
     if (argus_abs(at.x_mm) > INT16_MAX || argus_abs(at.y_mm) > INT16_MAX) {
         return;
     }
-    const bool again = sonar == BY_TOUCH || has_seen(self, &at, now_ms, &at, INT32_MAX);
+    const bool again = sonar == BY_TOUCH || has_seen(self, &at, near, now_ms, &at, INT32_MAX);
     argus_echo_t *const slot = slot_for(self, &at);
     slot->again = again;
     slot->x_mm = (int16_t)at.x_mm;
@@ -99,7 +100,7 @@ void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const
         if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT &&
             !knowledge->rotating && knowledge->sonar[i].reading_mm < REMEMBER_BELOW_MM) {
             remember(self, argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, i)), (uint8_t)i,
-                     now_ms);
+                     knowledge->sonar[i].reading_mm <= NEAR_MM, now_ms);
         }
     }
 }
@@ -119,7 +120,7 @@ void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
 }
 
 void argus_echoes_touched(argus_echoes_t *const self, const argus_point_t at, const uint32_t now_ms) {
-    remember(self, at, BY_TOUCH, now_ms);
+    remember(self, at, BY_TOUCH, true, now_ms);
     argus_grid_mark(&self->grid, at, true);
 }
 

@@ -128,11 +128,11 @@ bool argus_is_home(const argus_t *const self, const bool again, argus_intent_t *
     return false;
 }
 
-// It is healthy and shows no gaps: what is there it hears again.
+// It has no name of a fault and shows no gaps: what is there it hears again. The echo itself may be what it
+// is doubted for.
 static bool is_steady(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
-    return self->knowledge.sonar[sonar].health == ARGUS_HEALTHY &&
-           !argus_evidence_shows_gaps(&self->evidence, sonar);
+    return argus_trusted(&self->knowledge, sonar) && !argus_evidence_shows_gaps(&self->evidence, sonar);
 }
 
 static bool only_steady_forbid_to_turn(const argus_t *const self, const argus_guard_t *const guard) {

@@ -6,6 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from hil_sim.experiment.cases import parse_id
+from hil_sim.experiment.drive import run_case
 from hil_sim.experiment.ground import Ground
 from hil_sim.experiment.home import Home
 from hil_sim.experiment.safety import Safety, watch
@@ -44,6 +46,17 @@ def test_no_rule_is_broken(profile: str, faults: tuple[str, ...], seed: int) -> 
     assert not outcome.collisions, told(sil, safety)
     assert outcome.driven_mm > 500, told(sil, safety)
     assert 0 < safety.closest_mm < 3000, told(sil, safety)
+
+
+@pytest.mark.parametrize("run", ["demo/17/2+3+5+6", "demo/20/1+2+3+5", "lab/12/2+3+5"])
+def test_what_was_heard_from_afar_hems_nobody_in(run: str) -> None:
+    """Echoes 1.5 m ahead, put on the axis of a cone, forbade to turn 3 s later: it left straight ahead, up to a wall.
+
+    There it turned about, and its rear corner passed the wall at 32, 58 and 70 mm.
+    """
+    record, _, diary = run_case(parse_id(f"adaptive/judge/{run}/plain"))
+    assert record["truly"], record
+    assert diary.safety.closest_mm > 150, record
 
 
 def until_mode(sil: Sil, mode: str) -> None:

@@ -78,6 +78,38 @@ void test_what_was_seen_twice_once_more_is_seen_again(void) {
     }
 }
 
+// A sonar hears what lies anywhere in its cone, and an echo is put on the axis: from afar two of a wall aside
+// are put where the way is free. When the robot has come there they forbade it to turn.
+void test_an_echo_from_afar_shows_nothing_again(void) {
+    static const struct {
+        int first_mm;
+        int second_mm;
+        bool again;
+    } by[] = {
+        {1900, 1900, false}, {1001, 1001, false}, {1000, 1000, true}, {1010, 990, true}, {990, 1010, false}};
+    for (int i = 0; i < (int)(sizeof by / sizeof by[0]); i++) {
+        setUp();
+        see_echo(&e, &k, 3, by[i].first_mm);
+        see_echo(&e, &k, 3, by[i].second_mm);
+        k.pose.x_mm = by[i].second_mm;
+        snprintf(text, sizeof text, "case %d", i);
+        TEST_ASSERT_EQUAL_MESSAGE(by[i].again, argus_echoes_nearest_mm(&e, &k, 0) < INT32_MAX, text);
+    }
+}
+
+// ... nor does it take away what was seen again from near.
+void test_an_echo_from_afar_takes_nothing_away(void) {
+    see_echo(&e, &k, 3, 900);
+    see_echo(&e, &k, 3, 900);
+    k.pose.x_mm = -500;
+    see_echo(&e, &k, 3, 1400); // 87 mm farther left: another place, and
+    TEST_ASSERT_EQUAL(2, e.count);
+    k.pose.y_mm = -87; // ... the same
+    see_echo(&e, &k, 3, 1408);
+    k.pose.x_mm = 500;
+    TEST_ASSERT_TRUE(argus_echoes_nearest_mm(&e, &k, 0) < INT32_MAX);
+}
+
 void test_one_thing_is_at_most_150_mm_apart_each_way(void) {
     const argus_point_t at = {-40, 70};
     for (int sign = -1; sign <= 1; sign += 2) {

@@ -819,16 +819,19 @@ static void stand_beside_an_echo(void) {
     TEST_ASSERT_EQUAL(150, robot.argus.knowledge.sonar[0].reading_mm);
 }
 
-// One echo may be crosstalk: it is read once more before it forbids a turn. What is there is seen again; what
-// jumps is not, and forbids it after one round; what a suspect hears, or one that has gaps, at once.
+// One echo may be crosstalk: it is read once more before it forbids a turn, also where it has raised a doubt.
+// What is there is seen again; what jumps is not, and forbids it after one round; what one hears that has the
+// name of a fault, or gaps, at once.
 static void check_s7_one_echo_is_read_again(void) {
-    enum { CROSSTALK, THERE, JUMPING, SUSPECTED, WITH_GAPS, CASES };
+    enum { CROSSTALK, DOUBTED, THERE, JUMPING, NAMED, WITH_GAPS, CASES };
     for (int which = 0; which < CASES; which++) {
+        const bool gone = which == CROSSTALK || which == DOUBTED;
         stand_beside_an_echo();
-        robot.fault[0] = which == CROSSTALK ? ROBOT_OK : ROBOT_VALUE;
+        robot.fault[0] = gone ? ROBOT_OK : ROBOT_VALUE;
         robot.argus.evidence.of[0].score[ARGUS_TEST_DROPOUT] = which == WITH_GAPS ? 100 : 0;
-        if (which == SUSPECTED) { // looked at in vain; held by what the others say
+        if (which == DOUBTED || which == NAMED) { // looked at in vain; held by what the others say
             robot.argus.knowledge.sonar[0].health = ARGUS_SUSPECT;
+            robot.argus.knowledge.sonar[0].kind = which == NAMED ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;
             robot.argus.awareness.verified |= 1;
             robot.argus.evidence.of[0].score[ARGUS_TEST_PEERS] = 400;
         }
@@ -843,12 +846,12 @@ static void check_s7_one_echo_is_read_again(void) {
                 robot.fault_value[0] = robot.fault_value[0] == 60 ? 220 : 60;
             }
         }
-        const bool doubted = which == SUSPECTED || which == WITH_GAPS;
+        const bool unsteady = which == NAMED || which == WITH_GAPS;
         snprintf(which_case, sizeof which_case, "case %d", which);
-        TEST_ASSERT_EQUAL_MESSAGE(which != CROSSTALK,
-                                  robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0, which_case);
-        TEST_ASSERT_EQUAL_MESSAGE(which == CROSSTALK, robot_heading_deg(&robot) > 1, which_case);
-        TEST_ASSERT_TRUE_MESSAGE(which == THERE || read_again == !doubted, which_case);
+        TEST_ASSERT_EQUAL_MESSAGE(!gone, robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0,
+                                  which_case);
+        TEST_ASSERT_EQUAL_MESSAGE(gone, robot_heading_deg(&robot) > 1, which_case);
+        TEST_ASSERT_TRUE_MESSAGE(which == THERE || read_again == !unsteady, which_case);
         finish();
     }
 }
