@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A wall beside the way: whether the robot slants into one that the sonars ahead do not hear.
+// Smooth walls, which turn echoes away.
 #include "awareness/grazing.h"
 
 #include <stddef.h>
@@ -12,6 +12,7 @@
 #define FALL_MM 12   // ... and differ by more than noise
 #define UNEVEN_MM 18 // from the line of the two another one differs so much by noise
 #define APART_MM 20
+#define LOST_BACK 5   // readings
 #define REFRESH_MM 64 // of the stopping way: from one reading to the next, where all sonars take turns
 
 // Where its corner would touch, the body goes beyond the sonar's face by these.
@@ -72,4 +73,28 @@ bool argus_grazing_wall(const argus_pings_t *const pings, const argus_robot_t *c
     const bool in_line = argus_abs(before->reading_mm - now->reading_mm - fall * step / way) <= UNEVEN_MM;
     const int32_t left_mm = ahead_mm(robot, sonar) + stop_mm + argus_max(0, step - REFRESH_MM);
     return in_line && now->reading_mm <= beyond_mm(robot, sonar) + left_mm * fall / way + APART_MM;
+}
+
+// The last echo before it heard none, on this bearing; NULL: none of late.
+static const argus_ping_t *lost_echo(const argus_pings_t *const pings, const argus_ping_t *const now) {
+    for (int i = 2; i <= LOST_BACK; i++) {
+        const argus_ping_t *const then = argus_pings_at(pings, i);
+        if (then == NULL || argus_ping_turned_cdeg(now, then) > ARGUS_BESIDE_CDEG) {
+            return NULL;
+        }
+        if (argus_ping_is_echo(then)) {
+            return then;
+        }
+    }
+    return NULL;
+}
+
+bool argus_grazing_lost(const argus_pings_t *const pings, const int32_t within_mm) {
+    ARGUS_ASSERT(within_mm > 0);
+    const argus_ping_t *const now = argus_pings_at(pings, 1);
+    if (now == NULL || argus_ping_is_echo(now)) {
+        return false;
+    }
+    const argus_ping_t *const then = lost_echo(pings, now);
+    return then != NULL && argus_ping_predict_mm(now, then) <= within_mm;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A wall beside the way: whether the robot slants into one that the sonars ahead do not hear.
+// Smooth walls: one that the robot slants into and the sonars ahead do not hear, one that they hear no more.
 #ifndef ARGUS_GRAZING_H
 #define ARGUS_GRAZING_H
 
@@ -9,5 +9,8 @@
 // that the body would touch it within `stop_mm` of way. False also when they were not made on a way straight
 // ahead of 80 mm or more.
 bool argus_grazing_wall(const argus_pings_t *pings, const argus_robot_t *robot, int sonar, int32_t stop_mm);
+
+// Whether it hears nothing now where it heard an echo a moment ago, of what is within so much of it by now.
+bool argus_grazing_lost(const argus_pings_t *pings, int32_t within_mm);
 
 #endif

@@ -18,7 +18,7 @@
     X(nudges, 0, 1, 1,                                                                                      \
       "S7: a turn of 20 degrees at most asks for what the body sweeps in it, not for the circle")           \
     X(watches_turn, 0, 1, 1, "S7: what comes into view within the circle in a turn ends it")                \
-    X(watches_flank, 0, 1, 1, "S2: a wall beside the robot that its way slants into: STOP")                 \
+    X(watches_flank, 0, 1, 1, "S2: a wall that its way slants into, or that is not heard any more: STOP")   \
     X(backs_to_turn, 0, 1, 1,                                                                               \
       "S7: backs away as far as a turn asks for, at the driving speed where S5 lets it")                    \
     X(passes_abeam, 0, 1, 1,                                                                                \

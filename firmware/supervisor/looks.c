@@ -39,10 +39,16 @@ static unsigned open_names(const argus_t *const self) {
     return argus_named(&self->knowledge) & argus_open_suspects(self);
 }
 
+// Looks prove nothing of those that do not look ahead: after two they tell no more.
 argus_mask_t argus_to_settle(const argus_t *const self) {
     const argus_guard_t guard = argus_guard(self);
-    return argus_guard_may_turn(&guard) && self->looks.settling < SETTLE_MOST ? argus_named(&self->knowledge)
-                                                                              : 0;
+    if (!argus_guard_may_turn(&guard) || self->looks.settling >= SETTLE_MOST) {
+        return 0;
+    }
+    const unsigned proves = self->looks.settling < PROOFS_AT_GOAL
+                                ? argus_robot_all(self->knowledge.robot)
+                                : argus_robot_forward(self->knowledge.robot);
+    return (argus_mask_t)(argus_named(&self->knowledge) & proves);
 }
 
 argus_mask_t argus_to_try(const argus_t *const self) {

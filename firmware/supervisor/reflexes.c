@@ -7,6 +7,7 @@
 #include "supervisor/mode.h"
 #include "supervisor/state.h"
 
+#define LOST_DEG 30        // what looks farther aside passes by what it loses
 #define LOW_BATTERY_DV 115 // where CONFIGpac names none
 #define HYSTERESIS_DV 2
 #define LEAST_BATTERY_DV 60 // with less no robot would be running,
@@ -257,7 +258,19 @@ static void sees_swing(const argus_t *const self, const argus_alarm_t *const ala
     }
 }
 
-// A smooth wall that the robot slants into is heard by the sonar that looks abeam alone.
+// A smooth wall that the robot slants into is heard by the sonar that looks abeam alone, or by one ahead once
+// and not again.
+static bool is_smooth_wall(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const argus_robot_t *const robot = self->knowledge.robot;
+    const argus_pings_t *const pings = &self->evidence.pings[sonar];
+    if ((argus_robot_flank(robot) >> sonar & 1u) != 0) {
+        return argus_grazing_wall(pings, robot, sonar, argus_config_stop_mm(&self->config, robot));
+    }
+    return argus_abs(argus_robot_pose(robot, sonar)->heading_deg) <= LOST_DEG &&
+           argus_trusted(&self->knowledge, sonar) && argus_grazing_lost(pings, self->config.object_range_mm);
+}
+
 static void sees_flank(const argus_t *const self, const argus_alarm_t *const alarm,
                        argus_reflexes_t *const mine, argus_intent_t *const intent) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
@@ -268,13 +281,11 @@ static void sees_flank(const argus_t *const self, const argus_alarm_t *const ala
         self->motion.settled) {
         return;
     }
-    const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge) &
-                            argus_robot_flank(self->knowledge.robot);
-    const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
+    const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge);
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((usable >> i & 1u) != 0 &&
-            argus_grazing_wall(&self->evidence.pings[i], self->knowledge.robot, i, stop_mm)) {
-            argus_to_say(intent, ARGUS_EV_OBJECT, i, self->knowledge.sonar[i].reading_mm);
+        if ((usable >> i & 1u) != 0 && is_smooth_wall(self, i)) {
+            const int32_t at_mm = self->knowledge.sonar[i].reading_mm;
+            argus_to_say(intent, ARGUS_EV_OBJECT, i, argus_min(at_mm, self->config.object_range_mm));
             intent->stop = ARGUS_STOP_STOP;
             intent->way = ARGUS_WAY_REFUSE;
             argus_to_check(intent, true);

@@ -18,7 +18,7 @@
     X(dead, 1, "a dead or silent sonar ahead: STOP, DISABLED")                                        \
     X(object, 1, "an object in range along the motion: STOP, then looked at again at rest")           \
     X(swing, 1, "something within the swing circle in a turn: STOP (argus)")                          \
-    X(flank, 1, "a wall beside the robot that its way slants into: STOP (argus)")
+    X(flank, 1, "a wall that its way slants into, or that is not heard any more: STOP (argus)")
 
 typedef enum {
 #define ARGUS_REFLEX_ENUM(name, last, meaning) ARGUS_REFLEX_##name,

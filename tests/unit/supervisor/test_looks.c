@@ -346,3 +346,23 @@ void test_a_law_that_was_given_up_is_not_said_again(void) {
     TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_SLOW, kind_after(3, true, 15), "cleared since then");
     finish();
 }
+
+// ---- at the goal
+
+static int looks_at_the_goal(int sonar) {
+    start_in(-2500, -1500, 3000, 1500);
+    TEST_ASSERT_TRUE(robot_goal(&robot, 1200, 0));
+    for (int i = 0; i < 3000 && robot.argus.mission == ARGUS_MISSION_RUNNING; i++) {
+        hold(1u << sonar, 60);
+        robot_next_sip(&robot);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_MISSION_REACHED, robot.argus.mission);
+    return robot_count_events(&robot, ARGUS_EV_SONAR_VERIFYING, 0);
+}
+
+// Looks prove nothing of one behind, so a third one is for nothing.
+void test_what_looks_cannot_prove_is_looked_at_twice(void) {
+    TEST_ASSERT_EQUAL(2, looks_at_the_goal(12));
+    TEST_ASSERT_TRUE(looks_at_the_goal(3) > 2);
+    finish();
+}
