@@ -216,6 +216,38 @@ def test_one_that_only_drove_on_unseen_knows_where_it_is(corridor: str, at_s: fl
     assert sil.outcome().goal_mm < SEEN_MM
 
 
+@pytest.mark.parametrize("aside_mm", [0, 150, 350])
+@pytest.mark.parametrize(("at_s", "later_s", "gone_s"), [(4.0, 0.1, 5.0), (5.0, 0.05, 5.0), (5.0, 0.8, 3.0)])
+def test_counters_that_restart_in_a_long_silence_end_the_course(
+    corridor: str, aside_mm: float, at_s: float, later_s: float, gone_s: float
+) -> None:
+    """Its session goes on, and what it drove since looks like a step that it may have made since the last SIP."""
+    fault = f"link-cut@{at_s}s-{at_s + gone_s}s"
+    sil = MutatedSil(
+        Mission(corridor, ((GOAL_MM, aside_mm),), faults=(fault,), sonar={"crosstalk": 0.0}, limit_s=60)
+    )
+    sil.wait(at_s + later_s)
+    assert sil.robot.drive.v > 0
+    odometry(0, 0, 0)(sil)
+    sil.wait(math.inf)
+    told = [e.name for e in sil.events]
+    assert told.count("ODOMETRY_LOST") == 1
+    assert "MISSION_FAILED" in told
+    assert "GOAL_REACHED" not in told
+
+
+@pytest.mark.parametrize("at_s", [2.5, 3.0, 3.5, 4.0, 5.0])
+@pytest.mark.parametrize("gone_s", [0.7, 1.5, 5.0])
+def test_a_long_silence_alone_does_not(corridor: str, at_s: float, gone_s: float) -> None:
+    """Near where it began to count, too: order, watchdog and brakes say how far it goes on."""
+    fault = f"link-cut@{at_s}s-{at_s + gone_s}s"
+    sil = Sil(Mission(corridor, ((GOAL_MM, 0),), faults=(fault,), sonar={"crosstalk": 0.0}, limit_s=60))
+    told = names(sil.run())
+    assert "ODOMETRY_LOST" not in told
+    assert "GOAL_REACHED" in told
+    assert sil.outcome().goal_mm < SEEN_MM
+
+
 def test_one_that_restarts_at_rest_keeps_its_course(corridor: str) -> None:
     sil = MutatedSil(Mission(corridor, ((GOAL_MM, 0),), sonar={"crosstalk": 0.0}, limit_s=90))
     sil.wait(5.0)
