@@ -73,9 +73,9 @@ static int32_t edge_cdeg(const argus_knowledge_t *const knowledge, const int son
 }
 
 // Along a wall the edge of the cone hears the wall, always as far off.
-static bool may_be_wall_beside(const argus_knowledge_t *const knowledge, const int sonar) {
+static bool may_be_wall_beside(const argus_knowledge_t *const knowledge, const int sonar,
+                               const int32_t edge) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const int32_t edge = edge_cdeg(knowledge, sonar);
     const int32_t aside = knowledge->sonar[sonar].reading_mm * argus_sin(edge) / ARGUS_TRIG_ONE;
     const int32_t beside = beside_mm(knowledge, sonar);
     const bool unheard = beside >= ARGUS_NO_ECHO_MM && edge > STEEP_CDEG; // a wall may turn the echo away
@@ -118,12 +118,13 @@ static void ask(const argus_slip_t *const self, const argus_knowledge_t *const k
         return;
     }
     const int32_t change = knowledge->sonar[sonar].reading_mm - self->reading_mm[sonar];
+    const int32_t edge = edge_cdeg(knowledge, sonar);
     if (argus_abs(change - (to ? -way_mm : way_mm)) <= FITS_MM) {
         of->fits++;
-    } else if (argus_abs(change) <= STAYS_MM && !may_be_wall_beside(knowledge, sonar)) {
+    } else if (argus_abs(change) <= STAYS_MM && !may_be_wall_beside(knowledge, sonar, edge)) {
         of->to += to;
         of->back += !to;
-        of->steep += edge_cdeg(knowledge, sonar) > STEEP_CDEG;
+        of->steep += edge > STEEP_CDEG;
     }
 }
 
