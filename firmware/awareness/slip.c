@@ -27,6 +27,7 @@ void argus_slip_init(argus_slip_t *const self) {
 
 void argus_slip_restart(argus_slip_t *const self) {
     self->begun = false;
+    self->doubted = false;
 }
 
 static void begin(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
@@ -137,6 +138,13 @@ static bool is_held(const witnesses_t *const of) {
     return of->fits == 0 && (of->steep > 0 ? of->to + of->back >= STEEP_MANY : enough);
 }
 
+static bool slip(argus_slip_t *const self) {
+    self->proof = 0;
+    self->doubted = true;
+    self->slips++;
+    return true;
+}
+
 static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int32_t way_mm) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     witnesses_t of = {0, 0, 0, 0};
@@ -144,19 +152,15 @@ static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowl
         ask(self, knowledge, i, way_mm, &of);
     }
     const bool stays = is_held(&of);
+    self->doubted = self->doubted && of.fits == 0;
     if (!stays || self->proof == 0) {
-        self->first = self->from;
+        self->first = self->doubted ? self->first : self->from;
         self->slipped_mm = 0;
     }
     self->proof =
         (uint8_t)(stays ? self->proof + (looks_both_ways(&of) && of.steep == 0 ? BOTH_WAYS : ONE_WAY) : 0);
     self->slipped_mm += way_mm;
-    if (self->proof < PROOF) {
-        return false;
-    }
-    self->proof = 0;
-    self->slips++;
-    return true;
+    return self->proof >= PROOF && slip(self);
 }
 
 static bool is_straight(const argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
@@ -187,4 +191,15 @@ bool argus_slip_sip(argus_slip_t *const self, const argus_knowledge_t *const kno
         self->from.y_mm = self->first.y_mm;
     }
     return slipped;
+}
+
+bool argus_slip_denies(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(self->proof < PROOF);
+    if (!self->doubted && self->proof < PROOF / 2) {
+        return false;
+    }
+    self->slipped_mm =
+        argus_hypot(knowledge->pose.x_mm - self->first.x_mm, knowledge->pose.y_mm - self->first.y_mm);
+    self->begun = false;
+    return slip(self);
 }

@@ -279,6 +279,11 @@ static argus_intent_t lose(argus_t *const self, const argus_intent_t *const inte
 
 static argus_intent_t reach(argus_t *const self) {
     ARGUS_ASSERT(self->mission == ARGUS_MISSION_RUNNING);
+    if (argus_slip_denies(&self->slip, &self->knowledge)) { // the reflex tells it
+        argus_knowledge_set_back(&self->knowledge,
+                                 (argus_point_t){self->slip.first.x_mm, self->slip.first.y_mm});
+        return argus_to_check(true);
+    }
     self->mission = ARGUS_MISSION_REACHED;
     argus_say(self, ARGUS_EV_GOAL_REACHED, ARGUS_NO_SONAR,
               argus_task_goal_mm(&self->travel.task, &self->knowledge));
