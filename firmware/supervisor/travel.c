@@ -16,6 +16,7 @@
 #define WOVEN_CDEG 300    // near enough
 #define WOVEN_SIPS 4      // there: a round of the array
 #define SEEN_LEAST_MM 200 // of the way; with less it stops to look
+#define SEEN_AGAIN_MM 500 // ... then wants so much, or sweeps: else it would stop again at once
 #define FLANK_MM 130
 #define CREEP_MM 150      // of a MOVE: what it still does when the link fails
 #define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
@@ -27,6 +28,7 @@ static argus_intent_t say(const argus_event_id_t event, const int sonar, const i
 
 void argus_begin_travel(argus_travel_t *const mine) {
     mine->aimed = false;
+    mine->stopped_short = false;
     mine->arriving = false;
 }
 
@@ -249,6 +251,7 @@ static int32_t weave_cdeg(const argus_t *const self, argus_travel_t *const mine)
 // The way has not been seen far enough: a sweep, at rest.
 static argus_intent_t look_ahead(const argus_t *const self, argus_travel_t *const mine) {
     mine->aimed = mine->jog_mm > 0;
+    mine->stopped_short = true;
     if (!self->motion.settled) {
         const bool moves = self->motion.kind == ARGUS_MOTION_MOVE;
         return (argus_intent_t){.act = moves ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING};
@@ -309,9 +312,11 @@ static argus_intent_t drive_on(const argus_t *const self, argus_travel_t *const 
         return blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm);
     }
     const int32_t seen_mm = argus_guard_seen_mm(&guard);
-    if (seen_mm < argus_min(left_mm(self, mine), SEEN_LEAST_MM)) {
+    const int32_t wanted_mm = mine->stopped_short ? SEEN_AGAIN_MM : SEEN_LEAST_MM;
+    if (seen_mm < argus_min(left_mm(self, mine), wanted_mm)) {
         return look_ahead(self, mine);
     }
+    mine->stopped_short = false;
     const int32_t free_mm = argus_guard_ahead_mm(&guard, seen_mm);
     if (free_mm == 0) {
         return argus_to_nothing(); // a fresh reading will tell
