@@ -27,6 +27,7 @@ void argus_slip_init(argus_slip_t *const self) {
 
 void argus_slip_restart(argus_slip_t *const self) {
     self->begun = false;
+    self->doubted = false;
 }
 
 static void begin(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
@@ -73,9 +74,9 @@ static int32_t edge_cdeg(const argus_knowledge_t *const knowledge, const int son
 }
 
 // Along a wall the edge of the cone hears the wall, always as far off.
-static bool may_be_wall_beside(const argus_knowledge_t *const knowledge, const int sonar) {
+static bool may_be_wall_beside(const argus_knowledge_t *const knowledge, const int sonar,
+                               const int32_t edge) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const int32_t edge = edge_cdeg(knowledge, sonar);
     const int32_t aside = knowledge->sonar[sonar].reading_mm * argus_sin(edge) / ARGUS_TRIG_ONE;
     const int32_t beside = beside_mm(knowledge, sonar);
     const bool unheard = beside >= ARGUS_NO_ECHO_MM && edge > STEEP_CDEG; // a wall may turn the echo away
@@ -118,12 +119,13 @@ static void ask(const argus_slip_t *const self, const argus_knowledge_t *const k
         return;
     }
     const int32_t change = knowledge->sonar[sonar].reading_mm - self->reading_mm[sonar];
+    const int32_t edge = edge_cdeg(knowledge, sonar);
     if (argus_abs(change - (to ? -way_mm : way_mm)) <= FITS_MM) {
         of->fits++;
-    } else if (argus_abs(change) <= STAYS_MM && !may_be_wall_beside(knowledge, sonar)) {
+    } else if (argus_abs(change) <= STAYS_MM && !may_be_wall_beside(knowledge, sonar, edge)) {
         of->to += to;
         of->back += !to;
-        of->steep += edge_cdeg(knowledge, sonar) > STEEP_CDEG;
+        of->steep += edge > STEEP_CDEG;
     }
 }
 
@@ -136,6 +138,13 @@ static bool is_held(const witnesses_t *const of) {
     return of->fits == 0 && (of->steep > 0 ? of->to + of->back >= STEEP_MANY : enough);
 }
 
+static bool slip(argus_slip_t *const self) {
+    self->proof = 0;
+    self->doubted = true;
+    self->slips++;
+    return true;
+}
+
 static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int32_t way_mm) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     witnesses_t of = {0, 0, 0, 0};
@@ -143,19 +152,15 @@ static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowl
         ask(self, knowledge, i, way_mm, &of);
     }
     const bool stays = is_held(&of);
+    self->doubted = self->doubted && of.fits == 0;
     if (!stays || self->proof == 0) {
-        self->first = self->from;
+        self->first = self->doubted ? self->first : self->from;
         self->slipped_mm = 0;
     }
     self->proof =
         (uint8_t)(stays ? self->proof + (looks_both_ways(&of) && of.steep == 0 ? BOTH_WAYS : ONE_WAY) : 0);
     self->slipped_mm += way_mm;
-    if (self->proof < PROOF) {
-        return false;
-    }
-    self->proof = 0;
-    self->slips++;
-    return true;
+    return self->proof >= PROOF && slip(self);
 }
 
 static bool is_straight(const argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
@@ -186,4 +191,15 @@ bool argus_slip_sip(argus_slip_t *const self, const argus_knowledge_t *const kno
         self->from.y_mm = self->first.y_mm;
     }
     return slipped;
+}
+
+bool argus_slip_denies(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(self->proof < PROOF);
+    if (!self->doubted && self->proof < PROOF / 2) {
+        return false;
+    }
+    self->slipped_mm =
+        argus_hypot(knowledge->pose.x_mm - self->first.x_mm, knowledge->pose.y_mm - self->first.y_mm);
+    self->begun = false;
+    return slip(self);
 }

@@ -9,10 +9,11 @@
 typedef struct {
     bool begun;
     bool ahead;         // the way goes
+    bool doubted;       // slipped, and no range has changed as the odometry says since
     uint8_t proof;      // what the stretches that began at `first` are worth
     argus_mask_t read;  // sonars that have been listed since
     argus_pose_t from;  // where the robot still is when it has slipped
-    argus_pose_t first; // where the stretches began of which each says so
+    argus_pose_t first; // where the stretches began of which each says so, or the doubt
     uint32_t slips;     // monotonic
     int32_t slipped_mm; // the last one
     uint16_t reading_mm[ARGUS_SONARS];
@@ -28,5 +29,9 @@ void argus_slip_restart(argus_slip_t *self);
 // that look one way must stay through three, as a person may walk there; three, if one of them looks far
 // aside. No range may change as the odometry says.
 bool argus_slip_sip(argus_slip_t *self, const argus_knowledge_t *knowledge);
+
+// At a goal by the odometry. True: that is no goal, the robot is still at `first`. It has slipped on the way,
+// or half of the proof says so, and no range tells of motion since.
+bool argus_slip_denies(argus_slip_t *self, const argus_knowledge_t *knowledge);
 
 #endif

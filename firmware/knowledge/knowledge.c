@@ -167,7 +167,16 @@ static argus_moved_t moved_of(const argus_knowledge_t *const self, const argus_s
     return moved;
 }
 
-// True: the robot can have moved so.
+// In a silence: this may be the way since the counters were zero, not since the last SIP.
+static bool may_count_anew(const argus_knowledge_t *const self, const argus_sip_t *const sip,
+                           const int32_t distance_um, const argus_span_t *const span,
+                           const argus_moved_t *const moved) {
+    const int32_t units = argus_hypot(raw_delta(sip->x_raw, 0), raw_delta(sip->y_raw, 0));
+    const argus_way_turn_t from_zero = {units * distance_um / 1000, raw_heading_cdeg(sip)};
+    return argus_odometry_may_be_anew(span, &self->order, moved, &from_zero);
+}
+
+// True: the robot can have moved so, and is known to.
 static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, const int32_t distance_um,
                  const argus_span_t *const span) {
     ARGUS_ASSERT(distance_um > 0);
@@ -175,7 +184,8 @@ static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, co
     const int32_t dy_um = raw_delta(sip->y_raw, self->y_raw) * distance_um;
     const int32_t heading = argus_angle_wrap(raw_heading_cdeg(sip) + argus_heading_offset_cdeg(self));
     const argus_moved_t moved = moved_of(self, sip, (argus_point_t){dx_um / 1000, dy_um / 1000}, heading);
-    if (is_odd(sip) || !argus_odometry_may_be(&self->excess, span, &moved)) {
+    if (is_odd(sip) || !argus_odometry_may_be(&self->excess, span, &moved) ||
+        may_count_anew(self, sip, distance_um, span, &moved)) {
         const argus_way_turn_t said = argus_odometry_by_wheels(span);
         self->leap_mm = argus_hypot(moved.ahead_mm - said.way_mm, moved.aside_mm);
         self->leap_cdeg = argus_abs(moved.turn_cdeg - said.turn_cdeg);
@@ -212,9 +222,9 @@ static bool take_zero(argus_knowledge_t *const self, const argus_sip_t *const si
 // Its counters restarted. If it was in motion then, and some SIPs are missing, how far it got before is
 // unknown.
 static bool loses_way(argus_knowledge_t *const self, const argus_span_t *const span) {
-    const bool lost = argus_odometry_is_unseen(span, self->under_way);
+    const bool lost = argus_odometry_is_unseen(span, &self->order);
     if (lost) {
-        self->leap_mm = argus_odometry_unseen_mm(span);
+        self->leap_mm = argus_odometry_unseen_mm(span, &self->order);
         self->leap_cdeg = 0;
     }
     return lost;
@@ -249,12 +259,12 @@ void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *
     if (self->leapt) {
         leave_out(self, sip, &span);
         self->leaps++;
-        self->leaps_unseen += argus_odometry_is_unseen(&span, self->under_way) ? 1u : 0u;
+        self->leaps_unseen += argus_odometry_is_unseen(&span, &self->order) ? 1u : 0u;
     }
     self->moved_ms = now_ms;
     self->x_raw = sip->x_raw;
     self->y_raw = sip->y_raw;
-    self->under_way = false;
+    self->order.under_way = false;
     take_motion(self, sip);
 }
 

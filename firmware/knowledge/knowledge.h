@@ -45,7 +45,6 @@ typedef struct {
     bool rotating;
     bool has_raw;
     bool origin_due; // the robot may have set its odometry to zero, since these
-    bool under_way;  // a motion was asked for, and no SIP came since
     bool leapt;      // in the last SIP, as no robot moves: left out of the pose
     bool stall_left;
     bool stall_right;
@@ -70,6 +69,7 @@ typedef struct {
     int32_t y_um;
     int32_t odometer_um;
     uint32_t moved_ms;     // time of the SIP of x_raw, y_raw
+    argus_order_t order;   // since then
     argus_excess_t excess; // beyond what the wheels say
     uint32_t leaps;        // monotonic
     uint32_t leaps_unseen; // ... of these after a gap in which it moved: its place is lost

@@ -28,6 +28,8 @@
 #define ROOM_MS 100           // ... and of the speed
 #define BUILD_MM 80           // what may build up
 #define BUILD_CDEG 3000       // likewise
+#define ANEW_MM 100           // the way through a gap is not known better,
+#define NEXT_MM 20            // ... and that from one SIP to the next not better than this
 #define CDEG_PER_RADIAN 5730
 #define PER_S_MAX 500000 // of what is multiplied by milliseconds: it fits 32 bits for 4 s
 
@@ -152,16 +154,45 @@ static bool was_moving(const argus_wheels_t *const wheels) {
     return argus_abs(wheels->left_mm_s) > REST_MM_S || argus_abs(wheels->right_mm_s) > REST_MM_S;
 }
 
-bool argus_odometry_is_unseen(const argus_span_t *const span, const bool under_way) {
-    return (under_way || was_moving(&span->before)) && span->elapsed_ms > SIP_MS + LATE_MS;
+bool argus_odometry_is_unseen(const argus_span_t *const span, const argus_order_t *const order) {
+    return (order->under_way || was_moving(&span->before)) && span->elapsed_ms > SIP_MS + LATE_MS;
 }
 
-int32_t argus_odometry_unseen_mm(const argus_span_t *const span) {
-    const int32_t before = argus_max(argus_abs(span->before.left_mm_s), argus_abs(span->before.right_mm_s));
-    const int32_t after = argus_max(argus_abs(span->after.left_mm_s), argus_abs(span->after.right_mm_s));
-    const int32_t gap = span->elapsed_ms > GAP_MS ? DRIVES_MM_S : 0;
-    ARGUS_ASSERT(before >= 0 && after >= 0);
-    return times_ms(argus_min(FASTEST_MM_S, argus_max(gap, argus_max(before, after))), elapsed_ms(span));
+static int32_t faster_mm_s(const argus_wheels_t *const wheels) {
+    return argus_max(argus_abs(wheels->left_mm_s), argus_abs(wheels->right_mm_s));
+}
+
+int32_t argus_odometry_unseen_mm(const argus_span_t *const span, const argus_order_t *const order) {
+    const int32_t before = faster_mm_s(&span->before);
+    const int32_t most = argus_max(order->speed_mm_s, argus_max(before, faster_mm_s(&span->after)));
+    const int32_t ms = elapsed_ms(span);
+    const int32_t driven_ms = argus_min(ms, order->watchdog_ms);
+    const int32_t accel_ms = argus_min(driven_ms, (most - before) * 1000 / argus_max(1, order->accel_mm_s2));
+    const int32_t gained = argus_min(most - before, times_ms(order->accel_mm_s2, accel_ms));
+    const int32_t speed = before + gained;
+    ARGUS_ASSERT(speed >= 0 && gained >= 0 && driven_ms >= 0);
+    const int32_t braking = speed * speed / argus_max(1, 2 * order->decel_mm_s2);
+    const int32_t way_mm = times_ms(speed, driven_ms) - times_ms(gained, accel_ms) / 2 +
+                           argus_min(times_ms(speed, ms - driven_ms), braking);
+    return order->way_mm > 0 ? argus_min(way_mm, order->way_mm) : way_mm;
+}
+
+static bool is_as_expected(const argus_span_t *const span, const argus_moved_t *const step,
+                           const int32_t rolled_mm) {
+    const argus_way_turn_t next = argus_odometry_by_wheels(span);
+    const int32_t off_mm = argus_abs(step->ahead_mm - next.way_mm);
+    const bool turned = argus_abs(step->turn_cdeg - next.turn_cdeg) > ROOM_CDEG;
+    return !turned && (off_mm <= NEXT_MM || argus_abs(argus_abs(step->ahead_mm) - rolled_mm) <= ANEW_MM);
+}
+
+bool argus_odometry_may_be_anew(const argus_span_t *const span, const argus_order_t *const order,
+                                const argus_moved_t *const step, const argus_way_turn_t *const from_zero) {
+    ARGUS_ASSERT(from_zero->way_mm >= 0 && span->track_mm > 0);
+    const int32_t rolled_mm = argus_odometry_unseen_mm(span, order);
+    const int32_t turn_cdeg = argus_abs(from_zero->turn_cdeg);
+    const int32_t wheel_mm = from_zero->way_mm + turn_cdeg * span->track_mm / (2 * CDEG_PER_RADIAN);
+    return span->elapsed_ms > GAP_MS && argus_odometry_is_unseen(span, order) &&
+           wheel_mm <= rolled_mm + ANEW_MM && !is_as_expected(span, step, rolled_mm);
 }
 
 bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *const span,

@@ -20,6 +20,16 @@ typedef struct {
     uint32_t elapsed_ms; // between their arrivals
 } argus_span_t;
 
+// What a robot that hears nobody goes on with.
+typedef struct {
+    bool under_way;       // a motion was asked for
+    uint16_t way_mm;      // ... that ends after this, 0: not known,
+    uint16_t speed_mm_s;  // ... and becomes this fast,
+    uint16_t accel_mm_s2; // ... by this,
+    uint16_t watchdog_ms; // ... until it has heard nothing for so long,
+    uint16_t decel_mm_s2; // and brakes by this
+} argus_order_t;
+
 typedef struct {
     int32_t way_mm;
     int32_t turn_cdeg;
@@ -51,9 +61,15 @@ bool argus_odometry_is_speed(int32_t mm_s);
 argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *span);
 
 // It was in motion, or asked to be, and more than a SIP is missing. Only the odometry can tell how far it got
-// in between. And the farthest that this can be.
-bool argus_odometry_is_unseen(const argus_span_t *span, bool under_way);
-int32_t argus_odometry_unseen_mm(const argus_span_t *span);
+// in between. And the farthest that a wheel can have made.
+bool argus_odometry_is_unseen(const argus_span_t *span, const argus_order_t *order);
+int32_t argus_odometry_unseen_mm(const argus_span_t *span, const argus_order_t *order);
+
+// Whether counters that say `from_zero` may have begun there in motion within a gap. Then this place cannot
+// be joined to the one before. The step itself vouches against it where it is what the order and the watchdog
+// make of the gap, or what the next SIP in line would say, as after the host slept.
+bool argus_odometry_may_be_anew(const argus_span_t *span, const argus_order_t *order,
+                                const argus_moved_t *step, const argus_way_turn_t *from_zero);
 
 // Whether the robot can have moved by this between the two SIPs, alone and with what has built up. The wheels
 // say how far, whither, and within which time; it cannot stand while they turn. SIPs come late, in bunches

@@ -47,6 +47,7 @@ typedef struct {
     int8_t weave;        // side that the heading swings to while a bearing is blind, +1 left
     uint8_t woven_sips;  // that it has been there
     bool aimed;          // the leg's bearing was turned to
+    bool stopped_short;  // on the way, which was not seen far enough
     bool arriving;       // at the goal, stopping
     bool swept;          // the end of this sweep is said
     uint16_t unsaid;     // waypoints passed and not said

@@ -71,13 +71,35 @@ void argus_link_up(argus_t *const self, const uint32_t now_ms) {
     argus_tell(self, ARGUS_EV_LINK_UP, 0);
 }
 
+static void note_order(argus_t *const self) {
+    argus_order_t *const order = &self->knowledge.order;
+    if (argus_motion_is_under_way(&self->motion)) {
+        const bool moves = self->motion.kind == ARGUS_MOTION_MOVE;
+        order->under_way = true;
+        order->way_mm = (uint16_t)(moves ? argus_abs(self->motion.target_mm) : 0);
+        order->speed_mm_s = (uint16_t)self->motion.speed_mm_s;
+    }
+}
+
+// The robot's watchdog waits since it was spoken to last; what is in the outbox it hears yet.
+static void note_watchdog(argus_t *const self) {
+    const argus_session_t *const session = &self->session;
+    argus_order_t *const order = &self->knowledge.order;
+    const uint32_t stated_ms = session->has_robot ? session->robot.watchdog_ms : 0;
+    const uint32_t waits_ms = stated_ms > 0 ? stated_ms : ARCOS_TIMING_WATCHDOG_MS;
+    const uint32_t quiet_ms = session->outbox.length > 0 ? 0 : self->now_ms - session->spoke_ms;
+    order->watchdog_ms = (uint16_t)(quiet_ms < waits_ms ? waits_ms - quiet_ms : 0);
+    order->accel_mm_s2 = (uint16_t)self->config.accel_mm_s2;
+    order->decel_mm_s2 = (uint16_t)self->config.decel_mm_s2;
+}
+
 static void go_offline(argus_t *const self) {
     // None was ever heard: the silence has no beginning.
     const uint32_t silence_ms = self->session.sips > 0 ? self->now_ms - self->session.heard_ms : 0;
     self->checked = false;
     self->stalled = false;
     self->travel.jog_mm = 0;
-    self->knowledge.under_way |= argus_motion_is_under_way(&self->motion);
+    note_order(self);
     argus_motion_init(&self->motion);
     argus_tell(self, ARGUS_EV_LINK_LOST, (int32_t)(silence_ms & 0x7FFFFFFFu));
     self->base.taken = false;
@@ -199,6 +221,8 @@ static void on_sip(argus_t *const self) {
     }
     argus_motion_sip(&self->motion, &self->session.outbox, &self->knowledge, self->now_ms);
     argus_run_mode(self);
+    note_order(self);
+    note_watchdog(self);
 }
 
 static void handle_link(argus_t *const self, const unsigned bits) {

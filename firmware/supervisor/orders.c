@@ -82,7 +82,7 @@ static void go_active(argus_t *const self) {
 static void jog(argus_t *const self, const int32_t built_mm) {
     const int32_t distance_mm = self->knowledge.robot->reversed ? -argus_max(built_mm, -INT32_MAX) : built_mm;
     const argus_guard_t guard = argus_guard(self);
-    if (self->mode != ARGUS_MODE_IDLE || !argus_guard_may_translate(&guard) || distance_mm == 0) {
+    if (!argus_guard_may_translate(&guard) || distance_mm == 0) {
         return;
     }
     if (argus_open_suspects(self) != 0) { // S6: verified first
@@ -102,12 +102,10 @@ static void jog(argus_t *const self, const int32_t built_mm) {
 
 // The check that follows turns to the base heading first.
 static void jog_turn(argus_t *const self, const int32_t degrees) {
-    if (self->mode == ARGUS_MODE_IDLE && !self->orders.passive) {
-        self->base.cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + degrees % 360 * 100);
-        self->base.taken = true;
-        argus_awareness_moved(&self->awareness);
-        argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, false);
-    }
+    self->base.cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + degrees % 360 * 100);
+    self->base.taken = true;
+    argus_awareness_moved(&self->awareness);
+    argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, false);
 }
 
 static void obey_for_all(argus_t *const self, const argus_op_t op, const int32_t argument) {
@@ -209,9 +207,14 @@ static void obey_for_one(argus_t *const self, const argus_op_t op, const int son
     }
 }
 
+static bool may_jog(const argus_t *const self) {
+    return self->mode == ARGUS_MODE_IDLE && !self->orders.passive;
+}
+
 bool argus_obey(argus_t *const self, const argus_op_t op, const int32_t argument) {
     const bool for_one = op >= ARGUS_OP_RETEST;
-    if (self->orders.shutdown || (for_one && !may_serve(self, op, argument))) {
+    const bool jogs = op == ARGUS_OP_MOVE || op == ARGUS_OP_TURN;
+    if (self->orders.shutdown || (for_one && !may_serve(self, op, argument)) || (jogs && !may_jog(self))) {
         return false;
     }
     argus_tell(self, ARGUS_EV_OPERATOR, (int32_t)op);

@@ -16,6 +16,7 @@
 #define WOVEN_CDEG 300    // near enough
 #define WOVEN_SIPS 4      // there: a round of the array
 #define SEEN_LEAST_MM 200 // of the way; with less it stops to look
+#define SEEN_AGAIN_MM 500 // ... then wants so much, or sweeps: else it would stop again at once
 #define FLANK_MM 130
 #define CREEP_MM 150      // of a MOVE: what it still does when the link fails
 #define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
@@ -29,6 +30,7 @@ static void say(argus_intent_t *const intent, const argus_event_id_t event, cons
 
 void argus_begin_travel(argus_travel_t *const mine) {
     mine->aimed = false;
+    mine->stopped_short = false;
     mine->arriving = false;
 }
 
@@ -267,6 +269,7 @@ static int32_t weave_cdeg(const argus_t *const self, const argus_guard_t *const 
 // The way has not been seen far enough: a sweep, at rest.
 static void look_ahead(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
     mine->aimed = mine->jog_mm > 0;
+    mine->stopped_short = true;
     if (!self->motion.settled) {
         intent->act = self->motion.kind == ARGUS_MOTION_MOVE ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING;
     } else if (self->plan.disabled == 0) { // names that only a look can settle, and there is no room for it
@@ -325,10 +328,12 @@ static void drive_on(const argus_t *const self, const argus_guard_t *const guard
         return;
     }
     const int32_t seen_mm = argus_guard_seen_mm(guard);
-    if (seen_mm < argus_min(left_mm(self, mine), SEEN_LEAST_MM)) {
+    const int32_t wanted_mm = mine->stopped_short ? SEEN_AGAIN_MM : SEEN_LEAST_MM;
+    if (seen_mm < argus_min(left_mm(self, mine), wanted_mm)) {
         look_ahead(self, mine, intent);
         return;
     }
+    mine->stopped_short = false;
     const int32_t free_mm = argus_guard_ahead_mm(guard, seen_mm);
     if (free_mm == 0) {
         return; // a fresh reading will tell

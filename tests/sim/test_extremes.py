@@ -88,6 +88,18 @@ def test_what_leaps_to_the_least_and_back_is_intermittent(hall: str, sonar: int,
     assert_covered(drive(hall, fault, limit_s=160), sonar, "intermittent", within_s=60)
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3, 60073])
+@pytest.mark.parametrize("sonar", [3, 4])
+def test_what_is_covered_for_is_not_gone_round_in_tiny_steps(hall: str, sonar: int, seed: int) -> None:
+    """The way is seen a little farther by each turn to it, so a stop for want of sight must end in a sweep."""
+    fault = f"wrong:{sonar}:scale=0.02"
+    outcome = run(Mission(hall, ((4000, 0),), faults=(fault,), seed=seed, limit_s=100))
+    assert not outcome.collisions
+    assert [e.sonar for e in outcome.events if e.name == "SONAR_DISABLED"] == [sonar]
+    assert outcome.reached
+    assert outcome.t_s < 60
+
+
 @pytest.mark.parametrize("near_mm", [60, 80, 100, 120, 160])
 def test_a_wall_right_ahead_is_no_fault(tmp_path: Path, near_mm: int) -> None:
     """It stands so near that it reads the least; the robot backs away from it, and the reading grows."""

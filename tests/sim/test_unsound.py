@@ -162,18 +162,20 @@ def test_a_heading_that_leaps_all_the_time_ends_the_course(corridor: str, deg: f
 
 
 def lifted(
-    world: str, at: tuple[float, float], *, profile: str = "argus", faults: tuple[str, ...] = ()
+    world: str, at: tuple[float, float], *, profile: str = "argus", seed: int = 1, free_s: float = 0.0
 ) -> Outcome:
-    """The wheels turn from the beginning on, the body stays: it is jacked up, or pushes against a sill."""
+    """From then on the wheels turn and the body stays: it is jacked up, or pushes against a sill."""
     start = (at[0], at[1], 0.0)
     mission = Mission(
-        world, ((at[0] + GOAL_MM, at[1]),), start, faults, config={"profile": profile}, limit_s=120
+        world, ((at[0] + GOAL_MM, at[1]),), start, config={"profile": profile}, seed=seed, limit_s=120
     )
     sil = Sil(mission)
+    sil.run_until(free_s)
+    x, y = sil.robot.chassis.x, sil.robot.chassis.y
     while not sil.over:
         sil.step()
         chassis = sil.robot.chassis
-        chassis.place(at[0], at[1], chassis.th)
+        chassis.place(x, y, chassis.th)
     return sil.outcome()
 
 
@@ -216,6 +218,38 @@ def test_one_that_only_drove_on_unseen_knows_where_it_is(corridor: str, at_s: fl
     assert sil.outcome().goal_mm < SEEN_MM
 
 
+@pytest.mark.parametrize("aside_mm", [0, 150, 350])
+@pytest.mark.parametrize(("at_s", "later_s", "gone_s"), [(4.0, 0.1, 5.0), (5.0, 0.05, 5.0), (5.0, 0.8, 3.0)])
+def test_counters_that_restart_in_a_long_silence_end_the_course(
+    corridor: str, aside_mm: float, at_s: float, later_s: float, gone_s: float
+) -> None:
+    """Its session goes on, and what it drove since looks like a step that it may have made since the last SIP."""
+    fault = f"link-cut@{at_s}s-{at_s + gone_s}s"
+    sil = MutatedSil(
+        Mission(corridor, ((GOAL_MM, aside_mm),), faults=(fault,), sonar={"crosstalk": 0.0}, limit_s=60)
+    )
+    sil.wait(at_s + later_s)
+    assert sil.robot.drive.v > 0
+    odometry(0, 0, 0)(sil)
+    sil.wait(math.inf)
+    told = [e.name for e in sil.events]
+    assert told.count("ODOMETRY_LOST") == 1
+    assert "MISSION_FAILED" in told
+    assert "GOAL_REACHED" not in told
+
+
+@pytest.mark.parametrize("at_s", [2.5, 3.0, 3.5, 4.0, 5.0])
+@pytest.mark.parametrize("gone_s", [0.7, 1.5, 5.0])
+def test_a_long_silence_alone_does_not(corridor: str, at_s: float, gone_s: float) -> None:
+    """Near where it began to count, too: order, watchdog and brakes say how far it goes on."""
+    fault = f"link-cut@{at_s}s-{at_s + gone_s}s"
+    sil = Sil(Mission(corridor, ((GOAL_MM, 0),), faults=(fault,), sonar={"crosstalk": 0.0}, limit_s=60))
+    told = names(sil.run())
+    assert "ODOMETRY_LOST" not in told
+    assert "GOAL_REACHED" in told
+    assert sil.outcome().goal_mm < SEEN_MM
+
+
 def test_one_that_restarts_at_rest_keeps_its_course(corridor: str) -> None:
     sil = MutatedSil(Mission(corridor, ((GOAL_MM, 0),), sonar={"crosstalk": 0.0}, limit_s=90))
     sil.wait(5.0)
@@ -255,10 +289,19 @@ def test_lifted_wheels_are_told_and_end_the_course(
     assert "MISSION_FAILED" in names(outcome)
 
 
-@pytest.mark.parametrize("world", ["office", "box-ahead"])
-def test_lifted_wheels_are_told_in_the_worlds_that_are_there(world: str) -> None:
-    """Where something within 4 m of the way ahead or behind can tell; in a hall nothing can."""
-    outcome = lifted(world, (0, 0))
+@pytest.mark.parametrize("seed", range(1, 4))
+@pytest.mark.parametrize("world", ["office", "box-ahead", "lab", "demo"])
+def test_lifted_wheels_are_told_in_the_worlds_that_are_there(world: str, seed: int) -> None:
+    """Where something within 2.5 m of the way ahead or behind can tell; in a hall nothing can."""
+    outcome = lifted(world, (0, 0), seed=seed)
+    assert "SLIP" in names(outcome)
+    assert "GOAL_REACHED" not in names(outcome)
+
+
+@pytest.mark.parametrize("seed", range(1, 4))
+def test_wheels_lifted_on_the_way_reach_no_goal(seed: int) -> None:
+    """What is left of the way is too short for the whole proof."""
+    outcome = lifted("lab", (0, 0), seed=seed, free_s=6.0)
     assert "SLIP" in names(outcome)
     assert "GOAL_REACHED" not in names(outcome)
 

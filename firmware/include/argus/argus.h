@@ -610,7 +610,8 @@ size_t argus_transmit(argus_t *self, uint8_t *buffer, size_t capacity);
 bool argus_next_event(argus_t *self, argus_event_t *event);
 
 // False, and no event, when it cannot be done now: after argus_shutdown(), for a sonar that there is not or
-// that is pinned (or not), for what the profile has not. Cost: at most one search for a way.
+// that is pinned (or not), for what the profile has not. Nor is a jog in another mode than IDLE, or while
+// passive. Cost: at most one search for a way.
 bool argus_operator(argus_t *self, uint32_t now_ms, argus_op_t op, int32_t argument);
 
 // Stops the robot, then sends SONAR 0, STOP, CLOSE. Cost: constant.

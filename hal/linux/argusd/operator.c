@@ -168,9 +168,7 @@ void operator_key(operator_t *self, tui_key_t key, uint32_t now_ms, char *answer
     if (is_of_sonar(op)) {
         snprintf(whom, sizeof whom, "sonar %d: ", self->sonar);
     }
-    operator_obstacle_t obstacle = obstacle_to(self, &status, op, self->sonar);
-    const bool taken = ask(self, op, argument); // whatever is thought here, the manager decides
-    obstacle = obstacle == OPERATOR_FREE && !taken ? OPERATOR_REFUSED : obstacle;
+    const operator_obstacle_t obstacle = operator_ask(self, op, argument, now_ms);
     if (obstacle != OPERATOR_FREE) {
         snprintf(answer, capacity, "> %s: %s%s: %s", tui_keys_of(key), whom, effect_of(key, op),
                  words_of(obstacle));

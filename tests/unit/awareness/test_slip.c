@@ -111,6 +111,33 @@ void test_a_wall_beside_the_way_tells_nothing_to_those_that_look_aslant(void) {
     }
 }
 
+void test_a_goal_is_none_after_slip_until_a_range_tells_of_motion(void) {
+    walls();
+    TEST_ASSERT_NOT_EQUAL(-1, drive(3 * STRETCH_SIPS, 0, 0));
+    k.sonar[AHEAD].reading_mm = k.sonar[BACK].reading_mm = 5000;
+    drive(2 * STRETCH_SIPS, 0, 0); // nothing can tell
+    TEST_ASSERT_TRUE(argus_slip_denies(&slip, &k));
+    TEST_ASSERT_EQUAL(2, slip.slips);
+    TEST_ASSERT_INT_WITHIN(4 * SIP_MM, 0, slip.first.x_mm);
+    TEST_ASSERT_INT_WITHIN(4 * SIP_MM, k.pose.x_mm, slip.slipped_mm);
+    walls();
+    drive(STRETCH_SIPS + 2, -SIP_MM, SIP_MM);
+    TEST_ASSERT_FALSE(argus_slip_denies(&slip, &k));
+}
+
+void test_half_of_the_proof_denies_a_goal(void) {
+    walls();
+    TEST_ASSERT_FALSE(argus_slip_denies(&slip, &k));
+    TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS + 2, 0, 0));
+    TEST_ASSERT_TRUE(argus_slip_denies(&slip, &k));
+    TEST_ASSERT_INT_WITHIN(2 * SIP_MM, 0, slip.first.x_mm);
+    setUp();
+    k.sonar[AHEAD].reading_mm = 2000;
+    k.sonar[AHEAD + 1].reading_mm = 1900;
+    TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS + 2, 0, 0)); // that is chance
+    TEST_ASSERT_FALSE(argus_slip_denies(&slip, &k));
+}
+
 void test_a_restart_begins_anew(void) {
     walls();
     TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS + 2, 0, 0));

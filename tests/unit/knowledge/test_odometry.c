@@ -270,6 +270,49 @@ void test_a_leap_with_sips_missing_in_motion_is_unseen(void) {
     }
 }
 
+// A gap in motion; what it drove by the order, the watchdog and its brakes, or less where a STOP got through.
+// The counters go on, or begin at zero somewhere within it. `way`: since the last SIP, or since zero.
+void test_a_place_that_may_count_from_a_restart_in_a_gap_is_none(void) {
+    static const struct {
+        const char *what;
+        int before_mm, speed, order, way;
+        uint32_t ms;
+        double deg; // heading before
+        bool anew, told;
+    } cases[] = {
+        {"restart at once", 700, 500, 500, 1180, 5000, 7, true, true},
+        {"the same, straight ahead", 700, 500, 500, 1180, 5000, 0, true, true},
+        {"restart later", 700, 500, 500, 800, 3000, 7, true, true},
+        {"restart in a stall", 100, 400, 400, 260, 700, 0, true, true},
+        {"ordered, not yet seen to move", 300, 0, 400, 500, 2000, 0, true, true},
+        {"goes on until the watchdog stops it", 300, 500, 500, 1208, 5000, 0, false, false},
+        {"goes on while the link is away", 150, 500, 500, 400, 800, 7, false, false},
+        {"a STOP got through, far from zero", 2500, 500, 500, 300, 5000, 0, false, false},
+        {"the next SIP, read late", 100, 500, 500, 50, 3000, 0, false, false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        setUp();
+        th = cases[i].deg * PI / 180;
+        deliver(100);
+        const int v = cases[i].before_mm > 150 ? 500 : 250;
+        drive(v, v, cases[i].before_mm * 10 / v);
+        drive(cases[i].speed, cases[i].speed, cases[i].speed == 0);
+        sip.vel_left_mm_s = sip.vel_right_mm_s = (int16_t)cases[i].speed;
+        k.vel_left_mm_s = k.vel_right_mm_s = (int16_t)cases[i].speed;
+        k.order = (argus_order_t){cases[i].order > 0, 0, (uint16_t)cases[i].order, 300, 2000, 600};
+        if (cases[i].anew) {
+            x = y = th = 0;
+        }
+        x += cases[i].way * cos(th);
+        y += cases[i].way * sin(th);
+        const int go_on = cases[i].ms < 2500 || cases[i].way == 50 ? cases[i].speed : 0;
+        sip.vel_left_mm_s = sip.vel_right_mm_s = (int16_t)go_on;
+        deliver(cases[i].ms);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(cases[i].told, leaps, cases[i].what);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(cases[i].told, k.leaps_unseen, cases[i].what);
+    }
+}
+
 void test_values_that_are_frozen_while_the_wheels_turn_are_told(void) {
     deliver(100);
     for (int i = 0; i < 60 && leaps == 0; i++) {

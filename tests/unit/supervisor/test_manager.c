@@ -295,6 +295,9 @@ void test_passive_reports_and_never_moves(void) {
     robot_init(&robot, &config, 777);
     robot_goal(&robot, 2000, 0);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+    TEST_ASSERT_FALSE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_MOVE, 100));
+    TEST_ASSERT_FALSE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 20));
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_OPERATOR, 0));
     robot.fault[2] = ROBOT_OFF;
     robot.fault[5] = ROBOT_SCALE;
     robot.fault_value[5] = 50;

@@ -413,6 +413,7 @@ void test_a_link_that_stalls_during_a_look(void) {
     start_in_a_room();
     TEST_ASSERT_TRUE(robot_goal(&robot, 1500, 0));
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 40000));
+    robot_run(&robot, 4000); // away from where it began to count
     ask_for_a_look(3);
     for (int i = 0; i < 3000 && fabs(robot_heading_deg(&robot)) < 15; i++) {
         robot_tick(&robot);

@@ -23,7 +23,7 @@ from argus_tools.formats.base import (
 from argus_tools.formats.quoted import Unquoted, unquoted
 from argus_tools.formats.recoded import crlf_damage
 from argus_tools.formats.source import BLOCK_BYTES, Source
-from argus_tools.formats.text import is_text
+from argus_tools.formats.text import Unmarked, begins_as_text, is_text, unmarked
 
 __all__ = [
     "Chunk", "Damage", "Direction", "Format", "Log", "LogError", "ReadOptions", "Reader", "Writer",
@@ -58,8 +58,9 @@ def formats() -> dict[str, Format]:
 
 
 def find_format(head: bytes) -> Format:
-    """Return the first form that claims a file which begins with `head`."""
-    return next(form for form in forms() if form.sniff(head))
+    """Return the first form that claims a file which begins with `head`; a mark before text is none of it."""
+    text = unmarked(head)
+    return next(form for form in forms() if form.sniff(text))
 
 
 def is_recognised(head: bytes) -> bool:
@@ -94,6 +95,8 @@ class Log:
             raise LogError(f"{path}: {what}")
         self.format = formats()[format_name] if format_name else find_format(self.source.head)
         stream: BufferedReader = BufferedReader(self.source, BLOCK_BYTES)
+        if self.format.name != "bin" and begins_as_text(self.source.head):
+            stream = BufferedReader(Unmarked(stream), BLOCK_BYTES)
         if format_name is None and (inner := self._quoted()):
             self.format = inner
             stream = BufferedReader(Unquoted(stream), BLOCK_BYTES)
@@ -103,7 +106,7 @@ class Log:
 
     def _quoted(self) -> Format | None:
         """Return the form of what a mail quotes; a ">" alone may also be a terminal program's mark of direction."""
-        head = unquoted(self.source.head)
+        head = unquoted(unmarked(self.source.head))
         if head is None:
             return None
         inner = find_format(head)

@@ -15,7 +15,7 @@ from typing import Final
 from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.isotp import CanLink, is_robot_id
 from argus_tools.formats.source import HEAD_BYTES
-from argus_tools.formats.text import BOM, first_lines
+from argus_tools.formats.text import first_lines
 
 _LINE_MAX: Final = 4096
 _HEADING_LINES: Final = 40
@@ -66,7 +66,7 @@ class _Columns:
 
 def _columns(line: bytes) -> _Columns | None:
     """Understand a line of headings; None if it is none of CAN frames."""
-    text = line.removeprefix(BOM).decode("utf-8", "replace").strip().lstrip(";# ").lower()
+    text = line.decode("utf-8", "replace").strip().lstrip(";# ").lower()
     for separator in _SEPARATORS:
         names = [re.sub(r"[ _]+", " ", name.strip().strip('"')) for name in text.split(separator)]
         if len(names) >= 3 and (found := _understand(separator, names)):

@@ -22,7 +22,7 @@ from argus_tools.formats.base import (
     ReadOptions,
 )
 from argus_tools.formats.isotp import ID_FROM_ROBOT, ID_TO_ROBOT, NEXT_BYTES, CanLink
-from argus_tools.formats.text import BOM, first_lines
+from argus_tools.formats.text import first_lines
 
 PDU_MAX: Final = 4095
 _PADDING: Final = b"\xcc"
@@ -124,8 +124,6 @@ class CandumpReader:
 
     def _unusual(self, line: bytes, number: int) -> Fields | None:
         """Return time, bus, id and digits of a line that is not as -L writes most of them."""
-        if number == 1:
-            line = line.removeprefix(BOM)
         line = _COLOUR.sub(b"", line)
         if match := _LINE.fullmatch(line):
             t, bus, can_id, digits = match.groups()

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, Reader, ReadOptions
 from argus_tools.formats.isotp import CanLink, is_robot_id
-from argus_tools.formats.text import BOM, first_lines
+from argus_tools.formats.text import first_lines
 
 # What python-can's readers raise at a line or an object that they do not understand.
 _FAILURES: Final = (
@@ -96,8 +96,6 @@ class _Lines:
         if not data:
             self.is_over = True
             raise StopIteration
-        if not self.number:
-            data = data.removeprefix(BOM)
         self.number += 1
         line = self._usual(data.decode("latin-1"))
         if self._in_header and len(self._header) < _HEADER_LINES and self._is_header(line):

@@ -24,7 +24,7 @@ from argus_tools.formats.base import (
 from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.source import HEAD_BYTES
 from argus_tools.formats.stamps import Times
-from argus_tools.formats.text import BOM, first_lines, is_passed, pieces
+from argus_tools.formats.text import first_lines, is_passed, pieces
 from hil_sim.arcos import Unframer
 
 _HEADER: Final = b"\xfa\xfb"
@@ -151,7 +151,6 @@ class HextextReader:
         t: float | None = None
         mark = b""
         for number, text, begins in pieces(self._stream):
-            text = text.removeprefix(BOM)
             piece = _parse(text, begins, times, digits)
             t = t if piece.t is None else piece.t
             mark = _mark(mark, piece, text, is_follow and begins)

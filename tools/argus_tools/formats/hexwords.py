@@ -14,7 +14,7 @@ from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.hextext import bytes_of_lines
 from argus_tools.formats.source import HEAD_BYTES
 from argus_tools.formats.stamps import Times
-from argus_tools.formats.text import BOM, first_lines, pieces
+from argus_tools.formats.text import first_lines, pieces
 from hil_sim.arcos import Unframer
 
 _PACKETS: Final = 2
@@ -148,7 +148,6 @@ def _lines(stream: BufferedReader, way: _Way) -> Iterator[tuple[int, bytes]]:
     held, is_comment = b"", False
     number = 0
     for number, text, begins in pieces(stream):
-        text = text.removeprefix(BOM)
         is_comment = text.startswith(b"#") if begins else is_comment
         if is_comment:
             continue

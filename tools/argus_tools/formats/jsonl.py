@@ -21,7 +21,7 @@ _DIRS: Final[dict[bytes, Direction]] = {b"r2c": "r2c", b"c2r": "c2r"}
 
 
 def _sniff(head: bytes) -> bool:
-    text = head.removeprefix(b"\xef\xbb\xbf").lstrip()
+    text = head.lstrip()
     return text.startswith(b"{") and b"\0" not in text[:256]
 
 
@@ -80,7 +80,7 @@ class JsonlReader:
             self._skip_line(number)
             return None
         try:
-            record, _ = _PARSER.raw_decode(line.decode().lstrip("\ufeff \t\r"))
+            record, _ = _PARSER.raw_decode(line.decode().lstrip(" \t\r"))
         except (ValueError, RecursionError):
             if line.strip():
                 self.damage.append(Damage(f"line {number}", "no JSON record"))

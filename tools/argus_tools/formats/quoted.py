@@ -7,7 +7,7 @@ import re
 from io import BufferedReader, RawIOBase
 from typing import TYPE_CHECKING, Final
 
-from argus_tools.formats.text import BOM, is_text
+from argus_tools.formats.text import is_text
 
 if TYPE_CHECKING:
     from _typeshed import WriteableBuffer
@@ -21,7 +21,7 @@ def unquoted(head: bytes) -> bytes | None:
     """Return the beginning of a file without the marks of a quotation; None if most of its lines have none."""
     if not is_text(head):
         return None
-    lines = head.removeprefix(BOM).splitlines(keepends=True)
+    lines = head.splitlines(keepends=True)
     written = [line for line in lines if line.strip()]
     marked = sum(line.startswith(b">") for line in written)
     if not marked or 2 * marked <= len(written):
@@ -36,7 +36,6 @@ class Unquoted(RawIOBase):
         self._stream = stream
         self._ready = b""
         self._line = b""
-        self._is_first = True
         self._begins = True
 
     def readable(self) -> bool:
@@ -58,8 +57,6 @@ class Unquoted(RawIOBase):
 
     def _unquoted(self, data: bytes, is_end: bool) -> bytes:
         """Return whole lines without their marks; what is begun waits, unless it is long."""
-        if self._is_first and data:
-            data, self._is_first = data.removeprefix(BOM), False
         lines = data.splitlines(keepends=True)
         waits = bool(lines) and not is_end and not lines[-1].endswith(b"\n") and len(lines[-1]) < _LINE_MAX
         self._line = lines.pop() if waits else b""

@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""What the readers of text share: whether bytes are text, its first lines, and long lines in pieces."""
+"""What the readers of text share: whether bytes are text, without marks, its first lines, long lines in pieces."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from io import BufferedReader
-from typing import Final
+from io import BufferedReader, RawIOBase
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from _typeshed import WriteableBuffer
 
 BOM: Final = b"\xef\xbb\xbf"
 PIECE_BYTES: Final = 1 << 14
 _FIRST_LINES: Final = 64
 _BEGINNING: Final = 1 << 8
+_BLOCK: Final = 1 << 17
 # Control characters that no text has; ESC is of colours.
 _BINARY: Final = re.compile(rb"[\x00-\x06\x0e-\x1a\x1c-\x1f\x7f]")
 _WORD_END: Final = re.compile(rb"[\s,;](?=[^\s,;]*\Z)")
@@ -29,21 +33,66 @@ def is_text(head: bytes) -> bool:
     return not _BINARY.search(head)
 
 
+def begins_as_text(head: bytes) -> bool:
+    """Whether a file that begins so may be text; further on there may be zeros that a power cut left."""
+    return is_text(head[:_BEGINNING])
+
+
+def _without_marks(text: bytes) -> bytes:
+    return text.replace(b"\n" + BOM, b"\n")
+
+
+def unmarked(head: bytes) -> bytes:
+    """Return the beginning of a file as `Unmarked` gives it; bytes that are no text stay as they are."""
+    return _without_marks(b"\n" + head)[1:] if begins_as_text(head) else head
+
+
+class Unmarked(RawIOBase):
+    """A text without its mark, and without those that stand before a line where files were joined."""
+
+    def __init__(self, stream: BufferedReader) -> None:
+        self._stream = stream
+        self._ready = b""
+        self._held = b"\n"
+
+    def readable(self) -> bool:
+        """It is for reading only."""
+        return True
+
+    def readinto(self, buffer: WriteableBuffer, /) -> int:
+        """Fill the buffer with what there is; 0 at the end."""
+        while not self._ready:
+            data = self._stream.read1(_BLOCK)
+            self._ready = self._unmarked(data)
+            if not data:
+                break
+        view = memoryview(buffer).cast("B")
+        taken = self._ready[: len(view)]
+        view[: len(taken)] = taken
+        self._ready = self._ready[len(taken) :]
+        return len(taken)
+
+    def _unmarked(self, data: bytes) -> bytes:
+        """Return what is sure: `_held` begins with what was given out last, and may go on as a mark begins."""
+        text = _without_marks(self._held + data)
+        waits = next((n for n in (2, 1) if data and text.endswith(b"\n" + BOM[:n])), 0)
+        self._held = text[-1 - waits :]
+        return text[1 : len(text) - waits]
+
+
 def first_lines(head: bytes, count: int = _FIRST_LINES) -> list[bytes]:
     """Return the first lines of text that are neither blank nor comments (#); none if it is no text."""
-    if not is_text(head[:_BEGINNING]):
+    if not begins_as_text(head):
         return []
-    lines = head.removeprefix(BOM).splitlines()
-    # Further on there may be zeros that a power cut left.
+    lines = head.splitlines()
     return [line for line in lines[: 4 * count] if line.strip() and not is_passed(line) and is_text(line)][
         :count
     ]
 
 
 def numbered_lines(stream: BufferedReader, most: int) -> Iterator[tuple[int, bytes]]:
-    """Yield number from 1 and bytes of each line, without the BOM of the first; at most MOST bytes are one line."""
-    for number, line in enumerate(iter(lambda: stream.readline(most), b""), start=1):
-        yield number, line.removeprefix(BOM) if number == 1 else line
+    """Yield number from 1 and bytes of each line; at most MOST bytes are one line."""
+    return enumerate(iter(lambda: stream.readline(most), b""), start=1)
 
 
 def pieces(stream: BufferedReader) -> Iterator[tuple[int, bytes, bool]]:

@@ -45,7 +45,9 @@ void test_what_is_not_done_while_passive_says_so(void) {
     press(TUI_BACK, "not while passive");
     press(TUI_LEFT, "not while passive");
     press(TUI_GO, "not while passive");
+    TEST_ASSERT_EQUAL_INT(0, count(ARGUS_EV_OPERATOR));
     press(TUI_STOP, "stop, and stay");
+    TEST_ASSERT_EQUAL_INT(1, count(ARGUS_EV_OPERATOR));
     press(TUI_PASSIVE, "p: active: drives");
     TEST_ASSERT_EQUAL_INT(1, count(ARGUS_EV_ACTIVE));
     press(TUI_PASSIVE, "twice within a second is once");
@@ -61,6 +63,7 @@ void test_without_a_robot_nothing_is_driven(void) {
     press(TUI_AHEAD, "not without a robot");
     press(TUI_GO, "not without a robot");
     press(TUI_RETEST, "sonar 0: test the chosen sonar again: not without a robot");
+    TEST_ASSERT_EQUAL_INT(0, count(ARGUS_EV_OPERATOR));
     TEST_ASSERT_TRUE(argus_set_course(driver.core, &goal, 1));
     press(TUI_GO, "not without a robot");
 }
