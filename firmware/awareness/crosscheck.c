@@ -13,6 +13,7 @@
 
 #define ALONE_CDEG 1000 // from one place a lag that turned less would have it look where it looks now
 #define BITS 8
+#define ASKED_MOST 110 // hypotheses a SIP: some 6,000 instructions each
 
 // FAINT: it misses an echo that the air may have swallowed, or the other way round. DIVIDED: the others
 // contradict each other. SAME: the map leaves it where it is.
@@ -236,13 +237,21 @@ static verdict_t as_offset(const argus_evidence_t *const self, const argus_knowl
     return verdict_of(&tally);
 }
 
+// A SIP that lists all sonars, most of them contradicted, must not take long: the next ones tell as much.
+static bool may_ask(argus_evidence_t *const self) {
+    const bool may = self->asked < ASKED_MOST;
+    self->asked = (uint8_t)(self->asked + (may ? 1 : 0));
+    return may;
+}
+
 // Every reading tells of a lag, a contradicted one no more than it tells at all.
 static void weigh_lags(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const int back, const verdict_t verdict) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS && verdict < TELLING);
     const int32_t most = verdict == CONTRADICTED ? worth_of(self, knowledge, sonar, true) : ARGUS_CEILING;
     for (int i = 0; i < ARGUS_LAGS; i++) {
-        if (verdict == CONTRADICTED || self->of[sonar].hypothesis[i].over_healthy > 0) {
+        const bool asks = verdict == CONTRADICTED || self->of[sonar].hypothesis[i].over_healthy > 0;
+        if (asks && may_ask(self)) {
             const verdict_t mapped = as_late(self, knowledge, sonar, back, i + ARGUS_LEAST_LAG);
             argus_hypothesis_add(self, sonar, i, argus_min(most, lag_worth.over_healthy[verdict][mapped]),
                                  lag_worth.over_other[verdict][mapped]);
@@ -258,7 +267,8 @@ static void weigh_offsets(argus_evidence_t *const self, const argus_knowledge_t 
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     for (int i = 0; i < ARGUS_OFFSETS; i++) {
         const int hypothesis = ARGUS_LAGS + i;
-        if (verdict == AGREED && self->of[sonar].hypothesis[hypothesis].over_healthy == 0) {
+        const bool idle = verdict == AGREED && self->of[sonar].hypothesis[hypothesis].over_healthy == 0;
+        if (idle || !may_ask(self)) {
             continue;
         }
         const verdict_t mapped = as_offset(self, knowledge, sonar, at, i);

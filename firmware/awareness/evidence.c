@@ -15,8 +15,7 @@
 #include "knowledge/angle.h"
 
 #define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
-#define TURNS 3 // ... and has them judged in so many SIPs: all had their turn before the first is due again
-#define PING_AGE_MS 70 // a SIP lists pings 0 to 140 ms old
+#define PING_AGE_MS 70  // a SIP lists pings 0 to 140 ms old
 #define SIP_MOST_MS 300u
 #define ABOUT_CDEG 12000 // no robot turns so far in a SIP: the other end leads since then
 #define STEADY_SIPS 2
@@ -104,18 +103,13 @@ static void note_out(argus_evidence_t *const self, const int sonar, const bool o
     c->out = out;
 }
 
-// A server that lists every sonar in every SIP repeats most of them.
-static bool is_due(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                   const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const bool again = knowledge->lists_all && knowledge->sip_ms - self->of[sonar].counted_ms < REFRESH_MS;
-    return (knowledge->fresh >> sonar & 1u) != 0 && !again;
-}
-
 static void take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                  const argus_pose_t *const pose, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
+    if (knowledge->lists_all && knowledge->sip_ms - c->counted_ms < REFRESH_MS) {
+        return;
+    }
     c->counted_ms = knowledge->sip_ms;
     c->taken++;
     note_out(self, sonar, argus_is_out(knowledge, sonar));
@@ -148,13 +142,12 @@ static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *cons
 void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     self->straight_sips = knowledge->rotating ? 0 : argus_one_more(self->straight_sips);
+    self->asked = 0;
     grow_old(self, knowledge);
     const argus_pose_t pose = pose_of_pings(self, knowledge);
-    int left = knowledge->lists_all ? (knowledge->sonars + TURNS - 1) / TURNS : knowledge->sonars;
-    for (int i = 0; i < knowledge->sonars && left > 0; i++) {
-        if (is_due(self, knowledge, i)) {
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((knowledge->fresh >> i & 1u) != 0) {
             take(self, knowledge, &pose, i);
-            left--;
         }
     }
     argus_clutter_sip(self, knowledge);

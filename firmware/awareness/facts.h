@@ -79,6 +79,7 @@ typedef struct {
     bool crowded;
     bool busy;              // ... or something moved before one, lately
     uint8_t straight_sips;  // SIPs in a row without a rotation
+    uint8_t asked;          // hypotheses that this SIP has weighed
     uint16_t caution;       // percent: so much of the tabled evidence a level takes
     bool has_pairs;         // any two have ever borne each other out
     argus_mask_t off_scale; // ranges do not change as the way does: no witnesses

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "knowledge/apart.h"
+#include "arcos/apart.h"
 
 #define ARGUS_TRIG_ONE 16384 // argus_sin() and argus_cos() are scaled by this
 

@@ -5,8 +5,8 @@
 
 #include <string.h>
 
+#include "arcos/apart.h"
 #include "knowledge/angle.h"
-#include "knowledge/apart.h"
 #include "knowledge/odometry.h"
 
 #define REST_MM_S 5

@@ -4,9 +4,9 @@
 #ifndef ARGUS_KNOWLEDGE_H
 #define ARGUS_KNOWLEDGE_H
 
+#include "arcos/apart.h"
 #include "arcos/sip.h"
 #include "argus/argus.h"
-#include "knowledge/apart.h"
 #include "knowledge/odometry.h"
 #include "robot/robot.h"
 

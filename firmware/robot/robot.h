@@ -3,7 +3,7 @@
 #ifndef ARGUS_ROBOT_H
 #define ARGUS_ROBOT_H
 
-#include "knowledge/apart.h"
+#include "arcos/apart.h"
 #include "robot/table.h"
 
 // The robot that is assumed while none is known (p3dx-sh), and one of which nothing is known: no sonars.

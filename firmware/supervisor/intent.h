@@ -3,8 +3,8 @@
 #ifndef ARGUS_INTENT_H
 #define ARGUS_INTENT_H
 
+#include "arcos/apart.h"
 #include "argus/argus.h"
-#include "knowledge/apart.h"
 
 typedef enum {
     ARGUS_DO_NOTHING, // go on as it is

@@ -4,7 +4,7 @@
 #define ARGUS_STATE_H
 
 #include "adjustment/guard.h"
-#include "knowledge/apart.h"
+#include "arcos/apart.h"
 #include "supervisor/core.h"
 #include "supervisor/intent.h"
 

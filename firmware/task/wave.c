@@ -4,8 +4,8 @@
 
 #include <string.h>
 
+#include "arcos/apart.h"
 #include "knowledge/angle.h"
-#include "knowledge/apart.h"
 
 #define CELLS ARGUS_GRID_CELLS
 #define CELL_MM ARGUS_GRID_CELL_MM

@@ -702,27 +702,3 @@ void test_scores_stay_within_their_bounds(void) {
 void test_scores_stay_within_their_bounds_whatever_is_read(void) { // soak
     scores_stay_within_their_bounds(5, 4000);
 }
-
-// A server that lists every sonar in every SIP: no SIP judges more than a third of them, and none waits
-// longer than a round.
-void test_what_lists_all_is_judged_in_turns(void) {
-    scene_init(&s, 1, START_MS);
-    s.k.lists_all = true;
-    uint8_t before[ARGUS_SONARS] = {0};
-    int at[ARGUS_SONARS] = {0};
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        reading[i] = 1500;
-    }
-    for (int sip = 1; sip <= 40; sip++) {
-        scene_say(&s, (1u << s.k.sonars) - 1u, reading);
-        int judged = 0;
-        for (int i = 0; i < s.k.sonars; i++) {
-            const bool now = argus_evidence_taken(&s.e, i) != before[i];
-            TEST_ASSERT_TRUE_MESSAGE(now || sip - at[i] <= 5, "starved");
-            judged += now;
-            at[i] = now ? sip : at[i];
-            before[i] = argus_evidence_taken(&s.e, i);
-        }
-        TEST_ASSERT_TRUE(judged <= (s.k.sonars + 2) / 3);
-    }
-}
