@@ -17,6 +17,7 @@
 #define NEAR_MM 2500    // echoes from farther off come and go
 #define STAYS_MM 100    // less than a change: of 500
 #define FITS_MM 200     // off what the odometry says
+#define FITS_WANTED 2   // ranges that change as they should end a doubt: one may be chance
 #define PROOF 6         // of stretches one after the other:
 #define BOTH_WAYS 3     // ... on which one ahead and one that looks back stay, so two of these,
 #define ONE_WAY 2       // ... or two that look one way: a person may walk there
@@ -27,7 +28,7 @@ void argus_slip_init(argus_slip_t *const self) {
 
 void argus_slip_restart(argus_slip_t *const self) {
     self->begun = false;
-    self->doubted = false;
+    self->doubted = 0;
 }
 
 static void begin(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
@@ -140,7 +141,7 @@ static bool is_held(const witnesses_t *const of) {
 
 static bool slip(argus_slip_t *const self) {
     self->proof = 0;
-    self->doubted = true;
+    self->doubted = FITS_WANTED;
     self->slips++;
     return true;
 }
@@ -152,9 +153,9 @@ static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowl
         ask(self, knowledge, i, way_mm, &of);
     }
     const bool stays = is_held(&of);
-    self->doubted = self->doubted && of.fits == 0;
+    self->doubted = (uint8_t)argus_max(0, self->doubted - of.fits);
     if (!stays || self->proof == 0) {
-        self->first = self->doubted ? self->first : self->from;
+        self->first = self->doubted > 0 ? self->first : self->from;
         self->slipped_mm = 0;
     }
     self->proof =
@@ -195,7 +196,7 @@ bool argus_slip_sip(argus_slip_t *const self, const argus_knowledge_t *const kno
 
 bool argus_slip_denies(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(self->proof < PROOF);
-    if (!self->doubted && self->proof < PROOF / 2) {
+    if (self->doubted == 0 && self->proof < PROOF / 2) {
         return false;
     }
     self->slipped_mm =

@@ -9,7 +9,7 @@
 typedef struct {
     bool begun;
     bool ahead;         // the way goes
-    bool doubted;       // slipped, and no range has changed as the odometry says since
+    uint8_t doubted;    // slipped: so many ranges have still to change as the odometry says
     uint8_t proof;      // what the stretches that began at `first` are worth
     argus_mask_t read;  // sonars that have been listed since
     argus_pose_t from;  // where the robot still is when it has slipped
