@@ -47,13 +47,12 @@ def unmarked(head: bytes) -> bytes:
     return _without_marks(b"\n" + head)[1:] if begins_as_text(head) else head
 
 
-class Unmarked(RawIOBase):
-    """A text without its mark, and without those that stand before a line where files were joined."""
+class Rewritten(RawIOBase):
+    """A stream of which each block is written anew."""
 
     def __init__(self, stream: BufferedReader) -> None:
         self._stream = stream
         self._ready = b""
-        self._held = b"\n"
 
     def readable(self) -> bool:
         """It is for reading only."""
@@ -63,7 +62,7 @@ class Unmarked(RawIOBase):
         """Fill the buffer with what there is; 0 at the end."""
         while not self._ready:
             data = self._stream.read1(_BLOCK)
-            self._ready = self._unmarked(data)
+            self._ready = self._rewrite(data)
             if not data:
                 break
         view = memoryview(buffer).cast("B")
@@ -72,7 +71,19 @@ class Unmarked(RawIOBase):
         self._ready = self._ready[len(taken) :]
         return len(taken)
 
-    def _unmarked(self, data: bytes) -> bytes:
+    def _rewrite(self, data: bytes) -> bytes:
+        """Return what is sure by now; no data: the end, nothing may wait."""
+        raise NotImplementedError
+
+
+class Unmarked(Rewritten):
+    """A text without its mark, and without those that stand before a line where files were joined."""
+
+    def __init__(self, stream: BufferedReader) -> None:
+        super().__init__(stream)
+        self._held = b"\n"
+
+    def _rewrite(self, data: bytes) -> bytes:
         """Return what is sure: `_held` begins with what was given out last, and may go on as a mark begins."""
         text = _without_marks(self._held + data)
         waits = next((n for n in (2, 1) if data and text.endswith(b"\n" + BOM[:n])), 0)
