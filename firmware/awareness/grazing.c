@@ -75,26 +75,12 @@ bool argus_grazing_wall(const argus_pings_t *const pings, const argus_robot_t *c
     return in_line && now->reading_mm <= beyond_mm(robot, sonar) + left_mm * fall / way + APART_MM;
 }
 
-// The last echo before it heard none, on this bearing; NULL: none of late.
-static const argus_ping_t *lost_echo(const argus_pings_t *const pings, const argus_ping_t *const now) {
-    for (int i = 2; i <= LOST_BACK; i++) {
-        const argus_ping_t *const then = argus_pings_at(pings, i);
-        if (then == NULL || argus_ping_turned_cdeg(now, then) > ARGUS_BESIDE_CDEG) {
-            return NULL;
-        }
-        if (argus_ping_is_echo(then)) {
-            return then;
-        }
-    }
-    return NULL;
-}
-
 bool argus_grazing_lost(const argus_pings_t *const pings, const int32_t within_mm) {
     ARGUS_ASSERT(within_mm > 0);
     const argus_ping_t *const now = argus_pings_at(pings, 1);
     if (now == NULL || argus_ping_is_echo(now)) {
         return false;
     }
-    const argus_ping_t *const then = lost_echo(pings, now);
+    const argus_ping_t *const then = argus_pings_last_echo(pings, 2, LOST_BACK, now, ARGUS_BESIDE_CDEG);
     return then != NULL && argus_ping_predict_mm(now, then) <= within_mm;
 }

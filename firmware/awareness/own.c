@@ -115,16 +115,8 @@ static void test_walker(argus_evidence_t *const self, const argus_knowledge_t *c
 
 // The echo before the run of none that ends now, all of it on this bearing; NULL: none.
 static const argus_ping_t *echo_before_gap(const argus_pings_t *const pings, const argus_ping_t *const now) {
-    for (int i = 1; i <= LOOKED_BACK; i++) {
-        const argus_ping_t *const then = argus_pings_at(pings, i);
-        if (then == NULL || argus_ping_turned_cdeg(now, then) > ARGUS_SAME_CDEG) {
-            return NULL;
-        }
-        if (argus_ping_is_echo(then)) {
-            return i > 1 ? then : NULL;
-        }
-    }
-    return NULL;
+    const argus_ping_t *const then = argus_pings_last_echo(pings, 1, LOOKED_BACK, now, ARGUS_SAME_CDEG);
+    return then != argus_pings_at(pings, 1) ? then : NULL;
 }
 
 // At the edge of what is heard an echo comes and goes by itself: after a few gaps a place tells no more.

@@ -12,16 +12,25 @@
 #define OFF_RUN 4   // measures in a row that are off to one side: what is slant or round is short, too
 #define LEAST_OFF 2 // sonars of an array, before it is taken for off as a whole
 
-// Of another thing, or no measure: in a turn, or aside.
+static bool is_sure(const argus_ping_t *const ping) {
+    return ping->reading_mm > ARGUS_NEAREST_MM && ping->reading_mm < ARGUS_SURE_MM;
+}
+
+// Else it is of another thing, or no measure: in a turn, or aside.
 static bool goes_on(const argus_ping_t *const now, const argus_ping_t *const before,
-                    const argus_shift_t *const shift) {
-    const bool echoes = argus_ping_is_echo(now) && argus_ping_is_echo(before) &&
-                        argus_min(now->reading_mm, before->reading_mm) > ARGUS_NEAREST_MM &&
-                        argus_max(now->reading_mm, before->reading_mm) < ARGUS_SURE_MM;
+                    argus_shift_t *const shift) {
+    if (!is_sure(now) || !is_sure(before) || argus_ping_turned_cdeg(now, before) > ARGUS_STILL_CDEG) {
+        return false;
+    }
+    *shift = argus_ping_shift(now, before);
     const int32_t way_mm = argus_abs(shift->along_mm);
     const int32_t off_mm = argus_abs(now->reading_mm - (before->reading_mm - shift->along_mm));
-    return echoes && argus_ping_turned_cdeg(now, before) <= ARGUS_STILL_CDEG &&
-           shift->lateral_mm * ASIDE <= way_mm + ARGUS_STILL_MM && off_mm <= ARGUS_AGREE_MM + way_mm * 2 / 5;
+    return shift->lateral_mm * ASIDE <= way_mm + ARGUS_STILL_MM && off_mm <= ARGUS_AGREE_MM + way_mm * 2 / 5;
+}
+
+static void begin_stretch(argus_scale_t *const self) {
+    self->way_mm = 0;
+    self->nearer_mm = 0;
 }
 
 static void measure(argus_scale_t *const self) {
@@ -78,13 +87,12 @@ void argus_scale_take(argus_evidence_t *const self, const argus_knowledge_t *con
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_scale_t *const scale = &self->scale[sonar];
     const argus_ping_t *const before = argus_pings_at(&self->pings[sonar], 1);
+    argus_shift_t shift;
     if (before == NULL) {
         return;
     }
-    const argus_shift_t shift = argus_ping_shift(now, before);
     if (!goes_on(now, before, &shift)) {
-        scale->way_mm = 0;
-        scale->nearer_mm = 0;
+        begin_stretch(scale);
         return;
     }
     scale->way_mm = (int16_t)(scale->way_mm + shift.along_mm);
@@ -92,7 +100,6 @@ void argus_scale_take(argus_evidence_t *const self, const argus_knowledge_t *con
     if (argus_abs(scale->way_mm) >= STRETCH_MM) {
         measure(scale);
         doubt(self, knowledge);
-        scale->way_mm = 0;
-        scale->nearer_mm = 0;
+        begin_stretch(scale);
     }
 }

@@ -185,7 +185,8 @@ static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, co
     const int32_t heading = argus_angle_wrap(raw_heading_cdeg(sip) + argus_heading_offset_cdeg(self));
     const argus_moved_t moved = moved_of(self, sip, (argus_point_t){dx_um / 1000, dy_um / 1000}, heading);
     if (is_odd(sip) || !argus_odometry_may_be(&self->excess, span, &moved) ||
-        may_count_anew(self, sip, distance_um, span, &moved)) {
+        (argus_odometry_is_unseen(span, &self->order) &&
+         may_count_anew(self, sip, distance_um, span, &moved))) {
         const argus_way_turn_t said = argus_odometry_by_wheels(span);
         self->leap_mm = argus_hypot(moved.ahead_mm - said.way_mm, moved.aside_mm);
         self->leap_cdeg = argus_abs(moved.turn_cdeg - said.turn_cdeg);

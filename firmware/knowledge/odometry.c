@@ -191,8 +191,8 @@ bool argus_odometry_may_be_anew(const argus_span_t *const span, const argus_orde
     const int32_t rolled_mm = argus_odometry_unseen_mm(span, order);
     const int32_t turn_cdeg = argus_abs(from_zero->turn_cdeg);
     const int32_t wheel_mm = from_zero->way_mm + turn_cdeg * span->track_mm / (2 * CDEG_PER_RADIAN);
-    return span->elapsed_ms > GAP_MS && argus_odometry_is_unseen(span, order) &&
-           wheel_mm <= rolled_mm + ANEW_MM && !is_as_expected(span, step, rolled_mm);
+    return span->elapsed_ms > GAP_MS && wheel_mm <= rolled_mm + ANEW_MM &&
+           !is_as_expected(span, step, rolled_mm);
 }
 
 bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *const span,

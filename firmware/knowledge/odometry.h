@@ -65,9 +65,9 @@ argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *span);
 bool argus_odometry_is_unseen(const argus_span_t *span, const argus_order_t *order);
 int32_t argus_odometry_unseen_mm(const argus_span_t *span, const argus_order_t *order);
 
-// Whether counters that say `from_zero` may have begun there in motion within a gap. Then this place cannot
-// be joined to the one before. The step itself vouches against it where it is what the order and the watchdog
-// make of the gap, or what the next SIP in line would say, as after the host slept.
+// Of a way that nobody has seen: whether counters that say `from_zero` may have begun there within it. Then
+// this place cannot be joined to the one before. The step itself vouches against it where it is what the
+// order and the watchdog make of the gap, or what the next SIP in line would say, as after the host slept.
 bool argus_odometry_may_be_anew(const argus_span_t *span, const argus_order_t *order,
                                 const argus_moved_t *step, const argus_way_turn_t *from_zero);
 

@@ -58,8 +58,7 @@ static void name(argus_t *const self, const int sonar) {
         argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
     }
     if (named && s->health == ARGUS_SUSPECT && kind != s->kind) {
-        argus_looks_t *const looks = &self->looks;
-        looks->hold[sonar].lawless |= s->kind == ARGUS_KIND_SLOW && kind == ARGUS_KIND_WRONG;
+        self->looks.hold[sonar].lawless |= s->kind == ARGUS_KIND_SLOW && kind == ARGUS_KIND_WRONG;
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
         argus_rays_forget(&self->rays, sonar); // nothing that it has seen is counted on
         argus_replan(self);

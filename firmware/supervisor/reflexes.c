@@ -71,6 +71,14 @@ static void note_touch(const argus_t *const self, argus_reflexes_t *const mine, 
     mine->touched_unheard = mine->touched_unheard || (ahead && !argus_guard_is_heard(&guard));
 }
 
+// Whatever touches it: it stands, and waits for a way free of it.
+static void touched(argus_intent_t *const intent, const argus_stop_t stop) {
+    intent->stop = (uint8_t)stop;
+    intent->way = ARGUS_WAY_REFUSE;
+    intent->unchecked = true;
+    argus_to_wait(intent, ARGUS_WAIT_BUMPER);
+}
+
 // New contact only: bits already answered are let be until they clear.
 static void sees_bumper(const argus_t *const self, const argus_alarm_t *const alarm,
                         argus_reflexes_t *const mine, argus_intent_t *const intent) {
@@ -88,11 +96,8 @@ static void sees_bumper(const argus_t *const self, const argus_alarm_t *const al
     }
     note_touch(self, mine, knowledge->bumpers_front != 0);
     argus_to_say(intent, ARGUS_EV_BUMPER, ARGUS_NO_SONAR, pressed);
-    intent->stop = ARGUS_STOP_E_STOP;
     intent->bumped = true;
-    intent->way = ARGUS_WAY_REFUSE;
-    intent->unchecked = true;
-    argus_to_wait(intent, ARGUS_WAIT_BUMPER);
+    touched(intent, ARGUS_STOP_E_STOP);
 }
 
 static void sees_stall(const argus_t *const self, const argus_alarm_t *const alarm,
@@ -105,10 +110,7 @@ static void sees_stall(const argus_t *const self, const argus_alarm_t *const ala
     }
     note_touch(self, mine, self->motion.kind == ARGUS_MOTION_MOVE && self->motion.target_mm > 0);
     argus_to_say(intent, ARGUS_EV_STALL, ARGUS_NO_SONAR, argus_built_stalls(&self->knowledge));
-    intent->stop = ARGUS_STOP_STOP;
-    intent->way = ARGUS_WAY_REFUSE;
-    intent->unchecked = true;
-    argus_to_wait(intent, ARGUS_WAIT_BUMPER);
+    touched(intent, ARGUS_STOP_STOP);
 }
 
 // The others (0, 7, the rear array) are not judged, but one that yields nothing any more must not be relied
@@ -196,6 +198,13 @@ static void sees_dead(const argus_t *const self, const argus_alarm_t *const alar
     intent->silent = alarm->silent;
 }
 
+static void stop_before(argus_intent_t *const intent, const int sonar, const int32_t at_mm) {
+    argus_to_say(intent, ARGUS_EV_OBJECT, sonar, at_mm);
+    intent->stop = ARGUS_STOP_STOP;
+    intent->way = ARGUS_WAY_REFUSE;
+    argus_to_check(intent, true);
+}
+
 // An object is looked at again at rest, with Algorithm 1, before it is believed: a sonar that lies low is
 // found there.
 static void sees_object(const argus_t *const self, const argus_alarm_t *const alarm,
@@ -207,10 +216,8 @@ static void sees_object(const argus_t *const self, const argus_alarm_t *const al
         self->motion.kind == ARGUS_MOTION_STOP) {
         return;
     }
-    argus_to_say(intent, ARGUS_EV_OBJECT, alarm->object_sonar, alarm->object_mm);
-    intent->stop = ARGUS_STOP_STOP;
+    stop_before(intent, alarm->object_sonar, alarm->object_mm);
     intent->way = backing ? ARGUS_WAY_KEEP : ARGUS_WAY_REFUSE;
-    argus_to_check(intent, true);
 }
 
 // True: for the second time. One echo within the swing circle may be crosstalk, the second one of the same
@@ -285,10 +292,7 @@ static void sees_flank(const argus_t *const self, const argus_alarm_t *const ala
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((usable >> i & 1u) != 0 && is_smooth_wall(self, i)) {
             const int32_t at_mm = self->knowledge.sonar[i].reading_mm;
-            argus_to_say(intent, ARGUS_EV_OBJECT, i, argus_min(at_mm, self->config.object_range_mm));
-            intent->stop = ARGUS_STOP_STOP;
-            intent->way = ARGUS_WAY_REFUSE;
-            argus_to_check(intent, true);
+            stop_before(intent, i, argus_min(at_mm, self->config.object_range_mm));
             return;
         }
     }

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from hil_sim.scenario.scenario import load_scenario
-from hil_sim.sil import Mission, Sighting, Sil, run
+from hil_sim.sil import Mission, Outcome, Sighting, Sil, run
 from hil_sim.sonar.params import NO_ECHO_MM
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.files import load_world
@@ -60,19 +60,19 @@ def test_open_floor_and_glass_take_echoes_away() -> None:
     assert seen["glass"] >= 0.03 * total, seen
 
 
+def _drive(faults: tuple[str, ...], seed: int, physics: str) -> Outcome:
+    """Return what comes of the demonstration's course with such faults."""
+    sonar = {"crosstalk": 0.0}
+    mission = Mission(
+        "open-office", COURSE, faults=faults, seed=seed, sonar=sonar, physics=physics, limit_s=120
+    )
+    return run(mission)
+
+
 @pytest.mark.parametrize(("seed", "physics"), [(1, ""), (2, ""), (105, "rough-day"), (107, "rough-day")])
 def test_the_faults_are_told_and_the_goal_is_reached(seed: int, physics: str) -> None:
     """Of the demonstration's 60 s a fifth stays in hand: sonar 6 looks late in one turn and wrong in the next."""
-    mission = Mission(
-        "open-office",
-        COURSE,
-        faults=FAULTS,
-        seed=seed,
-        sonar={"crosstalk": 0.0},
-        physics=physics,
-        limit_s=120,
-    )
-    seen = run(mission)
+    seen = _drive(FAULTS, seed, physics)
     assert seen.reached
     assert seen.t_s < 48.0
     assert not seen.collisions
@@ -86,17 +86,7 @@ def _told(job: tuple[int, int, int, str]) -> tuple[tuple[int, int, int, str], bo
     """Drive once; whether exactly the two faults were told within 60 s, and what must never be."""
     dead, wrong, seed, physics = job
     faults = (f"off:{dead}@travelled>600", f"wrong:{wrong}@travelled>1400:scale=0.5")
-    seen = run(
-        Mission(
-            "open-office",
-            COURSE,
-            faults=faults,
-            seed=seed,
-            sonar={"crosstalk": 0.0},
-            physics=physics,
-            limit_s=120,
-        )
-    )
+    seen = _drive(faults, seed, physics)
     out = {number: state for number, state in enumerate(seen.final) if state[0] == "DISABLED"}
     told = out == {dead: ("DISABLED", "off"), wrong: ("DISABLED", "wrong")}
     healthy = [n for n, states in enumerate(seen.health) if n not in (dead, wrong) and _ever_out(states)]

@@ -445,6 +445,11 @@ void test_a_wall_along_the_way_is_not_stuck(void) {
     TEST_ASSERT_TRUE_MESSAGE(scene_all_quiet(&s), told("corridor", 0, 9));
 }
 
+static int coarse_mm(unsigned *random) {
+    *random = *random * 1103515245u + 12345u;
+    return 600 + 10 * (int)(*random >> 16 & 1u);
+}
+
 // Readings in steps of 10 mm of walls that go along with the robot: every other one repeats the last. Healthy
 // sonars are not stuck; one that never changes among them is.
 void test_coarse_steps_beside_a_wall_are_not_stuck(void) {
@@ -455,8 +460,7 @@ void test_coarse_steps_beside_a_wall_are_not_stuck(void) {
         unsigned random = 12345;
         for (int n = 0; n < 600; n++) {
             for (int i = 0; i < 4; i++) {
-                random = random * 1103515245u + 12345u;
-                reading[aslant[i]] = 600 + 10 * (int)(random >> 16 & 1u);
+                reading[aslant[i]] = coarse_mm(&random);
             }
             reading[6] = stuck != 0 ? 600 : reading[6];
             s.x += 60;
@@ -475,8 +479,7 @@ void test_those_abeam_tell_how_coarse_the_steps_are(void) {
     unsigned random = 12345;
     for (int n = 0; n < 1200; n++) {
         for (int i = 0; i < 5; i++) {
-            random = random * 1103515245u + 12345u;
-            reading[i < 4 ? abeam[i] : 14] = 600 + 10 * (int)(random >> 16 & 1u);
+            reading[i < 4 ? abeam[i] : 14] = coarse_mm(&random);
         }
         s.x += 60;
         scene_say(&s, 1u << 0 | 1u << 7 | 1u << 8 | 1u << 14 | 1u << 15, reading);
