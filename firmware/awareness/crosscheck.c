@@ -15,15 +15,13 @@
 #define BITS 8
 #define ASKED_MOST 110 // hypotheses a SIP: some 6,000 instructions each
 
-// FAINT: it misses an echo that the air may have swallowed, or the other way round. DIVIDED: the others
-// contradict each other. SAME: the map leaves it where it is.
-typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, FAINT, DIVIDED, SAME, SAYINGS } verdict_t;
+// DIVIDED: the others contradict each other. SAME: the map leaves it where it is.
+typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, DIVIDED, SAME, SAYINGS } verdict_t;
 #define TELLING (CONTRADICTED + 1) // verdicts on a ping as it stands that tell of a fault at all
 
 typedef struct {
     uint8_t agree;
     uint8_t differ;
-    uint8_t faint; // ... of those
     uint8_t quiet;
     bool excused;         // one of them heard the same a little aside
     argus_mask_t against; // those that differ
@@ -51,7 +49,7 @@ static verdict_t compare_silence(const int32_t now_mm, const int32_t then_mm, co
     if (expected < ARGUS_NEAREST_MM || expected > ARGUS_FARTHEST_MM) {
         return UNSEEN;
     }
-    return expected > ARGUS_SURE_MM ? FAINT : CONTRADICTED;
+    return CONTRADICTED;
 }
 
 // What one reading says of another on its bearing, made `along_mm` ahead of it.
@@ -80,10 +78,9 @@ bool argus_crosscheck_is_witness(const argus_evidence_t *const self, const argus
 }
 
 static void add(tally_t *const tally, const verdict_t said, const int from) {
-    const bool differs = said == CONTRADICTED || said == FAINT;
+    const bool differs = said == CONTRADICTED;
     tally->agree = (uint8_t)(tally->agree + (said == AGREED));
     tally->quiet = (uint8_t)(tally->quiet + (said == QUIET));
-    tally->faint = (uint8_t)(tally->faint + (said == FAINT));
     tally->differ = (uint8_t)(tally->differ + differs);
     tally->against |= differs ? (argus_mask_t)(1u << from) : 0u;
 }
@@ -125,11 +122,10 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
 }
 
 static verdict_t verdict_of(const tally_t *const tally) {
-    const int differ = tally->differ - tally->faint;
     if (tally->agree > 0) {
-        return tally->agree >= differ ? AGREED : DIVIDED;
+        return tally->agree >= tally->differ ? AGREED : DIVIDED;
     }
-    if (differ > 0) {
+    if (tally->differ > 0) {
         return tally->quiet > 0 || tally->excused ? DIVIDED : CONTRADICTED;
     }
     return tally->quiet > 0 ? QUIET : UNSEEN;
@@ -218,8 +214,7 @@ static verdict_t as_late(const argus_evidence_t *const self, const argus_knowled
         return UNSEEN;
     }
     if (argus_ping_turned_cdeg(now, then) < ALONE_CDEG &&
-        argus_ping_is_within(now, then, ARGUS_SAME_ALONG_MM) &&
-        argus_ping_shift(now, then).lateral_mm <= ARGUS_SAME_LATERAL_MM) {
+        argus_ping_is_within(now, then, ARGUS_SAME_ALONG_MM)) {
         return SAME;
     }
     argus_ping_t mapped = *then;
@@ -307,38 +302,15 @@ static void count_own(argus_evidence_t *const self, const argus_knowledge_t *con
     }
 }
 
-// Contradicted by those that looked there, and by nothing excused.
-static bool is_odd(const tally_t *const tally) {
-    return tally->agree == 0 && tally->quiet == 0 && tally->differ > 0 && !tally->excused;
-}
-
-static bool is_borne_out(const tally_t *const tally) {
-    return tally->agree > 0 && tally->agree >= tally->differ;
-}
-
 // The axis first: which sonar is a witness depends on what is counted.
 static void count_news(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                       const int sonar, argus_ping_t *const at, const tally_t *const tally) {
+                       const int sonar, argus_ping_t *const at, const verdict_t verdict,
+                       const argus_mask_t against) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const bool odd = is_odd(tally);
-    const int32_t increment = worth_of(self, knowledge, sonar, odd);
-    weigh_offsets(self, knowledge, sonar, at, odd ? CONTRADICTED : AGREED, increment);
-    count(self, knowledge, sonar, at, odd ? tally->against : 0);
+    const int32_t increment = worth_of(self, knowledge, sonar, verdict == CONTRADICTED);
+    weigh_offsets(self, knowledge, sonar, at, verdict, increment);
+    count(self, knowledge, sonar, at, verdict == CONTRADICTED ? against : 0);
     at->counted = 1;
-}
-
-// Divided voices tell nothing of a lag, nor what is contradicted while something moves before it.
-static bool tells_of_time(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                          const int sonar, const verdict_t verdict, const bool fresh) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const bool disturbed =
-        verdict == CONTRADICTED && argus_clutter_beside(self, knowledge, sonar, ARGUS_UNREST_MS);
-    return verdict != DIVIDED && (fresh || verdict != UNSEEN) && !disturbed;
-}
-
-// That it hears shows also where a silence of it has counted already.
-static void note_hearing(argus_case_t *const c, const argus_ping_t *const at) {
-    c->borne_out = c->borne_out || (argus_ping_is_echo(at) && c->score[ARGUS_TEST_PEERS] > 0);
 }
 
 static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
@@ -348,17 +320,16 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     argus_case_t *const c = &self->of[sonar];
     argus_ping_t *const at = argus_pings_mark(&self->pings[sonar], back);
     const verdict_t verdict = verdict_of(tally);
-    at->weighed = verdict != UNSEEN || tally->differ > 0;
-    if (tally->differ == 0) {
-        count_own(self, knowledge, sonar, back, verdict);
+    at->weighed = verdict != UNSEEN;
+    count_own(self, knowledge, sonar, back, verdict);
+    if ((verdict == AGREED || verdict == CONTRADICTED) && is_news(&self->pings[sonar], at)) {
+        count_news(self, knowledge, sonar, at, verdict, tally->against);
     }
-    if ((is_odd(tally) || is_borne_out(tally)) && is_news(&self->pings[sonar], at)) {
-        count_news(self, knowledge, sonar, at, tally);
+    if (fresh && verdict == AGREED &&
+        argus_ping_is_echo(at)) { // also where a silence of it has counted already
+        c->borne_out = c->borne_out || c->score[ARGUS_TEST_PEERS] > 0;
     }
-    if (fresh && is_borne_out(tally)) {
-        note_hearing(c, at);
-    }
-    if (tells_of_time(self, knowledge, sonar, verdict, fresh)) {
+    if (verdict != DIVIDED) {
         weigh_lags(self, knowledge, sonar, back, verdict);
     }
 }

@@ -92,17 +92,6 @@ static argus_ping_t ray_of(const argus_evidence_t *const self, const argus_knowl
     return ping;
 }
 
-// A sonar that comes back into use was mended.
-static void note_out(argus_evidence_t *const self, const int sonar, const bool out) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    argus_case_t *const c = &self->of[sonar];
-    if (c->out && !out) {
-        memset(c->hypothesis, 0, sizeof c->hypothesis);
-        memset(&self->pings[sonar], 0, sizeof self->pings[sonar]);
-    }
-    c->out = out;
-}
-
 static void take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                  const argus_pose_t *const pose, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -112,7 +101,7 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     }
     c->counted_ms = knowledge->sip_ms;
     c->taken++;
-    note_out(self, sonar, argus_is_out(knowledge, sonar));
+    c->out = argus_is_out(knowledge, sonar);
     argus_trend_reading(&self->trend, knowledge, sonar);
     const argus_ping_t now = ray_of(self, knowledge, pose, sonar);
     argus_own_take(self, knowledge, sonar, &now);

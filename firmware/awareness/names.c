@@ -38,10 +38,8 @@ static argus_hypothesis_t offset_of(const argus_case_t *const self) {
 
 // Without a third that says so, only three readings in a row that it has given before are enough.
 static bool is_late(const argus_case_t *const self, const int32_t level) {
-    const argus_hypothesis_t late = late_of(self);
     const int32_t wanted = has_partners(self) ? level : argus_max(level, ARGUS_LATE_ALONE);
-    return late.over_healthy >= wanted && late.over_other >= ARGUS_LATE_LEAD &&
-           self->score[ARGUS_TEST_PEERS] >= 0;
+    return late_of(self).over_healthy >= wanted && self->score[ARGUS_TEST_PEERS] >= 0;
 }
 
 // In a turn a late sonar looks as if its axis were offset, and the other way round. Half as much decides for

@@ -173,7 +173,7 @@ def _judged(
         try:
             yield from (future.result() for future in futures)
         finally:
-            pool.shutdown(wait=False, cancel_futures=True)
+            pool.shutdown(wait=True, cancel_futures=True)  # they write into the folder that goes
 
 
 def table(worths: Sequence[Worth]) -> str:

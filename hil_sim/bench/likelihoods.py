@@ -25,7 +25,7 @@ from hil_sim.sil import FaultTruth
 
 Counts = npt.NDArray[np.int64]
 
-VERDICTS: Final = ("UNSEEN", "QUIET", "AGREED", "CONTRADICTED", "FAINT", "DIVIDED", "SAME")
+VERDICTS: Final = ("UNSEEN", "QUIET", "AGREED", "CONTRADICTED", "DIVIDED", "SAME")
 """As the enumeration of crosscheck.c, in its order."""
 LAGS: Final = range(2, 10)
 OFFSETS_DEG: Final = (-24, -18, -12, 12, 18, 24)

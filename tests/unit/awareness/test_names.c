@@ -151,8 +151,8 @@ void test_hypotheses_name_where_others_contradict(void) {
         c->score[ARGUS_TEST_PEERS] = -100;
         TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, named(), text);
         c->score[ARGUS_TEST_PEERS] = 400;
-        c->hypothesis[d].over_other = 0;
-        TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_NONE, named(), text);
+        c->hypothesis[d].over_other = 0; // another fault explains it as well
+        TEST_ASSERT_EQUAL_MESSAGE(d < ARGUS_LAGS ? ARGUS_KIND_SLOW : ARGUS_KIND_NONE, named(), text);
     }
 }
 
