@@ -7,25 +7,16 @@
 #include "awareness/aim.h"
 #include "knowledge/angle.h"
 
-#define READINGS 2          // two that agree make a view
-#define READINGS_UNSTEADY 7 // where a sonar does not agree with itself
-#define LOOK_MS 2600u       // a sonar that yields nothing is not waited for longer
+#define READINGS 2    // two that agree make a view
+#define LOOK_MS 2600u // a sonar that yields nothing is not waited for longer
 #define FIRST_LOOKS 2
 #define SILENT_RUN 2
-#define CONTRADICTED 100 // of a silent one, by the others, in hundredths of a nat: it is worth an aim
-#define AIMS_MAX 4       // turns of a suspect onto what another has heard
-#define AIMS_ASIDE 2     // ... and, while that lasts, of one that is none
-#define AIMED_SILENT 2
-#define AIMED_HEARD 3
-#define AIMED_MOST 7
-#define QUIET_RUN 4
-#define QUIET_MS 2500u
-#define ALONE_MS 8000u
+#define AIMS_MAX 4 // turns of a suspect onto what another has heard
+#define AIMED 3    // readings of it
 
-// In pitches of the ring; one that looks abeam is two off its neighbour. Half a turn lets another array see.
+// In pitches of the ring; one that looks abeam is two off its neighbour.
 static const int8_t looks[] = {-1, 1, 0, -2, 2};
-#define LOOK_BEHIND ((uint8_t)(sizeof looks / sizeof looks[0]))
-#define LOOKS (LOOK_BEHIND + 1)
+#define LOOKS ((uint8_t)(sizeof looks / sizeof looks[0]))
 
 void argus_inquiry_init(argus_inquiry_t *const self) {
     memset(self, 0, sizeof *self);
@@ -51,24 +42,6 @@ static argus_mask_t around(const argus_robot_t *const robot, const argus_mask_t 
 static bool is_silent(const argus_evidence_t *const evidence, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_evidence_silent_run(evidence, sonar) >= SILENT_RUN &&
-           argus_evidence_names(evidence, sonar) == ARGUS_KIND_NONE;
-}
-
-// No suspect yet, perhaps, but others contradict it.
-static bool is_contradicted(const argus_knowledge_t *const knowledge, const argus_evidence_t *const evidence,
-                            const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return !argus_is_out(knowledge, sonar) && argus_evidence_contradicted(evidence, sonar) >= CONTRADICTED;
-}
-
-// Neither suspect nor proved of late, by an echo that goes on or by another sonar: a look is the occasion.
-static bool is_unproved(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
-                        const argus_evidence_t *const evidence, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const bool quiet = argus_evidence_silent_run(evidence, sonar) >= QUIET_RUN &&
-                       argus_evidence_alive_age_ms(evidence, knowledge, sonar) >= QUIET_MS;
-    const bool alone = argus_evidence_agreed_age_ms(evidence, knowledge, sonar) >= ALONE_MS;
-    return self->aims < AIMS_ASIDE && (quiet || alone) && !argus_is_out(knowledge, sonar) &&
            argus_evidence_names(evidence, sonar) == ARGUS_KIND_NONE;
 }
 
@@ -107,7 +80,7 @@ static bool aim_at_one_of(argus_inquiry_t *const self, const argus_knowledge_t *
     return false;
 }
 
-// Suspects first, then those that the others contradict. False: nothing to aim at, or often enough.
+// False: nothing to aim at, or often enough.
 static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                      const argus_evidence_t *const evidence) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
@@ -116,25 +89,17 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
         return false;
     }
     unsigned silent = 0;
-    unsigned contradicted = 0;
-    unsigned unproved = 0;
     for (int i = 0; i < knowledge->sonars; i++) {
         silent |= is_silent(evidence, i) ? 1u << i : 0u;
-        contradicted |= is_contradicted(knowledge, evidence, i) ? 1u << i : 0u;
-        unproved |= is_unproved(self, knowledge, evidence, i) ? 1u << i : 0u;
     }
-    // Where there are suspects, some aims are theirs.
-    const bool aside = self->suspects == 0 || self->aims < AIMS_ASIDE;
-    return aim_at_one_of(self, knowledge, evidence, silent & self->suspects) ||
-           (aside && aim_at_one_of(self, knowledge, evidence, silent & contradicted)) ||
-           aim_at_one_of(self, knowledge, evidence, unproved);
+    return aim_at_one_of(self, knowledge, evidence, silent & self->suspects);
 }
 
 static void set_look(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                      const uint8_t look) {
     ARGUS_ASSERT(look <= LOOKS);
     self->look = look;
-    self->look_cdeg = look < LOOK_BEHIND ? looks[look] * knowledge->robot->pitch_deg * 100 : 18000;
+    self->look_cdeg = look < LOOKS ? looks[look] * knowledge->robot->pitch_deg * 100 : 0;
 }
 
 void argus_inquiry_begin(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
@@ -143,7 +108,6 @@ void argus_inquiry_begin(argus_inquiry_t *const self, const argus_knowledge_t *c
     argus_inquiry_init(self);
     self->active = true;
     self->base_cdeg = base_cdeg;
-    self->all = !argus_evidence_has_pairs(evidence);
     argus_inquiry_add(self, knowledge, suspects);
     set_look(self, knowledge, 0);
     take_aim(self, knowledge, evidence);
@@ -165,41 +129,30 @@ int32_t argus_inquiry_heading_cdeg(const argus_inquiry_t *const self) {
     return argus_angle_wrap(self->base_cdeg + self->look_cdeg);
 }
 
-static void mark_settled(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
-                         const argus_evidence_t *const evidence) {
+static void mark_settled(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     self->marked = true;
-    self->aimed_from = argus_evidence_taken(evidence, self->aimed);
     self->settled_ms = knowledge->sip_ms;
     for (int i = 0; i < knowledge->sonars; i++) {
         self->seen[i] = (uint8_t)(knowledge->sonar[i].readings & 0xFFu);
     }
 }
 
-// Silent all along or hearing all along; where it does not agree with itself, more.
-_Static_assert(AIMED_MOST <= 8, "echo_bits has eight");
-static bool has_aimed_enough(const argus_inquiry_t *const self, const argus_evidence_t *const evidence) {
-    ARGUS_ASSERT(self->aiming);
-    const unsigned more = (unsigned)(argus_evidence_taken(evidence, self->aimed) - self->aimed_from) & 0xFFu;
-    const unsigned mask = (1u << argus_min((int32_t)more, AIMED_MOST)) - 1u;
-    const unsigned heard = argus_evidence_echo_bits(evidence, self->aimed) & mask;
-    return more >= AIMED_MOST || (more >= AIMED_SILENT && heard == 0) ||
-           (more >= AIMED_HEARD && heard == mask);
+static unsigned more_of(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+                        const int sonar) {
+    return (knowledge->sonar[sonar].readings - self->seen[sonar]) & 0xFFu;
 }
 
-static bool has_seen_enough(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
-                            const argus_evidence_t *const evidence) {
+static bool has_seen_enough(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     if (knowledge->sip_ms - self->settled_ms >= LOOK_MS) {
         return true;
     }
     if (self->aiming) {
-        return has_aimed_enough(self, evidence);
+        return more_of(self, knowledge, self->aimed) >= AIMED;
     }
     for (int i = 0; i < knowledge->sonars; i++) {
-        const unsigned more = (knowledge->sonar[i].readings - self->seen[i]) & 0xFFu;
-        const unsigned needed = argus_evidence_is_unsteady(evidence, i) ? READINGS_UNSTEADY : READINGS;
-        if ((self->watched >> i & 1u) != 0 && more < needed) {
+        if ((self->watched >> i & 1u) != 0 && more_of(self, knowledge, i) < READINGS) {
             return false;
         }
     }
@@ -221,33 +174,9 @@ static bool is_resolved(const argus_inquiry_t *const self, const argus_evidence_
     return true;
 }
 
-// A whole array that hears nothing cannot clear itself: another one must look.
-static bool is_one_deaf(const argus_knowledge_t *const knowledge) {
-    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    int arrays = 0;
-    int deaf = 0;
-    for (int array = 0; array < knowledge->robot->arrays; array++) {
-        const argus_mask_t its = argus_robot_array(knowledge->robot, array);
-        bool hears = false;
-        for (int i = 0; i < knowledge->sonars; i++) {
-            hears = hears || ((its >> i & 1u) != 0 && argus_usable(knowledge, i));
-        }
-        arrays += its != 0;
-        deaf += its != 0 && !hears;
-    }
-    return deaf > 0 && deaf < arrays;
-}
-
-static uint8_t next_look(const argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
-                         const argus_evidence_t *const evidence) {
-    ARGUS_ASSERT(self->look < LOOKS);
-    const bool one_deaf = is_one_deaf(knowledge);
+static uint8_t next_look(const argus_inquiry_t *const self, const argus_evidence_t *const evidence) {
     const uint8_t next = (uint8_t)(self->look + 1);
-    if (next >= FIRST_LOOKS && one_deaf && self->look < LOOK_BEHIND && self->suspects != 0) {
-        return LOOK_BEHIND;
-    }
-    const bool enough = next >= FIRST_LOOKS && is_resolved(self, evidence);
-    return enough || next >= LOOK_BEHIND ? LOOKS : next;
+    return next >= FIRST_LOOKS && is_resolved(self, evidence) ? LOOKS : next;
 }
 
 // The aims have settled nothing of some suspect.
@@ -271,21 +200,18 @@ bool argus_inquiry_step(argus_inquiry_t *const self, const argus_knowledge_t *co
         return true;
     }
     if (!self->marked) {
-        mark_settled(self, knowledge, evidence);
+        mark_settled(self, knowledge);
         return false;
     }
-    if (!has_seen_enough(self, knowledge, evidence)) {
+    if (!has_seen_enough(self, knowledge)) {
         return false;
     }
     self->marked = false;
     const bool aimed = self->aiming;
-    if (take_aim(self, knowledge, evidence)) {
-        return true;
-    }
-    self->returning = aimed && !self->all && !is_in_doubt(self, evidence);
     if (!aimed) {
-        set_look(self, knowledge, next_look(self, knowledge, evidence));
-        self->returning = self->look >= LOOKS;
+        set_look(self, knowledge, next_look(self, evidence));
     }
+    const bool over = self->look >= LOOKS;
+    self->returning = over || (!take_aim(self, knowledge, evidence) && aimed && !is_in_doubt(self, evidence));
     return true;
 }

@@ -10,19 +10,16 @@
 // themselves.
 typedef struct {
     bool active;
-    bool returning;     // the last turn, back to the base heading
-    bool marked;        // settled on the present heading
-    bool all;           // no sonar has borne out another yet: aims are not enough
-    bool aiming;        // one suspect that hears nothing at what another has heard
-    uint8_t aims;       // so often
-    uint8_t aimed;      // that suspect
-    uint8_t aimed_from; // ... its count when the robot had settled
-    uint8_t look;       // index of the present heading
+    bool returning; // the last turn, back to the base heading
+    bool marked;    // settled on the present heading
+    bool aiming;    // one suspect that hears nothing at what another has heard
+    uint8_t aims;   // so often
+    uint8_t aimed;  // that suspect
+    uint8_t look;   // index of the present heading
     int32_t aim_cdeg;
     int32_t look_cdeg;          // of the present look, from the base heading
     argus_mask_t suspects;      // what it is held for; empty: a look at all
     argus_mask_t watched;       // sonars that are waited for
-    uint8_t needed;             // ... so many of each
     uint8_t seen[ARGUS_SONARS]; // low bits of their counters when the robot had settled
     int32_t base_cdeg;
     uint32_t settled_ms;

@@ -12,7 +12,7 @@
 #define SONAR_BYTES 43
 #define CHECK_BYTES 2
 #define AT_SCORES 6
-#define AT_CALIBRATION 18
+#define AT_UNUSED 18
 #define AT_SLOPES 22
 #define SLOPE_BYTES 7
 #define SAID 1u // flag: its degradation is said
@@ -24,7 +24,7 @@
 
 _Static_assert(ARGUS_RECORD_BYTES == HEAD_BYTES + ARGUS_SONARS * SONAR_BYTES + CHECK_BYTES,
                "length of the record");
-_Static_assert(AT_CALIBRATION == AT_SCORES + 2 * ARGUS_KEPT, "scores");
+_Static_assert(AT_UNUSED == AT_SCORES + 2 * ARGUS_KEPT, "scores");
 _Static_assert(SONAR_BYTES == AT_SLOPES + SLOPE_BYTES * ARGUS_TRENDS, "slopes");
 
 static const uint8_t magic[4] = {'A', 'R', 'G', 'R'};
@@ -94,8 +94,7 @@ static void put_evidence(uint8_t *const at, const argus_evidence_t *const eviden
 
 static void put_trend(uint8_t *const at, const argus_trend_sonar_t *const t) {
     at[5] = t->said ? SAID : 0;
-    put16(at + AT_CALIBRATION, (unsigned)t->residual_mm16);
-    put16(at + AT_CALIBRATION + 2, (unsigned)t->residual_permille16);
+    memset(at + AT_UNUSED, 0, AT_SLOPES - AT_UNUSED);
     for (int i = 0; i < ARGUS_TRENDS; i++) {
         const argus_slope_t *const slope = &t->slope[i];
         uint8_t *const to = at + AT_SLOPES + i * SLOPE_BYTES;
@@ -165,8 +164,6 @@ static void get_evidence(argus_evidence_t *const evidence, const int sonar, cons
 
 static void get_trend(argus_trend_sonar_t *const t, const uint8_t *const at) {
     t->said = (at[5] & SAID) != 0;
-    t->residual_mm16 = get_signed(at + AT_CALIBRATION);
-    t->residual_permille16 = get_signed(at + AT_CALIBRATION + 2);
     for (int i = 0; i < ARGUS_TRENDS; i++) {
         const uint8_t *const from = at + AT_SLOPES + i * SLOPE_BYTES;
         const argus_slope_t slope = {.fast = get_signed(from),

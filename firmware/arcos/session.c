@@ -33,8 +33,6 @@ static void enter(argus_session_t *self, uint32_t now_ms, argus_session_state_t 
 
 void argus_session_init(argus_session_t *self) {
     memset(self, 0, sizeof *self);
-    argus_parser_init(&self->parser);
-    argus_outbox_init(&self->outbox);
     self->pause_ms = PAUSE_FIRST_MS;
 }
 

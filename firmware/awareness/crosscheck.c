@@ -195,9 +195,6 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
         note_contradicted(self, knowledge, sonar, at, against);
     } else if (argus_ping_is_echo(at) && is_since(knowledge, sonar, at)) {
         c->agreed = argus_one_more(c->agreed);
-        c->agreed_ms = knowledge->sip_ms;
-        c->alive_ms = knowledge->sip_ms;
-        self->has_pairs = true;
     }
     if (c->score[ARGUS_TEST_PEERS] <= 0) {
         begin_anew(c);

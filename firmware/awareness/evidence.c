@@ -100,7 +100,6 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
         return;
     }
     c->counted_ms = knowledge->sip_ms;
-    c->taken++;
     c->out = argus_is_out(knowledge, sonar);
     argus_trend_reading(&self->trend, knowledge, sonar);
     const argus_ping_t now = ray_of(self, knowledge, pose, sonar);
@@ -158,18 +157,6 @@ bool argus_evidence_holds(const argus_evidence_t *const self, const int sonar) {
         most = argus_max(most, c->hypothesis[i].over_healthy * 100 / ARGUS_LATE_NAMING);
     }
     return argus_names_suspects(self, sonar) || most > ARGUS_HELD_PERCENT;
-}
-
-bool argus_evidence_is_unsteady(const argus_evidence_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_case_t *const c = &self->of[sonar];
-    for (int i = ARGUS_TEST_GARBAGE; i <= ARGUS_TEST_DROPOUT; i++) {
-        const argus_bounds_t *const b = &argus_bounds[i];
-        if (c->score[i] >= b->naming * ARGUS_SUSPECT_PERCENT / 100 && c->score[i] < b->convincing) {
-            return true;
-        }
-    }
-    return false;
 }
 
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *const self, const int sonar) {
@@ -234,10 +221,6 @@ void argus_evidence_agree_anew(argus_evidence_t *const self, const int sonar) {
     self->of[sonar].agreed = 0;
 }
 
-bool argus_evidence_has_pairs(const argus_evidence_t *const self) {
-    return self->has_pairs;
-}
-
 bool argus_evidence_repeats(const argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->of[sonar].score[ARGUS_TEST_STUCK] > 0;
@@ -256,28 +239,6 @@ uint8_t argus_evidence_silent_run(const argus_evidence_t *const self, const int 
 int32_t argus_evidence_contradicted(const argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->of[sonar].score[ARGUS_TEST_PEERS];
-}
-
-uint32_t argus_evidence_alive_age_ms(const argus_evidence_t *const self,
-                                     const argus_knowledge_t *const knowledge, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return knowledge->sip_ms - self->of[sonar].alive_ms;
-}
-
-uint32_t argus_evidence_agreed_age_ms(const argus_evidence_t *const self,
-                                      const argus_knowledge_t *const knowledge, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return knowledge->sip_ms - self->of[sonar].agreed_ms;
-}
-
-uint8_t argus_evidence_taken(const argus_evidence_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return self->of[sonar].taken;
-}
-
-uint8_t argus_evidence_echo_bits(const argus_evidence_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return self->of[sonar].echo_bits;
 }
 
 int argus_evidence_news(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,

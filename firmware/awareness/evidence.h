@@ -28,8 +28,6 @@ bool argus_evidence_suspects(const argus_evidence_t *self, int sonar);
 // Whether what made a suspect is not gone yet: the levels that clear are below those that make one.
 bool argus_evidence_holds(const argus_evidence_t *self, int sonar);
 
-// It does not agree with itself: more of its readings at rest would tell.
-bool argus_evidence_is_unsteady(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_names(const argus_evidence_t *self, int sonar);
 argus_fault_kind_t argus_evidence_convicts(const argus_evidence_t *self, int sonar);
 
@@ -61,9 +59,6 @@ void argus_evidence_forget(argus_evidence_t *self, int sonar);
 uint8_t argus_evidence_agreed(const argus_evidence_t *self, int sonar);
 void argus_evidence_agree_anew(argus_evidence_t *self, int sonar);
 
-// Any two have ever borne each other out.
-bool argus_evidence_has_pairs(const argus_evidence_t *self);
-
 // It reads one value again and again though the robot moves; it loses echoes between echoes of one thing.
 bool argus_evidence_repeats(const argus_evidence_t *self, int sonar);
 bool argus_evidence_shows_gaps(const argus_evidence_t *self, int sonar);
@@ -71,16 +66,6 @@ bool argus_evidence_shows_gaps(const argus_evidence_t *self, int sonar);
 // Readings in a row without an echo; how much the others contradict it, hundredths of a nat.
 uint8_t argus_evidence_silent_run(const argus_evidence_t *self, int sonar);
 int32_t argus_evidence_contradicted(const argus_evidence_t *self, int sonar);
-
-// Since it proved alive by an echo that went on; since another bore it out.
-uint32_t argus_evidence_alive_age_ms(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
-                                     int sonar);
-uint32_t argus_evidence_agreed_age_ms(const argus_evidence_t *self, const argus_knowledge_t *knowledge,
-                                      int sonar);
-
-// Its readings are counted, low bits; bit i: of the last 8, the one i before was an echo.
-uint8_t argus_evidence_taken(const argus_evidence_t *self, int sonar);
-uint8_t argus_evidence_echo_bits(const argus_evidence_t *self, int sonar);
 
 // The sonar with a growing weakness that is new and worth saying now, -1: none. `metres`: of driving until it
 // will have failed. And all of it forgotten.

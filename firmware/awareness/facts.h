@@ -53,8 +53,6 @@ typedef struct {
     bool out;                   // its evidence is of whether it may come back: what speaks for it counts more
     bool moved;                 // something moved before it, at moved_ms
     uint32_t place_odometer_mm; // where that place began
-    uint8_t taken;              // counts its readings, low bits
-    uint8_t echo_bits;          // bit i: of its last readings, the one i before had an echo
     uint8_t agreed;             // counted readings in a row that others bore out
     uint8_t silent_bits;        // bit i: of the contradicted readings, the one i before had no echo
     uint8_t episodes;     // times at which it was contradicted, some seconds apart, since its score left 0
@@ -63,13 +61,13 @@ typedef struct {
     uint32_t episode_ms;
     uint32_t moved_ms;
     uint32_t counted_ms;
-    uint32_t alive_ms;
-    uint32_t agreed_ms; // when others bore it out last
     argus_rate_t rate[ARGUS_TESTS];
     argus_hypothesis_t hypothesis[ARGUS_HYPOTHESES];
+    argus_scale_t scale;
 } argus_case_t;
+_Static_assert(sizeof(argus_case_t) == 128, "one shift leads to a case");
 
-// The cases come first, and a case is 128 bytes: dozens ask for one, which then takes one instruction.
+// The cases come first: dozens ask for one, which then takes one instruction.
 typedef struct {
     argus_case_t of[ARGUS_SONARS];
     argus_pose_t before; // of the SIP before, at before_ms
@@ -81,10 +79,8 @@ typedef struct {
     uint8_t straight_sips;  // SIPs in a row without a rotation
     uint8_t asked;          // hypotheses that this SIP has weighed
     uint16_t caution;       // percent: so much of the tabled evidence a level takes
-    bool has_pairs;         // any two have ever borne each other out
     argus_mask_t off_scale; // ranges do not change as the way does: no witnesses
     argus_trend_t trend;
-    argus_scale_t scale[ARGUS_SONARS];
     argus_pings_t pings[ARGUS_SONARS];
 } argus_evidence_t;
 

@@ -143,16 +143,6 @@ static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *
     argus_score(self, sonar, ARGUS_TEST_DROPOUT, argus_max(0, argus_min(left, adds)));
 }
 
-static void count_echo(argus_case_t *const self, const argus_knowledge_t *const knowledge,
-                       const argus_ping_t *const now, const bool goes_on) {
-    const bool echo = argus_ping_is_echo(now);
-    self->none_run = echo ? 0 : argus_one_more(self->none_run);
-    self->echo_bits = (uint8_t)((unsigned)self->echo_bits << 1 | (echo ? 1u : 0u));
-    if (echo && goes_on) {
-        self->alive_ms = knowledge->sip_ms;
-    }
-}
-
 static void run_tests(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const argus_ping_t *const now, const argus_ping_t *const before) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -180,5 +170,5 @@ void argus_own_take(argus_evidence_t *const self, const argus_knowledge_t *const
         return;
     }
     run_tests(self, knowledge, sonar, now, before);
-    count_echo(c, knowledge, now, now->steady && argus_ping_goes_on(now, before));
+    c->none_run = argus_ping_is_echo(now) ? 0 : argus_one_more(c->none_run);
 }

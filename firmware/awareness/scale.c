@@ -48,7 +48,7 @@ static argus_mask_t off_of(const argus_evidence_t *const self, const argus_mask_
     unsigned off = 0;
     unsigned against = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        if ((array >> i & 1u) != 0 && self->scale[i].off >= OFF_RUN) {
+        if ((array >> i & 1u) != 0 && self->of[i].scale.off >= OFF_RUN) {
             off |= 1u << i;
             against |= self->of[i].against;
         }
@@ -61,7 +61,7 @@ static argus_mask_t off_of(const argus_evidence_t *const self, const argus_mask_
 static bool another_keeps(const argus_evidence_t *const self, const argus_mask_t array) {
     bool keeps = false;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        keeps = keeps || ((array >> i & 1u) == 0 && self->scale[i].keeps);
+        keeps = keeps || ((array >> i & 1u) == 0 && self->of[i].scale.keeps);
     }
     return keeps;
 }
@@ -85,7 +85,7 @@ static void doubt(argus_evidence_t *const self, const argus_knowledge_t *const k
 void argus_scale_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const argus_ping_t *const now) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    argus_scale_t *const scale = &self->scale[sonar];
+    argus_scale_t *const scale = &self->of[sonar].scale;
     const argus_ping_t *const before = argus_pings_at(&self->pings[sonar], 1);
     argus_shift_t shift;
     if (before == NULL) {

@@ -12,7 +12,6 @@
 #define FAST 6      // segments that the means look back on
 #define SLOW 32
 #define LEAD_LEAST 3 // segments
-#define RESIDUAL_WEIGHT 64
 
 #define NEAR_MM 3500 // echoes from beyond come and go
 #define GAP_MAX 3    // readings without an echo that count as dropouts between two
@@ -118,18 +117,6 @@ void argus_trend_reading(argus_trend_t *const self, const argus_knowledge_t *con
     }
 }
 
-static int32_t clamp(const int32_t value, const int32_t limit) {
-    return argus_max(-limit, argus_min(limit, value));
-}
-
-static void calibrate(argus_trend_sonar_t *const self, const int32_t residual_mm, const int32_t expected_mm) {
-    const int32_t permille = clamp(residual_mm * 1000 / argus_max(expected_mm, 1), 1000);
-    const int32_t mm = clamp(residual_mm, 1000);
-    self->residual_mm16 = (int16_t)(self->residual_mm16 + (mm * 16 - self->residual_mm16) / RESIDUAL_WEIGHT);
-    self->residual_permille16 =
-        (int16_t)(self->residual_permille16 + (permille * 16 - self->residual_permille16) / RESIDUAL_WEIGHT);
-}
-
 static void take_residual(argus_trend_sonar_t *const self, const uint32_t odometer_mm,
                           const int32_t reading_mm, const int32_t expected_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
@@ -138,7 +125,6 @@ static void take_residual(argus_trend_sonar_t *const self, const uint32_t odomet
     if (expected_mm <= 0 || argus_abs(residual_mm) > limit_mm) {
         return;
     }
-    calibrate(self, residual_mm, expected_mm);
     add(self, ARGUS_TREND_BIAS, odometer_mm, residual_mm * UNIT / limit_mm);
 }
 

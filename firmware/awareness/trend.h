@@ -25,9 +25,7 @@ typedef struct {
 
 typedef struct {
     argus_slope_t slope[ARGUS_TRENDS];
-    int16_t residual_mm16;       // calibration: mean signed difference to others, sixteenths of a mm
-    int16_t residual_permille16; // ... and of the range, sixteenths of a permille
-    bool said;                   // in the present episode
+    bool said; // in the present episode
     // The present segment of each statistic: readings or pairs, their sum in its unit, where it began.
     uint16_t count[ARGUS_TRENDS];
     int32_t sum[ARGUS_TRENDS];

@@ -23,7 +23,7 @@
 
 void argus_manager_init(argus_t *const self, const argus_config_t *const config, const uint32_t now_ms) {
     const argus_robot_t *const chosen = argus_robot_chosen(config->robot);
-    memset(self, 0, sizeof *self);
+    memset(self, 0, sizeof *self); // which is how most parts begin
     self->config = *config;
     self->orders.locked = argus_config_check(config).fault != ARGUS_CONFIG_OK;
     self->orders.passive = self->orders.locked || config->active == 0;
@@ -31,19 +31,7 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     argus_session_init(&self->session);
     argus_knowledge_init(&self->knowledge);
     argus_body_is(&self->knowledge, chosen != NULL ? chosen : argus_robot_default(), now_ms);
-    argus_echoes_init(&self->echoes);
-    argus_rays_init(&self->rays);
-    argus_awareness_init(&self->awareness);
-    argus_evidence_init(&self->evidence);
     argus_evidence_set_caution(&self->evidence, self->config.caution);
-    argus_extremes_init(&self->extremes);
-    argus_common_init(&self->common);
-    argus_slip_init(&self->slip);
-    argus_bend_init(&self->bend);
-    argus_wheel_init(&self->wheel);
-    argus_motion_init(&self->motion);
-    argus_task_init(&self->travel.task);
-    argus_events_init(&self->events);
     argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_GO_OFFLINE, false);
 }
 
@@ -112,6 +100,15 @@ void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
     go_offline(self);
 }
 
+// The readings begin anew.
+static void restart_evidence(argus_t *const self) {
+    argus_awareness_restart(&self->awareness);
+    argus_evidence_restart(&self->evidence);
+    argus_extremes_restart(&self->extremes);
+    argus_common_init(&self->common);
+    argus_slip_restart(&self->slip);
+}
+
 static void on_open(argus_t *const self) {
     ARGUS_ASSERT(argus_is_open(self));
     argus_tell(self, ARGUS_EV_SESSION_OPEN, self->session.attempts);
@@ -120,12 +117,8 @@ static void on_open(argus_t *const self) {
         argus_enable_motors(self);
     }
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
-    argus_awareness_restart(&self->awareness);
-    argus_evidence_restart(&self->evidence);
+    restart_evidence(self);
     argus_rays_forget_all(&self->rays);
-    argus_extremes_restart(&self->extremes);
-    argus_common_init(&self->common);
-    argus_slip_restart(&self->slip);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it
     self->reflexes.motors_said = false;
     self->reflexes.touched_unheard = false;
@@ -151,11 +144,7 @@ static void on_stall(argus_t *const self) {
 static void on_resume(argus_t *const self) {
     self->stalled = false;
     argus_tell(self, ARGUS_EV_LINK_RESUMED, (int32_t)self->session.gap_ms);
-    argus_awareness_restart(&self->awareness);
-    argus_evidence_restart(&self->evidence);
-    argus_extremes_restart(&self->extremes);
-    argus_common_init(&self->common);
-    argus_slip_restart(&self->slip);
+    restart_evidence(self);
     check(self, true);
 }
 

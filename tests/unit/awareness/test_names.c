@@ -47,7 +47,6 @@ void test_nothing_is_said_of_a_fresh_sonar(void) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         TEST_ASSERT_FALSE(argus_evidence_suspects(&e, i));
         TEST_ASSERT_FALSE(argus_evidence_holds(&e, i));
-        TEST_ASSERT_FALSE(argus_evidence_is_unsteady(&e, i));
         TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_names(&e, i));
         TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_convicts(&e, i));
     }
