@@ -118,7 +118,7 @@ FORWARD_MAX = 6
 NAME_BYTES = 16
 LAST_ASTERN_DEG = 140  # who looks farther astern than this sees what the robot backs into head-on
 EXCESS_ONE = 1 << 32
-POSE_BLOCK = 8  # sonars of which a build manages all or none
+ARRAY_SONARS = 8  # of an array, of which a build manages all or none
 ROLES = ("ahead", "astern", "abeam", "none")
 ROBOT_FIGURES = {
     "body": "front_mm rear_mm width_mm swing_radius_mm sonar_face_mm tolerance_centre_mm front_bumpers rear_bumpers",
@@ -153,14 +153,6 @@ class Robot:
     def spacings(self) -> list[int]:
         """Return the angles between neighbours of the forward-facing ones."""
         return [self.bearing(a) - self.bearing(b) for a, b in pairwise(self.forward)]
-
-    def neighbours(self, sonar: int) -> tuple[int, int]:
-        """Return the sonars mounted left and right of a forward-facing one; -1: there is none."""
-        if sonar not in self.forward:
-            return -1, -1
-        row = [-1, *self.forward, -1]
-        at = row.index(sonar)
-        return row[at - 1], row[at + 1]
 
     def turns(self) -> set[int]:
         """Return the turns that put any sonar on the bearing of one that faces forward, 1 to 359 degrees."""
@@ -223,6 +215,8 @@ def check_poses(source: Path, poses: list[dict[str, Any]]) -> None:
         missing = [key for key in (*POSE_KEYS, "array") if not is_integer(pose.get(key))]
         if missing:
             raise TableError(f"{source}: sonar.pose {index}: {missing[0]} must be an integer")
+        if pose["array"] != index // ARRAY_SONARS:
+            raise TableError(f"{source}: sonar.pose {index}: array must be {index // ARRAY_SONARS}, of eight each")
         if pose["number"] != index:
             raise TableError(f"{source}: sonar.pose {index}: number must be {index}")
         if pose.get("role") not in ROLES:
@@ -279,6 +273,11 @@ def robots_header(root: Path) -> str:
     return header("ARGUS_GEN_SIZES_H", "robots/*.toml", "Which robots are known", body)
 
 
+def managed(mask: int) -> str:
+    """Return a mask in C, of the sonars that are managed."""
+    return f"(argus_mask_t){mask:#x}u"
+
+
 def robot_rows(robot: Robot, first: str, other: int) -> list[str]:
     """Return the lines of one row of argus_robots; OTHER is the row of its other end, or -1."""
     count = len(robot.forward)
@@ -290,11 +289,11 @@ def robot_rows(robot: Robot, first: str, other: int) -> list[str]:
         "sonars": len(robot.poses),
         "forward_count": count,
         "forward": "{" + ", ".join(map(str, robot.forward)) + "}",
-        "forward_mask": hex(sum(1 << sonar for sonar in robot.forward)) + "u",
-        "ahead_mask": hex(robot.mask("ahead")) + "u",
-        "astern_mask": hex(robot.mask("astern")) + "u",
-        "flank_mask": hex(robot.mask("abeam", front=True)) + "u",
-        "rear_flank_mask": hex(robot.mask("abeam", front=False)) + "u",
+        "forward_mask": managed(sum(1 << sonar for sonar in robot.forward)),
+        "ahead_mask": managed(robot.mask("ahead")),
+        "astern_mask": managed(robot.mask("astern")),
+        "flank_mask": managed(robot.mask("abeam", front=True)),
+        "rear_flank_mask": managed(robot.mask("abeam", front=False)),
         **robot.figures,
         **robot.derived(),
     }
@@ -303,14 +302,13 @@ def robot_rows(robot: Robot, first: str, other: int) -> list[str]:
 
 def pose_rows(robot: Robot) -> list[str]:
     """Return one robot's rows of argus_sonar_poses."""
-    lines = [f"    // {robot.name}{', its rear leading' if robot.is_reversed else ''}"]
+    lines = [f"    // {robot.name}"]
     for pose in robot.poses:
-        left, right = robot.neighbours(pose["number"])
-        if pose["number"] >= POSE_BLOCK and pose["number"] % POSE_BLOCK == 0:
+        if pose["number"] >= ARRAY_SONARS and pose["number"] % ARRAY_SONARS == 0:
             lines.append(f"#if ARGUS_SONARS > {pose['number']}")
-        x, y, heading, array = (pose[key] for key in ("x_mm", "y_mm", "heading_deg", "array"))
-        lines.append(f"    {{{x}, {y}, {heading}, {array}, {left}, {right}}},")
-    return lines + ["#endif"] * ((len(robot.poses) - 1) // POSE_BLOCK)
+        x, y, heading = (pose[key] for key in ("x_mm", "y_mm", "heading_deg"))
+        lines.append(f"    {{{x}, {y}, {heading}}},")
+    return lines + ["#endif"] * ((len(robot.poses) - 1) // ARRAY_SONARS)
 
 
 def robots_source(root: Path) -> str:
@@ -321,10 +319,12 @@ def robots_source(root: Path) -> str:
     other = {row: len(built) + i for i, (row, _) in enumerate(ends)}
     other |= {end: row for row, end in other.items()}
     rows: list[str] = []
-    first = "0"
+    first = ["0"]
+    for robot in built:
+        before = f"{first[-1]} + " if first[-1] != "0" else ""
+        first.append(f"{before}MANAGED({len(robot.poses)})")
     for row, robot in enumerate(robots):
-        rows += robot_rows(robot, first, other.get(row, -1))
-        first = f"{first} + MANAGED({len(robot.poses)})" if first != "0" else f"MANAGED({len(robot.poses)})"
+        rows += robot_rows(robot, first[row if row < len(built) else other[row]], other.get(row, -1))
     return "\n".join(
         [
             "// SPDX-License-Identifier: MIT",
@@ -339,7 +339,7 @@ def robots_source(root: Path) -> str:
             "};",
             "",
             "const argus_sonar_pose_t argus_sonar_poses[] = {",
-            *(line for robot in robots for line in pose_rows(robot)),
+            *(line for robot in built for line in pose_rows(robot)),
             "};",
             "// clang-format on",
             "",

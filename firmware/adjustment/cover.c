@@ -7,9 +7,9 @@
 int argus_plan_cover(const argus_robot_t *const robot, const argus_plan_t *const plan,
                      const int16_t rotation_deg, const int disabled) {
     ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
-    const int bearing_deg = argus_robot_pose(robot, disabled)->heading_deg - rotation_deg;
+    const int bearing_deg = argus_robot_pose(robot, disabled).heading_deg - rotation_deg;
     for (int by = 0; by < argus_robot_sonars(robot); by++) {
-        const int off_deg = argus_robot_pose(robot, by)->heading_deg - bearing_deg;
+        const int off_deg = argus_robot_pose(robot, by).heading_deg - bearing_deg;
         if ((plan->looks >> by & 1u) != 0 && argus_angle_wrap(off_deg * 100) == 0) {
             return by;
         }

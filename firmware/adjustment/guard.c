@@ -96,8 +96,8 @@ argus_mask_t argus_guard_alone(const argus_guard_t *const self) {
     const unsigned named = argus_named(self->knowledge) & argus_robot_forward(robot);
     unsigned mask = 0;
     for (int i = 0; i < self->knowledge->sonars; i++) {
-        const argus_sonar_pose_t *const pose = argus_robot_pose(robot, i);
-        const bool seen = is_seen_beside(self, pose->left) || is_seen_beside(self, pose->right);
+        const bool seen = is_seen_beside(self, argus_robot_beside(robot, i, true)) ||
+                          is_seen_beside(self, argus_robot_beside(robot, i, false));
         mask |= (named >> i & 1u) != 0 && !seen ? 1u << i : 0u;
     }
     return (argus_mask_t)mask;
@@ -345,15 +345,15 @@ static bool is_near_behind(const argus_guard_t *const self, const int sonar) {
 static bool is_beside_way(const argus_guard_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_robot_t *const robot = self->knowledge->robot;
-    const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
-    const int32_t edge_cdeg = 18000 - argus_abs(pose->heading_deg) * 100 - robot->cone_deg * 50;
+    const argus_sonar_pose_t pose = argus_robot_pose(robot, sonar);
+    const int32_t edge_cdeg = 18000 - argus_abs(pose.heading_deg) * 100 - robot->cone_deg * 50;
     const bool flank = (argus_robot_rear_flank(robot) >> sonar & 1u) != 0;
     if (!self->profile->passes_abeam || flank || edge_cdeg <= 0) {
         return false;
     }
     const int32_t range_mm = self->knowledge->sonar[sonar].reading_mm;
-    const int32_t aside_mm = argus_abs(pose->y_mm) + range_mm * argus_sin(edge_cdeg) / ARGUS_TRIG_ONE;
-    const int32_t behind_mm = range_mm * argus_cos(edge_cdeg) / ARGUS_TRIG_ONE - pose->x_mm - robot->rear_mm;
+    const int32_t aside_mm = argus_abs(pose.y_mm) + range_mm * argus_sin(edge_cdeg) / ARGUS_TRIG_ONE;
+    const int32_t behind_mm = range_mm * argus_cos(edge_cdeg) / ARGUS_TRIG_ONE - pose.x_mm - robot->rear_mm;
     return aside_mm >= argus_robot_half_width_mm(robot) + ASIDE_ROOM_MM ||
            behind_mm >= self->config->backoff_mm + BACK_LEFT_MM;
 }

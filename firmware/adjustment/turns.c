@@ -25,10 +25,10 @@ static void insert(argus_turns_t *const self, const int16_t deg) {
 static void insert_turns_onto(argus_turns_t *const self, const argus_plan_t *const plan, const int blind) {
     ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
     ARGUS_ASSERT(self->count <= ARGUS_TURNS_MAX);
-    const int bearing_deg = argus_robot_pose(self->robot, blind)->heading_deg;
+    const int bearing_deg = argus_robot_pose(self->robot, blind).heading_deg;
     for (int by = 0; by < argus_robot_sonars(self->robot); by++) {
         if ((plan->looks >> by & 1u) != 0 && self->count < ARGUS_TURNS_MAX) {
-            const int turn_deg = bearing_deg - argus_robot_pose(self->robot, by)->heading_deg;
+            const int turn_deg = bearing_deg - argus_robot_pose(self->robot, by).heading_deg;
             insert(self, (int16_t)(argus_angle_wrap(turn_deg * 100) / 100));
         }
     }

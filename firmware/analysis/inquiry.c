@@ -22,17 +22,13 @@ void argus_inquiry_init(argus_inquiry_t *const self) {
     memset(self, 0, sizeof *self);
 }
 
-static bool share_an_array(const argus_robot_t *const robot, const int a, const int b) {
-    return argus_robot_pose(robot, a)->array == argus_robot_pose(robot, b)->array;
-}
-
 // The suspects, and two neighbours on either side within their array.
 static argus_mask_t around(const argus_robot_t *const robot, const argus_mask_t suspects) {
     const int last = argus_robot_sonars(robot) - 1;
     unsigned mask = 0;
     for (int i = 0; i <= last; i++) {
         for (int k = argus_max(i - 2, 0); (suspects >> i & 1u) != 0 && k <= argus_min(i + 2, last); k++) {
-            mask |= share_an_array(robot, i, k) ? 1u << k : 0u;
+            mask |= argus_robot_array_of(i) == argus_robot_array_of(k) ? 1u << k : 0u;
         }
     }
     return (argus_mask_t)mask;

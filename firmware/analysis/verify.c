@@ -16,18 +16,18 @@ void argus_verify_init(argus_verify_t *const self) {
 void argus_verify_begin(argus_verify_t *const self, const argus_robot_t *const robot, const int sonar,
                         const int32_t base_cdeg) {
     ARGUS_ASSERT(sonar >= 0 && sonar < argus_robot_sonars(robot));
-    const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
+    const argus_sonar_pose_t pose = argus_robot_pose(robot, sonar);
     ARGUS_ASSERT(argus_robot_faces_forward(robot, sonar));
     argus_verify_init(self);
     self->phase = ARGUS_VERIFY_RECHECK;
     self->sonar = (int8_t)sonar;
     self->base_cdeg = base_cdeg;
-    self->by[LEFT] = pose->left;
-    self->by[RIGHT] = pose->right;
+    self->by[LEFT] = (int8_t)argus_robot_beside(robot, sonar, true);
+    self->by[RIGHT] = (int8_t)argus_robot_beside(robot, sonar, false);
     for (unsigned side = LEFT; side <= RIGHT; side++) {
         const int by = self->by[side];
-        const int32_t bearing_deg = by >= 0 ? argus_robot_pose(robot, by)->heading_deg : pose->heading_deg;
-        self->turn_deg[side] = (int16_t)(pose->heading_deg - bearing_deg);
+        const int32_t bearing_deg = by >= 0 ? argus_robot_pose(robot, by).heading_deg : pose.heading_deg;
+        self->turn_deg[side] = (int16_t)(pose.heading_deg - bearing_deg);
     }
 }
 

@@ -29,9 +29,9 @@ static bool has_looked(const argus_pings_t *const pings, const argus_ping_t *con
 static int32_t cost_of_aim(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                            const int sonar, const argus_ping_t *const then) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_sonar_pose_t *const mount = argus_robot_pose(knowledge->robot, sonar);
+    const argus_sonar_pose_t mount = argus_robot_pose(knowledge->robot, sonar);
     argus_pose_t turned = knowledge->pose;
-    turned.heading_cdeg = argus_angle_wrap(then->bearing_cdeg - mount->heading_deg * 100);
+    turned.heading_cdeg = argus_angle_wrap(then->bearing_cdeg - mount.heading_deg * 100);
     const argus_ping_t there = argus_ping_from(knowledge->robot, sonar, &turned);
     const int32_t turn = argus_angle_abs_diff(turned.heading_cdeg, knowledge->pose.heading_cdeg);
     const bool telling = then->reading_mm >= AIM_NEAREST_MM &&
@@ -57,7 +57,7 @@ bool argus_aim(const argus_evidence_t *const self, const argus_knowledge_t *cons
             const int32_t cost = cost_of_aim(self, knowledge, sonar, then);
             if (cost < least) {
                 least = cost;
-                const int32_t mount_cdeg = argus_robot_pose(knowledge->robot, sonar)->heading_deg * 100;
+                const int32_t mount_cdeg = argus_robot_pose(knowledge->robot, sonar).heading_deg * 100;
                 *heading_cdeg = argus_angle_wrap(then->bearing_cdeg - mount_cdeg);
             }
         }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Common cause: an array of which all sonars stop hearing anything at once, and whether that is a failure.
+// Common cause: an array of which all sonars, or most, stop hearing anything at once: whether that is a
+// failure.
 #include "awareness/common.h"
 
 #include <string.h>
@@ -7,6 +8,7 @@
 #include "knowledge/angle.h"
 
 #define LEAST 4         // sonars in use that make an array, and of these had to hear something until then
+#define LEAST_OF_SOME 5 // ... where others of it go on hearing: a person hides four
 #define PROOF_RUN 3     // readings of each without an echo, before what ended at once is a proof
 #define AT_ONCE_MS 450u // the echoes that it lost ended within a round and a SIP of each other
 #define TURNING_PER_MM \
@@ -43,9 +45,10 @@ static int least_run(const argus_common_t *const self, const argus_mask_t sonars
     return least;
 }
 
-// How many heard something until the one moment. A robot that drives out of a door loses one after the other.
-static int lost_at_once(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
-                        const argus_mask_t sonars) {
+// Those that heard something until the one moment, at which the robot did not turn. One that drives out of a
+// door loses one after the other.
+static argus_mask_t lost_at_once(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                                 const argus_mask_t sonars) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     uint32_t least_ms = UINT32_MAX; // since the last echo of all, of one that may go out of range, too
     for (int i = 0; i < knowledge->sonars; i++) {
@@ -53,19 +56,23 @@ static int lost_at_once(const argus_common_t *const self, const argus_knowledge_
             least_ms = knowledge->sip_ms - self->echo_ms[i];
         }
     }
-    int lost = 0;
+    if (self->has_turned && knowledge->sip_ms - self->turned_ms <= least_ms + AT_ONCE_MS) {
+        return 0;
+    }
+    unsigned lost = 0;
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool counts = (sonars >> i & 1u) != 0 && self->heard[i];
-        lost += counts && knowledge->sip_ms - self->echo_ms[i] - least_ms <= AT_ONCE_MS;
+        const bool lately = knowledge->sip_ms - self->echo_ms[i] - least_ms <= AT_ONCE_MS;
+        lost |= counts && lately ? 1u << i : 0u;
     }
-    return lost;
+    return (argus_mask_t)lost;
 }
 
 // One abeam, of another array, that is relied on: the way since it was heard last counts while it hears
 // something near.
 static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    argus_passed_t *const passed = &dark->passed[argus_robot_pose(knowledge->robot, sonar)->y_mm > 0];
+    argus_passed_t *const passed = &dark->passed[argus_robot_pose(knowledge->robot, sonar).y_mm > 0];
     const int32_t way_mm = (int32_t)(knowledge->odometer_mm - passed->odometer_mm);
     const bool goes_on = passed->near && way_mm <= APART_MM;
     passed->near = argus_trusted(knowledge, sonar) && knowledge->sonar[sonar].reading_mm <= NEAR_MM;
@@ -92,41 +99,45 @@ static bool has_passed(const argus_dark_t *const dark) {
     return argus_min(right_mm, left_mm) >= PASSED_LEAST_MM && right_mm + left_mm >= PASSED_MM;
 }
 
-// Those of an array that has failed are out by now.
-static argus_mask_t members(const argus_dark_t *const dark, const argus_knowledge_t *const knowledge,
-                            const int array) {
-    const unsigned in_use = argus_robot_array(knowledge->robot, array) & ~(unsigned)argus_out(knowledge);
-    return dark->proven ? dark->sonars : (argus_mask_t)in_use;
+static argus_mask_t silent_of(const argus_common_t *const self, const argus_mask_t sonars) {
+    unsigned silent = 0;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        silent |= (sonars >> i & 1u) != 0 && self->none_run[i] > 0 ? 1u << i : 0u;
+    }
+    return (argus_mask_t)silent;
 }
 
-// Straight: as of its last echo.
-static void note_echoes(argus_common_t *const self, const argus_knowledge_t *const knowledge,
-                        argus_dark_t *const dark, const argus_mask_t sonars) {
-    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    const unsigned fresh = sonars & knowledge->fresh;
-    const bool turns = self->has_turned && knowledge->sip_ms - self->turned_ms <= AT_ONCE_MS;
-    bool straight = dark->straight;
-    for (int i = 0; i < knowledge->sonars; i++) {
-        straight = (fresh >> i & 1u) != 0 && self->none_run[i] == 0 ? !turns : straight;
+// All of an array in use that is silent as a whole; else those of it that lost their echoes at once. Those
+// of one that has failed are out by now.
+static argus_mask_t members(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                            const argus_dark_t *const dark, const argus_mask_t in_use) {
+    const argus_mask_t silent = silent_of(self, in_use);
+    if (dark->proven) {
+        return dark->sonars;
     }
-    *dark = (argus_dark_t){.straight = straight};
+    return silent == in_use ? in_use : lost_at_once(self, knowledge, silent);
 }
 
 static void look_at(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int array) {
     argus_dark_t *const dark = &self->of[array];
-    const argus_mask_t sonars = members(dark, knowledge, array);
-    const int run = argus_count_bits(sonars) >= LEAST ? least_run(self, sonars) : 0;
+    const argus_mask_t its = argus_robot_array(knowledge->robot, array);
+    const argus_mask_t in_use = (argus_mask_t)(its & ~(unsigned)argus_out(knowledge));
+    const argus_mask_t sonars = members(self, knowledge, dark, in_use);
     const bool was_dark = dark->sonars != 0;
-    if (run == 0) {
-        note_echoes(self, knowledge, dark, sonars);
+    const bool whole = sonars == in_use;
+    const int least = whole ? LEAST : LEAST_OF_SOME;
+    const bool ends = argus_count_bits(lost_at_once(self, knowledge, sonars)) >= least;
+    const bool at_once = was_dark ? dark->at_once : ends;
+    const int run = argus_count_bits(sonars) >= least ? least_run(self, sonars) : 0;
+    if (run == 0 || (!whole && !at_once)) {
+        *dark = (argus_dark_t){.sonars = 0};
         return;
     }
     dark->sonars = sonars;
-    dark->at_once =
-        was_dark ? dark->at_once : dark->straight && lost_at_once(self, knowledge, sonars) >= LEAST;
-    dark->news = !was_dark && dark->at_once;
+    dark->at_once = at_once;
+    dark->news = !was_dark && at_once;
     pass_all(dark, knowledge);
-    dark->proven = dark->proven || (dark->at_once && run >= PROOF_RUN) || has_passed(dark);
+    dark->proven = dark->proven || (at_once && run >= PROOF_RUN) || (whole && has_passed(dark));
 }
 
 void argus_common_sip(argus_common_t *const self, const argus_knowledge_t *const knowledge) {
@@ -155,10 +166,9 @@ bool argus_common_strikes(const argus_common_t *const self, const argus_mask_t s
     return false;
 }
 
-bool argus_common_convicts(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
-                           const int sonar) {
+bool argus_common_convicts(const argus_common_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const int array = argus_robot_pose(knowledge->robot, sonar)->array;
+    const int array = argus_robot_array_of(sonar);
     return array < ARGUS_ARRAYS_MAX && self->of[array].proven && (self->of[array].sonars >> sonar & 1u) != 0;
 }
 

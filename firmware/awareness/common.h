@@ -19,7 +19,6 @@ typedef struct {
 typedef struct {
     argus_passed_t passed[2]; // right, left
     argus_mask_t sonars;      // that are dark, 0: it is not
-    bool straight;            // the robot did not turn when it was heard last
     bool at_once;             // what it heard ended at one time, and the robot did not turn
     bool news;                // ... in this SIP
     bool proven;
@@ -44,7 +43,7 @@ void argus_common_sip(argus_common_t *self, const argus_knowledge_t *knowledge);
 bool argus_common_strikes(const argus_common_t *self, argus_mask_t sonars);
 
 // This sonar is of an array that is dark, and proved to have failed.
-bool argus_common_convicts(const argus_common_t *self, const argus_knowledge_t *knowledge, int sonar);
+bool argus_common_convicts(const argus_common_t *self, int sonar);
 
 // An array that it is not of is dark, and it is not known whether that has failed: disagreeing with it is no
 // fault.

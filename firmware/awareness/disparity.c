@@ -26,9 +26,8 @@ static int32_t reading(const argus_knowledge_t *const knowledge, const int sonar
 argus_verdict_t argus_disparity(const argus_knowledge_t *const knowledge, const int sonar,
                                 int32_t *const difference_mm) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_sonar_pose_t *const pose = argus_robot_pose(knowledge->robot, sonar);
-    const int left = usable(knowledge, pose->left);
-    const int right = usable(knowledge, pose->right);
+    const int left = usable(knowledge, argus_robot_beside(knowledge->robot, sonar, true));
+    const int right = usable(knowledge, argus_robot_beside(knowledge->robot, sonar, false));
     *difference_mm = 0;
     if (!argus_usable(knowledge, sonar) || (left < 0 && right < 0)) {
         return ARGUS_NO_VERDICT;

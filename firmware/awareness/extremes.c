@@ -60,10 +60,10 @@ static int mate_says(const argus_knowledge_t *const knowledge, const int sonar) 
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const argus_robot_t *const robot = knowledge->robot;
     const unsigned abeam = argus_robot_flank(robot) | argus_robot_rear_flank(robot);
-    const argus_sonar_pose_t *const mine = argus_robot_pose(robot, sonar);
+    const argus_sonar_pose_t mine = argus_robot_pose(robot, sonar);
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool mate = i != sonar && (abeam >> i & 1u) != 0 &&
-                          argus_robot_pose(robot, i)->heading_deg == mine->heading_deg;
+                          argus_robot_pose(robot, i).heading_deg == mine.heading_deg;
         if (mate && argus_usable(knowledge, i)) {
             return knowledge->sonar[i].reading_mm > robot->min_mm + CLEAR_MM ? 1 : -1;
         }
@@ -75,7 +75,7 @@ static int mate_says(const argus_knowledge_t *const knowledge, const int sonar) 
 static void go_on(argus_extreme_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_pose_t *const pose = &knowledge->pose;
-    const int32_t axis = pose->heading_cdeg + argus_robot_pose(knowledge->robot, sonar)->heading_deg * 100;
+    const int32_t axis = pose->heading_cdeg + argus_robot_pose(knowledge->robot, sonar).heading_deg * 100;
     const int32_t dx = pose->x_mm - self->at.x_mm;
     const int32_t dy = pose->y_mm - self->at.y_mm;
     const int32_t along = (dx * argus_cos(axis) + dy * argus_sin(axis)) / ARGUS_TRIG_ONE;

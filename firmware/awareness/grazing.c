@@ -18,12 +18,12 @@
 // Where its corner would touch, the body goes beyond the sonar's face by these.
 static int32_t beyond_mm(const argus_robot_t *const robot, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return argus_robot_half_width_mm(robot) - argus_abs(argus_robot_pose(robot, sonar)->y_mm);
+    return argus_robot_half_width_mm(robot) - argus_abs(argus_robot_pose(robot, sonar).y_mm);
 }
 
 static int32_t ahead_mm(const argus_robot_t *const robot, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return robot->front_mm - argus_robot_pose(robot, sonar)->x_mm;
+    return robot->front_mm - argus_robot_pose(robot, sonar).x_mm;
 }
 
 // The way of the robot ahead from one reading of a sonar that looks abeam to a later one.
@@ -32,7 +32,7 @@ static int32_t way_mm(const argus_robot_t *const robot, const int sonar, const a
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_ping_t along = *now;
     along.bearing_cdeg =
-        (int16_t)argus_angle_wrap(now->bearing_cdeg - argus_robot_pose(robot, sonar)->heading_deg * 100);
+        (int16_t)argus_angle_wrap(now->bearing_cdeg - argus_robot_pose(robot, sonar).heading_deg * 100);
     return argus_ping_shift(&along, then).along_mm;
 }
 

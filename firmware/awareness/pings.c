@@ -202,9 +202,9 @@ void argus_pings_note(argus_pings_t *const self, const argus_ping_t now) {
 argus_ping_t argus_ping_from(const argus_robot_t *const robot, const int sonar,
                              const argus_pose_t *const pose) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_sonar_pose_t *const mount = argus_robot_pose(robot, sonar);
-    const argus_point_t at = argus_to_course(pose, (argus_point_t){mount->x_mm, mount->y_mm});
-    const int32_t bearing_cdeg = argus_angle_wrap(pose->heading_cdeg + mount->heading_deg * 100);
+    const argus_sonar_pose_t mount = argus_robot_pose(robot, sonar);
+    const argus_point_t at = argus_to_course(pose, (argus_point_t){mount.x_mm, mount.y_mm});
+    const int32_t bearing_cdeg = argus_angle_wrap(pose->heading_cdeg + mount.heading_deg * 100);
     const argus_ping_t ping = {.x_mm = (uint16_t)((uint32_t)at.x_mm & 0xFFFFu),
                                .y_mm = (uint16_t)((uint32_t)at.y_mm & 0xFFFFu),
                                .bearing_cdeg = (int16_t)bearing_cdeg};

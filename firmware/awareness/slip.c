@@ -41,7 +41,7 @@ static void begin(argus_slip_t *const self, const argus_knowledge_t *const knowl
 
 static int32_t bearing_cdeg(const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return argus_robot_pose(knowledge->robot, sonar)->heading_deg * 100;
+    return argus_robot_pose(knowledge->robot, sonar).heading_deg * 100;
 }
 
 // Whether it looks where the robot goes to (true) or comes from.

@@ -61,12 +61,12 @@ static int32_t on_way_mm(const argus_robot_t *const robot, const int sonar, cons
                          const corridor_t *const way) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(reading_mm >= 0);
-    const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
+    const argus_sonar_pose_t pose = argus_robot_pose(robot, sonar);
     int32_t nearest_mm = INT32_MAX;
     for (int k = -CONE_PLACES; k <= CONE_PLACES; k++) {
-        const int32_t bearing = pose->heading_deg * 100 + robot->cone_deg * 100 * k / (2 * CONE_PLACES);
-        const int32_t x_mm = pose->x_mm + reading_mm * argus_cos(bearing) / ARGUS_TRIG_ONE;
-        const int32_t y_mm = pose->y_mm + reading_mm * argus_sin(bearing) / ARGUS_TRIG_ONE;
+        const int32_t bearing = pose.heading_deg * 100 + robot->cone_deg * 100 * k / (2 * CONE_PLACES);
+        const int32_t x_mm = pose.x_mm + reading_mm * argus_cos(bearing) / ARGUS_TRIG_ONE;
+        const int32_t y_mm = pose.y_mm + reading_mm * argus_sin(bearing) / ARGUS_TRIG_ONE;
         const int32_t free_mm = way->rear ? -x_mm - robot->rear_mm : x_mm - robot->front_mm;
         if (argus_abs(y_mm) <= way->half_mm) {
             nearest_mm = argus_min(nearest_mm, argus_max(free_mm, 0));
@@ -280,12 +280,12 @@ static bool is_met(const argus_robot_t *const robot, const argus_point_t at, con
 static bool meets_cone(const argus_knowledge_t *const knowledge, const int sonar, const int32_t by_cdeg) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_robot_t *const robot = knowledge->robot;
-    const argus_sonar_pose_t *const pose = argus_robot_pose(robot, sonar);
+    const argus_sonar_pose_t pose = argus_robot_pose(robot, sonar);
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
     for (int k = -1; k <= 1; k++) {
-        const int32_t bearing = pose->heading_deg * 100 + robot->cone_deg * 50 * k;
-        const argus_point_t at = {pose->x_mm + reading_mm * argus_cos(bearing) / ARGUS_TRIG_ONE,
-                                  pose->y_mm + reading_mm * argus_sin(bearing) / ARGUS_TRIG_ONE};
+        const int32_t bearing = pose.heading_deg * 100 + robot->cone_deg * 50 * k;
+        const argus_point_t at = {pose.x_mm + reading_mm * argus_cos(bearing) / ARGUS_TRIG_ONE,
+                                  pose.y_mm + reading_mm * argus_sin(bearing) / ARGUS_TRIG_ONE};
         if (is_met(robot, at, by_cdeg)) {
             return true;
         }

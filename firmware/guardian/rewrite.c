@@ -38,9 +38,9 @@ static int32_t seen_mm(const argus_ray_t *const ray, const argus_point_t from, c
 int32_t argus_rewrite_cover_mm(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_knowledge_t *const knowledge = &self->knowledge;
-    const argus_sonar_pose_t *const pose = argus_robot_pose(knowledge->robot, sonar);
-    const argus_point_t from = argus_to_course(&knowledge->pose, (argus_point_t){pose->x_mm, pose->y_mm});
-    const int32_t bearing_cdeg = argus_angle_wrap(knowledge->pose.heading_cdeg + pose->heading_deg * 100);
+    const argus_sonar_pose_t pose = argus_robot_pose(knowledge->robot, sonar);
+    const argus_point_t from = argus_to_course(&knowledge->pose, (argus_point_t){pose.x_mm, pose.y_mm});
+    const int32_t bearing_cdeg = argus_angle_wrap(knowledge->pose.heading_cdeg + pose.heading_deg * 100);
     int32_t nearest_mm = 0;
     for (int i = 0; i < self->rays.count; i++) {
         const argus_ray_t *const ray = &self->rays.at[i];

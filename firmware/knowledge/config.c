@@ -116,11 +116,12 @@ static int32_t edge_of(int32_t ahead2, int32_t cdeg) {
     return ahead2 * argus_sin(cdeg) / c;
 }
 
-static view_t view_of(const argus_robot_t *robot, const argus_sonar_pose_t *pose, int32_t front2) {
+static view_t view_of(const argus_robot_t *robot, int sonar, int32_t front2) {
+    const argus_sonar_pose_t pose = argus_robot_pose(robot, sonar);
     const int32_t half_cdeg = robot->cone_deg * 100 / 2;
-    view_t view = {.ahead2 = front2 - 2 * pose->x_mm, .across2 = 2 * pose->y_mm};
-    view.from2 = view.across2 + edge_of(view.ahead2, pose->heading_deg * 100 - half_cdeg);
-    view.to2 = view.across2 + edge_of(view.ahead2, pose->heading_deg * 100 + half_cdeg);
+    view_t view = {.ahead2 = front2 - 2 * pose.x_mm, .across2 = 2 * pose.y_mm};
+    view.from2 = view.across2 + edge_of(view.ahead2, pose.heading_deg * 100 - half_cdeg);
+    view.to2 = view.across2 + edge_of(view.ahead2, pose.heading_deg * 100 + half_cdeg);
     return view;
 }
 
@@ -147,7 +148,7 @@ int32_t argus_config_reach_mm(const argus_robot_t *robot, int32_t step_mm) {
     const int32_t side2 = robot->width_mm;
     int32_t square = 0;
     for (int i = 0; i < robot->forward_count; i++) {
-        views[i] = view_of(robot, argus_robot_pose(robot, robot->forward[i]), front2);
+        views[i] = view_of(robot, robot->forward[i], front2);
     }
     for (int32_t y2 = -side2; y2 <= side2; y2++) {
         square = argus_max(square, reading_of(views, robot->forward_count, y2));

@@ -159,11 +159,11 @@ static void clear_body(argus_grid_t *const self, const argus_cell_t robot) {
 static void pass(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                  const int32_t way_mm) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_sonar_pose_t *const at = argus_robot_pose(knowledge->robot, sonar);
-    const int32_t c = argus_cos(at->heading_deg * 100);
-    const int32_t s = argus_sin(at->heading_deg * 100);
+    const argus_sonar_pose_t at = argus_robot_pose(knowledge->robot, sonar);
+    const int32_t c = argus_cos(at.heading_deg * 100);
+    const int32_t s = argus_sin(at.heading_deg * 100);
     for (int32_t mm = CELL_MM / 2; mm < way_mm; mm += CELL_MM) {
-        const argus_point_t on = {at->x_mm + mm * c / ARGUS_TRIG_ONE, at->y_mm + mm * s / ARGUS_TRIG_ONE};
+        const argus_point_t on = {at.x_mm + mm * c / ARGUS_TRIG_ONE, at.y_mm + mm * s / ARGUS_TRIG_ONE};
         lower(self, argus_grid_cell(argus_to_course(&knowledge->pose, on)));
     }
 }
@@ -212,7 +212,7 @@ static void take(argus_grid_t *const self, const argus_knowledge_t *const knowle
         const argus_point_t echo = argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, sonar));
         rise(self, argus_grid_cell(echo), near ? NEAR_RISE : FAR_RISE, near ? HEARD_MOST : FAR_MOST);
         if ((argus_robot_flank(knowledge->robot) >> sonar & 1u) != 0 && reading_mm <= BESIDE_MM) {
-            const bool left = argus_robot_pose(knowledge->robot, sonar)->y_mm > 0;
+            const bool left = argus_robot_pose(knowledge->robot, sonar).y_mm > 0;
             extend(self, knowledge, echo, &self->abeam[left ? 1 : 0]);
         }
     }

@@ -444,9 +444,9 @@ bool argus_at_rest(const argus_knowledge_t *const self) {
 
 argus_point_t argus_echo_robot(const argus_knowledge_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->sonars);
-    const argus_sonar_pose_t *const at = argus_robot_pose(self->robot, sonar);
+    const argus_sonar_pose_t at = argus_robot_pose(self->robot, sonar);
     const int32_t range = self->sonar[sonar].reading_mm;
-    const argus_pose_t mount = {at->x_mm, at->y_mm, at->heading_deg * 100};
+    const argus_pose_t mount = {at.x_mm, at.y_mm, at.heading_deg * 100};
     return argus_to_course(&mount, (argus_point_t){range, 0});
 }
 

@@ -51,9 +51,9 @@ static bool fits(const argus_point_t at) {
 
 static void see(argus_rays_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_sonar_pose_t *const pose = argus_robot_pose(knowledge->robot, sonar);
-    const argus_point_t from = argus_to_course(&knowledge->pose, (argus_point_t){pose->x_mm, pose->y_mm});
-    const int32_t bearing_cdeg = knowledge->pose.heading_cdeg + pose->heading_deg * 100;
+    const argus_sonar_pose_t pose = argus_robot_pose(knowledge->robot, sonar);
+    const argus_point_t from = argus_to_course(&knowledge->pose, (argus_point_t){pose.x_mm, pose.y_mm});
+    const int32_t bearing_cdeg = knowledge->pose.heading_cdeg + pose.heading_deg * 100;
     if (!fits(from)) {
         return;
     }

@@ -62,7 +62,8 @@ uint8_t argus_robot_choice(const argus_robot_t *const self) {
 
 const argus_robot_t *argus_robot_other_end(const argus_robot_t *const self) {
     const argus_robot_t *const other = self->other >= 0 ? &argus_robots[self->other] : NULL;
-    const bool managed_whole = other != NULL && argus_robot_forward(other) == other->forward_mask;
+    const bool managed_whole = other != NULL && other->forward[0] < ARGUS_SONARS &&
+                               other->forward[other->forward_count - 1] < ARGUS_SONARS;
     return managed_whole ? other : NULL;
 }
 
@@ -83,14 +84,26 @@ int argus_robot_sonars(const argus_robot_t *const self) {
     return self->sonars < ARGUS_SONARS ? self->sonars : ARGUS_SONARS;
 }
 
-const argus_sonar_pose_t *argus_robot_pose(const argus_robot_t *const self, const int sonar) {
+argus_sonar_pose_t argus_robot_pose(const argus_robot_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < argus_robot_sonars(self));
-    return &argus_sonar_poses[self->first_pose + sonar];
+    argus_sonar_pose_t pose = argus_sonar_poses[self->first_pose + sonar];
+    if (self->reversed) {
+        pose.x_mm = (int16_t)-pose.x_mm;
+        pose.y_mm = (int16_t)-pose.y_mm;
+        pose.heading_deg = (int16_t)(pose.heading_deg > 0 ? pose.heading_deg - 180 : pose.heading_deg + 180);
+    }
+    return pose;
 }
 
-// No row has a bit for a sonar that its robot has not.
-static argus_mask_t managed(const uint32_t mask) {
-    return (argus_mask_t)(mask & UINT32_MAX >> (32 - ARGUS_SONARS));
+int argus_robot_beside(const argus_robot_t *const self, const int sonar, const bool left) {
+    const int step = left ? -1 : 1;
+    for (int i = 0; i < self->forward_count; i++) {
+        const int beside = i + step;
+        if (self->forward[i] == sonar && beside >= 0 && beside < self->forward_count) {
+            return self->forward[beside];
+        }
+    }
+    return -1;
 }
 
 argus_mask_t argus_robot_all(const argus_robot_t *const self) {
@@ -100,31 +113,27 @@ argus_mask_t argus_robot_all(const argus_robot_t *const self) {
 }
 
 argus_mask_t argus_robot_forward(const argus_robot_t *const self) {
-    return managed(self->forward_mask);
+    return self->forward_mask;
 }
 
 argus_mask_t argus_robot_ahead(const argus_robot_t *const self) {
-    return managed(self->ahead_mask);
+    return self->ahead_mask;
 }
 
 argus_mask_t argus_robot_astern(const argus_robot_t *const self) {
-    return managed(self->astern_mask);
+    return self->astern_mask;
 }
 
 argus_mask_t argus_robot_flank(const argus_robot_t *const self) {
-    return managed(self->flank_mask);
+    return self->flank_mask;
 }
 
 argus_mask_t argus_robot_rear_flank(const argus_robot_t *const self) {
-    return managed(self->rear_flank_mask);
+    return self->rear_flank_mask;
 }
 
 argus_mask_t argus_robot_array(const argus_robot_t *const self, const int array) {
-    uint32_t mask = 0;
-    for (int i = 0; i < argus_robot_sonars(self); i++) {
-        mask |= argus_robot_pose(self, i)->array == array ? 1u << i : 0u;
-    }
-    return (argus_mask_t)mask;
+    return (argus_mask_t)(argus_robot_all(self) & UINT32_C(0xFF) << ARGUS_ARRAY_SONARS * array);
 }
 
 argus_mask_t argus_robot_polled(const argus_robot_t *const self) {

@@ -33,8 +33,17 @@ int32_t argus_robot_facing_cdeg(const argus_robot_t *self);
 // Sonars that are managed: those that it has, at most ARGUS_SONARS.
 int argus_robot_sonars(const argus_robot_t *self);
 
-// 0 <= sonar < argus_robot_sonars().
-ARGUS_APART const argus_sonar_pose_t *argus_robot_pose(const argus_robot_t *self, int sonar);
+// Where a sonar sits and looks, in the frame of the end that leads. 0 <= sonar < argus_robot_sonars().
+ARGUS_APART argus_sonar_pose_t argus_robot_pose(const argus_robot_t *self, int sonar);
+
+// The sonar mounted to the left (or right) of one that faces forward; -1: none, or it does not face forward.
+int argus_robot_beside(const argus_robot_t *self, int sonar, bool left);
+
+// The array that fires a sonar, from 0.
+#define ARGUS_ARRAY_SONARS 8
+static inline int argus_robot_array_of(const int sonar) {
+    return sonar / ARGUS_ARRAY_SONARS;
+}
 
 // Masks over the sonars that are managed.
 argus_mask_t argus_robot_all(const argus_robot_t *self);

@@ -8,14 +8,11 @@
 
 _Static_assert(ARGUS_SONARS % 8 == 0 && ARGUS_SONARS >= 8 && ARGUS_SONARS <= 32, "8, 16, 24 or 32");
 
-// Where and whither a sonar looks, robot frame, and which are mounted beside it.
+// Where and whither a sonar looks, robot frame.
 typedef struct {
     int16_t x_mm;
     int16_t y_mm;
     int16_t heading_deg; // counter-clockwise, 0 = ahead
-    uint16_t array : 4;  // that fires it, from 0
-    int16_t left : 6;    // neighbours of one that faces forward: sonar numbers, -1: none
-    int16_t right : 6;
 } argus_sonar_pose_t;
 
 // One row of hil_sim/tables/robots, which has the source of each figure. A robot with a rear array has a
@@ -31,12 +28,12 @@ typedef struct {
     uint8_t rear_bumpers;
     uint8_t forward_count;
     uint8_t forward[ARGUS_FORWARD_MAX]; // the forward-facing sonars, left to right; the paper's six
-    uint32_t forward_mask;
-    uint32_t ahead_mask; // those that see what the robot drives into
-    uint32_t astern_mask;
-    uint32_t flank_mask;      // those that look abeam from ahead of the centre
-    uint32_t rear_flank_mask; // ... from behind it
-    int16_t front_mm;         // from the centre of rotation to the ends of the body
+    argus_mask_t forward_mask;          // of those that are managed, like the other masks
+    argus_mask_t ahead_mask;            // those that see what the robot drives into
+    argus_mask_t astern_mask;
+    argus_mask_t flank_mask;      // those that look abeam from ahead of the centre
+    argus_mask_t rear_flank_mask; // ... from behind it
+    int16_t front_mm;             // from the centre of rotation to the ends of the body
     int16_t rear_mm;
     int16_t width_mm;
     int16_t swing_radius_mm;     // to the farthest corner of the body
@@ -53,7 +50,7 @@ typedef struct {
     int16_t cone_deg;
 } argus_robot_t;
 
-extern const argus_robot_t argus_robots[]; // ARGUS_ROBOTS as they are built, then their other ends
-extern const argus_sonar_pose_t argus_sonar_poses[];
+extern const argus_robot_t argus_robots[];           // ARGUS_ROBOTS as they are built, then their other ends
+extern const argus_sonar_pose_t argus_sonar_poses[]; // of robots as they are built
 
 #endif

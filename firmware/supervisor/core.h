@@ -18,6 +18,7 @@
 #include "awareness/slip.h"
 #include "knowledge/config.h"
 #include "knowledge/knowledge.h"
+#include "knowledge/profile.h"
 #include "knowledge/rays.h"
 #include "supervisor/events.h"
 #include "task/task.h"
@@ -150,6 +151,7 @@ typedef struct {
 // What is small and asked for everywhere comes first: Cortex-M reaches 4 KB from a pointer in one
 // instruction.
 struct argus {
+    const argus_profile_t *rules; // of the configuration
     argus_mission_t mission;
     argus_mode_t mode;
     bool ordered; // the sonars fire in an order of ours, in this session, begun anew at ordered_ms

@@ -74,7 +74,7 @@ static void name(argus_t *const self, const int sonar) {
 // An extreme is proved by way and time alone, an array that has failed as a whole by what it heard before.
 static argus_fault_kind_t convicts(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    if (argus_common_convicts(&self->common, &self->knowledge, sonar)) {
+    if (argus_common_convicts(&self->common, sonar)) {
         return ARGUS_KIND_OFF;
     }
     const argus_fault_kind_t kind = argus_extremes_convicts(&self->extremes, sonar);
@@ -133,7 +133,7 @@ static bool keeps_out(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_evidence_suspects(&self->evidence, sonar) ||
            argus_extremes_keeps_out(&self->extremes, sonar) ||
-           argus_common_convicts(&self->common, &self->knowledge, sonar);
+           argus_common_convicts(&self->common, sonar);
 }
 
 static bool does_well(const argus_t *const self, const int sonar) {

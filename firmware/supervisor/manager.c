@@ -25,6 +25,7 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     const argus_robot_t *const chosen = argus_robot_chosen(config->robot);
     memset(self, 0, sizeof *self); // which is how most parts begin
     self->config = *config;
+    self->rules = argus_profile(&self->config);
     self->orders.locked = argus_config_check(config).fault != ARGUS_CONFIG_OK;
     self->orders.passive = self->orders.locked || config->active == 0;
     self->now_ms = now_ms;

@@ -274,7 +274,7 @@ static bool is_smooth_wall(const argus_t *const self, const int sonar) {
     if ((argus_robot_flank(robot) >> sonar & 1u) != 0) {
         return argus_grazing_wall(pings, robot, sonar, argus_config_stop_mm(&self->config, robot));
     }
-    return argus_abs(argus_robot_pose(robot, sonar)->heading_deg) <= LOST_DEG &&
+    return argus_abs(argus_robot_pose(robot, sonar).heading_deg) <= LOST_DEG &&
            argus_trusted(&self->knowledge, sonar) && argus_grazing_lost(pings, self->config.object_range_mm);
 }
 

@@ -6,10 +6,6 @@
 
 #define HEMMED_IN_MS 10000u // people who stand beside it walk on
 
-const argus_profile_t *argus_rules(const argus_t *const self) {
-    return argus_profile(&self->config);
-}
-
 argus_policy_t argus_policy(const argus_t *const self) {
     const argus_policy_t policy = (argus_policy_t)self->config.policy;
     return policy == ARGUS_POLICY_ADAPTIVE && !argus_rules(self)->adapts_plan ? ARGUS_POLICY_PAPER : policy;

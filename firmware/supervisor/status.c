@@ -16,7 +16,7 @@ static void copy_sonars(const argus_t *const self, argus_status_t *const status)
         status->kind[i] = s->kind;
     }
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        status->bearing_deg[i] = argus_robot_pose(argus_robot_built(self->knowledge.robot), i)->heading_deg;
+        status->bearing_deg[i] = argus_robot_pose(argus_robot_built(self->knowledge.robot), i).heading_deg;
     }
     status->sonars = self->knowledge.sonars;
     status->forward = argus_robot_forward(self->knowledge.robot);

@@ -438,7 +438,7 @@ void test_its_own_echoes_bring_back_who_could_not_have_had_them(void) {
             k.sonar[ME].health = ARGUS_DISABLED;
             k.sonar[ME].kind = (argus_fault_kind_t)kind;
             e.of[ME].score[ARGUS_TEST_PEERS] = 2000;
-            k.pose.heading_cdeg = 9000 - argus_robot_pose(k.robot, ME)->heading_deg * 100; // along a wall
+            k.pose.heading_cdeg = 9000 - argus_robot_pose(k.robot, ME).heading_deg * 100; // along a wall
             for (int n = 0; n < 3; n++) {
                 k.pose.x_mm += ARGUS_PLACE_MM + 50;
                 reads(same != 0 ? 1000 : 1000 + 10 * n);

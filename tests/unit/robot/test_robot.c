@@ -29,7 +29,7 @@ static const int16_t ring[] = {90, 50, 30, 10, -10, -30, -50, -90, -90, -130, -1
 static const int16_t amigo[] = {90, 41, 15, -15, -41, -90, -145, 145};
 
 static int16_t bearing(const argus_robot_t *robot, int sonar) {
-    return argus_robot_pose(robot, sonar)->heading_deg;
+    return argus_robot_pose(robot, sonar).heading_deg;
 }
 
 static const argus_robot_t *robot_at(int row) {
@@ -71,12 +71,12 @@ void test_every_face_lies_in_its_body_and_looks_outwards(void) {
         const argus_robot_t *robot = robot_at(row);
         int foremost = 0;
         for (int i = 0; i < argus_robot_sonars(robot); i++) {
-            const argus_sonar_pose_t *p = argus_robot_pose(robot, i);
-            TEST_ASSERT_TRUE_MESSAGE(p->x_mm <= robot->front_mm && p->x_mm >= -robot->rear_mm, text);
-            TEST_ASSERT_TRUE_MESSAGE(2 * abs(p->y_mm) <= robot->width_mm, text);
+            const argus_sonar_pose_t p = argus_robot_pose(robot, i);
+            TEST_ASSERT_TRUE_MESSAGE(p.x_mm <= robot->front_mm && p.x_mm >= -robot->rear_mm, text);
+            TEST_ASSERT_TRUE_MESSAGE(2 * abs(p.y_mm) <= robot->width_mm, text);
             TEST_ASSERT_TRUE_MESSAGE(
-                p->x_mm * cos(p->heading_deg * DEG) + p->y_mm * sin(p->heading_deg * DEG) > 0, text);
-            foremost = p->x_mm > foremost ? p->x_mm : foremost;
+                p.x_mm * cos(p.heading_deg * DEG) + p.y_mm * sin(p.heading_deg * DEG) > 0, text);
+            foremost = p.x_mm > foremost ? p.x_mm : foremost;
         }
         TEST_ASSERT_EQUAL_MESSAGE(robot->sonar_face_mm, foremost, text);
     }
@@ -101,7 +101,7 @@ void test_masks_follow_from_bearings(void) {
         unsigned ahead = 0, astern = 0, flank = 0, rear_flank = 0;
         for (int i = 0; i < argus_robot_sonars(robot); i++) {
             const double off = fabs((double)bearing(robot, i));
-            const bool front = argus_robot_pose(robot, i)->x_mm > 0;
+            const bool front = argus_robot_pose(robot, i).x_mm > 0;
             ahead |= off < 90 ? 1u << i : 0u;
             astern |= off > 90 ? 1u << i : 0u;
             flank |= off == 90 && front ? 1u << i : 0u;
@@ -130,15 +130,13 @@ void test_neighbours_stand_side_by_side(void) {
     for (int row = 0; row < ARGUS_ROBOTS; row++) {
         const argus_robot_t *robot = robot_at(row);
         for (int i = 0; i < argus_robot_sonars(robot); i++) {
-            const argus_sonar_pose_t *p = argus_robot_pose(robot, i);
-            if (!argus_robot_faces_forward(robot, i)) {
-                TEST_ASSERT_TRUE_MESSAGE(p->left < 0 && p->right < 0, text);
-                continue;
-            }
-            TEST_ASSERT_TRUE_MESSAGE(p->left >= 0 || p->right >= 0, text);
-            if (p->left >= 0) {
-                TEST_ASSERT_EQUAL_MESSAGE(i, argus_robot_pose(robot, p->left)->right, text);
-                const int apart = bearing(robot, p->left) - p->heading_deg;
+            const argus_sonar_pose_t p = argus_robot_pose(robot, i);
+            const int left = argus_robot_beside(robot, i, true);
+            const int right = argus_robot_beside(robot, i, false);
+            TEST_ASSERT_EQUAL_MESSAGE(argus_robot_faces_forward(robot, i), left >= 0 || right >= 0, text);
+            if (left >= 0) {
+                TEST_ASSERT_EQUAL_MESSAGE(i, argus_robot_beside(robot, left, false), text);
+                const int apart = bearing(robot, left) - p.heading_deg;
                 TEST_ASSERT_TRUE_MESSAGE(apart >= 20 && apart <= 30, text);
             }
         }
@@ -238,11 +236,10 @@ static void is_turned(const argus_robot_t *robot, const argus_robot_t *end) {
     TEST_ASSERT_EQUAL(robot->rear_flank_mask, end->flank_mask);
     TEST_ASSERT_EQUAL(0, end->forward_mask & ~end->ahead_mask);
     for (int i = 0; i < argus_robot_sonars(robot); i++) {
-        const argus_sonar_pose_t *a = argus_robot_pose(robot, i), *b = argus_robot_pose(end, i);
-        TEST_ASSERT_EQUAL_MESSAGE(-a->x_mm, b->x_mm, robot->name);
-        TEST_ASSERT_EQUAL_MESSAGE(-a->y_mm, b->y_mm, robot->name);
-        TEST_ASSERT_EQUAL_MESSAGE(a->array, b->array, robot->name);
-        TEST_ASSERT_EQUAL_MESSAGE(18000, argus_angle_abs_diff(a->heading_deg * 100, b->heading_deg * 100),
+        const argus_sonar_pose_t a = argus_robot_pose(robot, i), b = argus_robot_pose(end, i);
+        TEST_ASSERT_EQUAL_MESSAGE(-a.x_mm, b.x_mm, robot->name);
+        TEST_ASSERT_EQUAL_MESSAGE(-a.y_mm, b.y_mm, robot->name);
+        TEST_ASSERT_EQUAL_MESSAGE(18000, argus_angle_abs_diff(a.heading_deg * 100, b.heading_deg * 100),
                                   robot->name);
     }
 }

@@ -262,6 +262,7 @@ void test_an_unknown_subclass_is_said_once_and_never_moved(void) {
         const char *name = names[i / 2];
         start();
         robot.argus.config.profile = i % 2 == 0 ? ARGUS_PROFILE_PAPER : ARGUS_PROFILE_ARGUS;
+        robot.argus.rules = argus_profile(&robot.argus.config);
         robot.subclass = name;
         TEST_ASSERT_TRUE_MESSAGE(robot_goal(&robot, 600, 0), name);
         robot_run(&robot, 20000);
@@ -332,6 +333,7 @@ void test_a_sonar_that_the_robot_has_not_got_is_absent(void) {
     for (int profile = 0; profile < 2; profile++) {
         start();
         robot.argus.config.profile = profile;
+        robot.argus.rules = argus_profile(&robot.argus.config);
         robot.subclass = "amigo-sh";
         robot_run(&robot, 20000);
         argus_status_t status;

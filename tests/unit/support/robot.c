@@ -602,11 +602,11 @@ static void watch_ahead(robot_t *robot, int32_t mm) {
 // Wherever in its cone that is, the body passes it by on the usual way back, or does not come to it.
 static bool stands_beside_way(const robot_t *robot, int sonar) {
     const argus_robot_t *built = robot->argus.knowledge.robot;
-    const argus_sonar_pose_t *pose = argus_robot_pose(built, sonar);
-    const int off_deg = 180 - abs(pose->heading_deg);
+    const argus_sonar_pose_t pose = argus_robot_pose(built, sonar);
+    const int off_deg = 180 - abs(pose.heading_deg);
     for (int deg = off_deg - 15; deg <= off_deg + 15; deg++) {
-        const double x = robot->shown[sonar] * cos(deg * 3.14159265358979 / 180) - pose->x_mm;
-        const double y = robot->shown[sonar] * sin(deg * 3.14159265358979 / 180) + abs(pose->y_mm);
+        const double x = robot->shown[sonar] * cos(deg * 3.14159265358979 / 180) - pose.x_mm;
+        const double y = robot->shown[sonar] * sin(deg * 3.14159265358979 / 180) + abs(pose.y_mm);
         if (y < argus_robot_half_width_mm(built) + 15 &&
             x < built->rear_mm + robot->argus.config.backoff_mm + 100) {
             return false;

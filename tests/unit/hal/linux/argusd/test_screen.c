@@ -42,7 +42,7 @@ void setUp(void) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         view.status.reading_mm[i] = (uint16_t)(1000 + i);
         view.status.health[i] = ARGUS_HEALTHY;
-        view.status.bearing_deg[i] = argus_robot_pose(argus_robot_default(), i)->heading_deg;
+        view.status.bearing_deg[i] = argus_robot_pose(argus_robot_default(), i).heading_deg;
     }
     view.status.sonars = ARGUS_SONARS;
     strcpy(view.link, "serial:/dev/ttyUSB0@9600");
