@@ -279,6 +279,26 @@ static void is_contradicted(int sonar, int by) {
     e.of[sonar].score[ARGUS_TEST_PEERS] = (int16_t)by;
 }
 
+// Others hear what it does not: it is turned there whichever is suspected, or none.
+void test_who_is_silent_and_contradicted_is_turned_though_no_suspect(void) {
+    for (int by = 99; by <= 100; by++) {
+        three_falls_silent();
+        is_contradicted(3, by);
+        begin_on(0);
+        TEST_ASSERT_EQUAL(by == 100, inquiry.aiming);
+        three_falls_silent();
+        is_contradicted(3, by);
+        comes_back(3);
+        begin_on(0);
+        TEST_ASSERT_FALSE(inquiry.aiming);
+    }
+    three_falls_silent();
+    is_contradicted(3, 100);
+    k.sonar[3].health = ARGUS_DISABLED;
+    begin_on(0);
+    TEST_ASSERT_FALSE(inquiry.aiming);
+}
+
 // However much more the other one is contradicted.
 void test_a_silent_suspect_is_turned_before_one_that_is_contradicted(void) {
     three_falls_silent();
@@ -288,6 +308,23 @@ void test_a_silent_suspect_is_turned_before_one_that_is_contradicted(void) {
     begin_on(1u << 3);
     TEST_ASSERT_TRUE(inquiry.aiming);
     TEST_ASSERT_EQUAL(3, inquiry.aimed);
+}
+
+// ... and while there are suspects, two of the four aims are kept for them.
+void test_those_that_are_contradicted_leave_some_aims_to_the_suspects(void) {
+    for (int suspects = 0; suspects < 2; suspects++) {
+        three_falls_silent();
+        is_contradicted(3, 400);
+        heard(2, 0, 1500);
+        heard(4, -40, 1500);
+        heard(2, 40, 1500);
+        k.pose.heading_cdeg = 0;
+        argus_inquiry_begin(&inquiry, &k, &e, suspects ? 1u << 12 : 0, 0);
+        inquiry.aims = 2;
+        inquiry.marked = false;
+        next_heading();
+        TEST_ASSERT_EQUAL(suspects ? 2 : 3, inquiry.aims);
+    }
 }
 
 // Once the aim has shown an echo, the looks to either side would show nothing more.
@@ -402,12 +439,9 @@ void test_who_is_contradicted_most_is_aimed_first(void) {
     TEST_ASSERT_TRUE(some >= 6);
 }
 
-// Who is no suspect is not turned, however silent and contradicted.
-void test_only_suspects_are_aimed(void) {
+// Nor is one turned of which the others say nothing.
+void test_who_is_neither_suspect_nor_contradicted_is_not_aimed(void) {
     all_fall_silent();
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        e.of[i].score[ARGUS_TEST_PEERS] = 400;
-    }
     inquire(0, 0, 0);
     TEST_ASSERT_EQUAL(0, aims);
 }
