@@ -216,7 +216,9 @@ def check_poses(source: Path, poses: list[dict[str, Any]]) -> None:
         if missing:
             raise TableError(f"{source}: sonar.pose {index}: {missing[0]} must be an integer")
         if pose["array"] != index // ARRAY_SONARS:
-            raise TableError(f"{source}: sonar.pose {index}: array must be {index // ARRAY_SONARS}, of eight each")
+            raise TableError(
+                f"{source}: sonar.pose {index}: array must be {index // ARRAY_SONARS}, of eight each"
+            )
         if pose["number"] != index:
             raise TableError(f"{source}: sonar.pose {index}: number must be {index}")
         if pose.get("role") not in ROLES:

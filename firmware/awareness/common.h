@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Common cause: an array of which all sonars stop hearing anything at once, and whether that is a failure.
+// Common cause: all sonars of an array, or most, stop hearing anything at once; whether that is a failure.
 #ifndef ARGUS_COMMON_H
 #define ARGUS_COMMON_H
 
@@ -7,9 +7,10 @@
 
 #define ARGUS_ARRAYS_MAX 4
 
-// An array is dark while none of its sonars that are in use hears anything. Its peers are no proof then: they
-// are suspects as well. Two things prove that it has failed. Its own sonars heard something in the round
-// before; or it passes walls on either side that those abeam of another array go on hearing.
+// An array is dark while none of its sonars that are in use hears anything, or while five or more do not that
+// stopped at once. Its peers are no proof then: they are suspects as well. Two things prove that it has
+// failed. Its own sonars heard something in the round before; or, of a whole array, it passes walls on either
+// side that those abeam of another array go on hearing.
 typedef struct {
     uint32_t odometer_mm; // way driven when one abeam of another array was heard last
     int32_t mm;           // driven beside something near that it hears
@@ -42,11 +43,10 @@ void argus_common_sip(argus_common_t *self, const argus_knowledge_t *knowledge);
 // What an array heard has just ended at once; one of `sonars` is of it.
 bool argus_common_strikes(const argus_common_t *self, argus_mask_t sonars);
 
-// This sonar is of an array that is dark, and proved to have failed.
+// This sonar is of those of an array that are dark, and proved to have failed.
 bool argus_common_convicts(const argus_common_t *self, int sonar);
 
-// An array that it is not of is dark, and it is not known whether that has failed: disagreeing with it is no
-// fault.
+// Others are dark, and it is not known whether they have failed: disagreeing with them is no fault.
 bool argus_common_excuses(const argus_common_t *self, int sonar);
 
 #endif

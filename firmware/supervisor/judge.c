@@ -132,8 +132,7 @@ static bool is_silent(const argus_t *const self, const int sonar) {
 static bool keeps_out(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_evidence_suspects(&self->evidence, sonar) ||
-           argus_extremes_keeps_out(&self->extremes, sonar) ||
-           argus_common_convicts(&self->common, sonar);
+           argus_extremes_keeps_out(&self->extremes, sonar) || argus_common_convicts(&self->common, sonar);
 }
 
 static bool does_well(const argus_t *const self, const int sonar) {
