@@ -45,24 +45,31 @@ static int least_run(const argus_common_t *const self, const argus_mask_t sonars
     return least;
 }
 
-// Those that heard something until the one moment, at which the robot did not turn. One that drives out of a
-// door loses one after the other.
-static argus_mask_t lost_at_once(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
-                                 const argus_mask_t sonars) {
-    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    uint32_t least_ms = UINT32_MAX; // since the last echo of all, of one that may go out of range, too
+// Since the last echo of all of them, of one that may go out of range, too.
+static uint32_t since_last_ms(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                              const argus_mask_t sonars) {
+    uint32_t least_ms = UINT32_MAX;
     for (int i = 0; i < knowledge->sonars; i++) {
         if ((sonars >> i & 1u) != 0 && self->echoed[i] && knowledge->sip_ms - self->echo_ms[i] < least_ms) {
             least_ms = knowledge->sip_ms - self->echo_ms[i];
         }
     }
-    if (self->has_turned && knowledge->sip_ms - self->turned_ms <= least_ms + AT_ONCE_MS) {
+    return least_ms;
+}
+
+// Those that heard something until the one moment, at which the robot did not turn. One that drives out of a
+// door loses one after the other.
+static argus_mask_t lost_at_once(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                                 const argus_mask_t sonars) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    const uint32_t last_ms = since_last_ms(self, knowledge, sonars);
+    if (self->has_turned && knowledge->sip_ms - self->turned_ms <= last_ms + AT_ONCE_MS) {
         return 0;
     }
     unsigned lost = 0;
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool counts = (sonars >> i & 1u) != 0 && self->heard[i];
-        const bool lately = knowledge->sip_ms - self->echo_ms[i] - least_ms <= AT_ONCE_MS;
+        const bool lately = knowledge->sip_ms - self->echo_ms[i] - last_ms <= AT_ONCE_MS;
         lost |= counts && lately ? 1u << i : 0u;
     }
     return (argus_mask_t)lost;
@@ -118,17 +125,21 @@ static argus_mask_t members(const argus_common_t *const self, const argus_knowle
     return silent == in_use ? in_use : lost_at_once(self, knowledge, silent);
 }
 
+static bool is_proven(const argus_dark_t *const dark, const int run, const bool whole) {
+    return (dark->at_once && run >= PROOF_RUN) || (whole && has_passed(dark));
+}
+
 static void look_at(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int array) {
     argus_dark_t *const dark = &self->of[array];
     const argus_mask_t its = argus_robot_array(knowledge->robot, array);
     const argus_mask_t in_use = (argus_mask_t)(its & ~(unsigned)argus_out(knowledge));
     const argus_mask_t sonars = members(self, knowledge, dark, in_use);
-    const bool was_dark = dark->sonars != 0;
     const bool whole = sonars == in_use;
     const int least = whole ? LEAST : LEAST_OF_SOME;
+    const int run = argus_count_bits(sonars) >= least ? least_run(self, sonars) : 0;
+    const bool was_dark = dark->sonars != 0;
     const bool ends = argus_count_bits(lost_at_once(self, knowledge, sonars)) >= least;
     const bool at_once = was_dark ? dark->at_once : ends;
-    const int run = argus_count_bits(sonars) >= least ? least_run(self, sonars) : 0;
     if (run == 0 || (!whole && !at_once)) {
         *dark = (argus_dark_t){.sonars = 0};
         return;
@@ -137,7 +148,7 @@ static void look_at(argus_common_t *const self, const argus_knowledge_t *const k
     dark->at_once = at_once;
     dark->news = !was_dark && at_once;
     pass_all(dark, knowledge);
-    dark->proven = dark->proven || (at_once && run >= PROOF_RUN) || (whole && has_passed(dark));
+    dark->proven = dark->proven || is_proven(dark, run, whole);
 }
 
 void argus_common_sip(argus_common_t *const self, const argus_knowledge_t *const knowledge) {
