@@ -211,7 +211,8 @@ static verdict_t as_late(const argus_evidence_t *const self, const argus_knowled
         return UNSEEN;
     }
     if (argus_ping_turned_cdeg(now, then) < ALONE_CDEG &&
-        argus_ping_is_within(now, then, ARGUS_SAME_ALONG_MM)) {
+        argus_ping_is_within(now, then, ARGUS_SAME_ALONG_MM) &&
+        argus_ping_shift(now, then).lateral_mm <= ARGUS_SAME_LATERAL_MM) {
         return SAME;
     }
     argus_ping_t mapped = *then;
