@@ -138,8 +138,8 @@ static void look_at(argus_common_t *const self, const argus_knowledge_t *const k
     const int least = whole ? LEAST : LEAST_OF_SOME;
     const int run = argus_count_bits(sonars) >= least ? least_run(self, sonars) : 0;
     const bool was_dark = dark->sonars != 0;
-    const bool ends = argus_count_bits(lost_at_once(self, knowledge, sonars)) >= least;
-    const bool at_once = was_dark ? dark->at_once : ends;
+    const bool at_once =
+        was_dark ? dark->at_once : argus_count_bits(lost_at_once(self, knowledge, sonars)) >= least;
     if (run == 0 || (!whole && !at_once)) {
         *dark = (argus_dark_t){.sonars = 0};
         return;

@@ -133,7 +133,8 @@ argus_mask_t argus_robot_rear_flank(const argus_robot_t *const self) {
 }
 
 argus_mask_t argus_robot_array(const argus_robot_t *const self, const int array) {
-    return (argus_mask_t)(argus_robot_all(self) & UINT32_C(0xFF) << ARGUS_ARRAY_SONARS * array);
+    return (argus_mask_t)(argus_robot_all(self) & UINT32_C(0xFF)
+                                                      << ARCOS_TIMING_TRANSDUCERS_PER_ARRAY * array);
 }
 
 argus_mask_t argus_robot_polled(const argus_robot_t *const self) {

@@ -4,6 +4,7 @@
 #define ARGUS_ROBOT_H
 
 #include "arcos/apart.h"
+#include "arcos/gen_arcos.h"
 #include "robot/table.h"
 
 // The robot that is assumed while none is known (p3dx-sh), and one of which nothing is known: no sonars.
@@ -40,9 +41,8 @@ ARGUS_APART argus_sonar_pose_t argus_robot_pose(const argus_robot_t *self, int s
 int argus_robot_beside(const argus_robot_t *self, int sonar, bool left);
 
 // The array that fires a sonar, from 0.
-#define ARGUS_ARRAY_SONARS 8
 static inline int argus_robot_array_of(const int sonar) {
-    return sonar / ARGUS_ARRAY_SONARS;
+    return sonar / ARCOS_TIMING_TRANSDUCERS_PER_ARRAY;
 }
 
 // Masks over the sonars that are managed.
