@@ -3,8 +3,6 @@
 // track.
 #include "analysis/wheel.h"
 
-#include <string.h>
-
 #include "knowledge/angle.h"
 
 #define CDEG_PER_RADIAN 5730
@@ -12,10 +10,6 @@
 #define ALIKE_PM 10 // two sizes differ by this, or a third, at most
 #define TURN_MOST_CDEG 9000
 #define NEW_PARTS 4 // of the size each piece after the first two makes one
-
-void argus_wheel_init(argus_wheel_t *const self) {
-    memset(self, 0, sizeof *self);
-}
 
 // The faster wheel makes the way and half of the difference.
 static int32_t size_pm(const argus_knowledge_t *const knowledge, const argus_way_turn_t *const piece) {

@@ -20,8 +20,6 @@ typedef struct {
 
 typedef enum { ARGUS_WHEEL_SAME, ARGUS_WHEEL_NAMED, ARGUS_WHEEL_CLEARED } argus_wheel_news_t;
 
-void argus_wheel_init(argus_wheel_t *self);
-
 // Takes a piece of straight way. Two pieces in a row that bend alike name a wheel, two straight ones clear
 // it.
 argus_wheel_news_t argus_wheel_judge(argus_wheel_t *self, const argus_knowledge_t *knowledge,

@@ -44,10 +44,6 @@ size_t argus_command_string(uint8_t *packet, size_t capacity, uint8_t command, c
     return argus_frame_seal(packet, capacity, STRING_HEAD + count);
 }
 
-void argus_outbox_init(argus_outbox_t *self) {
-    memset(self, 0, sizeof *self);
-}
-
 void argus_outbox_clear(argus_outbox_t *self) {
     self->head = 0;
     self->length = 0;

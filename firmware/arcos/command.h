@@ -26,7 +26,6 @@ typedef struct {
     uint8_t bytes[ARGUS_OUTBOX_BYTES]; // a ring
 } argus_outbox_t;
 
-void argus_outbox_init(argus_outbox_t *self);
 // Drops what waits; the counters go on.
 void argus_outbox_clear(argus_outbox_t *self);
 // Drops waiting MOVE, VEL, VEL2, RVEL, ROTATE, HEAD, DHEAD, DCHEAD.

@@ -2,8 +2,6 @@
 // Compares the heading with the order to go straight ahead, piece of way by piece of way.
 #include "awareness/bend.h"
 
-#include <string.h>
-
 #include "knowledge/angle.h"
 
 #define BENT_CDEG 60 // seven steps of what the robot reports; two pieces before it is steered back
@@ -12,10 +10,6 @@
 #define DRIVES_MM_S 50 // slower, what is reported is too coarse
 #define ORDER_MS 500u  // until an order to turn by a degree shows and is done
 #define THERE_CDEG 100 // one by more is done when the robot has come so near
-
-void argus_bend_init(argus_bend_t *const self) {
-    memset(self, 0, sizeof *self);
-}
 
 void argus_bend_ordered(argus_bend_t *const self, const int32_t heading_cdeg, const uint32_t now_ms) {
     self->ordered_cdeg = heading_cdeg;

@@ -16,8 +16,6 @@ typedef struct {
     bool begun;
 } argus_bend_t;
 
-void argus_bend_init(argus_bend_t *self);
-
 // A turn to this heading is ordered.
 void argus_bend_ordered(argus_bend_t *self, int32_t heading_cdeg, uint32_t now_ms);
 

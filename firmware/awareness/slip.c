@@ -22,10 +22,6 @@
 #define BOTH_WAYS 3     // ... on which one ahead and one that looks back stay, so two of these,
 #define ONE_WAY 2       // ... or two that look one way: a person may walk there
 
-void argus_slip_init(argus_slip_t *const self) {
-    memset(self, 0, sizeof *self);
-}
-
 void argus_slip_restart(argus_slip_t *const self) {
     self->begun = false;
     self->doubted = 0;

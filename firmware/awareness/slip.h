@@ -19,8 +19,6 @@ typedef struct {
     uint16_t reading_mm[ARGUS_SONARS];
 } argus_slip_t;
 
-void argus_slip_init(argus_slip_t *self);
-
 // A session opened, or SIPs come again: the robot may have moved since.
 void argus_slip_restart(argus_slip_t *self);
 

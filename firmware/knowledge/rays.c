@@ -2,8 +2,6 @@
 // Logs rays, and says how far the way ahead has been seen along them.
 #include "knowledge/rays.h"
 
-#include <string.h>
-
 #include "knowledge/angle.h"
 
 #define TRUST_BITS 0x7FFu
@@ -16,10 +14,6 @@
 #define ABREAST 3 // places on either side of the middle
 
 _Static_assert(TRUST_MM < 1 << 11 && ARGUS_SONARS <= 1 << 5, "a ray has so many bits for them");
-
-void argus_rays_init(argus_rays_t *const self) {
-    memset(self, 0, sizeof *self);
-}
 
 void argus_rays_forget(argus_rays_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);

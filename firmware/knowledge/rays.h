@@ -25,8 +25,6 @@ typedef struct {
     argus_ray_t at[ARGUS_RAYS_MAX];
 } argus_rays_t;
 
-void argus_rays_init(argus_rays_t *self);
-
 // Logs the fresh readings of the sonars that look ahead or abeam and are trusted: neither out nor named.
 // `others`: sonars of a sweep, which look along blind bearings now.
 void argus_rays_see(argus_rays_t *self, const argus_knowledge_t *knowledge, argus_mask_t others);

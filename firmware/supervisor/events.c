@@ -2,12 +2,6 @@
 // The event queue.
 #include "supervisor/events.h"
 
-#include <string.h>
-
-void argus_events_init(argus_events_t *self) {
-    memset(self, 0, sizeof *self);
-}
-
 void argus_events_push(argus_events_t *self, argus_event_t event) {
     ARGUS_ASSERT(self->count <= ARGUS_EVENT_QUEUE && self->head < ARGUS_EVENT_QUEUE);
     if (self->count >= ARGUS_EVENT_QUEUE) {

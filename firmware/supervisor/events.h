@@ -15,7 +15,6 @@ typedef struct {
     argus_event_t slot[ARGUS_EVENT_QUEUE];
 } argus_events_t;
 
-void argus_events_init(argus_events_t *self);
 void argus_events_push(argus_events_t *self, argus_event_t event);
 bool argus_events_pop(argus_events_t *self, argus_event_t *event);
 

@@ -8,10 +8,6 @@
 // A waypoint is a place to pass: where something stopped the robot before it, so near is near enough.
 #define PASSED_MM 200
 
-void argus_task_init(argus_task_t *const self) {
-    memset(self, 0, sizeof *self);
-}
-
 static bool within(const int32_t mm) {
     return mm >= -ARGUS_COURSE_LIMIT_MM && mm <= ARGUS_COURSE_LIMIT_MM;
 }

@@ -31,7 +31,6 @@ typedef struct {
     argus_search_t search;
 } argus_task_t;
 
-void argus_task_init(argus_task_t *self);
 bool argus_task_set(argus_task_t *self, const argus_point_t *points, uint16_t count);
 
 // Passes every waypoint that is near enough; true when the goal itself is reached. `passed` counts waypoints

@@ -32,7 +32,7 @@ void setUp(void) {
     argus_config_default(&config);
     argus_knowledge_init(&k);
     argus_echoes_init(&e);
-    argus_rays_init(&rays);
+    memset(&rays, 0, sizeof rays);
     memset(&g, 0, sizeof g);
     k.sip_ms = NOW_MS;
     k.flags = ARCOS_FLAG_MOTORS;

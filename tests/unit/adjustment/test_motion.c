@@ -15,7 +15,7 @@ static uint32_t now_ms;
 
 void setUp(void) {
     argus_motion_init(&m);
-    argus_outbox_init(&out);
+    memset(&out, 0, sizeof out);
     argus_knowledge_init(&k);
     memset(&sip, 0, sizeof sip);
     now_ms = 0xFFFFFF00u;

@@ -2,13 +2,15 @@
 // Rule under attack: a named wheel is countered by turning against its drift, more the faster it drives; a
 // healthy robot is not, and now and then nothing is, so that the wheel can be measured again.
 #include "adjustment/trim.h"
+
 #include "unity.h"
+#include <string.h>
 
 static argus_wheel_t wheel;
 static argus_knowledge_t k;
 
 void setUp(void) {
-    argus_wheel_init(&wheel);
+    memset(&wheel, 0, sizeof wheel);
     argus_knowledge_init(&k);
     k.vel_left_mm_s = k.vel_right_mm_s = 400;
 }

@@ -2,6 +2,7 @@
 // Rule under attack: a wheel is named with its side and size after two pieces of way that bend alike, and
 // cleared after two that do not; whichever end leads, it is the same wheel.
 #include <math.h>
+#include <string.h>
 
 #include "analysis/wheel.h"
 #include "unity.h"
@@ -12,7 +13,7 @@ static argus_wheel_t wheel;
 static argus_knowledge_t k;
 
 void setUp(void) {
-    argus_wheel_init(&wheel);
+    memset(&wheel, 0, sizeof wheel);
     argus_knowledge_init(&k);
 }
 

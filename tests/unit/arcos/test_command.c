@@ -109,7 +109,7 @@ static int fetch(void) {
 }
 
 void test_the_first_command_can_be_asked_for(void) {
-    argus_outbox_init(&outbox);
+    memset(&outbox, 0, sizeof outbox);
     TEST_ASSERT_EQUAL(-1, argus_outbox_first(&outbox));
     argus_outbox_int(&outbox, ARCOS_CMD_SETV, 1);
     argus_outbox_plain(&outbox, ARCOS_CMD_PULSE);
@@ -121,7 +121,7 @@ void test_the_first_command_can_be_asked_for(void) {
 
 void test_packets_leave_whole_and_in_order_round_the_ring(void) {
     uint32_t fetched = 0;
-    argus_outbox_init(&outbox);
+    memset(&outbox, 0, sizeof outbox);
     for (int round = 0; round < 300; round++) {
         for (int i = 0; i < 7; i++) {
             TEST_ASSERT_TRUE(argus_outbox_int(&outbox, ARCOS_CMD_VEL, round * 7 + i));
@@ -136,7 +136,7 @@ void test_packets_leave_whole_and_in_order_round_the_ring(void) {
 }
 
 void test_a_buffer_too_small_leaves_the_packet_waiting(void) {
-    argus_outbox_init(&outbox);
+    memset(&outbox, 0, sizeof outbox);
     argus_outbox_int(&outbox, ARCOS_CMD_SETV, 5);
     TEST_ASSERT_EQUAL(0, argus_outbox_fetch(&outbox, packet, 8));
     TEST_ASSERT_EQUAL(0, outbox.sent);
@@ -144,7 +144,7 @@ void test_a_buffer_too_small_leaves_the_packet_waiting(void) {
 }
 
 static void fill(uint8_t command) {
-    argus_outbox_init(&outbox);
+    memset(&outbox, 0, sizeof outbox);
     while (argus_outbox_int(&outbox, command, 1)) {
     }
 }
@@ -180,7 +180,7 @@ void test_an_urgent_stop_drops_every_waiting_motion_and_nothing_else(void) {
     static const uint8_t motion[] = {ARCOS_CMD_MOVE,   ARCOS_CMD_VEL,  ARCOS_CMD_VEL2,  ARCOS_CMD_RVEL,
                                      ARCOS_CMD_ROTATE, ARCOS_CMD_HEAD, ARCOS_CMD_DHEAD, ARCOS_CMD_DCHEAD};
     for (unsigned turn = 0; turn < 600; turn++) { // the ring's start at every place
-        argus_outbox_init(&outbox);
+        memset(&outbox, 0, sizeof outbox);
         outbox.head = (uint16_t)(turn % ARGUS_OUTBOX_BYTES);
         for (size_t i = 0; i < sizeof motion; i++) {
             argus_outbox_int(&outbox, motion[i], -100);
@@ -201,7 +201,7 @@ void test_what_is_not_motion_survives_an_urgent_stop(void) {
     static const uint8_t motion[] = {ARCOS_CMD_MOVE,   ARCOS_CMD_VEL,  ARCOS_CMD_VEL2,  ARCOS_CMD_RVEL,
                                      ARCOS_CMD_ROTATE, ARCOS_CMD_HEAD, ARCOS_CMD_DHEAD, ARCOS_CMD_DCHEAD};
     for (unsigned command = 0; command < 256; command++) {
-        argus_outbox_init(&outbox);
+        memset(&outbox, 0, sizeof outbox);
         argus_outbox_int(&outbox, (uint8_t)command, 1);
         argus_outbox_urgent(&outbox, ARCOS_CMD_STOP);
         const bool dropped = memchr(motion, (int)command, sizeof motion) != NULL || command == ARCOS_CMD_STOP;
@@ -225,7 +225,7 @@ void test_random_use_matches_a_list(void) {
         random_t random = random_seed(seed);
         uint8_t model[ARGUS_OUTBOX_BYTES];
         size_t count = 0;
-        argus_outbox_init(&outbox);
+        memset(&outbox, 0, sizeof outbox);
         for (int step = 0; step < 3000; step++) {
             const uint8_t command = (uint8_t)(100 + random_below(&random, 100)); // none of them is a motion
             const uint32_t what = random_below(&random, 3);

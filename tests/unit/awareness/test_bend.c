@@ -2,8 +2,10 @@
 // Rule under attack: a piece of way tells how far the heading turned on it where nobody ordered a turn; what
 // was ordered, a push, a leap and a crawl tell nothing.
 #include "awareness/bend.h"
+
 #include "knowledge/angle.h"
 #include "unity.h"
+#include <string.h>
 
 #define SIP_MS 100u
 
@@ -13,7 +15,7 @@ static argus_way_turn_t piece;
 static int pieces;
 
 void setUp(void) {
-    argus_bend_init(&bend);
+    memset(&bend, 0, sizeof bend);
     argus_knowledge_init(&k);
     k.sip_ms = 10000;
     k.vel_left_mm_s = k.vel_right_mm_s = 200;

@@ -16,7 +16,7 @@ static argus_slip_t slip;
 static argus_knowledge_t k;
 
 void setUp(void) {
-    argus_slip_init(&slip);
+    memset(&slip, 0, sizeof slip);
     argus_knowledge_init(&k);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         k.sonar[i].health = ARGUS_HEALTHY;

@@ -17,7 +17,7 @@ static argus_rays_t rays;
 
 void setUp(void) {
     argus_knowledge_init(&k);
-    argus_rays_init(&rays);
+    memset(&rays, 0, sizeof rays);
     k.sip_ms = 100000;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         k.sonar[i].reported = true;

@@ -20,7 +20,7 @@ void test_first_in_first_out_round_the_ring(void) {
     argus_event_t out;
     int32_t next_in = 0;
     int32_t next_out = 0;
-    argus_events_init(&events);
+    memset(&events, 0, sizeof events);
     for (int round = 0; round < 50; round++) {
         for (int i = 0; i < 1 + round % 60; i++) {
             argus_events_push(&events, event_of(next_in++));
@@ -38,7 +38,7 @@ void test_first_in_first_out_round_the_ring(void) {
 void test_an_overflow_drops_the_newest_and_counts(void) {
     argus_event_t out;
     memset(&events, 0xA5, sizeof events);
-    argus_events_init(&events);
+    memset(&events, 0, sizeof events);
     for (int32_t i = 0; i < ARGUS_EVENT_QUEUE + 9; i++) {
         argus_events_push(&events, event_of(i));
     }

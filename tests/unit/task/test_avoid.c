@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: leg by leg: when one is given up, where none can be had, and when the waypoint is.
 #include <stdlib.h>
+#include <string.h>
 
 #include "echo.h"
 #include "floor.h"
@@ -20,7 +21,7 @@ static void stand(const int x_mm, const int y_mm) {
 }
 
 void setUp(void) {
-    argus_task_init(&t);
+    memset(&t, 0, sizeof t);
     argus_echoes_init(&e);
     argus_knowledge_init(&k);
     k.sip_ms = 100000;

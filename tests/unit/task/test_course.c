@@ -14,7 +14,7 @@ static argus_config_t config;
 static int passed;
 
 void setUp(void) {
-    argus_task_init(&t);
+    memset(&t, 0, sizeof t);
     argus_knowledge_init(&k);
     argus_echoes_init(&echoes);
     argus_config_default(&config);
