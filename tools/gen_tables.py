@@ -302,15 +302,28 @@ def robot_rows(robot: Robot, first: str, other: int) -> list[str]:
     return ["    {", *(f"        .{key} = {value}," for key, value in fields.items()), "    },"]
 
 
-def pose_rows(robot: Robot) -> list[str]:
-    """Return one robot's rows of argus_sonar_poses."""
-    lines = [f"    // {robot.name}"]
-    for pose in robot.poses:
-        if pose["number"] >= ARRAY_SONARS and pose["number"] % ARRAY_SONARS == 0:
-            lines.append(f"#if ARGUS_SONARS > {pose['number']}")
-        x, y, heading = (pose[key] for key in ("x_mm", "y_mm", "heading_deg"))
+Ring = tuple[tuple[int, int, int], ...]
+
+
+def ring_of(robot: Robot) -> Ring:
+    """Return where a robot's sonars are and look: x and y, mm, and bearing, degrees, of each."""
+    return tuple((pose["x_mm"], pose["y_mm"], pose["heading_deg"]) for pose in robot.poses)
+
+
+def rings_of(robots: list[Robot]) -> list[Ring]:
+    """Return for each robot the ring whose first sonars are its own: the same ring carries several robots."""
+    rings = [ring_of(robot) for robot in robots]
+    return [max((ring for ring in rings if ring[: len(own)] == own), key=len) for own in rings]
+
+
+def pose_rows(ring: Ring, names: list[str]) -> list[str]:
+    """Return the rows of argus_sonar_poses of one ring, that of the robots NAMES."""
+    lines = [f"    // {', '.join(names)}"]
+    for number, (x, y, heading) in enumerate(ring):
+        if number >= ARRAY_SONARS and number % ARRAY_SONARS == 0:
+            lines.append(f"#if ARGUS_SONARS > {number}")
         lines.append(f"    {{{x}, {y}, {heading}}},")
-    return lines + ["#endif"] * ((len(robot.poses) - 1) // ARRAY_SONARS)
+    return lines + ["#endif"] * ((len(ring) - 1) // ARRAY_SONARS)
 
 
 def robots_source(root: Path) -> str:
@@ -320,13 +333,18 @@ def robots_source(root: Path) -> str:
     robots = [*built, *(end for _, end in ends)]
     other = {row: len(built) + i for i, (row, _) in enumerate(ends)}
     other |= {end: row for row, end in other.items()}
+    rings = rings_of(built)
+    once = list(dict.fromkeys(rings))
+    first = {
+        ring: " + ".join(f"MANAGED({len(before)})" for before in once[:i]) or "0"
+        for i, ring in enumerate(once)
+    }
     rows: list[str] = []
-    first = ["0"]
-    for robot in built:
-        before = f"{first[-1]} + " if first[-1] != "0" else ""
-        first.append(f"{before}MANAGED({len(robot.poses)})")
     for row, robot in enumerate(robots):
-        rows += robot_rows(robot, first[row if row < len(built) else other[row]], other.get(row, -1))
+        rows += robot_rows(robot, first[rings[row if row < len(built) else other[row]]], other.get(row, -1))
+    names = {
+        ring: [robot.name for robot, its in zip(built, rings, strict=True) if its == ring] for ring in once
+    }
     return "\n".join(
         [
             "// SPDX-License-Identifier: MIT",
@@ -341,7 +359,7 @@ def robots_source(root: Path) -> str:
             "};",
             "",
             "const argus_sonar_pose_t argus_sonar_poses[] = {",
-            *(line for robot in built for line in pose_rows(robot)),
+            *(line for ring in once for line in pose_rows(ring, names[ring])),
             "};",
             "// clang-format on",
             "",

@@ -42,7 +42,7 @@ const argus_robot_t argus_robots[] = {
         .name = "amigo-sh",
         .other = -1,
         .reversed = false,
-        .first_pose = MANAGED(16),
+        .first_pose = MANAGED(32),
         .sonars = 8,
         .forward_count = 4,
         .forward = {1, 2, 3, 4},
@@ -74,7 +74,7 @@ const argus_robot_t argus_robots[] = {
         .name = "p3at-sh",
         .other = 5,
         .reversed = false,
-        .first_pose = MANAGED(16) + MANAGED(8),
+        .first_pose = MANAGED(32) + MANAGED(8),
         .sonars = 16,
         .forward_count = 6,
         .forward = {1, 2, 3, 4, 5, 6},
@@ -106,7 +106,7 @@ const argus_robot_t argus_robots[] = {
         .name = "peoplebot-sh",
         .other = 6,
         .reversed = false,
-        .first_pose = MANAGED(16) + MANAGED(8) + MANAGED(16),
+        .first_pose = 0,
         .sonars = 32,
         .forward_count = 6,
         .forward = {1, 2, 3, 4, 5, 6},
@@ -170,7 +170,7 @@ const argus_robot_t argus_robots[] = {
         .name = "p3at-sh",
         .other = 2,
         .reversed = true,
-        .first_pose = MANAGED(16) + MANAGED(8),
+        .first_pose = MANAGED(32) + MANAGED(8),
         .sonars = 16,
         .forward_count = 6,
         .forward = {9, 10, 11, 12, 13, 14},
@@ -202,7 +202,7 @@ const argus_robot_t argus_robots[] = {
         .name = "peoplebot-sh",
         .other = 3,
         .reversed = true,
-        .first_pose = MANAGED(16) + MANAGED(8) + MANAGED(16),
+        .first_pose = 0,
         .sonars = 32,
         .forward_count = 6,
         .forward = {9, 10, 11, 12, 13, 14},
@@ -233,54 +233,7 @@ const argus_robot_t argus_robots[] = {
 };
 
 const argus_sonar_pose_t argus_sonar_poses[] = {
-    // p3dx-sh
-    {69, 136, 90},
-    {114, 119, 50},
-    {148, 78, 30},
-    {166, 27, 10},
-    {166, -27, -10},
-    {148, -78, -30},
-    {114, -119, -50},
-    {69, -136, -90},
-#if ARGUS_SONARS > 8
-    {-157, -136, -90},
-    {-203, -119, -130},
-    {-237, -78, -150},
-    {-255, -27, -170},
-    {-255, 27, 170},
-    {-237, 78, 150},
-    {-203, 119, 130},
-    {-157, 136, 90},
-#endif
-    // amigo-sh
-    {70, 100, 90},
-    {125, 75, 41},
-    {144, 30, 15},
-    {144, -30, -15},
-    {120, -75, -41},
-    {70, -100, -90},
-    {-146, -58, -145},
-    {-146, 58, 145},
-    // p3at-sh
-    {147, 136, 90},
-    {193, 119, 50},
-    {227, 79, 30},
-    {245, 27, 10},
-    {245, -27, -10},
-    {227, -79, -30},
-    {193, -119, -50},
-    {147, -136, -90},
-#if ARGUS_SONARS > 8
-    {-144, -136, -90},
-    {-189, -119, -130},
-    {-223, -79, -150},
-    {-241, -27, -170},
-    {-241, 27, 170},
-    {-223, 79, 150},
-    {-189, 119, 130},
-    {-144, 136, 90},
-#endif
-    // peoplebot-sh
+    // p3dx-sh, peoplebot-sh
     {69, 136, 90},
     {114, 119, 50},
     {148, 78, 30},
@@ -318,6 +271,34 @@ const argus_sonar_pose_t argus_sonar_poses[] = {
     {-191, 136, 90},
 #endif
 #endif
+#endif
+    // amigo-sh
+    {70, 100, 90},
+    {125, 75, 41},
+    {144, 30, 15},
+    {144, -30, -15},
+    {120, -75, -41},
+    {70, -100, -90},
+    {-146, -58, -145},
+    {-146, 58, 145},
+    // p3at-sh
+    {147, 136, 90},
+    {193, 119, 50},
+    {227, 79, 30},
+    {245, 27, 10},
+    {245, -27, -10},
+    {227, -79, -30},
+    {193, -119, -50},
+    {147, -136, -90},
+#if ARGUS_SONARS > 8
+    {-144, -136, -90},
+    {-189, -119, -130},
+    {-223, -79, -150},
+    {-241, -27, -170},
+    {-241, 27, 170},
+    {-223, 79, 150},
+    {-189, 119, 130},
+    {-144, 136, 90},
 #endif
 };
 // clang-format on
