@@ -13,6 +13,10 @@
 
 #include "board/ring.h"
 
+// Never a part of its callers: one copy of its code, and what it has on the stack is gone when others go
+// deep.
+#define BOARD_APART __attribute__((noinline))
+
 // The six ---------------------------------------------------------------------------------------------------
 
 // Opens the robot's UART: 8 data bits, no parity, 1 stop bit, no flow control. Called once.

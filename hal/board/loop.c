@@ -18,9 +18,6 @@
 #define SAVE_MS 60000u // between two saves of its own accord: flash bears 10,000 erasures of a slot
 #define LATE_MS 200u   // a pass that takes longer does not feed the watchdog
 
-// Never a part of its callers: what it has on the stack is gone when others go deep.
-#define APART __attribute__((noinline))
-
 typedef struct {
     argus_t *core;
     board_ring_t *out;
@@ -51,7 +48,7 @@ static void note(const char *name, const char *what, const char *text) {
     board_console_kick();
 }
 
-static APART void transmit(void) {
+static BOARD_APART void transmit(void) {
     uint8_t packet[ARGUS_PACKET_MAX];
     while (!self.broken && board_room() >= sizeof packet) {
         const size_t count = argus_transmit(self.core, packet, sizeof packet);
@@ -62,7 +59,7 @@ static APART void transmit(void) {
     }
 }
 
-static APART void receive(void) {
+static BOARD_APART void receive(void) {
     uint8_t bytes[READ_BYTES];
     for (int i = 0; i < READS_PER_PASS; i++) {
         const size_t count = board_receive(bytes, sizeof bytes);
@@ -94,7 +91,7 @@ static void tell_events(void) {
     }
 }
 
-static APART void tell_status(void) {
+static BOARD_APART void tell_status(void) {
     argus_status_t status;
     const bool due = self.wants_status || board_now_ms() - self.status_ms >= STATUS_MS;
     if (!due || self.out == NULL || board_ring_room(self.out) < BOARD_STATUS_LINE_MAX) {
@@ -116,7 +113,7 @@ static void tell_settings(void) {
     }
 }
 
-static APART bool is_at_rest(void) {
+static BOARD_APART bool is_at_rest(void) {
     argus_status_t status;
     argus_status(self.core, &status);
     const bool may_move = status.mode != ARGUS_MODE_IDLE && status.mode != ARGUS_MODE_WAITING &&
@@ -135,7 +132,7 @@ static void save(void) {
     }
 }
 
-static APART const char *obey_save(void) {
+static BOARD_APART const char *obey_save(void) {
     const argus_config_report_t report = argus_config_check(&self.config);
     if (report.fault != ARGUS_CONFIG_OK) {
         return board_config_fault_text(report.fault);
@@ -174,7 +171,7 @@ static const char *obey_wish(board_wish_t wish, const char *answer) {
     }
 }
 
-static APART const char *ask(board_wish_t *wish) {
+static BOARD_APART const char *ask(board_wish_t *wish) {
     return board_orders_obey(&self.orders, self.core, board_now_ms(), &self.config, wish);
 }
 
@@ -218,7 +215,7 @@ static void feed(uint32_t began_ms) {
     }
 }
 
-static APART void begin(void) {
+static BOARD_APART void begin(void) {
     static const char *const from[] = {
         [BOARD_SETTINGS_BUILT] = "built",
         [BOARD_SETTINGS_STORED] = "stored",

@@ -23,7 +23,7 @@
 void cortexm_board_start(void) {
 }
 
-static void give_pin(stm32_gpio_t *port, unsigned pin, uint32_t function) {
+static BOARD_APART void give_pin(stm32_gpio_t *port, unsigned pin, uint32_t function) {
     stm32_register_t *const afr = pin < 8u ? &port->afrl : &port->afrh;
     *afr = (*afr & ~(15u << pin % 8u * 4u)) | function << pin % 8u * 4u;
     port->pupdr = (port->pupdr & ~(3u << pin * 2u)) | PIN_PULL_UP << pin * 2u;

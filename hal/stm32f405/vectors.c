@@ -4,7 +4,7 @@
 #include "stm32f405/registers.h"
 #include "stm32f405/usart.h"
 
-#define INTERRUPTS 82
+#define INTERRUPTS (STM32_IRQ_USART2 + 1) // up to the last one that is ever enabled
 #define IRQ(number) [16 + (number)]
 
 static void tick(void) { // wakes the loop, no more
