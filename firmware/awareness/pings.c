@@ -111,7 +111,7 @@ bool argus_ping_is_within(const argus_ping_t *const a, const argus_ping_t *const
     return is_close(a->x_mm, b->x_mm, mm) && is_close(a->y_mm, b->y_mm, mm);
 }
 
-static unsigned sector_of(const int32_t bearing_cdeg) {
+static ARGUS_APART unsigned sector_of(const int32_t bearing_cdeg) {
     return (unsigned)(bearing_cdeg + 2 * FULL_CDEG) / SECTOR_CDEG % ARGUS_PING_SECTORS;
 }
 

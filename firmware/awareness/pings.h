@@ -3,6 +3,7 @@
 #ifndef ARGUS_PINGS_H
 #define ARGUS_PINGS_H
 
+#include "arcos/apart.h"
 #include "knowledge/knowledge.h"
 
 #define ARGUS_PINGS 32            // that are remembered of each sonar: some 20 s in motion, longer at rest
@@ -70,7 +71,7 @@ typedef struct {
     int32_t cos;
     int32_t sin;
 } argus_line_t;
-argus_line_t argus_ping_line(const argus_ping_t *self);
+ARGUS_APART argus_line_t argus_ping_line(const argus_ping_t *self);
 argus_shift_t argus_line_shift(const argus_line_t *line, const argus_ping_t *then);
 
 // What `then` would read from the place of `now`, of a thing that stands.

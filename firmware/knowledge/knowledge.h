@@ -95,7 +95,7 @@ void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, i
 
 // The other end leads from now on: `robot` is argus_robot_other_end() of the present one. The robot is at
 // rest.
-void argus_knowledge_turn_about(argus_knowledge_t *self, const argus_robot_t *robot);
+ARGUS_APART void argus_knowledge_turn_about(argus_knowledge_t *self, const argus_robot_t *robot);
 
 // Of the robot as it is built, whichever end leads; what is said outside.
 int32_t argus_built_heading_cdeg(const argus_knowledge_t *self);
@@ -116,7 +116,7 @@ void argus_knowledge_set_back(argus_knowledge_t *self, argus_point_t to);
 // Bit masks over sonar numbers.
 argus_mask_t argus_disabled(const argus_knowledge_t *self);
 argus_mask_t argus_out(const argus_knowledge_t *self); // not used: DISABLED or on PROBATION
-bool argus_is_out(const argus_knowledge_t *self, int sonar);
+ARGUS_APART bool argus_is_out(const argus_knowledge_t *self, int sonar);
 argus_mask_t argus_with_health(const argus_knowledge_t *self, argus_health_t health);
 argus_mask_t argus_named(const argus_knowledge_t *self);      // SUSPECT, with the kind of a fault
 bool argus_trusted(const argus_knowledge_t *self, int sonar); // neither out nor named nor unheard

@@ -26,7 +26,7 @@ bool argus_robot_is_known(const argus_robot_t *self);
 // The same robot with its other end ahead: the rear of one as it is built, and back; NULL: it has none that
 // could lead. And the robot as it is built.
 const argus_robot_t *argus_robot_other_end(const argus_robot_t *self);
-const argus_robot_t *argus_robot_built(const argus_robot_t *self);
+ARGUS_APART const argus_robot_t *argus_robot_built(const argus_robot_t *self);
 
 // From the heading of the robot as it is built to that of the end that leads: 0 or 18000.
 int32_t argus_robot_facing_cdeg(const argus_robot_t *self);

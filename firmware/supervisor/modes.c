@@ -2,6 +2,7 @@
 // Carries out intents, under the guard, and changes the mode (paper: Fig. 2).
 #include "supervisor/modes.h"
 
+#include "arcos/apart.h"
 #include "knowledge/angle.h"
 #include "supervisor/check.h"
 #include "supervisor/faults.h"
@@ -341,7 +342,7 @@ static void take_base(argus_t *const self, const argus_base_do_t what) {
     }
 }
 
-static void prepare(argus_t *const self, const argus_intent_t *const intent) {
+static ARGUS_APART void prepare(argus_t *const self, const argus_intent_t *const intent) {
     ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     if (intent->event != 0) {
         argus_say(self, (argus_event_id_t)intent->event, intent->sonar, intent->value);

@@ -2,6 +2,7 @@
 // Sees what calls for a STOP, or for an event, in one SIP.
 #include "supervisor/reflexes.h"
 
+#include "arcos/apart.h"
 #include "awareness/grazing.h"
 #include "knowledge/angle.h"
 #include "supervisor/mode.h"
@@ -267,7 +268,7 @@ static void sees_swing(const argus_t *const self, const argus_alarm_t *const ala
 
 // A smooth wall that the robot slants into is heard by the sonar that looks abeam alone, or by one ahead once
 // and not again.
-static bool is_smooth_wall(const argus_t *const self, const int sonar) {
+static ARGUS_APART bool is_smooth_wall(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_robot_t *const robot = self->knowledge.robot;
     const argus_pings_t *const pings = &self->evidence.pings[sonar];

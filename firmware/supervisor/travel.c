@@ -2,6 +2,7 @@
 // Drives: normally, and in failure mode sweep by sweep and step by step.
 #include "supervisor/travel.h"
 
+#include "arcos/apart.h"
 #include "knowledge/angle.h"
 #include "supervisor/looks.h"
 #include "supervisor/state.h"
@@ -243,7 +244,7 @@ static int32_t reading_of(const argus_t *const self, const int sonar) {
     return sonar < 0 ? self->knowledge.robot->no_echo_mm : self->knowledge.sonar[sonar].reading_mm;
 }
 
-static bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
+static ARGUS_APART bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
     if (self->knowledge.still_sips == 0 || self->motion.kind != ARGUS_MOTION_MOVE || self->motion.settled) {
         mine->heeded_ms = self->now_ms;
     }

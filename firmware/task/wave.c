@@ -57,7 +57,7 @@ int argus_wave_reach(const int32_t radius_mm, const int dy) {
     return wide;
 }
 
-static uint64_t widened(const uint64_t row, const int by) {
+static ARGUS_APART uint64_t widened(const uint64_t row, const int by) {
     ARGUS_ASSERT(by >= 0 && by < CELLS);
     uint64_t wide = row;
     for (int i = 1; i <= by; i++) {
@@ -179,7 +179,7 @@ unsigned argus_wave_label(const argus_wave_t *const self, const argus_cell_t cel
 
 // The cells beside those of a row, and of the rows above and below it. Corners count in every other step, so
 // the front of the wave is an octagon.
-static uint64_t beside(const uint64_t row, const uint64_t others, const bool corners) {
+static ARGUS_APART uint64_t beside(const uint64_t row, const uint64_t others, const bool corners) {
     const uint64_t across = corners ? row | others : row;
     return others | row | across << 1 | across >> 1;
 }
