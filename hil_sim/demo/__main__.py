@@ -22,7 +22,7 @@ from argus_tools.core import setting_value
 from argus_tools.formats.base import LogError
 
 from hil_sim.arguments import Parser
-from hil_sim.demo import picture, report
+from hil_sim.demo import report
 from hil_sim.demo.judge import (
     PAPER_LIMIT_S,
     TIME_LIMIT_S,
@@ -246,6 +246,10 @@ def _title(arguments: argparse.Namespace) -> str:
 def _conclude(
     arguments: argparse.Namespace, scenario: Scenario, recording: Recording, verdict: Verdict
 ) -> None:
+    from hil_sim.demo import (
+        picture,
+    )  # what draws takes half a second to import: no wrong argument waits for it
+
     path = arguments.out / "demo.png"
     picture.draw(
         Drive(

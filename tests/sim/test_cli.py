@@ -16,6 +16,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import forks
 import pytest
 from doubles import Port, cmd, connect, make_robot, sips
 
@@ -35,6 +36,7 @@ from hil_sim.world.files import load_world, world_names
 
 ROOT = Path(__file__).parents[2]
 WORLD = "demo"
+ARGUS_SIM = "hil_sim.cli.main:main"
 
 
 def command(*arguments: str) -> list[str]:
@@ -42,22 +44,23 @@ def command(*arguments: str) -> list[str]:
 
 
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        command(*arguments), cwd=ROOT, capture_output=True, text=True, timeout=600, check=False
-    )
+    return forks.run_text(ARGUS_SIM, *arguments, cwd=ROOT)
 
 
 @contextlib.contextmanager
-def simulator(*arguments: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    process = subprocess.Popen(
-        command(*arguments), cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    try:
-        assert process.stdout is not None
-        yield process, process.stdout.readline().strip()
-    finally:
-        process.kill()
-        process.communicate()
+def simulator(*arguments: str) -> Iterator[tuple[forks.Forked, str]]:
+    pipe = subprocess.PIPE
+    with forks.start(ARGUS_SIM, *arguments, cwd=ROOT, stdout=pipe, stderr=pipe) as process:
+        try:
+            yield process, line_of(process)
+        finally:
+            process.kill()
+
+
+def line_of(process: forks.Forked) -> str:
+    """The next line of its output."""
+    assert process.stdout is not None
+    return process.stdout.readline().decode().strip()
 
 
 def code_of(arguments: list[str]) -> int:
@@ -68,11 +71,11 @@ def code_of(arguments: list[str]) -> int:
         return int(error.code or 0)
 
 
-def end(process: subprocess.Popen[str], number: int) -> tuple[int, str, str]:
+def end(process: forks.Forked, number: int) -> tuple[int, str, str]:
     process.send_signal(number)
-    out, error = process.communicate(timeout=600)
+    out, error = (said.decode() for said in process.communicate(timeout=600))
     said = [line for line in error.splitlines(keepends=True) if "the host was late" not in line]
-    return process.returncode, out, "".join(said)
+    return process.wait(), out, "".join(said)
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
@@ -349,8 +352,7 @@ def test_several_robots_each_on_its_own_pty_with_its_own_name_and_seed(tmp_path:
         "7",
     )
     with simulator(*arguments) as (process, first):
-        assert process.stdout is not None
-        paths = [first] + [process.stdout.readline().strip() for _ in range(2)]
+        paths = [first] + [line_of(process) for _ in range(2)]
         links = [tmp_path / name for name in ("robot", "robot-2", "robot-3")]
         assert [str(item.readlink()) for item in links] == paths
         ports = [Port(path) for path in paths]
@@ -379,8 +381,7 @@ def test_several_robots_on_consecutive_ports() -> None:
     with simulator("--world", WORLD, "--robots", "2", "--tcp", str(base)) as (process, first):
         if not first:
             pytest.skip("a port was taken by somebody else meanwhile")
-        assert process.stdout is not None
-        second = process.stdout.readline().strip()
+        second = line_of(process)
         assert [first, second] == [f"127.0.0.1:{base}", f"127.0.0.1:{base + 1}"]
         for address in (first, second):
             host, _, port = address.rpartition(":")

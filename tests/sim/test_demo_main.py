@@ -8,11 +8,11 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
+import forks
 import pytest
 import yaml
 from demo_drive import FAULTS, WAYPOINTS, Record, made_up, named
@@ -250,8 +250,16 @@ def test_signal_handlers_are_given_back(tmp_path: Path, played: type[Played]) ->
 # ---- real processes, none for longer than a start takes -----------------------------------------------------
 
 
-def command(out: Path, *arguments: str) -> list[str]:
-    return [sys.executable, "-m", "hil_sim.demo", "--out", str(out), *arguments]
+def start(out: Path, *arguments: str, stdout: int = subprocess.PIPE) -> forks.Forked:
+    return forks.start(
+        "hil_sim.demo.__main__:main",
+        "--out",
+        out,
+        *arguments,
+        cwd=ROOT,
+        stdout=stdout,
+        stderr=subprocess.PIPE,
+    )
 
 
 def users_of(folder: Path) -> list[int]:
@@ -287,35 +295,27 @@ def idle_argusd(tmp_path: Path) -> Path:
 
 
 def test_an_unknown_argusd_gives_one_line_and_3(tmp_path: Path) -> None:
-    done = subprocess.run(
-        command(tmp_path / "out", "--json", "--argusd", str(tmp_path / "none")),
-        cwd=ROOT, capture_output=True, text=True, timeout=600, check=False,
-    )  # fmt: skip
-    assert done.returncode == 3, done.stderr
-    assert done.stdout == ""
-    assert done.stderr.count("\n") == 1
-    assert "none" in done.stderr
+    with start(tmp_path / "out", "--json", "--argusd", str(tmp_path / "none")) as demo:
+        out, said = demo.communicate(timeout=600)
+    assert demo.returncode == 3, said
+    assert out == b""
+    assert said.count(b"\n") == 1
+    assert b"none" in said
     assert users_of(tmp_path) == []
 
 
 def test_an_argusd_that_ends_at_once_gives_one_line_and_3(tmp_path: Path) -> None:
-    done = subprocess.run(
-        command(tmp_path / "out", "--json", "--argusd", "/bin/true"),
-        cwd=ROOT, capture_output=True, text=True, timeout=600, check=False,
-    )  # fmt: skip
-    assert done.returncode == 3, done.stderr
-    assert done.stderr.startswith("demo: argusd ended with code 0")
+    with start(tmp_path / "out", "--json", "--argusd", "/bin/true") as demo:
+        _, said = demo.communicate(timeout=600)
+    assert demo.returncode == 3, said
+    assert said.startswith(b"demo: argusd ended with code 0")
     assert users_of(tmp_path) == []
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda one: one.name)
 def test_a_signal_ends_both_programs(number: signal.Signals, tmp_path: Path, idle_argusd: Path) -> None:
     events = tmp_path / "out/events.jsonl"
-    demo = subprocess.Popen(
-        command(tmp_path / "out", "--argusd", str(idle_argusd)),
-        cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
-    )  # fmt: skip
+    demo = start(tmp_path / "out", "--argusd", str(idle_argusd), stdout=subprocess.DEVNULL)
     try:
         wait_for(lambda: (events.exists() and events.stat().st_size > 0) or demo.poll() is not None)
         demo.send_signal(number)
@@ -324,16 +324,13 @@ def test_a_signal_ends_both_programs(number: signal.Signals, tmp_path: Path, idl
         demo.kill()
         demo.wait()
     assert demo.returncode == 128 + number, said
-    assert said.count("\n") == 1
-    assert "interrupted" in said
+    assert said.count(b"\n") == 1
+    assert b"interrupted" in said
     wait_for(lambda: users_of(tmp_path) == [], 5.0)
 
 
 def test_a_reader_that_goes_away_leaves_nothing_behind(tmp_path: Path, idle_argusd: Path) -> None:
-    demo = subprocess.Popen(
-        command(tmp_path / "out", "--argusd", str(idle_argusd)),
-        cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
+    demo = start(tmp_path / "out", "--argusd", str(idle_argusd))
     try:
         assert demo.stdout is not None
         assert demo.stderr is not None

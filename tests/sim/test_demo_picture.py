@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 import struct
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 from demo_drive import CLOCK_S, Record, drawing, made_up, named
@@ -45,8 +46,15 @@ def size_px(path: Path) -> tuple[int, int]:
     return width, height
 
 
-def drawn(drive: Drive, path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Bbox]:
-    """Draw; return every text that was really drawn, with the box it takes in pixels."""
+class Drawn(NamedTuple):
+    """A picture, and every text that was really drawn, with the box it takes in pixels."""
+
+    path: Path
+    boxes: dict[str, Bbox]
+
+
+def drawn(drive: Drive, path: Path) -> Drawn:
+    """Draw, and note the texts."""
     boxes: dict[str, Bbox] = {}
     draw = Text.draw
 
@@ -57,47 +65,53 @@ def drawn(drive: Drive, path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str
             box = patch.get_window_extent(renderer) if patch else self.get_window_extent(renderer)
             boxes[self.get_text()] = Bbox.union([box, boxes.get(self.get_text(), box)])
 
-    monkeypatch.setattr(Text, "draw", noted)
-    picture.draw(drive, path)
-    monkeypatch.setattr(Text, "draw", draw)
-    return boxes
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(Text, "draw", noted)
+        picture.draw(drive, path)
+    return Drawn(path, boxes)
 
 
-def test_one_png_of_a_good_size(tmp_path: Path) -> None:
-    path = tmp_path / "demo.png"
-    picture.draw(drawing(*made_up()), path)
-    assert size_px(path)[0] >= LEAST_WIDE_PX
-    assert path.stat().st_size < MOST_BYTES
-    assert list(tmp_path.iterdir()) == [path]
+@pytest.fixture(scope="module")
+def good(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
+    """The picture of a good drive; drawing takes a second, so those that only look share it."""
+    return drawn(drawing(*made_up()), tmp_path_factory.mktemp("good") / "demo.png")
 
 
-def test_the_same_drive_gives_the_same_bytes_a_late_finding_others(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def bad(tmp_path_factory: pytest.TempPathFactory) -> Drawn:
+    """The picture of a drive in which everything is wrong."""
+    return drawn(drawing(*everything_wrong()), tmp_path_factory.mktemp("bad") / "demo.png")
+
+
+def test_one_png_of_a_good_size(good: Drawn) -> None:
+    assert size_px(good.path)[0] >= LEAST_WIDE_PX
+    assert good.path.stat().st_size < MOST_BYTES
+    assert list(good.path.parent.iterdir()) == [good.path]
+
+
+def test_the_same_drive_gives_the_same_bytes_a_late_finding_others(good: Drawn, tmp_path: Path) -> None:
     truth, events = made_up()
-    picture.draw(drawing(truth, events), tmp_path / "a.png")
-    picture.draw(drawing(truth, events), tmp_path / "b.png")
+    picture.draw(drawing(truth, events), tmp_path / "again.png")
     find_late(events)
     picture.draw(drawing(truth, events), tmp_path / "late.png")
-    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
-    assert (tmp_path / "a.png").read_bytes() != (tmp_path / "late.png").read_bytes()
+    assert (tmp_path / "again.png").read_bytes() == good.path.read_bytes()
+    assert (tmp_path / "late.png").read_bytes() != good.path.read_bytes()
 
 
-@pytest.mark.parametrize("bad", [False, True], ids=["good", "bad"])
-def test_every_word_lies_inside_the_picture(
-    bad: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    truth, events = everything_wrong() if bad else made_up()
-    boxes = drawn(drawing(truth, events), tmp_path / "demo.png", monkeypatch)
-    width, height = size_px(tmp_path / "demo.png")
+@pytest.mark.parametrize("which", ["good", "bad"])
+def test_every_word_lies_inside_the_picture(which: str, request: pytest.FixtureRequest) -> None:
+    found: Drawn = request.getfixturevalue(which)
+    width, height = size_px(found.path)
     outside = {
         text: box.extents
-        for text, box in boxes.items()
+        for text, box in found.boxes.items()
         if box.x0 < 0 or box.y0 < 0 or box.x1 > width or box.y1 > height
     }
-    assert len(boxes) > 30
+    assert len(found.boxes) > 30
     assert outside == {}
 
 
-def test_long_lines_stay_inside_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_long_lines_stay_inside_too(tmp_path: Path) -> None:
     """The longest title that the options allow, and a verdict in which every rule failed."""
     drive = drawing(*made_up())
     title = "Argus, one drive: sonar 3 wrong, then sonar 6 wrong"
@@ -105,20 +119,20 @@ def test_long_lines_stay_inside_too(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     rules = tuple(dataclasses.replace(rule, holds=False) for rule in drive.verdict.rules)
     verdict = dataclasses.replace(drive.verdict, rules=rules)
     long = dataclasses.replace(drive, title=title, verdict=verdict)
-    boxes = drawn(long, tmp_path / "demo.png", monkeypatch)
+    boxes = drawn(long, tmp_path / "demo.png").boxes
     headline = next(text for text in boxes if text.startswith("Failed: "))
     assert headline.count(",") == len(rules) - 1
     for text in (title, headline):
         assert boxes[text].x1 <= size_px(tmp_path / "demo.png")[0], text
 
 
-def test_the_words_say_what_happened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    good = "\n".join(drawn(drawing(*made_up()), tmp_path / "a.png", monkeypatch))
+def test_the_words_say_what_happened(good: Drawn, bad: Drawn) -> None:
+    words = "\n".join(good.boxes)
     for wanted in ("A made-up drive", "Passed:", "Sonar 3 goes dead", "Sonar 6 lies", "Start", "Goal", "1 m"):
-        assert wanted in good, wanted
-    bad = "\n".join(drawn(drawing(*everything_wrong()), tmp_path / "b.png", monkeypatch))
+        assert wanted in words, wanted
+    words = "\n".join(bad.boxes)
     for wanted in ("Failed:", "never found", "Sonar 2 is healthy, yet", "Collision at"):
-        assert wanted in bad, wanted
+        assert wanted in words, wanted
 
 
 @pytest.mark.parametrize("kept", [1, 2, 40])

@@ -8,16 +8,18 @@ import os
 import resource
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
+import forks
 import pytest
 
 from hil_sim.record.truth import TruthRecord
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 CAPTURE: Final = "tests/data/captures/m_p3dx.jsonl"
-SIM: Final = ("hil_sim.cli",)
+SIM: Final = ("hil_sim.cli.main",)
 LOG: Final = ("argus_tools.log.cli",)
 CTL: Final = ("argus_tools.control.cli",)
 LINE: Final = len(b'{"type":"state","t_s":0.0,"x_mm":1000}\n')
@@ -34,40 +36,68 @@ PRINTING: Final = (
 )
 
 
-def run(words: tuple[str, ...], shell: str) -> subprocess.CompletedProcess[str]:
-    """Run a program with its output as the shell puts it."""
-    env = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'tools'}"}
-    command = ["sh", "-c", f'exec "$@" {shell}', "sh", sys.executable, "-m", *words]
-    return subprocess.run(
-        command, cwd=ROOT, env=env, capture_output=True, text=True, timeout=600, check=False
-    )
+def run(words: tuple[str, ...], stdout: int, stdin: int = subprocess.DEVNULL) -> tuple[int, str]:
+    """Run a program; return its exit code and what it complains of."""
+    with forks.start(
+        f"{words[0]}:main", *words[1:], stdin=stdin, stdout=stdout, stderr=subprocess.PIPE, cwd=ROOT
+    ) as program:
+        _, said = program.communicate(timeout=600)
+    return program.wait(), said.decode()
+
+
+@pytest.fixture(params=["full", "closed", "closed like its input"])
+def taking_nothing(request: pytest.FixtureRequest) -> Iterator[tuple[str, int, int]]:
+    """An output that takes nothing: why, and the descriptors of output and input."""
+    if request.param != "full":
+        yield "closed", forks.CLOSED, forks.CLOSED if "input" in request.param else subprocess.DEVNULL
+        return
+    stdout = os.open("/dev/full", os.O_WRONLY)
+    yield "No space left on device", stdout, subprocess.DEVNULL
+    os.close(stdout)
+
+
+def assert_told(code: int, said: str, why: str) -> None:
+    assert code == 2, said
+    (line,) = (line for line in said.splitlines() if "standard output" in line)
+    assert why in line
+    assert "Traceback" not in said
+    assert "Exception ignored" not in said
 
 
 @pytest.mark.parametrize("words", PRINTING, ids=lambda words: " ".join(words[:2]))
+def test_an_output_that_takes_nothing_is_told_in_one_line(
+    words: tuple[str, ...], taking_nothing: tuple[str, int, int]
+) -> None:
+    why, stdout, stdin = taking_nothing
+    assert_told(*run(words, stdout, stdin), why)
+
+
 @pytest.mark.parametrize(
     ("shell", "why"), [(">/dev/full", "No space left on device"), (">&-", "closed"), (">&- <&-", "closed")]
 )
-def test_an_output_that_takes_nothing_is_told_in_one_line(
-    words: tuple[str, ...], shell: str, why: str
-) -> None:
-    done = run(words, shell)
-    assert done.returncode == 2, done.stderr
-    (line,) = (line for line in done.stderr.splitlines() if "standard output" in line)
-    assert why in line
-    assert "Traceback" not in done.stderr
-    assert "Exception ignored" not in done.stderr
+def test_and_so_of_an_interpreter_that_a_shell_starts(shell: str, why: str) -> None:
+    command = ["sh", "-c", f'exec "$@" {shell}', "sh", sys.executable, "-m", "argus_tools.control.cli"]
+    env = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'tools'}"}
+    done = subprocess.run(
+        [*command, "--version"], cwd=ROOT, env=env, capture_output=True, text=True, timeout=600, check=False
+    )
+    assert_told(done.returncode, done.stderr, why)
 
 
 @pytest.mark.parametrize("words", PRINTING, ids=lambda words: " ".join(words[:2]))
 def test_a_reader_that_went_is_no_error(words: tuple[str, ...]) -> None:
-    done = run(words, "| true")
-    assert (done.returncode, done.stderr) == (0, "")
+    reader, writer = os.pipe()
+    os.close(reader)
+    try:
+        assert run(words, writer) == (0, "")
+    finally:
+        os.close(writer)
 
 
 def test_who_prints_nothing_does_its_work_without_an_output(tmp_path: Path) -> None:
     made = tmp_path / "drive.rec"
-    assert run((*LOG, "convert", CAPTURE, str(made)), ">&-").returncode == 0
-    assert run((*LOG, "diff", CAPTURE, str(made)), "").returncode == 0
+    assert run((*LOG, "convert", CAPTURE, str(made)), forks.CLOSED)[0] == 0
+    assert run((*LOG, "diff", CAPTURE, str(made)), subprocess.DEVNULL)[0] == 0
 
 
 @pytest.mark.parametrize("room", [0, 1, 7, 38, 39, 200])
@@ -93,6 +123,6 @@ def test_a_full_disk_leaves_whole_lines_of_truth(room: int, tmp_path: Path) -> N
 
 
 def test_a_closed_input_is_told_in_one_line() -> None:
-    done = run(("argus_tools.log.cli", "decode", "-"), "<&-")
-    assert done.returncode == 2
-    assert done.stderr == "argus-log: -: standard input is closed; give a log file, or pipe one in\n"
+    code, said = run((*LOG, "decode", "-"), subprocess.DEVNULL, forks.CLOSED)
+    assert code == 2
+    assert said == "argus-log: -: standard input is closed; give a log file, or pipe one in\n"

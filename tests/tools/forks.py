@@ -28,6 +28,8 @@ from pathlib import Path
 from typing import IO, Any, Final, Self
 
 MESSAGE_BYTES: Final = 1 << 18
+CLOSED: Final = -1000
+"""In place of a descriptor: the program has none there, as after `>&-` in a shell."""
 ROOT: Final = Path(__file__).resolve().parents[2]
 
 
@@ -113,6 +115,11 @@ def _become(request: dict[str, Any], fds: Sequence[int]) -> None:
         stream = io.TextIOWrapper(io.BufferedWriter(raw), "utf-8", errors, line_buffering=line_buffering)
         setattr(sys, name, stream)
         setattr(sys, f"__{name}__", stream)
+    for number in request["closed"]:
+        os.close(number)
+        name = ("stdin", "stdout", "stderr")[number]
+        setattr(sys, name, None)
+        setattr(sys, f"__{name}__", None)
     sys.argv = request["argv"]
 
 
@@ -283,14 +290,15 @@ def start(
     theirs: list[int] = []
     close: list[int] = []
     ours: list[IO[bytes] | None] = []
-    for number, given in enumerate((subprocess.DEVNULL if stdin is None else stdin, stdout, stderr)):
+    asked = (subprocess.DEVNULL if stdin is None else stdin, stdout, stderr)
+    for number, given in enumerate(asked):
         mine: IO[bytes] | None = None
         if given == subprocess.PIPE:
             read, write = os.pipe()
             theirs.append(read if number == 0 else write)
             mine = os.fdopen(write, "wb") if number == 0 else os.fdopen(read, "rb")
             close.append(theirs[-1])
-        elif given == subprocess.DEVNULL:
+        elif given in (subprocess.DEVNULL, CLOSED):
             theirs.append(os.open(os.devnull, os.O_RDWR))
             close.append(theirs[-1])
         elif given == subprocess.STDOUT:
@@ -310,6 +318,7 @@ def start(
         "env": environment,
         "cwd": str(cwd or Path.cwd()),
         "preload": list(preload),
+        "closed": [number for number, given in enumerate(asked) if given == CLOSED],
     }
     server = _server(os.getpid())
     forked = Forked(server, argv, ours)
