@@ -17,7 +17,10 @@ list(REMOVE_DUPLICATES names)
 list(JOIN names ";\n    " names)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/argus.map CONTENT "{\nglobal:\n    @names@;\nlocal:\n    *;\n};\n" @ONLY)
 
-add_library(argus_shared SHARED ${firmware_sources} tools/core_shim.c)
+# One compilation serves both libraries. Nobody replaces a function of ours, so position independence costs no inlining.
+set_target_properties(argus PROPERTIES POSITION_INDEPENDENT_CODE ON)
+target_compile_options(argus PRIVATE -fno-semantic-interposition)
+add_library(argus_shared SHARED $<TARGET_OBJECTS:argus> tools/core_shim.c)
 target_include_directories(argus_shared PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/firmware/include>
                                                $<INSTALL_INTERFACE:include>
                            PRIVATE firmware)
