@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""What all tests rely on: generated examples that repeat (HYPOTHESIS_PROFILE=default roams), and Ctrl-C in programs."""
+"""What all tests rely on: marks, generated examples that repeat (HYPOTHESIS_PROFILE=default roams), and Ctrl-C."""
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
+from collections import defaultdict
 
 import pytest
 from hypothesis import settings
@@ -13,7 +15,28 @@ from hypothesis import settings
 def pytest_configure(config: pytest.Config) -> None:
     """Make the marks known that any test may carry."""
     config.addinivalue_line("markers", "soak: computes for long; tools/dev test --quick leaves it out")
+    config.addinivalue_line("markers", "tour(n): so many of its cases say it; the others are marked soak")
     config.addinivalue_line("markers", "wide: a sweep that takes minutes of CPU; tools/dev soak runs it")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the cases of a tour but N, which are spread over all of them, so that the choice by marks sees it."""
+    tours = defaultdict[tuple[str, int], list[pytest.Item]](list)
+    for item in items:
+        if mark := item.get_closest_marker("tour"):
+            tours[item.nodeid.partition("[")[0], mark.args[0]].append(item)
+    for (_, count), cases in tours.items():
+        taken = {part * len(cases) // count for part in range(count)}
+        for number, case in enumerate(cases):
+            if number not in taken:
+                case.add_marker(pytest.mark.soak)
+
+
+def pytest_collection_finish() -> None:
+    """Spare the collector of garbage what stays until the end: thousands of tests."""
+    gc.collect()
+    gc.freeze()
 
 
 settings.register_profile("repeatable", derandomize=True, print_blob=True)

@@ -40,15 +40,17 @@ def calls() -> Graph:
     """Return for each source the sources whose symbols its object wants."""
     owner: dict[str, str] = {}
     wanted: dict[str, set[str]] = {}
+    objects: dict[str, str] = {}
     for path in sorted(FIRMWARE.rglob("*.c")):
         file = OBJECTS / path.relative_to(FIRMWARE).with_suffix(".c.o")
         assert file.exists(), f"{file} is missing: run tools/dev build release"
-        text = subprocess.run(["nm", str(file)], check=True, stdout=subprocess.PIPE, text=True).stdout
-        for kind, name in re.findall(r" ([A-Za-z]) (\w+)$", text, re.MULTILINE):
-            if kind in "TDRBVW":
-                owner[name] = stem(path)
-            elif kind == "U":
-                wanted.setdefault(stem(path), set()).add(name)
+        objects[str(file)] = stem(path)
+    text = subprocess.run(["nm", "-A", *objects], check=True, stdout=subprocess.PIPE, text=True).stdout
+    for file_name, kind, name in re.findall(r"^(.+?):.* ([A-Za-z]) (\w+)$", text, re.MULTILINE):
+        if kind in "TDRBVW":
+            owner[name] = objects[file_name]
+        elif kind == "U":
+            wanted.setdefault(objects[file_name], set()).add(name)
     return {file: {owner[name] for name in names if name in owner} for file, names in wanted.items()}
 
 

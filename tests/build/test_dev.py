@@ -7,6 +7,7 @@ import contextlib
 import io
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -128,6 +129,7 @@ def test_every_c_test_is_run_optimised(commands: dict[str, list[list[str]]]) -> 
 def test_every_python_test_is_run(commands: dict[str, list[list[str]]]) -> None:
     """Those that compute are in python, soak or wide, the others in hil, can or boards."""
     marks = {"python": "not soak and not wide", "soak": "soak and not wide", "wide": "wide"}
+    of_stage = {"soak": ("mark.soak", "mark.tour"), "wide": ("mark.wide",)}
     for stage, mark in marks.items():
         (pytests,) = (run for run in commands[stage] if "pytest" in run)
         assert pytests[pytests.index("-m", 2) + 1] == mark
@@ -140,7 +142,9 @@ def test_every_python_test_is_run(commands: dict[str, list[list[str]]]) -> None:
             paths = [path.relative_to(ROOT) for path in (ROOT / "tests").rglob("test_*.py")]
             own = [path for path in paths if path.parts[1] not in folders]
             listed = {word for word in pytests if word.startswith("tests/")}
-            assert listed == {str(path) for path in own if f"mark.{stage}" in (ROOT / path).read_text()}
+            assert listed == {
+                str(path) for path in own if any(mark in (ROOT / path).read_text() for mark in of_stage[stage])
+            }
 
 
 def test_a_shell_finds_what_was_built() -> None:
@@ -181,3 +185,26 @@ def test_the_modules_are_small_and_need_nothing_but_python() -> None:
             assert name in sys.stdlib_module_names or name == "devtool", f"{path}: {name}"
         for one in lizard.analyze_file(str(path)).function_list:
             assert one.cyclomatic_complexity <= 10, f"{path}:{one.start_line}: {one.name}"
+
+
+def test_a_tour_leaves_most_cases_to_the_stage_soak(tmp_path: Path) -> None:
+    """Each case is in one of both, none in neither; N are taken, from all over."""
+    shutil.copy(ROOT / "tests/conftest.py", tmp_path)
+    tours = ((12, 3), (7, 2), (2, 5))
+    (tmp_path / "test_it.py").write_text(
+        "import pytest\n"
+        + "".join(
+            f"@pytest.mark.tour({count})\n"
+            f"@pytest.mark.parametrize('n', range({cases}))\n"
+            f"def test_{cases}(n):\n    pass\n"
+            for cases, count in tours
+        )
+    )
+    chosen = []
+    for choice in ("not soak", "soak"):
+        command = [sys.executable, "-m", "pytest", "-q", "--collect-only", "-p", "no:cacheprovider", "-m", choice]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        found = re.findall(r"test_(\d+)\[(\d+)\]", done.stdout)
+        chosen.append({(int(cases), int(n)) for cases, n in found})
+    assert chosen[0] == {(12, 0), (12, 4), (12, 8), (7, 0), (7, 3), (2, 0), (2, 1)}
+    assert chosen[1] == {(cases, n) for cases, _ in tours for n in range(cases)} - chosen[0]

@@ -8,6 +8,8 @@ import re
 import subprocess
 from pathlib import Path
 
+import pytest
+
 import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -20,6 +22,7 @@ def version() -> str:
     return match[1]
 
 
+@pytest.mark.soak
 def test_platformio_library(tmp_path: Path) -> None:
     library = json.loads((ROOT / "library.json").read_text(encoding="utf-8"))
     build = library["build"]

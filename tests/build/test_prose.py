@@ -16,6 +16,7 @@ import comments  # noqa: E402
 import prose  # noqa: E402
 
 
+@pytest.mark.soak
 def test_the_documents_and_the_comments_are_well() -> None:
     done = subprocess.run(
         [sys.executable, str(ROOT / "tools/prose.py")], capture_output=True, text=True, check=False

@@ -135,6 +135,7 @@ def read(pieces: list[bytes], at_once: bool) -> list[Row]:
     return list(packets([offsets.chunk(None, "r2c", data) for data in pieces], at_once))
 
 
+@pytest.mark.tour(1)
 @pytest.mark.parametrize(
     "part",
     [part if part < FEW_PARTS else pytest.param(part, marks=pytest.mark.wide) for part in range(PARTS)],
@@ -196,6 +197,7 @@ def drive(count: int) -> list[bytes]:
     ]
 
 
+@pytest.mark.tour(2)
 @pytest.mark.parametrize("at_once", [True, False], ids=["each chunk", "many chunks"])
 @pytest.mark.parametrize("kind", DAMAGE)
 def test_of_ten_thousand_sips_no_intact_one_is_lost_and_none_made_up(kind: str, at_once: bool) -> None:

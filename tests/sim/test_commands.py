@@ -237,6 +237,7 @@ def test_every_known_command_is_either_obeyed_or_ignored_for_a_reason() -> None:
     assert set(WHY_IGNORED).isdisjoint(server._handlers)
 
 
+@pytest.mark.tour(64)
 @pytest.mark.parametrize("number", range(256))
 def test_each_form_of_argument(number: int) -> None:
     name = NAME.get(number, "")

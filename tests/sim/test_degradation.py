@@ -36,10 +36,12 @@ def said(outcome: Outcome, name: str, sonar: int) -> list[float]:
     return [event.t_s for event in outcome.events if (event.name, event.sonar) == (name, sonar)]
 
 
+@pytest.mark.soak
 def test_nothing_is_announced_of_healthy_sonars() -> None:
     assert [e for e in healthy().events if e.name in ("SONAR_DEGRADING", "RECORD_IGNORED")] == []
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("sonar", "fault"),
     [

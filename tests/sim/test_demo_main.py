@@ -312,6 +312,7 @@ def test_an_argusd_that_ends_at_once_gives_one_line_and_3(tmp_path: Path) -> Non
     assert users_of(tmp_path) == []
 
 
+@pytest.mark.tour(1)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda one: one.name)
 def test_a_signal_ends_both_programs(number: signal.Signals, tmp_path: Path, idle_argusd: Path) -> None:
     events = tmp_path / "out/events.jsonl"

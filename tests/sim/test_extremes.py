@@ -63,16 +63,19 @@ def assert_covered(outcome: Outcome, sonar: int, *kinds: str, within_s: float = 
     assert outcome.driven_mm > 1000, outcome.mission.to_json()
 
 
+@pytest.mark.tour(3)
 @pytest.mark.parametrize(("sonar", "value"), STUCK)
 def test_what_stays_at_the_least_is_stuck(hall: str, sonar: int, value: int) -> None:
     assert_covered(drive(hall, f"stuck:{sonar}:value={value}"), sonar, "stuck")
 
 
+@pytest.mark.tour(1)
 @pytest.mark.parametrize(("sonar", "value"), [(3, 100), (12, 0), (6, 50)])
 def test_from_mid_mission_too(hall: str, sonar: int, value: int) -> None:
     assert_covered(drive(hall, f"stuck:{sonar}@8s:value={value}"), sonar, "stuck")
 
 
+@pytest.mark.tour(1)
 @pytest.mark.parametrize(("sonar", "value"), NONE)
 def test_what_is_beyond_the_longest_is_as_if_nothing_were_heard(hall: str, sonar: int, value: int) -> None:
     """The same comes of it as of 5000, which is what the robot gives where it hears nothing."""
@@ -82,12 +85,14 @@ def test_what_is_beyond_the_longest_is_as_if_nothing_were_heard(hall: str, sonar
     assert beyond.driven_mm > 1000
 
 
+@pytest.mark.tour(2)
 @pytest.mark.parametrize(("sonar", "value"), SPORADIC)
 def test_what_leaps_to_the_least_and_back_is_intermittent(hall: str, sonar: int, value: int) -> None:
     fault = f"intermittent:{sonar}:p=0.3:value={value}"
     assert_covered(drive(hall, fault, limit_s=160), sonar, "intermittent", within_s=60)
 
 
+@pytest.mark.tour(2)
 @pytest.mark.parametrize("seed", [1, 2, 3, 60073])
 @pytest.mark.parametrize("sonar", [3, 4])
 def test_what_is_covered_for_is_not_gone_round_in_tiny_steps(hall: str, sonar: int, seed: int) -> None:
@@ -100,6 +105,7 @@ def test_what_is_covered_for_is_not_gone_round_in_tiny_steps(hall: str, sonar: i
     assert outcome.t_s < 60
 
 
+@pytest.mark.tour(2)
 @pytest.mark.parametrize("near_mm", [60, 80, 100, 120, 160])
 def test_a_wall_right_ahead_is_no_fault(tmp_path: Path, near_mm: int) -> None:
     """It stands so near that it reads the least; the robot backs away from it, and the reading grows."""
@@ -127,6 +133,7 @@ def test_a_wall_right_beside_it_is_no_fault(tmp_path: Path, side: int) -> None:
     assert not [e for e in outcome.events if e.name == "SONAR_DISABLED" and e.sonar in (0, 15, 7, 8)]
 
 
+@pytest.mark.tour(1)
 @pytest.mark.parametrize(("sonar", "value"), [(1, 100), (3, 0), (3, 100), (6, 50)])
 def test_the_papers_method_gives_up_where_a_reading_at_the_least_forbids_to_turn(
     tmp_path: Path, sonar: int, value: int

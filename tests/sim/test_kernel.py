@@ -62,6 +62,7 @@ def compare(name: str, count: int) -> None:
     assert len(seen) > count // 30, "the places do not all read the same"
 
 
+@pytest.mark.tour(3)
 @pytest.mark.parametrize("name", world_names())
 def test_c_and_numpy_agree_to_the_millimetre(name: str) -> None:
     compare(name, FEW_POSES)

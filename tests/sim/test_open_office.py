@@ -26,11 +26,12 @@ SCENARIO = load_scenario("open-office")
 COURSE = tuple(SCENARIO.course)
 FAULTS = ("off:3@travelled>600", "wrong:6@travelled>1400:scale=0.5")
 AHEAD = range(1, 7)
+SOLIDS = np.asarray(load_world("open-office").segments, dtype=float).T
 
 
 def along_axis_mm(x_mm: float, y_mm: float, deg: float) -> float:
     """How far it is along a bearing to the nearest solid of the world; inf: to none."""
-    x1, y1, x2, y2 = np.asarray(load_world("open-office").segments, dtype=float).T
+    x1, y1, x2, y2 = SOLIDS
     c, s = math.cos(math.radians(deg)), math.sin(math.radians(deg))
     across = c * (y2 - y1) - s * (x2 - x1)
     with np.errstate(divide="ignore", invalid="ignore"):

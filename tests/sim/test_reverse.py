@@ -29,6 +29,7 @@ def ends(outcome: Outcome) -> list[int]:
     return [event.value for event in outcome.events if event.name == "REVERSED"]
 
 
+@pytest.mark.tour(2)
 @pytest.mark.parametrize("seed", [1, 2])
 @pytest.mark.parametrize("world", sorted(COURSES))
 def test_the_rear_leads_to_the_goal_when_the_front_array_is_lost(world: str, seed: int) -> None:

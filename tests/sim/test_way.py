@@ -30,7 +30,7 @@ REST_MM: Final = 1.0
 REASONS: Final = ("NO_WAY", "WAITING", "FAILURE_STATE", "ODOMETRY_LOST")
 NEAR: Final = 4
 """Events before the end, among which is its reason."""
-FEW_GOALS: Final = 16
+FEW_GOALS: Final = 8
 SHARDS: Final = 8
 MISSED: Final = 4
 """One in so many at most; the bench of journeys has the shares."""

@@ -436,6 +436,7 @@ def test_any_text_is_a_map_or_one_line(tmp_path_factory: pytest.TempPathFactory,
 # ---- the worlds that come with it -------------------------------------------------------------------------------
 
 
+@pytest.mark.tour(3)
 @pytest.mark.parametrize("name", world_names())
 def test_a_shipped_world_has_room_at_start_and_goals_and_a_way_between(name: str) -> None:
     world = load_world(name)
@@ -504,6 +505,7 @@ def demo_course() -> list[tuple[float, float]]:
     return [(start.x_mm, start.y_mm), *scenario.course]
 
 
+@pytest.mark.tour(2)
 @pytest.mark.parametrize("seed", range(4))
 def test_from_everywhere_near_the_demo_course_every_front_sonar_hears_a_surface_within_4_m(seed: int) -> None:
     rng = random.Random(seed)

@@ -99,6 +99,7 @@ def cut(chunks: Iterable[Chunk], size: int) -> list[Chunk]:
     ]
 
 
+@pytest.mark.tour(3)
 @pytest.mark.parametrize("path", CAPTURES, ids=lambda path: path.stem)
 @pytest.mark.parametrize("size", [1 << 16, 7])
 def test_the_packets_are_those_of_argus_log(path: Path, size: int, tmp_path: Path) -> None:
@@ -127,6 +128,7 @@ def gathered(chunks: Iterable[Chunk], size: int) -> list[Chunk]:
     return found
 
 
+@pytest.mark.tour(1)
 @pytest.mark.parametrize("name", ["a_idle", "c_commands", "d_ram"])
 def test_many_packets_in_a_segment_and_some_over_its_edge(name: str, tmp_path: Path) -> None:
     chunks = [chunk for chunk in open_log(str(CAPTURES[0].parent / f"{name}.jsonl")) if chunk.dir == "r2c"]

@@ -22,6 +22,8 @@ ELSEWHERE: Final = ("blank", "mps2-tests", "stm32f405-tests", "big-endian")
 WITHOUT_ARGUSD: Final = ("m32", "cortex-m4", *BOARDS, *ELSEWHERE)
 SOAK: Final = "soak"
 """The label of the unit tests that compute for long; they are run once, in the release build."""
+TOUR: Final = "tour"
+"""The mark of tests in Python whose cases are many: most of them are left to the stage `soak`."""
 WIDE: Final = "wide"
 """The label of sweeps that take minutes of CPU; `tools/dev soak` runs them."""
 

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import Final
 
 from devtool.base import BUILD, CORES, ROOT, VENV, Command, Run
 from devtool.browser import monitor_tests
-from devtool.cmake import BOARDS, SOAK, WIDE, build, build_and_test, ctest
+from devtool.cmake import BOARDS, SOAK, TOUR, WIDE, build, build_and_test, ctest
 from devtool.packaging import NEEDS as PACKAGE_NEEDS
 from devtool.packaging import package_tests
 from devtool.peers import SOURCES, peers
@@ -23,18 +24,19 @@ IN_REAL_TIME: Final = ("tests/hil", "tests/can", "tests/target", "tests/monitor"
 BY_THEMSELVES: Final = (*IN_REAL_TIME, "tests/packages")
 COMPUTING: Final = ("tests", *(f"--ignore={folder}" for folder in BY_THEMSELVES))
 # Some tests take a hundred times as long as others: a worker that has done its own takes over what another has
-# before it.
-SHARED_OUT: Final = ("-n", str(CORES), "--dist", "worksteal")
+# before it. Some wait for a robot's clock or for a program: one worker more than cores uses that time.
+SHARED_OUT: Final = ("-n", str(CORES + 1), "--dist", "worksteal")
 
 
-def files_with(mark: str) -> list[str]:
-    """Return the files that have tests of MARK: reading in all others takes longer than some of those tests."""
+def files_with(*marks: str) -> list[str]:
+    """Return the files that have tests of MARKS: reading in all others takes longer than some of those tests."""
+    wanted = re.compile(rf"mark\.({'|'.join(marks)})\b")
     files = [path.relative_to(ROOT) for path in sorted((ROOT / "tests").rglob("test_*.py"))]
     return [
         str(file)
         for file in files
         if not any(file.is_relative_to(folder) for folder in BY_THEMSELVES)
-        and f"mark.{mark}" in (ROOT / file).read_text(encoding="utf-8")
+        and wanted.search((ROOT / file).read_text(encoding="utf-8"))
     ]
 
 
@@ -54,7 +56,7 @@ def soak_tests(run: Run) -> None:
     """Run what computes for long, in C and in Python: once, and optimised."""
     build("release", run)
     ctest("release", run, "-L", SOAK)
-    run([*PYTEST, *files_with(SOAK), "-m", f"{SOAK} and not {WIDE}", *SHARED_OUT])
+    run([*PYTEST, *files_with(SOAK, TOUR), "-m", f"{SOAK} and not {WIDE}", *SHARED_OUT])
 
 
 def wide_tests(run: Run) -> None:

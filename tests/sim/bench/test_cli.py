@@ -8,7 +8,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -122,20 +121,19 @@ def strip(line: str) -> dict[str, object]:
     return {name: value for name, value in json.loads(line).items() if name != "wall_s"}
 
 
+@pytest.mark.tour(1)
 @pytest.mark.parametrize(("jobs", "number"), [("1", signal.SIGTERM), ("2", signal.SIGINT)])
 def test_an_interrupt_keeps_what_is_done_and_ends_with_130(tmp_path: Path, jobs: str, number: int) -> None:
-    command = [sys.executable, "-m", "hil_sim.cli", "bench", "diagnosis", *TINY, "--seeds", "1-400"]
-    command += ["--jobs", jobs]
-    with subprocess.Popen(
-        [*command, "--out", str(tmp_path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
+    words = ("bench", "diagnosis", *TINY, "--seeds", "1-400", "--jobs", jobs, "--out", str(tmp_path))
+    pipe = subprocess.PIPE
+    with forks.start("hil_sim.cli.main:main", *words, stdout=pipe, stderr=pipe) as process:
         end = time.monotonic() + 600
         while not (path := tmp_path / RESULTS).exists() or path.read_bytes().count(b"\n") < 2:
             assert process.poll() is None, process.communicate()
             assert time.monotonic() < end
             time.sleep(0.05)
         process.send_signal(number)
-        out, err = process.communicate(timeout=600)
+        out, err = (said.decode() for said in process.communicate(timeout=600))
     assert process.returncode == EXIT_INTERRUPTED, err
     assert out == ""
     assert "--resume goes on" in err

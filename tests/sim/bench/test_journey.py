@@ -43,6 +43,7 @@ def test_an_id_is_the_case_it_names() -> None:
         assert parse_id(one.id) == one
 
 
+@pytest.mark.soak
 def test_an_id_gives_the_same_mission_in_any_process() -> None:
     program = (
         "import sys; from hil_sim.bench.journey import mission_of, parse_id\n"
@@ -83,6 +84,7 @@ def test_conditions_change_nothing_but_themselves() -> None:
     assert emulator.quirks == "mobilesim"
 
 
+@pytest.mark.soak
 def test_the_splits_share_nothing_that_is_drawn() -> None:
     for row, world in (
         ("rooms+one+people", "office"),

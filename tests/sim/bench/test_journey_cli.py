@@ -7,11 +7,11 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 from typing import Any
 
+import forks
 import pytest
 
 from hil_sim.bench.arguments import EXIT_INTERRUPTED
@@ -97,6 +97,7 @@ def test_one_prints_the_time_line_and_draws(tmp_path: Path, capfd: pytest.Captur
     assert (tmp_path / "doors-argus.svg").exists()
 
 
+@pytest.mark.soak
 def test_resume_runs_what_is_missing_and_nothing_twice(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -118,18 +119,18 @@ def same(line: str) -> dict[str, Any]:
     return {name: value for name, value in json.loads(line).items() if name != "wall_s"}
 
 
+@pytest.mark.soak
 def test_an_interrupt_keeps_what_is_done(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "hil_sim.cli", "bench", *TINY, "--seeds", "1-400", "--jobs", "2"]
-    with subprocess.Popen(
-        [*command, "--out", str(tmp_path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
+    words = ("bench", *TINY, "--seeds", "1-400", "--jobs", "2", "--out", str(tmp_path))
+    pipe = subprocess.PIPE
+    with forks.start("hil_sim.cli.main:main", *words, stdout=pipe, stderr=pipe) as process:
         end = time.monotonic() + 600
         while not (path := tmp_path / RESULTS).exists() or path.read_bytes().count(b"\n") < 1:
             assert process.poll() is None, process.communicate()
             assert time.monotonic() < end
             time.sleep(0.05)
         process.send_signal(signal.SIGTERM)
-        out, err = process.communicate(timeout=600)
+        out, err = (said.decode() for said in process.communicate(timeout=600))
     assert process.returncode == EXIT_INTERRUPTED, err
     assert out == ""
     assert "--resume goes on" in err

@@ -38,6 +38,7 @@ def widest_mm(place: Place, x: float) -> list[float]:
     return [b - a for a, b in pairwise(ys)]
 
 
+@pytest.mark.tour(2)
 @pytest.mark.parametrize("name", sorted(SETS))
 def test_the_goal_can_be_reached_unless_it_is_closed(name: str) -> None:
     for place in places(name):
@@ -74,6 +75,7 @@ def test_a_dead_end_is_1_5_m_deep_and_on_the_way() -> None:
         assert straight_clear_mm(place) < HALF_MM, place.path
 
 
+@pytest.mark.tour(1)
 @pytest.mark.parametrize("name", ["bends", "pairs", NO_WAY])
 def test_the_straight_way_is_blocked(name: str) -> None:
     for place in places(name):

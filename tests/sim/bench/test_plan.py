@@ -46,6 +46,7 @@ def test_an_id_gives_the_same_mission_in_any_process() -> None:
         assert str(mission.seed) in line
 
 
+@pytest.mark.soak
 def test_the_splits_share_nothing_that_is_drawn() -> None:
     drawn: dict[str, set[object]] = {}
     for split in plan.SPLITS:

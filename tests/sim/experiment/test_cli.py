@@ -53,6 +53,7 @@ def test_what_is_wrong_is_said(
     assert error.count("\n") == 1, error
 
 
+@pytest.mark.soak
 def test_a_study_goes_on_where_it_was(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ("journey", "--worlds", "corridor", "--policies", "adaptive", "--seeds", "1", "--jobs", "1")
     out = ("--out", str(tmp_path))

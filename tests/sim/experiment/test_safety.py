@@ -24,6 +24,7 @@ def told(sil: Sil, safety: Safety) -> str:
     return f"{sil.mission.to_json()}: {safety.counts} {safety.breaches}"
 
 
+@pytest.mark.tour(3)
 @pytest.mark.parametrize("seed", [1, 2])
 @pytest.mark.parametrize(
     ("profile", "faults"),
@@ -48,6 +49,7 @@ def test_no_rule_is_broken(profile: str, faults: tuple[str, ...], seed: int) -> 
     assert 0 < safety.closest_mm < 3000, told(sil, safety)
 
 
+@pytest.mark.tour(1)
 @pytest.mark.parametrize("run", ["demo/17/2+3+5+6", "demo/20/1+2+3+5", "lab/12/2+3+5"])
 def test_what_was_heard_from_afar_hems_nobody_in(run: str) -> None:
     """Echoes 1.5 m ahead, put on the axis of a cone, forbade to turn 3 s later: it left straight ahead, up to a wall.

@@ -57,6 +57,7 @@ def test_with_the_rear_ahead_it_is_the_same_wheel() -> None:
     assert -85 < told(outcome)[0][2] < -55, told(outcome)
 
 
+@pytest.mark.tour(2)
 @pytest.mark.parametrize("profile", ["argus", "paper"])
 @pytest.mark.parametrize(
     ("world", "physics", "quirks"),

@@ -72,6 +72,7 @@ def read(path: Path, data: bytes, form: str | None = None) -> tuple[str, list[Ch
     return log.format.name, list(log), log.damage
 
 
+@pytest.mark.tour(8)
 @pytest.mark.parametrize("text", NAMES, indirect=True)
 @pytest.mark.parametrize("ends", [b"\n", b"\r\n"])
 def test_a_mark_at_the_head_changes_nothing(text: bytes, ends: bytes, tmp_path: Path) -> None:
@@ -88,6 +89,7 @@ def test_nor_where_the_form_is_given(text: bytes, tmp_path: Path) -> None:
     assert read(tmp_path / "log", BOM + text, plain[0]) == plain
 
 
+@pytest.mark.tour(5)
 @pytest.mark.parametrize("text", NAMES, indirect=True)
 def test_nor_where_two_two_files_were_joined(text: bytes, tmp_path: Path) -> None:
     plain = read(tmp_path / "log", text + text)

@@ -102,6 +102,7 @@ def failing(sonar: int, alter: Alter) -> Iterator[str]:
                 yield json.dumps(row)
 
 
+@pytest.mark.tour(2)
 @pytest.mark.parametrize(
     ("sonar", "alter", "kind"),
     [

@@ -164,6 +164,7 @@ FOXGLOVE = {
 OPTIONAL = {"range_m", "pose", "age_ms", "health", "fault"}
 
 
+@pytest.mark.tour(2)
 @pytest.mark.parametrize("path", sorted(CAPTURES.glob("*.jsonl")), ids=lambda path: path.stem)
 def test_every_message_of_an_mcap_is_as_its_schema_says(path: Path, tmp_path: Path) -> None:
     made = tmp_path / "a.mcap"
@@ -233,6 +234,7 @@ def test_pictures_are_drawn(tmp_path: Path, view: str, ending: str) -> None:
         assert min(width, height) > 500
 
 
+@pytest.mark.tour(2)
 @pytest.mark.parametrize("range_mm", [0, 400, 1300, 4900, 5000])
 def test_no_label_of_the_ring_lies_on_another_or_on_an_arc(range_mm: int) -> None:
     last = {number: (0.0, range_mm + number) for number in plot.POSES}

@@ -13,7 +13,9 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import IO
 
+import forks
 import pytest
 from argus_tools.monitor import cli, tui
 from argus_tools.monitor.cli import main, read_token
@@ -138,31 +140,33 @@ def fake_argusd(folder: Path, script: str) -> Path:
     return argusd
 
 
-def command(*words: str | Path) -> list[str]:
-    return [sys.executable, "-m", "argus_tools.monitor.cli", *map(str, words)]
-
-
-def environment(folder: Path) -> dict[str, str]:
-    return {"PYTHONPATH": f"{ROOT}:{ROOT / 'tools'}", "PATH": "/usr/bin:/bin", "TMPDIR": str(folder)}
+def start(folder: Path, stdout: IO[bytes], *words: str | Path) -> forks.Forked:
+    """Start argus-monitor with its temporary files in a folder."""
+    env = {"PYTHONPATH": f"{ROOT}:{ROOT / 'tools'}", "PATH": "/usr/bin:/bin", "TMPDIR": str(folder)}
+    preload = ("argus_tools.monitor.server", "argus_tools.monitor.sim", "argus_tools.monitor.tui")
+    return forks.start(
+        "argus_tools.monitor.cli:main",
+        *words,
+        stdout=stdout,
+        stderr=subprocess.PIPE,
+        cwd=ROOT,
+        env=env,
+        preload=preload,
+    )
 
 
 @pytest.mark.parametrize("shown", [["--port", "0"], ["--tui"]], ids=["page", "screen"])
 def test_an_argusd_that_ends_at_once_ends_all(shown: list[str], tmp_path: Path) -> None:
     argusd = fake_argusd(tmp_path, "echo 'argusd: no such day' >&2\nexit 2")
     terminal, ours = pty.openpty()
-    with os.fdopen(terminal), os.fdopen(ours) as stdout:
-        done = subprocess.run(
-            command("--sim", *shown, "--argusd", argusd),
-            stdout=stdout,
-            stderr=subprocess.PIPE,
-            text=True,
-            timeout=300,
-            cwd=ROOT,
-            env=environment(tmp_path),
-            check=False,
-        )
-    assert done.returncode == 3
-    assert done.stderr.strip().splitlines() == ["argus-monitor: argusd ended: no such day"]
+    with (
+        os.fdopen(terminal),
+        os.fdopen(ours, "rb") as stdout,
+        start(tmp_path, stdout, "--sim", *shown, "--argusd", argusd) as monitor,
+    ):
+        _, said = monitor.communicate(timeout=300)
+    assert monitor.returncode == 3
+    assert said.decode().strip().splitlines() == ["argus-monitor: argusd ended: no such day"]
     assert [path.name for path in tmp_path.iterdir()] == ["argusd"], "the folder of the socket is removed"
 
 
@@ -188,19 +192,16 @@ while [ "$1" != --control ]; do shift; done
 exec sleep 60"""
 
 
+@pytest.mark.tour(1)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_a_simulation_with_its_screen(number: signal.Signals, tmp_path: Path) -> None:
     argusd, mark = fake_argusd(tmp_path, SCREEN), tmp_path / "shown"
     terminal, ours = pty.openpty()
-    with os.fdopen(terminal), os.fdopen(ours) as stdout:
-        child = subprocess.Popen(
-            command("--sim", "--tui", "--argusd", argusd),
-            stdout=stdout,
-            stderr=subprocess.PIPE,
-            text=True,
-            cwd=ROOT,
-            env=environment(tmp_path),
-        )
+    with (
+        os.fdopen(terminal),
+        os.fdopen(ours, "rb") as stdout,
+        start(tmp_path, stdout, "--sim", "--tui", "--argusd", argusd) as child,
+    ):
         until = time.monotonic() + 120
         while not (mark.exists() and mark.read_text()):
             assert time.monotonic() < until
@@ -208,7 +209,7 @@ def test_a_signal_ends_a_simulation_with_its_screen(number: signal.Signals, tmp_
             time.sleep(0.05)
         child.send_signal(number)
         _, said = child.communicate(timeout=120)
-    assert (child.returncode, said) == (0, "")
+    assert (child.returncode, said) == (0, b"")
     with pytest.raises(ProcessLookupError):
         os.kill(int(mark.read_text()), 0)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["argusd", "shown"]
