@@ -22,6 +22,8 @@ ELSEWHERE: Final = ("blank", "mps2-tests", "stm32f405-tests", "big-endian")
 WITHOUT_ARGUSD: Final = ("m32", "cortex-m4", *BOARDS, *ELSEWHERE)
 SOAK: Final = "soak"
 """The label of the unit tests that compute for long; they are run once, in the release build."""
+WAITING: Final = 2
+"""So many programs of unit tests wait for a robot's clock for long."""
 TOUR: Final = "tour"
 """The mark of tests in Python whose cases are many: most of them are left to the stage `soak`."""
 WIDE: Final = "wide"
@@ -61,8 +63,8 @@ def build(preset: str, run: Run, settings: Sequence[str] = ()) -> None:
 
 
 def ctest(preset: str, run: Run, *options: str) -> None:
-    """Run the unit tests of PRESET that OPTIONS choose."""
-    run(["ctest", "--preset", preset, "-j", str(CORES), *options])
+    """Run the unit tests of PRESET that OPTIONS choose; those of argusd mostly wait, and leave the cores to others."""
+    run(["ctest", "--preset", preset, "-j", str(CORES + WAITING), *options])
 
 
 def build_and_test(preset: str, run: Run, options: Sequence[str] = ("-LE", f"{SOAK}|{WIDE}")) -> None:

@@ -1,44 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Attacks: argusd as a whole, in a process of its own: every exit code with its one line, a session with a
-// robot on a real pty, and an orderly end on SIGTERM.
-#include <fcntl.h>
-#include <poll.h>
-#include <pty.h>
-#include <signal.h>
+// Attacks: argusd as a whole, in a process of its own: every exit code with its one line, and a session with
+// a robot on a real pty.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
-#include "app.h"
-#include "unity.h"
-#include "wire_robot.h"
+#include "app_bench.h"
 
-#define ARGUMENTS_MAX 24
-
-static char out[65536];
-static char err[4096];
 static char config_path[] = "/tmp/argus-app-XXXXXX";
-static int master = -1;
-static int slave = -1;
-static char name[64];
-static robot_t robot;
-static void (*during)(pid_t child, int turn); // NULL: nothing happens besides
-static int await_command = ARCOS_CMD_PULSE;   // SIGTERM waits until the robot has got one of these, too
 
 void setUp(void) {
-    await_command = ARCOS_CMD_PULSE;
-    TEST_ASSERT_EQUAL_INT(0, openpty(&master, &slave, name, NULL, NULL));
-    fcntl(master, F_SETFL, O_NONBLOCK);
-    robot_init(&robot);
-    during = NULL;
+    app_set_up();
 }
 
 void tearDown(void) {
-    close(master);
-    close(slave);
+    app_tear_down();
 }
 
 static void write_config(const char *text) {
@@ -47,88 +24,6 @@ static void write_config(const char *text) {
     TEST_ASSERT_TRUE(fd >= 0);
     TEST_ASSERT_EQUAL_INT((int)strlen(text), write(fd, text, strlen(text)));
     close(fd);
-}
-
-static pid_t start(const char *line, int ends[2][2]) {
-    static char copy[1024];
-    static char program[] = "argusd";
-    char *argv[ARGUMENTS_MAX] = {program};
-    int argc = 1;
-    snprintf(copy, sizeof copy, "%s", line);
-    for (char *word = strtok(copy, " "); word != NULL && argc < ARGUMENTS_MAX - 1; word = strtok(NULL, " ")) {
-        argv[argc++] = word;
-    }
-    TEST_ASSERT_EQUAL_INT(0, pipe(ends[0]));
-    TEST_ASSERT_EQUAL_INT(0, pipe(ends[1]));
-    fflush(NULL);
-    const pid_t child = fork();
-    if (child == 0) {
-        dup2(ends[0][1], STDOUT_FILENO);
-        dup2(ends[1][1], STDERR_FILENO);
-        close(master);
-        const int code = app_main(argc, argv);
-        fflush(NULL);
-        _exit(code);
-    }
-    close(ends[0][1]);
-    close(ends[1][1]);
-    fcntl(ends[0][0], F_SETFL, O_NONBLOCK);
-    fcntl(ends[1][0], F_SETFL, O_NONBLOCK);
-    return child;
-}
-
-static void gather(int fd, char *text, size_t capacity, size_t *used) {
-    const ssize_t got = read(fd, text + *used, capacity - 1 - *used);
-    *used += got > 0 ? (size_t)got : 0;
-    text[*used] = '\0';
-}
-
-// The robot's part for one turn of at most 50 ms; a SIP each turn.
-static void serve(bool present) {
-    uint8_t bytes[256];
-    struct pollfd wait = {.fd = master, .events = POLLIN};
-    poll(&wait, 1, 50);
-    const ssize_t got = read(master, bytes, sizeof bytes);
-    if (!present) {
-        return;
-    }
-    robot_take(&robot, 0, bytes, got > 0 ? (size_t)got : 0);
-    robot_sip(&robot);
-    (void)!write(master, robot.out, robot.used);
-    robot.used = 0;
-}
-
-// Runs argusd; `signal_at` (or NULL): SIGTERM is sent once this text was on standard output. Returns the exit
-// code.
-static int run(const char *line, bool present, const char *signal_at) {
-    int ends[2][2];
-    int status = 0;
-    size_t used[2] = {0, 0};
-    const pid_t child = start(line, ends);
-    bool ended = false;
-    out[0] = err[0] = '\0';
-    for (int turns = 0; !ended && turns < 600; turns++) {
-        serve(present);
-        if (during != NULL) {
-            during(child, turns);
-        }
-        ended = waitpid(child, &status, WNOHANG) == child;
-        gather(ends[0][0], out, sizeof out, &used[0]);
-        gather(ends[1][0], err, sizeof err, &used[1]);
-        const bool got = await_command == ARCOS_CMD_PULSE || robot.commands[await_command] > 0;
-        if (signal_at != NULL && strstr(out, signal_at) != NULL && got) {
-            kill(child, SIGTERM);
-            signal_at = NULL;
-        }
-    }
-    serve(present); // what was written last
-    if (!ended) {
-        kill(child, SIGKILL);
-        waitpid(child, &status, 0);
-    }
-    close(ends[0][0]);
-    close(ends[1][0]);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 static void refused(const char *line, int code, const char *part) {
@@ -194,18 +89,6 @@ void test_check_tells_who_is_there(void) {
     TEST_ASSERT_EQUAL_UINT32(0, robot.commands[ARCOS_CMD_MOVE] + robot.commands[ARCOS_CMD_HEAD]);
 }
 
-void test_a_serial_link_starts_passive_and_says_why_and_sigterm_closes_in_order(void) {
-    char line[256];
-    snprintf(line, sizeof line, "--link serial:%s --goal 1000,0 --json --status 100", name);
-    TEST_ASSERT_EQUAL_INT(0, run(line, true, "HEALTH_CHECK"));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(err, "passive, since a real robot may be at the end"), err);
-    TEST_ASSERT_NOT_NULL(strstr(out, "\"event\":\"SESSION_CLOSED\""));
-    TEST_ASSERT_NOT_NULL(strstr(out, "\"active\":false"));
-    TEST_ASSERT_FALSE(robot.open);
-    TEST_ASSERT_EQUAL_UINT8(ARCOS_CMD_CLOSE, robot.last[0]);
-    TEST_ASSERT_EQUAL_UINT32(0, robot.commands[ARCOS_CMD_MOVE] + robot.commands[ARCOS_CMD_HEAD]);
-}
-
 void test_active_drives(void) {
     char line[256];
     write_config("profile = paper\n"); // the robot of this test does not turn to look
@@ -218,80 +101,6 @@ void test_active_drives(void) {
     TEST_ASSERT_GREATER_THAN_UINT32(0, robot.commands[ARCOS_CMD_STOP]);
     TEST_ASSERT_EQUAL_STRING("", err);
     TEST_ASSERT_FALSE(robot.open);
-}
-
-static int first; // turn of the first signal
-static int pause_ms;
-static int second;
-
-static void signal_twice(pid_t child, int turn) {
-    if (first == 0 && strstr(out, "HEALTH_CHECK") != NULL) {
-        const struct timespec pause = {.tv_nsec = pause_ms * 1000000L};
-        first = turn;
-        kill(child, SIGTERM);
-        nanosleep(&pause, NULL);
-        kill(child, second);
-    }
-}
-
-// A wrapper and the terminal deliver one wish to end twice.
-static void deliver_twice(int signal, int ms) {
-    char line[256];
-    first = 0;
-    pause_ms = ms;
-    second = signal;
-    during = signal_twice;
-    snprintf(line, sizeof line, "--link serial:%s --json --status 0", name);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(0, run(line, true, NULL), err);
-    TEST_ASSERT_TRUE(first > 0);
-    TEST_ASSERT_NOT_NULL(strstr(out, "\"event\":\"SESSION_CLOSED\""));
-    TEST_ASSERT_NULL_MESSAGE(strstr(err, "not closed in order"), err);
-    TEST_ASSERT_FALSE(robot.open);
-}
-
-void test_one_wish_to_end_delivered_twice_is_one(void) {
-    deliver_twice(SIGTERM, 0);
-    tearDown();
-    setUp();
-    deliver_twice(SIGTERM, 5);
-    tearDown();
-    setUp();
-    deliver_twice(SIGHUP, 50);
-    tearDown();
-    setUp();
-    deliver_twice(SIGINT, 300);
-}
-
-static void cut_and_signal(pid_t child, int turn) {
-    static int cut;
-    cut = turn == 0 ? 0 : cut;
-    if (cut == 0 && strstr(out, "HEALTH_CHECK") != NULL) {
-        cut = turn;
-        close(master); // the other end of the line is gone
-        close(slave);
-        master = slave = -1;
-    } else if (cut > 0 && turn == cut + 10) {
-        kill(child, SIGTERM);
-    }
-}
-
-void test_an_end_without_the_link_is_not_clean_and_has_its_own_code(void) {
-    char line[256];
-    during = cut_and_signal;
-    snprintf(line, sizeof line, "--link serial:%s --json --status 0", name);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(6, run(line, true, NULL), err);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(err, "not closed in order, since the link was down"), err);
-    TEST_ASSERT_NULL(strstr(out, "SESSION_CLOSED"));
-    setUp(); // for tearDown()
-}
-
-void test_a_summary_ends_the_lines_for_people(void) {
-    char line[256];
-    snprintf(line, sizeof line, "--link serial:%s --plain --status 0", name);
-    TEST_ASSERT_EQUAL_INT(0, run(line, true, "HEALTH_CHECK"));
-    const char *const last = strstr(out, " SUMMARY mission none; IsNormal; no sonar out of use; ");
-    TEST_ASSERT_NOT_NULL_MESSAGE(last, out);
-    TEST_ASSERT_EQUAL_PTR(out + strlen(out) - 1, strchr(last, '\n'));
 }
 
 void test_a_wait_for_the_port_says_what_for(void) {
