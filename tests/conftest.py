@@ -15,22 +15,28 @@ from hypothesis import settings
 def pytest_configure(config: pytest.Config) -> None:
     """Make the marks known that any test may carry."""
     config.addinivalue_line("markers", "soak: computes for long; tools/dev test --quick leaves it out")
-    config.addinivalue_line("markers", "tour(n): so many of its cases say it; the others are marked soak")
+    config.addinivalue_line(
+        "markers", "tour(few, many): a few of its cases say it; up to MANY are soak, the rest wide"
+    )
     config.addinivalue_line("markers", "wide: a sweep that takes minutes of CPU; tools/dev soak runs it")
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the cases of a tour but N, which are spread over all of them, so that the choice by marks sees it."""
-    tours = defaultdict[tuple[str, int], list[pytest.Item]](list)
+    """Mark the cases of a tour but a few, so that the choice by marks sees it; both kinds are spread over all."""
+    tours = defaultdict[tuple[str, tuple[int, ...]], list[pytest.Item]](list)
     for item in items:
         if mark := item.get_closest_marker("tour"):
-            tours[item.nodeid.partition("[")[0], mark.args[0]].append(item)
-    for (_, count), cases in tours.items():
-        taken = {part * len(cases) // count for part in range(count)}
+            tours[item.nodeid.partition("[")[0], mark.args].append(item)
+    for (_, counts), cases in tours.items():
+        few, many = (
+            {part * len(cases) // count for part in range(count)} for count in (counts[0], counts[-1])
+        )
         for number, case in enumerate(cases):
-            if number not in taken:
-                case.add_marker(pytest.mark.soak)
+            if number not in few:
+                case.add_marker(
+                    pytest.mark.wide if len(counts) > 1 and number not in many else pytest.mark.soak
+                )
 
 
 def pytest_collection_finish() -> None:

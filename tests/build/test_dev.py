@@ -129,7 +129,7 @@ def test_every_c_test_is_run_optimised(commands: dict[str, list[list[str]]]) -> 
 def test_every_python_test_is_run(commands: dict[str, list[list[str]]]) -> None:
     """Those that compute are in python, soak or wide, the others in hil, can or boards."""
     marks = {"python": "not soak and not wide", "soak": "soak and not wide", "wide": "wide"}
-    of_stage = {"soak": ("mark.soak", "mark.tour"), "wide": ("mark.wide",)}
+    of_stage = {"soak": ("mark.soak", "mark.tour"), "wide": ("mark.wide", "mark.tour")}
     for stage, mark in marks.items():
         (pytests,) = (run for run in commands[stage] if "pytest" in run)
         assert pytests[pytests.index("-m", 2) + 1] == mark
@@ -187,24 +187,25 @@ def test_the_modules_are_small_and_need_nothing_but_python() -> None:
             assert one.cyclomatic_complexity <= 10, f"{path}:{one.start_line}: {one.name}"
 
 
-def test_a_tour_leaves_most_cases_to_the_stage_soak(tmp_path: Path) -> None:
-    """Each case is in one of both, none in neither; N are taken, from all over."""
+def test_a_tour_leaves_most_cases_to_soak_and_wide(tmp_path: Path) -> None:
+    """Each case is in one stage, none in no stage; those of each are from all over."""
     shutil.copy(ROOT / "tests/conftest.py", tmp_path)
-    tours = ((12, 3), (7, 2), (2, 5))
+    tours = ((12, "3"), (7, "2"), (2, "5"), (8, "2, 4"))
     (tmp_path / "test_it.py").write_text(
         "import pytest\n"
         + "".join(
-            f"@pytest.mark.tour({count})\n"
+            f"@pytest.mark.tour({counts})\n"
             f"@pytest.mark.parametrize('n', range({cases}))\n"
             f"def test_{cases}(n):\n    pass\n"
-            for cases, count in tours
+            for cases, counts in tours
         )
     )
     chosen = []
-    for choice in ("not soak", "soak"):
+    for choice in ("not soak and not wide", "soak", "wide"):
         command = [sys.executable, "-m", "pytest", "-q", "--collect-only", "-p", "no:cacheprovider", "-m", choice]
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
         found = re.findall(r"test_(\d+)\[(\d+)\]", done.stdout)
         chosen.append({(int(cases), int(n)) for cases, n in found})
-    assert chosen[0] == {(12, 0), (12, 4), (12, 8), (7, 0), (7, 3), (2, 0), (2, 1)}
-    assert chosen[1] == {(cases, n) for cases, _ in tours for n in range(cases)} - chosen[0]
+    assert chosen[0] == {(12, 0), (12, 4), (12, 8), (7, 0), (7, 3), (2, 0), (2, 1), (8, 0), (8, 4)}
+    assert chosen[2] == {(8, 1), (8, 3), (8, 5), (8, 7)}
+    assert chosen[1] == {(cases, n) for cases, _ in tours for n in range(cases)} - chosen[0] - chosen[2]

@@ -197,7 +197,7 @@ def drive(count: int) -> list[bytes]:
     ]
 
 
-@pytest.mark.tour(2)
+@pytest.mark.tour(2, 4)
 @pytest.mark.parametrize("at_once", [True, False], ids=["each chunk", "many chunks"])
 @pytest.mark.parametrize("kind", DAMAGE)
 def test_of_ten_thousand_sips_no_intact_one_is_lost_and_none_made_up(kind: str, at_once: bool) -> None:

@@ -63,7 +63,7 @@ def assert_covered(outcome: Outcome, sonar: int, *kinds: str, within_s: float = 
     assert outcome.driven_mm > 1000, outcome.mission.to_json()
 
 
-@pytest.mark.tour(3)
+@pytest.mark.tour(3, 6)
 @pytest.mark.parametrize(("sonar", "value"), STUCK)
 def test_what_stays_at_the_least_is_stuck(hall: str, sonar: int, value: int) -> None:
     assert_covered(drive(hall, f"stuck:{sonar}:value={value}"), sonar, "stuck")
@@ -85,7 +85,7 @@ def test_what_is_beyond_the_longest_is_as_if_nothing_were_heard(hall: str, sonar
     assert beyond.driven_mm > 1000
 
 
-@pytest.mark.tour(2)
+@pytest.mark.tour(2, 4)
 @pytest.mark.parametrize(("sonar", "value"), SPORADIC)
 def test_what_leaps_to_the_least_and_back_is_intermittent(hall: str, sonar: int, value: int) -> None:
     fault = f"intermittent:{sonar}:p=0.3:value={value}"

@@ -68,7 +68,7 @@ def odometry(x: float, y: float, deg: float) -> Act:
     return act
 
 
-@pytest.mark.tour(4)
+@pytest.mark.tour(4, 8)
 @pytest.mark.parametrize("profile", ["argus", "paper"])
 @pytest.mark.parametrize(
     "to", [(0, 0, 0), (20000, 0, 0), (-700, 300, 0), (1500, 900, 0), (2500, 0, 0), (0, 0, 90), (1500, 0, -60)]
@@ -99,7 +99,7 @@ def test_a_leap_within_a_silence_in_motion_ends_the_course(corridor: str, silent
     assert "GOAL_REACHED" not in told
 
 
-@pytest.mark.tour(4)
+@pytest.mark.tour(4, 8)
 @pytest.mark.parametrize(
     ("x", "y", "deg"),
     [(160, 0, 0), (-160, 0, 0), (-300, 0, 0), (0, 160, 0), (0, 0, 6), (0, 0, -12)],
@@ -240,7 +240,7 @@ def test_counters_that_restart_in_a_long_silence_end_the_course(
     assert "GOAL_REACHED" not in told
 
 
-@pytest.mark.tour(4)
+@pytest.mark.tour(4, 8)
 @pytest.mark.parametrize("at_s", [2.5, 3.0, 3.5, 4.0, 5.0])
 @pytest.mark.parametrize("gone_s", [0.7, 1.5, 5.0])
 def test_a_long_silence_alone_does_not(corridor: str, at_s: float, gone_s: float) -> None:
@@ -292,7 +292,7 @@ def test_lifted_wheels_are_told_and_end_the_course(
     assert "MISSION_FAILED" in names(outcome)
 
 
-@pytest.mark.tour(3)
+@pytest.mark.tour(3, 6)
 @pytest.mark.parametrize("seed", range(1, 4))
 @pytest.mark.parametrize("world", ["office", "box-ahead", "lab", "demo"])
 def test_lifted_wheels_are_told_in_the_worlds_that_are_there(world: str, seed: int) -> None:

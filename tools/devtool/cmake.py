@@ -25,7 +25,7 @@ SOAK: Final = "soak"
 WAITING: Final = 2
 """So many programs of unit tests wait for a robot's clock for long."""
 TOUR: Final = "tour"
-"""The mark of tests in Python whose cases are many: most of them are left to the stage `soak`."""
+"""The mark of tests in Python whose cases are many: most of them are left to the stages `soak` and `wide`."""
 WIDE: Final = "wide"
 """The label of sweeps that take minutes of CPU; `tools/dev soak` runs them."""
 

@@ -65,7 +65,7 @@ def wide_tests(run: Run) -> None:
         build(preset, run)
     ctest("release", run, "-L", WIDE)
     ctest("sanitize", run, "-L", f"{SOAK}|{WIDE}")
-    run([*PYTEST, *files_with(WIDE), "-m", WIDE, *SHARED_OUT])
+    run([*PYTEST, *files_with(WIDE, TOUR), "-m", WIDE, *SHARED_OUT])
 
 
 def hil_tests(run: Run) -> str | None:

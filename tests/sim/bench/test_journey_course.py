@@ -47,7 +47,7 @@ def follow(start: Pose, course: tuple[tuple[float, float], ...], drift_deg_m: fl
     return poses
 
 
-@pytest.mark.tour(3)
+@pytest.mark.tour(3, 6)
 @pytest.mark.parametrize(("drift", "off_mm"), [(DRIFT_DEG_M, 90.0), (ROUGH_DRIFT_DEG_M, 400.0)])
 @pytest.mark.parametrize(("name", "seed"), WORLDS)
 def test_drift_leads_into_no_wall_and_cancels_at_the_goal(

@@ -105,7 +105,7 @@ def test_a_damaged_line_costs_its_packet_alone(tmp_path: Path) -> None:
 LONG = ROBOT * (1 + 100_000 // len(ROBOT))
 
 
-@pytest.mark.tour(4)
+@pytest.mark.tour(4, 8)
 @pytest.mark.parametrize("count", [1, 8, 20], ids=lambda n: f"{n} times")
 @pytest.mark.parametrize("way", ["literal", "numbers", "brackets", "prefixed brackets"])
 def test_a_long_line_is_read_whole(way: str, count: int, tmp_path: Path) -> None:

@@ -72,7 +72,7 @@ def read(path: Path, data: bytes, form: str | None = None) -> tuple[str, list[Ch
     return log.format.name, list(log), log.damage
 
 
-@pytest.mark.tour(8)
+@pytest.mark.tour(8, 16)
 @pytest.mark.parametrize("text", NAMES, indirect=True)
 @pytest.mark.parametrize("ends", [b"\n", b"\r\n"])
 def test_a_mark_at_the_head_changes_nothing(text: bytes, ends: bytes, tmp_path: Path) -> None:

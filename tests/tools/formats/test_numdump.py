@@ -89,7 +89,7 @@ def test_a_line_that_is_none_is_told(line: str, tmp_path: Path) -> None:
     assert [entry.place for entry in log.damage] == ["line 5"]
 
 
-@pytest.mark.tour(40)
+@pytest.mark.tour(40, 80)
 @pytest.mark.parametrize("name", DUMPS)
 @pytest.mark.parametrize("seed", range(20))
 def test_random_damage_is_no_crash(name: str, seed: int, tmp_path: Path) -> None:

@@ -232,7 +232,7 @@ SEEDS: dict[str, bytes] = {
 }
 
 
-@pytest.mark.tour(66)
+@pytest.mark.tour(66, 132)
 @pytest.mark.parametrize("name", SEEDS)
 @pytest.mark.parametrize("seed", range(60))
 def test_random_damage_of_any_form_is_no_crash(name: str, seed: int, tmp_path: Path) -> None:

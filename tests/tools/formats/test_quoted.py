@@ -30,7 +30,7 @@ QUOTES: dict[str, Callable[[str], str]] = {
 }
 
 
-@pytest.mark.tour(9)
+@pytest.mark.tour(9, 18)
 @pytest.mark.parametrize("quote", QUOTES)
 @pytest.mark.parametrize("name", FORMS)
 def test_a_quoted_log_is_read(name: str, quote: str, tmp_path: Path) -> None:

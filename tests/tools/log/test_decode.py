@@ -291,7 +291,7 @@ def random_session(rng: random.Random) -> list[Chunk]:
     return chunks
 
 
-@pytest.mark.tour(30)
+@pytest.mark.tour(30, 60)
 @pytest.mark.parametrize("seed", range(150))
 def test_many_at_once_are_the_same_lines(seed: int) -> None:
     chunks = random_session(random.Random(seed))
