@@ -108,7 +108,7 @@ yamlish = st.lists(
 ).map("".join)
 
 
-@settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @example("a: !!bool perhaps")
 @example("a: !!timestamp never")
 @example("a: !!int ''")

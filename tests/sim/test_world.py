@@ -417,7 +417,7 @@ mappish = st.lists(
 ).map("\n".join)
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=200, deadline=None)
 @example("2D-Map\n\u2028LINES\x1c1 2 3 4")
 @given(mappish.map(lambda text: "2D-Map\n" + text) | st.text())
 def test_any_text_is_a_map_or_one_line(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
