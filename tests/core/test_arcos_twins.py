@@ -338,6 +338,7 @@ class Stream:
         return found, (c.packets, c.bad_checksum, c.bad_count, c.junk_bytes, c.timed_out)
 
 
+@pytest.mark.soak
 @pytest.mark.usefixtures("_no_undefined_behaviour")
 @pytest.mark.parametrize("least", [FEW_PACKETS, pytest.param(PACKETS, marks=pytest.mark.wide)])
 def test_streams_give_the_same_packets_at_the_same_reads(twin: Twin, least: int) -> None:

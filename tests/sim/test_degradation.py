@@ -64,6 +64,7 @@ def test_what_grows_is_announced_once_and_before_it_convicts(sonar: int, fault: 
     assert not others, f"{CASE} with {fault}"
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("repaired", [True, False])
 def test_what_had_failed_starts_on_probation(repaired: bool) -> None:
     assert failed().final[3] == ("DISABLED", "off")

@@ -94,6 +94,7 @@ def test_a_reader_that_leaves_is_no_error() -> None:
     assert (process.returncode, err) == (0, b"")
 
 
+@pytest.mark.soak
 def test_resume_runs_what_is_missing_and_nothing_twice(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

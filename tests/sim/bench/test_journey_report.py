@@ -42,6 +42,7 @@ def test_the_report_has_each_row_and_says_what_it_is() -> None:
     assert "| rooms: speed over the ideal | >= 0.9 |" in text
 
 
+@pytest.mark.soak
 def test_the_files_are_written_with_a_picture_of_the_worst(tmp_path: Path) -> None:
     text = write_report(tmp_path, RECORDS, META, plots=True)
     assert text.index("- `argus/judge/rooms/lab/2` 0.25, reached after 600 s") < text.index(

@@ -105,6 +105,7 @@ def test_a_file_that_is_no_table(tmp_path: Path, text: str, said: str) -> None:
         read_table(tmp_path / "t.csv")
 
 
+@pytest.mark.soak
 def test_pictures_of_few_results(tmp_path: Path) -> None:
     study_pictures.draw(tmp_path, [record("adaptive", "3"), record("paper", "none", word="failed")])
     assert {path.name for path in tmp_path.iterdir()} == {"journeys.png", "price.png"}

@@ -21,6 +21,7 @@ def told(outcome: Outcome) -> list[tuple[float, str, int]]:
     return [(event.t_s, event.name, event.value) for event in outcome.events if "WHEEL" in event.name]
 
 
+@pytest.mark.soak
 def test_the_error_at_5_m_is_cut_to_a_fifth() -> None:
     rows = wheel.run()
     assert len(rows) == 6
