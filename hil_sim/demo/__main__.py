@@ -246,9 +246,8 @@ def _title(arguments: argparse.Namespace) -> str:
 def _conclude(
     arguments: argparse.Namespace, scenario: Scenario, recording: Recording, verdict: Verdict
 ) -> None:
-    from hil_sim.demo import (
-        picture,
-    )  # what draws takes half a second to import: no wrong argument waits for it
+    # What draws takes half a second to import: no wrong argument waits for it.
+    from hil_sim.demo import picture
 
     path = arguments.out / "demo.png"
     picture.draw(
