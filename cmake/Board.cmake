@@ -102,7 +102,8 @@ add_custom_command(TARGET argus_image POST_BUILD VERBATIM
 
 # The manager as in the image, played a tape by tests/target/replay.c; its clock is the MPS2 board's.
 if(ARGUS_BOARD STREQUAL "mps2_an386")
-    add_executable(replay tests/target/replay.c tests/target/vectors.c hal/board/config.c hal/posix/crc32.c)
+    add_executable(replay tests/target/replay.c tests/target/vectors.c hal/board/config.c hal/board/word.c
+                   hal/posix/crc32.c)
     set_target_properties(replay PROPERTIES SUFFIX .elf C_EXTENSIONS ON)
     target_include_directories(replay PRIVATE hal hal/include)
     target_compile_options(replay PRIVATE ${whole_program})

@@ -9,7 +9,7 @@
 #define SECTION "[argus]"
 #define PAIR_BYTES 8u
 
-// Texts in a row and numbers as they fit: a table of pointers would take half as much again.
+// Texts in a row, and numbers as they fit.
 #define KEY(key, def, min, max, unit, choices, meaning) #key "\0"
 #define CHOICES(key, def, min, max, unit, choices, meaning) choices "\0"
 #define MINIMUM(key, def, min, max, unit, choices, meaning) (min),
@@ -22,15 +22,8 @@ static const int32_t maxima[BOARD_CONFIG_COUNT] = {ARGUS_CONFIG_TABLE(MAXIMUM)};
 _Static_assert(sizeof(argus_config_t) == BOARD_CONFIG_COUNT * sizeof(int32_t),
                "the settings are one int32_t for each row of their table");
 
-static const char *nth(const char *texts, int row) {
-    for (; row > 0; row--) {
-        texts += strlen(texts) + 1;
-    }
-    return texts;
-}
-
 const char *board_config_key(int row) {
-    return nth(keys, row);
+    return board_word_nth(keys, row);
 }
 
 int32_t board_config_value(const argus_config_t *config, int row) {
@@ -43,30 +36,17 @@ static void put_value(argus_config_t *config, int row, int32_t value) {
     memcpy((char *)config + (size_t)row * sizeof value, &value, sizeof value);
 }
 
-static bool is_same(const char *name, const char *text, size_t length) {
-    return strlen(name) == length && memcmp(name, text, length) == 0;
-}
-
-static int row_of(const char *key, size_t length) {
-    for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
-        if (is_same(board_config_key(row), key, length)) {
-            return row;
-        }
-    }
-    return -1;
-}
-
 // The value of one of "a|b|c", or -1.
-static int32_t choice_of(const char *choices, const char *text, size_t length) {
+static int32_t choice_of(const char *choices, board_word_t word) {
     const char *at = choices;
-    for (int32_t value = 0; length > 0; value++) {
+    for (int32_t value = 0; word.length > 0; value++) {
         size_t size = 0;
         // The analyzer does not follow texts that stand in a row, each with its end.
         // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
         while (at[size] != '\0' && at[size] != '|') {
             size++;
         }
-        if (size == length && memcmp(at, text, length) == 0) {
+        if (size == word.length && memcmp(at, word.at, size) == 0) {
             return value;
         }
         if (at[size] == '\0') {
@@ -77,37 +57,19 @@ static int32_t choice_of(const char *choices, const char *text, size_t length) {
     return -1;
 }
 
-// A whole number of at most 9 digits, which is more than any range has.
-static bool number_of(const char *text, size_t length, int32_t *value) {
-    const size_t sign = length > 0 && (text[0] == '-' || text[0] == '+') ? 1 : 0;
-    int32_t number = 0;
-    if (length == sign || length - sign > 9) {
-        return false;
-    }
-    for (size_t i = sign; i < length; i++) {
-        if (text[i] < '0' || text[i] > '9') {
-            return false;
-        }
-        number = number * 10 + (text[i] - '0');
-    }
-    *value = text[0] == '-' ? -number : number;
-    return true;
-}
-
-board_config_answer_t board_config_set(argus_config_t *config, const char *key, size_t key_length,
-                                       const char *value, size_t value_length) {
-    const int row = row_of(key, key_length);
+board_config_answer_t board_config_set(argus_config_t *config, board_word_t key, board_word_t value) {
+    const int row = board_word_row(key, keys);
     int32_t number = 0;
     if (row < 0) {
         return BOARD_CONFIG_NO_KEY;
     }
-    const char *const choices = nth(choices_of, row);
-    if (strlen(choices) > 0) {
-        number = choice_of(choices, value, value_length);
+    const char *const choices = board_word_nth(choices_of, row);
+    if (*choices != '\0') {
+        number = choice_of(choices, value);
         if (number < 0) {
             return BOARD_CONFIG_NO_VALUE;
         }
-    } else if (!number_of(value, value_length, &number)) {
+    } else if (!board_word_number(value, &number)) {
         return BOARD_CONFIG_NO_VALUE;
     }
     if (number < minima[row] || number > maxima[row]) {
@@ -117,30 +79,18 @@ board_config_answer_t board_config_set(argus_config_t *config, const char *key, 
     return BOARD_CONFIG_TAKEN;
 }
 
-typedef struct {
-    const char *at;
-    size_t length;
-} piece_t;
-
 static bool is_blank(char character) {
     return character == ' ' || character == '\t' || character == '\r';
 }
 
-static piece_t trimmed(const char *from, const char *to) {
+static board_word_t trimmed(const char *from, const char *to) {
     while (from < to && is_blank(*from)) {
         from++;
     }
     while (to > from && is_blank(to[-1])) {
         to--;
     }
-    return (piece_t){from, (size_t)(to - from)};
-}
-
-static const char *find(const char *from, const char *to, char character) {
-    while (from < to && *from != character) {
-        from++;
-    }
-    return from;
+    return (board_word_t){from, (size_t)(to - from)};
 }
 
 // A remark begins a line, or stands behind a blank.
@@ -154,26 +104,25 @@ static const char *end_of_value(const char *from, const char *to) {
 }
 
 static board_config_answer_t take_line(argus_config_t *config, const char *from, const char *to) {
-    const piece_t line = trimmed(from, to);
-    if (line.length == 0 || line.at[0] == '#' || line.at[0] == ';' ||
-        is_same(SECTION, line.at, line.length)) {
+    const board_word_t line = trimmed(from, to);
+    if (line.length == 0 || line.at[0] == '#' || line.at[0] == ';' || board_word_is(line, SECTION)) {
         return BOARD_CONFIG_TAKEN;
     }
     const char *const end = line.at + line.length;
-    const char *const equals = find(line.at, end, '=');
+    const char *const equals = board_word_find(line.at, end, '=');
     if (equals == end) {
         return BOARD_CONFIG_NO_LINE;
     }
-    const piece_t key = trimmed(line.at, equals);
-    const piece_t value = trimmed(equals + 1, end_of_value(equals + 1, end));
-    return board_config_set(config, key.at, key.length, value.at, value.length);
+    const board_word_t key = trimmed(line.at, equals);
+    const board_word_t value = trimmed(equals + 1, end_of_value(equals + 1, end));
+    return board_config_set(config, key, value);
 }
 
 board_config_answer_t board_config_ini(argus_config_t *config, const char *text, unsigned *line) {
     const char *const end = text + strlen(text);
     *line = 0;
     while (text < end) {
-        const char *const stop = find(text, end, '\n');
+        const char *const stop = board_word_find(text, end, '\n');
         (*line)++;
         const board_config_answer_t answer = take_line(config, text, stop);
         if (answer != BOARD_CONFIG_TAKEN) {
@@ -184,25 +133,18 @@ board_config_answer_t board_config_ini(argus_config_t *config, const char *text,
     return BOARD_CONFIG_TAKEN;
 }
 
+// In the order of what they explain.
 const char *board_config_explain(board_config_answer_t answer) {
-    static const char *const texts[] = {
-        [BOARD_CONFIG_TAKEN] = "taken",
-        [BOARD_CONFIG_NO_KEY] = "no such key",
-        [BOARD_CONFIG_NO_VALUE] = "neither a whole number nor one of its choices",
-        [BOARD_CONFIG_NO_RANGE] = "out of its range",
-        [BOARD_CONFIG_NO_LINE] = "write key = value",
-    };
-    return texts[answer];
+    return board_word_nth(
+        "taken\0no such key\0neither a whole number nor one of its choices\0out of its range\0"
+        "write key = value\0",
+        (int)answer);
 }
 
 const char *board_config_fault_text(argus_config_fault_t fault) {
-    static const char *const texts[] = {
-        [ARGUS_CONFIG_OK] = "ok",
-        [ARGUS_CONFIG_RANGE] = "a setting is out of its range",
-        [ARGUS_CONFIG_DRIVING] = "S5: lower speed_mm_s or raise object_range_mm",
-        [ARGUS_CONFIG_STEP] = "S5: lower step_mm or raise check_range_mm",
-    };
-    return texts[fault];
+    return board_word_nth("ok\0a setting is out of its range\0S5: lower speed_mm_s or raise object_range_mm\0"
+                          "S5: lower step_mm or raise check_range_mm\0",
+                          (int)fault);
 }
 
 static void put32(uint8_t *bytes, uint32_t value) {

@@ -5,6 +5,7 @@
 #define BOARD_CONFIG_H
 
 #include "argus/argus.h"
+#include "board/word.h"
 
 enum {
 #define BOARD_CONFIG_ROW(key, def, min, max, unit, choices, meaning) BOARD_CONFIG_##key,
@@ -25,8 +26,7 @@ typedef enum {
 } board_config_answer_t;
 
 // Sets one key. Not TAKEN: nothing is changed.
-board_config_answer_t board_config_set(argus_config_t *config, const char *key, size_t key_length,
-                                       const char *value, size_t value_length);
+board_config_answer_t board_config_set(argus_config_t *config, board_word_t key, board_word_t value);
 
 // Sets what an INI text says, up to the first line that is wrong, whose number from 1 `*line` becomes.
 board_config_answer_t board_config_ini(argus_config_t *config, const char *text, unsigned *line);

@@ -3,6 +3,7 @@
 #include "board/line.h"
 
 #define DIGITS_MAX 10
+#define FRONT_SONARS 8
 
 static void add(board_line_t *self, char character) {
     if (self->at == self->end) {
@@ -121,6 +122,15 @@ void board_line_seconds(board_line_t *self, const char *name, uint32_t ms) {
     add_number(self, ms / 1000u, 1);
     add(self, '.');
     add_number(self, ms % 1000u, 3);
+    self->comma = true;
+}
+
+// "sonar/front/03", "sonar/rear/11"
+void board_line_sonar(board_line_t *self, const char *name, int sonar) {
+    board_line_name(self, name);
+    add_text(self, sonar < FRONT_SONARS ? "\"sonar/front/" : "\"sonar/rear/");
+    add_number(self, (uint32_t)sonar, 2);
+    add(self, '"');
     self->comma = true;
 }
 

@@ -21,6 +21,7 @@ void board_line_name(board_line_t *self, const char *name);
 void board_line_text(board_line_t *self, const char *name, const char *value);
 void board_line_int(board_line_t *self, const char *name, int32_t value);
 void board_line_bool(board_line_t *self, const char *name, bool value);
+void board_line_sonar(board_line_t *self, const char *name, int sonar);     // its array and number
 void board_line_hex(board_line_t *self, const char *name, uint32_t value);  // as text, 8 digits
 void board_line_seconds(board_line_t *self, const char *name, uint32_t ms); // 1234 is written as 1.234
 

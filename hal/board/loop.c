@@ -8,6 +8,7 @@
 #include "board/memory.h"
 #include "board/orders.h"
 #include "board/report.h"
+#include "board/word.h"
 
 // A robot that was left driving is stopped by its own watchdog (2 s by default) before it is spoken to.
 #define QUIET_MS 2500u
@@ -215,13 +216,12 @@ static void feed(uint32_t began_ms) {
     }
 }
 
+// In the order of board_settings_t.
+static const char *origin_of(board_settings_t settings) {
+    return board_word_nth("built\0stored\0damaged\0refused\0", (int)settings);
+}
+
 static BOARD_APART void begin(void) {
-    static const char *const from[] = {
-        [BOARD_SETTINGS_BUILT] = "built",
-        [BOARD_SETTINGS_STORED] = "stored",
-        [BOARD_SETTINGS_DAMAGED] = "damaged",
-        [BOARD_SETTINGS_REFUSED] = "refused",
-    };
     self.out = board_console_out();
     board_memory_init(&self.memory);
     const board_settings_t settings = board_memory_settings(&self.memory, &self.config);
@@ -234,7 +234,7 @@ static BOARD_APART void begin(void) {
     self.core = argus_init(&self.storage, &self.config, self.start_ms);
     board_memory_load(&self.memory, self.core);
     board_bus_open(&self.config, self.start_ms);
-    board_report_start(self.out, board_config_digest(&self.config), from[settings]);
+    board_report_start(self.out, board_config_digest(&self.config), origin_of(settings));
     board_console_kick();
 }
 

@@ -8,33 +8,14 @@
 
 static const char taken[] = "taken";
 
-typedef struct {
-    const char *at;
-    size_t length;
-} word_t;
+// In the order of argus_op_t, from its first on.
+static const char ops[] = "stop\0go\0recheck\0move\0turn\0passive\0active\0retest\0pin\0unpin\0disable\0";
+#define NUMBERED                                                                              \
+    (1u << ARGUS_OP_MOVE | 1u << ARGUS_OP_TURN | 1u << ARGUS_OP_RETEST | 1u << ARGUS_OP_PIN | \
+     1u << ARGUS_OP_UNPIN | 1u << ARGUS_OP_DISABLE)
 
-typedef struct {
-    const char *word;
-    argus_op_t op;
-    bool has_number;
-} op_t;
-
-static const op_t ops[] = {
-    {"stop", ARGUS_OP_STOP, false},       {"go", ARGUS_OP_GO, false},
-    {"recheck", ARGUS_OP_RECHECK, false}, {"move", ARGUS_OP_MOVE, true},
-    {"turn", ARGUS_OP_TURN, true},        {"passive", ARGUS_OP_PASSIVE, false},
-    {"active", ARGUS_OP_ACTIVE, false},   {"retest", ARGUS_OP_RETEST, true},
-    {"pin", ARGUS_OP_PIN, true},          {"unpin", ARGUS_OP_UNPIN, true},
-    {"disable", ARGUS_OP_DISABLE, true},
-};
-
-static const struct {
-    const char *word;
-    board_wish_t wish;
-} wishes[] = {
-    {"status", BOARD_WISH_STATUS},     {"settings", BOARD_WISH_SETTINGS}, {"save", BOARD_WISH_SAVE},
-    {"shutdown", BOARD_WISH_SHUTDOWN}, {"restart", BOARD_WISH_RESTART},
-};
+// In the order of board_wish_t, likewise.
+static const char wishes[] = "status\0settings\0save\0shutdown\0restart\0";
 
 bool board_orders_take(board_orders_t *self, uint8_t byte) {
     if (byte == '\n' || byte == '\r') {
@@ -48,11 +29,11 @@ bool board_orders_take(board_orders_t *self, uint8_t byte) {
     return false;
 }
 
-static word_t next_word(const char **at) {
+static board_word_t next_word(const char **at) {
     while (**at == ' ') {
         (*at)++;
     }
-    word_t word = {.at = *at};
+    board_word_t word = {.at = *at};
     while (**at != ' ' && **at != '\0') {
         (*at)++;
         word.length++;
@@ -60,45 +41,33 @@ static word_t next_word(const char **at) {
     return word;
 }
 
-static bool is_word(word_t word, const char *text) {
-    return word.length == strlen(text) && memcmp(word.at, text, word.length) == 0;
-}
-
-// A whole number of at most 6 digits, up to `stop`; false: something else.
-static bool number_of(const char **at, char stop, int32_t *value) {
-    const bool is_negative = **at == '-';
-    int digits = 0;
-    *value = 0;
-    for (*at += is_negative; **at >= '0' && **at <= '9' && digits <= 6; (*at)++, digits++) {
-        *value = *value * 10 + (**at - '0');
-    }
-    *value = is_negative ? -*value : *value;
-    return digits > 0 && digits <= 6 && **at == stop;
-}
-
-static const char *obey_op(const op_t *op, const char *rest, argus_t *core, uint32_t now_ms) {
+static const char *obey_op(argus_op_t op, const char *rest, argus_t *core, uint32_t now_ms) {
     int32_t argument = 0;
-    const word_t word = next_word(&rest);
-    const char *number = word.at;
-    if (op->has_number ? !number_of(&number, '\0', &argument) : word.length > 0) {
-        return op->has_number ? "give one whole number" : "nothing may follow it";
+    const bool has_number = (NUMBERED >> op & 1u) != 0;
+    const board_word_t word = next_word(&rest);
+    if (has_number ? !board_word_number(word, &argument) || next_word(&rest).length > 0 : word.length > 0) {
+        return has_number ? "give one whole number" : "nothing may follow it";
     }
-    return argus_operator(core, now_ms, op->op, argument) ? taken : "it cannot be done now";
+    return argus_operator(core, now_ms, op, argument) ? taken : "it cannot be done now";
+}
+
+// "X,Y"
+static bool point_of(board_word_t word, argus_point_t *point) {
+    const char *const end = word.at + word.length;
+    const char *const comma = board_word_find(word.at, end, ',');
+    return comma < end &&
+           board_word_number((board_word_t){word.at, (size_t)(comma - word.at)}, &point->x_mm) &&
+           board_word_number((board_word_t){comma + 1, (size_t)(end - comma - 1)}, &point->y_mm);
 }
 
 static const char *obey_course(const char *rest, argus_t *core) {
     argus_point_t points[BOARD_ORDER_POINTS_MAX];
     uint16_t count = 0;
-    for (word_t word = next_word(&rest); word.length > 0; word = next_word(&rest)) {
-        const char *at = word.at;
+    for (board_word_t word = next_word(&rest); word.length > 0; word = next_word(&rest)) {
         if (count == BOARD_ORDER_POINTS_MAX) {
             return "at most 16 points";
         }
-        if (!number_of(&at, ',', &points[count].x_mm)) {
-            return "give points as X,Y in mm";
-        }
-        at++;
-        if (!number_of(&at, *rest, &points[count].y_mm) || at != rest) {
+        if (!point_of(word, &points[count])) {
             return "give points as X,Y in mm";
         }
         count++;
@@ -108,13 +77,12 @@ static const char *obey_course(const char *rest, argus_t *core) {
 
 static const char *obey_set(const char *rest, argus_config_t *config) {
     argus_config_t changed = *config;
-    const word_t key = next_word(&rest);
-    const word_t value = next_word(&rest);
+    const board_word_t key = next_word(&rest);
+    const board_word_t value = next_word(&rest);
     if (next_word(&rest).length > 0) {
         return "give a key and a value";
     }
-    const board_config_answer_t answer =
-        board_config_set(&changed, key.at, key.length, value.at, value.length);
+    const board_config_answer_t answer = board_config_set(&changed, key, value);
     if (answer != BOARD_CONFIG_TAKEN) {
         return board_config_explain(answer);
     }
@@ -125,29 +93,24 @@ static const char *obey_set(const char *rest, argus_config_t *config) {
     return "from the next start on, if it is saved";
 }
 
-static const char *obey_word(word_t word, const char *rest, argus_t *core, uint32_t now_ms,
+static const char *obey_word(board_word_t word, const char *rest, argus_t *core, uint32_t now_ms,
                              argus_config_t *config) {
-    for (size_t i = 0; i < sizeof ops / sizeof ops[0]; i++) {
-        if (is_word(word, ops[i].word)) {
-            return obey_op(&ops[i], rest, core, now_ms);
-        }
+    const int op = board_word_row(word, ops);
+    if (op >= 0) {
+        return obey_op((argus_op_t)(ARGUS_OP_STOP + op), rest, core, now_ms);
     }
-    if (is_word(word, "course")) {
+    if (board_word_is(word, "course")) {
         return obey_course(rest, core);
     }
-    if (is_word(word, "set")) {
+    if (board_word_is(word, "set")) {
         return obey_set(rest, config);
     }
     return "no such order";
 }
 
-static board_wish_t wish_of(word_t word, const char *rest) {
-    for (size_t i = 0; i < sizeof wishes / sizeof wishes[0] && next_word(&rest).length == 0; i++) {
-        if (is_word(word, wishes[i].word)) {
-            return wishes[i].wish;
-        }
-    }
-    return BOARD_WISH_NONE;
+static board_wish_t wish_of(board_word_t word, const char *rest) {
+    const bool alone = next_word(&rest).length == 0;
+    return alone ? (board_wish_t)(BOARD_WISH_NONE + 1 + board_word_row(word, wishes)) : BOARD_WISH_NONE;
 }
 
 const char *board_orders_obey(board_orders_t *self, argus_t *core, uint32_t now_ms, argus_config_t *config,
@@ -161,7 +124,7 @@ const char *board_orders_obey(board_orders_t *self, argus_t *core, uint32_t now_
         return "too long, or not plain text";
     }
     const char *rest = self->line;
-    const word_t word = next_word(&rest);
+    const board_word_t word = next_word(&rest);
     *wish = wish_of(word, rest);
     return *wish != BOARD_WISH_NONE ? taken : obey_word(word, rest, core, now_ms, config);
 }

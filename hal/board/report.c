@@ -4,23 +4,15 @@
 
 #include "board/board.h"
 #include "board/line.h"
+#include "board/word.h"
 
-#define FRONT_SONARS 8
-#define SONAR_DIGITS_AT(front) ((front) ? 12u : 11u)
-
-// "sonar/front/03", "sonar/rear/11", or the event's subject.
+// A sonar, or the event's subject.
 static void put_name(board_line_t *line, const argus_event_t *event) {
-    char name[] = "sonar/front/00";
-    char rear[] = "sonar/rear/00";
-    if (event->sonar < 0 || event->sonar >= ARGUS_SONARS) {
+    if (event->sonar >= 0 && event->sonar < ARGUS_SONARS) {
+        board_line_sonar(line, "name", event->sonar);
+    } else {
         board_line_text(line, "name", argus_name(ARGUS_NAME_SUBJECT, event->id));
-        return;
     }
-    char *const text = event->sonar < FRONT_SONARS ? name : rear;
-    const size_t at = SONAR_DIGITS_AT(event->sonar < FRONT_SONARS);
-    text[at] = (char)('0' + event->sonar / 10);
-    text[at + 1] = (char)('0' + event->sonar % 10);
-    board_line_text(line, "name", text);
 }
 
 // The seven keys that every line has.
@@ -100,12 +92,9 @@ static board_line_t begin_note(board_ring_t *ring, uint32_t t_ms, const char *na
     return line;
 }
 
+// In the order of board_reset_t.
 static const char *reason_name(board_reset_t reason) {
-    static const char *const names[] = {
-        [BOARD_RESET_POWER] = "power",       [BOARD_RESET_PIN] = "pin",     [BOARD_RESET_ORDER] = "order",
-        [BOARD_RESET_WATCHDOG] = "watchdog", [BOARD_RESET_FAULT] = "fault", [BOARD_RESET_BROWN] = "brownout",
-    };
-    return names[reason];
+    return board_word_nth("power\0pin\0order\0watchdog\0fault\0brownout\0", (int)reason);
 }
 
 bool board_report_start(board_ring_t *ring, uint32_t digest, const char *settings) {

@@ -167,7 +167,8 @@ static void take_text(const char *line) {
     int x = 0;
     int y = 0;
     if (sscanf(line, "set %63s %63s", key, value) == 2) {
-        if (board_config_set(&config, key, strlen(key), value, strlen(value)) != BOARD_CONFIG_TAKEN) {
+        if (board_config_set(&config, (board_word_t){key, strlen(key)},
+                             (board_word_t){value, strlen(value)}) != BOARD_CONFIG_TAKEN) {
             fail(line);
         }
     } else if (sscanf(line, "point %d %d", &x, &y) == 2 && point_count < ARGUS_WAYPOINTS_MAX) {

@@ -18,7 +18,7 @@ void setUp(void) {
 }
 
 static board_config_answer_t set(const char *key, const char *value) {
-    return board_config_set(&config, key, strlen(key), value, strlen(value));
+    return board_config_set(&config, (board_word_t){key, strlen(key)}, (board_word_t){value, strlen(value)});
 }
 
 static board_config_answer_t read_ini(const char *text, unsigned wanted_line) {
@@ -47,6 +47,15 @@ void test_ranges_of_the_table(void) {
     }
     ARGUS_CONFIG_TABLE(CHECK)
 #undef CHECK
+}
+
+void test_every_answer_has_its_own_text(void) {
+    TEST_ASSERT_EQUAL_STRING("taken", board_config_explain(BOARD_CONFIG_TAKEN));
+    TEST_ASSERT_EQUAL_STRING("no such key", board_config_explain(BOARD_CONFIG_NO_KEY));
+    TEST_ASSERT_EQUAL_STRING("out of its range", board_config_explain(BOARD_CONFIG_NO_RANGE));
+    TEST_ASSERT_EQUAL_STRING("write key = value", board_config_explain(BOARD_CONFIG_NO_LINE));
+    TEST_ASSERT_EQUAL_STRING("ok", board_config_fault_text(ARGUS_CONFIG_OK));
+    TEST_ASSERT_EQUAL_STRING_LEN("S5: lower step_mm", board_config_fault_text(ARGUS_CONFIG_STEP), 17);
 }
 
 void test_choices_by_name_and_by_nothing_else(void) {

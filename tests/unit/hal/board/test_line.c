@@ -44,6 +44,23 @@ void test_every_kind_of_value(void) {
     }
 }
 
+void test_sonars_by_array_and_number(void) {
+    static const struct {
+        int sonar;
+        const char *text;
+    } rows[] = {{0, "front/00"}, {7, "front/07"}, {8, "rear/08"}, {15, "rear/15"}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        board_line_t line = board_line_begin(&ring);
+        board_line_sonar(&line, "s", rows[i].sonar);
+        board_line_int(&line, "n", 1);
+        TEST_ASSERT_TRUE(board_line_end(&line));
+        const char *const text = taken();
+        TEST_ASSERT_EQUAL_STRING_LEN("{\"s\":\"sonar/", text, 12);
+        TEST_ASSERT_EQUAL_STRING_LEN(rows[i].text, text + 12, strlen(rows[i].text));
+        TEST_ASSERT_EQUAL_STRING("\",\"n\":1}\n", text + 12 + strlen(rows[i].text));
+    }
+}
+
 void test_text_that_json_would_not_take_is_made_harmless(void) {
     board_line_t line = board_line_begin(&ring);
     board_line_text(&line, "s", "a\"b\\c\nd\x7F\xC3\xA4");
