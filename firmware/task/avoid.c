@@ -14,6 +14,7 @@
 #define PROGRESS_MM 100
 #define SET_BACK_MM 500
 #define SET_BACKS_MAX 32
+#define CLOSED_MAX 2 // a map found closed is doubted so often, and then believed
 #define VAIN_MS 60000u
 #define GAP_MS 500u
 
@@ -40,9 +41,6 @@ void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const 
 // What is left to go has changed by a new plan.
 static void note_way(argus_progress_t *const self, const int32_t to_go_mm) {
     const bool is_set_back = self->least_mm > 0 && to_go_mm > self->least_mm + SET_BACK_MM;
-    if (self->least_mm == 0) {
-        self->best_mm = argus_max(1, to_go_mm);
-    }
     if (self->least_mm == 0 || is_set_back) {
         self->least_mm = argus_max(1, to_go_mm);
         self->set_backs = (uint8_t)(self->set_backs + (is_set_back ? 1 : 0));
@@ -50,13 +48,16 @@ static void note_way(argus_progress_t *const self, const int32_t to_go_mm) {
 }
 
 static void note_driven(argus_progress_t *const self, const int32_t to_go_mm) {
-    const int32_t least_mm = self->exhausted ? self->best_mm : self->least_mm;
-    if (least_mm - to_go_mm >= PROGRESS_MM) {
+    if (self->least_mm - to_go_mm >= PROGRESS_MM) {
         self->least_mm = argus_max(1, to_go_mm);
-        self->best_mm = argus_min(self->best_mm, self->least_mm);
         self->vain_ms = 0;
-        self->exhausted = false;
     }
+}
+
+// Counted once until there is a way again, which is then measured anew: the map has been faded for it.
+static void note_no_way(argus_progress_t *const self) {
+    self->closed = (uint8_t)(self->closed + (self->least_mm > 0 ? 1 : 0));
+    self->least_mm = 0;
 }
 
 argus_search_news_t argus_task_choose(argus_task_t *const self, const argus_knowledge_t *const knowledge,
@@ -67,7 +68,9 @@ argus_search_news_t argus_task_choose(argus_task_t *const self, const argus_know
                                          ? argus_way_find(&self->search, &ground, self->waypoint[self->next])
                                          : ARGUS_SEARCH_NO_WAY;
     self->has_leg = news == ARGUS_SEARCH_FOUND;
-    self->progress.exhausted = self->progress.exhausted || news == ARGUS_SEARCH_NO_WAY;
+    if (news == ARGUS_SEARCH_NO_WAY) {
+        note_no_way(&self->progress);
+    }
     if (self->has_leg) {
         self->leg = self->search.leg;
         self->avoiding = !self->leg.direct;
@@ -116,5 +119,5 @@ bool argus_task_is_hopeless(argus_task_t *const self, const argus_knowledge_t *c
     if (self->has_leg) {
         note_driven(mine, self->leg.to_go_mm + argus_task_leg_mm(self, knowledge));
     }
-    return mine->vain_ms >= VAIN_MS || mine->set_backs > SET_BACKS_MAX;
+    return mine->vain_ms >= VAIN_MS || mine->set_backs > SET_BACKS_MAX || mine->closed > CLOSED_MAX;
 }

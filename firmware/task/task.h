@@ -12,11 +12,10 @@
 // but only so often.
 typedef struct {
     int32_t least_mm;  // way to go since it has grown last, 0: not known yet
-    int32_t best_mm;   // ... ever
     uint32_t last_ms;  // the last SIP
     uint32_t vain_ms;  // driven, or waited for a way, without progress
     uint8_t set_backs; // the way to go has grown so often since the waypoint was made for
-    bool exhausted;    // there was no way: only what is better than ever counts now
+    uint8_t closed;    // the map has shown no way so often
 } argus_progress_t;
 
 typedef struct {
