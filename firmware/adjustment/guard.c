@@ -148,13 +148,20 @@ static bool may_hurry(const argus_guard_t *const self) {
     return self->profile->adapts_speed && argus_flank_mm(self->knowledge, 0) > ARGUS_FLANK_NEAR_MM;
 }
 
+int32_t argus_guard_heard_mm(const argus_guard_t *const self) {
+    const argus_robot_t *const robot = self->knowledge->robot;
+    return argus_echoes_ahead_mm(self->echoes, self->knowledge, argus_guard_straight_half_mm(robot)) -
+           robot->sonar_face_mm;
+}
+
 int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self, const int32_t seen_mm) {
     const argus_config_t *const config = self->config;
     ARGUS_ASSERT(config->speed_mm_s > 0);
     if (!may_hurry(self)) {
         return config->speed_mm_s;
     }
-    const int32_t unseen_mm = argus_min(seen_mm, INT16_MAX) + SEEN_LEFT_MM;
+    const int32_t unseen_mm =
+        argus_min(argus_min(seen_mm, INT16_MAX) + SEEN_LEFT_MM, argus_guard_heard_mm(self));
     const int32_t range_mm = argus_max(argus_min(read_mm(self), unseen_mm), config->object_range_mm);
     const int32_t safe_mm_s = argus_config_speed_mm_s(config, self->knowledge->robot, range_mm);
     const int32_t most_mm_s =

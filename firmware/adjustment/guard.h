@@ -73,9 +73,13 @@ int32_t argus_guard_ahead_mm(const argus_guard_t *self, int32_t seen_mm);
 // A sonar ahead has the name of a fault.
 bool argus_guard_is_doubted(const argus_guard_t *self);
 
+// S2, S5: how far before the sonars' faces what was heard a moment ago stands in the way of the body, though
+// none hears it now: a smooth wall turns echoes away, and the end of one gives hardly any.
+int32_t argus_guard_heard_mm(const argus_guard_t *self);
+
 // S5: the speed for the way ahead, `speed_mm_s`. Where the profile adapts it and nothing is close beside, it
-// is what the shortest front reading allows, up to `speed_max_mm_s`. Where a sonar is doubted, what others
-// have seen limits it, too.
+// is what the shortest front reading allows, and what was heard in the way, up to `speed_max_mm_s`. Where a
+// sonar is doubted, what others have seen limits it, too.
 int32_t argus_guard_speed_mm_s(const argus_guard_t *self, int32_t seen_mm);
 // ... and were nothing doubted.
 int32_t argus_guard_free_speed_mm_s(const argus_guard_t *self, int32_t seen_mm);

@@ -12,7 +12,6 @@
 #define FALL_MM 12   // ... and differ by more than noise
 #define UNEVEN_MM 18 // from the line of the two another one differs so much by noise
 #define APART_MM 20
-#define LOST_BACK 5   // readings
 #define REFRESH_MM 64 // of the stopping way: from one reading to the next, where all sonars take turns
 
 // Where its corner would touch, the body goes beyond the sonar's face by these.
@@ -73,14 +72,4 @@ bool argus_grazing_wall(const argus_pings_t *const pings, const argus_robot_t *c
     const bool in_line = argus_abs(before->reading_mm - now->reading_mm - fall * step / way) <= UNEVEN_MM;
     const int32_t left_mm = ahead_mm(robot, sonar) + stop_mm + argus_max(0, step - REFRESH_MM);
     return in_line && now->reading_mm <= beyond_mm(robot, sonar) + left_mm * fall / way + APART_MM;
-}
-
-bool argus_grazing_lost(const argus_pings_t *const pings, const int32_t within_mm) {
-    ARGUS_ASSERT(within_mm > 0);
-    const argus_ping_t *const now = argus_pings_at(pings, 1);
-    if (now == NULL || argus_ping_is_echo(now)) {
-        return false;
-    }
-    const argus_ping_t *const then = argus_pings_last_echo(pings, 2, LOST_BACK, now, ARGUS_BESIDE_CDEG);
-    return then != NULL && argus_ping_predict_mm(now, then) <= within_mm;
 }

@@ -10,7 +10,4 @@
 // ahead of 80 mm or more.
 bool argus_grazing_wall(const argus_pings_t *pings, const argus_robot_t *robot, int sonar, int32_t stop_mm);
 
-// Whether it hears nothing now where it heard an echo a moment ago, of what is within so much of it by now.
-bool argus_grazing_lost(const argus_pings_t *pings, int32_t within_mm);
-
 #endif

@@ -188,3 +188,17 @@ int32_t argus_echoes_nearest_mm(const argus_echoes_t *const self, const argus_kn
     }
     return nearest;
 }
+
+int32_t argus_echoes_ahead_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                              const int32_t half_mm) {
+    ARGUS_ASSERT(half_mm > 0 && self->count <= ARGUS_POINTS_MAX);
+    int32_t nearest = INT32_MAX;
+    for (int i = 0; i < self->count; i++) {
+        argus_point_t at;
+        if (argus_echoes_near(self, knowledge, i, &at) && at.x_mm > BEHIND_MM &&
+            argus_abs(at.y_mm) < half_mm) {
+            nearest = argus_min(nearest, at.x_mm);
+        }
+    }
+    return nearest;
+}

@@ -59,4 +59,9 @@ bool argus_echoes_near(const argus_echoes_t *self, const argus_knowledge_t *know
 int32_t argus_echoes_nearest_mm(const argus_echoes_t *self, const argus_knowledge_t *knowledge,
                                 int32_t back_mm);
 
+// How far ahead of the robot's centre the first of them lies in a straight way of 2 x half_mm. INT32_MAX:
+// none. Cost: one pass over the points.
+int32_t argus_echoes_ahead_mm(const argus_echoes_t *self, const argus_knowledge_t *knowledge,
+                              int32_t half_mm);
+
 #endif

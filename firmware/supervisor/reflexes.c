@@ -266,17 +266,24 @@ static void sees_swing(const argus_t *const self, const argus_alarm_t *const ala
     }
 }
 
-// A smooth wall that the robot slants into is heard by the sonar that looks abeam alone, or by one ahead once
-// and not again.
-static ARGUS_APART bool is_smooth_wall(const argus_t *const self, const int sonar) {
+// A smooth wall that the robot slants into is heard by the sonar that looks abeam alone.
+static ARGUS_APART bool is_slanting_in(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_robot_t *const robot = self->knowledge.robot;
-    const argus_pings_t *const pings = &self->evidence.pings[sonar];
-    if ((argus_robot_flank(robot) >> sonar & 1u) != 0) {
-        return argus_grazing_wall(pings, robot, sonar, argus_config_stop_mm(&self->config, robot));
-    }
+    return (argus_robot_flank(robot) >> sonar & 1u) != 0 &&
+           argus_grazing_wall(&self->evidence.pings[sonar], robot, sonar,
+                              argus_config_stop_mm(&self->config, robot));
+}
+
+// ... or by those ahead for a moment, and not again. One that hears something farther off denies it.
+static bool is_lost_ahead(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const argus_robot_t *const robot = self->knowledge.robot;
+    const argus_guard_t guard = argus_guard(self);
     return argus_abs(argus_robot_pose(robot, sonar).heading_deg) <= LOST_DEG &&
-           argus_trusted(&self->knowledge, sonar) && argus_grazing_lost(pings, self->config.object_range_mm);
+           argus_trusted(&self->knowledge, sonar) &&
+           self->knowledge.sonar[sonar].reading_mm >= robot->no_echo_mm &&
+           argus_guard_heard_mm(&guard) <= self->config.object_range_mm;
 }
 
 static void sees_flank(const argus_t *const self, const argus_alarm_t *const alarm,
@@ -291,7 +298,7 @@ static void sees_flank(const argus_t *const self, const argus_alarm_t *const ala
     }
     const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge);
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((usable >> i & 1u) != 0 && is_smooth_wall(self, i)) {
+        if ((usable >> i & 1u) != 0 && (is_slanting_in(self, i) || is_lost_ahead(self, i))) {
             const int32_t at_mm = self->knowledge.sonar[i].reading_mm;
             stop_before(intent, i, argus_min(at_mm, self->config.object_range_mm));
             return;

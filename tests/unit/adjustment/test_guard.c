@@ -372,7 +372,25 @@ void test_s5_how_fast_back(void) {
     TEST_ASSERT_EQUAL(config.speed_mm_s, argus_guard_back_speed_mm_s(&g));
 }
 
-// Nothing is changed by asking.
+// Nothing is changed by asking.// S2, S5: what was heard in the way a moment ago is there though nothing
+// hears it now.
+void test_s5_what_was_heard_in_the_way_counts_though_it_is_silent(void) {
+    const int face_mm = k.robot->sonar_face_mm;
+    const int half_mm = (int)argus_guard_straight_half_mm(k.robot);
+    use(ARGUS_PROFILE_ARGUS);
+    TEST_ASSERT_EQUAL(config.speed_max_mm_s, argus_guard_free_speed_mm_s(&g, INT32_MAX));
+    remember_at(face_mm + 400, half_mm); // beside it
+    TEST_ASSERT_EQUAL(config.speed_max_mm_s, argus_guard_free_speed_mm_s(&g, INT32_MAX));
+    remember_at(face_mm + 400, half_mm - 1);
+    TEST_ASSERT_EQUAL(400, argus_guard_heard_mm(&g));
+    const int32_t slow_mm_s = argus_guard_free_speed_mm_s(&g, INT32_MAX);
+    TEST_ASSERT_TRUE(slow_mm_s < config.speed_max_mm_s);
+    k.sonar[3].reading_mm = 400; // as fast as if it heard it
+    TEST_ASSERT_EQUAL(slow_mm_s, argus_guard_free_speed_mm_s(&g, INT32_MAX));
+    k.sip_ms += 5001; // a moment is over
+    TEST_ASSERT_TRUE(argus_guard_heard_mm(&g) > 3000);
+}
+
 void test_questions_change_nothing(void) {
     remember_at(200, 100);
     echo_at(300);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (S2): a wall that the robot slants into, and that only the sonar abeam hears, is told
 // before the body can touch it; one that it drives along, or away from, is not, nor is a single odd reading.
-// What one ahead has heard and hears no more is still there.
 #include <math.h>
 #include <stdio.h>
 
@@ -167,44 +166,4 @@ void test_no_readings_no_slant(void) {
         TEST_ASSERT_FALSE(argus_grazing_wall(&e.pings[0], k.robot, 0, STOP_MM));
         way_mm += STEP_MM;
     }
-}
-
-// ---- lost ahead
-
-// Echoes of what stands ahead end at so many mm; then it hears none, and drives on.
-static int lost_at(int echoes, int last_mm, int turned_cdeg) {
-    for (int i = echoes - 1; i >= 0; i--) {
-        read_at(3, last_mm + i * STEP_MM);
-        way_mm += STEP_MM;
-    }
-    for (int silent = 1; silent <= 8; silent++) {
-        read_at(3, 5000);
-        argus_pings_mark(&e.pings[3], 1)->bearing_cdeg = (int16_t)(1000 + turned_cdeg);
-        if (argus_grazing_lost(&e.pings[3], 250)) {
-            return silent;
-        }
-        way_mm += STEP_MM;
-    }
-    return 0;
-}
-
-// One echo is enough, as the next may be the touch.
-void test_what_was_heard_ahead_is_there_though_it_is_silent_now(void) {
-    TEST_ASSERT_EQUAL(1, lost_at(1, 310, 0));
-    setUp();
-    TEST_ASSERT_EQUAL(3, lost_at(5, 430, 0));
-    setUp();
-    TEST_ASSERT_EQUAL(1, lost_at(2, 310, 450)); // beside it, at the end of a turn
-}
-
-void test_what_is_far_or_aside_or_long_ago_stops_nobody(void) {
-    TEST_ASSERT_EQUAL(0, lost_at(4, 900, 0));
-    setUp();
-    TEST_ASSERT_EQUAL(0, lost_at(4, 310, 600));
-    setUp();
-    TEST_ASSERT_FALSE(argus_grazing_lost(&e.pings[3], 250));
-    read_at(3, 5000);
-    TEST_ASSERT_FALSE(argus_grazing_lost(&e.pings[3], 250));
-    read_at(3, 200);
-    TEST_ASSERT_FALSE(argus_grazing_lost(&e.pings[3], 250)); // an echo is for others to answer
 }

@@ -170,6 +170,23 @@ void test_free_length_of_a_corridor(void) {
     TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_clear_mm(&e, &k, 0, 305));
 }
 
+void test_ahead_is_what_was_seen_twice_in_the_way_of_the_body(void) {
+    const struct {
+        int x_mm, y_mm;
+        bool ahead;
+    } by[] = {{600, 0, true}, {600, 259, true}, {600, 260, false}, {600, -260, false},
+              {101, 0, true}, {100, 0, false},  {-600, 0, false}};
+    for (size_t i = 0; i < sizeof by / sizeof by[0]; i++) {
+        setUp();
+        place_echo(&e, &k, by[i].x_mm, by[i].y_mm);
+        TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_ahead_mm(&e, &k, 260)); // once may be crosstalk
+        e.at[0].again = true;
+        TEST_ASSERT_EQUAL(by[i].ahead ? by[i].x_mm : INT32_MAX, argus_echoes_ahead_mm(&e, &k, 260));
+        k.sip_ms += 5001;
+        TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_ahead_mm(&e, &k, 260));
+    }
+}
+
 void test_a_bumper_hit_is_remembered_ahead(void) {
     k.bumpers_front = 1 << 3;
     argus_echoes_bumped(&e, &k, k.sip_ms);
