@@ -18,6 +18,6 @@ int32_t argus_trim_cdeg(const argus_wheel_t *const wheel, const argus_knowledge_
     ARGUS_ASSERT(knowledge->robot->track_mm > 0);
     const int32_t left_pm = knowledge->robot->reversed ? -wheel->short_pm : wheel->short_pm;
     const int32_t speed_mm_s = (knowledge->vel_left_mm_s + knowledge->vel_right_mm_s) / 2;
-    const int32_t um = argus_max(0, argus_min(speed_mm_s, 1000)) * LATE_MS * left_pm / 1000; // apart by then
+    const int32_t um = argus_between(0, 1000, speed_mm_s) * LATE_MS * left_pm / 1000; // apart by then
     return -(um * (CDEG_PER_RADIAN / 10) / knowledge->robot->track_mm / 100);
 }

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "arcos/apart.h"
 #include "awareness/aim.h"
 #include "knowledge/angle.h"
 
@@ -105,8 +106,8 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
            (aside && aim_at_one_of(self, knowledge, evidence, silent & contradicted));
 }
 
-static void set_look(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
-                     const uint8_t look) {
+static ARGUS_APART void set_look(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+                                 const uint8_t look) {
     ARGUS_ASSERT(look <= LOOKS);
     self->look = look;
     self->look_cdeg = look < LOOKS ? looks[look] * knowledge->robot->pitch_deg * 100 : 0;

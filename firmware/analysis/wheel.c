@@ -14,7 +14,7 @@
 // The faster wheel makes the way and half of the difference.
 static int32_t size_pm(const argus_knowledge_t *const knowledge, const argus_way_turn_t *const piece) {
     ARGUS_ASSERT(piece->way_mm > 0);
-    const int32_t turn_cdeg = argus_max(-TURN_MOST_CDEG, argus_min(TURN_MOST_CDEG, piece->turn_cdeg));
+    const int32_t turn_cdeg = argus_within(TURN_MOST_CDEG, piece->turn_cdeg);
     const int32_t apart_um = turn_cdeg * knowledge->robot->track_mm * 100 / (CDEG_PER_RADIAN / 10);
     const int32_t pm = apart_um / (piece->way_mm + argus_abs(apart_um) / 2000);
     return knowledge->robot->reversed ? -pm : pm;
@@ -49,7 +49,7 @@ argus_wheel_news_t argus_wheel_judge(argus_wheel_t *const self, const argus_know
     const int32_t pm = size_pm(knowledge, piece);
     const int32_t before = self->suspect_pm;
     argus_wheel_news_t news = ARGUS_WHEEL_SAME;
-    self->suspect_pm = (int16_t)argus_max(-INT16_MAX, argus_min(INT16_MAX, pm));
+    self->suspect_pm = (int16_t)argus_within(INT16_MAX, pm);
     self->odometer_mm = knowledge->odometer_mm;
     if (argus_abs(pm) > ARGUS_WHEEL_MOST_PM) {
         return news;

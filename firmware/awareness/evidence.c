@@ -198,7 +198,7 @@ void argus_evidence_restore(argus_evidence_t *const self, const int sonar, const
     argus_case_t *const c = &self->of[sonar];
     const bool whole = out && kept != ARGUS_KEPT_WRONG; // together with others it would name
     const int32_t limit = naming_of(kept) * (whole ? 100 : ARGUS_SUSPECT_PERCENT) / 100 - 1;
-    const int16_t half = (int16_t)argus_max(0, argus_min(limit, score / 2));
+    const int16_t half = (int16_t)argus_between(0, limit, score / 2);
     if (test_of[kept] >= 0) {
         c->score[test_of[kept]] = half;
     }

@@ -123,7 +123,7 @@ static void take(argus_extreme_t *const self, const argus_knowledge_t *const kno
     const bool shortest = is_shortest(knowledge, reading);
     const int doubted = doubt(self, knowledge, reading);
     const int level = self->level + (doubted == 0 && !shortest ? -1 : doubted);
-    self->level = (uint8_t)argus_max(0, argus_min(level, LEVEL_MAX));
+    self->level = (uint8_t)argus_between(0, LEVEL_MAX, level);
     self->visited = !shortest && reading <= knowledge->robot->min_mm + NEAR_MM &&
                     self->before_mm > knowledge->robot->min_mm + LEAP_MM;
     self->before_mm = (uint16_t)reading;

@@ -19,7 +19,7 @@ static int32_t scaled(const argus_evidence_t *const self, const int sonar, const
 }
 
 static int16_t limited(const int32_t sum, const int32_t floor) {
-    return (int16_t)argus_max(floor, argus_min(ARGUS_CEILING, sum));
+    return (int16_t)argus_between(floor, ARGUS_CEILING, sum);
 }
 
 void argus_score(argus_evidence_t *const self, const int sonar, const argus_test_t test,

@@ -115,8 +115,16 @@ static void test_walker(argus_evidence_t *const self, const argus_knowledge_t *c
 
 // The echo before the run of none that ends now, all of it on this bearing; NULL: none.
 static const argus_ping_t *echo_before_gap(const argus_pings_t *const pings, const argus_ping_t *const now) {
-    const argus_ping_t *const then = argus_pings_last_echo(pings, 1, LOOKED_BACK, now, ARGUS_SAME_CDEG);
-    return then != argus_pings_at(pings, 1) ? then : NULL;
+    for (int i = 1; i <= LOOKED_BACK; i++) {
+        const argus_ping_t *const then = argus_pings_at(pings, i);
+        if (then == NULL || argus_ping_turned_cdeg(now, then) > ARGUS_SAME_CDEG) {
+            return NULL;
+        }
+        if (argus_ping_is_echo(then)) {
+            return i > 1 ? then : NULL;
+        }
+    }
+    return NULL;
 }
 
 // At the edge of what is heard an echo comes and goes by itself: after a few gaps a place tells no more.
@@ -140,7 +148,7 @@ static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *
     argus_odds_note(self, sonar, ARGUS_TEST_DROPOUT, true);
     const int32_t left =
         now->rest && then->rest ? ARGUS_CEILING : ARGUS_DROPOUT_MOVING_MAX - c->score[ARGUS_TEST_DROPOUT];
-    argus_score(self, sonar, ARGUS_TEST_DROPOUT, argus_max(0, argus_min(left, adds)));
+    argus_score(self, sonar, ARGUS_TEST_DROPOUT, argus_between(0, left, adds));
 }
 
 static void run_tests(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,

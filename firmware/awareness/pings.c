@@ -57,21 +57,6 @@ bool argus_ping_is_echo(const argus_ping_t *const self) {
     return self->reading_mm < ARGUS_NO_ECHO_MM;
 }
 
-const argus_ping_t *argus_pings_last_echo(const argus_pings_t *const self, const int from, const int to,
-                                          const argus_ping_t *const now, const int32_t cdeg) {
-    ARGUS_ASSERT(from >= 1 && cdeg >= 0);
-    for (int i = from; i <= to; i++) {
-        const argus_ping_t *const then = argus_pings_at(self, i);
-        if (then == NULL || argus_ping_turned_cdeg(now, then) > cdeg) {
-            return NULL;
-        }
-        if (argus_ping_is_echo(then)) {
-            return then;
-        }
-    }
-    return NULL;
-}
-
 int32_t argus_ping_moved_mm(const argus_ping_t *const a, const argus_ping_t *const b) {
     return argus_hypot(offset_mm(a->x_mm, b->x_mm), offset_mm(a->y_mm, b->y_mm));
 }

@@ -42,10 +42,6 @@ void argus_pings_age(argus_pings_t *self, uint32_t now_ms);
 // The ping so far back (1: the last); the one a firing was so many firings before it. NULL: not so many.
 const argus_ping_t *argus_pings_at(const argus_pings_t *self, int back);
 const argus_ping_t *argus_pings_before(const argus_pings_t *self, int back, int firings);
-// The last echo of those `from` to `to` pings back, all from it on within `cdeg` of the bearing of `now`;
-// NULL: none.
-const argus_ping_t *argus_pings_last_echo(const argus_pings_t *self, int from, int to,
-                                          const argus_ping_t *now, int32_t cdeg);
 // The last ping on the bearing of another or beside it (BESIDE_CDEG), and from about its place
 // (SAME_ALONG_MM). It lies so far back (from 1) or farther; 0: none.
 int argus_pings_near(const argus_pings_t *self, int from, const argus_ping_t *at);

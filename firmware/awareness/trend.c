@@ -204,7 +204,7 @@ static bool is_growing(const argus_slope_t *const self, const rule_t *const rule
 }
 
 static void take_segment(argus_slope_t *const slope, const segment_t *const segment, const int32_t jump) {
-    const int32_t value = argus_max(slope->fast - jump, argus_min(slope->fast + jump, segment->mean));
+    const int32_t value = argus_between(slope->fast - jump, slope->fast + jump, segment->mean);
     const int32_t n = slope->segments + 1;
     const int32_t metres = (int32_t)argus_min(segment->length_mm / 1000, UINT8_MAX);
     slope->fast = towards(slope->fast, value, argus_min(n, FAST));

@@ -29,6 +29,15 @@ int32_t argus_max(const int32_t a, const int32_t b) {
     return a > b ? a : b;
 }
 
+int32_t argus_between(const int32_t least, const int32_t most, const int32_t value) {
+    return argus_max(least, argus_min(most, value));
+}
+
+int32_t argus_within(const int32_t most, const int32_t value) {
+    ARGUS_ASSERT(most >= 0);
+    return argus_between(-most, most, value);
+}
+
 int32_t argus_angle_wrap(const int32_t cdeg) {
     const int32_t rest = cdeg % FULL;
     if (rest > HALF) {

@@ -29,6 +29,10 @@ int32_t argus_hypot(int32_t x, int32_t y);
 ARGUS_APART int32_t argus_abs(int32_t value);
 int32_t argus_min(int32_t a, int32_t b);
 int32_t argus_max(int32_t a, int32_t b);
+// The value, from `least` to `most`.
+ARGUS_APART int32_t argus_between(int32_t least, int32_t most, int32_t value);
+// ... of at most so much to either side; `most` >= 0.
+ARGUS_APART int32_t argus_within(int32_t most, int32_t value);
 int argus_count_bits(uint32_t mask);
 
 // A count of one more, up to 255.

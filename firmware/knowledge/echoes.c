@@ -147,8 +147,8 @@ int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_know
     const int32_t s = argus_sin(heading_cdeg);
     int32_t clear = INT32_MAX;
     for (uint16_t i = 0; i < self->count; i++) {
-        const int32_t dx = argus_max(-32000, argus_min(32000, self->at[i].x_mm - knowledge->pose.x_mm));
-        const int32_t dy = argus_max(-32000, argus_min(32000, self->at[i].y_mm - knowledge->pose.y_mm));
+        const int32_t dx = argus_within(32000, self->at[i].x_mm - knowledge->pose.x_mm);
+        const int32_t dy = argus_within(32000, self->at[i].y_mm - knowledge->pose.y_mm);
         const int32_t ahead = (dx * c + dy * s) / ARGUS_TRIG_ONE;
         const int32_t beside = (dy * c - dx * s) / ARGUS_TRIG_ONE;
         const bool recent = knowledge->sip_ms - self->at[i].seen_ms <= FORGET_MS;

@@ -2,6 +2,7 @@
 // Compares steps of the odometry with what wheels can do.
 #include "knowledge/odometry.h"
 
+#include "arcos/apart.h"
 #include "argus/argus.h"
 #include "knowledge/angle.h"
 
@@ -33,11 +34,11 @@
 #define CDEG_PER_RADIAN 5730
 #define PER_S_MAX 500000 // of what is multiplied by milliseconds: it fits 32 bits for 4 s
 
-static int32_t turn_cdeg_s(const argus_wheels_t *const wheels, const int32_t track_mm) {
+static ARGUS_APART int32_t turn_cdeg_s(const argus_wheels_t *const wheels, const int32_t track_mm) {
     ARGUS_ASSERT(track_mm > 0);
     const int32_t most = 2 * FASTEST_MM_S;
     const int32_t apart = wheels->right_mm_s - wheels->left_mm_s;
-    return argus_max(-most, argus_min(most, apart)) * CDEG_PER_RADIAN / track_mm;
+    return argus_within(most, apart) * CDEG_PER_RADIAN / track_mm;
 }
 
 // Of a speed, within a time up to some seconds.
@@ -59,8 +60,7 @@ argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *const span) {
     const int32_t ms = argus_min(elapsed_ms(span), SIP_MS);
     const argus_wheels_t mean = {(span->before.left_mm_s + span->after.left_mm_s) / 2,
                                  (span->before.right_mm_s + span->after.right_mm_s) / 2};
-    const int32_t speed =
-        argus_max(-FASTEST_MM_S, argus_min(FASTEST_MM_S, (mean.left_mm_s + mean.right_mm_s) / 2));
+    const int32_t speed = argus_within(FASTEST_MM_S, (mean.left_mm_s + mean.right_mm_s) / 2);
     const argus_way_turn_t moved = {times_ms(speed, ms), times_ms(turn_cdeg_s(&mean, span->track_mm), ms)};
     return moved;
 }
@@ -199,7 +199,7 @@ bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *con
                            const argus_moved_t *const moved) {
     ARGUS_ASSERT(span->track_mm > 0 && excess->credit_ms >= 0);
     const int32_t credit_ms = excess->credit_ms + elapsed_ms(span) - SIP_MS - FADES_MS;
-    excess->credit_ms = argus_max(0, argus_min((int32_t)GAP_MAX_MS, credit_ms));
+    excess->credit_ms = argus_between(0, GAP_MAX_MS, credit_ms);
     const argus_excess_t was = *excess;
     const bool way = way_may_be(excess, span, moved);
     const bool turn = turn_may_be(excess, span, moved);

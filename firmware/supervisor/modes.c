@@ -20,7 +20,7 @@
 #define FOLLOW_MOST 4                       // intents in a row that follow from one
 #define MORE_MOST (ARGUS_WAYPOINTS_MAX + 8) // times that a mode has more to do in one SIP
 
-static void enter(argus_t *const self, const argus_mode_t mode) {
+static ARGUS_APART void enter(argus_t *const self, const argus_mode_t mode) {
     ARGUS_ASSERT(argus_mode_may_follow(self->mode, mode));
     self->mode = mode;
     self->since_ms = self->now_ms;

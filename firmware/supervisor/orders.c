@@ -86,7 +86,7 @@ static void jog(argus_t *const self, const int32_t built_mm) {
         return;
     }
     if (argus_open_suspects(self) != 0) { // S6: verified first
-        self->travel.jog_mm = argus_max(0, argus_min(distance_mm, self->config.step_mm));
+        self->travel.jog_mm = argus_between(0, self->config.step_mm, distance_mm);
         check(self, true);
         return;
     }

@@ -23,8 +23,7 @@ static argus_point_t robot_at(const argus_ground_t *const ground) {
 
 static int32_t between_mm(const argus_point_t a, const argus_point_t b) {
     const int32_t most = 40000;
-    return argus_hypot(argus_max(-most, argus_min(most, a.x_mm - b.x_mm)),
-                       argus_max(-most, argus_min(most, a.y_mm - b.y_mm)));
+    return argus_hypot(argus_within(most, a.x_mm - b.x_mm), argus_within(most, a.y_mm - b.y_mm));
 }
 
 // Back to the robot's first leg
@@ -56,8 +55,8 @@ static int32_t narrow_samples(argus_search_t *const self, const argus_point_t to
     const argus_point_t from = {self->robot.x_mm - wave->low.x * CELL_MM,
                                 self->robot.y_mm - wave->low.y * CELL_MM}; // in the window
     const int32_t way_mm = argus_max(1, argus_min(between_mm(self->robot, to), CELLS * CELL_MM));
-    const int32_t dx = argus_max(-40000, argus_min(40000, to.x_mm - self->robot.x_mm));
-    const int32_t dy = argus_max(-40000, argus_min(40000, to.y_mm - self->robot.y_mm));
+    const int32_t dx = argus_within(40000, to.x_mm - self->robot.x_mm);
+    const int32_t dy = argus_within(40000, to.y_mm - self->robot.y_mm);
     const int32_t length_mm = argus_max(1, argus_hypot(dx, dy));
     int32_t narrow = 0;
     for (int32_t mm = 0; mm <= way_mm; mm += SAMPLE_MM) {
@@ -210,8 +209,8 @@ bool argus_way_is_free(const argus_ground_t *const ground, const argus_leg_t *co
     const int32_t radius_mm =
         leg->narrow ? argus_wave_narrow_mm(ground->knowledge) : argus_wave_wide_mm(ground->knowledge);
     const argus_point_t from = robot_at(ground);
-    const int32_t dx = argus_max(-40000, argus_min(40000, to.x_mm - from.x_mm));
-    const int32_t dy = argus_max(-40000, argus_min(40000, to.y_mm - from.y_mm));
+    const int32_t dx = argus_within(40000, to.x_mm - from.x_mm);
+    const int32_t dy = argus_within(40000, to.y_mm - from.y_mm);
     const int32_t length_mm = argus_max(1, argus_hypot(dx, dy));
     const int32_t end_mm = argus_min(AHEAD_MM, length_mm - ARGUS_WAVE_OUT_MM);
     for (int32_t mm = ARGUS_WAVE_OUT_MM + SAMPLE_MM; mm <= end_mm; mm += SAMPLE_MM) {

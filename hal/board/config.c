@@ -136,7 +136,7 @@ board_config_answer_t board_config_ini(argus_config_t *config, const char *text,
 // In the order of what they explain.
 const char *board_config_explain(board_config_answer_t answer) {
     return board_word_nth(
-        "taken\0no such key\0neither a whole number nor one of its choices\0out of its range\0"
+        "taken\0no such key\0no whole number and none of its choices\0out of its range\0"
         "write key = value\0",
         (int)answer);
 }

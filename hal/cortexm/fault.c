@@ -43,13 +43,13 @@ board_note_t board_last_note(void) {
     return last;
 }
 
-static void keep(board_reset_t why) {
+static BOARD_APART void keep(board_reset_t why) {
     kept.magic = MAGIC;
     kept.reason = (uint32_t)why;
     __asm volatile("dsb" ::: "memory"); // it is in memory, whether it seems to be read or not
 }
 
-static void restart(void) {
+static BOARD_APART void restart(void) {
     __asm volatile("dsb" ::: "memory");
     CORTEXM_SCB_AIRCR = CORTEXM_AIRCR_RESET;
     for (;;) {
