@@ -13,7 +13,7 @@
 
 #define ALONE_CDEG 1000 // from one place a lag that turned less would have it look where it looks now
 #define BITS 8
-#define ASKED_MOST 110 // hypotheses a SIP: some 6,000 instructions each
+#define ASKED_MOST 104 // hypotheses a SIP: some 6,000 instructions each
 
 // DIVIDED: the others contradict each other. SAME: the map leaves it where it is.
 typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, DIVIDED, SAME, SAYINGS } verdict_t;

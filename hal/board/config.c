@@ -135,10 +135,9 @@ board_config_answer_t board_config_ini(argus_config_t *config, const char *text,
 
 // In the order of what they explain.
 const char *board_config_explain(board_config_answer_t answer) {
-    return board_word_nth(
-        "taken\0no such key\0no whole number and none of its choices\0out of its range\0"
-        "write key = value\0",
-        (int)answer);
+    return board_word_nth("taken\0no such key\0no whole number and none of its choices\0out of its range\0"
+                          "write key = value\0",
+                          (int)answer);
 }
 
 const char *board_config_fault_text(argus_config_fault_t fault) {
