@@ -35,8 +35,7 @@ int board_word_row(board_word_t word, const char *texts) {
 }
 
 bool board_word_number(board_word_t word, int32_t *value) {
-    const bool is_negative = word.length > 0 && word.at[0] == '-';
-    const size_t sign = is_negative || (word.length > 0 && word.at[0] == '+') ? 1 : 0;
+    const size_t sign = word.length > 0 && (word.at[0] == '-' || word.at[0] == '+') ? 1 : 0;
     int32_t number = 0;
     if (word.length == sign || word.length > sign + DIGITS_MAX) {
         return false;
@@ -47,6 +46,6 @@ bool board_word_number(board_word_t word, int32_t *value) {
         }
         number = number * 10 + (word.at[i] - '0');
     }
-    *value = is_negative ? -number : number;
+    *value = word.at[0] == '-' ? -number : number;
     return true;
 }
