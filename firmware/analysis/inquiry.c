@@ -12,10 +12,9 @@
 #define LOOK_MS 2600u // a sonar that yields nothing is not waited for longer
 #define FIRST_LOOKS 2
 #define SILENT_RUN 2
-#define CONTRADICTED 100 // of a silent one, by the others, in hundredths of a nat: it is worth an aim
-#define AIMS_MAX 4       // turns of a suspect onto what another has heard
-#define AIMS_ASIDE 2     // ... and, while that lasts, of one that is none
-#define AIMED 3          // readings of it
+#define AIMS_MAX 4   // turns of a suspect onto what another has heard
+#define AIMS_ASIDE 2 // ... and, while that lasts, of one that is none
+#define AIMED 3      // readings of it
 
 // In pitches of the ring; one that looks abeam is two off its neighbour.
 static const int8_t looks[] = {-1, 1, 0, -2, 2};
@@ -42,13 +41,6 @@ static bool is_silent(const argus_evidence_t *const evidence, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_evidence_silent_run(evidence, sonar) >= SILENT_RUN &&
            argus_evidence_names(evidence, sonar) == ARGUS_KIND_NONE;
-}
-
-// No suspect yet, perhaps, but others contradict it: one that is dead makes suspects of the living beside it.
-static bool is_contradicted(const argus_knowledge_t *const knowledge, const argus_evidence_t *const evidence,
-                            const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return !argus_is_out(knowledge, sonar) && argus_evidence_contradicted(evidence, sonar) >= CONTRADICTED;
 }
 
 static bool aim(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
@@ -95,15 +87,13 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
         return false;
     }
     unsigned silent = 0;
-    unsigned contradicted = 0;
     for (int i = 0; i < knowledge->sonars; i++) {
-        silent |= is_silent(evidence, i) ? 1u << i : 0u;
-        contradicted |= is_contradicted(knowledge, evidence, i) ? 1u << i : 0u;
+        silent |= !argus_is_out(knowledge, i) && is_silent(evidence, i) ? 1u << i : 0u;
     }
     // Where there are suspects, some aims are theirs.
     const bool aside = self->suspects == 0 || self->aims < AIMS_ASIDE;
     return aim_at_one_of(self, knowledge, evidence, silent & self->suspects) ||
-           (aside && aim_at_one_of(self, knowledge, evidence, silent & contradicted));
+           (aside && aim_at_one_of(self, knowledge, evidence, silent));
 }
 
 static ARGUS_APART void set_look(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,

@@ -110,3 +110,12 @@ def test_nine_of_ten_pairs_and_seeds_are_told(jobs: str, physics: str) -> None:
     assert not [worst for _, _, worst in driven if worst]
     missed = [job for job, told, _ in driven if not told]
     assert len(missed) <= len(driven) // 10, missed
+
+
+@pytest.mark.parametrize("seed", [2, 4, 8])
+def test_a_wrong_one_is_proved_beside_one_that_died_later(seed: int) -> None:
+    """At the goal the silent one is in the way of its proof, and no suspect of most looks."""
+    outcome = _drive(("wrong:4@travelled>600:scale=0.5", "off:1@travelled>1400"), seed, "")
+    out = {sonar: kind for sonar, (health, kind) in enumerate(outcome.final) if health == "DISABLED"}
+    assert out == {4: "wrong", 1: "off"}
+    assert outcome.reached
