@@ -77,7 +77,7 @@ int32_t argus_odds_of(const argus_evidence_t *const self, const argus_knowledge_
                       const int sonar, const argus_test_t test, const bool odd) {
     const odds_t *const o = &odds[test];
     const int32_t share = argus_odds_permille(self, knowledge, sonar, test);
-    const int32_t healthy = argus_max(o->usual, argus_min(o->odd * 3 / 4, share));
+    const int32_t healthy = argus_between(o->usual, o->odd * 3 / 4, share);
     if (odd) {
         return argus_ln(o->odd) - argus_ln(healthy);
     }

@@ -277,7 +277,7 @@ static int32_t lead_segments(const argus_slope_t *const self, const rule_t *cons
     const int32_t most = argus_max(1, lag_of(self->segments, SLOW) - lag_of(self->segments, FAST));
     const int32_t fast = argus_max(1, size_of(self->fast, rule->is_signed));
     const int32_t slow = argus_max(0, size_of(self->slow, rule->is_signed));
-    return argus_max(1, argus_min(most, argus_max(LEAD_LEAST, 57 * slow / fast - 11)));
+    return argus_between(1, most, argus_max(LEAD_LEAST, 57 * slow / fast - 11));
 }
 
 static int32_t horizon_of(const argus_slope_t *const self, const rule_t *const rule) {

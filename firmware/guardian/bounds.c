@@ -316,7 +316,7 @@ static bool meets_memory(const argus_t *const self, const int32_t by_cdeg) {
 
 bool argus_bound_may_turn(const argus_t *const self, const int32_t by_cdeg) {
     const argus_guard_t guard = argus_guard(self);
-    const int32_t cdeg = argus_max(-TURN_MOST_CDEG, argus_min(by_cdeg, TURN_MOST_CDEG));
+    const int32_t cdeg = argus_within(TURN_MOST_CDEG, by_cdeg);
     const bool pressed = (self->knowledge.bumpers_front | self->knowledge.bumpers_rear) != 0;
     return may_move(self, &guard) && !pressed && !meets_echo(&self->knowledge, cdeg) &&
            !(guard.profile->remembers && meets_memory(self, cdeg));

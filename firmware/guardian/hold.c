@@ -118,7 +118,7 @@ static int32_t bounded(const argus_bound_t *const bound, const int32_t wanted_mm
 }
 
 static int8_t in_units(const int32_t mm_s) {
-    return (int8_t)argus_max(-127, argus_min(mm_s / 20, 127));
+    return (int8_t)argus_within(127, mm_s / 20);
 }
 
 static bool send_pair(argus_t *const core, const int32_t mm_s, const int32_t half_mm_s) {
@@ -274,7 +274,7 @@ static bool is_turn_closed(const argus_t *const core, const argus_wish_t *const 
         return turns_into(core, wish->deg_s);
     }
     const int32_t left = left_cdeg(core, wish);
-    const int32_t looked = argus_max(-LOOK_CDEG, argus_min(left, LOOK_CDEG));
+    const int32_t looked = argus_within(LOOK_CDEG, left);
     return argus_abs(left) > DONE_DEG * 100 && !argus_bound_may_turn(core, looked);
 }
 

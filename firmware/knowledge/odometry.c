@@ -81,7 +81,7 @@ static range_t range_of(const argus_span_t *const span, const int32_t credit_ms,
     return (range_t){.least = argus_min(argus_min(before, after), any > 0 ? -any : INT32_MAX),
                      .most = argus_max(argus_max(before, after), any > 0 ? any : INT32_MIN),
                      .least_ms = argus_min(SIP_MS, ms),
-                     .most_ms = argus_max(ms, argus_min((int32_t)GAP_MAX_MS, SIP_MS + credit_ms))};
+                     .most_ms = argus_between(ms, GAP_MAX_MS, SIP_MS + credit_ms)};
 }
 
 // What a change of speed may add that no SIP shows: half of the time faster, half slower.

@@ -276,14 +276,18 @@ static ARGUS_APART bool is_slanting_in(const argus_t *const self, const int sona
 }
 
 // ... or by those ahead for a moment, and not again. One that hears something farther off denies it.
-static bool is_lost_ahead(const argus_t *const self, const int sonar) {
+static bool is_silent_ahead(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_robot_t *const robot = self->knowledge.robot;
-    const argus_guard_t guard = argus_guard(self);
     return argus_abs(argus_robot_pose(robot, sonar).heading_deg) <= LOST_DEG &&
            argus_trusted(&self->knowledge, sonar) &&
-           self->knowledge.sonar[sonar].reading_mm >= robot->no_echo_mm &&
-           argus_guard_heard_mm(&guard) <= self->config.object_range_mm;
+           self->knowledge.sonar[sonar].reading_mm >= robot->no_echo_mm;
+}
+
+// `heard`: something was heard in the way a moment ago.
+static bool tells_of_wall(const argus_t *const self, const int sonar, const bool heard) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    return is_slanting_in(self, sonar) || (heard && is_silent_ahead(self, sonar));
 }
 
 static void sees_flank(const argus_t *const self, const argus_alarm_t *const alarm,
@@ -296,9 +300,11 @@ static void sees_flank(const argus_t *const self, const argus_alarm_t *const ala
         self->motion.settled) {
         return;
     }
+    const argus_guard_t guard = argus_guard(self);
+    const bool heard = argus_guard_heard_mm(&guard) <= self->config.object_range_mm;
     const unsigned usable = self->knowledge.fresh & ~(unsigned)argus_out(&self->knowledge);
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((usable >> i & 1u) != 0 && (is_slanting_in(self, i) || is_lost_ahead(self, i))) {
+        if ((usable >> i & 1u) != 0 && tells_of_wall(self, i, heard)) {
             const int32_t at_mm = self->knowledge.sonar[i].reading_mm;
             stop_before(intent, i, argus_min(at_mm, self->config.object_range_mm));
             return;

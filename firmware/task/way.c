@@ -12,6 +12,7 @@
 #define LEG_LEAST_MM 100 // a leg is done at 60
 #define CUT_SAMPLES 4    // a straight leg may have so many more narrow samples than the way itself
 #define AHEAD_MM 1000
+#define FAR_MM 40000
 #define WORK_MOST 2600  // in one SIP, in units of some 100 instructions of a Cortex-M4
 #define BEGIN_WORK 1000 // a survey of what is passable,
 #define DESCENT_WORK 8  // ... a cell on the way back,
@@ -21,9 +22,15 @@ static argus_point_t robot_at(const argus_ground_t *const ground) {
     return (argus_point_t){ground->knowledge->pose.x_mm, ground->knowledge->pose.y_mm};
 }
 
+// What argus_hypot() takes of the way from one to the other.
+static argus_point_t from_to(const argus_point_t from, const argus_point_t to) {
+    return (argus_point_t){argus_within(FAR_MM, to.x_mm - from.x_mm),
+                           argus_within(FAR_MM, to.y_mm - from.y_mm)};
+}
+
 static int32_t between_mm(const argus_point_t a, const argus_point_t b) {
-    const int32_t most = 40000;
-    return argus_hypot(argus_within(most, a.x_mm - b.x_mm), argus_within(most, a.y_mm - b.y_mm));
+    const argus_point_t by = from_to(a, b);
+    return argus_hypot(by.x_mm, by.y_mm);
 }
 
 // Back to the robot's first leg
@@ -54,14 +61,13 @@ static int32_t narrow_samples(argus_search_t *const self, const argus_point_t to
     const argus_wave_t *const wave = &self->wave;
     const argus_point_t from = {self->robot.x_mm - wave->low.x * CELL_MM,
                                 self->robot.y_mm - wave->low.y * CELL_MM}; // in the window
-    const int32_t way_mm = argus_max(1, argus_min(between_mm(self->robot, to), CELLS * CELL_MM));
-    const int32_t dx = argus_within(40000, to.x_mm - self->robot.x_mm);
-    const int32_t dy = argus_within(40000, to.y_mm - self->robot.y_mm);
-    const int32_t length_mm = argus_max(1, argus_hypot(dx, dy));
+    const argus_point_t by = from_to(self->robot, to);
+    const int32_t length_mm = argus_max(1, argus_hypot(by.x_mm, by.y_mm));
+    const int32_t way_mm = argus_min(length_mm, CELLS * CELL_MM);
     int32_t narrow = 0;
     for (int32_t mm = 0; mm <= way_mm; mm += SAMPLE_MM) {
-        const uint32_t x = (uint32_t)(from.x_mm + dx * mm / length_mm) / CELL_MM;
-        const uint32_t y = (uint32_t)(from.y_mm + dy * mm / length_mm) / CELL_MM;
+        const uint32_t x = (uint32_t)(from.x_mm + by.x_mm * mm / length_mm) / CELL_MM;
+        const uint32_t y = (uint32_t)(from.y_mm + by.y_mm * mm / length_mm) / CELL_MM;
         self->work += SAMPLE_WORK;
         if (x >= CELLS || y >= CELLS) { // beyond the window all is free
             continue;
@@ -209,12 +215,11 @@ bool argus_way_is_free(const argus_ground_t *const ground, const argus_leg_t *co
     const int32_t radius_mm =
         leg->narrow ? argus_wave_narrow_mm(ground->knowledge) : argus_wave_wide_mm(ground->knowledge);
     const argus_point_t from = robot_at(ground);
-    const int32_t dx = argus_within(40000, to.x_mm - from.x_mm);
-    const int32_t dy = argus_within(40000, to.y_mm - from.y_mm);
-    const int32_t length_mm = argus_max(1, argus_hypot(dx, dy));
+    const argus_point_t by = from_to(from, to);
+    const int32_t length_mm = argus_max(1, argus_hypot(by.x_mm, by.y_mm));
     const int32_t end_mm = argus_min(AHEAD_MM, length_mm - ARGUS_WAVE_OUT_MM);
     for (int32_t mm = ARGUS_WAVE_OUT_MM + SAMPLE_MM; mm <= end_mm; mm += SAMPLE_MM) {
-        const argus_point_t on = {from.x_mm + dx * mm / length_mm, from.y_mm + dy * mm / length_mm};
+        const argus_point_t on = {from.x_mm + by.x_mm * mm / length_mm, from.y_mm + by.y_mm * mm / length_mm};
         if (!is_clear(ground, argus_grid_cell(on), radius_mm)) {
             return false;
         }

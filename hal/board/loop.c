@@ -92,31 +92,17 @@ static void tell_events(void) {
     }
 }
 
-// The one place that asks for the status, whose copy in a program as a whole is then only what is used of it.
-// Says whether the robot stands and will.
-static BOARD_APART bool look(bool tell) {
+static BOARD_APART void tell_status(void) {
     argus_status_t status;
-    argus_status(self.core, &status);
-    if (tell) {
-        board_report_status(self.out, &status, since_start_ms());
-    }
-    const bool may_move = status.mode != ARGUS_MODE_IDLE && status.mode != ARGUS_MODE_WAITING &&
-                          status.mode != ARGUS_MODE_OFFLINE && status.mode != ARGUS_MODE_CLOSED;
-    return !may_move && status.vel_left_mm_s == 0 && status.vel_right_mm_s == 0;
-}
-
-static bool is_at_rest(void) {
-    return look(false);
-}
-
-static void tell_status(void) {
     const bool due = self.wants_status || board_now_ms() - self.status_ms >= STATUS_MS;
-    if (due && self.out != NULL && board_ring_room(self.out) >= BOARD_STATUS_LINE_MAX) {
-        self.wants_status = false;
-        self.status_ms = board_now_ms();
-        look(true);
-        board_console_kick();
+    if (!due || self.out == NULL || board_ring_room(self.out) < BOARD_STATUS_LINE_MAX) {
+        return;
     }
+    self.wants_status = false;
+    self.status_ms = board_now_ms();
+    argus_status(self.core, &status);
+    board_report_status(self.out, &status, since_start_ms());
+    board_console_kick();
 }
 
 static void tell_settings(void) {
@@ -126,6 +112,14 @@ static void tell_settings(void) {
         self.telling++;
         board_console_kick();
     }
+}
+
+static BOARD_APART bool is_at_rest(void) {
+    argus_status_t status;
+    argus_status(self.core, &status);
+    const bool may_move = status.mode != ARGUS_MODE_IDLE && status.mode != ARGUS_MODE_WAITING &&
+                          status.mode != ARGUS_MODE_OFFLINE && status.mode != ARGUS_MODE_CLOSED;
+    return !may_move && status.vel_left_mm_s == 0 && status.vel_right_mm_s == 0;
 }
 
 static void save(void) {

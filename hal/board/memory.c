@@ -2,6 +2,7 @@
 // The stored record is the settings' part, then the manager's own.
 #include "board/memory.h"
 
+#include "board/board.h"
 #include "board/config.h"
 #include "board/flash.h"
 #include "hal/crc32.h"
@@ -66,15 +67,14 @@ void board_memory_load(board_memory_t *self, argus_t *core) {
     }
 }
 
-static __attribute__((noinline)) size_t pack(const argus_config_t *config, uint8_t *record) {
+static BOARD_APART size_t pack(const argus_config_t *config, uint8_t *record) {
     argus_config_t built;
     set_built(&built);
     return board_config_pack(&built, config, record);
 }
 
-// Never a part of its caller: what it has on the stack is there for the time of a save.
-__attribute__((noinline)) hal_store_error_t board_memory_save(board_memory_t *self, const argus_t *core,
-                                                              const argus_config_t *config) {
+BOARD_APART hal_store_error_t board_memory_save(board_memory_t *self, const argus_t *core,
+                                                const argus_config_t *config) {
     uint8_t record[RECORD_MAX];
     const size_t at = pack(config, record);
     const size_t count = at + argus_record_save(core, record + at, sizeof record - at);

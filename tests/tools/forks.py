@@ -99,9 +99,8 @@ def _become(request: dict[str, Any], fds: Sequence[int]) -> None:
     """Be a fresh process, as far as a program can tell."""
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    signal.signal(
-        signal.SIGHUP, signal.SIG_DFL
-    )  # under nohup it is ignored, and would be in the program, too
+    # Under nohup it is ignored, and would be in the program, too.
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     for number, fd in enumerate(fds):
         os.dup2(fd, number)
         os.close(fd)

@@ -15,10 +15,9 @@
 #include <unistd.h>
 
 #include "app.h"
+#include "arguments.h"
 #include "unity.h"
 #include "wire_robot.h"
-
-#define ARGUMENTS_MAX 24
 
 static char out[65536];
 static char err[4096];
@@ -43,14 +42,8 @@ static void app_tear_down(void) {
 }
 
 static pid_t start(const char *line, int ends[2][2]) {
-    static char copy[1024];
-    static char program[] = "argusd";
-    char *argv[ARGUMENTS_MAX] = {program};
-    int argc = 1;
-    snprintf(copy, sizeof copy, "%s", line);
-    for (char *word = strtok(copy, " "); word != NULL && argc < ARGUMENTS_MAX - 1; word = strtok(NULL, " ")) {
-        argv[argc++] = word;
-    }
+    char *argv[ARGUMENTS_MAX];
+    const int argc = arguments_of(line, argv);
     TEST_ASSERT_EQUAL_INT(0, pipe(ends[0]));
     TEST_ASSERT_EQUAL_INT(0, pipe(ends[1]));
     fflush(NULL);

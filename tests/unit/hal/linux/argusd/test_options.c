@@ -4,25 +4,17 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "arguments.h"
 #include "argusd.h"
 #include "options.h"
 #include "unity.h"
 
-#define ARGUMENTS_MAX 24
-
 static options_t options;
 static char message[512];
 
-// `line`: arguments, separated by single blanks.
 static bool parse(const char *line) {
-    static char copy[512];
-    static char program[] = "argusd";
-    char *argv[ARGUMENTS_MAX] = {program};
-    int argc = 1;
-    snprintf(copy, sizeof copy, "%s", line);
-    for (char *word = strtok(copy, " "); word != NULL && argc < ARGUMENTS_MAX - 1; word = strtok(NULL, " ")) {
-        argv[argc++] = word;
-    }
+    char *argv[ARGUMENTS_MAX];
+    const int argc = arguments_of(line, argv);
     message[0] = '\0';
     return options_parse(&options, argc, argv, message, sizeof message);
 }
