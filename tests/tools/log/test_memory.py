@@ -17,8 +17,8 @@ from logs import CAPTURES, ROOT
 
 pytestmark = pytest.mark.soak
 
-SHORT_BYTES, LONG_BYTES = 2 << 20, 8 << 20
-GROWTH_KB = 6 << 10
+SHORT_BYTES, LONG_BYTES = 4 << 20, 16 << 20
+GROWTH_KB = 12 << 10
 # Prints the largest resident size of the command that its arguments are, in kB.
 _PEAK = (
     "import resource, subprocess, sys; done = subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL);"
