@@ -226,11 +226,20 @@ class Argusd:
         known = self.named("STATUS")
         return known[-1] if known else {}
 
-    def wait(self, *names: str, timeout_s: float = PATIENCE_S, after_t: float = -1.0, **want: Any) -> Record:
-        """Wait for an event not earlier than `after_t` (argusd's clock)."""
+    def wait(
+        self,
+        *names: str,
+        timeout_s: float = PATIENCE_S,
+        after_t: float = -1.0,
+        after: Record | None = None,
+        **want: Any,
+    ) -> Record:
+        """Wait for an event not earlier than `after_t` (argusd's clock) that is told later than the event `after`."""
+        told = 0 if after is None else 1 + next(i for i, e in enumerate(self.events) if e is after)
 
         def probe() -> Record | None:
-            found = [e for e in self.named(*names, **want) if e.get("t", 0.0) >= after_t]
+            later = {id(e) for e in self.events[told:]}
+            found = [e for e in self.named(*names, **want) if e.get("t", 0.0) >= after_t and id(e) in later]
             if not found and self.process.poll() is not None and not any(t.is_alive() for t in self._threads):
                 raise HilFailure(
                     f"argusd ended with {self.process.returncode} while waiting for {names} {want or ''}: "

@@ -105,7 +105,7 @@ def test_a_robot_that_restarts_in_motion_ends_the_course(bench: Bench) -> None:
     sim.kill()
     lost = argusd.wait("LINK_LOST")
     again = bench.sim(world)
-    argusd.wait("ODOMETRY_LOST", after_t=lost["t"])
+    argusd.wait("ODOMETRY_LOST", after=lost)
     assert argusd.process.wait(PATIENCE_S) == 1
     assert argusd.named("MISSION_FAILED")
     assert not argusd.named("GOAL_REACHED")
@@ -121,8 +121,8 @@ def test_emulator_killed_at_rest_and_started_again(bench: Bench) -> None:
     assert sim.of("state")[-1]["v_mm_s"] == 0
     lost = argusd.wait("LINK_LOST")
     again = bench.sim(world)
-    argusd.wait("LINK_UP", after_t=lost["t"])
-    argusd.wait("SESSION_OPEN", after_t=lost["t"])
+    argusd.wait("LINK_UP", after=lost)
+    argusd.wait("SESSION_OPEN", after=lost)
     assert_checked_first(again, argusd, again.of("state")[0], lost["t"])
     # The new robot stands at the start of its world; what was driven before is argusd's to remember.
     cruise(again, x_mm=50)

@@ -34,9 +34,9 @@ def test_another_robot_behind_the_same_name_is_not_driven(
     sim.kill()
     lost = argusd.wait("LINK_LOST")
     again = bench.sim(world, extra=other)
-    event = argusd.wait("OTHER_ROBOT", after_t=lost["t"])
+    event = argusd.wait("OTHER_ROBOT", after=lost)
     assert event["value"] == part
-    argusd.wait("HEALTH_CHECK", after_t=event["t"])
+    argusd.wait("HEALTH_CHECK", after=event)
     until = again.t_s + 3.0
     again.wait("three seconds pass", lambda s: s["t_s"] > until)
     assert not any(is_translating(state) for state in again.of("state"))
@@ -69,7 +69,8 @@ def test_an_adapter_with_a_new_number_is_said_once(bench: Bench) -> None:
     assert str(second) in line
     assert "by-id" in line
     second.rename(first)
-    argusd.wait("SESSION_OPEN", after_t=lost["t"])
+    argusd.wait("SESSION_OPEN", after=lost)
+    wait_for("the link is said to be open again", lambda: told(argusd, "open again"), PATIENCE_S)
     assert len(told(argusd, "open again")) == 1
     assert not argusd.named("OTHER_ROBOT")
     argusd.signal(signal.SIGTERM)

@@ -14,7 +14,7 @@ void test_rows_are_found_whole(void) {
     static const char texts[] = "stop\0go\0recheck\0";
     TEST_ASSERT_EQUAL_INT(0, board_word_row(word("stop"), texts));
     TEST_ASSERT_EQUAL_INT(2, board_word_row(word("recheck"), texts));
-    static const char *const others[] = {"",     "s",  "sto",   "stopp",    "stop ",
+    static const char *const others[] = {"",     "s",  "sto",   "stops",    "stop ",
                                          "STOP", "re", "check", "gorecheck"};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         TEST_ASSERT_EQUAL_INT_MESSAGE(-1, board_word_row(word(others[i]), texts), others[i]);
