@@ -41,28 +41,11 @@ void argus_evidence_forget(argus_evidence_t *const self, const int sonar) {
     }
 }
 
-// What others said, and what it was said of, is of the readings that are forgotten.
-static void restart_case(argus_case_t *const self) {
-    memset(self->hypothesis, 0, sizeof self->hypothesis);
-    memset(self->lag_run, 0, sizeof self->lag_run);
-    self->score[ARGUS_TEST_PEERS] = 0;
-    self->against = 0;
-    self->episodes = 0;
-    self->silent_bits = 0;
-    self->borne_out = false;
-    self->none_run = 0;
-    self->gaps = 0;
-    memset(self->rate, 0, sizeof self->rate);
-}
-
 void argus_evidence_restart(argus_evidence_t *const self) {
     self->straight_sips = 0;
     self->before_ms = 0;
     argus_trend_restart(&self->trend);
     memset(self->pings, 0, sizeof self->pings);
-    for (int i = 0; i < ARGUS_SONARS; i++) {
-        restart_case(&self->of[i]);
-    }
 }
 
 // Where the robot was when the pings of this SIP were sent, about: between its two last poses.

@@ -12,8 +12,8 @@ void argus_evidence_init(argus_evidence_t *self);
 // `percent` of the tabled evidence, 25 to 400, is what each level takes from now on; 100 after init.
 void argus_evidence_set_caution(argus_evidence_t *self, int32_t percent);
 
-// The readings begin anew (session, gap of the link): pings are forgotten, and with them what the others
-// said; the other scores stay.
+// The readings begin anew (session, gap of the link): pings are forgotten, as the robot may have been moved.
+// What they told of the sonars stays.
 void argus_evidence_restart(argus_evidence_t *self);
 
 // After each SIP. Cost, for each fresh sonar: one pass over the pings of the others (480) and fourteen more

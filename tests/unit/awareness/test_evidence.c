@@ -229,21 +229,20 @@ static int score_sum(int sonar) {
     return sum;
 }
 
-// What the others said goes with the readings that it was said of; what its own readings said stays.
-void test_restart_forgets_the_pings_and_keeps_the_other_scores(void) {
+// The robot may have been moved in the gap, the sonars were not mended by it.
+void test_restart_forgets_the_pings_and_keeps_what_they_told(void) {
     start(3);
     s.fault[3] = (scene_fault_t){ARGUS_KIND_WRONG, 50};
     scene_look(&s);
     scene_look(&s);
     TEST_ASSERT_TRUE(s.e.of[3].score[ARGUS_TEST_PEERS] > 0);
-    s.e.of[4].score[ARGUS_TEST_DROPOUT] = 300;
+    static argus_case_t before[ARGUS_SONARS];
+    memcpy(before, s.e.of, sizeof before);
     argus_evidence_restart(&s.e);
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        TEST_ASSERT_EQUAL(0, s.e.of[i].score[ARGUS_TEST_PEERS]);
         TEST_ASSERT_EQUAL(0, s.e.pings[i].count);
-        TEST_ASSERT_EQUAL(0, s.e.of[i].against);
     }
-    TEST_ASSERT_EQUAL(300, s.e.of[4].score[ARGUS_TEST_DROPOUT]);
+    TEST_ASSERT_EQUAL_MEMORY(before, s.e.of, sizeof before);
 }
 
 void test_forgetting_one_sonar_leaves_the_others_alone(void) {

@@ -435,6 +435,30 @@ void test_a_link_that_stalls_during_a_look(void) {
     finish();
 }
 
+// A poor link stalls every few seconds: what was suspected before a gap is not begun again after it.
+void test_faults_are_found_over_a_link_that_stalls_again_and_again(void) {
+    static const struct {
+        robot_fault_t fault;
+        int value;
+    } faults[] = {{ROBOT_OFF, 0}, {ROBOT_SCALE, 50}, {ROBOT_STUCK, 0}};
+    for (int i = 0; i < 3; i++) {
+        start_in_a_room();
+        drive_until(never, 0, 12000);
+        robot.fault[3] = faults[i].fault;
+        robot.fault_value[3] = faults[i].value;
+        for (int gap = 0; gap < 25 && !is_found(3); gap++) {
+            drive_until(is_found, 3, 6000);
+            robot.mute = true;
+            robot_run(&robot, 900);
+            robot.mute = false;
+            robot_until_event(&robot, ARGUS_EV_LINK_RESUMED, 2000);
+        }
+        TEST_ASSERT_TRUE_MESSAGE(is_found(3), told("fault", i));
+        TEST_ASSERT_EQUAL_MESSAGE(0, disabled_events_of_others(3), told("others", i));
+        finish();
+    }
+}
+
 void test_a_witness_that_dies_during_a_look(void) {
     start_in_a_room();
     robot_goal(&robot, 1500, 0);
