@@ -22,11 +22,11 @@ M32_PROBE: Final = "#include <errno.h>\n#include <stdio.h>\n#include <linux/seri
 HEADERS: Final = Path("/usr/include")
 
 
-def compiles(source: str, *flags: str) -> bool:
-    """Tell whether gcc builds a program from SOURCE with FLAGS; stands for 'the package is installed'."""
+def compiles(source: str, *flags: str, compiler: str = "gcc") -> bool:
+    """Tell whether COMPILER builds a program from SOURCE with FLAGS; stands for 'the package is installed'."""
     try:
         done = subprocess.run(
-            ["gcc", "-xc", "-", "-o", "/dev/null", *flags],
+            [compiler, "-xc", "-", "-o", "/dev/null", *flags],
             input=source.encode(),
             capture_output=True,
             check=False,
@@ -123,7 +123,11 @@ NEEDS: Final = {
         lambda: ["gcc-aarch64-linux-gnu", "libc6-dev-arm64-cross"],
     ),
     "qemu-user": command_need("qemu-s390x", "qemu-user"),
-    "clang": command_need("clang", "clang"),
+    "clang": Need(
+        "clang with its sanitizers",
+        lambda: compiles(MAIN, "-fsanitize=address,undefined", compiler="clang"),
+        lambda: ["clang", "libclang-rt-dev"],
+    ),
     "tshark": command_need("tshark", "tshark"),
     "g++": command_need("g++", "g++"),
     "python-dev": Need(
@@ -149,7 +153,7 @@ PRESET_NEEDS: Final = {
     "mps2-tests": ("cortex-m4", "qemu-arm"),
     "stm32f405-tests": ("cortex-m4", "qemu-arm"),
     "big-endian": ("s390x", "qemu-user"),
-    "clang": ("clang",),
+    "sanitize": ("clang",),
 }
 
 
