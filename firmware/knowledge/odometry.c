@@ -15,6 +15,8 @@
 #define DRIVES_MM_S 750       // the fastest that it is ever ordered
 #define TURNS_CDEG_S 10000    // likewise
 #define REST_MM_S 5           // encoders tremble
+#define CREEP_MM_S 20         // ... and so far wheels are from turning it quite on the spot
+#define BEND_CDEG 4500        // more than it turns on its way to a place, while nobody sees it
 #define TURNING_CDEG_S 500    // ... which straight wheels do not look like
 #define ACCEL_MM_S2 2000      // the hardest that wheels speed up or brake
 #define ACCEL_CDEG_S2 30000   // likewise
@@ -185,6 +187,17 @@ static bool is_as_expected(const argus_span_t *const span, const argus_moved_t *
     return !turned && (off_mm <= NEXT_MM || argus_abs(argus_abs(step->ahead_mm) - rolled_mm) <= ANEW_MM);
 }
 
+// One that turns on the spot makes no way, and one that drives to a place no great turn: counters that begin
+// anew meanwhile stay near zero in that.
+static bool may_be_from_zero(const argus_span_t *const span, const argus_order_t *const order,
+                             const argus_way_turn_t *const from_zero) {
+    const int32_t speed_mm_s = (span->before.left_mm_s + span->before.right_mm_s) / 2;
+    if (order->way_mm > 0) {
+        return argus_abs(from_zero->turn_cdeg) <= BEND_CDEG;
+    }
+    return argus_abs(speed_mm_s) > CREEP_MM_S || from_zero->way_mm <= NEXT_MM;
+}
+
 bool argus_odometry_may_be_anew(const argus_span_t *const span, const argus_order_t *const order,
                                 const argus_moved_t *const step, const argus_way_turn_t *const from_zero) {
     ARGUS_ASSERT(from_zero->way_mm >= 0 && span->track_mm > 0);
@@ -192,7 +205,7 @@ bool argus_odometry_may_be_anew(const argus_span_t *const span, const argus_orde
     const int32_t turn_cdeg = argus_abs(from_zero->turn_cdeg);
     const int32_t wheel_mm = from_zero->way_mm + turn_cdeg * span->track_mm / (2 * CDEG_PER_RADIAN);
     return span->elapsed_ms > GAP_MS && wheel_mm <= rolled_mm + ANEW_MM &&
-           !is_as_expected(span, step, rolled_mm);
+           may_be_from_zero(span, order, from_zero) && !is_as_expected(span, step, rolled_mm);
 }
 
 bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *const span,

@@ -68,6 +68,7 @@ int32_t argus_odometry_unseen_mm(const argus_span_t *span, const argus_order_t *
 // Of a way that nobody has seen: whether counters that say `from_zero` may have begun there within it. Then
 // this place cannot be joined to the one before. The step itself vouches against it where it is what the
 // order and the watchdog make of the gap, or what the next SIP in line would say, as after the host slept.
+// So does a place away from zero where it turned on the spot, and a heading where it drove to a place.
 bool argus_odometry_may_be_anew(const argus_span_t *span, const argus_order_t *order,
                                 const argus_moved_t *step, const argus_way_turn_t *from_zero);
 

@@ -17,7 +17,7 @@ HAS = {"p3dx-sh": 16, "p3at-sh": 16, "amigo-sh": 8, "peoplebot-sh": 32}
 # Each compiles all of firmware/: the least and the most show what leaves an array, and every other test has 16.
 @pytest.mark.parametrize(
     ("most", "sanitized"),
-    [(8, True), (32, True), *(pytest.param(most, True, marks=pytest.mark.wide) for most in (16, 24))],
+    [(8, False), (32, True), *(pytest.param(most, True, marks=pytest.mark.wide) for most in (16, 24))],
 )
 def test_robots_of_every_size_in_builds_of_every_size(most: int, sanitized: bool, tmp_path: Path) -> None:
     program = tmp_path / "sonars"

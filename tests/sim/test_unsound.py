@@ -253,6 +253,59 @@ def test_a_long_silence_alone_does_not(corridor: str, at_s: float, gone_s: float
     assert sil.outcome().goal_mm < SEEN_MM
 
 
+HOME: tuple[tuple[float, float], ...] = ((1200, 0), (60, 0), (60, 700))
+"""It comes back to the place where its counters began, and turns there."""
+
+
+def comes_home(sil: MutatedSil) -> bool:
+    pose = sil.robot.chassis
+    return abs(pose.th) > 150 and pose.x < 500 and sil.robot.drive.v > 100
+
+
+def turns_at_home(sil: MutatedSil) -> bool:
+    home = any(e.name == "WAYPOINT" and e.value == 2 for e in sil.events)
+    return home and abs(sil.robot.drive.w) > 30
+
+
+def run_until(world: str, there: Callable[[MutatedSil], bool], cut: tuple[str, ...] = ()) -> MutatedSil:
+    sil = MutatedSil(Mission(world, HOME, faults=cut, sonar={"crosstalk": 0.0}, limit_s=90))
+    while not there(sil):
+        assert not sil.over
+        sil.wait(0.1)
+    return sil
+
+
+@pytest.mark.parametrize("later_s", [0.0, 0.3, 0.6])
+@pytest.mark.parametrize("gone_s", [0.7, 1.0, 2.5])
+@pytest.mark.parametrize("there", [comes_home, turns_at_home])
+def test_a_silence_near_zero_on_another_heading_ends_no_course(
+    corridor: str, there: Callable[[MutatedSil], bool], later_s: float, gone_s: float
+) -> None:
+    at_s = run_until(corridor, there).now_ms / 1000 + later_s
+    sil = run_until(corridor, there, (f"link-cut@{at_s}s-{at_s + gone_s}s",))
+    sil.wait(math.inf)
+    told = [e.name for e in sil.events]
+    assert "LINK_STALLED" in told
+    assert "ODOMETRY_LOST" not in told
+    assert "GOAL_REACHED" in told
+    assert sil.outcome().goal_mm < SEEN_MM
+
+
+@pytest.mark.parametrize("later_s", [0.0, 0.3, 0.6])
+@pytest.mark.parametrize("there", [comes_home, turns_at_home])
+def test_counters_that_restart_near_zero_on_another_heading_end_it(
+    corridor: str, there: Callable[[MutatedSil], bool], later_s: float
+) -> None:
+    at_s = run_until(corridor, there).now_ms / 1000 + later_s
+    sil = run_until(corridor, there, (f"link-cut@{at_s}s-{at_s + 1.0}s",))
+    sil.wait(later_s + 0.3)
+    odometry(0, 0, 0)(sil)
+    sil.wait(math.inf)
+    told = [e.name for e in sil.events]
+    assert "ODOMETRY_LOST" in told
+    assert "GOAL_REACHED" not in told
+
+
 def test_one_that_restarts_at_rest_keeps_its_course(corridor: str) -> None:
     sil = MutatedSil(Mission(corridor, ((GOAL_MM, 0),), sonar={"crosstalk": 0.0}, limit_s=90))
     sil.wait(5.0)

@@ -60,11 +60,12 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return session(folder / "short.jsonl", SHORT_BYTES), session(folder / "long.jsonl", LONG_BYTES)
 
 
+@pytest.mark.tour(3, 3)
 @pytest.mark.parametrize(
     "arguments",
     [
-        "decode --json LOG", "stats LOG", "faults LOG", "diff LOG LOG", "convert LOG OUT.rec",
-        "plot LOG -o OUT.png --no-faults", "plot LOG -o OUT.png --view path",
+        "decode --json LOG", "stats LOG", "faults LOG", "diff LOG LOG", "plot LOG -o OUT.png --no-faults",
+        "convert LOG OUT.rec", "plot LOG -o OUT.png --view path",
     ],
 )  # fmt: skip
 def test_a_longer_log_takes_no_more(arguments: str, logs: tuple[Path, Path], tmp_path: Path) -> None:
@@ -84,6 +85,7 @@ def test_a_longer_log_takes_no_more_as_mcap(tmp_path: Path) -> None:
     assert peaks[1] - peaks[0] < GROWTH_KB, peaks
 
 
+@pytest.mark.tour(2, 2)
 @pytest.mark.parametrize("form", ["hexdump", "hextext", "screen", "csv"])
 def test_a_longer_text_takes_no_more(form: str, tmp_path: Path) -> None:
     makes: dict[str, Callable[[int], str]] = {
