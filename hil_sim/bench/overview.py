@@ -66,7 +66,7 @@ def draw_journeys(path: Path, source: str, journeys: Record) -> None:
         left.set(xlabel="goals truly reached, %", xlim=(0, 102))
         right.set(xlabel="speed over that of the ideal, %", xlim=(0, 110))
         right.axvline(100, color="#888888", linewidth=0.8)
-        left.legend(loc="lower left", fontsize=8)
+        figure.legend(*left.get_legend_handles_labels(), loc="outside upper left", ncols=2, fontsize=8)
         _save(figure, path, source)
 
 
