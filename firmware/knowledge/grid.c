@@ -157,15 +157,13 @@ static void clear_body(argus_grid_t *const self, const argus_cell_t robot) {
     }
 }
 
-static void pass(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
-                 const int32_t way_mm) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_sonar_pose_t at = argus_robot_pose(knowledge->robot, sonar);
-    const int32_t c = argus_cos(at.heading_deg * 100);
-    const int32_t s = argus_sin(at.heading_deg * 100);
+static argus_point_t along(const argus_pose_t *const ray, const int32_t way_mm) {
+    return argus_to_course(ray, (argus_point_t){way_mm, 0});
+}
+
+static void pass(argus_grid_t *const self, const argus_pose_t *const ray, const int32_t way_mm) {
     for (int32_t mm = CELL_MM / 2; mm < way_mm; mm += CELL_MM) {
-        const argus_point_t on = {at.x_mm + mm * c / ARGUS_TRIG_ONE, at.y_mm + mm * s / ARGUS_TRIG_ONE};
-        lower(self, argus_grid_cell(argus_to_course(&knowledge->pose, on)));
+        lower(self, argus_grid_cell(along(ray, mm)));
     }
 }
 
@@ -201,17 +199,39 @@ static bool is_passing(const argus_knowledge_t *const knowledge) {
     return knowledge->still_sips <= REST_SIPS || knowledge->still_sips % REST_EVERY < REST_SIPS;
 }
 
+// An echo may come from anywhere on the arc of the cone. What is known to stand at an end of the arc explains
+// one on whose axis nothing is known: so the edge of a door is not heard in the door.
+static bool is_explained(const argus_grid_t *const self, const argus_pose_t *const axis,
+                         const int32_t reading_mm, const int32_t half_cdeg) {
+    unsigned known = 0;
+    for (int32_t side = -1; side <= 1; side++) {
+        const argus_pose_t ray = {axis->x_mm, axis->y_mm, axis->heading_cdeg + side * half_cdeg};
+        known = known << 1 | argus_grid_is_occupied(self, argus_grid_cell(along(&ray, reading_mm)));
+    }
+    return known != 0 && (known & 2u) == 0;
+}
+
+// The axis of its cone, course frame; the heading is of any number of turns.
+static argus_pose_t axis_of(const argus_knowledge_t *const knowledge, const int sonar) {
+    const argus_sonar_pose_t at = argus_robot_pose(knowledge->robot, sonar);
+    const argus_point_t from = argus_to_course(&knowledge->pose, (argus_point_t){at.x_mm, at.y_mm});
+    return (argus_pose_t){from.x_mm, from.y_mm, knowledge->pose.heading_cdeg + at.heading_deg * 100};
+}
+
 static void take(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
     const bool silent = reading_mm >= knowledge->robot->no_echo_mm;
+    const argus_pose_t axis = axis_of(knowledge, sonar);
     if (is_passing(knowledge)) {
-        pass(self, knowledge, sonar, silent ? SILENT_MM : argus_min(reading_mm - SHORT_MM, PASSED_MM));
+        pass(self, &axis, silent ? SILENT_MM : argus_min(reading_mm - SHORT_MM, PASSED_MM));
     }
     if (!silent && reading_mm <= FAR_MM) {
         const bool near = reading_mm <= NEAR_MM;
-        const argus_point_t echo = argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, sonar));
-        rise(self, argus_grid_cell(echo), near ? NEAR_RISE : FAR_RISE, near ? HEARD_MOST : FAR_MOST);
+        const argus_point_t echo = along(&axis, reading_mm);
+        if (!is_explained(self, &axis, reading_mm, knowledge->robot->cone_deg * 50)) {
+            rise(self, argus_grid_cell(echo), near ? NEAR_RISE : FAR_RISE, near ? HEARD_MOST : FAR_MOST);
+        }
         if ((argus_robot_flank(knowledge->robot) >> sonar & 1u) != 0 && reading_mm <= BESIDE_MM) {
             const bool left = argus_robot_pose(knowledge->robot, sonar).y_mm > 0;
             extend(self, knowledge, echo, &self->abeam[left ? 1 : 0]);

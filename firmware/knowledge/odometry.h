@@ -23,7 +23,7 @@ typedef struct {
 // What a robot that hears nobody goes on with.
 typedef struct {
     bool under_way;       // a motion was asked for
-    uint16_t way_mm;      // ... that ends after this, 0: not known,
+    uint16_t way_mm;      // ... that ends after this, 0: a turn on the spot,
     uint16_t speed_mm_s;  // ... and becomes this fast,
     uint16_t accel_mm_s2; // ... by this,
     uint16_t watchdog_ms; // ... until it has heard nothing for so long,

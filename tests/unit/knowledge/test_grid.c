@@ -129,6 +129,27 @@ void test_what_is_marked_and_what_is_touched(void) {
     }
 }
 
+// The post of a door sends its echo while the axis looks through the door. Where the post is known, and
+// nothing in the door, that says nothing new; without it, or where something is known there, it counts.
+void test_an_echo_that_what_is_known_explains_is_not_of_something_else(void) {
+    const argus_sonar_pose_t at = argus_robot_pose(k.robot, 3);
+    for (int side = -1; side <= 1; side++) {
+        for (int known = 0; known < 2; known++) {
+            setUp();
+            reads(-1, 0);
+            const argus_pose_t ray = {at.x_mm, at.y_mm, at.heading_deg * 100 + side * 1500};
+            const argus_point_t post = argus_to_course(&ray, (argus_point_t){800, 0});
+            if (known != 0) {
+                argus_grid_mark(&g, post, true);
+            }
+            for (int i = 0; i < 5; i++) {
+                reads(3, 800);
+            }
+            TEST_ASSERT_EQUAL(side == 0 || known == 0, is_there(echo_of(3)));
+        }
+    }
+}
+
 void test_where_the_robot_stands_nothing_is(void) {
     const argus_point_t here = {0, 0};
     reads(-1, 0);

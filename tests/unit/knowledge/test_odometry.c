@@ -299,7 +299,7 @@ void test_a_place_that_may_count_from_a_restart_in_a_gap_is_none(void) {
         drive(cases[i].speed, cases[i].speed, cases[i].speed == 0);
         sip.vel_left_mm_s = sip.vel_right_mm_s = (int16_t)cases[i].speed;
         k.vel_left_mm_s = k.vel_right_mm_s = (int16_t)cases[i].speed;
-        k.order = (argus_order_t){cases[i].order > 0, 0, (uint16_t)cases[i].order, 300, 2000, 600};
+        k.order = (argus_order_t){cases[i].order > 0, 5000, (uint16_t)cases[i].order, 300, 2000, 600};
         if (cases[i].anew) {
             x = y = th = 0;
         }
@@ -310,6 +310,31 @@ void test_a_place_that_may_count_from_a_restart_in_a_gap_is_none(void) {
         deliver(cases[i].ms);
         TEST_ASSERT_EQUAL_INT_MESSAGE(cases[i].told, leaps, cases[i].what);
         TEST_ASSERT_EQUAL_UINT32_MESSAGE(cases[i].told, k.leaps_unseen, cases[i].what);
+    }
+}
+
+// Counters that begin anew as it turns on the spot stay near zero, and on its way to a place it makes no half
+// turn. On the spot, 90 mm from zero, they went on; on it they may have begun anew.
+void test_where_and_how_it_stands_tells_whether_counters_began_anew(void) {
+    static const struct {
+        const char *what;
+        int at_mm, deg, way_mm;
+        bool told;
+    } cases[] = {
+        {"turns, away from zero", 90, 20, 0, false},
+        {"turns, at zero", 10, 20, 0, true},
+        {"drives, on another heading", 90, 160, 1000, false},
+        {"drives, near no heading", 90, 20, 1000, true},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        setUp();
+        x = cases[i].at_mm;
+        th = cases[i].deg * PI / 180;
+        deliver(100);
+        k.order = (argus_order_t){true, (uint16_t)cases[i].way_mm, 400, 300, 2000, 600};
+        th += 6 * PI / 180;
+        deliver(1000);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(cases[i].told, leaps, cases[i].what);
     }
 }
 
