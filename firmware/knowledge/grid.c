@@ -211,7 +211,7 @@ static bool is_explained(const argus_grid_t *const self, const argus_pose_t *con
     return known != 0 && (known & 2u) == 0;
 }
 
-// The axis of its cone, course frame; the heading is of any number of turns.
+// The axis of its cone, course frame; its heading may be past half a turn.
 static argus_pose_t axis_of(const argus_knowledge_t *const knowledge, const int sonar) {
     const argus_sonar_pose_t at = argus_robot_pose(knowledge->robot, sonar);
     const argus_point_t from = argus_to_course(&knowledge->pose, (argus_point_t){at.x_mm, at.y_mm});

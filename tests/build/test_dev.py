@@ -187,6 +187,7 @@ def test_the_modules_are_small_and_need_nothing_but_python() -> None:
             assert one.cyclomatic_complexity <= 10, f"{path}:{one.start_line}: {one.name}"
 
 
+@pytest.mark.soak
 def test_a_tour_leaves_most_cases_to_soak_and_wide(tmp_path: Path) -> None:
     """Each case is in one stage, none in no stage; those of each are from all over."""
     shutil.copy(ROOT / "tests/conftest.py", tmp_path)

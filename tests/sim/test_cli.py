@@ -431,6 +431,7 @@ def test_a_host_that_was_late_is_told_in_one_line() -> None:
     assert "17 turns by more than 100 ms, at most 562 ms" in _lateness([loop(5, 120.0), loop(12, 562.3)])
 
 
+@pytest.mark.soak
 def test_a_suspended_emulator_does_not_call_its_host_late(tmp_path: Path) -> None:
     truth = tmp_path / "truth.jsonl"
     with simulator("--world", WORLD, "--truth", str(truth)) as (process, _):

@@ -19,6 +19,7 @@ def argusd(tmp_path: Path) -> str:
     return str(program)
 
 
+@pytest.mark.soak
 def test_faults_of_options_and_of_orders_are_known(argusd: str) -> None:
     told: list[dict[str, str]] = []
 
