@@ -218,6 +218,21 @@ static argus_pose_t axis_of(const argus_knowledge_t *const knowledge, const int 
     return (argus_pose_t){from.x_mm, from.y_mm, knowledge->pose.heading_cdeg + at.heading_deg * 100};
 }
 
+static void hear(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                 const argus_pose_t *const axis) {
+    ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);
+    const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
+    const bool near = reading_mm <= NEAR_MM;
+    const argus_point_t echo = along(axis, reading_mm);
+    if (!is_explained(self, axis, reading_mm, knowledge->robot->cone_deg * 50)) {
+        rise(self, argus_grid_cell(echo), near ? NEAR_RISE : FAR_RISE, near ? HEARD_MOST : FAR_MOST);
+    }
+    if ((argus_robot_flank(knowledge->robot) >> sonar & 1u) != 0 && reading_mm <= BESIDE_MM) {
+        const bool left = argus_robot_pose(knowledge->robot, sonar).y_mm > 0;
+        extend(self, knowledge, echo, &self->abeam[left ? 1 : 0]);
+    }
+}
+
 static void take(argus_grid_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
@@ -226,16 +241,8 @@ static void take(argus_grid_t *const self, const argus_knowledge_t *const knowle
     if (is_passing(knowledge)) {
         pass(self, &axis, silent ? SILENT_MM : argus_min(reading_mm - SHORT_MM, PASSED_MM));
     }
-    if (!silent && reading_mm <= FAR_MM) {
-        const bool near = reading_mm <= NEAR_MM;
-        const argus_point_t echo = along(&axis, reading_mm);
-        if (!is_explained(self, &axis, reading_mm, knowledge->robot->cone_deg * 50)) {
-            rise(self, argus_grid_cell(echo), near ? NEAR_RISE : FAR_RISE, near ? HEARD_MOST : FAR_MOST);
-        }
-        if ((argus_robot_flank(knowledge->robot) >> sonar & 1u) != 0 && reading_mm <= BESIDE_MM) {
-            const bool left = argus_robot_pose(knowledge->robot, sonar).y_mm > 0;
-            extend(self, knowledge, echo, &self->abeam[left ? 1 : 0]);
-        }
+    if (reading_mm <= FAR_MM) {
+        hear(self, knowledge, sonar, &axis);
     }
 }
 
