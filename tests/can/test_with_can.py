@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import importlib.machinery
+import importlib.util
 import os
 import signal
 import subprocess
@@ -175,3 +177,28 @@ def test_argus_sim_names_the_module_or_does_without_it() -> None:
     assert "module can-isotp" in first
     assert "load it: modprobe can-isotp" in first, "it is root there"
     assert "stack in user space" in second
+
+
+def test_the_nodes_of_the_guest_are_its_own() -> None:
+    """Its lines are no files in the host's /dev, which may have no such nodes."""
+    before = sorted(Path("/dev").iterdir())
+    done = with_can(
+        *GUEST, "sh", "-c", "grep ' /dev ' /proc/mounts | cut -d' ' -f3; [ -c /dev/ttyS2 ] && echo is"
+    )
+    assert done.stdout.split() == ["devtmpfs", "is"], done.stderr
+    assert sorted(Path("/dev").iterdir()) == before
+
+
+@pytest.mark.parametrize("built", ["as now", "otherwise", "by an older with-can"])
+def test_a_kernel_of_our_own_that_was_built_otherwise_is_built_anew(tmp_path: Path, built: str) -> None:
+    loader = importlib.machinery.SourceFileLoader("with_can", str(WITH_CAN))
+    spec = importlib.util.spec_from_loader("with_can", loader)
+    assert spec is not None
+    script = importlib.util.module_from_spec(spec)
+    loader.exec_module(script)
+    (tmp_path / "kernel/usr/lib/uml").mkdir(parents=True)
+    (tmp_path / "can-isotp.ko").touch()
+    if built != "by an older with-can":
+        options = script.own_options() if built == "as now" else "CONFIG_IPV6_SIT=y\n"
+        (tmp_path / "kernel/options").write_text(options)
+    assert script.is_whole(tmp_path) == (built == "as now")
