@@ -15,12 +15,14 @@ ROOT = Path(__file__).resolve().parents[3]
 PAGE = (ROOT / "docs/can.md").read_text(encoding="utf-8")
 LIMIT_S = 600
 
-# The page's `sudo` and `modprobe`, for one who is root already and has the modules.
+# The page's `sudo` and `modprobe`, for one who is root already and has the modules. One that is built in and has
+# no settings shows by what it offers.
 PRELUDE = """
 sudo() { "$@"; }
+is_there() { [ -e "/sys/module/$1" ] || grep -iqw "$1" /proc/net/protocols /proc/tty/ldiscs; }
 modprobe() {
     shift
-    for module; do [ -e "/sys/module/$(echo "$module" | tr - _)" ] || { echo "no module $module"; return 1; }; done
+    for module; do is_there "$(echo "$module" | tr - _)" || { echo "no module $module"; return 1; }; done
 }
 """
 
