@@ -14,24 +14,10 @@ from pathlib import Path
 
 import pytest
 from canbus import load_dbc
+from canpage import PAGE, PRELUDE, blocks
 from harness import ARGUSD, ROOT
 
-PAGE = (ROOT / "docs/can.md").read_text(encoding="utf-8")
 LIMIT_S = 600
-
-# The page's `sudo` and `modprobe`, for one who is root already and has the modules that are named.
-PRELUDE = """
-sudo() { "$@"; }
-modprobe() {
-    shift
-    for module; do [ -e "/sys/module/$(echo "$module" | tr - _)" ] || { echo "no module $module"; return 1; }; done
-}
-"""
-
-
-def blocks(kind: str) -> list[str]:
-    """The commands of all blocks of one kind."""
-    return re.findall(rf"^```{kind}\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
 
 
 @pytest.fixture

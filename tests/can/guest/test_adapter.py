@@ -5,32 +5,13 @@ from __future__ import annotations
 
 import os
 import pty
-import re
 import select
 import subprocess
 import threading
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
-PAGE = (ROOT / "docs/can.md").read_text(encoding="utf-8")
+from canpage import PRELUDE, blocks
+
 LIMIT_S = 600
-
-# The page's `sudo` and `modprobe`, for one who is root already and has the modules. One that is built in and has
-# no settings shows by what it offers.
-PRELUDE = """
-sudo() { "$@"; }
-is_there() { [ -e "/sys/module/$1" ] || grep -iqw "$1" /proc/net/protocols /proc/tty/ldiscs; }
-modprobe() {
-    shift
-    for module; do is_there "$(echo "$module" | tr - _)" || { echo "no module $module"; return 1; }; done
-}
-"""
-
-
-def block(kind: str) -> str:
-    """The commands of the only block of one kind."""
-    (text,) = re.findall(rf"^```{kind}\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-    return str(text)
 
 
 def run(script: str) -> subprocess.CompletedProcess[str]:
@@ -65,7 +46,7 @@ class FakeAdapter:
 
 
 def test_an_slcan_adapter() -> None:
-    text = block("sh slcan")
+    (text,) = blocks("sh slcan")
     adapter = FakeAdapter()
     try:
         script = (
@@ -83,7 +64,7 @@ def test_an_slcan_adapter() -> None:
 
 def test_the_commands_for_an_adapter() -> None:
     """On a serial-line adapter, the one kind that needs no hardware; ip sets its bit rate, too."""
-    text = block("sh adapter")
+    (text,) = blocks("sh adapter")
     adapter = FakeAdapter()
     try:
         text = text.replace(" restart-ms 100", "")  # which this driver has not
