@@ -137,7 +137,9 @@ TEST_STAGES: Final = (
     TABLES,
     RELEASE,
     Stage("hil", "argusd against the emulated robot over ptys", hil_tests, ("release",)),
-    ctest_stage("sanitize", "C unit tests, built by clang with its address and undefined-behaviour sanitizers"),
+    ctest_stage(
+        "sanitize", "C unit tests, built by clang with its address and undefined-behaviour sanitizers"
+    ),
     ctest_stage("m32", "C unit tests, 32 bit"),
     CORTEX_M4,
     PYTHON,
