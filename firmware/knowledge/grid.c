@@ -200,15 +200,15 @@ static bool is_passing(const argus_knowledge_t *const knowledge) {
 }
 
 // An echo may come from anywhere on the arc of the cone. What is known to stand at an end of the arc explains
-// one on whose axis nothing is known: so the edge of a door is not heard in the door.
+// it, where nothing is known on the axis: so the edge of a door is not heard in the door.
 static bool is_explained(const argus_grid_t *const self, const argus_pose_t *const axis,
                          const int32_t reading_mm, const int32_t half_cdeg) {
-    unsigned known = 0;
-    for (int32_t side = -1; side <= 1; side++) {
+    bool known = false;
+    for (int32_t side = -1; side <= 1; side += 2) {
         const argus_pose_t ray = {axis->x_mm, axis->y_mm, axis->heading_cdeg + side * half_cdeg};
-        known = known << 1 | argus_grid_is_occupied(self, argus_grid_cell(along(&ray, reading_mm)));
+        known = known || argus_grid_is_occupied(self, argus_grid_cell(along(&ray, reading_mm)));
     }
-    return known != 0 && (known & 2u) == 0;
+    return known;
 }
 
 // The axis of its cone, course frame; its heading may be past half a turn.
@@ -224,8 +224,10 @@ static void hear(argus_grid_t *const self, const argus_knowledge_t *const knowle
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
     const bool near = reading_mm <= NEAR_MM;
     const argus_point_t echo = along(axis, reading_mm);
-    if (!is_explained(self, axis, reading_mm, knowledge->robot->cone_deg * 50)) {
-        rise(self, argus_grid_cell(echo), near ? NEAR_RISE : FAR_RISE, near ? HEARD_MOST : FAR_MOST);
+    const argus_cell_t cell = argus_grid_cell(echo);
+    if (argus_grid_is_occupied(self, cell) ||
+        !is_explained(self, axis, reading_mm, knowledge->robot->cone_deg * 50)) {
+        rise(self, cell, near ? NEAR_RISE : FAR_RISE, near ? HEARD_MOST : FAR_MOST);
     }
     if ((argus_robot_flank(knowledge->robot) >> sonar & 1u) != 0 && reading_mm <= BESIDE_MM) {
         const bool left = argus_robot_pose(knowledge->robot, sonar).y_mm > 0;
