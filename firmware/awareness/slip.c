@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compares ranges along the way with the way that the odometry says.
+// Compares ranges with the way and the turns that the odometry says.
 #include "awareness/slip.h"
 
 #include <stddef.h>
@@ -11,19 +11,22 @@
 #define BEGIN_MM 150    // a reading of the beginning is made within this
 #define END_MM 250      // ... and one of the end: what fell silent on the way tells nothing of it
 #define TURNED_CDEG 500 // a straight way turns less
-#define ALONG_CDEG 3100 // so far off the way a range still changes with it
-#define STEEP_CDEG 3000 // an edge of the cone that looks farther aside takes a wall there for given
-#define STEEP_MANY 3    // so many are wanted where one of them looks so: a slant wall may keep two ranges
+#define ALONG_CDEG 1500 // a range so far off the way changes with it; farther off a wall beside keeps it
 #define NEAR_MM 2500    // echoes from farther off come and go
 #define STAYS_MM 100    // less than a change: of 500
 #define FITS_MM 200     // off what the odometry says
 #define FITS_WANTED 2   // ranges that change as they should end a doubt: one may be chance
-#define PROOF 6         // of stretches one after the other:
-#define BOTH_WAYS 3     // ... on which one ahead and one that looks back stay, so two of these,
-#define ONE_WAY 2       // ... or two that look one way: a person may walk there
+#define TURN_CDEG 3500  // so far turned a sonar looks where another one has looked
+#define BESIDE_CDEG 1000
+#define DIFFERS_MM 300 // what it hears there is another thing
+#define TURN_MANY 3
+#define PROOF 6     // of stretches, with none between that tells of motion:
+#define BOTH_WAYS 3 // ... on which one ahead and one that looks back stay, so two of these, or of turns,
+#define ONE_WAY 2   // ... or two that look one way: a person may walk there
 
 void argus_slip_restart(argus_slip_t *const self) {
     self->begun = false;
+    self->proof = 0;
     self->doubted = 0;
 }
 
@@ -32,7 +35,6 @@ static void begin(argus_slip_t *const self, const argus_knowledge_t *const knowl
     self->from = knowledge->pose;
     self->read = 0;
     self->begun = true;
-    self->ahead = knowledge->vel_left_mm_s + knowledge->vel_right_mm_s > 0;
 }
 
 static int32_t bearing_cdeg(const argus_knowledge_t *const knowledge, const int sonar) {
@@ -40,44 +42,9 @@ static int32_t bearing_cdeg(const argus_knowledge_t *const knowledge, const int 
     return argus_robot_pose(knowledge->robot, sonar).heading_deg * 100;
 }
 
-// Whether it looks where the robot goes to (true) or comes from.
-static bool looks(const argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
-                  const bool to) {
+static bool looks(const argus_knowledge_t *const knowledge, const int sonar, const bool ahead) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const int32_t way_cdeg = self->ahead == to ? 0 : 18000;
-    return argus_angle_abs_diff(bearing_cdeg(knowledge, sonar), way_cdeg) <= ALONG_CDEG;
-}
-
-// The nearest that a sonar hears on the side to which this one looks.
-static int32_t beside_mm(const argus_knowledge_t *const knowledge, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    const bool left = argus_sin(bearing_cdeg(knowledge, sonar)) > 0;
-    int32_t nearest = INT32_MAX;
-    for (int i = 0; i < knowledge->sonars; i++) {
-        const int32_t bearing = bearing_cdeg(knowledge, i);
-        const bool abeam = argus_abs(argus_cos(bearing)) < ARGUS_TRIG_ONE / 2;
-        if (abeam && (argus_sin(bearing) > 0) == left && argus_usable(knowledge, i)) {
-            nearest = argus_min(nearest, knowledge->sonar[i].reading_mm);
-        }
-    }
-    return nearest;
-}
-
-// How far off the way the edge of its cone looks that is farther aside.
-static int32_t edge_cdeg(const argus_knowledge_t *const knowledge, const int sonar) {
-    const int32_t off_way_cdeg = argus_abs(bearing_cdeg(knowledge, sonar));
-    return argus_min(off_way_cdeg, 18000 - off_way_cdeg) + knowledge->robot->cone_deg * 50;
-}
-
-// Along a wall the edge of the cone hears the wall, always as far off.
-static bool may_be_wall_beside(const argus_knowledge_t *const knowledge, const int sonar,
-                               const int32_t edge) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const int32_t aside = knowledge->sonar[sonar].reading_mm * argus_sin(edge) / ARGUS_TRIG_ONE;
-    const int32_t beside = beside_mm(knowledge, sonar);
-    const bool unheard = beside >= ARGUS_NO_ECHO_MM && edge > STEEP_CDEG; // a wall may turn the echo away
-    return unheard || aside + STAYS_MM >= beside;
+    return argus_angle_abs_diff(bearing_cdeg(knowledge, sonar), ahead ? 0 : 18000) <= ALONG_CDEG;
 }
 
 static void note_beginnings(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
@@ -95,9 +62,8 @@ static void note_beginnings(argus_slip_t *const self, const argus_knowledge_t *c
 }
 
 typedef struct {
-    int to;    // those that look along the way and stayed,
+    int ahead; // those that look ahead and stayed,
     int back;  // ... and back
-    int steep; // of them those that look far aside of it
     int fits;  // those that changed as the odometry says
 } witnesses_t;
 
@@ -111,78 +77,138 @@ static bool can_tell(const argus_slip_t *const self, const argus_knowledge_t *co
 static void ask(const argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                 const int32_t way_mm, witnesses_t *const of) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const bool to = looks(self, knowledge, sonar, true);
-    if ((!to && !looks(self, knowledge, sonar, false)) || !can_tell(self, knowledge, sonar)) {
+    const bool ahead = looks(knowledge, sonar, true);
+    if ((!ahead && !looks(knowledge, sonar, false)) || !can_tell(self, knowledge, sonar)) {
         return;
     }
     const int32_t change = knowledge->sonar[sonar].reading_mm - self->reading_mm[sonar];
-    const int32_t edge = edge_cdeg(knowledge, sonar);
-    if (argus_abs(change - (to ? -way_mm : way_mm)) <= FITS_MM) {
+    if (argus_abs(change + (ahead ? way_mm : -way_mm)) <= FITS_MM) {
         of->fits++;
-    } else if (argus_abs(change) <= STAYS_MM && !may_be_wall_beside(knowledge, sonar, edge)) {
-        of->to += to;
-        of->back += !to;
-        of->steep += edge > STEEP_CDEG;
+    } else if (argus_abs(change) <= STAYS_MM) {
+        of->ahead += ahead;
+        of->back += !ahead;
     }
 }
 
 static bool looks_both_ways(const witnesses_t *const of) {
-    return of->to > 0 && of->back > 0;
+    return of->ahead > 0 && of->back > 0;
 }
 
 static bool is_held(const witnesses_t *const of) {
-    const bool enough = looks_both_ways(of) || of->to >= 2 || of->back >= 2;
-    return of->fits == 0 && (of->steep > 0 ? of->to + of->back >= STEEP_MANY : enough);
+    return of->fits == 0 && (looks_both_ways(of) || of->ahead >= 2 || of->back >= 2);
 }
 
-static bool slip(argus_slip_t *const self) {
+static bool slip(argus_slip_t *const self, const argus_pose_t *const to) {
+    self->slipped_mm = argus_hypot(to->x_mm - self->first.x_mm, to->y_mm - self->first.y_mm);
     self->proof = 0;
     self->doubted = FITS_WANTED;
     self->slips++;
     return true;
 }
 
-static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int32_t way_mm) {
+static bool prove(argus_slip_t *const self, const argus_pose_t *const to, const int worth) {
+    self->proof = (uint8_t)(self->proof + worth);
+    return self->proof >= PROOF && slip(self, to);
+}
+
+// Where nothing tells, what was proved before stands.
+static bool judge_way(argus_slip_t *const self, const argus_knowledge_t *const knowledge,
+                      const int32_t way_mm) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    witnesses_t of = {0, 0, 0, 0};
+    witnesses_t of = {0, 0, 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         ask(self, knowledge, i, way_mm, &of);
     }
-    const bool stays = is_held(&of);
     self->doubted = (uint8_t)argus_max(0, self->doubted - of.fits);
-    if (!stays || self->proof == 0) {
-        self->first = self->doubted > 0 ? self->first : self->from;
-        self->slipped_mm = 0;
+    if (is_held(&of)) {
+        return prove(self, &knowledge->pose, looks_both_ways(&of) ? BOTH_WAYS : ONE_WAY);
     }
-    self->proof =
-        (uint8_t)(stays ? self->proof + (looks_both_ways(&of) && of.steep == 0 ? BOTH_WAYS : ONE_WAY) : 0);
-    self->slipped_mm += way_mm;
-    return self->proof >= PROOF && slip(self);
+    self->proof = of.fits > 0 ? 0 : self->proof;
+    return false;
 }
 
-static bool is_straight(const argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
-    const int32_t speed = knowledge->vel_left_mm_s + knowledge->vel_right_mm_s;
-    const int32_t turned = argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->from.heading_cdeg);
-    return turned <= TURNED_CDEG && !knowledge->leapt && (speed == 0 || (speed > 0) == self->ahead);
+// What was heard, before the turn, on the bearing that a sonar has now; 0: nothing that counts.
+static int32_t heard_there_mm(const argus_slip_t *const self, const argus_knowledge_t *const knowledge,
+                              const int32_t bearing) {
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (argus_angle_abs_diff(bearing_cdeg(knowledge, i), bearing) <= BESIDE_CDEG) {
+            return self->reading_mm[i];
+        }
+    }
+    return 0;
+}
+
+// After a turn a sonar hears what another one has heard there. Where the body stays it hears what it heard.
+static bool judge_turn(argus_slip_t *const self, const argus_knowledge_t *const knowledge,
+                       const int32_t turn_cdeg) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    int stay = 0;
+    int fits = 0;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const int32_t here = self->reading_mm[i];
+        const int32_t there = heard_there_mm(self, knowledge, bearing_cdeg(knowledge, i) + turn_cdeg);
+        if ((self->read >> i & 1u) != 0 && can_tell(self, knowledge, i) && there != 0 &&
+            argus_abs(here - there) > DIFFERS_MM) {
+            stay += argus_abs(knowledge->sonar[i].reading_mm - here) <= STAYS_MM;
+            fits += argus_abs(knowledge->sonar[i].reading_mm - there) <= FITS_MM;
+        }
+    }
+    self->proof = fits > stay ? 0 : self->proof;
+    return stay >= TURN_MANY && fits == 0 && prove(self, &knowledge->pose, BOTH_WAYS);
+}
+
+// The turn goes on, or not all have been heard since.
+static bool is_in_turn(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
+    self->read = (argus_mask_t)(knowledge->rotating ? 0 : self->read | knowledge->fresh);
+    return argus_count_bits(self->read) < knowledge->sonars;
+}
+
+static void go_on(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
+    begin(self, knowledge);
+    if (self->proof == 0 && self->doubted == 0) {
+        self->first = self->from;
+    }
+}
+
+// How far ahead of a pose another one is.
+static int32_t ahead_mm(const argus_pose_t *const from, const argus_pose_t *const to) {
+    return ((to->x_mm - from->x_mm) * argus_cos(from->heading_cdeg) +
+            (to->y_mm - from->y_mm) * argus_sin(from->heading_cdeg)) /
+           ARGUS_TRIG_ONE;
+}
+
+static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int32_t way_mm,
+                  const int32_t turn_cdeg) {
+    if (argus_abs(turn_cdeg) <= TURNED_CDEG) {
+        return judge_way(self, knowledge, way_mm);
+    }
+    return argus_abs(turn_cdeg) >= TURN_CDEG && judge_turn(self, knowledge, turn_cdeg);
+}
+
+static bool is_done(argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int32_t way_mm,
+                    const int32_t turn_cdeg) {
+    if (argus_abs(turn_cdeg) > TURNED_CDEG) {
+        return way_mm > BEGIN_MM || !is_in_turn(self, knowledge);
+    }
+    if (way_mm <= BEGIN_MM) {
+        note_beginnings(self, knowledge);
+    }
+    return way_mm >= STRETCH_MM;
 }
 
 bool argus_slip_sip(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->robot != NULL);
-    if (!self->begun || !is_straight(self, knowledge)) {
-        self->proof = 0;
-        begin(self, knowledge);
+    if (!self->begun || knowledge->leapt) {
+        go_on(self, knowledge);
         return false;
     }
-    const argus_point_t from = {self->from.x_mm, self->from.y_mm};
-    const int32_t way_mm = argus_hypot(knowledge->pose.x_mm - from.x_mm, knowledge->pose.y_mm - from.y_mm);
-    if (way_mm <= BEGIN_MM) {
-        note_beginnings(self, knowledge);
-    }
-    if (way_mm < STRETCH_MM) {
+    const int32_t way_mm = ahead_mm(&self->from, &knowledge->pose);
+    const int32_t turn_cdeg = argus_angle_wrap(knowledge->pose.heading_cdeg - self->from.heading_cdeg);
+    if (!is_done(self, knowledge, argus_abs(way_mm), turn_cdeg)) {
         return false;
     }
-    const bool slipped = judge(self, knowledge, way_mm);
-    begin(self, knowledge);
+    const bool slipped = judge(self, knowledge, way_mm, turn_cdeg);
+    go_on(self, knowledge);
     if (slipped) {
         self->from.x_mm = self->first.x_mm;
         self->from.y_mm = self->first.y_mm;
@@ -195,8 +221,6 @@ bool argus_slip_denies(argus_slip_t *const self, const argus_knowledge_t *const 
     if (self->doubted == 0 && self->proof < PROOF / 2) {
         return false;
     }
-    self->slipped_mm =
-        argus_hypot(knowledge->pose.x_mm - self->first.x_mm, knowledge->pose.y_mm - self->first.y_mm);
     self->begun = false;
-    return slip(self);
+    return slip(self, &knowledge->pose);
 }

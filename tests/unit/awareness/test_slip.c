@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: wheels that turn while nothing changes along the way are told, and the pose goes back to
-// where that began; one stretch is chance, and one range that changes as it should clears.
+// Rule under attack: wheels that turn while nothing changes along the way, or round the ring in a turn, are
+// told, and the pose goes back to where that began; once is chance, and one range that changes as it should
+// clears.
 #include "awareness/slip.h"
 
 #include <string.h>
@@ -97,18 +98,10 @@ void test_two_that_look_back_take_three_stretches(void) {
 }
 
 // 30 degrees off the way a wall that goes along with it stays as far off, too.
-void test_a_wall_beside_the_way_tells_nothing_to_those_that_look_aslant(void) {
-    static const uint16_t abeam_mm[] = {2000, 850,
-                                        5000}; // one that hears nothing may be turned away by a wall
-    for (int beside = 0; beside < 3; beside++) {
-        setUp();
-        k.sonar[AHEAD].reading_mm = 2000;
-        k.sonar[2].reading_mm = 1200; // 848 mm aside at the edge of its cone
-        k.sonar[13].reading_mm = 1200;
-        k.sonar[0].reading_mm = k.sonar[15].reading_mm = abeam_mm[beside];
-        const int said = drive(4 * STRETCH_SIPS, 0, 0);
-        TEST_ASSERT_EQUAL(beside != 0, said == -1);
-    }
+void test_those_that_look_aslant_tell_nothing(void) {
+    k.sonar[2].reading_mm = k.sonar[5].reading_mm = 1200;
+    k.sonar[10].reading_mm = k.sonar[13].reading_mm = 1200;
+    TEST_ASSERT_EQUAL(-1, drive(8 * STRETCH_SIPS, 0, 0));
 }
 
 void test_a_goal_is_none_after_slip_until_a_range_tells_of_motion(void) {
@@ -135,6 +128,84 @@ void test_half_of_the_proof_denies_a_goal(void) {
     k.sonar[AHEAD].reading_mm = 2000;
     k.sonar[AHEAD + 1].reading_mm = 1900;
     TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS + 2, 0, 0)); // that is chance
+    TEST_ASSERT_FALSE(argus_slip_denies(&slip, &k));
+}
+
+// Every second sonar hears one thing and its neighbours another.
+static void things(void) {
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        k.sonar[i].reading_mm = i % 2 == 0 ? 1000 : 2000;
+    }
+}
+
+static int listen(int sips, bool rotating) {
+    for (int sip = 0; sip < sips; sip++) {
+        k.rotating = rotating;
+        k.fresh = UINT16_MAX;
+        if (argus_slip_sip(&slip, &k)) {
+            return sip;
+        }
+    }
+    return -1;
+}
+
+// seen: each sonar hears the other thing after it.
+static int turn(int deg, bool seen) {
+    TEST_ASSERT_EQUAL(-1, listen(2, false));
+    k.pose.heading_cdeg += deg * 100;
+    TEST_ASSERT_EQUAL(-1, listen(3, true));
+    for (int i = 0; seen && i < ARGUS_SONARS; i++) {
+        k.sonar[i].reading_mm = (uint16_t)(3000 - k.sonar[i].reading_mm);
+    }
+    return listen(2, false);
+}
+
+// By 60 degrees, three sonars of the front, those on the bearings hear the other thing.
+void test_two_turns_in_which_all_stay_are_slip(void) {
+    things();
+    TEST_ASSERT_EQUAL(-1, turn(60, false));
+    TEST_ASSERT_NOT_EQUAL(-1, turn(-60, false));
+    TEST_ASSERT_EQUAL(1, slip.slips);
+}
+
+void test_turns_in_which_they_hear_what_others_heard_are_none(void) {
+    things();
+    for (int i = 0; i < 6; i++) {
+        TEST_ASSERT_EQUAL(-1, turn(60, true));
+    }
+    TEST_ASSERT_EQUAL(0, slip.slips);
+    TEST_ASSERT_FALSE(argus_slip_denies(&slip, &k));
+}
+
+void test_small_turns_and_a_ring_that_hears_one_thing_tell_nothing(void) {
+    things();
+    for (int i = 0; i < 6; i++) {
+        TEST_ASSERT_EQUAL(-1, turn(i % 2 == 0 ? 30 : -30, false));
+    }
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        k.sonar[i].reading_mm = 1500;
+    }
+    TEST_ASSERT_EQUAL(-1, turn(60, false));
+    TEST_ASSERT_EQUAL(-1, turn(60, false));
+    TEST_ASSERT_FALSE(argus_slip_denies(&slip, &k));
+}
+
+void test_a_turn_denies_a_goal_though_the_way_behind_tells_nothing(void) {
+    things();
+    TEST_ASSERT_EQUAL(-1, turn(60, false));
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        k.sonar[i].reading_mm = 5000;
+    }
+    TEST_ASSERT_EQUAL(-1, drive(4 * STRETCH_SIPS, 0, 0));
+    TEST_ASSERT_TRUE(argus_slip_denies(&slip, &k));
+}
+
+void test_motion_after_a_turn_clears_it(void) {
+    things();
+    k.pose.heading_cdeg = -6000;
+    TEST_ASSERT_EQUAL(-1, turn(60, false));
+    walls();
+    TEST_ASSERT_EQUAL(-1, drive(2 * STRETCH_SIPS, -SIP_MM, SIP_MM));
     TEST_ASSERT_FALSE(argus_slip_denies(&slip, &k));
 }
 
