@@ -75,6 +75,7 @@ endif()
 add_library(argus_board OBJECT ${board_sources} ${portable_sources} ${PROJECT_BINARY_DIR}/built_config.c)
 target_include_directories(argus_board PUBLIC hal hal/include)
 target_compile_definitions(argus_board PUBLIC HAL_STORE_RECORD_MAX=1536)
+target_compile_definitions(argus PUBLIC ARGUS_WITHOUT_GUARD=1)
 # No operating system, but memcpy() of a few bytes is a load, not a call.
 target_compile_options(argus_board PRIVATE ${ARGUS_STRICT} -ffreestanding -fbuiltin)
 target_link_libraries(argus_board PUBLIC argus PRIVATE argus_flags)

@@ -16,11 +16,14 @@ HEADERS = ROOT / "firmware"
 
 
 def rows(header: str, macro: str) -> list[list[str]]:
-    """Arguments of every X(...) of an X-macro table, strings without their quotes."""
+    """Arguments of every X(...) of an X-macro table, or of the tables that it is made of, strings without quotes."""
     text = (HEADERS / header).read_text(encoding="utf-8")
     start = text.index(f"#define {macro}(X)")
     body = re.match(r"(?:[^\n]*\\\n)*[^\n]*\n", text[start:])
     assert body is not None
+    parts = re.findall(r"\b(\w+_TABLE)\(X\)", body[0])[1:]
+    if parts:
+        return [row for part in parts for row in rows(header, part)]
     joined = re.sub(r'"\s+"', "", body[0].replace("\\\n", " "))  # a string may go on on the next line
     found = re.findall(r"X\(((?:[^()\"]|\"[^\"]*\")*)\)", joined.split("(X)", 1)[1])
     return [[part.strip().strip('"') for part in re.findall(r'"[^"]*"|[^,]+', row)] for row in found]

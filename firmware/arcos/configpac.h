@@ -7,17 +7,9 @@
 #include "arcos/frame.h"
 #include "argus/argus.h"
 
-// Fields missing at the end of a short packet read as 0.
+// What Argus uses of it. Fields missing at the end of a short packet read as 0.
 typedef struct {
-    uint16_t rotvel_top_deg_s;
-    uint16_t vel_top_mm_s;
-    uint16_t rotaccel_top_deg_s2;
-    uint16_t accel_top_mm_s2;
-    uint8_t sip_cycle_ms;
     uint8_t sonar_cycle_ms;
-    uint8_t host_baud;
-    uint8_t auto_baud;
-    bool front_sonar;
     bool rear_sonar;
     uint16_t low_battery_dv;
     uint16_t watchdog_ms;
@@ -27,7 +19,6 @@ typedef struct {
     uint16_t decel_mm_s2;
     uint8_t front_bumpers; // segments
     uint8_t rear_bumpers;
-    bool complete; // everything up to VERSION was there
     char robot_class[ARGUS_NAME_MAX];
     char robot_subclass[ARGUS_NAME_MAX];
     char serial[ARGUS_NAME_MAX];

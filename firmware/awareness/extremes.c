@@ -6,10 +6,11 @@
 
 #include "knowledge/angle.h"
 
-#define NOISE_MM 5             // the shortest readings end so far above the robot's least
+#define NOISE_MM 5             // the shortest readings end so far above the robot's least; a run stays within
 #define TURNED_CDEG 1000       // a turn beyond this may have put something else there
 #define TURNED_ABEAM_CDEG 2500 // ... so near that its mate would still hear it
-#define AWAY_MM 200 // gone away from what stands within the shortest reading: it would read twice that
+#define AWAY_MM 200            // gone away from what stands so near
+#define ALONG_COS (ARGUS_TRIG_ONE * 24 / 25) // nearer to the way, 15 degrees, no wall beside keeps a range
 // Gone past what its mate on the same side, which hears and sits no farther off, does not see,
 #define ABEAM_MM 250
 #define ABEAM_ALONE_MM 2000 // ... or that it has no such mate for: no robot drives so long so near a wall
@@ -45,12 +46,14 @@ static bool is_shortest(const argus_knowledge_t *const knowledge, const int32_t 
     return reading_mm <= knowledge->robot->min_mm + NOISE_MM;
 }
 
-static void begin_run(argus_extreme_t *const self, const argus_pose_t *const pose) {
+static void begin_run(argus_extreme_t *const self, const argus_pose_t *const pose, const int32_t reading_mm) {
+    self->run_mm = (uint16_t)reading_mm;
     self->at = (argus_point_t){pose->x_mm, pose->y_mm};
     self->from = self->at;
     self->from_cdeg = pose->heading_cdeg;
     self->away_mm = 0;
     self->running = true;
+    self->proved = false;
 }
 
 // Another sonar on the same side hears the wall that this one claims to be beside, or something farther off.
@@ -71,6 +74,13 @@ static int mate_says(const argus_knowledge_t *const knowledge, const int sonar) 
     return 0;
 }
 
+// Beside a wall a range stays on the way, too; but no robot drives so near one that it reads its shortest.
+static bool tells_alone(const argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
+                        const int sonar) {
+    const int32_t bearing = argus_robot_pose(knowledge->robot, sonar).heading_deg * 100;
+    return is_shortest(knowledge, self->run_mm) || argus_abs(argus_cos(bearing)) > ALONG_COS;
+}
+
 // What stands still is as far off as the robot went away from it, at least.
 static void go_on(argus_extreme_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -86,18 +96,20 @@ static void go_on(argus_extreme_t *const self, const argus_knowledge_t *const kn
         self->from = self->at;
     }
     const int32_t past_mm = argus_hypot(self->at.x_mm - self->from.x_mm, self->at.y_mm - self->from.y_mm);
-    const int32_t proves_mm = says > 0 ? ABEAM_MM : ABEAM_ALONE_MM;
-    self->proved = self->proved || self->away_mm >= AWAY_MM || past_mm >= proves_mm;
+    const bool alone = tells_alone(self, knowledge, sonar);
+    self->proved = self->proved || (says > 0 && past_mm >= ABEAM_MM) ||
+                   (alone && (self->away_mm >= AWAY_MM || past_mm >= ABEAM_ALONE_MM));
 }
 
-static void take_shortest(argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
-                          const int sonar) {
+static void take_near(argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
+                      const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t turned = argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->from_cdeg);
     const unsigned abeam = argus_robot_flank(knowledge->robot) | argus_robot_rear_flank(knowledge->robot);
     const int32_t most = (abeam >> sonar & 1u) != 0 ? TURNED_ABEAM_CDEG : TURNED_CDEG;
-    if (!self->running || turned > most) {
-        begin_run(self, &knowledge->pose);
+    const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
+    if (!self->running || turned > most || argus_abs(reading_mm - self->run_mm) > NOISE_MM) {
+        begin_run(self, &knowledge->pose, reading_mm);
         return;
     }
     go_on(self, knowledge, sonar);
@@ -128,8 +140,8 @@ static void take(argus_extreme_t *const self, const argus_knowledge_t *const kno
                     self->before_mm > knowledge->robot->min_mm + LEAP_MM;
     self->before_mm = (uint16_t)reading;
     self->row = shortest ? argus_one_more(self->row) : 0;
-    if (shortest) {
-        take_shortest(self, knowledge, sonar);
+    if (reading <= knowledge->robot->min_mm + NEAR_MM) {
+        take_near(self, knowledge, sonar);
     } else {
         self->running = false;
         self->proved = false;

@@ -100,6 +100,7 @@ static bool is_held(const witnesses_t *const of) {
 
 static bool slip(argus_slip_t *const self, const argus_pose_t *const to) {
     self->slipped_mm = argus_hypot(to->x_mm - self->first.x_mm, to->y_mm - self->first.y_mm);
+    self->begun = false;
     self->proof = 0;
     self->doubted = FITS_WANTED;
     self->slips++;
@@ -207,13 +208,11 @@ bool argus_slip_sip(argus_slip_t *const self, const argus_knowledge_t *const kno
     if (!is_done(self, knowledge, argus_abs(way_mm), turn_cdeg)) {
         return false;
     }
-    const bool slipped = judge(self, knowledge, way_mm, turn_cdeg);
-    go_on(self, knowledge);
-    if (slipped) {
-        self->from.x_mm = self->first.x_mm;
-        self->from.y_mm = self->first.y_mm;
+    if (judge(self, knowledge, way_mm, turn_cdeg)) {
+        return true;
     }
-    return slipped;
+    go_on(self, knowledge);
+    return false;
 }
 
 bool argus_slip_denies(argus_slip_t *const self, const argus_knowledge_t *const knowledge) {
@@ -221,6 +220,5 @@ bool argus_slip_denies(argus_slip_t *const self, const argus_knowledge_t *const 
     if (self->doubted == 0 && self->proof < PROOF / 2) {
         return false;
     }
-    self->begun = false;
     return slip(self, &knowledge->pose);
 }

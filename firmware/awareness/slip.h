@@ -8,10 +8,10 @@
 // One stretch of straight way or one turn, and what each sonar read where it began; 0: nothing that counts.
 typedef struct {
     bool begun;
-    uint8_t doubted;    // slipped: so many ranges have still to change as the odometry says
-    uint8_t proof;      // what the stretches that began at `first` are worth
-    argus_mask_t read;  // sonars that have been listed since, or since the turn ended
-    argus_pose_t from;  // where the robot still is when it has slipped
+    uint8_t doubted;   // slipped: so many ranges have still to change as the odometry says
+    uint8_t proof;     // what the stretches that began at `first` are worth
+    argus_mask_t read; // sonars that have been listed since, or since the turn ended
+    argus_pose_t from;
     argus_pose_t first; // where the stretches began of which each says so, or the doubt
     uint32_t slips;     // monotonic
     int32_t slipped_mm; // the last one
@@ -21,7 +21,7 @@ typedef struct {
 // A session opened, or SIPs come again: the robot may have moved since.
 void argus_slip_restart(argus_slip_t *self);
 
-// One SIP. True: the wheels made `slipped_mm` of way and the robot did not; it is at `from`. False: no sonar
+// One SIP. True: the wheels made `slipped_mm` of way and the robot did not; it is at `first`. False: no sonar
 // can tell. Proof takes one sonar ahead and one back that stay through two stretches of half a metre. Two
 // that look one way must stay through three, as a person may walk there. So do two turns in which three stay
 // of those that should hear what others have heard. No range may change as the odometry says.

@@ -151,7 +151,9 @@ int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_know
         const int32_t dy = argus_within(32000, self->at[i].y_mm - knowledge->pose.y_mm);
         const int32_t ahead = (dx * c + dy * s) / ARGUS_TRIG_ONE;
         const int32_t beside = (dy * c - dx * s) / ARGUS_TRIG_ONE;
-        const bool recent = knowledge->sip_ms - self->at[i].seen_ms <= FORGET_MS;
+        // One echo alone may have been crosstalk.
+        const uint32_t counts_ms = self->at[i].again ? FORGET_MS : LATELY_MS;
+        const bool recent = knowledge->sip_ms - self->at[i].seen_ms <= counts_ms;
         if (recent && ahead > BEHIND_MM && argus_abs(beside) < half_mm) {
             clear = argus_min(clear, ahead);
         }

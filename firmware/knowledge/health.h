@@ -20,12 +20,12 @@
     X(NAMED, "S", SUSPECT, SONAR_NAMED, "the evidence so far names a fault")                                \
     X(DISABLED, "UHSPT", DISABLED, SONAR_DISABLED, "it is not used any more")                               \
     X(RENAMED, "D", DISABLED, SONAR_KIND, "its fault is known better")                                      \
-    X(TRIED, "D", PROBATION, SONAR_PROBATION, "it does well again")                                         \
+    X(TRIED, "DA", PROBATION, SONAR_PROBATION, "it does well again")                                        \
     X(RETESTED, "DP", PROBATION, SONAR_PROBATION, "an operator wants it tried anew: relapses are forgiven") \
     X(RECORDED, "UHST", PROBATION, SONAR_PROBATION, "it was out in the last mission")                       \
     X(STALLED, "H", STALE, SONAR_STALE, "it yields no reading")                                             \
     X(FORGOTTEN, "UHSDPT", UNKNOWN, NONE, "the record, or what was found out, was of another robot")        \
-    X(MISSING, "UHSDPT", ABSENT, NONE, "the robot that answers has not got it")                             \
+    X(MISSING, "UHSDPT", ABSENT, NONE, "the robot that answers has not got it, or never says so")           \
     X(FITTED, "A", UNKNOWN, NONE, "the robot that answers has it")
 
 typedef enum {

@@ -284,9 +284,9 @@ void argus_knowledge_turn_about(argus_knowledge_t *const self, const argus_robot
     self->stall_right = stall_left;
 }
 
-void argus_knowledge_set_back(argus_knowledge_t *const self, const argus_point_t to) {
-    self->pose.x_mm = to.x_mm;
-    self->pose.y_mm = to.y_mm;
+void argus_knowledge_set_back(argus_knowledge_t *const self, const argus_pose_t *const to) {
+    self->pose.x_mm = to->x_mm;
+    self->pose.y_mm = to->y_mm;
     self->x_um = 0;
     self->y_um = 0;
 }
@@ -313,18 +313,22 @@ static void take_reading(argus_knowledge_t *const self, const argus_sip_sonar_t 
     sonar->odometer_mm = self->odometer_mm;
     sonar->readings++;
     self->fresh |= (argus_mask_t)(1u << from->number);
+    self->listed |= self->fresh;
     self->heard |= (argus_mask_t)(from->range_mm < self->robot->no_echo_mm ? 1u << from->number : 0u);
 }
 
 static void take_readings(argus_knowledge_t *const self, const argus_sip_t *const sip) {
     int first = 0; // of the first array
+    bool strange = false;
     self->fresh = 0;
     for (int i = 0; i < sip->sonar_count; i++) {
+        strange = strange || sip->sonar[i].number >= self->robot->sonars;
         if (sip->sonar[i].number < self->sonars) {
             take_reading(self, &sip->sonar[i]);
             first += sip->sonar[i].number < ARRAY;
         }
     }
+    self->strange_sips = strange ? argus_one_more(self->strange_sips) : 0;
     if (first > 0) {
         self->lists_all = first >= LISTS_ALL_COUNT;
     }
@@ -360,11 +364,12 @@ argus_mask_t argus_disabled(const argus_knowledge_t *const self) {
 bool argus_is_out(const argus_knowledge_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_health_t health = self->sonar[sonar].health;
-    return health == ARGUS_DISABLED || health == ARGUS_PROBATION;
+    return health == ARGUS_DISABLED || health == ARGUS_PROBATION || health == ARGUS_ABSENT;
 }
 
 argus_mask_t argus_out(const argus_knowledge_t *const self) {
-    return argus_disabled(self) | argus_with_health(self, ARGUS_PROBATION);
+    return argus_disabled(self) | argus_with_health(self, ARGUS_PROBATION) |
+           argus_with_health(self, ARGUS_ABSENT);
 }
 
 argus_mask_t argus_named(const argus_knowledge_t *const self) {

@@ -57,8 +57,10 @@ typedef struct {
     int16_t battery_dv;
     uint16_t x_raw;
     uint16_t y_raw;
-    argus_mask_t fresh; // sonars listed in the last SIP
-    argus_mask_t heard; // sonars that have heard an echo since the session opened
+    argus_mask_t fresh;   // sonars listed in the last SIP
+    argus_mask_t heard;   // sonars that have heard an echo since the session opened
+    argus_mask_t listed;  // sonars that this robot has ever listed
+    uint8_t strange_sips; // in a row with sonars that such a robot has not got
     argus_pose_t pose;
     uint32_t odometer_mm; // way driven, monotonic
     uint32_t sips;
@@ -111,7 +113,7 @@ int32_t argus_heading_offset_cdeg(const argus_knowledge_t *self);
 void argus_knowledge_origin_due(argus_knowledge_t *self);
 
 // The robot is here: its wheels turned and it did not move.
-void argus_knowledge_set_back(argus_knowledge_t *self, argus_point_t to);
+void argus_knowledge_set_back(argus_knowledge_t *self, const argus_pose_t *to);
 
 // Bit masks over sonar numbers.
 argus_mask_t argus_disabled(const argus_knowledge_t *self);

@@ -9,6 +9,8 @@
 #include "supervisor/say.h"
 #include "supervisor/state.h"
 
+#define STRANGE_SIPS 5 // one SIP may say anything
+
 // The operator's word stands above what the robot says of itself.
 static const argus_robot_t *robot_met(const argus_t *const self) {
     const argus_robot_t *const chosen = argus_robot_chosen(self->config.robot);
@@ -73,4 +75,14 @@ void argus_meet_body(argus_t *const self) {
     self->orders.barred = argus_say_barred(self) && active;
     self->orders.passive = self->orders.locked || self->orders.barred || !active;
     ARGUS_ASSERT(!self->orders.barred || self->orders.passive);
+}
+
+bool argus_sees_through_body(argus_t *const self) {
+    if (self->knowledge.strange_sips != STRANGE_SIPS || !argus_robot_is_known(self->knowledge.robot)) {
+        return false;
+    }
+    argus_tell(self, ARGUS_EV_SONARS_BEYOND, self->knowledge.robot->sonars);
+    self->orders.barred = !self->orders.passive && argus_robot_chosen(self->config.robot) == NULL;
+    self->orders.passive = self->orders.passive || self->orders.barred;
+    return self->orders.barred;
 }

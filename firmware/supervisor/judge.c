@@ -71,6 +71,13 @@ static void name(argus_t *const self, const int sonar) {
     }
 }
 
+// Where the robot may not turn for it no look can prove what it is named for.
+static bool bars_its_proof(const argus_t *const self, const int sonar) {
+    const argus_guard_t guard = argus_guard(self);
+    return self->knowledge.sonar[sonar].health == ARGUS_SUSPECT && argus_guard_echo_blocks(&guard, sonar) &&
+           argus_is_hemmed_in(self);
+}
+
 // An extreme is proved by way and time alone, an array that has failed as a whole by what it heard before.
 static argus_fault_kind_t convicts(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -78,7 +85,11 @@ static argus_fault_kind_t convicts(const argus_t *const self, const int sonar) {
         return ARGUS_KIND_OFF;
     }
     const argus_fault_kind_t kind = argus_extremes_convicts(&self->extremes, sonar);
-    return kind != ARGUS_KIND_NONE ? kind : argus_evidence_convicts(&self->evidence, sonar);
+    if (kind != ARGUS_KIND_NONE) {
+        return kind;
+    }
+    return bars_its_proof(self, sonar) ? self->knowledge.sonar[sonar].kind
+                                       : argus_evidence_convicts(&self->evidence, sonar);
 }
 
 static void judge_in(argus_t *const self, const int sonar, argus_intent_t *const intent) {
@@ -180,6 +191,14 @@ static bool has_fallen_silent(const argus_t *const self, const int sonar) {
     return other && is_silent(self, sonar) && !is_passed_over(self, sonar);
 }
 
+// An array that has never reported is none that failed: the robot has not got it.
+static bool is_missing(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const argus_mask_t array =
+        argus_robot_array(self->knowledge.robot, sonar / ARCOS_TIMING_TRANSDUCERS_PER_ARRAY);
+    return (self->knowledge.listed & array) == 0;
+}
+
 void argus_judge(argus_t *const self, const int sonar, argus_intent_t *const intent) {
     ARGUS_ASSERT(argus_rules(self)->evidence && sonar < self->knowledge.sonars);
     if ((self->orders.pinned >> sonar & 1u) != 0) {
@@ -188,6 +207,10 @@ void argus_judge(argus_t *const self, const int sonar, argus_intent_t *const int
     if (argus_is_out(&self->knowledge, sonar)) {
         judge_out(self, sonar, intent);
     } else if (has_fallen_silent(self, sonar)) {
+        if (is_missing(self, sonar)) {
+            argus_say_change(self, sonar, ARGUS_CHANGE_MISSING, ARGUS_KIND_NONE, 0);
+            return;
+        }
         argus_disable(self, sonar, ARGUS_KIND_SILENT);
     } else {
         judge_in(self, sonar, intent);

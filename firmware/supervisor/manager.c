@@ -151,8 +151,7 @@ static void on_resume(argus_t *const self) {
 
 static void take_slip(argus_t *const self) {
     if (argus_slip_sip(&self->slip, &self->knowledge)) {
-        argus_knowledge_set_back(&self->knowledge,
-                                 (argus_point_t){self->slip.from.x_mm, self->slip.from.y_mm});
+        argus_knowledge_set_back(&self->knowledge, &self->slip.first);
     }
 }
 
@@ -192,6 +191,10 @@ static void on_sip(argus_t *const self) {
         return;
     }
     argus_knowledge_sip(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
+    if (argus_sees_through_body(self)) {
+        argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_CHECK, true);
+        return;
+    }
     self->awareness.away =
         argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, argus_base_cdeg(self)) > AWAY_CDEG;
     const argus_alarm_t alarm = argus_awareness_sip(&self->awareness, &self->knowledge, &self->config);

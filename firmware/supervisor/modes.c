@@ -284,8 +284,7 @@ static void lose(argus_t *const self, const argus_intent_t *const intent, argus_
 static void reach(argus_t *const self, argus_intent_t *const next) {
     ARGUS_ASSERT(self->mission == ARGUS_MISSION_RUNNING);
     if (argus_slip_denies(&self->slip, &self->knowledge)) { // the reflex tells it
-        argus_knowledge_set_back(&self->knowledge,
-                                 (argus_point_t){self->slip.first.x_mm, self->slip.first.y_mm});
+        argus_knowledge_set_back(&self->knowledge, &self->slip.first);
         argus_to_check(next, true);
         return;
     }

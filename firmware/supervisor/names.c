@@ -18,7 +18,7 @@ static const char *nth(const char *words, int number) {
 // Row of the catalogue, or -1.
 static int row_of(const int id) {
 #define ID(number, name, level, subject, meaning) (number),
-    static const uint16_t ids[] = {ARGUS_EVENT_TABLE(ID)};
+    static const uint8_t ids[] = {ARGUS_EVENT_TABLE(ID)};
 #undef ID
     for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
         if (ids[i] == id) {
@@ -56,14 +56,21 @@ static const char *event_name(const int id) {
 enum { SUBJECTS(NUMBER) };
 #undef NUMBER
 
+#define LEVELS 4 // the level, and of what is left the subject
+#define KIND(number, name, level, subject, meaning) ARGUS_LEVEL_##level + LEVELS *ABOUT_##subject,
+static const uint8_t kinds[] = {ARGUS_EVENT_TABLE(KIND)};
+#undef KIND
+
 static const char *event_subject(const int id) {
 #define WORD(subject) #subject "\0"
-#define SUBJECT(number, name, level, subject, meaning) ABOUT_##subject,
-    static const uint8_t about[] = {ARGUS_EVENT_TABLE(SUBJECT)};
     const int row = row_of(id);
-    return nth(SUBJECTS(WORD), row < 0 ? row : about[row]);
+    return nth(SUBJECTS(WORD), row < 0 ? row : kinds[row] / LEVELS);
 #undef WORD
-#undef SUBJECT
+}
+
+argus_level_t argus_event_level(const uint16_t id) {
+    const int row = row_of(id);
+    return row < 0 ? ARGUS_LEVEL_ERROR : (argus_level_t)(kinds[row] % LEVELS);
 }
 
 #define IN_ORDER(name, number, word, meaning) \

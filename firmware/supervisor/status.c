@@ -141,7 +141,7 @@ static bool health_holds(const argus_t *const self) {
         const bool absent = i >= self->knowledge.sonars;
         const bool whole =
             s->health != ARGUS_SUSPECT && s->health != ARGUS_DISABLED && s->health != ARGUS_PROBATION;
-        if (absent != (s->health == ARGUS_ABSENT) || s->health > ARGUS_ABSENT ||
+        if ((absent && s->health != ARGUS_ABSENT) || s->health > ARGUS_ABSENT ||
             (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
             (whole && s->kind != ARGUS_KIND_NONE)) {
             return false;

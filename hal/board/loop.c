@@ -139,7 +139,7 @@ static BOARD_APART const char *obey_save(void) {
         return board_config_fault_text(report.fault);
     }
     if (!is_at_rest()) {
-        return "not while it moves; stop it first";
+        return "not while it moves";
     }
     const hal_store_error_t saved = board_memory_save(&self.memory, self.core, &self.config);
     self.saved_ms = board_now_ms();
@@ -162,7 +162,7 @@ static const char *obey_wish(board_wish_t wish, const char *answer) {
         return answer;
     case BOARD_WISH_RESTART:
         if (!is_at_rest()) {
-            return "not while it moves; stop it first";
+            return "not while it moves";
         }
         board_restart();
         return answer;

@@ -7,9 +7,8 @@
 #include "board/config.h"
 
 static const char taken[] = "taken";
+static const char too_many_or_far[] = "1 to 16 points, each within 30 m";
 
-// In the order of argus_op_t, from its first on.
-static const char ops[] = "stop\0go\0recheck\0move\0turn\0passive\0active\0retest\0pin\0unpin\0disable\0";
 #define NUMBERED                                                                              \
     (1u << ARGUS_OP_MOVE | 1u << ARGUS_OP_TURN | 1u << ARGUS_OP_RETEST | 1u << ARGUS_OP_PIN | \
      1u << ARGUS_OP_UNPIN | 1u << ARGUS_OP_DISABLE)
@@ -65,14 +64,14 @@ static const char *obey_course(const char *rest, argus_t *core) {
     uint16_t count = 0;
     for (board_word_t word = next_word(&rest); word.length > 0; word = next_word(&rest)) {
         if (count == BOARD_ORDER_POINTS_MAX) {
-            return "at most 16 points";
+            return too_many_or_far;
         }
         if (!point_of(word, &points[count])) {
             return "give points as X,Y in mm";
         }
         count++;
     }
-    return argus_set_course(core, points, count) ? taken : "1 to 16 points, each within 30 m";
+    return argus_set_course(core, points, count) ? taken : too_many_or_far;
 }
 
 static const char *obey_set(const char *rest, argus_config_t *config) {
@@ -90,14 +89,24 @@ static const char *obey_set(const char *rest, argus_config_t *config) {
         return "it is so already";
     }
     *config = changed;
-    return "from the next start on, if it is saved";
+    return "from the next start, if it is saved";
+}
+
+// In small letters, of which capitals lack a bit.
+static bool names(board_word_t word, const char *name) {
+    size_t i = 0;
+    while (i < word.length && word.at[i] == (name[i] | ('a' - 'A'))) {
+        i++;
+    }
+    return i == word.length && name[i] == '\0';
 }
 
 static const char *obey_word(board_word_t word, const char *rest, argus_t *core, uint32_t now_ms,
                              argus_config_t *config) {
-    const int op = board_word_row(word, ops);
-    if (op >= 0) {
-        return obey_op((argus_op_t)(ARGUS_OP_STOP + op), rest, core, now_ms);
+    for (int op = ARGUS_OP_STOP; op <= ARGUS_OP_DISABLE; op++) {
+        if (names(word, argus_name(ARGUS_NAME_OP, op))) {
+            return obey_op((argus_op_t)op, rest, core, now_ms);
+        }
     }
     if (board_word_is(word, "course")) {
         return obey_course(rest, core);

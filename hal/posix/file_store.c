@@ -25,6 +25,19 @@ static hal_store_error_t error_of(int error_number) {
     }
 }
 
+const char *hal_file_error_text(int error) {
+    switch (error) {
+    case HAL_STORE_TOO_LONG:
+        return "the record is too long";
+    case HAL_STORE_DENIED:
+        return "no permission";
+    case HAL_STORE_NO_PLACE:
+        return "the folder is missing or the disk is full";
+    default:
+        return hal_store_error_text(error);
+    }
+}
+
 bool hal_file_medium_init(hal_file_medium_t *self, const char *path) {
     const size_t length = strlen(path);
     if (length == 0 || length >= sizeof self->path) {

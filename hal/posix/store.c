@@ -18,12 +18,6 @@ const char *hal_store_error_text(int error) {
         return "nothing is stored";
     case HAL_STORE_DAMAGED:
         return "what is stored is damaged";
-    case HAL_STORE_TOO_LONG:
-        return "the record is too long";
-    case HAL_STORE_DENIED:
-        return "no permission";
-    case HAL_STORE_NO_PLACE:
-        return "the folder is missing or the disk is full";
     default:
         return "input/output error";
     }

@@ -63,8 +63,8 @@ def test_the_other_board_starts_too(tmp_path: Path) -> None:
 
 def test_settings_outlive_a_restart_and_a_power_cut(board: Machine, tmp_path: Path) -> None:
     board.wait_for("START")
-    assert board.order("set step_mm 120") == "from the next start on, if it is saved"
-    assert board.order("set policy fewest") == "from the next start on, if it is saved"
+    assert board.order("set step_mm 120") == "from the next start, if it is saved"
+    assert board.order("set policy fewest") == "from the next start, if it is saved"
     assert board.order("set speed_mm_s 7500") == "out of its range"
     assert board.order("save") == "ok"
     board.console.sendall(b"restart\n")

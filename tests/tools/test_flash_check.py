@@ -155,7 +155,7 @@ def test_a_line_without_a_board(before: bytes, said: str, capsys: pytest.Capture
 
 
 def test_a_board_that_refuses_to_restart(capsys: pytest.CaptureFixture[str]) -> None:
-    refusal = {"event": "ORDER", "what": "restart", "text": "not while it moves; stop it first"}
+    refusal = {"event": "ORDER", "what": "restart", "text": "not while it moves"}
     with board(told(refusal)) as device:
         assert main([device, "--wait", "3"]) == 3
     assert "not while it moves" in capsys.readouterr().err
@@ -176,7 +176,7 @@ def test_a_line_that_goes_away(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_what_came_before_the_order_is_no_answer(capsys: pytest.CaptureFixture[str]) -> None:
-    refusal = {"event": "ORDER", "what": "restart", "text": "not while it moves; stop it first"}
+    refusal = {"event": "ORDER", "what": "restart", "text": "not while it moves"}
     for old in (told(START | {"version": "0.0.9"}, LINK), told(refusal), told(STATUS)[:-20]):
         with board(told(START, LINK, STATUS), queued=old) as device:
             assert main([device, "--firmware", "0.1.0", "--wait", "5"]) == 0, old

@@ -193,7 +193,7 @@ typedef enum {
 
 // X(id, NAME, level, subject, meaning). Ids are stable: never reuse one. `subject` is what the event is
 // about; "sonar" events carry the sonar's number. `meaning` says what `value` is.
-#define ARGUS_EVENT_TABLE(X)                                                                                 \
+#define ARGUS_CORE_EVENT_TABLE(X)                                                                            \
     X(10, LINK_UP, OK, link, "the transport is open")                                                        \
     X(11, LINK_LOST, ERROR, link,                                                                            \
       "the transport is gone, or no SIP came for link_lost_ms; value: ms without a SIP")                     \
@@ -216,7 +216,8 @@ typedef enum {
     X(24, STALL, ERROR, drive, "a wheel stalls: STOP sent; value: 1 left, 2 right, 3 both")                  \
     X(25, BATTERY_LOW, WARN, battery, "battery low; value: decivolts")                                       \
     X(26, SONARS_BEYOND, WARN, session,                                                                      \
-      "it has more sonars than this build manages, those beyond are left out; value: how many it has")       \
+      "it has more sonars than this build manages: those beyond are left out; or than its subclass has: "    \
+      "passive, unless the setting `robot` says which it is; value: how many it should have")                \
     X(27, OTHER_ROBOT, ERROR, session,                                                                       \
       "another robot answers than before: passive, the course is paused, until an operator says active and " \
       "go; value: what differs, 1 name, 2 class, 3 subclass, 4 serial number")                               \
@@ -296,7 +297,10 @@ typedef enum {
       "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")            \
     X(81, EVENTS_LOST, ERROR, events, "the event queue overflowed; value: events lost")                      \
     X(90, INVARIANT, ERROR, manager, "an internal invariant does not hold; value: its number")               \
-    X(91, STATUS, OK, status, "periodic picture of all that is known")                                       \
+    X(91, STATUS, OK, status, "periodic picture of all that is known")
+
+// Of a guard port.
+#define ARGUS_GUARD_EVENT_TABLE(X)                                                                           \
     X(100, GUARD_OPEN, OK, guard, "a client opened its session at a guard port; value: 0")                   \
     X(101, GUARD_CLOSED, OK, guard, "the client closed its session; value: packets that it sent")            \
     X(102, GUARD_LOST, ERROR, guard,                                                                         \
@@ -317,10 +321,17 @@ typedef enum {
       "a bearing ahead is blind: the heading swings so that others see the way; value: degrees to each "     \
       "side")
 
+// All that may be said. A build without guard ports, as of a board, may leave theirs out.
+#ifndef ARGUS_WITHOUT_GUARD
+#define ARGUS_EVENT_TABLE(X) ARGUS_CORE_EVENT_TABLE(X) ARGUS_GUARD_EVENT_TABLE(X)
+#else
+#define ARGUS_EVENT_TABLE(X) ARGUS_CORE_EVENT_TABLE(X)
+#endif
+
 // The events by number.
 typedef enum {
 #define ARGUS_EVENT_ENUM(id, name, level, subject, meaning) ARGUS_EV_##name = (id),
-    ARGUS_EVENT_TABLE(ARGUS_EVENT_ENUM)
+    ARGUS_CORE_EVENT_TABLE(ARGUS_EVENT_ENUM) ARGUS_GUARD_EVENT_TABLE(ARGUS_EVENT_ENUM)
 #undef ARGUS_EVENT_ENUM
 } argus_event_id_t;
 
@@ -653,20 +664,7 @@ int argus_invariants_broken(const argus_t *self);
 const char *argus_name(argus_name_of_t of, int number);
 
 // The level of an event. Cost: one pass over the catalogue.
-static inline argus_level_t argus_event_level(uint16_t id) {
-#define ARGUS_EVENT_ID(number, name, level, subject, meaning) (number),
-#define ARGUS_EVENT_LEVEL(number, name, level, subject, meaning) ARGUS_LEVEL_##level,
-    static const uint16_t ids[] = {ARGUS_EVENT_TABLE(ARGUS_EVENT_ID)};
-    static const uint8_t levels[] = {ARGUS_EVENT_TABLE(ARGUS_EVENT_LEVEL)};
-#undef ARGUS_EVENT_ID
-#undef ARGUS_EVENT_LEVEL
-    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
-        if (ids[i] == id) {
-            return (argus_level_t)levels[i];
-        }
-    }
-    return ARGUS_LEVEL_ERROR;
-}
+argus_level_t argus_event_level(uint16_t id);
 
 #ifdef __cplusplus
 }

@@ -29,7 +29,7 @@ typedef enum {
     HAL_STORE_IO = -6
 } hal_store_error_t;
 
-const char *hal_store_error_text(int error);
+const char *hal_store_error_text(int error); // of any medium
 
 // Where slots are kept: files, flash, or the fake.
 typedef struct {
@@ -78,6 +78,7 @@ typedef struct {
 
 // False when the path is empty or too long.
 bool hal_file_medium_init(hal_file_medium_t *self, const char *path);
+const char *hal_file_error_text(int error); // of slots that are files
 hal_medium_t hal_file_medium(hal_file_medium_t *self);
 
 #endif

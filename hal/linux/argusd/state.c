@@ -20,7 +20,7 @@ bool state_open(state_t *self, const char *path, argus_t *core, char *message, s
         text_refuse(message, capacity, "%s.a and %s.b are damaged: the history begins anew", path, path);
     } else if (found != HAL_STORE_OK && found != HAL_STORE_EMPTY) {
         return text_refuse(message, capacity, "--state %s: %s; give a file in a folder that can be written",
-                           path, hal_store_error_text(found));
+                           path, hal_file_error_text(found));
     } else if (self->store.damaged[0] || self->store.damaged[1]) {
         text_refuse(message, capacity, "%s.%c is damaged: the other copy is used", path,
                     self->store.damaged[0] ? 'a' : 'b');
@@ -44,7 +44,7 @@ bool state_save(state_t *self, const argus_t *core, char *message, size_t capaci
     const hal_store_error_t saved = hal_store_save(&self->store, record, length);
     if (saved != HAL_STORE_OK) {
         return text_refuse(message, capacity, "--state %s: not saved: %s", self->files.path,
-                           hal_store_error_text(saved));
+                           hal_file_error_text(saved));
     }
     memcpy(self->record, record, length);
     self->length = length;

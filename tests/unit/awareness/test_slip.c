@@ -61,7 +61,7 @@ void test_what_stays_ahead_and_behind_for_two_stretches_is_slip(void) {
     TEST_ASSERT_NOT_EQUAL(-1, drive(STRETCH_SIPS + 4, 0, 0));
     TEST_ASSERT_EQUAL(1, slip.slips);
     TEST_ASSERT_INT_WITHIN(100, 1000, slip.slipped_mm);
-    TEST_ASSERT_INT_WITHIN(2 * SIP_MM, 0, slip.from.x_mm);
+    TEST_ASSERT_INT_WITHIN(2 * SIP_MM, 0, slip.first.x_mm);
 }
 
 void test_one_stretch_is_chance(void) {

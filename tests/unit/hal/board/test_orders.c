@@ -85,7 +85,7 @@ void test_a_line_too_long_or_with_noise_is_refused_as_a_whole_and_the_next_is_ta
 }
 
 void test_settings_are_for_the_next_start(void) {
-    TEST_ASSERT_EQUAL_STRING("from the next start on, if it is saved", give("set step_mm 120\n"));
+    TEST_ASSERT_EQUAL_STRING("from the next start, if it is saved", give("set step_mm 120\n"));
     TEST_ASSERT_EQUAL_INT32(120, config.step_mm);
     TEST_ASSERT_EQUAL_STRING("out of its range", give("set step_mm 12000\n"));
     TEST_ASSERT_EQUAL_STRING("no such key", give("set stepp_mm 120\n"));

@@ -163,5 +163,6 @@ void test_a_medium_that_cannot_be_read_is_not_overwritten(void) {
 void test_every_error_has_a_text(void) {
     for (int error = HAL_STORE_IO; error <= HAL_STORE_OK; error++) {
         TEST_ASSERT_GREATER_THAN_size_t(1, strlen(hal_store_error_text(error)));
+        TEST_ASSERT_GREATER_THAN_size_t(1, strlen(hal_file_error_text(error)));
     }
 }
