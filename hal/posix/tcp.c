@@ -85,7 +85,8 @@ static hal_link_error_t connect_any(hal_tcp_t *self, int timeout_ms, int cancel_
             continue;
         }
         error = connect_one(fd, &self->address[i], self->length[i], timeout_ms, cancel_fd);
-        if (error == HAL_LINK_OK) {
+        // A reset after the handshake may be seen here already: it was accepted, and reading tells the rest.
+        if (error == HAL_LINK_OK || error == HAL_LINK_CLOSED) {
             self->socket.fd = fd;
             return HAL_LINK_OK;
         }

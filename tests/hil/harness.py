@@ -10,6 +10,8 @@ import select
 import selectors
 import shlex
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import termios
@@ -463,6 +465,32 @@ def _daemon_lines(daemon: Argusd) -> Iterator[str]:
             f"{e.get('value', '')} {e.get('state', e.get('line', ''))}"
         )
     yield from (f"argusd says: {line}" for line in daemon.errors[-5:])
+
+
+@contextlib.contextmanager
+def turning_away(way: str, port: int = 0) -> Iterator[tuple[int, list[float]]]:
+    """Serve a port as a busy server does; `way`: it closes, resets, or speaks and closes. Gives port and times."""
+    taken: list[float] = []
+    with socket.create_server(("127.0.0.1", port)) as listener:
+
+        def serve() -> None:
+            with contextlib.suppress(OSError):
+                while True:
+                    client, _ = listener.accept()
+                    taken.append(time.monotonic())
+                    if way == "resets":
+                        client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+                    elif way == "speaks":
+                        client.sendall(b"Port already in use\r\n")
+                    client.close()
+
+        thread = threading.Thread(target=serve, daemon=True)
+        thread.start()
+        try:
+            yield int(listener.getsockname()[1]), taken
+        finally:
+            listener.shutdown(socket.SHUT_RDWR)
+            thread.join(5)
 
 
 def run_argusd(*arguments: str, timeout_s: float = 600.0) -> subprocess.CompletedProcess[str]:

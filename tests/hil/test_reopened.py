@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+import itertools
 import signal
 import time
 
 import pytest
-from harness import BAUD, PATIENCE_S, Argusd, Bench, is_translating, wait_for
+from harness import BAUD, PATIENCE_S, Argusd, Bench, is_translating, turning_away, wait_for
 from rules import cruise
 from worlds import hall
 
@@ -48,6 +49,26 @@ def test_another_robot_behind_the_same_name_is_not_driven(
     assert len(told(argusd, "another robot is at the link now")) == 1
     argusd.signal(signal.SIGTERM)
     assert argusd.wait_exit() == 0
+
+
+@pytest.mark.parametrize("way", ["speaks", "resets"])
+def test_a_port_that_another_client_has_taken_is_said_once_and_asked_less_often(
+    bench: Bench, way: str
+) -> None:
+    sim = bench.sim(bench.world(**hall()), link=["--tcp", "0"])
+    argusd = bench.argusd("--passive", link=f"tcp:{sim.address}", active=False)
+    argusd.wait("SESSION_OPEN")
+    sim.kill()
+    with turning_away(way, int(sim.address.rpartition(":")[2])) as (_, taken):
+        argusd.wait("LINK_LOST")
+        time.sleep(6.0)
+        argusd.signal(signal.SIGTERM)
+        assert argusd.wait_exit() == 6
+    (line,) = told(argusd, "accepts and closes")
+    assert ("saying 'Port already in use'" in line) == (way == "speaks")
+    pauses = [later - earlier for earlier, later in itertools.pairwise(taken)]
+    assert len(taken) < 12, pauses
+    assert max(pauses) > 1.5, pauses
 
 
 def test_an_adapter_with_a_new_number_is_said_once(bench: Bench) -> None:

@@ -10,7 +10,7 @@ import time
 import tty
 
 import pytest
-from harness import BAUD, Argusd, Bench, Sim, run_argusd
+from harness import BAUD, Argusd, Bench, Sim, run_argusd, turning_away
 from rules import assert_reached, assert_still_between
 from worlds import hall
 
@@ -70,6 +70,18 @@ def test_a_silent_port_is_said_and_tried_until_the_robot_wakes(bench: Bench) -> 
     sim = bench.sim(bench.world(**hall()))
     argusd.wait("LINK_LOST")
     assert_checked_before_it_drives(sim, argusd)
+
+
+@pytest.mark.parametrize("way", ["closes", "speaks", "resets"])
+def test_a_server_that_turns_us_away_is_exit_4_with_its_words(way: str) -> None:
+    """However it does so: ser2net says a word when another client has the robot."""
+    with turning_away(way) as (port, _):
+        done = run_argusd("--link", f"tcp:127.0.0.1:{port}", "--json", "--wait", "3")
+    assert done.returncode == 4, done.stderr
+    first, *_, last = (line for line in done.stderr.splitlines() if "accepts and closes" in line)
+    for line in (first, last):
+        assert "another client may be using the robot" in line
+        assert ("saying 'Port already in use'" in line) == (way == "speaks")
 
 
 def test_no_robot_at_all_is_exit_4_with_what_to_do(bench: Bench) -> None:

@@ -47,7 +47,7 @@ struct hal_scheme {
     const char *robot_place;
     const char *if_silent;      // a hint when nothing is received; "" or begins with a blank
     const char *if_garbage;     // when no packet is among what is received
-    const char *if_turned_away; // when the other end closes at once, time and again
+    const char *if_turned_away; // when the other end closes before a robot answers, time and again
     int32_t as_baud;            // the rate of a wire as fast, for a link without a rate; 0: none
     uint32_t settle_ms;         // after it came up, until the manager is told; 0: at once
 

@@ -14,7 +14,6 @@
 #define RETRY_MAX_MS 4000u
 #define REOPEN_TIMEOUT_MS 1000
 #define LOOK_MS 1000u
-#define AT_ONCE_MS 1000u
 #define FRUITLESS_MIN 2
 
 static uint32_t now_ms(const driver_t *self) {
@@ -33,13 +32,20 @@ void driver_init(driver_t *self, const argus_config_t *config, hal_clock_t clock
     self->core = argus_init(&self->memory, config, now_ms(self));
 }
 
+static argus_status_t status_of(const driver_t *self) {
+    argus_status_t status;
+    argus_status(self->core, &status);
+    return status;
+}
+
 void driver_attach(driver_t *self, hal_link_t link) {
     self->link = link;
     self->up = true;
     self->error = HAL_LINK_OK;
     self->held = 0;
     self->up_ms = now_ms(self);
-    self->heard = self->bytes_in;
+    self->bytes_before = self->bytes_in;
+    self->packets_before = status_of(self).packets;
     self->failed = false;
     self->settles = self->spec.scheme->settle_ms > 0;
     if (!self->settles) {
@@ -75,17 +81,20 @@ static void lengthen_pause(driver_t *self) {
     self->retry_ms = self->retry_ms < RETRY_MAX_MS / 2 ? self->retry_ms * 2 : RETRY_MAX_MS;
 }
 
+// Of bytes alone a link is of no use: a server that is busy says so, and closes.
+static bool is_of_use(const driver_t *self) {
+    return self->up && status_of(self).packets != self->packets_before;
+}
+
 static void lose(driver_t *self, int error) {
+    const bool of_use = is_of_use(self);
+    self->fruitless = of_use ? 0 : self->fruitless + 1;
+    self->words = of_use ? 0 : self->words;
     hal_link_close(&self->link);
     self->up = false;
     self->held = 0;
     self->error = (hal_link_error_t)error;
     self->lost_ms = now_ms(self);
-    if (self->bytes_in == self->heard && self->lost_ms - self->up_ms < AT_ONCE_MS) {
-        self->fruitless++;
-    } else {
-        self->fruitless = 0;
-    }
     if (self->fruitless < FRUITLESS_MIN) {
         self->retry_ms = RETRY_FIRST_MS;
     } else {
@@ -142,6 +151,14 @@ static void hand_over(driver_t *self, const uint8_t *bytes, size_t count) {
     }
 }
 
+// The first of them, for the reason.
+static void keep_words(driver_t *self, const uint8_t *bytes, size_t count) {
+    self->words = self->bytes_in == self->bytes_before ? 0 : self->words;
+    for (size_t i = 0; i < count && self->words < sizeof self->word; i++) {
+        self->word[self->words++] = bytes[i];
+    }
+}
+
 void driver_receive(driver_t *self) {
     uint8_t bytes[READ_BYTES];
     for (int i = 0; i < READS_PER_WAKE && self->up; i++) {
@@ -153,6 +170,7 @@ void driver_receive(driver_t *self) {
         if (got == 0) {
             return;
         }
+        keep_words(self, bytes, (size_t)got);
         self->bytes_in += (uint32_t)got;
         hand_over(self, bytes, (size_t)got);
     }
@@ -173,21 +191,16 @@ static uint32_t reopen(driver_t *self) {
     return self->retry_ms;
 }
 
-static bool has_session(const driver_t *self) {
-    argus_status_t status;
-    argus_status(self->core, &status);
-    return status.open;
-}
-
 // While no robot answers: a stable name may have moved to the adapter that the robot is at now.
 static void look_where_it_leads(driver_t *self) {
     const uint32_t passed_ms = now_ms(self) - self->looked_ms;
-    if (self->transport == NULL || passed_ms < LOOK_MS || has_session(self)) {
+    if (self->transport == NULL || passed_ms < LOOK_MS || status_of(self).open) {
         return;
     }
     self->looked_ms = now_ms(self);
     if (hal_transport_moved(self->transport)) {
         lose(self, HAL_LINK_GONE);
+        self->fruitless = 0; // not closed by the other end
     }
 }
 
@@ -220,15 +233,37 @@ uint32_t driver_process(driver_t *self) {
     return wait_ms < retry_ms ? wait_ms : retry_ms;
 }
 
+// What the other end said, for people: a blank for each run of what cannot be printed.
+static void put_words(const driver_t *self, char *text, size_t capacity) {
+    size_t used = 0;
+    bool blank = false;
+    for (size_t i = 0; i < self->words && used + 2 < capacity; i++) {
+        const bool shows = self->word[i] > ' ' && self->word[i] <= '~';
+        if (shows && blank && used > 0) {
+            text[used++] = ' ';
+        }
+        if (shows) {
+            text[used++] = (char)self->word[i];
+        }
+        blank = !shows;
+    }
+    text[used] = '\0';
+}
+
 void driver_explain_turned_away(const driver_t *self, char *text, size_t capacity) {
     char name[HAL_LINK_NAME_MAX];
+    char words[sizeof self->word + 2];
     hal_link_spec_name(&self->spec, name, sizeof name);
-    snprintf(text, capacity, "%s: the other end accepts and closes at once, %u times so far: %s", name,
-             (unsigned)self->fruitless, self->spec.scheme->if_turned_away);
+    put_words(self, words, sizeof words);
+    const bool spoke = words[0] != '\0';
+    snprintf(text, capacity,
+             "%s: the other end accepts and closes before a robot answers, %u times so far%s%s%s: %s", name,
+             (unsigned)self->fruitless, spoke ? ", saying '" : "", words, spoke ? "'" : "",
+             self->spec.scheme->if_turned_away);
 }
 
 bool driver_is_turned_away(const driver_t *self) {
-    return self->fruitless >= FRUITLESS_MIN && (!self->up || self->bytes_in == self->heard);
+    return self->fruitless >= FRUITLESS_MIN && !is_of_use(self);
 }
 
 // The reason as of now; HAL_LINK_OK: none, the link is of use. What an attempt brought while the link is
@@ -238,7 +273,7 @@ static hal_link_error_t reason_now(const driver_t *self) {
         return HAL_LINK_CLOSED;
     }
     if (self->up) {
-        return self->bytes_in == self->heard && self->told == HAL_LINK_CLOSED ? HAL_LINK_CLOSED : HAL_LINK_OK;
+        return self->told == HAL_LINK_CLOSED && !is_of_use(self) ? HAL_LINK_CLOSED : HAL_LINK_OK;
     }
     return self->failed ? self->error : self->told;
 }

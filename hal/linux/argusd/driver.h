@@ -21,6 +21,8 @@ typedef struct {
     void *context;
 } driver_filter_t; // alter NULL: none
 
+#define DRIVER_WORDS_MAX 64
+
 typedef struct {
     argus_storage_t memory;
     argus_t *core; // in `memory`
@@ -32,22 +34,25 @@ typedef struct {
     driver_tap_t after; // sees what the robot sent once the manager has taken it, before answers go out
     driver_filter_t filter;
     bool up;
-    int cancel_fd;          // becomes readable when opening is to be given up; -1: none
-    hal_link_error_t error; // why the link is not up
-    bool failed;            // ... since an attempt to open it failed
-    bool tried;             // to open it, since a reason was looked for
-    uint32_t told_sum;      // of the words told last
-    hal_link_error_t told;  // the reason told last; HAL_LINK_OK: none is to be told as over
-    uint32_t heard;         // bytes_in when the link came up
-    uint32_t fruitless;     // times in a row that the link closed at once and nothing was heard
-    uint32_t retry_ms;      // pause before the next attempt to open
-    uint32_t lost_ms;       // when the last attempt failed
-    uint32_t looked_ms;     // last look at where the link's name leads
-    bool settles;           // the link is up, which the manager is not told yet
-    uint32_t up_ms;         // when the link came up
-    uint32_t reopened;      // monotonic
-    uint32_t bytes_in;      // over all openings
-    size_t held;            // a packet that the link would not take yet
+    int cancel_fd;           // becomes readable when opening is to be given up; -1: none
+    hal_link_error_t error;  // why the link is not up
+    bool failed;             // ... since an attempt to open it failed
+    bool tried;              // to open it, since a reason was looked for
+    uint32_t told_sum;       // of the words told last
+    hal_link_error_t told;   // the reason told last; HAL_LINK_OK: none is to be told as over
+    uint32_t bytes_before;   // bytes_in when the link came up
+    uint32_t packets_before; // likewise those of a robot
+    uint32_t fruitless;      // times in a row that the link closed and no packet had come
+    size_t words;            // first bytes of an opening that said something
+    uint8_t word[DRIVER_WORDS_MAX];
+    uint32_t retry_ms;  // pause before the next attempt to open
+    uint32_t lost_ms;   // when the last attempt failed
+    uint32_t looked_ms; // last look at where the link's name leads
+    bool settles;       // the link is up, which the manager is not told yet
+    uint32_t up_ms;     // when the link came up
+    uint32_t reopened;  // monotonic
+    uint32_t bytes_in;  // over all openings
+    size_t held;        // a packet that the link would not take yet
     uint8_t packet[HAL_LINK_PACKET_MAX];
 } driver_t;
 
@@ -77,7 +82,7 @@ bool driver_reason(driver_t *self, char *text, size_t capacity);
 // One line about that, see below.
 void driver_explain_turned_away(const driver_t *self, char *text, size_t capacity);
 
-// Whether the other end takes the link and closes it at once, time and again.
+// Whether the other end takes the link and closes it before a robot answers, time and again.
 bool driver_is_turned_away(const driver_t *self);
 
 bool driver_wants_write(const driver_t *self);

@@ -4,7 +4,9 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <signal.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "hal/tcp.h"
@@ -66,6 +68,30 @@ void test_it_can_be_opened_again(void) {
         TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_tcp_open(&tcp, "localhost", port, 1000, -1));
         close(accept(server, NULL, NULL));
     }
+}
+
+// Where the reset is seen, in the connect or in a read, is a matter of chance, and must not matter.
+void test_a_reset_after_the_handshake_is_a_link_that_the_other_end_closed(void) {
+    const uint16_t port = listen_v4();
+    const pid_t child = fork();
+    while (child == 0) {
+        const struct linger at_once = {.l_onoff = 1, .l_linger = 0};
+        const int robot = accept(server, NULL, NULL);
+        setsockopt(robot, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+        close(robot);
+    }
+    for (int i = 0; i < 200; i++) {
+        uint8_t bytes[8];
+        const hal_link_t link = hal_tcp_link(&tcp);
+        int got = 0;
+        TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, hal_tcp_open(&tcp, "127.0.0.1", port, 10000, -1));
+        while (got == 0) {
+            got = hal_link_read(&link, bytes, sizeof bytes);
+        }
+        TEST_ASSERT_EQUAL_INT(HAL_LINK_CLOSED, got);
+    }
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
 }
 
 void test_ipv6(void) {

@@ -320,41 +320,96 @@ void test_why_a_link_stays_away_is_told_once_and_again_when_it_changes(void) {
     rmdir(folder);
 }
 
-void test_a_server_that_closes_at_once_is_told_once_and_asked_less_often(void) {
-    int server = -1;
+// A server whose robot another client has. Each connection gets the words and is closed; returns how many
+// did.
+static int turn_away(int server, uint32_t ms, const char *words, int *told) {
     int accepted = 0;
-    argus_config_t config;
-    argus_config_default(&config);
-    parse("tcp:127.0.0.1:%u", (unsigned)listen_here(&server));
-    fcntl(server, F_SETFL, O_NONBLOCK);
-    driver_init(&driver, &config, clock_, &spec, &transport);
-    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 1000));
-    int told = 0;
-    for (int i = 0; i < 2000; i++) { // 20 s
+    for (uint32_t passed = 0; passed < ms; passed += 10) {
         const int client = accept(server, NULL, NULL);
         if (client >= 0) {
             accepted++;
+            (void)!write(client, words, strlen(words));
             close(client);
         }
         pass(10);
-        told += reasons("the other end accepts and closes at once");
+        *told += reasons("the other end accepts and closes before a robot answers");
     }
-    TEST_ASSERT_EQUAL_INT(1, told);
-    TEST_ASSERT_TRUE(driver_is_turned_away(&driver));
-    TEST_ASSERT_TRUE_MESSAGE(accepted >= 4 && accepted <= 12, "pauses of 0.5, 1, 2, 4, 4 s");
-    // The other client has gone: bytes come.
+    return accepted;
+}
+
+static int await_client(int server) {
     int client = -1;
     for (int i = 0; i < 1000 && client < 0; i++) {
         pass(10);
         client = accept(server, NULL, NULL);
     }
     TEST_ASSERT_TRUE(client >= 0);
+    return client;
+}
+
+static int open_to_server(void) {
+    int server = -1;
+    argus_config_t config;
+    argus_config_default(&config);
+    parse("tcp:127.0.0.1:%u", (unsigned)listen_here(&server));
+    fcntl(server, F_SETFL, O_NONBLOCK);
+    driver_init(&driver, &config, clock_, &spec, &transport);
+    TEST_ASSERT_EQUAL_INT(HAL_LINK_OK, driver_open(&driver, 1000));
+    return server;
+}
+
+static const char whole_packet[] = "\xFA\xFB\x03\x00\x00\x00";
+
+static void turned_away_with(const char *words, const char *part) {
+    int told = 0;
+    const int server = open_to_server();
+    const int accepted = turn_away(server, 20000, words, &told);
+    TEST_ASSERT_EQUAL_INT(1, told);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(reason, part), reason);
+    TEST_ASSERT_TRUE(driver_is_turned_away(&driver));
+    TEST_ASSERT_TRUE_MESSAGE(accepted >= 4 && accepted <= 12, "pauses of 0.5, 1, 2, 4, 4 s");
+    // The other client has gone: a robot answers. Words alone are no robot.
+    const int client = await_client(server);
     TEST_ASSERT_EQUAL_INT(4, write(client, "xxxx", 4));
-    pass(2000);
+    pass(500);
+    TEST_ASSERT_EQUAL_INT(0, reasons(""));
+    TEST_ASSERT_TRUE(driver_is_turned_away(&driver));
+    TEST_ASSERT_EQUAL_INT(6, write(client, whole_packet, 6));
+    pass(500);
     TEST_ASSERT_EQUAL_INT(1, reasons("open again"));
     TEST_ASSERT_FALSE(driver_is_turned_away(&driver));
     driver_close(&driver);
     close(client);
+    close(server);
+}
+
+void test_a_server_that_closes_at_once_is_told_once_and_asked_less_often(void) {
+    turned_away_with("", "2 times so far: another client");
+}
+
+void test_a_server_that_says_a_word_and_closes_is_no_better(void) {
+    turned_away_with("Port already in use\r\n",
+                     "2 times so far, saying 'Port already in use': another client");
+    turned_away_with("\033[31m busy\a\r\n\r\n-\n", "saying '[31m busy -': ");
+    turned_away_with("\r\n\377\001", "2 times so far: another client");
+    turned_away_with("0123456789abcdefghijklmnopqrstuvwxyz0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ",
+                     "saying '0123456789abcdefghijklmnopqrstuvwxyz0123456789ABCDEFGHIJKLMNOPQR': ");
+}
+
+void test_a_link_that_was_of_use_is_no_refusal_and_lends_it_no_words(void) {
+    int told = 0;
+    const int server = open_to_server();
+    const int client = await_client(server);
+    TEST_ASSERT_EQUAL_INT(6, write(client, whole_packet, 6));
+    pass(100);
+    close(client);
+    pass(100);
+    TEST_ASSERT_FALSE(driver.up);
+    TEST_ASSERT_EQUAL_UINT32(0, driver.fruitless);
+    turn_away(server, 2000, "", &told);
+    TEST_ASSERT_EQUAL_INT(1, told);
+    TEST_ASSERT_NULL_MESSAGE(strstr(reason, "saying"), reason);
+    driver_close(&driver);
     close(server);
 }
 
