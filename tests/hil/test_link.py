@@ -181,3 +181,35 @@ def test_an_end_that_the_robot_may_not_have_heard_is_no_orderly_one(bench: Bench
     argusd.signal(signal.SIGINT)
     assert argusd.wait_exit() == 6
     assert any("may not have heard the end" in line for line in argusd.errors)
+
+
+@pytest.mark.parametrize("cut_s", [-0.2, 0.05, 0.4])
+def test_a_cable_that_dies_about_the_end_makes_it_unclean(bench: Bench, cut_s: float) -> None:
+    """The silence is too short to be one yet when the end is asked for, or begins before the robot rests."""
+    sim = bench.sim(bench.world(**hall()))
+    tap = bench.tap()
+    argusd = bench.argusd("--goal", f"{GOAL_MM},0", link=f"serial:{tap.address}@9600")
+    cruise(sim)
+    if cut_s > 0:
+        argusd.signal(signal.SIGINT)
+        time.sleep(cut_s)
+    tap.connected = False
+    if cut_s < 0:
+        time.sleep(-cut_s)
+        argusd.signal(signal.SIGINT)
+    assert argusd.wait_exit() == 6
+    assert any("may not have heard the end" in line for line in argusd.errors)
+    sim.wait_rest()
+    sim.assert_no_collision()
+
+
+def test_a_cable_that_died_while_passive_makes_the_end_unclean(bench: Bench) -> None:
+    bench.sim(bench.world(**hall()))
+    tap = bench.tap()
+    argusd = bench.argusd(link=f"serial:{tap.address}@9600", active=False)
+    argusd.wait("HEALTH_CHECK")
+    tap.connected = False
+    time.sleep(0.2)
+    argusd.signal(signal.SIGINT)
+    assert argusd.wait_exit() == 6
+    assert any("may not have heard the end" in line for line in argusd.errors)

@@ -14,6 +14,7 @@
 #define SAVE_MS 5000u
 #define CLOSE_MAX_MS 4000u
 #define WISH_MS 1000u
+#define REST_MM_S 5  // encoders tremble
 #define ORDERS_MAX 8 // in one wake-up: a flood of them must not keep time from passing
 
 static void take_time(loop_t *self) {
@@ -137,15 +138,41 @@ static void show(loop_t *self) {
     }
 }
 
+// A moving robot is stopped at once, and its session closed when SIPs show it at rest. A passive robot's is
+// closed when its next SIP comes: after CLOSE none does, so nothing else tells that it hears us.
+static void shut_down(loop_t *self, const argus_status_t *status) {
+    const bool waits = !status->active && status->online && status->sips == self->sips;
+    if (!self->shut && !waits) {
+        self->shut = true;
+        argus_shutdown(self->driver.core, self->moment.now_ms);
+        driver_transmit(&self->driver);
+    }
+}
+
+static bool is_still(int32_t mm_s) {
+    return mm_s >= -REST_MM_S && mm_s <= REST_MM_S;
+}
+
+// Whether the robot hears the end. To be called before time passes for the manager, which then may leave.
+static void hear_end(loop_t *self) {
+    const argus_status_t status = status_of(self);
+    if (self->ending && status.open) {
+        self->heard = status.online && status.sips != self->sips;
+        self->rested = !status.active || (is_still(status.vel_left_mm_s) && is_still(status.vel_right_mm_s));
+    }
+    if (self->ending) {
+        shut_down(self, &status);
+    }
+}
+
 static void end(loop_t *self, argusd_exit_t code) {
     if (!self->ending) {
         self->ending = true;
         self->code = code;
         self->ending_ms = self->moment.now_ms;
-        self->heard = status_of(self).online;
+        self->sips = status_of(self).sips;
         notify_stopping(&self->notify);
-        argus_shutdown(self->driver.core, self->moment.now_ms);
-        driver_transmit(&self->driver);
+        hear_end(self);
     }
 }
 
@@ -347,6 +374,8 @@ static void judge_end(loop_t *self) {
         say_unclean(self, self->driver.up ? "since no robot answered" : "since the link was down");
     } else if (self->met && !self->heard) {
         say_unclean(self, "since the robot had gone silent, and may not have heard the end");
+    } else if (self->met && !self->rested) {
+        say_unclean(self, "since the robot did not come to rest in time");
     }
 }
 
@@ -451,6 +480,7 @@ static void begin(loop_t *self, const loop_options_t *options) {
 argusd_exit_t loop_run(loop_t *self, const loop_options_t *options) {
     begin(self, options);
     for (;;) {
+        hear_end(self);
         const uint32_t wait_ms = driver_process(&self->driver);
         take_time(self);
         say_events(self);

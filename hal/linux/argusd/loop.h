@@ -47,7 +47,10 @@ typedef struct {
     int wishes;         // to end; what comes within a second of one is the same
     uint32_t wished_ms; // when the last one came
     bool closed;        // the session was closed in order
-    bool heard;         // SIPs came until the end was asked for
+    uint32_t sips;      // so many had come when the end was asked for
+    bool shut;          // the manager has been told
+    bool heard;         // SIPs came after that, until the session was closed
+    bool rested;        // ... and the last one showed the robot at rest
     uint32_t course_mm;
     view_t view;
 } loop_t;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Attacks: argusd as a whole ends in order: on SIGTERM, on one wish delivered twice, without its link. Apart
-// from test_app.c, so that each waits for the robot's clock while the other does.
+// Attacks: argusd as a whole ends in order: on SIGTERM, on one wish delivered twice, without its link; and
+// what is no orderly end is not called one. Apart from test_app.c, so that each waits for the robot's clock
+// while the other does.
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -91,6 +92,55 @@ void test_an_end_without_the_link_is_not_clean_and_has_its_own_code(void) {
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(err, "not closed in order, since the link was down"), err);
     TEST_ASSERT_NULL(strstr(out, "SESSION_CLOSED"));
     setUp(); // for tearDown()
+}
+
+static bool ends_mute;
+static uint8_t ends_with_mm_s;
+
+static void signal_and_change(pid_t child, int turn) {
+    if (turn > 0 && first == 0 && strstr(out, "HEALTH_CHECK") != NULL) {
+        first = turn;
+        mute = ends_mute;
+        robot.vel_mm_s = ends_with_mm_s;
+        kill(child, SIGTERM);
+    }
+}
+
+static void ends_unclean(const char *activity, const char *why) {
+    char line[256];
+    first = 0;
+    during = signal_and_change;
+    snprintf(line, sizeof line, "--link serial:%s --json --status 0 %s", name, activity);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(6, run(line, true, NULL), err);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(err, why), err);
+    tearDown();
+    setUp();
+}
+
+// A silence shows only after a while: that SIPs came up to the wish says nothing.
+void test_a_robot_that_is_not_heard_after_the_wish_may_not_have_heard_it(void) {
+    ends_mute = true;
+    ends_with_mm_s = 0;
+    ends_unclean("--active", "since the robot had gone silent, and may not have heard the end");
+    ends_unclean("--passive", "since the robot had gone silent, and may not have heard the end");
+}
+
+void test_a_session_that_is_closed_in_motion_is_not_closed_in_order(void) {
+    ends_mute = false;
+    ends_with_mm_s = 100;
+    ends_unclean("--active", "since the robot did not come to rest in time");
+}
+
+// Nothing that argusd commanded moves it: somebody pushes it.
+void test_a_passive_robot_need_not_rest(void) {
+    char line[256];
+    first = 0;
+    ends_mute = false;
+    ends_with_mm_s = 100;
+    during = signal_and_change;
+    snprintf(line, sizeof line, "--link serial:%s --json --status 0", name);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, run(line, true, NULL), err);
+    TEST_ASSERT_FALSE(robot.open);
 }
 
 void test_a_summary_ends_the_lines_for_people(void) {

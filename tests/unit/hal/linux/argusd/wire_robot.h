@@ -16,6 +16,7 @@ typedef struct {
     bool open;
     uint16_t reading_mm[16];
     uint8_t next;           // sonar listed next
+    uint8_t vel_mm_s;       // of both wheels
     uint32_t commands[256]; // how often each came
     uint8_t last[8];        // the last commands, newest first
     uint8_t out[ROBOT_OUT]; // what it wants to send
@@ -66,13 +67,14 @@ static inline void robot_take(robot_t *self, uint32_t now_ms, const uint8_t *byt
     }
 }
 
-// One SIP, at rest, with the next five sonars.
+// One SIP with the next five sonars.
 static inline void robot_sip(robot_t *self) {
     uint8_t data[64] = {ARCOS_TYPE_SIP_STATIONARY};
     size_t at = 11;
     if (!self->open) {
         return;
     }
+    data[7] = data[9] = self->vel_mm_s;
     data[at] = 127;      // decivolts
     data[at + 5] = 0x07; // motors and both sonar arrays on
     at += 8;
