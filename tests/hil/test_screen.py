@@ -8,6 +8,7 @@ import os
 import pty
 import re
 import select
+import signal
 import struct
 import subprocess
 import termios
@@ -123,6 +124,11 @@ class Terminal:
         """Press keys."""
         os.write(self._master, keys.encode())
 
+    def resize(self, rows: int, columns: int) -> None:
+        """Make the window smaller, as its user does."""
+        fcntl.ioctl(self._slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+        os.killpg(self.process.pid, signal.SIGWINCH)
+
     def wait_exit(self) -> int:
         """Wait for its end, reading on."""
         wait_for("argusd ends", lambda: self.text is not None and self.process.poll() is not None, PATIENCE_S)
@@ -170,10 +176,27 @@ def test_keys_are_answered_and_the_terminal_comes_back(
     terminal.wait_shown("PAUSED")
     terminal.press("?")
     terminal.wait_shown("test the chosen sonar")
+    assert "PAUSED" in terminal.screen.text
     terminal.press("q")
     assert terminal.wait_exit() == 0
     assert re.search(r"SUMMARY mission none; IsNormal; no sonar out of use", terminal.text)
     assert terminal.is_as_before()
+
+
+def test_a_window_that_is_resized_is_no_key(bench: Bench, terminals: list[Terminal]) -> None:
+    bench.sim(bench.world(**hall()))
+    terminal = Terminal(["--link", f"serial:{bench.port}@{BAUD}"], "vt52", 80)
+    terminals.append(terminal)
+    terminal.wait_shown("HEALTHY")
+    terminal.wait_shown("15  ")
+    for columns in (60, 70, 50):
+        terminal.resize(ROWS, columns)
+    terminal.wait_shown("space stop  g go  p passive  ? keys  q quit")
+    terminal.press("n")
+    terminal.wait_shown("> n: sonar 1 is")
+    assert "no such key" not in terminal.text
+    terminal.press("q")
+    assert terminal.wait_exit() == 0
 
 
 @pytest.mark.parametrize("kind", ["dumb", "no-such-terminal"])

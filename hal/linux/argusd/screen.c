@@ -460,7 +460,7 @@ void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log) 
 }
 
 void screen_draw_keys(canvas_t *canvas) {
-    int row = 1;
+    int row = RING_TOP; // below what the robot does, and whether it is paused
     for (int key = TUI_NONE; key < TUI_GONE && row < canvas->rows - 1; key++) {
         const char *const keys = tui_keys_of((tui_key_t)key);
         if (keys[0] == '\0') {

@@ -50,7 +50,7 @@ void canvas_clear(canvas_t *self, int rows, int columns);
 // Draws everything that fits: a narrow canvas has fewer columns and shorter lines, but no word is cut.
 void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log);
 
-// Lays the list of keys over it.
+// Lays the list of keys over it, below the lines that say what the robot does.
 void screen_draw_keys(canvas_t *canvas);
 
 #endif

@@ -173,8 +173,15 @@ static bool take_messages(screen_t *screen) {
     }
 }
 
+// What curses reports among the keys though nobody pressed one is TUI_KEY_NONE.
 static int key_code(int key) {
     switch (key) {
+    case KEY_RESIZE:
+    case KEY_MOUSE:
+#if defined(KEY_EVENT)
+    case KEY_EVENT:
+#endif
+        return TUI_KEY_NONE;
     case KEY_UP:
         return TUI_KEY_UP;
     case KEY_DOWN:

@@ -42,8 +42,8 @@ typedef enum {
     X(HELP, "?", "show these keys, or hide them")            \
     X(QUIT, "q, Ctrl-C", "stop and end")
 
-// `key`: a character, or one of the four below for the arrows.
-enum { TUI_KEY_UP = 0x1000, TUI_KEY_DOWN, TUI_KEY_LEFT, TUI_KEY_RIGHT };
+// `key`: a character, or one of the four below for the arrows; or that none was pressed.
+enum { TUI_KEY_UP = 0x1000, TUI_KEY_DOWN, TUI_KEY_LEFT, TUI_KEY_RIGHT, TUI_KEY_NONE };
 tui_key_t tui_meaning(int key);
 
 // The keys of a meaning, and what they do; "" for one without.

@@ -205,6 +205,7 @@ void test_keys(void) {
     TEST_ASSERT_EQUAL_INT(TUI_HELP, tui_meaning('?'));
     TEST_ASSERT_EQUAL_INT(TUI_UNKNOWN, tui_meaning('z'));
     TEST_ASSERT_EQUAL_INT(TUI_UNKNOWN, tui_meaning(-1));
+    TEST_ASSERT_EQUAL_INT(TUI_NONE, tui_meaning(TUI_KEY_NONE));
 }
 
 void test_what_repeats_is_one_line_that_counts(void) {
@@ -248,6 +249,19 @@ void test_the_keys_are_listed_each_with_what_it_does(void) {
     TEST_ASSERT_EQUAL_STRING("", tui_keys_of(TUI_UNKNOWN));
     draw(4, 10);
     screen_draw_keys(&canvas); // no room is no harm
+}
+
+// Whoever reads the keys looks for the one that goes on.
+void test_the_list_of_keys_hides_neither_a_pause_nor_an_injected_fault(void) {
+    view.status.paused = true;
+    view.injected[3] = ARGUS_KIND_STUCK;
+    for (int columns = 40; columns <= 120; columns += 5) {
+        draw(24, columns);
+        screen_draw_keys(&canvas);
+        TEST_ASSERT_EQUAL_INT(1, find("PAUSED"));
+        TEST_ASSERT_NOT_EQUAL(-1, find("INJECTED FAULT"));
+        TEST_ASSERT_NOT_EQUAL(-1, find("stop and end"));
+    }
 }
 
 // Words of the wide screen, and those that stand for a column where there is less room.
