@@ -299,7 +299,7 @@ static void take_state(argus_knowledge_t *const self, const argus_sip_t *const s
     self->stall_left = reversed ? sip->stall_right : sip->stall_left;
     self->stall_right = reversed ? sip->stall_left : sip->stall_right;
     const bool finer = sip->has_battery_x10 && sip->battery_x10_dv != 0; // not every server fills it in
-    self->battery_dv = finer ? (int16_t)sip->battery_x10_dv : (int16_t)sip->battery_dv;
+    self->battery_dv = finer ? sip->battery_x10_dv : sip->battery_dv;
 }
 
 static void take_reading(argus_knowledge_t *const self, const argus_sip_sonar_t *const from) {

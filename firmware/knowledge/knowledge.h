@@ -54,7 +54,7 @@ typedef struct {
     uint16_t flags;
     int16_t vel_left_mm_s;
     int16_t vel_right_mm_s;
-    int16_t battery_dv;
+    uint16_t battery_dv;
     uint16_t x_raw;
     uint16_t y_raw;
     argus_mask_t fresh;   // sonars listed in the last SIP

@@ -480,7 +480,7 @@ typedef struct {
     bool online;             // ... and SIPs are coming
     bool motors;             // on, as the robot says
     bool lists_all;          // the server lists every sonar in every SIP
-    int16_t battery_dv;      // decivolts
+    uint16_t battery_dv;     // decivolts
     int16_t vel_left_mm_s;   // of the left wheel, as the robot says
     int16_t vel_right_mm_s;  // of the right one
     uint16_t flags;          // of the SIP

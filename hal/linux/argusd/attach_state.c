@@ -158,7 +158,7 @@ static void read_robot(const json_doc_t *doc, argus_status_t *status) {
     status->goal_mm = (int32_t)whole(doc, "goal_mm", 0);
     status->waypoint = (uint16_t)whole(doc, "waypoint", 0);
     status->waypoints = (uint16_t)whole(doc, "waypoints", 0);
-    status->battery_dv = (int16_t)whole(doc, "battery_dv", 0);
+    status->battery_dv = (uint16_t)whole(doc, "battery_dv", 0);
     status->vel_left_mm_s = (int16_t)whole(doc, "vel_left_mm_s", 0);
     status->vel_right_mm_s = (int16_t)whole(doc, "vel_right_mm_s", 0);
     status->bumpers_front = (uint8_t)whole(doc, "bumpers_front", 0);

@@ -82,7 +82,7 @@ static void worst(view_t *view) {
     view->status.waypoints = UINT16_MAX;
     view->status.pose = (argus_pose_t){INT32_MIN, INT32_MIN, INT32_MIN};
     view->status.goal_mm = INT32_MIN;
-    view->status.battery_dv = INT16_MIN;
+    view->status.battery_dv = UINT16_MAX;
     view->status.plan.count = 200;
     view->status.sips = view->status.bad_checksums = view->status.skipped_bytes = UINT32_MAX;
     view->counters = (hal_link_counters_t){UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
