@@ -101,21 +101,31 @@ static bool is_member(gid_t group) {
     return member;
 }
 
+#define READ_AND_WRITE 06u
+
+static const char *may(unsigned bits) {
+    static const char *const texts[] = {"nothing", "write", "read", "read and write"};
+    return texts[bits >> 1 & 3u];
+}
+
+// The kernel asks one of the three alone: the owner gets nothing of what the group or the others may.
 static void advise_denied(line_t *line, const char *path, const struct stat *about, const char *group) {
-    const bool group_may = (about->st_mode & 060u) == 060u;
-    if (about->st_uid == geteuid()) {
+    const bool owner = about->st_uid == geteuid();
+    const bool member = is_member(about->st_gid);
+    const unsigned of_group = about->st_mode >> 3;
+    const unsigned mine = owner ? about->st_mode >> 6 : member ? of_group : about->st_mode;
+    if ((mine & READ_AND_WRITE) == READ_AND_WRITE) {
+        add(line, ": that would do; something else forbids it, as a container or a security module");
+    } else if (owner) {
         add(line, ": you own it, but may not read and write it: chmod u+rw %s", path);
-    } else if (is_member(about->st_gid) && !group_may) {
+    } else if (member) {
         add(line, ": you are in that group, which may not read and write it: %schmod g+rw %s", as_root(),
             path);
-    } else if (!group_may) {
-        add(line,
-            ": only its owner may read and write it: %schmod g+rw %s, and join the group, or a udev rule",
-            as_root(), path);
-    } else if (is_member(about->st_gid)) {
-        add(line, ": that would do; something else forbids it, as a container or a security module");
-    } else {
+    } else if ((of_group & READ_AND_WRITE) == READ_AND_WRITE) {
         add(line, ": join the group: %susermod -aG %s \"$USER\", then log in again", as_root(), group);
+    } else {
+        add(line, ": you are one of the others: %schmod g+rw %s, and join the group, or a udev rule",
+            as_root(), path);
     }
 }
 
@@ -133,8 +143,10 @@ static void explain_denied(line_t *line, const char *path) {
     snprintf(user_name, sizeof user_name, "%u", (unsigned)about.st_uid);
     snprintf(group_name, sizeof group_name, "%u", (unsigned)about.st_gid);
     const char *const group_text = group != NULL ? group->gr_name : group_name;
-    add(line, "; it belongs to user %s and group %s, mode %03o", user != NULL ? user->pw_name : user_name,
-        group_text, (unsigned)(about.st_mode & 0777u));
+    const unsigned mode = about.st_mode & 0777u;
+    add(line, "; it belongs to user %s and group %s, mode %03o (owner: %s, group: %s, others: %s)",
+        user != NULL ? user->pw_name : user_name, group_text, mode, may(mode >> 6), may(mode >> 3),
+        may(mode));
     advise_denied(line, path, &about, group_text);
 }
 

@@ -218,15 +218,33 @@ static void denied(uid_t user, gid_t group, mode_t mode, const char *part) {
 
 void test_permission_is_explained_as_owner_and_mode_really_are(void) {
     denied(geteuid(), getegid(), 0040,
-           "mode 040: you own it, but may not read and write it: chmod u+rw /tmp/");
+           "mode 040 (owner: nothing, group: read, others: nothing): you own it, but may not read and write "
+           "it: chmod u+rw /tmp/");
+    denied(geteuid(), getegid(), 0600, "something else forbids it");
     if (geteuid() != 0) {
         TEST_IGNORE_MESSAGE("the rest gives files away, which only root may");
     }
-    denied(12345, 23456, 0660, "it belongs to user 12345 and group 23456, mode 660: join the group: ");
+    static const char *const others[] = {"chmod g+rw /tmp/", "and join the group, or a udev rule"};
+    static const struct {
+        mode_t mode;
+        const char *part;
+    } cases[] = {
+        {0000, "mode 000 (owner: nothing, group: nothing, others: nothing): you are one of the others: "},
+        {0600, "mode 600 (owner: read and write, group: nothing, others: nothing): you are one of the "},
+        {0604, "mode 604 (owner: read and write, group: nothing, others: read): you are one of the others: "},
+        {0642, "mode 642 (owner: read and write, group: read, others: write): you are one of the others: "},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        denied(12345, 23456, cases[i].mode, cases[i].part);
+        denied(12345, 23456, cases[i].mode, others[0]);
+        denied(12345, 23456, cases[i].mode, others[1]);
+    }
+    denied(12345, 23456, 0660, "it belongs to user 12345 and group 23456, mode 660 (owner: read and write, ");
+    denied(12345, 23456, 0660, "others: nothing): join the group: ");
     denied(12345, 23456, 0660, "usermod -aG 23456 \"$USER\", then log in again");
-    denied(12345, 23456, 0600, "mode 600: only its owner may read and write it: ");
-    denied(12345, 23456, 0640, "mode 640: only its owner may read and write it: ");
+    denied(12345, 23456, 0606, "something else forbids it");
     denied(12345, getegid(), 0600, "you are in that group, which may not read and write it: ");
+    denied(12345, getegid(), 0606, "you are in that group, which may not read and write it: ");
     denied(12345, getegid(), 0660, "something else forbids it");
 }
 
