@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from argus_tools.formats import ReadOptions, formats
 from argus_tools.formats.base import Chunk, Direction, Offsets, copy
 from argus_tools.log.cli import main
 
-from hil_sim.arcos import COMMAND, Sip, SyncEcho, SyncReply, frame
+from hil_sim.arcos import COMMAND, FLAG, Command, Sip, SyncEcho, SyncReply, frame
 
 ROOT = Path(__file__).resolve().parents[3]
 WALL_MM = 2000
@@ -160,7 +161,8 @@ def test_an_unknown_subclass_is_said(tmp_path: Path, capsys: pytest.CaptureFixtu
 )
 def test_recorded_sessions_are_judged(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     events = faults(ROOT / f"tests/data/captures/{name}.jsonl", capsys)
-    assert len(named(events, "SESSION_OPEN")) == 1
+    # A client that puts the arrays off and on begins anew.
+    assert len(named(events, "SESSION_OPEN")) == (2 if name == "c_commands" else 1)
     assert named(events, "INVARIANT") == []
     if name == "a_idle":
         assert {e["name"] for e in named(events, "SONAR_DISABLED")} == {"sonar/front/05"}
@@ -251,3 +253,92 @@ def test_a_log_without_sips(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     path = write(tmp_path / "a.rec", [both(Offsets(), 1.0, "c2r", bytes((COMMAND["PULSE"],)))])
     assert main(["faults", str(path)]) == 2
     assert "holds no SIP" in capsys.readouterr().err
+
+
+def switched(count: int, *changes: tuple[int, int], flagged: bool = True, dies_at: int = 9999) -> list[Chunk]:
+    """SIPs of which each array gives readings while it is on; CHANGES are the SIP's number and what SONAR is sent."""
+    offsets, firing = Offsets(), 0b11
+    out: list[Chunk] = []
+    for n in range(count):
+        for argument in (argument for at, argument in changes if at == n):
+            command = Command.integer(COMMAND["SONAR"], argument).data
+            out.append(offsets.chunk(0.1 * n, "c2r", frame(command)))
+            mask = {0: 0b11, 1: 0b01, 2: 0b10}[argument >> 1]
+            firing = firing | mask if argument & 1 else firing & ~mask
+        numbers = [number for k in range(5) if firing >> (number := (5 * n + k) % 16) // 8 & 1]
+        dead = [3] if n >= dies_at else []
+        readings = tuple((k, DEAD_MM if k in dead else WALL_MM + k) for k in numbers)
+        flags = 1 | firing * FLAG["SONAR1"] * flagged
+        out.append(offsets.chunk(0.1 * n, "r2c", frame(Sip(flags=flags, battery=125, sonars=readings).data)))
+    return out
+
+
+@pytest.mark.parametrize("flagged", [True, False])
+@pytest.mark.parametrize(
+    "changes",
+    [((80, 0), (160, 1)), ((80, 0),), ((80, 4), (160, 5)), ((80, 2),)],
+    ids=["all off and on", "all off", "rear off and on", "front off"],
+)
+def test_an_array_that_the_client_puts_off_is_not_silent(
+    changes: tuple[tuple[int, int], ...], flagged: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = write(tmp_path / "a.jsonl", switched(240, *changes, flagged=flagged), "jsonl")
+    for profile in ("paper", "argus"):
+        events = faults(log, capsys, "--profile", profile)
+        assert not named(events, "SONAR_SILENT")
+        assert not named(events, "SONAR_DISABLED")
+
+
+def test_what_the_flags_tell_needs_no_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    chunks = [chunk for chunk in switched(240, (80, 0), (160, 1)) if chunk.dir == "r2c"]
+    events = faults(write(tmp_path / "a.jsonl", chunks, "jsonl"), capsys)
+    assert not named(events, "SONAR_DISABLED")
+    assert events[-1]["health"].count("HEALTHY") == 16
+
+
+def test_a_sonar_that_dies_after_the_arrays_are_on_again_is_found(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    chunks = switched(400, (80, 0), (120, 1), dies_at=200)
+    log = write(tmp_path / "a.jsonl", chunks, "jsonl")
+    assert {event["name"] for event in named(faults(log, capsys), "SONAR_DISABLED")} == {"sonar/front/03"}
+
+
+def test_what_was_given_up_before_the_arrays_were_off_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    chunks = timed(sips(200, dead=[3], dead_at=30))
+    chunks += [
+        chunk._replace(t=(chunk.t or 0) + 20) for chunk in switched(100, (0, 0), (20, 1), flagged=False)
+    ]
+    log = write(tmp_path / "a.jsonl", chunks, "jsonl")
+    assert main(["faults", str(log), "--profile", "paper"]) == 0
+    out = capsys.readouterr().out
+    assert re.search(
+        r"^sonar/front/03 disabled as \w+ at \+[\d.]+ s, in an earlier session$", out, re.MULTILINE
+    )
+    assert "nothing wrong" not in out
+    sips_told = re.search(r"in (\d+) SIPs", out)
+    assert sips_told is not None
+    assert int(sips_told[1]) > 250
+
+
+@pytest.mark.parametrize("first", [SyncEcho(2).data, b"\x02name without an end", b"\x02a\0b\0"])
+@pytest.mark.parametrize("command", ["faults", "plot", "decode"])
+def test_a_sync2_that_is_damaged_or_echoed_stops_nothing(
+    command: str, first: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = tmp_path / "a.bin"
+    log.write_bytes(b"".join(map(frame, [first, *SYNC])) + frame(first) + b"".join(sips(30)))
+    picture = ["-o", str(tmp_path / "a.png")] if command == "plot" else []
+    assert main([command, str(log), *picture]) == 0
+    assert "data byte" not in capsys.readouterr().err
+
+
+def test_a_sip_that_ends_before_its_readings_opens_no_session(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole = sips(30)
+    cut = frame(whole[0][3:-2][:21])
+    log = write(tmp_path / "a.jsonl", timed([cut, *whole]), "jsonl")
+    assert len(named(faults(log, capsys), "SESSION_OPEN")) == 1

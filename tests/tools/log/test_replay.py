@@ -21,7 +21,7 @@ from argus_tools.log.replay import Identity, Player, again
 from forks import Forked
 from logs import start
 
-from hil_sim.arcos import COMMAND, ConfigPac, Sip, SyncReply, Unframer, decode, frame
+from hil_sim.arcos import COMMAND, ConfigPac, Sip, SyncEcho, SyncReply, Unframer, decode, frame
 
 ROOT = Path(__file__).resolve().parents[3]
 CAPTURE = ROOT / "tests/data/captures/m_p3dx.jsonl"
@@ -75,6 +75,14 @@ def test_handshake_and_config_are_those_of_the_log() -> None:
     config = [data for data in client.send(COMMAND["CONFIG"]) if data[0] == 0x20]
     assert len(config) == 1
     assert ConfigPac.decode(config[0]).subtype == logged.subclass
+
+
+@pytest.mark.parametrize("odd", [SyncEcho(2).data, b"\x02name without an end"])
+def test_a_sync2_that_is_damaged_or_echoed_is_not_the_identity(odd: bytes) -> None:
+    reply = SyncReply(b"name", b"Pioneer", b"p3at-sh")
+    stream = b"".join(map(frame, (odd, reply.data, odd)))
+    identity = Identity(packets([Chunk(0.0, "r2c", stream, 0)]), None)
+    assert identity.reply == reply
 
 
 def test_out_of_order_is_not_answered() -> None:

@@ -13,6 +13,7 @@ from typing import Final, Protocol
 
 from argus_tools.formats import LogError, formats
 from argus_tools.log.common import EXIT_CODES, EXIT_READ, EXIT_UNUSABLE
+from hil_sim.arcos import PacketError
 from hil_sim.arguments import Parser
 from hil_sim.errors import SimError, missing_package
 from hil_sim.output import guarded, is_of_output
@@ -93,6 +94,9 @@ def _run(given: Sequence[str]) -> int:
         return code
     except BrokenPipeError:
         raise
+    except PacketError as error:
+        print(f"argus-log: {getattr(args, 'log', 'the log')}: {error}", file=sys.stderr)
+        return EXIT_UNUSABLE
     except (LogError, SimError) as error:
         print(f"argus-log: {error}", file=sys.stderr)
         return EXIT_UNUSABLE

@@ -5,16 +5,17 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any, Final, NamedTuple
 
 from argus_tools.core import Core, Event, kind_name, setting_value
-from argus_tools.formats.base import ROBOT_TO_CLIENT, LogError
+from argus_tools.formats.base import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT, LogError
 from argus_tools.log.common import Input, add_log_arguments, show_table, use_colour
-from argus_tools.log.opening import opened
+from argus_tools.log.opening import identity_in, is_sip, opened
 from argus_tools.log.packets import Row
 from argus_tools.log.summary import Summary
-from hil_sim.arcos import TIMING, SyncReply
+from hil_sim.arcos import FLAG, SIP, TIMING, Command, SyncReply
 
 SUMMARY: Final = "tell what the fault manager would have said from a log alone"
 EXAMPLES: Final = """\
@@ -27,13 +28,18 @@ The manager only listens: it cannot turn the robot, so a suspect that only a tur
 A log without times is taken as one SIP each 100 ms.
 """
 _SIP_MS: Final = TIMING["SIP_CYCLE_MS"]
-# SIPs that were on their way when the client closed the session.
-_SIPS_AFTER_CLOSE: Final = 5
+# SIPs that were on their way when the client closed the session or switched an array.
+_SIPS_AFTER: Final = 5
 _TINT: Final = {"ERROR": "\033[31m", "WARN": "\033[33m"}
 _PLAIN: Final = "\033[0m"
 _DISABLED: Final = "SONAR_DISABLED"
 _STATUS: Final = {"event": "STATUS", "id": 91, "level": 0, "name": "status"}
 _SIP_BYTES: Final = 20  # up to its sonar count
+_FLAGS_AT: Final = SIP["OFFSET_FLAGS"] - SIP["OFFSET_TYPE"]
+_ALL_ARRAYS: Final = 0xF
+_ARRAY: Final = 8
+_ABSENT: Final = "ABSENT"
+_COUNTS: Final = ("sips", "bad_checksums", "skipped_bytes")
 _UNSEEN: Final = 0xFFFFFFFF
 
 
@@ -45,11 +51,45 @@ class Said(NamedTuple):
     event: Event
 
 
+class _Arrays:
+    """Which sonar arrays fire, a bit for each: as the SIPs' flags show, or as the client asked where none ever do."""
+
+    def __init__(self) -> None:
+        self._asked = _ALL_ARRAYS
+        self._shown: int | None = None
+
+    @property
+    def firing(self) -> int:
+        """The arrays that fire now."""
+        return self._asked if self._shown is None else self._shown
+
+    def take(self, row: Row) -> bool:
+        """Take a packet; return whether other arrays fire since."""
+        before, was_shown = self.firing, self._shown is not None
+        if row.dir == CLIENT_TO_ROBOT and row.type == "SONAR":
+            self._ask(Command.decode(row.data).value)
+        elif row.dir == ROBOT_TO_CLIENT and row.type == "SIP" and len(row.data) >= _SIP_BYTES:
+            shown = (
+                int.from_bytes(row.data[_FLAGS_AT : _FLAGS_AT + 2], "little") // FLAG["SONAR1"] & _ALL_ARRAYS
+            )
+            # Flags that were never set show nothing: some firmware has none.
+            self._shown = shown if shown or was_shown else None
+        # The first flags only name the arrays that the robot has.
+        return self.firing != before and was_shown == (self._shown is not None)
+
+    def _ask(self, argument: int) -> None:
+        """Take the argument of SONAR: twice the array, and 1 for on; array 0 stands for all."""
+        array = argument >> 1 & 7
+        mask = (1 << (array - 1) if array else _ALL_ARRAYS) & _ALL_ARRAYS
+        self._asked = self._asked | mask if argument & 1 else self._asked & ~mask
+
+
 class Listener:
-    """Feeds a log into passive managers: a new one for each session that the log holds.
+    """Feeds a log into passive managers: a new one for each session, and for other arrays that fire.
 
     A manager opens its session by itself, with a robot that is made up before the first SIP. That robot gives
-    SIPs without readings, and the answers that the log lacks or has for another client.
+    SIPs without readings, and the answers that the log lacks or has for another client. An array that the client
+    puts off is not silent, so nobody is judged by what it does not say.
     """
 
     def __init__(self, given: Mapping[str, int], subclass: str | None = None) -> None:
@@ -63,22 +103,29 @@ class Listener:
         self._origin_ms = 0
         self._now_ms = 0
         self._held_off = 0
+        self._arrays = _Arrays()
+        self._heard = _ALL_ARRAYS
         self._last: Core | None = None
+        self._before: Counter[str] = Counter()
 
     def take(self, row: Row) -> Iterator[Said]:
         """Take the next packet or damage of the log."""
+        if row.ok and self._arrays.take(row):
+            self._leave()
         if row.dir != ROBOT_TO_CLIENT:
-            if row.type == "CLOSE" and self.core is not None:
-                self._leave()
+            if row.type == "CLOSE":
+                self._arrays = _Arrays()
+                if self.core is not None:
+                    self._leave()
             return
-        is_sip = row.ok and row.type == "SIP" and len(row.data) >= _SIP_BYTES
+        is_read = is_sip(row)
         if row.t is not None:
             self._clock_ms = max(self._clock_ms, round(row.t * 1000))
-        elif is_sip:
+        elif is_read:
             self._clock_ms += _SIP_MS
-        if row.ok and row.type == "SYNC2":
-            self._meet(row.data)
-        if self.core is None and is_sip:
+        if not self._is_told and (reply := identity_in(row)):
+            self._identity = reply
+        if self.core is None and is_read and self._arrays.firing:
             self._held_off -= 1
             if self._held_off < 0:
                 yield from self._open(row)
@@ -87,22 +134,31 @@ class Listener:
 
     @property
     def status(self) -> dict[str, Any] | None:
-        """What the last manager knows; None when the log held no session."""
-        return None if self._last is None else self._last.status()
+        """What the last manager knows, and the packets of all; None when the log held no session."""
+        if self._last is None:
+            return None
+        status = self._last.status()
+        for number in range(len(status["health"])):
+            if not self._is_heard(number):
+                status["health"][number], status["kind"][number] = _ABSENT, ""
+        return {**status, **{name: status[name] + self._before[name] for name in _COUNTS}}
+
+    def _is_heard(self, sonar: int) -> bool:
+        """Whether the array of a sonar fires; the manager itself does not know that one may be off."""
+        return bool(self._heard >> sonar // _ARRAY & 1)
 
     def _leave(self) -> None:
         self.core = None
-        self._held_off = _SIPS_AFTER_CLOSE
-
-    def _meet(self, data: bytes) -> None:
-        reply = SyncReply.decode(data)
-        if reply.subclass and not self._is_told:
-            self._identity = reply
+        self._held_off = _SIPS_AFTER
 
     def _open(self, row: Row) -> Iterator[Said]:
         """Bring a new manager to where it has a session and nothing was read yet."""
         core, now_ms = opened(self._given, self._identity, row.data)
+        if self._last is not None:
+            status = self._last.status()
+            self._before.update({name: status[name] for name in _COUNTS})
         self.core = self._last = core
+        self._heard = self._arrays.firing
         self._now_ms = now_ms
         self._start_ms = self._clock_ms
         self._origin_ms = self._clock_ms - now_ms - _SIP_MS
@@ -123,6 +179,8 @@ class Listener:
 
     def _said(self, core: Core, row: Row) -> Iterator[Said]:
         for event in core.events():
+            if event.sonar is not None and not self._is_heard(event.sonar):
+                continue
             behind_ms = (self._now_ms - event.t_ms) & 0xFFFFFFFF
             at_ms = self._origin_ms + self._now_ms - (behind_ms if behind_ms < 1 << 31 else 0)
             # What was said while the session was made up belongs to where the log begins.

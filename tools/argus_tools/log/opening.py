@@ -8,12 +8,38 @@ from dataclasses import replace
 from typing import Final
 
 from argus_tools.core import Core
-from argus_tools.formats.base import LogError
-from hil_sim.arcos import COMMAND, TIMING, Command, Sip, SyncEcho, SyncReply, Unframer, frame
+from argus_tools.formats.base import ROBOT_TO_CLIENT, LogError
+from argus_tools.log.packets import Row
+from hil_sim.arcos import COMMAND, TIMING, Command, PacketError, Sip, SyncEcho, SyncReply, Unframer, frame
 
 _STEP_MS: Final = 10
 _LIMIT_MS: Final = 10_000
 _SIP_MS: Final = TIMING["SIP_CYCLE_MS"]
+
+
+def identity_in(row: Row) -> SyncReply | None:
+    """Return who the robot says it is; None of any other packet, and of a SYNC2 without strings.
+
+    Such is the client's own, which an adapter with echo gives back, or a damaged one whose checksum fits.
+    """
+    if not row.ok or row.dir != ROBOT_TO_CLIENT or row.type != "SYNC2":
+        return None
+    try:
+        reply = SyncReply.decode(row.data)
+    except PacketError:
+        return None
+    return reply if reply.subclass else None
+
+
+def is_sip(row: Row) -> bool:
+    """Whether a row is a SIP that can be read, and not only called one."""
+    if not row.ok or row.type != "SIP":
+        return False
+    try:
+        Sip.decode(row.data)
+    except PacketError:
+        return False
+    return True
 
 
 class _Robot:

@@ -14,6 +14,7 @@ from typing import Any, Final
 
 from argus_tools.formats.base import ROBOT_TO_CLIENT, LogError
 from argus_tools.log.common import EXIT_READ, Input, add_log_arguments
+from argus_tools.log.opening import identity_in
 from argus_tools.log.packets import Row
 from hil_sim.arcos import COMMAND, TIMING, Command, ConfigPac, SyncEcho, SyncReply, Unframer, frame
 from hil_sim.links.base import Link
@@ -52,8 +53,8 @@ class Identity:
         for row, _ in zip(rows, range(_LOOK_ROWS), strict=False):
             if not row.ok or row.dir != ROBOT_TO_CLIENT:
                 continue
-            if row.type == "SYNC2" and SyncReply.decode(row.data).subclass:
-                self.reply = SyncReply.decode(row.data)
+            if reply := identity_in(row):
+                self.reply = reply
             elif row.type == "CONFIGPAC":
                 self.config = row.data
         if subclass:

@@ -22,6 +22,7 @@ _TOGETHER_S: Final = 1.0
 _RAISED: Final = "SONAR_SUSPECT"
 _ENDED: Final = frozenset(("SUSPICION_DROPPED", "SONAR_CLEARED", "SONAR_HEALTHY", "SONAR_DISABLED"))
 _DISABLED: Final = "SONAR_DISABLED"
+_BEGUN: Final = "SESSION_OPEN"
 _UNSEEN: Final = 0xFFFFFFFF
 # What follows from a disabled sonar, and what a manager that only listens would have liked to do.
 _OWN: Final = frozenset(("health", "plan", "task", "object"))
@@ -37,6 +38,7 @@ class Summary:
         self._since: dict[int, float] = {}
         self._suspicions = 0
         self._disabled: dict[int, tuple[str, float, str]] = {}
+        self._earlier: dict[int, tuple[str, float, str]] = {}
         self._also: Counter[str] = Counter()
         self._meaning: dict[str, str] = {}
         self._first: float | None = None
@@ -51,6 +53,10 @@ class Summary:
     def add(self, event: Event, t: float | None, offset: int) -> None:
         """Take the next event, with the log's time if it keeps one, and the place of the packet that brought it."""
         name = event.event
+        if name == _BEGUN:
+            self._earlier |= self._disabled
+            self._disabled.clear()
+            self._since.clear()
         if event.sonar is None:
             if event.level >= _WARN and event.name not in _OWN and name not in _OWN_DRIVE:
                 self._also[name] += 1
@@ -68,6 +74,11 @@ class Summary:
         """Return the lines, of what the manager knows at the end and how many places of the file were not read."""
         health = status["health"]
         out = self._gone(health)
+        out += [
+            f"{_name(number):<14} disabled as {kind} at {place}, in an earlier session"
+            for number, (kind, _, place) in sorted(self._earlier.items())
+            if health[number] != DISABLED
+        ]
         lasting = [  # a doubt without a name is not acted on, so it is not told either
             number
             for number, since in sorted(self._since.items())
