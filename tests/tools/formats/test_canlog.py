@@ -392,3 +392,57 @@ def test_another_version_of_trc_is_told_with_the_remedy(version: str, tmp_path: 
     (tmp_path / "a.trc").write_text(f";$FILEVERSION={version}\n 1) 1.0 1 Rx 0648 8 00 00\n")
     with pytest.raises(LogError, match=rf"version {version}, which is not read; .* 1\.2, .*PEAK-Converter"):
         list(open_log(str(tmp_path / "a.trc")))
+
+
+def trc(head: str, form: str) -> str:
+    return head + "".join(
+        form.format(n=n, ms=ms(f), id=f"{f.can_id:04X}", data=hexed(f)) + "\n"
+        for n, f in enumerate(frames(), start=1)
+    )
+
+
+TRC_LINES = {
+    "1.0": "{n:>6}) {ms:7.0f} {id} 8 {data}",
+    "1.1": "{n:>6}) {ms:10.1f}  Rx    {id}  8  {data}",
+    "1.2": "{n:>6}) {ms:10.1f} 1  Rx        {id}  8  {data}",
+    "1.3": "{n:>6}) {ms:10.1f} 1  Rx        {id} -  8  {data}",
+    "2.0": "{n:>7} {ms:13.3f} DT     {id} Rx 8  {data}",
+    "2.1": "{n:>7} {ms:13.3f} DT 1      {id} Rx -  8    {data}",
+}
+
+
+@pytest.mark.parametrize("version", TRC_LINES)
+def test_a_trace_without_a_header_is_known_by_its_lines(version: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.trc"
+    path.write_text(trc("", TRC_LINES[version]))
+    check(open_log(str(path)), "trc")
+
+
+@pytest.mark.parametrize("above", ["\n\n", "robot seven\n", "2026-11-25 06:38:47\n", "# a\n// b\n", "; c\n"])
+@pytest.mark.parametrize("version", ["1.1", "2.1"])
+def test_what_stands_above_a_header_is_passed_over(version: str, above: str, tmp_path: Path) -> None:
+    head = {"1.1": TRC_11, "2.1": TRC_21}[version]
+    path = tmp_path / "a.trc"
+    path.write_text(trc(above + head, TRC_LINES[version]))
+    check(open_log(str(path)), "trc")
+    asc = lines(lambda n, f: f"{f.t - START_S:9.6f} 1  {f.can_id:X}  Rx   d 8 {hexed(f)}", above + ASC)
+    path.write_text(asc)
+    check(open_log(str(path)), "asc")
+
+
+def test_a_header_that_cannot_be_read_stops_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "a.trc"
+    path.write_text(trc(";$FILEVERSION=1.1\n;$STARTTIME=today\n", TRC_LINES["1.1"]))
+    check(open_log(str(path)), "trc")
+
+
+@pytest.mark.parametrize("head", [ASC, ASC + "internal events logged\n", ""])
+def test_names_instead_of_ids_are_told(head: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.asc"
+    named = "   0.000000 1  ArcosTx             Rx   d 8 06 FA FB 03 00 00 00 CC\n"
+    path.write_text((head or "base hex\n") + named)
+    with pytest.raises(LogError, match="name instead of its id"):
+        list(open_log(str(path)))
+    rest = lines(lambda n, f: f"{f.t - START_S:9.6f} 1  {f.can_id:X}  Rx   d 8 {hexed(f)}")
+    path.write_text(head + named + rest)
+    check(open_log(str(path)), "asc", damage=1)

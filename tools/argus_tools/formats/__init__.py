@@ -23,7 +23,7 @@ from argus_tools.formats.base import (
 from argus_tools.formats.quoted import Unquoted, unquoted
 from argus_tools.formats.recoded import crlf_damage
 from argus_tools.formats.source import BLOCK_BYTES, Source
-from argus_tools.formats.text import Unmarked, begins_as_text, is_text, unmarked
+from argus_tools.formats.text import LineFeeds, Unmarked, begins_as_text, ends_in_returns, is_text, unmarked
 
 __all__ = [
     "Chunk", "Damage", "Direction", "Format", "Log", "LogError", "ReadOptions", "Reader", "Writer",
@@ -96,6 +96,8 @@ class Log:
         self.format = formats()[format_name] if format_name else find_format(self.source.head)
         stream: BufferedReader = BufferedReader(self.source, BLOCK_BYTES)
         if self.format.name != "bin" and begins_as_text(self.source.head):
+            if ends_in_returns(self.source.head):
+                stream = BufferedReader(LineFeeds(stream), BLOCK_BYTES)
             stream = BufferedReader(Unmarked(stream), BLOCK_BYTES)
         if format_name is None and (inner := self._quoted()):
             self.format = inner

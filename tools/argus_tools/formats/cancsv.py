@@ -15,7 +15,7 @@ from typing import Final
 from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.isotp import CanLink, is_robot_id
 from argus_tools.formats.source import HEAD_BYTES
-from argus_tools.formats.text import first_lines
+from argus_tools.formats.text import first_lines, is_passed
 
 _LINE_MAX: Final = 4096
 _HEADING_LINES: Final = 40
@@ -222,14 +222,15 @@ class CanCsvReader:
 
     def __iter__(self) -> Iterator[Chunk]:
         columns: _Columns | None = None
-        number = 0
+        number = above = 0
         while line := self._stream.readline(_LINE_MAX):
             number += 1
             if columns is None:
                 columns = _columns(line)
                 if columns is not None:
                     columns = _in_their_base(columns, line + self._stream.peek(HEAD_BYTES))
-                if columns is None and number >= _HEADING_LINES:
+                above += bool(line.strip()) and not is_passed(line)
+                if columns is None and above >= _HEADING_LINES:
                     break
                 continue
             if not line.strip() or line.startswith((b"#", b";")):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""JSON lines {"t", "dir", "hex"}: one received chunk each; records without "hex" are passed over."""
+"""JSON records {"t", "dir", "hex"}, in lines or in an array: one received chunk each; others are passed over."""
 
 from __future__ import annotations
 
@@ -11,9 +11,14 @@ from io import BufferedReader
 from typing import Any, BinaryIO, Final
 
 from argus_tools.formats.base import Chunk, Damage, DamageList, Direction, Format, Offsets, ReadOptions
+from argus_tools.formats.source import BLOCK_BYTES, HEAD_BYTES
+from argus_tools.formats.text import Rewritten, first_lines, is_passed
 
 LINE_MAX: Final = 1 << 20
 T_MAX_S: Final = 1e12
+_KEY: Final = b'"hex"'
+# What nests; a backslash takes the next byte with it.
+_TOKEN: Final = re.compile(rb'\\.|["{}]', re.DOTALL)
 _PARSER: Final = json.JSONDecoder()
 _DIRECTIONS: Final = ("r2c", "c2r")
 _USUAL: Final = re.compile(rb'\{"t": (-?[0-9][^,_]*), "dir": "(r2c|c2r)", "hex": "([^"]*)"\}\n')
@@ -21,8 +26,55 @@ _DIRS: Final[dict[bytes, Direction]] = {b"r2c": "r2c", b"c2r": "c2r"}
 
 
 def _sniff(head: bytes) -> bool:
-    text = head.lstrip()
-    return text.startswith(b"{") and b"\0" not in text[:256]
+    """A record begins a line, or an array of them; what stands above the first is told as it is read."""
+    lines = [line.lstrip() for line in first_lines(head)]
+    if not any(line.startswith((b"{", b"[")) for line in lines):
+        return False
+    return _KEY in head or lines[0].startswith(b"{")
+
+
+def _is_array(head: bytes) -> bool:
+    lines = first_lines(head)
+    return bool(lines) and lines[0].lstrip().startswith(b"[")
+
+
+class _Records(Rewritten):
+    """The elements of an array, each in a line of its own however they are laid out."""
+
+    def __init__(self, stream: BufferedReader) -> None:
+        super().__init__(stream)
+        self._depth = 0
+        self._in_string = False
+        self._held = b""
+
+    def _rewrite(self, data: bytes) -> bytes:
+        """Return what an array's objects hold; what stands between them ends a line."""
+        data = self._held + data
+        self._held = data[len(data.rstrip(b"\\")) :]
+        data = data.removesuffix(self._held)
+        out: list[bytes] = []
+        at = 0
+        for found in _TOKEN.finditer(data):
+            token = found[0]
+            if self._in_string:
+                self._in_string = token != b'"'
+            elif token == b'"':
+                self._in_string = True
+            elif token == b"{":
+                at = at if self._depth else found.start()
+                self._depth += 1
+            elif token == b"}" and self._depth:
+                self._depth -= 1
+                if not self._depth:
+                    out.append(_in_a_line(data[at : found.end()]) + b"\n")
+                    at = found.end()
+        if self._depth:
+            out.append(_in_a_line(data[at:]))
+        return b"".join(out)
+
+
+def _in_a_line(text: bytes) -> bytes:
+    return text.replace(b"\n", b" ").replace(b"\r", b" ")
 
 
 def _what_is_wrong(record: Any) -> str:
@@ -42,13 +94,17 @@ class JsonlReader:
     def __init__(self, stream: BufferedReader, _options: ReadOptions) -> None:
         self.damage = DamageList()
         self._stream = stream
+        self._unit = "line"
 
     def _skip_line(self, number: int) -> None:
-        self.damage.append(Damage(f"line {number}", f"longer than {LINE_MAX} bytes"))
+        self.damage.append(Damage(f"{self._unit} {number}", f"longer than {LINE_MAX} bytes"))
         while (line := self._stream.readline(LINE_MAX)) and line[-1] != 10:
             pass
 
     def __iter__(self) -> Iterator[Chunk]:
+        if _is_array(self._stream.peek(HEAD_BYTES)):
+            self._unit = "record"
+            self._stream = BufferedReader(_Records(self._stream), BLOCK_BYTES)
         match, new = _USUAL.fullmatch, tuple.__new__
         offsets = Offsets()
         at = offsets.at
@@ -82,8 +138,8 @@ class JsonlReader:
         try:
             record, _ = _PARSER.raw_decode(line.decode().lstrip(" \t\r"))
         except (ValueError, RecursionError):
-            if line.strip():
-                self.damage.append(Damage(f"line {number}", "no JSON record"))
+            if line.strip() and not is_passed(line):
+                self.damage.append(Damage(f"{self._unit} {number}", "no JSON record"))
             return None
         try:
             text = record.get("hex")
@@ -96,7 +152,7 @@ class JsonlReader:
             if direction not in _DIRECTIONS or (t is not None and not abs(t) < T_MAX_S):
                 raise ValueError
         except (ValueError, KeyError, TypeError, AttributeError):
-            self.damage.append(Damage(f"line {number}", _what_is_wrong(record)))
+            self.damage.append(Damage(f"{self._unit} {number}", _what_is_wrong(record)))
             return None
         return t, direction, data
 
@@ -118,7 +174,7 @@ class JsonlWriter:
 
 FORMAT: Final = Format(
     name="jsonl",
-    help='JSON lines {"t", "dir", "hex"}',
+    help='JSON records {"t", "dir", "hex"}, in lines or an array',
     sniff=_sniff,
     reader=JsonlReader,
     writer=JsonlWriter,

@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from io import BufferedReader, RawIOBase
+from itertools import islice
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -38,13 +39,26 @@ def begins_as_text(head: bytes) -> bool:
     return is_text(head[:_BEGINNING])
 
 
+def ends_in_returns(head: bytes) -> bool:
+    """Whether the lines of a text end in a CR alone: more of these stand there than LFs."""
+    return head.count(b"\r") - head.count(b"\r\n") > head.count(b"\n")
+
+
+def with_line_feeds(text: bytes) -> bytes:
+    """Return a text whose lines all end in LF."""
+    return text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+
+
 def _without_marks(text: bytes) -> bytes:
     return text.replace(b"\n" + BOM, b"\n")
 
 
 def unmarked(head: bytes) -> bytes:
     """Return the beginning of a file as `Unmarked` gives it; bytes that are no text stay as they are."""
-    return _without_marks(b"\n" + head)[1:] if begins_as_text(head) else head
+    if not begins_as_text(head):
+        return head
+    text = with_line_feeds(head) if ends_in_returns(head) else head
+    return _without_marks(b"\n" + text)[1:]
 
 
 class Rewritten(RawIOBase):
@@ -76,6 +90,20 @@ class Rewritten(RawIOBase):
         raise NotImplementedError
 
 
+class LineFeeds(Rewritten):
+    """A text whose lines end in a CR alone, with an LF instead."""
+
+    def __init__(self, stream: BufferedReader) -> None:
+        super().__init__(stream)
+        self._held = b""
+
+    def _rewrite(self, data: bytes) -> bytes:
+        """Return what is sure: a CR at the end of a block may have its LF in the next one."""
+        text = self._held + data
+        self._held = b"\r" if data and text.endswith(b"\r") else b""
+        return with_line_feeds(text.removesuffix(self._held) if self._held else text)
+
+
 class Unmarked(Rewritten):
     """A text without its mark, and without those that stand before a line where files were joined."""
 
@@ -95,10 +123,8 @@ def first_lines(head: bytes, count: int = _FIRST_LINES) -> list[bytes]:
     """Return the first lines of text that are neither blank nor comments (#); none if it is no text."""
     if not begins_as_text(head):
         return []
-    lines = head.splitlines()
-    return [line for line in lines[: 4 * count] if line.strip() and not is_passed(line) and is_text(line)][
-        :count
-    ]
+    lines = (line for line in head.splitlines() if line.strip() and not is_passed(line) and is_text(line))
+    return list(islice(lines, count))
 
 
 def numbered_lines(stream: BufferedReader, most: int) -> Iterator[tuple[int, bytes]]:
