@@ -38,10 +38,6 @@ FORMS = {
     "Termite": "".join(f"[0x{byte:02x}]" for byte in ROBOT),
     "brackets": "".join(f"[{byte:02X}]" for byte in ROBOT),
     "angles": "".join("".join(f"<{byte:02X}>" for byte in sip) + "\n" for sip in SIPS),
-    "gdb": "".join(
-        f"0x{0x20000000 + at:x}:\t" + "\t".join(f"0x{byte:02x}" for byte in part) + "\n"
-        for at, part in rows(ROBOT, 8)
-    ),
     "a byte in a line": "".join(f"uart-1: {byte:02X}\n" for byte in ROBOT),
     "logic analyser": "name,type,start_time,duration,data\n"
     + "".join(f'"Serial","data",{n * 0.001:.9f},0.00104,0x{byte:02X}\n' for n, byte in enumerate(ROBOT)),

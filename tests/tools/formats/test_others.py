@@ -65,6 +65,12 @@ OTHERS: dict[str, tuple[bytes, str, str]] = {
         "made from",
     ),
     "base64": (base64.encodebytes(ROBOT), "base64", "base64 -d"),
+    "netmon": (b"GMBU\0\2\1\0", "Network Monitor", "editcap"),
+    "tshark -T fields": (
+        b"".join(b"1795577927.479113000\t%d\t%s\n" % (n, ROBOT.hex().encode()) for n in (8101, 46292)),
+        "tshark -T fields",
+        "give the capture",
+    ),
     "seven bits": (SEVEN, "highest bit", "8 data bits"),
 }
 
@@ -98,10 +104,11 @@ def test_an_sqlite_database_and_a_tar_archive(tmp_path: Path) -> None:
     assert "tar -xOf" in refusal(tmp_path / "a.tar")
 
 
+@pytest.mark.parametrize("is_zipped", [False, True])
 @pytest.mark.parametrize("encode", [base64.encodebytes, quopri.encodestring])
-def test_the_remedy_can_be_pasted(encode: Callable[[bytes], bytes], tmp_path: Path) -> None:
-    path = tmp_path / "it's mine.txt"
-    path.write_bytes(encode(ROBOT))
+def test_the_remedy_can_be_pasted(encode: Callable[[bytes], bytes], is_zipped: bool, tmp_path: Path) -> None:
+    path = tmp_path / ("it's mine.txt.gz" if is_zipped else "it's mine.txt")
+    path.write_bytes(gzip.compress(encode(ROBOT)) if is_zipped else encode(ROBOT))
     command = refusal(path).rpartition("; ")[2].strip()
     subprocess.run(command, shell=True, cwd=tmp_path, check=True)
     assert (tmp_path / "drive.bin").read_bytes() == ROBOT
@@ -114,6 +121,7 @@ RECODED = {
     "UTF-8 with a mark": (b"\xef\xbb\xbf" + ROBOT.decode("latin-1").encode(), True),
     "UTF-16": (ROBOT.decode("latin-1").encode("utf-16"), True),
     "UTF-16 without a mark": (ROBOT.decode("latin-1").encode("utf-16-le"), True),
+    "UTF-16, big-endian without a mark": (ROBOT.decode("latin-1").encode("utf-16-be"), True),
     "UTF-16, big-endian": (b"\xfe\xff" + ROBOT.decode("latin-1").encode("utf-16-be"), True),
     "UTF-8 with what could not be read": (ROBOT.decode("utf-8", "replace").encode(), False),
     "UTF-8 of Latin-1, ends of lines changed": (
@@ -123,11 +131,12 @@ RECODED = {
 }
 
 
+@pytest.mark.parametrize("is_zipped", [False, True])
 @pytest.mark.parametrize("name", RECODED)
-def test_recoded_bytes_are_told_and_what_gets_them_back(name: str, tmp_path: Path) -> None:
+def test_recoded_bytes_are_told_and_what_gets_them_back(name: str, is_zipped: bool, tmp_path: Path) -> None:
     data, is_whole = RECODED[name]
     path = tmp_path / "a.log"
-    path.write_bytes(data)
+    path.write_bytes(gzip.compress(data) if is_zipped else data)
     message = refusal(path)
     assert "saved as UTF-" in message
     assert "record as binary" in message

@@ -314,3 +314,15 @@ def test_a_long_file_gives_the_lines_of_its_parts(tmp_path: Path) -> None:
         lines.append(json.dumps(decoder.fields(row)))
     assert path.stat().st_size > BULK_BYTES
     assert run("decode", "--json", path).stdout.decode().splitlines() == lines
+
+
+def test_ten_places_are_told_and_then_how_many_more(tmp_path: Path) -> None:
+    path = tmp_path / "a.jsonl"
+    good = jsonl([(1.0, "r2c", sip())])
+    for damaged in (9, 10, 11, 2000):
+        path.write_bytes(good + b"no record\n" * damaged + good)
+        lines = run("decode", path).stderr.decode().splitlines()
+        assert len(lines) == min(damaged, 10) + (damaged > 10)
+        assert lines[0].endswith("line 2: no JSON record")
+        if damaged > 10:
+            assert lines[-1].endswith(f"and {damaged - 10} places more")

@@ -23,7 +23,16 @@ from argus_tools.formats.base import (
 from argus_tools.formats.quoted import Unquoted, unquoted
 from argus_tools.formats.recoded import crlf_damage
 from argus_tools.formats.source import BLOCK_BYTES, Source
-from argus_tools.formats.text import LineFeeds, Unmarked, begins_as_text, ends_in_returns, is_text, unmarked
+from argus_tools.formats.text import (
+    COLOUR,
+    Colourless,
+    LineFeeds,
+    Unmarked,
+    begins_as_text,
+    ends_in_returns,
+    is_text,
+    unmarked,
+)
 
 __all__ = [
     "Chunk", "Damage", "Direction", "Format", "Log", "LogError", "ReadOptions", "Reader", "Writer",
@@ -90,6 +99,7 @@ class Log:
         self.options.name = path
         is_enough = (lambda _: True) if format_name else is_recognised
         self.source = Source(path, is_enough=is_enough, **source)
+        self.options.is_zipped = self.source.is_zipped
         if not self.source.head:
             what = self.source.damage[0].what if self.source.damage else "is empty"
             raise LogError(f"{path}: {what}")
@@ -98,11 +108,13 @@ class Log:
         if self.format.name != "bin" and begins_as_text(self.source.head):
             if ends_in_returns(self.source.head):
                 stream = BufferedReader(LineFeeds(stream), BLOCK_BYTES)
+            if COLOUR.search(self.source.head):
+                stream = BufferedReader(Colourless(stream), BLOCK_BYTES)
             stream = BufferedReader(Unmarked(stream), BLOCK_BYTES)
         if format_name is None and (inner := self._quoted()):
             self.format = inner
             stream = BufferedReader(Unquoted(stream), BLOCK_BYTES)
-        if explained := crlf_damage(self.source.head, path):
+        if explained := crlf_damage(self.source.head, self.options):
             self.source.damage.append(explained)
         self._reader = self.format.reader(stream, self.options)
 

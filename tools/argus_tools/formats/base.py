@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from io import BufferedReader
+from pathlib import PurePath
 from typing import BinaryIO, Final, Literal, NamedTuple, Protocol
 
 Direction = Literal["r2c", "c2r"]
@@ -21,11 +22,6 @@ def other_direction(direction: Direction) -> Direction:
 
 # What every refusal of a file says that it should have been.
 EXPECTED: Final = "a log of a robot's link (argus-log --help lists the forms)"
-
-
-def shell_name(name: str) -> str:
-    """Return a log's name as a shell takes it, in a command that the user may paste."""
-    return "FILE" if name == "-" else shlex.quote(name)
 
 
 class LogError(Exception):
@@ -76,6 +72,17 @@ class ReadOptions:
     port: int | None = None
     robot: int | None = None
     name: str = "-"
+    is_zipped: bool = False
+
+
+def remedy(command: str, options: ReadOptions) -> str:
+    """Return a command that the user may paste: FILE stands for the log's name, and a gzip file is unzipped first."""
+    name = "FILE" if options.name == "-" else shlex.quote(options.name)
+    if not options.is_zipped or "FILE" not in command:
+        return command.replace("FILE", name)
+    # Some programs go by the suffix.
+    plain = "unzipped" + PurePath(options.name.removesuffix(".gz")).suffix
+    return f"gzip -dc {name} > {shlex.quote(plain)} && " + command.replace("FILE", shlex.quote(plain))
 
 
 class Reader(Protocol):

@@ -9,6 +9,7 @@ from io import BufferedReader
 from typing import Final, NamedTuple
 
 from argus_tools.formats.base import Chunk, Damage, DamageList, Format, ReadOptions
+from argus_tools.formats.hexdump import HEADER
 from argus_tools.formats.isotp import is_robot_id
 from argus_tools.formats.source import HEAD_BYTES
 from argus_tools.formats.tcp import IP_LINKS, parse
@@ -106,7 +107,8 @@ def _link(head: bytes) -> int | None:
     """Say of which link type the frames are, None if these are no frames."""
     lines = enumerate(first_lines(head, _LINES_SNIFFED))
     frames = list(_Frames(DamageList()).take(lines))
-    if not frames:
+    # Packets that are dumped one by one are no frames.
+    if 2 * sum(frame.data.startswith(HEADER) for frame in frames) >= len(frames):
         return None
     fits = {link: sum(_fits(link, frame.data) for frame in frames) for link in _LINKS}
     best = max(fits, key=lambda link: fits[link])

@@ -26,6 +26,7 @@ from argus_tools.formats.base import (
     other_direction,
 )
 from argus_tools.formats.bin import guess_direction
+from argus_tools.formats.marks import has_both_sides, mark_at
 from argus_tools.formats.source import HEAD_BYTES
 from argus_tools.formats.text import first_lines, is_passed, numbered_lines
 from hil_sim.arcos import Unframer
@@ -339,8 +340,13 @@ def _sniff(head: bytes) -> bool:
     if plan is None:
         return False
     lines = first_lines(head)
-    parsed = [found for line in lines if (found := _parse(line, plan.column))]
+    each = [_parse(line, plan.column) for line in lines]
+    parsed = [found for found in each if found]
     if 2 * len(parsed) < len(lines):
+        return False
+    # Where lines between say whose the bytes are, both sides stand in one column.
+    others = (mark_at(line.lstrip()) for line, found in zip(lines, each, strict=True) if not found)
+    if has_both_sides(mark.name for mark in others if mark):
         return False
     pairs = [(a, b) for a, b in pairwise(parsed) if a.words and b.words and a.indent == b.indent]
     if not pairs:

@@ -9,9 +9,19 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from io import BufferedReader
 from typing import Final, NamedTuple
 
-from argus_tools.formats.base import Chunk, Damage, DamageList, Format, Offsets, ReadOptions
+from argus_tools.formats.base import (
+    ROBOT_TO_CLIENT,
+    Chunk,
+    Damage,
+    DamageList,
+    Direction,
+    Format,
+    Offsets,
+    ReadOptions,
+)
 from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.hextext import bytes_of_lines
+from argus_tools.formats.marks import UNTOLD, directions, has_both_sides, marks_in
 from argus_tools.formats.source import HEAD_BYTES
 from argus_tools.formats.stamps import Times
 from argus_tools.formats.text import first_lines, pieces
@@ -27,11 +37,12 @@ _FRAME: Final = re.compile(rb"\xe2[\x94\x95].")
 _MIDDLE: Final = re.compile(rb" *\xe2\x94\x8a *")
 _LITERAL: Final = re.compile(rb"""b(?:'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*")""")
 _BRACKETED: Final = re.compile(rb"(?:\[|<|\(|\{)(?:0[xX])?([0-9A-Fa-f]{2})(?:\]|>|\)|\})")
-_PREFIXED: Final = re.compile(rb"(?<![0-9A-Za-z])0[xX]([0-9A-Fa-f]{2})(?![0-9A-Za-z])")
+_PREFIXED: Final = re.compile(rb"(?<![0-9A-Za-z])0[xX]([0-9A-Fa-f]{1,2})(?![0-9A-Za-z])")
+_DECIMAL: Final = re.compile(rb"\((\d{3})\)")
 _RUN: Final = re.compile(rb"(?<![0-9A-Za-z.])[0-9A-Fa-f]{2}(?:[,:;-]?[ ]{0,2}[0-9A-Fa-f]{2})*(?![0-9A-Za-z])")
 # A time is no run of bytes, and none that one stands before.
 _CLOCK: Final = re.compile(rb"(?<![0-9A-Fa-f:.-])\d\d:\d\d:\d\d(?:[.,]\d{1,9})?(?![0-9A-Fa-f:.-])")
-_NUMBERS: Final = re.compile(rb"\[\s*\d{1,3}(?:\s*,\s*\d{1,3})+\s*\]")
+_NUMBERS: Final = re.compile(rb"\[\s*\d{1,3}(?:(?:\s*,\s*|\s+)\d{1,3})+\s*\]")
 _NO_DIGITS: Final = b" ,:;-"
 # What a literal and a list begin with, as far as they can be read.
 _LITERAL_BEGUN: Final = re.compile(
@@ -41,6 +52,7 @@ _NUMBERS_BEGUN: Final = re.compile(rb"\[\s*\d{1,3}(?:\s*,\s*\d{1,3})*(?=\s*,)")
 _BRACKET_BEGUN: Final = re.compile(rb"[\[<({](?:0[xX]?)?[0-9A-Fa-f]{0,2}\Z")
 CARRIED_MOST: Final = 1 << 20
 """Bytes of a literal or a list that a line may go on with: all of it is held."""
+_GUESSED: Final = f"{UNTOLD}; each is taken by its packets, and short ones may be of the other side"
 _OPEN: Final = "a literal or a list that holds no bytes, or does not end"
 
 
@@ -60,7 +72,12 @@ def _bracketed(line: bytes) -> list[bytes | None]:
 
 
 def _prefixed(line: bytes) -> list[bytes | None]:
-    return [bytes.fromhex(b"".join(_PREFIXED.findall(line)).decode())]
+    return [bytes(int(digits, 16) for digits in _PREFIXED.findall(line))]
+
+
+def _decimal(line: bytes) -> list[bytes | None]:
+    values = [int(digits) for digits in _DECIMAL.findall(line)]
+    return [bytes(values) if max(values, default=0) <= _BYTE_MAX else None]
 
 
 def _run(line: bytes) -> list[bytes | None]:
@@ -76,7 +93,7 @@ def _run(line: bytes) -> list[bytes | None]:
 
 
 def _list(text: bytes) -> bytes | None:
-    values = [int(number) for number in text.strip(b"[]").split(b",")]
+    values = [int(number) for number in re.findall(rb"\d+", text)]
     return bytes(values) if max(values) <= _BYTE_MAX else None
 
 
@@ -114,6 +131,7 @@ _BY_RUNS: Final = _Way(_run)
 _WAYS: Final = (
     _Way(_literals, _LITERAL, _LITERAL_BEGUN, tells=True),
     _Way(_bracketed, _BRACKETED, _BRACKET_BEGUN),
+    _Way(_decimal),
     _Way(_prefixed),
     _BY_RUNS,
     _Way(_numbers, _NUMBERS, _NUMBERS_BEGUN, tells=True),
@@ -139,8 +157,42 @@ def _least(lines: Sequence[bytes]) -> int:
 
 
 def _bytes_of(lines: Sequence[bytes], way: _Way) -> bytes:
-    whole = [*lines[:-1], *map(way.closed, lines[-1:])]
-    return b"".join(_joined(way.take(line)) for line in whole)
+    return b"".join(_joined(_taken(line, way).parts) for line in _closed(lines, way))
+
+
+def _closed(lines: Sequence[bytes], way: _Way) -> list[bytes]:
+    """Return the lines, the last of which may be cut."""
+    return [*lines[:-1], *map(way.closed, lines[-1:])]
+
+
+class _Taken(NamedTuple):
+    """What is in a line: the mark of direction next to the bytes, empty if there is none, and the bytes."""
+
+    mark: bytes
+    parts: list[bytes | None]
+
+
+def _taken(line: bytes, way: _Way) -> _Taken:
+    """Take the bytes behind the last mark that some stand behind, else those of the whole line."""
+    marks = marks_in(line)
+    for mark in marks:
+        parts = way.take(line[mark.end :])
+        if _joined(parts):
+            return _Taken(mark.name, parts)
+    parts = way.take(line)
+    return _Taken(marks[0].name if marks and not _joined(parts) else b"", parts)
+
+
+def _directions(lines: Sequence[bytes], way: _Way, asked: Direction | None) -> dict[bytes, Direction] | None:
+    """Say which direction each mark is; None if the lines do not tell two sides apart."""
+    samples: dict[bytes, bytes] = {}
+    mark = b""
+    for line in _closed(lines, way):
+        taken = _taken(line, way)
+        mark = taken.mark or mark
+        if data := _joined(taken.parts):
+            samples[mark] = samples.get(mark, b"") + data
+    return directions(samples, asked) if has_both_sides(samples) else None
 
 
 def _lines(stream: BufferedReader, way: _Way) -> Iterator[tuple[int, bytes]]:
@@ -167,23 +219,38 @@ class HexwordsReader:
         self.damage = DamageList()
         self._stream = stream
         self._direction = options.direction
+        self._usual: Direction = ROBOT_TO_CLIENT
+        self._is_told = False
 
     def __iter__(self) -> Iterator[Chunk]:
         offsets, times = Offsets(), Times()
         t: float | None = None
         head = first_lines(self._stream.peek(HEAD_BYTES), _LINES)
         way = _way(head) or _BY_RUNS
-        usual = self._direction or guess_direction(_bytes_of(head, way))
+        self._usual = self._direction or guess_direction(_bytes_of(head, way))
+        known = _directions(head, way, self._direction)
+        mark = b""
         for number, line in _lines(self._stream, way):
             if stamp := times.take(line.lstrip()):
                 t = stamp.t
-            if data := self._bytes(number, line, way):
-                tells = self._direction is None and _holds_packets(data, 1)
-                yield offsets.chunk(t, guess_direction(data) if tells else usual, data)
+            taken = _taken(line, way)
+            mark = taken.mark or mark
+            if data := self._bytes(number, line, way, taken.parts):
+                direction = known.get(mark, known[b""]) if known else self._guess(number, data)
+                yield offsets.chunk(t, direction, data)
 
-    def _bytes(self, number: int, line: bytes, way: _Way) -> bytes:
+    def _guess(self, number: int, data: bytes) -> Direction:
+        """Say whose packets these are; tell once that nothing else says it."""
+        if self._direction is not None or not _holds_packets(data, 1):
+            return self._usual
+        direction = guess_direction(data)
+        if direction != self._usual and not self._is_told:
+            self._is_told = True
+            self.damage.append(Damage(f"line {number}", _GUESSED))
+        return direction
+
+    def _bytes(self, number: int, line: bytes, way: _Way, parts: list[bytes | None]) -> bytes:
         """Return the bytes of a line; tell of what looks like some and holds none."""
-        parts = way.take(line)
         if None in parts or (way.tells and not parts and way.open_in(line)):
             self.damage.append(Damage(f"line {number}", _OPEN))
         return _joined(parts)

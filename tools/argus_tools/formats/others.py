@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from io import BufferedReader
+from itertools import pairwise
 from typing import Final
 
 from argus_tools.formats.base import (
@@ -19,7 +20,7 @@ from argus_tools.formats.base import (
     LogError,
     Reader,
     ReadOptions,
-    shell_name,
+    remedy,
 )
 from argus_tools.formats.hexdump import FORMAT as HEXDUMP
 from argus_tools.formats.text import first_lines
@@ -31,6 +32,12 @@ _CANDUMP: Final = "record the bus itself: candump -L can0 > can0.log"
 # Packets of two bytes or more that follow each other with all high bits gone.
 _SEVEN_BIT_PACKETS: Final = 3
 _SNIFFED: Final = 1 << 14
+_FIELDS: Final = re.compile(rb"\d+\.\d{9}[\t,;](.*)")
+_FIELD_ID: Final = re.compile(rb"\d{3,5}|0x[0-9A-Fa-f]{1,8}")
+_FIELD_BYTES: Final = re.compile(rb"(?:[0-9A-Fa-f]{2}:?){6,}")
+_ONLY_DIGITS: Final = re.compile(rb"(?:[0-9A-Fa-f]{1,2}[ \r\n]+)+[0-9A-Fa-f]{0,2}\s*")
+_CUT_END: Final = re.compile(rb"(?<![0-9A-Fa-f])[0-9A-Fa-f]\Z")
+_CUT_BEGIN: Final = re.compile(rb"[0-9A-Fa-f](?![0-9A-Fa-f])")
 
 
 @dataclass(frozen=True)
@@ -67,6 +74,30 @@ def _is_base64(head: bytes) -> bool:
         return any(True for _ in Unframer().feed(base64.b64decode(text[: len(text) & ~3])))
     except binascii.Error:
         return False
+
+
+def _is_fields(head: bytes) -> bool:
+    """A time with nine digits, then columns of which one tells several ports or ids, and one has the bytes."""
+    kinds: set[bytes] = set()
+    has_bytes = False
+    for line in first_lines(head):
+        if match := _FIELDS.fullmatch(line):
+            columns = re.split(rb"[\t,;]", match[1])
+            kinds |= {column for column in columns if _FIELD_ID.fullmatch(column)}
+            has_bytes |= any(_FIELD_BYTES.fullmatch(column) for column in columns)
+    return has_bytes and len(kinds) > 1
+
+
+def _is_wrapped(head: bytes) -> bool:
+    """Digits in pairs, of which some are parted by the end of a line; put together they are packets."""
+    text = head[:_SNIFFED]
+    lines = text.splitlines()
+    if not _ONLY_DIGITS.fullmatch(text) or not any(
+        _CUT_END.search(line) and _CUT_BEGIN.match(after) for line, after in pairwise(lines)
+    ):
+        return False
+    digits = b"".join(b"".join(lines).split())
+    return any(True for _ in Unframer().feed(bytes.fromhex(digits[: len(digits) & ~1].decode())))
 
 
 def _is_seven_bit(head: bytes) -> bool:
@@ -155,6 +186,12 @@ _OTHERS: Final = (
         _lines(rb"\s*<(?:!DOCTYPE|html|\?xml)"),
         "a web page or XML",
         "save the file itself, not the page that shows it",
+    ),
+    _Other(
+        "netmon",
+        _begins(b"GMBU", b"RTSS"),
+        "a capture of Microsoft Network Monitor",
+        "editcap -F pcapng FILE drive.pcapng",
     ),
     _Other("snoop", _begins(b"snoop\0\0\0"), "a snoop capture", "editcap -F pcapng FILE drive.pcapng"),
     _Other("btsnoop", _begins(b"btsnoop\0"), "a Bluetooth capture", _RECORD),
@@ -261,6 +298,18 @@ _OTHERS: Final = (
         "the CSV of argus-log",
         "give the log that it was made from",
     ),
+    _Other(
+        "tshark-fields",
+        _is_fields,
+        "what tshark -T fields prints, which does not tell whose the bytes are",
+        "give the capture that it was made from, or tshark -i any -w robot.pcapng",
+    ),
+    _Other(
+        "wrapped",
+        _is_wrapped,
+        "bytes in lines that are wrapped inside of a byte",
+        r"tr -d '\r\n' < FILE > drive.txt",
+    ),
     _Other("base64", _is_base64, "base64 of a robot's link", "base64 -d FILE > drive.bin"),
     _Other(
         "quoted-printable",
@@ -292,19 +341,19 @@ _OTHERS: Final = (
 class _Refusal(Reader):
     """Reads nothing: says what the file is."""
 
-    def __init__(self, name: str, other: _Other) -> None:
+    def __init__(self, options: ReadOptions, other: _Other) -> None:
         self.damage = DamageList()
-        self._name = name
+        self._options = options
         self._other = other
 
     def __iter__(self) -> Iterator[Chunk]:
-        remedy = self._other.remedy.replace("FILE", shell_name(self._name))
-        raise LogError(f"{self._name}: looks like {self._other.what}; expected {EXPECTED}; {remedy}")
+        helps = remedy(self._other.remedy, self._options)
+        raise LogError(f"{self._options.name}: looks like {self._other.what}; expected {EXPECTED}; {helps}")
 
 
 def _format(other: _Other) -> Format:
     def reader(_stream: BufferedReader, options: ReadOptions) -> Reader:
-        return _Refusal(options.name, other)
+        return _Refusal(options, other)
 
     return Format(name=other.name, help=other.what, sniff=other.sniff, reader=reader, is_read=False)
 

@@ -17,10 +17,11 @@ from argus_tools.formats.base import (
     LogError,
     Reader,
     ReadOptions,
-    shell_name,
+    remedy,
 )
+from argus_tools.formats.hextext import bytes_of_lines
 from argus_tools.formats.source import HEAD_BYTES
-from argus_tools.formats.text import BOM, is_text
+from argus_tools.formats.text import BOM, first_lines, is_text
 from hil_sim.arcos import Unframer
 
 _HEADER: Final = b"\xfa\xfb"
@@ -38,12 +39,12 @@ _SAMPLE: Final = 1 << 14
 _ENDS_MIN: Final = 6
 
 
-def crlf_damage(head: bytes, name: str) -> Damage | None:
+def crlf_damage(head: bytes, options: ReadOptions) -> Damage | None:
     """Say that a transfer as text put a CR before each LF of these bytes; None if it did not."""
     ends = head.count(b"\n")
     if ends < _ENDS_MIN or is_text(head) or head.count(b"\r\n") != ends:
         return None
-    back = f"LC_ALL=C sed 's/\\r$//' {shell_name(name)} > drive.bin"
+    back = remedy("LC_ALL=C sed 's/\\r$//' FILE > drive.bin", options)
     what = f"recoded by a text transfer (LF became CRLF): send it as binary; {back} gets most of it back"
     return Damage("byte 0", what)
 
@@ -52,7 +53,10 @@ def _utf16(head: bytes) -> str | None:
     """Return the byte order of UTF-16, by its mark or by the header of a packet in it."""
     if marked := _MARKS.get(head[:2]):
         return marked
-    for encoding in _MARKS.values():
+    # Bytes of one side look like those of the other order beside a zero: the order with more zeros is right.
+    for encoding in sorted(
+        _MARKS.values(), key=lambda name: head[name == "utf-16-le" :: 2].count(0), reverse=True
+    ):
         if any(_HEADER.decode(page).encode(encoding) in head for page, _ in _PAGES):
             return encoding
     # Text of ASCII has a zero in every second place.
@@ -72,7 +76,10 @@ def _sniff(head: bytes) -> bool:
     # Two speeds of 250 and 251 mm/s look like the header in UTF-16, but then a real one is near.
     if _HEADER in head:
         return False
-    return bool(_utf16(head)) or _has_utf8(head) or head.count(_REPLACED) >= _REPLACED_MIN
+    if not (_utf16(head) or _has_utf8(head) or head.count(_REPLACED) >= _REPLACED_MIN):
+        return False
+    # The characters beside a dump may be any, but then the bytes are there, too.
+    return not _has_packets(bytes_of_lines(first_lines(head)))
 
 
 def _text(head: bytes, encoding: str) -> str | None:
@@ -89,7 +96,7 @@ def _has_packets(data: bytes) -> bool:
     return any(True for _ in Unframer().feed(data))
 
 
-def _explain(name: str, head: bytes) -> str:
+def _explain(options: ReadOptions, head: bytes) -> str:
     encoding = _utf16(head) or "utf-8"
     shown = "UTF-16" if head[:2] in _MARKS else encoding.upper().replace("-LE", "LE").replace("-BE", "BE")
     what = f"looks like a link's bytes saved as {shown} text"
@@ -98,12 +105,13 @@ def _explain(name: str, head: bytes) -> str:
         return f"{what}, which lost some; expected {EXPECTED}; {_BINARY}"
     for page, iconv in _PAGES:
         if iconv and _has_packets(_encoded(text, page)):
-            back = f"iconv -f {shown} -t {iconv} {name} > drive.bin"
+            back = f"iconv -f {shown} -t {iconv} FILE > drive.bin"
             if head.startswith(BOM):
-                back = f"tail -c +{len(BOM) + 1} {name} | iconv -f {shown} -t {iconv} > drive.bin"
-            return f"{what}; expected {EXPECTED}; {back} gets them back; next time {_BINARY}"
+                back = f"tail -c +{len(BOM) + 1} FILE | iconv -f {shown} -t {iconv} > drive.bin"
+            return f"{what}; expected {EXPECTED}; {remedy(back, options)} gets them back; next time {_BINARY}"
     if encoding != "utf-8" and text.isascii():
-        return f"looks like {shown} text; expected {EXPECTED}; iconv -f {shown} -t UTF-8 {name} > drive.txt"
+        back = remedy(f"iconv -f {shown} -t UTF-8 FILE > drive.txt", options)
+        return f"looks like {shown} text; expected {EXPECTED}; {back}"
     return f"{what}, and there is no way back that is sure; expected {EXPECTED}; {_BINARY}"
 
 
@@ -120,10 +128,11 @@ class RecodedReader(Reader):
     def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
         self.damage = DamageList()
         self._stream = stream
-        self._name = options.name
+        self._options = options
 
     def __iter__(self) -> Iterator[Chunk]:
-        raise LogError(f"{self._name}: {_explain(shell_name(self._name), self._stream.peek(HEAD_BYTES))}")
+        why = _explain(self._options, self._stream.peek(HEAD_BYTES))
+        raise LogError(f"{self._options.name}: {why}")
 
 
 FORMATS: Final = (

@@ -72,6 +72,11 @@ class Source(io.RawIOBase):
             self._ready += more
         self.head = self._ready
 
+    @property
+    def is_zipped(self) -> bool:
+        """Whether the file is a gzip file."""
+        return self._unzip is not None
+
     def readable(self) -> bool:
         """A source is for reading only."""
         return True

@@ -22,11 +22,15 @@ _BINARY: Final = re.compile(rb"[\x00-\x06\x0e-\x1a\x1c-\x1f\x7f]")
 _WORD_END: Final = re.compile(rb"[\s,;](?=[^\s,;]*\Z)")
 # What "follow stream" of tshark writes before the bytes, and behind them.
 _FOLLOW: Final = re.compile(rb"={20,}\s*\Z|(?:Follow|Filter|Node [01]): ")
+# What stands over the columns of a dump.
+_OVER_COLUMNS: Final = re.compile(
+    rb"\s*(?:(?:Offset|Address)\S*\s+)?00 01 02 03 04 05 06 07\b", re.IGNORECASE
+)
 
 
 def is_passed(line: bytes) -> bool:
     """Whether a line of text is a comment, or a line of headings that some tool writes round the bytes."""
-    return line.startswith(b"#") or bool(_FOLLOW.match(line))
+    return line.startswith(b"#") or bool(_FOLLOW.match(line) or _OVER_COLUMNS.match(line))
 
 
 def is_text(head: bytes) -> bool:
@@ -49,6 +53,11 @@ def with_line_feeds(text: bytes) -> bytes:
     return text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
 
 
+COLOUR: Final = re.compile(rb"\x1b\[[0-9;?]*[A-Za-z]")
+"""What a terminal takes for a colour or a place, and no letter."""
+_COLOUR_BEGUN: Final = re.compile(rb"\x1b(?:\[[0-9;?]*)?\Z")
+
+
 def _without_marks(text: bytes) -> bytes:
     return text.replace(b"\n" + BOM, b"\n")
 
@@ -57,7 +66,7 @@ def unmarked(head: bytes) -> bytes:
     """Return the beginning of a file as `Unmarked` gives it; bytes that are no text stay as they are."""
     if not begins_as_text(head):
         return head
-    text = with_line_feeds(head) if ends_in_returns(head) else head
+    text = COLOUR.sub(b"", with_line_feeds(head) if ends_in_returns(head) else head)
     return _without_marks(b"\n" + text)[1:]
 
 
@@ -102,6 +111,21 @@ class LineFeeds(Rewritten):
         text = self._held + data
         self._held = b"\r" if data and text.endswith(b"\r") else b""
         return with_line_feeds(text.removesuffix(self._held) if self._held else text)
+
+
+class Colourless(Rewritten):
+    """A text without what a terminal takes for colours."""
+
+    def __init__(self, stream: BufferedReader) -> None:
+        super().__init__(stream)
+        self._held = b""
+
+    def _rewrite(self, data: bytes) -> bytes:
+        """Return what is sure: the end of a block may be the beginning of a colour."""
+        text = self._held + data
+        begun = _COLOUR_BEGUN.search(text) if data else None
+        self._held = begun[0] if begun else b""
+        return COLOUR.sub(b"", text[: begun.start()] if begun else text)
 
 
 class Unmarked(Rewritten):

@@ -25,6 +25,8 @@ DIRECTIONS: Final = (ROBOT_TO_CLIENT, CLIENT_TO_ROBOT)
 # A file in which so much comes before the first packet is no log.
 HOPELESS_BYTES: Final = 16 << 20
 HOPELESS_ROWS: Final = 20_000
+# So many places that cannot be read are told, of the others how many they are.
+TOLD_MOST: Final = 10
 BULK_BYTES: Final = 1 << 18
 PROGRESS_BYTES: Final = 8 << 20
 
@@ -114,11 +116,11 @@ class Input:
         damage, in_source = self.log.damage_lists
         try:
             for chunk in self.log:
-                if len(damage) + len(in_source) != self._told:
+                if self._told < TOLD_MOST and len(damage) + len(in_source) != self._told:
                     self._tell()
                 yield chunk
             self._tell()
-            more = sum(entries.total - len(entries) for entries in (damage, in_source))
+            more = damage.total + in_source.total - self._told
             if more:
                 print(f"argus-log: {self.path}: and {more} places more", file=sys.stderr)
         finally:
@@ -175,7 +177,7 @@ class Input:
         raise LogError(f"{self.path}: holds no bytes of a robot's link (read as {form.help}){port}")
 
     def _tell(self) -> None:
-        damage = self.log.damage
+        damage = self.log.damage[:TOLD_MOST]
         for place, what in damage[self._told :]:
             print(f"argus-log: {self.path}: {place}: {what}", file=sys.stderr)
         self._told = len(damage)
