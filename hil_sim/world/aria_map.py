@@ -61,10 +61,9 @@ class _MapReader:
     def read(self) -> World:
         """Read the file and return its world."""
         lines = read_text(self.path, self.warn_of_latin_1).splitlines()
-        self.number = 1
-        self.check_form(lines[0].strip().lstrip("\ufeff") if lines else "")
+        first = self.take_form(lines)
         section = what = ""
-        for self.number, raw in enumerate(lines[1:], 2):
+        for self.number, raw in enumerate(lines[first:], first + 1):
             line = self.without_comment(raw.strip())
             if match := _SECTION.fullmatch(line):
                 section = match["what"]
@@ -99,6 +98,16 @@ class _MapReader:
     def warn_of_latin_1(self, byte: int) -> None:
         """Tell that names may come out wrong."""
         _LOG.warning("%s: not UTF-8 (byte %d): read as Latin-1; save it as UTF-8", self.path, byte)
+
+    def take_form(self, lines: list[str]) -> int:
+        """Check the first line that is no comment; return how many lines there are up to it."""
+        for self.number, raw in enumerate(lines, 1):
+            if line := self.without_comment(raw.strip().lstrip("\ufeff")):
+                self.check_form(line)
+                return self.number
+        self.number = 1
+        self.check_form("")
+        return 1
 
     def check_form(self, form: str) -> None:
         """Refuse what is no map; a newer form is read as the newest that is known."""

@@ -339,6 +339,7 @@ ODD_MAP = {
     "count with a unit": ("2D-Map\nNumLines: 1 line\nLINES\n0 900 9 900\n", "not '1 line'", 1),
     "decimal count": ("2D-Map\nNumLines: 1.0\nLINES\n0 900 9 900\n", "not '1.0'", 1),
     "comment": ("2D-Map\nLINES\n# a wall\n0 900 9 900\n# and more\n0 800 9 800\n", "3: a comment (#)", 2),
+    "comment above all": ("# by Mapper\n\n2D-Map\nLINES\n0 900 9 900\n", "1: a comment (#)", 1),
     "comment in the header": ("2D-Map\n# of Monday\nNumLines: 1\nLINES\n0 900 9 900\n", "2: a comment (#)", 1),
     "comment behind numbers": ("2D-Map\nNumLines: 1\nLINES\n0 900 9 900 # wall\n", "4: a comment (#)", 1),
     "comment in DATA": ("2D-Map\nNumPoints: 1\nDATA\n#\n5000 900\n", "4: a comment (#)", 2),

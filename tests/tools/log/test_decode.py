@@ -224,6 +224,16 @@ def test_a_cut_gzip_gives_what_is_there(tmp_path: Path) -> None:
     assert b"gzip" in done.stderr
 
 
+def test_a_wrong_checksum_of_gzip_is_told_behind_all_that_was_read(tmp_path: Path) -> None:
+    path = tmp_path / "a.jsonl.gz"
+    whole = gzip.compress((CAPTURES / "c_commands.jsonl").read_bytes())
+    path.write_bytes(whole[:-8] + b"12345678")
+    done = run("decode", "--json", path)
+    assert done.returncode == 0
+    assert done.stdout == run("decode", "--json", CAPTURES / "c_commands.jsonl").stdout
+    assert b"the gzip file is damaged" in done.stderr
+
+
 def test_follow_shows_what_is_appended(tmp_path: Path) -> None:
     path = tmp_path / "live.jsonl"
     path.write_bytes(jsonl([(0.0, "r2c", sip(x=1))]))

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import re
 import struct
 import subprocess
 import sys
@@ -13,7 +15,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from argus_tools.formats import LogError
 from argus_tools.log import plot
+from argus_tools.log.common import binary_output
 from argus_tools.log.plot import POINTS_MAX, Series
 from argus_tools.log.spans import Happening, Span, spans
 from logs import CAPTURES, capture_bytes, command, decode, jsonl, run, sip
@@ -291,3 +295,25 @@ def test_where_only_ascii_can_be_printed(tmp_path: Path, command: list[str]) -> 
     assert done.returncode == 0, done.stderr
     assert done.stdout.isascii()
     assert b"Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.svg", "a.mcap", "a.jsonl.gz"])
+def test_a_full_disk_is_told_by_the_output_and_leaves_no_part_of_it(name: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+
+    def fill() -> None:
+        with binary_output(str(path)) as stream:
+            stream.write(b"half")
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    with pytest.raises(LogError, match=f"{re.escape(str(path))}: cannot be written: No space left"):
+        fill()
+    assert not path.exists()
+
+
+def test_what_cannot_be_opened_for_writing_is_left_as_it_is(tmp_path: Path) -> None:
+    path = tmp_path / "folder.png"
+    path.mkdir()
+    with pytest.raises(LogError, match="cannot be written"), binary_output(str(path)):
+        pass
+    assert path.is_dir()

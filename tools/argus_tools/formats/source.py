@@ -156,14 +156,26 @@ class Source(io.RawIOBase):
                 if not zipped.strip(b"\0"):
                     continue
                 self._unzip = zlib.decompressobj(_GZIP_WBITS)
+            before = self._unzip.copy()
             try:
                 data = self._unzip.decompress(zipped, BLOCK_BYTES)
             except zlib.error as error:
                 self._give_up(f"the gzip file is damaged ({error})")
-                return b""
+                return _before_damage(before, zipped)
             self._zipped = self._unzip.unconsumed_tail or self._unzip.unused_data
             if data:
                 return data
+
+
+def _before_damage(unzip: zlib._Decompress, zipped: bytes) -> bytes:
+    """Return what comes of these bytes before the damage in them; a wrong checksum stands behind all."""
+    out = b""
+    try:
+        for at in range(len(zipped)):
+            out += unzip.decompress(zipped[at : at + 1])
+    except zlib.error:
+        pass
+    return out
 
 
 def _open(path: str) -> IO[bytes]:

@@ -276,13 +276,18 @@ def binary_output(path: str) -> Iterator[Any]:
     import gzip
 
     try:
-        with gzip.open(path, "wb") if path.endswith(".gz") else open(path, "wb") as file:  # noqa: PTH123
+        file: Any = gzip.open(path, "wb") if path.endswith(".gz") else open(path, "wb")  # noqa: PTH123, SIM115
+    except OSError as error:
+        raise LogError(f"{path}: cannot be written: {error.strerror}") from error
+    try:
+        with file:
             yield file
     except BrokenPipeError:
         raise
-    except OSError as error:
-        raise LogError(f"{path}: cannot be written: {error.strerror}") from error
-    except LogError:
+    except (OSError, LogError) as error:
         # Half a file would look like a whole one.
-        Path(path).unlink(missing_ok=True)
-        raise
+        if Path(path).is_file():
+            Path(path).unlink()
+        if isinstance(error, LogError):
+            raise
+        raise LogError(f"{path}: cannot be written: {error.strerror}") from error

@@ -20,7 +20,15 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from argus_tools.formats import LogError
-from argus_tools.log.common import Input, Times, add_log_arguments, add_time_arguments, seconds, sonar_numbers
+from argus_tools.log.common import (
+    Input,
+    Times,
+    add_log_arguments,
+    add_time_arguments,
+    binary_output,
+    seconds,
+    sonar_numbers,
+)
 from argus_tools.log.convert import clocked
 from argus_tools.log.fields import Decoder
 from argus_tools.log.spans import DEAD, SUSPECT, find_spans
@@ -134,7 +142,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Draw the picture; return the exit code."""
-    if Path(args.output).suffix.lower() not in (".png", ".svg"):
+    form = Path(args.output).suffix.lower().removeprefix(".")
+    if form not in ("png", "svg"):
         raise LogError(f"{args.output}: a picture ends in .png or .svg")
     source = Input(args)
     if args.view == "ring":
@@ -142,9 +151,9 @@ def run(args: argparse.Namespace) -> int:
     else:
         drive = _read(args, source)
         figure = _path(drive) if args.view == "path" else _ranges(args, drive)
-    with rc_context(_STYLE):
-        metadata = {"Date": None} if args.output.lower().endswith(".svg") else {"Software": None}
-        figure.savefig(args.output, dpi=110, metadata=metadata)
+    with rc_context(_STYLE), binary_output(args.output) as stream:
+        metadata = {"Date": None} if form == "svg" else {"Software": None}
+        figure.savefig(stream, format=form, dpi=110, metadata=metadata)
     return source.exit_code
 
 
