@@ -33,6 +33,11 @@ def settings(header: str) -> list[str]:
     return found
 
 
+def about(header: str) -> list[str]:
+    """Return the enumerators of what events are about."""
+    return [f"    ARGUS_ABOUT_{row[0]}," for row in gen_docs.rows(header, "ARGUS_ABOUT_TABLE")]
+
+
 def events(header: str) -> list[str]:
     """Return the enumerators of the events."""
     found = []
@@ -54,7 +59,8 @@ def kinds(header: str) -> list[str]:
 
 TABLES: Final = {
     "ARGUS_CONFIG_TABLE": settings,
-    "ARGUS_EVENT_TABLE": events,
+    "ARGUS_ABOUT_TABLE": about,
+    "ARGUS_CORE_EVENT_TABLE": events,
     "ARGUS_FAULT_KIND_TABLE": kinds,
 }
 FIRST_PAGE: Final = """
@@ -67,7 +73,7 @@ LICENCE: Final = "// SPDX-License-Identifier:"
 """The first line; behind it stands what the header is."""
 RULER: Final = re.compile(r"^// .*-{9,}$")
 """The title of a section, which says nothing of the name below it."""
-HELPER: Final = re.compile(r"^#(define ARGUS_\w*(FIELD|ENUM|CONSTANT|EVENT_ID|EVENT_LEVEL)\(|undef )")
+HELPER: Final = re.compile(r"^#(define ARGUS_\w*(FIELD|ENUM|CONSTANT)\(|undef )")
 """What makes one row of a table into a name: of no use to a reader of the pages."""
 PLAIN: Final = re.compile(r"^(\s*)//(?= |$)")
 BEHIND: Final = re.compile(r"^(\s*[^/\s][^\"]*?[;,{)\w]) +// ")
@@ -86,7 +92,7 @@ def filtered(header: str, text: str) -> str:
             continue
         if HELPER.match(line):
             continue
-        used = re.match(r"\s*(ARGUS_\w+_TABLE)\(\w+\)$", line)
+        used = re.match(r"\s*(ARGUS_\w+_TABLE)\(\w+\)( ARGUS_\w+_TABLE\(\w+\))*$", line)
         if used and used[1] in TABLES:
             lines += TABLES[used[1]](header)
             continue

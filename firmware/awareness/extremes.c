@@ -53,7 +53,6 @@ static void begin_run(argus_extreme_t *const self, const argus_pose_t *const pos
     self->from_cdeg = pose->heading_cdeg;
     self->away_mm = 0;
     self->running = true;
-    self->proved = false;
 }
 
 // Another sonar on the same side hears the wall that this one claims to be beside, or something farther off.
@@ -108,7 +107,9 @@ static void take_near(argus_extreme_t *const self, const argus_knowledge_t *cons
     const unsigned abeam = argus_robot_flank(knowledge->robot) | argus_robot_rear_flank(knowledge->robot);
     const int32_t most = (abeam >> sonar & 1u) != 0 ? TURNED_ABEAM_CDEG : TURNED_CDEG;
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
-    if (!self->running || turned > most || argus_abs(reading_mm - self->run_mm) > NOISE_MM) {
+    const bool alike = self->running && argus_abs(reading_mm - self->run_mm) <= NOISE_MM;
+    self->proved = self->proved && alike;
+    if (!alike || turned > most) {
         begin_run(self, &knowledge->pose, reading_mm);
         return;
     }

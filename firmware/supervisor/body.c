@@ -77,12 +77,13 @@ void argus_meet_body(argus_t *const self) {
     ARGUS_ASSERT(!self->orders.barred || self->orders.passive);
 }
 
-bool argus_sees_through_body(argus_t *const self) {
-    if (self->knowledge.strange_sips != STRANGE_SIPS || !argus_robot_is_known(self->knowledge.robot)) {
-        return false;
+void argus_see_through_body(argus_t *const self) {
+    const argus_robot_t *const robot = self->knowledge.robot;
+    if (self->knowledge.strange_sips != STRANGE_SIPS || !argus_robot_is_known(robot)) {
+        return;
     }
-    argus_tell(self, ARGUS_EV_SONARS_BEYOND, self->knowledge.robot->sonars);
-    self->orders.barred = !self->orders.passive && argus_robot_chosen(self->config.robot) == NULL;
-    self->orders.passive = self->orders.passive || self->orders.barred;
-    return self->orders.barred;
+    argus_tell(self, ARGUS_EV_SONARS_BEYOND, robot->sonars);
+    if (robot->sonars < ARGUS_SONARS) {
+        argus_operator(self, self->now_ms, ARGUS_OP_PASSIVE, 0);
+    }
 }

@@ -9,9 +9,9 @@
 // the settings are unsafe, is passive.
 void argus_meet_body(argus_t *self);
 
-// Tells, once, of a robot that lists sonars which its subclass has not got. True: it has another body, and
-// is passive until an operator says otherwise.
-bool argus_sees_through_body(argus_t *self);
+// Tells, once, of a robot that lists sonars which its subclass has not got. Where those are of the sixteen
+// it has another body, and is passive until an operator says otherwise.
+void argus_see_through_body(argus_t *self);
 
 // Says why the robot at hand may not be driven; false: it may.
 bool argus_say_barred(argus_t *self);

@@ -15,13 +15,13 @@ static const char *nth(const char *words, int number) {
     return number < 0 || words[0] == '\0' ? "?" : words;
 }
 
+// As in argus_event_level(), so that both are one in an image.
+static const uint16_t rows[] = {ARGUS_EVENT_TABLE(ARGUS_EVENT_PACKED)};
+
 // Row of the catalogue, or -1.
 static int row_of(const int id) {
-#define ID(number, name, level, subject, meaning) (number),
-    static const uint8_t ids[] = {ARGUS_EVENT_TABLE(ID)};
-#undef ID
-    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
-        if (ids[i] == id) {
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        if ((rows[i] & ARGUS_EVENT_ID_MASK) == id) {
             return (int)i;
         }
     }
@@ -34,43 +34,11 @@ static const char *event_name(const int id) {
 #undef NAME
 }
 
-// What events are about, each once: most are about the same few.
-#define SUBJECTS(X) \
-    X(battery)      \
-    X(bumper)       \
-    X(drive)        \
-    X(events)       \
-    X(guard)        \
-    X(health)       \
-    X(link)         \
-    X(manager)      \
-    X(object)       \
-    X(operator)     \
-    X(plan)         \
-    X(record)       \
-    X(session)      \
-    X(sonar)        \
-    X(status)       \
-    X(task)
-#define NUMBER(subject) ABOUT_##subject,
-enum { SUBJECTS(NUMBER) };
-#undef NUMBER
-
-#define LEVELS 4 // the level, and of what is left the subject
-#define KIND(number, name, level, subject, meaning) ARGUS_LEVEL_##level + LEVELS *ABOUT_##subject,
-static const uint8_t kinds[] = {ARGUS_EVENT_TABLE(KIND)};
-#undef KIND
-
 static const char *event_subject(const int id) {
 #define WORD(subject) #subject "\0"
     const int row = row_of(id);
-    return nth(SUBJECTS(WORD), row < 0 ? row : kinds[row] / LEVELS);
+    return nth(ARGUS_ABOUT_TABLE(WORD), row < 0 ? row : rows[row] >> ARGUS_EVENT_ABOUT_SHIFT);
 #undef WORD
-}
-
-argus_level_t argus_event_level(const uint16_t id) {
-    const int row = row_of(id);
-    return row < 0 ? ARGUS_LEVEL_ERROR : (argus_level_t)(kinds[row] % LEVELS);
 }
 
 #define IN_ORDER(name, number, word, meaning) \

@@ -135,14 +135,14 @@ board_config_answer_t board_config_ini(argus_config_t *config, const char *text,
 
 // In the order of what they explain.
 const char *board_config_explain(board_config_answer_t answer) {
-    return board_word_nth("taken\0no such key\0no number and none of its choices\0out of its range\0"
+    return board_word_nth("taken\0no such key\0neither number nor choice\0out of its range\0"
                           "write key = value\0",
                           (int)answer);
 }
 
 const char *board_config_fault_text(argus_config_fault_t fault) {
-    return board_word_nth("ok\0a setting out of range\0S5: lower speed_mm_s or raise object_range_mm\0"
-                          "S5: lower step_mm or raise check_range_mm\0",
+    return board_word_nth("ok\0out of range\0S5: less speed_mm_s or more object_range_mm\0"
+                          "S5: less step_mm or more check_range_mm\0",
                           (int)fault);
 }
 

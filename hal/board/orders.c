@@ -7,7 +7,7 @@
 #include "board/config.h"
 
 static const char taken[] = "taken";
-static const char too_many_or_far[] = "1 to 16 points, each within 30 m";
+static const char too_many_or_far[] = "1 to 16 points within 30 m";
 
 #define NUMBERED                                                                              \
     (1u << ARGUS_OP_MOVE | 1u << ARGUS_OP_TURN | 1u << ARGUS_OP_RETEST | 1u << ARGUS_OP_PIN | \
@@ -45,9 +45,9 @@ static const char *obey_op(argus_op_t op, const char *rest, argus_t *core, uint3
     const bool has_number = (NUMBERED >> op & 1u) != 0;
     const board_word_t word = next_word(&rest);
     if (has_number ? !board_word_number(word, &argument) || next_word(&rest).length > 0 : word.length > 0) {
-        return has_number ? "give one whole number" : "nothing may follow it";
+        return has_number ? "give one whole number" : "nothing may follow";
     }
-    return argus_operator(core, now_ms, op, argument) ? taken : "it cannot be done now";
+    return argus_operator(core, now_ms, op, argument) ? taken : "not possible now";
 }
 
 // "X,Y"
@@ -130,7 +130,7 @@ const char *board_orders_obey(board_orders_t *self, argus_t *core, uint32_t now_
     self->is_bad = false;
     *wish = BOARD_WISH_NONE;
     if (is_bad) {
-        return "too long, or not plain text";
+        return "too long or no text";
     }
     const char *rest = self->line;
     const board_word_t word = next_word(&rest);

@@ -17,7 +17,7 @@ const char *hal_store_error_text(int error) {
     case HAL_STORE_EMPTY:
         return "nothing is stored";
     case HAL_STORE_DAMAGED:
-        return "what is stored is damaged";
+        return "the store is damaged";
     default:
         return "input/output error";
     }

@@ -62,5 +62,5 @@ def test_the_header_is_a_file_that_doxygen_documents() -> None:
 
 
 def test_the_makers_of_names_are_left_out() -> None:
-    text = "#define ARGUS_EVENT_ID(number, name) (number),\n#undef ARGUS_EVENT_ID\nint a;"
+    text = "#define ARGUS_EVENT_ENUM(number, name) (number),\n#undef ARGUS_EVENT_ENUM\nint a;"
     assert api_filter.filtered("include/argus/argus.h", text) == "int a;\n"

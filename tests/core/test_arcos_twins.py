@@ -173,17 +173,15 @@ def shown(text: bytes | None) -> bytes:
 
 
 def config_fields(data: bytes) -> tuple[list[int], list[bytes]] | None:
-    """What the firmware should read from a CONFIGpac."""
+    """What the firmware should keep of a CONFIGpac."""
     if data[0] != TYPE["CONFIGPAC"]:
         return None
     c = ConfigPac.decode(data)
     if c.serial_number is None:
         return None
     values = [
-        c.rot_vel_top, c.trans_vel_top, c.rot_acc_top, c.trans_acc_top, c.sip_cycle_ms, c.sonar_cycle_ms,
-        c.host_baud, c.auto_baud, bool(c.front_sonar), bool(c.rear_sonar), c.low_battery_dv, c.watchdog_ms,
-        c.rot_vel_max, c.trans_vel_max, c.trans_acc, c.trans_decel, c.front_bumps, c.rear_bumps,
-        c.version is not None,
+        c.sonar_cycle_ms, bool(c.rear_sonar), c.low_battery_dv, c.watchdog_ms, c.rot_vel_max, c.trans_vel_max,
+        c.trans_acc, c.trans_decel, c.front_bumps, c.rear_bumps,
     ]  # fmt: skip
     strings = (c.robot_type, c.subtype, c.serial_number, c.name, c.version)
     return [int(value or 0) for value in values], [shown(text) for text in strings]

@@ -79,13 +79,10 @@ size_t twins_config(const uint8_t *data, uint8_t count, int32_t *out, char strin
     if (!argus_configpac_decode(&config, &packet)) {
         return 0;
     }
-    const int32_t fixed[] = {config.rotvel_top_deg_s, config.vel_top_mm_s,   config.rotaccel_top_deg_s2,
-                             config.accel_top_mm_s2,  config.sip_cycle_ms,   config.sonar_cycle_ms,
-                             config.host_baud,        config.auto_baud,      config.front_sonar,
-                             config.rear_sonar,       config.low_battery_dv, config.watchdog_ms,
-                             config.rotvel_max_deg_s, config.vel_max_mm_s,   config.accel_mm_s2,
-                             config.decel_mm_s2,      config.front_bumpers,  config.rear_bumpers,
-                             config.complete};
+    const int32_t fixed[] = {config.sonar_cycle_ms, config.rear_sonar,       config.low_battery_dv,
+                             config.watchdog_ms,    config.rotvel_max_deg_s, config.vel_max_mm_s,
+                             config.accel_mm_s2,    config.decel_mm_s2,      config.front_bumpers,
+                             config.rear_bumpers};
     const char *const text[5] = {config.robot_class, config.robot_subclass, config.serial, config.name,
                                  config.version};
     memcpy(out, fixed, sizeof fixed);

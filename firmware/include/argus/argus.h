@@ -328,6 +328,31 @@ typedef enum {
 #define ARGUS_EVENT_TABLE(X) ARGUS_CORE_EVENT_TABLE(X)
 #endif
 
+// What events are about, each once: most are about the same few.
+#define ARGUS_ABOUT_TABLE(X) \
+    X(battery)               \
+    X(bumper)                \
+    X(drive)                 \
+    X(events)                \
+    X(guard)                 \
+    X(health)                \
+    X(link)                  \
+    X(manager)               \
+    X(object)                \
+    X(operator)              \
+    X(plan)                  \
+    X(record)                \
+    X(session)               \
+    X(sonar)                 \
+    X(status)                \
+    X(task)
+
+typedef enum {
+#define ARGUS_ABOUT_ENUM(subject) ARGUS_ABOUT_##subject,
+    ARGUS_ABOUT_TABLE(ARGUS_ABOUT_ENUM)
+#undef ARGUS_ABOUT_ENUM
+} argus_about_t;
+
 // The events by number.
 typedef enum {
 #define ARGUS_EVENT_ENUM(id, name, level, subject, meaning) ARGUS_EV_##name = (id),
@@ -663,8 +688,24 @@ int argus_invariants_broken(const argus_t *self);
 // table.
 const char *argus_name(argus_name_of_t of, int number);
 
+// Of each event in one number: its id in 7 bits, its level in 2, and what it is about.
+#define ARGUS_EVENT_ID_MASK 0x7F
+#define ARGUS_EVENT_LEVEL_SHIFT 7
+#define ARGUS_EVENT_ABOUT_SHIFT 9
+#define ARGUS_EVENT_PACKED(number, name, level, subject, meaning) \
+    (number) | ARGUS_LEVEL_##level << ARGUS_EVENT_LEVEL_SHIFT |   \
+        ARGUS_ABOUT_##subject << ARGUS_EVENT_ABOUT_SHIFT,
+
 // The level of an event. Cost: one pass over the catalogue.
-argus_level_t argus_event_level(uint16_t id);
+static inline argus_level_t argus_event_level(uint16_t id) {
+    static const uint16_t rows[] = {ARGUS_EVENT_TABLE(ARGUS_EVENT_PACKED)};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        if ((rows[i] & ARGUS_EVENT_ID_MASK) == id) {
+            return (argus_level_t)(rows[i] >> ARGUS_EVENT_LEVEL_SHIFT & 3);
+        }
+    }
+    return ARGUS_LEVEL_ERROR;
+}
 
 #ifdef __cplusplus
 }

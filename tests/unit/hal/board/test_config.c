@@ -55,7 +55,7 @@ void test_every_answer_has_its_own_text(void) {
     TEST_ASSERT_EQUAL_STRING("out of its range", board_config_explain(BOARD_CONFIG_NO_RANGE));
     TEST_ASSERT_EQUAL_STRING("write key = value", board_config_explain(BOARD_CONFIG_NO_LINE));
     TEST_ASSERT_EQUAL_STRING("ok", board_config_fault_text(ARGUS_CONFIG_OK));
-    TEST_ASSERT_EQUAL_STRING_LEN("S5: lower step_mm", board_config_fault_text(ARGUS_CONFIG_STEP), 17);
+    TEST_ASSERT_EQUAL_STRING_LEN("S5: less step_mm", board_config_fault_text(ARGUS_CONFIG_STEP), 16);
 }
 
 void test_choices_by_name_and_by_nothing_else(void) {

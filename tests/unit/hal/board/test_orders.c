@@ -77,9 +77,9 @@ void test_a_line_too_long_or_with_noise_is_refused_as_a_whole_and_the_next_is_ta
     char line[2 * BOARD_ORDER_LINE_MAX];
     memset(line, ' ', sizeof line);
     memcpy(line + sizeof line - 8, "active\n", 8);
-    TEST_ASSERT_EQUAL_STRING("too long, or not plain text", give(line));
-    TEST_ASSERT_EQUAL_STRING("too long, or not plain text", give("act\x01ive\n"));
-    TEST_ASSERT_EQUAL_STRING("too long, or not plain text", give("\xFF\n"));
+    TEST_ASSERT_EQUAL_STRING("too long or no text", give(line));
+    TEST_ASSERT_EQUAL_STRING("too long or no text", give("act\x01ive\n"));
+    TEST_ASSERT_EQUAL_STRING("too long or no text", give("\xFF\n"));
     TEST_ASSERT_FALSE(status().active);
     TEST_ASSERT_EQUAL_STRING("taken", give("active\n"));
 }
