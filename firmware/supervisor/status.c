@@ -135,15 +135,20 @@ static bool driving_holds(const argus_t *const self) {
            (stepping ? argus_guard_may_step(&self->plan) : argus_guard_may_drive(&guard, &self->plan));
 }
 
+// Those beyond the robot's are ABSENT, and only what is or may be out has the kind of a fault.
+static bool is_sound(const argus_t *const self, const int sonar) {
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    const bool whole =
+        s->health != ARGUS_SUSPECT && s->health != ARGUS_DISABLED && s->health != ARGUS_PROBATION;
+    const bool absent = s->health == ARGUS_ABSENT;
+    const bool named = s->kind != ARGUS_KIND_NONE;
+    return (absent || sonar < self->knowledge.sonars) && s->health <= ARGUS_ABSENT && !(whole && named) &&
+           (named || s->health != ARGUS_DISABLED);
+}
+
 static bool health_holds(const argus_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        const argus_sonar_t *const s = &self->knowledge.sonar[i];
-        const bool absent = i >= self->knowledge.sonars;
-        const bool whole =
-            s->health != ARGUS_SUSPECT && s->health != ARGUS_DISABLED && s->health != ARGUS_PROBATION;
-        if ((absent && s->health != ARGUS_ABSENT) || s->health > ARGUS_ABSENT ||
-            (s->health == ARGUS_DISABLED && s->kind == ARGUS_KIND_NONE) ||
-            (whole && s->kind != ARGUS_KIND_NONE)) {
+        if (!is_sound(self, i)) {
             return false;
         }
     }

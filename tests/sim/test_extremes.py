@@ -149,3 +149,22 @@ def test_the_papers_method_gives_up_where_a_reading_at_the_least_forbids_to_turn
     assert "MISSION_FAILED" in told
     assert not outcome.reached
     assert not outcome.collisions
+
+
+@pytest.mark.tour(2)
+@pytest.mark.parametrize(
+    ("world", "goal_mm", "fault"),
+    [
+        ("hall", 4000, "stuck:7:value=110"),
+        ("corridor", 5000, "stuck:1:value=110"),
+        ("demo", 1700, "stuck:4:value=110"),
+        ("box-ahead", 2500, "stuck:12:value=100"),
+        ("box-ahead", 2500, "stuck:0:value=100"),
+    ],
+)
+def test_what_bars_the_turn_is_given_up(hall: str, world: str, goal_mm: float, fault: str) -> None:
+    """No look can prove it, as the robot may not turn for it."""
+    outcome = run(Mission(hall if world == "hall" else world, ((goal_mm, 0),), faults=(fault,), limit_s=100))
+    assert not outcome.collisions
+    assert outcome.reached, outcome.mission.to_json()
+    assert {e.sonar for e in outcome.events if e.name == "SONAR_DISABLED"} == {int(fault.split(":")[1])}

@@ -164,20 +164,26 @@ def test_a_heading_that_leaps_all_the_time_ends_the_course(corridor: str, deg: f
 
 
 def lifted(
-    world: str, at: tuple[float, float], *, profile: str = "argus", seed: int = 1, free_s: float = 0.0
+    world: str,
+    at: tuple[float, float],
+    *,
+    by: tuple[float, float] = (GOAL_MM, 0),
+    profile: str = "argus",
+    seed: int = 1,
+    free_s: float = 0.0,
+    turns: bool = True,
 ) -> Outcome:
-    """From then on the wheels turn and the body stays: it is jacked up, or pushes against a sill."""
+    """From then on the wheels turn and the body stays: it pushes against a sill, or is jacked up and does not turn."""
     start = (at[0], at[1], 0.0)
-    mission = Mission(
-        world, ((at[0] + GOAL_MM, at[1]),), start, config={"profile": profile}, seed=seed, limit_s=120
-    )
+    goal = (at[0] + by[0], at[1] + by[1])
+    mission = Mission(world, (goal,), start, config={"profile": profile}, seed=seed, limit_s=120)
     sil = Sil(mission)
     sil.run_until(free_s)
-    x, y = sil.robot.chassis.x, sil.robot.chassis.y
+    x, y, heading = sil.robot.chassis.x, sil.robot.chassis.y, sil.robot.chassis.th
     while not sil.over:
         sil.step()
         chassis = sil.robot.chassis
-        chassis.place(x, y, chassis.th)
+        chassis.place(x, y, chassis.th if turns else heading)
     return sil.outcome()
 
 
@@ -353,6 +359,18 @@ def test_lifted_wheels_are_told_in_the_worlds_that_are_there(world: str, seed: i
     outcome = lifted(world, (0, 0), seed=seed)
     assert "SLIP" in names(outcome)
     assert "GOAL_REACHED" not in names(outcome)
+
+
+@pytest.mark.tour(3, 6)
+@pytest.mark.parametrize("by", [(GOAL_MM, 0), (1700, 1550)])
+@pytest.mark.parametrize("seed", range(1, 4))
+@pytest.mark.parametrize("world", ["lab", "demo"])
+def test_a_robot_on_a_stand_reaches_no_goal_behind_a_turn(
+    world: str, seed: int, by: tuple[float, float]
+) -> None:
+    """Its ring hears in each turn what it heard before; nor is a sonar given up for that."""
+    outcome = lifted(world, (0, 0), by=by, seed=seed, turns=False)
+    assert not {"GOAL_REACHED", "SONAR_DISABLED"} & set(names(outcome)), names(outcome)
 
 
 @pytest.mark.parametrize("seed", range(1, 4))

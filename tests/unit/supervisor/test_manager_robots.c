@@ -250,6 +250,23 @@ void test_a_robot_without_sonars_is_never_driven(void) {
     finish("no sonars");
 }
 
+void test_an_array_that_is_never_listed_is_absent(void) {
+    start();
+    robot.argus.config.profile = ARGUS_PROFILE_ARGUS;
+    robot.argus.rules = argus_profile(&robot.argus.config);
+    robot.alter_sip = with_8_sonars;
+    TEST_ASSERT_TRUE(robot_goal(&robot, 2000, 0));
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 60000));
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_SONAR_DISABLED, 0));
+    for (int sonar = 8; sonar < 16; sonar++) {
+        TEST_ASSERT_EQUAL(ARGUS_ABSENT, robot.argus.knowledge.sonar[sonar].health);
+    }
+    robot.alter_sip = NULL; // it was switched off
+    robot_run(&robot, 20000);
+    TEST_ASSERT_EQUAL_HEX16(0, argus_with_health(&robot.argus.knowledge, ARGUS_ABSENT));
+    finish("no rear array");
+}
+
 static void expect_no_motion(const char *name) {
     TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_commands(&robot, ARCOS_CMD_ENABLE, 0), name);
     TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0), name);
@@ -278,6 +295,19 @@ void test_an_unknown_subclass_is_said_once_and_never_moved(void) {
         expect_no_motion(name);
         finish(name);
     }
+}
+
+void test_a_robot_that_lists_what_its_subclass_lacks_waits_for_an_operator(void) {
+    start();
+    robot.subclass = "amigo-sh"; // which has eight
+    TEST_ASSERT_TRUE(robot_goal(&robot, 600, 0));
+    robot_run(&robot, 20000);
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_SONARS_BEYOND, 0));
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0));
+    TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, 0));
+    argus_operator(&robot.argus, now(), ARGUS_OP_ACTIVE, 0);
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 60000));
+    finish("sixteen of eight");
 }
 
 void test_the_operator_says_which_body_it_is(void) {
