@@ -115,8 +115,8 @@ static void restore(argus_t *const self, const int sonar) {
 
 // Probation grows with each relapse.
 static uint8_t agreements_wanted(const argus_sonar_t *const s) {
-    ARGUS_ASSERT(s->health == ARGUS_DISABLED || s->health == ARGUS_PROBATION);
-    if (s->health == ARGUS_DISABLED) {
+    ARGUS_ASSERT(s->health == ARGUS_DISABLED || s->health == ARGUS_PROBATION || s->health == ARGUS_ABSENT);
+    if (s->health != ARGUS_PROBATION) {
         return PROBATION_AGREED;
     }
     return (uint8_t)(PROBATION_AGREED << argus_min(s->relapses, PROBATION_DOUBLINGS));

@@ -262,7 +262,8 @@ void test_an_array_that_is_never_listed_is_absent(void) {
         TEST_ASSERT_EQUAL(ARGUS_ABSENT, robot.argus.knowledge.sonar[sonar].health);
     }
     robot.alter_sip = NULL; // it was switched off
-    robot_run(&robot, 20000);
+    TEST_ASSERT_TRUE(robot_goal(&robot, -2000, 0));
+    robot_run(&robot, 60000);
     TEST_ASSERT_EQUAL_HEX16(0, argus_with_health(&robot.argus.knowledge, ARGUS_ABSENT));
     finish("no rear array");
 }
