@@ -77,13 +77,12 @@ void argus_meet_body(argus_t *const self) {
     ARGUS_ASSERT(!self->orders.barred || self->orders.passive);
 }
 
-void argus_see_through_body(argus_t *const self) {
+bool argus_sees_through_body(argus_t *const self) {
     const argus_robot_t *const robot = self->knowledge.robot;
     if (self->knowledge.strange_sips != STRANGE_SIPS || !argus_robot_is_known(robot)) {
-        return;
+        return false;
     }
     argus_tell(self, ARGUS_EV_SONARS_BEYOND, robot->sonars);
-    if (robot->sonars < ARGUS_SONARS) {
-        argus_operator(self, self->now_ms, ARGUS_OP_PASSIVE, 0);
-    }
+    self->orders.passive = self->orders.passive || robot->sonars < ARGUS_SONARS;
+    return self->orders.passive;
 }

@@ -10,8 +10,8 @@
 void argus_meet_body(argus_t *self);
 
 // Tells, once, of a robot that lists sonars which its subclass has not got. Where those are of the sixteen
-// it has another body, and is passive until an operator says otherwise.
-void argus_see_through_body(argus_t *self);
+// it has another body, and is passive until an operator says otherwise. True: it may not be driven.
+bool argus_sees_through_body(argus_t *self);
 
 // Says why the robot at hand may not be driven; false: it may.
 bool argus_say_barred(argus_t *self);

@@ -191,7 +191,9 @@ static void on_sip(argus_t *const self) {
         return;
     }
     argus_knowledge_sip(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
-    argus_see_through_body(self);
+    if (argus_sees_through_body(self)) {
+        argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_CHECK, true);
+    }
     self->awareness.away =
         argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, argus_base_cdeg(self)) > AWAY_CDEG;
     const argus_alarm_t alarm = argus_awareness_sip(&self->awareness, &self->knowledge, &self->config);

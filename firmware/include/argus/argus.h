@@ -347,6 +347,7 @@ typedef enum {
     X(status)                \
     X(task)
 
+// The subjects by number.
 typedef enum {
 #define ARGUS_ABOUT_ENUM(subject) ARGUS_ABOUT_##subject,
     ARGUS_ABOUT_TABLE(ARGUS_ABOUT_ENUM)
@@ -690,8 +691,9 @@ const char *argus_name(argus_name_of_t of, int number);
 
 // Of each event in one number: its id in 7 bits, its level in 2, and what it is about.
 #define ARGUS_EVENT_ID_MASK 0x7F
-#define ARGUS_EVENT_LEVEL_SHIFT 7
-#define ARGUS_EVENT_ABOUT_SHIFT 9
+#define ARGUS_EVENT_LEVEL_SHIFT 7 // where the level begins
+#define ARGUS_EVENT_ABOUT_SHIFT 9 // where the subject begins
+// A row of the catalogue as such a number.
 #define ARGUS_EVENT_PACKED(number, name, level, subject, meaning) \
     (number) | ARGUS_LEVEL_##level << ARGUS_EVENT_LEVEL_SHIFT |   \
         ARGUS_ABOUT_##subject << ARGUS_EVENT_ABOUT_SHIFT,

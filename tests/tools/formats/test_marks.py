@@ -16,10 +16,12 @@ from logs import command
 
 # A PULSE says nothing of its direction by itself.
 PULSE = command("PULSE")
-SIDES: list[tuple[Direction, bytes]] = [
-    (direction, data)
+FROM_ROBOT: Direction = "r2c"
+TO_ROBOT: Direction = "c2r"
+SIDES = [
+    row
     for pair in zip(SIPS, COMMANDS, strict=True)
-    for direction, data in (("r2c", pair[0]), ("c2r", pair[1]), ("c2r", PULSE))
+    for row in ((FROM_ROBOT, pair[0]), (TO_ROBOT, pair[1]), (TO_ROBOT, PULSE))
 ]
 SENT = b"".join(data for direction, data in SIDES if direction == "c2r")
 NAMES = [
