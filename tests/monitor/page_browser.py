@@ -160,6 +160,16 @@ class Browser:
         """Click the element with an id as a mouse does."""
         self.driver.find_element(By.ID, name).click()
 
+    def when(self, condition: str, action: str) -> bool:
+        """Do something in the page as soon as something is so there: nearer in time than a driver can be."""
+        self.driver.set_script_timeout(PATIENCE_S)
+        script = (
+            "const done = arguments[arguments.length - 1];"
+            f"const look = () => {{ if ({condition}) {{ {action}; done(true); }} else setTimeout(look, 10); }};"
+            "look();"
+        )
+        return bool(self.driver.execute_async_script(script))
+
     def point(self, x: float, y: float) -> None:
         """Click a place of the page with the mouse."""
         action = ActionBuilder(self.driver)

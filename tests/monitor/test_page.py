@@ -70,14 +70,15 @@ def test_a_click_on_the_floor_drives_there(page: Browser) -> None:
 
 def test_the_form_drives_there_stop_stops_on_the_way_and_go_on_goes_on(page: Browser) -> None:
     page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
-    goal = (0, 0) if distance_to(page, (0, 0)) > 700 else (1000, 0)
+    goal = (0, 0) if distance_to(page, (0, 0)) > 700 else (1500, 0)
     for name, mm in zip(("x", "y"), goal, strict=True):
         page.driver.find_element(By.NAME, name).send_keys(
             str(mm / 1000) + (Keys.ENTER if name == "y" else "")
         )
-    page.wait("it is on its way", lambda: page.known("state.vel_left_mm_s") > 100)
+    assert page.when(
+        "argusMonitor.known.state.vel_left_mm_s > 100", "document.getElementById('stop').click()"
+    )
     assert page.js("return argusMonitor.stage.goal") == list(goal)
-    page.click("stop")
     page.wait("it says that it is paused", lambda: page.text("mode").endswith(", paused"))
     page.wait(
         "it stands", lambda: page.known("state.vel_left_mm_s") == page.known("state.vel_right_mm_s") == 0
