@@ -288,6 +288,14 @@ bool argus_guard_echo_blocks(const argus_guard_t *const self, const int sonar) {
     return argus_echo_to_centre_mm(self->knowledge, sonar, 0) <= swing_mm(self);
 }
 
+int argus_guard_barring(const argus_guard_t *const self) {
+    int sonar = self->knowledge->sonars - 1;
+    while (sonar >= 0 && !argus_guard_echo_blocks(self, sonar)) {
+        sonar--;
+    }
+    return sonar;
+}
+
 bool argus_guard_memory_blocks(const argus_guard_t *const self) {
     return remembered_mm(self, 0) <= swing_mm(self);
 }

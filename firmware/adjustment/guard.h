@@ -109,6 +109,8 @@ int32_t argus_guard_nearest_mm(const argus_guard_t *self, int32_t back_mm);
 
 // The echo that this sonar hears now forbids to turn. What is remembered does.
 bool argus_guard_echo_blocks(const argus_guard_t *self, int sonar);
+// One of those whose echo does, or ARGUS_NO_SONAR.
+int argus_guard_barring(const argus_guard_t *self);
 bool argus_guard_memory_blocks(const argus_guard_t *self);
 
 // In a turn: the echo of this sonar, just heard, lies within the circle, for the first time or again. `at`:

@@ -17,7 +17,8 @@
 #define CLEAR_MM 300        // its mate reads so much more
 #define LEAP_MM 600         // no person walks so far between two firings
 #define NEAR_MM 150         // what is nearer forbids to turn
-#define IMPOSSIBLE 16
+#define LEAPS 31            // from far off to the least
+#define STAYS 16            // below the least; four in a row may be the line, five convict
 #define VISIT \
     10 // leaps near and away again at once: a person who walks across the beam may do so, once or twice
 #define ROW_STUCK 5
@@ -85,12 +86,10 @@ static void go_on(argus_extreme_t *const self, const argus_knowledge_t *const kn
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_pose_t *const pose = &knowledge->pose;
     const int32_t axis = pose->heading_cdeg + argus_robot_pose(knowledge->robot, sonar).heading_deg * 100;
-    const int32_t dx = pose->x_mm - self->at.x_mm;
-    const int32_t dy = pose->y_mm - self->at.y_mm;
-    const int32_t along = (dx * argus_cos(axis) + dy * argus_sin(axis)) / ARGUS_TRIG_ONE;
+    const argus_point_t step = {pose->x_mm - self->at.x_mm, pose->y_mm - self->at.y_mm};
     const int says = mate_says(knowledge, sonar);
     self->at = (argus_point_t){pose->x_mm, pose->y_mm};
-    self->away_mm = argus_max(0, self->away_mm - along);
+    self->away_mm = argus_max(0, self->away_mm - argus_in_frame(step, axis).x_mm);
     if (says < 0) {
         self->from = self->at;
     }
@@ -121,11 +120,11 @@ static int doubt(const argus_extreme_t *const self, const argus_knowledge_t *con
                  const int32_t reading_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
     const int32_t far_mm = knowledge->robot->min_mm + LEAP_MM;
-    if (reading_mm < knowledge->robot->min_mm) {
-        return IMPOSSIBLE;
+    if (is_shortest(knowledge, reading_mm) && self->before_mm > far_mm) {
+        return LEAPS;
     }
-    if (is_shortest(knowledge, reading_mm)) {
-        return self->before_mm > far_mm ? IMPOSSIBLE : 0;
+    if (reading_mm < knowledge->robot->min_mm) {
+        return STAYS;
     }
     return self->visited && reading_mm > far_mm ? VISIT : 0;
 }

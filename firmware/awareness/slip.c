@@ -173,9 +173,8 @@ static void go_on(argus_slip_t *const self, const argus_knowledge_t *const knowl
 
 // How far ahead of a pose another one is.
 static int32_t ahead_mm(const argus_pose_t *const from, const argus_pose_t *const to) {
-    return ((to->x_mm - from->x_mm) * argus_cos(from->heading_cdeg) +
-            (to->y_mm - from->y_mm) * argus_sin(from->heading_cdeg)) /
-           ARGUS_TRIG_ONE;
+    const argus_point_t way = {to->x_mm - from->x_mm, to->y_mm - from->y_mm};
+    return argus_in_frame(way, from->heading_cdeg).x_mm;
 }
 
 static bool judge(argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int32_t way_mm,

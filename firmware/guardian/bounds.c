@@ -253,12 +253,9 @@ argus_bound_t argus_bound_way(const argus_t *const self, const bool ahead) {
 
 // From the body, were it turned by so much, to a point in the robot's frame of now; negative within.
 static int32_t gap_mm(const argus_robot_t *const robot, const argus_point_t at, const int32_t by_cdeg) {
-    const int32_t c = argus_cos(by_cdeg);
-    const int32_t s = argus_sin(by_cdeg);
-    const int32_t x_mm = (at.x_mm * c + at.y_mm * s) / ARGUS_TRIG_ONE;
-    const int32_t y_mm = (at.y_mm * c - at.x_mm * s) / ARGUS_TRIG_ONE;
-    const int32_t along_mm = argus_max(x_mm - robot->front_mm, -robot->rear_mm - x_mm);
-    return argus_max(along_mm, argus_abs(y_mm) - argus_robot_half_width_mm(robot));
+    const argus_point_t turned = argus_in_frame(at, by_cdeg);
+    const int32_t along_mm = argus_max(turned.x_mm - robot->front_mm, -robot->rear_mm - turned.x_mm);
+    return argus_max(along_mm, argus_abs(turned.y_mm) - argus_robot_half_width_mm(robot));
 }
 
 // What is nearer than the room already may stay so near, not come nearer.

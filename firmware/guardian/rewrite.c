@@ -25,14 +25,12 @@ static bool is_echo_of(const argus_t *const self, const argus_ray_t *const ray) 
 // From the transducer to the end of the ray, if that lies within its cone, else 0.
 static int32_t seen_mm(const argus_ray_t *const ray, const argus_point_t from, const int32_t bearing_cdeg,
                        const int32_t cone_deg) {
-    const int32_t dx = ray->x_mm + ray->free_mm * ray->c / ARGUS_TRIG_ONE - from.x_mm;
-    const int32_t dy = ray->y_mm + ray->free_mm * ray->s / ARGUS_TRIG_ONE - from.y_mm;
-    const int32_t c = argus_cos(bearing_cdeg);
-    const int32_t s = argus_sin(bearing_cdeg);
-    const int32_t along_mm = (dx * c + dy * s) / ARGUS_TRIG_ONE;
-    const int32_t beside_mm = argus_abs((dy * c - dx * s) / ARGUS_TRIG_ONE);
-    const int32_t half_mm = along_mm * argus_sin(cone_deg * 50) / ARGUS_TRIG_ONE + NEAR_MM;
-    return along_mm > 0 && beside_mm <= half_mm ? argus_hypot(dx, dy) : 0;
+    const argus_point_t way = {ray->x_mm + ray->free_mm * ray->c / ARGUS_TRIG_ONE - from.x_mm,
+                               ray->y_mm + ray->free_mm * ray->s / ARGUS_TRIG_ONE - from.y_mm};
+    const argus_point_t seen = argus_in_frame(way, bearing_cdeg);
+    const int32_t half_mm = seen.x_mm * argus_sin(cone_deg * 50) / ARGUS_TRIG_ONE + NEAR_MM;
+    const bool is_within = seen.x_mm > 0 && argus_abs(seen.y_mm) <= half_mm;
+    return is_within ? argus_hypot(way.x_mm, way.y_mm) : 0;
 }
 
 int32_t argus_rewrite_cover_mm(const argus_t *const self, const int sonar) {

@@ -73,6 +73,13 @@ int32_t argus_cos(const int32_t cdeg) {
     return argus_sin(argus_angle_wrap(cdeg) + QUARTER);
 }
 
+argus_point_t argus_in_frame(const argus_point_t at, const int32_t cdeg) {
+    const int32_t c = argus_cos(cdeg);
+    const int32_t s = argus_sin(cdeg);
+    return (argus_point_t){(at.x_mm * c + at.y_mm * s) / ARGUS_TRIG_ONE,
+                           (at.y_mm * c - at.x_mm * s) / ARGUS_TRIG_ONE};
+}
+
 // Direction in thousandths of a degree for x > 0, by CORDIC; the vector is scaled up so that small ones keep
 // their angle.
 static int32_t cordic_mdeg(int32_t x, int32_t y) {

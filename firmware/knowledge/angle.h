@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "arcos/apart.h"
+#include "argus/argus.h"
 
 #define ARGUS_TRIG_ONE 16384 // argus_sin() and argus_cos() are scaled by this
 
@@ -16,6 +17,9 @@ int32_t argus_angle_abs_diff(int32_t a_cdeg, int32_t b_cdeg);
 // Error at most 4 / 16384. Any angle.
 int32_t argus_sin(int32_t cdeg);
 int32_t argus_cos(int32_t cdeg);
+
+// A point, as a frame sees it that is turned by this, counter-clockwise. |x|, |y| <= 60,000; any angle.
+argus_point_t argus_in_frame(argus_point_t at, int32_t cdeg);
 
 // Direction of (x, y), |x|, |y| <= 1,000,000; error at most 6 cdeg; 0 for the origin.
 int32_t argus_atan2(int32_t y, int32_t x);

@@ -171,10 +171,7 @@ bool argus_echoes_near(const argus_echoes_t *const self, const argus_knowledge_t
         argus_abs(dy) >= NEAR_MM) {
         return false;
     }
-    const int32_t c = argus_cos(knowledge->pose.heading_cdeg);
-    const int32_t s = argus_sin(knowledge->pose.heading_cdeg);
-    at->x_mm = (dx * c + dy * s) / ARGUS_TRIG_ONE;
-    at->y_mm = (dy * c - dx * s) / ARGUS_TRIG_ONE;
+    *at = argus_in_frame((argus_point_t){dx, dy}, knowledge->pose.heading_cdeg);
     return true;
 }
 

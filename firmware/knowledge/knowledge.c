@@ -157,14 +157,10 @@ static void leave_out(argus_knowledge_t *const self, const argus_sip_t *const si
 static argus_moved_t moved_of(const argus_knowledge_t *const self, const argus_sip_t *const sip,
                               const argus_point_t step_mm, const int32_t heading_cdeg) {
     const int32_t turn_cdeg = argus_angle_wrap(heading_cdeg - self->pose.heading_cdeg);
-    const int32_t x = argus_within(FAR_MM, step_mm.x_mm);
-    const int32_t y = argus_within(FAR_MM, step_mm.y_mm);
+    const argus_point_t step = {argus_within(FAR_MM, step_mm.x_mm), argus_within(FAR_MM, step_mm.y_mm)};
     const int32_t facing_cdeg = raw_heading_cdeg(sip) + argus_robot_facing_cdeg(self->robot) - turn_cdeg / 2;
-    const int32_t c = argus_cos(argus_angle_wrap(facing_cdeg));
-    const int32_t s = argus_sin(argus_angle_wrap(facing_cdeg));
-    const argus_moved_t moved = {(x * c + y * s) / ARGUS_TRIG_ONE, (y * c - x * s) / ARGUS_TRIG_ONE,
-                                 turn_cdeg};
-    return moved;
+    const argus_point_t moved = argus_in_frame(step, facing_cdeg);
+    return (argus_moved_t){moved.x_mm, moved.y_mm, turn_cdeg};
 }
 
 // In a silence: this may be the way since the counters were zero, not since the last SIP.

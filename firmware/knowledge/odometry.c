@@ -8,7 +8,8 @@
 
 #define SIP_MS 100            // SIPs that come in a bunch were made so long apart
 #define LATE_MS 150           // one that comes in time may follow one that came late
-#define FADES_MS 5            // of the time in hand with each SIP
+#define LATE_MOST_MS 350      // ... but by no more than this, of
+#define FADES_MS 5            // ... which so much is over with each SIP
 #define GAP_MS 500u           // without a SIP for longer it is not known what the wheels did
 #define GAP_MAX_MS 4000u      // ... but the robot's watchdog has stopped them
 #define FASTEST_MM_S 2000     // no robot of the tables drives as fast
@@ -22,13 +23,14 @@
 #define ACCEL_CDEG_S2 30000   // likewise
 #define ACCEL_MM 300          // in a gap they reach their speed
 #define ACCEL_CDEG 3000       // likewise
-#define SLACK_PERCENT 5       // speeds are rounded and averaged
+#define SLACK_PERCENT 3       // speeds are rounded and averaged
 #define TURN_SLACK_PERCENT 50 // ... and wheels that skid turn the body less than their track says
-#define SLACK_MM 2            // in each SIP
+#define SLACK_MM 1            // in each SIP
 #define SLACK_CDEG 30         // likewise
-#define ROOM_MM 50            // in one step, for what is not modelled,
+#define BENDS_CDEG 300        // ... and wheels that skid bend the way
+#define ROOM_MM 20            // in one step, for what is not modelled,
 #define ROOM_CDEG 200         // likewise
-#define ROOM_MS 100           // ... and of the speed
+#define ROOM_MS 50            // ... and of the speed
 #define BUILD_MM 80           // what may build up
 #define BUILD_CDEG 3000       // likewise
 #define ANEW_MM 100           // the way through a gap is not known better,
@@ -130,8 +132,10 @@ static bool way_may_be(argus_excess_t *const self, const argus_span_t *const spa
                  (span->after.left_mm_s + span->after.right_mm_s) / 2, DRIVES_MM_S);
     const int32_t slack = SLACK_MM + sped(&range, ACCEL_MM_S2, ACCEL_MM);
     const int32_t near = times_ms(fastest(&range), ROOM_MS);
-    // A turn bends the way; what is aside of it is no way.
-    const int32_t aside = argus_abs(moved->aside_mm) - argus_abs(moved->ahead_mm) / 4 - slack;
+    // A turn bends the way, to a side by half of it at most; what else is aside of it is no way.
+    const int32_t bend_cdeg = BENDS_CDEG + argus_abs(moved->turn_cdeg) / 2;
+    const int32_t bend_mm = argus_abs(moved->ahead_mm) * bend_cdeg / CDEG_PER_RADIAN;
+    const int32_t aside = argus_abs(moved->aside_mm) - bend_mm - slack;
     const beyond_t way = beyond(&range, moved->ahead_mm, SLACK_PERCENT, slack);
     return takes(&self->ahead_mm, way.over, ROOM_MM + near, BUILD_MM + near) &&
            takes(&self->back_mm, way.under, ROOM_MM + near, BUILD_MM + near) &&
@@ -212,7 +216,7 @@ bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *con
                            const argus_moved_t *const moved) {
     ARGUS_ASSERT(span->track_mm > 0 && excess->credit_ms >= 0);
     const int32_t credit_ms = excess->credit_ms + elapsed_ms(span) - SIP_MS - FADES_MS;
-    excess->credit_ms = argus_between(0, GAP_MAX_MS, credit_ms);
+    excess->credit_ms = argus_between(0, LATE_MOST_MS, credit_ms);
     const argus_excess_t was = *excess;
     const bool way = way_may_be(excess, span, moved);
     const bool turn = turn_may_be(excess, span, moved);

@@ -74,8 +74,8 @@ bool argus_odometry_may_be_anew(const argus_span_t *span, const argus_order_t *o
 
 // Whether the robot can have moved by this between the two SIPs, alone and with what has built up. The wheels
 // say how far, whither, and within which time; it cannot stand while they turn. SIPs come late, in bunches
-// and not at all, and wheels speed up and brake in between. So single steps of some 60 mm and 3 degrees at
-// rest, and 100 mm at half a metre a second, pass. False: what has built up is in `out_mm` and `out_cdeg`,
+// and not at all, and wheels speed up and brake in between. So single steps of some 20 mm and 3 degrees at
+// rest, and 45 mm at half a metre a second, pass. False: what has built up is in `out_mm` and `out_cdeg`,
 // and begins anew.
 bool argus_odometry_may_be(argus_excess_t *excess, const argus_span_t *span, const argus_moved_t *moved);
 

@@ -254,7 +254,7 @@ static void end_turn(argus_t *const self, const argus_point_t at, argus_intent_t
     ARGUS_ASSERT(self->motion.kind == ARGUS_MOTION_TURN);
     const argus_guard_t guard = argus_guard(self);
     argus_echoes_touched(&self->echoes, at, self->now_ms);
-    argus_tell(self, ARGUS_EV_TURN_BLOCKED, argus_guard_nearest_mm(&guard, 0));
+    argus_say(self, ARGUS_EV_TURN_BLOCKED, argus_guard_barring(&guard), argus_guard_nearest_mm(&guard, 0));
     argus_to_check(next, true);
     next->stop = ARGUS_STOP_STOP;
 }

@@ -157,7 +157,8 @@ void argus_instead_of_turn(const argus_t *const self, argus_intent_t *const inte
         return;
     }
     const int32_t nearest_mm = argus_guard_nearest_mm(&guard, 0);
-    argus_to_say(intent, ARGUS_EV_TURN_BLOCKED, ARGUS_NO_SONAR, nearest_mm == INT32_MAX ? 0 : nearest_mm);
+    argus_to_say(intent, ARGUS_EV_TURN_BLOCKED, argus_guard_barring(&guard),
+                 nearest_mm == INT32_MAX ? 0 : nearest_mm);
     argus_to_wait(intent, ARGUS_WAIT_TURN);
     if (argus_guard_may_back_off(&guard)) {
         intent->act = ARGUS_DO_BACK;

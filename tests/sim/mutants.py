@@ -201,6 +201,23 @@ def flicker(sil: MutatedSil, rng: random.Random) -> str:
     return f"x flickers by {far}"
 
 
+def drip(sil: MutatedSil, rng: random.Random) -> str:
+    mm, course = rng.uniform(30, 80), rng.uniform(0, 2 * math.pi)
+    sil.slack_mm += 200
+    for _ in range(rng.randint(5, 20)):
+        sil.robot.chassis.odo_x += mm * math.cos(course)
+        sil.robot.chassis.odo_y += mm * math.sin(course)
+        sil.wait(1.0)
+    return f"odometry leaps by {mm:.0f} mm each second"
+
+
+def slant(sil: MutatedSil, rng: random.Random) -> str:
+    units = rng.choice((-1, 1)) * rng.randint(140, 1500)
+    sil.lying.alter = lambda packet: dataclasses.replace(packet, th=(packet.th + units) % 4096)
+    sil.slack_mm += 200
+    return f"headings are off by {units * 360 // 4096} degrees from then on"
+
+
 def impossible_value(sil: MutatedSil, rng: random.Random) -> str:
     field, value = rng.choice(
         (
@@ -228,7 +245,7 @@ def extreme_reading(sil: MutatedSil, rng: random.Random) -> str:
 
 
 MUTATIONS: Final[tuple[Mutation, ...]] = (
-    reopen, flaps, restart, other_robot, leap, flicker, impossible_value, extreme_reading,
+    reopen, flaps, restart, other_robot, leap, flicker, drip, slant, impossible_value, extreme_reading,
 )  # fmt: skip
 LINK_FAULTS: Final = ("link-corrupt@{a}s-{b}s:p=0.2", "link-drop@{a}s-{b}s:p=0.2", "link-cut@{a}s-{b}s")
 

@@ -93,6 +93,14 @@ def test_what_leaps_to_the_least_and_back_is_intermittent(hall: str, sonar: int,
 
 
 @pytest.mark.tour(2)
+@pytest.mark.parametrize(("sonar", "value"), [(0, 0), (3, 0), (4, 50), (5, 100), (12, 0)])
+def test_one_reading_in_twenty_that_cannot_be_is_enough(hall: str, sonar: int, value: int) -> None:
+    """Healthy sonars make none: a leap to the least weighs more than thirty good readings."""
+    outcome = drive(hall, f"intermittent:{sonar}:p=0.05:value={value}", limit_s=160)
+    assert_covered(outcome, sonar, "intermittent", within_s=100)
+
+
+@pytest.mark.tour(2)
 @pytest.mark.parametrize("seed", [1, 2, 3, 60073])
 @pytest.mark.parametrize("sonar", [3, 4])
 def test_what_is_covered_for_is_not_gone_round_in_tiny_steps(hall: str, sonar: int, seed: int) -> None:

@@ -122,6 +122,45 @@ def test_a_short_step_is_told_as_a_long_one_is(
     assert sil.outcome().goal_mm <= NEAR_MM
 
 
+@pytest.mark.tour(2, 4)
+@pytest.mark.parametrize(
+    ("ahead", "aside"), [(30, 0), (50, 0), (80, 0), (-30, 0), (-50, 0), (0, 40), (0, -40), (0, 80)]
+)
+def test_small_leaps_of_each_second_come_to_no_false_goal(corridor: str, ahead: float, aside: float) -> None:
+    """One is hardly more than the wheels make in a SIP; together they would be the way to the goal."""
+
+    def act(sil: Sil) -> None:
+        if round(sil.now_ms / 10) % 100 == 0:
+            chassis = sil.robot.chassis
+            c, s = math.cos(math.radians(chassis.odo_th)), math.sin(math.radians(chassis.odo_th))
+            chassis.odo_x += ahead * c - aside * s
+            chassis.odo_y += ahead * s + aside * c
+
+    sil = Sil(Mission(corridor, ((GOAL_MM, 0),), sonar={"crosstalk": 0.0}, limit_s=60))
+    while not sil.over:
+        act(sil)
+        sil.step()
+    outcome = sil.outcome()
+    assert "POSE_LEAP" in names(outcome)
+    assert "GOAL_REACHED" not in names(outcome) or outcome.goal_mm < NEAR_MM
+
+
+@pytest.mark.tour(2)
+@pytest.mark.parametrize("deg", [-30, -12, 12, 20, 30, 90])
+def test_a_heading_that_is_off_from_some_place_on_comes_to_no_false_goal(corridor: str, deg: float) -> None:
+    """The position goes on as before: from then on the robot seems to drive aslant."""
+    sil = MutatedSil(Mission(corridor, ((GOAL_MM, 0),), sonar={"crosstalk": 0.0}, limit_s=180))
+    while sil.robot.chassis.travelled_mm < 800:
+        sil.step()
+    units = round(deg * 4096 / 360)
+    sil.lying.alter = lambda packet: dataclasses.replace(packet, th=(packet.th + units) % 4096)
+    while not sil.over:
+        sil.step()
+    outcome = sil.outcome()
+    assert "HEADING_LEAP" in names(outcome)
+    assert "GOAL_REACHED" not in names(outcome) or outcome.goal_mm < NEAR_MM
+
+
 @pytest.mark.parametrize(
     ("battery", "x10", "odd"),
     [(0, 0, True), (255, 255, False), (127, 65535, True), (127, 400, True), (127, 30, True), (127, 0, False)],

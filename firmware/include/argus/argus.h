@@ -259,7 +259,7 @@ typedef enum {
     X(56, STOPPED, WARN, drive, "STOP sent; value: heading in hundredths of a degree")                       \
     X(57, BACKING, WARN, drive, "backs away; value: mm")                                                     \
     X(58, TURN_BLOCKED, WARN, drive,                                                                         \
-      "the swing circle is not free: no turn; value: the nearest point in mm")                               \
+      "no turn: the swing circle is not free, as this sonar hears; value: the nearest point in mm")          \
     X(59, WAITING, WARN, drive, "cannot go on by itself; value: seconds waited")                             \
     X(60, MISSION_START, OK, task, "a course starts; value: waypoints")                                      \
     X(61, WAYPOINT, OK, task, "a waypoint was passed; value: its number, from 1")                            \

@@ -411,7 +411,7 @@ void test_gaps_convict_at_rest_in_several_places(void) {
         }
         TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, argus_evidence_names(&s.e, 3));
         TEST_ASSERT_TRUE(place > 1 || s.convicted[3] == ARGUS_KIND_NONE);
-        s.v_mm_s = 200;
+        s.v_mm_s = 600;
         for (int n = 0; n < 6; n++) {
             s.x += 60;
             range -= 59;
@@ -455,7 +455,7 @@ void test_coarse_steps_beside_a_wall_are_not_stuck(void) {
     static const int aslant[] = {1, 6, 9, 14};
     for (int stuck = 0; stuck < 2; stuck++) {
         scene_init(&s, 1, START_MS);
-        s.v_mm_s = 200;
+        s.v_mm_s = 600;
         unsigned random = 12345;
         for (int n = 0; n < 600; n++) {
             for (int i = 0; i < 4; i++) {
@@ -474,7 +474,7 @@ void test_coarse_steps_beside_a_wall_are_not_stuck(void) {
 void test_those_abeam_tell_how_coarse_the_steps_are(void) {
     static const int abeam[] = {0, 7, 8, 15};
     scene_init(&s, 1, START_MS);
-    s.v_mm_s = 200;
+    s.v_mm_s = 600;
     unsigned random = 12345;
     for (int n = 0; n < 1200; n++) {
         for (int i = 0; i < 5; i++) {
@@ -493,7 +493,7 @@ void test_a_wall_without_noise_is_not_stuck_abeam(void) {
     for (int abeam = 0; abeam < 2; abeam++) {
         const int same = abeam != 0 ? 7 : 6;
         scene_init(&s, 1, START_MS);
-        s.v_mm_s = 200;
+        s.v_mm_s = 600;
         for (int n = 0; n < 600; n++) {
             for (int i = 0; i < 4; i++) {
                 reading[others[i]] = 600 + 10 * (n >> i & 1);

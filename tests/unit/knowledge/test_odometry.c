@@ -101,7 +101,8 @@ void test_short_steps_that_the_wheels_did_not_make_are_left_out(void) {
         double ahead, aside, deg;
     } steps[] = {{500, 120, 0, 0}, {500, -120, 0, 0}, {500, 0, 130, 0}, {500, 0, 0, 6},
                  {500, 0, 0, -6},  {0, 60, 0, 0},     {0, -60, 0, 0},   {0, 0, 60, 0},
-                 {0, 0, 0, 3},     {0, 0, 0, -3},     {-200, 90, 0, 0}, {-200, -90, 0, 0}};
+                 {0, 0, 0, 3},     {0, 0, 0, -3},     {-200, 90, 0, 0}, {-200, -90, 0, 0},
+                 {200, 50, 0, 0},  {200, -50, 0, 0},  {400, 50, 0, 0},  {0, 40, 0, 0}};
     char text[80];
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         setUp();
@@ -137,6 +138,24 @@ void test_what_builds_up_in_motion_is_taken_back(void) {
         }
         TEST_ASSERT_EQUAL_INT(1, leaps);
         TEST_ASSERT_INT32_WITHIN(110, 1000 + 50 * sips, k.pose.x_mm);
+    }
+}
+
+// The heading is off, the position goes on: the way is aslant, as no wheels make it unless they turn.
+void test_a_way_aslant_is_told(void) {
+    static const int slants[] = {10, -10, 20, -20, 45, 90};
+    for (size_t i = 0; i < sizeof slants / sizeof slants[0]; i++) {
+        setUp();
+        deliver(100);
+        drive(400, 400, 20);
+        for (int sips = 0; sips < 60 && leaps == 0; sips++) {
+            roll(400, 400);
+            x += 40 * (cos(slants[i] * PI / 180) - 1);
+            y += 40 * sin(slants[i] * PI / 180);
+            deliver(100);
+        }
+        TEST_ASSERT_EQUAL_INT(1, leaps);
+        TEST_ASSERT_INT32_WITHIN(250, 0, k.pose.y_mm);
     }
 }
 

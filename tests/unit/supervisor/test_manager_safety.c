@@ -762,6 +762,10 @@ static void check_s7_no_turn_while_the_swing_circle_is_blocked(void) {
     robot_run(&robot, 12000);
     TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, 0));
     TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_TURN_BLOCKED, 0) > 0);
+    for (int i = 0; i < robot.events; i++) {
+        const bool tells = robot.event[i].id == ARGUS_EV_TURN_BLOCKED;
+        TEST_ASSERT_TRUE(!tells || robot.event[i].sonar == 7 || robot.event[i].sonar == 10);
+    }
     robot.fault[7] = ROBOT_OK;
     robot_run(&robot, 14000); // argus remembers for 5 s what was so near
     TEST_ASSERT_FLOAT_WITHIN(2, 90, robot_heading_deg(&robot));
