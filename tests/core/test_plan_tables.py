@@ -229,3 +229,9 @@ def test_nothing_to_plan(table: Table, policy: str) -> None:
     assert table[policy, frozenset()].plan.rotations == ()
     assert table[policy, frozenset(planmodel.FORWARD)].plan.rotations == ()
     assert not table[policy, frozenset(planmodel.FORWARD)].complete
+
+
+def test_least_turn_plans_what_fewest_plans(table: Table) -> None:
+    """Over sonars 1 to 6 the least turning needs no more stops: docs/experiments.md drives one for both."""
+    for disabled in [frozenset[int](), *planmodel.fault_maps(), frozenset(planmodel.FORWARD)]:
+        assert table["least-turn", disabled] == table["fewest", disabled], sorted(disabled)
