@@ -22,7 +22,7 @@ from argus_tools.formats.base import (
 )
 from argus_tools.formats.quoted import Unquoted, unquoted
 from argus_tools.formats.recoded import crlf_damage
-from argus_tools.formats.source import BLOCK_BYTES, Source
+from argus_tools.formats.source import BLOCK_BYTES, HEAD_BYTES, Source
 from argus_tools.formats.text import (
     COLOUR,
     Colourless,
@@ -33,14 +33,15 @@ from argus_tools.formats.text import (
     is_text,
     unmarked,
 )
+from argus_tools.formats.wrapped import Wrap, unwrapped
 
 __all__ = [
     "Chunk", "Damage", "Direction", "Format", "Log", "LogError", "ReadOptions", "Reader", "Writer",
     "find_format", "format_of_name", "formats", "forms", "open_log",
 ]  # fmt: skip
 
-# Of text that comes through a pipe so much is waited for before it is taken for raw bytes.
-_TEXT_HEAD_BYTES: Final = 1 << 12
+# Of text that comes through a pipe so much is waited for before it is taken for raw bytes: prose may stand above a log.
+_TEXT_HEAD_BYTES: Final = HEAD_BYTES
 
 # In the order in which they are tried on a file: first what begins with a mark of its own, then text.
 # Hexadecimal text may hold anything, so it comes after. "bin" takes whatever no other form claims. Each
@@ -114,6 +115,11 @@ class Log:
         if format_name is None and (inner := self._quoted()):
             self.format = inner
             stream = BufferedReader(Unquoted(stream), BLOCK_BYTES)
+        elif format_name is None and (wrap := self._wrapped()):
+            self.format = wrap.form
+            for told in wrap.told():
+                self.source.damage.append(told)
+            stream = BufferedReader(wrap.stream(stream), BLOCK_BYTES)
         if explained := crlf_damage(self.source.head, self.options):
             self.source.damage.append(explained)
         self._reader = self.format.reader(stream, self.options)
@@ -125,6 +131,11 @@ class Log:
             return None
         inner = find_format(head)
         return None if inner.name in ("bin", "hextext", "hexwords", self.format.name) else inner
+
+    def _wrapped(self) -> Wrap | None:
+        """Return what the log is inside of, if it is."""
+        read = list(formats().values())
+        return unwrapped(unmarked(self.source.head), self.format, read, self.options)
 
     @property
     def damage(self) -> list[Damage]:

@@ -36,6 +36,8 @@ _BUS: Final = re.compile(r"bus|channel|chn?|interface|network")
 _LONG: Final = re.compile(r"e?xt(ended|d)?|is[ _]extended([ _]id)?|ide")
 _KIND: Final = re.compile(r"type|frame ?type")
 _FLAG: Final = re.compile(r"remote|error|rtr|er")
+# A time or the number of a line before the first heading stands before each row, too.
+_PREFIXED: Final = re.compile(r"^[\W\d]|[:|]")
 _UNITS: Final = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}
 # SavvyCAN counts microseconds; so does each program that writes times without a point under this heading.
 _MICROSECONDS: Final = 1e-6
@@ -69,7 +71,7 @@ def _columns(line: bytes) -> _Columns | None:
     text = line.decode("utf-8", "replace").strip().lstrip(";# ").lower()
     for separator in _SEPARATORS:
         names = [re.sub(r"[ _]+", " ", name.strip().strip('"')) for name in text.split(separator)]
-        if len(names) >= 3 and (found := _understand(separator, names)):
+        if len(names) >= 3 and not _PREFIXED.search(names[0]) and (found := _understand(separator, names)):
             return found
     return None
 

@@ -29,8 +29,10 @@ _PADDING: Final = b"\xcc"
 _FRAME_BYTES: Final = 8
 _LINE_MAX: Final = 4096
 _ID: Final = rb"([0-9A-Fa-f]{3}|[0-9A-Fa-f]{8})"
+# No interface has a colon in its name; a number that is none of a channel is a time that something else put there.
+_BUS: Final = rb"((?!\d+\.\d)[^\s#()\[\]{}:]+)"
 _LINE: Final = re.compile(
-    rb"\s*(?:\((\d{1,12}\.\d{1,9})\)\s+)?(?:([^\s#()\[\]{}]+)\s+)?" + _ID + rb"#"
+    rb"\s*(?:\((\d{1,12}\.\d{1,9})\)\s+)?(?:" + _BUS + rb"\s+)?" + _ID + rb"#"
     rb"(?:R[0-9A-Fa-f_]*|(?:#[0-9A-Fa-f])?([0-9A-Fa-f.]*))(?:\s+[RTX])*\s*"
 )
 # Time and interface may be missing: as cansend takes it, "640#06.FA.FB".
@@ -38,7 +40,10 @@ _USUAL: Final = re.compile(rb"\((\d{1,12}\.\d{1,9})\) (\S+) ([0-9A-Fa-f]{3})#([0
 # What candump prints without -L: time by -t, marks by -x, length in braces by -8.
 _SCREEN: Final = re.compile(
     rb"\s*(?:\(\s*(?:(\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d\.\d{1,9})|(\d{1,12}\.\d{1,9}))\)\s+)?"
-    rb"([^\s#()\[\]{}]+)\s+(?:[RT]X\s+\S\s+\S\s+)?" + _ID + rb"\s+([\[{])\s*([0-9A-Fa-f]{1,2})\s*[\]}](.*)",
+    + _BUS
+    + rb"\s+(?:[RT]X\s+\S\s+\S\s+)?"
+    + _ID
+    + rb"\s+([\[{])\s*([0-9A-Fa-f]{1,2})\s*[\]}](.*)",
     re.DOTALL,
 )
 _RELATIVE: Final = re.compile(rb"^\s*\((\d{1,8}\.\d{1,9})\)", re.MULTILINE)
@@ -195,7 +200,16 @@ def _seconds(date: str) -> float:
 
 def _sniff(head: bytes) -> bool:
     lines = (_COLOUR.sub(b"", line) for line in first_lines(head))
-    return any(_LINE.fullmatch(line) or _SCREEN.fullmatch(line) for line in lines)
+    found = [match for line in lines if (match := _LINE.fullmatch(line) or _SCREEN.fullmatch(line))]
+    return bool(found) and not _are_numbered(found)
+
+
+def _are_numbered(found: list[re.Match[bytes]]) -> bool:
+    """Whether what stands where an interface does only counts the lines."""
+    names = [match[2 if match.re is _LINE else 3] or b"" for match in found]
+    if len(names) < 2 or not all(map(bytes.isdigit, names)):
+        return False
+    return all(int(after) == int(before) + 1 for before, after in pairwise(names))
 
 
 class CandumpWriter:
