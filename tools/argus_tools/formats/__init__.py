@@ -105,24 +105,30 @@ class Log:
             what = self.source.damage[0].what if self.source.damage else "is empty"
             raise LogError(f"{path}: {what}")
         self.format = formats()[format_name] if format_name else find_format(self.source.head)
-        stream: BufferedReader = BufferedReader(self.source, BLOCK_BYTES)
-        if self.format.name != "bin" and begins_as_text(self.source.head):
-            if ends_in_returns(self.source.head):
-                stream = BufferedReader(LineFeeds(stream), BLOCK_BYTES)
-            if COLOUR.search(self.source.head):
-                stream = BufferedReader(Colourless(stream), BLOCK_BYTES)
-            stream = BufferedReader(Unmarked(stream), BLOCK_BYTES)
-        if format_name is None and (inner := self._quoted()):
-            self.format = inner
+        inner = self._quoted() if format_name is None else None
+        wrap = self._wrapped() if format_name is None and not inner else None
+        self.format = wrap.form if wrap else inner or self.format
+        stream = self._cleaned()
+        if inner:
             stream = BufferedReader(Unquoted(stream), BLOCK_BYTES)
-        elif format_name is None and (wrap := self._wrapped()):
-            self.format = wrap.form
+        elif wrap:
             for told in wrap.told():
                 self.source.damage.append(told)
             stream = BufferedReader(wrap.stream(stream), BLOCK_BYTES)
         if explained := crlf_damage(self.source.head, self.options):
             self.source.damage.append(explained)
         self._reader = self.format.reader(stream, self.options)
+
+    def _cleaned(self) -> BufferedReader:
+        """Return the file's bytes; those of a text with LF at its ends of lines, without colours and marks."""
+        stream: BufferedReader = BufferedReader(self.source, BLOCK_BYTES)
+        if self.format.name == "bin" or not begins_as_text(self.source.head):
+            return stream
+        if ends_in_returns(self.source.head):
+            stream = BufferedReader(LineFeeds(stream), BLOCK_BYTES)
+        if COLOUR.search(self.source.head):
+            stream = BufferedReader(Colourless(stream), BLOCK_BYTES)
+        return BufferedReader(Unmarked(stream), BLOCK_BYTES)
 
     def _quoted(self) -> Format | None:
         """Return the form of what a mail quotes; a ">" alone may also be a terminal program's mark of direction."""

@@ -145,8 +145,9 @@ class _Lines:
         begun, told = (_ASC_TIME, _ASC_TOLD) if self._is_asc else (_TRC_BEGUN, _TRC_TOLD)
         line = self._read()
         while line and not begun.match(line):
-            if told.match(line) and len(self._header) < _HEADER_LINES:
-                self._header.append(line)
+            text = line.lstrip(" \t")
+            if told.match(text) and len(self._header) < _HEADER_LINES:
+                self._header.append(text)
             line = self._read()
         if self._is_asc:
             self._header += self._missing_base(line)

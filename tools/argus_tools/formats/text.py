@@ -53,9 +53,11 @@ def with_line_feeds(text: bytes) -> bytes:
     return text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
 
 
-COLOUR: Final = re.compile(rb"\x1b\[[0-9;?]*[A-Za-z]")
-"""What a terminal takes for a colour or a place, and no letter."""
-_COLOUR_BEGUN: Final = re.compile(rb"\x1b(?:\[[0-9;?]*)?\Z")
+COLOUR: Final = re.compile(
+    rb"\x1b(?:\[[0-9;:?>=!]*[A-Za-z@]|[()][0-9A-Za-z]|[=>78MDE]|\][^\x07\x1b\r\n]{0,256}(?:\x07|\x1b\\))"
+)
+"""What a terminal takes for a colour, a place, a set of characters or a title, and no letter."""
+_COLOUR_BEGUN: Final = re.compile(rb"\x1b(?:\[[0-9;:?>=!]*|[()]|\][^\x07\x1b\r\n]{0,256}\x1b?)?\Z")
 
 
 def _without_marks(text: bytes) -> bytes:
