@@ -15,6 +15,7 @@ from typing import Final
 from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.isotp import CanLink, is_robot_id
 from argus_tools.formats.source import HEAD_BYTES
+from argus_tools.formats.stamps import Times
 from argus_tools.formats.text import first_lines, is_passed
 
 _LINE_MAX: Final = 4096
@@ -23,25 +24,48 @@ _SEPARATORS: Final = (",", ";", "\t")
 _BYTES_MAX: Final = 64
 _ROWS_LOOKED_AT: Final = 1 << 10
 _SHORT_ID_MAX: Final = 0x7FF
+# In English, and in German as spreadsheets and analysers write it there; an umlaut may be of any code page.
+_UNIT: Final = r"( ?[(\[]?(s|sec|seconds|sek|sekunden|ms|us|µs|ns)[)\]]?)?"
 _ID: Final = re.compile(
-    r"(can |message |msg |arb(?:itration)? |frame )?(id|identifier|addr(?:ess)?)( ?[(\[]?(hex|dec)[)\]]?)?"
+    r"(can[ -]?|message[ -]?|msg[ -]?|arb(?:itration)?[ -]|frame[ -]?|nachrichten[ -]?|botschafts[ -]?)?"
+    r"(id|identifier|addr(?:ess)?|kennung)( ?[(\[]?(hex|dec|dez)[)\]]?)?"
 )
 _TIME: Final = re.compile(
-    r"(time ?(stamp|offset)?|abs(olute)? ?time|t)( ?[(\[]?(s|sec|seconds|ms|us|µs|ns)[)\]]?)?"
+    r"(time ?(stamp|offset)?|abs(olute)? ?time|t|(?:absolute |relative |system)?zeit ?(?:stempel|punkt)?)"
+    + _UNIT
 )
-_SIZE: Final = re.compile(r"len|length|dlc?|dl|data ?length( code)?|size|bytes")
-_DATA: Final = re.compile(r"(data|payload)( ?(bytes|field))?( ?[(\[]?hex[)\]]?)?")
-_ONE: Final = re.compile(r"(?:d|b|db|data|byte|data ?byte)[ _]?\[?(\d{1,2})\]?")
-_BUS: Final = re.compile(r"bus|channel|chn?|interface|network")
-_LONG: Final = re.compile(r"e?xt(ended|d)?|is[ _]extended([ _]id)?|ide")
-_KIND: Final = re.compile(r"type|frame ?type")
-_FLAG: Final = re.compile(r"remote|error|rtr|er")
+_SIZE: Final = re.compile(
+    r"len|length|dlc?|dl|data ?length( code)?|size|bytes|(?:daten)?l.{1,3}nge|anzahl(?: bytes)?"
+)
+_CODE: Final = re.compile(r"dlc|.*code")
+_DATA: Final = re.compile(r"(data|payload|(?:nutz)?daten)[ -]?(bytes|field|feld)?( ?[(\[]?hex[)\]]?)?")
+_ONE: Final = re.compile(r"(?:d|b|db|data|byte|data ?byte|daten(?:byte)?)[ _-]?\[?(\d{1,2})\]?")
+_BUS: Final = re.compile(r"bus|channel|chn?|interface|network|kanal|schnittstelle")
+_LONG: Final = re.compile(r"e?xt(ended|d)?|is[ _]extended([ _]id)?|ide|erweitert")
+_KIND: Final = re.compile(r"type|frame ?type|typ")
+_FLAG: Final = re.compile(r"remote|error|rtr|er|fehler")
 # A time or the number of a line before the first heading stands before each row, too.
 _PREFIXED: Final = re.compile(r"^[\W\d]|[:|]")
-_UNITS: Final = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}
+_UNITS: Final = {
+    "s": 1.0,
+    "sec": 1.0,
+    "seconds": 1.0,
+    "ms": 1e-3,
+    "us": 1e-6,
+    "µs": 1e-6,
+    "ns": 1e-9,
+    "sek": 1.0,
+    "sekunden": 1.0,
+}
 # SavvyCAN counts microseconds; so does each program that writes times without a point under this heading.
 _MICROSECONDS: Final = 1e-6
-_TRUE: Final = ("1", "t", "true", "yes", "x", "ext", "extended")
+# A spreadsheet writes many digits with an exponent; no time in seconds is as large.
+_SECONDS_MAX: Final = 1e11
+# A point or a comma before the fraction, the other one or none between thousands.
+_DECIMAL_COMMA: Final = re.compile(r"(-?\d{1,3}(?:\.\d{3})*|-?\d+),(\d*(?:e[+-]?\d+)?)", re.IGNORECASE)
+# Bytes by the code of their number, above eight.
+_CODED: Final = {9: 12, 10: 16, 11: 20, 12: 24, 13: 32, 14: 48, 15: 64}
+_TRUE: Final = ("1", "t", "true", "yes", "x", "ext", "extended", "wahr", "ja")
 _NO_DATA_KINDS: Final = ("rtr", "remote", "error", "errorframe", "rr", "er", "ec", "st")
 
 
@@ -58,12 +82,17 @@ class _Columns:
     ones: tuple[int, ...]
     bus: int | None
     long: int | None
+    # Whether the size is a code, which is no count above eight bytes.
+    is_code: bool
+    width: int
     kinds: tuple[int, ...]
     flags: tuple[int, ...]
     is_base64: bool
     # Base of the ids, and of the bytes.
     is_decimal: bool
     has_decimal_data: bool = False
+    # Whether times have a comma that parts the cells, too.
+    is_split: bool = False
 
 
 def _columns(line: bytes) -> _Columns | None:
@@ -85,28 +114,34 @@ def _understand(separator: str, names: list[str]) -> _Columns | None:
     if can_id is None or (data is None and not ones):
         return None
     unit = _TIME.fullmatch(names[time]) if time is not None else None
+    size = find(_SIZE)
     return _Columns(
         separator=separator,
         can_id=can_id,
         time=time,
         unit_s=_UNITS[unit[5]] if unit and unit[5] else None,
-        size=find(_SIZE),
+        size=size,
         data=data,
         ones=tuple(at for _, at in ones),
         bus=find(_BUS),
         long=find(_LONG),
+        is_code=size is not None and bool(_CODE.fullmatch(names[size])),
+        width=len(names),
         kinds=tuple(at for at, name in enumerate(names) if _KIND.fullmatch(name)),
         flags=tuple(at for at, name in enumerate(names) if _FLAG.fullmatch(name)),
         # python-can's own.
         is_base64=names[:7] == ["timestamp", "arbitration id", "extended", "remote", "error", "dlc", "data"],
-        is_decimal="dec" in names[can_id],
+        is_decimal=bool(re.search("dec|dez", names[can_id])),
     )
 
 
 def _in_their_base(columns: _Columns, head: bytes) -> _Columns:
     """Say in which base a table is whose headings do not tell it: its ids are a robot's in that base alone."""
-    rows = [_cells(line, columns) for line in head.splitlines()[1:_ROWS_LOOKED_AT]]
-    cells = [_Cells(columns, row) for row in rows if row]
+    lines = head.splitlines()[1:_ROWS_LOOKED_AT]
+    if not any(map(is_robot_id, _ids(lines, columns))):
+        split = replace(columns, is_split=columns.separator == "," and columns.time is not None)
+        columns = split if any(map(is_robot_id, _ids(lines, split))) else columns
+    cells = [_Cells(columns, row) for line in lines if (row := _cells(line, columns))]
     is_decimal = columns.is_decimal or _are_decimal([cell.id_text() for cell in cells])
     data = [text for cell in cells for text in cell.one_texts()]
     return replace(columns, is_decimal=is_decimal, has_decimal_data=_is_decimal_data(data, is_decimal))
@@ -129,11 +164,34 @@ def _are_decimal(ids: list[str]) -> bool:
     )
 
 
+def _ids(lines: list[bytes], columns: _Columns) -> Iterator[int]:
+    """Yield the ids of these rows, in either base."""
+    for line in lines:
+        text = _Cells(columns, _cells(line, columns)).id_text().lower().removeprefix("0x")
+        for base in (10, 16):
+            try:
+                yield int(text, base)
+            except ValueError:
+                continue
+
+
 def _cells(line: bytes, columns: _Columns) -> list[str]:
+    """Return the cells of a row, none if it has none."""
     try:
-        return next(csv.reader([line.decode("latin-1")], delimiter=columns.separator))
+        cells = next(csv.reader([line.decode("latin-1")], delimiter=columns.separator))
     except (csv.Error, StopIteration):
         return []
+    at = columns.time
+    if columns.is_split and at is not None and len(cells) > at + 1:
+        cells[at : at + 2] = [",".join(cells[at : at + 2])]
+    return cells
+
+
+def _number(text: str) -> float:
+    """Return a number with a point or a comma before its fraction."""
+    if match := _DECIMAL_COMMA.fullmatch(text):
+        text = f"{match[1].replace('.', '')}.{match[2]}"
+    return float(text)
 
 
 @dataclass(frozen=True)
@@ -148,8 +206,9 @@ class _Row:
 class _Cells:
     """One row's cells by what they are."""
 
-    def __init__(self, columns: _Columns, cells: list[str]) -> None:
+    def __init__(self, columns: _Columns, cells: list[str], times: Times | None = None) -> None:
         self._columns = columns
+        self._times = times or Times()
         self._cells = [cell.strip() for cell in cells]
 
     def _at(self, column: int | None) -> str:
@@ -179,21 +238,36 @@ class _Cells:
         text = self._at(self._columns.time)
         if not text:
             return None
+        if ":" in text and (stamp := self._times.take(text.encode())):
+            return stamp.t
+        value = _number(text)
         unit = self._columns.unit_s
         if unit is None:
-            unit = 1.0 if "." in text else _MICROSECONDS
-        return round(float(text) * unit, 9)
+            is_seconds = ("." in text or "," in text) and value < _SECONDS_MAX
+            unit = 1.0 if is_seconds else _MICROSECONDS
+        return round(value * unit, 9)
+
+    def _size(self) -> int | None:
+        text = self._at(self._columns.size)
+        return int(text, 16 if self._columns.is_code and text.isalpha() else 10) if text else None
+
+    def _bytes_texts(self, size: int | None) -> list[str]:
+        """Return the cells of single bytes: of CAN FD there may be more than headings."""
+        ones = self._columns.ones
+        texts = self.one_texts()
+        if size is not None and size > len(ones) and ones[-1] == self._columns.width - 1:
+            texts += [text for text in self._cells[self._columns.width :] if text]
+        return texts
 
     def _data(self) -> bytes:
         columns = self._columns
-        size_text = self._at(columns.size)
-        size = int(size_text) if size_text else None
+        size = self._size()
         if columns.is_base64:
             data = b64decode(self._at(columns.data), validate=True)
         elif columns.ones and columns.has_decimal_data:
-            data = bytes(map(int, self.one_texts()))
+            data = bytes(map(int, self._bytes_texts(size)))
         elif columns.ones:
-            texts = self.one_texts()
+            texts = self._bytes_texts(size)
             data = bytes.fromhex("".join(text.lower().removeprefix("0x").rjust(2, "0") for text in texts))
         else:
             # Unquoted bytes may have cells of their own behind the last heading.
@@ -204,6 +278,8 @@ class _Cells:
                 else self._at(columns.data)
             )
             data = bytes.fromhex(re.sub(r"0x|[-:|']", " ", text.lower()))
+        if size is not None and columns.is_code and len(data) >= _CODED.get(size, _BYTES_MAX + 1):
+            size = _CODED[size]
         if size is not None and len(data) < size:
             raise ValueError(f"{len(data)} of {size} bytes")
         return data[: size if size is not None else _BYTES_MAX]
@@ -224,6 +300,7 @@ class CanCsvReader:
 
     def __iter__(self) -> Iterator[Chunk]:
         columns: _Columns | None = None
+        times = Times()
         number = above = 0
         while line := self._stream.readline(_LINE_MAX):
             number += 1
@@ -238,9 +315,8 @@ class CanCsvReader:
             if not line.strip() or line.startswith((b"#", b";")):
                 continue
             try:
-                cells = next(csv.reader([line.decode("latin-1")], delimiter=columns.separator))
-                row = _Cells(columns, cells).row()
-            except (ValueError, csv.Error, Base64Error, StopIteration) as error:
+                row = _Cells(columns, _cells(line, columns), times).row()
+            except (ValueError, Base64Error) as error:
                 self.damage.append(Damage(f"line {number}", f"no CAN frame ({str(error)[:60]})"))
                 continue
             if row is None:
