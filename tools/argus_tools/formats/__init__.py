@@ -47,7 +47,7 @@ _TEXT_HEAD_BYTES: Final = HEAD_BYTES
 # Hexadecimal text may hold anything, so it comes after. "bin" takes whatever no other form claims. Each
 # module has a FORMAT, or FORMATS where several are alike.
 MODULES: Final = (
-    "record", "pcapng", "pcap", "canlog", "recoded", "jsonl", "candump", "canlines", "cancsv",
+    "record", "pcapng", "pcap", "canlog", "recoded", "tsharkjson", "jsonl", "candump", "canlines", "cancsv",
     "framedump", "numdump", "others", "hexdump", "hexwords", "hextext", "bin",
 )  # fmt: skip
 

@@ -29,7 +29,7 @@ _FRAME: Final = b"Frame"
 _CAN_HEAD: Final = 8
 _CAN_FRAMES: Final = (16, 72)
 # In the order in which they are tried: what is most often captured first.
-_LINKS: Final = (1, LINK_CAN, *COOKED, *sorted(IP_LINKS - {1, *COOKED}))
+LINKS: Final = (1, LINK_CAN, *COOKED, *sorted(IP_LINKS - {1, *COOKED}))
 
 
 class _Frame(NamedTuple):
@@ -93,7 +93,8 @@ def _is_robots(data: bytes) -> bool:
     return is_robot_id(int.from_bytes(data[:4], "big"))
 
 
-def _fits(link: int, data: bytes) -> bool:
+def fits_link(link: int, data: bytes) -> bool:
+    """Whether these bytes can be a frame of that link type."""
     if link == LINK_CAN:
         return _is_can(data)
     if link in COOKED:
@@ -110,7 +111,7 @@ def _link(head: bytes) -> int | None:
     # Packets that are dumped one by one are no frames.
     if 2 * sum(frame.data.startswith(HEADER) for frame in frames) >= len(frames):
         return None
-    fits = {link: sum(_fits(link, frame.data) for frame in frames) for link in _LINKS}
+    fits = {link: sum(fits_link(link, frame.data) for frame in frames) for link in LINKS}
     best = max(fits, key=lambda link: fits[link])
     if best == LINK_CAN and len(frames) == 1 and not _is_robots(frames[0].data):
         return None

@@ -17,6 +17,8 @@ from argus_tools.formats.text import Rewritten, first_lines, is_passed
 LINE_MAX: Final = 1 << 20
 T_MAX_S: Final = 1e12
 _KEY: Final = b'"hex"'
+# How records of tshark, of containers and of the journal begin.
+_FOREIGN: Final = re.compile(rb'\{\s*"(?:index|timestamp|_index|log|MESSAGE|_[A-Z_]+)"')
 # What nests; a backslash takes the next byte with it.
 _TOKEN: Final = re.compile(rb'\\.|["{}]', re.DOTALL)
 _PARSER: Final = json.JSONDecoder()
@@ -30,7 +32,7 @@ def _sniff(head: bytes) -> bool:
     lines = [line.lstrip() for line in first_lines(head)]
     if not any(line.startswith((b"{", b"[")) for line in lines):
         return False
-    return _KEY in head or lines[0].startswith(b"{")
+    return _KEY in head or (lines[0].startswith(b"{") and not _FOREIGN.match(lines[0]))
 
 
 def _is_array(head: bytes) -> bool:
@@ -38,7 +40,7 @@ def _is_array(head: bytes) -> bool:
     return bool(lines) and lines[0].lstrip().startswith(b"[")
 
 
-class _Records(Rewritten):
+class Records(Rewritten):
     """The elements of an array, each in a line of its own however they are laid out."""
 
     def __init__(self, stream: BufferedReader) -> None:
@@ -104,7 +106,7 @@ class JsonlReader:
     def __iter__(self) -> Iterator[Chunk]:
         if _is_array(self._stream.peek(HEAD_BYTES)):
             self._unit = "record"
-            self._stream = BufferedReader(_Records(self._stream), BLOCK_BYTES)
+            self._stream = BufferedReader(Records(self._stream), BLOCK_BYTES)
         match, new = _USUAL.fullmatch, tuple.__new__
         offsets = Offsets()
         at = offsets.at

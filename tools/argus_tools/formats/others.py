@@ -146,6 +146,10 @@ def _is_without_zeros(head: bytes) -> bool:
     return not any(len(packet) > 1 for packet in Unframer().feed(sample))
 
 
+def _is_pdml(head: bytes) -> bool:
+    return bool(re.search(rb"^<p[ds]ml\b", head[:_SNIFFED], re.MULTILINE))
+
+
 def _is_tar(head: bytes) -> bool:
     return head[257:262] == b"ustar"
 
@@ -181,6 +185,12 @@ _OTHERS: Final = (
     _Other("elf", _begins(b"\x7fELF"), "a program", "give the log, not the program"),
     _Other("pdf", _begins(b"%PDF-"), "a PDF document", "give the log itself"),
     _Other("picture", _begins(b"\x89PNG\r\n", b"\xff\xd8\xff", b"GIF8"), "a picture", "give the log itself"),
+    _Other(
+        "pdml",
+        _is_pdml,
+        "what tshark -T pdml or -T psml prints",
+        "give the capture that it was made from, or tshark -r CAPTURE -T json -x",
+    ),
     _Other(
         "html",
         _lines(rb"\s*<(?:!DOCTYPE|html|\?xml)"),
@@ -226,10 +236,28 @@ _OTHERS: Final = (
         "take the bytes: tshark -r CAPTURE -q -z follow,tcp,hex,0, or give the capture itself",
     ),
     _Other(
-        "tshark-json",
-        _lines(rb'\s*"_index": ?"packets|\{"timestamp":"\d+","layers"'),
-        "what tshark -T json or -T ek prints",
-        "give the capture that it was made from, or tshark -i any -w robot.pcapng",
+        "tshark-details",
+        _lines(rb"Frame \d+: \d+ bytes? on wire"),
+        "what tshark -V prints, without the frames' bytes",
+        "print them, too: tshark -r CAPTURE -V -x, or capture into a file: tshark -i any -w robot.pcapng",
+    ),
+    _Other(
+        "container-json",
+        _lines(rb'\{\s*"log"\s*:\s*"'),
+        "the log of a container as Docker keeps it",
+        "jq -j .log FILE > drive.txt",
+    ),
+    _Other(
+        "journal-json",
+        _lines(rb'\{\s*"(?:MESSAGE|_[A-Z_]+)"\s*:'),
+        "the journal as JSON",
+        "jq -r .MESSAGE FILE > drive.txt",
+    ),
+    _Other(
+        "journal-export",
+        _lines(rb"__CURSOR=s="),
+        "the journal in its export format",
+        "sed -n s/^MESSAGE=//p FILE > drive.txt",
     ),
     _Other(
         "isotpdump",
