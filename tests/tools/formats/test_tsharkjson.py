@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rule: frames that tshark prints as JSON are read if their bytes are among it; what has none is told, and what helps."""
+"""Rule: frames that tshark prints as JSON are read if their bytes are among it; what has none is told by its name."""
 
 from __future__ import annotations
 

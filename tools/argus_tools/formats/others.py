@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import base64
-import binascii
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -12,6 +10,7 @@ from io import BufferedReader
 from itertools import pairwise
 from typing import Final
 
+from argus_tools.formats import base64lines
 from argus_tools.formats.base import (
     EXPECTED,
     Chunk,
@@ -23,6 +22,7 @@ from argus_tools.formats.base import (
     remedy,
 )
 from argus_tools.formats.hexdump import FORMAT as HEXDUMP
+from argus_tools.formats.source import HEAD_BYTES
 from argus_tools.formats.text import first_lines
 from hil_sim.arcos import Unframer
 
@@ -45,9 +45,10 @@ class _Other:
     """One such kind: how it is recognised, what it is, and what to do; FILE stands for the file's name."""
 
     name: str
-    sniff: Callable[[bytes], bool]
+    sniff: Callable[[bytes], object]
     what: str
-    remedy: str
+    # Or what says it of the file's beginning.
+    remedy: str | Callable[[bytes], str]
 
 
 def _unlike_hexdump(pattern: bytes) -> Callable[[bytes], bool]:
@@ -64,16 +65,6 @@ def _lines(pattern: bytes, least: int = 1) -> Callable[[bytes], bool]:
     """Recognise text by so many of its first lines."""
     match = re.compile(pattern).match
     return lambda head: sum(bool(match(line)) for line in first_lines(head)) >= least
-
-
-def _is_base64(head: bytes) -> bool:
-    text = b"".join(head[:_SNIFFED].split())
-    if not re.fullmatch(rb"[A-Za-z0-9+/]{16,}={0,2}", text):
-        return False
-    try:
-        return any(True for _ in Unframer().feed(base64.b64decode(text[: len(text) & ~3])))
-    except binascii.Error:
-        return False
 
 
 def _is_fields(head: bytes) -> bool:
@@ -338,7 +329,7 @@ _OTHERS: Final = (
         "bytes in lines that are wrapped inside of a byte",
         r"tr -d '\r\n' < FILE > drive.txt",
     ),
-    _Other("base64", _is_base64, "base64 of a robot's link", "base64 -d FILE > drive.bin"),
+    _Other("base64", base64lines.find, "base64 of a robot's link", base64lines.remedy_of),
     _Other(
         "quoted-printable",
         _is_quoted_printable,
@@ -369,21 +360,28 @@ _OTHERS: Final = (
 class _Refusal(Reader):
     """Reads nothing: says what the file is."""
 
-    def __init__(self, options: ReadOptions, other: _Other) -> None:
+    def __init__(self, stream: BufferedReader, options: ReadOptions, other: _Other) -> None:
         self.damage = DamageList()
+        self._stream = stream
         self._options = options
         self._other = other
 
     def __iter__(self) -> Iterator[Chunk]:
-        helps = remedy(self._other.remedy, self._options)
+        helps = self._other.remedy
+        helps = remedy(
+            helps if isinstance(helps, str) else helps(self._stream.peek(HEAD_BYTES)), self._options
+        )
         raise LogError(f"{self._options.name}: looks like {self._other.what}; expected {EXPECTED}; {helps}")
 
 
 def _format(other: _Other) -> Format:
-    def reader(_stream: BufferedReader, options: ReadOptions) -> Reader:
-        return _Refusal(options, other)
+    def reader(stream: BufferedReader, options: ReadOptions) -> Reader:
+        return _Refusal(stream, options, other)
 
-    return Format(name=other.name, help=other.what, sniff=other.sniff, reader=reader, is_read=False)
+    def sniff(head: bytes) -> bool:
+        return bool(other.sniff(head))
+
+    return Format(name=other.name, help=other.what, sniff=sniff, reader=reader, is_read=False)
 
 
 FORMATS: Final = tuple(map(_format, _OTHERS))
