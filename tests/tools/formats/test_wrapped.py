@@ -68,6 +68,8 @@ BEFORE: dict[str, Before] = {
     "nl": lambda n: f"{n + 1:6}  ",
     "less -N": lambda n: f"{n + 1:7} ",
     "grep -n": lambda n: f"{n + 1}:",
+    "grep -C": lambda n: f"can0.log{':' if n % 3 else '-'}{n + 1}{':' if n % 3 else '-'}",
+    "diff": lambda n: "+",
     "grep -Hn": lambda n: f"can0.log:{n + 1}:",
     "a title in colours": lambda n: "\x1b]0;robot\x07\x1b(B\x1b[1;32m",
     "indented": lambda n: "    ",
@@ -156,6 +158,35 @@ def test_lines_of_others_and_a_cut_one_are_told_by_their_number(before: str, tmp
     log = read(tmp_path / "a.txt", cut)
     assert joined(list(log), "r2c") == ROBOT
     assert "line 13" in [entry.place for entry in log.damage]
+
+
+@pytest.mark.parametrize("others", [1, 3, 5])
+@pytest.mark.parametrize("name", ["candump -L", "screen", "python-can", "xxd"])
+def test_others_that_write_to_the_same_journal(name: str, others: int, tmp_path: Path) -> None:
+    other = "Nov 25 06:38:47 hall kernel: [   12.345678] usb 1-1: new full-speed device\n" * others
+    text = "".join(
+        line + other for line in behind(BEFORE["journalctl"], TEXTS[name]).splitlines(keepends=True)
+    )
+    chunks = list(read(tmp_path / "a.txt", text))
+    assert (joined(chunks, "r2c"), joined(chunks, "c2r")) == both(name)
+
+
+@pytest.mark.parametrize("mark", ["{noformat}", "{code:java}", "```", "~~~", "<pre>"])
+@pytest.mark.parametrize("name", ["candump -L", "screen", "SavvyCAN", "xxd"])
+def test_marks_of_a_block(name: str, mark: str, tmp_path: Path) -> None:
+    log = read(tmp_path / "a.txt", f"{mark}\n{TEXTS[name]}{mark}\n")
+    chunks = list(log)
+    assert (joined(chunks, "r2c"), joined(chunks, "c2r")) == both(name)
+
+
+@pytest.mark.parametrize(
+    "before", ["grep -n", "grep -C", "diff", "cat -n", "a table of Markdown", "docker compose logs"]
+)
+def test_a_prefix_without_times_takes_none_away(before: str, tmp_path: Path) -> None:
+    chunks = list(read(tmp_path / "a.txt", behind(BEFORE[before], CAN["candump -L"])))
+    assert [chunk.t for chunk in chunks if chunk.dir == "r2c"] == pytest.approx(
+        [START_S + 0.1 * n + 0.006 for n in range(12)], abs=1e-5
+    )
 
 
 def test_a_prefix_that_is_missing_in_the_first_line(tmp_path: Path) -> None:

@@ -17,8 +17,8 @@ from argus_tools.formats.text import Rewritten, first_lines, is_passed
 LINE_MAX: Final = 1 << 20
 T_MAX_S: Final = 1e12
 _KEY: Final = b'"hex"'
-# How records of tshark, of containers and of the journal begin.
-_FOREIGN: Final = re.compile(rb'\{\s*"(?:index|timestamp|_index|log|MESSAGE|_[A-Z_]+)"')
+# How records of tshark, of containers and of the journal begin, and what a wiki puts above a block.
+_FOREIGN: Final = re.compile(rb'\{\s*"(?:index|timestamp|_index|log|MESSAGE|_[A-Z_]+)"|\{[a-z]+[}:]')
 # What nests; a backslash takes the next byte with it.
 _TOKEN: Final = re.compile(rb'\\.|["{}]', re.DOTALL)
 _PARSER: Final = json.JSONDecoder()

@@ -18,10 +18,11 @@ from hil_sim.arcos import Unframer
 _LINE_MAX: Final = 1 << 14
 # So many bytes may stand before a line, with so many places where the line may begin.
 _PREFIX_MOST: Final = 160
-_PLACES_MOST: Final = 32
+_PLACES_MOST: Final = 48
 # So many lines show the same shape by no chance; a block shows what it is within so many.
 _RECORD: Final = b'"hex"'
-_CLOSE: Final = 4
+_SHARE: Final = 8
+_CLOSE: Final = 16
 _ALIKE_MIN: Final = 3
 _WINDOW: Final = 64
 _STEP: Final = 32
@@ -32,7 +33,7 @@ _PART: Final = re.compile(rb"[0-9A-Za-z_\x80-\xff]+|[ \t]+|.", re.DOTALL)
 _WORDS: Final = (rb"[0-9]+", rb"[A-Za-z_]+", rb"[0-9A-Za-z_\x80-\xff]+")
 _WORD: Final = re.compile(rb"[0-9A-Za-z_\x80-\xff]")
 _CLOCK: Final = re.compile(rb"\d\d:\d\d:\d\d")
-_PLACE: Final = re.compile(rb"[ \t]+|[:|>\])]")
+_PLACE: Final = re.compile(rb"[ \t]+|[^0-9A-Za-z_\s\x80-\xff]")
 # What takes any text with bytes in it, or any file: only such is looked into.
 _WEAK: Final = ("bin", "hextext", "hexwords")
 _CAN: Final = ("candump", "can-lines", "asc", "trc", "can-csv")
@@ -222,11 +223,11 @@ def _says_more(line: bytes, shape: re.Pattern[bytes]) -> bool:
 
 
 def _is_common(matched: Sequence[int], lines: Sequence[bytes]) -> bool:
-    """Whether most lines from the first to the last of these are among them."""
+    """Whether these are many of the lines from the first to the last: others may have written to the same journal."""
     if len(matched) < min(_ALIKE_MIN, len(lines)) or not matched:
         return False
     written = sum(bool(line.strip()) for line in lines[matched[0] : matched[-1] + 1])
-    return 2 * len(matched) > written
+    return _SHARE * len(matched) > written
 
 
 def _dense(matched: Sequence[int]) -> int:
@@ -262,7 +263,8 @@ def _class(part: bytes) -> bytes:
     if part.isspace():
         return rb"[ \t]+"
     if not _WORD.match(part):
-        return re.escape(part)
+        # grep puts one behind the name and number of what it looks for, the other behind those of a line near it.
+        return rb"[:-]" if part in (b":", b"-") else re.escape(part)
     return next(one for one in _WORDS if re.fullmatch(one, part))
 
 

@@ -34,7 +34,6 @@ _TINT: Final = {"ERROR": "\033[31m", "WARN": "\033[33m"}
 _PLAIN: Final = "\033[0m"
 _DISABLED: Final = "SONAR_DISABLED"
 _STATUS: Final = {"event": "STATUS", "id": 91, "level": 0, "name": "status"}
-_SIP_BYTES: Final = 20  # up to its sonar count
 _FLAGS_AT: Final = SIP["OFFSET_FLAGS"] - SIP["OFFSET_TYPE"]
 _ALL_ARRAYS: Final = (1 << TIMING["ARRAYS_MAX"]) - 1
 _ARRAY: Final = TIMING["TRANSDUCERS_PER_ARRAY"]
@@ -63,12 +62,12 @@ class _Arrays:
         """The arrays that fire now."""
         return self._asked if self._shown is None else self._shown
 
-    def take(self, row: Row) -> bool:
-        """Take a packet; return whether other arrays fire since."""
+    def take(self, row: Row, is_read: bool) -> bool:
+        """Take a packet, which may be a SIP that can be read; return whether other arrays fire since."""
         before, was_shown = self.firing, self._shown is not None
         if row.dir == CLIENT_TO_ROBOT and row.type == "SONAR":
             self._ask(Command.decode(row.data).value)
-        elif row.dir == ROBOT_TO_CLIENT and row.type == "SIP" and len(row.data) >= _SIP_BYTES:
+        elif row.dir == ROBOT_TO_CLIENT and is_read:
             shown = (
                 int.from_bytes(row.data[_FLAGS_AT : _FLAGS_AT + 2], "little") // FLAG["SONAR1"] & _ALL_ARRAYS
             )
@@ -110,7 +109,8 @@ class Listener:
 
     def take(self, row: Row) -> Iterator[Said]:
         """Take the next packet or damage of the log."""
-        if row.ok and self._arrays.take(row):
+        is_read = is_sip(row)
+        if row.ok and self._arrays.take(row, is_read):
             self._leave()
         if row.dir != ROBOT_TO_CLIENT:
             if row.type == "CLOSE":
@@ -118,7 +118,6 @@ class Listener:
                 if self.core is not None:
                     self._leave()
             return
-        is_read = is_sip(row)
         if row.t is not None:
             self._clock_ms = max(self._clock_ms, round(row.t * 1000))
         elif is_read:
