@@ -105,19 +105,24 @@ class Log:
             what = self.source.damage[0].what if self.source.damage else "is empty"
             raise LogError(f"{path}: {what}")
         self.format = formats()[format_name] if format_name else find_format(self.source.head)
-        inner = self._quoted() if format_name is None else None
-        wrap = self._wrapped() if format_name is None and not inner else None
-        self.format = wrap.form if wrap else inner or self.format
-        stream = self._cleaned()
-        if inner:
-            stream = BufferedReader(Unquoted(stream), BLOCK_BYTES)
-        elif wrap:
-            for told in wrap.told():
-                self.source.damage.append(told)
-            stream = BufferedReader(wrap.stream(stream), BLOCK_BYTES)
+        stream = self._cleaned() if format_name else self._opened()
         if explained := crlf_damage(self.source.head, self.options):
             self.source.damage.append(explained)
         self._reader = self.format.reader(stream, self.options)
+
+    def _opened(self) -> BufferedReader:
+        """Return the log's text without what it is inside of, if it is; its form is that of what is inside."""
+        inner = self._quoted()
+        wrap = None if inner else self._wrapped()
+        self.format = wrap.form if wrap else inner or self.format
+        stream = self._cleaned()
+        if inner:
+            return BufferedReader(Unquoted(stream), BLOCK_BYTES)
+        if wrap is None:
+            return stream
+        for told in wrap.told():
+            self.source.damage.append(told)
+        return BufferedReader(wrap.stream(stream), BLOCK_BYTES)
 
     def _cleaned(self) -> BufferedReader:
         """Return the file's bytes; those of a text with LF at its ends of lines, without colours and marks."""

@@ -278,11 +278,17 @@ class _Cells:
                 else self._at(columns.data)
             )
             data = bytes.fromhex(re.sub(r"0x|[-:|']", " ", text.lower()))
-        if size is not None and columns.is_code and len(data) >= _CODED.get(size, _BYTES_MAX + 1):
+        return self._sized(data, size)
+
+    def _sized(self, data: bytes, size: int | None) -> bytes:
+        """Return so many of the bytes; a code above eight stands for more."""
+        if size is None:
+            return data[:_BYTES_MAX]
+        if self._columns.is_code and len(data) >= _CODED.get(size, _BYTES_MAX + 1):
             size = _CODED[size]
-        if size is not None and len(data) < size:
+        if len(data) < size:
             raise ValueError(f"{len(data)} of {size} bytes")
-        return data[: size if size is not None else _BYTES_MAX]
+        return data[:size]
 
     def _is_last(self, column: int) -> bool:
         others = (self._columns.can_id, self._columns.time, self._columns.size, self._columns.bus)

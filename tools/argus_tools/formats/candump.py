@@ -31,6 +31,8 @@ _LINE_MAX: Final = 4096
 _ID: Final = rb"([0-9A-Fa-f]{3}|[0-9A-Fa-f]{8})"
 # No interface has a colon in its name; a number that is none of a channel is a time that something else put there.
 _BUS: Final = rb"((?!\d+\.\d)[^\s#()\[\]{}:]+)"
+# No computer has more of them.
+_BUSES_MOST: Final = 16
 _LINE: Final = re.compile(
     rb"\s*(?:\((\d{1,12}\.\d{1,9})\)\s+)?(?:" + _BUS + rb"\s+)?" + _ID + rb"#"
     rb"(?:R[0-9A-Fa-f_]*|(?:#[0-9A-Fa-f])?([0-9A-Fa-f.]*))(?:\s+[RTX])*\s*"
@@ -207,6 +209,8 @@ def _sniff(head: bytes) -> bool:
 def _are_numbered(found: list[re.Match[bytes]]) -> bool:
     """Whether what stands where an interface does only counts the lines."""
     names = [match[2 if match.re is _LINE else 3] or b"" for match in found]
+    if len(set(names)) > _BUSES_MOST:
+        return True
     if len(names) < 2 or not all(map(bytes.isdigit, names)):
         return False
     return all(int(after) == int(before) + 1 for before, after in pairwise(names))

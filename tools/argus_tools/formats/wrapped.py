@@ -135,13 +135,16 @@ def unwrapped(head: bytes, plain: Format, read: Sequence[Format], options: ReadO
     if as_it_is.packets and not as_it_is.junk and _RECORD not in head:
         return None
     lines = _whole_lines(head)
-    strong = [form for form in read if form.name in _STRONG]
-    weak = [form for form in read if form.name in _WEAK[1:]]
-    best = _best(_wraps(lines, strong), lines, options, plain, as_it_is)
+    best = _best(_wraps(lines, _of(read, _STRONG)), lines, options, plain, as_it_is)
     if best is None and plain.is_read:
+        weak = _of(read, _WEAK[1:])
         ways = _blocks(lines, weak) if plain.name == "bin" else _behind(lines, weak)
         best = _best(ways, lines, options, plain, as_it_is)
     return best
+
+
+def _of(read: Sequence[Format], names: Sequence[str]) -> list[Format]:
+    return [form for form in read if form.name in names]
 
 
 def _best(
@@ -206,14 +209,19 @@ def _wraps(lines: Sequence[bytes], read: Sequence[Format]) -> Iterator[Wrap]:
 def _behind(lines: Sequence[bytes], read: Sequence[Format]) -> Iterator[Wrap]:
     """Yield what stands behind prefixes."""
     for shape in _shapes(lines):
-        matched = [at for at, line in enumerate(lines) if shape.match(line)]
-        matched = matched[_dense(matched) :]
+        matched = _matched(lines, shape)
         if not _is_common(matched, lines):
             continue
         rest = b"".join(shape.sub(b"", lines[at], count=1) for at in matched[:_WINDOW])
         form = next((one for one in read if one.sniff(rest)), None)
         if form is not None and not (form.name in _WEAK and _says_more(lines[matched[0]], shape)):
             yield Wrap(form, shape, matched[0])
+
+
+def _matched(lines: Sequence[bytes], shape: re.Pattern[bytes]) -> list[int]:
+    """Return the lines that begin so, from where several do."""
+    matched = [at for at, line in enumerate(lines) if shape.match(line)]
+    return matched[_dense(matched) :]
 
 
 def _says_more(line: bytes, shape: re.Pattern[bytes]) -> bool:
