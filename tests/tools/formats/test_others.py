@@ -239,8 +239,8 @@ SEEDS: dict[str, bytes] = {
     "python-can": b"Timestamp: 1.0 ID: 648 S Rx DL: 2 01 fa Channel: 0\n" * 20,
     "journal": b"Nov 25 06:38:47 hall candump[1]: (1.0) can0 648#06FAFB03000000CC\n" * 30,
     "ticket": b"It fell silent beside the door.\n" * 70 + b"(1.0) can0 648#06FAFB03000000CC\n" * 30,
-    "tshark-json": b'{"timestamp":"1","layers":{"can":{"can_can_id":"1608"},"data":{"data_data_data":"06:fa:fb:03:00:00:00"}}}\n'
-    * 20,
+    "tshark-json": b'{"timestamp":"1","layers":{"can":{"can_can_id":"1608"},'
+    b'"data":{"data_data_data":"06:fa:fb:03:00:00:00"}}}\n' * 20,
     "base64": b"The capture:\n" + base64.encodebytes(ROBOT),
     "utf8": ROBOT.decode("latin-1").encode(),
 }

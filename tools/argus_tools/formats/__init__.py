@@ -42,6 +42,7 @@ __all__ = [
 
 # Of text that comes through a pipe so much is waited for before it is taken for raw bytes: prose may stand above a log.
 _TEXT_HEAD_BYTES: Final = HEAD_BYTES
+_LINES_MIN, _LIVE_BYTES = 3, 1 << 12
 
 # In the order in which they are tried on a file: first what begins with a mark of its own, then text.
 # Hexadecimal text may hold anything, so it comes after. "bin" takes whatever no other form claims. Each
@@ -76,7 +77,11 @@ def find_format(head: bytes) -> Format:
 def is_recognised(head: bytes) -> bool:
     """Whether no more of a file is needed to say what it is; raw bytes are known by what is no text."""
     form = find_format(head)
-    return form.name != "bin" or not is_text(head) or len(head) >= _TEXT_HEAD_BYTES
+    if form.name != "bin" or not is_text(head) or len(head) >= _TEXT_HEAD_BYTES:
+        return True
+    # A live log behind a prefix is not kept waiting.
+    few = head.count(b"\n") >= _LINES_MIN and len(head) <= _LIVE_BYTES
+    return few and unwrapped(unmarked(head), form, list(formats().values()), ReadOptions()) is not None
 
 
 def format_of_name(path: str) -> Format | None:

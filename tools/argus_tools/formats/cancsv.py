@@ -38,7 +38,7 @@ _SIZE: Final = re.compile(
     r"len|length|dlc?|dl|data ?length( code)?|size|bytes|(?:daten)?l.{1,3}nge|anzahl(?: bytes)?"
 )
 _CODE: Final = re.compile(r"dlc|.*code")
-_DATA: Final = re.compile(r"(data|payload|(?:nutz)?daten)[ -]?(bytes|field|feld)?( ?[(\[]?hex[)\]]?)?")
+_DATA: Final = re.compile(r"(data|payload|(?:nutz)?daten)[ -]?(bytes|f(?:ie|e)ld)?( ?[(\[]?hex[)\]]?)?")
 _ONE: Final = re.compile(r"(?:d|b|db|data|byte|data ?byte|daten(?:byte)?)[ _-]?\[?(\d{1,2})\]?")
 _BUS: Final = re.compile(r"bus|channel|chn?|interface|network|kanal|schnittstelle")
 _LONG: Final = re.compile(r"e?xt(ended|d)?|is[ _]extended([ _]id)?|ide|erweitert")
