@@ -127,16 +127,19 @@ static void halt_to_wait(const argus_wait_t why, argus_intent_t *const intent) {
     argus_to_wait(intent, why);
 }
 
+static bool is_barred_ahead(const argus_t *const self) {
+    const int sonar = argus_nearest_ahead(self);
+    return sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
+}
+
 // A leg to drive. False: `intent` is what the SIP calls for.
 static bool has_way(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
                     argus_intent_t *const intent) {
     if (mine->jog_mm > 0 || mine->task.has_leg) {
         return true;
     }
-    const int sonar = argus_nearest_ahead(self);
-    const bool stopped =
-        sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
-    const argus_search_news_t news = argus_task_choose(&mine->task, &self->knowledge, &self->echoes, stopped);
+    const argus_search_news_t news =
+        argus_task_choose(&mine->task, &self->knowledge, &self->echoes, is_barred_ahead(self));
     if (news == ARGUS_SEARCH_GOES_ON) {
         intent->act = is_too_fast(self, guard) ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING; // a MOVE ends by itself
         return false;
@@ -159,8 +162,9 @@ static bool has_way(const argus_t *const self, const argus_guard_t *const guard,
 static bool leads_out(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
                       const int32_t by_cdeg) {
     const argus_mask_t doubted = argus_with_health(&self->knowledge, ARGUS_SUSPECT);
-    const bool open = by_cdeg != 0 ? argus_guard_may_nudge(guard, by_cdeg)
-                                   : argus_flank_mm(&self->knowledge, doubted) > FLANK_MM;
+    const bool open = by_cdeg != 0
+                          ? argus_guard_may_nudge(guard, by_cdeg)
+                          : !is_barred_ahead(self) && argus_flank_mm(&self->knowledge, doubted) > FLANK_MM;
     return open && argus_task_escape(&mine->task, &self->knowledge, &self->echoes, by_cdeg);
 }
 

@@ -113,6 +113,31 @@ def test_what_is_covered_for_is_not_gone_round_in_tiny_steps(hall: str, sonar: i
     assert outcome.t_s < 60
 
 
+@pytest.mark.parametrize("sonar", [1, 6])
+@pytest.mark.parametrize(
+    ("world", "goal"), [("office", (2500, 0)), ("corridor", (4000, 0)), ("open-office", (1550, 1500))]
+)
+def test_what_bars_both_turn_and_way_is_backed_away_from(
+    world: str, goal: tuple[float, float], sonar: int
+) -> None:
+    """So a lie is found out. The robot used to choose a way again and again, and never to move."""
+    outcome = run(Mission(world, (goal,), faults=(f"stuck:{sonar}:value=150",), seed=5, limit_s=150))
+    assert [e.sonar for e in outcome.events if e.name == "SONAR_DISABLED"] == [sonar]
+    assert outcome.reached
+    assert not outcome.collisions
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_post_that_bars_both_turn_and_way_is_no_fault(tmp_path: Path, side: int) -> None:
+    path = tmp_path / "post.yaml"
+    # Some 180 mm from the transducer at 50 degrees, on its axis.
+    path.write_text(HALL + f"boxes:\n  - {{centre: [250, {side * 270}], size: [40, 40], roughness: 1.0}}\n")
+    outcome = run(Mission(str(path), ((0, side * 1500),), limit_s=100))
+    assert not [e for e in outcome.events if e.name == "SONAR_DISABLED"]
+    assert outcome.reached
+    assert not outcome.collisions
+
+
 @pytest.mark.tour(2)
 @pytest.mark.parametrize("near_mm", [60, 80, 100, 120, 160])
 def test_a_wall_right_ahead_is_no_fault(tmp_path: Path, near_mm: int) -> None:
