@@ -12,11 +12,13 @@
 #define END_MM 250      // ... and one of the end: what fell silent on the way tells nothing of it
 #define TURNED_CDEG 500 // a straight way turns less
 #define ALONG_CDEG 1500 // a range so far off the way changes with it; farther off a wall beside keeps it
-#define NEAR_MM 2500    // echoes from farther off come and go
-#define STAYS_MM 100    // less than a change: of 500
-#define FITS_MM 200     // off what the odometry says
-#define FITS_WANTED 2   // ranges that change as they should end a doubt: one may be chance
-#define TURN_CDEG 3500  // so far turned a sonar looks where another one has looked
+#define ABEAM_CDEG 9000
+#define BESIDE 2       // ... as far off as this many times what is heard abeam of it
+#define NEAR_MM 2500   // echoes from farther off come and go
+#define STAYS_MM 100   // less than a change: of 500
+#define FITS_MM 200    // off what the odometry says
+#define FITS_WANTED 2  // ranges that change as they should end a doubt: one may be chance
+#define TURN_CDEG 3500 // so far turned a sonar looks where another one has looked
 #define BESIDE_CDEG 1000
 #define DIFFERS_MM 300 // what it hears there is another thing
 #define TURN_MANY 3
@@ -51,10 +53,7 @@ static void note_beginnings(argus_slip_t *const self, const argus_knowledge_t *c
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const unsigned news = knowledge->fresh & ~(unsigned)self->read;
     for (int i = 0; i < knowledge->sonars; i++) {
-        const bool counts = (news >> i & 1u) != 0 && argus_usable(knowledge, i) &&
-                            knowledge->sonar[i].reading_mm <= NEAR_MM &&
-                            knowledge->sonar[i].reading_mm > knowledge->robot->min_mm + STRETCH_MM;
-        if (counts) {
+        if ((news >> i & 1u) != 0 && argus_usable(knowledge, i)) {
             self->reading_mm[i] = knowledge->sonar[i].reading_mm;
         }
     }
@@ -63,7 +62,8 @@ static void note_beginnings(argus_slip_t *const self, const argus_knowledge_t *c
 
 typedef struct {
     int ahead; // those that look ahead and stayed,
-    int back;  // ... and back
+    int back;  // ... and back,
+    int plain; // ... and heard no wall beside the way
     int fits;  // those that changed as the odometry says
 } witnesses_t;
 
@@ -72,6 +72,26 @@ static bool can_tell(const argus_slip_t *const self, const argus_knowledge_t *co
                      const int sonar) {
     const uint32_t since_mm = knowledge->odometer_mm - knowledge->sonar[sonar].odometer_mm;
     return since_mm <= END_MM && self->reading_mm[sonar] != 0 && argus_usable(knowledge, sonar);
+}
+
+// What was heard in the beginning on a bearing of the robot; 0: nothing.
+static int32_t heard_there_mm(const argus_slip_t *const self, const argus_knowledge_t *const knowledge,
+                              const int32_t bearing) {
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (self->reading_mm[i] != 0 &&
+            argus_angle_abs_diff(bearing_cdeg(knowledge, i), bearing) <= BESIDE_CDEG) {
+            return self->reading_mm[i];
+        }
+    }
+    return 0;
+}
+
+// At both ends of the way it may hear a wall that runs along it, out at the edge of its cone.
+static bool hears_beside(const argus_slip_t *const self, const argus_knowledge_t *const knowledge,
+                         const int sonar) {
+    const int32_t wall_mm =
+        heard_there_mm(self, knowledge, bearing_cdeg(knowledge, sonar) > 0 ? ABEAM_CDEG : -ABEAM_CDEG);
+    return wall_mm != 0 && self->reading_mm[sonar] / BESIDE >= wall_mm;
 }
 
 static void ask(const argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
@@ -84,9 +104,10 @@ static void ask(const argus_slip_t *const self, const argus_knowledge_t *const k
     const int32_t change = knowledge->sonar[sonar].reading_mm - self->reading_mm[sonar];
     if (argus_abs(change + (ahead ? way_mm : -way_mm)) <= FITS_MM) {
         of->fits++;
-    } else if (argus_abs(change) <= STAYS_MM) {
+    } else if (argus_abs(change) <= STAYS_MM && self->reading_mm[sonar] <= NEAR_MM) {
         of->ahead += ahead;
         of->back += !ahead;
+        of->plain += !hears_beside(self, knowledge, sonar);
     }
 }
 
@@ -95,7 +116,7 @@ static bool looks_both_ways(const witnesses_t *const of) {
 }
 
 static bool is_held(const witnesses_t *const of) {
-    return of->fits == 0 && (looks_both_ways(of) || of->ahead >= 2 || of->back >= 2);
+    return of->fits == 0 && of->plain > 0 && (looks_both_ways(of) || of->ahead >= 2 || of->back >= 2);
 }
 
 static bool slip(argus_slip_t *const self, const argus_pose_t *const to) {
@@ -116,7 +137,7 @@ static bool prove(argus_slip_t *const self, const argus_pose_t *const to, const 
 static bool judge_way(argus_slip_t *const self, const argus_knowledge_t *const knowledge,
                       const int32_t way_mm) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    witnesses_t of = {0, 0, 0};
+    witnesses_t of = {0, 0, 0, 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         ask(self, knowledge, i, way_mm, &of);
     }
@@ -126,17 +147,6 @@ static bool judge_way(argus_slip_t *const self, const argus_knowledge_t *const k
     }
     self->proof = of.fits > 0 ? 0 : self->proof;
     return false;
-}
-
-// What was heard, before the turn, on the bearing that a sonar has now; 0: nothing that counts.
-static int32_t heard_there_mm(const argus_slip_t *const self, const argus_knowledge_t *const knowledge,
-                              const int32_t bearing) {
-    for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_angle_abs_diff(bearing_cdeg(knowledge, i), bearing) <= BESIDE_CDEG) {
-            return self->reading_mm[i];
-        }
-    }
-    return 0;
 }
 
 // After a turn a sonar hears what another one has heard there. Where the body stays it hears what it heard.

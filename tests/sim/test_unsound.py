@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from mutants import MutatedSil
 
-from hil_sim.sil import Mission, Outcome, Sil
+from hil_sim.sil import Mission, Outcome, Sil, run
 
 CORRIDOR = """about: Rough corridor.
 start: [0, 0, 0]
@@ -224,6 +224,22 @@ def lifted(
         chassis = sil.robot.chassis
         chassis.place(x, y, chassis.th if turns else heading)
     return sil.outcome()
+
+
+@pytest.mark.tour(4, 8)
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("half_mm", [550, 600, 700, 800, 900, 1100])
+def test_a_long_rough_corridor_is_no_slip(tmp_path: Path, half_mm: int, seed: int) -> None:
+    """Its ends are out of sight, and rough walls are heard at the edges of the cones, as far off all the way."""
+    path = tmp_path / "corridor.yaml"
+    path.write_text(
+        "about: A corridor whose ends no sonar hears.\nstart: [0, 0, 0]\nroughness: 1.0\nwalls:\n"
+        f"  - {{points: [[-7000, {-half_mm}], [14000, {-half_mm}], [14000, {half_mm}], [-7000, {half_mm}]],\n"
+        "     closed: true}\n"
+    )
+    outcome = run(Mission(str(path), ((6000, 0),), seed=seed, limit_s=90))
+    assert "SLIP" not in names(outcome)
+    assert outcome.reached
 
 
 def behind_the_cable(
