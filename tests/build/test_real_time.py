@@ -170,8 +170,44 @@ def test_is_never_begun(broken):
 @pytest.mark.soak
 @pytest.mark.parametrize("workers", ["0", "2"])
 def test_who_failed_is_reported_with_how_late_the_host_was(tmp_path: Path, workers: str) -> None:
+    found = watched(tmp_path, TESTS, workers)
+    assert set(found) == {f"test_all.py::test_{name}" for name in ("fails", "fails_late", "is_never_begun")}
+    assert found["test_all.py::test_fails_late"] == 60000
+    # Less than a minute, not 0: the machine that runs this may be late itself.
+    assert found["test_all.py::test_fails"] < 60000
+
+
+SHARED = """
+import ctypes
+import pytest
+
+@pytest.fixture(scope="module")
+def drive():
+    ctypes.PyDLL(None).usleep(900_000)  # and no other thread runs
+
+def test_makes_it(drive):
+    pass
+
+def test_asks_about_it(drive):
+    assert False
+
+def test_has_its_own():
+    assert False
+"""
+
+
+@pytest.mark.soak
+def test_what_a_file_shares_was_made_late(tmp_path: Path) -> None:
+    found = watched(tmp_path, SHARED, "0")
+    asks, own = (found[f"test_all.py::test_{name}"] for name in ("asks_about_it", "has_its_own"))
+    assert asks > 800
+    assert own < asks
+
+
+def watched(tmp_path: Path, tests: str, workers: str) -> dict[str, int]:
+    """Run these tests and return those that failed, with how late the host was."""
     report = tmp_path / "new/host-late.json"
-    (tmp_path / "test_all.py").write_text(TESTS)
+    (tmp_path / "test_all.py").write_text(tests)
     (tmp_path / "conftest.py").write_text(
         "from pathlib import Path\nfrom lateness import HostWatch\n"
         f"def pytest_configure(config):\n    config.pluginmanager.register(HostWatch(Path({str(report)!r})))\n"
@@ -183,12 +219,8 @@ def test_who_failed_is_reported_with_how_late_the_host_was(tmp_path: Path, worke
     )  # fmt: skip
     found = json.loads(report.read_text())
     assert (found["exit"], done.returncode) == (1, 1), done.stdout
-    assert set(found["failed"]) == {
-        f"test_all.py::test_{name}" for name in ("fails", "fails_late", "is_never_begun")
-    }
-    assert found["failed"]["test_all.py::test_fails_late"] == 60000
-    # Less than a minute, not 0: the machine that runs this may be late itself.
-    assert found["failed"]["test_all.py::test_fails"] < 60000
+    failed: dict[str, int] = found["failed"]
+    return failed
 
 
 def test_the_measurement_tells_parts_of_a_core() -> None:

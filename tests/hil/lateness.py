@@ -53,6 +53,12 @@ def emulators_late_ms(folder: object) -> float:
     return worst_ms
 
 
+def shares(item: pytest.Item) -> bool:
+    """Whether a test asks about what its file has made once for all, such as a drive."""
+    definitions = item._fixtureinfo.name2fixturedefs  # type: ignore[attr-defined]
+    return any(one.scope == "module" for found in definitions.values() for one in found)
+
+
 class HostWatch:
     """The plugin: workers measure, the controller writes `report`."""
 
@@ -60,6 +66,7 @@ class HostWatch:
         self._report = report
         self._metronome = Metronome()
         self._failed: dict[str, int] = {}
+        self._of_file: dict[Path, float] = {}
 
     @pytest.hookimpl(hookwrapper=True)
     def pytest_runtest_protocol(self) -> Generator[None, None, None]:
@@ -69,13 +76,19 @@ class HostWatch:
 
     @pytest.hookimpl(hookwrapper=True)
     def pytest_runtest_makereport(self, item: pytest.Item) -> Generator[None, pytest.CallInfo[None], None]:
-        """Add to a report of failure how late the host was since the test began, 0 for a punctual one."""
+        """Add to a report of failure how late the host was since the test began, 0 for a punctual one.
+
+        What a file shares is made in the first test that asks for it, so lateness counts from there.
+        """
         outcome = yield
         report = outcome.get_result()  # type: ignore[attr-defined]
+        worst_ms = max(self._metronome.worst_ms, self._metronome.late_ms())
+        self._of_file[item.path] = max(worst_ms, self._of_file.get(item.path, 0.0))
         if not report.failed:
             return
         folder = getattr(item, "funcargs", {}).get("tmp_path")
-        worst_ms = max(self._metronome.worst_ms, self._metronome.late_ms(), emulators_late_ms(folder))
+        since_ms = self._of_file[item.path] if shares(item) else worst_ms
+        worst_ms = max(since_ms, emulators_late_ms(folder))
         report.user_properties.append((_KEY, round(worst_ms) if worst_ms > LATE_MS else 0))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
