@@ -94,7 +94,7 @@ class TsharkJsonReader:
             number += 1
             try:
                 yield from self._frame(_Fields(layers), number)
-            except (ValueError, struct.error) as error:
+            except (ValueError, RecursionError, struct.error) as error:
                 self.damage.append(Damage(f"frame {number}", f"no frame ({str(error)[:60]})"))
         if not self._has_bytes:
             helps = remedy(_REMEDY, self._options)
