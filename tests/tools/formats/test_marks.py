@@ -52,6 +52,7 @@ def check(path: Path, text: str, client: bytes = SENT) -> None:
     assert not log.damage
 
 
+@pytest.mark.tour(80, 200)
 @pytest.mark.parametrize("head", HEADS)
 @pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("names", NAMES, ids=lambda names: names[1])

@@ -24,6 +24,8 @@ _RECORD: Final = b'"hex"'
 _SHARE: Final = 8
 _CLOSE: Final = 16
 _ALIKE_MIN: Final = 3
+# Fewer lines than that which are so long together show no shape, and take seconds to look into.
+_LONG: Final = 1 << 12
 _WINDOW: Final = 64
 _STEP: Final = 32
 # Prefixes are looked for in lines at these places of a file, in eighths: prose may stand above and below.
@@ -135,6 +137,8 @@ def unwrapped(head: bytes, plain: Format, read: Sequence[Format], options: ReadO
     if as_it_is.packets and not as_it_is.junk and _RECORD not in head:
         return None
     lines = _whole_lines(head)
+    if len(lines) < _ALIKE_MIN and len(head) > _LONG:
+        return None
     best = _best(_wraps(lines, _of(read, _STRONG)), lines, options, plain, as_it_is)
     if best is None and plain.is_read:
         weak = _of(read, _WEAK[1:])
