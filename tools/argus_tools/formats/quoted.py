@@ -4,12 +4,10 @@
 from __future__ import annotations
 
 import re
-from io import BufferedReader
 from typing import Final
 
-from argus_tools.formats.text import Rewritten, is_text
+from argus_tools.formats.text import RewrittenLines, is_text
 
-_LINE_MAX: Final = 1 << 14
 _QUOTE: Final = re.compile(rb"(?:[ ]?>)+[ ]?")
 
 
@@ -25,21 +23,8 @@ def unquoted(head: bytes) -> bytes | None:
     return b"".join(_QUOTE.sub(b"", line, count=1) if line.startswith(b">") else line for line in lines)
 
 
-class Unquoted(Rewritten):
+class Unquoted(RewrittenLines):
     """The lines of a stream without those marks."""
 
-    def __init__(self, stream: BufferedReader) -> None:
-        super().__init__(stream)
-        self._line = b""
-        self._begins = True
-
-    def _rewrite(self, data: bytes) -> bytes:
-        """Return whole lines without their marks; what is begun waits, unless it is long."""
-        lines = (self._line + data).splitlines(keepends=True)
-        waits = bool(lines) and bool(data) and not lines[-1].endswith(b"\n") and len(lines[-1]) < _LINE_MAX
-        self._line = lines.pop() if waits else b""
-        out = []
-        for line in lines:
-            out.append(_QUOTE.sub(b"", line, count=1) if self._begins and line.startswith(b">") else line)
-            self._begins = line.endswith(b"\n")
-        return b"".join(out)
+    def _rewrite_line(self, line: bytes, begins: bool) -> bytes:
+        return _QUOTE.sub(b"", line, count=1) if begins and line.startswith(b">") else line

@@ -17,6 +17,7 @@ PIECE_BYTES: Final = 1 << 14
 _FIRST_LINES: Final = 64
 _BEGINNING: Final = 1 << 8
 _BLOCK: Final = 1 << 17
+_LINE_MAX: Final = 1 << 14
 # Control characters that no text has; ESC is of colours.
 _BINARY: Final = re.compile(rb"[\x00-\x06\x0e-\x1a\x1c-\x1f\x7f]")
 _WORD_END: Final = re.compile(rb"[\s,;](?=[^\s,;]*\Z)")
@@ -98,6 +99,30 @@ class Rewritten(RawIOBase):
 
     def _rewrite(self, data: bytes) -> bytes:
         """Return what is sure by now; no data: the end, nothing may wait."""
+        raise NotImplementedError
+
+
+class RewrittenLines(Rewritten):
+    """A stream of which each line is written anew."""
+
+    def __init__(self, stream: BufferedReader) -> None:
+        super().__init__(stream)
+        self._line = b""
+        self._begins = True
+
+    def _rewrite(self, data: bytes) -> bytes:
+        """Return whole lines; what is begun waits, unless it is long."""
+        lines = (self._line + data).splitlines(keepends=True)
+        waits = bool(lines) and bool(data) and not lines[-1].endswith(b"\n") and len(lines[-1]) < _LINE_MAX
+        self._line = lines.pop() if waits else b""
+        return b"".join(map(self._part, lines))
+
+    def _part(self, line: bytes) -> bytes:
+        begins, self._begins = self._begins, line.endswith(b"\n")
+        return self._rewrite_line(line, begins)
+
+    def _rewrite_line(self, line: bytes, begins: bool) -> bytes:
+        """Return a line, or part of a long one; `begins`: it is the beginning of one."""
         raise NotImplementedError
 
 

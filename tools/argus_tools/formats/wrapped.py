@@ -12,10 +12,9 @@ from typing import Final, NamedTuple
 from argus_tools.formats.base import Damage, Format, LogError, ReadOptions
 from argus_tools.formats.marks import marks_in
 from argus_tools.formats.stamps import Times
-from argus_tools.formats.text import Rewritten, begins_as_text, is_text
+from argus_tools.formats.text import RewrittenLines, begins_as_text, is_text
 from hil_sim.arcos import Unframer
 
-_LINE_MAX: Final = 1 << 14
 # So many bytes may stand before a line, with so many places where the line may begin.
 _PREFIX_MOST: Final = 160
 _PLACES_MOST: Final = 48
@@ -62,28 +61,19 @@ class Wrap(NamedTuple):
         return Unwrapped(stream, self)
 
 
-class Unwrapped(Rewritten):
+class Unwrapped(RewrittenLines):
     """The lines of a stream without what stands before them, and none of those above the log."""
 
     def __init__(self, stream: BufferedReader, wrap: Wrap) -> None:
         super().__init__(stream)
         self._above = wrap.above
         self._bare = _bare(wrap)
-        self._line = b""
-        self._begins = True
 
-    def _rewrite(self, data: bytes) -> bytes:
-        """Return whole lines; what is begun waits, unless it is long."""
-        lines = (self._line + data).splitlines(keepends=True)
-        waits = bool(lines) and bool(data) and not lines[-1].endswith(b"\n") and len(lines[-1]) < _LINE_MAX
-        self._line = lines.pop() if waits else b""
-        return b"".join(map(self._part, lines))
-
-    def _part(self, line: bytes) -> bytes:
-        begins, self._begins = self._begins, line.endswith(b"\n")
+    def _rewrite_line(self, line: bytes, begins: bool) -> bytes:
         if self._above:
-            self._above -= self._begins
-            return b"\n" if self._begins else b""
+            ends = line.endswith(b"\n")
+            self._above -= ends
+            return b"\n" if ends else b""
         return self._bare(line) if begins else line
 
 
