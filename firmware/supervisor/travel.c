@@ -127,9 +127,14 @@ static void halt_to_wait(const argus_wait_t why, argus_intent_t *const intent) {
     argus_to_wait(intent, why);
 }
 
+// Where no sonar looks ahead any more, all that counts was seen in sweeps.
+static int32_t reading_of(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= ARGUS_NO_SONAR && sonar < ARGUS_SONARS);
+    return sonar < 0 ? self->knowledge.robot->no_echo_mm : self->knowledge.sonar[sonar].reading_mm;
+}
+
 static bool is_barred_ahead(const argus_t *const self) {
-    const int sonar = argus_nearest_ahead(self);
-    return sonar >= 0 && self->knowledge.sonar[sonar].reading_mm <= self->config.object_range_mm;
+    return reading_of(self, argus_nearest_ahead(self)) <= self->config.object_range_mm;
 }
 
 // A leg to drive. False: `intent` is what the SIP calls for.
@@ -240,12 +245,6 @@ static void blocked(argus_travel_t *const mine, const argus_event_id_t event, co
     intent->stop = ARGUS_STOP_HALT;
     intent->way = ARGUS_WAY_REFUSE;
     mine->jog_mm = 0;
-}
-
-// Where no sonar looks ahead any more, all that counts was seen in sweeps.
-static int32_t reading_of(const argus_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= ARGUS_NO_SONAR && sonar < ARGUS_SONARS);
-    return sonar < 0 ? self->knowledge.robot->no_echo_mm : self->knowledge.sonar[sonar].reading_mm;
 }
 
 static ARGUS_APART bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {

@@ -19,7 +19,6 @@ from hil_sim.arcos import Unframer
 _PREFIX_MOST: Final = 160
 _PLACES_MOST: Final = 48
 # So many lines show the same shape by no chance; a block shows what it is within so many.
-_RECORD: Final = b'"hex"'
 _SHARE: Final = 8
 _CLOSE: Final = 16
 _ALIKE_MIN: Final = 3
@@ -35,11 +34,13 @@ _WORDS: Final = (rb"[0-9]+", rb"[A-Za-z_]+", rb"[0-9A-Za-z_\x80-\xff]+")
 _WORD: Final = re.compile(rb"[0-9A-Za-z_\x80-\xff]")
 _CLOCK: Final = re.compile(rb"\d\d:\d\d:\d\d")
 _PLACE: Final = re.compile(rb"[ \t]+|[^0-9A-Za-z_\s\x80-\xff]")
+# Records hold times and directions besides their bytes.
+_RECORD: Final = b'"hex"'
 # What takes any text with bytes in it, or any file: only such is looked into.
 _WEAK: Final = ("bin", "hextext", "hexwords")
 _CAN: Final = ("candump", "can-lines", "asc", "trc", "can-csv")
 _WHOLE: Final = (*_CAN, "jsonl")
-_STRONG: Final = (*_CAN, "jsonl", "frame-dump", "numdump", "hexdump")
+_STRONG: Final = (*_WHOLE, "frame-dump", "numdump", "hexdump")
 
 
 class Wrap(NamedTuple):
@@ -123,7 +124,6 @@ def unwrapped(head: bytes, plain: Format, read: Sequence[Format], options: ReadO
     if (plain.is_read and plain.name not in _WEAK) or not begins_as_text(head):
         return None
     as_it_is = _found(head, plain, options)
-    # Records hold times and directions besides their bytes.
     if as_it_is.packets and not as_it_is.junk and _RECORD not in head:
         return None
     lines = _whole_lines(head)
