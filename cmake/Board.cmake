@@ -34,16 +34,6 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/built_config.c @ONLY CONTENT
 
 # Optimised as one program, which also writes one call graph of it. An archive of such objects is of use to gcc alone.
 set(whole_program -flto -flto-partition=one -g)
-# Size is what counts: -Os leaves on what lengthens this code. Most of these form addresses or constants apart from where they
-# are used, which takes registers and long instructions; the state is one struct of 25 KB. Each saves 50 to 800 bytes.
-list(APPEND whole_program -flive-range-shrinkage -fno-caller-saves -fno-early-inlining -fno-forward-propagate
-                          -fno-guess-branch-probability -fno-if-conversion -fno-ipa-sra -fno-move-loop-invariants
-                          -fno-reorder-blocks -fno-schedule-insns2 -fno-ssa-phiopt -fno-tree-dominator-opts
-                          -fno-tree-forwprop -fno-tree-loop-optimize -fno-tree-tail-merge)
-# A call costs what its own instructions take: else functions are copied that are shorter called. Nor is anything copied into
-# one that is long already, whose registers are all in use.
-list(APPEND whole_program --param=uninlined-function-insns=0 --param=large-function-insns=2000
-                          --param=large-function-growth=0)
 set(call_graph "")
 if(ARGUS_STACK_USAGE)
     set(call_graph -fstack-usage -fcallgraph-info=su,da)

@@ -213,7 +213,7 @@ def compiler() -> str:
 def table(figures: dict[str, dict[str, int]]) -> list[str]:
     """Return the table of the document."""
     lines = [
-        f"arm-none-eabi-gcc {compiler()}, -Os, whole program:",
+        f"arm-none-eabi-gcc {compiler()}, -O2, whole program:",
         "",
         "| call | argus | paper |",
         "|---|---:|---:|",

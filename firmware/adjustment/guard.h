@@ -4,7 +4,6 @@
 #ifndef ARGUS_GUARD_H
 #define ARGUS_GUARD_H
 
-#include "arcos/apart.h"
 #include "argus/argus.h"
 #include "knowledge/echoes.h"
 #include "knowledge/knowledge.h"
@@ -130,7 +129,7 @@ bool argus_guard_may_back(const argus_guard_t *self);
 
 // S7: it may back away to make room for a turn; how far, and how fast S5 allows it with the rear's overhang.
 bool argus_guard_may_back_off(const argus_guard_t *self);
-ARGUS_APART int32_t argus_guard_back_mm(const argus_guard_t *self);
+int32_t argus_guard_back_mm(const argus_guard_t *self);
 int32_t argus_guard_back_speed_mm_s(const argus_guard_t *self);
 
 #endif

@@ -4,7 +4,6 @@
 #define ARGUS_TURNS_H
 
 #include "adjustment/cover.h"
-#include "arcos/apart.h"
 
 typedef struct {
     const argus_robot_t *robot;
@@ -16,7 +15,7 @@ typedef struct {
 } argus_turns_t;
 
 // All that there are for plan->disabled and plan->looks.
-ARGUS_APART void argus_turns_of(argus_turns_t *self, const argus_robot_t *robot, const argus_plan_t *plan);
+void argus_turns_of(argus_turns_t *self, const argus_robot_t *robot, const argus_plan_t *plan);
 
 // Bit i: the bearing of blind[i] is open.
 unsigned argus_turns_open(const argus_turns_t *self);

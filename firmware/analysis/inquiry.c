@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#include "arcos/apart.h"
 #include "awareness/aim.h"
 #include "knowledge/angle.h"
 
@@ -96,7 +95,7 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
            (aside && aim_at_one_of(self, knowledge, evidence, silent));
 }
 
-static ARGUS_APART void set_look(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
+static void set_look(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
                                  const uint8_t look) {
     ARGUS_ASSERT(look <= LOOKS);
     self->look = look;

@@ -3,7 +3,6 @@
 #ifndef ARGUS_CONFIGPAC_H
 #define ARGUS_CONFIGPAC_H
 
-#include "arcos/apart.h"
 #include "arcos/frame.h"
 #include "argus/argus.h"
 
@@ -27,7 +26,7 @@ typedef struct {
 } argus_configpac_t;
 
 // False when the type is not 0x20 or the packet ends inside its first three strings.
-ARGUS_APART bool argus_configpac_decode(argus_configpac_t *config, const argus_packet_t *packet);
+bool argus_configpac_decode(argus_configpac_t *config, const argus_packet_t *packet);
 
 // Copies a NUL-terminated string out of a packet from `*offset`, cut to ARGUS_NAME_MAX - 1, unprintable bytes
 // as '?', and moves `*offset` behind its NUL. False when there is no NUL left.

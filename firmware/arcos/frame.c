@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#include "arcos/apart.h"
 #include "argus/argus.h"
 
 #define HEADER_BYTES ARCOS_FRAME_OVERHEAD // FA FB COUNT
@@ -113,7 +112,7 @@ static size_t owed(const argus_parser_t *self) {
     return total > held ? total - held : 0;
 }
 
-static ARGUS_APART void note_silence(argus_parser_t *self, uint32_t now_ms) {
+static void note_silence(argus_parser_t *self, uint32_t now_ms) {
     if (self->length > 0 && elapsed_ms(now_ms, self->last_byte_ms) >= ARCOS_FRAME_RESYNC_QUIET_MS) {
         self->broken_off = true;
     }

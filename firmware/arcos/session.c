@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#include "arcos/apart.h"
 
 #define LISTEN_MS 250
 #define FLUSH_MS 100
@@ -458,7 +457,7 @@ static unsigned old_session_timer(argus_session_t *self, uint32_t now_ms) {
     return quiet_timer(self, now_ms, self->state == ARGUS_SESSION_LISTEN ? LISTEN_MS : FLUSH_MS);
 }
 
-static ARGUS_APART unsigned run_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+static unsigned run_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
     if (is_syncing(self)) {
         return in_state_ms(self, now_ms) >= STEP_MS ? fail(self, now_ms) : 0;
     }

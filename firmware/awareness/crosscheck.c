@@ -90,7 +90,8 @@ static int ask(tally_t *const tally, const argus_pings_t *const pings, const arg
                const int from, const uint32_t now_ms) {
     const argus_ping_t *const at = line->ping;
     int latest = 0;
-    for (int back = argus_pings_near(pings, 1, at); back > 0; back = argus_pings_near(pings, back + 1, at)) {
+    for (int back = argus_pings_near(pings, 1, line); back > 0;
+         back = argus_pings_near(pings, back + 1, line)) {
         const argus_ping_t *const then = argus_pings_at(pings, back);
         const argus_shift_t shift = argus_line_shift(line, then);
         if (shift.lateral_mm > ARGUS_SAME_LATERAL_MM) {

@@ -3,12 +3,11 @@
 #ifndef ARGUS_DISPARITY_H
 #define ARGUS_DISPARITY_H
 
-#include "arcos/apart.h"
 #include "knowledge/knowledge.h"
 
 // Tolerance range, mm, rounded to nearest, of a reading a1 in 0..65535 (paper: eq. 1 and 2; for the P3-DX a2
 // = 167 mm and 20 degrees).
-ARGUS_APART int32_t argus_tolerance_mm(const argus_robot_t *robot, int32_t reading_mm);
+int32_t argus_tolerance_mm(const argus_robot_t *robot, int32_t reading_mm);
 
 typedef enum {
     ARGUS_NO_VERDICT, // no usable neighbour, or the neighbours disagree

@@ -5,7 +5,6 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "arcos/apart.h"
 #include "awareness/clutter.h"
 #include "awareness/crosscheck.h"
 #include "awareness/levels.h"
@@ -158,7 +157,7 @@ static const int8_t test_of[ARGUS_KEPT] = {
     [ARGUS_KEPT_STUCK] = ARGUS_TEST_STUCK,     [ARGUS_KEPT_GARBAGE] = ARGUS_TEST_GARBAGE,
     [ARGUS_KEPT_DROPOUT] = ARGUS_TEST_DROPOUT, [ARGUS_KEPT_LATE] = -1};
 
-static ARGUS_APART int32_t naming_of(const argus_kept_t kept) {
+static int32_t naming_of(const argus_kept_t kept) {
     ARGUS_ASSERT((unsigned)kept < ARGUS_KEPT);
     return test_of[kept] >= 0 ? argus_bounds[test_of[kept]].naming : ARGUS_LATE_NAMING;
 }

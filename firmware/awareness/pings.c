@@ -53,10 +53,6 @@ int32_t argus_ping_age_ms(const argus_ping_t *const self, const uint32_t now_ms)
     return (int32_t)((now_ms - self->t_ms) & 0xFFFFu);
 }
 
-bool argus_ping_is_echo(const argus_ping_t *const self) {
-    return self->reading_mm < ARGUS_NO_ECHO_MM;
-}
-
 int32_t argus_ping_moved_mm(const argus_ping_t *const a, const argus_ping_t *const b) {
     return argus_hypot(offset_mm(a->x_mm, b->x_mm), offset_mm(a->y_mm, b->y_mm));
 }
@@ -65,10 +61,6 @@ int32_t argus_ping_turned_cdeg(const argus_ping_t *const a, const argus_ping_t *
     const int32_t size = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
     ARGUS_ASSERT(size < FULL_CDEG);
     return size > 18000 ? 36000 - size : size;
-}
-
-argus_line_t argus_ping_line(const argus_ping_t *const self) {
-    return (argus_line_t){self, argus_cos(self->bearing_cdeg), argus_sin(self->bearing_cdeg)};
 }
 
 argus_shift_t argus_line_shift(const argus_line_t *const line, const argus_ping_t *const then) {
@@ -96,16 +88,23 @@ bool argus_ping_is_within(const argus_ping_t *const a, const argus_ping_t *const
     return is_close(a->x_mm, b->x_mm, mm) && is_close(a->y_mm, b->y_mm, mm);
 }
 
-static ARGUS_APART unsigned sector_of(const int32_t bearing_cdeg) {
+static unsigned sector_of(const int32_t bearing_cdeg) {
     return (unsigned)(bearing_cdeg + 2 * FULL_CDEG) / SECTOR_CDEG % ARGUS_PING_SECTORS;
 }
 
-// Where the pings lie that may be beside a bearing, a bit each: the highest is the last one.
-static uint32_t those_beside(const argus_pings_t *const self, const argus_ping_t *const at) {
+argus_line_t argus_ping_line(const argus_ping_t *const self) {
     _Static_assert(2 * ARGUS_BESIDE_CDEG < SECTOR_CDEG, "what is beside a bearing lies in two sectors");
+    return (argus_line_t){.ping = self,
+                          .cos = argus_cos(self->bearing_cdeg),
+                          .sin = argus_sin(self->bearing_cdeg),
+                          .sector = {(uint8_t)sector_of(self->bearing_cdeg - ARGUS_BESIDE_CDEG),
+                                     (uint8_t)sector_of(self->bearing_cdeg + ARGUS_BESIDE_CDEG)}};
+}
+
+// Where the pings lie that may be beside a line, a bit each: the highest is the last one.
+static uint32_t those_beside(const argus_pings_t *const self, const argus_line_t *const line) {
     _Static_assert(ARGUS_PINGS == 32, "a bit for each");
-    const uint32_t slots = self->looked[sector_of(at->bearing_cdeg - ARGUS_BESIDE_CDEG)] |
-                           self->looked[sector_of(at->bearing_cdeg + ARGUS_BESIDE_CDEG)];
+    const uint32_t slots = self->looked[line->sector[0]] | self->looked[line->sector[1]];
     return slots >> self->next | slots << (ARGUS_PINGS - self->next) % ARGUS_PINGS;
 }
 
@@ -116,18 +115,22 @@ static bool is_near(const argus_ping_t *const a, const argus_ping_t *const b) {
 }
 
 // Tens of thousands of pings are asked for in one SIP, and few of them looked that way.
-int argus_pings_near(const argus_pings_t *const self, const int from, const argus_ping_t *const at) {
+int argus_pings_near(const argus_pings_t *const self, const int from, const argus_line_t *const line) {
     ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
     ARGUS_ASSERT(from >= 1);
     if (from > self->count) {
         return 0;
     }
-    int back = from;
-    for (uint32_t left = those_beside(self, at) << (from - 1); left != 0 && back <= self->count; left <<= 1) {
-        if ((left & LAST) != 0 && is_near(at, &self->ping[slot_of(self, back)])) {
-            return back;
+    uint32_t left = those_beside(self, line) << (from - 1);
+    while (left != 0) {
+        const int zeros = argus_leading_zeros(left);
+        if (from + zeros > self->count) {
+            return 0;
         }
-        back++;
+        if (is_near(line->ping, &self->ping[slot_of(self, from + zeros)])) {
+            return from + zeros;
+        }
+        left &= ~(LAST >> zeros);
     }
     return 0;
 }

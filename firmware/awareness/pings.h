@@ -3,7 +3,6 @@
 #ifndef ARGUS_PINGS_H
 #define ARGUS_PINGS_H
 
-#include "arcos/apart.h"
 #include "knowledge/knowledge.h"
 
 #define ARGUS_PINGS 32            // that are remembered of each sonar: some 20 s in motion, longer at rest
@@ -42,13 +41,12 @@ void argus_pings_age(argus_pings_t *self, uint32_t now_ms);
 // The ping so far back (1: the last); the one a firing was so many firings before it. NULL: not so many.
 const argus_ping_t *argus_pings_at(const argus_pings_t *self, int back);
 const argus_ping_t *argus_pings_before(const argus_pings_t *self, int back, int firings);
-// The last ping on the bearing of another or beside it (BESIDE_CDEG), and from about its place
-// (SAME_ALONG_MM). It lies so far back (from 1) or farther; 0: none.
-int argus_pings_near(const argus_pings_t *self, int from, const argus_ping_t *at);
 argus_ping_t *argus_pings_mark(argus_pings_t *self, int back); // 1 <= back <= count
 
 int32_t argus_ping_age_ms(const argus_ping_t *self, uint32_t now_ms); // 0 to 65535
-bool argus_ping_is_echo(const argus_ping_t *self);
+static inline bool argus_ping_is_echo(const argus_ping_t *const self) {
+    return self->reading_mm < ARGUS_NO_ECHO_MM;
+}
 
 // From one to the other: way between the transducers, and turn, 0 to 18000.
 int32_t argus_ping_moved_mm(const argus_ping_t *a, const argus_ping_t *b);
@@ -61,14 +59,20 @@ typedef struct {
 } argus_shift_t;
 argus_shift_t argus_ping_shift(const argus_ping_t *now, const argus_ping_t *then);
 
-// The same of one ping beside many: its direction is worked out once.
+// The same of one ping beside many: its direction, and the sectors that hold what is beside it, are worked
+// out once.
 typedef struct {
     const argus_ping_t *ping;
     int32_t cos;
     int32_t sin;
+    uint8_t sector[2];
 } argus_line_t;
-ARGUS_APART argus_line_t argus_ping_line(const argus_ping_t *self);
+argus_line_t argus_ping_line(const argus_ping_t *self);
 argus_shift_t argus_line_shift(const argus_line_t *line, const argus_ping_t *then);
+
+// The last ping on the bearing of a line or beside it (BESIDE_CDEG), and from about its place
+// (SAME_ALONG_MM). It lies so far back (from 1) or farther; 0: none.
+int argus_pings_near(const argus_pings_t *self, int from, const argus_line_t *line);
 
 // What `then` would read from the place of `now`, of a thing that stands.
 int32_t argus_ping_predict_mm(const argus_ping_t *now, const argus_ping_t *then);

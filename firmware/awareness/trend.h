@@ -4,7 +4,6 @@
 #ifndef ARGUS_TREND_H
 #define ARGUS_TREND_H
 
-#include "arcos/apart.h"
 #include "knowledge/knowledge.h"
 
 typedef enum {
@@ -49,7 +48,7 @@ void argus_trend_forget(argus_trend_t *self, int sonar);
 void argus_trend_restart(argus_trend_t *self);
 
 // Each fresh reading of a sonar, once for each ping.
-ARGUS_APART void argus_trend_reading(argus_trend_t *self, const argus_knowledge_t *knowledge, int sonar);
+void argus_trend_reading(argus_trend_t *self, const argus_knowledge_t *knowledge, int sonar);
 
 // Two sonars on one bearing from about one place: what each read, 5000 included; `along_mm`: how much nearer
 // the first one stood.
@@ -57,7 +56,7 @@ void argus_trend_pair(argus_trend_t *self, const argus_knowledge_t *knowledge, i
                       int other, int32_t other_mm, int32_t along_mm);
 
 // Closes the segments that are long enough; call it on each SIP. Cost: one pass over the sonars.
-ARGUS_APART void argus_trend_sip(argus_trend_t *self, const argus_knowledge_t *knowledge);
+void argus_trend_sip(argus_trend_t *self, const argus_knowledge_t *knowledge);
 
 // Metres of driving until the fastest growing statistic of a sonar will have reached the level at which it is
 // convicted, 1..ARGUS_TREND_HORIZON_M; 0: none grows. True for as long as it grows, so once said it stays

@@ -5,8 +5,6 @@
 #include "argus/argus.h"
 
 #define QUARTER 9000
-#define HALF 18000
-#define FULL 36000
 
 static const int16_t sine[91] = {
     0,     286,   572,   857,   1143,  1428,  1713,  1997,  2280,  2563,  2845,  3126,  3406,
@@ -16,41 +14,6 @@ static const int16_t sine[91] = {
     12911, 13085, 13255, 13421, 13583, 13741, 13894, 14044, 14189, 14330, 14466, 14598, 14726,
     14849, 14968, 15082, 15191, 15296, 15396, 15491, 15582, 15668, 15749, 15826, 15897, 15964,
     16026, 16083, 16135, 16182, 16225, 16262, 16294, 16322, 16344, 16362, 16374, 16382, 16384};
-
-int32_t argus_abs(const int32_t value) {
-    return value < 0 ? -value : value;
-}
-
-int32_t argus_min(const int32_t a, const int32_t b) {
-    return a < b ? a : b;
-}
-
-int32_t argus_max(const int32_t a, const int32_t b) {
-    return a > b ? a : b;
-}
-
-int32_t argus_between(const int32_t least, const int32_t most, const int32_t value) {
-    return argus_max(least, argus_min(most, value));
-}
-
-int32_t argus_within(const int32_t most, const int32_t value) {
-    ARGUS_ASSERT(most >= 0);
-    return argus_between(-most, most, value);
-}
-
-int32_t argus_angle_wrap(const int32_t cdeg) {
-    const int32_t rest = cdeg % FULL;
-    if (rest > HALF) {
-        return rest - FULL;
-    }
-    const int32_t wrapped = rest <= -HALF ? rest + FULL : rest;
-    ARGUS_ASSERT(wrapped > -HALF && wrapped <= HALF);
-    return wrapped;
-}
-
-int32_t argus_angle_abs_diff(const int32_t a_cdeg, const int32_t b_cdeg) {
-    return argus_abs(argus_angle_wrap(argus_angle_wrap(a_cdeg) - argus_angle_wrap(b_cdeg)));
-}
 
 // 0 <= cdeg <= 9000
 static int32_t quarter_sine(const int32_t cdeg) {
@@ -64,7 +27,7 @@ static int32_t quarter_sine(const int32_t cdeg) {
 int32_t argus_sin(const int32_t cdeg) {
     const int32_t a = argus_angle_wrap(cdeg);
     const int32_t size = argus_abs(a);
-    const int32_t value = quarter_sine(size > QUARTER ? HALF - size : size);
+    const int32_t value = quarter_sine(size > QUARTER ? ARGUS_HALF_TURN_CDEG - size : size);
     ARGUS_ASSERT(value >= 0 && value <= ARGUS_TRIG_ONE);
     return a < 0 ? -value : value;
 }
@@ -106,7 +69,7 @@ int32_t argus_atan2(const int32_t y, const int32_t x) {
     const int32_t ay = argus_abs(y);
     const int32_t scale = 500000000 / argus_max(argus_max(ax, ay), 1);
     const int32_t first = y == 0 ? 0 : (cordic_mdeg(ax * scale, ay * scale) + 5) / 10;
-    const int32_t upper = x < 0 ? HALF - first : first;
+    const int32_t upper = x < 0 ? ARGUS_HALF_TURN_CDEG - first : first;
     return argus_angle_wrap(y < 0 ? -upper : upper);
 }
 
@@ -129,16 +92,4 @@ int32_t argus_hypot(const int32_t x, const int32_t y) {
     const uint32_t ax = (uint32_t)argus_min(argus_abs(x), 46000);
     const uint32_t ay = (uint32_t)argus_min(argus_abs(y), 46000);
     return (int32_t)argus_sqrt(ax * ax + ay * ay);
-}
-
-int argus_count_bits(const uint32_t mask) {
-    int count = 0;
-    for (uint32_t rest = mask; rest != 0; rest &= rest - 1) {
-        count++;
-    }
-    return count;
-}
-
-uint8_t argus_one_more(const uint8_t count) {
-    return (uint8_t)argus_min(count + 1, UINT8_MAX);
 }

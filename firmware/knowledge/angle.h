@@ -5,14 +5,76 @@
 
 #include <stdint.h>
 
-#include "arcos/apart.h"
 #include "argus/argus.h"
 
 #define ARGUS_TRIG_ONE 16384 // argus_sin() and argus_cos() are scaled by this
+#define ARGUS_HALF_TURN_CDEG 18000
+#define ARGUS_TURN_CDEG 36000
+
+static inline int32_t argus_abs(const int32_t value) {
+    return value < 0 ? -value : value;
+}
+
+static inline int32_t argus_min(const int32_t a, const int32_t b) {
+    return a < b ? a : b;
+}
+
+static inline int32_t argus_max(const int32_t a, const int32_t b) {
+    return a > b ? a : b;
+}
+
+// The value, from `least` to `most`.
+static inline int32_t argus_between(const int32_t least, const int32_t most, const int32_t value) {
+    return argus_max(least, argus_min(most, value));
+}
+
+// ... of at most so much to either side; `most` >= 0.
+static inline int32_t argus_within(const int32_t most, const int32_t value) {
+    ARGUS_ASSERT(most >= 0);
+    return argus_between(-most, most, value);
+}
+
+static inline int argus_count_bits(const uint32_t mask) {
+    int count = 0;
+    for (uint32_t rest = mask; rest != 0; rest &= rest - 1) {
+        count++;
+    }
+    return count;
+}
+
+// Of a mask that is not 0: how many bits above its highest one are 0.
+static inline int argus_leading_zeros(const uint32_t mask) {
+    ARGUS_ASSERT(mask != 0);
+#ifdef __GNUC__
+    return __builtin_clz(mask);
+#else
+    int zeros = 0;
+    for (uint32_t rest = mask; (rest & 0x80000000u) == 0; rest <<= 1) {
+        zeros++;
+    }
+    return zeros;
+#endif
+}
+
+// A count of one more, up to 255.
+static inline uint8_t argus_one_more(const uint8_t count) {
+    return (uint8_t)argus_min(count + 1, UINT8_MAX);
+}
 
 // Any angle reduced to -18000 < a <= 18000.
-int32_t argus_angle_wrap(int32_t cdeg);
-int32_t argus_angle_abs_diff(int32_t a_cdeg, int32_t b_cdeg);
+static inline int32_t argus_angle_wrap(const int32_t cdeg) {
+    const int32_t rest = cdeg % ARGUS_TURN_CDEG;
+    if (rest > ARGUS_HALF_TURN_CDEG) {
+        return rest - ARGUS_TURN_CDEG;
+    }
+    const int32_t wrapped = rest <= -ARGUS_HALF_TURN_CDEG ? rest + ARGUS_TURN_CDEG : rest;
+    ARGUS_ASSERT(wrapped > -ARGUS_HALF_TURN_CDEG && wrapped <= ARGUS_HALF_TURN_CDEG);
+    return wrapped;
+}
+
+static inline int32_t argus_angle_abs_diff(const int32_t a_cdeg, const int32_t b_cdeg) {
+    return argus_abs(argus_angle_wrap(argus_angle_wrap(a_cdeg) - argus_angle_wrap(b_cdeg)));
+}
 
 // Error at most 4 / 16384. Any angle.
 int32_t argus_sin(int32_t cdeg);
@@ -29,17 +91,5 @@ uint32_t argus_sqrt(uint32_t value);
 
 // Length of (x, y), |x|, |y| <= 40,000.
 int32_t argus_hypot(int32_t x, int32_t y);
-
-ARGUS_APART int32_t argus_abs(int32_t value);
-int32_t argus_min(int32_t a, int32_t b);
-int32_t argus_max(int32_t a, int32_t b);
-// The value, from `least` to `most`.
-ARGUS_APART int32_t argus_between(int32_t least, int32_t most, int32_t value);
-// ... of at most so much to either side; `most` >= 0.
-ARGUS_APART int32_t argus_within(int32_t most, int32_t value);
-int argus_count_bits(uint32_t mask);
-
-// A count of one more, up to 255.
-ARGUS_APART uint8_t argus_one_more(uint8_t count);
 
 #endif

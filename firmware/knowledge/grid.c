@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#include "arcos/apart.h"
 #include "knowledge/angle.h"
 
 #define CELLS ARGUS_GRID_CELLS
@@ -73,7 +72,7 @@ static unsigned level_at(const argus_grid_t *const self, const unsigned place) {
     return self->level[place / 2] >> (place % 2 * 4) & LEVEL_MAX;
 }
 
-static ARGUS_APART void put(argus_grid_t *const self, const argus_cell_t cell, const unsigned level) {
+static void put(argus_grid_t *const self, const argus_cell_t cell, const unsigned level) {
     ARGUS_ASSERT(level <= LEVEL_MAX);
     const unsigned place = place_of(cell);
     const unsigned shift = place % 2 * 4;

@@ -4,7 +4,6 @@
 #ifndef ARGUS_GRID_H
 #define ARGUS_GRID_H
 
-#include "arcos/apart.h"
 #include "knowledge/knowledge.h"
 
 #define ARGUS_GRID_CELLS 64 // to a side: a row of cells is a word of 64 bits
@@ -49,6 +48,6 @@ bool argus_grid_is_inside(const argus_grid_t *self, argus_cell_t cell);
 // Whether something stands there; false outside the window. A whole row of the window, bit x for the cell
 // low.x + x; 0 <= row < ARGUS_GRID_CELLS.
 bool argus_grid_is_occupied(const argus_grid_t *self, argus_cell_t cell);
-ARGUS_APART uint64_t argus_grid_row(const argus_grid_t *self, int row);
+uint64_t argus_grid_row(const argus_grid_t *self, int row);
 
 #endif

@@ -5,7 +5,6 @@
 
 #include <string.h>
 
-#include "arcos/apart.h"
 #include "knowledge/angle.h"
 #include "knowledge/odometry.h"
 
@@ -39,7 +38,7 @@ void argus_knowledge_reopen(argus_knowledge_t *const self, const uint32_t now_ms
 }
 
 // The raw position counts in 15 or 16 bits: the low 15 are right in both.
-static ARGUS_APART int32_t raw_delta(const uint16_t now, const uint16_t before) {
+static int32_t raw_delta(const uint16_t now, const uint16_t before) {
     const int32_t delta = (int32_t)((uint32_t)(now - before) & 0x7FFFu);
     return delta > 0x3FFF ? delta - 0x8000 : delta;
 }
@@ -70,8 +69,7 @@ static int32_t carry_mm(int32_t *const rest_um, const int32_t more_um) {
 }
 
 // Whole parts and the rest apart, so that 32 bits will do.
-static ARGUS_APART int32_t rotated_um(const int32_t x_um, const int32_t c, const int32_t y_um,
-                                      const int32_t s) {
+static int32_t rotated_um(const int32_t x_um, const int32_t c, const int32_t y_um, const int32_t s) {
     const int32_t one = ARGUS_TRIG_ONE;
     return x_um / one * c + y_um / one * s + (x_um % one * c + y_um % one * s) / one;
 }
@@ -357,12 +355,6 @@ argus_mask_t argus_disabled(const argus_knowledge_t *const self) {
     return argus_with_health(self, ARGUS_DISABLED);
 }
 
-bool argus_is_out(const argus_knowledge_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_health_t health = self->sonar[sonar].health;
-    return health == ARGUS_DISABLED || health == ARGUS_PROBATION || health == ARGUS_ABSENT;
-}
-
 argus_mask_t argus_out(const argus_knowledge_t *const self) {
     return argus_disabled(self) | argus_with_health(self, ARGUS_PROBATION) |
            argus_with_health(self, ARGUS_ABSENT);
@@ -451,12 +443,20 @@ argus_point_t argus_echo_robot(const argus_knowledge_t *const self, const int so
     return argus_to_course(&mount, (argus_point_t){range, 0});
 }
 
+argus_frame_t argus_frame_at(const argus_pose_t *const pose) {
+    return (argus_frame_t){
+        {pose->x_mm, pose->y_mm}, argus_cos(pose->heading_cdeg), argus_sin(pose->heading_cdeg)};
+}
+
+argus_point_t argus_from_frame(const argus_frame_t *const frame, const argus_point_t point) {
+    const int32_t x = point.x_mm * frame->cos - point.y_mm * frame->sin;
+    const int32_t y = point.x_mm * frame->sin + point.y_mm * frame->cos;
+    return (argus_point_t){frame->at.x_mm + x / ARGUS_TRIG_ONE, frame->at.y_mm + y / ARGUS_TRIG_ONE};
+}
+
 argus_point_t argus_to_course(const argus_pose_t *const pose, const argus_point_t robot) {
-    const int32_t c = argus_cos(pose->heading_cdeg);
-    const int32_t s = argus_sin(pose->heading_cdeg);
-    const argus_point_t point = {pose->x_mm + (robot.x_mm * c - robot.y_mm * s) / ARGUS_TRIG_ONE,
-                                 pose->y_mm + (robot.x_mm * s + robot.y_mm * c) / ARGUS_TRIG_ONE};
-    return point;
+    const argus_frame_t frame = argus_frame_at(pose);
+    return argus_from_frame(&frame, robot);
 }
 
 int32_t argus_echo_to_centre_mm(const argus_knowledge_t *const self, const int sonar, const int32_t back_mm) {

@@ -4,7 +4,6 @@
 #ifndef ARGUS_KNOWLEDGE_H
 #define ARGUS_KNOWLEDGE_H
 
-#include "arcos/apart.h"
 #include "arcos/sip.h"
 #include "argus/argus.h"
 #include "knowledge/odometry.h"
@@ -97,7 +96,7 @@ void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, i
 
 // The other end leads from now on: `robot` is argus_robot_other_end() of the present one. The robot is at
 // rest.
-ARGUS_APART void argus_knowledge_turn_about(argus_knowledge_t *self, const argus_robot_t *robot);
+void argus_knowledge_turn_about(argus_knowledge_t *self, const argus_robot_t *robot);
 
 // Of the robot as it is built, whichever end leads; what is said outside.
 int32_t argus_built_heading_cdeg(const argus_knowledge_t *self);
@@ -118,7 +117,11 @@ void argus_knowledge_set_back(argus_knowledge_t *self, const argus_pose_t *to);
 // Bit masks over sonar numbers.
 argus_mask_t argus_disabled(const argus_knowledge_t *self);
 argus_mask_t argus_out(const argus_knowledge_t *self); // not used: DISABLED or on PROBATION
-ARGUS_APART bool argus_is_out(const argus_knowledge_t *self, int sonar);
+static inline bool argus_is_out(const argus_knowledge_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const argus_health_t health = self->sonar[sonar].health;
+    return health == ARGUS_DISABLED || health == ARGUS_PROBATION || health == ARGUS_ABSENT;
+}
 argus_mask_t argus_with_health(const argus_knowledge_t *self, argus_health_t health);
 argus_mask_t argus_named(const argus_knowledge_t *self);      // SUSPECT, with the kind of a fault
 bool argus_trusted(const argus_knowledge_t *self, int sonar); // neither out nor named nor unheard
@@ -131,8 +134,8 @@ argus_mark_t argus_mark_now(const argus_knowledge_t *self);
 bool argus_fresh_since(const argus_knowledge_t *self, int sonar, const argus_mark_t *mark);
 bool argus_all_fresh_since(const argus_knowledge_t *self, argus_mask_t sonars, const argus_mark_t *mark);
 
-ARGUS_APART uint32_t argus_age_ms(const argus_knowledge_t *self, int sonar,
-                                  uint32_t now_ms); // UINT32_MAX: never reported
+uint32_t argus_age_ms(const argus_knowledge_t *self, int sonar,
+                      uint32_t now_ms); // UINT32_MAX: never reported
 uint32_t argus_silent_ms(const argus_knowledge_t *self,
                          int sonar);               // how long it has missed its slots, as of the last SIP
 bool argus_at_rest(const argus_knowledge_t *self); // two consecutive SIPs within 5 mm/s
@@ -140,6 +143,15 @@ bool argus_at_rest(const argus_knowledge_t *self); // two consecutive SIPs withi
 // Where the echo of a sonar lies, robot frame and course frame, beam axis taken.
 argus_point_t argus_echo_robot(const argus_knowledge_t *self, int sonar);
 argus_point_t argus_to_course(const argus_pose_t *pose, argus_point_t robot);
+
+// The same of many points: the direction of the pose is worked out once.
+typedef struct {
+    argus_point_t at;
+    int32_t cos;
+    int32_t sin;
+} argus_frame_t;
+argus_frame_t argus_frame_at(const argus_pose_t *pose);
+argus_point_t argus_from_frame(const argus_frame_t *frame, argus_point_t point);
 
 // From the echo of this sonar to the robot's centre, mm, were the robot `back_mm` farther back; INT32_MAX
 // when it is DISABLED or reads 5000. The nearest of all.

@@ -2,7 +2,6 @@
 // Compares steps of the odometry with what wheels can do.
 #include "knowledge/odometry.h"
 
-#include "arcos/apart.h"
 #include "argus/argus.h"
 #include "knowledge/angle.h"
 
@@ -38,7 +37,7 @@
 #define CDEG_PER_RADIAN 5730
 #define PER_S_MAX 500000 // of what is multiplied by milliseconds: it fits 32 bits for 4 s
 
-static ARGUS_APART int32_t turn_cdeg_s(const argus_wheels_t *const wheels, const int32_t track_mm) {
+static int32_t turn_cdeg_s(const argus_wheels_t *const wheels, const int32_t track_mm) {
     ARGUS_ASSERT(track_mm > 0);
     const int32_t most = 2 * FASTEST_MM_S;
     const int32_t apart = wheels->right_mm_s - wheels->left_mm_s;

@@ -101,12 +101,12 @@ static bool is_seen(const argus_rays_t *const self, const uint32_t now_ms, const
     return false;
 }
 
-static bool is_line_seen(const argus_rays_t *const self, const argus_knowledge_t *const knowledge,
-                         const int32_t half_mm, const int32_t ahead_mm) {
+static bool is_line_seen(const argus_rays_t *const self, const uint32_t now_ms,
+                         const argus_frame_t *const robot, const int32_t half_mm, const int32_t ahead_mm) {
     ARGUS_ASSERT(half_mm > 0);
     for (int k = -ABREAST; k <= ABREAST; k++) {
-        const argus_point_t at = {knowledge->robot->front_mm + ahead_mm, half_mm * k / ABREAST};
-        if (!is_seen(self, knowledge->sip_ms, argus_to_course(&knowledge->pose, at))) {
+        const argus_point_t at = {ahead_mm, half_mm * k / ABREAST};
+        if (!is_seen(self, now_ms, argus_from_frame(robot, at))) {
             return false;
         }
     }
@@ -116,8 +116,11 @@ static bool is_line_seen(const argus_rays_t *const self, const argus_knowledge_t
 int32_t argus_rays_seen_mm(const argus_rays_t *const self, const argus_knowledge_t *const knowledge,
                            const int32_t half_mm, const int32_t most_mm) {
     ARGUS_ASSERT(half_mm > 0 && most_mm >= 0);
+    const argus_frame_t robot = argus_frame_at(&knowledge->pose);
+    const int32_t front_mm = knowledge->robot->front_mm;
     int32_t seen_mm = 0;
-    while (seen_mm < most_mm && is_line_seen(self, knowledge, half_mm, seen_mm + STEP_MM)) {
+    while (seen_mm < most_mm &&
+           is_line_seen(self, knowledge->sip_ms, &robot, half_mm, front_mm + seen_mm + STEP_MM)) {
         seen_mm += STEP_MM;
     }
     return argus_min(seen_mm, most_mm);

@@ -3,7 +3,6 @@
 #ifndef ARGUS_ROBOT_H
 #define ARGUS_ROBOT_H
 
-#include "arcos/apart.h"
 #include "arcos/gen_arcos.h"
 #include "robot/table.h"
 
@@ -26,7 +25,7 @@ bool argus_robot_is_known(const argus_robot_t *self);
 // The same robot with its other end ahead: the rear of one as it is built, and back; NULL: it has none that
 // could lead. And the robot as it is built.
 const argus_robot_t *argus_robot_other_end(const argus_robot_t *self);
-ARGUS_APART const argus_robot_t *argus_robot_built(const argus_robot_t *self);
+const argus_robot_t *argus_robot_built(const argus_robot_t *self);
 
 // From the heading of the robot as it is built to that of the end that leads: 0 or 18000.
 int32_t argus_robot_facing_cdeg(const argus_robot_t *self);
@@ -35,7 +34,7 @@ int32_t argus_robot_facing_cdeg(const argus_robot_t *self);
 int argus_robot_sonars(const argus_robot_t *self);
 
 // Where a sonar sits and looks, in the frame of the end that leads. 0 <= sonar < argus_robot_sonars().
-ARGUS_APART argus_sonar_pose_t argus_robot_pose(const argus_robot_t *self, int sonar);
+argus_sonar_pose_t argus_robot_pose(const argus_robot_t *self, int sonar);
 
 // The sonar mounted to the left (or right) of one that faces forward; -1: none, or it does not face forward.
 int argus_robot_beside(const argus_robot_t *self, int sonar, bool left);

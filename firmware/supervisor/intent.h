@@ -3,7 +3,6 @@
 #ifndef ARGUS_INTENT_H
 #define ARGUS_INTENT_H
 
-#include "arcos/apart.h"
 #include "argus/argus.h"
 
 typedef enum {
@@ -73,7 +72,7 @@ typedef struct {
 } argus_intent_t;
 
 // One is begun as nothing and filled in where it lies: dozens are made, and each copy of one costs code.
-ARGUS_APART void argus_to_check(argus_intent_t *intent, bool full);
+void argus_to_check(argus_intent_t *intent, bool full);
 void argus_to_turn(argus_intent_t *intent, int32_t heading_cdeg);
 void argus_to_wait(argus_intent_t *intent, argus_wait_t why);
 void argus_to_say(argus_intent_t *intent, argus_event_id_t event, int sonar, int32_t value);

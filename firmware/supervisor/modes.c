@@ -2,7 +2,6 @@
 // Carries out intents, under the guard, and changes the mode (paper: Fig. 2).
 #include "supervisor/modes.h"
 
-#include "arcos/apart.h"
 #include "knowledge/angle.h"
 #include "supervisor/check.h"
 #include "supervisor/faults.h"
@@ -20,7 +19,7 @@
 #define FOLLOW_MOST 4                       // intents in a row that follow from one
 #define MORE_MOST (ARGUS_WAYPOINTS_MAX + 8) // times that a mode has more to do in one SIP
 
-static ARGUS_APART void enter(argus_t *const self, const argus_mode_t mode) {
+static void enter(argus_t *const self, const argus_mode_t mode) {
     ARGUS_ASSERT(argus_mode_may_follow(self->mode, mode));
     self->mode = mode;
     self->since_ms = self->now_ms;
@@ -341,7 +340,7 @@ static void take_base(argus_t *const self, const argus_base_do_t what) {
     }
 }
 
-static ARGUS_APART void prepare(argus_t *const self, const argus_intent_t *const intent) {
+static void prepare(argus_t *const self, const argus_intent_t *const intent) {
     ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     if (intent->event != 0) {
         argus_say(self, (argus_event_id_t)intent->event, intent->sonar, intent->value);

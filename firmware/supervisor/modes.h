@@ -10,7 +10,7 @@
 void argus_do(argus_t *self, const argus_intent_t *wanted);
 
 // ... of a stop and an act alone; `full` is of a check.
-ARGUS_APART void argus_stop_and_do(argus_t *self, argus_stop_t stop, argus_act_t act, bool full);
+void argus_stop_and_do(argus_t *self, argus_stop_t stop, argus_act_t act, bool full);
 
 // One SIP: what must happen at once; what the evidence says; what the present mode wants.
 void argus_react(argus_t *self, const argus_alarm_t *alarm);

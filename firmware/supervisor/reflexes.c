@@ -2,7 +2,6 @@
 // Sees what calls for a STOP, or for an event, in one SIP.
 #include "supervisor/reflexes.h"
 
-#include "arcos/apart.h"
 #include "awareness/grazing.h"
 #include "knowledge/angle.h"
 #include "supervisor/mode.h"
@@ -267,7 +266,7 @@ static void sees_swing(const argus_t *const self, const argus_alarm_t *const ala
 }
 
 // A smooth wall that the robot slants into is heard by the sonar that looks abeam alone.
-static ARGUS_APART bool is_slanting_in(const argus_t *const self, const int sonar) {
+static bool is_slanting_in(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_robot_t *const robot = self->knowledge.robot;
     return (argus_robot_flank(robot) >> sonar & 1u) != 0 &&

@@ -4,7 +4,6 @@
 #define ARGUS_STATE_H
 
 #include "adjustment/guard.h"
-#include "arcos/apart.h"
 #include "supervisor/core.h"
 #include "supervisor/intent.h"
 
@@ -29,7 +28,7 @@ bool argus_is_active(const argus_t *self);
 bool argus_is_open(const argus_t *self);
 
 // The heading to return to; the present one where none is taken.
-ARGUS_APART int32_t argus_base_cdeg(const argus_t *self);
+int32_t argus_base_cdeg(const argus_t *self);
 
 // Forward-facing sonars that are in use; suspects not verified in this place, also those whose verification
 // was broken off or could not be begun.

@@ -2,7 +2,6 @@
 // Drives: normally, and in failure mode sweep by sweep and step by step.
 #include "supervisor/travel.h"
 
-#include "arcos/apart.h"
 #include "knowledge/angle.h"
 #include "supervisor/looks.h"
 #include "supervisor/state.h"
@@ -247,7 +246,7 @@ static void blocked(argus_travel_t *const mine, const argus_event_id_t event, co
     mine->jog_mm = 0;
 }
 
-static ARGUS_APART bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
+static bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
     if (self->knowledge.still_sips == 0 || self->motion.kind != ARGUS_MOTION_MOVE || self->motion.settled) {
         mine->heeded_ms = self->now_ms;
     }

@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#include "arcos/apart.h"
 #include "knowledge/angle.h"
 
 #define CELLS ARGUS_GRID_CELLS
@@ -26,7 +25,7 @@
 
 _Static_assert(ARGUS_WAVE_MEMORY > NARROW_STEPS + 2, "what is at rest has nothing on its way any more");
 
-static ARGUS_APART uint64_t bit(const int32_t x) {
+static uint64_t bit(const int32_t x) {
     ARGUS_ASSERT(x >= 0 && x < CELLS);
     return (uint64_t)1 << x;
 }
@@ -57,7 +56,7 @@ int argus_wave_reach(const int32_t radius_mm, const int dy) {
     return wide;
 }
 
-static ARGUS_APART uint64_t widened(const uint64_t row, const int by) {
+static uint64_t widened(const uint64_t row, const int by) {
     ARGUS_ASSERT(by >= 0 && by < CELLS);
     uint64_t wide = row;
     for (int i = 1; i <= by; i++) {
@@ -179,7 +178,7 @@ unsigned argus_wave_label(const argus_wave_t *const self, const argus_cell_t cel
 
 // The cells beside those of a row, and of the rows above and below it. Corners count in every other step, so
 // the front of the wave is an octagon.
-static ARGUS_APART uint64_t beside(const uint64_t row, const uint64_t others, const bool corners) {
+static uint64_t beside(const uint64_t row, const uint64_t others, const bool corners) {
     const uint64_t across = corners ? row | others : row;
     return others | row | across << 1 | across >> 1;
 }

@@ -145,11 +145,12 @@ void test_all_that_is_near_is_found(void) {
             argus_pings_note(&log_,
                              ping((uint32_t)i, (65500 + 29 * i % 300) & 0xFFFF, 100, wrapped, 1000 + 40 * i));
         }
+        const argus_line_t line = argus_ping_line(&at);
         for (int from = 1; from <= log_.count + 1; from++) {
             snprintf(text, sizeof text, "bearing %d from %d", bearing, from);
-            TEST_ASSERT_EQUAL_MESSAGE(near_by_definition(&at, from), argus_pings_near(&log_, from, &at),
+            TEST_ASSERT_EQUAL_MESSAGE(near_by_definition(&at, from), argus_pings_near(&log_, from, &line),
                                       text);
-            found += argus_pings_near(&log_, from, &at) > 0;
+            found += argus_pings_near(&log_, from, &line) > 0;
         }
     }
     TEST_ASSERT_TRUE(found > 1000);
@@ -161,6 +162,7 @@ void test_another_bearing_is_never_near(void) {
         setUp();
         argus_pings_note(&log_, ping(0, 0, 0, 0, 1000));
         const argus_ping_t at = ping(1, 0, 0, turn > 18000 ? turn - 36000 : turn, 1000);
-        TEST_ASSERT_EQUAL(0, argus_pings_near(&log_, 1, &at));
+        const argus_line_t line = argus_ping_line(&at);
+        TEST_ASSERT_EQUAL(0, argus_pings_near(&log_, 1, &line));
     }
 }
