@@ -170,9 +170,9 @@ LINT_STAGES: Final = (
     Stage("ruff", "defects and docstrings in Python", lambda run: run([VENV / "bin/ruff", "check", "."])),
     Stage("mypy", "types in Python", mypy),
     Stage(
-        "prose",
-        "sentences of documents and comments; grade, links and size of documents",
-        lambda run: run([VENV / "bin/python", "tools/prose.py"]),
+        "links",
+        "links of documents",
+        lambda run: run([VENV / "bin/python", "tools/links.py"]),
     ),
     Stage("spelling", "spelling everywhere", lambda run: run([VENV / "bin/codespell"])),
     Stage(
@@ -185,10 +185,5 @@ LINT_STAGES: Final = (
         "every name of the public header is documented",
         api,
         needs=("doxygen",),
-    ),
-    Stage(
-        "commits",
-        "subjects of commits",
-        lambda run: run([VENV / "bin/python", "tools/commits.py"]),
     ),
 )
