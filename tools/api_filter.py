@@ -28,7 +28,8 @@ def settings(header: str) -> list[str]:
     """Return the fields of the settings."""
     found = []
     for key, default, low, high, unit, choices, *meaning in gen_docs.rows(header, "ARGUS_CONFIG_TABLE"):
-        span = choices.replace("|", ", ") if choices else f"{low} to {high} {unit}".rstrip()
+        numbers = choices in ("", "auto")
+        span = f"{low} to {high} {unit}".rstrip() if numbers else choices.replace("|", ", ")
         found += [f"    /// {', '.join(meaning)}; {span}, default {default}.", f"    int32_t {key};"]
     return found
 

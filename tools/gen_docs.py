@@ -47,8 +47,9 @@ def config() -> str:
     for key, default, low, high, unit, choices, *meaning in rows(
         "include/argus/argus.h", "ARGUS_CONFIG_TABLE"
     ):
-        named = choices.split("|") if choices else []
-        shown = named[int(default)] if named else default
+        follows = choices == "auto"  # a number that follows the robot unless it is given
+        named = choices.split("|") if choices and not follows else []
+        shown = named[int(default)] if named else choices if follows else default
         span = ", ".join(named) if named else f"{low} .. {high}"
         lines.append(f"| {key} | {shown} | {span} | {unit} | {_cell(meaning)} |")
     return "\n".join(lines)

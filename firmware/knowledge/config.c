@@ -16,6 +16,13 @@
 #define NOISE_SIGMAS 3
 #define STEP_MARGIN_MM 20
 
+// What ARGUS_AUTO stands for with a P3-DX; the ranges grow in whole parts.
+#define AUTO_SPEED_MM_S 200
+#define AUTO_SPEED_LEAST_MM_S 30 // what would be slower is refused
+#define AUTO_OBJECT_MM 250
+#define AUTO_CHECK_MM 350
+#define AUTO_PART_MM 50
+
 // A column of the table as it fits: few settings need more than 16 bits.
 #define DEFAULT(key, def, min, max, unit, choices, meaning) (def),
 #define MINIMUM(key, def, min, max, unit, choices, meaning) (min),
@@ -33,12 +40,12 @@ void argus_config_default(argus_config_t *config) {
     }
 }
 
-// The number of the first row out of range, or -1.
+// The number of the first row out of range, or -1. A default is good, whatever the range (ARGUS_AUTO).
 static int32_t row_out_of_range(const argus_config_t *config) {
     for (size_t i = 0; i < ROWS; i++) {
         int32_t value;
         memcpy(&value, (const uint8_t *)config + i * sizeof value, sizeof value);
-        if (value < minima[i] || value > maxima[i]) {
+        if (value != defaults[i] && (value < minima[i] || value > maxima[i])) {
             return (int32_t)i;
         }
     }
@@ -156,23 +163,96 @@ int32_t argus_config_reach_mm(const argus_robot_t *robot, int32_t step_mm) {
     return (sqrt_up(square) + 1) / 2;
 }
 
+static int32_t stepping_mm(const argus_config_t *config, int32_t reach_mm) {
+    return reach_mm + NOISE_SIGMAS * config->noise_mm + STEP_MARGIN_MM;
+}
+
+// Whole parts that are more than needed.
+static int32_t parts_above(int32_t needed_mm) {
+    ARGUS_ASSERT(needed_mm >= 0);
+    return (needed_mm / AUTO_PART_MM + 1) * AUTO_PART_MM;
+}
+
+// For one end, as far as the ranges before fall short: what an end of the robot asks of the settings as they
+// are built, so that a range does not depend on what else is set.
+static void widen(argus_config_t *config, const argus_robot_t *robot) {
+    argus_config_t built;
+    argus_config_report_t report = {.fault = ARGUS_CONFIG_OK, .key = -1};
+    argus_config_default(&built);
+    built.speed_mm_s = AUTO_SPEED_MM_S;
+    work_out_driving(&report, &built, robot);
+    const int32_t step_mm = stepping_mm(&built, argus_config_reach_mm(robot, built.step_mm));
+    config->object_range_mm = argus_max(config->object_range_mm, parts_above(report.driving_mm));
+    config->check_range_mm = argus_max(config->check_range_mm, parts_above(step_mm));
+}
+
+static argus_config_t auto_ranges(const argus_robot_t *robot) {
+    const argus_robot_t *const other = argus_robot_other_end(robot);
+    argus_config_t ranges = {.object_range_mm = AUTO_OBJECT_MM, .check_range_mm = AUTO_CHECK_MM};
+    if (argus_robot_is_known(robot)) {
+        widen(&ranges, robot);
+    }
+    if (other != NULL) {
+        widen(&ranges, other);
+    }
+    return ranges;
+}
+
+static int32_t auto_speed_mm_s(const argus_config_t *config, const argus_robot_t *robot) {
+    const argus_robot_t *const other = argus_robot_other_end(robot);
+    const int32_t here_mm_s = argus_config_speed_mm_s(config, robot, config->object_range_mm);
+    const int32_t there_mm_s =
+        other != NULL ? argus_config_speed_mm_s(config, other, config->object_range_mm) : here_mm_s;
+    const int32_t safe_mm_s = argus_min(here_mm_s, there_mm_s);
+    return argus_max(AUTO_SPEED_LEAST_MM_S, argus_min(AUTO_SPEED_MM_S, safe_mm_s));
+}
+
+argus_follows_t argus_config_follows(const argus_config_t *config) {
+    return (argus_follows_t){.speed = config->speed_mm_s == ARGUS_AUTO,
+                             .object_range = config->object_range_mm == ARGUS_AUTO,
+                             .check_range = config->check_range_mm == ARGUS_AUTO};
+}
+
+void argus_config_follow(argus_config_t *config, argus_follows_t follows, const argus_robot_t *robot) {
+    const bool is_sound = argus_robot_is_known(robot) && row_out_of_range(config) < 0;
+    const argus_config_t ranges = auto_ranges(robot);
+    if (follows.object_range) {
+        config->object_range_mm = ranges.object_range_mm;
+    }
+    if (follows.check_range) {
+        config->check_range_mm = ranges.check_range_mm;
+    }
+    if (follows.speed) {
+        config->speed_mm_s = is_sound ? auto_speed_mm_s(config, robot) : AUTO_SPEED_MM_S;
+    }
+}
+
 argus_config_report_t argus_config_check(const argus_config_t *config) {
     const argus_robot_t *chosen = argus_robot_chosen(config->robot);
     return argus_config_check_for(config, chosen != NULL ? chosen : argus_robot_default());
 }
 
-argus_config_report_t argus_config_check_for(const argus_config_t *config, const argus_robot_t *robot) {
-    argus_config_report_t report = {.fault = ARGUS_CONFIG_OK, .key = row_out_of_range(config)};
+static void take_in_force(argus_config_report_t *report, const argus_config_t *config) {
+    report->speed_mm_s = config->speed_mm_s;
+    report->object_range_mm = config->object_range_mm;
+    report->check_range_mm = config->check_range_mm;
+}
+
+argus_config_report_t argus_config_check_for(const argus_config_t *asked, const argus_robot_t *robot) {
+    argus_config_report_t report = {.fault = ARGUS_CONFIG_OK, .key = row_out_of_range(asked)};
     if (report.key >= 0) {
         report.fault = ARGUS_CONFIG_RANGE;
         return report; // the arithmetic below relies on the ranges
     }
-    work_out_driving(&report, config, robot);
-    report.reach_mm = argus_config_reach_mm(robot, config->step_mm);
-    report.stepping_mm = report.reach_mm + NOISE_SIGMAS * config->noise_mm + STEP_MARGIN_MM;
-    if (report.driving_mm >= config->object_range_mm) {
+    argus_config_t config = *asked;
+    argus_config_follow(&config, argus_config_follows(asked), robot);
+    take_in_force(&report, &config);
+    work_out_driving(&report, &config, robot);
+    report.reach_mm = argus_config_reach_mm(robot, config.step_mm);
+    report.stepping_mm = stepping_mm(&config, report.reach_mm);
+    if (report.driving_mm >= config.object_range_mm) {
         report.fault = ARGUS_CONFIG_DRIVING;
-    } else if (report.stepping_mm >= config->check_range_mm) {
+    } else if (report.stepping_mm >= config.check_range_mm) {
         report.fault = ARGUS_CONFIG_STEP;
     }
     return report;

@@ -6,6 +6,20 @@
 #include "argus/argus.h"
 #include "robot/robot.h"
 
+// Which settings follow the robot.
+typedef struct {
+    bool speed;
+    bool object_range;
+    bool check_range;
+} argus_follows_t;
+
+// Those that are ARGUS_AUTO.
+argus_follows_t argus_config_follows(const argus_config_t *config);
+
+// The one place where they become numbers: as they hold for a robot and for its other end. The ranges follow
+// its body alone, the speed what S5 leaves of them.
+void argus_config_follow(argus_config_t *config, argus_follows_t follows, const argus_robot_t *robot);
+
 // As argus_config_check(), for a robot.
 argus_config_report_t argus_config_check_for(const argus_config_t *config, const argus_robot_t *robot);
 

@@ -45,6 +45,7 @@ static void change_to(argus_t *const self, const argus_robot_t *const robot) {
         argus_knowledge_turn_about(&self->knowledge, before);
     }
     argus_body_is(&self->knowledge, robot, self->now_ms);
+    argus_config_follow(&self->config, self->follows, robot);
     forget_sonars(self);
     argus_task_restart(&self->travel.task);
     self->plan = argus_plan(robot, argus_policy(self), 0, 0);
@@ -52,12 +53,15 @@ static void change_to(argus_t *const self, const argus_robot_t *const robot) {
 }
 
 bool argus_say_barred(argus_t *const self) {
+    self->orders.bar = self->orders.locked ? ARGUS_BAR_UNSAFE : ARGUS_BAR_NONE;
     if (!argus_robot_is_known(self->knowledge.robot)) {
+        self->orders.bar = ARGUS_BAR_UNKNOWN;
         argus_tell(self, ARGUS_EV_SUBCLASS_UNKNOWN, 0);
         return true;
     }
     const argus_config_report_t report = argus_config_check_for(&self->config, self->knowledge.robot);
     if (report.fault != ARGUS_CONFIG_OK) {
+        self->orders.bar = ARGUS_BAR_UNSAFE;
         const bool driving = report.fault == ARGUS_CONFIG_DRIVING;
         argus_tell(self, ARGUS_EV_ROBOT_UNSAFE, driving ? report.driving_mm : report.stepping_mm);
     }
@@ -83,6 +87,9 @@ bool argus_sees_through_body(argus_t *const self) {
         return false;
     }
     argus_tell(self, ARGUS_EV_SONARS_BEYOND, robot->sonars);
-    self->orders.passive = self->orders.passive || robot->sonars < ARGUS_SONARS;
+    if (robot->sonars < ARGUS_SONARS) {
+        self->orders.passive = true;
+        self->orders.bar = ARGUS_BAR_SONARS;
+    }
     return self->orders.passive;
 }

@@ -133,7 +133,9 @@ typedef struct {
 typedef struct {
     argus_mask_t pinned; // sonars with a health that an operator has fixed
     bool locked;         // the configuration is unsafe: never active
-    bool barred;         // would be active, but not with this robot: unknown, or unsafe with these settings
+    bool barred;         // would be active, but not with this robot
+    bool unbegun;        // the course failed for that
+    argus_bar_t bar;     // why this robot may not be driven
     bool passive;
     bool paused;
     bool stay; // after the operator's STOP: no turn either, until another order
@@ -171,7 +173,8 @@ struct argus {
     argus_base_t base;
     argus_checking_t checking;
     argus_waiting_t waiting;
-    argus_config_t config;
+    argus_config_t config;   // in force with the robot at hand: nothing is ARGUS_AUTO
+    argus_follows_t follows; // ... but was, as it was given
     argus_reverse_t reverse;
     argus_history_t history;
     argus_reflexes_t reflexes;

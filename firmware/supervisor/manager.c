@@ -7,6 +7,7 @@
 
 #include "knowledge/angle.h"
 #include "knowledge/body.h"
+#include "knowledge/config.h"
 #include "supervisor/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/history.h"
@@ -24,14 +25,17 @@
 void argus_manager_init(argus_t *const self, const argus_config_t *const config, const uint32_t now_ms) {
     const argus_robot_t *const chosen = argus_robot_chosen(config->robot);
     memset(self, 0, sizeof *self); // which is how most parts begin
+    const argus_robot_t *const robot = chosen != NULL ? chosen : argus_robot_default();
     self->config = *config;
+    self->follows = argus_config_follows(config);
+    argus_config_follow(&self->config, self->follows, robot);
     self->rules = argus_profile(&self->config);
     self->orders.locked = argus_config_check(config).fault != ARGUS_CONFIG_OK;
     self->orders.passive = self->orders.locked || config->active == 0;
     self->now_ms = now_ms;
     argus_session_init(&self->session);
     argus_knowledge_init(&self->knowledge);
-    argus_body_is(&self->knowledge, chosen != NULL ? chosen : argus_robot_default(), now_ms);
+    argus_body_is(&self->knowledge, robot, now_ms);
     argus_evidence_set_caution(&self->evidence, self->config.caution);
     argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_GO_OFFLINE, false);
 }
@@ -113,6 +117,7 @@ static void restart_evidence(argus_t *const self) {
 static void on_open(argus_t *const self) {
     ARGUS_ASSERT(argus_is_open(self));
     argus_tell(self, ARGUS_EV_SESSION_OPEN, self->session.attempts);
+    self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it, for the robot before
     argus_meet_body(self);
     if (!self->orders.passive) {
         argus_enable_motors(self);
@@ -120,7 +125,6 @@ static void on_open(argus_t *const self) {
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
     restart_evidence(self);
     argus_rays_forget_all(&self->rays);
-    self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it
     self->reflexes.motors_said = false;
     self->reflexes.touched_unheard = false;
     self->looks.tried = false;

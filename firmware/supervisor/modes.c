@@ -591,6 +591,14 @@ static bool is_under_way(const argus_t *const self) {
            (waits || self->mode == ARGUS_MODE_CHECKING || argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE));
 }
 
+// A course that cannot begin with this robot is given up; the bar has been told.
+static void watch_bar(argus_t *const self) {
+    if (self->mission == ARGUS_MISSION_RUNNING && self->orders.bar != ARGUS_BAR_NONE && argus_is_open(self)) {
+        fail_mission(self);
+        self->orders.unbegun = true;
+    }
+}
+
 static void watch_course(argus_t *const self) {
     argus_task_t *const task = &self->travel.task;
     if (argus_task_is_hopeless(task, &self->knowledge, is_under_way(self))) {
@@ -609,6 +617,7 @@ void argus_run_mode(argus_t *const self) {
         more = intent.more && self->mode == mode;
     }
     ARGUS_ASSERT(!more);
+    watch_bar(self);
     watch_course(self);
 }
 

@@ -67,6 +67,8 @@ static const char *words_of(const argus_name_of_t of) {
         return ARGUS_FAULT_KIND_TABLE(WORD);
     case ARGUS_NAME_OP:
         return "STOP\0GO\0RECHECK\0MOVE\0TURN\0PASSIVE\0ACTIVE\0RETEST\0PIN\0UNPIN\0DISABLE\0";
+    case ARGUS_NAME_BAR:
+        return "unknown\0unsafe\0sonars\0";
     default:
         return "";
     }
@@ -79,9 +81,10 @@ const char *argus_name(const argus_name_of_t of, const int number) {
     if (of == ARGUS_NAME_SUBJECT) {
         return event_subject(number);
     }
-    if (of == ARGUS_NAME_KIND && number == ARGUS_KIND_NONE) {
+    const bool none_is_empty = of == ARGUS_NAME_KIND || of == ARGUS_NAME_BAR;
+    if (none_is_empty && number == 0) {
         return "";
     }
-    const bool from_one = of == ARGUS_NAME_KIND || of == ARGUS_NAME_OP;
+    const bool from_one = none_is_empty || of == ARGUS_NAME_OP;
     return nth(words_of(of), from_one ? number - 1 : number);
 }

@@ -69,6 +69,10 @@ static void go_active(argus_t *const self) {
         return;
     }
     self->orders.passive = false;
+    if (self->orders.unbegun && self->mission == ARGUS_MISSION_FAILED) {
+        self->mission = ARGUS_MISSION_RUNNING;
+    }
+    self->orders.unbegun = false;
     self->reflexes.motors_said = false;
     argus_tell(self, ARGUS_EV_ACTIVE, 0);
     enable_motors(self);

@@ -67,6 +67,7 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
     status->mode = self->mode;
     status->mission = self->mission;
     status->wait = self->mode == ARGUS_MODE_WAITING ? self->waiting.why : ARGUS_WAIT_NONE;
+    status->bar = self->orders.bar;
     status->failure = self->failure;
     status->plan = self->plan;
     status->goal_mm = argus_task_goal_mm(&self->travel.task, &self->knowledge);

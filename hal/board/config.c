@@ -12,10 +12,12 @@
 // Texts in a row, and numbers as they fit.
 #define KEY(key, def, min, max, unit, choices, meaning) #key "\0"
 #define CHOICES(key, def, min, max, unit, choices, meaning) choices "\0"
+#define DEFAULT(key, def, min, max, unit, choices, meaning) (def),
 #define MINIMUM(key, def, min, max, unit, choices, meaning) (min),
 #define MAXIMUM(key, def, min, max, unit, choices, meaning) (max),
 static const char keys[] = ARGUS_CONFIG_TABLE(KEY);
 static const char choices_of[] = ARGUS_CONFIG_TABLE(CHOICES);
+static const int16_t defaults[BOARD_CONFIG_COUNT] = {ARGUS_CONFIG_TABLE(DEFAULT)};
 static const int16_t minima[BOARD_CONFIG_COUNT] = {ARGUS_CONFIG_TABLE(MINIMUM)};
 static const int32_t maxima[BOARD_CONFIG_COUNT] = {ARGUS_CONFIG_TABLE(MAXIMUM)};
 
@@ -57,6 +59,10 @@ static int32_t choice_of(const char *choices, board_word_t word) {
     return -1;
 }
 
+static bool is_in_range(int row, int32_t value) {
+    return value >= minima[row] && value <= maxima[row];
+}
+
 board_config_answer_t board_config_set(argus_config_t *config, board_word_t key, board_word_t value) {
     const int row = board_word_row(key, keys);
     int32_t number = 0;
@@ -64,15 +70,13 @@ board_config_answer_t board_config_set(argus_config_t *config, board_word_t key,
         return BOARD_CONFIG_NO_KEY;
     }
     const char *const choices = board_word_nth(choices_of, row);
-    if (*choices != '\0') {
-        number = choice_of(choices, value);
-        if (number < 0) {
-            return BOARD_CONFIG_NO_VALUE;
-        }
-    } else if (!board_word_number(value, &number)) {
+    const bool may_be_number = *choices == '\0' || board_word_is((board_word_t){"auto", 4}, choices);
+    number = choice_of(choices, value);
+    const bool is_named = number >= 0;
+    if (!is_named && (!may_be_number || !board_word_number(value, &number))) {
         return BOARD_CONFIG_NO_VALUE;
     }
-    if (number < minima[row] || number > maxima[row]) {
+    if (!is_named && !is_in_range(row, number)) {
         return BOARD_CONFIG_NO_RANGE;
     }
     put_value(config, row, number);
@@ -187,10 +191,11 @@ size_t board_config_pack(const argus_config_t *base, const argus_config_t *confi
     return 2 + PAIR_BYTES * pairs;
 }
 
-// One that the table has no more, or with another range, is left out.
+// One that the table has no more, or with another range, is left out. The default of one that follows the
+// robot is beside its range.
 static void take_pair(argus_config_t *config, uint32_t key, int32_t value) {
     for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
-        if (key_digest(row) == key && value >= minima[row] && value <= maxima[row]) {
+        if (key_digest(row) == key && (value == defaults[row] || is_in_range(row, value))) {
             put_value(config, row, value);
         }
     }

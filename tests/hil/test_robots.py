@@ -11,9 +11,6 @@ from worlds import hall
 GOAL_MM = 900
 SONARS = 16
 SETTLE_S = 12.0
-CHECK_RANGE_MM = 400
-"""A wide body sweeps points in a step that its sonars see from farther off than those of a P3-DX."""
-
 ROBOTS = {"p3dx-sh": (3, 16), "p3at-sh": (3, 16), "amigo-sh": (2, 8)}
 
 
@@ -35,7 +32,7 @@ def assert_never_moved(sim: Sim, argusd: Argusd) -> None:
 def test_driven_to_a_goal_with_a_dead_sonar(bench: Bench, robot: str) -> None:
     dead, sonars = ROBOTS[robot]
     sim = start(bench, robot, f"off:{dead}@0s")
-    argusd = bench.argusd("--goal", f"{GOAL_MM},0", config={"check_range_mm": CHECK_RANGE_MM})
+    argusd = bench.argusd("--goal", f"{GOAL_MM},0")
     argusd.wait("GOAL_REACHED")
     health = argusd.status["health"]
     assert argusd.wait_exit() == 0
@@ -48,12 +45,20 @@ def test_driven_to_a_goal_with_a_dead_sonar(bench: Bench, robot: str) -> None:
     assert not argusd.named("SUBCLASS_UNKNOWN")
 
 
-def test_settings_that_are_unsafe_for_a_robot_keep_it_standing(bench: Bench) -> None:
-    """A PeopleBot's body reaches 91 mm beyond its sonars; and it has more of them than the build manages."""
+def assert_failed(argusd: Argusd, barred: str) -> None:
+    """A mission that cannot begin ends, and all that look on get the reason."""
+    argusd.wait("MISSION_FAILED")
+    assert argusd.wait_exit() == 1
+    assert (argusd.status["mission"], argusd.status["barred"]) == ("failed", barred)
+
+
+def test_settings_that_are_unsafe_for_a_robot_fail_its_mission(bench: Bench) -> None:
+    """A PeopleBot's body reaches 91 mm beyond its sonars."""
     sim = start(bench, "peoplebot-sh")
-    argusd = bench.argusd("--goal", f"{GOAL_MM},0")
+    argusd = bench.argusd("--goal", f"{GOAL_MM},0", config={"speed_mm_s": 200, "object_range_mm": 250})
     argusd.wait("ROBOT_UNSAFE")
-    argusd.wait("SONARS_BEYOND", value=32)
+    assert_failed(argusd, "unsafe")
+    assert "peoplebot-sh: driving would be unsafe (S5): overhang 91" in "".join(argusd.errors)
     assert_never_moved(sim, argusd)
 
 
@@ -61,7 +66,7 @@ def test_an_unknown_robot_is_never_moved(bench: Bench) -> None:
     sim = start(bench, "p3dx-sh", more=("--subclass", "powerbot-sh"))
     argusd = bench.argusd("--goal", f"{GOAL_MM},0")
     argusd.wait("SUBCLASS_UNKNOWN")
-    argusd.wait("STATUS", active=False)
+    assert_failed(argusd, "unknown")
     assert_never_moved(sim, argusd)
     assert argusd.status["health"] == ["ABSENT"] * SONARS
     assert len(argusd.named("SUBCLASS_UNKNOWN")) == 1

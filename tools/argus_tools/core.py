@@ -22,6 +22,7 @@ _PLACES: Final = (
     Path("/usr/local/lib/libargus.so"),
     Path("/usr/lib/libargus.so"),
 )
+AUTO: Final = "auto"
 _SONARS: Final = 16
 _PACKET_MAX: Final = 256
 _RECORD_MAX: Final = 65536
@@ -132,6 +133,8 @@ def _names(function: Any) -> tuple[str, ...]:
 def settings() -> dict[str, tuple[int, int, tuple[str, ...]]]:
     """Return the settings: row, default and the names of its choices (none: a number) by key.
 
+    `auto` alone names the default of a number that follows the robot.
+
     >>> settings()["active"][1:]
     (1, ('off', 'on'))
     """
@@ -153,14 +156,14 @@ def setting_value(key: str, text: str) -> int:
     if key not in settings():
         raise LogError(f"{key}: no such setting; argusd --list-config lists them")
     choices = settings()[key][2]
-    if choices:
-        if text not in choices:
-            raise LogError(f"{key} = {text}: give {' or '.join(choices)}")
+    if text in choices:
         return choices.index(text)
+    if choices not in ((), (AUTO,)):
+        raise LogError(f"{key} = {text}: give {' or '.join(choices)}")
     try:
         return int(text)
     except ValueError as error:
-        raise LogError(f"{key} = {text}: give a whole number") from error
+        raise LogError(f"{key} = {text}: give a whole number{' or auto' if choices else ''}") from error
 
 
 class Event(NamedTuple):

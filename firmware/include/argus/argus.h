@@ -96,8 +96,8 @@ typedef uint16_t argus_mask_t;
 #define ARGUS_PROFILE_ARGUS 1 // evidence while driving, and all that goes beyond the paper; the default
 
 // X(key, default, minimum, maximum, unit, choices, meaning). `choices` names the values 0, 1, ... of a
-// setting that is picked by name ("" for a number). A front end builds its parser and its help from this
-// table.
+// setting that is picked by name ("" for a number). "auto" alone: a number, or this word for ARGUS_AUTO, its
+// default. A front end builds its parser and its help from this table.
 #define ARGUS_CONFIG_TABLE(X)                                                                                \
     X(profile, 1, 0, 1, "", "paper|argus", "rule set of the diagnosis")                                      \
     X(diagnosis, 1, 0, 1, "", "off|on",                                                                      \
@@ -113,16 +113,18 @@ typedef uint16_t argus_mask_t;
     X(holdoff_deg, 30, 0, 180, "deg", "", "... or before this change of heading")                            \
     X(caution, 100, 25, 400, "%", "", "profile argus: so much of the tabled evidence a verdict takes")       \
     X(stale_ms, 1500, 700, 10000, "ms", "", "a sonar that yields no reading for this long is silent")        \
-    X(object_range_mm, 250, 150, 1000, "mm", "",                                                             \
-      "while driving, a reading at or below this is an object: STOP")                                        \
-    X(check_range_mm, 350, 200, 1500, "mm", "",                                                              \
-      "in failure mode, a reading at or below this stops the next step")                                     \
+    X(object_range_mm, ARGUS_AUTO, 150, 1000, "mm", "auto",                                                  \
+      "while driving, a reading at or below this is an object: STOP; auto: as the robot's body asks, from "  \
+      "250 on")                                                                                              \
+    X(check_range_mm, ARGUS_AUTO, 200, 1500, "mm", "auto",                                                   \
+      "in failure mode, a reading at or below this stops the next step; auto: likewise, from 350 on")        \
     X(step_mm, 200, 50, 200, "mm", "", "length of one step in failure mode")                                 \
     X(step_speed_mm_s, 100, 30, 300, "mm/s", "", "speed of a step")                                          \
     X(creep_mm_s, 0, 0, 100, "mm/s", "",                                                                     \
       "where no sonar sees the way: creep on at this speed, guided by the bumpers alone; 0: stand and wait") \
-    X(speed_mm_s, 200, 30, 750, "mm/s", "",                                                                  \
-      "speed of normal driving; profile argus: where something is near, or others do not see far enough")    \
+    X(speed_mm_s, ARGUS_AUTO, 30, 750, "mm/s", "auto",                                                       \
+      "speed of normal driving; profile argus: where something is near, or others do not see far enough; "   \
+      "auto: 200, or what S5 allows")                                                                        \
     X(speed_max_mm_s, 500, 30, 750, "mm/s", "",                                                              \
       "profile argus: the most where the way ahead is seen to be free")                                      \
     X(accel_mm_s2, 300, 50, 2000, "mm/s2", "", "acceleration asked of the robot")                            \
@@ -143,6 +145,9 @@ typedef uint16_t argus_mask_t;
       "no SIP for this long: stand, and check all sonars before driving on")                                 \
     X(link_lost_ms, 4000, 1000, 60000, "ms", "", "no SIP for this long: start the session again")            \
     X(retry_max_ms, 8000, 500, 60000, "ms", "", "longest pause between two attempts to reach the robot")
+
+// A setting that follows the robot: it is worked out when one has answered, from its body and S5.
+#define ARGUS_AUTO 0
 
 // The settings, one int32_t for each row of the table.
 typedef struct {
@@ -179,6 +184,9 @@ typedef struct {
     int32_t driving_mm;         // overhang + travel + brake: must be < object_range_mm
     int32_t reach_mm;           // largest reading of a point that the body sweeps in one step
     int32_t stepping_mm;        // reach + 3 noise + 20: must be < check_range_mm
+    int32_t speed_mm_s;         // the settings in force: what ARGUS_AUTO stands for with this robot
+    int32_t object_range_mm;
+    int32_t check_range_mm;
 } argus_config_report_t;
 
 // Events ---------------------------------------------------------------------------------------------------
@@ -472,6 +480,14 @@ typedef enum {
     ARGUS_WAIT_ECHO          // it touched something while no sonar ahead had ever heard an echo
 } argus_wait_t;
 
+// Why the robot that answered may not be driven. A course fails then; ARGUS_OP_ACTIVE takes the last one on.
+typedef enum {
+    ARGUS_BAR_NONE,
+    ARGUS_BAR_UNKNOWN, // its body is not known: the setting `robot` says it
+    ARGUS_BAR_UNSAFE,  // the settings are unsafe for it (S5)
+    ARGUS_BAR_SONARS   // it lists sonars that its subclass has not got
+} argus_bar_t;
+
 // What an operator may ask. The argument is mm for MOVE, degrees for TURN, a sonar (0..15) for RETEST and
 // what follows it, else ignored. PIN, UNPIN and DISABLE are for profile argus.
 typedef enum {
@@ -493,6 +509,7 @@ typedef struct {
     argus_mode_t mode;       // what it is doing
     argus_mission_t mission; // how the course stands
     argus_wait_t wait;       // why, in mode WAITING, else ARGUS_WAIT_NONE
+    argus_bar_t bar;         // why this robot may not be driven
     argus_failure_t failure; // of the sonars that face forward
     argus_plan_t plan;       // how the healthy ones cover for those
     argus_pose_t pose;       // by odometry
@@ -555,7 +572,8 @@ typedef enum {
     ARGUS_NAME_FAILURE, // argus_failure_t: IsMinor
     ARGUS_NAME_HEALTH,  // argus_health_t: SUSPECT
     ARGUS_NAME_KIND,    // argus_fault_kind_t: stuck; "" for none
-    ARGUS_NAME_OP       // argus_op_t: RECHECK
+    ARGUS_NAME_OP,      // argus_op_t: RECHECK
+    ARGUS_NAME_BAR      // argus_bar_t: unsafe; "" for none
 } argus_name_of_t;
 
 // Instance -------------------------------------------------------------------------------------------------
@@ -609,8 +627,8 @@ typedef union {
 void argus_config_default(argus_config_t *config);
 
 // Ranges first, then the two S5 inequalities, for the robot that the setting `robot` names (by-subclass: for
-// p3dx-sh; when another one answers, S5 is asked again for that one). Cost: a few thousand integer
-// operations, once at start.
+// p3dx-sh; when another one answers, ARGUS_AUTO is worked out and S5 asked again for that one). Cost: a few
+// thousand integer operations, once at start.
 argus_config_report_t argus_config_check(const argus_config_t *config);
 
 // Starts from nothing: no robot, every sonar UNKNOWN, no course. `config` is copied; it should have passed

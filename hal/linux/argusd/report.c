@@ -155,6 +155,7 @@ static void put_robot(json_t *json, const view_t *view) {
     const argus_status_t *const status = &view->status;
     put_string(json, "mode", argus_name(ARGUS_NAME_MODE, (int)status->mode));
     put_string(json, "mission", argus_name(ARGUS_NAME_MISSION, (int)status->mission));
+    put_string(json, "barred", argus_name(ARGUS_NAME_BAR, (int)status->bar));
     put_bool(json, "active", status->active);
     put_bool(json, "paused", status->paused);
     put_bool(json, "online", status->online);

@@ -90,6 +90,15 @@ static int32_t choice(const char *choices, const char *text) {
     return -1;
 }
 
+// A number, or a word for its default.
+static bool is_auto(const row_t *row) {
+    return strcmp(row->choices, "auto") == 0;
+}
+
+static bool is_choice(const row_t *row) {
+    return row->choices[0] != '\0' && !is_auto(row);
+}
+
 typedef struct {
     settings_t *settings;
     FILE *file;
@@ -118,17 +127,16 @@ static int refuse_unknown(load_t *load, const char *name) {
 }
 
 static int take_value(load_t *load, const row_t *row, const char *text) {
-    int32_t value = 0;
-    if (row->choices[0] != '\0') {
-        value = choice(row->choices, text);
-        if (value < 0) {
-            return refuse(load, "%s = '%.40s': choose one of %s", row->key, text, row->choices);
-        }
-    } else if (!text_number(text, &value)) {
-        return refuse(load, "%s = '%.40s': give a whole number, %d to %d %s", row->key, text,
-                      (int)row->minimum, (int)row->maximum, row->unit);
+    int32_t value = choice(row->choices, text);
+    const bool is_named = value >= 0;
+    if (!is_named && is_choice(row)) {
+        return refuse(load, "%s = '%.40s': choose one of %s", row->key, text, row->choices);
     }
-    if (value < row->minimum || value > row->maximum) {
+    if (!is_named && !text_number(text, &value)) {
+        return refuse(load, "%s = '%.40s': give a whole number, %d to %d %s%s", row->key, text,
+                      (int)row->minimum, (int)row->maximum, row->unit, is_auto(row) ? ", or auto" : "");
+    }
+    if (!is_named && (value < row->minimum || value > row->maximum)) {
         return refuse(load, "%s = %d is out of range; give %d to %d %s", row->key, (int)value,
                       (int)row->minimum, (int)row->maximum, row->unit);
     }
@@ -247,15 +255,15 @@ bool settings_check(const settings_t *self, char *message, size_t capacity) {
             "driving would be unsafe (S5): overhang %d + travel %d (%d mm/s x %d ms) + braking %d = %d mm "
             "must be less than object_range_mm = %d; lower speed_mm_s, or raise object_range_mm (or "
             "decel_mm_s2, of which 300 at most count)",
-            (int)report.overhang_mm, (int)report.travel_mm, (int)config->speed_mm_s, (int)report.reaction_ms,
-            (int)report.brake_mm, (int)report.driving_mm, (int)config->object_range_mm);
+            (int)report.overhang_mm, (int)report.travel_mm, (int)report.speed_mm_s, (int)report.reaction_ms,
+            (int)report.brake_mm, (int)report.driving_mm, (int)report.object_range_mm);
     case ARGUS_CONFIG_STEP:
         return text_refuse(
             message, capacity,
             "a step would be unsafe (S5): reach of a %d mm step %d + 3 x noise %d + 20 = %d mm must be "
             "less than check_range_mm = %d; lower step_mm, or raise check_range_mm",
             (int)config->step_mm, (int)report.reach_mm, (int)config->noise_mm, (int)report.stepping_mm,
-            (int)config->check_range_mm);
+            (int)report.check_range_mm);
     case ARGUS_CONFIG_RANGE:
     default:
         break;
@@ -267,7 +275,7 @@ bool settings_check(const settings_t *self, char *message, size_t capacity) {
 
 static void name_value(const row_t *row, int32_t value, char *text, size_t capacity) {
     const char *at = row->choices;
-    if (at[0] == '\0') {
+    if (at[0] == '\0' || (is_auto(row) && value != ARGUS_AUTO)) {
         snprintf(text, capacity, "%d", (int)value);
         return;
     }
@@ -278,7 +286,7 @@ static void name_value(const row_t *row, int32_t value, char *text, size_t capac
 }
 
 static void name_range(const row_t *row, char *text, size_t capacity) {
-    if (row->choices[0] != '\0') {
+    if (is_choice(row)) {
         snprintf(text, capacity, "%s", row->choices);
     } else {
         snprintf(text, capacity, "%d..%d", (int)row->minimum, (int)row->maximum);
@@ -293,7 +301,7 @@ void settings_list(FILE *out) {
         name_value(&rows[i], rows[i].value, value, sizeof value);
         name_range(&rows[i], range, sizeof range);
         fprintf(out, "%-18s %-7s %-13s %-8s %-6s %s\n", rows[i].key,
-                rows[i].choices[0] != '\0' ? "choice" : "integer", range, value,
+                is_choice(&rows[i]) ? "choice" : "integer", range, value,
                 rows[i].unit[0] == '\0' ? "-" : rows[i].unit, rows[i].meaning);
     }
 }

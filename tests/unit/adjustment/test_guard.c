@@ -30,6 +30,7 @@ static void use(int32_t profile) {
 
 void setUp(void) {
     argus_config_default(&config);
+    argus_config_follow(&config, argus_config_follows(&config), argus_robot_default());
     argus_knowledge_init(&k);
     argus_echoes_init(&e);
     memset(&rays, 0, sizeof rays);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "captures.h"
+#include "knowledge/config.h"
 #include "unity.h"
 
 #define LOG_MAX 4000
@@ -80,6 +81,7 @@ void setUp(void) {
     robot.identity = example_identity;
     robot.identity_count = sizeof example_identity;
     argus_config_default(&config);
+    argus_config_follow(&config, argus_config_follows(&config), argus_robot_default());
     argus_session_init(&session);
     time_ms = 0;
     tick_ms = 10;

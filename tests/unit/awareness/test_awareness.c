@@ -7,6 +7,7 @@
 
 #include "health.h"
 #include "knowledge/angle.h"
+#include "knowledge/config.h"
 #include "unity.h"
 
 static argus_knowledge_t k;
@@ -20,6 +21,7 @@ void setUp(void) {
     argus_knowledge_init(&k);
     argus_awareness_init(&a);
     argus_config_default(&config);
+    argus_config_follow(&config, argus_config_follows(&config), argus_robot_default());
     config.profile = ARGUS_PROFILE_PAPER;
     memset(&sip, 0, sizeof sip);
     sip.flags = 7;

@@ -44,6 +44,7 @@ static double touches_at(double slant_deg) {
 void test_the_stopping_way_is_that_of_the_default_configuration(void) {
     argus_config_t config;
     argus_config_default(&config);
+    argus_config_follow(&config, argus_config_follows(&config), argus_robot_default());
     const argus_config_report_t report = argus_config_check(&config);
     TEST_ASSERT_EQUAL_INT32(STOP_MM, argus_config_stop_mm(&config, argus_robot_default()));
     TEST_ASSERT_EQUAL_INT32(report.driving_mm - report.overhang_mm,

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "knowledge/config.h"
 #include "robot.h"
 #include "unity.h"
 
@@ -344,19 +345,97 @@ void test_a_known_robot_after_an_unknown_one_drives_on_order(void) {
     finish("seekur, then p3dx-sh");
 }
 
-// S5 for the body that answers: a P3-DX stops in time from 200 mm/s at 9600 baud, a PeopleBot has more before
-// its sonars.
+static void start_with(const argus_config_t *config) {
+    robot_init(&robot, config, 1000);
+}
+
+static void expect_failed(argus_bar_t bar) {
+    argus_status_t status;
+    argus_status(&robot.argus, &status);
+    TEST_ASSERT_EQUAL(ARGUS_MISSION_FAILED, status.mission);
+    TEST_ASSERT_EQUAL(bar, status.bar);
+}
+
+// S5 for the body that answers, of settings that are given: a P3-DX stops in time from 200 mm/s at 9600 baud,
+// a PeopleBot has more before its sonars. The course fails, and again when it is started anew.
 void test_settings_that_are_unsafe_for_the_robot_bar_it(void) {
-    start();
+    argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    config.baud = 9600;
+    config.speed_mm_s = 200;
+    config.object_range_mm = 250;
+    TEST_ASSERT_EQUAL(ARGUS_CONFIG_OK, argus_config_check(&config).fault);
+    start_with(&config);
     robot.subclass = "peoplebot-sh";
-    robot.argus.config.baud = 9600;
-    TEST_ASSERT_EQUAL(ARGUS_CONFIG_OK, argus_config_check(&robot.argus.config).fault);
     TEST_ASSERT_TRUE(robot_goal(&robot, 600, 0));
     robot_run(&robot, 10000);
     TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_ROBOT_UNSAFE, 0));
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_MISSION_FAILED, 0));
+    expect_failed(ARGUS_BAR_UNSAFE);
+    argus_operator(&robot.argus, now(), ARGUS_OP_GO, 0);
+    robot_run(&robot, 2000);
+    expect_failed(ARGUS_BAR_UNSAFE);
+    TEST_ASSERT_TRUE(robot_goal(&robot, 500, 0));
+    robot_run(&robot, 2000);
+    expect_failed(ARGUS_BAR_UNSAFE);
     TEST_ASSERT_EQUAL(ARGUS_SONARS < 32, robot_count_events(&robot, ARGUS_EV_SONARS_BEYOND, 0));
     expect_no_motion("peoplebot-sh");
     finish("peoplebot-sh");
+}
+
+// With the settings as they are built every robot drives, at any rate of its line, and so does its other end.
+void test_the_built_settings_are_safe_for_every_robot(void) {
+    static const int32_t bauds[] = {0, 9600, 19200, 38400, 57600, 115200};
+    for (size_t i = 0; i < 2 * sizeof bauds / sizeof bauds[0]; i++) {
+        for (int k = 1; k <= ARGUS_ROBOTS; k++) {
+            argus_config_t config = robot_config_of((int32_t)(i % 2));
+            config.baud = bauds[i / 2];
+            config.robot = k;
+            const argus_config_report_t report = argus_config_check(&config);
+            TEST_ASSERT_EQUAL_MESSAGE(ARGUS_CONFIG_OK, report.fault, argus_robot_chosen(k)->name);
+            TEST_ASSERT_EQUAL_MESSAGE(200, report.speed_mm_s, argus_robot_chosen(k)->name);
+            const argus_robot_t *const other = argus_robot_other_end(argus_robot_chosen(k));
+            argus_config_follow(&config, argus_config_follows(&config), argus_robot_chosen(k));
+            TEST_ASSERT_TRUE(other == NULL ||
+                             argus_config_check_for(&config, other).fault == ARGUS_CONFIG_OK);
+        }
+    }
+}
+
+// What is asked of the manager follows the robot that answers, and the next one.
+void test_settings_follow_the_robot_that_answers(void) {
+    argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    start_with(&config);
+    robot.subclass = "peoplebot-sh";
+    TEST_ASSERT_EQUAL(250, robot.argus.config.object_range_mm);
+    TEST_ASSERT_TRUE(robot_goal(&robot, 600, 0));
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 60000));
+    TEST_ASSERT_EQUAL(300, robot.argus.config.object_range_mm);
+    argus_link_lost(&robot.argus, now());
+    robot.subclass = "p3dx-sh";
+    argus_link_up(&robot.argus, now());
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_OTHER_ROBOT, 10000));
+    TEST_ASSERT_EQUAL(250, robot.argus.config.object_range_mm);
+    finish("peoplebot-sh, then p3dx-sh");
+}
+
+// The speed follows a range that is given, and a range that no speed is slow enough for is refused.
+void test_the_speed_follows_the_range_that_is_given(void) {
+    argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    int32_t before_mm_s = 30;
+    for (config.object_range_mm = 150; config.object_range_mm <= 400; config.object_range_mm += 10) {
+        const argus_config_report_t report = argus_config_check(&config);
+        TEST_ASSERT_EQUAL(ARGUS_CONFIG_OK, report.fault);
+        TEST_ASSERT_TRUE(report.speed_mm_s >= before_mm_s && report.speed_mm_s <= 200);
+        TEST_ASSERT_EQUAL(config.object_range_mm, report.object_range_mm);
+        before_mm_s = report.speed_mm_s;
+    }
+    TEST_ASSERT_EQUAL(200, before_mm_s);
+    config.object_range_mm = 150;
+    config.sonar_cycle_ms = 120;
+    config.decel_mm_s2 = 50;
+    config.robot = argus_robot_choice(argus_robot_find("peoplebot-sh"));
+    config.baud = 1200;
+    TEST_ASSERT_EQUAL(ARGUS_CONFIG_DRIVING, argus_config_check(&config).fault);
 }
 
 // The AmigoBot has eight sonars: the others are absent, whatever is listed, and none of them is given up.

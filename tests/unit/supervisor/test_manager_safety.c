@@ -970,6 +970,7 @@ static void check_s7_backs_off_at_a_speed_that_s5_allows(void) {
     for (int range = 227; range <= 228; range++) {
         argus_config_t config = robot_config_of(profile);
         config.object_range_mm = range;
+        config.speed_mm_s = 200;
         start_with(&config);
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
         blocks_the_turn();

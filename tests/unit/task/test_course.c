@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "knowledge/config.h"
 #include "unity.h"
 
 static argus_task_t t;
@@ -18,6 +19,7 @@ void setUp(void) {
     argus_knowledge_init(&k);
     argus_echoes_init(&echoes);
     argus_config_default(&config);
+    argus_config_follow(&config, argus_config_follows(&config), argus_robot_default());
 }
 
 static bool at(int x, int y) {

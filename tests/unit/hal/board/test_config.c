@@ -69,6 +69,23 @@ void test_choices_by_name_and_by_nothing_else(void) {
     }
 }
 
+// Its default is a word, and no number of its range.
+void test_one_that_follows_the_robot(void) {
+    argus_config_t back = base;
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_TAKEN, set("object_range_mm", "300"));
+    TEST_ASSERT_EQUAL_INT32(300, config.object_range_mm);
+    base = config; // compiled in
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_TAKEN, set("object_range_mm", "auto"));
+    TEST_ASSERT_EQUAL_INT32(ARGUS_AUTO, config.object_range_mm);
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_NO_RANGE, set("object_range_mm", "0"));
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_NO_RANGE, set("object_range_mm", "149"));
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_NO_VALUE, set("object_range_mm", "automatic"));
+    TEST_ASSERT_EQUAL(BOARD_CONFIG_NO_VALUE, set("step_mm", "auto"));
+    const size_t count = board_config_pack(&base, &config, packed);
+    TEST_ASSERT_EQUAL_size_t(count, board_config_unpack(&back, packed, count));
+    TEST_ASSERT_EQUAL_MEMORY(&config, &back, sizeof config);
+}
+
 void test_what_is_no_number(void) {
     static const char *const wrong[] = {"", "-", "+", "1.5", "1e3", "0x10", "12a", "a", "9999999999", "1 2"};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {

@@ -53,6 +53,17 @@ void test_forms_of_a_line(void) {
     TEST_ASSERT_EQUAL_INT(0, settings.line[SETTINGS_baud]);
 }
 
+// The default of a number that follows the robot is a word.
+void test_a_number_or_auto(void) {
+    TEST_ASSERT_TRUE_MESSAGE(read_text("speed_mm_s = 150\nobject_range_mm = auto\n"), message);
+    TEST_ASSERT_EQUAL_INT32(150, settings.config.speed_mm_s);
+    TEST_ASSERT_EQUAL_INT32(ARGUS_AUTO, settings.config.object_range_mm);
+    refused("speed_mm_s = aut\n",
+            "a.conf:1: speed_mm_s = 'aut': give a whole number, 30 to 750 mm/s, or auto");
+    refused("speed_mm_s = 0\n", "a.conf:1: speed_mm_s = 0 is out of range");
+    refused("step_mm = auto\n", "a.conf:1: step_mm = 'auto': give a whole number, 50 to 200 mm");
+}
+
 static void try_key(const char *key, int value, bool good) {
     char text[96];
     snprintf(text, sizeof text, "%s = %d\n", key, value);
@@ -129,8 +140,11 @@ void test_s5_is_that_of_the_robot_chosen(void) {
     settings_default(&settings);
     TEST_ASSERT_TRUE(settings_check(&settings, why, sizeof why));
     settings.config.robot = argus_robot_choice(argus_robot_find("peoplebot-sh"));
+    TEST_ASSERT_TRUE(settings_check(&settings, why, sizeof why));
+    settings.config.speed_mm_s = 300;
     TEST_ASSERT_FALSE(settings_check(&settings, why, sizeof why));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "overhang 91 "), why);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "object_range_mm = 300;"), why);
 }
 
 void test_s5_is_refused_with_its_numbers(void) {
