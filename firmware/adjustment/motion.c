@@ -84,10 +84,10 @@ static bool on_target(const argus_motion_t *const self, const argus_knowledge_t 
            argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->target_cdeg) <= ON_TARGET_CDEG;
 }
 
-static void again(argus_motion_t *const self, argus_outbox_t *const out,
-                  const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
+void argus_motion_again(argus_motion_t *const self, argus_outbox_t *const out,
+                        const argus_knowledge_t *const knowledge, const bool may, const uint32_t now_ms) {
     ARGUS_ASSERT(self->kind == ARGUS_MOTION_TURN && self->tries > 0);
-    if (self->tries >= TRIES_MAX) {
+    if (!may || self->tries >= TRIES_MAX) {
         self->failed = true;
         return;
     }
@@ -101,23 +101,21 @@ bool argus_motion_is_under_way(const argus_motion_t *const self) {
     return (self->kind == ARGUS_MOTION_TURN || self->kind == ARGUS_MOTION_MOVE) && !self->settled;
 }
 
-void argus_motion_sip(argus_motion_t *const self, argus_outbox_t *const out,
-                      const argus_knowledge_t *const knowledge, const uint32_t now_ms) {
+bool argus_motion_sip(argus_motion_t *const self, const argus_knowledge_t *const knowledge,
+                      const uint32_t now_ms) {
     ARGUS_ASSERT(self->tries <= TRIES_MAX && self->on_target <= SETTLED_SIPS);
     if (self->kind == ARGUS_MOTION_NONE || self->settled || self->failed) {
-        return;
+        return false;
     }
     if (on_target(self, knowledge, now_ms)) {
         self->on_target++;
         self->off_target = 0;
         self->settled = self->on_target >= SETTLED_SIPS;
         self->mark = argus_mark_now(knowledge);
-        return;
+        return false;
     }
     self->on_target = 0;
     const bool resting = knowledge->still_sips > 0 && now_ms - self->issued_ms >= START_MS;
     self->off_target = resting ? (uint8_t)(self->off_target + 1) : 0;
-    if (self->kind == ARGUS_MOTION_TURN && self->off_target >= RETRY_SIPS) {
-        again(self, out, knowledge, now_ms);
-    }
+    return self->kind == ARGUS_MOTION_TURN && self->off_target >= RETRY_SIPS;
 }

@@ -46,8 +46,10 @@ void argus_motion_steer(argus_outbox_t *out, const argus_knowledge_t *knowledge,
 bool argus_motion_is_under_way(const argus_motion_t *self);
 
 // After each SIP. Settled: two consecutive SIPs with |L|, |R| <= 5 mm/s (a turn: heading within 1 degree of
-// the target). A turn at rest off its target is commanded again, three times at most, then it failed.
-void argus_motion_sip(argus_motion_t *self, argus_outbox_t *out, const argus_knowledge_t *knowledge,
-                      uint32_t now_ms);
+// the target). True: a turn rests off its target. It is to be commanded again, if it may be: three times at
+// most, then it failed.
+bool argus_motion_sip(argus_motion_t *self, const argus_knowledge_t *knowledge, uint32_t now_ms);
+void argus_motion_again(argus_motion_t *self, argus_outbox_t *out, const argus_knowledge_t *knowledge,
+                        bool may, uint32_t now_ms);
 
 #endif

@@ -18,10 +18,6 @@
 #define DEVIATION_MOST_MM 400
 #define TURN_NEAR_MM 250    // beyond the circle that the body sweeps
 #define TURN_LEAST_DEG_S 10 // slower is steering
-#define TURN_ROOM_MM 25
-#define TURN_NEARER_MM 3
-#define TURN_PART_CDEG 800
-#define TURN_MOST_CDEG 9000
 
 static argus_bound_t closed(const argus_bound_why_t why) {
     return (argus_bound_t){.speed_mm_s = 0, .way_mm = 0, .why = why};
@@ -231,90 +227,27 @@ static argus_bound_t in_turn(const argus_t *const self, const argus_guard_t *con
     return bound;
 }
 
-static bool may_move(const argus_t *const self, const argus_guard_t *const guard) {
-    return guard->linked && !self->orders.stay && !self->orders.locked && !self->orders.shutdown &&
-           argus_robot_is_known(self->knowledge.robot);
+argus_bound_why_t argus_bound_why(const argus_permit_t permit) {
+    switch (permit) {
+    case ARGUS_PERMIT_GIVEN:
+        return ARGUS_BOUND_FREE;
+    case ARGUS_PERMIT_BUMPER:
+        return ARGUS_BOUND_BUMPER;
+    case ARGUS_PERMIT_SWING:
+        return ARGUS_BOUND_OBJECT;
+    default:
+        return ARGUS_BOUND_HALTED;
+    }
 }
 
 argus_bound_t argus_bound_way(const argus_t *const self, const bool ahead) {
     const argus_guard_t guard = argus_guard(self);
     const bool leads = ahead != self->knowledge.robot->reversed;
-    const unsigned pressed = leads ? self->knowledge.bumpers_front : self->knowledge.bumpers_rear;
-    if (!may_move(self, &guard)) {
-        return closed(ARGUS_BOUND_HALTED);
-    }
-    if (pressed != 0) {
-        return closed(ARGUS_BOUND_BUMPER);
+    const argus_ask_t order = {.mover = ARGUS_MOVER_CLIENT,
+                               .wants = leads ? ARGUS_WANTS_AHEAD : ARGUS_WANTS_BACK};
+    const argus_permit_t permit = argus_permit(self, order);
+    if (permit != ARGUS_PERMIT_GIVEN) {
+        return closed(argus_bound_why(permit));
     }
     return in_turn(self, &guard, leads ? leading(self, &guard) : trailing(self, &guard));
-}
-
-// Turning --------------------------------------------------------------------------------------------------
-
-// From the body, were it turned by so much, to a point in the robot's frame of now; negative within.
-static int32_t gap_mm(const argus_robot_t *const robot, const argus_point_t at, const int32_t by_cdeg) {
-    const argus_point_t turned = argus_in_frame(at, by_cdeg);
-    const int32_t along_mm = argus_max(turned.x_mm - robot->front_mm, -robot->rear_mm - turned.x_mm);
-    return argus_max(along_mm, argus_abs(turned.y_mm) - argus_robot_half_width_mm(robot));
-}
-
-// What is nearer than the room already may stay so near, not come nearer.
-static bool is_met(const argus_robot_t *const robot, const argus_point_t at, const int32_t by_cdeg) {
-    const int32_t parts = argus_abs(by_cdeg) / TURN_PART_CDEG + 1;
-    const int32_t least_mm = argus_min(TURN_ROOM_MM, gap_mm(robot, at, 0) - TURN_NEARER_MM);
-    if (argus_hypot(at.x_mm, at.y_mm) > robot->swing_radius_mm + TURN_ROOM_MM) {
-        return false;
-    }
-    for (int32_t part = 1; part <= parts; part++) {
-        if (gap_mm(robot, at, by_cdeg * part / parts) < least_mm) {
-            return true;
-        }
-    }
-    return false;
-}
-
-// An echo is anywhere in its cone.
-static bool meets_cone(const argus_knowledge_t *const knowledge, const int sonar, const int32_t by_cdeg) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_robot_t *const robot = knowledge->robot;
-    const argus_sonar_pose_t pose = argus_robot_pose(robot, sonar);
-    const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
-    for (int k = -1; k <= 1; k++) {
-        const int32_t bearing = pose.heading_deg * 100 + robot->cone_deg * 50 * k;
-        const argus_point_t at = {pose.x_mm + reading_mm * argus_cos(bearing) / ARGUS_TRIG_ONE,
-                                  pose.y_mm + reading_mm * argus_sin(bearing) / ARGUS_TRIG_ONE};
-        if (is_met(robot, at, by_cdeg)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool meets_echo(const argus_knowledge_t *const knowledge, const int32_t by_cdeg) {
-    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_usable(knowledge, i) && meets_cone(knowledge, i, by_cdeg)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool meets_memory(const argus_t *const self, const int32_t by_cdeg) {
-    for (int i = 0; i < self->echoes.count; i++) {
-        argus_point_t at;
-        if (argus_echoes_near(&self->echoes, &self->knowledge, i, &at) &&
-            is_met(self->knowledge.robot, at, by_cdeg)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-bool argus_bound_may_turn(const argus_t *const self, const int32_t by_cdeg) {
-    const argus_guard_t guard = argus_guard(self);
-    const int32_t cdeg = argus_within(TURN_MOST_CDEG, by_cdeg);
-    const bool pressed = (self->knowledge.bumpers_front | self->knowledge.bumpers_rear) != 0;
-    return may_move(self, &guard) && !pressed && !meets_echo(&self->knowledge, cdeg) &&
-           !(guard.profile->remembers && meets_memory(self, cdeg));
 }

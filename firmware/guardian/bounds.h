@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What a client's motion may be, asked of what trusted sonars see: how far, how fast, whether it may turn.
-// Nothing is changed.
+// What a client's motion may be, asked of what trusted sonars see: how far and how fast. Nothing is changed.
 #ifndef ARGUS_BOUNDS_H
 #define ARGUS_BOUNDS_H
 
-#include "supervisor/core.h"
+#include "supervisor/permit.h"
+
+// A turn of a client, at most, and its deceleration, at least: S7 counts on both.
+#define ARGUS_CLIENT_TURN_DEG_S 100
+#define ARGUS_CLIENT_TURN_DECEL 100
 
 // Why a way is closed.
 typedef enum {
@@ -26,9 +29,7 @@ typedef struct {
 // where a bearing ahead is blind that of argus_rays_seen_mm().
 argus_bound_t argus_bound_way(const argus_t *self, bool ahead);
 
-// Whether a turn by so much, at most a quarter of one, is free of all that is seen or was a moment ago. What
-// is close already only must not come closer: it must get away from there. Cost: a place of the body per 8
-// degrees for each echo.
-bool argus_bound_may_turn(const argus_t *self, int32_t by_cdeg);
+// What bounds a client where it may not move at all, or not turn.
+argus_bound_why_t argus_bound_why(argus_permit_t permit);
 
 #endif

@@ -33,11 +33,12 @@ typedef struct {
     uint16_t out_length;
     uint8_t phase; // argus_port_phase_t
     bool there;
-    bool drives;  // it has commanded a motion, and the manager has none of its own
-    bool denied;  // an operator took the robot from it: until its next session
-    bool stayed;  // an operator's stop holds
-    bool parting; // it is gone: the motors are cut at rest
-    bool origin;  // it has sent SETO; SIPs since
+    bool drives;     // it has commanded a motion, and the manager has none of its own
+    bool denied;     // an operator took the robot from it: until its next session
+    bool stayed;     // an operator's stop holds
+    bool enable_due; // it wants the motors on, and may not yet
+    bool parting;    // it is gone: the motors are cut at rest
+    bool origin;     // it has sent SETO; SIPs since
     uint8_t origin_sips;
     uint8_t arrays;  // of sonars that it wants
     uint8_t streams; // that it asked for, in the order of the table in port.c

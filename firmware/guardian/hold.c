@@ -13,10 +13,11 @@
 #define DONE_MM 20      // of a MOVE: nothing is left
 #define MORE_MM 100     // that a MOVE is lengthened by at least
 #define LESS_MM 30      // ... and shortened: readings scatter
-#define DONE_DEG 2      // of a HEAD
-#define REACTION_MS 500 // from the reading to the command, of a turn
-#define TURN_DECEL 100  // deg/s2, the robot's own
+#define THERE_CDEG 50   // of a HEAD, whole degrees: no turn is left
 #define LOOK_CDEG 6000  // a HEAD is looked at so far ahead
+#define LEAST_CDEG 1000 // ... and any other turn at least so far: little ones follow each other
+#define REACTION_MS 500 // from the reading to the command, of a turn
+#define DEG_PER_RAD 57
 #define WEAVE_CDEG 1000 // to either side for each sonar of a gap: half the pitch of the ring
 #define WEAVE_GAP 2     // a wider one is not looked into
 #define WOVEN_CDEG 300
@@ -33,6 +34,7 @@ void argus_hold_forget(argus_hold_client_t *const self) {
     const argus_given_t before = self->given;
     memset(&self->wish, 0, sizeof self->wish);
     memset(&self->given, 0, sizeof self->given);
+    self->way_due = self->turn_due = false;
     self->given.bumpers = before.bumpers;
     self->given.slanted = before.slanted;
     self->given.slant_cdeg = before.slant_cdeg;
@@ -98,7 +100,7 @@ static void stand(argus_t *const core, argus_hold_client_t *const self, const bo
     }
     if (argus_outbox_int(outbox(core), ARCOS_CMD_VEL, 0)) {
         given->rolls = given->moves = false;
-        given->mm_s = given->half_mm_s = given->move_mm = 0;
+        given->mm_s = given->move_mm = given->right = given->left = 0;
     }
 }
 
@@ -117,42 +119,72 @@ static int32_t bounded(const argus_bound_t *const bound, const int32_t wanted_mm
     return wanted_mm_s < 0 ? -speed : speed;
 }
 
-static int8_t in_units(const int32_t mm_s) {
-    return (int8_t)argus_within(127, mm_s / 20);
+static int32_t in_units(const int32_t mm_s) {
+    return argus_within(127, mm_s / ARGUS_VEL2_UNIT_MM_S);
 }
 
-static bool send_pair(argus_t *const core, const int32_t mm_s, const int32_t half_mm_s) {
-    const uint8_t right = (uint8_t)in_units(mm_s + half_mm_s);
-    const uint8_t left = (uint8_t)in_units(mm_s - half_mm_s);
-    const uint8_t data[] = {ARCOS_CMD_VEL2, ARCOS_ARG_POSITIVE, right, left};
+// Of the right and the left wheel, in its units.
+static bool send_pair(argus_t *const core, const int32_t right, const int32_t left) {
+    const uint8_t data[] = {ARCOS_CMD_VEL2, ARCOS_ARG_POSITIVE, (uint8_t)right, (uint8_t)left};
     return argus_outbox_packet(outbox(core), data, sizeof data);
 }
 
-static bool turns_into(const argus_t *const core, const int32_t deg_s) {
-    const int32_t speed = argus_abs(deg_s);
-    const int32_t ahead_cdeg = speed * REACTION_MS / 10 + speed * speed * 100 / (2 * TURN_DECEL);
-    return deg_s != 0 && !argus_bound_may_turn(core, deg_s < 0 ? -ahead_cdeg : ahead_cdeg);
+// What the robot turns on until it stands, were its turn ended with the next command. It turns no faster than
+// the SETRV that passes.
+static int32_t until_rest_cdeg(const int32_t deg_s) {
+    const int32_t speed = argus_within(ARGUS_CLIENT_TURN_DEG_S, deg_s);
+    const int32_t ahead_cdeg =
+        argus_abs(speed) * REACTION_MS / 10 + speed * speed * 100 / (2 * ARGUS_CLIENT_TURN_DECEL);
+    return speed < 0 ? -ahead_cdeg : ahead_cdeg;
 }
 
-// Both wheels slowed alike: the curve stays. A turn on the spot is a turn.
+static argus_permit_t ask_turn(const argus_t *const core, const int32_t by_cdeg) {
+    return argus_permit(core, (argus_ask_t){ARGUS_MOVER_CLIENT, ARGUS_WANTS_TURN, by_cdeg});
+}
+
+// At least so far.
+static int32_t widened(const int32_t by_cdeg, const int32_t least_cdeg) {
+    return by_cdeg < 0 ? argus_min(by_cdeg, -least_cdeg) : argus_max(by_cdeg, least_cdeg);
+}
+
+static argus_permit_t ask_speed(const argus_t *const core, const int32_t deg_s) {
+    return deg_s == 0 ? ARGUS_PERMIT_GIVEN : ask_turn(core, widened(until_rest_cdeg(deg_s), LEAST_CDEG));
+}
+
+static void tell_turn(argus_t *const core, argus_given_t *const given, const argus_permit_t permit,
+                      const int32_t value) {
+    given->free_sips = 0;
+    if (permit == ARGUS_PERMIT_SWING) {
+        say_once(core, &given->turn_said, ARGUS_EV_GUARD_TURN_HELD, value);
+    } else {
+        given->open_sips = 0;
+        say_once(core, &given->held_said, ARGUS_EV_GUARD_HELD, (int32_t)argus_bound_why(permit));
+    }
+}
+
+// Both wheels slowed alike: the curve stays. A turn on the spot is a turn, and so is what the units of VEL2
+// make of a curve.
 static void give_pair(argus_t *const core, argus_hold_client_t *const self, const argus_bound_t *const bound,
                       const bool anyway) {
     const argus_wish_t *const wish = &self->wish;
     argus_given_t *const given = &self->given;
-    const int32_t track_mm = core->knowledge.robot->track_mm;
-    int32_t mm_s = bounded(bound, wish->mm_s, given->mm_s);
-    int32_t half_mm_s =
+    const int32_t mm_s = bounded(bound, wish->mm_s, given->mm_s);
+    const int32_t half_mm_s =
         wish->mm_s != 0 ? wish->half_mm_s * argus_abs(mm_s) / argus_abs(wish->mm_s) : wish->half_mm_s;
-    if (turns_into(core, half_mm_s * 2 * 57 / argus_max(1, track_mm))) {
-        say_once(core, &given->turn_said, ARGUS_EV_GUARD_TURN_HELD, half_mm_s);
-        given->free_sips = 0;
-        half_mm_s = 0;
+    int32_t right = in_units(mm_s + half_mm_s);
+    int32_t left = in_units(mm_s - half_mm_s);
+    const int32_t deg_s =
+        (right - left) * ARGUS_VEL2_UNIT_MM_S * DEG_PER_RAD / argus_max(1, core->knowledge.robot->track_mm);
+    const argus_permit_t permit = ask_speed(core, deg_s);
+    if (permit != ARGUS_PERMIT_GIVEN) {
+        tell_turn(core, given, permit, deg_s);
+        right = left = in_units(mm_s);
     }
-    if ((anyway || mm_s != given->mm_s || half_mm_s != given->half_mm_s) &&
-        send_pair(core, mm_s, half_mm_s)) {
+    if ((anyway || right != given->right || left != given->left) && send_pair(core, right, left)) {
         given->mm_s = mm_s;
-        given->half_mm_s = half_mm_s;
-        given->rolls = mm_s != 0 || half_mm_s != 0;
+        given->right = (int8_t)right;
+        given->left = (int8_t)left;
+        given->rolls = right != 0 || left != 0;
         given->moves = false;
     }
 }
@@ -269,36 +301,68 @@ static int32_t left_cdeg(const argus_t *const core, const argus_wish_t *const wi
     return argus_angle_wrap(wish->heading_deg * 100 - raw_cdeg(core));
 }
 
-static bool is_turn_closed(const argus_t *const core, const argus_wish_t *const wish) {
-    if (wish->turn == ARGUS_WISH_RVEL) {
-        return turns_into(core, wish->deg_s);
-    }
-    const int32_t left = left_cdeg(core, wish);
-    const int32_t looked = argus_within(LOOK_CDEG, left);
-    return argus_abs(left) > DONE_DEG * 100 && !argus_bound_may_turn(core, looked);
+static int32_t turn_deg_s(const argus_t *const core) {
+    const argus_knowledge_t *const knowledge = &core->knowledge;
+    return (knowledge->vel_right_mm_s - knowledge->vel_left_mm_s) * DEG_PER_RAD / knowledge->robot->track_mm;
 }
 
-static void send_turn(argus_t *const core, const argus_wish_t *const wish) {
-    if (wish->turn == ARGUS_WISH_HEAD) {
+// No farther than the heading that the robot was let turn to.
+static bool is_let(const argus_t *const core, const argus_given_t *const given, const int32_t left) {
+    const int32_t let_cdeg = argus_angle_wrap(given->head_cdeg - raw_cdeg(core));
+    return given->has_head && (let_cdeg < 0) == (left < 0) && argus_abs(left) <= argus_abs(let_cdeg);
+}
+
+// How far a HEAD is asked: to its end, but no farther than it is looked at, or than the robot needs to stand.
+// One that goes on from the one before is asked as any other turn. Or a client would turn in steps as far as
+// none of them is closed.
+static int32_t head_look_cdeg(const argus_t *const core, const argus_given_t *const given,
+                              const int32_t left) {
+    const int32_t rest_cdeg = until_rest_cdeg(turn_deg_s(core));
+    const bool same_way = (rest_cdeg < 0) == (left < 0);
+    const int32_t most_cdeg = same_way ? argus_max(LOOK_CDEG, argus_abs(rest_cdeg)) : LOOK_CDEG;
+    return widened(argus_within(most_cdeg, left), is_let(core, given, left) ? 0 : LEAST_CDEG);
+}
+
+static argus_permit_t ask_wish(const argus_t *const core, const argus_hold_client_t *const self) {
+    const argus_wish_t *const wish = &self->wish;
+    if (wish->turn == ARGUS_WISH_STRAIGHT) {
+        return ARGUS_PERMIT_GIVEN;
+    }
+    if (wish->turn == ARGUS_WISH_RVEL) {
+        return ask_speed(core, wish->deg_s);
+    }
+    const int32_t left = left_cdeg(core, wish);
+    const bool there = argus_abs(left) <= THERE_CDEG;
+    const bool either = argus_abs(left) > ARGUS_TURN_EITHER_CDEG;
+    return ask_turn(core, there ? 0 : either ? left : head_look_cdeg(core, &self->given, left));
+}
+
+static int32_t wanted_deg(const argus_t *const core, const argus_wish_t *const wish) {
+    return wish->turn == ARGUS_WISH_RVEL ? wish->deg_s : left_cdeg(core, wish) / 100;
+}
+
+static void send_turn(argus_t *const core, argus_hold_client_t *const self, const bool closed) {
+    const argus_wish_t *const wish = &self->wish;
+    argus_given_t *const given = &self->given;
+    given->has_head = !closed && wish->turn == ARGUS_WISH_HEAD;
+    if (given->has_head) {
+        given->head_cdeg = wish->heading_deg * 100;
         argus_outbox_int(outbox(core), ARCOS_CMD_HEAD, wish->heading_deg);
     } else {
-        argus_outbox_int(outbox(core), ARCOS_CMD_RVEL, wish->turn == ARGUS_WISH_RVEL ? wish->deg_s : 0);
+        const bool turns = !closed && wish->turn == ARGUS_WISH_RVEL;
+        argus_outbox_int(outbox(core), ARCOS_CMD_RVEL, turns ? wish->deg_s : 0);
     }
 }
 
 static void give_turn(argus_t *const core, argus_hold_client_t *const self, const bool anyway) {
     argus_given_t *const given = &self->given;
-    const argus_wish_t *const wish = &self->wish;
-    const bool closed = wish->turn != ARGUS_WISH_STRAIGHT && is_turn_closed(core, wish);
-    if (closed) {
-        given->free_sips = 0;
-        say_once(core, &given->turn_said, ARGUS_EV_GUARD_TURN_HELD,
-                 wish->turn == ARGUS_WISH_RVEL ? wish->deg_s : left_cdeg(core, wish) / 100);
+    const argus_permit_t permit = ask_wish(core, self);
+    const bool closed = permit != ARGUS_PERMIT_GIVEN;
+    if (closed && (anyway || wanted_deg(core, &self->wish) != 0)) {
+        tell_turn(core, given, permit, wanted_deg(core, &self->wish));
     }
-    if (closed && (anyway || !given->turn_held)) {
-        argus_outbox_int(outbox(core), ARCOS_CMD_RVEL, 0);
-    } else if (!closed && (anyway || given->turn_held)) {
-        send_turn(core, wish);
+    if (anyway || closed != given->turn_held) {
+        send_turn(core, self, closed);
     }
     given->turn_held = closed;
 }
@@ -338,38 +402,68 @@ static void begin_weaving(argus_t *const core, argus_given_t *const given) {
     argus_say(core, ARGUS_EV_GUARD_LOOKS, ARGUS_NO_SONAR, swing_cdeg(core) / 100);
 }
 
+// A look that may not be made is ended where the heading is.
+static void steer(argus_t *const core, argus_given_t *const given, const int32_t to_cdeg) {
+    const int32_t by_cdeg = argus_angle_wrap(to_cdeg - core->knowledge.pose.heading_cdeg);
+    if (ask_turn(core, by_cdeg) == ARGUS_PERMIT_GIVEN) {
+        argus_motion_steer(outbox(core), &core->knowledge, to_cdeg);
+        given->turn_held = false;
+    } else if (!given->turn_held) {
+        given->turn_held = argus_outbox_int(outbox(core), ARCOS_CMD_RVEL, 0);
+    }
+}
+
 static void weave(argus_t *const core, argus_given_t *const given) {
     if (given->weave == 0) {
         begin_weaving(core, given);
     }
     const int32_t to_cdeg = woven_cdeg(given, core);
-    if (argus_bound_may_turn(core, argus_angle_wrap(to_cdeg - core->knowledge.pose.heading_cdeg))) {
-        argus_motion_steer(outbox(core), &core->knowledge, to_cdeg);
-    }
+    steer(core, given, to_cdeg);
 }
 
 static void end_weaving(argus_t *const core, argus_hold_client_t *const self) {
     if (self->given.weave != 0 && self->wish.turn == ARGUS_WISH_STRAIGHT && !self->wish.paired) {
-        argus_motion_steer(outbox(core), &core->knowledge, self->given.base_cdeg);
+        steer(core, &self->given, self->given.base_cdeg);
     }
     self->given.weave = 0;
 }
 
 // ----------------------------------------------------------------------------------------------------------
 
+// What the outbox had no room for is given with the next SIP.
+static void give(argus_t *const core, argus_hold_client_t *const self, const bool way, const bool anyway) {
+    const uint32_t refused = outbox(core)->refused;
+    bool *const due = way ? &self->way_due : &self->turn_due;
+    if (way) {
+        give_way(core, self, anyway || *due);
+    } else {
+        give_turn(core, self, anyway || *due);
+    }
+    *due = outbox(core)->refused != refused;
+}
+
 void argus_hold_way(argus_t *const core, argus_hold_client_t *const self) {
-    give_way(core, self, true);
+    give(core, self, true, true);
+}
+
+void argus_hold_tell(argus_t *const core, argus_hold_client_t *const self, const argus_permit_t permit) {
+    tell_turn(core, &self->given, permit, 0);
 }
 
 // RVEL 0, repeated, must not end the looks.
 void argus_hold_turn(argus_t *const core, argus_hold_client_t *const self) {
     if (self->given.weave == 0 || self->wish.turn != ARGUS_WISH_STRAIGHT) {
-        give_turn(core, self, true);
+        give(core, self, false, true);
     }
 }
 
-void argus_hold_both(argus_t *const core, argus_hold_client_t *const self) {
-    give_way(core, self, true);
+void argus_hold_still(argus_t *const core, argus_hold_client_t *const self) {
+    argus_given_t *const given = &self->given;
+    argus_outbox_urgent(outbox(core), ARCOS_CMD_STOP);
+    given->rolls = given->moves = given->has_head = false;
+    given->mm_s = given->move_mm = given->right = given->left = 0;
+    given->weave = 0;
+    given->turn_held = true;
 }
 
 // S2: once for each contact; what the client wanted is over.
@@ -388,13 +482,13 @@ void argus_hold_watch(argus_t *const core, argus_hold_client_t *const self) {
         return;
     }
     tell_free(core, &self->given);
-    give_way(core, self, false);
+    give(core, self, true, false);
     if (should_weave(core, &self->wish)) {
         weave(core, &self->given);
     } else {
         end_weaving(core, self);
         if (!self->wish.paired) {
-            give_turn(core, self, false);
+            give(core, self, false, false);
         }
     }
 }

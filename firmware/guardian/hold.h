@@ -9,14 +9,17 @@
 
 // What the robot was ordered last, and what was said of it.
 typedef struct {
-    int32_t mm_s;         // VEL, or the way of VEL2
-    int32_t half_mm_s;    // VEL2
+    int32_t mm_s; // VEL, or the way of VEL2
+    int8_t right; // VEL2, in its units
+    int8_t left;
     bool rolls;           // it moves along by our word
     bool moves;           // ... by MOVE
     int32_t move_mm;      // MOVE, from there on
     uint32_t odometer_mm; // ... where it was given
     int32_t setv_mm_s;    // SETV
     bool turn_held;       // RVEL 0 in the place of a turn
+    bool has_head;        // HEAD
+    int32_t head_cdeg;    // ... to this, in the robot's own odometry frame
     int8_t weave;         // side that the heading swings to so that others see a blind bearing, +1 left
     uint8_t woven_sips;   // that it has been there
     int32_t base_cdeg;    // ... about this heading, course frame
@@ -35,15 +38,22 @@ typedef struct {
     argus_wish_t wish;
     argus_given_t given;
     int32_t setv_mm_s; // the client's own SETV: what MOVE drives at, and VEL at most
+    bool way_due;      // to be given with the next SIP: the outbox was full, or the client says too much
+    bool turn_due;
 } argus_hold_client_t;
 
 // Nothing is wanted any more, and nothing is sent for that.
 void argus_hold_forget(argus_hold_client_t *self);
 
-// After a command about the way, the turn, or both: it is passed on as far as it may be.
+// After a command about the way, or both the way and the turn; about the turn: passed on as far as it may be.
 void argus_hold_way(argus_t *core, argus_hold_client_t *self);
 void argus_hold_turn(argus_t *core, argus_hold_client_t *self);
-void argus_hold_both(argus_t *core, argus_hold_client_t *self);
+
+// STOP at once. What is wanted is given again when it may be.
+void argus_hold_still(argus_t *core, argus_hold_client_t *self);
+
+// Once for each time that it is held: what it asks for it may not have at all now.
+void argus_hold_tell(argus_t *core, argus_hold_client_t *self, argus_permit_t permit);
 
 // After each SIP, and when an operator stops the robot: what was given is taken back or given again.
 void argus_hold_watch(argus_t *core, argus_hold_client_t *self);

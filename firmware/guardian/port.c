@@ -38,6 +38,7 @@ static void give_back(argus_t *const core, argus_port_t *const self) {
         self->parted_ms = core->now_ms;
     }
     self->drives = false;
+    self->enable_due = false;
     argus_hold_forget(&self->hold);
 }
 
@@ -162,10 +163,8 @@ static void take_motion(argus_t *const core, argus_port_t *const self, const arg
     argus_wish_take(&self->hold.wish, packet, core->knowledge.odometer_mm, raw_deg(&core->knowledge));
     if (topic == ARGUS_TOPIC_TURN) {
         argus_hold_turn(core, &self->hold);
-    } else if (topic == ARGUS_TOPIC_WAY) {
-        argus_hold_way(core, &self->hold);
     } else {
-        argus_hold_both(core, &self->hold);
+        argus_hold_way(core, &self->hold);
     }
 }
 
@@ -177,13 +176,31 @@ static void take_stop(argus_t *const core, argus_port_t *const self, const uint8
     argus_outbox_urgent(&core->session.outbox, command == ARCOS_CMD_STOP ? ARCOS_CMD_STOP : ARCOS_CMD_E_STOP);
 }
 
+// Motors on are held and given again as a motion is. Where they go off nothing is wanted of the wheels, and a
+// robot that keeps its set points has none when they are on again.
+static void give_enable(argus_t *const core, argus_port_t *const self) {
+    const argus_ask_t order = {.mover = ARGUS_MOVER_CLIENT, .wants = ARGUS_WANTS_MOTORS};
+    const argus_permit_t permit = argus_permit(core, order);
+    if (permit != ARGUS_PERMIT_GIVEN) {
+        argus_hold_tell(core, &self->hold, permit);
+    } else if (self->enable_due) {
+        self->enable_due = !argus_outbox_int(&core->session.outbox, ARCOS_CMD_ENABLE, 1);
+    }
+}
+
 static void take_enable(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
-    const bool on = argus_wish_argument(packet) != 0;
-    if (on && !take_wheel(core, self)) {
-        refuse(core, self, packet->data[0]);
-    } else if (on || self->drives) {
+    self->enable_due = argus_wish_argument(packet) != 0;
+    if (self->enable_due) {
+        if (take_wheel(core, self)) {
+            give_enable(core, self);
+        } else {
+            self->enable_due = false;
+            refuse(core, self, packet->data[0]);
+        }
+    } else if (self->drives) {
         argus_hold_forget(&self->hold);
-        argus_send_robot(core, packet);
+        argus_outbox_int(&core->session.outbox, ARCOS_CMD_ENABLE, 0);
+        argus_outbox_plain(&core->session.outbox, ARCOS_CMD_STOP);
     }
 }
 
@@ -332,6 +349,7 @@ static void yield(argus_t *const core, argus_port_t *const self) {
     if (self->drives && !core->orders.passive) {
         self->drives = false;
         self->denied = true;
+        argus_outbox_urgent(&core->session.outbox, ARCOS_CMD_STOP);
         argus_hold_forget(&self->hold);
         argus_send_own_settings(core);
     }
@@ -399,8 +417,14 @@ static void watch_motion(argus_t *const core, argus_port_t *const self, const bo
     const bool drives = self->phase == ARGUS_PORT_OPEN && self->drives;
     if (drives && core->stalled) {
         argus_hold_forget(&self->hold); // its own session sends VEL 0 and RVEL 0
-    } else if (drives && (news || stays)) {
+    } else if (drives && stays) {
+        argus_hold_still(core, &self->hold);
         argus_hold_watch(core, &self->hold);
+    } else if (drives && news) {
+        argus_hold_watch(core, &self->hold);
+        if (self->enable_due) {
+            give_enable(core, self);
+        }
     }
     if (self->parting && news) {
         part(core, self);

@@ -4,8 +4,6 @@
 
 #include "knowledge/angle.h"
 
-#define VEL2_UNIT_MM_S 20
-
 typedef struct {
     uint8_t command;
     uint8_t topic;
@@ -71,8 +69,8 @@ static int32_t signed_byte(const uint32_t byte) {
 // Low byte right, high byte left.
 static void take_pair(argus_wish_t *const self, const int32_t argument) {
     const uint32_t word = (uint32_t)argument & 0xFFFFu;
-    const int32_t right_mm_s = signed_byte(word) * VEL2_UNIT_MM_S;
-    const int32_t left_mm_s = signed_byte(word >> 8) * VEL2_UNIT_MM_S;
+    const int32_t right_mm_s = signed_byte(word) * ARGUS_VEL2_UNIT_MM_S;
+    const int32_t left_mm_s = signed_byte(word >> 8) * ARGUS_VEL2_UNIT_MM_S;
     self->way = ARGUS_WISH_VEL;
     self->turn = ARGUS_WISH_STRAIGHT;
     self->paired = true;

@@ -5,6 +5,8 @@
 
 #include "arcos/frame.h"
 
+#define ARGUS_VEL2_UNIT_MM_S 20
+
 typedef enum { ARGUS_WISH_REST, ARGUS_WISH_VEL, ARGUS_WISH_MOVE } argus_wish_way_t;
 typedef enum { ARGUS_WISH_STRAIGHT, ARGUS_WISH_RVEL, ARGUS_WISH_HEAD } argus_wish_turn_t;
 

@@ -215,7 +215,9 @@ static void on_sip(argus_t *const self) {
     if (!argus_keep_plan(self) && is_on_its_way(self)) {
         argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_CHECK, false);
     }
-    argus_motion_sip(&self->motion, &self->session.outbox, &self->knowledge, self->now_ms);
+    if (argus_motion_sip(&self->motion, &self->knowledge, self->now_ms)) {
+        argus_turn_again(self);
+    }
     argus_run_mode(self);
     note_order(self);
     note_watchdog(self);

@@ -181,12 +181,9 @@ static void decide(argus_t *const self, argus_intent_t *const next) {
 
 static void turn(argus_t *const self, const int32_t heading_cdeg, argus_intent_t *const next) {
     ARGUS_ASSERT(!self->orders.passive && !self->orders.shutdown);
-    const argus_guard_t guard = argus_guard(self);
-    const int32_t by_cdeg = argus_angle_wrap(heading_cdeg - self->knowledge.pose.heading_cdeg);
-    if (argus_guard_may_turn(&guard) || argus_guard_may_nudge(&guard, by_cdeg)) {
+    if (argus_turn_to(self, heading_cdeg)) {
         argus_waiting_t *const waiting = &self->waiting;
         waiting->last = waiting->last == ARGUS_WAIT_TURN ? ARGUS_WAIT_NONE : waiting->last;
-        argus_turn_to(self, heading_cdeg);
         self->turning.again = false;
         return;
     }
@@ -205,9 +202,10 @@ static void back(argus_t *const self, const argus_intent_t *const intent) {
         return;
     }
     const int32_t most_mm_s = guard.creeps ? argus_guard_unseen_mm_s(&guard) : intent->speed_mm_s;
-    argus_tell(self, ARGUS_EV_BACKING, intent->mm);
-    argus_move(self, -intent->mm, argus_min(intent->speed_mm_s, most_mm_s));
-    enter(self, ARGUS_MODE_BACKING);
+    if (argus_move(self, -intent->mm, argus_min(intent->speed_mm_s, most_mm_s))) {
+        argus_tell(self, ARGUS_EV_BACKING, intent->mm);
+        enter(self, ARGUS_MODE_BACKING);
+    }
 }
 
 // The robot will stand somewhere else: what was tried and verified here does not count there.
@@ -239,7 +237,10 @@ static void go_ahead(argus_t *const self, const argus_intent_t *const intent) {
         ARGUS_ASSERT(argus_guard_may_drive(&guard, &self->plan) &&
                      intent->mm <= argus_guard_ahead_mm(&guard, argus_guard_seen_mm(&guard)));
     }
-    argus_move(self, intent->mm, speed_mm_s);
+    if (!argus_move(self, intent->mm, speed_mm_s)) {
+        argus_hold(self);
+        return;
+    }
     if (intent->moves_on) {
         move_on(self);
     }

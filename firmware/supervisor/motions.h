@@ -18,9 +18,13 @@ void argus_hold(argus_t *self);
 // Whatever is under way must not go on beside a check.
 void argus_come_to_rest(argus_t *self);
 
-void argus_turn_to(argus_t *self, int32_t heading_cdeg);
-void argus_move(argus_t *self, int32_t distance_mm, int32_t speed_mm_s);
+// Motions and motors, as far as argus_permit() lets the manager; false: it does not, and nothing was sent.
+bool argus_turn_to(argus_t *self, int32_t heading_cdeg);
+bool argus_move(argus_t *self, int32_t distance_mm, int32_t speed_mm_s);
 void argus_steer(argus_t *self, int32_t heading_cdeg);
 void argus_enable_motors(argus_t *self);
+
+// The robot rests off the target of its turn: commanded again, or failed after some tries.
+void argus_turn_again(argus_t *self);
 
 #endif

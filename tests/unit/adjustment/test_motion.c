@@ -28,7 +28,9 @@ static void take(int heading_raw, int speed) {
     sip.vel_left_mm_s = (int16_t)-speed;
     sip.vel_right_mm_s = (int16_t)speed;
     argus_knowledge_sip(&k, &sip, 1000, now_ms);
-    argus_motion_sip(&m, &out, &k, now_ms);
+    if (argus_motion_sip(&m, &k, now_ms)) {
+        argus_motion_again(&m, &out, &k, true, now_ms);
+    }
 }
 
 static int32_t next(uint8_t command) {

@@ -136,7 +136,7 @@ void test_vel2_is_slowed_on_its_curve(void) {
     begin(650, 2500, 2500);
     client_bytes(&client, packet, argus_frame_encode(packet, sizeof packet, data, sizeof data));
     TEST_ASSERT_TRUE(client_port(&client)->hold.given.mm_s < 400);
-    TEST_ASSERT_EQUAL_INT(0, client_port(&client)->hold.given.half_mm_s);
+    TEST_ASSERT_EQUAL_INT8(client_port(&client)->hold.given.left, client_port(&client)->hold.given.right);
 }
 
 void test_back_is_closed_while_the_rear_is_not_seen(void) {

@@ -219,7 +219,7 @@ static void translate(robot_t *robot) {
 }
 
 static void rotate(robot_t *robot) {
-    double target = robot->rvel;
+    double target = fmax(-robot->setrv, fmin(robot->rvel, robot->setrv));
     const double error = wrapped(robot->heading - robot->th);
     if (robot->turning) {
         target = copysign(fmin(robot->setrv, sqrt(2 * robot->setra * fabs(error))), error);
@@ -345,8 +345,20 @@ static void set_polling(robot_t *robot, const uint8_t *list, size_t count) {
     }
 }
 
+// Low byte right, high byte left, in 20 mm/s.
+static void obey_pair(robot_t *robot, int32_t argument) {
+    const double right = (int8_t)(argument & 0xFF) * 20.0;
+    const double left = (int8_t)(argument >> 8 & 0xFF) * 20.0;
+    robot->moving = robot->turning = false;
+    robot->vel = (right + left) / 2;
+    robot->rvel = (right - left) / TRACK_MM;
+}
+
 static void obey_motion(robot_t *robot, uint8_t command, int32_t argument) {
     switch (command) {
+    case ARCOS_CMD_VEL2:
+        obey_pair(robot, argument);
+        break;
     case ARCOS_CMD_MOVE:
         robot->vel = 0;
         robot->moving = robot->motors;
