@@ -156,8 +156,8 @@ class Monitor:
         return found
 
 
-def settings_of(config: Mapping[str, Any], *, robot: str = "p3dx-sh", baud: int = 9600) -> dict[str, int]:
+def settings_of(config: Mapping[str, Any], *, baud: int = 9600) -> dict[str, int]:
     """Return the monitor's settings for a manager with these settings, as in a mission of the SIL."""
-    known = {key: int(value) for key, value in config.items() if key in _SETTINGS}
+    known = {key: int(value) for key, value in config.items() if key in _SETTINGS and value != "auto"}
     known["paper"] = int(config.get("profile") == "paper")
     return {"baud": baud, **known}

@@ -33,7 +33,7 @@ MISSIONS: Final[dict[str, dict[str, Any]]] = {
 
 def mission_of(name: str, seed: int) -> Mission:
     """Return the mission of a name."""
-    given = {"world": "demo", "course": _AROUND, "limit_s": 60.0} | MISSIONS[name]
+    given: dict[str, Any] = {"world": "demo", "course": _AROUND, "limit_s": 60.0} | MISSIONS[name]
     return Mission(seed=seed, **given)
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, cast
 
 from argus_tools.core import Core, health_name, kind_name
 from argus_tools.core import Event as CoreEvent
@@ -65,8 +65,7 @@ class WatchedSil(Sil):
         super().__init__(mission, **options)
 
     def _build_core(self) -> Core:
-        core: Any = WatchedCore(super()._build_core(), self.monitor)
-        return core
+        return cast(Core, WatchedCore(super()._build_core(), self.monitor))
 
     def _look_at_robot(self, packet: bytes) -> None:
         super()._look_at_robot(packet)
