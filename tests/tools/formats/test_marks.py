@@ -170,7 +170,7 @@ ONE = {
     "bits": each(lambda _, sip: " ".join(f"{byte:08b}" for byte in sip)),
     "list of hex": each(lambda _, sip: str([hex(byte) for byte in sip])),
     "list without commas": each(lambda _, sip: str(list(sip)).replace(",", "")),
-    "colours": each(lambda n, sip: f"\x1b[90m[12:00:0{n % 10}.250]\x1b[0m \x1b[32m{sip.hex(' ')}\x1b[0m"),
+    "colours": each(lambda n, sip: f"\x1b[90m[12:00:{n % 60:02d}.250]\x1b[0m \x1b[32m{sip.hex(' ')}\x1b[0m"),
     "a colour for each byte": each(lambda _, sip: "".join(f"\x1b[33m{byte:02x}\x1b[0m " for byte in sip)),
 }
 

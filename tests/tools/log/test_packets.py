@@ -228,3 +228,19 @@ def test_a_robot_that_never_answers_is_knocked_at_with_sync0() -> None:
 def test_unknown_numbers_have_numbered_names() -> None:
     assert names(("r2c", frame(b"\x77")), ("c2r", frame(b"\x63"))) == ["TYPE_119", "CMD_99"]
     assert names(("r2c", frame(Sip(type=0x33).data)), ("r2c", frame(b"\xb0hi"))) == ["SIP", "SERAUXPAC"]
+
+
+def test_damage_has_the_time_of_the_chunk_in_which_it_begins() -> None:
+    good = frame(b"\x32" + bytes(10))
+    bad = good[:-1] + bytes((good[-1] ^ 1,))
+    chunks = [
+        Chunk(10.0, "r2c", good, 0),
+        Chunk(20.0, "r2c", bad, len(good)),
+        Chunk(90.0, "r2c", good, 2 * len(good)),
+    ]
+    for at_once in (True, False):
+        assert [(row.t, row.ok) for row in packets(chunks, at_once)] == [
+            (10.0, True),
+            (20.0, False),
+            (90.0, True),
+        ]

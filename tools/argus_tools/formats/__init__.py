@@ -33,6 +33,7 @@ from argus_tools.formats.text import (
     is_text,
     unmarked,
 )
+from argus_tools.formats.timeline import Timeline
 from argus_tools.formats.wrapped import Wrap, unwrapped
 
 __all__ = [
@@ -164,7 +165,7 @@ class Log:
         return self.source.damage, self._reader.damage
 
     def __iter__(self) -> Iterator[Chunk]:
-        return iter(self._reader)
+        return iter(Timeline(self._reader, self._reader.damage))
 
 
 def open_log(path: str, format_name: str | None = None, **options: Any) -> Log:

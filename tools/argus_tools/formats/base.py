@@ -49,16 +49,25 @@ class Damage(NamedTuple):
 
 
 class DamageList(list[Damage]):
-    """The first entries; of a file that is nothing but damage the others are only counted, in `total`."""
+    """The first entries; of a file that is nothing but damage the others are only counted, in `total`.
+
+    unread: those that could not be read; the others were read with a correction.
+    """
 
     KEPT: Final = 1000
 
     def __init__(self) -> None:
         super().__init__()
         self.total = 0
+        self.unread = 0
 
     def append(self, entry: Damage, /) -> None:
         """Take note of one more."""
+        self.unread += 1
+        self.correct(entry)
+
+    def correct(self, entry: Damage, /) -> None:
+        """Take note of what was read with a correction, as a time of a clock that was set."""
         self.total += 1
         if self.total <= self.KEPT:
             super().append(entry)

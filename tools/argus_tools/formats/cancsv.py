@@ -304,6 +304,11 @@ class CanCsvReader:
         self._name = options.name
         self._link = CanLink(options, self.damage, "line")
 
+    @property
+    def place(self) -> str:
+        """Where in the file the last chunk ends."""
+        return self._link.place
+
     def __iter__(self) -> Iterator[Chunk]:
         columns: _Columns | None = None
         times = Times()

@@ -64,24 +64,19 @@ Fields = tuple[bytes | float | None, bytes, bytes, bytes]
 
 
 class _Clock:
-    """Makes one rising time of those of -td, which count from the line before, and -tz, from the run's first."""
+    """Adds up the times of -td, which count from the line before; those of the other options are as they are."""
 
     def __init__(self, head: bytes) -> None:
         times = [float(match[1]) for match in _RELATIVE.finditer(head)]
         falls = sum(after < before for before, after in pairwise(times))
-        self._is_delta = falls * _FALLS_OF_DELTA > len(times)
-        self._base = self._last = 0.0
+        self.is_delta = falls * _FALLS_OF_DELTA > len(times)
+        self._sum = 0.0
 
     def at(self, t: float) -> float:
-        if t > _RELATIVE_MAX_S:
+        if not self.is_delta or t > _RELATIVE_MAX_S:
             return t
-        if self._is_delta:
-            self._base += t
-            return round(self._base, 9)
-        if t < self._last / 2:
-            self._base += self._last
-        self._last = t
-        return round(self._base + t, 9)
+        self._sum += t
+        return round(self._sum, 9)
 
 
 class CandumpReader:
@@ -91,12 +86,17 @@ class CandumpReader:
         self.damage = DamageList()
         self._stream = stream
         self._link = CanLink(options, self.damage, "line")
-        self._clock: _Clock | None = None
+
+    @property
+    def place(self) -> str:
+        """Where in the file the last chunk ends."""
+        return self._link.place
 
     def __iter__(self) -> Iterator[Chunk]:
         directions: dict[tuple[bytes, bytes], Direction | None] = {}
         usual, transfers, link = _USUAL.fullmatch, self._link.transfers, self._link
         number = 0
+        clock: _Clock | None = None
         while line := self._stream.readline(_LINE_MAX):
             number += 1
             match = usual(line)
@@ -104,6 +104,9 @@ class CandumpReader:
             if fields is None:
                 continue
             t, bus, can_id, digits = fields
+            if t is not None and (clock is None or clock.is_delta):
+                clock = clock or _Clock(line + self._stream.peek(_LINE_MAX))
+                t = clock.at(float(t))
             try:
                 direction = directions[bus, can_id]
             except KeyError:
@@ -136,12 +139,12 @@ class CandumpReader:
             t, bus, can_id, digits = match.groups()
             return t, bus or b"", can_id, digits
         if match := _SCREEN.fullmatch(line):
-            return self._screen(match, line, number)
+            return self._screen(match, number)
         if line.strip() and not line.startswith((b"#", b"\t")):
             self.damage.append(Damage(f"line {number}", "no line of candump"))
         return None
 
-    def _screen(self, match: re.Match[bytes], line: bytes, number: int) -> Fields | None:
+    def _screen(self, match: re.Match[bytes], number: int) -> Fields | None:
         date, t, bus, can_id, bracket, length, shown = match.groups()
         # Braces hold the length's code, which is above 8 for 8 bytes, too.
         size = min(int(length, 16), _FRAME_BYTES) if bracket == b"{" else _decimal(length)
@@ -151,11 +154,7 @@ class CandumpReader:
             return None
         if date:
             return _seconds(date.decode()), bus, can_id, digits
-        if t is None:
-            return None, bus, can_id, digits
-        if self._clock is None:
-            self._clock = _Clock(line + self._stream.peek(_LINE_MAX))
-        return self._clock.at(float(t)), bus, can_id, digits
+        return t, bus, can_id, digits
 
     def _dotted(self, digits: bytes, number: int) -> bytes:
         try:

@@ -68,6 +68,11 @@ class CanLinesReader:
         self._stream = stream
         self._link = CanLink(options, self.damage, "line")
 
+    @property
+    def place(self) -> str:
+        """Where in the file the last chunk ends."""
+        return self._link.place
+
     def __iter__(self) -> Iterator[Chunk]:
         kind: _Kind | None = None
         number = 0

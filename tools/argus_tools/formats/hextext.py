@@ -312,6 +312,7 @@ class HextextReader:
 
     def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
         self.damage = DamageList()
+        self.place = ""
         self._stream = stream
         self._asked = options.direction
 
@@ -331,6 +332,7 @@ class HextextReader:
             mark = _mark(mark, piece, text, is_follow and begins)
             if piece.data:
                 direction = directions.get(mark) or directions[b""]
+                self.place = f"line {number}"
                 yield offsets.chunk(t, direction, piece.data)
             elif piece.is_strange:
                 self.damage.append(

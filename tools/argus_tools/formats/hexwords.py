@@ -217,6 +217,7 @@ class HexwordsReader:
 
     def __init__(self, stream: BufferedReader, options: ReadOptions) -> None:
         self.damage = DamageList()
+        self.place = ""
         self._stream = stream
         self._direction = options.direction
         self._usual: Direction = ROBOT_TO_CLIENT
@@ -237,6 +238,7 @@ class HexwordsReader:
             mark = taken.mark or mark
             if data := self._bytes(number, line, way, taken.parts):
                 direction = known.get(mark, known[b""]) if known else self._guess(number, data)
+                self.place = f"line {number}"
                 yield offsets.chunk(t, direction, data)
 
     def _guess(self, number: int, data: bytes) -> Direction:

@@ -72,6 +72,12 @@ class CanLink:
         self._offsets = Offsets()
         self._directions: dict[tuple[str, int, bool], Direction | None] = {}
         self._t: float | None = None
+        self._place = 0
+
+    @property
+    def place(self) -> str:
+        """Where in the file the last frame taken stands."""
+        return f"{self._unit} {self._place}"
 
     def direction(self, bus: str, can_id: int, is_long_id: bool, place: int) -> Direction | None:
         """Return which way frames of this id go, None if they are not of the robot that is read."""
@@ -112,6 +118,7 @@ class CanLink:
     def take(self, t: float | None, direction: Direction, frame: bytes, place: int) -> Iterator[Chunk]:
         """Take a frame; yield the message that it completes, or what came of one that it breaks off."""
         self._t = t
+        self._place = place
         kind = frame[0] >> 4 if frame else -1
         if kind == _SINGLE:
             yield from self._give_up(direction, "is broken off")

@@ -95,6 +95,7 @@ class JsonlReader:
 
     def __init__(self, stream: BufferedReader, _options: ReadOptions) -> None:
         self.damage = DamageList()
+        self._number = 0
         self._stream = stream
         self._unit = "line"
 
@@ -102,6 +103,11 @@ class JsonlReader:
         self.damage.append(Damage(f"{self._unit} {number}", f"longer than {LINE_MAX} bytes"))
         while (line := self._stream.readline(LINE_MAX)) and line[-1] != 10:
             pass
+
+    @property
+    def place(self) -> str:
+        """Where in the file the last chunk stands."""
+        return f"{self._unit} {self._number}"
 
     def __iter__(self) -> Iterator[Chunk]:
         if _is_array(self._stream.peek(HEAD_BYTES)):
@@ -127,9 +133,11 @@ class JsonlReader:
                         direction = _DIRS[name]
                         offset = at[direction]
                         at[direction] = offset + len(data)
+                        self._number = number
                         yield new(Chunk, (t, direction, data, offset))
                         continue
             if found := self._read(line, number):
+                self._number = number
                 yield offsets.chunk(*found)
 
     def _read(self, line: bytes, number: int) -> tuple[float | None, Direction, bytes] | None:

@@ -238,7 +238,7 @@ def run(args: argparse.Namespace) -> int:
     if status is None:
         raise LogError(f"{args.log}: holds no SIP from the robot, so there is nothing to judge")
     if summary:
-        print("\n".join(summary.lines(status, sum(entries.total for entries in source.log.damage_lists))))
+        print("\n".join(summary.lines(status, sum(entries.unread for entries in source.log.damage_lists))))
     else:
         print(json.dumps({"t": t, **_STATUS, **status}) if args.json else _table(status, colour))
     return source.exit_code

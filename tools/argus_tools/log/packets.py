@@ -114,7 +114,7 @@ class Scanner:
         self._tracer: _Tracer | None = None
         self._gap = bytearray()
         self._gap_at = 0
-        self._gap_t: float | None = None
+        self._pieces: list[tuple[int, float | None]] = []
         self._cut: list[Chunk] = []
         self._window = _WINDOW_MAX
 
@@ -265,8 +265,9 @@ class Scanner:
             rows += self.feed(chunk)
         self._cut = []
         if self._tracer is not None:
-            self._collect(rows, self._gap_t, self._tracer.poll(1e12))
-            self._flush(rows, self._gap_t, len(self._gap))
+            t = self._pieces[-1][1] if self._pieces else None
+            self._collect(rows, t, self._tracer.poll(1e12))
+            self._flush(rows, len(self._gap))
             self._tracer = None
         return rows
 
@@ -274,34 +275,43 @@ class Scanner:
         tracer = self._tracer
         assert tracer is not None
         piece = chunk.data[at : tracer.reach(chunk.data, at)]
+        if not self._pieces or self._pieces[-1][1] != chunk.t:
+            self._pieces.append((chunk.offset + at, chunk.t))
         self._gap += piece
-        self._gap_t = chunk.t
         self._collect(rows, chunk.t, tracer.feed(piece))
         if not tracer.pending and not self._gap:
             self._tracer = None
+            self._pieces.clear()
         elif len(self._gap) >= _GAP_MAX:
-            self._flush(rows, chunk.t, len(self._gap) - tracer.pending)
+            self._flush(rows, len(self._gap) - tracer.pending)
         return at + len(piece)
 
     def _collect(self, rows: list[Row], t: float | None, packets: list[bytes]) -> None:
         tracer = self._tracer
         assert tracer is not None
         for data, start in zip(packets, tracer.starts, strict=True):
-            self._flush(rows, t, start - self._gap_at)
+            self._flush(rows, start - self._gap_at)
             rows.append(Row(t, start, self.direction, self._names[data[0]], True, data))
             size = len(data) + 2 + _OVERHEAD
             del self._gap[:size]
             self._gap_at += size
         tracer.starts.clear()
 
-    def _flush(self, rows: list[Row], t: float | None, size: int) -> None:
+    def _time_at(self, offset: int) -> float | None:
+        """Return the time of the chunk that a byte came with; earlier bytes are not asked for again."""
+        while len(self._pieces) > 1 and self._pieces[1][0] <= offset:
+            del self._pieces[0]
+        return self._pieces[0][1]
+
+    def _flush(self, rows: list[Row], size: int) -> None:
         """Report the first bytes of the gap as damage."""
         gap = bytes(self._gap[:size])
         at = 0
         while at < len(gap):
             end = self._damage_end(gap, at)
             name, error = self._explain(gap[at:end])
-            rows.append(Row(t, self._gap_at + at, self.direction, name, False, gap[at:end], error))
+            place = self._gap_at + at
+            rows.append(Row(self._time_at(place), place, self.direction, name, False, gap[at:end], error))
             at = end
         del self._gap[:size]
         self._gap_at += size

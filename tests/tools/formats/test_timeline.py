@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""Rule: whatever a log's clock does, its times rise, and each correction is reported with its place."""
+
+from __future__ import annotations
+
+import itertools
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from argus_tools.formats import open_log
+from argus_tools.formats.base import ROBOT_TO_CLIENT, Chunk, DamageList
+from argus_tools.formats.timeline import SECOND_MOST, Timeline
+
+
+class Reader:
+    """Gives chunks with these times, and the line of each."""
+
+    def __init__(self, times: list[float | None]) -> None:
+        self._times = times
+        self.place = ""
+
+    def __iter__(self) -> Iterator[Chunk]:
+        for number, t in enumerate(self._times, start=1):
+            self.place = f"line {number}"
+            yield Chunk(t, ROBOT_TO_CLIENT, b"x", number - 1)
+
+
+def times(given: list[float | None]) -> tuple[list[float | None], list[tuple[str, str]]]:
+    damage = DamageList()
+    found = [chunk.t for chunk in Timeline(Reader(given), damage)]
+    assert damage.unread == 0
+    return found, [(entry.place, entry.what.split(";")[0]) for entry in damage]
+
+
+@pytest.mark.parametrize(
+    ("given", "expected", "reports"),
+    [
+        ([5.0, 5.1, 5.25], [5.0, 5.1, 5.25], []),
+        ([None, None], [None, None], []),
+        # Two directions out of order by less than a second stay so.
+        ([5.0, 5.4, 5.1, 5.5], [5.0, 5.4, 5.1, 5.5], []),
+        (
+            [7200.5, 7200.6, 3600.5, 3600.6],
+            [7200.5, 7200.6, 7200.7, 7200.8],
+            [("line 3", "the clock falls by 3600.100 s")],
+        ),
+        (
+            [100.5, 50.5, 10.5],
+            [100.5, 100.6, 100.7],
+            [("line 2", "the clock falls by 50.000 s"), ("line 3", "the clock falls by 40.000 s")],
+        ),
+        # A clock of the day over midnight is no correction.
+        ([86399.5, 0.5, 1.25], [86399.5, 86400.5, 86401.25], []),
+        ([86399.5, 0.5, 86399.5, 0.5], [86399.5, 86400.5, 172799.5, 172800.5], []),
+        # The clock of a computer that has none is set once it has a network.
+        (
+            [12.5, 12.75, 1.8e9 + 0.5, 1.8e9 + 0.75],
+            [12.5, 12.75, 12.85, 13.1],
+            [("line 3", "the clock is set 1799999988 s ahead")],
+        ),
+        # Two drives of two days are what they are.
+        ([1.7e9 + 0.5, 1.8e9 + 0.5], [1.7e9 + 0.5, 1.8e9 + 0.5], []),
+        ([-3.25, -3.0, 0.5], [0.0, 0.25, 3.75], [("line 1", "times begin at -3.250000 s")]),
+        ([1e-9 - 1.7e9, 0.25 - 1.7e9], [0.0, 0.25], [("line 1", "times begin at -1700000000.000000 s")]),
+    ],
+)
+def test_times_rise(given: list[float | None], expected: list[float], reports: list[tuple[str, str]]) -> None:
+    found, told = times(given)
+    assert found == pytest.approx(expected, abs=1e-6)
+    assert told == reports
+
+
+def test_whole_seconds_are_spread() -> None:
+    given: list[float | None] = [t for t in (7.0, 8.0, 9.0, 10.0, 12.0) for _ in range(4)]
+    found, told = times(given)
+    assert found == [t + k / 4 for t in (7.0, 8.0, 9.0, 10.0, 12.0) for k in range(4)]
+    assert told == [("its clock", "gives whole seconds")]
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        [0.0] * 20,
+        [0.0] * (SECOND_MOST + 5) + [1.0] * 5,
+        [float(t) for t in range(20)],
+        [1.0, 1.0, 2.0, 2.0, 2.5, 3.0],
+        [1.0, 1.0, None, 2.0, 2.0],
+    ],
+    ids=["all at once", "more than a link carries", "one a second", "a fraction", "a gap"],
+)
+def test_what_only_looks_like_whole_seconds_stays(given: list[float | None]) -> None:
+    assert times(list(given)) == (given, [])
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_no_clock_makes_times_fall_or_loses_a_chunk(seed: int) -> None:
+    rng = random.Random(seed)
+    t = rng.choice([0.0, -1e6, 1.8e9, 86390.0])
+    given: list[float | None] = []
+    for _ in range(300):
+        t += rng.choice([0.001, 0.1, 1.0, rng.uniform(-1e5, 1e5) if rng.random() < 0.1 else 0.05])
+        given.append(rng.choice([t, t, t, float(int(t))]))
+    found, _ = times(given)
+    assert len(found) == len(given)
+    rising = [one for one in found if one is not None]
+    assert all(after > before - 2.1 for before, after in itertools.pairwise(rising)), seed
+
+
+def test_candump_with_times_since_the_line_before(tmp_path: Path) -> None:
+    lines = [
+        f"(000.1{n:05d}) can0 640#06FAFB03000000CC" if n % 2 else "(000.000009) can0 648#06FAFB03000000CC"
+        for n in range(40)
+    ]
+    log = tmp_path / "delta.log"
+    log.write_text("\n".join(lines) + "\n")
+    found = [chunk.t for chunk in open_log(str(log))]
+    assert found[0] == pytest.approx(0.000009)
+    assert found[-1] == pytest.approx(sum(float(line[1:11]) for line in lines))
+
+
+def test_an_asc_with_a_date_and_negative_times_is_absolute(tmp_path: Path) -> None:
+    log = tmp_path / "mdf.asc"
+    log.write_text(
+        "date Fri Nov 27 03:33:04.500 AM 2026\nbase hex  timestamps absolute\nno internal events logged\n"
+        "-2.500000 0  640             Tx   d 7 06 FA FB 03 00 00 00\n"
+        "1.250000 0  648             Rx   d 7 06 FA FB 03 00 00 00\n"
+    )
+    assert [chunk.t for chunk in open_log(str(log))] == [1795750382.0, 1795750385.75]
