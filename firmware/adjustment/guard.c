@@ -74,10 +74,17 @@ int32_t argus_guard_unseen_mm_s(const argus_guard_t *const self) {
     return creep_mm_s > 0 ? argus_min(creep_mm_s, most_mm_s) : most_mm_s;
 }
 
-// What the shortest reading ahead says now, less the way driven since it was taken.
+int32_t argus_guard_touched_mm(const argus_guard_t *const self) {
+    const argus_robot_t *const robot = self->knowledge->robot;
+    const int32_t before_mm = argus_touches_before_mm(&self->echoes->touches, self->knowledge, 1);
+    return before_mm == INT32_MAX ? INT32_MAX : before_mm + robot->front_mm - robot->sonar_face_mm;
+}
+
+// What the shortest reading ahead says now, less the way driven since it was taken. A place that was touched
+// is as good as a reading.
 static int32_t read_mm(const argus_guard_t *const self) {
     const argus_knowledge_t *const knowledge = self->knowledge;
-    int32_t shortest = knowledge->robot->no_echo_mm;
+    int32_t shortest = argus_min(knowledge->robot->no_echo_mm, argus_guard_touched_mm(self));
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i)) {
             const int32_t since_mm = (int32_t)(knowledge->odometer_mm - knowledge->sonar[i].odometer_mm);
@@ -214,7 +221,9 @@ static int32_t remembered_mm(const argus_guard_t *const self, const int32_t back
 int32_t argus_guard_nearest_mm(const argus_guard_t *const self, const int32_t back_mm) {
     ARGUS_ASSERT(back_mm >= 0);
     const int32_t now_mm = argus_nearest_to_centre_mm(self->knowledge, back_mm);
-    return self->profile->remembers ? argus_min(now_mm, remembered_mm(self, back_mm)) : now_mm;
+    return argus_min(now_mm, self->profile->remembers ? remembered_mm(self, back_mm)
+                                                      : argus_touches_nearest_mm(&self->echoes->touches,
+                                                                                 self->knowledge, back_mm));
 }
 
 bool argus_guard_swing_is_blocked(const argus_guard_t *const self) {
@@ -264,6 +273,16 @@ static bool is_heard_in_nudge(const argus_knowledge_t *const knowledge, const nu
     return false;
 }
 
+static bool is_touched_in_nudge(const argus_guard_t *const self, const nudge_t *const nudge) {
+    const argus_touches_t *const touches = &self->echoes->touches;
+    for (int i = 0; i < touches->count; i++) {
+        if (is_swept(self->knowledge->robot, argus_touches_seen(touches, self->knowledge, i), nudge)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool is_remembered_in_nudge(const argus_guard_t *const self, const nudge_t *const nudge) {
     for (int i = 0; i < self->echoes->count; i++) {
         argus_point_t at;
@@ -280,7 +299,8 @@ bool argus_guard_may_nudge(const argus_guard_t *const self, const int32_t by_cde
         return false;
     }
     const nudge_t nudge = nudge_of(by_cdeg);
-    return !is_heard_in_nudge(self->knowledge, &nudge) && !is_remembered_in_nudge(self, &nudge);
+    return !is_heard_in_nudge(self->knowledge, &nudge) && !is_remembered_in_nudge(self, &nudge) &&
+           !is_touched_in_nudge(self, &nudge);
 }
 
 bool argus_guard_echo_blocks(const argus_guard_t *const self, const int sonar) {
@@ -398,7 +418,9 @@ bool argus_guard_rear_is_clear(const argus_guard_t *const self) {
 // Where not all that look back are left, a robot that creeps takes the way that it came.
 bool argus_guard_may_back(const argus_guard_t *const self) {
     const bool feels = self->creeps && self->knowledge->bumpers_rear == 0;
-    return rear_reads_clear(self) && (feels || argus_guard_rear_is_watched(self));
+    const int32_t touched_mm = argus_touches_before_mm(&self->echoes->touches, self->knowledge, -1);
+    return rear_reads_clear(self) && touched_mm > self->config->backoff_mm + ASTERN_MM &&
+           (feels || argus_guard_rear_is_watched(self));
 }
 
 bool argus_guard_may_back_off(const argus_guard_t *const self) {

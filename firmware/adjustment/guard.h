@@ -69,6 +69,10 @@ int32_t argus_guard_unseen_mm_s(const argus_guard_t *self);
 // argus_guard_seen_mm(), which costs more than all the rest.
 int32_t argus_guard_ahead_mm(const argus_guard_t *self, int32_t seen_mm);
 
+// How far before the sonars' faces the body would meet what it has touched before; INT32_MAX: not straight
+// ahead. Whatever the sonars hear, it stands there.
+int32_t argus_guard_touched_mm(const argus_guard_t *self);
+
 // A sonar ahead has the name of a fault.
 bool argus_guard_is_doubted(const argus_guard_t *self);
 

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "awareness/levels.h"
 #include "knowledge/angle.h"
 
 #define LEAST 4         // sonars in use that make an array, and of these had to hear something until then
@@ -20,14 +21,42 @@
 #define PASSED_MM 1500      // driven beside such things, both sides together: proof
 #define PASSED_LEAST_MM 400 // ... on either
 
+#define GOES_ON_MM 200 // an echo of one thing goes on from the one before, less the way, to within this
+#define AHEAD_DEG 30   // what looks so far off the way cannot pass by what it heard
+#define AHEAD_LEAST_MM 300
+#define STRETCH_MM 400  // of a wall beside it is a piece of evidence,
+#define PASSED_NATS 280 // ... worth so much
+#define LOST_NATS 280   // each of two that have lost something ahead,
+#define TOUCH_NATS 560  // ... what the body met,
+#define DOUBT_NATS 560  // ... and so much is reason for doubt: the level of a suspicion
+#define PROOF_NATS 2200 // the level of a conviction,
+#define PROOF_BY 2      // ... by so many others
+
 void argus_common_init(argus_common_t *const self) {
     memset(self, 0, sizeof *self);
+}
+
+// What its last echo would read now, of something straight ahead.
+static int32_t expected_mm(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                           const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    return self->echo_mm[sonar] - (int32_t)(knowledge->odometer_mm - self->echo_odometer_mm[sonar]);
+}
+
+static void note_echo(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                      const uint16_t reading_mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    self->again[sonar] =
+        self->echoed[sonar] && argus_abs(expected_mm(self, knowledge, sonar) - reading_mm) <= GOES_ON_MM;
+    self->echo_mm[sonar] = reading_mm;
+    self->echo_odometer_mm[sonar] = knowledge->odometer_mm;
 }
 
 static void take(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const uint16_t reading_mm = knowledge->sonar[sonar].reading_mm;
     if (reading_mm < knowledge->robot->no_echo_mm) {
+        note_echo(self, knowledge, sonar, reading_mm);
         self->none_run[sonar] = 0;
         self->heard[sonar] = reading_mm <= LASTING_MM || argus_robot_faces_forward(knowledge->robot, sonar);
         self->echoed[sonar] = true;
@@ -75,16 +104,31 @@ static argus_mask_t lost_at_once(const argus_common_t *const self, const argus_k
     return (argus_mask_t)lost;
 }
 
+// What speaks against the array as a whole, and whose echoes.
+static void add(argus_dark_t *const dark, const int32_t nats, const argus_mask_t by) {
+    dark->nats = (int16_t)argus_min(dark->nats + nats, ARGUS_CEILING);
+    dark->by |= by;
+}
+
 // One abeam, of another array, that is relied on: the way since it was heard last counts while it hears
 // something near.
 static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_passed_t *const passed = &dark->passed[argus_robot_pose(knowledge->robot, sonar).y_mm > 0];
     const int32_t way_mm = (int32_t)(knowledge->odometer_mm - passed->odometer_mm);
-    const bool goes_on = passed->near && way_mm <= APART_MM;
-    passed->near = argus_trusted(knowledge, sonar) && knowledge->sonar[sonar].reading_mm <= NEAR_MM;
-    passed->mm += goes_on && passed->near ? way_mm : 0;
+    const bool apart = way_mm > APART_MM;
+    const uint16_t reading_mm = knowledge->sonar[sonar].reading_mm;
+    const bool near = argus_trusted(knowledge, sonar) && reading_mm <= NEAR_MM;
+    const bool lasting = argus_trusted(knowledge, sonar) && reading_mm <= LASTING_MM;
+    passed->mm += passed->near && near && !apart ? way_mm : 0;
+    passed->stretch_mm += passed->lasting && lasting && !apart ? way_mm : 0;
+    passed->near = near;
+    passed->lasting = lasting;
     passed->odometer_mm = knowledge->odometer_mm;
+    if (passed->stretch_mm >= STRETCH_MM) {
+        passed->stretch_mm = 0;
+        add(dark, PASSED_NATS, (argus_mask_t)(1u << sonar));
+    }
 }
 
 static void pass_all(argus_dark_t *const dark, const argus_knowledge_t *const knowledge) {
@@ -125,8 +169,39 @@ static argus_mask_t members(const argus_common_t *const self, const argus_knowle
     return silent == in_use ? in_use : lost_at_once(self, knowledge, silent);
 }
 
+// It heard something ahead, twice, and the robot has gone on towards it since.
+static bool has_lost(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                     const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const uint32_t echo_ms = knowledge->sip_ms - self->echo_ms[sonar];
+    const bool straight = !self->has_turned || knowledge->sip_ms - self->turned_ms > echo_ms;
+    return argus_abs(argus_robot_pose(knowledge->robot, sonar).heading_deg) <= AHEAD_DEG &&
+           self->again[sonar] && straight && self->none_run[sonar] >= PROOF_RUN &&
+           self->echo_mm[sonar] <= LASTING_MM && expected_mm(self, knowledge, sonar) >= AHEAD_LEAST_MM;
+}
+
+static void count_lost(argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                       argus_dark_t *const dark) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    const unsigned open = dark->sonars & ~(unsigned)dark->lost;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((open >> i & 1u) != 0 && has_lost(self, knowledge, i)) {
+            dark->lost |= (argus_mask_t)(1u << i);
+            add(dark, LOST_NATS, 0);
+        }
+    }
+}
+
+// True: since now.
+static bool comes_to_doubt(argus_dark_t *const dark) {
+    const bool before = dark->doubted;
+    dark->doubted = before || dark->nats >= DOUBT_NATS;
+    return dark->doubted && !before && !dark->at_once && !dark->proven;
+}
+
 static bool is_proven(const argus_dark_t *const dark, const int run, const bool whole) {
-    return (dark->at_once && run >= PROOF_RUN) || (whole && has_passed(dark));
+    const bool disputed = dark->nats >= PROOF_NATS && argus_count_bits(dark->by) >= PROOF_BY;
+    return (dark->at_once && run >= PROOF_RUN) || (whole && has_passed(dark)) || disputed;
 }
 
 static void look_at(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int array) {
@@ -144,9 +219,13 @@ static void look_at(argus_common_t *const self, const argus_knowledge_t *const k
         *dark = (argus_dark_t){.sonars = 0};
         return;
     }
+    if (!was_dark) {
+        dark->since_ms = knowledge->sip_ms - since_last_ms(self, knowledge, sonars);
+    }
     dark->sonars = sonars;
     dark->at_once = at_once;
-    dark->news = !was_dark && at_once;
+    count_lost(self, knowledge, dark);
+    dark->news = (!was_dark && at_once) || comes_to_doubt(dark);
     pass_all(dark, knowledge);
     dark->proven = dark->proven || is_proven(dark, run, whole);
 }
@@ -166,6 +245,38 @@ void argus_common_sip(argus_common_t *const self, const argus_knowledge_t *const
     for (int array = 0; array < argus_min(knowledge->robot->arrays, ARGUS_ARRAYS_MAX); array++) {
         look_at(self, knowledge, array);
     }
+}
+
+void argus_common_weigh(argus_common_t *const self, argus_evidence_t *const evidence,
+                        const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->robot != NULL);
+    evidence->dark = 0;
+    evidence->mute = 0;
+    for (int array = 0; array < ARGUS_ARRAYS_MAX; array++) {
+        argus_dark_t *const dark = &self->of[array];
+        argus_dispute_t *const dispute = &evidence->dispute[array];
+        if (dark->sonars != 0) {
+            add(dark, dispute->nats, dispute->by);
+            evidence->dark |= dark->sonars;
+            evidence->mute |= dark->nats > 0 ? dark->sonars : 0;
+        }
+        *dispute = (argus_dispute_t){.since_ms = dark->since_ms};
+    }
+}
+
+void argus_common_touched(argus_common_t *const self, const argus_mask_t sonars) {
+    for (int array = 0; array < ARGUS_ARRAYS_MAX; array++) {
+        argus_dark_t *const dark = &self->of[array];
+        if ((dark->sonars & sonars) != 0) {
+            add(dark, TOUCH_NATS, 0);
+        }
+    }
+}
+
+bool argus_common_doubts(const argus_common_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const int array = argus_robot_array_of(sonar);
+    return array < ARGUS_ARRAYS_MAX && self->of[array].doubted && (self->of[array].sonars >> sonar & 1u) != 0;
 }
 
 bool argus_common_strikes(const argus_common_t *const self, const argus_mask_t sonars) {

@@ -3,25 +3,34 @@
 #ifndef ARGUS_COMMON_H
 #define ARGUS_COMMON_H
 
+#include "awareness/facts.h"
 #include "knowledge/knowledge.h"
-
-#define ARGUS_ARRAYS_MAX 4
 
 // An array is dark while none of its sonars that are in use hears anything, or while five or more do not that
 // stopped at once. Its peers are no proof then: they are suspects as well. Two things prove that it has
 // failed. Its own sonars heard something in the round before; or, of a whole array, it passes walls on either
-// side that those abeam of another array go on hearing.
+// side that those abeam of another array go on hearing. Less than that is added up for the array as a whole,
+// since a board that fails is likelier than many coincidences: what others have heard where it was silent or
+// abeam, what those ahead had heard and should hear still, what the body has touched. First it is doubted:
+// none of it is relied on. By more, of two others at least, it is proved.
 typedef struct {
     uint32_t odometer_mm; // way driven when one abeam of another array was heard last
     int32_t mm;           // driven beside something near that it hears
+    int32_t stretch_mm;   // ... or something farther, since that counted last
     bool near;            // it heard such
+    bool lasting;         // ... or such
 } argus_passed_t;
 
 typedef struct {
     argus_passed_t passed[2]; // right, left
     argus_mask_t sonars;      // that are dark, 0: it is not
+    argus_mask_t lost;        // of these, that had something ahead which they should hear still
+    argus_mask_t by;          // others that have heard what they have not
+    int16_t nats;             // against it, hundredths
+    uint32_t since_ms;        // the last echo of one of them
     bool at_once;             // what it heard ended at one time, and the robot did not turn
-    bool news;                // ... in this SIP
+    bool news;                // ... in this SIP, or there is reason to doubt it
+    bool doubted;             // until one of them hears something
     bool proven;
 } argus_dark_t;
 
@@ -32,7 +41,10 @@ typedef struct {
     bool heard[ARGUS_SONARS];       // its last echo was near enough to last
     bool echoed[ARGUS_SONARS];      // it has heard one
     uint8_t none_run[ARGUS_SONARS]; // readings in a row without an echo, up to 255
-    uint32_t echo_ms[ARGUS_SONARS]; // of its last echo
+    uint32_t echo_ms[ARGUS_SONARS]; // of its last echo,
+    uint16_t echo_mm[ARGUS_SONARS]; // ... and its range,
+    uint32_t echo_odometer_mm[ARGUS_SONARS];
+    bool again[ARGUS_SONARS]; // ... which went on from the one before
 } argus_common_t;
 
 void argus_common_init(argus_common_t *self);
@@ -40,11 +52,20 @@ void argus_common_init(argus_common_t *self);
 // After each SIP. Cost: one pass over the sonars for each array.
 void argus_common_sip(argus_common_t *self, const argus_knowledge_t *knowledge);
 
-// What an array heard has just ended at once; one of `sonars` is of it.
+// After that: takes what the evidence has found against those that are dark, and tells it which these are.
+void argus_common_weigh(argus_common_t *self, argus_evidence_t *evidence, const argus_knowledge_t *knowledge);
+
+// The body has met something on its way ahead: those of `sonars`, which look there, have not heard it.
+void argus_common_touched(argus_common_t *self, argus_mask_t sonars);
+
+// What an array heard has just ended at once, or it is doubted since now; one of `sonars` is of it.
 bool argus_common_strikes(const argus_common_t *self, argus_mask_t sonars);
 
 // This sonar is of those of an array that are dark, and proved to have failed.
 bool argus_common_convicts(const argus_common_t *self, int sonar);
+
+// This sonar is of those of an array that are dark, and doubted.
+bool argus_common_doubts(const argus_common_t *self, int sonar);
 
 // Others are dark, and it is not known whether they have failed: disagreeing with them is no fault.
 bool argus_common_excuses(const argus_common_t *self, int sonar);

@@ -85,16 +85,24 @@ static void add(tally_t *const tally, const verdict_t said, const int from) {
     tally->against |= differs ? (argus_mask_t)(1u << from) : 0u;
 }
 
+// A silence that may be one of a whole array's: it would only repeat itself.
+static bool is_mute(const argus_evidence_t *const self, const int sonar, const argus_ping_t *const then) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    return (self->mute >> sonar & 1u) != 0 && !argus_ping_is_echo(then);
+}
+
 // One other sonar: its latest ping on the bearing decides. How far back that is, 0: it did not look there.
-static int ask(tally_t *const tally, const argus_pings_t *const pings, const argus_line_t *const line,
+static int ask(const argus_evidence_t *const self, tally_t *const tally, const argus_line_t *const line,
                const int from, const uint32_t now_ms) {
+    ARGUS_ASSERT(from >= 0 && from < ARGUS_SONARS);
+    const argus_pings_t *const pings = &self->pings[from];
     const argus_ping_t *const at = line->ping;
     int latest = 0;
     for (int back = argus_pings_near(pings, 1, line); back > 0;
          back = argus_pings_near(pings, back + 1, line)) {
         const argus_ping_t *const then = argus_pings_at(pings, back);
         const argus_shift_t shift = argus_line_shift(line, then);
-        if (shift.lateral_mm > ARGUS_SAME_LATERAL_MM) {
+        if (shift.lateral_mm > ARGUS_SAME_LATERAL_MM || is_mute(self, from, then)) {
             continue;
         }
         const verdict_t said = compare(at->reading_mm, then->reading_mm, shift.along_mm);
@@ -116,7 +124,7 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
     tally_t tally = {.agree = 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_crosscheck_is_witness(self, knowledge, i, sonar)) {
-            ask(&tally, &self->pings[i], &line, i, knowledge->sip_ms);
+            ask(self, &tally, &line, i, knowledge->sip_ms);
         }
     }
     return tally;
@@ -172,6 +180,25 @@ static void note_contradicted(argus_evidence_t *const self, const argus_knowledg
     c->agreed = 0;
 }
 
+// Its whole array hears nothing, and others have heard something where it has not.
+static void note_dispute(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                         const int sonar, const argus_ping_t *const at, const argus_mask_t against,
+                         const int32_t worth) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const int array = argus_robot_array_of(sonar);
+    const argus_mask_t others = (argus_mask_t)(against & ~(unsigned)self->dark);
+    if ((self->dark >> sonar & 1u) == 0 || others == 0 || argus_ping_is_echo(at) ||
+        array >= ARGUS_ARRAYS_MAX) {
+        return;
+    }
+    argus_dispute_t *const dispute = &self->dispute[array];
+    const uint32_t age_ms = (uint32_t)argus_ping_age_ms(at, knowledge->sip_ms);
+    if (age_ms < knowledge->sip_ms - dispute->since_ms) {
+        dispute->nats = (int16_t)argus_min(dispute->nats + worth, ARGUS_CEILING);
+        dispute->by |= others;
+    }
+}
+
 static void begin_anew(argus_case_t *const self) {
     self->against = 0;
     self->episodes = 0;
@@ -190,7 +217,9 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
                   const argus_ping_t *const at, const argus_mask_t against) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
-    argus_score(self, sonar, ARGUS_TEST_PEERS, worth_of(self, knowledge, sonar, against != 0));
+    const int32_t worth = worth_of(self, knowledge, sonar, against != 0);
+    argus_score(self, sonar, ARGUS_TEST_PEERS, worth);
+    note_dispute(self, knowledge, sonar, at, against, worth);
     argus_odds_note(self, sonar, ARGUS_TEST_PEERS, against != 0);
     if (against != 0) {
         note_contradicted(self, knowledge, sonar, at, against);
@@ -376,8 +405,7 @@ void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t
         tally_t unheard = {.agree = 0};
         const bool witness = argus_crosscheck_is_witness(self, knowledge, i, sonar);
         if (i != sonar) {
-            latest[i] =
-                (uint8_t)ask(witness ? &tally : &unheard, &self->pings[i], &line, i, knowledge->sip_ms);
+            latest[i] = (uint8_t)ask(self, witness ? &tally : &unheard, &line, i, knowledge->sip_ms);
         }
     }
     weigh(self, knowledge, sonar, 1, &tally, true);

@@ -67,6 +67,14 @@ typedef struct {
 } argus_case_t;
 _Static_assert(sizeof(argus_case_t) == 128, "one shift leads to a case");
 
+// What sonars outside an array that is dark have heard where it was silent, in this SIP.
+#define ARGUS_ARRAYS_MAX 4
+typedef struct {
+    int16_t nats;      // hundredths
+    argus_mask_t by;   // whose echoes
+    uint32_t since_ms; // it has been dark since, if it is
+} argus_dispute_t;
+
 // The cases come first: dozens ask for one, which then takes one instruction.
 typedef struct {
     argus_case_t of[ARGUS_SONARS];
@@ -75,10 +83,13 @@ typedef struct {
     uint32_t faded_ms;
     uint32_t crowded_ms; // the sonars contradicted each other as they do among people, last
     bool crowded;
-    bool busy;              // ... or something moved before one, lately
-    uint8_t straight_sips;  // SIPs in a row without a rotation
-    uint8_t asked;          // hypotheses that this SIP has weighed
-    uint16_t caution;       // percent: so much of the tabled evidence a level takes
+    bool busy;             // ... or something moved before one, lately
+    uint8_t straight_sips; // SIPs in a row without a rotation
+    uint8_t asked;         // hypotheses that this SIP has weighed
+    uint16_t caution;      // percent: so much of the tabled evidence a level takes
+    argus_mask_t dark;     // of arrays that hear nothing at all,
+    argus_mask_t mute;     // ... which is in dispute: their silence speaks neither for nor against anyone
+    argus_dispute_t dispute[ARGUS_ARRAYS_MAX];
     argus_mask_t off_scale; // ranges do not change as the way does: no witnesses
     argus_trend_t trend;
     argus_pings_t pings[ARGUS_SONARS];

@@ -13,7 +13,6 @@
 #define NEAR_MM 1000
 #define LATELY_MS 5000u    // what was seen so near does not go away while a look is prepared
 #define BEHIND_MM 100      // an echo this far ahead of the centre is beside the robot already
-#define BUMPER_AHEAD_MM 30 // of the body
 #define BY_TOUCH UINT8_MAX // no sonar: it is there for sure
 
 void argus_echoes_init(argus_echoes_t *const self) {
@@ -91,10 +90,18 @@ static void remember(argus_echoes_t *const self, const argus_point_t at, const u
     slot->seen_ms = now_ms;
 }
 
+// No beam and no fading of the map takes that back.
+static void mark_touches(argus_echoes_t *const self) {
+    for (int i = 0; i < self->touches.count; i++) {
+        argus_grid_mark(&self->grid, self->touches.at[i], true);
+    }
+}
+
 void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                       const uint32_t now_ms) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     argus_grid_see(&self->grid, knowledge);
+    mark_touches(self);
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool fresh = (knowledge->fresh >> i & 1u) != 0;
         if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT &&
@@ -109,6 +116,7 @@ void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     uint16_t kept = 0;
     argus_grid_clear(&self->grid); // it cannot be separated from what the others put there
+    mark_touches(self);
     for (uint16_t i = 0; i < self->count; i++) {
         if (self->at[i].sonar != sonar) {
             self->at[kept++] = self->at[i];
@@ -124,20 +132,28 @@ void argus_echoes_touched(argus_echoes_t *const self, const argus_point_t at, co
     argus_grid_mark(&self->grid, at, true);
 }
 
-// The front segments lie across the bow, bit 1 leftmost; what they touched is remembered as if it had been
-// seen.
-void argus_echoes_bumped(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
-                         const uint32_t now_ms) {
-    ARGUS_ASSERT(knowledge->robot->front_bumpers <= 7);
-    const argus_robot_t *const robot = knowledge->robot;
-    const int segments = robot->front_bumpers;
-    for (int segment = 1; segment <= segments; segment++) {
-        if ((knowledge->bumpers_front >> segment & 1u) != 0) {
-            const int32_t beside_mm = (segments + 1 - 2 * segment) * (robot->width_mm / segments) / 2;
-            const argus_point_t touched = {robot->front_mm + BUMPER_AHEAD_MM, beside_mm};
-            argus_echoes_touched(self, argus_to_course(&knowledge->pose, touched), now_ms);
-        }
+void argus_echoes_met(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                      const argus_contact_t how) {
+    ARGUS_ASSERT(how <= ARGUS_CONTACT_GONE);
+    switch (how) {
+    case ARGUS_CONTACT_BUMPER:
+        argus_touches_bumped(&self->touches, knowledge);
+        break;
+    case ARGUS_CONTACT_AHEAD:
+    case ARGUS_CONTACT_BACK:
+        argus_touches_end(&self->touches, knowledge, how == ARGUS_CONTACT_AHEAD ? 1 : -1);
+        break;
+    case ARGUS_CONTACT_TURN:
+        argus_touches_sides(&self->touches, knowledge);
+        break;
+    case ARGUS_CONTACT_GONE:
+        argus_touches_leave(&self->touches, knowledge);
+        break;
+    case ARGUS_CONTACT_NONE:
+    default:
+        return;
     }
+    mark_touches(self);
 }
 
 int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
@@ -145,7 +161,7 @@ int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_know
     ARGUS_ASSERT(half_mm > 0 && self->count <= ARGUS_POINTS_MAX);
     const int32_t c = argus_cos(heading_cdeg);
     const int32_t s = argus_sin(heading_cdeg);
-    int32_t clear = INT32_MAX;
+    int32_t clear = argus_touches_clear_mm(&self->touches, knowledge, heading_cdeg, half_mm);
     for (uint16_t i = 0; i < self->count; i++) {
         const int32_t dx = argus_within(32000, self->at[i].x_mm - knowledge->pose.x_mm);
         const int32_t dy = argus_within(32000, self->at[i].y_mm - knowledge->pose.y_mm);
@@ -178,7 +194,7 @@ bool argus_echoes_near(const argus_echoes_t *const self, const argus_knowledge_t
 int32_t argus_echoes_nearest_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                                 const int32_t back_mm) {
     ARGUS_ASSERT(back_mm >= 0 && self->count <= ARGUS_POINTS_MAX);
-    int32_t nearest = INT32_MAX;
+    int32_t nearest = argus_touches_nearest_mm(&self->touches, knowledge, back_mm);
     for (int i = 0; i < self->count; i++) {
         argus_point_t at;
         if (argus_echoes_near(self, knowledge, i, &at)) {

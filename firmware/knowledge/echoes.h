@@ -6,6 +6,7 @@
 
 #include "knowledge/grid.h"
 #include "knowledge/knowledge.h"
+#include "knowledge/touches.h"
 
 #define ARGUS_POINTS_MAX 128
 
@@ -23,15 +24,26 @@ typedef struct {
     uint16_t next; // oldest, once full
     argus_echo_t at[ARGUS_POINTS_MAX];
     argus_grid_t grid;
+    argus_touches_t touches;
 } argus_echoes_t;
+
+// What the body did when it met something.
+typedef enum {
+    ARGUS_CONTACT_NONE,
+    ARGUS_CONTACT_BUMPER, // the segments tell where it is
+    ARGUS_CONTACT_AHEAD,  // it came to a stand on its way ahead,
+    ARGUS_CONTACT_BACK,   // ... back,
+    ARGUS_CONTACT_TURN,   // ... or in a turn
+    ARGUS_CONTACT_GONE    // a bumper is free again, and it is not the robot that has moved away
+} argus_contact_t;
 
 void argus_echoes_init(argus_echoes_t *self);
 
 // Remembers the fresh echoes of sonars not DISABLED and no suspects; forgets those of a sonar. Marks what the
-// bumpers touch, or a place in the course frame where something is, however it was found.
+// body met, which stays; or a place in the course frame where something is, however it was found.
 void argus_echoes_see(argus_echoes_t *self, const argus_knowledge_t *knowledge, uint32_t now_ms);
 void argus_echoes_forget(argus_echoes_t *self, int sonar);
-void argus_echoes_bumped(argus_echoes_t *self, const argus_knowledge_t *knowledge, uint32_t now_ms);
+void argus_echoes_met(argus_echoes_t *self, const argus_knowledge_t *knowledge, argus_contact_t how);
 void argus_echoes_touched(argus_echoes_t *self, argus_point_t at, uint32_t now_ms);
 
 // Length of the corridor of 2 x half_mm that is free of remembered echoes along a heading; INT32_MAX without

@@ -90,7 +90,8 @@ typedef struct {
     bool motors_said;     // off
     bool battery_said;
     bool stall_said;
-    uint16_t bumpers;     // bumper bits answered already, front << 8 | rear
+    uint16_t bumpers; // bumper bits answered already, front << 8 | rear
+    uint32_t bumped_odometer_mm;
     uint32_t leaps;       // of the odometry, answered already
     uint32_t unseen;      // ... of these, where its place is lost
     uint32_t slips;       // likewise

@@ -4,6 +4,7 @@
 #define ARGUS_INTENT_H
 
 #include "argus/argus.h"
+#include "knowledge/echoes.h"
 
 typedef enum {
     ARGUS_DO_NOTHING, // go on as it is
@@ -54,7 +55,7 @@ typedef struct {
                     // anyway
     uint8_t act;    // argus_act_t
     uint8_t why;    // argus_wait_t
-    bool bumped;    // what the front bumpers touch is remembered
+    uint8_t met;    // argus_contact_t: what the body met is remembered
     bool unchecked; // nothing translates before a full check
     bool full;
     bool all_round; // CHECK: a round of all sonars, not only of those that look ahead

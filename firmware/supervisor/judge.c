@@ -53,7 +53,8 @@ static void name(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = argus_named_kind(self, sonar);
-    const bool named = stands(self, sonar, kind);
+    const bool doubted = argus_common_doubts(&self->common, sonar);
+    const bool named = stands(self, sonar, kind) || doubted;
     if (named) {
         argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
     }
@@ -64,7 +65,7 @@ static void name(argus_t *const self, const int sonar) {
         argus_replan(self);
     }
     const bool held = self->mode == ARGUS_MODE_VERIFYING || self->looks.asked;
-    if (s->health == ARGUS_SUSPECT && !argus_evidence_holds(&self->evidence, sonar) && !held) {
+    if (s->health == ARGUS_SUSPECT && !argus_evidence_holds(&self->evidence, sonar) && !doubted && !held) {
         argus_forget_name(self, sonar);
         argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, s->reading_mm);
         argus_replan(self);
@@ -97,7 +98,7 @@ static void judge_in(argus_t *const self, const int sonar, argus_intent_t *const
     const argus_fault_kind_t kind = convicts(self, sonar);
     if (kind != ARGUS_KIND_NONE) {
         convict(self, sonar, kind, intent);
-    } else if (!argus_common_excuses(&self->common, sonar)) {
+    } else if (argus_common_doubts(&self->common, sonar) || !argus_common_excuses(&self->common, sonar)) {
         name(self, sonar);
     }
 }

@@ -101,6 +101,9 @@ bool argus_look_pays(const argus_t *const self) {
 argus_fault_kind_t argus_named_kind(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
     const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
+    if (kind == ARGUS_KIND_NONE && argus_common_doubts(&self->common, sonar)) {
+        return ARGUS_KIND_OFF; // it fails with the whole of its array
+    }
     return kind == ARGUS_KIND_SLOW && self->looks.hold[sonar].lawless ? ARGUS_KIND_WRONG : kind;
 }
 

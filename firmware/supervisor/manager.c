@@ -48,6 +48,9 @@ bool argus_set_course(argus_t *const self, const argus_point_t *const points, co
     if (!argus_task_set(&self->travel.task, points, count)) {
         return false;
     }
+    if (self->mission != ARGUS_MISSION_RUNNING) {
+        argus_touches_init(&self->echoes.touches);
+    }
     self->mission = ARGUS_MISSION_RUNNING;
     self->travel.arriving = false;
     self->looks.settling = 0;
@@ -205,6 +208,7 @@ static void on_sip(argus_t *const self) {
         argus_evidence_sip(&self->evidence, &self->knowledge);
         argus_extremes_sip(&self->extremes, &self->knowledge);
         argus_common_sip(&self->common, &self->knowledge);
+        argus_common_weigh(&self->common, &self->evidence, &self->knowledge);
     }
     take_slip(self);
     take_bend(self);

@@ -311,11 +311,16 @@ static void stop(argus_t *const self, const argus_stop_t how) {
     }
 }
 
+static bool met_ahead(const argus_t *const self, const argus_contact_t how) {
+    return how == ARGUS_CONTACT_AHEAD || (how == ARGUS_CONTACT_BUMPER && self->knowledge.bumpers_front != 0);
+}
+
 static void close_way(argus_t *const self, const argus_intent_t *const intent) {
     ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     ARGUS_ASSERT(intent->way <= ARGUS_WAY_FORGIVE);
-    if (intent->bumped) {
-        argus_echoes_bumped(&self->echoes, &self->knowledge, self->now_ms);
+    argus_echoes_met(&self->echoes, &self->knowledge, (argus_contact_t)intent->met);
+    if (met_ahead(self, (argus_contact_t)intent->met)) {
+        argus_common_touched(&self->common, argus_robot_ahead(self->knowledge.robot));
     }
     switch ((argus_way_t)intent->way) {
     case ARGUS_WAY_REFUSE:

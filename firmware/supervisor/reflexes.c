@@ -14,6 +14,7 @@
 #define MOST_BATTERY_DV 300 // ... and none charges to more
 #define SETTLED_IN_MS 1500u
 #define BATTERY_SIPS 5 // one reading of it may be anything
+#define STANDS_MM 20   // since a contact: what it touched has moved away, if anything has
 #define UNSOUND_MS 60000u
 #define UNSOUND_MOST 3
 #define HEADING_ALONE_CDEG_MM 10 // it is the heading that leapt where there are more for each mm
@@ -89,15 +90,26 @@ static void sees_bumper(const argus_t *const self, const argus_alarm_t *const al
     (void)alarm;
     mine->bumpers = pressed;
     if (cleared) {
+        const bool stands = knowledge->odometer_mm - mine->bumped_odometer_mm <= STANDS_MM;
         argus_to_say(intent, ARGUS_EV_BUMPER_CLEAR, ARGUS_NO_SONAR, 0);
+        intent->met = stands ? ARGUS_CONTACT_GONE : ARGUS_CONTACT_NONE;
     }
     if (!fresh) {
         return;
     }
+    mine->bumped_odometer_mm = knowledge->odometer_mm;
     note_touch(self, mine, knowledge->bumpers_front != 0);
     argus_to_say(intent, ARGUS_EV_BUMPER, ARGUS_NO_SONAR, pressed);
-    intent->bumped = true;
+    intent->met = ARGUS_CONTACT_BUMPER;
     touched(intent, ARGUS_STOP_E_STOP);
+}
+
+// What it met when its wheels came to a stand; a way that is being broken off leads on until it rests.
+static argus_contact_t met_by(const argus_motion_t *const motion) {
+    if (motion->kind == ARGUS_MOTION_TURN) {
+        return ARGUS_CONTACT_TURN;
+    }
+    return motion->target_mm >= 0 ? ARGUS_CONTACT_AHEAD : ARGUS_CONTACT_BACK;
 }
 
 static void sees_stall(const argus_t *const self, const argus_alarm_t *const alarm,
@@ -110,6 +122,7 @@ static void sees_stall(const argus_t *const self, const argus_alarm_t *const ala
     }
     note_touch(self, mine, self->motion.kind == ARGUS_MOTION_MOVE && self->motion.target_mm > 0);
     argus_to_say(intent, ARGUS_EV_STALL, ARGUS_NO_SONAR, argus_built_stalls(&self->knowledge));
+    intent->met = (uint8_t)met_by(&self->motion);
     touched(intent, ARGUS_STOP_STOP);
 }
 

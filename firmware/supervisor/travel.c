@@ -19,6 +19,7 @@
 #define SEEN_AGAIN_MM 500 // ... then wants so much, or sweeps: else it would stop again at once
 #define FLANK_MM 130
 #define CREEP_MM 150      // of a MOVE: what it still does when the link fails
+#define CREEP_LEFT_MM 60  // ... and so much before what was touched
 #define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
 
 // The SIP is not used up yet.
@@ -132,8 +133,9 @@ static int32_t reading_of(const argus_t *const self, const int sonar) {
     return sonar < 0 ? self->knowledge.robot->no_echo_mm : self->knowledge.sonar[sonar].reading_mm;
 }
 
-static bool is_barred_ahead(const argus_t *const self) {
-    return reading_of(self, argus_nearest_ahead(self)) <= self->config.object_range_mm;
+static bool is_barred_ahead(const argus_t *const self, const argus_guard_t *const guard) {
+    const int32_t heard_mm = reading_of(self, argus_nearest_ahead(self));
+    return argus_min(heard_mm, argus_guard_touched_mm(guard)) <= self->config.object_range_mm;
 }
 
 // A leg to drive. False: `intent` is what the SIP calls for.
@@ -143,7 +145,7 @@ static bool has_way(const argus_t *const self, const argus_guard_t *const guard,
         return true;
     }
     const argus_search_news_t news =
-        argus_task_choose(&mine->task, &self->knowledge, &self->echoes, is_barred_ahead(self));
+        argus_task_choose(&mine->task, &self->knowledge, &self->echoes, is_barred_ahead(self, guard));
     if (news == ARGUS_SEARCH_GOES_ON) {
         intent->act = is_too_fast(self, guard) ? ARGUS_DO_BRAKE : ARGUS_DO_NOTHING; // a MOVE ends by itself
         return false;
@@ -166,9 +168,9 @@ static bool has_way(const argus_t *const self, const argus_guard_t *const guard,
 static bool leads_out(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
                       const int32_t by_cdeg) {
     const argus_mask_t doubted = argus_with_health(&self->knowledge, ARGUS_SUSPECT);
-    const bool open = by_cdeg != 0
-                          ? argus_guard_may_nudge(guard, by_cdeg)
-                          : !is_barred_ahead(self) && argus_flank_mm(&self->knowledge, doubted) > FLANK_MM;
+    const bool open =
+        by_cdeg != 0 ? argus_guard_may_nudge(guard, by_cdeg)
+                     : !is_barred_ahead(self, guard) && argus_flank_mm(&self->knowledge, doubted) > FLANK_MM;
     return open && argus_task_escape(&mine->task, &self->knowledge, &self->echoes, by_cdeg);
 }
 
@@ -237,13 +239,23 @@ static bool is_ready(const argus_t *const self, const argus_guard_t *const guard
 // The event, a stop if it moves, and another heading after a full check.
 static void blocked(argus_travel_t *const mine, const argus_event_id_t event, const int sonar,
                     const int32_t reading_mm, argus_intent_t *const intent) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(sonar >= ARGUS_NO_SONAR && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(reading_mm >= 0);
     argus_to_say(intent, event, sonar, reading_mm);
     argus_to_check(intent, true);
     intent->stop = ARGUS_STOP_HALT;
     intent->way = ARGUS_WAY_REFUSE;
     mine->jog_mm = 0;
+}
+
+// What was touched before is in the way, nearer than `within_mm`.
+static bool is_touched_ahead(const argus_guard_t *const guard, const int32_t within_mm,
+                             argus_travel_t *const mine, argus_intent_t *const intent) {
+    const int32_t touched_mm = argus_guard_touched_mm(guard);
+    if (touched_mm <= within_mm) {
+        blocked(mine, ARGUS_EV_OBJECT, ARGUS_NO_SONAR, touched_mm, intent);
+    }
+    return touched_mm <= within_mm;
 }
 
 static bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
@@ -330,6 +342,9 @@ static void drive_on(const argus_t *const self, const argus_guard_t *const guard
         blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm, intent);
         return;
     }
+    if (is_touched_ahead(guard, self->config.object_range_mm, mine, intent)) {
+        return;
+    }
     const int32_t seen_mm = argus_guard_seen_mm(guard);
     const int32_t wanted_mm = mine->stopped_short ? SEEN_AGAIN_MM : SEEN_LEAST_MM;
     if (seen_mm < argus_min(left_mm(self, mine), wanted_mm)) {
@@ -409,6 +424,9 @@ static void judge_sweep(const argus_t *const self, const argus_guard_t *const gu
         blocked(mine, ARGUS_EV_OBJECT, direct, direct_mm, intent);
         return;
     }
+    if (is_touched_ahead(guard, self->config.check_range_mm, mine, intent)) {
+        return;
+    }
     if (argus_guard_seen_mm(guard) >= SEEN_LEAST_MM && argus_rules(self)->drives_seen) {
         end_way(intent);
     } else if (argus_rules(self)->disparity &&
@@ -468,6 +486,9 @@ static void creep_on(const argus_t *const self, const argus_guard_t *const guard
     const int32_t way_mm = left_mm(self, mine);
     if (!is_heeded(self, mine)) {
         halt_to_wait(ARGUS_WAIT_MOTORS, intent);
+        return;
+    }
+    if (is_touched_ahead(guard, CREEP_MM + CREEP_LEFT_MM, mine, intent)) {
         return;
     }
     intent->act = ARGUS_DO_CREEP;

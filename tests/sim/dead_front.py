@@ -20,7 +20,7 @@ GOAL_MM: Final = 14_000.0
 SAME_PLACE_MM: Final = 300.0
 """Two contacts so near to each other are of one place."""
 FRONT: Final = range(8)
-LIMIT_S: Final = {"robot": 150.0, "mobilesim": 240.0}
+LIMIT_S: Final = {"robot": 200.0, "mobilesim": 400.0}
 WALLS: Final = {"none": (), "left": (1,), "right": (-1,), "both": (1, -1)}
 LOST: Final = ("SLIP", "ODOMETRY_LOST")
 

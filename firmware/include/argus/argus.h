@@ -579,7 +579,7 @@ typedef enum {
 // Instance -------------------------------------------------------------------------------------------------
 
 // Bytes of one manager.
-#define ARGUS_STORAGE_BYTES (12936 + 796 * ARGUS_SONARS)
+#define ARGUS_STORAGE_BYTES (13400 + 812 * ARGUS_SONARS)
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.

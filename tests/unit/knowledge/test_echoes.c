@@ -187,13 +187,31 @@ void test_ahead_is_what_was_seen_twice_in_the_way_of_the_body(void) {
     }
 }
 
-void test_a_bumper_hit_is_remembered_ahead(void) {
+void test_a_bumper_hit_is_remembered_ahead_and_in_the_map(void) {
     k.bumpers_front = 1 << 3;
-    argus_echoes_bumped(&e, &k, k.sip_ms);
-    TEST_ASSERT_EQUAL(1, e.count);
-    TEST_ASSERT_TRUE(e.at[0].x_mm > 200 && abs(e.at[0].y_mm) < 20);
+    argus_echoes_met(&e, &k, ARGUS_CONTACT_BUMPER);
+    TEST_ASSERT_EQUAL(1, e.touches.count);
+    TEST_ASSERT_TRUE(e.touches.at[0].x_mm > 200 && abs(e.touches.at[0].y_mm) < 20);
+    TEST_ASSERT_TRUE(argus_grid_is_occupied(&e.grid, argus_grid_cell(e.touches.at[0])));
     setUp();
     k.bumpers_front = 1 << 1; // leftmost
-    argus_echoes_bumped(&e, &k, k.sip_ms);
-    TEST_ASSERT_TRUE(e.at[0].y_mm > 100);
+    argus_echoes_met(&e, &k, ARGUS_CONTACT_BUMPER);
+    TEST_ASSERT_TRUE(e.touches.at[0].y_mm > 100);
+}
+
+// What is touched stands there whatever beams pass, whoever is given up and however long ago it was.
+void test_what_was_touched_stays(void) {
+    argus_echoes_met(&e, &k, ARGUS_CONTACT_AHEAD);
+    TEST_ASSERT_EQUAL(3, e.touches.count);
+    const argus_cell_t there = argus_grid_cell(e.touches.at[1]);
+    argus_echoes_forget(&e, 3);
+    TEST_ASSERT_TRUE(argus_grid_is_occupied(&e.grid, there));
+    for (int i = 0; i < 4; i++) {
+        argus_grid_fade(&e.grid);
+    }
+    k.sip_ms += 600000;
+    argus_echoes_see(&e, &k, k.sip_ms);
+    TEST_ASSERT_TRUE(argus_grid_is_occupied(&e.grid, there));
+    TEST_ASSERT_EQUAL(e.touches.at[1].x_mm, argus_echoes_clear_mm(&e, &k, 0, 200));
+    TEST_ASSERT_EQUAL(e.touches.at[1].x_mm, argus_echoes_nearest_mm(&e, &k, 0));
 }

@@ -153,7 +153,7 @@ void test_a_bumper_comes_first(void) {
     argus_reflex(ARGUS_REFLEX_bumper, &robot.argus, &alarm, &robot.argus.reflexes, &intent);
     TEST_ASSERT_EQUAL(ARGUS_DO_WAIT, intent.act);
     TEST_ASSERT_EQUAL(ARGUS_STOP_E_STOP, intent.stop);
-    TEST_ASSERT_TRUE(intent.unchecked && intent.bumped);
+    TEST_ASSERT_TRUE(intent.unchecked && intent.met == ARGUS_CONTACT_BUMPER);
     TEST_ASSERT_TRUE(argus_reflex_is_last(ARGUS_REFLEX_bumper));
     TEST_ASSERT_EQUAL(0, ARGUS_REFLEX_bumper);
     argus_intent_t again = {0};
