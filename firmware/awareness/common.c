@@ -36,20 +36,26 @@ void argus_common_init(argus_common_t *const self) {
     memset(self, 0, sizeof *self);
 }
 
-// What its last echo would read now, of something straight ahead.
-static int32_t expected_mm(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
-                           const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return self->echo_mm[sonar] - (int32_t)(knowledge->odometer_mm - self->echo_odometer_mm[sonar]);
+// What an echo of something straight ahead would read now.
+static int32_t expected_mm(const argus_heard_t *const echo, const argus_knowledge_t *const knowledge) {
+    return echo->reading_mm - (int32_t)(knowledge->odometer_mm - echo->odometer_mm);
 }
 
+static bool goes_on(const argus_heard_t *const echo, const argus_knowledge_t *const knowledge,
+                    const uint16_t reading_mm) {
+    return echo->reading_mm != 0 && argus_abs(expected_mm(echo, knowledge) - reading_mm) <= GOES_ON_MM;
+}
+
+// One that goes on from none before may be crosstalk.
 static void note_echo(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                       const uint16_t reading_mm) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    self->again[sonar] =
-        self->echoed[sonar] && argus_abs(expected_mm(self, knowledge, sonar) - reading_mm) <= GOES_ON_MM;
-    self->echo_mm[sonar] = reading_mm;
-    self->echo_odometer_mm[sonar] = knowledge->odometer_mm;
+    const argus_heard_t echo = {reading_mm, knowledge->odometer_mm, knowledge->sip_ms};
+    if (goes_on(&self->last[sonar], knowledge, reading_mm) ||
+        goes_on(&self->sure[sonar], knowledge, reading_mm)) {
+        self->sure[sonar] = echo;
+    }
+    self->last[sonar] = echo;
 }
 
 static void take(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
@@ -173,11 +179,12 @@ static argus_mask_t members(const argus_common_t *const self, const argus_knowle
 static bool has_lost(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
                      const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const uint32_t echo_ms = knowledge->sip_ms - self->echo_ms[sonar];
-    const bool straight = !self->has_turned || knowledge->sip_ms - self->turned_ms > echo_ms;
+    const argus_heard_t *const echo = &self->sure[sonar];
+    const bool straight = !self->has_turned || (int32_t)(echo->t_ms - self->turned_ms) > 0;
+    const int32_t left_mm = expected_mm(echo, knowledge);
     return argus_abs(argus_robot_pose(knowledge->robot, sonar).heading_deg) <= AHEAD_DEG &&
-           self->again[sonar] && straight && self->none_run[sonar] >= PROOF_RUN &&
-           self->echo_mm[sonar] <= LASTING_MM && expected_mm(self, knowledge, sonar) >= AHEAD_LEAST_MM;
+           echo->reading_mm != 0 && straight && self->none_run[sonar] >= PROOF_RUN && left_mm <= LASTING_MM &&
+           left_mm >= AHEAD_LEAST_MM;
 }
 
 static void count_lost(argus_common_t *const self, const argus_knowledge_t *const knowledge,

@@ -34,17 +34,23 @@ typedef struct {
     bool proven;
 } argus_dark_t;
 
+// One echo; reading_mm 0: none.
+typedef struct {
+    uint16_t reading_mm;
+    uint32_t odometer_mm;
+    uint32_t t_ms;
+} argus_heard_t;
+
 typedef struct {
     bool has_turned;
     uint32_t turned_ms; // the robot rotated last, if it has
     argus_dark_t of[ARGUS_ARRAYS_MAX];
-    bool heard[ARGUS_SONARS];       // its last echo was near enough to last
-    bool echoed[ARGUS_SONARS];      // it has heard one
-    uint8_t none_run[ARGUS_SONARS]; // readings in a row without an echo, up to 255
-    uint32_t echo_ms[ARGUS_SONARS]; // of its last echo,
-    uint16_t echo_mm[ARGUS_SONARS]; // ... and its range,
-    uint32_t echo_odometer_mm[ARGUS_SONARS];
-    bool again[ARGUS_SONARS]; // ... which went on from the one before
+    bool heard[ARGUS_SONARS];         // its last echo was near enough to last
+    bool echoed[ARGUS_SONARS];        // it has heard one
+    uint8_t none_run[ARGUS_SONARS];   // readings in a row without an echo, up to 255
+    uint32_t echo_ms[ARGUS_SONARS];   // of its last echo
+    argus_heard_t last[ARGUS_SONARS]; // that,
+    argus_heard_t sure[ARGUS_SONARS]; // ... and the last one that went on from one before
 } argus_common_t;
 
 void argus_common_init(argus_common_t *self);
