@@ -31,7 +31,10 @@ def test_the_judge_counts_contacts_at_one_place() -> None:
 def test_the_campaign_has_every_kind() -> None:
     for quirks in ("robot", "mobilesim"):
         kinds = {(case.kind, case.walls) for case in DEAD if case.quirks == quirks}
-        assert kinds == {*(("hall", walls) for walls in ("none", "left", "right", "both")), ("corridor", "both")}
+        assert kinds == {
+            *(("hall", walls) for walls in ("none", "left", "right", "both")),
+            ("corridor", "both"),
+        }
     assert len({case.onset_s for case in DEAD}) >= 6
 
 
