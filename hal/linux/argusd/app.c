@@ -31,6 +31,7 @@ static settings_t settings;
 static course_t course;
 static hal_transport_t transport;
 static loop_t loop;
+static precedence_t precedence;
 static char message[ARGUSD_MESSAGE_MAX];
 
 static argusd_exit_t complain(argusd_exit_t code) {
@@ -253,8 +254,8 @@ static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     loop.driver.tap = tape_tap(&loop.tape);
     driver_attach(&loop.driver, link);
     message[0] = '\0';
-    const argusd_exit_t code =
-        check_run(&loop.driver, wait_ms, signals_fd(), options.json, stdout, message, sizeof message);
+    const argusd_exit_t code = check_run(&loop.driver, &precedence, wait_ms, signals_fd(), options.json,
+                                         stdout, message, sizeof message);
     if (code != ARGUSD_EXIT_OK) {
         complain(code);
     }
@@ -393,9 +394,19 @@ static void tell_service(const hal_clock_t *clock) {
     notify_ready(&loop.notify, hal_clock_now_ms(clock), "opening the link");
 }
 
+static bool take_precedence(void) {
+    if (!precedence_take(&options.precedence, &precedence, message, sizeof message)) {
+        return false;
+    }
+    if (message[0] != '\0') {
+        complain(ARGUSD_EXIT_OK);
+    }
+    return true;
+}
+
 static argusd_exit_t run_robot(hal_clock_t clock) {
     hal_link_t link = {0};
-    if (!load_files()) {
+    if (!load_files() || !take_precedence()) {
         return complain(ARGUSD_EXIT_USAGE);
     }
     const char *const notice = settle_activity();

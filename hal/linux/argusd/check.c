@@ -80,7 +80,9 @@ static void put_seen(FILE *out, const argus_status_t *status, bool wanted) {
     fprintf(out, count == 0 ? " none\n" : "\n");
 }
 
-static void tell_plain(const driver_t *driver, const argus_status_t *status, FILE *out) {
+static void tell_plain(const driver_t *driver, const argus_status_t *status, const precedence_t *granted,
+                       FILE *out) {
+    char precedence[128];
     fprintf(out, "port      %s\n", hal_link_describe(&driver->link));
     if (driver->spec.baud != 0) {
         fprintf(out, "rate      %u bit/s\n", (unsigned)driver->spec.baud);
@@ -102,11 +104,33 @@ static void tell_plain(const driver_t *driver, const argus_status_t *status, FIL
     for (int i = 0; i < status->sonars; i++) {
         fprintf(out, " %d", status->reading_mm[i]);
     }
-    fprintf(out, " mm\ntraffic   %u SIPs, %u bad checksums, %u stray bytes\n", (unsigned)status->sips,
-            (unsigned)status->bad_checksums, (unsigned)status->skipped_bytes);
+    precedence_describe(granted, precedence, sizeof precedence);
+    fprintf(out, " mm\nrealtime  %s\ntraffic   %u SIPs, %u bad checksums, %u stray bytes\n", precedence,
+            (unsigned)status->sips, (unsigned)status->bad_checksums, (unsigned)status->skipped_bytes);
 }
 
-static void tell_json(const driver_t *driver, const argus_status_t *status, FILE *out) {
+static void put_precedence(json_t *json, const precedence_t *granted) {
+    json_name(json, "realtime");
+    json_open(json, '{');
+    json_name(json, "asked");
+    json_bool(json, granted->asked);
+    json_name(json, "priority"); // 0: not granted
+    json_int(json, granted->priority);
+    json_name(json, "locked");
+    json_bool(json, granted->locked);
+    json_name(json, "cpus");
+    json_open(json, '[');
+    for (int cpu = 0; cpu < PRECEDENCE_CPUS; cpu++) {
+        if ((granted->cpus >> cpu & 1u) != 0) {
+            json_int(json, cpu);
+        }
+    }
+    json_close(json, ']');
+    json_close(json, '}');
+}
+
+static void tell_json(const driver_t *driver, const argus_status_t *status, const precedence_t *granted,
+                      FILE *out) {
     char line[2048];
     json_t json = json_in(line, sizeof line);
     json_open(&json, '{');
@@ -138,6 +162,7 @@ static void tell_json(const driver_t *driver, const argus_status_t *status, FILE
     json_int(&json, status->bad_checksums);
     json_name(&json, "skipped_bytes");
     json_int(&json, status->skipped_bytes);
+    put_precedence(&json, granted);
     json_close(&json, '}');
     fprintf(out, "%s\n", line);
 }
@@ -154,8 +179,8 @@ static void leave(driver_t *driver) {
     driver_close(driver);
 }
 
-argusd_exit_t check_run(driver_t *driver, uint32_t wait_ms, int cancel_fd, bool json, FILE *out,
-                        char *message, size_t capacity) {
+argusd_exit_t check_run(driver_t *driver, const precedence_t *granted, uint32_t wait_ms, int cancel_fd,
+                        bool json, FILE *out, char *message, size_t capacity) {
     const uint32_t start_ms = hal_clock_now_ms(&driver->clock);
     argus_status_t status;
     argusd_exit_t code = ARGUSD_EXIT_OK;
@@ -173,7 +198,7 @@ argusd_exit_t check_run(driver_t *driver, uint32_t wait_ms, int cancel_fd, bool 
         going_on = going_on && (met ? now_ms - met_ms < LOOK_MS : now_ms - start_ms < wait_ms);
     }
     if (met) {
-        json ? tell_json(driver, &status, out) : tell_plain(driver, &status, out);
+        json ? tell_json(driver, &status, granted, out) : tell_plain(driver, &status, granted, out);
     } else {
         code = check_explain_silence(driver, hal_clock_now_ms(&driver->clock) - start_ms, message, capacity);
     }

@@ -7,6 +7,7 @@
 
 #include "argusd.h"
 #include "driver.h"
+#include "precedence.h"
 
 // Why no robot answered, on one line: no link, silence, garbage, or packets that lead nowhere; and the exit
 // code for that.
@@ -14,7 +15,7 @@ argusd_exit_t check_explain_silence(const driver_t *driver, uint32_t waited_ms, 
 
 // The driver's link is open and it is passive. Writes the findings to `out`, or the reason for none to
 // `message`.
-argusd_exit_t check_run(driver_t *driver, uint32_t wait_ms, int cancel_fd, bool json, FILE *out,
-                        char *message, size_t capacity);
+argusd_exit_t check_run(driver_t *driver, const precedence_t *granted, uint32_t wait_ms, int cancel_fd,
+                        bool json, FILE *out, char *message, size_t capacity);
 
 #endif

@@ -27,6 +27,9 @@ enum {
     OPT_GUARD,
     OPT_GUARD_READINGS,
     OPT_GUARD_BEYOND,
+    OPT_REALTIME,
+    OPT_PRIORITY,
+    OPT_CPUS,
     OPT_PASSIVE,
     OPT_ACTIVE,
     OPT_JSON,
@@ -59,6 +62,9 @@ static const struct option table[] = {
     {"guard", required_argument, NULL, OPT_GUARD},
     {"guard-readings", required_argument, NULL, OPT_GUARD_READINGS},
     {"guard-beyond-loopback", no_argument, NULL, OPT_GUARD_BEYOND},
+    {"realtime", no_argument, NULL, OPT_REALTIME},
+    {"realtime-priority", required_argument, NULL, OPT_PRIORITY},
+    {"cpus", required_argument, NULL, OPT_CPUS},
     {"passive", no_argument, NULL, OPT_PASSIVE},
     {"active", no_argument, NULL, OPT_ACTIVE},
     {"json", no_argument, NULL, OPT_JSON},
@@ -114,6 +120,21 @@ static bool take_record_max(options_t *options, const char *text, const message_
     }
     options->record_max_bytes = (uint64_t)megabytes * 1000000u;
     return true;
+}
+
+static bool take_priority(options_t *options, const char *text, const message_t *message) {
+    int32_t *const priority = &options->precedence.priority;
+    if (!text_number(text, priority) || *priority < 1 || *priority > 99) {
+        return text_refuse(message->text, message->capacity, "--realtime-priority %s: give 1 to 99", text);
+    }
+    return true;
+}
+
+static bool take_cpus(options_t *options, const char *text, const message_t *message) {
+    return precedence_parse_cpus(text, &options->precedence.cpus) ||
+           text_refuse(message->text, message->capacity,
+                       "--cpus %s: give numbers of processors, 0 to %d, as 1 or 0,2-3", text,
+                       PRECEDENCE_CPUS - 1);
 }
 
 static bool take_goal(options_t *options, const char *text, const message_t *message) {
@@ -219,6 +240,9 @@ static bool take_flag(options_t *options, int option) {
     case OPT_ACTIVE:
         options->active = true;
         return true;
+    case OPT_REALTIME:
+        options->precedence.on = true;
+        return true;
     case OPT_JSON:
         options->json = true;
         return true;
@@ -276,6 +300,8 @@ static const struct {
     {OPT_ATTACH, take_attach},
     {OPT_GUARD, take_guard},
     {OPT_GUARD_READINGS, take_readings},
+    {OPT_PRIORITY, take_priority},
+    {OPT_CPUS, take_cpus},
 };
 
 static bool take(options_t *options, int option, char **argv, const message_t *message) {
@@ -323,6 +349,8 @@ static bool agree_on_link(const options_t *options, const message_t *message) {
         {options->course_path != NULL && options->has_goal,
          "--course and --goal contradict each other; give one"},
         {!has_link, none},
+        {!options->precedence.on && (options->precedence.priority != 0 || options->precedence.cpus != 0),
+         "--realtime-priority and --cpus are for --realtime; add it"},
         {options->record_max_bytes > 0 && options->record_path == NULL,
          "--record-max is for --record FILE; add it"},
         {options->auto_baud && !has_rate, "--auto-baud is for serial links; no other has a rate to look for"},

@@ -11,6 +11,7 @@
 #include "control_spec.h"
 #include "guards.h"
 #include "hal/links.h"
+#include "precedence.h"
 
 typedef enum {
     OPTIONS_RUN,
@@ -42,6 +43,7 @@ typedef struct {
     bool no_telemetry;
     uint64_t record_max_bytes; // 0: not given
     guards_options_t guards;
+    precedence_options_t precedence;
     const char *readings; // of --guard-readings, NULL: not given
     argus_point_t goal;
     bool has_goal;
