@@ -15,6 +15,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
 
+from hil_sim.claim import Claim
 from hil_sim.errors import LinkError, SimError
 from hil_sim.links.base import BACKLOG_MS, Link
 from hil_sim.links.wire import Wire
@@ -39,6 +40,7 @@ class PtyLink(Link):
         self._rx = Wire(baud)
         self._baud = baud
         self._link = Path(link_name) if link_name else None
+        self._claim: Claim | None = None
         self._master = -1
         self._keeper = -1
         self._path = ""
@@ -49,7 +51,16 @@ class PtyLink(Link):
         self.lost_packets = 0
 
     def open(self) -> None:
-        """Create the pseudo-terminal and its symlink."""
+        """Create the pseudo-terminal and its symlink; SimError where another program has that name."""
+        if self._link:
+            self._claim = Claim(self._link, "--link-name")
+        try:
+            self._open()
+        except BaseException:
+            self.close()
+            raise
+
+    def _open(self) -> None:
         try:
             self._master, self._keeper = os.openpty()
         except OSError as error:
@@ -208,6 +219,8 @@ class PtyLink(Link):
         """Remove the symlink, if it is still ours, and the device."""
         if self._link and self._path and self._link.is_symlink() and str(self._link.readlink()) == self._path:
             self._link.unlink()
+        if self._claim:
+            self._claim.release()
         for fd in (self._keeper, self._master):
             if fd >= 0:
                 os.close(fd)

@@ -17,6 +17,7 @@ from enum import IntEnum
 from pathlib import Path
 from typing import Final, NamedTuple
 
+from hil_sim.claim import holder
 from hil_sim.errors import SimError
 
 MAGIC: Final = b"ARGUSREC"
@@ -292,9 +293,7 @@ class Recorder:
         try:
             fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
-            raise SimError(
-                f"--record {self._path}: another program records there; name another file"
-            ) from error
+            raise SimError(f"--record {self._path}: {holder(fd)} records there; name another file") from error
 
     def _rotate(self) -> None:
         for number in range(KEPT - 1, -1, -1):
