@@ -13,10 +13,12 @@
 #define SEEN_MOST_MM 1200   // of the way that others see: more would allow no higher speed
 #define SEEN_LEFT_MM 100    // of it that is left
 #define SEEN_DOUBTED_MM 200 // of it, where one is doubted: with less it goes at the speed of a step
+#define LEAST_MM_S 30       // no setting is slower
 #define SPEED_STEP_MM_S 25  // the speed asked for changes by so much at a time
 #define SWING_TURNING_MM 10 // of the margin so much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
 #define BACKOFFS_MAX 3
+#define FASTEST_MM_S 2000
 #define NUDGE_CDEG 2000
 #define NUDGE_ROOM_MM 40 // an echo is anywhere in its cone: more than readings scatter
 #define NUDGE_PARTS 5
@@ -141,9 +143,16 @@ int32_t argus_guard_seen_mm(const argus_guard_t *const self) {
     return self->profile->drives_seen && argus_guard_is_blind(self) ? seen_by_rays_mm(self) : INT32_MAX;
 }
 
+int32_t argus_guard_unseen_way_mm(const argus_guard_t *const self) {
+    const argus_knowledge_t *const knowledge = self->knowledge;
+    ARGUS_ASSERT(self->late_ms >= 0);
+    const int32_t speed_mm_s = (knowledge->vel_left_mm_s + knowledge->vel_right_mm_s) / 2;
+    return argus_max(0, argus_within(FASTEST_MM_S, speed_mm_s)) * self->late_ms / 1000;
+}
+
 int32_t argus_guard_ahead_mm(const argus_guard_t *const self, const int32_t seen_mm) {
-    const int32_t clear_mm = argus_max(0, read_mm(self) - self->config->object_range_mm);
-    return argus_min(clear_mm, seen_mm);
+    const int32_t clear_mm = argus_min(argus_max(0, read_mm(self) - self->config->object_range_mm), seen_mm);
+    return argus_max(0, clear_mm - argus_guard_unseen_way_mm(self));
 }
 
 bool argus_guard_is_doubted(const argus_guard_t *const self) {
@@ -161,19 +170,32 @@ int32_t argus_guard_heard_mm(const argus_guard_t *const self) {
            robot->sonar_face_mm;
 }
 
-int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self, const int32_t seen_mm) {
+// Where something is as near as may be: the settings are checked for that, without what the link is late.
+static int32_t near_speed_mm_s(const argus_guard_t *const self) {
     const argus_config_t *const config = self->config;
     ARGUS_ASSERT(config->speed_mm_s > 0);
-    if (!may_hurry(self)) {
+    if (self->late_ms == 0) {
         return config->speed_mm_s;
+    }
+    const int32_t safe_mm_s =
+        argus_config_speed_mm_s(config, self->knowledge->robot, config->object_range_mm, self->late_ms);
+    return argus_between(LEAST_MM_S, config->speed_mm_s, safe_mm_s);
+}
+
+int32_t argus_guard_free_speed_mm_s(const argus_guard_t *const self, const int32_t seen_mm) {
+    const argus_config_t *const config = self->config;
+    const int32_t near_mm_s = near_speed_mm_s(self);
+    if (!may_hurry(self)) {
+        return near_mm_s;
     }
     const int32_t unseen_mm =
         argus_min(argus_min(seen_mm, INT16_MAX) + SEEN_LEFT_MM, argus_guard_heard_mm(self));
     const int32_t range_mm = argus_max(argus_min(read_mm(self), unseen_mm), config->object_range_mm);
-    const int32_t safe_mm_s = argus_config_speed_mm_s(config, self->knowledge->robot, range_mm);
+    const int32_t safe_mm_s =
+        argus_config_speed_mm_s(config, self->knowledge->robot, range_mm, self->late_ms);
     const int32_t most_mm_s =
         argus_min(safe_mm_s / SPEED_STEP_MM_S * SPEED_STEP_MM_S, config->speed_max_mm_s);
-    return argus_max(config->speed_mm_s, most_mm_s);
+    return argus_max(near_mm_s, most_mm_s);
 }
 
 // What is doubted is not counted on: as fast as the others have seen.
@@ -474,7 +496,7 @@ int32_t argus_guard_back_speed_mm_s(const argus_guard_t *const self) {
     }
     const argus_config_t *const config = self->config;
     const argus_robot_t *const robot = self->knowledge->robot;
-    const bool stops_in_time =
-        argus_config_stop_mm(config, robot) + robot->rear_overhang_mm < config->object_range_mm;
+    const bool stops_in_time = argus_config_stop_mm(config, robot, self->late_ms) + robot->rear_overhang_mm <
+                               config->object_range_mm;
     return self->profile->backs_to_turn && stops_in_time ? config->speed_mm_s : config->step_speed_mm_s;
 }

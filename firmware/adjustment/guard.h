@@ -22,6 +22,7 @@ typedef struct {
     const argus_echoes_t *echoes;
     const argus_rays_t *rays;
     uint32_t now_ms;
+    int32_t late_ms;  // the link, beyond what S5 counts on
     uint16_t bumpers; // pressed, as far as they were answered
     uint8_t backed;   // back-offs in this place
     bool active;      // it may command motions: neither passive nor leaving
@@ -72,6 +73,9 @@ int32_t argus_guard_ahead_mm(const argus_guard_t *self, int32_t seen_mm);
 // How far before the sonars' faces the body would meet what it has touched before; INT32_MAX: not straight
 // ahead. Whatever the sonars hear, it stands there.
 int32_t argus_guard_touched_mm(const argus_guard_t *self);
+
+// What it drives on at its present speed while the link is late: until a MOVE takes effect.
+int32_t argus_guard_unseen_way_mm(const argus_guard_t *self);
 
 // A sonar ahead has the name of a fault.
 bool argus_guard_is_doubted(const argus_guard_t *self);

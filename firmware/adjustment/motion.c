@@ -71,7 +71,7 @@ void argus_motion_hold(argus_motion_t *const self, const uint32_t now_ms) {
 }
 
 static bool started(const argus_motion_t *const self, const uint32_t now_ms) {
-    return self->kind != ARGUS_MOTION_MOVE || now_ms - self->issued_ms >= START_MS;
+    return self->kind != ARGUS_MOTION_MOVE || now_ms - self->issued_ms >= START_MS + self->late_ms;
 }
 
 static bool on_target(const argus_motion_t *const self, const argus_knowledge_t *const knowledge,
@@ -115,7 +115,7 @@ bool argus_motion_sip(argus_motion_t *const self, const argus_knowledge_t *const
         return false;
     }
     self->on_target = 0;
-    const bool resting = knowledge->still_sips > 0 && now_ms - self->issued_ms >= START_MS;
+    const bool resting = knowledge->still_sips > 0 && now_ms - self->issued_ms >= START_MS + self->late_ms;
     self->off_target = resting ? (uint8_t)(self->off_target + 1) : 0;
     return self->kind == ARGUS_MOTION_TURN && self->off_target >= RETRY_SIPS;
 }

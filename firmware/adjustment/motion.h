@@ -24,6 +24,7 @@ typedef struct {
     int32_t target_cdeg; // TURN: course frame, as commanded (whole degrees of the robot's own heading)
     int32_t target_mm;   // MOVE: signed, ahead is where the leading end is
     uint32_t issued_ms;
+    uint32_t late_ms;   // the link: a motion takes longer to show
     int32_t speed_mm_s; // last SETV, 0: the robot's own
     argus_mark_t mark;  // when it settled
 } argus_motion_t;

@@ -176,7 +176,7 @@ static void take_identity(argus_session_t *self, const argus_packet_t *packet) {
     }
 }
 
-static void take_config(argus_session_t *self, const argus_packet_t *packet) {
+static void take_config(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
     ARGUS_ASSERT(packet->data[0] == ARCOS_TYPE_CONFIGPAC);
     argus_configpac_t robot;
     if (!argus_configpac_decode(&robot, packet)) {
@@ -185,6 +185,7 @@ static void take_config(argus_session_t *self, const argus_packet_t *packet) {
     }
     self->robot = robot;
     self->has_robot = true;
+    self->config_ms = now_ms;
     if (self->subclass[0] == '\0') { // some answer SYNC2 with a bare echo
         memcpy(self->name, robot.name, sizeof self->name);
         memcpy(self->robot_class, robot.robot_class, sizeof self->robot_class);
@@ -270,7 +271,7 @@ static unsigned on_opening(argus_session_t *self, const argus_config_t *config, 
             self->opening_sips++;
         }
     } else if (packet->data[0] == ARCOS_TYPE_CONFIGPAC) {
-        take_config(self, packet);
+        take_config(self, now_ms, packet);
     } else if (is_reset_notice(packet)) {
         return fail(self, now_ms);
     } else {
@@ -319,7 +320,7 @@ static unsigned on_open(argus_session_t *self, const argus_config_t *config, uin
         return lose(self, now_ms);
     }
     if (type == ARCOS_TYPE_CONFIGPAC) { // late: its serial number may be news
-        take_config(self, packet);
+        take_config(self, now_ms, packet);
         return meet(self);
     }
     self->unknown_packets++;

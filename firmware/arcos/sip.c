@@ -44,6 +44,8 @@ static void decode_sonar(argus_sip_t *sip, const uint8_t *data) {
 }
 
 static void decode_tail(argus_sip_t *sip, const uint8_t *tail, size_t count) {
+    sip->has_anport = count >= AFTER_SONAR(ANPORT) + 1;
+    sip->anport = sip->has_anport ? tail[AFTER_SONAR(ANPORT)] : 0;
     sip->has_battery_x10 = count >= AFTER_SONAR(BATTERYX10) + 2;
     sip->battery_x10_dv = sip->has_battery_x10 ? u16_at(tail, AFTER_SONAR(BATTERYX10)) : 0;
     sip->has_rotvel = count >= AFTER_SONAR(ROTVEL) + 2;

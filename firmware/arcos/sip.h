@@ -20,6 +20,8 @@ typedef struct {
     uint8_t bumpers_front; // bits 1..7 (a P3-DX has 1..5), bit 1 leftmost; bit 0 clear
     uint8_t bumpers_rear;  // bits 1..7, bit 1 rightmost; bit 0 clear
     uint8_t sonar_count;   // entries of `sonar` used
+    bool has_anport;
+    uint8_t anport; // the analog port that ADSEL has chosen
     bool has_battery_x10;
     bool has_rotvel;
     bool has_faultflags;

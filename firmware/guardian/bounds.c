@@ -121,7 +121,7 @@ static argus_bound_t by_clearance(const argus_guard_t *const guard, const int32_
         return closed(ARGUS_BOUND_OBJECT);
     }
     const int32_t speed_mm_s =
-        argus_config_speed_mm_s(guard->config, robot, free_mm + face_overhang_mm(robot));
+        argus_config_speed_mm_s(guard->config, robot, free_mm + face_overhang_mm(robot), guard->late_ms);
     if (speed_mm_s < LEAST_MM_S) {
         return closed(ARGUS_BOUND_OBJECT);
     }
@@ -131,7 +131,7 @@ static argus_bound_t by_clearance(const argus_guard_t *const guard, const int32_
 static bool slants(const argus_t *const self) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     const unsigned flank = argus_robot_flank(self->knowledge.robot) & ~(unsigned)argus_out(&self->knowledge);
-    const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot);
+    const int32_t stop_mm = argus_config_stop_mm(&self->config, self->knowledge.robot, self->latency.late_ms);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((flank >> i & 1u) != 0 &&
             argus_grazing_wall(&self->evidence.pings[i], self->knowledge.robot, i, stop_mm)) {
@@ -175,7 +175,7 @@ static argus_bound_t leading(const argus_t *const self, const argus_guard_t *con
     }
     const int32_t seen_mm = argus_min(argus_guard_seen_mm(guard), TRUST_MM);
     const int32_t seen_mm_s =
-        argus_config_speed_mm_s(guard->config, knowledge->robot, seen_mm + SEEN_LEFT_MM);
+        argus_config_speed_mm_s(guard->config, knowledge->robot, seen_mm + SEEN_LEFT_MM, guard->late_ms);
     if (seen_mm == 0 || seen_mm_s < LEAST_MM_S) {
         return closed(ARGUS_BOUND_UNSEEN);
     }

@@ -69,9 +69,9 @@ static uint32_t sure_decel_mm_s2(const argus_config_t *config, const argus_robot
 // Rounded once, at the end: a sum of rounded parts would refuse speeds that are within the limit. The order
 // of the multiplications keeps everything within 32 bits for any setting in range.
 static void work_out_driving(argus_config_report_t *report, const argus_config_t *config,
-                             const argus_robot_t *robot) {
+                             const argus_robot_t *robot, int32_t late_ms) {
     const uint32_t v = (uint32_t)config->speed_mm_s;
-    const uint32_t t_us = reaction_us(config, robot);
+    const uint32_t t_us = reaction_us(config, robot) + (uint32_t)late_ms * 1000;
     const uint32_t travel_um = v * (t_us / 1000) + v * (t_us % 1000) / 1000;
     const uint32_t brake_um = v * v * 1000 / (2 * sure_decel_mm_s2(config, robot));
     report->overhang_mm = robot->front_mm - robot->sonar_face_mm;
@@ -82,21 +82,23 @@ static void work_out_driving(argus_config_report_t *report, const argus_config_t
     ARGUS_ASSERT(report->travel_mm >= 0 && report->brake_mm >= 0);
 }
 
-int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *robot) {
-    ARGUS_ASSERT(config->speed_mm_s > 0 && config->decel_mm_s2 > 0);
+int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *robot, int32_t late_ms) {
+    ARGUS_ASSERT(config->speed_mm_s > 0 && config->decel_mm_s2 > 0 && late_ms >= 0);
     argus_config_report_t report = {.fault = ARGUS_CONFIG_OK, .key = -1};
-    work_out_driving(&report, config, robot);
+    work_out_driving(&report, config, robot, late_ms);
     return report.travel_mm + report.brake_mm;
 }
 
 // Of v t + v^2 / 2a = s the greater root, v = sqrt((a t)^2 + 2 a s) - a t. What is rounded makes it slower,
 // and 1 mm is left, since the check wants less than the range.
-int32_t argus_config_speed_mm_s(const argus_config_t *config, const argus_robot_t *robot, int32_t range_mm) {
-    ARGUS_ASSERT(range_mm <= INT16_MAX);
+int32_t argus_config_speed_mm_s(const argus_config_t *config, const argus_robot_t *robot, int32_t range_mm,
+                                int32_t late_ms) {
+    ARGUS_ASSERT(range_mm <= INT16_MAX && late_ms >= 0);
     const int32_t decel_mm_s2 = (int32_t)sure_decel_mm_s2(config, robot);
     const int32_t overhang_mm = robot->front_mm - robot->sonar_face_mm;
     const int32_t stop_mm = argus_max(0, range_mm - overhang_mm - 1);
-    const int32_t slower_mm_s = (decel_mm_s2 * (int32_t)(reaction_us(config, robot) / 1000 + 1) + 999) / 1000;
+    const int32_t t_ms = (int32_t)(reaction_us(config, robot) / 1000 + 1) + late_ms;
+    const int32_t slower_mm_s = (decel_mm_s2 * t_ms + 999) / 1000;
     const uint32_t square = (uint32_t)(slower_mm_s * slower_mm_s + 2 * decel_mm_s2 * stop_mm);
     return (int32_t)argus_sqrt(square) - slower_mm_s;
 }
@@ -247,7 +249,7 @@ argus_config_report_t argus_config_check_for(const argus_config_t *asked, const 
     argus_config_t config = *asked;
     argus_config_follow(&config, argus_config_follows(asked), robot);
     take_in_force(&report, &config);
-    work_out_driving(&report, &config, robot);
+    work_out_driving(&report, &config, robot, 0);
     report.reach_mm = argus_config_reach_mm(robot, config.step_mm);
     report.stepping_mm = stepping_mm(&config, report.reach_mm);
     if (report.driving_mm >= config.object_range_mm) {

@@ -24,8 +24,8 @@ void argus_config_follow(argus_config_t *config, argus_follows_t follows, const 
 argus_config_report_t argus_config_check_for(const argus_config_t *config, const argus_robot_t *robot);
 
 // S5: the way, in mm, from a reading that asks for a stop to standstill at the driving speed: v t + v^2 / (2
-// decel).
-int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *robot);
+// decel). `late_ms`: by how much the link is late beyond what t counts on.
+int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *robot, int32_t late_ms);
 
 // Largest reading, in mm, that a forward-facing sonar gives of a point which the body sweeps when it moves
 // `step_mm` ahead.
@@ -34,6 +34,7 @@ int32_t argus_config_reach_mm(const argus_robot_t *robot, int32_t step_mm);
 // S5 solved for the speed: the highest, mm/s, from which the robot stands before an object at a reading of
 // `range_mm`, 0..INT16_MAX. It is never more, and at most 6 mm/s less. The settings must have passed
 // argus_config_check().
-int32_t argus_config_speed_mm_s(const argus_config_t *config, const argus_robot_t *robot, int32_t range_mm);
+int32_t argus_config_speed_mm_s(const argus_config_t *config, const argus_robot_t *robot, int32_t range_mm,
+                                int32_t late_ms);
 
 #endif

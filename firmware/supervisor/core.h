@@ -21,6 +21,7 @@
 #include "knowledge/profile.h"
 #include "knowledge/rays.h"
 #include "supervisor/events.h"
+#include "supervisor/latency.h"
 #include "task/task.h"
 
 // The heading to return to after verification and sweeps (S4).
@@ -179,6 +180,7 @@ struct argus {
     argus_reverse_t reverse;
     argus_history_t history;
     argus_reflexes_t reflexes;
+    argus_latency_t latency;
     argus_wheel_t wheel;
     argus_bend_t bend;
     argus_slip_t slip;

@@ -11,6 +11,7 @@
 #include "supervisor/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/history.h"
+#include "supervisor/latency.h"
 #include "supervisor/modes.h"
 #include "supervisor/motions.h"
 #include "supervisor/orders.h"
@@ -125,6 +126,7 @@ static void on_open(argus_t *const self) {
     if (!self->orders.passive) {
         argus_enable_motors(self);
     }
+    argus_latency_open(self);
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
     restart_evidence(self);
     argus_rays_forget_all(&self->rays);
@@ -197,6 +199,7 @@ static void on_sip(argus_t *const self) {
         argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
         return;
     }
+    argus_latency_sip(self);
     argus_knowledge_sip(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
     if (argus_sees_through_body(self)) {
         argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_CHECK, true);
@@ -219,10 +222,12 @@ static void on_sip(argus_t *const self) {
     if (!argus_keep_plan(self) && is_on_its_way(self)) {
         argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_CHECK, false);
     }
-    if (argus_motion_sip(&self->motion, &self->knowledge, self->now_ms)) {
-        argus_turn_again(self);
+    if (argus_latency_is_prompt(&self->latency)) {
+        if (argus_motion_sip(&self->motion, &self->knowledge, self->now_ms)) {
+            argus_turn_again(self);
+        }
+        argus_run_mode(self);
     }
-    argus_run_mode(self);
     note_order(self);
     note_watchdog(self);
 }
@@ -296,6 +301,7 @@ uint32_t argus_process(argus_t *const self, const uint32_t now_ms) {
         }
         handle(self, bits);
     }
+    argus_latency_process(self);
     argus_process_mode(self);
     check_invariants(self);
     return self->session.parser.length > 0 || self->session.outbox.length > 0 ? BUSY_POLL_MS : IDLE_POLL_MS;

@@ -284,7 +284,7 @@ static bool is_slanting_in(const argus_t *const self, const int sonar) {
     const argus_robot_t *const robot = self->knowledge.robot;
     return (argus_robot_flank(robot) >> sonar & 1u) != 0 &&
            argus_grazing_wall(&self->evidence.pings[sonar], robot, sonar,
-                              argus_config_stop_mm(&self->config, robot));
+                              argus_config_stop_mm(&self->config, robot, self->latency.late_ms));
 }
 
 // ... or by those ahead for a moment, and not again. One that hears something farther off denies it.

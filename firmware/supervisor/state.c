@@ -42,10 +42,11 @@ argus_guard_t argus_guard(const argus_t *const self) {
                            .echoes = &self->echoes,
                            .rays = &self->rays,
                            .now_ms = self->now_ms,
+                           .late_ms = self->latency.late_ms,
                            .bumpers = self->reflexes.bumpers,
                            .backed = self->turning.backed,
                            .active = argus_is_active(self),
-                           .linked = argus_is_open(self) && !self->stalled,
+                           .linked = argus_is_open(self) && !self->stalled && !self->latency.stands,
                            .checked = self->checked};
     guard.creeps = self->config.creep_mm_s > 0 && leads_with_bumper(self) && argus_is_unseen(self, &guard);
     return guard;

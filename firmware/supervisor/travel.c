@@ -323,7 +323,11 @@ static void move_on(const argus_t *const self, const argus_guard_t *const guard,
                     const int32_t free_mm, const int32_t seen_mm, argus_intent_t *const intent) {
     const int32_t way_mm = left_mm(self, mine);
     intent->act = ARGUS_DO_DRIVE;
-    intent->mm = argus_min(way_mm, free_mm);
+    intent->mm = argus_min(way_mm - argus_guard_unseen_way_mm(guard), free_mm);
+    if (intent->mm <= 0) {
+        intent->act = ARGUS_DO_NOTHING; // the MOVE at work leads there
+        return;
+    }
     intent->speed_mm_s = argus_guard_speed_mm_s(guard, seen_mm);
     intent->moves_on = true;
     if (way_mm > STEER_LEG_MM) {

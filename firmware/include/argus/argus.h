@@ -305,7 +305,11 @@ typedef enum {
       "the stored record is damaged or foreign; value: 1 damaged, 2 version, 3 of another robot")            \
     X(81, EVENTS_LOST, ERROR, events, "the event queue overflowed; value: events lost")                      \
     X(90, INVARIANT, ERROR, manager, "an internal invariant does not hold; value: its number")               \
-    X(91, STATUS, OK, status, "periodic picture of all that is known")
+    X(91, STATUS, OK, status, "periodic picture of all that is known")                                       \
+    X(92, LINK_SLOW, WARN, link,                                                                             \
+      "orders take effect late, or what is read is old: slower, or standing; value: ms from an order until " \
+      "it shows")                                                                                            \
+    X(93, LINK_PROMPT, OK, link, "orders take effect in time again; value: ms from an order until it shows")
 
 // Of a guard port.
 #define ARGUS_GUARD_EVENT_TABLE(X)                                                                           \

@@ -367,7 +367,7 @@ void test_s5_how_fast_back(void) {
     use(ARGUS_PROFILE_ARGUS);
     TEST_ASSERT_EQUAL(config.speed_mm_s, argus_guard_back_speed_mm_s(&g));
     const int32_t overhang_mm = 64; // of sonars 10 and 13
-    config.object_range_mm = argus_config_stop_mm(&config, argus_robot_default()) + overhang_mm;
+    config.object_range_mm = argus_config_stop_mm(&config, argus_robot_default(), 0) + overhang_mm;
     TEST_ASSERT_EQUAL(config.step_speed_mm_s, argus_guard_back_speed_mm_s(&g));
     config.object_range_mm++;
     TEST_ASSERT_EQUAL(config.speed_mm_s, argus_guard_back_speed_mm_s(&g));

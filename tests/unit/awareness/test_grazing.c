@@ -46,9 +46,9 @@ void test_the_stopping_way_is_that_of_the_default_configuration(void) {
     argus_config_default(&config);
     argus_config_follow(&config, argus_config_follows(&config), argus_robot_default());
     const argus_config_report_t report = argus_config_check(&config);
-    TEST_ASSERT_EQUAL_INT32(STOP_MM, argus_config_stop_mm(&config, argus_robot_default()));
+    TEST_ASSERT_EQUAL_INT32(STOP_MM, argus_config_stop_mm(&config, argus_robot_default(), 0));
     TEST_ASSERT_EQUAL_INT32(report.driving_mm - report.overhang_mm,
-                            argus_config_stop_mm(&config, argus_robot_default()));
+                            argus_config_stop_mm(&config, argus_robot_default(), 0));
 }
 
 static int lost_each; // no echo in so many readings once

@@ -126,7 +126,7 @@ static bool draw_settings(random_t *random) {
 static int32_t driving_at(const argus_robot_t *robot, int32_t speed_mm_s) {
     argus_config_t at = config;
     at.speed_mm_s = speed_mm_s;
-    return robot->front_mm - robot->sonar_face_mm + argus_config_stop_mm(&at, robot);
+    return robot->front_mm - robot->sonar_face_mm + argus_config_stop_mm(&at, robot, 0);
 }
 
 // The check refuses a speed whose way reaches the range: what the law allows is not refused, and 6 mm/s more
@@ -152,7 +152,7 @@ static void law_cases(int cases) {
         drawn++;
         int32_t slower_mm_s = 0;
         for (int32_t range_mm = 0; range_mm <= 5000; range_mm += 1 + (int32_t)random_below(&random, 90)) {
-            const int32_t speed_mm_s = argus_config_speed_mm_s(&config, robot, range_mm);
+            const int32_t speed_mm_s = argus_config_speed_mm_s(&config, robot, range_mm, 0);
             TEST_ASSERT_TRUE_MESSAGE(speed_mm_s >= slower_mm_s, "less speed for more range");
             slower_mm_s = speed_mm_s;
             if (range_mm > robot->front_mm - robot->sonar_face_mm + 1) {
@@ -174,7 +174,7 @@ void test_the_speed_of_any_range_is_the_most_that_s5_allows(void) { // soak
 // Nearer than the body's end there is no way left: no speed, and none below zero.
 void test_no_range_no_speed(void) {
     for (int32_t range_mm = 0; range_mm <= 45; range_mm++) {
-        TEST_ASSERT_EQUAL(0, argus_config_speed_mm_s(&config, argus_robot_default(), range_mm));
+        TEST_ASSERT_EQUAL(0, argus_config_speed_mm_s(&config, argus_robot_default(), range_mm, 0));
     }
 }
 
@@ -191,7 +191,7 @@ void test_the_law_does_not_overflow(void) {
             const double t = 8 * config.sonar_cycle_ms / 1000.0 + 0.1 + 640.0 / config.baud;
             const double at = 300 * t;
             const double wanted = sqrt(at * at + 2 * 300 * fmax(0, range_mm - 44.0)) - at;
-            const int32_t speed_mm_s = argus_config_speed_mm_s(&config, argus_robot_default(), range_mm);
+            const int32_t speed_mm_s = argus_config_speed_mm_s(&config, argus_robot_default(), range_mm, 0);
             snprintf(message, sizeof message, "range %d: %d mm/s, exactly %.2f", (int)range_mm,
                      (int)speed_mm_s, wanted);
             TEST_ASSERT_TRUE_MESSAGE(speed_mm_s <= wanted && speed_mm_s >= wanted - 6, message);

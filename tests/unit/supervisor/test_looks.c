@@ -122,7 +122,7 @@ static int32_t speed_by_others(void) {
     const int32_t half_mm = argus_guard_straight_half_mm(argus->knowledge.robot);
     const int32_t seen_mm = argus_rays_seen_mm(&argus->rays, &argus->knowledge, half_mm, 1200);
     const int32_t range_mm = seen_mm < 250 ? 250 : seen_mm;
-    const int32_t safe_mm_s = argus_config_speed_mm_s(&argus->config, argus->knowledge.robot, range_mm);
+    const int32_t safe_mm_s = argus_config_speed_mm_s(&argus->config, argus->knowledge.robot, range_mm, 0);
     const int32_t asked_mm_s = safe_mm_s / 25 * 25;
     return asked_mm_s < argus->config.speed_mm_s ? argus->config.speed_mm_s : asked_mm_s;
 }

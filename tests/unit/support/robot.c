@@ -297,6 +297,7 @@ static size_t build_sip(robot_t *robot, uint8_t *packet) {
     put16(data + 16, (robot->motors ? 1 : 0) | (robot->sonar_on ? 6 : 0) | (robot->stop_button ? 0x20 : 0));
     const size_t count = list_readings(robot, data + 20);
     data[19] = (uint8_t)count;
+    data[20 + 3 * count + 1] = robot->anport;
     const size_t standard = 20 + 3 * count + 12;
     const size_t length = robot->alter_sip != NULL ? robot->alter_sip(data, standard) : standard;
     return argus_frame_encode(packet, 255, data, length);
@@ -418,6 +419,9 @@ static void obey_setting(robot_t *robot, uint8_t command, int32_t argument) {
         robot->x0 = robot->x;
         robot->y0 = robot->y;
         robot->th0 = robot->th;
+        break;
+    case ARCOS_CMD_ADSEL:
+        robot->anport = (uint8_t)argument;
         break;
     case ARCOS_CMD_CLOSE:
         power_up(robot);
@@ -574,7 +578,7 @@ static void watch_speed(robot_t *robot) {
     const int range_mm = nearest_ahead_mm(robot, argus_out(&robot->argus.knowledge) & all_ahead(robot));
     const argus_robot_t *body = robot->argus.knowledge.robot;
     const int safe = argus_rules(&robot->argus)->adapts_speed && range_mm > 0
-                         ? argus_config_speed_mm_s(config, body, range_mm)
+                         ? argus_config_speed_mm_s(config, body, range_mm, 0)
                          : 0;
     if (robot->speed_asked_mm_s > fmax(config->speed_mm_s, fmin(safe, config->speed_max_mm_s))) {
         complain(robot, "S5: MOVE ahead faster than what is seen allows", (int)robot->speed_asked_mm_s);
@@ -712,7 +716,8 @@ static void take_packet(robot_t *robot, const uint8_t *packet, size_t length) {
         sent.argument = packet[5] | packet[6] << 8;
         sent.argument = packet[4] == 0x1B ? -sent.argument : sent.argument;
     }
-    if (robot->commands < ROBOT_COMMANDS_MAX) {
+    // One a SIP, of which nothing but the port comes.
+    if (sent.command != ARCOS_CMD_ADSEL && robot->commands < ROBOT_COMMANDS_MAX) {
         robot->command[robot->commands++] = sent;
     }
     if (robot->after == NULL) {
@@ -747,7 +752,7 @@ void robot_drain(robot_t *robot) {
     size_t length = 0;
     take_events(robot);
     while ((length = argus_transmit(&robot->argus, packet, sizeof packet)) > 0) {
-        if (robot->reply_length == 0) {
+        if (robot->reply_length == 0 && packet[3] != ARCOS_CMD_ADSEL) {
             memcpy(robot->reply, packet, length);
             robot->reply_length = length;
         }

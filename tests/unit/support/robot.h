@@ -73,6 +73,7 @@ struct robot {
     uint8_t late[ROBOT_LATE_MAX];
     size_t late_count;
     bool sonar_on;
+    uint8_t anport; // the analog port that it shows
     const char *subclass;
     uint32_t next_sip_ms;
     uint32_t sips;
