@@ -182,7 +182,7 @@ static void widen(argus_config_t *config, const argus_robot_t *robot) {
     argus_config_report_t report = {.fault = ARGUS_CONFIG_OK, .key = -1};
     argus_config_default(&built);
     built.speed_mm_s = AUTO_SPEED_MM_S;
-    work_out_driving(&report, &built, robot);
+    work_out_driving(&report, &built, robot, 0);
     const int32_t step_mm = stepping_mm(&built, argus_config_reach_mm(robot, built.step_mm));
     config->object_range_mm = argus_max(config->object_range_mm, parts_above(report.driving_mm));
     config->check_range_mm = argus_max(config->check_range_mm, parts_above(step_mm));
@@ -202,9 +202,9 @@ static argus_config_t auto_ranges(const argus_robot_t *robot) {
 
 static int32_t auto_speed_mm_s(const argus_config_t *config, const argus_robot_t *robot) {
     const argus_robot_t *const other = argus_robot_other_end(robot);
-    const int32_t here_mm_s = argus_config_speed_mm_s(config, robot, config->object_range_mm);
+    const int32_t here_mm_s = argus_config_speed_mm_s(config, robot, config->object_range_mm, 0);
     const int32_t there_mm_s =
-        other != NULL ? argus_config_speed_mm_s(config, other, config->object_range_mm) : here_mm_s;
+        other != NULL ? argus_config_speed_mm_s(config, other, config->object_range_mm, 0) : here_mm_s;
     const int32_t safe_mm_s = argus_min(here_mm_s, there_mm_s);
     return argus_max(AUTO_SPEED_LEAST_MM_S, argus_min(AUTO_SPEED_MM_S, safe_mm_s));
 }
