@@ -122,11 +122,11 @@ static void on_open(argus_t *const self) {
     ARGUS_ASSERT(argus_is_open(self));
     argus_tell(self, ARGUS_EV_SESSION_OPEN, self->session.attempts);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it, for the robot before
+    argus_latency_open(self);
     argus_meet_body(self);
     if (!self->orders.passive) {
         argus_enable_motors(self);
     }
-    argus_latency_open(self);
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
     restart_evidence(self);
     argus_rays_forget_all(&self->rays);

@@ -122,7 +122,8 @@ static bool is_pressed(const argus_t *const self, const argus_ask_t order) {
 }
 
 argus_permit_t argus_permit(const argus_t *const self, const argus_ask_t order) {
-    if (!argus_is_open(self) || self->stalled || self->latency.stands || self->orders.shutdown) {
+    if (!argus_is_open(self) || self->stalled || self->orders.shutdown ||
+        (self->latency.stands && order.wants != ARGUS_WANTS_MOTORS)) {
         return ARGUS_PERMIT_NO_ROBOT;
     }
     if (is_stopped(self, order)) {
