@@ -10,6 +10,7 @@
 #include "argusd.h"
 #include "attach.h"
 #include "check.h"
+#include "claim.h"
 #include "course.h"
 #include "hal/serial.h"
 #include "loop.h"
@@ -32,6 +33,8 @@ static course_t course;
 static hal_transport_t transport;
 static loop_t loop;
 static precedence_t precedence;
+static claim_t control_claim;
+static claim_t state_claim;
 static char message[ARGUSD_MESSAGE_MAX];
 
 static argusd_exit_t complain(argusd_exit_t code) {
@@ -272,7 +275,8 @@ static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
 // Saves once at the start: a place that cannot be written is better known now than after the mission. Faults
 // that are injected are no history of the sonars: then nothing is saved later.
 static bool open_state(void) {
-    if (!state_open(&loop.state, options.state_path, loop.driver.core, message, sizeof message)) {
+    if (!claim_take(&state_claim, "--state", options.state_path, message, sizeof message) ||
+        !state_open(&loop.state, options.state_path, loop.driver.core, message, sizeof message)) {
         return false;
     }
     if (message[0] != '\0') {
@@ -297,6 +301,11 @@ static bool open_control(void) {
     }
     if (options.token_path != NULL &&
         !control_token_load(&token, options.token_path, message, sizeof message)) {
+        return false;
+    }
+    if (options.control.family == AF_UNIX &&
+        !claim_take(&control_claim, "--control", options.control.address.un.sun_path, message,
+                    sizeof message)) {
         return false;
     }
     inject_init(&loop.inject, options.inject, (uint32_t)bus_seed());
@@ -448,5 +457,8 @@ static argusd_exit_t run(int argc, char **argv) {
 }
 
 int app_main(int argc, char **argv) {
-    return (int)run(argc, argv);
+    const argusd_exit_t code = run(argc, argv);
+    claim_release(&control_claim);
+    claim_release(&state_claim);
+    return (int)code;
 }

@@ -19,9 +19,13 @@
 #define SEND_BUFFER 65536 // what lies in the system's hands is old when a slow reader gets it
 
 // Whether a program serves the socket file: then connecting works, or would, but for its full queue.
-static bool is_served(const control_spec_t *spec) {
+static bool is_served(const control_spec_t *spec, pid_t *process) {
+    struct ucred peer = {0};
+    socklen_t length = sizeof peer;
     const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     const bool served = fd < 0 || connect(fd, &spec->address.any, spec->length) == 0 || errno != ECONNREFUSED;
+    const bool known = served && fd >= 0 && getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &length) == 0;
+    *process = known ? peer.pid : 0;
     if (fd >= 0) {
         close(fd);
     }
@@ -39,9 +43,11 @@ static bool clear_path(const control_spec_t *spec, char *message, size_t capacit
         return text_refuse(message, capacity, "--control unix:%s: it exists and is no socket; name another",
                            path);
     }
-    if (is_served(spec)) {
-        return text_refuse(message, capacity, "--control unix:%s: another program serves it; name another",
-                           path);
+    pid_t process = 0;
+    if (is_served(spec, &process)) {
+        return text_refuse(message, capacity,
+                           "--control unix:%s: another program serves it (process %d); name another", path,
+                           (int)process);
     }
     if (unlink(path) != 0) {
         return text_refuse(message, capacity, "--control unix:%s: left by another program: %s", path,

@@ -153,6 +153,9 @@ static bool name_pty(guard_port_t *self) {
 }
 
 static bool open_pty(guard_port_t *self, char *message, size_t capacity) {
+    if (!claim_take(&self->claim, "--guard", self->spec.name, message, capacity)) {
+        return false;
+    }
     self->listener = posix_openpt(O_RDWR | O_NOCTTY);
     if (self->listener >= 0) {
         (void)fcntl(self->listener, F_SETFD, FD_CLOEXEC);
@@ -247,6 +250,7 @@ void guard_port_close(guard_port_t *self) {
     if (self->listener >= 0) {
         close(self->listener);
     }
+    claim_release(&self->claim);
     self->listener = -1;
     self->linked = false;
 }

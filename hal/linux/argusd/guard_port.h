@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "claim.h"
+
 typedef enum { GUARD_TCP, GUARD_PTY } guard_kind_t;
 
 typedef struct {
@@ -22,10 +24,11 @@ bool guard_spec_parse(guard_spec_t *spec, const char *text, char *message, size_
 
 typedef struct {
     guard_spec_t spec;
-    int listener; // TCP: accepts; pty: its master; -1: closed
-    int client;   // TCP: the client's socket, -1: none; pty: the master while the other side is open
-    bool linked;  // the pty's name is there
-    bool refused; // it would have been open to other machines
+    int listener;  // TCP: accepts; pty: its master; -1: closed
+    int client;    // TCP: the client's socket, -1: none; pty: the master while the other side is open
+    bool linked;   // the pty's name is there
+    claim_t claim; // ... and ours
+    bool refused;  // it would have been open to other machines
 } guard_port_t;
 
 // Listens; no client is there yet. `beyond`: a TCP host that is not loopback is allowed.

@@ -9,14 +9,13 @@
 #include <string.h>
 
 #include "argusd.h"
+#include "claim.h"
 #include "text.h"
 
 static const char *advice(int problem) {
     switch (problem) {
     case EEXIST:
         return "it exists and is no recording; name another file";
-    case EBUSY:
-        return "another program records there; name another file";
     case EINVAL:
         return "it is no regular file; name another";
     case ENAMETOOLONG:
@@ -37,6 +36,12 @@ bool tape_open(tape_t *self, const char *path, const char *link, uint64_t max_by
                                     hal_recorder_ops());
     if (problem == 0) {
         problem = hal_recorder_start(&self->recorder);
+    }
+    if (problem == EBUSY) {
+        char who[ARGUSD_MESSAGE_MAX / 4];
+        claim_holder(path, who, sizeof who);
+        hal_recorder_close(&self->recorder);
+        return text_refuse(message, capacity, "--record %s: %s records there; name another file", path, who);
     }
     if (problem != 0) {
         const char *const known = advice(problem);
