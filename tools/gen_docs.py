@@ -172,11 +172,35 @@ def machine() -> str:
     return "\n".join([*diagram, "    CLOSED --> [*]", "```"])
 
 
+_FORMS = {
+    "ANY": "any",
+    "INT": "-32767 .. 32767",
+    "WORD": "16 bits",
+    "STRING": "as many characters as it tells",
+}
+
+
+def _command(first: str, last: str) -> str:
+    stem = first.removesuffix("_FIRST")
+    return first if first == last else f"all of {stem}" if stem != first else f"{first} to {last}"
+
+
+def admitted() -> str:
+    """Return what a client of a guard port may say as a Markdown table, alike ones in one row."""
+    alike: dict[tuple[str, str], list[str]] = {}
+    for first, last, _, form, _, *meaning in rows("guardian/admit.h", "ARGUS_CLIENT_TABLE"):
+        alike.setdefault((_FORMS[form], _cell(meaning)), []).append(_command(first, last))
+    lines = ["| command | argument | what becomes of it |", "| --- | --- | --- |"]
+    lines += [f"| {', '.join(names)} | {form} | {meaning} |" for (form, meaning), names in alike.items()]
+    return "\n".join(lines)
+
+
 PARTS = {
     "SPEC.md": {"events": events, "config": config, "can": can},
     "DESIGN.md": {"machine": machine},
     "docs/manager.md": {"modes": modes, "reflexes": reflexes, "rules": rules, "health": health},
     "docs/driving.md": {"policies": policies},
+    "docs/guardian.md": {"admitted": admitted},
 }
 
 

@@ -4,6 +4,7 @@
 #define ARGUS_CLIENT_H
 
 #include "guardian/hold.h"
+#include "guardian/limit.h"
 
 #define ARGUS_PORT_OUT 1024 // bytes that wait for the client: some ten SIPs
 
@@ -14,6 +15,12 @@ typedef enum {
     ARGUS_PORT_SYNC2,
     ARGUS_PORT_OPEN // SIPs pass
 } argus_port_phase_t;
+
+typedef enum {
+    ARGUS_PORT_MOTORS_AS_THEY_ARE,
+    ARGUS_PORT_MOTORS_ON,
+    ARGUS_PORT_MOTORS_OFF
+} argus_port_motors_t;
 
 // Run-time parameters of the robot, each 0: not said yet.
 typedef struct {
@@ -33,17 +40,19 @@ typedef struct {
     uint16_t out_length;
     uint8_t phase; // argus_port_phase_t
     bool there;
-    bool drives;     // it has commanded a motion, and the manager has none of its own
-    bool denied;     // an operator took the robot from it: until its next session
-    bool stayed;     // an operator's stop holds
-    bool enable_due; // it wants the motors on, and may not yet
-    bool parting;    // it is gone: the motors are cut at rest
-    bool origin;     // it has sent SETO; SIPs since
+    bool drives;  // it has commanded a motion, and the manager has none of its own
+    bool denied;  // an operator took the robot from it: until its next session
+    bool stayed;  // an operator's stop holds
+    bool parting; // it is gone: the motors are cut at rest
+    bool origin;  // it has sent SETO; SIPs since
     uint8_t origin_sips;
     uint8_t arrays;  // of sonars that it wants
-    uint8_t streams; // that it asked for, in the order of the table in port.c
+    uint8_t streams; // that it asked for, in the order of the table in send.c
+    uint8_t motors;  // ENABLE that is due, argus_port_motors_t
+    uint8_t stopped; // the STOP or E_STOP that was sent, and nothing since
     argus_port_settings_t settings;
     argus_hold_client_t hold;
+    argus_limit_t limit;
     uint32_t heard_ms; // the last packet of it
     uint32_t parted_ms;
     uint32_t packets; // of it, in this session

@@ -12,8 +12,9 @@
 
 #define WATCHDOG_MS 2000u // where CONFIGpac has not come
 #define ALL_ARRAYS 0x0Fu
-#define ORIGIN_SIPS 3 // in which SETO shows
-#define PART_MS 3000u // after which the motors are cut, at rest or not
+#define ORIGIN_SIPS 3    // in which SETO shows
+#define PART_MS 3000u    // after which the motors are cut, at rest or not
+#define SESSION_BYTES 60 // to the robot as a session begins and ends
 #define PARTED_RESET 3
 #define PARTED_SILENT 2
 #define PARTED_CLOSED 1
@@ -38,7 +39,7 @@ static void give_back(argus_t *const core, argus_port_t *const self) {
         self->parted_ms = core->now_ms;
     }
     self->drives = false;
-    self->enable_due = false;
+    self->motors = ARGUS_PORT_MOTORS_AS_THEY_ARE;
     argus_hold_forget(&self->hold);
 }
 
@@ -73,6 +74,38 @@ static void part(argus_t *const core, argus_port_t *const self) {
     }
 }
 
+// What ends here --------------------------------------------------------------------------------------------
+
+static void refuse(argus_t *const core, argus_port_t *const self, const uint8_t command) {
+    self->refused++;
+    if (argus_limit_word(&self->limit)) {
+        argus_say(core, ARGUS_EV_GUARD_REFUSED, ARGUS_NO_SONAR, command);
+    }
+}
+
+// How many were dropped, so that a flood is seen though not every command of it is.
+static void tell_dropped(argus_t *const core, argus_port_t *const self) {
+    const uint32_t dropped = argus_limit_second(&self->limit, core->now_ms);
+    if (dropped > 0) {
+        argus_say(core, ARGUS_EV_GUARD_DROPPED, ARGUS_NO_SONAR, (int32_t)(dropped & 0x7FFFFFFFu));
+    }
+}
+
+static bool pass(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+    const bool passed = argus_send_robot(core, said->packet);
+    self->refused += passed ? 0 : 1;
+    self->limit.dropped += passed ? 0 : 1;
+    return passed;
+}
+
+static bool may_pass(argus_t *const core, argus_port_t *const self, const uint16_t cost) {
+    if (argus_limit_pass(&self->limit, core->now_ms, cost)) {
+        return true;
+    }
+    self->refused++;
+    return false;
+}
+
 // The client comes ------------------------------------------------------------------------------------------
 
 static void open_session(argus_t *const core, argus_port_t *const self) {
@@ -104,7 +137,9 @@ static void answer_identity(const argus_t *const core, argus_port_t *const self)
 static void take_sync(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
     const uint8_t sync = packet->data[0];
     if (sync == ARCOS_CMD_OPEN && self->phase == ARGUS_PORT_SYNC2) {
-        open_session(core, self);
+        if (may_pass(core, self, SESSION_BYTES)) {
+            open_session(core, self);
+        }
     } else if (sync <= ARCOS_SYNC_SYNC2 &&
                (sync == ARCOS_SYNC_SYNC0 || sync == self->phase || sync + 1 == self->phase)) {
         self->phase = (uint8_t)(ARGUS_PORT_SYNC0 + sync);
@@ -120,11 +155,6 @@ static void take_sync(argus_t *const core, argus_port_t *const self, const argus
 
 // Its commands ----------------------------------------------------------------------------------------------
 
-static void refuse(argus_t *const core, argus_port_t *const self, const uint8_t command) {
-    self->refused++;
-    argus_say(core, ARGUS_EV_GUARD_REFUSED, ARGUS_NO_SONAR, command);
-}
-
 // The first motion that it asks for ends the manager's own course; true: it may.
 static bool take_wheel(argus_t *const core, argus_port_t *const self) {
     if (self->drives) {
@@ -134,7 +164,7 @@ static bool take_wheel(argus_t *const core, argus_port_t *const self) {
         return false;
     }
     if (!core->orders.passive) {
-        argus_obey(core, ARGUS_OP_PASSIVE, 0);
+        argus_yield_to_client(core);
     }
     self->drives = true;
     self->parting = false;
@@ -151,79 +181,103 @@ static int32_t raw_deg(const argus_knowledge_t *const knowledge) {
     return (cdeg + (cdeg >= 0 ? 50 : -50)) / 100;
 }
 
-static void take_motion(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet,
-                        const argus_topic_t topic) {
-    if (!self->drives && !argus_wish_moves(packet)) {
+// More of them than the robot's line carries: the last ones go out with the next SIP.
+static void take_motion(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+    if (!self->drives && !argus_wish_moves(said)) {
         return; // it stands as far as the client is concerned
     }
     if (!take_wheel(core, self)) {
-        refuse(core, self, packet->data[0]);
+        refuse(core, self, said->command);
         return;
     }
-    argus_wish_take(&self->hold.wish, packet, core->knowledge.odometer_mm, raw_deg(&core->knowledge));
-    if (topic == ARGUS_TOPIC_TURN) {
+    const bool turns = said->topic == ARGUS_TOPIC_TURN;
+    self->stopped = 0;
+    argus_wish_take(&self->hold.wish, said, core->knowledge.odometer_mm, raw_deg(&core->knowledge));
+    if (!argus_limit_order(&self->limit)) {
+        *(turns ? &self->hold.turn_due : &self->hold.way_due) = true;
+    } else if (turns) {
         argus_hold_turn(core, &self->hold);
     } else {
         argus_hold_way(core, &self->hold);
     }
 }
 
-static void take_stop(argus_t *const core, argus_port_t *const self, const uint8_t command) {
-    if (!core->orders.passive) {
-        argus_obey(core, ARGUS_OP_STOP, 0); // any client that sees that it must stand is heard
-    }
+// The same again while nothing was ordered since, and no SIP has come, is once.
+static void take_stop(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+    const uint8_t command = said->command == ARCOS_CMD_STOP ? ARCOS_CMD_STOP : ARCOS_CMD_E_STOP;
     argus_hold_forget(&self->hold);
-    argus_outbox_urgent(&core->session.outbox, command == ARCOS_CMD_STOP ? ARCOS_CMD_STOP : ARCOS_CMD_E_STOP);
+    if (self->stopped == command) {
+        return;
+    }
+    self->stopped = command;
+    if (!core->orders.passive) {
+        argus_stop_for_client(core); // any client that sees that it must stand is heard
+    }
+    argus_outbox_urgent(&core->session.outbox, command);
 }
 
 // Motors on are held and given again as a motion is. Where they go off nothing is wanted of the wheels, and a
 // robot that keeps its set points has none when they are on again.
-static void give_enable(argus_t *const core, argus_port_t *const self) {
-    const argus_ask_t order = {.mover = ARGUS_MOVER_CLIENT, .wants = ARGUS_WANTS_MOTORS};
-    const argus_permit_t permit = argus_permit(core, order);
-    if (permit != ARGUS_PERMIT_GIVEN) {
+static void give_motors(argus_t *const core, argus_port_t *const self) {
+    argus_outbox_t *const out = &core->session.outbox;
+    const argus_ask_t ask = {.mover = ARGUS_MOVER_CLIENT, .wants = ARGUS_WANTS_MOTORS};
+    const argus_permit_t permit = argus_permit(core, ask);
+    const bool on = self->motors == ARGUS_PORT_MOTORS_ON;
+    if (on && permit != ARGUS_PERMIT_GIVEN) {
         argus_hold_tell(core, &self->hold, permit);
-    } else if (self->enable_due) {
-        self->enable_due = !argus_outbox_int(&core->session.outbox, ARCOS_CMD_ENABLE, 1);
+    } else if (self->motors != ARGUS_PORT_MOTORS_AS_THEY_ARE &&
+               argus_outbox_int(out, ARCOS_CMD_ENABLE, on ? 1 : 0) &&
+               (on || argus_outbox_plain(out, ARCOS_CMD_STOP))) {
+        self->motors = ARGUS_PORT_MOTORS_AS_THEY_ARE;
     }
 }
 
-static void take_enable(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
-    self->enable_due = argus_wish_argument(packet) != 0;
-    if (self->enable_due) {
-        if (take_wheel(core, self)) {
-            give_enable(core, self);
-        } else {
-            self->enable_due = false;
-            refuse(core, self, packet->data[0]);
-        }
-    } else if (self->drives) {
-        argus_hold_forget(&self->hold);
-        argus_outbox_int(&core->session.outbox, ARCOS_CMD_ENABLE, 0);
-        argus_outbox_plain(&core->session.outbox, ARCOS_CMD_STOP);
-    }
-}
-
-static void take_setting(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
-    argus_send_note(&self->settings, packet->data[0], argus_wish_argument(packet));
-    if (self->drives) {
-        argus_send_setting(core, packet->data[0], argus_wish_argument(packet));
-        self->hold.setv_mm_s = self->settings.setv_mm_s;
-        self->hold.given.setv_mm_s =
-            packet->data[0] == ARCOS_CMD_SETV ? self->settings.setv_mm_s : self->hold.given.setv_mm_s;
-    }
-}
-
-static void take_origin(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
-    if (!core->orders.passive) {
-        refuse(core, self, packet->data[0]); // the manager steers by it
+static void take_enable(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+    const bool on = said->argument != 0;
+    if (!on && !self->drives) {
         return;
     }
-    argus_knowledge_origin_due(&core->knowledge);
-    self->origin = true;
-    self->origin_sips = 0;
-    self->hold.wish.heading_taken = false;
-    argus_send_robot(core, packet);
+    if (!take_wheel(core, self)) {
+        refuse(core, self, said->command);
+        return;
+    }
+    self->stopped = 0;
+    self->motors = on ? ARGUS_PORT_MOTORS_ON : ARGUS_PORT_MOTORS_OFF;
+    if (!on) {
+        argus_hold_forget(&self->hold);
+    }
+    if (argus_limit_order(&self->limit)) {
+        give_motors(core, self);
+    } else if (!on) {
+        argus_hold_still(core, &self->hold);
+    }
+}
+
+static void take_setting(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+    const int32_t passed = argus_send_limited(core, said->command, said->argument);
+    if (passed != said->argument) {
+        argus_say(core, ARGUS_EV_GUARD_LIMITED, ARGUS_NO_SONAR, passed);
+    }
+    argus_send_note(&self->settings, said->command, passed);
+    if (self->drives) {
+        argus_outbox_int(&core->session.outbox, said->command, passed);
+        self->hold.setv_mm_s = self->settings.setv_mm_s;
+        self->hold.given.setv_mm_s =
+            said->command == ARCOS_CMD_SETV ? self->settings.setv_mm_s : self->hold.given.setv_mm_s;
+    }
+}
+
+static void take_origin(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+    if (!core->orders.passive) {
+        refuse(core, self, said->command); // the manager steers by it
+        return;
+    }
+    if (pass(core, self, said)) {
+        argus_knowledge_origin_due(&core->knowledge);
+        self->origin = true;
+        self->origin_sips = 0;
+        self->hold.wish.heading_taken = false;
+    }
 }
 
 // Twice the array, and 1 for on; array 0: all. The robot's own go on.
@@ -233,55 +287,61 @@ static void take_sonar(argus_port_t *const self, const int32_t argument) {
     self->arrays = (uint8_t)((argument & 1) != 0 ? self->arrays | mask : self->arrays & ~mask);
 }
 
-static void take_rest(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet,
-                      const argus_topic_t topic) {
-    switch (topic) {
+static void take_rest(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+    switch ((argus_topic_t)said->topic) {
     case ARGUS_TOPIC_SETTING:
-        take_setting(core, self, packet);
+        take_setting(core, self, said);
         break;
     case ARGUS_TOPIC_ORIGIN:
-        take_origin(core, self, packet);
-        break;
-    case ARGUS_TOPIC_SONAR:
-        take_sonar(self, argus_wish_argument(packet));
-        break;
-    case ARGUS_TOPIC_KEPT:
-        refuse(core, self, packet->data[0]);
+        take_origin(core, self, said);
         break;
     case ARGUS_TOPIC_STREAM:
-        self->streams |= argus_send_stream(packet->data[0], argus_wish_argument(packet));
-        argus_send_robot(core, packet);
+        self->streams |= pass(core, self, said) ? argus_send_stream(said->command, said->argument) : 0;
+        break;
+    case ARGUS_TOPIC_PASSED:
+        pass(core, self, said);
         break;
     default:
-        argus_send_robot(core, packet);
         break;
     }
 }
 
-static void take_command(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
-    const uint8_t command = packet->data[0];
-    const argus_topic_t topic = argus_topic(command);
-    self->packets++;
-    switch (topic) {
+static void take_command(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+    switch ((argus_topic_t)said->topic) {
     case ARGUS_TOPIC_SESSION:
-        if (command == ARCOS_CMD_CLOSE || command == ARCOS_CMD_RESET) {
+        if (said->command == ARCOS_CMD_CLOSE || said->command == ARCOS_CMD_RESET) {
             close_session(core, self);
         }
         break;
     case ARGUS_TOPIC_WAY:
     case ARGUS_TOPIC_TURN:
     case ARGUS_TOPIC_BOTH:
-        take_motion(core, self, packet, topic);
+        take_motion(core, self, said);
         break;
     case ARGUS_TOPIC_STOP:
-        take_stop(core, self, command);
+        take_stop(core, self, said);
         break;
     case ARGUS_TOPIC_ENABLE:
-        take_enable(core, self, packet);
+        take_enable(core, self, said);
+        break;
+    case ARGUS_TOPIC_SONAR:
+        take_sonar(self, said->argument);
         break;
     default:
-        take_rest(core, self, packet, topic);
+        if (may_pass(core, self, said->cost)) {
+            take_rest(core, self, said);
+        }
         break;
+    }
+}
+
+static void take_packet(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
+    argus_said_t said;
+    self->packets++;
+    if (argus_admit(packet, &said)) {
+        take_command(core, self, &said);
+    } else {
+        refuse(core, self, said.command);
     }
 }
 
@@ -295,7 +355,7 @@ static void take_client(argus_t *const core, argus_port_t *const self, const arg
         return; // as a robot without power
     }
     if (self->phase == ARGUS_PORT_OPEN) {
-        take_command(core, self, packet);
+        take_packet(core, self, packet);
     } else {
         take_sync(core, self, packet);
     }
@@ -422,9 +482,7 @@ static void watch_motion(argus_t *const core, argus_port_t *const self, const bo
         argus_hold_watch(core, &self->hold);
     } else if (drives && news) {
         argus_hold_watch(core, &self->hold);
-        if (self->enable_due) {
-            give_enable(core, self);
-        }
+        give_motors(core, self);
     }
     if (self->parting && news) {
         part(core, self);
@@ -448,6 +506,11 @@ size_t argus_guard_port(argus_t *const core, argus_port_storage_t *const storage
     watch_client(core, self, io->there);
     hear_client(core, self, io);
     const bool news = hear_robot(core, self, io);
+    if (news) {
+        argus_limit_sip(&self->limit);
+        self->stopped = 0;
+    }
+    tell_dropped(core, self);
     watch_silence(core, self);
     watch_motion(core, self, news);
     return hand_out(self, io);

@@ -6,7 +6,8 @@
 
 #include "knowledge/angle.h"
 
-#define SETV_MM_S 750 // a robot's own, where CONFIGpac has not come
+#define ROOM_BYTES 320 // of the outbox: the rest is for what stops the robot
+#define SETV_MM_S 750  // a robot's own, where CONFIGpac has not come
 #define ACCEL_MM_S2 300
 #define SETRV_DEG_S 100
 #define TURN_ACCEL_DEG_S2 100
@@ -32,8 +33,10 @@ bool argus_send_client(argus_port_t *const port, const uint8_t *const data, cons
     return true;
 }
 
-void argus_send_robot(argus_t *const core, const argus_packet_t *const packet) {
-    argus_outbox_packet(&core->session.outbox, packet->data, packet->count);
+bool argus_send_robot(argus_t *const core, const argus_packet_t *const packet) {
+    argus_outbox_t *const out = &core->session.outbox;
+    const size_t total = (size_t)ARCOS_FRAME_OVERHEAD + packet->count + 2;
+    return out->length + total <= ROOM_BYTES && argus_outbox_packet(out, packet->data, packet->count);
 }
 
 void argus_send_note(argus_port_settings_t *const settings, const uint8_t command, const int32_t argument) {
@@ -53,10 +56,32 @@ void argus_send_note(argus_port_settings_t *const settings, const uint8_t comman
     }
 }
 
-void argus_send_setting(argus_t *const core, const uint8_t command, const int32_t argument) {
-    const int32_t least = core->knowledge.robot->decel_mm_s2;
-    const bool brakes = command == ARCOS_CMD_SETA && argument < 0;
-    argus_outbox_int(&core->session.outbox, command, brakes ? argus_min(argument, -least) : argument);
+// At least the given deceleration; at most the acceleration with which the robot starts, or the manager
+// would, which 0 stands for: a robot may take it for both.
+static int32_t limited_accel(const int32_t argument, const int32_t least_brake, const int32_t most_accel) {
+    if (argument == 0) {
+        return most_accel;
+    }
+    return argument < 0 ? argus_min(argument, -least_brake) : argus_min(argument, most_accel);
+}
+
+int32_t argus_send_limited(const argus_t *const core, const uint8_t command, const int32_t argument) {
+    const argus_configpac_t *const robot = &core->session.robot; // zero until it has come
+    const argus_config_t *const config = &core->config;
+    switch (command) {
+    case ARCOS_CMD_SETA:
+        return limited_accel(argument, core->knowledge.robot->decel_mm_s2,
+                             argus_max(config->accel_mm_s2, argus_max(robot->accel_mm_s2, ACCEL_MM_S2)));
+    case ARCOS_CMD_SETRA:
+        return limited_accel(argument, ARGUS_CLIENT_TURN_DECEL,
+                             argus_max(config->turn_accel_deg_s2, TURN_ACCEL_DEG_S2));
+    case ARCOS_CMD_SETRV:
+        return argus_min(argus_abs(argument), ARGUS_CLIENT_TURN_DEG_S);
+    case ARCOS_CMD_SETV:
+        return argus_abs(argument);
+    default:
+        return argument;
+    }
 }
 
 static void fill(int32_t *const value, const int32_t configured, const int32_t usual) {
@@ -66,12 +91,13 @@ static void fill(int32_t *const value, const int32_t configured, const int32_t u
 }
 
 static void send_all(argus_t *const core, const argus_port_settings_t *const settings) {
-    argus_send_setting(core, ARCOS_CMD_SETV, settings->setv_mm_s);
-    argus_send_setting(core, ARCOS_CMD_SETA, settings->accel_mm_s2);
-    argus_send_setting(core, ARCOS_CMD_SETA, -settings->decel_mm_s2);
-    argus_send_setting(core, ARCOS_CMD_SETRV, settings->setrv_deg_s);
-    argus_send_setting(core, ARCOS_CMD_SETRA, settings->turn_accel_deg_s2);
-    argus_send_setting(core, ARCOS_CMD_SETRA, -settings->turn_decel_deg_s2);
+    argus_outbox_t *const out = &core->session.outbox;
+    argus_outbox_int(out, ARCOS_CMD_SETV, settings->setv_mm_s);
+    argus_outbox_int(out, ARCOS_CMD_SETA, settings->accel_mm_s2);
+    argus_outbox_int(out, ARCOS_CMD_SETA, -settings->decel_mm_s2);
+    argus_outbox_int(out, ARCOS_CMD_SETRV, settings->setrv_deg_s);
+    argus_outbox_int(out, ARCOS_CMD_SETRA, settings->turn_accel_deg_s2);
+    argus_outbox_int(out, ARCOS_CMD_SETRA, -settings->turn_decel_deg_s2);
 }
 
 void argus_send_settings(argus_t *const core, argus_port_settings_t *const settings) {
@@ -82,6 +108,8 @@ void argus_send_settings(argus_t *const core, argus_port_settings_t *const setti
     fill(&settings->setrv_deg_s, robot->rotvel_max_deg_s, SETRV_DEG_S);
     fill(&settings->turn_accel_deg_s2, 0, TURN_ACCEL_DEG_S2);
     fill(&settings->turn_decel_deg_s2, 0, TURN_ACCEL_DEG_S2);
+    settings->decel_mm_s2 = -argus_send_limited(core, ARCOS_CMD_SETA, -settings->decel_mm_s2);
+    settings->setrv_deg_s = argus_send_limited(core, ARCOS_CMD_SETRV, settings->setrv_deg_s);
     send_all(core, settings);
 }
 

@@ -1,66 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Reads the client's commands.
+// Keeps what the client's commands ask for.
 #include "guardian/wish.h"
 
 #include "knowledge/angle.h"
-
-typedef struct {
-    uint8_t command;
-    uint8_t topic;
-} row_t;
-
-argus_topic_t argus_topic(const uint8_t command) {
-    static const row_t rows[] = {
-        {ARCOS_CMD_PULSE, ARGUS_TOPIC_SESSION},
-        {ARCOS_CMD_OPEN, ARGUS_TOPIC_SESSION},
-        {ARCOS_CMD_CLOSE, ARGUS_TOPIC_SESSION},
-        {ARCOS_CMD_RESET, ARGUS_TOPIC_SESSION},
-        {ARCOS_CMD_VEL, ARGUS_TOPIC_WAY},
-        {ARCOS_CMD_MOVE, ARGUS_TOPIC_WAY},
-        {ARCOS_CMD_RVEL, ARGUS_TOPIC_TURN},
-        {ARCOS_CMD_ROTATE, ARGUS_TOPIC_TURN},
-        {ARCOS_CMD_HEAD, ARGUS_TOPIC_TURN},
-        {ARCOS_CMD_DHEAD, ARGUS_TOPIC_TURN},
-        {ARCOS_CMD_DCHEAD, ARGUS_TOPIC_TURN},
-        {ARCOS_CMD_VEL2, ARGUS_TOPIC_BOTH},
-        {ARCOS_CMD_STOP, ARGUS_TOPIC_STOP},
-        {ARCOS_CMD_E_STOP, ARGUS_TOPIC_STOP},
-        {ARCOS_CMD_QSTOP, ARGUS_TOPIC_STOP},
-        {ARCOS_CMD_ENABLE, ARGUS_TOPIC_ENABLE},
-        {ARCOS_CMD_SETV, ARGUS_TOPIC_SETTING},
-        {ARCOS_CMD_SETA, ARGUS_TOPIC_SETTING},
-        {ARCOS_CMD_SETRV, ARGUS_TOPIC_SETTING},
-        {ARCOS_CMD_SETRA, ARGUS_TOPIC_SETTING},
-        {ARCOS_CMD_SETO, ARGUS_TOPIC_ORIGIN},
-        {ARCOS_CMD_SONAR, ARGUS_TOPIC_SONAR},
-        {ARCOS_CMD_ENCODER, ARGUS_TOPIC_STREAM},
-        {ARCOS_CMD_IOREQUEST, ARGUS_TOPIC_STREAM},
-        {ARCOS_CMD_JOYREQUEST, ARGUS_TOPIC_STREAM},
-        {ARCOS_CMD_GYRO, ARGUS_TOPIC_STREAM},
-        {ARCOS_CMD_GRIPREQUEST, ARGUS_TOPIC_STREAM},
-        {ARCOS_CMD_IMUREQUEST, ARGUS_TOPIC_STREAM},
-        {ARCOS_CMD_POLLING, ARGUS_TOPIC_KEPT},
-        {ARCOS_CMD_SONAR_CYCLE, ARGUS_TOPIC_KEPT},
-        {ARCOS_CMD_HOSTBAUD, ARGUS_TOPIC_KEPT},
-        {ARCOS_CMD_MAINTENANCE, ARGUS_TOPIC_KEPT},
-        {ARCOS_CMD_LATVEL, ARGUS_TOPIC_KEPT},
-    };
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        if (rows[i].command == command) {
-            return (argus_topic_t)rows[i].topic;
-        }
-    }
-    return ARGUS_TOPIC_OTHER;
-}
-
-static uint8_t byte_at(const argus_packet_t *const packet, const unsigned index) {
-    return index < packet->count ? packet->data[index] : 0;
-}
-
-int32_t argus_wish_argument(const argus_packet_t *const packet) {
-    const int32_t magnitude = byte_at(packet, 2) | byte_at(packet, 3) << 8;
-    return byte_at(packet, 1) == ARCOS_ARG_NEGATIVE ? -magnitude : magnitude;
-}
 
 static int32_t signed_byte(const uint32_t byte) {
     return (int32_t)(byte & 0xFFu) - ((byte & 0x80u) != 0 ? 0x100 : 0);
@@ -110,28 +52,25 @@ static void part(argus_wish_t *const self) {
     self->half_mm_s = 0;
 }
 
-void argus_wish_take(argus_wish_t *const self, const argus_packet_t *const packet, const uint32_t odometer_mm,
+void argus_wish_take(argus_wish_t *const self, const argus_said_t *const said, const uint32_t odometer_mm,
                      const int32_t raw_deg) {
-    const uint8_t command = packet->data[0];
-    const int32_t argument = argus_wish_argument(packet);
-    if (command == ARCOS_CMD_VEL2) {
-        take_pair(self, argument);
+    if (said->topic == ARGUS_TOPIC_BOTH) {
+        take_pair(self, said->argument);
         return;
     }
     part(self);
-    if (command == ARCOS_CMD_VEL) {
-        self->way = argument != 0 ? ARGUS_WISH_VEL : ARGUS_WISH_REST;
-        self->mm_s = argument;
-    } else if (command == ARCOS_CMD_MOVE) {
+    if (said->command == ARCOS_CMD_VEL) {
+        self->way = said->argument != 0 ? ARGUS_WISH_VEL : ARGUS_WISH_REST;
+        self->mm_s = said->argument;
+    } else if (said->command == ARCOS_CMD_MOVE) {
         self->way = ARGUS_WISH_MOVE;
-        self->left_mm = argument;
+        self->left_mm = said->argument;
         self->odometer_mm = odometer_mm;
     } else {
-        take_turn(self, command, argument, raw_deg);
+        take_turn(self, said->command, said->argument, raw_deg);
     }
 }
 
-bool argus_wish_moves(const argus_packet_t *const packet) {
-    const uint8_t command = packet->data[0];
-    return command == ARCOS_CMD_HEAD || argus_wish_argument(packet) != 0;
+bool argus_wish_moves(const argus_said_t *const said) {
+    return said->command == ARCOS_CMD_HEAD || said->argument != 0;
 }

@@ -3,7 +3,7 @@
 #ifndef ARGUS_WISH_H
 #define ARGUS_WISH_H
 
-#include "arcos/frame.h"
+#include "guardian/admit.h"
 
 #define ARGUS_VEL2_UNIT_MM_S 20
 
@@ -23,31 +23,10 @@ typedef struct {
     bool heading_taken;   // a HEAD was asked for: DCHEAD counts from it
 } argus_wish_t;
 
-// What a command is about.
-typedef enum {
-    ARGUS_TOPIC_OTHER, // passes
-    ARGUS_TOPIC_SESSION,
-    ARGUS_TOPIC_WAY,  // VEL, MOVE
-    ARGUS_TOPIC_TURN, // RVEL, ROTATE, HEAD, DHEAD, DCHEAD
-    ARGUS_TOPIC_BOTH, // VEL2
-    ARGUS_TOPIC_STOP, // STOP, E_STOP, QSTOP
-    ARGUS_TOPIC_ENABLE,
-    ARGUS_TOPIC_SETTING, // SETV, SETA, SETRV, SETRA
-    ARGUS_TOPIC_ORIGIN,  // SETO
-    ARGUS_TOPIC_SONAR,   // SONAR: for the client alone
-    ARGUS_TOPIC_STREAM,  // asks for packets beside the SIPs
-    ARGUS_TOPIC_KEPT,    // ends at the manager: POLLING, SONAR_CYCLE, HOSTBAUD, MAINTENANCE
-} argus_topic_t;
-
-argus_topic_t argus_topic(uint8_t command);
-
-// The integer argument, or 0; the sign travels in its type, missing bytes are 0.
-int32_t argus_wish_argument(const argus_packet_t *packet);
-
 // Takes a command of the topics WAY, TURN and BOTH. `raw_deg`: the robot's heading as it says it itself.
-void argus_wish_take(argus_wish_t *self, const argus_packet_t *packet, uint32_t odometer_mm, int32_t raw_deg);
+void argus_wish_take(argus_wish_t *self, const argus_said_t *said, uint32_t odometer_mm, int32_t raw_deg);
 
 // Whether the command, of those topics, asks for a motion at all.
-bool argus_wish_moves(const argus_packet_t *packet);
+bool argus_wish_moves(const argus_said_t *said);
 
 #endif

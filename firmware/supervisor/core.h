@@ -131,6 +131,9 @@ typedef struct {
     bool done; // there was one
 } argus_reverse_t;
 
+#define ARGUS_STAY_OPERATOR 1u // also against a client of a guard port
+#define ARGUS_STAY_CLIENT 2u   // until it drives
+
 // What operators and the configuration have settled.
 typedef struct {
     argus_mask_t pinned; // sonars with a health that an operator has fixed
@@ -140,7 +143,7 @@ typedef struct {
     argus_bar_t bar;     // why this robot may not be driven
     bool passive;
     bool paused;
-    bool stay; // after the operator's STOP: no turn either, until another order
+    uint8_t stay; // after a STOP: no turn either, until another order; by whom, ARGUS_STAY_
     bool shutdown;
 } argus_orders_t;
 

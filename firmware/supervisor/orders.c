@@ -33,7 +33,7 @@ static void enable_motors(argus_t *const self) {
 
 static void pause(argus_t *const self) {
     self->orders.paused = true;
-    self->orders.stay = true;
+    self->orders.stay = ARGUS_STAY_OPERATOR;
     self->base.taken = false;
     self->travel.jog_mm = 0;
     stop_and_check(self, false);
@@ -113,7 +113,7 @@ static void jog_turn(argus_t *const self, const int32_t degrees) {
 }
 
 static void obey_for_all(argus_t *const self, const argus_op_t op, const int32_t argument) {
-    self->orders.stay = false;
+    self->orders.stay = 0;
     switch (op) {
     case ARGUS_OP_STOP:
         pause(self);
@@ -175,7 +175,7 @@ static bool may_serve(const argus_t *const self, const argus_op_t op, const int3
 
 static void retest(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    self->orders.stay = false; // the others order no motion
+    self->orders.stay = 0; // the others order no motion
     if (argus_rules(self)->evidence) {
         begin_retest(self, sonar);
     } else {
@@ -228,4 +228,16 @@ bool argus_obey(argus_t *const self, const argus_op_t op, const int32_t argument
         obey_for_all(self, op, argument);
     }
     return true;
+}
+
+void argus_yield_to_client(argus_t *const self) {
+    const uint8_t stay = self->orders.stay & ARGUS_STAY_OPERATOR;
+    argus_obey(self, ARGUS_OP_PASSIVE, 0);
+    self->orders.stay = stay;
+}
+
+void argus_stop_for_client(argus_t *const self) {
+    const uint8_t stay = self->orders.stay;
+    argus_obey(self, ARGUS_OP_STOP, 0);
+    self->orders.stay = stay | ARGUS_STAY_CLIENT;
 }

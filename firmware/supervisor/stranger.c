@@ -36,7 +36,7 @@ void argus_meet_stranger(argus_t *const self) {
     argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_NOTHING, false);
     self->orders.passive = true;
     self->orders.paused = true;
-    self->orders.stay = true;
+    self->orders.stay = ARGUS_STAY_OPERATOR;
     self->orders.barred = false;
     forget(self);
     argus_replan(self);

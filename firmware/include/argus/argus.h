@@ -331,7 +331,12 @@ typedef enum {
     X(108, GUARD_REFUSED, WARN, guard, "a command of the client ends here; value: its number")               \
     X(109, GUARD_LOOKS, OK, guard,                                                                           \
       "a bearing ahead is blind: the heading swings so that others see the way; value: degrees to each "     \
-      "side")
+      "side")                                                                                                \
+    X(110, GUARD_LIMITED, WARN, guard,                                                                       \
+      "a setting of the client is beyond what S5 and S7 count on; value: what passes")                       \
+    X(111, GUARD_DROPPED, WARN, guard,                                                                       \
+      "the client says more than the robot's line carries, or much that is refused; value: commands that "   \
+      "were dropped unsaid in the last second")
 
 // All that may be said. A build without guard ports, as of a board, may leave theirs out.
 #ifndef ARGUS_WITHOUT_GUARD

@@ -214,3 +214,169 @@ void test_a_turn_that_is_free_to_its_end_comes_there(void) {
     TEST_ASSERT_EQUAL_INT(0, robot_count_events(&robot, ARGUS_EV_GUARD_TURN_HELD, 0));
     TEST_ASSERT_TRUE(robot.closest_mm > 25);
 }
+
+// The operator's stop came first, the manager had the robot: a client that comes does not undo it.
+void test_a_client_that_comes_after_the_stop_moves_nothing(void) {
+    begin_free();
+    client_plain(&client, ARCOS_CMD_CLOSE);
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_ACTIVE, 0));
+    client_run(&client, 3000, false);
+    stop();
+    client_run(&client, 1000, false);
+    client_open(&client);
+    expect_none("stop before the client", ARCOS_CMD_DHEAD, 5, 100);
+    client_say(&client, ARCOS_CMD_VEL, 300);
+    client_run(&client, 2000, true);
+    TEST_ASSERT_TRUE(robot.v == 0.0);
+    TEST_ASSERT_EQUAL_INT32(ARGUS_BOUND_HALTED, robot_last_event(&robot, ARGUS_EV_GUARD_HELD)->value);
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_GO, 0));
+    client_run(&client, 500, true);
+    client_say(&client, ARCOS_CMD_VEL, 300); // it drives again, motors on
+    client_run(&client, 2000, true);
+    TEST_ASSERT_TRUE(robot.motors);
+    TEST_ASSERT_TRUE(robot.v > 100);
+}
+
+// Nothing that a client says takes the robot's SIPs, delays a STOP on its line, or fills what waits for it.
+void test_no_flood_costs_a_sip_or_a_stop(void) {
+    static const uint8_t said[] = {ARCOS_CMD_CONFIG, ARCOS_CMD_PULSE,  ARCOS_CMD_VEL,     ARCOS_CMD_DHEAD,
+                                   ARCOS_CMD_RVEL,   ARCOS_CMD_ENABLE, ARCOS_CMD_SETA,    ARCOS_CMD_SETO,
+                                   ARCOS_CMD_STOP,   ARCOS_CMD_DIGOUT, ARCOS_CMD_TICKSMM, ARCOS_CMD_CLOSE,
+                                   ARCOS_CMD_OPEN,   ARCOS_CMD_GETAUX, ARCOS_CMD_E_STOP,  ARCOS_CMD_MOVE};
+    for (size_t k = 0; k < sizeof said; k++) {
+        begin_free();
+        const uint32_t sips = robot.argus.session.sips;
+        const uint32_t sent = robot.argus.session.outbox.sent;
+        const uint32_t refused = robot.argus.session.outbox.refused;
+        const int events = robot.events;
+        for (uint32_t passed = 0; passed < 5000; passed += 10) {
+            for (int i = 0; i < 50; i++) {
+                client_say(&client, said[k], (int32_t)(passed + (uint32_t)i) % 300 + 1);
+            }
+            client_run(&client, 10, true);
+        }
+        char text[100];
+        const uint32_t packets = robot.argus.session.outbox.sent - sent;
+        snprintf(text, sizeof text, "command %d: %u packets in 5 s, %d events", said[k], (unsigned)packets,
+                 robot.events - events);
+        TEST_ASSERT_TRUE_MESSAGE(robot.argus.session.sips - sips >= 49, text);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(refused, robot.argus.session.outbox.refused, text);
+        TEST_ASSERT_TRUE_MESSAGE(packets <= 5 * 130, text);
+        TEST_ASSERT_TRUE_MESSAGE(robot.events - events < 80, text);
+    }
+    TEST_ASSERT_EQUAL_INT(0, argus_invariants_broken(&robot.argus));
+}
+
+void test_a_flood_of_what_is_refused_is_seen(void) {
+    begin_free();
+    for (int i = 0; i < 1000; i++) {
+        client_say(&client, ARCOS_CMD_TICKSMM, 1);
+        client_say(&client, ARCOS_CMD_CONFIG, 1);
+        client_run(&client, 10, false);
+    }
+    TEST_ASSERT_TRUE(client_port(&client)->refused > 1900);
+    TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_GUARD_REFUSED, 0) >= 40);
+    TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_GUARD_REFUSED, 0) <= 60);
+    TEST_ASSERT_TRUE(robot_last_event(&robot, ARGUS_EV_GUARD_DROPPED)->value > 150);
+    TEST_ASSERT_EQUAL_INT(0, robot_count_commands(&robot, ARCOS_CMD_TICKSMM, 0));
+    TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_CONFIG, 0) <= 25);
+}
+
+// A random client -------------------------------------------------------------------------------------------
+
+static int32_t any_number(void) {
+    static const int32_t ends[] = {0, 1, -1, 2, -2, 5, -9, 10, 90, -180, 360, 4635, -4635, 32767, -32767};
+    const uint32_t from = robot_random(&robot, 3);
+    if (from == 0) {
+        return ends[robot_random(&robot, sizeof ends / sizeof ends[0])];
+    }
+    const int32_t most = from == 1 ? 10 : 180;
+    return (int32_t)robot_random(&robot, (uint32_t)(2 * most + 1)) - most;
+}
+
+static void say_anything(void) {
+    static const uint8_t turns[] = {ARCOS_CMD_DHEAD,  ARCOS_CMD_HEAD, ARCOS_CMD_DCHEAD, ARCOS_CMD_RVEL,
+                                    ARCOS_CMD_ROTATE, ARCOS_CMD_VEL2, ARCOS_CMD_ENABLE, ARCOS_CMD_SETRV,
+                                    ARCOS_CMD_SETRA,  ARCOS_CMD_SETO, ARCOS_CMD_STOP,   ARCOS_CMD_DHEAD};
+    const uint8_t command = turns[robot_random(&robot, sizeof turns)];
+    const int32_t number = any_number();
+    switch (command) {
+    case ARCOS_CMD_VEL2: // on the spot
+        say_pair(number % 20, -(number % 20));
+        break;
+    case ARCOS_CMD_SETO:
+    case ARCOS_CMD_STOP:
+        client_plain(&client, command);
+        break;
+    case ARCOS_CMD_RVEL:
+        say_raw(command, number < 0 ? ARCOS_ARG_NEGATIVE : ARCOS_ARG_POSITIVE,
+                (unsigned)abs(number) * (1 + robot_random(&robot, 3)));
+        break;
+    default:
+        client_say(&client, command, number);
+        break;
+    }
+}
+
+// A wall across, so that the body stands `off_mm` from it at this bearing.
+static void stand_before_wall(int bearing_deg, double off_mm) {
+    const double c = cos(bearing_deg * 0.0174533);
+    const double s = sin(bearing_deg * 0.0174533);
+    const double far = fmax(fmax(c * 210, -c * 301) + fabs(s) * 212.5 + off_mm, 0);
+    robot.segments = 1;
+    const double wall[4] = {far * c - 5000 * s, far * s + 5000 * c, far * c + 5000 * s, far * s - 5000 * c};
+    memcpy(robot.segment[0], wall, sizeof wall);
+}
+
+// The truth of the body and the wall: how near a turn by so much brings it.
+static double gap_turned_mm(double by_deg) {
+    static robot_t truth;
+    memcpy(&truth, &robot, sizeof truth);
+    truth.th += by_deg * 0.0174533;
+    const double *w = truth.segment[0];
+    const double length = hypot(w[2] - w[0], w[3] - w[1]);
+    const double nx = (w[3] - w[1]) / length, ny = -(w[2] - w[0]) / length;
+    const double side = (w[0] - truth.x) * nx + (w[1] - truth.y) * ny < 0 ? -1 : 1;
+    double nearest = 1e9;
+    for (int corner = 0; corner < 4; corner++) {
+        const double x = corner < 2 ? 210 : -301;
+        const double y = corner % 2 == 0 ? 212.5 : -212.5;
+        const double wx = truth.x + x * cos(truth.th) - y * sin(truth.th);
+        const double wy = truth.y + x * sin(truth.th) + y * cos(truth.th);
+        nearest = fmin(nearest, ((w[0] - wx) * nx + (w[1] - wy) * ny) * side);
+    }
+    return nearest;
+}
+
+static void play_client(uint32_t seed, int bearing_deg, double off_mm) {
+    char text[120];
+    begin_free();
+    robot.seed = seed * 2654435761u + 1;
+    stand_before_wall(bearing_deg, off_mm);
+    client_run(&client, 7000, true); // what was remembered of the room is gone
+    const double from = robot_heading_deg(&robot);
+    const bool near_left = gap_turned_mm(6) < 0; // it touches within a few degrees, whichever way it goes
+    const bool near_right = gap_turned_mm(-6) < 0;
+    for (int i = 0; i < 150; i++) {
+        say_anything();
+        client_run(&client, 10 * (1 + robot_random(&robot, 40)), true);
+        const double turned = remainder(robot_heading_deg(&robot) - from, 360);
+        snprintf(text, sizeof text, "seed %u, wall at %d deg, %.0f mm off: turned %.1f, gap %.1f",
+                 (unsigned)seed, bearing_deg, off_mm, turned, gap_turned_mm(0));
+        TEST_ASSERT_TRUE_MESSAGE(gap_turned_mm(0) > 0, text);
+        TEST_ASSERT_FALSE_MESSAGE(near_left && turned > MOST_DEG, text);
+        TEST_ASSERT_FALSE_MESSAGE(near_right && turned < -MOST_DEG, text);
+    }
+}
+
+void test_a_random_client_before_a_wall_at_any_bearing(void) {
+    for (uint32_t seed = 1; seed <= 24; seed++) {
+        play_client(seed, (int)(seed * 47 % 360) - 180, 20 + seed * 37 % 90);
+    }
+}
+
+void test_many_random_clients_before_walls(void) { // soak
+    for (uint32_t seed = 100; seed < 400; seed++) {
+        play_client(seed, (int)(seed * 47 % 360) - 180, 10 + seed * 37 % 150);
+    }
+}

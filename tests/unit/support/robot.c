@@ -52,7 +52,7 @@ static void power_up(robot_t *robot) {
     robot->vel = robot->rvel = 0;
     robot->setv = 750;
     robot->accel = robot->decel = 300;
-    robot->setrv = robot->setra = 100 * DEG;
+    robot->setrv = robot->setra = robot->turn_decel = 100 * DEG;
     for (int array = 0; array < 2; array++) {
         robot->order_count[array] = 8;
         robot->order_at[array] = 0;
@@ -222,9 +222,10 @@ static void rotate(robot_t *robot) {
     double target = fmax(-robot->setrv, fmin(robot->rvel, robot->setrv));
     const double error = wrapped(robot->heading - robot->th);
     if (robot->turning) {
-        target = copysign(fmin(robot->setrv, sqrt(2 * robot->setra * fabs(error))), error);
+        target = copysign(fmin(robot->setrv, sqrt(2 * robot->turn_decel * fabs(error))), error);
     }
-    robot->w = toward(robot->w, target, robot->setra * TICK_S);
+    const bool brakes = fabs(target) < fabs(robot->w) || target * robot->w < 0;
+    robot->w = toward(robot->w, target, (brakes ? robot->turn_decel : robot->setra) * TICK_S);
     if (robot->turning && fabs(error) <= fabs(robot->w) * TICK_S + 1e-4) {
         robot->th = robot->heading;
         robot->w = 0;
@@ -405,7 +406,7 @@ static void obey_setting(robot_t *robot, uint8_t command, int32_t argument) {
         robot->setrv = argument * DEG;
         break;
     case ARCOS_CMD_SETRA:
-        robot->setra = fabs((double)argument) * DEG;
+        *(argument < 0 ? &robot->turn_decel : &robot->setra) = fabs((double)argument) * DEG;
         break;
     case ARCOS_CMD_SONAR:
         robot->sonar_on = (argument & 1) != 0;

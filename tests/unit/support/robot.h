@@ -48,7 +48,7 @@ struct robot {
     double heading;  // HEAD's target
     bool moving, turning;
     double vel, rvel; // of VEL and RVEL, while neither MOVE nor HEAD
-    double setv, accel, decel, setrv, setra;
+    double setv, accel, decel, setrv, setra, turn_decel;
     double x0, y0, th0; // odometry origin
     double unit_mm;     // per position unit
     uint16_t position_mask;
