@@ -13,6 +13,8 @@ enum {
     WATCHDOG = 12,
     ROTVELMAX = 23,
     TRANSVELMAX = 25,
+    ROTACC = 27,
+    ROTDECEL = 29,
     TRANSACC = 37,
     TRANSDECEL = 39,
     FRONTBUMPS = 47,
@@ -56,6 +58,8 @@ static void take_rest(argus_configpac_t *config, const argus_packet_t *packet, s
     config->watchdog_ms = u16(packet, from + WATCHDOG);
     config->rotvel_max_deg_s = u16(packet, from + ROTVELMAX);
     config->vel_max_mm_s = u16(packet, from + TRANSVELMAX);
+    config->rotaccel_deg_s2 = u16(packet, from + ROTACC);
+    config->rotdecel_deg_s2 = u16(packet, from + ROTDECEL);
     config->accel_mm_s2 = u16(packet, from + TRANSACC);
     config->decel_mm_s2 = u16(packet, from + TRANSDECEL);
     config->front_bumpers = u8(packet, from + FRONTBUMPS);

@@ -13,6 +13,8 @@ typedef struct {
     uint16_t low_battery_dv;
     uint16_t watchdog_ms;
     uint16_t rotvel_max_deg_s;
+    uint16_t rotaccel_deg_s2;
+    uint16_t rotdecel_deg_s2;
     uint16_t vel_max_mm_s;
     uint16_t accel_mm_s2;
     uint16_t decel_mm_s2;

@@ -13,10 +13,13 @@
 #define CONFIG_REPEAT_MS 300
 #define CONFIG_WAIT_MS 1000
 #define PAUSE_FIRST_MS 500
-#define LEAVE_MS 100
+#define LEAVE_MS 250       // SIPs that come later than a CLOSE tell that it got lost
+#define LEAVE_AGAIN_MS 150 // what is on the line comes meanwhile
 #define LEAVE_MAX_MS 1500
 #define DISLODGE_MAX 3
 #define OPENING_SIPS 2
+#define PULSES 4u // in the time that the robot's watchdog waits
+#define OPENING_ROWS (1u << ARGUS_SETUP_HALT | 1u << ARGUS_SETUP_HALT_TURN | 1u << ARGUS_SETUP_ZERO)
 
 static uint32_t elapsed_ms(uint32_t now_ms, uint32_t then_ms) {
     const uint32_t elapsed = now_ms - then_ms;
@@ -120,6 +123,7 @@ static void open_robot(argus_session_t *self, uint32_t now_ms) {
     memset(&self->robot, 0, sizeof self->robot);
     self->has_robot = false;
     self->opening_sips = 0;
+    argus_setup_init(&self->setup);
     self->zeros_due = 0;
     self->heard_ms = now_ms;
     argus_outbox_plain(&self->outbox, ARCOS_CMD_OPEN);
@@ -163,6 +167,7 @@ static bool take_sip(argus_session_t *self, uint32_t now_ms, const argus_packet_
     }
     self->sips++;
     self->heard_ms = now_ms;
+    argus_setup_sip(&self->setup, now_ms, &self->sip);
     return true;
 }
 
@@ -176,6 +181,18 @@ static void take_identity(argus_session_t *self, const argus_packet_t *packet) {
     }
 }
 
+// What it runs with after the set-up is ours, not its own.
+static void take_late_config(argus_session_t *self, const argus_configpac_t *robot) {
+    if (self->has_robot) {
+        memcpy(self->robot.serial, robot->serial, sizeof self->robot.serial);
+        return;
+    }
+    self->robot = *robot;
+    self->robot.vel_max_mm_s = self->robot.rotvel_max_deg_s = 0;
+    self->robot.accel_mm_s2 = self->robot.decel_mm_s2 = 0;
+    self->robot.rotaccel_deg_s2 = self->robot.rotdecel_deg_s2 = 0;
+}
+
 static void take_config(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
     ARGUS_ASSERT(packet->data[0] == ARCOS_TYPE_CONFIGPAC);
     argus_configpac_t robot;
@@ -183,7 +200,13 @@ static void take_config(argus_session_t *self, uint32_t now_ms, const argus_pack
         self->unknown_packets++;
         return;
     }
-    self->robot = robot;
+    const bool opening = self->state == ARGUS_SESSION_OPENING;
+    argus_setup_told(&self->setup, now_ms, &robot, opening);
+    if (opening) {
+        self->robot = robot;
+    } else {
+        take_late_config(self, &robot);
+    }
     self->has_robot = true;
     self->config_ms = now_ms;
     if (self->subclass[0] == '\0') { // some answer SYNC2 with a bare echo
@@ -327,6 +350,15 @@ static unsigned on_open(argus_session_t *self, const argus_config_t *config, uin
     return 0;
 }
 
+// It still reports: CLOSE did not arrive.
+static void close_again(argus_session_t *self, uint32_t now_ms) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_LEAVING);
+    if (self->outbox.length == 0 && elapsed_ms(now_ms, self->spoke_ms) >= LEAVE_AGAIN_MS) {
+        argus_outbox_plain(&self->outbox, ARCOS_CMD_STOP);
+        argus_outbox_plain(&self->outbox, ARCOS_CMD_CLOSE);
+    }
+}
+
 static unsigned on_packet(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
                           const argus_packet_t *packet) {
     switch (self->state) {
@@ -341,6 +373,11 @@ static unsigned on_packet(argus_session_t *self, const argus_config_t *config, u
         return on_opening(self, config, now_ms, packet);
     case ARGUS_SESSION_OPEN:
         return on_open(self, config, now_ms, packet);
+    case ARGUS_SESSION_LEAVING:
+        if (is_sip(packet)) {
+            close_again(self, now_ms);
+        }
+        return 0;
     default:
         return 0;
     }
@@ -371,8 +408,14 @@ unsigned argus_session_receive(argus_session_t *self, const argus_config_t *conf
     return bits;
 }
 
+// No order that is lost alone lets the robot's watchdog stop it.
+static uint32_t pulse_ms(const argus_session_t *self, const argus_config_t *config) {
+    const uint32_t most_ms = self->has_robot ? self->robot.watchdog_ms / PULSES : 0u;
+    return most_ms > 0 && most_ms < (uint32_t)config->pulse_ms ? most_ms : (uint32_t)config->pulse_ms;
+}
+
 static void pulse(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
-    if (self->outbox.length > 0 || elapsed_ms(now_ms, self->spoke_ms) < (uint32_t)config->pulse_ms) {
+    if (self->outbox.length > 0 || elapsed_ms(now_ms, self->spoke_ms) < pulse_ms(self, config)) {
         return;
     }
     if (self->stalled) {
@@ -401,6 +444,16 @@ static unsigned quiet_timer(argus_session_t *self, uint32_t now_ms, uint32_t wai
     return 0;
 }
 
+// What it was told before it is set up. Another SETO: positions are counted from that one.
+static void keep_opening(argus_session_t *self, uint32_t now_ms) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_OPENING);
+    const uint8_t before = self->setup.order[ARGUS_SETUP_ZERO].again;
+    argus_setup_resend(&self->setup, &self->outbox, now_ms, OPENING_ROWS);
+    if (self->setup.order[ARGUS_SETUP_ZERO].again != before) {
+        self->opening_sips = 0;
+    }
+}
+
 static unsigned opening_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
     ARGUS_ASSERT(self->state == ARGUS_SESSION_OPENING);
     const uint32_t waited_ms = in_state_ms(self, now_ms);
@@ -410,6 +463,9 @@ static unsigned opening_timer(argus_session_t *self, const argus_config_t *confi
     if (!self->has_robot && waited_ms < CONFIG_WAIT_MS &&
         elapsed_ms(now_ms, self->tried_ms) >= CONFIG_REPEAT_MS) {
         ask_config(self, now_ms);
+    }
+    if (waited_ms < CONFIG_WAIT_MS) {
+        keep_opening(self, now_ms);
     }
     pulse(self, config, now_ms);
     return finish_opening(self, config, now_ms);
@@ -530,8 +586,14 @@ size_t argus_session_transmit(argus_session_t *self, uint32_t now_ms, uint8_t *p
     ARGUS_ASSERT(length <= capacity);
     if (length > 0) {
         self->spoke_ms = now_ms;
+        argus_setup_sent(&self->setup, now_ms, packet, length);
     }
     return length;
+}
+
+int argus_session_resend(argus_session_t *self, uint32_t now_ms, unsigned rows) {
+    const bool may = self->state == ARGUS_SESSION_OPEN && !self->stalled;
+    return may ? argus_setup_resend(&self->setup, &self->outbox, now_ms, rows) : -1;
 }
 
 bool argus_session_is_open(const argus_session_t *self) {

@@ -7,6 +7,7 @@
 #include "arcos/command.h"
 #include "arcos/configpac.h"
 #include "arcos/identity.h"
+#include "arcos/setup.h"
 #include "arcos/sip.h"
 #include "argus/argus.h"
 
@@ -22,7 +23,7 @@ typedef enum {
     ARGUS_SESSION_SYNC2,
     ARGUS_SESSION_OPENING, // OPEN sent; CONFIG asked for, at most 1 s; waits for the first SIP
     ARGUS_SESSION_OPEN,    // set up, SIPs are coming
-    ARGUS_SESSION_LEAVING, // SONAR 0, STOP, CLOSE sent; 100 ms to drain
+    ARGUS_SESSION_LEAVING, // SONAR 0, STOP, CLOSE sent; no SIP may come any more
     ARGUS_SESSION_CLOSED
 } argus_session_state_t;
 
@@ -64,10 +65,12 @@ typedef struct {
     argus_identity_t identity; // of the last robot met
     argus_sip_t sip;           // the last one
     argus_outbox_t outbox;
+    argus_setup_t setup;       // orders of this session, and what has come of them
     char name[ARGUS_NAME_MAX]; // from the SYNC2 reply
     char robot_class[ARGUS_NAME_MAX];
     char subclass[ARGUS_NAME_MAX];
-    argus_configpac_t robot; // zero until a CONFIGpac came
+    argus_configpac_t
+        robot; // zero until a CONFIGpac came; its settings are the robot's own, 0 if it came late
     argus_parser_t parser;
 } argus_session_t;
 
@@ -92,6 +95,10 @@ unsigned argus_session_receive(argus_session_t *self, const argus_config_t *conf
 // returns 0. During a stall STOP goes out before each PULSE, or the first PULSE that gets through would set
 // the robot moving again.
 unsigned argus_session_process(argus_session_t *self, const argus_config_t *config, uint32_t now_ms);
+
+// Sends again what the robot does not report, in an open session. `rows`: a mask of the orders that may be.
+// Returns the number of a command that stays away, once, else -1.
+int argus_session_resend(argus_session_t *self, uint32_t now_ms, unsigned rows);
 
 // Orderly end: SONAR 0, STOP, ENABLE 0, CLOSE, if a session is open. The robot should be at rest by then.
 // Final: ARGUS_SESSION_DID_CLOSE comes from argus_session_process(), after which only argus_session_init()

@@ -284,6 +284,26 @@ void argus_receive(argus_t *const self, const uint32_t now_ms, const uint8_t *co
     }
 }
 
+// No order is taken for done because it was sent.
+static void keep_orders(argus_t *const self) {
+    const bool rests = argus_at_rest(&self->knowledge) && !argus_motion_is_under_way(&self->motion);
+    unsigned rows = (1u << ARGUS_SETUP_ROWS) - 1 - (1u << ARGUS_SETUP_ZERO);
+    if (!rests) {
+        rows &= ~(1u << ARGUS_SETUP_TELL); // the answer is long, and SIPs wait behind it
+    }
+    if (!argus_is_active(self)) {
+        argus_setup_drop(&self->session.setup, ARGUS_SETUP_ENABLE);
+        rows = 1u << ARGUS_SETUP_SONAR | 1u << ARGUS_SETUP_STOP | 1u << ARGUS_SETUP_E_STOP;
+    }
+    const int away = argus_session_resend(&self->session, self->now_ms, rows);
+    if (argus_outbox_first(&self->session.outbox) == ARCOS_CMD_POLLING) {
+        self->ordered_ms = self->now_ms;
+    }
+    if (away >= 0) {
+        argus_tell(self, ARGUS_EV_ORDER_UNANSWERED, away);
+    }
+}
+
 static void check_invariants(argus_t *const self) {
     const int broken = argus_invariants_broken(self);
     if (broken != 0 && self->invariant_said == 0) {
@@ -303,6 +323,7 @@ uint32_t argus_process(argus_t *const self, const uint32_t now_ms) {
     }
     argus_latency_process(self);
     argus_process_mode(self);
+    keep_orders(self);
     check_invariants(self);
     return self->session.parser.length > 0 || self->session.outbox.length > 0 ? BUSY_POLL_MS : IDLE_POLL_MS;
 }

@@ -79,6 +79,7 @@ void test_it_drives_no_faster_than_the_robot_lets_it(void) {
         start(ARGUS_PROFILE_ARGUS);
         hall(20000);
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
+        robot_run(&robot, 2000); // SETV of the set-up may go out again
         robot.argus.session.has_robot = true;
         robot.argus.session.robot.vel_max_mm_s = (uint16_t)tops_mm_s[i];
         const int from = robot.commands;

@@ -14,7 +14,8 @@
 #define TICK_MS 10u
 #define TICK_S 0.01
 #define SIP_MS 100u
-#define PING_MS 40u
+#define PING_MS 40
+#define WATCHDOG_MS 2000u
 #define TRACK_MM 330.0
 #define DEG (3.14159265358979323846 / 180.0)
 #define SWING_MM 370.0
@@ -46,6 +47,7 @@ argus_config_t robot_config(void) {
 
 static void power_up(robot_t *robot) {
     robot->phase = 0;
+    robot->opened = false;
     robot->motors = false;
     robot->sonar_on = false;
     robot->moving = robot->turning = false;
@@ -53,6 +55,7 @@ static void power_up(robot_t *robot) {
     robot->setv = 750;
     robot->accel = robot->decel = 300;
     robot->setrv = robot->setra = robot->turn_decel = 100 * DEG;
+    robot->sonar_cycle_ms = PING_MS;
     for (int array = 0; array < 2; array++) {
         robot->order_count[array] = 8;
         robot->order_at[array] = 0;
@@ -309,6 +312,38 @@ void robot_say(robot_t *robot, const uint8_t *data, size_t count) {
     robot_deliver(robot, packet, argus_frame_encode(packet, sizeof packet, data, count));
 }
 
+static size_t put_text(uint8_t *at, const char *text) {
+    memcpy(at, text, strlen(text) + 1);
+    return strlen(text) + 1;
+}
+
+// Its settings in their places, the rest 0 (SPEC.md, CONFIGpac).
+static void tell_settings(robot_t *robot) {
+    uint8_t data[160] = {0x20};
+    size_t at = 1;
+    at += put_text(data + at, "Pioneer");
+    at += put_text(data + at, robot->subclass);
+    at += put_text(data + at, "TEST1") + 1;
+    put16(data + at, 360);
+    put16(data + at + 2, 1500);
+    at += 10;
+    at += put_text(data + at, "Test");
+    data[at] = SIP_MS;
+    data[at + 7] = 1;
+    put16(data + at + 8, 115);
+    put16(data + at + 12, (long)WATCHDOG_MS);
+    put16(data + at + 23, lround(robot->setrv / DEG));
+    put16(data + at + 25, lround(robot->setv));
+    put16(data + at + 27, lround(robot->setra / DEG));
+    put16(data + at + 29, lround(robot->turn_decel / DEG));
+    put16(data + at + 37, lround(robot->accel));
+    put16(data + at + 39, lround(robot->decel));
+    data[at + 50] = (uint8_t)robot->sonar_cycle_ms;
+    at += 61;
+    at += put_text(data + at, "2.6");
+    robot_say(robot, data, at);
+}
+
 static void reply_sync(robot_t *robot, uint8_t command) {
     uint8_t data[80] = {command};
     size_t length = 1;
@@ -416,6 +451,9 @@ static void obey_setting(robot_t *robot, uint8_t command, int32_t argument) {
         robot->moving = robot->turning = false;
         robot->vel = robot->rvel = 0;
         break;
+    case ARCOS_CMD_SONAR_CYCLE:
+        robot->sonar_cycle_ms = argument;
+        break;
     case ARCOS_CMD_SETO:
         robot->x0 = robot->x;
         robot->y0 = robot->y;
@@ -432,8 +470,13 @@ static void obey_setting(robot_t *robot, uint8_t command, int32_t argument) {
     }
 }
 
+static bool is_in_session(const robot_t *robot) {
+    return robot->phase == 3 && (robot->opened || !robot->has_line);
+}
+
 static void obey(robot_t *robot, const uint8_t *packet, const robot_command_t *sent) {
-    if (robot->phase < 3) {
+    robot->opened = robot->opened || (robot->phase == 3 && sent->command == ARCOS_CMD_OPEN);
+    if (!is_in_session(robot)) {
         if (sent->command == robot->phase) {
             reply_sync(robot, sent->command);
             robot->phase++;
@@ -448,6 +491,8 @@ static void obey(robot_t *robot, const uint8_t *packet, const robot_command_t *s
     }
     if (sent->command == ARCOS_CMD_CONFIG && robot->config != NULL) {
         robot_say(robot, robot->config, robot->config_count);
+    } else if (sent->command == ARCOS_CMD_CONFIG && robot->tells_settings) {
+        tell_settings(robot);
     } else if (sent->command == ARCOS_CMD_OPEN) {
         robot->next_sip_ms = robot->t_ms + SIP_MS;
         robot->next_ping_ms = robot->t_ms + PING_MS;
@@ -710,21 +755,115 @@ static void watch(robot_t *robot, const robot_command_t *sent) {
     watch_motion(robot, sent);
 }
 
-static void take_packet(robot_t *robot, const uint8_t *packet, size_t length) {
+static robot_command_t command_of(const robot_t *robot, const uint8_t *packet, size_t length) {
     robot_command_t sent = {.t_ms = robot->t_ms, .command = packet[3]};
     if (length >= 9 && (packet[4] == 0x3B || packet[4] == 0x1B)) {
         sent.has_argument = true;
         sent.argument = packet[5] | packet[6] << 8;
         sent.argument = packet[4] == 0x1B ? -sent.argument : sent.argument;
     }
+    return sent;
+}
+
+// The line
+// ----------------------------------------------------------------------------------------------------
+
+static void put_on_line(robot_line_t *line, robot_way_t way, uint8_t byte) {
+    if (line->held[way] < ROBOT_LINE_MAX) {
+        line->bytes[way][line->held[way]++] = byte;
+    }
+}
+
+static void pass_byte(robot_t *robot, robot_way_t way, uint8_t byte) {
+    robot_line_t *line = &robot->line;
+    const uint32_t at = line->passed[way]++;
+    bool lost = false;
+    for (int i = 0; i < line->harms; i++) {
+        const robot_harm_t *harm = &line->harm[i];
+        if (harm->way != way || harm->at != at) {
+            continue;
+        }
+        lost = lost || harm->kind == ROBOT_DROP;
+        byte = (uint8_t)(byte ^ (harm->kind == ROBOT_FLIP ? harm->with : 0));
+        if (harm->kind == ROBOT_DUPLICATE || harm->kind == ROBOT_INSERT) {
+            put_on_line(line, way, harm->kind == ROBOT_INSERT ? (uint8_t)harm->with : byte);
+        }
+        if (harm->kind == ROBOT_DELAY) {
+            line->free_ms[way] = robot->t_ms + harm->with;
+        }
+    }
+    if (!lost) {
+        put_on_line(line, way, byte);
+    }
+}
+
+static void hear(robot_t *robot, const uint8_t *bytes, size_t count) {
+    robot_line_t *line = &robot->line;
+    argus_packet_t packet;
+    size_t done = 0;
+    do {
+        done += argus_parser_push(&line->parser, robot->t_ms, bytes + done, count - done);
+        while (argus_parser_next(&line->parser, robot->t_ms, &packet)) {
+            uint8_t whole[ARGUS_FRAME_TOTAL_MAX];
+            const size_t length = argus_frame_encode(whole, sizeof whole, packet.data, packet.count);
+            const robot_command_t sent = command_of(robot, whole, length);
+            line->heard_ms = robot->t_ms;
+            obey(robot, whole, &sent);
+        }
+    } while (done < count);
+}
+
+static void run_line(robot_t *robot, robot_way_t way) {
+    robot_line_t *line = &robot->line;
+    uint8_t bytes[ROBOT_LINE_MAX];
+    const size_t count = line->held[way];
+    if ((int32_t)(robot->t_ms - line->free_ms[way]) < 0) {
+        return;
+    }
+    memcpy(bytes, line->bytes[way], count);
+    line->held[way] = 0;
+    if (way == ROBOT_TO_ROBOT) {
+        hear(robot, bytes, count);
+    } else {
+        argus_receive(&robot->argus, robot->start_ms + robot->t_ms, bytes, count);
+    }
+}
+
+static void send_on_line(robot_t *robot, robot_way_t way, const uint8_t *bytes, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        pass_byte(robot, way, bytes[i]);
+    }
+    run_line(robot, way);
+}
+
+static void keep_watchdog(robot_t *robot) {
+    if (is_in_session(robot) && robot->t_ms - robot->line.heard_ms > WATCHDOG_MS) {
+        obey_motion(robot, ARCOS_CMD_STOP, 0);
+    }
+}
+
+// Then the manager cannot know yet what the robot has shown.
+static bool is_held_up(const robot_t *robot) {
+    bool late = false;
+    for (int i = 0; i < robot->line.harms; i++) {
+        late =
+            late || (robot->line.harm[i].kind == ROBOT_DELAY && robot->line.harm[i].way == ROBOT_TO_MANAGER);
+    }
+    return late;
+}
+
+static void take_packet(robot_t *robot, const uint8_t *packet, size_t length) {
+    const robot_command_t sent = command_of(robot, packet, length);
     // One a SIP, of which nothing but the port comes.
     if (sent.command != ARCOS_CMD_ADSEL && robot->commands < ROBOT_COMMANDS_MAX) {
         robot->command[robot->commands++] = sent;
     }
-    if (robot->after == NULL) {
+    if (robot->after == NULL && !is_held_up(robot)) {
         watch(robot, &sent);
     }
-    if (!robot->mute) {
+    if (robot->has_line) {
+        send_on_line(robot, ROBOT_TO_ROBOT, packet, length);
+    } else if (!robot->mute) {
         obey(robot, packet, &sent);
     }
 }
@@ -774,6 +913,10 @@ void robot_deliver(robot_t *robot, const uint8_t *bytes, size_t count) {
         }
         return;
     }
+    if (robot->has_line) {
+        send_on_line(robot, ROBOT_TO_MANAGER, bytes, count);
+        return;
+    }
     argus_receive(&robot->argus, robot->start_ms + robot->t_ms, bytes, count);
     if (robot->after != NULL) {
         robot->after(robot, bytes, count);
@@ -821,15 +964,21 @@ static void process(robot_t *robot) {
 // True when a SIP was due.
 static bool step(robot_t *robot) {
     robot->t_ms += TICK_MS;
+    if (robot->has_line) {
+        run_line(robot, ROBOT_TO_ROBOT);
+        run_line(robot, ROBOT_TO_MANAGER);
+        robot_drain(robot);
+        keep_watchdog(robot);
+    }
     drive(robot);
     if (robot->t_ms % 50 == 0) {
         measure_clearance(robot);
     }
-    if (robot->phase != 3) {
+    if (!is_in_session(robot)) {
         return false;
     }
     if (robot->sonar_on && (int32_t)(robot->t_ms - robot->next_ping_ms) >= 0) {
-        robot->next_ping_ms += PING_MS;
+        robot->next_ping_ms += (uint32_t)robot->sonar_cycle_ms;
         ping(robot);
     }
     if ((int32_t)(robot->t_ms - robot->next_sip_ms) < 0) {

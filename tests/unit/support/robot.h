@@ -13,6 +13,8 @@
 #define ROBOT_LATE_MAX 8192
 
 #define ROBOT_PAST 8
+#define ROBOT_HARMS_MAX 8
+#define ROBOT_LINE_MAX 8192
 
 // Percent for SCALE and DROPOUT, mm for VALUE, firings (1 to ROBOT_PAST) for SLOW.
 typedef enum {
@@ -33,6 +35,37 @@ typedef struct {
     bool has_argument;
     int32_t argument;
 } robot_command_t;
+
+// What happens to one byte on its way.
+typedef enum {
+    ROBOT_DROP,
+    ROBOT_FLIP,
+    ROBOT_DUPLICATE,
+    ROBOT_INSERT,
+    ROBOT_DELAY,
+    ROBOT_HARMS
+} robot_harm_kind_t;
+typedef enum { ROBOT_TO_ROBOT, ROBOT_TO_MANAGER, ROBOT_WAYS } robot_way_t;
+
+typedef struct {
+    robot_harm_kind_t kind;
+    robot_way_t way;
+    uint32_t at;   // the byte, counted from the start of the run
+    uint32_t with; // the bits that FLIP turns, the byte that INSERT puts before it, the ms of DELAY
+} robot_harm_t;
+
+// A line between robot and manager that a test may harm, byte by byte; what a robot cannot read it passes
+// over.
+typedef struct {
+    robot_harm_t harm[ROBOT_HARMS_MAX];
+    int harms;
+    uint32_t passed[ROBOT_WAYS]; // bytes that entered
+    uint32_t free_ms[ROBOT_WAYS];
+    size_t held[ROBOT_WAYS];
+    uint8_t bytes[ROBOT_WAYS][ROBOT_LINE_MAX];
+    argus_parser_t parser;
+    uint32_t heard_ms; // by the robot, for its watchdog
+} robot_line_t;
 
 typedef struct robot robot_t;
 
@@ -59,12 +92,17 @@ struct robot {
     bool stall;
     // session
     int phase;             // 0..2 SYNC, 3 open
+    bool opened;           // with a line: OPEN has come
     bool mute;             // no power, or the wire is cut
     bool ignores[256];     // commands that have no effect
     const uint8_t *config; // data of its CONFIGpac, NULL: it does not answer CONFIG
     size_t config_count;
     bool config_before_sync2, config_after_sync2; // sends it unasked round its answer to SYNC2
-    void (*before_sip)(robot_t *robot);           // delivers other packets
+    bool tells_settings;                          // answers CONFIG with what it runs with
+    int sonar_cycle_ms;                           // of its arrays
+    bool has_line; // what is said goes over `line`, and the robot has a watchdog
+    robot_line_t line;
+    void (*before_sip)(robot_t *robot); // delivers other packets
     size_t (*alter_sip)(uint8_t *data,
                         size_t count); // other data, up to ROBOT_SIP_MAX, instead of the standard
     void (*after)(robot_t *robot, const uint8_t *bytes,
