@@ -215,14 +215,20 @@ argus_follows_t argus_config_follows(const argus_config_t *config) {
                              .check_range = config->check_range_mm == ARGUS_AUTO};
 }
 
-void argus_config_follow(argus_config_t *config, argus_follows_t follows, const argus_robot_t *robot) {
-    const bool is_sound = argus_robot_is_known(robot) && row_out_of_range(config) < 0;
-    const argus_config_t ranges = auto_ranges(robot);
+static void follow_body(argus_config_t *config, argus_follows_t follows, const argus_robot_t *robot) {
+    const argus_config_t ranges = auto_ranges(robot); // costs as much as the check
     if (follows.object_range) {
         config->object_range_mm = ranges.object_range_mm;
     }
     if (follows.check_range) {
         config->check_range_mm = ranges.check_range_mm;
+    }
+}
+
+void argus_config_follow(argus_config_t *config, argus_follows_t follows, const argus_robot_t *robot) {
+    const bool is_sound = argus_robot_is_known(robot) && row_out_of_range(config) < 0;
+    if (follows.object_range || follows.check_range) {
+        follow_body(config, follows, robot);
     }
     if (follows.speed) {
         config->speed_mm_s = is_sound ? auto_speed_mm_s(config, robot) : AUTO_SPEED_MM_S;
