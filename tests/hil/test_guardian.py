@@ -18,11 +18,12 @@ from pathlib import Path
 from runpy import run_path
 from typing import Any, Final
 
+import harness
 import pytest
 from harness import ROOT, Argusd, Bench, is_at_rest, run_argusd, wait_for
 from worlds import hall, hall_with_box
 
-from hil_sim.arcos import COMMAND, Command, ConfigPac, EncoderPac, frame
+from hil_sim.arcos import COMMAND, Command, ConfigPac, EncoderPac, Sip, frame
 from hil_sim.conformance.client import Client, Target, parse_target
 
 SPEED_MM_S: Final = 300
@@ -125,6 +126,52 @@ def test_a_wall_ahead_and_one_behind(bench: Bench) -> None:
             argusd.wait("GUARD_HELD", value=1)
             assert is_at_rest(sim.now)
     sim.assert_no_collision()
+
+
+def turned_deg(sim: harness.Sim, start_deg: float) -> float:
+    """By how much the robot has truly turned."""
+    return abs((float(sim.now["heading_deg"]) - start_deg + 180) % 360 - 180)
+
+
+@pytest.mark.parametrize("command", ["DHEAD", "RVEL"])
+@pytest.mark.parametrize("step", [1, 2, 10])
+def test_no_step_turns_it_into_a_wall_beside_it(bench: Bench, command: str, step: int) -> None:
+    # Half of the body is 190 to 212 mm: the wall stands some 52 mm beside it.
+    sim = bench.sim(bench.world(**hall(half_width_mm=264)))
+    argusd, target = guarded(bench)
+    with session(target) as client:
+        client.sips(5)
+        start_deg = float(sim.now["heading_deg"])
+        for _ in range(40):
+            client.command(command, step)
+            client.hear(0.25)
+        assert turned_deg(sim, start_deg) <= 2.0
+    sim.assert_no_collision()
+    assert argusd.named("GUARD_TURN_HELD")
+
+
+def test_no_flood_costs_a_sip(bench: Bench) -> None:
+    sim = bench.sim(bench.world(**hall(length_mm=9000)))
+    argusd, target = guarded(bench)
+    with session(target) as client:
+        client.command("VEL", 200)
+        sim.wait("it drives", lambda state: state["v_mm_s"] > 190)
+        floods = ("CONFIG", "PULSE", "TICKSMM", "DHEAD", "GETAUX", "DIGOUT", "VEL")
+        burst = b"".join(frame(Command.integer(COMMAND[name], 1).data) for name in floods) * 10
+        heard: list[float] = []
+        until = time.monotonic() + 5.0
+        while time.monotonic() < until:
+            client.send(burst)
+            heard += [packet.t_s for packet in client.hear(0.02) if isinstance(packet.packet, Sip)]
+        assert len(heard) >= 48
+        client.command("STOP")
+        stopped_s = time.monotonic()
+        while client.sips(1)[-1].left_vel > 5:
+            assert time.monotonic() - stopped_s < 5
+    assert argusd.named("GUARD_DROPPED")
+    assert argusd.named("GUARD_REFUSED", value=COMMAND["TICKSMM"])
+    assert not argusd.named("LINK_STALLED", "LINK_LOST")
+    assert argusd.named("STATUS")[-1]["bad_checksums"] == 0
 
 
 def test_a_client_that_is_killed_in_motion(bench: Bench) -> None:
