@@ -37,9 +37,9 @@ class Robot:
         self.sim, address = emulated(folder, *simulated)
         self.argusd, place = minded(folder, address, *argusd)
         self.place = place
-        self.node = ArgusNode()
         values = {"control": place, **given}
-        self.node.set_parameters([Parameter(key, value=value) for key, value in values.items()])
+        overrides = [Parameter(key, value=value) for key, value in values.items()]
+        self.node = ArgusNode(parameter_overrides=overrides)
         self.node.start()
         self.bench = Bench(self.node)
         for number in range(16):

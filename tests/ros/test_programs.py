@@ -65,8 +65,18 @@ def parameter(bench: Bench, node: str, name: str) -> object:
         (("argus-range-guard", "--ros-args", "-p", "dead:=hide"), "withhold or invalid or cover"),
         (("argus-range-guard", "--ros-args", "-p", "robot:=p9"), "name one of"),
         (("argus-range-guard", "--ros-args", "-p", "sonars:=[1, 2]"), "16 topics but 2 sonars"),
-        (("argus-range-guard", "--ros-args", "-p", "suffix:=''"), "suffix is empty"),
+        (("argus-range-guard", "--ros-args", "-p", "suffix:=''"), "suffix is '': it is empty"),
         (("argus-range-guard", "--ros-args", "-p", "settings:=[speed=1]"), "no such setting"),
+        (("argus-range-guard", "--ros-args", "-p", "settings:=[suspect_readings=5000]"), "suspect_readings"),
+        (("argus-range-guard", "--ros-args", "-p", "topics:=[a, a]"), "give each topic once"),
+        (("argus-range-guard", "--ros-args", "-p", "diagnostics_s:=0.0"), "'0.0': give 0.1 to 60"),
+        (("argus-range-guard", "--ros-args", "-p", "topics:=['a b']"), "see --help"),
+        (("argus-ros", "--ros-args", "-p", "diagnostics_s:=0.0"), "give 0.1 to 60"),
+        (("argus-ros", "--ros-args", "-p", "period_ms:=0"), "give 50 to 1000"),
+        (("argus-ros", "--ros-args", "-p", "max_turn_rad_s:=.nan"), "'nan': give 0 to 10"),
+        (("argus-ros", "--ros-args", "-p", "max_speed_m_s:=-0.5"), "'-0.5': give 0 to 5"),
+        (("argus-ros", "--ros-args", "-p", "cmd_vel_timeout_s:=.inf"), "'inf': give 0.1 to 10"),
+        (("argus-ros", "--ros-args", "-p", "base_link_frame_id:=''"), "give a frame without blanks"),
         (("argus-range-guard", "topics"), "unknown argument 'topics'"),
         (("argus-ros", "--ros-args", "-p", "guard:=localhost"), "give HOST:PORT"),
         (("argus-ros", "--ros-args", "-p", "guard:=8101"), "expecting type 'STRING'"),
@@ -84,15 +94,17 @@ def test_bad_input_is_one_line_and_exit_code_2(command: tuple[str, ...], word: s
 @pytest.mark.parametrize("name", sorted(TABLES))
 def test_the_parameter_files_have_every_parameter_at_its_default(name: str) -> None:
     given = yaml.safe_load((PACKAGE / f"config/{name}.yaml").read_text())["/**"]["ros__parameters"]
-    assert given == {key: default for key, (default, _) in TABLES[name].items()}
+    assert given == {key: parameter.default for key, parameter in TABLES[name].items()}
 
 
 @pytest.mark.parametrize("name", sorted(TABLES))
 def test_the_documentation_has_every_parameter(name: str) -> None:
     text = (ROOT / "docs/ros.md").read_text()
-    for key, (_, meaning) in TABLES[name].items():
+    for key, parameter in TABLES[name].items():
         assert f"| `{key}` |" in text, key
-        assert meaning in text, meaning
+        assert parameter.meaning in text, parameter.meaning
+        if parameter.low is not None:
+            assert f"{parameter.meaning} ({parameter.wanted()})" in text, key
 
 
 def commands_of(launch: Path, **given: str) -> list[list[str]]:

@@ -100,11 +100,11 @@ def test_the_aggregate_of_p2os2_has_nan_for_who_is_withheld(monkeypatch: pytest.
     node = ArgusNode()
     publisher = node.create_publisher
 
-    def create(kind: Any, topic: str, *options: Any) -> Any:
+    def create(kind: Any, topic: str, *options: Any, **more: Any) -> Any:
         if kind is FakeArray:
             assert topic == "sonar"
             return SimpleNamespace(publish=said.append)
-        return publisher(kind, topic, *options)
+        return publisher(kind, topic, *options, **more)
 
     monkeypatch.setattr(node, "create_publisher", create)
     node.set_parameters([Parameter("control", value="unix:/nonexistent")])

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import time
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,22 +12,25 @@ from argus_tools.control import Client, ControlError
 from argus_tools.control import Refused as OrderRefused
 from argus_tools.control.client import default_place, read_token
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import BatteryState, PointCloud2, Range
 from std_srvs.srv import SetBool, Trigger
 
 from argus_ros import messages, parameters
-from argus_ros.base import LATCHED, ArgusLifecycleNode, Refused, SonarArray, TFMessage
+from argus_ros.base import LATCHED, ArgusLifecycleNode, Refused, SonarArray, TFMessage, type_name
+from argus_ros.intake import Intake, Odd, Order, speeds_of, stamp_of
+from argus_ros.motion import Motion
 from argus_ros.repair import Limits, Policy, Verdict, bearings, neighbours
-from argus_ros.ring import Motion
+from argus_ros.stamped import Beside
 from argus_ros.watcher import Watcher
 from argus_ros.wheels import Wheels
 from hil_sim.tables import load, robots
 from hil_sim.tables.robot import DEFAULT_ROBOT, RobotTable, robot_table
 
-OWNER: Final = "argus"
+SILENT_S: Final = 1.5
 SONARS: Final = 16
 _COVER_AGE_S: Final = 1.0
 
@@ -65,71 +69,68 @@ class ArgusNode(ArgusLifecycleNode):
 
     _watcher: Watcher | None = None
     _wheels: Wheels | None = None
+    _stamped: Beside | None = None
 
-    def __init__(self) -> None:
-        super().__init__("argus", parameters.ARGUS)
-        self._active = False
-        self._parts: list[Any] = []
-        self._ring: _Ring | None = None
-        self._state: dict[str, Any] = {}
-        self._told: list[Verdict] = []
+    def __init__(self, **options: Any) -> None:
+        super().__init__("argus", parameters.ARGUS, **options)
 
     # ---- lifecycle
 
-    def on_configure(self, state: Any) -> Any:
-        """Read the parameters, and reach for argusd."""
-        del state
-        return self.checked(self._configure)
-
     def _configure(self) -> None:
-        self._policy = self.policy()
-        self._place = self.value("control") or default_place()
-        if not self._place.startswith(("unix:", "tcp:")):
-            raise Refused(f"parameter control is '{self._place}': give unix:PATH or tcp:HOST:PORT")
+        self._forget()
+        self._told: list[Verdict] = []
+        self._diagnosed_s = -math.inf
+        self._connection = 0
+        self._intake = Intake(self._tell_odd)
+        self._order_of_stamps = Order()
+        namespace = self.get_namespace().strip("/")
+        self._place = self.value("control") or default_place(namespace)
         try:
             file = self.value("token_file")
             self._token = read_token(Path(file)) if file else None
         except ControlError as error:
             raise Refused(f"parameter token_file: {error}") from error
-        guard = self._guard()
         self._make_topics()
         self._make_services()
         wake = self.create_guard_condition(self._take)
         self._parts.append(wake)
         self._watcher = Watcher(self._place, self._token, self.value("period_ms"), wake.trigger)
+        guard = parameters.host_and_port(self.value("guard"))
         if guard is not None:
-            tell = self.get_logger().info
-            self._wheels = Wheels(*guard, self.value("cmd_vel_timeout_s"), tell)
-            self._parts.append(self.create_subscription(Twist, "cmd_vel", self._take_twist, 1))
+            self._make_wheels(guard)
 
-    def _guard(self) -> tuple[str, int] | None:
-        text = self.value("guard")
-        if not text:
-            return None
-        host, _, port = text.rpartition(":")
-        if not host or not port.isdigit() or not 0 < int(port) < 65536:
-            raise Refused(f"parameter guard is '{text}': give HOST:PORT")
-        return host, int(port)
+    def _make_wheels(self, guard: tuple[str, int]) -> None:
+        """Take cmd_vel as either type, from publishers reliable or not."""
+        self._wheels = Wheels(*guard, self.value("cmd_vel_timeout_s"), self.get_logger().info)
+        qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        take = self._intake.taker("cmd_vel", self._take_twist)
+        self.take_topic(Twist, "cmd_vel", take, qos)
+        self._taken["cmd_vel"] += f" {type_name(TwistStamped)}"
+        wake = self.create_guard_condition(self._take_stamped)
+        self._parts.append(wake)
+        self._stamped = Beside(self, TwistStamped, "cmd_vel", qos, wake.trigger)
+
+    def _forget(self) -> None:
+        """Forget what one connection to argusd told: its clock and its verdicts end with it."""
+        self._ring: _Ring | None = None
+        self._state: dict[str, Any] = {}
+        self._state_s = self._readings_s = -math.inf
 
     def _make_topics(self) -> None:
-        self._ranges = [self.create_publisher(Range, f"sonar/range_{k}", 10) for k in range(SONARS)]
-        self._cloud = self.create_publisher(PointCloud2, "sonar/cloud", 10)
-        self._odometry = self.create_publisher(Odometry, "pose", 10)
-        self._battery = self.create_publisher(BatteryState, "battery_state", 10)
-        self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        self._parts += [*self._ranges, self._cloud, self._odometry, self._battery, self._diagnostics]
+        self._ranges = [self.publisher(Range, f"sonar/range_{k}") for k in range(SONARS)]
+        self._cloud = self.publisher(PointCloud2, "sonar/cloud")
+        self._odometry = self.publisher(Odometry, "pose")
+        self._battery = self.publisher(BatteryState, "battery_state")
+        self._diagnostics = self.publisher(DiagnosticArray, "/diagnostics")
         self._array = self._tf = self._tf_static = None
         if SonarArray is not None:
-            self._array = self.create_publisher(SonarArray, "sonar", 10)
-            self._parts.append(self._array)
+            self._array = self.publisher(SonarArray, "sonar")
         if self.value("publish_tf"):
             if TFMessage is None:
                 self.get_logger().warning("no tf: the package tf2_msgs is not here (docs/ros.md)")
             else:
-                self._tf = self.create_publisher(TFMessage, "/tf", 100)
-                self._tf_static = self.create_publisher(TFMessage, "/tf_static", LATCHED)
-                self._parts += [self._tf, self._tf_static]
-        self._parts.append(self.create_timer(self.value("diagnostics_s"), self._diagnose))
+                self._tf = self.publisher(TFMessage, "/tf", 100)
+                self._tf_static = self.publisher(TFMessage, "/tf_static", LATCHED)
 
     def _make_services(self) -> None:
         def trigger(name: str, order: str, **members: Any) -> None:
@@ -151,39 +152,17 @@ class ArgusNode(ArgusLifecycleNode):
             trigger(f"sonar/retest_{k}", "retest", sonar=k)
             switch(f"sonar/pin_{k}", "pin", "unpin", sonar=k)
 
-    def on_activate(self, state: Any) -> Any:
-        """Begin to publish and to drive."""
-        self._active = True
-        return super().on_activate(state)
-
-    def on_deactivate(self, state: Any) -> Any:
-        """Stop the robot if it drives by cmd_vel, and publish nothing."""
-        self._active = False
+    def _rest(self) -> None:
+        """Stop the robot if it drives by cmd_vel."""
         if self._wheels is not None:
-            self._wheels.drive(0, 0)
-        return super().on_deactivate(state)
+            self._wheels.halt()
 
-    def on_cleanup(self, state: Any) -> Any:
-        """Leave argusd and the guard."""
-        del state
-        return self.checked(self._drop)
-
-    def _drop(self) -> None:
-        self._active = False
-        for thread in (self._watcher, self._wheels):
-            if thread is not None:
-                thread.close()
-        self._watcher = self._wheels = self._ring = None
-        for part in self._parts:
-            self.discard(part)
-        self._parts.clear()
-
-    def destroy_node(self) -> None:
-        """End the threads, then the node; it may be one that was not made whole."""
-        for thread in (self._watcher, self._wheels):
-            if thread is not None:
-                thread.close()
-        super().destroy_node()
+    def _close(self) -> None:
+        """Leave the guard, then argusd."""
+        for part in (self._wheels, self._stamped, self._watcher):
+            if part is not None:
+                part.close()
+        self._wheels = self._stamped = self._watcher = None
 
     # ---- what comes
 
@@ -198,23 +177,43 @@ class ArgusNode(ArgusLifecycleNode):
             response.success, response.message = False, f"{order}: {error}"
         return response
 
+    def _take_stamped(self) -> None:
+        if self._stamped is not None:
+            take = self._intake.taker("cmd_vel", self._take_twist_stamped)
+            for message in self._stamped.take():
+                take(message)
+
+    def _take_twist_stamped(self, message: Any) -> None:
+        at_s = stamp_of(message.header)
+        if at_s is not None:
+            if self.get_clock().now().nanoseconds / 1e9 - at_s > self.value("cmd_vel_timeout_s"):
+                raise Odd("stamp is older than cmd_vel_timeout_s")
+            self._order_of_stamps.check(at_s)
+        self._take_twist(message.twist)
+
     def _take_twist(self, twist: Any) -> None:
-        speed, turn = twist.linear.x, twist.angular.z
         if not self._active or self._wheels is None:
             return
-        if not (math.isfinite(speed) and math.isfinite(turn)):
-            self.get_logger().warning(
-                "a cmd_vel that is no number stops the robot", throttle_duration_sec=1.0
-            )
-            speed = turn = 0.0
+        try:
+            speed, turn = speeds_of(twist)
+        except Odd:
+            self._wheels.halt()
+            raise
         most, most_turn = self.value("max_speed_m_s"), self.value("max_turn_rad_s")
         speed, turn = max(-most, min(most, speed)), max(-most_turn, min(most_turn, turn))
         self._wheels.drive(round(speed * 1000), round(math.degrees(turn)))
 
+    def _tell_odd(self, topic: str, why: str) -> None:
+        self.get_logger().warning(f"{topic}: discarded: {why}")
+        self._diagnosed_s = -math.inf
+
     def _take(self) -> None:
         if self._watcher is None:
             return
-        for message in self._watcher.take():
+        for connection, message in self._watcher.take():
+            if connection != self._connection:
+                self._connection = connection
+                self._forget()
             if "readings" in message:
                 self._take_readings(message["readings"])
             elif message.get("event") == "STATUS":
@@ -222,7 +221,7 @@ class ArgusNode(ArgusLifecycleNode):
             elif "event" in message:
                 self._take_event(message)
         if not self._watcher.connected and self._state:
-            self._state = {}
+            self._forget()
             self._diagnose()
 
     def _take_event(self, event: dict[str, Any]) -> None:
@@ -236,22 +235,23 @@ class ArgusNode(ArgusLifecycleNode):
             self.get_logger().warning(words)
 
     def _take_state(self, state: dict[str, Any]) -> None:
-        self._state = state
-        if self._ring is None:
-            self._meet(str(state.get("subclass") or DEFAULT_ROBOT))
+        self._state, self._state_s = state, time.monotonic()
+        subclass = str(state.get("subclass") or DEFAULT_ROBOT)
+        subclass = subclass if subclass in robots() else DEFAULT_ROBOT
+        if self._ring is None or self._ring.table.subclass != subclass:
+            self._meet(subclass)
         assert self._ring is not None
         self._ring.verdicts = [Verdict(*pair) for pair in zip(state["health"], state["kind"], strict=True)]
         if self._ring.verdicts != self._told:
             self._diagnose()
-        if self._active and state.get("online"):
+        if self._active and state.get("online") and self._has_time():
             self._publish_motion(self._motion(self._ring.table), state)
 
     def _meet(self, subclass: str) -> None:
-        name = subclass if subclass in robots() else DEFAULT_ROBOT
-        self._ring = _Ring(robot_table(name))
+        self._ring = _Ring(robot_table(subclass))
         if self._tf_static is None:
             return
-        at, base, prefix = self._now(), self.value("base_link_frame_id"), self.value("sonar_frame_prefix")
+        at, base, prefix = self._now(), self.frame("base_link_frame_id"), self.frame("sonar_frame_prefix")
         height_m = self.value("sonar_z_m")
         frames = [
             messages.transform(
@@ -283,24 +283,24 @@ class ArgusNode(ArgusLifecycleNode):
         if ring is None:
             return
         ring.reading_mm, ring.age_ms = readings["mm"], readings["age_ms"]
-        if not self._active:
+        self._readings_s = time.monotonic()
+        if not self._active or not self._has_time():
             return
-        now = self.get_clock().now()
+        policy, now = self.policy(), self.get_clock().now()
         for k in range(ring.table.sonars):
             at_s = readings["t"] - ring.age_ms[k] / 1000
             is_fresh = ring.age_ms[k] >= 0 and at_s > ring.told_s[k] + 1e-3
-            stands_in = not ring.verdicts[k].trusted(self._policy.trust) and bool(
-                ring.covering(k, self._policy)
-            )
+            stands_in = not ring.verdicts[k].trusted(policy.trust) and bool(ring.covering(k, policy))
             if is_fresh or stands_in:
                 ring.told_s[k] = at_s
-                age_ms = ring.age_ms[k] if is_fresh else 0
-                self._publish_range(k, (now - Duration(nanoseconds=age_ms * 1_000_000)).to_msg())
-        self._publish_cloud(now.to_msg())
+                age_ns = ring.age_ms[k] * 1_000_000 if is_fresh else 0
+                if age_ns < now.nanoseconds:  # before the beginning of a simulated time there is no stamp
+                    self._publish_range(k, policy, (now - Duration(nanoseconds=age_ns)).to_msg())
+        self._publish_cloud(policy, now.to_msg())
         if self._array is not None:
-            values = [ring.value(k, self._policy) for k in range(ring.table.sonars)]
+            values = [ring.value(k, policy) for k in range(ring.table.sonars)]
             known = [math.nan if value is None else value for value in values]
-            at = messages.header(now.to_msg(), self.value("base_link_frame_id"))
+            at = messages.header(now.to_msg(), self.frame("base_link_frame_id"))
             self._array.publish(SonarArray(header=at, ranges_count=len(known), ranges=known))
 
     # ---- what goes
@@ -308,60 +308,117 @@ class ArgusNode(ArgusLifecycleNode):
     def _now(self) -> Any:
         return self.get_clock().now().to_msg()
 
-    def _publish_range(self, number: int, at: Any) -> None:
+    def _has_time(self) -> bool:
+        """Whether there is a time to stamp with: with use_sim_time not before the first /clock."""
+        return bool(self.get_clock().now().nanoseconds > 0)
+
+    def _publish_range(self, number: int, policy: Policy, at: Any) -> None:
         assert self._ring is not None
-        value = self._ring.value(number, self._policy)
+        value = self._ring.value(number, policy)
         if value is None:
             return
-        frame = f"{self.value('sonar_frame_prefix')}{number}"
+        frame = f"{self.frame('sonar_frame_prefix')}{number}"
         message = messages.range_message(at, frame, value, self._ring.limits, self._ring.view_rad)
         self._ranges[number].publish(message)
 
-    def _publish_cloud(self, at: Any) -> None:
+    def _publish_cloud(self, policy: Policy, at: Any) -> None:
         ring = self._ring
         assert ring is not None
         limit_ms = self.value("cloud_age_s") * 1000
         echoes = [
             (k, ring.reading_mm[k] / 1000)
             for k in range(ring.table.sonars)
-            if ring.verdicts[k].trusted(self._policy.trust)
+            if ring.verdicts[k].trusted(policy.trust)
             and 0 <= ring.age_ms[k] <= limit_ms
             and ring.limits.is_echo(ring.reading_mm[k] / 1000)
         ]
-        self._cloud.publish(messages.cloud(at, self.value("base_link_frame_id"), echoes, ring.table.mounts))
+        self._cloud.publish(messages.cloud(at, self.frame("base_link_frame_id"), echoes, ring.table.mounts))
 
     def _publish_motion(self, motion: Motion, state: dict[str, Any]) -> None:
-        at, odom, base = self._now(), self.value("odom_frame_id"), self.value("base_link_frame_id")
+        at, odom, base = self._now(), self.frame("odom_frame_id"), self.frame("base_link_frame_id")
         self._odometry.publish(messages.odometry(at, odom, base, motion))
         self._battery.publish(messages.battery(at, base, state["battery_dv"] / 10))
         if self._tf is not None:
             frame = messages.transform(at, odom, base, motion.x_m, motion.y_m, 0.0, motion.heading_rad)
             self._tf.publish(TFMessage(transforms=[frame]))
 
+    def _tick(self) -> None:
+        if self._wheels is not None:
+            self._wheels.timeout_s = self.value("cmd_vel_timeout_s")
+        is_blind = self._blind() != ""
+        if is_blind != self._was_blind or time.monotonic() - self._diagnosed_s >= self.value("diagnostics_s"):
+            self._was_blind = is_blind
+            self._diagnose()
+
+    _was_blind = True
+
+    def _blind(self) -> str:
+        """Return why nothing is judged now; empty when all is."""
+        now_s = time.monotonic()
+        if not self._has_time():
+            return "use_sim_time is set, and no /clock has come"
+        if not self._state or self._ring is None:
+            return "no argusd"
+        if not self._state.get("online"):
+            return "no robot"
+        if now_s - self._readings_s > SILENT_S and now_s - self._state_s > SILENT_S:
+            return "argusd reports nothing"
+        if now_s - self._readings_s > SILENT_S:
+            return "no readings come"
+        return ""
+
     def _diagnose(self) -> None:
         if not self._active:
             return
-        ring, state = self._ring, self._state
+        self._diagnosed_s = time.monotonic()
+        ring, state, blind = self._ring, self._state, self._blind()
         if ring is None or not state:
             why = self._watcher.why_not if self._watcher is not None else ""
-            statuses = [messages.ring_status(OWNER, None, [], "", {"argusd": why})]
+            statuses = [messages.ring_status(self.owner, None, [], "", {"argusd": why}, blind)]
         else:
             self._told = ring.verdicts
-            statuses = self._statuses(ring, state)
+            statuses = self._statuses(ring, state, blind)
+        if self._wheels is not None:
+            statuses.append(self._cmd_vel_status(self._wheels))
+        statuses.append(self.topics_status())
         self._diagnostics.publish(messages.diagnostics(self._now(), statuses))
 
-    def _statuses(self, ring: _Ring, state: dict[str, Any]) -> list[Any]:
+    def _cmd_vel_status(self, wheels: Wheels) -> Any:
+        """Return whether cmd_vel is carried out, and if not, why."""
+        found = self.get_publishers_info_by_topic("cmd_vel")
+        types = {info.topic_type for info in found}
+        foreign = sorted(types - {*self._taken["cmd_vel"].split()})
+        last = self._intake.last.get("cmd_vel", "")
+        level, words = messages.OK, "carried out" if found else "nobody publishes it"
+        if last:
+            level, words = messages.WARN, f"discarded: {last}"
+        if foreign:
+            level, words = messages.ERROR, f"published as {foreign[0]}: Twist and TwistStamped are taken"
+        if not wheels.connected:
+            level, words = messages.ERROR, f"goes nowhere: {wheels.why_not}"
+        values = {
+            "guard": self.value("guard"),
+            "publishers": len(found),
+            "types": " ".join(sorted(types)) or "none",
+            "discarded": self._intake.discarded("cmd_vel"),
+            "last_discarded": last or "none",
+        }
+        return messages.status(level, f"{self.owner}: cmd_vel", words, "", values)
+
+    def _statuses(self, ring: _Ring, state: dict[str, Any], blind: str) -> list[Any]:
         """Return the diagnoses of the ring and of each sonar."""
         hardware = str(state.get("robot") or ring.table.subclass)
-        failure = str(state.get("failure", state["state"])) if state.get("online") else None
+        failure = str(state.get("failure", state["state"])) if not blind else None
         keys = ("mode", "mission", "active", "link", "sips", "bad_checksums")
         more = {key: state.get(key, "") for key in keys}
         injected = list(state.get("injected", []))
         more["injected"] = messages.injected_words(injected)
         injected += [""] * (ring.table.sonars - len(injected))
-        statuses = [messages.ring_status(OWNER, failure, ring.verdicts, hardware, more)]
+        statuses = [messages.ring_status(self.owner, failure, ring.verdicts, hardware, more, blind)]
+        since_ms = int(1000 * min(1e6, time.monotonic() - self._readings_s))
         for k in range(ring.table.sonars):
             own = {"injected": injected[k] or "none"}
             verdict, mm, age_ms = ring.verdicts[k], ring.reading_mm[k], ring.age_ms[k]
-            statuses.append(messages.sonar_status(OWNER, k, verdict, mm, age_ms, hardware, own))
+            age_ms = age_ms + since_ms if age_ms >= 0 else age_ms
+            statuses.append(messages.sonar_status(self.owner, k, verdict, mm, age_ms, hardware, own))
         return statuses

@@ -8,15 +8,18 @@ from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 import rclpy
-from argus_tools.formats.base import LogError
-from rcl_interfaces.msg import ParameterDescriptor
-from rclpy.exceptions import ParameterException
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy.clock import Clock, ClockType
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.exceptions import InvalidParameterValueException, ParameterException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile, qos_policy_name_from_kind
 
+from argus_ros import messages, parameters
+from argus_ros.parameters import Parameter, Read
 from argus_ros.repair import Dead, NoEcho, Policy, Trust
-from hil_sim.errors import SimError
 from hil_sim.tables.robot import RobotTable, robot_table
 
 try:
@@ -29,6 +32,7 @@ except ImportError:  # a package of p2os2, where that driver is
     SonarArray = None
 
 EXIT_USAGE: Final = 2
+TICK_S: Final = 0.1
 LATCHED: Final = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -37,17 +41,58 @@ class Refused(Exception):
 
 
 class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
-    """A lifecycle node whose parameters come from a table, and that may start by itself."""
+    """A lifecycle node whose parameters come from a table, and that may start by itself.
 
-    def __init__(self, name: str, table: dict[str, tuple[Any, str]]) -> None:
-        super().__init__(name)
+    A node has `_configure`, which makes its parts, `_rest`, which stops what moves, and `_tick`. In every state but
+    active it takes nothing and publishes nothing. Where a state ends by cleanup, shutdown or error, all parts end.
+    """
+
+    refusal = ""
+
+    def __init__(self, name: str, table: parameters.Table, **options: Any) -> None:
+        self._active = self._is_configured = False
+        self._parts: list[Any] = []
+        self._taken: dict[str, str] = {}
+        self._mismatched: dict[str, str] = {}
         self._table_of_parameters = table
-        for key, (default, meaning) in table.items():
-            self.declare_parameter(key, default, ParameterDescriptor(description=meaning))
+        super().__init__(name, **options)
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.add_on_set_parameters_callback(self._judge_parameters)
+        for key, parameter in table.items():
+            try:
+                self.declare_parameter(key, parameter.default, _descriptor(parameter))
+            except ParameterException as error:
+                raise Refused(self._why_not(key, parameter, error)) from error
+        self.owner = self.get_fully_qualified_name().strip("/")
+        self.prefix = ""
+
+    def _why_not(self, key: str, parameter: Parameter, error: Exception) -> str:
+        """Return one line about what was given for a parameter."""
+        if not isinstance(error, InvalidParameterValueException):
+            return str(error)  # of another type
+        given = self._parameter_overrides[key].value
+        return f"parameter {key} is '{given}': {parameter.why_not(given)}"
 
     def value(self, key: str) -> Any:
         """Return a parameter."""
         return self.get_parameter(key).value
+
+    def frame(self, key: str) -> str:
+        """Return the frame that a parameter says, with the prefix of all frames."""
+        return f"{self.prefix}{self.value(key)}"
+
+    def _judge_parameters(self, given: list[Any]) -> Any:
+        """Refuse what does not hold, and what would have no effect."""
+        for one in given:
+            parameter = self._table_of_parameters.get(one.name)
+            if parameter is None:
+                continue
+            why = parameter.why_not(one.value)
+            if not why and self._is_configured and parameter.read is Read.CONFIGURE:
+                why = "it is read when the node is configured: deactivate and clean up first"
+            if why:
+                return SetParametersResult(successful=False, reason=f"{one.name}: {why}")
+        return SetParametersResult(successful=True)
 
     def start(self) -> None:
         """Configure and activate, unless another node is to do it."""
@@ -57,34 +102,119 @@ class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
             raise Refused("the node cannot be configured")
         self.trigger_activate()
 
-    def chosen(self, key: str, choices: type[Any]) -> Any:
-        """Return the member of an enumeration that a parameter names."""
-        try:
-            return choices(self.value(key))
-        except ValueError:
-            names = " or ".join(choice.value for choice in choices)
-            raise Refused(f"parameter {key} is '{self.value(key)}': give {names}") from None
-
     def policy(self) -> Policy:
         """Return how readings are repaired."""
-        return Policy(self.chosen("dead", Dead), self.chosen("no_echo", NoEcho), self.chosen("trust", Trust))
+        return Policy(Dead(self.value("dead")), NoEcho(self.value("no_echo")), Trust(self.value("trust")))
 
     def robot(self) -> RobotTable:
         """Return the table of the robot that a parameter names."""
-        try:
-            return robot_table(self.value("robot"))
-        except SimError as error:
-            raise Refused(f"parameter robot: {error}") from error
+        return robot_table(self.value("robot"))
 
-    def checked(self, configure: Callable[[], None]) -> Any:
-        """Run what configures; one line tells what is wrong."""
+    # ---- lifecycle
+
+    def on_configure(self, state: Any) -> Any:
+        """Read the parameters and make all parts; one line tells what is wrong."""
+        del state
+        self.refusal = ""
+        self.prefix = self.value("frame_prefix")
+        if self.prefix == parameters.AUTO:
+            namespace = self.get_namespace().strip("/")
+            self.prefix = f"{namespace}/" if namespace else ""
         try:
-            configure()
-        except (Refused, LogError, SimError) as error:
-            self.get_logger().error(str(error))
-            self.refusal = str(error)
+            self._configure()
+            self._parts.append(self.create_timer(TICK_S, self._tick, clock=self._steady))
+        except Exception as error:  # rclpy would swallow any without a word
+            self.refusal = " ".join(str(error).split()) or type(error).__name__
+            self.get_logger().error(self.refusal)
+            self._end()
             return TransitionCallbackReturn.FAILURE
+        self._is_configured = True
         return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: Any) -> Any:
+        """Begin to take and to publish."""
+        self._active = True
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: Any) -> Any:
+        """Stop what moves, take nothing, publish nothing."""
+        self._active = False
+        self._rest()
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: Any) -> Any:
+        """End all parts; what was learned is forgotten."""
+        del state
+        self._end()
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, state: Any) -> Any:
+        """End all parts for ever."""
+        return self.on_cleanup(state)
+
+    def on_error(self, state: Any) -> Any:
+        """End all parts after a transition that failed; the node may be configured again."""
+        return self.on_cleanup(state)
+
+    def _end(self) -> None:
+        self._active = self._is_configured = False
+        self._rest()
+        self._close()
+        parts, self._parts = self._parts, []
+        self._taken.clear()
+        self._mismatched.clear()
+        for part in parts:
+            self.discard(part)
+
+    def destroy_node(self) -> None:
+        """End all parts, then the node; it may be one that was not made whole."""
+        self._end()
+        super().destroy_node()
+
+    # ---- topics
+
+    def publisher(self, kind: Any, topic: str, qos: Any = 10) -> Any:
+        """Make a publisher that is a part of this node, and hears of subscribers that cannot be served."""
+        events = PublisherEventCallbacks(incompatible_qos=self._mismatch(topic, "a subscriber asks"))
+        made = self.create_publisher(kind, topic, qos, event_callbacks=events)
+        self._parts.append(made)
+        return made
+
+    def take_topic(self, kind: Any, topic: str, take: Callable[[Any], None], qos: Any) -> None:
+        """Make a subscription that is a part of this node, and hears of publishers that cannot be taken."""
+        events = SubscriptionEventCallbacks(incompatible_qos=self._mismatch(topic, "a publisher offers"))
+        self._taken[topic] = type_name(kind)
+        self._parts.append(self.create_subscription(kind, topic, take, qos, event_callbacks=events))
+
+    def _mismatch(self, topic: str, who: str) -> Callable[[Any], None]:
+        def noted(event: Any) -> None:
+            policy = qos_policy_name_from_kind(event.last_policy_kind)
+            self._mismatched[topic] = f"{who} another QoS: {policy}"
+
+        return noted
+
+    def topics_status(self) -> Any:
+        """Return whether all topics are joined to who is there for them: type and QoS have to fit."""
+        found = dict(self._mismatched)
+        for topic, kind in self._taken.items():
+            types = {info.topic_type for info in self.get_publishers_info_by_topic(topic)}
+            if others := sorted(types - {*kind.split()}):
+                found[topic] = f"published as {others[0]}, taken as {kind}"
+        words = "; ".join(f"{topic}: {why}" for topic, why in found.items()) or "all fit"
+        level = messages.WARN if found else messages.OK
+        return messages.status(level, f"{self.owner}: topics", words, "", found)
+
+    def _configure(self) -> None:
+        raise NotImplementedError
+
+    def _tick(self) -> None:
+        raise NotImplementedError
+
+    def _rest(self) -> None:
+        """Stop what moves."""
+
+    def _close(self) -> None:
+        """End threads and connections."""
 
     def discard(self, part: Any) -> None:
         """Destroy a publisher, subscription, service, timer or guard condition of this node."""
@@ -98,15 +228,41 @@ class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
             if destroy(part):
                 return
 
-    refusal = ""
+
+def type_name(kind: Any) -> str:
+    """Return the name of a message's type as the graph has it."""
+    package, _, _ = kind.__module__.partition(".")
+    return f"{package}/msg/{kind.__name__}"
+
+
+def _descriptor(parameter: Parameter) -> Any:
+    """Return what `ros2 param describe` tells of a parameter."""
+    made = ParameterDescriptor(
+        description=parameter.meaning,
+        read_only=parameter.read is Read.START,
+        additional_constraints=" or ".join(parameter.choices),
+    )
+    if parameter.read is Read.CONFIGURE:
+        made.additional_constraints = "read when the node is configured"
+    if parameter.low is not None and parameter.high is not None:
+        if isinstance(parameter.default, float):
+            span = FloatingPointRange(from_value=parameter.low, to_value=parameter.high)
+            made.floating_point_range = [span]
+        else:
+            made.integer_range = [IntegerRange(from_value=int(parameter.low), to_value=int(parameter.high))]
+    return made
 
 
 def run_node(make: Callable[[], ArgusLifecycleNode], arguments: Sequence[str]) -> int:
     """Run a node to its end; return the exit code."""
-    rclpy.init(args=[sys.argv[0], *arguments])
+    try:
+        rclpy.init(args=[sys.argv[0], *arguments])
+    except RCLError as error:
+        print(f"{' '.join(str(error).split())}; see --help", file=sys.stderr)
+        return EXIT_USAGE
     try:
         node = make()
-    except ParameterException as error:
+    except (Refused, ParameterException) as error:
         print(f"{error}; see --help", file=sys.stderr)
         rclpy.try_shutdown()
         return EXIT_USAGE

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
 from typing import Any, Final
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -14,8 +15,8 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState, PointCloud2, PointField, Range
 from std_msgs.msg import Header
 
+from argus_ros.motion import Motion
 from argus_ros.repair import Limits, Verdict
-from argus_ros.ring import Motion
 from hil_sim.tables.robot import Mount
 
 OK, WARN, ERROR, STALE = range(4)
@@ -35,11 +36,6 @@ def quaternion(yaw_rad: float) -> Any:
     return Quaternion(x=0.0, y=0.0, z=math.sin(yaw_rad / 2), w=math.cos(yaw_rad / 2))
 
 
-def yaw_of(turned: Any) -> float:
-    """Return the heading of a quaternion that turns about the vertical axis."""
-    return math.atan2(2 * (turned.w * turned.z + turned.x * turned.y), 1 - 2 * (turned.y**2 + turned.z**2))
-
-
 def range_message(stamp: Any, frame: str, value_m: float, limits: Limits, view_rad: float) -> Any:
     """Return one reading."""
     return Range(
@@ -50,6 +46,14 @@ def range_message(stamp: Any, frame: str, value_m: float, limits: Limits, view_r
         max_range=limits.greatest_m,
         range=value_m,
     )
+
+
+def repaired(message: Any, stamp: Any, value_m: float) -> Any:
+    """Return a copy of a reading with another time and value; fields that a newer sensor_msgs adds are kept."""
+    made = copy(message)
+    made.header = header(stamp, message.header.frame_id)
+    made.range = value_m
+    return made
 
 
 def cloud(stamp: Any, frame: str, echoes: Iterable[tuple[int, float]], mounts: Sequence[Mount]) -> Any:
@@ -137,7 +141,8 @@ def sonar_level(verdict: Verdict, age_ms: int, stale_ms: int) -> int:
     return WARN if verdict.health == "SUSPECT" else OK
 
 
-def _status(level: int, name: str, message: str, hardware: str, values: Mapping[str, Any]) -> Any:
+def status(level: int, name: str, message: str, hardware: str, values: Mapping[str, Any]) -> Any:
+    """Return one diagnosis."""
     return DiagnosticStatus(
         level=bytes((level,)),
         name=name,
@@ -155,11 +160,14 @@ def sonar_status(
     age_ms: int,
     hardware: str,
     more: Mapping[str, Any] | None = None,
+    odd: str = "",
     stale_ms: int = 1000,
 ) -> Any:
-    """Return the diagnosis of one sonar; `more`: keys besides those that each has."""
+    """Return the diagnosis of one sonar; `more`: keys besides; `odd`: why its messages are not used."""
     level = sonar_level(verdict, age_ms, stale_ms)
     words = f"{verdict.health} {verdict.kind}".strip() if level != STALE else "not reporting"
+    if odd:
+        level, words = ERROR, f"discarded: {odd}"
     values = {
         "health": verdict.health,
         "fault": verdict.kind or "none",
@@ -167,22 +175,31 @@ def sonar_status(
         "age_ms": age_ms,
         **(more or {}),
     }
-    return _status(level, f"{owner}: {sonar_name(number)}", words, hardware, values)
+    return status(level, f"{owner}: {sonar_name(number)}", words, hardware, values)
 
 
 def ring_status(
-    owner: str, failure: str | None, verdicts: Sequence[Verdict], hardware: str, more: Mapping[str, Any]
+    owner: str,
+    failure: str | None,
+    verdicts: Sequence[Verdict],
+    hardware: str,
+    more: Mapping[str, Any],
+    doubt: str = "",
 ) -> Any:
-    """Return the diagnosis of the whole ring; `failure` None: nothing is known of the robot; empty: of no use."""
+    """Return the diagnosis of the whole ring.
+
+    `failure` None: nothing is judged; empty: that of the fault manager is of no use. `doubt`: why not all is judged.
+    """
     present = [verdict for verdict in verdicts if verdict.health != "ABSENT"]
     out = [number for number, verdict in enumerate(verdicts) if verdict.kind]
     bad = len(out)
     words = f"{len(present) - bad} of {len(present)} sonars to be trusted"
     if failure is None:
-        return _status(STALE, f"{owner}: ring", "no robot", hardware, more)
-    level = max(_FAILURE_LEVEL.get(failure, ERROR) if failure else OK, WARN if bad else OK)
+        return status(STALE, f"{owner}: ring", doubt or "no robot", hardware, more)
+    level = max(_FAILURE_LEVEL.get(failure, ERROR) if failure else OK, WARN if bad or doubt else OK)
+    words = f"{words}; {doubt}" if doubt else words
     values = {"failure_state": failure or "unknown", "not_trusted": " ".join(map(str, out)) or "none", **more}
-    return _status(level, f"{owner}: ring", words, hardware, values)
+    return status(level, f"{owner}: ring", words, hardware, values)
 
 
 def injected_words(kinds: Sequence[str]) -> str:

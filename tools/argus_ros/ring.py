@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Final
 
 from argus_tools.core import Core, Event
 from argus_tools.log.opening import opened
 
+from argus_ros.motion import Motion
 from argus_ros.repair import Limits, Verdict
 from hil_sim.arcos import FLAG, TIMING, Sip, SyncReply, frame
 from hil_sim.tables import load
@@ -19,20 +19,10 @@ from hil_sim.tables.robot import RobotTable
 _SIP_MS: Final = TIMING["SIP_CYCLE_MS"]
 _STEP_MS: Final = 10
 _GAP_MS: Final = 5_000
+_ORDER_MS: Final = 1_000
 _WORD: Final = 0xFFFF
 _MM: Final = 1000
 _FLAGS: Final = FLAG["MOTORS"] | FLAG["SONAR1"] | FLAG["SONAR2"]
-
-
-@dataclass
-class Motion:
-    """Where the robot is and how it moves: m, rad, s."""
-
-    x_m: float = 0.0
-    y_m: float = 0.0
-    heading_rad: float = 0.0
-    speed_m_s: float = 0.0
-    turn_rad_s: float = 0.0
 
 
 class Ring:
@@ -57,6 +47,8 @@ class Ring:
         self._said: list[Event] = []
         self.restarts = 0
         self.failure = "IsNormal"
+        self._opened()  # settings that do not hold are refused now, not at the first message
+        self._said.clear()
 
     @property
     def verdicts(self) -> list[Verdict]:
@@ -79,7 +71,7 @@ class Ring:
         """Let time pass up to that of a message; a jump of the clock begins anew. True: a packet was made."""
         if self._core is not None:
             ahead_ms = (t_s - self._origin_s) * 1000 - self._now_ms
-            if not -_GAP_MS <= ahead_ms <= _GAP_MS:
+            if not -_ORDER_MS <= ahead_ms <= _GAP_MS:
                 self._core = None
                 self.restarts += 1
         if self._core is None:

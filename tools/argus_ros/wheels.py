@@ -17,7 +17,7 @@ _SYNC_S: Final = 0.5
 _TRIES: Final = 6
 _PULSE_S: Final = 0.5
 _TICK_S: Final = 0.05
-_SILENT_S: Final = 3.0
+_SILENT_S: Final = 1.5
 
 
 class Lost(Exception):
@@ -33,7 +33,7 @@ class Wheels:
     def __init__(
         self, host: str, port: int, timeout_s: float, tell: Callable[[str], None] = lambda _: None
     ) -> None:
-        self._place, self._timeout_s, self._tell = (host, port), timeout_s, tell
+        self._place, self.timeout_s, self._tell = (host, port), timeout_s, tell
         self._lock = threading.Lock()
         self._wanted = (0, 0)
         self._wanted_s = -1.0
@@ -43,6 +43,7 @@ class Wheels:
         self._sent_s = self._heard_s = 0.0
         self._ended = threading.Event()
         self.connected = False
+        self.why_not = "not tried yet"
         self.sips, self.last = 0, Sip()
         self._thread = threading.Thread(target=self._run, name="wheels", daemon=True)
         self._thread.start()
@@ -57,6 +58,13 @@ class Wheels:
                 except OSError:
                     return False
             return self.connected
+
+    def halt(self) -> None:
+        """Stop the robot if it was ordered to drive; motors that nobody has used are left alone."""
+        with self._lock:
+            is_driven = self._said is not None
+        if is_driven:
+            self.drive(0, 0)
 
     def close(self) -> None:
         """Stop the robot and leave."""
@@ -77,6 +85,7 @@ class Wheels:
                 self._leave()
             except (OSError, Lost) as error:
                 why = f"{self._place[0]}:{self._place[1]}: {error}"
+                self.why_not = why
                 if why != told:
                     self._tell(f"cmd_vel goes nowhere: {why}")
                 told = why
@@ -132,8 +141,8 @@ class Wheels:
         if now - self._heard_s > _SILENT_S:
             raise Lost("the robot has become silent")
         with self._lock:
-            if self._said not in (None, (0, 0)) and now - self._wanted_s > self._timeout_s:
-                self._tell(f"no cmd_vel for {self._timeout_s:g} s: stopped")
+            if self._said not in (None, (0, 0)) and now - self._wanted_s > self.timeout_s:
+                self._tell(f"no cmd_vel for {self.timeout_s:g} s: stopped")
                 self._wanted = (0, 0)
                 self._follow_order()
             if now - self._sent_s > _PULSE_S:

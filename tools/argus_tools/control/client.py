@@ -31,9 +31,10 @@ class Refused(Exception):
         self.why = why
 
 
-def default_place() -> str:
-    """Return where argusd is looked for: ARGUS_CONTROL, else where its unit listens."""
-    return os.environ.get("ARGUS_CONTROL") or DEFAULT_PLACE
+def default_place(robot: str = "") -> str:
+    """Return where argusd is looked for: ARGUS_CONTROL, else where its unit listens, or that of one robot of more."""
+    place = f"unix:/run/argus/{robot}/control" if robot else DEFAULT_PLACE
+    return os.environ.get("ARGUS_CONTROL") or place
 
 
 def read_token(path: Path) -> str:
