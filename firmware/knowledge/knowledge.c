@@ -128,7 +128,8 @@ static argus_span_t span_to(const argus_knowledge_t *const self, const argus_sip
         .before = {speed_or_none(self->vel_left_mm_s), speed_or_none(self->vel_right_mm_s)},
         .after = {speed_or_none(after.left_mm_s), speed_or_none(after.right_mm_s)},
         .track_mm = self->robot->track_mm,
-        .elapsed_ms = now_ms - self->moved_ms};
+        .elapsed_ms = now_ms - self->moved_ms,
+        .late_ms = self->late_ms};
     return span;
 }
 

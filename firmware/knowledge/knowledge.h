@@ -70,6 +70,7 @@ typedef struct {
     int32_t y_um;
     int32_t odometer_um;
     uint32_t moved_ms;     // time of the SIP of x_raw, y_raw
+    uint32_t late_ms;      // by which SIPs may be late now
     argus_order_t order;   // since then
     argus_excess_t excess; // beyond what the wheels say
     uint32_t leaps;        // monotonic

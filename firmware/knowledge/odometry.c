@@ -80,7 +80,7 @@ static range_t range_of(const argus_span_t *const span, const int32_t credit_ms,
                         const int32_t after, const int32_t gap) {
     const int32_t ms = elapsed_ms(span);
     ARGUS_ASSERT(gap >= 0 && credit_ms >= 0);
-    const int32_t any = span->elapsed_ms > GAP_MS ? gap : 0;
+    const int32_t any = span->elapsed_ms > GAP_MS || credit_ms > (int32_t)GAP_MS ? gap : 0;
     return (range_t){.least = argus_min(argus_min(before, after), any > 0 ? -any : INT32_MAX),
                      .most = argus_max(argus_max(before, after), any > 0 ? any : INT32_MIN),
                      .least_ms = argus_min(SIP_MS, ms),
@@ -215,7 +215,8 @@ bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *con
                            const argus_moved_t *const moved) {
     ARGUS_ASSERT(span->track_mm > 0 && excess->credit_ms >= 0);
     const int32_t credit_ms = excess->credit_ms + elapsed_ms(span) - SIP_MS - FADES_MS;
-    excess->credit_ms = argus_between(0, LATE_MOST_MS, credit_ms);
+    const int32_t late_ms = (int32_t)(span->late_ms < GAP_MAX_MS ? span->late_ms : GAP_MAX_MS);
+    excess->credit_ms = argus_between(0, argus_max(LATE_MOST_MS, late_ms), credit_ms);
     const argus_excess_t was = *excess;
     const bool way = way_may_be(excess, span, moved);
     const bool turn = turn_may_be(excess, span, moved);

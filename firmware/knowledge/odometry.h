@@ -18,6 +18,7 @@ typedef struct {
     argus_wheels_t after;
     int32_t track_mm;    // between the wheels, > 0
     uint32_t elapsed_ms; // between their arrivals
+    uint32_t late_ms;    // they may be so old: the next ones may make up for it
 } argus_span_t;
 
 // What a robot that hears nobody goes on with.

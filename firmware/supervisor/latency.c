@@ -110,6 +110,10 @@ void argus_latency_process(argus_t *const self) {
     }
 }
 
+int32_t argus_latency_oldest_ms(const argus_latency_t *const self) {
+    return argus_max(self->late_ms, self->before_ms);
+}
+
 bool argus_latency_is_prompt(const argus_latency_t *const self) {
     return !self->stands && !self->overdue;
 }

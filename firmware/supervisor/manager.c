@@ -190,6 +190,27 @@ static bool is_on_its_way(const argus_t *const self) {
            self->mode == ARGUS_MODE_STEPPING; // while it creeps there is no plan to keep
 }
 
+static void take_evidence(argus_t *const self) {
+    if (argus_rules(self)->evidence) {
+        argus_evidence_sip(&self->evidence, &self->knowledge);
+        argus_extremes_sip(&self->extremes, &self->knowledge);
+        argus_common_sip(&self->common, &self->knowledge);
+        argus_common_weigh(&self->common, &self->evidence, &self->knowledge);
+    }
+    take_slip(self);
+    take_bend(self);
+}
+
+// How late the link is, before anything of the SIP is used.
+static void take_latency(argus_t *const self) {
+    const bool stood = self->latency.stands;
+    argus_latency_sip(self);
+    if (stood && !self->latency.stands) { // what was read meanwhile was not of its time
+        restart_evidence(self);
+    }
+    self->knowledge.late_ms = (uint32_t)argus_latency_oldest_ms(&self->latency);
+}
+
 static void on_sip(argus_t *const self) {
     const int32_t unit_um = argus_session_distance_um(&self->session, self->knowledge.robot->dist_conv_um);
     if (!argus_session_is_open(&self->session) || self->mode == ARGUS_MODE_CLOSED) {
@@ -199,7 +220,7 @@ static void on_sip(argus_t *const self) {
         argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
         return;
     }
-    argus_latency_sip(self);
+    take_latency(self);
     argus_knowledge_sip(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
     if (argus_sees_through_body(self)) {
         argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_CHECK, true);
@@ -207,14 +228,9 @@ static void on_sip(argus_t *const self) {
     self->awareness.away =
         argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, argus_base_cdeg(self)) > AWAY_CDEG;
     const argus_alarm_t alarm = argus_awareness_sip(&self->awareness, &self->knowledge, &self->config);
-    if (argus_rules(self)->evidence) {
-        argus_evidence_sip(&self->evidence, &self->knowledge);
-        argus_extremes_sip(&self->extremes, &self->knowledge);
-        argus_common_sip(&self->common, &self->knowledge);
-        argus_common_weigh(&self->common, &self->evidence, &self->knowledge);
+    if (!self->latency.stands) { // else it is not of now
+        take_evidence(self);
     }
-    take_slip(self);
-    take_bend(self);
     argus_react(self, &alarm); // it asks what was seen before this SIP
     argus_echoes_see(&self->echoes, &self->knowledge, self->now_ms);
     argus_rays_see(&self->rays, &self->knowledge, sweep_looks(self));
