@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FOLDERS = ("firmware", "hal", "hil_sim", "tests", "tools", "cmake", "examples", ".ci", ".github")
+FOLDERS = ("firmware", "hal", "hil_sim", "tests", "tools", "cmake", "examples", "findings", ".ci", ".github")
 SOURCES = {".c", ".h", ".py", ".cmake", ".toml", ".yaml", ".yml", ".sh"}
 BINARY = {".png", ".gz", ".bin", ".log", ".pyc"}
 # Split, so that this file does not hold what it looks for.
