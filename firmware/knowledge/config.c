@@ -235,6 +235,15 @@ void argus_config_follow(argus_config_t *config, argus_follows_t follows, const 
     }
 }
 
+void argus_config_mend(argus_config_t *config) {
+    argus_config_t built;
+    argus_config_default(&built);
+    for (int32_t row = row_out_of_range(config); row >= 0; row = row_out_of_range(config)) {
+        const size_t at = (size_t)row * sizeof(int32_t);
+        memcpy((uint8_t *)config + at, (const uint8_t *)&built + at, sizeof(int32_t));
+    }
+}
+
 argus_config_report_t argus_config_check(const argus_config_t *config) {
     const argus_robot_t *chosen = argus_robot_chosen(config->robot);
     return argus_config_check_for(config, chosen != NULL ? chosen : argus_robot_default());

@@ -23,6 +23,9 @@ void argus_config_follow(argus_config_t *config, argus_follows_t follows, const 
 // As argus_config_check(), for a robot.
 argus_config_report_t argus_config_check_for(const argus_config_t *config, const argus_robot_t *robot);
 
+// Each setting that is out of its range becomes its default: what is refused is not run with, either.
+void argus_config_mend(argus_config_t *config);
+
 // S5: the way, in mm, from a reading that asks for a stop to standstill at the driving speed: v t + v^2 / (2
 // decel). `late_ms`: by how much the link is late beyond what t counts on.
 int32_t argus_config_stop_mm(const argus_config_t *config, const argus_robot_t *robot, int32_t late_ms);

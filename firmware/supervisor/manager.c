@@ -28,7 +28,8 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     memset(self, 0, sizeof *self); // which is how most parts begin
     const argus_robot_t *const robot = chosen != NULL ? chosen : argus_robot_default();
     self->config = *config;
-    self->follows = argus_config_follows(config);
+    argus_config_mend(&self->config); // refused below, for good
+    self->follows = argus_config_follows(&self->config);
     argus_config_follow(&self->config, self->follows, robot);
     self->rules = argus_profile(&self->config);
     self->orders.locked = argus_config_check(config).fault != ARGUS_CONFIG_OK;

@@ -160,11 +160,47 @@ static uint32_t get32(const uint8_t *bytes) {
     return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
 }
 
+// A setting that is picked by name; "auto" is a number that has one word.
+static bool is_picked(int row) {
+    const char *const choices = board_word_nth(choices_of, row);
+    const char *const end = choices + strlen(choices);
+    return board_word_find(choices, end, '|') < end;
+}
+
+// The word that stands for a value, "" for none.
+static board_word_t word_of(int row, int32_t value) {
+    const char *at = board_word_nth(choices_of, row);
+    const char *const end = at + strlen(at);
+    for (; value > 0 && at < end; value--) {
+        const char *const bar = board_word_find(at, end, '|');
+        at = bar < end ? bar + 1 : end;
+    }
+    const char *const stop = board_word_find(at, end, '|');
+    return value < 0 ? (board_word_t){at, 0} : (board_word_t){at, (size_t)(stop - at)};
+}
+
+// What a value means, however many choices a later table has before it: the digest of its word, or the
+// number.
+static uint32_t meaning_of(int row, int32_t value) {
+    const board_word_t word = word_of(row, value);
+    return is_picked(row) && word.length > 0 ? hal_crc32(0, word.at, word.length) : (uint32_t)value;
+}
+
+// The value that means so; -1: no word of the table has this digest.
+static int32_t picked_by(int row, uint32_t meaning) {
+    for (int32_t value = 0; word_of(row, value).length > 0; value++) {
+        if (meaning_of(row, value) == meaning) {
+            return value;
+        }
+    }
+    return -1;
+}
+
 uint32_t board_config_digest(const argus_config_t *config) {
     uint32_t crc = 0;
     for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
         uint8_t bytes[4];
-        put32(bytes, (uint32_t)board_config_value(config, row));
+        put32(bytes, meaning_of(row, board_config_value(config, row)));
         crc = hal_crc32(crc, bytes, sizeof bytes);
     }
     return crc;
@@ -175,14 +211,19 @@ static uint32_t key_digest(int row) {
     return hal_crc32(0, key, strlen(key));
 }
 
+// Of a setting that is picked by name another one than builds used that stored the place of the word.
+static uint32_t stored_key(int row) {
+    return is_picked(row) ? hal_crc32(key_digest(row), "=", 1) : key_digest(row);
+}
+
 size_t board_config_pack(const argus_config_t *base, const argus_config_t *config,
                          uint8_t bytes[BOARD_CONFIG_PACKED_MAX]) {
     uint16_t pairs = 0;
     for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
         const int32_t value = board_config_value(config, row);
         if (value != board_config_value(base, row)) {
-            put32(bytes + 2 + PAIR_BYTES * pairs, key_digest(row));
-            put32(bytes + 2 + PAIR_BYTES * pairs + 4, (uint32_t)value);
+            put32(bytes + 2 + PAIR_BYTES * pairs, stored_key(row));
+            put32(bytes + 2 + PAIR_BYTES * pairs + 4, meaning_of(row, value));
             pairs++;
         }
     }
@@ -191,14 +232,26 @@ size_t board_config_pack(const argus_config_t *base, const argus_config_t *confi
     return 2 + PAIR_BYTES * pairs;
 }
 
-// One that the table has no more, or with another range, is left out. The default of one that follows the
-// robot is beside its range.
-static void take_pair(argus_config_t *config, uint32_t key, int32_t value) {
+// False: by the place of a word, as older builds stored it, or a word that the table has no more. A number of
+// another range, or a key that there is no more, is left out.
+static bool take_pair(argus_config_t *config, uint32_t key, uint32_t meaning) {
     for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
-        if (key_digest(row) == key && (value == defaults[row] || is_in_range(row, value))) {
+        const bool picked = is_picked(row);
+        if (picked && key == key_digest(row)) {
+            return false;
+        }
+        if (key != stored_key(row)) {
+            continue;
+        }
+        const int32_t value = picked ? picked_by(row, meaning) : (int32_t)meaning;
+        if (picked && value < 0) {
+            return false;
+        }
+        if (picked || value == defaults[row] || is_in_range(row, value)) {
             put_value(config, row, value);
         }
     }
+    return true;
 }
 
 size_t board_config_length(const uint8_t *bytes, size_t count) {
@@ -209,10 +262,15 @@ size_t board_config_length(const uint8_t *bytes, size_t count) {
     return pairs > (count - 2) / PAIR_BYTES ? 0 : 2 + PAIR_BYTES * pairs;
 }
 
-size_t board_config_unpack(argus_config_t *config, const uint8_t *bytes, size_t count) {
+size_t board_config_unpack(argus_config_t *config, const uint8_t *bytes, size_t count, bool *outdated) {
     const size_t length = board_config_length(bytes, count);
-    for (size_t at = 2; at < length; at += PAIR_BYTES) {
-        take_pair(config, get32(bytes + at), (int32_t)get32(bytes + at + 4));
+    argus_config_t taken = *config;
+    *outdated = false;
+    for (size_t at = 2; at < length && !*outdated; at += PAIR_BYTES) {
+        *outdated = !take_pair(&taken, get32(bytes + at), get32(bytes + at + 4));
+    }
+    if (!*outdated) {
+        *config = taken;
     }
     return length;
 }

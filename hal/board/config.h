@@ -14,7 +14,8 @@ enum {
         BOARD_CONFIG_COUNT
 };
 
-// Of board_config_pack(): a count, then a digest of the key and the value for each.
+// Of board_config_pack(): a count, then for each a digest of the key, and the number or the digest of the
+// word.
 #define BOARD_CONFIG_PACKED_MAX (2 + 8 * BOARD_CONFIG_COUNT)
 
 typedef enum {
@@ -38,7 +39,8 @@ const char *board_config_fault_text(argus_config_fault_t fault);
 const char *board_config_key(int row);
 int32_t board_config_value(const argus_config_t *config, int row);
 
-// CRC-32 over all values: two boards with the same digest run with the same settings.
+// CRC-32 over all numbers and words: two boards with the same digest run with the same settings, whatever
+// choices their builds have beside.
 uint32_t board_config_digest(const argus_config_t *config);
 
 // Writes what differs from `base`; the length.
@@ -46,7 +48,9 @@ size_t board_config_pack(const argus_config_t *base, const argus_config_t *confi
                          uint8_t bytes[BOARD_CONFIG_PACKED_MAX]);
 
 // Reads that back over `config`; its length, 0: damaged. A key that there is no more is left out.
-size_t board_config_unpack(argus_config_t *config, const uint8_t *bytes, size_t count);
+// `*outdated`: it has a word that there is no more, or the place of one instead, as builds before stored it;
+// then nothing is taken.
+size_t board_config_unpack(argus_config_t *config, const uint8_t *bytes, size_t count, bool *outdated);
 
 // That length alone.
 size_t board_config_length(const uint8_t *bytes, size_t count);

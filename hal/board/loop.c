@@ -218,7 +218,7 @@ static void feed(uint32_t began_ms) {
 
 // In the order of board_settings_t.
 static const char *origin_of(board_settings_t settings) {
-    return board_word_nth("built\0stored\0damaged\0refused\0", (int)settings);
+    return board_word_nth("built\0stored\0damaged\0outdated\0refused\0", (int)settings);
 }
 
 static BOARD_APART void begin(void) {

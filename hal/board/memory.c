@@ -42,7 +42,12 @@ static board_settings_t set_stored(board_memory_t *self, argus_config_t *config)
         return BOARD_SETTINGS_DAMAGED;
     }
     self->digest = hal_crc32(0, record, count);
-    const size_t length = board_config_unpack(config, record, count);
+    bool outdated = false;
+    const size_t length = board_config_unpack(config, record, count, &outdated);
+    if (outdated) {
+        config->active = 0; // whose body it is, and whether it may drive, somebody must say anew
+        return BOARD_SETTINGS_OUTDATED;
+    }
     return length > 2 ? BOARD_SETTINGS_STORED : length == 2 ? BOARD_SETTINGS_BUILT : BOARD_SETTINGS_DAMAGED;
 }
 

@@ -19,8 +19,9 @@ typedef struct {
 typedef enum {
     BOARD_SETTINGS_BUILT,
     BOARD_SETTINGS_STORED,
-    BOARD_SETTINGS_DAMAGED, // what was stored is of no use: those compiled in are taken
-    BOARD_SETTINGS_REFUSED  // they are unsafe, or the text compiled in is wrong: defaults, and passive
+    BOARD_SETTINGS_DAMAGED,  // what was stored is of no use: those compiled in are taken
+    BOARD_SETTINGS_OUTDATED, // what was stored means nothing to this build: those compiled in, and passive
+    BOARD_SETTINGS_REFUSED   // they are unsafe, or the text compiled in is wrong: defaults, and passive
 } board_settings_t;
 
 void board_memory_init(board_memory_t *self);
