@@ -12,7 +12,7 @@ from argus_tools.formats import Log, LogError, open_log
 from forms import CLIENT, ROBOT, frames, joined, pcap, pcapng
 from logs import run
 
-CAN, COOKED, COOKED2 = 227, 113, 276
+CAN, COOKED, COOKED2, EXPORTED = 227, 113, 276, 252
 LONG, REMOTE, ERROR = 1 << 31, 1 << 30, 1 << 29
 Packets = list[tuple[float, bytes]]
 
@@ -35,6 +35,12 @@ def cooked2(order: str, index: int = 3) -> Packets:
     return [(frame.t, head + can(frame.can_id, frame.data, order)) for frame in frames()]
 
 
+def exported(order: str, name: bytes = b"can-hostendian", before: bytes = b"") -> Packets:
+    """As Wireshark saves what it read from a candump log: tags, then the frame, filled up to eight bytes of data."""
+    tags = before + struct.pack(">HH", 12, 16) + name.ljust(16, b"\0") + bytes(4)
+    return [(frame.t, tags + can(frame.can_id, frame.data, order).ljust(16, b"\0")) for frame in frames()]
+
+
 CAPTURES = {
     "pcap": pcap(CAN, plain()),
     "pcap, big-endian file": pcap(CAN, plain(), ">"),
@@ -48,6 +54,12 @@ CAPTURES = {
     "cooked, pcapng": pcapng(COOKED, cooked("<"), b"any"),
     "cooked 2": pcap(COOKED2, cooked2(">")),
     "cooked 2, host's order": pcap(COOKED2, cooked2("<")),
+    "exported": pcap(EXPORTED, exported("<")),
+    "exported, pcapng": pcapng(EXPORTED, exported("<")),
+    "exported, FD": pcap(EXPORTED, exported("<", b"canfd")),
+    "exported, big-endian id": pcap(EXPORTED, exported(">", b"can-bigendian")),
+    "exported by a big-endian host": pcap(EXPORTED, exported(">")),
+    "exported, other tags first": pcap(EXPORTED, exported("<", before=struct.pack(">HH4s", 32, 4, b"abcd"))),
 }
 
 
@@ -104,6 +116,22 @@ def test_a_frame_that_was_cut_is_told(cut: int, tmp_path: Path) -> None:
     assert joined(list(log), "r2c").startswith(ROBOT)
     assert log.damage[0].place == f"frame {len(packets)}"
     assert "header" in log.damage[0].what or f"{cut - 8} of a CAN frame's 8 bytes" in log.damage[0].what
+
+
+@pytest.mark.parametrize("tags", [b"", bytes(4), struct.pack(">HH", 12, 99) + b"can-hostendian"])
+def test_exported_pdus_that_are_no_can_are_refused(tags: bytes, tmp_path: Path) -> None:
+    log = read(
+        tmp_path / "a.pcap", pcap(EXPORTED, [(1.0, tags), *[(t, d) for t, d in exported("<", b"http")]])
+    )
+    with pytest.raises(LogError, match="PDUs that Wireshark exported, link type 252"):
+        list(log)
+
+
+def test_an_exported_bus_without_a_robot_is_told_by_its_id(tmp_path: Path) -> None:
+    packet = exported("<")[0][1][:24] + can(0x123, bytes(8), "<")
+    log = read(tmp_path / "a.pcap", pcap(EXPORTED, [(1.0, packet)]))
+    with pytest.raises(LogError, match=r"0x640 to 0x64F; there are 0x123"):
+        list(log)
 
 
 def test_a_bus_without_a_robot_is_told(tmp_path: Path) -> None:

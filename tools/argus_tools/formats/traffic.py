@@ -16,6 +16,10 @@ LINK_CAN: Final = 227
 # "Linux cooked" captures of any interface: bytes of the header, where in it the protocol stands, and the interface.
 COOKED: Final = {113: (16, 14, None), 276: (20, 0, 4)}
 CAN_PROTOCOLS: Final = (0x000C, 0x000D)
+# Wireshark saves what it read from a candump log as these: tags of type and size, then the frame of SocketCAN.
+LINK_EXPORTED: Final = 252
+_EXPORTED_END, _EXPORTED_NAME = 0, 12
+_EXPORTED_CAN: Final = {b"can-hostendian": "little", b"canfd": "little", b"can-bigendian": "big"}
 _CAN_HEADER: Final = 8
 _LONG_ID, _REMOTE, _ERROR = 1 << 31, 1 << 30, 1 << 29
 _LONG_ID_MASK: Final = (1 << 29) - 1
@@ -38,7 +42,7 @@ _LINKS: Final = {
     220: ("USB frames (usbmon)", _SERIAL_REMEDY),
     249: ("USB frames (USBPcap)", _SERIAL_REMEDY),
     250: ("serial frames of an RTAC", _SERIAL_REMEDY),
-    252: ("PDUs that Wireshark exported", "save the frames themselves: File, Save As"),
+    LINK_EXPORTED: ("PDUs that Wireshark exported", "save the frames themselves: File, Save As"),
     266: ("USB frames (macOS)", _SERIAL_REMEDY),
 }
 
@@ -72,6 +76,8 @@ class Traffic:
         link = frame.link
         if link == LINK_CAN:
             yield from self._take_can(frame, frame.data, frame.interface)
+        elif link == LINK_EXPORTED and (data := _exported_can(frame.data)) is not None:
+            yield from self._take_can(frame, data, frame.interface)
         elif link in COOKED:
             head, kind_at, index_at = COOKED[link]
             if int.from_bytes(frame.data[kind_at : kind_at + 2], "big") in CAN_PROTOCOLS:
@@ -133,6 +139,24 @@ class Traffic:
             what = f"{len(payload)} of a CAN frame's {size} bytes were captured; take tcpdump without -s"
             self._damage.append(Damage(f"frame {frame.number}", what))
         yield from self._can.take(frame.t, direction, payload, frame.number)
+
+
+def _exported_can(data: bytes) -> bytes | None:
+    """Return the frame of SocketCAN behind the tags of an exported PDU; None if it is for another dissector.
+
+    Its id has the byte order of the machine that wrote it, which nothing tells: nearly all are little-endian.
+    """
+    at, order = 0, None
+    while at + 4 <= len(data):
+        tag, size = struct.unpack_from(">HH", data, at)
+        at += 4
+        if tag == _EXPORTED_END:
+            head = data[at : at + 4]
+            return None if order is None else (head[::-1] if order == "little" else head) + data[at + 4 :]
+        if tag == _EXPORTED_NAME:
+            order = _EXPORTED_CAN.get(data[at : at + size].rstrip(b"\0"))
+        at += size
+    return None
 
 
 def _can_id(data: bytes) -> int:
