@@ -3,8 +3,10 @@
 #include "guardian/limit.h"
 
 #define ORDERS_PER_SIP 10 // 90 bytes: what a line of 9600 baud carries in that time
-#define BYTES_MOST 400    // what a client says at its start
-#define BYTES_PER_S 300   // a third of such a line
+#define BYTES_MOST 400u   // what a client says at its start
+#define BYTES_PER_S 300u  // a third of such a line
+#define PARTS 1000u       // of a byte: a ms brings less than one
+#define LONG_MS 10000u    // all is gone
 #define WORDS_PER_S 5
 #define SECOND_MS 1000u
 
@@ -20,26 +22,20 @@ void argus_limit_sip(argus_limit_t *const self) {
     self->orders = 0;
 }
 
-// Time that has not brought a whole byte yet is kept.
 static void drain(argus_limit_t *const self, const uint32_t now_ms) {
     const uint32_t passed_ms = now_ms - self->filled_ms;
-    const uint32_t gone = passed_ms < 10 * SECOND_MS ? passed_ms * BYTES_PER_S / SECOND_MS : BYTES_MOST;
-    if (gone >= self->bytes) {
-        self->bytes = 0;
-        self->filled_ms = now_ms;
-    } else if (gone > 0) {
-        self->bytes = (uint16_t)(self->bytes - gone);
-        self->filled_ms += gone * SECOND_MS / BYTES_PER_S;
-    }
+    const uint32_t gone = passed_ms < LONG_MS ? passed_ms * BYTES_PER_S : self->used;
+    self->used -= gone < self->used ? gone : self->used;
+    self->filled_ms = now_ms;
 }
 
 bool argus_limit_pass(argus_limit_t *const self, const uint32_t now_ms, const uint16_t bytes) {
     drain(self, now_ms);
-    if (self->bytes + bytes > BYTES_MOST) {
+    if (self->used + bytes * PARTS > BYTES_MOST * PARTS) {
         self->dropped++;
         return false;
     }
-    self->bytes = (uint16_t)(self->bytes + bytes);
+    self->used += bytes * PARTS;
     return true;
 }
 

@@ -9,9 +9,9 @@
 
 // All zero: nothing was said.
 typedef struct {
-    uint32_t filled_ms; // when `bytes` was last lowered
+    uint32_t filled_ms; // when `used` was last lowered
     uint32_t second_ms; // the second that runs
-    uint16_t bytes;     // of the robot's line that are used up
+    uint32_t used;      // thousandths of bytes of the robot's line
     uint8_t orders;     // to the wheels since the last SIP
     uint8_t words;      // refusals that were said in this second
     uint32_t dropped;   // commands in this second
