@@ -15,6 +15,8 @@ foreach(source IN LISTS declaring)
 endforeach()
 list(REMOVE_DUPLICATES names)
 list(JOIN names ";\n    " names)
+# Its symbol has the number of sonars in its name (argus.h, ARGUS_TAG).
+string(REGEX REPLACE "(^|[^a-z_])argus_init([^a-z_]|$)" "\\1argus_init_for_${ARGUS_SONARS}_sonars\\2" names "${names}")
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/argus.map CONTENT "{\nglobal:\n    @names@;\nlocal:\n    *;\n};\n" @ONLY)
 
 # One compilation serves both libraries. Nobody replaces a function of ours, so position independence costs no inlining.

@@ -66,7 +66,7 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
     copy_session(&self->session, status);
     status->mode = self->mode;
     status->mission = self->mission;
-    status->wait = self->mode == ARGUS_MODE_WAITING ? self->waiting.why : ARGUS_WAIT_NONE;
+    status->wait = self->mode == ARGUS_MODE_WAITING ? (uint8_t)self->waiting.why : ARGUS_WAIT_NONE;
     status->bar = self->orders.bar;
     status->failure = self->failure;
     status->plan = self->plan;

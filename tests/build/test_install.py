@@ -139,6 +139,68 @@ def test_the_header_is_cxx_too(prefix: Path, tmp_path: Path) -> None:
     run(made)
 
 
+ENUMS = """#include <argus/argus.h>
+#include <string.h>
+static struct { argus_status_t status; unsigned char beyond[256]; } s;
+static struct { argus_suspicions_t suspicions; unsigned char beyond[256]; } d;
+static argus_storage_t storage;
+int main(void) {
+    argus_config_t config;
+    memset(&s, 0x5A, sizeof s);
+    memset(&d, 0x5A, sizeof d);
+    argus_config_default(&config);
+    const argus_config_report_t report = argus_config_check(&config);
+    argus_t *const argus = argus_init(&storage, &config, 0);
+    argus_status(argus, &s.status);
+    argus_suspicions(argus, &d.suspicions);
+    for (int i = 0; i < 256; i++) {
+        if (s.beyond[i] != 0x5A || d.beyond[i] != 0x5A) { return 1; }
+    }
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        if (s.status.health[i] != ARGUS_UNKNOWN && s.status.health[i] != ARGUS_STALE) { return 2; }
+    }
+    return report.fault == ARGUS_CONFIG_OK && report.key == -1 && s.status.mode == ARGUS_MODE_OFFLINE ? 0 : 3;
+}
+"""
+"""A program that looks behind what the library writes into its structs."""
+
+
+def compile_enums(prefix: Path, made: Path, *flags: str) -> subprocess.CompletedProcess[str]:
+    source = made.with_suffix(".c")
+    source.write_text(ENUMS)
+    library = next(prefix.rglob("libargus.a"))
+    command = ["cc", "-std=c11", f"-I{prefix}/include", *flags, str(source), str(library), "-o", str(made)]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("flags", [(), ("-fshort-enums",), ("-O2", "-fshort-enums"), ("-DARGUS_SONARS=16",)])
+def test_a_program_with_other_options_of_its_compiler_is_not_overwritten(
+    prefix: Path, tmp_path: Path, flags: tuple[str, ...]
+) -> None:
+    done = compile_enums(prefix, tmp_path / "enums", *flags)
+    assert done.returncode == 0, done.stderr
+    assert subprocess.run([tmp_path / "enums"], check=False).returncode == 0
+
+
+@pytest.mark.parametrize("sonars", [8, 24, 32])
+def test_a_program_with_another_number_of_sonars_does_not_link(
+    prefix: Path, tmp_path: Path, sonars: int
+) -> None:
+    done = compile_enums(prefix, tmp_path / "enums", f"-DARGUS_SONARS={sonars}")
+    assert done.returncode != 0
+    assert f"argus_init_for_{sonars}_sonars" in done.stderr
+
+
+def test_no_public_struct_has_an_enumeration_in_it(prefix: Path) -> None:
+    # Its width is the compiler's choice (-fshort-enums, as on bare ARM), and so would be the struct's.
+    text = re.sub(r"//[^\n]*", "", (prefix / "include/argus/argus.h").read_text())
+    enums = set(re.findall(r"typedef enum \{[^{}]*\} (\w+);", text))
+    structs = re.findall(r"typedef (?:struct|union) \{([^{}]*)\} \w+;", text)
+    assert len(enums) >= 15
+    assert len(structs) >= 10
+    assert [body for body in structs if enums & set(re.findall(r"\w+", body))] == []
+
+
 def test_uninstall_takes_all_of_it_away(tmp_path: Path) -> None:
     prefix, manifest = tmp_path / "prefix", tmp_path / "install_manifest.txt"
     manifest.write_text(install(prefix))

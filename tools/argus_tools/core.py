@@ -24,6 +24,7 @@ _PLACES: Final = (
 )
 AUTO: Final = "auto"
 _SONARS: Final = 16
+_INIT: Final = f"argus_init_for_{_SONARS}_sonars"
 _PACKET_MAX: Final = 256
 _RECORD_MAX: Final = 65536
 _NO_SONAR: Final = -1
@@ -44,11 +45,12 @@ class _Names(IntEnum):
     HEALTH = 7
     KIND = 8
     OP = 9
+    BAR = 10
 
 
 _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_config_default": (None, (ctypes.c_void_p,)),
-    "argus_init": (ctypes.c_void_p, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32)),
+    _INIT: (ctypes.c_void_p, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32)),
     "argus_link_up": (None, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_link_lost": (None, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_receive": (None, (ctypes.c_void_p, ctypes.c_uint32, ctypes.c_char_p, ctypes.c_size_t)),
@@ -266,7 +268,7 @@ class Core:
         for key, value in (given or {}).items():
             self._library.argus_shim_config_set(config, settings()[key][0], value)
         self._check(config)
-        self._library.argus_init(self._core, config, now_ms & 0xFFFFFFFF)
+        getattr(self._library, _INIT)(self._core, config, now_ms & 0xFFFFFFFF)
         self._brief = ctypes.create_string_buffer(self._library.argus_shim_brief_size())
 
     def _check(self, config: Any) -> None:

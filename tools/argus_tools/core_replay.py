@@ -42,7 +42,7 @@ class Engine:
         library.argus_config_default(config)
         for key, value in given.items():
             library.argus_shim_config_set(config, settings()[key][0], value)
-        library.argus_init(core, config, 0)
+        library.argus_init_for_16_sonars(core, config, 0)
         room = _CHANGES
         rows = (ctypes.c_uint32 * (_FIELDS * room))()
         found = library.argus_shim_replay(core, times_ms, lengths, count, packets, rows, room)

@@ -175,16 +175,16 @@ typedef enum {
 
 // The arithmetic of S5 (DESIGN.md, safety invariants), so that a refusal can show it.
 typedef struct {
-    argus_config_fault_t fault; // the first that was found
-    int32_t key;                // row of the table, for ARGUS_CONFIG_RANGE, else -1
-    int32_t overhang_mm;        // body front ahead of the sonar faces
-    int32_t reaction_ms;        // sonar refresh + SIP period + SIP and command on the wire
-    int32_t travel_mm;          // speed x reaction
-    int32_t brake_mm;           // speed^2 / (2 decel), decel at most the robot's own (300 mm/s2)
-    int32_t driving_mm;         // overhang + travel + brake: must be < object_range_mm
-    int32_t reach_mm;           // largest reading of a point that the body sweeps in one step
-    int32_t stepping_mm;        // reach + 3 noise + 20: must be < check_range_mm
-    int32_t speed_mm_s;         // the settings in force: what ARGUS_AUTO stands for with this robot
+    int32_t fault;       // argus_config_fault_t: the first that was found
+    int32_t key;         // row of the table, for ARGUS_CONFIG_RANGE, else -1
+    int32_t overhang_mm; // body front ahead of the sonar faces
+    int32_t reaction_ms; // sonar refresh + SIP period + SIP and command on the wire
+    int32_t travel_mm;   // speed x reaction
+    int32_t brake_mm;    // speed^2 / (2 decel), decel at most the robot's own (300 mm/s2)
+    int32_t driving_mm;  // overhang + travel + brake: must be < object_range_mm
+    int32_t reach_mm;    // largest reading of a point that the body sweeps in one step
+    int32_t stepping_mm; // reach + 3 noise + 20: must be < check_range_mm
+    int32_t speed_mm_s;  // the settings in force: what ARGUS_AUTO stands for with this robot
     int32_t object_range_mm;
     int32_t check_range_mm;
 } argus_config_report_t;
@@ -517,43 +517,43 @@ typedef enum {
 
 // A copy of everything a screen, a log or a test wants to see.
 typedef struct {
-    argus_mode_t mode;       // what it is doing
-    argus_mission_t mission; // how the course stands
-    argus_wait_t wait;       // why, in mode WAITING, else ARGUS_WAIT_NONE
-    argus_bar_t bar;         // why this robot may not be driven
-    argus_failure_t failure; // of the sonars that face forward
-    argus_plan_t plan;       // how the healthy ones cover for those
-    argus_pose_t pose;       // by odometry
-    int32_t goal_mm;         // straight-line distance to the last waypoint, 0 without a course
-    uint16_t waypoint;       // next waypoint, from 0
-    uint16_t waypoints;      // of the course
-    bool reversed;           // the rear leads; what is in the robot's frame is as it is built nonetheless
-    bool active;             // false: passive
-    bool paused;             // by the operator's STOP
-    bool open;               // there is a session with a robot
-    bool online;             // ... and SIPs are coming
-    bool motors;             // on, as the robot says
-    bool lists_all;          // the server lists every sonar in every SIP
-    uint16_t battery_dv;     // decivolts
-    int16_t vel_left_mm_s;   // of the left wheel, as the robot says
-    int16_t vel_right_mm_s;  // of the right one
-    uint16_t flags;          // of the SIP
-    uint8_t bumpers_front;   // bits 1..5, bit 1 leftmost
-    uint8_t bumpers_rear;    // likewise
-    uint8_t sonars;          // that are managed, from 0: those beyond are ABSENT
-    argus_mask_t forward;    // those that face forward, of the leading end
-    int16_t bearing_deg[ARGUS_SONARS];     // whither each looks, robot frame
-    uint16_t reading_mm[ARGUS_SONARS];     // as on the wire; 0: never reported, or so read
-    uint32_t age_ms[ARGUS_SONARS];         // UINT32_MAX: never reported
-    uint32_t readings[ARGUS_SONARS];       // monotonic
-    argus_health_t health[ARGUS_SONARS];   // for people; a program looks at kind
-    argus_fault_kind_t kind[ARGUS_SONARS]; // ARGUS_KIND_NONE: to be used; else not
-    argus_mask_t pinned;                   // sonars whose health an operator has fixed, a mask
-    uint32_t packets;                      // with a right checksum; monotonic counters, like what follows
-    uint32_t sips;                         // of those
-    uint32_t bad_checksums;                // packets with a wrong one
-    uint32_t skipped_bytes;                // of no packet
-    uint32_t stops;                        // STOP and E_STOP that were sent
+    uint8_t mode;           // argus_mode_t: what it is doing
+    uint8_t mission;        // argus_mission_t: how the course stands
+    uint8_t wait;           // argus_wait_t: why, in mode WAITING, else ARGUS_WAIT_NONE
+    uint8_t bar;            // argus_bar_t: why this robot may not be driven
+    uint8_t failure;        // argus_failure_t, of the sonars that face forward
+    argus_plan_t plan;      // how the healthy ones cover for those
+    argus_pose_t pose;      // by odometry
+    int32_t goal_mm;        // straight-line distance to the last waypoint, 0 without a course
+    uint16_t waypoint;      // next waypoint, from 0
+    uint16_t waypoints;     // of the course
+    bool reversed;          // the rear leads; what is in the robot's frame is as it is built nonetheless
+    bool active;            // false: passive
+    bool paused;            // by the operator's STOP
+    bool open;              // there is a session with a robot
+    bool online;            // ... and SIPs are coming
+    bool motors;            // on, as the robot says
+    bool lists_all;         // the server lists every sonar in every SIP
+    uint16_t battery_dv;    // decivolts
+    int16_t vel_left_mm_s;  // of the left wheel, as the robot says
+    int16_t vel_right_mm_s; // of the right one
+    uint16_t flags;         // of the SIP
+    uint8_t bumpers_front;  // bits 1..5, bit 1 leftmost
+    uint8_t bumpers_rear;   // likewise
+    uint8_t sonars;         // that are managed, from 0: those beyond are ABSENT
+    argus_mask_t forward;   // those that face forward, of the leading end
+    int16_t bearing_deg[ARGUS_SONARS]; // whither each looks, robot frame
+    uint16_t reading_mm[ARGUS_SONARS]; // as on the wire; 0: never reported, or so read
+    uint32_t age_ms[ARGUS_SONARS];     // UINT32_MAX: never reported
+    uint32_t readings[ARGUS_SONARS];   // monotonic
+    uint8_t health[ARGUS_SONARS];      // argus_health_t, for people; a program looks at kind
+    uint8_t kind[ARGUS_SONARS];        // argus_fault_kind_t: ARGUS_KIND_NONE: to be used; else not
+    argus_mask_t pinned;               // sonars whose health an operator has fixed, a mask
+    uint32_t packets;                  // with a right checksum; monotonic counters, like what follows
+    uint32_t sips;                     // of those
+    uint32_t bad_checksums;            // packets with a wrong one
+    uint32_t skipped_bytes;            // of no packet
+    uint32_t stops;                    // STOP and E_STOP that were sent
     const char *robot_name;     // identity from the SYNC2 reply, "" before; they live as long as the instance
     const char *robot_class;    // likewise
     const char *robot_subclass; // likewise
@@ -567,9 +567,9 @@ typedef struct {
 
 // How far the evidence against each sonar is on its way to a verdict (profile argus; else all is 0).
 typedef struct {
-    argus_fault_kind_t kind[ARGUS_SONARS]; // the fault that explains it best so far, NONE: none
-    uint8_t percent[ARGUS_SONARS];         // 100: a verdict
-    argus_mask_t against[ARGUS_SONARS];    // sonars that contradict it, a mask
+    uint8_t kind[ARGUS_SONARS];         // argus_fault_kind_t that explains it best so far, NONE: none
+    uint8_t percent[ARGUS_SONARS];      // 100: a verdict
+    argus_mask_t against[ARGUS_SONARS]; // sonars that contradict it, a mask
 } argus_suspicions_t;
 
 // What argus_name() names.
@@ -613,14 +613,14 @@ typedef enum {
 
 // What has come since the last pass, and room for what goes to the client.
 typedef struct {
-    argus_readings_t readings; // of sonars that are out
-    bool there;                // a client is at the port
-    const uint8_t *client;     // its bytes
-    size_t client_count;       // how many
-    const uint8_t *robot;      // the robot's, which argus_receive() has just taken
-    size_t robot_count;        // how many
-    uint8_t *out;              // where bytes for the client go
-    size_t capacity;           // how many fit
+    uint8_t readings;      // argus_readings_t, of sonars that are out
+    bool there;            // a client is at the port
+    const uint8_t *client; // its bytes
+    size_t client_count;   // how many
+    const uint8_t *robot;  // the robot's, which argus_receive() has just taken
+    size_t robot_count;    // how many
+    uint8_t *out;          // where bytes for the client go
+    size_t capacity;       // how many fit
 } argus_port_io_t;
 
 // Bytes of one guard port.
@@ -644,7 +644,11 @@ argus_config_report_t argus_config_check(const argus_config_t *config);
 
 // Starts from nothing: no robot, every sonar UNKNOWN, no course. `config` is copied; it should have passed
 // argus_config_check(), otherwise the manager starts passive and stays so. The result is in `storage`. Cost:
-// the storage is cleared once.
+// the storage is cleared once. Its symbol has the number of sonars in its name, so that a program that was
+// built with another ARGUS_SONARS than the library does not link.
+#define ARGUS_TAG_JOINED(name, sonars) name##_for_##sonars##_sonars
+#define ARGUS_TAG(name, sonars) ARGUS_TAG_JOINED(name, sonars)
+#define argus_init ARGUS_TAG(argus_init, ARGUS_SONARS)
 argus_t *argus_init(argus_storage_t *storage, const argus_config_t *config, uint32_t now_ms);
 
 // The course: 1..ARGUS_WAYPOINTS_MAX points in the frame of the robot's odometry at connection (x ahead, y
