@@ -14,6 +14,7 @@
 #define SEEN_LEFT_MM 100    // of it that is left
 #define SEEN_DOUBTED_MM 200 // of it, where one is doubted: with less it goes at the speed of a step
 #define LEAST_MM_S 30       // no setting is slower
+#define LEAST_WAY_MM 10     // of a MOVE, while there is a way
 #define SPEED_STEP_MM_S 25  // the speed asked for changes by so much at a time
 #define SWING_TURNING_MM 10 // of the margin so much is left in a turn: readings scatter
 #define SWING_SPARE_MM 10   // backing away makes so much more room than a turn asks for
@@ -150,9 +151,23 @@ int32_t argus_guard_unseen_way_mm(const argus_guard_t *const self) {
     return argus_max(0, argus_within(FASTEST_MM_S, speed_mm_s)) * self->late_ms / 1000;
 }
 
+// Of a robot that does not keep to SETV the length of a MOVE bounds the speed: it must stand at its end.
+static int32_t bounded_mm(const argus_guard_t *const self, const int32_t way_mm) {
+    const argus_config_t *const config = self->config;
+    const argus_robot_t *const robot = self->knowledge->robot;
+    if (self->faster_mm_s == 0) {
+        return way_mm;
+    }
+    const int32_t range_mm = argus_max(argus_min(read_mm(self), INT16_MAX), config->object_range_mm);
+    const int32_t safe_mm_s = argus_config_speed_mm_s(config, robot, range_mm, self->late_ms);
+    const int32_t decel_mm_s2 = argus_max(config->decel_mm_s2, robot->decel_mm_s2);
+    const int32_t most_mm = argus_max(safe_mm_s * safe_mm_s / (2 * decel_mm_s2), LEAST_WAY_MM);
+    return self->faster_mm_s > safe_mm_s ? argus_min(way_mm, most_mm) : way_mm;
+}
+
 int32_t argus_guard_ahead_mm(const argus_guard_t *const self, const int32_t seen_mm) {
     const int32_t clear_mm = argus_min(argus_max(0, read_mm(self) - self->config->object_range_mm), seen_mm);
-    return argus_max(0, clear_mm - argus_guard_unseen_way_mm(self));
+    return bounded_mm(self, argus_max(0, clear_mm - argus_guard_unseen_way_mm(self)));
 }
 
 bool argus_guard_is_doubted(const argus_guard_t *const self) {

@@ -22,13 +22,14 @@ typedef struct {
     const argus_echoes_t *echoes;
     const argus_rays_t *rays;
     uint32_t now_ms;
-    int32_t late_ms;  // the link, beyond what S5 counts on
-    uint16_t bumpers; // pressed, as far as they were answered
-    uint8_t backed;   // back-offs in this place
-    bool active;      // it may command motions: neither passive nor leaving
-    bool linked;      // a session is open and SIPs come
-    bool checked;     // a full health check has passed since then
-    bool creeps;      // no sonar sees the way, and the operator lets it creep
+    int32_t faster_mm_s; // than it is set, it has been seen to drive; 0: it keeps to that
+    int32_t late_ms;     // the link, beyond what S5 counts on
+    uint16_t bumpers;    // pressed, as far as they were answered
+    uint8_t backed;      // back-offs in this place
+    bool active;         // it may command motions: neither passive nor leaving
+    bool linked;         // a session is open and SIPs come
+    bool checked;        // a full health check has passed since then
+    bool creeps;         // no sonar sees the way, and the operator lets it creep
 } argus_guard_t;
 
 // Ahead ----------------------------------------------------------------------------------------------------

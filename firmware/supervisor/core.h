@@ -5,6 +5,7 @@
 
 #include "adjustment/drive.h"
 #include "adjustment/motion.h"
+#include "adjustment/pace.h"
 #include "adjustment/plan.h"
 #include "adjustment/trim.h"
 #include "analysis/inquiry.h"
@@ -169,6 +170,7 @@ struct argus {
     argus_turning_t turning;
     argus_orders_t orders;
     argus_motion_t motion;
+    argus_pace_t pace;
     uint32_t now_ms;
     uint32_t since_ms; // entry into the mode
     uint32_t ordered_ms;

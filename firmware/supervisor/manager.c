@@ -122,6 +122,7 @@ static void restart_evidence(argus_t *const self) {
 static void on_open(argus_t *const self) {
     ARGUS_ASSERT(argus_is_open(self));
     argus_tell(self, ARGUS_EV_SESSION_OPEN, self->session.attempts);
+    argus_pace_init(&self->pace);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it, for the robot before
     argus_latency_open(self);
     argus_meet_body(self);
@@ -165,6 +166,20 @@ static void take_slip(argus_t *const self) {
     }
 }
 
+// Seen at once that SETV got lost, and soon that it is not heeded.
+static void take_pace(argus_t *const self) {
+    const argus_motion_t *const motion = &self->motion;
+    const bool drives = motion->kind == ARGUS_MOTION_MOVE && !motion->settled;
+    const bool known = self->pace.seen_mm_s > 0;
+    const bool found = argus_pace_sip(&self->pace, &self->knowledge, drives ? motion->speed_mm_s : 0);
+    if (self->pace.sips > 0) {
+        argus_setup_doubt(&self->session.setup, ARGUS_SETUP_SPEED);
+    }
+    if (found && !known) {
+        argus_tell(self, ARGUS_EV_SPEED_EXCEEDED, self->pace.seen_mm_s);
+    }
+}
+
 // A second effector by the same layers: awareness sees a way bend, analysis sizes it, adjustment counters it.
 static void take_bend(argus_t *const self) {
     const argus_motion_t *const motion = &self->motion;
@@ -200,6 +215,7 @@ static void take_evidence(argus_t *const self) {
     }
     take_slip(self);
     take_bend(self);
+    take_pace(self);
 }
 
 // How late the link is, before anything of the SIP is used.

@@ -42,6 +42,7 @@ argus_guard_t argus_guard(const argus_t *const self) {
                            .echoes = &self->echoes,
                            .rays = &self->rays,
                            .now_ms = self->now_ms,
+                           .faster_mm_s = self->pace.seen_mm_s,
                            .late_ms = self->latency.late_ms,
                            .bumpers = self->reflexes.bumpers,
                            .backed = self->turning.backed,

@@ -118,8 +118,9 @@ static void end_leg(const argus_t *const self, argus_travel_t *const mine) {
 
 // The MOVE at work was begun before the robot saw what it sees now (S5).
 static bool is_too_fast(const argus_t *const self, const argus_guard_t *const guard) {
+    const int32_t speed_mm_s = argus_max(self->motion.speed_mm_s, guard->faster_mm_s);
     return self->motion.kind == ARGUS_MOTION_MOVE && !self->motion.settled &&
-           self->motion.speed_mm_s > argus_guard_speed_mm_s(guard, argus_guard_seen_mm(guard));
+           speed_mm_s > argus_guard_speed_mm_s(guard, argus_guard_seen_mm(guard));
 }
 
 static void halt_to_wait(const argus_wait_t why, argus_intent_t *const intent) {

@@ -306,6 +306,8 @@ typedef enum {
     X(81, EVENTS_LOST, ERROR, events, "the event queue overflowed; value: events lost")                      \
     X(82, ORDER_UNANSWERED, WARN, session,                                                                   \
       "an order was sent again and again, and what the robot reports does not show it; value: its number")   \
+    X(83, SPEED_EXCEEDED, WARN, drive,                                                                       \
+      "the robot drives faster than it was set: S5 reckons with the speed seen; value: mm/s")                \
     X(90, INVARIANT, ERROR, manager, "an internal invariant does not hold; value: its number")               \
     X(91, STATUS, OK, status, "periodic picture of all that is known")                                       \
     X(92, LINK_SLOW, WARN, link,                                                                             \
@@ -590,7 +592,7 @@ typedef enum {
 // Instance -------------------------------------------------------------------------------------------------
 
 // Bytes of one manager.
-#define ARGUS_STORAGE_BYTES (13900 + 812 * ARGUS_SONARS)
+#define ARGUS_STORAGE_BYTES (14000 + 812 * ARGUS_SONARS)
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.

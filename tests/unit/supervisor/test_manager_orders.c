@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "knowledge/config.h"
 #include "robot.h"
 #include "unity.h"
 
@@ -156,6 +157,67 @@ void test_a_firing_order_that_was_lost_is_sent_again(void) {
     const int sent = robot.commands;
     robot_run(&robot, 20000);
     TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_POLLING, sent));
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_ORDER_UNANSWERED, 0));
+    finish();
+}
+
+// ---- the speed that it is set, and the one that it drives
+
+// Some robots do not heed SETV in a MOVE. What counts for S5 is the speed that is seen: told once, and from
+// then on each MOVE is so short that the robot is no faster than what it sees allows.
+void test_a_robot_that_races_is_told_of_once_and_held_by_short_ways(void) {
+    start();
+    robot.segments = 0;
+    robot_box(&robot, -1500, -1500, 6000, 1500);
+    robot.races_mm_s = 1000;
+    robot_goal(&robot, 5000, 0);
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_SPEED_EXCEEDED, 15000));
+    TEST_ASSERT_GREATER_THAN(240, robot_last_event(&robot, ARGUS_EV_SPEED_EXCEEDED)->value);
+    robot_run(&robot, 2500); // it brakes
+    double most = 0;
+    for (int i = 0; i < 600; i++) {
+        robot_run(&robot, 100);
+        const argus_config_t *config = &robot.argus.config;
+        const int range_mm = (int)fmax(6000 - robot.x - 300, config->object_range_mm);
+        const double safe =
+            argus_config_speed_mm_s(config, robot.argus.knowledge.robot, (int)fmin(range_mm, 5000), 0);
+        most = fmax(most, robot.v);
+        TEST_ASSERT_TRUE_MESSAGE(robot.v <= safe + 60, told("S5 by the speed seen", (int)robot.v));
+    }
+    TEST_ASSERT_TRUE(most > 30);
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_SPEED_EXCEEDED, 0));
+    TEST_ASSERT_EQUAL(ARGUS_MISSION_REACHED, robot.argus.mission);
+    TEST_ASSERT_TRUE(robot.closest_mm > 100);
+    finish();
+}
+
+// A lower SETV that got lost shows in the wheels: it is sent again at once, and nothing is told.
+void test_a_lower_speed_that_got_lost_is_sent_again(void) {
+    start();
+    robot.segments = 0;
+    robot_box(&robot, -1500, -1500, 9000, 1500);
+    robot_goal(&robot, 8000, 0);
+    for (int i = 0; i < 2000 && robot.v < 450; i++) {
+        robot_tick(&robot);
+    }
+    TEST_ASSERT_TRUE(robot.v >= 450);
+    robot.ignores[ARCOS_CMD_SETV] = true;
+    for (int i = 0; i < 2000 && robot.argus.motion.speed_mm_s >= 450; i++) {
+        robot_tick(&robot);
+    }
+    robot.ignores[ARCOS_CMD_SETV] = false; // one alone was lost
+    robot_run(&robot, 20000);
+    TEST_ASSERT_EQUAL(ARGUS_MISSION_REACHED, robot.argus.mission);
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_SPEED_EXCEEDED, 0));
+    finish();
+}
+
+void test_a_robot_that_keeps_to_its_speed_is_never_said_to_race(void) {
+    start();
+    robot_goal(&robot, 3500, 600);
+    robot_run(&robot, 40000);
+    TEST_ASSERT_EQUAL(ARGUS_MISSION_REACHED, robot.argus.mission);
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_SPEED_EXCEEDED, 0));
     TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_ORDER_UNANSWERED, 0));
     finish();
 }

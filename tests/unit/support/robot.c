@@ -210,7 +210,8 @@ static void translate(robot_t *robot) {
     double target = fmax(-robot->setv, fmin(robot->vel, robot->setv));
     if (robot->moving) {
         const double reach = sqrt(2 * robot->decel * fabs(robot->left_mm));
-        target = copysign(fmin(robot->setv, reach), robot->left_mm);
+        const double most = robot->races_mm_s > 0 ? robot->races_mm_s : robot->setv;
+        target = copysign(fmin(most, reach), robot->left_mm);
     }
     const double rate = fabs(target) > fabs(robot->v) ? robot->accel : robot->decel;
     robot->v = toward(robot->v, target, rate * TICK_S);

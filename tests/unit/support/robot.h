@@ -85,6 +85,7 @@ struct robot {
     double x0, y0, th0; // odometry origin
     double unit_mm;     // per position unit
     uint16_t position_mask;
+    double races_mm_s; // a MOVE runs at this, whatever SETV says; 0: it keeps to that
     bool motors, stop_button, stuck_wheels;
     bool deny_motors; // ENABLE 1 has no effect
     bool e_stop_cuts_motors;
