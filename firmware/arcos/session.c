@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-
 #define LISTEN_MS 250
 #define FLUSH_MS 100
 #define STEP_MS 500
@@ -351,12 +350,13 @@ static unsigned on_open(argus_session_t *self, const argus_config_t *config, uin
 }
 
 // It still reports: CLOSE did not arrive.
-static void close_again(argus_session_t *self, uint32_t now_ms) {
+static unsigned close_again(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
     ARGUS_ASSERT(self->state == ARGUS_SESSION_LEAVING);
-    if (self->outbox.length == 0 && elapsed_ms(now_ms, self->spoke_ms) >= LEAVE_AGAIN_MS) {
+    if (is_sip(packet) && self->outbox.length == 0 && elapsed_ms(now_ms, self->spoke_ms) >= LEAVE_AGAIN_MS) {
         argus_outbox_plain(&self->outbox, ARCOS_CMD_STOP);
         argus_outbox_plain(&self->outbox, ARCOS_CMD_CLOSE);
     }
+    return 0;
 }
 
 static unsigned on_packet(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
@@ -374,10 +374,7 @@ static unsigned on_packet(argus_session_t *self, const argus_config_t *config, u
     case ARGUS_SESSION_OPEN:
         return on_open(self, config, now_ms, packet);
     case ARGUS_SESSION_LEAVING:
-        if (is_sip(packet)) {
-            close_again(self, now_ms);
-        }
-        return 0;
+        return close_again(self, now_ms, packet);
     default:
         return 0;
     }

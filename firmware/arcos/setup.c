@@ -164,6 +164,20 @@ static bool is_at_origin(const argus_sip_t *sip) {
            magnitude(sip->heading_raw) <= NEAR_ZERO_TURN;
 }
 
+// A speed other than 0 is a client's, who drives.
+static bool rests(const argus_sip_t *sip, int32_t value) {
+    return value != 0 || wheel_of(sip) <= REST_MM_S;
+}
+
+// Slower than its speed a robot may be for many reasons.
+static answer_t shows_speed(const argus_sip_t *sip, int32_t value) {
+    return magnitude(speed_of(sip) - value) <= value / 8 ? YES : UNTOLD;
+}
+
+static bool are_on(const argus_sip_t *sip, int32_t value) {
+    return (value & 1) == 0 || (sip->flags & SONAR_FLAGS) != 0 || sip->sonar_count > 0;
+}
+
 static answer_t says(bool holds) {
     return holds ? YES : NO;
 }
@@ -174,13 +188,13 @@ static answer_t shown_by_sip(const argus_setup_t *self, argus_setup_row_t row, c
     case SLOWING:
         return says(wheel_of(sip) <= REST_MM_S);
     case REST:
-        return says(value != 0 || wheel_of(sip) <= REST_MM_S); // other than 0 a client drives
+        return says(rests(sip, value));
     case ORIGIN:
         return says(is_at_origin(sip));
     case SPEED:
-        return magnitude(speed_of(sip) - value) <= value / 8 ? YES : UNTOLD;
+        return shows_speed(sip, value);
     case SONARS:
-        return says((value & 1) == 0 || (sip->flags & SONAR_FLAGS) != 0 || sip->sonar_count > 0);
+        return says(are_on(sip, value));
     case MOTORS:
         return says((value != 0) == ((sip->flags & ARCOS_FLAG_MOTORS) != 0));
     case FIRING:

@@ -116,6 +116,11 @@ static void add(argus_dark_t *const dark, const int32_t nats, const argus_mask_t
     dark->by |= by;
 }
 
+static bool hears_within(const argus_knowledge_t *const knowledge, const int sonar, const int32_t mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    return argus_trusted(knowledge, sonar) && knowledge->sonar[sonar].reading_mm <= mm;
+}
+
 // One abeam, of another array, that is relied on: the way since it was heard last counts while it hears
 // something near.
 static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowledge, const int sonar) {
@@ -123,9 +128,8 @@ static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowle
     argus_passed_t *const passed = &dark->passed[argus_robot_pose(knowledge->robot, sonar).y_mm > 0];
     const int32_t way_mm = (int32_t)(knowledge->odometer_mm - passed->odometer_mm);
     const bool apart = way_mm > APART_MM;
-    const uint16_t reading_mm = knowledge->sonar[sonar].reading_mm;
-    const bool near = argus_trusted(knowledge, sonar) && reading_mm <= NEAR_MM;
-    const bool lasting = argus_trusted(knowledge, sonar) && reading_mm <= LASTING_MM;
+    const bool near = hears_within(knowledge, sonar, NEAR_MM);
+    const bool lasting = hears_within(knowledge, sonar, LASTING_MM);
     passed->mm += passed->near && near && !apart ? way_mm : 0;
     passed->stretch_mm += passed->lasting && lasting && !apart ? way_mm : 0;
     passed->near = near;
@@ -234,7 +238,7 @@ static void look_at(argus_common_t *const self, const argus_knowledge_t *const k
     count_lost(self, knowledge, dark);
     dark->news = (!was_dark && at_once) || comes_to_doubt(dark);
     pass_all(dark, knowledge);
-    dark->proven = dark->proven || is_proven(dark, run, whole);
+    dark->proven |= is_proven(dark, run, whole);
 }
 
 void argus_common_sip(argus_common_t *const self, const argus_knowledge_t *const knowledge) {

@@ -306,12 +306,16 @@ static void take_rest(argus_t *const core, argus_port_t *const self, const argus
     }
 }
 
+static void take_session(argus_t *const core, argus_port_t *const self, const uint8_t command) {
+    if (command == ARCOS_CMD_CLOSE || command == ARCOS_CMD_RESET) {
+        close_session(core, self);
+    }
+}
+
 static void take_command(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
     switch ((argus_topic_t)said->topic) {
     case ARGUS_TOPIC_SESSION:
-        if (said->command == ARCOS_CMD_CLOSE || said->command == ARCOS_CMD_RESET) {
-            close_session(core, self);
-        }
+        take_session(core, self, said->command);
         break;
     case ARGUS_TOPIC_WAY:
     case ARGUS_TOPIC_TURN:
@@ -470,19 +474,24 @@ static void watch_silence(argus_t *const core, argus_port_t *const self) {
     }
 }
 
+static void watch_driver(argus_t *const core, argus_port_t *const self, const bool stays, const bool news) {
+    if (core->stalled) {
+        argus_hold_forget(&self->hold); // its own session sends VEL 0 and RVEL 0
+    } else if (stays) {
+        argus_hold_still(core, &self->hold);
+        argus_hold_watch(core, &self->hold);
+    } else if (news) {
+        argus_hold_watch(core, &self->hold);
+        give_motors(core, self);
+    }
+}
+
 static void watch_motion(argus_t *const core, argus_port_t *const self, const bool news) {
     const bool stays = core->orders.stay && !self->stayed;
     self->stayed = core->orders.stay;
     yield(core, self);
-    const bool drives = self->phase == ARGUS_PORT_OPEN && self->drives;
-    if (drives && core->stalled) {
-        argus_hold_forget(&self->hold); // its own session sends VEL 0 and RVEL 0
-    } else if (drives && stays) {
-        argus_hold_still(core, &self->hold);
-        argus_hold_watch(core, &self->hold);
-    } else if (drives && news) {
-        argus_hold_watch(core, &self->hold);
-        give_motors(core, self);
+    if (self->phase == ARGUS_PORT_OPEN && self->drives) {
+        watch_driver(core, self, stays, news);
     }
     if (self->parting && news) {
         part(core, self);

@@ -21,7 +21,7 @@ argus_follows_t argus_config_follows(const argus_config_t *config);
 void argus_config_follow(argus_config_t *config, argus_follows_t follows, const argus_robot_t *robot);
 
 // As argus_config_check(), for a robot.
-argus_config_report_t argus_config_check_for(const argus_config_t *config, const argus_robot_t *robot);
+argus_config_report_t argus_config_check_for(const argus_config_t *asked, const argus_robot_t *robot);
 
 // Each setting that is out of its range becomes its default: what is refused is not run with, either.
 void argus_config_mend(argus_config_t *config);

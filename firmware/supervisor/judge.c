@@ -48,6 +48,13 @@ static bool stands(argus_t *const self, const int sonar, const argus_fault_kind_
     return kind != ARGUS_KIND_NONE && self->now_ms - naming->since_ms >= NAME_STANDS_MS;
 }
 
+// A suspicion lasts as long as the evidence, or a look that is to judge it.
+static bool is_kept(const argus_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    return argus_evidence_holds(&self->evidence, sonar) || self->mode == ARGUS_MODE_VERIFYING ||
+           self->looks.asked;
+}
+
 // A suspect carries the kind that the evidence names so far.
 static void name(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
@@ -64,8 +71,7 @@ static void name(argus_t *const self, const int sonar) {
         argus_rays_forget(&self->rays, sonar); // nothing that it has seen is counted on
         argus_replan(self);
     }
-    const bool held = self->mode == ARGUS_MODE_VERIFYING || self->looks.asked;
-    if (s->health == ARGUS_SUSPECT && !argus_evidence_holds(&self->evidence, sonar) && !doubted && !held) {
+    if (s->health == ARGUS_SUSPECT && !doubted && !is_kept(self, sonar)) {
         argus_forget_name(self, sonar);
         argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, s->reading_mm);
         argus_replan(self);

@@ -122,9 +122,14 @@ static bool is_pressed(const argus_t *const self, const argus_ask_t order) {
     }
 }
 
+// With a link that is too late only the motors may be switched.
+static bool is_reached(const argus_t *const self, const argus_wants_t wants) {
+    const bool late = self->latency.stands && wants != ARGUS_WANTS_MOTORS;
+    return argus_is_open(self) && !self->stalled && !self->orders.shutdown && !late;
+}
+
 argus_permit_t argus_permit(const argus_t *const self, const argus_ask_t order) {
-    if (!argus_is_open(self) || self->stalled || self->orders.shutdown ||
-        (self->latency.stands && order.wants != ARGUS_WANTS_MOTORS)) {
+    if (!is_reached(self, order.wants)) {
         return ARGUS_PERMIT_NO_ROBOT;
     }
     if (is_stopped(self, order)) {

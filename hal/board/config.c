@@ -232,23 +232,28 @@ size_t board_config_pack(const argus_config_t *base, const argus_config_t *confi
     return 2 + PAIR_BYTES * pairs;
 }
 
-// False: by the place of a word, as older builds stored it, or a word that the table has no more. A number of
-// another range, or a key that there is no more, is left out.
+// False: a word that the table has no more. A number of another range is left out.
+static bool take_meaning(argus_config_t *config, int row, uint32_t meaning) {
+    const bool picked = is_picked(row);
+    const int32_t value = picked ? picked_by(row, meaning) : (int32_t)meaning;
+    if (picked && value < 0) {
+        return false;
+    }
+    if (picked || value == defaults[row] || is_in_range(row, value)) {
+        put_value(config, row, value);
+    }
+    return true;
+}
+
+// False: by the place of a word, as older builds stored it, or a word that the table has no more. A key that
+// there is no more is left out.
 static bool take_pair(argus_config_t *config, uint32_t key, uint32_t meaning) {
     for (int row = 0; row < BOARD_CONFIG_COUNT; row++) {
-        const bool picked = is_picked(row);
-        if (picked && key == key_digest(row)) {
+        if (is_picked(row) && key == key_digest(row)) {
             return false;
         }
-        if (key != stored_key(row)) {
-            continue;
-        }
-        const int32_t value = picked ? picked_by(row, meaning) : (int32_t)meaning;
-        if (picked && value < 0) {
-            return false;
-        }
-        if (picked || value == defaults[row] || is_in_range(row, value)) {
-            put_value(config, row, value);
+        if (key == stored_key(row)) {
+            return take_meaning(config, row, meaning);
         }
     }
     return true;
