@@ -247,7 +247,9 @@ bool argus_guard_is_home(const argus_guard_t *const self, const int32_t base_cde
 
 static int32_t swing_mm(const argus_guard_t *const self) {
     ARGUS_ASSERT(self->knowledge->robot->swing_radius_mm >= 0);
-    return self->knowledge->robot->swing_radius_mm + self->profile->swing_margin_mm;
+    const int32_t margin_mm = self->profile->swing_margin_mm;
+    return self->knowledge->robot->swing_radius_mm +
+           (self->squeezes ? argus_min(margin_mm, SWING_TURNING_MM) : margin_mm);
 }
 
 static int32_t remembered_mm(const argus_guard_t *const self, const int32_t back_mm) {

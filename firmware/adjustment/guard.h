@@ -29,6 +29,7 @@ typedef struct {
     bool active;         // it may command motions: neither passive nor leaving
     bool linked;         // a session is open and SIPs come
     bool checked;        // a full health check has passed since then
+    bool squeezes;       // it has waited for room to turn: what the body needs will do
     bool creeps;         // no sonar sees the way, and the operator lets it creep
 } argus_guard_t;
 

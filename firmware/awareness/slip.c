@@ -12,11 +12,11 @@
 #define END_MM 250      // ... and one of the end: what fell silent on the way tells nothing of it
 #define TURNED_CDEG 500 // a straight way turns less
 #define ALONG_CDEG 1500 // a range so far off the way changes with it; farther off a wall beside keeps it
-#define ABEAM_CDEG 9000
-#define BESIDE 2       // ... as far off as this many times what is heard abeam of it
-#define NEAR_MM 2500   // echoes from farther off come and go
-#define STAYS_MM 100   // less than a change: of 500
-#define FITS_MM 200    // off what the odometry says
+#define BESIDE_SINE (ARGUS_TRIG_ONE * 98 / 100) // within 10 degrees of abeam
+#define BESIDE 2                                // ... as far off as this many times what is heard abeam of it
+#define NEAR_MM 2500                            // echoes from farther off come and go
+#define STAYS_MM 100                            // less than a change: of 500
+#define FITS_MM 200                             // off what the odometry says
 #define FITS_WANTED 2  // ranges that change as they should end a doubt: one may be chance
 #define TURN_CDEG 3500 // so far turned a sonar looks where another one has looked
 #define BESIDE_CDEG 1000
@@ -86,12 +86,30 @@ static int32_t heard_there_mm(const argus_slip_t *const self, const argus_knowle
     return 0;
 }
 
+// How far beside the way the nearest thing is on a side, in the beginning or now: a door in a wall beside the
+// one end is no door all along. INT32_MAX: nothing was heard.
+static int32_t beside_mm(const argus_slip_t *const self, const argus_knowledge_t *const knowledge,
+                         const bool left) {
+    int32_t nearest_mm = INT32_MAX;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const int32_t bearing = bearing_cdeg(knowledge, i);
+        const int32_t sine = argus_sin(left ? bearing : -bearing);
+        if (sine < BESIDE_SINE) {
+            continue;
+        }
+        const int32_t now_mm = argus_usable(knowledge, i) ? knowledge->sonar[i].reading_mm : INT16_MAX;
+        const int32_t then_mm = self->reading_mm[i] != 0 ? self->reading_mm[i] : INT16_MAX;
+        const int32_t reading_mm = argus_min(now_mm, then_mm);
+        nearest_mm =
+            reading_mm < INT16_MAX ? argus_min(nearest_mm, reading_mm * sine / ARGUS_TRIG_ONE) : nearest_mm;
+    }
+    return nearest_mm;
+}
+
 // At both ends of the way it may hear a wall that runs along it, out at the edge of its cone.
 static bool hears_beside(const argus_slip_t *const self, const argus_knowledge_t *const knowledge,
                          const int sonar) {
-    const int32_t wall_mm =
-        heard_there_mm(self, knowledge, bearing_cdeg(knowledge, sonar) > 0 ? ABEAM_CDEG : -ABEAM_CDEG);
-    return wall_mm != 0 && self->reading_mm[sonar] / BESIDE >= wall_mm;
+    return self->reading_mm[sonar] / BESIDE >= beside_mm(self, knowledge, bearing_cdeg(knowledge, sonar) > 0);
 }
 
 static void ask(const argus_slip_t *const self, const argus_knowledge_t *const knowledge, const int sonar,

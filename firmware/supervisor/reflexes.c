@@ -80,6 +80,11 @@ static void touched(argus_intent_t *const intent, const argus_stop_t stop) {
     argus_to_wait(intent, ARGUS_WAIT_BUMPER);
 }
 
+// What comes to a robot that stands is no place.
+static bool is_struck(const argus_t *const self) {
+    return argus_at_rest(&self->knowledge) && !argus_motion_is_under_way(&self->motion);
+}
+
 // New contact only: bits already answered are let be until they clear.
 static void sees_bumper(const argus_t *const self, const argus_alarm_t *const alarm,
                         argus_reflexes_t *const mine, argus_intent_t *const intent) {
@@ -100,7 +105,7 @@ static void sees_bumper(const argus_t *const self, const argus_alarm_t *const al
     mine->bumped_odometer_mm = knowledge->odometer_mm;
     note_touch(self, mine, knowledge->bumpers_front != 0);
     argus_to_say(intent, ARGUS_EV_BUMPER, ARGUS_NO_SONAR, pressed);
-    intent->met = ARGUS_CONTACT_BUMPER;
+    intent->met = is_struck(self) ? ARGUS_CONTACT_NONE : ARGUS_CONTACT_BUMPER;
     touched(intent, ARGUS_STOP_E_STOP);
 }
 

@@ -4,6 +4,7 @@
 
 #include "knowledge/angle.h"
 
+#define SQUEEZE_MS 3000u
 #define HEMMED_IN_MS 10000u // people who stand beside it walk on
 
 argus_policy_t argus_policy(const argus_t *const self) {
@@ -35,6 +36,12 @@ static bool leads_with_bumper(const argus_t *const self) {
     return robot->front_bumpers > 0 && (robot->reversed ? told->rear_bumpers : told->front_bumpers) > 0;
 }
 
+// People who stand beside it have had time to walk on; what is left needs no more room than the body.
+static bool is_waiting_to_turn(const argus_t *const self) {
+    const argus_waiting_t *const waiting = &self->waiting;
+    return waiting->last == ARGUS_WAIT_TURN && self->now_ms - waiting->since_ms >= SQUEEZE_MS;
+}
+
 argus_guard_t argus_guard(const argus_t *const self) {
     argus_guard_t guard = {.config = &self->config,
                            .profile = argus_rules(self),
@@ -48,7 +55,8 @@ argus_guard_t argus_guard(const argus_t *const self) {
                            .backed = self->turning.backed,
                            .active = argus_is_active(self),
                            .linked = argus_is_open(self) && !self->stalled && !self->latency.stands,
-                           .checked = self->checked};
+                           .checked = self->checked,
+                           .squeezes = is_waiting_to_turn(self)};
     guard.creeps = self->config.creep_mm_s > 0 && leads_with_bumper(self) && argus_is_unseen(self, &guard);
     return guard;
 }

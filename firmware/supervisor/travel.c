@@ -20,6 +20,8 @@
 #define FLANK_MM 130
 #define CREEP_MM 150      // of a MOVE: what it still does when the link fails
 #define CREEP_LEFT_MM 60  // ... and so much before what was touched
+#define MOVE_LEAST_MM 5   // of a MOVE: with less some robots do nothing,
+#define MOVE_SLOW_MM 100  // ... and with less some take longer than is waited for
 #define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
 
 // The SIP is not used up yet.
@@ -336,6 +338,12 @@ static void move_on(const argus_t *const self, const argus_guard_t *const guard,
     }
 }
 
+// At rest before what bars the way, but for so little that the robot makes nothing of it, or makes it for
+// ever: it has come as far as it can.
+static bool stands_before(const argus_t *const self, const int32_t free_mm, const bool heeded) {
+    return self->knowledge.still_sips > 0 && free_mm < (heeded ? MOVE_LEAST_MM : MOVE_SLOW_MM);
+}
+
 static void drive_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
                      argus_intent_t *const intent) {
     if (!argus_guard_sees_ahead(guard)) {
@@ -358,10 +366,15 @@ static void drive_on(const argus_t *const self, const argus_guard_t *const guard
     }
     mine->stopped_short = false;
     const int32_t free_mm = argus_guard_ahead_mm(guard, seen_mm);
+    const bool heeded = is_heeded(self, mine);
+    if (stands_before(self, free_mm, heeded)) {
+        blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm, intent);
+        return;
+    }
     if (free_mm == 0) {
         return; // a fresh reading will tell
     }
-    if (!is_heeded(self, mine)) {
+    if (!heeded) {
         halt_to_wait(ARGUS_WAIT_MOTORS, intent);
         return;
     }

@@ -165,6 +165,42 @@ void test_s7_no_turn_with_an_echo_in_the_swing_circle(void) {
     }
 }
 
+// One that has waited for room in vain turns where its body can.
+void test_s7_after_waiting_what_the_body_needs_will_do(void) {
+    use(ARGUS_PROFILE_ARGUS);
+    for (int squeezes = 0; squeezes < 2; squeezes++) {
+        g.squeezes = squeezes != 0;
+        echo_at(384);
+        TEST_ASSERT_EQUAL(squeezes != 0, argus_guard_may_turn(&g));
+        echo_at(370 + 10);
+        TEST_ASSERT_FALSE(argus_guard_may_turn(&g));
+    }
+    use(ARGUS_PROFILE_PAPER); // its circle has no margin to give
+    echo_at(370);
+    TEST_ASSERT_FALSE(argus_guard_may_turn(&g));
+}
+
+// What was touched is a reading that does not go away, whatever the sonars hear.
+void test_s5_a_place_that_was_touched_is_kept_away_from(void) {
+    use(ARGUS_PROFILE_ARGUS);
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_guard_touched_mm(&g));
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        k.sonar[i].reading_mm = 5000;
+    }
+    k.heard = UINT16_MAX;
+    const int32_t fast_mm_s = argus_guard_speed_mm_s(&g, INT32_MAX);
+    k.bumpers_front = 1u << 3;
+    argus_echoes_met(&e, &k, ARGUS_CONTACT_BUMPER);
+    k.pose.x_mm -= 300;
+    const int32_t touched_mm = argus_guard_touched_mm(&g);
+    TEST_ASSERT_INT32_WITHIN(2, 330 + k.robot->front_mm - k.robot->sonar_face_mm, touched_mm);
+    TEST_ASSERT_TRUE(argus_guard_ahead_mm(&g, INT32_MAX) <= touched_mm - config.object_range_mm);
+    TEST_ASSERT_TRUE(argus_guard_speed_mm_s(&g, INT32_MAX) < fast_mm_s);
+    k.pose.x_mm += 200;
+    TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g, INT32_MAX));
+    TEST_ASSERT_FALSE(argus_guard_may_turn(&g));
+}
+
 void test_s7_no_turn_with_a_bumper_pressed_or_without_leave(void) {
     TEST_ASSERT_TRUE(argus_guard_may_turn(&g));
     g.bumpers = 1u << 8;

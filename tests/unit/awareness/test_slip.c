@@ -64,6 +64,20 @@ void test_what_stays_ahead_and_behind_for_two_stretches_is_slip(void) {
     TEST_ASSERT_INT_WITHIN(2 * SIP_MM, 0, slip.first.x_mm);
 }
 
+// A wall along the way is heard ahead and behind at the edge of the cone, and stays as far off. It does so,
+// too, where a door is beside the robot at one end of a stretch.
+void test_a_door_in_a_wall_beside_the_way_hides_no_wall(void) {
+    for (int walled = 0; walled < 2; walled++) {
+        setUp();
+        walls();
+        k.sonar[0].reading_mm = k.sonar[15].reading_mm = 4000; // a door, where it begins
+        TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS / 2, 0, 0));
+        k.sonar[0].reading_mm = k.sonar[15].reading_mm = walled != 0 ? 650 : 4000;
+        TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS / 2 + 2, 0, 0));
+        TEST_ASSERT_EQUAL(walled == 0, slip.proof > 0);
+    }
+}
+
 void test_one_stretch_is_chance(void) {
     walls();
     TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS + 2, 0, 0));

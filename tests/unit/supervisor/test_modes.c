@@ -148,6 +148,7 @@ void test_a_bumper_comes_first(void) {
     argus_alarm_t alarm = {.dead = 1u << 3, .object_sonar = -1, .bumper = true};
     begin(1);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 20000));
+    robot_run(&robot, 1000); // what comes to a robot that stands is no place
     robot.argus.knowledge.bumpers_front = 1u << 2;
     argus_intent_t intent = {0};
     argus_reflex(ARGUS_REFLEX_bumper, &robot.argus, &alarm, &robot.argus.reflexes, &intent);

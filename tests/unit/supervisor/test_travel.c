@@ -52,6 +52,19 @@ void test_s5_it_hurries_where_the_way_is_free_and_slows_down_before_a_wall(void)
     finish();
 }
 
+// Some robots do nothing for a MOVE of a few millimetres. So little way is none: the robot looks for another.
+void test_a_way_of_a_few_millimetres_is_none(void) {
+    start(ARGUS_PROFILE_ARGUS);
+    hall(8000);
+    TEST_ASSERT_TRUE(robot_goal(&robot, 3000, 0));
+    robot.fault[6] = ROBOT_VALUE;
+    robot.fault_value[6] = (uint16_t)(robot.argus.config.object_range_mm + 3);
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_OBJECT, 20000));
+    TEST_ASSERT_EQUAL(6, robot_last_event(&robot, ARGUS_EV_OBJECT)->sonar);
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_WAITING, 0));
+    finish();
+}
+
 // Whatever comes up before it, whenever: it stands before it.
 void test_s5_what_comes_up_ahead_is_not_touched(void) {
     for (int range_mm = 500; range_mm <= 2500; range_mm += 125) {
