@@ -18,10 +18,11 @@
 #define SEEN_LEAST_MM 200 // of the way; with less it stops to look
 #define SEEN_AGAIN_MM 500 // ... then wants so much, or sweeps: else it would stop again at once
 #define FLANK_MM 130
-#define CREEP_MM 150      // of a MOVE: what it still does when the link fails
-#define CREEP_LEFT_MM 60  // ... and so much before what was touched
-#define MOVE_LEAST_MM 5   // of a MOVE: with less some robots do nothing,
-#define MOVE_SLOW_MM 100  // ... and with less some take longer than is waited for
+#define CREEP_MM 150     // of a MOVE: what it still does when the link fails
+#define CREEP_LEFT_MM 60 // ... and so much before what was touched
+#define MOVE_LEAST_MM 5  // of a MOVE: with less some robots do nothing,
+#define MOVE_SLOW_MM 100 // ... and with less some take longer than is waited for
+#define MOVE_STANDS_MS 1000u
 #define UNHEEDED_MS 3000u // MOVE after MOVE for so long and the robot stands: it does not obey
 
 // The SIP is not used up yet.
@@ -340,8 +341,10 @@ static void move_on(const argus_t *const self, const argus_guard_t *const guard,
 
 // At rest before what bars the way, but for so little that the robot makes nothing of it, or makes it for
 // ever: it has come as far as it can.
-static bool stands_before(const argus_t *const self, const int32_t free_mm, const bool heeded) {
-    return self->knowledge.still_sips > 0 && free_mm < (heeded ? MOVE_LEAST_MM : MOVE_SLOW_MM);
+static bool stands_before(const argus_t *const self, const argus_travel_t *const mine, const int32_t free_mm,
+                          const bool heeded) {
+    const bool stands = self->now_ms - mine->heeded_ms >= MOVE_STANDS_MS;
+    return stands && free_mm < (heeded ? MOVE_LEAST_MM : MOVE_SLOW_MM);
 }
 
 static void drive_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
@@ -367,7 +370,7 @@ static void drive_on(const argus_t *const self, const argus_guard_t *const guard
     mine->stopped_short = false;
     const int32_t free_mm = argus_guard_ahead_mm(guard, seen_mm);
     const bool heeded = is_heeded(self, mine);
-    if (stands_before(self, free_mm, heeded)) {
+    if (stands_before(self, mine, free_mm, heeded)) {
         blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm, intent);
         return;
     }
