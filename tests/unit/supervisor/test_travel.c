@@ -57,10 +57,12 @@ void test_a_way_of_a_few_millimetres_is_none(void) {
     start(ARGUS_PROFILE_ARGUS);
     hall(8000);
     TEST_ASSERT_TRUE(robot_goal(&robot, 3000, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 20000));
+    robot_run(&robot, 1000);
     robot.fault[6] = ROBOT_VALUE;
     robot.fault_value[6] = (uint16_t)(robot.argus.config.object_range_mm + 3);
-    robot.stuck_wheels = true; // they make nothing of it
-    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_OBJECT, 20000));
+    robot.stuck_wheels = true;                                          // they make nothing of it
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_OBJECT, 2500)); // before it is taken for motors
     TEST_ASSERT_EQUAL(6, robot_last_event(&robot, ARGUS_EV_OBJECT)->sonar);
     TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_WAITING, 0));
     finish();
