@@ -10,6 +10,7 @@
 #include "adjustment/trim.h"
 #include "analysis/inquiry.h"
 #include "analysis/verify.h"
+#include "arcos/roundtrip.h"
 #include "arcos/session.h"
 #include "argus/argus.h"
 #include "awareness/awareness.h"
@@ -22,7 +23,6 @@
 #include "knowledge/profile.h"
 #include "knowledge/rays.h"
 #include "supervisor/events.h"
-#include "supervisor/latency.h"
 #include "task/task.h"
 
 // The heading to return to after verification and sweeps (S4).
@@ -82,6 +82,17 @@ typedef struct {
     uint32_t t_ms;
     bool valid;
 } argus_near_t;
+
+// How late the link is; all zero: nothing is late.
+typedef struct {
+    argus_roundtrip_t trip;
+    int32_t late_ms;   // beyond what S5 counts on anyway: of late the most, fading
+    int32_t before_ms; // ... in the last SIP
+    uint8_t level;     // said last: 0 prompt, 1 slower, 2 stands
+    uint8_t calm_sips; // in a row with nothing overdue
+    bool overdue;      // an order that was sent has not shown yet: no new motion
+    bool stands;
+} argus_latency_t;
 
 // What the reflexes remember.
 typedef struct {

@@ -3,7 +3,6 @@
 #include "supervisor/latency.h"
 
 #include "knowledge/angle.h"
-#include "supervisor/core.h"
 #include "supervisor/mode.h"
 #include "supervisor/modes.h"
 #include "supervisor/say.h"
