@@ -212,7 +212,9 @@ static argus_bound_t trailing(const argus_t *const self, const argus_guard_t *co
     argus_bound_t bound =
         by_clearance(guard, free_mm_of(self, looks, true), knowledge->robot->rear_overhang_mm);
     // The manager itself backs no faster: beside the rear no sonar hears a wall that slants in.
-    bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.speed_mm_s);
+    const bool heard = !guard->profile->asks_echo || (knowledge->heard & looks) != 0;
+    const int32_t most_mm_s = heard ? self->config.speed_mm_s : argus_guard_unseen_mm_s(guard);
+    bound.speed_mm_s = argus_min(bound.speed_mm_s, most_mm_s);
     return bound;
 }
 

@@ -36,6 +36,7 @@ void argus_hold_forget(argus_hold_client_t *const self) {
     memset(&self->given, 0, sizeof self->given);
     self->way_due = self->turn_due = false;
     self->given.bumpers = before.bumpers;
+    self->given.stalls = before.stalls;
     self->given.slanted = before.slanted;
     self->given.slant_cdeg = before.slant_cdeg;
     self->given.slant_mm = before.slant_mm;
@@ -474,11 +475,25 @@ static bool is_hit(argus_t *const core, argus_given_t *const given) {
     return fresh;
 }
 
+// S2, likewise; the event is the manager's own.
+static bool is_stalled(const argus_t *const core, argus_given_t *const given) {
+    const uint8_t stalls = (uint8_t)argus_built_stalls(&core->knowledge);
+    const bool fresh = (stalls & ~(unsigned)given->stalls) != 0;
+    given->stalls = stalls;
+    return fresh;
+}
+
 void argus_hold_watch(argus_t *const core, argus_hold_client_t *const self) {
+    const bool stalled = is_stalled(core, &self->given);
     if (is_hit(core, &self->given)) {
         argus_outbox_urgent(outbox(core), ARCOS_CMD_E_STOP);
         argus_hold_forget(self);
         argus_say(core, ARGUS_EV_GUARD_HELD, ARGUS_NO_SONAR, (int32_t)ARGUS_BOUND_BUMPER);
+        return;
+    }
+    if (stalled) {
+        argus_outbox_urgent(outbox(core), ARCOS_CMD_STOP);
+        argus_hold_forget(self);
         return;
     }
     tell_free(core, &self->given);

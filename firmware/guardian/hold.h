@@ -24,6 +24,7 @@ typedef struct {
     uint8_t woven_sips;   // that it has been there
     int32_t base_cdeg;    // ... about this heading, course frame
     uint16_t bumpers;     // pressed at the last SIP
+    uint8_t stalls;       // wheels that stalled then
     bool slanted;         // the way ahead slanted into a wall beside
     int32_t slant_cdeg;   // ... at this heading, course frame
     uint32_t slant_mm;    // ... and this odometer

@@ -462,21 +462,31 @@ static void watch_client(argus_t *const core, argus_port_t *const self, const bo
     }
 }
 
+static bool wants(const argus_hold_client_t *const hold) {
+    return hold->wish.way != ARGUS_WISH_REST || hold->wish.turn != ARGUS_WISH_STRAIGHT || hold->given.rolls;
+}
+
 // A robot's own watchdog leaves the session open; so does this one.
 static void watch_silence(argus_t *const core, argus_port_t *const self) {
     const bool silent = core->now_ms - self->heard_ms >= watchdog_ms(core);
-    const bool wants = self->hold.wish.way != ARGUS_WISH_REST ||
-                       self->hold.wish.turn != ARGUS_WISH_STRAIGHT || self->hold.given.rolls;
-    if (self->phase == ARGUS_PORT_OPEN && self->drives && wants && silent) {
+    if (self->phase == ARGUS_PORT_OPEN && self->drives && wants(&self->hold) && silent) {
         argus_say(core, ARGUS_EV_GUARD_LOST, ARGUS_NO_SONAR, PARTED_SILENT);
         argus_outbox_urgent(&core->session.outbox, ARCOS_CMD_STOP);
         argus_hold_forget(&self->hold);
     }
 }
 
+// S2, with no SIP. When they come again the robot's own session sends VEL 0 and RVEL 0.
+static void stand(argus_t *const core, argus_port_t *const self) {
+    if (wants(&self->hold)) {
+        argus_outbox_urgent(&core->session.outbox, ARCOS_CMD_STOP);
+    }
+    argus_hold_forget(&self->hold);
+}
+
 static void watch_driver(argus_t *const core, argus_port_t *const self, const bool stays, const bool news) {
     if (core->stalled) {
-        argus_hold_forget(&self->hold); // its own session sends VEL 0 and RVEL 0
+        stand(core, self);
     } else if (stays) {
         argus_hold_still(core, &self->hold);
         argus_hold_watch(core, &self->hold);

@@ -54,7 +54,7 @@ static const double posts[][4] = {BOX(-3000, -3000, 3000, 3000), BOX(700, 150, 7
 static const double wall_beside[][4] = {{-3000, 300, 3000, 300}, {2000, 300, 2000, -2000}};
 static const double niche[][4] = {{-500, 330, 900, 330}, {900, 330, 900, -330}, {900, -330, -500, -330}};
 static const double slant[][4] = {
-    {-500, -330, 4000, 900}, {-2000, 1500, 4000, 1400}, {1500, -3000, 1500, 3000}};
+    {-500, -700, 4000, 530}, {-2000, 1500, 4000, 1400}, {1500, -3000, 1500, 3000}};
 #define WORLD(walls) {walls, sizeof walls / sizeof walls[0]}
 static const struct {
     const double (*walls)[4];
@@ -279,7 +279,7 @@ static void operate(input_t *input) {
     const bool counts = argus_operator(core(), sim.plant.now_ms, op, value);
     if (op == ARGUS_OP_STOP || (op == ARGUS_OP_PASSIVE && !sim.guard)) {
         hold(true);
-    } else if (counts && op != ARGUS_OP_RECHECK && op < ARGUS_OP_RETEST) {
+    } else if (counts && op < ARGUS_OP_RETEST) { // any order for all of it lets it go
         hold(false);
     }
     drain();
@@ -434,6 +434,7 @@ static void replay(const char *path) {
 
 int main(int argc, char **argv) {
     shows = getenv("FUZZ_SHOW") != NULL;
+    setvbuf(stdout, NULL, _IONBF, 0);
     for (int i = 1; i < argc; i++) {
         replay(argv[i]);
     }

@@ -325,6 +325,7 @@ static void say_sip(plant_t *self) {
         }
     }
     data[19] = (uint8_t)n;
+    data[21 + 3 * n] = self->port;
     put16(data + 25 + 3 * n, 126);
     say(self, data, 20 + 3 * n + 12);
 }
@@ -447,6 +448,9 @@ static void obey(plant_t *self, uint8_t command, int32_t value, const uint8_t *d
     case 32:
         go(self, ((int8_t)data[2] + (int8_t)data[3]) * 10.0);
         spin(self, ((int8_t)data[3] - (int8_t)data[2]) * 20.0 / TRACK_MM);
+        break;
+    case 35:
+        self->port = (uint8_t)value;
         break;
     case 55:
     case 57:

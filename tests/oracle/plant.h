@@ -32,7 +32,8 @@ typedef struct {
     double left_mm, heading, vel, rvel;
     bool moving, turning, motors, sonar_on, braking;
     double setv, accel, decel, setrv, setra;
-    int phase; // 0..2 SYNC, 3 open
+    uint8_t port; // ADSEL
+    int phase;    // 0..2 SYNC, 4 answered, 3 open
     uint32_t heard_ms, next_sip_ms, next_ping_ms;
     // What is wrong with it.
     uint8_t bumpers_front, bumpers_rear, stalls; // pressed besides those of a contact

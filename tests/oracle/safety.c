@@ -30,6 +30,7 @@ enum {
     SONAR = 28,
     STOP = 29,
     VEL2 = 32,
+    ADSEL = 35,
     SONAR_CYCLE = 48,
     E_STOP = 55,
     QSTOP = 57,
@@ -769,6 +770,7 @@ static bool is_sent(uint8_t command, int32_t value) {
     case STOP:
     case E_STOP:
     case SONAR_CYCLE:
+    case ADSEL:
         return true;
     case SETV:
     case SETRV:

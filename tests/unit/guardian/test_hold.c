@@ -84,6 +84,14 @@ void test_vel_back_stands_before_a_wall(void) {
     drive_at_wall(-750);
 }
 
+// S5: either end, until a sonar that looks there has heard an echo.
+void test_back_is_slow_where_nothing_was_ever_heard(void) {
+    begin(2500, 9000, 9000);
+    client_say(&client, ARCOS_CMD_VEL, -200);
+    run(4000);
+    TEST_ASSERT_EQUAL_INT(-100, (int)(robot.v - 0.5));
+}
+
 void test_it_slows_down_first(void) {
     begin(2500, 2500, 2500);
     client_say(&client, ARCOS_CMD_VEL, 750);

@@ -258,6 +258,61 @@ void test_an_operators_stop_holds_until_he_says_go(void) {
     TEST_ASSERT_TRUE(robot.v > 200);
 }
 
+// With no ENABLE: it only listens.
+static void open_client(void) {
+    client_plain(&client, ARCOS_SYNC_SYNC0);
+    client_plain(&client, ARCOS_SYNC_SYNC1);
+    client_plain(&client, ARCOS_SYNC_SYNC2);
+    client_say(&client, ARCOS_CMD_OPEN, 1);
+}
+
+// Also against a client that has not driven yet: with its first motion the manager becomes passive.
+void test_an_operators_stop_holds_against_a_clients_first_motion(void) {
+    open_client();
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_STOP, 0));
+    client_say(&client, ARCOS_CMD_VEL, 300);
+    client_say(&client, ARCOS_CMD_RVEL, 30);
+    client_run(&client, 2000, true);
+    TEST_ASSERT_TRUE(robot.v == 0.0 && robot.w == 0.0);
+    TEST_ASSERT_EQUAL_INT32(ARGUS_BOUND_HALTED, robot_last_event(&robot, ARGUS_EV_GUARD_HELD)->value);
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_GO, 0));
+    client_run(&client, 2000, true);
+    TEST_ASSERT_TRUE(robot.v > 200);
+}
+
+// What a client stopped it may start again.
+void test_a_clients_own_stop_does_not_hold_it(void) {
+    open_client();
+    client_plain(&client, ARCOS_CMD_STOP);
+    client_say(&client, ARCOS_CMD_VEL, 300);
+    client_run(&client, 2000, true);
+    TEST_ASSERT_TRUE(robot.v > 200);
+}
+
+// S2: a stall ends what the client wanted, once.
+void test_a_stall_stops_a_client(void) {
+    drive();
+    const int before = sent(ARCOS_CMD_STOP);
+    robot.stall = true;
+    client_run(&client, 500, true);
+    TEST_ASSERT_EQUAL_INT(before + 1, sent(ARCOS_CMD_STOP));
+    robot.stall = false;
+    client_run(&client, 2000, true);
+    TEST_ASSERT_TRUE(robot.v == 0.0);
+    client_say(&client, ARCOS_CMD_VEL, 100);
+    client_run(&client, 1000, true);
+    TEST_ASSERT_TRUE(robot.v > 90);
+}
+
+// S2: at once, not with the next PULSE.
+void test_no_sip_stops_a_client(void) {
+    drive();
+    const int before = sent(ARCOS_CMD_STOP);
+    robot.mute = true;
+    client_run(&client, 740, true); // 600 ms, and what is left of a SIP's period
+    TEST_ASSERT_EQUAL_INT(before + 1, sent(ARCOS_CMD_STOP));
+}
+
 void test_an_operator_takes_the_robot_back(void) {
     drive();
     TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_ACTIVE, 0));
