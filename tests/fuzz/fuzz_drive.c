@@ -33,7 +33,8 @@ typedef struct {
 } sim_t;
 
 static sim_t sim;
-static bool shows; // a replay tells what passes
+static bool shows;             // a replay tells what passes
+static const char *input_line; // ... of this input
 static sim_t *opened[SCENARIOS];
 
 static argus_t *core(void) {
@@ -413,32 +414,53 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length) {
     const int broken = argus_invariants_broken(core());
     if (safety_count(&sim.monitor) != 0 || broken != 0) {
         complain();
-        fprintf(stderr, "invariants broken: %d\n", broken);
+        fprintf(stderr, "invariants broken: %d\n%s", broken, input_line != NULL ? input_line : "");
         abort();
     }
     return 0;
 }
 
 #ifdef FUZZ_REPLAY
-static void replay(const char *path) {
-    static uint8_t bytes[4096];
-    FILE *const file = fopen(path, "rb");
+// An input is a line of hexadecimal digits; what stands behind a blank is a remark.
+static size_t read_line(const char *line, uint8_t *bytes, size_t capacity) {
+    size_t length = 0;
+    unsigned byte = 0;
+    while (length < capacity && sscanf(line + 2 * length, "%2x", &byte) == 1 && line[2 * length] != ' ') {
+        bytes[length++] = (uint8_t)byte;
+    }
+    return length;
+}
+
+static unsigned replay(const char *path) {
+    static char line[1024];
+    uint8_t bytes[256];
+    unsigned inputs = 0;
+    FILE *const file = fopen(path, "r");
     if (file == NULL) {
         fprintf(stderr, "%s: cannot be read\n", path);
         exit(2);
     }
-    const size_t length = fread(bytes, 1, sizeof bytes, file);
+    while (fgets(line, sizeof line, file) != NULL) {
+        const size_t length = line[0] == '#' ? 0 : read_line(line, bytes, sizeof bytes);
+        if (length > 0) {
+            inputs++;
+            input_line = line;
+            LLVMFuzzerTestOneInput(bytes, length);
+        }
+    }
     fclose(file);
-    LLVMFuzzerTestOneInput(bytes, length);
+    return inputs;
 }
 
+// With FUZZ_SHOW in the environment it tells all that passes on the wire.
 int main(int argc, char **argv) {
+    unsigned inputs = 0;
     shows = getenv("FUZZ_SHOW") != NULL;
     setvbuf(stdout, NULL, _IONBF, 0);
     for (int i = 1; i < argc; i++) {
-        replay(argv[i]);
+        inputs += replay(argv[i]);
     }
-    printf("%d inputs, no rule broken\n", argc - 1);
-    return argc > 1 ? 0 : 2;
+    printf("%u inputs, no rule broken\n", inputs);
+    return inputs > 0 ? 0 : 2;
 }
 #endif

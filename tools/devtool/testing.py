@@ -20,6 +20,7 @@ from devtool.ros import ros_tests
 from devtool.stages import Stage, making
 
 PYTEST: Final = (VENV / "bin/python", "-m", "pytest", "-q")
+FUZZ_RUNS: Final = 1_000_000
 IN_REAL_TIME: Final = ("tests/hil", "tests/can", "tests/target", "tests/monitor", "tests/ros")
 BY_THEMSELVES: Final = (*IN_REAL_TIME, "tests/packages")
 COMPUTING: Final = ("tests", *(f"--ignore={folder}" for folder in BY_THEMSELVES))
@@ -66,6 +67,31 @@ def wide_tests(run: Run) -> None:
     ctest("release", run, "-L", WIDE)
     ctest("sanitize", run, "-L", f"{SOAK}|{WIDE}")
     run([*PYTEST, *files_with(WIDE, TOUR), "-m", WIDE, *SHARED_OUT])
+
+
+def fuzz_tests(run: Run) -> None:
+    """Run the fuzz target with libFuzzer on inputs that grow from its corpus; one that breaks a rule is kept."""
+    build("sanitize", run)
+    folder = BUILD / "fuzz"
+    inputs = folder / "inputs"
+    inputs.mkdir(parents=True, exist_ok=True)
+    for line in (ROOT / "tests/fuzz/corpus.txt").read_text(encoding="utf-8").splitlines():
+        if not line.startswith("#"):
+            word = line.split()[0]
+            (inputs / word[:40]).write_bytes(bytes.fromhex(word))
+    with making():
+        run(["cmake", "--build", BUILD / "sanitize", "--target", "fuzz_drive", "-j", str(CORES)])
+    run(
+        [
+            BUILD / "sanitize/fuzz_drive",
+            "-entropic=0",
+            "-max_len=64",
+            f"-runs={FUZZ_RUNS}",
+            f"-fork={CORES}",
+            f"-artifact_prefix={folder}/",
+            inputs,
+        ]
+    )
 
 
 def hil_tests(run: Run) -> str | None:
@@ -130,6 +156,12 @@ SOAK_STAGES: Final = (
         "sweeps over many seeds, and the long C tests under the sanitizers",
         wide_tests,
         ("release", "sanitize"),
+    ),
+    Stage(
+        "fuzz",
+        "manager, guard port and robot under the monitor of S1 to S8, a million inputs",
+        fuzz_tests,
+        ("sanitize",),
     ),
 )
 QUICK_STAGES: Final = (TABLES, RELEASE, CORTEX_M4, PYTHON)
