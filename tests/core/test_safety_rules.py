@@ -85,9 +85,9 @@ def near(sonar: int, mm: int) -> dict[int, int]:
     return {**dict.fromkeys(ARRAY, 3000), sonar: mm}
 
 
-def drives(**settings: int) -> Trace:
+def drives() -> Trace:
     """A trace in which the robot is told to go ahead at 200 mm/s, and does."""
-    return Trace(**settings).sip().say(6, 200).say(8, 3000).sip(v=200)
+    return Trace().sip().say(6, 200).say(8, 3000).sip(v=200)
 
 
 def blind(trace: Trace, metres: int) -> Trace:
@@ -95,6 +95,23 @@ def blind(trace: Trace, metres: int) -> Trace:
     trace.monitor.health([("DISABLED", "off") if n == 3 else ("HEALTHY", "none") for n in ARRAY])
     for _ in range(metres):
         trace.sip(v=200)
+    return trace
+
+
+def alone(out: int, sips: int) -> Trace:
+    """So many sonars are out, and the robot goes on."""
+    trace = drives()
+    trace.monitor.health([("DISABLED", "off")] * out)
+    for _ in range(sips):
+        trace.sip(v=200)
+    return trace
+
+
+def without(sonar: int, sips: int) -> Trace:
+    """One sonar reports no more, and the robot goes on."""
+    trace = drives()
+    for _ in range(sips):
+        trace.sip({n: 3000 for n in ARRAY if n != sonar}, 200)
     return trace
 
 
@@ -123,19 +140,7 @@ def swept(back_deg: int) -> Trace:
 Case = Callable[[], Trace]
 CASES: Final[dict[str, tuple[int, Case, Case]]] = {
     "S1 far": (11, lambda: blind(drives(), 40), lambda: blind(drives(), 2)),
-    "S1 none": (
-        12,
-        lambda: (
-            (t := drives()).monitor.health([("DISABLED", "off")] * 16),
-            [t.sip(v=200) for _ in range(20)],
-            t,
-        )[2],
-        lambda: (
-            (t := drives()).monitor.health([("DISABLED", "off")] * 15),
-            [t.sip(v=200) for _ in range(1)],
-            t,
-        )[2],
-    ),
+    "S1 none": (12, lambda: alone(16, 20), lambda: alone(15, 1)),
     "S2 bumper": (21, lambda: drives().sip(v=200, front=8), lambda: drives().sip(v=200, front=8).say(55)),
     "S2 bumper, STOP is not enough": (
         21,
@@ -144,11 +149,7 @@ CASES: Final[dict[str, tuple[int, Case, Case]]] = {
     ),
     "S2 stall": (22, lambda: drives().sip(v=200, front=1), lambda: drives().sip(v=200, front=1).say(29)),
     "S2 object": (23, lambda: drives().sip(near(3, 250), 200), lambda: drives().sip(near(3, 251), 200)),
-    "S2 silent": (
-        24,
-        lambda: [t := drives(), [t.sip({n: 3000 for n in ARRAY if n != 3}, 200) for _ in range(20)], t][2],
-        lambda: [t := drives(), [t.sip({n: 3000 for n in ARRAY if n != 3}, 200) for _ in range(14)], t][2],
-    ),
+    "S2 silent": (24, lambda: without(3, 20), lambda: without(3, 14)),
     "S2 no SIP": (25, lambda: drives().wait(800), lambda: drives().wait(640).say(29).wait(400)),
     "S2 resume": (
         26,
