@@ -40,6 +40,22 @@ _PAUSE_S: Final = 1.0
 _LEVELS: Final = (INFO, WARNING, ERROR, WARNING)
 _MOTORS_BIT: Final = 1
 _MOVING_MM_S: Final = 5
+_REPLY_S: Final = 2.0
+_SILENT_S: Final = 1.0
+_SILENT_PERIODS: Final = 1.5
+_DELETE_ALL: Final = 1
+_NO_RING: Final[dict[str, Any]] = {
+    "mode": "OFFLINE",
+    "mission": "none",
+    "failure": "IsNormal",
+    "active": False,
+    "online": False,
+    "trusted": 0,
+    "health": [],
+    "fault": [],
+    "injected": [],
+    "plan_deg": [],
+}
 
 Put = Callable[[str, str, int, dict[str, Any]], None]
 """Topic, name of the schema, time, message."""
@@ -70,6 +86,17 @@ class Translator:
         self._sonars = sonars_of("")
         self._health: list[str] = []
         self._fault: list[str] = []
+        self._ring: dict[str, Any] = dict(_NO_RING)
+
+    def expire(self, t_ns: int) -> None:
+        """Take back what is shown: nothing is known of the robot any more."""
+        ring = self._ring | {"online": False, "trusted": 0, "health": ["STALE"] * len(self._health)}
+        self._put(RING, "argus.Ring", t_ns, ring)
+        self._delete_beams(t_ns)
+
+    def _delete_beams(self, t_ns: int) -> None:
+        deletion = {"timestamp": stamp_of(t_ns), "type": _DELETE_ALL, "id": ""}
+        self._put(BEAMS, "foxglove.SceneUpdate", t_ns, {"deletions": [deletion], "entities": []})
 
     def take(self, message: dict[str, Any], t_ns: int) -> None:
         """Take one object of a stream."""
@@ -119,7 +146,9 @@ class Translator:
             "motors": bool(state["flags"] & _MOTORS_BIT),
         }
         self._put(STATE, "argus.RobotState", t_ns, robot)
-        ring = {
+        if self._ring["online"] and not state["online"]:
+            self._delete_beams(t_ns)
+        self._ring = {
             "mode": state["mode"],
             "mission": state["mission"],
             "failure": state["state"],
@@ -131,7 +160,7 @@ class Translator:
             "injected": state.get("injected", []),
             "plan_deg": state["plan_deg"],
         }
-        self._put(RING, "argus.Ring", t_ns, ring)
+        self._put(RING, "argus.Ring", t_ns, self._ring)
 
     def _event(self, event: dict[str, Any], t_ns: int) -> None:
         level = _LEVELS[min(int(event["level"]), len(_LEVELS) - 1)]
@@ -184,14 +213,18 @@ class Server:
         self._server.stop()
 
 
-def follow(place: str, token: str | None, server: Server, period_ms: int) -> None:
-    """Translate what one connection brings, until it ends."""
-    translator = Translator(server.put)
-    with Client(place, token) as argus:
-        print(f"argus-foxglove: {place}: connected", file=sys.stderr, flush=True)
-        argus.watch("events", "state", "readings", period_ms=period_ms)
-        while True:
-            translator.take(argus.message(), time.time_ns())
+def follow(place: str, token: str | None, put: Put, period_ms: int) -> None:
+    """Translate what one connection brings, until it ends or carries nothing; then what is shown is taken back."""
+    translator = Translator(put)
+    silent_s = max(_SILENT_S, _SILENT_PERIODS * period_ms / 1000)
+    try:
+        with Client(place, token, timeout_s=_REPLY_S) as argus:
+            print(f"argus-foxglove: {place}: connected", file=sys.stderr, flush=True)
+            argus.watch("events", "state", "readings", period_ms=period_ms)
+            while True:
+                translator.take(argus.message(silent_s), time.time_ns())
+    finally:
+        translator.expire(time.time_ns())  # again with each try: who comes later is to see it, too
 
 
 def run(args: argparse.Namespace) -> int:
@@ -204,8 +237,8 @@ def run(args: argparse.Namespace) -> int:
     try:
         while True:
             try:
-                follow(args.control, token, server, args.period)
-            except (ControlError, Refused) as error:
+                follow(args.control, token, server.put, args.period)
+            except (ControlError, Refused, TimeoutError) as error:
                 if str(error) != told:
                     print(f"argus-foxglove: {error}", file=sys.stderr, flush=True)
                 told = str(error)
@@ -261,7 +294,7 @@ def parser() -> argparse.ArgumentParser:
         f"(always: {FOXGLOVE[0]}, pages of localhost, programs)",
     )
     made.add_argument(
-        "--period", type=int, default=100, metavar="MS", help="between two states, 50 to 10000 (default: 100)"
+        "--period", type=int, default=100, metavar="MS", help="between two states, 50 to 1000 (default: 100)"
     )
     add_version(made)
     return made
@@ -275,8 +308,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     if not 0 <= args.port <= 65535:
         parser().error(f"--port {args.port}: give 0 to 65535")
-    if not 50 <= args.period <= 10_000:
-        parser().error(f"--period {args.period}: give 50 to 10000")
+    if not 50 <= args.period <= 1000:
+        parser().error(f"--period {args.period}: give 50 to 1000")
     if not args.beyond_loopback and not is_loopback(args.host):
         parser().error(f"--host {args.host}: others could look on; --beyond-loopback allows it")
     try:

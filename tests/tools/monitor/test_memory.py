@@ -135,3 +135,24 @@ def test_a_slow_page_gets_the_newest_state_and_every_event_it_has_room_for() -> 
     assert events == list(range(len(events)))
     assert len(events) >= 100
     assert lines[-1] == {"lost": "lines", "count": 2000 - len(events)}
+
+
+@pytest.mark.parametrize(
+    ("t", "unix", "anew"),
+    [
+        (300.0, 1300.0, False),
+        (300.0, 1300.4, False),
+        (300.0, 5300.0, True),
+        (3.0, 1300.0, True),
+        (9.0, 900.0, True),
+    ],
+)
+def test_another_run_of_argusd_is_known_by_its_beginning(t: float, unix: float, anew: bool) -> None:
+    # It may have run for longer than the one before, when the page was away for so long.
+    memory = Memory()
+    memory.take(state(200.0, unix=1200.0))
+    memory.reconnected()
+    assert ({"anew": True} in memory.take(state(t, unix=unix))) is anew
+    assert {"anew": True} not in memory.take(
+        state(t + 1, unix=unix + 3600)
+    )  # a clock that is set is no new run

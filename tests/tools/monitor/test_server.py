@@ -8,6 +8,7 @@ import asyncio
 import json
 import logging
 import re
+import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
@@ -143,6 +144,45 @@ def on_site(
 )
 def test_who_may_come_in(host: str, origin: str | None, site: str | None, path: str, allowed: bool) -> None:
     assert (why_refused(host, origin, site, path) == "") is allowed
+
+
+@pytest.mark.parametrize(
+    ("host", "origin", "allowed"),
+    [
+        ("robot.example", "https://robot.example", True),
+        ("127.0.0.1:8642", "https://robot.example", True),  # a proxy that names us
+        ("robot.example", "https://evil.example", False),
+        ("robot.example", "http://robot.example:81", False),
+        ("evil.example", "https://robot.example", False),
+        ("robot.example.evil.example", None, False),
+    ],
+)
+def test_behind_a_proxy_only_its_name_may_come_in(host: str, origin: str | None, allowed: bool) -> None:
+    why = why_refused(host, origin, "same-origin", "/live", ("https://robot.example",))
+    assert (why == "") is allowed
+
+
+def test_a_page_is_told_the_time_here(tmp_path: Path) -> None:
+    async def act(site: Site) -> None:
+        page = await site.page()
+        before = time.time()
+        answer = await page.ask(do="clock")
+        assert answer["ok"]
+        assert before <= answer["unix"] <= time.time()
+
+    on_site(tmp_path, act)
+
+
+def test_an_argusd_that_holds_its_tongue_is_reported_within_two_seconds(tmp_path: Path) -> None:
+    async def act(site: Site) -> None:
+        page = await site.page()
+        begin = time.monotonic()
+        down = await page.until(lambda message: "link" in message and not message["link"]["up"])
+        assert down["link"]["why"] == "argusd reports nothing"
+        assert time.monotonic() - begin < 2.5
+        await page.until(lambda message: "link" in message and message["link"]["up"])  # it tries again
+
+    on_site(tmp_path, act)
 
 
 def test_a_name_led_to_this_machine_and_other_sites_get_403(tmp_path: Path) -> None:
@@ -497,6 +537,8 @@ def test_every_file_that_the_page_names_is_there() -> None:
     named = {
         name
         for body, _ in files.values()
-        for name in re.findall(r"[\"'](/[\w-]+\.(?:js|css|svg))[\"']", body.decode())
+        for name in re.findall(r"[\"'](?:\./)?([\w-]+\.(?:js|css|svg))[\"']", body.decode())
     }
-    assert named == files.keys() - {"/"}
+    # None begins with a slash: behind a proxy the page may lie in a folder.
+    assert {f"/{name}" for name in named} == files.keys() - {"/"}
+    assert not [path for path, (body, _) in files.items() if re.search(rb"[\"']/\w+\.(js|css|svg)", body)]

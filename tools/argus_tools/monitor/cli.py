@@ -67,6 +67,13 @@ def _port(text: str) -> int:
     return int(text)
 
 
+def _origin(text: str) -> str:
+    found = re.fullmatch(r"(https?://[a-z0-9.:\[\]_-]+)/?", text.lower())
+    if found is None:
+        raise argparse.ArgumentTypeError(f"'{text}' is no origin: give https://HOST or https://HOST:PORT")
+    return found[1]
+
+
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     result = Parser(
@@ -109,6 +116,14 @@ def parser() -> argparse.ArgumentParser:
         "--page-token",
         metavar="FILE",
         help="take the page's secret from FILE (mode 0600) instead of making one; it is then not printed",
+    )
+    result.add_argument(
+        "--allow-origin",
+        metavar="ORIGIN",
+        type=_origin,
+        action="append",
+        default=[],
+        help="where a proxy serves the page, as https://HOST[:PORT]; repeatable (docs/monitor.md)",
     )
     result.add_argument(
         "--tui",
@@ -233,7 +248,7 @@ async def _run(arguments: argparse.Namespace, words: Sequence[str], page_token: 
             simulation,
             **about,
         )
-        server = Server(hub, page_token)
+        server = Server(hub, page_token, arguments.allow_origin)
         stack.push_async_callback(server.stop)
         port = await _listen(server, PORT if arguments.port is None else arguments.port)
         if simulation is not None:

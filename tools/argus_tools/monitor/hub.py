@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import time
 from collections import deque
 from collections.abc import Callable
 from typing import Any, Final, Protocol
@@ -16,6 +17,8 @@ from argus_tools.monitor.upstream import Address, Message, Upstream, UpstreamErr
 PERIOD_MS: Final = 100
 _PAUSES_S: Final = (0.25, 0.5, 1.0, 2.0)
 _WAITING_MAX: Final = 500
+SILENT_S: Final = 1.5
+_LOOK_S: Final = 0.25
 
 
 class Breaker(Protocol):
@@ -72,6 +75,7 @@ class Hub:
         self.memory = Memory()
         self.about = about
         self.why = "connecting"
+        self._heard_s = 0.0
         self._boxes: set[Outbox] = set()
         self._upstream: Upstream | None = None
         if breaker is not None:
@@ -129,6 +133,7 @@ class Hub:
 
     def hear(self, message: Message) -> None:
         """Take a line of argusd."""
+        self._heard_s = time.monotonic()
         for more in self.memory.take(message):
             self.tell({"robot": robot_message(self.memory.table)} if "robot" in more else more)
         if kind_of(message):
@@ -157,6 +162,15 @@ class Hub:
             await asyncio.sleep(_PAUSES_S[min(attempt, len(_PAUSES_S) - 1)])
             attempt += 1
 
+    async def _end_of(self, upstream: Upstream) -> str:
+        """Wait until the connection ends, or carries nothing; return which."""
+        while time.monotonic() - self._heard_s <= SILENT_S:
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(_LOOK_S):
+                    await upstream.closed.wait()
+                return "argusd has closed the connection"
+        return "argusd reports nothing"
+
     async def _watch(self) -> None:
         upstream = await Upstream.open(self.address, self.hear)
         try:
@@ -166,9 +180,10 @@ class Hub:
             if not answer.get("ok"):
                 raise UpstreamError(f"{self.address}: {answer.get('say', 'it lets nobody watch')}")
             self._upstream, self.why = upstream, ""
+            self._heard_s = time.monotonic()
+            self.memory.reconnected()
             self.tell(self._link())
-            await upstream.closed.wait()
-            self.why = "argusd has closed the connection"
+            self.why = await self._end_of(upstream)
         finally:
             self._upstream = None
             with contextlib.suppress(UpstreamError):

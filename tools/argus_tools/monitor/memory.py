@@ -19,6 +19,8 @@ PATH_STEP_MM: Final = 25.0
 ECHO_STEP_MM: Final = 30.0
 """An echo is drawn again only where the robot has moved so far since that sonar's last one."""
 FRESH_MS: Final = 150
+SAME_RUN_S: Final = 1.0
+"""Runs of argusd that began farther apart are two, also where the later one has run for longer."""
 
 Message = dict[str, Any]
 
@@ -40,6 +42,7 @@ class Memory:
 
     def __init__(self) -> None:
         self.table: RobotTable = robot_of("")
+        self._is_first = False
         self._clear()
 
     def _clear(self) -> None:
@@ -55,7 +58,7 @@ class Memory:
         kind = kind_of(message)
         told: list[Message] = []
         if kind == "state":
-            if message.get("t", 0) < self.last.get("state", {}).get("t", 0):
+            if self._is_another(message):
                 self._clear()  # argusd began anew, and with it time and place
                 told.append({"anew": True})
             told += self._take_state(message)
@@ -66,6 +69,20 @@ class Memory:
         if kind in ("state", "readings", "evidence"):
             self.last[kind] = message
         return told
+
+    def reconnected(self) -> None:
+        """The next state is of another connection, and may be of another run of argusd."""
+        self._is_first = True
+
+    def _is_another(self, state: Message) -> bool:
+        """Whether a state is of another run than the last: its time went back, or began at another moment."""
+        last, is_first = self.last.get("state"), self._is_first
+        self._is_first = False
+        if last is None:
+            return False
+        if state.get("t", 0) < last.get("t", 0):
+            return True
+        return is_first and abs(_began(state) - _began(last)) > SAME_RUN_S
 
     def _take_state(self, state: Message) -> list[Message]:
         told: list[Message] = []
@@ -116,6 +133,11 @@ class Memory:
         """Return all that a page that comes now has missed."""
         trail = {"path": list(self.path), "echoes": list(self.echoes)}
         return [{"trail": trail}, {"goal": self.goal}, *self.events, *self.last.values()]
+
+
+def _began(state: Mapping[str, Any]) -> float:
+    """When a run began by the clock of its machine, s since 1970."""
+    return float(state.get("unix", 0)) - float(state.get("t", 0))
 
 
 def _pose(state: Mapping[str, Any]) -> tuple[float, float, float]:

@@ -7,7 +7,7 @@ import asyncio
 import hmac
 import json
 import re
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Collection, Mapping
 from importlib import resources
 from typing import Final
 
@@ -25,6 +25,7 @@ _REQUESTS_MAX: Final = 32
 NO_TOKEN: Final = 4401
 """Closes a websocket whose first message is not the token; the page then asks for it."""
 TOO_MANY: Final = 4429
+_PAGE: Final = re.compile(r"https?://([a-z0-9.:\[\]_-]+)")
 _HOST: Final = re.compile(r"(127\.0\.0\.1|localhost|\[::1\])(:\d{1,5})?")
 _TYPES: Final[Mapping[str, str]] = {
     "html": "text/html",
@@ -47,14 +48,18 @@ _HEADERS: Final[Mapping[str, str]] = {
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
-def why_refused(host: str, origin: str | None, site: str | None, path: str) -> str:
+def why_refused(
+    host: str, origin: str | None, site: str | None, path: str, allowed: Collection[str] = ()
+) -> str:
     """Tell why a request may not come in, from its headers; empty for one that may.
 
     A name that is led to this machine (DNS rebinding) shows in Host, another site's page in Origin or Sec-Fetch-Site.
+    `allowed`: origins under which a proxy serves the page.
     """
-    if not _HOST.fullmatch(host):
-        return "this server answers to 127.0.0.1 and localhost only"
-    if origin is not None and origin != f"http://{host}":
+    names = [found[1] for page in allowed if (found := _PAGE.fullmatch(page))]
+    if not _HOST.fullmatch(host) and host not in names:
+        return "this server answers to 127.0.0.1 and localhost only; --allow-origin allows a proxy's name"
+    if origin is not None and origin not in (f"http://{host}", *allowed):
         return "requests of other sites are refused"
     if path == "/live" and origin is None:
         return "a websocket names the page that it is of"
@@ -63,12 +68,20 @@ def why_refused(host: str, origin: str | None, site: str | None, path: str) -> s
     return ""
 
 
+ALLOWED: Final = web.AppKey("allowed", frozenset[str])
+
+
 @web.middleware
 async def guard(request: web.Request, handler: Handler) -> web.StreamResponse:
     """Turn away what did not come from the page, and say of every answer what it may do."""
     headers = request.headers
+    allowed: frozenset[str] = request.app[ALLOWED]
     why = why_refused(
-        headers.get("Host", ""), headers.get("Origin"), headers.get("Sec-Fetch-Site"), request.path
+        headers.get("Host", ""),
+        headers.get("Origin"),
+        headers.get("Sec-Fetch-Site"),
+        request.path,
+        allowed,
     )
     if why:
         return web.Response(status=403, text=f"{why}\n", headers=_HEADERS)
@@ -96,8 +109,10 @@ def page_files() -> dict[str, tuple[bytes, str]]:
 class Server:
     """Serves one hub."""
 
-    def __init__(self, hub: Hub, token: str) -> None:
+    def __init__(self, hub: Hub, token: str, allowed: Collection[str] = ()) -> None:
+        """`allowed`: origins under which a proxy serves the page, as https://HOST."""
         self._hub = hub
+        self._allowed = frozenset(allowed)
         self._token = token.encode()
         self._files = page_files()
         self._sockets: set[web.WebSocketResponse] = set()
@@ -106,6 +121,7 @@ class Server:
     async def start(self, port: int) -> int:
         """Listen on loopback; return the port. OSError when it is taken."""
         app = web.Application(middlewares=[guard], client_max_size=MESSAGE_MAX)
+        app[ALLOWED] = self._allowed
         for path in self._files:
             app.router.add_get(path, self._file)
         app.router.add_get("/live", self._live)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import time
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, Final, Protocol
 
@@ -115,6 +116,7 @@ class Viewer:
         self._page = page
         self.control = Control(hub, page)
         self._does: Mapping[str, Callable[[Message], Awaitable[Message]]] = {
+            "clock": self._clock,
             "take": self._take,
             "release": self._release,
             "order": self._order,
@@ -138,8 +140,13 @@ class Viewer:
             answer = {"ok": False, "why": "refused", "say": str(error)}
         number = request.get("id") if isinstance(request, dict) else None
         reply: Message = {"re": number if isinstance(number, int) else None}
-        reply.update((key, answer[key]) for key in ("ok", "why", "say") if key in answer)
+        reply.update((key, answer[key]) for key in ("ok", "why", "say", "unix") if key in answer)
         self._page.put(reply)
+
+    async def _clock(self, request: Message) -> Message:
+        """Answer with the time here: by this the page tells ages, and that the connection carries something."""
+        del request
+        return {"ok": True, "unix": time.time()}
 
     async def _take(self, request: Message) -> Message:
         return await self.control.take(request.get("force") is True)

@@ -5,6 +5,9 @@ const NO_TOKEN = 4401;
 const TOO_MANY = 4429;
 const PAUSES_MS = [250, 500, 1000, 2000];
 const REPLY_WITHIN_MS = 8000;
+const BEAT_MS = 500;
+const SILENT_MS = 1500;
+const CLOCKS_KEPT = 20;
 const KEY = "argus-monitor-token";
 
 /** The secret: of the address, which then loses it, or the one kept for this tab. */
@@ -20,7 +23,14 @@ function tokenOf() {
 export class Link {
   /** told(message) gets what is no reply; up(text) hears of the connection, "" when it stands; wanted() asks for the secret. */
   constructor(told, up, wanted) {
-    Object.assign(this, { told, up, wanted, socket: null, asked: new Map(), last: 0, attempt: 0 });
+    Object.assign(this, { told, up, wanted, socket: null, asked: new Map(), last: 0, attempt: 0, heardAt: 0, clocks: [] });
+    setInterval(() => this.#beat(), BEAT_MS);
+  }
+
+  /** The server's clock, ms since 1970: this machine's may be an hour off. NaN until it is known. */
+  now() {
+    const best = this.clocks.reduce((a, b) => (b.trip < a.trip ? b : a), { trip: Infinity, ahead: NaN });
+    return performance.now() + best.ahead;
   }
 
   open() {
@@ -29,11 +39,35 @@ export class Link {
       this.wanted();
       return;
     }
-    const socket = new WebSocket(`ws://${location.host}/live`);
+    const place = new URL("live", document.baseURI); // beside the page, wherever a proxy has put it
+    place.protocol = place.protocol.replace("http", "ws");
+    place.hash = "";
+    const socket = new WebSocket(place);
     this.socket = socket;
-    socket.addEventListener("open", () => socket.send(JSON.stringify({ token })));
-    socket.addEventListener("message", (event) => this.#take(JSON.parse(event.data)));
-    socket.addEventListener("close", (event) => this.#closed(event.code));
+    this.clocks = [];
+    this.heardAt = performance.now();
+    const ours = (does) => (event) => this.socket === socket && does(event);
+    socket.addEventListener("open", ours(() => socket.send(JSON.stringify({ token }))));
+    socket.addEventListener("message", ours((event) => this.#take(JSON.parse(event.data))));
+    socket.addEventListener("close", ours((event) => this.#closed(event.code)));
+  }
+
+  /** Ask for the time, so that something is heard; a connection that carries nothing is left and opened again. */
+  async #beat() {
+    const { socket } = this;
+    if (!socket) return;
+    const asked = performance.now();
+    if (asked - this.heardAt > SILENT_MS) {
+      this.#closed(0); // first: from a dead peer its own close may take minutes
+      socket.close();
+      return;
+    }
+    if (socket.readyState !== WebSocket.OPEN) return;
+    const answer = await this.ask({ do: "clock" });
+    if (this.socket !== socket || typeof answer.unix !== "number") return;
+    const trip = performance.now() - asked;
+    this.clocks.push({ trip, ahead: answer.unix * 1000 - asked - trip / 2 });
+    if (this.clocks.length > CLOCKS_KEPT) this.clocks.shift();
   }
 
   use(token) {
@@ -43,6 +77,7 @@ export class Link {
 
   #take(message) {
     this.attempt = 0;
+    this.heardAt = performance.now();
     const waiting = "re" in message ? this.asked.get(message.re) : undefined;
     if (waiting) {
       this.asked.delete(message.re);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The page: keeps what is known, draws it when it changes, and turns clicks and keys into orders.
 
-import { Link } from "/link.js";
-import { Events, SonarList, drawChosen, drawFigures, drawHead, drawPlan, legend, put } from "/panels.js";
-import { Stage } from "/stage.js";
-import { between } from "/geometry.js";
-import { KINDS, exists, failureText, isNamed } from "/words.js";
+import { Link } from "./link.js";
+import { Events, SonarList, drawChosen, drawFigures, drawHead, drawPlan, legend, put } from "./panels.js";
+import { Stage } from "./stage.js";
+import { between } from "./geometry.js";
+import { KINDS, exists, failureText, isNamed } from "./words.js";
 
 const SAY_MS = 6000;
 const TRAIL_KEPT = 3000;
@@ -43,6 +43,7 @@ const TAKES = {
   link(up) {
     known.link = up;
     if (!up.up) known.control = "none";
+    document.body.classList.toggle("stale", !up.up); // what is shown is of earlier
   },
   anew() {
     Object.assign(known, { state: null, readings: null, evidence: null });
@@ -154,7 +155,9 @@ stage.drawn = () => {
   sipAt = null;
   const channel = new MessageChannel(); // its turn comes when the frame has been painted
   channel.port1.onmessage = () => {
-    latencies.push(performance.timeOrigin + performance.now() - at * 1000);
+    const now = link.now();
+    if (Number.isNaN(now)) return;
+    latencies.push(now - at * 1000);
     if (latencies.length > LATENCIES_KEPT) latencies.shift();
   };
   channel.port2.postMessage(0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The panels beside the picture: list of sonars, the chosen one, plan, events, figures of robot and link.
 
-import { eye, make } from "/stage.js";
-import { KINDS, LOOKS, conditionOf, eventText, exists, failureText, isNamed, lookOf, metres, modeText, signed, usable } from "/words.js";
+import { eye, make } from "./stage.js";
+import { KINDS, LOOKS, conditionOf, eventText, exists, failureText, isNamed, lookOf, metres, modeText, signed, usable } from "./words.js";
 
 const TOLD_PERCENT = 20; // less is what any sonar has now and then
 const EVENTS_SHOWN = 120;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The picture: floor, walls, way and echoes on a canvas; robot, beams, ring and plan as SVG above it, one frame for both.
 
-import { RAD, between, coverage, onFloor, ringAngles, runs } from "/geometry.js";
-import { LOOKS, exists, lookOf, metres, signed, usable } from "/words.js";
+import { RAD, between, coverage, onFloor, ringAngles, runs } from "./geometry.js";
+import { LOOKS, exists, lookOf, metres, signed, usable } from "./words.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const NO_ECHO_MM = 5000;
