@@ -41,6 +41,7 @@ EXPECTED = {
     "usr/share/ament_index/resource_index/packages/argus_ros",
     "usr/share/argus_ros/config/argus.yaml",
     "usr/share/argus_ros/launch/argus.launch.xml",
+    "usr/share/argus_ros/launch/two_robots.launch.xml",
     "usr/share/argus_ros/package.xml",
     *(f"usr/share/doc/{name}/copyright" for name in PACKAGES),
 }
