@@ -6,7 +6,7 @@
 
 #include "knowledge/angle.h"
 
-#define AWAY_MM 30       // what is touched is so far off the body: bumpers stand out
+#define AT_END_MM 60     // what touches an end now is no farther from it
 #define SAME_PLACE_MM 50 // two that are nearer are one
 #define ASIDE_MM 47      // beside the body a way keeps so much off one
 #define FAR_MM 32000     // what argus_in_frame() and argus_hypot() take
@@ -66,7 +66,7 @@ void argus_touches_bumped(argus_touches_t *const self, const argus_knowledge_t *
     for (int segment = 1; segment <= segments; segment++) {
         if ((knowledge->bumpers_front >> segment & 1u) != 0) {
             const int32_t beside_mm = (segments + 1 - 2 * segment) * (robot->width_mm / segments) / 2;
-            add_at(self, knowledge, robot->front_mm + AWAY_MM, beside_mm);
+            add_at(self, knowledge, robot->front_mm, beside_mm);
         }
     }
     if (knowledge->bumpers_rear != 0) {
@@ -78,7 +78,7 @@ void argus_touches_end(argus_touches_t *const self, const argus_knowledge_t *con
                        const int sign) {
     ARGUS_ASSERT(sign == 1 || sign == -1);
     const argus_robot_t *const robot = knowledge->robot;
-    const int32_t x_mm = sign > 0 ? robot->front_mm + AWAY_MM : -robot->rear_mm - AWAY_MM;
+    const int32_t x_mm = sign > 0 ? robot->front_mm : -robot->rear_mm;
     for (int side = -1; side <= 1; side++) {
         add_at(self, knowledge, x_mm, side * argus_robot_half_width_mm(robot));
     }
@@ -97,8 +97,8 @@ static bool is_at_end(const argus_touches_t *const self, const argus_knowledge_t
                       const int index) {
     const argus_robot_t *const robot = knowledge->robot;
     const argus_point_t at = argus_touches_seen(self, knowledge, index);
-    const bool beside = argus_abs(at.y_mm) > argus_robot_half_width_mm(robot) + AWAY_MM;
-    return !beside && at.x_mm < robot->front_mm + 2 * AWAY_MM && at.x_mm > -robot->rear_mm - 2 * AWAY_MM;
+    const bool beside = argus_abs(at.y_mm) > argus_robot_half_width_mm(robot) + AT_END_MM;
+    return !beside && at.x_mm < robot->front_mm + AT_END_MM && at.x_mm > -robot->rear_mm - AT_END_MM;
 }
 
 void argus_touches_leave(argus_touches_t *const self, const argus_knowledge_t *const knowledge) {

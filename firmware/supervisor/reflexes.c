@@ -95,7 +95,8 @@ static void sees_bumper(const argus_t *const self, const argus_alarm_t *const al
     (void)alarm;
     mine->bumpers = pressed;
     if (cleared) {
-        const bool stands = knowledge->odometer_mm - mine->bumped_odometer_mm <= STANDS_MM;
+        const bool stands = !argus_motion_is_under_way(&self->motion) &&
+                            knowledge->odometer_mm - mine->bumped_odometer_mm <= STANDS_MM;
         argus_to_say(intent, ARGUS_EV_BUMPER_CLEAR, ARGUS_NO_SONAR, 0);
         intent->met = stands ? ARGUS_CONTACT_GONE : ARGUS_CONTACT_NONE;
     }

@@ -173,6 +173,8 @@ def cases(quirks: Iterable[str], seeds: Iterable[int], creep_mm_s: int = 0) -> l
             late = 2.5 if habits == "mobilesim" else 1.0
             box_x_mm = 3500.0 + 350.0 * onset_s + (seed * 37 + k * 11) % 7 * 180.0
             box_y_mm = ((seed * 13 + k * 5) % 5 - 2) * 90.0
+            if walls == "both" and wall_mm < 1500:
+                box_y_mm = math.copysign(600.0, box_y_mm)  # else no robot gets by, a healthy one no more
             found.append(
                 Case(
                     kind, walls, wall_mm, box_x_mm, box_y_mm, box_mm, onset_s * late, habits, seed, creep_mm_s
@@ -203,12 +205,13 @@ def main() -> None:
     """Drive the campaign and print what came of it."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quirks", default="robot,mobilesim")
+    parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--healthy", action="store_true")
     parser.add_argument("--creep", type=int, default=0)
     asked = parser.parse_args()
-    habits, seeds = asked.quirks.split(","), range(1, asked.seeds + 1)
+    habits, seeds = asked.quirks.split(","), range(asked.first, asked.first + asked.seeds)
     with TemporaryDirectory() as folder:
         found = healthy(habits, seeds) if asked.healthy else cases(habits, seeds, asked.creep)
         seen = drive_all(found, Path(folder), asked.jobs)

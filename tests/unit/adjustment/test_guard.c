@@ -193,7 +193,7 @@ void test_s5_a_place_that_was_touched_is_kept_away_from(void) {
     argus_echoes_met(&e, &k, ARGUS_CONTACT_BUMPER);
     k.pose.x_mm -= 300;
     const int32_t touched_mm = argus_guard_touched_mm(&g);
-    TEST_ASSERT_INT32_WITHIN(2, 330 + k.robot->front_mm - k.robot->sonar_face_mm, touched_mm);
+    TEST_ASSERT_INT32_WITHIN(2, 300 + k.robot->front_mm - k.robot->sonar_face_mm, touched_mm);
     TEST_ASSERT_TRUE(argus_guard_ahead_mm(&g, INT32_MAX) <= touched_mm - config.object_range_mm);
     TEST_ASSERT_TRUE(argus_guard_speed_mm_s(&g, INT32_MAX) < fast_mm_s);
     k.pose.x_mm += 200;

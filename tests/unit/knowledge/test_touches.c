@@ -26,18 +26,18 @@ void test_nothing_was_touched(void) {
 
 void test_what_is_ahead_is_not_behind(void) {
     argus_touches_end(&t, &k, 1);
-    TEST_ASSERT_EQUAL(30, argus_touches_before_mm(&t, &k, 1));
+    TEST_ASSERT_EQUAL(0, argus_touches_before_mm(&t, &k, 1));
     TEST_ASSERT_EQUAL(INT32_MAX, argus_touches_before_mm(&t, &k, -1));
     k.pose.x_mm -= 150;
-    TEST_ASSERT_EQUAL(180, argus_touches_before_mm(&t, &k, 1));
+    TEST_ASSERT_EQUAL(150, argus_touches_before_mm(&t, &k, 1));
     k.pose.heading_cdeg = 18000;
-    TEST_ASSERT_EQUAL(FRONT_MM + 180 - REAR_MM, argus_touches_before_mm(&t, &k, -1));
+    TEST_ASSERT_EQUAL(FRONT_MM + 150 - REAR_MM, argus_touches_before_mm(&t, &k, -1));
     TEST_ASSERT_EQUAL(INT32_MAX, argus_touches_before_mm(&t, &k, 1));
 }
 
 void test_what_was_met_backing_is_behind(void) {
     argus_touches_end(&t, &k, -1);
-    TEST_ASSERT_EQUAL(30, argus_touches_before_mm(&t, &k, -1));
+    TEST_ASSERT_EQUAL(0, argus_touches_before_mm(&t, &k, -1));
     TEST_ASSERT_EQUAL(INT32_MAX, argus_touches_before_mm(&t, &k, 1));
 }
 

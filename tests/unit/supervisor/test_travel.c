@@ -68,6 +68,35 @@ void test_a_way_of_a_few_millimetres_is_none(void) {
     finish();
 }
 
+// What it met on its way stays known though the bumper is free after some millimetres of the way back. What
+// lets go of a robot that has not moved was no place, nor was what came to one that stood.
+void test_s2_what_a_bumper_met_is_remembered_if_it_is_a_place(void) {
+    static const struct {
+        bool drives, backs;
+        int places;
+    } by[] = {{true, true, 1}, {true, false, 0}, {false, true, 0}};
+    for (size_t i = 0; i < sizeof by / sizeof by[0]; i++) {
+        start(ARGUS_PROFILE_ARGUS);
+        hall(8000);
+        TEST_ASSERT_TRUE(robot_goal(&robot, 7300, 0));
+        if (by[i].drives) {
+            TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 20000));
+            robot_run(&robot, 1500);
+        } else {
+            TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_CHECKING, 20000));
+        }
+        robot.bumpers_front = 1 << 3;
+        robot_run(&robot, 300);
+        if (by[i].backs) {
+            TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 5000));
+            robot_run(&robot, 200);
+        }
+        robot.bumpers_front = 0;
+        robot_run(&robot, 300);
+        TEST_ASSERT_EQUAL(by[i].places, robot.argus.echoes.touches.count);
+    }
+}
+
 // Whatever comes up before it, whenever: it stands before it.
 void test_s5_what_comes_up_ahead_is_not_touched(void) {
     for (int range_mm = 500; range_mm <= 2500; range_mm += 125) {
