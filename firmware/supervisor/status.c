@@ -12,8 +12,8 @@ static void copy_sonars(const argus_t *const self, argus_status_t *const status)
         status->reading_mm[i] = s->reported ? s->reading_mm : 0;
         status->readings[i] = s->readings;
         status->age_ms[i] = argus_age_ms(&self->knowledge, i, self->now_ms);
-        status->health[i] = s->health;
-        status->kind[i] = s->kind;
+        status->health[i] = (uint8_t)s->health;
+        status->kind[i] = (uint8_t)s->kind;
     }
     for (int i = 0; i < self->knowledge.sonars; i++) {
         status->bearing_deg[i] = argus_robot_pose(argus_robot_built(self->knowledge.robot), i).heading_deg;
@@ -64,11 +64,11 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
     copy_sonars(self, status);
     copy_robot(&self->knowledge, status);
     copy_session(&self->session, status);
-    status->mode = self->mode;
-    status->mission = self->mission;
+    status->mode = (uint8_t)self->mode;
+    status->mission = (uint8_t)self->mission;
     status->wait = self->mode == ARGUS_MODE_WAITING ? (uint8_t)self->waiting.why : ARGUS_WAIT_NONE;
-    status->bar = self->orders.bar;
-    status->failure = self->failure;
+    status->bar = (uint8_t)self->orders.bar;
+    status->failure = (uint8_t)self->failure;
     status->plan = self->plan;
     status->goal_mm = argus_task_goal_mm(&self->travel.task, &self->knowledge);
     status->waypoint = self->travel.task.next;
@@ -85,10 +85,10 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
 static void copy_suspicion(const argus_t *const self, const int sonar, argus_suspicions_t *const to) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    to->kind[sonar] = argus_names_best(&self->evidence, sonar, &to->percent[sonar]);
+    to->kind[sonar] = (uint8_t)argus_names_best(&self->evidence, sonar, &to->percent[sonar]);
     to->against[sonar] = self->evidence.of[sonar].against;
     if (s->kind != ARGUS_KIND_NONE) {
-        to->kind[sonar] = s->kind;
+        to->kind[sonar] = (uint8_t)s->kind;
         to->percent[sonar] = s->health == ARGUS_DISABLED ? 100 : to->percent[sonar];
     }
 }

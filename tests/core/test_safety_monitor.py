@@ -81,7 +81,10 @@ MUTANTS: Final = (
         "s2-no-sip",
         "cut",
         frozenset({25}),
-        (("supervisor/manager.c", r"(?s)(LINK_STALLED, self->config.link_stall_ms\);\n).*?;", r"\1"),),
+        (
+            ("supervisor/manager.c", r"(?s)(LINK_STALLED, self->config.link_stall_ms\);\n).*?;", r"\1"),
+            ("supervisor/latency.c", r"if \(stands && !mine->stands\)", "if (false)"),
+        ),
     ),
     Mutant(
         "s2-resume",
