@@ -106,7 +106,7 @@ static void drain(void) {
             printf("%u ms: event %u, %d, %d\n", (unsigned)sim.plant.now_ms, (unsigned)event.id,
                    (int)event.sonar, (int)event.value);
         }
-        safety_event(&sim.monitor, sim.plant.now_ms, event.id);
+        safety_event(&sim.monitor, sim.plant.now_ms, event.id, event.value);
     }
 }
 

@@ -95,7 +95,7 @@ static safety_debt_t *owe(safety_t *self, int32_t rule, const char *format, ...)
             va_list list;
             debt->rule = rule;
             debt->since_ms = self->now_ms;
-            debt->limit_mm_s = 0;
+            debt->limit_mm_s = debt->free_mm = 0;
             va_start(list, format);
             vsnprintf(debt->reason, sizeof debt->reason, format, list);
             va_end(list);
@@ -127,7 +127,9 @@ static void collect(safety_t *self) {
         if (debt->rule == 0 || !is_late(self->now_ms, debt->since_ms, (uint32_t)self->set.within_ms)) {
             continue;
         }
-        if (debt->limit_mm_s <= 0 || fabs(asked_mm_s(self)) > debt->limit_mm_s + SPEED_STEP) {
+        const bool ends = self->is_move && is_late(debt->since_ms, self->moved_ms, 0) &&
+                          fabs(self->rest_mm) < debt->free_mm;
+        if (debt->limit_mm_s <= 0 || (!ends && fabs(asked_mm_s(self)) > debt->limit_mm_s + SPEED_STEP)) {
             report(self, debt->rule, debt->since_ms, "%s", debt->reason);
         }
         debt->rule = 0;
@@ -253,7 +255,8 @@ static double seen_mm(const safety_t *self, bool back, uint32_t *which, int32_t 
 }
 
 static bool is_backing_off(const safety_t *self) {
-    return self->is_move && self->speed_mm_s < 0 && fabs(self->rest_mm) <= BACKOFF_MM;
+    const bool back = self->reversed ? self->speed_mm_s > 0 : self->speed_mm_s < 0;
+    return self->is_move && back && fabs(self->rest_mm) <= BACKOFF_MM;
 }
 
 static void check_speed(safety_t *self) {
@@ -272,6 +275,7 @@ static void check_speed(safety_t *self) {
                                         v, (unsigned)k, (int)range, most);
         if (debt != NULL) {
             debt->limit_mm_s = most;
+            debt->free_mm = free_mm;
         }
     }
 }
@@ -713,6 +717,7 @@ static void order_way(safety_t *self, double speed, double length, const char *w
     }
     self->is_move = length != 0;
     self->moves = true;
+    self->moved_ms = self->now_ms;
     self->speed_mm_s = speed;
     self->rest_mm = length;
     if (!is_backing_off(self)) {
@@ -964,8 +969,9 @@ void safety_health(safety_t *self, uint32_t out, uint32_t doubted) {
     self->doubted = doubted;
 }
 
-void safety_event(safety_t *self, uint32_t t_ms, int32_t id) {
+void safety_event(safety_t *self, uint32_t t_ms, int32_t id, int32_t value) {
     safety_tick(self, t_ms);
+    self->reversed = id == 73 ? value != 0 : self->reversed;
     switch (id) {
     case 33:
     case 55: // a look begins, a sweep is done

@@ -99,6 +99,7 @@ typedef struct {
     int32_t rule;
     uint32_t since_ms;
     double limit_mm_s;
+    double free_mm; // a MOVE that is not renewed and ends before that is let be
     char reason[SAFETY_REASON];
 } safety_debt_t;
 
@@ -128,6 +129,8 @@ typedef struct {
     // What the robot was told.
     double setv_mm_s, speed_mm_s, rest_mm; // speed and rest have the sign of the way
     bool moves, is_move, turns;
+    uint32_t moved_ms; // the last order to move
+    bool reversed;     // the rear leads
     double target_deg;
     bool has_spoken;
     uint32_t spoke_ms;
@@ -166,8 +169,8 @@ void safety_truth(safety_t *self, uint32_t t_ms, double v_mm_s, double w_deg_s, 
 // bits. What the manager says of itself: without it only sonars that are silent on the wire count as blind.
 void safety_health(safety_t *self, uint32_t out, uint32_t doubted);
 
-// An event that the manager says, by its number in SPEC.md: what S4 is about.
-void safety_event(safety_t *self, uint32_t t_ms, int32_t id);
+// An event that the manager says, by its number in SPEC.md: what S4 is about, and which end leads.
+void safety_event(safety_t *self, uint32_t t_ms, int32_t id, int32_t value);
 
 // An operator holds it, or the manager is passive: nothing may be told to move from now on, until it is let
 // go.

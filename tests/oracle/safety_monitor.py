@@ -74,7 +74,7 @@ def _library() -> ctypes.CDLL:
     library.safety_feed.argtypes = (pointer, number, ctypes.c_int, ctypes.c_char_p, size)
     library.safety_truth.argtypes = (pointer, number, *[ctypes.c_double] * 3, ctypes.c_bool)
     library.safety_health.argtypes = (pointer, number, number)
-    library.safety_event.argtypes = (pointer, number, ctypes.c_int32)
+    library.safety_event.argtypes = (pointer, number, ctypes.c_int32, ctypes.c_int32)
     library.safety_hold.argtypes = (pointer, number, ctypes.c_bool)
     library.safety_tick.argtypes = (pointer, number)
     library.safety_meaning.argtypes, library.safety_meaning.restype = (ctypes.c_int32,), ctypes.c_char_p
@@ -128,9 +128,9 @@ class Monitor:
             doubted |= (state == "SUSPECT" and kind not in ("", "none")) << number
         self._library.safety_health(self._self, out, doubted)
 
-    def event(self, t_ms: float, number: int) -> None:
+    def event(self, t_ms: float, number: int, value: int = 0) -> None:
         """An event that the manager says."""
-        self._library.safety_event(self._self, int(t_ms) & 0xFFFFFFFF, number)
+        self._library.safety_event(self._self, int(t_ms) & 0xFFFFFFFF, number, value)
 
     def hold(self, t_ms: float, holds: bool) -> None:
         """An operator holds it, or lets it go."""

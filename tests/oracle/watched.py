@@ -50,7 +50,7 @@ class WatchedCore:
 
     def events(self) -> Iterator[CoreEvent]:
         for event in self._core.events():
-            self._monitor.event(self._now, event.id)
+            self._monitor.event(self._now, event.id, event.value)
             yield event
 
 
