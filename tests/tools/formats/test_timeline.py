@@ -94,6 +94,13 @@ def test_what_only_looks_like_whole_seconds_stays(given: list[float | None]) -> 
     assert times(list(given)) == (given, [])
 
 
+def test_a_log_that_is_followed_is_not_held_up() -> None:
+    reader = Reader([7.0] * 3 + [8.0] * 3)
+    given = iter(Timeline(reader, DamageList(), is_followed=True))
+    assert [next(given).t for _ in range(4)] == [7.0, 7.0, 7.0, 8.0]
+    assert reader.place == "line 4"
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_no_clock_makes_times_fall_or_loses_a_chunk(seed: int) -> None:
     rng = random.Random(seed)

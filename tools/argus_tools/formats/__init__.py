@@ -165,7 +165,7 @@ class Log:
         return self.source.damage, self._reader.damage
 
     def __iter__(self) -> Iterator[Chunk]:
-        return iter(Timeline(self._reader, self._reader.damage))
+        return iter(Timeline(self._reader, self._reader.damage, self.source.is_followed))
 
 
 def open_log(path: str, format_name: str | None = None, **options: Any) -> Log:

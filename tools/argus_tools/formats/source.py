@@ -41,7 +41,7 @@ class Source(io.RawIOBase):
         self.name = path
         self.damage = DamageList()
         self.consumed = 0
-        self._follow = follow
+        self.is_followed = follow
         self._stop = stop
         self._on_progress = on_progress
         self._file = _open(path)
@@ -63,7 +63,7 @@ class Source(io.RawIOBase):
             self._zipped = first
         else:
             self._ready = first
-        is_live = self._follow or not self.is_regular
+        is_live = self.is_followed or not self.is_regular
         wanted = PIPE_HEAD_BYTES if is_live else HEAD_BYTES
         while len(self._ready) < wanted or (is_live and not is_enough(self._ready)):
             more = self._next()
@@ -106,7 +106,7 @@ class Source(io.RawIOBase):
                 data = os.read(self._file.fileno(), size)
             except OSError as error:
                 raise LogError(f"{self.name}: cannot be read: {error.strerror}") from error
-            if data or not self._follow or self._stop():
+            if data or not self.is_followed or self._stop():
                 break
             if not self._is_renewed():
                 time.sleep(FOLLOW_PAUSE_S)

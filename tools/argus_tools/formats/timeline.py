@@ -31,17 +31,20 @@ class Timeline:
     from a time since boot to one since 1970, goes on from where it was. Negative times are shifted to begin at 0. Of
     whole seconds only, the chunks of one second are spread evenly over it.
 
+    A log that is followed is not held up for that: its whole seconds stay.
+
     chunks: a reader, whose attribute `place`, where it has one, says where in the file the chunk just given ends.
     """
 
-    def __init__(self, chunks: Iterable[Chunk], damage: DamageList) -> None:
+    def __init__(self, chunks: Iterable[Chunk], damage: DamageList, is_followed: bool = False) -> None:
         self._chunks = chunks
+        self._is_followed = is_followed
         self._damage = damage
         self._add_s = 0.0
         self._last: float | None = None
 
     def __iter__(self) -> Iterator[Chunk]:
-        return self._spread(self._rising())
+        return self._rising() if self._is_followed else self._spread(self._rising())
 
     def _rising(self) -> Iterator[Chunk]:
         for chunk in self._chunks:
