@@ -50,8 +50,11 @@ def test_names_are_numbered_as_in_the_header() -> None:
 
 def test_settings_are_those_of_the_table() -> None:
     table = HEADER.read_text()
-    rows = re.findall(r"X\((\w+), (\d+), \d+, \d+,", table)
-    assert [(key, value[1]) for key, value in settings().items()] == [(key, int(text)) for key, text in rows]
+    auto = int(re.findall(r"#define ARGUS_AUTO (\d+)", table)[0])
+    rows = re.findall(r"X\((\w+), (\d+|ARGUS_AUTO), \d+, \d+,", table)
+    assert [(key, value[1]) for key, value in settings().items()] == [
+        (key, auto if text == "ARGUS_AUTO" else int(text)) for key, text in rows
+    ]
     assert setting_value("policy", "fewest") == 1
     assert setting_value("stale_ms", "2000") == 2000
     for key, text, part in (
