@@ -16,7 +16,7 @@ TEXTS = {
     "hexdump": hexdump_c(ROBOT),
     "xxd": xxd(ROBOT),
     "od": od(ROBOT),
-    "hextext": "".join(f"[12:00:0{n % 10}.250] {sip.hex(' ')}\n" for n, sip in enumerate(SIPS)),
+    "hextext": "".join(f"[12:00:{n % 60:02d}.250] {sip.hex(' ')}\n" for n, sip in enumerate(SIPS)),
     "hexwords": "".join(f"{sip!r}\n" for sip in SIPS),
     "numbers": "".join(f"{byte}\n" for byte in ROBOT),
     "jsonl": "".join(f'{{"t": {n}, "dir": "r2c", "hex": "{sip.hex()}"}}\n' for n, sip in enumerate(SIPS)),
