@@ -24,7 +24,8 @@ static int check(const char *path, const char *text) {
     }
     const argus_config_report_t report = argus_config_check(&config);
     if (report.fault != ARGUS_CONFIG_OK) {
-        fprintf(stderr, "board_config: %s: %s\n", path, board_config_fault_text(report.fault));
+        fprintf(stderr, "board_config: %s: %s\n", path,
+                board_config_fault_text((argus_config_fault_t)report.fault));
         return 1;
     }
     printf("%08x\n", (unsigned)board_config_digest(&config));

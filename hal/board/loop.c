@@ -136,7 +136,7 @@ static void save(void) {
 static BOARD_APART const char *obey_save(void) {
     const argus_config_report_t report = argus_config_check(&self.config);
     if (report.fault != ARGUS_CONFIG_OK) {
-        return board_config_fault_text(report.fault);
+        return board_config_fault_text((argus_config_fault_t)report.fault);
     }
     if (!is_at_rest()) {
         return "not while it moves";

@@ -94,11 +94,11 @@ static void take_bearing(const json_doc_t *doc, int token, int sonar, view_t *vi
 }
 
 static void take_health(const json_doc_t *doc, int token, int sonar, view_t *view) {
-    view->status.health[sonar] = (argus_health_t)number_at(doc, token, ARGUS_NAME_HEALTH);
+    view->status.health[sonar] = (uint8_t)number_at(doc, token, ARGUS_NAME_HEALTH);
 }
 
 static void take_kind(const json_doc_t *doc, int token, int sonar, view_t *view) {
-    view->status.kind[sonar] = (argus_fault_kind_t)number_at(doc, token, ARGUS_NAME_KIND);
+    view->status.kind[sonar] = (uint8_t)number_at(doc, token, ARGUS_NAME_KIND);
 }
 
 static void take_injected(const json_doc_t *doc, int token, int sonar, view_t *view) {
@@ -144,9 +144,9 @@ static void read_sonars(const json_doc_t *doc, view_t *view) {
 }
 
 static void read_robot(const json_doc_t *doc, argus_status_t *status) {
-    status->mode = (argus_mode_t)named(doc, "mode", ARGUS_NAME_MODE);
-    status->mission = (argus_mission_t)named(doc, "mission", ARGUS_NAME_MISSION);
-    status->failure = (argus_failure_t)named(doc, "state", ARGUS_NAME_FAILURE);
+    status->mode = (uint8_t)named(doc, "mode", ARGUS_NAME_MODE);
+    status->mission = (uint8_t)named(doc, "mission", ARGUS_NAME_MISSION);
+    status->failure = (uint8_t)named(doc, "state", ARGUS_NAME_FAILURE);
     status->active = flag(doc, "active");
     status->paused = flag(doc, "paused");
     status->online = flag(doc, "online");

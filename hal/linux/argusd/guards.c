@@ -56,7 +56,7 @@ static void flush(guards_t *self, uint32_t now_ms) {
 
 static void pass(guards_t *self, uint32_t now_ms, argus_port_io_t io) {
     uint8_t out[OUT_BYTES];
-    io.readings = self->readings;
+    io.readings = (uint8_t)self->readings;
     io.there = self->served >= 0 && self->spoken;
     io.out = out;
     for (;;) {

@@ -104,9 +104,13 @@ static bool take_turn(int32_t priority) {
     return sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &wanted) == 0;
 }
 
-static unsigned long limit_of(int resource) {
+static unsigned long limit_of(bool memory) {
     struct rlimit most = {0};
-    getrlimit(resource, &most);
+    if (memory) {
+        getrlimit(RLIMIT_MEMLOCK, &most);
+    } else {
+        getrlimit(RLIMIT_RTPRIO, &most);
+    }
     return (unsigned long)most.rlim_cur;
 }
 
@@ -120,11 +124,11 @@ static void explain(const precedence_t *granted, int32_t priority, int turn_errn
     text_add(&text, "--realtime:");
     if (granted->priority == 0) {
         text_add(&text, " SCHED_FIFO %d is not granted (%s): no CAP_SYS_NICE, and `ulimit -r` is %lu;",
-                 (int)priority, strerror(turn_errno), limit_of(RLIMIT_RTPRIO));
+                 (int)priority, strerror(turn_errno), limit_of(false));
     }
     if (!granted->locked) {
         text_add(&text, " memory is not locked (%s): no CAP_IPC_LOCK, and `ulimit -l` is %lu KB;",
-                 strerror(lock_errno), limit_of(RLIMIT_MEMLOCK) / 1024);
+                 strerror(lock_errno), limit_of(true) / 1024);
     }
     text_add(&text,
              " it drives on without. Run `sudo setcap cap_sys_nice,cap_ipc_lock+ep %s`, or run it as a "
