@@ -86,17 +86,31 @@ static void forgo(rlim_t priority) {
     }
 }
 
+// The address sanitizer answers mlockall() itself, always with success: what of it is not granted is not
+// seen.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define LOCKS_SEEN 0
+#endif
+#endif
+#ifndef LOCKS_SEEN
+#define LOCKS_SEEN 1
+#endif
+
 static int without_the_right(void) {
     const precedence_options_t options = {.on = true};
     forgo(0);
     if (!precedence_take(&options, &granted, message, sizeof message) || granted.priority != 0 ||
-        granted.locked) {
+        granted.locked == LOCKS_SEEN) {
         return 1;
     }
     static const char *const named[] = {
-        "SCHED_FIFO 40 is not granted", "CAP_SYS_NICE",   "`ulimit -r` is 0",
-        "memory is not locked",         "CAP_IPC_LOCK",   "it drives on without",
-        "sudo setcap cap_sys_nice",     "LimitRTPRIO=40", "LimitMEMLOCK=infinity"};
+        "SCHED_FIFO 40 is not granted", "CAP_SYS_NICE",   "`ulimit -r` is 0",     "it drives on without",
+        "sudo setcap cap_sys_nice",     "LimitRTPRIO=40",
+#if LOCKS_SEEN
+        "memory is not locked",         "CAP_IPC_LOCK",   "LimitMEMLOCK=infinity"
+#endif
+    };
     for (int i = 0; i < (int)(sizeof named / sizeof named[0]); i++) {
         if (strstr(message, named[i]) == NULL) {
             return 2 + i;
