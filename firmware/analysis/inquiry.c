@@ -96,7 +96,7 @@ static bool take_aim(argus_inquiry_t *const self, const argus_knowledge_t *const
 }
 
 static void set_look(argus_inquiry_t *const self, const argus_knowledge_t *const knowledge,
-                                 const uint8_t look) {
+                     const uint8_t look) {
     ARGUS_ASSERT(look <= LOOKS);
     self->look = look;
     self->look_cdeg = look < LOOKS ? looks[look] * knowledge->robot->pitch_deg * 100 : 0;

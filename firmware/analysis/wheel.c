@@ -26,11 +26,14 @@ static bool are_alike(const int32_t a, const int32_t b) {
            (a > 0) == (b > 0);
 }
 
-static argus_wheel_news_t name(argus_wheel_t *const self, const int32_t pm) {
+// The first two pieces count as one: what is read at the seam of two cancels.
+static argus_wheel_news_t name(argus_wheel_t *const self, const argus_knowledge_t *const knowledge,
+                               const argus_way_turn_t *const piece) {
     const bool named = self->kind == ARGUS_KIND_WRONG;
-    const int32_t before = named ? self->short_pm : self->suspect_pm;
-    const int32_t parts = named ? NEW_PARTS : 2;
-    self->short_pm = (int16_t)(before + (pm - before) / parts);
+    const argus_way_turn_t both = {self->last.way_mm + piece->way_mm,
+                                   self->last.turn_cdeg + piece->turn_cdeg};
+    const int32_t pm = size_pm(knowledge, named ? piece : &both);
+    self->short_pm = (int16_t)(named ? self->short_pm + (pm - self->short_pm) / NEW_PARTS : pm);
     self->health = ARGUS_SUSPECT;
     self->kind = ARGUS_KIND_WRONG;
     return named ? ARGUS_WHEEL_SAME : ARGUS_WHEEL_NAMED;
@@ -44,24 +47,28 @@ static argus_wheel_news_t clear(argus_wheel_t *const self) {
     return named ? ARGUS_WHEEL_CLEARED : ARGUS_WHEEL_SAME;
 }
 
-argus_wheel_news_t argus_wheel_judge(argus_wheel_t *const self, const argus_knowledge_t *const knowledge,
-                                     const argus_way_turn_t *const piece) {
+static argus_wheel_news_t take(argus_wheel_t *const self, const argus_knowledge_t *const knowledge,
+                               const argus_way_turn_t *const piece) {
     const int32_t pm = size_pm(knowledge, piece);
-    const int32_t before = self->suspect_pm;
-    argus_wheel_news_t news = ARGUS_WHEEL_SAME;
-    self->suspect_pm = (int16_t)argus_within(INT16_MAX, pm);
-    self->odometer_mm = knowledge->odometer_mm;
+    const int32_t before = self->last.way_mm > 0 ? size_pm(knowledge, &self->last) : 0;
     if (argus_abs(pm) > ARGUS_WHEEL_MOST_PM) {
-        return news;
+        return ARGUS_WHEEL_SAME;
     }
     if (argus_abs(pm) < LEAST_PM) {
-        return argus_abs(before) < LEAST_PM || self->kind == ARGUS_KIND_NONE ? clear(self) : news;
+        const bool even = argus_abs(before) < LEAST_PM || self->kind == ARGUS_KIND_NONE;
+        return even ? clear(self) : ARGUS_WHEEL_SAME;
     }
     if (self->kind == ARGUS_KIND_NONE) {
         self->health = ARGUS_SUSPECT;
     }
-    if (are_alike(pm, before)) {
-        news = name(self, pm);
-    }
+    return are_alike(pm, before) ? name(self, knowledge, piece) : ARGUS_WHEEL_SAME;
+}
+
+argus_wheel_news_t argus_wheel_judge(argus_wheel_t *const self, const argus_knowledge_t *const knowledge,
+                                     const argus_way_turn_t *const piece) {
+    const argus_way_turn_t now = {piece->way_mm, argus_within(TURN_MOST_CDEG, piece->turn_cdeg)};
+    const argus_wheel_news_t news = take(self, knowledge, &now);
+    self->odometer_mm = knowledge->odometer_mm;
+    self->last = now;
     return news;
 }

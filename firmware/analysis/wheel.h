@@ -14,8 +14,8 @@ typedef struct {
     argus_health_t health; // UNKNOWN, HEALTHY, SUSPECT: a piece bends; kind WRONG: named
     argus_fault_kind_t kind;
     int16_t short_pm;
-    int16_t suspect_pm;   // of the last piece
-    uint32_t odometer_mm; // when it was measured last
+    argus_way_turn_t last; // piece
+    uint32_t odometer_mm;  // when it was measured last
 } argus_wheel_t;
 
 typedef enum { ARGUS_WHEEL_SAME, ARGUS_WHEEL_NAMED, ARGUS_WHEEL_CLEARED } argus_wheel_news_t;

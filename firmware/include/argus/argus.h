@@ -175,18 +175,18 @@ typedef enum {
 
 // The arithmetic of S5 (DESIGN.md, safety invariants), so that a refusal can show it.
 typedef struct {
-    int32_t fault;       // argus_config_fault_t: the first that was found
-    int32_t key;         // row of the table, for ARGUS_CONFIG_RANGE, else -1
-    int32_t overhang_mm; // body front ahead of the sonar faces
-    int32_t reaction_ms; // sonar refresh + SIP period + SIP and command on the wire
-    int32_t travel_mm;   // speed x reaction
-    int32_t brake_mm;    // speed^2 / (2 decel), decel at most the robot's own (300 mm/s2)
-    int32_t driving_mm;  // overhang + travel + brake: must be < object_range_mm
-    int32_t reach_mm;    // largest reading of a point that the body sweeps in one step
-    int32_t stepping_mm; // reach + 3 noise + 20: must be < check_range_mm
-    int32_t speed_mm_s;  // the settings in force: what ARGUS_AUTO stands for with this robot
-    int32_t object_range_mm;
-    int32_t check_range_mm;
+    int32_t fault;           // argus_config_fault_t: the first that was found
+    int32_t key;             // row of the table, for ARGUS_CONFIG_RANGE, else -1
+    int32_t overhang_mm;     // body front ahead of the sonar faces
+    int32_t reaction_ms;     // sonar refresh + SIP period + SIP and command on the wire
+    int32_t travel_mm;       // speed x reaction
+    int32_t brake_mm;        // speed^2 / (2 decel), decel at most the robot's own (300 mm/s2)
+    int32_t driving_mm;      // overhang + travel + brake: must be < object_range_mm
+    int32_t reach_mm;        // largest reading of a point that the body sweeps in one step
+    int32_t stepping_mm;     // reach + 3 noise + 20: must be < check_range_mm
+    int32_t speed_mm_s;      // the settings in force: what ARGUS_AUTO stands for with this robot
+    int32_t object_range_mm; // likewise
+    int32_t check_range_mm;  // likewise
 } argus_config_report_t;
 
 // Events ---------------------------------------------------------------------------------------------------
@@ -644,13 +644,19 @@ void argus_config_default(argus_config_t *config);
 // thousand integer operations, once at start.
 argus_config_report_t argus_config_check(const argus_config_t *config);
 
+// A symbol with the number of sonars in its name: a program that was built with another ARGUS_SONARS than the
+// library does not link.
+#define ARGUS_TAG_JOINED(name, sonars) name##_for_##sonars##_sonars
+
+// Likewise, with `sonars` expanded.
+#define ARGUS_TAG(name, sonars) ARGUS_TAG_JOINED(name, sonars)
+
+// Tagged: its storage has a size for each number of sonars.
+#define argus_init ARGUS_TAG(argus_init, ARGUS_SONARS)
+
 // Starts from nothing: no robot, every sonar UNKNOWN, no course. `config` is copied; it should have passed
 // argus_config_check(), otherwise the manager starts passive and stays so. The result is in `storage`. Cost:
-// the storage is cleared once. Its symbol has the number of sonars in its name, so that a program that was
-// built with another ARGUS_SONARS than the library does not link.
-#define ARGUS_TAG_JOINED(name, sonars) name##_for_##sonars##_sonars
-#define ARGUS_TAG(name, sonars) ARGUS_TAG_JOINED(name, sonars)
-#define argus_init ARGUS_TAG(argus_init, ARGUS_SONARS)
+// the storage is cleared once.
 argus_t *argus_init(argus_storage_t *storage, const argus_config_t *config, uint32_t now_ms);
 
 // The course: 1..ARGUS_WAYPOINTS_MAX points in the frame of the robot's odometry at connection (x ahead, y

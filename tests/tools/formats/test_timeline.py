@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import itertools
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -17,7 +17,7 @@ from argus_tools.formats.timeline import SECOND_MOST, Timeline
 class Reader:
     """Gives chunks with these times, and the line of each."""
 
-    def __init__(self, times: list[float | None]) -> None:
+    def __init__(self, times: Sequence[float | None]) -> None:
         self._times = times
         self.place = ""
 

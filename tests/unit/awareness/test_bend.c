@@ -74,10 +74,31 @@ void test_a_short_order_is_given_time_to_show(void) {
     TEST_ASSERT_EQUAL_INT(0, pieces);
 }
 
-void test_a_push_is_no_wheel(void) {
+// At once by more than a piece bends: it spoils the piece that it falls into, and no other.
+void test_a_push_is_one_piece_at_most(void) {
     drive(1, 0);
     drive(1, 300);
     TEST_ASSERT_EQUAL_INT(0, pieces);
+    drive(1, 0);
+    TEST_ASSERT_EQUAL_INT(1, pieces);
+    TEST_ASSERT_EQUAL_INT32(40, piece.way_mm);
+    drive(49, 0);
+    TEST_ASSERT_EQUAL_INT(1, pieces);
+}
+
+// The robot is steered back once it is off by two degrees: two pieces must fit in before, at whatever phase.
+void test_a_tenth_short_is_two_pieces_before_it_is_steered_back(void) {
+    for (int32_t first = 0; first < 36; first += 4) {
+        setUp();
+        drive(1, 0);
+        drive(1, first);
+        const int32_t begun_cdeg = k.pose.heading_cdeg - first;
+        while (pieces < 2) {
+            drive(1, 36);
+        }
+        TEST_ASSERT_LESS_THAN_INT32(200, k.pose.heading_cdeg - begun_cdeg);
+        TEST_ASSERT_GREATER_OR_EQUAL_INT32(40, piece.way_mm);
+    }
 }
 
 void test_what_tells_nothing(void) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: what a board stored means the same to a later build, or is refused, once, and the board is
-// passive then.
+// Rule under attack: what a board stored means the same to a later build, or is refused, once, and the board
+// is passive then.
 #include "board/memory.h"
 
 #include <string.h>
