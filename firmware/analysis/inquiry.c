@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "awareness/aim.h"
+#include "analysis/aim.h"
 #include "knowledge/angle.h"
 
 #define READINGS 2    // two that agree make a view

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
+#include "paper/disparity.h"
 
 #define LEFT 0u
 #define RIGHT 1u

@@ -3,7 +3,7 @@
 #ifndef ARGUS_VERIFY_H
 #define ARGUS_VERIFY_H
 
-#include "awareness/awareness.h"
+#include "knowledge/knowledge.h"
 
 typedef enum {
     ARGUS_VERIFY_IDLE,

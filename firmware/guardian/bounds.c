@@ -2,7 +2,7 @@
 // Bounds a client's motion by S1, S2, S5 and S7, for the end of the robot that would lead.
 #include "guardian/bounds.h"
 
-#include "awareness/grazing.h"
+#include "adjustment/grazing.h"
 #include "knowledge/angle.h"
 #include "knowledge/config.h"
 #include "supervisor/state.h"

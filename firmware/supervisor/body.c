@@ -32,7 +32,7 @@ static void forget_sonars(argus_t *const self) {
             argus_say_change(self, i, ARGUS_CHANGE_FORGOTTEN, ARGUS_KIND_NONE, 0);
         }
     }
-    argus_awareness_init(&self->awareness);
+    argus_algorithm1_init(&self->algorithm1);
 }
 
 static void change_to(argus_t *const self, const argus_robot_t *const robot) {

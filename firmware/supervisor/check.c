@@ -22,8 +22,9 @@ static argus_mask_t find_suspects(argus_t *const self) {
     if (argus_rules(self)->evidence) {
         return (argus_mask_t)(argus_doubted(self) | argus_open_suspects(self));
     }
-    return argus_rules(self)->disparity ? argus_suspects(&self->awareness, &self->knowledge, &self->config)
-                                        : 0;
+    return argus_rules(self)->disparity
+               ? argus_algorithm1_suspects(&self->algorithm1, &self->knowledge, &self->config)
+               : 0;
 }
 
 // The paper verifies every suspect at once; elsewhere a look must pay.
@@ -63,7 +64,7 @@ static void drop_suspicions(argus_t *const self) {
     ARGUS_ASSERT(self->orders.passive);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if (argus_robot_faces_forward(self->knowledge.robot, i) &&
-            self->knowledge.sonar[i].health == ARGUS_SUSPECT && self->awareness.of[i].in_a_row == 0) {
+            self->knowledge.sonar[i].health == ARGUS_SUSPECT && self->algorithm1.of[i].in_a_row == 0) {
             argus_say_change(self, i, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, 0);
         }
     }
@@ -113,15 +114,15 @@ void argus_apply_verdict(argus_t *const self) {
         argus_disable(self, sonar, ARGUS_KIND_WRONG);
         break;
     case ARGUS_RESULT_CLEARED:
-        argus_awareness_cleared(&self->awareness, &self->knowledge, sonar, verify->difference_mm);
+        argus_algorithm1_cleared(&self->algorithm1, &self->knowledge, sonar, verify->difference_mm);
         argus_say_change(self, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, verify->mean_mm);
         break;
     case ARGUS_RESULT_DROPPED:
-        self->awareness.of[sonar].in_a_row = 0;
+        self->algorithm1.of[sonar].in_a_row = 0;
         argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, verify->difference_mm);
         break;
     case ARGUS_RESULT_UNPROVEN:
-        self->awareness.verified |= (argus_mask_t)(1u << sonar);
+        self->algorithm1.verified |= (argus_mask_t)(1u << sonar);
         argus_say(self, ARGUS_EV_SONAR_UNPROVEN, sonar, verify->reading_mm);
         break;
     case ARGUS_RESULT_NONE:

@@ -13,15 +13,16 @@
 #include "arcos/roundtrip.h"
 #include "arcos/session.h"
 #include "argus/argus.h"
-#include "awareness/awareness.h"
-#include "awareness/bend.h"
+#include "awareness/alarms.h"
 #include "awareness/common.h"
 #include "awareness/extremes.h"
-#include "awareness/slip.h"
+#include "knowledge/bend.h"
 #include "knowledge/config.h"
 #include "knowledge/knowledge.h"
 #include "knowledge/profile.h"
 #include "knowledge/rays.h"
+#include "knowledge/slip.h"
+#include "paper/algorithm1.h"
 #include "supervisor/events.h"
 #include "task/task.h"
 
@@ -204,7 +205,7 @@ struct argus {
     argus_looks_t looks;
     argus_common_t common;     // profile argus
     argus_extremes_t extremes; // profile argus
-    argus_awareness_t awareness;
+    argus_algorithm1_t algorithm1;
     argus_travel_t travel;
     argus_session_t session;
     argus_events_t events;

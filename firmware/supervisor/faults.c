@@ -81,7 +81,7 @@ static argus_mask_t covered_suspects(const argus_t *const self) {
         const argus_guard_t guard = argus_guard(self);
         return argus_guard_alone(&guard);
     }
-    return (argus_mask_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->awareness.verified &
+    return (argus_mask_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->algorithm1.verified &
                           argus_robot_forward(self->knowledge.robot));
 }
 
@@ -192,7 +192,7 @@ void argus_flag_suspects(argus_t *const self, const argus_mask_t suspects) {
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((suspects >> i & 1u) != 0 && self->knowledge.sonar[i].health != ARGUS_SUSPECT) {
             argus_say_change(self, i, ARGUS_CHANGE_SUSPECTED, ARGUS_KIND_NONE,
-                             self->awareness.of[i].difference_mm);
+                             self->algorithm1.of[i].difference_mm);
         }
     }
 }

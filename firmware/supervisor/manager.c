@@ -112,7 +112,7 @@ void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
 
 // The readings begin anew.
 static void restart_evidence(argus_t *const self) {
-    argus_awareness_restart(&self->awareness);
+    argus_algorithm1_restart(&self->algorithm1);
     argus_evidence_restart(&self->evidence);
     argus_extremes_restart(&self->extremes);
     argus_common_init(&self->common);
@@ -242,9 +242,10 @@ static void on_sip(argus_t *const self) {
     if (argus_sees_through_body(self)) {
         argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_CHECK, true);
     }
-    self->awareness.away =
+    self->algorithm1.away =
         argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, argus_base_cdeg(self)) > AWAY_CDEG;
-    const argus_alarm_t alarm = argus_awareness_sip(&self->awareness, &self->knowledge, &self->config);
+    argus_algorithm1_sip(&self->algorithm1, &self->knowledge);
+    const argus_alarm_t alarm = argus_alarms(&self->knowledge, &self->config);
     if (!self->latency.stands) { // else it is not of now
         take_evidence(self);
     }

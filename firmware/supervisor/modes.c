@@ -61,7 +61,7 @@ static void enter_verifying(argus_t *const self, const argus_mask_t suspects) {
     ARGUS_ASSERT((suspects & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
     ARGUS_ASSERT(!self->orders.passive);
     argus_flag_suspects(self, suspects);
-    self->awareness.verified &= (argus_mask_t) ~(unsigned)suspects;
+    self->algorithm1.verified &= (argus_mask_t) ~(unsigned)suspects;
     self->looks.settling = (uint8_t)(self->travel.arriving ? self->looks.settling + 1 : 0);
     argus_halt(self);
     if (!self->motion.settled && self->motion.kind != ARGUS_MOTION_STOP) {
@@ -213,9 +213,9 @@ static void move_on(argus_t *const self) {
     ARGUS_ASSERT(self->checked);
     if (argus_rules(self)
             ->evidence) { // a suspect that could not be cleared is covered for like one that is out
-        self->awareness.verified &= argus_with_health(&self->knowledge, ARGUS_SUSPECT);
+        self->algorithm1.verified &= argus_with_health(&self->knowledge, ARGUS_SUSPECT);
     } else {
-        argus_awareness_moved(&self->awareness);
+        argus_algorithm1_moved(&self->algorithm1);
     }
     self->turning.backed = 0;
     self->turning.again = false;

@@ -51,7 +51,7 @@ static void resume(argus_t *const self) {
 
 static void recheck(argus_t *const self) {
     if (argus_is_open(self)) {
-        argus_awareness_init(&self->awareness);
+        argus_algorithm1_init(&self->algorithm1);
         stop_and_check(self, true);
     }
 }
@@ -108,7 +108,7 @@ static void jog(argus_t *const self, const int32_t built_mm) {
 static void jog_turn(argus_t *const self, const int32_t degrees) {
     self->base.cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + degrees % 360 * 100);
     self->base.taken = true;
-    argus_awareness_moved(&self->awareness);
+    argus_algorithm1_moved(&self->algorithm1);
     argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, false);
 }
 
@@ -153,7 +153,7 @@ static void begin_retest(argus_t *const self, const int sonar) {
     argus_extremes_forget(&self->extremes, sonar);
     argus_evidence_forget_trend(&self->evidence, sonar);
     argus_forget_cleared(self, sonar);
-    self->awareness.verified &= (argus_mask_t) ~(unsigned)bit;
+    self->algorithm1.verified &= (argus_mask_t) ~(unsigned)bit;
     if (argus_is_out(&self->knowledge, sonar)) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RETESTED, s->kind, s->reading_mm);
     } else {
@@ -179,7 +179,7 @@ static void retest(argus_t *const self, const int sonar) {
     if (argus_rules(self)->evidence) {
         begin_retest(self, sonar);
     } else {
-        argus_awareness_init(&self->awareness);
+        argus_algorithm1_init(&self->algorithm1);
     }
     stop_and_check(self, true);
 }

@@ -2,7 +2,7 @@
 // Sees what calls for a STOP, or for an event, in one SIP.
 #include "supervisor/reflexes.h"
 
-#include "awareness/grazing.h"
+#include "adjustment/grazing.h"
 #include "knowledge/angle.h"
 #include "supervisor/mode.h"
 #include "supervisor/state.h"

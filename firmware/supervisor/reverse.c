@@ -72,7 +72,7 @@ void argus_turn_about(argus_t *const self) {
     ARGUS_ASSERT(other != NULL && argus_at_rest(&self->knowledge));
     argus_knowledge_turn_about(&self->knowledge, other);
     self->reverse = (argus_reverse_t){.odometer_mm = self->knowledge.odometer_mm, .done = true};
-    argus_awareness_init(&self->awareness);
+    argus_algorithm1_init(&self->algorithm1);
     argus_extremes_restart(&self->extremes);
     argus_slip_restart(&self->slip);
     self->base.taken = false;

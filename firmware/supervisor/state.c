@@ -72,7 +72,7 @@ argus_mask_t argus_wanted_sonars(const argus_t *const self) {
 
 argus_mask_t argus_open_suspects(const argus_t *const self) {
     return (argus_mask_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
-                          ~(unsigned)self->awareness.verified);
+                          ~(unsigned)self->algorithm1.verified);
 }
 
 bool argus_is_hemmed_in(const argus_t *const self) {

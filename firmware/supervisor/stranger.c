@@ -15,7 +15,7 @@ static void forget(argus_t *const self) {
     argus_knowledge_init(&self->knowledge);
     argus_body_is(&self->knowledge, before, self->now_ms);
     argus_echoes_init(&self->echoes);
-    argus_awareness_init(&self->awareness);
+    argus_algorithm1_init(&self->algorithm1);
     argus_evidence_init(&self->evidence);
     argus_evidence_set_caution(&self->evidence, self->config.caution);
     argus_extremes_init(&self->extremes);

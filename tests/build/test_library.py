@@ -114,6 +114,7 @@ def test_layers_point_one_way() -> None:
         "arcos",
         "robot",
         "knowledge",
+        "paper",
         "awareness",
         "analysis",
         "adjustment",

@@ -58,7 +58,7 @@ MUTANTS: Final = (
         "stuck-near",
         frozenset({23, 51, 54}),
         (
-            ("awareness/awareness.c", r"s->reading_mm <= config->object_range_mm", "s->reading_mm <= 10"),
+            ("awareness/alarms.c", r"s->reading_mm <= config->object_range_mm", "s->reading_mm <= 10"),
             (
                 "supervisor/travel.c",
                 r"if \(nearest_mm <= self->config.object_range_mm\)",
@@ -75,7 +75,7 @@ MUTANTS: Final = (
         "s2-silent",
         "silent",
         frozenset({24}),
-        (("awareness/awareness.c", r"return !argus_is_out\(knowledge, sonar\) && [^;]*;", "return false;"),),
+        (("awareness/alarms.c", r"return !argus_is_out\(knowledge, sonar\) && [^;]*;", "return false;"),),
     ),
     Mutant(
         "s2-no-sip",

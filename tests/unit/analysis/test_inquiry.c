@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "awareness/aim.h"
+#include "analysis/aim.h"
 #include "awareness/levels.h"
 #include "health.h"
 #include "knowledge/angle.h"

@@ -837,7 +837,7 @@ static void check_s7_one_echo_is_read_again(void) {
         if (which == DOUBTED || which == NAMED) { // looked at in vain; held by what the others say
             robot.argus.knowledge.sonar[0].health = ARGUS_SUSPECT;
             robot.argus.knowledge.sonar[0].kind = which == NAMED ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;
-            robot.argus.awareness.verified |= 1;
+            robot.argus.algorithm1.verified |= 1;
             robot.argus.evidence.of[0].score[ARGUS_TEST_PEERS] = 400;
         }
         argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_TURN, 20);

@@ -580,7 +580,7 @@ static bool trusts(const robot_t *robot, int sonar) {
 // with no trusted sonar beside them; but not those that were cleared a moment ago.
 static unsigned unlooked(const robot_t *robot) {
     const argus_t *argus = &robot->argus;
-    const unsigned open = argus_with_health(&argus->knowledge, ARGUS_SUSPECT) & ~argus->awareness.verified;
+    const unsigned open = argus_with_health(&argus->knowledge, ARGUS_SUSPECT) & ~argus->algorithm1.verified;
     const argus_guard_t guard = argus_guard(argus);
     unsigned mask = 0;
     for (int i = first_ahead(robot); (all_ahead(robot) >> i & 1u) != 0 && argus_guard_may_turn(&guard); i++) {

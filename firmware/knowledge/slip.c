@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Compares ranges with the way and the turns that the odometry says.
-#include "awareness/slip.h"
+#include "knowledge/slip.h"
 
 #include <stddef.h>
 #include <string.h>

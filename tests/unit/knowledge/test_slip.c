@@ -2,7 +2,7 @@
 // Rule under attack: wheels that turn while nothing changes along the way, or round the ring in a turn, are
 // told, and the pose goes back to where that began; once is chance, and one range that changes as it should
 // clears.
-#include "awareness/slip.h"
+#include "knowledge/slip.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the tolerance range to the millimetre, and Algorithm 1 as paper.md settles it.
-#include "awareness/awareness.h"
+#include "paper/disparity.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Compares the heading with the order to go straight ahead, piece of way by piece of way.
-#include "awareness/bend.h"
+#include "knowledge/bend.h"
 
 #include "knowledge/angle.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Smooth walls, which turn echoes away.
-#include "awareness/grazing.h"
+#include "adjustment/grazing.h"
 
 #include <stddef.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: a piece of way tells how far the heading turned on it where nobody ordered a turn; what
 // was ordered, a push, a leap and a crawl tell nothing.
-#include "awareness/bend.h"
+#include "knowledge/bend.h"
 
 #include "knowledge/angle.h"
 #include "unity.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where a silent sonar would look along what another one lately heard.
-#include "awareness/aim.h"
+#include "analysis/aim.h"
 
 #include "awareness/levels.h"
 #include "awareness/names.h"

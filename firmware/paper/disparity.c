@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The tolerance range and Algorithm 1 (paper: Fig. 7, eq. 1 and 2, Table II).
-#include "awareness/disparity.h"
+#include "paper/disparity.h"
 
 #include "knowledge/angle.h"
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "awareness/grazing.h"
+#include "adjustment/grazing.h"
 #include "knowledge/config.h"
 #include "scene.h"
 #include "unity.h"

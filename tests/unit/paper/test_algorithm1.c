@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: what one SIP shows (dead, silent, object, bumper), when a sonar becomes a suspect, and
-// the hold-off.
-#include "awareness/awareness.h"
+// Rule under attack: when a sonar becomes a suspect, and the hold-off.
+#include "paper/algorithm1.h"
 
 #include <string.h>
 
@@ -11,7 +10,7 @@
 #include "unity.h"
 
 static argus_knowledge_t k;
-static argus_awareness_t a;
+static argus_algorithm1_t a;
 static argus_config_t config;
 static argus_sip_t sip;
 static uint32_t now_ms;
@@ -19,7 +18,7 @@ static int reading[16];
 
 void setUp(void) {
     argus_knowledge_init(&k);
-    argus_awareness_init(&a);
+    argus_algorithm1_init(&a);
     argus_config_default(&config);
     argus_config_follow(&config, argus_config_follows(&config), argus_robot_default());
     config.profile = ARGUS_PROFILE_PAPER;
@@ -32,7 +31,7 @@ void setUp(void) {
     }
 }
 
-static argus_alarm_t take(unsigned listed) {
+static void take(unsigned listed) {
     now_ms += 100;
     sip.sonar_count = 0;
     for (int i = 0; i < 16; i++) {
@@ -43,11 +42,11 @@ static argus_alarm_t take(unsigned listed) {
         }
     }
     argus_knowledge_sip(&k, &sip, 1000, now_ms);
-    return argus_awareness_sip(&a, &k, &config);
+    argus_algorithm1_sip(&a, &k);
 }
 
 static uint16_t suspects(void) {
-    return argus_suspects(&a, &k, &config);
+    return argus_algorithm1_suspects(&a, &k, &config);
 }
 
 // Before the next SIP, however far that is.
@@ -63,81 +62,6 @@ static void turn_to(int heading_raw) {
         sip.heading_raw = (int16_t)argus_min(heading_raw, sip.heading_raw + 50);
         argus_knowledge_odometry(&k, &sip, 1000, now_ms += 1000);
     }
-}
-
-void test_dead_on_the_six_only(void) {
-    for (int i = 0; i < 16; i++) {
-        reading[i] = 5000;
-    }
-    TEST_ASSERT_EQUAL_HEX16(0x7E, take(0xFFFF).dead);
-    TEST_ASSERT_EQUAL_HEX16(0, take(0).dead); // not listed: nothing new
-    TEST_ASSERT_EQUAL_HEX16(0x08, take(0x08).dead);
-    put_health(&k.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
-    TEST_ASSERT_EQUAL_HEX16(0x76, take(0xFFFF).dead);
-    reading[2] = 65535;
-    TEST_ASSERT_EQUAL_HEX16(0x04, take(0x04).dead);
-    reading[2] = 4999;
-    TEST_ASSERT_EQUAL_HEX16(0, take(0x04).dead);
-}
-
-void test_objects_along_the_motion(void) {
-    for (int i = 0; i < 16; i++) {
-        reading[i] = 250 - i;
-    }
-    TEST_ASSERT_EQUAL_HEX16(0, take(0xFFFF).object); // at rest
-    sip.vel_left_mm_s = sip.vel_right_mm_s = 100;
-    TEST_ASSERT_EQUAL_HEX16(0x7E, take(0xFFFF).object);
-    TEST_ASSERT_EQUAL(6, take(0xFFFF).object_sonar);
-    TEST_ASSERT_EQUAL(244, take(0xFFFF).object_mm);
-    sip.vel_left_mm_s = sip.vel_right_mm_s = -100;
-    TEST_ASSERT_EQUAL_HEX16(0x7E00, take(0xFFFF).object);
-    sip.vel_left_mm_s = 100; // on the spot
-    TEST_ASSERT_EQUAL_HEX16(0, take(0xFFFF).object);
-    sip.vel_right_mm_s = 100;
-    put_health(&k.sonar[6], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
-    TEST_ASSERT_EQUAL(5, take(0xFFFF).object_sonar);
-    for (int i = 0; i < 16; i++) {
-        reading[i] = 251;
-    }
-    TEST_ASSERT_EQUAL_HEX16(0, take(0xFFFF).object);
-    reading[2] = 250;
-    TEST_ASSERT_EQUAL_HEX16(0x04, take(0xFFFF).object);
-}
-
-void test_bumpers_and_stalls(void) {
-    TEST_ASSERT_FALSE(take(0).bumper);
-    sip.bumpers_rear = 2;
-    TEST_ASSERT_TRUE(take(0).bumper);
-    sip.bumpers_rear = 0;
-    sip.bumpers_front = 32;
-    TEST_ASSERT_TRUE(take(0).bumper);
-    sip.stall_right = true;
-    TEST_ASSERT_TRUE(take(0).stall);
-}
-
-void test_a_slot_without_readings_is_silent_after_stale_ms(void) {
-    take(0xFFFF);
-    for (int i = 1; i <= 30; i++) {
-        const unsigned listed = 0xFFFFu & ~(1u << 4);
-        TEST_ASSERT_EQUAL_HEX16(i * 100 > config.stale_ms ? 1u << 4 : 0, take(listed).silent);
-    }
-}
-
-void test_a_sonar_that_never_reported_is_silent_after_stale_ms(void) {
-    argus_knowledge_reopen(&k, now_ms);
-    for (int i = 1; i <= 30; i++) {
-        TEST_ASSERT_EQUAL_HEX16(i * 100 > config.stale_ms ? 1u << 2 : 0, take(0xFFFBu).silent);
-    }
-}
-
-void test_a_gap_of_the_link_makes_no_sonar_silent(void) {
-    take(0xFFFF);
-    now_ms += 3000;
-    TEST_ASSERT_EQUAL_HEX16(0, take(0).silent);
-    for (int i = 1; i <= 14; i++) {
-        TEST_ASSERT_EQUAL_HEX16(0, take(0).silent);
-    }
-    TEST_ASSERT_EQUAL_HEX16(0x7E, take(0).silent | take(0).silent);
 }
 
 void test_a_suspect_takes_three_fresh_readings_of_its_own(void) {
@@ -187,11 +111,11 @@ static void make_suspect(void) {
 void test_a_cleared_sonar_is_held_off_for_a_metre(void) {
     take(0xFFFF);
     make_suspect();
-    argus_awareness_cleared(&a, &k, 3, a.of[3].difference_mm);
+    argus_algorithm1_cleared(&a, &k, 3, a.of[3].difference_mm);
     for (int mm = 0; mm < 950; mm += 50) {
         drive_mm(50);
         take(0x08);
-        argus_awareness_moved(&a);
+        argus_algorithm1_moved(&a);
         TEST_ASSERT_EQUAL_HEX16(0, suspects());
     }
     drive_mm(100);
@@ -202,8 +126,8 @@ void test_a_cleared_sonar_is_held_off_for_a_metre(void) {
 void test_a_cleared_sonar_is_held_off_for_30_degrees(void) {
     take(0xFFFF);
     make_suspect();
-    argus_awareness_cleared(&a, &k, 3, a.of[3].difference_mm);
-    argus_awareness_moved(&a);
+    argus_algorithm1_cleared(&a, &k, 3, a.of[3].difference_mm);
+    argus_algorithm1_moved(&a);
     turn_to(330); // 29.0 degrees
     for (int i = 0; i < 5; i++) {
         take(0x08);
@@ -217,7 +141,7 @@ void test_a_cleared_sonar_is_held_off_for_30_degrees(void) {
 void test_a_cleared_sonar_whose_disparity_changes_by_more_than_2_tr(void) {
     take(0xFFFF);
     make_suspect(); // disparity 500
-    argus_awareness_cleared(&a, &k, 3, a.of[3].difference_mm);
+    argus_algorithm1_cleared(&a, &k, 3, a.of[3].difference_mm);
     reading[3] = 500 - 2 * argus_tolerance_mm(k.robot, 400); // tr(424) = 38, tr(400) = 36: a change of 72
     for (int i = 0; i < 4; i++) {
         take(0x08);
@@ -236,10 +160,10 @@ void test_1_0_0_is_the_bare_paper(void) {
     config.holdoff_deg = 0;
     take(0xFFFF);
     make_suspect(); // after one reading
-    argus_awareness_cleared(&a, &k, 3, a.of[3].difference_mm);
+    argus_algorithm1_cleared(&a, &k, 3, a.of[3].difference_mm);
     take(0x08);
     TEST_ASSERT_EQUAL_HEX16(0, suspects()); // else it would be verified in this place for ever
-    argus_awareness_moved(&a);
+    argus_algorithm1_moved(&a);
     take(0x08);
     TEST_ASSERT_EQUAL_HEX16(0x08, suspects());
 }
@@ -254,6 +178,6 @@ void test_a_disabled_sonar_is_no_suspect(void) {
 void test_restart_forgets_the_counts(void) {
     take(0xFFFF);
     make_suspect();
-    argus_awareness_restart(&a);
+    argus_algorithm1_restart(&a);
     TEST_ASSERT_EQUAL_HEX16(0, suspects());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): a sonar is only ever turned onto what another one, that is relied on,
 // lately heard near by from the same place.
-#include "awareness/aim.h"
+#include "analysis/aim.h"
 
 #include "awareness/evidence.h"
 #include "knowledge/angle.h"
