@@ -7,7 +7,6 @@
 #include "knowledge/config.h"
 
 #define SLOTS 8u // in a round
-#define SIP_MS 100u
 #define HOME_CDEG 200
 #define STRAIGHT_ROOM_MM 47
 #define SEEN_MOST_MM 1200   // of the way that others see: more would allow no higher speed
@@ -226,7 +225,7 @@ int32_t argus_guard_speed_mm_s(const argus_guard_t *const self, const int32_t se
 
 uint32_t argus_guard_two_rounds_ms(const argus_config_t *const config) {
     ARGUS_ASSERT(config->sonar_cycle_ms > 0);
-    return 2u * SLOTS * (uint32_t)config->sonar_cycle_ms + SIP_MS;
+    return 2u * SLOTS * (uint32_t)config->sonar_cycle_ms + ARCOS_TIMING_SIP_CYCLE_MS;
 }
 
 bool argus_guard_sees_ahead(const argus_guard_t *const self) {

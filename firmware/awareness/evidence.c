@@ -14,8 +14,7 @@
 #include "awareness/scale.h"
 #include "knowledge/angle.h"
 
-#define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
-#define PING_AGE_MS 70  // a SIP lists pings 0 to 140 ms old
+#define PING_AGE_MS 70 // a SIP lists pings 0 to 140 ms old
 #define SIP_MOST_MS 300u
 #define ABOUT_CDEG 12000 // no robot turns so far in a SIP: the other end leads since then
 #define STEADY_SIPS 2
@@ -79,7 +78,7 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
                  const argus_pose_t *const pose, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
-    if (knowledge->lists_all && knowledge->sip_ms - c->counted_ms < REFRESH_MS) {
+    if (knowledge->lists_all && knowledge->sip_ms - c->counted_ms < ARGUS_REFRESH_MS) {
         return;
     }
     c->counted_ms = knowledge->sip_ms;

@@ -18,10 +18,6 @@
 #define LEAST_CDEG 1000 // ... and any other turn at least so far: little ones follow each other
 #define REACTION_MS 500 // from the reading to the command, of a turn
 #define DEG_PER_RAD 57
-#define WEAVE_CDEG 1000 // to either side for each sonar of a gap: half the pitch of the ring
-#define WEAVE_GAP 2     // a wider one is not looked into
-#define WOVEN_CDEG 300
-#define WOVEN_SIPS 4
 #define FREE_SIPS 10
 #define SLANT_MM 80u   // driven, back or another way, it is another place
 #define SLANT_CDEG 300 // turned, it is another way
@@ -379,28 +375,15 @@ static bool should_weave(const argus_t *const core, const argus_wish_t *const wi
            wants_ahead(core, wish) != core->knowledge.robot->reversed;
 }
 
-static int32_t swing_cdeg(const argus_t *const core) {
+static int gap_of(const argus_t *const core) {
     const argus_guard_t guard = argus_guard(core);
-    return argus_min(argus_guard_gap(&guard), WEAVE_GAP) * WEAVE_CDEG;
-}
-
-static int32_t woven_cdeg(argus_given_t *const given, const argus_t *const core) {
-    const int32_t to_cdeg = argus_angle_wrap(given->base_cdeg + given->weave * swing_cdeg(core));
-    const bool there = argus_angle_abs_diff(core->knowledge.pose.heading_cdeg, to_cdeg) <= WOVEN_CDEG;
-    given->woven_sips = there ? (uint8_t)(given->woven_sips + 1) : 0;
-    if (given->woven_sips < WOVEN_SIPS) {
-        return to_cdeg;
-    }
-    given->weave = (int8_t)-given->weave;
-    given->woven_sips = 0;
-    return argus_angle_wrap(given->base_cdeg + given->weave * swing_cdeg(core));
+    return argus_guard_gap(&guard);
 }
 
 static void begin_weaving(argus_t *const core, argus_given_t *const given) {
-    given->weave = 1;
-    given->woven_sips = 0;
+    given->weave = (argus_weave_t){.side = 1};
     given->base_cdeg = core->knowledge.pose.heading_cdeg;
-    argus_say(core, ARGUS_EV_GUARD_LOOKS, ARGUS_NO_SONAR, swing_cdeg(core) / 100);
+    argus_say(core, ARGUS_EV_GUARD_LOOKS, ARGUS_NO_SONAR, argus_weave_swing_cdeg(gap_of(core)) / 100);
 }
 
 // A look that may not be made is ended where the heading is.
@@ -415,18 +398,19 @@ static void steer(argus_t *const core, argus_given_t *const given, const int32_t
 }
 
 static void weave(argus_t *const core, argus_given_t *const given) {
-    if (given->weave == 0) {
+    if (given->weave.side == 0) {
         begin_weaving(core, given);
     }
-    const int32_t to_cdeg = woven_cdeg(given, core);
+    const int32_t to_cdeg =
+        argus_weave_cdeg(&given->weave, gap_of(core), core->knowledge.pose.heading_cdeg, given->base_cdeg);
     steer(core, given, to_cdeg);
 }
 
 static void end_weaving(argus_t *const core, argus_hold_client_t *const self) {
-    if (self->given.weave != 0 && self->wish.turn == ARGUS_WISH_STRAIGHT && !self->wish.paired) {
+    if (self->given.weave.side != 0 && self->wish.turn == ARGUS_WISH_STRAIGHT && !self->wish.paired) {
         steer(core, &self->given, self->given.base_cdeg);
     }
-    self->given.weave = 0;
+    self->given.weave.side = 0;
 }
 
 // ----------------------------------------------------------------------------------------------------------
@@ -453,7 +437,7 @@ void argus_hold_tell(argus_t *const core, argus_hold_client_t *const self, const
 
 // RVEL 0, repeated, must not end the looks.
 void argus_hold_turn(argus_t *const core, argus_hold_client_t *const self) {
-    if (self->given.weave == 0 || self->wish.turn != ARGUS_WISH_STRAIGHT) {
+    if (self->given.weave.side == 0 || self->wish.turn != ARGUS_WISH_STRAIGHT) {
         give(core, self, false, true);
     }
 }
@@ -463,7 +447,7 @@ void argus_hold_still(argus_t *const core, argus_hold_client_t *const self) {
     argus_outbox_urgent(outbox(core), ARCOS_CMD_STOP);
     given->rolls = given->moves = given->has_head = false;
     given->mm_s = given->move_mm = given->right = given->left = 0;
-    given->weave = 0;
+    given->weave.side = 0;
     given->turn_held = true;
 }
 

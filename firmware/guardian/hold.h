@@ -20,8 +20,7 @@ typedef struct {
     bool turn_held;       // RVEL 0 in the place of a turn
     bool has_head;        // HEAD
     int32_t head_cdeg;    // ... to this, in the robot's own odometry frame
-    int8_t weave;         // side that the heading swings to so that others see a blind bearing, +1 left
-    uint8_t woven_sips;   // that it has been there
+    argus_weave_t weave;  // so that others see a blind bearing
     int32_t base_cdeg;    // ... about this heading, course frame
     uint16_t bumpers;     // pressed at the last SIP
     uint8_t stalls;       // wheels that stalled then

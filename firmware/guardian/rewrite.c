@@ -14,12 +14,10 @@
 #define ARRAYS 4
 #define FIRST_ARRAY_FLAG ((unsigned)ARCOS_FLAG_SONAR1) // the next bits are those of the other arrays
 #define LATELY_MS 2000u
-#define TRUST_MM 2000 // so far a ray tells of an echo, and not only that the way is free
-#define NEAR_MM 40    // beside the cone, close to the transducer
 
 static bool is_echo_of(const argus_t *const self, const argus_ray_t *const ray) {
-    return ray->free_mm > 0 && ray->free_mm < TRUST_MM && self->knowledge.sip_ms - ray->t_ms <= LATELY_MS &&
-           argus_trusted(&self->knowledge, ray->sonar);
+    return ray->free_mm > 0 && ray->free_mm < ARGUS_RAY_TRUST_MM &&
+           self->knowledge.sip_ms - ray->t_ms <= LATELY_MS && argus_trusted(&self->knowledge, ray->sonar);
 }
 
 // From the transducer to the end of the ray, if that lies within its cone, else 0.
@@ -28,7 +26,7 @@ static int32_t seen_mm(const argus_ray_t *const ray, const argus_point_t from, c
     const argus_point_t way = {ray->x_mm + ray->free_mm * ray->c / ARGUS_TRIG_ONE - from.x_mm,
                                ray->y_mm + ray->free_mm * ray->s / ARGUS_TRIG_ONE - from.y_mm};
     const argus_point_t seen = argus_in_frame(way, bearing_cdeg);
-    const int32_t half_mm = seen.x_mm * argus_sin(cone_deg * 50) / ARGUS_TRIG_ONE + NEAR_MM;
+    const int32_t half_mm = seen.x_mm * argus_sin(cone_deg * 50) / ARGUS_TRIG_ONE + ARGUS_RAY_BESIDE_MM;
     const bool is_within = seen.x_mm > 0 && argus_abs(seen.y_mm) <= half_mm;
     return is_within ? argus_hypot(way.x_mm, way.y_mm) : 0;
 }

@@ -10,7 +10,7 @@
 #define SAME_PLACE_MM 80
 #define SAME_THING_MM 150
 #define FORGET_MS 60000u
-#define NEAR_MM 1000
+#define ABOUT_MM 1000      // a turn is asked for no farther
 #define LATELY_MS 5000u    // what was seen so near does not go away while a look is prepared
 #define BEHIND_MM 100      // an echo this far ahead of the centre is beside the robot already
 #define BY_TOUCH UINT8_MAX // no sonar: it is there for sure
@@ -107,7 +107,7 @@ void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const
         if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT &&
             !knowledge->rotating && knowledge->sonar[i].reading_mm < REMEMBER_BELOW_MM) {
             remember(self, argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, i)), (uint8_t)i,
-                     knowledge->sonar[i].reading_mm <= NEAR_MM, now_ms);
+                     knowledge->sonar[i].reading_mm <= ARGUS_PLACED_MM, now_ms);
         }
     }
 }
@@ -183,8 +183,8 @@ bool argus_echoes_near(const argus_echoes_t *const self, const argus_knowledge_t
     const argus_echo_t *const seen = &self->at[index];
     const int32_t dx = seen->x_mm - knowledge->pose.x_mm;
     const int32_t dy = seen->y_mm - knowledge->pose.y_mm;
-    if (!seen->again || knowledge->sip_ms - seen->seen_ms > LATELY_MS || argus_abs(dx) >= NEAR_MM ||
-        argus_abs(dy) >= NEAR_MM) {
+    if (!seen->again || knowledge->sip_ms - seen->seen_ms > LATELY_MS || argus_abs(dx) >= ABOUT_MM ||
+        argus_abs(dy) >= ABOUT_MM) {
         return false;
     }
     *at = argus_in_frame((argus_point_t){dx, dy}, knowledge->pose.heading_cdeg);

@@ -14,7 +14,6 @@
 #define HEARD_MOST 14
 #define OCCUPIED 4 // two near echoes: one may be crosstalk
 #define MARKED 6   // three beams take it back
-#define NEAR_MM 1000
 #define FAR_MM 1600
 #define NEAR_RISE 3
 #define FAR_RISE 1
@@ -221,7 +220,7 @@ static void hear(argus_grid_t *const self, const argus_knowledge_t *const knowle
                  const argus_pose_t *const axis) {
     ARGUS_ASSERT((unsigned)sonar < ARGUS_SONARS);
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
-    const bool near = reading_mm <= NEAR_MM;
+    const bool near = reading_mm <= ARGUS_PLACED_MM;
     const argus_point_t echo = along(axis, reading_mm);
     const argus_cell_t cell = argus_grid_cell(echo);
     if (argus_grid_is_occupied(self, cell) ||

@@ -8,6 +8,7 @@
 
 #define ARGUS_GRID_CELLS 64 // to a side: a row of cells is a word of 64 bits
 #define ARGUS_GRID_CELL_MM 125
+#define ARGUS_PLACED_MM 1000 // an echo from so near tells its place; a far one lies somewhere in a wide cone
 
 // A cell of the course frame: x_mm / ARGUS_GRID_CELL_MM, rounded down, and the same of y.
 typedef struct {

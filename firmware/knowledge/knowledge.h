@@ -9,6 +9,7 @@
 #include "knowledge/odometry.h"
 #include "robot/robot.h"
 
+#define ARGUS_REFRESH_MS 320u   // a server that lists every sonar in every SIP lists one ping for so long
 #define ARGUS_FLANK_NEAR_MM 350 // what a flank sonar reads of a wall that the way may slant into
 
 typedef struct {

@@ -2,10 +2,10 @@
 // Compares steps of the odometry with what wheels can do.
 #include "knowledge/odometry.h"
 
+#include "arcos/gen_arcos.h"
 #include "argus/argus.h"
 #include "knowledge/angle.h"
 
-#define SIP_MS 100            // SIPs that come in a bunch were made so long apart
 #define LATE_MS 150           // one that comes in time may follow one that came late
 #define LATE_MOST_MS 350      // ... but by no more than this, of
 #define FADES_MS 5            // ... which so much is over with each SIP
@@ -60,7 +60,7 @@ bool argus_odometry_is_speed(const int32_t mm_s) {
 
 argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *const span) {
     ARGUS_ASSERT(span->track_mm > 0);
-    const int32_t ms = argus_min(elapsed_ms(span), SIP_MS);
+    const int32_t ms = argus_min(elapsed_ms(span), ARCOS_TIMING_SIP_CYCLE_MS);
     const argus_wheels_t mean = {(span->before.left_mm_s + span->after.left_mm_s) / 2,
                                  (span->before.right_mm_s + span->after.right_mm_s) / 2};
     const int32_t speed = argus_within(FASTEST_MM_S, (mean.left_mm_s + mean.right_mm_s) / 2);
@@ -83,13 +83,13 @@ static range_t range_of(const argus_span_t *const span, const int32_t credit_ms,
     const int32_t any = span->elapsed_ms > GAP_MS || credit_ms > (int32_t)GAP_MS ? gap : 0;
     return (range_t){.least = argus_min(argus_min(before, after), any > 0 ? -any : INT32_MAX),
                      .most = argus_max(argus_max(before, after), any > 0 ? any : INT32_MIN),
-                     .least_ms = argus_min(SIP_MS, ms),
-                     .most_ms = argus_between(ms, GAP_MAX_MS, SIP_MS + credit_ms)};
+                     .least_ms = argus_min(ARCOS_TIMING_SIP_CYCLE_MS, ms),
+                     .most_ms = argus_between(ms, GAP_MAX_MS, ARCOS_TIMING_SIP_CYCLE_MS + credit_ms)};
 }
 
 // What a change of speed may add that no SIP shows: half of the time faster, half slower.
 static int32_t sped(const range_t *const range, const int32_t accel, const int32_t most) {
-    const int32_t ms = argus_max(0, range->most_ms - SIP_MS);
+    const int32_t ms = argus_max(0, range->most_ms - ARCOS_TIMING_SIP_CYCLE_MS);
     return argus_min(most, times_ms(times_ms(accel, ms), ms) / 4);
 }
 
@@ -160,7 +160,8 @@ static bool was_moving(const argus_wheels_t *const wheels) {
 }
 
 bool argus_odometry_is_unseen(const argus_span_t *const span, const argus_order_t *const order) {
-    return (order->under_way || was_moving(&span->before)) && span->elapsed_ms > SIP_MS + LATE_MS;
+    return (order->under_way || was_moving(&span->before)) &&
+           span->elapsed_ms > ARCOS_TIMING_SIP_CYCLE_MS + LATE_MS;
 }
 
 static int32_t faster_mm_s(const argus_wheels_t *const wheels) {
@@ -214,7 +215,7 @@ bool argus_odometry_may_be_anew(const argus_span_t *const span, const argus_orde
 bool argus_odometry_may_be(argus_excess_t *const excess, const argus_span_t *const span,
                            const argus_moved_t *const moved) {
     ARGUS_ASSERT(span->track_mm > 0 && excess->credit_ms >= 0);
-    const int32_t credit_ms = excess->credit_ms + elapsed_ms(span) - SIP_MS - FADES_MS;
+    const int32_t credit_ms = excess->credit_ms + elapsed_ms(span) - ARCOS_TIMING_SIP_CYCLE_MS - FADES_MS;
     const int32_t late_ms = (int32_t)(span->late_ms < GAP_MAX_MS ? span->late_ms : GAP_MAX_MS);
     excess->credit_ms = argus_between(0, argus_max(LATE_MOST_MS, late_ms), credit_ms);
     const argus_excess_t was = *excess;

@@ -6,14 +6,12 @@
 
 #define TRUST_BITS 0x7FFu
 #define SONAR_BITS 0x1Fu
-#define TRUST_MM 2000 // no reading says more: a thin thing beyond may give no echo
 #define LATELY_MS 5000u
 #define CONE_SLOPE 27 // tan 12 degrees, / 128: within 15 where the beam still tells
-#define NEAR_MM 40    // ... and so much beside the axis, close to the transducer
 #define STEP_MM 80
 #define ABREAST 3 // places on either side of the middle
 
-_Static_assert(TRUST_MM < 1 << 11 && ARGUS_SONARS <= 1 << 5, "a ray has so many bits for them");
+_Static_assert(ARGUS_RAY_TRUST_MM < 1 << 11 && ARGUS_SONARS <= 1 << 5, "a ray has so many bits for them");
 
 void argus_rays_forget(argus_rays_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -51,7 +49,7 @@ static void see(argus_rays_t *const self, const argus_knowledge_t *const knowled
     if (!fits(from)) {
         return;
     }
-    const int32_t free_mm = argus_min(knowledge->sonar[sonar].reading_mm, TRUST_MM);
+    const int32_t free_mm = argus_min(knowledge->sonar[sonar].reading_mm, ARGUS_RAY_TRUST_MM);
     const argus_ray_t ray = {.x_mm = (int16_t)from.x_mm,
                              .y_mm = (int16_t)from.y_mm,
                              .c = (int16_t)argus_cos(bearing_cdeg),
@@ -75,7 +73,7 @@ void argus_rays_see(argus_rays_t *const self, const argus_knowledge_t *const kno
 }
 
 static bool shows(const argus_ray_t *const ray, const argus_point_t at) {
-    ARGUS_ASSERT(ray->free_mm <= TRUST_MM);
+    ARGUS_ASSERT(ray->free_mm <= ARGUS_RAY_TRUST_MM);
     const int32_t dx = at.x_mm - ray->x_mm;
     const int32_t dy = at.y_mm - ray->y_mm;
     const int32_t along_mm = (dx * ray->c + dy * ray->s) / ARGUS_TRIG_ONE;
@@ -83,7 +81,7 @@ static bool shows(const argus_ray_t *const ray, const argus_point_t at) {
         return false;
     }
     const int32_t beside_mm = argus_abs((dy * ray->c - dx * ray->s) / ARGUS_TRIG_ONE);
-    return beside_mm <= along_mm * CONE_SLOPE / 128 + NEAR_MM;
+    return beside_mm <= along_mm * CONE_SLOPE / 128 + ARGUS_RAY_BESIDE_MM;
 }
 
 // The newest first: it is likeliest.

@@ -5,7 +5,9 @@
 
 #include "knowledge/knowledge.h"
 
-#define ARGUS_RAYS_MAX 128 // some 5 s of one array
+#define ARGUS_RAYS_MAX 128      // some 5 s of one array
+#define ARGUS_RAY_TRUST_MM 2000 // no reading tells of more: a thin thing beyond may give no echo
+#define ARGUS_RAY_BESIDE_MM 40  // seen beside the cone, close to the transducer
 
 // From the transducer, course frame; `c`, `s`: the direction, scaled by ARGUS_TRIG_ONE.
 typedef struct {

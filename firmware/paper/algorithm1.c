@@ -6,8 +6,6 @@
 
 #include "knowledge/angle.h"
 
-#define REFRESH_MS 320u // a server that lists every sonar in every SIP lists one ping several times
-
 void argus_algorithm1_init(argus_algorithm1_t *const self) {
     memset(self, 0, sizeof *self);
 }
@@ -41,7 +39,7 @@ static void count_disparity(argus_algorithm1_t *const self, const argus_knowledg
                             const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_disparate_t *const d = &self->of[sonar];
-    const bool repeated = knowledge->lists_all && knowledge->sip_ms - d->counted_ms < REFRESH_MS;
+    const bool repeated = knowledge->lists_all && knowledge->sip_ms - d->counted_ms < ARGUS_REFRESH_MS;
     if (self->away || repeated) {
         return;
     }

@@ -8,6 +8,7 @@
 #include "adjustment/pace.h"
 #include "adjustment/plan.h"
 #include "adjustment/trim.h"
+#include "adjustment/weave.h"
 #include "analysis/inquiry.h"
 #include "analysis/verify.h"
 #include "arcos/roundtrip.h"
@@ -48,8 +49,7 @@ typedef struct {
 
 // DRIVING, SWEEPING, STEPPING and CREEPING: the course and the way along it.
 typedef struct {
-    int8_t weave;        // side that the heading swings to while a bearing is blind, +1 left
-    uint8_t woven_sips;  // that it has been there
+    argus_weave_t weave; // while a bearing is blind
     bool aimed;          // the leg's bearing was turned to
     bool stopped_short;  // on the way, which was not seen far enough
     bool arriving;       // at the goal, stopping

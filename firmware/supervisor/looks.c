@@ -2,6 +2,7 @@
 // Weighs a look against the stop that it costs, and draws the conclusions.
 #include "supervisor/looks.h"
 
+#include "arcos/gen_arcos.h"
 #include "knowledge/angle.h"
 #include "supervisor/faults.h"
 #include "supervisor/say.h"
@@ -11,10 +12,9 @@
 #define HOLD_DOUBLINGS 2     // ... doubled each time it is cleared, so often
 #define HOLD_FORGET_MM 4000u // ... and forgotten after this one
 #define LOOK_COST_MS 9000u   // what a look takes: two turns aside, the way back, two rounds of readings each
-#define SIP_MS 100u
-#define PROOFS 3         // looks in a row that leave a sonar its name,
-#define PROOFS_AT_GOAL 2 // ... where one follows at once upon the other
-#define SETTLE_MOST 8    // looks at the goal: a verdict takes disagreements at more than one time
+#define PROOFS 3             // looks in a row that leave a sonar its name,
+#define PROOFS_AT_GOAL 2     // ... where one follows at once upon the other
+#define SETTLE_MOST 8        // looks at the goal: a verdict takes disagreements at more than one time
 
 static bool is_held(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
@@ -82,7 +82,7 @@ void argus_count_loss(argus_t *const self) {
     const int32_t free_mm_s = argus_guard_free_speed_mm_s(&guard, seen_mm);
     const int32_t lost_mm_s = free_mm_s - argus_guard_speed_mm_s(&guard, seen_mm);
     ARGUS_ASSERT(free_mm_s > 0 && lost_mm_s >= 0);
-    self->looks.lost_ms += SIP_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s;
+    self->looks.lost_ms += ARCOS_TIMING_SIP_CYCLE_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s;
 }
 
 // To hire or to buy: a look is bought when its cost has been lost to the doubt. So both together are never

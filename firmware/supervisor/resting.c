@@ -5,7 +5,6 @@
 #include "knowledge/angle.h"
 #include "supervisor/state.h"
 
-#define REFRESH_MS 320u
 #define RETRY_MS 1000u
 #define SAY_EVERY_S 10u
 
@@ -43,7 +42,7 @@ void argus_run_checking(const argus_t *const self, argus_checking_t *const mine,
     }
     mine->mark = argus_mark_now(&self->knowledge);
     mine->mark.from_ms =
-        self->now_ms + REFRESH_MS; // counts only where a server lists every sonar in every SIP
+        self->now_ms + ARGUS_REFRESH_MS; // counts only where a server lists every sonar in every SIP
     if (mine->rounds > 1) {
         mine->rounds--;
         return;

@@ -11,10 +11,6 @@
 #define AIMED_CDEG 200    // at rest, near enough
 #define STEER_CDEG 200    // while driving, corrected beyond this
 #define STEER_LEG_MM 250  // ... and only this far from the leg's end
-#define WEAVE_CDEG 1000   // to either side of the way for each sonar of a gap: half the pitch of the ring
-#define WEAVE_GAP 2       // a wider one is left to sweeps
-#define WOVEN_CDEG 300    // near enough
-#define WOVEN_SIPS 4      // there: a round of the array
 #define SEEN_LEAST_MM 200 // of the way; with less it stops to look
 #define SEEN_AGAIN_MM 500 // ... then wants so much, or sweeps: else it would stop again at once
 #define FLANK_MM 130
@@ -269,22 +265,6 @@ static bool is_heeded(const argus_t *const self, argus_travel_t *const mine) {
     return self->now_ms - mine->heeded_ms < UNHEEDED_MS;
 }
 
-// Swings the heading about the way while a bearing is blind, so that living sonars look along it. It swings
-// to one side until they have had their turns there, then to the other.
-static int32_t weave_cdeg(const argus_t *const self, const argus_guard_t *const guard,
-                          argus_travel_t *const mine) {
-    const int32_t swing_cdeg = argus_min(argus_guard_gap(guard), WEAVE_GAP) * WEAVE_CDEG;
-    const int32_t to_cdeg = argus_angle_wrap(bearing(self, mine) + mine->weave * swing_cdeg);
-    const bool there = argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, to_cdeg) <= WOVEN_CDEG;
-    mine->woven_sips = there ? (uint8_t)(mine->woven_sips + 1) : 0;
-    if (mine->weave != 0 && mine->woven_sips < WOVEN_SIPS) {
-        return to_cdeg;
-    }
-    mine->weave = mine->weave > 0 ? -1 : 1;
-    mine->woven_sips = 0;
-    return argus_angle_wrap(bearing(self, mine) + mine->weave * swing_cdeg);
-}
-
 // The way has not been seen far enough: a sweep, at rest.
 static void look_ahead(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
     mine->aimed = mine->jog_mm > 0;
@@ -313,7 +293,8 @@ static void steer(const argus_t *const self, const argus_guard_t *const guard, a
     intent->steers = argus_guard_may_turn(guard);
     intent->cdeg = to_cdeg;
     if (argus_guard_is_blind(guard) && argus_wanted_sonars(self) != 0) {
-        intent->cdeg = weave_cdeg(self, guard, mine);
+        intent->cdeg = argus_weave_cdeg(&mine->weave, argus_guard_gap(guard),
+                                        self->knowledge.pose.heading_cdeg, bearing(self, mine));
     } else if (counters(self, guard, trim_cdeg)) {
         intent->cdeg = trim_cdeg;
         intent->steers = true;
