@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from argus_ros.motion import Motion
+from argus_tools.rings.motion import Motion
 
 from hil_sim.arcos import PacketError, Sip, decode
 from hil_sim.sil import Mission, Sil

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from argus_ros import messages
-from argus_ros.repair import Limits
+from argus_tools.rings.intake import Limits
 from drives import GREATEST_M, LEAST_M, Told
 from nav2_rules import Seat
 from nav_msgs.msg import Odometry

@@ -14,10 +14,10 @@ from typing import Any
 import pytest
 from argus_ros import messages
 from argus_ros.guard_node import RangeGuard
-from argus_ros.intake import UNFORESEEN, Odd
-from argus_ros.motion import Motion
-from argus_ros.repair import Limits
+from argus_ros.intake import UNFORESEEN
 from argus_ros.timeline import Pace, Timeline
+from argus_tools.rings.intake import Limits, Odd
+from argus_tools.rings.motion import Motion
 from builtin_interfaces.msg import Time
 from nav_msgs.msg import Odometry
 from rclpy.parameter import Parameter

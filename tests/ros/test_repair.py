@@ -12,7 +12,8 @@ import pytest
 from argus_ros import argus_node, messages
 from argus_ros.argus_node import ArgusNode
 from argus_ros.make_messages import PACKAGES
-from argus_ros.repair import Dead, Limits, NoEcho, Policy, Trust, Verdict, bearings, neighbours
+from argus_ros.repair import Dead, NoEcho, Policy, Trust, Verdict, bearings, neighbours
+from argus_tools.rings.intake import Limits
 from rclpy.parameter import Parameter
 
 from hil_sim.tables import robots

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 from argus_ros.guard_node import RangeGuard
-from argus_ros.motion import Motion
+from argus_tools.rings.motion import Motion
 from diagnostic_msgs.msg import DiagnosticArray
 from drives import Told
 from lifecycle_msgs.msg import Transition

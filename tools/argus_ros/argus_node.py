@@ -11,6 +11,8 @@ from typing import Any, Final
 from argus_tools.control import Client, ControlError
 from argus_tools.control import Refused as OrderRefused
 from argus_tools.control.client import default_place, read_token
+from argus_tools.rings.intake import Limits, Odd, Order, speeds_of, stamp_of
+from argus_tools.rings.motion import Motion
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
@@ -21,9 +23,8 @@ from std_srvs.srv import SetBool, Trigger
 
 from argus_ros import messages, parameters
 from argus_ros.base import LATCHED, ArgusLifecycleNode, Refused, SonarArray, TFMessage, type_name
-from argus_ros.intake import Intake, Odd, Order, speeds_of, stamp_of
-from argus_ros.motion import Motion
-from argus_ros.repair import Limits, Policy, Verdict, bearings, neighbours
+from argus_ros.intake import Intake
+from argus_ros.repair import Policy, Verdict, bearings, neighbours
 from argus_ros.stamped import Beside
 from argus_ros.watcher import Watcher
 from argus_ros.wheels import Wheels

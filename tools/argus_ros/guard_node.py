@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from argus_tools.core import setting_value
+from argus_tools.rings.intake import Limits, Odd, Order, limits_of, motion_of, stamp_of
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rclpy.qos import qos_profile_sensor_data
@@ -17,8 +18,8 @@ from sensor_msgs.msg import PointCloud2, Range
 
 from argus_ros import messages, parameters
 from argus_ros.base import ArgusLifecycleNode, Refused
-from argus_ros.intake import Intake, Odd, Order, limits_of, motion_of, stamp_of
-from argus_ros.repair import Limits, Policy, Verdict, bearings, neighbours
+from argus_ros.intake import Intake
+from argus_ros.repair import Policy, Verdict, bearings, neighbours
 from argus_ros.ring import Ring
 from argus_ros.timeline import Pace, Timeline
 

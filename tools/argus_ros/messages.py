@@ -9,14 +9,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from typing import Any, Final
 
+from argus_tools.rings.intake import Limits
+from argus_tools.rings.motion import Motion
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import Quaternion, TransformStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState, PointCloud2, PointField, Range
 from std_msgs.msg import Header
 
-from argus_ros.motion import Motion
-from argus_ros.repair import Limits, Verdict
+from argus_ros.repair import Verdict
 from hil_sim.tables.robot import Mount
 
 OK, WARN, ERROR, STALE = range(4)

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
+from argus_tools.rings.intake import Limits
+
 from hil_sim.tables.robot import RobotTable
 
 COVER_DEG: Final = 45.0
@@ -47,18 +49,6 @@ class Verdict:
     def trusted(self, trust: Trust) -> bool:
         """Whether its readings may be used."""
         return not self.kind if trust is Trust.NAMED else self.health == "HEALTHY" and not self.kind
-
-
-@dataclass(frozen=True)
-class Limits:
-    """The least and the greatest range of a sonar, m."""
-
-    least_m: float
-    greatest_m: float
-
-    def is_echo(self, range_m: float) -> bool:
-        """Whether a reading tells of something seen."""
-        return self.least_m <= range_m < self.greatest_m
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,12 @@ from typing import Final
 
 from argus_tools.core import Core, Event
 from argus_tools.log.opening import opened
+from argus_tools.rings.intake import Limits
+from argus_tools.rings.motion import Motion
+from argus_tools.rings.packet import empty, identity_of, packet
 
-from argus_ros.motion import Motion
-from argus_ros.repair import Limits, Verdict
-from hil_sim.arcos import FLAG, TIMING, Sip, SyncReply, frame
+from argus_ros.repair import Verdict
+from hil_sim.arcos import TIMING
 from hil_sim.tables import load
 from hil_sim.tables.robot import RobotTable
 
@@ -20,9 +22,7 @@ _SIP_MS: Final = TIMING["SIP_CYCLE_MS"]
 _STEP_MS: Final = 10
 _GAP_MS: Final = 5_000
 _ORDER_MS: Final = 1_000
-_WORD: Final = 0xFFFF
 _MM: Final = 1000
-_FLAGS: Final = FLAG["MOTORS"] | FLAG["SONAR1"] | FLAG["SONAR2"]
 
 
 class Ring:
@@ -103,8 +103,7 @@ class Ring:
 
     def _opened(self) -> Core:
         """Return a manager in a session with a robot that has reported nothing yet."""
-        identity = SyncReply(b"", self._table.robot_class.encode(), self._table.subclass.encode())
-        core, now_ms = opened(self._settings, identity, Sip(flags=_FLAGS).data)
+        core, now_ms = opened(self._settings, identity_of(self._table), empty().data)
         self._now_ms = self._sip_ms = now_ms
         self._verdicts = [Verdict()] * self._table.sonars
         self._said += core.events()
@@ -112,25 +111,4 @@ class Ring:
 
     def _sip(self) -> bytes:
         fresh, self._fresh = self._fresh, {}
-        motion, odometry = self.motion, self._table.odometry
-        unit_mm = odometry["dist_conv_um"] / 1000
-        speed_unit = odometry["vel_conv_um_s"] / 1000
-        range_unit = odometry["range_conv_um"] / 1000
-        turn = odometry["angle_per_turn"]
-        half_mm = self._table.motion["track_mm"] / 2
-        speed, across = motion.speed_m_s * _MM, motion.turn_rad_s * half_mm
-        return frame(
-            Sip(
-                x=round(motion.x_m * _MM / unit_mm) & _WORD,
-                y=round(motion.y_m * _MM / unit_mm) & _WORD,
-                th=round(motion.heading_rad / math.tau * turn) % turn,
-                left_vel=round((speed - across) / speed_unit),
-                right_vel=round((speed + across) / speed_unit),
-                battery=120,
-                flags=_FLAGS,
-                sonars=tuple(
-                    (number, round(mm / range_unit) & _WORD) for number, mm in sorted(fresh.items())
-                ),
-                battery_x10=120,
-            ).data
-        )
+        return packet(self._table, self.motion, fresh)

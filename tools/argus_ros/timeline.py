@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from argus_ros.intake import ORDER_S, Odd
+from argus_tools.rings.intake import ORDER_S, Odd
 
 _LIVE_S: Final = 2.0
 _CLOUD_S: Final = 0.1
