@@ -21,7 +21,13 @@ class LinkError(SimError):
     exit_code = 1
 
 
-_PACKAGES = {"can": "python-can", "isotp": "can-isotp", "mcap": "mcap", "matplotlib": "matplotlib"}
+_PACKAGES = {
+    "rosbags": "rosbags",
+    "can": "python-can",
+    "isotp": "can-isotp",
+    "mcap": "mcap",
+    "matplotlib": "matplotlib",
+}
 
 
 def missing_package(error: ModuleNotFoundError) -> str:

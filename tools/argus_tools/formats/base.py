@@ -82,6 +82,12 @@ class ReadOptions:
     robot: int | None = None
     name: str = "-"
     is_zipped: bool = False
+    topic: str | None = None
+    subclass: str | None = None
+    absent: frozenset[int] = frozenset()
+    """Set by a reader: sonars of which the log shows that the robot has none."""
+    tell: Callable[[str], None] = lambda _: None
+    """Takes what a reader found out and the user should know, a line each; it is no damage."""
 
 
 def remedy(command: str, options: ReadOptions) -> str:

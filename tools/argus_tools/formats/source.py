@@ -185,7 +185,11 @@ def _open(path: str) -> IO[bytes]:
         return sys.stdin.buffer
     try:
         if Path(path).is_dir():
-            raise LogError(f"{path}: is a directory; give a log file")
+            # A ROS 2 bag is a folder, which this file describes.
+            described = Path(path, "metadata.yaml")
+            if not described.is_file():
+                raise LogError(f"{path}: is a directory; give a log file, or the folder of a ROS 2 bag")
+            return described.open("rb", buffering=0)
         return Path(path).open("rb", buffering=0)
     except OSError as error:
         raise LogError(f"{path}: cannot be opened: {error.strerror}") from error

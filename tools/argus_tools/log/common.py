@@ -83,21 +83,34 @@ def add_log_arguments(parser: argparse.ArgumentParser, follow: bool = False) -> 
     parser.add_argument(
         "--robot", type=whole(0, 7, "number"), help="the robot's number on a CAN bus (default: the first)"
     )
+    parser.add_argument(
+        "--topic", metavar="NAME", help="of a bag: the ranges to read, or what their topics begin with"
+    )
     parser.add_argument("--strict", action="store_true", help="exit with 1 if anything in the log is damaged")
     if follow:
         parser.add_argument("--follow", action="store_true", help="wait for more at the end, until Ctrl-C")
 
 
 class Input:
-    """An opened log as the arguments ask for it; iterate `rows` once, then ask for `exit_code`."""
+    """An opened log as the arguments ask for it; iterate `rows` once, then ask for `exit_code`.
 
-    def __init__(self, args: argparse.Namespace, path: str | None = None) -> None:
+    quiet: what was found out of it was reported before, when it was read for another purpose.
+    """
+
+    def __init__(self, args: argparse.Namespace, path: str | None = None, quiet: bool = False) -> None:
         self.path = path or args.log
         self.damaged = 0
         self._strict = bool(getattr(args, "strict", False))
         self._told = 0
         self._dir = getattr(args, "dir", None)
-        options = ReadOptions(direction=self._dir, port=args.port, robot=args.robot)
+        options = ReadOptions(
+            direction=self._dir,
+            port=args.port,
+            robot=args.robot,
+            topic=args.topic,
+            subclass=getattr(args, "subclass", None),
+            tell=(lambda _: None) if quiet else self._remark,
+        )
         self._progress = _Progress(self.path)
         follow = getattr(args, "follow", False)
         self.log = Log(
@@ -175,6 +188,9 @@ class Input:
             )
         port = "; is --port needed?" if form.name in ("pcap", "pcapng") else ""
         raise LogError(f"{self.path}: holds no bytes of a robot's link (read as {form.help}){port}")
+
+    def _remark(self, what: str) -> None:
+        print(f"argus-log: {self.path}: {what}", file=sys.stderr)
 
     def _tell(self) -> None:
         damage = self.log.damage[:TOLD_MOST]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final, NamedTuple
 
 from argus_tools.core import Core, Event, kind_name, setting_value
@@ -91,7 +91,13 @@ class Listener:
     puts off is not silent, so nobody is judged by what it does not say.
     """
 
-    def __init__(self, given: Mapping[str, int], subclass: str | None = None) -> None:
+    def __init__(
+        self,
+        given: Mapping[str, int],
+        subclass: str | None = None,
+        absent: Callable[[], frozenset[int]] = frozenset,
+    ) -> None:
+        self._absent = absent
         self.core: Core | None = None
         self._given = {**given, "active": 0}
         name = (subclass or "p3dx-sh").encode("latin-1", "replace")
@@ -143,8 +149,8 @@ class Listener:
         return {**status, **{name: status[name] + self._before[name] for name in _COUNTS}}
 
     def _is_heard(self, sonar: int) -> bool:
-        """Whether the array of a sonar fires; the manager itself does not know that one may be off."""
-        return bool(self._heard >> sonar // _ARRAY & 1)
+        """Whether a sonar is there and its array fires; the manager itself does not know that one may be off."""
+        return bool(self._heard >> sonar // _ARRAY & 1) and sonar not in self._absent()
 
     def _leave(self) -> None:
         self.core = None
@@ -220,8 +226,8 @@ def _given(args: argparse.Namespace) -> dict[str, int]:
 
 def run(args: argparse.Namespace) -> int:
     """Print what the manager says; return the exit code."""
-    listener = Listener(_given(args), args.subclass)
     source = Input(args)
+    listener = Listener(_given(args), args.subclass, lambda: source.log.options.absent)
     colour = use_colour()
     summary = None if args.json or args.events or args.follow else Summary()
     t: float | None = None

@@ -68,11 +68,12 @@ def spans(happenings: Iterable[Happening], end: float) -> list[Span]:
     return found
 
 
-def _judge(rows: Iterable[Row], profile: str, subclass: str | None) -> Iterator[Happening]:
+def _judge(rows: Iterable[Row], source: Input, profile: str, subclass: str | None) -> Iterator[Happening]:
     from argus_tools.core import setting_value
     from argus_tools.log.faults import Listener
 
-    listener = Listener({"profile": setting_value("profile", profile)}, subclass)
+    given = {"profile": setting_value("profile", profile)}
+    listener = Listener(given, subclass, lambda: source.log.options.absent)
     for row in rows:
         for said in listener.take(row):
             if said.event.sonar is not None and said.t is not None:
@@ -86,15 +87,16 @@ def find_spans(args: argparse.Namespace) -> tuple[list[Span], str]:
     if args.log == "-":
         return [], "standard input can be read only once; save it to a file"
     last = 0.0
+    source = Input(args, quiet=True)
 
     def watched() -> Iterator[Row]:
         nonlocal last
-        for row in clocked(Input(args), quiet=True):
+        for row in clocked(source, quiet=True):
             last = row.t or last
             yield row
 
     try:
-        happenings = list(_judge(watched(), args.profile, args.subclass))
+        happenings = list(_judge(watched(), source, args.profile, args.subclass))
     except (LogError, ImportError) as error:
         return [], f"not judged: {error}"
     return spans(happenings, last), ""

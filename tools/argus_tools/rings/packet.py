@@ -30,6 +30,11 @@ def empty() -> Sip:
 
 def packet(table: RobotTable, motion: Motion, ranges_mm: Mapping[int, int]) -> bytes:
     """Return the framed packet that reports these ranges, by sonar, and this motion."""
+    return frame(sip_of(table, motion, ranges_mm).data)
+
+
+def sip_of(table: RobotTable, motion: Motion, ranges_mm: Mapping[int, int]) -> Sip:
+    """Return what such a packet holds."""
     odometry = table.odometry
     unit_mm = odometry["dist_conv_um"] / 1000
     speed_unit = odometry["vel_conv_um_s"] / 1000
@@ -37,20 +42,16 @@ def packet(table: RobotTable, motion: Motion, ranges_mm: Mapping[int, int]) -> b
     turn = odometry["angle_per_turn"]
     half_mm = table.motion["track_mm"] / 2
     speed, across = motion.speed_m_s * _MM, motion.turn_rad_s * half_mm
-    return frame(
-        Sip(
-            x=round(motion.x_m * _MM / unit_mm) & _WORD,
-            y=round(motion.y_m * _MM / unit_mm) & _WORD,
-            th=round(motion.heading_rad / math.tau * turn) % turn,
-            left_vel=_speed((speed - across) / speed_unit),
-            right_vel=_speed((speed + across) / speed_unit),
-            battery=_BATTERY,
-            flags=FLAGS,
-            sonars=tuple(
-                (number, round(mm / range_unit) & _WORD) for number, mm in sorted(ranges_mm.items())
-            ),
-            battery_x10=_BATTERY,
-        ).data
+    return Sip(
+        x=round(motion.x_m * _MM / unit_mm) & _WORD,
+        y=round(motion.y_m * _MM / unit_mm) & _WORD,
+        th=round(motion.heading_rad / math.tau * turn) % turn,
+        left_vel=_speed((speed - across) / speed_unit),
+        right_vel=_speed((speed + across) / speed_unit),
+        battery=_BATTERY,
+        flags=FLAGS,
+        sonars=tuple((number, round(mm / range_unit) & _WORD) for number, mm in sorted(ranges_mm.items())),
+        battery_x10=_BATTERY,
     )
 
 

@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: MIT
+"""Which topics of a recording are the ring and the odometry of one robot, and how their messages are to be read."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import Any, Final
+
+from argus_tools.formats.base import LogError
+from argus_tools.rings.geometry import Frames, frame_name, is_base
+from argus_tools.rings.intake import Odd, motion_of
+from argus_tools.rings.motion import Motion
+from argus_tools.rings.recording import Broken, Message, Recording, Topic
+from argus_tools.rings.sensors import (
+    ARRAYS,
+    CLOUD,
+    CLOUD2,
+    POINTS_MOST,
+    RANGE,
+    SCAN,
+    Array,
+    Cloud,
+    Scan,
+    Sensors,
+    Singles,
+    points_of,
+)
+from argus_tools.rings.silence import Silence
+from hil_sim.tables import load
+from hil_sim.tables.robot import DEFAULT_ROBOT, RobotTable, robot_table
+
+ODOMETRY: Final = "nav_msgs/msg/Odometry"
+TF: Final = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
+KINDS: Final = ((CLOUD, CLOUD2), ARRAYS, (RANGE,), (SCAN,))
+"""In the order in which they are preferred: a scan is taken where no sonar was recorded."""
+SURVEYED: Final = 3000
+"""So many messages tell what a ring's readings look like."""
+_POINTS_SEEN: Final = 5
+
+
+@dataclass
+class Plan:
+    """What was chosen and found."""
+
+    table: RobotTable
+    sensors: Sensors
+    silence: Silence
+    topics: list[str]
+    odometry: str | None
+    transforms: list[str]
+    frames: Frames
+    present: frozenset[int]
+    """The sonars that are in a message at all."""
+    words: list[str] = field(default_factory=list)
+
+
+def planned(recording: Recording, name: str, topic: str | None, robot: str | None) -> Plan:
+    """Return how a recording is read; LogError where it has no ring. topic, robot: what the user asks for."""
+    chosen, others = _ring_topics(recording, name, topic)
+    transforms = [one.name for one in recording.topics if one.type in TF and one.count]
+    odometry = _odometry(recording.topics, chosen)
+    frames, seen = _survey(recording, chosen, transforms)
+    if not seen:
+        raise LogError(f"{name}: no message of {', '.join(one.name for one in chosen)} can be read")
+    default = robot_table(robot or DEFAULT_ROBOT)
+    sensors = _sensors(seen, robot_table(robot) if robot else None, frames, default)
+    sonar = load(f"robots/{sensors.table.subclass}")["sonar"]
+    silence = Silence(sonar["no_echo_mm"], sonar["min_mm"], sensors.greatest_m)
+    present: set[int] = set()
+    for message in seen:
+        try:
+            for number, range_m in sensors.take(message).items():
+                silence.note(number, range_m)
+                present.add(number)
+        except Odd:
+            continue
+    found = silence.settle()
+    names = [one.name for one in chosen]
+    plan = Plan(sensors.table, sensors, silence, names, odometry, transforms, frames, frozenset(present))
+    count = sum(one.count for one in chosen)
+    which = chosen[0].name if len(chosen) == 1 else f"{len(chosen)} topics"
+    plan.words.append(f"ranges: {which} ({chosen[0].type}, {count} messages), ring of {plan.table.subclass}")
+    plan.words += sensors.words()
+    plan.words.append(f"no echo is {' and '.join(found)}" if found else "no reading is without an echo")
+    plan.words += _pose_words(plan)
+    if others:
+        plan.words.append(f"not read: {', '.join(others)}; --topic chooses")
+    return plan
+
+
+def _ring_topics(recording: Recording, name: str, asked: str | None) -> tuple[list[Topic], list[str]]:
+    """Return the topics of one ring, and the names of those that another ring has."""
+    here = [one for one in recording.topics if one.count and (asked is None or one.name.startswith(asked))]
+    exact = [one for one in here if one.name == asked]
+    found: list[list[Topic]] = []
+    for kinds in KINDS:
+        of_kind = [one for one in exact or here if one.type in kinds]
+        if kinds == (RANGE,):
+            found += [of_kind] if of_kind else []
+        else:
+            of_kind.sort(key=lambda one: (kinds.index(one.type), -one.count, one.name))
+            found += [[one] for one in of_kind if one.type not in (CLOUD, CLOUD2) or _is_ring(recording, one)]
+    if not found:
+        types = Counter(one.type for one in recording.topics if one.count)
+        has = ", ".join(sorted(types)[:8]) or "nothing"
+        of = f" of {asked}" if asked else ""
+        raise LogError(
+            f"{name}: no ranges of sonars{of} (Range, PointCloud with a point a sonar, SonarArray, LaserScan) in it; "
+            f"it holds {has}"
+        )
+    if found[0][0].type != SCAN:
+        found = [one for one in found if one[0].type != SCAN]
+    chosen = found[0]
+    others = {_namespace(one[0].name): one[0].name for one in reversed(found[1:])}
+    others.pop(_namespace(chosen[0].name), None)
+    return chosen, sorted(others.values())
+
+
+def _namespace(topic: str) -> str:
+    return topic.rpartition("/")[0]
+
+
+def _is_ring(recording: Recording, topic: Topic) -> bool:
+    try:
+        sizes = [
+            len(points_of(message)) for message in islice(recording.messages([topic.name]), _POINTS_SEEN)
+        ]
+    except (Broken, Odd, ValueError):
+        return False
+    return 0 < max(sizes, default=0) <= POINTS_MOST
+
+
+def _odometry(topics: Sequence[Topic], chosen: Sequence[Topic]) -> str | None:
+    """Return the odometry whose name has most in common with the ring's."""
+    found = [one for one in topics if one.type == ODOMETRY and one.count]
+    best = max(found, key=lambda one: (_alike(one.name, chosen[0].name), one.count), default=None)
+    return best.name if best else None
+
+
+def _alike(one: str, other: str) -> int:
+    """Return how many components two topics begin with in common."""
+    pairs = zip(one.split("/"), other.split("/"), strict=False)
+    return next((n for n, (a, b) in enumerate(pairs) if a != b), 0)
+
+
+def _survey(
+    recording: Recording, chosen: Sequence[Topic], transforms: Sequence[str]
+) -> tuple[Frames, list[Message]]:
+    """Return the tree of frames and the first messages of the ring."""
+    frames, seen = Frames(), []
+    ring = {one.name for one in chosen}
+    try:
+        for message in recording.messages([*ring, *transforms]):
+            if message.topic in ring:
+                seen.append(message)
+                if len(seen) >= (SURVEYED if message.type != SCAN else SURVEYED // 10):
+                    break
+                continue
+            for transform in message.body.transforms:
+                try:
+                    frames.take(transform)
+                except Odd:
+                    continue
+    except Broken:
+        pass  # reported when the messages are read
+    return frames, seen
+
+
+def _sensors(seen: list[Message], table: RobotTable | None, frames: Frames, default: RobotTable) -> Sensors:
+    kind = seen[0].type
+    if kind in (CLOUD, CLOUD2):
+        return Cloud(seen, table, frames)
+    if kind == RANGE:
+        return Singles(seen, table, frames, default)
+    if kind == SCAN:
+        return Scan(seen, default, frames)
+    return Array(seen, default)
+
+
+def _pose_words(plan: Plan) -> list[str]:
+    if plan.odometry:
+        return [f"pose: {plan.odometry}"]
+    if plan.transforms:
+        return [f"pose: transforms of a robot's base in {', '.join(plan.transforms)}"]
+    return ["no odometry in it: the robot is taken to be at rest, where nothing can be cross-checked"]
+
+
+class Place:
+    """Where the robot is, of its odometry, or of transforms where there is none."""
+
+    SPEED_SPAN_S: Final = 0.05
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self._ring = plan.topics[0]
+        self._t = 0.0
+        self._pair: tuple[str, str] | None = None
+        self.motion = Motion()
+
+    def take(self, message: Message) -> None:
+        """Take an odometry message or transforms."""
+        if message.topic == self._plan.odometry:
+            self.motion, self._t = motion_of(message.body), message.t
+            return
+        for transform in message.body.transforms:
+            parent, child, pose = self._plan.frames.take(transform)
+            if self._plan.odometry or not is_base(child) or not self._is_ours(parent, child):
+                continue
+            passed_s = message.t - self._t
+            if self._pair is None or passed_s >= self.SPEED_SPAN_S:
+                before = self.motion if self._pair else None
+                self._pair, self._t = (parent, child), message.t
+                self.motion = _moved(before, pose, passed_s)
+
+    def _is_ours(self, parent: str, child: str) -> bool:
+        if self._pair is not None:
+            return self._pair == (parent, child)
+        prefix = child.rpartition("/")[0]
+        return is_odom(parent) and (not prefix or prefix in self._ring)
+
+    def at(self, t: float) -> Motion:
+        """Return where the robot is at a time, by its last speeds."""
+        return self.motion.after(t - self._t)
+
+
+def is_odom(frame: str) -> bool:
+    """Whether a frame is one that odometry moves in, by its usual name."""
+    return "odom" in frame_name(frame).rpartition("/")[2]
+
+
+def _moved(before: Motion | None, pose: Any, passed_s: float) -> Motion:
+    if before is None or not 0 < passed_s < 1.0:
+        return Motion(pose.x_m, pose.y_m, pose.yaw_rad)
+    turned = math.remainder(pose.yaw_rad - before.heading_rad, math.tau)
+    middle = before.heading_rad + turned / 2
+    way = (pose.x_m - before.x_m) * math.cos(middle) + (pose.y_m - before.y_m) * math.sin(middle)
+    return Motion(pose.x_m, pose.y_m, pose.yaw_rad, way / passed_s, turned / passed_s)

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""Recordings of messages: ROS bags by `rosbags`, own MCAP by `mcap`. Both give topics, then messages by time."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, Final, NamedTuple, Protocol
+
+from argus_tools.formats.base import LogError
+
+_NANO: Final = 1_000_000_000
+SONAR_ARRAY: Final = "p2os_msgs/msg/SonarArray"
+_SONAR_ARRAY: Final = "std_msgs/Header header\nint32 ranges_count\nfloat64[] ranges\n"
+_UNREADABLE: Final = (
+    ValueError,
+    TypeError,
+    LookupError,
+    ArithmeticError,
+    AssertionError,
+    struct.error,
+    EOFError,
+)
+
+
+@dataclass(frozen=True)
+class Topic:
+    """One topic: its type as ROS 2 writes it, and how many messages it has."""
+
+    name: str
+    type: str
+    count: int
+
+
+class Message(NamedTuple):
+    """One message: its topic and type, the recorder's time in s, and its fields as attributes."""
+
+    topic: str
+    type: str
+    t: float
+    body: Any
+
+
+class Broken(Exception):
+    """What ends a recording early; the text says what it is."""
+
+
+class Recording(Protocol):
+    """A recording that was opened."""
+
+    topics: list[Topic]
+
+    def messages(self, topics: Iterable[str]) -> Iterator[Message]:
+        """Yield the messages of these topics; Broken where the rest cannot be read."""
+
+    def close(self) -> None:
+        """Close the file."""
+
+
+class Bag:
+    """A ROS 1 or ROS 2 bag. Each connection has the message definition that the bag has for it."""
+
+    def __init__(self, path: Path, is_first: bool, name: str) -> None:
+        from rosbags.rosbag1 import Reader as Reader1
+        from rosbags.rosbag1 import ReaderError as ReaderError1
+        from rosbags.rosbag2 import Reader as Reader2
+        from rosbags.rosbag2 import ReaderError as ReaderError2
+        from rosbags.serde import SerdeError
+
+        self._errors: tuple[type[Exception], ...] = (ReaderError1, ReaderError2, SerdeError, *_UNREADABLE)
+        self._is_first = is_first
+        self._stores: dict[tuple[str, str], Any] = {}
+        try:
+            self._reader: Any = Reader1(path) if is_first else Reader2(path)
+            self._reader.open()
+        except (*self._errors, OSError) as error:
+            raise LogError(f"{name}: a bag that cannot be read: {_what(error)}") from error
+        counts: dict[tuple[str, str], int] = {}
+        for connection in self._reader.connections:
+            key = (connection.topic, connection.msgtype)
+            counts[key] = counts.get(key, 0) + connection.msgcount
+        self.topics = [Topic(topic, kind, count) for (topic, kind), count in counts.items()]
+
+    def messages(self, topics: Iterable[str]) -> Iterator[Message]:
+        """Yield the messages of these topics, in the order of the bag's clock."""
+        wanted = set(topics)
+        chosen = [one for one in self._reader.connections if one.topic in wanted]
+        if not chosen:
+            return
+        try:
+            for connection, t_ns, raw in self._reader.messages(chosen):
+                kind = connection.msgtype
+                store = self._store(kind, connection.msgdef)
+                take = store.deserialize_ros1 if self._is_first else store.deserialize_cdr
+                yield Message(connection.topic, kind, t_ns / _NANO, take(raw, kind))
+        except self._errors as error:
+            raise Broken(_what(error)) from error
+
+    def _store(self, kind: str, definition: Any) -> Any:
+        from rosbags.interfaces import MessageDefinitionFormat
+        from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+
+        key = (kind, definition.data)
+        if key not in self._stores:
+            if definition.format == MessageDefinitionFormat.MSG:
+                store = get_typestore(Stores.EMPTY)
+                store.register(get_types_from_msg(definition.data, kind))
+            elif definition.format == MessageDefinitionFormat.IDL:
+                store = get_typestore(Stores.EMPTY)
+                for text in definition.data.split("=" * 80 + "\n"):
+                    store.register(
+                        get_types_from_idl(text.partition("\n")[2] if text.startswith("IDL: ") else text)
+                    )
+            else:
+                store = get_typestore(Stores.ROS2_JAZZY)
+                if kind == SONAR_ARRAY:
+                    store.register(get_types_from_msg(_SONAR_ARRAY, kind))
+            self._stores[key] = store
+        return self._stores[key]
+
+    def close(self) -> None:
+        """Close the bag."""
+        with suppress(*self._errors):
+            self._reader.close()
+
+
+class JsonMcap:
+    """An MCAP of JSON messages, as `argus-log convert` and the Foxglove bridge write it."""
+
+    def __init__(self, path: Path, name: str) -> None:
+        from mcap.exceptions import McapError
+        from mcap.reader import make_reader
+
+        self._errors: tuple[type[Exception], ...] = (McapError, *_UNREADABLE)
+        self._file = path.open("rb")
+        self._reader = make_reader(self._file)
+        try:
+            summary = self._reader.get_summary()
+        except self._errors as error:
+            raise LogError(f"{name}: an MCAP file that cannot be read: {_what(error)}") from error
+        if summary is None or summary.statistics is None:
+            raise LogError(
+                f"{name}: an MCAP file without an index, as of a recorder that was killed: mcap recover FILE"
+            )
+        counts = summary.statistics.channel_message_counts
+        self.encodings = {channel.message_encoding for channel in summary.channels.values()}
+        self.topics = [
+            Topic(channel.topic, summary.schemas[channel.schema_id].name, counts.get(number, 0))
+            for number, channel in summary.channels.items()
+            if channel.message_encoding == "json" and channel.schema_id in summary.schemas
+        ]
+
+    def messages(self, topics: Iterable[str]) -> Iterator[Message]:
+        """Yield the messages of these topics by their log time."""
+        try:
+            for schema, channel, message in self._reader.iter_messages(topics=list(topics)):
+                if schema is not None and channel.message_encoding == "json":
+                    body = json.loads(message.data, object_hook=lambda fields: SimpleNamespace(**fields))
+                    yield Message(channel.topic, schema.name, message.log_time / _NANO, body)
+        except self._errors as error:
+            raise Broken(_what(error)) from error
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+def _what(error: BaseException) -> str:
+    return (str(error) or type(error).__name__).splitlines()[0][:160]
