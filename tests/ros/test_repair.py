@@ -13,6 +13,7 @@ from argus_ros import argus_node, messages
 from argus_ros.argus_node import ArgusNode
 from argus_ros.make_messages import PACKAGES
 from argus_ros.repair import Dead, NoEcho, Policy, Trust, Verdict, bearings, neighbours
+from argus_ros.ring import Ring
 from argus_tools.rings.intake import Limits
 from rclpy.parameter import Parameter
 
@@ -119,3 +120,28 @@ def test_the_aggregate_of_p2os2_has_nan_for_who_is_withheld(monkeypatch: pytest.
     assert list(array.ranges[:3]) == [1.0] * 3
     assert math.isnan(array.ranges[3])
     assert array.ranges[15] == math.inf
+
+
+def test_a_ring_begun_anew_takes_no_reading_of_the_time_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    ring, limits = Ring(robot_table()), Limits(0.1, 5.0)
+    made: list[dict[int, int]] = []
+    told = ring._sip
+
+    def noted() -> bytes:
+        made.append(dict(ring._fresh))
+        return told()
+
+    monkeypatch.setattr(ring, "_sip", noted)
+    for k in range(30):  # sonar 5 was heard behind the last packet of the first run
+        ring.note(4, 1.0, limits)
+        ring.advance(1000 + k * 0.1)
+    ring.advance(1002.95)
+    ring.note(5, 0.2, limits)
+    ring.advance(1002.97)
+    made.clear()
+    for k in range(5):
+        ring.note(4, 1.0, limits)
+        ring.advance(10 + k * 0.1)
+    assert ring.restarts == 1
+    assert made
+    assert {k for fresh in made for k in fresh} == {4}, made

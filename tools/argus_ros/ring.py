@@ -39,6 +39,7 @@ class Ring:
         self._settings = {**(settings or {}), "active": 0}
         self.motion = Motion()
         self._fresh: dict[int, int] = {}
+        self._noted: dict[int, int] = {}
         self._core: Core | None = None
         self._origin_s = 0.0
         self._now_ms = 0
@@ -56,9 +57,9 @@ class Ring:
         return self._verdicts
 
     def note(self, sonar: int, range_m: float, limits: Limits) -> None:
-        """Take a reading of a sonar; NaN is none."""
+        """Take a reading of a sonar, at the time to which the ring advances next; NaN is none."""
         if not math.isnan(range_m):
-            self._fresh[sonar] = self._millimetres(range_m, limits)
+            self._noted[sonar] = self._millimetres(range_m, limits)
 
     def _millimetres(self, range_m: float, limits: Limits) -> int:
         if range_m >= limits.greatest_m:
@@ -76,7 +77,10 @@ class Ring:
                 self.restarts += 1
         if self._core is None:
             self._core = self._opened()
+            self._fresh.clear()  # readings of another clock
             self._origin_s = t_s - self._now_ms / 1000
+        self._fresh |= self._noted
+        self._noted.clear()
         until_ms, before_ms = int((t_s - self._origin_s) * 1000), self._sip_ms
         while self._now_ms < until_ms:
             self._pass(self._core, min(self._now_ms + _STEP_MS, until_ms))
