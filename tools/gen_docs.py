@@ -26,7 +26,7 @@ def rows(header: str, macro: str) -> list[list[str]]:
         return [row for part in parts for row in rows(header, part)]
     joined = re.sub(r'"\s+"', "", body[0].replace("\\\n", " "))  # a string may go on on the next line
     found = re.findall(r"X\(((?:[^()\"]|\"[^\"]*\")*)\)", joined.split("(X)", 1)[1])
-    return [[part.strip().strip('"') for part in re.findall(r'"[^"]*"|[^,]+', row)] for row in found]
+    return [[part.strip().strip('"') for part in re.findall(r'\s*("[^"]*"|[^,]+)', row)] for row in found]
 
 
 def _cell(parts: list[str]) -> str:
@@ -119,6 +119,27 @@ def rules() -> str:
     return "\n".join(lines)
 
 
+def numbers() -> str:
+    """Return the numbers of the evidence that were set by hand, group by group."""
+    header = "awareness/numbers.h"
+    text = (HEADERS / header).read_text(encoding="utf-8")
+    lines = []
+    for title, macro in re.findall(
+        r"^// (.+)\n#define (ARGUS_(?!NUMBER_)\w+_TABLE)\(X\)", text, re.MULTILINE
+    ):
+        lines += [
+            f"**{title}**",
+            "",
+            "| name | value | from | what | another value, or without |",
+            "|---|---|---|---|---|",
+        ]
+        for name, value, unit, source, what, trial in rows(header, macro):
+            shown = value if unit == "-" else f"{value} {unit}"
+            lines.append(f"| `{name}` | {shown} | {source} | {_cell([what])} | {_cell([trial])} |")
+        lines.append("")
+    return "\n".join(lines).strip()
+
+
 def policies() -> str:
     """Return the planners as a Markdown table."""
     lines = [
@@ -201,6 +222,7 @@ PARTS = {
     "docs/manager.md": {"modes": modes, "reflexes": reflexes, "rules": rules, "health": health},
     "docs/driving.md": {"policies": policies},
     "docs/guardian.md": {"admitted": admitted},
+    "docs/evidence.md": {"numbers": numbers},
 }
 
 

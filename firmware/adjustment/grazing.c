@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
 
 #define WAY_MM 80 // two readings show a slant when they were made so far apart

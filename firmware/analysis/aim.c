@@ -2,7 +2,7 @@
 // Where a silent sonar would look along what another one lately heard.
 #include "analysis/aim.h"
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "awareness/names.h"
 #include "knowledge/angle.h"
 

@@ -2,15 +2,14 @@
 // Looks at every SIP for what calls for a STOP.
 #include "awareness/alarms.h"
 
+#include "awareness/numbers.h"
 #include "knowledge/profile.h"
-
-#define MOVING_MM_S 5
 
 static bool looks_along_motion(const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t speed = (knowledge->vel_left_mm_s + knowledge->vel_right_mm_s) / 2;
-    const unsigned ahead = speed > MOVING_MM_S ? argus_robot_ahead(knowledge->robot) : 0u;
-    const unsigned behind = speed < -MOVING_MM_S ? argus_robot_astern(knowledge->robot) : 0u;
+    const unsigned ahead = speed > ARGUS_MOVING_MM_S ? argus_robot_ahead(knowledge->robot) : 0u;
+    const unsigned behind = speed < -ARGUS_MOVING_MM_S ? argus_robot_astern(knowledge->robot) : 0u;
     return ((ahead | behind) >> sonar & 1u) != 0;
 }
 

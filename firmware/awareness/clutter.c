@@ -2,7 +2,7 @@
 // Disturbance: what moves about the robot makes healthy sonars disagree.
 #include "awareness/clutter.h"
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "awareness/odds.h"
 
 void argus_clutter_note(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,

@@ -5,32 +5,8 @@
 
 #include <string.h>
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
-
-#define LEAST 4         // sonars in use that make an array, and of these had to hear something until then
-#define LEAST_OF_SOME 5 // ... where others of it go on hearing: a person hides four
-#define PROOF_RUN 3     // readings of each without an echo, before what ended at once is a proof
-#define AT_ONCE_MS 450u // the echoes that it lost ended within a round and a SIP of each other
-#define TURNING_PER_MM \
-    5 // ... until when the robot hardly turned: wheels that differ by less, for their distance, 11
-      // degrees/s
-#define LASTING_MM 3500     // what is farther may go out of range, unless it comes nearer
-#define NEAR_MM 2500        // a thing abeam that the others of that side cannot miss
-#define APART_MM 400        // driven from one reading to the next, at most
-#define PASSED_MM 1500      // driven beside such things, both sides together: proof
-#define PASSED_LEAST_MM 400 // ... on either
-
-#define GOES_ON_MM 200 // an echo of one thing goes on from the one before, less the way, to within this
-#define AHEAD_DEG 30   // what looks so far off the way cannot pass by what it heard
-#define AHEAD_LEAST_MM 300
-#define STRETCH_MM 400  // of a wall beside it is a piece of evidence,
-#define PASSED_NATS 280 // ... worth so much
-#define LOST_NATS 280   // each of two that have lost something ahead,
-#define TOUCH_NATS 560  // ... what the body met,
-#define DOUBT_NATS 560  // ... and so much is reason for doubt: the level of a suspicion
-#define PROOF_NATS 2200 // the level of a conviction,
-#define PROOF_BY 2      // ... by so many others
 
 void argus_common_init(argus_common_t *const self) {
     memset(self, 0, sizeof *self);
@@ -43,7 +19,8 @@ static int32_t expected_mm(const argus_heard_t *const echo, const argus_knowledg
 
 static bool goes_on(const argus_heard_t *const echo, const argus_knowledge_t *const knowledge,
                     const uint16_t reading_mm) {
-    return echo->reading_mm != 0 && argus_abs(expected_mm(echo, knowledge) - reading_mm) <= GOES_ON_MM;
+    return echo->reading_mm != 0 &&
+           argus_abs(expected_mm(echo, knowledge) - reading_mm) <= ARGUS_DARK_GOES_ON_MM;
 }
 
 // One that goes on from none before may be crosstalk.
@@ -64,7 +41,8 @@ static void take(argus_common_t *const self, const argus_knowledge_t *const know
     if (reading_mm < knowledge->robot->no_echo_mm) {
         note_echo(self, knowledge, sonar, reading_mm);
         self->none_run[sonar] = 0;
-        self->heard[sonar] = reading_mm <= LASTING_MM || argus_robot_faces_forward(knowledge->robot, sonar);
+        self->heard[sonar] =
+            reading_mm <= ARGUS_LASTING_MM || argus_robot_faces_forward(knowledge->robot, sonar);
         self->echoed[sonar] = true;
         self->echo_ms[sonar] = knowledge->sip_ms;
     } else {
@@ -98,13 +76,13 @@ static argus_mask_t lost_at_once(const argus_common_t *const self, const argus_k
                                  const argus_mask_t sonars) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const uint32_t last_ms = since_last_ms(self, knowledge, sonars);
-    if (self->has_turned && knowledge->sip_ms - self->turned_ms <= last_ms + AT_ONCE_MS) {
+    if (self->has_turned && knowledge->sip_ms - self->turned_ms <= last_ms + ARGUS_DARK_AT_ONCE_MS) {
         return 0;
     }
     unsigned lost = 0;
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool counts = (sonars >> i & 1u) != 0 && self->heard[i];
-        const bool lately = knowledge->sip_ms - self->echo_ms[i] - last_ms <= AT_ONCE_MS;
+        const bool lately = knowledge->sip_ms - self->echo_ms[i] - last_ms <= ARGUS_DARK_AT_ONCE_MS;
         lost |= counts && lately ? 1u << i : 0u;
     }
     return (argus_mask_t)lost;
@@ -127,17 +105,17 @@ static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowle
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_passed_t *const passed = &dark->passed[argus_robot_pose(knowledge->robot, sonar).y_mm > 0];
     const int32_t way_mm = (int32_t)(knowledge->odometer_mm - passed->odometer_mm);
-    const bool apart = way_mm > APART_MM;
-    const bool near = hears_within(knowledge, sonar, NEAR_MM);
-    const bool lasting = hears_within(knowledge, sonar, LASTING_MM);
+    const bool apart = way_mm > ARGUS_DARK_APART_MM;
+    const bool near = hears_within(knowledge, sonar, ARGUS_DARK_NEAR_MM);
+    const bool lasting = hears_within(knowledge, sonar, ARGUS_LASTING_MM);
     passed->mm += passed->near && near && !apart ? way_mm : 0;
     passed->stretch_mm += passed->lasting && lasting && !apart ? way_mm : 0;
     passed->near = near;
     passed->lasting = lasting;
     passed->odometer_mm = knowledge->odometer_mm;
-    if (passed->stretch_mm >= STRETCH_MM) {
+    if (passed->stretch_mm >= ARGUS_DARK_STRETCH_MM) {
         passed->stretch_mm = 0;
-        add(dark, PASSED_NATS, (argus_mask_t)(1u << sonar));
+        add(dark, ARGUS_DARK_PASSED_CNAT, (argus_mask_t)(1u << sonar));
     }
 }
 
@@ -157,7 +135,8 @@ static void pass_all(argus_dark_t *const dark, const argus_knowledge_t *const kn
 static bool has_passed(const argus_dark_t *const dark) {
     const int32_t right_mm = dark->passed[0].mm;
     const int32_t left_mm = dark->passed[1].mm;
-    return argus_min(right_mm, left_mm) >= PASSED_LEAST_MM && right_mm + left_mm >= PASSED_MM;
+    return argus_min(right_mm, left_mm) >= ARGUS_DARK_PASSED_LEAST_MM &&
+           right_mm + left_mm >= ARGUS_DARK_PASSED_MM;
 }
 
 static argus_mask_t silent_of(const argus_common_t *const self, const argus_mask_t sonars) {
@@ -186,9 +165,9 @@ static bool has_lost(const argus_common_t *const self, const argus_knowledge_t *
     const argus_heard_t *const echo = &self->sure[sonar];
     const bool straight = !self->has_turned || (int32_t)(echo->t_ms - self->turned_ms) > 0;
     const int32_t left_mm = expected_mm(echo, knowledge);
-    return argus_abs(argus_robot_pose(knowledge->robot, sonar).heading_deg) <= AHEAD_DEG &&
-           echo->reading_mm != 0 && straight && self->none_run[sonar] >= PROOF_RUN && left_mm <= LASTING_MM &&
-           left_mm >= AHEAD_LEAST_MM;
+    return argus_abs(argus_robot_pose(knowledge->robot, sonar).heading_deg) <= ARGUS_DARK_AHEAD_DEG &&
+           echo->reading_mm != 0 && straight && self->none_run[sonar] >= ARGUS_DARK_RUN &&
+           left_mm <= ARGUS_LASTING_MM && left_mm >= ARGUS_DARK_AHEAD_LEAST_MM;
 }
 
 static void count_lost(argus_common_t *const self, const argus_knowledge_t *const knowledge,
@@ -198,7 +177,7 @@ static void count_lost(argus_common_t *const self, const argus_knowledge_t *cons
     for (int i = 0; i < knowledge->sonars; i++) {
         if ((open >> i & 1u) != 0 && has_lost(self, knowledge, i)) {
             dark->lost |= (argus_mask_t)(1u << i);
-            add(dark, LOST_NATS, 0);
+            add(dark, ARGUS_DARK_LOST_CNAT, 0);
         }
     }
 }
@@ -206,13 +185,14 @@ static void count_lost(argus_common_t *const self, const argus_knowledge_t *cons
 // True: since now.
 static bool comes_to_doubt(argus_dark_t *const dark) {
     const bool before = dark->doubted;
-    dark->doubted = before || dark->nats >= DOUBT_NATS;
+    dark->doubted = before || dark->nats >= ARGUS_DARK_DOUBT_CNAT;
     return dark->doubted && !before && !dark->at_once && !dark->proven;
 }
 
 static bool is_proven(const argus_dark_t *const dark, const int run, const bool whole) {
-    const bool disputed = dark->nats >= PROOF_NATS && argus_count_bits(dark->by) >= PROOF_BY;
-    return (dark->at_once && run >= PROOF_RUN) || (whole && has_passed(dark)) || disputed;
+    const bool disputed =
+        dark->nats >= ARGUS_DARK_PROOF_CNAT && argus_count_bits(dark->by) >= ARGUS_DARK_PROOF_BY;
+    return (dark->at_once && run >= ARGUS_DARK_RUN) || (whole && has_passed(dark)) || disputed;
 }
 
 static void look_at(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int array) {
@@ -221,7 +201,7 @@ static void look_at(argus_common_t *const self, const argus_knowledge_t *const k
     const argus_mask_t in_use = (argus_mask_t)(its & ~(unsigned)argus_out(knowledge));
     const argus_mask_t sonars = members(self, knowledge, dark, in_use);
     const bool whole = sonars == in_use;
-    const int least = whole ? LEAST : LEAST_OF_SOME;
+    const int least = whole ? ARGUS_DARK_LEAST : ARGUS_DARK_LEAST_OF_SOME;
     const int run = argus_count_bits(sonars) >= least ? least_run(self, sonars) : 0;
     const bool was_dark = dark->sonars != 0;
     const bool at_once =
@@ -244,7 +224,7 @@ static void look_at(argus_common_t *const self, const argus_knowledge_t *const k
 void argus_common_sip(argus_common_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const int32_t differ_mm_s = argus_abs(knowledge->vel_right_mm_s - knowledge->vel_left_mm_s);
-    if (differ_mm_s * TURNING_PER_MM > knowledge->robot->track_mm) {
+    if (differ_mm_s * ARGUS_DARK_TURNING_PER_MM > knowledge->robot->track_mm) {
         self->has_turned = true;
         self->turned_ms = knowledge->sip_ms;
     }
@@ -279,7 +259,7 @@ void argus_common_touched(argus_common_t *const self, const argus_mask_t sonars)
     for (int array = 0; array < ARGUS_ARRAYS_MAX; array++) {
         argus_dark_t *const dark = &self->of[array];
         if ((dark->sonars & sonars) != 0) {
-            add(dark, TOUCH_NATS, 0);
+            add(dark, ARGUS_DARK_TOUCH_CNAT, 0);
         }
     }
 }

@@ -2,18 +2,15 @@
 // What the other sonars say of each ping, as it stands and as each hypothesis maps it.
 #include "awareness/crosscheck.h"
 
+#include <limits.h>
 #include <stddef.h>
 #include <string.h>
 
 #include "awareness/clutter.h"
 #include "awareness/gen_likelihoods.h"
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "awareness/odds.h"
 #include "knowledge/angle.h"
-
-#define ALONE_CDEG 1000 // from one place a lag that turned less would have it look where it looks now
-#define BITS 8
-#define ASKED_MOST 104 // hypotheses a SIP: some 6,000 instructions each
 
 // DIVIDED: the others contradict each other. SAME: the map leaves it where it is.
 typedef enum { UNSEEN, QUIET, AGREED, CONTRADICTED, DIVIDED, SAME, SAYINGS } verdict_t;
@@ -38,8 +35,13 @@ typedef struct {
 static const worth_t lag_worth = {ARGUS_LAG_OVER_HEALTHY, ARGUS_LAG_OVER_OTHER};
 static const worth_t offset_worth = {ARGUS_OFFSET_OVER_HEALTHY, ARGUS_OFFSET_OVER_OTHER};
 
-// A wall fills cones that are 6 degrees apart alike, so offsets between these show as well.
-static const int16_t offset_cdeg[ARGUS_OFFSETS] = {-2400, -1800, -1200, 1200, 1800, 2400};
+// -2400, -1800, -1200, 1200, ...: half of them to either side.
+static int32_t offset_cdeg(const int offset) {
+    const int half = ARGUS_OFFSETS / 2;
+    const int steps = offset < half ? offset + 1 - half : offset - half;
+    const int32_t least = offset < half ? -ARGUS_OFFSET_CDEG : ARGUS_OFFSET_CDEG;
+    return least + steps * ARGUS_OFFSET_STEP_CDEG;
+}
 
 static verdict_t compare_silence(const int32_t now_mm, const int32_t then_mm, const int32_t along_mm) {
     if (now_mm >= ARGUS_NO_ECHO_MM && then_mm >= ARGUS_NO_ECHO_MM) {
@@ -240,7 +242,7 @@ static verdict_t as_late(const argus_evidence_t *const self, const argus_knowled
     if (then == NULL) {
         return UNSEEN;
     }
-    if (argus_ping_turned_cdeg(now, then) < ALONE_CDEG &&
+    if (argus_ping_turned_cdeg(now, then) < ARGUS_LAG_SAME_CDEG &&
         argus_ping_is_within(now, then, ARGUS_SAME_ALONG_MM) &&
         argus_ping_shift(now, then).lateral_mm <= ARGUS_SAME_LATERAL_MM) {
         return SAME;
@@ -255,14 +257,14 @@ static verdict_t as_offset(const argus_evidence_t *const self, const argus_knowl
                            const int sonar, const argus_ping_t *const at, const int offset) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_ping_t mapped = *at;
-    mapped.bearing_cdeg = (int16_t)argus_angle_wrap(at->bearing_cdeg + offset_cdeg[offset]);
+    mapped.bearing_cdeg = (int16_t)argus_angle_wrap(at->bearing_cdeg + offset_cdeg(offset));
     const tally_t tally = ask_all(self, knowledge, sonar, &mapped);
     return verdict_of(&tally);
 }
 
 // A SIP that lists all sonars, most of them contradicted, must not take long: the next ones tell as much.
 static bool may_ask(argus_evidence_t *const self) {
-    const bool may = self->asked < ASKED_MOST;
+    const bool may = self->asked < ARGUS_ASKED_MOST;
     self->asked = (uint8_t)(self->asked + (may ? 1 : 0));
     return may;
 }
@@ -453,5 +455,5 @@ void argus_crosscheck_retract(argus_evidence_t *const self, const int sonar) {
 }
 
 int argus_crosscheck_silences(const argus_case_t *const self, const int of_last) {
-    return argus_count_bits(self->silent_bits & ((1u << argus_min(of_last, BITS)) - 1u));
+    return argus_count_bits(self->silent_bits & ((1u << argus_min(of_last, CHAR_BIT)) - 1u));
 }

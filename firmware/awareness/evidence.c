@@ -7,19 +7,12 @@
 
 #include "awareness/clutter.h"
 #include "awareness/crosscheck.h"
-#include "awareness/levels.h"
 #include "awareness/names.h"
+#include "awareness/numbers.h"
 #include "awareness/odds.h"
 #include "awareness/own.h"
 #include "awareness/scale.h"
 #include "knowledge/angle.h"
-
-#define PING_AGE_MS 70 // a SIP lists pings 0 to 140 ms old
-#define SIP_MOST_MS 300u
-#define ABOUT_CDEG 12000 // no robot turns so far in a SIP: the other end leads since then
-#define STEADY_SIPS 2
-#define REST_SIPS 3
-#define FADE_MS 1000u
 
 void argus_evidence_init(argus_evidence_t *const self) {
     memset(self, 0, sizeof *self);
@@ -52,10 +45,10 @@ static argus_pose_t pose_of_pings(const argus_evidence_t *const self,
     argus_pose_t pose = knowledge->pose;
     const uint32_t passed_ms = knowledge->sip_ms - self->before_ms;
     const int32_t turn_cdeg = argus_angle_wrap(pose.heading_cdeg - self->before.heading_cdeg);
-    const bool other_end = argus_abs(turn_cdeg) > ABOUT_CDEG;
-    if (self->before_ms != 0 && passed_ms > 0 && passed_ms <= SIP_MOST_MS && !other_end) {
+    const bool other_end = argus_abs(turn_cdeg) > ARGUS_ABOUT_CDEG;
+    if (self->before_ms != 0 && passed_ms > 0 && passed_ms <= ARGUS_SIP_MOST_MS && !other_end) {
         const int32_t span = (int32_t)passed_ms;
-        const int32_t ago = argus_min(PING_AGE_MS, span);
+        const int32_t ago = argus_min(ARGUS_PING_AGE_MS, span);
         pose.x_mm -= (pose.x_mm - self->before.x_mm) * ago / span;
         pose.y_mm -= (pose.y_mm - self->before.y_mm) * ago / span;
         pose.heading_cdeg = argus_angle_wrap(pose.heading_cdeg - turn_cdeg * ago / span);
@@ -69,8 +62,8 @@ static argus_ping_t ray_of(const argus_evidence_t *const self, const argus_knowl
     argus_ping_t ping = argus_ping_from(knowledge->robot, sonar, pose);
     ping.t_ms = (uint16_t)(knowledge->sip_ms & 0xFFFFu);
     ping.reading_mm = knowledge->sonar[sonar].reading_mm;
-    ping.steady = self->straight_sips >= STEADY_SIPS;
-    ping.rest = knowledge->still_sips >= REST_SIPS;
+    ping.steady = self->straight_sips >= ARGUS_STEADY_SIPS;
+    ping.rest = knowledge->still_sips >= ARGUS_REST_SIPS;
     return ping;
 }
 
@@ -99,7 +92,7 @@ static void grow_old(argus_evidence_t *const self, const argus_knowledge_t *cons
             self->pings[i].count = 0;
         }
     }
-    if (knowledge->sip_ms - self->faded_ms >= FADE_MS) {
+    if (knowledge->sip_ms - self->faded_ms >= ARGUS_FADE_MS) {
         self->faded_ms = knowledge->sip_ms;
         argus_crosscheck_fade(self, knowledge);
         argus_odds_fade(self);

@@ -4,27 +4,8 @@
 
 #include <string.h>
 
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
-
-#define NOISE_MM 5             // the shortest readings end so far above the robot's least; a run stays within
-#define TURNED_CDEG 1000       // a turn beyond this may have put something else there
-#define TURNED_ABEAM_CDEG 2500 // ... so near that its mate would still hear it
-#define AWAY_MM 200            // gone away from what stands so near
-#define ALONG_COS (ARGUS_TRIG_ONE * 24 / 25) // nearer to the way, 15 degrees, no wall beside keeps a range
-// Gone past what its mate on the same side, which hears and sits no farther off, does not see,
-#define ABEAM_MM 250
-#define ABEAM_ALONE_MM 2000 // ... or that it has no such mate for: no robot drives so long so near a wall
-#define CLEAR_MM 300        // its mate reads so much more
-#define LEAP_MM 600         // no person walks so far between two firings
-#define NEAR_MM 150         // what is nearer forbids to turn
-#define LEAPS 31            // from far off to the least
-#define STAYS 16            // below the least; four in a row may be the line, five convict
-#define VISIT \
-    10 // leaps near and away again at once: a person who walks across the beam may do so, once or twice
-#define ROW_STUCK 5
-#define LEVEL_CONVICTS 80
-#define LEVEL_KEEPS_OUT 40
-#define LEVEL_MAX 120
 
 void argus_extremes_init(argus_extremes_t *const self) {
     memset(self, 0, sizeof *self);
@@ -44,7 +25,7 @@ void argus_extremes_restart(argus_extremes_t *const self) {
 
 static bool is_shortest(const argus_knowledge_t *const knowledge, const int32_t reading_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
-    return reading_mm <= knowledge->robot->min_mm + NOISE_MM;
+    return reading_mm <= knowledge->robot->min_mm + ARGUS_SHORTEST_NOISE_MM;
 }
 
 static void begin_run(argus_extreme_t *const self, const argus_pose_t *const pose, const int32_t reading_mm) {
@@ -68,7 +49,7 @@ static int mate_says(const argus_knowledge_t *const knowledge, const int sonar) 
         const bool mate = i != sonar && (abeam >> i & 1u) != 0 &&
                           argus_robot_pose(robot, i).heading_deg == mine.heading_deg;
         if (mate && argus_usable(knowledge, i)) {
-            return knowledge->sonar[i].reading_mm > robot->min_mm + CLEAR_MM ? 1 : -1;
+            return knowledge->sonar[i].reading_mm > robot->min_mm + ARGUS_SHORTEST_CLEAR_MM ? 1 : -1;
         }
     }
     return 0;
@@ -78,7 +59,8 @@ static int mate_says(const argus_knowledge_t *const knowledge, const int sonar) 
 static bool tells_alone(const argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
                         const int sonar) {
     const int32_t bearing = argus_robot_pose(knowledge->robot, sonar).heading_deg * 100;
-    return is_shortest(knowledge, self->run_mm) || argus_abs(argus_cos(bearing)) > ALONG_COS;
+    return is_shortest(knowledge, self->run_mm) ||
+           argus_abs(argus_cos(bearing)) > ARGUS_TRIG_ONE * ARGUS_SHORTEST_ALONG_PERCENT / 100;
 }
 
 // What stands still is as far off as the robot went away from it, at least.
@@ -95,8 +77,8 @@ static void go_on(argus_extreme_t *const self, const argus_knowledge_t *const kn
     }
     const int32_t past_mm = argus_hypot(self->at.x_mm - self->from.x_mm, self->at.y_mm - self->from.y_mm);
     const bool alone = tells_alone(self, knowledge, sonar);
-    self->proved = self->proved || (says > 0 && past_mm >= ABEAM_MM) ||
-                   (alone && (self->away_mm >= AWAY_MM || past_mm >= ABEAM_ALONE_MM));
+    self->proved = self->proved || (says > 0 && past_mm >= ARGUS_SHORTEST_ABEAM_MM) ||
+                   (alone && (self->away_mm >= ARGUS_SHORTEST_AWAY_MM || past_mm >= ARGUS_SHORTEST_ALONE_MM));
 }
 
 static void take_near(argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
@@ -104,9 +86,10 @@ static void take_near(argus_extreme_t *const self, const argus_knowledge_t *cons
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t turned = argus_angle_abs_diff(knowledge->pose.heading_cdeg, self->from_cdeg);
     const unsigned abeam = argus_robot_flank(knowledge->robot) | argus_robot_rear_flank(knowledge->robot);
-    const int32_t most = (abeam >> sonar & 1u) != 0 ? TURNED_ABEAM_CDEG : TURNED_CDEG;
+    const int32_t most =
+        (abeam >> sonar & 1u) != 0 ? ARGUS_SHORTEST_TURNED_ABEAM_CDEG : ARGUS_SHORTEST_TURNED_CDEG;
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
-    const bool alike = self->running && argus_abs(reading_mm - self->run_mm) <= NOISE_MM;
+    const bool alike = self->running && argus_abs(reading_mm - self->run_mm) <= ARGUS_SHORTEST_NOISE_MM;
     self->proved = self->proved && alike;
     if (!alike || turned > most) {
         begin_run(self, &knowledge->pose, reading_mm);
@@ -119,14 +102,14 @@ static void take_near(argus_extreme_t *const self, const argus_knowledge_t *cons
 static int doubt(const argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
                  const int32_t reading_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
-    const int32_t far_mm = knowledge->robot->min_mm + LEAP_MM;
+    const int32_t far_mm = knowledge->robot->min_mm + ARGUS_SHORTEST_FAR_MM;
     if (is_shortest(knowledge, reading_mm) && self->before_mm > far_mm) {
-        return LEAPS;
+        return ARGUS_IMPOSSIBLE_LEAPS;
     }
     if (reading_mm < knowledge->robot->min_mm) {
-        return STAYS;
+        return ARGUS_IMPOSSIBLE_STAYS;
     }
-    return self->visited && reading_mm > far_mm ? VISIT : 0;
+    return self->visited && reading_mm > far_mm ? ARGUS_IMPOSSIBLE_VISIT : 0;
 }
 
 static void take(argus_extreme_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
@@ -135,12 +118,12 @@ static void take(argus_extreme_t *const self, const argus_knowledge_t *const kno
     const bool shortest = is_shortest(knowledge, reading);
     const int doubted = doubt(self, knowledge, reading);
     const int level = self->level + (doubted == 0 && !shortest ? -1 : doubted);
-    self->level = (uint8_t)argus_between(0, LEVEL_MAX, level);
-    self->visited = !shortest && reading <= knowledge->robot->min_mm + NEAR_MM &&
-                    self->before_mm > knowledge->robot->min_mm + LEAP_MM;
+    self->level = (uint8_t)argus_between(0, ARGUS_IMPOSSIBLE_MAX, level);
+    self->visited = !shortest && reading <= knowledge->robot->min_mm + ARGUS_SHORTEST_NEAR_MM &&
+                    self->before_mm > knowledge->robot->min_mm + ARGUS_SHORTEST_FAR_MM;
     self->before_mm = (uint16_t)reading;
     self->row = shortest ? argus_one_more(self->row) : 0;
-    if (reading <= knowledge->robot->min_mm + NEAR_MM) {
+    if (reading <= knowledge->robot->min_mm + ARGUS_SHORTEST_NEAR_MM) {
         take_near(self, knowledge, sonar);
     } else {
         self->running = false;
@@ -163,13 +146,13 @@ argus_fault_kind_t argus_extremes_convicts(const argus_extremes_t *const self, c
     if (e->proved) {
         return ARGUS_KIND_STUCK;
     }
-    if (e->level < LEVEL_CONVICTS) {
+    if (e->level < ARGUS_IMPOSSIBLE_CONVICTS) {
         return ARGUS_KIND_NONE;
     }
-    return e->row >= ROW_STUCK ? ARGUS_KIND_STUCK : ARGUS_KIND_INTERMITTENT;
+    return e->row >= ARGUS_IMPOSSIBLE_ROW ? ARGUS_KIND_STUCK : ARGUS_KIND_INTERMITTENT;
 }
 
 bool argus_extremes_keeps_out(const argus_extremes_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return self->of[sonar].proved || self->of[sonar].level > LEVEL_KEEPS_OUT;
+    return self->of[sonar].proved || self->of[sonar].level > ARGUS_IMPOSSIBLE_KEEPS_OUT;
 }

@@ -2,14 +2,14 @@
 // Adds to the scores of a sonar, within their bounds.
 #include "awareness/facts.h"
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
 
 const argus_bounds_t argus_bounds[ARGUS_TESTS] = {
-    [ARGUS_TEST_STUCK] = {1300, 1800, 0},
-    [ARGUS_TEST_GARBAGE] = {500, 2800, 0},
-    [ARGUS_TEST_DROPOUT] = {800, 2700, 0},
-    [ARGUS_TEST_PEERS] = {750, 2200, -150},
+#define ROW(name, usual, odd, even, naming, convincing, floor) \
+    [ARGUS_TEST_##name] = {naming, convincing, floor},
+    ARGUS_TEST_NUMBERS(ROW)
+#undef ROW
 };
 
 static int32_t scaled(const argus_evidence_t *const self, const int sonar, const int32_t increment) {

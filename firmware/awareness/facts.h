@@ -3,6 +3,7 @@
 #ifndef ARGUS_FACTS_H
 #define ARGUS_FACTS_H
 
+#include "awareness/numbers.h"
 #include "awareness/pings.h"
 #include "awareness/trend.h"
 
@@ -19,9 +20,6 @@ typedef enum {
 
 // Hypotheses map a reading to the ping that a healthy sonar would have had. It is late by so many firings, or
 // its axis is offset by so much.
-#define ARGUS_LEAST_LAG 2
-#define ARGUS_LAGS 8 // ... to 9 firings
-#define ARGUS_OFFSETS 6
 #define ARGUS_HYPOTHESES (ARGUS_LAGS + ARGUS_OFFSETS)
 typedef struct {
     int16_t over_healthy; // so explained, against healthy, hundredths of a nat
@@ -68,7 +66,6 @@ typedef struct {
 _Static_assert(sizeof(argus_case_t) == 128, "one shift leads to a case");
 
 // What sonars outside an array that is dark have heard where it was silent, in this SIP.
-#define ARGUS_ARRAYS_MAX 4
 typedef struct {
     int16_t nats;      // hundredths
     argus_mask_t by;   // whose echoes

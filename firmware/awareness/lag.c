@@ -4,12 +4,9 @@
 
 #include <stddef.h>
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "awareness/odds.h"
 #include "knowledge/angle.h"
-
-#define RUN 2 // readings given before, one after the other, tell something
-#define RUN_MOST 4
 
 // How much a stretch of the past varies that comes again; 0: not once, since what has been read since is
 // alike.
@@ -43,10 +40,12 @@ static int32_t replay_of(argus_evidence_t *const self, const argus_knowledge_t *
     if (varies_mm == 0) {
         return 0;
     }
-    *run = (uint8_t)argus_min(*run + 1, RUN_MOST);
+    *run = (uint8_t)argus_min(*run + 1, ARGUS_REPLAY_RUN_MOST);
     const int32_t chance = argus_odds_of(self, knowledge, sonar, ARGUS_TEST_STUCK, true) +
                            argus_ln(varies_mm) - argus_ln(ARGUS_ALIKE_MM);
-    return *run >= RUN && *run < RUN_MOST ? chance * (*run == RUN ? 2 : 1) : 0;
+    return *run >= ARGUS_REPLAY_RUN && *run < ARGUS_REPLAY_RUN_MOST
+               ? chance * (*run == ARGUS_REPLAY_RUN ? 2 : 1)
+               : 0;
 }
 
 void argus_lag_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,

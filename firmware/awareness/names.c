@@ -3,21 +3,15 @@
 #include "awareness/names.h"
 
 #include "awareness/crosscheck.h"
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
-
-#define PARTNERS 2 // which one is wrong takes a third
-#define OFF_RUN 5
-#define OFF_RUN_LONG 12 // what echoed before is named off after so many readings without an echo
-#define SILENT_OF 3
-#define EPISODES 10 // what moves about the robot does not contradict the same sonar again and again
 
 static int32_t suspicious(const int32_t naming) {
     return naming * ARGUS_SUSPECT_PERCENT / 100;
 }
 
 static bool has_partners(const argus_case_t *const self) {
-    return argus_count_bits(self->against) >= PARTNERS;
+    return argus_count_bits(self->against) >= ARGUS_PARTNERS;
 }
 
 static argus_hypothesis_t most_of(const argus_case_t *const self, const int from, const int to) {
@@ -53,10 +47,11 @@ static bool is_offset(const argus_case_t *const self, const int32_t level) {
 
 // Contradicted for silence only: off, unless they bore out an echo of it since they contradict it.
 static argus_fault_kind_t kind_of_peers(const argus_case_t *const self) {
-    const int silent = argus_crosscheck_silences(self, SILENT_OF);
-    if (silent == SILENT_OF) {
-        return self->none_run >= (self->borne_out ? OFF_RUN_LONG : OFF_RUN) ? ARGUS_KIND_OFF
-                                                                            : ARGUS_KIND_INTERMITTENT;
+    const int silent = argus_crosscheck_silences(self, ARGUS_SILENT_OF);
+    if (silent == ARGUS_SILENT_OF) {
+        return self->none_run >= (self->borne_out ? ARGUS_OFF_RUN_LONG : ARGUS_OFF_RUN)
+                   ? ARGUS_KIND_OFF
+                   : ARGUS_KIND_INTERMITTENT;
     }
     if (silent > 0 && self->score[ARGUS_TEST_DROPOUT] > 0) {
         return ARGUS_KIND_INTERMITTENT;
@@ -67,9 +62,9 @@ static argus_fault_kind_t kind_of_peers(const argus_case_t *const self) {
 // It has heard nothing for a while, and wherever it lately did not, the others heard something. So less is
 // wanted than where echoes are contradicted, which might be of another thing.
 static bool is_silent(const argus_case_t *const self) {
-    return self->none_run >= OFF_RUN && !self->borne_out &&
+    return self->none_run >= ARGUS_OFF_RUN && !self->borne_out &&
            self->score[ARGUS_TEST_PEERS] >= ARGUS_SILENT_CONTRADICTED &&
-           argus_crosscheck_silences(self, SILENT_OF) == SILENT_OF && has_partners(self);
+           argus_crosscheck_silences(self, ARGUS_SILENT_OF) == ARGUS_SILENT_OF && has_partners(self);
 }
 
 // The more definite tests come first.
@@ -116,7 +111,7 @@ argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, cons
     if (is_convicted_by(c, ARGUS_TEST_DROPOUT)) {
         return ARGUS_KIND_INTERMITTENT;
     }
-    const bool again = c->episodes >= EPISODES && has_partners(c) && !self->busy;
+    const bool again = c->episodes >= ARGUS_EPISODES && has_partners(c) && !self->busy;
     if (again && is_late(c, ARGUS_LATE_CONVINCING)) {
         return ARGUS_KIND_SLOW;
     }

@@ -2,14 +2,8 @@
 // What a reading tells of its sonar, by how odd the readings of all the others are of late.
 #include "awareness/odds.h"
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
-
-#define ONE 16    // reading, in the rates
-#define EARLIER 6 // readings are taken for granted at the start
-#define FADE_EIGHTHS 7
-#define THOUSAND 1000
-#define OUTLIERS 2 // sonars that are odd by themselves
 
 // Permille of the readings: odd ones of a healthy sonar at the least; odd ones, and those that go on, of a
 // faulty one. What is neither tells nothing.
@@ -20,10 +14,9 @@ typedef struct {
 } odds_t;
 
 static const odds_t odds[ARGUS_TESTS] = {
-    [ARGUS_TEST_STUCK] = {60, 1000, 0},
-    [ARGUS_TEST_GARBAGE] = {100, 600, 50},
-    [ARGUS_TEST_DROPOUT] = {10, 250, 750},
-    [ARGUS_TEST_PEERS] = {50, 800, 370},
+#define ROW(name, usual, odd, even, ...) [ARGUS_TEST_##name] = {usual, odd, even},
+    ARGUS_TEST_NUMBERS(ROW)
+#undef ROW
 };
 
 int32_t argus_ln(const int32_t number) {
@@ -36,14 +29,14 @@ int32_t argus_ln(const int32_t number) {
 
 static int32_t permille_but(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                             const argus_mask_t but, const argus_test_t test) {
-    int32_t all = EARLIER * ONE;
-    int32_t odd = all * odds[test].usual / THOUSAND + 1;
+    int32_t all = ARGUS_RATE_EARLIER * ARGUS_RATE_ONE;
+    int32_t odd = all * odds[test].usual / 1000 + 1;
     for (int i = 0; i < knowledge->sonars; i++) {
         const bool counts = (but >> i & 1u) == 0 && !argus_is_out(knowledge, i);
         all += counts ? self->of[i].rate[test].all : 0;
         odd += counts ? self->of[i].rate[test].odd : 0;
     }
-    return odd * THOUSAND / all;
+    return odd * 1000 / all;
 }
 
 int32_t argus_odds_permille(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
@@ -53,13 +46,13 @@ int32_t argus_odds_permille(const argus_evidence_t *const self, const argus_know
 
 // Odd readings of a sonar beyond those that a healthy one has.
 static int32_t excess_of(const argus_rate_t *const rate, const argus_test_t test) {
-    return rate->odd - rate->all * odds[test].usual / THOUSAND;
+    return rate->odd - rate->all * odds[test].usual / 1000;
 }
 
 int32_t argus_odds_common_permille(const argus_evidence_t *const self,
                                    const argus_knowledge_t *const knowledge, const argus_test_t test) {
     argus_mask_t left = 0;
-    for (int n = 0; n < OUTLIERS; n++) {
+    for (int n = 0; n < ARGUS_RATE_OUTLIERS; n++) {
         int worst = -1;
         for (int i = 0; i < knowledge->sonars; i++) {
             const bool counts = (left >> i & 1u) == 0 && !argus_is_out(knowledge, i);
@@ -81,21 +74,21 @@ int32_t argus_odds_of(const argus_evidence_t *const self, const argus_knowledge_
     if (odd) {
         return argus_ln(o->odd) - argus_ln(healthy);
     }
-    return o->even > 0 ? argus_min(0, argus_ln(o->even) - argus_ln(THOUSAND - healthy)) : -ARGUS_CEILING;
+    return o->even > 0 ? argus_min(0, argus_ln(o->even) - argus_ln(1000 - healthy)) : -ARGUS_CEILING;
 }
 
 void argus_odds_note(argus_evidence_t *const self, const int sonar, const argus_test_t test, const bool odd) {
     argus_rate_t *const rate = &self->of[sonar].rate[test];
-    rate->all = (uint16_t)(rate->all + ONE);
-    rate->odd = (uint16_t)(rate->odd + (odd ? ONE : 0));
+    rate->all = (uint16_t)(rate->all + ARGUS_RATE_ONE);
+    rate->odd = (uint16_t)(rate->odd + (odd ? ARGUS_RATE_ONE : 0));
 }
 
 void argus_odds_fade(argus_evidence_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         for (int test = 0; test < ARGUS_TESTS; test++) {
             argus_rate_t *const rate = &self->of[i].rate[test];
-            rate->all = (uint16_t)(rate->all * FADE_EIGHTHS / 8);
-            rate->odd = (uint16_t)(rate->odd * FADE_EIGHTHS / 8);
+            rate->all = (uint16_t)(rate->all * ARGUS_RATE_KEEPS_EIGHTHS / 8);
+            rate->odd = (uint16_t)(rate->odd * ARGUS_RATE_KEEPS_EIGHTHS / 8);
         }
     }
 }

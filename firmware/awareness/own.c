@@ -6,13 +6,9 @@
 
 #include "awareness/clutter.h"
 #include "awareness/lag.h"
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "awareness/odds.h"
 #include "knowledge/angle.h"
-
-#define COMPARED 2     // echoes that one is compared with
-#define LOOKED_BACK 10 // readings
-#define GAPS_MOST 3    // of one place
 
 static void score(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const argus_test_t test, const bool odd) {
@@ -62,7 +58,7 @@ typedef struct {
 
 static likeness_t liken(const argus_pings_t *const pings, const argus_ping_t *const now) {
     likeness_t like = {0, false, true};
-    for (int i = 1; i <= LOOKED_BACK && like.comparable < COMPARED; i++) {
+    for (int i = 1; i <= ARGUS_LOOKED_BACK && like.comparable < ARGUS_COMPARED; i++) {
         const argus_ping_t *const then = argus_pings_at(pings, i);
         if (then == NULL) {
             break;
@@ -115,7 +111,7 @@ static void test_walker(argus_evidence_t *const self, const argus_knowledge_t *c
 
 // The echo before the run of none that ends now, all of it on this bearing; NULL: none.
 static const argus_ping_t *echo_before_gap(const argus_pings_t *const pings, const argus_ping_t *const now) {
-    for (int i = 1; i <= LOOKED_BACK; i++) {
+    for (int i = 1; i <= ARGUS_LOOKED_BACK; i++) {
         const argus_ping_t *const then = argus_pings_at(pings, i);
         if (then == NULL || argus_ping_turned_cdeg(now, then) > ARGUS_SAME_CDEG) {
             return NULL;
@@ -132,7 +128,7 @@ static void test_dropout(argus_evidence_t *const self, const argus_knowledge_t *
                          const int sonar, const argus_ping_t *const now, const bool unrest) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
-    if (!argus_ping_is_echo(now) || c->gaps >= GAPS_MOST) {
+    if (!argus_ping_is_echo(now) || c->gaps >= ARGUS_GAPS_MOST) {
         return;
     }
     const argus_ping_t *const then = echo_before_gap(&self->pings[sonar], now);

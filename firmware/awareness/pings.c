@@ -4,15 +4,11 @@
 
 #include <stddef.h>
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
 
-#define ALIKE_PLACE_MM 5
-#define ALIKE_CDEG 30
-#define ALIKE_MM 30
-#define FULL_CDEG 36000
-#define SECTOR_CDEG (FULL_CDEG / ARGUS_PING_SECTORS)
-#define LAST 0x80000000u // of the bits of a log: the last ping
+#define SECTOR_CDEG (ARGUS_TURN_CDEG / ARGUS_PING_SECTORS)
+#define LAST (UINT32_MAX ^ UINT32_MAX >> 1) // of the bits of a log: the last ping
 
 static int32_t offset_mm(const uint16_t now_mm, const uint16_t then_mm) {
     const int32_t delta = (int32_t)((uint32_t)(now_mm - then_mm) & 0xFFFFu);
@@ -59,7 +55,7 @@ int32_t argus_ping_moved_mm(const argus_ping_t *const a, const argus_ping_t *con
 
 int32_t argus_ping_turned_cdeg(const argus_ping_t *const a, const argus_ping_t *const b) {
     const int32_t size = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
-    ARGUS_ASSERT(size < FULL_CDEG);
+    ARGUS_ASSERT(size < ARGUS_TURN_CDEG);
     return size > 18000 ? 36000 - size : size;
 }
 
@@ -89,7 +85,7 @@ bool argus_ping_is_within(const argus_ping_t *const a, const argus_ping_t *const
 }
 
 static unsigned sector_of(const int32_t bearing_cdeg) {
-    return (unsigned)(bearing_cdeg + 2 * FULL_CDEG) / SECTOR_CDEG % ARGUS_PING_SECTORS;
+    return (unsigned)(bearing_cdeg + 2 * ARGUS_TURN_CDEG) / SECTOR_CDEG % ARGUS_PING_SECTORS;
 }
 
 argus_line_t argus_ping_line(const argus_ping_t *const self) {
@@ -110,7 +106,7 @@ static uint32_t those_beside(const argus_pings_t *const self, const argus_line_t
 
 static bool is_near(const argus_ping_t *const a, const argus_ping_t *const b) {
     const int32_t turned = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
-    return (turned <= ARGUS_BESIDE_CDEG || turned >= FULL_CDEG - ARGUS_BESIDE_CDEG) &&
+    return (turned <= ARGUS_BESIDE_CDEG || turned >= ARGUS_TURN_CDEG - ARGUS_BESIDE_CDEG) &&
            argus_ping_is_within(a, b, ARGUS_SAME_ALONG_MM);
 }
 
@@ -149,8 +145,9 @@ bool argus_ping_goes_on(const argus_ping_t *const now, const argus_ping_t *const
 
 static bool is_alike(const argus_ping_t *const a, const argus_ping_t *const b) {
     return argus_ping_is_echo(a) == argus_ping_is_echo(b) &&
-           argus_abs(a->reading_mm - b->reading_mm) <= ALIKE_MM &&
-           argus_ping_turned_cdeg(a, b) <= ALIKE_CDEG && argus_ping_is_within(a, b, ALIKE_PLACE_MM);
+           argus_abs(a->reading_mm - b->reading_mm) <= ARGUS_ONE_PING_MM &&
+           argus_ping_turned_cdeg(a, b) <= ARGUS_ONE_PING_CDEG &&
+           argus_ping_is_within(a, b, ARGUS_ONE_PING_PLACE_MM);
 }
 
 void argus_pings_age(argus_pings_t *const self, const uint32_t now_ms) {

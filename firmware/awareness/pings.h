@@ -3,11 +3,8 @@
 #ifndef ARGUS_PINGS_H
 #define ARGUS_PINGS_H
 
+#include "awareness/numbers.h"
 #include "knowledge/knowledge.h"
-
-#define ARGUS_PINGS 32            // that are remembered of each sonar: some 20 s in motion, longer at rest
-#define ARGUS_PING_SECTORS 16     // of the bearings
-#define ARGUS_PINGS_AGE_MS 40000u // what stands still stays where it was seen
 
 // One reading: where the transducer was and looked when its ping was sent, about, course frame. Time and
 // place modulo 65,536 ms and mm.

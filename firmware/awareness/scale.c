@@ -3,14 +3,8 @@
 #include "awareness/scale.h"
 
 #include "awareness/crosscheck.h"
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
-
-#define STRETCH_MM 400 // of way makes a measure
-#define ASIDE 4        // the way may lie so little aside of the bearing: by a part of it
-#define FITS_PERCENT 10
-#define OFF_RUN 4   // measures in a row that are off to one side: what is slant or round is short, too
-#define LEAST_OFF 2 // sonars of an array, before it is taken for off as a whole
 
 static bool is_sure(const argus_ping_t *const ping) {
     return ping->reading_mm > ARGUS_NEAREST_MM && ping->reading_mm < ARGUS_SURE_MM;
@@ -25,7 +19,8 @@ static bool goes_on(const argus_ping_t *const now, const argus_ping_t *const bef
     *shift = argus_ping_shift(now, before);
     const int32_t way_mm = argus_abs(shift->along_mm);
     const int32_t off_mm = argus_abs(now->reading_mm - (before->reading_mm - shift->along_mm));
-    return shift->lateral_mm * ASIDE <= way_mm + ARGUS_STILL_MM && off_mm <= ARGUS_AGREE_MM + way_mm * 2 / 5;
+    return shift->lateral_mm * ARGUS_SCALE_ASIDE <= way_mm + ARGUS_STILL_MM &&
+           off_mm <= ARGUS_AGREE_MM + way_mm * 2 / 5;
 }
 
 static void begin_stretch(argus_scale_t *const self) {
@@ -34,7 +29,7 @@ static void begin_stretch(argus_scale_t *const self) {
 }
 
 static void measure(argus_scale_t *const self) {
-    const int32_t fits_mm = argus_abs(self->way_mm) * FITS_PERCENT / 100;
+    const int32_t fits_mm = argus_abs(self->way_mm) * ARGUS_SCALE_FITS_PERCENT / 100;
     const int32_t more_mm = argus_abs(self->nearer_mm) - argus_abs(self->way_mm);
     const bool fits = argus_abs(more_mm) <= fits_mm;
     self->off = !fits && self->more == (more_mm > 0) ? argus_one_more(self->off) : (uint8_t)!fits;
@@ -48,12 +43,12 @@ static argus_mask_t off_of(const argus_evidence_t *const self, const argus_mask_
     unsigned off = 0;
     unsigned against = 0;
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        if ((array >> i & 1u) != 0 && self->of[i].scale.off >= OFF_RUN) {
+        if ((array >> i & 1u) != 0 && self->of[i].scale.off >= ARGUS_SCALE_OFF_RUN) {
             off |= 1u << i;
             against |= self->of[i].against;
         }
     }
-    const bool whole = argus_count_bits(off) >= LEAST_OFF && (against & array) == 0;
+    const bool whole = argus_count_bits(off) >= ARGUS_SCALE_LEAST_OFF && (against & array) == 0;
     return (argus_mask_t)(whole ? array : off);
 }
 
@@ -97,7 +92,7 @@ void argus_scale_take(argus_evidence_t *const self, const argus_knowledge_t *con
     }
     scale->way_mm = (int16_t)(scale->way_mm + shift.along_mm);
     scale->nearer_mm = (int16_t)(scale->nearer_mm + before->reading_mm - now->reading_mm);
-    if (argus_abs(scale->way_mm) >= STRETCH_MM) {
+    if (argus_abs(scale->way_mm) >= ARGUS_SCALE_STRETCH_MM) {
         measure(scale);
         doubt(self, knowledge);
         begin_stretch(scale);

@@ -4,25 +4,8 @@
 
 #include <string.h>
 
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
-
-#define NO_ECHO_MM ARGUS_NO_ECHO_MM
-#define UNIT 16000  // a statistic of 1
-#define SPREAD 2000 // standard deviation of one residual, in parts of its limit
-#define FAST 6      // segments that the means look back on
-#define SLOW 32
-#define LEAD_LEAST 3 // segments
-
-#define NEAR_MM 3500 // echoes from beyond come and go
-#define GAP_MAX 3    // readings without an echo that count as dropouts between two
-#define GOES_ON_MM 100
-#define GOES_ON_PERCENT 3
-#define SAME_CDEG 300
-
-#define AGREE_MM 80 // sonars on one bearing may differ so much
-#define AGREE_PERCENT 5
-#define FAR_FROM_MM 2500
-#define FAR_TO_MM 4500
 
 typedef struct {
     uint16_t length_mm; // of a segment, at least
@@ -38,9 +21,9 @@ typedef struct {
 
 // Sixteenths of a permille; see docs/manager.md, Trends.
 static const rule_t rules[ARGUS_TRENDS] = {
-    [ARGUS_TREND_DROPOUT] = {2000, 20, 192, 128, 1600, 1920, 6, 3, false},
-    [ARGUS_TREND_BIAS] = {3000, 8, 1440, 640, 4800, 1600, 6, 3, true},
-    [ARGUS_TREND_RANGE] = {4000, 6, 1600, 800, 4800, 3200, 6, 2, false},
+#define ROW(name, ...) [ARGUS_TREND_##name] = {__VA_ARGS__},
+    ARGUS_TREND_NUMBERS(ROW)
+#undef ROW
 };
 
 void argus_trend_init(argus_trend_t *const self) {
@@ -79,16 +62,16 @@ static bool goes_on(const argus_trend_sonar_t *const self, const argus_knowledge
                     const int32_t reading_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
     const int32_t way_mm = (int32_t)((knowledge->odometer_mm - self->echo_odometer_mm) & 0xFFFFu);
-    const int32_t limit = GOES_ON_MM + reading_mm * GOES_ON_PERCENT / 100 + way_mm;
+    const int32_t limit = ARGUS_TREND_GOES_ON_MM + reading_mm * ARGUS_TREND_GOES_ON_PERCENT / 100 + way_mm;
     return argus_abs(reading_mm - self->echo_mm) <= limit;
 }
 
 static void take_echo(argus_trend_sonar_t *const self, const argus_knowledge_t *const knowledge,
                       const uint16_t reading_mm) {
-    const bool near = reading_mm < NEAR_MM && self->echo_mm > 0 && self->echo_mm < NEAR_MM;
+    const bool near = reading_mm < ARGUS_LASTING_MM && self->echo_mm > 0 && self->echo_mm < ARGUS_LASTING_MM;
     if (near && goes_on(self, knowledge, reading_mm)) {
         for (int i = 0; i < self->gap; i++) {
-            add(self, ARGUS_TREND_DROPOUT, knowledge->odometer_mm, UNIT);
+            add(self, ARGUS_TREND_DROPOUT, knowledge->odometer_mm, ARGUS_TREND_UNIT);
         }
         add(self, ARGUS_TREND_DROPOUT, knowledge->odometer_mm, 0);
     }
@@ -103,14 +86,15 @@ void argus_trend_reading(argus_trend_t *const self, const argus_knowledge_t *con
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_trend_sonar_t *const s = &self->of[sonar];
     const uint16_t reading_mm = knowledge->sonar[sonar].reading_mm;
-    const bool turned = argus_angle_abs_diff(knowledge->pose.heading_cdeg, s->echo_heading_cdeg) > SAME_CDEG;
+    const bool turned =
+        argus_angle_abs_diff(knowledge->pose.heading_cdeg, s->echo_heading_cdeg) > ARGUS_SAME_CDEG;
     if (knowledge->rotating || knowledge->still_sips > 0 || turned) {
         s->echo_mm = 0;
         s->gap = 0;
     }
-    if (reading_mm < NO_ECHO_MM) {
+    if (reading_mm < ARGUS_NO_ECHO_MM) {
         take_echo(s, knowledge, reading_mm);
-    } else if (s->gap < GAP_MAX) {
+    } else if (s->gap < ARGUS_TREND_GAP_MAX) {
         s->gap++;
     } else {
         s->echo_mm = 0;
@@ -121,25 +105,25 @@ static void take_residual(argus_trend_sonar_t *const self, const uint32_t odomet
                           const int32_t reading_mm, const int32_t expected_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
     const int32_t residual_mm = reading_mm - expected_mm;
-    const int32_t limit_mm = AGREE_MM + argus_min(reading_mm, expected_mm) * AGREE_PERCENT / 100;
+    const int32_t limit_mm = ARGUS_AGREE_MM + argus_min(reading_mm, expected_mm) * ARGUS_AGREE_PERCENT / 100;
     if (expected_mm <= 0 || argus_abs(residual_mm) > limit_mm) {
         return;
     }
-    add(self, ARGUS_TREND_BIAS, odometer_mm, residual_mm * UNIT / limit_mm);
+    add(self, ARGUS_TREND_BIAS, odometer_mm, residual_mm * ARGUS_TREND_UNIT / limit_mm);
 }
 
 static void take_far(argus_trend_sonar_t *const self, const uint32_t odometer_mm, const int32_t reading_mm,
                      const int32_t expected_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
-    if (expected_mm >= FAR_FROM_MM && expected_mm <= FAR_TO_MM) {
-        add(self, ARGUS_TREND_RANGE, odometer_mm, reading_mm >= NO_ECHO_MM ? UNIT : 0);
+    if (expected_mm >= ARGUS_TREND_FAR_FROM_MM && expected_mm <= ARGUS_TREND_FAR_TO_MM) {
+        add(self, ARGUS_TREND_RANGE, odometer_mm, reading_mm >= ARGUS_NO_ECHO_MM ? ARGUS_TREND_UNIT : 0);
     }
 }
 
 static void take_view(argus_trend_sonar_t *const self, const uint32_t odometer_mm, const int32_t reading_mm,
                       const int32_t expected_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
-    if (reading_mm < NO_ECHO_MM) {
+    if (reading_mm < ARGUS_NO_ECHO_MM) {
         take_residual(self, odometer_mm, reading_mm, expected_mm);
     }
     take_far(self, odometer_mm, reading_mm, expected_mm);
@@ -152,10 +136,10 @@ void argus_trend_pair(argus_trend_t *const self, const argus_knowledge_t *const 
     ARGUS_ASSERT(other >= 0 && other < ARGUS_SONARS);
     ARGUS_ASSERT(reading_mm >= 0);
     const uint32_t odometer_mm = knowledge->odometer_mm;
-    if (other_mm < NO_ECHO_MM && !argus_is_out(knowledge, other)) {
+    if (other_mm < ARGUS_NO_ECHO_MM && !argus_is_out(knowledge, other)) {
         take_view(&self->of[sonar], odometer_mm, reading_mm, other_mm - along_mm);
     }
-    if (reading_mm < NO_ECHO_MM && !argus_is_out(knowledge, sonar)) {
+    if (reading_mm < ARGUS_NO_ECHO_MM && !argus_is_out(knowledge, sonar)) {
         take_view(&self->of[other], odometer_mm, other_mm, reading_mm + along_mm);
     }
 }
@@ -190,7 +174,8 @@ typedef struct {
 static bool is_significant(const int64_t difference, const argus_slope_t *const slope,
                            const segment_t *const segment, const bool is_signed, const int32_t eighths) {
     const int64_t share = argus_max(slope->slow, segment->usual);
-    const int64_t variance = is_signed ? (int64_t)SPREAD * SPREAD : share * (UNIT - share);
+    const int64_t variance =
+        is_signed ? (int64_t)ARGUS_TREND_SPREAD * ARGUS_TREND_SPREAD : share * (ARGUS_TREND_UNIT - share);
     return difference > 0 && 8 * difference * difference * segment->count >= eighths * variance;
 }
 
@@ -207,9 +192,9 @@ static void take_segment(argus_slope_t *const slope, const segment_t *const segm
     const int32_t value = argus_between(slope->fast - jump, slope->fast + jump, segment->mean);
     const int32_t n = slope->segments + 1;
     const int32_t metres = (int32_t)argus_min(segment->length_mm / 1000, UINT8_MAX);
-    slope->fast = towards(slope->fast, value, argus_min(n, FAST));
-    slope->slow = towards(slope->slow, value, argus_min(n, SLOW));
-    slope->metres = (uint8_t)(slope->metres + (metres - slope->metres) / argus_min(n, FAST));
+    slope->fast = towards(slope->fast, value, argus_min(n, ARGUS_TREND_FAST));
+    slope->slow = towards(slope->slow, value, argus_min(n, ARGUS_TREND_SLOW));
+    slope->metres = (uint8_t)(slope->metres + (metres - slope->metres) / argus_min(n, ARGUS_TREND_FAST));
     slope->segments = (uint8_t)argus_min(n, UINT8_MAX);
 }
 
@@ -274,10 +259,11 @@ void argus_trend_sip(argus_trend_t *const self, const argus_knowledge_t *const k
 // Segments by which the fast mean is ahead of the slow one. They are 26 once a growth has lasted. When it has
 // just begun the slow mean shows little of it, and how little tells the number.
 static int32_t lead_segments(const argus_slope_t *const self, const rule_t *const rule) {
-    const int32_t most = argus_max(1, lag_of(self->segments, SLOW) - lag_of(self->segments, FAST));
+    const int32_t most =
+        argus_max(1, lag_of(self->segments, ARGUS_TREND_SLOW) - lag_of(self->segments, ARGUS_TREND_FAST));
     const int32_t fast = argus_max(1, size_of(self->fast, rule->is_signed));
     const int32_t slow = argus_max(0, size_of(self->slow, rule->is_signed));
-    return argus_between(1, most, argus_max(LEAD_LEAST, 57 * slow / fast - 11));
+    return argus_between(1, most, argus_max(ARGUS_TREND_LEAD_LEAST, 57 * slow / fast - 11));
 }
 
 static int32_t horizon_of(const argus_slope_t *const self, const rule_t *const rule) {

@@ -61,7 +61,6 @@ void argus_trend_sip(argus_trend_t *self, const argus_knowledge_t *knowledge);
 // Metres of driving until the fastest growing statistic of a sonar will have reached the level at which it is
 // convicted, 1..ARGUS_TREND_HORIZON_M; 0: none grows. True for as long as it grows, so once said it stays
 // said.
-#define ARGUS_TREND_HORIZON_M 500
 int32_t argus_trend_horizon_m(const argus_trend_t *self, int sonar);
 
 // The sonar with a growth that is new and worth saying now, -1: none. It counts as said from then on, until

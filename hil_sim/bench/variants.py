@@ -22,26 +22,8 @@ from hil_sim.errors import SimError
 RULES: Final = Path(__file__).with_name("rules.toml")
 AWARENESS: Final = Path("firmware/awareness")
 _FLAGS: Final = ("-std=c11", "-O2", "-fPIC", "-w")
-_NUMBER: Final = r"\(?-?\d+u?\)?"
-_DEFINE: Final = re.compile(rf"^#define (?P<name>[A-Z]\w*) (?P<value>{_NUMBER})(?=\s|$)", re.MULTILINE)
-_CONSTANTS_IN: Final = tuple(
-    f"{name}.[ch]"
-    for name in (
-        "aim",
-        "clutter",
-        "crosscheck",
-        "evidence",
-        "facts",
-        "lag",
-        "levels",
-        "names",
-        "odds",
-        "own",
-        "pings",
-        "scale",
-        "trend",
-    )
-)
+_NUMBERS: Final = "numbers.h"
+_ROW: Final = re.compile(r'^    X\((?P<name>\w+), (?P<value>\d+), "[^"]*", (?P<source>\w+),', re.MULTILINE)
 _LEAST: Final = 3
 """Half or twice a smaller number is another rule, or the size of a memory."""
 
@@ -89,30 +71,28 @@ def rules() -> dict[str, Variant]:
     return found
 
 
+def _rows() -> list[re.Match[str]]:
+    """The rows of single numbers in the table of the evidence."""
+    return list(_ROW.finditer((sources() / AWARENESS / _NUMBERS).read_text(encoding="utf-8")))
+
+
 def constants() -> dict[str, Variant]:
-    """Return the fault managers with one hand-set constant halved or doubled, by its name and the factor."""
+    """Return the fault managers with one hand-set number halved or doubled, by its name and the factor."""
     found = {}
-    folder = sources() / AWARENESS
-    for path in sorted(path for glob in _CONSTANTS_IN for path in folder.glob(glob)):
-        for match in _DEFINE.finditer(path.read_text(encoding="utf-8")):
-            name, text = match["name"], match["value"]
-            value = int(text.strip("()u"))
-            if abs(value) < _LEAST:
-                continue
-            for label, changed in (("/2", int(value / 2)), ("*2", 2 * value)):
-                pattern = rf"(?m)^(#define {name} )\(?-?\d+(?=u?\)?(?:\s|$))"
-                edit = Edit(path.name, pattern, f"({changed}" if text.startswith("(") else str(changed))
-                found[f"{name}{label}"] = Variant(f"{name}{label}", f"{value} becomes {changed}", (edit,))
+    for row in _rows():
+        name, value = f"ARGUS_{row['name']}", int(row["value"])
+        if value < _LEAST or row["source"] == "size":
+            continue
+        for label, changed in (("/2", value // 2), ("*2", 2 * value)):
+            edit = Edit(_NUMBERS, rf"(?m)^(    X\({row['name']}, )\d+", str(changed))
+            found[f"{name}{label}"] = Variant(f"{name}{label}", f"{value} becomes {changed}", (edit,))
     return found
 
 
 def hand_set() -> tuple[int, int]:
-    """Return how many constants are defined by hand in the evidence, and its lines."""
-    folder = sources() / AWARENESS
-    texts = [path.read_text(encoding="utf-8") for glob in _CONSTANTS_IN for path in folder.glob(glob)]
-    return sum(len(re.findall(r"(?m)^#define \w+ ", text)) for text in texts), sum(
-        t.count("\n") for t in texts
-    )
+    """Return how many numbers the table of the evidence has, and the lines of its sources."""
+    texts = [path.read_text(encoding="utf-8") for path in sorted((sources() / AWARENESS).glob("*.[ch]"))]
+    return len(_rows()), sum(text.count("\n") for text in texts)
 
 
 def _compiler() -> list[str]:

@@ -138,19 +138,19 @@ def test_a_mission_without_a_sighting_has_none() -> None:
 
 
 @pytest.mark.parametrize(
-    ("source", "name", "value"),
+    ("name", "value"),
     [
-        ("pings.h", "ARGUS_PINGS_AGE_MS", 1000 * witness.AGE_S),
-        ("levels.h", "ARGUS_SAME_CDEG", 100 * witness.BEARING_DEG),
-        ("levels.h", "ARGUS_SAME_LATERAL_MM", witness.ACROSS_MM),
-        ("levels.h", "ARGUS_SAME_ALONG_MM", witness.ALONG_MM),
-        ("levels.h", "ARGUS_NEAREST_MM", witness.NEAREST_MM),
-        ("levels.h", "ARGUS_AGREE_MM", witness.AGREE_MM),
-        ("levels.h", "ARGUS_AGREE_PERCENT", 100 * witness.AGREE_PART),
-        ("levels.h", "ARGUS_FARTHEST_MM", witness.FARTHEST_MM),
+        ("PINGS_AGE_MS", 1000 * witness.AGE_S),
+        ("SAME_CDEG", 100 * witness.BEARING_DEG),
+        ("SAME_LATERAL_MM", witness.ACROSS_MM),
+        ("SAME_ALONG_MM", witness.ALONG_MM),
+        ("NEAREST_MM", witness.NEAREST_MM),
+        ("AGREE_MM", witness.AGREE_MM),
+        ("AGREE_PERCENT", 100 * witness.AGREE_PART),
+        ("FARTHEST_MM", witness.FARTHEST_MM),
     ],
 )
-def test_one_place_is_what_it_is_for_the_fault_manager(source: str, name: str, value: float) -> None:
-    found = re.search(rf"^#define {name} (\d+)u?\b", (FIRMWARE / source).read_text(), re.MULTILINE)
+def test_one_place_is_what_it_is_for_the_fault_manager(name: str, value: float) -> None:
+    found = re.search(rf"^    X\({name}, (\d+),", (FIRMWARE / "numbers.h").read_text(), re.MULTILINE)
     assert found is not None, name
     assert int(found[1]) == value

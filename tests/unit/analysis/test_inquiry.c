@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "analysis/aim.h"
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "health.h"
 #include "knowledge/angle.h"
 #include "unity.h"

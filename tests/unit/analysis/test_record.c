@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "health.h"
 #include "unity.h"
 

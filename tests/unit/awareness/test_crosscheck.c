@@ -8,7 +8,7 @@
 
 #include "awareness/clutter.h"
 #include "awareness/evidence.h"
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
 #include "scene.h"
 #include "unity.h"

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "awareness/odds.h"
 #include "health.h"
 #include "scene.h"

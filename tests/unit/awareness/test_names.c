@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "awareness/evidence.h"
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "scene.h"
 #include "unity.h"
 

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "unity.h"
 
 #define ME 3

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 #include "adjustment/guard.h"
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "knowledge/config.h"
 #include "robot.h"
 #include "supervisor/state.h"

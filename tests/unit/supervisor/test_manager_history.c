@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "health.h"
 #include "robot.h"
 #include "unity.h"

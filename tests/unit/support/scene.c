@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "awareness/levels.h"
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
 
 #define DEG (3.14159265358979323846 / 180.0)
