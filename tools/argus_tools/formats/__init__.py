@@ -49,8 +49,8 @@ _LINES_MIN, _LIVE_BYTES = 3, 1 << 12
 # Hexadecimal text may hold anything, so it comes after. "bin" takes whatever no other form claims. Each
 # module has a FORMAT, or FORMATS where several are alike.
 MODULES: Final = (
-    "record", "pcapng", "pcap", "bag", "canlog", "recoded", "tsharkjson", "jsonl", "candump", "canlines", "cancsv",
-    "framedump", "numdump", "others", "hexdump", "hexwords", "hextext", "bin",
+    "record", "pcapng", "pcap", "bag", "canlog", "recoded", "tsharkjson", "columns", "jsonl", "candump",
+    "canlines", "cancsv", "framedump", "numdump", "others", "hexdump", "hexwords", "hextext", "bin",
 )  # fmt: skip
 
 

@@ -10,6 +10,8 @@ from typing import Final
 AHEAD_MOST_S: Final = 0.3
 """Odometry older than this is not carried on: nothing says how the robot moved."""
 
+SINCE_MOST_S: Final = 1.0
+
 
 @dataclass(frozen=True)
 class Motion:
@@ -32,3 +34,12 @@ class Motion:
             y_m=self.y_m + way * math.sin(middle),
             heading_rad=self.heading_rad + self.turn_rad_s * passed_s,
         )
+
+    def since(self, before: Motion, passed_s: float) -> Motion:
+        """Return it with the speeds that brought it here from an earlier place; at rest where that is long ago."""
+        if not 0 < passed_s < SINCE_MOST_S:
+            return self
+        turned = math.remainder(self.heading_rad - before.heading_rad, math.tau)
+        middle = before.heading_rad + turned / 2
+        along = (self.x_m - before.x_m) * math.cos(middle) + (self.y_m - before.y_m) * math.sin(middle)
+        return replace(self, speed_m_s=along / passed_s, turn_rad_s=turned / passed_s)

@@ -4,16 +4,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
 from argus_tools.formats.base import ROBOT_TO_CLIENT, Chunk, Damage, DamageList, Offsets, ReadOptions
 from argus_tools.rings.intake import Odd
+from argus_tools.rings.motion import Motion
 from argus_tools.rings.packet import identity_of, packet
 from argus_tools.rings.plan import Place, Plan, planned
 from argus_tools.rings.recording import Broken, Message, Recording
 from argus_tools.rings.sensors import Newer
 from hil_sim.arcos import TIMING, frame
+from hil_sim.tables.robot import RobotTable
 
 _SIP_S: Final = TIMING["SIP_CYCLE_MS"] / 1000
 LATE_MOST_S: Final = 0.06
@@ -73,47 +75,57 @@ class RangeLog:
         self._discarded[f"{message.topic}: {why}"] += 1
 
 
-class _Packets:
-    """Gathers readings and gives packets with the robot's motion at their times."""
+class Pacer:
+    """Gathers readings and gives packets: with each message of all sonars, and one a cycle where these are missing."""
 
-    def __init__(self, plan: Plan) -> None:
-        self._plan = plan
-        self._place = Place(plan)
-        self._ring = frozenset(plan.topics)
+    def __init__(self, table: RobotTable, is_array: bool, motion_at: Callable[[float], Motion]) -> None:
+        self._table, self._is_array, self._motion_at = table, is_array, motion_at
         self._fresh: dict[int, int] = {}
         self._last: float | None = None
 
-    def take(self, message: Message, newer: Newer) -> list[tuple[float, bytes]]:
-        """Take the next message; return the packets that are due, with their times."""
-        made = self._due(message.t)
-        if message.topic not in self._ring:
-            if message.topic == self._plan.odometry:
-                newer.check(message)
-            self._place.take(message)
-            return made
-        newer.check(message)
-        for number, range_m in self._plan.sensors.take(message).items():
-            reading = self._plan.silence.millimetres(range_m)
-            if reading is not None:
-                self._fresh[number] = reading
-        if self._last is None:
-            self._last = message.t - _SIP_S
-        if self._plan.sensors.is_array and message.t - self._last >= _SIP_S - EARLY_MOST_S:
-            made.append(self._packet(message.t))
-        return made
-
-    def _due(self, t: float) -> list[tuple[float, bytes]]:
+    def due(self, t: float) -> list[tuple[float, bytes]]:
         """Return the packets between the last and a time, one a cycle; none over a gap."""
         made: list[tuple[float, bytes]] = []
         if self._last is None:
             return made
         if not 0 <= t - self._last <= GAP_S:
             self._last = t - _SIP_S
-        late_s = LATE_MOST_S if self._plan.sensors.is_array else 0.0
+        late_s = LATE_MOST_S if self._is_array else 0.0
         while t - self._last >= _SIP_S + late_s:
             made.append(self._packet(self._last + _SIP_S))
         return made
 
+    def take(self, t: float, readings: Mapping[int, int | None]) -> list[tuple[float, bytes]]:
+        """Take the readings of a message, None for none; return the packet that they make, if they make one."""
+        self._fresh |= {number: reading for number, reading in readings.items() if reading is not None}
+        if self._last is None:
+            self._last = t - _SIP_S
+        is_due = self._is_array and t - self._last >= _SIP_S - EARLY_MOST_S
+        return [self._packet(t)] if is_due else []
+
     def _packet(self, t: float) -> tuple[float, bytes]:
         fresh, self._fresh, self._last = self._fresh, {}, t
-        return round(t, 6), packet(self._plan.table, self._place.at(t), fresh)
+        return round(t, 6), packet(self._table, self._motion_at(t), fresh)
+
+
+class _Packets:
+    """Packets of messages, with the robot's motion at their times."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self._place = Place(plan)
+        self._ring = frozenset(plan.topics)
+        self._pacer = Pacer(plan.table, plan.sensors.is_array, self._place.at)
+
+    def take(self, message: Message, newer: Newer) -> list[tuple[float, bytes]]:
+        """Take the next message; return the packets that are due, with their times."""
+        made = self._pacer.due(message.t)
+        if message.topic not in self._ring:
+            if message.topic == self._plan.odometry:
+                newer.check(message)
+            self._place.take(message)
+            return made
+        newer.check(message)
+        readings = self._plan.sensors.take(message)
+        in_mm = {number: self._plan.silence.millimetres(range_m) for number, range_m in readings.items()}
+        return made + self._pacer.take(message.t, in_mm)

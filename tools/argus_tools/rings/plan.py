@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import Any, Final
+from typing import Final
 
 from argus_tools.formats.base import LogError
 from argus_tools.rings.geometry import Frames, frame_name, is_base
@@ -212,9 +211,9 @@ class Place:
                 continue
             passed_s = message.t - self._t
             if self._pair is None or passed_s >= self.SPEED_SPAN_S:
-                before = self.motion if self._pair else None
+                place = Motion(pose.x_m, pose.y_m, pose.yaw_rad)
+                self.motion = place.since(self.motion, passed_s) if self._pair else place
                 self._pair, self._t = (parent, child), message.t
-                self.motion = _moved(before, pose, passed_s)
 
     def _is_ours(self, parent: str, child: str) -> bool:
         if self._pair is not None:
@@ -230,12 +229,3 @@ class Place:
 def is_odom(frame: str) -> bool:
     """Whether a frame is one that odometry moves in, by its usual name."""
     return "odom" in frame_name(frame).rpartition("/")[2]
-
-
-def _moved(before: Motion | None, pose: Any, passed_s: float) -> Motion:
-    if before is None or not 0 < passed_s < 1.0:
-        return Motion(pose.x_m, pose.y_m, pose.yaw_rad)
-    turned = math.remainder(pose.yaw_rad - before.heading_rad, math.tau)
-    middle = before.heading_rad + turned / 2
-    way = (pose.x_m - before.x_m) * math.cos(middle) + (pose.y_m - before.y_m) * math.sin(middle)
-    return Motion(pose.x_m, pose.y_m, pose.yaw_rad, way / passed_s, turned / passed_s)
