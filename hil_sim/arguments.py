@@ -4,10 +4,33 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+import difflib
+import re
+from collections.abc import Callable, Iterator
 from typing import Final, NoReturn
 
 EXIT_USAGE: Final = 2
+_UNKNOWN: Final = re.compile(r"unrecognized arguments: (?:.* )?(--?[^\s=]+)")
+_NO_CHOICE: Final = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
+
+
+def meant(word: str, known: Iterator[str] | list[str]) -> str:
+    """Return a question for the word that was likely meant, empty when none is near.
+
+    >>> meant("--fualt", ["--fault", "--tcp"]), meant("--zzz", ["--fault"])
+    ('; did you mean --fault?', '')
+    """
+    near = difflib.get_close_matches(word, list(known), 1)
+    return f"; did you mean {near[0]}?" if near else ""
+
+
+def _options(parser: argparse.ArgumentParser) -> Iterator[str]:
+    """Yield the options of a parser, and of its commands."""
+    for action in parser._actions:
+        yield from (option for option in action.option_strings if option.startswith("--"))
+        if isinstance(action, argparse._SubParsersAction):
+            for command in action.choices.values():
+                yield from _options(command)
 
 
 class Parser(argparse.ArgumentParser):
@@ -15,7 +38,12 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print the line and leave with code 2."""
-        self.exit(EXIT_USAGE, f"{self.prog}: {message}; see {self.prog} --help\n")
+        if unknown := _UNKNOWN.match(message):
+            message += meant(unknown[1], _options(self))
+        if wrong := _NO_CHOICE.search(message):
+            message += meant(wrong[1], re.findall(r"[^\s',]+", wrong[2]))
+        message += "" if message.endswith("?") else ";"
+        self.exit(EXIT_USAGE, f"{self.prog}: {message} see {self.prog} --help\n")
 
 
 def whole(low: int, high: int, what: str = "whole number") -> Callable[[str], int]:

@@ -64,7 +64,9 @@ static void explain_missing(line_t *line, const char *path) {
         add(line, "; it is a name for %s, which is not there", target);
     }
     find_candidates(path, &found);
-    if (found.gl_pathc == 0) {
+    if (found.gl_pathc == 0 && strncmp(path, "/dev/", 5) != 0) {
+        add(line, "; the program that makes this name does not run yet, or it is another one");
+    } else if (found.gl_pathc == 0) {
         add(line,
             "; there is no /dev/ttyUSB*, /dev/ttyACM* or /dev/serial/by-id/*: is the adapter plugged in?");
     } else {

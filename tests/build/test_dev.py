@@ -16,6 +16,7 @@ from unittest import mock
 import lizard
 import pytest
 from devtool import cli, cmake, testing
+from devtool import commands as running
 
 ROOT = Path(__file__).resolve().parents[2]
 COMMANDS = (
@@ -73,6 +74,7 @@ def test_help_of_each_command(command: str) -> None:
         (["firmware", "--board", "nonsense"], "invalid choice"),
         (["firmware", "--config", "/no/such/file"], "no such file"),
         (["flash", "--probe", "nonsense"], "invalid choice"),
+        (["flash", "--probe", "serial", "--device", "/no/such"], "there is no such port"),
     ],
 )
 def test_wrong_arguments(arguments: list[str], expected: str) -> None:
@@ -210,3 +212,17 @@ def test_a_tour_leaves_most_cases_to_soak_and_wide(tmp_path: Path) -> None:
     assert chosen[0] == {(12, 0), (12, 4), (12, 8), (7, 0), (7, 3), (2, 0), (2, 1), (8, 0), (8, 4)}
     assert chosen[2] == {(8, 1), (8, 3), (8, 5), (8, 7)}
     assert chosen[1] == {(cases, n) for cases, _ in tours for n in range(cases)} - chosen[0] - chosen[2]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"), [(("--seed", "abc"), 2), (("--nonsense",), 2), (("--", "--help"), 0)]
+)
+def test_what_ends_the_demo_ends_it_before_anything_is_built(
+    arguments: tuple[str, ...], code: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("nothing is built")
+
+    monkeypatch.setattr(running, "ensure", never)
+    monkeypatch.setattr(running, "quietly", never)
+    assert dev_here("demo", *arguments).returncode == code

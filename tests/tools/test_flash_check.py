@@ -11,6 +11,7 @@ import threading
 import time
 import tty
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any, Final
 from unittest import mock
 
@@ -18,6 +19,7 @@ import pytest
 import serial
 from argus_tools import flash_check
 from argus_tools.flash_check import main
+from serial.tools import list_ports
 
 START: Final = {
     "t": 0.0,
@@ -205,7 +207,22 @@ def test_an_interruption_has_its_exit_code(
 def test_a_device_that_is_not_there(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["/dev/no-such-device"]) == 3
     assert main(["gopher://x"]) == 3
-    assert "Traceback" not in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "Traceback" not in told
+    assert told.startswith("argus-flash-check: /dev/no-such-device: No such file or directory; ")
+
+
+@pytest.mark.parametrize("ports", [[], ["/dev/ttyUSB3"], ["/dev/ttyUSB3", "/dev/ttyACM0"]])
+def test_without_a_device_the_ports_that_are_here_are_named(
+    ports: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = [SimpleNamespace(device=name) for name in ports]
+    monkeypatch.setattr(list_ports, "comports", lambda: found)
+    with pytest.raises(SystemExit):
+        main([])
+    told = capsys.readouterr().err
+    assert all(name in told for name in ports)
+    assert ("no serial port" in told) == (not ports)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import errno
 import json
+import os
 import sys
 import time
 from collections import deque
@@ -13,6 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final
 
 import serial
+from serial.tools import list_ports
 
 from hil_sim.arguments import Parser, whole
 from hil_sim.version import add_version
@@ -55,6 +58,12 @@ class Check:
     found: str
 
 
+def here() -> str:
+    """Return which serial ports this machine has, as the end of a message."""
+    found = sorted(port.device for port in list_ports.comports())
+    return f"; here are {', '.join(found)}" if found else "; no serial port is plugged in here"
+
+
 class Console:
     """The operator's UART of a board: lines of JSON, orders as text."""
 
@@ -63,7 +72,9 @@ class Console:
         try:
             self._port = serial.serial_for_url(device, baudrate=baud, timeout=_POLL_S, exclusive=True)
         except (serial.SerialException, ValueError, OSError) as error:
-            raise LineError(f"{device}: {error}") from None
+            is_missing = getattr(error, "errno", None) == errno.ENOENT
+            why = f"{os.strerror(errno.ENOENT)}{here()}" if is_missing else str(error)
+            raise LineError(f"{device}: {why}") from None
         self._rest = b""
         self._values: deque[dict[str, Any]] = deque()
         self.heard = b""
@@ -208,7 +219,7 @@ def parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    result.add_argument("device", metavar="DEVICE", help="the operator's UART, as /dev/ttyUSB0")
+    result.add_argument("device", metavar="DEVICE", nargs="?", help="the operator's UART, as /dev/ttyUSB0")
     result.add_argument(
         "--baud", type=whole(300, 4_000_000), default=BAUD, metavar="N", help=f"default: {BAUD}"
     )
@@ -252,6 +263,8 @@ def run(args: argparse.Namespace) -> int:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code."""
     args = parser().parse_args(argv)
+    if args.device is None:
+        parser().error(f"name the operator's UART, as /dev/ttyUSB0{here()}")
     try:
         return run(args)
     except LineError as error:

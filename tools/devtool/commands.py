@@ -7,8 +7,9 @@ import argparse
 import functools
 import os
 import shutil
+import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -46,12 +47,34 @@ def quietly(what: str, action: Callable[[Run], None]) -> None:
         raise Stop(f"{what}: {error} (log: {shown(log)})") from None
 
 
+_ENDS: Final = 100
+_JUDGE_DEMO: Final = f"""
+import sys; from hil_sim.demo.__main__ import parser
+try:
+    parser().parse_args(sys.argv[1:])
+except SystemExit as end:
+    sys.exit({_ENDS} + int(end.code or 0))
+"""
+
+
+def leave_where_ended(python: str, arguments: Sequence[str]) -> None:
+    """Leave with its exit code where the demonstration's arguments end it, as --help or a wrong one does."""
+    judged = subprocess.run([python, "-c", _JUDGE_DEMO, *arguments], check=False, cwd=ROOT, env=environment())
+    if judged.returncode >= _ENDS:
+        sys.exit(judged.returncode - _ENDS)
+
+
 def do_demo(args: argparse.Namespace) -> int:
-    """Set up, build, and hand over to the demonstration."""
+    """Set up, build, and hand over to the demonstration; what ends it anyway does so before."""
+    python = str(VENV / "bin/python")
+    is_set_up = Path(python).exists()
+    if is_set_up:
+        leave_where_ended(python, args.rest)
     ensure(["release"])
+    if not is_set_up:
+        leave_where_ended(python, args.rest)
     quietly("building argusd", functools.partial(build, "release"))
     say("starting the demonstration")
-    python = str(VENV / "bin/python")
     os.execve(python, [python, "-m", "hil_sim.demo", *args.rest], environment())
 
 

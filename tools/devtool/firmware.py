@@ -142,6 +142,8 @@ def chosen_flasher(probe: str, dry_run: bool) -> Flasher:
 def do_flash(args: argparse.Namespace) -> int:
     """Build the image of a board and write it into the board's flash."""
     config = checked_config(args.config)
+    if args.probe == "serial" and not args.dry_run and not Path(args.device).exists():
+        raise Stop(f"--device {args.device}: there is no such port; name the one of the board", EXIT_USAGE)
     flasher = chosen_flasher(args.probe, args.dry_run)
     ensure([args.board, *(["release"] if config else [])])
     quietly(f"building the image for {args.board}", functools.partial(build_image, args.board, config))

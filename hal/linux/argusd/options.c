@@ -7,6 +7,7 @@
 
 #include "argusd.h"
 #include "course.h"
+#include "meant.h"
 #include "text.h"
 
 enum {
@@ -304,12 +305,22 @@ static const struct {
     {OPT_CPUS, take_cpus},
 };
 
+static bool refuse_unknown(const char *given, const message_t *message) {
+    const char *meant = option_meant(table, given);
+    if (meant == NULL) {
+        return text_refuse(message->text, message->capacity, "unknown option %s; see argusd --help", given);
+    }
+    return text_refuse(message->text, message->capacity,
+                       "unknown option %s; did you mean --%s? see argusd --help", given, meant);
+}
+
 static bool take(options_t *options, int option, char **argv, const message_t *message) {
-    if (option == ':' || option == '?') {
-        return text_refuse(message->text, message->capacity,
-                           option == ':' ? "%s needs a value; see argusd --help"
-                                         : "unknown option %s; see argusd --help",
+    if (option == ':') {
+        return text_refuse(message->text, message->capacity, "%s needs a value; see argusd --help",
                            argv[optind - 1]);
+    }
+    if (option == '?') {
+        return refuse_unknown(argv[optind - 1], message);
     }
     for (size_t i = 0; i < sizeof valued / sizeof valued[0]; i++) {
         if (valued[i].option == option) {

@@ -35,7 +35,7 @@ examples:
   argusctl events                          what happens, line by line
   argusctl watch readings --json           one JSON object for each packet of the robot
   argusctl active                          allow it to drive
-  argusctl goto 1500,0                     drive there: mm ahead and to the left of the start
+  argusctl goto 1500,0                     drive there: mm ahead and to the left of the start; or 1.5m,0
   argusctl turn 90                         turn left, and wait until it stands
   argusctl stop                            stop and stay, whoever has control
   argusctl fail sonar 3 stuck --for 30s    a fault for a test; argusd must run with --inject
@@ -65,16 +65,25 @@ def duration_ms(text: str) -> int:
 
 
 def point(text: str) -> tuple[int, int]:
-    """Parse X,Y in mm.
+    """Parse X,Y in mm, or with a unit.
 
-    >>> point("1500,-20")
-    (1500, -20)
+    >>> point("1500,-20"), point("2m,0"), point("1.5m,-20cm")
+    ((1500, -20), (2000, 0), (1500, -200))
     """
     try:
-        x, y = (int(part) for part in text.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is no point: give X,Y in whole mm") from None
+        x, y = (_length_mm(part.strip()) for part in text.split(","))
+    except (ValueError, OverflowError):
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is no point: give X,Y in whole mm, or with a unit as 2m,0"
+        ) from None
     return x, y
+
+
+def _length_mm(text: str) -> int:
+    for unit, factor in (("mm", 1), ("cm", 10), ("m", 1000)):
+        if text.endswith(unit):
+            return round(float(text.removesuffix(unit)) * factor)
+    return int(text)
 
 
 def show_status(client: Client, args: argparse.Namespace) -> int:
@@ -253,7 +262,10 @@ def _add_driving(commands: Commands) -> None:
         "goto", "drive to a point", lambda args: {"x_mm": args.point[0], "y_mm": args.point[1]}
     )
     parser.add_argument(
-        "point", type=point, metavar="X,Y", help="mm ahead and left of where it was connected"
+        "point",
+        type=point,
+        metavar="X,Y",
+        help="mm ahead and left of where it was connected, or with a unit: 2m,0",
     )
     parser = commands.order(
         "course", "drive through points", lambda args: {"points": [list(p) for p in args.points]}

@@ -248,6 +248,8 @@ async def _run(arguments: argparse.Namespace, words: Sequence[str], page_token: 
             simulation,
             **about,
         )
+        if simulation is None:
+            hub.told = lambda why: print(f"argus-monitor: {why}", file=sys.stderr, flush=True)
         server = Server(hub, page_token, arguments.allow_origin)
         stack.push_async_callback(server.stop)
         port = await _listen(server, PORT if arguments.port is None else arguments.port)

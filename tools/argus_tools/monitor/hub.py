@@ -75,6 +75,9 @@ class Hub:
         self.memory = Memory()
         self.about = about
         self.why = "connecting"
+        self.told: Callable[[str], None] = lambda _: None
+        """Hears why argusd is not reached, once for each reason, and that it is again."""
+        self._told = ""
         self._heard_s = 0.0
         self._boxes: set[Outbox] = set()
         self._upstream: Upstream | None = None
@@ -159,8 +162,14 @@ class Hub:
                 self.why = str(error)
             self._upstream = None
             self.tell(self._link())
+            self._report(f"{self.why}; trying again")
             await asyncio.sleep(_PAUSES_S[min(attempt, len(_PAUSES_S) - 1)])
             attempt += 1
+
+    def _report(self, why: str) -> None:
+        if why != self._told:
+            self._told = why
+            self.told(why)
 
     async def _end_of(self, upstream: Upstream) -> str:
         """Wait until the connection ends, or carries nothing; return which."""
@@ -181,6 +190,8 @@ class Hub:
                 raise UpstreamError(f"{self.address}: {answer.get('say', 'it lets nobody watch')}")
             self._upstream, self.why = upstream, ""
             self._heard_s = time.monotonic()
+            if self._told:
+                self._report("argusd is reached")
             self.memory.reconnected()
             self.tell(self._link())
             self.why = await self._end_of(upstream)

@@ -139,6 +139,7 @@ void test_refusals(void) {
     refused("--link tcp:a --check --guard pty:a", "leave out --guard");
     refused("--link tcp:a --frob", "unknown option --frob");
     refused("--link tcp:a -z", "unknown option");
+    refused("--lnik tcp:a", "did you mean --link?");
     refused("--link tcp:a extra", "'extra' is not an option");
     refused("--link tcp:a --goal 1", "--goal: '1' is no waypoint");
     refused("--link tcp:a --goal 1,99999", "too far");

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""Rule: a mistyped option, command or choice gets one line with what was meant; what is near nothing gets no guess."""
+
+from __future__ import annotations
+
+import argparse
+import doctest
+
+import pytest
+
+from hil_sim import arguments
+from hil_sim.arguments import Parser
+
+
+def parser() -> Parser:
+    made = Parser(prog="prog", allow_abbrev=False)
+    made.add_argument("--fault")
+    made.add_argument("--kind", choices=["silent", "stuck"])
+    commands = made.add_subparsers(dest="command", parser_class=Parser)
+    commands.add_parser("faults").add_argument("--json", action="store_true")
+    commands.add_parser("plot")
+    return made
+
+
+@pytest.mark.parametrize(
+    ("given", "meant"),
+    [
+        ("plot --fualt off:3", "--fault"),
+        ("--fautl=off:3", "--fault"),
+        ("faults --jsno", "--json"),
+        ("faults x --jsno", "--json"),
+        ("fautls", "faults"),
+        ("--kind stuk", "stuck"),
+        ("--zzz", ""),
+        ("--kind zzz", ""),
+        ("zzz", ""),
+    ],
+)
+def test_what_was_meant(given: str, meant: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        parser().parse_args(given.split())
+    assert left.value.code == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert told.endswith(" --help\n")
+    assert (f"did you mean {meant}? see" in told) == bool(meant)
+    assert ("did you mean" in told) == bool(meant)
+
+
+def test_a_line_without_a_guess_ends_as_before(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        argparse.ArgumentParser.parse_args(parser(), ["--zzz"])
+    assert capsys.readouterr().err == "prog: unrecognized arguments: --zzz; see prog --help\n"
+
+
+def test_the_examples_in_the_sources_are_true() -> None:
+    assert doctest.testmod(arguments).failed == 0
