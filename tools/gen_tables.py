@@ -16,6 +16,10 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+from hil_sim.tables.inherit import whole  # noqa: E402
+
 TABLES = Path("hil_sim/tables")
 
 ARCOS_SHORT = {
@@ -42,7 +46,15 @@ class TableError(Exception):
 
 
 def load(root: Path, name: str) -> dict[str, Any]:
-    """Return the parsed table NAME.toml."""
+    """Return the parsed table NAME.toml, with what it inherits from another one."""
+    try:
+        return whole(name, lambda part: read(root, part))
+    except ValueError as error:
+        raise TableError(f"{TABLES / name}.toml: {error}") from None
+
+
+def read(root: Path, name: str) -> dict[str, Any]:
+    """Return what stands in NAME.toml."""
     path = TABLES / f"{name}.toml"
     try:
         with (root / path).open("rb") as file:

@@ -9,8 +9,20 @@ from pathlib import Path
 from typing import Any
 
 from hil_sim.errors import SimError
+from hil_sim.tables.inherit import whole
 
 TABLE_DIR = Path(__file__).resolve().parent
+
+
+def _read(name: str) -> dict[str, Any]:
+    path = TABLE_DIR / f"{name}.toml"
+    try:
+        with path.open("rb") as file:
+            return tomllib.load(file)
+    except OSError as error:
+        raise SimError(f"{path}: no such table ({error.strerror}); reinstall hil_sim") from error
+    except tomllib.TOMLDecodeError as error:
+        raise SimError(f"{path}: {error}; correct the table") from error
 
 
 @cache
@@ -20,14 +32,10 @@ def load(name: str) -> dict[str, Any]:
     >>> load("arcos")["frame"]["HEADER0"] == 0xFA
     True
     """
-    path = TABLE_DIR / f"{name}.toml"
     try:
-        with path.open("rb") as file:
-            return tomllib.load(file)
-    except OSError as error:
-        raise SimError(f"{path}: no such table ({error.strerror}); reinstall hil_sim") from error
-    except tomllib.TOMLDecodeError as error:
-        raise SimError(f"{path}: {error}; correct the table") from error
+        return whole(name, _read)
+    except ValueError as error:
+        raise SimError(f"{TABLE_DIR / name}.toml: {error}; correct the table") from error
 
 
 def section(name: str, part: str) -> dict[str, int]:
