@@ -42,7 +42,7 @@ void argus_conclude_check(argus_t *const self, argus_intent_t *const intent) {
     const argus_mask_t suspects = (argus_mask_t)(find_suspects(self) | argus_open_suspects(self));
     argus_flag_suspects(self, suspects);
     self->looks.check_ms = self->now_ms;
-    if (is_look_due(self, suspects) && !self->orders.passive && !self->orders.stay) {
+    if (is_look_due(self, suspects) && !self->orders.passive && !argus_is_stopped(self)) {
         verify(suspects, intent);
         return;
     }

@@ -103,7 +103,7 @@ typedef struct {
     bool touched_unheard; // something, while no sonar ahead had heard an echo: they do not live
     bool motors_said;     // off
     bool battery_said;
-    bool stall_said;
+    uint8_t stalls;   // wheels that stalled in the last SIP
     uint16_t bumpers; // bumper bits answered already, front << 8 | rear
     uint32_t bumped_odometer_mm;
     uint32_t leaps;       // of the odometry, answered already
@@ -146,6 +146,8 @@ typedef struct {
 
 #define ARGUS_STAY_OPERATOR 1u // also against a client of a guard port
 #define ARGUS_STAY_CLIENT 2u   // until it drives
+#define ARGUS_STAY_HELD \
+    4u // a client alone: an operator stopped the robot, and has ordered something else since
 
 // What operators and the configuration have settled.
 typedef struct {
@@ -156,7 +158,7 @@ typedef struct {
     argus_bar_t bar;     // why this robot may not be driven
     bool passive;
     bool paused;
-    uint8_t stay; // after a STOP: no turn either, until another order; by whom, ARGUS_STAY_
+    uint8_t stay; // after a STOP: no turn either, until another order; by whom and whom, ARGUS_STAY_
     bool shutdown;
 } argus_orders_t;
 

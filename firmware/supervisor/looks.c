@@ -54,7 +54,7 @@ argus_mask_t argus_to_settle(const argus_t *const self) {
 argus_mask_t argus_to_try(const argus_t *const self) {
     const argus_guard_t guard = argus_guard(self);
     const bool others = (self->knowledge.heard & ~(unsigned)argus_out(&self->knowledge)) != 0;
-    const bool may = argus_rules(self)->evidence && argus_guard_may_turn(&guard) && !self->orders.stay;
+    const bool may = argus_rules(self)->evidence && argus_guard_may_turn(&guard) && !argus_is_stopped(self);
     const bool due = others && !self->looks.tried && !argus_guard_is_heard(&guard);
     return may && due ? (argus_mask_t)(argus_wanted_sonars(self) & ~(unsigned)self->orders.pinned) : 0;
 }
@@ -90,7 +90,7 @@ void argus_count_loss(argus_t *const self) {
 bool argus_look_pays(const argus_t *const self) {
     const argus_looks_t *const looks = &self->looks;
     const bool pays = looks->asked || alone(self) != 0 || looks->lost_ms >= LOOK_COST_MS;
-    if (!pays || self->orders.passive || self->orders.stay) {
+    if (!pays || self->orders.passive || argus_is_stopped(self)) {
         return false;
     }
     const argus_guard_t guard = argus_guard(self);

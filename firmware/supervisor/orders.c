@@ -112,8 +112,14 @@ static void jog_turn(argus_t *const self, const int32_t degrees) {
     argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, false);
 }
 
+// Another order lets the manager move again. A client stays held until it is let go, or the manager drives.
+static uint8_t stay_after(const uint8_t stay, const argus_op_t op) {
+    const bool held = (stay & (ARGUS_STAY_OPERATOR | ARGUS_STAY_HELD)) != 0;
+    return held && op != ARGUS_OP_GO && op != ARGUS_OP_ACTIVE ? ARGUS_STAY_HELD : 0;
+}
+
 static void obey_for_all(argus_t *const self, const argus_op_t op, const int32_t argument) {
-    self->orders.stay = 0;
+    self->orders.stay = stay_after(self->orders.stay, op);
     switch (op) {
     case ARGUS_OP_STOP:
         pause(self);
@@ -175,7 +181,7 @@ static bool may_serve(const argus_t *const self, const argus_op_t op, const int3
 
 static void retest(argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    self->orders.stay = 0; // the others order no motion
+    self->orders.stay = stay_after(self->orders.stay, ARGUS_OP_RETEST); // the others order no motion
     if (argus_rules(self)->evidence) {
         begin_retest(self, sonar);
     } else {
@@ -231,7 +237,7 @@ bool argus_obey(argus_t *const self, const argus_op_t op, const int32_t argument
 }
 
 void argus_yield_to_client(argus_t *const self) {
-    const uint8_t stay = self->orders.stay & ARGUS_STAY_OPERATOR;
+    const uint8_t stay = self->orders.stay & (ARGUS_STAY_OPERATOR | ARGUS_STAY_HELD);
     argus_obey(self, ARGUS_OP_PASSIVE, 0);
     self->orders.stay = stay;
 }

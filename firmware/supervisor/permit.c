@@ -97,8 +97,10 @@ static bool has_robot(const argus_t *const self, const argus_mover_t mover) {
 
 // The motors of a session that opens stand at a speed of 0.
 static bool is_stopped(const argus_t *const self, const argus_ask_t order) {
-    return self->orders.stay != 0 &&
-           !(order.mover == ARGUS_MOVER_MANAGER && order.wants == ARGUS_WANTS_MOTORS);
+    if (order.mover == ARGUS_MOVER_CLIENT) {
+        return self->orders.stay != 0;
+    }
+    return argus_is_stopped(self) && order.wants != ARGUS_WANTS_MOTORS;
 }
 
 static bool is_body_right(const argus_t *const self) {

@@ -118,17 +118,24 @@ static argus_contact_t met_by(const argus_motion_t *const motion) {
     return motion->target_mm >= 0 ? ARGUS_CONTACT_AHEAD : ARGUS_CONTACT_BACK;
 }
 
+// What the E_STOP at a bumper leaves is no news: nothing is under way since. Away from it is a motion anew.
+static bool explains_stall(const argus_t *const self, const argus_reflexes_t *const mine) {
+    return mine->bumpers != 0 && argus_is_active(self) && !argus_motion_is_under_way(&self->motion);
+}
+
 static void sees_stall(const argus_t *const self, const argus_alarm_t *const alarm,
                        argus_reflexes_t *const mine, argus_intent_t *const intent) {
-    const bool stalls = alarm->stall && mine->bumpers == 0;
-    const bool said = mine->stall_said;
-    mine->stall_said = alarm->stall;
-    if (!stalls || said) {
+    const uint8_t stalls = (uint8_t)argus_built_stalls(&self->knowledge);
+    const bool fresh = (stalls & ~(unsigned)mine->stalls) != 0;
+    (void)alarm;
+    mine->stalls = stalls;
+    if (!fresh || explains_stall(self, mine)) {
         return;
     }
+    const bool own = mine->bumpers == 0 || argus_motion_is_under_way(&self->motion);
     note_touch(self, mine, self->motion.kind == ARGUS_MOTION_MOVE && self->motion.target_mm > 0);
-    argus_to_say(intent, ARGUS_EV_STALL, ARGUS_NO_SONAR, argus_built_stalls(&self->knowledge));
-    intent->met = (uint8_t)met_by(&self->motion);
+    argus_to_say(intent, ARGUS_EV_STALL, ARGUS_NO_SONAR, stalls);
+    intent->met = (uint8_t)(own ? met_by(&self->motion) : ARGUS_CONTACT_NONE);
     touched(intent, ARGUS_STOP_STOP);
 }
 

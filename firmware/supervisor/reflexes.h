@@ -11,7 +11,7 @@
     X(bumper, 1, "a new contact: E_STOP, then away from it")                                          \
     X(leap, 0, "the odometry steps as no robot moves: STOP, a full check; again and again: given up") \
     X(slip, 0, "the ranges stay while the wheels turn: likewise")                                     \
-    X(stall, 1, "a wheel stalls with no bumper pressed: STOP")                                        \
+    X(stall, 1, "a wheel stalls that stood or went free of a pressed bumper: STOP")                   \
     X(others, 0, "a sonar that does not face forward yields nothing any more, or does again (paper)") \
     X(battery, 0, "the battery is low: said once")                                                    \
     X(motors, 0, "the motors were cut, or are on again: STOP, then a full check")                     \

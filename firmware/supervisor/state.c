@@ -16,6 +16,10 @@ bool argus_is_active(const argus_t *const self) {
     return !self->orders.passive && !self->orders.shutdown;
 }
 
+bool argus_is_stopped(const argus_t *const self) {
+    return (self->orders.stay & (ARGUS_STAY_OPERATOR | ARGUS_STAY_CLIENT)) != 0;
+}
+
 bool argus_is_open(const argus_t *const self) {
     return argus_session_is_open(&self->session);
 }

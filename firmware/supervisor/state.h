@@ -25,6 +25,7 @@ bool argus_is_unseen(const argus_t *self, const argus_guard_t *guard);
 argus_policy_t argus_policy(const argus_t *self);
 
 bool argus_is_active(const argus_t *self);
+bool argus_is_stopped(const argus_t *self); // by an operator or a client, and nothing was ordered since
 bool argus_is_open(const argus_t *self);
 
 // The heading to return to; the present one where none is taken.

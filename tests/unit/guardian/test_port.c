@@ -258,6 +258,25 @@ void test_an_operators_stop_holds_until_he_says_go(void) {
     TEST_ASSERT_TRUE(robot.v > 200);
 }
 
+// Nothing else that an operator orders lets the client go.
+void test_an_operators_stop_holds_whatever_else_he_orders(void) {
+    static const argus_op_t orders[] = {ARGUS_OP_RECHECK, ARGUS_OP_RETEST, ARGUS_OP_PIN, ARGUS_OP_UNPIN,
+                                        ARGUS_OP_PASSIVE};
+    drive();
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_STOP, 0));
+    for (size_t i = 0; i < sizeof orders / sizeof orders[0]; i++) {
+        TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, orders[i], 3));
+        client_say(&client, ARCOS_CMD_VEL, 300);
+        client_say(&client, ARCOS_CMD_RVEL, 30);
+        client_run(&client, 2000, true);
+        TEST_ASSERT_TRUE_MESSAGE(robot.v == 0.0 && robot.w == 0.0,
+                                 argus_name(ARGUS_NAME_OP, (int32_t)orders[i]));
+    }
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_GO, 0));
+    client_run(&client, 2000, true);
+    TEST_ASSERT_TRUE(robot.v > 200);
+}
+
 // With no ENABLE: it only listens.
 static void open_client(void) {
     client_plain(&client, ARCOS_SYNC_SYNC0);

@@ -380,6 +380,46 @@ void test_a_stall_is_backed_away_from(void) {
     finish();
 }
 
+// S2: the bumper at its front does not explain wheels that stall on the way back.
+void test_a_stall_on_the_way_back_from_a_bumper_stops_it(void) {
+    start_idle();
+    TEST_ASSERT_TRUE(robot_goal(&robot, 4000, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 5000));
+    robot_run(&robot, 2000);
+    robot.bumpers_front = 8;
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_BACKING, 5000));
+    robot_run(&robot, 300);
+    const int from = robot.commands;
+    const int events = robot_count_events(&robot, ARGUS_EV_STALL, 0);
+    robot.stall = true;
+    robot_next_sip(&robot);
+    robot_run(&robot, 20);
+    TEST_ASSERT_EQUAL(1, robot_count_commands(&robot, ARCOS_CMD_STOP, from));
+    TEST_ASSERT_EQUAL(events + 1, robot_count_events(&robot, ARGUS_EV_STALL, 0));
+    robot.stall = false;
+    robot.bumpers_front = 0;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 12000));
+    finish();
+}
+
+// The stall that comes of what pressed the bumper is part of that contact: its E_STOP was the answer.
+void test_a_stall_with_the_bumper_that_stopped_it_is_no_news(void) {
+    start_idle();
+    TEST_ASSERT_TRUE(robot_goal(&robot, 4000, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 5000));
+    robot_run(&robot, 2000);
+    robot.bumpers_front = 8;
+    robot_next_sip(&robot);
+    robot.stall = true;
+    robot_run(&robot, 300);
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_BUMPER, 0));
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_STALL, 0));
+    robot.stall = false;
+    robot.bumpers_front = 0;
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 12000));
+    finish();
+}
+
 void test_polling_leaves_out_the_disabled_and_keeps_0_and_7(void) {
     start_idle();
     robot.fault[3] = ROBOT_OFF;
