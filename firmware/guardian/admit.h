@@ -19,7 +19,8 @@ typedef enum {
     ARGUS_TOPIC_SETTING,
     ARGUS_TOPIC_ORIGIN,
     ARGUS_TOPIC_SONAR,
-    ARGUS_TOPIC_STREAM // passed, and ended with the client's session
+    ARGUS_TOPIC_ANALOG, // kept here: the robot's own port is the manager's
+    ARGUS_TOPIC_STREAM  // passed, and ended with the client's session
 } argus_topic_t;
 
 // What may follow the command number.
@@ -80,7 +81,7 @@ typedef enum {
     X(AUX1BAUD, AUX3BAUD, PASSED, INT, 0, "passed")                                                          \
     X(TCM2, TCM2, PASSED, INT, 20, "passed")                                                                 \
     X(TIMER, TIMER, PASSED, INT, 0, "passed")                                                                \
-    X(ADSEL, ADSEL, PASSED, INT, 0, "passed")                                                                \
+    X(ADSEL, ADSEL, ANALOG, INT, 0, "for this client alone: the analog port that its SIPs show")             \
     X(DIGOUT, DIGOUT, PASSED, WORD, 0, "passed")                                                             \
     X(MOVINGBLINK, MOVINGBLINK, PASSED, INT, 0, "passed")                                                    \
     X(PTUPOS, PTUPOS, PASSED, WORD, 0, "passed")                                                             \

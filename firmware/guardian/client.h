@@ -5,6 +5,7 @@
 
 #include "guardian/hold.h"
 #include "guardian/limit.h"
+#include "guardian/rewrite.h"
 
 #define ARGUS_PORT_OUT 1024 // bytes that wait for the client: some ten SIPs
 
@@ -49,6 +50,7 @@ typedef struct {
     uint8_t arrays;  // of sonars that it wants
     uint8_t streams; // that it asked for, in the order of the table in send.c
     uint8_t motors;  // ENABLE that is due, argus_port_motors_t
+    argus_analog_t analog;
     uint8_t stopped; // the STOP or E_STOP that was sent, and nothing since
     argus_port_settings_t settings;
     argus_hold_client_t hold;

@@ -19,6 +19,10 @@
 #define REACTION_MS 500 // from the reading to the command, of a turn
 #define DEG_PER_RAD 57
 #define FREE_SIPS 10
+#define SPARE_MM_S 40 // above what was given: how wheels keep a speed
+#define FALLS_MM_S 10 // in each SIP where it obeys: a third of the weakest brake
+#define SPARE_DEG_S 8
+#define FALLS_DEG_S 3
 #define SLANT_MM 80u   // driven, back or another way, it is another place
 #define SLANT_CDEG 300 // turned, it is another way
 
@@ -467,6 +471,41 @@ static bool is_stalled(const argus_t *const core, argus_given_t *const given) {
     return fresh;
 }
 
+static int32_t given_mm_s(const argus_given_t *const given, const int32_t setv_mm_s) {
+    if (!given->rolls) {
+        return 0;
+    }
+    return given->moves ? argus_max(setv_mm_s, given->setv_mm_s) : argus_abs(given->mm_s);
+}
+
+// A HEAD turns as fast as SETRV lets it.
+static int32_t given_deg_s(const argus_t *const core, const argus_hold_client_t *const self) {
+    const argus_given_t *const given = &self->given;
+    const int32_t units = self->wish.paired ? given->right - given->left : 0;
+    if (given->has_head || given->weave.side != 0 || core->knowledge.robot == NULL) {
+        return ARGUS_CLIENT_TURN_DEG_S;
+    }
+    if (units != 0) {
+        return argus_abs(units) * ARGUS_VEL2_UNIT_MM_S * DEG_PER_RAD /
+               argus_max(1, core->knowledge.robot->track_mm);
+    }
+    const bool turns = self->wish.turn == ARGUS_WISH_RVEL && !given->turn_held;
+    return turns ? argus_within(ARGUS_CLIENT_TURN_DEG_S, argus_abs(self->wish.deg_s)) : 0;
+}
+
+// What is lost on its way to the robot is given again: a stop, too, of which nothing is wanted any more.
+static void heed(const argus_t *const core, argus_hold_client_t *const self) {
+    const argus_knowledge_t *const knowledge = &core->knowledge;
+    const int32_t mm_s = argus_abs(knowledge->vel_left_mm_s + knowledge->vel_right_mm_s) / 2;
+    const int32_t late_ms = core->latency.late_ms;
+    self->way_due = argus_heed_sip(&self->way_heed, given_mm_s(&self->given, self->setv_mm_s), mm_s,
+                                   SPARE_MM_S, FALLS_MM_S, late_ms) ||
+                    self->way_due;
+    self->turn_due = argus_heed_sip(&self->turn_heed, given_deg_s(core, self), argus_abs(turn_deg_s(core)),
+                                    SPARE_DEG_S, FALLS_DEG_S, late_ms) ||
+                     self->turn_due;
+}
+
 void argus_hold_watch(argus_t *const core, argus_hold_client_t *const self) {
     const bool stalled = is_stalled(core, &self->given);
     if (is_hit(core, &self->given)) {
@@ -481,6 +520,7 @@ void argus_hold_watch(argus_t *const core, argus_hold_client_t *const self) {
         return;
     }
     tell_free(core, &self->given);
+    heed(core, self);
     give(core, self, true, false);
     if (should_weave(core, &self->wish)) {
         weave(core, &self->given);

@@ -4,6 +4,7 @@
 #define ARGUS_HOLD_H
 
 #include "guardian/bounds.h"
+#include "guardian/heed.h"
 #include "guardian/wish.h"
 #include "supervisor/core.h"
 
@@ -40,6 +41,8 @@ typedef struct {
     int32_t setv_mm_s; // the client's own SETV: what MOVE drives at, and VEL at most
     bool way_due;      // to be given with the next SIP: the outbox was full, or the client says too much
     bool turn_due;
+    argus_heed_t way_heed; // whether the wheels do what was given
+    argus_heed_t turn_heed;
 } argus_hold_client_t;
 
 // Nothing is wanted any more, and nothing is sent for that.

@@ -287,6 +287,13 @@ static void take_sonar(argus_port_t *const self, const int32_t argument) {
     self->arrays = (uint8_t)((argument & 1) != 0 ? self->arrays | mask : self->arrays & ~mask);
 }
 
+// One that the robot has not got, or does not show, leaves the one before.
+static void take_analog(argus_port_t *const self, const int32_t argument) {
+    if (argument >= 0 && argument < ARGUS_ANALOG_PORTS) {
+        self->analog.wants = (uint8_t)argument;
+    }
+}
+
 static void take_rest(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
     switch ((argus_topic_t)said->topic) {
     case ARGUS_TOPIC_SETTING:
@@ -330,6 +337,9 @@ static void take_command(argus_t *const core, argus_port_t *const self, const ar
         break;
     case ARGUS_TOPIC_SONAR:
         take_sonar(self, said->argument);
+        break;
+    case ARGUS_TOPIC_ANALOG:
+        take_analog(self, said->argument);
         break;
     default:
         if (may_pass(core, self, said->cost)) {
@@ -393,7 +403,7 @@ static bool is_sip(const uint8_t type) {
 static void pass_sip(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet,
                      const argus_readings_t readings) {
     uint8_t data[ARCOS_FRAME_COUNT_MAX];
-    const argus_rewrite_t how = {.readings = readings, .arrays = self->arrays};
+    const argus_rewrite_t how = {.readings = readings, .arrays = self->arrays, .analog = &self->analog};
     const size_t count = argus_rewrite_sip(core, &how, packet->data, packet->count, data);
     if (count > 0 && argus_send_client(self, data, count)) {
         self->sips++;
@@ -422,6 +432,9 @@ static void yield(argus_t *const core, argus_port_t *const self) {
 static void take_robot(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet,
                        const argus_readings_t readings) {
     const uint8_t type = packet->data[0];
+    if (is_sip(type)) {
+        argus_rewrite_note_analog(&self->analog, packet->data, packet->count);
+    }
     if (self->phase != ARGUS_PORT_OPEN || !is_for_client(type)) {
         return;
     }

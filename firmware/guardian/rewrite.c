@@ -85,6 +85,37 @@ static size_t list(const argus_t *const self, const argus_rewrite_t *const how, 
     return length;
 }
 
+// Where the port stands in a SIP, its value behind it; 0: in none that is so short.
+static size_t analog_at(const uint8_t *const data, const size_t count) {
+    const size_t at =
+        count > LISTED ? LIST + (size_t)data[LISTED] * ENTRY + ARCOS_SIP_AFTER_SONAR_ANPORT : count;
+    return at + 1 < count ? at : 0;
+}
+
+void argus_rewrite_note_analog(argus_analog_t *const analog, const uint8_t *const data, const size_t count) {
+    const size_t at = analog_at(data, count);
+    if (at == 0 || data[at] >= ARGUS_ANALOG_PORTS) {
+        return;
+    }
+    analog->value[data[at]] = data[at + 1];
+    analog->known |= (uint8_t)(1u << data[at]);
+    if (!analog->begun) {
+        analog->begun = true;
+        analog->wants = analog->shows = data[at];
+    }
+    if (analog->wants < ARGUS_ANALOG_PORTS && (analog->known >> analog->wants & 1u) != 0) {
+        analog->shows = analog->wants;
+    }
+}
+
+static void show_analog(const argus_analog_t *const analog, uint8_t *const out, const size_t count) {
+    const size_t at = analog_at(out, count);
+    if (analog != NULL && analog->begun && at != 0 && out[at] < ARGUS_ANALOG_PORTS) {
+        out[at] = analog->shows;
+        out[at + 1] = analog->value[analog->shows];
+    }
+}
+
 size_t argus_rewrite_sip(const argus_t *const self, const argus_rewrite_t *const how,
                          const uint8_t *const data, const size_t count, uint8_t *const out) {
     if (count < LIST || count < LIST + (size_t)data[LISTED] * ENTRY) {
@@ -96,5 +127,6 @@ size_t argus_rewrite_sip(const argus_t *const self, const argus_rewrite_t *const
     out[FLAGS] &= (uint8_t)~(off * FIRST_ARRAY_FLAG);
     const size_t length = list(self, how, data, out);
     memcpy(out + length, data + tail, count - tail);
+    show_analog(how->analog, out, length + count - tail);
     return length + count - tail;
 }

@@ -2,6 +2,8 @@
 // Attacks: a client at a guard port finds what it would find at the robot: the handshake, the identity, every
 // SIP, every other packet; what it must not do ends there; and when it goes, or goes silent, the robot
 // stands.
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "client.h"
@@ -375,4 +377,61 @@ void test_a_client_that_takes_nothing_loses_whole_packets_only(void) {
     TEST_ASSERT_TRUE(client.sips >= had + 10);
     TEST_ASSERT_EQUAL_UINT32(bad, client.parser.bad_checksums);
     TEST_ASSERT_EQUAL_UINT32(0, client.parser.skipped_bytes);
+}
+
+// No stop of a client is taken for done because it was sent: what gets lost on its way is given again.
+static void check_lost(uint8_t command, int32_t argument, bool turns) {
+    char text[80];
+    drive();
+    client_say(&client, turns ? ARCOS_CMD_RVEL : ARCOS_CMD_VEL, turns ? 30 : 200);
+    client_run(&client, 1500, true);
+    TEST_ASSERT_TRUE(turns ? fabs(robot.w) > 0.3 : robot.v > 150);
+    robot.ignores[command] = true; // this one gets lost,
+    client_say(&client, command, argument);
+    client_run(&client, 50, true);
+    robot.ignores[command] = false;
+    client_run(&client, 2500, true);
+    snprintf(text, sizeof text, "command %d lost: %.0f mm/s, %.2f rad/s", command, robot.v, robot.w);
+    TEST_ASSERT_TRUE_MESSAGE(fabs(turns ? robot.w : robot.v) < 0.02, text);
+}
+
+void test_a_stop_of_a_client_that_is_lost_is_given_again(void) {
+    check_lost(ARCOS_CMD_VEL, 0, false);
+    setUp();
+    check_lost(ARCOS_CMD_RVEL, 0, true);
+    setUp();
+    check_lost(ARCOS_CMD_STOP, 0, false);
+    setUp();
+    check_lost(ARCOS_CMD_E_STOP, 0, false);
+    setUp();
+    check_lost(ARCOS_CMD_VEL2, 0, false);
+}
+
+// A lower speed likewise: the robot would be as fast as before.
+void test_a_lower_speed_that_is_lost_is_given_again(void) {
+    drive();
+    client_say(&client, ARCOS_CMD_VEL, 300);
+    client_run(&client, 1500, true);
+    robot.ignores[ARCOS_CMD_VEL] = true;
+    client_say(&client, ARCOS_CMD_VEL, 100);
+    client_run(&client, 50, true);
+    robot.ignores[ARCOS_CMD_VEL] = false;
+    client_run(&client, 2000, true);
+    TEST_ASSERT_TRUE(robot.v < 120 && robot.v > 80);
+}
+
+// The robot's analog port is the manager's: the client reads the one that it has chosen, all the time.
+void test_adsel_is_the_clients_own(void) {
+    client_open(&client);
+    client_run(&client, 2000, true);
+    for (int port = 0; port < 8; port++) {
+        client_say(&client, ARCOS_CMD_ADSEL, port);
+        for (int sip = 0; sip < 12; sip++) {
+            robot_next_sip(&robot);
+            TEST_ASSERT_EQUAL_UINT8(port, client.sip.anport);
+        }
+    }
+    client_say(&client, ARCOS_CMD_ADSEL, 200); // there is none
+    robot_next_sip(&robot);
+    TEST_ASSERT_EQUAL_UINT8(7, client.sip.anport);
 }
