@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Rule: an order that got lost is found within four SIPs and as many as the link is late by. One that is
+// being obeyed, however weakly the robot brakes, is never given again.
+#include "guardian/heed.h"
+
+#include "unity.h"
+
+static argus_heed_t heed;
+
+void setUp(void) {
+    heed = (argus_heed_t){0};
+}
+
+static bool sip(int given, int seen, int late_ms) {
+    return argus_heed_sip(&heed, given, seen, 40, 10, late_ms);
+}
+
+void test_a_robot_that_goes_on_is_found(void) {
+    for (int late_ms = 0; late_ms <= 2000; late_ms += 100) {
+        setUp();
+        int sips = 1;
+        while (!sip(0, 300, late_ms) && sips < 100) {
+            sips++;
+        }
+        TEST_ASSERT_EQUAL_INT(4 + late_ms / 100, sips);
+    }
+}
+
+void test_it_is_found_again_and_again(void) {
+    int found = 0;
+    for (int k = 0; k < 100; k++) {
+        found += sip(100, 300, 0);
+    }
+    TEST_ASSERT_INT_WITHIN(4, 33, found);
+}
+
+// With each brake from 10 to 200 mm/s in a SIP, also where it begins two SIPs late and scatters.
+void test_a_robot_that_brakes_obeys(void) {
+    for (int brakes = 25; brakes <= 200; brakes++) {
+        setUp();
+        int seen = 750;
+        for (int k = 0; k < 80; k++) {
+            seen = k < 2 ? seen : seen > brakes ? seen - brakes : 0;
+            TEST_ASSERT_FALSE(sip(0, seen + (k % 2 == 0 && seen > 60 ? 5 : 0), 0));
+        }
+    }
+}
+
+void test_wheels_that_keep_a_speed_obey(void) {
+    for (int k = 0; k < 200; k++) {
+        TEST_ASSERT_FALSE(sip(300, k % 2 == 0 ? 330 : 270, 0));
+    }
+}
