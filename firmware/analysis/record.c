@@ -10,6 +10,8 @@
 #define VERSION 2
 #define HEAD_BYTES 12 // "ARGR", version, sonars, robot, tests, trends
 #define SONAR_BYTES 43
+#define SONARS_MAX 32 // of any build, which manages whole arrays
+#define ARRAY 8
 #define CHECK_BYTES 2
 #define AT_SCORES 6
 #define AT_UNUSED 18
@@ -20,7 +22,6 @@
 #define V1 1
 #define V1_HEAD_BYTES 6  // "ARGR", version, sonars
 #define V1_SONAR_BYTES 4 // health, kind, disabled_times lo hi
-#define V1_BYTES (V1_HEAD_BYTES + ARGUS_SONARS * V1_SONAR_BYTES + CHECK_BYTES)
 
 _Static_assert(ARGUS_RECORD_BYTES == HEAD_BYTES + ARGUS_SONARS * SONAR_BYTES + CHECK_BYTES,
                "length of the record");
@@ -128,8 +129,25 @@ size_t argus_record_encode(const argus_knowledge_t *const knowledge, const argus
     return ARGUS_RECORD_BYTES;
 }
 
+// Sonars of the build that wrote it, 0: of none. One that manages more than this one has written of more.
+static size_t sonars_of(const uint8_t *const record) {
+    const unsigned sonars = record[5];
+    return sonars <= SONARS_MAX && sonars % ARRAY == 0 ? sonars : 0;
+}
+
+static size_t length_of(const uint8_t *const record) {
+    return record[4] == V1 ? V1_HEAD_BYTES + sonars_of(record) * V1_SONAR_BYTES + CHECK_BYTES
+                           : HEAD_BYTES + sonars_of(record) * SONAR_BYTES + CHECK_BYTES;
+}
+
+// Those of them that this build manages.
+static int taken_of(const uint8_t *const record) {
+    const int sonars = (int)sonars_of(record);
+    return sonars < ARGUS_SONARS ? sonars : ARGUS_SONARS;
+}
+
 static bool is_known(const uint8_t *const record, const size_t length) {
-    if (record[5] != ARGUS_SONARS || (record[4] != V1 && record[4] != VERSION)) {
+    if (sonars_of(record) == 0 || (record[4] != V1 && record[4] != VERSION)) {
         return false;
     }
     return record[4] == V1 || length < HEAD_BYTES || (record[10] == ARGUS_KEPT && record[11] == ARGUS_TRENDS);
@@ -142,7 +160,7 @@ static argus_record_fault_t check(const uint8_t *const record, const size_t leng
     if (!is_known(record, length)) {
         return ARGUS_RECORD_FOREIGN;
     }
-    if (length != (record[4] == V1 ? V1_BYTES : ARGUS_RECORD_BYTES)) {
+    if (length != length_of(record)) {
         return ARGUS_RECORD_DAMAGED;
     }
     const bool whole = get16(record + length - CHECK_BYTES) == crc16(record, length - CHECK_BYTES);
@@ -176,19 +194,19 @@ static void get_trend(argus_trend_sonar_t *const t, const uint8_t *const at) {
 }
 
 static void take_v1(argus_knowledge_t *const knowledge, const uint8_t *const record) {
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < taken_of(record); i++) {
         get_history(&knowledge->sonar[i], record + V1_HEAD_BYTES + i * V1_SONAR_BYTES);
     }
 }
 
 static void take(argus_knowledge_t *const knowledge, argus_evidence_t *const evidence,
                  argus_record_note_t *const note, const uint8_t *const record) {
-    unsigned mask = 0;
+    uint32_t mask = 0;
     note->robot = get16(record + 6) | (uint32_t)get16(record + 8) << 16;
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < taken_of(record); i++) {
         const uint8_t *const at = record + HEAD_BYTES + i * SONAR_BYTES;
         const bool out = at[0] == ARGUS_DISABLED || at[0] == ARGUS_PROBATION;
-        mask |= out ? 1u << i : 0u;
+        mask |= out ? (uint32_t)1 << i : 0u;
         get_history(&knowledge->sonar[i], at);
         knowledge->sonar[i].relapses = at[4];
         get_evidence(evidence, i, at, out);

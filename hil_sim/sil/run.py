@@ -240,8 +240,9 @@ class Sil:
 
     def _note_health(self, brief: bytes) -> None:
         before, self._brief = self._brief, brief
-        for k in range(SONARS):
-            at, kind = _HEAD + k, _HEAD + SONARS + k
+        managed = (len(brief) - _HEAD) // 2
+        for k in range(min(managed, SONARS)):
+            at, kind = _HEAD + k, _HEAD + managed + k
             if not before or (brief[at], brief[kind]) != (before[at], before[kind]):
                 names = core_module.health_name(brief[at]), core_module.kind_name(brief[kind])
                 self.health[k].append((self.now_ms / 1000, *names))

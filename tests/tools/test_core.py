@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from argus_tools import core, core_build
-from argus_tools.core import Core, library, setting_value, settings
+from argus_tools.core import Core, library, setting_value, settings, sonars_of
 from argus_tools.formats.base import LogError
 
 from hil_sim.arcos import COMMAND, ConfigPac, Sip, SyncEcho, SyncReply, Unframer, frame
@@ -24,7 +24,10 @@ def declared(*files: Path) -> set[str]:
     text = "\n".join(re.sub(r"//.*", "", file.read_text()) for file in files)
     text = re.sub(r"^static inline .*?^}", "", text, flags=re.DOTALL | re.MULTILINE)  # in no library
     names = set(re.findall(r"\b(argus_\w+)\s*[(\[]", text))
-    return {f"{name}_for_16_sonars" if f"#define {name} ARGUS_TAG" in text else name for name in names}
+    return {
+        f"{name}_for_{sonars_of(library())}_sonars" if f"#define {name} ARGUS_TAG" in text else name
+        for name in names
+    }
 
 
 def test_exports_the_public_header_and_the_shim() -> None:
@@ -34,7 +37,7 @@ def test_exports_the_public_header_and_the_shim() -> None:
     public = declared(HEADER)
     assert len(public) <= MOST_FUNCTIONS, sorted(public)
     assert exported == public | {name for name in declared(SHIM) if name.startswith("argus_shim_")}
-    assert "argus_init_for_16_sonars" in exported
+    assert f"argus_init_for_{sonars_of(library())}_sonars" in exported
 
 
 def test_names_are_numbered_as_in_the_header() -> None:

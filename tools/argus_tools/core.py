@@ -23,8 +23,8 @@ _PLACES: Final = (
     Path("/usr/lib/libargus.so"),
 )
 AUTO: Final = "auto"
-_SONARS: Final = 16
-_INIT: Final = f"argus_init_for_{_SONARS}_sonars"
+_BRIEF_HEAD: Final = 2
+"""Bytes of brief() before those of the sonars."""
 _PACKET_MAX: Final = 256
 _RECORD_MAX: Final = 65536
 _NO_SONAR: Final = -1
@@ -50,7 +50,6 @@ class _Names(IntEnum):
 
 _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_config_default": (None, (ctypes.c_void_p,)),
-    _INIT: (ctypes.c_void_p, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32)),
     "argus_link_up": (None, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_link_lost": (None, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_receive": (None, (ctypes.c_void_p, ctypes.c_uint32, ctypes.c_char_p, ctypes.c_size_t)),
@@ -106,6 +105,18 @@ def _load() -> ctypes.CDLL:
     return load_library(path)
 
 
+def sonars_of(library: ctypes.CDLL) -> int:
+    """Return how many sonars a libargus.so manages."""
+    return int(library.argus_shim_brief_size() - _BRIEF_HEAD) // 2
+
+
+def init_of(library: ctypes.CDLL) -> Any:
+    """Return argus_init of a libargus.so, whose symbol has the number of its sonars in its name."""
+    init = getattr(library, f"argus_init_for_{sonars_of(library)}_sonars")
+    init.restype, init.argtypes = ctypes.c_void_p, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32)
+    return init
+
+
 def load_library(path: Path) -> ctypes.CDLL:
     """Return the libargus.so of a path; LogError when it is none of this version."""
     try:
@@ -113,6 +124,7 @@ def load_library(path: Path) -> ctypes.CDLL:
         for name, (result, arguments) in _FUNCTIONS.items():
             function = getattr(library, name)
             function.restype, function.argtypes = result, arguments
+        init_of(library)
     except (OSError, AttributeError) as error:
         raise LogError(f"{path}: is not this version's libargus.so ({error}); build it again") from error
     return library
@@ -268,7 +280,7 @@ class Core:
         for key, value in (given or {}).items():
             self._library.argus_shim_config_set(config, settings()[key][0], value)
         self._check(config)
-        getattr(self._library, _INIT)(self._core, config, now_ms & 0xFFFFFFFF)
+        init_of(self._library)(self._core, config, now_ms & 0xFFFFFFFF)
         self._brief = ctypes.create_string_buffer(self._library.argus_shim_brief_size())
 
     def _check(self, config: Any) -> None:
@@ -345,7 +357,7 @@ class Core:
         names = _names(self._library.argus_shim_status_field)
         per_sonar = _names(self._library.argus_shim_sonar_field)
         fields = (ctypes.c_int64 * len(names))()
-        sonars = (ctypes.c_int64 * (len(per_sonar) * _SONARS))()
+        sonars = (ctypes.c_int64 * (len(per_sonar) * sonars_of(self._library)))()
         self._library.argus_shim_status(self._core, fields, sonars)
         found: dict[str, Any] = dict(zip(names, fields, strict=True))
         found |= {name: sonars[at :: len(per_sonar)] for at, name in enumerate(per_sonar)}

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from argus_tools.core import health_name, kind_name, load_library, settings
+from argus_tools.core import health_name, init_of, kind_name, load_library, settings
 
 _CHANGES: Final = 4096
 _FIELDS: Final = 4
@@ -42,7 +42,7 @@ class Engine:
         library.argus_config_default(config)
         for key, value in given.items():
             library.argus_shim_config_set(config, settings()[key][0], value)
-        library.argus_init_for_16_sonars(core, config, 0)
+        init_of(library)(core, config, 0)
         room = _CHANGES
         rows = (ctypes.c_uint32 * (_FIELDS * room))()
         found = library.argus_shim_replay(core, times_ms, lengths, count, packets, rows, room)

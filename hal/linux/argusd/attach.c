@@ -113,7 +113,8 @@ static bool is_order(tui_key_t key) {
 
 static void choose(attach_t *self, int step) {
     char answer[64];
-    self->view.sonar = (uint8_t)((self->view.sonar + ARGUS_SONARS + step) % ARGUS_SONARS);
+    const int sonars = self->view.status.sonars > 0 ? self->view.status.sonars : ARGUS_SONARS;
+    self->view.sonar = (uint8_t)((self->view.sonar + sonars + step) % sonars);
     snprintf(answer, sizeof answer, "> sonar %d is chosen", self->view.sonar);
     voice_answer(&self->voice, answer);
 }

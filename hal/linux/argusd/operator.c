@@ -137,8 +137,12 @@ static bool is_repeated(operator_t *self, tui_key_t key) {
     return repeated;
 }
 
+// Round those that the robot has.
 static void choose(operator_t *self, int step) {
-    self->sonar = (uint8_t)((self->sonar + ARGUS_SONARS + step) % ARGUS_SONARS);
+    argus_status_t status;
+    argus_status(self->driver->core, &status);
+    const int sonars = status.sonars > 0 ? status.sonars : ARGUS_SONARS;
+    self->sonar = (uint8_t)((self->sonar + sonars + step) % sonars);
 }
 
 static void answer_screen(operator_t *self, tui_key_t key, char *answer, size_t capacity) {

@@ -214,6 +214,42 @@ void test_another_version_ring_or_set_of_tests_is_foreign(void) {
     }
 }
 
+static void seal(uint8_t *of, size_t length) {
+    unsigned crc = 0xFFFFu;
+    for (size_t i = 0; i < length - 2; i++) {
+        crc ^= (unsigned)of[i] << 8;
+        for (int bit = 0; bit < 8; bit++) {
+            crc = (crc & 0x8000u) != 0 ? (crc << 1 ^ 0x1021u) & 0xFFFFu : crc << 1 & 0xFFFFu;
+        }
+    }
+    of[length - 2] = (uint8_t)(crc & 0xFFu);
+    of[length - 1] = (uint8_t)(crc >> 8);
+}
+
+// A build that manages more or fewer sonars reads those that both manage; of the others nothing is known.
+void test_the_record_of_a_build_with_more_or_fewer_sonars_is_read(void) {
+    for (int sonars = 0; sonars <= 40; sonars++) {
+        static uint8_t of[12 + 43 * 40 + 2];
+        const size_t length = 12 + 43 * (size_t)sonars + 2;
+        const bool built = sonars % 8 == 0 && sonars > 0 && sonars <= 32;
+        write_one();
+        memcpy(of, record, 12);
+        memset(of + 12, 0, sizeof of - 12);
+        of[5] = (uint8_t)sonars;
+        for (int i = 0; i < sonars; i++) {
+            of[12 + 43 * i + 1] = ARGUS_KIND_WRONG;
+            of[12 + 43 * i + 2] = (uint8_t)(i + 1);
+        }
+        seal(of, length);
+        TEST_ASSERT_EQUAL(built ? ARGUS_RECORD_OK : ARGUS_RECORD_FOREIGN, read_back(of, length));
+        for (int i = 0; i < ARGUS_SONARS; i++) {
+            const bool known = built && i < sonars;
+            TEST_ASSERT_EQUAL(known ? i + 1 : 0, other.sonar[i].disabled_before);
+        }
+        TEST_ASSERT_EQUAL(built ? ARGUS_RECORD_DAMAGED : ARGUS_RECORD_FOREIGN, read_back(of, length - 1));
+    }
+}
+
 // Version 1 as it was written, sonar 3: disabled, wrong, 258 times.
 void test_version_1_is_read_as_history(void) {
     static uint8_t old[72] = {'A', 'R', 'G', 'R', 1, 16};

@@ -11,6 +11,8 @@
 #include "robot.h"
 #include "unity.h"
 
+#define SONARS (ARGUS_SONARS < 16 ? ARGUS_SONARS : 16) // that its robot has, of those that a build manages
+
 static robot_t robot;
 static uint8_t record[ARGUS_RECORD_BYTES];
 
@@ -202,7 +204,7 @@ void test_a_pinned_sonar_keeps_its_health(void) {
 // What others agreed to before it was taken out is nothing that brings it back.
 void test_what_is_disabled_by_hand_begins_without_agreements(void) {
     start_idle();
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < SONARS; i++) {
         robot.argus.evidence.of[i].agreed = 200;
         ask(ARGUS_OP_DISABLE, i);
         TEST_ASSERT_EQUAL(ARGUS_DISABLED, sonar(i)->health);
@@ -210,7 +212,7 @@ void test_what_is_disabled_by_hand_begins_without_agreements(void) {
         ask(ARGUS_OP_UNPIN, i);
     }
     robot_run(&robot, 6000);
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < SONARS; i++) {
         TEST_ASSERT_EQUAL(ARGUS_DISABLED, sonar(i)->health);
     }
 }

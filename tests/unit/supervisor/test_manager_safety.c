@@ -10,6 +10,8 @@
 #include "robot.h"
 #include "unity.h"
 
+#define SONARS (ARGUS_SONARS < 16 ? ARGUS_SONARS : 16) // that its robot has, of those that a build manages
+
 static robot_t robot;
 static int32_t profile;
 static char which_case[32];
@@ -867,14 +869,14 @@ void test_s7_one_echo_is_read_again(void) {
 
 // Until the turn is tried again each sonar has been read.
 static bool reads_all_again(void) {
-    uint32_t before[ARGUS_SONARS];
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    uint32_t before[SONARS];
+    for (int i = 0; i < SONARS; i++) {
         before[i] = robot.argus.knowledge.sonar[i].readings;
     }
     for (int i = 0; i < 100 && robot.argus.turning.again; i++) {
         robot_tick(&robot);
     }
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < SONARS; i++) {
         if (robot.argus.knowledge.sonar[i].readings == before[i]) {
             return false;
         }
@@ -1012,8 +1014,8 @@ static void check_s7_looks_all_round_after_backing_off(void) {
         blocks_the_turn();
         robot.fault[9] = silent ? ROBOT_SILENT : ROBOT_OFF;
         TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_CHECKING, 5000));
-        uint32_t before[ARGUS_SONARS];
-        for (int i = 0; i < ARGUS_SONARS; i++) {
+        uint32_t before[SONARS];
+        for (int i = 0; i < SONARS; i++) {
             before[i] = robot.argus.knowledge.sonar[i].readings;
         }
         const uint32_t from_ms = robot.t_ms;
@@ -1021,7 +1023,7 @@ static void check_s7_looks_all_round_after_backing_off(void) {
             robot_tick(&robot);
         }
         TEST_ASSERT_TRUE(robot.t_ms - from_ms <= (silent ? 900u : 600u));
-        for (int i = 0; i < ARGUS_SONARS; i++) {
+        for (int i = 0; i < SONARS; i++) {
             TEST_ASSERT_EQUAL(!(silent && i == 9), robot.argus.knowledge.sonar[i].readings > before[i]);
         }
         finish();

@@ -505,7 +505,7 @@ void test_nonsense_is_refused_and_uses_its_nonce_up(void) {
     static const struct {
         uint8_t order;
         uint8_t sonar;
-    } table[] = {{0, 0}, {6, 0}, {255, 0}, {HAL_DBC_ORDER_RETEST, 16}, {HAL_DBC_ORDER_STOP, 1}};
+    } table[] = {{0, 0}, {6, 0}, {255, 0}, {HAL_DBC_ORDER_RETEST, ARGUS_SONARS}, {HAL_DBC_ORDER_STOP, 1}};
     for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
         run(1000);
         const uint16_t nonce = last_nonce();

@@ -169,7 +169,7 @@ void test_orders_say_why_not(void) {
     expect_order(&a, 10, "\"course\",\"points\":[]", "\"bad_argument\"");
     expect_order(&a, 11, "\"course\",\"points\":[[1,2,3]]", "\"bad_argument\"");
     expect_order(&a, 12, "\"course\",\"points\":[[1]]", "\"bad_argument\"");
-    expect_order(&a, 13, "\"pin\",\"sonar\":16", "\"bad_argument\"");
+    expect_order(&a, 13, "\"pin\",\"sonar\":32", "\"bad_argument\"");
     expect_order(&a, 14, "\"unpin\",\"sonar\":2", "\"refused\"");
     expect_order(&a, 15, "\"out\",\"sonar\":2", "\"ok\":true");
     expect_order(&a, 16, "\"retest\",\"sonar\":2", "order unpin first");
