@@ -74,6 +74,14 @@ def test_its_name_says_where_it_runs(wheel: Path) -> None:
     }
 
 
+def test_its_metadata_holds_the_readme(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        [name] = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
+        told = archive.read(name).decode()
+    assert "Description-Content-Type: text/markdown" in told
+    assert (ROOT / "README.md").read_text(encoding="utf-8").strip() in told
+
+
 def test_each_command_answers(wheel: Path, clean_venv: Path) -> None:
     names = entries(wheel)
     assert {"argus-sim", "argus-log"} <= set(names)
