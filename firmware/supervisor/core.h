@@ -87,8 +87,11 @@ typedef struct {
 // How late the link is; all zero: nothing is late.
 typedef struct {
     argus_roundtrip_t trip;
-    int32_t late_ms;   // beyond what S5 counts on anyway: of late the most, fading
+    int32_t late_ms;   // beyond what S5 counts on anyway: of late the most
     int32_t before_ms; // ... in the last SIP
+    int32_t most_ms;   // ... since some SIPs, and in as many before those
+    int32_t then_ms;
+    uint8_t sips;
     uint8_t level;     // said last: 0 prompt, 1 slower, 2 stands
     uint8_t calm_sips; // in a row with nothing overdue
     bool overdue;      // an order that was sent has not shown yet: no new motion

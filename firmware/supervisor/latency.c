@@ -13,7 +13,7 @@
 #define STANDS_MS 600  // late by more: no motion is safe and of use
 #define SLOWER_MS 100  // late by more: said
 #define PROMPT_MS 50   // ... until it is late by less
-#define FADES 64       // the most of late fades by this part with each SIP,
+#define LATELY_SIPS 30 // the most of late counts so long at least, and twice as long at most
 #define LATE_MOST_MS 4000
 #define CALM_SIPS 5
 #define LEVEL_PROMPT 0
@@ -82,12 +82,19 @@ static void judge(argus_t *const self, const int32_t beyond) {
 // The sight of an order waits for the next SIP, so that it tells of a delay to a cycle. One SIP may be lost.
 static void measure(argus_latency_t *const mine, const int32_t beyond) {
     const int32_t late_ms = beyond > 0 ? beyond + CYCLE_MS : 0;
-    const int32_t fading_ms = mine->late_ms - (mine->late_ms + FADES - 1) / FADES;
-    mine->late_ms = argus_max(argus_min(late_ms, mine->before_ms), fading_ms);
+    const int32_t counts_ms = argus_min(late_ms, mine->before_ms);
     mine->before_ms = late_ms;
+    mine->most_ms = argus_max(mine->most_ms, counts_ms);
+    mine->late_ms = argus_max(mine->most_ms, mine->then_ms);
+    mine->sips++;
+    if (mine->sips >= LATELY_SIPS) {
+        mine->then_ms = mine->most_ms;
+        mine->most_ms = counts_ms;
+        mine->sips = 0;
+    }
 }
 
-void argus_latency_sip(argus_t *const self) {
+bool argus_latency_sip(argus_t *const self) {
     argus_latency_t *const mine = &self->latency;
     argus_roundtrip_sip(&mine->trip, &self->session, &self->config, self->now_ms);
     const int32_t beyond = beyond_ms(self);
@@ -96,11 +103,13 @@ void argus_latency_sip(argus_t *const self) {
     measure(mine, beyond);
     const bool calm = !mine->overdue && mine->late_ms <= STANDS_MS;
     mine->calm_sips = (uint8_t)(calm ? argus_min(mine->calm_sips + 1, CALM_SIPS) : 0);
-    if (mine->stands && mine->calm_sips == CALM_SIPS) {
+    const bool goes_on = mine->stands && mine->calm_sips == CALM_SIPS;
+    if (goes_on) {
         go_on(self);
     }
     say(self, level_of(mine));
     self->motion.late_ms = (uint32_t)mine->late_ms;
+    return goes_on;
 }
 
 void argus_latency_process(argus_t *const self) {

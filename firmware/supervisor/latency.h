@@ -8,8 +8,9 @@
 // A session opens.
 void argus_latency_open(argus_t *self);
 
-// With each SIP, before it is used; and whenever time passes: STOP once too much is overdue.
-void argus_latency_sip(argus_t *self);
+// With each SIP, before it is used; true: it goes on after a stand, and what was read meanwhile was not of
+// its time. And whenever time passes: STOP once too much is overdue.
+bool argus_latency_sip(argus_t *self);
 void argus_latency_process(argus_t *self);
 
 // By which the SIPs may be late, the last one too.

@@ -220,9 +220,7 @@ static void take_evidence(argus_t *const self) {
 
 // How late the link is, before anything of the SIP is used.
 static void take_latency(argus_t *const self) {
-    const bool stood = self->latency.stands;
-    argus_latency_sip(self);
-    if (stood && !self->latency.stands) { // what was read meanwhile was not of its time
+    if (argus_latency_sip(self)) {
         restart_evidence(self);
     }
     self->knowledge.late_ms = (uint32_t)argus_latency_oldest_ms(&self->latency);
