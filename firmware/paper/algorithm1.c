@@ -17,8 +17,22 @@ void argus_algorithm1_restart(argus_algorithm1_t *const self) {
     self->verified = 0;
 }
 
-void argus_algorithm1_moved(argus_algorithm1_t *const self) {
-    self->verified = 0;
+void argus_algorithm1_moved(argus_algorithm1_t *const self, const argus_mask_t kept) {
+    self->verified &= kept;
+}
+
+void argus_algorithm1_reopen(argus_algorithm1_t *const self, const argus_mask_t sonars) {
+    self->verified &= (argus_mask_t) ~(unsigned)sonars;
+}
+
+void argus_algorithm1_settle(argus_algorithm1_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    self->verified |= (argus_mask_t)(1u << sonar);
+}
+
+void argus_algorithm1_dropped(argus_algorithm1_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    self->of[sonar].in_a_row = 0;
 }
 
 void argus_algorithm1_cleared(argus_algorithm1_t *const self, const argus_knowledge_t *const knowledge,
@@ -40,7 +54,7 @@ static void count_disparity(argus_algorithm1_t *const self, const argus_knowledg
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_disparate_t *const d = &self->of[sonar];
     const bool repeated = knowledge->lists_all && knowledge->sip_ms - d->counted_ms < ARGUS_REFRESH_MS;
-    if (self->away || repeated) {
+    if (repeated) {
         return;
     }
     d->counted_ms = knowledge->sip_ms;
@@ -55,8 +69,9 @@ static void count_disparity(argus_algorithm1_t *const self, const argus_knowledg
     d->in_a_row = argus_one_more(d->in_a_row);
 }
 
-void argus_algorithm1_sip(argus_algorithm1_t *const self, const argus_knowledge_t *const knowledge) {
-    for (int i = 0; i < knowledge->robot->forward_count; i++) {
+void argus_algorithm1_sip(argus_algorithm1_t *const self, const argus_knowledge_t *const knowledge,
+                          const bool away) {
+    for (int i = 0; !away && i < knowledge->robot->forward_count; i++) {
         const int sonar = knowledge->robot->forward[i];
         if ((knowledge->fresh >> sonar & 1u) != 0) {
             count_disparity(self, knowledge, sonar);

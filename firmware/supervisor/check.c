@@ -118,11 +118,11 @@ void argus_apply_verdict(argus_t *const self) {
         argus_say_change(self, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, verify->mean_mm);
         break;
     case ARGUS_RESULT_DROPPED:
-        self->algorithm1.of[sonar].in_a_row = 0;
+        argus_algorithm1_dropped(&self->algorithm1, sonar);
         argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, verify->difference_mm);
         break;
     case ARGUS_RESULT_UNPROVEN:
-        self->algorithm1.verified |= (argus_mask_t)(1u << sonar);
+        argus_algorithm1_settle(&self->algorithm1, sonar);
         argus_say(self, ARGUS_EV_SONAR_UNPROVEN, sonar, verify->reading_mm);
         break;
     case ARGUS_RESULT_NONE:

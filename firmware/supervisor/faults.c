@@ -81,7 +81,7 @@ static argus_mask_t covered_suspects(const argus_t *const self) {
         const argus_guard_t guard = argus_guard(self);
         return argus_guard_alone(&guard);
     }
-    return (argus_mask_t)(argus_with_health(&self->knowledge, ARGUS_SUSPECT) & self->algorithm1.verified &
+    return (argus_mask_t)(self->algorithm1.verified & argus_with_health(&self->knowledge, ARGUS_SUSPECT) &
                           argus_robot_forward(self->knowledge.robot));
 }
 

@@ -133,7 +133,7 @@ void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
     ARGUS_ASSERT((sonars & argus_out(&self->knowledge)) == 0);
     for (int i = 0; i < self->knowledge.sonars; i++) {
         if ((sonars >> i & 1u) != 0) {
-            self->algorithm1.verified |= (argus_mask_t)(1u << i);
+            argus_algorithm1_settle(&self->algorithm1, i);
             argus_say(self, ARGUS_EV_SONAR_UNPROVEN, i, self->knowledge.sonar[i].reading_mm);
         }
     }

@@ -240,9 +240,8 @@ static void on_sip(argus_t *const self) {
     if (argus_sees_through_body(self)) {
         argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_CHECK, true);
     }
-    self->algorithm1.away =
-        argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, argus_base_cdeg(self)) > AWAY_CDEG;
-    argus_algorithm1_sip(&self->algorithm1, &self->knowledge);
+    const int32_t away_cdeg = argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, argus_base_cdeg(self));
+    argus_algorithm1_sip(&self->algorithm1, &self->knowledge, away_cdeg > AWAY_CDEG);
     const argus_alarm_t alarm = argus_alarms(&self->knowledge, &self->config);
     if (!self->latency.stands) { // else it is not of now
         take_evidence(self);

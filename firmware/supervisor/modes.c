@@ -61,7 +61,7 @@ static void enter_verifying(argus_t *const self, const argus_mask_t suspects) {
     ARGUS_ASSERT((suspects & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
     ARGUS_ASSERT(!self->orders.passive);
     argus_flag_suspects(self, suspects);
-    self->algorithm1.verified &= (argus_mask_t) ~(unsigned)suspects;
+    argus_algorithm1_reopen(&self->algorithm1, suspects);
     self->looks.settling = (uint8_t)(self->travel.arriving ? self->looks.settling + 1 : 0);
     argus_halt(self);
     if (!self->motion.settled && self->motion.kind != ARGUS_MOTION_STOP) {
@@ -211,12 +211,10 @@ static void back(argus_t *const self, const argus_intent_t *const intent) {
 // The robot will stand somewhere else: what was tried and verified here does not count there.
 static void move_on(argus_t *const self) {
     ARGUS_ASSERT(self->checked);
-    if (argus_rules(self)
-            ->evidence) { // a suspect that could not be cleared is covered for like one that is out
-        self->algorithm1.verified &= argus_with_health(&self->knowledge, ARGUS_SUSPECT);
-    } else {
-        argus_algorithm1_moved(&self->algorithm1);
-    }
+    // A suspect that the evidence could not clear is covered for like one that is out.
+    const bool keeps = argus_rules(self)->evidence != 0;
+    const argus_mask_t kept = keeps ? argus_with_health(&self->knowledge, ARGUS_SUSPECT) : 0;
+    argus_algorithm1_moved(&self->algorithm1, kept);
     self->turning.backed = 0;
     self->turning.again = false;
     self->waiting.last = ARGUS_WAIT_NONE;

@@ -108,7 +108,7 @@ static void jog(argus_t *const self, const int32_t built_mm) {
 static void jog_turn(argus_t *const self, const int32_t degrees) {
     self->base.cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + degrees % 360 * 100);
     self->base.taken = true;
-    argus_algorithm1_moved(&self->algorithm1);
+    argus_algorithm1_moved(&self->algorithm1, 0);
     argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, false);
 }
 
@@ -159,7 +159,7 @@ static void begin_retest(argus_t *const self, const int sonar) {
     argus_extremes_forget(&self->extremes, sonar);
     argus_evidence_forget_trend(&self->evidence, sonar);
     argus_forget_cleared(self, sonar);
-    self->algorithm1.verified &= (argus_mask_t) ~(unsigned)bit;
+    argus_algorithm1_reopen(&self->algorithm1, bit);
     if (argus_is_out(&self->knowledge, sonar)) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RETESTED, s->kind, s->reading_mm);
     } else {

@@ -28,3 +28,8 @@ def test_health_c_alone_writes_the_health_of_a_sonar() -> None:
 def test_health_c_alone_writes_the_kind_of_a_fault() -> None:
     # The kind of a motion is another thing, and so is that of a wheel.
     assert writers("kind") - {"adjustment/motion.c", "analysis/wheel.c"} == {"knowledge/health.c"}
+
+
+def test_algorithm_1_alone_writes_what_it_counts() -> None:
+    for field in ("verified", "held", "difference_mm"):
+        assert writers(field) - {"analysis/verify.c"} == {"paper/algorithm1.c"}, field

@@ -15,8 +15,10 @@ static argus_config_t config;
 static argus_sip_t sip;
 static uint32_t now_ms;
 static int reading[16];
+static bool away;
 
 void setUp(void) {
+    away = false;
     argus_knowledge_init(&k);
     argus_algorithm1_init(&a);
     argus_config_default(&config);
@@ -42,7 +44,7 @@ static void take(unsigned listed) {
         }
     }
     argus_knowledge_sip(&k, &sip, 1000, now_ms);
-    argus_algorithm1_sip(&a, &k);
+    argus_algorithm1_sip(&a, &k, away);
 }
 
 static uint16_t suspects(void) {
@@ -115,7 +117,7 @@ void test_a_cleared_sonar_is_held_off_for_a_metre(void) {
     for (int mm = 0; mm < 950; mm += 50) {
         drive_mm(50);
         take(0x08);
-        argus_algorithm1_moved(&a);
+        argus_algorithm1_moved(&a, 0);
         TEST_ASSERT_EQUAL_HEX16(0, suspects());
     }
     drive_mm(100);
@@ -127,7 +129,7 @@ void test_a_cleared_sonar_is_held_off_for_30_degrees(void) {
     take(0xFFFF);
     make_suspect();
     argus_algorithm1_cleared(&a, &k, 3, a.of[3].difference_mm);
-    argus_algorithm1_moved(&a);
+    argus_algorithm1_moved(&a, 0);
     turn_to(330); // 29.0 degrees
     for (int i = 0; i < 5; i++) {
         take(0x08);
@@ -163,7 +165,7 @@ void test_1_0_0_is_the_bare_paper(void) {
     argus_algorithm1_cleared(&a, &k, 3, a.of[3].difference_mm);
     take(0x08);
     TEST_ASSERT_EQUAL_HEX16(0, suspects()); // else it would be verified in this place for ever
-    argus_algorithm1_moved(&a);
+    argus_algorithm1_moved(&a, 0);
     take(0x08);
     TEST_ASSERT_EQUAL_HEX16(0x08, suspects());
 }
@@ -179,5 +181,33 @@ void test_restart_forgets_the_counts(void) {
     take(0xFFFF);
     make_suspect();
     argus_algorithm1_restart(&a);
+    TEST_ASSERT_EQUAL_HEX16(0, suspects());
+}
+
+void test_readings_while_turned_away_do_not_count(void) {
+    take(0xFFFF);
+    reading[3] = 500;
+    away = true;
+    for (int i = 0; i < 5; i++) {
+        take(0x08);
+    }
+    TEST_ASSERT_EQUAL_HEX16(0, suspects());
+    away = false;
+    make_suspect();
+}
+
+void test_what_is_settled_here_is_open_elsewhere_or_on_demand(void) {
+    take(0xFFFF);
+    make_suspect();
+    argus_algorithm1_settle(&a, 3);
+    TEST_ASSERT_EQUAL_HEX16(0, suspects());
+    argus_algorithm1_moved(&a, 0x08);
+    TEST_ASSERT_EQUAL_HEX16(0, suspects());
+    argus_algorithm1_reopen(&a, 0x08);
+    TEST_ASSERT_EQUAL_HEX16(0x08, suspects());
+    argus_algorithm1_settle(&a, 3);
+    argus_algorithm1_moved(&a, 0);
+    TEST_ASSERT_EQUAL_HEX16(0x08, suspects());
+    argus_algorithm1_dropped(&a, 3);
     TEST_ASSERT_EQUAL_HEX16(0, suspects());
 }
