@@ -25,8 +25,7 @@ OD_A = "0000000   z   {   6   2 nul nul soh stx  sp   P   3   D  ff  cr\n" * 3
 OD_F = "0000000     3.65899e-40  -2.5961484e+36   2.3510613e-38\n0000014   8.6289866e+14    5.587976e-08\n"
 OTHERS: dict[str, tuple[bytes, str, str]] = {
     "mf4": (b"MDF     4.11    ", "MDF measurement", "candump -L"),
-    "mcap": (b"\x89MCAP0\r\n", "MCAP", "made from"),
-    "rosbag": (b"#ROSBAG V2.0\n", "ROS bag", "argusd --record"),
+    "rosbag": (b"#ROSBAG V1.2\n", "ROS bag of a version before 2.0", "rosbag fix"),
     "zip": (b"PK\x03\x04rest", "ZIP", "unzip -p"),
     "xz": (b"\xfd7zXZ\0\0\4", "xz", "xz -dc"),
     "zstd": (b"\x28\xb5\x2f\xfd\0\0", "zstd", "zstd -dc"),

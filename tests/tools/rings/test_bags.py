@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import gzip
 import math
+import random
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -299,3 +300,25 @@ def test_points_that_lie_on_no_robot_are_refused(tmp_path: Path) -> None:
     done = run("faults", bags.write(tmp_path / "a.bag", sent))
     assert done.returncode == 2
     assert "no known robot's sonars" in done.stderr.decode()
+
+
+@pytest.mark.parametrize("magic", [b"#ROSBAG V2.0\n", b"SQLite format 3\0", b"\x89MCAP0\r\n"])
+@pytest.mark.parametrize("rest", [b"", b"\0" * 200, b"\xff" * 5000])
+def test_what_only_begins_as_a_bag_gives_one_line(tmp_path: Path, magic: bytes, rest: bytes) -> None:
+    (tmp_path / "a").write_bytes(magic + rest)
+    done = run("faults", tmp_path / "a")
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1, done.stderr
+
+
+@pytest.mark.parametrize("storage", FORMS)
+@pytest.mark.parametrize("seed", range(4))
+def test_random_damage_is_no_crash(tmp_path: Path, storage: str, seed: int) -> None:
+    rng = random.Random(f"{storage} {seed}")
+    path = bags.write(path_of(tmp_path, storage), rosaria(Drive(seconds=3)), storage)
+    file = path if storage == "ros1" else next(one for one in path.iterdir() if one.name != "metadata.yaml")
+    data = bytearray(file.read_bytes())
+    for _ in range(20):
+        data[rng.randrange(len(data))] = rng.randrange(256)
+    file.write_bytes(data)
+    assert run("decode", path).returncode in (0, 2), f"{storage} {seed}"

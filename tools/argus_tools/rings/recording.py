@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Recordings of messages: ROS bags by `rosbags`, own MCAP by `mcap`. Both give topics, then messages by time."""
+"""Recordings of messages: ROS bags by `rosbags`, own MCAP by `mcap`. Both give topics, then messages by time.
+
+What a damaged file makes these libraries raise is of many kinds, SQLite's, zstd's and lz4's among them: all is caught.
+"""
 
 from __future__ import annotations
 
 import json
-import struct
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
@@ -17,15 +19,6 @@ from argus_tools.formats.base import LogError
 _NANO: Final = 1_000_000_000
 SONAR_ARRAY: Final = "p2os_msgs/msg/SonarArray"
 _SONAR_ARRAY: Final = "std_msgs/Header header\nint32 ranges_count\nfloat64[] ranges\n"
-_UNREADABLE: Final = (
-    ValueError,
-    TypeError,
-    LookupError,
-    ArithmeticError,
-    AssertionError,
-    struct.error,
-    EOFError,
-)
 
 
 @dataclass(frozen=True)
@@ -67,18 +60,14 @@ class Bag:
 
     def __init__(self, path: Path, is_first: bool, name: str) -> None:
         from rosbags.rosbag1 import Reader as Reader1
-        from rosbags.rosbag1 import ReaderError as ReaderError1
         from rosbags.rosbag2 import Reader as Reader2
-        from rosbags.rosbag2 import ReaderError as ReaderError2
-        from rosbags.serde import SerdeError
 
-        self._errors: tuple[type[Exception], ...] = (ReaderError1, ReaderError2, SerdeError, *_UNREADABLE)
         self._is_first = is_first
         self._stores: dict[tuple[str, str], Any] = {}
         try:
             self._reader: Any = Reader1(path) if is_first else Reader2(path)
             self._reader.open()
-        except (*self._errors, OSError) as error:
+        except Exception as error:
             raise LogError(f"{name}: a bag that cannot be read: {_what(error)}") from error
         counts: dict[tuple[str, str], int] = {}
         for connection in self._reader.connections:
@@ -98,7 +87,7 @@ class Bag:
                 store = self._store(kind, connection.msgdef)
                 take = store.deserialize_ros1 if self._is_first else store.deserialize_cdr
                 yield Message(connection.topic, kind, t_ns / _NANO, take(raw, kind))
-        except self._errors as error:
+        except Exception as error:
             raise Broken(_what(error)) from error
 
     def _store(self, kind: str, definition: Any) -> Any:
@@ -125,7 +114,7 @@ class Bag:
 
     def close(self) -> None:
         """Close the bag."""
-        with suppress(*self._errors):
+        with suppress(Exception):
             self._reader.close()
 
 
@@ -133,15 +122,14 @@ class JsonMcap:
     """An MCAP of JSON messages, as `argus-log convert` and the Foxglove bridge write it."""
 
     def __init__(self, path: Path, name: str) -> None:
-        from mcap.exceptions import McapError
         from mcap.reader import make_reader
 
-        self._errors: tuple[type[Exception], ...] = (McapError, *_UNREADABLE)
         self._file = path.open("rb")
-        self._reader = make_reader(self._file)
         try:
+            self._reader = make_reader(self._file)
             summary = self._reader.get_summary()
-        except self._errors as error:
+        except Exception as error:
+            self._file.close()
             raise LogError(f"{name}: an MCAP file that cannot be read: {_what(error)}") from error
         if summary is None or summary.statistics is None:
             raise LogError(
@@ -162,7 +150,7 @@ class JsonMcap:
                 if schema is not None and channel.message_encoding == "json":
                     body = json.loads(message.data, object_hook=lambda fields: SimpleNamespace(**fields))
                     yield Message(channel.topic, schema.name, message.log_time / _NANO, body)
-        except self._errors as error:
+        except Exception as error:
             raise Broken(_what(error)) from error
 
     def close(self) -> None:
