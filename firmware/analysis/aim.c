@@ -2,8 +2,8 @@
 // Where a silent sonar would look along what another one lately heard.
 #include "analysis/aim.h"
 
-#include "awareness/numbers.h"
 #include "awareness/names.h"
+#include "awareness/numbers.h"
 #include "knowledge/angle.h"
 
 #define AIM_NEAREST_MM 250

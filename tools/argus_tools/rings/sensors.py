@@ -91,7 +91,9 @@ class Cloud:
             raise LogError("all points of the cloud are (0, 0, 0): no sonar is there")
         found: tuple[RobotTable, float | None] | None = (table, None) if table else whose_points(present)
         if found is None:
-            raise LogError("the points lie on the axes of no known robot's sonars; name it by --ring")
+            raise LogError(
+                "the points lie on the axes of no known robot's sonars; --subclass names the robot"
+            )
         self.table, self._beside_mm = found
         if size > self.table.sonars and set(range(self.table.sonars, size)) - self._absent:
             raise LogError(
@@ -151,7 +153,8 @@ class Array:
         size = max(len(message.body.ranges) for message in seen)
         if size > table.sonars:
             raise LogError(
-                f"a list of {size} ranges, but {table.subclass} has {table.sonars} sonars; give --ring"
+                f"a list of {size} ranges, but {table.subclass} has {table.sonars} sonars; "
+                "--subclass names another robot"
             )
 
     def words(self) -> list[str]:
@@ -182,7 +185,7 @@ class Singles:
         if len(keys) > self.table.sonars:
             raise LogError(
                 f"{len(keys)} topics of ranges, but {self.table.subclass} has {self.table.sonars} sonars; "
-                "give --topic with what their names begin with, or --ring"
+                "give --topic with what their names begin with, or another robot by --subclass"
             )
         self._is_placed = placed is not None
         if placed:
