@@ -16,6 +16,8 @@
 #define DEG_PER_RAD 57
 #define CURVE_MOST_CDEG 9000
 #define DEVIATION_MOST_MM 400
+#define FASTEST_MM_S 1500 // no robot is faster
+#define CURVE_STEP_MM_S 25
 #define TURN_NEAR_MM 250    // beyond the circle that the body sweeps
 #define TURN_LEAST_DEG_S 10 // slower is steering
 
@@ -35,20 +37,28 @@ static int32_t turn_deg_s(const argus_t *const self) {
     return across_mm_s * DEG_PER_RAD / knowledge->robot->track_mm;
 }
 
-// In a curve the robot leaves its axis by s^2 w / 2 v until it stands.
-static int32_t deviation_mm(const argus_t *const self) {
+static int32_t speed_mm_s(const argus_t *const self) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
-    const int32_t mm_s = argus_abs(knowledge->vel_right_mm_s + knowledge->vel_left_mm_s) / 2;
-    const int32_t way_mm = mm_s * REACTION_MS / 1000 + mm_s * mm_s / (2 * knowledge->robot->decel_mm_s2);
+    return argus_abs(knowledge->vel_right_mm_s + knowledge->vel_left_mm_s) / 2;
+}
+
+// Until it stands.
+static int32_t rest_mm(const argus_t *const self, const int32_t mm_s) {
+    ARGUS_ASSERT(self->knowledge.robot->decel_mm_s2 > 0);
+    return mm_s * REACTION_MS / 1000 + mm_s * mm_s / (2 * self->knowledge.robot->decel_mm_s2);
+}
+
+// In a curve the robot leaves its axis by s^2 w / 2 v until it stands.
+static int32_t deviation_mm(const argus_t *const self, const int32_t mm_s) {
+    const int32_t way_mm = rest_mm(self, mm_s);
     const int32_t turn_cdeg = mm_s > 0 ? way_mm * turn_deg_s(self) * 100 / mm_s : 0;
-    return argus_min(way_mm * argus_min(turn_cdeg, CURVE_MOST_CDEG) / (2 * 100 * DEG_PER_RAD),
-                     DEVIATION_MOST_MM);
+    return way_mm * argus_min(turn_cdeg, CURVE_MOST_CDEG) / (2 * 100 * DEG_PER_RAD);
 }
 
 static corridor_t corridor(const argus_t *const self, const bool rear) {
     return (corridor_t){.rear = rear,
                         .half_mm = argus_robot_half_width_mm(self->knowledge.robot) + BESIDE_MM +
-                                   deviation_mm(self)};
+                                   argus_min(deviation_mm(self, speed_mm_s(self)), DEVIATION_MOST_MM)};
 }
 
 // How far the leading end may go until it touches the nearest place at which the echo may lie; INT32_MAX: it
@@ -218,6 +228,18 @@ static argus_bound_t trailing(const argus_t *const self, const argus_guard_t *co
     return bound;
 }
 
+// A curve may be left on any tangent. Where that leads beyond what is looked at, the robot stands before the
+// nearest thing, wherever that is.
+static int32_t in_curve_mm_s(const argus_t *const self, const argus_guard_t *const guard) {
+    const int32_t room_mm = argus_guard_nearest_mm(guard, 0) - self->knowledge.robot->swing_radius_mm;
+    int32_t mm_s = FASTEST_MM_S;
+    while (mm_s > self->config.step_speed_mm_s && deviation_mm(self, mm_s) > DEVIATION_MOST_MM &&
+           rest_mm(self, mm_s) > room_mm) {
+        mm_s -= CURVE_STEP_MM_S;
+    }
+    return mm_s;
+}
+
 // Between the sonars abeam and those of the ends a corner may hide, which a turn would sweep.
 static argus_bound_t in_turn(const argus_t *const self, const argus_guard_t *const guard,
                              argus_bound_t bound) {
@@ -226,6 +248,7 @@ static argus_bound_t in_turn(const argus_t *const self, const argus_guard_t *con
     if (near && turn_deg_s(self) > TURN_LEAST_DEG_S) {
         bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.step_speed_mm_s);
     }
+    bound.speed_mm_s = argus_min(bound.speed_mm_s, in_curve_mm_s(self, guard));
     return bound;
 }
 

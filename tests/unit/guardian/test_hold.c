@@ -92,6 +92,16 @@ void test_back_is_slow_where_nothing_was_ever_heard(void) {
     TEST_ASSERT_EQUAL_INT(-100, (int)(robot.v - 0.5));
 }
 
+// What a curve costs beside something is shown by the fuzzer's corpus: a corner met on a tangent.
+void test_a_fast_curve_where_nothing_is_near_is_the_clients(void) {
+    begin(4500, 4500, 4500);
+    client_say(&client, ARCOS_CMD_VEL, 700);
+    client_say(&client, ARCOS_CMD_RVEL, 40);
+    run(5000);
+    TEST_ASSERT_EQUAL_INT(700, (int)(robot.v + 0.5));
+    TEST_ASSERT_EQUAL_INT(0, quiet());
+}
+
 void test_it_slows_down_first(void) {
     begin(2500, 2500, 2500);
     client_say(&client, ARCOS_CMD_VEL, 750);
