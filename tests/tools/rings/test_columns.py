@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from argus_tools.formats import find_format
 from bags import NO_ECHO_MM, START, Drive
 from logs import decode, run
 
@@ -108,6 +109,21 @@ def test_what_decode_prints_is_read_again(tmp_path: Path) -> None:
         again = [row for row in decode(tmp_path / name) if row["type"] == "SIP"]
         keys = ("x_mm", "y_mm", "heading_deg", "sonar", "vel_left_mm_s", "t")
         assert [[row[key] for key in keys] for row in again] == [[row[key] for key in keys] for row in sips]
+
+
+def test_other_packets_may_stand_before_the_first_ring() -> None:
+    """As in what decode prints of a whole session: SYNC replies and CONFIGpacs first."""
+    ring = json.loads('{"t": 0.0, "type": "SIP", "sonar": {"0": 1500, "1": 1600}}')
+    heads = [
+        {"t": 0.0, "type": "SYNC2", "subclass": "p3dx-sh"},
+        {"t": 0.0, "type": "CONFIGPAC", "limits": {"vel": 750}},
+    ]
+    for text in (
+        "\n".join(map(json.dumps, [*heads, ring])),
+        json.dumps([*heads, ring], indent=1),
+    ):
+        assert find_format(text.encode()).name == "range-json"
+    assert find_format(json.dumps({"t": 0.0, "dir": "r2c", "hex": "FAFB"}).encode()).name == "jsonl"
 
 
 def test_rows_out_of_order_and_torn_rows_are_told(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
@@ -109,6 +110,13 @@ class _Either:
         yield from self._reader
 
 
+def _is_database(head: bytes) -> bool:
+    """Whether it is SQLite with the tables of a bag: the first page holds what made them."""
+    return (
+        head.startswith(_SQLITE) and re.search(rb"CREATE TABLE \W?topics\b", head, re.IGNORECASE) is not None
+    )
+
+
 def _begins(start: bytes) -> Callable[[bytes], bool]:
     return lambda head: head.startswith(start)
 
@@ -116,7 +124,7 @@ def _begins(start: bytes) -> Callable[[bytes], bool]:
 FORMATS: Final = (
     Format("bag1", "ROS 1 bag", _begins(_ROS1), _reads(".bag")),
     Format("bag2", "ROS 2 bag: its folder", _begins(_METADATA), _reads("")),
-    Format("bag2-db3", "SQLite file of a ROS 2 bag", _begins(_SQLITE), _reads(".db3")),
+    Format("bag2-db3", "SQLite file of a ROS 2 bag", _is_database, _reads(".db3")),
     Format(
         "mcap", "MCAP of ROS 2, of argus-log convert or the Foxglove bridge", _begins(_MCAP), _reads(".mcap")
     ),

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from io import BufferedReader
-from typing import Final
+from itertools import islice
+from typing import Any, Final
 
 from argus_tools.formats.base import DamageList, Format, Reader, ReadOptions
 from argus_tools.formats.jsonl import Records
@@ -14,6 +16,7 @@ from argus_tools.formats.text import first_lines
 from argus_tools.rings.columns import ColumnsLog, flat, json_rows, separator_of, table_rows, understood
 
 _LINES_SEEN: Final = 5
+_OBJECTS_SEEN: Final = 20
 _PARSER: Final = json.JSONDecoder()
 
 
@@ -25,16 +28,28 @@ def _is_table(head: bytes) -> bool:
     return understood([cell.strip().strip('"') for cell in line.split(separator_of(line))]).is_ring
 
 
+def _objects(text: str) -> Iterator[Any]:
+    """Yield the whole objects of JSON lines or an array, in lines or laid out over many."""
+    at = text.find("{")
+    while at >= 0:
+        try:
+            value, end = _PARSER.raw_decode(text, at)
+        except ValueError:
+            return
+        yield value
+        at = text.find("{", end)
+
+
 def _is_json(head: bytes) -> bool:
-    """Whether the first object, in a line or laid out over many, has the keys of a ring."""
+    """Whether one of the first objects has the keys of a ring: packets of other kinds may stand before it."""
     if head.lstrip()[:1] not in (b"{", b"["):
         return False
-    text = head[: head.rfind(b"}") + 1].decode("utf-8", "replace")
-    try:
-        value, _ = _PARSER.raw_decode(text, text.index("{"))
-    except ValueError:
-        return False
-    return "hex" not in value and understood([name for name, _ in flat(value)]).is_ring
+    for value in islice(_objects(head.decode("utf-8", "replace")), _OBJECTS_SEEN):
+        if "hex" in value:
+            return False
+        if understood([name for name, _ in flat(value)]).is_ring:
+            return True
+    return False
 
 
 def _table(stream: BufferedReader, options: ReadOptions) -> Reader:
