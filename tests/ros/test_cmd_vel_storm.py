@@ -186,4 +186,5 @@ def test_random_orders_end_no_node_and_move_it_within_bounds(stormed: Stormed, s
 
 @pytest.mark.soak
 def test_a_million_random_orders(stormed: Stormed) -> None:
+    """Not of the stage: build/venv-ros/bin/python -m pytest -m soak tests/ros. It makes some 600 DDS participants."""
     storm(stormed, 1_000_000, 3)

@@ -73,5 +73,17 @@ def ros_tests(run: Run) -> str | None:
     with making():
         why = lacking()
     if why is None:
-        run([VENV_ROS / "bin/python", "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/ros"])
+        run(
+            [
+                VENV_ROS / "bin/python",
+                "-m",
+                "pytest",
+                "-q",
+                "-p",
+                "no:cacheprovider",
+                "-m",
+                "not soak",
+                "tests/ros",
+            ]
+        )
     return why
