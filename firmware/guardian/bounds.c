@@ -230,8 +230,7 @@ static argus_bound_t trailing(const argus_t *const self, const argus_guard_t *co
 
 // A curve may be left on any tangent. Where that leads beyond what is looked at, the robot stands before the
 // nearest thing, wherever that is.
-static int32_t in_curve_mm_s(const argus_t *const self, const argus_guard_t *const guard) {
-    const int32_t room_mm = argus_guard_nearest_mm(guard, 0) - self->knowledge.robot->swing_radius_mm;
+static int32_t in_curve_mm_s(const argus_t *const self, const int32_t room_mm) {
     int32_t mm_s = FASTEST_MM_S;
     while (mm_s > self->config.step_speed_mm_s && deviation_mm(self, mm_s) > DEVIATION_MOST_MM &&
            rest_mm(self, mm_s) > room_mm) {
@@ -243,12 +242,11 @@ static int32_t in_curve_mm_s(const argus_t *const self, const argus_guard_t *con
 // Between the sonars abeam and those of the ends a corner may hide, which a turn would sweep.
 static argus_bound_t in_turn(const argus_t *const self, const argus_guard_t *const guard,
                              argus_bound_t bound) {
-    const bool near =
-        argus_guard_nearest_mm(guard, 0) <= self->knowledge.robot->swing_radius_mm + TURN_NEAR_MM;
-    if (near && turn_deg_s(self) > TURN_LEAST_DEG_S) {
+    const int32_t room_mm = argus_guard_nearest_mm(guard, 0) - self->knowledge.robot->swing_radius_mm;
+    if (room_mm <= TURN_NEAR_MM && turn_deg_s(self) > TURN_LEAST_DEG_S) {
         bound.speed_mm_s = argus_min(bound.speed_mm_s, self->config.step_speed_mm_s);
     }
-    bound.speed_mm_s = argus_min(bound.speed_mm_s, in_curve_mm_s(self, guard));
+    bound.speed_mm_s = argus_min(bound.speed_mm_s, in_curve_mm_s(self, room_mm));
     return bound;
 }
 
