@@ -12,7 +12,7 @@ from io import BufferedReader
 from pathlib import Path
 from typing import Final
 
-from argus_tools.formats.base import Chunk, DamageList, Format, Reader, ReadOptions
+from argus_tools.formats.base import Chunk, DamageList, Format, Reader, ReadOptions, begins
 from argus_tools.rings.own import OwnLog, is_own
 from argus_tools.rings.packets import RangeLog
 from argus_tools.rings.recording import Bag, JsonMcap, Recording
@@ -117,15 +117,11 @@ def _is_database(head: bytes) -> bool:
     )
 
 
-def _begins(start: bytes) -> Callable[[bytes], bool]:
-    return lambda head: head.startswith(start)
-
-
 FORMATS: Final = (
-    Format("bag1", "ROS 1 bag", _begins(_ROS1), _reads(".bag")),
-    Format("bag2", "ROS 2 bag: its folder", _begins(_METADATA), _reads("")),
+    Format("bag1", "ROS 1 bag", begins(_ROS1), _reads(".bag")),
+    Format("bag2", "ROS 2 bag: its folder", begins(_METADATA), _reads("")),
     Format("bag2-db3", "SQLite file of a ROS 2 bag", _is_database, _reads(".db3")),
     Format(
-        "mcap", "MCAP of ROS 2, of argus-log convert or the Foxglove bridge", _begins(_MCAP), _reads(".mcap")
+        "mcap", "MCAP of ROS 2, of argus-log convert or the Foxglove bridge", begins(_MCAP), _reads(".mcap")
     ),
 )

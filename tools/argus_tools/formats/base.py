@@ -122,6 +122,11 @@ class Writer(Protocol):
         """Write what the format wants at its end."""
 
 
+def begins(*starts: bytes) -> Callable[[bytes], bool]:
+    """Return what recognises a file by any of the bytes that it begins with."""
+    return lambda head: head.startswith(starts)
+
+
 @dataclass(frozen=True)
 class Format:
     """One log format: how it is called, recognised, read and written.

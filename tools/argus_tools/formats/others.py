@@ -19,6 +19,7 @@ from argus_tools.formats.base import (
     LogError,
     Reader,
     ReadOptions,
+    begins,
     remedy,
 )
 from argus_tools.formats.hexdump import FORMAT as HEXDUMP
@@ -55,10 +56,6 @@ def _unlike_hexdump(pattern: bytes) -> Callable[[bytes], bool]:
     """Recognise a dump of another kind, whose words may look like hexadecimal ones."""
     is_like = _lines(pattern, 2)
     return lambda head: is_like(head) and not HEXDUMP.sniff(head)
-
-
-def _begins(*starts: bytes) -> Callable[[bytes], bool]:
-    return lambda head: head.startswith(starts)
 
 
 def _lines(pattern: bytes, least: int = 1) -> Callable[[bytes], bool]:
@@ -148,33 +145,33 @@ def _is_tar(head: bytes) -> bool:
 _OTHERS: Final = (
     _Other(
         "mf4",
-        _begins(b"MDF     ", b"UnFinMF "),
+        begins(b"MDF     ", b"UnFinMF "),
         "an MDF measurement (.mf4)",
         "export its CAN frames as BLF or ASC from the tool that wrote it, or " + _CANDUMP,
     ),
     _Other(
         "sqlite",
-        _begins(b"SQLite format 3\0"),
+        begins(b"SQLite format 3\0"),
         "an SQLite database, as python-can's logger writes one (.db)",
         "python -m can.logconvert FILE drive.asc",
     ),
     _Other(
         "rosbag",
-        _begins(b"#ROSBAG V"),
+        begins(b"#ROSBAG V"),
         "a ROS bag of a version before 2.0",
         "rosbag fix FILE new.bag && argus-log decode new.bag",
     ),
     _Other("gzip", _is_gzip, "a gzip file in a gzip file", "gzip -dc FILE | argus-log decode -"),
-    _Other("zip", _begins(b"PK\x03\x04"), "a ZIP archive", "unzip -p FILE | argus-log decode -"),
-    _Other("xz", _begins(b"\xfd7zXZ\0"), "an xz file", "xz -dc FILE | argus-log decode -"),
-    _Other("bzip2", _begins(b"BZh"), "a bzip2 file", "bzip2 -dc FILE | argus-log decode -"),
-    _Other("zstd", _begins(b"\x28\xb5\x2f\xfd"), "a zstd file", "zstd -dc FILE | argus-log decode -"),
-    _Other("lz4", _begins(b"\x04\x22\x4d\x18"), "an lz4 file", "lz4 -dc FILE | argus-log decode -"),
-    _Other("7z", _begins(b"7z\xbc\xaf\x27\x1c"), "a 7z archive", "7z e -so FILE | argus-log decode -"),
+    _Other("zip", begins(b"PK\x03\x04"), "a ZIP archive", "unzip -p FILE | argus-log decode -"),
+    _Other("xz", begins(b"\xfd7zXZ\0"), "an xz file", "xz -dc FILE | argus-log decode -"),
+    _Other("bzip2", begins(b"BZh"), "a bzip2 file", "bzip2 -dc FILE | argus-log decode -"),
+    _Other("zstd", begins(b"\x28\xb5\x2f\xfd"), "a zstd file", "zstd -dc FILE | argus-log decode -"),
+    _Other("lz4", begins(b"\x04\x22\x4d\x18"), "an lz4 file", "lz4 -dc FILE | argus-log decode -"),
+    _Other("7z", begins(b"7z\xbc\xaf\x27\x1c"), "a 7z archive", "7z e -so FILE | argus-log decode -"),
     _Other("tar", _is_tar, "a tar archive", "tar -xOf FILE | argus-log decode -"),
-    _Other("elf", _begins(b"\x7fELF"), "a program", "give the log, not the program"),
-    _Other("pdf", _begins(b"%PDF-"), "a PDF document", "give the log itself"),
-    _Other("picture", _begins(b"\x89PNG\r\n", b"\xff\xd8\xff", b"GIF8"), "a picture", "give the log itself"),
+    _Other("elf", begins(b"\x7fELF"), "a program", "give the log, not the program"),
+    _Other("pdf", begins(b"%PDF-"), "a PDF document", "give the log itself"),
+    _Other("picture", begins(b"\x89PNG\r\n", b"\xff\xd8\xff", b"GIF8"), "a picture", "give the log itself"),
     _Other(
         "pdml",
         _is_pdml,
@@ -189,15 +186,15 @@ _OTHERS: Final = (
     ),
     _Other(
         "netmon",
-        _begins(b"GMBU", b"RTSS"),
+        begins(b"GMBU", b"RTSS"),
         "a capture of Microsoft Network Monitor",
         "editcap -F pcapng FILE drive.pcapng",
     ),
-    _Other("snoop", _begins(b"snoop\0\0\0"), "a snoop capture", "editcap -F pcapng FILE drive.pcapng"),
-    _Other("btsnoop", _begins(b"btsnoop\0"), "a Bluetooth capture", _RECORD),
+    _Other("snoop", begins(b"snoop\0\0\0"), "a snoop capture", "editcap -F pcapng FILE drive.pcapng"),
+    _Other("btsnoop", begins(b"btsnoop\0"), "a Bluetooth capture", _RECORD),
     _Other(
         "pcap-modified",
-        _begins(b"\xa1\xb2\xcd\x34", b"\x34\xcd\xb2\xa1", b"\xa1\xb2\x34\xcd"),
+        begins(b"\xa1\xb2\xcd\x34", b"\x34\xcd\xb2\xa1", b"\xa1\xb2\x34\xcd"),
         "a pcap of a modified kind",
         "editcap -F pcapng FILE drive.pcapng",
     ),

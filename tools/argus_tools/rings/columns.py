@@ -181,12 +181,12 @@ class ColumnsLog:
             for number, range_m in reader.ranges(row).items():
                 silence.note(number, range_m)
                 present.add(number)
-        found = silence.settle()
+        no_echo = silence.settle()
         self._options.absent = frozenset(range(self._table.sonars)) - present
         self._options.tell(
             f"ranges: {len(present)} columns, in {reader.unit_name}, ring of {self._table.subclass}"
         )
-        self._options.tell(f"no echo is {' and '.join(found)}" if found else "no reading is without an echo")
+        self._options.tell(no_echo)
         if not {"x", "y", "heading"} <= columns.known.keys():
             self._options.tell(
                 "no columns of a pose: the robot is taken to be at rest, where nothing is cross-checked"

@@ -77,14 +77,14 @@ def planned(recording: Recording, name: str, topic: str | None, robot: str | Non
                 present.add(number)
         except Odd:
             continue
-    found = silence.settle()
+    no_echo = silence.settle()
     names = [one.name for one in chosen]
     plan = Plan(sensors.table, sensors, silence, names, odometry, transforms, frames, frozenset(present))
     count = sum(one.count for one in chosen)
     which = chosen[0].name if len(chosen) == 1 else f"{len(chosen)} topics"
     plan.words.append(f"ranges: {which} ({chosen[0].type}, {count} messages), ring of {plan.table.subclass}")
     plan.words += sensors.words()
-    plan.words.append(f"no echo is {' and '.join(found)}" if found else "no reading is without an echo")
+    plan.words.append(no_echo)
     plan.words += _pose_words(plan)
     if others:
         plan.words.append(f"not read: {', '.join(others)}; --topic chooses")

@@ -48,7 +48,7 @@ class Silence:
             self._far[mm] += 1
             self._of.setdefault(mm, set()).add(sonar)
 
-    def settle(self) -> list[str]:
+    def settle(self) -> str:
         """Decide; return what was found, in words."""
         told = []
         if self._far:
@@ -68,7 +68,7 @@ class Silence:
         if not told and self._missing:
             self._is_missing = True
             told.append(self._words("NaN", self._missing))
-        return told
+        return f"no echo is {' and '.join(told)}" if told else "no reading is without an echo"
 
     def _words(self, what: str, count: int) -> str:
         return f"{what} ({100 * count / self._readings:.0f} % of the readings)"
