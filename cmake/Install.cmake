@@ -80,7 +80,7 @@ if(TARGET argus_shared)
             install(FILES cmake/argusd-licences.txt DESTINATION argus_tools COMPONENT python EXCLUDE_FROM_ALL)
         endif()
     endif()
-    install(FILES $<TARGET_FILE:argus_shared> DESTINATION argus_tools RENAME libargus.so COMPONENT python EXCLUDE_FROM_ALL
+    install(FILES $<TARGET_FILE:argus_shared> DESTINATION hil_sim/core RENAME libargus.so COMPONENT python EXCLUDE_FROM_ALL
             PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
     install(FILES $<TARGET_FILE:argus_sim> DESTINATION hil_sim/sonar COMPONENT python EXCLUDE_FROM_ALL
             PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)

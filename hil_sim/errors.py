@@ -21,6 +21,10 @@ class LinkError(SimError):
     exit_code = 1
 
 
+class InputError(Exception):
+    """A file that cannot be read, or an argument that cannot be obeyed: one line for the user, exit code 2."""
+
+
 _PACKAGES = {
     "rosbags": "rosbags",
     "can": "python-can",

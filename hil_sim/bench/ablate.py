@@ -14,12 +14,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
-from argus_tools.core_replay import Engine
-
 from hil_sim.bench.passive import Finding, Verdict, judge_stream
 from hil_sim.bench.stats import quantile
 from hil_sim.bench.stream import Stream, load_stream
 from hil_sim.bench.variants import Variant, Workshop
+from hil_sim.core.replay import Engine
 
 CHANCE: Final = 0.05
 

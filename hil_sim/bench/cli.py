@@ -12,8 +12,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from argus_tools.formats.base import LogError
-
 from hil_sim.bench import cli_passive, journey_cli, plan, pool, quick
 from hil_sim.bench.arguments import (
     EXIT_FAILED,
@@ -32,7 +30,7 @@ from hil_sim.bench.runner import fixed_core, keep
 from hil_sim.bench.show import timeline
 from hil_sim.bench.store import RESULTS, Store
 from hil_sim.bench.work import run_case, world_files
-from hil_sim.errors import SimError
+from hil_sim.errors import InputError, SimError
 
 PROG: Final = "argus-sim bench diagnosis"
 _PROFILES: Final = "paper,argus"
@@ -219,7 +217,7 @@ def main(argv: Sequence[str]) -> int:
     except SimError as error:
         say(str(error))
         return error.exit_code
-    except LogError as error:
+    except InputError as error:
         say(str(error))
         return EXIT_USAGE
     except BrokenPipeError:

@@ -16,8 +16,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from argus_tools.core import library
-
 from hil_sim.bench import ablate as ablation
 from hil_sim.bench import likelihoods as counting
 from hil_sim.bench import plan, pool, variants
@@ -28,6 +26,7 @@ from hil_sim.bench.progress import Progress
 from hil_sim.bench.report_passive import summarise, table
 from hil_sim.bench.stream import missing, stream_path
 from hil_sim.bench.work import core_digest
+from hil_sim.core.library import library
 from hil_sim.errors import SimError
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.physics import parse_physics

@@ -15,11 +15,11 @@ from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
-from argus_tools.core_replay import Engine
 
 from hil_sim.bench.passive import SETTINGS
 from hil_sim.bench.stream import Stream, load_stream
 from hil_sim.bench.variants import Edit, Variant, Workshop
+from hil_sim.core.replay import Engine
 from hil_sim.errors import SimError
 from hil_sim.sil import FaultTruth
 

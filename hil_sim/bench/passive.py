@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
-from argus_tools.core_replay import Change, Engine
 
 from hil_sim.bench.judge import BOUND_S, DISABLED, FALSE_AFTER_S, SHOWN_READINGS, SUSPECT
 from hil_sim.bench.stream import Stream
+from hil_sim.core.replay import Change, Engine
 from hil_sim.sil import FaultTruth
 from hil_sim.sil.noted import VISIBLE_MM, VISIBLE_PART
 from hil_sim.sonar.params import NO_ECHO_MM

@@ -16,12 +16,11 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from argus_tools.core import setting_value
-from argus_tools.formats.base import LogError
 
 from hil_sim.bench.course import LEG_MM, ROOM_MM, Field, Floats, Point, make_course, make_field
 from hil_sim.bench.worlds import GENERATED, OPEN, make_world
-from hil_sim.errors import SimError
+from hil_sim.core.library import setting_value
+from hil_sim.errors import InputError, SimError
 from hil_sim.sil import Mission
 from hil_sim.sonar.params import SonarParams
 from hil_sim.tables.robot import robot_table
@@ -151,9 +150,11 @@ def check_profile(text: str) -> dict[str, int | str]:
         key, equals, value = pair.partition("=")
         try:
             if not equals:
-                raise LogError(f"'{pair}' is no setting; write NAME:KEY=VALUE, for example argus:step_mm=100")
+                raise InputError(
+                    f"'{pair}' is no setting; write NAME:KEY=VALUE, for example argus:step_mm=100"
+                )
             setting_value(key, value)
-        except LogError as error:
+        except InputError as error:
             raise SimError(f"profile '{text}': {error}") from None
         config[key] = value
     return config

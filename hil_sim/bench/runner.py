@@ -14,10 +14,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NoReturn
 
-from argus_tools.core import LIBRARY_VARIABLE, library
-
 from hil_sim.bench.progress import Progress
 from hil_sim.bench.store import Record, Store
+from hil_sim.core.library import LIBRARY_VARIABLE, library
 
 
 @contextmanager

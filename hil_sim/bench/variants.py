@@ -14,10 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from argus_tools.core_build import sources
-from argus_tools.formats.base import LogError
-
-from hil_sim.errors import SimError
+from hil_sim.core.build import sources
+from hil_sim.errors import InputError, SimError
 
 RULES: Final = Path(__file__).with_name("rules.toml")
 AWARENESS: Final = Path("firmware/awareness")
@@ -103,7 +101,7 @@ def must_build() -> None:
     """SimError when variants cannot be built here: better said before hours of recording."""
     try:
         sources()
-    except LogError:
+    except InputError:
         raise SimError("the sources of the fault manager are not here; run it in a checkout") from None
     if shutil.which(_compiler()[0]) is None:
         raise SimError(f"no C compiler ({_compiler()[0]}); install gcc, or set CC")

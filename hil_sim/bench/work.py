@@ -13,10 +13,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from argus_tools.core import LIBRARY_VARIABLE, library
-
 from hil_sim.bench.judge import Track, judge
 from hil_sim.bench.plan import Case, mission_of, parse_id, without_faults
+from hil_sim.core.library import LIBRARY_VARIABLE, library
 from hil_sim.errors import SimError
 from hil_sim.sil import Outcome, run
 

@@ -6,7 +6,8 @@ from __future__ import annotations
 import io
 import logging
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from importlib.metadata import entry_points
 
 from hil_sim.cli.arguments import parser
 from hil_sim.cli.choose import scenario_of
@@ -28,10 +29,17 @@ def _elsewhere(words: Sequence[str]) -> int | None:
 
         return experiment(words[1:])
     if "--monitor" in words:
-        from argus_tools.monitor.cli import main as monitor
-
-        return monitor(["--sim", *(word for word in words if word != "--monitor")])
+        return _program("argus-monitor")(["--sim", *(word for word in words if word != "--monitor")])
     return None
+
+
+def _program(name: str) -> Callable[[Sequence[str]], int]:
+    """Return another program as it is installed beside this one: the emulator itself needs none."""
+    found = [point for point in entry_points(group="console_scripts") if point.name == name]
+    if not found:
+        raise SimError(f"{name} is not installed: pip install 'argus-p3dx[monitor]'")
+    program: Callable[[Sequence[str]], int] = found[0].load()
+    return program
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -43,11 +51,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _run(words: Sequence[str]) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):  # a name may have letters that the terminal has not
         sys.stdout.reconfigure(errors="backslashreplace")
-    code = _elsewhere(words)
-    if code is not None:
-        return code
-    arguments = parser().parse_args(words)
     try:
+        code = _elsewhere(words)
+        if code is not None:
+            return code
+        arguments = parser().parse_args(words)
         if arguments.list_worlds:
             print("\n".join(world_names()))
         elif arguments.list_faults:

@@ -18,10 +18,8 @@ from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
-from argus_tools.core import setting_value
-from argus_tools.formats.base import LogError
-
 from hil_sim.arguments import Parser
+from hil_sim.core.library import setting_value
 from hil_sim.demo import report
 from hil_sim.demo.judge import (
     PAPER_LIMIT_S,
@@ -35,7 +33,7 @@ from hil_sim.demo.judge import (
 from hil_sim.demo.live import view
 from hil_sim.demo.runner import ENDING, Recording, Run, Setup
 from hil_sim.demo.scene import Drive
-from hil_sim.errors import SimError
+from hil_sim.errors import InputError, SimError
 from hil_sim.faults.grammar import parse_fault
 from hil_sim.scenario.scenario import SEED_MAX, Scenario, load_scenario
 from hil_sim.world.files import load_world
@@ -90,7 +88,7 @@ def _policy(text: str) -> str:
     """A word of the core's own list."""
     try:
         setting_value("policy", text)
-    except LogError as error:
+    except InputError as error:
         raise argparse.ArgumentTypeError(str(error)) from error
     return text
 

@@ -10,10 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from argus_tools.formats.base import LogError
-
 from hil_sim.bench.arguments import EXIT_USAGE, Parser, jobs, listed, say, seeds
-from hil_sim.errors import SimError
+from hil_sim.errors import InputError, SimError
 from hil_sim.experiment import doc, journey, study_tables
 from hil_sim.experiment.cases import ARRAYS, HEALTHY, POLICIES, WORLDS, parse_dead
 from hil_sim.experiment.stage import Stage
@@ -254,7 +252,7 @@ def main(argv: Sequence[str]) -> int:
     except SimError as error:
         say(str(error))
         return error.exit_code
-    except LogError as error:
+    except InputError as error:
         say(str(error))
         return EXIT_USAGE
     except BrokenPipeError:

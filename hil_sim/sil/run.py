@@ -13,11 +13,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
-from argus_tools import core as core_module
-from argus_tools.core import Core, setting_value
-from argus_tools.formats.base import LogError
-
-from hil_sim.errors import SimError
+from hil_sim.core import library as core_module
+from hil_sim.core.library import Core, setting_value
+from hil_sim.errors import InputError, SimError
 from hil_sim.faults.grammar import parse_fault
 from hil_sim.faults.kinds import Fault, LinkFault
 from hil_sim.faults.link import LinkFaults
@@ -135,7 +133,7 @@ class Sil:
             core = Core(0, given)
             if mission.course:
                 core.set_course(_in_robot_frame(self.start, mission.course))
-        except LogError as error:
+        except InputError as error:
             raise SimError(str(error)) from error
         if mission.record is not None:
             core.load_record(mission.record)

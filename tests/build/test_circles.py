@@ -10,13 +10,11 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from graphs import Graph, circles
 
 ROOT = Path(__file__).resolve().parents[2]
 FIRMWARE = ROOT / "firmware"
 OBJECTS = ROOT / "build/release/CMakeFiles/argus.dir/firmware"
-
-Graph = dict[str, set[str]]
-
 
 def stem(path: Path) -> str:
     """Return what a header and its source have in common: awareness/trend for firmware/awareness/trend.c."""
@@ -52,28 +50,6 @@ def calls() -> Graph:
         elif kind == "U":
             wanted.setdefault(objects[file_name], set()).add(name)
     return {file: {owner[name] for name in names if name in owner} for file, names in wanted.items()}
-
-
-def reach(graph: Graph, start: str) -> set[str]:
-    """Return all files that one leads to, itself only where a way leads back."""
-    seen: set[str] = set()
-    waiting = list(graph.get(start, ()))
-    while waiting:
-        file = waiting.pop()
-        if file not in seen:
-            seen.add(file)
-            waiting.extend(graph.get(file, ()))
-    return seen
-
-
-def circles(graph: Graph) -> set[frozenset[str]]:
-    """Return the sets of files each of which leads to each other."""
-    led = {file: reach(graph, file) for file in graph}
-    return {
-        frozenset(other for other in led[file] if file in led.get(other, set()))
-        for file in graph
-        if file in led[file]
-    }
 
 
 def joined() -> Graph:

@@ -16,7 +16,7 @@ HELD = {
     "argus_tools/__init__.py": "",
     "argus_tools/argusd": "a program",
     "argus_tools/argusd-licences.txt": "words",
-    "argus_tools/libargus.so": "a library",
+    "hil_sim/core/libargus.so": "a library",
     "argus-1.data/data/share/argus_ros/launch/argus.launch.xml": "<launch/>",
     "argus-1.dist-info/RECORD": "",
     "argus-1.dist-info/entry_points.txt": "[console_scripts]\nargusctl = argus_tools.control.cli:main\n",
@@ -34,7 +34,7 @@ def test_the_debian_tools_are_those_of_the_wheel_without_argusd(tmp_path: Path) 
     assert found == {
         "bin/argusctl",
         "lib/argus_tools/__init__.py",
-        "lib/argus_tools/libargus.so",
+        "lib/hil_sim/core/libargus.so",
         "share/argus_ros/launch/argus.launch.xml",
         "lib/argus-1.dist-info/INSTALLER",
         "lib/argus-1.dist-info/entry_points.txt",

@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from argus_tools.formats.base import Offsets
+from argus_tools.chunks import Offsets
 from argus_tools.log.packets import Row, packets
 
 from hil_sim.arcos import COMMAND, Command, ConfigPac, Sip, frame

@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from argus_tools.chunks import ReadOptions
 from argus_tools.control import Client, ControlError, Refused
-from argus_tools.formats.base import ReadOptions
 from argus_tools.formats.record import FORMAT
 from harness import PATIENCE_S, ROOT, Argusd, Bench, wait_for
 from rules import assert_reached

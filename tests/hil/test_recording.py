@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
-from argus_tools.formats.base import Chunk, ReadOptions
+from argus_tools.chunks import Chunk, ReadOptions
 from argus_tools.formats.record import FORMAT
 from argus_tools.log.cli import main
 from harness import PATIENCE_S, Bench, Record

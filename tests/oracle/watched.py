@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
-from argus_tools.core import Core, health_name, kind_name
-from argus_tools.core import Event as CoreEvent
 from safety_monitor import Monitor, Violation, settings_of
 
+from hil_sim.core.library import Core, health_name, kind_name
+from hil_sim.core.library import Event as CoreEvent
 from hil_sim.sil import Mission, Sil
 from hil_sim.sil.run import SONARS
 

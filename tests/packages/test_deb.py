@@ -27,7 +27,7 @@ EXPECTED = {
     "usr/bin/argus-log",
     "usr/include/argus/argus.h",
     "usr/lib/python3/dist-packages/argus/__init__.py",
-    "usr/lib/python3/dist-packages/argus_tools/libargus.so",
+    "usr/lib/python3/dist-packages/hil_sim/core/libargus.so",
     "usr/lib/systemd/system/argusd.service",
     "usr/lib/udev/rules.d/60-argus.rules",
     "usr/share/argus/argus.dbc",

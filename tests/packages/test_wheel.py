@@ -20,7 +20,8 @@ from packages_help import DIST, ROOT, run
 EXAMPLE = """
 import doctest, sys
 import argus, argus.sil
-from argus_tools import core, core_build
+from hil_sim.core import build as core_build
+from hil_sim.core import library as core
 from hil_sim.sonar import kernel
 
 def refuse(*arguments):
@@ -58,7 +59,7 @@ def test_it_holds_all_modules_and_data_and_nothing_else(wheel: Path) -> None:
     assert held - expected == {
         "argus_tools/argusd",
         "argus_tools/argusd-licences.txt",
-        "argus_tools/libargus.so",
+        "hil_sim/core/libargus.so",
         "hil_sim/sonar/libargus_sim.so",
     }
     missing = {name for name in expected - held if (ROOT / name).exists() or (ROOT / "tools" / name).exists()}
@@ -152,7 +153,7 @@ def test_the_wheel_for_aarch64_holds_libraries_that_run_there(tmp_path: Path) ->
     [wheel] = DIST.glob("argus_p3dx-*_aarch64.whl")
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(tmp_path)
-        library = tmp_path / "argus_tools/libargus.so"
+        library = tmp_path / "hil_sim/core/libargus.so"
     program = tmp_path / "embed"
     sources = [ROOT / "examples/embed/main.c", ROOT / "examples/embed/robot.c"]
     include = f"-I{ROOT / 'firmware/include'}"

@@ -8,7 +8,6 @@ import math
 from collections.abc import Callable
 
 import pytest
-from argus_tools.core import kind_name
 from demo_drive import (
     CLOCK_S,
     FAULTS,
@@ -23,6 +22,7 @@ from demo_drive import (
     verdict_on,
 )
 
+from hil_sim.core.library import kind_name
 from hil_sim.demo.judge import KIND_NAME, Injected, Task, Verdict, clock_offset_s, energy_j, judge, sonar_of
 from hil_sim.errors import SimError
 from hil_sim.tables import load

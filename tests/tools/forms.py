@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from argus_tools.chunks import Chunk
 from argus_tools.formats import Log, open_log
-from argus_tools.formats.base import Chunk
 from logs import command, sip
 
 SIPS = [sip(x=5 * n, sonars=((0, 1000 + n), (1, 2000 - n), (7, 0xFAFB))) for n in range(12)]

@@ -8,11 +8,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from argus_tools import core, core_build
-from argus_tools.core import Core, library, setting_value, settings, sonars_of
-from argus_tools.formats.base import LogError
+from argus_tools.chunks import LogError
 
 from hil_sim.arcos import COMMAND, ConfigPac, Sip, SyncEcho, SyncReply, Unframer, frame
+from hil_sim.core import build as core_build
+from hil_sim.core import library as core
+from hil_sim.core.library import Core, library, setting_value, settings, sonars_of
 
 ROOT = Path(__file__).resolve().parents[2]
 HEADER = ROOT / "firmware/include/argus/argus.h"

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from argus_tools.chunks import Chunk, Offsets, copy
 from argus_tools.formats import ReadOptions, open_log
-from argus_tools.formats.base import Chunk, Offsets, copy
 from argus_tools.formats.pcap import FORMAT
 from argus_tools.log.packets import packets
 

@@ -12,13 +12,14 @@ from dataclasses import dataclass
 from os import PathLike, fspath
 from typing import Any
 
-from argus_tools.core import setting_value
 from argus_tools.formats import Direction, LogError, formats, open_log
 from argus_tools.log.faults import Listener, Said
 from argus_tools.log.fields import Decoder
 from argus_tools.log.packets import Row as LogPacket
 from argus_tools.log.packets import packets
 from argus_tools.log.summary import Summary
+
+from hil_sim.core.library import setting_value
 
 __all__ = ["Diagnosis", "LogError", "LogPacket", "Said", "decode", "diagnose", "read"]
 

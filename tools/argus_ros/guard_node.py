@@ -8,7 +8,6 @@ import time
 from collections.abc import Sequence
 from typing import Any, Final
 
-from argus_tools.core import setting_value
 from argus_tools.rings.intake import Limits, Odd, Order, limits_of, motion_of, stamp_of
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
@@ -22,6 +21,7 @@ from argus_ros.intake import Intake
 from argus_ros.repair import Policy, Verdict, bearings, neighbours
 from argus_ros.ring import Ring
 from argus_ros.timeline import Pace, Timeline
+from hil_sim.core.library import setting_value
 
 _COVER_AGE_S: Final = 1.0
 _COVER_PERIOD_S: Final = 0.25

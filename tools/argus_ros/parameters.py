@@ -120,8 +120,9 @@ def _robot(value: str) -> str:
 
 
 def _settings(values: list[str]) -> str:
-    from argus_tools.core import setting_value
-    from argus_tools.formats.base import LogError
+    from argus_tools.chunks import LogError
+
+    from hil_sim.core.library import setting_value
 
     for key, _, text in (text.partition("=") for text in values if text):
         try:

@@ -7,7 +7,6 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Final
 
-from argus_tools.core import Core, Event
 from argus_tools.log.opening import opened
 from argus_tools.rings.intake import Limits
 from argus_tools.rings.motion import Motion
@@ -15,6 +14,7 @@ from argus_tools.rings.packet import empty, identity_of, packet
 
 from argus_ros.repair import Verdict
 from hil_sim.arcos import TIMING
+from hil_sim.core.library import Core, Event
 from hil_sim.tables import load
 from hil_sim.tables.robot import RobotTable
 

@@ -243,7 +243,7 @@ def test_what_it_is_built_with_is_asked_for_before_anything_is_recorded(
 ) -> None:
     monkeypatch.setattr(cli_passive, "_recorded", lambda arguments: pytest.fail("it records"))
     if missing == "sources":
-        monkeypatch.setattr("argus_tools.core_build._TREE", ROOT / "nowhere")
+        monkeypatch.setattr("hil_sim.core.build._TREE", ROOT / "nowhere")
     else:
         monkeypatch.setenv("CC", "/no/such/compiler")
     assert main(["bench", "likelihoods", *mode]) == 2

@@ -8,9 +8,6 @@ import json
 from pathlib import Path
 
 import pytest
-from argus_tools.core import library
-from argus_tools.core_build import sources
-from argus_tools.core_replay import Change, Engine
 
 from hil_sim.bench import ablate, cli_passive, passive, variants
 from hil_sim.bench.drive import DriveBy, record
@@ -19,6 +16,9 @@ from hil_sim.bench.plan import mission_of, parse_id
 from hil_sim.bench.stream import Stream, load_stream, stream_path
 from hil_sim.bench.work import core_digest
 from hil_sim.cli.main import main
+from hil_sim.core.build import sources
+from hil_sim.core.library import library
+from hil_sim.core.replay import Change, Engine
 from hil_sim.errors import SimError
 
 CASE = "argus/tune/lab/1/stuck"

@@ -8,8 +8,8 @@ import random
 from pathlib import Path
 
 import pytest
+from argus_tools.chunks import Damage, Direction
 from argus_tools.formats import Chunk, ReadOptions, formats, open_log
-from argus_tools.formats.base import Damage, Direction
 from argus_tools.log.packets import packets
 from logs import command, decode, sip
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from argus_tools.chunks import Damage
 from argus_tools.formats import Chunk, LogError, ReadOptions, formats, open_log
-from argus_tools.formats.base import Damage
 from argus_tools.formats.tcp import SEGMENT_BYTES, Connection, Streams, parse
 from logs import CAPTURES, capture_bytes, sip
 

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from argus_tools.chunks import Direction
 from argus_tools.formats import LogError, open_log
-from argus_tools.formats.base import Direction
 from argus_tools.formats.marks import directions, has_both_sides, mark_at, marks_in
 from forms import CLIENT, COMMANDS, ROBOT, SIPS, joined, rows, shown
 from logs import command

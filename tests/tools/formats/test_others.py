@@ -15,8 +15,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from argus_tools.chunks import copy
 from argus_tools.formats import Chunk, LogError, ReadOptions, find_format, formats, forms, open_log
-from argus_tools.formats.base import copy
 from forms import ROBOT, hexdump_c, joined, od, xxd
 from logs import CAPTURES, run, sip
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import io
 
 import pytest
-from argus_tools.formats.base import Chunk, Damage, LogError, ReadOptions, copy
+from argus_tools.chunks import Chunk, Damage, LogError, ReadOptions, copy
 from argus_tools.formats.record import FORMAT, RecordReader
 
 from hil_sim.record.recording import MAGIC, Kind, encode, encode_clock, encode_start

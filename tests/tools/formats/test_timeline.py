@@ -9,8 +9,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
+from argus_tools.chunks import ROBOT_TO_CLIENT, Chunk, DamageList
 from argus_tools.formats import open_log
-from argus_tools.formats.base import ROBOT_TO_CLIENT, Chunk, DamageList
 from argus_tools.formats.timeline import SECOND_MOST, Timeline
 
 

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from argus_tools.chunks import Chunk, Direction, Offsets, copy
 from argus_tools.formats import ReadOptions, formats
-from argus_tools.formats.base import Chunk, Direction, Offsets, copy
 from argus_tools.log.cli import main
 
 from hil_sim.arcos import COMMAND, FLAG, Command, Sip, SyncEcho, SyncReply, frame

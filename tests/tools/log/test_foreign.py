@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Final
 
 import pytest
-from argus_tools.core import Core
 from argus_tools.log.cli import main
 from argus_tools.log.summary import Summary
 
 from hil_sim.arcos import Unframer, frame
+from hil_sim.core.library import Core
 
 FOREIGN: Final = Path(__file__).resolve().parents[3] / "tests" / "data" / "foreign"
 CAPTURES: Final = ("argusd_aml_cone.rec.gz", "argusd_office_cone.rec.gz", "wander_corridor_ray.jsonl.gz")

@@ -9,8 +9,8 @@ import re
 from collections.abc import Callable
 
 import pytest
+from argus_tools.chunks import Direction
 from argus_tools.formats import Chunk, open_log
-from argus_tools.formats.base import Direction
 from argus_tools.log.packets import Row, packets
 from logs import CAPTURES, capture_bytes, command, sip
 

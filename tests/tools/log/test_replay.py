@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from argus_tools.chunks import Chunk
 from argus_tools.formats import open_log
-from argus_tools.formats.base import Chunk
 from argus_tools.log.cli import main
 from argus_tools.log.packets import Row, packets
 from argus_tools.log.replay import Identity, Player, again

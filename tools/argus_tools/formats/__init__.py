@@ -9,7 +9,7 @@ from functools import cache
 from io import BufferedReader
 from typing import Any, Final
 
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     Chunk,
     Damage,
     DamageList,

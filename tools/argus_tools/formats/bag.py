@@ -12,7 +12,7 @@ from io import BufferedReader
 from pathlib import Path
 from typing import Final
 
-from argus_tools.formats.base import Chunk, DamageList, Format, Reader, ReadOptions, begins
+from argus_tools.chunks import Chunk, DamageList, Format, Reader, ReadOptions, begins
 from argus_tools.rings.own import OwnLog, is_own
 from argus_tools.rings.packets import RangeLog
 from argus_tools.rings.recording import Bag, JsonMcap, Recording

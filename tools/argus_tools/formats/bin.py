@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from io import BufferedReader
 from typing import BinaryIO, Final
 
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     CLIENT_TO_ROBOT,
     ROBOT_TO_CLIENT,
     Chunk,

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from io import BufferedReader
 from typing import Final
 
-from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, ReadOptions
+from argus_tools.chunks import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.isotp import CanLink, is_robot_id
 from argus_tools.formats.source import HEAD_BYTES
 from argus_tools.formats.stamps import Times

@@ -11,7 +11,7 @@ from io import BufferedReader
 from itertools import pairwise
 from typing import Any, BinaryIO, Final
 
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     CLIENT_TO_ROBOT,
     ROBOT_TO_CLIENT,
     Chunk,

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from io import BufferedReader
 from typing import Final
 
-from argus_tools.formats.base import Chunk, Damage, DamageList, Format, ReadOptions
+from argus_tools.chunks import Chunk, Damage, DamageList, Format, ReadOptions
 from argus_tools.formats.isotp import CanLink
 from argus_tools.formats.text import first_lines
 

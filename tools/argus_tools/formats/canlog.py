@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from io import BufferedReader
 from typing import Any, Final
 
-from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, Reader, ReadOptions
+from argus_tools.chunks import Chunk, Damage, DamageList, Format, LogError, Reader, ReadOptions
 from argus_tools.formats.isotp import CanLink, is_robot_id
 from argus_tools.formats.stamps import Times
 from argus_tools.formats.text import first_lines, is_passed

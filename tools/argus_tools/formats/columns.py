@@ -9,7 +9,7 @@ from io import BufferedReader
 from itertools import islice
 from typing import Any, Final
 
-from argus_tools.formats.base import DamageList, Format, Reader, ReadOptions
+from argus_tools.chunks import DamageList, Format, Reader, ReadOptions
 from argus_tools.formats.jsonl import Records
 from argus_tools.formats.source import BLOCK_BYTES
 from argus_tools.formats.text import first_lines

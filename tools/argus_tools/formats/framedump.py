@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from io import BufferedReader
 from typing import Final, NamedTuple
 
-from argus_tools.formats.base import Chunk, Damage, DamageList, Format, ReadOptions
+from argus_tools.chunks import Chunk, Damage, DamageList, Format, ReadOptions
 from argus_tools.formats.hexdump import HEADER
 from argus_tools.formats.isotp import is_robot_id
 from argus_tools.formats.source import HEAD_BYTES

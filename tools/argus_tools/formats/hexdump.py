@@ -14,7 +14,7 @@ from io import BufferedReader
 from itertools import pairwise
 from typing import Final
 
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     Chunk,
     Damage,
     DamageList,

@@ -12,7 +12,7 @@ from io import BufferedReader
 from itertools import pairwise
 from typing import Final, NamedTuple
 
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     CLIENT_TO_ROBOT,
     ROBOT_TO_CLIENT,
     Chunk,

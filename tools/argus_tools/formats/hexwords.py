@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from io import BufferedReader
 from typing import Final, NamedTuple
 
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     ROBOT_TO_CLIENT,
     Chunk,
     Damage,

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     CLIENT_TO_ROBOT,
     ROBOT_TO_CLIENT,
     Chunk,

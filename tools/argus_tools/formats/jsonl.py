@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from io import BufferedReader
 from typing import Any, BinaryIO, Final
 
-from argus_tools.formats.base import Chunk, Damage, DamageList, Direction, Format, Offsets, ReadOptions
+from argus_tools.chunks import Chunk, Damage, DamageList, Direction, Format, Offsets, ReadOptions
 from argus_tools.formats.source import BLOCK_BYTES, HEAD_BYTES
 from argus_tools.formats.text import Rewritten, first_lines, is_passed
 

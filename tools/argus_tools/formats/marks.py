@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Final, NamedTuple
 
-from argus_tools.formats.base import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT, Direction
+from argus_tools.chunks import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT, Direction
 from argus_tools.formats.bin import guess_direction
 
 _TO_ROBOT: Final = (

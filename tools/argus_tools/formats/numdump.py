@@ -13,7 +13,7 @@ from io import BufferedReader
 from itertools import pairwise
 from typing import Final, NamedTuple
 
-from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, Offsets, ReadOptions
+from argus_tools.chunks import Chunk, Damage, DamageList, Format, LogError, Offsets, ReadOptions
 from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.hexdump import REPEATED, DumpStream, likeness
 from argus_tools.formats.source import HEAD_BYTES

@@ -10,8 +10,7 @@ from io import BufferedReader
 from itertools import pairwise
 from typing import Final
 
-from argus_tools.formats import base64lines
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     EXPECTED,
     Chunk,
     DamageList,
@@ -22,6 +21,7 @@ from argus_tools.formats.base import (
     begins,
     remedy,
 )
+from argus_tools.formats import base64lines
 from argus_tools.formats.hexdump import FORMAT as HEXDUMP
 from argus_tools.formats.source import HEAD_BYTES
 from argus_tools.formats.text import first_lines

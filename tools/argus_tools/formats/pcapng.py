@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from io import BufferedReader
 from typing import BinaryIO, Final
 
-from argus_tools.formats.base import Chunk, Damage, DamageList, Format, LogError, ReadOptions
+from argus_tools.chunks import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.pcap import FRAME_MAX
 from argus_tools.formats.tcp import DEFAULT_PORT, LINK_ETHERNET, Connection
 from argus_tools.formats.traffic import Captured, Traffic

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from io import BufferedReader
 from typing import Final
 
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     EXPECTED,
     Chunk,
     Damage,

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 
-from argus_tools.formats.base import Damage, DamageList, LogError
+from argus_tools.chunks import Damage, DamageList, LogError
 
 if TYPE_CHECKING:
     from _typeshed import WriteableBuffer

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Final
 
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     CLIENT_TO_ROBOT,
     ROBOT_TO_CLIENT,
     Chunk,

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from itertools import chain, groupby
 from typing import Final
 
-from argus_tools.formats.base import Chunk, Damage, DamageList
+from argus_tools.chunks import Chunk, Damage, DamageList
 
 DISORDER_S: Final = 1.0
 """Two directions or two threads of a recorder may be out of order by so much; a greater fall is a clock set back."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from argus_tools.formats.base import Chunk, Damage, DamageList, LogError, ReadOptions
+from argus_tools.chunks import Chunk, Damage, DamageList, LogError, ReadOptions
 from argus_tools.formats.isotp import CanLink, is_robot_id
 from argus_tools.formats.tcp import IP_LINKS, Streams, parse
 

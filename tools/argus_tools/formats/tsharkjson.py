@@ -11,7 +11,7 @@ from contextlib import suppress
 from io import BufferedReader
 from typing import Any, Final
 
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     EXPECTED,
     Chunk,
     Damage,

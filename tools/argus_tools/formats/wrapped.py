@@ -9,7 +9,7 @@ from dataclasses import replace
 from io import BufferedReader, BytesIO
 from typing import Final, NamedTuple
 
-from argus_tools.formats.base import Damage, Format, LogError, ReadOptions
+from argus_tools.chunks import Damage, Format, LogError, ReadOptions
 from argus_tools.formats.marks import marks_in
 from argus_tools.formats.stamps import Times
 from argus_tools.formats.text import RewrittenLines, begins_as_text, is_text

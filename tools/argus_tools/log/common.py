@@ -12,8 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, NoReturn
 
+from argus_tools.chunks import CLIENT_TO_ROBOT, EXPECTED, ROBOT_TO_CLIENT
 from argus_tools.formats import Chunk, Log, LogError, ReadOptions, formats
-from argus_tools.formats.base import CLIENT_TO_ROBOT, EXPECTED, ROBOT_TO_CLIENT
 from argus_tools.log.packets import Row, packets
 from hil_sim.arguments import whole
 

@@ -9,13 +9,13 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final, NamedTuple
 
-from argus_tools.core import Core, Event, kind_name, setting_value
-from argus_tools.formats.base import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT, LogError
+from argus_tools.chunks import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT, LogError
 from argus_tools.log.common import Input, add_log_arguments, show_table, use_colour
 from argus_tools.log.opening import identity_in, is_sip, opened
 from argus_tools.log.packets import Row
 from argus_tools.log.summary import Summary
 from hil_sim.arcos import FLAG, SIP, TIMING, Command, SyncReply
+from hil_sim.core.library import Core, Event, kind_name, setting_value
 
 SUMMARY: Final = "tell what the fault manager would have said from a log alone"
 EXAMPLES: Final = """\

@@ -11,7 +11,7 @@ from operator import itemgetter
 from struct import Struct
 from typing import Any, Final, NamedTuple
 
-from argus_tools.formats.base import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT
+from argus_tools.chunks import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT
 from argus_tools.log.packets import Row
 from hil_sim.arcos import (
     ARGUMENT,

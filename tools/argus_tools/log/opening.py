@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Final
 
-from argus_tools.core import Core
-from argus_tools.formats.base import ROBOT_TO_CLIENT, LogError
+from argus_tools.chunks import ROBOT_TO_CLIENT, LogError
 from argus_tools.log.packets import Row
 from hil_sim.arcos import COMMAND, TIMING, Command, PacketError, Sip, SyncEcho, SyncReply, Unframer, frame
+from hil_sim.core.library import Core
 
 _STEP_MS: Final = 10
 _LIMIT_MS: Final = 10_000

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from struct import Struct
 from typing import Final, NamedTuple
 
-from argus_tools.formats.base import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT, Chunk, Direction
+from argus_tools.chunks import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT, Chunk, Direction
 from hil_sim.arcos import COMMAND, FRAME, TYPE, Unframer, checksum
 
 HEADER: Final = bytes((FRAME["HEADER0"], FRAME["HEADER1"]))

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Any, Final
 
-from argus_tools.formats.base import ROBOT_TO_CLIENT, LogError
+from argus_tools.chunks import ROBOT_TO_CLIENT, LogError
 from argus_tools.log.common import EXIT_READ, Input, add_log_arguments
 from argus_tools.log.opening import identity_in
 from argus_tools.log.packets import Row

@@ -69,8 +69,8 @@ def spans(happenings: Iterable[Happening], end: float) -> list[Span]:
 
 
 def _judge(rows: Iterable[Row], source: Input, profile: str, subclass: str | None) -> Iterator[Happening]:
-    from argus_tools.core import setting_value
     from argus_tools.log.faults import Listener
+    from hil_sim.core.library import setting_value
 
     given = {"profile": setting_value("profile", profile)}
     listener = Listener(given, subclass, lambda: source.log.options.absent)

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any, Final
 
-from argus_tools.core import Event, kind_name
 from hil_sim.arcos import TIMING
+from hil_sim.core.library import Event, kind_name
 
 # A suspicion that is younger may go with the next SIP.
 LASTING_S: Final = 5.0

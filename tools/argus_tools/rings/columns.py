@@ -14,7 +14,7 @@ from itertools import chain, islice
 from statistics import median
 from typing import Any, Final
 
-from argus_tools.formats.base import (
+from argus_tools.chunks import (
     ROBOT_TO_CLIENT,
     Chunk,
     Damage,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, Final
 
-from argus_tools.formats.base import ROBOT_TO_CLIENT, Chunk, Damage, DamageList, Offsets, ReadOptions
+from argus_tools.chunks import ROBOT_TO_CLIENT, Chunk, Damage, DamageList, Offsets, ReadOptions
 from argus_tools.rings.motion import Motion
 from argus_tools.rings.packet import identity_of, sip_of
 from argus_tools.rings.recording import Broken, Message, Recording, Topic

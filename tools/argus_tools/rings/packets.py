@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
-from argus_tools.formats.base import ROBOT_TO_CLIENT, Chunk, Damage, DamageList, Offsets, ReadOptions
+from argus_tools.chunks import ROBOT_TO_CLIENT, Chunk, Damage, DamageList, Offsets, ReadOptions
 from argus_tools.rings.intake import Odd
 from argus_tools.rings.motion import Motion
 from argus_tools.rings.packet import identity_of, packet

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from itertools import islice
 from typing import Final
 
-from argus_tools.formats.base import LogError
+from argus_tools.chunks import LogError
 from argus_tools.rings.geometry import Frames, frame_name, is_base
 from argus_tools.rings.intake import Odd, motion_of
 from argus_tools.rings.motion import Motion

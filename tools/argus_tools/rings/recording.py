@@ -14,7 +14,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Final, NamedTuple, Protocol
 
-from argus_tools.formats.base import LogError
+from argus_tools.chunks import LogError
 
 _NANO: Final = 1_000_000_000
 SONAR_ARRAY: Final = "p2os_msgs/msg/SonarArray"

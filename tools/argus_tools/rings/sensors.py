@@ -10,7 +10,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from argus_tools.formats.base import LogError
+from argus_tools.chunks import LogError
 from argus_tools.rings.geometry import Frames, Pose, frame_name, range_of, whose_frames, whose_points
 from argus_tools.rings.intake import Odd, Order, limits_of, stamp_of
 from argus_tools.rings.recording import SONAR_ARRAY, Message

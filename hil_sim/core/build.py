@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 from typing import Final
 
-from argus_tools.formats.base import LogError
+from hil_sim.errors import InputError
 
 _TREE: Final = Path(__file__).resolve().parents[2]
 _SHIM: Final = "tools/core_shim.c"
@@ -25,7 +25,7 @@ def sources() -> Path:
     """Return the source tree, which holds firmware/ and the shim."""
     if (_TREE / _SHIM).is_file() and (_TREE / "firmware").is_dir():
         return _TREE
-    raise LogError(f"libargus.so is not built, and its sources are not here: {HINT}")
+    raise InputError(f"libargus.so is not built, and its sources are not here: {HINT}")
 
 
 def build(cache: Path | None = None) -> Path:
@@ -46,7 +46,7 @@ def build(cache: Path | None = None) -> Path:
 def _compile(library: Path, root: Path, files: list[Path]) -> None:
     words = os.environ.get("CC", "").split() or [next(filter(shutil.which, ("cc", "gcc", "clang")), "cc")]
     if not shutil.which(words[0]):
-        raise LogError(f"libargus.so is not built, and there is no C compiler: install gcc, or {HINT}")
+        raise InputError(f"libargus.so is not built, and there is no C compiler: install gcc, or {HINT}")
     print(f"argus-log: compiling the fault manager, once, into {library}", file=sys.stderr)
     includes = [f"-I{root / 'firmware'}", f"-I{root / 'firmware/include'}"]
     try:
@@ -58,7 +58,7 @@ def _compile(library: Path, root: Path, files: list[Path]) -> None:
             if done.returncode:
                 lines = (line for line in done.stderr.splitlines() if "error" in line)
                 first = next(lines, f"exit code {done.returncode}")
-                raise LogError(f"the fault manager does not compile ({first}); {HINT}")
+                raise InputError(f"the fault manager does not compile ({first}); {HINT}")
             made.replace(library)
     except (OSError, subprocess.TimeoutExpired) as error:
-        raise LogError(f"{library}: the fault manager cannot be compiled ({error}); {HINT}") from error
+        raise InputError(f"{library}: the fault manager cannot be compiled ({error}); {HINT}") from error

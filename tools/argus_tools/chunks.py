@@ -10,6 +10,8 @@ from io import BufferedReader
 from pathlib import PurePath
 from typing import BinaryIO, Final, Literal, NamedTuple, Protocol
 
+from hil_sim.errors import InputError
+
 Direction = Literal["r2c", "c2r"]
 ROBOT_TO_CLIENT: Final[Direction] = "r2c"
 CLIENT_TO_ROBOT: Final[Direction] = "c2r"
@@ -24,8 +26,8 @@ def other_direction(direction: Direction) -> Direction:
 EXPECTED: Final = "a log of a robot's link (argus-log --help lists the forms)"
 
 
-class LogError(Exception):
-    """A log that cannot be read, or an argument that cannot be obeyed: one line for the user, exit code 2."""
+LogError = InputError
+"""What the public API calls it."""
 
 
 class Chunk(NamedTuple):

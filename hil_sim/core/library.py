@@ -11,8 +11,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from argus_tools.core_build import build
-from argus_tools.formats.base import LogError
+from hil_sim.core.build import build
+from hil_sim.errors import InputError
 
 LIBRARY_VARIABLE: Final = "ARGUS_CORE"
 _ROOT: Final = Path(__file__).resolve().parents[2]
@@ -99,7 +99,7 @@ def _load() -> ctypes.CDLL:
     places = (Path(given),) if given else _PLACES
     path = next((place for place in places if place.exists()), None)
     if path is None and given:
-        raise LogError(f"{LIBRARY_VARIABLE}={given} does not exist: unset it, or set it to a libargus.so")
+        raise InputError(f"{LIBRARY_VARIABLE}={given} does not exist: unset it, or set it to a libargus.so")
     if path is None:
         path = build()
     return load_library(path)
@@ -118,7 +118,7 @@ def init_of(library: ctypes.CDLL) -> Any:
 
 
 def load_library(path: Path) -> ctypes.CDLL:
-    """Return the libargus.so of a path; LogError when it is none of this version."""
+    """Return the libargus.so of a path; InputError when it is none of this version."""
     try:
         library = ctypes.CDLL(str(path))
         for name, (result, arguments) in _FUNCTIONS.items():
@@ -126,7 +126,7 @@ def load_library(path: Path) -> ctypes.CDLL:
             function.restype, function.argtypes = result, arguments
         init_of(library)
     except (OSError, AttributeError) as error:
-        raise LogError(f"{path}: is not this version's libargus.so ({error}); build it again") from error
+        raise InputError(f"{path}: is not this version's libargus.so ({error}); build it again") from error
     return library
 
 
@@ -166,18 +166,18 @@ def settings() -> dict[str, tuple[int, int, tuple[str, ...]]]:
 
 
 def setting_value(key: str, text: str) -> int:
-    """Return the number that stands for `text` in a setting; LogError says what is allowed."""
+    """Return the number that stands for `text` in a setting; InputError says what is allowed."""
     if key not in settings():
-        raise LogError(f"{key}: no such setting; argusd --list-config lists them")
+        raise InputError(f"{key}: no such setting; argusd --list-config lists them")
     choices = settings()[key][2]
     if text in choices:
         return choices.index(text)
     if choices not in ((), (AUTO,)):
-        raise LogError(f"{key} = {text}: give {' or '.join(choices)}")
+        raise InputError(f"{key} = {text}: give {' or '.join(choices)}")
     try:
         return int(text)
     except ValueError as error:
-        raise LogError(f"{key} = {text}: give a whole number{' or auto' if choices else ''}") from error
+        raise InputError(f"{key} = {text}: give a whole number{' or auto' if choices else ''}") from error
 
 
 class Event(NamedTuple):
@@ -288,7 +288,7 @@ class Core:
         if self._library.argus_shim_config_check(config, ctypes.byref(row)):
             keys = [key for key, (at, _, _) in settings().items() if at == row.value]
             what = f"{keys[0]} is out of its range" if keys else "driving would be unsafe (S5)"
-            raise LogError(f"the settings do not hold: {what}; see argusd --list-config")
+            raise InputError(f"the settings do not hold: {what}; see argusd --list-config")
 
     def link_up(self, now_ms: int) -> None:
         """The transport is open."""
@@ -331,11 +331,11 @@ class Core:
         return bool(self._library.argus_shim_is_open(self._core))
 
     def set_course(self, points: Sequence[tuple[int, int]]) -> None:
-        """Give the points to drive to, mm in the frame of the odometry at connection; LogError if they do not fit."""
+        """Give the points to drive to, mm in the frame of the odometry at connection; InputError if they do not fit."""
         flat = [value for point in points for value in point]
         values = (ctypes.c_int32 * len(flat))(*flat)
         if not self._library.argus_set_course(self._core, values, len(points)):
-            raise LogError(f"a course of {len(points)} points does not fit the fault manager; shorten it")
+            raise InputError(f"a course of {len(points)} points does not fit the fault manager; shorten it")
 
     def save_record(self) -> bytes:
         """Return the persistent record: health and history of every sonar."""

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from argus_tools.core import health_name, init_of, kind_name, load_library, settings
+from hil_sim.core.library import health_name, init_of, kind_name, load_library, settings
 
 _CHANGES: Final = 4096
 _FIELDS: Final = 4
