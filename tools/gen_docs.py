@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import marked
@@ -216,6 +217,17 @@ def admitted() -> str:
     return "\n".join(lines)
 
 
+def example(name: str) -> Callable[[], str]:
+    """Return what shows an example in Python, without its licence."""
+
+    def shown() -> str:
+        text = (ROOT / f"examples/python/{name}.py").read_text(encoding="utf-8")
+        return f"```python\n{text.partition(chr(10))[2].strip()}\n```"
+
+    return shown
+
+
+EXAMPLES = ("drive", "frame", "sweep", "bag", "monitor")
 PARTS = {
     "SPEC.md": {"events": events, "config": config, "can": can},
     "DESIGN.md": {"machine": machine},
@@ -223,6 +235,7 @@ PARTS = {
     "docs/driving.md": {"policies": policies},
     "docs/guardian.md": {"admitted": admitted},
     "docs/evidence.md": {"numbers": numbers},
+    "docs/python.md": {name: example(name) for name in EXAMPLES},
 }
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import doctest
 import importlib
 import re
+import subprocess
 import sys
 from pathlib import Path
 from types import FunctionType
@@ -18,7 +19,7 @@ from hil_sim.errors import missing_package
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "docs/samples/two-failing-sonars.rec.gz"
-MODULES = ("argus", "argus.protocol", "argus.sil", "argus.log")
+MODULES = ("argus", "argus.protocol", "argus.sil", "argus.log", "argus.live")
 
 
 def test_the_examples_of_the_documentation(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -97,3 +98,30 @@ def test_a_package_that_is_not_installed_is_named(capsys: pytest.CaptureFixture[
     )
     with pytest.raises(ModuleNotFoundError):
         missing_package(ModuleNotFoundError("No module named 'argus_tolls'", name="argus_tolls"))
+
+
+def _example(name: str, *words: str) -> str:
+    """Run an example; return what it prints. It must stand in docs/python.md, and so must that."""
+    done = subprocess.run(
+        [sys.executable, str(ROOT / f"examples/python/{name}.py"), *words],
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
+        cwd=ROOT,
+    )
+    page = (ROOT / "docs/python.md").read_text(encoding="utf-8")
+    assert done.stdout.strip() in page, f"{done.stdout}{done.stderr}"
+    return done.stdout
+
+
+def test_the_example_of_a_sweep() -> None:
+    assert _example("sweep").count(" reached, 0 collisions") == 6
+
+
+def test_the_example_of_a_bag(tmp_path: Path) -> None:
+    bag = tmp_path / "drive.bag"
+    subprocess.run(
+        [sys.executable, str(ROOT / "docs/samples/drive_bag.py"), str(bag)], check=True, timeout=600
+    )
+    assert "sonar 5: DISABLED stuck" in _example("bag", str(bag))

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Argus from Python: the robot's protocol, missions in software, and logs judged by the fault manager itself.
+"""Argus from Python: the protocol, a live robot, missions in software, and logs judged by the fault manager itself.
 
     argus.protocol      ARCOS packets from bytes and back
     argus.sil           a mission of the fault manager on the emulated robot, in one process, under virtual time
+    argus.live          a running argusd: watch it, drive the robot
     argus.log           logs of a robot's link: read, decode, diagnose
 
 The names used most are here too:
@@ -16,7 +17,8 @@ docs/python.md has more examples. What is not in `__all__` of these modules may 
 
 from importlib.metadata import version as _version
 
-from argus import log, protocol, sil
+from argus import live, log, protocol, sil
+from argus.live import AsyncRobot, ControlError, Refused, Robot, connect, connect_async
 from argus.log import Diagnosis, LogError, LogPacket, diagnose, read
 from argus.protocol import COMMAND, Command, PacketError, Sip, Unframer, decode, frame
 from argus.sil import Mission, Outcome, Sil, run
@@ -25,20 +27,27 @@ __version__ = _version("argus-p3dx")
 
 __all__ = [
     "COMMAND",
+    "AsyncRobot",
     "Command",
+    "ControlError",
     "Diagnosis",
     "LogError",
     "LogPacket",
     "Mission",
     "Outcome",
     "PacketError",
+    "Refused",
+    "Robot",
     "Sil",
     "Sip",
     "Unframer",
     "__version__",
+    "connect",
+    "connect_async",
     "decode",
     "diagnose",
     "frame",
+    "live",
     "log",
     "protocol",
     "read",

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from argus_tools.control.client import DEFAULT_PLACE, Client, ControlError, Message, Refused, read_token
+from argus_tools.control.motion import BY_HAND, MOTION_S, Motion
 from argus_tools.control.words import event_line, evidence_line, readings_line, status_text
 from hil_sim.arguments import Parser, whole
 from hil_sim.faults.kinds import SONAR_KINDS
@@ -21,13 +22,7 @@ from hil_sim.version import add_version
 EXIT_OK, EXIT_REFUSED, EXIT_UNWRITABLE, EXIT_UNREACHABLE, EXIT_INTERRUPTED = 0, 1, 2, 3, 130
 KINDS: Final = (*SONAR_KINDS, "delayed", "ok")
 TOPICS: Final = ("events", "state", "readings", "evidence")
-MOTION_S: Final = 60.0
 CHECK_S: Final = 10.0
-RESTING: Final = ("IDLE", "WAITING", "OFFLINE", "CLOSED")
-BY_HAND: Final = {"step": 4, "turn": 5}
-"""Motions by hand, with what their event OPERATOR says (argus_op_t)."""
-STOPPING: Final = (1, 6)
-"""What OPERATOR says of stop and of passive."""
 
 _EPILOG: Final = f"""\
 examples:
@@ -118,42 +113,11 @@ def watch(client: Client, args: argparse.Namespace) -> int:
         print(_line_of(message, args.json), flush=True)
 
 
-class _Motion:
-    """Follows a motion by hand in what is streamed; what came before argusd told of the order is of no matter."""
-
-    def __init__(self, order: str) -> None:
-        self._own = BY_HAND[order]
-        self._ordered = False
-        self._began: float | None = None
-        self._moved = False
-
-    def _stopped(self, message: Message) -> bool:
-        """Whether another stops it."""
-        if message.get("event") != "OPERATOR":
-            return False
-        self._ordered = self._ordered or message["value"] == self._own
-        return self._ordered and message["value"] in STOPPING
-
-    def _rests(self, state: Message) -> bool:
-        self._began = state["t"] if self._began is None else self._began
-        self._moved = self._moved or state["mode"] not in RESTING
-        waited = state["t"] - self._began
-        return (state["mode"] in RESTING and (self._moved or waited > 1.0)) or waited > MOTION_S
-
-    def is_over(self, message: Message) -> bool:
-        """Take a message; tell whether the motion is over. Refused when another ended it."""
-        if message.get("lost") == "control":
-            raise Refused("stopped", "another took control and stopped the robot before it was done")
-        if self._stopped(message):
-            raise Refused("stopped", "another order stopped the robot before it was done")
-        return self._ordered and message.get("event") == "STATUS" and self._rests(message)
-
-
 def _move(client: Client, order: str, members: Message) -> None:
     """Order a motion by hand and wait until it is over; going away before would stop it."""
     client.watch("events", "state", period_ms=100)
     _order_once_checked(client, order, members)
-    motion = _Motion(order)
+    motion = Motion(order)
     while not motion.is_over(client.message(timeout_s=MOTION_S)):
         pass
 

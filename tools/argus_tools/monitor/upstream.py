@@ -57,7 +57,9 @@ class Upstream:
         reader: asyncio.StreamReader,
         writer: asyncio.StreamWriter,
         told: Callable[[Message], None],
+        within_s: float,
     ) -> None:
+        self._within_s = within_s
         self._reader = reader
         self._writer = writer
         self._told = told
@@ -67,10 +69,12 @@ class Upstream:
         self.closed = asyncio.Event()
 
     @classmethod
-    async def open(cls, address: Address, told: Callable[[Message], None]) -> Upstream:
+    async def open(
+        cls, address: Address, told: Callable[[Message], None], within_s: float = REPLY_WITHIN_S
+    ) -> Upstream:
         """Connect, check who answers and say the token; UpstreamError when any of it fails."""
         try:
-            async with asyncio.timeout(REPLY_WITHIN_S):
+            async with asyncio.timeout(within_s):
                 if address.path:
                     reader, writer = await asyncio.open_unix_connection(address.path, limit=LINE_MAX)
                 else:
@@ -78,7 +82,7 @@ class Upstream:
         except (OSError, TimeoutError) as error:
             reason = getattr(error, "strerror", None) or "no answer"
             raise UpstreamError(f"{address}: {reason}") from None
-        made = cls(reader, writer, told)
+        made = cls(reader, writer, told, within_s)
         try:
             await made._greet(address)
         except BaseException:
@@ -88,7 +92,7 @@ class Upstream:
 
     async def _greet(self, address: Address) -> None:
         try:
-            async with asyncio.timeout(REPLY_WITHIN_S):
+            async with asyncio.timeout(self._within_s):
                 greeting = _object(await self._reader.readline())
         except (OSError, ValueError, TimeoutError):
             greeting = {}
@@ -113,7 +117,7 @@ class Upstream:
                 raise UpstreamError("argusd has closed the connection")
             line = json.dumps({"do": request, "id": number, **members}, separators=(",", ":"))
             self._writer.write(line.encode() + b"\n")
-            async with asyncio.timeout(REPLY_WITHIN_S):
+            async with asyncio.timeout(self._within_s):
                 await self._writer.drain()
                 return await waiting
         except (OSError, TimeoutError):
