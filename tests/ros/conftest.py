@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 from collections.abc import Iterator
 
@@ -18,6 +19,9 @@ os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % 99)
 
 @pytest.fixture(autouse=True)
 def ros() -> Iterator[None]:
+    """A participant for each test. Nodes refer to themselves, so that only a collection ends their participant: until
+    then its services answer beside those of the next test, or count as servers that DDS cannot match."""
     rclpy.init()
     yield
     rclpy.try_shutdown()
+    gc.collect()

@@ -43,11 +43,13 @@ def driven(tmp_path: Path) -> Iterator[Any]:
 
 def ask(bench: Bench, kind: Any, name: str, request: Any) -> Any:
     """Call a service; a client that DDS does not match with it on a busy host is made anew."""
-    for _ in range(3):
-        client = bench.listener.create_client(kind, name)
+    client = bench.listener.create_client(kind, name)
+    for _ in range(6):
         if bench.until(client.service_is_ready, 10):
             break
         bench.listener.destroy_client(client)
+        client = bench.listener.create_client(kind, name)
+    assert client.service_is_ready(), f"{name}: no server was matched in a minute"
     future = client.call_async(request)
     assert bench.until(future.done)
     return future.result()
