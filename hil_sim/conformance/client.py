@@ -77,8 +77,10 @@ class Heard:
 class Client:
     """Talks to a target; while it waits it keeps the watchdog fed, unless `pulses` is off."""
 
-    def __init__(self, target: Target) -> None:
+    def __init__(self, target: Target, patience_s: float = PATIENCE_S) -> None:
+        """`patience_s`: how long an answer may take before it counts as none."""
         self.target = target
+        self.patience_s = patience_s
         self.pulses = True
         self.in_session = False
         self.damaged = 0
@@ -100,10 +102,10 @@ class Client:
             except (OSError, ValueError) as error:
                 raise LinkError(f"{self.target.path}: {error}; check the device and its rights") from error
             return
-        until = time.monotonic() + PATIENCE_S
+        until = time.monotonic() + self.patience_s
         while True:
             try:
-                self._line = socket.create_connection((self.target.host, self.target.port), PATIENCE_S)
+                self._line = socket.create_connection((self.target.host, self.target.port), self.patience_s)
                 self._line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 self._line.setblocking(False)
             except OSError as error:
@@ -202,9 +204,9 @@ class Client:
             except PacketError:
                 self.damaged += 1
 
-    def answer(self, kind: type[Packet], seconds: float = PATIENCE_S) -> Packet | None:
+    def answer(self, kind: type[Packet], seconds: float | None = None) -> Packet | None:
         """The first packet of a kind, None if it does not come."""
-        heard = self.hear(seconds, lambda packet: isinstance(packet, kind))
+        heard = self.hear(seconds or self.patience_s, lambda packet: isinstance(packet, kind))
         return heard[-1].packet if heard and isinstance(heard[-1].packet, kind) else None
 
     def sips(self, count: int) -> list[Sip]:
@@ -215,9 +217,9 @@ class Client:
         """The next SIPs with their times."""
         found: list[tuple[float, Sip]] = []
         while len(found) < count:
-            heard = self.hear(PATIENCE_S, lambda packet: isinstance(packet, Sip))
+            heard = self.hear(self.patience_s, lambda packet: isinstance(packet, Sip))
             if not heard or not isinstance(heard[-1].packet, Sip):
-                raise Failed(f"no SIP for {PATIENCE_S:g} s")
+                raise Failed(f"no SIP for {self.patience_s:g} s")
             found.append((heard[-1].t_s, heard[-1].packet))
         return found
 
@@ -267,10 +269,10 @@ class Client:
         self.in_session = False
         self.fresh()
 
-    def sync(self, name: str, seconds: float = PATIENCE_S) -> Packet | None:
+    def sync(self, name: str, seconds: float | None = None) -> Packet | None:
         """Send one SYNC (PULSE, OPEN, CLOSE by number) and return what answers it."""
         self.command(name)
-        heard = self.hear(seconds, lambda _: True)
+        heard = self.hear(seconds or self.patience_s, lambda _: True)
         return heard[0].packet if heard else None
 
     def start(self, motors: bool = False) -> None:

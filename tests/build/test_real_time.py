@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Rule: of the tests in real time exactly those are run again that failed while the host was late, with fewer at once;
-one that fails on a punctual host fails the stage."""
+"""Rule: of the tests in real time exactly those are run again that failed while the host was late: once, one alone; one
+that fails on a punctual host fails the stage."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from devtool.real_time import core_part, run_in_real_time, worker_count, worker_plan
+from devtool.real_time import core_part, run_in_real_time, worker_count
 from devtool.stages import StageFailed
 from lateness import emulators_late_ms
 
@@ -58,21 +58,18 @@ def test_what_passes_is_run_once(runs: Runs) -> None:
     assert runs.commands == [["pytest", "-q", "-n", "10", "tests/hil"]]
 
 
-def test_what_failed_while_the_host_was_late_is_run_again_with_ever_fewer_workers(
+def test_what_failed_while_the_host_was_late_is_run_once_more_alone(
     runs: Runs, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    runs.ends = [(1, {"a": 300, "b[1-x]": 562}), (1, {"a": 150}), (0, {})]
+    runs.ends = [(1, {"a": 300, "b[1-x]": 562}), (0, {})]
     note = runs.go()
-    assert runs.commands[1:] == [
-        ["pytest", "-q", "-n", "3", "a", "b[1-x]"],
-        ["pytest", "-q", "-n", "1", "a"],
-    ]
+    assert runs.commands[1:] == [["pytest", "-q", "-n", "1", "a", "b[1-x]"]]
     assert note is not None
     assert note.endswith("562 ms late: a, b[1-x]")
     said = capsys.readouterr().out
     assert "THE HOST WAS LATE" in said
     assert "562 ms late  b[1-x]" in said
-    assert "3 at a time" in said
+    assert "one at a time" in said
 
 
 @pytest.mark.parametrize(
@@ -107,18 +104,10 @@ def test_what_fails_punctually_when_run_again_fails(runs: Runs) -> None:
 
 
 def test_a_host_that_is_late_for_a_single_test_fails_the_stage(runs: Runs) -> None:
-    runs.ends = [(1, {"a": 300})] * 5
+    runs.ends = [(1, {"a": 300})] * 2
     with pytest.raises(StageFailed, match="even for one test at a time"):
         runs.go()
-    assert [command[3] for command in runs.commands] == ["10", "3", "1", "1", "1"]
-
-
-@pytest.mark.parametrize(
-    ("workers", "expected"),
-    [(10, (10, 3, 1, 1, 1)), (32, (32, 10, 1, 1, 1)), (4, (4, 2, 1, 1, 1)), (2, (2, 2, 1, 1, 1))],
-)
-def test_the_workers_of_each_run(workers: int, expected: tuple[int, ...]) -> None:
-    assert worker_plan(workers) == expected
+    assert [command[3] for command in runs.commands] == ["10", "1"]
 
 
 def test_the_workers_follow_what_the_machine_gives() -> None:

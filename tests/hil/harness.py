@@ -258,7 +258,7 @@ class Argusd:
         except subprocess.TimeoutExpired:
             raise HilFailure(f"argusd did not end within {timeout_s:g} s") from None
         for thread in self._threads:
-            thread.join(5)
+            thread.join(PATIENCE_S)
         return code
 
     def unix(self, event: Record) -> float:
@@ -352,7 +352,7 @@ class Tap:
     def close(self) -> None:
         """Take the cable away."""
         os.write(self._stop_w, b"x")
-        self._thread.join(5)
+        self._thread.join(PATIENCE_S)
         self._robot.close()
         for fd in (self._master, self._slave, self._stop_r, self._stop_w):
             with contextlib.suppress(OSError):
@@ -490,7 +490,7 @@ def turning_away(way: str, port: int = 0) -> Iterator[tuple[int, list[float]]]:
             yield int(listener.getsockname()[1]), taken
         finally:
             listener.shutdown(socket.SHUT_RDWR)
-            thread.join(5)
+            thread.join(PATIENCE_S)
 
 
 def run_argusd(*arguments: str, timeout_s: float = 600.0) -> subprocess.CompletedProcess[str]:

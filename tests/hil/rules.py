@@ -28,7 +28,7 @@ def name(sonar: int) -> str:
 
 def cruise(sim: Sim, x_mm: float = 300.0) -> Record:
     """Wait until it drives at full speed."""
-    return sim.wait("it drives", lambda s: s["v_mm_s"] > CRUISE_MM_S and s["x_mm"] > x_mm, 40.0)
+    return sim.wait("it drives", lambda s: s["v_mm_s"] > CRUISE_MM_S and s["x_mm"] > x_mm)
 
 
 def injected_s(sim: Sim) -> float:
@@ -65,10 +65,11 @@ def assert_stops_in_time(sim: Sim, silent_s: float) -> Record:
     rest = next((s for s in after if is_at_rest(s)), None)
     assert brakes is not None, "it never brakes"
     assert rest is not None, "it never stands"
-    # A state is written each 100 ms, so that both may be seen that much late.
+    # A state is written each 100 ms, so that both may be seen that much late; and the emulator measures the host.
+    seen_s = SIP_S + JITTER_S + max((r["late_ms"] for r in sim.of("late", silent_s - 1)), default=0.0) / 1000
     brakes_s, stands_s, stands_mm = brakes["t_s"] - silent_s, rest["t_s"] - silent_s, way_mm(before, rest)
-    assert brakes_s <= BRAKES_WITHIN_S + SIP_S + JITTER_S, f"brakes {brakes_s:.2f} s later"
-    assert stands_s <= STANDS_WITHIN_S + SIP_S + JITTER_S, f"stands {stands_s:.2f} s later"
+    assert brakes_s <= BRAKES_WITHIN_S + seen_s, f"brakes {brakes_s:.2f} s later"
+    assert stands_s <= STANDS_WITHIN_S + seen_s, f"stands {stands_s:.2f} s later"
     assert stands_mm <= STANDS_WITHIN_MM + ODOMETRY_MM, f"stands {stands_mm:.0f} mm farther"
     return rest
 

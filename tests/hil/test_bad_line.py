@@ -13,7 +13,7 @@ import tty
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from harness import Bench, run_argusd
+from harness import PATIENCE_S, Bench, run_argusd
 from worlds import hall
 
 ALL_SONARS = list(range(16))
@@ -42,7 +42,7 @@ def noisy_port(seed: int) -> Iterator[str]:
         yield os.ttyname(slave)
     finally:
         stop.set()
-        thread.join(5)
+        thread.join(PATIENCE_S)
         os.close(slave)
         os.close(master)
 

@@ -41,7 +41,7 @@ def test_with_the_two_foremost_sonars_dead(bench: Bench, sonar: int) -> None:
     seen = argusd.wait("OBJECT_CHECKED", "OBJECT", "AVOIDING")
     # Long enough to come to rest, to choose a way and to start on it, where a bad choice would touch the box.
     until_s = sim.robot_time(argusd.unix(seen)) + 15
-    sim.wait("what it does next", lambda s: s["t_s"] > until_s, 40)
+    sim.wait("what it does next", lambda s: s["t_s"] > until_s)
     sim.assert_no_collision()
     assert_only(argusd, (3, OFF), (4, OFF))
     first_sweep = argusd.wait("SWEEP")

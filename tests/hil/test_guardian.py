@@ -20,7 +20,7 @@ from typing import Any, Final
 
 import harness
 import pytest
-from harness import ROOT, Argusd, Bench, is_at_rest, run_argusd, wait_for
+from harness import PATIENCE_S, ROOT, SIP_S, Argusd, Bench, is_at_rest, run_argusd, wait_for
 from worlds import hall, hall_with_box
 
 from hil_sim.arcos import COMMAND, Command, ConfigPac, EncoderPac, Sip, frame
@@ -55,7 +55,7 @@ def guarded(bench: Bench, *arguments: str, config: dict[str, Any] | None = None)
 @contextmanager
 def session(target: Target, motors: bool = True) -> Iterator[Client]:
     """A client in a session."""
-    client = Client(target)
+    client = Client(target, PATIENCE_S)
     try:
         client.start(motors=motors)
         yield client
@@ -64,9 +64,8 @@ def session(target: Target, motors: bool = True) -> Iterator[Client]:
 
 
 def drive_by_one_sonar(client: Client, seconds: float) -> None:
-    """Ahead until the one sonar that it goes by reads something near."""
-    until = time.monotonic() + seconds
-    while time.monotonic() < until:
+    """Ahead until the one sonar that it goes by reads something near, for so long by the robot's clock."""
+    for _ in range(round(seconds / (5 * SIP_S))):
         client.command("VEL", SPEED_MM_S)
         for sip in client.sips(5):
             if any(number == LOOKS and reading < NEAR_MM for number, reading in sip.sonars):
@@ -159,15 +158,13 @@ def test_no_flood_costs_a_sip(bench: Bench) -> None:
         floods = ("CONFIG", "PULSE", "TICKSMM", "DHEAD", "GETAUX", "DIGOUT", "VEL")
         burst = b"".join(frame(Command.integer(COMMAND[name], 1).data) for name in floods) * 10
         heard: list[float] = []
-        until = time.monotonic() + 5.0
-        while time.monotonic() < until:
+        until_s = sim.t_s + 5.0
+        while sim.t_s < until_s:
             client.send(burst)
             heard += [packet.t_s for packet in client.hear(0.02) if isinstance(packet.packet, Sip)]
         assert len(heard) >= 48
         client.command("STOP")
-        stopped_s = time.monotonic()
-        while client.sips(1)[-1].left_vel > 5:
-            assert time.monotonic() - stopped_s < 5
+        client.until("it stands", lambda sip: sip.left_vel <= 5, 50)
     assert argusd.named("GUARD_DROPPED")
     assert argusd.named("GUARD_REFUSED", value=COMMAND["TICKSMM"])
     assert not argusd.named("LINK_STALLED", "LINK_LOST")
@@ -179,7 +176,7 @@ def test_a_client_that_is_killed_in_motion(bench: Bench) -> None:
     argusd, target = guarded(bench)
     script = (
         "import sys; from hil_sim.conformance.client import Client, parse_target\n"
-        "client = Client(parse_target(sys.argv[1])); client.start(motors=True)\n"
+        "client = Client(parse_target(sys.argv[1]), 180.0); client.start(motors=True)\n"
         "while True: client.command('VEL', 300); client.sips(3)\n"
     )
     target_text = f"tcp:{target.host}:{target.port}"
@@ -218,10 +215,10 @@ def test_a_second_client_is_turned_away(bench: Bench) -> None:
     name = bench.path / "guard"
     argusd, target = guarded(bench, "--guard", f"pty:{name}")
     with session(target, motors=False) as client:
-        with socket.create_connection((target.host, target.port), 5) as second:
-            second.settimeout(20)
+        with socket.create_connection((target.host, target.port), PATIENCE_S) as second:
+            second.settimeout(PATIENCE_S)
             assert second.recv(10) == b""
-        wait_for("it is said", lambda: any("turned away" in line for line in argusd.errors), 20)
+        wait_for("it is said", lambda: any("turned away" in line for line in argusd.errors), PATIENCE_S)
         client.sips(5)
     argusd.wait("GUARD_CLOSED")
     argusd.events.clear()
@@ -250,12 +247,12 @@ def test_a_web_page_cannot_take_the_robot(bench: Bench, greeting: bytes) -> None
     argusd.wait("SESSION_OPEN")
     sim.wait("it drives by itself", lambda state: state["v_mm_s"] > 100)
     body = b"".join(frame(command.data) for command in PAGE_SAYS)
-    with socket.create_connection((target.host, target.port), 5) as page:
-        page.settimeout(20)
+    with socket.create_connection((target.host, target.port), PATIENCE_S) as page:
+        page.settimeout(PATIENCE_S)
         with contextlib.suppress(ConnectionError):
             page.sendall(greeting + body)
             assert page.recv(100) == b""
-    wait_for("it is said", lambda: any("not ARCOS" in line for line in argusd.errors), 20)
+    wait_for("it is said", lambda: any("not ARCOS" in line for line in argusd.errors), PATIENCE_S)
     argusd.wait("GOAL_REACHED")
     assert not argusd.named("GUARD_OPEN", "GUARD_DRIVES", "PASSIVE")
     assert argusd.wait_exit() == 0
@@ -265,7 +262,7 @@ def test_a_pty_that_is_closed_stops_the_robot(bench: Bench) -> None:
     sim = bench.sim(bench.world(**hall(length_mm=9000)))
     name = bench.path / "guard"
     argusd, _ = guarded(bench, "--guard", f"pty:{name}")
-    client = Client(parse_target(f"serial:{name}"))
+    client = Client(parse_target(f"serial:{name}"), PATIENCE_S)
     client.start(motors=True)
     client.command("VEL", 300)
     sim.wait("it drives", lambda state: state["v_mm_s"] > 200)

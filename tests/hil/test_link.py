@@ -143,7 +143,7 @@ def test_signal_in_motion_stops_then_closes_in_order(bench: Bench, number: int) 
     assert argusd.named("SESSION_CLOSED")
     closed = sim.of("session")[-1] if sim.of("session")[-1]["state"] == "closed" else None
     if closed is None:
-        sim.wait("the session closes", lambda s: sim.of("session")[-1]["state"] == "closed", 5)
+        sim.wait("the session closes", lambda s: sim.of("session")[-1]["state"] == "closed")
         closed = sim.of("session")[-1]
     assert closed["reason"] == "close"
     assert closed["t_s"] - sim.robot_time(asked_unix) <= 4.0

@@ -22,6 +22,8 @@ from hil_sim.tables.robot import robot_table
 
 VIEW_RAD = math.radians(30)
 EPOCH_S = 1_700_000_000.0
+# A guard against what hangs, not a rule: a busy host needs long until one participant finds another.
+PATIENCE_S = 120.0
 SEATS = {
     number: Seat(mount.x_mm / 1000, mount.y_mm / 1000, math.radians(mount.heading_deg))
     for number, mount in enumerate(robot_table().mounts)
@@ -86,7 +88,7 @@ class Bench:
             kind, topic, lambda message: self.heard.append((topic, message)), qos
         )
 
-    def until(self, what: Callable[[], bool], limit_s: float = 20.0) -> bool:
+    def until(self, what: Callable[[], bool], limit_s: float = PATIENCE_S) -> bool:
         """Spin until something holds; False when it does not come to hold."""
         end = time.monotonic() + limit_s
         while time.monotonic() < end:

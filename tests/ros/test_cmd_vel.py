@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from argus_ros.argus_node import ArgusNode
 from geometry_msgs.msg import Twist
-from nodes import Bench
+from nodes import PATIENCE_S, Bench
 from rclpy.parameter import Parameter
 from robots import emulated, free_port, minded
 
@@ -38,7 +38,7 @@ class Driven:
         self.bench = Bench(self.node)
         self.publisher = self.bench.listener.create_publisher(Twist, "cmd_vel", 1)
         assert self.bench.until(lambda: bool(self.publisher.get_subscription_count()))
-        assert self.bench.until(lambda: self.wheels.connected and self.wheels.sips > 0, 60)
+        assert self.bench.until(lambda: self.wheels.connected and self.wheels.sips > 0)
 
     @property
     def wheels(self) -> Any:
@@ -46,15 +46,24 @@ class Driven:
         return self.node._wheels
 
     def drive(self, speed: float, turn: float, seconds: float) -> list[dict[str, Any]]:
-        """Say the same for a while, ten times a second; return the robot's true states meanwhile."""
+        """Order the same for a while by the robot's clock; return its true states meanwhile."""
+        begin = self.sim.t_s
+        self.order_until(lambda: self.sim.t_s > begin + seconds, speed, turn)
+        return self.sim.of("state", begin)
+
+    def drive_until_moving(self) -> None:
+        """Order 0.2 m/s until it moves: on a busy host an order may be late, and it stands meanwhile."""
+        self.order_until(lambda: bool(self.sim.now["v_mm_s"] > MOVING_MM_S), 0.2, 0.0)
+
+    def order_until(self, done: Callable[[], bool], speed: float, turn: float) -> None:
+        """Order the same ten times a second until something holds."""
         twist = Twist()
         twist.linear.x, twist.angular.z = speed, turn
-        begin = self.sim.t_s
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
+        end = time.monotonic() + PATIENCE_S
+        while not done():
+            assert time.monotonic() < end, f"not within {PATIENCE_S:g} s"
             self.publisher.publish(twist)
             self.spin(0.1)
-        return self.sim.of("state", begin)
 
     def spin(self, seconds: float) -> None:
         end = time.monotonic() + seconds
@@ -86,10 +95,7 @@ def test_the_robot_drives_and_stands_when_nobody_says_anything(driven: Any) -> N
     robot = driven(cmd_vel_timeout_s=0.4)
     states = robot.drive(0.2, 0.0, 3)
     assert max(state["v_mm_s"] for state in states) == pytest.approx(200, abs=5)
-    last = time.monotonic()
-    while robot.sim.now["v_mm_s"] > MOVING_MM_S:
-        robot.spin(0.05)
-        assert time.monotonic() - last < 30
+    assert robot.bench.until(lambda: bool(robot.sim.now["v_mm_s"] <= MOVING_MM_S))
     assert not robot.node._wheels._said or robot.wheels._said == (0, 0)
     stopped = robot.sim.wait_rest()
     began = next(s["t_s"] for s in reversed(robot.sim.of("state")) if s["v_mm_s"] > 150)
@@ -121,8 +127,7 @@ def test_a_node_that_is_deactivated_or_ends_lets_it_stand(driven: Any) -> None:
     robot.drive(0.2, 0.0, 1.5)
     robot.sim.wait_rest()
     robot.node.trigger_activate()
-    robot.drive(0.2, 0.0, 1.5)
-    assert robot.sim.now["v_mm_s"] > MOVING_MM_S
+    robot.drive_until_moving()
     robot.node.trigger_deactivate()
     robot.node.trigger_cleanup()
     robot.sim.wait_rest()

@@ -43,7 +43,7 @@ def bridged(tmp_path: Path) -> Iterator[tuple[str, str]]:
         yield bridge.stdout.readline().strip(), place
     finally:
         bridge.send_signal(signal.SIGINT)
-        out, err = bridge.communicate(timeout=30)
+        out, err = bridge.communicate(timeout=120)
         argusd.end()
         sim.end()
         assert bridge.returncode == 0, err
@@ -133,7 +133,7 @@ def test_pages_of_other_sites_do_not_look_on(bridged: tuple[str, str]) -> None:
     ):
         assert asyncio.run(status_for(address, origin)) == status, origin
     host, port = re.findall(r"ws://(.*):(\d+)", address)[0]
-    with socket.create_connection((host, int(port)), 30) as caller:  # a name that is led here
+    with socket.create_connection((host, int(port)), 120) as caller:  # a name that is led here
         caller.sendall(b"GET / HTTP/1.1\r\nHost: evil.example\r\nUpgrade: websocket\r\n\r\n")
         assert caller.recv(100).startswith(b"HTTP/1.1 403 ")
 

@@ -5,15 +5,15 @@ one graph are told apart."""
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import pytest
 from argus_ros.argus_node import ArgusNode
 from argus_ros.guard_node import RangeGuard
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Twist, TwistStamped
 from harness import ROOT, Argusd
 from nodes import Bench
@@ -23,10 +23,11 @@ from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from robots import emulated, free_port, minded
 from sensor_msgs.msg import Range
-from test_argus_node import Robot, status_of
+from test_argus_node import Robot
 from test_cmd_vel import Driven
 from test_programs import commands_of, running
 
+OLD_RUNS_S = 12.0
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
@@ -45,14 +46,14 @@ def driven(tmp_path: Path) -> Iterator[Any]:
 
 
 def send(robot: Driven, kind: Any, seconds: float, qos: Any = 1, age_s: float | None = 0.0) -> float:
-    """Order 0.2 m/s for a while as a type; return the greatest true speed meanwhile."""
+    """Order 0.2 m/s for a while by the robot's clock, as a type; return the greatest true speed meanwhile."""
     context = Context()  # another participant: one has each topic as one type only
     context.init()
     sender = Node("sender", context=context)
     publisher = sender.create_publisher(kind, "cmd_vel", qos)
     assert robot.bench.until(lambda: bool(publisher.get_subscription_count()))
-    begin, end = robot.sim.t_s, time.monotonic() + seconds
-    while time.monotonic() < end:
+    begin = robot.sim.t_s
+    while robot.sim.t_s < begin + seconds:
         message = kind()
         if kind is TwistStamped and age_s is not None:
             now = robot.bench.listener.get_clock().now().nanoseconds - round(age_s * 1e9)
@@ -77,13 +78,18 @@ def test_cmd_vel_is_taken_as_either_type_and_from_any_publisher(
     robot.sim.wait_rest()
 
 
+def last_of(robot: Driven, name: str) -> Any:
+    """The status of a name as it was last published; an empty one before that."""
+    said = [m for topic, m in robot.bench.heard if topic == "/diagnostics"]
+    found = [status for status in said[-1].status if status.name == name] if said else []
+    return found[0] if found else DiagnosticStatus()
+
+
 def test_a_stale_order_moves_nothing_and_is_reported(driven: Any) -> None:
     robot = driven()
     assert send(robot, TwistStamped, 2, age_s=5.0) < 20
-    said = [m for topic, m in robot.bench.heard if topic == "/diagnostics"]
-    status = status_of(said[-1], "argus: cmd_vel")
-    assert status.level == b"\x01"
-    assert "older" in status.message
+    assert robot.bench.until(lambda: "older" in last_of(robot, "argus: cmd_vel").message)
+    assert last_of(robot, "argus: cmd_vel").level == b"\x01"
 
 
 def test_cmd_vel_of_a_foreign_type_is_reported(driven: Any) -> None:
@@ -91,28 +97,34 @@ def test_cmd_vel_of_a_foreign_type_is_reported(driven: Any) -> None:
     robot.node._taken["cmd_vel"] = (
         "geometry_msgs/msg/Pose"  # so that the Twist of this test is the foreign one
     )
-    robot.spin(1.5)
-    said = [m for topic, m in robot.bench.heard if topic == "/diagnostics"]
-    assert "published as geometry_msgs/msg/Twist" in status_of(said[-1], "argus: cmd_vel").message
-    assert status_of(said[-1], "argus: topics").level == b"\x01"
+    foreign = "published as geometry_msgs/msg/Twist"
+    assert robot.bench.until(lambda: foreign in last_of(robot, "argus: cmd_vel").message)
+    assert last_of(robot, "argus: topics").level == b"\x01"
 
 
 def test_argusd_that_is_restarted_is_followed_at_once(tmp_path: Path) -> None:
     bot = Robot(tmp_path, "--world", "demo")
     try:
         bot.await_("sonar/range_0")
-        bot.bench.until(lambda: False, 8)  # the old one runs for a while
+        bot.bench.until(lambda: False, OLD_RUNS_S)
         bot.argusd.end()
         bot.argusd = Argusd([*bot.argusd.command[1:]])
         bot.await_("/diagnostics", lambda m: m.status[0].level == b"\x03")
         bot.await_("/diagnostics", lambda m: m.status[0].level == b"\x00")
         bot.bench.take()
-        begin = time.monotonic()
+        begin_s = bot.sim.t_s
         for number in range(16):
             bot.await_(f"sonar/range_{number}")
-        assert time.monotonic() - begin < 4
+        # The mistake was to wait until the new one has run for as long as the old one had.
+        assert bot.sim.t_s - begin_s < OLD_RUNS_S
     finally:
         bot.close()
+
+
+def stamps_of(bot: Robot) -> list[float]:
+    """When what was heard of the diagnostics was published, s."""
+    stamps = [m.header.stamp for topic, m in bot.bench.heard if topic == "/diagnostics"]
+    return [stamp.sec + stamp.nanosec / 1e9 for stamp in stamps]
 
 
 def test_what_is_set_at_run_time_works_and_nonsense_is_refused(tmp_path: Path) -> None:
@@ -128,8 +140,9 @@ def test_what_is_set_at_run_time_works_and_nonsense_is_refused(tmp_path: Path) -
         assert bot.await_("sonar/range_4").range == 5.0
         assert put("diagnostics_s", 0.2)
         bot.bench.take()
-        bot.bench.until(lambda: False, 2.0)
-        assert len([1 for topic, _ in bot.bench.heard if topic == "/diagnostics"]) >= 7
+        assert bot.bench.until(lambda: len(stamps_of(bot)) >= 9)
+        gaps_s = [later - earlier for earlier, later in pairwise(stamps_of(bot))]
+        assert min(gaps_s) < 0.5, gaps_s
         refused = [
             *[("max_speed_m_s", v) for v in (-1.0, math.nan, math.inf, 99.0)],
             ("no_echo", "loud"),

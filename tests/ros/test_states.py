@@ -76,7 +76,7 @@ def assert_stands_for_good(robot: Driven) -> None:
 def test_a_transition_of_a_driving_robot_lets_it_stand(driven: Any, end: str) -> None:
     robot = driven()
     robot.drive(0.2, 0.0, 1.5)
-    assert robot.sim.now["v_mm_s"] > MOVING_MM_S
+    robot.drive_until_moving()
     change(robot.bench, "argus", ENDS[end])
     if end == "shutdown":
         assert state(robot.bench, "argus") == FINALIZED

@@ -385,7 +385,7 @@ def test_several_robots_on_consecutive_ports() -> None:
         assert [first, second] == [f"127.0.0.1:{base}", f"127.0.0.1:{base + 1}"]
         for address in (first, second):
             host, _, port = address.rpartition(":")
-            with socket.create_connection((host, int(port)), 10) as client:
+            with socket.create_connection((host, int(port)), 120) as client:
                 client.sendall(cmd("PULSE"))
                 assert client.recv(64) == cmd("PULSE")
 

@@ -327,7 +327,7 @@ def test_a_signal_ends_both_programs(number: signal.Signals, tmp_path: Path, idl
     assert demo.returncode == 128 + number, said
     assert said.count(b"\n") == 1
     assert b"interrupted" in said
-    wait_for(lambda: users_of(tmp_path) == [], 5.0)
+    wait_for(lambda: users_of(tmp_path) == [])
 
 
 def test_a_reader_that_goes_away_leaves_nothing_behind(tmp_path: Path, idle_argusd: Path) -> None:
@@ -344,7 +344,7 @@ def test_a_reader_that_goes_away_leaves_nothing_behind(tmp_path: Path, idle_argu
     finally:
         demo.kill()
         demo.wait()
-    wait_for(lambda: users_of(tmp_path) == [], 5.0)
+    wait_for(lambda: users_of(tmp_path) == [])
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -57,7 +57,7 @@ class Daemon:
         with near, contextlib.suppress(OSError):
             if self.then == "no greeting":
                 self.silent_s = time.monotonic()
-                self.ended.wait(30)
+                self.ended.wait(120)
                 return
             near.sendall(b'{"control":1,"argus":"0","auth":"none"}\n')
             request = json.loads(near.makefile().readline())
@@ -65,12 +65,12 @@ class Daemon:
             near.sendall("".join(json.dumps(line) + "\n" for line in lines).encode())
             self.silent_s = time.monotonic()
             if self.then == "hang":
-                self.ended.wait(30)
+                self.ended.wait(120)
 
     def close(self) -> None:
         self.ended.set()
         self.sock.close()
-        self.thread.join(5)
+        self.thread.join(60)
 
 
 @pytest.fixture

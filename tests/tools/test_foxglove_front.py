@@ -17,6 +17,8 @@ from argus_tools import foxglove_bridge, foxglove_front
 from argus_tools.foxglove_bridge import parser
 from argus_tools.foxglove_front import Front, Gate, headers_of, hidden_host
 
+# A guard against what hangs, not a rule.
+PATIENCE_S = 120.0
 ANSWER = b"HTTP/1.1 101 Switching Protocols\r\n\r\n"
 
 
@@ -67,7 +69,7 @@ def request(*headers: str, first: str = "GET / HTTP/1.1") -> bytes:
 
 def asked(front: Front, data: bytes) -> bytes:
     """What the port says to a request until it has nothing more to say, or has let the caller in."""
-    with socket.create_connection(("127.0.0.1", front.port), 20) as caller:
+    with socket.create_connection(("127.0.0.1", front.port), PATIENCE_S) as caller:
         caller.sendall(data)
         said = b""
         while not said.startswith(ANSWER) and (part := caller.recv(65536)):
@@ -193,7 +195,7 @@ def test_what_asks_for_no_websocket_is_refused(front: Front, behind: Behind) -> 
 
 def test_who_may_come_in_is_joined_to_the_server(front: Front, behind: Behind) -> None:
     data = request("Host: localhost:8765", "Origin: https://app.foxglove.dev")
-    with socket.create_connection(("127.0.0.1", front.port), 20) as caller:
+    with socket.create_connection(("127.0.0.1", front.port), PATIENCE_S) as caller:
         caller.sendall(data)
         assert caller.recv(65536) == ANSWER
         assert behind.heard == [data]
@@ -212,7 +214,7 @@ def test_a_caller_that_says_too_much_or_nothing_is_hung_up_on(
 ) -> None:
     monkeypatch.setattr(foxglove_front, "HEAD_WITHIN_S", 0.2)
     for data in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nx: " + b"y" * 20_000):
-        with socket.create_connection(("127.0.0.1", front.port), 20) as caller:
+        with socket.create_connection(("127.0.0.1", front.port), PATIENCE_S) as caller:
             caller.sendall(data)
             with contextlib.suppress(ConnectionResetError):
                 assert caller.recv(100) == b""
@@ -221,11 +223,11 @@ def test_a_caller_that_says_too_much_or_nothing_is_hung_up_on(
 
 def test_too_many_are_turned_away(front: Front, behind: Behind, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(foxglove_front, "CONNECTIONS_MAX", 1)
-    with socket.create_connection(("127.0.0.1", front.port), 20) as caller:
+    with socket.create_connection(("127.0.0.1", front.port), PATIENCE_S) as caller:
         caller.sendall(request("Host: localhost"))
         assert caller.recv(65536) == ANSWER
         assert asked(front, request("Host: localhost")).startswith(b"HTTP/1.1 503 ")
-    until = time.monotonic() + 20
+    until = time.monotonic() + PATIENCE_S
     while not asked(front, request("Host: localhost")).startswith(ANSWER):
         assert time.monotonic() < until, "the place of one who left is free again"
 
@@ -233,7 +235,7 @@ def test_too_many_are_turned_away(front: Front, behind: Behind, monkeypatch: pyt
 def test_the_end_hangs_up_on_all(behind: Behind) -> None:
     front = Front("127.0.0.1", 0, Gate("127.0.0.1"))
     front.start(*behind.socket.getsockname())
-    with socket.create_connection(("127.0.0.1", front.port), 20) as caller:
+    with socket.create_connection(("127.0.0.1", front.port), PATIENCE_S) as caller:
         caller.sendall(request("Host: localhost"))
         assert caller.recv(65536) == ANSWER
         front.stop()

@@ -18,10 +18,6 @@ TESTS_FAILED: Final = 1
 """The exit code of pytest when tests failed and nothing else was wrong."""
 
 
-ALONE: Final = (1, 1, 1)
-"""A test alone on a busy host gets this many chances: others are not late all the time."""
-
-
 @dataclasses.dataclass(frozen=True)
 class Lateness:
     """What tests/hil/lateness.py found: failed tests, and how late the host was meanwhile; 0 if it was
@@ -50,44 +46,45 @@ def to_repeat(found: Lateness) -> tuple[str, ...]:
     return tuple(found.failed) if found.exit_code == TESTS_FAILED and not found.punctual else ()
 
 
-def worker_plan(workers: int) -> tuple[int, ...]:
-    """Return how many workers run the tests at first, and how many what is run again: alone at last, and patiently."""
-    return workers, max(2, workers // 3), *ALONE
-
-
-def say_late(found: Lateness, workers: int) -> None:
+def say_late(found: Lateness) -> None:
     """Tell what failed while the host was late, before it is run again."""
     say(paint("THE HOST WAS LATE while these tests failed, which says nothing of Argus:", "33"))
     for name, late_ms in found.failed.items():
         say(f"  {late_ms:5} ms late  {name}")
-    say(f"running exactly these again, {workers} at a time")
+    say("running exactly these again, one at a time")
 
 
 def run_in_real_time(
     run: Run, pytest: Command, tests: Sequence[str], workers: int, report: Path
 ) -> str | None:
-    """Run TESTS, and those that failed while the host was late again with fewer WORKERS; return what to tell."""
-    todo, again = tuple(tests), dict[str, int]()
-    plan = worker_plan(workers)
-    for count, fewer in zip(plan, (*plan[1:], 0), strict=True):
-        report.unlink(missing_ok=True)
-        try:
-            run([*pytest, "-n", str(count), *todo])
-            break
-        except StageFailed as error:
-            found = read_lateness(report)
-            todo = to_repeat(found)
-            if not todo:
-                names = ", ".join(found.punctual)
-                why = f"; failed though the host was punctual: {names}" if names else ""
-                raise StageFailed(f"{error}{why}") from None
-            if not fewer:
-                raise StageFailed(f"{error}; the host was late even for one test at a time") from None
-            again |= {name: max(found.failed[name], again.get(name, 0)) for name in todo}
-            say_late(found, fewer)
-    if not again:
+    """Run TESTS with WORKERS, and once more, each alone, what failed while the host was late; return what to tell.
+
+    A robot, its line and argusd are three clocks of one host: a test of how soon it stands, or of what is on a bus each
+    second, cannot be asked of virtual time. Every other test waits for what the robot does, however long that takes.
+    """
+    report.unlink(missing_ok=True)
+    try:
+        run([*pytest, "-n", str(workers), *tests])
+    except StageFailed as error:
+        late = read_lateness(report)
+        if not to_repeat(late):
+            raise StageFailed(f"{error}{_why(late)}") from None
+    else:
         return None
-    return f"passed only when run again, the host was up to {max(again.values())} ms late: {', '.join(again)}"
+    say_late(late)
+    report.unlink(missing_ok=True)
+    try:
+        run([*pytest, "-n", "1", *late.failed])
+    except StageFailed as error:
+        found = read_lateness(report)
+        why = "; the host was late even for one test at a time" if to_repeat(found) else _why(found)
+        raise StageFailed(f"{error}{why}") from None
+    worst_ms = max(late.failed.values())
+    return f"passed only when run again, the host was up to {worst_ms} ms late: {', '.join(late.failed)}"
+
+
+def _why(found: Lateness) -> str:
+    return f"; failed though the host was punctual: {', '.join(found.punctual)}" if found.punctual else ""
 
 
 SPIN: Final = """import time

@@ -267,11 +267,13 @@ class Served:
 
     def wait_packet(self, data: bytes) -> None:
         """Wait until the link has taken this packet."""
-        wait_for(f"{len(data)} bytes at the robot, not only {self.got}", lambda: data in self.got, 10)
+        wait_for(f"{len(data)} bytes at the robot, not only {self.got}", lambda: data in self.got, PATIENCE_S)
 
     def wait_error(self, name: str) -> None:
         """Wait until that error is counted."""
-        wait_for(f"error {name}, not only {dict(self.link.errors)}", lambda: self.link.errors[name], 10)
+        wait_for(
+            f"error {name}, not only {dict(self.link.errors)}", lambda: self.link.errors[name], PATIENCE_S
+        )
 
     def end(self) -> None:
         """End the thread and the link."""
@@ -328,7 +330,9 @@ class Dump:
             [program, "-L", interface], stdin=subprocess.DEVNULL, stdout=self._out, stderr=subprocess.PIPE
         )
         wait_for(
-            "candump listens", lambda: Path("/proc/net/can/rcvlist_all").read_text().count(interface), 10
+            "candump listens",
+            lambda: Path("/proc/net/can/rcvlist_all").read_text().count(interface),
+            PATIENCE_S,
         )
 
     def end(self) -> list[str]:
@@ -421,7 +425,7 @@ class Background:
     def end(self) -> None:
         """Stop it; raise what it raised."""
         self._stop.set()
-        self._thread.join(10)
+        self._thread.join(PATIENCE_S)
         if self.error is not None:
             raise self.error
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 from canbus import interface, ip, running, set_up, tc
-from harness import SIP_S, Argusd, Bench, Record, Sim, wait_for
+from harness import PATIENCE_S, SIP_S, Argusd, Bench, Record, Sim, wait_for
 from rules import assert_only, assert_reached, assert_still_between, assert_stops_in_time, cruise
 from worlds import hall
 
@@ -79,7 +79,7 @@ def test_queue_full_for_a_moment_in_motion(bench: Bench, bus: str) -> None:
     tc("qdisc", "add", "dev", bus, "root", "bfifo", "limit", "1")
     time.sleep(0.8)
     tc("qdisc", "del", "dev", bus, "root")
-    wait_for("it is counted", lambda: argusd.status["can"]["no_buffers"], 15)
+    wait_for("it is counted", lambda: argusd.status["can"]["no_buffers"], PATIENCE_S)
     argusd.wait("GOAL_REACHED")
     assert len(argusd.named("SESSION_OPEN")) == 1
     assert argusd.wait_exit() == 0

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 from canbus import Raw, interface, load_dbc
-from harness import Argusd, Bench, Sim, is_at_rest, wait_for
+from harness import PATIENCE_S, Argusd, Bench, Sim, is_at_rest, wait_for
 from rules import assert_reached, cruise
 from worlds import hall
 
@@ -39,7 +39,7 @@ class Vehicle:
     def nonce(self) -> int:
         """That of the next heartbeat."""
         self.raw.drain()
-        beat = self.raw.wait("a heartbeat", lambda one: True, 5)
+        beat = self.raw.wait("a heartbeat", lambda one: True)
         decoded: Any = self.heartbeat_message.decode(beat.data)
         return int(decoded["Nonce"])
 
@@ -83,7 +83,9 @@ def count(argusd: Argusd, what: str) -> int:
 
 def wait_count(argusd: Argusd, what: str, number: int) -> None:
     """Wait for exactly so many orders taken or refused."""
-    wait_for(f"{number} {what}, not {argusd.status.get('can')}", lambda: count(argusd, what) >= number, 10)
+    wait_for(
+        f"{number} {what}, not {argusd.status.get('can')}", lambda: count(argusd, what) >= number, PATIENCE_S
+    )
     assert count(argusd, what) == number
 
 
@@ -124,7 +126,9 @@ def test_stop_and_go(bench: Bench, bus: str, vehicle: Vehicle) -> None:
     ]
     for number, (_, data) in enumerate(wrong, 1):
         vehicle.send(data)
-        wait_for(f"'{wrong[number - 1][0]}' is refused", lambda n=number: count(argusd, "refused") == n, 10)  # type: ignore[misc]
+        wait_for(
+            f"'{wrong[number - 1][0]}' is refused", lambda n=number: count(argusd, "refused") == n, PATIENCE_S
+        )  # type: ignore[misc]
     time.sleep(2.2)
     vehicle.send(late)
     wait_count(argusd, "refused", len(wrong) + 1)

@@ -24,7 +24,7 @@ from canbus import (
     packet,
     tc,
 )
-from harness import wait_for
+from harness import PATIENCE_S, wait_for
 
 from hil_sim.arcos import frame
 from hil_sim.errors import LinkError
@@ -111,7 +111,7 @@ def test_a_message_that_is_not_one_packet_is_refused_and_counted(
     served: Served, host: End, what: str
 ) -> None:
     assert host.send(BAD[what])
-    wait_for("it is counted", lambda: served.link.refused == 1, 10)
+    wait_for("it is counted", lambda: served.link.refused == 1, PATIENCE_S)
     assert not served.got
     assert_works(served, host)
     assert served.link.refused == 1
@@ -177,7 +177,7 @@ def test_two_talkers_on_one_id(served: Served, host: End, bus: str) -> None:
             host.pump(0.02)
     finally:
         second.close()
-    wait_for("an error is counted", lambda: served.link.errors, 10)
+    wait_for("an error is counted", lambda: served.link.errors, PATIENCE_S)
     assert all(got == good for got in served.got)
     # The second talker's begun message would swallow what comes next.
     host.pump(1.2)
@@ -210,8 +210,8 @@ def test_wait_frames_do_no_harm(served: Served, host: End) -> None:
 def test_interface_down_and_up(served: Served, host: End, bus: str) -> None:
     ip("link", "set", bus, "down")
     served.send(packet(50))
-    wait_for("it is noticed", lambda: served.link.errors, 10)
-    wait_for("the packet is lost, not kept", lambda: served.link.lost_packets, 10)
+    wait_for("it is noticed", lambda: served.link.errors, PATIENCE_S)
+    wait_for("the packet is lost, not kept", lambda: served.link.lost_packets, PATIENCE_S)
     ip("link", "set", bus, "up")
     assert_works(served, host)
 
@@ -219,13 +219,13 @@ def test_interface_down_and_up(served: Served, host: End, bus: str) -> None:
 def test_interface_gone_and_back(served: Served, host: End, bus: str) -> None:
     ip("link", "del", bus)
     served.send(packet(50))
-    wait_for("it is noticed", lambda: served.link.errors, 10)
+    wait_for("it is noticed", lambda: served.link.errors, PATIENCE_S)
     time.sleep(0.5)
     ip("link", "add", bus, "type", "vcan")
     ip("link", "set", bus, "up")
     again = End.host(bus)
     try:
-        wait_for("the link is back", lambda: again.send(PULSE) and PULSE in served.got, 10)
+        wait_for("the link is back", lambda: again.send(PULSE) and PULSE in served.got, PATIENCE_S)
         assert_works(served, again)
     finally:
         again.close()
@@ -278,7 +278,7 @@ def test_block_size_makes_the_robot_wait(served: Served, host: End) -> None:
         host.raw.send(TO_ROBOT_ID, flow_control(CONTINUE, blocksize=2))
         for _ in range(2):
             if len(body) < len(data):
-                body += host.raw.wait("a consecutive frame", lambda one: one.data[0] >> 4 == 2, 2).data[1:]
+                body += host.raw.wait("a consecutive frame", lambda one: one.data[0] >> 4 == 2).data[1:]
         assert host.raw.receive(0.05) is None, "it did not wait"
     assert body[: len(data)] == data
 
