@@ -12,6 +12,13 @@ const char *argus_shim_config_choices(uint32_t row);
 int32_t argus_shim_config_get(const argus_config_t *config, uint32_t row);
 void argus_shim_config_set(argus_config_t *config, uint32_t row, int32_t value);
 int32_t argus_shim_config_check(const argus_config_t *config, int32_t *row);
+const char *argus_shim_ring_key(uint32_t row);
+const char *argus_shim_ring_section(uint32_t row);
+const char *argus_shim_ring_fault(int fault);
+size_t argus_shim_robot_size(void);
+void argus_shim_set_ring(argus_t *core, argus_robot_storage_t *storage, const char *name,
+                         const int32_t *figures, const int32_t *mounts, uint8_t sonars,
+                         const int32_t *forward, uint8_t forward_count, int32_t *report);
 bool argus_shim_is_open(const argus_t *core);
 bool argus_shim_event(argus_t *core, int32_t *fields);
 const char *argus_shim_event_field(uint32_t field);
@@ -76,6 +83,68 @@ int32_t argus_shim_config_check(const argus_config_t *config, int32_t *row) {
     const argus_config_report_t report = argus_config_check(config);
     *row = report.key;
     return (int32_t)report.fault;
+}
+
+// A ring of the caller's own. The figures by their row in the table, NULL beyond its end.
+
+typedef struct {
+    const char *key;
+    const char *section;
+    size_t offset;
+} figure_t;
+
+static const figure_t ring_figures[] = {
+#define FIGURE(key, section, def, min, max, meaning) {#key, #section, offsetof(argus_ring_t, key)},
+    ARGUS_RING_TABLE(FIGURE)
+#undef FIGURE
+};
+
+#define FIGURES (sizeof ring_figures / sizeof ring_figures[0])
+
+const char *argus_shim_ring_key(uint32_t row) {
+    return row < FIGURES ? ring_figures[row].key : NULL;
+}
+
+const char *argus_shim_ring_section(uint32_t row) {
+    return row < FIGURES ? ring_figures[row].section : NULL;
+}
+
+const char *argus_shim_ring_fault(const int fault) {
+    switch (fault) {
+#define MEANING(id, name, meaning) \
+    case id:                       \
+        return meaning;
+        ARGUS_RING_FAULT_TABLE(MEANING)
+#undef MEANING
+    default:
+        return "";
+    }
+}
+
+size_t argus_shim_robot_size(void) {
+    return sizeof(argus_robot_storage_t);
+}
+
+// `mounts`: x, y, heading and role of each sonar; `report`: fault, key, sonar. `core` may be NULL.
+void argus_shim_set_ring(argus_t *core, argus_robot_storage_t *storage, const char *name,
+                         const int32_t *figures, const int32_t *mounts, uint8_t sonars,
+                         const int32_t *forward, uint8_t forward_count, int32_t *report) {
+    argus_sonar_mount_t poses[UINT8_MAX];
+    argus_ring_t ring = {.name = name, .mounts = poses, .sonars = sonars, .forward_count = forward_count};
+    for (size_t i = 0; i < FIGURES; i++) {
+        memcpy((char *)&ring + ring_figures[i].offset, &figures[i], sizeof figures[i]);
+    }
+    for (size_t i = 0; i < sonars; i++) {
+        const int32_t *const at = &mounts[4 * i];
+        poses[i] = (argus_sonar_mount_t){(int16_t)at[0], (int16_t)at[1], (int16_t)at[2], (uint8_t)at[3]};
+    }
+    for (size_t i = 0; i < forward_count && i < ARGUS_FORWARD_SONARS; i++) {
+        ring.forward[i] = (uint8_t)forward[i];
+    }
+    const argus_ring_report_t found = argus_set_ring(core, storage, &ring);
+    report[0] = found.fault;
+    report[1] = found.key;
+    report[2] = found.sonar;
 }
 
 bool argus_shim_is_open(const argus_t *core) {

@@ -300,7 +300,8 @@ static void take_state(argus_knowledge_t *const self, const argus_sip_t *const s
 static void take_reading(argus_knowledge_t *const self, const argus_sip_sonar_t *const from) {
     ARGUS_ASSERT(from->number < self->sonars);
     argus_sonar_t *const sonar = &self->sonar[from->number];
-    sonar->reading_mm = from->range_mm;
+    const bool silent = from->range_mm >= self->robot->no_echo_mm;
+    sonar->reading_mm = silent && from->range_mm < ARGUS_NO_ECHO_MM ? ARGUS_NO_ECHO_MM : from->range_mm;
     sonar->reported = true;
     sonar->steady = !self->rotating;
     sonar->sip = self->sips;
@@ -309,7 +310,7 @@ static void take_reading(argus_knowledge_t *const self, const argus_sip_sonar_t 
     sonar->readings++;
     self->fresh |= (argus_mask_t)(1u << from->number);
     self->listed |= self->fresh;
-    self->heard |= (argus_mask_t)(from->range_mm < self->robot->no_echo_mm ? 1u << from->number : 0u);
+    self->heard |= (argus_mask_t)(silent ? 0u : 1u << from->number);
 }
 
 static void take_readings(argus_knowledge_t *const self, const argus_sip_t *const sip) {

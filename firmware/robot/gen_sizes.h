@@ -4,10 +4,13 @@
 #define ARGUS_GEN_SIZES_H
 
 // clang-format off
-#define ARGUS_ROBOTS 4 // rows of argus_robots that are robots as they are built; more follow
+#define ARGUS_ROBOTS 4 // rows of the table that are robots as they are built; their other ends follow
 #define ARGUS_ROBOT_NAME_MAX 16 // the final 0 included
 #define ARGUS_FORWARD_MAX 6 // forward-facing sonars of one robot, at most
 #define ARGUS_TURNS_MAX 24 // different turns of a sonar onto the bearing of one of these, at most
+#define ARGUS_ROBOT_ROWS 7 // those, and their other ends
+#define ARGUS_MANAGED(sonars) ((sonars) < ARGUS_SONARS ? (sonars) : ARGUS_SONARS)
+#define ARGUS_ROBOT_POSES (ARGUS_MANAGED(32) + ARGUS_MANAGED(8) + ARGUS_MANAGED(16)) // sonars of all rings
 // clang-format on
 
 #endif

@@ -7,12 +7,11 @@
 #define SUBCLASS_MAX 32
 
 const argus_robot_t *argus_robot_default(void) {
-    return &argus_robots[0];
+    return &argus_robot_table.robots[0];
 }
 
 const argus_robot_t *argus_robot_unknown(void) {
-    static const argus_robot_t unknown = {.other = -1,
-                                          .front_mm = INT16_MAX,
+    static const argus_robot_t unknown = {.front_mm = INT16_MAX,
                                           .rear_mm = INT16_MAX,
                                           .width_mm = INT16_MAX,
                                           .swing_radius_mm = INT16_MAX,
@@ -45,31 +44,41 @@ const argus_robot_t *argus_robot_find(const char *const subclass) {
         return argus_robot_default();
     }
     for (int i = 0; i < ARGUS_ROBOTS; i++) {
-        if (is_name(subclass, argus_robots[i].name)) {
-            return &argus_robots[i];
+        if (is_name(subclass, argus_robot_table.robots[i].name)) {
+            return &argus_robot_table.robots[i];
         }
     }
     return NULL;
 }
 
 const argus_robot_t *argus_robot_chosen(const int32_t choice) {
-    return choice >= 1 && choice <= ARGUS_ROBOTS ? &argus_robots[choice - 1] : NULL;
+    return choice >= 1 && choice <= ARGUS_ROBOTS ? &argus_robot_table.robots[choice - 1] : NULL;
 }
 
 uint8_t argus_robot_choice(const argus_robot_t *const self) {
-    return argus_robot_is_known(self) ? (uint8_t)(argus_robot_built(self) - argus_robots + 1) : 0;
+    const argus_robot_t *const built = argus_robot_built(self);
+    for (uint8_t i = 0; i < ARGUS_ROBOTS; i++) {
+        if (built == &argus_robot_table.robots[i]) {
+            return (uint8_t)(i + 1);
+        }
+    }
+    return 0;
+}
+
+bool argus_robot_is_own(const argus_robot_t *const self) {
+    return argus_robot_is_known(self) && argus_robot_choice(self) == 0;
 }
 
 const argus_robot_t *argus_robot_other_end(const argus_robot_t *const self) {
-    const argus_robot_t *const other = self->other >= 0 ? &argus_robots[self->other] : NULL;
+    const argus_robot_t *const other = self->other != 0 ? self + self->other : NULL;
     const bool managed_whole = other != NULL && other->forward[0] < ARGUS_SONARS &&
                                other->forward[other->forward_count - 1] < ARGUS_SONARS;
     return managed_whole ? other : NULL;
 }
 
 const argus_robot_t *argus_robot_built(const argus_robot_t *const self) {
-    ARGUS_ASSERT(!self->reversed || self->other >= 0);
-    return self->reversed ? &argus_robots[self->other] : self;
+    ARGUS_ASSERT(!self->reversed || self->other != 0);
+    return self->reversed ? self + self->other : self;
 }
 
 int32_t argus_robot_facing_cdeg(const argus_robot_t *const self) {
@@ -86,7 +95,7 @@ int argus_robot_sonars(const argus_robot_t *const self) {
 
 argus_sonar_pose_t argus_robot_pose(const argus_robot_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < argus_robot_sonars(self));
-    argus_sonar_pose_t pose = argus_sonar_poses[self->first_pose + sonar];
+    argus_sonar_pose_t pose = ((const argus_sonar_pose_t *)((const char *)self + self->poses))[sonar];
     if (self->reversed) {
         pose.x_mm = (int16_t)-pose.x_mm;
         pose.y_mm = (int16_t)-pose.y_mm;

@@ -17,8 +17,11 @@ const argus_robot_t *argus_robot_find(const char *subclass);
 // The robot that the setting `robot` names; NULL for 0 (by subclass) and beyond the table.
 const argus_robot_t *argus_robot_chosen(int32_t choice);
 
-// ... and the value that names it, 0 for the unknown one.
+// ... and the value that names it, 0 for the unknown one and for one of the caller's own.
 uint8_t argus_robot_choice(const argus_robot_t *self);
+
+// Not of the table, and known nonetheless.
+bool argus_robot_is_own(const argus_robot_t *self);
 
 bool argus_robot_is_known(const argus_robot_t *self);
 

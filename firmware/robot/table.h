@@ -15,13 +15,15 @@ typedef struct {
     int16_t heading_deg; // counter-clockwise, 0 = ahead
 } argus_sonar_pose_t;
 
-// One row of hil_sim/tables/robots, which has the source of each figure. A robot with a rear array has a
-// second row, the robot turned by 180 degrees: what holds while its rear leads.
-typedef struct {
+// One row of hil_sim/tables/robots, which has the source of each figure, or a robot of the caller's own. One
+// with a rear array has a second row, the robot turned by 180 degrees: what holds while its rear leads. What
+// else belongs to it is found from its own place, so that a row is the same in flash and in the caller's
+// memory.
+struct argus_robot {
     char name[ARGUS_ROBOT_NAME_MAX]; // the subclass that it announces at SYNC2
-    int8_t other;                    // row of its other end, -1: none
+    int8_t other;                    // rows from here to its other end, 0: none
     bool reversed;                   // the rear leads
-    uint8_t first_pose;              // row of argus_sonar_poses
+    int16_t poses;                   // bytes from here to the poses of its sonars, as it is built
     uint8_t sonars;                  // that it has; argus_robot_sonars() of them are managed
     uint8_t arrays;
     uint8_t front_bumpers; // segments, 0: no bumper
@@ -48,9 +50,20 @@ typedef struct {
     int16_t min_mm;       // readings are from here to no_echo_mm, which says that nothing was heard
     int16_t no_echo_mm;
     int16_t cone_deg;
-} argus_robot_t;
+};
 
-extern const argus_robot_t argus_robots[];           // ARGUS_ROBOTS as they are built, then their other ends
-extern const argus_sonar_pose_t argus_sonar_poses[]; // of robots as they are built
+// ARGUS_ROBOTS as they are built, then their other ends; and the sonars of those as they are built.
+typedef struct {
+    argus_robot_t robots[ARGUS_ROBOT_ROWS];
+    argus_sonar_pose_t poses[ARGUS_ROBOT_POSES];
+} argus_robot_table_t;
+
+extern const argus_robot_table_t argus_robot_table;
+
+// A robot of the caller's own, its other end, and its sonars.
+typedef struct {
+    argus_robot_t rows[2];
+    argus_sonar_pose_t poses[ARGUS_SONARS];
+} argus_own_robot_t;
 
 #endif

@@ -11,8 +11,12 @@
 
 #define STRANGE_SIPS 5 // one SIP may say anything
 
-// The operator's word stands above what the robot says of itself.
+// The caller's ring stands above the operator's word, and that above what the robot says of itself.
 static const argus_robot_t *robot_met(const argus_t *const self) {
+    const argus_robot_t *const built = argus_robot_built(self->knowledge.robot);
+    if (argus_robot_is_own(built)) {
+        return built;
+    }
     const argus_robot_t *const chosen = argus_robot_chosen(self->config.robot);
     return chosen != NULL ? chosen : argus_robot_find(self->session.subclass);
 }

@@ -589,6 +589,97 @@ typedef enum {
     ARGUS_NAME_BAR      // argus_bar_t: unsafe; "" for none
 } argus_name_of_t;
 
+// A ring of the caller's own -------------------------------------------------------------------------------
+
+// What a sonar is for. A number, since it is data: a ring may come out of a file.
+#define ARGUS_ROLE_NONE 0   // it is judged, and its readings count as echoes
+#define ARGUS_ROLE_AHEAD 1  // sees what the robot drives into
+#define ARGUS_ROLE_ASTERN 2 // ... what it backs into
+#define ARGUS_ROLE_ABEAM 3  // looks to a side
+
+// Where a sonar stands and looks, in the frame of the robot, whose origin is its centre of rotation.
+typedef struct {
+    int16_t x_mm;        // ahead
+    int16_t y_mm;        // to the left
+    int16_t heading_deg; // counter-clockwise, above -180 and up to 180
+    uint8_t role;        // ARGUS_ROLE_
+} argus_sonar_mount_t;
+
+#define ARGUS_FORWARD_SONARS 6 // that face forward, at most
+
+// X(key, section, default, minimum, maximum, meaning): the figures of a ring. 0 stands for the default; where
+// that is 0, too, it is worked out of the others, or it must be given (its minimum is above 0). `section` is
+// that of a file.
+#define ARGUS_RING_TABLE(X)                                                                              \
+    X(front_mm, body, 0, 1, 3000, "from the centre of rotation to the front of the body")                \
+    X(rear_mm, body, 0, 1, 3000, "... to its rear")                                                      \
+    X(width_mm, body, 0, 1, 3000, "of the body")                                                         \
+    X(swing_radius_mm, body, 0, 0, 4500, "to its farthest corner; else that of a rectangle")             \
+    X(sonar_face_mm, body, 0, 0, 3000, "x of the foremost sonars; else that of those that face forward") \
+    X(tolerance_centre_mm, body, 0, 0, 3000, "a2 of the paper's eq. 2; else sonar_face_mm")              \
+    X(front_bumpers, body, 0, 0, 7, "segments, 0: no bumper")                                            \
+    X(rear_bumpers, body, 0, 0, 7, "likewise")                                                           \
+    X(decel_mm_s2, motion, 300, 50, 5000, "that the robot brakes with unless set otherwise")             \
+    X(track_mm, motion, 0, 0, 3000, "between the wheels; else width_mm")                                 \
+    X(dist_conv_um, odometry, 1000, 1, 30000, "what one unit of position is")                            \
+    X(min_mm, sonar, 100, 1, 1000, "the least that a sonar reads")                                       \
+    X(no_echo_mm, sonar, 5000, 500, 5000, "a reading of this or more: nothing was heard")                \
+    X(cone_deg, sonar, 30, 5, 90, "that a sonar sees")
+
+// A ring and the body that carries it.
+typedef struct {
+    const char *name; // 1 to 15 letters, for status and logs
+#define ARGUS_RING_FIELD(key, section, def, min, max, meaning) int32_t key;
+    ARGUS_RING_TABLE(ARGUS_RING_FIELD)
+#undef ARGUS_RING_FIELD
+    const argus_sonar_mount_t *mounts;     // of each sonar; eight in turn are one array, which fires in turn
+    uint8_t sonars;                        // how many, up to ARGUS_SONARS
+    uint8_t forward[ARGUS_FORWARD_SONARS]; // those that face forward, left to right
+    uint8_t forward_count;                 // 2 to 6
+} argus_ring_t;
+
+// X(id, NAME, meaning): why a ring is refused.
+#define ARGUS_RING_FAULT_TABLE(X)                                                                          \
+    X(0, OK, "nothing is wrong")                                                                           \
+    X(1, NAME, "a name has 1 to 15 letters")                                                               \
+    X(2, FIGURE, "the figure is missing, or out of its range")                                             \
+    X(3, SONARS, "this build manages fewer sonars, or there is none")                                      \
+    X(4, BESIDE, "the sonar stands beside the body")                                                       \
+    X(5, BEARING, "the sonar's heading is not above -180 and up to 180 degrees")                           \
+    X(6, ROLE, "there is no such role")                                                                    \
+    X(7, ALIKE, "the sonar stands and looks as one before it")                                             \
+    X(8, FORWARD, "forward has 2 to 6 sonars with the role ahead")                                         \
+    X(9, ORDER, "forward goes from left to right, with less than 60 degrees between neighbours")           \
+    X(10, TURNS, "more than 24 different turns put a sonar onto a bearing ahead: fewer must face forward") \
+    X(11, SWING, "S7: the swing circle is within the body, or farther than the sonars see")                \
+    X(12, UNSAFE, "S5: with these settings the robot meets what it sees before it stands")
+
+// The faults by number.
+typedef enum {
+#define ARGUS_RING_FAULT_ENUM(id, name, meaning) ARGUS_RING_##name = (id),
+    ARGUS_RING_FAULT_TABLE(ARGUS_RING_FAULT_ENUM)
+#undef ARGUS_RING_FAULT_ENUM
+} argus_ring_fault_t;
+
+// What is wrong with a ring.
+typedef struct {
+    int32_t fault; // argus_ring_fault_t: the first that was found
+    int32_t key;   // row of ARGUS_RING_TABLE, for ARGUS_RING_FIGURE, else -1
+    int32_t sonar; // that it is about, else -1
+} argus_ring_report_t;
+
+// A robot as the manager keeps it, made of a ring.
+typedef struct argus_robot argus_robot_t;
+
+// Bytes of one.
+#define ARGUS_ROBOT_BYTES (176 + 6 * ARGUS_SONARS)
+
+// Memory of one robot, the caller's: it lives as long as the instance.
+typedef union {
+    uint64_t align;                   // as strict as any member within
+    uint8_t bytes[ARGUS_ROBOT_BYTES]; // the library's own
+} argus_robot_storage_t;
+
 // Instance -------------------------------------------------------------------------------------------------
 
 // Bytes of one manager.
@@ -658,6 +749,15 @@ argus_config_report_t argus_config_check(const argus_config_t *config);
 // argus_config_check(), otherwise the manager starts passive and stays so. The result is in `storage`. Cost:
 // the storage is cleared once.
 argus_t *argus_init(argus_storage_t *storage, const argus_config_t *config, uint32_t now_ms);
+
+// Tagged likewise.
+#define argus_set_ring ARGUS_TAG(argus_set_ring, ARGUS_SONARS)
+
+// After argus_init(), before argus_link_up(): the robot has this ring and body, whatever it says of itself;
+// it stands above the setting `robot`. The ring is copied into `storage`. Where the report names a fault
+// nothing is changed. Without an instance it only checks, with the settings at their defaults. Cost: a few
+// thousand integer operations.
+argus_ring_report_t argus_set_ring(argus_t *self, argus_robot_storage_t *storage, const argus_ring_t *ring);
 
 // The course: 1..ARGUS_WAYPOINTS_MAX points in the frame of the robot's odometry at connection (x ahead, y
 // left, mm, each |v| <= ARGUS_COURSE_LIMIT_MM). False, and nothing changed, when it does not fit. Driving

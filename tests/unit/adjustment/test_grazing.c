@@ -37,7 +37,7 @@ static void read_at(int sonar, double range_mm) {
 // How far beyond the sonar's face a wall at `slant` degrees is when the front corner touches it, on the
 // sonar's axis.
 static double touches_at(double slant_deg) {
-    const double x = argus_sonar_poses[0].x_mm, y = argus_sonar_poses[0].y_mm;
+    const double x = argus_robot_table.poses[0].x_mm, y = argus_robot_table.poses[0].y_mm;
     return HALF_WIDTH_MM - y + (FRONT_MM - x) * tan(slant_deg * RAD);
 }
 

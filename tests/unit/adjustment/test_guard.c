@@ -305,7 +305,7 @@ void test_s7_no_nudge_brings_the_body_near_anything(void) {
 // S7: back -------------------------------------------------------------------------------------------------
 
 static bool looks_aslant_back(int sonar) {
-    const int deg = abs(argus_sonar_poses[sonar].heading_deg);
+    const int deg = abs(argus_robot_table.poses[sonar].heading_deg);
     return deg == 130 || deg == 150;
 }
 
@@ -344,7 +344,7 @@ void test_s7_what_stands_beside_the_way_back_is_passed_by(void) {
             }
             passed++;
             TEST_ASSERT_EQUAL(config.backoff_mm, argus_guard_back_mm(&g));
-            const argus_sonar_pose_t *pose = &argus_sonar_poses[i];
+            const argus_sonar_pose_t *pose = &argus_robot_table.poses[i];
             for (int off = -15; off <= 15; off++) {
                 const double at = (pose->heading_deg + off) * 3.14159265358979 / 180;
                 const double x = pose->x_mm + range * cos(at), y = pose->y_mm + range * sin(at);

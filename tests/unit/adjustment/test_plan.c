@@ -172,7 +172,7 @@ void test_once_around_where_that_is_less(void) {
 
 void test_every_robots_ring(void) {
     for (int r = 0; r < ARGUS_ROBOTS; r++) {
-        const argus_robot_t *robot = &argus_robots[r];
+        const argus_robot_t *robot = &argus_robot_table.robots[r];
         const argus_mask_t forward = argus_robot_forward(robot);
         const argus_mask_t others = (argus_mask_t)(argus_robot_all(robot) & ~(unsigned)forward);
         const argus_plan_t plan = argus_plan(robot, ARGUS_POLICY_ADAPTIVE, forward, others);
@@ -185,7 +185,7 @@ void test_every_robots_ring(void) {
 void test_the_steps_are_bounded(void) {
     uint32_t most = 0;
     for (int r = 0; r < ARGUS_ROBOTS; r++) {
-        const argus_robot_t *robot = &argus_robots[r];
+        const argus_robot_t *robot = &argus_robot_table.robots[r];
         const argus_mask_t forward = argus_robot_forward(robot);
         for (unsigned blind = 1; blind < 1u << robot->forward_count; blind++) {
             argus_plan_t plan = {.disabled = (argus_mask_t)(blind << 1 & forward)};

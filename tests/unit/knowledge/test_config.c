@@ -108,8 +108,8 @@ void test_driving_is_refused_exactly_when_the_inequality_fails(void) { // soak
 
 // S5 solved for the speed ----------------------------------------------------------------------------------
 
-static const argus_robot_t *const robots[] = {&argus_robots[0], &argus_robots[1], &argus_robots[2],
-                                              &argus_robots[3]};
+static const argus_robot_t *const robots[] = {&argus_robot_table.robots[0], &argus_robot_table.robots[1],
+                                              &argus_robot_table.robots[2], &argus_robot_table.robots[3]};
 
 // Settings that the check accepts; `speed_mm_s` is the slowest, so that few are refused.
 static bool draw_settings(random_t *random) {

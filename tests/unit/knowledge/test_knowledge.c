@@ -229,10 +229,12 @@ void test_where_an_echo_lies(void) {
     }
     take(1000);
     for (int i = 0; i < 16; i++) {
-        const double a = argus_sonar_poses[i].heading_deg * 3.14159265358979 / 180;
+        const double a = argus_robot_table.poses[i].heading_deg * 3.14159265358979 / 180;
         const argus_point_t echo = argus_echo_robot(&k, i);
-        TEST_ASSERT_INT32_WITHIN(2, (int32_t)lround(argus_sonar_poses[i].x_mm + 1000 * cos(a)), echo.x_mm);
-        TEST_ASSERT_INT32_WITHIN(2, (int32_t)lround(argus_sonar_poses[i].y_mm + 1000 * sin(a)), echo.y_mm);
+        TEST_ASSERT_INT32_WITHIN(2, (int32_t)lround(argus_robot_table.poses[i].x_mm + 1000 * cos(a)),
+                                 echo.x_mm);
+        TEST_ASSERT_INT32_WITHIN(2, (int32_t)lround(argus_robot_table.poses[i].y_mm + 1000 * sin(a)),
+                                 echo.y_mm);
     }
     const argus_pose_t pose = {100, 200, 9000};
     const argus_point_t ahead = {1000, 10};

@@ -34,7 +34,7 @@ static uint32_t now(void) {
 // Posts on two bearings of the world, 1000 mm away, before walls at 2000: a healthy sonar that looks at it is
 // disparate.
 static int world_with_post(const robot_t *r, int sonar) {
-    const double bearing = remainder(robot_heading_deg(r) + argus_sonar_poses[sonar].heading_deg, 360);
+    const double bearing = remainder(robot_heading_deg(r) + argus_robot_table.poses[sonar].heading_deg, 360);
     return fabs(bearing - 10) < 5 || fabs(bearing - 100) < 5 ? 1000 : 2000;
 }
 

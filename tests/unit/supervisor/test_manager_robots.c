@@ -670,3 +670,57 @@ void test_the_pose_catches_up_with_an_old_session(void) {
     TEST_ASSERT_TRUE(hypot(robot.x - 4000, robot.y) <= 150);
     finish("old session");
 }
+
+// The P3-DX's own ring and body, given by the caller under another name.
+static argus_sonar_mount_t mounts[16];
+
+static argus_ring_t callers_ring(void) {
+    const argus_robot_t *const like = argus_robot_default();
+    for (int i = 0; i < argus_robot_sonars(like) && i < 16; i++) {
+        const argus_sonar_pose_t at = argus_robot_pose(like, i);
+        const bool ahead = (like->ahead_mask >> i & 1u) != 0, astern = (like->astern_mask >> i & 1u) != 0;
+        const uint8_t role = ahead ? ARGUS_ROLE_AHEAD : astern ? ARGUS_ROLE_ASTERN : ARGUS_ROLE_ABEAM;
+        mounts[i] = (argus_sonar_mount_t){at.x_mm, at.y_mm, at.heading_deg, role};
+    }
+    return (argus_ring_t){.name = "mine",
+                          .front_mm = 210,
+                          .rear_mm = 301,
+                          .width_mm = 425,
+                          .track_mm = 330,
+                          .mounts = mounts,
+                          .sonars = (uint8_t)argus_robot_sonars(like),
+                          .forward = {1, 2, 3, 4, 5, 6},
+                          .forward_count = 6};
+}
+
+void test_a_ring_of_the_callers_own_stands_above_what_the_robot_says(void) {
+    static const char *const names[] = {"powerbot-sh", "", "amigo-sh"};
+    static argus_robot_storage_t storage;
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        start();
+        const argus_ring_t ring = callers_ring();
+        TEST_ASSERT_EQUAL(ARGUS_RING_OK, argus_set_ring(&robot.argus, &storage, &ring).fault);
+        robot.subclass = names[i];
+        TEST_ASSERT_TRUE_MESSAGE(robot_goal(&robot, 600, 0), names[i]);
+        TEST_ASSERT_TRUE_MESSAGE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 60000), names[i]);
+        TEST_ASSERT_EQUAL_MESSAGE(0, robot_count_events(&robot, ARGUS_EV_SUBCLASS_UNKNOWN, 0), names[i]);
+        argus_status_t status;
+        argus_status(&robot.argus, &status);
+        TEST_ASSERT_EQUAL_STRING("mine", status.robot_body);
+        TEST_ASSERT_EQUAL(ARGUS_BAR_NONE, status.bar);
+        finish(names[i]);
+    }
+}
+
+void test_a_ring_that_the_settings_are_unsafe_for_changes_nothing(void) {
+    static argus_robot_storage_t storage;
+    start();
+    argus_ring_t ring = callers_ring();
+    ring.front_mm = 900; // its sonars stand 734 mm behind the front
+    robot.argus.follows.object_range = false;
+    TEST_ASSERT_EQUAL(ARGUS_RING_UNSAFE, argus_set_ring(&robot.argus, &storage, &ring).fault);
+    TEST_ASSERT_EQUAL_PTR(argus_robot_default(), robot.argus.knowledge.robot);
+    TEST_ASSERT_EQUAL(ARGUS_RING_OK, argus_set_ring(NULL, &storage, &ring).fault); // with others it would do
+    robot_run(&robot, 5000);
+    finish("unsafe");
+}

@@ -21,7 +21,7 @@ static const uint8_t E_STOP[] = {0xFA, 0xFB, 0x03, 0x37, 0x00, 0x37};
 
 // 2000 mm on every bearing, but for a post of 600 mm that only a look to the left of 25 degrees (world) sees.
 static int world_with_step(const robot_t *r, int sonar) {
-    const double bearing = remainder(robot_heading_deg(r) + argus_sonar_poses[sonar].heading_deg, 360);
+    const double bearing = remainder(robot_heading_deg(r) + argus_robot_table.poses[sonar].heading_deg, 360);
     return fabs(bearing - 30) < 8 ? 1200 : 2000;
 }
 
@@ -688,7 +688,7 @@ void test_s7_motors_cut_by_the_stop_are_enabled_to_back_away(void) {
 
 // So near it stands in the way back of a robot that passes what is beside it.
 static int blocks_mm(int sonar) {
-    const int deg = abs(argus_sonar_poses[sonar].heading_deg);
+    const int deg = abs(argus_robot_table.poses[sonar].heading_deg);
     return deg == 90 ? 97 + robot.argus.config.backoff_mm / 2 : deg == 130 ? 150 : deg == 150 ? 300 : 450;
 }
 

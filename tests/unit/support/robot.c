@@ -116,7 +116,7 @@ static double ray(const robot_t *robot, double x, double y, double angle) {
 }
 
 int robot_world_segments(const robot_t *robot, int sonar) {
-    const argus_sonar_pose_t *at = &argus_sonar_poses[sonar];
+    const argus_sonar_pose_t *at = &argus_robot_table.poses[sonar];
     const double c = cos(robot->th), s = sin(robot->th);
     const double x = robot->x + at->x_mm * c - at->y_mm * s;
     const double y = robot->y + at->x_mm * s + at->y_mm * c;
@@ -128,7 +128,7 @@ int robot_world_segments(const robot_t *robot, int sonar) {
 }
 
 int robot_world_smooth(const robot_t *r, int sonar) {
-    const argus_sonar_pose_t *at = &argus_sonar_poses[sonar];
+    const argus_sonar_pose_t *at = &argus_robot_table.poses[sonar];
     const double c = cos(r->th), s = sin(r->th);
     const double *w = r->segment[0];
     const double length = hypot(w[2] - w[0], w[3] - w[1]);
@@ -509,7 +509,7 @@ static void obey(robot_t *robot, const uint8_t *packet, const robot_command_t *s
 static double nearest_shown_mm(const robot_t *robot) {
     double nearest = 1e9;
     for (int i = 0; i < 16 && i < ARGUS_SONARS; i++) {
-        const argus_sonar_pose_t *at = &argus_sonar_poses[i];
+        const argus_sonar_pose_t *at = &argus_robot_table.poses[i];
         if (!argus_is_out(&robot->argus.knowledge, i) && robot->argus.knowledge.sonar[i].reported &&
             robot->shown[i] >= 0 && robot->shown[i] < 5000) {
             nearest = fmin(nearest, hypot(at->x_mm + robot->shown[i] * cos(at->heading_deg * DEG),
@@ -524,7 +524,7 @@ static double nearest_shown_mm(const robot_t *robot) {
 static double body_to_shown_mm(const robot_t *robot, double by) {
     double nearest = 1e9;
     for (int i = 0; i < 16 && i < ARGUS_SONARS; i++) {
-        const argus_sonar_pose_t *at = &argus_sonar_poses[i];
+        const argus_sonar_pose_t *at = &argus_robot_table.poses[i];
         if (argus_is_out(&robot->argus.knowledge, i) || robot->shown[i] < 0 || robot->shown[i] >= 5000) {
             continue;
         }

@@ -114,7 +114,7 @@ static int with_noise(scene_t *self, double mm) {
 }
 
 static int true_reading(scene_t *self, int sonar) {
-    const argus_sonar_pose_t *at = &argus_sonar_poses[sonar];
+    const argus_sonar_pose_t *at = &argus_robot_table.poses[sonar];
     const double c = cos(self->th), s = sin(self->th);
     const double x = self->x + at->x_mm * c - at->y_mm * s;
     const double y = self->y + at->x_mm * s + at->y_mm * c;
