@@ -279,7 +279,7 @@ def robots_header(root: Path) -> str:
     """Return the text of gen_sizes.h."""
     robots = read_robots(root)
     body = [
-        f"#define ARGUS_ROBOTS {len(robots)} // rows of the table that are robots as they are built; their other ends follow",
+        f"#define ARGUS_ROBOTS {len(robots)} // rows of robots as they are built; their other ends follow",
         f"#define ARGUS_ROBOT_NAME_MAX {NAME_BYTES} // the final 0 included",
         f"#define ARGUS_FORWARD_MAX {FORWARD_MAX} // forward-facing sonars of one robot, at most",
         f"#define ARGUS_TURNS_MAX {TURNS_MAX} // different turns of a sonar onto the bearing of one of these, at most",

@@ -4,7 +4,7 @@
 #define ARGUS_GEN_SIZES_H
 
 // clang-format off
-#define ARGUS_ROBOTS 4 // rows of the table that are robots as they are built; their other ends follow
+#define ARGUS_ROBOTS 4 // rows of robots as they are built; their other ends follow
 #define ARGUS_ROBOT_NAME_MAX 16 // the final 0 included
 #define ARGUS_FORWARD_MAX 6 // forward-facing sonars of one robot, at most
 #define ARGUS_TURNS_MAX 24 // different turns of a sonar onto the bearing of one of these, at most

@@ -358,7 +358,7 @@ argus_ring_report_t argus_robot_make(argus_own_robot_t *const own, const argus_r
     }
     work_out_figures(ring, figures);
     if (!can_swing(figures)) {
-        return report(ARGUS_RING_SWING, -1, -1);
+        return report(ARGUS_RING_SWING, ROW_swing_radius_mm, -1);
     }
     memset(own, 0, sizeof *own);
     make_built(own, ring, figures);

@@ -18,7 +18,8 @@ from hil_sim.scenario.scenario import SEED_MAX, Scenario, scenario_names, sonar_
 from hil_sim.server.quirks import QUIRKS
 from hil_sim.server.server import SIP_CYCLE_MS
 from hil_sim.tables import robots
-from hil_sim.tables.robot import DEFAULT_ROBOT
+from hil_sim.tables.ring import ring_file
+from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
 from hil_sim.version import add_version
 from hil_sim.world.files import world_names
 from hil_sim.world.model import Pose
@@ -165,6 +166,14 @@ def _sip_cycle(text: str) -> int:
     return int(text)
 
 
+def _ring(text: str) -> str:
+    try:
+        robot_table(ring_file(text))
+    except SimError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return text
+
+
 def _physics(text: str) -> Physics:
     try:
         return parse_physics(text)
@@ -220,6 +229,9 @@ def parser() -> argparse.ArgumentParser:
     )
     place.add_argument(
         "--robot", choices=robots(), metavar="NAME", help=f"{', '.join(robots())} (default {DEFAULT_ROBOT})"
+    )
+    place.add_argument(
+        "--ring", dest="robot", type=_ring, metavar="FILE.toml", help="a ring and body of your own instead"
     )
     place.add_argument("--name", type=_label, help="the robot's name (default: as its table says)")
     place.add_argument(

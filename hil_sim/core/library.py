@@ -6,6 +6,7 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from enum import IntEnum
 from functools import cache
 from pathlib import Path
@@ -64,6 +65,24 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_shim_config_get": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_uint32)),
     "argus_shim_config_set": (None, (ctypes.c_void_p, ctypes.c_uint32, ctypes.c_int32)),
     "argus_shim_config_check": (ctypes.c_int32, (ctypes.c_void_p, ctypes.POINTER(ctypes.c_int32))),
+    "argus_shim_ring_key": (ctypes.c_char_p, (ctypes.c_uint32,)),
+    "argus_shim_ring_section": (ctypes.c_char_p, (ctypes.c_uint32,)),
+    "argus_shim_ring_fault": (ctypes.c_char_p, (ctypes.c_int,)),
+    "argus_shim_robot_size": (ctypes.c_size_t, ()),
+    "argus_shim_set_ring": (
+        None,
+        (
+            ctypes.c_void_p,
+            ctypes.c_void_p,
+            ctypes.c_char_p,
+            ctypes.POINTER(ctypes.c_int32),
+            ctypes.POINTER(ctypes.c_int32),
+            ctypes.c_uint8,
+            ctypes.POINTER(ctypes.c_int32),
+            ctypes.c_uint8,
+            ctypes.POINTER(ctypes.c_int32),
+        ),
+    ),
     "argus_shim_is_open": (ctypes.c_bool, (ctypes.c_void_p,)),
     "argus_shim_event": (ctypes.c_bool, (ctypes.c_void_p, ctypes.POINTER(ctypes.c_int32))),
     "argus_shim_event_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
@@ -266,6 +285,60 @@ def _text(value: bytes) -> str:
     return value.decode("utf-8", "replace")
 
 
+@dataclass(frozen=True)
+class Ring:
+    """A ring and the body that carries it: figures by SECTION.KEY, then x, y, heading and role of each sonar."""
+
+    name: str
+    figures: Mapping[str, int]
+    mounts: tuple[tuple[int, int, int, int], ...]
+    forward: tuple[int, ...]
+
+
+class RingFault(NamedTuple):
+    """Why a ring is refused: the meaning, and what it is about."""
+
+    meaning: str
+    key: str | None
+    """SECTION.KEY of a figure."""
+    sonar: int | None
+
+
+def ring_fault(ring: Ring) -> RingFault | None:
+    """Return what is wrong with a ring, with the settings at their defaults; None: nothing."""
+    return _hand_over(None, _storage(library().argus_shim_robot_size()), ring)
+
+
+@cache
+def _ring_keys() -> tuple[str, ...]:
+    core = library()
+    keys = _names(core.argus_shim_ring_key)
+    sections = _names(core.argus_shim_ring_section)
+    return tuple(f"{section}.{key}" for section, key in zip(sections, keys, strict=True))
+
+
+def _hand_over(core: Any, storage: Any, ring: Ring) -> RingFault | None:
+    keys = _ring_keys()
+    flat = [value for mount in ring.mounts for value in mount]
+    report = (ctypes.c_int32 * 3)()
+    library().argus_shim_set_ring(
+        core,
+        storage,
+        ring.name.encode("utf-8"),
+        (ctypes.c_int32 * len(keys))(*(ring.figures.get(key, 0) for key in keys)),
+        (ctypes.c_int32 * len(flat))(*flat),
+        len(ring.mounts),
+        (ctypes.c_int32 * len(ring.forward))(*ring.forward),
+        len(ring.forward),
+        report,
+    )
+    fault, key, sonar = report
+    if not fault:
+        return None
+    meaning = _text(library().argus_shim_ring_fault(fault))
+    return RingFault(meaning, keys[key] if key >= 0 else None, sonar if sonar >= 0 else None)
+
+
 class Core:
     """One fault manager in memory of its own. Times are ms of any clock; their low 32 bits count."""
 
@@ -289,6 +362,12 @@ class Core:
             keys = [key for key, (at, _, _) in settings().items() if at == row.value]
             what = f"{keys[0]} is out of its range" if keys else "driving would be unsafe (S5)"
             raise InputError(f"the settings do not hold: {what}; see argusd --list-config")
+
+    def set_ring(self, ring: Ring) -> None:
+        """Say which ring and body the robot has, before a link is up; InputError where it is refused."""
+        self._robot = _storage(self._library.argus_shim_robot_size())
+        if fault := _hand_over(self._core, self._robot, ring):
+            raise InputError(f"the ring {ring.name} is refused with these settings: {fault.meaning}")
 
     def link_up(self, now_ms: int) -> None:
         """The transport is open."""

@@ -131,6 +131,8 @@ class Sil:
             for key, value in mission.config.items():
                 given[key] = setting_value(key, str(value))
             core = Core(0, given)
+            if ring := robot_table(mission.robot).ring:
+                core.set_ring(ring)
             if mission.course:
                 core.set_course(_in_robot_frame(self.start, mission.course))
         except InputError as error:

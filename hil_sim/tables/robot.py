@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
 from typing import Any, Final
 
+from hil_sim.core.library import Ring, ring_fault
 from hil_sim.errors import SimError
 from hil_sim.tables import load, robots
+from hil_sim.tables.ring import Lines, is_ring, place_of, read_ring, ring_of
 
 DEFAULT_ROBOT: Final = "p3dx-sh"
 
@@ -52,9 +55,11 @@ class Mount:
 class RobotTable:
     """One robot; the files in hil_sim/tables/robots have the source of each figure.
 
-    motion, odometry: figures by their names in the file. orders: sonars of each array in their default firing order.
+    motion, odometry: figures by their names in the file. orders, places: sonars of each array in their default
+    firing order, and where they are.
     front, rear: sonars of the arrays of that place, or of a ring those that look that way. forward: the paper's
-    forward-facing six or what stands for them.
+    forward-facing six or what stands for them. ring: of one out of a file of the user's, what the fault manager is
+    given; one that it knows has none.
     """
 
     robot_class: str
@@ -67,9 +72,14 @@ class RobotTable:
     cycle_ms: int
     mounts: tuple[Mount, ...]
     orders: tuple[tuple[int, ...], ...]
+    places: tuple[str, ...]
     front: tuple[int, ...]
     rear: tuple[int, ...]
     forward: tuple[int, ...]
+    min_mm: int
+    no_echo_mm: int
+    cone_deg: int
+    ring: Ring | None = None
 
     @property
     def sonars(self) -> int:
@@ -84,14 +94,53 @@ class RobotTable:
 
 @cache
 def robot_table(name: str = DEFAULT_ROBOT) -> RobotTable:
-    """Return the table of a robot by its subclass; SimError for one that there is not.
+    """Return the table of a robot by its subclass, or of FILE.toml; SimError for one that there is not.
+
+    A robot out of a file is known by its subclass, too, from then on.
 
     >>> robot_table("p3dx-sh").sonars
     16
     """
+    if is_ring(name):
+        return _own(Path(name))
+    if name in _OWN:
+        return _OWN[name]
     if name not in robots():
-        raise SimError(f"no robot '{name}'; name one of {', '.join(robots())}")
-    table = load(f"robots/{name}")
+        raise SimError(f"no robot '{name}'; name one of {', '.join(robots())}, or a file FILE.toml")
+    return _built(load(f"robots/{name}"))
+
+
+_OWN: Final[dict[str, RobotTable]] = {}
+
+
+def own_ring(subclass: str) -> Ring | None:
+    """Return the ring of a robot that was read out of a file; None of any other."""
+    table = _OWN.get(subclass)
+    return table.ring if table else None
+
+
+def _own(path: Path) -> RobotTable:
+    table, lines = read_ring(path)
+    ring = ring_of(table)
+    _check(ring, lines)
+    robot = replace(_built(table), ring=ring)
+    if ring.name in robots():
+        raise SimError(
+            f"{lines.where('identity', 'subclass')}: {ring.name} is a robot that is known; give another name"
+        )
+    _OWN[ring.name] = robot
+    robot_table.cache_clear()
+    return robot
+
+
+def _check(ring: Ring, lines: Lines) -> None:
+    """Let the fault manager itself judge a ring."""
+    if fault := ring_fault(ring):
+        what = f"{fault.key}: " if fault.key else f"sonar {fault.sonar}: " if fault.sonar is not None else ""
+        raise SimError(f"{place_of(fault.key, fault.sonar, lines)}: {what}{fault.meaning}")
+
+
+def _built(table: dict[str, Any]) -> RobotTable:
     identity, body, sonar = table["identity"], table["body"], table["sonar"]
     mounts = tuple(
         Mount(float(p["x_mm"]), float(p["y_mm"]), float(p["heading_deg"]), p["array"], p["role"])
@@ -116,9 +165,13 @@ def robot_table(name: str = DEFAULT_ROBOT) -> RobotTable:
         cycle_ms=sonar["cycle_ms"],
         mounts=mounts,
         orders=tuple(tuple(array["order"]) for array in sonar["array"]),
+        places=tuple(str(array["place"]) for array in sonar["array"]),
         front=front,
         rear=tuple(n for n in range(len(mounts)) if n not in front),
         forward=tuple(sonar["forward"]),
+        min_mm=sonar["min_mm"],
+        no_echo_mm=sonar["no_echo_mm"],
+        cone_deg=sonar["cone_deg"],
     )
 
 

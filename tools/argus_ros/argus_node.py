@@ -28,7 +28,7 @@ from argus_ros.repair import Policy, Verdict, bearings, neighbours
 from argus_ros.stamped import Beside
 from argus_ros.watcher import Watcher
 from argus_ros.wheels import Wheels
-from hil_sim.tables import load, robots
+from hil_sim.tables import robots
 from hil_sim.tables.robot import DEFAULT_ROBOT, RobotTable, robot_table
 
 SILENT_S: Final = 1.5
@@ -40,10 +40,9 @@ class _Ring:
     """What was last said of each sonar."""
 
     def __init__(self, table: RobotTable) -> None:
-        sonar = load(f"robots/{table.subclass}")["sonar"]
         self.table = table
-        self.limits = Limits(sonar["min_mm"] / 1000, sonar["no_echo_mm"] / 1000)
-        self.view_rad = math.radians(sonar["cone_deg"])
+        self.limits = Limits(table.min_mm / 1000, table.no_echo_mm / 1000)
+        self.view_rad = math.radians(table.cone_deg)
         self.covered_by = {k: neighbours(k, bearings(table)) for k in bearings(table)}
         self.verdicts = [Verdict()] * SONARS
         self.reading_mm = [-1] * SONARS

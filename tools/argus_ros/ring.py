@@ -15,7 +15,6 @@ from argus_tools.rings.packet import empty, identity_of, packet
 from argus_ros.repair import Verdict
 from hil_sim.arcos import TIMING
 from hil_sim.core.library import Core, Event
-from hil_sim.tables import load
 from hil_sim.tables.robot import RobotTable
 
 _SIP_MS: Final = TIMING["SIP_CYCLE_MS"]
@@ -32,10 +31,9 @@ class Ring:
     """
 
     def __init__(self, table: RobotTable, settings: Mapping[str, int] | None = None) -> None:
-        sonar = load(f"robots/{table.subclass}")["sonar"]
         self._table = table
-        self._no_echo_mm: int = sonar["no_echo_mm"]
-        self._least_mm: int = sonar["min_mm"]
+        self._no_echo_mm = table.no_echo_mm
+        self._least_mm = table.min_mm
         self._settings = {**(settings or {}), "active": 0}
         self.motion = Motion()
         self._fresh: dict[int, int] = {}

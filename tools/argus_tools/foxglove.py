@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any, Final
 
-from hil_sim.tables import load, robots
-from hil_sim.tables.robot import DEFAULT_ROBOT
+from hil_sim.tables import robots
+from hil_sim.tables.robot import DEFAULT_ROBOT, Mount, own_ring, robot_table
 
 FRAME_ROBOT, FRAME_WORLD = "base_link", "odom"
 INFO, WARNING, ERROR = 2, 3, 4  # levels of foxglove.Log
@@ -156,11 +156,11 @@ class Sonars:
     """The sonars of a robot: where they are, and the limits of their readings."""
 
     def __init__(self, subclass: str) -> None:
-        sonar = load(f"robots/{subclass}")["sonar"]
-        self.poses = {pose["number"]: pose for pose in sonar["pose"]}
-        self.no_echo_mm: int = sonar["no_echo_mm"]
-        self.min_mm: int = sonar["min_mm"]
-        self.view_rad = math.radians(sonar["cone_deg"])
+        table = robot_table(subclass)
+        self.poses = dict(enumerate(table.mounts))
+        self.no_echo_mm = table.no_echo_mm
+        self.min_mm = table.min_mm
+        self.view_rad = math.radians(table.cone_deg)
 
     def reading(self, number: int, range_mm: int) -> dict[str, Any]:
         """Return an argus.SonarRange."""
@@ -177,7 +177,7 @@ class Sonars:
         if is_echo:
             message["range_m"] = range_mm / 1000
         if at := self.poses.get(number):
-            message["pose"] = pose(at["x_mm"], at["y_mm"], at["heading_deg"])
+            message["pose"] = pose(at.x_mm, at.y_mm, at.heading_deg)
         return message
 
     def beams(
@@ -205,10 +205,10 @@ class Sonars:
         is_doubted = number < len(health) and health[number] == "SUSPECT"
         color = _ECHO if range_mm < self.no_echo_mm else _NOTHING
         color = _FAULTY if is_faulty else _DOUBTED if is_doubted else color
-        at = self.poses.get(number, {"x_mm": 0, "y_mm": 0, "heading_deg": 0})
+        at = self.poses.get(number, Mount(0, 0, 0, 0, "none"))
         line = {
             "type": _LINE_STRIP,
-            "pose": pose(at["x_mm"], at["y_mm"], at["heading_deg"]),
+            "pose": pose(at.x_mm, at.y_mm, at.heading_deg),
             "thickness": _THICK_M if is_faulty else _THIN_M,
             "scale_invariant": False,
             "points": [{"x": 0.0, "y": 0.0, "z": 0.0}, {"x": range_mm / 1000, "y": 0.0, "z": 0.0}],
@@ -251,7 +251,7 @@ TOPICS: Final = {
 @cache
 def sonars_of(subclass: str) -> Sonars:
     """Return the sonars of a robot; of one that is not known, those of a P3-DX."""
-    return Sonars(subclass if subclass in robots() else DEFAULT_ROBOT)
+    return Sonars(subclass if subclass in robots() or own_ring(subclass) else DEFAULT_ROBOT)
 
 
 def stamp_of(t_ns: int) -> dict[str, int]:

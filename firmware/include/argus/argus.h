@@ -664,7 +664,7 @@ typedef enum {
 // What is wrong with a ring.
 typedef struct {
     int32_t fault; // argus_ring_fault_t: the first that was found
-    int32_t key;   // row of ARGUS_RING_TABLE, for ARGUS_RING_FIGURE, else -1
+    int32_t key;   // row of ARGUS_RING_TABLE that it is about, else -1
     int32_t sonar; // that it is about, else -1
 } argus_ring_report_t;
 
@@ -749,9 +749,6 @@ argus_config_report_t argus_config_check(const argus_config_t *config);
 // argus_config_check(), otherwise the manager starts passive and stays so. The result is in `storage`. Cost:
 // the storage is cleared once.
 argus_t *argus_init(argus_storage_t *storage, const argus_config_t *config, uint32_t now_ms);
-
-// Tagged likewise.
-#define argus_set_ring ARGUS_TAG(argus_set_ring, ARGUS_SONARS)
 
 // After argus_init(), before argus_link_up(): the robot has this ring and body, whatever it says of itself;
 // it stands above the setting `robot`. The ring is copied into `storage`. Where the report names a fault

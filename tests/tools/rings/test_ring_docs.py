@@ -19,8 +19,14 @@ COMMANDS = [
 
 
 def test_the_commands_run_in_their_order(tmp_path: Path) -> None:
-    for sample in re.findall(r"\(samples/([\w.]+)\)", DOCS):
+    for sample in re.findall(r"\(samples/(\w+\.\w+)\)", DOCS):
         shutil.copy(ROOT / "docs" / "samples" / sample, tmp_path)
+    [ring] = re.findall(r"```toml\n(.*?)```", DOCS, re.DOTALL)
+    poses = "".join(
+        f'[[sonar.pose]]\nx_mm = 100\ny_mm = {y}\nheading_deg = {deg}\nrole = "ahead"\n'
+        for y, deg in ((50, 20), (-50, -20))
+    )
+    (tmp_path / "mine.toml").write_text(ring + poses)  # the page shows one sonar of three
     folder = tmp_path / "bin"
     folder.mkdir()
     for name, module in (("argus-log", "-m argus_tools.log.cli"), ("python", "")):

@@ -20,7 +20,7 @@ from hil_sim.output import guarded, is_of_output
 from hil_sim.version import add_version
 
 # Each module has SUMMARY, EXAMPLES, add_arguments(parser) and run(args) -> exit code.
-COMMANDS: Final = ("decode", "stats", "faults", "plot", "convert", "replay", "diff")
+COMMANDS: Final = ("decode", "stats", "faults", "plot", "convert", "replay", "diff", "ring")
 
 _EPILOG = """\
 examples:

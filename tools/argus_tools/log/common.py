@@ -16,6 +16,9 @@ from argus_tools.chunks import CLIENT_TO_ROBOT, EXPECTED, ROBOT_TO_CLIENT
 from argus_tools.formats import Chunk, Log, LogError, ReadOptions, formats
 from argus_tools.log.packets import Row, packets
 from hil_sim.arguments import whole
+from hil_sim.errors import SimError
+from hil_sim.tables.ring import ring_file
+from hil_sim.tables.robot import robot_table
 
 EXIT_READ, EXIT_DAMAGE, EXIT_UNUSABLE = 0, 1, 2
 EXIT_CODES: Final = (
@@ -89,6 +92,24 @@ def add_log_arguments(parser: argparse.ArgumentParser, follow: bool = False) -> 
     parser.add_argument("--strict", action="store_true", help="exit with 1 if anything in the log is damaged")
     if follow:
         parser.add_argument("--follow", action="store_true", help="wait for more at the end, until Ctrl-C")
+
+
+def add_robot_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that say whose log it is."""
+    robot = parser.add_mutually_exclusive_group()
+    robot.add_argument(
+        "--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)"
+    )
+    robot.add_argument(
+        "--ring", dest="subclass", type=_own_ring, metavar="FILE.toml", help="a ring and body of your own"
+    )
+
+
+def _own_ring(text: str) -> str:
+    try:
+        return robot_table(ring_file(text)).subclass
+    except (SimError, LogError) as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 class Input:

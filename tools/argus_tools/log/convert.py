@@ -9,7 +9,14 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from argus_tools.formats import Chunk, Format, LogError, ReadOptions, format_of_name, formats
-from argus_tools.log.common import Input, Times, add_log_arguments, add_time_arguments, binary_output
+from argus_tools.log.common import (
+    Input,
+    Times,
+    add_log_arguments,
+    add_robot_arguments,
+    add_time_arguments,
+    binary_output,
+)
 from argus_tools.log.decode import CSV_COLUMNS, csv_row
 from argus_tools.log.fields import Decoder
 from argus_tools.log.packets import Row
@@ -34,9 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "output", metavar="OUTPUT", help="the file to write; its ending says the format; - is stdout"
     )
     parser.add_argument("--to-format", choices=[*writable, *TABLES], help="the format to write")
-    parser.add_argument(
-        "--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)"
-    )
+    add_robot_arguments(parser)
     add_time_arguments(parser)
 
 

@@ -15,6 +15,7 @@ from argus_tools.log.common import (
     Input,
     Times,
     add_log_arguments,
+    add_robot_arguments,
     add_time_arguments,
     sonar_numbers,
     use_colour,
@@ -73,9 +74,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     output.add_argument("--csv", action="store_true", help="comma-separated values with a header line")
     parser.add_argument("--type", type=_types, metavar="NAME,...", help="these packets only, as SIP,VEL")
     parser.add_argument("--sonar", type=sonar_numbers, metavar="N,...", help="SIPs with these sonars only")
-    parser.add_argument(
-        "--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)"
-    )
+    add_robot_arguments(parser)
     add_time_arguments(parser)
 
 

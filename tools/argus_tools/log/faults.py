@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final, NamedTuple
 
 from argus_tools.chunks import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT, LogError
-from argus_tools.log.common import Input, add_log_arguments, show_table, use_colour
+from argus_tools.log.common import Input, add_log_arguments, add_robot_arguments, show_table, use_colour
 from argus_tools.log.opening import identity_in, is_sip, opened
 from argus_tools.log.packets import Row
 from argus_tools.log.summary import Summary
@@ -206,9 +206,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="a setting, see argusd --list-config"
     )
-    parser.add_argument(
-        "--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)"
-    )
+    add_robot_arguments(parser)
 
 
 def _given(args: argparse.Namespace) -> dict[str, int]:

@@ -11,6 +11,7 @@ from argus_tools.chunks import ROBOT_TO_CLIENT, LogError
 from argus_tools.log.packets import Row
 from hil_sim.arcos import COMMAND, TIMING, Command, PacketError, Sip, SyncEcho, SyncReply, Unframer, frame
 from hil_sim.core.library import Core
+from hil_sim.tables.robot import own_ring
 
 _STEP_MS: Final = 10
 _LIMIT_MS: Final = 10_000
@@ -74,6 +75,8 @@ class _Robot:
 def opened(settings: Mapping[str, int], identity: SyncReply, sip: bytes) -> tuple[Core, int]:
     """Return a manager that has a session, and its time in ms. `sip`: the first, of which no reading is taken."""
     core = Core(0, settings)
+    if ring := own_ring(identity.subclass.decode("latin-1")):
+        core.set_ring(ring)
     robot = _Robot(identity, sip)
     core.link_up(0)
     now_ms = 0

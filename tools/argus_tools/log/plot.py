@@ -24,6 +24,7 @@ from argus_tools.log.common import (
     Input,
     Times,
     add_log_arguments,
+    add_robot_arguments,
     add_time_arguments,
     binary_output,
     seconds,
@@ -128,9 +129,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--at", type=seconds, metavar="T", help="moment of the ring (default: the end); as --from"
     )
     parser.add_argument("--sonar", type=sonar_numbers, metavar="N,...", help="these sonars only")
-    parser.add_argument(
-        "--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)"
-    )
+    add_robot_arguments(parser)
     parser.add_argument(
         "--profile", default="argus", metavar="NAME", help="rules that find what is shaded (default: argus)"
     )

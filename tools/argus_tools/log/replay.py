@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, Final
 
 from argus_tools.chunks import ROBOT_TO_CLIENT, LogError
-from argus_tools.log.common import EXIT_READ, Input, add_log_arguments
+from argus_tools.log.common import EXIT_READ, Input, add_log_arguments, add_robot_arguments
 from argus_tools.log.opening import identity_in
 from argus_tools.log.packets import Row
 from hil_sim.arcos import COMMAND, TIMING, Command, ConfigPac, SyncEcho, SyncReply, Unframer, frame
@@ -223,9 +223,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     pace.add_argument("--step", action="store_true", help="Enter lets one SIP through, N and Enter N of them")
     parser.add_argument("--loop", action="store_true", help="begin anew at the log's end, until Ctrl-C")
-    parser.add_argument(
-        "--subclass", metavar="NAME", help="robot's subclass (default: as it says, or p3dx-sh)"
-    )
+    add_robot_arguments(parser)
 
 
 def _link(args: argparse.Namespace) -> Link:

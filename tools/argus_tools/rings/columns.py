@@ -28,7 +28,6 @@ from argus_tools.rings.packet import identity_of
 from argus_tools.rings.packets import Pacer
 from argus_tools.rings.silence import Silence
 from hil_sim.arcos import frame
-from hil_sim.tables import load
 from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
 
 LINE_MOST: Final = 1 << 20
@@ -174,8 +173,7 @@ class ColumnsLog:
                 f"{self._table.sonars} sonars; --subclass names another robot"
             )
         reader = _Reading(columns, head, self._table.motion["track_mm"])
-        sonar = load(f"robots/{self._table.subclass}")["sonar"]
-        silence = Silence(sonar["no_echo_mm"], sonar["min_mm"])
+        silence = Silence(self._table.no_echo_mm, self._table.min_mm)
         present = set()
         for _, row in head:
             for number, range_m in reader.ranges(row).items():

@@ -29,7 +29,6 @@ from argus_tools.rings.sensors import (
     points_of,
 )
 from argus_tools.rings.silence import Silence
-from hil_sim.tables import load
 from hil_sim.tables.robot import DEFAULT_ROBOT, RobotTable, robot_table
 
 ODOMETRY: Final = "nav_msgs/msg/Odometry"
@@ -67,8 +66,7 @@ def planned(recording: Recording, name: str, topic: str | None, robot: str | Non
         raise LogError(f"{name}: no message of {', '.join(one.name for one in chosen)} can be read")
     default = robot_table(robot or DEFAULT_ROBOT)
     sensors = _sensors(seen, robot_table(robot) if robot else None, frames, default)
-    sonar = load(f"robots/{sensors.table.subclass}")["sonar"]
-    silence = Silence(sonar["no_echo_mm"], sonar["min_mm"], sensors.greatest_m)
+    silence = Silence(sensors.table.no_echo_mm, sensors.table.min_mm, sensors.greatest_m)
     present: set[int] = set()
     for message in seen:
         try:
