@@ -20,7 +20,7 @@ import pytest
 from argus_tools.chunks import ReadOptions
 from argus_tools.control import Client, ControlError, Refused
 from argus_tools.formats.record import FORMAT
-from harness import PATIENCE_S, ROOT, Argusd, Bench, wait_for
+from harness import ARGUSD, PATIENCE_S, ROOT, Argusd, Bench, wait_for
 from rules import assert_reached
 from test_screen import Terminal
 from worlds import hall
@@ -247,6 +247,66 @@ def test_a_screen_is_attached_and_leaves(bench: Bench) -> None:
     finally:
         terminal.close()
     assert argusd.process.poll() is None
+
+
+def test_a_screen_shows_that_argusd_hangs_and_that_it_goes_on(bench: Bench) -> None:
+    bench.sim(bench.world(**hall()))
+    argusd = start(bench, active=False)
+    terminal = Terminal(["--attach", place_of(bench)], "vt52", 80)
+    try:
+        terminal.wait_shown("HEALTHY")
+        argusd.process.send_signal(signal.SIGSTOP)
+        terminal.wait_shown("NO NEWS")
+        terminal.wait_shown("argusd reports nothing")
+        argusd.process.send_signal(signal.SIGCONT)
+        terminal.wait_shown("argusd reports again")
+        terminal.wait_shown("online")
+        # The screen is a process of its own: it shows as well that the one that feeds it hangs.
+        terminal.process.send_signal(signal.SIGSTOP)
+        terminal.wait_shown("NO NEWS")
+        terminal.process.send_signal(signal.SIGCONT)
+        terminal.wait_shown("online")
+        terminal.press("q")
+        assert terminal.wait_exit() == 0
+    finally:
+        argusd.process.send_signal(signal.SIGCONT)
+        terminal.close()
+
+
+def test_a_stream_of_an_argusd_that_hangs_has_no_states_and_says_why(bench: Bench) -> None:
+    bench.sim(bench.world(**hall()))
+    argusd = start(bench, active=False)
+    attached = subprocess.Popen(
+        [str(ARGUSD), "--attach", place_of(bench), "--json", "--status", "200"],
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    watching = subprocess.Popen(
+        [str(ARGUSCTL), "--socket", place_of(bench), "watch", "readings"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    try:
+        assert attached.stdout is not None
+        assert attached.stderr is not None
+        assert watching.stderr is not None
+        assert watching.stdout is not None
+        assert attached.stdout.readline()
+        assert watching.stdout.readline()
+        argusd.process.send_signal(signal.SIGSTOP)
+        assert "reports nothing" in attached.stderr.readline()
+        assert "reports nothing" in watching.stderr.readline()
+        argusd.process.send_signal(signal.SIGCONT)
+        assert "reports again" in attached.stderr.readline()
+        assert "reports again" in watching.stderr.readline()
+        attached.send_signal(signal.SIGINT)
+        lines = [json.loads(line) for line in attached.communicate(timeout=60)[0].splitlines()]
+        times = [line["t"] for line in lines if line["event"] == "STATUS"]
+        repeated = max(times.count(t) for t in times)
+        assert repeated <= 10, "of the last state before the silence there are a few, not one for each period"
+    finally:
+        argusd.process.send_signal(signal.SIGCONT)
+        for process in (attached, watching):
+            process.kill()
+            process.communicate()
 
 
 def test_the_monitor_shows_that_screen_in_the_place_of_its_page(bench: Bench) -> None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import random
+import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -122,8 +123,8 @@ def send(one: Stormed, chance: random.Random) -> Any:
     return twist
 
 
-def change(one: Stormed, chance: random.Random) -> None:
-    """Make a random transition from an active node, and come back."""
+def change(one: Stormed, chance: random.Random, cleanups: float) -> None:
+    """Make a random transition from an active node, and come back; `cleanups`: how often it is configured anew."""
     node = one.node
     node.trigger_deactivate()
     orders = one.wheels.orders
@@ -132,7 +133,7 @@ def change(one: Stormed, chance: random.Random) -> None:
     for _ in range(20):
         send(one, chance)
     assert len(orders) == count, "an order while the node is not active"
-    if chance.random() < 0.3:
+    if chance.random() < cleanups:
         before = one.wheels
         node.trigger_cleanup()
         assert before.is_closed
@@ -142,7 +143,7 @@ def change(one: Stormed, chance: random.Random) -> None:
     node.trigger_activate()
 
 
-def storm(one: Stormed, count: int, seed: int) -> None:
+def storm(one: Stormed, count: int, seed: int, cleanups: float = 0.3) -> None:
     print(f"seed {seed}")
     chance = random.Random(seed)
     driven = 0
@@ -166,7 +167,7 @@ def storm(one: Stormed, count: int, seed: int) -> None:
             one.diagnoses.clear()
             del orders[:-1]
         if k % 500 == 499:
-            change(one, chance)
+            change(one, chance, cleanups)
     assert driven > count / 20
     reasons = {why for counts in one.node._intake.counts.values() for why in counts}
     assert not [why for why in reasons if why.startswith(UNFORESEEN)]
@@ -186,5 +187,5 @@ def test_random_orders_end_no_node_and_move_it_within_bounds(stormed: Stormed, s
 
 @pytest.mark.soak
 def test_a_million_random_orders(stormed: Stormed) -> None:
-    """Not of the stage: build/venv-ros/bin/python -m pytest -m soak tests/ros. It makes some 600 DDS participants."""
-    storm(stormed, 1_000_000, 3)
+    storm(stormed, 1_000_000, 3, cleanups=0.03)
+    assert threading.active_count() <= 3

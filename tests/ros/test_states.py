@@ -149,7 +149,7 @@ def test_the_guard_publishes_nothing_behind_its_end(end: str, monkeypatch: pytes
 
     assert bench.until(tell)
     if end == "error":
-        monkeypatch.setattr(guard, "_rest", lambda: 1 / 0 if guard._is_configured and guard._parts else None)
+        monkeypatch.setattr(guard, "_rest", lambda: 1 / 0)  # in the transition, and in its error again
     getattr(guard, f"trigger_{'deactivate' if end in ('cleanup', 'error') else end}")()
     if end == "cleanup":
         guard.trigger_cleanup()
@@ -163,6 +163,31 @@ def test_the_guard_publishes_nothing_behind_its_end(end: str, monkeypatch: pytes
         assert bench.until(lambda: driver.ranges[3].get_subscription_count() == 0)
     bench.close()
     driver.destroy_node()
+    guard.destroy_node()
+
+
+@pytest.mark.parametrize("broken", ["_rest", "_close", "discard"])
+def test_a_part_whose_end_fails_keeps_no_other_from_its_end(
+    broken: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    guard = RangeGuard()
+    guard.trigger_configure()
+    guard.trigger_activate()
+    ended = []
+    for name in ("_rest", "_close", "discard"):
+
+        def step(*given: Any, name: str = name) -> None:
+            ended.append(name)
+            if name == broken:
+                raise OSError("broken")
+
+        monkeypatch.setattr(guard, name, step)
+    count = len(guard._parts)
+    guard.trigger_shutdown()
+    assert ended == ["_rest", "_close", *["discard"] * count]
+    assert count > 16
+    assert not guard._active
+    monkeypatch.undo()
     guard.destroy_node()
 
 

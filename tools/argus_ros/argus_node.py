@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import time
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final
 
@@ -108,7 +109,8 @@ class ArgusNode(ArgusLifecycleNode):
         self._taken["cmd_vel"] += f" {type_name(TwistStamped)}"
         wake = self.create_guard_condition(self._take_stamped)
         self._parts.append(wake)
-        self._stamped = Beside(self, TwistStamped, "cmd_vel", qos, wake.trigger)
+        self._stamped = self._stamped or Beside(self)
+        self._stamped.join(TwistStamped, self.resolve_topic_name("cmd_vel"), qos, wake.trigger)
 
     def _forget(self) -> None:
         """Forget what one connection to argusd told: its clock and its verdicts end with it."""
@@ -159,10 +161,21 @@ class ArgusNode(ArgusLifecycleNode):
 
     def _close(self) -> None:
         """Leave the guard, then argusd."""
-        for part in (self._wheels, self._stamped, self._watcher):
-            if part is not None:
-                part.close()
-        self._wheels = self._stamped = self._watcher = None
+        wheels, watcher = self._wheels, self._watcher
+        self._wheels = self._watcher = None
+        with ExitStack() as ends:  # in turn from the last, each whatever becomes of the others
+            if watcher is not None:
+                ends.callback(watcher.close)
+            if self._stamped is not None:
+                ends.callback(self._stamped.leave)
+            if wheels is not None:
+                ends.callback(wheels.close)
+
+    def _finish(self) -> None:
+        """End the second participant, which is kept from one configuration to the next."""
+        stamped, self._stamped = self._stamped, None
+        if stamped is not None:
+            stamped.close()
 
     # ---- what comes
 

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, Final
 
 import rclpy
@@ -33,6 +35,7 @@ except ImportError:  # a package of p2os2, where that driver is
 
 EXIT_USAGE: Final = 2
 TICK_S: Final = 0.1
+_RAISED_MAX: Final = 16
 LATCHED: Final = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -54,6 +57,7 @@ class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
         self._parts: list[Any] = []
         self._taken: dict[str, str] = {}
         self._mismatched: dict[str, str] = {}
+        self._raised: Counter[str] = Counter()
         self._table_of_parameters = table
         super().__init__(name, **options)
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -150,25 +154,30 @@ class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
 
     def on_shutdown(self, state: Any) -> Any:
         """End all parts for ever."""
-        return self.on_cleanup(state)
+        result = self.on_cleanup(state)
+        self._finish()
+        return result
 
     def on_error(self, state: Any) -> Any:
         """End all parts after a transition that failed; the node may be configured again."""
         return self.on_cleanup(state)
 
     def _end(self) -> None:
+        """End all parts; one that raises keeps no other from its end."""
         self._active = self._is_configured = False
-        self._rest()
-        self._close()
         parts, self._parts = self._parts, []
         self._taken.clear()
         self._mismatched.clear()
-        for part in parts:
-            self.discard(part)
+        for step in (self._rest, self._close, *(partial(self.discard, part) for part in parts)):
+            try:
+                step()
+            except Exception as error:
+                self.note_raised(error)
 
     def destroy_node(self) -> None:
         """End all parts, then the node; it may be one that was not made whole."""
         self._end()
+        self._finish()
         super().destroy_node()
 
     # ---- topics
@@ -186,6 +195,14 @@ class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
         self._taken[topic] = type_name(kind)
         self._parts.append(self.create_subscription(kind, topic, take, qos, event_callbacks=events))
 
+    def note_raised(self, error: Exception) -> None:
+        """Report what a callback raised, once for each kind, and count it."""
+        words = f"{type(error).__name__}: {' '.join(str(error).split())}"
+        if words not in self._raised and len(self._raised) < _RAISED_MAX:
+            self.get_logger().error(f"a message or request was not handled: {words}")
+        if words in self._raised or len(self._raised) < _RAISED_MAX:
+            self._raised[words] += 1
+
     def _mismatch(self, topic: str, who: str) -> Callable[[Any], None]:
         def noted(event: Any) -> None:
             policy = qos_policy_name_from_kind(event.last_policy_kind)
@@ -200,6 +217,7 @@ class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
             types = {info.topic_type for info in self.get_publishers_info_by_topic(topic)}
             if others := sorted(types - {*kind.split()}):
                 found[topic] = f"published as {others[0]}, taken as {kind}"
+        found |= {words: f"not handled, {count} times" for words, count in self._raised.items()}
         words = "; ".join(f"{topic}: {why}" for topic, why in found.items()) or "all fit"
         level = messages.WARN if found else messages.OK
         return messages.status(level, f"{self.owner}: topics", words, "", found)
@@ -215,6 +233,9 @@ class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
 
     def _close(self) -> None:
         """End threads and connections."""
+
+    def _finish(self) -> None:
+        """End what lives as long as the node."""
 
     def discard(self, part: Any) -> None:
         """Destroy a publisher, subscription, service, timer or guard condition of this node."""
@@ -253,6 +274,22 @@ def _descriptor(parameter: Parameter) -> Any:
     return made
 
 
+def spin(node: ArgusLifecycleNode, executor: Any) -> None:
+    """Spin to the end of the context. What a callback raises ends no node: it is reported and counted.
+
+    Our own callbacks raise for no message; some of rclpy's do, as that of /clock for a time before 1970.
+    """
+    while node.context.ok():
+        try:
+            executor.spin()
+        except (KeyboardInterrupt, ExternalShutdownException):
+            raise
+        except Exception as error:
+            node.note_raised(error)
+        else:
+            return
+
+
 def run_node(make: Callable[[], ArgusLifecycleNode], arguments: Sequence[str]) -> int:
     """Run a node to its end; return the exit code."""
     try:
@@ -272,7 +309,7 @@ def run_node(make: Callable[[], ArgusLifecycleNode], arguments: Sequence[str]) -
         node.start()
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        executor.spin()
+        spin(node, executor)
     except Refused as error:
         print(f"{node.get_name()}: {node.refusal or error}", file=sys.stderr)
         return EXIT_USAGE

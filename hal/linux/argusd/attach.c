@@ -15,8 +15,9 @@
 #include "text.h"
 
 #define TURN_DEG 20
-#define WAIT_MS 1000
+#define WAIT_MS 250
 #define PERIOD_MS 200
+#define SILENT_MS 1500u // seven states that do not come
 
 bool attach_open(attach_t *self, const control_spec_t *spec, const control_token_t *token,
                  const hal_clock_t *clock, char *message, size_t capacity) {
@@ -241,6 +242,7 @@ static void receive(attach_t *self) {
     const ssize_t got = recv(self->fd, self->in + self->used, sizeof self->in - self->used, MSG_DONTWAIT);
     if (got > 0) {
         self->used += (size_t)got;
+        self->heard_ms = self->moment.now_ms;
         take_lines(self);
     } else if (got == 0 || (errno != EAGAIN && errno != EINTR)) {
         tui_stop(&self->voice.tui);
@@ -271,14 +273,33 @@ static void wait_for_work(attach_t *self) {
     voice_flush(&self->voice);
 }
 
+// An argusd that hangs, or a wire that is cut, ends no connection: what is shown is of earlier then.
+static void watch_silence(attach_t *self) {
+    const bool silent = self->moment.now_ms - self->heard_ms > SILENT_MS;
+    if (silent != self->silent && !self->over) {
+        self->silent = silent;
+        voice_notice(&self->voice, silent ? "argusd reports nothing" : "argusd reports again");
+    }
+}
+
+static void show(attach_t *self) {
+    if (self->silent) {
+        voice_show_silence(&self->voice, &self->moment, &self->view);
+    } else {
+        voice_show(&self->voice, &self->moment, &self->view);
+    }
+}
+
 argusd_exit_t attach_run(attach_t *self, const voice_options_t *options) {
     self->moment.now_ms = hal_clock_now_ms(&self->clock);
+    self->heard_ms = self->moment.now_ms;
     voice_begin(&self->voice, options, &self->moment);
     while (!self->over) {
         if (self->seen && voice_is_due(&self->voice, self->moment.now_ms)) {
-            voice_show(&self->voice, &self->moment, &self->view);
+            show(self);
         }
         wait_for_work(self);
+        watch_silence(self);
     }
     close(self->fd);
     tui_stop(&self->voice.tui);

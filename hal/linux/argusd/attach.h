@@ -18,7 +18,9 @@ typedef struct {
     voice_t voice;
     moment_t moment;
     view_t view;
-    bool seen; // a state has come
+    bool seen;   // a state has come
+    bool silent; // nothing has come for a while
+    uint32_t heard_ms;
     char grant[33];
     uint32_t seq;
     tui_key_t wanted; // waits for control

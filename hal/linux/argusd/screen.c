@@ -142,9 +142,10 @@ static void draw_title(canvas_t *canvas, const view_t *view) {
     for (int column = 0; column < canvas->columns; column++) {
         put(canvas, 0, column, TONE_TITLE, ' ');
     }
-    snprintf(right[0], sizeof right[0], " %s %s %2d.%d V ", status->online ? "online" : "OFFLINE", activity,
-             status->battery_dv / 10, status->battery_dv % 10);
-    snprintf(right[1], sizeof right[1], " %s ", activity);
+    const char *const state = view->silent ? "NO NEWS" : status->online ? "online" : "OFFLINE";
+    snprintf(right[0], sizeof right[0], " %s %s %2d.%d V ", state, activity, status->battery_dv / 10,
+             status->battery_dv % 10);
+    snprintf(right[1], sizeof right[1], " %s ", view->silent ? state : activity);
     const char *const rights[] = {right[0], right[1], ""};
     const char *const shown = first_that_fits(rights, canvas->columns);
     const int room = canvas->columns - (int)strlen(shown);
@@ -445,6 +446,15 @@ static void draw_bottom(canvas_t *canvas) {
     put_text(canvas, last, 1, TONE_TITLE, first_that_fits(texts, canvas->columns - 1));
 }
 
+// What is of earlier has no colour that says how things are.
+static void grey(canvas_t *canvas, int top, int bottom) {
+    for (int row = top; row < bottom && row < canvas->rows; row++) {
+        for (int column = 0; column < canvas->columns; column++) {
+            canvas->cell[row][column].tone = TONE_DIM;
+        }
+    }
+}
+
 void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log) {
     // The ring has room beside the numbers, or is left out.
     const bool narrow = layout_of(canvas->columns - RIGHT).health == false;
@@ -455,6 +465,9 @@ void screen_draw(canvas_t *canvas, const view_t *view, const screen_log_t *log) 
     }
     draw_sonars(canvas, view, narrow ? 1 : RIGHT);
     draw_numbers(canvas, view, RING_TOP + 9, narrow ? 1 : RIGHT);
+    if (view->silent) {
+        grey(canvas, 1, RIGHT_ROWS + 1);
+    }
     draw_log(canvas, log, RIGHT_ROWS + 1, canvas->rows - 1);
     draw_bottom(canvas);
 }

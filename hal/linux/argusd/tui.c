@@ -24,6 +24,8 @@
 #define STOP_WAIT_MS 500
 #define STOP_STEP_MS 10
 #define INHERITED_MAX 256 // argusd itself opens about ten
+#define SILENT_MS 1500    // a picture comes each 200 ms
+#define LOOK_MS 250
 
 // What goes to the screen's process. One packet each: the socket keeps them apart.
 typedef enum { MESSAGE_VIEW, MESSAGE_LINE } message_kind_t;
@@ -90,6 +92,7 @@ typedef struct {
     bool has_view;
     bool changed;
     bool keys; // the list of keys is shown
+    int64_t view_ms;
     view_t view;
     screen_log_t log;
     canvas_t canvas;
@@ -153,6 +156,20 @@ static void paint(screen_t *screen) {
     screen->changed = false;
 }
 
+static int64_t steady_ms(void) {
+    struct timespec now = {0};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+// A process that hangs sends no picture: the last one is of earlier then.
+static void watch_silence(screen_t *screen) {
+    if (screen->view_ms > 0 && !screen->view.silent && steady_ms() - screen->view_ms > SILENT_MS) {
+        screen->view.silent = true;
+        screen->changed = true;
+    }
+}
+
 // False when argusd has ended.
 static bool take_messages(screen_t *screen) {
     message_t message;
@@ -166,6 +183,7 @@ static bool take_messages(screen_t *screen) {
         }
         if (message.kind == MESSAGE_VIEW) {
             screen->view = message.as.view;
+            screen->view_ms = steady_ms();
         } else {
             screen_log_add(&screen->log, message.as.line, (tone_t)message.tone, message.key);
         }
@@ -251,12 +269,13 @@ static void run_screen(int fd) {
         if (screen.changed) {
             paint(&screen);
         }
-        poll(wait, 2, -1);
+        poll(wait, 2, LOOK_MS);
         if (resized_) {
             take_size(&screen);
         }
         take_keys(&screen);
         alive = take_messages(&screen) && (wait[1].revents & (POLLHUP | POLLERR | POLLNVAL)) == 0;
+        watch_silence(&screen);
     }
     endwin();
 }

@@ -30,6 +30,7 @@ typedef struct {
     bool controlled;                // a client at the control socket has control
     uint8_t injected[ARGUS_SONARS]; // argus_fault_kind_t that argusd itself makes, 0: none
     bool inject;                    // it may
+    bool silent;                    // nothing new has come for so long that all of this is of earlier
 } view_t;
 
 #endif

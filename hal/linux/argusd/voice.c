@@ -177,6 +177,15 @@ void voice_show(voice_t *self, const moment_t *moment, const view_t *view) {
     }
 }
 
+void voice_show_silence(voice_t *self, const moment_t *moment, const view_t *view) {
+    if (self->tui.on) {
+        view_t old = *view;
+        old.silent = true;
+        voice_show(self, moment, &old);
+    }
+    self->status_ms = moment->now_ms;
+}
+
 static uint32_t sooner(uint32_t wait_ms, uint32_t period_ms, uint32_t since_ms) {
     const uint32_t left_ms = since_ms < period_ms ? period_ms - since_ms : 0;
     return left_ms < wait_ms ? left_ms : wait_ms;

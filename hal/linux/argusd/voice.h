@@ -48,6 +48,9 @@ void voice_losses(voice_t *self, const moment_t *moment, argus_failure_t failure
 bool voice_is_due(const voice_t *self, uint32_t now_ms);
 void voice_show(voice_t *self, const moment_t *moment, const view_t *view);
 
+// Shows that nothing new has come: greyed on a screen; a stream has no line, for there is nothing to report.
+void voice_show_silence(voice_t *self, const moment_t *moment, const view_t *view);
+
 // `wait_ms`, or less if something is to be shown earlier.
 uint32_t voice_wait_ms(const voice_t *self, uint32_t now_ms, uint32_t wait_ms);
 

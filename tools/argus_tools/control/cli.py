@@ -22,6 +22,8 @@ from hil_sim.version import add_version
 EXIT_OK, EXIT_REFUSED, EXIT_UNWRITABLE, EXIT_UNREACHABLE, EXIT_INTERRUPTED = 0, 1, 2, 3, 130
 KINDS: Final = (*SONAR_KINDS, "delayed", "ok")
 TOPICS: Final = ("events", "state", "readings", "evidence")
+_SILENT_S: Final = 1.5
+_SILENT_PERIODS: Final = 1.5
 CHECK_S: Final = 10.0
 
 _EPILOG: Final = f"""\
@@ -102,15 +104,43 @@ def _line_of(message: Message, as_json: bool) -> str:
     return event_line(message) if "event" in message else json.dumps(message)
 
 
+class _Heard:
+    """Takes streamed messages; when none comes, somebody is told on standard error, and when they come again.
+
+    States have to be among the topics: they come in any case, so that without them nothing is heard of argusd.
+    """
+
+    def __init__(self, client: Client, period_ms: int) -> None:
+        self._client = client
+        self._silent_s = max(_SILENT_S, _SILENT_PERIODS * period_ms / 1000)
+
+    def next(self) -> Message:
+        """Return the next message, however long it takes."""
+        try:
+            return self._client.message(self._silent_s)
+        except TimeoutError:
+            self._tell("argusd reports nothing")
+        message = self._client.message()
+        self._tell("argusd reports again")
+        return message
+
+    @staticmethod
+    def _tell(words: str) -> None:
+        print(f"argusctl: {words}", file=sys.stderr, flush=True)
+
+
 def watch(client: Client, args: argparse.Namespace) -> int:
     """Print what is streamed until argusd ends."""
-    client.watch(*args.topics, period_ms=args.period)
+    wants_state = "state" in args.topics
+    client.watch(*args.topics, *(() if wants_state else ("state",)), period_ms=args.period)
+    heard = _Heard(client, args.period)
     while True:
         try:
-            message = client.message()
+            message = heard.next()
         except ControlError:
             return EXIT_OK
-        print(_line_of(message, args.json), flush=True)
+        if wants_state or message.get("event") != "STATUS":
+            print(_line_of(message, args.json), flush=True)
 
 
 def _move(client: Client, order: str, members: Message) -> None:

@@ -131,7 +131,7 @@ export function drawHead({ state, link }) {
   const active = $("active");
   active.setAttribute("aria-checked", String(Boolean(state?.active)));
   put(active, state?.active ? "Active" : "Passive");
-  put($("stage-text"), sentence(state));
+  put($("stage-text"), !link.up && state ? "Nothing comes any more: this is of earlier." : sentence(state));
 }
 
 function sentence(state) {

@@ -58,6 +58,36 @@ static void draw(int rows, int columns) {
     screen_draw(&canvas, &view, &log_);
 }
 
+static int coloured_cells(int top, int bottom) {
+    int count = 0;
+    for (int row = top; row < bottom; row++) {
+        for (int column = 0; column < canvas.columns; column++) {
+            count += canvas.cell[row][column].tone != TONE_DIM;
+        }
+    }
+    return count;
+}
+
+// What nothing new has come of is of earlier: it is marked in words, and nothing has a colour that says how
+// it is.
+void test_a_picture_of_earlier_is_marked_and_grey(void) {
+    static const int columns[] = {80, 40, 24};
+    view.silent = true;
+    view.status.health[3] = ARGUS_DISABLED;
+    screen_log_add(&log_, "argusd reports nothing", TONE_WARN, 0);
+    for (int i = 0; i < 3; i++) {
+        draw(24, columns[i]);
+        TEST_ASSERT_EQUAL(0, find("NO NEWS"));
+        TEST_ASSERT_EQUAL(-1, find("online"));
+        TEST_ASSERT_EQUAL(0, coloured_cells(1, 17));
+        TEST_ASSERT_EQUAL(TONE_WARN, canvas.cell[17][1].tone);
+    }
+    view.silent = false;
+    draw(24, 80);
+    TEST_ASSERT_EQUAL(-1, find("NO NEWS"));
+    TEST_ASSERT_GREATER_THAN(0, coloured_cells(1, 17));
+}
+
 void test_all_that_matters_is_there_at_80_by_24(void) {
     view.status.health[3] = ARGUS_DISABLED;
     view.status.kind[3] = ARGUS_KIND_OFF;
