@@ -126,7 +126,9 @@ def test_motors_that_nobody_used_are_left_alone_by_an_end(driven: Any) -> None:
 
 
 def packet(t_s: float) -> Told:
-    return Told(t_s, Motion(), tuple((k, 1.0) for k in range(16)))
+    return Told(
+        t_s, Motion(), tuple((k, 1.0) for k in (2, 3, 4))
+    )  # few: a busy host handles some tens a second
 
 
 @pytest.mark.parametrize("end", ["shutdown", "deactivate", "cleanup", "error"])
@@ -153,9 +155,8 @@ def test_the_guard_publishes_nothing_behind_its_end(end: str, monkeypatch: pytes
     getattr(guard, f"trigger_{'deactivate' if end in ('cleanup', 'error') else end}")()
     if end == "cleanup":
         guard.trigger_cleanup()
-    for _ in range(5):
-        bench.executor.spin_once(timeout_sec=0.05)
-    bench.take()
+    while not bench.until(lambda: False, 1.0) and bench.take():
+        pass  # what it has published before is still on its way on a busy host
     bench.until(lambda: tell() and False, 1.5)
     assert bench.take() == []
     if end != "deactivate":

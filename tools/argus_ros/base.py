@@ -168,7 +168,9 @@ class ArgusLifecycleNode(LifecycleNode):  # type: ignore[misc]
         parts, self._parts = self._parts, []
         self._taken.clear()
         self._mismatched.clear()
-        for step in (self._rest, self._close, *(partial(self.discard, part) for part in parts)):
+        steps: list[Callable[[], None]] = [self._rest, self._close]
+        steps += [partial(self.discard, part) for part in parts]
+        for step in steps:
             try:
                 step()
             except Exception as error:
