@@ -41,7 +41,7 @@ void argus_conclude_check(argus_t *const self, argus_intent_t *const intent) {
     ARGUS_ASSERT(self->mode == ARGUS_MODE_CHECKING);
     const argus_mask_t suspects = (argus_mask_t)(find_suspects(self) | argus_open_suspects(self));
     argus_flag_suspects(self, suspects);
-    self->looks.check_ms = self->now_ms;
+    argus_looks_checked(&self->looks, self->now_ms);
     if (is_look_due(self, suspects) && !self->orders.passive && !argus_is_stopped(self)) {
         verify(suspects, intent);
         return;
@@ -80,7 +80,7 @@ void argus_check_beside(argus_t *const self, argus_intent_t *const intent) {
     if (!is_due(self)) {
         return;
     }
-    self->looks.check_ms = self->now_ms;
+    argus_looks_checked(&self->looks, self->now_ms);
     const argus_mask_t suspects = find_suspects(self);
     if (argus_rules(self)->evidence && self->mode == ARGUS_MODE_DRIVING) {
         argus_count_loss(self);

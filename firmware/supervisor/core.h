@@ -24,14 +24,9 @@
 #include "knowledge/rays.h"
 #include "knowledge/slip.h"
 #include "paper/algorithm1.h"
+#include "supervisor/base.h"
 #include "supervisor/events.h"
 #include "task/task.h"
-
-// The heading to return to after verification and sweeps (S4).
-typedef struct {
-    int32_t cdeg;
-    bool taken;
-} argus_base_t;
 
 // CHECKING.
 typedef struct {

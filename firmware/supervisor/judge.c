@@ -2,6 +2,7 @@
 // Judges one sonar by the evidence: in use, or out.
 #include "supervisor/judge.h"
 
+#include "awareness/finding.h"
 #include "knowledge/angle.h"
 #include "supervisor/faults.h"
 #include "supervisor/looks.h"
@@ -13,7 +14,6 @@
 #define PROBATION_AGREED 4
 #define PROBATION_MS 4000u
 #define PROBATION_DOUBLINGS 4
-#define NAME_STANDS_MS 1000u // three rounds, before a name is said: many for a healthy sonar pass sooner
 
 // What changes the way ahead is answered by a check at rest.
 static void break_off(const argus_t *const self, argus_intent_t *const intent) {
@@ -36,42 +36,28 @@ static void convict(argus_t *const self, const int sonar, const argus_fault_kind
     }
 }
 
-// The name has stood for a while.
-static bool stands(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
-    argus_naming_t *const naming = &self->looks.naming[sonar];
-    if (naming->named != kind) {
-        naming->named = (uint8_t)kind;
-        naming->since_ms = self->now_ms;
-    }
-    return kind != ARGUS_KIND_NONE && self->now_ms - naming->since_ms >= NAME_STANDS_MS;
-}
-
 // A suspicion lasts as long as the evidence, or a look that is to judge it.
-static bool is_kept(const argus_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return argus_evidence_holds(&self->evidence, sonar) || self->mode == ARGUS_MODE_VERIFYING ||
-           self->looks.asked;
+static bool is_kept(const argus_t *const self, const argus_finding_t *const finding) {
+    ARGUS_ASSERT(finding->level <= ARGUS_FOUND_CERTAIN);
+    return finding->level >= ARGUS_FOUND_HELD || self->mode == ARGUS_MODE_VERIFYING || self->looks.asked;
 }
 
 // A suspect carries the kind that the evidence names so far.
-static void name(argus_t *const self, const int sonar) {
+static void name(argus_t *const self, const int sonar, const argus_finding_t *const finding) {
     ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    const argus_fault_kind_t kind = argus_named_kind(self, sonar);
-    const bool doubted = argus_common_doubts(&self->common, sonar);
-    const bool named = stands(self, sonar, kind) || doubted;
+    const argus_fault_kind_t kind = argus_named_kind(self, sonar, finding);
+    const bool named = argus_looks_stands(&self->looks, sonar, kind, self->now_ms) || finding->doubted;
     if (named) {
         argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
     }
     if (named && s->health == ARGUS_SUSPECT && kind != s->kind) {
-        self->looks.hold[sonar].lawless |= s->kind == ARGUS_KIND_SLOW && kind == ARGUS_KIND_WRONG;
+        argus_looks_rename(&self->looks, sonar, s->kind, kind);
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
         argus_rays_forget(&self->rays, sonar); // nothing that it has seen is counted on
         argus_replan(self);
     }
-    if (s->health == ARGUS_SUSPECT && !doubted && !is_kept(self, sonar)) {
+    if (s->health == ARGUS_SUSPECT && !finding->doubted && !is_kept(self, finding)) {
         argus_forget_name(self, sonar);
         argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, s->reading_mm);
         argus_replan(self);
@@ -85,27 +71,22 @@ static bool bars_its_proof(const argus_t *const self, const int sonar) {
            argus_is_hemmed_in(self);
 }
 
-// An extreme is proved by way and time alone, an array that has failed as a whole by what it heard before.
-static argus_fault_kind_t convicts(const argus_t *const self, const int sonar) {
+// What is not certain yields to what can be proved here.
+static argus_fault_kind_t convicts(const argus_t *const self, const int sonar,
+                                   const argus_finding_t *const finding) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    if (argus_common_convicts(&self->common, sonar)) {
-        return ARGUS_KIND_OFF;
-    }
-    const argus_fault_kind_t kind = argus_extremes_convicts(&self->extremes, sonar);
-    if (kind != ARGUS_KIND_NONE) {
-        return kind;
-    }
-    return bars_its_proof(self, sonar) ? self->knowledge.sonar[sonar].kind
-                                       : argus_evidence_convicts(&self->evidence, sonar);
+    const bool open = finding->level < ARGUS_FOUND_CERTAIN && bars_its_proof(self, sonar);
+    return open ? self->knowledge.sonar[sonar].kind : finding->kind;
 }
 
-static void judge_in(argus_t *const self, const int sonar, argus_intent_t *const intent) {
+static void judge_in(argus_t *const self, const int sonar, const argus_finding_t *const finding,
+                     argus_intent_t *const intent) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_fault_kind_t kind = convicts(self, sonar);
+    const argus_fault_kind_t kind = convicts(self, sonar, finding);
     if (kind != ARGUS_KIND_NONE) {
         convict(self, sonar, kind, intent);
-    } else if (argus_common_doubts(&self->common, sonar) || !argus_common_excuses(&self->common, sonar)) {
-        name(self, sonar);
+    } else if (finding->doubted || !finding->excused) {
+        name(self, sonar, finding);
     }
 }
 
@@ -131,26 +112,21 @@ static uint8_t agreements_wanted(const argus_sonar_t *const s) {
 
 // What repeated one value, and shows another one now, was not stuck: a name is enough to say what it is. Half
 // the truth, where nothing is in range, is the same value each time.
-static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar) {
+static argus_fault_kind_t kind_of_out(const argus_t *const self, const int sonar,
+                                      const argus_finding_t *const finding) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_fault_kind_t convicted = convicts(self, sonar);
+    const argus_fault_kind_t convicted = convicts(self, sonar, finding);
     const argus_fault_kind_t known = self->knowledge.sonar[sonar].kind;
     if (known == ARGUS_KIND_GARBAGE && convicted == ARGUS_KIND_WRONG) {
         return known; // what is anywhere is contradicted too: `wrong` says less
     }
     const bool stuck = known == ARGUS_KIND_STUCK && !argus_evidence_repeats(&self->evidence, sonar);
-    return convicted == ARGUS_KIND_NONE && stuck ? argus_evidence_names(&self->evidence, sonar) : convicted;
+    return convicted == ARGUS_KIND_NONE && stuck ? finding->named : convicted;
 }
 
 static bool is_silent(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_silent_ms(&self->knowledge, sonar) > (uint32_t)self->config.stale_ms;
-}
-
-static bool keeps_out(const argus_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return argus_evidence_suspects(&self->evidence, sonar) ||
-           argus_extremes_keeps_out(&self->extremes, sonar) || argus_common_convicts(&self->common, sonar);
 }
 
 static bool does_well(const argus_t *const self, const int sonar) {
@@ -161,17 +137,17 @@ static bool does_well(const argus_t *const self, const int sonar) {
            argus_evidence_agreed(&self->evidence, sonar) >= agreements_wanted(s);
 }
 
-static void judge_out(argus_t *const self, const int sonar, argus_intent_t *const intent) {
+static void judge_out(argus_t *const self, const int sonar, const argus_finding_t *const finding,
+                      argus_intent_t *const intent) {
     ARGUS_ASSERT(argus_is_out(&self->knowledge, sonar));
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    const argus_fault_kind_t kind = kind_of_out(self, sonar);
-    const argus_fault_kind_t named = argus_evidence_names(&self->evidence, sonar);
+    const argus_fault_kind_t kind = kind_of_out(self, sonar, finding);
     if (s->health == ARGUS_DISABLED && kind != ARGUS_KIND_NONE && kind != s->kind) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
     }
-    if (keeps_out(self, sonar)) {
-        if (s->health == ARGUS_PROBATION && named != ARGUS_KIND_NONE) {
-            argus_disable(self, sonar, named);
+    if (finding->keeps_out) {
+        if (s->health == ARGUS_PROBATION && finding->named != ARGUS_KIND_NONE) {
+            argus_disable(self, sonar, finding->named);
         }
     } else if (does_well(self, sonar)) {
         restore(self, sonar);
@@ -211,8 +187,9 @@ void argus_judge(argus_t *const self, const int sonar, argus_intent_t *const int
     if ((self->orders.pinned >> sonar & 1u) != 0) {
         return;
     }
+    const argus_finding_t finding = argus_finding(&self->evidence, &self->extremes, &self->common, sonar);
     if (argus_is_out(&self->knowledge, sonar)) {
-        judge_out(self, sonar, intent);
+        judge_out(self, sonar, &finding, intent);
     } else if (has_fallen_silent(self, sonar)) {
         if (is_missing(self, sonar)) {
             argus_say_change(self, sonar, ARGUS_CHANGE_MISSING, ARGUS_KIND_NONE, 0);
@@ -220,7 +197,7 @@ void argus_judge(argus_t *const self, const int sonar, argus_intent_t *const int
         }
         argus_disable(self, sonar, ARGUS_KIND_SILENT);
     } else {
-        judge_in(self, sonar, intent);
+        judge_in(self, sonar, &finding, intent);
     }
 }
 

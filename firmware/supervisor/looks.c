@@ -2,6 +2,8 @@
 // Weighs a look against the stop that it costs, and draws the conclusions.
 #include "supervisor/looks.h"
 
+#include <string.h>
+
 #include "arcos/gen_arcos.h"
 #include "knowledge/angle.h"
 #include "supervisor/faults.h"
@@ -14,6 +16,7 @@
 #define LOOK_COST_MS 9000u   // what a look takes: two turns aside, the way back, two rounds of readings each
 #define PROOFS 3             // looks in a row that leave a sonar its name,
 #define PROOFS_AT_GOAL 2     // ... where one follows at once upon the other
+#define NAME_STANDS_MS 1000u // three rounds, before a name is said: many for a healthy sonar pass sooner
 #define SETTLE_MOST 8        // looks at the goal: a verdict takes disagreements at more than one time
 
 static bool is_held(const argus_t *const self, const int sonar) {
@@ -98,10 +101,11 @@ bool argus_look_pays(const argus_t *const self) {
 }
 
 // A law of its readings that was found and given up again is none: what stays is that others contradict it.
-argus_fault_kind_t argus_named_kind(const argus_t *const self, const int sonar) {
+argus_fault_kind_t argus_named_kind(const argus_t *const self, const int sonar,
+                                    const argus_finding_t *const finding) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
-    const argus_fault_kind_t kind = argus_evidence_names(&self->evidence, sonar);
-    if (kind == ARGUS_KIND_NONE && argus_common_doubts(&self->common, sonar)) {
+    const argus_fault_kind_t kind = finding->named;
+    if (kind == ARGUS_KIND_NONE && finding->doubted) {
         return ARGUS_KIND_OFF; // it fails with the whole of its array
     }
     return kind == ARGUS_KIND_SLOW && self->looks.hold[sonar].lawless ? ARGUS_KIND_WRONG : kind;
@@ -163,7 +167,8 @@ static void conclude(argus_t *const self, const int sonar) {
     if (argus_is_out(&self->knowledge, sonar)) {
         return;
     }
-    const argus_fault_kind_t kind = argus_named_kind(self, sonar);
+    const argus_finding_t finding = argus_finding(&self->evidence, &self->extremes, &self->common, sonar);
+    const argus_fault_kind_t kind = argus_named_kind(self, sonar, &finding);
     if (asked && kind == ARGUS_KIND_NONE) {
         clear(self, sonar);
     } else if (suspect && is_proved(self, sonar, kind)) {
@@ -184,7 +189,57 @@ void argus_conclude_looks(argus_t *const self) {
     argus_replan(self);
 }
 
-void argus_forget_cleared(argus_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
-    self->looks.hold[sonar].cleared = 0;
+void argus_looks_init(argus_looks_t *const self) {
+    memset(self, 0, sizeof *self);
+}
+
+void argus_looks_open(argus_looks_t *const self) {
+    self->tried = false;
+    self->unheard_said = false;
+}
+
+void argus_looks_checked(argus_looks_t *const self, const uint32_t now_ms) {
+    self->check_ms = now_ms;
+}
+
+void argus_looks_leave(argus_looks_t *const self) {
+    self->settling = 0;
+}
+
+void argus_looks_begin(argus_looks_t *const self, const bool arriving) {
+    self->settling = (uint8_t)(arriving ? self->settling + 1 : 0);
+}
+
+void argus_looks_tried(argus_looks_t *const self) {
+    self->tried = true;
+}
+
+bool argus_looks_unheard(argus_looks_t *const self) {
+    const bool is_new = !self->unheard_said;
+    self->unheard_said = true;
+    return is_new;
+}
+
+void argus_looks_ask(argus_looks_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    self->hold[sonar].cleared = 0;
+    self->asked = true;
+}
+
+bool argus_looks_stands(argus_looks_t *const self, const int sonar, const argus_fault_kind_t kind,
+                        const uint32_t now_ms) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
+    argus_naming_t *const naming = &self->naming[sonar];
+    if (naming->named != kind) {
+        naming->named = (uint8_t)kind;
+        naming->since_ms = now_ms;
+    }
+    return kind != ARGUS_KIND_NONE && now_ms - naming->since_ms >= NAME_STANDS_MS;
+}
+
+void argus_looks_rename(argus_looks_t *const self, const int sonar, const argus_fault_kind_t from,
+                        const argus_fault_kind_t to) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    self->hold[sonar].lawless |= from == ARGUS_KIND_SLOW && to == ARGUS_KIND_WRONG;
 }

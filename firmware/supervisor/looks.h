@@ -3,6 +3,7 @@
 #ifndef ARGUS_LOOKS_H
 #define ARGUS_LOOKS_H
 
+#include "awareness/finding.h"
 #include "supervisor/core.h"
 
 // Sonars in use that the evidence suspects.
@@ -24,7 +25,7 @@ argus_mask_t argus_to_settle(const argus_t *self);
 
 // The kind that the evidence gives it (NONE: none): `wrong` where a law of its readings was named and given
 // up.
-argus_fault_kind_t argus_named_kind(const argus_t *self, int sonar);
+argus_fault_kind_t argus_named_kind(const argus_t *self, int sonar, const argus_finding_t *finding);
 
 // It is no suspect any more: what names and looks have shown of it is forgotten.
 void argus_forget_name(argus_t *self, int sonar);
@@ -35,7 +36,29 @@ void argus_conclude_looks(argus_t *self);
 // They are not to be looked at in this place, and covered for like those that are out.
 void argus_leave_open(argus_t *self, argus_mask_t sonars);
 
-// An operator wants it looked at: that it was cleared is forgotten.
-void argus_forget_cleared(argus_t *self, int sonar);
+// What is remembered of looks; looks.c is its only writer ---------------------------------------------------
+
+void argus_looks_init(argus_looks_t *self);
+
+// A session opened; a health check was made; the robot is to drive on.
+void argus_looks_open(argus_looks_t *self);
+void argus_looks_checked(argus_looks_t *self, uint32_t now_ms);
+void argus_looks_leave(argus_looks_t *self);
+
+// Looks begin; `arriving`: at a goal. They are those of argus_to_try().
+void argus_looks_begin(argus_looks_t *self, bool arriving);
+void argus_looks_tried(argus_looks_t *self);
+
+// No sonar ahead has heard an echo: whether that is new in this session.
+bool argus_looks_unheard(argus_looks_t *self);
+
+// An operator wants a look, which comes with the next check: that the sonar was cleared is forgotten.
+void argus_looks_ask(argus_looks_t *self, int sonar);
+
+// Whether the evidence has named this kind for a while.
+bool argus_looks_stands(argus_looks_t *self, int sonar, argus_fault_kind_t kind, uint32_t now_ms);
+
+// A suspect gets another name.
+void argus_looks_rename(argus_looks_t *self, int sonar, argus_fault_kind_t from, argus_fault_kind_t to);
 
 #endif

@@ -12,6 +12,7 @@
 #include "supervisor/faults.h"
 #include "supervisor/history.h"
 #include "supervisor/latency.h"
+#include "supervisor/looks.h"
 #include "supervisor/modes.h"
 #include "supervisor/motions.h"
 #include "supervisor/orders.h"
@@ -55,7 +56,7 @@ bool argus_set_course(argus_t *const self, const argus_point_t *const points, co
     }
     self->mission = ARGUS_MISSION_RUNNING;
     self->travel.arriving = false;
-    self->looks.settling = 0;
+    argus_looks_leave(&self->looks);
     argus_tell(self, ARGUS_EV_MISSION_START, count);
     if (self->mode == ARGUS_MODE_IDLE || self->waiting.why == ARGUS_WAIT_CATASTROPHIC) {
         check(self, true);
@@ -100,7 +101,7 @@ static void go_offline(argus_t *const self) {
     note_order(self);
     argus_motion_init(&self->motion);
     argus_tell(self, ARGUS_EV_LINK_LOST, (int32_t)(silence_ms & 0x7FFFFFFFu));
-    self->base.taken = false;
+    argus_base_drop(&self->base);
     argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_GO_OFFLINE, false);
 }
 
@@ -134,10 +135,9 @@ static void on_open(argus_t *const self) {
     argus_rays_forget_all(&self->rays);
     self->reflexes.motors_said = false;
     self->reflexes.touched_unheard = false;
-    self->looks.tried = false;
-    self->looks.unheard_said = false;
+    argus_looks_open(&self->looks);
     self->stalled = false;
-    self->base.taken = false;
+    argus_base_drop(&self->base);
     self->ordered = false;
     if (self->plan.disabled != 0) {
         argus_share_slots(self); // the robot begins each session with its own order

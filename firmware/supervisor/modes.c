@@ -62,7 +62,7 @@ static void enter_verifying(argus_t *const self, const argus_mask_t suspects) {
     ARGUS_ASSERT(!self->orders.passive);
     argus_flag_suspects(self, suspects);
     argus_algorithm1_reopen(&self->algorithm1, suspects);
-    self->looks.settling = (uint8_t)(self->travel.arriving ? self->looks.settling + 1 : 0);
+    argus_looks_begin(&self->looks, self->travel.arriving);
     argus_halt(self);
     if (!self->motion.settled && self->motion.kind != ARGUS_MOTION_STOP) {
         argus_hold(self);
@@ -86,8 +86,7 @@ static void enter_waiting(argus_t *const self, const argus_wait_t why) {
 }
 
 static void say_unheard(argus_t *const self, const argus_guard_t *const guard) {
-    if (!argus_guard_is_heard(guard) && !self->looks.unheard_said) {
-        self->looks.unheard_said = true;
+    if (!argus_guard_is_heard(guard) && argus_looks_unheard(&self->looks)) {
         argus_tell(self, ARGUS_EV_NO_ECHO, argus_guard_unseen_mm_s(guard));
     }
 }
@@ -97,7 +96,7 @@ static void enter_travel(argus_t *const self) {
     say_unheard(self, &guard);
     ARGUS_ASSERT(self->checked && (guard.creeps || argus_guard_may_step(&self->plan)));
     argus_begin_travel(&self->travel);
-    self->base.taken = false;
+    argus_base_drop(&self->base);
     if (guard.creeps) {
         argus_tell(self, ARGUS_EV_CREEPING, argus_guard_unseen_mm_s(&guard));
         enter(self, ARGUS_MODE_CREEPING);
@@ -107,7 +106,7 @@ static void enter_travel(argus_t *const self) {
 }
 
 static void enter_idle(argus_t *const self) {
-    self->base.taken = false;
+    argus_base_drop(&self->base);
     self->turning.again = false;
     self->waiting.last = ARGUS_WAIT_NONE;
     enter(self, ARGUS_MODE_IDLE);
@@ -127,7 +126,7 @@ static void try_ahead(argus_t *const self, const argus_mask_t sonars, argus_inte
         argus_to_check(next, true);
         return;
     }
-    self->looks.tried = true;
+    argus_looks_tried(&self->looks);
     next->act = ARGUS_DO_VERIFY;
     next->sonars = sonars;
 }
@@ -335,12 +334,20 @@ static void close_way(argus_t *const self, const argus_intent_t *const intent) {
 
 static void take_base(argus_t *const self, const argus_base_do_t what) {
     ARGUS_ASSERT(what <= ARGUS_BASE_DROP);
-    argus_base_t *const base = &self->base;
-    if (what == ARGUS_BASE_RENEW || (what == ARGUS_BASE_TAKE && !base->taken)) {
-        base->cdeg = self->knowledge.pose.heading_cdeg;
-        base->taken = true;
-    } else if (what == ARGUS_BASE_DROP) {
-        base->taken = false;
+    const int32_t heading_cdeg = self->knowledge.pose.heading_cdeg;
+    switch (what) {
+    case ARGUS_BASE_TAKE:
+        argus_base_take(&self->base, heading_cdeg);
+        break;
+    case ARGUS_BASE_RENEW:
+        argus_base_renew(&self->base, heading_cdeg);
+        break;
+    case ARGUS_BASE_DROP:
+        argus_base_drop(&self->base);
+        break;
+    case ARGUS_BASE_KEEP:
+    default:
+        break;
     }
 }
 

@@ -34,7 +34,7 @@ static void enable_motors(argus_t *const self) {
 static void pause(argus_t *const self) {
     self->orders.paused = true;
     self->orders.stay = ARGUS_STAY_OPERATOR;
-    self->base.taken = false;
+    argus_base_drop(&self->base);
     self->travel.jog_mm = 0;
     stop_and_check(self, false);
 }
@@ -106,8 +106,7 @@ static void jog(argus_t *const self, const int32_t built_mm) {
 
 // The check that follows turns to the base heading first.
 static void jog_turn(argus_t *const self, const int32_t degrees) {
-    self->base.cdeg = argus_angle_wrap(self->knowledge.pose.heading_cdeg + degrees % 360 * 100);
-    self->base.taken = true;
+    argus_base_renew(&self->base, argus_angle_wrap(self->knowledge.pose.heading_cdeg + degrees % 360 * 100));
     argus_algorithm1_moved(&self->algorithm1, 0);
     argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, false);
 }
@@ -158,14 +157,13 @@ static void begin_retest(argus_t *const self, const int sonar) {
     argus_evidence_forget(&self->evidence, sonar);
     argus_extremes_forget(&self->extremes, sonar);
     argus_evidence_forget_trend(&self->evidence, sonar);
-    argus_forget_cleared(self, sonar);
+    argus_looks_ask(&self->looks, sonar);
     argus_algorithm1_reopen(&self->algorithm1, bit);
     if (argus_is_out(&self->knowledge, sonar)) {
         argus_say_change(self, sonar, ARGUS_CHANGE_RETESTED, s->kind, s->reading_mm);
     } else {
         argus_flag_suspects(self, bit);
     }
-    self->looks.asked = true; // a look comes with the check
 }
 
 static bool may_serve(const argus_t *const self, const argus_op_t op, const int32_t sonar) {

@@ -75,7 +75,7 @@ void argus_turn_about(argus_t *const self) {
     argus_algorithm1_init(&self->algorithm1);
     argus_extremes_restart(&self->extremes);
     argus_slip_restart(&self->slip);
-    self->base.taken = false;
+    argus_base_drop(&self->base);
     self->checked = false;
     self->plan = argus_plan(other, argus_policy(self), 0, 0);
     argus_tell(self, ARGUS_EV_REVERSED, other->reversed ? 1 : 0);

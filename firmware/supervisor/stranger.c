@@ -6,6 +6,7 @@
 
 #include "knowledge/body.h"
 #include "supervisor/faults.h"
+#include "supervisor/looks.h"
 #include "supervisor/modes.h"
 #include "supervisor/say.h"
 
@@ -22,7 +23,7 @@ static void forget(argus_t *const self) {
     argus_common_init(&self->common);
     argus_slip_restart(&self->slip);
     memset(&self->verifying, 0, sizeof self->verifying);
-    memset(&self->looks, 0, sizeof self->looks);
+    argus_looks_init(&self->looks);
     self->reflexes.unseen = 0;
     self->reflexes.touched_unheard = false;
     self->orders.pinned = 0;

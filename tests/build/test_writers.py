@@ -26,10 +26,31 @@ def test_health_c_alone_writes_the_health_of_a_sonar() -> None:
 
 
 def test_health_c_alone_writes_the_kind_of_a_fault() -> None:
-    # The kind of a motion is another thing, and so is that of a wheel.
-    assert writers("kind") - {"adjustment/motion.c", "analysis/wheel.c"} == {"knowledge/health.c"}
+    # The kind of a motion is another thing, and so are that of a wheel and that of a finding, which is no state.
+    others = {"adjustment/motion.c", "analysis/wheel.c", "awareness/finding.c"}
+    assert writers("kind") - others == {"knowledge/health.c"}
 
 
 def test_algorithm_1_alone_writes_what_it_counts() -> None:
     for field in ("verified", "held", "difference_mm"):
         assert writers(field) - {"analysis/verify.c"} == {"paper/algorithm1.c"}, field
+
+
+def test_base_c_alone_writes_the_heading_to_return_to() -> None:
+    assert writers("taken") == {"supervisor/base.c"}
+
+
+def test_looks_c_alone_writes_what_is_remembered_of_looks() -> None:
+    for field in ("check_ms", "lost_ms", "settling", "tried", "unheard_said", "cleared", "lawless"):
+        assert writers(field) == {"supervisor/looks.c"}, field
+
+
+def test_one_finding_of_a_sonar_is_asked_for() -> None:
+    """The engines of the evidence meet in awareness/finding.c: who judges asks that, and none of them."""
+    engines = r"argus_(?:common_(?:convicts|doubts|excuses)|extremes_(?:convicts|keeps_out)|evidence_(?:names|convicts|holds))\("
+    found = {
+        path.relative_to(ROOT / "firmware").as_posix()
+        for path in sorted((ROOT / "firmware/supervisor").rglob("*.c"))
+        if re.search(engines, path.read_text(encoding="utf-8"))
+    }
+    assert found == set()

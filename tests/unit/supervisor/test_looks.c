@@ -339,7 +339,10 @@ void test_a_law_that_was_given_up_is_not_said_again(void) {
     TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_SLOW, kind_after(3, true, 15), "first wrong, then late: it is late");
     TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, kind_after(3, false, 15));
     TEST_ASSERT_EQUAL_MESSAGE(ARGUS_KIND_WRONG, kind_after(3, true, 15), "no law holds");
-    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, argus_named_kind(&robot.argus, 3));
+    const argus_t *const argus = &robot.argus;
+    const argus_finding_t finding = argus_finding(&argus->evidence, &argus->extremes, &argus->common, 3);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, finding.named);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, argus_named_kind(argus, 3, &finding));
     argus_evidence_forget(&robot.argus.evidence, 3);
     robot_run(&robot, 1000);
     TEST_ASSERT_EQUAL(ARGUS_HEALTHY, robot.argus.knowledge.sonar[3].health);
