@@ -7,9 +7,10 @@ import argparse
 import difflib
 import re
 from collections.abc import Callable, Iterator
-from typing import Final, NoReturn
+from typing import Any, Final, NoReturn
 
 EXIT_USAGE: Final = 2
+_NEGATIVE: Final = re.compile(r"-\.?\d")
 _UNKNOWN: Final = re.compile(r"unrecognized arguments: (?:.* )?(--?[^\s=]+)")
 _NO_CHOICE: Final = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
@@ -34,7 +35,11 @@ def _options(parser: argparse.ArgumentParser) -> Iterator[str]:
 
 
 class Parser(argparse.ArgumentParser):
-    """Reports a wrong argument in one line."""
+    """Reports a wrong argument in one line; what begins as a negative number is a value, as -800,0 or -2m,0."""
+
+    def __init__(self, *arguments: Any, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self._negative_number_matcher = _NEGATIVE
 
     def error(self, message: str) -> NoReturn:
         """Print the line and leave with code 2."""

@@ -86,6 +86,8 @@ class ReadOptions:
     is_zipped: bool = False
     topic: str | None = None
     subclass: str | None = None
+    skipped: int = 0
+    """Set by the opening: zeros that stand before the log and were passed over."""
     absent: frozenset[int] = frozenset()
     """Set by a reader: sonars of which the log shows that the robot has none."""
     tell: Callable[[str], None] = lambda _: None

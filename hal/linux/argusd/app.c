@@ -19,6 +19,7 @@
 #include "report.h"
 #include "settings.h"
 #include "signals.h"
+#include "survey.h"
 #include "text.h"
 
 #define OPEN_TIMEOUT_MS 5000
@@ -94,7 +95,7 @@ static const char *settle_activity(void) {
     int32_t *const active = &settings.config.active;
     if (options.passive || options.action == OPTIONS_CHECK) {
         *active = 0;
-    } else if (options.active) {
+    } else if (options.active || options.action == OPTIONS_SURVEY) {
         *active = 1;
     } else if (!hal_link_spec_stays_here(&options.link)) {
         *active = 0;
@@ -243,6 +244,7 @@ static void drop_tape(void) {
     tape_close(&loop.tape, unused, sizeof unused);
 }
 
+// --check and --survey.
 static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     const uint32_t wait_ms = options.has_wait ? options.wait_ms : CHECK_ANSWER_MS;
     driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
@@ -257,9 +259,12 @@ static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     loop.driver.tap = tape_tap(&loop.tape);
     driver_attach(&loop.driver, link);
     message[0] = '\0';
-    const argusd_exit_t code = check_run(&loop.driver, &precedence, wait_ms, signals_fd(), options.json,
-                                         stdout, message, sizeof message);
-    if (code != ARGUSD_EXIT_OK) {
+    const argusd_exit_t code =
+        options.action == OPTIONS_SURVEY
+            ? survey_run(&loop.driver, wait_ms, signals_fd(), options.json, stdout, message, sizeof message)
+            : check_run(&loop.driver, &precedence, wait_ms, signals_fd(), options.json, stdout, message,
+                        sizeof message);
+    if (message[0] != '\0') {
         complain(code);
     }
     if (tape_close(&loop.tape, message, sizeof message)) {
@@ -437,7 +442,7 @@ static argusd_exit_t run_robot(hal_clock_t clock) {
         drop_tape();
         return complain(connected);
     }
-    return options.action == OPTIONS_CHECK ? run_check(link, clock) : run_loop(link, clock, notice);
+    return options.action == OPTIONS_RUN ? run_loop(link, clock, notice) : run_check(link, clock);
 }
 
 static argusd_exit_t run(int argc, char **argv) {
@@ -448,6 +453,7 @@ static argusd_exit_t run(int argc, char **argv) {
     switch (options.action) {
     case OPTIONS_RUN:
     case OPTIONS_CHECK:
+    case OPTIONS_SURVEY:
         return run_robot(clock);
     case OPTIONS_ATTACH:
         return run_attached(&clock);

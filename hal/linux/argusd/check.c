@@ -44,8 +44,7 @@ argusd_exit_t check_explain_silence(const driver_t *driver, uint32_t waited_ms, 
     return ARGUSD_EXIT_NO_ROBOT;
 }
 
-// One turn of the loop; false when somebody gave up.
-static bool turn(driver_t *driver, int cancel_fd, uint32_t most_ms) {
+bool check_turn(driver_t *driver, int cancel_fd, uint32_t most_ms) {
     argus_event_t event;
     uint32_t wait_ms = driver_process(driver);
     wait_ms = wait_ms < most_ms ? wait_ms : most_ms;
@@ -107,6 +106,8 @@ static void tell_plain(const driver_t *driver, const argus_status_t *status, con
     precedence_describe(granted, precedence, sizeof precedence);
     fprintf(out, " mm\nrealtime  %s\ntraffic   %u SIPs, %u bad checksums, %u stray bytes\n", precedence,
             (unsigned)status->sips, (unsigned)status->bad_checksums, (unsigned)status->skipped_bytes);
+    fprintf(out, "not shown while it stands: whether a sonar that reads is right (stuck, wrong, aside); "
+                 "--survey turns the\n          robot on the spot for that\n");
 }
 
 static void put_precedence(json_t *json, const precedence_t *granted) {
@@ -167,14 +168,14 @@ static void tell_json(const driver_t *driver, const argus_status_t *status, cons
     fprintf(out, "%s\n", line);
 }
 
-static void leave(driver_t *driver) {
+void check_leave(driver_t *driver) {
     const uint32_t start_ms = hal_clock_now_ms(&driver->clock);
     argus_shutdown(driver->core, start_ms);
     while (driver->up && hal_clock_now_ms(&driver->clock) - start_ms < LEAVE_MS) {
         if (argus_closed(driver->core) && driver->held == 0) {
             break;
         }
-        turn(driver, -1, 100);
+        check_turn(driver, -1, 100);
     }
     driver_close(driver);
 }
@@ -188,7 +189,7 @@ argusd_exit_t check_run(driver_t *driver, const precedence_t *granted, uint32_t 
     bool met = false;
     bool going_on = true;
     while (going_on) {
-        going_on = turn(driver, cancel_fd, 100);
+        going_on = check_turn(driver, cancel_fd, 100);
         const uint32_t now_ms = hal_clock_now_ms(&driver->clock);
         argus_status(driver->core, &status);
         if (!met && status.open) {
@@ -202,6 +203,6 @@ argusd_exit_t check_run(driver_t *driver, const precedence_t *granted, uint32_t 
     } else {
         code = check_explain_silence(driver, hal_clock_now_ms(&driver->clock) - start_ms, message, capacity);
     }
-    leave(driver);
+    check_leave(driver);
     return code;
 }

@@ -39,6 +39,7 @@ enum {
     OPT_WAIT,
     OPT_STATUS,
     OPT_CHECK,
+    OPT_SURVEY,
     OPT_LIST_EVENTS,
     OPT_LIST_CONFIG,
     OPT_EXAMPLE_CONFIG,
@@ -74,6 +75,7 @@ static const struct option table[] = {
     {"wait", required_argument, NULL, OPT_WAIT},
     {"status", required_argument, NULL, OPT_STATUS},
     {"check", no_argument, NULL, OPT_CHECK},
+    {"survey", no_argument, NULL, OPT_SURVEY},
     {"list-events", no_argument, NULL, OPT_LIST_EVENTS},
     {"list-config", no_argument, NULL, OPT_LIST_CONFIG},
     {"example-config", no_argument, NULL, OPT_EXAMPLE_CONFIG},
@@ -271,6 +273,8 @@ static options_action_t action_of(int option) {
     switch (option) {
     case OPT_CHECK:
         return OPTIONS_CHECK;
+    case OPT_SURVEY:
+        return OPTIONS_SURVEY;
     case OPT_LIST_EVENTS:
         return OPTIONS_LIST_EVENTS;
     case OPT_LIST_CONFIG:
@@ -381,6 +385,21 @@ static bool agree_on_check(const options_t *options, const message_t *message) {
     return options->action != OPTIONS_CHECK || keeps(rules, sizeof rules / sizeof rules[0], message);
 }
 
+static bool agree_on_survey(const options_t *options, const message_t *message) {
+    const rule_t rules[] = {
+        {options->passive, "--survey turns the robot; leave out --passive"},
+        {options->course_path != NULL || options->has_goal,
+         "--survey only turns on the spot; leave out --course and --goal"},
+        {options->telemetry.interface[0] != '\0',
+         "--survey is for a robot of one's own; leave out --can-telemetry"},
+        {options->guards.count > 0, "--survey is for a robot of one's own; leave out --guard"},
+        {options->control.family != 0, "--survey is for a robot of one's own; leave out --control"},
+        {!options->active && !hal_link_spec_stays_here(&options->link),
+         "--survey turns the robot on the spot, and a real one may be there: give it room, and add --active"},
+    };
+    return options->action != OPTIONS_SURVEY || keeps(rules, sizeof rules / sizeof rules[0], message);
+}
+
 static bool agree_on_ports(const options_t *options, const message_t *message) {
     const int family = options->control.family;
     const rule_t rules[] = {
@@ -407,11 +426,12 @@ static bool agree(const options_t *options, const message_t *message) {
     if (options->action == OPTIONS_ATTACH) {
         return agree_on_attach(options, message);
     }
-    if (options->action != OPTIONS_RUN && options->action != OPTIONS_CHECK) {
+    if (options->action != OPTIONS_RUN && options->action != OPTIONS_CHECK &&
+        options->action != OPTIONS_SURVEY) {
         return true;
     }
     return agree_on_link(options, message) && agree_on_check(options, message) &&
-           agree_on_ports(options, message);
+           agree_on_survey(options, message) && agree_on_ports(options, message);
 }
 
 bool options_parse(options_t *options, int argc, char **argv, char *message_text, size_t capacity) {

@@ -65,7 +65,13 @@ static void print_options(FILE *out) {
         "  --control-beyond-loopback\n"
         "                     allow an address that other machines reach\n"
         "  --inject           arm argusctl fail: faults of sonars made by argusd itself, for tests\n"
-        "  --attach PLACE     no robot of its own: the screen of the argusd whose --control is at PLACE\n"
+        "  --attach PLACE     no robot of its own: the screen of the argusd whose --control is at "
+        "PLACE\n",
+        out);
+}
+
+static void print_running(FILE *out) {
+    fputs(
         "  --realtime         before all other programs (SCHED_FIFO), in locked memory; without the right to "
         "that\n"
         "                     it tells what is missing and drives on\n"
@@ -74,7 +80,12 @@ static void print_options(FILE *out) {
         "  --cpus LIST        ... on these processors only: 1, or 0,2-3\n"
         "  --wait SECONDS     at start, how long to try for the port and for a robot's answer; or 'forever'\n"
         "                     (default: the port must be there, a robot has 30 s)\n"
-        "  --check            connect, tell what is there, leave\n"
+        "  --check            connect, tell what is there, leave; the robot stays where it is\n"
+        "  --survey           which sonar is broken: turn on the spot through a circle, print a verdict for "
+        "each\n"
+        "                     sonar and how sure it is, leave; where the robot may not turn it says why. Any "
+        "link\n"
+        "                     but TCP to this machine needs --active\n"
         "  --json             one JSON object per line on standard output\n"
         "  --plain            no screen on a terminal, a line per event instead\n"
         "  --status MS        time between status lines, 0 for none (default 500 with --json, else 2000)\n"
@@ -94,6 +105,7 @@ static void print_examples(FILE *out) {
           "\n"
           "examples:\n"
           "  argusd --link serial:/dev/ttyUSB0@9600 --check\n"
+          "  argusd --link serial:/dev/ttyUSB0@9600 --survey --active\n"
           "  argusd --link serial:/dev/ttyUSB0 --auto-baud\n"
           "  argusd --link serial:/dev/ttyUSB0@9600 --active --goal 3000,0 --config argusd.conf\n"
           "  argusd --link tcp:localhost --course course.csv --json\n"
@@ -111,6 +123,7 @@ void options_help(FILE *out) {
     print_head(out);
     print_links(out);
     print_options(out);
+    print_running(out);
     print_examples(out);
 #define EXIT_LINE(name, code, meaning) fprintf(out, "  %d  %s\n", code, meaning);
     ARGUSD_EXIT_TABLE(EXIT_LINE)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from argus_tools.chunks import ROBOT_TO_CLIENT, Chunk, DamageList
 from argus_tools.formats import open_log
-from argus_tools.formats.timeline import SECOND_MOST, Timeline
+from argus_tools.formats.timeline import DAY_S, SECOND_MOST, YEAR_S, Timeline, Wrapping
 
 
 class Reader:
@@ -92,6 +92,58 @@ def test_whole_seconds_are_spread() -> None:
 )
 def test_what_only_looks_like_whole_seconds_stays(given: list[float | None]) -> None:
     assert times(list(given)) == (given, [])
+
+
+def test_a_second_that_never_ends_is_not_held() -> None:
+    steady: list[float | None] = [7.0, 7.0, 8.0, 8.0, 9.0, 9.0, 10.0, 10.0]
+    reader, damage = Reader([*steady, *[11.0] * (3 * SECOND_MOST), 12.0, 12.0]), DamageList()
+    chunks = iter(Timeline(reader, damage))
+    found = [next(chunks).t for _ in range(8 + SECOND_MOST + 1)]
+    assert reader.place == f"line {8 + SECOND_MOST + 1}"
+    found += [chunk.t for chunk in chunks]
+    assert found[8:-2] == [11.0] * (3 * SECOND_MOST)
+    assert found[:4] == [7.0, 7.5, 8.0, 8.5]
+    assert found[-2:] == [12.0, 12.5]
+    assert [entry.what for entry in damage if "stands at 11.0" in entry.what]
+
+
+def test_a_first_second_that_is_cut_does_not_hide_whole_seconds() -> None:
+    given: list[float | None] = [6.0, *(t for t in (7.0, 8.0, 9.0, 10.0) for _ in range(4))]
+    found, told = times(given)
+    assert found[:6] == [6.0, 7.0, 7.25, 7.5, 7.75, 8.0]
+    assert told == [("its clock", "gives whole seconds")]
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("period", [DAY_S, YEAR_S])
+def test_a_clock_known_to_begin_anew_does_so_after_any_pause(period: float, seed: int) -> None:
+    rng = random.Random(seed)
+    given: list[float | None] = []
+    right: list[float] = []
+    t = period * rng.uniform(0.6, 0.99)
+    for n in range(50):
+        t += rng.choice([0.1, 0.1, 0.1, period * rng.uniform(0.0, 0.49)]) * (n > 0)
+        given.append(Wrapping(t % period, period))
+        right.append(t)
+    found, told = times(given)
+    assert found == pytest.approx(right, abs=1e-5), seed
+    assert told == []
+
+
+def test_two_directions_out_of_order_over_midnight() -> None:
+    given: list[float | None] = [86399.9, 0.05, 86399.95, 0.15, 0.25]
+    found, told = times(given)
+    assert found == pytest.approx([86399.9, 86400.05, 86399.95, 86400.15, 86400.25])
+    assert told == []
+
+
+def test_followed_whole_seconds_are_spread_once_they_are_known() -> None:
+    given = [t for t in (7.0, 8.0, 9.0, 10.0, 11.0) for _ in range(4)]
+    damage = DamageList()
+    found = [chunk.t for chunk in Timeline(Reader(given), damage, is_followed=True)]
+    assert found[:12] == given[:12]
+    assert found[12:] == [10.0, 10.25, 10.5, 10.75, 11.0, 11.25, 11.5, 11.75]
+    assert len(damage) == 1
 
 
 def test_a_log_that_is_followed_is_not_held_up() -> None:

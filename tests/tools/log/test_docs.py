@@ -43,7 +43,8 @@ def test_the_commands_run_in_their_order(tmp_path: Path) -> None:
             timeout=600,
             check=False,
         )
-        assert done.returncode == 0, f"{command}\n{done.stderr}"
+        found = command.startswith("argus-log faults")
+        assert done.returncode == (1 if found else 0), f"{command}\n{done.stderr}"
         assert done.stdout or done.stderr or " -o " in command, command
         for name in re.findall(r"\S+\.(?:png|svg|mcap|pcapng|jsonl)\b", command):
             assert (tmp_path / name).stat().st_size > 1000, command

@@ -24,12 +24,14 @@ DEAD_MM = 5000
 SYNC = [SyncEcho(0).data, SyncEcho(1).data, SyncReply(b"n", b"Pioneer", b"p3dx-sh").data]
 
 
-def sips(count: int, start: int = 0, dead: Iterable[int] = (), dead_at: int = 0) -> list[bytes]:
+def sips(
+    count: int, start: int = 0, dead: Iterable[int] = (), dead_at: int = 0, silent: Iterable[int] = ()
+) -> list[bytes]:
     """SIPs as of a P3-DX: five readings each, all 16 sonars every 320 ms."""
-    dead = frozenset(dead)
+    dead, silent = frozenset(dead), frozenset(silent)
     out = []
     for i in range(start, start + count):
-        numbers = [(5 * i + k) % 16 for k in range(5)]
+        numbers = [n for k in range(5) if (n := (5 * i + k) % 16) not in silent or i < dead_at]
         readings = tuple((n, DEAD_MM if n in dead and i >= dead_at else WALL_MM + n) for n in numbers)
         out.append(frame(Sip(flags=1, battery=125, sonars=readings).data))
     return out
@@ -52,7 +54,7 @@ def write(path: Path, chunks: list[Chunk], format_: str = "record") -> Path:
 def faults(path: Path, capsys: pytest.CaptureFixture[str], *arguments: str) -> list[dict[str, Any]]:
     capsys.readouterr()
     words = arguments if "--profile" in arguments else (*arguments, "--profile", "paper")
-    assert main(["faults", "--json", str(path), *words]) == 0
+    assert main(["faults", "--json", "--exit-zero", str(path), *words]) == 0
     lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert lines[-1]["event"] == "STATUS"
     return lines
@@ -170,7 +172,7 @@ def test_recorded_sessions_are_judged(name: str, capsys: pytest.CaptureFixture[s
 
 def test_the_events_for_people(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write(tmp_path / "a.rec", timed(sips(100, dead=[3], dead_at=50)))
-    assert main(["faults", "--events", "--profile", "paper", str(path)]) == 0
+    assert main(["faults", "--events", "--profile", "paper", str(path)]) == 1
     out = capsys.readouterr().out
     assert "ERROR sonar/front/03 SONAR_DISABLED (off): not used any more\n" in out
     assert "\n    3  DISABLED  off       5000\n" in out
@@ -181,7 +183,7 @@ def test_the_events_for_people(tmp_path: Path, capsys: pytest.CaptureFixture[str
 def told(path: Path, capsys: pytest.CaptureFixture[str], *arguments: str) -> list[str]:
     """What is printed for people."""
     capsys.readouterr()
-    assert main(["faults", str(path), *arguments]) == 0
+    assert main(["faults", "--exit-zero", str(path), *arguments]) == 0
     return capsys.readouterr().out.splitlines()
 
 
@@ -312,7 +314,7 @@ def test_what_was_given_up_before_the_arrays_were_off_is_told(
         chunk._replace(t=(chunk.t or 0) + 20) for chunk in switched(100, (0, 0), (20, 1), flagged=False)
     ]
     log = write(tmp_path / "a.jsonl", chunks, "jsonl")
-    assert main(["faults", str(log), "--profile", "paper"]) == 0
+    assert main(["faults", str(log), "--profile", "paper"]) == 1
     out = capsys.readouterr().out
     assert re.search(
         r"^sonar/front/03 disabled as \w+ at \+[\d.]+ s, in an earlier session$", out, re.MULTILINE
@@ -342,3 +344,49 @@ def test_a_sip_that_ends_before_its_readings_opens_no_session(
     cut = frame(whole[0][3:-2][:21])
     log = write(tmp_path / "a.jsonl", timed([cut, *whole]), "jsonl")
     assert len(named(faults(log, capsys), "SESSION_OPEN")) == 1
+
+
+@pytest.mark.parametrize("form", [[], ["--json"], ["--events"]], ids=["lines", "json", "events"])
+@pytest.mark.parametrize(
+    ("dead", "more", "code"),
+    [([], [], 0), ([3], [], 1), ([3], ["--exit-zero"], 0), ([3], ["--strict"], 1), ([], ["--strict"], 0)],
+)
+def test_the_exit_code_is_1_where_faults_are_found(
+    dead: list[int], more: list[str], code: int, form: list[str], tmp_path: Path
+) -> None:
+    path = write(tmp_path / "a.rec", timed(sips(150, dead=dead, dead_at=50)))
+    assert main(["faults", "--profile", "paper", str(path), *form, *more]) == code
+
+
+def damaged(count: int, every: int, silent: int) -> list[Chunk]:
+    """SIPs of which one in `every` is spoilt, and from the 40th on none has this sonar."""
+    chunks = []
+    for number, chunk in enumerate(timed(sips(count, silent=[silent], dead_at=40))):
+        data = bytearray(chunk.data)
+        if number % every == 0:
+            data[-1] ^= 0x55
+        chunks.append(chunk._replace(data=bytes(data)))
+    return chunks
+
+
+@pytest.mark.parametrize("form", [[], ["--json"]], ids=["lines", "json"])
+def test_of_a_damaged_log_no_sonar_is_given_out_as_silent(
+    form: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(tmp_path / "a.jsonl", damaged(400, 4, 3), "jsonl")
+    capsys.readouterr()
+    assert main(["faults", str(path), *form]) == 0
+    out = capsys.readouterr().out
+    assert "silent" not in out
+    assert "SONAR_DISABLED" not in out
+    if not form:
+        assert "sonar/front/03 gave no reading where the log is damaged: no verdict of silence" in out
+
+
+def test_of_a_log_with_little_damage_silence_is_a_verdict(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(tmp_path / "a.jsonl", damaged(400, 50, 3), "jsonl")
+    capsys.readouterr()
+    assert main(["faults", str(path)]) == 1
+    assert "sonar/front/03 disabled as silent" in capsys.readouterr().out

@@ -21,8 +21,9 @@ from argus_tools.chunks import (
     Writer,
 )
 from argus_tools.formats.quoted import Unquoted, unquoted
-from argus_tools.formats.recoded import crlf_damage
+from argus_tools.formats.recoded import Unreturned, crlf_damage
 from argus_tools.formats.source import BLOCK_BYTES, HEAD_BYTES, Source
+from argus_tools.formats.telnet import Untelneted
 from argus_tools.formats.text import (
     COLOUR,
     Colourless,
@@ -107,13 +108,15 @@ class Log:
         is_enough = (lambda _: True) if format_name else is_recognised
         self.source = Source(path, is_enough=is_enough, **source)
         self.options.is_zipped = self.source.is_zipped
+        self.options.skipped = self.source.skipped
         if not self.source.head:
             what = self.source.damage[0].what if self.source.damage else "is empty"
             raise LogError(f"{path}: {what}")
         self.format = formats()[format_name] if format_name else find_format(self.source.head)
         stream = self._cleaned() if format_name else self._opened()
-        if explained := crlf_damage(self.source.head, self.options):
-            self.source.damage.append(explained)
+        if explained := crlf_damage(self.source.head):
+            self.source.damage.correct(explained)
+            stream = BufferedReader(Unreturned(stream), BLOCK_BYTES)
         self._reader = self.format.reader(stream, self.options)
 
     def _opened(self) -> BufferedReader:
@@ -165,7 +168,11 @@ class Log:
         return self.source.damage, self._reader.damage
 
     def __iter__(self) -> Iterator[Chunk]:
-        return iter(Timeline(self._reader, self._reader.damage, self.source.is_followed))
+        reader, damage = self._reader, self._reader.damage
+        # What is live is not held up for a look at it.
+        is_whole = self.source.is_regular and not self.source.is_followed
+        chunks = Untelneted(reader, damage) if is_whole else reader
+        return iter(Timeline(chunks, damage, self.source.is_followed))
 
 
 def open_log(path: str, format_name: str | None = None, **options: Any) -> Log:

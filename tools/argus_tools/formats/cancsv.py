@@ -22,6 +22,8 @@ _LINE_MAX: Final = 4096
 _HEADING_LINES: Final = 40
 _SEPARATORS: Final = (",", ";", "\t")
 _BYTES_MAX: Final = 64
+_HEADINGS_MIN: Final = 2
+_PAIR_MOST: Final = 4
 _ROWS_LOOKED_AT: Final = 1 << 10
 _SHORT_ID_MAX: Final = 0x7FF
 # In English, and in German as spreadsheets and analysers write it there; an umlaut may be of any code page.
@@ -31,7 +33,7 @@ _ID: Final = re.compile(
     r"(id|identifier|addr(?:ess)?|kennung)( ?[(\[]?(hex|dec|dez)[)\]]?)?"
 )
 _TIME: Final = re.compile(
-    r"(time ?(stamp|offset)?|abs(olute)? ?time|t|(?:absolute |relative |system)?zeit ?(?:stempel|punkt)?)"
+    r"(time ?(stamps?|offset)?|abs(olute)? ?time|t|(?:absolute |relative |system)?zeit ?(?:stempel|punkt)?)"
     + _UNIT
 )
 _SIZE: Final = re.compile(
@@ -100,9 +102,20 @@ def _columns(line: bytes) -> _Columns | None:
     text = line.decode("utf-8", "replace").strip().lstrip(";# ").lower()
     for separator in _SEPARATORS:
         names = [re.sub(r"[ _]+", " ", name.strip().strip('"')) for name in text.split(separator)]
-        if len(names) >= 3 and not _PREFIXED.search(names[0]) and (found := _understand(separator, names)):
+        names = _without_group(names)
+        if (
+            len(names) >= _HEADINGS_MIN
+            and not _PREFIXED.search(names[0])
+            and (found := _understand(separator, names))
+        ):
             return found
     return None
+
+
+def _without_group(names: list[str]) -> list[str]:
+    """Return headings without the name of the group before a point, which MDF's channels have in common."""
+    groups = {name.rpartition(".")[0] for name in names if "." in name}
+    return [name.rpartition(".")[2] for name in names] if len(groups) == 1 else names
 
 
 def _understand(separator: str, names: list[str]) -> _Columns | None:
@@ -143,7 +156,7 @@ def _in_their_base(columns: _Columns, head: bytes) -> _Columns:
         columns = split if any(map(is_robot_id, _ids(lines, split))) else columns
     cells = [_Cells(columns, row) for line in lines if (row := _cells(line, columns))]
     is_decimal = columns.is_decimal or _are_decimal([cell.id_text() for cell in cells])
-    data = [text for cell in cells for text in cell.one_texts()]
+    data = [text for cell in cells for text in cell.one_texts() or cell.list_texts()]
     return replace(columns, is_decimal=is_decimal, has_decimal_data=_is_decimal_data(data, is_decimal))
 
 
@@ -218,6 +231,11 @@ class _Cells:
         """The cell of the id."""
         return self._at(self._columns.can_id)
 
+    def list_texts(self) -> list[str]:
+        """The numbers in the one cell of all bytes, where spaces or commas part them."""
+        texts = re.split(r"[\s,;]+", self._at(self._columns.data).strip("[]").strip())
+        return [] if self._columns.is_base64 or len(texts) == 1 else texts
+
     def one_texts(self) -> list[str]:
         """The cells of single bytes that are not empty."""
         return [text for at in self._columns.ones if (text := self._at(at))]
@@ -272,12 +290,14 @@ class _Cells:
         else:
             # Unquoted bytes may have cells of their own behind the last heading.
             assert columns.data is not None
-            text = (
-                " ".join(self._cells[columns.data :])
-                if self._is_last(columns.data)
-                else self._at(columns.data)
-            )
-            data = bytes.fromhex(re.sub(r"0x|[-:|']", " ", text.lower()))
+            text = self._at(columns.data)
+            if len(text) <= _PAIR_MOST and self._is_last(columns.data):
+                text = " ".join(self._cells[columns.data :])
+            text = text.strip("[]")
+            if columns.has_decimal_data:
+                data = bytes(map(int, re.split(r"[\s,;]+", text.strip())))
+            else:
+                data = bytes.fromhex(re.sub(r"0x|[-:|']", " ", text.lower()))
         return self._sized(data, size)
 
     def _sized(self, data: bytes, size: int | None) -> bytes:

@@ -35,7 +35,8 @@ _BUS: Final = rb"((?!\d+\.\d)[^\s#()\[\]{}:]+)"
 _BUSES_MOST: Final = 16
 _LINE: Final = re.compile(
     rb"\s*(?:\((\d{1,12}\.\d{1,9})\)\s+)?(?:" + _BUS + rb"\s+)?" + _ID + rb"#"
-    rb"(?:R[0-9A-Fa-f_]*|(?:#[0-9A-Fa-f])?([0-9A-Fa-f.]*))(?:\s+[RTX])*\s*"
+    rb"(?:R[0-9A-Fa-f_]*|(?:#[0-9A-Fa-f])?([0-9A-Fa-f.]*))(?:\s+[RTX])*\s*(?:::.*)?",
+    re.DOTALL,
 )
 # Time and interface may be missing: as cansend takes it, "640#06.FA.FB".
 _USUAL: Final = re.compile(rb"\((\d{1,12}\.\d{1,9})\) (\S+) ([0-9A-Fa-f]{3})#([0-9A-Fa-f]{2,16})\n")
@@ -49,6 +50,8 @@ _SCREEN: Final = re.compile(
     re.DOTALL,
 )
 _RELATIVE: Final = re.compile(rb"^\s*\((\d{1,8}\.\d{1,9})\)", re.MULTILINE)
+# What cantools decode prints below a frame that its database knows, up to the closing bracket.
+_MESSAGE: Final = re.compile(rb"\w+\(\s*\Z")
 _COLOUR: Final = re.compile(rb"\x1b\[[0-9;]*[A-Za-z]")
 # The digits of -i are eight to a byte; -S turns the bytes round and marks them with another separator.
 _BITS: Final = re.compile(rb"[01]{8}(?:[ `][01]{8})*")
@@ -86,6 +89,7 @@ class CandumpReader:
         self.damage = DamageList()
         self._stream = stream
         self._link = CanLink(options, self.damage, "line")
+        self._in_message = False
 
     @property
     def place(self) -> str:
@@ -140,9 +144,16 @@ class CandumpReader:
             return t, bus or b"", can_id, digits
         if match := _SCREEN.fullmatch(line):
             return self._screen(match, number)
-        if line.strip() and not line.startswith((b"#", b"\t")):
+        if line.strip() and not line.startswith((b"#", b"\t")) and not self._is_decoded(line):
             self.damage.append(Damage(f"line {number}", "no line of candump"))
         return None
+
+    def _is_decoded(self, line: bytes) -> bool:
+        """Whether a line is one of those in which cantools decode explains the frame before."""
+        self._in_message |= bool(_MESSAGE.match(line))
+        is_inside = self._in_message
+        self._in_message &= not line.startswith(b")")
+        return is_inside
 
     def _screen(self, match: re.Match[bytes], number: int) -> Fields | None:
         date, t, bus, can_id, bracket, length, shown = match.groups()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Lines of one CAN frame each, as other programs than candump print them: python-can, BUSMASTER, CRTD."""
+"""Lines of one CAN frame each, as other programs than candump print them: python-can, BUSMASTER, CRTD and others."""
 
 from __future__ import annotations
 
@@ -11,11 +11,21 @@ from typing import Final
 
 from argus_tools.chunks import Chunk, Damage, DamageList, Format, ReadOptions
 from argus_tools.formats.isotp import CanLink
+from argus_tools.formats.stamps import Times
 from argus_tools.formats.text import first_lines
+from argus_tools.formats.timeline import DAY_S, Wrapping
 
 _LINE_MAX: Final = 4096
-_LONG_DIGITS: Final = 4
+_SHORT_ID_MAX: Final = 0x7FF
 _BYTES: Final = r"(?P<data>(?:[0-9A-Fa-f]{2}(?:\s+|$))*)"
+
+
+# A time with a date or of the day, which the stamps understand; on which side a frame was seen, and its id.
+_STAMPED: Final = r"\s*[\[(]?(?P<stamp>(?:\d{4}[-/.]\d\d[-/.]\d\d[T ,]+)?\d\d?:\d\d:\d\d[^\s,;\])]*)[\])]?"
+_SIDED: Final = r"(?:\w{1,8}[,;\s]\s*)?[RTrt][Xx][,;\s]\s*(?:0x)?(?P<id>[0-9A-Fa-f]{3,8})(?P<long>x?)"
+# A robot's id, and nothing before it.
+_PLAIN: Final = r"\s*(?:0x)?0{0,5}(?P<id>64[0-9A-Fa-f])(?P<long>)h?"
+_LISTED: Final = r"(?P<data>(?:(?:0x)?[0-9A-Fa-f]{2}(?:[\s,;]+|$))*)"
 
 
 @dataclass(frozen=True)
@@ -54,8 +64,25 @@ _KINDS: Final = (
             + "$"
         ),
     ),
+    _Kind(
+        "a dated CAN log",
+        re.compile(_STAMPED + r"[,;\s]\s*" + _SIDED + r"[,;\s]"),
+        re.compile(
+            _STAMPED
+            + r"[,;\s]\s*"
+            + _SIDED
+            + r"[,;\s]\s*(?:(?P<size>\d{1,2})[,;\s]\s*|\[(?P<length>\d{1,2})\]\s*)?"
+            + _LISTED
+            + "$"
+        ),
+    ),
+    _Kind(
+        "CAN ids with bytes",
+        re.compile(_PLAIN + r"\s*[,;:\s]\s*(?:[0-9A-Fa-f]{2}[\s,;]+){2,7}[0-9A-Fa-f]{2}\s*$"),
+        re.compile(_PLAIN + r"\s*[,;:\s]\s*" + _LISTED + "$"),
+    ),
 )
-_LONG: Final = ("X", "x", "29")
+_LONG: Final = ("X", "x", "29")  # an id of more than 11 bits needs no mark
 # What else such a program writes between its frames.
 _PASSED: Final = re.compile(r"\s*(?:#|\*\*\*|\d+\.\d+\s+\d?C)")
 
@@ -67,6 +94,7 @@ class CanLinesReader:
         self.damage = DamageList()
         self._stream = stream
         self._link = CanLink(options, self.damage, "line")
+        self._times = Times()
 
     @property
     def place(self) -> str:
@@ -84,17 +112,30 @@ class CanLinesReader:
             if match is None:
                 self._complain(kind, text, number)
                 continue
-            can_id, is_long = int(match["id"], 16), match["long"] in _LONG
+            can_id, is_long = (
+                int(match["id"], 16),
+                match["long"] in _LONG or int(match["id"], 16) > _SHORT_ID_MAX,
+            )
             direction = self._link.direction(match.groupdict().get("bus") or "", can_id, is_long, number)
             if direction is None:
                 continue
-            data = bytes.fromhex(match["data"])
-            size = int(match.groupdict().get("size") or len(data))
+            data = bytes.fromhex(re.sub("0x|[,;]", " ", match["data"]))
+            groups = match.groupdict()
+            size = int(groups.get("size") or groups.get("length") or len(data))
             if len(data) != size:
                 self.damage.append(Damage(f"line {number}", f"{len(data)} of a frame's {size} bytes"))
                 continue
-            yield from self._link.take(_seconds(match), direction, data, number)
+            yield from self._link.take(self._seconds(match), direction, data, number)
         yield from self._link.finish()
+
+    def _seconds(self, match: re.Match[str]) -> float | None:
+        groups = match.groupdict()
+        if groups.get("t"):
+            return float(groups["t"])
+        if groups.get("stamp"):
+            stamp = self._times.take(groups["stamp"].encode("latin-1") + b" ")
+            return stamp.t if stamp else None
+        return _of_day(groups) if groups.get("h") else None
 
     def _complain(self, kind: _Kind | None, text: str, number: int) -> None:
         if (
@@ -110,21 +151,22 @@ def _is_without_data(text: str) -> bool:
     return bool(re.search(r"\s(?:R|E|sr|xr|er)\s", text))
 
 
-def _seconds(match: re.Match[str]) -> float:
-    groups = match.groupdict()
-    if groups.get("t"):
-        return float(groups["t"])
-    return int(groups["h"]) * 3600 + int(groups["m"]) * 60 + int(groups["s"]) + int(groups["f"]) / 10_000
+def _of_day(groups: dict[str, str]) -> float:
+    t = int(groups["h"]) * 3600 + int(groups["m"]) * 60 + int(groups["s"]) + int(groups["f"]) / 10_000
+    return Wrapping(t, DAY_S)
 
 
 def _sniff(head: bytes) -> bool:
     lines = [line.decode("latin-1") for line in first_lines(head)]
-    return any(kind.line.match(line) for kind in _KINDS for line in lines)
+    if any(kind.line.match(line) for kind in _KINDS[:-1] for line in lines):
+        return True
+    # The plainest of all has no heading, which would be that of a table.
+    return bool(lines) and bool(_KINDS[-1].line.match(lines[0]))
 
 
 FORMAT: Final = Format(
     name="can-lines",
-    help="CAN frames as python-can, BUSMASTER and CRTD print them",
+    help="CAN frames as python-can, BUSMASTER, CRTD and dated logs print them",
     sniff=_sniff,
     reader=CanLinesReader,
 )

@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import logging
 import re
+import signal
 import struct
+import threading
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from io import BufferedReader
 from typing import Any, Final
@@ -82,6 +84,59 @@ _BY_NAME: Final = (
 )
 
 
+class _Stuck(Exception):
+    """A reader that computes without an end and gives nothing."""
+
+
+class _Guard:
+    """Lets python-can's readers run as long as they get on: a message, or a read of the file.
+
+    One that computes for STUCK_S without either is ended. Elsewhere than in the main thread there is no such clock.
+    """
+
+    STUCK_S: Final = 10.0
+    READS_AT_END: Final = 1000
+    """Reads behind the end of a file that a reader may do."""
+
+    def __init__(self) -> None:
+        self._steps = self._seen = self._idle_reads = 0
+        self._is_inside = False
+
+    def step(self, data: bytes | str = b"x") -> None:
+        """Take note of a read, and of what it gave."""
+        self._steps += 1
+        self._idle_reads = 0 if data else self._idle_reads + 1
+        if self._idle_reads > self.READS_AT_END:
+            raise _Stuck("it reads on behind the end")
+
+    def messages(self, messages: Iterable[Any]) -> Iterator[Any]:
+        """Yield the messages of a reader."""
+        if threading.current_thread() is not threading.main_thread():
+            yield from messages
+            return
+        before = signal.signal(signal.SIGVTALRM, self._look)
+        signal.setitimer(signal.ITIMER_VIRTUAL, self.STUCK_S, self.STUCK_S)
+        iterator = iter(messages)
+        try:
+            while True:
+                self._is_inside = True
+                message = next(iterator, None)
+                self._is_inside = False
+                if message is None:
+                    return
+                self._steps += 1
+                yield message
+        finally:
+            self._is_inside = False
+            signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+            signal.signal(signal.SIGVTALRM, before)
+
+    def _look(self, _number: int, _frame: object) -> None:
+        if self._is_inside and self._steps == self._seen:
+            raise _Stuck("no progress")
+        self._seen = self._steps
+
+
 class _Lines:
     """The lines of a log as python-can wants them; they can be begun anew behind a line that it did not understand.
 
@@ -101,6 +156,7 @@ class _Lines:
         self._t = 0.0
         self._last = ""
         self._failed_at = 0
+        self.guard = _Guard()
         self.number = 0
         self.is_over = False
 
@@ -138,6 +194,7 @@ class _Lines:
         """Return the next line that is no comment; an empty one at the end."""
         while data := self._stream.readline(_LINE_MAX):
             self.number += 1
+            self.guard.step()
             if not is_passed(data):
                 self._last = self._usual(data.decode("latin-1"))
                 return self._last
@@ -272,13 +329,17 @@ class TextReader(_Messages):
         with self._listening(lambda: self._lines.number):
             while not self._lines.is_over:
                 try:
-                    for message in self._reader():
+                    for message in self._lines.guard.messages(self._reader()):
                         self._is_read = True
                         t = self._lines.time(message.timestamp)
                         yield from self._take(message, self._lines.number, t)
                 except _FAILURES as error:
                     self._refuse(error)
                     self._lines.rewind()
+                except _Stuck as error:
+                    what = f"the {self._kind.upper()} file is damaged here ({error}); the rest is not read"
+                    self._tell(self._lines.number, what)
+                    break
             if self._named and not self._is_read:
                 raise LogError(f"{self._name}: line {self._named}: {_BY_NAME}")
             yield from self._link.finish()
@@ -313,14 +374,15 @@ class BlfReader(_Messages):
         from can.io.blf import BLFParseError
 
         number = 0
-        stream = _Open(self._stream)
+        guard = _Guard()
+        stream = _Open(self._stream, guard)
         opened: Any = stream
         with self._listening(lambda: number):
             try:
-                for message in can.BLFReader(opened):
+                for message in guard.messages(can.BLFReader(opened)):
                     number += 1
                     yield from self._take(message, number)
-            except (*_FAILURES, BLFParseError) as error:
+            except (*_FAILURES, BLFParseError, _Stuck) as error:
                 if not number:
                     raise LogError(
                         f"{self._name}: a BLF file that cannot be read ({_brief(error)})"
@@ -337,14 +399,16 @@ class BlfReader(_Messages):
 class _Open:
     """The stream for a reader that would close it; a read that cannot be is the file's end."""
 
-    def __init__(self, stream: BufferedReader) -> None:
+    def __init__(self, stream: BufferedReader, guard: _Guard) -> None:
         self._stream = stream
+        self._guard = guard
         self.is_cut = False
 
     def read(self, size: int) -> bytes:
         if not 0 <= size <= _OBJECT_MAX:
             raise ValueError(f"an object of {size} bytes")
         data = self._stream.read(size)
+        self._guard.step(data)
         # Nothing at all is the end, and what fills an object up may be missing there.
         self.is_cut |= len(data) < size and size >= _FILLING and (bool(data) or size != _OBJECT_HEAD)
         return data

@@ -147,7 +147,7 @@ _OTHERS: Final = (
         "mf4",
         begins(b"MDF     ", b"UnFinMF "),
         "an MDF measurement (.mf4)",
-        "export its CAN frames as BLF or ASC from the tool that wrote it, or " + _CANDUMP,
+        "python -m can.logconvert FILE drive.log (with pip install asammdf), or export its frames as BLF or ASC",
     ),
     _Other(
         "sqlite",

@@ -12,6 +12,7 @@ from typing import BinaryIO, Final
 from argus_tools.chunks import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.pcap import FRAME_MAX
 from argus_tools.formats.tcp import DEFAULT_PORT, LINK_ETHERNET, Connection
+from argus_tools.formats.timeline import nanoseconds
 from argus_tools.formats.traffic import Captured, Traffic
 
 _SECTION, _INTERFACE, _SIMPLE, _ENHANCED, _OLD_PACKET = 0x0A0D0D0A, 1, 3, 6, 2
@@ -129,7 +130,7 @@ class PcapngWriter:
         frames = [] if self._opened else self._connection.opening()
         self._opened = True
         for frame in frames + self._connection.frames(chunk.dir, chunk.data):
-            t_ns = round(self._t * 1e9)
+            t_ns = nanoseconds(self._t)
             head = struct.pack("<IIIII", 0, t_ns >> 32, t_ns & 0xFFFFFFFF, len(frame), len(frame))
             self._block(_ENHANCED, head + frame + b"\0" * (-len(frame) & 3))
 

@@ -21,7 +21,7 @@ from argus_tools.chunks import (
 )
 from argus_tools.formats.hextext import bytes_of_lines
 from argus_tools.formats.source import HEAD_BYTES
-from argus_tools.formats.text import BOM, first_lines, is_text
+from argus_tools.formats.text import BOM, Rewritten, first_lines, is_text
 from hil_sim.arcos import Unframer
 
 _HEADER: Final = b"\xfa\xfb"
@@ -39,14 +39,29 @@ _SAMPLE: Final = 1 << 14
 _ENDS_MIN: Final = 6
 
 
-def crlf_damage(head: bytes, options: ReadOptions) -> Damage | None:
+def crlf_damage(head: bytes) -> Damage | None:
     """Say that a transfer as text put a CR before each LF of these bytes; None if it did not."""
     ends = head.count(b"\n")
     if ends < _ENDS_MIN or is_text(head) or head.count(b"\r\n") != ends:
         return None
-    back = remedy("LC_ALL=C sed 's/\\r$//' FILE > drive.bin", options)
-    what = f"recoded by a text transfer (LF became CRLF): send it as binary; {back} gets most of it back"
+    what = (
+        "recoded by a text transfer (LF became CRLF): undone, which gets most of it back; send it as binary"
+    )
     return Damage("byte 0", what)
+
+
+class Unreturned(Rewritten):
+    """Bytes without the CR that a transfer as text put before each LF."""
+
+    def __init__(self, stream: BufferedReader) -> None:
+        super().__init__(stream)
+        self._held = b""
+
+    def _rewrite(self, data: bytes) -> bytes:
+        """Return what is sure: a CR at the end of a block may have its LF in the next one."""
+        text = self._held + data
+        self._held = b"\r" if data and text.endswith(b"\r") else b""
+        return text.removesuffix(self._held).replace(b"\r\n", b"\n")
 
 
 def _utf16(head: bytes) -> str | None:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 
 from argus_tools.chunks import Damage, DamageList, LogError
+from argus_tools.formats.text import begins_as_text
 
 if TYPE_CHECKING:
     from _typeshed import WriteableBuffer
@@ -23,6 +24,8 @@ BLOCK_BYTES: Final = 1 << 17
 FOLLOW_PAUSE_S: Final = 0.05
 # Enough of a pipe to tell the formats apart, without keeping a live one waiting.
 PIPE_HEAD_BYTES: Final = 24
+# No packet, and no header of a file, has so many at its beginning.
+_ZEROS_MIN: Final = 32
 _GZIP_MAGIC: Final = b"\x1f\x8b\x08"
 _GZIP_WBITS: Final = 31
 
@@ -52,6 +55,7 @@ class Source(io.RawIOBase):
         self._zipped = b""
         self._ready = b""
         self._given_up = False
+        self.skipped = 0
         self._read_head(is_enough)
 
     def _read_head(self, is_enough: Callable[[bytes], bool]) -> None:
@@ -70,7 +74,20 @@ class Source(io.RawIOBase):
             if not more:
                 break
             self._ready += more
+            self._pass_zeros()
+        self._pass_zeros()
+        if self.skipped:
+            what = f"{self.skipped} zeros before the log, as a power cut or a reserved file leaves them: passed over"
+            self.damage.correct(Damage("byte 0", what))
         self.head = self._ready
+
+    def _pass_zeros(self) -> None:
+        """Leave out zeros at the beginning: many, or any before text."""
+        rest = self._ready.lstrip(b"\0")
+        zeros = len(self._ready) - len(rest)
+        if zeros >= _ZEROS_MIN or (zeros and self.skipped) or (zeros and rest and begins_as_text(rest)):
+            self.skipped += zeros
+            self._ready = rest
 
     @property
     def is_zipped(self) -> bool:

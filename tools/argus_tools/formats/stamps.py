@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Final, NamedTuple
 
-_DAY_S: Final = 86400.0
+from argus_tools.formats.timeline import DAY_S, LEAP_YEAR_S, YEAR_S, Wrapping
+
 _DATES: Final = (
     "%Y-%m-%d", "%Y/%m/%d", "%Y.%m.%d", "%d.%m.%Y", "%m/%d/%Y", "%d/%m/%Y", "%d-%m-%Y",
     "%d.%m.%y", "%m/%d/%y", "%d/%m/%y", "%y-%m-%d",
@@ -18,7 +19,6 @@ _MONTHS: Final = (
 )  # fmt: skip
 # A date without a year is counted from a year that has no 29 February, unless that day comes.
 _YEAR, _LEAP_YEAR = 1970, 1972
-_YEAR_DAYS: Final = 365
 _MONTH: Final = rb"(?:" + b"|".join(_MONTHS) + rb")"
 # 2026-11-25, 25.11.26, 11-25 as logcat has it, Nov 25 of syslog, Wed Nov 25 of ctime, 25 Nov 2026, 25/Nov/2026.
 _DATE: Final = (
@@ -60,9 +60,8 @@ class Stamp(NamedTuple):
 
 @dataclass
 class Times:
-    """Makes one rising time of clocks without a date, which begin anew at midnight, and of dates without a year."""
+    """Turns the times of a log's lines into seconds, those of a clock without a date or a year as `Wrapping`."""
 
-    base_s: float = 0.0
     last: float = 0.0
     is_leap: bool = False
 
@@ -82,22 +81,17 @@ class Times:
             return _midnight(match["date"].decode()) + t - _zone_s(match)
         month, day, year = _day(match)
         if month is None:
-            return self._rising(t, _DAY_S)
+            return Wrapping(t, DAY_S)
         self.is_leap |= (month, day) == (2, 29)
         whole = int(year) if year else (_LEAP_YEAR if self.is_leap else _YEAR)
         try:
             t += datetime(whole, month, day, tzinfo=UTC).timestamp() - _zone_s(match)
-        except ValueError:
+        except ValueError:  # no such day
             return self.last
         if year:
             return t
-        return self._rising(t - datetime(whole, 1, 1, tzinfo=UTC).timestamp(), _YEAR_DAYS * _DAY_S)
-
-    def _rising(self, t: float, period_s: float) -> float:
-        if t + self.base_s < self.last - period_s / 2:
-            self.base_s += period_s
-        self.last = t + self.base_s
-        return self.last
+        self.last = t - datetime(whole, 1, 1, tzinfo=UTC).timestamp()
+        return Wrapping(self.last, LEAP_YEAR_S if self.is_leap else YEAR_S)
 
 
 def _of_day(match: re.Match[bytes]) -> float:

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from decimal import Decimal
 from itertools import chain, groupby
-from typing import Final
+from typing import Final, Self
 
 from argus_tools.chunks import Chunk, Damage, DamageList
 
@@ -16,22 +17,49 @@ STEP_S: Final = 0.1
 BOOT_MAX_S: Final = 1e8
 EPOCH_MIN_S: Final = 1e9
 DAY_S: Final = 86400.0
-NEAR_MIDNIGHT_S: Final = 3600.0
-"""Times below BOOT_MAX_S are since a start, above EPOCH_MIN_S since 1970: one clock gives no log both."""
+YEAR_S: Final = 365 * DAY_S
+LEAP_YEAR_S: Final = 366 * DAY_S
+NEAR: Final = ((DAY_S, 3600.0), (YEAR_S, DAY_S), (LEAP_YEAR_S, DAY_S))
+"""A period of a clock, and how near its end and its beginning a fall is one of a clock that nobody said to be such.
+
+Times below BOOT_MAX_S are since a start, above EPOCH_MIN_S since 1970: one clock gives no log both.
+"""
 SECONDS_SEEN: Final = 3
 """So many seconds that are over tell whether a clock has whole seconds only."""
 SECOND_MOST: Final = 400
 """More chunks than the fastest link carries in that time are not waited for."""
 
 
+class Wrapping(float):
+    """A time of a clock that begins anew each `period_s`, as one of the day does that has no date."""
+
+    period_s: float
+
+    def __new__(cls, t: float, period_s: float) -> Self:
+        """Return the time; it is a float to all but the timeline."""
+        made = super().__new__(cls, t)
+        made.period_s = period_s
+        return made
+
+
+def nanoseconds(t: float) -> int:
+    """Return a time in nanoseconds as its digits say it; a float of today has a quarter of a microsecond only.
+
+    >>> nanoseconds(1795590184.251103)
+    1795590184251103000
+    """
+    return max(0, round(Decimal(repr(float(t))).scaleb(9)))
+
+
 class Timeline:
     """Iterates chunks with their times made rising; what had to be corrected is appended to `damage`.
 
-    Small disorder (DISORDER_S) is left as it is. A clock of the day goes on over midnight. One that falls, or is set
-    from a time since boot to one since 1970, goes on from where it was. Negative times are shifted to begin at 0. Of
-    whole seconds only, the chunks of one second are spread evenly over it.
+    Small disorder (DISORDER_S) is left as it is. A clock of the day goes on over midnight, one without a year over
+    New Year. One that falls, or is set from a time since boot to one since 1970, goes on from where it was. Negative
+    times are shifted to begin at 0. Of whole seconds only, the chunks of one second are spread evenly over it.
 
-    A log that is followed is not held up for that: its whole seconds stay.
+    A log that is followed is not held up for that: its first whole seconds stay, and each later one is spread by how
+    many chunks the one before it had.
 
     chunks: a reader, whose attribute `place`, where it has one, says where in the file the chunk just given ends.
     """
@@ -41,10 +69,12 @@ class Timeline:
         self._is_followed = is_followed
         self._damage = damage
         self._add_s = 0.0
+        self._before_s: float | None = None
+        self._raw = 0.0
         self._last: float | None = None
 
     def __iter__(self) -> Iterator[Chunk]:
-        return self._rising() if self._is_followed else self._spread(self._rising())
+        return self._paced(self._rising()) if self._is_followed else self._spread(self._rising())
 
     def _rising(self) -> Iterator[Chunk]:
         for chunk in self._chunks:
@@ -59,8 +89,9 @@ class Timeline:
                     self._report(chunk, f"times begin at {t:.6f} s; they are counted from there")
             else:
                 self._follow(chunk, t, last)
-            if self._add_s:
-                t = round(t + self._add_s, 9)
+            self._raw = float(t)
+            if self._add_s or type(t) is Wrapping:
+                t = round(float(t) + self._add_s, 9)
                 chunk = chunk._replace(t=t)
             self._last = t if last is None else max(last, t)
             yield chunk
@@ -68,10 +99,17 @@ class Timeline:
     def _follow(self, chunk: Chunk, t: float, last: float) -> None:
         """Change what is added to the times where the clock stepped between `last`, as corrected, and `t`."""
         now = t + self._add_s
+        before_s = self._before_s
+        if before_s is not None:
+            if abs(t + before_s - last) < DISORDER_S < abs(now - last):
+                # Of two directions one is still, or is already, on the other side of midnight.
+                self._add_s, self._before_s = before_s, self._add_s
+                return
+            if now > last + DISORDER_S:
+                self._before_s = None
         if now < last - DISORDER_S:
-            midnight = self._add_s + DAY_S
-            if 0 <= t < NEAR_MIDNIGHT_S and 0 <= t + midnight - last < NEAR_MIDNIGHT_S:
-                self._add_s = midnight
+            if period_s := _period(t, self._raw):
+                self._before_s, self._add_s = self._add_s, self._add_s + period_s
                 return
             self._add_s = last + STEP_S - t
             self._report(chunk, f"the clock falls by {last - now:.3f} s; times go on from before")
@@ -82,6 +120,29 @@ class Timeline:
     def _report(self, chunk: Chunk, what: str) -> None:
         place = getattr(self._chunks, "place", "") or f"byte {chunk.offset} of {chunk.dir}"
         self._damage.correct(Damage(place, what))
+
+    def _report_coarse(self) -> None:
+        what = "gives whole seconds; what lies within one is spread evenly over it"
+        self._damage.correct(Damage("its clock", what))
+
+    def _paced(self, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
+        """Spread whole seconds without a look ahead."""
+        last: float | None = None
+        seconds = size = before = 0
+        for chunk in chunks:
+            t = chunk.t
+            if t is None or t != int(t):
+                yield chunk
+                break
+            if t != last:
+                last, before, size, seconds = t, size, 0, seconds + 1
+                if seconds == SECONDS_SEEN + 1 and before > 1:
+                    self._report_coarse()
+            if seconds > SECONDS_SEEN and before > 1:
+                chunk = chunk._replace(t=round(t + min(size / before, 0.999), 6))
+            size += 1
+            yield chunk
+        yield from chunks
 
     def _spread(self, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
         head: list[Chunk] = []
@@ -94,16 +155,47 @@ class Timeline:
             yield from head
             yield from chunks
             return
-        what = "gives whole seconds; what lies within one is spread evenly over it"
-        self._damage.correct(Damage("its clock", what))
-        for _, second in groupby(chain(head, chunks), key=lambda chunk: chunk.t):
-            yield from _evenly(list(second))
+        self._report_coarse()
+        held: list[Chunk] = []
+        stands = False
+        for chunk in chain(head, chunks):
+            if held and chunk.t != held[0].t:
+                yield from held[1:] if stands else _evenly(held)
+                held, stands = [], False
+            if stands:
+                yield chunk
+                continue
+            held.append(chunk)
+            if len(held) > SECOND_MOST:
+                # More than a link carries: a clock that stands. Of its entries no time is known, and none is held.
+                what = f"stands at {chunk.t}: more than {SECOND_MOST} entries have this time"
+                self._damage.correct(Damage("its clock", what))
+                yield from held
+                held, stands = held[:1], True
+        yield from held[1:] if stands else _evenly(held)
+
+
+def _period(t: float, raw: float) -> float | None:
+    """Return the period of a clock that began anew between two of its times, the later one first; None if none did.
+
+    One that is known for a clock of a period fell by more than half of it. Of another both are near its ends.
+    """
+    if isinstance(t, Wrapping):
+        return t.period_s if raw - t > t.period_s / 2 else None
+    return next(
+        (
+            period
+            for period, near in NEAR
+            if 0 <= t < near and 0 <= period - raw <= near and period - raw + t < near
+        ),
+        None,
+    )
 
 
 def _is_coarse(head: list[Chunk]) -> bool | None:
     """Whether a clock gives whole seconds only, seen from a log's beginning; None while it may yet.
 
-    It passes on by whole seconds, with several chunks in each of those that are over.
+    It passes on by whole seconds, with several chunks in most of those that are over; the first may be cut.
     """
     last = head[-1].t
     if last is None or last != int(last) or len(head) > SECOND_MOST:
@@ -113,7 +205,8 @@ def _is_coarse(head: list[Chunk]) -> bool | None:
     sizes = [len(list(second)) for _, second in groupby(head, key=lambda chunk: chunk.t)]
     if len(sizes) <= SECONDS_SEEN:
         return None
-    return all(size > 1 for size in sizes[:-1])
+    over = sizes[1:-1]
+    return 2 * sum(size > 1 for size in over) > len(over)
 
 
 def _evenly(second: list[Chunk]) -> Iterator[Chunk]:

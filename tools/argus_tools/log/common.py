@@ -22,7 +22,8 @@ from hil_sim.tables.robot import robot_table
 
 EXIT_READ, EXIT_DAMAGE, EXIT_UNUSABLE = 0, 1, 2
 EXIT_CODES: Final = (
-    "exit codes: 0 read, 1 damage found (with --strict), 2 nothing usable, or a wrong argument"
+    "exit codes: 0 read, 1 damage found (with --strict; faults: also a fault found, unless --exit-zero), "
+    "2 nothing usable, or a wrong argument"
 )
 DIRECTIONS: Final = (ROBOT_TO_CLIENT, CLIENT_TO_ROBOT)
 # A file in which so much comes before the first packet is no log.

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final, NamedTuple
 
@@ -25,7 +25,8 @@ EXAMPLES: Final = """\
   argus-log faults drive.rec --set suspect_readings=5 --set stale_ms=3000
 
 The manager only listens: it cannot turn the robot, so a suspect that only a turn could judge stays a suspect.
-A log without times is taken as one SIP each 100 ms.
+A log without times is taken as one SIP each 100 ms. The exit code is 1 where a sonar is disabled, or a suspect with a
+name for its fault (--exit-zero: 0). Of a damaged log no sonar is given out as silent.
 """
 _SIP_MS: Final = TIMING["SIP_CYCLE_MS"]
 # SIPs that were on their way when the client closed the session or switched an array.
@@ -37,9 +38,15 @@ _STATUS: Final = {"event": "STATUS", "id": 91, "level": 0, "name": "status"}
 _FLAGS_AT: Final = SIP["OFFSET_FLAGS"] - SIP["OFFSET_TYPE"]
 _ALL_ARRAYS: Final = (1 << TIMING["ARRAYS_MAX"]) - 1
 _ARRAY: Final = TIMING["TRANSDUCERS_PER_ARRAY"]
-_ABSENT: Final = "ABSENT"
+_ABSENT, _UNKNOWN = "ABSENT", "UNKNOWN"
 _COUNTS: Final = ("sips", "bad_checksums", "skipped_bytes")
 _UNSEEN: Final = 0xFFFFFFFF
+EXIT_FAULTS: Final = 1
+# Of so many packets, when one in so many is damaged, the damage may be all that a silent sonar has said.
+_LOOKED_AT: Final = 200
+_DAMAGED_SHARE: Final = 8
+_SILENT: Final = "silent"
+_SILENT_EVENTS: Final = frozenset(("SONAR_SILENT", "SONAR_STALE"))
 
 
 class Said(NamedTuple):
@@ -110,6 +117,8 @@ class Listener:
         self._held_off = 0
         self._arrays = _Arrays()
         self._heard = _ALL_ARRAYS
+        self._lately: deque[bool] = deque(maxlen=_LOOKED_AT)
+        self._unborne: set[int] = set()
         self._last: Core | None = None
         self._before: Counter[str] = Counter()
 
@@ -124,6 +133,7 @@ class Listener:
                 if self.core is not None:
                     self._leave()
             return
+        self._lately.append(row.ok)
         if row.t is not None:
             self._clock_ms = max(self._clock_ms, round(row.t * 1000))
         elif is_read:
@@ -146,7 +156,31 @@ class Listener:
         for number in range(len(status["health"])):
             if not self._is_heard(number):
                 status["health"][number], status["kind"][number] = _ABSENT, ""
+            elif number in self._unborne and status["health"][number] != "HEALTHY":
+                status["health"][number], status["kind"][number] = _UNKNOWN, ""
+            elif status["health"][number] == "STALE" and self._is_damaged():
+                self._unborne.add(number)
+                status["health"][number] = _UNKNOWN
         return {**status, **{name: status[name] + self._before[name] for name in _COUNTS}}
+
+    @property
+    def unborne(self) -> list[int]:
+        """Sonars that gave no reading while the log was damaged, which may be why."""
+        return sorted(self._unborne)
+
+    def _is_damaged(self) -> bool:
+        return _DAMAGED_SHARE * (len(self._lately) - sum(self._lately)) >= max(1, len(self._lately))
+
+    def _is_unborne(self, event: Event) -> bool:
+        """Whether an event gives a sonar out as silent that may only be so by the log's damage."""
+        if event.sonar is None:
+            return False
+        is_silent = event.event in _SILENT_EVENTS or (
+            event.event == _DISABLED and kind_name(event.value) == _SILENT
+        )
+        if is_silent and self._is_damaged():
+            self._unborne.add(event.sonar)
+        return event.sonar in self._unborne and (is_silent or event.event == "SONAR_PROBATION")
 
     def _is_heard(self, sonar: int) -> bool:
         """Whether a sonar is there and its array fires; the manager itself does not know that one may be off."""
@@ -186,6 +220,8 @@ class Listener:
         for event in core.events():
             if event.sonar is not None and not self._is_heard(event.sonar):
                 continue
+            if self._is_unborne(event):
+                continue
             behind_ms = (self._now_ms - event.t_ms) & 0xFFFFFFFF
             at_ms = self._origin_ms + self._now_ms - (behind_ms if behind_ms < 1 << 31 else 0)
             # What was said while the session was made up belongs to where the log begins.
@@ -198,6 +234,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_log_arguments(parser, follow=True)
     parser.add_argument(
         "--events", action="store_true", help="each event as a line, then all sonars (default with --follow)"
+    )
+    parser.add_argument(
+        "--exit-zero", action="store_true", help="exit code 0 also where faults are found (default: 1)"
     )
     parser.add_argument("--json", action="store_true", help="one JSON object per line, as argusd --json")
     parser.add_argument(
@@ -227,25 +266,25 @@ def run(args: argparse.Namespace) -> int:
     source = Input(args)
     listener = Listener(_given(args), args.subclass, lambda: source.log.options.absent)
     colour = use_colour()
-    summary = None if args.json or args.events or args.follow else Summary()
+    summary = Summary()
+    is_short = not (args.json or args.events or args.follow)
     t: float | None = None
     for row in source.rows():
         t = row.t
-        if summary:
-            summary.see(t, row.type == "SIP" and row.ok)
+        summary.see(t, row.type == "SIP" and row.ok)
         for said in listener.take(row):
-            if summary:
-                summary.add(said.event, said.t, said.offset)
-            else:
+            summary.add(said.event, said.t, said.offset)
+            if not is_short:
                 print(_json(said) if args.json else _line(said, colour), flush=args.follow)
     status = listener.status
     if status is None:
         raise LogError(f"{args.log}: holds no SIP from the robot, so there is nothing to judge")
-    if summary:
-        print("\n".join(summary.lines(status, sum(entries.unread for entries in source.log.damage_lists))))
+    if is_short:
+        unread = sum(entries.unread for entries in source.log.damage_lists)
+        print("\n".join(summary.lines(status, unread, listener.unborne)))
     else:
         print(json.dumps({"t": t, **_STATUS, **status}) if args.json else _table(status, colour))
-    return source.exit_code
+    return EXIT_FAULTS if summary.has_faults(status) and not args.exit_zero else source.exit_code
 
 
 def _json(said: Said) -> str:

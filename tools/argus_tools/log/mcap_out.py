@@ -10,6 +10,7 @@ from typing import Any, Final
 
 from mcap.writer import Writer
 
+from argus_tools.formats.timeline import nanoseconds
 from argus_tools.foxglove import (
     BEAMS,
     ERROR,
@@ -81,7 +82,7 @@ def write_mcap(stream: Any, first: Row, rows: Iterator[Row], decoder: Decoder) -
     count = 0
     for row in itertools.chain((first,), rows):
         count += 1
-        t_ns = max(0, round((row.t or 0.0) * 1e9))
+        t_ns = nanoseconds(row.t or 0.0)
         fields = decoder.fields(row)
         if fields["ok"] and row.type == "SIP":
             _put_sip(output, t_ns, fields, sonars)

@@ -28,13 +28,16 @@ EXAMPLES: Final = """\
   argus-log replay drive.rec --tcp 8101 --step        Enter lets one SIP through, 20 and Enter twenty
 
 The handshake and CONFIG are answered; the log begins with the client's OPEN, anew with each session. Other commands
-change nothing. With the log ends the program. A log without times is taken as one SIP each 100 ms.
+change nothing. Of a pause longer than 10 s only so much is played. With the log ends the program. A log without
+times is taken as one SIP each 100 ms.
 """
 _HOST: Final = "localhost"
 _IDLE_MS: Final = 50.0
 # What a pseudo-terminal may still hold of the log's last packets.
 _DRAIN_MS: Final = 500.0
 _SIP_MS: Final = TIMING["SIP_CYCLE_MS"]
+# No drive pauses so long, and no client waits for it.
+_PAUSE_MAX_S: Final = 10.0
 _LOOK_ROWS: Final = 500
 _SPEED_MAX: Final = 1000.0
 _BAUDS: Final = (9600, 19200, 38400, 57600, 115200)
@@ -89,6 +92,8 @@ class Player:
         self._next: Row | None = None
         self._log_ms = 0.0
         self._first_ms = 0.0
+        self._last_t: float | None = None
+        self._left_out_s = 0.0
         self._opened_ms = 0.0
         self._out: list[bytes] = []
 
@@ -118,10 +123,19 @@ class Player:
         self._synced = -1
         self._opened_ms = now_ms
         self._log_ms = 0.0
+        self._last_t, self._left_out_s = None, 0.0
         self._rows = (row for row in self._begin() if row.dir == ROBOT_TO_CLIENT)
         self._fetch()
         # A robot's first SIP comes a cycle after OPEN.
         self._first_ms = self._log_ms - _SIP_MS
+
+    def _played(self, t: float) -> float:
+        """Return a time of the log less what is left out of its long pauses, as between two drives in one file."""
+        if self._last_t is not None and t - self._last_t > _PAUSE_MAX_S:
+            self._left_out_s += t - self._last_t - _PAUSE_MAX_S
+            _say(f"nothing came for {t - self._last_t:.0f} s; {_PAUSE_MAX_S:.0f} s of that are played")
+        self._last_t = t if self._last_t is None else max(self._last_t, t)
+        return t - self._left_out_s
 
     def client_gone(self) -> None:
         """The session is over."""
@@ -140,7 +154,7 @@ class Player:
             if row.ok and (row.type in _SYNC_REPLIES or row.type == "CONFIGPAC"):
                 continue
             if row.t is not None:
-                self._log_ms = max(self._log_ms, row.t * 1000)
+                self._log_ms = max(self._log_ms, self._played(row.t) * 1000)
             elif row.type == "SIP":
                 self._log_ms += _SIP_MS
             self._next = row

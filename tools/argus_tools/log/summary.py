@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import Any, Final
 
 from hil_sim.arcos import TIMING
@@ -70,8 +71,11 @@ class Summary:
             place = f"byte {offset}" if t is None else f"+{t - (self._first or 0.0):.1f} s"
             self._disabled[event.sonar] = (kind_name(event.value), self._now, place)
 
-    def lines(self, status: dict[str, Any], unread: int) -> list[str]:
-        """Return the lines, of what the manager knows at the end and how many places of the file were not read."""
+    def lines(self, status: dict[str, Any], unread: int, unborne: Sequence[int] = ()) -> list[str]:
+        """Return the lines, of what the manager knows at the end and how many places of the file were not read.
+
+        unborne: sonars that gave no reading while the log was damaged.
+        """
         health = status["health"]
         out = self._gone(health)
         out += [
@@ -79,14 +83,15 @@ class Summary:
             for number, (kind, _, place) in sorted(self._earlier.items())
             if health[number] != DISABLED
         ]
-        lasting = [  # a doubt without a name is not acted on, so it is not told either
-            number
-            for number, since in sorted(self._since.items())
-            if health[number] == SUSPECT and status["kind"][number] and self._now - since >= LASTING_S
-        ]
+        lasting = self._lasting(status)
         out += self._suspects(lasting, status["kind"])
         out += [
             f"{_name(number):<14} {_ELSE[state]}" for number, state in enumerate(health) if state in _ELSE
+        ]
+        out += [
+            f"{_name(number):<14} gave no reading where the log is damaged: no verdict of silence"
+            for number in unborne
+            if health[number] == "UNKNOWN"
         ]
         is_judged = any(state in _JUDGED for state in health)
         head = (
@@ -101,6 +106,22 @@ class Summary:
             said = (f"{count} x {name} ({self._meaning[name]})" for name, count in self._also.most_common())
             out.append("also: " + "; ".join(said))
         return out
+
+    def has_faults(self, status: dict[str, Any]) -> bool:
+        """Whether a sonar is or was disabled, yields no reading any more, or is a suspect with a name for its fault."""
+        health = status["health"]
+        is_out = bool(self._earlier) or any(state in (DISABLED, "STALE") for state in health)
+        return is_out or 0 < len(self._lasting(status)) <= SUSPECTS_MAX
+
+    def _lasting(self, status: dict[str, Any]) -> list[int]:
+        """The suspects; a doubt without a name is not acted on, so it is not told either."""
+        return [
+            number
+            for number, since in sorted(self._since.items())
+            if status["health"][number] == SUSPECT
+            and status["kind"][number]
+            and self._now - since >= LASTING_S
+        ]
 
     def _gone(self, health: list[str]) -> list[str]:
         """Tell of the disabled sonars, those that went together in one line."""
@@ -129,8 +150,8 @@ class Summary:
     def _suspects(self, lasting: list[int], kinds: list[str]) -> list[str]:
         if len(lasting) > SUSPECTS_MAX:
             return [
-                f"{len(lasting)} sonars are suspects at once and none is proven: that is the place or the motion "
-                "rather than the sonars; --events names them"
+                f"{len(lasting)} sonars ({', '.join(map(str, lasting))}) are suspects at once and none is proven: that "
+                "is the place or the motion rather than the sonars"
             ]
         out = []
         for number in lasting:
