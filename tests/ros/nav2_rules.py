@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 FREE, UNKNOWN, LETHAL = 0, 255, 254
 _SCALE = 254
+_WIDEST_RAD = math.pi
 
 
 @dataclass(frozen=True)
@@ -120,6 +121,18 @@ class RangeLayer:
         return out
 
 
+def is_well_formed(reading: Any) -> bool:
+    """Whether Nav2 takes a sensor_msgs/Range at all (nav2_ros_common/validate_messages.hpp)."""
+    values = (reading.range, reading.min_range, reading.max_range, reading.field_of_view)
+    return (
+        reading.header.stamp.nanosec < 1_000_000_000
+        and reading.header.frame_id != ""
+        and all(map(math.isfinite, values))
+        and 0 < reading.field_of_view <= _WIDEST_RAD
+        and 0 <= reading.min_range < reading.max_range
+    )
+
+
 @dataclass
 class Source:
     """A source of the collision monitor: its last message that was not malformed."""
@@ -133,7 +146,7 @@ class Source:
 class CollisionMonitor:
     """The collision monitor with one stop polygon, a box ahead of the robot.
 
-    A malformed message (a range that is not finite) is rejected, and the one before stays. A source that gives no
+    A malformed message (see is_well_formed) is rejected, and the one before stays. A source that gives no
     data for source_timeout, or whose range is out of its limits, is invalid, and the robot is stopped for that;
     a timeout of 0 takes that from it.
     """
@@ -150,9 +163,7 @@ class CollisionMonitor:
 
     def take_range(self, name: str, reading: Any) -> None:
         """Take a sensor_msgs/Range of a source."""
-        if all(
-            map(math.isfinite, (reading.range, reading.min_range, reading.max_range, reading.field_of_view))
-        ):
+        if is_well_formed(reading):
             self.sources[name].last = reading
 
     def take_cloud(self, name: str, cloud: Any, points: Sequence[tuple[float, float]]) -> None:
