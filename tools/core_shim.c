@@ -205,7 +205,8 @@ const char *argus_shim_event_meaning(uint16_t id) {
     X(bad_checksums)    \
     X(skipped_bytes)    \
     X(stops)            \
-    X(goal_mm)
+    X(goal_mm)          \
+    X(sonars)
 #define SONAR_TABLE(X) X(reading_mm) X(age_ms) X(health) X(kind)
 
 static const char *const status_names[] = {

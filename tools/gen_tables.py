@@ -175,10 +175,17 @@ class Robot:
         """Return the figures that follow from others."""
         widest = max(self.spacings())
         astern = [pose["x_mm"] for pose in self.poses if abs(pose["heading_deg"]) >= LAST_ASTERN_DEG]
+        face = self.figures["sonar_face_mm"]
+        beside = [
+            pose["x_mm"]
+            for pose in self.poses
+            if pose["role"] == "ahead" and pose["number"] not in self.forward
+        ]
         return {
             "pitch_deg": round(sum(self.spacings()) / len(self.spacings())),
             "tolerance_excess": round(EXCESS_ONE * (1 / math.cos(math.radians(widest)) - 1)),
             "rear_overhang_mm": self.figures["rear_mm"] + max(astern, default=0),
+            "deck_behind_mm": max(face - max(beside, default=face), 0),
         }
 
 

@@ -88,9 +88,9 @@ static int32_t read_mm(const argus_guard_t *const self) {
     const argus_knowledge_t *const knowledge = self->knowledge;
     int32_t shortest = argus_min(knowledge->robot->no_echo_mm, argus_guard_touched_mm(self));
     for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i)) {
+        if (argus_counts_ahead(knowledge, i) && argus_usable(knowledge, i)) {
             const int32_t since_mm = (int32_t)(knowledge->odometer_mm - knowledge->sonar[i].odometer_mm);
-            shortest = argus_min(shortest, knowledge->sonar[i].reading_mm - since_mm);
+            shortest = argus_min(shortest, argus_reading_ahead_mm(knowledge, i) - since_mm);
         }
     }
     return shortest;

@@ -13,12 +13,12 @@ static bool looks_along_motion(const argus_knowledge_t *const knowledge, const i
     return ((ahead | behind) >> sonar & 1u) != 0;
 }
 
-static void see_object(argus_alarm_t *const alarm, const int sonar, const uint16_t reading_mm) {
+static void see_object(argus_alarm_t *const alarm, const int sonar, const int32_t reading_mm) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     alarm->object |= (argus_mask_t)(1u << sonar);
     if (alarm->object_sonar == -1 || reading_mm < alarm->object_mm) {
         alarm->object_sonar = (int8_t)sonar;
-        alarm->object_mm = reading_mm;
+        alarm->object_mm = (uint16_t)reading_mm;
     }
 }
 
@@ -34,8 +34,9 @@ static void judge_fresh(argus_alarm_t *const alarm, const argus_knowledge_t *con
     if (forward && dead && argus_profile(config)->dead_reading) {
         alarm->dead |= (argus_mask_t)(1u << sonar);
     }
-    if (s->reading_mm <= config->object_range_mm && looks_along_motion(knowledge, sonar)) {
-        see_object(alarm, sonar, s->reading_mm);
+    const int32_t range_mm = argus_reading_ahead_mm(knowledge, sonar);
+    if (range_mm <= config->object_range_mm && looks_along_motion(knowledge, sonar)) {
+        see_object(alarm, sonar, range_mm);
     }
 }
 

@@ -385,6 +385,24 @@ bool argus_usable(const argus_knowledge_t *const self, const int sonar) {
     return s->reported && !argus_is_out(self, sonar) && s->reading_mm < self->robot->no_echo_mm;
 }
 
+int32_t argus_reading_ahead_mm(const argus_knowledge_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < self->sonars);
+    const int32_t reading_mm = self->sonar[sonar].reading_mm;
+    const argus_robot_t *const robot = self->robot;
+    const bool beside = argus_robot_looks_ahead(robot, sonar) && !argus_robot_faces_forward(robot, sonar);
+    if (robot->deck_behind_mm == 0 || !beside || reading_mm >= robot->no_echo_mm) {
+        return reading_mm;
+    }
+    const int32_t bearing_cdeg = argus_robot_pose(robot, sonar).heading_deg * 100;
+    return argus_max(0, reading_mm - robot->deck_behind_mm * argus_cos(bearing_cdeg) / ARGUS_TRIG_ONE);
+}
+
+bool argus_counts_ahead(const argus_knowledge_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    return argus_robot_looks_ahead(self->robot, sonar) &&
+           (argus_robot_faces_forward(self->robot, sonar) || self->sonar[sonar].health != ARGUS_STALE);
+}
+
 int32_t argus_flank_mm(const argus_knowledge_t *const self, const argus_mask_t except) {
     ARGUS_ASSERT(self->sonars <= ARGUS_SONARS);
     const unsigned flank = argus_robot_flank(self->robot) & ~(unsigned)except;

@@ -129,6 +129,14 @@ argus_mask_t argus_named(const argus_knowledge_t *self);      // SUSPECT, with t
 bool argus_trusted(const argus_knowledge_t *self, int sonar); // neither out nor named nor unheard
 bool argus_usable(const argus_knowledge_t *self, int sonar);  // reported, not out, not 5000
 
+// A reading as it counts for the way: of one that looks ahead from an upper deck what it would be at the
+// faces of those that face forward, since it stands behind them.
+int32_t argus_reading_ahead_mm(const argus_knowledge_t *self, int sonar);
+
+// It looks ahead, on whichever deck, and what it read last holds: one that does not face forward is passed
+// over while it is STALE, since no other is asked to look there.
+bool argus_counts_ahead(const argus_knowledge_t *self, int sonar);
+
 // The nearest echo, in mm, of the flank sonars, those that are out and `except` left aside; INT32_MAX: none.
 int32_t argus_flank_mm(const argus_knowledge_t *self, argus_mask_t except);
 

@@ -43,6 +43,7 @@ const argus_robot_table_t argus_robot_table = {
         .pitch_deg = 20,
         .tolerance_excess = 275641434,
         .rear_overhang_mm = 64,
+        .deck_behind_mm = 0,
     },
     {
         .name = "amigo-sh",
@@ -75,6 +76,7 @@ const argus_robot_table_t argus_robot_table = {
         .pitch_deg = 27,
         .tolerance_excess = 664433753,
         .rear_overhang_mm = 24,
+        .deck_behind_mm = 0,
     },
     {
         .name = "p3at-sh",
@@ -107,6 +109,7 @@ const argus_robot_table_t argus_robot_table = {
         .pitch_deg = 20,
         .tolerance_excess = 275641434,
         .rear_overhang_mm = 90,
+        .deck_behind_mm = 0,
     },
     {
         .name = "peoplebot-sh",
@@ -139,6 +142,7 @@ const argus_robot_table_t argus_robot_table = {
         .pitch_deg = 20,
         .tolerance_excess = 275641434,
         .rear_overhang_mm = 53,
+        .deck_behind_mm = 89,
     },
     {
         .name = "p3dx-sh",
@@ -171,6 +175,7 @@ const argus_robot_table_t argus_robot_table = {
         .pitch_deg = 20,
         .tolerance_excess = 275641434,
         .rear_overhang_mm = 62,
+        .deck_behind_mm = 0,
     },
     {
         .name = "p3at-sh",
@@ -203,6 +208,7 @@ const argus_robot_table_t argus_robot_table = {
         .pitch_deg = 20,
         .tolerance_excess = 275641434,
         .rear_overhang_mm = 86,
+        .deck_behind_mm = 0,
     },
     {
         .name = "peoplebot-sh",
@@ -235,6 +241,7 @@ const argus_robot_table_t argus_robot_table = {
         .pitch_deg = 20,
         .tolerance_excess = 275641434,
         .rear_overhang_mm = 199,
+        .deck_behind_mm = 0,
     },
     },
     .poses = {

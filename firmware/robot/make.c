@@ -241,6 +241,18 @@ static int16_t rear_overhang_mm(const argus_ring_t *const ring, const int32_t re
     return (int16_t)(rear_mm + (last_mm == INT16_MIN ? 0 : last_mm));
 }
 
+// Of an upper deck: its foremost faces are so far behind those that face forward.
+static int16_t deck_behind_mm(const argus_robot_t *const row, const argus_ring_t *const ring) {
+    const unsigned beside = (unsigned)row->ahead_mask & ~(unsigned)row->forward_mask;
+    int32_t face_mm = INT16_MIN;
+    for (int i = 0; i < ring->sonars; i++) {
+        if ((beside >> i & 1u) != 0) {
+            face_mm = most(face_mm, row->reversed ? -ring->mounts[i].x_mm : ring->mounts[i].x_mm);
+        }
+    }
+    return (int16_t)(face_mm == INT16_MIN ? 0 : most(row->sonar_face_mm - face_mm, 0));
+}
+
 static void copy_name(argus_robot_t *const row, const char *const name) {
     for (size_t i = 0; i + 1 < sizeof row->name && name[i] != '\0'; i++) {
         row->name[i] = name[i];
@@ -273,6 +285,7 @@ static void make_built(argus_own_robot_t *const own, const argus_ring_t *const r
     take_masks(row, ring);
     take_spacing(row, ring);
     row->rear_overhang_mm = rear_overhang_mm(ring, row->rear_mm);
+    row->deck_behind_mm = deck_behind_mm(row, ring);
 }
 
 // The one that looks astern on the bearing of a forward one, with the rear leading; -1: none.
@@ -314,6 +327,7 @@ static bool make_turned(argus_own_robot_t *const own, const argus_ring_t *const 
     row->astern_mask = built->ahead_mask;
     row->flank_mask = built->rear_flank_mask;
     row->rear_flank_mask = built->flank_mask;
+    row->deck_behind_mm = deck_behind_mm(row, ring);
     return true;
 }
 

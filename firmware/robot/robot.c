@@ -160,6 +160,11 @@ bool argus_robot_faces_forward(const argus_robot_t *const self, const int sonar)
     return (argus_robot_forward(self) >> sonar & 1u) != 0;
 }
 
+bool argus_robot_looks_ahead(const argus_robot_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    return (argus_robot_ahead(self) >> sonar & 1u) != 0;
+}
+
 int32_t argus_robot_half_width_mm(const argus_robot_t *const self) {
     return (self->width_mm + 1) / 2;
 }

@@ -57,6 +57,7 @@ argus_mask_t argus_robot_rear_flank(const argus_robot_t *self);
 argus_mask_t argus_robot_array(const argus_robot_t *self, int array);
 argus_mask_t argus_robot_polled(const argus_robot_t *self); // all of the arrays of those that face forward
 bool argus_robot_faces_forward(const argus_robot_t *self, int sonar);
+bool argus_robot_looks_ahead(const argus_robot_t *self, int sonar); // it, or one of another deck
 
 // Half of its width, mm, rounded up.
 int32_t argus_robot_half_width_mm(const argus_robot_t *self);

@@ -41,6 +41,7 @@ struct argus_robot {
     int16_t swing_radius_mm;     // to the farthest corner of the body
     int16_t sonar_face_mm;       // x of the foremost transducers
     int16_t rear_overhang_mm;    // of the body beyond those that look astern head-on
+    int16_t deck_behind_mm;      // of an upper deck: its foremost faces are so far behind those
     int16_t pitch_deg;           // between two neighbours of the forward-facing ones, mean
     int16_t tolerance_centre_mm; // a2 of the paper's eq. 2
     uint32_t tolerance_excess;   // 1 / cos of the widest angle between neighbours, less 1, in 2^-32

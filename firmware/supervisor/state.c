@@ -94,9 +94,9 @@ int argus_nearest_ahead(const argus_t *const self) {
     const argus_knowledge_t *const knowledge = &self->knowledge;
     int nearest = -1;
     for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_robot_faces_forward(knowledge->robot, i) && knowledge->sonar[i].reported &&
-            !argus_is_out(knowledge, i) &&
-            (nearest < 0 || knowledge->sonar[i].reading_mm < knowledge->sonar[nearest].reading_mm)) {
+        if (argus_counts_ahead(knowledge, i) && knowledge->sonar[i].reported && !argus_is_out(knowledge, i) &&
+            (nearest < 0 ||
+             argus_reading_ahead_mm(knowledge, i) < argus_reading_ahead_mm(knowledge, nearest))) {
             nearest = i;
         }
     }

@@ -130,7 +130,7 @@ static void halt_to_wait(const argus_wait_t why, argus_intent_t *const intent) {
 // Where no sonar looks ahead any more, all that counts was seen in sweeps.
 static int32_t reading_of(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= ARGUS_NO_SONAR && sonar < ARGUS_SONARS);
-    return sonar < 0 ? self->knowledge.robot->no_echo_mm : self->knowledge.sonar[sonar].reading_mm;
+    return sonar < 0 ? self->knowledge.robot->no_echo_mm : argus_reading_ahead_mm(&self->knowledge, sonar);
 }
 
 static bool is_barred_ahead(const argus_t *const self, const argus_guard_t *const guard) {

@@ -25,8 +25,8 @@ void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const 
     self->has_leg = false;
     self->refused = true;
     for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_robot_faces_forward(knowledge->robot, i) && argus_usable(knowledge, i) &&
-            knowledge->sonar[i].reading_mm <= REFUSED_NEAR_MM) {
+        if (argus_counts_ahead(knowledge, i) && argus_usable(knowledge, i) &&
+            argus_reading_ahead_mm(knowledge, i) <= REFUSED_NEAR_MM) {
             const argus_point_t echo = argus_echo_robot(knowledge, i);
             argus_grid_mark(&echoes->grid, argus_to_course(&knowledge->pose, echo), false);
             heard = true;

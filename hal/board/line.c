@@ -3,7 +3,7 @@
 #include "board/line.h"
 
 #define DIGITS_MAX 10
-#define FRONT_SONARS 8
+#define ARRAY_SONARS 8
 
 static void add(board_line_t *self, char character) {
     if (self->at == self->end) {
@@ -127,8 +127,10 @@ void board_line_seconds(board_line_t *self, const char *name, uint32_t ms) {
 
 // "sonar/front/03", "sonar/rear/11"
 void board_line_sonar(board_line_t *self, const char *name, int sonar) {
+    static const char arrays[][13] = {"front/", "rear/", "upper_front/", "upper_rear/"};
     board_line_name(self, name);
-    add_text(self, sonar < FRONT_SONARS ? "\"sonar/front/" : "\"sonar/rear/");
+    add_text(self, "\"sonar/");
+    add_text(self, arrays[sonar / ARRAY_SONARS]);
     add_number(self, (uint32_t)sonar, 2);
     add(self, '"');
     self->comma = true;

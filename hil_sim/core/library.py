@@ -26,6 +26,7 @@ _PLACES: Final = (
 AUTO: Final = "auto"
 _BRIEF_HEAD: Final = 2
 """Bytes of brief() before those of the sonars."""
+_LISTED_LEAST: Final = 16
 _PACKET_MAX: Final = 256
 _RECORD_MAX: Final = 65536
 _NO_SONAR: Final = -1
@@ -432,14 +433,15 @@ class Core:
         return self._brief.raw
 
     def status(self) -> dict[str, Any]:
-        """Return what is known, names for the enumerations, and lists with one entry per sonar."""
+        """Return what is known, names for the enumerations, and lists with one entry per sonar, 16 at least."""
         names = _names(self._library.argus_shim_status_field)
         per_sonar = _names(self._library.argus_shim_sonar_field)
         fields = (ctypes.c_int64 * len(names))()
         sonars = (ctypes.c_int64 * (len(per_sonar) * sonars_of(self._library)))()
         self._library.argus_shim_status(self._core, fields, sonars)
         found: dict[str, Any] = dict(zip(names, fields, strict=True))
-        found |= {name: sonars[at :: len(per_sonar)] for at, name in enumerate(per_sonar)}
+        listed = max(found["sonars"], _LISTED_LEAST)
+        found |= {name: sonars[at :: len(per_sonar)][:listed] for at, name in enumerate(per_sonar)}
         found["mode"] = _name(_Names.MODE, found["mode"])
         found["failure"] = _name(_Names.FAILURE, found["failure"])
         found["health"] = [_name(_Names.HEALTH, value) for value in found["health"]]

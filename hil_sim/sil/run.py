@@ -32,7 +32,7 @@ from hil_sim.world.model import Pose
 from hil_sim.world.physics import parse_physics
 
 SONARS: Final = 16
-"""Of which the fault manager tells the health."""
+"""Of so many at least the health is kept: those that a robot has not got are ABSENT."""
 REACHED_MM: Final = 150.0
 _MOVING_MM_S: Final = 5.0
 _TURNING_DEG_S: Final = 1.0
@@ -93,7 +93,7 @@ class Sil:
         self._disturb = LinkFaults(links, mission.seed) if links else None
         self.core = self._build_core()
         self.events: list[Event] = []
-        self.health: list[list[tuple[float, str, str]]] = [[] for _ in range(SONARS)]
+        self.health: list[list[tuple[float, str, str]]] = [[] for _ in range(max(SONARS, len(table.mounts)))]
         self._to_core, self._to_robot = Line(mission.baud), Line(mission.baud)
         self._sightings: deque[tuple[bytes, Sighting]] = deque()
         self._digest = hashlib.sha256()
@@ -241,7 +241,7 @@ class Sil:
     def _note_health(self, brief: bytes) -> None:
         before, self._brief = self._brief, brief
         managed = (len(brief) - _HEAD) // 2
-        for k in range(min(managed, SONARS)):
+        for k in range(min(managed, len(self.health))):
             at, kind = _HEAD + k, _HEAD + managed + k
             if not before or (brief[at], brief[kind]) != (before[at], before[kind]):
                 names = core_module.health_name(brief[at]), core_module.kind_name(brief[kind])

@@ -157,7 +157,8 @@ int main(void) {
         if (s.beyond[i] != 0x5A || d.beyond[i] != 0x5A) { return 1; }
     }
     for (int i = 0; i < ARGUS_SONARS; i++) {
-        if (s.status.health[i] != ARGUS_UNKNOWN && s.status.health[i] != ARGUS_STALE) { return 2; }
+        const int health = s.status.health[i]; // of a P3-DX, until another one answers
+        if (i < 16 ? health != ARGUS_UNKNOWN && health != ARGUS_STALE : health != ARGUS_ABSENT) { return 2; }
     }
     return report.fault == ARGUS_CONFIG_OK && report.key == -1 && s.status.mode == ARGUS_MODE_OFFLINE ? 0 : 3;
 }
@@ -173,7 +174,7 @@ def compile_enums(prefix: Path, made: Path, *flags: str) -> subprocess.Completed
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
-@pytest.mark.parametrize("flags", [(), ("-fshort-enums",), ("-O2", "-fshort-enums"), ("-DARGUS_SONARS=16",)])
+@pytest.mark.parametrize("flags", [(), ("-fshort-enums",), ("-O2", "-fshort-enums"), ("-DARGUS_SONARS=32",)])
 def test_a_program_with_other_options_of_its_compiler_is_not_overwritten(
     prefix: Path, tmp_path: Path, flags: tuple[str, ...]
 ) -> None:
@@ -182,7 +183,7 @@ def test_a_program_with_other_options_of_its_compiler_is_not_overwritten(
     assert subprocess.run([tmp_path / "enums"], check=False).returncode == 0
 
 
-@pytest.mark.parametrize("sonars", [8, 24, 32])
+@pytest.mark.parametrize("sonars", [8, 16, 24])
 def test_a_program_with_another_number_of_sonars_does_not_link(
     prefix: Path, tmp_path: Path, sonars: int
 ) -> None:

@@ -219,6 +219,19 @@ def test_it_fires_on_a_breach_and_not_at_the_border(case: str) -> None:
     assert rule not in border().rules
 
 
+def upper_deck(mm: int) -> Trace:
+    """A PeopleBot at 400 mm/s, and sonar 19 of its upper deck, 89 mm behind the others, reads so much."""
+    ring = dict.fromkeys(range(32), 3000)
+    trace = Trace("peoplebot-sh", sonars=32).sip(ring).say(6, 400).say(8, 3000).sip(ring, 400)
+    return trace.sip(ring | {19: mm}, 400).say(8, 2000)
+
+
+def test_an_upper_deck_sees_the_way_from_behind() -> None:
+    """At 374 mm/s, which the monitor lets pass for 400, it stands after 415 mm: 574 mm of what such a sonar reads."""
+    assert upper_deck(560).rules == {51}
+    assert not upper_deck(600).rules
+
+
 def test_bytes_that_are_no_packet_are_found() -> None:
     trace = Trace()
     trace.monitor.to_robot(trace.t_ms, packet(b"\x1d")[:-1] + b"\x00")

@@ -221,6 +221,18 @@ static double sonar_face(const safety_t *self, bool back) {
     return face;
 }
 
+// Those of an upper deck stand behind the foremost ones: so much less is left of what they read.
+static double deck_behind(const safety_t *self, uint32_t k, bool back) {
+    const double sign = back ? -1 : 1;
+    double face = -1e9;
+    for (uint32_t i = k / 8 * 8; i < k / 8 * 8 + 8 && i < self->body->sonars; i++) {
+        if ((way_mask(self, back) >> i & 1u) != 0) {
+            face = fmax(face, sign * self->body->mount[i].x_mm);
+        }
+    }
+    return (sonar_face(self, back) - face) * fabs(cos(radians(self->body->mount[k].bearing_deg)));
+}
+
 // How far the leading end may go by what a sonar has read; -1: that is not on its way. A client's bounds
 // count what is in the corridor of the body, the manager's own the reading itself.
 static double way_to(const safety_t *self, uint32_t k, bool back) {
@@ -231,7 +243,8 @@ static double way_to(const safety_t *self, uint32_t k, bool back) {
     if (!self->set.guard) {
         const safety_pose_t *const from = &self->last[k].from;
         const double driven = hypot(self->pose.x - from->x, self->pose.y - from->y);
-        return self->last[k].range_mm - driven - way_front(self, back) + sonar_face(self, back);
+        return self->last[k].range_mm - driven - deck_behind(self, k, back) - way_front(self, back) +
+               sonar_face(self, back);
     }
     const double ahead = (back ? -x : x) - way_front(self, back);
     return fabs(y) + sure <= self->body->half_mm ? ahead + sure : -1;

@@ -8,10 +8,9 @@ from typing import Any, cast
 
 from safety_monitor import Monitor, Violation, settings_of
 
-from hil_sim.core.library import Core, health_name, kind_name
+from hil_sim.core.library import Core, health_name, kind_name, library, sonars_of
 from hil_sim.core.library import Event as CoreEvent
 from hil_sim.sil import Mission, Sil
-from hil_sim.sil.run import SONARS
 
 _HEAD = 2
 
@@ -41,7 +40,8 @@ class WatchedCore:
         brief = self._core.brief()
         if brief[_HEAD:] != self._brief:
             self._brief = brief[_HEAD:]
-            health, kind = self._brief[:SONARS], self._brief[SONARS:]
+            managed = len(self._brief) // 2
+            health, kind = self._brief[:managed], self._brief[managed:]
             self._monitor.health([(health_name(h), kind_name(k)) for h, k in zip(health, kind, strict=True)])
         packets = self._core.transmit()
         for packet in packets:
@@ -58,7 +58,8 @@ class WatchedSil(Sil):
     """One mission, watched."""
 
     def __init__(self, mission: Mission, settings: Mapping[str, int] | None = None, **options: Any) -> None:
-        given = settings_of(mission.config, baud=mission.baud) | dict(settings or {})
+        given = {"sonars": sonars_of(library())} | settings_of(mission.config, baud=mission.baud)
+        given |= dict(settings or {})
         self.monitor = Monitor(**given)
         self._hits = 0
         self._speeds = (0.0, 0.0)

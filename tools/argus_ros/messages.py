@@ -21,7 +21,8 @@ from argus_ros.repair import Verdict
 from hil_sim.tables.robot import Mount
 
 OK, WARN, ERROR, STALE = range(4)
-FRONT_SONARS: Final = 8
+ARRAY_SONARS: Final = 8
+ARRAYS: Final = ("front", "rear", "upper_front", "upper_rear")
 _POINT: Final = struct.Struct("<fffBxxx")
 _ACCURATE, _UNKNOWN = 1e-3, 1e6
 _FAILURE_LEVEL: Final = {"IsNormal": OK, "IsMinor": WARN, "IsMajor": ERROR, "IsCatastrophic": ERROR}
@@ -128,7 +129,7 @@ def sonar_name(number: int) -> str:
     >>> sonar_name(11)
     'sonar/rear/11'
     """
-    return f"sonar/{'front' if number < FRONT_SONARS else 'rear'}/{number:02d}"
+    return f"sonar/{ARRAYS[number // ARRAY_SONARS]}/{number:02d}"
 
 
 def sonar_level(verdict: Verdict, age_ms: int, stale_ms: int) -> int:

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Final
 
+from hil_sim.tables.robot import robot_table
+
 Check = Callable[[Any], str]
 """What to give instead of a value; empty for one that holds."""
 
@@ -196,7 +198,9 @@ RANGE_GUARD: Final[Table] = {
         "p3dx-sh", "whose sonars these are: a word of the setting robot (argusd --list-config)", check=_robot
     ),
     "topics": Parameter(
-        [f"sonar/range_{k}" for k in range(16)], "the driver's topics of sensor_msgs/Range", check=_names
+        [f"sonar/range_{k}" for k in range(robot_table().sonars)],
+        "the driver's topics of sensor_msgs/Range",
+        check=_names,
     ),
     "sonars": Parameter(
         [-1], "the sonar of the robot whose place each of them has; [-1]: in the order of the topics"

@@ -243,9 +243,9 @@ TOPICS: Final = {
     STATE: "argus.RobotState",
     EVENTS: "foxglove.Log",
     RING: "argus.Ring",
-    **{sonar_topic(number): "argus.SonarRange" for number in range(16)},
+    **{sonar_topic(number): "argus.SonarRange" for number in range(robot_table().sonars)},
 }
-"""All topics of a live robot, with their schemas."""
+"""All topics of a live robot, with their schemas: those of a P3-DX. A robot with more sonars has more."""
 
 
 @cache

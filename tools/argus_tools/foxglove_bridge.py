@@ -205,6 +205,8 @@ class Server:
     def put(self, topic: str, schema: str, t_ns: int, message: dict[str, Any]) -> None:
         """Send one message to all viewers."""
         stamp = {"timestamp": stamp_of(t_ns)} if "timestamp" in SCHEMAS[schema]["properties"] else {}
+        if topic not in self._channels:  # of a sonar beyond those of a P3-DX
+            self._channels[topic] = self._channel(topic, schema)
         self._channels[topic].log({**stamp, **message}, log_time=t_ns)
 
     def stop(self) -> None:

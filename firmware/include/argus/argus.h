@@ -72,9 +72,14 @@ extern "C" {
 // Bounds ---------------------------------------------------------------------------------------------------
 
 // The most sonars that a build manages, numbered from 0: 8, 16, 24 or 32. Each costs some 2 KB of RAM; a
-// robot may have fewer or more. Library and program must be built with the same number.
+// robot may have fewer or more. Where nothing else is set: 32 under an operating system, enough for every
+// known robot; 16 on a board. Library and program must be built with the same number.
 #ifndef ARGUS_SONARS
+#if defined(__unix__) || defined(__APPLE__) || defined(_WIN32)
+#define ARGUS_SONARS 32
+#else
 #define ARGUS_SONARS 16
+#endif
 #endif
 #define ARGUS_NO_SONAR ((int8_t)-1) // where an event is about no sonar
 // A mask over sonar numbers: bit K is sonar K.

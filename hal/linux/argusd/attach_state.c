@@ -134,6 +134,10 @@ static void read_sonars(const json_doc_t *doc, view_t *view) {
     if (view->status.sonars > ARGUS_SONARS) {
         view->status.sonars = ARGUS_SONARS;
     }
+    for (int i = 0; i < ARGUS_SONARS; i++) { // those that are not listed
+        view->status.health[i] = ARGUS_ABSENT;
+        view->status.age_ms[i] = UINT32_MAX;
+    }
     each(doc, "reading_mm", view, take_reading);
     each(doc, "age_ms", view, take_age);
     each(doc, "bearing_deg", view, take_bearing);

@@ -44,19 +44,19 @@ size_t control_evidence_line(const view_t *view, const argus_suspicions_t *suspi
     open_line(&json, "evidence", view);
     json_name(&json, "kind");
     json_open(&json, '[');
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < report_sonars(&view->status); i++) {
         json_string(&json, argus_name(ARGUS_NAME_KIND, (int)suspicions->kind[i]));
     }
     json_close(&json, ']');
     json_name(&json, "level");
     json_open(&json, '[');
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < report_sonars(&view->status); i++) {
         json_int(&json, suspicions->percent[i]);
     }
     json_close(&json, ']');
     json_name(&json, "seen_by");
     json_open(&json, '[');
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < report_sonars(&view->status); i++) {
         put_mask(&json, suspicions->against[i]);
     }
     json_close(&json, ']');

@@ -6,7 +6,11 @@
 
 #include "json.h"
 
-#define FRONT_SONARS 8
+#define ARRAY_SONARS 8
+#define LISTED_LEAST 16 // a reader of a fixed width goes on
+
+static const char *const array_names[] = {"front", "rear", "upper_front", "upper_rear"};
+static const char *const array_titles[] = {"front", "rear", "upper front", "upper rear"};
 
 static const char *const level_names[] = {"OK", "WARN", "ERROR", "STALE"};
 
@@ -28,8 +32,7 @@ static const char *level_name(argus_level_t level) {
 
 void report_name(const argus_event_t *event, char *text, size_t capacity) {
     if (event->sonar >= 0 && event->sonar < ARGUS_SONARS) {
-        snprintf(text, capacity, "sonar/%s/%02d", event->sonar < FRONT_SONARS ? "front" : "rear",
-                 event->sonar);
+        snprintf(text, capacity, "sonar/%s/%02d", array_names[event->sonar / ARRAY_SONARS], event->sonar);
     } else {
         snprintf(text, capacity, "%s", argus_name(ARGUS_NAME_SUBJECT, event->id));
     }
@@ -110,16 +113,21 @@ size_t report_event_plain(const argus_event_t *event, uint64_t t_ms, bool colour
     return text.cut ? 0 : text.length;
 }
 
+int report_sonars(const argus_status_t *status) {
+    const int sonars = status->sonars < LISTED_LEAST ? LISTED_LEAST : status->sonars;
+    return sonars < ARGUS_SONARS ? sonars : ARGUS_SONARS;
+}
+
 void report_readings(json_t *json, const char *name, const argus_status_t *status) {
     json_name(json, name);
     json_open(json, '[');
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < report_sonars(status); i++) {
         json_int(json, status->reading_mm[i]);
     }
     json_close(json, ']');
     json_name(json, "age_ms"); // -1: never reported
     json_open(json, '[');
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < report_sonars(status); i++) {
         json_int(json, status->age_ms[i] == UINT32_MAX ? -1 : (int64_t)status->age_ms[i]);
     }
     json_close(json, ']');
@@ -129,13 +137,13 @@ static void put_sonars(json_t *json, const argus_status_t *status) {
     report_readings(json, "reading_mm", status);
     json_name(json, "health");
     json_open(json, '[');
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < report_sonars(status); i++) {
         json_string(json, argus_name(ARGUS_NAME_HEALTH, (int)status->health[i]));
     }
     json_close(json, ']');
     json_name(json, "kind");
     json_open(json, '[');
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < report_sonars(status); i++) {
         json_string(json, argus_name(ARGUS_NAME_KIND, (int)status->kind[i]));
     }
     json_close(json, ']');
@@ -194,7 +202,7 @@ static void put_ring(json_t *json, const argus_status_t *status) {
     put_int(json, "sonars", status->sonars);
     json_name(json, "bearing_deg");
     json_open(json, '[');
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < report_sonars(status); i++) {
         json_int(json, status->bearing_deg[i]);
     }
     json_close(json, ']');
@@ -213,7 +221,7 @@ static void put_control(json_t *json, const view_t *view) {
     put_bool(json, "controlled", view->controlled);
     json_name(json, "injected");
     json_open(json, '[');
-    for (int i = 0; i < ARGUS_SONARS; i++) {
+    for (int i = 0; i < report_sonars(&view->status); i++) {
         json_string(json, argus_name(ARGUS_NAME_KIND, view->injected[i]));
     }
     json_close(json, ']');
@@ -269,7 +277,7 @@ static void add_injected(text_t *text, const view_t *view) {
 
 static void add_readings(text_t *text, const char *title, const argus_status_t *status, int first) {
     text_add(text, " %s", title);
-    for (int i = first; i < first + FRONT_SONARS; i++) {
+    for (int i = first; i < first + ARRAY_SONARS; i++) {
         const char *mark = "";
         if (status->health[i] == ARGUS_DISABLED) {
             mark = "!";
@@ -301,8 +309,9 @@ size_t report_status_plain(const view_t *view, char *line, size_t capacity) {
         text_add(&text, " goal %d mm", (int)status->goal_mm);
     }
     text_add(&text, " %d.%d V", status->battery_dv / 10, status->battery_dv % 10);
-    add_readings(&text, "front", status, 0);
-    add_readings(&text, "rear", status, FRONT_SONARS);
+    for (int first = 0; first < report_sonars(status); first += ARRAY_SONARS) {
+        add_readings(&text, array_titles[first / ARRAY_SONARS], status, first);
+    }
     add_injected(&text, view);
     return text.cut ? 0 : text.length;
 }

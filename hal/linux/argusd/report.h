@@ -22,7 +22,10 @@ size_t report_event_plain(const argus_event_t *event, uint64_t t_ms, bool colour
 size_t report_status_json(const view_t *view, int64_t unix_ms, char *line, size_t capacity);
 size_t report_status_plain(const view_t *view, char *line, size_t capacity);
 
-// Adds the members `name`, readings in mm, and age_ms of all sonars.
+// As many as lists of one value a sonar hold: those that the robot has, and 16 at least.
+int report_sonars(const argus_status_t *status);
+
+// Adds the members `name`, readings in mm, and age_ms of these.
 void report_readings(json_t *json, const char *name, const argus_status_t *status);
 
 // What came of it all, for people.

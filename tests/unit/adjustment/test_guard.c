@@ -126,6 +126,38 @@ void test_s5_the_way_driven_since_a_reading_is_taken_off(void) {
     TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g, argus_guard_seen_mm(&g)));
 }
 
+#if ARGUS_SONARS > 16
+// What hangs over is seen by the upper deck alone: it bounds way and speed, from where it stands.
+void test_s5_the_upper_deck_bounds_the_way(void) {
+    use(ARGUS_PROFILE_ARGUS);
+    k.robot = argus_robot_find("peoplebot-sh");
+    k.sonars = 32;
+    for (int i = 16; i < 32; i++) {
+        k.sonar[i] = k.sonar[0];
+    }
+    k.heard = UINT32_MAX;
+    const int32_t fast_mm_s = argus_guard_speed_mm_s(&g, INT32_MAX);
+    for (int sonar = 17; sonar <= 22; sonar++) {
+        const argus_sonar_pose_t pose = argus_robot_pose(k.robot, sonar);
+        const int behind_mm = (int)(89 * cos(pose.heading_deg * 3.14159265 / 180));
+        k.sonar[sonar].reading_mm = 600;
+        TEST_ASSERT_INT32_WITHIN(1, 600 - behind_mm - config.object_range_mm,
+                                 argus_guard_ahead_mm(&g, INT32_MAX));
+        TEST_ASSERT_TRUE(argus_guard_speed_mm_s(&g, INT32_MAX) < fast_mm_s);
+        put_health(&k.sonar[sonar], ARGUS_STALE, ARGUS_KIND_NONE,
+                   0); // it reports no more, and no other is asked in its place
+        TEST_ASSERT_INT32_WITHIN(2, 3000 - 88 - config.object_range_mm, argus_guard_ahead_mm(&g, INT32_MAX));
+        put_health(&k.sonar[sonar], ARGUS_HEALTHY, ARGUS_KIND_NONE, 0);
+        k.sonar[sonar].reading_mm = 3000;
+    }
+    k.sonar[19].reading_mm = 100; // nearer than its own deck is behind
+    TEST_ASSERT_EQUAL(0, argus_guard_ahead_mm(&g, INT32_MAX));
+    k.sonar[19].reading_mm = 5000;
+    k.sonar[27].reading_mm = 100; // astern
+    TEST_ASSERT_TRUE(argus_guard_ahead_mm(&g, INT32_MAX) > 2000);
+}
+#endif
+
 void test_s2_a_sonar_unheard_for_two_rounds_is_blind(void) {
     for (int i = 1; i <= 6; i++) {
         k.sonar[i].heard_ms = NOW_MS - argus_guard_two_rounds_ms(&config);

@@ -116,3 +116,26 @@ void test_a_gap_of_the_link_makes_no_sonar_silent(void) {
     }
     TEST_ASSERT_EQUAL_HEX16(0x7E, take(0).silent | take(0).silent);
 }
+
+#if ARGUS_SONARS > 16
+// 19 is in the upper deck of a PeopleBot, at 10 degrees and 89 mm behind 3 and 4: an object counts from
+// there.
+void test_an_upper_deck_counts_from_the_lower_faces(void) {
+    k.robot = argus_robot_find("peoplebot-sh");
+    k.sonars = 32;
+    k.sonar[19].reported = true;
+    k.sonar[19].health = ARGUS_HEALTHY;
+    k.fresh = 1u << 19;
+    k.vel_left_mm_s = k.vel_right_mm_s = 200;
+    k.sonar[19].reading_mm = (uint16_t)(config.object_range_mm + 87);
+    const argus_alarm_t alarm = argus_alarms(&k, &config);
+    TEST_ASSERT_EQUAL_HEX32(1u << 19, alarm.object);
+    TEST_ASSERT_EQUAL(config.object_range_mm, alarm.object_mm);
+    k.sonar[19].reading_mm++;
+    TEST_ASSERT_EQUAL_HEX32(0, argus_alarms(&k, &config).object);
+    k.sonar[19].reading_mm = 20; // within the deck
+    TEST_ASSERT_EQUAL(0, argus_alarms(&k, &config).object_mm);
+    k.vel_left_mm_s = k.vel_right_mm_s = -200;
+    TEST_ASSERT_EQUAL_HEX32(0, argus_alarms(&k, &config).object);
+}
+#endif

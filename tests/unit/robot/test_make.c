@@ -62,6 +62,7 @@ static void is_same(const argus_robot_t *is, const argus_robot_t *should) {
     TEST_ASSERT_EQUAL_HEX32_MESSAGE(should->flank_mask, copy.flank_mask, should->name);
     TEST_ASSERT_EQUAL_HEX32_MESSAGE(should->rear_flank_mask, copy.rear_flank_mask, should->name);
     TEST_ASSERT_EQUAL_MESSAGE(should->rear_overhang_mm, copy.rear_overhang_mm, should->name);
+    TEST_ASSERT_EQUAL_MESSAGE(should->deck_behind_mm, copy.deck_behind_mm, should->name);
     TEST_ASSERT_EQUAL_MESSAGE(should->pitch_deg, copy.pitch_deg, should->name);
 }
 

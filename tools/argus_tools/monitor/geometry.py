@@ -10,8 +10,6 @@ from hil_sim.errors import SimError
 from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.model import Pose, World
 
-SONARS_SHOWN: Final = 16
-"""As many as argusd tells of."""
 WALLS_MAX: Final = 4000
 
 
@@ -34,9 +32,9 @@ def robot_message(table: RobotTable) -> dict[str, Any]:
         "swing_mm": body.swing_mm,
         "sonars": [
             {"x_mm": mount.x_mm, "y_mm": mount.y_mm, "deg": mount.heading_deg, "role": mount.role}
-            for mount in table.mounts[:SONARS_SHOWN]
+            for mount in table.mounts
         ],
-        "forward": [number for number in table.forward if number < SONARS_SHOWN],
+        "forward": list(table.forward),
     }
 
 

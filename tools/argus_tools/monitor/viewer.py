@@ -179,7 +179,11 @@ class Viewer:
 
     async def _fault(self, request: Message, kind: str) -> Message:
         sonar = request.get("sonar")
-        if not isinstance(sonar, int) or isinstance(sonar, bool) or not 0 <= sonar < 16:
+        if (
+            not isinstance(sonar, int)
+            or isinstance(sonar, bool)
+            or not 0 <= sonar < self._hub.memory.table.sonars
+        ):
             raise Refused("there is no such sonar")
         breaker = self._hub.breaker
         if breaker is None:

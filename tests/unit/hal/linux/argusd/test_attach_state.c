@@ -55,7 +55,23 @@ static void read_line(size_t length) {
     TEST_ASSERT_TRUE(json_read(&doc, line, length));
 }
 
-void test_a_state_comes_back_as_it_was(void) {
+// As many as the robot has, 16 at least; those beyond are absent.
+static void assert_listed(const argus_status_t *a, const argus_status_t *b) {
+    const size_t listed = (size_t)report_sonars(a);
+    TEST_ASSERT_EQUAL_size_t(a->sonars < ARGUS_SONARS ? a->sonars : ARGUS_SONARS, listed);
+    TEST_ASSERT_EQUAL_MEMORY(a->reading_mm, b->reading_mm, listed * sizeof a->reading_mm[0]);
+    TEST_ASSERT_EQUAL_MEMORY(a->age_ms, b->age_ms, listed * sizeof a->age_ms[0]);
+    TEST_ASSERT_EQUAL_MEMORY(a->bearing_deg, b->bearing_deg, listed * sizeof a->bearing_deg[0]);
+    TEST_ASSERT_EQUAL_MEMORY(a->health, b->health, listed * sizeof a->health[0]);
+    TEST_ASSERT_EQUAL_MEMORY(a->kind, b->kind, listed * sizeof a->kind[0]);
+    TEST_ASSERT_EQUAL_MEMORY(there.injected, here.injected, listed * sizeof here.injected[0]);
+    for (size_t i = listed; i < ARGUS_SONARS; i++) {
+        TEST_ASSERT_EQUAL(ARGUS_ABSENT, b->health[i]);
+        TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, b->age_ms[i]);
+    }
+}
+
+static void assert_it_comes_back(void) {
     read_line(report_status_json(&there, 0, line, sizeof line));
     TEST_ASSERT_TRUE(attach_read_state(&doc, &here));
     const argus_status_t *const a = &there.status;
@@ -73,16 +89,20 @@ void test_a_state_comes_back_as_it_was(void) {
     TEST_ASSERT_EQUAL_INT(2, b->plan.count);
     TEST_ASSERT_EQUAL_INT(-20, b->plan.rotation_deg[1]);
     TEST_ASSERT_TRUE(b->plan.complete && b->plan.disabled != 0);
-    TEST_ASSERT_EQUAL_MEMORY(a->reading_mm, b->reading_mm, sizeof a->reading_mm);
-    TEST_ASSERT_EQUAL_MEMORY(a->age_ms, b->age_ms, sizeof a->age_ms);
-    TEST_ASSERT_EQUAL_MEMORY(a->bearing_deg, b->bearing_deg, sizeof a->bearing_deg);
-    TEST_ASSERT_EQUAL_MEMORY(a->health, b->health, sizeof a->health);
-    TEST_ASSERT_EQUAL_MEMORY(a->kind, b->kind, sizeof a->kind);
-    TEST_ASSERT_EQUAL_MEMORY(there.injected, here.injected, sizeof here.injected);
+    assert_listed(a, b);
     TEST_ASSERT_EQUAL_STRING(there.link, here.link);
     TEST_ASSERT_EQUAL_STRING(there.name, here.name);
     TEST_ASSERT_TRUE(here.link_up && here.controlled);
     TEST_ASSERT_EQUAL_INT(7, here.sonar); // the screen's own
+}
+
+void test_a_state_comes_back_as_it_was(void) {
+    assert_it_comes_back();
+}
+
+void test_that_of_a_robot_with_more_sonars_does_too(void) {
+    there.status.sonars = 32;
+    assert_it_comes_back();
 }
 
 void test_an_event_comes_back_as_it_was(void) {
