@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import gen_pages
 import marked
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -227,6 +228,16 @@ def example(name: str) -> Callable[[], str]:
     return shown
 
 
+def catalogue() -> str:
+    """Return the events with what to do."""
+    return gen_pages.catalogue(rows("include/argus/argus.h", "ARGUS_EVENT_TABLE"))
+
+
+def functions() -> str:
+    """Return the reference of the C functions."""
+    return gen_pages.functions((HEADERS / "include/argus/argus.h").read_text(encoding="utf-8"))
+
+
 EXAMPLES = ("drive", "frame", "sweep", "bag", "monitor")
 PARTS = {
     "SPEC.md": {"events": events, "config": config, "can": can},
@@ -235,6 +246,8 @@ PARTS = {
     "docs/driving.md": {"policies": policies},
     "docs/guardian.md": {"admitted": admitted},
     "docs/evidence.md": {"numbers": numbers},
+    "docs/events.md": {"catalogue": catalogue},
+    "docs/api-c.md": {"functions": functions},
     "docs/python.md": {name: example(name) for name in EXAMPLES},
 }
 

@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
-from hil_sim.bench.journey import IDEAL, mission_of, parse_id
+from hil_sim.bench.journey import IDEAL, mission_of, parse_id, parse_row
 from hil_sim.bench.journey_figures import speed_mm_s
 from hil_sim.bench.plots import picture
 from hil_sim.world.files import load_world
@@ -102,7 +102,8 @@ def _ways(place: Axes, course: Any, record: Record, ideal: Record) -> None:
 
 
 def _title(record: Record, ideal: Record) -> str:
-    away = f"{record['word']}, {record['goal_mm'] / 1000:.1f} m from its goal"
-    arrived = "truly at its goal" if record["truly"] else away
-    faults = f"\n{', '.join(record['faulty'])}" if record["faulty"] else ""
-    return f"{record['id']}: {_ratio((record, ideal)):.2f} of the ideal's speed, {arrived}{faults}"
+    away = f"{record['word']}, {record['goal_mm'] / 1000:.1f} m from the goal"
+    arrived = "truly at the goal" if record["truly"] else away
+    takes = f"{record['t_s']:.0f} s; {ideal['t_s']:.0f} s without fault and diagnosis"
+    faults = f" ({', '.join(record['faulty'])})" if record["faulty"] else ""
+    return f"{parse_row(record['row']).says}{faults}\n{arrived} after {takes}\n{record['id']}"

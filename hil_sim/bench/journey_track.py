@@ -66,13 +66,13 @@ class Diary:
         """Take a SIP."""
         self.track(sil, sighting)
         spot = (round(sil.robot.chassis.x), round(sil.robot.chassis.y))
-        if not self.path or math.dist(self.path[-1], spot) >= _PATH_MM:
-            self.path.append(spot)
+        marks = len(self.stops), len(self.looks)
         self._note_mode(sil.mode, sighting.t_s, spot)
         if sighting.t_s <= EARLY_S:
             self.early_mm = sil.robot.chassis.travelled_mm
         self._note_turn(sil.robot.chassis.th)
         self._note_stop(abs(sil.robot.drive.v), spot)
+        self._note_way(spot, (len(self.stops), len(self.looks)) != marks)
         if sil.mode == FREE and sil.robot.drive.v > _RESTS_MM_S:
             self._note_clearance(sil)
 
@@ -82,6 +82,11 @@ class Diary:
         if mode == LOOKING != self._mode:
             self.looks.append(spot)
         self._mode, self._t_s = mode, t_s
+
+    def _note_way(self, spot: Spot, marked: bool) -> None:
+        """Note where it is each 200 mm, and where it stops or looks: the way goes through what is marked on it."""
+        if not self.path or math.dist(self.path[-1], spot) >= _PATH_MM or (marked and spot != self.path[-1]):
+            self.path.append(spot)
 
     def _note_turn(self, heading_deg: float) -> None:
         if self._heading_deg is not None:

@@ -52,14 +52,14 @@ def draw_journeys(path: Path, source: str, journeys: Record) -> None:
     goals, ideal, speed = {}, {}, {}
     for at, row in enumerate(argus):
         goals[at + 0.12] = _share(row["truly"], "share")
-        if (row["row"], IDEAL) in rows:
-            ideal[at - 0.12] = _share(rows[row["row"], IDEAL]["truly"], "share")
+        if healthy := rows.get((parse_row(row["row"]).healthy, IDEAL)):
+            ideal[at - 0.12] = _share(healthy["truly"], "share")
         if row["over_ideal"]["ratio"] is not None:
             speed[float(at)] = _share(row["over_ideal"], "ratio")
     with rc_context(_STYLE):
         figure = Figure(figsize=(9.0, 1.4 + 0.5 * len(argus)), layout="constrained")
         left, right = figure.subplots(1, 2, sharey=True)
-        _dots(left, ideal, "ideal: no fault, diagnosis off", _IDEAL)
+        _dots(left, ideal, "ideal: the same courses, no fault, diagnosis off", _IDEAL)
         _dots(left, goals, "argus", _ARGUS)
         _dots(right, speed, "argus", _ARGUS)
         _named(left, [f"{parse_row(row['row']).says}\n({row['missions']} missions)" for row in argus])

@@ -11,6 +11,7 @@ from matplotlib.patches import Wedge
 from hil_sim.demo.ink import (
     FAULT_WORDS,
     INK,
+    ORANGE,
     RED,
     ROBOT,
     ROOM_MM,
@@ -20,7 +21,7 @@ from hil_sim.demo.ink import (
     place,
 )
 from hil_sim.demo.judge import Finding, of_type
-from hil_sim.demo.scene import Drive, hits, window
+from hil_sim.demo.scene import Drive, doubted_s, hits, window
 from hil_sim.sonar.params import SonarParams
 
 
@@ -39,6 +40,9 @@ class Callouts:
             if finding.injected is not None:
                 at = finding.injected
                 self.busy += [(x, y, 40.0) for x, y in body(at.x_mm, at.y_mm, at.heading_deg)]
+        for state in states[:1] + states[-1:]:  # where it starts and ends nothing hides it
+            corners = body(state["x_mm"], state["y_mm"], state["heading_deg"])
+            self.busy += [(x, y, 400.0) for x, y in [(state["x_mm"], state["y_mm"]), *corners]]
         self.busy += [(x, y, 0.25) for _, x, y, _ in list(hits(drive))[::2]]
         for ax, ay, bx, by in drive.world.segments:
             n = max(2, int(math.hypot(bx - ax, by - ay) / 80))
@@ -67,10 +71,13 @@ class Callouts:
                 places.append((cx - width / 2, cy - height / 2, cx + width / 2, cy + height / 2))
         best = min(places, key=lambda box: self._cost(box, (x, y)))
         self.taken.append(best)
-        self.axes.annotate(
+        middle = ((best[0] + best[2]) / 2, (best[1] + best[3]) / 2)
+        # The line is below all boxes: it crosses no text.
+        line = {"arrowstyle": "-", "color": colour, "lw": 1.4, "shrinkA": 0, "shrinkB": 7}
+        self.axes.annotate("", (x, y), middle, arrowprops=line, zorder=11.5)
+        self.axes.text(
+            *middle,
             text,
-            (x, y),
-            ((best[0] + best[2]) / 2, (best[1] + best[3]) / 2),
             ha="center",
             va="center",
             fontsize=10.5,
@@ -79,7 +86,6 @@ class Callouts:
             linespacing=1.25,
             fontweight="normal" if not bold_head else None,
             bbox={"boxstyle": "round,pad=0.4", "fc": "white", "ec": colour, "lw": 1.6},
-            arrowprops={"arrowstyle": "-", "color": colour, "lw": 1.4, "shrinkB": 7},
         )
 
 
@@ -103,17 +109,28 @@ def _draw_beam(axes: Axes, one: Finding) -> None:
     axes.add_patch(Wedge((x, y), 520, axis - half, axis + half, facecolor=RED, alpha=0.2, lw=0, zorder=4.5))
 
 
-def _fault_text(one: Finding, start_s: float) -> str:
+def _fault_text(one: Finding, drive: Drive) -> str:
+    """Tell when it came, when it was doubted, from which time on the robot relies on others, and when proved."""
     assert one.injected is not None
+    came = one.injected.t_s
     lines = [f"Sonar {one.fault.sonar} {FAULT_WORDS.get(one.fault.kind, one.fault.kind)}"]
-    lines.append(f"came at {one.injected.t_s - start_s:.1f} s")
+    lines.append(f"came at {came - drive.start_s:.1f} s")
+    doubted = doubted_s(drive, one.fault.sonar, came)
+    if doubted is not None:
+        lines.append(f"doubted at {doubted - drive.start_s:.1f} s, {doubted - came:.1f} s later")
     if one.diagnosed is None:
-        lines[-1] += ", never found"
+        lines.append("never proved")
     else:
-        lines.append(f"found at {one.diagnosed.t_s - start_s:.1f} s")
-        if one.latency_s is not None:
-            lines[-1] += f", {one.latency_s:.1f} s after\nits first false reading"
+        lines.append(f"proved at {one.diagnosed.t_s - drive.start_s:.1f} s")
     return "\n".join(lines)
+
+
+def _draw_doubt(axes: Axes, one: Finding, drive: Drive) -> None:
+    """Mark where the robot was when it began to doubt the sonar."""
+    doubted = None if one.injected is None else doubted_s(drive, one.fault.sonar, one.injected.t_s)
+    if doubted is not None:
+        at = min(drive.states(), key=lambda state: abs(state["t_s"] - doubted))
+        axes.plot(at["x_mm"], at["y_mm"], "p", ms=10, mfc=ORANGE, mec=INK, mew=1.1, zorder=9.05)
 
 
 def draw_faults(axes: Axes, drive: Drive, callouts: Callouts) -> None:
@@ -129,7 +146,8 @@ def draw_faults(axes: Axes, drive: Drive, callouts: Callouts) -> None:
                 one.diagnosed.x_mm, one.diagnosed.y_mm, "D", ms=8.5, mfc=SKY, mec=INK, mew=1.1, zorder=9
             )
         axes.plot(at.x_mm, at.y_mm, "v", ms=11, mfc=RED, mec=INK, mew=1.1, zorder=9.1)
-        callouts.put(at.x_mm, at.y_mm, _fault_text(one, drive.start_s), RED)
+        _draw_doubt(axes, one, drive)
+        callouts.put(at.x_mm, at.y_mm, _fault_text(one, drive), RED)
 
 
 def draw_ends(axes: Axes, drive: Drive, callouts: Callouts) -> None:

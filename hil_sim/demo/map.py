@@ -24,7 +24,7 @@ from hil_sim.demo.ink import (
     SKY,
     place,
 )
-from hil_sim.demo.scene import Drive, area, failure_since_s, hits, loops, standstills, window
+from hil_sim.demo.scene import Drive, area, doubted_s, failure_since_s, hits, loops, standstills, window
 from hil_sim.world.model import World
 
 
@@ -147,19 +147,34 @@ def legend(axes: Axes, drive: Drive) -> None:
     def dot(marker: str, face: str, edge: str, size: float, label: str) -> Line2D:
         return Line2D([], [], ls="", marker=marker, mfc=face, mec=edge, ms=size, mew=1.1, label=label)
 
-    false = any(fault for _, _, _, fault in hits(drive))
-    entries: list[Any] = [
-        Line2D([], [], color=BLUE, lw=3.4, label="normal driving"),
-        Line2D([], [], color=ORANGE, lw=3.4, label="failure mode: look, then step"),
-        Line2D([], [], color=GREY, lw=1.1, ls=(0, (2, 3)), marker="+", label="course given"),
-        dot("o", "white", INK, 6, "stop"),
-        Patch(facecolor=ORANGE, alpha=0.3, label="sweep over the blind bearings"),
-        dot("v", RED, INK, 10, "a fault comes (shaded: its beam)"),
-        dot("D", SKY, INK, 8, "Argus has found it"),
-        dot(".", GREEN, GREEN, 7, "echo, healthy front sonar"),
+    echoes = {bool(fault) for _, _, _, fault in hits(drive)}
+    since = failure_since_s(drive)
+    states, findings = drive.states(), drive.verdict.findings
+    doubted = any(
+        f.injected and doubted_s(drive, f.fault.sonar, f.injected.t_s) is not None for f in findings
+    )
+    known: list[tuple[bool, Any]] = [
+        (True, Line2D([], [], color=BLUE, lw=3.4, label="normal driving")),
+        (
+            any(state["t_s"] > since and abs(state["v_mm_s"]) > 50 for state in states),
+            Line2D([], [], color=ORANGE, lw=3.4, label="failure mode: look, then step"),
+        ),
+        (
+            len(drive.course_mm) > 1,
+            Line2D([], [], color=GREY, lw=1.1, ls=(0, (2, 3)), marker="+", label="course given"),
+        ),
+        (any(len(run) > 2 for run in standstills(states)), dot("o", "white", INK, 6, "stop")),
+        (
+            bool(drive.said("SWEEP")),
+            Patch(facecolor=ORANGE, alpha=0.3, label="sweep over the blind bearings"),
+        ),
+        (any(f.injected for f in findings), dot("v", RED, INK, 10, "a fault comes (shaded: its beam)")),
+        (doubted, dot("p", ORANGE, INK, 9, "it is doubted: others are relied on")),
+        (any(f.diagnosed for f in findings), dot("D", SKY, INK, 8, "it is proved")),
+        (False in echoes, dot(".", GREEN, GREEN, 7, "echo, healthy front sonar")),
+        (True in echoes, dot("x", PURPLE, PURPLE, 6, "false echo, lying sonar")),
     ]
-    if false:
-        entries.append(dot("x", PURPLE, PURPLE, 6, "false echo, lying sonar"))
+    entries = [entry for there, entry in known if there]
     axes.axis("off")
     axes.legend(
         handles=entries,

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch, Polygon, Wedge
 
 from hil_sim.demo.ink import BLUE, FRONT, GREEN, INK, ORANGE, PALE, RED, ROBOT, SKY, body, place
-from hil_sim.demo.scene import Drive, health_spans, robot_spans
+from hil_sim.demo.scene import Drive, doubted_s, health_spans, robot_spans
 
 
 def draw_ring(axes: Axes, drive: Drive) -> None:
@@ -110,6 +110,20 @@ def draw_time(axes: Axes, drive: Drive) -> None:
                 clip_on=False,
                 zorder=5,
             )
+            doubted = doubted_s(drive, one.fault.sonar, one.injected.t_s)
+            if doubted is not None:
+                at = doubted - drive.start_s
+                axes.plot(at, one.fault.sonar, "p", ms=8, mfc="white", mec=INK, zorder=5)
+                axes.text(
+                    at + 0.4,
+                    one.fault.sonar,
+                    f"doubted after {doubted - one.injected.t_s:.1f} s",
+                    va="center",
+                    fontsize=9.5,
+                    fontweight="bold",
+                    color=INK,
+                    zorder=6,
+                )
         if one.diagnosed:
             axes.plot(
                 one.diagnosed.t_s - drive.start_s, one.fault.sonar, "D", ms=6.5, mfc=SKY, mec=INK, zorder=5

@@ -120,6 +120,14 @@ def health_spans(drive: Drive, sonar: int) -> list[tuple[float, float, str]]:
     return [*spans, (since, drive.end_s, now)]
 
 
+def doubted_s(drive: Drive, sonar: int, since_s: float) -> float | None:
+    """Return when argusd first doubted a sonar from a time on, None if it never did."""
+    starts = (
+        start for start, _, word in health_spans(drive, sonar) if word == "suspect" and start >= since_s
+    )
+    return next(starts, None)
+
+
 def robot_spans(drive: Drive) -> Iterator[tuple[float, float, str]]:
     """What the robot did: from, to, one of drive, turn, stand."""
     since, now = drive.start_s, ""

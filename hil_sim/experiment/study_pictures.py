@@ -87,8 +87,9 @@ def draw_price(path: Path, records: Sequence[Record]) -> None:
         for place, (title, quantity) in zip(places, wanted, strict=False):
             _lines(place, records, quantity)
             place.set_title(title, fontsize=10)
-            place.set_ylim(bottom=0)
+            place.set_ylim(0, 1.08 * place.dataLim.y1)  # no mark is cut off at the edge
             place.set_xticks(range(len(_LABELS)), _LABELS, fontsize=8)
+            place.set_xlabel("dead front sonars", fontsize=8)
             place.axvline(_APART, color="#bbbbbb", linewidth=0.8)
             place.grid(axis="x", visible=False)
         places[-1].axis("off")

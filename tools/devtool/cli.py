@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from devtool import commands, firmware, packaging
+from devtool import commands, docs, firmware, packaging
 from devtool.base import Stop, leave_at_sigterm
 from devtool.cmake import presets
 from devtool.linting import LINT_STAGES, format_stages
@@ -148,7 +148,14 @@ def make_parser() -> argparse.ArgumentParser:
         sub.set_defaults(action=action)
         return sub
 
-    for add_some in (add_running, add_checking, add_making, firmware.add_commands, packaging.add_commands):
+    for add_some in (
+        add_running,
+        add_checking,
+        add_making,
+        docs.add_commands,
+        firmware.add_commands,
+        packaging.add_commands,
+    ):
         add_some(add)
     return parser
 

@@ -11,6 +11,7 @@ from typing import Final
 from devtool.base import BUILD, CORES, ROOT, VENV, Command, Run
 from devtool.browser import monitor_tests
 from devtool.cmake import BOARDS, SOAK, TOUR, WIDE, build, build_and_test, ctest
+from devtool.docs import site_tests
 from devtool.packaging import NEEDS as PACKAGE_NEEDS
 from devtool.packaging import package_tests
 from devtool.peers import SOURCES, peers
@@ -132,11 +133,13 @@ def boards(run: Run) -> None:
     run([*PYTEST, "tests/target", "-n", "3"])
 
 
-TABLES: Final = Stage(
-    "tables",
-    "generated headers agree with hil_sim/tables",
-    lambda run: run([sys.executable, "tools/gen_tables.py", "--check"]),
-)
+def tables(run: Run) -> None:
+    """Compare what is generated with what it is generated from."""
+    for generator in ("gen_tables", "gen_docs"):
+        run([sys.executable, f"tools/{generator}.py", "--check"])
+
+
+TABLES: Final = Stage("tables", "generated headers and documents agree with what they are made of", tables)
 RELEASE: Final = ctest_stage("release", "C unit tests, optimised")
 CORTEX_M4: Final = Stage(
     "cortex-m4", "firmware for Cortex-M4: builds, sizes, stack, no recursion", cortex_m4, ("cortex-m4",)
@@ -203,6 +206,7 @@ TEST_STAGES: Final = (
         monitor_tests,
         ("release",),
     ),
+    Stage("docs", "the site of the documents, where its generator can be had", site_tests),
     SOAKING,
     Stage(
         "peers",

@@ -48,7 +48,7 @@ POSES: Final = {pose["number"]: pose for pose in _SONAR["pose"]}
 NO_ECHO_MM: Final[int] = _SONAR["no_echo_mm"]
 # More points than this are not told apart in a picture.
 POINTS_MAX: Final = 1 << 13
-_INK, _LINE, _GRID = "#222222", "#1f5fa8", "#dddddd"
+_INK, _LINE, _GRID, _SILENT = "#222222", "#1f5fa8", "#dddddd", "#777777"
 _COLOUR: Final = {DEAD: "#d62728", SUSPECT: "#f2a900"}
 _LABEL: Final = {DEAD: "dead: off, silent or disabled", SUSPECT: "suspect"}
 _STYLE: Final[Any] = {
@@ -336,7 +336,11 @@ def _ring(args: argparse.Namespace, source: Input) -> Figure:
     if shown_t is None or first is None:
         raise LogError(f"{args.log}: has no SIP at or before the moment asked for")
     moment = shown_t if moment is None else min(moment, shown_t)
-    return _draw_ring(Path(args.log).name, moment, moment - first, last)
+    spans, note = ([], "not asked for") if args.no_faults else find_spans(args)
+    if note and not args.no_faults:
+        print(f"argus-log: no sonar is judged: {note}", file=sys.stderr)
+    held = {span.sonar: span.kind for span in spans if span.start <= moment <= span.end}
+    return _draw_ring(Path(args.log).name, moment, moment - first, last, held)
 
 
 def ring_title(name: str, moment: float, since: float) -> str:
@@ -349,7 +353,19 @@ def ring_title(name: str, moment: float, since: float) -> str:
     return f"{name}: the sonar ring, up is ahead\n{since:.1f} s after the first SIP{day}"
 
 
-def _draw_ring(name: str, moment: float, since: float, last: dict[int, tuple[float, int]]) -> Figure:
+def reading_text(number: int, range_mm: int, held: str | None) -> str:
+    """Return what is written beside a sonar: its number, what it reads in the unit of the rings, and its verdict.
+
+    >>> reading_text(1, 1253, None), reading_text(3, 5000, "suspect")
+    ('1: 1.25 m', '3: no echo, suspect')
+    """
+    reads = f"{range_mm / 1000:.2f} m" if range_mm < NO_ECHO_MM else "no echo"
+    return f"{number}: {reads}" + (f", {held}" if held else "")
+
+
+def _draw_ring(
+    name: str, moment: float, since: float, last: dict[int, tuple[float, int]], held: dict[int, str]
+) -> Figure:
     half = math.radians(_SONAR["cone_deg"]) / 2
     with rc_context(_STYLE):
         figure = _figure(8, 8.2)
@@ -365,14 +381,15 @@ def _draw_ring(name: str, moment: float, since: float, last: dict[int, tuple[flo
             stand = math.hypot(pose["x_mm"], pose["y_mm"])
             is_echo = range_mm < NO_ECHO_MM
             alpha = 0.55 if moment - t <= FRESH_S else 0.2
-            colour = _LINE if is_echo else _COLOUR[DEAD]
+            verdict = held.get(number)
+            colour = _COLOUR[verdict] if verdict else _LINE if is_echo else _SILENT
             axes.bar(turn, range_mm, width=2 * width, bottom=stand, color=colour,
                      alpha=alpha if is_echo else alpha * 0.35, linewidth=0)  # fmt: skip
             edge = stand + range_mm
             arc = np.linspace(turn - width, turn + width, 25)
             axes.plot(arc, np.full(25, edge), color=colour, linewidth=2.2, alpha=min(1.0, alpha + 0.4))
             points += [_across(angle, edge) for angle in arc]
-            shown.append((turn, edge, f"{number}: {range_mm}" if is_echo else f"{number}: no echo"))
+            shown.append((turn, edge, reading_text(number, range_mm, verdict)))
         taken: list[Box] = []
         for turn, edge, text in shown:
             at, box = _place(turn, edge, text, taken, points)
@@ -390,10 +407,14 @@ def _draw_ring(name: str, moment: float, since: float, last: dict[int, tuple[flo
         axes.set_title(ring_title(name, moment, since), fontsize=11, color=_INK, pad=18)
         handles = [
             Patch(color=_LINE, alpha=0.6, label="echo"),
-            Patch(color=_COLOUR[DEAD], alpha=0.3, label="no echo"),
+            Patch(color=_SILENT, alpha=0.3, label="no echo"),
             Patch(color=_LINE, alpha=0.2, label=f"older than {FRESH_S} s"),
+            *(
+                Patch(color=_COLOUR[kind], alpha=0.4, label=_LABEL[kind])
+                for kind in sorted(set(held.values()))
+            ),
         ]
-        _legend(figure, handles, 3)
+        _legend(figure, handles, len(handles))
     return figure
 
 
