@@ -75,9 +75,20 @@ def finish(app: Sphinx, problem: Exception | None) -> None:
     (Path(app.outdir) / "index.html").write_text(HOME, encoding="utf-8")
 
 
+def without_folders(app: Sphinx, page: str, source: list[str]) -> None:
+    """Leave the words of a link to a folder: a forge shows it, a site has no page of it."""
+    here = (Path(app.srcdir) / page).parent
+
+    def plain(found: re.Match[str]) -> str:
+        return found[1] if (here / found[2]).is_dir() else found[0]
+
+    source[0] = re.sub(r"\[([^\]\n]+)\]\(([^)\s#:]+)\)", plain, source[0])
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     """Add what the documents need: forges draw Mermaid, here it is text, as are our own notations."""
     for notation in ("mermaid", "faults", "map"):
         app.add_lexer(notation, TextLexer)
+    app.connect("source-read", without_folders)
     app.connect("build-finished", finish)
     return {"parallel_read_safe": True}
