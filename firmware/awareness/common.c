@@ -106,16 +106,16 @@ static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowle
     argus_passed_t *const passed = &dark->passed[argus_robot_pose(knowledge->robot, sonar).y_mm > 0];
     const int32_t way_mm = (int32_t)(knowledge->odometer_mm - passed->odometer_mm);
     const bool apart = way_mm > ARGUS_DARK_APART_MM;
-    const bool near = hears_within(knowledge, sonar, ARGUS_DARK_NEAR_MM);
+    const bool near = hears_within(knowledge, sonar, ARGUS_NEAR_MM);
     const bool lasting = hears_within(knowledge, sonar, ARGUS_LASTING_MM);
     passed->mm += passed->near && near && !apart ? way_mm : 0;
     passed->stretch_mm += passed->lasting && lasting && !apart ? way_mm : 0;
     passed->near = near;
     passed->lasting = lasting;
     passed->odometer_mm = knowledge->odometer_mm;
-    if (passed->stretch_mm >= ARGUS_DARK_STRETCH_MM) {
+    if (passed->stretch_mm >= ARGUS_STRETCH_MM) {
         passed->stretch_mm = 0;
-        add(dark, ARGUS_DARK_PASSED_CNAT, (argus_mask_t)(1u << sonar));
+        add(dark, ARGUS_DARK_PIECE_CNAT, (argus_mask_t)(1u << sonar));
     }
 }
 
@@ -135,8 +135,7 @@ static void pass_all(argus_dark_t *const dark, const argus_knowledge_t *const kn
 static bool has_passed(const argus_dark_t *const dark) {
     const int32_t right_mm = dark->passed[0].mm;
     const int32_t left_mm = dark->passed[1].mm;
-    return argus_min(right_mm, left_mm) >= ARGUS_DARK_PASSED_LEAST_MM &&
-           right_mm + left_mm >= ARGUS_DARK_PASSED_MM;
+    return argus_min(right_mm, left_mm) >= ARGUS_STRETCH_MM && right_mm + left_mm >= ARGUS_DARK_PASSED_MM;
 }
 
 static argus_mask_t silent_of(const argus_common_t *const self, const argus_mask_t sonars) {
@@ -177,7 +176,7 @@ static void count_lost(argus_common_t *const self, const argus_knowledge_t *cons
     for (int i = 0; i < knowledge->sonars; i++) {
         if ((open >> i & 1u) != 0 && has_lost(self, knowledge, i)) {
             dark->lost |= (argus_mask_t)(1u << i);
-            add(dark, ARGUS_DARK_LOST_CNAT, 0);
+            add(dark, ARGUS_DARK_PIECE_CNAT, 0);
         }
     }
 }
@@ -190,8 +189,7 @@ static bool comes_to_doubt(argus_dark_t *const dark) {
 }
 
 static bool is_proven(const argus_dark_t *const dark, const int run, const bool whole) {
-    const bool disputed =
-        dark->nats >= ARGUS_DARK_PROOF_CNAT && argus_count_bits(dark->by) >= ARGUS_DARK_PROOF_BY;
+    const bool disputed = dark->nats >= ARGUS_DARK_PROOF_CNAT && argus_count_bits(dark->by) >= ARGUS_PARTNERS;
     return (dark->at_once && run >= ARGUS_DARK_RUN) || (whole && has_passed(dark)) || disputed;
 }
 
@@ -259,7 +257,7 @@ void argus_common_touched(argus_common_t *const self, const argus_mask_t sonars)
     for (int array = 0; array < ARGUS_ARRAYS_MAX; array++) {
         argus_dark_t *const dark = &self->of[array];
         if ((dark->sonars & sonars) != 0) {
-            add(dark, ARGUS_DARK_TOUCH_CNAT, 0);
+            add(dark, ARGUS_DARK_DOUBT_CNAT, 0);
         }
     }
 }

@@ -39,7 +39,7 @@ static const worth_t offset_worth = {ARGUS_OFFSET_OVER_HEALTHY, ARGUS_OFFSET_OVE
 static int32_t offset_cdeg(const int offset) {
     const int half = ARGUS_OFFSETS / 2;
     const int steps = offset < half ? offset + 1 - half : offset - half;
-    const int32_t least = offset < half ? -ARGUS_OFFSET_CDEG : ARGUS_OFFSET_CDEG;
+    const int32_t least = offset < half ? -2 * ARGUS_OFFSET_STEP_CDEG : 2 * ARGUS_OFFSET_STEP_CDEG;
     return least + steps * ARGUS_OFFSET_STEP_CDEG;
 }
 

@@ -107,7 +107,7 @@ static int doubt(const argus_extreme_t *const self, const argus_knowledge_t *con
         return ARGUS_IMPOSSIBLE_LEAPS;
     }
     if (reading_mm < knowledge->robot->min_mm) {
-        return ARGUS_IMPOSSIBLE_STAYS;
+        return ARGUS_IMPOSSIBLE_CONVICTS / ARGUS_IMPOSSIBLE_ROW;
     }
     return self->visited && reading_mm > far_mm ? ARGUS_IMPOSSIBLE_VISIT : 0;
 }
@@ -154,5 +154,5 @@ argus_fault_kind_t argus_extremes_convicts(const argus_extremes_t *const self, c
 
 bool argus_extremes_keeps_out(const argus_extremes_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    return self->of[sonar].proved || self->of[sonar].level > ARGUS_IMPOSSIBLE_KEEPS_OUT;
+    return self->of[sonar].proved || self->of[sonar].level > ARGUS_IMPOSSIBLE_CONVICTS / 2;
 }

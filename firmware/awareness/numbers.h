@@ -16,8 +16,7 @@
     X(LEAST_LAG, 2, "firings", reasoned, "the shortest lag that is a hypothesis", "not ablated") \
     X(LAGS, 8, "hypotheses", size, "of lag, one firing apart", "not ablated") \
     X(OFFSETS, 6, "hypotheses", size, "of an axis offset", "not ablated") \
-    X(OFFSET_CDEG, 1200, "cdeg", reasoned, "the smallest axis offset: a wall fills cones alike that are 6 degrees apart", "with the two rules of the same note: found 126 -> 119") \
-    X(OFFSET_STEP_CDEG, 600, "cdeg", reasoned, "from one axis offset to the next", "not ablated") \
+    X(OFFSET_STEP_CDEG, 600, "cdeg", reasoned, "from one axis offset to the next; the smallest is two steps, as a wall fills cones alike that are 6 degrees apart", "with the two rules of the same note: found 126 -> 119") \
     X(ARRAYS_MAX, 4, "arrays", size, "that may be dark", "not ablated") \
     X(RATE_ONE, 16, "-", size, "one reading in a rate", "not ablated")
 
@@ -34,6 +33,8 @@
     X(SURE_MM, 4000, "mm", reasoned, "from here on the air decides whether an echo is heard", "not ablated") \
     X(FARTHEST_MM, 4600, "mm", reasoned, "beyond no sonar need hear it", "not ablated") \
     X(LASTING_MM, 3500, "mm", reasoned, "echoes from beyond come and go", "not ablated") \
+    X(NEAR_MM, 2500, "mm", reasoned, "a thing that no sonar on its bearing can miss; from here on an echo is a far one", "not ablated") \
+    X(STRETCH_MM, 400, "mm", reasoned, "of way makes a measure of its ranges, or a piece of evidence beside a wall", "not ablated") \
     X(LEAP_MM, 450, "mm", reasoned, "no person walks so far between two firings of one sonar", "not ablated") \
     X(STILL_MM, 12, "mm", reasoned, "less way than this may leave a reading as it is", "not ablated") \
     X(STILL_CDEG, 150, "cdeg", reasoned, "... and less turn", "not ablated") \
@@ -94,7 +95,7 @@
 #define ARGUS_SUSPICION_NAME_CONVICTION_TABLE(X) \
     X(SUSPECT_PERCENT, 75, "%", reasoned, "of a name's level: a look is called for", "not ablated") \
     X(HELD_PERCENT, 25, "%", reasoned, "... a suspect is cleared below", "not ablated") \
-    X(PARTNERS, 2, "sonars", reasoned, "must contradict: which of two is wrong takes a third", "not ablated") \
+    X(PARTNERS, 2, "sonars", reasoned, "must contradict, or prove an outage: which of two is wrong takes a third", "not ablated") \
     X(LATE_NAMING, 500, "cnat", reasoned, "for a lag: names slow", "not ablated") \
     X(LATE_ALONE, 750, "cnat", reasoned, "... where no third sonar contradicts it", "not ablated") \
     X(LATE_CONVINCING, 1375, "cnat", reasoned, "... convicts", "not ablated") \
@@ -120,11 +121,9 @@
     X(SHORTEST_FAR_MM, 600, "mm", reasoned, "so far above the least nothing stood that is at the least one firing later", "not ablated") \
     X(SHORTEST_NEAR_MM, 150, "mm", reasoned, "so far above the least an echo forbids to turn", "not ablated") \
     X(IMPOSSIBLE_LEAPS, 31, "-", measured, "weight of a leap to the least", "16: none of 30 found at 3 %; 64: a healthy one given up") \
-    X(IMPOSSIBLE_STAYS, 16, "-", reasoned, "weight of a reading below the least: four may be the line, five convict", "not ablated") \
     X(IMPOSSIBLE_VISIT, 10, "-", measured, "weight of a leap near and away again at once: a person may do so once or twice", "without: goals 285 -> 268 of 288") \
-    X(IMPOSSIBLE_ROW, 5, "readings", reasoned, "at the least one after the other: stuck rather than intermittent", "not ablated") \
-    X(IMPOSSIBLE_CONVICTS, 80, "-", reasoned, "sum of the weights, one less for each sound reading: convicts", "not ablated") \
-    X(IMPOSSIBLE_KEEPS_OUT, 40, "-", reasoned, "... too early to try it again", "not ablated") \
+    X(IMPOSSIBLE_ROW, 5, "readings", reasoned, "below the least convict; so many one after the other: stuck rather than intermittent", "not ablated") \
+    X(IMPOSSIBLE_CONVICTS, 80, "-", reasoned, "sum of the weights, one less for each sound reading: convicts; above half of it, it is too early to try it again", "not ablated") \
     X(IMPOSSIBLE_MAX, 120, "-", reasoned, "... no sum is higher", "not ablated")
 
 // Outage of an array
@@ -134,24 +133,17 @@
     X(DARK_RUN, 3, "readings", reasoned, "of each without an echo, before what ended at once is proof", "not ablated") \
     X(DARK_AT_ONCE_MS, 450, "ms", reasoned, "the echoes that it lost ended within a round and a SIP of each other", "not ablated") \
     X(DARK_TURNING_PER_MM, 5, "-", reasoned, "wheels that differ by a part of their distance, 11 degrees/s: the robot turned", "not ablated") \
-    X(DARK_NEAR_MM, 2500, "mm", reasoned, "a thing abeam that the others of that side cannot miss", "not ablated") \
     X(DARK_APART_MM, 400, "mm", reasoned, "driven from one reading to the next, at most", "not ablated") \
-    X(DARK_PASSED_MM, 1500, "mm", reasoned, "driven beside such things, both sides together: proof", "without the proof: collisions 0 -> 2 of 60") \
-    X(DARK_PASSED_LEAST_MM, 400, "mm", reasoned, "... on either side", "not ablated") \
+    X(DARK_PASSED_MM, 1500, "mm", reasoned, "driven beside such things, both sides together, and a stretch on either: proof", "without the proof: collisions 0 -> 2 of 60") \
     X(DARK_GOES_ON_MM, 200, "mm", reasoned, "an echo of one thing goes on from the one before, less the way, to within this", "not ablated") \
     X(DARK_AHEAD_DEG, 30, "degrees", reasoned, "what looks so far off the way cannot pass by what it heard", "not ablated") \
     X(DARK_AHEAD_LEAST_MM, 300, "mm", reasoned, "... while so much of it is left", "not ablated") \
-    X(DARK_STRETCH_MM, 400, "mm", reasoned, "of a wall beside it is a piece of evidence", "not ablated") \
-    X(DARK_PASSED_CNAT, 280, "cnat", reasoned, "... worth so much", "not ablated") \
-    X(DARK_LOST_CNAT, 280, "cnat", reasoned, "for each sonar that has lost something ahead", "not ablated") \
-    X(DARK_TOUCH_CNAT, 560, "cnat", reasoned, "for what the body met", "not ablated") \
-    X(DARK_DOUBT_CNAT, 560, "cnat", reasoned, "the level of a suspicion of the array", "not ablated") \
-    X(DARK_PROOF_CNAT, 2200, "cnat", reasoned, "the level of its conviction", "not ablated") \
-    X(DARK_PROOF_BY, 2, "sonars", reasoned, "... on the evidence of so many others", "not ablated")
+    X(DARK_PIECE_CNAT, 280, "cnat", reasoned, "for a stretch of a wall beside it, and for each sonar that has lost something ahead", "not ablated") \
+    X(DARK_DOUBT_CNAT, 560, "cnat", reasoned, "the level of a suspicion of the array; what the body met is worth it at once", "not ablated") \
+    X(DARK_PROOF_CNAT, 2200, "cnat", reasoned, "... of its conviction", "not ablated")
 
 // Ranges against the odometry
 #define ARGUS_RANGES_AGAINST_THE_ODOMETRY_TABLE(X) \
-    X(SCALE_STRETCH_MM, 400, "mm", reasoned, "of way makes a measure", "not ablated") \
     X(SCALE_ASIDE, 4, "-", reasoned, "the way may lie aside of the bearing by this part of it", "not ablated") \
     X(SCALE_FITS_PERCENT, 10, "%", reasoned, "a measure that is off by less fits", "not ablated") \
     X(SCALE_OFF_RUN, 4, "measures", reasoned, "in a row that are off to one side: what is slant or round is short, too", "without the rule: false disables 0 -> 7 of 12 missions") \
@@ -165,9 +157,7 @@
     X(TREND_SLOW, 32, "segments", reasoned, "... the slow one", "not ablated") \
     X(TREND_LEAD_LEAST, 3, "segments", reasoned, "by which the fast mean leads, at least", "not ablated") \
     X(TREND_GAP_MAX, 3, "readings", reasoned, "without an echo that count as dropouts between two", "not ablated") \
-    X(TREND_GOES_ON_MM, 100, "mm", reasoned, "an echo goes on from one before to within this", "not ablated") \
-    X(TREND_GOES_ON_PERCENT, 3, "%", reasoned, "... and this part of the range", "not ablated") \
-    X(TREND_FAR_FROM_MM, 2500, "mm", reasoned, "an echo of another from here on is a far one", "not ablated") \
+    X(TREND_GOES_ON_PERCENT, 3, "%", reasoned, "an echo goes on from a familiar one: also by this part of the range", "not ablated") \
     X(TREND_FAR_TO_MM, 4500, "mm", reasoned, "... up to here", "not ablated") \
     X(TREND_HORIZON_M, 500, "m", reasoned, "of driving: a failure farther off is not announced", "not ablated")
 

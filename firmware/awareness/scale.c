@@ -92,7 +92,7 @@ void argus_scale_take(argus_evidence_t *const self, const argus_knowledge_t *con
     }
     scale->way_mm = (int16_t)(scale->way_mm + shift.along_mm);
     scale->nearer_mm = (int16_t)(scale->nearer_mm + before->reading_mm - now->reading_mm);
-    if (argus_abs(scale->way_mm) >= ARGUS_SCALE_STRETCH_MM) {
+    if (argus_abs(scale->way_mm) >= ARGUS_STRETCH_MM) {
         measure(scale);
         doubt(self, knowledge);
         begin_stretch(scale);

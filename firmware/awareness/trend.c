@@ -62,7 +62,7 @@ static bool goes_on(const argus_trend_sonar_t *const self, const argus_knowledge
                     const int32_t reading_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
     const int32_t way_mm = (int32_t)((knowledge->odometer_mm - self->echo_odometer_mm) & 0xFFFFu);
-    const int32_t limit = ARGUS_TREND_GOES_ON_MM + reading_mm * ARGUS_TREND_GOES_ON_PERCENT / 100 + way_mm;
+    const int32_t limit = ARGUS_FAMILIAR_MM + reading_mm * ARGUS_TREND_GOES_ON_PERCENT / 100 + way_mm;
     return argus_abs(reading_mm - self->echo_mm) <= limit;
 }
 
@@ -115,7 +115,7 @@ static void take_residual(argus_trend_sonar_t *const self, const uint32_t odomet
 static void take_far(argus_trend_sonar_t *const self, const uint32_t odometer_mm, const int32_t reading_mm,
                      const int32_t expected_mm) {
     ARGUS_ASSERT(reading_mm >= 0);
-    if (expected_mm >= ARGUS_TREND_FAR_FROM_MM && expected_mm <= ARGUS_TREND_FAR_TO_MM) {
+    if (expected_mm >= ARGUS_NEAR_MM && expected_mm <= ARGUS_TREND_FAR_TO_MM) {
         add(self, ARGUS_TREND_RANGE, odometer_mm, reading_mm >= ARGUS_NO_ECHO_MM ? ARGUS_TREND_UNIT : 0);
     }
 }

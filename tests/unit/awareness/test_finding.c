@@ -51,7 +51,7 @@ void test_another_array_that_may_have_failed_excuses_it(void) {
 }
 
 void test_range_limits_keep_out_before_they_convict(void) {
-    extremes.of[SONAR].level = ARGUS_IMPOSSIBLE_KEEPS_OUT + 1;
+    extremes.of[SONAR].level = ARGUS_IMPOSSIBLE_CONVICTS / 2 + 1;
     TEST_ASSERT_TRUE(find().keeps_out);
     TEST_ASSERT_EQUAL(ARGUS_FOUND_NONE, find().level);
 }
