@@ -19,6 +19,8 @@ size_t argus_shim_robot_size(void);
 void argus_shim_set_ring(argus_t *core, argus_robot_storage_t *storage, const char *name,
                          const int32_t *figures, const int32_t *mounts, uint8_t sonars,
                          const int32_t *forward, uint8_t forward_count, int32_t *report);
+bool argus_shim_observe(argus_t *core, uint32_t now_ms, const int32_t *motion, const uint16_t *ranges,
+                        uint8_t count);
 bool argus_shim_is_open(const argus_t *core);
 bool argus_shim_event(argus_t *core, int32_t *fields);
 const char *argus_shim_event_field(uint32_t field);
@@ -145,6 +147,22 @@ void argus_shim_set_ring(argus_t *core, argus_robot_storage_t *storage, const ch
     report[0] = found.fault;
     report[1] = found.key;
     report[2] = found.sonar;
+}
+
+// `motion`: x, y, heading, speed, turn; `ranges`: sonar, mm and age of each.
+bool argus_shim_observe(argus_t *core, uint32_t now_ms, const int32_t *motion, const uint16_t *ranges,
+                        uint8_t count) {
+    argus_range_t taken[UINT8_MAX];
+    for (size_t i = 0; i < count; i++) {
+        const uint16_t *const from = &ranges[3 * i];
+        taken[i] = (argus_range_t){(uint8_t)from[0], from[1], from[2]};
+    }
+    const argus_observation_t observation = {.pose = {motion[0], motion[1], motion[2]},
+                                             .speed_mm_s = motion[3],
+                                             .turn_cdeg_s = motion[4],
+                                             .ranges = taken,
+                                             .count = count};
+    return argus_observe(core, now_ms, &observation);
 }
 
 bool argus_shim_is_open(const argus_t *core) {

@@ -77,6 +77,10 @@ static unsigned fail(argus_session_t *self, uint32_t now_ms) {
 
 static unsigned lose(argus_session_t *self, uint32_t now_ms) {
     self->attempts = 0;
+    if (self->observed) {
+        enter(self, now_ms, ARGUS_SESSION_DOWN);
+        return ARGUS_SESSION_DID_LOSE;
+    }
     begin_attempt(self, now_ms);
     return ARGUS_SESSION_DID_LOSE;
 }
@@ -313,13 +317,7 @@ static unsigned resume(argus_session_t *self, uint32_t gap_ms) {
 }
 
 // A gap may also end before any timer saw it: when it was our own host that stood still.
-static unsigned on_open_sip(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
-                            const argus_packet_t *packet) {
-    ARGUS_ASSERT(self->state == ARGUS_SESSION_OPEN && is_sip(packet));
-    const uint32_t gap_ms = elapsed_ms(now_ms, self->heard_ms);
-    if (!take_sip(self, now_ms, packet)) {
-        return 0;
-    }
+static unsigned after_gap(argus_session_t *self, const argus_config_t *config, uint32_t gap_ms) {
     if (self->stalled) {
         return ARGUS_SESSION_GOT_SIP | resume(self, gap_ms);
     }
@@ -327,6 +325,13 @@ static unsigned on_open_sip(argus_session_t *self, const argus_config_t *config,
         return ARGUS_SESSION_GOT_SIP | ARGUS_SESSION_DID_STALL | resume(self, gap_ms);
     }
     return ARGUS_SESSION_GOT_SIP;
+}
+
+static unsigned on_open_sip(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
+                            const argus_packet_t *packet) {
+    ARGUS_ASSERT(self->state == ARGUS_SESSION_OPEN && is_sip(packet));
+    const uint32_t gap_ms = elapsed_ms(now_ms, self->heard_ms);
+    return take_sip(self, now_ms, packet) ? after_gap(self, config, gap_ms) : 0;
 }
 
 static unsigned on_open(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
@@ -532,6 +537,28 @@ static unsigned run_timer(argus_session_t *self, const argus_config_t *config, u
     }
 }
 
+static unsigned open_observed(argus_session_t *self, uint32_t now_ms) {
+    argus_outbox_clear(&self->outbox);
+    argus_setup_init(&self->setup);
+    self->observed = true;
+    self->stalled = false;
+    self->zeros_due = 0;
+    self->attempts = 1;
+    enter(self, now_ms, ARGUS_SESSION_OPEN);
+    return ARGUS_SESSION_DID_OPEN;
+}
+
+unsigned argus_session_observe(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
+    if (self->state == ARGUS_SESSION_LEAVING || self->state == ARGUS_SESSION_CLOSED) {
+        return 0;
+    }
+    const bool opens = self->state != ARGUS_SESSION_OPEN;
+    const uint32_t gap_ms = opens ? 0 : elapsed_ms(now_ms, self->heard_ms);
+    self->sips++;
+    self->heard_ms = now_ms;
+    return opens ? open_observed(self, now_ms) | ARGUS_SESSION_GOT_SIP : after_gap(self, config, gap_ms);
+}
+
 unsigned argus_session_process(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
     const unsigned bits = drain(self, config, now_ms);
     return bits != 0 ? bits : run_timer(self, config, now_ms) | say_closed(self);
@@ -544,8 +571,8 @@ void argus_session_leave(argus_session_t *self, uint32_t now_ms) {
     if (self->state != ARGUS_SESSION_DISLODGE) { // that one's CLOSE must still go out
         argus_outbox_clear(&self->outbox);
     }
-    if (self->state == ARGUS_SESSION_HALT || self->state == ARGUS_SESSION_OPENING ||
-        self->state == ARGUS_SESSION_OPEN) {
+    const bool opened = self->state == ARGUS_SESSION_OPENING || self->state == ARGUS_SESSION_OPEN;
+    if (!self->observed && (self->state == ARGUS_SESSION_HALT || opened)) {
         argus_outbox_int(&self->outbox, ARCOS_CMD_SONAR, 0);
         argus_outbox_plain(&self->outbox, ARCOS_CMD_STOP);
         argus_outbox_int(&self->outbox, ARCOS_CMD_ENABLE, 0);
@@ -555,7 +582,8 @@ void argus_session_leave(argus_session_t *self, uint32_t now_ms) {
 }
 
 static bool is_silent(const argus_session_t *self) {
-    return is_deaf(self) || self->state == ARGUS_SESSION_PAUSE || self->state == ARGUS_SESSION_LISTEN;
+    return self->observed || is_deaf(self) || self->state == ARGUS_SESSION_PAUSE ||
+           self->state == ARGUS_SESSION_LISTEN;
 }
 
 // VEL 0 and RVEL 0 after a gap. They are not in the outbox, because STOP would overtake or drop them there.
@@ -589,7 +617,7 @@ size_t argus_session_transmit(argus_session_t *self, uint32_t now_ms, uint8_t *p
 }
 
 int argus_session_resend(argus_session_t *self, uint32_t now_ms, unsigned rows) {
-    const bool may = self->state == ARGUS_SESSION_OPEN && !self->stalled;
+    const bool may = self->state == ARGUS_SESSION_OPEN && !self->stalled && !self->observed;
     return may ? argus_setup_resend(&self->setup, &self->outbox, now_ms, rows) : -1;
 }
 

@@ -47,6 +47,7 @@ typedef struct {
     uint8_t differs; // in which part it was not the one before, see argus_identity_meet()
     bool stalled;
     bool closed_said;
+    bool observed;        // no ARCOS: nothing is ever said
     bool origin_due;      // a SETO is on its way since: positions may be counted from there
     uint32_t since_ms;    // entry into the state
     uint32_t tried_ms;    // last CONFIG sent
@@ -95,6 +96,10 @@ unsigned argus_session_receive(argus_session_t *self, const argus_config_t *conf
 // returns 0. During a stall STOP goes out before each PULSE, or the first PULSE that gets through would set
 // the robot moving again.
 unsigned argus_session_process(argus_session_t *self, const argus_config_t *config, uint32_t now_ms);
+
+// self->sip was filled in by another than the robot. Opens a session of its own where there is none; bits as
+// above, 0 once it is left.
+unsigned argus_session_observe(argus_session_t *self, const argus_config_t *config, uint32_t now_ms);
 
 // Sends again what the robot does not report, in an open session. `rows`: a mask of the orders that may be.
 // Returns the number of a command that stays away, once, else -1.

@@ -15,6 +15,7 @@
 #include "supervisor/looks.h"
 #include "supervisor/modes.h"
 #include "supervisor/motions.h"
+#include "supervisor/observe.h"
 #include "supervisor/orders.h"
 #include "supervisor/say.h"
 #include "supervisor/state.h"
@@ -313,6 +314,16 @@ void argus_receive(argus_t *const self, const uint32_t now_ms, const uint8_t *co
             break;
         }
     }
+}
+
+bool argus_observe(argus_t *const self, const uint32_t now_ms, const argus_observation_t *const observation) {
+    self->now_ms = now_ms;
+    self->orders.passive = true; // there is nobody to drive
+    argus_session_t *const session = &self->session;
+    argus_sip_of(&session->sip, observation, argus_robot_built(self->knowledge.robot));
+    const unsigned bits = argus_session_observe(session, &self->config, now_ms);
+    handle(self, bits);
+    return bits != 0;
 }
 
 // No order is taken for done because it was sent.

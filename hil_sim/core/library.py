@@ -84,6 +84,16 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
             ctypes.POINTER(ctypes.c_int32),
         ),
     ),
+    "argus_shim_observe": (
+        ctypes.c_bool,
+        (
+            ctypes.c_void_p,
+            ctypes.c_uint32,
+            ctypes.POINTER(ctypes.c_int32),
+            ctypes.POINTER(ctypes.c_uint16),
+            ctypes.c_uint8,
+        ),
+    ),
     "argus_shim_is_open": (ctypes.c_bool, (ctypes.c_void_p,)),
     "argus_shim_event": (ctypes.c_bool, (ctypes.c_void_p, ctypes.POINTER(ctypes.c_int32))),
     "argus_shim_event_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
@@ -381,6 +391,19 @@ class Core:
     def receive(self, now_ms: int, data: bytes) -> None:
         """Take bytes from the robot."""
         self._library.argus_receive(self._core, now_ms & 0xFFFFFFFF, data, len(data))
+
+    def observe(
+        self, now_ms: int, motion: tuple[int, int, int, int, int], ranges: Sequence[tuple[int, int, int]]
+    ) -> None:
+        """Take x, y, heading, speed and turn, and sonar, range and age of each new reading: mm, cdeg, ms."""
+        flat = [value for reading in ranges for value in reading]
+        self._library.argus_shim_observe(
+            self._core,
+            now_ms & 0xFFFFFFFF,
+            (ctypes.c_int32 * len(motion))(*motion),
+            (ctypes.c_uint16 * len(flat))(*flat),
+            len(ranges),
+        )
 
     def process(self, now_ms: int) -> int:
         """Do what time makes due; return the ms after which it wants to be called again."""

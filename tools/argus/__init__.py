@@ -4,6 +4,7 @@
     argus.protocol      ARCOS packets from bytes and back
     argus.sil           a mission of the fault manager on the emulated robot, in one process, under virtual time
     argus.live          a running argusd: watch it, drive the robot
+    argus.ranges        pose and ranges of any robot, judged as they come
     argus.log           logs of a robot's link: read, decode, diagnose
 
 The names used most are here too:
@@ -17,10 +18,11 @@ docs/python.md has more examples. What is not in `__all__` of these modules may 
 
 from importlib.metadata import version as _version
 
-from argus import live, log, protocol, sil
+from argus import live, log, protocol, ranges, sil
 from argus.live import AsyncRobot, ControlError, Refused, Robot, connect, connect_async
 from argus.log import Diagnosis, LogError, LogPacket, diagnose, read
 from argus.protocol import COMMAND, Command, PacketError, Sip, Unframer, decode, frame
+from argus.ranges import Observer
 from argus.sil import Mission, Outcome, Sil, run
 
 __version__ = _version("argus-p3dx")
@@ -34,6 +36,7 @@ __all__ = [
     "LogError",
     "LogPacket",
     "Mission",
+    "Observer",
     "Outcome",
     "PacketError",
     "Refused",
@@ -50,6 +53,7 @@ __all__ = [
     "live",
     "log",
     "protocol",
+    "ranges",
     "read",
     "run",
     "sil",

@@ -685,6 +685,26 @@ typedef union {
     uint8_t bytes[ARGUS_ROBOT_BYTES]; // the library's own
 } argus_robot_storage_t;
 
+// Ranges without ARCOS -------------------------------------------------------------------------------------
+
+// One range of a sonar.
+typedef struct {
+    uint8_t sonar;     // its number
+    uint16_t range_mm; // the robot's no_echo_mm or more: nothing was heard
+    uint16_t age_ms;   // since it was measured; one older than ARGUS_RANGE_OLD_MS is left out
+} argus_range_t;
+
+#define ARGUS_RANGE_OLD_MS 250 // the robot has moved on since
+
+// What any robot knows of itself at one time.
+typedef struct {
+    argus_pose_t pose;           // by its odometry; any origin
+    int32_t speed_mm_s;          // ahead
+    int32_t turn_cdeg_s;         // hundredths of a degree a second, counter-clockwise
+    const argus_range_t *ranges; // measured since the last call, each once: what is repeated is no news
+    uint8_t count;               // how many
+} argus_observation_t;
+
 // Instance -------------------------------------------------------------------------------------------------
 
 // Bytes of one manager.
@@ -776,6 +796,12 @@ void argus_link_lost(argus_t *self, uint32_t now_ms);
 // this returns. Cost: one pass over the bytes, and for each SIP in them the diagnosis: at most some 660,000
 // instructions of a Cortex-M4 (docs/flash.md).
 void argus_receive(argus_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count);
+
+// Beside argus_receive(), for a robot that speaks no ARCOS: pose, speeds and ranges go in, the same events
+// come out. Some ten times a second. The manager only listens then: argus_transmit() has nothing. The body is
+// that of argus_set_ring(), or of the setting `robot`. After link_lost_ms without a call the session is lost,
+// the next call opens another. False: after argus_shutdown(). Cost: as of a SIP.
+bool argus_observe(argus_t *self, uint32_t now_ms, const argus_observation_t *observation);
 
 // Does what time alone makes due; returns the ms (1..100) after which it wants to be called again. Cost: much
 // less than a SIP.

@@ -17,6 +17,7 @@
 #include "options.h"
 #include "probe.h"
 #include "report.h"
+#include "ring_file.h"
 #include "settings.h"
 #include "signals.h"
 #include "survey.h"
@@ -30,6 +31,8 @@
 // Static, not allocated: argusd never asks for memory.
 static options_t options;
 static settings_t settings;
+static ring_file_t ring_file;
+static argus_robot_storage_t robot_memory;
 static course_t course;
 static hal_transport_t transport;
 static loop_t loop;
@@ -108,6 +111,46 @@ static const char *settle_activity(void) {
     return NULL;
 }
 
+// The ring of --ring, handed to a manager with the settings at hand. True where none is given, too.
+static bool give_ring(argus_t *core) {
+    if (options.ring_path == NULL) {
+        return true;
+    }
+    const argus_ring_report_t report = argus_set_ring(core, &robot_memory, &ring_file.ring);
+    if (report.fault != ARGUS_RING_OK) {
+        ring_file_explain(&ring_file, options.ring_path, report, message, sizeof message);
+    }
+    return report.fault == ARGUS_RING_OK;
+}
+
+static bool load_ring(void) {
+    if (options.ring_path == NULL) {
+        return true;
+    }
+    if (options.robot != NULL) {
+        return text_refuse(message, sizeof message,
+                           "--ring and --robot both say which body it has; keep one");
+    }
+    return ring_file_load(&ring_file, options.ring_path, message, sizeof message) &&
+           give_ring(argus_init(&loop.driver.memory, &settings.config, 0));
+}
+
+static bool start_driver(hal_clock_t clock) {
+    driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
+    return give_ring(loop.driver.core);
+}
+
+static bool load_course(void) {
+    if (options.course_path != NULL) {
+        return course_load(&course, options.course_path, message, sizeof message);
+    }
+    if (options.has_goal) {
+        course.point[0] = options.goal;
+        course.count = 1;
+    }
+    return true;
+}
+
 static bool load_files(void) {
     settings_default(&settings);
     if (options.config_path != NULL &&
@@ -126,14 +169,7 @@ static bool load_files(void) {
         return text_refuse(message, sizeof message, "%s: %s",
                            options.config_path != NULL ? options.config_path : "config", problem);
     }
-    if (options.course_path != NULL) {
-        return course_load(&course, options.course_path, message, sizeof message);
-    }
-    if (options.has_goal) {
-        course.point[0] = options.goal;
-        course.count = 1;
-    }
-    return true;
+    return load_ring() && load_course();
 }
 
 static bool is_worth_waiting_for(hal_link_error_t error) {
@@ -247,9 +283,9 @@ static void drop_tape(void) {
 // --check and --survey.
 static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     const uint32_t wait_ms = options.has_wait ? options.wait_ms : CHECK_ANSWER_MS;
-    driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
-    const argusd_exit_t guarded =
-        guards_open(&loop.guards, &options.guards, &loop.driver, message, sizeof message);
+    const argusd_exit_t guarded = start_driver(clock) ? guards_open(&loop.guards, &options.guards,
+                                                                    &loop.driver, message, sizeof message)
+                                                      : ARGUSD_EXIT_USAGE;
     if (guarded != ARGUSD_EXIT_OK) {
         hal_link_close(&link);
         drop_tape();
@@ -370,8 +406,7 @@ static argusd_exit_t run_loop(hal_link_t link, hal_clock_t clock, const char *no
         .answer_ms = options.has_wait ? options.wait_ms : ANSWER_MS,
         .notice = notice,
     };
-    driver_init(&loop.driver, &settings.config, clock, &options.link, &transport);
-    const argusd_exit_t prepared = prepare_loop(&clock);
+    const argusd_exit_t prepared = start_driver(clock) ? prepare_loop(&clock) : ARGUSD_EXIT_USAGE;
     if (prepared != ARGUSD_EXIT_OK) {
         return give_up(&link, prepared);
     }

@@ -19,6 +19,7 @@ enum {
     OPT_RECORD,
     OPT_RECORD_MAX,
     OPT_ROBOT,
+    OPT_RING,
     OPT_CAN_TELEMETRY,
     OPT_CONTROL,
     OPT_CONTROL_TOKEN,
@@ -55,6 +56,7 @@ static const struct option table[] = {
     {"record", required_argument, NULL, OPT_RECORD},
     {"record-max", required_argument, NULL, OPT_RECORD_MAX},
     {"robot", required_argument, NULL, OPT_ROBOT},
+    {"ring", required_argument, NULL, OPT_RING},
     {"can-telemetry", required_argument, NULL, OPT_CAN_TELEMETRY},
     {"control", required_argument, NULL, OPT_CONTROL},
     {"control-token", required_argument, NULL, OPT_CONTROL_TOKEN},
@@ -229,6 +231,9 @@ static bool take_text(options_t *options, int option) {
         return true;
     case OPT_ROBOT:
         options->robot = optarg;
+        return true;
+    case OPT_RING:
+        options->ring_path = optarg;
         return true;
     default:
         return false;

@@ -39,6 +39,7 @@ typedef struct {
     control_spec_t attach;
     bool control_beyond_loopback;
     bool inject;
+    const char *ring_path;
     const char *robot;        // a choice of the setting of that name
     hal_can_spec_t telemetry; // interface "": not given
     bool no_telemetry;

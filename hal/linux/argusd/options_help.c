@@ -41,6 +41,7 @@ static void print_options(FILE *out) {
         "  --robot NAME       whose body and sonars it has, where it does not say so itself: a word of the "
         "setting\n"
         "                     robot (see --list-config); one that is not known is never driven\n"
+        "  --ring FILE.toml   a ring and body of your own instead (docs/ring.md)\n"
         "  --guard PORT       pty:PATH or tcp:HOST:PORT, up to 4 times: there an ARCOS client (ARIA, p2os, "
         "...)\n"
         "                     finds the robot; its motion is bounded by what trusted sonars see "
