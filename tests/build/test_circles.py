@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FIRMWARE = ROOT / "firmware"
 OBJECTS = ROOT / "build/release/CMakeFiles/argus.dir/firmware"
 
+
 def stem(path: Path) -> str:
     """Return what a header and its source have in common: awareness/trend for firmware/awareness/trend.c."""
     relative = path.relative_to(FIRMWARE)

@@ -21,7 +21,7 @@ from devtool import commands as running
 ROOT = Path(__file__).resolve().parents[2]
 COMMANDS = (
     "demo", "shell", "test", "soak", "build", "format", "lint", "coverage", "size", "bench", "clean",
-    "firmware", "hil", "flash",
+    "firmware", "hil", "flash", "docs",
 )  # fmt: skip
 
 
@@ -145,7 +145,9 @@ def test_every_python_test_is_run(commands: dict[str, list[list[str]]]) -> None:
             own = [path for path in paths if path.parts[1] not in folders]
             listed = {word for word in pytests if word.startswith("tests/")}
             assert listed == {
-                str(path) for path in own if any(mark in (ROOT / path).read_text() for mark in of_stage[stage])
+                str(path)
+                for path in own
+                if any(mark in (ROOT / path).read_text() for mark in of_stage[stage])
             }
 
 
@@ -156,6 +158,22 @@ def test_a_shell_finds_what_was_built() -> None:
         str(ROOT / "build/release/argusd"),
         str(ROOT / ".venv/bin/argus-sim"),
     ]
+
+
+def test_a_shell_finds_it_behind_a_start_file_that_sets_path(tmp_path: Path) -> None:
+    (tmp_path / ".bashrc").write_text("PATH=/usr/bin:/bin\nseen=yes\n", encoding="utf-8")
+    env = running.shell_environment() | {"HOME": str(tmp_path)}
+    done = subprocess.run(
+        [*running.shell_command("/bin/bash", env), "-i"],
+        input='command -v argus-sim\necho "$seen $PATH"\n',
+        env=env,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    found, last = done.stdout.splitlines()[-2:]
+    assert found == str(ROOT / ".venv/bin/argus-sim"), done.stderr
+    assert last.startswith(f"yes {ROOT}/.venv/bin:{ROOT}/build/release:")
 
 
 def test_in_the_shell_dev_neither_runs_on_venv_nor_makes_it_anew() -> None:
@@ -205,7 +223,17 @@ def test_a_tour_leaves_most_cases_to_soak_and_wide(tmp_path: Path) -> None:
     )
     chosen = []
     for choice in ("not soak and not wide", "soak", "wide"):
-        command = [sys.executable, "-m", "pytest", "-q", "--collect-only", "-p", "no:cacheprovider", "-m", choice]
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-q",
+            "--collect-only",
+            "-p",
+            "no:cacheprovider",
+            "-m",
+            choice,
+        ]
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
         found = re.findall(r"test_(\d+)\[(\d+)\]", done.stdout)
         chosen.append({(int(cases), int(n)) for cases, n in found})

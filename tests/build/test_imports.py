@@ -38,7 +38,9 @@ def imported(name: str, path: Path) -> set[str]:
             base = ".".join([*above, *([node.module] if node.module else [])])
             found |= {f"{base}.{alias.name}" for alias in node.names}
         elif isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
-            function = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            function = (
+                node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            )
             if function in ("import_module", "__import__", "run_module"):
                 found.add(str(node.args[0].value))
     return found
@@ -74,7 +76,9 @@ def by_package(graph: Graph, homes: dict[str, Path]) -> Graph:
 
     found: Graph = {}
     for name, targets in graph.items():
-        found.setdefault(package(name), set()).update({package(target) for target in targets} - {package(name)})
+        found.setdefault(package(name), set()).update(
+            {package(target) for target in targets} - {package(name)}
+        )
     return found
 
 

@@ -52,7 +52,10 @@ def test_options_of_help_are_in_the_page_and_no_other(page: gen_man.Page) -> Non
         told += help_of((*page.command, command))
     text = (ROOT / f"docs/man/{page.name}.1").read_text(encoding="utf-8").replace("\\-", "-")
     declared = {
-        word for line in told if line.startswith("  -") for word in OPTION.findall(line.strip().split("  ")[0])
+        word
+        for line in told
+        if line.startswith("  -")
+        for word in OPTION.findall(line.strip().split("  ")[0])
     }
     tagged = {
         word for line in re.findall(r"^\.B (-.*)$", text, re.MULTILINE) for word in OPTION.findall(line)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import functools
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -98,12 +99,35 @@ def shell_environment() -> dict[str, str]:
     return env
 
 
+def start_file(env: dict[str, str]) -> str:
+    """Return what a shell reads after the user's own start file, which may set PATH anew."""
+    places = shlex.quote(os.pathsep.join([str(VENV / "bin"), str(BUILD / "release")]))
+    return f'PATH={places}:"$PATH"\nVIRTUAL_ENV={shlex.quote(env["VIRTUAL_ENV"])}\nexport PATH VIRTUAL_ENV\n'
+
+
+def shell_command(shell: str, env: dict[str, str]) -> list[str]:
+    """Return how a SHELL is started so that PATH holds behind its start file; ENV gets what that takes."""
+    folder = BUILD / "shell"
+    folder.mkdir(parents=True, exist_ok=True)
+    name = Path(shell).name
+    if name == "bash":
+        file = folder / "bashrc"
+        file.write_text(f"[ ! -r ~/.bashrc ] || . ~/.bashrc\n{start_file(env)}", encoding="utf-8")
+        return [shell, "--rcfile", str(file)]
+    if name == "zsh":
+        own = shlex.quote(env.get("ZDOTDIR", "") or str(Path.home()))
+        text = f"ZDOTDIR={own}\n[ ! -r {own}/.zshrc ] || . {own}/.zshrc\n{start_file(env)}"
+        (folder / ".zshrc").write_text(text, encoding="utf-8")
+        env["ZDOTDIR"] = str(folder)
+    return [shell]
+
+
 def do_shell(args: argparse.Namespace) -> int:
     """Set up, build, and become a shell, or the command given, that finds what was built."""
     ensure(["release"])
     quietly("building argusd", functools.partial(build, "release"))
     env = shell_environment()
-    command = args.rest or [os.environ.get("SHELL") or "/bin/sh"]
+    command = args.rest or shell_command(os.environ.get("SHELL") or "/bin/sh", env)
     if not args.rest:
         say("argusd, argus-sim, argus-log and python are in PATH; leave with exit")
     try:
