@@ -173,7 +173,7 @@ def test_a_shell_finds_it_behind_a_start_file_that_sets_path(tmp_path: Path) -> 
     )
     found, last = done.stdout.splitlines()[-2:]
     assert found == str(ROOT / ".venv/bin/argus-sim"), done.stderr
-    assert last.startswith(f"yes {ROOT}/.venv/bin:{ROOT}/build/release:")
+    assert last.startswith(f"yes {ROOT}/build/release:{ROOT}/.venv/bin:")
 
 
 def test_in_the_shell_dev_neither_runs_on_venv_nor_makes_it_anew() -> None:

@@ -94,14 +94,14 @@ def do_build(args: argparse.Namespace) -> int:
 def shell_environment() -> dict[str, str]:
     """Return the environment in which argusd, argus-sim, argus-log and the others are found by their names."""
     env = environment()
-    env["PATH"] = os.pathsep.join([str(VENV / "bin"), str(BUILD / "release"), os.environ.get("PATH", "")])
+    env["PATH"] = os.pathsep.join([str(BUILD / "release"), str(VENV / "bin"), os.environ.get("PATH", "")])
     env["VIRTUAL_ENV"] = str(VENV)
     return env
 
 
 def start_file(env: dict[str, str]) -> str:
     """Return what a shell reads after the user's own start file, which may set PATH anew."""
-    places = shlex.quote(os.pathsep.join([str(VENV / "bin"), str(BUILD / "release")]))
+    places = shlex.quote(os.pathsep.join([str(BUILD / "release"), str(VENV / "bin")]))
     return f'PATH={places}:"$PATH"\nVIRTUAL_ENV={shlex.quote(env["VIRTUAL_ENV"])}\nexport PATH VIRTUAL_ENV\n'
 
 

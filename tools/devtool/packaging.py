@@ -99,6 +99,8 @@ def stage_tools(wheel: Path, stage: Path) -> None:
     points = configparser.ConfigParser()
     points.read(info / "entry_points.txt", encoding="utf-8")
     (stage / "bin").mkdir()
+    for name in BROUGHT:
+        points.remove_option("console_scripts", name)
     for name, target in points["console_scripts"].items():
         module, _, function = target.partition(":")
         script = stage / "bin" / name
