@@ -120,7 +120,7 @@ def test_one_that_fails_there_is_found_and_no_other(
 ) -> None:
     path = tmp_path / "failing.jsonl"
     path.write_text("\n".join(failing(sonar, alter)) + "\n")
-    assert main(["faults", str(path)]) == 0
+    assert main(["faults", str(path)]) == 1
     out = capsys.readouterr().out
     (line,) = (line for line in out.splitlines() if NAMED.search(line))
     where = "front" if sonar < 8 else "rear"
