@@ -71,7 +71,10 @@ def said(code: str, folder: Path) -> str:
 
 
 def test_it_has_nothing_of_these_sources(tmp_path: Path) -> None:
-    code = "import argus_ros, hil_sim, argus_tools.core as c; print(argus_ros.__file__, hil_sim.__file__, c.__file__)"
+    code = (
+        "import argus_ros, hil_sim, hil_sim.core.library as c; "
+        "print(argus_ros.__file__, hil_sim.__file__, c.__file__)"
+    )
     places = said(code, tmp_path).split()
     assert len(places) == 3
     assert all(Path(place).is_relative_to(WHEEL) for place in places), places
