@@ -30,7 +30,7 @@ from test_states import change
 
 WHEEL = Path(f"{sys.prefix}-wheel")
 MOVING_MM_S = 20
-PATIENCE_S = 90.0
+PATIENCE_S = 300.0
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -159,7 +159,7 @@ def test_it_drives_and_stands_behind_shutdown(installed: Any, tmp_path: Path) ->
     robot = installed(TwistStamped)
     with running(robot.command, tmp_path):
         assert robot.bench.until(
-            lambda: {t for t, _ in robot.bench.heard} == {"sonar/range_0", "/diagnostics"}, 90
+            lambda: {t for t, _ in robot.bench.heard} == {"sonar/range_0", "/diagnostics"}, PATIENCE_S
         )
         robot.drive()
         robot.sim.wait_rest()  # nobody sends any more
@@ -224,7 +224,7 @@ def test_its_launch_and_parameter_files_start_two_robots(installed: Any, tmp_pat
     with ExitStack() as programs:
         for command in commands_of(share / "launch/two_robots.launch.xml", **given):
             programs.enter_context(running(command, tmp_path))
-        assert robot.bench.until(lambda: bool(other.get_subscription_count()), 90)
+        assert robot.bench.until(lambda: bool(other.get_subscription_count()), PATIENCE_S)
         twist = Twist()
         twist.linear.x = 0.2
         for _ in range(20):  # orders for the other move nothing here
