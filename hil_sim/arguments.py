@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator
 from typing import Any, Final, NoReturn
 
 EXIT_USAGE: Final = 2
+# So many letters more than an option has are a typing error.
+_TYPO_MOST: Final = 2
 _NEGATIVE: Final = re.compile(r"-\.?\d")
 _UNKNOWN: Final = re.compile(r"unrecognized arguments: (?:.* )?(--?[^\s=]+)")
 _NO_CHOICE: Final = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
@@ -23,6 +25,17 @@ def meant(word: str, known: Iterator[str] | list[str]) -> str:
     """
     near = difflib.get_close_matches(word, list(known), 1)
     return f"; did you mean {near[0]}?" if near else ""
+
+
+def _parted(word: str, known: list[str]) -> str:
+    """Return a question for an option whose value follows without a space.
+
+    >>> _parted("--formatjsonl", ["--format", "--from"]), _parted("--fromat", ["--format", "--from"])
+    ('; did you mean --format jsonl?', '')
+    """
+    option = max((one for one in known if word.startswith(one)), key=len, default=word)
+    value = word.removeprefix(option)
+    return f"; did you mean {option} {value}?" if len(value) > _TYPO_MOST else ""
 
 
 def _options(parser: argparse.ArgumentParser) -> Iterator[str]:
@@ -44,7 +57,8 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Print the line and leave with code 2."""
         if unknown := _UNKNOWN.match(message):
-            message += meant(unknown[1], _options(self))
+            known = list(_options(self))
+            message += _parted(unknown[1], known) or meant(unknown[1], known)
         if wrong := _NO_CHOICE.search(message):
             message += meant(wrong[1], re.findall(r"[^\s',]+", wrong[2]))
         message += "" if message.endswith("?") else ";"

@@ -100,6 +100,7 @@ typedef struct {
     uint8_t battery_odd;  // likewise: a voltage that no battery of a robot has
     bool touched_unheard; // something, while no sonar ahead had heard an echo: they do not live
     bool motors_said;     // off
+    uint32_t active_ms;   // when an operator made it active, which switches the motors on
     bool battery_said;
     uint8_t stalls;   // wheels that stalled in the last SIP
     uint16_t bumpers; // bumper bits answered already, front << 8 | rear

@@ -74,6 +74,7 @@ static void go_active(argus_t *const self) {
     }
     self->orders.unbegun = false;
     self->reflexes.motors_said = false;
+    self->reflexes.active_ms = self->now_ms;
     argus_tell(self, ARGUS_EV_ACTIVE, 0);
     enable_motors(self);
     if (self->plan.disabled != 0 || self->ordered) { // the plan may have gone while nothing was commanded

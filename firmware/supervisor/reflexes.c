@@ -194,7 +194,8 @@ static void sees_battery(const argus_t *const self, const argus_alarm_t *const a
 static void sees_motors(const argus_t *const self, const argus_alarm_t *const alarm,
                         argus_reflexes_t *const mine, argus_intent_t *const intent) {
     const bool off = (self->knowledge.flags & ARCOS_FLAG_MOTORS) == 0;
-    const bool settled_in = self->now_ms - self->knowledge.online_ms > SETTLED_IN_MS;
+    const bool settled_in = self->now_ms - self->knowledge.online_ms > SETTLED_IN_MS &&
+                            self->now_ms - mine->active_ms > SETTLED_IN_MS;
     const bool busy = self->waiting.why == ARGUS_WAIT_BUMPER;
     (void)alarm;
     if (!argus_is_active(self) || busy || off == mine->motors_said || (off && !settled_in)) {

@@ -31,6 +31,8 @@ def parser() -> Parser:
         ("faults x --jsno", "--json"),
         ("fautls", "faults"),
         ("--kind stuk", "stuck"),
+        ("--faultoff:3", "--fault off:3"),
+        ("faults --jsonlines", "--json lines"),
         ("--zzz", ""),
         ("--kind zzz", ""),
         ("zzz", ""),
@@ -45,6 +47,17 @@ def test_what_was_meant(given: str, meant: str, capsys: pytest.CaptureFixture[st
     assert told.endswith(" --help\n")
     assert (f"did you mean {meant}? see" in told) == bool(meant)
     assert ("did you mean" in told) == bool(meant)
+
+
+@pytest.mark.parametrize("text", ["-800,0", "-2m,-.5m", "-.5m,1m", "-90"])
+def test_what_begins_as_a_negative_number_is_a_value(text: str) -> None:
+    made = Parser(prog="prog")
+    commands = made.add_subparsers(dest="command", parser_class=Parser)
+    one = commands.add_parser("goto")
+    one.add_argument("--force", action="store_true")
+    one.add_argument("point", nargs="+")
+    assert made.parse_args(["goto", text, "1,2", text]).point == [text, "1,2", text]
+    assert made.parse_args(["goto", "--force", text]).force
 
 
 def test_a_line_without_a_guess_ends_as_before(capsys: pytest.CaptureFixture[str]) -> None:

@@ -200,6 +200,15 @@ static void pause_for(int ms) {
     poll(&wait, 1, ms);
 }
 
+// What is waited for may not be there yet: what might be wrong is told when the wait is over.
+static void explain_wait(hal_link_error_t error) {
+    if (error == HAL_LINK_NOT_FOUND) {
+        text_refuse(message, sizeof message, "%s: no such file yet", options.link.target);
+    } else {
+        hal_transport_explain(&options.link, error, message, sizeof message);
+    }
+}
+
 static hal_link_error_t open_link(const hal_clock_t *clock, hal_link_t *link) {
     const uint32_t start_ms = hal_clock_now_ms(clock);
     hal_link_error_t told = HAL_LINK_OK;
@@ -211,7 +220,7 @@ static hal_link_error_t open_link(const hal_clock_t *clock, hal_link_t *link) {
         }
         if (error != told) {
             told = error;
-            hal_transport_explain(&options.link, error, message, sizeof message);
+            explain_wait(error);
             fprintf(stderr, "argusd: %s; waiting for it\n", message);
             notify_status(&loop.notify, message);
             message[0] = '\0';

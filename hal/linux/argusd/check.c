@@ -17,7 +17,9 @@ static void explain_silence(const driver_t *driver, uint32_t waited_ms, char *te
     text_t line = text_in(text, capacity);
     text_add(&line, "%s: no robot answered in %u s: ", hal_link_describe(&driver->link),
              (unsigned)(waited_ms / 1000u));
-    if (driver->bytes_in == 0) {
+    if (driver_meets_telnet(driver)) {
+        text_add(&line, DRIVER_TELNET);
+    } else if (driver->bytes_in == 0) {
         text_add(&line, "nothing was received; is the robot on and connected?%s", scheme->if_silent);
     } else if (status.packets == 0) {
         text_add(&line, "%u bytes of garbage were received, no packet among them; %s",
@@ -83,6 +85,9 @@ static void tell_plain(const driver_t *driver, const argus_status_t *status, con
                        FILE *out) {
     char precedence[128];
     fprintf(out, "port      %s\n", hal_link_describe(&driver->link));
+    if (driver_meets_telnet(driver)) {
+        fprintf(out, "telnet    " DRIVER_TELNET "\n");
+    }
     if (driver->spec.baud != 0) {
         fprintf(out, "rate      %u bit/s\n", (unsigned)driver->spec.baud);
     }

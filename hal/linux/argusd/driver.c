@@ -8,6 +8,8 @@
 #include "argusd.h"
 #include "hal/crc32.h"
 
+#define TELNET_IAC 255u
+#define TELNET_WILL 251u // ... to 254: WILL, WON'T, DO, DON'T
 #define READ_BYTES 512
 #define READS_PER_WAKE 8 // a flood must not keep time from passing
 #define RETRY_FIRST_MS 250u
@@ -292,8 +294,26 @@ static bool has_changed(driver_t *self, const hal_link_error_t reason) {
     return changed;
 }
 
+bool driver_meets_telnet(const driver_t *self) {
+    return self->words > 1 && self->word[0] == TELNET_IAC && self->word[1] >= TELNET_WILL &&
+           self->word[1] < TELNET_IAC;
+}
+
+// A session may open even so: only packets with a byte FF are damaged.
+static bool has_met_telnet(driver_t *self, char *text, size_t capacity) {
+    if (self->telnet_told || !driver_meets_telnet(self)) {
+        return false;
+    }
+    self->telnet_told = true;
+    snprintf(text, capacity, "%s: %s", hal_link_describe(&self->link), DRIVER_TELNET);
+    return true;
+}
+
 bool driver_reason(driver_t *self, char *text, size_t capacity) {
     const hal_link_error_t reason = reason_now(self);
+    if (self->up && has_met_telnet(self, text, capacity)) {
+        return true;
+    }
     if (self->transport == NULL || !has_changed(self, reason)) {
         return false;
     }

@@ -22,6 +22,10 @@ typedef struct {
 } driver_filter_t; // alter NULL: none
 
 #define DRIVER_WORDS_MAX 64
+#define DRIVER_TELNET                                                                                \
+    "a telnet server is there, which doubles each byte FF: let it pass bytes as they are (ser2net: " \
+    "accepter "                                                                                      \
+    "tcp,PORT without telnet), or take the port that does"
 
 typedef struct {
     argus_storage_t memory;
@@ -43,6 +47,7 @@ typedef struct {
     uint32_t bytes_before;   // bytes_in when the link came up
     uint32_t packets_before; // likewise those of a robot
     uint32_t fruitless;      // times in a row that the link closed and no packet had come
+    bool telnet_told;        // that a telnet server is at the other end
     size_t words;            // first bytes of an opening that said something
     uint8_t word[DRIVER_WORDS_MAX];
     uint32_t retry_ms;  // pause before the next attempt to open
@@ -81,6 +86,9 @@ bool driver_reason(driver_t *self, char *text, size_t capacity);
 
 // One line about that, see below.
 void driver_explain_turned_away(const driver_t *self, char *text, size_t capacity);
+
+// Whether the first bytes of the opening are a telnet server's negotiation.
+bool driver_meets_telnet(const driver_t *self);
 
 // Whether the other end takes the link and closes it before a robot answers, time and again.
 bool driver_is_turned_away(const driver_t *self);

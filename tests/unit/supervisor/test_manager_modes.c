@@ -310,6 +310,25 @@ void test_motors_cut_by_the_button_and_back(void) {
     finish();
 }
 
+// An order to go active switches the motors on, which takes the robot a SIP or more.
+void test_motors_that_come_on_soon_after_it_went_active_are_no_error(void) {
+    argus_config_t config = robot_config();
+    config.active = 0;
+    robot_init(&robot, &config, 0);
+    robot_run(&robot, 6000);
+    TEST_ASSERT_FALSE(robot.motors);
+    robot.deny_motors = true;
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, robot.start_ms + robot.t_ms, ARGUS_OP_ACTIVE, 0));
+    robot_run(&robot, 800);
+    robot.motors = true;
+    robot_run(&robot, 5000);
+    TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_MOTORS_OFF, 0));
+    robot.motors = false;
+    robot_run(&robot, 2000);
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_MOTORS_OFF, 0));
+    finish();
+}
+
 void test_motors_that_never_come_on_are_said(void) {
     const argus_config_t config = robot_config();
     robot_init(&robot, &config, 0);

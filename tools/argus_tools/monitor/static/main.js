@@ -5,7 +5,7 @@ import { Link } from "./link.js";
 import { Events, SonarList, drawChosen, drawFigures, drawHead, drawPlan, legend, put } from "./panels.js";
 import { Stage } from "./stage.js";
 import { between } from "./geometry.js";
-import { KINDS, exists, failureText, isNamed } from "./words.js";
+import { KINDS, SHOWS_AT_REST, exists, failureText, isNamed } from "./words.js";
 
 const SAY_MS = 6000;
 const TRAIL_KEPT = 3000;
@@ -212,7 +212,9 @@ async function breakOrMend(k) {
     return;
   }
   const kind = $("fault").value;
-  if (await ask({ do: "break", sonar: k, kind })) say(`Sonar ${k} is broken: it ${KINDS[kind]}. Will Argus see it?`);
+  const rests = known.state?.mode === "IDLE" && kind !== SHOWS_AT_REST;
+  const hint = rests ? "This shows while it drives: give it a goal." : "Will Argus see it?";
+  if (await ask({ do: "break", sonar: k, kind })) say(`Sonar ${k} is broken: it ${KINDS[kind]}. ${hint}`);
 }
 
 function onSonar(k) {
@@ -310,6 +312,7 @@ function wire() {
 }
 
 $("fault").replaceChildren(...Object.keys(KINDS).map((kind) => new Option(kind, kind)));
+$("fault").value = SHOWS_AT_REST; // what a first click breaks is found within seconds
 legend();
 wire();
 setTheme(THEMES.includes(localStorage.getItem("argus-monitor-theme")) ? localStorage.getItem("argus-monitor-theme") : "auto");

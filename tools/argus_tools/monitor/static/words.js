@@ -19,6 +19,9 @@ export const KINDS = {
   slow: "lags behind", intermittent: "drops echoes",
 };
 
+/** The fault that a robot which stands still finds, too: a sonar that reports is only contradicted in motion. */
+export const SHOWS_AT_REST = "silent";
+
 const FAILURES = {
   IsNormal: "All sonars ahead work", IsMinor: "Minor failure", IsMajor: "Major failure", IsCatastrophic: "Blind ahead",
 };

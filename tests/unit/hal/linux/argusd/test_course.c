@@ -37,6 +37,20 @@ void test_a_course_is_read(void) {
     TEST_ASSERT_EQUAL_INT32(30000, course.point[2].y_mm);
 }
 
+// As editors of Windows begin a text.
+void test_a_mark_of_utf8_is_none_of_the_course(void) {
+    const char text[] = "\xEF\xBB\xBF"
+                        "1000,0\r\n1500,-200\r\n";
+    TEST_ASSERT_TRUE_MESSAGE(read_bytes(text, sizeof text - 1), message);
+    TEST_ASSERT_EQUAL_UINT16(2, course.count);
+    TEST_ASSERT_EQUAL_INT32(1000, course.point[0].x_mm);
+    TEST_ASSERT_EQUAL_INT32(-200, course.point[1].y_mm);
+    refused("\xEF\xBB\xBF", "c.csv: holds no waypoint");
+    refused("1,2\n\xEF\xBB\xBF"
+            "3,4\n",
+            "c.csv:2: ");
+}
+
 void test_refusals_name_the_line(void) {
     refused("", "c.csv: holds no waypoint");
     refused("# only a comment\n", "c.csv: holds no waypoint");

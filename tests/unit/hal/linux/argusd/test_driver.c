@@ -501,3 +501,33 @@ void test_a_full_queue_is_waited_for_by_time_not_by_poll(void) {
     driver_process(&driver);
     TEST_ASSERT_EQUAL_size_t(0, driver.held);
 }
+
+// As ser2net with "telnet" begins; packets pass nonetheless, but for those with a byte FF.
+void test_a_telnet_server_is_named_once(void) {
+    const int server = open_to_server();
+    const int client = await_client(server);
+    TEST_ASSERT_FALSE(driver_meets_telnet(&driver));
+    TEST_ASSERT_EQUAL_INT(6, write(client, "\xFF\xFB\x00\xFF\xFD\x03", 6));
+    TEST_ASSERT_EQUAL_INT(6, write(client, whole_packet, 6));
+    pass(500);
+    TEST_ASSERT_TRUE(driver_meets_telnet(&driver));
+    TEST_ASSERT_EQUAL_INT(1, reasons("a telnet server is there"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(reason, "accepter"), reason);
+    pass(500);
+    TEST_ASSERT_EQUAL_INT(0, reasons(""));
+    driver_close(&driver);
+    close(client);
+    close(server);
+}
+
+void test_a_byte_of_ff_in_a_packet_is_no_telnet(void) {
+    const int server = open_to_server();
+    const int client = await_client(server);
+    TEST_ASSERT_EQUAL_INT(6, write(client, whole_packet, 6));
+    TEST_ASSERT_EQUAL_INT(5, write(client, "\xFA\xFB\x05\xFF\x00", 5));
+    pass(500);
+    TEST_ASSERT_FALSE(driver_meets_telnet(&driver));
+    driver_close(&driver);
+    close(client);
+    close(server);
+}
