@@ -112,10 +112,12 @@ class Log:
         if not self.source.head:
             what = self.source.damage[0].what if self.source.damage else "is empty"
             raise LogError(f"{path}: {what}")
-        self.format = formats()[format_name] if format_name else find_format(self.source.head)
+        returned = crlf_damage(self.source.head)
+        head = self.source.head.replace(b"\r\n", b"\n") if returned else self.source.head
+        self.format = formats()[format_name] if format_name else find_format(head)
         stream = self._cleaned() if format_name else self._opened()
-        if explained := crlf_damage(self.source.head):
-            self.source.damage.correct(explained)
+        if returned:
+            self.source.damage.correct(returned)
             stream = BufferedReader(Unreturned(stream), BLOCK_BYTES)
         self._reader = self.format.reader(stream, self.options)
 

@@ -147,7 +147,8 @@ _OTHERS: Final = (
         "mf4",
         begins(b"MDF     ", b"UnFinMF "),
         "an MDF measurement (.mf4)",
-        "python -m can.logconvert FILE drive.log (with pip install asammdf), or export its frames as BLF or ASC",
+        "python -m can.logconvert FILE drive.log (with pip install asammdf), or export its frames as BLF or ASC, or "
+        + _CANDUMP,
     ),
     _Other(
         "sqlite",
