@@ -66,7 +66,7 @@ def running(command: list[str], folder: Path, end: signal.Signals = signal.SIGIN
 
 
 def said(code: str, folder: Path) -> str:
-    command = [WHEEL / "bin/python", "-c", code]
+    command = [str(WHEEL / "bin/python"), "-c", code]
     return subprocess.check_output(command, cwd=folder, env=environment(), text=True).strip()
 
 
@@ -124,9 +124,9 @@ class Installed:
         return max((abs(state["v_mm_s"]) for state in self.sim.of("state", begin)), default=0.0)
 
     def drive(self) -> None:
-        """Order it until it moves."""
+        """Order it until it moves; the guard port lets a robot that has heard nothing yet go at 100 mm/s."""
         end = time.monotonic() + PATIENCE_S
-        while abs(self.sim.now["v_mm_s"]) < 5 * MOVING_MM_S:
+        while abs(self.sim.now["v_mm_s"]) < 3 * MOVING_MM_S:
             assert time.monotonic() < end, "it does not move"
             self.order(0.5)
 

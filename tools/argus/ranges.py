@@ -13,13 +13,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
 
 from hil_sim.core.library import Core, Event, setting_value
 from hil_sim.errors import InputError
 from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
 
-__all__ = ["Event", "Observer"]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Event", "InputError", "Observer"]
 
 _OLD_MS: Final = 250
 _FAR: Final = 2**31 - 1
@@ -46,10 +49,10 @@ class Observer:
     def observe(
         self,
         t_s: float,
-        pose: Sequence[float],
-        speeds: Sequence[float],
-        ranges: Sequence[float],
-        ages_s: Sequence[float] | None = None,
+        pose: Sequence[float] | NDArray[Any],
+        speeds: Sequence[float] | NDArray[Any],
+        ranges: Sequence[float] | NDArray[Any],
+        ages_s: Sequence[float] | NDArray[Any] | None = None,
     ) -> list[Event]:
         """Take one time; return what is said. InputError for what does not hold.
 

@@ -126,9 +126,7 @@ def test_stop_and_go(bench: Bench, bus: str, vehicle: Vehicle) -> None:
     ]
     for number, (_, data) in enumerate(wrong, 1):
         vehicle.send(data)
-        wait_for(
-            f"'{wrong[number - 1][0]}' is refused", lambda n=number: count(argusd, "refused") == n, PATIENCE_S
-        )  # type: ignore[misc]
+        wait_count(argusd, "refused", number)
     time.sleep(2.2)
     vehicle.send(late)
     wait_count(argusd, "refused", len(wrong) + 1)

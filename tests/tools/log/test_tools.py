@@ -19,7 +19,7 @@ from argus_tools.formats import LogError
 from argus_tools.log import plot
 from argus_tools.log.common import binary_output
 from argus_tools.log.plot import POINTS_MAX, Series
-from argus_tools.log.spans import Happening, Span, spans
+from argus_tools.log.spans import DEAD, SUSPECT, Happening, Span, spans
 from logs import CAPTURES, capture_bytes, command, decode, jsonl, run, sip
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from mcap.reader import make_reader
@@ -241,8 +241,9 @@ def test_pictures_are_drawn(tmp_path: Path, view: str, ending: str) -> None:
 @pytest.mark.tour(2)
 @pytest.mark.parametrize("range_mm", [0, 400, 1300, 4900, 5000])
 def test_no_label_of_the_ring_lies_on_another_or_on_an_arc(range_mm: int) -> None:
+    held = {3: SUSPECT, 12: DEAD}
     last = {number: (0.0, range_mm + number) for number in plot.POSES}
-    figure = plot._draw_ring("drive.rec", 1795590244.5, 59.9, last)
+    figure = plot._draw_ring("drive.rec", 1795590244.5, 59.9, last, held)
     canvas: Any = FigureCanvasAgg(figure)
     renderer = canvas.get_renderer()
     figure.draw_without_rendering()
