@@ -221,6 +221,7 @@ static void take_masks(argus_robot_t *const row, const argus_ring_t *const ring)
 }
 
 static void take_spacing(argus_robot_t *const row, const argus_ring_t *const ring) {
+    ARGUS_ASSERT(ring->forward_count > 1);
     const int32_t gaps = ring->forward_count - 1;
     const int32_t all_deg = bearing_of(ring, 0) - bearing_of(ring, gaps);
     int32_t widest = 0;
