@@ -176,6 +176,7 @@ void test_any_size_and_any_contents_are_drawn(void) {
         // What the manager guarantees: enumerations, flags and strings are what they claim to be.
         argus_status_t *const status = &view.status;
         status->online = status->active = view.link_up = status->plan.complete = (round & 1) != 0;
+        view.silent = view.inject = view.controlled = (round & 2) != 0;
         status->plan.return_each = false;
         status->sonars = (uint8_t)(rand() % (SONARS + 1));
         view.sonar = (uint8_t)(rand() % SONARS);
