@@ -141,6 +141,16 @@ def draw_map(axes: Axes, drive: Drive) -> None:
     axes.axis("off")
 
 
+def _is_doubted(drive: Drive) -> bool:
+    """Whether a sonar is doubted after its fault came."""
+    findings = [found for found in drive.verdict.findings if found.injected]
+    return any(
+        doubted_s(drive, found.fault.sonar, found.injected.t_s) is not None
+        for found in findings
+        if found.injected
+    )
+
+
 def legend(axes: Axes, drive: Drive) -> None:
     """Draw the legend of the map."""
 
@@ -150,9 +160,6 @@ def legend(axes: Axes, drive: Drive) -> None:
     echoes = {bool(fault) for _, _, _, fault in hits(drive)}
     since = failure_since_s(drive)
     states, findings = drive.states(), drive.verdict.findings
-    doubted = any(
-        f.injected and doubted_s(drive, f.fault.sonar, f.injected.t_s) is not None for f in findings
-    )
     known: list[tuple[bool, Any]] = [
         (True, Line2D([], [], color=BLUE, lw=3.4, label="normal driving")),
         (
@@ -169,7 +176,7 @@ def legend(axes: Axes, drive: Drive) -> None:
             Patch(facecolor=ORANGE, alpha=0.3, label="sweep over the blind bearings"),
         ),
         (any(f.injected for f in findings), dot("v", RED, INK, 10, "a fault comes (shaded: its beam)")),
-        (doubted, dot("p", ORANGE, INK, 9, "it is doubted: others are relied on")),
+        (_is_doubted(drive), dot("p", ORANGE, INK, 9, "it is doubted: others are relied on")),
         (any(f.diagnosed for f in findings), dot("D", SKY, INK, 8, "it is proved")),
         (False in echoes, dot(".", GREEN, GREEN, 7, "echo, healthy front sonar")),
         (True in echoes, dot("x", PURPLE, PURPLE, 6, "false echo, lying sonar")),

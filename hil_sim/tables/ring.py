@@ -174,18 +174,22 @@ def _pose(index: int, pose: dict[str, Any], lines: Lines) -> dict[str, Any]:
     return whole_pose
 
 
+def _check_array(array: Any, k: int, own: list[int], lines: Lines) -> None:
+    """Refuse array K that does not fire its OWN sonars, each once."""
+    order = array.get("order") if isinstance(array, dict) else None
+    if not own or not isinstance(order, list) or sorted(map(str, order)) != sorted(map(str, own)):
+        want = f"its order must have {own[0]} to {own[-1]}" if own else "it has no sonars"
+        raise SimError(f"{lines.where('sonar.array', 'order', k)}: sonar.array {k}: {want}")
+    for key in sorted(set(array) - set(_ARRAY)):
+        raise SimError(f"{lines.where('sonar.array', key, k)}: {key}: no such key{_meant(key, _ARRAY)}")
+
+
 def _arrays(sonar: dict[str, Any], sonars: int, lines: Lines) -> list[dict[str, Any]]:
     count = -(-sonars // ARRAY_SONARS)
     own = [list(range(sonars))[k * ARRAY_SONARS : (k + 1) * ARRAY_SONARS] for k in range(count)]
     given = sonar.get("array", [{"index": k, "place": "ring", "order": order} for k, order in enumerate(own)])
     for k, array in enumerate(given):
-        order = array.get("order") if isinstance(array, dict) else None
-        if k >= count or not isinstance(order, list) or sorted(map(str, order)) != sorted(map(str, own[k])):
-            want = f"its order must have {own[k][0]} to {own[k][-1]}" if k < count else "it has no sonars"
-            raise SimError(f"{lines.where('sonar.array', 'order', k)}: sonar.array {k}: {want}")
-        if set(array) - set(_ARRAY):
-            key = min(set(array) - set(_ARRAY))
-            raise SimError(f"{lines.where('sonar.array', key, k)}: {key}: no such key{_meant(key, _ARRAY)}")
+        _check_array(array, k, own[k] if k < count else [], lines)
     if len(given) != count:
         raise SimError(f"{lines.where('sonar.array')}: {sonars} sonars are {count} arrays of eight")
     return [{"place": "ring", **array} for array in given]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rule: libargus.so exports the public header, at most 20 functions, and its shim; the manager behaves as in C."""
+"""Rule: libargus.so exports the public header, at most 22 functions, and its shim; the manager behaves as in C."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from hil_sim.core.library import Core, library, setting_value, settings, sonars_
 ROOT = Path(__file__).resolve().parents[2]
 HEADER = ROOT / "firmware/include/argus/argus.h"
 SHIM = ROOT / "tools/core_shim.c"
-MOST_FUNCTIONS = 20
+MOST_FUNCTIONS = 22
 
 
 def declared(*files: Path) -> set[str]:

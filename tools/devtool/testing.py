@@ -23,7 +23,7 @@ from devtool.stages import Stage, making
 PYTEST: Final = (VENV / "bin/python", "-m", "pytest", "-q")
 FUZZ_RUNS: Final = 1_000_000
 IN_REAL_TIME: Final = ("tests/hil", "tests/can", "tests/target", "tests/monitor", "tests/ros")
-BY_THEMSELVES: Final = (*IN_REAL_TIME, "tests/packages")
+BY_THEMSELVES: Final = (*IN_REAL_TIME, "tests/packages", "tests/docs")
 COMPUTING: Final = ("tests", *(f"--ignore={folder}" for folder in BY_THEMSELVES))
 # Some tests take a hundred times as long as others: a worker that has done its own takes over what another has
 # before it. Some wait for a robot's clock or for a program: one worker more than cores uses that time.

@@ -233,12 +233,12 @@ def test_a_reader_that_makes_no_progress_is_ended(
 
 def test_a_slow_listener_is_no_reader_without_progress(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(can, "BLFReader", Three)
-    monkeypatch.setattr(canlog._Guard, "STUCK_S", 0.02)
+    monkeypatch.setattr(canlog._Guard, "STUCK_S", 0.05)
     found = canlog.BlfReader(io.BufferedReader(io.BytesIO(b"LOGG")), ReadOptions())
     count = 0
     for _ in found:
         count += 1
-        sum(n * n for n in range(400_000))
+        sum(n * n for n in range(1_000_000))
     assert (count, list(found.damage)) == (3, [])
 
 

@@ -120,6 +120,7 @@ class _Guard:
         try:
             while True:
                 self._is_inside = True
+                self._steps += 1  # what its caller did before is no time of the reader's
                 message = next(iterator, None)
                 self._is_inside = False
                 if message is None:
