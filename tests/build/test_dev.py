@@ -110,7 +110,7 @@ def commands(monkeypatch: pytest.MonkeyPatch) -> dict[str, list[list[str]]]:
     for module in (cmake, testing):
         monkeypatch.setattr(module, "build", lambda preset, run: None)
     for stage in {*testing.TEST_STAGES, *testing.SOAK_STAGES}:
-        if stage.name not in {"hil", "can", "ros", "packages", "monitor"}:
+        if stage.name not in {"hil", "can", "ros", "packages", "monitor", "docs"}:
             runs: list[list[str]] = found.setdefault(stage.name, [])
             stage.action(lambda command, runs=runs: runs.append([str(word) for word in command]))  # type: ignore[misc]
     return found
@@ -135,7 +135,7 @@ def test_every_python_test_is_run(commands: dict[str, list[list[str]]]) -> None:
     for stage, mark in marks.items():
         (pytests,) = (run for run in commands[stage] if "pytest" in run)
         assert pytests[pytests.index("-m", 2) + 1] == mark
-        folders = ("hil", "can", "target", "ros", "monitor", "packages")
+        folders = ("hil", "can", "target", "ros", "monitor", "packages", "docs")
         if stage == "python":
             assert "tests" in pytests
             ignored = {word for word in pytests if word.startswith("--ignore")}
