@@ -275,6 +275,31 @@ def test_a_screen_shows_that_argusd_hangs_and_that_it_goes_on(bench: Bench) -> N
         terminal.close()
 
 
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM])
+def test_a_screen_waits_for_the_next_argusd(bench: Bench, end: signal.Signals) -> None:
+    bench.sim(bench.world(**hall()))
+    argusd = start(bench, active=False)
+    terminal = Terminal(["--attach", place_of(bench)], "vt52", 80)
+    try:
+        terminal.wait_shown("HEALTHY")
+        argusd.process.send_signal(end)
+        terminal.wait_shown("NO NEWS")
+        terminal.wait_shown("waiting for it, q leaves")
+        terminal.press("w")
+        terminal.wait_shown("there is no argusd to take this")
+        argusd.process.wait()
+        second = start(bench, active=False)
+        second.wait("SESSION_OPEN")
+        terminal.wait_shown("online")
+        terminal.press("w")
+        terminal.wait_shown("it is passive; order active first")
+        terminal.press("q")
+        assert terminal.wait_exit() == 0
+        assert terminal.is_as_before()
+    finally:
+        terminal.close()
+
+
 def test_a_stream_of_an_argusd_that_hangs_has_no_states_and_says_why(bench: Bench) -> None:
     bench.sim(bench.world(**hall()))
     argusd = start(bench, active=False)

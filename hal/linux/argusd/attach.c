@@ -18,12 +18,15 @@
 #define WAIT_MS 250
 #define PERIOD_MS 200
 #define SILENT_MS 1500u // seven states that do not come
+#define AGAIN_MS 1000u  // between tries to connect anew
+#define MEETS_MS 200    // that one of them may take
 
 bool attach_open(attach_t *self, const control_spec_t *spec, const control_token_t *token,
                  const hal_clock_t *clock, char *message, size_t capacity) {
     const control_port_t far = {.fd = -1, .spec = *spec};
     self->clock = *clock;
     self->token = *token;
+    self->spec = *spec;
     control_port_describe(&far, self->place, sizeof self->place);
     self->fd = socket(spec->family, SOCK_STREAM | SOCK_CLOEXEC, 0);
     if (self->fd < 0 || connect(self->fd, &spec->address.any, spec->length) != 0) {
@@ -40,6 +43,42 @@ bool attach_open(attach_t *self, const control_spec_t *spec, const control_token
 static void leave(attach_t *self, argusd_exit_t code) {
     self->over = true;
     self->code = code;
+}
+
+// A stream ends with its argusd, a screen waits for the next one: control is lost, what is shown is of
+// earlier.
+static void lose(attach_t *self) {
+    close(self->fd);
+    self->fd = -1;
+    self->used = 0;
+    self->grant[0] = '\0';
+    self->tried_ms = self->moment.now_ms;
+    self->silent = true;
+    voice_notice(&self->voice, "argusd has ended the connection; waiting for it, q leaves");
+}
+
+static bool meets(int fd, const control_spec_t *spec) {
+    int problem = 0;
+    socklen_t size = sizeof problem;
+    struct pollfd wait = {.fd = fd, .events = POLLOUT};
+    if (connect(fd, &spec->address.any, spec->length) == 0) {
+        return true;
+    }
+    return errno == EINPROGRESS && poll(&wait, 1, MEETS_MS) == 1 &&
+           getsockopt(fd, SOL_SOCKET, SO_ERROR, &problem, &size) == 0 && problem == 0;
+}
+
+static void try_again(attach_t *self) {
+    if (self->fd >= 0 || self->moment.now_ms - self->tried_ms < AGAIN_MS) {
+        return;
+    }
+    self->tried_ms = self->moment.now_ms;
+    const int fd = socket(self->spec.family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (fd >= 0 && meets(fd, &self->spec)) {
+        self->fd = fd;
+    } else if (fd >= 0) {
+        close(fd);
+    }
 }
 
 __attribute__((format(printf, 2, 3))) static void say(attach_t *self, const char *format, ...) {
@@ -124,6 +163,8 @@ static void choose(attach_t *self, int step) {
 static void obey(attach_t *self, tui_key_t key) {
     if (key == TUI_QUIT || key == TUI_GONE) {
         leave(self, ARGUSD_EXIT_OK);
+    } else if (self->fd < 0) {
+        voice_answer(&self->voice, "> there is no argusd to take this");
     } else if (key == TUI_NEXT || key == TUI_PREVIOUS) {
         choose(self, key == TUI_NEXT ? 1 : -1);
     } else if (!is_order(key)) {
@@ -244,7 +285,11 @@ static void receive(attach_t *self) {
         self->used += (size_t)got;
         self->heard_ms = self->moment.now_ms;
         take_lines(self);
-    } else if (got == 0 || (errno != EAGAIN && errno != EINTR)) {
+    } else if (got < 0 && (errno == EAGAIN || errno == EINTR)) {
+        return;
+    } else if (self->seen && self->voice.tui.on) {
+        lose(self);
+    } else {
         tui_stop(&self->voice.tui);
         voice_notice(&self->voice, "argusd has ended the connection");
         leave(self, self->seen ? ARGUSD_EXIT_OK : ARGUSD_EXIT_LINK);
@@ -264,6 +309,7 @@ static void wait_for_work(attach_t *self) {
     if (wait[SOCKET].revents != 0) {
         receive(self);
     }
+    try_again(self);
     if (wait[KEYS].revents != 0 && !self->over) {
         take_keys(self);
     }
@@ -275,7 +321,7 @@ static void wait_for_work(attach_t *self) {
 
 // An argusd that hangs, or a wire that is cut, ends no connection: what is shown is of earlier then.
 static void watch_silence(attach_t *self) {
-    const bool silent = self->moment.now_ms - self->heard_ms > SILENT_MS;
+    const bool silent = self->fd < 0 || self->moment.now_ms - self->heard_ms > SILENT_MS;
     if (silent != self->silent && !self->over) {
         self->silent = silent;
         voice_notice(&self->voice, silent ? "argusd reports nothing" : "argusd reports again");
@@ -301,7 +347,9 @@ argusd_exit_t attach_run(attach_t *self, const voice_options_t *options) {
         wait_for_work(self);
         watch_silence(self);
     }
-    close(self->fd);
+    if (self->fd >= 0) {
+        close(self->fd);
+    }
     tui_stop(&self->voice.tui);
     voice_end(&self->voice, &self->clock);
     return self->code;

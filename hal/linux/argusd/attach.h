@@ -12,7 +12,9 @@
 
 typedef struct {
     hal_clock_t clock;
-    int fd;
+    int fd; // -1: argusd has ended the connection
+    control_spec_t spec;
+    uint32_t tried_ms; // to connect anew
     char place[160];
     control_token_t token;
     voice_t voice;
@@ -35,7 +37,7 @@ typedef struct {
 bool attach_open(attach_t *self, const control_spec_t *spec, const control_token_t *token,
                  const hal_clock_t *clock, char *message, size_t capacity);
 
-// Shows until somebody leaves or argusd ends.
+// Shows until somebody leaves; a stream ends with its argusd, a screen connects to the next one.
 argusd_exit_t attach_run(attach_t *self, const voice_options_t *options);
 
 #endif
