@@ -6,16 +6,20 @@ from __future__ import annotations
 import json
 import socket
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+from argus_tools.control import cli
 from argus_tools.control.cli import EXIT_OK, EXIT_REFUSED, main, make_parser
 
 Message = dict[str, Any]
 GREETING = {"control": 1, "argus": "0.1.0", "auth": "none"}
 STOP, MOVE, TURN, PASSIVE = 1, 4, 5, 6
+HANGS = {"for_s": 1.0}
+"""Nothing is streamed for so long."""
 
 
 def operator(value: int) -> Message:
@@ -38,7 +42,12 @@ def argusd(folder: Path, before: list[Message], after: list[Message]) -> str:
         with near, listening, near.makefile("rw", encoding="utf-8") as lines:
 
             def say(*messages: Message) -> None:
-                lines.writelines(json.dumps(message) + "\n" for message in messages)
+                for message in messages:
+                    if message is HANGS:
+                        lines.flush()
+                        time.sleep(message["for_s"])
+                    else:
+                        lines.write(json.dumps(message) + "\n")
                 lines.flush()
 
             say(GREETING)
@@ -55,10 +64,15 @@ def argusd(folder: Path, before: list[Message], after: list[Message]) -> str:
 
 
 @pytest.fixture
-def ordered(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str]]:
+def ordered(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> Callable[..., tuple[int, str]]:
     """Give an order to such an argusd; return the exit code and what is said on standard error."""
 
-    def run(words: list[str], before: list[Message], after: list[Message]) -> tuple[int, str]:
+    def run(
+        words: list[str], before: list[Message], after: list[Message], silent_s: float = 60.0
+    ) -> tuple[int, str]:
+        monkeypatch.setattr(cli, "_SILENT_S", silent_s)
         code = main(["--socket", argusd(tmp_path, before, after), *words])
         out, err = capsys.readouterr()
         assert out == ""
@@ -94,6 +108,13 @@ def test_what_was_before_the_order_is_of_no_matter(ordered: Any) -> None:
     after = [status(1.1, "TURNING"), operator(STOP)]
     code, _ = ordered(["turn", "90"], before, after)
     assert code == EXIT_REFUSED, "it had not ended before it began"
+
+
+@pytest.mark.parametrize(("words", "own"), [(["turn", "-90"], TURN), (["step", "ahead"], MOVE)])
+def test_an_argusd_that_hangs_meanwhile_is_reported(ordered: Any, words: list[str], own: int) -> None:
+    after = [operator(own), status(1.1, "TURNING"), HANGS, status(1.2, "IDLE")]
+    code, said = ordered(words, [], after, silent_s=0.4)
+    assert (code, said) == (EXIT_OK, "argusctl: argusd reports nothing\nargusctl: argusd reports again\n")
 
 
 def test_help_tells_the_code() -> None:

@@ -24,6 +24,7 @@ KINDS: Final = (*SONAR_KINDS, "delayed", "ok")
 TOPICS: Final = ("events", "state", "readings", "evidence")
 _SILENT_S: Final = 1.5
 _SILENT_PERIODS: Final = 1.5
+_MOTION_PERIOD_MS: Final = 100
 CHECK_S: Final = 10.0
 
 _EPILOG: Final = f"""\
@@ -114,13 +115,15 @@ class _Heard:
         self._client = client
         self._silent_s = max(_SILENT_S, _SILENT_PERIODS * period_ms / 1000)
 
-    def next(self) -> Message:
-        """Return the next message, however long it takes."""
+    def next(self, timeout_s: float | None = None) -> Message:
+        """Return the next message; TimeoutError when none comes in time (None: however long it takes)."""
         try:
             return self._client.message(self._silent_s)
         except TimeoutError:
             self._tell("argusd reports nothing")
-        message = self._client.message()
+        message = self._client.message(
+            timeout_s if timeout_s is None else max(0.0, timeout_s - self._silent_s)
+        )
         self._tell("argusd reports again")
         return message
 
@@ -145,10 +148,10 @@ def watch(client: Client, args: argparse.Namespace) -> int:
 
 def _move(client: Client, order: str, members: Message) -> None:
     """Order a motion by hand and wait until it is over; going away before would stop it."""
-    client.watch("events", "state", period_ms=100)
+    client.watch("events", "state", period_ms=_MOTION_PERIOD_MS)
     _order_once_checked(client, order, members)
-    motion = Motion(order)
-    while not motion.is_over(client.message(timeout_s=MOTION_S)):
+    motion, heard = Motion(order), _Heard(client, _MOTION_PERIOD_MS)
+    while not motion.is_over(heard.next(MOTION_S)):
         pass
 
 
