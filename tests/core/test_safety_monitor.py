@@ -58,7 +58,7 @@ MUTANTS: Final = (
         "stuck-near",
         frozenset({23, 51, 54}),
         (
-            ("awareness/alarms.c", r"s->reading_mm <= config->object_range_mm", "s->reading_mm <= 10"),
+            ("awareness/alarms.c", r"range_mm <= config->object_range_mm", "range_mm <= 10"),
             (
                 "supervisor/travel.c",
                 r"if \(nearest_mm <= self->config.object_range_mm\)",
