@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from argus_tools.control.client import DEFAULT_PLACE, Client, ControlError, Message, Refused, read_token
-from argus_tools.control.motion import BY_HAND, MOTION_S, Motion
+from argus_tools.control.motion import BY_HAND, CHECK_S, MOTION_S, Motion
 from argus_tools.control.words import event_line, evidence_line, readings_line, status_text
 from hil_sim.arguments import Parser, whole
 from hil_sim.faults.kinds import SONAR_KINDS
@@ -25,7 +25,6 @@ TOPICS: Final = ("events", "state", "readings", "evidence")
 _SILENT_S: Final = 1.5
 _SILENT_PERIODS: Final = 1.5
 _MOTION_PERIOD_MS: Final = 100
-CHECK_S: Final = 10.0
 
 _EPILOG: Final = f"""\
 examples:

@@ -13,6 +13,8 @@ BY_HAND: Final = {"step": 4, "turn": 5}
 STOPPING: Final = (1, 6)
 """What OPERATOR reports of stop and of passive."""
 MOTION_S: Final = 60.0
+CHECK_S: Final = 10.0
+"""A check of the sonars, as after each stop, is waited for so long."""
 
 
 class Motion:

@@ -11,10 +11,9 @@ from dataclasses import dataclass, field
 from typing import Any, Final, TypeVar
 
 from argus_tools.control.client import Message, Refused
-from argus_tools.control.motion import MOTION_S, Course, Motion
+from argus_tools.control.motion import CHECK_S, MOTION_S, Course, Motion
 from argus_tools.control.values import RobotState, state_of
 
-CHECK_S: Final = 10.0
 PERIOD_MS: Final = 200
 T = TypeVar("T")
 
