@@ -137,11 +137,20 @@ static bool is_alarm(const argus_event_t *event) {
     return level == ARGUS_LEVEL_ERROR || level == ARGUS_LEVEL_STALE || event->id == ARGUS_EV_LINK_STALLED;
 }
 
+static bool has_sonar(const argus_event_t *event) {
+    return event->sonar >= 0 && event->sonar < ARGUS_SONARS;
+}
+
+// The event's sonar as a mask; 0 where it is about none.
+static argus_mask_t sonar_bit(const argus_event_t *event) {
+    return has_sonar(event) ? (argus_mask_t)((argus_mask_t)1 << event->sonar) : 0;
+}
+
 // The other edge. A sonar that is judged healthy is news only if something was said about it.
 static bool is_end(const hal_telemetry_t *self, const argus_event_t *event) {
     switch (event->id) {
     case ARGUS_EV_SONAR_HEALTHY:
-        return event->sonar >= 0 && (self->alarmed >> event->sonar & 1u) != 0;
+        return (self->alarmed & sonar_bit(event)) != 0;
     case ARGUS_EV_SESSION_OPEN:
         return self->link_alarmed;
     case ARGUS_EV_LINK_RESUMED:
@@ -168,13 +177,12 @@ static void enqueue(hal_telemetry_t *self, const hal_dbc_emergency_t *emergency)
 }
 
 void hal_telemetry_event(hal_telemetry_t *self, const argus_status_t *status, const argus_event_t *event) {
-    const bool has_sonar = event->sonar >= 0 && event->sonar < ARGUS_SONARS;
-    const uint16_t bit = has_sonar ? (uint16_t)(1u << event->sonar) : 0;
+    const argus_mask_t bit = sonar_bit(event);
     const bool alarm = is_alarm(event);
     if (!alarm && !is_end(self, event)) {
         return;
     }
-    self->alarmed = (uint16_t)(alarm ? self->alarmed | bit : self->alarmed & ~(unsigned)bit);
+    self->alarmed = (argus_mask_t)(alarm ? self->alarmed | bit : self->alarmed & ~bit);
     if (event->id == ARGUS_EV_LINK_LOST || event->id == ARGUS_EV_SESSION_OPEN) {
         self->link_alarmed = alarm;
     }
@@ -182,8 +190,8 @@ void hal_telemetry_event(hal_telemetry_t *self, const argus_status_t *status, co
         .event = event->id,
         .level = (uint8_t)argus_event_level(event->id),
         .failure = event->state,
-        .sonar = has_sonar ? (uint8_t)event->sonar : HAL_DBC_SONAR_NUMBER_NONE,
-        .fault = has_sonar ? (uint8_t)status->kind[event->sonar] : 0,
+        .sonar = has_sonar(event) ? (uint8_t)event->sonar : HAL_DBC_SONAR_NUMBER_NONE,
+        .fault = has_sonar(event) ? (uint8_t)status->kind[event->sonar] : 0,
         .roll = self->edge_roll,
         .value = event->value,
     };

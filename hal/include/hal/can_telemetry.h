@@ -84,8 +84,8 @@ typedef struct {
     uint8_t edge_roll;
     uint8_t edges; // that may go at once
     uint32_t edge_ms;
-    uint16_t alarmed;  // sonars about which an emergency went out
-    uint16_t injected; // those whose fault is made for a test; the caller sets it, 0 on a board
+    argus_mask_t alarmed;  // sonars about which an emergency went out
+    argus_mask_t injected; // those whose fault is made for a test; the caller sets it, 0 on a board
     bool link_alarmed;
     uint8_t queue_head;
     uint8_t queued;

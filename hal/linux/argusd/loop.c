@@ -269,7 +269,7 @@ static void watch_injection(loop_t *self) {
 static uint32_t tell_bus(loop_t *self) {
     char text[ARGUSD_MESSAGE_MAX];
     const argus_status_t status = status_of(self);
-    self->bus.telemetry.injected = (uint16_t)inject_marked(&self->inject);
+    self->bus.telemetry.injected = (argus_mask_t)inject_marked(&self->inject);
     const uint32_t wait_ms = bus_process(&self->bus, &status, self->moment.now_ms);
     if (bus_notice(&self->bus, text, sizeof text)) {
         voice_notice(&self->voice, text);

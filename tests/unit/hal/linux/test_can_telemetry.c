@@ -342,6 +342,23 @@ void test_an_emergency_goes_first_and_at_once(void) {
     TEST_ASSERT_EQUAL_UINT8(5000 >> 8, frames[first].data[5]);
 }
 
+// Rule: an alarm about any sonar of the build has its other edge, also past the sixteen of the frames of
+// health.
+void test_both_edges_of_the_last_sonar_but_one_go_out(void) {
+    collect();
+    const int from = count;
+    const int sonar = ARGUS_SONARS - 2;
+    say(ARGUS_EV_SONAR_HEALTHY, sonar, 700);
+    collect();
+    TEST_ASSERT_EQUAL_INT(0, frames_of(0x080, from));
+    say(ARGUS_EV_SONAR_DISABLED, sonar, 1);
+    say(ARGUS_EV_SONAR_HEALTHY, sonar, 700);
+    say(ARGUS_EV_SONAR_HEALTHY, sonar, 700);
+    collect();
+    TEST_ASSERT_EQUAL_INT(2, frames_of(0x080, from));
+    TEST_ASSERT_EQUAL_UINT32(sonar, get(0x080, 16, 5));
+}
+
 void test_both_edges_go_out_and_chatter_does_not(void) {
     collect();
     const int from = count;
