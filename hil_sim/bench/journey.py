@@ -85,6 +85,8 @@ def _neighbours(rng: Rng, turn: int) -> list[str]:
 CONDITIONS: Final[Mapping[str, Condition]] = {
     "people": Condition("one to three people walk about", people=True),
     "rough": Condition("on a rough day", physics="rough-day"),
+    "recorded": Condition("sonars as recorded", physics="recorded"),
+    "steps": Condition("sonars as recorded, in coarse steps", physics="coarse-steps"),
     "mobilesim": Condition("on the vendor's emulator", quirks="mobilesim"),
     "one": Condition("one fault", faults=lambda rng, turn: _single(rng, turn, 1)),
     "two": Condition("two faults", faults=lambda rng, turn: _single(rng, turn, 2)),
@@ -121,7 +123,7 @@ class Row:
     @property
     def drift_deg_m(self) -> float:
         """What its courses are made for: a rough day has courses of its own."""
-        return ROUGH_DRIFT_DEG_M if self.physics else DRIFT_DEG_M
+        return ROUGH_DRIFT_DEG_M if self.physics == "rough-day" else DRIFT_DEG_M
 
     @property
     def quirks(self) -> str:

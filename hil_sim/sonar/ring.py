@@ -12,7 +12,7 @@ import numpy as np
 
 from hil_sim.arcos import TIMING
 from hil_sim.sonar.echo import EchoModel
-from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, Reading, SonarParams
+from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, Reading, SonarParams, transducer_pose
 from hil_sim.sonar.patch import MovingEchoes
 from hil_sim.sonar.rough import Roughness
 from hil_sim.tables.robot import RobotTable, robot_table
@@ -59,7 +59,7 @@ class _Ping(NamedTuple):
     """One ping: which sonar, where the robot was, and what was drawn for it, whatever comes of it.
 
     noise, chance, where: noise, whether it hears another ping, and where that lies. lost, bounced: of `Roughness`.
-    others_mm: at which range the ping of another array of the same moment would be heard.
+    others_mm: at which range the ping of another array of the same moment would be heard. late: of `Recorded`.
     """
 
     number: int
@@ -70,6 +70,7 @@ class _Ping(NamedTuple):
     lost: bool = False
     bounced: bool = False
     others_mm: float = math.inf
+    late: float = 1.0
 
 
 @dataclass
@@ -285,7 +286,8 @@ class SonarRing:
             return _Ping(number, pose, noise, chance, where)
         lost, bounced = self._rough.draw()
         others_mm = self._others_mm(self._rough, state, t_ms, pose)
-        return _Ping(number, pose, noise, chance, where, lost, bounced, others_mm)
+        late = self._rough.recorded.draw() if self._rough.recorded is not None else 1.0
+        return _Ping(number, pose, noise, chance, where, lost, bounced, others_mm, late)
 
     def true_range(self, number: int, pose: Pose) -> int:
         """Return what a sonar reads at a pose without noise, crosstalk and faults."""
@@ -326,9 +328,17 @@ class SonarRing:
         value = float(true_mm)
         if self._rough is not None:
             value = self._roughly(self._rough, ping, value, angle_deg)
+        crosstalk = params.crosstalk
+        recorded = self._rough.recorded if self._rough is not None else None
         if value < NO_ECHO_MM:
-            value += ping.noise * (params.noise_mm + params.noise_part * value)
-        if ping.chance < params.crosstalk:
+            noise_mm = params.noise_mm + params.noise_part * value
+            if recorded is None:
+                value += ping.noise * noise_mm
+            else:
+                value = recorded.measured(ping.number, value, noise_mm, ping.noise, ping.late)
+        if recorded is not None:  # its short echoes are in the place of these
+            crosstalk *= 1 - recorded.strength
+        if ping.chance < crosstalk:
             value = MIN_MM + ping.where * (value - MIN_MM)
         if 2 * value / SOUND_MM_MS > self.cycle_ms:
             value = NO_ECHO_MM
@@ -345,4 +355,8 @@ class SonarRing:
         # A share of the pings as well, by the number that says where a crosstalk reading lies.
         if ping.where < rough.physics.cross_array:
             value = min(value, ping.others_mm)
+        if rough.recorded is not None:
+            at = transducer_pose(self._table.mounts[ping.number], ping.pose)
+            from_ = Pose(at.x_mm, at.y_mm, at.heading_deg + angle_deg)
+            value = rough.recorded.heard(ping.number, ping.pose, from_, value)
         return rough.heard(ping.number, value)

@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM
+from hil_sim.sonar.recorded import Recorded
 from hil_sim.world.physics import Physics
 
 _REPETITIONS: Final = 3
@@ -27,6 +28,9 @@ class Roughness:
         sound = 1.0 + float(rng.uniform(-1.0, 1.0)) * physics.sound
         scales = 1.0 + rng.uniform(-1.0, 1.0, sonars) * physics.range_scale
         self.scale = [float(v) * sound for v in scales]
+        # A stream of its own: without it the other draws are as before.
+        on = physics.as_recorded
+        self.recorded = Recorded(on, sonars, rng.spawn(1)[0]) if on else None
 
     def draw(self) -> tuple[bool, bool]:
         """Draw for one ping: whether it hears nothing, and whether it hears a double bounce if there is one."""

@@ -22,6 +22,7 @@ class Physics:
     range_step_mm: ranges come in such steps. blind_mm: an echo from nearer is missed; heard is its repetition or
     nothing.
     cross_array: share of the pings that hear the ping of another array of the same moment, when that comes sooner.
+    as_recorded: by how much noise, silence and short echoes are as in recordings (tables/recorded.toml); 1 is wholly.
 
     Wheels: odometry_scale: part by which distances are off. odometry_drift_deg_m: turn that odometry does not see, for
     each metre. slip: share of the way on which the wheels slip.
@@ -35,6 +36,7 @@ class Physics:
     range_step_mm: float = 0.0
     blind_mm: float = 0.0
     cross_array: float = 0.0
+    as_recorded: float = 0.0
     odometry_scale: float = 0.0
     odometry_drift_deg_m: float = 0.0
     slip: float = 0.0
@@ -62,6 +64,7 @@ LIMITS: Final = {
     "range_step_mm": (0.0, 1000.0),
     "blind_mm": (0.0, 2000.0),
     "cross_array": (0.0, 1.0),
+    "as_recorded": (0.0, 1.0),
     "odometry_scale": (0.0, 0.5),
     "odometry_drift_deg_m": (0.0, 45.0),
     "slip": (0.0, 1.0),
@@ -81,6 +84,8 @@ SETS: Final = {
         odometry_scale=0.01,
         odometry_drift_deg_m=0.5,
     ),
+    "recorded": Physics(as_recorded=1.0),
+    "coarse-steps": Physics(as_recorded=1.0, range_step_mm=3.43),
 }
 """Sets with a name."""
 
