@@ -50,6 +50,22 @@ def events(header: str) -> list[str]:
     return found
 
 
+def profiles(header: str) -> list[str]:
+    """Return the enumerators of the profiles."""
+    found = []
+    for name, word, _, _, _, *meaning in gen_docs.rows(header, "ARGUS_PROFILE_TABLE"):
+        found += [f"    /// `{word}`: {', '.join(meaning)}.", f"    ARGUS_PROFILE_{name},"]
+    return found
+
+
+def policies(header: str) -> list[str]:
+    """Return the enumerators of the planners."""
+    found = []
+    for name, word, _, _, _, _, *meaning in gen_docs.rows(header, "ARGUS_POLICY_TABLE"):
+        found += [f"    /// `{word}`: {', '.join(meaning)}.", f"    ARGUS_POLICY_{name},"]
+    return found
+
+
 def kinds(header: str) -> list[str]:
     """Return the enumerators of the kinds of faults."""
     found = []
@@ -63,6 +79,8 @@ TABLES: Final = {
     "ARGUS_ABOUT_TABLE": about,
     "ARGUS_CORE_EVENT_TABLE": events,
     "ARGUS_FAULT_KIND_TABLE": kinds,
+    "ARGUS_PROFILE_TABLE": profiles,
+    "ARGUS_POLICY_TABLE": policies,
 }
 FIRST_PAGE: Final = """
 /** @mainpage The public header
@@ -91,9 +109,9 @@ def filtered(header: str, text: str) -> str:
         if RULER.match(line):
             lines.append(line)
             continue
-        if HELPER.match(line):
+        if HELPER.match(line) or line.startswith("// clang-format"):
             continue
-        used = re.match(r"\s*(ARGUS_\w+_TABLE)\(\w+\)( ARGUS_\w+_TABLE\(\w+\))*$", line)
+        used = re.match(r"\s*(ARGUS_\w+_TABLE)\(\w+(?:, )?\)( ARGUS_\w+_TABLE\(\w+\))*$", line)
         if used and used[1] in TABLES:
             lines += TABLES[used[1]](header)
             continue

@@ -18,17 +18,33 @@ HEADERS = ROOT / "firmware"
 
 
 def rows(header: str, macro: str) -> list[list[str]]:
-    """Arguments of every X(...) of an X-macro table, or of the tables that it is made of, strings without quotes."""
+    """Arguments of every X(...) of an X-macro table, or of the tables that it is made of, strings without quotes.
+
+    A cell that stands for the words of another table, or for its last row, is these words, or that number.
+    """
     text = (HEADERS / header).read_text(encoding="utf-8")
-    start = text.index(f"#define {macro}(X)")
-    body = re.match(r"(?:[^\n]*\\\n)*[^\n]*\n", text[start:])
+    start = re.search(rf"#define {macro}\(X\b[^)]*\)", text)
+    assert start is not None, macro
+    body = re.match(r"(?:[^\n]*\\\n)*[^\n]*\n", text[start.end() :])
     assert body is not None
-    parts = re.findall(r"\b(\w+_TABLE)\(X\)", body[0])[1:]
+    parts = re.findall(r"\b(\w+_TABLE)\(X\)", body[0])
     if parts:
         return [row for part in parts for row in rows(header, part)]
     joined = re.sub(r'"\s+"', "", body[0].replace("\\\n", " "))  # a string may go on on the next line
-    found = re.findall(r"X\(((?:[^()\"]|\"[^\"]*\")*)\)", joined.split("(X)", 1)[1])
-    return [[part.strip().strip('"') for part in re.findall(r'\s*("[^"]*"|[^,]+)', row)] for row in found]
+    found = re.findall(r"X\(((?:[^()\"]|\"[^\"]*\")*)\)", joined)
+    cells = [re.findall(r'\s*("[^"]*"|[^,]+)', row) for row in found]
+    return [[_meant(text, header, part.strip().strip('"')) for part in row] for row in cells]
+
+
+def _meant(text: str, header: str, cell: str) -> str:
+    """Return a cell as it is, or what it stands for: the words of a table with a bar between them, or the last row."""
+    stands = re.fullmatch(r"(ARGUS_\w+)_(WORDS|LAST)", cell)
+    if stands is None:
+        return cell
+    if written := re.search(rf'^#define {cell} "?([\w|-]+)"?(?: //.*)?$', text, re.MULTILINE):
+        return written[1]
+    table = rows(header, f"{stands[1]}_TABLE")
+    return "|".join(row[1] for row in table) if stands[2] == "WORDS" else str(len(table) - 1)
 
 
 def _cell(parts: list[str]) -> str:
@@ -114,10 +130,20 @@ def can() -> str:
 
 
 def rules() -> str:
-    """Return the rules of the two profiles, and of diagnosis = off, as a Markdown table."""
-    lines = ["| rule | `paper` | `argus` | `diagnosis = off` | meaning |", "|---|---|---|---|---|"]
-    for rule, paper, argus, trusting, *meaning in rows("knowledge/profile.h", "ARGUS_RULE_TABLE"):
-        lines.append(f"| {rule} | {paper} | {argus} | {trusting} | {_cell(meaning)} |")
+    """Return the rules of each profile, and of diagnosis = off, as a Markdown table."""
+    groups = ("PAPER", "EVIDENCE", "BEYOND")
+    columns = [
+        (f"`{word}`", dict(zip(groups, has, strict=False)))
+        for _, word, *has in rows("include/argus/argus.h", "ARGUS_PROFILE_TABLE")
+    ]
+    columns.append(("`diagnosis = off`", {"BEYOND": "1"}))
+    lines = [
+        f"| rule | {' | '.join(name for name, _ in columns)} | meaning |",
+        "|---" * (len(columns) + 2) + "|",
+    ]
+    for _, rule, group, value, *meaning in rows("knowledge/profile.h", "ARGUS_RULE_TABLE"):
+        runs = [value if has.get(group) == "1" else "0" for _, has in columns]
+        lines.append(f"| {rule} | {' | '.join(runs)} | {_cell(meaning)} |")
     return "\n".join(lines)
 
 
@@ -148,7 +174,7 @@ def policies() -> str:
         "| policy | who may look | cost of a stop | of a degree | what it finds |",
         "|---|---|---|---|---|",
     ]
-    for _, name, walks, ring, stop, degree, *meaning in rows("adjustment/plan.h", "ARGUS_POLICY_TABLE"):
+    for _, name, walks, ring, stop, degree, *meaning in rows("include/argus/argus.h", "ARGUS_POLICY_TABLE"):
         who = "every living sonar" if ring == "1" else "those that face forward"
         costs = "- | -" if walks == "1" else f"{stop} | {degree}"
         lines.append(f"| `{name}` | {who} | {costs} | {_cell(meaning)} |")

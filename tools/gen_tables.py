@@ -297,6 +297,24 @@ def robots_header(root: Path) -> str:
     return header("ARGUS_GEN_SIZES_H", "robots/*.toml", "Which robots are known", body)
 
 
+PUBLIC = Path("firmware/include/argus/argus.h")
+
+
+def public_header(root: Path) -> str:
+    """Return the text of argus.h with the values of the setting robot."""
+    words = ["by-subclass", *(robot.name for robot in read_robots(root))]
+    text = read_or_none(root / PUBLIC) or ""
+    lines = f'#define ARGUS_ROBOT_WORDS "{"|".join(words)}"\n#define ARGUS_ROBOT_LAST {len(words) - 1} '
+    new, count = re.subn(
+        r'#define ARGUS_ROBOT_WORDS "[^"\n]*"\n#define ARGUS_ROBOT_LAST \d+ ', lambda _: lines, text
+    )
+    if count != 1:
+        raise TableError(
+            f"{PUBLIC}: ARGUS_ROBOT_WORDS and ARGUS_ROBOT_LAST must stand there once, in two lines"
+        )
+    return new
+
+
 def managed(mask: int) -> str:
     """Return a mask in C, of the sonars that are managed."""
     return f"(argus_mask_t){mask:#x}u"
@@ -466,6 +484,7 @@ def bodies_source(root: Path) -> str:
 
 
 GENERATORS: dict[Path, Callable[[Path], str]] = {
+    PUBLIC: public_header,
     Path("firmware/robot/gen_sizes.h"): robots_header,
     Path("firmware/robot/gen_robots.c"): robots_source,
     Path("firmware/awareness/gen_likelihoods.h"): likelihoods_header,

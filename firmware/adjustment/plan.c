@@ -15,9 +15,9 @@ typedef struct {
 } policy_t;
 
 static const policy_t *policy_of(const argus_policy_t policy) {
-#define ROW(name, setting, walks, ring, stop, degree, meaning) \
+#define ROW(name, word, walks, ring, stop, degree, meaning) \
     [ARGUS_POLICY_##name] = {(walks) != 0, (ring) != 0, (stop), (degree)},
-    static const policy_t policies[] = {ARGUS_POLICY_TABLE(ROW)};
+    static const policy_t policies[] = {ARGUS_POLICY_TABLE(ROW, )};
 #undef ROW
     ARGUS_ASSERT((unsigned)policy < sizeof policies / sizeof policies[0]);
     return &policies[policy];

@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The columns of the table of rules.
+// The rules of each profile, from its groups.
 #include "knowledge/profile.h"
 
+#define RULE(groups, rule, group, value, meaning) .rule = ((groups) & ARGUS_GROUP_##group) != 0 ? (value) : 0,
+#define PROFILE(name, word, paper, evidence, beyond, meaning)                                             \
+    [ARGUS_PROFILE_##                                                                                     \
+        name] = {ARGUS_RULE_TABLE(RULE, (paper) * ARGUS_GROUP_PAPER | (evidence) * ARGUS_GROUP_EVIDENCE | \
+                                            (beyond) * ARGUS_GROUP_BEYOND)},
+
 const argus_profile_t *argus_profile(const argus_config_t *const config) {
-#define PAPER(rule, paper, argus, trusting, meaning) .rule = (paper),
-#define ARGUS(rule, paper, argus, trusting, meaning) .rule = (argus),
-#define TRUSTING(rule, paper, argus, trusting, meaning) .rule = (trusting),
-    static const argus_profile_t profiles[] = {
-        [ARGUS_PROFILE_PAPER] = {ARGUS_RULE_TABLE(PAPER)},
-        [ARGUS_PROFILE_ARGUS] = {ARGUS_RULE_TABLE(ARGUS)},
-    };
-    static const argus_profile_t trusting = {ARGUS_RULE_TABLE(TRUSTING)};
-#undef TRUSTING
-#undef PAPER
-#undef ARGUS
+    static const argus_profile_t profiles[] = {ARGUS_PROFILE_TABLE(PROFILE, )};
+    static const argus_profile_t trusting = {ARGUS_RULE_TABLE(RULE, ARGUS_GROUP_BEYOND)};
     if (config->diagnosis == 0) {
         return &trusting;
     }
-    return &profiles[config->profile == ARGUS_PROFILE_ARGUS ? ARGUS_PROFILE_ARGUS : ARGUS_PROFILE_PAPER];
+    const bool is_known = config->profile >= 0 && config->profile < (int32_t)ARGUS_PROFILES;
+    return &profiles[is_known ? config->profile : ARGUS_PROFILE_PAPER];
 }

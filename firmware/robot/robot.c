@@ -6,6 +6,9 @@
 
 #define SUBCLASS_MAX 32
 
+_Static_assert(ARGUS_ROBOT_LAST == ARGUS_ROBOTS,
+               "the setting robot has a value for each row, and by-subclass");
+
 const argus_robot_t *argus_robot_default(void) {
     return &argus_robot_table.robots[0];
 }

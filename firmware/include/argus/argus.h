@@ -97,19 +97,66 @@ typedef uint16_t argus_mask_t;
 
 // Settings -------------------------------------------------------------------------------------------------
 
-#define ARGUS_PROFILE_PAPER 0 // the setting profile: the rules of the source paper
-#define ARGUS_PROFILE_ARGUS 1 // evidence while driving, and all that goes beyond the paper; the default
+// A setting that is picked by name has its values in one table: from a row come the constant, the word of the
+// setting, its maximum, and what the value means to the library. OR stands between two rows. To add one is to
+// add its row.
+#define ARGUS_WORD_OF(name, word, ...) word
+
+// Rule sets of the diagnosis, values of the setting profile. A row: name, word, then which groups of rules
+// run (knowledge/profile.h): the paper's tests, the evidence, what goes beyond the paper.
+// clang-format off
+#define ARGUS_PROFILE_TABLE(X, OR)                                      \
+    X(PAPER, "paper", 1, 0, 0, "the rules of the source paper")         \
+    OR X(ARGUS, "argus", 0, 1, 1, "evidence while driving, and all that goes beyond the paper; the default")
+// clang-format on
+#define ARGUS_PROFILE_WORDS ARGUS_PROFILE_TABLE(ARGUS_WORD_OF, "|") // with a bar between them
+#define ARGUS_PROFILE_LAST ((int32_t)ARGUS_PROFILES - 1)            // the last of them
+
+// A constant for each row of that table; ARGUS_PROFILES is how many there are.
+typedef enum {
+#define ARGUS_PROFILE_CONSTANT(name, ...) ARGUS_PROFILE_##name,
+    ARGUS_PROFILE_TABLE(ARGUS_PROFILE_CONSTANT, )
+#undef ARGUS_PROFILE_CONSTANT
+        ARGUS_PROFILES // how many
+} argus_rules_t;
+
+// Planners of the compensating rotations, values of the setting policy. A row: name, word, walks, ring, stop,
+// degree, meaning. `walks`: nearest to 0 first, back after each; else the exact planner, one pass and one
+// return. `ring`: every living sonar may look, not only those that face forward. `stop`, `degree`: what one
+// costs. A stop takes 1 s, in which the robot turns by 60 degrees.
+// clang-format off
+#define ARGUS_POLICY_TABLE(X, OR)                                                                       \
+    X(PAPER, "paper", 1, 0, 0, 0, "Algorithm 3: nearest turn first, back after each")                   \
+    OR X(FEWEST, "fewest", 0, 0, 1000, 1, "least stops, then least turning")                            \
+    OR X(LEAST_TURN, "least-turn", 0, 0, 1, 1000, "least turning, then least stops")                    \
+    OR X(RING, "ring", 0, 1, 1000, 1, "least stops, then least turning, abeam and rear look ahead too") \
+    OR X(ADAPTIVE, "adaptive", 0, 1, 60, 1, "least time, abeam and rear look ahead too")
+// clang-format on
+#define ARGUS_POLICY_WORDS ARGUS_POLICY_TABLE(ARGUS_WORD_OF, "|") // with a bar between them
+#define ARGUS_POLICY_LAST ((int32_t)ARGUS_POLICIES - 1)           // the last of them
+
+// A constant for each row of that table; ARGUS_POLICIES is how many there are.
+typedef enum {
+#define ARGUS_POLICY_CONSTANT(name, ...) ARGUS_POLICY_##name,
+    ARGUS_POLICY_TABLE(ARGUS_POLICY_CONSTANT, )
+#undef ARGUS_POLICY_CONSTANT
+        ARGUS_POLICIES // how many
+} argus_policy_t;
+
+// Values of the setting robot: written by tools/gen_tables.py from hil_sim/tables/robots.
+#define ARGUS_ROBOT_WORDS "by-subclass|p3dx-sh|amigo-sh|p3at-sh|peoplebot-sh"
+#define ARGUS_ROBOT_LAST 4 // the last of them
 
 // X(key, default, minimum, maximum, unit, choices, meaning). `choices` names the values 0, 1, ... of a
 // setting that is picked by name ("" for a number). "auto" alone: a number, or this word for ARGUS_AUTO, its
 // default. A front end builds its parser and its help from this table.
 #define ARGUS_CONFIG_TABLE(X)                                                                                \
-    X(profile, 1, 0, 1, "", "paper|argus", "rule set of the diagnosis")                                      \
+    X(profile, 1, 0, ARGUS_PROFILE_LAST, "", ARGUS_PROFILE_WORDS, "rule set of the diagnosis")               \
     X(diagnosis, 1, 0, 1, "", "off|on",                                                                      \
       "off: every sonar that reports is trusted, nothing is judged; for comparisons")                        \
-    X(policy, 4, 0, 4, "", "paper|fewest|least-turn|ring|adaptive",                                          \
+    X(policy, 4, 0, ARGUS_POLICY_LAST, "", ARGUS_POLICY_WORDS,                                               \
       "planner of the compensating rotations; with profile paper, adaptive stands for paper")                \
-    X(robot, 0, 0, 4, "", "by-subclass|p3dx-sh|amigo-sh|p3at-sh|peoplebot-sh",                               \
+    X(robot, 0, 0, ARGUS_ROBOT_LAST, "", ARGUS_ROBOT_WORDS,                                                  \
       "whose body and sonars it has; by-subclass: as it says itself, and passive when that is not known")    \
     X(active, 1, 0, 1, "", "off|on", "off: diagnose and report, never command a motion")                     \
     X(health_check_ms, 1000, 100, 10000, "ms", "", "period of the health check beside the main task")        \
@@ -160,15 +207,6 @@ typedef struct {
     ARGUS_CONFIG_TABLE(ARGUS_CONFIG_FIELD)
 #undef ARGUS_CONFIG_FIELD
 } argus_config_t;
-
-// Planners of the compensating rotations, values of the setting policy.
-typedef enum {
-    ARGUS_POLICY_PAPER,      // the walk of the paper's Algorithm 3
-    ARGUS_POLICY_FEWEST,     // least stops
-    ARGUS_POLICY_LEAST_TURN, // least turning
-    ARGUS_POLICY_RING,       // least stops, and any living sonar may look along a blind bearing
-    ARGUS_POLICY_ADAPTIVE    // least time, likewise
-} argus_policy_t;
 
 // What is wrong with a configuration; ARGUS_CONFIG_OK when nothing is.
 typedef enum {

