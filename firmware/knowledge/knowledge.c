@@ -15,8 +15,10 @@
 #define LISTS_ALL_WAIT_MS 460
 #define FAR_MM 30000 // of a step: its components in another frame fit 32 bits
 #define TURN_UNITS 4096
-#define CDEG_PER_UNIT 20 // so much of a turn is like a unit of way
-#define GAP_MS 500       // without a SIP for longer, it was the link that was silent, not the sonars
+#define CDEG_PER_UNIT 20   // so much of a turn is like a unit of way
+#define GAP_MS 500         // without a SIP for longer, it was the link that was silent, not the sonars
+#define ARRAYS_ON_MS 6000u // so late the order that turns the arrays on may come
+#define ARRAYS_ON (ARCOS_FLAG_SONAR1 | ARCOS_FLAG_SONAR2 | ARCOS_FLAG_SONAR3 | ARCOS_FLAG_SONAR4)
 
 void argus_knowledge_init(argus_knowledge_t *const self) {
     memset(self, 0, sizeof *self);
@@ -32,6 +34,7 @@ void argus_knowledge_reopen(argus_knowledge_t *const self, const uint32_t now_ms
     self->fresh = 0;
     self->heard = 0;
     self->online_ms = now_ms;
+    self->reopened_ms = now_ms;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         self->sonar[i].reported = false;
     }
@@ -330,10 +333,20 @@ static void take_readings(argus_knowledge_t *const self, const argus_sip_t *cons
     }
 }
 
+// The arrays of a new session are not on yet: that they are silent is not the sonars' fault.
+static bool is_still_off(const argus_knowledge_t *const self, const argus_sip_t *const sip) {
+    bool reported = sip->sonar_count > 0;
+    for (int i = 0; i < self->sonars; i++) {
+        reported = reported || self->sonar[i].reported;
+    }
+    return !reported && ((unsigned)sip->flags & ARRAYS_ON) == 0;
+}
+
 void argus_knowledge_sip(argus_knowledge_t *const self, const argus_sip_t *const sip,
                          const int32_t distance_um, const uint32_t now_ms) {
     ARGUS_ASSERT(self->robot != NULL && distance_um > 0);
-    if (self->sips > 0 && now_ms - self->sip_ms > GAP_MS) {
+    const bool after_gap = self->sips > 0 && now_ms - self->sip_ms > GAP_MS;
+    if (after_gap || (is_still_off(self, sip) && now_ms - self->reopened_ms < ARRAYS_ON_MS)) {
         self->online_ms = now_ms;
     }
     self->sips++;

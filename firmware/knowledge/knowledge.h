@@ -65,6 +65,7 @@ typedef struct {
     uint32_t odometer_mm; // way driven, monotonic
     uint32_t sips;
     uint32_t sip_ms;             // time of the last SIP
+    uint32_t reopened_ms;        // when the session began
     uint32_t online_ms;          // when SIPs began to come, or came again after a gap
     int32_t heading_offset_cdeg; // heading of the robot as it is built - what it says itself
     int32_t x_um;                // remainders of the pose, below a mm

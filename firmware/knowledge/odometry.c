@@ -183,12 +183,25 @@ int32_t argus_odometry_unseen_mm(const argus_span_t *const span, const argus_ord
     return order->way_mm > 0 ? argus_min(way_mm, order->way_mm) : way_mm;
 }
 
+// The way of so many SIPs: those before the one that came got lost, and its speeds tell less of them.
+static bool is_way_of(const argus_span_t *const span, const argus_moved_t *const step, const int32_t sips) {
+    const argus_way_turn_t next = argus_odometry_by_wheels(span);
+    return argus_abs(step->ahead_mm - sips * next.way_mm) <= sips * NEXT_MM &&
+           argus_abs(step->turn_cdeg - sips * next.turn_cdeg) <= sips * ROOM_CDEG;
+}
+
+static bool is_way_of_silence(const argus_span_t *const span, const argus_moved_t *const step,
+                              const int32_t rolled_mm) {
+    const int32_t turn_cdeg = argus_odometry_by_wheels(span).turn_cdeg;
+    return argus_abs(step->turn_cdeg - turn_cdeg) <= ROOM_CDEG &&
+           argus_abs(argus_abs(step->ahead_mm) - rolled_mm) <= ANEW_MM;
+}
+
+// What was held up comes in a bunch: its first is the next one, or, where the silence cut that, the one
+// after.
 static bool is_as_expected(const argus_span_t *const span, const argus_moved_t *const step,
                            const int32_t rolled_mm) {
-    const argus_way_turn_t next = argus_odometry_by_wheels(span);
-    const int32_t off_mm = argus_abs(step->ahead_mm - next.way_mm);
-    const bool turned = argus_abs(step->turn_cdeg - next.turn_cdeg) > ROOM_CDEG;
-    return !turned && (off_mm <= NEXT_MM || argus_abs(argus_abs(step->ahead_mm) - rolled_mm) <= ANEW_MM);
+    return is_way_of(span, step, 1) || is_way_of(span, step, 2) || is_way_of_silence(span, step, rolled_mm);
 }
 
 // One that turns on the spot makes no way, and one that drives to a place no great turn: counters that begin

@@ -280,3 +280,32 @@ void test_sonars_beyond_the_robots_are_absent_and_not_heard(void) {
     TEST_ASSERT_EQUAL(ARGUS_ABSENT, k.sonar[0].health);
     TEST_ASSERT_EQUAL(INT32_MAX, argus_nearest_to_centre_mm(&k, 0));
 }
+
+// The order that turns them on may come late; one that never comes does not excuse them for ever.
+void test_sonars_are_not_silent_before_their_array_is_on(void) {
+    argus_knowledge_reopen(&k, now_ms);
+    for (int i = 0; i < 50; i++) {
+        take(1000);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, argus_silent_ms(&k, 3));
+    sip.flags = ARCOS_FLAG_SONAR1;
+    for (int i = 0; i < 20; i++) {
+        take(1000);
+    }
+    TEST_ASSERT_EQUAL_UINT32(2000, argus_silent_ms(&k, 3));
+    setUp();
+    argus_knowledge_reopen(&k, now_ms);
+    for (int i = 0; i < 80; i++) {
+        take(1000);
+    }
+    TEST_ASSERT_UINT32_WITHIN(200, 2000, argus_silent_ms(&k, 3));
+    setUp();
+    argus_knowledge_reopen(&k, now_ms);
+    list(0, 1000);
+    take(1000);
+    sip.sonar_count = 0;
+    for (int i = 0; i < 20; i++) { // one of them was heard: on, whatever FLAGS says
+        take(1000);
+    }
+    TEST_ASSERT_EQUAL_UINT32(2100, argus_silent_ms(&k, 3));
+}

@@ -308,6 +308,8 @@ void test_a_place_that_may_count_from_a_restart_in_a_gap_is_none(void) {
         {"goes on while the link is away", 150, 500, 500, 400, 800, 7, false, false},
         {"a STOP got through, far from zero", 2500, 500, 500, 300, 5000, 0, false, false},
         {"the next SIP, read late", 100, 500, 500, 50, 3000, 0, false, false},
+        {"the one after it, as the silence cut the next", 100, 500, 500, 100, 3000, 0, false, false},
+        {"more than is lost of a bunch", 100, 500, 500, 170, 3000, 0, false, true},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         setUp();
@@ -324,7 +326,7 @@ void test_a_place_that_may_count_from_a_restart_in_a_gap_is_none(void) {
         }
         x += cases[i].way * cos(th);
         y += cases[i].way * sin(th);
-        const int go_on = cases[i].ms < 2500 || cases[i].way == 50 ? cases[i].speed : 0;
+        const int go_on = cases[i].ms < 2500 || cases[i].before_mm == 100 ? cases[i].speed : 0;
         sip.vel_left_mm_s = sip.vel_right_mm_s = (int16_t)go_on;
         deliver(cases[i].ms);
         TEST_ASSERT_EQUAL_INT_MESSAGE(cases[i].told, leaps, cases[i].what);

@@ -19,6 +19,9 @@
 #define TRACK_MM 330.0
 #define DEG (3.14159265358979323846 / 180.0)
 #define SWING_MM 370.0
+#define BODY_FRONT_MM 210.0
+#define BODY_REAR_MM 301.0
+#define BODY_HALF_MM 212.5
 
 static void complain(robot_t *robot, const char *what, int value) {
     if (robot->violation[0] == '\0') {
@@ -249,21 +252,82 @@ static void drive(robot_t *robot) {
     robot->y += robot->v * TICK_S * sin(robot->th);
 }
 
-// Distance from the body's rectangle to the nearest wall, sampled along the walls.
-static void measure_clearance(robot_t *robot) {
-    for (int i = 0; i < robot->segments; i++) {
-        const double *s = robot->segment[i];
-        const double length = hypot(s[2] - s[0], s[3] - s[1]);
-        for (double at = 0; at <= length; at += 20) {
-            const double wx = s[0] + (s[2] - s[0]) * at / length - robot->x;
-            const double wy = s[1] + (s[3] - s[1]) * at / length - robot->y;
-            const double x = wx * cos(robot->th) + wy * sin(robot->th);
-            const double y = wy * cos(robot->th) - wx * sin(robot->th);
-            const double dx = fmax(fmax(x - 210, -301 - x), 0);
-            const double dy = fmax(fabs(y) - 212.5, 0);
-            robot->closest_mm = fmin(robot->closest_mm, hypot(dx, dy));
+// The room
+// ----------------------------------------------------------------------------------------------------
+
+typedef struct {
+    double x, y;
+} spot_t;
+
+static spot_t in_body(const robot_t *robot, double x, double y, double c, double s) {
+    const double dx = x - robot->x, dy = y - robot->y;
+    return (spot_t){dx * c + dy * s, dy * c - dx * s};
+}
+
+static double squared(double value) {
+    return value * value;
+}
+
+// Squares: of two such distances the lesser has the lesser square.
+static double to_line_square(spot_t p, spot_t a, spot_t b) {
+    const double ex = b.x - a.x, ey = b.y - a.y;
+    const double along = ((p.x - a.x) * ex + (p.y - a.y) * ey) / fmax(squared(ex) + squared(ey), 1e-9);
+    const double t = along < 0 ? 0 : along > 1 ? 1 : along;
+    return squared(p.x - a.x - t * ex) + squared(p.y - a.y - t * ey);
+}
+
+static double outside(double value, double low, double high) {
+    return value < low ? low - value : value > high ? value - high : 0;
+}
+
+static double to_body_square(spot_t p) {
+    return squared(outside(p.x, -BODY_REAR_MM, BODY_FRONT_MM)) +
+           squared(outside(p.y, -BODY_HALF_MM, BODY_HALF_MM));
+}
+
+// Whether the line from a to b passes through the body (Liang and Barsky).
+static bool enters_body(spot_t a, spot_t b) {
+    const double from[2] = {a.x, a.y}, way[2] = {b.x - a.x, b.y - a.y};
+    const double low[2] = {-BODY_REAR_MM, -BODY_HALF_MM}, high[2] = {BODY_FRONT_MM, BODY_HALF_MM};
+    double in = 0, out = 1;
+    for (int i = 0; i < 2; i++) {
+        if (fabs(way[i]) < 1e-9 && outside(from[i], low[i], high[i]) > 0) {
+            return false;
+        }
+        if (fabs(way[i]) >= 1e-9) {
+            const double t1 = (low[i] - from[i]) / way[i], t2 = (high[i] - from[i]) / way[i];
+            in = fmax(in, fmin(t1, t2));
+            out = fmin(out, fmax(t1, t2));
         }
     }
+    return in <= out;
+}
+
+static double wall_gap_square(spot_t a, spot_t b) {
+    static const spot_t corner[4] = {{BODY_FRONT_MM, BODY_HALF_MM},
+                                     {BODY_FRONT_MM, -BODY_HALF_MM},
+                                     {-BODY_REAR_MM, BODY_HALF_MM},
+                                     {-BODY_REAR_MM, -BODY_HALF_MM}};
+    if (enters_body(a, b)) {
+        return 0;
+    }
+    double gap = fmin(to_body_square(a), to_body_square(b));
+    for (int i = 0; i < 4; i++) {
+        gap = fmin(gap, to_line_square(corner[i], a, b));
+    }
+    return gap;
+}
+
+// From the body's rectangle to the nearest wall.
+static void measure_clearance(robot_t *robot) {
+    const double c = cos(robot->th), s = sin(robot->th);
+    double gap = squared(robot->closest_mm);
+    for (int i = 0; i < robot->segments; i++) {
+        const double *wall = robot->segment[i];
+        const spot_t a = in_body(robot, wall[0], wall[1], c, s), b = in_body(robot, wall[2], wall[3], c, s);
+        gap = fmin(gap, wall_gap_square(a, b));
+    }
+    robot->closest_mm = sqrt(gap);
 }
 
 static void put16(uint8_t *at, long value) {
@@ -532,7 +596,7 @@ static double body_to_shown_mm(const robot_t *robot, double by) {
         const double ey = at->y_mm + robot->shown[i] * sin(at->heading_deg * DEG);
         const double x = ex * cos(by) + ey * sin(by);
         const double y = ey * cos(by) - ex * sin(by);
-        nearest = fmin(nearest, hypot(fmax(fmax(x - 210, -301 - x), 0), fmax(fabs(y) - 212.5, 0)));
+        nearest = fmin(nearest, sqrt(to_body_square((spot_t){x, y})));
     }
     return nearest;
 }
@@ -769,32 +833,55 @@ static robot_command_t command_of(const robot_t *robot, const uint8_t *packet, s
 // The line
 // ----------------------------------------------------------------------------------------------------
 
-static void put_on_line(robot_line_t *line, robot_way_t way, uint8_t byte) {
+static bool is_before(uint32_t a_ms, uint32_t b_ms) {
+    return (int32_t)(a_ms - b_ms) < 0;
+}
+
+static void put_on_line(robot_t *robot, robot_way_t way, uint8_t byte, uint32_t due_ms) {
+    robot_line_t *line = &robot->line;
+    line->last_ms[way] = is_before(line->last_ms[way], due_ms) ? due_ms : line->last_ms[way];
     if (line->held[way] < ROBOT_LINE_MAX) {
+        line->due_ms[way][line->held[way]] = line->last_ms[way];
         line->bytes[way][line->held[way]++] = byte;
+    } else {
+        complain(robot, "more bytes than the line holds", way);
     }
+}
+
+// How long this harm holds up the byte that passes now.
+static uint32_t hold_up_ms(const robot_t *robot, robot_harm_t *harm, uint32_t at) {
+    if (harm->kind == ROBOT_DELAY) {
+        return at == harm->at ? harm->with : 0;
+    }
+    if (harm->kind != ROBOT_LATENCY || at < harm->at) {
+        return 0;
+    }
+    harm->since_ms = at == harm->at ? robot->t_ms : harm->since_ms;
+    return robot->t_ms - harm->since_ms < harm->lasts_ms ? harm->with : 0;
 }
 
 static void pass_byte(robot_t *robot, robot_way_t way, uint8_t byte) {
     robot_line_t *line = &robot->line;
     const uint32_t at = line->passed[way]++;
+    uint32_t due_ms = robot->t_ms;
     bool lost = false;
     for (int i = 0; i < line->harms; i++) {
-        const robot_harm_t *harm = &line->harm[i];
-        if (harm->way != way || harm->at != at) {
+        robot_harm_t *harm = &line->harm[i];
+        if (harm->way != way) {
+            continue;
+        }
+        due_ms += hold_up_ms(robot, harm, at);
+        if (harm->at != at) {
             continue;
         }
         lost = lost || harm->kind == ROBOT_DROP;
         byte = (uint8_t)(byte ^ (harm->kind == ROBOT_FLIP ? harm->with : 0));
         if (harm->kind == ROBOT_DUPLICATE || harm->kind == ROBOT_INSERT) {
-            put_on_line(line, way, harm->kind == ROBOT_INSERT ? (uint8_t)harm->with : byte);
-        }
-        if (harm->kind == ROBOT_DELAY) {
-            line->free_ms[way] = robot->t_ms + harm->with;
+            put_on_line(robot, way, harm->kind == ROBOT_INSERT ? (uint8_t)harm->with : byte, due_ms);
         }
     }
     if (!lost) {
-        put_on_line(line, way, byte);
+        put_on_line(robot, way, byte, due_ms);
     }
 }
 
@@ -814,18 +901,25 @@ static void hear(robot_t *robot, const uint8_t *bytes, size_t count) {
     } while (done < count);
 }
 
-static void run_line(robot_t *robot, robot_way_t way) {
-    robot_line_t *line = &robot->line;
-    uint8_t bytes[ROBOT_LINE_MAX];
-    const size_t count = line->held[way];
-    if ((int32_t)(robot->t_ms - line->free_ms[way]) < 0) {
-        return;
+// The bytes that have arrived; the others move up.
+static size_t take_from_line(robot_line_t *line, uint32_t now_ms, robot_way_t way, uint8_t *bytes) {
+    size_t count = 0;
+    while (count < line->held[way] && !is_before(now_ms, line->due_ms[way][count])) {
+        count++;
     }
     memcpy(bytes, line->bytes[way], count);
-    line->held[way] = 0;
-    if (way == ROBOT_TO_ROBOT) {
+    line->held[way] -= count;
+    memmove(line->bytes[way], line->bytes[way] + count, line->held[way]);
+    memmove(line->due_ms[way], line->due_ms[way] + count, line->held[way] * sizeof line->due_ms[way][0]);
+    return count;
+}
+
+static void run_line(robot_t *robot, robot_way_t way) {
+    uint8_t bytes[ROBOT_LINE_MAX];
+    const size_t count = take_from_line(&robot->line, robot->t_ms, way, bytes);
+    if (count > 0 && way == ROBOT_TO_ROBOT) {
         hear(robot, bytes, count);
-    } else {
+    } else if (count > 0) {
         argus_receive(&robot->argus, robot->start_ms + robot->t_ms, bytes, count);
     }
 }
@@ -845,12 +939,13 @@ static void keep_watchdog(robot_t *robot) {
 
 // Then the manager cannot know yet what the robot has shown.
 static bool is_held_up(const robot_t *robot) {
-    bool late = false;
     for (int i = 0; i < robot->line.harms; i++) {
-        late =
-            late || (robot->line.harm[i].kind == ROBOT_DELAY && robot->line.harm[i].way == ROBOT_TO_MANAGER);
+        const robot_harm_t *harm = &robot->line.harm[i];
+        if (harm->way == ROBOT_TO_MANAGER && (harm->kind == ROBOT_DELAY || harm->kind == ROBOT_LATENCY)) {
+            return true;
+        }
     }
-    return late;
+    return false;
 }
 
 static void take_packet(robot_t *robot, const uint8_t *packet, size_t length) {

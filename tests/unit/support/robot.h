@@ -36,13 +36,14 @@ typedef struct {
     int32_t argument;
 } robot_command_t;
 
-// What happens to one byte on its way.
+// What happens to one byte on its way; with LATENCY to those behind it, too.
 typedef enum {
     ROBOT_DROP,
     ROBOT_FLIP,
     ROBOT_DUPLICATE,
     ROBOT_INSERT,
     ROBOT_DELAY,
+    ROBOT_LATENCY,
     ROBOT_HARMS
 } robot_harm_kind_t;
 typedef enum { ROBOT_TO_ROBOT, ROBOT_TO_MANAGER, ROBOT_WAYS } robot_way_t;
@@ -50,8 +51,11 @@ typedef enum { ROBOT_TO_ROBOT, ROBOT_TO_MANAGER, ROBOT_WAYS } robot_way_t;
 typedef struct {
     robot_harm_kind_t kind;
     robot_way_t way;
-    uint32_t at;   // the byte, counted from the start of the run
-    uint32_t with; // the bits that FLIP turns, the byte that INSERT puts before it, the ms of DELAY
+    uint32_t at; // the byte, counted from the start of the run
+    uint32_t
+        with; // the bits that FLIP turns, the byte that INSERT puts before it, the ms of DELAY and LATENCY
+    uint32_t lasts_ms; // of LATENCY
+    uint32_t since_ms; // ... it came up
 } robot_harm_t;
 
 // A line between robot and manager that a test may harm, byte by byte; what a robot cannot read it passes
@@ -59,10 +63,11 @@ typedef struct {
 typedef struct {
     robot_harm_t harm[ROBOT_HARMS_MAX];
     int harms;
-    uint32_t passed[ROBOT_WAYS]; // bytes that entered
-    uint32_t free_ms[ROBOT_WAYS];
+    uint32_t passed[ROBOT_WAYS];  // bytes that entered
+    uint32_t last_ms[ROBOT_WAYS]; // until the last of them arrives: none overtakes another
     size_t held[ROBOT_WAYS];
     uint8_t bytes[ROBOT_WAYS][ROBOT_LINE_MAX];
+    uint32_t due_ms[ROBOT_WAYS][ROBOT_LINE_MAX];
     argus_parser_t parser;
     uint32_t heard_ms; // by the robot, for its watchdog
 } robot_line_t;
