@@ -5,7 +5,7 @@
 // A campaign. Each run is a clean mission in which one byte, of either way, is dropped, flipped, doubled,
 // preceded by another, or held up, or from which on a latency comes up for some seconds. ARGUS_SEED=n and
 // ARGUS_LINK_RUNS=n choose which and how many; ARGUS_LINK_CASE=way:byte:kind:with:lasts:course is one alone,
-// as it is printed of a run that fails.
+// as it is printed of a run that fails. Over CAN the same with frames.
 #include "supervisor/manager.h"
 
 #include <math.h>
@@ -19,6 +19,7 @@
 #define SHORT_RUNS 120u
 #define SOAK_RUNS 20000u
 #define WIDE_RUNS 100000u
+#define CAN_RUNS 4000u
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define SANITIZED_SHARE 10u // a run takes that much longer
@@ -36,7 +37,8 @@
 #define STANDS_MM_S 5
 
 typedef enum { COURSE_PLAIN, COURSE_BLIND, COURSE_AROUND, COURSES } course_t;
-#define SHARES ((unsigned)COURSES * (unsigned)ROBOT_WAYS)
+#define WAYS 2 // to the robot, to the manager
+#define SHARES ((unsigned)COURSES * WAYS)
 
 typedef struct {
     unsigned runs;
@@ -57,10 +59,13 @@ static double goal_x, goal_y;
 
 // Plain: 2.5 m through an open room. Blind: likewise with a sonar that yields nothing. Around: a box stands
 // in the way.
+static bool over_can;
+
 static void begin(course_t course) {
     argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
     robot_init(&robot, &config, 7000u);
     robot.has_line = true;
+    robot.line.can = over_can;
     robot.tells_settings = true;
     robot.noise_mm = 5;
     robot.world = robot_world_segments;
@@ -147,10 +152,10 @@ static void run_one(course_t course, const robot_harm_t *harm, tally_t *tally) {
     robot_run(&robot, REST_MS);
     const char *what = judge(tally, swings);
     if (what != NULL) {
-        printf("ARGUS_LINK_CASE=%d:%u:%d:%u:%u:%d %s, %s, t %u ms, at %.0f %.0f\n", (int)harm->way,
-               (unsigned)harm->at, (int)harm->kind, (unsigned)harm->with, (unsigned)harm->lasts_ms,
-               (int)course, what, argus_name(ARGUS_NAME_MODE, robot.argus.mode), (unsigned)robot.t_ms,
-               robot.x, robot.y);
+        printf("%sARGUS_LINK_CASE=%d:%u:%d:%u:%u:%d %s, %s, t %u ms, at %.0f %.0f\n",
+               over_can ? "over CAN " : "", (int)harm->way, (unsigned)harm->at, (int)harm->kind,
+               (unsigned)harm->with, (unsigned)harm->lasts_ms, (int)course, what,
+               argus_name(ARGUS_NAME_MODE, robot.argus.mode), (unsigned)robot.t_ms, robot.x, robot.y);
     }
 }
 
@@ -191,7 +196,7 @@ static uint32_t number_of(const char *name, uint32_t usual) {
 // Of either way so many, evenly over all bytes; the kinds of harm take turns.
 static void run_course(course_t course, uint32_t runs, uint32_t seed, tally_t *tally) {
     make_reference(course);
-    for (int way = 0; way < ROBOT_WAYS; way++) {
+    for (int way = 0; way < WAYS; way++) {
         const uint32_t bytes = snapshot[snapshots - 1].line.passed[way];
         const uint32_t first = hash(seed + (uint32_t)way) % bytes;
         for (uint32_t n = 0; n < runs; n++) {
@@ -223,7 +228,8 @@ static bool run_single(tally_t *tally) {
     return true;
 }
 
-static void campaign(uint32_t usual) {
+static void campaign(uint32_t usual, bool can) {
+    over_can = can;
     tally_t tally = {0};
     char text[200];
     const uint32_t seed = number_of("ARGUS_SEED", 1);
@@ -233,24 +239,33 @@ static void campaign(uint32_t usual) {
             run_course((course_t)course, (runs + SHARES - 1) / SHARES, seed, &tally);
         }
     }
-    snprintf(text, sizeof text,
-             "ARGUS_SEED=%u: %u runs, endless waits %u, hits %u (in turns %u), false goals %u, given up %u, "
-             "rules broken %u",
-             (unsigned)seed, tally.runs, tally.waits, tally.hits, tally.swings, tally.false_goals,
-             tally.given_up, tally.broken);
+    snprintf(
+        text, sizeof text,
+        "ARGUS_SEED=%u%s: %u runs, endless waits %u, hits %u (in turns %u), false goals %u, given up %u, "
+        "rules broken %u",
+        (unsigned)seed, over_can ? ", over CAN" : "", tally.runs, tally.waits, tally.hits, tally.swings,
+        tally.false_goals, tally.given_up, tally.broken);
     printf("%s\n", text);
     TEST_ASSERT_TRUE_MESSAGE(
         tally.waits + tally.hits + tally.false_goals + tally.given_up + tally.broken == 0, text);
 }
 
 void test_few_harmed_bytes_strand_no_mission(void) {
-    campaign(SHORT_RUNS);
+    campaign(SHORT_RUNS, false);
+}
+
+void test_few_harmed_frames_strand_no_mission(void) {
+    campaign(SHORT_RUNS, true);
 }
 
 void test_harmed_bytes_strand_no_mission(void) { // soak
-    campaign(SOAK_RUNS / SANITIZED_SHARE);
+    campaign(SOAK_RUNS / SANITIZED_SHARE, false);
+}
+
+void test_harmed_frames_strand_no_mission(void) { // soak
+    campaign(CAN_RUNS / SANITIZED_SHARE, true);
 }
 
 void test_many_harmed_bytes_strand_no_mission(void) { // wide
-    campaign(WIDE_RUNS / SANITIZED_SHARE);
+    campaign(WIDE_RUNS / SANITIZED_SHARE, false);
 }

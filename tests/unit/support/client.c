@@ -28,6 +28,17 @@ static void take(client_t *client, const uint8_t *bytes, size_t count) {
     }
 }
 
+// Over the line of its robot, where that has one.
+static void tell(client_t *client, const uint8_t *bytes, size_t count) {
+    uint8_t arrived[ROBOT_LINE_MAX];
+    if (!client->robot->has_line) {
+        take(client, bytes, count);
+        return;
+    }
+    robot_put(client->robot, ROBOT_TO_CLIENT, bytes, count);
+    take(client, arrived, robot_taken(client->robot, ROBOT_TO_CLIENT, arrived));
+}
+
 static void pass(client_t *client, argus_port_io_t io) {
     uint8_t out[2048];
     size_t count = 0;
@@ -38,7 +49,7 @@ static void pass(client_t *client, argus_port_io_t io) {
     do {
         count = argus_guard_port(&client->robot->argus, &client->storage,
                                  client->robot->start_ms + client->robot->t_ms, &io);
-        take(client, out, count);
+        tell(client, out, count);
         io.client_count = io.robot_count = 0;
     } while (count > 0 && client->room == 0);
 }
@@ -62,6 +73,12 @@ argus_port_t *client_port(client_t *client) {
 }
 
 void client_bytes(client_t *client, const uint8_t *bytes, size_t count) {
+    uint8_t arrived[ROBOT_LINE_MAX];
+    if (client->robot->has_line) {
+        robot_put(client->robot, ROBOT_TO_GUARD, bytes, count);
+        count = robot_taken(client->robot, ROBOT_TO_GUARD, arrived);
+        bytes = arrived;
+    }
     pass(client, (argus_port_io_t){.client = bytes, .client_count = count});
     robot_drain(client->robot);
 }

@@ -16,6 +16,7 @@
 #define SIP_MS 100u
 #define PING_MS 40
 #define WATCHDOG_MS 2000u
+#define FLOW_CONTROL_MS 1000u // so long a sender waits for it
 #define TRACK_MM 330.0
 #define DEG (3.14159265358979323846 / 180.0)
 #define SWING_MM 370.0
@@ -901,10 +902,51 @@ static void hear(robot_t *robot, const uint8_t *bytes, size_t count) {
     } while (done < count);
 }
 
-// The bytes that have arrived; the others move up.
-static size_t take_from_line(robot_line_t *line, uint32_t now_ms, robot_way_t way, uint8_t *bytes) {
+// ISO-TP: up to 7 bytes go in a single frame; more in a first one with 6, which the receiver answers with
+// flow control, and in consecutive ones. Where one of them is damaged, is lost, comes twice or has another
+// between, the packet does not arrive; where flow control stays away, its sender waits for a second besides.
+// A single frame may come twice, and each may come late.
+static void pass_on_can(robot_t *robot, robot_way_t way, const uint8_t *bytes, size_t count) {
+    robot_line_t *line = &robot->line;
+    const uint32_t first = line->passed[way];
+    const uint32_t frames = count <= 7 ? 1 : 1 + (uint32_t)(count / 7);
+    uint32_t due_ms = robot->t_ms;
+    int times = 1;
+    line->passed[way] += frames;
+    for (int i = 0; i < line->harms; i++) {
+        robot_harm_t *harm = &line->harm[i];
+        const bool hits = harm->way == way && harm->at - first < frames;
+        if (harm->way == way) {
+            due_ms += hold_up_ms(robot, harm, hits ? harm->at : first);
+        }
+        if (!hits || harm->kind == ROBOT_DELAY || harm->kind == ROBOT_LATENCY) {
+            continue;
+        }
+        times = harm->kind == ROBOT_DUPLICATE && frames == 1 ? 2 : 0;
+        if (frames > 1 && harm->at == first) {
+            line->last_ms[way] = due_ms + FLOW_CONTROL_MS;
+        }
+    }
+    for (size_t i = 0; i < count * (size_t)times; i++) {
+        put_on_line(robot, way, bytes[i % count], due_ms);
+    }
+}
+
+void robot_put(robot_t *robot, robot_way_t way, const uint8_t *bytes, size_t count) {
+    if (robot->line.can && way <= ROBOT_TO_MANAGER) {
+        pass_on_can(robot, way, bytes, count);
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        pass_byte(robot, way, bytes[i]);
+    }
+}
+
+// The others move up.
+size_t robot_taken(robot_t *robot, robot_way_t way, uint8_t *bytes) {
+    robot_line_t *line = &robot->line;
     size_t count = 0;
-    while (count < line->held[way] && !is_before(now_ms, line->due_ms[way][count])) {
+    while (count < line->held[way] && !is_before(robot->t_ms, line->due_ms[way][count])) {
         count++;
     }
     memcpy(bytes, line->bytes[way], count);
@@ -916,18 +958,19 @@ static size_t take_from_line(robot_line_t *line, uint32_t now_ms, robot_way_t wa
 
 static void run_line(robot_t *robot, robot_way_t way) {
     uint8_t bytes[ROBOT_LINE_MAX];
-    const size_t count = take_from_line(&robot->line, robot->t_ms, way, bytes);
+    const size_t count = robot_taken(robot, way, bytes);
     if (count > 0 && way == ROBOT_TO_ROBOT) {
         hear(robot, bytes, count);
     } else if (count > 0) {
         argus_receive(&robot->argus, robot->start_ms + robot->t_ms, bytes, count);
+        if (robot->after != NULL) {
+            robot->after(robot, bytes, count);
+        }
     }
 }
 
 static void send_on_line(robot_t *robot, robot_way_t way, const uint8_t *bytes, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        pass_byte(robot, way, bytes[i]);
-    }
+    robot_put(robot, way, bytes, count);
     run_line(robot, way);
 }
 

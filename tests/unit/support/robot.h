@@ -46,12 +46,13 @@ typedef enum {
     ROBOT_LATENCY,
     ROBOT_HARMS
 } robot_harm_kind_t;
-typedef enum { ROBOT_TO_ROBOT, ROBOT_TO_MANAGER, ROBOT_WAYS } robot_way_t;
+// The latter two lie between a client and its guard port (client.h).
+typedef enum { ROBOT_TO_ROBOT, ROBOT_TO_MANAGER, ROBOT_TO_GUARD, ROBOT_TO_CLIENT, ROBOT_WAYS } robot_way_t;
 
 typedef struct {
     robot_harm_kind_t kind;
     robot_way_t way;
-    uint32_t at; // the byte, counted from the start of the run
+    uint32_t at; // the byte, on CAN the frame, from the start of the run
     uint32_t
         with; // the bits that FLIP turns, the byte that INSERT puts before it, the ms of DELAY and LATENCY
     uint32_t lasts_ms; // of LATENCY
@@ -63,7 +64,8 @@ typedef struct {
 typedef struct {
     robot_harm_t harm[ROBOT_HARMS_MAX];
     int harms;
-    uint32_t passed[ROBOT_WAYS];  // bytes that entered
+    bool can;                     // packets go over ISO-TP
+    uint32_t passed[ROBOT_WAYS];  // bytes that entered, or frames
     uint32_t last_ms[ROBOT_WAYS]; // until the last of them arrives: none overtakes another
     size_t held[ROBOT_WAYS];
     uint8_t bytes[ROBOT_WAYS][ROBOT_LINE_MAX];
@@ -171,7 +173,9 @@ double robot_heading_deg(const robot_t *robot);
 uint32_t robot_random(robot_t *robot, uint32_t below);
 void robot_deliver(robot_t *robot, const uint8_t *bytes, size_t count);
 void robot_drain(robot_t *robot);
-void robot_say(robot_t *robot, const uint8_t *data, size_t count); // one packet
+void robot_say(robot_t *robot, const uint8_t *data, size_t count);                   // one packet
+void robot_put(robot_t *robot, robot_way_t way, const uint8_t *bytes, size_t count); // on the line
+size_t robot_taken(robot_t *robot, robot_way_t way, uint8_t *bytes); // up to ROBOT_LINE_MAX that have arrived
 void robot_wake(robot_t *robot); // the host reads in one go what came while it was asleep
 
 // Worlds.
