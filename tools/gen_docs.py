@@ -205,7 +205,7 @@ def modes() -> str:
     """Return the modes as a Markdown table."""
     flags = {"ARGUS_MAY_TURN": "turns", "ARGUS_MAY_TRANSLATE": "drives", "ARGUS_MAY_BREAK_OFF": "broken off"}
     lines = ["| mode | may | ends by itself | meaning |", "|---|---|---|---|"]
-    for name, _, may, limit, after, *meaning in rows("supervisor/mode.h", "ARGUS_MODE_TABLE"):
+    for name, may, limit, after, *meaning in rows("supervisor/mode.h", "ARGUS_MODE_TABLE"):
         shown = ", ".join(word for flag, word in flags.items() if flag in may)
         end = "" if limit == "0" else f"after {limit} ms: {after}"
         lines.append(f"| {name} | {shown} | {end} | {_cell(meaning)} |")

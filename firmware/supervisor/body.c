@@ -6,6 +6,7 @@
 #include "knowledge/body.h"
 #include "knowledge/config.h"
 #include "supervisor/faults.h"
+#include "supervisor/journey.h"
 #include "supervisor/say.h"
 #include "supervisor/state.h"
 
@@ -51,7 +52,7 @@ static void change_to(argus_t *const self, const argus_robot_t *const robot) {
     argus_body_is(&self->knowledge, robot, self->now_ms);
     argus_config_follow(&self->config, self->follows, robot);
     forget_sonars(self);
-    argus_task_restart(&self->travel.task);
+    argus_journey_restart(&self->travel);
     self->plan = argus_plan(robot, argus_policy(self), 0, 0);
     argus_replan(self);
 }

@@ -18,12 +18,12 @@ static void declare_healthy(argus_t *const self) {
     }
 }
 
-static argus_mask_t find_suspects(argus_t *const self) {
+static argus_mask_t find_suspects(const argus_t *const self, argus_algorithm1_t *const algorithm1) {
     if (argus_rules(self)->evidence) {
         return (argus_mask_t)(argus_doubted(self) | argus_open_suspects(self));
     }
     return argus_rules(self)->disparity
-               ? argus_algorithm1_suspects(&self->algorithm1, &self->knowledge, &self->config)
+               ? argus_algorithm1_suspects(algorithm1, &self->knowledge, &self->config)
                : 0;
 }
 
@@ -39,7 +39,8 @@ static void verify(const argus_mask_t suspects, argus_intent_t *const intent) {
 
 void argus_conclude_check(argus_t *const self, argus_intent_t *const intent) {
     ARGUS_ASSERT(self->mode == ARGUS_MODE_CHECKING);
-    const argus_mask_t suspects = (argus_mask_t)(find_suspects(self) | argus_open_suspects(self));
+    const argus_mask_t suspects =
+        (argus_mask_t)(find_suspects(self, &self->algorithm1) | argus_open_suspects(self));
     argus_flag_suspects(self, suspects);
     argus_looks_checked(&self->looks, self->now_ms);
     if (is_look_due(self, suspects) && !self->orders.passive && !argus_is_stopped(self)) {
@@ -81,9 +82,9 @@ void argus_check_beside(argus_t *const self, argus_intent_t *const intent) {
         return;
     }
     argus_looks_checked(&self->looks, self->now_ms);
-    const argus_mask_t suspects = find_suspects(self);
+    const argus_mask_t suspects = find_suspects(self, &self->algorithm1);
     if (argus_rules(self)->evidence && self->mode == ARGUS_MODE_DRIVING) {
-        argus_count_loss(self);
+        argus_count_loss(self, &self->looks);
     }
     if (self->orders.passive && argus_rules(self)->disparity) {
         drop_suspicions(self);

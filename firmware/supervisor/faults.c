@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "knowledge/angle.h"
+#include "supervisor/journey.h"
 #include "supervisor/say.h"
 #include "supervisor/state.h"
 
@@ -147,7 +148,7 @@ void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_
     argus_evidence_retract(&self->evidence, sonar);
     argus_echoes_forget(&self->echoes, sonar);
     argus_rays_forget(&self->rays, sonar);
-    argus_task_restart(&self->travel.task);
+    argus_journey_restart(&self->travel);
     argus_replan(self);
     argus_say_event(self, said); // after the plan that follows from it
 }

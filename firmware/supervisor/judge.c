@@ -58,7 +58,7 @@ static void name(argus_t *const self, const int sonar, const argus_finding_t *co
         argus_replan(self);
     }
     if (s->health == ARGUS_SUSPECT && !finding->doubted && !is_kept(self, finding)) {
-        argus_forget_name(self, sonar);
+        argus_looks_forget(&self->looks, sonar);
         argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, s->reading_mm);
         argus_replan(self);
     }

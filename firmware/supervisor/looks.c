@@ -75,9 +75,9 @@ static argus_mask_t alone(const argus_t *const self) {
 }
 
 // A sonar that is named ahead costs what the robot would drive faster without it.
-void argus_count_loss(argus_t *const self) {
+void argus_count_loss(const argus_t *const self, argus_looks_t *const mine) {
     if ((open_names(self) & argus_robot_ahead(self->knowledge.robot)) == 0) {
-        self->looks.lost_ms = 0;
+        mine->lost_ms = 0;
         return;
     }
     const argus_guard_t guard = argus_guard(self);
@@ -85,7 +85,7 @@ void argus_count_loss(argus_t *const self) {
     const int32_t free_mm_s = argus_guard_free_speed_mm_s(&guard, seen_mm);
     const int32_t lost_mm_s = free_mm_s - argus_guard_speed_mm_s(&guard, seen_mm);
     ARGUS_ASSERT(free_mm_s > 0 && lost_mm_s >= 0);
-    self->looks.lost_ms += ARCOS_TIMING_SIP_CYCLE_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s;
+    mine->lost_ms += ARCOS_TIMING_SIP_CYCLE_MS * (uint32_t)lost_mm_s / (uint32_t)free_mm_s;
 }
 
 // To hire or to buy: a look is bought when its cost has been lost to the doubt. So both together are never
@@ -111,10 +111,10 @@ argus_fault_kind_t argus_named_kind(const argus_t *const self, const int sonar,
     return kind == ARGUS_KIND_SLOW && self->looks.hold[sonar].lawless ? ARGUS_KIND_WRONG : kind;
 }
 
-void argus_forget_name(argus_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
-    self->looks.hold[sonar].borne_out = 0;
-    self->looks.hold[sonar].lawless = false;
+void argus_looks_forget(argus_looks_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    self->hold[sonar].borne_out = 0;
+    self->hold[sonar].lawless = false;
 }
 
 static void clear(argus_t *const self, const int sonar) {
@@ -124,7 +124,7 @@ static void clear(argus_t *const self, const int sonar) {
     if (self->knowledge.odometer_mm - hold->odometer_mm > HOLD_FORGET_MM) {
         hold->cleared = 0;
     }
-    argus_forget_name(self, sonar);
+    argus_looks_forget(&self->looks, sonar);
     hold->cleared = argus_one_more(hold->cleared);
     hold->odometer_mm = self->knowledge.odometer_mm;
     if (s->health == ARGUS_SUSPECT) {
@@ -146,10 +146,10 @@ void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
 // A name that looks do not clear while nothing moves about. For that alone others have looked along its
 // bearing, each time anew (paper: Algorithm 2). What its own readings tell, looks do not prove, nor anything
 // of one at the end of an array. A look that leaves it another name neither proves nor clears.
-static bool is_proved(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
+static bool is_proved(const argus_t *const self, argus_hold_t *const hold, const int sonar,
+                      const argus_fault_kind_t kind) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
-    argus_hold_t *const hold = &self->looks.hold[sonar];
     const bool beset = argus_robot_faces_forward(self->knowledge.robot, sonar); // neighbours on either side
     const bool by_others = beset && (kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_WRONG);
     if (!by_others || kind != self->knowledge.sonar[sonar].kind || self->evidence.busy) {
@@ -171,7 +171,7 @@ static void conclude(argus_t *const self, const int sonar) {
     const argus_fault_kind_t kind = argus_named_kind(self, sonar, &finding);
     if (asked && kind == ARGUS_KIND_NONE) {
         clear(self, sonar);
-    } else if (suspect && is_proved(self, sonar, kind)) {
+    } else if (suspect && is_proved(self, &self->looks.hold[sonar], sonar, kind)) {
         argus_disable(self, sonar, kind);
     } else if (suspect) {
         argus_leave_open(self, (argus_mask_t)(1u << sonar));

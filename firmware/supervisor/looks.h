@@ -10,7 +10,7 @@
 argus_mask_t argus_doubted(const argus_t *self);
 
 // Once a SIP while it drives: what doubt costs.
-void argus_count_loss(argus_t *self);
+void argus_count_loss(const argus_t *self, argus_looks_t *mine);
 
 // A look costs less than to go on without, or an operator has asked for it; and there is room to turn.
 bool argus_look_pays(const argus_t *self);
@@ -26,9 +26,6 @@ argus_mask_t argus_to_settle(const argus_t *self);
 // The kind that the evidence gives it (NONE: none): `wrong` where a law of its readings was named and given
 // up.
 argus_fault_kind_t argus_named_kind(const argus_t *self, int sonar, const argus_finding_t *finding);
-
-// It is no suspect any more: what names and looks have shown of it is forgotten.
-void argus_forget_name(argus_t *self, int sonar);
 
 // The looks are over: each sonar that was asked is cleared, given up or left open.
 void argus_conclude_looks(argus_t *self);
@@ -57,6 +54,9 @@ void argus_looks_ask(argus_looks_t *self, int sonar);
 
 // Whether the evidence has named this kind for a while.
 bool argus_looks_stands(argus_looks_t *self, int sonar, argus_fault_kind_t kind, uint32_t now_ms);
+
+// It is no suspect any more: what names and looks have shown of it is forgotten.
+void argus_looks_forget(argus_looks_t *self, int sonar);
 
 // A suspect gets another name.
 void argus_looks_rename(argus_looks_t *self, int sonar, argus_fault_kind_t from, argus_fault_kind_t to);

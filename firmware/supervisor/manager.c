@@ -11,6 +11,7 @@
 #include "supervisor/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/history.h"
+#include "supervisor/journey.h"
 #include "supervisor/latency.h"
 #include "supervisor/looks.h"
 #include "supervisor/modes.h"
@@ -49,14 +50,13 @@ static void check(argus_t *const self, const bool full) {
 }
 
 bool argus_set_course(argus_t *const self, const argus_point_t *const points, const uint16_t count) {
-    if (!argus_task_set(&self->travel.task, points, count)) {
+    if (!argus_journey_set(&self->travel, points, count)) {
         return false;
     }
     if (self->mission != ARGUS_MISSION_RUNNING) {
         argus_touches_init(&self->echoes.touches);
     }
     self->mission = ARGUS_MISSION_RUNNING;
-    self->travel.arriving = false;
     argus_looks_leave(&self->looks);
     argus_tell(self, ARGUS_EV_MISSION_START, count);
     if (self->mode == ARGUS_MODE_IDLE || self->waiting.why == ARGUS_WAIT_CATASTROPHIC) {
@@ -71,20 +71,18 @@ void argus_link_up(argus_t *const self, const uint32_t now_ms) {
     argus_tell(self, ARGUS_EV_LINK_UP, 0);
 }
 
-static void note_order(argus_t *const self) {
-    argus_order_t *const order = &self->knowledge.order;
-    if (argus_motion_is_under_way(&self->motion)) {
-        const bool moves = self->motion.kind == ARGUS_MOTION_MOVE;
+static void note_order(argus_order_t *const order, const argus_motion_t *const motion) {
+    if (argus_motion_is_under_way(motion)) {
+        const bool moves = motion->kind == ARGUS_MOTION_MOVE;
         order->under_way = true;
-        order->way_mm = (uint16_t)(moves ? argus_abs(self->motion.target_mm) : 0);
-        order->speed_mm_s = (uint16_t)self->motion.speed_mm_s;
+        order->way_mm = (uint16_t)(moves ? argus_abs(motion->target_mm) : 0);
+        order->speed_mm_s = (uint16_t)motion->speed_mm_s;
     }
 }
 
 // The robot's watchdog waits since it was spoken to last; what is in the outbox it hears yet.
-static void note_watchdog(argus_t *const self) {
+static void note_watchdog(const argus_t *const self, argus_order_t *const order) {
     const argus_session_t *const session = &self->session;
-    argus_order_t *const order = &self->knowledge.order;
     const uint32_t stated_ms = session->has_robot ? session->robot.watchdog_ms : 0;
     const uint32_t waits_ms = stated_ms > 0 ? stated_ms : ARCOS_TIMING_WATCHDOG_MS;
     const uint32_t quiet_ms = session->outbox.length > 0 ? 0 : self->now_ms - session->spoke_ms;
@@ -98,8 +96,8 @@ static void go_offline(argus_t *const self) {
     const uint32_t silence_ms = self->session.sips > 0 ? self->now_ms - self->session.heard_ms : 0;
     self->checked = false;
     self->stalled = false;
-    self->travel.jog_mm = 0;
-    note_order(self);
+    argus_journey_jog(&self->travel, 0);
+    note_order(&self->knowledge.order, &self->motion);
     argus_motion_init(&self->motion);
     argus_tell(self, ARGUS_EV_LINK_LOST, (int32_t)(silence_ms & 0x7FFFFFFFu));
     argus_base_drop(&self->base);
@@ -161,9 +159,9 @@ static void on_resume(argus_t *const self) {
     check(self, true);
 }
 
-static void take_slip(argus_t *const self) {
-    if (argus_slip_sip(&self->slip, &self->knowledge)) {
-        argus_knowledge_set_back(&self->knowledge, &self->slip.first);
+static void take_slip(argus_slip_t *const slip, argus_knowledge_t *const knowledge) {
+    if (argus_slip_sip(slip, knowledge)) {
+        argus_knowledge_set_back(knowledge, &slip->first);
     }
 }
 
@@ -214,7 +212,7 @@ static void take_evidence(argus_t *const self) {
         argus_common_sip(&self->common, &self->knowledge);
         argus_common_weigh(&self->common, &self->evidence, &self->knowledge);
     }
-    take_slip(self);
+    take_slip(&self->slip, &self->knowledge);
     take_bend(self);
     take_pace(self);
 }
@@ -260,8 +258,8 @@ static void on_sip(argus_t *const self) {
         }
         argus_run_mode(self);
     }
-    note_order(self);
-    note_watchdog(self);
+    note_order(&self->knowledge.order, &self->motion);
+    note_watchdog(self, &self->knowledge.order);
 }
 
 static void handle_link(argus_t *const self, const unsigned bits) {

@@ -22,7 +22,7 @@ typedef struct {
 
 static const row_t *row_of(const argus_mode_t mode) {
     static const row_t rows[] = {
-#define ROW(name, run, may, limit, then, meaning) {(may), (limit)},
+#define ROW(name, may, limit, then, meaning) {(may), (limit)},
         ARGUS_MODE_TABLE(ROW)
 #undef ROW
     };

@@ -13,29 +13,27 @@
 #define ARGUS_MAY_BREAK_OFF 16u // a loss or a conviction ahead leads to a check
 #define ARGUS_IN_SESSION (ARGUS_MAY_REACT | ARGUS_MAY_JUDGE)
 
-// X(NAME, run, may, limit_ms, then, meaning): `run`: says on each SIP what is to be done (modes.c).
-// `limit_ms`: after it the mode ends by itself, in the mode `then`. 0: no limit but that of its motions
-// (adjustment/motion.h).
-#define ARGUS_MODE_TABLE(X)                                                                                 \
-    X(OFFLINE, nobody, 0, 0, OFFLINE, "no session with a robot")                                            \
-    X(CHECKING, checking, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_BREAK_OFF, 0, CHECKING,             \
-      "at rest: every forward-facing sonar reports before anything moves")                                  \
-    X(VERIFYING, verifying, ARGUS_IN_SESSION | ARGUS_MAY_TURN, 0, VERIFYING,                                \
-      "neighbours turn onto a suspect's bearing, or the robot looks round")                                 \
-    X(IDLE, idle, ARGUS_IN_SESSION | ARGUS_MAY_BREAK_OFF, 0, IDLE, "nothing to do")                         \
-    X(DRIVING, driving, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF, 0,   \
-      DRIVING, "drives, every bearing ahead in use")                                                        \
-    X(SWEEPING, sweeping, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_BREAK_OFF, 0, SWEEPING,             \
-      "failure mode, at rest: turns through the plan's rotations")                                          \
-    X(STEPPING, stepping, ARGUS_IN_SESSION | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF, 0, STEPPING,        \
-      "one step ahead")                                                                                     \
-    X(BACKING, backing, ARGUS_IN_SESSION | ARGUS_MAY_TRANSLATE, 0, BACKING,                                 \
-      "away from a pressed bumper or a blocked swing circle")                                               \
-    X(WAITING, waiting, ARGUS_IN_SESSION, 0, WAITING, "cannot go on by itself")                             \
-    X(CLOSING, nobody, 0, 1500, CLOSED, "comes to rest, then the session is closed")                        \
-    X(CLOSED, nobody, 0, 0, CLOSED, "over")                                                                 \
-    X(CREEPING, creeping, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF, 0, \
-      CREEPING, "no sonar sees the way: slowly, on the bumpers alone")
+// X(NAME, may, limit_ms, then, meaning): `limit_ms`: after it the mode ends by itself, in the mode `then`. 0:
+// no limit but that of its motions (adjustment/motion.h).
+#define ARGUS_MODE_TABLE(X)                                                                                  \
+    X(OFFLINE, 0, 0, OFFLINE, "no session with a robot")                                                     \
+    X(CHECKING, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_BREAK_OFF, 0, CHECKING,                        \
+      "at rest: every forward-facing sonar reports before anything moves")                                   \
+    X(VERIFYING, ARGUS_IN_SESSION | ARGUS_MAY_TURN, 0, VERIFYING,                                            \
+      "neighbours turn onto a suspect's bearing, or the robot looks round")                                  \
+    X(IDLE, ARGUS_IN_SESSION | ARGUS_MAY_BREAK_OFF, 0, IDLE, "nothing to do")                                \
+    X(DRIVING, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF, 0, DRIVING,    \
+      "drives, every bearing ahead in use")                                                                  \
+    X(SWEEPING, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_BREAK_OFF, 0, SWEEPING,                        \
+      "failure mode, at rest: turns through the plan's rotations")                                           \
+    X(STEPPING, ARGUS_IN_SESSION | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF, 0, STEPPING, "one step ahead") \
+    X(BACKING, ARGUS_IN_SESSION | ARGUS_MAY_TRANSLATE, 0, BACKING,                                           \
+      "away from a pressed bumper or a blocked swing circle")                                                \
+    X(WAITING, ARGUS_IN_SESSION, 0, WAITING, "cannot go on by itself")                                       \
+    X(CLOSING, 0, 1500, CLOSED, "comes to rest, then the session is closed")                                 \
+    X(CLOSED, 0, 0, CLOSED, "over")                                                                          \
+    X(CREEPING, ARGUS_IN_SESSION | ARGUS_MAY_TURN | ARGUS_MAY_TRANSLATE | ARGUS_MAY_BREAK_OFF, 0, CREEPING,  \
+      "no sonar sees the way: slowly, on the bumpers alone")
 
 // X(FROM, TO, when): every way from one mode to another. ANY: every mode in a session.
 #define ARGUS_WAY_TABLE(X)                                                         \

@@ -5,6 +5,7 @@
 #include "knowledge/angle.h"
 #include "supervisor/check.h"
 #include "supervisor/faults.h"
+#include "supervisor/journey.h"
 #include "supervisor/judge.h"
 #include "supervisor/looks.h"
 #include "supervisor/mode.h"
@@ -46,7 +47,7 @@ static void enter_checking(argus_t *const self, const argus_intent_t *const inte
     mine->rounds = intent->full || !self->checked ? (uint8_t)self->config.suspect_readings : 1;
     mine->marked = false;
     mine->all_round = intent->all_round || intent->again;
-    self->travel.arriving = false;
+    argus_journey_leave_goal(&self->travel);
     argus_come_to_rest(self);
     enter(self, ARGUS_MODE_CHECKING);
     if (intent->again) {
@@ -133,7 +134,7 @@ static void try_ahead(argus_t *const self, const argus_mask_t sonars, argus_inte
 
 // No sonar sees the way: all that could are out, or suspects that no one can judge; or a touch has shown it.
 static void stand(argus_t *const self, argus_intent_t *const next) {
-    self->travel.jog_mm = 0;
+    argus_journey_jog(&self->travel, 0);
     argus_to_wait(next, ARGUS_WAIT_ECHO);
     if (!argus_guard_may_step(&self->plan)) {
         fail_mission(self);
@@ -321,7 +322,7 @@ static void close_way(argus_t *const self, const argus_intent_t *const intent) {
     }
     switch ((argus_way_t)intent->way) {
     case ARGUS_WAY_REFUSE:
-        argus_task_refuse(&self->travel.task, &self->knowledge, &self->echoes);
+        argus_journey_refuse(&self->travel, &self->knowledge, &self->echoes);
         break;
     case ARGUS_WAY_FORGIVE:
         argus_grid_fade(&self->echoes.grid);
@@ -332,18 +333,17 @@ static void close_way(argus_t *const self, const argus_intent_t *const intent) {
     }
 }
 
-static void take_base(argus_t *const self, const argus_base_do_t what) {
+static void take_base(argus_base_t *const base, const int32_t heading_cdeg, const argus_base_do_t what) {
     ARGUS_ASSERT(what <= ARGUS_BASE_DROP);
-    const int32_t heading_cdeg = self->knowledge.pose.heading_cdeg;
     switch (what) {
     case ARGUS_BASE_TAKE:
-        argus_base_take(&self->base, heading_cdeg);
+        argus_base_take(base, heading_cdeg);
         break;
     case ARGUS_BASE_RENEW:
-        argus_base_renew(&self->base, heading_cdeg);
+        argus_base_renew(base, heading_cdeg);
         break;
     case ARGUS_BASE_DROP:
-        argus_base_drop(&self->base);
+        argus_base_drop(base);
         break;
     case ARGUS_BASE_KEEP:
     default:
@@ -359,7 +359,7 @@ static void prepare(argus_t *const self, const argus_intent_t *const intent) {
     stop(self, (argus_stop_t)intent->stop);
     close_way(self, intent);
     self->checked = self->checked && !intent->unchecked;
-    take_base(self, (argus_base_do_t)intent->base);
+    take_base(&self->base, self->knowledge.pose.heading_cdeg, (argus_base_do_t)intent->base);
 }
 
 static void perform_motion(argus_t *const self, const argus_intent_t *const intent,
@@ -537,56 +537,36 @@ void argus_judge_all(argus_t *const self) {
     argus_foretell(self);
 }
 
-static void run_nobody(argus_t *const self, argus_intent_t *const intent) {
-    (void)self;
-    (void)intent;
-}
-
-static void run_checking(argus_t *const self, argus_intent_t *const intent) {
-    argus_run_checking(self, &self->checking, intent);
-}
-
-static void run_verifying(argus_t *const self, argus_intent_t *const intent) {
-    argus_run_verifying(self, &self->verifying, intent);
-}
-
-static void run_idle(argus_t *const self, argus_intent_t *const intent) {
-    argus_run_idle(self, intent);
-}
-
-static void run_driving(argus_t *const self, argus_intent_t *const intent) {
-    argus_run_driving(self, &self->travel, intent);
-}
-
-static void run_sweeping(argus_t *const self, argus_intent_t *const intent) {
-    argus_run_sweeping(self, &self->travel, intent);
-}
-
-static void run_stepping(argus_t *const self, argus_intent_t *const intent) {
-    argus_run_stepping(self, &self->travel, intent);
-}
-
-static void run_creeping(argus_t *const self, argus_intent_t *const intent) {
-    argus_run_creeping(self, &self->travel, intent);
-}
-
-static void run_backing(argus_t *const self, argus_intent_t *const intent) {
-    argus_run_backing(self, intent);
-}
-
-static void run_waiting(argus_t *const self, argus_intent_t *const intent) {
-    argus_run_waiting(self, &self->waiting, intent);
-}
-
+// What the present mode wants. In OFFLINE, CLOSING and CLOSED nothing acts.
 static void run(argus_t *const self, argus_intent_t *const intent) {
     switch (self->mode) {
-#define RUN(name, run, may, limit, then, meaning) \
-    case ARGUS_MODE_##name:                       \
-        run_##run(self, intent);                  \
+    case ARGUS_MODE_CHECKING:
+        argus_run_checking(self, &self->checking, intent);
         break;
-        // Modes in which nothing acts stand side by side in the table.
-        ARGUS_MODE_TABLE(RUN) // NOLINT(bugprone-branch-clone)
-#undef RUN
+    case ARGUS_MODE_VERIFYING:
+        argus_run_verifying(self, &self->verifying, intent);
+        break;
+    case ARGUS_MODE_IDLE:
+        argus_run_idle(self, intent);
+        break;
+    case ARGUS_MODE_DRIVING:
+        argus_run_driving(self, &self->travel, intent);
+        break;
+    case ARGUS_MODE_SWEEPING:
+        argus_run_sweeping(self, &self->travel, intent);
+        break;
+    case ARGUS_MODE_STEPPING:
+        argus_run_stepping(self, &self->travel, intent);
+        break;
+    case ARGUS_MODE_CREEPING:
+        argus_run_creeping(self, &self->travel, intent);
+        break;
+    case ARGUS_MODE_BACKING:
+        argus_run_backing(self, intent);
+        break;
+    case ARGUS_MODE_WAITING:
+        argus_run_waiting(self, &self->waiting, intent);
+        break;
     default:
         break;
     }
@@ -611,9 +591,8 @@ static void watch_bar(argus_t *const self) {
 }
 
 static void watch_course(argus_t *const self) {
-    argus_task_t *const task = &self->travel.task;
-    if (argus_task_is_hopeless(task, &self->knowledge, is_under_way(self))) {
-        argus_tell(self, ARGUS_EV_NO_WAY, (int32_t)(task->progress.vain_ms / 1000u));
+    if (argus_journey_is_hopeless(&self->travel, &self->knowledge, is_under_way(self))) {
+        argus_tell(self, ARGUS_EV_NO_WAY, (int32_t)(self->travel.task.progress.vain_ms / 1000u));
         argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_GIVE_UP, false);
     }
 }

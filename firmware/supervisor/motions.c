@@ -3,6 +3,7 @@
 #include "supervisor/motions.h"
 
 #include "knowledge/angle.h"
+#include "supervisor/journey.h"
 #include "supervisor/permit.h"
 #include "supervisor/say.h"
 
@@ -16,7 +17,7 @@ void argus_hold(argus_t *const self) {
 
 void argus_stop(argus_t *const self, const uint8_t command) {
     ARGUS_ASSERT(command == ARCOS_CMD_STOP || command == ARCOS_CMD_E_STOP);
-    self->travel.jog_mm = 0; // what an operator asked for is not taken up again by itself
+    argus_journey_jog(&self->travel, 0); // what an operator asked for is not taken up again by itself
     if (self->orders.passive) {
         argus_hold(self);
         return;

@@ -5,6 +5,7 @@
 #include "knowledge/angle.h"
 #include "supervisor/body.h"
 #include "supervisor/faults.h"
+#include "supervisor/journey.h"
 #include "supervisor/looks.h"
 #include "supervisor/modes.h"
 #include "supervisor/motions.h"
@@ -35,14 +36,14 @@ static void pause(argus_t *const self) {
     self->orders.paused = true;
     self->orders.stay = ARGUS_STAY_OPERATOR;
     argus_base_drop(&self->base);
-    self->travel.jog_mm = 0;
+    argus_journey_jog(&self->travel, 0);
     stop_and_check(self, false);
 }
 
 static void resume(argus_t *const self) {
     self->orders.paused = false;
     enable_motors(self);
-    argus_task_restart(&self->travel.task);
+    argus_journey_restart(&self->travel);
     if (self->mission == ARGUS_MISSION_FAILED) {
         self->mission = ARGUS_MISSION_RUNNING;
     }
@@ -91,7 +92,7 @@ static void jog(argus_t *const self, const int32_t built_mm) {
         return;
     }
     if (argus_open_suspects(self) != 0) { // S6: verified first
-        self->travel.jog_mm = argus_between(0, self->config.step_mm, distance_mm);
+        argus_journey_jog(&self->travel, argus_between(0, self->config.step_mm, distance_mm));
         check(self, true);
         return;
     }
@@ -101,7 +102,7 @@ static void jog(argus_t *const self, const int32_t built_mm) {
                                          .speed_mm_s = self->config.step_speed_mm_s});
         return;
     }
-    self->travel.jog_mm = argus_min(distance_mm, self->config.step_mm);
+    argus_journey_jog(&self->travel, argus_min(distance_mm, self->config.step_mm));
     argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_DECIDE, false);
 }
 

@@ -6,6 +6,7 @@
 
 #include "knowledge/body.h"
 #include "supervisor/faults.h"
+#include "supervisor/journey.h"
 #include "supervisor/looks.h"
 #include "supervisor/modes.h"
 #include "supervisor/say.h"
@@ -28,7 +29,7 @@ static void forget(argus_t *const self) {
     self->reflexes.touched_unheard = false;
     self->orders.pinned = 0;
     self->history.recorded = 0;
-    argus_task_restart(&self->travel.task);
+    argus_journey_restart(&self->travel);
 }
 
 void argus_meet_stranger(argus_t *const self) {

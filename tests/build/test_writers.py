@@ -54,3 +54,32 @@ def test_one_finding_of_a_sonar_is_asked_for() -> None:
         if re.search(engines, path.read_text(encoding="utf-8"))
     }
     assert found == set()
+
+
+def test_the_travel_is_written_by_its_modes_and_by_journey_c_for_all_others() -> None:
+    for field in ("jog_mm", "arriving", "stopped_short", "unsaid", "heeded_ms", "beside_sip"):
+        assert writers(field) <= {"supervisor/travel.c", "supervisor/journey.c"}, field
+    changed = re.compile(
+        r"argus_task_(?:set|restart|refuse|return|choose|escape|keep|progress|is_hopeless)\("
+    )
+    found = {
+        path.name
+        for path in sorted((ROOT / "firmware/supervisor").glob("*.c"))
+        if changed.search(path.read_text(encoding="utf-8"))
+    }
+    assert found == {"travel.c", "journey.c"}
+
+
+FUNCTION = re.compile(r"^(?!typedef|#|//|\s)[\w *]*?\b\w+\(([^;{}]*?)\)\s*\{", re.MULTILINE)
+MAY_WRITE_ALL = 146
+"""Functions of the loop that may write the whole state. What reads all and writes its own part alone is preferred."""
+
+
+def test_few_functions_may_write_the_whole_state() -> None:
+    found = [
+        parameters
+        for path in sorted((ROOT / "firmware/supervisor").glob("*.c"))
+        for parameters in FUNCTION.findall(path.read_text(encoding="utf-8"))
+        if re.search(r"(?<!const )\bargus_t \*", parameters)
+    ]
+    assert 100 < len(found) <= MAY_WRITE_ALL

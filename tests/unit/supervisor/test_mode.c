@@ -11,7 +11,7 @@ typedef struct {
 } row_t;
 
 static const row_t rows[] = {
-#define ROW(name, run, may, limit, then, meaning) {ARGUS_MODE_##name, ARGUS_MODE_##then, (limit)},
+#define ROW(name, may, limit, then, meaning) {ARGUS_MODE_##name, ARGUS_MODE_##then, (limit)},
     ARGUS_MODE_TABLE(ROW)
 #undef ROW
 };
