@@ -10,10 +10,14 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-import gen_pages
-import marked
-
 ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+import gen_pages  # noqa: E402
+import marked  # noqa: E402
+
+from hil_sim.values import UNITS  # noqa: E402
+
 HEADERS = ROOT / "firmware"
 
 
@@ -264,7 +268,18 @@ def functions() -> str:
     return gen_pages.functions((HEADERS / "include/argus/argus.h").read_text(encoding="utf-8"))
 
 
-EXAMPLES = ("drive", "frame", "sweep", "bag", "monitor")
+def values() -> str:
+    """Return the unit of the value of each event that has one, "" where it is a bare number."""
+    lines = []
+    for _, name, _, _, *meaning in rows("include/argus/argus.h", "ARGUS_EVENT_TABLE"):
+        _, is_there, words = "".join(meaning).partition("value: ")
+        unit = next((unit for unit in UNITS if re.search(rf"(^| ){unit}($|[ ,])", words)), "")
+        if is_there:
+            lines.append(f"{name} {unit}".rstrip())
+    return "\n".join(lines)
+
+
+EXAMPLES = ("drive", "frame", "sweep", "bag", "monitor", "guard")
 PARTS = {
     "SPEC.md": {"events": events, "config": config, "can": can},
     "DESIGN.md": {"machine": machine},
@@ -272,6 +287,7 @@ PARTS = {
     "docs/driving.md": {"policies": policies},
     "docs/guardian.md": {"admitted": admitted},
     "docs/evidence.md": {"numbers": numbers},
+    "hil_sim/values.py": {"values": values},
     "docs/events.md": {"catalogue": catalogue},
     "docs/api-c.md": {"functions": functions},
     "docs/python.md": {name: example(name) for name in EXAMPLES},

@@ -56,7 +56,7 @@ const hal_scheme_t hal_can_scheme = {
     .help = "can:IFACE[,robot=K][,tx=ID][,rx=ID][,pad=BYTE|none][,stmin=MS][,bs=N][,fd]:\n"
             "ISO-TP (default robot=0, tx=0x640+K, rx=0x648+K, pad=0xCC, stmin=0, bs=0)",
     .robot_place = "on the CAN bus",
-    .if_silent = "",
+    .if_silent = " Do ids and fd agree at both ends?",
     .if_garbage = "this is no robot that speaks ARCOS: check the two ids",
     .if_turned_away = "is the device in order, and is nobody else at it?",
     .as_baud = AS_BAUD,

@@ -14,9 +14,11 @@ void hal_isotp_init(hal_isotp_t *self, const hal_can_sys_t *sys) {
     memset(self, 0, sizeof *self);
     self->sys = sys;
     self->fd = -1;
+    hal_can_ear_init(&self->ear, sys);
 }
 
 static void drop_socket(hal_isotp_t *self) {
+    hal_can_ear_close(&self->ear);
     if (self->fd >= 0) {
         self->sys->close(self->fd);
     }
@@ -96,6 +98,7 @@ hal_link_error_t hal_isotp_open(hal_isotp_t *self, const hal_can_spec_t *spec) {
         self->is_down = false;
         self->hold = 0;
         self->taken = self->length = 0;
+        hal_can_ear_open(&self->ear, spec, self->index);
         snprintf(self->text, sizeof self->text, "can:%s 0x%03X/0x%03X%s", spec->interface,
                  (unsigned)spec->tx_id, (unsigned)spec->rx_id, spec->fd ? " fd" : "");
     }
@@ -128,6 +131,7 @@ static int fetch(hal_isotp_t *self) {
     for (int i = 0; i < READS_MAX; i++) {
         const ssize_t got = self->sys->recv(self->fd, self->pdu, sizeof self->pdu);
         if (got == -EAGAIN) {
+            self->errors[HAL_ISOTP_FORMAT] += hal_can_ear_hear(&self->ear);
             return 0;
         }
         if (got < 0) {
@@ -140,6 +144,7 @@ static int fetch(hal_isotp_t *self) {
             self->taken = 0;
             self->length = (uint16_t)got;
             self->counters.bytes_in += (uint32_t)got;
+            hal_can_ear_close(&self->ear);
             return 0;
         }
     }

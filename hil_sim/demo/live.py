@@ -14,9 +14,10 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from hil_sim.demo.judge import KIND_NAME, Record, event_s, of_type
+from hil_sim.demo.judge import Record, event_s, of_type
 from hil_sim.demo.runner import Recording
 from hil_sim.tables.robot import robot_table
+from hil_sim.values import value_words
 
 STATUS_EVERY_S: Final = 5.0
 _EVENTS_SHOWN: Final = 8
@@ -42,10 +43,8 @@ class View(Protocol):
 def event_line(event: Record) -> str:
     """One event for people."""
     level = _LEVEL[min(int(event.get("level", 0)), 3)]
-    value = event.get("value")
-    tells_kind = event.get("event") in ("SONAR_DISABLED", "SONAR_KIND", "SONAR_NAMED")
-    shown = KIND_NAME.get(int(value or 0), "?") if tells_kind else value
-    return f"{event_s(event):8.2f} s  {level} {event.get('name', ''):<15} {event.get('event', '')} {shown}"
+    shown = value_words(str(event.get("event", "")), int(event.get("value") or 0))
+    return f"{event_s(event):8.2f} s  {level} {event.get('name', ''):<15} {event.get('event', '')}{shown}"
 
 
 def fault_line(record: Record) -> str:

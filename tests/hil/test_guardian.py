@@ -18,6 +18,7 @@ from pathlib import Path
 from runpy import run_path
 from typing import Any, Final
 
+import argus
 import harness
 import pytest
 from harness import PATIENCE_S, ROOT, SIP_S, Argusd, Bench, is_at_rest, run_argusd, wait_for
@@ -352,3 +353,33 @@ def test_every_event_of_the_guard_is_on_the_page() -> None:
     names = set(re.findall(r"X\(\d+, (GUARD_\w+),", header))
     assert len(names) == 12
     assert names - set(re.findall(r"GUARD_\w+", TEXT)) <= {"GUARD_OPEN", "GUARD_CLOSED"}
+
+
+def test_the_python_client_of_the_page_drives_and_meets_nothing(bench: Bench) -> None:
+    sim = bench.sim("box-ahead")
+    _, target = guarded(bench)
+    place = f"tcp:{target.host}:{target.port}"
+    words = [sys.executable, str(ROOT / "examples/python/guard.py"), place]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "P3DX_0001 Pioneer p3dx-sh" in done.stdout
+    assert "bumped: False" in done.stdout
+    assert "turned, and stands: 0 mm/s" in done.stdout
+    assert sim.of("collision") == []
+    assert sim.now["x_mm"] > 200  # it did drive
+
+
+def test_a_python_client_that_leaves_stops_the_robot_and_a_second_one_is_turned_away(bench: Bench) -> None:
+    sim = bench.sim(bench.world(**hall()))
+    _, target = guarded(bench)
+    place = f"tcp:{target.host}:{target.port}"
+    with argus.connect_guard(place) as robot:
+        assert robot.configuration().sip_cycle_ms == 100
+        robot.drive(200, turn_deg_s=5)
+        for _ in robot.sips(3.0):
+            pass
+        assert sim.now["v_mm_s"] > 50
+        with pytest.raises(argus.GuardError, match="no other client at it"):
+            argus.connect_guard(place, timeout_s=1.0)
+        assert robot.sip().left_vel > 0  # it is the first one's still
+    wait_for("it stands", lambda: is_at_rest(sim.now), PATIENCE_S)

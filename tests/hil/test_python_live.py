@@ -99,6 +99,7 @@ def test_the_page_shows_the_examples() -> None:
         "bag",
         "drive",
         "frame",
+        "guard",
         "monitor",
         "sweep",
     ]

@@ -49,7 +49,7 @@ def told(events: list[Record]) -> list[Record]:
 def test_lines_tell_each_event_once_and_in_order(chunks: int, capsys: pytest.CaptureFixture[str]) -> None:
     recording = watched(live.Lines(), chunks)
     lines = capsys.readouterr().out.splitlines()
-    names = [match[1] for line in lines if (match := re.search(r" ([A-Z_]{4,}) \S+$", line))]
+    names = [match[1] for line in lines if (match := re.search(r"\d s  \S+ +\S+ +([A-Z_]{4,})( |$)", line))]
     assert names == [event["event"] for event in told(recording.events)]
     assert sum("INJECTED: sonar 3 off" in line for line in lines) == 1
     assert sum("INJECTED: sonar 6 wrong" in line for line in lines) == 1
@@ -58,7 +58,7 @@ def test_lines_tell_each_event_once_and_in_order(chunks: int, capsys: pytest.Cap
 def test_lines_name_the_kind_of_a_fault(capsys: pytest.CaptureFixture[str]) -> None:
     watched(live.Lines(), 3)
     lines = [line for line in capsys.readouterr().out.splitlines() if "SONAR_DISABLED" in line]
-    assert [line.split()[-1] for line in lines] == ["off", "wrong"]
+    assert [line.split()[-1] for line in lines] == ["(off)", "(wrong)"]
     assert all(" ERROR " in line for line in lines)
 
 
@@ -131,5 +131,5 @@ def test_a_pipe_gets_lines_even_when_a_screen_is_wanted(capsys: pytest.CaptureFi
 
 def test_unknown_events_levels_and_kinds_do_no_harm() -> None:
     event: Record = {"t": 1.0, "event": "SONAR_DISABLED", "name": "sonar/front/01", "level": 9, "value": 77}
-    assert live.event_line(event).split() == ["1.00", "s", "STALE", "sonar/front/01", "SONAR_DISABLED", "?"]
+    assert live.event_line(event).split() == ["1.00", "s", "STALE", "sonar/front/01", "SONAR_DISABLED", "(?)"]
     assert "NEW_EVENT" in live.event_line({"t": 1.0, "event": "NEW_EVENT"})

@@ -19,7 +19,7 @@ from hil_sim.errors import missing_package
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "docs/samples/two-failing-sonars.rec.gz"
-MODULES = ("argus", "argus.protocol", "argus.sil", "argus.log", "argus.live")
+MODULES = ("argus", "argus.protocol", "argus.sil", "argus.log", "argus.live", "argus.guard")
 
 
 def test_the_examples_of_the_documentation(monkeypatch: pytest.MonkeyPatch) -> None:

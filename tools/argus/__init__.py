@@ -4,6 +4,7 @@
     argus.protocol      ARCOS packets from bytes and back
     argus.sil           a mission of the fault manager on the emulated robot, in one process, under virtual time
     argus.live          a running argusd: watch it, drive the robot
+    argus.guard         a guard port of it: drive by wheels, and meet nothing
     argus.ranges        pose and ranges of any robot, judged as they come
     argus.log           logs of a robot's link: read, decode, diagnose
 
@@ -18,7 +19,8 @@ docs/python.md has more examples. What is not in `__all__` of these modules may 
 
 from importlib.metadata import version as _version
 
-from argus import live, log, protocol, ranges, sil
+from argus import guard, live, log, protocol, ranges, sil
+from argus.guard import GuardedRobot, GuardError, connect_guard
 from argus.live import AsyncRobot, ControlError, Refused, Robot, connect, connect_async
 from argus.log import Diagnosis, LogError, LogPacket, diagnose, read
 from argus.protocol import COMMAND, Command, PacketError, Sip, Unframer, decode, frame
@@ -33,6 +35,8 @@ __all__ = [
     "Command",
     "ControlError",
     "Diagnosis",
+    "GuardError",
+    "GuardedRobot",
     "LogError",
     "LogPacket",
     "Mission",
@@ -47,9 +51,11 @@ __all__ = [
     "__version__",
     "connect",
     "connect_async",
+    "connect_guard",
     "decode",
     "diagnose",
     "frame",
+    "guard",
     "live",
     "log",
     "protocol",

@@ -32,6 +32,7 @@ from argus_tools.foxglove import (
     stamp_of,
 )
 from argus_tools.foxglove_front import FOXGLOVE, Front, Gate, hidden_host, is_loopback
+from hil_sim.values import value_words
 from hil_sim.version import add_version
 
 EXIT_USAGE, EXIT_LINK = 2, 3
@@ -164,7 +165,7 @@ class Translator:
 
     def _event(self, event: dict[str, Any], t_ns: int) -> None:
         level = _LEVELS[min(int(event["level"]), len(_LEVELS) - 1)]
-        words = f"{event['event']} {event['name']} {event['value']}"
+        words = f"{event['event']} {event['name']}{value_words(event['event'], event['value'])}"
         log = {"level": level, "message": words, "name": event["name"], "file": "", "line": 0}
         self._put(EVENTS, "foxglove.Log", t_ns, log)
 

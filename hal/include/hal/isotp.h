@@ -11,11 +11,15 @@
 #include <errno.h>
 #include <stdbool.h>
 
+#include "hal/can_ear.h"
 #include "hal/can_spec.h"
 #include "hal/can_sys.h"
 #include "hal/link.h"
 
 #define HAL_ISOTP_PDU_MAX 258 // the longest ARCOS packet: COUNT 255 and 3 bytes
+
+#define HAL_ISOTP_FORMAT_TEXT \
+    "CAN FD frames where this link has classic ones, or the reverse: give or leave out fd in --link"
 
 // Errors that a session survives, counted. X(NAME, name in reports, errno, text); errno 0: found by
 // ourselves.
@@ -27,6 +31,7 @@
     X(BAD_FRAME, bad_frame, EBADMSG, "a frame from the robot was malformed")                  \
     X(TOO_LONG, too_long, 0, "a message was longer than any packet")                          \
     X(NO_BUFFERS, no_buffers, ENOBUFS, "the interface's queue was full")                      \
+    X(FORMAT, format, 0, HAL_ISOTP_FORMAT_TEXT)                                               \
     X(DOWN, down, ENETDOWN, "the interface went down")
 
 typedef enum {
@@ -38,12 +43,13 @@ typedef enum {
 
 typedef struct {
     const hal_can_sys_t *sys;
-    int fd;         // -1: none
-    int index;      // of the interface that it is bound to
-    bool is_open;   // else a socket is kept for when the interface comes up again
-    bool is_down;   // the interface went down
-    uint8_t hold;   // the queue was full: try again soon
-    uint16_t taken; // of the PDU held, for readers with little room
+    hal_can_ear_t ear; // until a PDU came
+    int fd;            // -1: none
+    int index;         // of the interface that it is bound to
+    bool is_open;      // else a socket is kept for when the interface comes up again
+    bool is_down;      // the interface went down
+    uint8_t hold;      // the queue was full: try again soon
+    uint16_t taken;    // of the PDU held, for readers with little room
     uint16_t length;
     uint8_t pdu[HAL_ISOTP_PDU_MAX + 1]; // a byte more, so that a longer one is seen
     uint32_t errors[HAL_ISOTP_ERRORS];  // monotonic

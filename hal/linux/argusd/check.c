@@ -10,6 +10,11 @@
 #define LOOK_MS 3000u // long enough for every transducer to fire several times
 #define LEAVE_MS 4000u
 
+static bool hears_other_frames(const driver_t *driver) {
+    const hal_isotp_t *const link = driver->transport == NULL ? NULL : hal_transport_isotp(driver->transport);
+    return link != NULL && link->errors[HAL_ISOTP_FORMAT] > 0;
+}
+
 static void explain_silence(const driver_t *driver, uint32_t waited_ms, char *text, size_t capacity) {
     argus_status_t status;
     argus_status(driver->core, &status);
@@ -19,6 +24,8 @@ static void explain_silence(const driver_t *driver, uint32_t waited_ms, char *te
              (unsigned)(waited_ms / 1000u));
     if (driver_meets_telnet(driver)) {
         text_add(&line, DRIVER_TELNET);
+    } else if (hears_other_frames(driver)) {
+        text_add(&line, HAL_ISOTP_FORMAT_TEXT);
     } else if (driver->bytes_in == 0) {
         text_add(&line, "nothing was received; is the robot on and connected?%s", scheme->if_silent);
     } else if (status.packets == 0) {

@@ -2,6 +2,7 @@
 // Writes events and status.
 #include "report.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "json.h"
@@ -83,16 +84,62 @@ static const char *colour_of(argus_level_t level) {
     return level == ARGUS_LEVEL_ERROR ? "\033[31m" : level == ARGUS_LEVEL_WARN ? "\033[33m" : "";
 }
 
+// Units as the catalogue words them, the longer ones first; `hil_sim/values.py` has the same.
+typedef struct {
+    const char *words;
+    int parts; // of the unit shown that are one of the catalogue's
+    const char *shown;
+} unit_t;
+
+static bool has_word(const char *text, const char *word) {
+    const size_t length = strlen(word);
+    for (const char *at = strstr(text, word); at != NULL; at = strstr(at + 1, word)) {
+        const bool begins = at == text || at[-1] == ' ';
+        if (begins && (at[length] == '\0' || at[length] == ' ' || at[length] == ',')) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void add_amount(text_t *text, const char *words, int32_t value) {
+    static const unit_t units[] = {{"hundredths of a degree", 100, "deg"},
+                                   {"decivolts", 10, "V"},
+                                   {"degrees", 1, "deg"},
+                                   {"seconds", 1, "s"},
+                                   {"metres", 1, "m"},
+                                   {"mm/s", 1, "mm/s"},
+                                   {"mm", 1, "mm"},
+                                   {"ms", 1, "ms"}};
+    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+        if (!has_word(words, units[i].words)) {
+            continue;
+        }
+        const int parts = units[i].parts;
+        if (value == INT32_MAX) {
+            text_add(text, " (never)"); // a time since what has not been
+        } else if (parts == 1) {
+            text_add(text, " %d %s", (int)value, units[i].shown);
+        } else {
+            text_add(text, " %s%d.%0*d %s", value < 0 ? "-" : "", abs(value / parts), parts == 100 ? 2 : 1,
+                     abs(value % parts), units[i].shown);
+        }
+        return;
+    }
+    text_add(text, " %d", (int)value);
+}
+
 // "value" in words where a number alone says nothing, and only where the catalogue gives it a meaning.
 static void add_value(text_t *text, const argus_event_t *event) {
+    const char *const words = strstr(meaning_of(event->id), "value: ");
     if (event->id == ARGUS_EV_INJECTED && event->value == ARGUS_KIND_NONE) {
         text_add(text, " (over)");
-    } else if (event->id == ARGUS_EV_SONAR_DISABLED || event->id == ARGUS_EV_INJECTED) {
-        text_add(text, " (%s)", argus_name(ARGUS_NAME_KIND, (int)event->value));
     } else if (event->id == ARGUS_EV_OPERATOR) {
         text_add(text, " %s", argus_name(ARGUS_NAME_OP, (int)event->value));
-    } else if (strstr(meaning_of(event->id), "value:") != NULL) {
-        text_add(text, " %d", (int)event->value);
+    } else if (words != NULL && strstr(words, "fault kind") != NULL) {
+        text_add(text, " (%s)", argus_name(ARGUS_NAME_KIND, (int)event->value));
+    } else if (words != NULL) {
+        add_amount(text, words + strlen("value: "), event->value);
     }
 }
 

@@ -6,11 +6,13 @@
 
 #include "check.h"
 #include "json.h"
+#include "survey_views.h"
 #include "text.h"
 
 #define STEPS 12
 #define STEP_DEG 30
-#define DWELL_MS 1500u  // at rest on each heading: every transducer fires several times
+#define DWELL_SIPS 15u  // at rest on each heading: every transducer fires several times
+#define SETTLE_SIPS 3u  // an order shows in the state
 #define READY_MS 60000u // until the manager stands idle, at the start and behind each turn
 #define VERIFY_MS 180000u
 #define FLAT_MM 25 // readings of all headings within so much are told as flat
@@ -32,10 +34,13 @@ typedef struct {
     driver_t *driver;
     phase_t phase;
     uint32_t since_ms;
+    uint32_t since_sips;
+    int32_t from_cdeg; // heading of the last order to turn
     uint32_t start_ms;
     int headings; // that it stood on
     bool ran_out;
     trace_t trace[ARGUS_SONARS];
+    survey_views_t views;
     argus_status_t status;
     argus_suspicions_t doubts;
     const char *refusal; // NULL: none
@@ -81,6 +86,7 @@ static uint32_t now_of(const survey_t *self) {
 static void enter(survey_t *self, phase_t phase) {
     self->phase = phase;
     self->since_ms = now_of(self);
+    self->since_sips = self->status.sips;
 }
 
 static bool is_late(const survey_t *self, uint32_t most_ms) {
@@ -89,6 +95,7 @@ static bool is_late(const survey_t *self, uint32_t most_ms) {
 
 // The heading that ends: what each sonar gave while the robot stood on it.
 static void note_heading(survey_t *self) {
+    argus_mask_t fresh = 0;
     self->headings++;
     for (int i = 0; i < self->status.sonars; i++) {
         trace_t *const trace = &self->trace[i];
@@ -96,6 +103,7 @@ static void note_heading(survey_t *self) {
         const uint16_t mm = self->status.reading_mm[i];
         trace->readings = self->status.readings[i];
         trace->reported = (uint16_t)(trace->reported + came);
+        fresh |= (argus_mask_t)(came ? 1u << i : 0u);
         if (!came || mm == 0 || mm >= ARGUS_NO_ECHO_MM) {
             continue;
         }
@@ -103,6 +111,17 @@ static void note_heading(survey_t *self) {
         trace->least_mm = mm < trace->least_mm ? mm : trace->least_mm;
         trace->most_mm = mm > trace->most_mm ? mm : trace->most_mm;
     }
+    survey_views_note(&self->views, (int16_t)(self->status.pose.heading_cdeg / 100), &self->status, fresh);
+}
+
+// All is counted in packets: those of a busy machine come late, and tell of the time before the order.
+static bool has_heard(const survey_t *self, uint32_t sips) {
+    return self->status.sips - self->since_sips >= sips;
+}
+
+static bool has_turned(const survey_t *self) {
+    const int32_t by_cdeg = (self->status.pose.heading_cdeg - self->from_cdeg + 36000) % 36000;
+    return self->phase != PHASE_TURN || (by_cdeg >= STEP_DEG * 50 && by_cdeg < 18000);
 }
 
 static bool is_idle(const survey_t *self) {
@@ -117,6 +136,7 @@ static void go_on(survey_t *self) {
                                                                                           : PHASE_DONE);
         return;
     }
+    self->from_cdeg = self->status.pose.heading_cdeg;
     if (argus_operator(self->driver->core, now_of(self), ARGUS_OP_TURN, STEP_DEG)) {
         enter(self, PHASE_TURN);
     }
@@ -124,14 +144,24 @@ static void go_on(survey_t *self) {
 
 // Where it neither stands idle nor moves in time, the survey ends with what it has.
 static void await_idle(survey_t *self, phase_t then, uint32_t most_ms) {
-    const bool settled = now_of(self) - self->since_ms > 2u * 100u; // SIPs since the order
-    if (settled && is_idle(self)) {
+    if (has_heard(self, SETTLE_SIPS) && has_turned(self) && is_idle(self)) {
         enter(self, then);
         return;
     }
     const char *const refusal = refusal_of(&self->status);
     if (refusal != NULL || is_late(self, most_ms)) {
         self->refusal = refusal;
+        self->ran_out = true;
+        self->phase = PHASE_DONE;
+    }
+}
+
+// Readings that do not come on a heading in time end the survey, too.
+static void dwell(survey_t *self) {
+    if (has_heard(self, DWELL_SIPS)) {
+        note_heading(self);
+        go_on(self);
+    } else if (is_late(self, READY_MS)) {
         self->ran_out = true;
         self->phase = PHASE_DONE;
     }
@@ -151,10 +181,7 @@ static void step(survey_t *self, uint32_t wait_ms) {
         await_idle(self, PHASE_DWELL, READY_MS);
         break;
     case PHASE_DWELL:
-        if (is_late(self, DWELL_MS)) {
-            note_heading(self);
-            go_on(self);
-        }
+        dwell(self);
         break;
     case PHASE_VERIFY:
         await_idle(self, PHASE_DONE, VERIFY_MS);
@@ -169,7 +196,7 @@ static void step(survey_t *self, uint32_t wait_ms) {
 
 typedef struct {
     char verdict[64];
-    char sure[16];
+    char sure[32];
     bool is_fault;
 } verdict_t;
 
@@ -192,6 +219,29 @@ __attribute__((format(printf, 4, 5))) static verdict_t found_as(bool is_fault, c
     return found;
 }
 
+static survey_match_t match_of(const survey_t *self, int sonar) {
+    argus_mask_t trusted = 0;
+    for (int i = 0; i < self->status.sonars; i++) {
+        trusted |= (argus_mask_t)(self->status.health[i] == ARGUS_HEALTHY ? 1u << i : 0u);
+    }
+    return survey_views_match(&self->views, &self->status, sonar, trusted);
+}
+
+// What the manager names, or else what the others prove that the robot turned onto its bearing.
+static argus_fault_kind_t kind_of(const survey_t *self, int sonar) {
+    const survey_match_t match = match_of(self, sonar);
+    const argus_fault_kind_t proved = survey_proves(&match);
+    if (self->status.health[sonar] == ARGUS_DISABLED) {
+        return (argus_fault_kind_t)self->status.kind[sonar];
+    }
+    const argus_fault_kind_t doubted = (argus_fault_kind_t)self->doubts.kind[sonar];
+    const bool at_rest = doubted != ARGUS_KIND_SLOW; // no lag shows on a robot that stands
+    if (doubted != ARGUS_KIND_NONE && (proved == ARGUS_KIND_NONE || at_rest)) {
+        return doubted;
+    }
+    return proved == ARGUS_KIND_WRONG && is_flat(&self->trace[sonar]) ? ARGUS_KIND_STUCK : proved;
+}
+
 // Of a sonar that the manager has no complaint of.
 static verdict_t unblamed(const survey_t *self, int sonar) {
     const trace_t *const trace = &self->trace[sonar];
@@ -211,10 +261,17 @@ static verdict_t unblamed(const survey_t *self, int sonar) {
 
 static verdict_t verdict_of(const survey_t *self, int sonar) {
     const int percent = self->doubts.percent[sonar];
-    const uint8_t kind = self->doubts.kind[sonar];
+    const argus_fault_kind_t kind = kind_of(self, sonar);
+    const survey_match_t match = match_of(self, sonar);
+    if (survey_proves(&match) != ARGUS_KIND_NONE) {
+        verdict_t found = found_as(true, "", 0, "broken: %s", argus_name(ARGUS_NAME_KIND, kind));
+        snprintf(found.sure, sizeof found.sure, "proven, %d of %d differ", match.compared - match.agreed,
+                 match.compared);
+        return found;
+    }
     switch (self->status.health[sonar]) {
     case ARGUS_DISABLED:
-        return found_as(true, "proven", 0, "out: %s", argus_name(ARGUS_NAME_KIND, self->status.kind[sonar]));
+        return found_as(true, "proven", 0, "broken: %s", argus_name(ARGUS_NAME_KIND, kind));
     case ARGUS_SUSPECT:
         return found_as(true, NULL, percent, "suspect, %s %s", percent >= LIKELY ? "likely" : "perhaps",
                         kind == ARGUS_KIND_NONE ? "anything" : argus_name(ARGUS_NAME_KIND, kind));
@@ -280,11 +337,13 @@ static void tell_json(const survey_t *self, FILE *out) {
         json_name(&json, "health");
         json_string(&json, argus_name(ARGUS_NAME_HEALTH, self->status.health[i]));
         json_name(&json, "kind");
-        json_string(&json, argus_name(ARGUS_NAME_KIND, self->status.health[i] == ARGUS_DISABLED
-                                                           ? self->status.kind[i]
-                                                           : self->doubts.kind[i]));
+        json_string(&json, argus_name(ARGUS_NAME_KIND, kind_of(self, i)));
         json_name(&json, "percent");
         json_int(&json, self->doubts.percent[i]);
+        json_name(&json, "compared");
+        json_int(&json, match_of(self, i).compared);
+        json_name(&json, "agreed");
+        json_int(&json, match_of(self, i).agreed);
         json_name(&json, "verdict");
         json_string(&json, found.verdict);
         json_name(&json, "sure");

@@ -66,9 +66,13 @@ class Raw:
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
         self._socket.bind((interface,))
 
-    def send(self, number: int, data: bytes) -> None:
-        """Send a classic frame."""
-        content = _FRAME.pack(number, len(data), data.ljust(8, b"\0"))
+    def send(self, number: int, data: bytes, fd: bool = False) -> None:
+        """Send a frame, a classic one or one of CAN FD."""
+        content = (
+            _FD_FRAME.pack(number, len(data), 0, data)
+            if fd
+            else _FRAME.pack(number, len(data), data.ljust(8, b"\0"))
+        )
         try:
             self._socket.send(content)
         except OSError as error:

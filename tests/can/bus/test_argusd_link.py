@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import random
 import subprocess
+import threading
 import time
 from collections.abc import Iterator
 
@@ -148,6 +149,26 @@ def test_an_interface_that_is_no_bus() -> None:
 def test_nobody_answers(bus: str) -> None:
     done = run_argusd("--link", f"can:{bus}", "--check", "--wait", "2")
     assert done.returncode == 4
+
+
+@pytest.mark.parametrize(("option", "wrong"), [("", True), (",fd", False)])
+def test_a_peer_with_frames_of_the_other_format_is_named(bus: str, option: str, wrong: bool) -> None:
+    """Rule: the kernel passes over such frames; argusd does not."""
+    done = threading.Event()
+    raw = Raw(bus, fd=True)
+
+    def answer() -> None:
+        while not done.wait(0.2):
+            raw.send(TO_HOST_ID, b"\x06\xfa\xfb\x03\x00\x00\x00\xcc", fd=wrong)
+
+    peer = threading.Thread(target=answer)
+    peer.start()
+    said_so = run_argusd("--link", f"can:{bus}{option}", "--check", "--wait", "3")
+    done.set()
+    peer.join()
+    raw.close()
+    assert said_so.returncode == 4
+    assert "CAN FD frames where this link has classic ones, or the reverse" in said(said_so)
 
 
 @pytest.mark.parametrize("options", ["", ",fd", ",pad=none,bs=2,stmin=1", ",tx=0x100,rx=0x101"])

@@ -8,6 +8,7 @@
 #include <sys/ioctl.h>
 
 #define FAKE_FD 77
+#define EAR_FD 78
 
 fake_can_t fake_can;
 
@@ -30,6 +31,10 @@ void fake_can_answer_send(int negative_errno) {
 }
 
 static int open_socket(int type, int protocol) {
+    if (protocol == CAN_RAW && fake_can.protocol == CAN_ISOTP) {
+        fake_can.ear_opened += fake_can.ear_says == 0;
+        return fake_can.ear_says == 0 ? EAR_FD : fake_can.ear_says;
+    }
     fake_can.type = type;
     fake_can.protocol = protocol;
     fake_can.opened += fake_can.socket_says == 0;
@@ -60,6 +65,9 @@ static int control(int fd, unsigned long request, struct ifreq *about) {
 
 static int set(int fd, int level, int option, const void *value, uint32_t length) {
     (void)level;
+    if (fd == EAR_FD) {
+        return 0;
+    }
     const int at = fake_can.options;
     if (fd != FAKE_FD || at == 8 || length > sizeof fake_can.value[0]) {
         return -EINVAL;
@@ -71,6 +79,9 @@ static int set(int fd, int level, int option, const void *value, uint32_t length
 }
 
 static int bind_socket(int fd, const struct sockaddr_can *address) {
+    if (fd == EAR_FD) {
+        return 0;
+    }
     fake_can.address = *address;
     return fd == FAKE_FD ? fake_can.bind_says : -EBADF;
 }
@@ -92,7 +103,22 @@ static ssize_t send_bytes(int fd, const void *bytes, size_t count) {
     return (ssize_t)count;
 }
 
+static ssize_t hear(void) {
+    if (fake_can.ear_classic > 0) {
+        fake_can.ear_classic--;
+        return CAN_MTU;
+    }
+    if (fake_can.ear_fd > 0) {
+        fake_can.ear_fd--;
+        return CANFD_MTU;
+    }
+    return -EAGAIN;
+}
+
 static ssize_t receive_bytes(int fd, void *bytes, size_t capacity) {
+    if (fd == EAR_FD) {
+        return hear();
+    }
     if (fd != FAKE_FD) {
         return -EBADF;
     }
@@ -109,6 +135,10 @@ static ssize_t receive_bytes(int fd, void *bytes, size_t capacity) {
 }
 
 static int close_socket(int fd) {
+    if (fd == EAR_FD) {
+        fake_can.ear_closed++;
+        return 0;
+    }
     fake_can.closed++;
     return fd == FAKE_FD ? 0 : -EBADF;
 }

@@ -43,6 +43,12 @@ typedef struct {
     int sends; // taken
     int opened;
     int closed;
+    // The raw socket beside an ISO-TP socket: frames waiting, classic and of CAN FD.
+    int ear_says; // 0, or -errno
+    int ear_classic;
+    int ear_fd;
+    int ear_opened;
+    int ear_closed;
 } fake_can_t;
 
 extern fake_can_t fake_can;

@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final
 
+from hil_sim.values import value_words
+
 _LEVELS: Final = ("OK", "WARN", "ERROR", "STALE")
 _MARKS: Final = {"DISABLED": "!", "PROBATION": "!", "SUSPECT": "?", "ABSENT": "-", "STALE": "~"}
 
@@ -14,10 +16,11 @@ def event_line(event: dict[str, Any]) -> str:
     """Return an event as one line.
 
     >>> event_line({"t": 7.5, "event": "INJECTED", "level": 1, "name": "sonar/front/03", "value": 3})
-    '    7.500 WARN  sonar/front/03 INJECTED 3'
+    '    7.500 WARN  sonar/front/03 INJECTED (stuck)'
     """
     level = _LEVELS[event["level"]] if event["level"] < len(_LEVELS) else "?"
-    return f"{event['t']:9.3f} {level:<5} {event['name']:<14} {event['event']} {event['value']}"
+    words = value_words(event["event"], event["value"])
+    return f"{event['t']:9.3f} {level:<5} {event['name']:<14} {event['event']}{words}"
 
 
 def readings_line(readings: dict[str, Any]) -> str:

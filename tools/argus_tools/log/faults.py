@@ -16,6 +16,7 @@ from argus_tools.log.packets import Row
 from argus_tools.log.summary import Summary
 from hil_sim.arcos import FLAG, SIP, TIMING, Command, SyncReply
 from hil_sim.core.library import Core, Event, kind_name, setting_value
+from hil_sim.values import value_words
 
 SUMMARY: Final = "tell what the fault manager would have said from a log alone"
 EXAMPLES: Final = """\
@@ -307,11 +308,7 @@ def _line(said: Said, colour: bool) -> str:
     when = f"byte {said.offset}" if said.t is None else f"{said.t:.3f}"
     tint = _TINT.get(event.level_name, "") if colour else ""
     meaning, _, _ = event.meaning.partition("; value:")
-    value = ""
-    if event.event == _DISABLED:
-        value = f" ({kind_name(event.value)})"
-    elif event.has_value:
-        value = f" {event.value}"
+    value = value_words(event.event, event.value)
     level = f"{tint}{event.level_name:<5}{_PLAIN if tint else ''}"
     return f"{when:>14} {level} {event.name:<14} {event.event}{value}: {meaning}"
 

@@ -87,6 +87,43 @@ void test_failures_to_open_leave_nothing_open(void) {
     TEST_ASSERT_EQUAL_INT(HAL_LINK_NOT_OPEN, hal_link_flush(&link_));
 }
 
+// The kernel's ISO-TP passes over them without a word.
+static void the_other_format_is_counted(bool fd, int *other, int *own) {
+    fake_can_reset();
+    fake_can.mtu = CANFD_MTU;
+    hal_isotp_init(&isotp, &fake_can_sys);
+    spec.fd = fd;
+    open_it();
+    *other = 3;
+    *own = 2;
+    TEST_ASSERT_EQUAL_INT(0, hal_link_read(&link_, bytes, sizeof bytes));
+    TEST_ASSERT_EQUAL_UINT32(3, isotp.errors[HAL_ISOTP_FORMAT]);
+    deliver(6, 1);
+    TEST_ASSERT_EQUAL_INT(6, hal_link_read(&link_, bytes, sizeof bytes));
+    TEST_ASSERT_EQUAL_INT(1, fake_can.ear_closed);
+    *other = 5; // a peer that was heard has the right format
+    TEST_ASSERT_EQUAL_INT(0, hal_link_read(&link_, bytes, sizeof bytes));
+    TEST_ASSERT_EQUAL_UINT32(3, isotp.errors[HAL_ISOTP_FORMAT]);
+    *other = 0;
+    hal_link_close(&link_);
+    TEST_ASSERT_EQUAL_INT(fake_can.ear_opened, fake_can.ear_closed);
+}
+
+void test_frames_of_the_other_format_are_counted_until_a_packet_came(void) {
+    the_other_format_is_counted(false, &fake_can.ear_fd, &fake_can.ear_classic);
+    the_other_format_is_counted(true, &fake_can.ear_classic, &fake_can.ear_fd);
+}
+
+void test_without_a_raw_socket_the_link_is_no_worse(void) {
+    fake_can.ear_says = -EPROTONOSUPPORT;
+    fake_can.ear_fd = 3;
+    open_it();
+    TEST_ASSERT_EQUAL_INT(0, hal_link_read(&link_, bytes, sizeof bytes));
+    TEST_ASSERT_EQUAL_UINT32(0, isotp.errors[HAL_ISOTP_FORMAT]);
+    deliver(6, 1);
+    TEST_ASSERT_EQUAL_INT(6, hal_link_read(&link_, bytes, sizeof bytes));
+}
+
 void test_each_pdu_is_read_whole_also_in_pieces(void) {
     open_it();
     deliver(HAL_ISOTP_PDU_MAX, 1);

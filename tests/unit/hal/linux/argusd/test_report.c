@@ -34,7 +34,7 @@ void test_an_event_to_the_letter(void) {
         "\"value\":5000,\"state\":\"IsMinor\"}",
         line);
     TEST_ASSERT_GREATER_THAN_size_t(0, report_event_plain(&event, 12345, false, line, sizeof line));
-    TEST_ASSERT_EQUAL_STRING("   12.345 ERROR sonar/front/03 SONAR_DEAD 5000: dead reading: STOP sent", line);
+    TEST_ASSERT_EQUAL_STRING("   12.345 ERROR sonar/front/03 SONAR_DEAD 5000 mm: dead reading: STOP sent", line);
 }
 
 void test_the_kind_of_a_fault_is_named(void) {
@@ -114,9 +114,30 @@ void test_can_is_told_where_there_is_one(void) {
     view.can_taken = 3;
     report_status_json(&view, 0, line, sizeof line);
     TEST_ASSERT_NOT_NULL_MESSAGE(
-        strstr(line, "\"can\":{\"no_flow\":0,\"overflow\":0,\"timeout\":0,\"sequence\":7,\"bad_frame\":0,"
-                     "\"too_long\":0,\"no_buffers\":0,\"down\":0,\"sent\":0,\"taken\":3,\"refused\":0}"),
+        strstr(
+            line,
+            "\"can\":{\"no_flow\":0,\"overflow\":0,\"timeout\":0,\"sequence\":7,\"bad_frame\":0,"
+            "\"too_long\":0,\"no_buffers\":0,\"format\":0,\"down\":0,\"sent\":0,\"taken\":3,\"refused\":0}"),
         line);
+}
+
+static void shown_as(int id, int32_t value, const char *part) {
+    const argus_event_t event = {.id = (uint8_t)id, .value = value, .sonar = ARGUS_NO_SONAR};
+    TEST_ASSERT_GREATER_THAN_size_t(0, report_event_plain(&event, 0, false, line, sizeof line));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(line, part), line);
+}
+
+void test_a_value_has_its_unit_or_its_name(void) {
+    shown_as(ARGUS_EV_STOPPED, -9298, " STOPPED -92.98 deg: ");
+    shown_as(ARGUS_EV_STOPPED, -98, " STOPPED -0.98 deg: ");
+    shown_as(ARGUS_EV_SONAR_SILENT, INT32_MAX, " SONAR_SILENT (never): ");
+    shown_as(ARGUS_EV_SONAR_SILENT, 812, " SONAR_SILENT 812 ms: ");
+    shown_as(ARGUS_EV_BATTERY_LOW, 113, " BATTERY_LOW 11.3 V: ");
+    shown_as(ARGUS_EV_SPEED_EXCEEDED, 400, " SPEED_EXCEEDED 400 mm/s: ");
+    shown_as(ARGUS_EV_GOAL_REACHED, 31, " GOAL_REACHED 31 mm: ");
+    shown_as(ARGUS_EV_SONAR_NAMED, ARGUS_KIND_STUCK, " SONAR_NAMED (stuck): ");
+    shown_as(ARGUS_EV_PLAN, 2, " PLAN 2: ");
+    shown_as(ARGUS_EV_ACTIVE, 0, " ACTIVE: ");
 }
 
 void test_a_line_that_does_not_fit_is_none(void) {
