@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "arcos/arithmetic.h"
 #include "argus/argus.h"
 
 #define HEADER_BYTES ARCOS_FRAME_OVERHEAD // FA FB COUNT
@@ -11,12 +12,6 @@
 #define CHECKSUM_BYTES 2
 
 #define SLOWEST_BAUD ARCOS_BAUD_B9600
-
-static uint32_t elapsed_ms(uint32_t now_ms, uint32_t then_ms) {
-    const uint32_t elapsed = now_ms - then_ms;
-    return elapsed < UINT32_C(0x80000000) ? elapsed
-                                          : 0; // a clock that steps back must not look like a long silence
-}
 
 uint16_t argus_frame_checksum(const uint8_t *data, size_t count) {
     uint32_t high = 0; // two sums cost less than putting each pair together
@@ -113,7 +108,7 @@ static size_t owed(const argus_parser_t *self) {
 }
 
 static void note_silence(argus_parser_t *self, uint32_t now_ms) {
-    if (self->length > 0 && elapsed_ms(now_ms, self->last_byte_ms) >= ARCOS_FRAME_RESYNC_QUIET_MS) {
+    if (self->length > 0 && argus_elapsed_ms(now_ms, self->last_byte_ms) >= ARCOS_FRAME_RESYNC_QUIET_MS) {
         self->broken_off = true;
     }
 }
@@ -239,8 +234,8 @@ static bool find_inside(argus_parser_t *self, argus_packet_t *packet) {
 static bool is_overdue(const argus_parser_t *self, uint32_t now_ms) {
     const uint32_t count = self->length < HEADER_BYTES ? 0 : self->held[self->first + 2];
     const uint32_t wire_ms = count * ARCOS_TIMING_BITS_PER_BYTE * 1000 / SLOWEST_BAUD;
-    return elapsed_ms(now_ms, self->last_byte_ms) >= ARCOS_FRAME_RESYNC_QUIET_MS &&
-           elapsed_ms(now_ms, self->since_ms) > wire_ms + ARCOS_FRAME_RESYNC_EXTRA_MS;
+    return argus_elapsed_ms(now_ms, self->last_byte_ms) >= ARCOS_FRAME_RESYNC_QUIET_MS &&
+           argus_elapsed_ms(now_ms, self->since_ms) > wire_ms + ARCOS_FRAME_RESYNC_EXTRA_MS;
 }
 
 // A complete packet's fate; its header is skipped when it is bad.

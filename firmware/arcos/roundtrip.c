@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "arcos/arithmetic.h"
+
 #define PORTS ARGUS_ROUNDTRIP_PORTS
 #define WINDOW (PORTS - 1) // so many may be under way: one number is that of the last one seen
 #define AGAIN_MS 1000u     // nothing is seen: the last one may be lost
@@ -14,11 +16,11 @@
 #define ASK_SHARE 5 // so many times the time of a CONFIGpac passes between two
 #define CONFIG_BYTES 200
 #define SIP_BYTES 64
-#define LONGEST_MS 60000u
+#define LONGEST_MS 60000
 
-static uint32_t elapsed_ms(const uint32_t now_ms, const uint32_t then_ms) {
+static int32_t waits_ms(const uint32_t now_ms, const uint32_t then_ms) {
     const uint32_t elapsed = now_ms - then_ms;
-    return elapsed < LONGEST_MS ? elapsed : LONGEST_MS;
+    return elapsed < (uint32_t)LONGEST_MS ? (int32_t)elapsed : LONGEST_MS;
 }
 
 // On the wire.
@@ -110,10 +112,9 @@ int32_t argus_roundtrip_ms(const argus_roundtrip_t *const self, const uint32_t n
         return 0;
     }
     if (self->shows) {
-        return (int32_t)elapsed_ms(now_ms, self->seen_ms);
+        return waits_ms(now_ms, self->seen_ms);
     }
-    const uint32_t waits_ms = self->asks ? elapsed_ms(now_ms, self->asked_ms) : 0;
-    return (int32_t)(waits_ms > self->took_ms ? waits_ms : self->took_ms);
+    return argus_max(self->asks ? waits_ms(now_ms, self->asked_ms) : 0, (int32_t)self->took_ms);
 }
 
 int32_t argus_roundtrip_usual_ms(const argus_roundtrip_t *const self, const argus_config_t *const config) {

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "arcos/arithmetic.h"
+
 #define LISTEN_MS 250
 #define FLUSH_MS 100
 #define STEP_MS 500
@@ -20,13 +22,8 @@
 #define PULSES 4u // in the time that the robot's watchdog waits
 #define OPENING_ROWS (1u << ARGUS_SETUP_HALT | 1u << ARGUS_SETUP_HALT_TURN | 1u << ARGUS_SETUP_ZERO)
 
-static uint32_t elapsed_ms(uint32_t now_ms, uint32_t then_ms) {
-    const uint32_t elapsed = now_ms - then_ms;
-    return elapsed < UINT32_C(0x80000000) ? elapsed : 0;
-}
-
 static uint32_t in_state_ms(const argus_session_t *self, uint32_t now_ms) {
-    return elapsed_ms(now_ms, self->since_ms);
+    return argus_elapsed_ms(now_ms, self->since_ms);
 }
 
 static void enter(argus_session_t *self, uint32_t now_ms, argus_session_state_t state) {
@@ -231,7 +228,7 @@ static unsigned on_old_session(argus_session_t *self, uint32_t now_ms, const arg
         return dislodge(self, now_ms) | got;
     }
     const bool again = self->state == ARGUS_SESSION_HALT;
-    if (!again || elapsed_ms(now_ms, self->spoke_ms) >= STEP_MS) { // the first one may have got lost
+    if (!again || argus_elapsed_ms(now_ms, self->spoke_ms) >= STEP_MS) { // the first one may have got lost
         argus_outbox_clear(&self->outbox);
         stop_wheels(self);
     }
@@ -330,7 +327,7 @@ static unsigned after_gap(argus_session_t *self, const argus_config_t *config, u
 static unsigned on_open_sip(argus_session_t *self, const argus_config_t *config, uint32_t now_ms,
                             const argus_packet_t *packet) {
     ARGUS_ASSERT(self->state == ARGUS_SESSION_OPEN && is_sip(packet));
-    const uint32_t gap_ms = elapsed_ms(now_ms, self->heard_ms);
+    const uint32_t gap_ms = argus_elapsed_ms(now_ms, self->heard_ms);
     return take_sip(self, now_ms, packet) ? after_gap(self, config, gap_ms) : 0;
 }
 
@@ -343,7 +340,7 @@ static unsigned on_open(argus_session_t *self, const argus_config_t *config, uin
     }
     // A robot that answers our PULSE as a SYNC0 has been switched off and on.
     if (is_reset_notice(packet) || (self->stalled && type == ARCOS_TYPE_SYNC0)) {
-        self->gap_ms = elapsed_ms(now_ms, self->heard_ms);
+        self->gap_ms = argus_elapsed_ms(now_ms, self->heard_ms);
         return lose(self, now_ms);
     }
     if (type == ARCOS_TYPE_CONFIGPAC) { // late: its serial number may be news
@@ -357,7 +354,8 @@ static unsigned on_open(argus_session_t *self, const argus_config_t *config, uin
 // It still reports: CLOSE did not arrive.
 static unsigned close_again(argus_session_t *self, uint32_t now_ms, const argus_packet_t *packet) {
     ARGUS_ASSERT(self->state == ARGUS_SESSION_LEAVING);
-    if (is_sip(packet) && self->outbox.length == 0 && elapsed_ms(now_ms, self->spoke_ms) >= LEAVE_AGAIN_MS) {
+    if (is_sip(packet) && self->outbox.length == 0 &&
+        argus_elapsed_ms(now_ms, self->spoke_ms) >= LEAVE_AGAIN_MS) {
         argus_outbox_plain(&self->outbox, ARCOS_CMD_STOP);
         argus_outbox_plain(&self->outbox, ARCOS_CMD_CLOSE);
     }
@@ -417,7 +415,7 @@ static uint32_t pulse_ms(const argus_session_t *self, const argus_config_t *conf
 }
 
 static void pulse(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
-    if (self->outbox.length > 0 || elapsed_ms(now_ms, self->spoke_ms) < pulse_ms(self, config)) {
+    if (self->outbox.length > 0 || argus_elapsed_ms(now_ms, self->spoke_ms) < pulse_ms(self, config)) {
         return;
     }
     if (self->stalled) {
@@ -459,11 +457,11 @@ static void keep_opening(argus_session_t *self, uint32_t now_ms) {
 static unsigned opening_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
     ARGUS_ASSERT(self->state == ARGUS_SESSION_OPENING);
     const uint32_t waited_ms = in_state_ms(self, now_ms);
-    if (elapsed_ms(now_ms, self->heard_ms) >= (uint32_t)config->link_lost_ms) {
+    if (argus_elapsed_ms(now_ms, self->heard_ms) >= (uint32_t)config->link_lost_ms) {
         return fail(self, now_ms);
     }
     if (!self->has_robot && waited_ms < CONFIG_WAIT_MS &&
-        elapsed_ms(now_ms, self->tried_ms) >= CONFIG_REPEAT_MS) {
+        argus_elapsed_ms(now_ms, self->tried_ms) >= CONFIG_REPEAT_MS) {
         ask_config(self, now_ms);
     }
     if (waited_ms < CONFIG_WAIT_MS) {
@@ -475,7 +473,7 @@ static unsigned opening_timer(argus_session_t *self, const argus_config_t *confi
 
 static unsigned open_timer(argus_session_t *self, const argus_config_t *config, uint32_t now_ms) {
     ARGUS_ASSERT(config->link_stall_ms > 0 && config->link_lost_ms > 0);
-    const uint32_t silent_ms = elapsed_ms(now_ms, self->heard_ms);
+    const uint32_t silent_ms = argus_elapsed_ms(now_ms, self->heard_ms);
     if (silent_ms >= (uint32_t)config->link_lost_ms) {
         self->gap_ms = silent_ms;
         return lose(self, now_ms);
@@ -492,7 +490,7 @@ static unsigned open_timer(argus_session_t *self, const argus_config_t *config, 
 static unsigned leaving_timer(argus_session_t *self, uint32_t now_ms) {
     ARGUS_ASSERT(self->state == ARGUS_SESSION_LEAVING);
     const uint32_t waited_ms = in_state_ms(self, now_ms);
-    const bool drained = self->outbox.length == 0 && elapsed_ms(now_ms, self->spoke_ms) >= LEAVE_MS;
+    const bool drained = self->outbox.length == 0 && argus_elapsed_ms(now_ms, self->spoke_ms) >= LEAVE_MS;
     if (waited_ms >= LEAVE_MAX_MS || (drained && waited_ms >= LEAVE_MS)) {
         argus_outbox_clear(&self->outbox);
         enter(self, now_ms, ARGUS_SESSION_CLOSED);
@@ -553,7 +551,7 @@ unsigned argus_session_observe(argus_session_t *self, const argus_config_t *conf
         return 0;
     }
     const bool opens = self->state != ARGUS_SESSION_OPEN;
-    const uint32_t gap_ms = opens ? 0 : elapsed_ms(now_ms, self->heard_ms);
+    const uint32_t gap_ms = opens ? 0 : argus_elapsed_ms(now_ms, self->heard_ms);
     self->sips++;
     self->heard_ms = now_ms;
     return opens ? open_observed(self, now_ms) | ARGUS_SESSION_GOT_SIP : after_gap(self, config, gap_ms);

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "arcos/arithmetic.h"
+
 #define COMMAND_AT ARCOS_FRAME_OVERHEAD
 #define TYPE_AT (COMMAND_AT + 1)
 #define VALUE_AT (COMMAND_AT + 2)
@@ -110,10 +112,6 @@ void argus_setup_sent(argus_setup_t *self, uint32_t now_ms, const uint8_t *packe
 // What comes back
 // ----------------------------------------------------------------------------------------------
 
-static int32_t magnitude(int32_t value) {
-    return value < 0 ? -value : value;
-}
-
 static answer_t firing_answer(const argus_setup_t *self, int array) {
     const int first = array * ARCOS_TIMING_TRANSDUCERS_PER_ARRAY;
     int32_t total = 0, slots = 0, slots_before = 0, off = 0, off_before = 0;
@@ -126,8 +124,8 @@ static answer_t firing_answer(const argus_setup_t *self, int array) {
         return slots == 0 ? YES : UNTOLD; // an array that is not named keeps its order
     }
     for (int i = first; i < first + ARCOS_TIMING_TRANSDUCERS_PER_ARRAY; i++) {
-        off += magnitude(self->listed[i] * slots - total * self->share[i]) * slots_before;
-        off_before += magnitude(self->listed[i] * slots_before - total * self->share_before[i]) * slots;
+        off += argus_abs(self->listed[i] * slots - total * self->share[i]) * slots_before;
+        off_before += argus_abs(self->listed[i] * slots_before - total * self->share_before[i]) * slots;
     }
     return off <= off_before ? YES : NO;
 }
@@ -145,12 +143,12 @@ static answer_t firing(const argus_setup_t *self) {
 }
 
 static int32_t speed_of(const argus_sip_t *sip) {
-    return magnitude(sip->vel_left_mm_s + sip->vel_right_mm_s) / 2;
+    return argus_abs(sip->vel_left_mm_s + sip->vel_right_mm_s) / 2;
 }
 
 static int32_t wheel_of(const argus_sip_t *sip) {
-    const int32_t left = magnitude(sip->vel_left_mm_s);
-    const int32_t right = magnitude(sip->vel_right_mm_s);
+    const int32_t left = argus_abs(sip->vel_left_mm_s);
+    const int32_t right = argus_abs(sip->vel_right_mm_s);
     return left > right ? left : right;
 }
 
@@ -161,7 +159,7 @@ static int32_t around_zero(uint16_t raw) {
 
 static bool is_at_origin(const argus_sip_t *sip) {
     return around_zero(sip->x_raw) <= NEAR_ZERO && around_zero(sip->y_raw) <= NEAR_ZERO &&
-           magnitude(sip->heading_raw) <= NEAR_ZERO_TURN;
+           argus_abs(sip->heading_raw) <= NEAR_ZERO_TURN;
 }
 
 // A speed other than 0 is a client's, who drives.
@@ -171,7 +169,7 @@ static bool rests(const argus_sip_t *sip, int32_t value) {
 
 // Slower than its speed a robot may be for many reasons.
 static answer_t shows_speed(const argus_sip_t *sip, int32_t value) {
-    return magnitude(speed_of(sip) - value) <= value / 8 ? YES : UNTOLD;
+    return argus_abs(speed_of(sip) - value) <= value / 8 ? YES : UNTOLD;
 }
 
 static bool are_on(const argus_sip_t *sip, int32_t value) {
@@ -276,7 +274,7 @@ void argus_setup_told(argus_setup_t *self, uint32_t now_ms, const argus_configpa
         self->last[row] = field;
         if (before) {
             self->first[row] = field;
-        } else if (field != 0 && field == magnitude(order->value)) {
+        } else if (field != 0 && field == argus_abs(order->value)) {
             self->follows = self->follows || field != self->first[row];
             order->open = false;
         }

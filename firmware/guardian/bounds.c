@@ -12,8 +12,6 @@
 #define TRUST_MM 2000    // a thin thing beyond may give no echo
 #define SEEN_LEFT_MM 100 // what argus_guard_seen_mm() takes off for itself
 #define LEAST_MM_S 30    // slower than this it stands
-#define REACTION_MS 500  // about that of S5
-#define DEG_PER_RAD 57
 #define CURVE_MOST_CDEG 9000
 #define DEVIATION_MOST_MM 400
 #define FASTEST_MM_S 1500 // no robot is faster
@@ -31,10 +29,14 @@ typedef struct {
     int32_t half_mm;
 } corridor_t;
 
+int32_t argus_turn_deg_s(const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->robot->track_mm > 0);
+    const int32_t across_mm_s = knowledge->vel_right_mm_s - knowledge->vel_left_mm_s;
+    return across_mm_s * ARGUS_DEG_PER_RAD / knowledge->robot->track_mm;
+}
+
 static int32_t turn_deg_s(const argus_t *const self) {
-    const argus_knowledge_t *const knowledge = &self->knowledge;
-    const int32_t across_mm_s = argus_abs(knowledge->vel_right_mm_s - knowledge->vel_left_mm_s);
-    return across_mm_s * DEG_PER_RAD / knowledge->robot->track_mm;
+    return argus_abs(argus_turn_deg_s(&self->knowledge));
 }
 
 static int32_t speed_mm_s(const argus_t *const self) {
@@ -45,14 +47,14 @@ static int32_t speed_mm_s(const argus_t *const self) {
 // Until it stands.
 static int32_t rest_mm(const argus_t *const self, const int32_t mm_s) {
     ARGUS_ASSERT(self->knowledge.robot->decel_mm_s2 > 0);
-    return mm_s * REACTION_MS / 1000 + mm_s * mm_s / (2 * self->knowledge.robot->decel_mm_s2);
+    return mm_s * ARGUS_CLIENT_REACTION_MS / 1000 + mm_s * mm_s / (2 * self->knowledge.robot->decel_mm_s2);
 }
 
 // In a curve the robot leaves its axis by s^2 w / 2 v until it stands.
 static int32_t deviation_mm(const argus_t *const self, const int32_t mm_s) {
     const int32_t way_mm = rest_mm(self, mm_s);
     const int32_t turn_cdeg = mm_s > 0 ? way_mm * turn_deg_s(self) * 100 / mm_s : 0;
-    return way_mm * argus_min(turn_cdeg, CURVE_MOST_CDEG) / (2 * 100 * DEG_PER_RAD);
+    return way_mm * argus_min(turn_cdeg, CURVE_MOST_CDEG) / (2 * 100 * ARGUS_DEG_PER_RAD);
 }
 
 static corridor_t corridor(const argus_t *const self, const bool rear) {

@@ -8,6 +8,8 @@
 // A turn of a client, at most, and its deceleration, at least: S7 counts on both.
 #define ARGUS_CLIENT_TURN_DEG_S 100
 #define ARGUS_CLIENT_TURN_DECEL 100
+#define ARGUS_DEG_PER_RAD 57
+#define ARGUS_CLIENT_REACTION_MS 500 // from a reading to the effect of an order, about that of S5
 
 // Why a way is closed.
 typedef enum {
@@ -28,6 +30,9 @@ typedef struct {
 // Where the robot is built to drive, or back. Cost: one pass over the sonars, five places of a cone each;
 // where a bearing ahead is blind that of argus_rays_seen_mm().
 argus_bound_t argus_bound_way(const argus_t *self, bool ahead);
+
+// How fast it turns by its wheels, counter-clockwise positive.
+int32_t argus_turn_deg_s(const argus_knowledge_t *knowledge);
 
 // What bounds a client where it may not move at all, or not turn.
 argus_bound_why_t argus_bound_why(argus_permit_t permit);

@@ -16,8 +16,6 @@
 #define THERE_CDEG 50   // of a HEAD, whole degrees: no turn is left
 #define LOOK_CDEG 6000  // a HEAD is looked at so far ahead
 #define LEAST_CDEG 1000 // ... and any other turn at least so far: little ones follow each other
-#define REACTION_MS 500 // from the reading to the command, of a turn
-#define DEG_PER_RAD 57
 #define FREE_SIPS 10
 #define SPARE_MM_S 40 // above what was given: how wheels keep a speed
 #define FALLS_MM_S 10 // in each SIP where it obeys: a third of the weakest brake
@@ -134,8 +132,8 @@ static bool send_pair(argus_t *const core, const int32_t right, const int32_t le
 // the SETRV that passes.
 static int32_t until_rest_cdeg(const int32_t deg_s) {
     const int32_t speed = argus_within(ARGUS_CLIENT_TURN_DEG_S, deg_s);
-    const int32_t ahead_cdeg =
-        argus_abs(speed) * REACTION_MS / 10 + speed * speed * 100 / (2 * ARGUS_CLIENT_TURN_DECEL);
+    const int32_t ahead_cdeg = argus_abs(speed) * ARGUS_CLIENT_REACTION_MS / 10 +
+                               speed * speed * 100 / (2 * ARGUS_CLIENT_TURN_DECEL);
     return speed < 0 ? -ahead_cdeg : ahead_cdeg;
 }
 
@@ -174,8 +172,8 @@ static void give_pair(argus_t *const core, argus_hold_client_t *const self, cons
         wish->mm_s != 0 ? wish->half_mm_s * argus_abs(mm_s) / argus_abs(wish->mm_s) : wish->half_mm_s;
     int32_t right = in_units(mm_s + half_mm_s);
     int32_t left = in_units(mm_s - half_mm_s);
-    const int32_t deg_s =
-        (right - left) * ARGUS_VEL2_UNIT_MM_S * DEG_PER_RAD / argus_max(1, core->knowledge.robot->track_mm);
+    const int32_t deg_s = (right - left) * ARGUS_VEL2_UNIT_MM_S * ARGUS_DEG_PER_RAD /
+                          argus_max(1, core->knowledge.robot->track_mm);
     const argus_permit_t permit = ask_speed(core, deg_s);
     if (permit != ARGUS_PERMIT_GIVEN) {
         tell_turn(core, given, permit, deg_s);
@@ -302,11 +300,6 @@ static int32_t left_cdeg(const argus_t *const core, const argus_wish_t *const wi
     return argus_angle_wrap(wish->heading_deg * 100 - raw_cdeg(core));
 }
 
-static int32_t turn_deg_s(const argus_t *const core) {
-    const argus_knowledge_t *const knowledge = &core->knowledge;
-    return (knowledge->vel_right_mm_s - knowledge->vel_left_mm_s) * DEG_PER_RAD / knowledge->robot->track_mm;
-}
-
 // No farther than the heading that the robot was let turn to.
 static bool is_let(const argus_t *const core, const argus_given_t *const given, const int32_t left) {
     const int32_t let_cdeg = argus_angle_wrap(given->head_cdeg - raw_cdeg(core));
@@ -318,7 +311,7 @@ static bool is_let(const argus_t *const core, const argus_given_t *const given, 
 // none of them is closed.
 static int32_t head_look_cdeg(const argus_t *const core, const argus_given_t *const given,
                               const int32_t left) {
-    const int32_t rest_cdeg = until_rest_cdeg(turn_deg_s(core));
+    const int32_t rest_cdeg = until_rest_cdeg(argus_turn_deg_s(&core->knowledge));
     const bool same_way = (rest_cdeg < 0) == (left < 0);
     const int32_t most_cdeg = same_way ? argus_max(LOOK_CDEG, argus_abs(rest_cdeg)) : LOOK_CDEG;
     return widened(argus_within(most_cdeg, left), is_let(core, given, left) ? 0 : LEAST_CDEG);
@@ -486,7 +479,7 @@ static int32_t given_deg_s(const argus_t *const core, const argus_hold_client_t 
         return ARGUS_CLIENT_TURN_DEG_S;
     }
     if (units != 0) {
-        return argus_abs(units) * ARGUS_VEL2_UNIT_MM_S * DEG_PER_RAD /
+        return argus_abs(units) * ARGUS_VEL2_UNIT_MM_S * ARGUS_DEG_PER_RAD /
                argus_max(1, core->knowledge.robot->track_mm);
     }
     const bool turns = self->wish.turn == ARGUS_WISH_RVEL && !given->turn_held;
@@ -501,9 +494,10 @@ static void heed(const argus_t *const core, argus_hold_client_t *const self) {
     self->way_due = argus_heed_sip(&self->way_heed, given_mm_s(&self->given, self->setv_mm_s), mm_s,
                                    SPARE_MM_S, FALLS_MM_S, late_ms) ||
                     self->way_due;
-    self->turn_due = argus_heed_sip(&self->turn_heed, given_deg_s(core, self), argus_abs(turn_deg_s(core)),
-                                    SPARE_DEG_S, FALLS_DEG_S, late_ms) ||
-                     self->turn_due;
+    self->turn_due =
+        argus_heed_sip(&self->turn_heed, given_deg_s(core, self),
+                       argus_abs(argus_turn_deg_s(&core->knowledge)), SPARE_DEG_S, FALLS_DEG_S, late_ms) ||
+        self->turn_due;
 }
 
 void argus_hold_watch(argus_t *const core, argus_hold_client_t *const self) {

@@ -5,34 +5,12 @@
 
 #include <stdint.h>
 
+#include "arcos/arithmetic.h"
 #include "argus/argus.h"
 
 #define ARGUS_TRIG_ONE 16384 // argus_sin() and argus_cos() are scaled by this
 #define ARGUS_HALF_TURN_CDEG 18000
 #define ARGUS_TURN_CDEG 36000
-
-static inline int32_t argus_abs(const int32_t value) {
-    return value < 0 ? -value : value;
-}
-
-static inline int32_t argus_min(const int32_t a, const int32_t b) {
-    return a < b ? a : b;
-}
-
-static inline int32_t argus_max(const int32_t a, const int32_t b) {
-    return a > b ? a : b;
-}
-
-// The value, from `least` to `most`.
-static inline int32_t argus_between(const int32_t least, const int32_t most, const int32_t value) {
-    return argus_max(least, argus_min(most, value));
-}
-
-// ... of at most so much to either side; `most` >= 0.
-static inline int32_t argus_within(const int32_t most, const int32_t value) {
-    ARGUS_ASSERT(most >= 0);
-    return argus_between(-most, most, value);
-}
 
 static inline int argus_count_bits(const uint32_t mask) {
     int count = 0;

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "arcos/arithmetic.h"
 #include "robot/robot.h"
 
 #define HALF_TURN_DEG 180
@@ -28,14 +29,6 @@ typedef struct {
 #define ROW(key, section, def, min, max, meaning) ROW_##key,
 enum { ARGUS_RING_TABLE(ROW) ROWS };
 #undef ROW
-
-static int32_t most(const int32_t a, const int32_t b) {
-    return a > b ? a : b;
-}
-
-static int32_t magnitude(const int32_t value) {
-    return value < 0 ? -value : value;
-}
 
 static argus_ring_report_t report(const argus_ring_fault_t fault, const int key, const int sonar) {
     return (argus_ring_report_t){.fault = (int32_t)fault, .key = key, .sonar = sonar};
@@ -66,7 +59,7 @@ static argus_ring_report_t check_figures(const int32_t figures[ROWS]) {
 
 // Of a corner of the rectangle, rounded up.
 static int32_t corner_mm(const int32_t figures[ROWS]) {
-    const int32_t end_mm = most(figures[ROW_front_mm], figures[ROW_rear_mm]);
+    const int32_t end_mm = argus_max(figures[ROW_front_mm], figures[ROW_rear_mm]);
     const int32_t square4 = 4 * end_mm * end_mm + figures[ROW_width_mm] * figures[ROW_width_mm];
     int32_t radius_mm = end_mm;
     while (4 * radius_mm * radius_mm < square4) {
@@ -78,7 +71,7 @@ static int32_t corner_mm(const int32_t figures[ROWS]) {
 static void work_out_figures(const argus_ring_t *const ring, int32_t figures[ROWS]) {
     int32_t face_mm = 1;
     for (int i = 0; i < ring->forward_count; i++) {
-        face_mm = most(face_mm, ring->mounts[ring->forward[i]].x_mm);
+        face_mm = argus_max(face_mm, ring->mounts[ring->forward[i]].x_mm);
     }
     const int32_t found[][2] = {{ROW_swing_radius_mm, corner_mm(figures)},
                                 {ROW_sonar_face_mm, face_mm},
@@ -93,8 +86,8 @@ static void work_out_figures(const argus_ring_t *const ring, int32_t figures[ROW
 }
 
 static bool can_swing(const int32_t figures[ROWS]) {
-    const int32_t end_mm = most(figures[ROW_front_mm], figures[ROW_rear_mm]);
-    const int32_t within_mm = most(end_mm, (figures[ROW_width_mm] + 1) / 2);
+    const int32_t end_mm = argus_max(figures[ROW_front_mm], figures[ROW_rear_mm]);
+    const int32_t within_mm = argus_max(end_mm, (figures[ROW_width_mm] + 1) / 2);
     return figures[ROW_swing_radius_mm] >= within_mm &&
            figures[ROW_swing_radius_mm] < figures[ROW_no_echo_mm];
 }
@@ -103,7 +96,7 @@ static bool can_swing(const int32_t figures[ROWS]) {
 
 static bool is_on_body(const argus_sonar_mount_t *const at, const int32_t figures[ROWS]) {
     return at->x_mm <= figures[ROW_front_mm] && at->x_mm >= -figures[ROW_rear_mm] &&
-           2 * magnitude(at->y_mm) <= figures[ROW_width_mm] + 1;
+           2 * argus_abs(at->y_mm) <= figures[ROW_width_mm] + 1;
 }
 
 static bool is_alike(const argus_ring_t *const ring, const int sonar) {
@@ -226,7 +219,7 @@ static void take_spacing(argus_robot_t *const row, const argus_ring_t *const rin
     const int32_t all_deg = bearing_of(ring, 0) - bearing_of(ring, gaps);
     int32_t widest = 0;
     for (int i = 0; i < gaps; i++) {
-        widest = most(widest, bearing_of(ring, i) - bearing_of(ring, i + 1));
+        widest = argus_max(widest, bearing_of(ring, i) - bearing_of(ring, i + 1));
     }
     row->pitch_deg = (int16_t)((2 * all_deg + gaps) / (2 * gaps));
     row->tolerance_excess = excess_of(widest);
@@ -235,8 +228,8 @@ static void take_spacing(argus_robot_t *const row, const argus_ring_t *const rin
 static int16_t rear_overhang_mm(const argus_ring_t *const ring, const int32_t rear_mm) {
     int32_t last_mm = INT16_MIN;
     for (int i = 0; i < ring->sonars; i++) {
-        if (magnitude(ring->mounts[i].heading_deg) >= LAST_ASTERN_DEG) {
-            last_mm = most(last_mm, ring->mounts[i].x_mm);
+        if (argus_abs(ring->mounts[i].heading_deg) >= LAST_ASTERN_DEG) {
+            last_mm = argus_max(last_mm, ring->mounts[i].x_mm);
         }
     }
     return (int16_t)(rear_mm + (last_mm == INT16_MIN ? 0 : last_mm));
@@ -248,10 +241,10 @@ static int16_t deck_behind_mm(const argus_robot_t *const row, const argus_ring_t
     int32_t face_mm = INT16_MIN;
     for (int i = 0; i < ring->sonars; i++) {
         if ((beside >> i & 1u) != 0) {
-            face_mm = most(face_mm, row->reversed ? -ring->mounts[i].x_mm : ring->mounts[i].x_mm);
+            face_mm = argus_max(face_mm, row->reversed ? -ring->mounts[i].x_mm : ring->mounts[i].x_mm);
         }
     }
-    return (int16_t)(face_mm == INT16_MIN ? 0 : most(row->sonar_face_mm - face_mm, 0));
+    return (int16_t)(face_mm == INT16_MIN ? 0 : argus_max(row->sonar_face_mm - face_mm, 0));
 }
 
 static void copy_name(argus_robot_t *const row, const char *const name) {
@@ -293,7 +286,7 @@ static void make_built(argus_own_robot_t *const own, const argus_ring_t *const r
 static int opposite(const argus_ring_t *const ring, const int32_t bearing_deg) {
     for (int i = 0; i < ring->sonars; i++) {
         const int32_t turned = ring->mounts[i].heading_deg - bearing_deg;
-        if (ring->mounts[i].role == ARGUS_ROLE_ASTERN && magnitude(turned) == HALF_TURN_DEG) {
+        if (ring->mounts[i].role == ARGUS_ROLE_ASTERN && argus_abs(turned) == HALF_TURN_DEG) {
             return i;
         }
     }
@@ -314,7 +307,7 @@ static bool make_turned(argus_own_robot_t *const own, const argus_ring_t *const 
         }
         row->forward[i] = (uint8_t)sonar;
         row->forward_mask = (argus_mask_t)(row->forward_mask | 1u << sonar);
-        row->sonar_face_mm = (int16_t)most(row->sonar_face_mm, -ring->mounts[sonar].x_mm);
+        row->sonar_face_mm = (int16_t)argus_max(row->sonar_face_mm, -ring->mounts[sonar].x_mm);
     }
     row->other = -1;
     row->reversed = true;
@@ -335,8 +328,8 @@ static bool make_turned(argus_own_robot_t *const own, const argus_ring_t *const 
 static void turn_overhang(argus_own_robot_t *const own, const argus_ring_t *const ring) {
     int32_t last_mm = INT16_MIN;
     for (int i = 0; i < ring->sonars; i++) {
-        if (magnitude(ring->mounts[i].heading_deg) <= HALF_TURN_DEG - LAST_ASTERN_DEG) {
-            last_mm = most(last_mm, -ring->mounts[i].x_mm);
+        if (argus_abs(ring->mounts[i].heading_deg) <= HALF_TURN_DEG - LAST_ASTERN_DEG) {
+            last_mm = argus_max(last_mm, -ring->mounts[i].x_mm);
         }
     }
     own->rows[1].rear_overhang_mm = (int16_t)(own->rows[1].rear_mm + (last_mm == INT16_MIN ? 0 : last_mm));
