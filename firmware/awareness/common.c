@@ -188,9 +188,11 @@ static bool comes_to_doubt(argus_dark_t *const dark) {
     return dark->doubted && !before && !dark->at_once && !dark->proven;
 }
 
-static bool is_proven(const argus_dark_t *const dark, const int run, const bool whole) {
+// `hear`: so many of the array go on hearing.
+static bool is_proven(const argus_dark_t *const dark, const int run, const int hear) {
     const bool disputed = dark->nats >= ARGUS_DARK_PROOF_CNAT && argus_count_bits(dark->by) >= ARGUS_PARTNERS;
-    return (dark->at_once && run >= ARGUS_DARK_RUN) || (whole && has_passed(dark)) || disputed;
+    const int least = hear <= 1 ? ARGUS_DARK_RUN : ARGUS_DARK_RUN_OF_SOME;
+    return (dark->at_once && run >= least) || (hear == 0 && has_passed(dark)) || disputed;
 }
 
 static void look_at(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int array) {
@@ -216,7 +218,7 @@ static void look_at(argus_common_t *const self, const argus_knowledge_t *const k
     count_lost(self, knowledge, dark);
     dark->news = (!was_dark && at_once) || comes_to_doubt(dark);
     pass_all(dark, knowledge);
-    dark->proven |= is_proven(dark, run, whole);
+    dark->proven |= is_proven(dark, run, argus_count_bits(in_use) - argus_count_bits(sonars));
 }
 
 void argus_common_sip(argus_common_t *const self, const argus_knowledge_t *const knowledge) {

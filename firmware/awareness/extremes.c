@@ -55,6 +55,26 @@ static int mate_says(const argus_knowledge_t *const knowledge, const int sonar) 
     return 0;
 }
 
+// One that looks about the same way hears something as near, not at its own least: there is something, as a
+// person beside the robot, who comes and goes as he likes. Nothing that near is so small that one alone hears
+// it.
+static bool has_company(const argus_knowledge_t *const knowledge, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    const argus_robot_t *const robot = knowledge->robot;
+    const int32_t bearing = argus_robot_pose(robot, sonar).heading_deg * 100;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const int32_t reading_mm = knowledge->sonar[i].reading_mm;
+        if (i != sonar && !is_shortest(knowledge, reading_mm) &&
+            reading_mm <= robot->min_mm + ARGUS_SHORTEST_CLEAR_MM && argus_usable(knowledge, i) &&
+            argus_angle_abs_diff(argus_robot_pose(robot, i).heading_deg * 100, bearing) <=
+                ARGUS_SHORTEST_BESIDE_CDEG) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // Beside a wall a range stays on the way, too; but no robot drives so near one that it reads its shortest.
 static bool tells_alone(const argus_extreme_t *const self, const argus_knowledge_t *const knowledge,
                         const int sonar) {
@@ -72,8 +92,10 @@ static void go_on(argus_extreme_t *const self, const argus_knowledge_t *const kn
     const int says = mate_says(knowledge, sonar);
     self->at = (argus_point_t){pose->x_mm, pose->y_mm};
     self->away_mm = argus_max(0, self->away_mm - argus_in_frame(step, axis).x_mm);
-    if (says < 0) {
+    const bool company = has_company(knowledge, sonar);
+    if (says < 0 || company) {
         self->from = self->at;
+        self->away_mm = company ? 0 : self->away_mm;
     }
     const int32_t past_mm = argus_hypot(self->at.x_mm - self->from.x_mm, self->at.y_mm - self->from.y_mm);
     const bool alone = tells_alone(self, knowledge, sonar);
@@ -106,18 +128,29 @@ static int doubt(const argus_extreme_t *const self, const argus_knowledge_t *con
     if (is_shortest(knowledge, reading_mm) && self->before_mm > far_mm) {
         return ARGUS_IMPOSSIBLE_LEAPS;
     }
-    if (reading_mm < knowledge->robot->min_mm) {
-        return ARGUS_IMPOSSIBLE_CONVICTS / ARGUS_IMPOSSIBLE_ROW;
-    }
     return self->visited && reading_mm > far_mm ? ARGUS_IMPOSSIBLE_VISIT : 0;
+}
+
+// What this reading adds. Below the least counts at once. A leap counts with the next reading, when those
+// beside it have fired, too: what one of them hears as near has come there.
+static int weigh(argus_extreme_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
+                 const int32_t reading_mm) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const int doubted = doubt(self, knowledge, reading_mm);
+    const bool company = doubted + self->waits > 0 && has_company(knowledge, sonar);
+    const int counts = company ? 0 : self->waits;
+    self->waits = (uint8_t)(company ? 0 : doubted);
+    if (reading_mm < knowledge->robot->min_mm) {
+        return counts + ARGUS_IMPOSSIBLE_CONVICTS / ARGUS_IMPOSSIBLE_ROW;
+    }
+    return counts - (doubted == 0 && !is_shortest(knowledge, reading_mm) ? 1 : 0);
 }
 
 static void take(argus_extreme_t *const self, const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t reading = knowledge->sonar[sonar].reading_mm;
     const bool shortest = is_shortest(knowledge, reading);
-    const int doubted = doubt(self, knowledge, reading);
-    const int level = self->level + (doubted == 0 && !shortest ? -1 : doubted);
+    const int level = self->level + weigh(self, knowledge, sonar, reading);
     self->level = (uint8_t)argus_between(0, ARGUS_IMPOSSIBLE_MAX, level);
     self->visited = !shortest && reading <= knowledge->robot->min_mm + ARGUS_SHORTEST_NEAR_MM &&
                     self->before_mm > knowledge->robot->min_mm + ARGUS_SHORTEST_FAR_MM;

@@ -17,6 +17,7 @@ typedef struct {
     uint16_t run_mm; // the reading that began the run
     uint8_t row;     // shortest readings, one after the other
     uint8_t level;   // impossible readings of late, weighed
+    uint8_t waits;   // weight of the reading before, until those beside it have fired
     bool visited;    // the reading before leapt near
     bool running;    // the reading before was a shortest one
     bool proved;     // it stayed though the robot went away from it

@@ -97,6 +97,13 @@ static bool is_convicted_by(const argus_case_t *const self, const argus_test_t t
     return self->score[test] >= argus_bounds[test].convincing;
 }
 
+// Not where it is contradicted for silence, too, and others bear its echoes out: it is deaf to some surfaces,
+// as healthy ones are, one more than another.
+static bool convicted_by_peers(const argus_case_t *const self) {
+    const bool hears_some = self->borne_out && argus_crosscheck_silences(self, ARGUS_SILENT_OF) > 0;
+    return !hears_some && is_convicted_by(self, ARGUS_TEST_PEERS);
+}
+
 // People who walk about contradict; and by its own readings alone, however late they look, no sonar is given
 // up.
 argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, const int sonar) {
@@ -115,7 +122,7 @@ argus_fault_kind_t argus_names_convicts(const argus_evidence_t *const self, cons
     if (again && is_late(c, ARGUS_LATE_CONVINCING)) {
         return ARGUS_KIND_SLOW;
     }
-    return again && is_convicted_by(c, ARGUS_TEST_PEERS) ? kind_of_peers(c) : ARGUS_KIND_NONE;
+    return again && convicted_by_peers(c) ? kind_of_peers(c) : ARGUS_KIND_NONE;
 }
 
 bool argus_names_suspects(const argus_evidence_t *const self, const int sonar) {

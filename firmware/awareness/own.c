@@ -17,6 +17,67 @@ static void score(argus_evidence_t *const self, const argus_knowledge_t *const k
     argus_odds_note(self, sonar, test, odd);
 }
 
+// One echo after the other of this sonar: 1: the wall comes nearer or goes away; -1: its range stays, which
+// that of a wall along the way does; 0: there are none.
+static int wall_of(const argus_pings_t *const pings) {
+    const argus_ping_t *const last = argus_pings_at(pings, 1);
+    const argus_ping_t *const then = argus_pings_at(pings, 2);
+    if (then == NULL || !argus_ping_is_echo(last) || !argus_ping_is_echo(then)) {
+        return 0;
+    }
+    return argus_abs(last->reading_mm - then->reading_mm) > ARGUS_PARALLEL_MM ? 1 : -1;
+}
+
+// What the sonars abeam on its side show of the wall there; of two that differ, that it stays.
+static int wall_beside(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                       const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    const argus_robot_t *const robot = knowledge->robot;
+    const unsigned abeam =
+        (argus_robot_flank(robot) | argus_robot_rear_flank(robot)) & ~(unsigned)argus_out(knowledge);
+    const bool left = argus_robot_pose(robot, sonar).y_mm > 0;
+    int shows = 0;
+    for (int i = 0; i < knowledge->sonars && shows >= 0; i++) {
+        if ((abeam >> i & 1u) != 0 && i != sonar && (argus_robot_pose(robot, i).y_mm > 0) == left) {
+            const int wall = wall_of(&self->pings[i]);
+            shows = wall != 0 ? wall : shows;
+        }
+    }
+    return shows;
+}
+
+// The same reading has come since the robot looked elsewhere: while it turns past square-on to a wall, its
+// range stays.
+static bool stays_in_turn(const argus_pings_t *const pings, const argus_ping_t *const now) {
+    for (int i = 1; i <= ARGUS_LOOKED_BACK; i++) {
+        const argus_ping_t *const then = argus_pings_at(pings, i);
+        if (then == NULL || then->reading_mm != now->reading_mm) {
+            return false;
+        }
+        if (argus_ping_turned_cdeg(now, then) >= ARGUS_STUCK_TURNED_CDEG) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A healthy sonar's range would have changed since `before`. Not that of a wall along the way, which a sonar
+// aslant hears at the rim of its cone, nor that of one it turns past.
+static bool must_change(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                        const int sonar, const argus_ping_t *const now, const argus_ping_t *const before) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    if (argus_ping_turned_cdeg(now, before) >= ARGUS_STILL_CDEG) {
+        return now->reading_mm != before->reading_mm || stays_in_turn(&self->pings[sonar], now);
+    }
+    if (argus_abs(argus_ping_shift(now, before).along_mm) < ARGUS_STILL_MM) {
+        return false;
+    }
+    const int32_t bearing = argus_robot_pose(knowledge->robot, sonar).heading_deg * 100;
+    const bool ahead = argus_abs(argus_cos(bearing)) > ARGUS_TRIG_ONE * ARGUS_SHORTEST_ALONG_PERCENT / 100;
+    return wall_beside(self, knowledge, sonar) >= (ahead ? 0 : 1);
+}
+
 // Of what goes on alike: how often the very same value comes again depends on noise and on the steps of
 // range.
 static void test_stuck(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
@@ -31,9 +92,8 @@ static void test_stuck(argus_evidence_t *const self, const argus_knowledge_t *co
     if (!tells || changed_mm > ARGUS_ALIKE_MM) {
         return;
     }
-    // Along a wall on the way a healthy one repeats itself, too: that tells how often, and nothing of it.
-    const bool turned = argus_ping_turned_cdeg(now, before) >= ARGUS_STILL_CDEG;
-    if (turned || argus_abs(argus_ping_shift(now, before).along_mm) >= ARGUS_STILL_MM) {
+    // Where a healthy one repeats itself, too, that tells how often, and nothing of it.
+    if (must_change(self, knowledge, sonar, now, before)) {
         score(self, knowledge, sonar, ARGUS_TEST_STUCK, changed_mm == 0);
     } else if (argus_ping_moved_mm(now, before) >= ARGUS_STILL_MM) {
         argus_odds_note(self, sonar, ARGUS_TEST_STUCK, changed_mm == 0);

@@ -103,6 +103,21 @@ void test_most_of_an_array_that_fall_silent_at_once_are_convicted(void) {
     }
 }
 
+// Five or six may be what a person leaves behind: they are given up when their silence lasts.
+void test_five_of_an_array_are_given_up_later(void) {
+    for (unsigned hearing = 2; hearing < 4; hearing++) {
+        setUp();
+        const unsigned dark = FRONT & ~((1u << hearing) - 1);
+        drive(20, 200);
+        darken(dark);
+        drive(20, 200);
+        TEST_ASSERT_EQUAL(1, strikes);
+        TEST_ASSERT_EQUAL(0, convicted());
+        drive(30, 0);
+        TEST_ASSERT_EQUAL_HEX(dark, convicted());
+    }
+}
+
 void test_four_of_an_array_may_be_behind_a_person(void) {
     for (unsigned first = 0; first < 5; first++) {
         setUp();

@@ -462,8 +462,9 @@ void test_coarse_steps_beside_a_wall_are_not_stuck(void) {
                 reading[aslant[i]] = coarse_mm(&random);
             }
             reading[6] = stuck != 0 ? 600 : reading[6];
+            reading[7] = coarse_mm(&random); // abeam it shows that the wall comes and goes
             s.x += 60;
-            scene_say(&s, 1u << 1 | 1u << 6 | 1u << 9 | 1u << 14, reading);
+            scene_say(&s, 1u << 1 | 1u << 6 | 1u << 7 | 1u << 9 | 1u << 14, reading);
         }
         TEST_ASSERT_EQUAL_HEX16(stuck != 0 ? 1u << 6 : 0u, s.named);
     }
@@ -498,12 +499,52 @@ void test_a_wall_without_noise_is_not_stuck_abeam(void) {
             for (int i = 0; i < 4; i++) {
                 reading[others[i]] = 600 + 10 * (n >> i & 1);
             }
+            reading[7] = 600 + 10 * (n & 1);
             reading[same] = 600;
             s.x += 60;
-            scene_say(&s, 1u << 1 | 1u << 6 | 1u << 9 | 1u << 14 | 1u << same, reading);
+            scene_say(&s, 1u << 1 | 1u << 6 | 1u << 7 | 1u << 9 | 1u << 14, reading);
         }
         TEST_ASSERT_EQUAL_HEX16(abeam != 0 ? 0u : 1u << 6, s.named);
     }
+}
+
+// A wall along the way keeps the range of a sonar aslant, too, at the rim of its cone. Where the one abeam
+// does not show that the wall comes or goes, a reading that stays proves nothing; under a turn it does.
+void test_a_wall_along_the_way_without_noise_is_not_stuck_aslant(void) {
+    for (int abeam_mm = 480; abeam_mm <= 5000; abeam_mm += 4520) {
+        for (int sonar = 1; sonar <= 6; sonar += 5) {
+            scene_init(&s, 1, START_MS);
+            s.v_mm_s = 600;
+            for (int n = 0; n < 200; n++) {
+                reading[0] = reading[7] = abeam_mm;
+                reading[sonar] = 750;
+                s.x += 60;
+                scene_say(&s, 1u << 0 | 1u << 7 | 1u << sonar, reading);
+            }
+            TEST_ASSERT_EQUAL_HEX32_MESSAGE(0, s.named, told("abeam", abeam_mm, sonar));
+            for (int n = 0; n < 80; n++) { // what repeated so far is forgotten meanwhile
+                s.th += 0.15;
+                scene_say(&s, 1u << sonar, reading);
+            }
+            TEST_ASSERT_EQUAL_HEX32_MESSAGE(1u << sonar, s.named, told("turn", abeam_mm, sonar));
+        }
+    }
+}
+
+// Past square-on to a wall the range stays for some degrees of a slow turn.
+void test_a_slow_turn_past_a_wall_is_not_stuck(void) {
+    scene_init(&s, 1, START_MS);
+    reading[3] = 900;
+    for (int n = 0; n < 9; n++) {
+        s.th += 0.035;
+        scene_say(&s, 1u << 3, reading);
+    }
+    TEST_ASSERT_EQUAL_HEX32(0, s.named);
+    for (int n = 0; n < 20; n++) {
+        s.th += 0.035;
+        scene_say(&s, 1u << 3, reading);
+    }
+    TEST_ASSERT_EQUAL_HEX32(1u << 3, s.named);
 }
 
 // ---- caution

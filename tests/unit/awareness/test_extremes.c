@@ -129,6 +129,57 @@ void test_who_walks_by_close_is_no_fault(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_extremes_convicts(&extremes, 3));
 }
 
+// What comes so near that one sonar reads its least is heard as near by one beside it, a round later at the
+// latest.
+void test_what_one_beside_it_hears_as_near_is_no_leap(void) {
+    static const int beside[] = {2, 4, 1, 5};
+    for (unsigned n = 0; n < sizeof beside / sizeof *beside; n++) {
+        for (int late = 0; late < 2; late++) {
+            setUp();
+            for (int i = 0; i < 200; i++) {
+                const bool here = i % 4 == 0 || (late != 0 && i % 4 == 1);
+                k.sonar[beside[n]].reported = true;
+                k.sonar[beside[n]].reading_mm = here ? 250 : 1500;
+                read_at(3, 0, i % 4 == 0 ? 100 : 1500);
+            }
+            TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_extremes_convicts(&extremes, 3));
+        }
+    }
+}
+
+// One that looks elsewhere, that is far, or that reads its own least, bears nothing out.
+void test_a_leap_that_nobody_bears_out_counts(void) {
+    static const struct {
+        int sonar;
+        int reading_mm;
+    } other[] = {{12, 250}, {4, 900}, {4, 100}, {4, 5000}};
+    for (unsigned n = 0; n < sizeof other / sizeof *other; n++) {
+        setUp();
+        for (int i = 0; i < 40; i++) {
+            k.sonar[other[n].sonar].reported = true;
+            k.sonar[other[n].sonar].reading_mm = (uint16_t)other[n].reading_mm;
+            read_at(3, 0, i % 4 == 0 ? 100 : 1500);
+        }
+        TEST_ASSERT_EQUAL(ARGUS_KIND_INTERMITTENT, argus_extremes_convicts(&extremes, 3));
+    }
+}
+
+// A person beside the robot holds the least for as long as he likes; once he is gone the way counts.
+void test_who_goes_along_beside_the_robot_is_no_fault(void) {
+    for (int x = 0; x <= 3000; x += 20) {
+        k.sonar[15].reported = k.sonar[1].reported = true;
+        k.sonar[15].reading_mm = 1900; // the mate behind hears the wall
+        k.sonar[1].reading_mm = 180;   // the one before it hears him
+        read_at(0, x, 100);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_extremes_convicts(&extremes, 0));
+    k.sonar[1].reading_mm = 1900;
+    for (int x = 3020; x <= 3400; x += 20) {
+        read_at(0, x, 100);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, argus_extremes_convicts(&extremes, 0));
+}
+
 void test_a_gap_of_the_link_begins_it_anew(void) {
     for (int x = 0; x > -1000; x -= 150) {
         read_at(3, x, 100);

@@ -121,6 +121,22 @@ void test_silence_alone_is_off_or_gaps(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, named());
 }
 
+// One that is deaf to some surfaces, and whose echoes others bear out, is named and not given up.
+void test_one_that_hears_some_is_not_given_up_for_silence(void) {
+    for (unsigned bits = 0; bits < 8; bits++) {
+        for (int heard = 0; heard < 2; heard++) {
+            setUp();
+            give_ground();
+            c->score[ARGUS_TEST_PEERS] = ARGUS_CEILING;
+            c->silent_bits = (uint8_t)bits;
+            c->none_run = 30;
+            c->borne_out = heard != 0;
+            TEST_ASSERT_NOT_EQUAL(ARGUS_KIND_NONE, named());
+            TEST_ASSERT_EQUAL(heard == 0 || bits == 0, convicted() != ARGUS_KIND_NONE);
+        }
+    }
+}
+
 // A silence that all contradict is off sooner than an echo is wrong, unless an echo of it was borne out.
 void test_a_silence_that_all_contradict_is_off_sooner(void) {
     give_ground();
