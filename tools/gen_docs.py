@@ -16,7 +16,7 @@ sys.path.insert(0, str(ROOT))
 import gen_pages  # noqa: E402
 import marked  # noqa: E402
 
-from hil_sim.values import UNITS  # noqa: E402
+from hil_sim.faults.values import UNITS  # noqa: E402
 
 HEADERS = ROOT / "firmware"
 
@@ -287,7 +287,7 @@ PARTS = {
     "docs/driving.md": {"policies": policies},
     "docs/guardian.md": {"admitted": admitted},
     "docs/evidence.md": {"numbers": numbers},
-    "hil_sim/values.py": {"values": values},
+    "hil_sim/faults/values.py": {"values": values},
     "docs/events.md": {"catalogue": catalogue},
     "docs/api-c.md": {"functions": functions},
     "docs/python.md": {name: example(name) for name in EXAMPLES},

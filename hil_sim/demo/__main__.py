@@ -93,6 +93,13 @@ def _policy(text: str) -> str:
     return text
 
 
+def _argusd() -> Path:
+    """The one that was built in this tree, or else the command that a wheel put beside this Python."""
+    built = ROOT / "build/release/argusd"
+    beside = Path(sys.executable).parent / "argusd"
+    return built if built.exists() or not beside.exists() else beside
+
+
 def _seed(text: str) -> int:
     if not re.fullmatch(r"\d{1,19}", text) or int(text) > SEED_MAX:
         raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from 0 to {SEED_MAX}")
@@ -154,9 +161,7 @@ def parser() -> argparse.ArgumentParser:
     result.add_argument(
         "--out", type=Path, default=Path("build/demo"), metavar="DIR", help="records and picture"
     )
-    result.add_argument(
-        "--argusd", type=Path, default=ROOT / "build/release/argusd", metavar="FILE", help="the program"
-    )
+    result.add_argument("--argusd", type=Path, default=_argusd(), metavar="FILE", help="the program")
     result.add_argument(
         "--timeout",
         type=_seconds,

@@ -16,8 +16,8 @@ from rich.text import Text
 
 from hil_sim.demo.judge import Record, event_s, of_type
 from hil_sim.demo.runner import Recording
+from hil_sim.faults.values import value_words
 from hil_sim.tables.robot import robot_table
-from hil_sim.values import value_words
 
 STATUS_EVERY_S: Final = 5.0
 _EVENTS_SHOWN: Final = 8

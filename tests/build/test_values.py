@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-import hil_sim.values
-from hil_sim.values import OPERATIONS, UNITS, VALUES, value_words
+import hil_sim.faults.values
+from hil_sim.faults.values import OPERATIONS, UNITS, VALUES, value_words
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -23,7 +23,7 @@ BARE = 5
 
 
 def test_the_examples() -> None:
-    assert doctest.testmod(hil_sim.values).failed == 0
+    assert doctest.testmod(hil_sim.faults.values).failed == 0
 
 
 def test_an_event_has_a_value_where_the_catalogue_gives_it_a_meaning() -> None:

@@ -130,6 +130,33 @@ def the_service_runs(debian: Debian) -> None:
     shutil.rmtree(debian.root / "run/argus")  # as systemd does when the service stops
 
 
+OURS = "# written by the owner of the robot"
+NEW = "# a setting of the next version"
+CONFFILES = ("etc/argus/argusd.conf", "etc/default/argusd")
+
+
+def an_upgrade_keeps_what_the_owner_wrote(debian: Debian) -> None:
+    """A package of a later version, whose settings changed, over settings that were changed here, too."""
+    for name in CONFFILES:
+        debian.run(f"echo '{OURS}' >> /{name}")
+    change = " && ".join(f"echo '{NEW}' >> /tmp/next/{name}" for name in CONFFILES)
+    debian.run(
+        "dpkg-deb -R /packages/argusd_*.deb /tmp/next"
+        " && sed -i 's/^Version: .*/Version: 99.0/' /tmp/next/DEBIAN/control"
+        f" && {change} && dpkg-deb --root-owner-group -b /tmp/next /tmp/next.deb && rm -r /tmp/next"
+    )
+    debian.run("dpkg --force-confdef --force-confold -i /tmp/next.deb && rm /tmp/next.deb")
+    assert debian.run("dpkg-query -W -f '${Version} ${Status}' argusd") == "99.0 install ok installed"
+    for name in CONFFILES:
+        kept = (debian.root / name).read_text()
+        assert OURS in kept
+        assert NEW not in kept
+        offered = debian.root / f"{name}.dpkg-dist"
+        assert NEW in offered.read_text()
+        assert OURS not in offered.read_text()
+    assert debian.run("argusd --version").startswith("argusd ")
+
+
 def test_installed_started_removed_and_purged(debian: Debian) -> None:
     debian.run("apt-get update && apt-get install -y --no-install-recommends systemd")
     assert debian.ours() == set()
@@ -142,9 +169,12 @@ def test_installed_started_removed_and_purged(debian: Debian) -> None:
     debian.run("systemctl enable argusd.service 2>&1")
     assert (debian.root / WANTS).is_symlink()
     the_service_runs(debian)
+    an_upgrade_keeps_what_the_owner_wrote(debian)
     debian.run(f"apt-get remove -y {NAMES}")
     left = {name for name in debian.ours() if not name.startswith("var/lib/dpkg/")}
-    kept = {"etc/argus", "etc/argus/argusd.conf", "etc/default/argusd", "var/lib/argus", WANTS}
+    offered = {f"{name}.dpkg-dist" for name in CONFFILES}
+    kept = {"etc/argus", *CONFFILES, *offered, "var/lib/argus", WANTS}
     assert left == kept
+    assert all(OURS in (debian.root / name).read_text() for name in CONFFILES)
     debian.run("apt-get purge -y argusd libargus0.1")  # the others left nothing, so apt knows them no more
     assert debian.ours() == set()

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from argus_tools.control import cli
 from argus_tools.control.cli import EXIT_OK, EXIT_REFUSED, main, make_parser
+from argus_tools.control.client import Client
 
 Message = dict[str, Any]
 GREETING = {"control": 1, "argus": "0.1.0", "auth": "none"}
@@ -119,3 +120,29 @@ def test_an_argusd_that_hangs_meanwhile_is_reported(ordered: Any, words: list[st
 
 def test_help_tells_the_code() -> None:
     assert "1 argusd refuses, or another stopped the step or turn" in make_parser().format_help()
+
+
+@pytest.mark.parametrize(
+    ("point", "away_mm"), [("2,0", 898), ("901,0", 1), ("0.9m,30cm", 300), ("3000,0", 2100), ("1400,0", 500)]
+)
+def test_a_goal_nearer_than_the_robot_is_long_gets_a_word(
+    point: str, away_mm: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    place = argusd(tmp_path, [], [])
+    told = {"x_mm": 900, "y_mm": 0}
+
+    class Asked(Client):
+        def request(self, do: str, **members: Any) -> Message:
+            return {"state": told} if do == "status" else super().request(do, **members)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cli, "Client", Asked)
+        assert main(["--socket", place, "goto", point]) == EXIT_OK
+    _, err = capsys.readouterr()
+    if away_mm < cli.LENGTH_MM:
+        assert err == (
+            f"argusctl: that is {away_mm} mm from where it is, less than the robot is long; "
+            "numbers are mm, or give a unit as 2m,0\n"
+        )
+    else:
+        assert err == ""

@@ -39,7 +39,7 @@ def test_something_that_answers_as_no_robot() -> None:
                     return
                 with peer:
                     peer.sendall(b"220 mail ready\r\n")
-                    over.wait(5.0)
+                    over.wait(60.0)
 
         thread = threading.Thread(target=greet, daemon=True)
         thread.start()

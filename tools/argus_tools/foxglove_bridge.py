@@ -32,7 +32,7 @@ from argus_tools.foxglove import (
     stamp_of,
 )
 from argus_tools.foxglove_front import FOXGLOVE, Front, Gate, hidden_host, is_loopback
-from hil_sim.values import value_words
+from hil_sim.faults.values import value_words
 from hil_sim.version import add_version
 
 EXIT_USAGE, EXIT_LINK = 2, 3

@@ -84,7 +84,7 @@ static const char *colour_of(argus_level_t level) {
     return level == ARGUS_LEVEL_ERROR ? "\033[31m" : level == ARGUS_LEVEL_WARN ? "\033[33m" : "";
 }
 
-// Units as the catalogue words them, the longer ones first; `hil_sim/values.py` has the same.
+// Units as the catalogue words them, the longer ones first; `hil_sim/faults/values.py` has the same.
 typedef struct {
     const char *words;
     int parts; // of the unit shown that are one of the catalogue's

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final
 
-from hil_sim.values import value_words
+from hil_sim.faults.values import value_words
 
 _LEVELS: Final = ("OK", "WARN", "ERROR", "STALE")
 _MARKS: Final = {"DISABLED": "!", "PROBATION": "!", "SUSPECT": "?", "ABSENT": "-", "STALE": "~"}

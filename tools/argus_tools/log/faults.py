@@ -16,7 +16,7 @@ from argus_tools.log.packets import Row
 from argus_tools.log.summary import Summary
 from hil_sim.arcos import FLAG, SIP, TIMING, Command, SyncReply
 from hil_sim.core.library import Core, Event, kind_name, setting_value
-from hil_sim.values import value_words
+from hil_sim.faults.values import value_words
 
 SUMMARY: Final = "tell what the fault manager would have said from a log alone"
 EXAMPLES: Final = """\

@@ -193,6 +193,9 @@ async function ask(request) {
   return answer.ok;
 }
 
+/** A P3-DX is 511 mm long. */
+const LENGTH_MM = 500;
+
 const order = (name, members = {}) => ask({ do: "order", order: name, ...members });
 const chosenOrder = (name) => order(name, { sonar: known.chosen });
 
@@ -202,7 +205,9 @@ async function stop() {
 
 async function goTo(x, y) {
   if (await order("goto", { x_mm: x, y_mm: y })) {
-    say(known.state?.active ? "On its way." : "The robot is passive: it drives when you make it active.");
+    const away = Math.hypot(x - (known.state?.x_mm ?? 0), y - (known.state?.y_mm ?? 0));
+    const note = away < LENGTH_MM ? " That is nearer than the robot is long." : "";
+    say(known.state?.active ? `On its way.${note}` : "The robot is passive: it drives when you make it active.");
   }
 }
 
