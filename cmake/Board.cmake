@@ -103,3 +103,16 @@ if(ARGUS_BOARD STREQUAL "mps2_an386")
                         -Wl,-L${PROJECT_SOURCE_DIR}/tests/target -Wl,-T${PROJECT_SOURCE_DIR}/tests/target/mps2_an386.ld
                         -Wl,--no-warn-rwx-segments)
 endif()
+
+# A port without a Pioneer: the manager observes a ring of sonars (docs/porting.md).
+if(ARGUS_BOARD STREQUAL "stm32f405")
+    add_executable(hcsr04 examples/hcsr04/main.c examples/hcsr04/text.c hal/board/ring.c hal/board/word.c
+                   hal/stm32f405/clock.c hal/stm32f405/usart.c hal/stm32f405/vectors.c ${cortexm_sources})
+    set_target_properties(hcsr04 PROPERTIES SUFFIX .elf C_EXTENSIONS ON)
+    target_include_directories(hcsr04 PRIVATE hal)
+    target_compile_options(hcsr04 PRIVATE ${ARGUS_STRICT} -ffreestanding -fbuiltin ${whole_program})
+    target_link_libraries(hcsr04 PRIVATE argus argus_flags)
+    target_link_options(hcsr04 PRIVATE ${whole_program} -nostartfiles -specs=nano.specs -Wl,--gc-sections
+                        -Wl,-L${PROJECT_SOURCE_DIR}/hal/cortexm -Wl,-T${board_scripts} -Wl,--fatal-warnings
+                        -Wl,--no-warn-rwx-segments)
+endif()

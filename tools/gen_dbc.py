@@ -45,8 +45,6 @@ ENUMS = {
     "Health": ("include/argus/argus.h", "argus_health_t", "ARGUS_", str.upper),
     "Level": ("include/argus/argus.h", "argus_level_t", "ARGUS_LEVEL_", str.upper),
 }
-# Value tables of signals whose name, behind a sonar's number, is not that of a table.
-TABLE_OF_SIGNAL = {("ArgusEmergency", "Sonar"): "SonarNumber"}
 
 
 class DbcError(Exception):
@@ -104,13 +102,13 @@ def renewed(text: str) -> str:
     lines = [line for line in text.splitlines() if not line.startswith(("VAL_TABLE_ ", "VAL_ "))]
     nodes = next(number for number, line in enumerate(lines) if line.startswith("BU_:"))
     given = []
-    message, frame = "", ""
+    frame = ""
     for line in lines:
         if line.startswith("BO_ "):
-            frame, message = line.split()[1], line.split()[2].rstrip(":")
+            frame = line.split()[1]
         elif line.startswith(" SG_ "):
             signal = line.split()[1]
-            table = TABLE_OF_SIGNAL.get((message, signal), re.sub(r"^S\d\d_", "", signal))
+            table = re.sub(r"^S\d\d_", "", signal)
             if table in tables:
                 given.append(f"VAL_ {frame} {signal} {choices(tables[table])}")
     heads = [f"VAL_TABLE_ {name} {choices(tables[name])}" for name in sorted(tables)]

@@ -136,7 +136,7 @@ ROBOT_FIGURES = {
     "body": "front_mm rear_mm width_mm swing_radius_mm sonar_face_mm tolerance_centre_mm front_bumpers rear_bumpers",
     "motion": "decel_mm_s2 track_mm",
     "odometry": "dist_conv_um",
-    "sonar": "min_mm no_echo_mm cone_deg arrays",
+    "sonar": "min_mm no_echo_mm cone_deg cycle_ms arrays",
 }
 
 

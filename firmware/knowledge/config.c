@@ -182,6 +182,7 @@ static void widen(argus_config_t *config, const argus_robot_t *robot) {
     argus_config_report_t report = {.fault = ARGUS_CONFIG_OK, .key = -1};
     argus_config_default(&built);
     built.speed_mm_s = AUTO_SPEED_MM_S;
+    built.sonar_cycle_ms = robot->cycle_ms;
     work_out_driving(&report, &built, robot, 0);
     const int32_t step_mm = stepping_mm(&built, argus_config_reach_mm(robot, built.step_mm));
     config->object_range_mm = argus_max(config->object_range_mm, parts_above(report.driving_mm));
@@ -210,7 +211,8 @@ static int32_t auto_speed_mm_s(const argus_config_t *config, const argus_robot_t
 }
 
 argus_follows_t argus_config_follows(const argus_config_t *config) {
-    return (argus_follows_t){.speed = config->speed_mm_s == ARGUS_AUTO,
+    return (argus_follows_t){.sonar_cycle = config->sonar_cycle_ms == ARGUS_AUTO,
+                             .speed = config->speed_mm_s == ARGUS_AUTO,
                              .object_range = config->object_range_mm == ARGUS_AUTO,
                              .check_range = config->check_range_mm == ARGUS_AUTO};
 }
@@ -226,7 +228,11 @@ static void follow_body(argus_config_t *config, argus_follows_t follows, const a
 }
 
 void argus_config_follow(argus_config_t *config, argus_follows_t follows, const argus_robot_t *robot) {
-    const bool is_sound = argus_robot_is_known(robot) && row_out_of_range(config) < 0;
+    const bool is_known = argus_robot_is_known(robot);
+    const bool is_sound = is_known && row_out_of_range(config) < 0;
+    if (follows.sonar_cycle) {
+        config->sonar_cycle_ms = (is_known ? robot : argus_robot_default())->cycle_ms;
+    }
     if (follows.object_range || follows.check_range) {
         follow_body(config, follows, robot);
     }

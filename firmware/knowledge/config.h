@@ -8,6 +8,7 @@
 
 // Which settings follow the robot.
 typedef struct {
+    bool sonar_cycle;
     bool speed;
     bool object_range;
     bool check_range;

@@ -276,6 +276,7 @@ static void make_built(argus_own_robot_t *const own, const argus_ring_t *const r
     row->min_mm = (int16_t)figures[ROW_min_mm];
     row->no_echo_mm = (int16_t)figures[ROW_no_echo_mm];
     row->cone_deg = (int16_t)figures[ROW_cone_deg];
+    row->cycle_ms = (int16_t)figures[ROW_cycle_ms];
     take_masks(row, ring);
     take_spacing(row, ring);
     row->rear_overhang_mm = rear_overhang_mm(ring, row->rear_mm);

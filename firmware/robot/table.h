@@ -51,6 +51,7 @@ struct argus_robot {
     int16_t min_mm;       // readings are from here to no_echo_mm, which says that nothing was heard
     int16_t no_echo_mm;
     int16_t cone_deg;
+    int16_t cycle_ms; // between two pings of one array
 };
 
 // ARGUS_ROBOTS as they are built, then their other ends; and the sonars of those as they are built.

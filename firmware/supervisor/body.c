@@ -28,6 +28,17 @@ static void say_beyond(argus_t *const self, const argus_robot_t *const robot) {
     }
 }
 
+// A ring that has sonars which a robot of this subclass has not got is that of another one.
+static bool is_anothers_ring(argus_t *const self, const argus_robot_t *const ring) {
+    const argus_robot_t *const said = argus_robot_find(self->session.subclass);
+    if (!argus_robot_is_own(ring) || said == NULL || said->sonars >= ring->sonars) {
+        return false;
+    }
+    self->orders.bar = ARGUS_BAR_SONARS;
+    argus_tell(self, ARGUS_EV_SONARS_BEYOND, said->sonars);
+    return true;
+}
+
 // What was found out about the sonars of another body says nothing of this one's, but what its record says.
 static void forget_sonars(argus_t *const self) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
@@ -81,7 +92,7 @@ void argus_meet_body(argus_t *const self) {
     const bool active = !self->orders.passive || self->orders.barred;
     say_beyond(self, robot);
     change_to(self, robot);
-    self->orders.barred = argus_say_barred(self) && active;
+    self->orders.barred = (argus_say_barred(self) || is_anothers_ring(self, robot)) && active;
     self->orders.passive = self->orders.locked || self->orders.barred || !active;
     ARGUS_ASSERT(!self->orders.barred || self->orders.passive);
 }

@@ -154,6 +154,7 @@ typedef struct {
     bool locked;         // the configuration is unsafe: never active
     bool barred;         // would be active, but not with this robot
     bool unbegun;        // the course failed for that
+    bool mended;         // a setting was out of its range: locked whatever the robot is
     argus_bar_t bar;     // why this robot may not be driven
     bool passive;
     bool paused;

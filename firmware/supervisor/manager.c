@@ -35,7 +35,9 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     self->follows = argus_config_follows(&self->config);
     argus_config_follow(&self->config, self->follows, robot);
     self->rules = argus_profile(&self->config);
-    self->orders.locked = argus_config_check(config).fault != ARGUS_CONFIG_OK;
+    const int32_t fault = argus_config_check(config).fault;
+    self->orders.mended = fault == ARGUS_CONFIG_RANGE;
+    self->orders.locked = fault != ARGUS_CONFIG_OK;
     self->orders.passive = self->orders.locked || config->active == 0;
     self->now_ms = now_ms;
     argus_session_init(&self->session);

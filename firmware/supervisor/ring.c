@@ -10,6 +10,14 @@ static bool is_safe(const argus_config_t *const config, const argus_robot_t *con
     return fault != ARGUS_CONFIG_DRIVING && fault != ARGUS_CONFIG_STEP;
 }
 
+// Settings that another robot could not be driven with are safe for this one.
+static void unlock(argus_t *const self) {
+    if (self->orders.locked && !self->orders.mended) {
+        self->orders.locked = false;
+        self->orders.passive = self->config.active == 0;
+    }
+}
+
 argus_ring_report_t argus_set_ring(argus_t *const self, argus_robot_storage_t *const storage,
                                    const argus_ring_t *const ring) {
     argus_own_robot_t *const own = (argus_own_robot_t *)storage;
@@ -28,6 +36,7 @@ argus_ring_report_t argus_set_ring(argus_t *const self, argus_robot_storage_t *c
     } else if (self != NULL) {
         self->config = config;
         argus_body_is(&self->knowledge, robot, self->now_ms);
+        unlock(self);
     }
     return report;
 }

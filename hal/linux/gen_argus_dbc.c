@@ -102,7 +102,8 @@ void hal_dbc_plan_pack(uint8_t data[HAL_DBC_LENGTH], const hal_dbc_plan_t *from)
 
 void hal_dbc_emergency_pack(uint8_t data[HAL_DBC_LENGTH], const hal_dbc_emergency_t *from) {
     uint64_t bits = 0;
-    bits |= at_most(from->event, 4095u) << 0;
+    bits |= at_most(from->event, 2047u) << 0;
+    bits |= at_most(from->about, 1u) << 11;
     bits |= at_most(from->level, 3u) << 12;
     bits |= at_most(from->failure, 3u) << 14;
     bits |= at_most(from->sonar, 31u) << 16;

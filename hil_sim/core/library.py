@@ -353,7 +353,8 @@ def _hand_over(core: Any, storage: Any, ring: Ring) -> RingFault | None:
 class Core:
     """One fault manager in memory of its own. Times are ms of any clock; their low 32 bits count."""
 
-    def __init__(self, now_ms: int, given: Mapping[str, int] | None = None) -> None:
+    def __init__(self, now_ms: int, given: Mapping[str, int] | None = None, ring: Ring | None = None) -> None:
+        """Begin with the settings given; ring: which body the robot has. InputError says what does not hold."""
         self._library = library()
         self._core = _storage(self._library.argus_shim_core_size())
         self._packet = ctypes.create_string_buffer(_PACKET_MAX)
@@ -363,19 +364,22 @@ class Core:
         self._library.argus_config_default(config)
         for key, value in (given or {}).items():
             self._library.argus_shim_config_set(config, settings()[key][0], value)
-        self._check(config)
+        self._check(config, own_body=ring is not None)
         init_of(self._library)(self._core, config, now_ms & 0xFFFFFFFF)
         self._brief = ctypes.create_string_buffer(self._library.argus_shim_brief_size())
+        if ring is not None:
+            self._set_ring(ring)
 
-    def _check(self, config: Any) -> None:
+    def _check(self, config: Any, *, own_body: bool) -> None:
         row = ctypes.c_int32()
         if self._library.argus_shim_config_check(config, ctypes.byref(row)):
             keys = [key for key, (at, _, _) in settings().items() if at == row.value]
+            if not keys and own_body:  # S5 is asked of that body
+                return
             what = f"{keys[0]} is out of its range" if keys else "driving would be unsafe (S5)"
             raise InputError(f"the settings do not hold: {what}; see argusd --list-config")
 
-    def set_ring(self, ring: Ring) -> None:
-        """Say which ring and body the robot has, before a link is up; InputError where it is refused."""
+    def _set_ring(self, ring: Ring) -> None:
         self._robot = _storage(self._library.argus_shim_robot_size())
         if fault := _hand_over(self._core, self._robot, ring):
             raise InputError(f"the ring {ring.name} is refused with these settings: {fault.meaning}")

@@ -130,9 +130,7 @@ class Sil:
         try:
             for key, value in mission.config.items():
                 given[key] = setting_value(key, str(value))
-            core = Core(0, given)
-            if ring := robot_table(mission.robot).ring:
-                core.set_ring(ring)
+            core = Core(0, given, robot_table(mission.robot).ring)
             if mission.course:
                 core.set_course(_in_robot_frame(self.start, mission.course))
         except InputError as error:

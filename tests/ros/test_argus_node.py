@@ -25,6 +25,10 @@ from sensor_msgs.msg import BatteryState, PointCloud2, Range
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
+from hil_sim.tables.robot import robot_table
+from hil_sim.tables.write import toml_of
+
+ROOT = Path(__file__).resolve().parents[2]
 DEAD = 3
 
 
@@ -32,7 +36,12 @@ class Robot:
     """An emulated robot, argusd, the node and a listener on all its topics."""
 
     def __init__(
-        self, folder: Path, *simulated: str, argusd: tuple[str, ...] = ("--passive",), **given: Any
+        self,
+        folder: Path,
+        *simulated: str,
+        argusd: tuple[str, ...] = ("--passive",),
+        sonars: int = 16,
+        **given: Any,
     ) -> None:
         self.sim, address = emulated(folder, *simulated)
         self.argusd, place = minded(folder, address, *argusd)
@@ -42,7 +51,7 @@ class Robot:
         self.node = ArgusNode(parameter_overrides=overrides)
         self.node.start()
         self.bench = Bench(self.node)
-        for number in range(16):
+        for number in range(sonars):
             self.bench.listen(Range, f"sonar/range_{number}")
         for kind, topic in (
             (PointCloud2, "sonar/cloud"),
@@ -107,6 +116,31 @@ def status_of(array: Any, name: str) -> Any:
 
 def values_of(status: Any) -> dict[str, str]:
     return {value.key: value.value for value in status.values}
+
+
+@pytest.mark.parametrize("kind", ["known", "own ring"])
+def test_every_sonar_of_a_ring_of_more_than_sixteen_has_its_topics(
+    robot: Any, kind: str, tmp_path: Path
+) -> None:
+    ring = str(tmp_path / "scitos.toml")
+    Path(ring).write_text(toml_of(robot_table(str(ROOT / "docs/samples/rings/scitos-g5.toml"))))
+    own = kind == "own ring"
+    sonars, last = (24, "sonar/upper_front/23") if own else (32, "sonar/upper_rear/31")
+    bot = robot(
+        "--world", "demo", *(("--ring", ring) if own else ("--robot", "peoplebot-sh")),
+        argusd=("--passive", *(("--ring", ring) if own else ())),
+        sonars=sonars,
+        robot=ring if own else "",
+    )  # fmt: skip
+    for number in (0, sonars - 1):
+        assert bot.await_(f"sonar/range_{number}").header.frame_id == f"sonar_{number}"
+    health = bot.await_("/diagnostics", lambda m: len(m.status) > sonars)
+    assert any(status.name.endswith(last) for status in health.status), [s.name for s in health.status]
+    assert bot.await_("sonar/cloud").width <= sonars
+    assert bot.bench.until(lambda: any(topic == "/tf_static" for topic, _ in bot.bench.heard))
+    static = next(message for topic, message in bot.bench.heard if topic == "/tf_static")
+    assert len(static.transforms) == sonars
+    assert bot.call(Trigger, f"sonar/retest_{sonars - 1}").success
 
 
 def test_topics_tell_what_argusd_knows(robot: Any) -> None:

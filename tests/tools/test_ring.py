@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from argus_tools.log.cli import main
 
-from hil_sim.core.library import library, sonars_of
-from hil_sim.errors import SimError
+from hil_sim.core.library import Core, library, sonars_of
+from hil_sim.errors import InputError, SimError
 from hil_sim.sil import Mission, run
 from hil_sim.tables import load, robots
 from hil_sim.tables.robot import own_ring, robot_table
@@ -183,3 +183,40 @@ def test_a_table_is_judged_by_a_ring_of_ones_own(tmp_path: Path, capsys: pytest.
     assert code == 0, err
     assert "ring of mine" in err
     assert "3 of 3" in out
+
+
+def test_settings_are_judged_by_the_ring() -> None:
+    # At 250 mm/s a P3-DX meets what it sees at 250 mm before it stands, the small round robot does not.
+    settings = {"speed_mm_s": 240, "object_range_mm": 250}
+    with pytest.raises(InputError, match="S5"):
+        Core(0, settings)
+    Core(0, settings, robot_table(str(RINGS / "roundbot.toml")).ring)
+    with pytest.raises(InputError, match="S5"):
+        Core(0, {**settings, "speed_mm_s": 400}, robot_table(str(RINGS / "roundbot.toml")).ring)
+    with pytest.raises(InputError, match="speed_mm_s is out of its range"):
+        Core(0, {"speed_mm_s": 5000}, robot_table(str(RINGS / "roundbot.toml")).ring)
+
+
+def test_the_time_between_two_pings_is_that_of_the_ring() -> None:
+    # Six at 60 ms: what the robot is asked is what the file has, and S5 reckons with it.
+    ring = robot_table(str(RINGS / "roundbot.toml")).ring
+    assert ring is not None
+    assert ring.figures["sonar.cycle_ms"] == 60
+    outcome = run(Mission("office", ((600, 0),), seed=12, robot=str(RINGS / "roundbot.toml")))
+    assert outcome.reached, "seed 12"
+    with pytest.raises(InputError, match="S5"):
+        Core(0, {"speed_mm_s": 300, "object_range_mm": 350}, ring)
+    Core(0, {"speed_mm_s": 300, "object_range_mm": 350, "sonar_cycle_ms": 40}, ring)
+
+
+@pytest.mark.parametrize(
+    "path", sorted((ROOT / "tests/data/rings").glob("*.toml")), ids=lambda path: path.stem
+)
+def test_the_verdict_is_that_of_argusd(path: Path) -> None:
+    # The corpus that argusd judges, too (test_ring_file.c).
+    if path.stem.startswith("good-"):
+        assert robot_table(str(path)).sonars == 3
+        return
+    with pytest.raises(SimError) as told:
+        robot_table(str(path))
+    assert str(told.value).startswith(str(path))

@@ -39,9 +39,7 @@ class Observer:
         given = {key: setting_value(key, str(value)) for key, value in (config or {}).items()}
         if self._table.ring is None:
             given["robot"] = setting_value("robot", self._table.subclass)
-        self._core = Core(0, {**given, "active": 0})
-        if self._table.ring is not None:
-            self._core.set_ring(self._table.ring)
+        self._core = Core(0, {**given, "active": 0}, self._table.ring)
         self._core.link_up(0)
         self._begin_s: float | None = None
         self._now_ms = 0

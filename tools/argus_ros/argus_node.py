@@ -34,6 +34,7 @@ from hil_sim.tables.robot import DEFAULT_ROBOT, RobotTable, robot_table
 
 SILENT_S: Final = 1.5
 SONARS: Final = 16
+"""Of which there are topics before a robot has answered."""
 _COVER_AGE_S: Final = 1.0
 
 
@@ -45,10 +46,10 @@ class _Ring:
         self.limits = Limits(table.min_mm / 1000, table.no_echo_mm / 1000)
         self.view_rad = math.radians(table.cone_deg)
         self.covered_by = {k: neighbours(k, bearings(table)) for k in bearings(table)}
-        self.verdicts = [Verdict()] * SONARS
-        self.reading_mm = [-1] * SONARS
-        self.age_ms = [-1] * SONARS
-        self.told_s = [-math.inf] * SONARS
+        self.verdicts = [Verdict()] * table.sonars
+        self.reading_mm = [-1] * table.sonars
+        self.age_ms = [-1] * table.sonars
+        self.told_s = [-math.inf] * table.sonars
 
     def covering(self, number: int, policy: Policy) -> list[float]:
         """Return the readings that stand in for a sonar."""
@@ -119,7 +120,8 @@ class ArgusNode(ArgusLifecycleNode):
         self._state_s = self._readings_s = -math.inf
 
     def _make_topics(self) -> None:
-        self._ranges = [self.publisher(Range, f"sonar/range_{k}") for k in range(SONARS)]
+        self._ranges: list[Any] = []
+        self._make_ranges(SONARS)
         self._cloud = self.publisher(PointCloud2, "sonar/cloud")
         self._odometry = self.publisher(Odometry, "pose")
         self._battery = self.publisher(BatteryState, "battery_state")
@@ -133,6 +135,11 @@ class ArgusNode(ArgusLifecycleNode):
             else:
                 self._tf = self.publisher(TFMessage, "/tf", 100)
                 self._tf_static = self.publisher(TFMessage, "/tf_static", LATCHED)
+
+    def _make_ranges(self, count: int) -> None:
+        """Publish the ranges of COUNT sonars."""
+        for k in range(len(self._ranges), count):
+            self._ranges.append(self.publisher(Range, f"sonar/range_{k}"))
 
     def _make_services(self) -> None:
         def trigger(name: str, order: str, **members: Any) -> None:
@@ -150,9 +157,16 @@ class ArgusNode(ArgusLifecycleNode):
 
         trigger("sonar/recheck", "recheck")
         switch("passive", "passive", "active")
-        for k in range(SONARS):
-            trigger(f"sonar/retest_{k}", "retest", sonar=k)
-            switch(f"sonar/pin_{k}", "pin", "unpin", sonar=k)
+        self._trigger, self._switch = trigger, switch
+        self._served = 0
+        self._serve_sonars(SONARS)
+
+    def _serve_sonars(self, count: int) -> None:
+        """Take orders about COUNT sonars."""
+        for k in range(self._served, count):
+            self._trigger(f"sonar/retest_{k}", "retest", sonar=k)
+            self._switch(f"sonar/pin_{k}", "pin", "unpin", sonar=k)
+        self._served = max(self._served, count)
 
     def _rest(self) -> None:
         """Stop the robot if it drives by cmd_vel."""
@@ -249,10 +263,10 @@ class ArgusNode(ArgusLifecycleNode):
 
     def _take_state(self, state: dict[str, Any]) -> None:
         self._state, self._state_s = state, time.monotonic()
-        subclass = str(state.get("subclass") or DEFAULT_ROBOT)
-        subclass = subclass if subclass in robots() else DEFAULT_ROBOT
-        if self._ring is None or self._ring.table.subclass != subclass:
-            self._meet(subclass)
+        announced = str(state.get("subclass"))
+        table = robot_table(self.value("robot") or (announced if announced in robots() else DEFAULT_ROBOT))
+        if self._ring is None or self._ring.table != table:
+            self._meet(table)
         assert self._ring is not None
         self._ring.verdicts = [Verdict(*pair) for pair in zip(state["health"], state["kind"], strict=True)]
         if self._ring.verdicts != self._told:
@@ -260,8 +274,10 @@ class ArgusNode(ArgusLifecycleNode):
         if self._active and state.get("online") and self._has_time():
             self._publish_motion(self._motion(self._ring.table), state)
 
-    def _meet(self, subclass: str) -> None:
-        self._ring = _Ring(robot_table(subclass))
+    def _meet(self, table: RobotTable) -> None:
+        self._ring = _Ring(table)
+        self._make_ranges(table.sonars)
+        self._serve_sonars(table.sonars)
         if self._tf_static is None:
             return
         at, base, prefix = self._now(), self.frame("base_link_frame_id"), self.frame("sonar_frame_prefix")

@@ -174,6 +174,12 @@ ARGUS: Final[Table] = {
         "(/run/argus/control, in a namespace /run/argus/NAMESPACE/control)",
         check=_control,
     ),
+    "robot": Parameter(
+        "",
+        "whose sonars these are: a known robot's subclass, or the file of a ring, as argusd's --ring; empty: as the "
+        "robot announces itself",
+        check=lambda value: _robot(value) if value else "",
+    ),
     "token_file": Parameter("", "file whose first line is the token of a tcp: control socket"),
     "period_ms": Parameter(
         100, "time between two states of argusd, and so of odometry and battery", 50, 1000

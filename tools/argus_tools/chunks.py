@@ -86,6 +86,8 @@ class ReadOptions:
     is_zipped: bool = False
     topic: str | None = None
     subclass: str | None = None
+    columns: tuple[tuple[str, str], ...] = ()
+    """Of a table: names as they are understood, and the columns that have others."""
     skipped: int = 0
     """Set by the opening: zeros that stand before the log and were passed over."""
     absent: frozenset[int] = frozenset()

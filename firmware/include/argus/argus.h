@@ -189,7 +189,8 @@ typedef enum {
     X(rear_clear_mm, 450, 200, 2000, "mm", "", "every rear sonar must read more than this to back away")     \
     X(waypoint_radius_mm, 100, 20, 500, "mm", "", "a waypoint this near counts as passed")                   \
     X(goal_radius_mm, 60, 20, 140, "mm", "", "the goal counts as reached this near")                         \
-    X(sonar_cycle_ms, 40, 20, 120, "ms", "", "time between two pings of one array")                          \
+    X(sonar_cycle_ms, ARGUS_AUTO, 20, 120, "ms", "auto",                                                     \
+      "time between two pings of one array; auto: that of the robot")                                        \
     X(baud, 9600, 0, 115200, "bit/s", "",                                                                    \
       "rate of the wire, for its share of the reaction time (0: none, TCP)")                                 \
     X(pulse_ms, 500, 100, 1500, "ms", "", "longest silence towards the robot before a PULSE is sent")        \
@@ -267,8 +268,9 @@ typedef enum {
     X(24, STALL, ERROR, drive, "a wheel stalls: STOP sent; value: 1 left, 2 right, 3 both")                  \
     X(25, BATTERY_LOW, WARN, battery, "battery low; value: decivolts")                                       \
     X(26, SONARS_BEYOND, WARN, session,                                                                      \
-      "it has more sonars than this build manages: those beyond are left out; or than its subclass has: "    \
-      "passive, unless the setting `robot` says which it is; value: how many it should have")                \
+      "it has more sonars than this build manages: those beyond are left out; or than its subclass has, or " \
+      "fewer than the ring it was given: passive, unless the setting `robot` says which it is; value: how "  \
+      "many it should have")                                                                                 \
     X(27, OTHER_ROBOT, ERROR, session,                                                                       \
       "another robot answers than before: passive, the course is paused, until an operator says active and " \
       "go; value: what differs, 1 name, 2 class, 3 subclass, 4 serial number")                               \
@@ -667,7 +669,8 @@ typedef struct {
     X(dist_conv_um, odometry, 1000, 1, 30000, "what one unit of position is")                            \
     X(min_mm, sonar, 100, 1, 1000, "the least that a sonar reads")                                       \
     X(no_echo_mm, sonar, 5000, 500, 5000, "a reading of this or more: nothing was heard")                \
-    X(cone_deg, sonar, 30, 5, 90, "that a sonar sees")
+    X(cone_deg, sonar, 30, 5, 90, "that a sonar sees")                                                   \
+    X(cycle_ms, sonar, 40, 20, 120, "between two pings of one array, each after the other")
 
 // A ring and the body that carries it.
 typedef struct {
@@ -682,20 +685,22 @@ typedef struct {
 } argus_ring_t;
 
 // X(id, NAME, meaning): why a ring is refused.
-#define ARGUS_RING_FAULT_TABLE(X)                                                                          \
-    X(0, OK, "nothing is wrong")                                                                           \
-    X(1, NAME, "a name has 1 to 15 letters")                                                               \
-    X(2, FIGURE, "the figure is missing, or out of its range")                                             \
-    X(3, SONARS, "this build manages fewer sonars, or there is none")                                      \
-    X(4, BESIDE, "the sonar stands beside the body")                                                       \
-    X(5, BEARING, "the sonar's heading is not above -180 and up to 180 degrees")                           \
-    X(6, ROLE, "there is no such role")                                                                    \
-    X(7, ALIKE, "the sonar stands and looks as one before it")                                             \
-    X(8, FORWARD, "forward has 2 to 6 sonars with the role ahead")                                         \
-    X(9, ORDER, "forward goes from left to right, with less than 60 degrees between neighbours")           \
-    X(10, TURNS, "more than 24 different turns put a sonar onto a bearing ahead: fewer must face forward") \
-    X(11, SWING, "S7: the swing circle is within the body, or farther than the sonars see")                \
-    X(12, UNSAFE, "S5: with these settings the robot meets what it sees before it stands")
+#define ARGUS_RING_FAULT_TABLE(X)                                                                            \
+    X(0, OK, "nothing is wrong")                                                                             \
+    X(1, NAME, "a name has 1 to 15 letters")                                                                 \
+    X(2, FIGURE, "the figure is missing, or out of its range")                                               \
+    X(3, SONARS, "this build manages fewer sonars, or there is none")                                        \
+    X(4, BESIDE, "the sonar stands beside the body")                                                         \
+    X(5, BEARING, "the sonar's heading is not above -180 and up to 180 degrees")                             \
+    X(6, ROLE, "there is no such role")                                                                      \
+    X(7, ALIKE, "the sonar stands and looks as one before it")                                               \
+    X(8, FORWARD, "forward has 2 to 6 sonars with the role ahead")                                           \
+    X(9, ORDER, "forward goes from left to right, with less than 60 degrees between neighbours")             \
+    X(10, TURNS, "more than 24 different turns put a sonar onto a bearing ahead: fewer must face forward")   \
+    X(11, SWING, "S7: the swing circle is within the body, or farther than the sonars see")                  \
+    X(12, UNSAFE,                                                                                            \
+      "S5: with these settings the robot meets what it sees before it stands: lower speed_mm_s or step_mm, " \
+      "or raise object_range_mm or check_range_mm")
 
 // The faults by number.
 typedef enum {
@@ -715,7 +720,7 @@ typedef struct {
 typedef struct argus_robot argus_robot_t;
 
 // Bytes of one.
-#define ARGUS_ROBOT_BYTES (176 + 6 * ARGUS_SONARS)
+#define ARGUS_ROBOT_BYTES (184 + 6 * ARGUS_SONARS)
 
 // Memory of one robot, the caller's: it lives as long as the instance.
 typedef union {

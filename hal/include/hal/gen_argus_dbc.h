@@ -22,6 +22,9 @@
 #define HAL_DBC_STEP_TELEMETRY 16u
 #define HAL_DBC_STEP_OTHER 1u
 
+#define HAL_DBC_ABOUT_ROBOT 0u
+#define HAL_DBC_ABOUT_SONAR 1u
+
 #define HAL_DBC_ORDER_STOP 1u
 #define HAL_DBC_ORDER_GO 2u
 #define HAL_DBC_ORDER_PASSIVE 3u
@@ -30,8 +33,6 @@
 
 #define HAL_DBC_RANGE_NO_ECHO 5000u
 #define HAL_DBC_RANGE_NONE 8191u
-
-#define HAL_DBC_SONAR_NUMBER_NONE 31u
 
 #define HAL_DBC_STATE_OFFLINE 0u
 #define HAL_DBC_STATE_PASSIVE 1u
@@ -81,6 +82,7 @@ typedef struct {
 
 typedef struct {
     uint16_t event;
+    uint8_t about;
     uint8_t level;
     uint8_t failure;
     uint8_t sonar;

@@ -177,7 +177,8 @@ static bool load_files(void) {
         return false;
     }
     char problem[ARGUSD_MESSAGE_MAX / 2];
-    if (!settings_check(&settings, problem, sizeof problem)) {
+    const bool own = options.ring_path != NULL; // its body says later what is safe
+    if (!(own ? settings_check_ranges : settings_check)(&settings, problem, sizeof problem)) {
         return text_refuse(message, sizeof message, "%s: %s",
                            options.config_path != NULL ? options.config_path : "config", problem);
     }

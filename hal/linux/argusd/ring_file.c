@@ -12,6 +12,8 @@
 #define LINE_MAX_BYTES 4096 // of a list over several lines, too
 #define DEEP_MAX 4          // files that inherit one from the other
 #define POSE_ALL 0xFu       // x_mm, y_mm, heading_deg, role
+#define SECTION_LISTED 5u   // from here on those of [[name]]
+#define SECTION_POSE 6u
 
 typedef struct {
     const char *key;
@@ -50,15 +52,12 @@ static const char *const others[] = {
     "odometry.angle_per_turn",
     "odometry.diff_conv_urad_mm",
     "odometry.vel2_unit_mm_s",
-    "sonar.cycle_ms",
     "sonar.transducers_per_array",
     "sonar.arrays",
     "sonar.rear_sonars",
     "sonar.array.index",
     "sonar.array.place",
     "sonar.array.order",
-    "sonar.pose.number",
-    "sonar.pose.array",
 };
 
 typedef struct {
@@ -69,7 +68,8 @@ typedef struct {
     int line;  // the last one read
     int begin; // where the present statement began
     char section[40];
-    bool posed; // a sonar of this file: those that are inherited are no more
+    unsigned sections; // that have begun
+    bool posed;        // a sonar of this file: those that are inherited are no more
     char *message;
     size_t capacity;
 } load_t;
@@ -152,8 +152,18 @@ static bool take_string(load_t *load, const char *key, const char *value, char *
     return true;
 }
 
+// TOML has no numbers as 007.
+static bool is_padded(const char *value) {
+    const char *const digits = value + (*value == '-' || *value == '+');
+    return digits[0] == '0' && digits[1] >= '0' && digits[1] <= '9';
+}
+
+static bool refuse_twice(load_t *load, const char *key) {
+    return refuse(load, "%s stands twice", key);
+}
+
 static bool take_number(load_t *load, const char *key, const char *value, int32_t *into) {
-    if (!text_number(value, into) || *into < INT16_MIN || *into > INT16_MAX) {
+    if (is_padded(value) || !text_number(value, into) || *into < INT16_MIN || *into > INT16_MAX) {
         return refuse(load, "%s must be a whole number", key);
     }
     return true;
@@ -161,9 +171,29 @@ static bool take_number(load_t *load, const char *key, const char *value, int32_
 
 // The keys --------------------------------------------------------------------------------------------------
 
+// Whether a list has a comma with nothing before it.
+static bool has_hole(const char *list) {
+    char before = ',';
+    for (const char *at = list; *at != '\0'; at++) {
+        if (*at == ',' && before == ',') {
+            return true;
+        }
+        if (strchr("[ \t\r\n", *at) == NULL) {
+            before = *at;
+        }
+    }
+    return false;
+}
+
 static bool take_forward(load_t *load, char *value) {
     argus_ring_t *const ring = &load->self->ring;
     char *rest = NULL;
+    if (load->depth == 0 && load->self->forward_line != 0) {
+        return refuse_twice(load, "[sonar] forward");
+    }
+    if (has_hole(value)) {
+        return refuse(load, "not valid TOML: a comma with nothing before it");
+    }
     ring->forward_count = 0;
     load->self->forward_line = load->depth == 0 ? load->begin : 0;
     for (char *word = strtok_r(value, "[], \t\r\n", &rest); word != NULL;
@@ -196,7 +226,30 @@ static bool take_role(load_t *load, argus_sonar_mount_t *mount, const char *valu
     return refuse(load, "role must be one of none, ahead, astern, abeam");
 }
 
-// 1: taken, 0: no such key, -1: refused.
+static bool begin_key(load_t *load, int sonar, unsigned bit, const char *key) {
+    unsigned *const given = &load->self->given[sonar];
+    const bool twice = (*given >> bit & 1u) != 0;
+    *given |= 1u << bit;
+    return !twice || refuse_twice(load, key);
+}
+
+// What may be given, and can only be one number. 1: taken, 0: no such key, -1: refused.
+static int take_place(load_t *load, const char *key, const char *value, int sonar) {
+    const bool is_number = strcmp(key, "number") == 0;
+    const int32_t must = is_number ? sonar : sonar / 8;
+    int32_t number = 0;
+    if (!is_number && strcmp(key, "array") != 0) {
+        return 0;
+    }
+    if (!take_number(load, key, value, &number)) {
+        return -1;
+    }
+    return number == must || refuse(load, "%s must be %d: sonars are given in their order", key, (int)must)
+               ? 1
+               : -1;
+}
+
+// Likewise.
 static int take_pose(load_t *load, const char *key, const char *value) {
     static const char *const names[] = {"x_mm", "y_mm", "heading_deg"};
     ring_file_t *const self = load->self;
@@ -204,19 +257,18 @@ static int take_pose(load_t *load, const char *key, const char *value) {
     argus_sonar_mount_t *const mount = &self->mounts[sonar];
     int16_t *const into[] = {&mount->x_mm, &mount->y_mm, &mount->heading_deg};
     if (strcmp(key, "role") == 0) {
-        self->given[sonar] |= 8u;
-        return take_role(load, mount, value) ? 1 : -1;
+        const bool first = begin_key(load, sonar, 3, key);
+        return first && take_role(load, mount, value) ? 1 : -1;
     }
     for (unsigned i = 0; i < 3; i++) {
         int32_t number = 0;
         if (strcmp(key, names[i]) == 0) {
-            self->given[sonar] |= 1u << i;
-            const bool good = take_number(load, key, value, &number);
+            const bool good = begin_key(load, sonar, i, key) && take_number(load, key, value, &number);
             *into[i] = (int16_t)number;
             return good ? 1 : -1;
         }
     }
-    return 0;
+    return take_place(load, key, value, sonar);
 }
 
 // Likewise.
@@ -224,7 +276,8 @@ static int take_figure(load_t *load, const char *key, const char *value) {
     for (int i = 0; i < RING_FILE_FIGURES; i++) {
         if (strcmp(figures[i].key, key) == 0 && strcmp(figures[i].section, load->section) == 0) {
             int32_t number = 0;
-            const bool good = take_number(load, key, value, &number);
+            const bool twice = load->depth == 0 && load->self->line[i] != 0;
+            const bool good = twice ? refuse_twice(load, key) : take_number(load, key, value, &number);
             memcpy((char *)&load->self->ring + figures[i].offset, &number, sizeof number);
             load->self->line[i] = load->depth == 0 ? load->begin : 0;
             return good ? 1 : -1;
@@ -309,6 +362,16 @@ static bool begin_pose(load_t *load) {
     return true;
 }
 
+static bool begin_section(load_t *load, unsigned row, const char *text) {
+    const bool listed = text[1] == '[';
+    const bool twice = !listed && (load->sections >> row & 1u) != 0;
+    load->sections |= 1u << row;
+    if (twice) {
+        return refuse_twice(load, text);
+    }
+    return row != SECTION_POSE || begin_pose(load);
+}
+
 static bool take_head(load_t *load, const char *text) {
     static const char *const known[] = {"identity", "body",        "motion",    "odometry",
                                         "sonar",    "sonar.array", "sonar.pose"};
@@ -320,9 +383,9 @@ static bool take_head(load_t *load, const char *text) {
     }
     memcpy(load->section, text + from, length);
     load->section[length] = '\0';
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        if (strcmp(load->section, known[i]) == 0 && listed == (i >= 5)) {
-            return i < 6 || begin_pose(load);
+    for (unsigned i = 0; i < sizeof known / sizeof known[0]; i++) {
+        if (strcmp(load->section, known[i]) == 0 && listed == (i >= SECTION_LISTED)) {
+            return begin_section(load, i, text);
         }
     }
     return refuse(load, "[%s]: no such section", load->section);
@@ -398,7 +461,8 @@ void ring_file_explain(const ring_file_t *self, const char *path, argus_ring_rep
                        size_t capacity) {
     text_t text = text_in(message, capacity);
     const bool of_sonar = report.sonar >= 0 && report.sonar < self->ring.sonars;
-    const int of_rest = report.key >= 0 ? self->line[report.key] : self->forward_line;
+    const int of_forward = report.fault == ARGUS_RING_UNSAFE ? 0 : self->forward_line;
+    const int of_rest = report.key >= 0 ? self->line[report.key] : of_forward;
     const int line = of_sonar ? self->pose_line[report.sonar] : of_rest;
     text_add(&text, "%s:", path);
     if (line > 0) {

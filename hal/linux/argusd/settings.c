@@ -273,6 +273,11 @@ bool settings_check(const settings_t *self, char *message, size_t capacity) {
                        (int)rows[row].minimum, (int)rows[row].maximum, rows[row].unit);
 }
 
+bool settings_check_ranges(const settings_t *self, char *message, size_t capacity) {
+    return argus_config_check(&self->config).fault != ARGUS_CONFIG_RANGE ||
+           settings_check(self, message, capacity);
+}
+
 static void name_value(const row_t *row, int32_t value, char *text, size_t capacity) {
     const char *at = row->choices;
     if (at[0] == '\0' || (is_auto(row) && value != ARGUS_AUTO)) {

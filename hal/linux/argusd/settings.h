@@ -33,6 +33,9 @@ bool settings_choose(settings_t *self, int row, const char *text, const char *op
 // The firmware's verdict, with S5's arithmetic when it refuses.
 bool settings_check(const settings_t *self, char *message, size_t capacity);
 
+// The ranges alone: S5 is asked when the body is known.
+bool settings_check_ranges(const settings_t *self, char *message, size_t capacity);
+
 void settings_list(FILE *out);
 void settings_example(FILE *out);
 

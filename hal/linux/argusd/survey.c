@@ -60,7 +60,8 @@ static const char *refusal_of(const argus_status_t *status) {
         [ARGUS_BAR_NONE] = NULL,
         [ARGUS_BAR_UNKNOWN] = "its body is not known; name it with --robot",
         [ARGUS_BAR_UNSAFE] = "the settings are unsafe for it (S5); see --list-config",
-        [ARGUS_BAR_SONARS] = "it lists sonars that its subclass has not; name it with --robot"};
+        [ARGUS_BAR_SONARS] =
+            "it has other sonars than its subclass or the ring; name it with --robot or --ring"};
     if (status->bumpers_front != 0 || status->bumpers_rear != 0) {
         return waits[ARGUS_WAIT_BUMPER];
     }

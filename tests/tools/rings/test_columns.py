@@ -148,3 +148,48 @@ def test_more_ranges_than_sonars_are_refused(tmp_path: Path) -> None:
 def test_a_table_without_a_pose_says_so(tmp_path: Path) -> None:
     table = [{"t": n / 10, **{f"sonar_{k}": 1000.0 + n for k in range(8)}} for n in range(20)]
     assert "no columns of a pose" in run("stats", as_csv(tmp_path / "a.csv", table)).stderr.decode()
+
+
+FOREIGN = {
+    **{"Zeit": "t_ms", "odo 1": "x_m", "odo 2": "y_m", "Kurs": "heading_rad"},
+    **{f"US{k:02}.w": f"sonar_{k}_mm" for k in range(8)},
+}
+
+
+@pytest.mark.parametrize("way", ["csv", "json"])
+def test_columns_of_any_name_are_named_by_the_user(tmp_path: Path, way: str) -> None:
+    own = rows("t_ms x_m y_m heading_rad sonar_#_mm 0", (1e3, 1.0, 1.0, 1e3))
+    names = {meaning: name for name, meaning in FOREIGN.items()}
+    foreign = [{names[key]: value for key, value in row.items()} for row in own]
+
+    def write(path: Path, table: list[dict[str, float]]) -> Path:
+        if way == "csv":
+            return as_csv(path, table)
+        path.write_text("\n".join(map(json.dumps, table)) + "\n")
+        return path
+
+    told = ",".join(f"{meaning}={name}" for name, meaning in FOREIGN.items())
+    theirs = write(tmp_path / f"theirs.{way}", foreign)
+    here = decode(write(tmp_path / f"own.{way}", own))
+    assert decode(theirs, "--columns", told) == here
+    first, rest = told.split(",", 1)
+    assert decode(theirs, "--columns", first, "--columns", rest) == here
+    assert run("stats", theirs).returncode == 2
+
+
+@pytest.mark.parametrize(
+    ("told", "why"),
+    [
+        ("t_s=nowhere", "no such column; there are Zeit"),
+        ("voltage=Zeit", "give NAME=COLUMN"),
+        ("t_s", "give NAME=COLUMN"),
+        ("x_m=odo 1", "no columns of time and ranges"),
+    ],
+)
+def test_what_no_column_is_is_refused(tmp_path: Path, told: str, why: str) -> None:
+    names = {meaning: name for name, meaning in FOREIGN.items()}
+    own = rows("t_ms x_m y_m heading_rad sonar_#_mm 0", (1e3, 1.0, 1.0, 1e3))
+    foreign = [{names[key]: value for key, value in row.items()} for row in own]
+    done = run("stats", as_csv(tmp_path / "a.csv", foreign), "--columns", told)
+    assert done.returncode == 2
+    assert why in done.stderr.decode()

@@ -16,9 +16,11 @@ static char message[160];
 void setUp(void) {
     memset(&config, 0xA5, sizeof config);
     argus_config_default(&config);
+    config.sonar_cycle_ms = argus_robot_default()->cycle_ms;
 }
 
 void test_the_defaults_are_those_of_the_table_and_pass(void) {
+    argus_config_default(&config);
 #define SAME(key, def, min, max, unit, choices, meaning) TEST_ASSERT_EQUAL_MESSAGE(def, config.key, #key);
     ARGUS_CONFIG_TABLE(SAME)
     const argus_config_report_t report = argus_config_check(&config);

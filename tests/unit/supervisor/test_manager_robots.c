@@ -694,7 +694,7 @@ static argus_ring_t callers_ring(void) {
 }
 
 void test_a_ring_of_the_callers_own_stands_above_what_the_robot_says(void) {
-    static const char *const names[] = {"powerbot-sh", "", "amigo-sh"};
+    static const char *const names[] = {"powerbot-sh", "", "p3at-sh"};
     static argus_robot_storage_t storage;
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         start();
@@ -710,6 +710,45 @@ void test_a_ring_of_the_callers_own_stands_above_what_the_robot_says(void) {
         TEST_ASSERT_EQUAL(ARGUS_BAR_NONE, status.bar);
         finish(names[i]);
     }
+}
+
+// An AmigoBot has eight of the ring's sixteen sonars.
+void test_a_ring_with_sonars_that_the_robot_has_not_got_waits_for_an_operator(void) {
+    static argus_robot_storage_t storage;
+    start();
+    const argus_ring_t ring = callers_ring();
+    TEST_ASSERT_EQUAL(ARGUS_RING_OK, argus_set_ring(&robot.argus, &storage, &ring).fault);
+    robot.subclass = "amigo-sh";
+    TEST_ASSERT_TRUE(robot_goal(&robot, 600, 0));
+    robot_run(&robot, 10000);
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_SONARS_BEYOND, 0));
+    expect_failed(ARGUS_BAR_SONARS);
+    expect_no_motion("amigo-sh");
+    argus_operator(&robot.argus, now(), ARGUS_OP_ACTIVE, 0);
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 60000));
+    finish("a ring of sixteen on eight");
+}
+
+// A P3-DX would meet what it sees at 250 mm before it stands from 250 mm/s; its ring on a shorter body does
+// not. What is out of its range bars any body.
+void test_settings_are_judged_by_the_ring_that_is_given(void) {
+    static argus_robot_storage_t storage;
+    argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    config.speed_mm_s = 250;
+    config.object_range_mm = 250;
+    TEST_ASSERT_EQUAL(ARGUS_CONFIG_DRIVING, argus_config_check(&config).fault);
+    for (int i = 0; i < 2; i++) {
+        start_with(&config);
+        argus_ring_t ring = callers_ring();
+        ring.front_mm = 170;
+        TEST_ASSERT_EQUAL(ARGUS_RING_OK, argus_set_ring(&robot.argus, &storage, &ring).fault);
+        robot.subclass = "";
+        TEST_ASSERT_TRUE(robot_goal(&robot, 600, 0));
+        TEST_ASSERT_EQUAL(i == 0, robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 30000));
+        finish("250 mm/s");
+        config.backoff_mm = -1;
+    }
+    expect_no_motion("a setting out of its range");
 }
 
 void test_a_ring_that_the_settings_are_unsafe_for_changes_nothing(void) {

@@ -105,13 +105,16 @@ class Log:
     ) -> None:
         self.options = options or ReadOptions()
         self.options.name = path
-        is_enough = (lambda _: True) if format_name else is_recognised
+        is_enough = (lambda _: True) if format_name or self.options.columns else is_recognised
         self.source = Source(path, is_enough=is_enough, **source)
         self.options.is_zipped = self.source.is_zipped
         self.options.skipped = self.source.skipped
         if not self.source.head:
             what = self.source.damage[0].what if self.source.damage else "is empty"
             raise LogError(f"{path}: {what}")
+        if self.options.columns and not format_name:
+            is_json = self.source.head.lstrip()[:1] in (b"{", b"[")
+            format_name = "range-json" if is_json else "range-csv"
         returned = crlf_damage(self.source.head)
         head = self.source.head.replace(b"\r\n", b"\n") if returned else self.source.head
         self.format = formats()[format_name] if format_name else find_format(head)

@@ -12,7 +12,7 @@ from io import BufferedReader
 from pathlib import Path
 from typing import Final
 
-from argus_tools.chunks import Chunk, DamageList, Format, Reader, ReadOptions, begins
+from argus_tools.chunks import Chunk, DamageList, Format, LogError, Reader, ReadOptions, begins
 from argus_tools.rings.own import OwnLog, is_own
 from argus_tools.rings.packets import RangeLog
 from argus_tools.rings.recording import Bag, JsonMcap, Recording
@@ -83,6 +83,13 @@ def _recording(path: Path, suffix: str, options: ReadOptions) -> Recording:
             return own
         own.close()
     return Bag(path, suffix == ".bag", options.name)
+
+
+def recording_of(path: Path) -> Recording:
+    """Open a bag by its name, a file or a folder; LogError where it cannot be read."""
+    if not path.exists():
+        raise LogError(f"{path}: no such file")
+    return _recording(path, path.suffix, ReadOptions(name=str(path)))
 
 
 def _reads(suffix: str) -> Callable[[BufferedReader, ReadOptions], Reader]:

@@ -70,6 +70,24 @@ def sonar_numbers(text: str) -> list[int]:
     return found
 
 
+def columns_of(text: str) -> list[tuple[str, str]]:
+    """Parse --columns: names that are understood, each with the column that has another.
+
+    >>> columns_of("t_ms=Zeit,sonar_0_cm=US vorn")
+    [('t_ms', 'Zeit'), ('sonar_0_cm', 'US vorn')]
+    """
+    from argus_tools.rings.columns import is_understood
+
+    pairs = [tuple(word.strip() for word in pair.partition("=")[::2]) for pair in text.split(",")]
+    for meaning, name in pairs:
+        if not name or not is_understood(meaning):
+            raise argparse.ArgumentTypeError(
+                f"'{meaning}={name}': give NAME=COLUMN, where NAME is t_s, x_m, y_m, heading_deg, speed_m_s, "
+                "turn_deg_s, vel_left_m_s, vel_right_m_s or sonar_0_mm, with any unit at its end"
+            )
+    return [(meaning, name) for meaning, name in pairs]
+
+
 def add_log_arguments(parser: argparse.ArgumentParser, follow: bool = False) -> None:
     """Add the arguments that say which log is read, and how."""
     parser.add_argument("log", metavar="LOG", help="the file, gzip or not; - is standard input")
@@ -89,6 +107,14 @@ def add_log_arguments(parser: argparse.ArgumentParser, follow: bool = False) -> 
     )
     parser.add_argument(
         "--topic", metavar="NAME", help="of a bag: the ranges to read, or what their topics begin with"
+    )
+    parser.add_argument(
+        "--columns",
+        type=columns_of,
+        action="extend",
+        default=[],
+        metavar="NAME=COLUMN,...",
+        help="of a table or JSON: which columns stand for t_s, x_m, y_m, heading_deg, sonar_0_mm and so on",
     )
     parser.add_argument("--strict", action="store_true", help="exit with 1 if anything in the log is damaged")
     if follow:
@@ -131,6 +157,7 @@ class Input:
             robot=args.robot,
             topic=args.topic,
             subclass=getattr(args, "subclass", None),
+            columns=tuple(getattr(args, "columns", ())),
             tell=(lambda _: None) if quiet else self._remark,
         )
         self._progress = _Progress(self.path)

@@ -74,9 +74,7 @@ class _Robot:
 
 def opened(settings: Mapping[str, int], identity: SyncReply, sip: bytes) -> tuple[Core, int]:
     """Return a manager that has a session, and its time in ms. `sip`: the first, of which no reading is taken."""
-    core = Core(0, settings)
-    if ring := own_ring(identity.subclass.decode("latin-1")):
-        core.set_ring(ring)
+    core = Core(0, settings, own_ring(identity.subclass.decode("latin-1")))
     robot = _Robot(identity, sip)
     core.link_up(0)
     now_ms = 0

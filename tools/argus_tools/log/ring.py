@@ -20,6 +20,7 @@ EXAMPLES: Final = """\
   argus-log ring my.toml                      what is in it, or file, line and what is wrong
   argus-log ring my.toml -o my.png            the picture: are the sonars where they are?
   argus-log ring my.toml --whole all.toml     with all that it inherits, as argusd reads it
+  argus-log ring --draft robot.urdf > my.toml       a draft of it; of a bag, too
 """
 _TINT: Final = {"ahead": "#0072b2", "astern": "#009e73", "abeam": "#e69f00", "none": "#999999"}
 _CONE_MM: Final = 450.0
@@ -27,7 +28,12 @@ _CONE_MM: Final = 450.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("ring", metavar="FILE.toml", help="the ring, of the form of hil_sim/tables/robots")
+    parser.add_argument("ring", metavar="FILE", help="the ring, of the form of hil_sim/tables/robots")
+    parser.add_argument(
+        "--draft",
+        action="store_true",
+        help="FILE is a URDF, or a bag with Range messages and transforms: write a draft to standard output",
+    )
     parser.add_argument("-o", "--output", metavar="FILE", help="draw it: .png or .svg")
     parser.add_argument(
         "--whole", metavar="FILE", help="write it with all that it inherits; - is standard output"
@@ -36,6 +42,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Check, then report, draw, write; return the exit code."""
+    if args.draft:
+        from argus_tools.rings.draft import drafted
+
+        sys.stdout.write(drafted(Path(args.ring)))
+        return EXIT_READ
     form = Path(args.output or "x.png").suffix.lower().removeprefix(".")
     if form not in ("png", "svg"):
         raise LogError(f"{args.output}: a picture ends in .png or .svg")

@@ -68,12 +68,27 @@ class Columns:
         return "t" in self.known and len(self.ranges) >= RANGES_LEAST
 
 
-def understood(names: list[str]) -> Columns:
-    """Return what columns of these names are."""
+def _plain(name: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+
+
+def is_understood(name: str) -> bool:
+    """Whether a column of this name is one of a ring's.
+
+    >>> is_understood("sonar_3_mm"), is_understood("voltage")
+    (True, False)
+    """
+    columns = understood([name])
+    return bool(columns.known or columns.ranges)
+
+
+def understood(names: list[str], given: Mapping[str, str] | None = None) -> Columns:
+    """Return what columns of these names are. given: the columns that stand for another name, which come first."""
     known: dict[str, tuple[str, float | None]] = {}
     found: dict[int, tuple[str, float | None]] = {}
-    for name in names:
-        plain = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+    given = given or {}
+    for name in sorted(names, key=lambda name: name not in given):
+        plain = _plain(given.get(name, name))
         if match := _RANGE.fullmatch(plain):
             found.setdefault(int(match[1]), (name, _UNITS.get(match[2] or "")))
             continue
@@ -162,10 +177,17 @@ class ColumnsLog:
 
     def __iter__(self) -> Iterator[Chunk]:
         head = list(islice(self._rows, SURVEYED))
-        columns = understood(list(dict.fromkeys(name for _, row in head for name in row)))
+        names = list(dict.fromkeys(name for _, row in head for name in row))
+        for meaning, name in self._options.columns:
+            if name not in names:
+                raise LogError(
+                    f"{self._options.name}: --columns {meaning}={name}: no such column; there are {', '.join(names)}"
+                )
+        columns = understood(names, {name: meaning for meaning, name in self._options.columns})
         if not columns.is_ring:
             raise LogError(
-                f"{self._options.name}: no columns of time and ranges: t_s, x_m, y_m, heading_deg, sonar_0_m"
+                f"{self._options.name}: no columns of time and ranges: t_s, x_m, y_m, heading_deg, sonar_0_m; "
+                "--columns t_s=NAME,sonar_0_mm=NAME says which they are"
             )
         if max(columns.ranges) >= self._table.sonars:
             raise LogError(

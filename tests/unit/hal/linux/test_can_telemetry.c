@@ -113,16 +113,16 @@ void test_packing_agrees_with_another_implementation(void) {
     packed_is("96208853ff1f0190", data);
     hal_dbc_plan_pack(data, &(hal_dbc_plan_t){5, 1, 0, {1, 0, 1, 1, 0, 1}, 11, {-20, 20, -128, 127, -1, 0}});
     packed_is("adb5ec14807fff00", data);
-    hal_dbc_emergency_pack(data, &(hal_dbc_emergency_t){37, 2, 3, 15, 4, 200, -123456});
-    packed_is("25e08fc8c01dfeff", data);
+    hal_dbc_emergency_pack(data, &(hal_dbc_emergency_t){37, 1, 2, 3, 15, 4, 200, -123456});
+    packed_is("25e88fc8c01dfeff", data);
 }
 
 void test_values_beyond_a_signal_do_not_spill_into_the_next(void) {
     uint8_t data[8];
     hal_dbc_readings_pack(data, &(hal_dbc_readings_t){{65535, 0, 0, 0}, {0, 0, 0, 0}});
     packed_is("ff1f000000000000", data);
-    hal_dbc_emergency_pack(data, &(hal_dbc_emergency_t){65535, 0, 0, 0, 0, 0, 0});
-    packed_is("ff0f000000000000", data);
+    hal_dbc_emergency_pack(data, &(hal_dbc_emergency_t){65535, 0, 0, 0, 0, 0, 0, 0});
+    packed_is("ff07000000000000", data);
 }
 
 void test_command_unpacks(void) {
@@ -344,10 +344,10 @@ void test_an_emergency_goes_first_and_at_once(void) {
 
 // Rule: an alarm about any sonar of the build has its other edge, also past the sixteen of the frames of
 // health.
-void test_both_edges_of_the_last_sonar_but_one_go_out(void) {
+void test_both_edges_of_the_last_sonar_go_out(void) {
     collect();
     const int from = count;
-    const int sonar = ARGUS_SONARS - 2;
+    const int sonar = ARGUS_SONARS - 1;
     say(ARGUS_EV_SONAR_HEALTHY, sonar, 700);
     collect();
     TEST_ASSERT_EQUAL_INT(0, frames_of(0x080, from));
@@ -357,6 +357,7 @@ void test_both_edges_of_the_last_sonar_but_one_go_out(void) {
     collect();
     TEST_ASSERT_EQUAL_INT(2, frames_of(0x080, from));
     TEST_ASSERT_EQUAL_UINT32(sonar, get(0x080, 16, 5));
+    TEST_ASSERT_EQUAL_UINT32(HAL_DBC_ABOUT_SONAR, get(0x080, 11, 1));
 }
 
 void test_both_edges_go_out_and_chatter_does_not(void) {
@@ -377,9 +378,10 @@ void test_both_edges_go_out_and_chatter_does_not(void) {
     say(ARGUS_EV_FAILURE_STATE, -1, 1);
     collect();
     TEST_ASSERT_EQUAL_INT(5, frames_of(0x080, from));
-    TEST_ASSERT_EQUAL_UINT32(ARGUS_EV_FAILURE_STATE, get(0x080, 0, 12));
+    TEST_ASSERT_EQUAL_UINT32(ARGUS_EV_FAILURE_STATE, get(0x080, 0, 11));
     TEST_ASSERT_EQUAL_UINT32(ARGUS_IS_MINOR, get(0x080, 14, 2));
-    TEST_ASSERT_EQUAL_UINT32(HAL_DBC_SONAR_NUMBER_NONE, get(0x080, 16, 5));
+    TEST_ASSERT_EQUAL_UINT32(HAL_DBC_ABOUT_ROBOT, get(0x080, 11, 1));
+    TEST_ASSERT_EQUAL_UINT32(0, get(0x080, 16, 5));
     TEST_ASSERT_EQUAL_UINT32(4, get(0x080, 24, 8)); // Roll counts from 0
 }
 

@@ -3,6 +3,7 @@
 // samples are what they are, and what is wrong is told with file, line and reason.
 #include "ring_file.h"
 
+#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -155,4 +156,23 @@ void test_no_text_is_a_crash(void) {
     TEST_ASSERT_FALSE(load_text(""));
     TEST_ASSERT_FALSE(load("/nonexistent/ring.toml"));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(message, "cannot be opened"), message);
+}
+
+// The corpus that argus-log judges, too (tests/tools/test_ring.py): the same verdict, told with the file.
+void test_the_verdicts_are_those_of_the_other_programs(void) {
+    DIR *const folder = opendir(ARGUS_TEST_DATA "/rings");
+    int count = 0;
+    TEST_ASSERT_NOT_NULL(folder);
+    for (const struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
+        if (entry->d_name[0] == '.') {
+            continue;
+        }
+        snprintf(path, sizeof path, "%s/rings/%s", ARGUS_TEST_DATA, entry->d_name);
+        const bool is_good = strncmp(entry->d_name, "good-", 5) == 0;
+        TEST_ASSERT_EQUAL_MESSAGE(is_good, load(path), entry->d_name);
+        TEST_ASSERT_TRUE_MESSAGE(is_good || strncmp(message, path, strlen(path)) == 0, message);
+        count++;
+    }
+    closedir(folder);
+    TEST_ASSERT_GREATER_THAN_INT(40, count);
 }
