@@ -232,6 +232,15 @@ def test_an_upper_deck_sees_the_way_from_behind() -> None:
     assert not upper_deck(600).rules
 
 
+@pytest.mark.parametrize(("v", "broken"), [(80, set()), (200, {12})])
+def test_with_leave_and_no_sonar_left_it_may_creep(v: int, broken: set[int]) -> None:
+    trace = Trace(creep_mm_s=80).sip().say(6, v).say(8, 3000).sip(v=v)
+    trace.monitor.health([("DISABLED", "silent")] * 16)
+    for _ in range(60):
+        trace.sip(v=v)
+    assert trace.rules & {11, 12} == broken
+
+
 def test_bytes_that_are_no_packet_are_found() -> None:
     trace = Trace()
     trace.monitor.to_robot(trace.t_ms, packet(b"\x1d")[:-1] + b"\x00")

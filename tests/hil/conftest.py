@@ -7,12 +7,15 @@ from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import pytest
-from harness import ARGUSD, SIM, Bench
+from harness import ARGUSD, SIM, Bench, HilFailure
 from lateness import watch_host
+from pluggy import Result
+from watch import breaches
 
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "long: takes more than 30 s; started first")
+    config.addinivalue_line("markers", "monitored: what its drives break of S1 to S8 fails it, too")
     watch_host(config, "hil")
 
 
@@ -34,11 +37,23 @@ def bench(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Bench]:
     for program in (ARGUSD, SIM):
         if not program.exists():
             pytest.fail(f"{program} is missing: run tools/dev build", pytrace=False)
-    result = Bench(tmp_path, request.node.name)
+    records = request.node.get_closest_marker("monitored") is not None
+    result = Bench(tmp_path, request.node.name, records=records)
     try:
         yield result
     finally:
         result.close()
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, Result[None], None]:
+    """Let the safety monitor watch what was driven, where nothing else failed."""
+    outcome = yield
+    bench = pyfuncitem.funcargs.get("bench")
+    if outcome.exception is None and pyfuncitem.get_closest_marker("monitored") and isinstance(bench, Bench):
+        bench.close()
+        if found := breaches(bench):
+            outcome.force_exception(HilFailure("\n".join(found)))
 
 
 @pytest.hookimpl(hookwrapper=True)

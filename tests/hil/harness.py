@@ -369,6 +369,9 @@ class Bench:
     daemons: list[Argusd] = field(default_factory=list)
     taps: list[Tap] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    records: bool = False  # the link of each argusd is recorded, in these files
+    recordings: list[Path] = field(default_factory=list)
+    configs: list[dict[str, Any]] = field(default_factory=list)
 
     def sim(
         self, world: str, *faults: str, seed: int = 1, link: Sequence[str] | None = None,
@@ -405,8 +408,14 @@ class Bench:
         file = self.path / f"argusd{len(self.daemons)}.conf"
         file.write_text("".join(f"{key} = {value}\n" for key, value in settings.items()))
         words += ["--config", str(file)]
+        recording = self.path / f"link{len(self.daemons)}.rec"
+        if self.records:
+            words += ["--record", str(recording)]
         daemon = Argusd(words)
         self.daemons.append(daemon)
+        self.recordings.append(recording)
+        robot = {"robot": words[words.index("--robot") + 1]} if "--robot" in words else {}
+        self.configs.append(settings | robot)
         return daemon
 
     def tap(self) -> Tap:
@@ -442,6 +451,7 @@ class Bench:
             daemon.end()
         for tap in self.taps:
             tap.close()
+        self.taps.clear()
         for sim in self.sims:
             sim.end()
 

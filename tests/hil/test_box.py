@@ -10,6 +10,8 @@ from worlds import hall, hall_with_box
 
 from hil_sim.tables import load
 
+pytestmark = pytest.mark.monitored
+
 BOX_X_MM = 800.0
 GOAL_MM = 1700
 WALL_MM = 1100

@@ -10,6 +10,8 @@ from worlds import hall
 
 from hil_sim.arcos import COMMAND, TYPE, Sip
 
+pytestmark = pytest.mark.monitored
+
 BACK_OFF_MM = 150
 
 

@@ -8,6 +8,8 @@ from harness import SIP_S, Bench, Sim, is_at_rest
 from rules import assert_reached
 from worlds import hall
 
+pytestmark = pytest.mark.monitored
+
 ALL = "+".join(map(str, range(16)))
 LOST_S = 6
 CREEP_MM_S = 80

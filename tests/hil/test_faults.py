@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+import pytest
 from harness import Bench, is_at_rest, is_translating, way_mm
 from rules import OFF, WRONG, assert_after_injection, assert_only, assert_reached, injected_s, name
 from worlds import hall
+
+pytestmark = pytest.mark.monitored
 
 
 def test_dead_while_idle_is_disabled_and_planned_for_without_a_move(bench: Bench) -> None:

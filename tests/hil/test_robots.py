@@ -8,6 +8,8 @@ from harness import Argusd, Bench, Sim, is_at_rest
 from rules import OFF, assert_only, assert_reached
 from worlds import hall
 
+pytestmark = pytest.mark.monitored
+
 GOAL_MM = 900
 SONARS = 16
 SETTLE_S = 12.0

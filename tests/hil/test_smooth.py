@@ -5,8 +5,11 @@ from __future__ import annotations
 
 import json
 
+import pytest
 from harness import PATIENCE_S, ROOT, Argusd, Bench, Sim
 from rules import OFF
+
+pytestmark = pytest.mark.monitored
 
 RECORD = ROOT / "build/hil/paper-in-smooth.json"
 COURSE = "1700,0\n1700,1900\n"

@@ -387,12 +387,17 @@ static double stopping_mm(const safety_t *self, double v) {
     return fabs(v) * reaction_s(self) + v * v / (2 * ROBOT_DECEL);
 }
 
+// No sonar is left, and an operator lets it go on by its bumpers: check_alone() bounds that.
+static bool may_creep(const safety_t *self) {
+    return is_none_left(self) && self->set.creep_mm_s > 0;
+}
+
 static void check_blind(safety_t *self, double way_mm) {
     const bool back = way_mm < 0;
     const uint32_t blind = blind_mask(self, back);
     for (uint32_t k = 0; k < self->body->sonars; k++) {
         const double off = fabs(wrapped(self->body->mount[k].bearing_deg - (back ? 180.0 : 0.0)));
-        if ((blind >> k & 1u) == 0 || off > STEEP_DEG || is_backing_off(self)) {
+        if ((blind >> k & 1u) == 0 || off > STEEP_DEG || is_backing_off(self) || may_creep(self)) {
             self->unseen_mm[k] = 0;
             self->allowed_mm[k] = self->set.step_mm;
             continue;
