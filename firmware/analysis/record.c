@@ -8,16 +8,16 @@
 #include "knowledge/angle.h"
 
 #define VERSION 2
-#define HEAD_BYTES 12 // "ARGR", version, sonars, robot, tests, trends
+#define HEAD_BYTES 12 // "ARGR", version, sonars, robot, tests, SLOPES
 #define SONAR_BYTES 43
 #define SONARS_MAX 32 // of any build, which manages whole arrays
 #define ARRAY 8
 #define CHECK_BYTES 2
 #define AT_SCORES 6
 #define AT_UNUSED 18
-#define AT_SLOPES 22
+#define SLOPES 3 // of statistics that are kept no more; 0 is written, whatever is read
 #define SLOPE_BYTES 7
-#define SAID 1u // flag: its degradation is said
+#define MISSION_MM 10000u // with less way a mission without a name is no sign of health
 
 #define V1 1
 #define V1_HEAD_BYTES 6  // "ARGR", version, sonars
@@ -26,7 +26,7 @@
 _Static_assert(ARGUS_RECORD_BYTES == HEAD_BYTES + ARGUS_SONARS * SONAR_BYTES + CHECK_BYTES,
                "length of the record");
 _Static_assert(AT_UNUSED == AT_SCORES + 2 * ARGUS_KEPT, "scores");
-_Static_assert(SONAR_BYTES == AT_SLOPES + SLOPE_BYTES * ARGUS_TRENDS, "slopes");
+_Static_assert(SONAR_BYTES == AT_UNUSED + 4 + SLOPE_BYTES * SLOPES, "slopes");
 
 static const uint8_t magic[4] = {'A', 'R', 'G', 'R'};
 
@@ -93,18 +93,12 @@ static void put_evidence(uint8_t *const at, const argus_evidence_t *const eviden
     }
 }
 
-static void put_trend(uint8_t *const at, const argus_trend_sonar_t *const t) {
-    at[5] = t->said ? SAID : 0;
-    memset(at + AT_UNUSED, 0, AT_SLOPES - AT_UNUSED);
-    for (int i = 0; i < ARGUS_TRENDS; i++) {
-        const argus_slope_t *const slope = &t->slope[i];
-        uint8_t *const to = at + AT_SLOPES + i * SLOPE_BYTES;
-        put16(to, (unsigned)slope->fast);
-        put16(to + 2, (unsigned)slope->slow);
-        to[4] = slope->segments;
-        to[5] = slope->metres;
-        to[6] = slope->run;
+// Missions one after the other in which it was named, this one included.
+static uint8_t missions_named(const argus_sonar_t *const s, const uint32_t odometer_mm) {
+    if (s->named) {
+        return argus_one_more(s->missions_named);
     }
+    return odometer_mm < MISSION_MM ? s->missions_named : 0;
 }
 
 size_t argus_record_encode(const argus_knowledge_t *const knowledge, const argus_evidence_t *const evidence,
@@ -118,12 +112,13 @@ size_t argus_record_encode(const argus_knowledge_t *const knowledge, const argus
     put16(out + 6, robot & 0xFFFFu);
     put16(out + 8, robot >> 16);
     out[10] = ARGUS_KEPT;
-    out[11] = ARGUS_TRENDS;
+    out[11] = SLOPES;
     for (int i = 0; i < ARGUS_SONARS; i++) {
         uint8_t *const at = out + HEAD_BYTES + i * SONAR_BYTES;
+        memset(at, 0, SONAR_BYTES);
         put_history(at, &knowledge->sonar[i]);
+        at[5] = missions_named(&knowledge->sonar[i], knowledge->odometer_mm);
         put_evidence(at, evidence, i);
-        put_trend(at, &evidence->trend.of[i]);
     }
     put16(out + ARGUS_RECORD_BYTES - CHECK_BYTES, crc16(out, ARGUS_RECORD_BYTES - CHECK_BYTES));
     return ARGUS_RECORD_BYTES;
@@ -150,7 +145,7 @@ static bool is_known(const uint8_t *const record, const size_t length) {
     if (sonars_of(record) == 0 || (record[4] != V1 && record[4] != VERSION)) {
         return false;
     }
-    return record[4] == V1 || length < HEAD_BYTES || (record[10] == ARGUS_KEPT && record[11] == ARGUS_TRENDS);
+    return record[4] == V1 || length < HEAD_BYTES || (record[10] == ARGUS_KEPT && record[11] == SLOPES);
 }
 
 static argus_record_fault_t check(const uint8_t *const record, const size_t length) {
@@ -180,19 +175,6 @@ static void get_evidence(argus_evidence_t *const evidence, const int sonar, cons
     }
 }
 
-static void get_trend(argus_trend_sonar_t *const t, const uint8_t *const at) {
-    t->said = (at[5] & SAID) != 0;
-    for (int i = 0; i < ARGUS_TRENDS; i++) {
-        const uint8_t *const from = at + AT_SLOPES + i * SLOPE_BYTES;
-        const argus_slope_t slope = {.fast = get_signed(from),
-                                     .slow = get_signed(from + 2),
-                                     .segments = from[4],
-                                     .metres = from[5],
-                                     .run = from[6]};
-        t->slope[i] = slope;
-    }
-}
-
 static void take_v1(argus_knowledge_t *const knowledge, const uint8_t *const record) {
     for (int i = 0; i < taken_of(record); i++) {
         get_history(&knowledge->sonar[i], record + V1_HEAD_BYTES + i * V1_SONAR_BYTES);
@@ -210,7 +192,7 @@ static void take(argus_knowledge_t *const knowledge, argus_evidence_t *const evi
         get_history(&knowledge->sonar[i], at);
         knowledge->sonar[i].relapses = at[4];
         get_evidence(evidence, i, at, out);
-        get_trend(&evidence->trend.of[i], at);
+        knowledge->sonar[i].missions_named = at[5];
     }
     note->out = (argus_mask_t)mask;
 }
@@ -236,6 +218,6 @@ void argus_record_forget(argus_knowledge_t *const knowledge, argus_evidence_t *c
         s->disabled_before = 0;
         s->relapses = 0;
         argus_evidence_forget(evidence, i);
-        argus_trend_forget(&evidence->trend, i);
+        s->missions_named = 0;
     }
 }

@@ -27,8 +27,8 @@ uint32_t argus_record_robot(const char *name, const char *robot_class, const cha
 size_t argus_record_encode(const argus_knowledge_t *knowledge, const argus_evidence_t *evidence,
                            uint32_t robot, uint8_t *out, size_t capacity);
 
-// Takes the history (kind_before, disabled_before, relapses), the trends and half of the evidence. What it
-// takes never names or convicts by itself. The present health of every sonar stays as it is. Version 1 has
+// Takes the history (kind_before, disabled_before, relapses, missions_named) and half of the evidence. What
+// it takes never names or convicts by itself. The present health of every sonar stays as it is. Version 1 has
 // history only. Nothing is taken unless ARGUS_RECORD_OK is returned. `record` may be any bytes.
 argus_record_fault_t argus_record_decode(argus_knowledge_t *knowledge, argus_evidence_t *evidence,
                                          argus_record_note_t *note, const uint8_t *record, size_t length);

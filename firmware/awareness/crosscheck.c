@@ -380,21 +380,6 @@ static void look_back(argus_evidence_t *const self, const argus_knowledge_t *con
     }
 }
 
-// Slow statistics take what counted.
-static void tell_trend(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                       const int sonar, const uint8_t *const latest) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    const argus_ping_t *const now = argus_pings_at(&self->pings[sonar], 1);
-    for (int i = 0; i < knowledge->sonars; i++) {
-        const argus_ping_t *const then = argus_pings_at(&self->pings[i], latest[i]);
-        if (then != NULL && now->steady && then->steady) {
-            argus_trend_pair(&self->trend, knowledge, sonar, now->reading_mm, i, then->reading_mm,
-                             argus_ping_shift(now, then).along_mm);
-        }
-    }
-}
-
 void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                            const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -411,9 +396,6 @@ void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t
         }
     }
     weigh(self, knowledge, sonar, 1, &tally, true);
-    if (now->counted && now->repeats == 0) {
-        tell_trend(self, knowledge, sonar, latest);
-    }
     look_back(self, knowledge, sonar, latest);
 }
 

@@ -35,7 +35,6 @@ void argus_evidence_forget(argus_evidence_t *const self, const int sonar) {
 void argus_evidence_restart(argus_evidence_t *const self) {
     self->straight_sips = 0;
     self->before_ms = 0;
-    argus_trend_restart(&self->trend);
     memset(self->pings, 0, sizeof self->pings);
 }
 
@@ -76,7 +75,6 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
     }
     c->counted_ms = knowledge->sip_ms;
     c->out = argus_is_out(knowledge, sonar);
-    argus_trend_reading(&self->trend, knowledge, sonar);
     const argus_ping_t now = ray_of(self, knowledge, pose, sonar);
     argus_own_take(self, knowledge, sonar, &now);
     argus_scale_take(self, knowledge, sonar, &now);
@@ -114,7 +112,6 @@ void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *c
         }
     }
     argus_clutter_sip(self, knowledge);
-    argus_trend_sip(&self->trend, knowledge);
     self->before = knowledge->pose;
     self->before_ms = knowledge->sip_ms;
 }
@@ -214,16 +211,4 @@ uint8_t argus_evidence_silent_run(const argus_evidence_t *const self, const int 
 int32_t argus_evidence_contradicted(const argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return self->of[sonar].score[ARGUS_TEST_PEERS];
-}
-
-int argus_evidence_news(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                        int32_t *const metres) {
-    const int sonar = argus_trend_news(&self->trend, knowledge);
-    *metres = sonar < 0 ? 0 : argus_trend_horizon_m(&self->trend, sonar);
-    return sonar;
-}
-
-void argus_evidence_forget_trend(argus_evidence_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    argus_trend_forget(&self->trend, sonar);
 }

@@ -67,9 +67,4 @@ bool argus_evidence_shows_gaps(const argus_evidence_t *self, int sonar);
 uint8_t argus_evidence_silent_run(const argus_evidence_t *self, int sonar);
 int32_t argus_evidence_contradicted(const argus_evidence_t *self, int sonar);
 
-// The sonar with a growing weakness that is new and worth saying now, -1: none. `metres`: of driving until it
-// will have failed. And all of it forgotten.
-int argus_evidence_news(argus_evidence_t *self, const argus_knowledge_t *knowledge, int32_t *metres);
-void argus_evidence_forget_trend(argus_evidence_t *self, int sonar);
-
 #endif

@@ -5,7 +5,6 @@
 
 #include "awareness/numbers.h"
 #include "awareness/pings.h"
-#include "awareness/trend.h"
 
 // For each way in which a sonar can be seen to fail there is one cumulative-sum test (Page 1954). Its
 // increments are log-likelihood ratios as in Wald's SPRT. Scores are hundredths of a nat, never below the
@@ -88,7 +87,6 @@ typedef struct {
     argus_mask_t mute;     // ... which is in dispute: their silence speaks neither for nor against anyone
     argus_dispute_t dispute[ARGUS_ARRAYS_MAX];
     argus_mask_t off_scale; // ranges do not change as the way does: no witnesses
-    argus_trend_t trend;
     argus_pings_t pings[ARGUS_SONARS];
 } argus_evidence_t;
 

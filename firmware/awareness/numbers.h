@@ -153,18 +153,6 @@
     X(SCALE_OFF_RUN, 4, "measures", reasoned, "in a row that are off to one side: what is slant or round is short, too", "without the rule: false disables 0 -> 7 of 12 missions") \
     X(SCALE_LEAST_OFF, 2, "sonars", reasoned, "of an array, before it is taken for off as a whole", "not ablated")
 
-// Trends
-#define ARGUS_TRENDS_TABLE(X) \
-    X(TREND_UNIT, 16000, "-", size, "a statistic of 1: sixteenths of a permille", "not ablated") \
-    X(TREND_SPREAD, 2000, "-", reasoned, "standard deviation of one difference, in parts of what two may differ", "not ablated") \
-    X(TREND_FAST, 6, "segments", reasoned, "that the fast mean looks back on", "not ablated") \
-    X(TREND_SLOW, 32, "segments", reasoned, "... the slow one", "not ablated") \
-    X(TREND_LEAD_LEAST, 3, "segments", reasoned, "by which the fast mean leads, at least", "not ablated") \
-    X(TREND_GAP_MAX, 3, "readings", reasoned, "without an echo that count as dropouts between two", "not ablated") \
-    X(TREND_GOES_ON_PERCENT, 3, "%", reasoned, "an echo goes on from a familiar one: also by this part of the range", "not ablated") \
-    X(TREND_FAR_TO_MM, 4500, "mm", reasoned, "... up to here", "not ablated") \
-    X(TREND_HORIZON_M, 500, "m", reasoned, "of driving: a failure farther off is not announced", "not ablated")
-
 // Alarms
 #define ARGUS_ALARMS_TABLE(X) \
     X(MOVING_MM_S, 5, "mm/s", reasoned, "faster, the robot moves ahead or back", "not ablated")
@@ -182,7 +170,6 @@
     ARGUS_RANGE_LIMITS_TABLE(X) \
     ARGUS_OUTAGE_OF_AN_ARRAY_TABLE(X) \
     ARGUS_RANGES_AGAINST_THE_ODOMETRY_TABLE(X) \
-    ARGUS_TRENDS_TABLE(X) \
     ARGUS_ALARMS_TABLE(X)
 
 // Each test of a sonar: permille of the readings that are odd of a healthy sonar at the least, odd of a faulty one, and
@@ -192,14 +179,6 @@
     X(GARBAGE, 100, 600, 50, 500, 2800, 0) \
     X(DROPOUT, 10, 250, 750, 800, 2700, 0) \
     X(PEERS, 50, 800, 370, 750, 2200, -150)
-
-// Each trend, in sixteenths of a permille: the least length of a segment in mm and its least readings; the least mean
-// and the least lead of the fast mean that are announced; the level at which the evidence will have convicted; the
-// most that one segment moves the fast mean; segments before anything is said, and in a row; whether it has a sign.
-#define ARGUS_TREND_NUMBERS(X) \
-    X(DROPOUT, 2000, 20, 192, 128, 1600, 1920, 6, 3, false) \
-    X(BIAS, 3000, 8, 1440, 640, 4800, 1600, 6, 3, true) \
-    X(RANGE, 4000, 6, 1600, 800, 4800, 3200, 6, 2, false)
 // clang-format on
 
 #define ARGUS_NUMBER(name, value, unit, source, what, trial) ARGUS_##name = (value),

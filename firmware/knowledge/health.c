@@ -49,8 +49,15 @@ argus_event_t argus_health_set(argus_knowledge_t *const self, const int sonar, c
         count_failure(s);
     }
     s->relapses = change == ARGUS_CHANGE_RETESTED ? 0 : s->relapses;
+    s->named |= kind != ARGUS_KIND_NONE && (change == ARGUS_CHANGE_NAMED || row->to == ARGUS_DISABLED);
     s->since_ms = same ? s->since_ms : now_ms;
     s->health = (argus_health_t)row->to;
     s->kind = kind;
     return (argus_event_t){.id = row->event, .sonar = (int8_t)sonar, .value = value};
+}
+
+void argus_health_forgive(argus_knowledge_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    self->sonar[sonar].named = false;
+    self->sonar[sonar].missions_named = 0;
 }

@@ -40,6 +40,9 @@ typedef enum {
 argus_event_t argus_health_set(argus_knowledge_t *self, int sonar, argus_change_t change,
                                argus_fault_kind_t kind, int32_t value, uint32_t now_ms);
 
+// An operator has seen to it: in which missions it was named counts no more.
+void argus_health_forgive(argus_knowledge_t *self, int sonar);
+
 // Whether the change may happen to the sonar now.
 bool argus_health_may(const argus_knowledge_t *self, int sonar, argus_change_t change);
 

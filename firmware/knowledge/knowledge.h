@@ -20,6 +20,8 @@ typedef struct {
     argus_fault_kind_t kind;
     argus_fault_kind_t kind_before; // in an earlier mission, from the record
     uint8_t relapses;               // disabled again, less missions without a fault
+    bool named;                     // a fault of it was named, or it was disabled, in this mission
+    uint8_t missions_named;         // ... in so many earlier ones, one after the other, from the record
     uint16_t disabled_times;        // this mission
     uint16_t disabled_before;       // earlier missions, from the record
     uint32_t sip;                   // index of the SIP that listed it last

@@ -42,6 +42,14 @@ static bool is_kept(const argus_t *const self, const argus_finding_t *const find
     return finding->level >= ARGUS_FOUND_HELD || self->mode == ARGUS_MODE_VERIFYING || self->looks.asked;
 }
 
+// Named in this mission, and in the one before: it gets worse, though looks may have cleared it each time.
+static void warn_of(argus_t *const self, const int sonar, const bool named_before) {
+    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+    if (!named_before && s->missions_named > 0) {
+        argus_say(self, ARGUS_EV_SONAR_DEGRADING, sonar, s->missions_named + 1);
+    }
+}
+
 // A suspect carries the kind that the evidence names so far.
 static void name(argus_t *const self, const int sonar, const argus_finding_t *const finding) {
     ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
@@ -52,8 +60,10 @@ static void name(argus_t *const self, const int sonar, const argus_finding_t *co
         argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
     }
     if (named && s->health == ARGUS_SUSPECT && kind != s->kind) {
+        const bool named_before = s->named;
         argus_looks_rename(&self->looks, sonar, s->kind, kind);
         argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
+        warn_of(self, sonar, named_before);
         argus_rays_forget(&self->rays, sonar); // nothing that it has seen is counted on
         argus_replan(self);
     }
@@ -198,14 +208,5 @@ void argus_judge(argus_t *const self, const int sonar, argus_intent_t *const int
         argus_disable(self, sonar, ARGUS_KIND_SILENT);
     } else {
         judge_in(self, sonar, &finding, intent);
-    }
-}
-
-void argus_foretell(argus_t *const self) {
-    ARGUS_ASSERT(argus_rules(self)->evidence);
-    int32_t metres = 0;
-    const int sonar = argus_evidence_news(&self->evidence, &self->knowledge, &metres);
-    if (sonar >= 0) {
-        argus_say(self, ARGUS_EV_SONAR_DEGRADING, sonar, metres);
     }
 }

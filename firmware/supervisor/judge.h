@@ -9,7 +9,4 @@
 // One sonar. A conviction ahead of the robot calls for a check at rest.
 void argus_judge(argus_t *self, int sonar, argus_intent_t *intent);
 
-// Says which sonar gets worse.
-void argus_foretell(argus_t *self);
-
 #endif

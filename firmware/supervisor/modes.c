@@ -534,7 +534,6 @@ void argus_judge_all(argus_t *const self) {
         argus_judge(self, i, &intent);
         argus_do(self, &intent);
     }
-    argus_foretell(self);
 }
 
 // What the present mode wants. In OFFLINE, CLOSING and CLOSED nothing acts.

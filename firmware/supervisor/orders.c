@@ -158,7 +158,7 @@ static void begin_retest(argus_t *const self, const int sonar) {
     const argus_mask_t bit = (argus_mask_t)(1u << sonar);
     argus_evidence_forget(&self->evidence, sonar);
     argus_extremes_forget(&self->extremes, sonar);
-    argus_evidence_forget_trend(&self->evidence, sonar);
+    argus_health_forgive(&self->knowledge, sonar);
     argus_looks_ask(&self->looks, sonar);
     argus_algorithm1_reopen(&self->algorithm1, bit);
     if (argus_is_out(&self->knowledge, sonar)) {

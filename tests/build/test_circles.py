@@ -18,7 +18,7 @@ OBJECTS = ROOT / "build/release/CMakeFiles/argus.dir/firmware"
 
 
 def stem(path: Path) -> str:
-    """Return what a header and its source have in common: awareness/trend for firmware/awareness/trend.c."""
+    """Return what a header and its source have in common: awareness/own for firmware/awareness/own.c."""
     relative = path.relative_to(FIRMWARE)
     parts = relative.parts[1:] if relative.parts[0] == "include" else relative.parts
     return Path(*parts).with_suffix("").as_posix()

@@ -301,7 +301,8 @@ typedef enum {
       "not used yet: does well again, or failed in the last mission; value: its reading in mm")              \
     X(47, SONAR_KIND, WARN, sonar, "its fault is known better now; value: fault kind")                       \
     X(48, SONAR_PINNED, WARN, sonar, "keeps its health until unpinned; value: 1 pinned, 0 unpinned")         \
-    X(49, SONAR_DEGRADING, WARN, sonar, "gets worse; value: metres of driving until it will have failed")    \
+    X(49, SONAR_DEGRADING, WARN, sonar,                                                                      \
+      "gets worse: named in this mission as in the one before; value: so many missions in a row")            \
     X(50, OBJECT, WARN, object,                                                                              \
       "an object in range, or (0, 7) a wall that the way slants into: STOP sent; value: the reading in mm")  \
     X(51, OBJECT_CHECKED, WARN, object, "a check in failure mode finds an object; value: the reading in mm") \

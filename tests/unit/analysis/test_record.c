@@ -29,9 +29,12 @@ static size_t write_one(void) {
     e.of[3].hypothesis[5].over_healthy = ARGUS_LATE_NAMING;
     e.of[6].score[ARGUS_TEST_DROPOUT] = 2200;
     e.of[7].score[ARGUS_TEST_PEERS] = -150;
-    e.trend.of[6].said = true;
-    e.trend.of[6].slope[ARGUS_TREND_RANGE] =
-        (argus_slope_t){.fast = -16000, .slow = 16000, .segments = 255, .metres = 3, .run = 2};
+    k.odometer_mm = 20000;
+    k.sonar[6].named = true;
+    k.sonar[6].missions_named = 2;
+    k.sonar[7].named = true;
+    k.sonar[7].missions_named = 255;
+    k.sonar[2].missions_named = 4;
     return argus_record_encode(&k, &e, 0xDEADBEEFu, record, sizeof record);
 }
 
@@ -60,16 +63,18 @@ void test_history_comes_back(void) {
     TEST_ASSERT_EQUAL_HEX32(0xDEADBEEFu, note.robot);
 }
 
-void test_trends_come_back(void) {
+void test_missions_in_which_it_was_named_are_counted_one_after_the_other(void) {
     TEST_ASSERT_EQUAL(ARGUS_RECORD_OK, read_back(record, write_one()));
-    const argus_trend_sonar_t *const t = &found.trend.of[6];
-    TEST_ASSERT_TRUE(t->said);
-    TEST_ASSERT_FALSE(found.trend.of[5].said);
-    TEST_ASSERT_EQUAL(-16000, t->slope[ARGUS_TREND_RANGE].fast);
-    TEST_ASSERT_EQUAL(16000, t->slope[ARGUS_TREND_RANGE].slow);
-    TEST_ASSERT_EQUAL(255, t->slope[ARGUS_TREND_RANGE].segments);
-    TEST_ASSERT_EQUAL(3, t->slope[ARGUS_TREND_RANGE].metres);
-    TEST_ASSERT_EQUAL(2, t->slope[ARGUS_TREND_RANGE].run);
+    TEST_ASSERT_EQUAL(3, other.sonar[6].missions_named);
+    TEST_ASSERT_EQUAL(255, other.sonar[7].missions_named);
+    TEST_ASSERT_EQUAL(0, other.sonar[2].missions_named); // not this time
+    TEST_ASSERT_FALSE(other.sonar[6].named);
+    k.odometer_mm = 9999; // too short a way to show anything
+    TEST_ASSERT_EQUAL(ARGUS_RECORD_OK,
+                      read_back(record, argus_record_encode(&k, &e, 1, record, sizeof record)));
+    TEST_ASSERT_EQUAL(4, other.sonar[2].missions_named);
+    argus_record_forget(&other, &found);
+    TEST_ASSERT_EQUAL(0, other.sonar[2].missions_named);
 }
 
 // Whatever the scores were: of one that was out a suspicion is left at most, of any other not even that.
@@ -197,11 +202,8 @@ void test_any_content_is_survived(void) {
         record[ARGUS_RECORD_BYTES - 1] = (uint8_t)(crc >> 8);
         TEST_ASSERT_EQUAL(ARGUS_RECORD_OK, read_back(record, ARGUS_RECORD_BYTES));
         for (int i = 0; i < ARGUS_SONARS; i++) {
-            const int32_t metres = argus_trend_horizon_m(&found.trend, i);
-            TEST_ASSERT_TRUE(metres >= 0 && metres <= ARGUS_TREND_HORIZON_M);
             TEST_ASSERT_TRUE(other.sonar[i].kind_before <= ARGUS_KIND_INTERMITTENT);
         }
-        argus_trend_news(&found.trend, &other);
     }
 }
 
