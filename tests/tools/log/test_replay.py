@@ -18,6 +18,7 @@ from argus_tools.formats import open_log
 from argus_tools.log.cli import main
 from argus_tools.log.packets import Row, packets
 from argus_tools.log.replay import Identity, Player, again
+from bags import Drive, cloud, odometry, write
 from forks import Forked
 from logs import start
 
@@ -168,6 +169,27 @@ def test_damage_is_played_as_it_was(tmp_path: Path) -> None:
     client.now_ms += 1e6
     it.advance(client.now_ms)
     assert b"".join(it.outgoing()) == b"".join(row.wire for row in played(path))
+
+
+def test_a_bag_is_played_as_the_sips_of_its_robot(tmp_path: Path) -> None:
+    drive = Drive(seconds=5.0)
+    sent = [
+        one
+        for t, place, heading, ranges in drive.steps
+        for one in (odometry(t, place, heading), cloud(t, ranges))
+    ]
+    path = write(tmp_path / "drive.bag", sent)
+    client = Client(Player(Identity(rows(path), None), lambda: rows(path), 1.0, False))
+    assert client.connect().subclass == b"p3dx-sh"
+    heard = []
+    while not client.player.is_over:
+        client.now_ms += 10
+        heard += client.listen()
+    assert heard == [row.data for row in played(path)]
+    assert len(heard) >= 45
+    read = {sonar: mm for data in heard for sonar, mm in Sip.decode(data).sonars}
+    assert set(read) == set(range(8))
+    assert all(abs(read[k] - drive.steps[-1][3][k]) <= 60 for k in read), "the last reading of each"
 
 
 def replaying(*arguments: str) -> Forked:
