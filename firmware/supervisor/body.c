@@ -28,15 +28,10 @@ static void say_beyond(argus_t *const self, const argus_robot_t *const robot) {
     }
 }
 
-// A ring that has sonars which a robot of this subclass has not got is that of another one.
-static bool is_anothers_ring(argus_t *const self, const argus_robot_t *const ring) {
-    const argus_robot_t *const said = argus_robot_find(self->session.subclass);
-    if (!argus_robot_is_own(ring) || said == NULL || said->sonars >= ring->sonars) {
-        return false;
-    }
-    self->orders.bar = ARGUS_BAR_SONARS;
-    argus_tell(self, ARGUS_EV_SONARS_BEYOND, said->sonars);
-    return true;
+// How many sonars a robot of this subclass has, where the ring has more: that is of another one. Else 0.
+static int short_of(const char *const subclass, const argus_robot_t *const ring) {
+    const argus_robot_t *const said = argus_robot_find(subclass);
+    return argus_robot_is_own(ring) && said != NULL && said->sonars < ring->sonars ? said->sonars : 0;
 }
 
 // What was found out about the sonars of another body says nothing of this one's, but what its record says.
@@ -92,7 +87,12 @@ void argus_meet_body(argus_t *const self) {
     const bool active = !self->orders.passive || self->orders.barred;
     say_beyond(self, robot);
     change_to(self, robot);
-    self->orders.barred = (argus_say_barred(self) || is_anothers_ring(self, robot)) && active;
+    self->orders.barred = argus_say_barred(self) && active;
+    if (self->orders.bar == ARGUS_BAR_NONE && short_of(self->session.subclass, robot) > 0) {
+        self->orders.bar = ARGUS_BAR_SONARS;
+        self->orders.barred = active;
+        argus_tell(self, ARGUS_EV_SONARS_BEYOND, short_of(self->session.subclass, robot));
+    }
     self->orders.passive = self->orders.locked || self->orders.barred || !active;
     ARGUS_ASSERT(!self->orders.barred || self->orders.passive);
 }

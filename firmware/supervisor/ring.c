@@ -11,10 +11,10 @@ static bool is_safe(const argus_config_t *const config, const argus_robot_t *con
 }
 
 // Settings that another robot could not be driven with are safe for this one.
-static void unlock(argus_t *const self) {
-    if (self->orders.locked && !self->orders.mended) {
-        self->orders.locked = false;
-        self->orders.passive = self->config.active == 0;
+static void unlock(argus_orders_t *const orders, const bool active) {
+    if (orders->locked && !orders->mended) {
+        orders->locked = false;
+        orders->passive = !active;
     }
 }
 
@@ -36,7 +36,7 @@ argus_ring_report_t argus_set_ring(argus_t *const self, argus_robot_storage_t *c
     } else if (self != NULL) {
         self->config = config;
         argus_body_is(&self->knowledge, robot, self->now_ms);
-        unlock(self);
+        unlock(&self->orders, self->config.active != 0);
     }
     return report;
 }

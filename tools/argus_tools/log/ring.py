@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Check, then report, draw, write; return the exit code."""
     if args.draft:
-        from argus_tools.rings.draft import drafted
+        from argus_tools.log.draft import drafted
 
         sys.stdout.write(drafted(Path(args.ring)))
         return EXIT_READ
