@@ -83,6 +83,7 @@
     X(CLIPPED_MM, 105, "mm", reasoned, "the shortest readings are all alike", "not ablated") \
     X(ALIKE_MM, 20, "mm", reasoned, "a steady view changes by less", "not ablated") \
     X(PARALLEL_MM, 5, "mm", reasoned, "by more a range abeam changes where the wall is not along the way: more than the step of a half wave", "not ablated") \
+    X(PARALLEL_HEARD_MM, 500, "mm", reasoned, "a wall as near as this is heard abeam", "not ablated") \
     X(STUCK_TURNED_CDEG, 2000, "cdeg", reasoned, "of turn under one reading are evidence: past square-on to a wall a range stays for less", "not ablated") \
     X(FAMILIAR_MM, 100, "mm", reasoned, "an echo goes on from one before to within this, and the way", "not ablated") \
     X(COMPARED, 2, "echoes", reasoned, "that one is compared with", "not ablated") \

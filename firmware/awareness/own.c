@@ -17,12 +17,18 @@ static void score(argus_evidence_t *const self, const argus_knowledge_t *const k
     argus_odds_note(self, sonar, test, odd);
 }
 
-// One echo after the other of this sonar: 1: the wall comes nearer or goes away; -1: its range stays, which
-// that of a wall along the way does; 0: there are none.
-static int wall_of(const argus_pings_t *const pings) {
+// What one abeam shows of a reading on its side. 1: it is of no wall along the way: one so near this one
+// would hear, too, and the range of another would stay; -1: it may be; 0: this one hears none.
+static int wall_of(const argus_pings_t *const pings, const int32_t reading_mm) {
     const argus_ping_t *const last = argus_pings_at(pings, 1);
     const argus_ping_t *const then = argus_pings_at(pings, 2);
-    if (then == NULL || !argus_ping_is_echo(last) || !argus_ping_is_echo(then)) {
+    if (then == NULL) {
+        return 0;
+    }
+    if (reading_mm <= ARGUS_PARALLEL_HEARD_MM && last->reading_mm > reading_mm + ARGUS_FAMILIAR_MM) {
+        return 1;
+    }
+    if (!argus_ping_is_echo(last) || !argus_ping_is_echo(then)) {
         return 0;
     }
     return argus_abs(last->reading_mm - then->reading_mm) > ARGUS_PARALLEL_MM ? 1 : -1;
@@ -30,7 +36,7 @@ static int wall_of(const argus_pings_t *const pings) {
 
 // What the sonars abeam on its side show of the wall there; of two that differ, that it stays.
 static int wall_beside(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                       const int sonar) {
+                       const int sonar, const int32_t reading_mm) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const argus_robot_t *const robot = knowledge->robot;
@@ -40,7 +46,7 @@ static int wall_beside(const argus_evidence_t *const self, const argus_knowledge
     int shows = 0;
     for (int i = 0; i < knowledge->sonars && shows >= 0; i++) {
         if ((abeam >> i & 1u) != 0 && i != sonar && (argus_robot_pose(robot, i).y_mm > 0) == left) {
-            const int wall = wall_of(&self->pings[i]);
+            const int wall = wall_of(&self->pings[i], reading_mm);
             shows = wall != 0 ? wall : shows;
         }
     }
@@ -75,7 +81,7 @@ static bool must_change(const argus_evidence_t *const self, const argus_knowledg
     }
     const int32_t bearing = argus_robot_pose(knowledge->robot, sonar).heading_deg * 100;
     const bool ahead = argus_abs(argus_cos(bearing)) > ARGUS_TRIG_ONE * ARGUS_SHORTEST_ALONG_PERCENT / 100;
-    return wall_beside(self, knowledge, sonar) >= (ahead ? 0 : 1);
+    return wall_beside(self, knowledge, sonar, now->reading_mm) >= (ahead ? 0 : 1);
 }
 
 // Of what goes on alike: how often the very same value comes again depends on noise and on the steps of
