@@ -46,7 +46,7 @@ function arc(r, from, to) {
 /** Those of the floor, by name; the robot's are in the style sheet. */
 function colours(box) {
   const style = getComputedStyle(box);
-  return Object.fromEntries(["grid", "wall", "way", "echo", "doubted", "goal"].map((name) => [name, style.getPropertyValue(`--${name}`)]));
+  return Object.fromEntries(["muted", "floor", "grid", "wall", "way", "echo", "doubted", "goal"].map((name) => [name, style.getPropertyValue(`--${name}`)]));
 }
 
 export class Stage {
@@ -171,14 +171,14 @@ export class Stage {
     const colour = (name) => this.colours[name];
     pen.setTransform(ratio, 0, 0, ratio, (width * ratio) / 2, (height * ratio) / 2);
     pen.clearRect(-width / 2, -height / 2, width, height);
-    this.#grid(pen, width, height, colour("grid"));
+    this.#grid(pen, width, height, colour("grid"), colour("muted"), colour("floor"));
     this.#lines(pen, colour("wall"));
     this.#way(pen, colour("way"));
     this.#dots(pen, colour("echo"), colour("doubted"));
     if (this.goal) this.#flag(pen, colour("goal"));
   }
 
-  #grid(pen, width, height, colour) {
+  #grid(pen, width, height, colour, ink, paper) {
     const step = 1000 * this.scale;
     pen.fillStyle = colour;
     const left = ((this.pose.y * this.scale) % step) - Math.ceil(width / step) * step;
@@ -193,10 +193,14 @@ export class Stage {
       pen.arc(0, 0, r * this.scale, 0, 2 * Math.PI);
       pen.stroke();
     }
-    pen.font = "11px ui-monospace, monospace";
+    pen.font = "12px ui-monospace, monospace";
     pen.textAlign = "center";
+    pen.fillStyle = ink;
+    pen.strokeStyle = paper; // a rim, so that beams and circles do not cross the figures
+    pen.lineWidth = 4;
     for (let r = 1000; r <= NO_ECHO_MM; r += 1000) {
       const [x, y] = polar(r * this.scale, -70);
+      pen.strokeText(`${r / 1000} m`, x, y + 4);
       pen.fillText(`${r / 1000} m`, x, y + 4);
     }
   }
