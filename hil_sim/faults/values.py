@@ -94,7 +94,7 @@ VALUES: Final = dict(line.partition(" ")[::2] for line in _TABLE.splitlines()[1:
 _NEVER: Final = 2**31 - 1
 _PARTS: Final = {"hundredths of a degree": (100, "deg"), "decivolts": (10, "V")}
 _UNITS: Final = {
-    "degrees": "deg", "seconds": "s", "metres": "m", "mm/s": "mm/s", "mm": "mm", "ms": "ms",
+    "degrees": "deg", "seconds": "s", "mm/s": "mm/s", "mm": "mm", "ms": "ms",
 }  # fmt: skip
 OPERATIONS: Final = (
     "STOP", "GO", "RECHECK", "MOVE", "TURN", "PASSIVE", "ACTIVE", "RETEST", "PIN", "UNPIN", "DISABLE",

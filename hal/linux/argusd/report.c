@@ -107,7 +107,6 @@ static void add_amount(text_t *text, const char *words, int32_t value) {
                                    {"decivolts", 10, "V"},
                                    {"degrees", 1, "deg"},
                                    {"seconds", 1, "s"},
-                                   {"metres", 1, "m"},
                                    {"mm/s", 1, "mm/s"},
                                    {"mm", 1, "mm"},
                                    {"ms", 1, "ms"}};
