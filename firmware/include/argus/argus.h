@@ -109,8 +109,9 @@ typedef uint16_t argus_mask_t;
     X(PAPER, "paper", 1, 0, 0, "the rules of the source paper")         \
     OR X(ARGUS, "argus", 0, 1, 1, "evidence while driving, and all that goes beyond the paper; the default")
 // clang-format on
-#define ARGUS_PROFILE_WORDS ARGUS_PROFILE_TABLE(ARGUS_WORD_OF, "|") // with a bar between them
-#define ARGUS_PROFILE_LAST ((int32_t)ARGUS_PROFILES - 1)            // the last of them
+// The words of that table, with a bar between them.
+#define ARGUS_PROFILE_WORDS ARGUS_PROFILE_TABLE(ARGUS_WORD_OF, "|")
+#define ARGUS_PROFILE_LAST ((int32_t)ARGUS_PROFILES - 1) // the last of them
 
 // A constant for each row of that table; ARGUS_PROFILES is how many there are.
 typedef enum {
@@ -132,8 +133,9 @@ typedef enum {
     OR X(RING, "ring", 0, 1, 1000, 1, "least stops, then least turning, abeam and rear look ahead too") \
     OR X(ADAPTIVE, "adaptive", 0, 1, 60, 1, "least time, abeam and rear look ahead too")
 // clang-format on
-#define ARGUS_POLICY_WORDS ARGUS_POLICY_TABLE(ARGUS_WORD_OF, "|") // with a bar between them
-#define ARGUS_POLICY_LAST ((int32_t)ARGUS_POLICIES - 1)           // the last of them
+// The words of that table, with a bar between them.
+#define ARGUS_POLICY_WORDS ARGUS_POLICY_TABLE(ARGUS_WORD_OF, "|")
+#define ARGUS_POLICY_LAST ((int32_t)ARGUS_POLICIES - 1) // the last of them
 
 // A constant for each row of that table; ARGUS_POLICIES is how many there are.
 typedef enum {

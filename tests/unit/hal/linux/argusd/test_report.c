@@ -34,7 +34,8 @@ void test_an_event_to_the_letter(void) {
         "\"value\":5000,\"state\":\"IsMinor\"}",
         line);
     TEST_ASSERT_GREATER_THAN_size_t(0, report_event_plain(&event, 12345, false, line, sizeof line));
-    TEST_ASSERT_EQUAL_STRING("   12.345 ERROR sonar/front/03 SONAR_DEAD 5000 mm: dead reading: STOP sent", line);
+    TEST_ASSERT_EQUAL_STRING("   12.345 ERROR sonar/front/03 SONAR_DEAD 5000 mm: dead reading: STOP sent",
+                             line);
 }
 
 void test_the_kind_of_a_fault_is_named(void) {
