@@ -126,7 +126,7 @@ def readme(found: Summary) -> str:
     """Return what a newcomer wants to know of the journeys: one line for each condition."""
     lines = [
         "| 45 m through rooms | arrives | reference: same course, healthy, diagnosis off | speed / reference"
-        " | things hit | people hit: Argus, reference | healthy sonars named, an hour |",
+        " | things hit | people hit: Argus, reference | false alarms an hour |",
         "|---|---|---|---|---|---|---|",
     ]
     said = {
