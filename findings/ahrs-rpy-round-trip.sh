@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# In AHRS a roll of 0.5 rad given to DCM comes back as a yaw of -0.5; Quaternion takes the same list the other way round.
+# In AHRS a roll of 0.5 rad given to DCM comes back as a yaw of -0.5; Quaternion takes the same list the other way
+# round.
 #
 # Version:   AHRS 0.4.0, numpy 2.4.6.
 # Expected:  DCM(rpy=a).to_rpy() is a, and DCM(rpy=a) and Quaternion(rpy=a) are one rotation.

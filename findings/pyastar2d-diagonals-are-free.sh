@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# pyastar2d plans across an empty floor by a zigzag 31 % longer than the straight line, and between two walls that touch.
+# pyastar2d plans across an empty floor by a zigzag 31 % longer than the straight line, and between two walls that
+# touch.
 #
 # Version:   pyastar2d 1.1.4, numpy 2.4.6.
 # Expected:  With allow_diagonal a diagonal step costs sqrt(2) of a straight one, and it does not pass between two

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# rplidar-roboticia gives each point of an express scan the bearing of the next one, and begins a turn up to 31 points early.
+# rplidar-roboticia gives each point of an express scan the bearing of the next one, and begins a turn up to 31 points
+# early.
 #
 # Version:   rplidar-roboticia 0.9.5, pyrplidar 0.1.2, pyserial 3.5.
 # Expected:  The first of the 32 points of an express packet lies at the start angle that the packet names, and a turn
