@@ -55,7 +55,7 @@ def test_names_are_numbered_as_in_the_header() -> None:
 def test_settings_are_those_of_the_table() -> None:
     table = HEADER.read_text()
     auto = int(re.findall(r"#define ARGUS_AUTO (\d+)", table)[0])
-    rows = re.findall(r"X\((\w+), (\d+|ARGUS_AUTO), \d+, \d+,", table)
+    rows = re.findall(r"X\((\w+), (\d+|ARGUS_AUTO), \d+, \w+,", table)
     assert [(key, value[1]) for key, value in settings().items()] == [
         (key, auto if text == "ARGUS_AUTO" else int(text)) for key, text in rows
     ]

@@ -205,8 +205,8 @@ def test_the_time_between_two_pings_is_that_of_the_ring() -> None:
     outcome = run(Mission("office", ((600, 0),), seed=12, robot=str(RINGS / "roundbot.toml")))
     assert outcome.reached, "seed 12"
     with pytest.raises(InputError, match="S5"):
-        Core(0, {"speed_mm_s": 300, "object_range_mm": 350}, ring)
-    Core(0, {"speed_mm_s": 300, "object_range_mm": 350, "sonar_cycle_ms": 40}, ring)
+        Core(0, {"speed_mm_s": 300, "object_range_mm": 300}, ring)
+    Core(0, {"speed_mm_s": 300, "object_range_mm": 300, "sonar_cycle_ms": 40}, ring)
 
 
 @pytest.mark.parametrize(

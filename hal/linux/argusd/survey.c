@@ -265,17 +265,17 @@ static verdict_t verdict_of(const survey_t *self, int sonar) {
     const argus_fault_kind_t kind = kind_of(self, sonar);
     const survey_match_t match = match_of(self, sonar);
     if (survey_proves(&match) != ARGUS_KIND_NONE) {
-        verdict_t found = found_as(true, "", 0, "broken: %s", argus_name(ARGUS_NAME_KIND, kind));
+        verdict_t found = found_as(true, "", 0, "broken: %s", argus_name(ARGUS_NAME_KIND, (int)kind));
         snprintf(found.sure, sizeof found.sure, "proven, %d of %d differ", match.compared - match.agreed,
                  match.compared);
         return found;
     }
     switch (self->status.health[sonar]) {
     case ARGUS_DISABLED:
-        return found_as(true, "proven", 0, "broken: %s", argus_name(ARGUS_NAME_KIND, kind));
+        return found_as(true, "proven", 0, "broken: %s", argus_name(ARGUS_NAME_KIND, (int)kind));
     case ARGUS_SUSPECT:
         return found_as(true, NULL, percent, "suspect, %s %s", percent >= LIKELY ? "likely" : "perhaps",
-                        kind == ARGUS_KIND_NONE ? "anything" : argus_name(ARGUS_NAME_KIND, kind));
+                        kind == ARGUS_KIND_NONE ? "anything" : argus_name(ARGUS_NAME_KIND, (int)kind));
     default:
         return unblamed(self, sonar);
     }
@@ -338,7 +338,7 @@ static void tell_json(const survey_t *self, FILE *out) {
         json_name(&json, "health");
         json_string(&json, argus_name(ARGUS_NAME_HEALTH, self->status.health[i]));
         json_name(&json, "kind");
-        json_string(&json, argus_name(ARGUS_NAME_KIND, kind_of(self, i)));
+        json_string(&json, argus_name(ARGUS_NAME_KIND, (int)kind_of(self, i)));
         json_name(&json, "percent");
         json_int(&json, self->doubts.percent[i]);
         json_name(&json, "compared");
