@@ -131,8 +131,8 @@ static int doubt(const argus_extreme_t *const self, const argus_knowledge_t *con
     return self->visited && reading_mm > far_mm ? ARGUS_IMPOSSIBLE_VISIT : 0;
 }
 
-// What this reading adds. Below the least counts at once. A leap counts with the next reading, when those
-// beside it have fired, too: what one of them hears as near has come there.
+// What this reading adds. Below the least counts at once, unless it is a leap, too. A leap counts with the
+// next reading, when those beside it have fired, too: what one of them hears as near has come there.
 static int weigh(argus_extreme_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                  const int32_t reading_mm) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -140,7 +140,7 @@ static int weigh(argus_extreme_t *const self, const argus_knowledge_t *const kno
     const bool company = doubted + self->waits > 0 && has_company(knowledge, sonar);
     const int counts = company ? 0 : self->waits;
     self->waits = (uint8_t)(company ? 0 : doubted);
-    if (reading_mm < knowledge->robot->min_mm) {
+    if (doubted == 0 && reading_mm < knowledge->robot->min_mm) {
         return counts + ARGUS_IMPOSSIBLE_CONVICTS / ARGUS_IMPOSSIBLE_ROW;
     }
     return counts - (doubted == 0 && !is_shortest(knowledge, reading_mm) ? 1 : 0);
