@@ -155,7 +155,7 @@ _COMMON: Final[Table] = {
     ),
     "cloud_age_s": Parameter(0.5, "an echo older than this is not in the cloud", 0.05, 10.0, read=Read.LIVE),
     "diagnostics_s": Parameter(
-        1.0, "time between two diagnoses; a change of a sonar is told at once", 0.1, 60.0, read=Read.LIVE
+        1.0, "time between two diagnoses; a change of a sonar is published at once", 0.1, 60.0, read=Read.LIVE
     ),
     "frame_prefix": Parameter(
         AUTO,
