@@ -23,6 +23,7 @@ _TOGETHER_S: Final = 1.0
 _RAISED: Final = "SONAR_SUSPECT"
 _ENDED: Final = frozenset(("SUSPICION_DROPPED", "SONAR_CLEARED", "SONAR_HEALTHY", "SONAR_DISABLED"))
 _DISABLED: Final = "SONAR_DISABLED"
+_KNOWN_BETTER: Final = "SONAR_KIND"
 _BEGUN: Final = "SESSION_OPEN"
 _UNSEEN: Final = 0xFFFFFFFF
 # What follows from a disabled sonar, and what a manager that only listens would have liked to do.
@@ -70,6 +71,8 @@ class Summary:
         if name == _DISABLED and event.sonar is not None:
             place = f"byte {offset}" if t is None else f"+{t - (self._first or 0.0):.1f} s"
             self._disabled[event.sonar] = (kind_name(event.value), self._now, place)
+        elif name == _KNOWN_BETTER and event.sonar in self._disabled:
+            self._disabled[event.sonar] = (kind_name(event.value), *self._disabled[event.sonar][1:])
 
     def lines(self, status: dict[str, Any], unread: int, unborne: Sequence[int] = ()) -> list[str]:
         """Return the lines, of what the manager knows at the end and how many places of the file were not read.
