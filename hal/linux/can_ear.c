@@ -14,11 +14,9 @@ void hal_can_ear_init(hal_can_ear_t *self, const hal_can_sys_t *sys) {
 }
 
 static int set_up(const hal_can_ear_t *self, const hal_can_spec_t *spec, int index) {
-    const struct can_filter filter = {.can_id = spec->rx_id,
-                                      .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG};
     const int both = 1;
     const struct sockaddr_can address = {.can_family = AF_CAN, .can_ifindex = index};
-    int failed = self->sys->set(self->fd, SOL_CAN_RAW, CAN_RAW_FILTER, &filter, sizeof filter);
+    int failed = hal_can_filter(self->sys, self->fd, spec->rx_id);
     if (failed == 0) {
         failed = self->sys->set(self->fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &both, sizeof both);
     }

@@ -29,12 +29,9 @@ static void drop_socket(hal_can_raw_t *self) {
 }
 
 static int set_up(hal_can_raw_t *self) {
-    // Only data frames with an 11-bit id: others of the same number are no orders.
-    const struct can_filter filter = {.can_id = self->rx_id,
-                                      .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG};
     const can_err_mask_t errors = CAN_ERR_BUSOFF;
     const struct sockaddr_can address = {.can_family = AF_CAN, .can_ifindex = self->index};
-    int failed = self->sys->set(self->fd, SOL_CAN_RAW, CAN_RAW_FILTER, &filter, sizeof filter);
+    int failed = hal_can_filter(self->sys, self->fd, self->rx_id);
     if (failed == 0) {
         failed = self->sys->set(self->fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors);
     }

@@ -3,6 +3,7 @@
 #include "hal/can_sys.h"
 
 #include <errno.h>
+#include <linux/can/raw.h>
 #include <net/if_arp.h>
 #include <stdio.h>
 #include <string.h>
@@ -87,4 +88,10 @@ int hal_can_interface(const hal_can_sys_t *sys, int fd, const char *name, int wa
         return HAL_LINK_NO_FD;
     }
     return index;
+}
+
+int hal_can_filter(const hal_can_sys_t *sys, int fd, uint16_t rx_id) {
+    const struct can_filter filter = {.can_id = rx_id,
+                                      .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG};
+    return sys->set(fd, SOL_CAN_RAW, CAN_RAW_FILTER, &filter, sizeof filter);
 }

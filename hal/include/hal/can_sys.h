@@ -27,6 +27,10 @@ extern const hal_can_sys_t hal_can_sys;
 // `wants_fd` is set and the interface is not set up for CAN FD.
 int hal_can_interface(const hal_can_sys_t *sys, int fd, const char *name, int wants_fd);
 
+// Lets a CAN_RAW socket hear data frames with this 11-bit id alone: others of the same number are no orders.
+// -errno when it fails.
+int hal_can_filter(const hal_can_sys_t *sys, int fd, uint16_t rx_id);
+
 // The link error that -errno of socket() or bind() means.
 hal_link_error_t hal_can_error_of(int negative_errno);
 
