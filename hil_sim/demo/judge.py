@@ -15,7 +15,7 @@ from itertools import pairwise
 from typing import Any, Final
 
 from hil_sim.errors import SimError
-from hil_sim.faults.kinds import SONAR_KINDS
+from hil_sim.faults.kinds import KIND_NAME
 from hil_sim.tables import load
 
 Record = Mapping[str, Any]
@@ -27,7 +27,6 @@ TIME_LIMIT_S: Final = 60.0
 PAPER_LIMIT_S: Final = 120.0
 """The paper's method stops every 200 mm."""
 IDLE_FACTORS: Final = (0.5, 1.0, 2.0)
-KIND_NAME: Final = dict(enumerate(SONAR_KINDS, 1))
 
 _REST_MM_S: Final = 1.0
 _REST_DEG_S: Final = 0.5

@@ -18,6 +18,8 @@ SONAR_KINDS: Final = {
     "slow": "reports the echo of n=COUNT firings ago (default 5)",
     "intermittent": "each reading is value=5000 with probability p=P (default 0.5); beyond=MM: farther echoes only",
 }
+KIND_NAME: Final = dict(enumerate(SONAR_KINDS, 1))
+"""Their names by the numbers that events and recordings have; 0 stands for none."""
 WHEEL_KINDS: Final = {
     "wheel": "left or right turns PART of what it is told, 0.5 to 1, e.g. wheel:left:0.95; its encoder sees it",
 }

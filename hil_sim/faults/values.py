@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from hil_sim.faults.kinds import SONAR_KINDS
+from hil_sim.faults.kinds import KIND_NAME
 
 _TABLE: Final = """<!-- values: written by tools/gen_docs.py from ARGUS_EVENT_TABLE -->
 LINK_LOST ms
@@ -100,13 +100,8 @@ OPERATIONS: Final = (
     "STOP", "GO", "RECHECK", "MOVE", "TURN", "PASSIVE", "ACTIVE", "RETEST", "PIN", "UNPIN", "DISABLE",
 )  # fmt: skip
 KIND: Final = "fault kind"
+_NAMES: Final = {0: "over"} | KIND_NAME
 UNITS: Final = (*_PARTS, *_UNITS, KIND)
-
-
-def _name(kind: int) -> str:
-    if kind == 0:
-        return "over"
-    return list(SONAR_KINDS)[kind - 1] if 0 < kind <= len(SONAR_KINDS) else "?"
 
 
 def value_words(event: str, value: int) -> str:
@@ -123,7 +118,7 @@ def value_words(event: str, value: int) -> str:
     if event == "OPERATOR" and 0 < value <= len(OPERATIONS):
         return f" {OPERATIONS[value - 1]}"
     if unit == KIND:
-        return f" ({_name(value)})"
+        return f" ({_NAMES.get(value, '?')})"
     if value == _NEVER and unit:
         return " (never)"
     if unit in _PARTS:

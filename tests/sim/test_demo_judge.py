@@ -23,8 +23,9 @@ from demo_drive import (
 )
 
 from hil_sim.core.library import kind_name
-from hil_sim.demo.judge import KIND_NAME, Injected, Task, Verdict, clock_offset_s, energy_j, judge, sonar_of
+from hil_sim.demo.judge import Injected, Task, Verdict, clock_offset_s, energy_j, judge, sonar_of
 from hil_sim.errors import SimError
+from hil_sim.faults.kinds import KIND_NAME
 from hil_sim.tables import load
 
 Records = list[Record]

@@ -19,7 +19,7 @@ from argus_tools.chunks import (
     Offsets,
     ReadOptions,
 )
-from hil_sim.faults.kinds import SONAR_KINDS
+from hil_sim.faults.kinds import KIND_NAME
 from hil_sim.record.recording import (
     CLOCK_US,
     MAGIC,
@@ -43,21 +43,18 @@ _DIRECTION: Final[dict[int, Direction]] = {
 _KIND: Final = {direction: kind for kind, direction in _DIRECTION.items()}
 
 
-_FAULTS: Final = ("", *SONAR_KINDS)
-
-
 def injected(payload: bytes) -> str:
     """Say what argusd did to a sonar from here on.
 
     >>> injected(bytes([3, 3]) + (30000).to_bytes(4, "little"))
     "argusd injects 'stuck' into sonar 3 for 30 s: from here on its readings are made up"
     """
-    if len(payload) != 6 or payload[1] >= len(_FAULTS):
+    if len(payload) != 6 or (payload[1] != 0 and payload[1] not in KIND_NAME):
         return "argusd injects a fault of an unknown kind: readings from here on are made up"
     if payload[1] == 0:
         return f"argusd injects nothing into sonar {payload[0]} any more: its readings are its own again"
     for_s = int.from_bytes(payload[2:], "little") / 1000
-    kind = _FAULTS[payload[1]]
+    kind = KIND_NAME[payload[1]]
     return f"argusd injects '{kind}' into sonar {payload[0]} for {for_s:g} s: from here on its readings are made up"
 
 
