@@ -7,7 +7,9 @@ import math
 from pathlib import Path
 
 import pytest
+from argus_tools.chunks import LogError
 from argus_tools.log.cli import main
+from argus_tools.log.draft import drafted
 from bags import START, single, transform, write
 
 from hil_sim.tables.robot import robot_table
@@ -117,3 +119,18 @@ def test_without_transforms_the_frames_are_told(tmp_path: Path, capsys: pytest.C
     path = write(tmp_path / "drive.bag", sent)
     assert main(["ring", "--draft", str(path)]) == 2
     assert "no transforms from a base to us_0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        '<collision><geometry><box size="a b c"/></geometry></collision>',
+        '<collision><geometry><cylinder radius="wide" length="1"/></geometry></collision>',
+        '<collision><origin xyz="0 0 x"/><geometry><sphere radius="1"/></geometry></collision>',
+    ],
+)
+def test_a_number_that_is_none_is_an_error_of_one_line(tmp_path: Path, part: str) -> None:
+    path = tmp_path / "odd.urdf"
+    path.write_text(f'<robot name="r"><link name="base_link">{part}</link></robot>')
+    with pytest.raises(LogError, match="a number in the URDF that is none"):
+        drafted(path)

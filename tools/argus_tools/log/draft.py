@@ -96,8 +96,15 @@ def _link(joint: ET.Element, which: str) -> str:
     return "" if one is None else one.get("link") or ""
 
 
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError as error:
+        raise LogError(f"a number in the URDF that is none: {error}") from error
+
+
 def _numbers(text: str | None) -> tuple[float, float, float]:
-    words = [float(word) for word in (text or "0 0 0").split()]
+    words = [_number(word) for word in (text or "0 0 0").split()]
     return (words[0], words[1], words[2]) if len(words) == 3 else (0.0, 0.0, 0.0)
 
 
@@ -106,10 +113,7 @@ def _origin(of: ET.Element) -> Pose:
     origin = of.find("origin")
     if origin is None:
         return Pose()
-    try:
-        (x_m, y_m, _), (_, _, yaw) = _numbers(origin.get("xyz")), _numbers(origin.get("rpy"))
-    except ValueError as error:
-        raise LogError(f"an origin that is no three numbers: {error}") from error
+    (x_m, y_m, _), (_, _, yaw) = _numbers(origin.get("xyz")), _numbers(origin.get("rpy"))
     return Pose(x_m, y_m, yaw)
 
 
@@ -165,7 +169,7 @@ def _halves(shape: ET.Element) -> Iterable[tuple[float, float]]:
         yield x_m / 2, y_m / 2
     for kind in ("cylinder", "sphere"):
         for one in shape.iter(kind):
-            radius_m = float(one.get("radius") or 0)
+            radius_m = _number(one.get("radius") or "0")
             yield radius_m, radius_m
 
 
