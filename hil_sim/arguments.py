@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 import re
 from collections.abc import Callable, Iterator
 from typing import Any, Final, NoReturn
@@ -23,6 +22,8 @@ def meant(word: str, known: Iterator[str] | list[str]) -> str:
     >>> meant("--fualt", ["--fault", "--tcp"]), meant("--zzz", ["--fault"])
     ('; did you mean --fault?', '')
     """
+    import difflib
+
     near = difflib.get_close_matches(word, list(known), 1)
     return f"; did you mean {near[0]}?" if near else ""
 

@@ -4,20 +4,24 @@
 from __future__ import annotations
 
 import argparse
-import re
-from importlib import metadata
-from pathlib import Path
 from typing import Final
 
 # The one place where it is written; an installed program has it in its package's description.
-_HEADER: Final = Path(__file__).resolve().parents[1] / "firmware" / "include" / "argus" / "argus.h"
-_DEFINED: Final = re.compile(r'#define ARGUS_VERSION "([^"]+)"')
+_HEADER: Final = ("firmware", "include", "argus", "argus.h")
+_DEFINED: Final = r'#define ARGUS_VERSION "([^"]+)"'
 
 
 def version() -> str:
     """Return the version, "unknown" where neither the sources nor the package are there."""
+    # These take as long to load as all else that a --help needs.
+    import re
+    from importlib import metadata
+    from pathlib import Path
+
     try:
-        match = _DEFINED.search(_HEADER.read_text(encoding="utf-8"))
+        match = re.search(
+            _DEFINED, Path(__file__).resolve().parents[1].joinpath(*_HEADER).read_text(encoding="utf-8")
+        )
     except OSError:
         match = None
     if match:

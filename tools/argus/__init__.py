@@ -17,17 +17,18 @@ The names used most are here too:
 docs/python.md has more examples. What is not in `__all__` of these modules may change without notice.
 """
 
-from importlib.metadata import version as _version
+from typing import TYPE_CHECKING, Any
 
-from argus import guard, live, log, protocol, ranges, sil
-from argus.guard import GuardedRobot, GuardError, connect_guard
-from argus.live import AsyncRobot, ControlError, Refused, Robot, connect, connect_async
-from argus.log import Diagnosis, LogError, LogPacket, diagnose, read
-from argus.protocol import COMMAND, Command, PacketError, Sip, Unframer, decode, frame
-from argus.ranges import Observer
-from argus.sil import Mission, Outcome, Sil, run
+if TYPE_CHECKING:
+    from argus import guard, live, log, protocol, ranges, sil
+    from argus.guard import GuardedRobot, GuardError, connect_guard
+    from argus.live import AsyncRobot, ControlError, Refused, Robot, connect, connect_async
+    from argus.log import Diagnosis, LogError, LogPacket, diagnose, read
+    from argus.protocol import COMMAND, Command, PacketError, Sip, Unframer, decode, frame
+    from argus.ranges import Observer
+    from argus.sil import Mission, Outcome, Sil, run
 
-__version__ = _version("argus-p3dx")
+    __version__: str
 
 __all__ = [
     "COMMAND",
@@ -64,3 +65,37 @@ __all__ = [
     "run",
     "sil",
 ]
+
+# Which module has a name; each is loaded when it is asked for, since `sil` alone takes as long as ten interpreters.
+_HOMES = {
+    "guard": ("GuardError", "GuardedRobot", "connect_guard"),
+    "live": ("AsyncRobot", "ControlError", "Refused", "Robot", "connect", "connect_async"),
+    "log": ("Diagnosis", "LogError", "LogPacket", "diagnose", "read"),
+    "protocol": ("COMMAND", "Command", "PacketError", "Sip", "Unframer", "decode", "frame"),
+    "ranges": ("Observer",),
+    "sil": ("Mission", "Outcome", "Sil", "run"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Return a module of the package, or a name of one, and keep it."""
+    from importlib import import_module
+
+    if name == "__version__":
+        from importlib.metadata import version
+
+        found: Any = version("argus-p3dx")
+    elif name in _HOMES:
+        found = import_module(f"argus.{name}")
+    else:
+        home = next((module for module, names in _HOMES.items() if name in names), None)
+        if home is None:
+            raise AttributeError(f"module 'argus' has no attribute '{name}'")
+        found = getattr(import_module(f"argus.{home}"), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    """Return the names, loaded or not."""
+    return sorted({*globals(), *__all__})

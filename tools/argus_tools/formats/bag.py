@@ -12,6 +12,7 @@ from io import BufferedReader
 from pathlib import Path
 from typing import Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import Chunk, DamageList, Format, LogError, Reader, ReadOptions, begins
 from argus_tools.rings.own import OwnLog, is_own
 from argus_tools.rings.packets import RangeLog
@@ -125,10 +126,8 @@ def _is_database(head: bytes) -> bool:
 
 
 FORMATS: Final = (
-    Format("bag1", "ROS 1 bag", begins(_ROS1), _reads(".bag")),
-    Format("bag2", "ROS 2 bag: its folder", begins(_METADATA), _reads("")),
-    Format("bag2-db3", "SQLite file of a ROS 2 bag", _is_database, _reads(".db3")),
-    Format(
-        "mcap", "MCAP of ROS 2, of argus-log convert or the Foxglove bridge", begins(_MCAP), _reads(".mcap")
-    ),
+    Format("bag1", HELP["bag1"], begins(_ROS1), _reads(".bag")),
+    Format("bag2", HELP["bag2"], begins(_METADATA), _reads("")),
+    Format("bag2-db3", HELP["bag2-db3"], _is_database, _reads(".db3")),
+    Format("mcap", HELP["mcap"], begins(_MCAP), _reads(".mcap")),
 )

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from io import BufferedReader
 from typing import BinaryIO, Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import (
     CLIENT_TO_ROBOT,
     ROBOT_TO_CLIENT,
@@ -113,7 +114,7 @@ class BinWriter:
 
 FORMAT: Final = Format(
     name="bin",
-    help="raw bytes of one direction, no times",
+    help=HELP["bin"],
     sniff=lambda head: True,
     reader=BinReader,
     writer=BinWriter,

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from io import BufferedReader
 from typing import Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.isotp import CanLink, is_robot_id
 from argus_tools.formats.source import HEAD_BYTES
@@ -371,7 +372,7 @@ def _comments(head: bytes) -> list[bytes]:
 
 FORMAT: Final = Format(
     name="can-csv",
-    help="CSV of CAN frames: SavvyCAN, PCAN, python-can and others with headings",
+    help=HELP["can-csv"],
     sniff=_sniff,
     reader=CanCsvReader,
 )

@@ -11,6 +11,7 @@ from io import BufferedReader
 from itertools import pairwise
 from typing import Any, BinaryIO, Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import (
     CLIENT_TO_ROBOT,
     ROBOT_TO_CLIENT,
@@ -261,7 +262,7 @@ class CandumpWriter:
 
 FORMAT: Final = Format(
     name="candump",
-    help="candump of the ISO-TP link: -L, or as on the screen, plain or with -t",
+    help=HELP["candump"],
     sniff=_sniff,
     reader=CandumpReader,
     writer=CandumpWriter,

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from io import BufferedReader
 from typing import Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import Chunk, Damage, DamageList, Format, ReadOptions
 from argus_tools.formats.isotp import CanLink
 from argus_tools.formats.stamps import Times
@@ -166,7 +167,7 @@ def _sniff(head: bytes) -> bool:
 
 FORMAT: Final = Format(
     name="can-lines",
-    help="CAN frames as python-can, BUSMASTER, CRTD and dated logs print them",
+    help=HELP["can-lines"],
     sniff=_sniff,
     reader=CanLinesReader,
 )

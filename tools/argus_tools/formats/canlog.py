@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from io import BufferedReader
 from typing import Any, Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import Chunk, Damage, DamageList, Format, LogError, Reader, ReadOptions
 from argus_tools.formats.isotp import CanLink, is_robot_id
 from argus_tools.formats.stamps import Times
@@ -450,9 +451,7 @@ def _trc(stream: BufferedReader, options: ReadOptions) -> Reader:
 
 
 FORMATS: Final = (
-    Format(
-        name="blf", help="BLF of Vector's tools", sniff=lambda head: head[:4] == _BLF_MAGIC, reader=BlfReader
-    ),
-    Format(name="asc", help="ASC of Vector's tools", sniff=_sniff_asc, reader=_asc),
-    Format(name="trc", help="TRC of PEAK's tools (PCAN-View)", sniff=_sniff_trc, reader=_trc),
+    Format(name="blf", help=HELP["blf"], sniff=lambda head: head[:4] == _BLF_MAGIC, reader=BlfReader),
+    Format(name="asc", help=HELP["asc"], sniff=_sniff_asc, reader=_asc),
+    Format(name="trc", help=HELP["trc"], sniff=_sniff_trc, reader=_trc),
 )

@@ -9,6 +9,7 @@ from io import BufferedReader
 from itertools import islice
 from typing import Any, Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import DamageList, Format, Reader, ReadOptions
 from argus_tools.formats.jsonl import Records
 from argus_tools.formats.source import BLOCK_BYTES
@@ -65,6 +66,6 @@ def _json(stream: BufferedReader, options: ReadOptions) -> Reader:
 
 
 FORMATS: Final = (
-    Format("range-csv", "a table with columns as t_s, x_m, y_m, heading_deg, sonar_0_mm", _is_table, _table),
-    Format("range-json", "JSON lines or an array with the same keys", _is_json, _json),
+    Format("range-csv", HELP["range-csv"], _is_table, _table),
+    Format("range-json", HELP["range-json"], _is_json, _json),
 )

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from io import BufferedReader
 from typing import Final, NamedTuple
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import Chunk, Damage, DamageList, Format, ReadOptions
 from argus_tools.formats.hexdump import HEADER
 from argus_tools.formats.isotp import is_robot_id
@@ -138,7 +139,7 @@ class FrameDumpReader:
 
 FORMAT: Final = Format(
     name="frame-dump",
-    help="frames as text: tshark -x, Wireshark's plain text with bytes",
+    help=HELP["frame-dump"],
     sniff=lambda head: _link(head) is not None,
     reader=FrameDumpReader,
 )

@@ -14,6 +14,7 @@ from io import BufferedReader
 from itertools import pairwise
 from typing import Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import (
     Chunk,
     Damage,
@@ -365,7 +366,7 @@ def _sniff(head: bytes) -> bool:
 
 FORMAT: Final = Format(
     name="hexdump",
-    help="dump with offsets: hexdump, xxd, od, Wireshark's",
+    help=HELP["hexdump"],
     sniff=_sniff,
     reader=HexdumpReader,
 )

@@ -12,6 +12,7 @@ from io import BufferedReader
 from itertools import pairwise
 from typing import Final, NamedTuple
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import (
     CLIENT_TO_ROBOT,
     ROBOT_TO_CLIENT,
@@ -395,7 +396,7 @@ def _sniff(head: bytes) -> bool:
 
 FORMAT: Final = Format(
     name="hextext",
-    help="hexadecimal, decimal or octal text of a terminal program, with or without times",
+    help=HELP["hextext"],
     sniff=_sniff,
     reader=HextextReader,
 )

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from io import BufferedReader
 from typing import Final, NamedTuple
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import (
     ROBOT_TO_CLIENT,
     Chunk,
@@ -267,7 +268,7 @@ def _sniff(head: bytes) -> bool:
 
 FORMAT: Final = Format(
     name="hexwords",
-    help="bytes among other words: logs of programs, brackets, literals of Python, lists of numbers",
+    help=HELP["hexwords"],
     sniff=_sniff,
     reader=HexwordsReader,
 )

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from io import BufferedReader
 from typing import Any, BinaryIO, Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import Chunk, Damage, DamageList, Direction, Format, Offsets, ReadOptions
 from argus_tools.formats.source import BLOCK_BYTES, HEAD_BYTES
 from argus_tools.formats.text import Rewritten, first_lines, is_passed
@@ -184,7 +185,7 @@ class JsonlWriter:
 
 FORMAT: Final = Format(
     name="jsonl",
-    help='JSON records {"t", "dir", "hex"}, in lines or an array',
+    help=HELP["jsonl"],
     sniff=_sniff,
     reader=JsonlReader,
     writer=JsonlWriter,

@@ -13,6 +13,7 @@ from io import BufferedReader
 from itertools import pairwise
 from typing import Final, NamedTuple
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import Chunk, Damage, DamageList, Format, LogError, Offsets, ReadOptions
 from argus_tools.formats.bin import guess_direction
 from argus_tools.formats.hexdump import REPEATED, DumpStream, likeness
@@ -189,7 +190,7 @@ class NumDumpReader:
 
 FORMAT: Final = Format(
     name="numdump",
-    help="dump with offsets in decimal numbers or characters: od -t d1, u2, c, hexdump -c, -d",
+    help=HELP["numdump"],
     sniff=lambda head: _plan(head) is not None,
     reader=NumDumpReader,
 )

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from io import BufferedReader
 from typing import BinaryIO, Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.tcp import DEFAULT_PORT, LINK_ETHERNET, Connection
 from argus_tools.formats.traffic import Captured, Traffic
@@ -82,7 +83,7 @@ class PcapWriter:
 
 FORMAT: Final = Format(
     name="pcap",
-    help="pcap of the TCP or CAN link (tcpdump)",
+    help=HELP["pcap"],
     sniff=lambda head: head[:4] in _MAGIC,
     reader=PcapReader,
     writer=PcapWriter,

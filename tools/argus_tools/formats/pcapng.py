@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from io import BufferedReader
 from typing import BinaryIO, Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.pcap import FRAME_MAX
 from argus_tools.formats.tcp import DEFAULT_PORT, LINK_ETHERNET, Connection
@@ -144,7 +145,7 @@ class PcapngWriter:
 
 FORMAT: Final = Format(
     name="pcapng",
-    help="pcapng of the TCP or CAN link (Wireshark)",
+    help=HELP["pcapng"],
     sniff=lambda head: head[:4] == b"\x0a\x0d\x0d\x0a",
     reader=PcapngReader,
     writer=PcapngWriter,

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from io import BufferedReader
 from typing import BinaryIO, Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import (
     CLIENT_TO_ROBOT,
     ROBOT_TO_CLIENT,
@@ -133,7 +134,7 @@ class RecordWriter:
 
 FORMAT: Final = Format(
     name="record",
-    help="recording by argusd --record or argus-sim --record",
+    help=HELP["record"],
     sniff=is_recording,
     reader=RecordReader,
     writer=RecordWriter,

@@ -11,6 +11,7 @@ from contextlib import suppress
 from io import BufferedReader
 from typing import Any, Final
 
+from argus_tools.catalogue import HELP
 from argus_tools.chunks import (
     EXPECTED,
     Chunk,
@@ -173,7 +174,7 @@ def _sniff(head: bytes) -> bool:
 
 FORMAT: Final = Format(
     name="tshark-json",
-    help="frames as JSON: tshark -T json, -T jsonraw, -T ek",
+    help=HELP["tshark-json"],
     sniff=_sniff,
     reader=TsharkJsonReader,
 )

@@ -11,16 +11,26 @@ import sys
 from collections.abc import Sequence
 from typing import Final, Protocol
 
-from argus_tools.formats import LogError, formats
-from argus_tools.log.common import EXIT_CODES, EXIT_READ, EXIT_UNUSABLE
-from hil_sim.arcos import PacketError
+from argus_tools.catalogue import HELP
+from argus_tools.log.exits import EXIT_CODES, EXIT_READ, EXIT_UNUSABLE
 from hil_sim.arguments import Parser
-from hil_sim.errors import SimError, missing_package
+from hil_sim.errors import InputError, SimError, missing_package
 from hil_sim.output import guarded, is_of_output
 from hil_sim.version import add_version
 
-# Each module has SUMMARY, EXAMPLES, add_arguments(parser) and run(args) -> exit code.
-COMMANDS: Final = ("decode", "stats", "faults", "plot", "convert", "replay", "diff", "ring")
+# What each command is for; its module has EXAMPLES, add_arguments(parser) and run(args) -> exit code.
+COMMANDS: Final = {
+    "decode": "print every packet of a log",
+    "stats": "count packets, rates, gaps and damage, and describe each sonar",
+    "faults": "tell what the fault manager would have said from a log alone",
+    "plot": "draw readings over time, the path, or the sonar ring at one moment, as PNG or SVG",
+    "convert": "write a log in another format",
+    "replay": "serve a log as a robot, for any client",
+    "diff": "show where two logs differ, packet by packet",
+    "ring": "check and draw a ring of your own, FILE.toml",
+}
+# None of the commands' modules is needed for these.
+_ASKS_FOR_HELP: Final = frozenset(("-h", "--help", "--version"))
 
 _EPILOG = """\
 examples:
@@ -41,7 +51,6 @@ converts them.
 class Command(Protocol):
     """What a subcommand's module offers."""
 
-    SUMMARY: str
     EXAMPLES: str
 
     def add_arguments(self, parser: argparse.ArgumentParser) -> None:
@@ -51,9 +60,9 @@ class Command(Protocol):
         """Do it; return the exit code."""
 
 
-def _parser(chosen: str | None) -> argparse.ArgumentParser:
-    """Return the parser; with a known subcommand chosen, the others' modules are not loaded."""
-    known = "".join(f"  {name:<11}{format_.help}\n" for name, format_ in formats().items())
+def _parser(first: str | None) -> argparse.ArgumentParser:
+    """Return the parser for what begins so; only those commands are loaded that may be meant."""
+    known = "".join(f"  {name:<11}{what}\n" for name, what in HELP.items())
     parser = Parser(
         prog="argus-log",
         description="Decodes, checks, converts, draws and replays logs of a robot's serial, TCP or CAN link.",
@@ -62,18 +71,21 @@ def _parser(chosen: str | None) -> argparse.ArgumentParser:
     )
     add_version(parser)
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=Parser)
-    for name in [chosen] if chosen in COMMANDS else COMMANDS:
-        command: Command = importlib.import_module(f"argus_tools.log.{name}")
+    for name in (first,) if first in COMMANDS else COMMANDS:
         subparser = subparsers.add_parser(
-            name,
-            help=command.SUMMARY,
-            description=command.SUMMARY[0].upper() + command.SUMMARY[1:] + ".",
-            epilog=f"examples:\n{command.EXAMPLES}\n{EXIT_CODES}\n",
-            formatter_class=argparse.RawDescriptionHelpFormatter,
+            name, help=COMMANDS[name], formatter_class=argparse.RawDescriptionHelpFormatter
         )
-        command.add_arguments(subparser)
-        subparser.set_defaults(run=command.run)
+        if first is not None and first not in _ASKS_FOR_HELP:
+            _fill(subparser, name)
     return parser
+
+
+def _fill(parser: argparse.ArgumentParser, name: str) -> None:
+    command: Command = importlib.import_module(f"argus_tools.log.{name}")
+    parser.description = COMMANDS[name][0].upper() + COMMANDS[name][1:] + "."
+    parser.epilog = f"examples:\n{command.EXAMPLES}\n{EXIT_CODES}\n"
+    command.add_arguments(parser)
+    parser.set_defaults(run=command.run)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -88,6 +100,8 @@ def _run(given: Sequence[str]) -> int:
     # Millions of rows come and go here, none of them in a cycle.
     gc.set_threshold(100_000, 50, 50)
     args = _parser(given[0] if given else None).parse_args(given)
+    from hil_sim.arcos.fields import PacketError
+
     try:
         code: int = args.run(args)
         sys.stdout.flush()
@@ -97,7 +111,7 @@ def _run(given: Sequence[str]) -> int:
     except PacketError as error:
         print(f"argus-log: {getattr(args, 'log', 'the log')}: {error}", file=sys.stderr)
         return EXIT_UNUSABLE
-    except (LogError, SimError) as error:
+    except (InputError, SimError) as error:
         print(f"argus-log: {error}", file=sys.stderr)
         return EXIT_UNUSABLE
     except ModuleNotFoundError as error:

@@ -14,17 +14,13 @@ from typing import Any, Final, NoReturn
 
 from argus_tools.chunks import CLIENT_TO_ROBOT, EXPECTED, ROBOT_TO_CLIENT
 from argus_tools.formats import Chunk, Log, LogError, ReadOptions, formats
+from argus_tools.log.exits import EXIT_DAMAGE, EXIT_READ
 from argus_tools.log.packets import Row, packets
 from hil_sim.arguments import whole
 from hil_sim.errors import SimError
 from hil_sim.tables.ring import ring_file
 from hil_sim.tables.robot import robot_table
 
-EXIT_READ, EXIT_DAMAGE, EXIT_UNUSABLE = 0, 1, 2
-EXIT_CODES: Final = (
-    "exit codes: 0 read, 1 damage found (with --strict; faults: also a fault found, unless --exit-zero), "
-    "2 nothing usable, or a wrong argument"
-)
 DIRECTIONS: Final = (ROBOT_TO_CLIENT, CLIENT_TO_ROBOT)
 # A file in which so much comes before the first packet is no log.
 HOPELESS_BYTES: Final = 16 << 20

@@ -22,7 +22,6 @@ from argus_tools.log.fields import Decoder
 from argus_tools.log.packets import Row
 from hil_sim.arcos import TIMING
 
-SUMMARY: Final = "write a log in another format"
 EXAMPLES: Final = """\
   argus-log convert drive.rec drive.mcap              to open in Foxglove
   argus-log convert drive.pcap drive.jsonl

@@ -23,7 +23,6 @@ from argus_tools.log.common import (
 from argus_tools.log.fields import Decoder
 from argus_tools.log.packets import COMMAND_NAMES, JUNK, SESSION_NAMES, SYNC_NAMES, TYPE_NAMES, Row
 
-SUMMARY: Final = "print every packet of a log"
 EXAMPLES: Final = """\
   argus-log decode capture.bin                        a raw capture of one direction
   argus-log decode session.jsonl --type SIP --sonar 3 what sonar 3 said

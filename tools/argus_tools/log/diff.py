@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from typing import Any, Final, NamedTuple
 
 from argus_tools.formats import Direction, LogError
-from argus_tools.log.common import DIRECTIONS, EXIT_DAMAGE, EXIT_READ, Input, add_log_arguments, use_colour
+from argus_tools.log.common import DIRECTIONS, Input, add_log_arguments, use_colour
 from argus_tools.log.decode import table_row
+from argus_tools.log.exits import EXIT_DAMAGE, EXIT_READ
 from argus_tools.log.fields import Decoder
 from argus_tools.log.packets import Row
 
-SUMMARY: Final = "show where two logs differ, packet by packet"
 EXAMPLES: Final = """\
   argus-log diff before.rec after.pcap                contents, whatever the two formats are
   argus-log diff a.jsonl b.jsonl --dir c2r --tolerance 0.05

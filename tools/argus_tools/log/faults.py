@@ -18,7 +18,6 @@ from hil_sim.arcos import FLAG, SIP, TIMING, Command, SyncReply
 from hil_sim.core.library import Core, Event, kind_name, setting_value
 from hil_sim.faults.values import value_words
 
-SUMMARY: Final = "tell what the fault manager would have said from a log alone"
 EXAMPLES: Final = """\
   argus-log faults capture.bin                 what is wrong, a line for each finding; one if it is nothing
   argus-log faults capture.bin --events        everything said on the way, then the state of each sonar

@@ -35,7 +35,6 @@ from argus_tools.log.fields import Decoder
 from argus_tools.log.spans import DEAD, SUSPECT, find_spans
 from hil_sim.tables import load
 
-SUMMARY: Final = "draw readings over time, the path, or the sonar ring at one moment, as PNG or SVG"
 EXAMPLES: Final = """\
   argus-log plot drive.rec -o drive.png                        each sonar over time; dead and suspect spans shaded
   argus-log plot drive.rec -o front.svg --sonar 0-7 --from +20 --to +40

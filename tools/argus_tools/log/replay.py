@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterator
 from typing import Any, Final
 
 from argus_tools.chunks import ROBOT_TO_CLIENT, LogError
-from argus_tools.log.common import EXIT_READ, Input, add_log_arguments, add_robot_arguments
+from argus_tools.log.common import Input, add_log_arguments, add_robot_arguments
+from argus_tools.log.exits import EXIT_READ
 from argus_tools.log.opening import identity_in
 from argus_tools.log.packets import Row
 from hil_sim.arcos import COMMAND, TIMING, Command, ConfigPac, SyncEcho, SyncReply, Unframer, frame
@@ -21,7 +22,6 @@ from hil_sim.links.base import Link
 from hil_sim.links.pty import PtyLink
 from hil_sim.links.tcp import TcpLink
 
-SUMMARY: Final = "serve a log as a robot, for any client"
 EXAMPLES: Final = """\
   argus-log replay drive.rec                          on a pseudo-terminal; prints the device to open
   argus-log replay drive.rec --tcp 8101 --speed 10    ten times as fast, where clients look for a simulator

@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from argus_tools.formats import LogError
-from argus_tools.log.common import EXIT_READ, binary_output
+from argus_tools.log.common import binary_output
+from argus_tools.log.exits import EXIT_READ
 from hil_sim.tables.ring import ring_file
 from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.tables.write import toml_of
 
-SUMMARY: Final = "check and draw a ring of your own, FILE.toml"
 EXAMPLES: Final = """\
   argus-log ring my.toml                      what is in it, or file, line and what is wrong
   argus-log ring my.toml -o my.png            the picture: are the sonars where they are?

@@ -15,7 +15,6 @@ from argus_tools.log.packets import JUNK, Row
 from hil_sim.arcos import TIMING
 from hil_sim.tables import load
 
-SUMMARY: Final = "count packets, rates, gaps and damage, and describe each sonar"
 EXAMPLES: Final = """\
   argus-log stats drive.rec
   argus-log stats drive.pcapng --from +60 --json
