@@ -135,7 +135,7 @@ def boards(run: Run) -> None:
 
 def tables(run: Run) -> None:
     """Compare what is generated with what it is generated from."""
-    for generator in ("gen_tables", "gen_docs"):
+    for generator in ("gen_tables", "gen_docs", "gen_requirements"):
         run([sys.executable, f"tools/{generator}.py", "--check"])
 
 
